@@ -1,0 +1,3 @@
+//! lunula: ground truth for fingernail sensing.
+
+pub mod photo;
