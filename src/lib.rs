@@ -1,3 +1,4 @@
 //! lunula: ground truth for fingernail sensing.
 
+pub mod labelme;
 pub mod photo;
