@@ -1,4 +1,7 @@
 //! lunula: ground truth for fingernail sensing.
 
+pub mod figure;
+pub mod files;
 pub mod labelme;
 pub mod photo;
+pub mod stages;

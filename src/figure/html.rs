@@ -1,0 +1,110 @@
+//! Reports: one self-contained HTML page that can be mailed.
+
+use std::fmt::Write;
+use std::io::Cursor;
+
+use base64::Engine;
+use image::codecs::jpeg::JpegEncoder;
+use image::{ImageError, RgbImage};
+
+/// Text made safe between HTML or SVG tags and in attributes.
+pub fn escape(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;").replace('\'', "&#39;")
+}
+
+/// A page in the making: headings, paragraphs, tables, pictures, in the order they are added.
+#[derive(Debug, Clone)]
+pub struct Page {
+    title: String,
+    body: String,
+}
+
+const STYLE: &str = "body{font:16px/1.45 system-ui,sans-serif;max-width:72rem;margin:2rem auto;padding:0 1rem;color:#222}\
+h1{font-weight:500}h2{font-weight:500;margin-top:2.5rem}img{max-width:100%;border:1px solid #ddd}\
+table{border-collapse:collapse;font-size:14px;font-variant-numeric:tabular-nums}th,td{padding:.2rem .6rem;border-bottom:1px solid #e4e4e4;text-align:left}\
+th{position:sticky;top:0;background:#fff}tr.out td{background:#fff3e0}.scroll{max-height:36rem;overflow:auto}@media print{.scroll{max-height:none}}";
+
+impl Page {
+    /// An empty page.
+    pub fn new(title: &str) -> Self {
+        Self { title: title.to_owned(), body: format!("<h1>{}</h1>\n", escape(title)) }
+    }
+
+    /// A section's heading.
+    pub fn heading(&mut self, text: &str) {
+        let _ = writeln!(self.body, "<h2>{}</h2>", escape(text));
+    }
+
+    /// Plain words.
+    pub fn paragraph(&mut self, text: &str) {
+        let _ = writeln!(self.body, "<p>{}</p>", escape(text));
+    }
+
+    /// Plain words, a point each; nothing where there are none.
+    pub fn list(&mut self, items: &[String]) {
+        if !items.is_empty() {
+            let items: String = items.iter().map(|i| format!("<li>{}</li>\n", escape(i))).collect();
+            let _ = writeln!(self.body, "<ul>\n{items}</ul>");
+        }
+    }
+
+    /// A table; rows for which `marked` holds stand out.
+    pub fn table(&mut self, header: &[&str], rows: &[Vec<String>], marked: impl Fn(usize) -> bool) {
+        let cells = |tag: &str, row: &mut dyn Iterator<Item = &str>| -> String {
+            row.map(|c| format!("<{tag}>{}</{tag}>", escape(c))).collect()
+        };
+        let _ = writeln!(
+            self.body,
+            "<div class=\"scroll\"><table>\n<thead><tr>{}</tr></thead>\n<tbody>",
+            cells("th", &mut header.iter().copied())
+        );
+        for (at, row) in rows.iter().enumerate() {
+            let class = if marked(at) { " class=\"out\"" } else { "" };
+            let _ = writeln!(self.body, "<tr{class}>{}</tr>", cells("td", &mut row.iter().map(String::as_str)));
+        }
+        let _ = writeln!(self.body, "</tbody></table></div>");
+    }
+
+    /// A PNG file's bytes as a picture.
+    pub fn png(&mut self, png: &[u8], alt: &str) {
+        self.picture("png", png, alt);
+    }
+
+    /// A picture that need not be exact, as JPEG, to keep the page small.
+    ///
+    /// # Errors
+    /// Where it can't be encoded.
+    pub fn jpeg(&mut self, picture: &RgbImage, alt: &str) -> Result<(), ImageError> {
+        let mut bytes = Vec::new();
+        picture.write_with_encoder(JpegEncoder::new_with_quality(Cursor::new(&mut bytes), 85))?;
+        self.picture("jpeg", &bytes, alt);
+        Ok(())
+    }
+
+    fn picture(&mut self, kind: &str, bytes: &[u8], alt: &str) {
+        let data = base64::engine::general_purpose::STANDARD.encode(bytes);
+        let _ = writeln!(self.body, "<p><img alt=\"{}\" src=\"data:image/{kind};base64,{data}\"></p>", escape(alt));
+    }
+
+    /// The whole page.
+    pub fn finish(self) -> String {
+        format!(
+            "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>{}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n{}</body>\n</html>\n",
+            escape(&self.title),
+            self.body
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_files_are_not_markup() {
+        let mut page = Page::new("a <b> & c");
+        page.table(&["file"], &[vec!["<script>\"x\"</script>.png".into()]], |_| true);
+        let html = page.finish();
+        assert!(!html.contains("<script>") && html.contains("&lt;script&gt;") && html.contains("a &lt;b&gt; &amp; c"));
+    }
+}

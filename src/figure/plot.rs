@@ -1,0 +1,173 @@
+//! Plots of measured points, drawn once and written as PNG and SVG.
+
+use std::path::Path;
+use std::sync::Once;
+
+use anyhow::{Context, anyhow, ensure};
+use plotters::coord::Shift;
+use plotters::prelude::*;
+
+use super::text::TYPEFACE;
+
+/// A plot with one or several named series.
+#[derive(Debug, Clone)]
+pub struct Plot {
+    /// Above the axes.
+    pub title: String,
+    /// Horizontal.
+    pub x: Axis,
+    /// Vertical.
+    pub y: Axis,
+    /// What is drawn.
+    pub series: Vec<Series>,
+}
+
+/// One axis.
+#[derive(Debug, Clone)]
+pub struct Axis {
+    /// What it shows, with its unit.
+    pub label: String,
+}
+
+/// Points of one kind.
+#[derive(Debug, Clone)]
+pub struct Series {
+    /// For the legend.
+    pub name: String,
+    /// In any order.
+    pub points: Vec<Point>,
+}
+
+/// One point. Only positive numbers have a place on logarithmic axes.
+#[derive(Debug, Clone)]
+pub struct Point {
+    /// Along the horizontal axis.
+    pub x: f64,
+    /// Along the vertical axis.
+    pub y: f64,
+    /// Written beside it.
+    pub label: String,
+}
+
+const SIZE: (u32, u32) = (1000, 640);
+/// Colours that stay apart for colour-blind readers (Okabe and Ito 2008).
+const COLOURS: [RGBColor; 6] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(230, 159, 0),
+    RGBColor(86, 180, 233),
+];
+
+impl Plot {
+    /// Draws on logarithmic axes to `png` and `svg`.
+    ///
+    /// # Errors
+    /// No point with two positive finite coordinates, or a file that can't be written.
+    pub fn draw_log_log(&self, png: &Path, svg: &Path) -> anyhow::Result<()> {
+        register_typeface()?;
+        let (x, y) = (self.range(|p| p.x)?, self.range(|p| p.y)?);
+        let ranges = (x.0..x.1, y.0..y.1);
+        let mut pixels = vec![0; (SIZE.0 * SIZE.1 * 3) as usize];
+        self.draw(BitMapBackend::with_buffer(&mut pixels, SIZE).into_drawing_area(), &ranges)?;
+        let picture = image::RgbImage::from_raw(SIZE.0, SIZE.1, pixels).context("a plot's pixels")?;
+        picture.save(png).with_context(|| png.display().to_string())?;
+        self.draw(SVGBackend::new(svg, SIZE).into_drawing_area(), &ranges).context("the plot as SVG")
+    }
+
+    fn drawable(&self) -> impl Iterator<Item = &Point> {
+        let has_place = |v: f64| v.is_finite() && v > 0.0;
+        self.series.iter().flat_map(|s| &s.points).filter(move |p| has_place(p.x) && has_place(p.y))
+    }
+
+    /// The decade-friendly range of a coordinate, a little wider than its points.
+    fn range(&self, of: impl Fn(&Point) -> f64) -> anyhow::Result<(f64, f64)> {
+        let (low, high) =
+            self.drawable().map(of).fold((f64::INFINITY, 0.0_f64), |(low, high), v| (low.min(v), high.max(v)));
+        ensure!(low.is_finite(), "no point of the plot `{}` has a place on logarithmic axes", self.title);
+        Ok((low / 1.6, high * 2.2))
+    }
+
+    fn draw<B: DrawingBackend>(
+        &self,
+        area: DrawingArea<B, Shift>,
+        (x, y): &(std::ops::Range<f64>, std::ops::Range<f64>),
+    ) -> anyhow::Result<()>
+    where
+        B::ErrorType: 'static,
+    {
+        area.fill(&WHITE).map_err(|e| anyhow!("{e}"))?;
+        let mut chart = ChartBuilder::on(&area)
+            .caption(&self.title, ("sans-serif", 22))
+            .margin(16)
+            .x_label_area_size(46)
+            .y_label_area_size(74)
+            .build_cartesian_2d(x.clone().log_scale(), y.clone().log_scale())
+            .map_err(|e| anyhow!("{e}"))?;
+        chart
+            .configure_mesh()
+            .x_desc(&self.x.label)
+            .y_desc(&self.y.label)
+            .label_style(("sans-serif", 15))
+            .axis_desc_style(("sans-serif", 17))
+            .light_line_style(RGBColor(240, 240, 240))
+            .x_label_formatter(&short_number)
+            .y_label_formatter(&short_number)
+            .draw()
+            .map_err(|e| anyhow!("{e}"))?;
+        for (series, colour) in self.series.iter().zip(COLOURS.iter().cycle()) {
+            self.draw_series(&mut chart, series, *colour)?;
+        }
+        chart
+            .configure_series_labels()
+            .position(SeriesLabelPosition::UpperRight)
+            .background_style(WHITE.mix(0.85))
+            .border_style(RGBColor(200, 200, 200))
+            .label_font(("sans-serif", 15))
+            .draw()
+            .map_err(|e| anyhow!("{e}"))?;
+        area.present().map_err(|e| anyhow!("{e}"))
+    }
+
+    fn draw_series<B: DrawingBackend, X, Y>(
+        &self,
+        chart: &mut ChartContext<'_, B, Cartesian2d<X, Y>>,
+        series: &Series,
+        colour: RGBColor,
+    ) -> anyhow::Result<()>
+    where
+        B::ErrorType: 'static,
+        X: Ranged<ValueType = f64>,
+        Y: Ranged<ValueType = f64>,
+    {
+        let points: Vec<&Point> = series.points.iter().filter(|p| p.x > 0.0 && p.y > 0.0).collect();
+        chart
+            .draw_series(points.iter().map(|p| Circle::new((p.x, p.y), 5, colour.filled())))
+            .map_err(|e| anyhow!("{e}"))?
+            .label(&series.name)
+            .legend(move |(x, y)| Circle::new((x + 10, y), 5, colour.filled()));
+        chart
+            .draw_series(points.iter().map(|p| {
+                EmptyElement::at((p.x, p.y)) + Text::new(p.label.clone(), (8, -14), ("sans-serif", 13).into_font())
+            }))
+            .map_err(|e| anyhow!("{e}"))?;
+        Ok(())
+    }
+}
+
+/// `0.002`, `3`, `40`: as short as the number allows.
+fn short_number(value: &f64) -> String {
+    let text = format!("{value:.6}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+fn register_typeface() -> anyhow::Result<()> {
+    static ONCE: Once = Once::new();
+    let mut usable = true;
+    ONCE.call_once(|| {
+        usable = plotters::style::register_font("sans-serif", FontStyle::Normal, TYPEFACE).is_ok();
+    });
+    ensure!(usable, "the typeface that is compiled in is damaged");
+    Ok(())
+}

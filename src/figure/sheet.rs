@@ -1,0 +1,187 @@
+//! Sheets: many small pictures in a grid, each with its caption, a title above and a scale below. PNG and SVG.
+
+use std::io::Cursor;
+
+use base64::Engine;
+use image::{DynamicImage, GrayAlphaImage, ImageFormat, Rgb, RgbImage};
+
+use super::html::escape;
+use super::text::{centred, left};
+use super::Stretch;
+
+/// One picture of a sheet.
+#[derive(Debug, Clone)]
+pub struct Tile {
+    /// Below the picture.
+    pub caption: String,
+    /// Transparent where nothing is known.
+    pub picture: GrayAlphaImage,
+}
+
+/// What the grey levels mean.
+#[derive(Debug, Clone)]
+pub struct Scale {
+    /// From the values to the levels.
+    pub stretch: Stretch,
+    /// What the values are, with their unit.
+    pub label: String,
+}
+
+/// A grid of pictures of one size.
+#[derive(Debug, Clone)]
+pub struct Sheet {
+    /// Above the grid.
+    pub title: String,
+    /// Row by row.
+    pub tiles: Vec<Tile>,
+    /// How many stand side by side.
+    pub columns: usize,
+    /// Below the grid.
+    pub scale: Option<Scale>,
+}
+
+const GAP: u32 = 12;
+const TITLE: u32 = 40;
+const CAPTION: u32 = 24;
+const SCALE: u32 = 64;
+const BAR: [u32; 2] = [320, 18];
+const PAPER: Rgb<u8> = Rgb([255, 255, 255]);
+/// Behind unknown pixels: a colour, so that it can't be taken for a grey level.
+const UNKNOWN: Rgb<u8> = Rgb([205, 216, 240]);
+
+/// Where everything stands, pixels.
+struct Layout {
+    tile: [u32; 2],
+    columns: u32,
+    size: [u32; 2],
+}
+
+impl Layout {
+    fn corner(&self, tile: usize) -> [u32; 2] {
+        let (row, column) = (tile as u32 / self.columns, tile as u32 % self.columns);
+        [GAP + column * (self.tile[0] + GAP), TITLE + GAP + row * (self.tile[1] + CAPTION + GAP)]
+    }
+}
+
+impl Sheet {
+    fn layout(&self) -> Layout {
+        let tile = self.tiles.iter().fold([1, 1], |[w, h], t| [w.max(t.picture.width()), h.max(t.picture.height())]);
+        let columns = self.columns.clamp(1, self.tiles.len().max(1)) as u32;
+        let rows = (self.tiles.len() as u32).div_ceil(columns);
+        let scale = if self.scale.is_some() { SCALE } else { 0 };
+        let width = (GAP + columns * (tile[0] + GAP)).max(BAR[0] + 2 * GAP + 60);
+        Layout { tile, columns, size: [width, TITLE + GAP + rows * (tile[1] + CAPTION + GAP) + scale] }
+    }
+
+    /// Draws the sheet.
+    pub fn draw(&self) -> RgbImage {
+        let layout = self.layout();
+        let mut sheet = RgbImage::from_pixel(layout.size[0], layout.size[1], PAPER);
+        left(&mut sheet, &self.title, GAP as i32, 14, 22.0);
+        for (at, tile) in self.tiles.iter().enumerate() {
+            let [x0, y0] = layout.corner(at);
+            for (x, y, pixel) in tile.picture.enumerate_pixels() {
+                let [level, alpha] = pixel.0;
+                sheet.put_pixel(x0 + x, y0 + y, if alpha == 0 { UNKNOWN } else { Rgb([level; 3]) });
+            }
+            let middle = (x0 + layout.tile[0] / 2) as i32;
+            centred(&mut sheet, &tile.caption, middle, (y0 + layout.tile[1] + 4) as i32, 17.0, layout.tile[0]);
+        }
+        if let Some(scale) = &self.scale {
+            let y = layout.size[1] - SCALE + 6;
+            for (x, level) in scale.levels().enumerate() {
+                for dy in 0..BAR[1] {
+                    sheet.put_pixel(GAP + 10 + x as u32, y + dy, Rgb([level; 3]));
+                }
+            }
+            for (position, text) in scale.ticks() {
+                centred(&mut sheet, &text, (GAP + 10 + position) as i32, (y + BAR[1] + 4) as i32, 15.0, 60);
+            }
+            left(&mut sheet, &scale.label, (GAP + BAR[0] + 34) as i32, y as i32, 17.0);
+        }
+        sheet
+    }
+
+    /// The sheet as SVG: pictures embedded, words as words.
+    ///
+    /// # Errors
+    /// Where a picture can't be encoded.
+    pub fn svg(&self) -> Result<String, image::ImageError> {
+        let layout = self.layout();
+        let [width, height] = layout.size;
+        let mut svg = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
+             font-family=\"Ubuntu, sans-serif\" fill=\"#222\">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n\
+             <text x=\"{GAP}\" y=\"32\" font-size=\"20\">{}</text>\n",
+            escape(&self.title)
+        );
+        for (at, tile) in self.tiles.iter().enumerate() {
+            let [x, y] = layout.corner(at);
+            let [tile_width, tile_height] = layout.tile;
+            let mut png = Vec::new();
+            DynamicImage::from(tile.picture.clone()).write_to(&mut Cursor::new(&mut png), ImageFormat::Png)?;
+            svg += &format!(
+                "<rect x=\"{x}\" y=\"{y}\" width=\"{tile_width}\" height=\"{tile_height}\" fill=\"#cdd8f0\"/>\n\
+                 <image x=\"{x}\" y=\"{y}\" width=\"{}\" height=\"{}\" href=\"data:image/png;base64,{}\"/>\n\
+                 <text x=\"{}\" y=\"{}\" font-size=\"15\" text-anchor=\"middle\">{}</text>\n",
+                tile.picture.width(),
+                tile.picture.height(),
+                base64::engine::general_purpose::STANDARD.encode(&png),
+                x + tile_width / 2,
+                y + tile_height + 18,
+                escape(&tile.caption)
+            );
+        }
+        if let Some(scale) = &self.scale {
+            let y = height - SCALE + 6;
+            for (at, level) in scale.levels().enumerate().step_by(4) {
+                svg += &format!(
+                    "<rect x=\"{}\" y=\"{y}\" width=\"4.5\" height=\"{}\" fill=\"rgb({level},{level},{level})\"/>\n",
+                    GAP as usize + 10 + at,
+                    BAR[1]
+                );
+            }
+            for (position, text) in scale.ticks() {
+                svg += &format!(
+                    "<text x=\"{}\" y=\"{}\" font-size=\"13\" text-anchor=\"middle\">{text}</text>\n",
+                    GAP + 10 + position,
+                    y + BAR[1] + 16
+                );
+            }
+            svg += &format!(
+                "<text x=\"{}\" y=\"{}\" font-size=\"15\">{}</text>\n",
+                GAP + BAR[0] + 34,
+                y + 14,
+                escape(&scale.label)
+            );
+        }
+        svg += "</svg>\n";
+        Ok(svg)
+    }
+}
+
+impl Scale {
+    /// Values at both ends of the bar.
+    fn ends(&self) -> [f32; 2] {
+        match self.stretch {
+            Stretch::Linear { low, high } => [low, high],
+            Stretch::Above(_) => [0.0, 1.0],
+        }
+    }
+
+    fn levels(&self) -> impl Iterator<Item = u8> + '_ {
+        let [low, high] = self.ends();
+        (0..BAR[0]).map(move |x| self.stretch.level(low + (high - low) * (x as f32 + 0.5) / BAR[0] as f32))
+    }
+
+    /// Position on the bar and the value there, in percent of full scale.
+    fn ticks(&self) -> Vec<(u32, String)> {
+        let [low, high] = self.ends();
+        let at = |value: f32| ((value - low) / (high - low) * BAR[0] as f32).round() as u32;
+        let values = match self.stretch {
+            Stretch::Linear { .. } => vec![low, (low + high) / 2.0, high],
+            Stretch::Above(limit) => vec![0.0, limit, 1.0],
+        };
+        values.into_iter().map(|v| (at(v), format!("{} %", (f64::from(v) * 1000.0).round() / 10.0))).collect()
+    }
+}

@@ -1,0 +1,53 @@
+//! Captions on pictures, with the one typeface that comes along.
+
+use std::sync::LazyLock;
+
+use ab_glyph::{FontRef, PxScale};
+use image::RgbImage;
+use imageproc::drawing::{draw_text_mut, text_size};
+
+/// The typeface of every figure (Ubuntu Light, Ubuntu font licence).
+pub(super) const TYPEFACE: &[u8] = epaint_default_fonts::UBUNTU_LIGHT;
+/// Colour of captions.
+pub(super) const INK: image::Rgb<u8> = image::Rgb([34, 34, 34]);
+
+static FONT: LazyLock<FontRef<'static>> =
+    LazyLock::new(|| FontRef::try_from_slice(TYPEFACE).expect("the typeface that is compiled in is a typeface"));
+
+/// Draws `text` with its middle at `x` and its top at `y`, shortened with an ellipsis to fit `width` pixels.
+pub(super) fn centred(picture: &mut RgbImage, text: &str, x: i32, y: i32, height: f32, width: u32) {
+    let text = shortened(text, height, width);
+    let (drawn, _) = text_size(PxScale::from(height), &*FONT, &text);
+    draw_text_mut(picture, INK, x - drawn as i32 / 2, y, PxScale::from(height), &*FONT, &text);
+}
+
+/// Draws `text` from (`x`, `y`), its top left corner.
+pub(super) fn left(picture: &mut RgbImage, text: &str, x: i32, y: i32, height: f32) {
+    draw_text_mut(picture, INK, x, y, PxScale::from(height), &*FONT, text);
+}
+
+fn shortened(text: &str, height: f32, width: u32) -> String {
+    let fits = |t: &str| text_size(PxScale::from(height), &*FONT, t).0 <= width;
+    if fits(text) {
+        return text.to_owned();
+    }
+    let letters: Vec<char> = text.chars().collect();
+    (0..letters.len())
+        .rev()
+        .map(|keep| letters[..keep].iter().chain(std::iter::once(&'\u{2026}')).collect::<String>())
+        .find(|t| fits(t))
+        .unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_caption_is_shortened_to_fit() {
+        let short = shortened("longitudinal_negative of a subject with a very long name", 16.0, 100);
+        assert!(short.ends_with('\u{2026}') && short.starts_with("long"));
+        assert!(text_size(PxScale::from(16.0), &*FONT, &short).0 <= 100);
+        assert_eq!(shortened("a", 16.0, 100), "a");
+    }
+}

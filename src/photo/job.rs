@@ -1,0 +1,365 @@
+//! The photos job: a checked set and options in, maps out; the one entry that command line, pipelines and trade-offs call.
+//!
+//! Photographs are worked on side by side, each once from file to sums, and forgotten: memory does not grow with their
+//! number. What cannot be used is listed and left out; the rest is done. Results go into a [`Staging`] as they come.
+
+use std::collections::BTreeMap;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use geo::BoundingRect;
+use rayon::prelude::*;
+use thiserror::Error;
+
+use super::frame::NailFrame;
+use super::maps::Sums;
+use super::normalize::{Normalization, Normalized, normalize};
+use super::outline::source::{Nail, OutlineOptions, Source};
+use super::outline::{Axis, Outline};
+use super::partial::Partials;
+use super::read::Photograph;
+use super::results;
+use super::set::{Photo, PhotoSet, SetFault};
+use crate::files::{Staging, WriteError};
+use crate::stages::Stages;
+
+/// What to do with a set.
+#[derive(Debug, Clone, Default)]
+pub struct PhotosOptions {
+    /// How normalized pictures are made.
+    pub normalization: Normalization,
+    /// Where outlines come from.
+    pub outlines: OutlineOptions,
+    /// Save detected outlines as LabelMe files.
+    pub keep_detected: bool,
+}
+
+/// One nail of the result: a row of `nails.csv`.
+#[derive(Debug, Clone)]
+pub struct NailRow {
+    /// Index of its photograph in the set.
+    pub photo: usize,
+    /// Counted from 1 within the photograph.
+    pub number: usize,
+    /// Where its outline came from.
+    pub source: Source,
+    /// 0 to 1, missing where nothing is known.
+    pub confidence: Option<f64>,
+    /// Its box, where there is one.
+    pub frame: Option<NailFrame>,
+    /// Its axis may be known where its box is not.
+    pub axis: Option<Axis>,
+    /// Name of its normalized picture among the results; `None` where it was left out.
+    pub normalized: Option<String>,
+    /// Why it was left out, or what of it the photograph does not show; else empty.
+    pub reason: String,
+    /// A small normalized picture for the report's sheet.
+    pub(crate) thumbnail: Option<image::GrayAlphaImage>,
+}
+
+/// A detected outline to be kept for a person.
+#[derive(Debug, Clone)]
+pub struct DetectedOutline {
+    /// Index of its photograph in the set.
+    pub photo: usize,
+    /// Width and height of the upright photograph, pixels.
+    pub size: [u32; 2],
+    /// Outline, axis, confidence, trusted.
+    pub nails: Vec<(Outline, Axis, f64, bool)>,
+}
+
+/// What a photograph gave.
+#[derive(Debug)]
+struct Done {
+    rows: Vec<NailRow>,
+    detected: Option<DetectedOutline>,
+    grey: Option<bool>,
+    fault: Option<SetFault>,
+}
+
+/// What was done, what was left out, and how long it took.
+#[derive(Debug)]
+pub struct PhotosResult {
+    /// Every nail, used or not, in the set's order.
+    pub rows: Vec<NailRow>,
+    /// Photographs that gave nothing, and entries of the set that could not be used; sorted.
+    pub failed: Vec<SetFault>,
+    /// What a reader of the maps should know.
+    pub warnings: Vec<String>,
+    /// What the scene did not need, with counts.
+    pub left_out: Vec<String>,
+    /// Sums of each pose.
+    pub partials: Partials,
+    /// Detected outlines, where they were to be kept.
+    pub detected: Vec<DetectedOutline>,
+    /// Time by stage.
+    pub stages: Stages,
+}
+
+/// Why nothing was done.
+#[derive(Debug, Error)]
+pub enum PhotosError {
+    /// The results can't be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// Not one usable nail.
+    #[error("not one nail could be used, nothing was written:{}", .0.iter().map(|f| format!("\n  {}: {}", f.place, f.what)).collect::<String>())]
+    NothingUsable(Vec<SetFault>),
+    /// Stopped from outside.
+    #[error("interrupted; nothing was written")]
+    Interrupted,
+}
+
+/// A caller's view of a running job.
+pub struct Watch<'a> {
+    /// Becomes true where the job is to stop.
+    pub stop: &'a AtomicBool,
+    /// Called after each photograph, from any thread.
+    pub tick: &'a (dyn Fn() + Sync),
+}
+
+/// Runs the job; results are in `staging`, not yet in their place.
+///
+/// # Errors
+/// [`PhotosError`] where there is no result.
+pub fn run(set: &PhotoSet, options: &PhotosOptions, staging: &Staging, watch: &Watch) -> Result<PhotosResult, PhotosError> {
+    let stages = Stages::default();
+    let sums: BTreeMap<&str, Mutex<Sums>> =
+        set.poses().into_iter().map(|pose| (pose, Mutex::new(Sums::new(options.normalization.size)))).collect();
+    let work = Work { options, staging, stages: &stages, sums: &sums };
+    let done: Vec<Done> = set
+        .photos
+        .par_iter()
+        .enumerate()
+        .with_max_len(1)
+        .map(|(index, photo)| {
+            if watch.stop.load(Ordering::Relaxed) {
+                return Err(PhotosError::Interrupted);
+            }
+            let done = work.photograph(index, photo)?;
+            (watch.tick)();
+            Ok(done)
+        })
+        .collect::<Result<_, PhotosError>>()?;
+
+    let mut result = PhotosResult {
+        rows: Vec::new(),
+        failed: set.faults.clone(),
+        warnings: Vec::new(),
+        left_out: left_out(set, options, &done),
+        partials: Partials { normalization: options.normalization, poses: BTreeMap::new() },
+        detected: Vec::new(),
+        stages: Stages::default(),
+    };
+    result.warnings.extend(mixed_poses(set, &done));
+    for one in done {
+        result.rows.extend(one.rows);
+        result.detected.extend(one.detected);
+        result.failed.extend(one.fault);
+    }
+    result.failed.sort();
+    if result.rows.iter().all(|r| r.normalized.is_none()) {
+        return Err(PhotosError::NothingUsable(result.failed));
+    }
+    for (pose, sums) in sums {
+        let sums = sums.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+        match sums.subjects().len() {
+            0 => result.warnings.push(format!("pose `{pose}`: no nail could be used, so it has no maps")),
+            subjects => {
+                if subjects == 1 {
+                    result.warnings.push(one_subject(pose));
+                }
+                result.partials.poses.insert(pose.to_owned(), sums);
+            }
+        }
+    }
+    results::write_maps(&result.partials, staging, &stages)?;
+    if watch.stop.load(Ordering::Relaxed) {
+        return Err(PhotosError::Interrupted);
+    }
+    result.stages = stages;
+    Ok(result)
+}
+
+struct Work<'a> {
+    options: &'a PhotosOptions,
+    staging: &'a Staging,
+    stages: &'a Stages,
+    sums: &'a BTreeMap<&'a str, Mutex<Sums>>,
+}
+
+/// Longest side of a thumbnail, pixels.
+const THUMBNAIL_PX: u32 = 100;
+
+impl Work<'_> {
+    /// Read, outline, normalize, add up: once down, never back.
+    fn photograph(&self, index: usize, photo: &Photo) -> Result<Done, WriteError> {
+        let fault = |what: String| Done {
+            rows: Vec::new(),
+            detected: None,
+            grey: None,
+            fault: Some(SetFault { place: photo.file.clone(), what }),
+        };
+        let picture = match self.stages.time("read", || Photograph::read(&photo.path)) {
+            Ok(picture) => picture,
+            Err(why) => return Ok(fault(why.to_string())),
+        };
+        let nails = match self.stages.time("outline", || self.options.outlines.nails(photo, &picture)) {
+            Ok(nails) => nails,
+            Err(why) => return Ok(fault(why.to_string())),
+        };
+        let detected = self.options.keep_detected.then(|| kept(index, &picture, &nails)).flatten();
+        let several = nails.len() > 1;
+        let mut rows = Vec::new();
+        let mut pictures = Vec::new();
+        for (number, nail) in (1..).zip(nails) {
+            let mut row = NailRow {
+                photo: index,
+                number,
+                source: nail.source,
+                confidence: nail.confidence,
+                frame: None,
+                axis: nail.axis,
+                normalized: None,
+                reason: String::new(),
+                thumbnail: None,
+            };
+            match self.one_nail(&picture, nail, &mut row) {
+                Ok(normalized) => {
+                    row.reason = unseen(&normalized, self.options.normalization.margin);
+                    let tail = if several { format!("-{number}") } else { String::new() };
+                    let name = format!("normalized/{}/{}{tail}.png", photo.pose, photo.subject);
+                    self.stages.time("write pictures", || {
+                        results::write_normalized(&normalized, picture.depth(), self.staging, &name)
+                    })?;
+                    row.normalized = Some(name);
+                    row.thumbnail = Some(results::thumbnail(&normalized, THUMBNAIL_PX));
+                    pictures.push(normalized);
+                }
+                Err(reason) => row.reason = reason,
+            }
+            rows.push(row);
+        }
+        let fault = pictures.is_empty().then(|| SetFault {
+            place: photo.file.clone(),
+            what: match &rows[..] {
+                [only] => only.reason.clone(),
+                _ => format!("none of its {} nails could be used; the first: {}", rows.len(), rows[0].reason),
+            },
+        });
+        if !pictures.is_empty() {
+            self.stages.time("add up", || {
+                let mut sums = self.sums[photo.pose.as_str()].lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+                sums.add(&photo.subject, &pictures).expect("a set lists a subject once a pose");
+            });
+        }
+        Ok(Done { rows, detected, grey: Some(picture.is_grey()), fault })
+    }
+
+    /// The normalized picture, or why there is none.
+    fn one_nail(&self, picture: &Photograph, nail: Nail, row: &mut NailRow) -> Result<Normalized, String> {
+        if !nail.reason.is_empty() {
+            return Err(nail.reason);
+        }
+        let (Some(outline), Some(axis)) = (nail.outline, nail.axis) else {
+            return Err("its outline or axis is not known".into());
+        };
+        if lies_outside(&outline, picture) {
+            return Err(format!(
+                "the outline lies outside of the photograph ({} x {} px); is it another picture's?",
+                picture.image.width(),
+                picture.image.height()
+            ));
+        }
+        let frame = NailFrame::new(&outline, axis).map_err(|fault| fault.to_string())?;
+        row.frame = Some(frame);
+        let normalized =
+            self.stages.time("normalize", || normalize(&picture.image, &frame, &self.options.normalization));
+        if normalized.values.iter().all(|v| v.is_nan()) {
+            return Err("the photograph shows nothing of it (transparent or outside)".into());
+        }
+        Ok(normalized)
+    }
+}
+
+/// What share of the nail's box the photograph does not show, in words; empty where it shows all.
+fn unseen(picture: &Normalized, margin: f64) -> String {
+    let size = picture.size as f64;
+    let edge = (size - size / margin) / 2.0;
+    let in_box = |at: usize| (at as f64 + 0.5 - edge).clamp(0.0, size - 2.0 * edge) == at as f64 + 0.5 - edge;
+    let rows = (0..picture.size).filter(|&r| in_box(r));
+    let cells = rows.flat_map(|r| (0..picture.size).filter(|&c| in_box(c)).map(move |c| r * picture.size + c));
+    let (all, missing) =
+        cells.fold((0, 0), |(all, missing), at| (all + 1, missing + usize::from(picture.values[at].is_nan())));
+    if missing == 0 {
+        return String::new();
+    }
+    format!("used, but {:.1} % of its box lies outside of the photograph", 100.0 * f64::from(missing) / f64::from(all))
+}
+
+fn lies_outside(outline: &Outline, picture: &Photograph) -> bool {
+    outline.polygon().bounding_rect().is_none_or(|b| {
+        b.max().x < -0.5
+            || b.max().y < -0.5
+            || b.min().x > f64::from(picture.image.width()) - 0.5
+            || b.min().y > f64::from(picture.image.height()) - 0.5
+    })
+}
+
+fn kept(index: usize, picture: &Photograph, nails: &[Nail]) -> Option<DetectedOutline> {
+    let found: Vec<_> = nails
+        .iter()
+        .filter(|n| n.source == Source::Detected)
+        .filter_map(|n| Some((n.outline.clone()?, n.axis?, n.confidence.unwrap_or(0.0), n.reason.is_empty())))
+        .collect();
+    let size = [picture.image.width(), picture.image.height()];
+    (!found.is_empty()).then_some(DetectedOutline { photo: index, size, nails: found })
+}
+
+pub(super) fn one_subject(pose: &str) -> String {
+    format!("pose `{pose}`: one subject, so no standard deviation (it needs two)")
+}
+
+/// What the scene did not need.
+fn left_out(set: &PhotoSet, options: &PhotosOptions, done: &[Done]) -> Vec<String> {
+    let mut left_out = Vec::new();
+    let grey = done.iter().filter(|d| d.grey == Some(true)).count();
+    if grey > 0 {
+        left_out.push(format!("channel: not taken from {grey} grey photograph(s)"));
+    }
+    let known = |source: Source| done.iter().filter(|d| d.rows.first().is_some_and(|r| r.source == source)).count();
+    let drawn = known(Source::Annotated) + known(Source::Mask);
+    if drawn > 0 {
+        left_out.push(format!("detection: not run on {drawn} photograph(s) whose outlines are known"));
+    }
+    if options.outlines.distal.is_some() && known(Source::Mask) + known(Source::Annotated) > 0 {
+        left_out.push("search for axes: --distal settles them".into());
+    }
+    if !options.normalization.linear {
+        left_out.push("sRGB curve: values are as the file encodes them".into());
+    }
+    if set.poses().len() == 1 {
+        left_out.push("comparison between poses: there is one".into());
+    }
+    left_out
+}
+
+/// Grey values are comparable with a colour photograph's green channel only if a green filter was used.
+fn mixed_poses(set: &PhotoSet, done: &[Done]) -> Vec<String> {
+    let mut counts: BTreeMap<&str, [usize; 2]> = BTreeMap::new();
+    for (photo, done) in set.photos.iter().zip(done) {
+        if let Some(grey) = done.grey {
+            counts.entry(&photo.pose).or_default()[usize::from(grey)] += 1;
+        }
+    }
+    counts
+        .into_iter()
+        .filter(|(_, [colour, grey])| *colour > 0 && *grey > 0)
+        .map(|(pose, [colour, grey])| {
+            format!(
+                "pose `{pose}` mixes {colour} colour and {grey} grey photograph(s): grey values equal the green channel only where a green \
+                 filter was used; else make maps of each kind apart"
+            )
+        })
+        .collect()
+}

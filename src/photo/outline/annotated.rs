@@ -1,0 +1,205 @@
+//! Outlines that a person drew in LabelMe, and back.
+//!
+//! In: a LabelMe file with polygons labelled `nail` and, optionally for each, a two-point line labelled `axis` from proximal
+//! to distal; lines belong to the nail of their `group_id`, else to the nail that their middle lies in. Out: outlines and
+//! axes in pixels of the *upright* photograph. Some tools draw on the upright picture, some on the stored one: the
+//! file's width and height tell which ([`Drawn`]), and where they can't the file is refused.
+
+use std::path::Path;
+
+use geo::{Contains, Point};
+use thiserror::Error;
+
+use super::{Axis, Outline, OutlineFault};
+use crate::labelme::{LabelMe, Shape, from_labelme, to_labelme};
+use crate::photo::read::{Photograph, upright_from_stored};
+
+/// What a nail's polygon is labelled.
+pub const NAIL: &str = "nail";
+/// What a line from proximal to distal is labelled.
+pub const AXIS: &str = "axis";
+/// What a detected outline that is not trusted is labelled: a person corrects it and drops the question mark.
+pub const DOUBTFUL: &str = "nail?";
+
+/// Which picture an annotation or a mask was drawn on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Drawn {
+    /// Told by width and height.
+    #[default]
+    Auto,
+    /// The upright one.
+    Upright,
+    /// The stored one, before the EXIF orientation.
+    Stored,
+}
+
+/// Why a whole annotation can't be used.
+#[derive(Debug, Error)]
+pub enum AnnotationFault {
+    /// The LabelMe file.
+    #[error(transparent)]
+    File(#[from] crate::labelme::Error),
+    /// The size is that of another picture.
+    #[error(
+        "{file}: was drawn on a picture of {drawn:?} px, but the photograph has {photo:?} px; draw it again, or scale it"
+    )]
+    OtherSize {
+        /// Annotation or mask.
+        file: String,
+        /// Width and height it states.
+        drawn: [u32; 2],
+        /// Width and height of the upright photograph.
+        photo: [u32; 2],
+    },
+    /// Upright and stored picture have the same size.
+    #[error(
+        "{0}: the photograph's EXIF orientation turns it without changing its size, so it can't be told whether this was drawn on the upright \
+         or on the stored picture; say --annotations upright or --annotations stored"
+    )]
+    Turned(String),
+    /// No polygon labelled `nail`.
+    #[error("{0}: no polygon labelled `nail` in it; label one, or remove the file to have the nail detected")]
+    NoNail(String),
+}
+
+/// One nail of an annotation, or why its shape is none.
+#[derive(Debug, Clone)]
+pub struct Annotated {
+    /// The outline, upright.
+    pub outline: Result<Outline, ShapeFault>,
+    /// The drawn axis, where there is one.
+    pub axis: Option<Axis>,
+}
+
+/// Why one shape is no nail.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum ShapeFault {
+    /// Not a polygon.
+    #[error("shape {number} is a {kind} labelled nail; draw it as a polygon")]
+    NotAPolygon {
+        /// Counted from 1.
+        number: usize,
+        /// LabelMe's shape type.
+        kind: String,
+    },
+    /// Not an outline.
+    #[error("shape {number}: {fault}")]
+    Outline {
+        /// Counted from 1.
+        number: usize,
+        /// What is wrong with it.
+        fault: OutlineFault,
+    },
+}
+
+impl Drawn {
+    /// Whether something drawn at `size` on `photo` was drawn on the stored picture (and has to be turned with it).
+    ///
+    /// # Errors
+    /// [`AnnotationFault::OtherSize`] or [`AnnotationFault::Turned`].
+    pub(crate) fn is_stored(self, size: Option<[u32; 2]>, photo: &Photograph, file: &str) -> Result<bool, AnnotationFault> {
+        let upright = [photo.image.width(), photo.image.height()];
+        let stored = photo.stored_size();
+        let turned = photo.orientation != image::metadata::Orientation::NoTransforms;
+        let fits = |expected: [u32; 2]| size.is_none_or(|s| s == expected);
+        let (fits_upright, fits_stored) = (fits(upright), fits(stored));
+        let told = match self {
+            Self::Upright => fits_upright.then_some(false),
+            Self::Stored => fits_stored.then_some(true),
+            Self::Auto if fits_upright && fits_stored && turned => {
+                return Err(AnnotationFault::Turned(file.to_owned()));
+            }
+            Self::Auto => (fits_upright || fits_stored).then_some(!fits_upright),
+        };
+        told.ok_or_else(|| AnnotationFault::OtherSize {
+            file: file.to_owned(),
+            drawn: size.unwrap_or_default(),
+            photo: upright,
+        })
+    }
+}
+
+/// Reads the nails of a LabelMe file, in its own order, onto the upright `photo`.
+///
+/// # Errors
+/// [`AnnotationFault`] where nothing of the file can be used; a single bad shape is an [`Annotated`] with its fault.
+pub fn read(path: &Path, photo: &Photograph, drawn: Drawn) -> Result<Vec<Annotated>, AnnotationFault> {
+    let file = LabelMe::read(path)?;
+    let name = path.display().to_string();
+    let size = file.image_width.zip(file.image_height).map(|(w, h)| [w, h]);
+    let stored = drawn.is_stored(size, photo, &name)?;
+    let upright = |point: &[f64; 2]| {
+        let point = if stored { upright_from_stored(photo.orientation, photo.stored_size(), *point) } else { *point };
+        from_labelme(point)
+    };
+    let axes: Vec<(&Shape, [[f64; 2]; 2])> = file
+        .shapes
+        .iter()
+        .filter(|s| s.label.trim().eq_ignore_ascii_case(AXIS))
+        .filter_map(|s| <[[f64; 2]; 2]>::try_from(s.points.iter().map(upright).collect::<Vec<_>>()).ok().map(|p| (s, p)))
+        .collect();
+    let nails: Vec<Annotated> = (1..)
+        .zip(&file.shapes)
+        .filter(|(_, s)| s.label.trim().eq_ignore_ascii_case(NAIL))
+        .map(|(number, shape)| {
+            let outline = outline_of(number, shape, upright);
+            let axis = outline.as_ref().ok().and_then(|outline| axis_of(shape, outline, &axes));
+            Annotated { outline, axis }
+        })
+        .collect();
+    if nails.is_empty() { Err(AnnotationFault::NoNail(name)) } else { Ok(nails) }
+}
+
+fn outline_of(number: usize, shape: &Shape, upright: impl Fn(&[f64; 2]) -> [f64; 2]) -> Result<Outline, ShapeFault> {
+    if shape.shape_type != "polygon" {
+        return Err(ShapeFault::NotAPolygon { number, kind: shape.shape_type.clone() });
+    }
+    let points: Vec<[f64; 2]> = shape.points.iter().map(upright).collect();
+    Outline::new(&points).map_err(|fault| ShapeFault::Outline { number, fault })
+}
+
+fn axis_of(nail: &Shape, outline: &Outline, axes: &[(&Shape, [[f64; 2]; 2])]) -> Option<Axis> {
+    let grouped = axes.iter().find(|(line, _)| nail.group_id.is_some() && line.group_id == nail.group_id);
+    let within = || {
+        axes.iter().find(|(line, [from, to])| {
+            let middle = Point::new((from[0] + to[0]) / 2.0, (from[1] + to[1]) / 2.0);
+            (line.group_id.is_none() || nail.group_id.is_none()) && outline.polygon().contains(&middle)
+        })
+    };
+    let (_, [proximal, distal]) = grouped.or_else(within)?;
+    Axis::through(*proximal, *distal)
+}
+
+/// One nail to be written for a person to look at.
+#[derive(Debug, Clone, Copy)]
+pub struct ToDraw<'a> {
+    /// Its outline on the upright photograph.
+    pub outline: &'a Outline,
+    /// Its axis.
+    pub axis: Axis,
+    /// 0 to 1, kept in the shape's description.
+    pub confidence: f64,
+    /// Labelled `nail`, or `nail?`, which is not read as a nail until somebody corrects it.
+    pub trusted: bool,
+}
+
+/// A LabelMe file of detected nails: polygons, each with its axis line through the box, tied by `group_id`.
+///
+/// `image_path` is the photograph's, relative to the file that will be written.
+pub fn to_file(image_path: &str, size: [u32; 2], nails: &[ToDraw]) -> LabelMe {
+    let mut shapes = Vec::new();
+    for (group, nail) in (1..).zip(nails) {
+        let points = nail.outline.points().iter().map(|p| to_labelme(p.map(|v| (v * 100.0).round() / 100.0))).collect();
+        let mut polygon = Shape::new(if nail.trusted { NAIL } else { DOUBTFUL }, "polygon", points);
+        polygon.description = Some(format!("detected by lunula, confidence {:.2}", nail.confidence));
+        let line = crate::photo::frame::NailFrame::new(nail.outline, nail.axis)
+            .map(|f| vec![to_labelme(f.photo_from_nail(0.0, -0.5)), to_labelme(f.photo_from_nail(0.0, 0.5))]);
+        let axis = line.map(|points| Shape::new(AXIS, "line", points));
+        for mut shape in std::iter::once(polygon).chain(axis) {
+            shape.group_id = Some(group);
+            shapes.push(shape);
+        }
+    }
+    LabelMe::new(image_path, size[0], size[1], shapes)
+}

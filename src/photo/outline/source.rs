@@ -1,0 +1,269 @@
+//! The nails of one photograph, from whichever source knows them.
+//!
+//! The first of: the manifest's outline, `<stem>.json` beside the photograph, a mask of the same stem, detection. Of what is
+//! not needed nothing is done: an annotated photograph is not searched, a drawn axis is not looked for. A nail whose
+//! outline or axis is not trusted is listed with the reason and left out, not guessed.
+
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use super::annotated::{self, AnnotationFault, Drawn};
+use super::axis::{Side, axis_towards, find_axes};
+use super::detect::{DetectOptions, detect};
+use super::mask::{MaskFault, outlines_from_mask};
+use super::{Axis, Outline};
+use crate::photo::read::{Photograph, ReadFault};
+use crate::photo::set::{PICTURES, Photo, is_picture};
+
+/// Which sources may be asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Sources {
+    /// All, in order.
+    #[default]
+    Auto,
+    /// Manifest, LabelMe and masks; nothing is detected.
+    Annotated,
+    /// Detection only, whatever is annotated.
+    Detect,
+}
+
+/// How outlines come about.
+#[derive(Debug, Clone, Default)]
+pub struct OutlineOptions {
+    /// Which sources may be asked.
+    pub sources: Sources,
+    /// Masks named as the photographs: `<pose>/<stem>.*` or `<stem>.*`.
+    pub masks: Option<PathBuf>,
+    /// Settles the direction of nails without an axis, for the whole set.
+    pub distal: Option<Side>,
+    /// Which picture annotations and masks were drawn on.
+    pub drawn: Drawn,
+    /// For detection.
+    pub detect: DetectOptions,
+}
+
+/// Where an outline came from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Source {
+    /// A person, in LabelMe.
+    Annotated,
+    /// A region of a mask.
+    Mask,
+    /// The picture itself.
+    Detected,
+}
+
+impl Source {
+    /// As tables name it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Annotated => "annotated",
+            Self::Mask => "mask",
+            Self::Detected => "detected",
+        }
+    }
+}
+
+/// A nail with all that the next step needs, or what is known of one that is left out.
+#[derive(Debug, Clone)]
+pub struct Nail {
+    /// Where its outline came from.
+    pub source: Source,
+    /// Its outline, where there is one.
+    pub outline: Option<Outline>,
+    /// Its axis, where it is known.
+    pub axis: Option<Axis>,
+    /// 1 for what a person drew; else how sure outline and axis are, 0 to 1.
+    pub confidence: Option<f64>,
+    /// Why it is left out; empty for one that is used.
+    pub reason: String,
+}
+
+/// Why a photograph's nails can't be told.
+#[derive(Debug, Error)]
+pub enum SourceFault {
+    /// The LabelMe file.
+    #[error(transparent)]
+    Annotation(#[from] AnnotationFault),
+    /// The mask, as a picture.
+    #[error("the mask {} {why}", .file.display())]
+    MaskFile {
+        /// Which mask.
+        file: PathBuf,
+        /// Why it can't be read.
+        why: ReadFault,
+    },
+    /// The mask, as a mask.
+    #[error("the mask {}: {why}", .file.display())]
+    Mask {
+        /// Which mask.
+        file: PathBuf,
+        /// Why it can't be used.
+        why: MaskFault,
+    },
+    /// Annotated outlines only, and there is none.
+    #[error("has no outline: no outline column, no LabelMe file beside it{}; draw one, or let --outline auto detect it",
+        if *.masks { ", no mask" } else { "" })]
+    NotAnnotated {
+        /// Whether masks were looked for.
+        masks: bool,
+    },
+    /// Detection found nothing.
+    #[error("no nail found: {0}; draw its outline in LabelMe, label it `nail` and save it beside the photograph")]
+    NotFound(String),
+}
+
+/// Where a photograph's outlines will come from, known without opening it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Found {
+    /// A LabelMe file.
+    LabelMe(PathBuf),
+    /// A mask.
+    Mask(PathBuf),
+    /// Nothing drawn: detection.
+    Detection,
+    /// Nothing drawn, and detection is not wanted.
+    Nothing,
+}
+
+impl OutlineOptions {
+    /// The first source that has something for `photo`.
+    pub fn locate(&self, photo: &Photo) -> Found {
+        if self.sources == Sources::Detect {
+            return Found::Detection;
+        }
+        if let Some(outline) = &photo.outline {
+            return if is_picture(outline) { Found::Mask(outline.clone()) } else { Found::LabelMe(outline.clone()) };
+        }
+        let beside = photo.path.with_extension("json");
+        if beside.is_file() {
+            return Found::LabelMe(beside);
+        }
+        if let Some(mask) = self.masks.as_ref().and_then(|folder| mask_of(folder, photo)) {
+            return Found::Mask(mask);
+        }
+        if self.sources == Sources::Annotated { Found::Nothing } else { Found::Detection }
+    }
+
+    /// The nails of an opened photograph, in the source's order; at least one, used or not.
+    ///
+    /// # Errors
+    /// [`SourceFault`] where there is nothing to list.
+    pub fn nails(&self, photo: &Photo, picture: &Photograph) -> Result<Vec<Nail>, SourceFault> {
+        match self.locate(photo) {
+            Found::LabelMe(file) => self.annotated_nails(&file, picture),
+            Found::Mask(file) => self.mask_nails(&file, picture),
+            Found::Detection => self.detected_nails(picture),
+            Found::Nothing => Err(SourceFault::NotAnnotated { masks: self.masks.is_some() }),
+        }
+    }
+
+    fn annotated_nails(&self, file: &Path, picture: &Photograph) -> Result<Vec<Nail>, SourceFault> {
+        let mut nails = Vec::new();
+        for annotated in annotated::read(file, picture, self.drawn)? {
+            nails.push(match annotated.outline {
+                Ok(outline) => Nail {
+                    source: Source::Annotated,
+                    outline: Some(outline),
+                    axis: annotated.axis,
+                    confidence: Some(1.0),
+                    reason: String::new(),
+                },
+                Err(fault) => left_out(Source::Annotated, None, format!("{}: {fault}", file.display())),
+            });
+        }
+        self.complete_axes(picture, &mut nails);
+        Ok(nails)
+    }
+
+    fn mask_nails(&self, file: &Path, picture: &Photograph) -> Result<Vec<Nail>, SourceFault> {
+        let mut mask = Photograph::read(file).map_err(|why| SourceFault::MaskFile { file: file.to_owned(), why })?.image;
+        let size = [mask.width(), mask.height()];
+        if self.drawn.is_stored(Some(size), picture, &file.display().to_string())? {
+            mask.apply_orientation(picture.orientation);
+        }
+        let regions =
+            outlines_from_mask(&mask).map_err(|why| SourceFault::Mask { file: file.to_owned(), why })?;
+        let mut nails: Vec<Nail> = regions
+            .nails
+            .into_iter()
+            .map(|outline| Nail {
+                source: Source::Mask,
+                outline: Some(outline),
+                axis: None,
+                confidence: Some(1.0),
+                reason: String::new(),
+            })
+            .collect();
+        self.complete_axes(picture, &mut nails);
+        nails.extend(regions.dropped.into_iter().map(|d| left_out(Source::Mask, None, d.to_string())));
+        Ok(nails)
+    }
+
+    fn detected_nails(&self, picture: &Photograph) -> Result<Vec<Nail>, SourceFault> {
+        let found = detect(&picture.image, &self.detect);
+        if found.nails.is_empty() && found.doubtful.is_empty() {
+            return Err(SourceFault::NotFound(found.note));
+        }
+        let used = found.nails.into_iter().map(|n| (n, String::new()));
+        let doubtful = found.doubtful.into_iter().map(|n| {
+            let limit = self.detect.min_confidence;
+            let reason = format!(
+                "the outline found is not trusted (confidence {:.2}, {limit} is needed); correct it in LabelMe (--write-outlines)",
+                n.confidence
+            );
+            (n, reason)
+        });
+        Ok(used
+            .chain(doubtful)
+            .map(|(n, reason)| Nail {
+                source: Source::Detected,
+                outline: Some(n.outline),
+                axis: Some(n.axis),
+                confidence: Some(n.confidence),
+                reason,
+            })
+            .collect())
+    }
+
+    /// Looks for the axes that nobody drew.
+    fn complete_axes(&self, picture: &Photograph, nails: &mut [Nail]) {
+        let open: Vec<usize> = (0..nails.len()).filter(|&k| nails[k].outline.is_some() && nails[k].axis.is_none()).collect();
+        let outlines: Vec<Outline> = open.iter().filter_map(|&k| nails[k].outline.clone()).collect();
+        if let Some(side) = self.distal {
+            for (&k, outline) in open.iter().zip(&outlines) {
+                nails[k].axis = Some(axis_towards(outline, side));
+            }
+        } else if !outlines.is_empty() {
+            for (&k, found) in open.iter().zip(find_axes(&picture.image, &outlines)) {
+                match found {
+                    Ok(found) => {
+                        nails[k].axis = Some(found.axis);
+                        nails[k].confidence = Some(found.confidence);
+                    }
+                    Err(unknown) => {
+                        nails[k].confidence = None;
+                        nails[k].reason = format!(
+                            "its direction can't be told: {unknown}; draw an `axis` line from proximal to distal in LabelMe, or say --distal"
+                        );
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn left_out(source: Source, outline: Option<Outline>, reason: String) -> Nail {
+    Nail { source, outline, axis: None, confidence: None, reason }
+}
+
+fn mask_of(folder: &Path, photo: &Photo) -> Option<PathBuf> {
+    let stem = photo.path.file_stem()?.to_string_lossy();
+    [folder.join(&photo.pose), folder.to_owned()].iter().find_map(|place| {
+        let named = |ending: String| Some(place.join(format!("{stem}.{ending}"))).filter(|path| path.is_file());
+        PICTURES.iter().find_map(|ending| named((*ending).to_owned()).or_else(|| named(ending.to_uppercase())))
+    })
+}

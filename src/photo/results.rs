@@ -1,0 +1,237 @@
+//! The photos job's files: normalized pictures, maps, figures and `nails.csv`, all by way of a [`Staging`].
+
+use std::io::{BufWriter, Cursor, Write};
+
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::{DynamicImage, GrayAlphaImage, ImageBuffer, ImageEncoder, Luma, LumaA, imageops};
+use ndarray::Array2;
+use ndarray_npy::WriteNpyExt;
+use rayon::prelude::*;
+
+use super::job::NailRow;
+use super::maps::Maps;
+use super::normalize::Normalized;
+use super::partial::{self, Partials};
+use super::read::Depth;
+use super::set::PhotoSet;
+use crate::figure::{Scale, Sheet, Stretch, Tile, grey_map};
+use crate::files::{Staging, WriteError};
+use crate::stages::Stages;
+
+/// One kind of figure: its file name, how it is stretched, what its scale says.
+struct Kind {
+    name: &'static str,
+    title: &'static str,
+    stretch: Stretch,
+    label: &'static str,
+    of_sd: bool,
+}
+
+const KINDS: [Kind; 4] = [
+    Kind {
+        name: "mean",
+        title: "Average coloration (Fig. 53)",
+        stretch: Stretch::Linear { low: 0.0, high: 1.0 },
+        label: "mean, % of full scale",
+        of_sd: false,
+    },
+    Kind {
+        name: "contrast",
+        title: "Average coloration, 30-50 % stretched to the full range (Fig. 54)",
+        stretch: Stretch::Linear { low: 0.3, high: 0.5 },
+        label: "mean, % of full scale",
+        of_sd: false,
+    },
+    Kind {
+        name: "threshold",
+        title: "Average coloration above 105/255 (Fig. 55)",
+        stretch: Stretch::Above(105.0 / 255.0),
+        label: "mean, % of full scale; white above 105/255",
+        of_sd: false,
+    },
+    Kind {
+        name: "sd",
+        title: "Standard deviation over subjects, 0-20 % stretched to the full range (Fig. 56)",
+        stretch: Stretch::Linear { low: 0.0, high: 0.2 },
+        label: "SD (n - 1), % of full scale",
+        of_sd: true,
+    },
+];
+
+/// As deep as its source; with an alpha channel, 0 where the photograph does not show the place, only if there is such a place.
+pub(super) fn write_normalized(
+    picture: &Normalized,
+    depth: Depth,
+    staging: &Staging,
+    name: &str,
+) -> Result<(), WriteError> {
+    let size = picture.size as u32;
+    let whole = picture.values.iter().all(|v| !v.is_nan());
+    let (full, alpha) = match depth {
+        Depth::Eight => (255.0, 255_u16),
+        Depth::Sixteen => (65535.0, 65535),
+    };
+    let level = |v: f32| if v.is_nan() { 0 } else { (v.clamp(0.0, 1.0) * full).round() as u16 };
+    let levels = picture.values.iter().map(|&v| level(v));
+    let with_alpha = picture.values.iter().flat_map(|&v| [level(v), if v.is_nan() { 0 } else { alpha }]);
+    let drawn = match (depth, whole) {
+        (Depth::Eight, true) => picture_of::<Luma<u8>>(size, levels.map(|v| v as u8).collect()),
+        (Depth::Eight, false) => picture_of::<LumaA<u8>>(size, with_alpha.map(|v| v as u8).collect()),
+        (Depth::Sixteen, true) => picture_of::<Luma<u16>>(size, levels.collect()),
+        (Depth::Sixteen, false) => picture_of::<LumaA<u16>>(size, with_alpha.collect()),
+    };
+    write_png(&drawn, staging, name).map(|_| ())
+}
+
+fn picture_of<P: image::Pixel>(size: u32, samples: Vec<P::Subpixel>) -> DynamicImage
+where
+    DynamicImage: From<ImageBuffer<P, Vec<P::Subpixel>>>,
+{
+    ImageBuffer::<P, _>::from_raw(size, size, samples).expect("one sample a pixel and channel").into()
+}
+
+/// Writes a PNG, fast rather than small; returns its bytes.
+fn write_png(picture: &DynamicImage, staging: &Staging, name: &str) -> Result<Vec<u8>, WriteError> {
+    let mut png = Vec::new();
+    let encoder = PngEncoder::new_with_quality(Cursor::new(&mut png), CompressionType::Fast, FilterType::Up);
+    let color = picture.color().into();
+    encoder
+        .write_image(picture.as_bytes(), picture.width(), picture.height(), color)
+        .map_err(|why| staging.refused(name, why))?;
+    staging.write(name, &png)?;
+    Ok(png)
+}
+
+/// A small version for a sheet of all nails.
+pub(super) fn thumbnail(picture: &Normalized, longest: u32) -> GrayAlphaImage {
+    let rows = Array2::from_shape_vec((picture.size, picture.size), picture.values.clone()).expect("size x size values");
+    let drawn = grey_map(&rows, Stretch::Linear { low: 0.0, high: 1.0 });
+    let side = longest.min(picture.size as u32);
+    imageops::thumbnail(&drawn, side, side)
+}
+
+/// Maps, partial sums and figures of every pose, and the sheets over all poses.
+pub(super) fn write_maps(partials: &Partials, staging: &Staging, stages: &Stages) -> Result<(), WriteError> {
+    let drawn: Vec<[Tile; 4]> = partials
+        .poses
+        .par_iter()
+        .map(|(pose, sums)| {
+            let maps = stages.time("maps", || sums.maps());
+            stages.time("write maps", || {
+                write_npy(&maps.mean, staging, &format!("maps/{pose}-mean.npy"))?;
+                write_npy(&maps.sd, staging, &format!("maps/{pose}-sd.npy"))?;
+                write_npy(&maps.count, staging, &format!("maps/{pose}-count.npy"))?;
+                let name = format!("maps/{pose}.partial.npz");
+                let path = staging.place(&name)?;
+                partial::write(&path, pose, sums, &partials.normalization).map_err(|why| staging.refused(&name, why))
+            })?;
+            stages.time("figures", || draw_pose(pose, sums.subjects().len(), &maps, staging))
+        })
+        .collect::<Result<_, WriteError>>()?;
+    stages.time("sheets", || {
+        (0..KINDS.len()).into_par_iter().try_for_each(|kind| {
+            let small = drawn.len() > LARGE_TILES;
+            let tiles = drawn.iter().map(|tiles| if small { tiles[kind].small() } else { tiles[kind].clone() }).collect();
+            let Kind { name, title, stretch, label, .. } = &KINDS[kind];
+            let scale = Some(Scale { stretch: *stretch, label: (*label).to_owned() });
+            write_sheet(&Sheet { title: (*title).to_owned(), tiles, columns: 4, scale }, staging, name)
+        })
+    })
+}
+
+fn write_sheet(sheet: &Sheet, staging: &Staging, name: &str) -> Result<(), WriteError> {
+    let (png, svg) = (format!("figures/{name}.png"), format!("figures/{name}.svg"));
+    write_png(&sheet.draw().into(), staging, &png)?;
+    staging.write(&svg, sheet.svg().map_err(|why| staging.refused(&svg, why))?.as_bytes())
+}
+
+/// Poses beyond which a sheet shows small tiles.
+const LARGE_TILES: usize = 16;
+const SMALL_TILE_PX: u32 = 160;
+
+impl Tile {
+    fn small(&self) -> Self {
+        let [width, height] = [self.picture.width(), self.picture.height()].map(|side| side.min(SMALL_TILE_PX));
+        Self { caption: self.caption.clone(), picture: imageops::thumbnail(&self.picture, width, height) }
+    }
+}
+
+fn draw_pose(pose: &str, subjects: usize, maps: &Maps, staging: &Staging) -> Result<[Tile; 4], WriteError> {
+    let tile = |kind: &Kind| {
+        let picture = grey_map(if kind.of_sd { &maps.sd } else { &maps.mean }, kind.stretch);
+        let opaque = picture.pixels().all(|p| p.0[1] == 255);
+        let flat: DynamicImage =
+            if opaque { DynamicImage::from(picture.clone()).to_luma8().into() } else { picture.clone().into() };
+        write_png(&flat, staging, &format!("figures/{pose}-{}.png", kind.name))?;
+        Ok(Tile { caption: format!("{pose} (n = {subjects})"), picture })
+    };
+    Ok([tile(&KINDS[0])?, tile(&KINDS[1])?, tile(&KINDS[2])?, tile(&KINDS[3])?])
+}
+
+fn write_npy<T: ndarray_npy::WritableElement>(
+    array: &Array2<T>,
+    staging: &Staging,
+    name: &str,
+) -> Result<(), WriteError> {
+    let file = std::fs::File::create(staging.place(name)?).map_err(|why| staging.refused(name, why))?;
+    let mut file = BufWriter::new(file);
+    array.write_npy(&mut file).map_err(|why| staging.refused(name, why))?;
+    file.flush().map_err(|why| staging.refused(name, why))
+}
+
+/// The header of `nails.csv`.
+pub const NAIL_COLUMNS: [&str; 13] = [
+    "file",
+    "nail",
+    "subject",
+    "pose",
+    "outline",
+    "confidence",
+    "center_x_px",
+    "center_y_px",
+    "length_px",
+    "width_px",
+    "axis_deg",
+    "used",
+    "reason",
+];
+
+/// A row of `nails.csv`: an empty cell where nothing is known.
+pub fn nail_cells(row: &NailRow, set: &PhotoSet) -> [String; 13] {
+    let photo = &set.photos[row.photo];
+    let number = |value: Option<f64>, digits: usize| value.map_or_else(String::new, |v| format!("{v:.digits$}"));
+    [
+        photo.file.clone(),
+        row.number.to_string(),
+        photo.subject.clone(),
+        photo.pose.clone(),
+        row.source.name().to_owned(),
+        number(row.confidence, 3),
+        number(row.frame.map(|f| f.center_px[0]), 3),
+        number(row.frame.map(|f| f.center_px[1]), 3),
+        number(row.frame.map(|f| f.length_px), 3),
+        number(row.frame.map(|f| f.width_px), 3),
+        number(row.axis.map(|a| a.clockwise_deg()), 3),
+        row.normalized.is_some().to_string(),
+        row.reason.clone(),
+    ]
+}
+
+/// Writes `nails.csv`: every nail, used or not.
+///
+/// # Errors
+/// [`WriteError`].
+pub fn write_nails(rows: &[Vec<String>], staging: &Staging) -> Result<(), WriteError> {
+    let mut table = csv::Writer::from_writer(Vec::new());
+    let refused = |why: String| staging.refused("nails.csv", why);
+    table.write_record(NAIL_COLUMNS).map_err(|e| refused(e.to_string()))?;
+    for row in rows {
+        table.write_record(row).map_err(|e| refused(e.to_string()))?;
+    }
+    staging.write("nails.csv", &table.into_inner().map_err(|e| refused(e.to_string()))?)
+}
+
+/// The sheets' kinds, in the order of a report.
+pub(super) fn sheet_names() -> impl Iterator<Item = (&'static str, &'static str)> {
+    KINDS.iter().map(|kind| (kind.name, kind.title))
+}

@@ -1,0 +1,277 @@
+//! Which photographs: a folder of poses, or a manifest, to a sorted list.
+//!
+//! In: `SET/<pose>/<subject>.<png|jpg|tif|bmp>`, or a flat folder (one pose, named after it), or a folder with
+//! `photos.csv` (`file,subject,pose` and optionally `outline`, paths relative to it). Out: a [`PhotoSet`], its photographs
+//! sorted by pose, subject and file, and the [`SetFault`]s: entries that cannot be used, each with its place; the others
+//! go on. A subject counts once a pose, so a pose's doubled subjects are all left out.
+
+use std::collections::BTreeMap;
+use std::path::{Component, Path, PathBuf};
+
+use thiserror::Error;
+
+/// Names of the files that are taken as photographs.
+pub(crate) const PICTURES: [&str; 6] = ["png", "jpg", "jpeg", "tif", "tiff", "bmp"];
+/// Photographs in formats that lunula does not read: said, not passed over.
+const OTHER_PICTURES: [&str; 14] =
+    ["heic", "heif", "webp", "gif", "avif", "jxl", "jp2", "cr2", "cr3", "nef", "arw", "dng", "raf", "orf"];
+
+/// One photograph of a set.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Photo {
+    /// The force or posture, as "nominal" or "extension".
+    pub pose: String,
+    /// Whose finger.
+    pub subject: String,
+    /// As the set names it, with `/`: what tables and messages show.
+    pub file: String,
+    /// Where it is.
+    pub path: PathBuf,
+    /// The manifest's outline: a LabelMe file or a mask.
+    pub outline: Option<PathBuf>,
+}
+
+/// An entry that cannot be used.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
+pub struct SetFault {
+    /// File, and line in the manifest.
+    pub place: String,
+    /// What is wrong and what to do.
+    pub what: String,
+}
+
+/// Why there is no set at all.
+#[derive(Debug, Error)]
+pub enum SetError {
+    /// The folder can't be listed.
+    #[error("{}: {why}; name a folder of photographs", .folder.display())]
+    Unreadable {
+        /// Which folder.
+        folder: PathBuf,
+        /// The system's words.
+        why: std::io::Error,
+    },
+    /// The manifest can't be understood.
+    #[error("{}: {why}", .file.display())]
+    Manifest {
+        /// The manifest.
+        file: PathBuf,
+        /// What is wrong and what to do.
+        why: String,
+    },
+    /// Not one photograph.
+    #[error(
+        "{}: no photographs here (looked for .png, .jpg, .tif and .bmp in it and in the folders of poses within it){also}", .folder.display()
+    )]
+    Empty {
+        /// Which folder.
+        folder: PathBuf,
+        /// What was there instead.
+        also: String,
+    },
+}
+
+/// A checked list of photographs.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PhotoSet {
+    /// The set's folder.
+    pub folder: PathBuf,
+    /// Sorted by pose, subject, file.
+    pub photos: Vec<Photo>,
+    /// Entries left out, sorted.
+    pub faults: Vec<SetFault>,
+}
+
+impl PhotoSet {
+    /// Lists `folder`; folders of `apart` (results, masks) inside of it are no poses.
+    ///
+    /// # Errors
+    /// [`SetError`] where there is no list: folder or manifest unreadable, or nothing in it.
+    pub fn open(folder: &Path, apart: &[&Path]) -> Result<Self, SetError> {
+        let manifest = folder.join("photos.csv");
+        let mut set = Self { folder: folder.to_owned(), photos: Vec::new(), faults: Vec::new() };
+        if manifest.is_file() { set.read_manifest(&manifest)? } else { set.list_folder(apart)? }
+        set.photos.sort();
+        set.leave_out_doubles();
+        set.leave_out_clashing_names();
+        set.faults.sort();
+        if set.photos.is_empty() {
+            let also = set.faults.iter().map(|f| format!("\n  {}: {}", f.place, f.what)).collect();
+            return Err(SetError::Empty { folder: folder.to_owned(), also });
+        }
+        Ok(set)
+    }
+
+    /// The poses, sorted.
+    pub fn poses(&self) -> Vec<&str> {
+        let mut poses: Vec<&str> = self.photos.iter().map(|p| p.pose.as_str()).collect();
+        poses.dedup();
+        poses
+    }
+
+    fn fault(&mut self, place: impl Into<String>, what: impl Into<String>) {
+        self.faults.push(SetFault { place: place.into(), what: what.into() });
+    }
+
+    fn list_folder(&mut self, apart: &[&Path]) -> Result<(), SetError> {
+        let apart: Vec<PathBuf> = apart.iter().filter_map(|p| p.canonicalize().ok()).collect();
+        let is_apart = |path: &Path| path.canonicalize().is_ok_and(|p| apart.contains(&p));
+        let (files, folders) = list(&self.folder)?;
+        let before = self.photos.len();
+        for pose_folder in folders.iter().filter(|f| !is_apart(f)) {
+            let pose = name_of(pose_folder);
+            for file in list(pose_folder)?.0 {
+                self.consider(&file, &pose, format!("{pose}/{}", name_of(&file)));
+            }
+        }
+        let has_poses = self.photos.len() > before;
+        let flat_name = self.folder.canonicalize().map_or_else(|_| "photos".into(), |f| name_of(&f));
+        for file in files {
+            let name = name_of(&file);
+            if has_poses && is_picture(&file) {
+                self.fault(name, "lies beside the folders of poses; move it into one, or list all in photos.csv");
+            } else {
+                self.consider(&file, &flat_name, name);
+            }
+        }
+        Ok(())
+    }
+
+    fn consider(&mut self, path: &Path, pose: &str, file: String) {
+        if is_picture(path) {
+            let subject = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+            self.photos.push(Photo { pose: pose.to_owned(), subject, file, path: path.to_owned(), outline: None });
+        } else if let Some(kind) = extension(path).filter(|e| OTHER_PICTURES.contains(&e.as_str())) {
+            self.fault(file, format!(".{kind} is not read; export it as PNG, TIFF, BMP or JPEG"));
+        }
+    }
+
+    fn read_manifest(&mut self, path: &Path) -> Result<(), SetError> {
+        let wrong = |why: String| SetError::Manifest { file: path.to_owned(), why };
+        let text = std::fs::read_to_string(path).map_err(|e| wrong(e.to_string()))?;
+        let mut reader = csv::ReaderBuilder::new()
+            .trim(csv::Trim::All)
+            .flexible(true)
+            .from_reader(text.trim_start_matches('\u{feff}').as_bytes());
+        let header = reader.headers().map_err(|e| wrong(e.to_string()))?.clone();
+        let column = |name: &str| header.iter().position(|h| h == name);
+        let (Some(file), Some(subject), Some(pose)) = (column("file"), column("subject"), column("pose")) else {
+            let found = header.iter().collect::<Vec<_>>().join(",");
+            return Err(wrong(format!(
+                "line 1: the columns are `{found}`; it needs file,subject,pose and may have outline, separated by commas"
+            )));
+        };
+        let outline = column("outline");
+        for record in reader.records() {
+            let record = record.map_err(|e| wrong(e.to_string()))?;
+            let place = format!("photos.csv, line {}", record.position().map_or(0, csv::Position::line));
+            let cell = |at: usize| record.get(at).unwrap_or_default().to_owned();
+            let (file, subject, pose) = (cell(file), cell(subject), cell(pose));
+            if let Some(what) = row_fault(&self.folder, &file, &subject, &pose) {
+                self.fault(place, what);
+                continue;
+            }
+            let outline = outline.map(cell).filter(|o| !o.is_empty()).map(|o| self.folder.join(o));
+            if let Some(missing) = outline.as_ref().filter(|o| !o.is_file()) {
+                self.fault(place, format!("the outline {} does not exist", missing.display()));
+                continue;
+            }
+            self.photos.push(Photo { pose, subject, path: self.folder.join(&file), file, outline });
+        }
+        Ok(())
+    }
+
+    /// A subject counts once a pose: none of several is better than the others.
+    fn leave_out_doubles(&mut self) {
+        let mut by_key: BTreeMap<(String, String), Vec<Photo>> = BTreeMap::new();
+        let mut by_file: BTreeMap<(String, PathBuf), usize> = BTreeMap::new();
+        for photo in self.photos.drain(..) {
+            *by_file.entry((photo.pose.clone(), photo.path.clone())).or_default() += 1;
+            by_key.entry((photo.pose.clone(), photo.subject.clone())).or_default().push(photo);
+        }
+        for ((pose, subject), photos) in by_key {
+            let files = photos.iter().map(|p| p.file.as_str()).collect::<Vec<_>>().join(", ");
+            if photos.len() > 1 {
+                self.fault(
+                    files,
+                    format!(
+                        "subject `{subject}` is there {} times in pose `{pose}`, and a subject counts once: remove all but one, \
+                         or give each its own subject in photos.csv",
+                        photos.len()
+                    ),
+                );
+                continue;
+            }
+            for photo in photos {
+                if by_file[&(pose.clone(), photo.path.clone())] > 1 {
+                    self.fault(
+                        photo.file,
+                        format!("is listed for several subjects of pose `{pose}`; one photograph is one subject's"),
+                    );
+                } else {
+                    self.photos.push(photo);
+                }
+            }
+        }
+    }
+
+    /// Nail 2 of subject `a` is written as `a-2.png`: another subject of that name could overwrite it.
+    fn leave_out_clashing_names(&mut self) {
+        let names: std::collections::BTreeSet<(String, String)> =
+            self.photos.iter().map(|p| (p.pose.clone(), p.subject.clone())).collect();
+        let clashes = |photo: &Photo| {
+            let (stem, number) = photo.subject.rsplit_once('-')?;
+            number.parse::<u32>().ok().filter(|_| names.contains(&(photo.pose.clone(), stem.to_owned())))?;
+            Some(stem.to_owned())
+        };
+        let (clashing, clear): (Vec<_>, Vec<_>) =
+            std::mem::take(&mut self.photos).into_iter().partition(|p| clashes(p).is_some());
+        self.photos = clear;
+        for photo in clashing {
+            let stem = clashes(&photo).unwrap_or_default();
+            self.fault(
+                photo.file,
+                format!("subject `{}` could be taken for a nail of subject `{stem}`; rename one of them", photo.subject),
+            );
+        }
+    }
+}
+
+fn row_fault(folder: &Path, file: &str, subject: &str, pose: &str) -> Option<String> {
+    let cells = [("file", file), ("subject", subject), ("pose", pose)];
+    if let Some((name, _)) = cells.iter().find(|(_, value)| value.is_empty()) {
+        return Some(format!("the cell `{name}` is empty"));
+    }
+    for (name, value) in [("subject", subject), ("pose", pose)] {
+        let mut parts = Path::new(value).components();
+        if !matches!((parts.next(), parts.next()), (Some(Component::Normal(_)), None)) || value.contains(['/', '\\', '\0']) {
+            return Some(format!("`{value}` names files of the results, so a {name} cannot hold a path"));
+        }
+    }
+    (!folder.join(file).is_file()).then(|| format!("{file} does not exist beside photos.csv"))
+}
+
+/// Files and folders of a folder, hidden ones left out, sorted by name.
+fn list(folder: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>), SetError> {
+    let unreadable = |why| SetError::Unreadable { folder: folder.to_owned(), why };
+    let mut paths = Vec::new();
+    for entry in std::fs::read_dir(folder).map_err(unreadable)? {
+        paths.push(entry.map_err(unreadable)?.path());
+    }
+    paths.retain(|p| !name_of(p).starts_with('.'));
+    paths.sort();
+    Ok(paths.into_iter().partition(|p| !p.is_dir()))
+}
+
+fn name_of(path: &Path) -> String {
+    path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned())
+}
+
+fn extension(path: &Path) -> Option<String> {
+    path.extension().map(|e| e.to_string_lossy().to_lowercase())
+}
+
+/// Whether a file's name is that of a picture that lunula reads.
+pub(crate) fn is_picture(path: &Path) -> bool {
+    extension(path).is_some_and(|e| PICTURES.contains(&e.as_str()))
+}

@@ -1,0 +1,45 @@
+//! How long each stage of a job took.
+
+use std::collections::BTreeMap;
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+/// Time spent by stage, summed over threads. Stages are listed in the order in which they first ran.
+#[derive(Debug, Default)]
+pub struct Stages {
+    spent: Mutex<BTreeMap<&'static str, (usize, Duration, u64)>>,
+}
+
+/// One stage's share.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Stage {
+    /// Its name.
+    pub stage: &'static str,
+    /// Seconds, summed over threads.
+    pub thread_s: f64,
+    /// How often it ran.
+    pub runs: u64,
+}
+
+impl Stages {
+    /// Runs `work` as part of `stage`.
+    pub fn time<T>(&self, stage: &'static str, work: impl FnOnce() -> T) -> T {
+        let start = Instant::now();
+        let result = work();
+        let took = start.elapsed();
+        let mut spent = self.spent.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let rank = spent.len();
+        let entry = spent.entry(stage).or_insert((rank, Duration::ZERO, 0));
+        entry.1 += took;
+        entry.2 += 1;
+        result
+    }
+
+    /// What was spent so far.
+    pub fn list(&self) -> Vec<Stage> {
+        let spent = self.spent.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let mut ranked: Vec<_> = spent.iter().map(|(&stage, &(rank, time, runs))| (rank, stage, time, runs)).collect();
+        ranked.sort_unstable();
+        ranked.into_iter().map(|(_, stage, time, runs)| Stage { stage, thread_s: time.as_secs_f64(), runs }).collect()
+    }
+}
