@@ -3,5 +3,6 @@
 pub mod figure;
 pub mod files;
 pub mod labelme;
+pub mod phantom;
 pub mod photo;
 pub mod stages;
