@@ -1,3 +1,9 @@
-//! The command line of lunula.
+//! The command line of lunula: parse, run, exit status.
 
-fn main() {}
+mod cli;
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    cli::run()
+}

@@ -163,9 +163,10 @@ pub fn run(set: &PhotoSet, options: &PhotosOptions, staging: &Staging, watch: &W
     }
     for (pose, sums) in sums {
         let sums = sums.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
-        match sums.subjects().len() {
+        let subjects = sums.subjects().len();
+        match subjects {
             0 => result.warnings.push(format!("pose `{pose}`: no nail could be used, so it has no maps")),
-            subjects => {
+            _ => {
                 if subjects == 1 {
                     result.warnings.push(one_subject(pose));
                 }
@@ -294,7 +295,7 @@ fn unseen(picture: &Normalized, margin: f64) -> String {
     if missing == 0 {
         return String::new();
     }
-    format!("used, but {:.1} % of its box lies outside of the photograph", 100.0 * f64::from(missing) / f64::from(all))
+    format!("used, but {:.1} % of its box lies outside of the photograph", 100.0 * missing as f64 / all as f64)
 }
 
 fn lies_outside(outline: &Outline, picture: &Photograph) -> bool {

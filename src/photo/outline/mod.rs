@@ -5,6 +5,10 @@
 //! to the hyponychium (distal).
 
 pub mod annotated;
+pub mod axis;
+pub mod detect;
+pub mod mask;
+pub mod source;
 
 use geo::{Area, BooleanOps, Coord, LineString, Polygon, Validation};
 use thiserror::Error;

@@ -1,0 +1,128 @@
+//! The command line: one file a command. Arguments in, one job called, tables and pictures out; no thinking here.
+//!
+//! Exit status: 0 all done; 1 done, but some inputs failed (each is named on standard error); 2 nothing done; 130 interrupted.
+
+mod phantom;
+mod photos;
+mod tradeoff;
+
+use std::io::{IsTerminal, Write};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use clap::{Args, Parser, Subcommand};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+/// Ground truth for fingernail sensing: nail photographs to coloration maps.
+#[derive(Debug, Parser)]
+#[command(name = "lunula", version, about, after_help = "lunula COMMAND --help tells more of each.", max_term_width = 110)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Photos(photos::PhotosArgs),
+    Phantom(phantom::PhantomArgs),
+    Tradeoff(tradeoff::TradeoffArgs),
+}
+
+/// What every job takes.
+#[derive(Debug, Clone, Args)]
+struct Common {
+    /// Print one JSON object on standard output: what was done, the figures, the times, the warnings
+    #[arg(long, global = true)]
+    json: bool,
+    /// Threads to work with [default: all cores]; the results are the same bytes whatever their number
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Only errors
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    quiet: bool,
+    /// More: every stage's time
+    #[arg(short, long, global = true)]
+    verbose: bool,
+}
+
+/// How a job ended well.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Outcome {
+    Done,
+    SomeFailed,
+}
+
+/// The request was stopped from outside.
+#[derive(Debug, thiserror::Error)]
+#[error("interrupted; nothing was written")]
+struct Interrupted;
+
+pub(crate) fn run() -> ExitCode {
+    let outcome = match Cli::parse().command {
+        Command::Photos(args) => photos::run(&args),
+        Command::Phantom(args) => phantom::run(&args),
+        Command::Tradeoff(args) => tradeoff::run(&args),
+    };
+    match outcome {
+        Ok(Outcome::Done) => ExitCode::SUCCESS,
+        Ok(Outcome::SomeFailed) => ExitCode::from(1),
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::from(if error.is::<Interrupted>() { 130 } else { 2 })
+        }
+    }
+}
+
+impl Common {
+    /// Sets the threads up; a job's first step.
+    fn start(&self) -> anyhow::Result<Arc<AtomicBool>> {
+        let threads = self.threads.map_or(0, usize::from);
+        rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
+        let stop = Arc::new(AtomicBool::new(false));
+        let flag = Arc::clone(&stop);
+        ctrlc::set_handler(move || {
+            if flag.swap(true, Ordering::Relaxed) {
+                // Asked twice: what was held back is a hidden folder, nothing of the results is touched.
+                std::process::exit(130);
+            }
+        })?;
+        Ok(stop)
+    }
+
+    /// A bar on standard error, where that is a terminal and somebody looks.
+    fn progress(&self, steps: usize, unit: &str) -> ProgressBar {
+        let seen = std::io::stderr().is_terminal() && !self.quiet;
+        let target = if seen { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
+        let bar = ProgressBar::with_draw_target(Some(steps as u64), target);
+        let style = ProgressStyle::with_template(&format!("{{wide_bar}} {{pos}}/{{len}} {unit}, {{eta}} left"));
+        style.map_or(bar.clone(), |style| bar.with_style(style))
+    }
+
+    /// Plain words on standard output, unless quiet or JSON is wanted.
+    fn say(&self, text: &str) {
+        if !self.json && !self.quiet {
+            print_line(text);
+        }
+    }
+
+    fn warn(&self, warnings: &[String]) {
+        if !self.quiet {
+            for warning in warnings {
+                eprintln!("warning: {warning}");
+            }
+        }
+    }
+
+    fn print_json(&self, report: &impl serde::Serialize) -> anyhow::Result<()> {
+        if self.json {
+            print_line(&serde_json::to_string(report)?);
+        }
+        Ok(())
+    }
+}
+
+/// A reader that has gone away is no error of ours.
+fn print_line(text: &str) {
+    let _ = writeln!(std::io::stdout(), "{text}");
+}

@@ -1,0 +1,283 @@
+//! `lunula photos`: photographs to coloration maps, and `lunula photos merge`.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use anyhow::Context;
+use clap::{Args, Subcommand, ValueEnum};
+use lunula::files::Staging;
+use lunula::photo::Channel;
+use lunula::photo::job::{self, PhotosError, PhotosOptions, PhotosResult, Watch};
+use lunula::photo::keep::keep;
+use lunula::photo::merge::merge;
+use lunula::photo::normalize::{Normalization, Resample};
+use lunula::photo::outline::annotated::Drawn;
+use lunula::photo::outline::axis::Side;
+use lunula::photo::outline::detect::DetectOptions;
+use lunula::photo::outline::source::{OutlineOptions, Sources};
+use lunula::photo::plan::{Fate, plan};
+use lunula::photo::report::{NailTable, RunReport};
+use lunula::photo::results;
+use lunula::photo::set::{PhotoSet, SetFault};
+
+use super::{Common, Interrupted, Outcome, print_line};
+
+/// Photographs of nails to coloration maps: outlines, normalized pictures, mean and standard deviation over subjects
+///
+/// SET is a folder SET/<pose>/<subject>.<png|jpg|tif|bmp>, a flat folder (one pose), or holds photos.csv with the columns
+/// file,subject,pose and optionally outline. The outline of a nail comes from the first of: that column, <stem>.json
+/// beside the photograph (LabelMe: polygon `nail`, line `axis` from proximal to distal), a mask under --masks, detection.
+/// Results: nails.csv, normalized/, maps/*.npy, figures/, report.html, run.json.
+#[derive(Debug, Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+pub(super) struct PhotosArgs {
+    #[command(subcommand)]
+    merge: Option<PhotosCommand>,
+    /// Folder of photographs
+    #[arg(required = true)]
+    set: Option<PathBuf>,
+    /// Folder for the results
+    #[arg(long, required = true)]
+    out: Option<PathBuf>,
+    /// Where outlines may come from
+    #[arg(long, value_enum, default_value = "auto")]
+    outline: OutlineArg,
+    /// Masks named as the photographs (MASKS/<pose>/<stem>.* or MASKS/<stem>.*); each connected region is a nail
+    #[arg(long, value_name = "MASKS")]
+    masks: Option<PathBuf>,
+    /// On which side of the picture the distal ends lie, for outlines without an axis [default: told from each picture]
+    #[arg(long, value_enum)]
+    distal: Option<SideArg>,
+    /// Which picture annotations and masks were drawn on, where EXIF turns it and its size can't tell
+    #[arg(long, value_enum, default_value = "auto")]
+    annotations: DrawnArg,
+    /// Save detected outlines as LabelMe files to correct: beside the photographs, or in FOLDER with a photos.csv
+    #[arg(long, value_name = "FOLDER", num_args = 0..=1, require_equals = true)]
+    write_outlines: Option<Option<PathBuf>>,
+    /// Width and height of the normalized pictures, pixels
+    #[arg(long, default_value_t = 400)]
+    size: usize,
+    /// How much they show, in boxes of the nail
+    #[arg(long, default_value_t = 1.25)]
+    margin: f64,
+    /// The channel of colour photographs
+    #[arg(long, value_enum, default_value = "green")]
+    channel: ChannelArg,
+    /// Undo the sRGB curve, so that values are proportional to light
+    #[arg(long)]
+    linear: bool,
+    /// How values between pixels come about
+    #[arg(long, value_enum, default_value = "cubic")]
+    resample: ResampleArg,
+    /// Longest side, in pixels, of the picture that detection searches
+    #[arg(long, value_name = "PX", default_value_t = DetectOptions::default().working_size_px, value_parser = clap::value_parser!(u32).range(64..=4096))]
+    detect_size: u32,
+    /// Say what would be done and left out, and do nothing
+    #[arg(long)]
+    plan: bool,
+    #[command(flatten)]
+    common: Common,
+}
+
+#[derive(Debug, Subcommand)]
+enum PhotosCommand {
+    /// Join maps that were made in parts: the same bytes as made at once
+    Merge(MergeArgs),
+}
+
+#[derive(Debug, Args)]
+struct MergeArgs {
+    /// Folders that `lunula photos` wrote
+    #[arg(required = true, num_args = 1..)]
+    parts: Vec<PathBuf>,
+    /// Folder for the results
+    #[arg(long)]
+    out: PathBuf,
+    #[command(flatten)]
+    common: Common,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum OutlineArg {
+    /// Annotated where somebody drew one, else detected
+    Auto,
+    /// Only what somebody drew: manifest, LabelMe, masks
+    Annotated,
+    /// Only detection, whatever is drawn
+    Detect,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum SideArg {
+    Up,
+    Down,
+    Left,
+    Right,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum DrawnArg {
+    Auto,
+    Upright,
+    Stored,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum ChannelArg {
+    Red,
+    Green,
+    Blue,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum ResampleArg {
+    Nearest,
+    Linear,
+    Cubic,
+}
+
+impl PhotosArgs {
+    fn options(&self) -> anyhow::Result<PhotosOptions> {
+        let normalization = Normalization {
+            size: self.size,
+            margin: self.margin,
+            channel: match self.channel {
+                ChannelArg::Red => Channel::Red,
+                ChannelArg::Green => Channel::Green,
+                ChannelArg::Blue => Channel::Blue,
+            },
+            linear: self.linear,
+            resample: match self.resample {
+                ResampleArg::Nearest => Resample::Nearest,
+                ResampleArg::Linear => Resample::Linear,
+                ResampleArg::Cubic => Resample::Cubic,
+            },
+        };
+        let outlines = OutlineOptions {
+            sources: match self.outline {
+                OutlineArg::Auto => Sources::Auto,
+                OutlineArg::Annotated => Sources::Annotated,
+                OutlineArg::Detect => Sources::Detect,
+            },
+            masks: self.masks.clone(),
+            distal: self.distal.map(|side| match side {
+                SideArg::Up => Side::Up,
+                SideArg::Down => Side::Down,
+                SideArg::Left => Side::Left,
+                SideArg::Right => Side::Right,
+            }),
+            drawn: match self.annotations {
+                DrawnArg::Auto => Drawn::Auto,
+                DrawnArg::Upright => Drawn::Upright,
+                DrawnArg::Stored => Drawn::Stored,
+            },
+            detect: DetectOptions { working_size_px: self.detect_size, ..DetectOptions::default() },
+        };
+        if let Some(masks) = self.masks.as_ref().filter(|m| !m.is_dir()) {
+            anyhow::bail!("--masks {}: is no folder", masks.display());
+        }
+        Ok(PhotosOptions {
+            normalization: normalization.check().map_err(anyhow::Error::msg)?,
+            outlines,
+            keep_detected: self.write_outlines.is_some(),
+        })
+    }
+}
+
+pub(super) fn run(args: &PhotosArgs) -> anyhow::Result<Outcome> {
+    if let Some(PhotosCommand::Merge(args)) = &args.merge {
+        return run_merge(args);
+    }
+    let (set, out) = args.set.as_ref().zip(args.out.as_ref()).context("SET and --out are needed")?;
+    let options = args.options()?;
+    let apart: Vec<&Path> = std::iter::once(out.as_path()).chain(args.masks.as_deref()).collect();
+    let set = PhotoSet::open(set, &apart)?;
+    if args.plan {
+        return Ok(print_plan(args, &set, &options));
+    }
+    let start = Instant::now();
+    let stop = args.common.start()?;
+    let staging = Staging::new(out)?;
+    let bar = args.common.progress(set.photos.len(), "photographs");
+    let watch = Watch { stop: &stop, tick: &|| bar.inc(1) };
+    let mut result = job::run(&set, &options, &staging, &watch).map_err(|error| match error {
+        PhotosError::Interrupted => Interrupted.into(),
+        other => anyhow::Error::from(other),
+    })?;
+    bar.finish_and_clear();
+    let report = RunReport::of_photos(&set, &options, &result, start.elapsed());
+    let nails = NailTable::of(&result.rows, &set);
+    results::write_nails(nails.rows(), &staging)?;
+    report.write_html(&nails, &staging)?;
+    report.write_json(&staging)?;
+    if let Some(folder) = &args.write_outlines {
+        keep_outlines(args, &mut result, &set, folder.as_deref())?;
+    }
+    staging.commit()?;
+    finish(&args.common, &report, out)
+}
+
+fn keep_outlines(
+    args: &PhotosArgs,
+    result: &mut PhotosResult,
+    set: &PhotoSet,
+    folder: Option<&Path>,
+) -> anyhow::Result<()> {
+    let kept = keep(result, set, folder)?;
+    for path in &kept.stood {
+        args.common.warn(&[format!("{} stands and stays as it is", path.display())]);
+    }
+    let place = folder.map_or_else(|| "beside the photographs".into(), |f| format!("in {}", f.display()));
+    args.common.say(&format!("{} outlines saved {place} for LabelMe", kept.written.len()));
+    Ok(())
+}
+
+fn run_merge(args: &MergeArgs) -> anyhow::Result<Outcome> {
+    args.common.start()?;
+    let staging = Staging::new(&args.out)?;
+    let report = merge(&args.parts, &staging)?;
+    staging.commit()?;
+    finish(&args.common, &report, &args.out)
+}
+
+fn print_plan(args: &PhotosArgs, set: &PhotoSet, options: &PhotosOptions) -> Outcome {
+    let steps = plan(set, options);
+    if args.common.json {
+        print_line(&serde_json::json!({ "job": "photos", "plan": steps, "failed": set.faults }).to_string());
+    } else {
+        for step in &steps {
+            let fate = match step.fate {
+                Fate::Run => "run",
+                Fate::LeftOut => "left out",
+            };
+            print_line(&format!("{:<34} {fate:<9} {}", step.stage, step.reason));
+        }
+    }
+    name_failures(&set.faults);
+    if set.faults.is_empty() { Outcome::Done } else { Outcome::SomeFailed }
+}
+
+fn name_failures(failed: &[SetFault]) {
+    for fault in failed {
+        eprintln!("failed: {}: {}", fault.place, fault.what);
+    }
+}
+
+fn finish(common: &Common, report: &RunReport, out: &Path) -> anyhow::Result<Outcome> {
+    common.warn(&report.warnings);
+    name_failures(&report.failed);
+    common.print_json(report)?;
+    for pose in &report.poses {
+        common.say(&format!("{:<28} {:>4} subject(s)", pose.pose, pose.subjects));
+    }
+    if common.verbose {
+        for stage in &report.stages {
+            common.say(&format!("{:<28} {:>9.3} s of threads, {} runs", stage.stage, stage.thread_s, stage.runs));
+        }
+        for what in &report.left_out {
+            common.say(&format!("left out: {what}"));
+        }
+    }
+    common.say(&format!("{:.2} s; look at {}", report.wall_s, out.join("report.html").display()));
+    Ok(if report.failed.is_empty() { Outcome::Done } else { Outcome::SomeFailed })
+}
