@@ -16,7 +16,13 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 /// Ground truth for fingernail sensing: nail photographs to coloration maps.
 #[derive(Debug, Parser)]
-#[command(name = "lunula", version, about, after_help = "lunula COMMAND --help tells more of each.", max_term_width = 110)]
+#[command(
+    name = "lunula",
+    version,
+    about,
+    after_help = "lunula COMMAND --help tells more of each.",
+    max_term_width = 110
+)]
 struct Cli {
     #[command(subcommand)]
     command: Command,

@@ -3,4 +3,6 @@ use super::*;
 /// x
 #[derive(Debug, Args)]
 pub(super) struct TradeoffArgs {}
-pub(super) fn run(_: &TradeoffArgs) -> anyhow::Result<Outcome> { Ok(Outcome::Done) }
+pub(super) fn run(_: &TradeoffArgs) -> anyhow::Result<Outcome> {
+    Ok(Outcome::Done)
+}

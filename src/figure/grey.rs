@@ -1,6 +1,6 @@
 //! Arrays to grey pictures.
 
-use image::{GrayAlphaImage, LumaA};
+use image::GrayAlphaImage;
 use ndarray::Array2;
 
 /// How values become grey levels.
@@ -21,7 +21,11 @@ impl Stretch {
     /// The grey level of a value that is known.
     pub fn level(self, value: f32) -> u8 {
         match self {
-            Self::Linear { low, high } => (((value - low) / (high - low)).clamp(0.0, 1.0) * 255.0).round() as u8,
+            Self::Linear { low, high } =>
+            // The cast saturates; adding a half and cutting rounds.
+            {
+                (((value - low) / (high - low)) * 255.0 + 0.5) as u8
+            }
             Self::Above(limit) => {
                 if value > limit {
                     255
@@ -36,10 +40,8 @@ impl Stretch {
 /// Draws an array; a NaN is transparent: not known is neither black nor white.
 pub fn grey_map(values: &Array2<f32>, stretch: Stretch) -> GrayAlphaImage {
     let (rows, columns) = values.dim();
-    GrayAlphaImage::from_fn(columns as u32, rows as u32, |x, y| {
-        let value = values[[y as usize, x as usize]];
-        if value.is_nan() { LumaA([0, 0]) } else { LumaA([stretch.level(value), 255]) }
-    })
+    let pixels = values.iter().flat_map(|&v| if v.is_nan() { [0, 0] } else { [stretch.level(v), 255] });
+    GrayAlphaImage::from_raw(columns as u32, rows as u32, pixels.collect()).expect("two samples a value")
 }
 
 #[cfg(test)]

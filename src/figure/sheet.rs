@@ -5,9 +5,9 @@ use std::io::Cursor;
 use base64::Engine;
 use image::{DynamicImage, GrayAlphaImage, ImageFormat, Rgb, RgbImage};
 
+use super::Stretch;
 use super::html::escape;
 use super::text::{centred, left};
-use super::Stretch;
 
 /// One picture of a sheet.
 #[derive(Debug, Clone)]

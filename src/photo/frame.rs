@@ -61,8 +61,7 @@ impl NailFrame {
             return Err(FrameFault::TooSmall { length_px, width_px });
         }
         let middle = [(low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0];
-        let center_px =
-            [middle[0] * right[0] + middle[1] * distal[0], middle[0] * right[1] + middle[1] * distal[1]];
+        let center_px = [middle[0] * right[0] + middle[1] * distal[0], middle[0] * right[1] + middle[1] * distal[1]];
         Ok(Self { center_px, length_px, width_px, axis })
     }
 
@@ -86,7 +85,8 @@ mod tests {
         for degrees in [0.0, 30.0, -75.0, 90.0, 180.0] {
             let axis = Axis::from_clockwise_rad(f64::to_radians(degrees));
             let straight = NailFrame { center_px: [120.0, 80.0], length_px: 60.0, width_px: 40.0, axis };
-            let corners = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)].map(|(u, v)| straight.photo_from_nail(u, v));
+            let corners =
+                [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)].map(|(u, v)| straight.photo_from_nail(u, v));
             let outline = Outline::new(&corners).expect("a rectangle");
             let measured = NailFrame::new(&outline, axis).expect("large enough");
             assert!((measured.length_px - 60.0).abs() <= ROUNDING_PX, "{degrees}");

@@ -122,7 +122,12 @@ pub struct Watch<'a> {
 ///
 /// # Errors
 /// [`PhotosError`] where there is no result.
-pub fn run(set: &PhotoSet, options: &PhotosOptions, staging: &Staging, watch: &Watch) -> Result<PhotosResult, PhotosError> {
+pub fn run(
+    set: &PhotoSet,
+    options: &PhotosOptions,
+    staging: &Staging,
+    watch: &Watch,
+) -> Result<PhotosResult, PhotosError> {
     let stages = Stages::default();
     let sums: BTreeMap<&str, Mutex<Sums>> =
         set.poses().into_iter().map(|pose| (pose, Mutex::new(Sums::new(options.normalization.size)))).collect();
@@ -276,7 +281,7 @@ impl Work<'_> {
         row.frame = Some(frame);
         let normalized =
             self.stages.time("normalize", || normalize(&picture.image, &frame, &self.options.normalization));
-        if normalized.values.iter().all(|v| v.is_nan()) {
+        if normalized.count_seen() == 0 {
             return Err("the photograph shows nothing of it (transparent or outside)".into());
         }
         Ok(normalized)
@@ -285,13 +290,13 @@ impl Work<'_> {
 
 /// What share of the nail's box the photograph does not show, in words; empty where it shows all.
 fn unseen(picture: &Normalized, margin: f64) -> String {
+    let Some(seen) = &picture.seen else { return String::new() };
     let size = picture.size as f64;
     let edge = (size - size / margin) / 2.0;
     let in_box = |at: usize| (at as f64 + 0.5 - edge).clamp(0.0, size - 2.0 * edge) == at as f64 + 0.5 - edge;
     let rows = (0..picture.size).filter(|&r| in_box(r));
     let cells = rows.flat_map(|r| (0..picture.size).filter(|&c| in_box(c)).map(move |c| r * picture.size + c));
-    let (all, missing) =
-        cells.fold((0, 0), |(all, missing), at| (all + 1, missing + usize::from(picture.values[at].is_nan())));
+    let (all, missing) = cells.fold((0, 0), |(all, missing), at| (all + 1, missing + usize::from(!seen[at])));
     if missing == 0 {
         return String::new();
     }

@@ -39,7 +39,12 @@ pub fn keep(result: &PhotosResult, set: &PhotoSet, folder: Option<&Path>) -> Res
         let nails: Vec<ToDraw> = detected
             .nails
             .iter()
-            .map(|(outline, axis, confidence, trusted)| ToDraw { outline, axis: *axis, confidence: *confidence, trusted: *trusted })
+            .map(|(outline, axis, confidence, trusted)| ToDraw {
+                outline,
+                axis: *axis,
+                confidence: *confidence,
+                trusted: *trusted,
+            })
             .collect();
         let file = to_file(&relative(&photo.path, path.parent()), detected.size, &nails);
         let mut text = serde_json::to_vec_pretty(&file)
@@ -69,10 +74,11 @@ fn write_manifest(set: &PhotoSet, folder: &Path) -> Result<(), WriteError> {
     let mut table = csv::Writer::from_writer(Vec::new());
     table.write_record(["file", "subject", "pose", "outline"]).map_err(|e| refused(e.to_string()))?;
     for photo in &set.photos {
-        let outline = [Some(place(photo, Some(folder))), photo.outline.clone(), Some(photo.path.with_extension("json"))]
-            .into_iter()
-            .flatten()
-            .find(|path| path.is_file());
+        let outline =
+            [Some(place(photo, Some(folder))), photo.outline.clone(), Some(photo.path.with_extension("json"))]
+                .into_iter()
+                .flatten()
+                .find(|path| path.is_file());
         let outline = outline.map_or_else(String::new, |path| relative(&path, Some(folder)));
         let file = relative(&photo.path, Some(folder));
         table.write_record([&file, &photo.subject, &photo.pose, &outline]).map_err(|e| refused(e.to_string()))?;

@@ -12,10 +12,10 @@ use std::collections::BTreeSet;
 
 use ndarray::Array2;
 
-use super::normalize::Normalized;
+use super::normalize::{self, Normalized};
 
 /// Full scale of the quantized values.
-const FULL_SCALE: f64 = 65535.0;
+const FULL_SCALE: f64 = normalize::FULL_SCALE as f64;
 
 /// Sums over subjects, a pixel each, `size` x `size`, row by row from the top (distal).
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -58,18 +58,29 @@ impl Sums {
             return Err(DuplicateSubject(subject.to_owned()));
         }
         match nails {
-            [only] => self.add_values(only.values.iter().map(|&v| quantize(v))),
-            several => self.add_values((0..self.size * self.size).map(|at| mean_of_nails(several, at))),
+            [Normalized { levels, seen: None, .. }] => self.add_whole(levels),
+            several => self.add_seen((0..self.size * self.size).map(|at| mean_of_nails(several, at))),
         }
         Ok(())
     }
 
-    fn add_values(&mut self, values: impl Iterator<Item = Option<u64>>) {
+    fn add_whole(&mut self, levels: &[u16]) {
+        for ((sum, sum_sq), &level) in self.sum.iter_mut().zip(&mut self.sum_sq).zip(levels) {
+            let level = u32::from(level);
+            *sum += u64::from(level);
+            *sum_sq += u64::from(level * level);
+        }
+        for count in &mut self.count {
+            *count += 1;
+        }
+    }
+
+    fn add_seen(&mut self, levels: impl Iterator<Item = Option<u64>>) {
         let cells = self.sum.iter_mut().zip(&mut self.sum_sq).zip(&mut self.count);
-        for (((sum, sum_sq), count), value) in cells.zip(values) {
-            if let Some(value) = value {
-                *sum += value;
-                *sum_sq += value * value;
+        for (((sum, sum_sq), count), level) in cells.zip(levels) {
+            if let Some(level) = level {
+                *sum += level;
+                *sum_sq += level * level;
                 *count += 1;
             }
         }
@@ -109,22 +120,27 @@ impl Sums {
     pub(crate) fn are_possible(&self) -> bool {
         self.sum.iter().zip(&self.sum_sq).zip(&self.count).all(|((&sum, &sum_sq), &count)| {
             let (n, sum, sum_sq) = (u128::from(count), u128::from(sum), u128::from(sum_sq));
-            count as usize <= self.subjects.len() && sum <= n * 65535 && sum * sum <= n * sum_sq && sum_sq <= sum * 65535
+            count as usize <= self.subjects.len()
+                && sum <= n * 65535
+                && sum * sum <= n * sum_sq
+                && sum_sq <= sum * 65535
         })
     }
 
     /// Mean, SD and count.
     pub fn maps(&self) -> Maps {
-        let at = |row: usize, column: usize| row * self.size + column;
         let shape = (self.size, self.size);
+        let cells = || self.sum.iter().zip(&self.sum_sq).zip(&self.count);
         Maps {
-            mean: Array2::from_shape_fn(shape, |(r, c)| mean(self.sum[at(r, c)], self.count[at(r, c)])),
-            sd: Array2::from_shape_fn(shape, |(r, c)| {
-                sd(self.sum[at(r, c)], self.sum_sq[at(r, c)], self.count[at(r, c)])
-            }),
-            count: Array2::from_shape_fn(shape, |(r, c)| self.count[at(r, c)]),
+            mean: shaped(shape, cells().map(|((&sum, _), &n)| mean(sum, n)).collect()),
+            sd: shaped(shape, cells().map(|((&sum, &sum_sq), &n)| sd(sum, sum_sq, n)).collect()),
+            count: shaped(shape, self.count.clone()),
         }
     }
+}
+
+fn shaped<T>(shape: (usize, usize), values: Vec<T>) -> Array2<T> {
+    Array2::from_shape_vec(shape, values).expect("one value a pixel")
 }
 
 /// A subject that would count twice.
@@ -132,13 +148,10 @@ impl Sums {
 #[error("subject `{0}` is there twice")]
 pub struct DuplicateSubject(pub String);
 
-fn quantize(value: f32) -> Option<u64> {
-    (!value.is_nan()).then(|| (f64::from(value).clamp(0.0, 1.0) * FULL_SCALE).round() as u64)
-}
-
+/// The rounded mean over the nails that show the pixel.
 fn mean_of_nails(nails: &[Normalized], at: usize) -> Option<u64> {
-    let seen = nails.iter().filter_map(|nail| quantize(nail.values[at]));
-    let (sum, count) = seen.fold((0, 0), |(sum, count), value| (sum + value, count + 1));
+    let seen = nails.iter().filter_map(|nail| nail.level(at));
+    let (sum, count) = seen.fold((0, 0), |(sum, count), level| (sum + u64::from(level), count + 1));
     (count > 0).then(|| (2 * sum + count) / (2 * count))
 }
 
@@ -154,9 +167,14 @@ fn sd(sum: u64, sum_sq: u64, count: u32) -> f32 {
     if count < 2 {
         return f32::NAN;
     }
-    let n = u128::from(count);
-    let spread = n * u128::from(sum_sq) - u128::from(sum) * u128::from(sum);
-    ((spread as f64 / (n * (n - 1)) as f64).sqrt() / FULL_SCALE) as f32
+    let n = u64::from(count);
+    // Up to 2^15 subjects n sum(x^2) fits 64 bits.
+    let spread = if n <= 1 << 15 {
+        (n * sum_sq - sum * sum) as f64
+    } else {
+        (u128::from(n) * u128::from(sum_sq) - u128::from(sum) * u128::from(sum)) as f64
+    };
+    ((spread / (n as f64 * (n - 1) as f64)).sqrt() / FULL_SCALE) as f32
 }
 
 #[cfg(test)]
@@ -166,7 +184,7 @@ mod tests {
 
     fn picture(values: &[f32]) -> Normalized {
         let size = values.len().isqrt();
-        Normalized { size, values: values.to_vec() }
+        Normalized::from_values(size, values)
     }
 
     fn sums(pictures: &[(&str, Vec<f32>)]) -> Sums {

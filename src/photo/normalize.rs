@@ -1,8 +1,8 @@
 //! Photograph to nail frame: the normalized picture (section 4.2.2, Fig. 53).
 //!
-//! In: an upright photograph and a [`NailFrame`]. Out: `size` x `size` values, fractions of full scale, distal end at
+//! In: an upright photograph and a [`NailFrame`]. Out: `size` x `size` levels, 65535 being full scale, distal end at
 //! the top, `margin` times the nail's box: row i, column j lies at ((j + 0.5 - size/2), (size/2 - i - 0.5)) /
-//! (size / margin) in widths and lengths from the centre. NaN where the photograph does not show the place.
+//! (size / margin) in widths and lengths from the centre. What the photograph does not show is not seen, rather than 0.
 //!
 //! Where an output pixel covers up to 1.25 pixels of the photograph, the value is interpolated at its centre, by
 //! cubic convolution (Keys 1981, DOI 10.1109/TASSP.1981.1163711, a = -1/2), limited to the range of the four pixels around
@@ -12,6 +12,7 @@
 use super::frame::NailFrame;
 use super::plane::{Channel, Plane, Taking};
 use image::DynamicImage;
+use wide::f32x4;
 
 /// How values between pixels come about; `tradeoff photos` shows what each costs and gives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
@@ -60,7 +61,12 @@ impl Normalization {
     /// A sentence that names what is out of range and the range.
     pub fn check(self) -> Result<Self, String> {
         if !Self::SIZES.contains(&self.size) {
-            return Err(format!("a size of {} px is outside of {}..={}", self.size, Self::SIZES.start(), Self::SIZES.end()));
+            return Err(format!(
+                "a size of {} px is outside of {}..={}",
+                self.size,
+                Self::SIZES.start(),
+                Self::SIZES.end()
+            ));
         }
         if !Self::MARGINS.contains(&self.margin) {
             return Err(format!(
@@ -74,30 +80,63 @@ impl Normalization {
     }
 }
 
-/// A normalized picture; NaN where the photograph does not show the place.
-#[derive(Debug, Clone, PartialEq)]
+/// Full scale of a [`Normalized`] picture's levels.
+pub const FULL_SCALE: u16 = u16::MAX;
+
+/// A normalized picture, quantized to 16 bits whatever the source's depth.
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Normalized {
     /// Width and height, pixels.
     pub size: usize,
-    /// Row by row from the top (distal), fractions of full scale.
-    pub values: Vec<f32>,
+    /// Row by row from the top (distal), 0 to [`FULL_SCALE`]; 0 where not seen.
+    pub levels: Vec<u16>,
+    /// Which pixels the photograph shows; `None` where it shows them all.
+    pub seen: Option<Vec<bool>>,
+}
+
+impl Normalized {
+    /// Fractions of full scale, row by row; NaN where the photograph does not show the place.
+    pub fn values(&self) -> impl Iterator<Item = f32> + '_ {
+        (0..self.levels.len()).map(|at| self.level(at).map_or(f32::NAN, |l| f32::from(l) / f32::from(FULL_SCALE)))
+    }
+
+    /// One pixel's level, where it is seen.
+    pub(crate) fn level(&self, at: usize) -> Option<u16> {
+        self.seen.as_ref().is_none_or(|seen| seen[at]).then(|| self.levels[at])
+    }
+
+    /// How many pixels the photograph shows.
+    pub fn count_seen(&self) -> usize {
+        self.seen.as_ref().map_or(self.levels.len(), |seen| seen.iter().filter(|&&s| s).count())
+    }
+
+    fn nowhere(size: usize) -> Self {
+        Self { size, levels: vec![0; size * size], seen: Some(vec![false; size * size]) }
+    }
+
+    /// From fractions of full scale; NaN is not seen.
+    pub(crate) fn from_values(size: usize, values: &[f32]) -> Self {
+        // NaN casts to 0, what exceeds the range to its end.
+        let levels = values.iter().map(|v| (v * f32::from(FULL_SCALE) + 0.5) as u16).collect();
+        let seen = values.iter().any(|v| v.is_nan()).then(|| values.iter().map(|v| !v.is_nan()).collect());
+        Self { size, levels, seen }
+    }
 }
 
 /// Brings a nail into its frame.
 pub fn normalize(image: &DynamicImage, frame: &NailFrame, with: &Normalization) -> Normalized {
     let grid = Grid::new(frame, with);
-    let size = with.size;
-    let mut values = Vec::with_capacity(size * size);
-    let Some(source) = Source::new(image, &grid, with) else {
-        return Normalized { size, values: vec![f32::NAN; size * size] };
-    };
-    let inside = grid.lies_within(&source);
-    for row in 0..size {
-        for column in 0..size {
-            values.push(source.mean(grid.corner(row, column), &grid, inside));
+    let Some(source) = Source::new(image, &grid, with) else { return Normalized::nowhere(with.size) };
+    let values = if source.samples == [1, 1] && grid.lies_within(&source) {
+        if source.resample == Resample::Cubic && grid.is_nearly_upright() {
+            source.points_in_two_passes(&grid)
+        } else {
+            source.points(&grid)
         }
-    }
-    Normalized { size, values }
+    } else {
+        source.means(&grid)
+    };
+    Normalized::from_values(with.size, &values)
 }
 
 /// The normalized picture's pixels on the photograph: an affine map.
@@ -117,6 +156,11 @@ const POINT_SAMPLED_UP_TO_PX: f64 = 1.25;
 /// Samples an axis of a footprint after the photograph was reduced by whole blocks.
 const SAMPLES_KEPT: f64 = 3.0;
 
+/// Tangent of the turn up to which two passes are taken, 30 degrees.
+const STEEPEST: f64 = 0.577_350_27;
+/// Output columns that two passes fill side by side.
+const COLUMNS: usize = 8;
+
 impl Grid {
     fn new(frame: &NailFrame, with: &Normalization) -> Self {
         let nail = with.size as f64 / with.margin;
@@ -132,6 +176,11 @@ impl Grid {
     fn corner(&self, row: usize, column: usize) -> [f64; 2] {
         let (row, column) = (row as f64, column as f64);
         [0, 1].map(|k| self.origin[k] + self.per_column[k] * column + self.per_row[k] * row)
+    }
+
+    /// Turned little enough for two one-dimensional passes: their samples lie 1 / cos(angle) apart.
+    fn is_nearly_upright(&self) -> bool {
+        self.per_row[0].abs() <= STEEPEST * self.per_row[1].abs()
     }
 
     /// Lowest and highest photograph coordinates touched.
@@ -151,7 +200,6 @@ impl Grid {
 /// The part of the photograph that the grid needs, reduced by whole blocks where it covers many pixels.
 struct Source {
     width: usize,
-    height: usize,
     values: Vec<f32>,
     /// Photograph coordinates of the centre of `values[0]`, and their distance.
     first: [f64; 2],
@@ -188,17 +236,87 @@ impl Source {
         let plane = Plane::take(image, Taking { channel: with.channel, linear: with.linear }, range[0], range[1]);
         let middle = (factor - 1) as f64 / 2.0;
         let first = [plane.x0 as f64 + middle, plane.y0 as f64 + middle];
-        let (width, height) = (plane.width / factor, plane.height / factor);
+        let width = plane.width / factor;
         let values = if factor == 1 { plane.values } else { plane.reduce(factor) };
         let samples = grid.covers.map(|covers| match with.resample {
             Resample::Nearest => 1,
             _ if covers <= POINT_SAMPLED_UP_TO_PX => 1,
             _ => (covers / factor as f64).ceil() as usize,
         });
-        Some(Self { width, height, values, first, spacing: factor as f64, photo_end, samples, resample: with.resample })
+        Some(Self { width, values, first, spacing: factor as f64, photo_end, samples, resample: with.resample })
     }
 
-    /// The mean over the output pixel whose outer corner is `corner`; NaN where part of it is not seen.
+    /// Every output pixel at its centre, all of them known to lie within the photograph.
+    fn points(&self, grid: &Grid) -> Vec<f32> {
+        let mut values = Vec::with_capacity(grid.size * grid.size);
+        let step = [0, 1].map(|k| fixed(grid.per_column[k] / self.spacing));
+        for row in 0..grid.size {
+            let corner = grid.corner(row, 0);
+            let [mut x, mut y] = [0, 1].map(|k| {
+                let centre = corner[k] + 0.5 * (grid.per_column[k] + grid.per_row[k]);
+                fixed((centre - self.first[k]) / self.spacing)
+            });
+            values.extend((0..grid.size).map(|_| {
+                let value = self.at((x >> 32) as usize, (y >> 32) as usize, fraction(x), fraction(y));
+                x += step[0];
+                y += step[1];
+                value
+            }));
+        }
+        values
+    }
+
+    /// As [`Source::points`], at less than half its work: for each output column, the photograph's rows are interpolated
+    /// along x where the column's line crosses them, then that line is along y (Catmull and Smith 1980,
+    /// DOI 10.1145/800250.807505). On a slanted line the second pass's samples are not those of the upright
+    /// neighbourhood, so values differ a little where the photograph has detail of one or two pixels.
+    fn points_in_two_passes(&self, grid: &Grid) -> Vec<f32> {
+        let size = grid.size;
+        let mut values = vec![0.0; size * size];
+        let corner = grid.corner(0, 0);
+        let place = |k: usize, column: usize| {
+            let along = corner[k] + grid.per_column[k] * (column as f64 + 0.5) + 0.5 * grid.per_row[k];
+            (along - self.first[k]) / self.spacing
+        };
+        let down = grid.per_row[1] / self.spacing;
+        let slant = fixed(grid.per_row[0] / grid.per_row[1]);
+        let mut line = Vec::new();
+        let mut block = vec![[0.0_f32; COLUMNS]; size];
+        for first in (0..size).step_by(COLUMNS) {
+            let columns = COLUMNS.min(size - first);
+            for at in 0..columns {
+                let [x, y] = [place(0, first + at), place(1, first + at)];
+                let last = y + down * (size - 1) as f64;
+                // The rows that this column's cubics reach, and where its line crosses the first of them.
+                let (top, bottom) = (y.min(last) as usize - 1, y.max(last) as usize + 2);
+                let mut crossing = fixed(x) + fixed_product(slant, top as f64 - y);
+                line.clear();
+                line.extend((top..=bottom).map(|row| {
+                    let column = (crossing >> 32) as usize;
+                    let value = between(&self.values[row * self.width + column - 1..][..4], fraction(crossing));
+                    crossing += slant;
+                    value
+                }));
+                let (mut y, step) = (fixed(y - top as f64), fixed(down));
+                for row in &mut block {
+                    row[at] = between(&line[(y >> 32) as usize - 1..][..4], fraction(y));
+                    y += step;
+                }
+            }
+            for (row, block) in values.chunks_exact_mut(size).zip(&block) {
+                row[first..first + columns].copy_from_slice(&block[..columns]);
+            }
+        }
+        values
+    }
+
+    /// The mean over every output pixel's footprint; NaN where part of it is not seen.
+    fn means(&self, grid: &Grid) -> Vec<f32> {
+        let inside = grid.lies_within(self);
+        let pixels = (0..grid.size).flat_map(|row| (0..grid.size).map(move |column| (row, column)));
+        pixels.map(|(row, column)| self.mean(grid.corner(row, column), grid, inside)).collect()
+    }
+
     fn mean(&self, corner: [f64; 2], grid: &Grid, inside: bool) -> f32 {
         let [across, along] = self.samples;
         let mut sum = 0.0;
@@ -210,64 +328,96 @@ impl Source {
                 if !inside && (0..2).any(|k| !(place[k] >= -0.5 && place[k] <= self.photo_end[k])) {
                     return f32::NAN;
                 }
-                sum += self.at(place);
+                let [x, y] = [0, 1].map(|k| (place[k] - self.first[k]) / self.spacing);
+                sum += self.at(x as usize, y as usize, x.fract() as f32, y.fract() as f32);
             }
         }
         sum / (across * along) as f32
     }
 
-    fn at(&self, place: [f64; 2]) -> f32 {
-        let x = (place[0] - self.first[0]) / self.spacing;
-        let y = (place[1] - self.first[1]) / self.spacing;
+    /// The value at (column + fx, row + fy) of the reduced photograph. [`Source::new`] takes a margin of [`REACH`] pixels all
+    /// around, so that every neighbour is there.
+    #[inline(always)]
+    fn at(&self, column: usize, row: usize, fx: f32, fy: f32) -> f32 {
         match self.resample {
-            Resample::Nearest => self.values[(y.round() as usize) * self.width + x.round() as usize],
+            Resample::Nearest => {
+                self.values[(row + usize::from(fy >= 0.5)) * self.width + column + usize::from(fx >= 0.5)]
+            }
             Resample::Linear => {
-                let (rows, fx, fy) = self.neighbours::<2>(x, y, 0);
-                let line = |row: &[f32; 2]| row[0] + (row[1] - row[0]) * fx;
-                line(&rows[0]) + (line(&rows[1]) - line(&rows[0])) * fy
+                let [top, below]: [[f32; 2]; 2] = self.block(column, row);
+                let line = |row: [f32; 2]| row[0] + (row[1] - row[0]) * fx;
+                line(top) + (line(below) - line(top)) * fy
             }
             Resample::Cubic => {
-                let (rows, fx, fy) = self.neighbours::<4>(x, y, 1);
-                let (wx, wy) = (cubic_weights(fx), cubic_weights(fy));
-                let mut columns = [0.0_f32; 4];
-                for (row, weight) in rows.iter().zip(wy) {
-                    for k in 0..4 {
-                        columns[k] += row[k] * weight;
-                    }
-                }
-                let value = columns[0] * wx[0] + columns[1] * wx[1] + columns[2] * wx[2] + columns[3] * wx[3];
-                let [low, high] = [
-                    rows[1][1].min(rows[1][2]).min(rows[2][1].min(rows[2][2])),
-                    rows[1][1].max(rows[1][2]).max(rows[2][1].max(rows[2][2])),
-                ];
-                // Not `clamp`: it panics on NaN limits, and a NaN value has to stay one.
-                if value < low {
-                    low
-                } else if value > high {
-                    high
-                } else {
-                    value
-                }
+                let rows = self.block(column - 1, row - 1).map(f32x4::new);
+                let down = cubic_weights(fy).to_array();
+                let columns = (rows[0] * down[0] + rows[1] * down[1]) + (rows[2] * down[2] + rows[3] * down[3]);
+                let value = (columns * cubic_weights(fx)).reduce_add();
+                let ([_, a, b, _], [_, c, d, _]) = (rows[1].to_array(), rows[2].to_array());
+                let low = lesser(lesser(a, b), lesser(c, d));
+                let high = greater(greater(a, b), greater(c, d));
+                limit(value, low, high)
             }
         }
     }
 
-    /// The N x N values around (x, y), the first `before` columns and rows ahead of its own, and where between them it is.
-    fn neighbours<const N: usize>(&self, x: f64, y: f64, before: usize) -> ([[f32; N]; N], f32, f32) {
-        let (column, row) = (x.floor(), y.floor());
-        let start_x = (column as usize).saturating_sub(before).min(self.width - N);
-        let start_y = (row as usize).saturating_sub(before).min(self.height - N);
-        let mut rows = [[0.0_f32; N]; N];
+    #[inline(always)]
+    fn block<const N: usize>(&self, column: usize, row: usize) -> [[f32; N]; N] {
+        let mut rows = [[0.0; N]; N];
         for (k, line) in rows.iter_mut().enumerate() {
-            let at = (start_y + k) * self.width + start_x;
+            let at = (row + k) * self.width + column;
             line.copy_from_slice(&self.values[at..at + N]);
         }
-        (rows, (x - column) as f32, (y - row) as f32)
+        rows
     }
 }
 
+/// A coordinate with 32 bits after the point, so that stepping along a row does not gather rounding.
+fn fixed(coordinate: f64) -> i64 {
+    (coordinate * 4_294_967_296.0).round() as i64
+}
+
+#[inline(always)]
+fn fraction(fixed: i64) -> f32 {
+    (fixed & 0xFFFF_FFFF) as f32 * (1.0 / 4_294_967_296.0)
+}
+
+/// `slope`, in fixed point, times a number.
+fn fixed_product(slope: i64, factor: f64) -> i64 {
+    (slope as f64 * factor).round() as i64
+}
+
+/// The cubic through four values, `t` after the second, limited to the second and third.
+#[inline(always)]
+fn between(four: &[f32], t: f32) -> f32 {
+    let four = [four[0], four[1], four[2], four[3]];
+    limit((f32x4::new(four) * cubic_weights(t)).reduce_add(), lesser(four[1], four[2]), greater(four[1], four[2]))
+}
+
+/// The value comes last in both comparisons: a missing neighbour makes it NaN, and NaN it stays.
+#[inline(always)]
+fn limit(value: f32, low: f32, high: f32) -> f32 {
+    let limited = if value < low { low } else { value };
+    if limited > high { high } else { limited }
+}
+
+#[inline(always)]
+fn lesser(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
+}
+
+#[inline(always)]
+fn greater(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
 /// Keys' cubic convolution with a = -1/2 at `t` within 0..1 after the second of four equally spaced values.
-fn cubic_weights(t: f32) -> [f32; 4] {
-    let (t2, t3) = (t * t, t * t * t);
-    [0.5 * (2.0 * t2 - t3 - t), 0.5 * (3.0 * t3 - 5.0 * t2 + 2.0), 0.5 * (4.0 * t2 - 3.0 * t3 + t), 0.5 * (t3 - t2)]
+#[inline(always)]
+fn cubic_weights(t: f32) -> f32x4 {
+    const CONSTANT: f32x4 = f32x4::new([0.0, 1.0, 0.0, 0.0]);
+    const LINEAR: f32x4 = f32x4::new([-0.5, 0.0, 0.5, 0.0]);
+    const SQUARE: f32x4 = f32x4::new([1.0, -2.5, 2.0, -0.5]);
+    const CUBE: f32x4 = f32x4::new([-0.5, 1.5, -1.5, 0.5]);
+    let t = f32x4::splat(t);
+    ((CUBE * t + SQUARE) * t + LINEAR) * t + CONSTANT
 }

@@ -179,5 +179,9 @@ fn read(path: &Path) -> Result<(Meta, Sums), PartialFault> {
 }
 
 fn expect_size((rows, columns): (usize, usize), size: usize) -> Result<(), String> {
-    if (rows, columns) == (size, size) { Ok(()) } else { Err(format!("an array of {rows} x {columns}, not {size} x {size}")) }
+    if (rows, columns) == (size, size) {
+        Ok(())
+    } else {
+        Err(format!("an array of {rows} x {columns}, not {size} x {size}"))
+    }
 }

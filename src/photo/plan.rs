@@ -68,10 +68,22 @@ pub fn plan(set: &PhotoSet, options: &PhotosOptions) -> Vec<Step> {
             options.normalization.linear,
             if options.normalization.linear { "--linear".into() } else { "values are as the file encodes them".into() },
         ),
-        step("normalize", true, format!("{0} x {0} px of {1} nail boxes", options.normalization.size, options.normalization.margin)),
+        step(
+            "normalize",
+            true,
+            format!("{0} x {0} px of {1} nail boxes", options.normalization.size, options.normalization.margin),
+        ),
         step("mean", true, format!("{} pose(s)", subjects.len())),
-        step("standard deviation", most > 1, if most > 1 { format!("up to {most} subjects a pose") } else { "it needs two subjects in a pose".into() }),
-        step("LabelMe files of what is detected", options.keep_detected, if options.keep_detected { "--write-outlines".into() } else { "not asked for".into() }),
+        step(
+            "standard deviation",
+            most > 1,
+            if most > 1 { format!("up to {most} subjects a pose") } else { "it needs two subjects in a pose".into() },
+        ),
+        step(
+            "LabelMe files of what is detected",
+            options.keep_detected,
+            if options.keep_detected { "--write-outlines".into() } else { "not asked for".into() },
+        ),
     ]
 }
 

@@ -46,19 +46,27 @@ impl Plane {
         let index = taking.channel as usize;
         let size = [image.width() as usize, image.height() as usize];
         match image {
-            DynamicImage::ImageLuma8(p) => plane.fill(p, size, Samples { channels: 1, index: 0, alpha: None }, taking.linear),
+            DynamicImage::ImageLuma8(p) => {
+                plane.fill(p, size, Samples { channels: 1, index: 0, alpha: None }, taking.linear)
+            }
             DynamicImage::ImageLumaA8(p) => {
                 plane.fill(p, size, Samples { channels: 2, index: 0, alpha: Some(1) }, taking.linear);
             }
-            DynamicImage::ImageRgb8(p) => plane.fill(p, size, Samples { channels: 3, index, alpha: None }, taking.linear),
+            DynamicImage::ImageRgb8(p) => {
+                plane.fill(p, size, Samples { channels: 3, index, alpha: None }, taking.linear)
+            }
             DynamicImage::ImageRgba8(p) => {
                 plane.fill(p, size, Samples { channels: 4, index, alpha: Some(3) }, taking.linear);
             }
-            DynamicImage::ImageLuma16(p) => plane.fill(p, size, Samples { channels: 1, index: 0, alpha: None }, taking.linear),
+            DynamicImage::ImageLuma16(p) => {
+                plane.fill(p, size, Samples { channels: 1, index: 0, alpha: None }, taking.linear)
+            }
             DynamicImage::ImageLumaA16(p) => {
                 plane.fill(p, size, Samples { channels: 2, index: 0, alpha: Some(1) }, taking.linear);
             }
-            DynamicImage::ImageRgb16(p) => plane.fill(p, size, Samples { channels: 3, index, alpha: None }, taking.linear),
+            DynamicImage::ImageRgb16(p) => {
+                plane.fill(p, size, Samples { channels: 3, index, alpha: None }, taking.linear)
+            }
             DynamicImage::ImageRgba16(p) => {
                 plane.fill(p, size, Samples { channels: 4, index, alpha: Some(3) }, taking.linear);
             }
@@ -70,19 +78,33 @@ impl Plane {
 
     fn fill<S: Sample>(&mut self, samples: &[S], [columns, rows]: [usize; 2], layout: Samples, linear: bool) {
         let Samples { channels, index, alpha } = layout;
-        let value = |at: usize| {
-            if alpha.is_some_and(|a| samples[at + a].is_zero()) {
+        let value = |pixel: &[S]| {
+            if alpha.is_some_and(|a| pixel[a].is_zero()) {
                 return f32::NAN;
             }
-            let fraction = samples[at + index].fraction();
+            let fraction = pixel[index].fraction();
             if linear { linear_from_srgb(fraction) } else { fraction }
         };
         let inside = |at: i64, count: usize| at.clamp(0, count as i64 - 1) as usize;
+        // Columns before the photograph's first, of it, and after its last.
+        let x1 = self.x0 + self.width as i64;
+        let before = (-self.x0).clamp(0, self.width as i64) as usize;
+        let after = (x1 - columns as i64).clamp(0, self.width as i64) as usize;
+        let within = self.width.saturating_sub(before + after);
         for y in 0..self.height {
-            let row = inside(self.y0 + y as i64, rows) * columns;
-            for x in 0..self.width {
-                self.values.push(value((row + inside(self.x0 + x as i64, columns)) * channels));
+            let row = &samples[inside(self.y0 + y as i64, rows) * columns * channels..][..columns * channels];
+            let (first, last) = (value(&row[..channels]), value(&row[row.len() - channels..]));
+            self.values.extend(std::iter::repeat_n(first, before));
+            if within > 0 {
+                let start = inside(self.x0, columns) * channels;
+                let seen = &row[start..start + within * channels];
+                match channels {
+                    1 => self.values.extend(seen.chunks_exact(1).map(value)),
+                    3 => self.values.extend(seen.chunks_exact(3).map(value)),
+                    _ => self.values.extend(seen.chunks_exact(channels).map(value)),
+                }
             }
+            self.values.extend(std::iter::repeat_n(last, after));
         }
     }
 
@@ -188,7 +210,8 @@ mod tests {
 
     #[test]
     fn blocks_are_means_and_a_missing_pixel_makes_its_block_missing() {
-        let plane = Plane { x0: 0, y0: 0, width: 5, height: 2, values: vec![0., 2., 1., f32::NAN, 9., 4., 6., 1., 1., 9.] };
+        let plane =
+            Plane { x0: 0, y0: 0, width: 5, height: 2, values: vec![0., 2., 1., f32::NAN, 9., 4., 6., 1., 1., 9.] };
         let reduced = plane.reduce(2);
         assert_eq!(reduced[0], 3.0);
         assert!(reduced[1].is_nan() && reduced.len() == 2);

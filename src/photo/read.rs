@@ -138,9 +138,10 @@ fn jpeg_is_complete(bytes: &[u8]) -> bool {
     let mut at = 2;
     loop {
         // Entropy-coded data, and fill bytes, run up to the next marker: 0xFF with neither 0x00, 0xFF nor a restart.
-        let Some(skip) = bytes.get(at..).and_then(|rest| {
-            rest.windows(2).position(|w| w[0] == 0xFF && !matches!(w[1], 0x00 | 0xFF | 0xD0..=0xD7))
-        }) else {
+        let Some(skip) = bytes
+            .get(at..)
+            .and_then(|rest| rest.windows(2).position(|w| w[0] == 0xFF && !matches!(w[1], 0x00 | 0xFF | 0xD0..=0xD7)))
+        else {
             return false;
         };
         at += skip;

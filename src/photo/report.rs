@@ -54,7 +54,11 @@ pub struct PoseCount {
 }
 
 fn pose_counts(partials: &Partials) -> Vec<PoseCount> {
-    partials.poses.iter().map(|(pose, sums)| PoseCount { pose: pose.clone(), subjects: sums.subjects().len() }).collect()
+    partials
+        .poses
+        .iter()
+        .map(|(pose, sums)| PoseCount { pose: pose.clone(), subjects: sums.subjects().len() })
+        .collect()
 }
 
 impl RunReport {
@@ -91,7 +95,13 @@ impl RunReport {
     }
 
     /// Of `lunula photos merge`.
-    pub fn of_merge(parts: &[PathBuf], partials: &Partials, warnings: Vec<String>, stages: Vec<Stage>, wall: Duration) -> Self {
+    pub fn of_merge(
+        parts: &[PathBuf],
+        partials: &Partials,
+        warnings: Vec<String>,
+        stages: Vec<Stage>,
+        wall: Duration,
+    ) -> Self {
         Self {
             job: "photos merge",
             version: env!("CARGO_PKG_VERSION"),
@@ -156,7 +166,10 @@ impl RunReport {
             })
             .collect();
         page.table(&["stage", "s, summed over threads", "share", "runs"], &rows, |_| false);
-        page.paragraph(&format!("{:.2} s from start to end on {} thread(s), this page not counted.", self.wall_s, self.threads));
+        page.paragraph(&format!(
+            "{:.2} s from start to end on {} thread(s), this page not counted.",
+            self.wall_s, self.threads
+        ));
         page.heading("Options");
         page.paragraph(&self.options.to_string());
         staging.write("report.html", page.finish().as_bytes())
@@ -195,7 +208,8 @@ impl NailTable {
 
     /// From the tables of merged parts, in the order that one run would have given: by pose, subject, file, nail.
     pub fn of_parts(mut rows: Vec<Vec<String>>) -> Self {
-        let key = |row: &Vec<String>| (row[3].clone(), row[2].clone(), row[0].clone(), row[1].parse::<u32>().unwrap_or(0));
+        let key =
+            |row: &Vec<String>| (row[3].clone(), row[2].clone(), row[0].clone(), row[1].parse::<u32>().unwrap_or(0));
         rows.sort_by_key(key);
         Self { rows, sheets: Vec::new() }
     }

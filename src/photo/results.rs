@@ -2,8 +2,9 @@
 
 use std::io::{BufWriter, Cursor, Write};
 
+use image::buffer::ConvertBuffer;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::{DynamicImage, GrayAlphaImage, ImageBuffer, ImageEncoder, Luma, LumaA, imageops};
+use image::{DynamicImage, GrayAlphaImage, GrayImage, ImageBuffer, ImageEncoder, Luma, LumaA, imageops};
 use ndarray::Array2;
 use ndarray_npy::WriteNpyExt;
 use rayon::prelude::*;
@@ -66,19 +67,19 @@ pub(super) fn write_normalized(
     name: &str,
 ) -> Result<(), WriteError> {
     let size = picture.size as u32;
-    let whole = picture.values.iter().all(|v| !v.is_nan());
-    let (full, alpha) = match depth {
-        Depth::Eight => (255.0, 255_u16),
-        Depth::Sixteen => (65535.0, 65535),
-    };
-    let level = |v: f32| if v.is_nan() { 0 } else { (v.clamp(0.0, 1.0) * full).round() as u16 };
-    let levels = picture.values.iter().map(|&v| level(v));
-    let with_alpha = picture.values.iter().flat_map(|&v| [level(v), if v.is_nan() { 0 } else { alpha }]);
-    let drawn = match (depth, whole) {
-        (Depth::Eight, true) => picture_of::<Luma<u8>>(size, levels.map(|v| v as u8).collect()),
-        (Depth::Eight, false) => picture_of::<LumaA<u8>>(size, with_alpha.map(|v| v as u8).collect()),
-        (Depth::Sixteen, true) => picture_of::<Luma<u16>>(size, levels.collect()),
-        (Depth::Sixteen, false) => picture_of::<LumaA<u16>>(size, with_alpha.collect()),
+    let levels = picture.levels.iter().copied();
+    let eight = |level: u16| ((u32::from(level) * 255 + 32767) / 65535) as u8;
+    let drawn = match (depth, &picture.seen) {
+        (Depth::Eight, None) => picture_of::<Luma<u8>>(size, levels.map(eight).collect()),
+        (Depth::Sixteen, None) => picture_of::<Luma<u16>>(size, picture.levels.clone()),
+        (Depth::Eight, Some(seen)) => {
+            let pixels = levels.zip(seen).flat_map(|(level, &seen)| [eight(level), if seen { 255 } else { 0 }]);
+            picture_of::<LumaA<u8>>(size, pixels.collect())
+        }
+        (Depth::Sixteen, Some(seen)) => {
+            let pixels = levels.zip(seen).flat_map(|(level, &seen)| [level, if seen { 65535 } else { 0 }]);
+            picture_of::<LumaA<u16>>(size, pixels.collect())
+        }
     };
     write_png(&drawn, staging, name).map(|_| ())
 }
@@ -104,10 +105,18 @@ fn write_png(picture: &DynamicImage, staging: &Staging, name: &str) -> Result<Ve
 
 /// A small version for a sheet of all nails.
 pub(super) fn thumbnail(picture: &Normalized, longest: u32) -> GrayAlphaImage {
-    let rows = Array2::from_shape_vec((picture.size, picture.size), picture.values.clone()).expect("size x size values");
-    let drawn = grey_map(&rows, Stretch::Linear { low: 0.0, high: 1.0 });
-    let side = longest.min(picture.size as u32);
-    imageops::thumbnail(&drawn, side, side)
+    let size = picture.size as u32;
+    let side = longest.min(size);
+    let levels = picture.levels.iter().map(|l| (l >> 8) as u8).collect();
+    let drawn = GrayImage::from_raw(size, size, levels).expect("one level a pixel");
+    let mut small = imageops::thumbnail(&drawn, side, side).convert();
+    if let Some(seen) = &picture.seen {
+        for (x, y, pixel) in GrayAlphaImage::enumerate_pixels_mut(&mut small) {
+            let [column, row] = [x, y].map(|at| (at * size / side) as usize);
+            pixel.0[1] = if seen[row * picture.size + column] { 255 } else { 0 };
+        }
+    }
+    small
 }
 
 /// Maps, partial sums and figures of every pose, and the sheets over all poses.
@@ -131,7 +140,8 @@ pub(super) fn write_maps(partials: &Partials, staging: &Staging, stages: &Stages
     stages.time("sheets", || {
         (0..KINDS.len()).into_par_iter().try_for_each(|kind| {
             let small = drawn.len() > LARGE_TILES;
-            let tiles = drawn.iter().map(|tiles| if small { tiles[kind].small() } else { tiles[kind].clone() }).collect();
+            let tiles =
+                drawn.iter().map(|tiles| if small { tiles[kind].small() } else { tiles[kind].clone() }).collect();
             let Kind { name, title, stretch, label, .. } = &KINDS[kind];
             let scale = Some(Scale { stretch: *stretch, label: (*label).to_owned() });
             write_sheet(&Sheet { title: (*title).to_owned(), tiles, columns: 4, scale }, staging, name)

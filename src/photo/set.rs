@@ -90,7 +90,11 @@ impl PhotoSet {
     pub fn open(folder: &Path, apart: &[&Path]) -> Result<Self, SetError> {
         let manifest = folder.join("photos.csv");
         let mut set = Self { folder: folder.to_owned(), photos: Vec::new(), faults: Vec::new() };
-        if manifest.is_file() { set.read_manifest(&manifest)? } else { set.list_folder(apart)? }
+        if manifest.is_file() {
+            set.read_manifest(&manifest)?
+        } else {
+            set.list_folder(apart)?
+        }
         set.photos.sort();
         set.leave_out_doubles();
         set.leave_out_clashing_names();
@@ -231,7 +235,10 @@ impl PhotoSet {
             let stem = clashes(&photo).unwrap_or_default();
             self.fault(
                 photo.file,
-                format!("subject `{}` could be taken for a nail of subject `{stem}`; rename one of them", photo.subject),
+                format!(
+                    "subject `{}` could be taken for a nail of subject `{stem}`; rename one of them",
+                    photo.subject
+                ),
             );
         }
     }
@@ -244,7 +251,9 @@ fn row_fault(folder: &Path, file: &str, subject: &str, pose: &str) -> Option<Str
     }
     for (name, value) in [("subject", subject), ("pose", pose)] {
         let mut parts = Path::new(value).components();
-        if !matches!((parts.next(), parts.next()), (Some(Component::Normal(_)), None)) || value.contains(['/', '\\', '\0']) {
+        if !matches!((parts.next(), parts.next()), (Some(Component::Normal(_)), None))
+            || value.contains(['/', '\\', '\0'])
+        {
             return Some(format!("`{value}` names files of the results, so a {name} cannot hold a path"));
         }
     }

@@ -98,7 +98,12 @@ impl Drawn {
     ///
     /// # Errors
     /// [`AnnotationFault::OtherSize`] or [`AnnotationFault::Turned`].
-    pub(crate) fn is_stored(self, size: Option<[u32; 2]>, photo: &Photograph, file: &str) -> Result<bool, AnnotationFault> {
+    pub(crate) fn is_stored(
+        self,
+        size: Option<[u32; 2]>,
+        photo: &Photograph,
+        file: &str,
+    ) -> Result<bool, AnnotationFault> {
         let upright = [photo.image.width(), photo.image.height()];
         let stored = photo.stored_size();
         let turned = photo.orientation != image::metadata::Orientation::NoTransforms;
@@ -137,7 +142,9 @@ pub fn read(path: &Path, photo: &Photograph, drawn: Drawn) -> Result<Vec<Annotat
         .shapes
         .iter()
         .filter(|s| s.label.trim().eq_ignore_ascii_case(AXIS))
-        .filter_map(|s| <[[f64; 2]; 2]>::try_from(s.points.iter().map(upright).collect::<Vec<_>>()).ok().map(|p| (s, p)))
+        .filter_map(|s| {
+            <[[f64; 2]; 2]>::try_from(s.points.iter().map(upright).collect::<Vec<_>>()).ok().map(|p| (s, p))
+        })
         .collect();
     let nails: Vec<Annotated> = (1..)
         .zip(&file.shapes)

@@ -7,5 +7,10 @@ pub struct MaskFault;
 #[derive(Debug, Clone, thiserror::Error)]
 #[error("shim")]
 pub struct DroppedRegion;
-pub struct MaskOutlines { pub nails: Vec<Outline>, pub dropped: Vec<DroppedRegion> }
-pub fn outlines_from_mask(_: &image::DynamicImage) -> Result<MaskOutlines, MaskFault> { Err(MaskFault) }
+pub struct MaskOutlines {
+    pub nails: Vec<Outline>,
+    pub dropped: Vec<DroppedRegion>,
+}
+pub fn outlines_from_mask(_: &image::DynamicImage) -> Result<MaskOutlines, MaskFault> {
+    Err(MaskFault)
+}

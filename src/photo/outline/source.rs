@@ -180,13 +180,13 @@ impl OutlineOptions {
     }
 
     fn mask_nails(&self, file: &Path, picture: &Photograph) -> Result<Vec<Nail>, SourceFault> {
-        let mut mask = Photograph::read(file).map_err(|why| SourceFault::MaskFile { file: file.to_owned(), why })?.image;
+        let mut mask =
+            Photograph::read(file).map_err(|why| SourceFault::MaskFile { file: file.to_owned(), why })?.image;
         let size = [mask.width(), mask.height()];
         if self.drawn.is_stored(Some(size), picture, &file.display().to_string())? {
             mask.apply_orientation(picture.orientation);
         }
-        let regions =
-            outlines_from_mask(&mask).map_err(|why| SourceFault::Mask { file: file.to_owned(), why })?;
+        let regions = outlines_from_mask(&mask).map_err(|why| SourceFault::Mask { file: file.to_owned(), why })?;
         let mut nails: Vec<Nail> = regions
             .nails
             .into_iter()
@@ -231,7 +231,8 @@ impl OutlineOptions {
 
     /// Looks for the axes that nobody drew.
     fn complete_axes(&self, picture: &Photograph, nails: &mut [Nail]) {
-        let open: Vec<usize> = (0..nails.len()).filter(|&k| nails[k].outline.is_some() && nails[k].axis.is_none()).collect();
+        let open: Vec<usize> =
+            (0..nails.len()).filter(|&k| nails[k].outline.is_some() && nails[k].axis.is_none()).collect();
         let outlines: Vec<Outline> = open.iter().filter_map(|&k| nails[k].outline.clone()).collect();
         if let Some(side) = self.distal {
             for (&k, outline) in open.iter().zip(&outlines) {
