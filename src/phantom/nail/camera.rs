@@ -53,10 +53,12 @@ impl Background {
 }
 
 impl Camera {
-    /// A close-up of a nail of length over width `aspect`: the nail's length is `filling` of the picture's height, the axis within `turn_deg` of
+    /// A close-up of a nail of length over width `aspect`: the nail's length is `filling` of the picture's height (less
+    /// where its width would not fit), the axis within `turn_deg` of
     /// upright, the middle within what the picture leaves free.
     pub fn close_up(rng: &mut ChaCha8Rng, size: [u32; 2], aspect: f64, filling: f64, turn_deg: f64) -> Self {
         let [width, height] = size.map(f64::from);
+        let filling = filling.min(0.75 * aspect * width / height);
         let nail_width_px = filling * height / aspect;
         let free = |side: f64, used: f64| (0.5 * (side - 1.25 * used)).max(0.0).min(0.08 * side);
         let (fx, fy) = (free(width, nail_width_px), free(height, filling * height));

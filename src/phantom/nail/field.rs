@@ -22,8 +22,10 @@ pub struct Field<'a> {
     per_px: f64,
     /// The optics' blur in half nail widths.
     blur: f64,
-    /// Length of the distal part with its free edge over that without.
-    stretch: f64,
+    /// The free edge, as `NailShape::free_edge` puts it.
+    shrink: f64,
+    /// Softness of the edges of the bed, the plate and the finger in half nail widths.
+    soft: [f64; 3],
     skin: [f64; 3],
     bed: [f64; 3],
     /// What the camera resolves of texture with the spacings of [`SPACING`].
@@ -53,6 +55,7 @@ impl<'a> Field<'a> {
         let camera = &scene.camera;
         let subject = &scene.subject;
         let half_px = 0.5 * camera.nail_width_px;
+        let blur = camera.blur_px / half_px;
         let redness = [1.0 + 0.3 * subject.redness, 1.0 - subject.redness, 1.0 - subject.redness];
         let (skin, bed) = (subject.tone.skin(), subject.tone.bed());
         Self {
@@ -60,8 +63,9 @@ impl<'a> Field<'a> {
             right: camera.axis.right(),
             distal: camera.axis.distal(),
             per_px: 1.0 / half_px,
-            blur: camera.blur_px / half_px,
-            stretch: 1.0 + 2.0 * subject.free_edge / (1.0 - subject.nail.widest_v),
+            blur,
+            shrink: subject.nail.free_edge(subject.free_edge),
+            soft: [0.008, 0.010, 0.012].map(|anatomy| blur.hypot(anatomy)),
             skin: std::array::from_fn(|c| skin[c] * redness[c]),
             bed: bed.map(|c| c * subject.bed),
             seen: SPACING.map(|s| resolved(s * half_px)),
@@ -81,19 +85,18 @@ impl<'a> Field<'a> {
         let [across, along] = self.finger_from_picture(x_px, y_px);
         let aspect = self.scene.subject.nail.aspect;
         let finger = self.scene.subject.finger.place(across, along, aspect);
-        let soft = self.blur.hypot(0.012);
-        let on_finger = covered(finger.edge, soft);
+        let on_finger = covered(finger.edge, self.soft[2]);
         let mut colour = if on_finger < 1.0 { self.background(across, along, finger.edge) } else { [0.0; 3] };
         let mut mirrored = 0.0;
         if on_finger > 0.0 {
             let (u, v) = (across, along / aspect);
-            let place = Place { across, along, u, v, nail: self.scene.subject.nail.place(u, v, self.stretch), finger };
-            let on_bed = covered(place.nail.outline, self.blur.hypot(0.008));
+            let place = Place { across, along, u, v, nail: self.scene.subject.nail.place(u, v, self.shrink), finger };
+            let on_bed = covered(place.nail.outline, self.soft[0]);
             let mut front = if on_bed < 1.0 { self.skin_and_free_edge(&place) } else { [0.0; 3] };
             if on_bed > 0.0 {
                 front = mix(front, self.plate(&place), on_bed);
             }
-            let on_plate = covered(place.nail.plate, self.blur.hypot(0.01));
+            let on_plate = covered(place.nail.plate, self.soft[1]);
             if on_plate > 0.0 {
                 mirrored = on_plate * self.scene.light.mirrored(u, v);
             }
@@ -156,7 +159,8 @@ impl<'a> Field<'a> {
         let cuticle = subject.cuticle * proximal * line(nail.outline - 0.045, 0.022, self.blur);
         colour = colour.map(|c| c * shade + cuticle);
         // The crease where the skin meets the plate; weaker at the fingertip.
-        let crease = subject.crease * (1.0 - 0.75 * distal) * (0.8 + 0.2 * noise2(seed ^ 4, across * 6.0, along * 6.0));
+        let uneven = if nail.outline < 0.3 { noise2(seed ^ 4, across * 2.2, along * 2.2) } else { 0.0 };
+        let crease = subject.crease * (1.0 - 0.75 * distal) * (0.65 + 0.55 * uneven);
         let dark = crease * line(nail.outline - 0.4 * subject.crease_width, subject.crease_width, self.blur);
         let broad = 0.35 * crease * bell((nail.outline / 0.10).powi(2));
         let shadow = (0.10 + 0.5 * subject.crease) * distal * line(nail.plate - 0.03, 0.035, self.blur);
@@ -164,7 +168,7 @@ impl<'a> Field<'a> {
         colour = [colour[0] * (1.0 - 0.8 * dark), colour[1] * (1.0 - dark), colour[2] * (1.0 - 1.05 * dark)];
 
         if subject.free_edge > 0.0 {
-            let on = covered(nail.plate, self.blur.hypot(0.010));
+            let on = covered(nail.plate, self.soft[1]);
             if on > 0.0 {
                 let white = mix(colour, [0.93, 0.91, 0.84].map(|c| c * shade), 0.35 + 0.6 * subject.free_edge_white);
                 colour = mix(colour, white, on);
@@ -195,12 +199,12 @@ impl<'a> Field<'a> {
 
         let zone = subject.habit.amplitude / CHAMBER * zones(self.scene.pose, &subject.habit, u, v);
         // White and red differ mainly in green (4.2.2).
-        let mut colour = [self.bed[0] + 0.06 * zone, self.bed[1] + zone, self.bed[2] + 0.18 * zone];
+        let mut colour = [self.bed[0] + 0.10 * zone, self.bed[1] + zone, self.bed[2] + 0.35 * zone];
 
         // Lunula, yellow line and onychodermal band.
         if subject.lunula > 0.0 {
-            let reach = (u / 0.62).hypot((v + 1.0) / (2.0 * subject.lunula_height));
-            let pale = subject.lunula * (1.0 - step(0.85, 1.1, reach));
+            let reach = (u / 0.66).hypot((v + 1.0) / (2.0 * subject.lunula_height));
+            let pale = subject.lunula * (1.0 - step(0.78, 1.15, reach));
             colour = [colour[0] + 0.5 * pale, colour[1] + pale, colour[2] + pale];
         }
         let band = distal * line(nail.outline + 0.045, 0.035, self.blur);

@@ -39,7 +39,8 @@ impl FingerShape {
         let size = x.abs().max(1e-9);
         let power_x = size.powf(self.blunt);
         let level = power_x + y * y;
-        let gradient = (self.blunt * power_x / size / half).hypot(2.0 * y / (end - begin));
+        let slope = [self.blunt * power_x / size / half, 2.0 * y / (end - begin)];
+        let gradient = (slope[0] * slope[0] + slope[1] * slope[1]).sqrt();
         let edge = 2.0 * (level - level.sqrt()) / gradient.max(1e-9);
         FingerPlace { edge, slope: level, x }
     }
