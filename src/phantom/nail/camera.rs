@@ -48,7 +48,7 @@ impl Background {
         }
         let grey: f64 = rng.random_range(0.12..0.85);
         let colour = std::array::from_fn(|_| (grey + rng.random_range(-0.12..0.12)).clamp(0.03, 0.95));
-        Self { colour, grain: rng.random_range(0.01..0.12), shadow: rng.random_range(0.1..0.5) }
+        Self { colour, grain: rng.random_range(0.01..0.12), shadow: rng.random_range(0.05..0.35) }
     }
 }
 

@@ -15,6 +15,12 @@ pub struct FingerShape {
     pub offset: f64,
 }
 
+/// Beyond this many half widths, only that it is far from the finger is told: the distance there is over [`FAR_EDGE`] for every finger.
+const FAR: f64 = 1.9;
+
+/// The distance told there, in half nail widths; beyond every shadow.
+const FAR_EDGE: f64 = 0.8;
+
 /// Where a place lies with respect to the finger.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FingerPlace {
@@ -36,6 +42,9 @@ impl FingerShape {
         let half = self.half_width * (1.0 + self.widening * below * below / (below + 0.5));
         let x = (across - self.offset) / half;
         let y = ((along - begin) / (end - begin)).max(0.0);
+        if x.abs() > FAR || y > FAR {
+            return FingerPlace { edge: FAR_EDGE, slope: FAR, x };
+        }
         let size = x.abs().max(1e-9);
         let power_x = size.powf(self.blunt);
         let level = power_x + y * y;

@@ -6,7 +6,7 @@ use rand_chacha::ChaCha8Rng;
 use super::smooth::bell;
 
 /// Encoded values in the thesis' chamber over those in full light: it puts the nail bed's green at 30 to 50 % of full scale.
-pub(super) const CHAMBER: f64 = 0.585;
+pub(super) const CHAMBER: f64 = 0.60;
 
 /// A streak of light mirrored by the plate, on the nail's own coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -96,7 +96,7 @@ impl Subject {
             texture: within(0.02, 0.07),
             wrinkle: within(0.03, 0.16),
             habit: Habit {
-                amplitude: within(0.050, 0.075),
+                amplitude: within(0.055, 0.080),
                 shift: [within(-0.05, 0.05), within(-0.05, 0.05)],
                 size: within(0.92, 1.08),
             },
