@@ -6,3 +6,4 @@ pub mod labelme;
 pub mod phantom;
 pub mod photo;
 pub mod stages;
+pub mod tradeoff;

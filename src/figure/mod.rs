@@ -9,5 +9,5 @@ mod text;
 
 pub use grey::{Stretch, grey_map};
 pub use html::{Page, escape};
-pub use plot::{Axis, Plot, Point, Series};
+pub use plot::{Axis, Plot, Point, Series, draw_log_log};
 pub use sheet::{Scale, Sheet, Tile};

@@ -49,7 +49,8 @@ pub struct Point {
     pub label: String,
 }
 
-const SIZE: (u32, u32) = (1000, 640);
+/// Width and height of a panel, pixels.
+const PANEL: (u32, u32) = (820, 620);
 /// Colours that stay apart for colour-blind readers (Okabe and Ito 2008).
 const COLOURS: [RGBColor; 6] = [
     RGBColor(0, 114, 178),
@@ -60,22 +61,32 @@ const COLOURS: [RGBColor; 6] = [
     RGBColor(86, 180, 233),
 ];
 
-impl Plot {
-    /// Draws on logarithmic axes to `png` and `svg`.
-    ///
-    /// # Errors
-    /// No point with two positive finite coordinates, or a file that can't be written.
-    pub fn draw_log_log(&self, png: &Path, svg: &Path) -> anyhow::Result<()> {
-        register_typeface()?;
-        let (x, y) = (self.range(|p| p.x)?, self.range(|p| p.y)?);
-        let ranges = (x.0..x.1, y.0..y.1);
-        let mut pixels = vec![0; (SIZE.0 * SIZE.1 * 3) as usize];
-        self.draw(BitMapBackend::with_buffer(&mut pixels, SIZE).into_drawing_area(), &ranges)?;
-        let picture = image::RgbImage::from_raw(SIZE.0, SIZE.1, pixels).context("a plot's pixels")?;
-        picture.save(png).with_context(|| png.display().to_string())?;
-        self.draw(SVGBackend::new(svg, SIZE).into_drawing_area(), &ranges).context("the plot as SVG")
-    }
+/// Draws `panels` side by side, on logarithmic axes, to `png` and `svg`.
+///
+/// # Errors
+/// A panel without a point that has two positive finite coordinates, or a file that can't be written.
+pub fn draw_log_log(panels: &[Plot], png: &Path, svg: &Path) -> anyhow::Result<()> {
+    register_typeface()?;
+    let size = (PANEL.0 * panels.len() as u32, PANEL.1);
+    let mut pixels = vec![0; (size.0 * size.1 * 3) as usize];
+    draw_panels(panels, BitMapBackend::with_buffer(&mut pixels, size).into_drawing_area())?;
+    let picture = image::RgbImage::from_raw(size.0, size.1, pixels).context("a plot's pixels")?;
+    picture.save(png).with_context(|| png.display().to_string())?;
+    draw_panels(panels, SVGBackend::new(svg, size).into_drawing_area()).with_context(|| svg.display().to_string())
+}
 
+fn draw_panels<B: DrawingBackend>(panels: &[Plot], area: DrawingArea<B, Shift>) -> anyhow::Result<()>
+where
+    B::ErrorType: 'static,
+{
+    area.fill(&WHITE).map_err(|e| anyhow!("{e}"))?;
+    for (panel, area) in panels.iter().zip(area.split_evenly((1, panels.len()))) {
+        panel.draw(&area)?;
+    }
+    area.present().map_err(|e| anyhow!("{e}"))
+}
+
+impl Plot {
     fn drawable(&self) -> impl Iterator<Item = &Point> {
         let has_place = |v: f64| v.is_finite() && v > 0.0;
         self.series.iter().flat_map(|s| &s.points).filter(move |p| has_place(p.x) && has_place(p.y))
@@ -89,21 +100,17 @@ impl Plot {
         Ok((low / 1.6, high * 2.2))
     }
 
-    fn draw<B: DrawingBackend>(
-        &self,
-        area: DrawingArea<B, Shift>,
-        (x, y): &(std::ops::Range<f64>, std::ops::Range<f64>),
-    ) -> anyhow::Result<()>
+    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> anyhow::Result<()>
     where
         B::ErrorType: 'static,
     {
-        area.fill(&WHITE).map_err(|e| anyhow!("{e}"))?;
-        let mut chart = ChartBuilder::on(&area)
+        let (x, y) = (self.range(|p| p.x)?, self.range(|p| p.y)?);
+        let mut chart = ChartBuilder::on(area)
             .caption(&self.title, ("sans-serif", 22))
             .margin(16)
             .x_label_area_size(46)
             .y_label_area_size(74)
-            .build_cartesian_2d(x.clone().log_scale(), y.clone().log_scale())
+            .build_cartesian_2d((x.0..x.1).log_scale(), (y.0..y.1).log_scale())
             .map_err(|e| anyhow!("{e}"))?;
         chart
             .configure_mesh()
@@ -127,7 +134,7 @@ impl Plot {
             .label_font(("sans-serif", 15))
             .draw()
             .map_err(|e| anyhow!("{e}"))?;
-        area.present().map_err(|e| anyhow!("{e}"))
+        Ok(())
     }
 
     fn draw_series<B: DrawingBackend, X, Y>(

@@ -1,0 +1,78 @@
+//! Error against run time: a job run over its settings on scenes whose truth is known.
+//!
+//! It calls the same entry as the command line, so that a figure on a curve is the figure a user gets.
+
+pub mod photos;
+
+use std::path::Path;
+
+use anyhow::Context;
+
+use crate::figure::{Axis, Plot, Point, Series, draw_log_log};
+
+/// One measured setting: a row of `tradeoff.csv`.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Row {
+    /// Which job.
+    pub job: &'static str,
+    /// Which setting of it.
+    pub setting: String,
+    /// How wrong.
+    pub error: f64,
+    /// What the error is, and its unit.
+    pub error_unit: &'static str,
+    /// Seconds per input, the median over repeats.
+    pub run_s: f64,
+    /// What was done per input, a count that no clock disturbs.
+    pub work: u64,
+}
+
+/// Writes `tradeoff.csv`, `tradeoff.png` and `tradeoff.svg`: a panel for each kind of error.
+///
+/// # Errors
+/// Where a file can't be written, or there is nothing to draw.
+pub fn write(rows: &[Row], title: &str, out: &Path) -> anyhow::Result<()> {
+    std::fs::create_dir_all(out).with_context(|| out.display().to_string())?;
+    let table = out.join("tradeoff.csv");
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    for row in rows {
+        writer.serialize(row)?;
+    }
+    crate::files::write_whole(&table, &writer.into_inner().context("tradeoff.csv")?)?;
+    draw_log_log(&panels(rows, title), &out.join("tradeoff.png"), &out.join("tradeoff.svg"))
+}
+
+fn panels(rows: &[Row], title: &str) -> Vec<Plot> {
+    let mut units: Vec<&str> = Vec::new();
+    for row in rows {
+        if !units.contains(&row.error_unit) {
+            units.push(row.error_unit);
+        }
+    }
+    units
+        .into_iter()
+        .map(|unit| Plot {
+            title: title.to_owned(),
+            x: Axis { label: "seconds an input".into() },
+            y: Axis { label: unit.to_owned() },
+            series: vec![Series {
+                name: "lunula".into(),
+                points: rows
+                    .iter()
+                    .filter(|row| row.error_unit == unit)
+                    .map(|row| Point { x: row.run_s, y: row.error, label: row.setting.clone() })
+                    .collect(),
+            }],
+        })
+        .collect()
+}
+
+/// The middle one of several, NaN of none.
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    match values.len() {
+        0 => f64::NAN,
+        n if n % 2 == 1 => values[n / 2],
+        n => (values[n / 2 - 1] + values[n / 2]) / 2.0,
+    }
+}
