@@ -29,7 +29,7 @@ pub struct Field<'a> {
     skin: [f64; 3],
     bed: [f64; 3],
     /// What the camera resolves of texture with the spacings of [`SPACING`].
-    seen: [f64; 4],
+    seen: [f64; 5],
     exposure: [f64; 3],
 }
 
@@ -52,9 +52,11 @@ struct Lines {
     fold: Line,
 }
 
-/// Feature sizes of the textures in half nail widths: blotches, skin relief, fine lines, striations.
-const SPACING: [f64; 4] = [0.45, 0.10, 0.035, 0.055];
-const PER: [f64; 4] = [1.0 / SPACING[0], 1.0 / SPACING[1], 1.0 / SPACING[2], 1.0 / SPACING[3]];
+/// Feature sizes of the textures in half nail widths: blotches, skin relief, fine lines, striations, pores.
+const SPACING: [f64; 5] = [0.45, 0.10, 0.035, 0.055, 0.012];
+
+/// Features per half nail width.
+const PER: [f64; 5] = [1.0 / SPACING[0], 1.0 / SPACING[1], 1.0 / SPACING[2], 1.0 / SPACING[3], 1.0 / SPACING[4]];
 
 /// A place, in all the coordinates that matter.
 struct Place {
@@ -148,8 +150,11 @@ impl<'a> Field<'a> {
     fn background(&self, across: f64, along: f64, edge: f64) -> [f64; 3] {
         let ground = &self.scene.camera.background;
         let seed = self.scene.subject.seed ^ 0x51ed;
-        let grain = 0.6 * noise2(seed, across * 2.0, along * 2.0)
-            + 0.4 * self.seen[1] * noise2(seed ^ 1, across * PER[1], along * PER[1]);
+        // Lattices turned against each other and against the picture, so that no squares show.
+        let (x, y) = (across + 0.55 * along, along - 0.55 * across);
+        let fine = self.seen[1] * noise2(seed ^ 1, x * PER[1], y * PER[1])
+            + self.seen[2] * noise2(seed ^ 2, (y - 0.9 * x) * (0.45 * PER[2]), (x + 0.9 * y) * (0.45 * PER[2]));
+        let grain = 0.5 * noise2(seed, x * 1.3, y * 1.3) + 0.3 * fine;
         let shade = (1.0 + ground.grain * grain) * (1.0 - ground.shadow * bell((edge * (1.0 / 0.22)).powi(2)));
         ground.colour.map(|c| c * shade)
     }
@@ -175,6 +180,10 @@ impl<'a> Field<'a> {
         let fine = noise2(seed ^ 3, across * (0.25 * PER[2]), bent * PER[2]);
         let mut shade = self.roundness(&place.finger);
         shade *= 1.0 + subject.texture * (0.6 * self.seen[1] * relief + 0.5 * self.seen[2] * fine);
+        if self.seen[4] > 0.0 {
+            let pores = noise2(seed ^ 9, (across + 0.4 * along) * PER[4], (along - 0.4 * across) * PER[4]);
+            shade *= 1.0 + 0.5 * subject.texture * self.seen[4] * pores;
+        }
         shade *= self.wrinkles(across, bent);
         // The folds' ridge around the nail.
         shade *= 1.0 + subject.ridge * (1.0 - 0.6 * distal) * bell(((nail.outline - 0.17) * (1.0 / 0.09)).powi(2));

@@ -9,7 +9,7 @@ pub struct FingerShape {
     pub tip: f64,
     /// How much the finger widens towards the palm, relative per half nail width.
     pub widening: f64,
-    /// Exponent of the rounding across (2 elliptical, more: blunter).
+    /// How much blunter than an ellipse the tip is, 0 to 0.5: the share of the fourth power across beside the square.
     pub blunt: f64,
     /// How far to the right of the nail the finger's middle lies.
     pub offset: f64,
@@ -45,10 +45,9 @@ impl FingerShape {
         if x.abs() > FAR || y > FAR {
             return FingerPlace { edge: FAR_EDGE, slope: FAR, x };
         }
-        let size = x.abs().max(1e-9);
-        let power_x = size.powf(self.blunt);
-        let level = power_x + y * y;
-        let slope = [self.blunt * power_x / size / half, 2.0 * y / (end - begin)];
+        let x2 = x * x;
+        let level = x2 * (1.0 - self.blunt + self.blunt * x2) + y * y;
+        let slope = [2.0 * x * (1.0 - self.blunt + 2.0 * self.blunt * x2) / half, 2.0 * y / (end - begin)];
         let gradient = (slope[0] * slope[0] + slope[1] * slope[1]).sqrt();
         let edge = 2.0 * (level - level.sqrt()) / gradient.max(1e-9);
         FingerPlace { edge, slope: level, x }

@@ -74,7 +74,7 @@ impl Subject {
             half_width: within(1.24, 1.48),
             tip: within(0.22, 0.55),
             widening: within(0.0, 0.07),
-            blunt: within(2.1, 2.8),
+            blunt: within(0.05, 0.45),
             offset: within(-0.06, 0.06),
         };
         Self {

@@ -116,15 +116,15 @@ fn folder(path: PathBuf) -> Result<PathBuf, Error> {
 /// Writes the set that `options` ask for under `out`; a set written there before is replaced.
 ///
 /// # Errors
-/// [`Error`]; what stood under `out` before is as it was.
+/// [`enum@Error`]; what stood under `out` before is as it was.
 pub fn write(options: &PhotoOptions, out: &Path) -> Result<Summary, Error> {
     write_watched(options, out, &|_, _| true)
 }
 
-/// As [`write`], telling `watch` after every photograph how many are done of how many; it answers whether to go on.
+/// As [`write()`], telling `watch` after every photograph how many are done of how many; it answers whether to go on.
 ///
 /// # Errors
-/// [`Error`]; what stood under `out` before is as it was.
+/// [`enum@Error`]; what stood under `out` before is as it was.
 pub fn write_watched(
     options: &PhotoOptions,
     out: &Path,
