@@ -1,0 +1,160 @@
+//! A small helper for tests of the command line: a folder of its own, the binary, and what it answered.
+
+#![allow(dead_code, reason = "every test file uses a part of it")]
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use image::{Rgb, RgbImage};
+use lunula::labelme::{LabelMe, Shape};
+use lunula::phantom::nail::Pose;
+use lunula::phantom::photos::{LightKind, PhotoOptions};
+
+/// What a command answered.
+pub struct Answer {
+    pub code: i32,
+    pub stdout: String,
+    pub stderr: String,
+}
+
+impl Answer {
+    #[track_caller]
+    pub fn expect(self, code: i32) -> Self {
+        assert_eq!(self.code, code, "stdout:\n{}\nstderr:\n{}", self.stdout, self.stderr);
+        self
+    }
+
+    #[track_caller]
+    pub fn says(self, words: &str) -> Self {
+        assert!(self.stderr.contains(words), "`{words}` is not in:\n{}", self.stderr);
+        self
+    }
+
+    pub fn json(&self) -> serde_json::Value {
+        assert_eq!(self.stdout.lines().count(), 1, "one JSON object on one line:\n{}", self.stdout);
+        serde_json::from_str(&self.stdout).expect("JSON on standard output")
+    }
+}
+
+/// A folder that goes away with the test.
+pub struct Dir(tempfile::TempDir);
+
+impl Dir {
+    pub fn new() -> Self {
+        Self(tempfile::tempdir().expect("a temporary folder"))
+    }
+
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    /// A place for a file; its folder is made.
+    pub fn place(&self, name: &str) -> PathBuf {
+        let path = self.path(name);
+        std::fs::create_dir_all(path.parent().expect("within the folder")).expect("a folder");
+        path
+    }
+
+    pub fn write(&self, name: &str, bytes: impl AsRef<[u8]>) {
+        std::fs::write(self.place(name), bytes).expect("a file");
+    }
+
+    /// Runs the binary in this folder.
+    pub fn lunula(&self, arguments: &[&str]) -> Answer {
+        let output = Command::new(env!("CARGO_BIN_EXE_lunula"))
+            .args(arguments)
+            .current_dir(self.0.path())
+            .output()
+            .expect("the binary runs");
+        Answer {
+            code: output.status.code().unwrap_or(-1),
+            stdout: String::from_utf8(output.stdout).expect("text"),
+            stderr: String::from_utf8(output.stderr).expect("text"),
+        }
+    }
+
+    /// All files below `folder` with their bytes, by name.
+    pub fn bytes_of(&self, folder: &str) -> std::collections::BTreeMap<String, Vec<u8>> {
+        fn walk(root: &Path, at: &Path, found: &mut std::collections::BTreeMap<String, Vec<u8>>) {
+            for entry in std::fs::read_dir(at).expect("a folder") {
+                let path = entry.expect("an entry").path();
+                if path.is_dir() {
+                    walk(root, &path, found);
+                } else {
+                    let name = path.strip_prefix(root).expect("below").to_string_lossy().into_owned();
+                    found.insert(name, std::fs::read(&path).expect("a file"));
+                }
+            }
+        }
+        let root = self.path(folder);
+        let mut found = std::collections::BTreeMap::new();
+        walk(&root, &root, &mut found);
+        found
+    }
+
+    /// A table's rows, each by column.
+    pub fn table(&self, name: &str) -> Vec<std::collections::BTreeMap<String, String>> {
+        let mut reader = csv::Reader::from_path(self.path(name)).expect("a table");
+        reader.deserialize().map(|row| row.expect("a row")).collect()
+    }
+
+    pub fn array(&self, name: &str) -> ndarray::Array2<f32> {
+        ndarray_npy::read_npy(self.path(name)).expect("an array of float32")
+    }
+}
+
+/// A nail drawn without noise: light skin, a rounded nail of 60 x 80 px, distal end up, its middle at (80, 70).
+pub fn drawn_nail() -> RgbImage {
+    RgbImage::from_fn(160, 140, |x, y| {
+        let (u, v) = ((f64::from(x) - 80.0) / 30.0, (f64::from(y) - 70.0) / 40.0);
+        if u.powi(4) + v.powi(4) <= 1.0 { Rgb([190, 110 + x as u8 / 4, 120]) } else { Rgb([170, 90, 80]) }
+    })
+}
+
+/// The drawn nail's outline in LabelMe's coordinates.
+pub fn drawn_outline() -> Vec<[f64; 2]> {
+    (0..72)
+        .map(|k| {
+            let angle = f64::from(k) * std::f64::consts::TAU / 72.0;
+            let rounded = |c: f64| c.signum() * c.abs().sqrt();
+            [80.5 + 30.0 * rounded(angle.cos()), 70.5 + 40.0 * rounded(angle.sin())]
+        })
+        .collect()
+}
+
+/// The axis line of the drawn nail, proximal to distal.
+pub fn drawn_axis() -> Vec<[f64; 2]> {
+    vec![[80.5, 110.5], [80.5, 30.5]]
+}
+
+/// A LabelMe file for a picture of `size` with these shapes: label, type, points.
+pub fn labelme(size: [u32; 2], shapes: &[(&str, &str, Vec<[f64; 2]>)]) -> String {
+    let shapes = shapes.iter().map(|(label, kind, points)| Shape::new(label, kind, points.clone())).collect();
+    serde_json::to_string(&LabelMe::new("picture.png", size[0], size[1], shapes)).expect("JSON")
+}
+
+/// The drawn nail's LabelMe file.
+pub fn drawn_labels() -> String {
+    labelme([160, 140], &[("nail", "polygon", drawn_outline()), ("axis", "line", drawn_axis())])
+}
+
+impl Dir {
+    /// Puts the drawn nail, annotated, at `<name>.png`.
+    pub fn nail(&self, name: &str) {
+        drawn_nail().save(self.place(&format!("{name}.png"))).expect("a picture");
+        self.write(&format!("{name}.json"), drawn_labels());
+    }
+}
+
+/// A small set of synthetic photographs that a test can afford.
+pub fn small_set(subjects: u32, poses: &[Pose]) -> PhotoOptions {
+    PhotoOptions {
+        seed: 11,
+        subjects,
+        poses: poses.to_vec(),
+        width: 320,
+        height: 240,
+        light: LightKind::Chamber,
+        ..PhotoOptions::default()
+    }
+}
