@@ -40,8 +40,13 @@ impl Stretch {
 /// Draws an array; a NaN is transparent: not known is neither black nor white.
 pub fn grey_map(values: &Array2<f32>, stretch: Stretch) -> GrayAlphaImage {
     let (rows, columns) = values.dim();
-    let pixels = values.iter().flat_map(|&v| if v.is_nan() { [0, 0] } else { [stretch.level(v), 255] });
-    GrayAlphaImage::from_raw(columns as u32, rows as u32, pixels.collect()).expect("two samples a value")
+    let mut drawn = GrayAlphaImage::new(columns as u32, rows as u32);
+    for (pixel, &value) in drawn.chunks_exact_mut(2).zip(values) {
+        if !value.is_nan() {
+            pixel.copy_from_slice(&[stretch.level(value), 255]);
+        }
+    }
+    drawn
 }
 
 #[cfg(test)]

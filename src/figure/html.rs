@@ -1,11 +1,8 @@
 //! Reports: one self-contained HTML page that can be mailed.
 
 use std::fmt::Write;
-use std::io::Cursor;
 
 use base64::Engine;
-use image::codecs::jpeg::JpegEncoder;
-use image::{ImageError, RgbImage};
 
 /// Text made safe between HTML or SVG tags and in attributes.
 pub fn escape(text: &str) -> String {
@@ -67,23 +64,8 @@ impl Page {
 
     /// A PNG file's bytes as a picture.
     pub fn png(&mut self, png: &[u8], alt: &str) {
-        self.picture("png", png, alt);
-    }
-
-    /// A picture that need not be exact, as JPEG, to keep the page small.
-    ///
-    /// # Errors
-    /// Where it can't be encoded.
-    pub fn jpeg(&mut self, picture: &RgbImage, alt: &str) -> Result<(), ImageError> {
-        let mut bytes = Vec::new();
-        picture.write_with_encoder(JpegEncoder::new_with_quality(Cursor::new(&mut bytes), 85))?;
-        self.picture("jpeg", &bytes, alt);
-        Ok(())
-    }
-
-    fn picture(&mut self, kind: &str, bytes: &[u8], alt: &str) {
-        let data = base64::engine::general_purpose::STANDARD.encode(bytes);
-        let _ = writeln!(self.body, "<p><img alt=\"{}\" src=\"data:image/{kind};base64,{data}\"></p>", escape(alt));
+        let data = base64::engine::general_purpose::STANDARD.encode(png);
+        let _ = writeln!(self.body, "<p><img alt=\"{}\" src=\"data:image/png;base64,{data}\"></p>", escape(alt));
     }
 
     /// The whole page.

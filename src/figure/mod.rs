@@ -7,7 +7,23 @@ mod plot;
 mod sheet;
 mod text;
 
+use std::io::Cursor;
+
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::{DynamicImage, ImageEncoder, ImageError};
+
 pub use grey::{Stretch, grey_map};
 pub use html::{Page, escape};
 pub use plot::{Axis, Plot, Point, Series, draw_log_log};
 pub use sheet::{Scale, Sheet, Tile};
+
+/// A picture as a PNG file, encoded fast rather than small.
+///
+/// # Errors
+/// A picture without pixels, or with samples that PNG does not hold.
+pub fn png(picture: &DynamicImage) -> Result<Vec<u8>, ImageError> {
+    let mut png = Vec::new();
+    let encoder = PngEncoder::new_with_quality(Cursor::new(&mut png), CompressionType::Fast, FilterType::Up);
+    encoder.write_image(picture.as_bytes(), picture.width(), picture.height(), picture.color().into())?;
+    Ok(png)
+}

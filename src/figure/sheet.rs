@@ -1,13 +1,13 @@
 //! Sheets: many small pictures in a grid, each with its caption, a title above and a scale below. PNG and SVG.
 
-use std::io::Cursor;
-
 use base64::Engine;
-use image::{DynamicImage, GrayAlphaImage, ImageFormat, Rgb, RgbImage};
+use image::{DynamicImage, GrayAlphaImage, GrayImage, Rgb, RgbImage};
+use imageproc::drawing::draw_hollow_rect_mut;
+use imageproc::rect::Rect;
 
 use super::Stretch;
 use super::html::escape;
-use super::text::{centred, left};
+use super::text::{INK, centred, left};
 
 /// One picture of a sheet.
 #[derive(Debug, Clone)]
@@ -80,15 +80,20 @@ impl Sheet {
         left(&mut sheet, &self.title, GAP as i32, 14, 22.0);
         for (at, tile) in self.tiles.iter().enumerate() {
             let [x0, y0] = layout.corner(at);
-            for (x, y, pixel) in tile.picture.enumerate_pixels() {
-                let [level, alpha] = pixel.0;
-                sheet.put_pixel(x0 + x, y0 + y, if alpha == 0 { UNKNOWN } else { Rgb([level; 3]) });
+            for (y, row) in (y0..).zip(tile.picture.chunks_exact(2 * tile.picture.width() as usize)) {
+                let start = 3 * (y * layout.size[0] + x0) as usize;
+                let samples: &mut [u8] = &mut sheet;
+                for (to, from) in samples[start..].chunks_exact_mut(3).zip(row.chunks_exact(2)) {
+                    to.copy_from_slice(&if from[1] == 0 { UNKNOWN.0 } else { [from[0]; 3] });
+                }
             }
             let middle = (x0 + layout.tile[0] / 2) as i32;
             centred(&mut sheet, &tile.caption, middle, (y0 + layout.tile[1] + 4) as i32, 17.0, layout.tile[0]);
         }
         if let Some(scale) = &self.scale {
             let y = layout.size[1] - SCALE + 6;
+            let frame = Rect::at(GAP as i32 + 9, y as i32 - 1).of_size(BAR[0] + 2, BAR[1] + 2);
+            draw_hollow_rect_mut(&mut sheet, frame, INK);
             for (x, level) in scale.levels().enumerate() {
                 for dy in 0..BAR[1] {
                     sheet.put_pixel(GAP + 10 + x as u32, y + dy, Rgb([level; 3]));
@@ -100,6 +105,18 @@ impl Sheet {
             left(&mut sheet, &scale.label, (GAP + BAR[0] + 34) as i32, y as i32, 17.0);
         }
         sheet
+    }
+
+    /// The sheet as a PNG file, of one channel where nothing on it is unknown.
+    ///
+    /// # Errors
+    /// Where it can't be encoded.
+    pub fn png(&self) -> Result<Vec<u8>, image::ImageError> {
+        let drawn = self.draw();
+        let grey = drawn.pixels().all(|p| p.0[0] == p.0[1] && p.0[1] == p.0[2]);
+        let levels = || drawn.chunks_exact(3).map(|p| p[0]).collect();
+        let flat = if grey { GrayImage::from_raw(drawn.width(), drawn.height(), levels()).map(DynamicImage::from) } else { None };
+        super::png(&flat.unwrap_or_else(|| drawn.into()))
     }
 
     /// The sheet as SVG: pictures embedded, words as words.
@@ -118,8 +135,7 @@ impl Sheet {
         for (at, tile) in self.tiles.iter().enumerate() {
             let [x, y] = layout.corner(at);
             let [tile_width, tile_height] = layout.tile;
-            let mut png = Vec::new();
-            DynamicImage::from(tile.picture.clone()).write_to(&mut Cursor::new(&mut png), ImageFormat::Png)?;
+            let png = super::png(&tile.picture.clone().into())?;
             svg += &format!(
                 "<rect x=\"{x}\" y=\"{y}\" width=\"{tile_width}\" height=\"{tile_height}\" fill=\"#cdd8f0\"/>\n\
                  <image x=\"{x}\" y=\"{y}\" width=\"{}\" height=\"{}\" href=\"data:image/png;base64,{}\"/>\n\
@@ -134,6 +150,13 @@ impl Sheet {
         }
         if let Some(scale) = &self.scale {
             let y = height - SCALE + 6;
+            svg += &format!(
+                "<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"#222\"/>\n",
+                GAP + 9,
+                y - 1,
+                BAR[0] + 2,
+                BAR[1] + 2
+            );
             for (at, level) in scale.levels().enumerate().step_by(4) {
                 svg += &format!(
                     "<rect x=\"{}\" y=\"{y}\" width=\"4.5\" height=\"{}\" fill=\"rgb({level},{level},{level})\"/>\n",

@@ -195,7 +195,7 @@ struct Work<'a> {
 }
 
 /// Longest side of a thumbnail, pixels.
-const THUMBNAIL_PX: u32 = 100;
+const THUMBNAIL_PX: usize = 100;
 
 impl Work<'_> {
     /// Read, outline, normalize, add up: once down, never back.

@@ -114,11 +114,20 @@ impl Normalized {
         Self { size, levels: vec![0; size * size], seen: Some(vec![false; size * size]) }
     }
 
-    /// From fractions of full scale; NaN is not seen.
+    /// From fractions of full scale, 0 to 1; NaN is not seen.
     pub(crate) fn from_values(size: usize, values: &[f32]) -> Self {
-        // NaN casts to 0, what exceeds the range to its end.
-        let levels = values.iter().map(|v| (v * f32::from(FULL_SCALE) + 0.5) as u16).collect();
-        let seen = values.iter().any(|v| v.is_nan()).then(|| values.iter().map(|v| !v.is_nan()).collect());
+        // Adding 2^23 leaves the rounded number in the sum's lowest bits: branch-free, unlike a saturating cast.
+        let mut levels: Vec<u16> =
+            values.iter().map(|v| (v * f32::from(FULL_SCALE) + 8_388_608.0).to_bits() as u16).collect();
+        let some_unseen = values.iter().fold(false, |some, v| some | v.is_nan());
+        let seen = some_unseen.then(|| {
+            for (level, value) in levels.iter_mut().zip(values) {
+                if value.is_nan() {
+                    *level = 0;
+                }
+            }
+            values.iter().map(|v| !v.is_nan()).collect()
+        });
         Self { size, levels, seen }
     }
 }
@@ -127,15 +136,16 @@ impl Normalized {
 pub fn normalize(image: &DynamicImage, frame: &NailFrame, with: &Normalization) -> Normalized {
     let grid = Grid::new(frame, with);
     let Some(source) = Source::new(image, &grid, with) else { return Normalized::nowhere(with.size) };
-    let values = if source.samples == [1, 1] && grid.lies_within(&source) {
-        if source.resample == Resample::Cubic && grid.is_nearly_upright() {
+    let mut values = match source.samples {
+        [1, 1] if source.is_whole && source.resample == Resample::Cubic && grid.is_nearly_upright() => {
             source.points_in_two_passes(&grid)
-        } else {
-            source.points(&grid)
         }
-    } else {
-        source.means(&grid)
+        [1, 1] if source.is_whole => source.points(&grid),
+        _ => source.means(&grid),
     };
+    if !grid.lies_within(&source) {
+        grid.forget_outside(&source, &mut values);
+    }
     Normalized::from_values(with.size, &values)
 }
 
@@ -191,10 +201,47 @@ impl Grid {
         (low, high)
     }
 
+    /// Makes NaN of what lies beyond the photograph's border, where border pixels were repeated.
+    fn forget_outside(&self, source: &Source, values: &mut [f32]) {
+        for (row, line) in values.chunks_exact_mut(self.size).enumerate() {
+            let corner = self.corner(row, 0);
+            // Along a row, what lies within is one stretch of columns.
+            let (mut from, mut to) = (0.0_f64, self.size as f64 - 1.0);
+            for k in 0..2 {
+                let (step, first) = (self.per_column[k], corner[k] + 0.5 * (self.per_column[k] + self.per_row[k]));
+                let crossings = [(-0.5 - first) / step, (source.photo_end[k] - first) / step];
+                if step != 0.0 {
+                    from = from.max(crossings[0].min(crossings[1]).ceil());
+                    to = to.min(crossings[0].max(crossings[1]).floor());
+                } else if source.lies_outside_along(k, first) {
+                    to = -1.0;
+                }
+            }
+            let (from, end) = (from as usize, (to + 1.0).max(0.0) as usize);
+            if from < end {
+                line[..from].fill(f32::NAN);
+                line[end..].fill(f32::NAN);
+            } else {
+                line.fill(f32::NAN);
+            }
+        }
+    }
+
     fn lies_within(&self, source: &Source) -> bool {
         let (low, high) = self.bounds();
         (0..2).all(|k| low[k] >= -0.5 && high[k] <= source.photo_end[k])
     }
+}
+
+/// An output column's line through the photograph, in fixed point.
+struct Strand {
+    /// The output pixel's row, from `top`.
+    y: i64,
+    /// The rows that its cubics reach.
+    top: usize,
+    bottom: usize,
+    /// Where the line crosses the row at hand.
+    crossing: i64,
 }
 
 /// The part of the photograph that the grid needs, reduced by whole blocks where it covers many pixels.
@@ -209,6 +256,8 @@ struct Source {
     /// Samples a footprint across and along.
     samples: [usize; 2],
     resample: Resample,
+    /// Every place of the grid has its neighbours here, those beyond the photograph's border repeated.
+    is_whole: bool,
 }
 
 /// Neighbours that a cubic needs on either side, pixels.
@@ -227,9 +276,13 @@ impl Source {
         if (0..2).any(|k| !(high[k] > -0.5 && low[k] < photo_end[k])) {
             return None;
         }
+        // A nail at the border is taken whole; of an outline that lies mostly elsewhere, only what is there.
+        let beyond = 0.5 * photo_end[0].max(photo_end[1]);
+        let (lowest, highest) = ([-beyond; 2], photo_end.map(|end| end + beyond));
+        let is_whole = (0..2).all(|k| low[k] >= lowest[k] && high[k] <= highest[k]);
         let range = [0, 1].map(|k| {
-            let start = (low[k].max(-0.5) - reach).floor() as i64;
-            let end = (high[k].min(photo_end[k]) + reach).ceil() as i64 + 1;
+            let start = (low[k].max(lowest[k]) - reach).floor() as i64;
+            let end = (high[k].min(highest[k]) + reach).ceil() as i64 + 1;
             let whole = (end - start + factor as i64 - 1) / factor as i64 * factor as i64;
             [start, start + whole]
         });
@@ -243,10 +296,18 @@ impl Source {
             _ if covers <= POINT_SAMPLED_UP_TO_PX => 1,
             _ => (covers / factor as f64).ceil() as usize,
         });
-        Some(Self { width, values, first, spacing: factor as f64, photo_end, samples, resample: with.resample })
+        Some(Self { width, values, first, spacing: factor as f64, photo_end, samples, resample: with.resample, is_whole })
     }
 
-    /// Every output pixel at its centre, all of them known to lie within the photograph.
+    fn lies_outside(&self, place: [f64; 2]) -> bool {
+        (0..2).any(|k| self.lies_outside_along(k, place[k]))
+    }
+
+    fn lies_outside_along(&self, k: usize, coordinate: f64) -> bool {
+        !(coordinate >= -0.5 && coordinate <= self.photo_end[k])
+    }
+
+    /// Every output pixel at its centre, all of them known to lie within this source.
     fn points(&self, grid: &Grid) -> Vec<f32> {
         let mut values = Vec::with_capacity(grid.size * grid.size);
         let step = [0, 1].map(|k| fixed(grid.per_column[k] / self.spacing));
@@ -280,27 +341,38 @@ impl Source {
         };
         let down = grid.per_row[1] / self.spacing;
         let slant = fixed(grid.per_row[0] / grid.per_row[1]);
-        let mut line = Vec::new();
+        // A column's line has at most as many values as the photograph has rows.
+        let tall = self.values.len() / self.width;
+        let mut lines = vec![0.0; COLUMNS * tall];
         let mut block = vec![[0.0_f32; COLUMNS]; size];
         for first in (0..size).step_by(COLUMNS) {
             let columns = COLUMNS.min(size - first);
-            for at in 0..columns {
-                let [x, y] = [place(0, first + at), place(1, first + at)];
-                let last = y + down * (size - 1) as f64;
-                // The rows that this column's cubics reach, and where its line crosses the first of them.
-                let (top, bottom) = (y.min(last) as usize - 1, y.max(last) as usize + 2);
-                let mut crossing = fixed(x) + fixed_product(slant, top as f64 - y);
-                line.clear();
-                line.extend((top..=bottom).map(|row| {
-                    let column = (crossing >> 32) as usize;
-                    let value = between(&self.values[row * self.width + column - 1..][..4], fraction(crossing));
-                    crossing += slant;
-                    value
-                }));
-                let (mut y, step) = (fixed(y - top as f64), fixed(down));
+            let mut strands: Vec<Strand> = (first..first + columns)
+                .map(|column| {
+                    let [x, y] = [place(0, column), place(1, column)];
+                    let last = y + down * (size - 1) as f64;
+                    let top = y.min(last) as usize - 1;
+                    let crossing = fixed(x) + fixed_product(slant, top as f64 - y);
+                    Strand { y: fixed(y - top as f64), top, bottom: y.max(last) as usize + 2, crossing }
+                })
+                .collect();
+            let top = strands.iter().map(|s| s.top).min().unwrap_or(0);
+            let bottom = strands.iter().map(|s| s.bottom).max().unwrap_or(0);
+            for row in top..=bottom {
+                let source = &self.values[row * self.width..][..self.width];
+                for (strand, line) in strands.iter_mut().zip(lines.chunks_exact_mut(tall)) {
+                    if (strand.top..=strand.bottom).contains(&row) {
+                        let column = (strand.crossing >> 32) as usize;
+                        line[row - strand.top] = between(&source[column - 1..][..4], fraction(strand.crossing));
+                        strand.crossing += slant;
+                    }
+                }
+            }
+            let step = fixed(down);
+            for (at, (strand, line)) in strands.iter_mut().zip(lines.chunks_exact(tall)).enumerate() {
                 for row in &mut block {
-                    row[at] = between(&line[(y >> 32) as usize - 1..][..4], fraction(y));
-                    y += step;
+                    row[at] = between(&line[(strand.y >> 32) as usize - 1..][..4], fraction(strand.y));
+                    strand.y += step;
                 }
             }
             for (row, block) in values.chunks_exact_mut(size).zip(&block) {
@@ -325,7 +397,7 @@ impl Source {
             for column in 0..across {
                 let c = (column as f64 + 0.5) / across as f64;
                 let place = [0, 1].map(|k| corner[k] + grid.per_column[k] * c + grid.per_row[k] * r);
-                if !inside && (0..2).any(|k| !(place[k] >= -0.5 && place[k] <= self.photo_end[k])) {
+                if !inside && self.lies_outside(place) {
                     return f32::NAN;
                 }
                 let [x, y] = [0, 1].map(|k| (place[k] - self.first[k]) / self.spacing);

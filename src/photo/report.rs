@@ -132,7 +132,7 @@ impl RunReport {
     /// # Errors
     /// [`WriteError`].
     pub fn write_html(&self, nails: &NailTable, staging: &Staging) -> Result<(), WriteError> {
-        let refused = |why: String| staging.refused("report.html", why);
+        let refused = |why: image::ImageError| staging.refused("report.html", why);
         let mut page = Page::new("Fingernail coloration");
         let poses: Vec<String> = self.poses.iter().map(|p| format!("{} (n = {})", p.pose, p.subjects)).collect();
         page.paragraph(&format!("lunula {} {}, {}", self.version, self.job, list_paths(&self.inputs)));
@@ -144,7 +144,7 @@ impl RunReport {
         }
         page.heading("Every nail, distal end up");
         for sheet in &nails.sheets {
-            page.jpeg(&sheet.draw(), &sheet.title).map_err(|e| refused(e.to_string()))?;
+            page.png(&sheet.png().map_err(refused)?, &sheet.title);
         }
         page.heading(&format!("Nails: {} listed, {} used", nails.rows.len(), nails.rows.len() - nails.left_out()));
         page.table(&NAIL_COLUMNS, &nails.rows, |row| nails.rows[row][USED] != "true");

@@ -1,10 +1,8 @@
 //! The photos job's files: normalized pictures, maps, figures and `nails.csv`, all by way of a [`Staging`].
 
-use std::io::{BufWriter, Cursor, Write};
+use std::io::{BufWriter, Write};
 
-use image::buffer::ConvertBuffer;
-use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::{DynamicImage, GrayAlphaImage, GrayImage, ImageBuffer, ImageEncoder, Luma, LumaA, imageops};
+use image::{DynamicImage, GrayAlphaImage, ImageBuffer, Luma, LumaA, imageops};
 use ndarray::Array2;
 use ndarray_npy::WriteNpyExt;
 use rayon::prelude::*;
@@ -15,7 +13,7 @@ use super::normalize::Normalized;
 use super::partial::{self, Partials};
 use super::read::Depth;
 use super::set::PhotoSet;
-use crate::figure::{Scale, Sheet, Stretch, Tile, grey_map};
+use crate::figure::{self, Scale, Sheet, Stretch, Tile, grey_map};
 use crate::files::{Staging, WriteError};
 use crate::stages::Stages;
 
@@ -81,7 +79,7 @@ pub(super) fn write_normalized(
             picture_of::<LumaA<u16>>(size, pixels.collect())
         }
     };
-    write_png(&drawn, staging, name).map(|_| ())
+    write_png(&drawn, staging, name)
 }
 
 fn picture_of<P: image::Pixel>(size: u32, samples: Vec<P::Subpixel>) -> DynamicImage
@@ -91,29 +89,27 @@ where
     ImageBuffer::<P, _>::from_raw(size, size, samples).expect("one sample a pixel and channel").into()
 }
 
-/// Writes a PNG, fast rather than small; returns its bytes.
-fn write_png(picture: &DynamicImage, staging: &Staging, name: &str) -> Result<Vec<u8>, WriteError> {
-    let mut png = Vec::new();
-    let encoder = PngEncoder::new_with_quality(Cursor::new(&mut png), CompressionType::Fast, FilterType::Up);
-    let color = picture.color().into();
-    encoder
-        .write_image(picture.as_bytes(), picture.width(), picture.height(), color)
-        .map_err(|why| staging.refused(name, why))?;
-    staging.write(name, &png)?;
-    Ok(png)
+fn write_png(picture: &DynamicImage, staging: &Staging, name: &str) -> Result<(), WriteError> {
+    staging.write(name, &figure::png(picture).map_err(|why| staging.refused(name, why))?)
 }
 
-/// A small version for a sheet of all nails.
-pub(super) fn thumbnail(picture: &Normalized, longest: u32) -> GrayAlphaImage {
-    let size = picture.size as u32;
-    let side = longest.min(size);
-    let levels = picture.levels.iter().map(|l| (l >> 8) as u8).collect();
-    let drawn = GrayImage::from_raw(size, size, levels).expect("one level a pixel");
-    let mut small = imageops::thumbnail(&drawn, side, side).convert();
-    if let Some(seen) = &picture.seen {
-        for (x, y, pixel) in GrayAlphaImage::enumerate_pixels_mut(&mut small) {
-            let [column, row] = [x, y].map(|at| (at * size / side) as usize);
-            pixel.0[1] = if seen[row * picture.size + column] { 255 } else { 0 };
+/// A small version for a sheet of all nails: means of whole blocks, at most `longest` pixels a side.
+pub(super) fn thumbnail(picture: &Normalized, longest: usize) -> GrayAlphaImage {
+    let block = picture.size.div_ceil(longest);
+    let side = picture.size / block;
+    let scale = (block * block) as u32 * 257;
+    let mut small = GrayAlphaImage::new(side as u32, side as u32);
+    let mut sums = vec![0_u32; side];
+    for (row, pixels) in small.chunks_exact_mut(2 * side).enumerate() {
+        sums.fill(0);
+        for line in picture.levels[row * block * picture.size..].chunks(picture.size).take(block) {
+            for (sum, levels) in sums.iter_mut().zip(line.chunks_exact(block)) {
+                *sum += levels.iter().map(|&l| u32::from(l)).sum::<u32>();
+            }
+        }
+        for (column, (pixel, sum)) in pixels.chunks_exact_mut(2).zip(&sums).enumerate() {
+            let corner = row * block * picture.size + column * block;
+            pixel.copy_from_slice(&[(sum / scale) as u8, if picture.level(corner).is_some() { 255 } else { 0 }]);
         }
     }
     small
@@ -151,7 +147,7 @@ pub(super) fn write_maps(partials: &Partials, staging: &Staging, stages: &Stages
 
 fn write_sheet(sheet: &Sheet, staging: &Staging, name: &str) -> Result<(), WriteError> {
     let (png, svg) = (format!("figures/{name}.png"), format!("figures/{name}.svg"));
-    write_png(&sheet.draw().into(), staging, &png)?;
+    staging.write(&png, &sheet.png().map_err(|why| staging.refused(&png, why))?)?;
     staging.write(&svg, sheet.svg().map_err(|why| staging.refused(&svg, why))?.as_bytes())
 }
 

@@ -1,6 +1,6 @@
 //! A small helper for tests of the command line: a folder of its own, the binary, and what it answered.
 
-#![allow(dead_code, reason = "every test file uses a part of it")]
+#![allow(dead_code, unreachable_pub, reason = "every test file uses a part of it")]
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -1,0 +1,52 @@
+# The commands of the README. `make demo` and `make test` do all the set-up on a fresh Debian or Ubuntu with Rust.
+
+SHELL := /bin/sh
+DEMO := demo
+LUNULA := target/release/lunula
+PACKAGES := $(shell sed '/^\#/d' system-packages.txt)
+
+.PHONY: help demo test lint bench system clean
+
+help:
+	@echo "make demo   build, run the main job on generated photographs, say where the pictures are"
+	@echo "make test   build and run every test"
+	@echo "make lint   formatting, clippy and documentation, all without warnings"
+	@echo "make bench  speed against only decoding, and against Python with OpenCV and scikit-image"
+
+demo: system
+	cargo build --release --locked
+	$(LUNULA) phantom photos --seed 1 --light chamber --out $(DEMO)/scene
+	$(LUNULA) photos $(DEMO)/scene/photos --out $(DEMO)/coloration
+	@echo
+	@echo "Average coloration of 16 generated subjects in eight poses:"
+	@echo "  $(DEMO)/coloration/report.html            everything on one page"
+	@echo "  $(DEMO)/coloration/figures/contrast.png   as Fig. 54 of the thesis"
+	@echo "  $(DEMO)/scene/truth/maps                  the exact maps, to compare"
+
+test: system
+	cargo test --locked
+
+lint: system
+	cargo fmt --check
+	cargo clippy --locked --all-targets -- -D warnings
+	RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps
+
+bench: system
+	cargo bench --locked --bench photos
+
+# Installs the packages of system-packages.txt that are missing; does nothing where all are there.
+system:
+	@command -v cargo >/dev/null || { echo "Rust is missing: https://rustup.rs tells how to install it" >&2; exit 1; }
+	@command -v dpkg-query >/dev/null || { echo "no Debian or Ubuntu: make sure that these are there: $(PACKAGES)"; exit 0; }; \
+	missing=""; \
+	for package in $(PACKAGES); do \
+	  dpkg-query -W -f '$${Status}' $$package 2>/dev/null | grep -q 'ok installed' || missing="$$missing $$package"; \
+	done; \
+	[ -z "$$missing" ] && exit 0; \
+	echo "installing$$missing"; \
+	if [ "$$(id -u)" = 0 ]; then as=""; else as=sudo; fi; \
+	$$as apt-get update -q && $$as apt-get install -y --no-install-recommends $$missing
+
+clean:
+	cargo clean
+	rm -rf $(DEMO)

@@ -1,0 +1,274 @@
+//! `lunula photos` on what goes wrong on a Monday morning: each case names file and place, says what to do, and costs no more
+//! than itself.
+
+mod util;
+
+use std::process::Command;
+
+use util::{Dir, drawn_axis, drawn_labels, drawn_nail, drawn_outline, labelme};
+
+/// A set of three good photographs.
+fn good_set() -> Dir {
+    let dir = Dir::new();
+    for subject in ["a", "b", "c"] {
+        dir.nail(&format!("set/{subject}"));
+    }
+    dir
+}
+
+/// Subjects whose nails were used.
+fn used(dir: &Dir) -> Vec<String> {
+    dir.table("out/nails.csv").into_iter().filter(|r| r["used"] == "true").map(|r| r["subject"].clone()).collect()
+}
+
+/// Runs on the set and expects its good photographs done, one failure named with `words`.
+#[track_caller]
+fn costs_only_itself(dir: &Dir, words: &[&str]) {
+    let answer = dir.lunula(&["photos", "set", "--out", "out"]).expect(1);
+    let failed: Vec<&str> = answer.stderr.lines().filter(|l| l.starts_with("failed: ")).collect();
+    assert_eq!(failed.len(), 1, "{}", answer.stderr);
+    for words in words {
+        assert!(failed[0].contains(words), "`{words}` is not in {}", failed[0]);
+    }
+    assert_eq!(used(dir), ["a", "b", "c"]);
+}
+
+#[test]
+fn a_truncated_jpeg_is_named_not_greyed() {
+    let dir = good_set();
+    let whole = dir.place("whole.jpg");
+    drawn_nail().save(&whole).expect("a picture");
+    let bytes = std::fs::read(whole).expect("a file");
+    dir.write("set/d.jpg", &bytes[..bytes.len() * 2 / 3]);
+    dir.write("set/d.json", drawn_labels());
+    costs_only_itself(&dir, &["d.jpg", "truncated JPEG", "copy the file again"]);
+}
+
+#[test]
+fn a_text_file_called_png_is_no_picture() {
+    let dir = good_set();
+    dir.write("set/d.png", "dear diary");
+    costs_only_itself(&dir, &["d.png", "not a PNG, JPEG, TIFF or BMP"]);
+}
+
+#[test]
+fn damaged_and_empty_files_are_named() {
+    for (name, cut) in [("d.png", 200), ("d.tif", 300), ("d.bmp", 500), ("d.png", 0)] {
+        let dir = good_set();
+        let whole = dir.place(&format!("whole/{name}"));
+        drawn_nail().save(&whole).expect("a picture");
+        dir.write(&format!("set/{name}"), &std::fs::read(whole).expect("a file")[..cut]);
+        dir.write("set/d.json", drawn_labels());
+        costs_only_itself(&dir, &[name]);
+    }
+}
+
+#[test]
+fn a_format_that_is_not_read_is_said() {
+    let dir = good_set();
+    dir.write("set/d.HEIC", "ftypheic");
+    costs_only_itself(&dir, &["d.HEIC", "export it as PNG"]);
+}
+
+#[test]
+fn float_samples_are_refused() {
+    let dir = good_set();
+    image::Rgb32FImage::from_pixel(160, 140, image::Rgb([0.5; 3])).save(dir.place("set/d.tiff")).expect("a picture");
+    dir.write("set/d.json", drawn_labels());
+    costs_only_itself(&dir, &["d.tiff", "8 or 16 bits"]);
+}
+
+#[test]
+fn outlines_that_are_none_are_named_with_their_shape() {
+    let nowhere = |points: Vec<[f64; 2]>| points.into_iter().map(|[x, y]| [x + 500.0, y]).collect::<Vec<_>>();
+    let crossing = vec![[10.0, 10.0], [90.0, 90.0], [90.0, 10.0], [10.0, 90.0]];
+    let speck = vec![[10.0, 10.0], [12.0, 10.0], [12.0, 12.0], [10.0, 12.0]];
+    let cases = [
+        (vec![("nail", "polygon", vec![[10.0, 10.0], [90.0, 90.0]])], "shape 1: the outline has 2 different point(s)"),
+        (
+            vec![("other", "polygon", drawn_outline()), ("nail", "polygon", crossing)],
+            "shape 2: the outline crosses itself",
+        ),
+        (vec![("nail", "rectangle", vec![[10.0, 10.0], [90.0, 90.0]])], "draw it as a polygon"),
+        (
+            vec![("nail", "polygon", nowhere(drawn_outline())), ("axis", "line", nowhere(drawn_axis()))],
+            "lies outside of the photograph",
+        ),
+        (
+            vec![("nail", "polygon", speck.clone()), ("axis", "line", vec![[11.0, 12.0], [11.0, 10.0]])],
+            "at least 4 are needed",
+        ),
+        (vec![("finger", "polygon", drawn_outline())], "no polygon labelled `nail`"),
+    ];
+    for (shapes, words) in cases {
+        let dir = good_set();
+        drawn_nail().save(dir.place("set/d.png")).expect("a picture");
+        dir.write("set/d.json", labelme([160, 140], &shapes));
+        costs_only_itself(&dir, &["d.png", words]);
+    }
+}
+
+#[test]
+fn one_bad_outline_of_a_photograph_leaves_its_others() {
+    let dir = Dir::new();
+    drawn_nail().save(dir.place("set/a.png")).expect("a picture");
+    let shapes = [
+        ("nail", "polygon", vec![[1.0, 1.0], [9.0, 9.0]]),
+        ("nail", "polygon", drawn_outline()),
+        ("axis", "line", drawn_axis()),
+    ];
+    dir.write("set/a.json", labelme([160, 140], &shapes));
+    dir.lunula(&["photos", "set", "--out", "out"]).expect(0);
+    let rows = dir.table("out/nails.csv");
+    assert_eq!(rows.iter().map(|r| r["used"].as_str()).collect::<Vec<_>>(), ["false", "true"]);
+    assert!(rows[0]["reason"].contains("2 different point(s)") && rows[0]["length_px"].is_empty());
+    assert!(dir.path("out/normalized/set/a-2.png").exists());
+}
+
+#[test]
+fn an_annotation_or_mask_of_another_picture_is_refused() {
+    let dir = good_set();
+    drawn_nail().save(dir.place("set/d.png")).expect("a picture");
+    dir.write("set/d.json", labelme([1600, 1400], &[("nail", "polygon", drawn_outline())]));
+    costs_only_itself(&dir, &["d.json", "[1600, 1400] px", "[160, 140] px"]);
+    std::fs::remove_file(dir.path("set/d.json")).expect("removed");
+    image::GrayImage::from_pixel(80, 70, image::Luma([255])).save(dir.place("masks/d.png")).expect("a mask");
+    let answer = dir.lunula(&["photos", "set", "--out", "out", "--masks", "masks"]).expect(1);
+    assert!(answer.stderr.contains("masks/d.png: was drawn on a picture of [80, 70] px"), "{}", answer.stderr);
+}
+
+#[test]
+fn a_broken_annotation_is_named_with_its_line() {
+    let dir = good_set();
+    drawn_nail().save(dir.place("set/d.png")).expect("a picture");
+    dir.write("set/d.json", "{\n \"shapes\": [\n");
+    costs_only_itself(&dir, &["set/d.json", "line 3"]);
+}
+
+#[test]
+fn a_turn_that_the_size_does_not_tell_is_refused_until_it_is_said() {
+    let dir = good_set();
+    let upside_down = image::imageops::rotate180(&drawn_nail());
+    let tiff = b"II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0\x03\0\0\0\0\0\0\0";
+    let mut encoder =
+        image::codecs::png::PngEncoder::new(std::fs::File::create(dir.place("set/d.png")).expect("a file"));
+    image::ImageEncoder::set_exif_metadata(&mut encoder, tiff.to_vec()).expect("PNG holds EXIF");
+    image::ImageEncoder::write_image(encoder, &upside_down, 160, 140, image::ExtendedColorType::Rgb8)
+        .expect("a picture");
+    dir.write("set/d.json", drawn_labels());
+    costs_only_itself(&dir, &["d.png", "--annotations upright"]);
+    dir.lunula(&["photos", "set", "--out", "out", "--annotations", "upright"]).expect(0);
+    let bytes = dir.bytes_of("out");
+    assert!(bytes["normalized/set/d.png"] == bytes["normalized/set/a.png"]);
+}
+
+#[test]
+fn a_subject_twice_in_a_pose_counts_for_none() {
+    let dir = good_set();
+    drawn_nail().save(dir.place("set/d.png")).expect("a picture");
+    drawn_nail().save(dir.place("set/d.bmp")).expect("a picture");
+    dir.write("set/d.json", drawn_labels());
+    costs_only_itself(&dir, &["d.bmp, d.png", "subject `d` is there 2 times in pose `set`", "remove all but one"]);
+}
+
+#[test]
+fn a_manifest_s_faults_are_named_by_line() {
+    let dir = good_set();
+    let rows = "a.png,a,p\nmissing.png,x,p\n,y,p\nb.png,b,p\nc.png,../up,p\nc.png,c,p\n";
+    dir.write("set/photos.csv", format!("file,subject,pose\n{rows}"));
+    let answer = dir.lunula(&["photos", "set", "--out", "out"]).expect(1);
+    for words in ["line 3: missing.png does not exist", "line 4: the cell `file` is empty", "line 6: `../up`"] {
+        assert!(answer.stderr.contains(words), "`{words}` is not in {}", answer.stderr);
+    }
+    assert_eq!(used(&dir), ["a", "b", "c"]);
+    dir.write("set/photos.csv", "name;who\na.png;a\n");
+    dir.lunula(&["photos", "set", "--out", "out"]).expect(2).says("it needs file,subject,pose");
+}
+
+#[test]
+fn colour_and_grey_in_a_pose_are_warned_of() {
+    let dir = good_set();
+    image::DynamicImage::from(drawn_nail()).to_luma8().save(dir.place("set/d.png")).expect("a picture");
+    dir.write("set/d.json", drawn_labels());
+    dir.lunula(&["photos", "set", "--out", "out"]).expect(0).says("pose `set` mixes 3 colour and 1 grey photograph(s)");
+}
+
+#[test]
+fn nothing_to_do_is_said_with_what_was_looked_for() {
+    let dir = Dir::new();
+    dir.write("empty/readme.txt", "nothing here");
+    dir.lunula(&["photos", "empty", "--out", "out"]).expect(2).says("no photographs here");
+    dir.lunula(&["photos", "nowhere", "--out", "out"]).expect(2).says("nowhere");
+    dir.lunula(&["photos", "empty", "--out", "out", "--size", "3"]).expect(2).says("8..=4096");
+    dir.lunula(&["photos", "empty", "--out", "out", "--margin", "nan"]).expect(2).says("1..=5");
+    dir.lunula(&["photos", "empty", "--out", "out", "--masks", "nowhere"]).expect(2).says("--masks nowhere");
+    dir.lunula(&["photos", "empty"]).expect(2).says("--out");
+    assert!(!dir.path("out").exists());
+}
+
+#[test]
+fn a_run_that_fails_leaves_what_stood() {
+    let dir = good_set();
+    dir.lunula(&["photos", "set", "--out", "out"]).expect(0);
+    let before = dir.bytes_of("out");
+    for subject in ["a", "b", "c"] {
+        dir.write(&format!("set/{subject}.png"), "no picture");
+    }
+    let answer = dir.lunula(&["photos", "set", "--out", "out"]).expect(2);
+    assert!(answer.stderr.contains("not one nail could be used") && answer.stderr.contains("b.png"));
+    assert!(dir.bytes_of("out") == before);
+}
+
+#[test]
+fn a_place_that_can_t_be_written_is_said_before_any_work() {
+    let dir = good_set();
+    dir.write("file", "not a folder");
+    dir.lunula(&["photos", "set", "--out", "file/out"]).expect(2).says("choose another --out");
+    if cfg!(target_os = "linux") {
+        // Nobody can write there, not even root.
+        dir.lunula(&["photos", "set", "--out", "/proc/lunula"]).expect(2).says("/proc/lunula");
+    }
+}
+
+#[test]
+fn a_result_s_place_taken_by_a_folder_changes_nothing() {
+    let dir = good_set();
+    dir.write("out/maps/set-mean.npy/mine.txt", "mine");
+    dir.write("out/nails.csv", "mine");
+    dir.lunula(&["photos", "set", "--out", "out"]).expect(2).says("is a folder");
+    assert_eq!(dir.bytes_of("out").keys().collect::<Vec<_>>(), ["maps/set-mean.npy/mine.txt", "nails.csv"]);
+}
+
+/// A disk that fills up half-way, as a limit on the size of files.
+#[cfg(unix)]
+#[test]
+fn a_disk_that_fills_up_leaves_what_stood() {
+    let dir = good_set();
+    dir.write("out/nails.csv", "mine");
+    let script = format!("trap '' XFSZ; ulimit -f 200; exec {} photos set --out out", env!("CARGO_BIN_EXE_lunula"));
+    let output = Command::new("sh").args(["-c", &script]).current_dir(dir.path("")).output().expect("a shell");
+    let stderr = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{stderr}");
+    assert!(stderr.contains("cannot be written") && stderr.contains("nothing there was changed"), "{stderr}");
+    assert_eq!(dir.bytes_of("out").keys().collect::<Vec<_>>(), ["nails.csv"]);
+}
+
+#[test]
+fn a_photograph_without_an_outline_is_left_out_where_none_may_be_found() {
+    let dir = good_set();
+    drawn_nail().save(dir.place("set/d.png")).expect("a picture");
+    let answer = dir.lunula(&["photos", "set", "--out", "out", "--outline", "annotated"]).expect(1);
+    assert!(answer.stderr.contains("d.png: has no outline"), "{}", answer.stderr);
+}
+
+#[test]
+fn hostile_names_stay_words() {
+    let dir = Dir::new();
+    dir.nail("set/a & <b>");
+    dir.nail("set/c");
+    dir.nail("set/c-2");
+    let answer = dir.lunula(&["photos", "set", "--out", "out"]).expect(1);
+    assert!(answer.stderr.contains("subject `c-2` could be taken for a nail of subject `c`"), "{}", answer.stderr);
+    let html = std::fs::read_to_string(dir.path("out/report.html")).expect("a report");
+    assert!(html.contains("a &amp; &lt;b&gt;") && !html.contains("<b>"));
+}
