@@ -115,7 +115,11 @@ impl Sheet {
         let drawn = self.draw();
         let grey = drawn.pixels().all(|p| p.0[0] == p.0[1] && p.0[1] == p.0[2]);
         let levels = || drawn.chunks_exact(3).map(|p| p[0]).collect();
-        let flat = if grey { GrayImage::from_raw(drawn.width(), drawn.height(), levels()).map(DynamicImage::from) } else { None };
+        let flat = if grey {
+            GrayImage::from_raw(drawn.width(), drawn.height(), levels()).map(DynamicImage::from)
+        } else {
+            None
+        };
         super::png(&flat.unwrap_or_else(|| drawn.into()))
     }
 

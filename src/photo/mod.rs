@@ -17,6 +17,7 @@ pub mod plan;
 mod plane;
 pub mod read;
 pub mod report;
+mod resample;
 pub mod results;
 pub mod set;
 
