@@ -4,6 +4,16 @@
 //! pixel is (0, 0), x to the right, y down. An [`Axis`] is a direction on that picture, from the eponychium (proximal)
 //! to the hyponychium (distal).
 
+mod axis;
+mod finger;
+mod mask;
+mod patch;
+mod shape;
+
+pub use axis::{AxisDoubt, AxisUnknown, FoundAxis, LEAST_CONFIDENCE, Side, axis_towards, find_axes};
+pub use mask::{DroppedRegion, MaskFault, MaskOutlines, outlines_from_mask};
+pub use shape::Shape;
+
 use geo::{Area, BooleanOps, Coord, LineString, Polygon, Validation};
 use thiserror::Error;
 

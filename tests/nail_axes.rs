@@ -1,0 +1,162 @@
+//! The axes found on real photographs of hands, against directions read off by eye.
+//!
+//! `tests/data/real_nail_axes.csv` holds, for every nail of the CC0 photographs of `../shared/data/nail/vpapenko_cc0`, the
+//! centre of its mask region and the direction of its distal end, clockwise from up, as a person sees it (to about 5
+//! degrees where the nail faces the camera, 15 where it is seen from its side).
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use image::DynamicImage;
+use lunula::photo::outline::{
+    Axis, AxisUnknown, FoundAxis, Outline, Shape, Side, axis_towards, find_axes, outlines_from_mask,
+};
+
+/// One photograph with its nails and their true axes, degrees clockwise from up.
+struct Hand {
+    file: String,
+    photo: DynamicImage,
+    nails: Vec<Outline>,
+    truth_deg: Vec<f64>,
+}
+
+fn data() -> Option<PathBuf> {
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data/nail/vpapenko_cc0"));
+    if folder.is_dir() {
+        return Some(folder.to_path_buf());
+    }
+    eprintln!("skipped: the photographs of {} are not here", folder.display());
+    None
+}
+
+fn real_hands() -> Option<Vec<Hand>> {
+    let folder = data()?;
+    let mut truth: BTreeMap<String, Vec<[f64; 3]>> = BTreeMap::new();
+    let mut rows = csv::Reader::from_path(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/real_nail_axes.csv")).unwrap();
+    for row in rows.deserialize() {
+        let (file, x, y, axis): (String, f64, f64, f64) = row.unwrap();
+        truth.entry(file).or_default().push([x, y, axis]);
+    }
+    let hands = truth.into_iter().map(|(file, rows)| {
+        let photo = image::open(folder.join("images").join(&file)).unwrap();
+        let mask = image::open(folder.join("masks").join(&file)).unwrap();
+        let nails = outlines_from_mask(&mask).unwrap().nails;
+        assert_eq!(nails.len(), rows.len(), "{file}: nails in the mask");
+        let nearest = |nail: &Outline| {
+            let [x, y] = Shape::of(nail).centroid_px;
+            let away = |row: &[f64; 3]| (row[0] - x).hypot(row[1] - y);
+            let row = rows.iter().min_by(|a, b| away(a).total_cmp(&away(b))).unwrap();
+            assert!(away(row) < 2.0, "{file}: no truth at ({x:.1}, {y:.1})");
+            row[2]
+        };
+        let truth_deg = nails.iter().map(nearest).collect();
+        Hand { file, photo, nails, truth_deg }
+    });
+    Some(hands.collect())
+}
+
+fn error_deg(axis: Axis, truth_deg: f64) -> f64 {
+    Axis::from_clockwise_rad(axis.clockwise_rad() - truth_deg.to_radians()).clockwise_deg().abs()
+}
+
+/// What came of a set: errors of the told ones, and how many were left out.
+#[derive(Debug, Default)]
+struct Tally {
+    nails: usize,
+    errors_deg: Vec<f64>,
+}
+
+impl Tally {
+    fn of(hands: &[Hand], find: impl Fn(&Hand) -> Vec<Result<FoundAxis, AxisUnknown>>) -> Self {
+        let mut tally = Self::default();
+        for hand in hands {
+            for (k, (found, truth)) in find(hand).into_iter().zip(&hand.truth_deg).enumerate() {
+                tally.nails += 1;
+                match found {
+                    Ok(found) => {
+                        let error = error_deg(found.axis, *truth);
+                        if error > 25.0 {
+                            eprintln!("{} nail {k}: {:.0} for {truth}, {:.2}", hand.file, found.axis.clockwise_deg(), found.confidence);
+                        }
+                        tally.errors_deg.push(error);
+                    }
+                    Err(unknown) => {
+                        let guess = unknown.best_guess.map(|g| (g.axis.clockwise_deg().round(), g.confidence));
+                        eprintln!("{} nail {k}: {unknown} {guess:?} for {truth}", hand.file);
+                    }
+                }
+            }
+        }
+        tally.errors_deg.sort_by(f64::total_cmp);
+        eprintln!(
+            "{} nails, {} told, {} off by over 45 degrees, {} by over 60; median {:.1}, 90 % {:.1}, most {:.1} degrees",
+            tally.nails, tally.told(), tally.beyond(45.0), tally.beyond(60.0), tally.quantile(0.5), tally.quantile(0.9), tally.quantile(1.0)
+        );
+        tally
+    }
+
+    fn told(&self) -> usize {
+        self.errors_deg.len()
+    }
+
+    fn beyond(&self, limit_deg: f64) -> usize {
+        self.errors_deg.iter().filter(|error| **error > limit_deg).count()
+    }
+
+    fn quantile(&self, q: f64) -> f64 {
+        self.errors_deg[((self.errors_deg.len() - 1) as f64 * q).round() as usize]
+    }
+}
+
+#[test]
+fn the_distal_end_of_real_nails_is_found() {
+    let Some(hands) = real_hands() else { return };
+    let tally = Tally::of(&hands, |hand| find_axes(&hand.photo, &hand.nails));
+    let (even, odd): (Vec<_>, Vec<_>) = hands.into_iter().enumerate().partition(|(k, _)| k % 2 == 0);
+    for half in [even, odd] {
+        let half: Vec<Hand> = half.into_iter().map(|(_, hand)| hand).collect();
+        Tally::of(&half, |hand| find_axes(&hand.photo, &hand.nails));
+    }
+    assert_eq!(tally.nails, 127);
+    assert!(tally.told() >= 120, "{} told", tally.told());
+    assert_eq!(tally.beyond(45.0), 0);
+    assert!(tally.quantile(0.5) < 10.0);
+}
+
+#[test]
+fn grey_photographs_tell_as_well() {
+    let Some(hands) = real_hands() else { return };
+    let tally = Tally::of(&hands, |hand| {
+        let image::DynamicImage::ImageRgb8(photo) = &hand.photo else { panic!("{} has no colour", hand.file) };
+        let green = image::GrayImage::from_fn(photo.width(), photo.height(), |x, y| image::Luma([photo.get_pixel(x, y).0[1]]));
+        find_axes(&green.into(), &hand.nails)
+    });
+    assert!(tally.told() >= 115, "{} told", tally.told());
+    assert_eq!(tally.beyond(60.0), 0);
+}
+
+#[test]
+fn each_nail_on_its_own() {
+    let Some(hands) = real_hands() else { return };
+    let tally = Tally::of(&hands, |hand| {
+        hand.nails.iter().flat_map(|nail| find_axes(&hand.photo, std::slice::from_ref(nail))).collect()
+    });
+    assert!(tally.told() >= 110, "{} told", tally.told());
+    assert_eq!(tally.beyond(60.0), 0);
+}
+
+#[test]
+fn the_hint_gives_the_shape_its_end() {
+    let Some(hands) = real_hands() else { return };
+    let tally = Tally::of(&hands, |hand| {
+        let turned = |(nail, truth): (&Outline, &f64)| {
+            let side = [Side::Up, Side::Right, Side::Down, Side::Left]
+                .into_iter()
+                .min_by(|a, b| error_deg(a.axis(), *truth).total_cmp(&error_deg(b.axis(), *truth)))
+                .unwrap();
+            Ok(FoundAxis { axis: axis_towards(nail, side), confidence: 1.0 })
+        };
+        hand.nails.iter().zip(&hand.truth_deg).map(turned).collect()
+    });
+    eprintln!("hint {tally:?}");
+}
