@@ -30,12 +30,15 @@ const PEAK_DEG: f64 = 40.0;
 const UNIFORM: f64 = 0.6;
 /// Spread of the directions of a hand's fingers, degrees (standard deviation).
 const SPREAD_DEG: f64 = 30.0;
+/// The others turn a nail only where its own picture gives the other direction at least this part of its best one's
+/// probability.
+const STANDING: f64 = 0.5;
 /// Outlines below this long axis show no finger, pixels.
 const LEAST_LENGTH_PX: f64 = 5.0;
 /// Shapes below this elongation have no axis of their own.
-const ROUND: f64 = 1.05;
+const ROUND: f64 = 1.1;
 /// Above this elongation a nail's long axis lies along the finger: nails are at most about this much wider than long.
-const WIDE: f64 = 1.5;
+const WIDE: f64 = 1.35;
 
 /// The axis of a nail as found, and how sure that is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -166,8 +169,9 @@ fn decide(own: &Directions, others: &[&Directions]) -> Result<FoundAxis, AxisUnk
     let together = own.given(others);
     let found = together.peak();
     let unsure = |doubt| Err(AxisUnknown { doubt, best_guess: Some(found) });
-    let turned = turn(found.axis.clockwise_rad() - own.peak().axis.clockwise_rad()).abs();
-    if turned > 1.5 * PEAK_DEG.to_radians() {
+    let alone = own.peak();
+    let turned = turn(found.axis.clockwise_rad() - alone.axis.clockwise_rad()).abs();
+    if turned > PEAK_DEG.to_radians() && own.around(found.axis.clockwise_rad()).0 < STANDING * alone.confidence {
         return unsure(AxisDoubt::AgainstOthers);
     }
     if found.confidence < LEAST_CONFIDENCE {
@@ -204,15 +208,21 @@ impl Directions {
     /// The mean direction around the most probable one, and the probability there.
     fn peak(&self) -> FoundAxis {
         let best = (0..DIRECTIONS).rev().max_by(|&a, &b| self.0[a].total_cmp(&self.0[b])).unwrap_or(0);
-        let (mut mass, mut mean) = (0.0, 0.0);
+        let (mass, mean) = self.around(direction(best));
+        FoundAxis { axis: Axis::from_clockwise_rad(direction(best) + mean), confidence: mass.min(1.0) }
+    }
+
+    /// The probability within [`PEAK_DEG`] of `centre_rad`, and the mean offset from it there.
+    fn around(&self, centre_rad: f64) -> (f64, f64) {
+        let (mut mass, mut moment) = (0.0, 0.0);
         for (k, p) in self.0.iter().enumerate() {
-            let away = turn(direction(k) - direction(best));
+            let away = turn(direction(k) - centre_rad);
             if away.abs() <= PEAK_DEG.to_radians() + 1e-9 {
                 mass += p;
-                mean += p * away;
+                moment += p * away;
             }
         }
-        FoundAxis { axis: Axis::from_clockwise_rad(direction(best) + mean / mass), confidence: mass.min(1.0) }
+        (mass, moment / mass)
     }
 }
 
