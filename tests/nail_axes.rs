@@ -8,9 +8,12 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use image::DynamicImage;
+use lunula::phantom::nail::{Background, Camera, Depth, Light, NailScene, Pose, RenderOptions, Subject};
 use lunula::photo::outline::{
     Axis, AxisUnknown, FoundAxis, Outline, Shape, Side, axis_towards, find_axes, outlines_from_mask,
 };
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 
 /// One photograph with its nails and their true axes, degrees clockwise from up.
 struct Hand {
@@ -204,6 +207,42 @@ fn photographs_seen_otherwise_tell_the_same() {
         assert!(tally.told() >= 110, "{name}: {} told", tally.told());
         assert!(tally.beyond(60.0) <= 1, "{name}: {} wrong", tally.beyond(60.0));
     }
+}
+
+/// Close-ups of one finger in any light, on any background, up to 30 degrees off upright.
+fn phantoms(count: u32) -> Vec<Hand> {
+    (0..count)
+        .map(|index| {
+            let mut rng = ChaCha8Rng::seed_from_u64(7);
+            rng.set_stream(u64::from(index));
+            let subject = Subject::random(11, index);
+            let filling = rng.random_range(0.3..0.7);
+            let size = if index % 4 == 0 { [640, 480] } else { [320, 240] };
+            let mut camera = Camera::close_up(&mut rng, size, subject.nail.aspect, filling, 30.0);
+            camera.background = Background::random(&mut rng);
+            let light = if index % 2 == 0 { Light::random_chamber(&mut rng) } else { Light::random(&mut rng) };
+            let pose = Pose::ALL[index as usize % Pose::ALL.len()];
+            let scene = NailScene { subject, pose, light, camera };
+            let depth = if index % 5 == 0 { Depth::Sixteen } else { Depth::Eight };
+            let noise_sd = rng.random_range(0.0..3.0);
+            let options = RenderOptions { depth, grey: index % 3 == 0, noise_sd, noise_seed: u64::from(index) };
+            Hand {
+                file: format!("phantom {index} ({filling:.2} of the height)"),
+                photo: scene.render(&options).unwrap(),
+                nails: vec![scene.outline().unwrap()],
+                truth_deg: vec![scene.axis().clockwise_deg()],
+            }
+        })
+        .collect()
+}
+
+#[test]
+fn the_axes_of_phantoms_are_found() {
+    let scenes = phantoms(400);
+    let tally = Tally::of(&scenes, |scene| find_axes(&scene.photo, &scene.nails));
+    assert_eq!(tally.nails, 400);
+    assert!(tally.told() >= 396, "{} told", tally.told());
+    assert_eq!(tally.beyond(45.0), 0);
 }
 
 #[test]

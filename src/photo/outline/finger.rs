@@ -21,6 +21,8 @@ const SYMMETRY: f32 = 3.5;
 /// Evidence where the photograph ends: that of an average place, so that it speaks neither for nor against.
 const UNSEEN_EDGE: f32 = 0.35;
 const UNSEEN_SKIN: f32 = 0.5;
+/// Weight of an unseen place against a seen one.
+const UNSEEN_WEIGHT: f32 = 0.3;
 const LENGTH: f32 = NAIL_CELLS as f32;
 
 /// A candidate: the nail's frame in the patch.
@@ -130,12 +132,13 @@ impl Frame<'_> {
     }
 }
 
-/// Mean with `unseen` in the place of what is missing.
+/// Mean in which what is missing counts as `unseen`, but less than what is seen.
 fn mean(values: impl Iterator<Item = Option<f32>>, unseen: f32) -> f32 {
-    let (mut sum, mut count) = (0.0, 0);
+    let (mut sum, mut weights) = (0.0, 0.0);
     for value in values {
-        sum += value.unwrap_or(unseen);
-        count += 1;
+        let weight = if value.is_some() { 1.0 } else { UNSEEN_WEIGHT };
+        sum += weight * value.unwrap_or(unseen);
+        weights += weight;
     }
-    if count == 0 { unseen } else { sum / count as f32 }
+    if weights > 0.0 { sum / weights } else { unseen }
 }

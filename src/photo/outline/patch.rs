@@ -26,6 +26,8 @@ const SIDE: usize = 2 * HALF + 1;
 const READS: u32 = 3;
 /// Smoothing before derivatives, cells: below it lie the pixels' noise and hairs.
 const BLUR: f32 = 0.7;
+/// Cells within this distance of the nail show its own edge.
+const CLEAR_OF_NAIL: f64 = 2.0;
 /// Derivatives below this, relative to the nail's luma a cell, are noise (1 % is 1.5 levels of an 8-bit nail at 150).
 const EDGE_FLOOR: f32 = 0.01;
 /// Colour distances below this, relative to the nail's luma, are noise.
@@ -114,7 +116,7 @@ impl Patch {
             }
         }
         let near: Vec<usize> =
-            (0..SIDE * SIDE).filter(|&i| whole[i] && away(i) > 0.0 && away(i) <= 0.9 * NAIL_CELLS).collect();
+            (0..SIDE * SIDE).filter(|&i| whole[i] && away(i) > CLEAR_OF_NAIL && away(i) <= 0.9 * NAIL_CELLS).collect();
         let mut edges: Vec<f32> = near.iter().map(|&i| (cells[i].tensor[0] + cells[i].tensor[2]).sqrt()).collect();
         let edge = quantile(&mut edges, 0.75)?;
         let strongest = quantile(&mut edges, 0.95)?;
