@@ -72,8 +72,14 @@ impl Patch {
         let (mut colours, inside) = gather(image, shape.centroid_px, px_per_cell);
         let at_nail = |i: usize| mask.as_raw()[i] > 0;
 
-        let mut lumas: Vec<f32> = (0..SIDE * SIDE).filter(|&i| at_nail(i) && inside[i]).map(|i| colours[i][0]).collect();
-        let scale = 1.0 / quantile(&mut lumas, 0.5)?.max(1e-3);
+        let distance = distance_transform(&mask, Norm::L1);
+        let away = |i: usize| f64::from(distance.as_raw()[i]);
+        let ring = |i: usize| inside[i] && away(i) > 1.0 && away(i) <= 3.0;
+        let median = |values: &mut dyn Iterator<Item = f32>| quantile(&mut values.collect::<Vec<f32>>(), 0.5);
+        let on_nail = (0..SIDE * SIDE).filter(|&i| at_nail(i) && inside[i]);
+        let nail_luma = median(&mut on_nail.map(|i| colours[i][0]))?;
+        let skin_luma = median(&mut (0..SIDE * SIDE).filter(|&i| ring(i)).map(|i| colours[i][0]))?;
+        let scale = 1.0 / nail_luma.min(skin_luma).max(1e-3);
         // Beyond thrice the nail's luma all is "much brighter": a lamp in the background is no stronger edge.
         for colour in &mut colours {
             *colour = colour.map(|c| (c * scale).clamp(-3.0, 3.0));
@@ -85,17 +91,10 @@ impl Patch {
             gaussian_blur_f32(&plane, BLUR).into_raw()
         });
 
-        let distance = distance_transform(&mask, Norm::L1);
-        let away = |i: usize| f64::from(distance.as_raw()[i]);
-        let skin = {
-            let ring = |i: usize| inside[i] && (2.0..=3.0).contains(&away(i));
-            let mut median = [0.0; 3];
-            for (c, value) in median.iter_mut().enumerate() {
-                let mut ring: Vec<f32> = (0..SIDE * SIDE).filter(|&i| ring(i)).map(|i| planes[c][i]).collect();
-                *value = quantile(&mut ring, 0.5)?;
-            }
-            median
-        };
+        let mut skin = [0.0; 3];
+        for (value, plane) in skin.iter_mut().zip(&planes) {
+            *value = median(&mut (0..SIDE * SIDE).filter(|&i| ring(i)).map(|i| plane[i]))?;
+        }
 
         let mut cells = vec![Cell::default(); SIDE * SIDE];
         let mut whole = vec![false; SIDE * SIDE];
