@@ -35,6 +35,10 @@ const SPREAD_DEG: f64 = 30.0;
 const STANDING: f64 = 0.5;
 /// Outlines below this long axis show no finger, pixels.
 const LEAST_LENGTH_PX: f64 = 5.0;
+/// A nail seen from above or aslant has an outline without dents; below this solidity it is no single nail ..
+const DENTED: f64 = 0.91;
+/// .. save in profile, where it is a bent sliver, more elongated than this.
+const PROFILE: f64 = 2.5;
 /// Shapes below this elongation have no axis of their own.
 const ROUND: f64 = 1.1;
 /// Above this elongation a nail's long axis lies along the finger: nails are at most about this much wider than long.
@@ -70,6 +74,12 @@ pub enum AxisDoubt {
     TooSmall {
         /// Long axis of the outline, pixels.
         length_px: f64,
+    },
+    /// The outline is dented as where two nails touch.
+    #[error("the outline is dented (it fills {share:.2} of its convex hull) as where two nails touch; separate them")]
+    Dented {
+        /// Area over the area of its convex hull.
+        share: f64,
     },
     /// Nothing stands out around the nail.
     #[error("nothing around the nail shows where the finger lies")]
@@ -154,6 +164,9 @@ fn look(image: &DynamicImage, outline: &Outline) -> Result<Directions, AxisDoubt
     let shape = Shape::of(outline);
     if shape.major_px < LEAST_LENGTH_PX {
         return Err(AxisDoubt::TooSmall { length_px: shape.major_px });
+    }
+    if shape.solidity < DENTED && shape.elongation() < PROFILE {
+        return Err(AxisDoubt::Dented { share: shape.solidity });
     }
     let patch = Patch::read(image, outline, &shape).ok_or(AxisDoubt::Outside)?;
     if patch.featureless {

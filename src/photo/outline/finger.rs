@@ -19,7 +19,7 @@ const SKIN: f32 = 3.5;
 /// Weight of the outline's mirror symmetry (0 to 1).
 const SYMMETRY: f32 = 3.5;
 /// Evidence where the photograph ends: that of an average place, so that it speaks neither for nor against.
-const UNSEEN_EDGE: f32 = 0.35;
+const UNSEEN_EDGE: f32 = 0.25;
 const UNSEEN_SKIN: f32 = 0.5;
 /// Weight of an unseen place against a seen one.
 const UNSEEN_WEIGHT: f32 = 0.3;

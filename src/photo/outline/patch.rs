@@ -136,8 +136,8 @@ impl Patch {
     /// How much of an edge crosses the unit vector `normal` at `at`, 0 to 1 (0.5: as strong as the stronger ones here);
     /// `None` outside the photograph.
     pub(super) fn edge(&self, at: [f32; 2], normal: [f32; 2]) -> Option<f32> {
-        let change = self.cell(at)?.change2(normal[0], normal[1]).sqrt();
-        Some(change / (change + self.typical_edge))
+        let change2 = self.cell(at)?.change2(normal[0], normal[1]);
+        Some(change2 / (change2 + self.typical_edge * self.typical_edge))
     }
 
     /// The cell at `at`, interpolated; `None` outside the photograph.

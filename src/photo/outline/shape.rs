@@ -4,6 +4,8 @@
 //! e.g. <https://en.wikipedia.org/wiki/Second_moment_of_area#Any_polygon>). A mirror-symmetric shape has its symmetry
 //! axis along one of the two, but the moments tell neither which one nor which end is distal.
 
+use geo::{Area, ConvexHull};
+
 use super::{Axis, Outline};
 
 /// Area moments of an outline.
@@ -17,6 +19,8 @@ pub struct Shape {
     pub minor_px: f64,
     /// One of the two directions of the long axis.
     pub major: Axis,
+    /// Area over the area of the convex hull, 1 for a shape without dents.
+    pub solidity: f64,
 }
 
 impl Shape {
@@ -49,6 +53,7 @@ impl Shape {
             major_px: 4.0 * (mean + half).max(0.0).sqrt(),
             minor_px: 4.0 * (mean - half).max(0.0).sqrt(),
             major: Axis::from_clockwise_rad(angle + std::f64::consts::FRAC_PI_2),
+            solidity: outline.area_px2() / outline.polygon().convex_hull().unsigned_area(),
         }
     }
 
