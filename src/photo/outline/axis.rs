@@ -23,7 +23,7 @@ use super::{Axis, Outline};
 
 const DIRECTIONS: usize = 72;
 /// Probability within [`PEAK_DEG`] of the best direction below which a nail is left out.
-pub const LEAST_CONFIDENCE: f64 = 0.5;
+pub const LEAST_CONFIDENCE: f64 = 0.6;
 /// Directions that count as the same answer, degrees to either side.
 const PEAK_DEG: f64 = 40.0;
 /// Share of the prior that knows nothing of the other nails.
