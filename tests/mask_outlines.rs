@@ -1,5 +1,7 @@
 //! Outlines from masks: extents, sub-pixel places, borders, depths, and what is no mask.
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use image::{DynamicImage, GrayImage, ImageBuffer, Luma, LumaA, Rgb, RgbImage, Rgba};
 use lunula::photo::outline::{MaskFault, Outline, Shape, outlines_from_mask};
 
@@ -108,7 +110,8 @@ fn nails_come_from_top_to_bottom_and_left_to_right() {
     let places = [[70, 10], [10, 10], [40, 40], [10, 70]];
     let mask = drawn(100, 100, |x, y| places.iter().any(|&[a, b]| in_box(x, y, [a, a + 9], [b, b + 14])));
     let found = outlines_from_mask(&mask.into()).unwrap();
-    let centres: Vec<[f64; 2]> = found.nails.iter().map(|nail| Shape::of(nail).centroid_px.map(|c| c.round())).collect();
+    let centres: Vec<[f64; 2]> =
+        found.nails.iter().map(|nail| Shape::of(nail).centroid_px.map(|c| c.round())).collect();
     // Two at the same height: left first.
     assert_eq!(centres, [[15.0, 17.0], [75.0, 17.0], [45.0, 47.0], [15.0, 77.0]]);
 }
@@ -125,7 +128,10 @@ fn numbers_of_instances_are_nails_though_they_touch() {
         }])
     });
     let found = outlines_from_mask(&mask.into()).unwrap();
-    assert_eq!(found.nails.iter().map(extent).collect::<Vec<_>>(), [[[4.5, 24.5], [4.5, 34.5]], [[24.5, 44.5], [4.5, 34.5]]]);
+    assert_eq!(
+        found.nails.iter().map(extent).collect::<Vec<_>>(),
+        [[[4.5, 24.5], [4.5, 34.5]], [[24.5, 44.5], [4.5, 34.5]]]
+    );
 }
 
 #[test]

@@ -4,13 +4,16 @@
 //! centre of its mask region and the direction of its distal end, clockwise from up, as a person sees it (to about 5
 //! degrees where the nail faces the camera, 15 where it is seen from its side).
 
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use image::DynamicImage;
 use lunula::phantom::nail::{Background, Camera, Depth, Light, NailScene, Pose, RenderOptions, Subject};
 use lunula::photo::outline::{
-    Axis, AxisDoubt, AxisUnknown, FoundAxis, Outline, Shape, Side, axis_towards, find_axes, outlines_from_mask,
+    Axis, AxisDoubt, AxisUnknown, FoundAxis, Outline, Shape, Side, axis_towards, find_axes, find_axes_towards,
+    outlines_from_mask,
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -35,7 +38,8 @@ fn data() -> Option<PathBuf> {
 fn real_hands() -> Option<Vec<Hand>> {
     let folder = data()?;
     let mut truth: BTreeMap<String, Vec<[f64; 3]>> = BTreeMap::new();
-    let mut rows = csv::Reader::from_path(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/real_nail_axes.csv")).unwrap();
+    let mut rows =
+        csv::Reader::from_path(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/real_nail_axes.csv")).unwrap();
     for row in rows.deserialize() {
         let (file, x, y, axis): (String, f64, f64, f64) = row.unwrap();
         truth.entry(file).or_default().push([x, y, axis]);
@@ -79,7 +83,12 @@ impl Tally {
                     Ok(found) => {
                         let error = error_deg(found.axis, *truth);
                         if error > 25.0 {
-                            eprintln!("{} nail {k}: {:.0} for {truth}, {:.2}", hand.file, found.axis.clockwise_deg(), found.confidence);
+                            eprintln!(
+                                "{} nail {k}: {:.0} for {truth}, {:.2}",
+                                hand.file,
+                                found.axis.clockwise_deg(),
+                                found.confidence
+                            );
                         }
                         tally.errors_deg.push(error);
                     }
@@ -93,7 +102,13 @@ impl Tally {
         tally.errors_deg.sort_by(f64::total_cmp);
         eprintln!(
             "{} nails, {} told, {} off by over 45 degrees, {} by over 60; median {:.1}, 90 % {:.1}, most {:.1} degrees",
-            tally.nails, tally.told(), tally.beyond(45.0), tally.beyond(60.0), tally.quantile(0.5), tally.quantile(0.9), tally.quantile(1.0)
+            tally.nails,
+            tally.told(),
+            tally.beyond(45.0),
+            tally.beyond(60.0),
+            tally.quantile(0.5),
+            tally.quantile(0.9),
+            tally.quantile(1.0)
         );
         tally
     }
@@ -131,7 +146,8 @@ fn grey_photographs_tell_as_well() {
     let Some(hands) = real_hands() else { return };
     let tally = Tally::of(&hands, |hand| {
         let image::DynamicImage::ImageRgb8(photo) = &hand.photo else { panic!("{} has no colour", hand.file) };
-        let green = image::GrayImage::from_fn(photo.width(), photo.height(), |x, y| image::Luma([photo.get_pixel(x, y).0[1]]));
+        let green =
+            image::GrayImage::from_fn(photo.width(), photo.height(), |x, y| image::Luma([photo.get_pixel(x, y).0[1]]));
         find_axes(&green.into(), &hand.nails)
     });
     assert!(tally.told() >= 115, "{} told", tally.told());
@@ -149,12 +165,22 @@ fn each_nail_on_its_own() {
 }
 
 /// The same photograph seen otherwise: `photo` changed, each point of an outline moved by `point`, angles by `angle_deg`.
-fn changed(hand: &Hand, photo: DynamicImage, point: impl Fn([f64; 2]) -> [f64; 2], angle_deg: impl Fn(f64) -> f64) -> Hand {
+fn changed(
+    hand: &Hand,
+    photo: DynamicImage,
+    point: impl Fn([f64; 2]) -> [f64; 2],
+    angle_deg: impl Fn(f64) -> f64,
+) -> Hand {
     let nails = hand.nails.iter().map(|nail| {
         let points: Vec<[f64; 2]> = nail.points().into_iter().map(&point).collect();
         Outline::new(&points).unwrap()
     });
-    Hand { file: hand.file.clone(), photo, nails: nails.collect(), truth_deg: hand.truth_deg.iter().map(|a| angle_deg(*a)).collect() }
+    Hand {
+        file: hand.file.clone(),
+        photo,
+        nails: nails.collect(),
+        truth_deg: hand.truth_deg.iter().map(|a| angle_deg(*a)).collect(),
+    }
 }
 
 fn with_pixels(hand: &Hand, pixel: impl Fn(u32, u32, [f64; 3]) -> [f64; 3]) -> Hand {
@@ -173,44 +199,54 @@ fn noise(x: u32, y: u32, channel: u32) -> f64 {
     f64::from(h ^ (h >> 15)) / f64::from(u32::MAX) * 2.0 - 1.0
 }
 
+/// Another look at the same hand.
+type View = &'static dyn Fn(&Hand) -> Hand;
+
 #[test]
 fn photographs_seen_otherwise_tell_the_same() {
     let Some(hands) = real_hands() else { return };
-    let height = |hand: &Hand| f64::from(hand.photo.height());
-    let views: [(&str, &dyn Fn(&Hand) -> Hand); 7] = [
+    let views: [(&str, View); 7] = [
         ("mirrored", &|hand| {
             let last = f64::from(hand.photo.width()) - 1.0;
             changed(hand, hand.photo.fliph(), |[x, y]| [last - x, y], |a| -a)
         }),
         ("turned", &|hand| {
-            let last = height(hand) - 1.0;
+            let last = f64::from(hand.photo.height()) - 1.0;
             changed(hand, hand.photo.rotate90(), |[x, y]| [last - y, x], |a| a + 90.0)
         }),
         ("half the size", &|hand| {
             let (width, height) = (hand.photo.width() / 2, hand.photo.height() / 2);
             let photo = hand.photo.resize_exact(width, height, image::imageops::FilterType::Triangle);
-            let scale = [f64::from(width) / f64::from(hand.photo.width()), f64::from(height) / f64::from(hand.photo.height())];
+            let scale =
+                [f64::from(width) / f64::from(hand.photo.width()), f64::from(height) / f64::from(hand.photo.height())];
             changed(hand, photo, |[x, y]| [(x + 0.5) * scale[0] - 0.5, (y + 0.5) * scale[1] - 0.5], |a| a)
         }),
         ("four times the size", &|hand| {
-            let photo = hand.photo.resize_exact(hand.photo.width() * 4, hand.photo.height() * 4, image::imageops::FilterType::CatmullRom);
+            let photo = hand.photo.resize_exact(
+                hand.photo.width() * 4,
+                hand.photo.height() * 4,
+                image::imageops::FilterType::CatmullRom,
+            );
             changed(hand, photo, |[x, y]| [x * 4.0 + 1.5, y * 4.0 + 1.5], |a| a)
         }),
         ("dim", &|hand| with_pixels(hand, |_, _, rgb| rgb.map(|v| v * 0.25))),
         ("greenish", &|hand| with_pixels(hand, |_, _, [r, g, b]| [r * 0.5, g, b * 0.4])),
-        ("noisy", &|hand| with_pixels(hand, |x, y, rgb| std::array::from_fn(|c| rgb[c] + 20.0 * noise(x, y, c as u32)))),
+        ("noisy", &|hand| {
+            with_pixels(hand, |x, y, rgb| std::array::from_fn(|c| rgb[c] + 20.0 * noise(x, y, c as u32)))
+        }),
     ];
     for (name, view) in views {
         eprintln!("-- {name}");
         let seen: Vec<Hand> = hands.iter().map(view).collect();
         let tally = Tally::of(&seen, |hand| find_axes(&hand.photo, &hand.nails));
-        assert!(tally.told() >= 110, "{name}: {} told", tally.told());
-        assert!(tally.beyond(60.0) <= 1, "{name}: {} wrong", tally.beyond(60.0));
+        // Measured: 119 (noisy), 121 (greenish), 122 the others.
+        assert!(tally.told() >= 115, "{name}: {} told", tally.told());
+        assert_eq!(tally.beyond(60.0), 0, "{name}");
     }
 }
 
 /// Close-ups of one finger in any light, on any background, up to 30 degrees off upright.
-fn phantoms(count: u32) -> Vec<Hand> {
+fn phantoms(count: u32) -> Vec<(f64, Hand)> {
     (0..count)
         .map(|index| {
             let mut rng = ChaCha8Rng::seed_from_u64(7);
@@ -226,39 +262,55 @@ fn phantoms(count: u32) -> Vec<Hand> {
             let depth = if index % 5 == 0 { Depth::Sixteen } else { Depth::Eight };
             let noise_sd = rng.random_range(0.0..3.0);
             let options = RenderOptions { depth, grey: index % 3 == 0, noise_sd, noise_seed: u64::from(index) };
-            Hand {
+            let hand = Hand {
                 file: format!("phantom {index} ({filling:.2} of the height)"),
                 photo: scene.render(&options).unwrap(),
                 nails: vec![scene.outline().unwrap()],
                 truth_deg: vec![scene.axis().clockwise_deg()],
-            }
+            };
+            (filling, hand)
         })
         .collect()
 }
 
 #[test]
 fn the_axes_of_phantoms_are_found() {
-    let scenes = phantoms(400);
-    let tally = Tally::of(&scenes, |scene| find_axes(&scene.photo, &scene.nails));
-    assert_eq!(tally.nails, 400);
-    assert!(tally.told() >= 396, "{} told", tally.told());
-    assert_eq!(tally.beyond(45.0), 0);
+    // Where the nail is longer than about half of the photograph's height, little of the finger is left to see.
+    let (near, far): (Vec<_>, Vec<_>) = phantoms(400).into_iter().partition(|(filling, _)| *filling > 0.5);
+    let [near, far] = [near, far].map(|scenes| {
+        let scenes: Vec<Hand> = scenes.into_iter().map(|(_, scene)| scene).collect();
+        Tally::of(&scenes, |scene| find_axes(&scene.photo, &scene.nails))
+    });
+    assert_eq!(near.nails + far.nails, 400);
+    // Measured: all of the far ones, 384 of all, the worst off by 7.2 degrees.
+    assert!(far.told() as f64 >= 0.99 * far.nails as f64, "{} of {} told", far.told(), far.nails);
+    assert!(near.told() + far.told() >= 376, "{} and {} told", near.told(), far.told());
+    for tally in [near, far] {
+        assert!(tally.quantile(0.5) <= 2.0 && tally.quantile(1.0) <= 15.0);
+    }
 }
 
 #[test]
-fn the_hint_gives_the_shape_its_end() {
+fn a_hint_helps_the_shape_and_more_so_the_picture() {
     let Some(hands) = real_hands() else { return };
-    let tally = Tally::of(&hands, |hand| {
-        let turned = |(nail, truth): (&Outline, &f64)| {
-            let side = [Side::Up, Side::Right, Side::Down, Side::Left]
-                .into_iter()
-                .min_by(|a, b| error_deg(a.axis(), *truth).total_cmp(&error_deg(b.axis(), *truth)))
-                .unwrap();
-            Ok(FoundAxis { axis: axis_towards(nail, side), confidence: 1.0 })
-        };
-        hand.nails.iter().zip(&hand.truth_deg).map(turned).collect()
-    });
-    assert!(tally.quantile(0.5) < 15.0);
+    let side = |truth_deg: f64| {
+        let off = |side: &Side| error_deg(side.axis(), truth_deg);
+        [Side::Up, Side::Right, Side::Down, Side::Left].into_iter().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap()
+    };
+    let hinted = |find: &dyn Fn(&Hand, &Outline, Side) -> Axis| {
+        Tally::of(&hands, |hand| {
+            let found = hand.nails.iter().zip(&hand.truth_deg).map(|(nail, truth)| find(hand, nail, side(*truth)));
+            found.map(|axis| Ok(FoundAxis { axis, confidence: 1.0 })).collect()
+        })
+    };
+    // Measured: median 9.0, over 45 degrees 10 of 127 (nearly round outlines drawn by hand).
+    let shape = hinted(&|_, nail, side| axis_towards(nail, side));
+    assert!(shape.quantile(0.5) <= 12.0);
+    // Measured: median 3.2, one over 45 degrees (47, the outline of two nails).
+    let picture =
+        hinted(&|hand, nail, side| find_axes_towards(&hand.photo, std::slice::from_ref(nail), side).remove(0));
+    assert!(picture.quantile(0.5) <= 5.0);
+    assert!(picture.beyond(60.0) <= 1, "{} wrong", picture.beyond(60.0));
 }
 
 fn ellipse(centre: [f64; 2], half: [f64; 2]) -> Outline {
@@ -272,7 +324,14 @@ fn ellipse(centre: [f64; 2], half: [f64; 2]) -> Outline {
 }
 
 /// A finger drawn flat: a strip with a round tip, the nail on it, pointing at `axis_deg`.
-fn drawn_finger(size: [u32; 2], tip: [f64; 2], nail_px: f64, axis_deg: f64, finger: u8, ground: u8) -> (DynamicImage, Outline) {
+fn drawn_finger(
+    size: [u32; 2],
+    tip: [f64; 2],
+    nail_px: f64,
+    axis_deg: f64,
+    finger: u8,
+    ground: u8,
+) -> (DynamicImage, Outline) {
     let axis = Axis::from_clockwise_rad(axis_deg.to_radians());
     let (distal, right) = (axis.distal(), axis.right());
     let place = |x: f64, y: f64| {
@@ -283,7 +342,13 @@ fn drawn_finger(size: [u32; 2], tip: [f64; 2], nail_px: f64, axis_deg: f64, fing
         let [u, v] = place(f64::from(x), f64::from(y));
         let on_finger = if v < 0.2 { u.abs() < 0.65 } else { u.hypot(v - 0.2) < 0.65 };
         let on_nail = u.hypot(v) < 0.5;
-        image::Luma([if on_nail { finger.saturating_add(8) } else if on_finger { finger } else { ground }])
+        image::Luma([if on_nail {
+            finger.saturating_add(8)
+        } else if on_finger {
+            finger
+        } else {
+            ground
+        }])
     });
     (photo.into(), ellipse(tip, [0.5 * nail_px, 0.5 * nail_px]))
 }
@@ -295,9 +360,11 @@ fn drawn_fingers_are_found_at_every_size_and_direction() {
             for (finger, ground) in [(180, 40), (60, 200), (120, 100)] {
                 let side = (6.0 * nail_px) as u32;
                 let middle = 3.0 * nail_px;
-                let (photo, nail) = drawn_finger([side, side], [middle, middle], nail_px, f64::from(axis_deg), finger, ground);
+                let (photo, nail) =
+                    drawn_finger([side, side], [middle, middle], nail_px, f64::from(axis_deg), finger, ground);
                 let found = find_axes(&photo, &[nail]).remove(0);
-                let found = found.unwrap_or_else(|e| panic!("{nail_px} px, {axis_deg} degrees, {finger} on {ground}: {e}"));
+                let found =
+                    found.unwrap_or_else(|e| panic!("{nail_px} px, {axis_deg} degrees, {finger} on {ground}: {e}"));
                 // Measured: 5.0 at 9 px, 1.6 from 40 px on.
                 assert!(error_deg(found.axis, f64::from(axis_deg)) <= 8.0, "{nail_px} px at {axis_deg}: {:?}", found);
             }
@@ -350,17 +417,24 @@ fn noise_is_no_finger() {
         });
         told += usize::from(find_axes(&photo.into(), &[ellipse([80.0, 80.0], [10.0, 12.0])])[0].is_ok());
     }
-    eprintln!("{told} of 200 told in noise");
-    // Measured: see the message; chance agreement of noise with the model.
-    assert!(told <= 4, "{told} of 200");
+    // Measured: none.
+    assert!(told <= 1, "{told} of 200 told");
 }
 
 #[test]
 fn two_nails_in_one_outline_are_refused() {
     let (photo, _) = drawn_finger([240, 240], [120.0, 120.0], 40.0, 0.0, 180, 60);
     let touching = Outline::new(&[
-        [100.0, 100.0], [116.0, 96.0], [120.0, 115.0], [124.0, 96.0], [140.0, 100.0], [140.0, 140.0], [124.0, 144.0],
-        [120.0, 125.0], [116.0, 144.0], [100.0, 140.0],
+        [100.0, 100.0],
+        [112.0, 96.0],
+        [120.0, 116.0],
+        [128.0, 96.0],
+        [140.0, 100.0],
+        [140.0, 140.0],
+        [128.0, 144.0],
+        [120.0, 124.0],
+        [112.0, 144.0],
+        [100.0, 140.0],
     ])
     .unwrap();
     let unknown = find_axes(&photo, &[touching]).remove(0).unwrap_err();
@@ -394,21 +468,25 @@ fn a_hint_turns_the_shape_and_never_against_the_hint() {
     }
 }
 
+/// Not a test of anything: how long it takes (`cargo test --release --test nail_axes -- --ignored --nocapture time`).
 #[test]
-fn timing() {
-    for (k, size, fill) in [(0, [640, 480], 0.3), (1, [640, 480], 0.6), (2, [4000, 3000], 0.5), (3, [4000, 3000], 0.05)] {
-        let mut rng = ChaCha8Rng::seed_from_u64(k);
+#[ignore = "prints times"]
+fn the_time_it_takes() {
+    for (size, filling) in [([640, 480], 0.3), ([640, 480], 0.6), ([4000, 3000], 0.5), ([4000, 3000], 0.05)] {
+        let mut rng = ChaCha8Rng::seed_from_u64(1);
         let subject = Subject::random(11, 3);
-        let camera = Camera::close_up(&mut rng, size, subject.nail.aspect, fill, 30.0);
+        let camera = Camera::close_up(&mut rng, size, subject.nail.aspect, filling, 30.0);
         let scene = NailScene { subject, pose: Pose::ALL[0], light: Light::chamber(), camera };
-        let photo = scene.render(&RenderOptions::default()).unwrap();
-        let nail = [scene.outline().unwrap()];
+        let (photo, nail) = (scene.render(&RenderOptions::default()).unwrap(), [scene.outline().unwrap()]);
         let start = std::time::Instant::now();
-        for _ in 0..20 { std::hint::black_box(find_axes(&photo, &nail)); }
-        eprintln!("TIME {size:?} {fill}: {:.2} ms", start.elapsed().as_secs_f64() * 50.0);
+        for _ in 0..50 {
+            std::hint::black_box(find_axes(&photo, &nail));
+        }
+        eprintln!("{size:?}, nail {filling} of the height: {:.2} ms", start.elapsed().as_secs_f64() * 1e3 / 50.0);
     }
-    let mask = DynamicImage::from(image::GrayImage::from_fn(4000, 3000, |x, y| image::Luma([if (x / 500 + y / 500) % 2 == 0 && x % 500 > 100 && y % 500 > 90 { 255 } else { 0 }])));
+    let white = |x: u32, y: u32| (x / 500 + y / 500).is_multiple_of(2) && x % 500 > 100 && y % 500 > 90;
+    let mask = image::GrayImage::from_fn(4000, 3000, |x, y| image::Luma([if white(x, y) { 255 } else { 0 }]));
     let start = std::time::Instant::now();
-    let n = outlines_from_mask(&mask).unwrap().nails.len();
-    eprintln!("TIME mask 12 MP {n} nails {:.1} ms", start.elapsed().as_secs_f64() * 1e3);
+    let nails = outlines_from_mask(&mask.into()).unwrap().nails.len();
+    eprintln!("mask of 12 megapixels, {nails} nails: {:.0} ms", start.elapsed().as_secs_f64() * 1e3);
 }

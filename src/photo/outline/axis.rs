@@ -11,7 +11,10 @@
 //! around against its own surroundings, the nail is left out instead.
 //!
 //! Not determined: tilt towards the camera, and nails without a visible finger (a drawing, a plain background).
-//! Measured on 127 nails of 26 real photographs and on phantoms in `tests/nail_axes.rs`.
+//!
+//! Measured by `tests/nail_axes.rs`: of 127 nails on 26 real photographs of hands 122 are told, none by over 22 degrees off,
+//! half within 3.2 (which is what the truth, read by eye, is good for); of phantom close-ups whose nail takes up to half of
+//! the photograph's height all, half within 0.4 degrees; of those up to 0.7 of it 92 %, none wrong.
 
 use image::DynamicImage;
 use thiserror::Error;
@@ -22,7 +25,10 @@ use super::shape::Shape;
 use super::{Axis, Outline};
 
 const DIRECTIONS: usize = 72;
-/// Probability within [`PEAK_DEG`] of the best direction below which a nail is left out.
+/// Log-likelihood below the best one at which a direction's neighbours are not looked at.
+const HOPELESS: f64 = 5.0;
+/// Probability within 40 degrees of the best direction below which a nail is left out. At 0.5 one nail of 127 in grey
+/// versions of the real photographs was told wrong, at 0.6 none in nine versions of all of them.
 pub const LEAST_CONFIDENCE: f64 = 0.6;
 /// Directions that count as the same answer, degrees to either side.
 const PEAK_DEG: f64 = 40.0;
@@ -30,6 +36,8 @@ const PEAK_DEG: f64 = 40.0;
 const UNIFORM: f64 = 0.6;
 /// Spread of the directions of a hand's fingers, degrees (standard deviation).
 const SPREAD_DEG: f64 = 30.0;
+/// How far nails point off the side that was given for them, degrees (standard deviation).
+const HINT_DEG: f64 = 30.0;
 /// The others turn a nail only where its own picture gives the other direction at least this part of its best one's
 /// probability.
 const STANDING: f64 = 0.5;
@@ -155,6 +163,22 @@ pub fn find_axes(image: &DynamicImage, outlines: &[Outline]) -> Vec<Result<Found
         .collect()
 }
 
+/// The axes of nails whose distal ends all point to one side, give or take: as [`find_axes`], but looked for around `hint`;
+/// where the picture does not tell, the shape and the hint do ([`axis_towards`]).
+pub fn find_axes_towards(image: &DynamicImage, outlines: &[Outline], hint: Side) -> Vec<Axis> {
+    let around = |outline| {
+        let mut directions = look(image, outline).ok()?;
+        for (k, p) in directions.0.iter_mut().enumerate() {
+            let away = turn(direction(k) - hint.axis().clockwise_rad()).to_degrees();
+            *p *= (-0.5 * (away / HINT_DEG).powi(2)).exp();
+        }
+        let found = directions.normalized().peak();
+        let near = turn(found.axis.clockwise_rad() - hint.axis().clockwise_rad()).abs() < std::f64::consts::FRAC_PI_2;
+        (near && found.confidence >= LEAST_CONFIDENCE).then_some(found.axis)
+    };
+    outlines.iter().map(|outline| around(outline).unwrap_or_else(|| axis_towards(outline, hint))).collect()
+}
+
 /// Probabilities of the directions, 360 / [`DIRECTIONS`] degrees apart from up clockwise.
 #[derive(Debug, Clone, PartialEq)]
 struct Directions([f64; DIRECTIONS]);
@@ -172,7 +196,17 @@ fn look(image: &DynamicImage, outline: &Outline) -> Result<Directions, AxisDoubt
     if patch.featureless {
         return Err(AxisDoubt::Featureless);
     }
-    let scores: [f64; DIRECTIONS] = std::array::from_fn(|k| evidence(&patch, direction(k)));
+    // Every second direction first; those between two hopeless ones need no look.
+    let mut scores = [0.0; DIRECTIONS];
+    for k in (0..DIRECTIONS).step_by(2) {
+        scores[k] = evidence(&patch, direction(k));
+    }
+    let best = scores.iter().step_by(2).copied().fold(f64::MIN, f64::max);
+    for k in (1..DIRECTIONS).step_by(2) {
+        let (before, after) = (scores[k - 1], scores[(k + 1) % DIRECTIONS]);
+        let hopeless = before.max(after) < best - HOPELESS;
+        scores[k] = if hopeless { 0.5 * (before + after) } else { evidence(&patch, direction(k)) };
+    }
     let best = scores.iter().copied().fold(f64::MIN, f64::max);
     Ok(Directions(scores.map(|score| (score - best).exp())).normalized())
 }

@@ -100,10 +100,7 @@ impl Frame<'_> {
             let centre = self.along[1] + offset as f32 - height;
             let arch = (-6..=6).map(|k| {
                 let (sin, cos) = (k as f32 * 10.0).to_radians().sin_cos();
-                let normal = [
-                    sin * self.right[0] + cos * self.distal[0],
-                    sin * self.right[1] + cos * self.distal[1],
-                ];
+                let normal = [sin * self.right[0] + cos * self.distal[0], sin * self.right[1] + cos * self.distal[1]];
                 self.patch.edge(self.at(self.middle() + half_width * sin, centre + height * cos), normal)
             });
             best = best.max(mean(arch, UNSEEN_EDGE));
@@ -116,7 +113,7 @@ impl Frame<'_> {
         let cells = (1..=6).flat_map(|j| {
             (-2..=2).map(move |i| {
                 let (u, v) = (self.middle() + 0.15 * LENGTH * i as f32, self.along[0] - 0.1 * LENGTH * j as f32);
-                self.patch.cell(self.at(u, v)).map(|cell| cell.unlike_skin)
+                self.patch.unlike_skin(self.at(u, v))
             })
         });
         mean(cells, UNSEEN_SKIN)

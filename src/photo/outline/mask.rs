@@ -13,12 +13,12 @@
 //! Holes are filled: a nail has none.
 
 use contour::contour_rings;
-use geo::{Area, BoundingRect, LineString, Polygon};
+use geo::{Area, BoundingRect, LineString, Polygon, Simplify};
 use image::{DynamicImage, GrayImage, ImageBuffer, Luma, Pixel, Primitive};
 use imageproc::region_labelling::{Connectivity, connected_components};
 use thiserror::Error;
 
-use super::{Outline, Shape};
+use super::{Outline, OutlineFault, Shape};
 
 /// The largest value of a mask that is still read as instance numbers.
 const LARGEST_ID: f32 = 32.0;
@@ -28,6 +28,10 @@ const LEAST_AREA_PX2: f64 = 36.0;
 const LEAST_EXTENT_PX: f64 = 5.0;
 /// Regions below this part of the largest one's area are specks: no nail is ten times shorter than its neighbour.
 const LEAST_SHARE: f64 = 0.01;
+/// A level line has a corner or two a pixel; those within this part of the nail's extent, or this many pixels, of the line
+/// without them go (Douglas and Peucker).
+const TOLERANCE: f64 = 2e-4;
+const LEAST_TOLERANCE_PX: f64 = 0.03;
 /// More regions than this of instance numbers are a noisy picture.
 const MOST_ID_REGIONS: usize = 64;
 
@@ -88,10 +92,9 @@ pub fn outlines_from_mask(mask: &DynamicImage) -> Result<MaskOutlines, MaskFault
         return Err(MaskFault::Range { largest, full });
     }
     // Grey levels of one kind, or a kind for each number.
-    let kinds = GrayImage::from_fn(values.width(), values.height(), |x, y| {
-        let value = values.get_pixel(x, y).0[0];
-        Luma([if white { u8::from(2.0 * value >= full) } else { value as u8 }])
-    });
+    let kind = |value: &f32| if white { u8::from(2.0 * value >= full) } else { *value as u8 };
+    let kinds = GrayImage::from_raw(values.width(), values.height(), values.iter().map(kind).collect())
+        .expect("a kind a pixel");
     let labels = connected_components(&kinds, Connectivity::Eight, Luma([0]));
     let regions = boxes(&labels);
     if !white && regions.len() > MOST_ID_REGIONS {
@@ -101,12 +104,23 @@ pub fn outlines_from_mask(mask: &DynamicImage) -> Result<MaskOutlines, MaskFault
     let mut polygons: Vec<Polygon<f64>> = Vec::new();
     for (label, region) in (1_u32..).zip(&regions) {
         polygons.extend(region.rings(|x, y| match labels.get_pixel(x, y).0[0] {
-            own if own == label => if white { f64::from(values.get_pixel(x, y).0[0] / full) } else { 1.0 },
+            own if own == label => {
+                if white {
+                    f64::from(values.get_pixel(x, y).0[0] / full)
+                } else {
+                    1.0
+                }
+            }
             0 if white => f64::from(values.get_pixel(x, y).0[0] / full),
             _ => 0.0,
         }));
     }
     Ok(sorted_out(polygons))
+}
+
+fn outline_of(polygon: &Polygon<f64>) -> Result<Outline, OutlineFault> {
+    let points: Vec<[f64; 2]> = polygon.exterior().coords().map(|c| [c.x, c.y]).collect();
+    Outline::new(&points)
 }
 
 /// Nails and specks.
@@ -119,8 +133,9 @@ fn sorted_out(polygons: Vec<Polygon<f64>>) -> MaskOutlines {
         let (center, extent_px) = (bounds.center(), [bounds.width(), bounds.height()]);
         let least = LEAST_AREA_PX2.max(LEAST_SHARE * most);
         let large = area_px2 >= least && extent_px[0].max(extent_px[1]) >= LEAST_EXTENT_PX;
-        let points: Vec<[f64; 2]> = polygon.exterior().coords().map(|c| [c.x, c.y]).collect();
-        match Outline::new(&points) {
+        let tolerance = LEAST_TOLERANCE_PX.max(TOLERANCE * extent_px[0].max(extent_px[1]));
+        let outline = outline_of(&polygon.simplify(tolerance)).or_else(|_| outline_of(&polygon));
+        match outline {
             Ok(outline) if large => found.nails.push(outline),
             _ => found.dropped.push(DroppedRegion { center_px: [center.x, center.y], extent_px, area_px2 }),
         }
@@ -171,8 +186,11 @@ impl Region {
                     let (x0, y0) = (x.floor() as i64, y.floor() as i64);
                     let (x1, y1) = (x.ceil() as i64, y.ceil() as i64);
                     let (a, b) = (cell(x0, y0), cell(x1, y1));
-                    let on_border = |p0: i64, p1: i64, size: u32| p0 < 0 && p1 >= 0 || p0 < i64::from(size) && p1 >= i64::from(size);
-                    let border = on_border(left + x0, left + x1, self.size[0]) || on_border(top + y0, top + y1, self.size[1]);
+                    let on_border = |p0: i64, p1: i64, size: u32| {
+                        p0 < 0 && p1 >= 0 || p0 < i64::from(size) && p1 >= i64::from(size)
+                    };
+                    let border =
+                        on_border(left + x0, left + x1, self.size[0]) || on_border(top + y0, top + y1, self.size[1]);
                     let part = if border || (b - a).abs() < f64::EPSILON { 0.5 } else { (0.5 - a) / (b - a) };
                     point.x = left as f64 + x0 as f64 + part * (x1 - x0) as f64;
                     point.y = top as f64 + y0 as f64 + part * (y1 - y0) as f64;
@@ -210,11 +228,12 @@ fn levels(mask: &DynamicImage) -> (ImageBuffer<Luma<f32>, Vec<f32>>, f32) {
         pixels: &ImageBuffer<P, Vec<P::Subpixel>>,
     ) -> (ImageBuffer<Luma<f32>, Vec<f32>>, f32) {
         let full: f32 = P::Subpixel::DEFAULT_MAX_VALUE.into();
-        let levels = ImageBuffer::from_fn(pixels.width(), pixels.height(), |x, y| {
-            let [r, g, b, opacity] = pixels.get_pixel(x, y).to_rgba().0.map(Into::into);
-            Luma([r.max(g).max(b) * (opacity / full)])
-        });
-        (levels, full)
+        let level = |pixel: &P| {
+            let [r, g, b, opacity] = pixel.to_rgba().0.map(Into::into);
+            r.max(g).max(b) * (opacity / full)
+        };
+        let levels = pixels.pixels().map(level).collect();
+        (ImageBuffer::from_raw(pixels.width(), pixels.height(), levels).expect("a level a pixel"), full)
     }
     match mask {
         DynamicImage::ImageLuma8(pixels) => typed(pixels),

@@ -10,7 +10,7 @@ mod mask;
 mod patch;
 mod shape;
 
-pub use axis::{AxisDoubt, AxisUnknown, FoundAxis, LEAST_CONFIDENCE, Side, axis_towards, find_axes};
+pub use axis::{AxisDoubt, AxisUnknown, FoundAxis, LEAST_CONFIDENCE, Side, axis_towards, find_axes, find_axes_towards};
 pub use mask::{DroppedRegion, MaskFault, MaskOutlines, outlines_from_mask};
 pub use shape::Shape;
 

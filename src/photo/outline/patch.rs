@@ -35,31 +35,20 @@ const COLOUR_FLOOR: f32 = 0.02;
 /// Colour differences count this much more than brightness: shading changes brightness, seldom hue.
 const COLOUR_WEIGHT: f32 = 1.5;
 
-/// What is known at one cell; interpolated as a whole.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Cell {
-    /// The gradient's outer product, summed over the channels: xx, xy, yy.
-    tensor: [f32; 3],
-    /// Distance from the colour of the skin next to the nail, 0 (skin) to 1.
-    pub(super) unlike_skin: f32,
-}
-
-impl Cell {
-    /// The square of the change along the unit vector `(nx, ny)`.
-    fn change2(&self, nx: f32, ny: f32) -> f32 {
-        let [xx, xy, yy] = self.tensor;
-        (xx * nx * nx + 2.0 * xy * nx * ny + yy * ny * ny).max(0.0)
-    }
-}
+/// What is known at one cell: the gradient's outer product summed over the channels (xx, xy, yy), and the distance from the
+/// colour of the skin next to the nail, 0 (skin) to 1. Together, so that one interpolation gives all.
+type Cell = [f32; 4];
 
 /// The surroundings of one nail.
 pub(super) struct Patch {
     cells: Vec<Cell>,
-    inside: Vec<bool>,
+    /// Whether the cell and those right of and below it are all known.
+    block: Vec<bool>,
     /// Cells of the nail, relative to the centroid.
     pub(super) nail: Vec<[f32; 2]>,
     mask: GrayImage,
-    typical_edge: f32,
+    /// Square of the gradient that the stronger edges here reach.
+    typical_edge2: f32,
     /// Whether anything around the nail stands out from noise.
     pub(super) featureless: bool,
 }
@@ -106,67 +95,76 @@ impl Patch {
                 for (c, plane) in planes.iter().enumerate() {
                     let gx = 0.5 * (plane[i + 1] - plane[i - 1]);
                     let gy = 0.5 * (plane[i + SIDE] - plane[i - SIDE]);
-                    cell.tensor[0] += gx * gx;
-                    cell.tensor[1] += gx * gy;
-                    cell.tensor[2] += gy * gy;
-                    cell.unlike_skin += (plane[i] - skin[c]).powi(2);
+                    cell[0] += gx * gx;
+                    cell[1] += gx * gy;
+                    cell[2] += gy * gy;
+                    cell[3] += (plane[i] - skin[c]).powi(2);
                 }
-                cell.unlike_skin = cell.unlike_skin.sqrt().min(1.0);
+                cell[3] = cell[3].sqrt().min(1.0);
             }
         }
         let near: Vec<usize> =
             (0..SIDE * SIDE).filter(|&i| whole[i] && away(i) > CLEAR_OF_NAIL && away(i) <= 0.9 * NAIL_CELLS).collect();
-        let mut edges: Vec<f32> = near.iter().map(|&i| (cells[i].tensor[0] + cells[i].tensor[2]).sqrt()).collect();
+        let mut edges: Vec<f32> = near.iter().map(|&i| (cells[i][0] + cells[i][2]).sqrt()).collect();
         let edge = quantile(&mut edges, 0.75)?;
         let strongest = quantile(&mut edges, 0.95)?;
-        let mut unlike: Vec<f32> = near.iter().map(|&i| cells[i].unlike_skin).collect();
+        let mut unlike: Vec<f32> = near.iter().map(|&i| cells[i][3]).collect();
         let typical_unlike = quantile(&mut unlike, 0.6)?.max(COLOUR_FLOOR);
         for cell in &mut cells {
-            cell.unlike_skin /= cell.unlike_skin + typical_unlike;
+            cell[3] /= cell[3] + typical_unlike;
         }
         let half = HALF as f32;
         let nail = (0..SIDE * SIDE)
             .filter(|&i| at_nail(i))
             .map(|i| [(i % SIDE) as f32 - half, (i / SIDE) as f32 - half])
             .collect();
+        let block =
+            (0..SIDE * SIDE).map(|i| [i, i + 1, i + SIDE, i + SIDE + 1].iter().all(|j| whole.get(*j) == Some(&true)));
+        let block = block.collect();
         let featureless = strongest < EDGE_FLOOR;
-        Some(Self { cells, inside: whole, nail, mask, typical_edge: edge.max(EDGE_FLOOR), featureless })
+        Some(Self { cells, block, nail, mask, typical_edge2: edge.max(EDGE_FLOOR).powi(2), featureless })
     }
 
     /// How much of an edge crosses the unit vector `normal` at `at`, 0 to 1 (0.5: as strong as the stronger ones here);
     /// `None` outside the photograph.
     pub(super) fn edge(&self, at: [f32; 2], normal: [f32; 2]) -> Option<f32> {
-        let change2 = self.cell(at)?.change2(normal[0], normal[1]);
-        Some(change2 / (change2 + self.typical_edge * self.typical_edge))
+        let [xx, xy, yy, _] = self.cell(at)?;
+        let [nx, ny] = normal;
+        let change2 = (xx * nx * nx + 2.0 * xy * nx * ny + yy * ny * ny).max(0.0);
+        Some(change2 / (change2 + self.typical_edge2))
+    }
+
+    /// How different from the skin next to the nail the place `at` is, 0 to 1; `None` outside the photograph.
+    pub(super) fn unlike_skin(&self, at: [f32; 2]) -> Option<f32> {
+        self.cell(at).map(|cell| cell[3])
     }
 
     /// The cell at `at`, interpolated; `None` outside the photograph.
-    pub(super) fn cell(&self, at: [f32; 2]) -> Option<Cell> {
+    #[inline]
+    fn cell(&self, at: [f32; 2]) -> Option<Cell> {
         let (x, y) = (at[0] + HALF as f32, at[1] + HALF as f32);
         let last = (SIDE - 1) as f32;
         if !(x >= 0.0 && y >= 0.0 && x < last && y < last) {
             return None;
         }
-        let (left, top) = (x as usize, y as usize);
+        let (left, top) = (x as u32, y as u32);
         let (fx, fy) = (x - left as f32, y - top as f32);
-        let i = top * SIDE + left;
-        if !(self.inside[i] && self.inside[i + 1] && self.inside[i + SIDE] && self.inside[i + SIDE + 1]) {
+        let i = top as usize * SIDE + left as usize;
+        if !self.block[i] {
             return None;
         }
-        let weights = [(1.0 - fx) * (1.0 - fy), fx * (1.0 - fy), (1.0 - fx) * fy, fx * fy];
-        let mut sum = Cell::default();
-        for (weight, j) in weights.into_iter().zip([i, i + 1, i + SIDE, i + SIDE + 1]) {
-            for k in 0..3 {
-                sum.tensor[k] += weight * self.cells[j].tensor[k];
-            }
-            sum.unlike_skin += weight * self.cells[j].unlike_skin;
-        }
-        Some(sum)
+        let (upper, lower) = (&self.cells[i..i + 2], &self.cells[i + SIDE..i + SIDE + 2]);
+        Some(std::array::from_fn(|k| {
+            let above = upper[0][k] + fx * (upper[1][k] - upper[0][k]);
+            let below = lower[0][k] + fx * (lower[1][k] - lower[0][k]);
+            above + fy * (below - above)
+        }))
     }
 
     /// Whether the cell nearest to `at` belongs to the nail.
     pub(super) fn is_nail(&self, at: [f32; 2]) -> bool {
-        let (x, y) = ((at[0] + HALF as f32).round(), (at[1] + HALF as f32).round());
+        // Half a cell more: rounded when cut.
+        let (x, y) = (at[0] + HALF as f32 + 0.5, at[1] + HALF as f32 + 0.5);
         let within = x >= 0.0 && y >= 0.0 && x < SIDE as f32 && y < SIDE as f32;
         within && self.mask.as_raw()[y as usize * SIDE + x as usize] > 0
     }
@@ -230,14 +228,13 @@ where
     P: Pixel,
     P::Subpixel: Primitive + Into<f32>,
 {
-    let full: f32 = P::Subpixel::DEFAULT_MAX_VALUE.into();
+    let unit = 1.0 / P::Subpixel::DEFAULT_MAX_VALUE.into();
     let (width, height) = (f64::from(pixels.width()), f64::from(pixels.height()));
     let colour_at = |x: f64, y: f64| {
-        let x = x.clamp(0.0, width - 1.0) as u32;
-        let y = y.clamp(0.0, height - 1.0) as u32;
-        let rgb = pixels.get_pixel(x, y).to_rgb().0;
-        let [r, g, b] = rgb.map(|value| value.into() / full);
-        [0.25 * r + 0.5 * g + 0.25 * b, COLOUR_WEIGHT * (r - g), COLOUR_WEIGHT * (g - b)]
+        // Nearest pixel; `round` would be a library call a pixel.
+        let x = (x + 0.5).clamp(0.0, width - 0.5) as u32;
+        let y = (y + 0.5).clamp(0.0, height - 0.5) as u32;
+        pixels.get_pixel(x, y).to_rgb().0.map(Into::<f32>::into)
     };
     let reads = (px_per_cell.ceil() as u32).clamp(1, READS);
     let mut colours = Vec::with_capacity(SIDE * SIDE);
@@ -266,11 +263,12 @@ where
                 let offset = |k: u32| ((f64::from(k) + 0.5) / f64::from(reads) - 0.5) * px_per_cell;
                 for j in 0..reads {
                     for i in 0..reads {
-                        add(colour_at((x + offset(i)).round(), (y + offset(j)).round()), weight);
+                        add(colour_at(x + offset(i), y + offset(j)), weight);
                     }
                 }
             }
-            colours.push(sum);
+            let [r, g, b] = sum.map(|value| value * unit);
+            colours.push([0.25 * r + 0.5 * g + 0.25 * b, COLOUR_WEIGHT * (r - g), COLOUR_WEIGHT * (g - b)]);
         }
     }
     (colours, inside)
