@@ -9,8 +9,7 @@ use std::process::{Command, Stdio};
 use std::time::Instant;
 
 use lunula::phantom::photos::{LightKind, PhotoOptions, write};
-use lunula::photo::read::Photograph;
-use lunula::photo::set::PhotoSet;
+use lunula::photo::{PhotoSet, Photograph};
 use rayon::prelude::*;
 
 const ROUNDS: usize = 7;

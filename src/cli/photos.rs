@@ -6,19 +6,11 @@ use std::time::Instant;
 use anyhow::Context;
 use clap::{Args, Subcommand, ValueEnum};
 use lunula::files::Staging;
-use lunula::photo::Channel;
-use lunula::photo::job::{self, PhotosError, PhotosOptions, PhotosResult, Watch};
-use lunula::photo::keep::keep;
-use lunula::photo::merge::merge;
-use lunula::photo::normalize::{Normalization, Resample};
-use lunula::photo::outline::annotated::Drawn;
-use lunula::photo::outline::axis::Side;
-use lunula::photo::outline::detect::DetectOptions;
-use lunula::photo::outline::source::{OutlineOptions, Sources};
-use lunula::photo::plan::{Fate, plan};
-use lunula::photo::report::{NailTable, RunReport};
-use lunula::photo::results;
-use lunula::photo::set::{PhotoSet, SetFault};
+use lunula::photo::outline::{DetectOptions, Drawn, OutlineOptions, Side, Sources};
+use lunula::photo::{
+    Channel, Fate, NailTable, Normalization, PhotoSet, PhotosError, PhotosOptions, PhotosResult, Resample, RunReport,
+    SetFault, Watch, keep_outlines, merge, plan, run as run_photos, write_nails,
+};
 
 use super::{Common, Interrupted, Outcome, print_line};
 
@@ -200,30 +192,30 @@ pub(super) fn run(args: &PhotosArgs) -> anyhow::Result<Outcome> {
     let staging = Staging::new(out)?;
     let bar = args.common.progress(set.photos.len(), "photographs");
     let watch = Watch { stop: &stop, tick: &|| bar.inc(1) };
-    let mut result = job::run(&set, &options, &staging, &watch).map_err(|error| match error {
+    let result = run_photos(&set, &options, &staging, &watch).map_err(|error| match error {
         PhotosError::Interrupted => Interrupted.into(),
         other => anyhow::Error::from(other),
     })?;
     bar.finish_and_clear();
     let report = RunReport::of_photos(&set, &options, &result, start.elapsed());
     let nails = NailTable::of(&result.rows, &set);
-    results::write_nails(nails.rows(), &staging)?;
+    write_nails(nails.rows(), &staging)?;
     report.write_html(&nails, &staging)?;
     report.write_json(&staging)?;
     if let Some(folder) = &args.write_outlines {
-        keep_outlines(args, &mut result, &set, folder.as_deref())?;
+        save_outlines(args, &result, &set, folder.as_deref())?;
     }
     staging.commit()?;
     finish(&args.common, &report, out)
 }
 
-fn keep_outlines(
+fn save_outlines(
     args: &PhotosArgs,
-    result: &mut PhotosResult,
+    result: &PhotosResult,
     set: &PhotoSet,
     folder: Option<&Path>,
 ) -> anyhow::Result<()> {
-    let kept = keep(result, set, folder)?;
+    let kept = keep_outlines(result, set, folder)?;
     for path in &kept.stood {
         args.common.warn(&[format!("{} stands and stays as it is", path.display())]);
     }

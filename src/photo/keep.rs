@@ -7,7 +7,7 @@
 use std::path::{Path, PathBuf};
 
 use super::job::PhotosResult;
-use super::outline::annotated::{ToDraw, to_file};
+use super::outline::{ToDraw, to_file};
 use super::set::{Photo, PhotoSet};
 use crate::files::{WriteError, write_whole};
 
@@ -24,7 +24,7 @@ pub struct Kept {
 ///
 /// # Errors
 /// [`WriteError`] where a file can't be written.
-pub fn keep(result: &PhotosResult, set: &PhotoSet, folder: Option<&Path>) -> Result<Kept, WriteError> {
+pub fn keep_outlines(result: &PhotosResult, set: &PhotoSet, folder: Option<&Path>) -> Result<Kept, WriteError> {
     let mut kept = Kept::default();
     for detected in &result.detected {
         let photo = &set.photos[detected.photo];

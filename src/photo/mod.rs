@@ -1,24 +1,36 @@
 //! Photographs of nails to coloration maps (section 4.2.2, Fig. 51-56).
 //!
-//! A photograph is read, outlined, framed, normalized, added up, drawn: [`set`] lists which, [`read`] makes upright pixels,
-//! [`outline`] finds the nails, [`frame`] measures axis and box, [`normalize`] brings the green channel into the nail's
-//! frame, [`maps`] sums to mean and SD, [`results`] and [`report`] write. [`job`] is the one entry; [`merge`] joins
-//! results made in parts ([`partial`]).
+//! A photograph is read, outlined, framed, normalized, added up, drawn: [`PhotoSet`] lists which, [`Photograph`] holds upright
+//! pixels, [`outline`] finds the nails, [`NailFrame`] measures axis and box, [`normalize`](fn@normalize) brings the green
+//! channel into the nail's frame, [`Sums`] become mean and SD. [`run`] is the one entry; [`merge`](fn@merge) joins results
+//! made in parts.
 
-pub mod frame;
-pub mod job;
-pub mod keep;
-pub mod maps;
-pub mod merge;
-pub mod normalize;
+mod frame;
+mod job;
+mod keep;
+mod maps;
+mod merge;
+mod normalize;
 pub mod outline;
-pub mod partial;
-pub mod plan;
+mod partial;
+mod plan;
 mod plane;
-pub mod read;
-pub mod report;
+mod read;
+mod report;
 mod resample;
-pub mod results;
-pub mod set;
+mod results;
+mod set;
 
+pub use frame::{FrameFault, NailFrame, SMALLEST_EXTENT_PX};
+pub use job::{DetectedOutline, NailRow, PhotosError, PhotosOptions, PhotosResult, Watch, run};
+pub use keep::{Kept, keep_outlines};
+pub use maps::{DuplicateSubject, Maps, Sums};
+pub use merge::{MergeError, merge};
+pub use normalize::{FULL_SCALE, Normalization, Normalized, Resample, normalize};
+pub use partial::{PartialFault, Partials, join};
+pub use plan::{Fate, Step, plan};
 pub use plane::Channel;
+pub use read::{Depth, Photograph, ReadFault};
+pub use report::{NailTable, PoseCount, RunReport};
+pub use results::{NAIL_COLUMNS, nail_cells, write_nails};
+pub use set::{Photo, PhotoSet, SetError, SetFault};

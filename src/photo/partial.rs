@@ -94,7 +94,7 @@ pub struct Partials {
 ///
 /// # Errors
 /// Where the file can't be written.
-pub fn write(path: &Path, pose: &str, sums: &Sums, normalization: &Normalization) -> anyhow::Result<()> {
+pub(super) fn write(path: &Path, pose: &str, sums: &Sums, normalization: &Normalization) -> anyhow::Result<()> {
     let subjects = sums.subjects.clone();
     let meta = Meta { format: FORMAT, pose: pose.to_owned(), normalization: *normalization, subjects };
     let shape = (sums.size, sums.size);

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use serde::Serialize;
 
 use super::job::PhotosOptions;
-use super::outline::source::Found;
+use super::outline::Found;
 use super::read::header_is_grey;
 use super::set::PhotoSet;
 

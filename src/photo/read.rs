@@ -100,7 +100,7 @@ impl Photograph {
 ///
 /// # Errors
 /// As [`Photograph::read`], but only what the header shows.
-pub fn header_is_grey(path: &Path) -> Result<bool, ReadFault> {
+pub(super) fn header_is_grey(path: &Path) -> Result<bool, ReadFault> {
     let file = std::io::BufReader::new(std::fs::File::open(path)?);
     let reader = ImageReader::new(file).with_guessed_format()?;
     match reader.format() {

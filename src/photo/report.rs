@@ -127,7 +127,7 @@ impl RunReport {
         staging.write("run.json", (text + "\n").as_bytes())
     }
 
-    /// Writes `report.html`: sheets, nails, what was left out and why, times. Nothing is loaded from elsewhere.
+    /// Writes `report.html` and the sheets of all nails on it: sheets, nails, what was left out and why, times. Nothing is loaded from elsewhere.
     ///
     /// # Errors
     /// [`WriteError`].
@@ -143,8 +143,10 @@ impl RunReport {
             page.png(&staging.read(&format!("figures/{name}.png"))?, title);
         }
         page.heading("Every nail, distal end up");
-        for sheet in &nails.sheets {
-            page.png(&sheet.png().map_err(refused)?, &sheet.title);
+        for (number, sheet) in (1..).zip(&nails.sheets) {
+            let png = sheet.png().map_err(refused)?;
+            page.png(&png, &sheet.title);
+            staging.write(&format!("figures/nails-{number}.png"), &png)?;
         }
         page.heading(&format!("Nails: {} listed, {} used", nails.rows.len(), nails.rows.len() - nails.left_out()));
         page.table(&NAIL_COLUMNS, &nails.rows, |row| nails.rows[row][USED] != "true");
@@ -195,13 +197,19 @@ impl NailTable {
             .iter()
             .filter_map(|row| {
                 let photo = &set.photos[row.photo];
-                let caption = format!("{} {}", photo.subject, row.number);
+                let caption = format!("{}: {}", row.number, photo.subject);
                 Some(Tile { caption, picture: row.thumbnail.clone()? })
             })
             .collect();
         let sheets = tiles
             .chunks(NAILS_A_SHEET)
-            .map(|tiles| Sheet { title: String::new(), tiles: tiles.to_vec(), columns: NAILS_A_ROW, scale: None })
+            .enumerate()
+            .map(|(k, tiles)| Sheet {
+                title: format!("Normalized nails, sheet {}", k + 1),
+                tiles: tiles.to_vec(),
+                columns: NAILS_A_ROW,
+                scale: None,
+            })
             .collect();
         Self { rows: rows.iter().map(|row| nail_cells(row, set).to_vec()).collect(), sheets }
     }

@@ -12,14 +12,10 @@ use rayon::prelude::*;
 
 use super::{Row, median};
 use crate::files::Staging;
-use crate::photo::frame::NailFrame;
-use crate::photo::job::{self, PhotosOptions, Watch};
-use crate::photo::normalize::{Normalization, Resample};
-use crate::photo::outline::detect::{DetectOptions, detect};
-use crate::photo::outline::source::{OutlineOptions, Sources};
-use crate::photo::outline::{Axis, Outline, annotated};
-use crate::photo::read::Photograph;
-use crate::photo::set::{Photo, PhotoSet};
+use crate::photo::outline::{Axis, DetectOptions, Drawn, Outline, OutlineOptions, Sources, detect, read_annotated};
+use crate::photo::{
+    NailFrame, Normalization, Photo, PhotoSet, Photograph, PhotosOptions, Resample, Watch, run as run_photos,
+};
 
 /// Root mean square difference inside the nail.
 const PICTURE_ERROR: &str = "normalized picture inside the nail, RMS of 255";
@@ -69,7 +65,7 @@ fn read_truth(photo: &Photo, truth: &Path) -> anyhow::Result<Truth> {
     let name = format!("{}/{}", photo.pose, photo.subject);
     let picture = Photograph::read(&photo.path).with_context(|| photo.file.clone())?;
     let file = truth.join(format!("outlines/{name}.json"));
-    let nail = annotated::read(&file, &picture, annotated::Drawn::Auto)?.swap_remove(0);
+    let nail = read_annotated(&file, &picture, Drawn::Auto)?.swap_remove(0);
     let (outline, axis) = (nail.outline?, nail.axis.with_context(|| format!("{}: no axis", file.display()))?);
     let file = truth.join(format!("normalized/{name}.npy"));
     let opened = std::fs::File::open(&file).with_context(|| file.display().to_string())?;
@@ -104,7 +100,7 @@ fn resampled(set: &PhotoSet, truths: &[Truth], resample: Resample, settings: &Se
         let out = tempfile::tempdir()?;
         let staging = Staging::new(out.path())?;
         let start = Instant::now();
-        let result = job::run(set, &options, &staging, &Watch { stop: &AtomicBool::new(false), tick: &|| {} })?;
+        let result = run_photos(set, &options, &staging, &Watch { stop: &AtomicBool::new(false), tick: &|| {} })?;
         seconds.push(start.elapsed().as_secs_f64() / set.photos.len() as f64);
         staging.commit()?;
         let mut squares = (0.0, 0_u64);

@@ -1,30 +1,287 @@
-//! shim
-#![allow(missing_docs)]
+//! The axis of each nail found from the photograph: the finger lies on its proximal side.
+//!
+//! In: the upright photograph and the outlines of its nails, which tell no direction. Out: for each nail the axis from
+//! proximal to distal with a confidence, or why it can't be told. Directions are clockwise from up, see [`Axis`].
+//!
+//! For each of 72 directions the picture around the nail is compared with a finger that points there (`finger`: its two
+//! sides, its tip, its skin, the nail's symmetry). The likelihoods become probabilities; the confidence is the probability
+//! within 40 degrees of the best direction, and the axis the mean direction there. Fingers of one hand point about the
+//! same way, save the thumb: so the other nails of the photograph give a prior, which is mostly uniform. It can tip
+//! the scales where the nail's own surroundings leave it open, by a factor of about 4 at most; where it would turn a nail
+//! around against its own surroundings, the nail is left out instead.
+//!
+//! Not determined: tilt towards the camera, and nails without a visible finger (a drawing, a plain background).
+//!
+//! Measured by `tests/nail_axes.rs`: of 127 nails on 26 real photographs of hands 122 are told, none by over 22 degrees off,
+//! half within 3.2 (which is what the truth, read by eye, is good for); of phantom close-ups whose nail takes up to half of
+//! the photograph's height all, half within 0.4 degrees; of those up to 0.7 of it 92 %, none wrong.
+
+use image::DynamicImage;
+use thiserror::Error;
+
+use super::finger::evidence;
+use super::patch::Patch;
+use super::shape::Shape;
 use super::{Axis, Outline};
+
+const DIRECTIONS: usize = 72;
+/// Log-likelihood below the best one at which a direction's neighbours are not looked at.
+const HOPELESS: f64 = 5.0;
+/// Probability within 40 degrees of the best direction below which a nail is left out. At 0.5 one nail of 127 in grey
+/// versions of the real photographs was told wrong, at 0.6 none in nine versions of all of them.
+pub const LEAST_CONFIDENCE: f64 = 0.6;
+/// Directions that count as the same answer, degrees to either side.
+const PEAK_DEG: f64 = 40.0;
+/// Share of the prior that knows nothing of the other nails.
+const UNIFORM: f64 = 0.6;
+/// Spread of the directions of a hand's fingers, degrees (standard deviation).
+const SPREAD_DEG: f64 = 30.0;
+/// How far nails point off the side that was given for them, degrees (standard deviation).
+const HINT_DEG: f64 = 30.0;
+/// The others turn a nail only where its own picture gives the other direction at least this part of its best one's
+/// probability.
+const STANDING: f64 = 0.5;
+/// Outlines below this long axis show no finger, pixels.
+const LEAST_LENGTH_PX: f64 = 5.0;
+/// A nail seen from above or aslant has an outline without dents; below this solidity it is no single nail ..
+const DENTED: f64 = 0.91;
+/// .. save in profile, where it is a bent sliver, more elongated than this.
+const PROFILE: f64 = 2.5;
+/// Shapes below this elongation have no axis of their own.
+const ROUND: f64 = 1.1;
+/// Above this elongation a nail's long axis lies along the finger: nails are at most about this much wider than long.
+const WIDE: f64 = 1.35;
+
+/// The axis of a nail as found, and how sure that is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FoundAxis {
+    /// From proximal to distal.
+    pub axis: Axis,
+    /// Probability that the finger points within 40 degrees of it, 0 to 1.
+    pub confidence: f64,
+}
+
+/// A nail whose axis is not told.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[error("{doubt}; say --distal, or draw an `axis` line from proximal to distal in LabelMe")]
+pub struct AxisUnknown {
+    /// Why.
+    pub doubt: AxisDoubt,
+    /// The most probable axis all the same, where there is one.
+    pub best_guess: Option<FoundAxis>,
+}
+
+/// Why the axis of a nail can't be told.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum AxisDoubt {
+    /// The outline lies outside the photograph.
+    #[error("the nail's outline lies outside of the photograph")]
+    Outside,
+    /// The outline is too small to show a finger.
+    #[error("the nail is {length_px:.1} px long, too small to see the finger's direction")]
+    TooSmall {
+        /// Long axis of the outline, pixels.
+        length_px: f64,
+    },
+    /// The outline is dented as where two nails touch.
+    #[error(
+        "the outline is dented (it fills {share:.2} of its convex hull) as where two nails touch; separate them first"
+    )]
+    Dented {
+        /// Area over the area of its convex hull.
+        share: f64,
+    },
+    /// Nothing stands out around the nail.
+    #[error("nothing around the nail shows where the finger lies")]
+    Featureless,
+    /// Several directions fit.
+    #[error("the finger's direction is not clear from the picture (confidence {confidence:.2})")]
+    Unclear {
+        /// Probability of the best direction, 0 to 1.
+        confidence: f64,
+    },
+    /// The nail's surroundings and the other fingers disagree.
+    #[error("the picture around the nail and the other fingers point to different sides")]
+    AgainstOthers,
+}
+
+/// A side of the photograph.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Side {
+    /// The top.
     Up,
+    /// The bottom.
     Down,
+    /// The left.
     Left,
+    /// The right.
     Right,
 }
-#[derive(Debug, Clone)]
-pub struct FoundAxis {
-    pub axis: Axis,
-    pub confidence: f64,
+
+impl Side {
+    /// The direction to that side.
+    pub fn axis(self) -> Axis {
+        let degrees: f64 = match self {
+            Self::Up => 0.0,
+            Self::Right => 90.0,
+            Self::Down => 180.0,
+            Self::Left => -90.0,
+        };
+        Axis::from_clockwise_rad(degrees.to_radians())
+    }
 }
-#[derive(Debug, Clone, thiserror::Error)]
-#[error("shim")]
-pub struct AxisUnknown;
-pub fn axis_towards(_: &Outline, s: Side) -> Axis {
-    Axis::from_clockwise_rad(match s {
-        Side::Up => 0.0,
-        Side::Right => 1.57,
-        Side::Down => 3.14,
-        Side::Left => -1.57,
-    })
+
+/// The shape's own axis that points nearest to `hint`.
+///
+/// A nail is about mirror-symmetric, so its axis is one of the two principal axes of its area; which one and which end
+/// the hint says. Where the shape has no axis (nearly round), or is so long across the hint that the hint can't mean its
+/// short axis, the axis is the hint itself.
+pub fn axis_towards(outline: &Outline, hint: Side) -> Axis {
+    let shape = Shape::of(outline);
+    if shape.elongation() < ROUND {
+        return hint.axis();
+    }
+    let to_hint = turn(shape.major.clockwise_rad() - hint.axis().clockwise_rad());
+    let quarters = (to_hint / std::f64::consts::FRAC_PI_2).round();
+    if quarters as i64 % 2 != 0 && shape.elongation() > WIDE {
+        return hint.axis();
+    }
+    Axis::from_clockwise_rad(shape.major.clockwise_rad() - quarters * std::f64::consts::FRAC_PI_2)
 }
-pub fn find_axes(_: &image::DynamicImage, o: &[Outline]) -> Vec<Result<FoundAxis, AxisUnknown>> {
-    o.iter().map(|_| Err(AxisUnknown)).collect()
+
+/// The axes of the nails of one photograph, in the order of `outlines`.
+pub fn find_axes(image: &DynamicImage, outlines: &[Outline]) -> Vec<Result<FoundAxis, AxisUnknown>> {
+    let alone: Vec<Result<Directions, AxisDoubt>> = outlines.iter().map(|outline| look(image, outline)).collect();
+    let told: Vec<Option<&Directions>> = alone.iter().map(|found| found.as_ref().ok()).collect();
+    (0..outlines.len())
+        .map(|i| match &alone[i] {
+            Err(doubt) => Err(AxisUnknown { doubt: *doubt, best_guess: None }),
+            Ok(own) => {
+                let others: Vec<&Directions> =
+                    told.iter().enumerate().filter(|(j, _)| *j != i).filter_map(|(_, d)| *d).collect();
+                decide(own, &others)
+            }
+        })
+        .collect()
+}
+
+/// The axes of nails whose distal ends all point to one side, give or take: as [`find_axes`], but looked for around `hint`;
+/// where the picture does not tell, the shape and the hint do ([`axis_towards`]).
+pub fn find_axes_towards(image: &DynamicImage, outlines: &[Outline], hint: Side) -> Vec<Axis> {
+    let around = |outline| {
+        let mut directions = look(image, outline).ok()?;
+        for (k, p) in directions.0.iter_mut().enumerate() {
+            let away = turn(direction(k) - hint.axis().clockwise_rad()).to_degrees();
+            *p *= (-0.5 * (away / HINT_DEG).powi(2)).exp();
+        }
+        let found = directions.normalized().peak();
+        let near = turn(found.axis.clockwise_rad() - hint.axis().clockwise_rad()).abs() < std::f64::consts::FRAC_PI_2;
+        (near && found.confidence >= LEAST_CONFIDENCE).then_some(found.axis)
+    };
+    outlines.iter().map(|outline| around(outline).unwrap_or_else(|| axis_towards(outline, hint))).collect()
+}
+
+/// Probabilities of the directions, 360 / [`DIRECTIONS`] degrees apart from up clockwise.
+#[derive(Debug, Clone, PartialEq)]
+struct Directions([f64; DIRECTIONS]);
+
+/// What the picture around one nail says.
+fn look(image: &DynamicImage, outline: &Outline) -> Result<Directions, AxisDoubt> {
+    let shape = Shape::of(outline);
+    if shape.major_px < LEAST_LENGTH_PX {
+        return Err(AxisDoubt::TooSmall { length_px: shape.major_px });
+    }
+    if shape.solidity < DENTED && shape.elongation() < PROFILE {
+        return Err(AxisDoubt::Dented { share: shape.solidity });
+    }
+    let patch = Patch::read(image, outline, &shape).ok_or(AxisDoubt::Outside)?;
+    if patch.featureless {
+        return Err(AxisDoubt::Featureless);
+    }
+    // Every second direction first; those between two hopeless ones need no look.
+    let mut scores = [0.0; DIRECTIONS];
+    for k in (0..DIRECTIONS).step_by(2) {
+        scores[k] = evidence(&patch, direction(k));
+    }
+    let best = scores.iter().step_by(2).copied().fold(f64::MIN, f64::max);
+    for k in (1..DIRECTIONS).step_by(2) {
+        let (before, after) = (scores[k - 1], scores[(k + 1) % DIRECTIONS]);
+        let hopeless = before.max(after) < best - HOPELESS;
+        scores[k] = if hopeless { 0.5 * (before + after) } else { evidence(&patch, direction(k)) };
+    }
+    let best = scores.iter().copied().fold(f64::MIN, f64::max);
+    Ok(Directions(scores.map(|score| (score - best).exp())).normalized())
+}
+
+/// One nail, given the others of its photograph.
+fn decide(own: &Directions, others: &[&Directions]) -> Result<FoundAxis, AxisUnknown> {
+    let together = own.given(others);
+    let found = together.peak();
+    let unsure = |doubt| Err(AxisUnknown { doubt, best_guess: Some(found) });
+    let alone = own.peak();
+    let turned = turn(found.axis.clockwise_rad() - alone.axis.clockwise_rad()).abs();
+    if turned > PEAK_DEG.to_radians() && own.around(found.axis.clockwise_rad()).0 < STANDING * alone.confidence {
+        return unsure(AxisDoubt::AgainstOthers);
+    }
+    if found.confidence < LEAST_CONFIDENCE {
+        return unsure(AxisDoubt::Unclear { confidence: found.confidence });
+    }
+    Ok(found)
+}
+
+impl Directions {
+    fn normalized(mut self) -> Self {
+        let sum: f64 = self.0.iter().sum();
+        self.0.iter_mut().for_each(|p| *p /= sum);
+        self
+    }
+
+    /// These directions with the other fingers' as a prior.
+    fn given(&self, others: &[&Self]) -> Self {
+        if others.is_empty() {
+            return self.clone();
+        }
+        let mut kernel: [f64; DIRECTIONS] =
+            std::array::from_fn(|k| (-0.5 * (turn(direction(k)).to_degrees() / SPREAD_DEG).powi(2)).exp());
+        let sum: f64 = kernel.iter().sum();
+        kernel.iter_mut().for_each(|weight| *weight /= sum);
+        let mean: [f64; DIRECTIONS] =
+            std::array::from_fn(|k| others.iter().map(|other| other.0[k]).sum::<f64>() / others.len() as f64);
+        let joint = std::array::from_fn(|k| {
+            let parallel: f64 = (0..DIRECTIONS).map(|j| mean[j] * kernel[(k + DIRECTIONS - j) % DIRECTIONS]).sum();
+            self.0[k] * (UNIFORM / DIRECTIONS as f64 + (1.0 - UNIFORM) * parallel)
+        });
+        Self(joint).normalized()
+    }
+
+    /// The mean direction around the most probable one, and the probability there.
+    fn peak(&self) -> FoundAxis {
+        let best = (0..DIRECTIONS).rev().max_by(|&a, &b| self.0[a].total_cmp(&self.0[b])).unwrap_or(0);
+        let (mass, mean) = self.around(direction(best));
+        FoundAxis { axis: Axis::from_clockwise_rad(direction(best) + mean), confidence: mass.min(1.0) }
+    }
+
+    /// The probability within [`PEAK_DEG`] of `centre_rad`, and the mean offset from it there.
+    fn around(&self, centre_rad: f64) -> (f64, f64) {
+        let (mut mass, mut moment) = (0.0, 0.0);
+        for (k, p) in self.0.iter().enumerate() {
+            let away = turn(direction(k) - centre_rad);
+            if away.abs() <= PEAK_DEG.to_radians() + 1e-9 {
+                mass += p;
+                moment += p * away;
+            }
+        }
+        (mass, moment / mass)
+    }
+}
+
+/// Direction `k`, clockwise from up, radians.
+fn direction(k: usize) -> f64 {
+    std::f64::consts::TAU * k as f64 / DIRECTIONS as f64
+}
+
+/// An angle brought to -pi..=pi.
+fn turn(angle: f64) -> f64 {
+    Axis::from_clockwise_rad(angle).clockwise_rad()
 }

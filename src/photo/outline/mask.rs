@@ -1,16 +1,256 @@
-//! shim
-#![allow(missing_docs)]
-use super::Outline;
-#[derive(Debug, Clone, thiserror::Error)]
-#[error("shim")]
-pub struct MaskFault;
-#[derive(Debug, Clone, thiserror::Error)]
-#[error("shim")]
-pub struct DroppedRegion;
+//! Outlines from a mask picture: each connected region is a nail.
+//!
+//! In: a mask of 8 or 16 bit, grey or colour (a pixel's value is its largest channel, times its opacity), upright like its
+//! photograph; whether the sizes agree is the caller's question. Out: one [`Outline`] a region, sorted by centroid from
+//! top to bottom, then left to right, and what was too small to be a nail.
+//!
+//! - A mask whose values reach above half of full scale is read as a grey level: the outline is the level line at half
+//!   (127.5 of 255) by marching squares, so that an anti-aliased edge, or a JPEG's, keeps its sub-pixel place. A
+//!   filled rectangle of pixels x0..=x1 is exactly x1 - x0 + 1 wide. Regions that touch the border end at its pixel edges.
+//! - A mask whose largest value is 1 to 32 is read as instance numbers: each number a nail, though they touch.
+//! - Anything between is refused: half of full scale would silently lose every nail.
+//!
+//! Holes are filled: a nail has none.
+
+use contour::contour_rings;
+use geo::{Area, BoundingRect, LineString, Polygon, Simplify};
+use image::{DynamicImage, GrayImage, ImageBuffer, Luma, Pixel, Primitive};
+use imageproc::region_labelling::{Connectivity, connected_components};
+use thiserror::Error;
+
+use super::{Outline, OutlineFault, Shape};
+
+/// The largest value of a mask that is still read as instance numbers.
+const LARGEST_ID: f32 = 32.0;
+/// Regions below this area are no nails, square pixels.
+const LEAST_AREA_PX2: f64 = 36.0;
+/// Regions below this extent in x and y are no nails, pixels.
+const LEAST_EXTENT_PX: f64 = 5.0;
+/// Regions below this part of the largest one's area are specks: no nail is ten times shorter than its neighbour.
+const LEAST_SHARE: f64 = 0.01;
+/// A level line has a corner or two a pixel; those within this part of the nail's extent, or this many pixels, of the line
+/// without them go (Douglas and Peucker).
+const TOLERANCE: f64 = 2e-4;
+const LEAST_TOLERANCE_PX: f64 = 0.03;
+/// More regions than this of instance numbers are a noisy picture.
+const MOST_ID_REGIONS: usize = 64;
+
+/// Why a picture is no mask.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum MaskFault {
+    /// Neither full-scale nor instance numbers.
+    #[error(
+        "the mask's largest value is {largest} of {full}: neither white nails (above half) nor nail numbers (1 to 32); \
+         make the nails white"
+    )]
+    Range {
+        /// The largest value in the mask.
+        largest: f32,
+        /// Full scale of the mask's pixels.
+        full: f32,
+    },
+    /// Small values all over the place.
+    #[error("the mask's values 1 to 32 form {regions} regions: a noisy black picture rather than nail numbers")]
+    Noise {
+        /// How many regions there are.
+        regions: usize,
+    },
+}
+
+/// A region of a mask that is no nail.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DroppedRegion {
+    /// Centre of its box, `[x_px, y_px]`.
+    pub center_px: [f64; 2],
+    /// Extent of its box in x and y, pixels.
+    pub extent_px: [f64; 2],
+    /// Its area, square pixels.
+    pub area_px2: f64,
+}
+
+impl std::fmt::Display for DroppedRegion {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let ([x, y], [width, height]) = (self.center_px, self.extent_px);
+        write!(f, "a region of {width:.0} x {height:.0} px at ({x:.0}, {y:.0}) of the mask is too small to be a nail")
+    }
+}
+
+/// The nails of a mask.
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct MaskOutlines {
+    /// Outlines, top to bottom, left to right.
     pub nails: Vec<Outline>,
+    /// Regions too small to be nails.
     pub dropped: Vec<DroppedRegion>,
 }
-pub fn outlines_from_mask(_: &image::DynamicImage) -> Result<MaskOutlines, MaskFault> {
-    Err(MaskFault)
+
+/// The outlines of the regions of `mask`; none for an all-black one.
+///
+/// # Errors
+/// [`MaskFault`] where the values make no mask.
+pub fn outlines_from_mask(mask: &DynamicImage) -> Result<MaskOutlines, MaskFault> {
+    let (values, full) = levels(mask);
+    let largest = values.iter().copied().fold(0.0, f32::max);
+    if largest <= 0.0 {
+        return Ok(MaskOutlines::default());
+    }
+    let white = 2.0 * largest > full;
+    if !white && largest > LARGEST_ID {
+        return Err(MaskFault::Range { largest, full });
+    }
+    // Grey levels of one kind, or a kind for each number.
+    let kind = |value: &f32| if white { u8::from(2.0 * value >= full) } else { *value as u8 };
+    let kinds = GrayImage::from_raw(values.width(), values.height(), values.iter().map(kind).collect())
+        .expect("a kind a pixel");
+    let labels = connected_components(&kinds, Connectivity::Eight, Luma([0]));
+    let regions = boxes(&labels);
+    if !white && regions.len() > MOST_ID_REGIONS {
+        return Err(MaskFault::Noise { regions: regions.len() });
+    }
+
+    let mut polygons: Vec<Polygon<f64>> = Vec::new();
+    for (label, region) in (1_u32..).zip(&regions) {
+        polygons.extend(region.rings(|x, y| match labels.get_pixel(x, y).0[0] {
+            own if own == label => {
+                if white {
+                    f64::from(values.get_pixel(x, y).0[0] / full)
+                } else {
+                    1.0
+                }
+            }
+            0 if white => f64::from(values.get_pixel(x, y).0[0] / full),
+            _ => 0.0,
+        }));
+    }
+    Ok(sorted_out(polygons))
+}
+
+fn outline_of(polygon: &Polygon<f64>) -> Result<Outline, OutlineFault> {
+    let points: Vec<[f64; 2]> = polygon.exterior().coords().map(|c| [c.x, c.y]).collect();
+    Outline::new(&points)
+}
+
+/// Nails and specks.
+fn sorted_out(polygons: Vec<Polygon<f64>>) -> MaskOutlines {
+    let most = polygons.iter().map(Area::unsigned_area).fold(0.0, f64::max);
+    let mut found = MaskOutlines::default();
+    for polygon in polygons {
+        let area_px2 = polygon.unsigned_area();
+        let Some(bounds) = polygon.bounding_rect() else { continue };
+        let (center, extent_px) = (bounds.center(), [bounds.width(), bounds.height()]);
+        let least = LEAST_AREA_PX2.max(LEAST_SHARE * most);
+        let large = area_px2 >= least && extent_px[0].max(extent_px[1]) >= LEAST_EXTENT_PX;
+        let tolerance = LEAST_TOLERANCE_PX.max(TOLERANCE * extent_px[0].max(extent_px[1]));
+        let outline = outline_of(&polygon.simplify(tolerance)).or_else(|_| outline_of(&polygon));
+        match outline {
+            Ok(outline) if large => found.nails.push(outline),
+            _ => found.dropped.push(DroppedRegion { center_px: [center.x, center.y], extent_px, area_px2 }),
+        }
+    }
+    found.nails.sort_by(|a, b| {
+        let ([ax, ay], [bx, by]) = (Shape::of(a).centroid_px, Shape::of(b).centroid_px);
+        ay.total_cmp(&by).then(ax.total_cmp(&bx))
+    });
+    found
+}
+
+/// The pixels of a region: `x0..=x1`, `y0..=y1`, and the mask's size.
+#[derive(Debug, Clone, Copy)]
+struct Region {
+    x: [u32; 2],
+    y: [u32; 2],
+    size: [u32; 2],
+}
+
+impl Region {
+    /// Outer level lines at half of `value` around the region, in pixels of the mask.
+    fn rings(&self, value: impl Fn(u32, u32) -> f64) -> Vec<Polygon<f64>> {
+        // Two cells of margin: one for the edge's grey levels, one beyond the mask's border, where there is nothing.
+        let (left, top) = (i64::from(self.x[0]) - 2, i64::from(self.y[0]) - 2);
+        let width = (self.x[1] - self.x[0]) as usize + 5;
+        let height = (self.y[1] - self.y[0]) as usize + 5;
+        let mut grid = Vec::with_capacity(width * height);
+        for y in (top..).take(height) {
+            for x in (left..).take(width) {
+                let on_mask = |p: i64, size: u32| u32::try_from(p).ok().filter(|p| *p < size);
+                let at = on_mask(x, self.size[0]).zip(on_mask(y, self.size[1]));
+                grid.push(at.map_or(0.0, |(x, y)| value(x, y)));
+            }
+        }
+        let rings = contour_rings(&grid, 0.5, width, height).unwrap_or_default();
+        let cell = |x: i64, y: i64| {
+            let within = x >= 0 && y >= 0 && (x as usize) < width && (y as usize) < height;
+            if within { grid[y as usize * width + x as usize] } else { 0.0 }
+        };
+        rings
+            .into_iter()
+            .map(|mut ring| {
+                for point in &mut ring {
+                    // The crate puts a cell's centre at +0.5 and every crossing half-way between two centres; the true one
+                    // follows from the two values. At the border of the mask, beyond which there is nothing, the pixel's
+                    // edge is half-way.
+                    let (x, y) = (point.x - 0.5, point.y - 0.5);
+                    let (x0, y0) = (x.floor() as i64, y.floor() as i64);
+                    let (x1, y1) = (x.ceil() as i64, y.ceil() as i64);
+                    let (a, b) = (cell(x0, y0), cell(x1, y1));
+                    let on_border = |p0: i64, p1: i64, size: u32| {
+                        p0 < 0 && p1 >= 0 || p0 < i64::from(size) && p1 >= i64::from(size)
+                    };
+                    let border =
+                        on_border(left + x0, left + x1, self.size[0]) || on_border(top + y0, top + y1, self.size[1]);
+                    let part = if border || (b - a).abs() < f64::EPSILON { 0.5 } else { (0.5 - a) / (b - a) };
+                    point.x = left as f64 + x0 as f64 + part * (x1 - x0) as f64;
+                    point.y = top as f64 + y0 as f64 + part * (y1 - y0) as f64;
+                }
+                Polygon::new(LineString::new(ring), vec![])
+            })
+            // Holes run the other way round.
+            .filter(|polygon| polygon.signed_area() * OUTER > 0.0)
+            .collect()
+    }
+}
+
+/// Sign of the signed area of an outer ring as the contour crate winds it.
+const OUTER: f64 = -1.0;
+
+/// The boxes of labels 1, 2, ..
+fn boxes(labels: &ImageBuffer<Luma<u32>, Vec<u32>>) -> Vec<Region> {
+    let size = [labels.width(), labels.height()];
+    let mut regions: Vec<Region> = Vec::new();
+    for (x, y, label) in labels.enumerate_pixels() {
+        let Some(index) = (label.0[0] as usize).checked_sub(1) else { continue };
+        if regions.len() <= index {
+            regions.resize(index + 1, Region { x: [u32::MAX, 0], y: [u32::MAX, 0], size });
+        }
+        let region = &mut regions[index];
+        region.x = [region.x[0].min(x), region.x[1].max(x)];
+        region.y = [region.y[0].min(y), region.y[1].max(y)];
+    }
+    regions
+}
+
+/// The mask's values as they are stored, and full scale.
+fn levels(mask: &DynamicImage) -> (ImageBuffer<Luma<f32>, Vec<f32>>, f32) {
+    fn typed<P: Pixel<Subpixel: Primitive + Into<f32>>>(
+        pixels: &ImageBuffer<P, Vec<P::Subpixel>>,
+    ) -> (ImageBuffer<Luma<f32>, Vec<f32>>, f32) {
+        let full: f32 = P::Subpixel::DEFAULT_MAX_VALUE.into();
+        let level = |pixel: &P| {
+            let [r, g, b, opacity] = pixel.to_rgba().0.map(Into::into);
+            r.max(g).max(b) * (opacity / full)
+        };
+        let levels = pixels.pixels().map(level).collect();
+        (ImageBuffer::from_raw(pixels.width(), pixels.height(), levels).expect("a level a pixel"), full)
+    }
+    match mask {
+        DynamicImage::ImageLuma8(pixels) => typed(pixels),
+        DynamicImage::ImageLumaA8(pixels) => typed(pixels),
+        DynamicImage::ImageRgb8(pixels) => typed(pixels),
+        DynamicImage::ImageRgba8(pixels) => typed(pixels),
+        DynamicImage::ImageLuma16(pixels) => typed(pixels),
+        DynamicImage::ImageLumaA16(pixels) => typed(pixels),
+        DynamicImage::ImageRgb16(pixels) => typed(pixels),
+        DynamicImage::ImageRgba16(pixels) => typed(pixels),
+        other => typed(&other.to_rgba32f()),
+    }
 }

@@ -4,11 +4,23 @@
 //! pixel is (0, 0), x to the right, y down. An [`Axis`] is a direction on that picture, from the eponychium (proximal)
 //! to the hyponychium (distal).
 
-pub mod annotated;
-pub mod axis;
-pub mod detect;
-pub mod mask;
-pub mod source;
+mod annotated;
+mod axis;
+mod detect;
+mod finger;
+mod mask;
+mod patch;
+mod shape;
+mod source;
+
+pub use annotated::{
+    AXIS, Annotated, AnnotationFault, DOUBTFUL, Drawn, NAIL, ShapeFault, ToDraw, read as read_annotated, to_file,
+};
+pub use axis::{AxisDoubt, AxisUnknown, FoundAxis, LEAST_CONFIDENCE, Side, axis_towards, find_axes, find_axes_towards};
+pub use detect::{DetectOptions, Detected, Detections, detect};
+pub use mask::{DroppedRegion, MaskFault, MaskOutlines, outlines_from_mask};
+pub use shape::Shape;
+pub use source::{Found, Nail, OutlineOptions, Source, SourceFault, Sources};
 
 use geo::{Area, BooleanOps, Coord, Intersects, Line, LineString, Polygon};
 use thiserror::Error;

@@ -9,10 +9,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use super::annotated::{self, AnnotationFault, Drawn};
-use super::axis::{Side, axis_towards, find_axes};
-use super::detect::{DetectOptions, detect};
-use super::mask::{MaskFault, outlines_from_mask};
-use super::{Axis, Outline};
+use super::{Axis, DetectOptions, MaskFault, Outline, Side, detect, find_axes, find_axes_towards, outlines_from_mask};
 use crate::photo::read::{Photograph, ReadFault};
 use crate::photo::set::{PICTURES, Photo, is_picture};
 
@@ -104,6 +101,9 @@ pub enum SourceFault {
         /// Why it can't be used.
         why: MaskFault,
     },
+    /// A mask without a nail.
+    #[error("the mask {} is all black; paint its nails white", .0.display())]
+    EmptyMask(PathBuf),
     /// Annotated outlines only, and there is none.
     #[error("has no outline: no outline column, no LabelMe file beside it{}; draw one, or let --outline auto detect it",
         if *.masks { ", no mask" } else { "" })]
@@ -199,6 +199,9 @@ impl OutlineOptions {
             })
             .collect();
         self.complete_axes(picture, &mut nails);
+        if nails.is_empty() && regions.dropped.is_empty() {
+            return Err(SourceFault::EmptyMask(file.to_owned()));
+        }
         nails.extend(regions.dropped.into_iter().map(|d| left_out(Source::Mask, None, d.to_string())));
         Ok(nails)
     }
@@ -235,8 +238,8 @@ impl OutlineOptions {
             (0..nails.len()).filter(|&k| nails[k].outline.is_some() && nails[k].axis.is_none()).collect();
         let outlines: Vec<Outline> = open.iter().filter_map(|&k| nails[k].outline.clone()).collect();
         if let Some(side) = self.distal {
-            for (&k, outline) in open.iter().zip(&outlines) {
-                nails[k].axis = Some(axis_towards(outline, side));
+            for (&k, axis) in open.iter().zip(find_axes_towards(&picture.image, &outlines, side)) {
+                nails[k].axis = Some(axis);
             }
         } else if !outlines.is_empty() {
             for (&k, found) in open.iter().zip(find_axes(&picture.image, &outlines)) {
@@ -247,9 +250,7 @@ impl OutlineOptions {
                     }
                     Err(unknown) => {
                         nails[k].confidence = None;
-                        nails[k].reason = format!(
-                            "its direction can't be told: {unknown}; draw an `axis` line from proximal to distal in LabelMe, or say --distal"
-                        );
+                        nails[k].reason = unknown.to_string();
                     }
                 }
             }
