@@ -89,9 +89,10 @@ fn maps_made_in_parts_and_merged_equal_those_made_at_once() {
     dir.lunula(&["photos", "merge", "second", "first", "--out", "merged"]).expect(0);
     let (whole, merged) = (dir.bytes_of("whole"), dir.bytes_of("merged"));
     let mut compared = 0;
-    for (name, bytes) in
-        whole.iter().filter(|(n, _)| n.starts_with("maps") || n.starts_with("figures") || *n == "nails.csv")
-    {
+    // The sheets of single nails show pictures that stay with the parts.
+    for (name, bytes) in whole.iter().filter(|(n, _)| {
+        n.starts_with("maps") || (n.starts_with("figures") && !n.contains("nails")) || *n == "nails.csv"
+    }) {
         assert!(merged.get(name) == Some(bytes), "{name}");
         compared += 1;
     }

@@ -88,8 +88,8 @@ impl Grid {
             let corner = self.corner(row, 0);
             // Along a row, what lies within is one stretch of columns.
             let (mut from, mut to) = (0.0_f64, self.size as f64 - 1.0);
-            for k in 0..2 {
-                let (step, first) = (self.per_column[k], corner[k] + 0.5 * (self.per_column[k] + self.per_row[k]));
+            for (k, corner) in corner.into_iter().enumerate() {
+                let (step, first) = (self.per_column[k], corner + 0.5 * (self.per_column[k] + self.per_row[k]));
                 let crossings = [(-0.5 - first) / step, (source.photo_end[k] - first) / step];
                 if step != 0.0 {
                     from = from.max(crossings[0].min(crossings[1]).ceil());
