@@ -4,6 +4,8 @@
 //! pixel is (0, 0), x to the right, y down. An [`Axis`] is a direction on that picture, from the eponychium (proximal)
 //! to the hyponychium (distal).
 
+pub mod detect;
+
 use geo::{Area, BooleanOps, Coord, LineString, Polygon, Validation};
 use thiserror::Error;
 

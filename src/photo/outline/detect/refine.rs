@@ -1,0 +1,193 @@
+//! From a template to the outline: the best closed path through a band around the template's rim.
+//!
+//! Rays leave the template's rim along its normals. At each place on each ray a small network tells from the channels'
+//! profile how much it looks like a nail's border there; dynamic programming finds the smooth closed path of the
+//! greatest sum. Lengths are in mean half axes of the template.
+
+use std::sync::LazyLock;
+
+use super::net::Net;
+use super::patch::Patch;
+use super::shape::Shape;
+
+/// Rays around the rim.
+pub(super) const RAYS: usize = 96;
+/// Places on a ray on either side of the rim.
+pub(super) const SIDE: usize = 22;
+/// From one place to the next.
+pub(super) const STEP: f64 = 0.016;
+/// Where the profile is read around a place, in places.
+const TAPS: [isize; 9] = [-16, -10, -6, -3, 0, 3, 6, 10, 16];
+/// Samples of a ray on either side of the rim.
+const LONG: usize = SIDE + 16;
+/// Inputs of the network: profiles of three channels, the ray's direction, greyness.
+pub(super) const INPUTS: usize = 3 * TAPS.len() + 6;
+/// Ordinary contrasts.
+const CONTRAST: [f32; 3] = [0.10, 0.05, 0.05];
+/// Most places that the path may move from ray to ray.
+const STIFF: usize = 3;
+/// Price of moving one place, squared places.
+const PRICE: f32 = 0.35;
+
+static BORDER: LazyLock<Net> =
+    LazyLock::new(|| Net::parse(include_str!("weights/border.txt")).expect("weights are checked by a test"));
+
+/// The rays' channels around a rim.
+pub(super) struct Band {
+    /// Rim point and unit normal in the frame, for each ray.
+    pub(super) rays: Vec<([f64; 2], [f64; 2])>,
+    /// Frame units a mean half axis.
+    pub(super) half: f64,
+    /// `[channel][ray * (2 LONG + 1) + place]`
+    profiles: Vec<Vec<f32>>,
+}
+
+/// A refined outline.
+#[derive(Debug, Clone)]
+pub(super) struct Path {
+    /// Offset of each ray from the rim, mean half axes.
+    pub(super) offset: Vec<f64>,
+    /// The network's answer on each ray.
+    pub(super) trust: Vec<f32>,
+    /// Corners in the frame.
+    pub(super) points: Vec<[f64; 2]>,
+}
+
+impl Band {
+    /// The band around a template.
+    pub(super) fn around(patch: &Patch, shape: &Shape) -> Self {
+        let half = 0.25 * (shape.length + shape.width);
+        let at = |k: f64| {
+            let [u, v] = shape.rim(k / RAYS as f64 * std::f64::consts::TAU);
+            shape.point(u, v)
+        };
+        let rays = (0..RAYS)
+            .map(|k| {
+                let (before, here, after) = (at(k as f64 - 0.5), at(k as f64), at(k as f64 + 0.5));
+                let (tx, ty) = (after[0] - before[0], after[1] - before[1]);
+                let n = tx.hypot(ty);
+                (here, [ty / n, -tx / n])
+            })
+            .collect();
+        Self::of(patch, rays, half)
+    }
+
+    /// The band around any rim.
+    pub(super) fn of(patch: &Patch, rays: Vec<([f64; 2], [f64; 2])>, half: f64) -> Self {
+        let count = 2 * LONG + 1;
+        let profiles = patch
+            .planes
+            .iter()
+            .map(|plane| {
+                let mut raw = Vec::with_capacity(RAYS * count);
+                for (p, n) in &rays {
+                    for m in 0..count {
+                        let d = (m as f64 - LONG as f64) * STEP * half;
+                        raw.push(patch.between(plane, p[0] + d * n[0], p[1] + d * n[1]));
+                    }
+                }
+                // Neighbouring rays are averaged: the border runs on, noise does not.
+                (0..RAYS * count)
+                    .map(|i| {
+                        let (k, m) = (i / count, i % count);
+                        let at = |d: usize| raw[(k + d) % RAYS * count + m];
+                        (at(RAYS - 1) + 2.0 * at(0) + at(1)) / 4.0
+                    })
+                    .collect()
+            })
+            .collect();
+        Self { rays, half, profiles }
+    }
+
+    /// The network's inputs at place `m` (0 to 2 SIDE) of ray `k`.
+    pub(super) fn inputs(&self, k: usize, m: usize) -> [f32; INPUTS] {
+        let mut out = [0.0f32; INPUTS];
+        let count = 2 * LONG + 1;
+        let centre = (k * count + m + LONG - SIDE) as isize;
+        for (c, profile) in self.profiles.iter().enumerate() {
+            let values = TAPS.map(|t| profile[(centre + t) as usize]);
+            let mean = values.iter().sum::<f32>() / TAPS.len() as f32;
+            for (to, v) in out[c * TAPS.len()..].iter_mut().zip(values) {
+                let x = (v - mean) / CONTRAST[c];
+                *to = x / (1.0 + 0.3 * x.abs());
+            }
+        }
+        let (sin, cos) = (k as f32 / RAYS as f32 * std::f32::consts::TAU).sin_cos();
+        let d = (m as f32 - SIDE as f32) / SIDE as f32;
+        let last = [sin, cos.abs(), sin * sin, d, d * d, if self.profiles.len() > 1 { 0.0 } else { 1.0 }];
+        out[3 * TAPS.len()..].copy_from_slice(&last);
+        out
+    }
+
+    /// The best closed path.
+    pub(super) fn path(&self) -> Path {
+        let places = 2 * SIDE + 1;
+        let gain: Vec<f32> =
+            (0..RAYS * places).map(|i| BORDER.answer(&self.inputs(i / places, i % places))).collect();
+        let chosen = closed(&gain, places);
+        // Between places: the top of the parabola through the neighbours.
+        let offset: Vec<f64> = (0..RAYS)
+            .map(|k| {
+                let m = chosen[k];
+                let fine = if m > 0 && m + 1 < places {
+                    let (a, b, c) = (gain[k * places + m - 1], gain[k * places + m], gain[k * places + m + 1]);
+                    let bend = a - 2.0 * b + c;
+                    if bend < -1e-4 { (0.5 * (a - c) / bend).clamp(-0.5, 0.5) } else { 0.0 }
+                } else {
+                    0.0
+                };
+                (m as f64 - SIDE as f64 + f64::from(fine)) * STEP
+            })
+            .collect();
+        let offset = calm(&offset);
+        let trust = (0..RAYS).map(|k| gain[k * places + chosen[k]]).collect();
+        let points = self
+            .rays
+            .iter()
+            .zip(&offset)
+            .map(|((p, n), d)| [p[0] + d * self.half * n[0], p[1] + d * self.half * n[1]])
+            .collect();
+        Path { offset, trust, points }
+    }
+}
+
+/// Dynamic programming around the ring: a lap and a half, of which the middle is kept.
+fn closed(gain: &[f32], places: usize) -> Vec<usize> {
+    let laps = 2 * RAYS;
+    let mut best: Vec<f32> = gain[..places].to_vec();
+    let mut from: Vec<Vec<usize>> = Vec::with_capacity(laps);
+    for step in 1..laps {
+        let row = &gain[step % RAYS * places..(step % RAYS + 1) * places];
+        let mut next = vec![f32::NEG_INFINITY; places];
+        let mut back = vec![0usize; places];
+        for m in 0..places {
+            for b in m.saturating_sub(STIFF)..(m + STIFF + 1).min(places) {
+                let moved = m.abs_diff(b) as f32;
+                let value = best[b] - PRICE * moved * moved + row[m];
+                if value > next[m] {
+                    next[m] = value;
+                    back[m] = b;
+                }
+            }
+        }
+        best = next;
+        from.push(back);
+    }
+    let mut at = (0..places).fold(0, |top, m| if best[m] > best[top] { m } else { top });
+    let mut path = vec![0usize; laps];
+    for step in (0..laps).rev() {
+        path[step] = at;
+        if step > 0 {
+            at = from[step - 1][at];
+        }
+    }
+    (0..RAYS).map(|k| if k < RAYS / 2 { path[k + RAYS] } else { path[k] }).collect()
+}
+
+/// Binomial smoothing along the ring, three rays either way.
+fn calm(offset: &[f64]) -> Vec<f64> {
+    const WEIGHTS: [f64; 7] = [1.0, 6.0, 15.0, 20.0, 15.0, 6.0, 1.0];
+    (0..RAYS)
+        .map(|k| (0..7).map(|i| WEIGHTS[i] * offset[(k + RAYS + i - 3) % RAYS]).sum::<f64>() / 64.0)
+        .collect()
+}
