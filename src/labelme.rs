@@ -1,0 +1,220 @@
+//! LabelMe files: the polygons, lines and points that a person drew on one picture.
+//!
+//! In and out: one JSON file per picture, as LabelMe 5 reads and writes it. Reading is tolerant (everything that a hand-written file
+//! leaves out has a default) and keeps what it does not know in `other`, so that a file read and written again loses nothing.
+//!
+//! Conventions: LabelMe's points have their origin at the picture's corner, so the centre of the top-left pixel is at (0.5, 0.5);
+//! [`to_labelme`] and [`from_labelme`] go between them and this project's pixels (whose centres are whole numbers). Width and height
+//! are those of the picture that the person saw, in pixels; whether that was the upright one is for the caller to find out.
+//!
+//! Source: LabelMe 5.5.0, `labelme/label_file.py`.
+
+use std::{
+    io,
+    path::{Path, PathBuf},
+};
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+use thiserror::Error;
+
+/// The version written into new files.
+pub const VERSION: &str = "5.5.0";
+
+/// Why a LabelMe file could not be read or written.
+#[derive(Debug, Error)]
+pub enum Error {
+    /// The file could not be read.
+    #[error("{}: cannot be read: {source}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// The file could not be written.
+    #[error("{}: cannot be written: {source}", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// The file is not LabelMe's JSON.
+    #[error("{}: not a LabelMe file: {source}; open it in LabelMe and save it again", path.display())]
+    Parse {
+        /// The file.
+        path: PathBuf,
+        /// Where in the file, and what is wrong.
+        source: serde_json::Error,
+    },
+}
+
+/// One LabelMe file.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub struct LabelMe {
+    /// LabelMe's version that wrote the file.
+    #[serde(default)]
+    pub version: String,
+    /// Flags of the whole picture.
+    #[serde(default)]
+    pub flags: Map<String, Value>,
+    /// What was drawn.
+    #[serde(default)]
+    pub shapes: Vec<Shape>,
+    /// The picture's path, relative to the JSON file.
+    #[serde(default)]
+    pub image_path: String,
+    /// The picture itself, base64, or null.
+    #[serde(default)]
+    pub image_data: Option<String>,
+    /// The picture's height in pixels.
+    #[serde(default)]
+    pub image_height: Option<u32>,
+    /// The picture's width in pixels.
+    #[serde(default)]
+    pub image_width: Option<u32>,
+    /// Whatever else the file holds.
+    #[serde(flatten)]
+    pub other: Map<String, Value>,
+}
+
+/// One thing drawn on the picture.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Shape {
+    /// What it is, in the person's own word.
+    #[serde(default)]
+    pub label: String,
+    /// Its points `[x, y]` in pixels from the picture's corner.
+    #[serde(default)]
+    pub points: Vec<[f64; 2]>,
+    /// A number shared by the shapes that belong together.
+    #[serde(default)]
+    pub group_id: Option<i64>,
+    /// A remark.
+    #[serde(default)]
+    pub description: Option<String>,
+    /// `polygon`, `line`, `rectangle`, ... (`polygon` where the file is silent, as in LabelMe).
+    #[serde(default = "polygon")]
+    pub shape_type: String,
+    /// Flags of this shape.
+    #[serde(default)]
+    pub flags: Option<Map<String, Value>>,
+    /// Whatever else the shape holds.
+    #[serde(flatten)]
+    pub other: Map<String, Value>,
+}
+
+fn polygon() -> String {
+    "polygon".to_owned()
+}
+
+impl Shape {
+    /// A shape of type `shape_type` without group, remark or flags.
+    pub fn new(label: &str, shape_type: &str, points: Vec<[f64; 2]>) -> Self {
+        Self {
+            label: label.to_owned(),
+            points,
+            group_id: None,
+            description: Some(String::new()),
+            shape_type: shape_type.to_owned(),
+            flags: Some(Map::new()),
+            other: Map::new(),
+        }
+    }
+}
+
+impl LabelMe {
+    /// A file for the picture `image_path` (relative to the file) of the size given in pixels.
+    pub fn new(image_path: &str, width: u32, height: u32, shapes: Vec<Shape>) -> Self {
+        Self {
+            version: VERSION.to_owned(),
+            flags: Map::new(),
+            shapes,
+            image_path: image_path.to_owned(),
+            image_data: None,
+            image_height: Some(height),
+            image_width: Some(width),
+            other: Map::new(),
+        }
+    }
+
+    /// Reads one file.
+    ///
+    /// # Errors
+    /// [`Error::Read`] and [`Error::Parse`].
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        let bytes = std::fs::read(path).map_err(|source| Error::Read { path: path.to_owned(), source })?;
+        let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
+        serde_json::from_slice(text).map_err(|source| Error::Parse { path: path.to_owned(), source })
+    }
+
+    /// Writes one file.
+    ///
+    /// # Errors
+    /// [`Error::Write`].
+    pub fn write(&self, path: &Path) -> Result<(), Error> {
+        let refused = |source: io::Error| Error::Write { path: path.to_owned(), source };
+        let mut text = serde_json::to_vec_pretty(self).map_err(|e| refused(e.into()))?;
+        text.push(b'\n');
+        std::fs::write(path, text).map_err(refused)
+    }
+}
+
+/// A point in pixels (centre of the top-left pixel at 0, 0) to LabelMe's (that centre at 0.5, 0.5).
+pub fn to_labelme(point: [f64; 2]) -> [f64; 2] {
+    point.map(|v| v + 0.5)
+}
+
+/// A LabelMe point (centre of the top-left pixel at 0.5, 0.5) to pixels (that centre at 0, 0).
+pub fn from_labelme(point: [f64; 2]) -> [f64; 2] {
+    point.map(|v| v - 0.5)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn read_and_written_again_loses_nothing() {
+        let text = r#"{"version":"5.4.1","flags":{"good":true},"shapes":[{"label":"nail","points":[[1.5,2.25],[3.0,4.0],[5.0,2.0]],
+            "group_id":3,"description":"left","shape_type":"polygon","flags":{},"mask":null}],
+            "imagePath":"s01.png","imageData":null,"imageHeight":480,"imageWidth":640,"lineColor":[0,255,0,128]}"#;
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("s01.json");
+        std::fs::write(&path, text).unwrap();
+        let read = LabelMe::read(&path).unwrap();
+        assert_eq!(read.shapes[0].group_id, Some(3));
+        assert_eq!((read.image_width, read.image_height), (Some(640), Some(480)));
+        read.write(&path).unwrap();
+        let written: Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+        assert_eq!(written, serde_json::from_str::<Value>(text).unwrap());
+    }
+
+    #[test]
+    fn what_is_left_out_has_a_default() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("a.json");
+        std::fs::write(&path, "\u{feff}{\"shapes\":[{\"label\":\"nail\",\"points\":[[0,0],[1,0],[0,1]]}]}").unwrap();
+        let read = LabelMe::read(&path).unwrap();
+        assert_eq!(read.shapes[0].shape_type, "polygon");
+        assert_eq!(read.image_width, None);
+        assert_eq!(read.image_data, None);
+    }
+
+    #[test]
+    fn a_broken_file_is_named() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("broken.json");
+        std::fs::write(&path, "{\"shapes\":[").unwrap();
+        let error = LabelMe::read(&path).unwrap_err().to_string();
+        assert!(error.contains("broken.json") && error.contains("line 1"), "{error}");
+    }
+
+    #[test]
+    fn labelme_points_lie_half_a_pixel_further() {
+        assert_eq!(to_labelme([0.0, 0.0]), [0.5, 0.5]);
+        assert_eq!(from_labelme(to_labelme([2.25, -1.0])), [2.25, -1.0]);
+    }
+}
