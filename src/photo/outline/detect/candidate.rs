@@ -1,0 +1,221 @@
+//! One place followed to its end: template, refined outline, and what speaks for it.
+
+use geo::{BoundingRect, Intersects, Rect};
+use image::DynamicImage;
+
+use super::evidence::score;
+use super::patch::{Extent, Frame, Patch};
+use super::refine::{Band, Path, RAYS};
+use super::search::{NAIL, polish};
+use super::shape::Shape;
+use crate::photo::outline::{Axis, Outline};
+
+/// Number of figures that the confidence is made from.
+pub(super) const FIGURES: usize = 21;
+
+/// A nail that may be one.
+#[derive(Debug, Clone)]
+pub(super) struct Candidate {
+    pub(super) outline: Outline,
+    pub(super) axis: Axis,
+    /// What the confidence is made from.
+    pub(super) figures: [f32; FIGURES],
+}
+
+/// Where a candidate comes from.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Origin {
+    /// A finger's end of this fit; the template's score in its frame.
+    Tip { fit: f64, score: f32 },
+    /// The search over a close-up.
+    Anywhere,
+}
+
+/// The patch that an outline is refined on: at the photograph's resolution, up to a fixed size.
+pub(super) fn fine(length_px: f64) -> Extent {
+    Extent { per_unit: (1.1 * length_px).clamp(40.0, 112.0), ..NAIL }
+}
+
+/// Follows a template of a frame.
+pub(super) fn follow(image: &DynamicImage, frame: Frame, shape: Shape, origin: Origin) -> Option<Candidate> {
+    let (mut nail, mut template) = own_frame(frame, &shape);
+    if !(nail.unit_px > 8.0) {
+        return None;
+    }
+    if matches!(origin, Origin::Anywhere) {
+        let patch = Patch::cut(image, nail, NAIL);
+        let (better, _) = polish(&patch, (template, score(&patch, &template, false)), false);
+        (nail, template) = own_frame(nail, &better);
+    }
+    let patch = Patch::cut(image, nail, fine(nail.unit_px));
+    let first = Band::around(&patch, &template).path();
+    let band = Band::of(&patch, normals(&first.points), 0.25 * (template.length + template.width));
+    let second = band.path();
+    let (turn, fitted) = box_of(&second.points, 0.0);
+    let axis = {
+        let tip = nail.to_source(fitted.point(0.0, 1.0));
+        let root = nail.to_source(fitted.point(0.0, -1.0));
+        Axis::through(root, tip)?
+    };
+    let corners: Vec<[f64; 2]> = second.points.iter().map(|p| nail.to_source(*p)).collect();
+    let outline = Outline::new(&corners).ok()?;
+    let figures = figures(&patch, &template, &fitted, &first, &second, origin, nail.unit_px, turn);
+    Some(Candidate { outline, axis, figures })
+}
+
+/// The frame of a nail itself: origin its centre, up its axis, unit its length; and the template there.
+pub(super) fn own_frame(frame: Frame, shape: &Shape) -> (Frame, Shape) {
+    let (sin, cos) = shape.turn.sin_cos();
+    let [ux, uy] = frame.up;
+    let up = [ux * cos - uy * sin, ux * sin + uy * cos];
+    let own = Frame { origin: frame.to_source([shape.x, shape.y]), up, unit_px: shape.length * frame.unit_px };
+    (own, Shape { x: 0.0, y: 0.0, length: 1.0, width: shape.width / shape.length, turn: 0.0, taper: shape.taper })
+}
+
+/// Points with outward normals of a closed path that runs counter-clockwise in a frame with y up.
+fn normals(points: &[[f64; 2]]) -> Vec<([f64; 2], [f64; 2])> {
+    let n = points.len();
+    (0..n)
+        .map(|k| {
+            let (a, b) = (points[(k + n - 2) % n], points[(k + 2) % n]);
+            let (tx, ty) = (b[0] - a[0], b[1] - a[1]);
+            let d = tx.hypot(ty).max(1e-9);
+            (points[k], [ty / d, -tx / d])
+        })
+        .collect()
+}
+
+/// The axis along which the outline's middle line runs, started from `turn`, and the template of its box.
+fn box_of(points: &[[f64; 2]], mut turn: f64) -> (f64, Shape) {
+    let turned = |turn: f64| -> Vec<[f64; 2]> {
+        let (sin, cos) = f64::sin_cos(turn);
+        points.iter().map(|p| [p[0] * cos - p[1] * sin, p[0] * sin + p[1] * cos]).collect()
+    };
+    for _ in 0..3 {
+        let q = turned(turn);
+        let (low, high) = span(&q, 1);
+        let (mut sv, mut sm, mut svv, mut svm, mut n) = (0.0, 0.0, 0.0, 0.0, 0.0);
+        for i in 0..15 {
+            let v = low + (high - low) * (0.15 + 0.7 * f64::from(i) / 14.0);
+            let crossings: Vec<f64> = (0..q.len())
+                .filter_map(|k| {
+                    let (a, b) = (q[k], q[(k + 1) % q.len()]);
+                    ((a[1] > v) != (b[1] > v)).then(|| a[0] + (v - a[1]) / (b[1] - a[1]) * (b[0] - a[0]))
+                })
+                .collect();
+            if crossings.len() == 2 {
+                let m = 0.5 * (crossings[0] + crossings[1]);
+                sv += v;
+                sm += m;
+                svv += v * v;
+                svm += v * m;
+                n += 1.0;
+            }
+        }
+        let bend = (svm - sv * sm / n) / (svv - sv * sv / n);
+        if bend.is_finite() {
+            turn += (0.7 * bend.atan()).clamp(-0.1, 0.1);
+        }
+    }
+    let q = turned(turn);
+    let (left, right) = span(&q, 0);
+    let (low, high) = span(&q, 1);
+    let (sin, cos) = turn.sin_cos();
+    let (x, y) = ((left + right) / 2.0, (low + high) / 2.0);
+    let shape = Shape {
+        x: x * cos + y * sin,
+        y: -x * sin + y * cos,
+        length: high - low,
+        width: right - left,
+        turn,
+        taper: 0.03,
+    };
+    (turn, shape)
+}
+
+fn span(points: &[[f64; 2]], axis: usize) -> (f64, f64) {
+    points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), p| (l.min(p[axis]), h.max(p[axis])))
+}
+
+#[allow(clippy::too_many_arguments)]
+fn figures(
+    patch: &Patch,
+    template: &Shape,
+    fitted: &Shape,
+    first: &Path,
+    second: &Path,
+    origin: Origin,
+    length_px: f64,
+    turn: f64,
+) -> [f32; FIGURES] {
+    let (fit, tip_score, tip) = match origin {
+        Origin::Tip { fit, score } => (fit as f32, score, 1.0),
+        Origin::Anywhere => (0.0, 0.0, 0.0),
+    };
+    let chance = |t: &f32| 1.0 / (1.0 + (-t).exp());
+    let arc = |from: usize, to: usize| -> f32 {
+        (from..to).map(|k| chance(&second.trust[k % RAYS])).sum::<f32>() / (to - from) as f32
+    };
+    let arcs = [arc(12, 36), arc(36, 60), arc(60, 84), arc(84, 108)];
+    let lowest = (0..12).map(|i| arc(8 * i, 8 * i + 8)).fold(f32::INFINITY, f32::min);
+    let rms = |offset: &[f64]| {
+        let mean = offset.iter().sum::<f64>() / offset.len() as f64;
+        ((offset.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / offset.len() as f64).sqrt() as f32, mean as f32)
+    };
+    let (moved, grown) = rms(&first.offset);
+    let (again, _) = rms(&second.offset);
+    let flipped = Shape { turn: fitted.turn + std::f64::consts::PI, ..*fitted };
+    let own = score(patch, fitted, false);
+    let before = score(patch, template, false);
+    [
+        own,
+        own - score(patch, &flipped, false),
+        before,
+        arcs[0],
+        arcs[1].min(arcs[3]),
+        arcs[1].max(arcs[3]),
+        arcs[2],
+        lowest,
+        moved,
+        again,
+        grown,
+        (fitted.length / fitted.width).ln() as f32,
+        length_px.ln() as f32,
+        if patch.planes.len() > 1 { 0.0 } else { 1.0 },
+        tip,
+        fit,
+        tip_score,
+        turn.abs() as f32,
+        patch.seen.iter().filter(|s| **s).count() as f32 / patch.seen.len() as f32,
+        0.0,
+        0.0,
+    ]
+}
+
+/// Fills in what the candidates say of each other: how many agree, and the best that contradicts.
+pub(super) fn compare(all: &mut [Candidate]) {
+    let boxes: Vec<Rect<f64>> = all.iter().filter_map(|c| c.outline.polygon().bounding_rect()).collect();
+    let mut agree = vec![0.0f32; all.len()];
+    let mut rival = vec![-1.0f32; all.len()];
+    for i in 0..all.len() {
+        for j in 0..i {
+            if !boxes[i].intersects(&boxes[j]) {
+                continue;
+            }
+            let iou = all[i].outline.iou(&all[j].outline);
+            let (a, b) = (all[i].outline.area_px2(), all[j].outline.area_px2());
+            let shared = iou * (a + b) / (1.0 + iou);
+            if iou > 0.8 {
+                agree[i] += 1.0;
+                agree[j] += 1.0;
+            } else if shared > 0.3 * a.min(b) {
+                rival[i] = rival[i].max(all[j].figures[0]);
+                rival[j] = rival[j].max(all[i].figures[0]);
+            }
+        }
+    }
+    for ((c, agree), rival) in all.iter_mut().zip(agree).zip(rival) {
+        c.figures[FIGURES - 2] = agree / (1.0 + agree);
+        c.figures[FIGURES - 1] = rival.max(-0.2) - c.figures[0];
+    }
+}
