@@ -1,17 +1,17 @@
 //! One place followed to its end: template, refined outline, and what speaks for it.
 
 use geo::{BoundingRect, Intersects, Rect};
-use image::DynamicImage;
 
 use super::evidence::score;
-use super::patch::{Extent, Frame, Patch};
-use super::refine::{Band, Path, RAYS};
-use super::search::{NAIL, polish};
+use super::patch::{Frame, Patch};
+use super::picture::{Levels, RED, TONE, YELLOW};
+use super::refine::{Band, Path, RAYS, SIDE};
+use super::search::NAIL;
 use super::shape::Shape;
 use crate::photo::outline::{Axis, Outline};
 
 /// Number of figures that the confidence is made from.
-pub(super) const FIGURES: usize = 21;
+pub(super) const FIGURES: usize = 30;
 
 /// A nail that may be one.
 #[derive(Debug, Clone)]
@@ -20,6 +20,10 @@ pub(super) struct Candidate {
     pub(super) axis: Axis,
     /// What the confidence is made from.
     pub(super) figures: [f32; FIGURES],
+    nail: Frame,
+    fitted: Shape,
+    /// Other leads that mean the same.
+    support: f32,
 }
 
 /// Where a candidate comes from.
@@ -31,26 +35,59 @@ pub(super) enum Origin {
     Anywhere,
 }
 
-/// The patch that an outline is refined on: at the photograph's resolution, up to a fixed size.
-pub(super) fn fine(length_px: f64) -> Extent {
-    Extent { per_unit: (1.1 * length_px).clamp(40.0, 112.0), ..NAIL }
+/// Places that the second path may move.
+const AGAIN: usize = 8;
+
+/// A template in its own nail's frame, before it is followed.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Lead {
+    /// The nail's frame: origin its centre, up its axis, unit its length.
+    pub(super) nail: Frame,
+    /// The template there.
+    pub(super) template: Shape,
+    /// Where it comes from.
+    pub(super) origin: Origin,
+    /// The template's score.
+    pub(super) score: f32,
 }
 
-/// Follows a template of a frame.
-pub(super) fn follow(image: &DynamicImage, frame: Frame, shape: Shape, origin: Origin) -> Option<Candidate> {
-    let (mut nail, mut template) = own_frame(frame, &shape);
+impl Lead {
+    /// Is it the same nail at the same place, roughly?
+    fn like(&self, nail: &Frame, shape: &Shape) -> bool {
+        let c = nail.from_source(self.nail.origin);
+        let size = self.nail.unit_px / nail.unit_px;
+        let turn = self.nail.up[0] * nail.up[0] + self.nail.up[1] * nail.up[1];
+        (c[0] - shape.x).hypot(c[1] - shape.y) < 0.12
+            && (size / shape.length).ln().abs() < 0.16
+            && (size * self.template.width / shape.width).ln().abs() < 0.16
+            && turn > 0.8
+    }
+}
+
+/// Follows the leads from the best score down; one that meets what was found already adds to its support.
+pub(super) fn follow_all(levels: &Levels, mut leads: Vec<Lead>, most: usize) -> Vec<Candidate> {
+    leads.sort_by(|a, b| b.score.total_cmp(&a.score));
+    let mut found: Vec<Candidate> = Vec::new();
+    for lead in leads {
+        if let Some(same) = found.iter_mut().find(|c| lead.like(&c.nail, &c.fitted)) {
+            same.support += 1.0;
+        } else if found.len() < most {
+            found.extend(follow(levels, &lead));
+        }
+    }
+    compare(&mut found);
+    found
+}
+
+/// Refines a lead.
+fn follow(levels: &Levels, lead: &Lead) -> Option<Candidate> {
+    let Lead { nail, template, origin, .. } = *lead;
     if !(nail.unit_px > 8.0) {
         return None;
     }
-    if matches!(origin, Origin::Anywhere) {
-        let patch = Patch::cut(image, nail, NAIL);
-        let (better, _) = polish(&patch, (template, score(&patch, &template, false)), false);
-        (nail, template) = own_frame(nail, &better);
-    }
-    let patch = Patch::cut(image, nail, fine(nail.unit_px));
-    let first = Band::around(&patch, &template).path();
-    let band = Band::of(&patch, normals(&first.points), 0.25 * (template.length + template.width));
-    let second = band.path();
+    let first = Band::around(levels, &nail, &template).path(SIDE, 2);
+    let half = 0.25 * (template.length + template.width);
+    let second = Band::of(levels, &nail, normals(&first.points), half).path(AGAIN, 1);
     let (turn, fitted) = box_of(&second.points, 0.0);
     let axis = {
         let tip = nail.to_source(fitted.point(0.0, 1.0));
@@ -59,8 +96,9 @@ pub(super) fn follow(image: &DynamicImage, frame: Frame, shape: Shape, origin: O
     };
     let corners: Vec<[f64; 2]> = second.points.iter().map(|p| nail.to_source(*p)).collect();
     let outline = Outline::new(&corners).ok()?;
+    let patch = Patch::cut(levels, nail, NAIL);
     let figures = figures(&patch, &template, &fitted, &first, &second, origin, nail.unit_px, turn);
-    Some(Candidate { outline, axis, figures })
+    Some(Candidate { outline, axis, figures, nail, fitted, support: 0.0 })
 }
 
 /// The frame of a nail itself: origin its centre, up its axis, unit its length; and the template there.
@@ -156,8 +194,8 @@ fn figures(
     let arc = |from: usize, to: usize| -> f32 {
         (from..to).map(|k| chance(&second.trust[k % RAYS])).sum::<f32>() / (to - from) as f32
     };
-    let arcs = [arc(12, 36), arc(36, 60), arc(60, 84), arc(84, 108)];
-    let lowest = (0..12).map(|i| arc(8 * i, 8 * i + 8)).fold(f32::INFINITY, f32::min);
+    let arcs = [arc(8, 24), arc(24, 40), arc(40, 56), arc(56, 72)];
+    let lowest = (0..RAYS / 6).map(|i| arc(6 * i, 6 * i + 6)).fold(f32::INFINITY, f32::min);
     let rms = |offset: &[f64]| {
         let mean = offset.iter().sum::<f64>() / offset.len() as f64;
         ((offset.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / offset.len() as f64).sqrt() as f32, mean as f32)
@@ -165,6 +203,7 @@ fn figures(
     let (moved, grown) = rms(&first.offset);
     let (again, _) = rms(&second.offset);
     let flipped = Shape { turn: fitted.turn + std::f64::consts::PI, ..*fitted };
+    let (around, spread) = surroundings(patch, fitted);
     let own = score(patch, fitted, false);
     let before = score(patch, template, false);
     [
@@ -181,21 +220,59 @@ fn figures(
         grown,
         (fitted.length / fitted.width).ln() as f32,
         length_px.ln() as f32,
-        if patch.planes.len() > 1 { 0.0 } else { 1.0 },
+        if patch.colour { 0.0 } else { 1.0 },
         tip,
         fit,
         tip_score,
         turn.abs() as f32,
-        patch.seen.iter().filter(|s| **s).count() as f32 / patch.seen.len() as f32,
+        around[0][TONE],
+        around[0][RED],
+        around[0][YELLOW],
+        around[1][TONE],
+        around[1][RED],
+        around[1][YELLOW],
+        around[2][TONE],
+        around[2][RED],
+        around[2][YELLOW],
+        spread,
         0.0,
         0.0,
     ]
 }
 
+/// Colours of the skin around (on the sides and below), of the nail less the skin, of the far surroundings less the
+/// skin; and how uneven the skin's tone is.
+fn surroundings(patch: &Patch, shape: &Shape) -> ([[f32; 3]; 3], f32) {
+    let mean = |places: &[(f64, f64)]| {
+        let (mut sum, mut square) = ([0.0f32; 3], 0.0f32);
+        for &(u, v) in places {
+            let [x, y] = shape.point(u, v);
+            let cell = patch.at(x as f32, y as f32);
+            for c in 0..3 {
+                sum[c] += cell[c] / places.len() as f32;
+            }
+            square += cell[TONE] * cell[TONE] / places.len() as f32;
+        }
+        (sum, (square - sum[TONE] * sum[TONE]).max(0.0).sqrt())
+    };
+    let grid = |us: &[f64], vs: &[f64]| -> Vec<(f64, f64)> {
+        us.iter().flat_map(|&u| vs.iter().map(move |&v| (u, v))).collect()
+    };
+    let mut near = grid(&[-1.25, 1.25], &[-0.6, -0.3, 0.0, 0.3]);
+    near.extend(grid(&[-0.5, 0.0, 0.5], &[-1.2, -1.35]));
+    let (skin, spread) = mean(&near);
+    let (nail, _) = mean(&grid(&[-0.5, -0.25, 0.0, 0.25, 0.5], &[-0.6, -0.3, 0.0, 0.3, 0.6]));
+    let mut far = grid(&[-1.9, 1.9], &[-0.3, 0.3, 0.9, 1.4]);
+    far.extend(grid(&[-0.6, 0.0, 0.6], &[1.6]));
+    let (far, _) = mean(&far);
+    let less = |a: [f32; 3]| [0, 1, 2].map(|c| (a[c] - skin[c]).clamp(-1.0, 1.0));
+    ([skin, less(nail), less(far)], spread)
+}
+
 /// Fills in what the candidates say of each other: how many agree, and the best that contradicts.
 pub(super) fn compare(all: &mut [Candidate]) {
     let boxes: Vec<Rect<f64>> = all.iter().filter_map(|c| c.outline.polygon().bounding_rect()).collect();
-    let mut agree = vec![0.0f32; all.len()];
+    let mut agree: Vec<f32> = all.iter().map(|c| c.support).collect();
     let mut rival = vec![-1.0f32; all.len()];
     for i in 0..all.len() {
         for j in 0..i {
@@ -215,7 +292,7 @@ pub(super) fn compare(all: &mut [Candidate]) {
         }
     }
     for ((c, agree), rival) in all.iter_mut().zip(agree).zip(rival) {
-        c.figures[FIGURES - 2] = agree / (1.0 + agree);
+        c.figures[FIGURES - 2] = agree / (2.0 + agree);
         c.figures[FIGURES - 1] = rival.max(-0.2) - c.figures[0];
     }
 }

@@ -11,7 +11,7 @@ fn stages() {
         let (mut best_tip, mut best_any, mut pick, mut dir) = (vec![], vec![], vec![], vec![]);
         let t = std::time::Instant::now();
         for s in &all {
-            let c = candidates(&s.image);
+            let c = candidates(&Levels::of(&s.image, WORKING_PX));
             for t in &s.truths {
                 let of = |tip: bool| c.iter().filter(|c| (c.figures[14] > 0.5) == tip).map(|c| c.outline.iou(&t.outline)).fold(0.0, f64::max);
                 best_tip.push(of(true));
@@ -107,4 +107,44 @@ fn judged_() {
     }
     eprintln!("calibration:");
     for b in 0..10 { let v: Vec<_> = levels.iter().filter(|h| (h.0 * 10.0) as usize == b).collect(); eprintln!("  {:.1}: {} of {} IoU>=.8", b as f64 / 10.0, v.iter().filter(|h| h.1 >= 0.8).count(), v.len()); }
+}
+
+#[test]
+#[ignore]
+fn timing() {
+    let mut s = phantom(555, 3);
+    for k in 0..60 { let t = phantom(555, k); if t.image.width() == 640 { s = t; if k > 10 { break; } } }
+    for image in [s.image.clone(), { let h = hands(Path::new(&std::env::var("LUNULA_HANDS").unwrap()), 0, false); h[9].image.clone() }] {
+        for _ in 0..2 {
+            let mut marks = vec![];
+            let t = std::time::Instant::now();
+            let mut last = 0.0;
+            let mut mark = |n: &'static str| { let now = t.elapsed().as_secs_f64() * 1e3; marks.push((n, now - last)); last = now; };
+            let levels = Levels::of(&image, WORKING_PX);
+            mark("levels");
+            let picture = levels.within(SEARCH_PX);
+            let masks = silhouette::silhouettes(picture);
+            mark("masks");
+            let ends: Vec<_> = masks.iter().flat_map(tips::tips).collect();
+            mark("tips");
+            let n = ends.len();
+            let tips = tips::strongest(ends, ENDS);
+            mark("strongest");
+            let frames: Vec<Frame> = tips.iter().map(|tip| Frame { origin: picture.to_source(tip.apex), up: tip.out, unit_px: tip.width * picture.step }).collect();
+            let patches: Vec<_> = frames.iter().map(|f| Patch::cut(&levels, *f, search::FINGER)).collect();
+            mark("cut");
+            let best: Vec<_> = patches.iter().map(|p| search::on_finger(p, 2)).collect();
+            mark("on_finger");
+            let h = best.iter().flatten().filter(|s| s.1 > HOPE).count();
+            search::anywhere(&levels, 5);
+            mark("anywhere");
+            let l = leads(&levels);
+            mark("all leads");
+            let m = l.len();
+            let c = follow_all(&levels, l, FOLLOWED);
+            mark("follow");
+            eprintln!("{h} climbed, {m} leads, {} candidates", c.len());
+            eprintln!("{}x{} {n} ends, {} tips: {marks:.1?}", image.width(), image.height(), tips.len());
+        }
+    }
 }

@@ -13,18 +13,18 @@ const EACH: usize = 15;
 /// Number of inputs of the scorer.
 pub(super) const INPUTS: usize = 3 * EACH + 10;
 /// Distances from the rim along the normal, in mean half axes, at which the channels are read.
-const REACH: [f64; 6] = [-0.30, -0.15, 0.0, 0.15, 0.30, 0.60];
+const REACH: [f32; 6] = [-0.30, -0.15, 0.0, 0.15, 0.30, 0.60];
 /// Ordinary contrasts of tone, ln(R/G), ln(G/B): what a feature of 1 means.
 const CONTRAST: [f32; 3] = [0.15, 0.08, 0.08];
 
 /// Rim in (u, v) without taper, and the direction of its normal for a shape as long as wide.
-static RIM: LazyLock<[[f64; 4]; POINTS]> = LazyLock::new(|| {
+static RIM: LazyLock<[[f32; 4]; POINTS]> = LazyLock::new(|| {
     std::array::from_fn(|k| {
         let (s, c) = ((k as f64 + 0.5) / POINTS as f64 * std::f64::consts::TAU).sin_cos();
         let r = (c.abs().powf(EXPONENT) + s.abs().powf(EXPONENT)).powf(-1.0 / EXPONENT);
         let (u, v) = (r * c, r * s);
         let slope = |x: f64| x.abs().powf(EXPONENT - 1.0) * x.signum();
-        [u, v, slope(u), slope(v)]
+        [u, v, slope(u), slope(v)].map(|x| x as f32)
     })
 });
 
@@ -41,31 +41,33 @@ pub(super) fn score(patch: &Patch, shape: &Shape, tip: HasTip) -> f32 {
 
 /// The scorer's inputs.
 pub(super) fn inputs(patch: &Patch, shape: &Shape, tip: HasTip) -> [f32; INPUTS] {
-    let half = 0.25 * (shape.length + shape.width);
     let mut ring = [[[0.0f32; REACH.len()]; POINTS]; 3];
-    let (sin, cos) = shape.turn.sin_cos();
+    let [x, y, length, width, taper] =
+        [shape.x, shape.y, shape.length, shape.width, shape.taper].map(|v| v as f32);
+    let half = 0.25 * (length + width);
+    let (sin, cos) = (shape.turn.sin() as f32, shape.turn.cos() as f32);
     for (k, &[u, v, nu, nv]) in RIM.iter().enumerate() {
-        let (a, b) = (u * (1.0 - shape.taper * v) * shape.width / 2.0, v * shape.length / 2.0);
-        let (na, nb) = (nu / shape.width, nv / shape.length);
-        let n = half / na.hypot(nb);
+        let (a, b) = (0.5 * u * (1.0 - taper * v) * width, 0.5 * v * length);
+        let (na, nb) = (nu / width, nv / length);
+        let n = half / (na * na + nb * nb).sqrt();
         let (na, nb) = (na * n, nb * n);
         for (m, d) in REACH.iter().enumerate() {
             let (p, q) = (a + na * d, b + nb * d);
-            let at = patch.index(shape.x + p * cos + q * sin, shape.y - p * sin + q * cos);
-            for (plane, ring) in patch.planes.iter().zip(&mut ring) {
-                ring[k][m] = plane[at];
+            let cell = patch.at(x + p * cos + q * sin, y - p * sin + q * cos);
+            for (ring, value) in ring.iter_mut().zip(cell) {
+                ring[k][m] = value;
             }
         }
     }
     let mut out = [0.0f32; INPUTS];
-    for (c, ring) in ring.iter().enumerate().take(patch.planes.len()) {
+    for (c, ring) in ring.iter().enumerate().take(if patch.colour { 3 } else { 1 }) {
         channel(ring, CONTRAST[c], &mut out[c * EACH..(c + 1) * EACH]);
     }
     let aspect = (shape.length / shape.width).ln();
     let last = &mut out[3 * EACH..];
     last[0] = aspect as f32;
     last[1] = (aspect * aspect) as f32;
-    last[2] = if patch.planes.len() > 1 { 0.0 } else { 1.0 };
+    last[2] = if patch.colour { 0.0 } else { 1.0 };
     if tip {
         let gap = -(shape.y + 0.5 * shape.length);
         let own = [1.0, shape.x.abs(), gap, shape.width.ln(), shape.length.ln(), shape.turn.abs(), shape.taper];

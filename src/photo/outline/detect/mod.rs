@@ -17,36 +17,57 @@ mod evaluation;
 
 use image::DynamicImage;
 
-use candidate::{Candidate, Origin, fine, follow};
+use candidate::{Candidate, Lead, Origin, follow_all, own_frame};
 use patch::{Frame, Patch};
-use picture::Picture;
+use picture::Levels;
 
+/// Longest side of the working picture.
+const WORKING_PX: u32 = 1100;
 /// Longest side of the picture that silhouettes are looked for on.
-const SEARCH_PX: u32 = 384;
-/// Longest side of the picture that a close-up is searched on.
-const COARSE_PX: u32 = 112;
+const SEARCH_PX: usize = 560;
+/// Ends of fingers that are looked at.
+const ENDS: usize = 40;
+/// Most leads that are followed.
+const FOLLOWED: usize = 16;
+/// Lowest score in a coarse look that is looked at again.
+const HOPE: f32 = 0.2;
 
-/// Every candidate, unsorted.
-fn candidates(image: &DynamicImage) -> Vec<Candidate> {
-    let picture = Picture::whole(image, SEARCH_PX);
-    let ends: Vec<_> = silhouette::silhouettes(&picture).iter().flat_map(tips::tips).collect();
-    let mut found = Vec::new();
-    for tip in tips::strongest(ends, 24) {
-        let frame =
-            Frame { origin: picture.to_source(tip.apex), up: tip.out, unit_px: tip.width * f64::from(picture.step) };
-        let patch = Patch::cut(image, frame, search::FINGER);
-        for (shape, score) in search::on_finger(&patch, 2).into_iter().take(1) {
-            found.extend(follow(image, frame, shape, Origin::Tip { fit: tip.fit, score }));
+/// Finger ends: frames of a finger's width with their fit.
+fn ends(levels: &Levels, most: usize) -> Vec<(Frame, f64)> {
+    let picture = levels.within(SEARCH_PX);
+    let found = silhouette::silhouettes(picture).iter().flat_map(tips::tips).collect();
+    tips::strongest(found, most)
+        .into_iter()
+        .map(|t| (Frame { origin: picture.to_source(t.apex), up: t.out, unit_px: t.width * picture.step }, t.fit))
+        .collect()
+}
+
+/// Every template worth refining.
+fn leads(levels: &Levels) -> Vec<Lead> {
+    let mut leads = Vec::new();
+    for (frame, fit) in ends(levels, ENDS) {
+        let patch = Patch::cut(levels, frame, search::FINGER);
+        let best = search::on_finger(&patch, 2).into_iter().filter(|s| s.1 > HOPE).map(|s| search::polish(&patch, s, true));
+        if let Some((shape, score)) = best.max_by(|a, b| a.1.total_cmp(&b.1)) {
+            let (nail, template) = own_frame(frame, &shape);
+            leads.push(Lead { nail, template, origin: Origin::Tip { fit, score }, score });
         }
     }
-    let small = Picture::whole(image, COARSE_PX);
-    let size = [f64::from(image.width()), f64::from(image.height())];
-    let (patch, places) = search::anywhere(&small, size, 6);
-    for (shape, _) in places {
-        found.extend(follow(image, patch.frame, shape, Origin::Anywhere));
+    let (patch, places) = search::anywhere(levels, 5);
+    for (shape, _) in places.into_iter().filter(|s| s.1 > HOPE) {
+        let (nail, template) = own_frame(patch.frame, &shape);
+        let patch = Patch::cut(levels, nail, search::NAIL);
+        let first = evidence::score(&patch, &template, false);
+        let (shape, score) = search::polish(&patch, (template, first), false);
+        let (nail, template) = own_frame(nail, &shape);
+        leads.push(Lead { nail, template, origin: Origin::Anywhere, score });
     }
-    candidate::compare(&mut found);
-    found
+    leads
+}
+
+/// Every candidate, unsorted.
+fn candidates(levels: &Levels) -> Vec<Candidate> {
+    follow_all(levels, leads(levels), FOLLOWED)
 }
 
 static JUDGE: std::sync::LazyLock<net::Net> =
@@ -60,7 +81,7 @@ pub struct Detected { pub outline: super::Outline, pub axis: super::Axis, pub co
 
 /// All, best first, none overlapping a better one
 fn judged(image: &DynamicImage) -> Vec<Detected> {
-    let mut all: Vec<(f64, Candidate)> = candidates(image).into_iter().map(|c| (confidence(&c), c)).collect();
+    let mut all: Vec<(f64, Candidate)> = candidates(&Levels::of(image, WORKING_PX)).into_iter().map(|c| (confidence(&c), c)).collect();
     all.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut kept: Vec<Detected> = Vec::new();
     for (confidence, c) in all {

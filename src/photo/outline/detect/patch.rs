@@ -3,9 +3,7 @@
 //! In a [`Frame`] x runs to the right and y *up*, towards the distal end, in units of the frame (a finger's width, a
 //! nail's half length, ...); a [`Patch`] holds the channels sampled on that frame, blurred to its own resolution.
 
-use image::DynamicImage;
-
-use super::picture::{Picture, Plane, sample};
+use super::picture::{Cell, Levels, Picture, between};
 
 /// An origin, a direction and a unit on the source picture.
 #[derive(Debug, Clone, Copy)]
@@ -54,98 +52,65 @@ pub(super) struct Patch {
     pub(super) extent: Extent,
     /// Columns and rows.
     pub(super) size: [usize; 2],
-    /// Tone, and for colour ln(R/G) and ln(G/B).
-    pub(super) planes: Vec<Vec<f32>>,
-    /// Whether a sample lies on the photograph.
-    pub(super) seen: Vec<bool>,
+    /// Row by row.
+    pub(super) cells: Vec<Cell>,
+    /// Whether there is more than tone.
+    pub(super) colour: bool,
 }
 
 impl Patch {
-    /// Samples `extent` of `frame`, averaging source pixels down to the patch's resolution.
-    pub(super) fn cut(image: &DynamicImage, frame: Frame, extent: Extent) -> Self {
-        let corners = [0, 1, 2, 3].map(|k| frame.to_source([extent.x[k & 1], extent.y[k >> 1]]));
-        let low = |i: usize| corners.iter().map(|c| c[i]).fold(f64::INFINITY, f64::min);
-        let high = |i: usize| corners.iter().map(|c| c[i]).fold(f64::NEG_INFINITY, f64::max);
-        let step = ((frame.unit_px / extent.per_unit) as u32).max(1);
-        let margin = f64::from(2 * step);
-        let from = [0, 1].map(|i| (low(i) - margin).floor().max(0.0) as u32);
-        let to = [0, 1].map(|i| (high(i) + margin).ceil().max(0.0) as u32);
-        let picture = Picture::part(
-            image,
-            [from[0], from[1], to[0].saturating_sub(from[0]), to[1].saturating_sub(from[1])],
-            step,
-        );
-        Self::of(&picture, [f64::from(image.width()), f64::from(image.height())], frame, extent)
+    /// Samples `extent` of `frame` from the level of its resolution.
+    pub(super) fn cut(levels: &Levels, frame: Frame, extent: Extent) -> Self {
+        Self::of(levels.resolving(frame.unit_px / extent.per_unit), frame, extent)
     }
 
-    /// Samples `extent` of `frame` from a working picture of a source of `source_px`.
-    pub(super) fn of(picture: &Picture, source_px: [f64; 2], frame: Frame, extent: Extent) -> Self {
+    /// Samples `extent` of `frame` from a picture.
+    pub(super) fn of(picture: &Picture, frame: Frame, extent: Extent) -> Self {
         let size = [extent.x, extent.y].map(|e| ((e[1] - e[0]) * extent.per_unit).round() as usize + 1);
-        let channels: Vec<&Plane> = std::iter::once(&picture.tone).chain(picture.chroma.iter().flatten()).collect();
-        let mut planes = vec![Vec::with_capacity(size[0] * size[1]); channels.len()];
-        let mut seen = Vec::with_capacity(size[0] * size[1]);
+        let mut cells = Vec::with_capacity(size[0] * size[1]);
+        let start = picture.from_source(frame.to_source([extent.x[0], extent.y[1]])).map(|v| v as f32);
+        let d = frame.unit_px / extent.per_unit / picture.step;
+        let right = [-frame.up[1] * d, frame.up[0] * d].map(|v| v as f32);
+        let down = [-frame.up[0] * d, -frame.up[1] * d].map(|v| v as f32);
         for j in 0..size[1] {
+            let row = [start[0] + j as f32 * down[0], start[1] + j as f32 * down[1]];
             for i in 0..size[0] {
-                let p = frame.to_source([
-                    extent.x[0] + i as f64 / extent.per_unit,
-                    extent.y[1] - j as f64 / extent.per_unit,
-                ]);
-                let q = picture.from_source(p);
-                for (plane, channel) in planes.iter_mut().zip(&channels) {
-                    plane.push(sample(channel, q[0], q[1]));
-                }
-                let on = |i: usize| p[i] > -0.5 && p[i] < source_px[i] - 0.5;
-                seen.push(on(0) && on(1));
+                let at = [row[0] + i as f32 * right[0], row[1] + i as f32 * right[1]];
+                cells.push(between(&picture.cells, picture.size, at));
             }
         }
-        for plane in &mut planes {
-            smooth(plane, size);
-        }
-        Self { frame, extent, size, planes, seen }
+        smooth(&mut cells, size);
+        Self { frame, extent, size, cells, colour: picture.colour }
     }
 
-    /// Index of the sample nearest to a point of the frame, held at the border.
-    pub(super) fn index(&self, x: f64, y: f64) -> usize {
-        let i = ((x - self.extent.x[0]) * self.extent.per_unit + 0.5).max(0.0) as usize;
-        let j = ((self.extent.y[1] - y) * self.extent.per_unit + 0.5).max(0.0) as usize;
-        j.min(self.size[1] - 1) * self.size[0] + i.min(self.size[0] - 1)
-    }
-}
-
-impl Patch {
-    /// Value of a plane between samples, linearly; held at the border.
-    pub(super) fn between(&self, plane: &[f32], x: f64, y: f64) -> f32 {
-        let [w, h] = self.size;
-        let px = ((x - self.extent.x[0]) * self.extent.per_unit).clamp(0.0, (w - 1) as f64);
-        let py = ((self.extent.y[1] - y) * self.extent.per_unit).clamp(0.0, (h - 1) as f64);
-        let (i, j) = (px as usize, py as usize);
-        let (fx, fy) = ((px - i as f64) as f32, (py - j as f64) as f32);
-        let (i1, j1) = ((i + 1).min(w - 1), (j + 1).min(h - 1));
-        let top = plane[j * w + i] * (1.0 - fx) + plane[j * w + i1] * fx;
-        let low = plane[j1 * w + i] * (1.0 - fx) + plane[j1 * w + i1] * fx;
-        top * (1.0 - fy) + low * fy
+    /// The sample nearest to a point of the frame, held at the border.
+    pub(super) fn at(&self, x: f32, y: f32) -> Cell {
+        let scale = self.extent.per_unit as f32;
+        let i = ((x - self.extent.x[0] as f32) * scale + 0.5).max(0.0) as usize;
+        let j = ((self.extent.y[1] as f32 - y) * scale + 0.5).max(0.0) as usize;
+        self.cells[j.min(self.size[1] - 1) * self.size[0] + i.min(self.size[0] - 1)]
     }
 }
 
 /// Binomial blur (1 4 6 4 1)/16 both ways: SD of one sample.
-fn smooth(plane: &mut [f32], size: [usize; 2]) {
+fn smooth(cells: &mut [Cell], size: [usize; 2]) {
     let [w, h] = size;
-    let kernel = |a: f32, b: f32, c: f32, d: f32, e: f32| (a + 4.0 * b + 6.0 * c + 4.0 * d + e) / 16.0;
-    let mut line = vec![0.0f32; w];
-    for row in plane.chunks_exact_mut(w) {
+    let kernel = |r: [Cell; 5]| -> Cell {
+        [0, 1, 2].map(|c| (r[0][c] + r[4][c] + 4.0 * (r[1][c] + r[3][c]) + 6.0 * r[2][c]) / 16.0)
+    };
+    let place = |i: usize, n: usize| [-2isize, -1, 0, 1, 2].map(|k| (i as isize + k).clamp(0, n as isize - 1) as usize);
+    let mut line = vec![[0.0f32; 3]; w];
+    for row in cells.chunks_exact_mut(w) {
         for (i, out) in line.iter_mut().enumerate() {
-            let at = |k: isize| row[(i as isize + k).clamp(0, w as isize - 1) as usize];
-            *out = kernel(at(-2), at(-1), at(0), at(1), at(2));
+            *out = kernel(place(i, w).map(|k| row[k]));
         }
         row.copy_from_slice(&line);
     }
-    let copy = plane.to_vec();
-    for j in 0..h {
-        let at = |k: isize| (j as isize + k).clamp(0, h as isize - 1) as usize * w;
-        let rows = [at(-2), at(-1), at(0), at(1), at(2)];
-        for i in 0..w {
-            let [a, b, c, d, e] = rows.map(|r| copy[r + i]);
-            plane[j * w + i] = kernel(a, b, c, d, e);
+    let copy = cells.to_vec();
+    for (j, row) in cells.chunks_exact_mut(w).enumerate() {
+        let rows = place(j, h).map(|k| &copy[k * w..(k + 1) * w]);
+        for (i, out) in row.iter_mut().enumerate() {
+            *out = kernel(rows.map(|r| r[i]));
         }
     }
 }

@@ -1,147 +1,175 @@
-//! The working picture: reduced planes that do not depend on how bright the light is.
+//! The working picture: reduced channels that do not depend on how bright the light is.
 //!
-//! In: a photograph of any sample type. Out: `tone`, the logarithm of the green value (so that a step is a *relative*
-//! contrast, the same in dim light), and for colour `red`, ln(R/G), and `yellow`, ln(G/B), both unmoved by shading.
-//! Working pixels are means over `step x step` source pixels; [`Picture::to_source`] leads back.
+//! In: a photograph of any sample type. Out: `TONE`, the logarithm of the green value (so that a step is a *relative*
+//! contrast, the same in dim light), and for colour `RED`, ln(R/G), and `YELLOW`, ln(G/B), both unmoved by shading.
+//! [`Levels`] holds the photograph at its working size and halved again and again.
 
-use image::{DynamicImage, ImageBuffer, Luma};
+use image::DynamicImage;
 
-/// One channel of a working picture.
-pub(super) type Plane = ImageBuffer<Luma<f32>, Vec<f32>>;
+/// ln(green + floor).
+pub(super) const TONE: usize = 0;
+/// ln(red / green); 0 on a grey photograph.
+pub(super) const RED: usize = 1;
+/// ln(green / blue); 0 on a grey photograph.
+pub(super) const YELLOW: usize = 2;
+
+/// The channels of one pixel.
+pub(super) type Cell = [f32; 3];
 
 /// Darkest value that counts, as a fraction of full scale: keeps logarithms finite and noise in the dark small.
 const FLOOR: f32 = 0.02;
 /// Mean |ln(R/G)| and |ln(G/B)| under which a picture counts as grey.
 const GREY: f32 = 0.01;
 
-/// A part of a photograph at reduced size.
+/// A photograph at reduced size.
 #[derive(Debug, Clone)]
 pub(super) struct Picture {
-    /// ln(green + floor).
-    pub(super) tone: Plane,
-    /// ln(R/G) and ln(G/B); `None` for a grey photograph.
-    pub(super) chroma: Option<[Plane; 2]>,
+    /// Columns and rows.
+    pub(super) size: [usize; 2],
+    /// Row by row.
+    pub(super) cells: Vec<Cell>,
+    /// Whether there is more than tone.
+    pub(super) colour: bool,
     /// Source pixels a working pixel.
-    pub(super) step: u32,
-    /// Source pixel of the working picture's top-left corner.
-    origin: [u32; 2],
+    pub(super) step: f64,
 }
 
-/// A rectangle of source pixels: left, top, width, height.
-pub(super) type Region = [u32; 4];
+/// A photograph at working size and smaller.
+#[derive(Debug, Clone)]
+pub(super) struct Levels {
+    /// Columns and rows of the photograph.
+    pub(super) source_px: [f64; 2],
+    /// Largest first, each half of the one before.
+    pub(super) pictures: Vec<Picture>,
+}
 
-impl Picture {
-    /// The whole photograph with its longest side reduced by a whole factor to at most `longest_px`.
-    pub(super) fn whole(image: &DynamicImage, longest_px: u32) -> Self {
+impl Levels {
+    /// Smallest level's longest side is at least this.
+    const LEAST: usize = 60;
+
+    /// All levels of a photograph, the first with its longest side reduced by a whole factor to at most `longest_px`.
+    pub(super) fn of(image: &DynamicImage, longest_px: u32) -> Self {
         let longest = image.width().max(image.height());
-        Self::part(image, [0, 0, image.width(), image.height()], longest.div_ceil(longest_px.max(1)).max(1))
+        let mut pictures = vec![Picture::new(image, longest.div_ceil(longest_px.max(1)).max(1) as usize)];
+        while let Some(last) = pictures.last()
+            && last.size[0].max(last.size[1]) >= 2 * Self::LEAST
+            && last.size[0].min(last.size[1]) >= 2
+        {
+            pictures.push(last.halved());
+        }
+        Self { source_px: [f64::from(image.width()), f64::from(image.height())], pictures }
     }
 
-    /// `region` of the photograph (clipped to it), each working pixel the mean of `step x step`.
-    pub(super) fn part(image: &DynamicImage, region: Region, step: u32) -> Self {
-        let x0 = region[0].min(image.width().saturating_sub(1));
-        let y0 = region[1].min(image.height().saturating_sub(1));
-        let width = (region[2].min(image.width() - x0) / step).max(1);
-        let height = (region[3].min(image.height() - y0) / step).max(1);
-        let window = Window { x0, y0, width, height, step };
-        let sums = match image {
-            DynamicImage::ImageLuma8(p) => window.grey(p.as_raw(), p.width(), 1, 255.0),
-            DynamicImage::ImageLumaA8(p) => window.grey(p.as_raw(), p.width(), 2, 255.0),
-            DynamicImage::ImageLuma16(p) => window.grey(p.as_raw(), p.width(), 1, 65535.0),
-            DynamicImage::ImageLumaA16(p) => window.grey(p.as_raw(), p.width(), 2, 65535.0),
-            DynamicImage::ImageRgb8(p) => window.colour(p.as_raw(), p.width(), 3, 255.0),
-            DynamicImage::ImageRgba8(p) => window.colour(p.as_raw(), p.width(), 4, 255.0),
-            DynamicImage::ImageRgb16(p) => window.colour(p.as_raw(), p.width(), 3, 65535.0),
-            DynamicImage::ImageRgba16(p) => window.colour(p.as_raw(), p.width(), 4, 65535.0),
-            other => {
-                let p = other.to_rgb16();
-                window.colour(p.as_raw(), p.width(), 3, 65535.0)
-            }
-        };
-        let log = |plane: Vec<f32>| plane.into_iter().map(|v| (v + FLOOR).ln()).collect::<Vec<f32>>();
-        let plane = |data: Vec<f32>| Plane::from_raw(width, height, data).expect("one value a pixel");
-        match sums {
-            Sums::Grey(green) => {
-                Self { tone: plane(log(green)), chroma: None, step, origin: [x0, y0] }
-            }
-            Sums::Colour(red, green, blue) => {
-                let (red, green, blue) = (log(red), log(green), log(blue));
-                let ratio = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<f32>>();
-                let (rg, gb) = (ratio(&red, &green), ratio(&green, &blue));
-                let mean = |v: &[f32]| v.iter().map(|x| x.abs()).sum::<f32>() / v.len() as f32;
-                let chroma = (mean(&rg) > GREY || mean(&gb) > GREY).then(|| [plane(rg), plane(gb)]);
-                Self { tone: plane(green), chroma, step, origin: [x0, y0] }
+    /// The largest level whose longest side is at most `longest_px` (or the smallest there is).
+    pub(super) fn within(&self, longest_px: usize) -> &Picture {
+        let fits = |p: &&Picture| p.size[0].max(p.size[1]) <= longest_px;
+        self.pictures.iter().find(fits).unwrap_or(&self.pictures[self.pictures.len() - 1])
+    }
+
+    /// The coarsest level whose pixels are at most `px` source pixels (or the finest there is).
+    pub(super) fn resolving(&self, px: f64) -> &Picture {
+        self.pictures.iter().rev().find(|p| p.step <= px).unwrap_or(&self.pictures[0])
+    }
+}
+
+impl Picture {
+    fn new(image: &DynamicImage, step: usize) -> Self {
+        let width = image.width() as usize;
+        match image {
+            DynamicImage::ImageLuma8(p) => Self::reduce(p.as_raw(), width, 1, step, 255.0),
+            DynamicImage::ImageLumaA8(p) => Self::reduce(p.as_raw(), width, 2, step, 255.0),
+            DynamicImage::ImageLuma16(p) => Self::reduce(p.as_raw(), width, 1, step, 65535.0),
+            DynamicImage::ImageLumaA16(p) => Self::reduce(p.as_raw(), width, 2, step, 65535.0),
+            DynamicImage::ImageRgb8(p) => Self::reduce(p.as_raw(), width, 3, step, 255.0),
+            DynamicImage::ImageRgba8(p) => Self::reduce(p.as_raw(), width, 4, step, 255.0),
+            DynamicImage::ImageRgb16(p) => Self::reduce(p.as_raw(), width, 3, step, 65535.0),
+            DynamicImage::ImageRgba16(p) => Self::reduce(p.as_raw(), width, 4, step, 65535.0),
+            other => Self::reduce(other.to_rgb16().as_raw(), width, 3, step, 65535.0),
+        }
+    }
+
+    /// Logarithms of the means over `step x step` pixels of `samples` each.
+    fn reduce<T: Copy + Into<f32>>(raw: &[T], width: usize, samples: usize, step: usize, full: f32) -> Self {
+        let height = raw.len() / samples / width.max(1);
+        let step = step.min(width).min(height).max(1);
+        let size = [width / step, height / step];
+        let mut sums = vec![[0.0f32; 3]; size[0] * size[1]];
+        for (y, row) in sums.chunks_exact_mut(size[0]).enumerate() {
+            for sub in 0..step {
+                let line = &raw[(y * step + sub) * width * samples..][..size[0] * step * samples];
+                for (cell, block) in row.iter_mut().zip(line.chunks_exact(step * samples)) {
+                    for pixel in block.chunks_exact(samples) {
+                        for (sum, value) in cell.iter_mut().zip(pixel) {
+                            *sum += (*value).into();
+                        }
+                    }
+                }
             }
         }
+        let scale = 1.0 / (full * (step * step) as f32);
+        let log = |sum: f32| (sum * scale + FLOOR).ln();
+        let mut cells: Vec<Cell> = if samples < 3 {
+            sums.iter().map(|s| [log(s[0]), 0.0, 0.0]).collect()
+        } else if step == 1 && full == 255.0 {
+            let table: Vec<f32> = (0..256u16).map(|v| log(f32::from(v))).collect();
+            sums.iter().map(|s| ratios(s.map(|v| table[v as usize]))).collect()
+        } else {
+            sums.iter().map(|s| ratios(s.map(log))).collect()
+        };
+        let mean = |c: usize| cells.iter().map(|p| p[c].abs()).sum::<f32>() / cells.len().max(1) as f32;
+        let colour = samples >= 3 && (mean(RED) > GREY || mean(YELLOW) > GREY);
+        if !colour {
+            cells.iter_mut().for_each(|p| *p = [p[TONE], 0.0, 0.0]);
+        }
+        Self { size, cells, colour, step: step as f64 }
+    }
+
+    fn halved(&self) -> Self {
+        let size = self.size.map(|s| s / 2);
+        let mut cells = Vec::with_capacity(size[0] * size[1]);
+        for y in 0..size[1] {
+            let upper = &self.cells[2 * y * self.size[0]..];
+            let lower = &self.cells[(2 * y + 1) * self.size[0]..];
+            for x in 0..size[0] {
+                cells.push([0, 1, 2].map(|c| {
+                    0.25 * (upper[2 * x][c] + upper[2 * x + 1][c] + lower[2 * x][c] + lower[2 * x + 1][c])
+                }));
+            }
+        }
+        Self { size, cells, colour: self.colour, step: 2.0 * self.step }
     }
 
     /// Working to source pixels.
     pub(super) fn to_source(&self, p: [f64; 2]) -> [f64; 2] {
-        let s = f64::from(self.step);
-        [0, 1].map(|i| (p[i] + 0.5) * s - 0.5 + f64::from(self.origin[i]))
+        p.map(|v| (v + 0.5) * self.step - 0.5)
     }
 
     /// Source to working pixels.
     pub(super) fn from_source(&self, p: [f64; 2]) -> [f64; 2] {
-        let s = f64::from(self.step);
-        [0, 1].map(|i| (p[i] + 0.5 - f64::from(self.origin[i])) / s - 0.5)
+        p.map(|v| (v + 0.5) / self.step - 0.5)
+    }
+
+    /// Channels at a source pixel, linearly between the working ones; beyond the border the border's.
+    pub(super) fn sample(&self, source: [f64; 2]) -> Cell {
+        let scale = 1.0 / self.step as f32;
+        between(&self.cells, self.size, source.map(|v| (v as f32 + 0.5) * scale - 0.5))
     }
 }
 
-enum Sums {
-    Grey(Vec<f32>),
-    Colour(Vec<f32>, Vec<f32>, Vec<f32>),
+fn ratios([red, green, blue]: [f32; 3]) -> Cell {
+    [green, red - green, green - blue]
 }
 
-struct Window {
-    x0: u32,
-    y0: u32,
-    width: u32,
-    height: u32,
-    step: u32,
-}
-
-impl Window {
-    fn grey<T: Copy + Into<f32>>(&self, raw: &[T], stride: u32, samples: usize, full: f32) -> Sums {
-        Sums::Grey(self.mean(raw, stride, samples, 0, full))
-    }
-
-    fn colour<T: Copy + Into<f32>>(&self, raw: &[T], stride: u32, samples: usize, full: f32) -> Sums {
-        let [r, g, b] = [0, 1, 2].map(|c| self.mean(raw, stride, samples, c, full));
-        Sums::Colour(r, g, b)
-    }
-
-    /// Box means of sample `c` as fractions of `full`.
-    fn mean<T: Copy + Into<f32>>(&self, raw: &[T], stride: u32, samples: usize, c: usize, full: f32) -> Vec<f32> {
-        let (w, h, step) = (self.width as usize, self.height as usize, self.step as usize);
-        let scale = 1.0 / (full * (step * step) as f32);
-        let mut out = vec![0.0f32; w * h];
-        for (y, row) in out.chunks_exact_mut(w).enumerate() {
-            for sub in 0..step {
-                let line = (self.y0 as usize + y * step + sub) * stride as usize + self.x0 as usize;
-                let from = &raw[line * samples..(line + w * step) * samples];
-                for (cell, block) in row.iter_mut().zip(from.chunks_exact(step * samples)) {
-                    *cell += block.iter().skip(c).step_by(samples).map(|&v| v.into()).sum::<f32>();
-                }
-            }
-            for cell in row.iter_mut() {
-                *cell *= scale;
-            }
-        }
-        out
-    }
-}
-
-/// Value at a point between pixels, linearly; beyond the border the border's value.
-pub(super) fn sample(plane: &Plane, x: f64, y: f64) -> f32 {
-    let (w, h) = (plane.width() as usize, plane.height() as usize);
-    let x = x.clamp(0.0, (w - 1) as f64);
-    let y = y.clamp(0.0, (h - 1) as f64);
+/// Linear interpolation in a grid, held at its border.
+pub(super) fn between(cells: &[Cell], size: [usize; 2], at: [f32; 2]) -> Cell {
+    let x = at[0].clamp(0.0, (size[0] - 1) as f32);
+    let y = at[1].clamp(0.0, (size[1] - 1) as f32);
     let (i, j) = (x as usize, y as usize);
-    let (fx, fy) = ((x - i as f64) as f32, (y - j as f64) as f32);
-    let (i1, j1) = ((i + 1).min(w - 1), (j + 1).min(h - 1));
-    let raw = plane.as_raw();
-    let top = raw[j * w + i] * (1.0 - fx) + raw[j * w + i1] * fx;
-    let low = raw[j1 * w + i] * (1.0 - fx) + raw[j1 * w + i1] * fx;
-    top * (1.0 - fy) + low * fy
+    let (fx, fy) = (x - i as f32, y - j as f32);
+    let (right, below) = (usize::from(i + 1 < size[0]), if j + 1 < size[1] { size[0] } else { 0 });
+    let base = j * size[0] + i;
+    let (a, b) = (cells[base], cells[base + right]);
+    let (c, d) = (cells[base + below], cells[base + below + right]);
+    let (wa, wb, wc, wd) = ((1.0 - fx) * (1.0 - fy), fx * (1.0 - fy), (1.0 - fx) * fy, fx * fy);
+    [0, 1, 2].map(|k| a[k] * wa + b[k] * wb + c[k] * wc + d[k] * wd)
 }

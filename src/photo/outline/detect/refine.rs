@@ -7,11 +7,12 @@
 use std::sync::LazyLock;
 
 use super::net::Net;
-use super::patch::Patch;
+use super::patch::Frame;
+use super::picture::{Cell, Levels};
 use super::shape::Shape;
 
 /// Rays around the rim.
-pub(super) const RAYS: usize = 96;
+pub(super) const RAYS: usize = 64;
 /// Places on a ray on either side of the rim.
 pub(super) const SIDE: usize = 22;
 /// From one place to the next.
@@ -25,9 +26,9 @@ pub(super) const INPUTS: usize = 3 * TAPS.len() + 6;
 /// Ordinary contrasts.
 const CONTRAST: [f32; 3] = [0.10, 0.05, 0.05];
 /// Most places that the path may move from ray to ray.
-const STIFF: usize = 3;
+const STIFF: usize = 4;
 /// Price of moving one place, squared places.
-const PRICE: f32 = 0.35;
+const PRICE: f32 = 0.25;
 
 static BORDER: LazyLock<Net> =
     LazyLock::new(|| Net::parse(include_str!("weights/border.txt")).expect("weights are checked by a test"));
@@ -38,8 +39,9 @@ pub(super) struct Band {
     pub(super) rays: Vec<([f64; 2], [f64; 2])>,
     /// Frame units a mean half axis.
     pub(super) half: f64,
-    /// `[channel][ray * (2 LONG + 1) + place]`
-    profiles: Vec<Vec<f32>>,
+    /// `[ray * (2 LONG + 1) + place]`
+    profiles: Vec<Cell>,
+    colour: bool,
 }
 
 /// A refined outline.
@@ -55,7 +57,7 @@ pub(super) struct Path {
 
 impl Band {
     /// The band around a template.
-    pub(super) fn around(patch: &Patch, shape: &Shape) -> Self {
+    pub(super) fn around(levels: &Levels, frame: &Frame, shape: &Shape) -> Self {
         let half = 0.25 * (shape.length + shape.width);
         let at = |k: f64| {
             let [u, v] = shape.rim(k / RAYS as f64 * std::f64::consts::TAU);
@@ -69,34 +71,31 @@ impl Band {
                 (here, [ty / n, -tx / n])
             })
             .collect();
-        Self::of(patch, rays, half)
+        Self::of(levels, frame, rays, half)
     }
 
     /// The band around any rim.
-    pub(super) fn of(patch: &Patch, rays: Vec<([f64; 2], [f64; 2])>, half: f64) -> Self {
+    pub(super) fn of(levels: &Levels, frame: &Frame, rays: Vec<([f64; 2], [f64; 2])>, half: f64) -> Self {
         let count = 2 * LONG + 1;
-        let profiles = patch
-            .planes
-            .iter()
-            .map(|plane| {
-                let mut raw = Vec::with_capacity(RAYS * count);
-                for (p, n) in &rays {
-                    for m in 0..count {
-                        let d = (m as f64 - LONG as f64) * STEP * half;
-                        raw.push(patch.between(plane, p[0] + d * n[0], p[1] + d * n[1]));
-                    }
-                }
-                // Neighbouring rays are averaged: the border runs on, noise does not.
-                (0..RAYS * count)
-                    .map(|i| {
-                        let (k, m) = (i / count, i % count);
-                        let at = |d: usize| raw[(k + d) % RAYS * count + m];
-                        (at(RAYS - 1) + 2.0 * at(0) + at(1)) / 4.0
-                    })
-                    .collect()
-            })
-            .collect();
-        Self { rays, half, profiles }
+        let picture = levels.resolving(STEP * half * frame.unit_px);
+        let mut raw: Vec<Cell> = Vec::with_capacity(RAYS * count);
+        for (p, n) in &rays {
+            for m in 0..count {
+                let d = (m as f64 - LONG as f64) * STEP * half;
+                raw.push(picture.sample(frame.to_source([p[0] + d * n[0], p[1] + d * n[1]])));
+            }
+        }
+        // Neighbouring rays are averaged: the border runs on, noise does not.
+        let mut profiles = Vec::with_capacity(RAYS * count);
+        for k in 0..RAYS {
+            let rows = [RAYS - 1, 0, 1].map(|d| &raw[(k + d) % RAYS * count..][..count]);
+            let across = |m: usize, c: usize| 0.25 * (rows[0][m][c] + rows[2][m][c]) + 0.5 * rows[1][m][c];
+            for m in 0..count {
+                let (a, b) = (m.saturating_sub(1), (m + 1).min(count - 1));
+                profiles.push([0, 1, 2].map(|c| 0.25 * (across(a, c) + across(b, c)) + 0.5 * across(m, c)));
+            }
+        }
+        Self { rays, half, profiles, colour: picture.colour }
     }
 
     /// The network's inputs at place `m` (0 to 2 SIDE) of ray `k`.
@@ -104,27 +103,29 @@ impl Band {
         let mut out = [0.0f32; INPUTS];
         let count = 2 * LONG + 1;
         let centre = (k * count + m + LONG - SIDE) as isize;
-        for (c, profile) in self.profiles.iter().enumerate() {
-            let values = TAPS.map(|t| profile[(centre + t) as usize]);
-            let mean = values.iter().sum::<f32>() / TAPS.len() as f32;
-            for (to, v) in out[c * TAPS.len()..].iter_mut().zip(values) {
-                let x = (v - mean) / CONTRAST[c];
+        let taps = TAPS.map(|t| self.profiles[(centre + t) as usize]);
+        for c in 0..if self.colour { 3 } else { 1 } {
+            let mean = taps.iter().map(|v| v[c]).sum::<f32>() / TAPS.len() as f32;
+            for (to, v) in out[c * TAPS.len()..].iter_mut().zip(&taps) {
+                let x = (v[c] - mean) / CONTRAST[c];
                 *to = x / (1.0 + 0.3 * x.abs());
             }
         }
         let (sin, cos) = (k as f32 / RAYS as f32 * std::f32::consts::TAU).sin_cos();
         let d = (m as f32 - SIDE as f32) / SIDE as f32;
-        let last = [sin, cos.abs(), sin * sin, d, d * d, if self.profiles.len() > 1 { 0.0 } else { 1.0 }];
+        let last = [sin, cos.abs(), sin * sin, d, d * d, if self.colour { 0.0 } else { 1.0 }];
         out[3 * TAPS.len()..].copy_from_slice(&last);
         out
     }
 
-    /// The best closed path.
-    pub(super) fn path(&self) -> Path {
-        let places = 2 * SIDE + 1;
-        let gain: Vec<f32> =
-            (0..RAYS * places).map(|i| BORDER.answer(&self.inputs(i / places, i % places))).collect();
-        let chosen = closed(&gain, places);
+    /// The best closed path through every `stride`-th place within `side` places of the rim.
+    pub(super) fn path(&self, side: usize, stride: usize) -> Path {
+        let places = 2 * (side / stride) + 1;
+        let first = SIDE - side / stride * stride;
+        let gain: Vec<f32> = (0..RAYS * places)
+            .map(|i| BORDER.answer(&self.inputs(i / places, first + i % places * stride)))
+            .collect();
+        let chosen = closed(&gain, places, PRICE * (stride * stride) as f32);
         // Between places: the top of the parabola through the neighbours.
         let offset: Vec<f64> = (0..RAYS)
             .map(|k| {
@@ -136,7 +137,7 @@ impl Band {
                 } else {
                     0.0
                 };
-                (m as f64 - SIDE as f64 + f64::from(fine)) * STEP
+                ((first as f64 - SIDE as f64) + (m as f64 + f64::from(fine)) * stride as f64) * STEP
             })
             .collect();
         let offset = calm(&offset);
@@ -152,7 +153,7 @@ impl Band {
 }
 
 /// Dynamic programming around the ring: a lap and a half, of which the middle is kept.
-fn closed(gain: &[f32], places: usize) -> Vec<usize> {
+fn closed(gain: &[f32], places: usize, price: f32) -> Vec<usize> {
     let laps = 2 * RAYS;
     let mut best: Vec<f32> = gain[..places].to_vec();
     let mut from: Vec<Vec<usize>> = Vec::with_capacity(laps);
@@ -163,7 +164,7 @@ fn closed(gain: &[f32], places: usize) -> Vec<usize> {
         for m in 0..places {
             for b in m.saturating_sub(STIFF)..(m + STIFF + 1).min(places) {
                 let moved = m.abs_diff(b) as f32;
-                let value = best[b] - PRICE * moved * moved + row[m];
+                let value = best[b] - price * moved * moved + row[m];
                 if value > next[m] {
                     next[m] = value;
                     back[m] = b;

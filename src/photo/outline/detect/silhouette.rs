@@ -9,12 +9,12 @@ use imageproc::contrast::otsu_level;
 use imageproc::distance_transform::Norm;
 use imageproc::morphology::open;
 
-use super::picture::{Picture, Plane};
+use super::picture::{self, Picture, TONE, YELLOW};
 
 /// ln(R/G) of skin in any common light.
 const RED: std::ops::Range<f32> = 0.08..1.1;
 /// ln(G/B) of skin in any common light.
-const YELLOW: std::ops::Range<f32> = -0.25..0.9;
+const YELLOWS: std::ops::Range<f32> = -0.25..0.9;
 /// Darkest ln(green) of skin that is looked at.
 const DARK: f32 = -2.7;
 /// How much darker, in ln(green), the skin's shaded parts may be than its median.
@@ -24,43 +24,38 @@ const CUT: f32 = 0.09;
 
 /// Masks (255 inside), the likeliest rule first.
 pub(super) fn silhouettes(picture: &Picture) -> Vec<GrayImage> {
-    let tone = &picture.tone;
-    let size = (tone.width(), tone.height());
+    let cells = &picture.cells;
+    let tone: Vec<f32> = cells.iter().map(|c| c[TONE]).collect();
+    let steep = steepness(&tone, picture.size);
     let mut masks = Vec::new();
-    if let Some([red, yellow]) = &picture.chroma {
-        let skin: Vec<bool> = (0..tone.as_raw().len())
-            .map(|i| {
-                RED.contains(&red.as_raw()[i]) && YELLOW.contains(&yellow.as_raw()[i]) && tone.as_raw()[i] > DARK
-            })
-            .collect();
-        let of = |plane: &Plane| -> Vec<f32> {
-            plane.as_raw().iter().zip(&skin).filter(|(_, s)| **s).map(|(v, _)| *v).collect()
-        };
-        masks.push(mask(size, |i| skin[i]));
-        if let Some(median) = median(of(tone)) {
-            masks.push(mask(size, |i| skin[i] && tone.as_raw()[i] > median - SHADE));
+    let mut add = |inside: &dyn Fn(usize) -> bool| masks.push(mask(picture.size, inside));
+    if picture.colour {
+        let is_skin = |c: &picture::Cell| RED.contains(&c[picture::RED]) && YELLOWS.contains(&c[YELLOW]) && c[TONE] > DARK;
+        let skin: Vec<bool> = cells.iter().map(is_skin).collect();
+        add(&|i| skin[i]);
+        if let Some(median) = median(cells.iter().filter(|c| is_skin(c)).map(|c| c[TONE]).collect()) {
+            add(&|i| skin[i] && tone[i] > median - SHADE);
         }
-        if let Some(level) = otsu(red.as_raw()) {
-            masks.push(mask(size, |i| skin[i] && red.as_raw()[i] > level));
+        let red: Vec<f32> = cells.iter().map(|c| c[picture::RED]).collect();
+        if let Some(level) = otsu(&red) {
+            add(&|i| skin[i] && red[i] > level);
         }
-        let steep = steepness(tone);
-        masks.push(mask(size, |i| skin[i] && steep[i] < CUT));
+        add(&|i| skin[i] && steep[i] < CUT);
     } else {
-        let steep = steepness(tone);
-        masks.push(mask(size, |i| tone.as_raw()[i] > DARK && steep[i] < CUT));
+        add(&|i| tone[i] > DARK && steep[i] < CUT);
     }
-    if let Some(level) = otsu(tone.as_raw()) {
-        masks.push(mask(size, |i| tone.as_raw()[i] > level));
-        if picture.chroma.is_none() {
-            masks.push(mask(size, |i| tone.as_raw()[i] <= level));
+    if let Some(level) = otsu(&tone) {
+        add(&|i| tone[i] > level);
+        if !picture.colour {
+            add(&|i| tone[i] <= level);
         }
     }
     masks
 }
 
-fn mask(size: (u32, u32), inside: impl Fn(usize) -> bool) -> GrayImage {
-    let raw = (0..(size.0 * size.1) as usize).map(|i| if inside(i) { 255 } else { 0 }).collect();
-    let mask = GrayImage::from_raw(size.0, size.1, raw).expect("one value a pixel");
+fn mask(size: [usize; 2], inside: &dyn Fn(usize) -> bool) -> GrayImage {
+    let raw = (0..size[0] * size[1]).map(|i| if inside(i) { 255 } else { 0 }).collect();
+    let mask = GrayImage::from_raw(size[0] as u32, size[1] as u32, raw).expect("one value a pixel");
     open(&mask, Norm::L1, 1)
 }
 
@@ -82,9 +77,7 @@ fn otsu(values: &[f32]) -> Option<f32> {
 }
 
 /// Largest absolute central difference at each pixel.
-fn steepness(plane: &Plane) -> Vec<f32> {
-    let (w, h) = (plane.width() as usize, plane.height() as usize);
-    let v = plane.as_raw();
+fn steepness(v: &[f32], [w, h]: [usize; 2]) -> Vec<f32> {
     let mut out = Vec::with_capacity(w * h);
     for y in 0..h {
         let (up, down) = (y.saturating_sub(1) * w, (y + 1).min(h - 1) * w);

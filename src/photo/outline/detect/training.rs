@@ -12,10 +12,10 @@ use std::path::Path;
 
 use super::net::{Net, softsign};
 use super::patch::{Frame, Patch};
-use super::picture::Picture;
+use super::picture::Levels;
 use super::search::{FINGER, NAIL};
 use super::shape::Shape;
-use super::{evidence, refine, silhouette, tips};
+use super::{evidence, refine};
 use crate::phantom::nail::{Background, Camera, Depth, Light, NailScene, Pose, RenderOptions, Subject};
 use crate::photo::outline::Outline;
 
@@ -351,15 +351,11 @@ pub(super) fn scenes(count: u32, seed: u64, odd: usize) -> Vec<Scene> {
 }
 
 fn ends(scene: &Scene, most: usize) -> Vec<(Frame, f64)> {
-    let picture = Picture::whole(&scene.image, super::SEARCH_PX);
-    let found: Vec<_> = silhouette::silhouettes(&picture).iter().flat_map(tips::tips).collect();
-    tips::strongest(found, most)
-        .into_iter()
-        .map(|t| {
-            let frame = Frame { origin: picture.to_source(t.apex), up: t.out, unit_px: t.width * f64::from(picture.step) };
-            (frame, t.fit)
-        })
-        .collect()
+    super::ends(&levels(scene), most)
+}
+
+fn levels(scene: &Scene) -> Levels {
+    Levels::of(&scene.image, super::WORKING_PX)
 }
 
 fn turn_between(frame_up: [f64; 2], up: [f64; 2]) -> f64 {
@@ -394,9 +390,10 @@ pub(super) fn direct(scene: &mut Scene) {
 
 fn scorer_rows(scene: &Scene, rng: &mut ChaCha8Rng, rows: &mut Rows) {
     let real = scene.real;
+    let levels = levels(scene);
     // In fingers' frames.
     for (frame, _) in ends(scene, if real { 40 } else { 6 }) {
-        let patch = Patch::cut(&scene.image, frame, FINGER);
+        let patch = Patch::cut(&levels, frame, FINGER);
         let truth = scene
             .truths
             .iter()
@@ -445,7 +442,7 @@ fn scorer_rows(scene: &Scene, rng: &mut ChaCha8Rng, rows: &mut Rows) {
                 up: [up[0] * c - up[1] * s, up[0] * s + up[1] * c],
                 unit_px: size * (0.15 * bell(rng)).exp(),
             };
-            let patch = Patch::cut(&scene.image, frame, NAIL);
+            let patch = Patch::cut(&levels, frame, NAIL);
             let own: Vec<_> = points.iter().map(|p| frame.from_source(*p)).collect();
             let cells = Cells::of(NAIL, Some(&own));
             let turn = turn_between(frame.up, up);
@@ -472,15 +469,14 @@ fn scorer_rows(scene: &Scene, rng: &mut ChaCha8Rng, rows: &mut Rows) {
                 unit_px: h * rng.random_range(0.25..0.8),
             })
             .collect();
-        let small = Picture::whole(&scene.image, super::COARSE_PX);
-        let (patch, found) = super::search::anywhere(&small, [w, h], 6);
+        let (patch, found) = super::search::anywhere(&levels, 6);
         places.extend(found.iter().map(|(s, _)| Frame {
             origin: patch.frame.to_source([s.x, s.y]),
             up: { let (sin, cos) = s.turn.sin_cos(); [sin, -cos] },
             unit_px: s.length * patch.frame.unit_px,
         }));
         for frame in places {
-            let patch = Patch::cut(&scene.image, frame, NAIL);
+            let patch = Patch::cut(&levels, frame, NAIL);
             for i in 0..6 {
                 let base = Shape { x: 0.0, y: 0.0, length: 1.0, width: 0.85, turn: 0.0, taper: 0.03 };
                 let s = jitter(&base, [0.2, 0.8][i % 2], rng);
@@ -492,6 +488,7 @@ fn scorer_rows(scene: &Scene, rng: &mut ChaCha8Rng, rows: &mut Rows) {
 
 /// What the search with the present weights takes for nails, rightly or not.
 fn found_rows(scene: &Scene, rng: &mut ChaCha8Rng, rows: &mut Rows) {
+    let levels = levels(scene);
     let truths = |frame: &Frame| -> Vec<(Vec<[f64; 2]>, f64)> {
         scene
             .truths
@@ -514,8 +511,10 @@ fn found_rows(scene: &Scene, rng: &mut ChaCha8Rng, rows: &mut Rows) {
         rows.push(&evidence::inputs(patch, shape, tip), worth);
     };
     for (frame, _) in ends(scene, 12) {
-        let patch = Patch::cut(&scene.image, frame, FINGER);
-        for (shape, _) in super::search::on_finger(&patch, 3) {
+        let patch = Patch::cut(&levels, frame, FINGER);
+        let coarse = super::search::on_finger(&patch, 3);
+        coarse.iter().for_each(|(s, _)| take(&patch, s, true, rows));
+        for (shape, _) in coarse.into_iter().map(|s| super::search::polish(&patch, s, true)) {
             for k in [0.0, 0.15, 0.3] {
                 take(&patch, &jitter(&shape, k, rng), true, rows);
             }
@@ -524,13 +523,11 @@ fn found_rows(scene: &Scene, rng: &mut ChaCha8Rng, rows: &mut Rows) {
     if scene.real {
         return;
     }
-    let size = [f64::from(scene.image.width()), f64::from(scene.image.height())];
-    let small = Picture::whole(&scene.image, super::COARSE_PX);
-    let (coarse, found) = super::search::anywhere(&small, size, 10);
+    let (coarse, found) = super::search::anywhere(&levels, 10);
     for (shape, _) in found {
         take(&coarse, &shape, false, rows);
         let (nail, template) = super::candidate::own_frame(coarse.frame, &shape);
-        let patch = Patch::cut(&scene.image, nail, NAIL);
+        let patch = Patch::cut(&levels, nail, NAIL);
         let (better, _) = super::search::polish(&patch, (template, evidence::score(&patch, &template, false)), false);
         for k in [0.0, 0.15, 0.3] {
             take(&patch, &jitter(&better, k, rng), false, rows);
@@ -539,6 +536,7 @@ fn found_rows(scene: &Scene, rng: &mut ChaCha8Rng, rows: &mut Rows) {
 }
 
 fn border_rows(scene: &Scene, rng: &mut ChaCha8Rng, rows: &mut Rows) {
+    let levels = levels(scene);
     for t in &scene.truths {
         let Some(up) = t.up else { continue };
         let points = t.outline.points();
@@ -548,7 +546,6 @@ fn border_rows(scene: &Scene, rng: &mut ChaCha8Rng, rows: &mut Rows) {
         let angle = 0.12 * bell(rng);
         let (s, c) = angle.sin_cos();
         let frame = Frame { origin: centre, up: [up[0] * c - up[1] * s, up[0] * s + up[1] * c], unit_px: size };
-        let patch = Patch::cut(&scene.image, frame, super::fine(size));
         let own: Vec<_> = points.iter().map(|p| frame.from_source(*p)).collect();
         let cells = Cells::of(NAIL, Some(&own));
         let (best, v) = nearest(&own, turn_between(frame.up, up), &cells, rng);
@@ -558,7 +555,7 @@ fn border_rows(scene: &Scene, rng: &mut ChaCha8Rng, rows: &mut Rows) {
         let sd = if scene.real { 2.2 } else { 1.0 };
         for _ in 0..2 {
             let base = jitter(&best, 0.35, rng);
-            let band = refine::Band::around(&patch, &base);
+            let band = refine::Band::around(&levels, &frame, &base);
             for k in (rng.random_range(0..3)..refine::RAYS).step_by(if scene.real { 2 } else { 4 }) {
                 let (p, nrm) = band.rays[k];
                 let at = |m: f64| {
@@ -615,7 +612,7 @@ fn train() {
         let mut fresh = scenes(count, 2000, 0);
         fresh.par_iter_mut().for_each(direct);
         let rows = Rows::gather(&fresh, 3, |s, _, rows| {
-            for c in super::candidates(&s.image) {
+            for c in super::candidates(&levels(s)) {
                 let worth = s
                     .truths
                     .iter()
@@ -626,7 +623,9 @@ fn train() {
                     })
                     .fold(0.0, f64::max);
                 let (at, soft) = if s.real { (0.75, 0.04) } else { (0.82, 0.02) };
-                rows.push(&c.figures, 1.0 / (1.0 + (-(worth - at) / soft).exp()));
+                for _ in 0..if s.real { 2 } else { 1 } {
+                    rows.push(&c.figures, 1.0 / (1.0 + (-(worth - at) / soft).exp()));
+                }
             }
         });
         eprintln!("{} rows", rows.x.len());
