@@ -4,3 +4,4 @@
 //! centres, with noise and rounding; the truth is the same function where the job's result should hold it.
 
 pub mod nail;
+pub mod photos;

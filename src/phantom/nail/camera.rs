@@ -48,15 +48,17 @@ impl Background {
         }
         let grey: f64 = rng.random_range(0.12..0.85);
         let colour = std::array::from_fn(|_| (grey + rng.random_range(-0.12..0.12)).clamp(0.03, 0.95));
-        Self { colour, grain: rng.random_range(0.01..0.12), shadow: rng.random_range(0.1..0.5) }
+        Self { colour, grain: rng.random_range(0.01..0.12), shadow: rng.random_range(0.05..0.35) }
     }
 }
 
 impl Camera {
-    /// A close-up of a nail of length over width `aspect`: the nail's length is `filling` of the picture's height, the axis within `turn_deg` of
+    /// A close-up of a nail of length over width `aspect`: the nail's length is `filling` of the picture's height (less
+    /// where its width would not fit), the axis within `turn_deg` of
     /// upright, the middle within what the picture leaves free.
     pub fn close_up(rng: &mut ChaCha8Rng, size: [u32; 2], aspect: f64, filling: f64, turn_deg: f64) -> Self {
         let [width, height] = size.map(f64::from);
+        let filling = filling.min(0.75 * aspect * width / height);
         let nail_width_px = filling * height / aspect;
         let free = |side: f64, used: f64| (0.5 * (side - 1.25 * used)).max(0.0).min(0.08 * side);
         let (fx, fy) = (free(width, nail_width_px), free(height, filling * height));

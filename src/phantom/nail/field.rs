@@ -9,7 +9,7 @@ use super::{
     finger::FingerPlace,
     light::CHAMBER,
     shape::NailPlace,
-    smooth::{bell, covered, line, noise1, noise2, resolved, step},
+    smooth::{Edge, Line, bell, noise1, noise2, resolved, step},
 };
 
 /// A scene made ready to be evaluated.
@@ -20,19 +20,43 @@ pub struct Field<'a> {
     distal: [f64; 2],
     /// Half nail widths per pixel.
     per_px: f64,
-    /// The optics' blur in half nail widths.
-    blur: f64,
-    /// Length of the distal part with its free edge over that without.
-    stretch: f64,
+    /// Half pictures per pixel.
+    per_half: [f64; 2],
+    /// The free edge, as `NailShape::free_edge` puts it.
+    shrink: f64,
+    edges: Edges,
+    lines: Lines,
     skin: [f64; 3],
     bed: [f64; 3],
     /// What the camera resolves of texture with the spacings of [`SPACING`].
-    seen: [f64; 4],
+    seen: [f64; 5],
     exposure: [f64; 3],
 }
 
-/// Feature sizes of the textures in half nail widths: blotches, skin relief, fine lines, striations.
-const SPACING: [f64; 4] = [0.45, 0.10, 0.035, 0.055];
+/// Borders between parts, in half nail widths.
+#[derive(Debug, Clone)]
+struct Edges {
+    bed: Edge,
+    plate: Edge,
+    finger: Edge,
+}
+
+/// Lines along borders, in half nail widths.
+#[derive(Debug, Clone)]
+struct Lines {
+    cuticle: Line,
+    crease: Line,
+    under_edge: Line,
+    band: Line,
+    red: Line,
+    fold: Line,
+}
+
+/// Feature sizes of the textures in half nail widths: blotches, skin relief, fine lines, striations, pores.
+const SPACING: [f64; 5] = [0.45, 0.10, 0.035, 0.055, 0.012];
+
+/// Features per half nail width.
+const PER: [f64; 5] = [1.0 / SPACING[0], 1.0 / SPACING[1], 1.0 / SPACING[2], 1.0 / SPACING[3], 1.0 / SPACING[4]];
 
 /// A place, in all the coordinates that matter.
 struct Place {
@@ -53,6 +77,7 @@ impl<'a> Field<'a> {
         let camera = &scene.camera;
         let subject = &scene.subject;
         let half_px = 0.5 * camera.nail_width_px;
+        let blur = camera.blur_px / half_px;
         let redness = [1.0 + 0.3 * subject.redness, 1.0 - subject.redness, 1.0 - subject.redness];
         let (skin, bed) = (subject.tone.skin(), subject.tone.bed());
         Self {
@@ -60,8 +85,17 @@ impl<'a> Field<'a> {
             right: camera.axis.right(),
             distal: camera.axis.distal(),
             per_px: 1.0 / half_px,
-            blur: camera.blur_px / half_px,
-            stretch: 1.0 + 2.0 * subject.free_edge / (1.0 - subject.nail.widest_v),
+            per_half: [camera.width, camera.height].map(|side| 2.0 / f64::from(side)),
+            shrink: subject.nail.free_edge(subject.free_edge),
+            edges: Edges { bed: Edge::new(0.008, blur), plate: Edge::new(0.010, blur), finger: Edge::new(0.012, blur) },
+            lines: Lines {
+                cuticle: Line::new(0.022, blur),
+                crease: Line::new(subject.crease_width, blur),
+                under_edge: Line::new(0.035, blur),
+                band: Line::new(0.035, blur),
+                red: Line::new(0.03, blur),
+                fold: Line::new(0.05, blur),
+            },
             skin: std::array::from_fn(|c| skin[c] * redness[c]),
             bed: bed.map(|c| c * subject.bed),
             seen: SPACING.map(|s| resolved(s * half_px)),
@@ -81,19 +115,18 @@ impl<'a> Field<'a> {
         let [across, along] = self.finger_from_picture(x_px, y_px);
         let aspect = self.scene.subject.nail.aspect;
         let finger = self.scene.subject.finger.place(across, along, aspect);
-        let soft = self.blur.hypot(0.012);
-        let on_finger = covered(finger.edge, soft);
+        let on_finger = self.edges.finger.covered(finger.edge);
         let mut colour = if on_finger < 1.0 { self.background(across, along, finger.edge) } else { [0.0; 3] };
         let mut mirrored = 0.0;
         if on_finger > 0.0 {
             let (u, v) = (across, along / aspect);
-            let place = Place { across, along, u, v, nail: self.scene.subject.nail.place(u, v, self.stretch), finger };
-            let on_bed = covered(place.nail.outline, self.blur.hypot(0.008));
+            let place = Place { across, along, u, v, nail: self.scene.subject.nail.place(u, v, self.shrink), finger };
+            let on_bed = self.edges.bed.covered(place.nail.outline);
             let mut front = if on_bed < 1.0 { self.skin_and_free_edge(&place) } else { [0.0; 3] };
             if on_bed > 0.0 {
                 front = mix(front, self.plate(&place), on_bed);
             }
-            let on_plate = covered(place.nail.plate, self.blur.hypot(0.01));
+            let on_plate = self.edges.plate.covered(place.nail.plate);
             if on_plate > 0.0 {
                 mirrored = on_plate * self.scene.light.mirrored(u, v);
             }
@@ -103,10 +136,8 @@ impl<'a> Field<'a> {
     }
 
     fn lit(&self, colour: [f64; 3], mirrored: f64, x_px: f64, y_px: f64) -> [f64; 3] {
-        let camera = &self.scene.camera;
         let [gx, gy] = self.scene.light.gradient;
-        let x = 2.0 * x_px / f64::from(camera.width) - 1.0;
-        let y = 2.0 * y_px / f64::from(camera.height) - 1.0;
+        let [x, y] = [x_px * self.per_half[0] - 1.0, y_px * self.per_half[1] - 1.0];
         let gradient = 1.0 + gx * x + gy * y;
         std::array::from_fn(|c| {
             let value = (colour[c] * self.exposure[c] * gradient).max(0.0);
@@ -119,9 +150,12 @@ impl<'a> Field<'a> {
     fn background(&self, across: f64, along: f64, edge: f64) -> [f64; 3] {
         let ground = &self.scene.camera.background;
         let seed = self.scene.subject.seed ^ 0x51ed;
-        let grain = 0.6 * noise2(seed, across * 2.0, along * 2.0)
-            + 0.4 * self.seen[1] * noise2(seed ^ 1, across / SPACING[1], along / SPACING[1]);
-        let shade = (1.0 + ground.grain * grain) * (1.0 - ground.shadow * bell((edge / 0.22).powi(2)));
+        // Lattices turned against each other and against the picture, so that no squares show.
+        let (x, y) = (across + 0.55 * along, along - 0.55 * across);
+        let fine = self.seen[1] * noise2(seed ^ 1, x * PER[1], y * PER[1])
+            + self.seen[2] * noise2(seed ^ 2, (y - 0.9 * x) * (0.45 * PER[2]), (x + 0.9 * y) * (0.45 * PER[2]));
+        let grain = 0.5 * noise2(seed, x * 1.3, y * 1.3) + 0.3 * fine;
+        let shade = (1.0 + ground.grain * grain) * (1.0 - ground.shadow * bell((edge * (1.0 / 0.22)).powi(2)));
         ground.colour.map(|c| c * shade)
     }
 
@@ -140,31 +174,37 @@ impl<'a> Field<'a> {
         let proximal = step(-0.35, -0.9, nail.y);
 
         // Texture: blotches, relief, and fine lines that run across the finger behind the nail.
-        let blotch = noise2(seed, across / SPACING[0], along / SPACING[0]);
-        let relief = noise2(seed ^ 2, across / (1.6 * SPACING[1]), along / SPACING[1]);
+        let blotch = noise2(seed, across * PER[0], along * PER[0]);
+        let relief = noise2(seed ^ 2, across * (PER[1] / 1.6), along * PER[1]);
         let bent = along + 0.10 * across * across;
-        let fine = noise2(seed ^ 3, across / (4.0 * SPACING[2]), bent / SPACING[2]);
+        let fine = noise2(seed ^ 3, across * (0.25 * PER[2]), bent * PER[2]);
         let mut shade = self.roundness(&place.finger);
         shade *= 1.0 + subject.texture * (0.6 * self.seen[1] * relief + 0.5 * self.seen[2] * fine);
+        if self.seen[4] > 0.0 {
+            let pores = noise2(seed ^ 9, (across + 0.4 * along) * PER[4], (along - 0.4 * across) * PER[4]);
+            shade *= 1.0 + 0.5 * subject.texture * self.seen[4] * pores;
+        }
         shade *= self.wrinkles(across, bent);
         // The folds' ridge around the nail.
-        shade *= 1.0 + subject.ridge * (1.0 - 0.6 * distal) * bell(((nail.outline - 0.17) / 0.09).powi(2));
+        shade *= 1.0 + subject.ridge * (1.0 - 0.6 * distal) * bell(((nail.outline - 0.17) * (1.0 / 0.09)).powi(2));
         let warm = subject.texture * blotch + 0.05 * distal * (1.0 - subject.tone.darkness());
         let mut colour = [self.skin[0] * (1.0 + 0.2 * warm), self.skin[1] * (1.0 - warm), self.skin[2] * (1.0 - warm)];
 
         // The cuticle: a thin, pale, dry band at the end of the proximal fold.
-        let cuticle = subject.cuticle * proximal * line(nail.outline - 0.045, 0.022, self.blur);
+        let cuticle =
+            subject.cuticle * (0.3 + 0.7 * proximal) * (1.0 - distal) * self.lines.cuticle.at(nail.outline - 0.045);
         colour = colour.map(|c| c * shade + cuticle);
         // The crease where the skin meets the plate; weaker at the fingertip.
-        let crease = subject.crease * (1.0 - 0.75 * distal) * (0.8 + 0.2 * noise2(seed ^ 4, across * 6.0, along * 6.0));
-        let dark = crease * line(nail.outline - 0.4 * subject.crease_width, subject.crease_width, self.blur);
-        let broad = 0.35 * crease * bell((nail.outline / 0.10).powi(2));
-        let shadow = (0.10 + 0.5 * subject.crease) * distal * line(nail.plate - 0.03, 0.035, self.blur);
+        let uneven = if nail.outline < 0.3 { noise2(seed ^ 4, across * 2.2, along * 2.2) } else { 0.0 };
+        let crease = subject.crease * (1.0 - 0.75 * distal) * (0.65 + 0.55 * uneven);
+        let dark = crease * self.lines.crease.at(nail.outline - 0.4 * subject.crease_width);
+        let broad = 0.35 * crease * bell((nail.outline * 10.0).powi(2));
+        let shadow = (0.10 + 0.5 * subject.crease) * distal * self.lines.under_edge.at(nail.plate - 0.03);
         let dark = dark + broad + shadow;
         colour = [colour[0] * (1.0 - 0.8 * dark), colour[1] * (1.0 - dark), colour[2] * (1.0 - 1.05 * dark)];
 
         if subject.free_edge > 0.0 {
-            let on = covered(nail.plate, self.blur.hypot(0.010));
+            let on = self.edges.plate.covered(nail.plate);
             if on > 0.0 {
                 let white = mix(colour, [0.93, 0.91, 0.84].map(|c| c * shade), 0.35 + 0.6 * subject.free_edge_white);
                 colour = mix(colour, white, on);
@@ -183,7 +223,7 @@ impl<'a> Field<'a> {
         }
         let seed = subject.seed ^ 5;
         let wave = noise2(seed, across * 0.9, behind * 7.0 + 0.5 * noise2(seed ^ 1, across * 2.5, behind * 2.0));
-        1.0 - amount * self.seen[1] * bell((wave / 0.22).powi(2))
+        1.0 - amount * self.seen[1] * bell((wave * (1.0 / 0.22)).powi(2))
     }
 
     fn plate(&self, place: &Place) -> [f64; 3] {
@@ -195,16 +235,16 @@ impl<'a> Field<'a> {
 
         let zone = subject.habit.amplitude / CHAMBER * zones(self.scene.pose, &subject.habit, u, v);
         // White and red differ mainly in green (4.2.2).
-        let mut colour = [self.bed[0] + 0.06 * zone, self.bed[1] + zone, self.bed[2] + 0.18 * zone];
+        let mut colour = [self.bed[0] + 0.10 * zone, self.bed[1] + zone, self.bed[2] + 0.35 * zone];
 
         // Lunula, yellow line and onychodermal band.
         if subject.lunula > 0.0 {
-            let reach = (u / 0.62).hypot((v + 1.0) / (2.0 * subject.lunula_height));
-            let pale = subject.lunula * (1.0 - step(0.85, 1.1, reach));
+            let reach = (u / 0.66).hypot((v + 1.0) / (2.0 * subject.lunula_height));
+            let pale = subject.lunula * (1.0 - step(0.78, 1.15, reach));
             colour = [colour[0] + 0.5 * pale, colour[1] + pale, colour[2] + pale];
         }
-        let band = distal * line(nail.outline + 0.045, 0.035, self.blur);
-        let red_line = distal * line(nail.outline + 0.125, 0.03, self.blur);
+        let band = distal * self.lines.band.at(nail.outline + 0.045);
+        let red_line = distal * self.lines.red.at(nail.outline + 0.125);
         colour = [
             colour[0] + 0.05 * band - 0.01 * red_line,
             colour[1] + 0.07 * band - 0.03 * red_line,
@@ -212,13 +252,13 @@ impl<'a> Field<'a> {
         ];
 
         // The plate: a cylinder of its own, gloss, striations, and the folds' shade along its border.
-        let striation = noise1(seed ^ 6, u / SPACING[3]) + 0.5 * noise1(seed ^ 7, u / (3.0 * SPACING[3]));
+        let striation = noise1(seed ^ 6, u * PER[3]) + 0.5 * noise1(seed ^ 7, u * (PER[3] / 3.0));
         let mut shade = 1.0 + 0.12 * self.scene.light.side * u - 0.08 * lateral - 0.10 * lateral * lateral * lateral;
         shade *= 1.0 + subject.striation * self.seen[3] * striation;
-        shade *= 1.0 + subject.gloss * bell(((u - 0.3 * self.scene.light.side) / 0.30).powi(2));
+        shade *= 1.0 + subject.gloss * bell(((u - 0.3 * self.scene.light.side) * (1.0 / 0.30)).powi(2));
         shade *= 1.0 - 0.05 * step(0.2, 1.2, v) + 0.01 * noise2(seed ^ 8, u * 2.5, v * 2.0);
         let fold = 1.0 - 0.85 * distal;
-        shade *= 1.0 - 0.30 * subject.crease * fold * line(nail.outline, 0.05, self.blur);
+        shade *= 1.0 - 0.30 * subject.crease * fold * self.lines.fold.at(nail.outline);
         colour.map(|c| c * shade)
     }
 }

@@ -9,11 +9,17 @@ pub struct FingerShape {
     pub tip: f64,
     /// How much the finger widens towards the palm, relative per half nail width.
     pub widening: f64,
-    /// Exponent of the rounding across (2 elliptical, more: blunter).
+    /// How much blunter than an ellipse the tip is, 0 to 0.5: the share of the fourth power across beside the square.
     pub blunt: f64,
     /// How far to the right of the nail the finger's middle lies.
     pub offset: f64,
 }
+
+/// Beyond this many half widths, only that it is far from the finger is told: the distance there is over [`FAR_EDGE`] for every finger.
+const FAR: f64 = 1.9;
+
+/// The distance told there, in half nail widths; beyond every shadow.
+const FAR_EDGE: f64 = 0.8;
 
 /// Where a place lies with respect to the finger.
 #[derive(Debug, Clone, Copy)]
@@ -36,10 +42,13 @@ impl FingerShape {
         let half = self.half_width * (1.0 + self.widening * below * below / (below + 0.5));
         let x = (across - self.offset) / half;
         let y = ((along - begin) / (end - begin)).max(0.0);
-        let size = x.abs().max(1e-9);
-        let power_x = size.powf(self.blunt);
-        let level = power_x + y * y;
-        let gradient = (self.blunt * power_x / size / half).hypot(2.0 * y / (end - begin));
+        if x.abs() > FAR || y > FAR {
+            return FingerPlace { edge: FAR_EDGE, slope: FAR, x };
+        }
+        let x2 = x * x;
+        let level = x2 * (1.0 - self.blunt + self.blunt * x2) + y * y;
+        let slope = [2.0 * x * (1.0 - self.blunt + 2.0 * self.blunt * x2) / half, 2.0 * y / (end - begin)];
+        let gradient = (slope[0] * slope[0] + slope[1] * slope[1]).sqrt();
         let edge = 2.0 * (level - level.sqrt()) / gradient.max(1e-9);
         FingerPlace { edge, slope: level, x }
     }

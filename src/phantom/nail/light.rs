@@ -6,7 +6,7 @@ use rand_chacha::ChaCha8Rng;
 use super::smooth::bell;
 
 /// Encoded values in the thesis' chamber over those in full light: it puts the nail bed's green at 30 to 50 % of full scale.
-pub(super) const CHAMBER: f64 = 0.585;
+pub(super) const CHAMBER: f64 = 0.60;
 
 /// A streak of light mirrored by the plate, on the nail's own coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,7 +65,7 @@ impl Light {
             _ => [1.0; 3],
         };
         let tint = base.map(|c| c * rng.random_range(0.97..1.03));
-        let brightness = 0.5 * 3.0_f64.powf(rng.random_range(0.0..1.0));
+        let brightness = 0.6 * 2.9_f64.powf(rng.random_range(0.0..1.0));
         let gradient = [rng.random_range(-0.14..0.14), rng.random_range(-0.14..0.14)];
         let side = rng.random_range(-0.4..0.4);
         let spots = if rng.random_bool(0.5) { rng.random_range(1..3usize) } else { 0 };

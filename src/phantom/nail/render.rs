@@ -44,13 +44,13 @@ trait Level: Copy + Default + Send {
 
 impl Level for u8 {
     fn of(value: f64) -> Self {
-        (value.clamp(0.0, 1.0) * 255.0).round() as Self
+        (value.clamp(0.0, 1.0) * 255.0 + 0.5) as Self
     }
 }
 
 impl Level for u16 {
     fn of(value: f64) -> Self {
-        (value.clamp(0.0, 1.0) * 65535.0).round() as Self
+        (value.clamp(0.0, 1.0) * 65535.0 + 0.5) as Self
     }
 }
 

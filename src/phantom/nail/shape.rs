@@ -46,8 +46,8 @@ impl NailShape {
         (side * (self.across[0] + span * step01(t)), side * span * slope)
     }
 
-    /// Where (`u`, `v`) lies; `stretch` is the length of the distal part with its free edge over that without.
-    pub(super) fn place(&self, u: f64, v: f64, stretch: f64) -> NailPlace {
+    /// Where (`u`, `v`) lies; `shrink` is [`Self::free_edge`].
+    pub(super) fn place(&self, u: f64, v: f64, shrink: f64) -> NailPlace {
         let (du, dv) = (u - self.middle_u, v - self.widest_v);
         let half_u = 1.0 - self.middle_u * du.signum();
         let half_v = 1.0 - self.widest_v * dv.signum();
@@ -61,12 +61,18 @@ impl NailShape {
         let slope_v_y = q * power_y / y / half_v * dv.signum();
         let distance = |shrink: f64| {
             let level = power_x + shrink * power_y;
-            let slope = slope_u.hypot((slope_v_x + shrink * slope_v_y) / self.aspect);
+            let slope_v = (slope_v_x + shrink * slope_v_y) / self.aspect;
+            let slope = (slope_u * slope_u + slope_v * slope_v).sqrt();
             2.0 * (level - level.sqrt()) / slope.max(1e-12)
         };
         let outline = distance(1.0);
-        let plate = if dv > 0.0 && stretch > 1.0 { distance(stretch.powf(-q)) } else { outline };
+        let plate = if dv > 0.0 && shrink < 1.0 { distance(shrink) } else { outline };
         NailPlace { outline, plate, y: y * dv.signum() }
+    }
+
+    /// What a free edge of `length` (fraction of the nail's) makes of |y|^q on the distal half: 1 without one.
+    pub(super) fn free_edge(&self, length: f64) -> f64 {
+        (1.0 + 2.0 * length / (1.0 - self.widest_v)).powf(-self.along[1])
     }
 
     /// Is (`u`, `v`) within the outline?

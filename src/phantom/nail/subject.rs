@@ -18,7 +18,7 @@ pub struct Subject {
     pub redness: f64,
     /// Lightening of the lunula, encoded.
     pub lunula: f64,
-    /// Half height of the lunula, as `v`.
+    /// Height of the lunula, fraction of the nail's length.
     pub lunula_height: f64,
     /// Length of the free edge, fraction of the nail's length.
     pub free_edge: f64,
@@ -74,7 +74,7 @@ impl Subject {
             half_width: within(1.24, 1.48),
             tip: within(0.22, 0.55),
             widening: within(0.0, 0.07),
-            blunt: within(2.1, 2.8),
+            blunt: within(0.05, 0.45),
             offset: within(-0.06, 0.06),
         };
         Self {
@@ -83,7 +83,7 @@ impl Subject {
             tone,
             redness: within(-0.03, 0.05),
             lunula: within(-0.04, 0.11).max(0.0),
-            lunula_height: within(0.18, 0.42),
+            lunula_height: within(0.12, 0.26),
             free_edge: within(-0.02, 0.12).max(0.0),
             free_edge_white: within(0.25, 1.0),
             crease: within(0.06, 0.45),
@@ -96,7 +96,7 @@ impl Subject {
             texture: within(0.02, 0.07),
             wrinkle: within(0.03, 0.16),
             habit: Habit {
-                amplitude: within(0.075, 0.115),
+                amplitude: within(0.055, 0.080),
                 shift: [within(-0.05, 0.05), within(-0.05, 0.05)],
                 size: within(0.92, 1.08),
             },

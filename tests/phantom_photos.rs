@@ -1,0 +1,215 @@
+//! A set of synthetic photographs on disk: what it holds, and that it can be made again.
+
+use std::{
+    collections::BTreeMap,
+    fs,
+    path::{Path, PathBuf},
+};
+
+use lunula::{
+    labelme::{LabelMe, from_labelme},
+    phantom::{
+        nail::Pose,
+        photos::{Error, FileFormat, OptionFault, PhotoOptions, write, write_watched},
+    },
+};
+use ndarray::Array2;
+
+fn small() -> PhotoOptions {
+    PhotoOptions {
+        seed: 4,
+        subjects: 5,
+        poses: vec![Pose::Nominal, Pose::LateralPositive],
+        width: 160,
+        height: 120,
+        size: 80,
+        ..PhotoOptions::default()
+    }
+}
+
+/// Every file under `folder` by its path.
+fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    let mut open = vec![folder.to_owned()];
+    while let Some(next) = open.pop() {
+        for entry in fs::read_dir(&next).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() {
+                open.push(path);
+            } else {
+                let name = path.strip_prefix(folder).expect("within").to_owned();
+                found.insert(name, fs::read(&path).expect("a file"));
+            }
+        }
+    }
+    found
+}
+
+fn written(options: &PhotoOptions, threads: usize) -> BTreeMap<PathBuf, Vec<u8>> {
+    let out = tempfile::tempdir().expect("a folder");
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+    pool.install(|| write(options, out.path())).expect("a set");
+    files(out.path())
+}
+
+#[test]
+fn same_seed_same_bytes_whatever_the_threads() {
+    let one = written(&small(), 1);
+    assert_eq!(one.len(), 10 + 10 + 10 + 10 + 6 + 2);
+    assert!(one == written(&small(), 3), "3 threads gave other bytes");
+    let other = written(&PhotoOptions { seed: 5, ..small() }, 2);
+    let photograph = Path::new("photos/nominal/s01.png");
+    assert!(one.contains_key(photograph) && one[photograph] != other[photograph]);
+}
+
+#[test]
+fn a_photograph_does_not_depend_on_the_rest_of_the_set() {
+    let all = written(&small(), 2);
+    let few = written(&PhotoOptions { subjects: 2, poses: vec![Pose::LateralPositive], ..small() }, 2);
+    let photograph = Path::new("photos/lateral_positive/s02.png");
+    assert_eq!(all[photograph], few[photograph]);
+}
+
+#[test]
+fn maps_are_mean_and_sd_of_the_normalized_pictures() {
+    /// Rounding to float32.
+    const TOLERANCE: f64 = 1e-7;
+    let out = tempfile::tempdir().unwrap();
+    let options = small();
+    write(&options, out.path()).unwrap();
+    let truth = out.path().join("truth");
+    let pictures: Vec<Array2<f32>> =
+        (1..=5).map(|k| ndarray_npy::read_npy(truth.join(format!("normalized/nominal/s0{k}.npy"))).unwrap()).collect();
+    let mean: Array2<f32> = ndarray_npy::read_npy(truth.join("maps/nominal-mean.npy")).unwrap();
+    let sd: Array2<f32> = ndarray_npy::read_npy(truth.join("maps/nominal-sd.npy")).unwrap();
+    let count: Array2<u32> = ndarray_npy::read_npy(truth.join("maps/nominal-count.npy")).unwrap();
+    assert_eq!(mean.dim(), (80, 80));
+    for ((i, j), &n) in count.indexed_iter() {
+        let seen: Vec<f64> = pictures.iter().map(|p| f64::from(p[[i, j]])).filter(|v| !v.is_nan()).collect();
+        assert_eq!(n as usize, seen.len());
+        let m = seen.iter().sum::<f64>() / n as f64;
+        let s = (seen.iter().map(|v| (v - m).powi(2)).sum::<f64>() / (n as f64 - 1.0)).sqrt();
+        assert!(n == 0 && mean[[i, j]].is_nan() || (f64::from(mean[[i, j]]) - m).abs() <= TOLERANCE);
+        assert!(n < 2 && sd[[i, j]].is_nan() || (f64::from(sd[[i, j]]) - s).abs() <= TOLERANCE);
+    }
+    assert!(count.iter().all(|&n| n <= 5) && count[[40, 40]] == 5);
+}
+
+#[test]
+fn annotations_are_the_scenes_in_labelmes_pixels() {
+    let out = tempfile::tempdir().unwrap();
+    let options = small();
+    let summary = write(&options, out.path()).unwrap();
+    assert_eq!(summary.photographs.len(), 10);
+    let scene = options.scene(3, Pose::LateralPositive);
+    let beside = LabelMe::read(&out.path().join("photos/lateral_positive/s04.json")).unwrap();
+    assert_eq!(beside.image_path, "s04.png");
+    assert_eq!((beside.image_width, beside.image_height), (Some(160), Some(120)));
+    let apart_path = out.path().join("truth/outlines/lateral_positive/s04.json");
+    let apart = LabelMe::read(&apart_path).unwrap();
+    assert_eq!(apart.shapes, beside.shapes);
+    assert!(apart_path.parent().unwrap().join(&apart.image_path).is_file());
+    assert_eq!((beside.shapes[0].label.as_str(), beside.shapes[0].shape_type.as_str()), ("nail", "polygon"));
+    assert_eq!((beside.shapes[1].label.as_str(), beside.shapes[1].shape_type.as_str()), ("axis", "line"));
+    let expected = scene.outline().unwrap().points();
+    assert_eq!(beside.shapes[0].points.len(), expected.len());
+    for (point, expected) in beside.shapes[0].points.iter().zip(expected) {
+        let point = from_labelme(*point);
+        assert!((point[0] - expected[0]).hypot(point[1] - expected[1]) <= 1e-12 * 160.0);
+    }
+    let [proximal, distal] = scene.axis_ends_px();
+    assert!((beside.shapes[1].points[0][0] - 0.5 - proximal[0]).abs() <= 1e-9);
+    assert!((beside.shapes[1].points[1][1] - 0.5 - distal[1]).abs() <= 1e-9);
+    let row = &summary.photographs[8];
+    assert_eq!((row.file.as_str(), row.pose), ("lateral_positive/s04.png", "lateral_positive"));
+    assert_eq!(row.length_px, scene.length_px());
+    let table = fs::read_to_string(out.path().join("truth/nails.csv")).unwrap();
+    let head =
+        "file,nail,subject,pose,center_x_px,center_y_px,length_px,width_px,axis_deg\nnominal/s01.png,1,s01,nominal,";
+    assert!(table.starts_with(head), "{table}");
+}
+
+#[test]
+fn formats_and_depths_are_read_back() {
+    let cases = [
+        (FileFormat::Png, 8, false),
+        (FileFormat::Png, 16, true),
+        (FileFormat::Tif, 16, false),
+        (FileFormat::Tif, 8, true),
+        (FileFormat::Bmp, 8, false),
+        (FileFormat::Jpg, 8, true),
+        (FileFormat::Jpg, 8, false),
+    ];
+    let mut read = 0;
+    for (format, depth, grey) in cases {
+        let options = PhotoOptions {
+            format,
+            depth,
+            grey,
+            subjects: 1,
+            annotate: false,
+            truth_normalized: false,
+            poses: vec![Pose::Normal],
+            ..small()
+        };
+        let out = tempfile::tempdir().unwrap();
+        write(&options, out.path()).unwrap();
+        let picture = image::open(out.path().join(format!("photos/normal/s01.{}", format.extension()))).unwrap();
+        assert_eq!((picture.width(), picture.height()), (160, 120));
+        assert_eq!(picture.color().has_color(), !grey, "{format:?}");
+        let bits = 8 * u32::from(picture.color().bytes_per_pixel() / picture.color().channel_count());
+        assert_eq!(bits, depth, "{format:?}");
+        assert!(!out.path().join("photos/normal/s01.json").exists());
+        assert!(!out.path().join("truth/normalized").exists());
+        let sd: Array2<f32> = ndarray_npy::read_npy(out.path().join("truth/maps/normal-sd.npy")).unwrap();
+        assert!(sd.iter().all(|v| v.is_nan()), "one subject has no SD");
+        read += 1;
+    }
+    assert_eq!(read, 7);
+}
+
+#[test]
+fn what_cannot_be_made_is_refused_before_anything_is_written() {
+    let faults = [
+        (PhotoOptions { subjects: 0, ..small() }, OptionFault::NoSubject),
+        (PhotoOptions { poses: vec![], ..small() }, OptionFault::NoPose),
+        (PhotoOptions { poses: vec![Pose::Normal; 2], ..small() }, OptionFault::PoseTwice(Pose::Normal)),
+        (PhotoOptions { depth: 12, ..small() }, OptionFault::Depth(12)),
+        (PhotoOptions { depth: 16, format: FileFormat::Jpg, ..small() }, OptionFault::DeepFormat(FileFormat::Jpg)),
+        (PhotoOptions { noise_sd: -1.0, ..small() }, OptionFault::Noise(-1.0)),
+        (PhotoOptions { size: 0, ..small() }, OptionFault::Size),
+        (PhotoOptions { margin: 0.5, ..small() }, OptionFault::Margin(0.5)),
+    ];
+    let out = tempfile::tempdir().unwrap();
+    let place = out.path().join("new");
+    for (options, expected) in faults {
+        match write(&options, &place) {
+            Err(Error::Options(fault)) => assert_eq!(fault, expected),
+            other => panic!("{expected:?} expected, not {other:?}"),
+        }
+    }
+    let tiny = write(&PhotoOptions { width: 1, height: 1, ..small() }, &place).unwrap_err();
+    assert!(tiny.to_string().contains("1 x 1"), "{tiny}");
+    assert!(!place.exists());
+}
+
+#[test]
+fn a_set_is_replaced_whole_and_nothing_else_is_touched() {
+    let out = tempfile::tempdir().unwrap();
+    let options = PhotoOptions { truth_normalized: false, ..small() };
+    write(&options, out.path()).unwrap();
+    let first = files(out.path());
+    // Interrupted: as before.
+    let stopped = write_watched(&PhotoOptions { seed: 9, ..options.clone() }, out.path(), &|_, _| false);
+    assert!(matches!(stopped, Err(Error::Interrupted)));
+    assert!(files(out.path()) == first);
+    // A smaller set: no photograph of the larger is left.
+    write(&PhotoOptions { subjects: 1, ..options.clone() }, out.path()).unwrap();
+    assert!(!out.path().join("photos/nominal/s02.png").exists());
+    // Somebody's own photographs: left alone.
+    let own = tempfile::tempdir().unwrap();
+    fs::create_dir(own.path().join("photos")).unwrap();
+    fs::write(own.path().join("photos/mine.png"), "x").unwrap();
+    assert!(matches!(write(&options, own.path()), Err(Error::InTheWay(_))));
+    assert_eq!(files(own.path()).len(), 1);
+}
