@@ -1,14 +1,20 @@
 //! One place followed to its end: template, refined outline, and what speaks for it.
 
+use std::sync::LazyLock;
+
 use geo::{BoundingRect, Intersects, Rect};
 
 use super::evidence::score;
+use super::net::Net;
 use super::patch::{Frame, Patch};
 use super::picture::{Levels, RED, TONE, YELLOW};
-use super::refine::{Band, Path, RAYS, SIDE};
+use super::refine::{Band, Path, RAYS, SIDE, fitted};
 use super::search::NAIL;
 use super::shape::Shape;
 use crate::photo::outline::{Axis, Outline};
+
+static JUDGE: LazyLock<Net> =
+    LazyLock::new(|| Net::parse(include_str!("weights/judge.txt")).expect("weights are checked by a test"));
 
 /// Number of figures that the confidence is made from.
 pub(super) const FIGURES: usize = 30;
@@ -24,6 +30,20 @@ pub(super) struct Candidate {
     fitted: Shape,
     /// Other leads that mean the same.
     support: f32,
+    /// Best score of a lead that contradicts it.
+    rival: f32,
+}
+
+impl Candidate {
+    /// The chance that it is right.
+    pub(super) fn confidence(&self) -> f64 {
+        1.0 / (1.0 + f64::from(-JUDGE.answer(&self.figures)).exp())
+    }
+
+    /// Is it so good that what contradicts it need not be looked at?
+    fn settled(&self) -> bool {
+        self.figures[0] > 0.8 && self.figures[7] > 0.35
+    }
 }
 
 /// Where a candidate comes from.
@@ -35,6 +55,8 @@ pub(super) enum Origin {
     Anywhere,
 }
 
+/// How often the template is fitted to the path around it.
+const ROUNDS: usize = 2;
 /// Places that the second path may move.
 const AGAIN: usize = 8;
 
@@ -64,13 +86,21 @@ impl Lead {
     }
 }
 
-/// Follows the leads from the best score down; one that meets what was found already adds to its support.
+/// Follows the leads from the best score down, `most` of them.
+///
+/// A lead that meets what was found already adds to its support instead, and one that contradicts what is settled is not
+/// followed.
 pub(super) fn follow_all(levels: &Levels, mut leads: Vec<Lead>, most: usize) -> Vec<Candidate> {
     leads.sort_by(|a, b| b.score.total_cmp(&a.score));
     let mut found: Vec<Candidate> = Vec::new();
     for lead in leads {
         if let Some(same) = found.iter_mut().find(|c| lead.like(&c.nail, &c.fitted)) {
             same.support += 1.0;
+            continue;
+        }
+        let over = |c: &&mut Candidate| c.fitted.holds(c.nail.from_source(lead.nail.origin));
+        if let Some(other) = found.iter_mut().filter(|c| c.settled()).find(over) {
+            other.rival = other.rival.max(lead.score);
         } else if found.len() < most {
             found.extend(follow(levels, &lead));
         }
@@ -85,10 +115,17 @@ fn follow(levels: &Levels, lead: &Lead) -> Option<Candidate> {
     if !(nail.unit_px > 8.0) {
         return None;
     }
-    let first = Band::around(levels, &nail, &template).path(SIDE, 2);
-    let half = 0.25 * (template.length + template.width);
+    let mut shape = template;
+    let mut band = Band::around(levels, &nail, &shape);
+    let mut first = band.path(SIDE, 2);
+    for _ in 0..ROUNDS {
+        shape = fitted(&shape, &band, &first);
+        band = Band::around(levels, &nail, &shape);
+        first = band.path(SIDE, 2);
+    }
+    let half = 0.25 * (shape.length + shape.width);
     let second = Band::of(levels, &nail, normals(&first.points), half).path(AGAIN, 1);
-    let (turn, fitted) = box_of(&second.points, 0.0);
+    let (turn, fitted) = box_of(&second.points, shape.turn);
     let axis = {
         let tip = nail.to_source(fitted.point(0.0, 1.0));
         let root = nail.to_source(fitted.point(0.0, -1.0));
@@ -97,8 +134,8 @@ fn follow(levels: &Levels, lead: &Lead) -> Option<Candidate> {
     let corners: Vec<[f64; 2]> = second.points.iter().map(|p| nail.to_source(*p)).collect();
     let outline = Outline::new(&corners).ok()?;
     let patch = Patch::cut(levels, nail, NAIL);
-    let figures = figures(&patch, &template, &fitted, &first, &second, origin, nail.unit_px, turn);
-    Some(Candidate { outline, axis, figures, nail, fitted, support: 0.0 })
+    let figures = figures(&patch, &shape, &fitted, &first, &second, origin, nail.unit_px, turn);
+    Some(Candidate { outline, axis, figures, nail, fitted, support: 0.0, rival: -0.2 })
 }
 
 /// The frame of a nail itself: origin its centre, up its axis, unit its length; and the template there.
@@ -224,7 +261,7 @@ fn figures(
         tip,
         fit,
         tip_score,
-        turn.abs() as f32,
+        (turn - template.turn).abs() as f32,
         around[0][TONE],
         around[0][RED],
         around[0][YELLOW],
@@ -269,23 +306,28 @@ fn surroundings(patch: &Patch, shape: &Shape) -> ([[f32; 3]; 3], f32) {
     ([skin, less(nail), less(far)], spread)
 }
 
+/// The part of the smaller of two outlines that the other covers.
+pub(super) fn shared(a: &Outline, b: &Outline) -> f64 {
+    let iou = a.iou(b);
+    let (a, b) = (a.area_px2(), b.area_px2());
+    iou * (a + b) / (1.0 + iou) / a.min(b)
+}
+
 /// Fills in what the candidates say of each other: how many agree, and the best that contradicts.
 pub(super) fn compare(all: &mut [Candidate]) {
     let boxes: Vec<Rect<f64>> = all.iter().filter_map(|c| c.outline.polygon().bounding_rect()).collect();
     let mut agree: Vec<f32> = all.iter().map(|c| c.support).collect();
-    let mut rival = vec![-1.0f32; all.len()];
+    let mut rival: Vec<f32> = all.iter().map(|c| c.rival).collect();
     for i in 0..all.len() {
         for j in 0..i {
             if !boxes[i].intersects(&boxes[j]) {
                 continue;
             }
             let iou = all[i].outline.iou(&all[j].outline);
-            let (a, b) = (all[i].outline.area_px2(), all[j].outline.area_px2());
-            let shared = iou * (a + b) / (1.0 + iou);
             if iou > 0.8 {
                 agree[i] += 1.0;
                 agree[j] += 1.0;
-            } else if shared > 0.3 * a.min(b) {
+            } else if shared(&all[i].outline, &all[j].outline) > 0.3 {
                 rival[i] = rival[i].max(all[j].figures[0]);
                 rival[j] = rival[j].max(all[i].figures[0]);
             }
@@ -293,6 +335,6 @@ pub(super) fn compare(all: &mut [Candidate]) {
     }
     for ((c, agree), rival) in all.iter_mut().zip(agree).zip(rival) {
         c.figures[FIGURES - 2] = agree / (2.0 + agree);
-        c.figures[FIGURES - 1] = rival.max(-0.2) - c.figures[0];
+        c.figures[FIGURES - 1] = rival - c.figures[0];
     }
 }

@@ -2,6 +2,10 @@ use super::training::*;
 use super::*;
 use std::path::Path;
 
+const WORKING_PX: u32 = 1100;
+const FOLLOWED: usize = 16;
+fn candidates(levels: &Levels) -> Vec<Candidate> { follow_all(levels, leads(levels), FOLLOWED) }
+
 fn median(mut v: Vec<f64>) -> f64 { v.sort_by(f64::total_cmp); if v.is_empty() { f64::NAN } else { v[v.len() / 2] } }
 
 #[test]
@@ -86,7 +90,7 @@ fn judged_() {
         let mut top = vec![];
         let mut axis = vec![];
         for s in &all {
-            let found = judged(&s.image);
+            let found = different(candidates(&Levels::of(&s.image, WORKING_PX)));
             for (k, d) in found.iter().enumerate() {
                 let best = s.truths.iter().max_by(|a, b| a.outline.iou(&d.outline).total_cmp(&b.outline.iou(&d.outline)));
                 let iou = best.map_or(0.0, |t| t.outline.iou(&d.outline));
@@ -147,4 +151,34 @@ fn timing() {
             eprintln!("{}x{} {n} ends, {} tips: {marks:.1?}", image.width(), image.height(), tips.len());
         }
     }
+}
+
+#[test]
+#[ignore]
+fn draw() {
+    let mut tiles = vec![];
+    let scenes: Vec<Scene> = if std::env::var("SETS").is_ok_and(|s| s == "crops") { crops(&std::env::var("LUNULA_HANDS").unwrap(), 0) } else { (0..90).map(|k| phantom(555, k)).collect() };
+    for (k, s) in scenes.into_iter().enumerate() {
+        let k = k as u32;
+        let found = different(candidates(&Levels::of(&s.image, WORKING_PX)));
+        let top = found.first();
+        let iou = top.map_or(0.0, |d| d.outline.iou(&s.truths[0].outline));
+        if top.is_some_and(|d| d.confidence > 0.7) && std::env::var("ALL").is_err() { continue; }
+        let levels = Levels::of(&s.image, WORKING_PX);
+        let oracle = candidates(&levels).iter().map(|c| c.outline.iou(&s.truths[0].outline)).fold(0.0, f64::max);
+        let lead = leads(&levels).iter().map(|l| { let p: Vec<_> = (0..48).map(|i| { let [u, v] = l.template.rim(f64::from(i) / 48.0 * 6.2832); l.nail.to_source(l.template.point(u, v)) }).collect(); super::super::Outline::new(&p).unwrap().iou(&s.truths[0].outline) }).fold(0.0, f64::max);
+        eprintln!("{k}: conf {:.2} IoU {iou:.2}, best candidate {oracle:.2}, best lead {lead:.2} {}", top.map_or(0.0, |d| d.confidence), if s.image.color().has_color() { "colour" } else { "grey" });
+        let mut rgb = s.image.to_rgb8();
+        let mut line = |o: &super::super::Outline, c: [u8; 3]| { let p = o.points(); for i in 0..p.len() { let (a, b) = (p[i], p[(i + 1) % p.len()]); imageproc::drawing::draw_line_segment_mut(&mut rgb, (a[0] as f32, a[1] as f32), (b[0] as f32, b[1] as f32), image::Rgb(c)); } };
+        line(&s.truths[0].outline, [0, 255, 0]);
+        if let Some(d) = top { line(&d.outline, [255, 0, 0]); }
+        let mut tile = image::RgbImage::new(240, 240);
+        let r = DynamicImage::ImageRgb8(rgb).resize(240, 240, image::imageops::FilterType::Triangle).to_rgb8();
+        image::imageops::replace(&mut tile, &r, 0, 0);
+        tiles.push(tile);
+        if tiles.len() == 30 { break; }
+    }
+    let mut sheet = image::RgbImage::new(240 * 6, 240 * (tiles.len() as u32).div_ceil(6));
+    for (i, t) in tiles.iter().enumerate() { image::imageops::replace(&mut sheet, t, 240 * (i as i64 % 6), 240 * (i as i64 / 6)); }
+    sheet.save(std::env::var("SHEET").unwrap()).unwrap();
 }

@@ -9,7 +9,7 @@ use super::shape::{EXPONENT, Shape};
 /// Rim points: four arcs of 8.
 const POINTS: usize = 32;
 /// Features of a channel.
-const EACH: usize = 15;
+const EACH: usize = 27;
 /// Number of inputs of the scorer.
 pub(super) const INPUTS: usize = 3 * EACH + 10;
 /// Distances from the rim along the normal, in mean half axes, at which the channels are read.
@@ -90,11 +90,16 @@ fn arc(point: usize) -> usize {
 
 fn channel(ring: &[[f32; REACH.len()]; POINTS], contrast: f32, out: &mut [f32]) {
     let squash = |x: f32| (x / contrast).clamp(-2.5, 2.5);
+    // Eight arcs of 4 from the right side on: 0 and 7 right, 1 and 2 distal, ...
+    let mut fine = [[0.0f32; REACH.len()]; 8];
     let mut mean = [[0.0f32; REACH.len()]; 4];
     let (mut sum, mut square) = (0.0f32, 0.0f32);
     for (k, r) in ring.iter().enumerate() {
         for (to, from) in mean[arc(k)].iter_mut().zip(r) {
             *to += from / 8.0;
+        }
+        for (to, from) in fine[k / 4].iter_mut().zip(r) {
+            *to += from / 4.0;
         }
         sum += r[0];
         square += r[0] * r[0];
@@ -124,5 +129,15 @@ fn channel(ring: &[[f32; REACH.len()]; POINTS], contrast: f32, out: &mut [f32]) 
     ];
     for (to, from) in out.iter_mut().zip(values) {
         *to = squash(from);
+    }
+    // Left and right together, from the distal end to the proximal: weakest step, difference, weakest crease.
+    for (pair, to) in [[1, 2], [0, 3], [7, 4], [6, 5]].iter().zip(out[values.len()..].chunks_exact_mut(3)) {
+        let [step, crease] = [1usize, 2].map(|d| {
+            pair.map(|a| fine[a]).map(|m| if d == 1 { m[3] - m[1] } else { m[3] + m[1] - 2.0 * m[2] })
+        });
+        let weakest = |x: [f32; 2]| if x[0].abs() < x[1].abs() { x[0] } else { x[1] };
+        to[0] = squash(weakest(step));
+        to[1] = squash((step[0] - step[1]).abs());
+        to[2] = squash(weakest(crease));
     }
 }

@@ -3,6 +3,9 @@
 //! Weights are text, one number a line: inputs, hidden units, then for each input its mean and scale, for each hidden
 //! unit its weights and bias, then the output's weights and bias. They come from `training`.
 
+/// Most inputs of any network.
+const MOST_INPUTS: usize = 96;
+
 /// One hidden layer.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Net {
@@ -34,7 +37,7 @@ impl Net {
 
     /// The output for `x`.
     pub(super) fn answer(&self, x: &[f32]) -> f32 {
-        let mut z = [0.0f32; 96];
+        let mut z = [0.0f32; MOST_INPUTS];
         let n = self.inputs;
         for i in 0..n {
             z[i] = (x[i] - self.norm[i][0]) * self.norm[i][1];

@@ -6,6 +6,8 @@
 
 use std::sync::LazyLock;
 
+use nalgebra::{Matrix6, Vector6};
+
 use super::net::Net;
 use super::patch::Frame;
 use super::picture::{Cell, Levels};
@@ -149,6 +151,38 @@ impl Band {
             .map(|((p, n), d)| [p[0] + d * self.half * n[0], p[1] + d * self.half * n[1]])
             .collect();
         Path { offset, trust, points }
+    }
+}
+
+/// Moves, turns and resizes `shape` towards a path found around it, each ray as far as it is trusted.
+pub(super) fn fitted(shape: &Shape, band: &Band, path: &Path) -> Shape {
+    let mut normal = Matrix6::<f64>::zeros();
+    let mut right = Vector6::<f64>::zeros();
+    let (sin, cos) = shape.turn.sin_cos();
+    for ((point, n), (offset, trust)) in band.rays.iter().zip(path.offset.iter().zip(&path.trust)) {
+        // In the template's own directions: a across, b along.
+        let (dx, dy) = (point[0] - shape.x, point[1] - shape.y);
+        let (a, b) = (dx * cos - dy * sin, dx * sin + dy * cos);
+        let (na, nb) = (n[0] * cos - n[1] * sin, n[0] * sin + n[1] * cos);
+        let v = b / (shape.length / 2.0);
+        let row = Vector6::new(na, nb, na * a, nb * b, na * b - nb * a, -na * a * v);
+        let weight = 0.02 + 1.0 / (1.0 + (-f64::from(*trust)).exp());
+        normal += weight * row * row.transpose();
+        right += weight * offset * band.half * row;
+    }
+    // Held a little, so that a short arc does not carry the rest away.
+    let hold = 0.02 * normal.trace() / 6.0;
+    for i in 0..6 {
+        normal[(i, i)] += if i == 5 { 4.0 * hold } else { hold * if i < 2 { 0.2 } else { 0.5 } };
+    }
+    let Some(step) = normal.cholesky().map(|c| c.solve(&right)) else { return *shape };
+    Shape {
+        x: shape.x + step[0] * cos + step[1] * sin,
+        y: shape.y - step[0] * sin + step[1] * cos,
+        width: shape.width * (1.0 + step[2].clamp(-0.3, 0.3)),
+        length: shape.length * (1.0 + step[3].clamp(-0.3, 0.3)),
+        turn: shape.turn + step[4].clamp(-0.3, 0.3),
+        taper: (shape.taper + step[5]).clamp(-0.1, 0.2),
     }
 }
 

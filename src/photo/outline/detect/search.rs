@@ -152,12 +152,12 @@ fn best_different_scaled(mut all: Vec<Scored>, most: usize) -> Vec<Scored> {
     kept
 }
 
-/// Climbs the score by steps in each number of the shape, halved three times.
+/// Climbs the score by ever smaller steps in each number of the shape.
 pub(super) fn polish(patch: &Patch, (mut shape, mut value): Scored, tip: HasTip) -> Scored {
     let size = 0.5 * (shape.length + shape.width);
     let mut step = 0.08;
-    for _ in 0..4 {
-        for _ in 0..3 {
+    for _ in 0..3 {
+        for _ in 0..2 {
             let before = value;
             for axis in 0..6 {
                 for sign in [-1.0, 1.0] {

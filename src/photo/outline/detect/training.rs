@@ -324,6 +324,10 @@ pub(super) fn fit(rows: &Rows, hidden: usize, epochs: usize, logistic: bool, dec
     Net { inputs: n, hidden, norm, first: w[..split].to_vec(), second: w[split..].to_vec() }
 }
 
+fn rms(net: &Net, rows: &Rows) -> f32 {
+    (rows.x.iter().zip(&rows.y).map(|(x, y)| (net.answer(x) - y).powi(2)).sum::<f32>() / rows.y.len() as f32).sqrt()
+}
+
 fn text(net: &Net) -> String {
     let mut out = format!("{} {}\n", net.inputs, net.hidden);
     for [a, b] in &net.norm {
@@ -355,7 +359,7 @@ fn ends(scene: &Scene, most: usize) -> Vec<(Frame, f64)> {
 }
 
 fn levels(scene: &Scene) -> Levels {
-    Levels::of(&scene.image, super::WORKING_PX)
+    Levels::of(&scene.image, super::DetectOptions::default().working_size_px)
 }
 
 fn turn_between(frame_up: [f64; 2], up: [f64; 2]) -> f64 {
@@ -590,29 +594,37 @@ fn train() {
     all.par_iter_mut().for_each(direct);
     let known: usize = all.iter().filter(|s| s.real).flat_map(|s| &s.truths).filter(|t| t.up.is_some()).count();
     eprintln!("{} scenes, {known} real nails with a direction", all.len());
-    if stage.contains("scorer") {
-        let rows = Rows::gather(&all, 1, |s, rng, rows| {
-            scorer_rows(s, rng, rows);
-            found_rows(s, rng, rows);
-        });
-        eprintln!("{} rows", rows.x.len());
-        let net = fit(&rows, 20, 24, false, 1e-5, 1);
-        let rms = (rows.x.iter().zip(&rows.y).map(|(x, y)| (net.answer(x) - y).powi(2)).sum::<f32>() / rows.y.len() as f32).sqrt();
-        eprintln!("scorer: RMS {rms}");
-        save("scorer.txt", &net);
-    }
-    if stage.contains("border") {
-        let rows = Rows::gather(&all, 2, border_rows);
-        eprintln!("{} rows", rows.x.len());
-        let net = fit(&rows, 14, 14, true, 1e-5, 2);
-        save("border.txt", &net);
+    if stage.contains("scorer") || stage.contains("border") {
+        rayon::join(
+            || {
+                if stage.contains("scorer") {
+                    let rows = Rows::gather(&all, 1, |s, rng, rows| {
+                        scorer_rows(s, rng, rows);
+                        if !stage.contains("first") {
+                            found_rows(s, rng, rows);
+                        }
+                    });
+                    let net = fit(&rows, 20, 20, false, 1e-5, 1);
+                    eprintln!("scorer: {} rows, RMS {}", rows.x.len(), rms(&net, &rows));
+                    save("scorer.txt", &net);
+                }
+            },
+            || {
+                if stage.contains("border") {
+                    let rows = Rows::gather(&all, 2, border_rows);
+                    let net = fit(&rows, 14, 14, true, 1e-5, 2);
+                    eprintln!("border: {} rows", rows.x.len());
+                    save("border.txt", &net);
+                }
+            },
+        );
     }
     if stage.contains("judge") {
         // Other phantoms than the other two networks have seen.
         let mut fresh = scenes(count, 2000, 0);
         fresh.par_iter_mut().for_each(direct);
         let rows = Rows::gather(&fresh, 3, |s, _, rows| {
-            for c in super::candidates(&levels(s)) {
+            for c in super::follow_all(&levels(s), super::leads(&levels(s)), 16) {
                 let worth = s
                     .truths
                     .iter()
