@@ -17,7 +17,7 @@ static JUDGE: LazyLock<Net> =
     LazyLock::new(|| Net::parse(include_str!("weights/judge.txt")).expect("weights are checked by a test"));
 
 /// Number of figures that the confidence is made from.
-pub(super) const FIGURES: usize = 30;
+pub(super) const FIGURES: usize = 31;
 
 /// A nail that may be one.
 #[derive(Debug, Clone)]
@@ -134,8 +134,29 @@ fn follow(levels: &Levels, lead: &Lead) -> Option<Candidate> {
     let corners: Vec<[f64; 2]> = second.points.iter().map(|p| nail.to_source(*p)).collect();
     let outline = Outline::new(&corners).ok()?;
     let patch = Patch::cut(levels, nail, NAIL);
-    let figures = figures(&patch, &shape, &fitted, &first, &second, origin, nail.unit_px, turn);
+    let mut figures = figures(&patch, &shape, &fitted, &first, &second, origin, nail.unit_px, turn);
+    figures[FIGURES - 1] = again(levels, &nail, &fitted, &outline);
     Some(Candidate { outline, axis, figures, nail, fitted, support: 0.0, rival: -0.2 })
+}
+
+/// Overlap (IoU) of the outline with the one found from a template that is a little too large and displaced.
+fn again(levels: &Levels, nail: &Frame, fit: &Shape, outline: &Outline) -> f32 {
+    let mut shape = Shape {
+        y: fit.y - 0.05 * fit.length,
+        length: 1.1 * fit.length,
+        width: 1.12 * fit.width,
+        turn: fit.turn + 0.08,
+        ..*fit
+    };
+    let mut points = Vec::new();
+    for _ in 0..2 {
+        let band = Band::around(levels, nail, &shape);
+        let path = band.path(SIDE, 2);
+        shape = fitted(&shape, &band, &path);
+        points = path.points;
+    }
+    let corners: Vec<[f64; 2]> = points.iter().map(|p| nail.to_source(*p)).collect();
+    Outline::new(&corners).map_or(0.0, |other| outline.iou(&other) as f32)
 }
 
 /// The frame of a nail itself: origin its centre, up its axis, unit its length; and the template there.
@@ -274,6 +295,7 @@ fn figures(
         spread,
         0.0,
         0.0,
+        0.0,
     ]
 }
 
@@ -334,7 +356,7 @@ pub(super) fn compare(all: &mut [Candidate]) {
         }
     }
     for ((c, agree), rival) in all.iter_mut().zip(agree).zip(rival) {
-        c.figures[FIGURES - 2] = agree / (2.0 + agree);
-        c.figures[FIGURES - 1] = rival - c.figures[0];
+        c.figures[FIGURES - 3] = agree / (2.0 + agree);
+        c.figures[FIGURES - 2] = rival - c.figures[0];
     }
 }

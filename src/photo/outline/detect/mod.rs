@@ -28,8 +28,6 @@ mod tips;
 
 #[cfg(test)]
 mod training;
-#[cfg(test)]
-mod evaluation;
 
 use image::DynamicImage;
 use thiserror::Error;

@@ -58,3 +58,36 @@ impl Net {
         out
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Net;
+
+    #[test]
+    fn the_weights_that_come_along_are_whole() {
+        let nets = [
+            (include_str!("weights/scorer.txt"), super::super::evidence::INPUTS),
+            (include_str!("weights/border.txt"), super::super::refine::INPUTS),
+            (include_str!("weights/judge.txt"), super::super::candidate::FIGURES),
+        ];
+        for (text, inputs) in nets {
+            let net = Net::parse(text).expect("whole");
+            assert_eq!(net.inputs, inputs);
+            assert!(inputs <= super::MOST_INPUTS);
+            let numbers = 2 + 2 * inputs + (inputs + 1) * net.hidden + net.hidden + 1;
+            assert_eq!(text.split_ascii_whitespace().count(), numbers);
+            assert!(net.answer(&vec![0.0; inputs]).is_finite());
+        }
+    }
+
+    #[test]
+    fn an_answer_is_the_sum_it_says() {
+        // Two inputs (means 1, 0; scales 1, 2), one unit 0.5 a - b + 0.25, output 3 softsign(unit) - 1.
+        let net = Net::parse("2 1  1 1  0 2  0.5 -1 0.25  3 -1").expect("whole");
+        let unit: f32 = 0.5 * (4.0 - 1.0) - (0.25 * 2.0) + 0.25;
+        let expected = 3.0 * unit / (1.0 + unit.abs()) - 1.0;
+        assert!((net.answer(&[4.0, 0.25]) - expected).abs() <= 1e-6);
+        assert_eq!(Net::parse("2 1 1 1 0 2 0.5 -1 0.25 3"), None);
+        assert_eq!(Net::parse("one"), None);
+    }
+}

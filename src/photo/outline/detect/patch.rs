@@ -114,3 +114,28 @@ fn smooth(cells: &mut [Cell], size: [usize; 2]) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use image::{DynamicImage, GrayImage, Luma};
+
+    use super::*;
+
+    #[test]
+    fn a_patch_shows_its_frame() {
+        // Up on the frame is right on the picture.
+        let frame = Frame { origin: [60.0, 40.0], up: [1.0, 0.0], unit_px: 20.0 };
+        let p = frame.to_source([0.5, 1.0]);
+        assert!((p[0] - 80.0).abs() <= 1e-12 && (p[1] - 50.0).abs() <= 1e-12, "{p:?}");
+        let back = frame.from_source(p);
+        assert!((back[0] - 0.5).abs() <= 1e-12 && (back[1] - 1.0).abs() <= 1e-12);
+
+        let image = GrayImage::from_fn(120, 80, |x, _| Luma([if x > 60 { 200 } else { 50 }]));
+        let levels = Levels::of(&DynamicImage::ImageLuma8(image), 120);
+        let patch = Patch::cut(&levels, frame, Extent { x: [-1.0, 1.0], y: [-1.0, 1.0], per_unit: 20.0 });
+        assert!(!patch.colour);
+        let [distal, proximal] = [0.8, -0.8].map(|y| patch.at(0.0, y)[0]);
+        assert!((distal - (200.0f32 / 255.0 + 0.02).ln()).abs() <= 1e-4, "{distal}");
+        assert!((proximal - (50.0f32 / 255.0 + 0.02).ln()).abs() <= 1e-4, "{proximal}");
+    }
+}

@@ -51,3 +51,24 @@ impl Shape {
         [r * cos * (1.0 - self.taper * v), v]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_on_the_template_and_in_its_frame_go_back_and_forth() {
+        let shape = Shape { x: 0.3, y: -0.5, length: 0.9, width: 0.6, turn: 0.4, taper: 0.1 };
+        for k in 0..40 {
+            let [u, v] = shape.rim(f64::from(k) * 0.157);
+            let point = shape.point(u, v);
+            let back = shape.local(point);
+            assert!((back[0] - u).abs() <= 1e-12 && (back[1] - v).abs() <= 1e-12);
+            assert!(shape.holds(shape.point(0.99 * u, 0.99 * v)) && !shape.holds(shape.point(1.01 * u, 1.01 * v)));
+        }
+        // Clockwise: the distal end of a template turned by 90 degrees lies to the right.
+        let turned = Shape { turn: std::f64::consts::FRAC_PI_2, x: 0.0, y: 0.0, ..shape };
+        let distal = turned.point(0.0, 1.0);
+        assert!((distal[0] - 0.45).abs() <= 1e-12 && distal[1].abs() <= 1e-12);
+    }
+}

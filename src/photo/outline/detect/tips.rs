@@ -164,3 +164,40 @@ fn cap(ring: &Ring, mask: &GrayImage, s: f64, width: f64) -> Option<Tip> {
     }
     Some(Tip { apex, out, width, fit })
 }
+
+#[cfg(test)]
+mod tests {
+    use image::Luma;
+
+    use super::*;
+
+    /// A finger of `width` from the lower border up to `end`, tilted by `turn`.
+    fn finger(width: f64, end: [f64; 2], turn: f64) -> GrayImage {
+        let (sin, cos) = turn.sin_cos();
+        GrayImage::from_fn(200, 200, |x, y| {
+            let (dx, dy) = (f64::from(x) - end[0], f64::from(y) - end[1]);
+            let (u, v) = (dx * cos + dy * sin, dy * cos - dx * sin - width / 2.0);
+            let inside = if v < 0.0 { u.hypot(v) < width / 2.0 } else { u.abs() < width / 2.0 };
+            Luma([if inside { 255 } else { 0 }])
+        })
+    }
+
+    #[test]
+    fn the_end_of_a_finger_is_found() {
+        for (width, turn) in [(30.0, 0.0), (48.0, 0.3), (22.0, -0.6)] {
+            let found = strongest(tips(&finger(width, [100.0, 60.0], turn)), 1);
+            let tip = found.first().expect("one end");
+            // Measured: 4 % of the width for the apex, 6 % for the width, 0.05 rad.
+            assert!((tip.apex[0] - 100.0).hypot(tip.apex[1] - 60.0) <= 0.12 * width, "{tip:?}");
+            assert!((tip.width / width - 1.0).abs() <= 0.15, "{tip:?}");
+            let expected = [turn.sin(), -turn.cos()];
+            assert!(tip.out[0] * expected[0] + tip.out[1] * expected[1] >= 0.97, "{tip:?}");
+        }
+    }
+
+    #[test]
+    fn a_square_and_nothing_have_no_strong_end() {
+        assert!(tips(&GrayImage::new(100, 100)).is_empty());
+        assert!(tips(&GrayImage::from_pixel(100, 100, Luma([255]))).is_empty());
+    }
+}
