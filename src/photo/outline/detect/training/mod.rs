@@ -20,7 +20,7 @@ use rayon::prelude::*;
 use super::net::Net;
 use fit::{fit, rms, text};
 use rows::{Rows, border_rows, found_rows, scorer_rows};
-use scenes::{direct, levels, scenes};
+use scenes::{Look, direct, levels, scenes};
 
 fn save(name: &str, net: &Net) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/photo/outline/detect/weights");
@@ -33,7 +33,12 @@ fn train() {
     let stage = std::env::var("LUNULA_TRAIN").unwrap_or_default();
     let count = std::env::var("LUNULA_COUNT").ok().and_then(|c| c.parse().ok()).unwrap_or(450);
     // The judge learns from other phantoms than the other two networks have seen.
-    let mut all = scenes(count, if stage.contains("judge") { 2000 } else { 1000 }, 0);
+    let (seed, looks) = if stage.contains("judge") {
+        (2000, &[Look::Plain, Look::Grey, Look::Mirrored, Look::Turned][..])
+    } else {
+        (1000, &[Look::Plain, Look::Grey][..])
+    };
+    let mut all = scenes(count, seed, looks);
     all.par_iter_mut().for_each(direct);
     let known: usize = all.iter().filter(|s| s.real).flat_map(|s| &s.truths).filter(|t| t.up.is_some()).count();
     eprintln!("{} scenes, {known} real nails with a direction", all.len());

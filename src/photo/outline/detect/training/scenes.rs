@@ -201,13 +201,11 @@ pub(super) fn bell(rng: &mut ChaCha8Rng) -> f64 {
 }
 
 /// Phantoms, three quarters as many pictures without nails, and hands where there are any.
-pub(super) fn scenes(count: u32, seed: u64, odd: usize) -> Vec<Scene> {
+pub(super) fn scenes(count: u32, seed: u64, looks: &[Look]) -> Vec<Scene> {
     let mut all: Vec<Scene> = (0..count).into_par_iter().map(|k| phantom(seed, k)).collect();
     all.par_extend((0..count * 3 / 4).into_par_iter().map(|k| empty(seed, k)));
     if let Ok(folder) = std::env::var("LUNULA_HANDS") {
-        for look in [Look::Plain, Look::Mirrored, Look::Turned, Look::Grey] {
-            all.extend(hands(Path::new(&folder), odd, look));
-        }
+        all.extend(looks.iter().flat_map(|look| hands(Path::new(&folder), 0, *look)));
     }
     all
 }
