@@ -134,7 +134,10 @@ fn without_nails(grey: bool) -> Vec<(String, DynamicImage)> {
     all.push(("gradient".into(), drawn(grey, |x, y| [x / 320.0, y / 240.0, 0.5])));
     for sd in [0.02, 0.1, 0.3] {
         let mut rng = ChaCha8Rng::seed_from_u64(5);
-        all.push((format!("noise {sd}"), drawn(grey, |_, _| [0, 1, 2].map(|_| 0.5 + sd * rng.random_range(-1.0..1.0)))));
+        all.push((
+            format!("noise {sd}"),
+            drawn(grey, |_, _| [0, 1, 2].map(|_| 0.5 + sd * rng.random_range(-1.0..1.0))),
+        ));
     }
     for size in [8.0, 14.0, 24.0] {
         let page = drawn(grey, |x, y| {
@@ -157,17 +160,21 @@ fn without_nails(grey: bool) -> Vec<(String, DynamicImage)> {
         let skin = Tone::new(darkness).skin();
         let mut rng = ChaCha8Rng::seed_from_u64(6);
         let grain = |x: f64, y: f64| 1.0 + 0.05 * (0.31 * x + 0.07 * y).sin() * (0.11 * x - 0.23 * y).cos();
-        all.push((format!("skin {darkness}"), drawn(grey, |x, y| {
-            skin.map(|c| c * (grain(x, y) + rng.random_range(-0.02..0.02)))
-        })));
+        all.push((
+            format!("skin {darkness}"),
+            drawn(grey, |x, y| skin.map(|c| c * (grain(x, y) + rng.random_range(-0.02..0.02)))),
+        ));
         // A finger's pad: the same silhouette, ridges, no nail.
-        all.push((format!("pad {darkness}"), drawn(grey, |x, y| {
-            let (u, v) = ((x - 160.0) / 70.0, ((110.0 - y) / 75.0).max(0.0));
-            let level = u.abs().powf(2.3) + v * v;
-            let ridges = 1.0 + 0.03 * (0.9 * (u * u * 20.0 + 0.2 * y)).sin();
-            let shade = 1.0 - 0.35 * level * level;
-            if level < 1.0 { skin.map(|c| c * shade * ridges * grain(x, y)) } else { [0.1, 0.1, 0.11] }
-        })));
+        all.push((
+            format!("pad {darkness}"),
+            drawn(grey, |x, y| {
+                let (u, v) = ((x - 160.0) / 70.0, ((110.0 - y) / 75.0).max(0.0));
+                let level = u.abs().powf(2.3) + v * v;
+                let ridges = 1.0 + 0.03 * (0.9 * (u * u * 20.0 + 0.2 * y)).sin();
+                let shade = 1.0 - 0.35 * level * level;
+                if level < 1.0 { skin.map(|c| c * shade * ridges * grain(x, y)) } else { [0.1, 0.1, 0.11] }
+            }),
+        ));
     }
     all
 }
@@ -258,7 +265,8 @@ fn hands_are_found_with_precision() {
     for (name, first) in [("seen in training", 0), ("held out", 1)] {
         let (mut found, mut right, mut nails) = (0, 0, 0);
         for file in files.iter().skip(first).step_by(2) {
-            let truth = annotated(&image::open(folder.join("masks").join(file.file_name().unwrap())).unwrap().to_luma8());
+            let truth =
+                annotated(&image::open(folder.join("masks").join(file.file_name().unwrap())).unwrap().to_luma8());
             nails += truth.len();
             for nail in detect(&image::open(file).unwrap(), &DetectOptions::default()).nails {
                 found += 1;
@@ -266,7 +274,9 @@ fn hands_are_found_with_precision() {
             }
         }
         let (precision, recall) = (right as f64 / found as f64, right as f64 / nails as f64);
-        eprintln!("{name}: {nails} nails, {found} found, {right} at IoU 0.7: precision {precision:.3}, recall {recall:.3}");
+        eprintln!(
+            "{name}: {nails} nails, {found} found, {right} at IoU 0.7: precision {precision:.3}, recall {recall:.3}"
+        );
         assert!(precision >= PRECISION, "{name}: {right} of {found}");
     }
 }
@@ -294,7 +304,11 @@ fn time() {
                     start.elapsed().as_secs_f64() * 1e3
                 })
                 .collect();
-            eprintln!("{name}, grey {grey}: {:.1} ms (lowest {:.1})", quantile(&mut times, 0.5), quantile(&mut times, 0.0));
+            eprintln!(
+                "{name}, grey {grey}: {:.1} ms (lowest {:.1})",
+                quantile(&mut times, 0.5),
+                quantile(&mut times, 0.0)
+            );
         }
     }
 }

@@ -13,8 +13,11 @@ use super::search::NAIL;
 use super::shape::Shape;
 use crate::photo::outline::{Axis, Outline};
 
-static JUDGE: LazyLock<Net> =
-    LazyLock::new(|| Net::parse(include_str!("weights/judge.txt")).expect("weights are checked by a test"));
+/// Three judges, each trained without a third of the scenes.
+static JUDGES: LazyLock<[Net; 3]> = LazyLock::new(|| {
+    [include_str!("weights/judge-0.txt"), include_str!("weights/judge-1.txt"), include_str!("weights/judge-2.txt")]
+        .map(|text| Net::parse(text).expect("weights are checked by a test"))
+});
 
 /// Number of figures that the confidence is made from.
 pub(super) const FIGURES: usize = 31;
@@ -35,9 +38,10 @@ pub(super) struct Candidate {
 }
 
 impl Candidate {
-    /// The chance that it is right.
+    /// The chance that it is right: what the most doubtful judge says.
     pub(super) fn confidence(&self) -> f64 {
-        1.0 / (1.0 + f64::from(-JUDGE.answer(&self.figures)).exp())
+        let lowest = JUDGES.iter().map(|judge| judge.answer(&self.figures)).fold(f32::INFINITY, f32::min);
+        1.0 / (1.0 + f64::from(-lowest).exp())
     }
 
     /// Is it so good that what contradicts it need not be looked at?

@@ -42,8 +42,7 @@ pub(super) fn score(patch: &Patch, shape: &Shape, tip: HasTip) -> f32 {
 /// The scorer's inputs.
 pub(super) fn inputs(patch: &Patch, shape: &Shape, tip: HasTip) -> [f32; INPUTS] {
     let mut ring = [[[0.0f32; REACH.len()]; POINTS]; 3];
-    let [x, y, length, width, taper] =
-        [shape.x, shape.y, shape.length, shape.width, shape.taper].map(|v| v as f32);
+    let [x, y, length, width, taper] = [shape.x, shape.y, shape.length, shape.width, shape.taper].map(|v| v as f32);
     let half = 0.25 * (length + width);
     let (sin, cos) = (shape.turn.sin() as f32, shape.turn.cos() as f32);
     for (k, &[u, v, nu, nv]) in RIM.iter().enumerate() {
@@ -132,9 +131,8 @@ fn channel(ring: &[[f32; REACH.len()]; POINTS], contrast: f32, out: &mut [f32]) 
     }
     // Left and right together, from the distal end to the proximal: weakest step, difference, weakest crease.
     for (pair, to) in [[1, 2], [0, 3], [7, 4], [6, 5]].iter().zip(out[values.len()..].chunks_exact_mut(3)) {
-        let [step, crease] = [1usize, 2].map(|d| {
-            pair.map(|a| fine[a]).map(|m| if d == 1 { m[3] - m[1] } else { m[3] + m[1] - 2.0 * m[2] })
-        });
+        let [step, crease] = [1usize, 2]
+            .map(|d| pair.map(|a| fine[a]).map(|m| if d == 1 { m[3] - m[1] } else { m[3] + m[1] - 2.0 * m[2] }));
         let weakest = |x: [f32; 2]| if x[0].abs() < x[1].abs() { x[0] } else { x[1] };
         to[0] = squash(weakest(step));
         to[1] = squash((step[0] - step[1]).abs());

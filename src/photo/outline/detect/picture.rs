@@ -131,9 +131,11 @@ impl Picture {
             let upper = &self.cells[2 * y * self.size[0]..];
             let lower = &self.cells[(2 * y + 1) * self.size[0]..];
             for x in 0..size[0] {
-                cells.push([0, 1, 2].map(|c| {
-                    0.25 * (upper[2 * x][c] + upper[2 * x + 1][c] + lower[2 * x][c] + lower[2 * x + 1][c])
-                }));
+                cells.push(
+                    [0, 1, 2].map(|c| {
+                        0.25 * (upper[2 * x][c] + upper[2 * x + 1][c] + lower[2 * x][c] + lower[2 * x + 1][c])
+                    }),
+                );
             }
         }
         Self { size, cells, colour: self.colour, step: 2.0 * self.step }

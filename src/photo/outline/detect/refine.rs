@@ -124,9 +124,8 @@ impl Band {
     pub(super) fn path(&self, side: usize, stride: usize) -> Path {
         let places = 2 * (side / stride) + 1;
         let first = SIDE - side / stride * stride;
-        let gain: Vec<f32> = (0..RAYS * places)
-            .map(|i| BORDER.answer(&self.inputs(i / places, first + i % places * stride)))
-            .collect();
+        let gain: Vec<f32> =
+            (0..RAYS * places).map(|i| BORDER.answer(&self.inputs(i / places, first + i % places * stride))).collect();
         let chosen = closed(&gain, places, PRICE * (stride * stride) as f32);
         // Between places: the top of the parabola through the neighbours.
         let offset: Vec<f64> = (0..RAYS)
@@ -222,7 +221,5 @@ fn closed(gain: &[f32], places: usize, price: f32) -> Vec<usize> {
 /// Binomial smoothing along the ring, three rays either way.
 fn calm(offset: &[f64]) -> Vec<f64> {
     const WEIGHTS: [f64; 7] = [1.0, 6.0, 15.0, 20.0, 15.0, 6.0, 1.0];
-    (0..RAYS)
-        .map(|k| (0..7).map(|i| WEIGHTS[i] * offset[(k + RAYS + i - 3) % RAYS]).sum::<f64>() / 64.0)
-        .collect()
+    (0..RAYS).map(|k| (0..7).map(|i| WEIGHTS[i] * offset[(k + RAYS + i - 3) % RAYS]).sum::<f64>() / 64.0).collect()
 }

@@ -30,7 +30,8 @@ pub(super) fn silhouettes(picture: &Picture) -> Vec<GrayImage> {
     let mut masks = Vec::new();
     let mut add = |inside: &dyn Fn(usize) -> bool| masks.push(mask(picture.size, inside));
     if picture.colour {
-        let is_skin = |c: &picture::Cell| RED.contains(&c[picture::RED]) && YELLOWS.contains(&c[YELLOW]) && c[TONE] > DARK;
+        let is_skin =
+            |c: &picture::Cell| RED.contains(&c[picture::RED]) && YELLOWS.contains(&c[YELLOW]) && c[TONE] > DARK;
         let skin: Vec<bool> = cells.iter().map(is_skin).collect();
         add(&|i| skin[i]);
         if let Some(median) = median(cells.iter().filter(|c| is_skin(c)).map(|c| c[TONE]).collect()) {

@@ -80,9 +80,7 @@ impl Ring {
         // A chain of pixels is smoothed over five steps: stairs would lengthen the arc.
         let n = corners.len();
         let smooth: Vec<[f64; 2]> = (0..n)
-            .map(|i| {
-                [0, 1].map(|c| (0..5).map(|k| corners[(i + n + k - 2) % n][c]).sum::<f64>() / 5.0)
-            })
+            .map(|i| [0, 1].map(|c| (0..5).map(|k| corners[(i + n + k - 2) % n][c]).sum::<f64>() / 5.0))
             .collect();
         let mut points = vec![smooth[0]];
         let mut left = 1.0;

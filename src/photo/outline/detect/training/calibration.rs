@@ -15,7 +15,8 @@ fn finds(scenes: &mut [Scene]) -> Vec<Find> {
     scenes.par_iter_mut().for_each(direct);
     let of = |scene: &Scene| -> Vec<Find> {
         let best = |d: &super::super::Detected| -> Find {
-            let truth = scene.truths.iter().max_by(|a, b| a.outline.iou(&d.outline).total_cmp(&b.outline.iou(&d.outline)));
+            let truth =
+                scene.truths.iter().max_by(|a, b| a.outline.iou(&d.outline).total_cmp(&b.outline.iou(&d.outline)));
             let up = truth.and_then(|t| t.up).unwrap_or(d.axis.distal());
             let v = d.axis.distal();
             [d.confidence, truth.map_or(0.0, |t| t.outline.iou(&d.outline)), v[0] * up[0] + v[1] * up[1]]

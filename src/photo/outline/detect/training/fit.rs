@@ -33,8 +33,7 @@ pub(super) fn fit(rows: &Rows, hidden: usize, epochs: usize, logistic: bool, dec
         order.shuffle(&mut rng);
         let rate = 3e-3 * (1.0 - epoch as f32 / epochs as f32) + 5e-5;
         for part in order.chunks(batch) {
-            let mut g: Vec<f32> =
-                w.iter().enumerate().map(|(i, w)| if i < split { decay * w } else { 0.0 }).collect();
+            let mut g: Vec<f32> = w.iter().enumerate().map(|(i, w)| if i < split { decay * w } else { 0.0 }).collect();
             let scale = 1.0 / part.len() as f32;
             for &i in part {
                 let x = &z[i];
@@ -42,8 +41,7 @@ pub(super) fn fit(rows: &Rows, hidden: usize, epochs: usize, logistic: bool, dec
                     .chunks_exact(n + 1)
                     .map(|u| u[n] + u[..n].iter().zip(x).map(|(a, b)| a * b).sum::<f32>())
                     .collect();
-                let out = w[split + hidden]
-                    + pre.iter().zip(&w[split..]).map(|(p, w)| softsign(*p) * w).sum::<f32>();
+                let out = w[split + hidden] + pre.iter().zip(&w[split..]).map(|(p, w)| softsign(*p) * w).sum::<f32>();
                 let e = scale * if logistic { 1.0 / (1.0 + (-out).exp()) - rows.y[i] } else { out - rows.y[i] };
                 g[split + hidden] += e;
                 for k in 0..hidden {
@@ -84,4 +82,3 @@ pub(super) fn text(net: &Net) -> String {
     }
     out
 }
-

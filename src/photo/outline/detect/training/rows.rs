@@ -19,7 +19,11 @@ pub(super) struct Rows {
 
 impl Rows {
     /// Rows of every scene, each with its own random numbers.
-    pub(super) fn gather(scenes: &[Scene], seed: u64, rows: impl Fn(&Scene, &mut ChaCha8Rng, &mut Self) + Sync) -> Self {
+    pub(super) fn gather(
+        scenes: &[Scene],
+        seed: u64,
+        rows: impl Fn(&Scene, &mut ChaCha8Rng, &mut Self) + Sync,
+    ) -> Self {
         let parts: Vec<Self> = scenes
             .par_iter()
             .enumerate()
@@ -141,7 +145,8 @@ pub(super) fn scorer_rows(scene: &Scene, rng: &mut ChaCha8Rng, rows: &mut Rows) 
             .map(|t| (t, t.outline.points().iter().map(|p| frame.from_source(*p)).collect::<Vec<_>>()))
             .map(|(t, points)| {
                 let cells = Cells::of(FINGER, Some(&points));
-                let under = cells.0.iter().filter(|(p, t)| *t && p[0].abs() < 0.4 && (-1.1..0.1).contains(&p[1])).count();
+                let under =
+                    cells.0.iter().filter(|(p, t)| *t && p[0].abs() < 0.4 && (-1.1..0.1).contains(&p[1])).count();
                 (t, points, cells, under)
             })
             .max_by_key(|t| t.3)
@@ -213,7 +218,10 @@ pub(super) fn scorer_rows(scene: &Scene, rng: &mut ChaCha8Rng, rows: &mut Rows) 
         let (patch, found) = search::anywhere(&levels, 6);
         places.extend(found.iter().map(|(s, _)| Frame {
             origin: patch.frame.to_source([s.x, s.y]),
-            up: { let (sin, cos) = s.turn.sin_cos(); [sin, -cos] },
+            up: {
+                let (sin, cos) = s.turn.sin_cos();
+                [sin, -cos]
+            },
             unit_px: s.length * patch.frame.unit_px,
         }));
         for frame in places {
@@ -306,7 +314,11 @@ pub(super) fn border_rows(scene: &Scene, rng: &mut ChaCha8Rng, rows: &mut Rows) 
                 };
                 let places = 2 * refine::SIDE;
                 let Some(cross) = (0..places).find(|&m| at(m as f64) && !at(m as f64 + 1.0)) else { continue };
-                let exact = (0..10).map(|i| cross as f64 + f64::from(i) / 10.0).take_while(|m| at(*m)).last().unwrap_or(cross as f64);
+                let exact = (0..10)
+                    .map(|i| cross as f64 + f64::from(i) / 10.0)
+                    .take_while(|m| at(*m))
+                    .last()
+                    .unwrap_or(cross as f64);
                 for i in 0..7 {
                     let m = match i {
                         0 | 1 => exact.round() as i64,
@@ -322,4 +334,3 @@ pub(super) fn border_rows(scene: &Scene, rng: &mut ChaCha8Rng, rows: &mut Rows) 
         }
     }
 }
-

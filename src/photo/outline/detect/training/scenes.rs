@@ -94,7 +94,11 @@ pub(super) fn empty(seed: u64, k: u32) -> Scene {
             2 | 3 => {
                 // One object, on a surface or on skin.
                 let ground = if kind == 2 { back } else { skin.map(|c| c * (1.0 + 0.05 * wave(fx, fy))) };
-                if (u / a).abs().powf(n) + (v / b).abs().powf(n) < 1.0 { other.map(|c| c * (1.0 + 0.1 * v / b)) } else { ground }
+                if (u / a).abs().powf(n) + (v / b).abs().powf(n) < 1.0 {
+                    other.map(|c| c * (1.0 + 0.1 * v / b))
+                } else {
+                    ground
+                }
             }
             _ => {
                 // A finger's pad (4) or an unbroken finger across the picture (5).
@@ -102,7 +106,11 @@ pub(super) fn empty(seed: u64, k: u32) -> Scene {
                 let begin = end + pad * 1.2;
                 let y0 = ((begin - v) / (begin - end)).max(0.0);
                 let r = (u / pad).abs().powf(2.4) + y0 * y0;
-                if r < 1.0 { skin.map(|c| c * (1.0 - 0.35 * r * r) * (1.0 + 0.04 * wave(2.0 * fx, 2.0 * fy))) } else { back }
+                if r < 1.0 {
+                    skin.map(|c| c * (1.0 - 0.35 * r * r) * (1.0 + 0.04 * wave(2.0 * fx, 2.0 * fy)))
+                } else {
+                    back
+                }
             }
         };
         *p = Rgb(c.map(|c| (c + noise * bell(&mut rng)).clamp(0.0, 255.0) as u8));
@@ -249,4 +257,3 @@ pub(super) fn direct(scene: &mut Scene) {
             .map(|(f, _)| f.up);
     }
 }
-
