@@ -33,6 +33,8 @@ pub(super) struct Candidate {
     fitted: Shape,
     /// Other leads that mean the same.
     support: f32,
+    /// A bright reflection lies along the outside of its border, which may be the reflection's.
+    mirrored: bool,
     /// Best score of a lead that contradicts it.
     rival: f32,
 }
@@ -41,7 +43,8 @@ impl Candidate {
     /// The chance that it is right: what the most doubtful judge says.
     pub(super) fn confidence(&self) -> f64 {
         let lowest = JUDGES.iter().map(|judge| judge.answer(&self.figures)).fold(f32::INFINITY, f32::min);
-        1.0 / (1.0 + f64::from(-lowest).exp())
+        let sure = 1.0 / (1.0 + f64::from(-lowest).exp());
+        if self.mirrored { 0.5 * sure } else { sure }
     }
 
     /// Is it so good that what contradicts it need not be looked at?
@@ -140,7 +143,31 @@ fn follow(levels: &Levels, lead: &Lead) -> Option<Candidate> {
     let patch = Patch::cut(levels, nail, NAIL);
     let mut figures = figures(&patch, &shape, &fitted, &first, &second, origin, nail.unit_px, turn);
     figures[FIGURES - 1] = again(levels, &nail, &fitted, &outline);
-    Some(Candidate { outline, axis, figures, nail, fitted, support: 0.0, rival: -0.2 })
+    Some(Candidate {
+        outline,
+        axis,
+        figures,
+        nail,
+        fitted,
+        mirrored: mirrored(&patch, &fitted),
+        support: 0.0,
+        rival: -0.2,
+    })
+}
+
+/// Does anything just outside the sides shine far above the nail's own tone?
+fn mirrored(patch: &Patch, shape: &Shape) -> bool {
+    /// ln of the ratio; skin is never that much lighter than the nail in it.
+    const SHINE: f32 = 0.6;
+    let tone = |u: f64, v: f64| {
+        let [x, y] = shape.point(u, v);
+        patch.at(x as f32, y as f32)[TONE]
+    };
+    let along = [-0.6, -0.4, -0.2, 0.0, 0.2, 0.4, 0.6];
+    let mut inside: Vec<f32> = along.iter().flat_map(|&v| [-0.4, 0.0, 0.4].map(|u| tone(u, v))).collect();
+    inside.sort_by(f32::total_cmp);
+    let outside = along.iter().flat_map(|&v| [-1.25, -1.12, 1.12, 1.25].map(|u| tone(u, v)));
+    outside.fold(f32::NEG_INFINITY, f32::max) > inside[inside.len() / 2] + SHINE
 }
 
 /// Overlap (IoU) of the outline with the one found from a template that is a little too large and displaced.

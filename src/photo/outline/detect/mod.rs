@@ -52,7 +52,7 @@ pub struct DetectOptions {
 
 impl Default for DetectOptions {
     fn default() -> Self {
-        Self { working_size_px: 1100, min_confidence: 0.75, min_doubtful: 0.1, most_places: 16 }
+        Self { working_size_px: 1100, min_confidence: 0.8, min_doubtful: 0.1, most_places: 16 }
     }
 }
 
