@@ -83,7 +83,7 @@ pub(super) struct Lead {
 impl Lead {
     /// Is it the same nail at the same place, roughly?
     fn like(&self, nail: &Frame, shape: &Shape) -> bool {
-        let c = nail.from_source(self.nail.origin);
+        let c = nail.source_to_own(self.nail.origin);
         let size = self.nail.unit_px / nail.unit_px;
         let turn = self.nail.up[0] * nail.up[0] + self.nail.up[1] * nail.up[1];
         (c[0] - shape.x).hypot(c[1] - shape.y) < 0.12
@@ -105,7 +105,7 @@ pub(super) fn follow_all(levels: &Levels, mut leads: Vec<Lead>, most: usize) -> 
             same.support += 1.0;
             continue;
         }
-        let over = |c: &&mut Candidate| c.fitted.holds(c.nail.from_source(lead.nail.origin));
+        let over = |c: &&mut Candidate| c.fitted.holds(c.nail.source_to_own(lead.nail.origin));
         if let Some(other) = found.iter_mut().filter(|c| c.settled()).find(over) {
             other.rival = other.rival.max(lead.score);
         } else if found.len() < most {
@@ -119,7 +119,7 @@ pub(super) fn follow_all(levels: &Levels, mut leads: Vec<Lead>, most: usize) -> 
 /// Refines a lead.
 fn follow(levels: &Levels, lead: &Lead) -> Option<Candidate> {
     let Lead { nail, template, origin, .. } = *lead;
-    if !(nail.unit_px > 8.0) {
+    if nail.unit_px.is_nan() || nail.unit_px <= 8.0 {
         return None;
     }
     let mut shape = template;

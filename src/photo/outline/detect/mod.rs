@@ -122,7 +122,7 @@ pub fn detect(image: &DynamicImage, options: &DetectOptions) -> Detections {
     let (nails, mut doubtful): (Vec<_>, Vec<_>) =
         found.into_iter().partition(|d| d.confidence >= options.min_confidence);
     doubtful.retain(|d| d.confidence >= options.min_doubtful);
-    let note = nails.is_empty().then(|| match best {
+    let note = nails.is_empty().then_some(match best {
         Some(best) if !doubtful.is_empty() => NothingFound::Doubtful { best, needed: options.min_confidence },
         _ => NothingFound::NoPlace,
     });

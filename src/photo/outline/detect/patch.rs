@@ -18,14 +18,14 @@ pub(super) struct Frame {
 
 impl Frame {
     /// Frame to source pixels.
-    pub(super) fn to_source(&self, p: [f64; 2]) -> [f64; 2] {
+    pub(super) fn to_source(self, p: [f64; 2]) -> [f64; 2] {
         let [ux, uy] = self.up;
         let (x, y) = (p[0] * self.unit_px, p[1] * self.unit_px);
         [self.origin[0] - uy * x + ux * y, self.origin[1] + ux * x + uy * y]
     }
 
     /// Source pixels to frame.
-    pub(super) fn from_source(&self, p: [f64; 2]) -> [f64; 2] {
+    pub(super) fn source_to_own(&self, p: [f64; 2]) -> [f64; 2] {
         let [ux, uy] = self.up;
         let (x, y) = (p[0] - self.origin[0], p[1] - self.origin[1]);
         [(-uy * x + ux * y) / self.unit_px, (ux * x + uy * y) / self.unit_px]
@@ -68,7 +68,7 @@ impl Patch {
     pub(super) fn of(picture: &Picture, frame: Frame, extent: Extent) -> Self {
         let size = [extent.x, extent.y].map(|e| ((e[1] - e[0]) * extent.per_unit).round() as usize + 1);
         let mut cells = Vec::with_capacity(size[0] * size[1]);
-        let start = picture.from_source(frame.to_source([extent.x[0], extent.y[1]])).map(|v| v as f32);
+        let start = picture.source_to_own(frame.to_source([extent.x[0], extent.y[1]])).map(|v| v as f32);
         let d = frame.unit_px / extent.per_unit / picture.step;
         let right = [-frame.up[1] * d, frame.up[0] * d].map(|v| v as f32);
         let down = [-frame.up[0] * d, -frame.up[1] * d].map(|v| v as f32);
@@ -127,7 +127,7 @@ mod tests {
         let frame = Frame { origin: [60.0, 40.0], up: [1.0, 0.0], unit_px: 20.0 };
         let p = frame.to_source([0.5, 1.0]);
         assert!((p[0] - 80.0).abs() <= 1e-12 && (p[1] - 50.0).abs() <= 1e-12, "{p:?}");
-        let back = frame.from_source(p);
+        let back = frame.source_to_own(p);
         assert!((back[0] - 0.5).abs() <= 1e-12 && (back[1] - 1.0).abs() <= 1e-12);
 
         let image = GrayImage::from_fn(120, 80, |x, _| Luma([if x > 60 { 200 } else { 50 }]));

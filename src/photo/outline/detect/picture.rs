@@ -147,7 +147,7 @@ impl Picture {
     }
 
     /// Source to working pixels.
-    pub(super) fn from_source(&self, p: [f64; 2]) -> [f64; 2] {
+    pub(super) fn source_to_own(&self, p: [f64; 2]) -> [f64; 2] {
         p.map(|v| (v + 0.5) / self.step - 0.5)
     }
 

@@ -195,9 +195,10 @@ fn closed(gain: &[f32], places: usize, price: f32) -> Vec<usize> {
         let mut next = vec![f32::NEG_INFINITY; places];
         let mut back = vec![0usize; places];
         for m in 0..places {
-            for b in m.saturating_sub(STIFF)..(m + STIFF + 1).min(places) {
+            let near = m.saturating_sub(STIFF)..(m + STIFF + 1).min(places);
+            for (b, before) in near.clone().zip(&best[near]) {
                 let moved = m.abs_diff(b) as f32;
-                let value = best[b] - price * moved * moved + row[m];
+                let value = before - price * moved * moved + row[m];
                 if value > next[m] {
                     next[m] = value;
                     back[m] = b;

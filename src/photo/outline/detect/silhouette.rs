@@ -69,7 +69,7 @@ fn median(mut values: Vec<f32>) -> Option<f32> {
 fn otsu(values: &[f32]) -> Option<f32> {
     let (low, high) = values.iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)));
     let range = high - low;
-    if !(range > 1e-3) {
+    if range.is_nan() || range <= 1e-3 {
         return None;
     }
     let bytes: Vec<u8> = values.iter().map(|v| ((v - low) / range * 255.0) as u8).collect();

@@ -142,7 +142,7 @@ pub(super) fn scorer_rows(scene: &Scene, rng: &mut ChaCha8Rng, rows: &mut Rows) 
         let truth = scene
             .truths
             .iter()
-            .map(|t| (t, t.outline.points().iter().map(|p| frame.from_source(*p)).collect::<Vec<_>>()))
+            .map(|t| (t, t.outline.points().iter().map(|p| frame.source_to_own(*p)).collect::<Vec<_>>()))
             .map(|(t, points)| {
                 let cells = Cells::of(FINGER, Some(&points));
                 let under =
@@ -189,7 +189,7 @@ pub(super) fn scorer_rows(scene: &Scene, rng: &mut ChaCha8Rng, rows: &mut Rows) 
                 unit_px: size * (0.15 * bell(rng)).exp(),
             };
             let patch = Patch::cut(&levels, frame, NAIL);
-            let own: Vec<_> = points.iter().map(|p| frame.from_source(*p)).collect();
+            let own: Vec<_> = points.iter().map(|p| frame.source_to_own(*p)).collect();
             let cells = Cells::of(NAIL, Some(&own));
             let turn = turn_between(frame.up, up);
             let (best, _) = nearest(&own, turn, &cells, rng);
@@ -243,7 +243,7 @@ pub(super) fn found_rows(scene: &Scene, rng: &mut ChaCha8Rng, rows: &mut Rows) {
             .truths
             .iter()
             .map(|t| {
-                let points = t.outline.points().iter().map(|p| frame.from_source(*p)).collect();
+                let points = t.outline.points().iter().map(|p| frame.source_to_own(*p)).collect();
                 (points, t.up.map_or(f64::NAN, |up| turn_between(frame.up, up)))
             })
             .collect()
@@ -296,7 +296,7 @@ pub(super) fn border_rows(scene: &Scene, rng: &mut ChaCha8Rng, rows: &mut Rows) 
         let angle = 0.12 * bell(rng);
         let (s, c) = angle.sin_cos();
         let frame = Frame { origin: centre, up: [up[0] * c - up[1] * s, up[0] * s + up[1] * c], unit_px: size };
-        let own: Vec<_> = points.iter().map(|p| frame.from_source(*p)).collect();
+        let own: Vec<_> = points.iter().map(|p| frame.source_to_own(*p)).collect();
         let cells = Cells::of(NAIL, Some(&own));
         let (best, v) = nearest(&own, turn_between(frame.up, up), &cells, rng);
         if v < 0.75 {

@@ -249,7 +249,7 @@ pub(super) fn direct(scene: &mut Scene) {
         truth.up = tips
             .iter()
             .filter(|(f, _)| {
-                let c = f.from_source(centre);
+                let c = f.source_to_own(centre);
                 let s = size / f.unit_px;
                 c[0].abs() < 0.25 && (c[1] + 0.5).abs() < 0.3 && (0.45..1.0).contains(&s)
             })
