@@ -17,7 +17,7 @@ pub use annotated::{
     AXIS, Annotated, AnnotationFault, DOUBTFUL, Drawn, NAIL, ShapeFault, ToDraw, read as read_annotated, to_file,
 };
 pub use axis::{AxisDoubt, AxisUnknown, FoundAxis, LEAST_CONFIDENCE, Side, axis_towards, find_axes, find_axes_towards};
-pub use detect::{DetectOptions, Detected, Detections, detect};
+pub use detect::{DetectOptions, Detected, Detections, NothingFound, detect};
 pub use mask::{DroppedRegion, MaskFault, MaskOutlines, outlines_from_mask};
 pub use shape::Shape;
 pub use source::{Found, Nail, OutlineOptions, Source, SourceFault, Sources};

@@ -9,7 +9,10 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use super::annotated::{self, AnnotationFault, Drawn};
-use super::{Axis, DetectOptions, MaskFault, Outline, Side, detect, find_axes, find_axes_towards, outlines_from_mask};
+use super::{
+    Axis, DetectOptions, MaskFault, NothingFound, Outline, Side, detect, find_axes, find_axes_towards,
+    outlines_from_mask,
+};
 use crate::photo::read::{Photograph, ReadFault};
 use crate::photo::set::{PICTURES, Photo, is_picture};
 
@@ -112,8 +115,8 @@ pub enum SourceFault {
         masks: bool,
     },
     /// Detection found nothing.
-    #[error("no nail found: {0}; draw its outline in LabelMe, label it `nail` and save it beside the photograph")]
-    NotFound(String),
+    #[error("{0}; draw its outline in LabelMe, label it `nail` and save it beside the photograph")]
+    NotFound(NothingFound),
 }
 
 /// Where a photograph's outlines will come from, known without opening it.
@@ -209,7 +212,7 @@ impl OutlineOptions {
     fn detected_nails(&self, picture: &Photograph) -> Result<Vec<Nail>, SourceFault> {
         let found = detect(&picture.image, &self.detect);
         if found.nails.is_empty() && found.doubtful.is_empty() {
-            return Err(SourceFault::NotFound(found.note));
+            return Err(SourceFault::NotFound(found.note.unwrap_or(NothingFound::NoPlace)));
         }
         let used = found.nails.into_iter().map(|n| (n, String::new()));
         let doubtful = found.doubtful.into_iter().map(|n| {

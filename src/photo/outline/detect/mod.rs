@@ -1,27 +1,180 @@
-//! shim
-#![allow(missing_docs)]
+//! Finds the outlines of nails in photographs that nobody has annotated.
+//!
+//! In: a photograph (upright). Out: outlines with their axis and a confidence, roughly the probability that the outline
+//! overlaps the true one by an IoU of 0.8. Below [`DetectOptions::min_confidence`] a find is *doubtful*: a person may
+//! correct it, no result uses it. Made for close-ups of one finger as in the thesis' chamber (section 4.2.2, Fig. 49-52:
+//! colour or green-filtered grey, any skin, nail up to some 30 degrees off upright); on photographs of whole hands it
+//! finds nails at the ends of fingers that stand out from what is behind them.
+//!
+//! The way down, a file each: [`picture`] channels that do not depend on the light's brightness; [`silhouette`] masks that
+//! may be fingers and [`tips`] their ends; [`patch`] the picture in a finger's or nail's own frame; [`shape`] the template
+//! and [`evidence`] how well it fits there; [`search`] where it fits best, on a finger's end or anywhere on a close-up;
+//! [`refine`] the outline by dynamic programming around the template; [`candidate`] all of it for one place, with the
+//! figures that the confidence is made from. Three small networks ([`net`]) weigh the evidence; `training` makes them.
+//!
+//! What it does not do: nails seen from the side, painted nails with a pattern, and fingers folded onto skin of the same
+//! colour are mostly not found. The outline ends at the hyponychium where the free edge can be told from the bed.
+
+mod candidate;
+mod evidence;
+mod net;
+mod patch;
+mod picture;
+mod refine;
+mod search;
+mod shape;
+mod silhouette;
+mod tips;
+
+#[cfg(test)]
+mod training;
+
+use image::DynamicImage;
+use thiserror::Error;
+
 use super::{Axis, Outline};
-#[derive(Debug, Clone)]
+use candidate::{Candidate, Lead, Origin, follow_all, own_frame};
+use patch::{Frame, Patch};
+use picture::Levels;
+
+/// How nails are looked for.
+#[derive(Debug, Clone, PartialEq)]
 pub struct DetectOptions {
+    /// Longest side in pixels of the reduced picture that everything is measured on. Smaller is faster and less exact.
     pub working_size_px: u32,
+    /// Least confidence, 0 to 1, of a nail that results may use.
     pub min_confidence: f64,
+    /// Least confidence, 0 to 1, of a doubtful one that is shown to a person.
+    pub min_doubtful: f64,
+    /// Most places whose outline is refined.
+    pub most_places: usize,
 }
+
 impl Default for DetectOptions {
     fn default() -> Self {
-        Self { working_size_px: 320, min_confidence: 0.5 }
+        Self { working_size_px: 1100, min_confidence: 0.8, min_doubtful: 0.1, most_places: 16 }
     }
 }
-#[derive(Debug, Clone)]
+
+/// One nail found.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Detected {
+    /// Its outline.
     pub outline: Outline,
+    /// From its proximal to its distal end.
     pub axis: Axis,
+    /// 0 to 1: about the probability that the outline's IoU with the true one is at least 0.8 and the axis points the right
+    /// way.
     pub confidence: f64,
 }
-pub struct Detections {
-    pub nails: Vec<Detected>,
-    pub doubtful: Vec<Detected>,
-    pub note: String,
+
+/// Why no nail was found with confidence.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum NothingFound {
+    /// The picture is too small to show one.
+    #[error("the picture is too small to find a nail on; it needs at least {least} x {least} pixels", least = LEAST_PX)]
+    TooSmall,
+    /// Nothing looks like a nail.
+    #[error("nothing on the picture looks like a nail")]
+    NoPlace,
+    /// Something does, but not surely enough.
+    #[error("what looks most like a nail is doubtful (confidence {best:.2}, {needed:.2} is needed)")]
+    Doubtful {
+        /// The highest confidence.
+        best: f64,
+        /// The least that was asked for.
+        needed: f64,
+    },
 }
-pub fn detect(_: &image::DynamicImage, _: &DetectOptions) -> Detections {
-    Detections { nails: vec![], doubtful: vec![], note: "shim".into() }
+
+/// What was found on one photograph, none overlapping another, the surest first.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Detections {
+    /// Nails found with confidence.
+    pub nails: Vec<Detected>,
+    /// Finds too unsure for results, for a person to correct.
+    pub doubtful: Vec<Detected>,
+    /// Why `nails` is empty, where it is.
+    pub note: Option<NothingFound>,
+}
+
+/// Smallest side of a picture that is looked at.
+const LEAST_PX: u32 = 24;
+/// Longest side of the picture that silhouettes are looked for on.
+const SEARCH_PX: usize = 560;
+/// Ends of fingers that are looked at.
+const ENDS: usize = 40;
+/// Lowest score in a coarse look that is looked at again.
+const HOPE: f32 = 0.25;
+/// Places on a close-up that are looked at again.
+const PLACES: usize = 5;
+/// Shared part of the smaller of two outlines from which they contradict each other.
+const SHARED: f64 = 0.25;
+
+/// Finds the nails on an upright photograph. The same photograph and options give the same result, always.
+pub fn detect(image: &DynamicImage, options: &DetectOptions) -> Detections {
+    if image.width().min(image.height()) < LEAST_PX {
+        return Detections { nails: vec![], doubtful: vec![], note: Some(NothingFound::TooSmall) };
+    }
+    let levels = Levels::of(image, options.working_size_px.max(4 * LEAST_PX));
+    let found = different(follow_all(&levels, leads(&levels), options.most_places));
+    let best = found.first().map(|d| d.confidence);
+    let (nails, mut doubtful): (Vec<_>, Vec<_>) =
+        found.into_iter().partition(|d| d.confidence >= options.min_confidence);
+    doubtful.retain(|d| d.confidence >= options.min_doubtful);
+    let note = nails.is_empty().then_some(match best {
+        Some(best) if !doubtful.is_empty() => NothingFound::Doubtful { best, needed: options.min_confidence },
+        _ => NothingFound::NoPlace,
+    });
+    Detections { nails, doubtful, note }
+}
+
+/// The surest candidates that do not contradict a surer one.
+fn different(candidates: Vec<Candidate>) -> Vec<Detected> {
+    let mut all: Vec<Detected> = candidates
+        .into_iter()
+        .map(|c| Detected { confidence: c.confidence(), outline: c.outline, axis: c.axis })
+        .collect();
+    all.sort_by(|a, b| b.confidence.total_cmp(&a.confidence));
+    let mut kept: Vec<Detected> = Vec::new();
+    for d in all {
+        if kept.iter().all(|k| candidate::shared(&k.outline, &d.outline) <= SHARED) {
+            kept.push(d);
+        }
+    }
+    kept
+}
+
+/// Finger ends: frames of a finger's width with their fit.
+fn ends(levels: &Levels, most: usize) -> Vec<(Frame, f64)> {
+    let picture = levels.within(SEARCH_PX);
+    let found = silhouette::silhouettes(picture).iter().flat_map(tips::tips).collect();
+    tips::strongest(found, most)
+        .into_iter()
+        .map(|t| (Frame { origin: picture.to_source(t.apex), up: t.out, unit_px: t.width * picture.step }, t.fit))
+        .collect()
+}
+
+/// Every template worth refining.
+fn leads(levels: &Levels) -> Vec<Lead> {
+    let mut leads = Vec::new();
+    for (frame, fit) in ends(levels, ENDS) {
+        let patch = Patch::cut(levels, frame, search::FINGER);
+        let coarse = search::on_finger(&patch, 2).into_iter().filter(|s| s.1 > HOPE);
+        let best = coarse.map(|s| search::polish(&patch, s, true)).max_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((shape, score)) = best {
+            let (nail, template) = own_frame(frame, &shape);
+            leads.push(Lead { nail, template, origin: Origin::Tip { fit, score }, score });
+        }
+    }
+    let (patch, places) = search::anywhere(levels, PLACES);
+    for (shape, _) in places.into_iter().filter(|s| s.1 > HOPE) {
+        let (nail, template) = own_frame(patch.frame, &shape);
+        let patch = Patch::cut(levels, nail, search::NAIL);
+        let first = evidence::score(&patch, &template, false);
+        let (shape, score) = search::polish(&patch, (template, first), false);
+        let (nail, template) = own_frame(nail, &shape);
+        leads.push(Lead { nail, template, origin: Origin::Anywhere, score });
+    }
+    leads
 }
