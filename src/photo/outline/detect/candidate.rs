@@ -33,7 +33,7 @@ pub(super) struct Candidate {
     fitted: Shape,
     /// Other leads that mean the same.
     support: f32,
-    /// A bright reflection lies along the outside of its border, which may be the reflection's.
+    /// A bright reflection lies along its border, which may be the reflection's.
     mirrored: bool,
     /// Best score of a lead that contradicts it.
     rival: f32,
@@ -149,25 +149,29 @@ fn follow(levels: &Levels, lead: &Lead) -> Option<Candidate> {
         figures,
         nail,
         fitted,
-        mirrored: mirrored(&patch, &fitted),
+        mirrored: mirrored(&patch, &fitted, &second.points),
         support: 0.0,
         rival: -0.2,
     })
 }
 
-/// Does anything just outside the sides shine far above the nail's own tone?
-fn mirrored(patch: &Patch, shape: &Shape) -> bool {
+/// Does anything along the border's sides, just outside or just inside, shine far above the nail's own tone? A streak of
+/// reflected light has an edge on either side, and each may pass for the nail's.
+fn mirrored(patch: &Patch, shape: &Shape, border: &[[f64; 2]]) -> bool {
     /// ln of the ratio; skin is never that much lighter than the nail in it.
-    const SHINE: f32 = 0.6;
-    let tone = |u: f64, v: f64| {
-        let [x, y] = shape.point(u, v);
-        patch.at(x as f32, y as f32)[TONE]
-    };
-    let along = [-0.6, -0.4, -0.2, 0.0, 0.2, 0.4, 0.6];
-    let mut inside: Vec<f32> = along.iter().flat_map(|&v| [-0.4, 0.0, 0.4].map(|u| tone(u, v))).collect();
+    const SHINE: f32 = 0.45;
+    /// Distances looked at, in widths: a streak may be a twentieth of the nail wide and must not slip through.
+    const OUTWARDS: [f64; 6] = [-0.06, -0.03, 0.02, 0.05, 0.08, 0.12];
+    let tone = |[x, y]: [f64; 2]| patch.at(x as f32, y as f32)[TONE];
+    let rows = [-0.6, -0.4, -0.2, 0.0, 0.2, 0.4, 0.6];
+    let mut inside: Vec<f32> = rows.iter().flat_map(|&v| [-0.4, 0.0, 0.4].map(|u| tone(shape.point(u, v)))).collect();
     inside.sort_by(f32::total_cmp);
-    let outside = along.iter().flat_map(|&v| [-1.25, -1.12, 1.12, 1.25].map(|u| tone(u, v)));
-    outside.fold(f32::NEG_INFINITY, f32::max) > inside[inside.len() / 2] + SHINE
+    // The distal end is left out: the free edge is white by right.
+    let sides = normals(border).into_iter().filter(|(_, normal)| normal[0].abs() > 0.6);
+    let along = sides.flat_map(|([x, y], [nx, ny])| {
+        OUTWARDS.map(|out| tone([x + out * shape.width * nx, y + out * shape.width * ny]))
+    });
+    along.fold(f32::NEG_INFINITY, f32::max) > inside[inside.len() / 2] + SHINE
 }
 
 /// Overlap (IoU) of the outline with the one found from a template that is a little too large and displaced.

@@ -32,7 +32,7 @@ mod training;
 use image::DynamicImage;
 use thiserror::Error;
 
-use super::{Axis, Outline};
+use super::{Axis, Outline, find_axes};
 use candidate::{Candidate, Lead, Origin, follow_all, own_frame};
 use patch::{Frame, Patch};
 use picture::Levels;
@@ -117,7 +117,8 @@ pub fn detect(image: &DynamicImage, options: &DetectOptions) -> Detections {
         return Detections { nails: vec![], doubtful: vec![], note: Some(NothingFound::TooSmall) };
     }
     let levels = Levels::of(image, options.working_size_px.max(4 * LEAST_PX));
-    let found = different(follow_all(&levels, leads(&levels), options.most_places));
+    let mut found = different(follow_all(&levels, leads(&levels), options.most_places));
+    second_opinion(image, &mut found, options.min_confidence);
     let best = found.first().map(|d| d.confidence);
     let (nails, mut doubtful): (Vec<_>, Vec<_>) =
         found.into_iter().partition(|d| d.confidence >= options.min_confidence);
@@ -127,6 +128,26 @@ pub fn detect(image: &DynamicImage, options: &DetectOptions) -> Detections {
         _ => NothingFound::NoPlace,
     });
     Detections { nails, doubtful, note }
+}
+
+/// Axes that differ by less than this agree, degrees; the template's own is kept.
+const AGREE_DEG: f64 = 8.0;
+/// Axes that differ by more contradict each other, degrees.
+const CONTRADICT_DEG: f64 = 75.0;
+
+/// Asks the picture around each confident find for its axis ([`find_axes`] knows nothing of templates): a nail about as wide as
+/// long fits its template on the diagonal too. Where the two contradict each other, the find is halved in confidence.
+fn second_opinion(image: &DynamicImage, found: &mut [Detected], min_confidence: f64) {
+    for one in found.iter_mut().filter(|d| d.confidence >= min_confidence) {
+        let Ok(other) = find_axes(image, std::slice::from_ref(&one.outline)).swap_remove(0) else { continue };
+        let apart = Axis::from_clockwise_rad(other.axis.clockwise_rad() - one.axis.clockwise_rad());
+        if apart.clockwise_deg().abs() > CONTRADICT_DEG {
+            one.confidence *= 0.5;
+        } else if apart.clockwise_deg().abs() > AGREE_DEG {
+            one.axis = other.axis;
+        }
+    }
+    found.sort_by(|a, b| b.confidence.total_cmp(&a.confidence));
 }
 
 /// The surest candidates that do not contradict a surer one.
