@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand};
 use lunula::phantom::nail::Pose;
 use lunula::phantom::photos::{PhotoOptions, write};
+use lunula::tradeoff::Row;
 use lunula::tradeoff::photos::{Settings, measure};
 
 use super::{Common, Outcome};
@@ -68,7 +69,7 @@ pub(super) fn run(args: &TradeoffArgs) -> anyhow::Result<Outcome> {
         }
     };
     let rows = measure(&Settings { set, truth, repeats: usize::from(args.repeats) })?;
-    lunula::tradeoff::write(&rows, "lunula photos: error against run time", &args.out)?;
+    lunula::tradeoff::write(&rows, "lunula photos", &args.out)?;
     args.common.print_json(&serde_json::json!({
         "job": "tradeoff photos",
         "version": env!("CARGO_PKG_VERSION"),
@@ -76,7 +77,8 @@ pub(super) fn run(args: &TradeoffArgs) -> anyhow::Result<Outcome> {
         "warnings": [],
     }))?;
     for row in &rows {
-        args.common.say(&format!("{:<22} {:>9.4}  {:>9.5} s  {}", row.setting, row.error, row.run_s, row.error_unit));
+        let Row { setting, error, error_unit, run_s, .. } = row;
+        args.common.say(&format!("{setting:<18} {error:>8.4}  {run_s:>8.5} s an input  {error_unit}"));
     }
     args.common.say(&format!("look at {}", args.out.join("tradeoff.png").display()));
     Ok(Outcome::Done)

@@ -61,13 +61,14 @@ const COLOURS: [RGBColor; 6] = [
     RGBColor(86, 180, 233),
 ];
 
-/// Draws `panels` side by side, on logarithmic axes, to `png` and `svg`.
+/// Draws `panels`, up to two side by side, on logarithmic axes, to `png` and `svg`.
 ///
 /// # Errors
 /// A panel without a point that has two positive finite coordinates, or a file that can't be written.
 pub fn draw_log_log(panels: &[Plot], png: &Path, svg: &Path) -> anyhow::Result<()> {
     register_typeface()?;
-    let size = (PANEL.0 * panels.len() as u32, PANEL.1);
+    let (rows, columns) = grid(panels.len());
+    let size = (PANEL.0 * columns as u32, PANEL.1 * rows as u32);
     let mut pixels = vec![0; (size.0 * size.1 * 3) as usize];
     draw_panels(panels, BitMapBackend::with_buffer(&mut pixels, size).into_drawing_area())?;
     let picture = image::RgbImage::from_raw(size.0, size.1, pixels).context("a plot's pixels")?;
@@ -80,10 +81,16 @@ where
     B::ErrorType: 'static,
 {
     area.fill(&WHITE).map_err(|e| anyhow!("{e}"))?;
-    for (panel, area) in panels.iter().zip(area.split_evenly((1, panels.len()))) {
+    for (panel, area) in panels.iter().zip(area.split_evenly(grid(panels.len()))) {
         panel.draw(&area)?;
     }
     area.present().map_err(|e| anyhow!("{e}"))
+}
+
+/// Rows and columns of panels.
+fn grid(panels: usize) -> (usize, usize) {
+    let columns = panels.clamp(1, 2);
+    (panels.div_ceil(columns), columns)
 }
 
 impl Plot {
@@ -105,6 +112,8 @@ impl Plot {
         B::ErrorType: 'static,
     {
         let (x, y) = (self.range(|p| p.x)?, self.range(|p| p.y)?);
+        // Ticks stand at the decades.
+        let x = (0.999 * 10_f64.powf(x.0.log10().floor()), 1.001 * 10_f64.powf(x.1.log10().ceil()));
         let mut chart = ChartBuilder::on(area)
             .caption(&self.title, ("sans-serif", 22))
             .margin(16)
@@ -148,15 +157,18 @@ impl Plot {
         X: Ranged<ValueType = f64>,
         Y: Ranged<ValueType = f64>,
     {
-        let points: Vec<&Point> = series.points.iter().filter(|p| p.x > 0.0 && p.y > 0.0).collect();
+        let mut points: Vec<&Point> = series.points.iter().filter(|p| p.x > 0.0 && p.y > 0.0).collect();
+        points.sort_by(|a, b| a.x.total_cmp(&b.x));
         chart
             .draw_series(points.iter().map(|p| Circle::new((p.x, p.y), 5, colour.filled())))
             .map_err(|e| anyhow!("{e}"))?
             .label(&series.name)
             .legend(move |(x, y)| Circle::new((x + 10, y), 5, colour.filled()));
         chart
-            .draw_series(points.iter().map(|p| {
-                EmptyElement::at((p.x, p.y)) + Text::new(p.label.clone(), (8, -14), ("sans-serif", 13).into_font())
+            .draw_series(points.iter().enumerate().map(|(k, p)| {
+                // Neighbours write above and below themselves in turn.
+                let offset = if k % 2 == 0 { (8, -16) } else { (8, 4) };
+                EmptyElement::at((p.x, p.y)) + Text::new(p.label.clone(), offset, ("sans-serif", 14).into_font())
             }))
             .map_err(|e| anyhow!("{e}"))?;
         Ok(())

@@ -16,6 +16,8 @@ pub struct Tile {
     pub caption: String,
     /// Transparent where nothing is known.
     pub picture: GrayAlphaImage,
+    /// The same as a PNG file, where there is one already.
+    pub png: Option<Vec<u8>>,
 }
 
 /// What the grey levels mean.
@@ -139,14 +141,18 @@ impl Sheet {
         for (at, tile) in self.tiles.iter().enumerate() {
             let [x, y] = layout.corner(at);
             let [tile_width, tile_height] = layout.tile;
-            let png = super::png(&tile.picture.clone().into())?;
+            let encoded = match &tile.png {
+                Some(_) => None,
+                None => Some(super::png(&tile.picture.clone().into())?),
+            };
+            let png = tile.png.as_ref().or(encoded.as_ref()).map_or(&[][..], Vec::as_slice);
             svg += &format!(
                 "<rect x=\"{x}\" y=\"{y}\" width=\"{tile_width}\" height=\"{tile_height}\" fill=\"#cdd8f0\"/>\n\
                  <image x=\"{x}\" y=\"{y}\" width=\"{}\" height=\"{}\" href=\"data:image/png;base64,{}\"/>\n\
                  <text x=\"{}\" y=\"{}\" font-size=\"15\" text-anchor=\"middle\">{}</text>\n",
                 tile.picture.width(),
                 tile.picture.height(),
-                base64::engine::general_purpose::STANDARD.encode(&png),
+                base64::engine::general_purpose::STANDARD.encode(png),
                 x + tile_width / 2,
                 y + tile_height + 18,
                 escape(&tile.caption)

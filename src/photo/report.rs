@@ -198,7 +198,7 @@ impl NailTable {
             .filter_map(|row| {
                 let photo = &set.photos[row.photo];
                 let caption = format!("{}: {}", row.number, photo.subject);
-                Some(Tile { caption, picture: row.thumbnail.clone()? })
+                Some(Tile { caption, picture: row.thumbnail.clone()?, png: None })
             })
             .collect();
         let sheets = tiles

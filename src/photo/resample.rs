@@ -5,6 +5,8 @@
 //! edge never rings. Where it covers more, it is the mean of a grid of such samples over its footprint, at least one a
 //! (block of) pixel(s) of the photograph, so that nothing aliases.
 
+use std::sync::LazyLock;
+
 use image::DynamicImage;
 use wide::f32x4;
 
@@ -229,6 +231,7 @@ impl Source {
             let along = corner[k] + grid.per_column[k] * (column as f64 + 0.5) + 0.5 * grid.per_row[k];
             (along - self.first[k]) / self.spacing
         };
+        let weights = &*PHASE_WEIGHTS;
         let down = grid.per_row[1] / self.spacing;
         let slant = fixed(grid.per_row[0] / grid.per_row[1]);
         // A column's line has at most as many values as the photograph has rows.
@@ -252,8 +255,7 @@ impl Source {
                 let source = &self.values[row * self.width..][..self.width];
                 for (strand, line) in strands.iter_mut().zip(lines.chunks_exact_mut(tall)) {
                     if (strand.top..=strand.bottom).contains(&row) {
-                        let column = (strand.crossing >> 32) as usize;
-                        line[row - strand.top] = between(&source[column - 1..][..4], fraction(strand.crossing));
+                        line[row - strand.top] = between(source, strand.crossing, weights);
                         strand.crossing += slant;
                     }
                 }
@@ -261,7 +263,7 @@ impl Source {
             let step = fixed(down);
             for (at, (strand, line)) in strands.iter_mut().zip(lines.chunks_exact(tall)).enumerate() {
                 for row in &mut block {
-                    row[at] = between(&line[(strand.y >> 32) as usize - 1..][..4], fraction(strand.y));
+                    row[at] = between(line, strand.y, weights);
                     strand.y += step;
                 }
             }
@@ -349,11 +351,20 @@ fn fixed_product(slope: i64, factor: f64) -> i64 {
     (slope as f64 * factor).round() as i64
 }
 
-/// The cubic through four values, `t` after the second, limited to the second and third.
+/// Places between two values that [`between`] tells apart: a thousandth of a pixel moves no value by a level.
+const PHASES: usize = 1024;
+
+static PHASE_WEIGHTS: LazyLock<[f32x4; PHASES]> =
+    LazyLock::new(|| std::array::from_fn(|k| cubic_weights((k as f32 + 0.5) / PHASES as f32)));
+
+/// The cubic through the four of `values` around a place in fixed point, limited to its two neighbours.
 #[inline(always)]
-fn between(four: &[f32], t: f32) -> f32 {
+fn between(values: &[f32], place: i64, weights: &[f32x4; PHASES]) -> f32 {
+    let before = (place >> 32) as usize - 1;
+    let four = &values[before..before + 4];
     let four = [four[0], four[1], four[2], four[3]];
-    limit((f32x4::new(four) * cubic_weights(t)).reduce_add(), lesser(four[1], four[2]), greater(four[1], four[2]))
+    let weights = weights[(place as u32 >> (32 - PHASES.ilog2())) as usize];
+    limit((f32x4::new(four) * weights).reduce_add(), lesser(four[1], four[2]), greater(four[1], four[2]))
 }
 
 /// The value comes last in both comparisons: a missing neighbour makes it NaN, and NaN it stays.

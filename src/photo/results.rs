@@ -160,7 +160,7 @@ const SMALL_TILE_PX: u32 = 160;
 impl Tile {
     fn small(&self) -> Self {
         let [width, height] = [self.picture.width(), self.picture.height()].map(|side| side.min(SMALL_TILE_PX));
-        Self { caption: self.caption.clone(), picture: imageops::thumbnail(&self.picture, width, height) }
+        Self { caption: self.caption.clone(), picture: imageops::thumbnail(&self.picture, width, height), png: None }
     }
 }
 
@@ -170,8 +170,10 @@ fn draw_pose(pose: &str, subjects: usize, maps: &Maps, staging: &Staging) -> Res
         let opaque = picture.pixels().all(|p| p.0[1] == 255);
         let flat: DynamicImage =
             if opaque { DynamicImage::from(picture.clone()).to_luma8().into() } else { picture.clone().into() };
-        write_png(&flat, staging, &format!("figures/{pose}-{}.png", kind.name))?;
-        Ok(Tile { caption: format!("{pose} (n = {subjects})"), picture })
+        let name = format!("figures/{pose}-{}.png", kind.name);
+        let png = figure::png(&flat).map_err(|why| staging.refused(&name, why))?;
+        staging.write(&name, &png)?;
+        Ok(Tile { caption: format!("{pose} (n = {subjects})"), picture, png: Some(png) })
     };
     Ok([tile(&KINDS[0])?, tile(&KINDS[1])?, tile(&KINDS[2])?, tile(&KINDS[3])?])
 }

@@ -21,7 +21,7 @@ pub struct Row {
     pub error: f64,
     /// What the error is, and its unit.
     pub error_unit: &'static str,
-    /// Seconds per input, the median over repeats.
+    /// Seconds on one thread per input, of the stage that the setting changes; the median over repeats.
     pub run_s: f64,
     /// What was done per input, a count that no clock disturbs.
     pub work: u64,
@@ -52,8 +52,8 @@ fn panels(rows: &[Row], title: &str) -> Vec<Plot> {
     units
         .into_iter()
         .map(|unit| Plot {
-            title: title.to_owned(),
-            x: Axis { label: "seconds an input".into() },
+            title: format!("{title}: error against run time"),
+            x: Axis { label: "seconds an input, of the stage alone".into() },
             y: Axis { label: unit.to_owned() },
             series: vec![Series {
                 name: "lunula".into(),

@@ -19,11 +19,13 @@ use crate::photo::{
 
 /// Root mean square difference inside the nail.
 const PICTURE_ERROR: &str = "normalized picture inside the nail, RMS of 255";
+/// Root mean square difference over the pixels of all poses' maps.
+const MAP_ERRORS: [(&str, &str); 2] = [("mean", "map of the mean, RMS of 255"), ("sd", "map of the SD, RMS of 255")];
 /// Of all nails, a missed one counting as 1.
 const OUTLINE_ERROR: &str = "detected outline, mean of 1 - IoU (missed = 1)";
 const RESAMPLE: [Resample; 3] = [Resample::Nearest, Resample::Linear, Resample::Cubic];
 /// Longest sides that detection searches, pixels.
-const WORKING_PX: [u32; 5] = [256, 400, 640, 900, 1280];
+const WORKING_PX: [u32; 4] = [128, 200, 320, 640];
 
 /// What is measured, and how often.
 #[derive(Debug, Clone)]
@@ -51,9 +53,9 @@ pub fn measure(settings: &Settings) -> anyhow::Result<Vec<Row>> {
     let set = PhotoSet::open(&settings.set, &[])?;
     let truths: Vec<Truth> =
         set.photos.par_iter().map(|photo| read_truth(photo, &settings.truth)).collect::<anyhow::Result<_>>()?;
-    let mut rows = Vec::new();
+    let mut rows: Vec<Row> = Vec::new();
     for resample in RESAMPLE {
-        rows.push(resampled(&set, &truths, resample, settings)?);
+        rows.extend(resampled(&set, &truths, resample, settings)?);
     }
     for working_size_px in WORKING_PX {
         rows.push(detected(&set, &truths, working_size_px, settings)?);
@@ -68,8 +70,7 @@ fn read_truth(photo: &Photo, truth: &Path) -> anyhow::Result<Truth> {
     let nail = read_annotated(&file, &picture, Drawn::Auto)?.swap_remove(0);
     let (outline, axis) = (nail.outline?, nail.axis.with_context(|| format!("{}: no axis", file.display()))?);
     let file = truth.join(format!("normalized/{name}.npy"));
-    let opened = std::fs::File::open(&file).with_context(|| file.display().to_string())?;
-    let normalized = Array2::<f32>::read_npy(opened).with_context(|| file.display().to_string())?;
+    let normalized = read_map(&file)?;
     let size = Normalization::default().size;
     ensure!(normalized.dim() == (size, size), "{}: is not {size} x {size}", file.display());
     let inside = inside(&outline, axis)?;
@@ -89,50 +90,81 @@ fn inside(outline: &Outline, axis: Axis) -> anyhow::Result<Vec<bool>> {
     Ok((0..size * size).map(|at| pixel(at / size, at % size)).collect())
 }
 
-/// The whole job with drawn outlines.
-fn resampled(set: &PhotoSet, truths: &[Truth], resample: Resample, settings: &Settings) -> anyhow::Result<Row> {
+/// The whole job with drawn outlines: errors of its normalized pictures and of its maps.
+fn resampled(set: &PhotoSet, truths: &[Truth], resample: Resample, settings: &Settings) -> anyhow::Result<Vec<Row>> {
     let normalization = Normalization { resample, ..Normalization::default() };
     let outlines = OutlineOptions { sources: Sources::Annotated, ..OutlineOptions::default() };
     let options = PhotosOptions { normalization, outlines, keep_detected: false };
     let mut seconds = Vec::new();
-    let mut error = f64::NAN;
-    for _ in 0..settings.repeats {
+    let mut errors = Vec::new();
+    for repeat in 0..settings.repeats {
         let out = tempfile::tempdir()?;
         let staging = Staging::new(out.path())?;
-        let start = Instant::now();
         let result = run_photos(set, &options, &staging, &Watch { stop: &AtomicBool::new(false), tick: &|| {} })?;
-        seconds.push(start.elapsed().as_secs_f64() / set.photos.len() as f64);
+        // The only stage that the setting changes.
+        let stages = result.stages.list();
+        seconds.extend(stages.iter().filter(|s| s.stage == "normalize").map(|s| s.thread_s / s.runs as f64));
+        if repeat > 0 {
+            continue;
+        }
         staging.commit()?;
-        let mut squares = (0.0, 0_u64);
+        let mut difference = Difference::default();
         for row in &result.rows {
             let Some(name) = &row.normalized else { continue };
             let picture = image::open(out.path().join(name)).with_context(|| name.clone())?.to_luma16();
             let truth = &truths[row.photo];
-            for ((level, truth), _) in picture
-                .iter()
-                .zip(&truth.normalized)
-                .zip(&truth.inside)
-                .filter(|((_, t), inside)| **inside && !t.is_nan())
-            {
-                squares.0 += (f64::from(*level) / 65535.0 - f64::from(*truth)).powi(2);
-                squares.1 += 1;
+            let made = picture.iter().map(|&level| f32::from(level) / 65535.0);
+            for ((made, exact), _) in made.zip(&truth.normalized).zip(&truth.inside).filter(|(_, inside)| **inside) {
+                difference.add(made, *exact);
             }
         }
-        error = 255.0 * (squares.0 / squares.1 as f64).sqrt();
+        errors.push((PICTURE_ERROR, difference.rms_of_255()));
+        for (kind, unit) in MAP_ERRORS {
+            let mut difference = Difference::default();
+            for pose in set.poses() {
+                let name = format!("maps/{pose}-{kind}.npy");
+                let (made, exact) = (read_map(&out.path().join(&name))?, read_map(&settings.truth.join(&name))?);
+                ensure!(made.dim() == exact.dim(), "{name}: {:?} and {:?} pixels", made.dim(), exact.dim());
+                made.iter().zip(&exact).for_each(|(made, exact)| difference.add(*made, *exact));
+            }
+            errors.push((unit, difference.rms_of_255()));
+        }
     }
     let taps: u64 = match resample {
         Resample::Nearest => 1,
         Resample::Linear => 4,
         Resample::Cubic => 16,
     };
-    Ok(Row {
-        job: "photos",
-        setting: format!("resample {}", format!("{resample:?}").to_lowercase()),
-        error,
-        error_unit: PICTURE_ERROR,
-        run_s: median(seconds),
-        work: taps * (normalization.size * normalization.size) as u64,
-    })
+    let run_s = median(seconds);
+    let setting = format!("resample {}", format!("{resample:?}").to_lowercase());
+    let work = taps * (normalization.size * normalization.size) as u64;
+    let row = |(error_unit, error)| Row { job: "photos", setting: setting.clone(), error, error_unit, run_s, work };
+    Ok(errors.into_iter().map(row).collect())
+}
+
+fn read_map(path: &Path) -> anyhow::Result<Array2<f32>> {
+    let file = std::fs::File::open(path).with_context(|| path.display().to_string())?;
+    Array2::read_npy(file).with_context(|| path.display().to_string())
+}
+
+/// Squared differences where both values are known.
+#[derive(Default)]
+struct Difference {
+    squares: f64,
+    count: u64,
+}
+
+impl Difference {
+    fn add(&mut self, made: f32, exact: f32) {
+        if !made.is_nan() && !exact.is_nan() {
+            self.squares += f64::from(made - exact).powi(2);
+            self.count += 1;
+        }
+    }
+
+    fn rms_of_255(&self) -> f64 {
+        255.0 * (self.squares / self.count as f64).sqrt()
+    }
 }
 
 /// Detection alone, on decoded photographs.
