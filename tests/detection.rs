@@ -278,35 +278,3 @@ fn hands_are_found_with_precision() {
         assert!(precision >= PRECISION, "{name}: {right} of {found}");
     }
 }
-
-/// Prints the time of one detection on one thread; run it in release.
-#[test]
-#[ignore = "a measurement, not a check"]
-fn time() {
-    let (scene, options) = close_up(1, [640, 480]);
-    let mut huge = scene.clone();
-    huge.camera = Camera {
-        width: 4000,
-        height: 3000,
-        centre_px: scene.camera.centre_px.map(|c| 6.25 * c),
-        nail_width_px: 6.25 * scene.camera.nail_width_px,
-        ..scene.camera
-    };
-    for (name, scene) in [("640x480", scene), ("12 megapixels", huge)] {
-        for grey in [false, true] {
-            let image = scene.render(&RenderOptions { grey, depth: Depth::Eight, ..options }).unwrap();
-            let mut times: Vec<f64> = (0..15)
-                .map(|_| {
-                    let start = std::time::Instant::now();
-                    std::hint::black_box(detect(&image, &DetectOptions::default()));
-                    start.elapsed().as_secs_f64() * 1e3
-                })
-                .collect();
-            eprintln!(
-                "{name}, grey {grey}: {:.1} ms (lowest {:.1})",
-                quantile(&mut times, 0.5),
-                quantile(&mut times, 0.0)
-            );
-        }
-    }
-}

@@ -353,8 +353,11 @@ fn detected_outlines_are_kept_corrected_and_used() {
     let used = dir.table("used/nails.csv");
     assert!(used.iter().all(|r| r["outline"] == "annotated"));
     for (detected, used) in detected.iter().zip(&used) {
-        let number = |row: &std::collections::BTreeMap<String, String>, column: &str| row[column].parse::<f64>().expect("a number");
-        let moved = (number(used, "center_x_px") - number(detected, "center_x_px")).hypot(number(used, "center_y_px") - number(detected, "center_y_px"));
+        let number = |row: &std::collections::BTreeMap<String, String>, column: &str| {
+            row[column].parse::<f64>().expect("a number")
+        };
+        let moved = (number(used, "center_x_px") - number(detected, "center_x_px"))
+            .hypot(number(used, "center_y_px") - number(detected, "center_y_px"));
         let expected = if used["file"] == "nominal/s01.png" { 2.0 } else { 0.0 };
         // LabelMe files are written to a hundredth of a pixel.
         assert!((moved - expected).abs() <= 0.02, "{} moved by {moved}", used["file"]);
@@ -379,7 +382,10 @@ fn a_doubted_outline_is_not_read_as_a_nail() {
     let dir = Dir::new();
     dir.nail("set/a");
     drawn_nail().save(dir.place("set/b.png")).expect("a picture");
-    dir.write("set/b.json", labelme([160, 140], &[("nail?", "polygon", drawn_outline()), ("axis", "line", drawn_axis())]));
+    dir.write(
+        "set/b.json",
+        labelme([160, 140], &[("nail?", "polygon", drawn_outline()), ("axis", "line", drawn_axis())]),
+    );
     let answer = dir.lunula(&["photos", "set", "--out", "out"]).expect(1);
     assert!(answer.stderr.contains("no polygon labelled `nail`"), "{}", answer.stderr);
 }
@@ -394,7 +400,9 @@ fn real_hands_with_masks_are_normalized() {
     }
     let dir = Dir::new();
     let [images, masks] = ["images", "masks"].map(|name| hands.join(name).display().to_string());
-    dir.lunula(&["photos", &images, "--masks", &masks, "--out", "out"]).expect(1).says("none of its 3 nails could be used");
+    dir.lunula(&["photos", &images, "--masks", &masks, "--out", "out"])
+        .expect(1)
+        .says("none of its 3 nails could be used");
     let rows = dir.table("out/nails.csv");
     let used = rows.iter().filter(|r| r["used"] == "true").count();
     // 127 nails and a stray square of the masks. Measured: 122 used, each with its distal end up (`tests/nail_axes.rs`).

@@ -272,3 +272,55 @@ fn hostile_names_stay_words() {
     let html = std::fs::read_to_string(dir.path("out/report.html")).expect("a report");
     assert!(html.contains("a &amp; &lt;b&gt;") && !html.contains("<b>"));
 }
+
+#[test]
+fn what_is_found_but_not_trusted_is_kept_for_a_person_even_where_nothing_else_is() {
+    use lunula::phantom::nail::Pose;
+    let dir = Dir::new();
+    // Dim, noisy and small: searched for a scene in which detection doubts.
+    let doubted = (0..40).find(|&seed| {
+        let mut options = util::small_set(1, &[Pose::Nominal]);
+        (options.seed, options.width, options.height, options.noise_sd, options.annotate) =
+            (seed, 160, 120, 12.0, false);
+        options.grey = true;
+        lunula::phantom::photos::write(&options, &dir.path("set")).expect("a synthetic photograph");
+        // Another seed's scene may have been found.
+        let _ = std::fs::remove_dir_all(dir.path("out"));
+        let answer = dir.lunula(&["photos", "set/photos", "--out", "out", "--write-outlines"]);
+        let drawn = dir.path("set/photos/nominal/s01.json");
+        answer.code == 2 && answer.stderr.contains("is not trusted") && drawn.exists()
+    });
+    assert!(doubted.is_some(), "no doubted nail in forty scenes");
+    let drawn = lunula::labelme::LabelMe::read(&dir.path("set/photos/nominal/s01.json")).expect("LabelMe");
+    assert!(drawn.shapes.iter().any(|s| s.label == "nail?") && drawn.shapes.iter().all(|s| s.label != "nail"));
+    assert!(!dir.path("out").exists());
+}
+
+/// Ctrl-C while a photograph is being read: a named pipe holds the job there.
+#[cfg(target_os = "linux")]
+#[test]
+fn an_interrupted_run_leaves_what_stood() {
+    let dir = Dir::new();
+    for subject in ["b", "c", "d"] {
+        dir.nail(&format!("set/{subject}"));
+    }
+    dir.write("out/nails.csv", "mine");
+    let pipe = dir.path("set/a.png");
+    assert!(Command::new("mkfifo").arg(&pipe).status().expect("mkfifo").success());
+    let mut child = Command::new(env!("CARGO_BIN_EXE_lunula"))
+        .args(["photos", "set", "--out", "out", "--threads", "1"])
+        .current_dir(dir.path(""))
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .expect("the binary runs");
+    // Opens once the job reads the pipe.
+    let held = std::fs::OpenOptions::new().write(true).open(&pipe).expect("the pipe");
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill").success());
+    std::thread::sleep(std::time::Duration::from_millis(300));
+    drop(held);
+    let mut stderr = String::new();
+    std::io::Read::read_to_string(&mut child.stderr.take().expect("piped"), &mut stderr).expect("text");
+    assert_eq!(child.wait().expect("it ends").code(), Some(130), "{stderr}");
+    assert!(stderr.contains("interrupted; nothing was written"), "{stderr}");
+    assert_eq!(dir.bytes_of("out").keys().collect::<Vec<_>>(), ["nails.csv"]);
+}

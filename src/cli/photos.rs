@@ -8,8 +8,8 @@ use clap::{Args, Subcommand, ValueEnum};
 use lunula::files::Staging;
 use lunula::photo::outline::{DetectOptions, Drawn, OutlineOptions, Side, Sources};
 use lunula::photo::{
-    Channel, Fate, NailTable, Normalization, PhotoSet, PhotosError, PhotosOptions, PhotosResult, Resample, RunReport,
-    SetFault, Watch, keep_outlines, merge, plan, run as run_photos, write_nails,
+    Channel, DetectedOutline, Fate, NailTable, Normalization, PhotoSet, PhotosError, PhotosOptions, Resample,
+    RunReport, SetFault, Watch, keep_outlines, merge, plan, run as run_photos, write_nails,
 };
 
 use super::{Common, Interrupted, Outcome, print_line};
@@ -192,34 +192,34 @@ pub(super) fn run(args: &PhotosArgs) -> anyhow::Result<Outcome> {
     let staging = Staging::new(out)?;
     let bar = args.common.progress(set.photos.len(), "photographs");
     let watch = Watch { stop: &stop, tick: &|| bar.inc(1) };
-    let result = run_photos(&set, &options, &staging, &watch).map_err(|error| match error {
-        PhotosError::Interrupted => Interrupted.into(),
-        other => anyhow::Error::from(other),
-    })?;
+    let result = run_photos(&set, &options, &staging, &watch);
     bar.finish_and_clear();
+    let result = match result {
+        Err(PhotosError::Interrupted) => return Err(Interrupted.into()),
+        Err(PhotosError::NothingUsable { failed, detected }) => {
+            // What was found but not trusted is what a person most needs to see.
+            save_outlines(args, &detected, &set)?;
+            return Err(PhotosError::NothingUsable { failed, detected }.into());
+        }
+        other => other?,
+    };
     let report = RunReport::of_photos(&set, &options, &result, start.elapsed());
     let nails = NailTable::of(&result.rows, &set);
     write_nails(nails.rows(), &staging)?;
     report.write_html(&nails, &staging)?;
     report.write_json(&staging)?;
-    if let Some(folder) = &args.write_outlines {
-        save_outlines(args, &result, &set, folder.as_deref())?;
-    }
+    save_outlines(args, &result.detected, &set)?;
     staging.commit()?;
     finish(&args.common, &report, out)
 }
 
-fn save_outlines(
-    args: &PhotosArgs,
-    result: &PhotosResult,
-    set: &PhotoSet,
-    folder: Option<&Path>,
-) -> anyhow::Result<()> {
-    let kept = keep_outlines(result, set, folder)?;
+fn save_outlines(args: &PhotosArgs, detected: &[DetectedOutline], set: &PhotoSet) -> anyhow::Result<()> {
+    let Some(folder) = &args.write_outlines else { return Ok(()) };
+    let kept = keep_outlines(detected, set, folder.as_deref())?;
     for path in &kept.stood {
         args.common.warn(&[format!("{} stands and stays as it is", path.display())]);
     }
-    let place = folder.map_or_else(|| "beside the photographs".into(), |f| format!("in {}", f.display()));
+    let place = folder.as_ref().map_or_else(|| "beside the photographs".into(), |f| format!("in {}", f.display()));
     args.common.say(&format!("{} outlines saved {place} for LabelMe", kept.written.len()));
     Ok(())
 }

@@ -102,11 +102,20 @@ pub enum PhotosError {
     #[error(transparent)]
     Write(#[from] WriteError),
     /// Not one usable nail.
-    #[error("not one nail could be used, nothing was written:{}", .0.iter().map(|f| format!("\n  {}: {}", f.place, f.what)).collect::<String>())]
-    NothingUsable(Vec<SetFault>),
+    #[error("not one nail could be used, so there are no results:{}", list(.failed))]
+    NothingUsable {
+        /// Why, by photograph.
+        failed: Vec<SetFault>,
+        /// What was detected but not trusted, where it was to be kept: a person may correct it.
+        detected: Vec<DetectedOutline>,
+    },
     /// Stopped from outside.
     #[error("interrupted; nothing was written")]
     Interrupted,
+}
+
+fn list(failed: &[SetFault]) -> String {
+    failed.iter().map(|fault| format!("\n  {}: {}", fault.place, fault.what)).collect()
 }
 
 /// A caller's view of a running job.
@@ -163,7 +172,7 @@ pub fn run(
     }
     result.failed.sort();
     if result.rows.iter().all(|r| r.normalized.is_none()) {
-        return Err(PhotosError::NothingUsable(result.failed));
+        return Err(PhotosError::NothingUsable { failed: result.failed, detected: result.detected });
     }
     for (pose, sums) in sums {
         let sums = sums.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);

@@ -6,7 +6,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::job::PhotosResult;
+use super::job::DetectedOutline;
 use super::outline::{ToDraw, to_file};
 use super::set::{Photo, PhotoSet};
 use crate::files::{WriteError, write_whole};
@@ -20,13 +20,13 @@ pub struct Kept {
     pub stood: Vec<PathBuf>,
 }
 
-/// Saves the detected outlines of `result`, in `folder` or beside the photographs.
+/// Saves detected outlines of the photographs of `set`, in `folder` or beside them.
 ///
 /// # Errors
 /// [`WriteError`] where a file can't be written.
-pub fn keep_outlines(result: &PhotosResult, set: &PhotoSet, folder: Option<&Path>) -> Result<Kept, WriteError> {
+pub fn keep_outlines(detected: &[DetectedOutline], set: &PhotoSet, folder: Option<&Path>) -> Result<Kept, WriteError> {
     let mut kept = Kept::default();
-    for detected in &result.detected {
+    for detected in detected {
         let photo = &set.photos[detected.photo];
         let path = place(photo, folder);
         if path.exists() {

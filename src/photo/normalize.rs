@@ -23,7 +23,7 @@ pub enum Resample {
     Cubic,
 }
 
-/// What a normalized picture is made with. Checked by [`Normalization::new`].
+/// What a normalized picture is made with. Checked by [`Normalization::check`].
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Normalization {
     /// Width and height of the result, pixels.
