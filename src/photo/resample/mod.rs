@@ -246,7 +246,7 @@ impl Source {
                     let last = y + down * (size - 1) as f64;
                     let top = y.min(last) as usize - 1;
                     let crossing = fixed(x) + fixed_product(slant, top as f64 - y);
-                    Strand { y: fixed(y - top as f64), top, bottom: y.max(last) as usize + 2, crossing }
+                    Strand { y: fixed(y - top as f64), top, bottom: y.max(last) as usize + 3, crossing }
                 })
                 .collect();
             let top = strands.iter().map(|s| s.top).min().unwrap_or(0);
@@ -355,11 +355,14 @@ fn fixed_product(slope: i64, factor: f64) -> i64 {
 const PHASES: usize = 1024;
 
 static PHASE_WEIGHTS: LazyLock<[f32x4; PHASES]> =
-    LazyLock::new(|| std::array::from_fn(|k| cubic_weights((k as f32 + 0.5) / PHASES as f32)));
+    LazyLock::new(|| std::array::from_fn(|k| cubic_weights(k as f32 / PHASES as f32)));
+/// Half a phase, in fixed point: places are rounded to the nearest.
+const HALF_PHASE: i64 = (1 << 32) / (2 * PHASES as i64);
 
 /// The cubic through the four of `values` around a place in fixed point, limited to its two neighbours.
 #[inline(always)]
 fn between(values: &[f32], place: i64, weights: &[f32x4; PHASES]) -> f32 {
+    let place = place + HALF_PHASE;
     let before = (place >> 32) as usize - 1;
     let four = &values[before..before + 4];
     let four = [four[0], four[1], four[2], four[3]];
