@@ -20,13 +20,18 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
     name = "lunula",
     version,
     about,
-    after_help = "lunula COMMAND --help tells more of each.",
+    after_help = AFTER_HELP,
     max_term_width = 110
 )]
 struct Cli {
     #[command(subcommand)]
     command: Command,
 }
+
+const AFTER_HELP: &str = "lunula COMMAND --help tells more of each.
+
+Exit status: 0 all done; 1 done, but some inputs failed (each is named on standard error, the others are done); \
+2 nothing done; 130 interrupted. Results appear whole or not at all; what stood before a failed run is as it was.";
 
 #[derive(Debug, Subcommand)]
 enum Command {
