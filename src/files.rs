@@ -4,6 +4,7 @@
 //! is renamed to where it belongs, one rename a file, so that nobody ever sees half of one. A job that fails or is
 //! interrupted leaves what stood there before as it was.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -99,6 +100,24 @@ impl Staging {
     /// The error of a writer that could not write `name`.
     pub fn refused(&self, name: &str, why: impl ToString) -> WriteError {
         WriteError::File { path: self.target.join(name), why: why.to_string() }
+    }
+
+    /// Files that stand in the folders that results will go to and are none of them: an earlier run's. Sorted.
+    pub fn left_from_earlier(&self) -> Vec<String> {
+        let names = self.names.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let folders: BTreeSet<&Path> =
+            names.iter().filter_map(|n| n.parent()).filter(|f| !f.as_os_str().is_empty()).collect();
+        let written: BTreeSet<&Path> = names.iter().map(PathBuf::as_path).collect();
+        let mut left: Vec<String> = folders
+            .into_iter()
+            .flat_map(|folder| fs::read_dir(self.target.join(folder)).into_iter().flatten().flatten())
+            .filter(|entry| entry.path().is_file())
+            .filter_map(|entry| entry.path().strip_prefix(&self.target).map(Path::to_owned).ok())
+            .filter(|name| !written.contains(name.as_path()))
+            .map(|name| name.to_string_lossy().into_owned())
+            .collect();
+        left.sort();
+        left
     }
 
     /// Puts every result into its place; returns their names, sorted.

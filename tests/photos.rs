@@ -106,6 +106,21 @@ fn maps_made_in_parts_and_merged_equal_those_made_at_once() {
 }
 
 #[test]
+fn an_earlier_run_s_maps_beside_a_later_one_s_are_told_and_not_merged() {
+    let dir = Dir::new();
+    dir.nail("first/rest/a");
+    dir.nail("second/press/b");
+    dir.nail("third/press/c");
+    dir.lunula(&["photos", "first", "--out", "out"]).expect(0);
+    dir.lunula(&["photos", "second", "--out", "out"]).expect(0).says("stood before and are not of this run");
+    dir.lunula(&["photos", "third", "--out", "other"]).expect(0);
+    dir.lunula(&["photos", "merge", "out", "other", "--out", "merged"]).expect(0);
+    let merged = dir.bytes_of("merged");
+    assert!(merged.contains_key("maps/press-mean.npy") && !merged.contains_key("maps/rest-mean.npy"));
+    assert!(dir.path("out/maps/rest-mean.npy").exists(), "nothing is deleted");
+}
+
+#[test]
 fn a_flat_folder_is_one_pose_named_after_it() {
     let dir = Dir::new();
     for subject in ["a", "b"] {

@@ -183,6 +183,10 @@ fn a_manifest_s_faults_are_named_by_line() {
     assert_eq!(used(&dir), ["a", "b", "c"]);
     dir.write("set/photos.csv", "name;who\na.png;a\n");
     dir.lunula(&["photos", "set", "--out", "out"]).expect(2).says("it needs file,subject,pose");
+    dir.write("set/photos.csv", b"file,subject,pose\na.png,J\xfcrgen,p\n");
+    dir.lunula(&["photos", "set", "--out", "out"]).expect(2).says("save it as CSV in UTF-8");
+    dir.write("set/photos.csv", "file;subject;pose\na.png;a;p\n");
+    dir.lunula(&["photos", "set", "--out", "out"]).expect(0);
 }
 
 #[test]

@@ -209,7 +209,7 @@ pub(super) fn run(args: &PhotosArgs) -> anyhow::Result<Outcome> {
     report.write_html(&nails, &staging)?;
     report.write_json(&staging)?;
     save_outlines(args, &result.detected, &set)?;
-    staging.commit()?;
+    put_in_place(staging, &args.common, out)?;
     finish(&args.common, &report, out)
 }
 
@@ -228,8 +228,18 @@ fn run_merge(args: &MergeArgs) -> anyhow::Result<Outcome> {
     args.common.start()?;
     let staging = Staging::new(&args.out)?;
     let report = merge(&args.parts, &staging)?;
-    staging.commit()?;
+    put_in_place(staging, &args.common, &args.out)?;
     finish(&args.common, &report, &args.out)
+}
+
+/// An earlier run's results beside these are not deleted, but nobody should take them for this run's.
+fn put_in_place(staging: Staging, common: &Common, out: &Path) -> anyhow::Result<()> {
+    if let [first, others @ ..] = &staging.left_from_earlier()[..] {
+        let also = if others.is_empty() { String::new() } else { format!(" and {} more", others.len()) };
+        common.warn(&[format!("{first}{also} in {} stood before and are not of this run", out.display())]);
+    }
+    staging.commit()?;
+    Ok(())
 }
 
 fn print_plan(args: &PhotosArgs, set: &PhotoSet, options: &PhotosOptions) -> Outcome {

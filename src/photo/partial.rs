@@ -61,16 +61,8 @@ pub enum PartialFault {
         subject: String,
     },
     /// Nothing to join.
-    #[error("{}: holds no maps/<pose>.partial.npz; name a folder that `lunula photos` wrote", .0.display())]
+    #[error("{}: holds no run.json with maps/<pose>.partial.npz; name a folder that `lunula photos` wrote", .0.display())]
     Nothing(PathBuf),
-    /// A part can't be listed.
-    #[error("{}: {why}", .file.display())]
-    Io {
-        /// Which folder.
-        file: PathBuf,
-        /// The system's words.
-        why: std::io::Error,
-    },
 }
 
 #[derive(Serialize, Deserialize)]
@@ -136,18 +128,14 @@ pub fn join(parts: &[PathBuf]) -> Result<Partials, PartialFault> {
     joined.ok_or_else(|| PartialFault::Nothing(parts.first().cloned().unwrap_or_default()))
 }
 
+/// The partial maps that the part's own `run.json` names: an earlier run's may stand beside them.
 fn partial_files(part: &Path) -> Result<Vec<PathBuf>, PartialFault> {
-    let maps = part.join("maps");
-    let listing = std::fs::read_dir(&maps).map_err(|_| PartialFault::Nothing(part.to_owned()))?;
-    let mut files = Vec::new();
-    for entry in listing {
-        let path = entry.map_err(|why| PartialFault::Io { file: maps.clone(), why })?.path();
-        if path.to_string_lossy().ends_with(".partial.npz") {
-            files.push(path);
-        }
-    }
-    files.sort();
-    if files.is_empty() { Err(PartialFault::Nothing(part.to_owned())) } else { Ok(files) }
+    let nothing = || PartialFault::Nothing(part.to_owned());
+    let text = std::fs::read(part.join("run.json")).map_err(|_| nothing())?;
+    let run: serde_json::Value = serde_json::from_slice(&text).map_err(|_| nothing())?;
+    let poses = run["poses"].as_array().ok_or_else(nothing)?.iter().filter_map(|p| p["pose"].as_str());
+    let files: Vec<PathBuf> = poses.map(|pose| part.join(format!("maps/{pose}.partial.npz"))).collect();
+    if files.is_empty() { Err(nothing()) } else { Ok(files) }
 }
 
 fn read(path: &Path) -> Result<(Meta, Sums), PartialFault> {

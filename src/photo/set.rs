@@ -152,8 +152,15 @@ impl PhotoSet {
 
     fn read_manifest(&mut self, path: &Path) -> Result<(), SetError> {
         let wrong = |why: String| SetError::Manifest { file: path.to_owned(), why };
-        let text = std::fs::read_to_string(path).map_err(|e| wrong(e.to_string()))?;
+        let text = std::fs::read_to_string(path).map_err(|e| match e.kind() {
+            std::io::ErrorKind::InvalidData => wrong("is not UTF-8; save it as CSV in UTF-8".into()),
+            _ => wrong(e.to_string()),
+        })?;
+        // Spreadsheets set to a decimal comma separate by semicolons.
+        let header = text.lines().next().unwrap_or_default();
+        let delimiter = if header.contains(';') && !header.contains(',') { b';' } else { b',' };
         let mut reader = csv::ReaderBuilder::new()
+            .delimiter(delimiter)
             .trim(csv::Trim::All)
             .flexible(true)
             .from_reader(text.trim_start_matches('\u{feff}').as_bytes());
@@ -162,7 +169,7 @@ impl PhotoSet {
         let (Some(file), Some(subject), Some(pose)) = (column("file"), column("subject"), column("pose")) else {
             let found = header.iter().collect::<Vec<_>>().join(",");
             return Err(wrong(format!(
-                "line 1: the columns are `{found}`; it needs file,subject,pose and may have outline, separated by commas"
+                "line 1: the columns are `{found}`; it needs file,subject,pose and may have outline, separated by commas or semicolons"
             )));
         };
         let outline = column("outline");
