@@ -45,31 +45,20 @@ impl Plane {
         let mut plane = Self { x0, y0, width, height, values: Vec::with_capacity(width * height) };
         let index = taking.channel as usize;
         let size = [image.width() as usize, image.height() as usize];
+        let layout = |channels| Samples {
+            channels,
+            index: if channels < 3 { 0 } else { index },
+            alpha: (channels % 2 == 0).then_some(channels - 1),
+        };
         match image {
-            DynamicImage::ImageLuma8(p) => {
-                plane.fill(p, size, Samples { channels: 1, index: 0, alpha: None }, taking.linear)
-            }
-            DynamicImage::ImageLumaA8(p) => {
-                plane.fill(p, size, Samples { channels: 2, index: 0, alpha: Some(1) }, taking.linear);
-            }
-            DynamicImage::ImageRgb8(p) => {
-                plane.fill(p, size, Samples { channels: 3, index, alpha: None }, taking.linear)
-            }
-            DynamicImage::ImageRgba8(p) => {
-                plane.fill(p, size, Samples { channels: 4, index, alpha: Some(3) }, taking.linear);
-            }
-            DynamicImage::ImageLuma16(p) => {
-                plane.fill(p, size, Samples { channels: 1, index: 0, alpha: None }, taking.linear)
-            }
-            DynamicImage::ImageLumaA16(p) => {
-                plane.fill(p, size, Samples { channels: 2, index: 0, alpha: Some(1) }, taking.linear);
-            }
-            DynamicImage::ImageRgb16(p) => {
-                plane.fill(p, size, Samples { channels: 3, index, alpha: None }, taking.linear)
-            }
-            DynamicImage::ImageRgba16(p) => {
-                plane.fill(p, size, Samples { channels: 4, index, alpha: Some(3) }, taking.linear);
-            }
+            DynamicImage::ImageLuma8(p) => plane.fill(p, size, layout(1), taking.linear),
+            DynamicImage::ImageLumaA8(p) => plane.fill(p, size, layout(2), taking.linear),
+            DynamicImage::ImageRgb8(p) => plane.fill(p, size, layout(3), taking.linear),
+            DynamicImage::ImageRgba8(p) => plane.fill(p, size, layout(4), taking.linear),
+            DynamicImage::ImageLuma16(p) => plane.fill(p, size, layout(1), taking.linear),
+            DynamicImage::ImageLumaA16(p) => plane.fill(p, size, layout(2), taking.linear),
+            DynamicImage::ImageRgb16(p) => plane.fill(p, size, layout(3), taking.linear),
+            DynamicImage::ImageRgba16(p) => plane.fill(p, size, layout(4), taking.linear),
             // Float pictures are refused when read; one that a caller made is taken by way of 16 bits.
             other => return Self::take(&other.to_rgba16().into(), taking, [x0, x1], [y0, y1]),
         }
