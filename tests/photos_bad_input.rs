@@ -319,7 +319,9 @@ fn an_interrupted_run_leaves_what_stood() {
         .expect("the binary runs");
     // Opens once the job reads the pipe.
     let held = std::fs::OpenOptions::new().write(true).open(&pipe).expect("the pipe");
-    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill").success());
+    // The shell's own `kill`: a small system has no other.
+    let interrupt = format!("kill -INT {}", child.id());
+    assert!(Command::new("sh").args(["-c", &interrupt]).status().expect("a shell").success());
     std::thread::sleep(std::time::Duration::from_millis(300));
     drop(held);
     let mut stderr = String::new();
