@@ -156,9 +156,17 @@ impl LabelMe {
     /// [`Error::Write`].
     pub fn write(&self, path: &Path) -> Result<(), Error> {
         let refused = |source: io::Error| Error::Write { path: path.to_owned(), source };
-        let mut text = serde_json::to_vec_pretty(self).map_err(|e| refused(e.into()))?;
+        std::fs::write(path, self.to_text().map_err(|e| refused(e.into()))?).map_err(refused)
+    }
+
+    /// The file's text.
+    ///
+    /// # Errors
+    /// Where it can't be said in JSON.
+    pub fn to_text(&self) -> serde_json::Result<Vec<u8>> {
+        let mut text = serde_json::to_vec_pretty(self)?;
         text.push(b'\n');
-        std::fs::write(path, text).map_err(refused)
+        Ok(text)
     }
 }
 

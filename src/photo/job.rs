@@ -14,7 +14,7 @@ use thiserror::Error;
 use super::frame::NailFrame;
 use super::maps::Sums;
 use super::normalize::{Normalization, Normalized, normalize};
-use super::outline::{Axis, Nail, Outline, OutlineOptions, Source};
+use super::outline::{Axis, Nail, Outline, OutlineOptions, Source, ToDraw};
 use super::partial::Partials;
 use super::read::Photograph;
 use super::results;
@@ -63,8 +63,8 @@ pub struct DetectedOutline {
     pub photo: usize,
     /// Width and height of the upright photograph, pixels.
     pub size: [u32; 2],
-    /// Outline, axis, confidence, trusted.
-    pub nails: Vec<(Outline, Axis, f64, bool)>,
+    /// Trusted and doubtful ones.
+    pub nails: Vec<ToDraw>,
 }
 
 /// What a photograph gave.
@@ -324,7 +324,10 @@ fn kept(index: usize, picture: &Photograph, nails: &[Nail]) -> Option<DetectedOu
     let found: Vec<_> = nails
         .iter()
         .filter(|n| n.source == Source::Detected)
-        .filter_map(|n| Some((n.outline.clone()?, n.axis?, n.confidence.unwrap_or(0.0), n.reason.is_empty())))
+        .filter_map(|n| {
+            let confidence = n.confidence.unwrap_or(0.0);
+            Some(ToDraw { outline: n.outline.clone()?, axis: n.axis?, confidence, trusted: n.reason.is_empty() })
+        })
         .collect();
     let size = [picture.image.width(), picture.image.height()];
     (!found.is_empty()).then_some(DetectedOutline { photo: index, size, nails: found })
@@ -346,7 +349,7 @@ fn left_out(set: &PhotoSet, options: &PhotosOptions, done: &[Done]) -> Vec<Strin
     if drawn > 0 {
         left_out.push(format!("detection: not run on {drawn} photograph(s) whose outlines are known"));
     }
-    if options.outlines.distal.is_some() && known(Source::Mask) + known(Source::Annotated) > 0 {
+    if options.outlines.distal.is_some() && drawn > 0 {
         left_out.push("search for axes: --distal settles them".into());
     }
     if !options.normalization.linear {

@@ -7,7 +7,7 @@
 use std::path::{Path, PathBuf};
 
 use super::job::DetectedOutline;
-use super::outline::{ToDraw, to_file};
+use super::outline::to_file;
 use super::set::{Photo, PhotoSet};
 use crate::files::{WriteError, write_whole};
 
@@ -36,20 +36,8 @@ pub fn keep_outlines(detected: &[DetectedOutline], set: &PhotoSet, folder: Optio
         if let Some(parent) = path.parent() {
             std::fs::create_dir_all(parent).map_err(|why| WriteError::Folder { path: parent.to_owned(), why })?;
         }
-        let nails: Vec<ToDraw> = detected
-            .nails
-            .iter()
-            .map(|(outline, axis, confidence, trusted)| ToDraw {
-                outline,
-                axis: *axis,
-                confidence: *confidence,
-                trusted: *trusted,
-            })
-            .collect();
-        let file = to_file(&relative(&photo.path, path.parent()), detected.size, &nails);
-        let mut text = serde_json::to_vec_pretty(&file)
-            .map_err(|why| WriteError::File { path: path.clone(), why: why.to_string() })?;
-        text.push(b'\n');
+        let file = to_file(&relative(&photo.path, path.parent()), detected.size, &detected.nails);
+        let text = file.to_text().map_err(|why| WriteError::File { path: path.clone(), why: why.to_string() })?;
         write_whole(&path, &text)?;
         kept.written.push(path);
     }

@@ -142,7 +142,9 @@ impl RunReport {
             page.heading(title);
             page.png(&staging.read(&format!("figures/{name}.png"))?, title);
         }
-        page.heading("Every nail, distal end up");
+        if !nails.sheets.is_empty() {
+            page.heading("Every nail, distal end up");
+        }
         for (number, sheet) in (1..).zip(&nails.sheets) {
             let png = sheet.png().map_err(refused)?;
             page.png(&png, &sheet.title);

@@ -113,43 +113,36 @@ fn closed_edge(patch: &Patch, [x, y]: [f32; 2], rim: &[[[f32; 2]; 2]; 16]) -> f3
         .sum()
 }
 
-/// The best that are not near a better one (`apart` of the frame's unit, in any number of the shape).
-fn best_different(mut all: Vec<Scored>, most: usize, apart: f64) -> Vec<Scored> {
+/// The best that are not near a better one, which `near` is told second.
+fn best_apart(mut all: Vec<Scored>, most: usize, near: impl Fn(&Shape, &Shape) -> bool) -> Vec<Scored> {
     all.sort_by(|a, b| b.1.total_cmp(&a.1));
     let mut kept: Vec<Scored> = Vec::new();
     for (s, value) in all {
         if kept.len() == most {
             break;
         }
-        let near = |k: &Shape| {
-            let d = [s.x - k.x, s.y - k.y, s.length - k.length, s.width - k.width, 0.4 * (s.turn - k.turn)];
-            d.iter().all(|d| d.abs() < apart)
-        };
-        if !kept.iter().any(|(k, _)| near(k)) {
+        if !kept.iter().any(|(k, _)| near(&s, k)) {
             kept.push((s, value));
         }
     }
     kept
 }
 
+/// The best that are not near a better one (`apart` of the frame's unit, in any number of the shape).
+fn best_different(all: Vec<Scored>, most: usize, apart: f64) -> Vec<Scored> {
+    best_apart(all, most, |s, k| {
+        let d = [s.x - k.x, s.y - k.y, s.length - k.length, s.width - k.width, 0.4 * (s.turn - k.turn)];
+        d.iter().all(|d| d.abs() < apart)
+    })
+}
+
 /// The same, where sizes differ much: distances relative to the better one's size.
-fn best_different_scaled(mut all: Vec<Scored>, most: usize) -> Vec<Scored> {
-    all.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let mut kept: Vec<Scored> = Vec::new();
-    for (s, value) in all {
-        if kept.len() == most {
-            break;
-        }
-        let near = |k: &Shape| {
-            let apart = (s.x - k.x).hypot(s.y - k.y) / k.length;
-            let same_way = (s.turn - k.turn).cos() > 0.0;
-            apart < 0.2 && (s.length / k.length).ln().abs() < 0.3 && (s.width / k.width).ln().abs() < 0.3 && same_way
-        };
-        if !kept.iter().any(|(k, _)| near(k)) {
-            kept.push((s, value));
-        }
-    }
-    kept
+fn best_different_scaled(all: Vec<Scored>, most: usize) -> Vec<Scored> {
+    best_apart(all, most, |s, k| {
+        let apart = (s.x - k.x).hypot(s.y - k.y) / k.length;
+        let same_way = (s.turn - k.turn).cos() > 0.0;
+        apart < 0.2 && (s.length / k.length).ln().abs() < 0.3 && (s.width / k.width).ln().abs() < 0.3 && same_way
+    })
 }
 
 /// Climbs the score by ever smaller steps in each number of the shape.

@@ -9,6 +9,7 @@ use super::super::search::{FINGER, NAIL};
 use super::super::shape::Shape;
 use super::super::{candidate, evidence, refine, search};
 use super::scenes::{Scene, bell, ends, levels, turn_between};
+use crate::photo::outline::Outline;
 
 /// Rows of a network's training set.
 #[derive(Default)]
@@ -176,10 +177,7 @@ pub(super) fn scorer_rows(scene: &Scene, rng: &mut ChaCha8Rng, rows: &mut Rows) 
     // In nails' frames, either way up.
     for t in &scene.truths {
         let Some(up) = t.up else { continue };
-        let points = t.outline.points();
-        let n = points.len() as f64;
-        let centre = [0, 1].map(|i| points.iter().map(|p| p[i]).sum::<f64>() / n);
-        let size = t.outline.area_px2().sqrt() * 1.1;
+        let (points, centre, size) = about(&t.outline);
         for _ in 0..3 {
             let angle = 0.3 * bell(rng) + if rng.random_bool(0.3) { std::f64::consts::PI } else { 0.0 };
             let (s, c) = angle.sin_cos();
@@ -284,15 +282,20 @@ pub(super) fn found_rows(scene: &Scene, rng: &mut ChaCha8Rng, rows: &mut Rows) {
     }
 }
 
+/// An outline's corners, their mean, and about its length, pixels.
+fn about(outline: &Outline) -> (Vec<[f64; 2]>, [f64; 2], f64) {
+    let points = outline.points();
+    let n = points.len() as f64;
+    let centre = [0, 1].map(|i| points.iter().map(|p| p[i]).sum::<f64>() / n);
+    (points, centre, outline.area_px2().sqrt() * 1.1)
+}
+
 /// Places on rays, by their distance from the truth.
 pub(super) fn border_rows(scene: &Scene, rng: &mut ChaCha8Rng, rows: &mut Rows) {
     let levels = levels(scene);
     for t in &scene.truths {
         let Some(up) = t.up else { continue };
-        let points = t.outline.points();
-        let n = points.len() as f64;
-        let centre = [0, 1].map(|i| points.iter().map(|p| p[i]).sum::<f64>() / n);
-        let size = t.outline.area_px2().sqrt() * 1.1;
+        let (points, centre, size) = about(&t.outline);
         let angle = 0.12 * bell(rng);
         let (s, c) = angle.sin_cos();
         let frame = Frame { origin: centre, up: [up[0] * c - up[1] * s, up[0] * s + up[1] * c], unit_px: size };
