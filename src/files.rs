@@ -158,6 +158,48 @@ impl Drop for Staging {
     }
 }
 
+/// Results whose places are named one by one, in whatever folders.
+#[derive(Debug, Default)]
+pub struct Places {
+    folders: Vec<(PathBuf, Staging)>,
+    asked: BTreeSet<PathBuf>,
+}
+
+impl Places {
+    /// Where to write the result that is to stand at `path`.
+    ///
+    /// # Errors
+    /// [`WriteError`] where its folder can't be written to, a folder has its name, or it was asked for before.
+    pub fn place(&mut self, path: &Path) -> Result<PathBuf, WriteError> {
+        let refused = |why: &str| WriteError::File { path: path.to_owned(), why: why.to_owned() };
+        let name = path.file_name().and_then(|name| name.to_str()).ok_or_else(|| refused("it is no file's name"))?;
+        if path.is_dir() {
+            return Err(WriteError::FolderInTheWay(path.to_owned()));
+        }
+        let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let at = match self.folders.iter().position(|(known, _)| known == folder) {
+            Some(at) => at,
+            None => {
+                self.folders.push((folder.to_owned(), Staging::new(folder)?));
+                self.folders.len() - 1
+            }
+        };
+        let real = fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned()).join(name);
+        if !self.asked.insert(real) {
+            return Err(refused("two results have this name"));
+        }
+        self.folders[at].1.place(name)
+    }
+
+    /// Puts every result into its place.
+    ///
+    /// # Errors
+    /// As [`Staging::commit`].
+    pub fn commit(self) -> Result<(), WriteError> {
+        self.folders.into_iter().try_for_each(|(_, staging)| staging.commit().map(|_| ()))
+    }
+}
+
 /// Writes one file whole or not at all: beside its place, then renamed.
 ///
 /// # Errors
@@ -204,6 +246,25 @@ mod tests {
         staging.write("x.txt", b"x").unwrap();
         drop(staging);
         assert!(names_in(dir.path()).is_empty());
+    }
+
+    #[test]
+    fn results_of_several_folders_appear_together_and_none_twice() {
+        let dir = tempfile::tempdir().unwrap();
+        let (first, second) = (dir.path().join("a/x.csv"), dir.path().join("b/x.csv"));
+        let mut places = Places::default();
+        for path in [&first, &second] {
+            fs::write(places.place(path).unwrap(), "x").unwrap();
+        }
+        let again = dir.path().join("b/../a/x.csv");
+        assert!(places.place(&again).unwrap_err().to_string().contains("two results"));
+        assert!(matches!(places.place(dir.path()), Err(WriteError::FolderInTheWay(_))));
+        assert!(!first.exists() && !second.exists());
+        places.commit().unwrap();
+        assert_eq!(
+            (names_in(&dir.path().join("a")), names_in(&dir.path().join("b"))),
+            (vec!["x.csv".into()], vec!["x.csv".into()])
+        );
     }
 
     #[test]

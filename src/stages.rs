@@ -1,4 +1,4 @@
-//! How long each stage of a job took.
+//! The stages of a job: which will run and why not, and how long each took.
 
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -41,5 +41,33 @@ impl Stages {
         let mut ranked: Vec<_> = spent.iter().map(|(&stage, &(rank, time, runs))| (rank, stage, time, runs)).collect();
         ranked.sort_unstable();
         ranked.into_iter().map(|(_, stage, time, runs)| Stage { stage, thread_s: time.as_secs_f64(), runs }).collect()
+    }
+}
+
+/// Whether a stage will run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Fate {
+    /// It will.
+    Run,
+    /// The scene does not need it.
+    LeftOut,
+}
+
+/// One stage of a plan.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+pub struct Step {
+    /// The stage.
+    pub stage: &'static str,
+    /// Whether it runs.
+    pub fate: Fate,
+    /// On how much, or why not.
+    pub reason: String,
+}
+
+impl Step {
+    /// A stage that runs or not, on how much or why not.
+    pub fn new(stage: &'static str, runs: bool, reason: String) -> Self {
+        Self { stage, fate: if runs { Fate::Run } else { Fate::LeftOut }, reason }
     }
 }

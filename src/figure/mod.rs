@@ -1,6 +1,7 @@
 //! Pictures of results: grey maps, sheets with captions and scales, plots, reports. It knows numbers and pictures, not
 //! jobs.
 
+mod chart;
 mod grey;
 mod html;
 mod plot;
@@ -12,10 +13,17 @@ use std::io::Cursor;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{DynamicImage, ImageEncoder, ImageError};
 
+pub use chart::{Chart, Item, draw_charts};
 pub use grey::{Stretch, grey_map};
 pub use html::{Page, escape};
 pub use plot::{Axis, Plot, Point, Series, draw_log_log};
 pub use sheet::{Scale, Sheet, Tile};
+
+/// How much of each pixel a text covers (0 to 255), `height_px` high: to draw on pictures that are not RGB.
+#[must_use]
+pub fn text_coverage(text: &str, height_px: f32) -> image::GrayImage {
+    text::coverage(text, height_px)
+}
 
 /// A picture as a PNG file, encoded fast rather than small.
 ///

@@ -52,7 +52,7 @@ pub struct Point {
 /// Width and height of a panel, pixels.
 const PANEL: (u32, u32) = (820, 620);
 /// Colours that stay apart for colour-blind readers (Okabe and Ito 2008).
-const COLOURS: [RGBColor; 6] = [
+pub(super) const COLOURS: [RGBColor; 6] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
@@ -66,24 +66,45 @@ const COLOURS: [RGBColor; 6] = [
 /// # Errors
 /// A panel without a point that has two positive finite coordinates, or a file that can't be written.
 pub fn draw_log_log(panels: &[Plot], png: &Path, svg: &Path) -> anyhow::Result<()> {
-    register_typeface()?;
     let (rows, columns) = grid(panels.len());
-    let size = (PANEL.0 * columns as u32, PANEL.1 * rows as u32);
-    let mut pixels = vec![0; (size.0 * size.1 * 3) as usize];
-    draw_panels(panels, BitMapBackend::with_buffer(&mut pixels, size).into_drawing_area())?;
-    let picture = image::RgbImage::from_raw(size.0, size.1, pixels).context("a plot's pixels")?;
-    picture.save(png).with_context(|| png.display().to_string())?;
-    draw_panels(panels, SVGBackend::new(svg, size).into_drawing_area()).with_context(|| svg.display().to_string())
+    write_both(&Panels(panels), (PANEL.0 * columns as u32, PANEL.1 * rows as u32), png, svg)
 }
 
-fn draw_panels<B: DrawingBackend>(panels: &[Plot], area: DrawingArea<B, Shift>) -> anyhow::Result<()>
+struct Panels<'a>(&'a [Plot]);
+
+impl Draw for Panels<'_> {
+    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> anyhow::Result<()>
+    where
+        B::ErrorType: 'static,
+    {
+        let areas = area.split_evenly(grid(self.0.len()));
+        self.0.iter().zip(areas).try_for_each(|(panel, area)| panel.draw(&area))
+    }
+}
+
+/// What can be drawn with any backend.
+pub(super) trait Draw {
+    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> anyhow::Result<()>
+    where
+        B::ErrorType: 'static;
+}
+
+/// Draws on white, `size` pixels wide and high, to `png` and to `svg`.
+pub(super) fn write_both(what: &impl Draw, size: (u32, u32), png: &Path, svg: &Path) -> anyhow::Result<()> {
+    register_typeface()?;
+    let mut pixels = vec![0; (size.0 * size.1 * 3) as usize];
+    draw_on_white(what, BitMapBackend::with_buffer(&mut pixels, size).into_drawing_area())?;
+    let picture = image::RgbImage::from_raw(size.0, size.1, pixels).context("a picture's pixels")?;
+    picture.save(png).with_context(|| png.display().to_string())?;
+    draw_on_white(what, SVGBackend::new(svg, size).into_drawing_area()).with_context(|| svg.display().to_string())
+}
+
+fn draw_on_white<B: DrawingBackend>(what: &impl Draw, area: DrawingArea<B, Shift>) -> anyhow::Result<()>
 where
     B::ErrorType: 'static,
 {
     area.fill(&WHITE).map_err(|e| anyhow!("{e}"))?;
-    for (panel, area) in panels.iter().zip(area.split_evenly(grid(panels.len()))) {
-        panel.draw(&area)?;
-    }
+    what.draw(&area)?;
     area.present().map_err(|e| anyhow!("{e}"))
 }
 
@@ -176,12 +197,13 @@ impl Plot {
 }
 
 /// `0.002`, `3`, `40`: as short as the number allows.
-fn short_number(value: &f64) -> String {
+pub(super) fn short_number(value: &f64) -> String {
     let text = format!("{value:.6}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    let short = text.trim_end_matches('0').trim_end_matches('.');
+    if short == "-0" { "0".to_owned() } else { short.to_owned() }
 }
 
-fn register_typeface() -> anyhow::Result<()> {
+pub(super) fn register_typeface() -> anyhow::Result<()> {
     static ONCE: Once = Once::new();
     let mut usable = true;
     ONCE.call_once(|| {

@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 
 use ab_glyph::{FontRef, PxScale};
-use image::RgbImage;
+use image::{GrayImage, RgbImage};
 use imageproc::drawing::{draw_text_mut, text_size};
 
 /// The typeface of every figure (Ubuntu Light, Ubuntu font licence).
@@ -24,6 +24,15 @@ pub(super) fn centred(picture: &mut RgbImage, text: &str, x: i32, y: i32, height
 /// Draws `text` from (`x`, `y`), its top left corner.
 pub(super) fn left(picture: &mut RgbImage, text: &str, x: i32, y: i32, height: f32) {
     draw_text_mut(picture, INK, x, y, PxScale::from(height), &*FONT, text);
+}
+
+/// How much of each pixel `text` covers (0 to 255), `height` pixels high.
+pub(super) fn coverage(text: &str, height: f32) -> GrayImage {
+    let (width, drawn) = text_size(PxScale::from(height), &*FONT, text);
+    // Tails reach below the measured box.
+    let mut covered = GrayImage::new(width + 2, drawn.max(height.ceil() as u32) + 1);
+    draw_text_mut(&mut covered, image::Luma([255]), 0, 0, PxScale::from(height), &*FONT, text);
+    covered
 }
 
 fn shortened(text: &str, height: f32, width: u32) -> String {

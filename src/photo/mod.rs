@@ -28,7 +28,7 @@ pub use maps::{DuplicateSubject, Maps, Sums};
 pub use merge::{MergeError, merge};
 pub use normalize::{FULL_SCALE, Normalization, Normalized, Resample, normalize};
 pub use partial::{PartialFault, Partials, join};
-pub use plan::{Fate, Step, plan};
+pub use plan::plan;
 pub use plane::Channel;
 pub use read::{Depth, Photograph, ReadFault};
 pub use report::{NailTable, PoseCount, RunReport};

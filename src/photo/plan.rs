@@ -2,33 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
-
 use super::job::PhotosOptions;
 use super::outline::Found;
 use super::read::header_is_grey;
 use super::set::PhotoSet;
-
-/// Whether a stage will run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Fate {
-    /// It will.
-    Run,
-    /// The scene does not need it.
-    LeftOut,
-}
-
-/// One stage of a plan.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct Step {
-    /// The stage.
-    pub stage: &'static str,
-    /// Whether it runs.
-    pub fate: Fate,
-    /// On how much, or why not.
-    pub reason: String,
-}
+use crate::stages::Step;
 
 /// Plans a run of `photos`.
 pub fn plan(set: &PhotoSet, options: &PhotosOptions) -> Vec<Step> {
@@ -43,17 +21,13 @@ pub fn plan(set: &PhotoSet, options: &PhotosOptions) -> Vec<Step> {
         *subjects.entry(&photo.pose).or_default() += 1;
     }
     let most = subjects.values().copied().max().unwrap_or(0);
-    let step = |stage, runs: bool, reason: String| {
-        let fate = if runs { Fate::Run } else { Fate::LeftOut };
-        Step { stage, fate, reason }
-    };
     let none_drawn = "nobody drew any";
     vec![
-        step("read", true, format!("{} photograph(s) of {} pose(s)", set.photos.len(), subjects.len())),
-        step("outlines from LabelMe", labelme > 0, said(labelme, none_drawn)),
-        step("outlines from masks", masks > 0, said(masks, none_drawn)),
-        step("detection", detected > 0, said(detected, "every outline is known, or detection is not wanted")),
-        step(
+        Step::new("read", true, format!("{} photograph(s) of {} pose(s)", set.photos.len(), subjects.len())),
+        Step::new("outlines from LabelMe", labelme > 0, said(labelme, none_drawn)),
+        Step::new("outlines from masks", masks > 0, said(masks, none_drawn)),
+        Step::new("detection", detected > 0, said(detected, "every outline is known, or detection is not wanted")),
+        Step::new(
             "axis from the picture",
             (labelme > 0 || masks > 0) && options.outlines.distal.is_none(),
             match options.outlines.distal {
@@ -62,24 +36,24 @@ pub fn plan(set: &PhotoSet, options: &PhotosOptions) -> Vec<Step> {
                 None => "detection finds its own".into(),
             },
         ),
-        step("channel", colour > 0, said(colour, "every photograph is grey")),
-        step(
+        Step::new("channel", colour > 0, said(colour, "every photograph is grey")),
+        Step::new(
             "sRGB curve undone",
             options.normalization.linear,
             if options.normalization.linear { "--linear".into() } else { "values are as the file encodes them".into() },
         ),
-        step(
+        Step::new(
             "normalize",
             true,
             format!("{0} x {0} px of {1} nail boxes", options.normalization.size, options.normalization.margin),
         ),
-        step("mean", true, format!("{} pose(s)", subjects.len())),
-        step(
+        Step::new("mean", true, format!("{} pose(s)", subjects.len())),
+        Step::new(
             "standard deviation",
             most > 1,
             if most > 1 { format!("up to {most} subjects a pose") } else { "it needs two subjects in a pose".into() },
         ),
-        step(
+        Step::new(
             "LabelMe files of what is detected",
             options.keep_detected,
             if options.keep_detected { "--write-outlines".into() } else { "not asked for".into() },
