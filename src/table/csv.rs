@@ -1,0 +1,65 @@
+//! Tables as comma-separated values.
+
+use std::fs::File;
+use std::path::Path;
+
+use super::{Column, ColumnKind, Value, number_text};
+
+/// A CSV file in the making.
+#[derive(Debug)]
+pub(super) struct CsvWriter {
+    rows: csv::Writer<File>,
+}
+
+impl CsvWriter {
+    pub(super) fn create(at: &Path, columns: &[Column]) -> Result<Self, String> {
+        let mut rows = csv::Writer::from_path(at).map_err(|e| e.to_string())?;
+        rows.write_record(columns.iter().map(|c| &c.name)).map_err(|e| e.to_string())?;
+        Ok(Self { rows })
+    }
+
+    pub(super) fn write(&mut self, cells: &[Value<'_>], columns: &[Column]) -> Result<(), String> {
+        for (cell, column) in cells.iter().zip(columns) {
+            let decimals = if let ColumnKind::Number { decimals } = column.kind { decimals } else { None };
+            let written = match (cell, column.kind) {
+                (Value::Missing, _) => self.rows.write_field(""),
+                (Value::Text(text), _) => self.rows.write_field(text),
+                (Value::Integer(whole), ColumnKind::Number { .. }) => {
+                    self.rows.write_field(number_text(*whole as f64, decimals).unwrap_or_default())
+                }
+                (Value::Integer(whole), _) => self.rows.write_field(whole.to_string()),
+                (Value::Number(number), _) => self.rows.write_field(number_text(*number, decimals).unwrap_or_default()),
+            };
+            written.map_err(|e| e.to_string())?;
+        }
+        self.rows.write_record(None::<&[u8]>).map_err(|e| e.to_string())
+    }
+
+    pub(super) fn finish(self) -> Result<(), String> {
+        self.rows.into_inner().map(drop).map_err(|e| e.to_string())
+    }
+}
+
+/// The names and the rows of a CSV file, each with its line; cells without the space around them.
+pub(super) fn read(path: &Path) -> Result<(Vec<String>, Vec<csv::StringRecord>), String> {
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(|e| e.to_string())?;
+    let names = reader.headers().map_err(|e| words(&e))?.iter().map(str::to_owned).collect();
+    let rows = reader.records().collect::<Result<_, _>>().map_err(|e| words(&e))?;
+    Ok((names, rows))
+}
+
+/// What is wrong with a CSV file, with the line.
+fn words(error: &csv::Error) -> String {
+    match error.kind() {
+        csv::ErrorKind::UnequalLengths { pos, expected_len, len } => {
+            let line = pos.as_ref().map_or(0, csv::Position::line);
+            format!("line {line} has {len} cells and the first line {expected_len}; correct it")
+        }
+        csv::ErrorKind::Utf8 { pos, .. } => {
+            let line = pos.as_ref().map_or(0, csv::Position::line);
+            format!("line {line} is not UTF-8 text; save the file as UTF-8")
+        }
+        csv::ErrorKind::Io(why) => why.to_string(),
+        _ => error.to_string(),
+    }
+}

@@ -1,0 +1,259 @@
+//! Tables in CSV or Parquet by the file's extension, written and read alike.
+//!
+//! Out: rows one after the other through a [`TableWriter`], in memory that does not grow with their number. In: a [`Table`] of
+//! named columns. A cell is an integer, a number, text or missing: empty in CSV, null in Parquet. A number that is not finite
+//! and an empty text are missing too. Numbers of a column with fixed decimals are rounded to them in both formats, so that
+//! the same table reads the same from either.
+//!
+//! A writer writes where it is told; that results appear whole or not at all is the business of [`crate::files`].
+
+mod csv;
+mod parquet;
+mod read;
+
+use std::path::{Path, PathBuf};
+
+pub use read::Table;
+
+/// Why a table can't be written or read.
+#[derive(Debug, thiserror::Error)]
+pub enum TableError {
+    /// Neither of the formats.
+    #[error("{}: a table ends in .csv or .parquet; name it so", .0.display())]
+    Extension(PathBuf),
+    /// The file can't be written.
+    #[error("{}: cannot be written ({why})", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// The system's or the format's words.
+        why: String,
+    },
+    /// The file can't be read as a table.
+    #[error("{}: {what}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong and what to do.
+        what: String,
+    },
+    /// One place of the table is wrong.
+    #[error("{place}: {what}")]
+    Cell {
+        /// File, line (CSV) or row (Parquet), column.
+        place: String,
+        /// What is wrong and what to do.
+        what: String,
+    },
+}
+
+/// How a table is stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TableFormat {
+    /// Comma-separated values with a line of names, UTF-8.
+    Csv,
+    /// Apache Parquet, compressed with Snappy.
+    Parquet,
+}
+
+impl TableFormat {
+    /// The format that a file's extension names.
+    ///
+    /// # Errors
+    /// [`TableError::Extension`] where it names neither.
+    pub fn of(path: &Path) -> Result<Self, TableError> {
+        match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
+            Some("csv") => Ok(Self::Csv),
+            Some("parquet") => Ok(Self::Parquet),
+            _ => Err(TableError::Extension(path.to_owned())),
+        }
+    }
+}
+
+/// What a column holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ColumnKind {
+    /// Whole numbers.
+    Integer,
+    /// Numbers, with as many decimals as they need or with a fixed count.
+    Number {
+        /// The count, if fixed.
+        decimals: Option<usize>,
+    },
+    /// Text.
+    Text,
+}
+
+/// A column to write.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Column {
+    /// Its name, with the unit.
+    pub name: String,
+    /// What it holds.
+    pub kind: ColumnKind,
+}
+
+impl Column {
+    /// A column of whole numbers.
+    #[must_use]
+    pub fn integer(name: impl Into<String>) -> Self {
+        Self { name: name.into(), kind: ColumnKind::Integer }
+    }
+
+    /// A column of numbers with as many decimals as they need.
+    #[must_use]
+    pub fn number(name: impl Into<String>) -> Self {
+        Self { name: name.into(), kind: ColumnKind::Number { decimals: None } }
+    }
+
+    /// A column of numbers that are rounded to `decimals`.
+    #[must_use]
+    pub fn rounded(name: impl Into<String>, decimals: usize) -> Self {
+        Self { name: name.into(), kind: ColumnKind::Number { decimals: Some(decimals) } }
+    }
+
+    /// A column of text.
+    #[must_use]
+    pub fn text(name: impl Into<String>) -> Self {
+        Self { name: name.into(), kind: ColumnKind::Text }
+    }
+}
+
+/// A cell to write.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Value<'a> {
+    /// Not known.
+    Missing,
+    /// A whole number.
+    Integer(i64),
+    /// A number; missing where it is not finite.
+    Number(f64),
+    /// Text; missing where it is empty.
+    Text(&'a str),
+}
+
+impl From<Option<f64>> for Value<'_> {
+    fn from(number: Option<f64>) -> Self {
+        number.map_or(Self::Missing, Self::Number)
+    }
+}
+
+impl<'a> From<&'a str> for Value<'a> {
+    fn from(text: &'a str) -> Self {
+        Self::Text(text)
+    }
+}
+
+/// Writes a table row by row.
+#[derive(Debug)]
+pub struct TableWriter {
+    columns: Vec<Column>,
+    /// For messages.
+    path: PathBuf,
+    rows: u64,
+    sink: Sink,
+}
+
+#[derive(Debug)]
+enum Sink {
+    Csv(Box<csv::CsvWriter>),
+    Parquet(Box<parquet::ParquetWriter>),
+}
+
+impl TableWriter {
+    /// Starts the table that is to stand at `path` (its extension chooses the format) in the file `at`, with facts on the whole
+    /// table (units, signs) that Parquet keeps and CSV has no place for.
+    ///
+    /// # Errors
+    /// An unknown extension, two columns of one name, or a file that can't be written.
+    pub fn create(
+        at: &Path,
+        path: &Path,
+        columns: Vec<Column>,
+        facts: &[(String, String)],
+    ) -> Result<Self, TableError> {
+        let refused = |why: String| TableError::Write { path: path.to_owned(), why };
+        for (k, column) in columns.iter().enumerate() {
+            if columns[..k].iter().any(|c| c.name == column.name) {
+                return Err(refused(format!("two columns are named `{}`", column.name)));
+            }
+        }
+        let sink = match TableFormat::of(path)? {
+            TableFormat::Csv => Sink::Csv(Box::new(csv::CsvWriter::create(at, &columns).map_err(refused)?)),
+            TableFormat::Parquet => {
+                Sink::Parquet(Box::new(parquet::ParquetWriter::create(at, &columns, facts).map_err(refused)?))
+            }
+        };
+        Ok(Self { columns, path: path.to_owned(), rows: 0, sink })
+    }
+
+    /// Writes a row, a cell a column.
+    ///
+    /// # Errors
+    /// Cells that do not fit the columns, or a file that can't be written on.
+    pub fn write(&mut self, cells: &[Value<'_>]) -> Result<(), TableError> {
+        self.rows += 1;
+        if cells.len() != self.columns.len() {
+            let why = format!("row {} has {} cells for {} columns", self.rows, cells.len(), self.columns.len());
+            return Err(TableError::Write { path: self.path.clone(), why });
+        }
+        for (cell, column) in cells.iter().zip(&self.columns) {
+            let fits = match cell {
+                Value::Missing => true,
+                Value::Integer(_) => column.kind != ColumnKind::Text,
+                Value::Number(_) => matches!(column.kind, ColumnKind::Number { .. }),
+                Value::Text(_) => column.kind == ColumnKind::Text,
+            };
+            if !fits {
+                let why = format!("{cell:?} in row {} does not fit the column `{}`", self.rows, column.name);
+                return Err(TableError::Write { path: self.path.clone(), why });
+            }
+        }
+        let written = match &mut self.sink {
+            Sink::Csv(sink) => sink.write(cells, &self.columns),
+            Sink::Parquet(sink) => sink.write(cells, &self.columns),
+        };
+        written.map_err(|why| TableError::Write { path: self.path.clone(), why })
+    }
+
+    /// Ends the table; before, the file is not whole.
+    ///
+    /// # Errors
+    /// A file that can't be written on.
+    pub fn finish(self) -> Result<(), TableError> {
+        match self.sink {
+            Sink::Csv(sink) => sink.finish(),
+            Sink::Parquet(sink) => sink.finish(),
+        }
+        .map_err(|why| TableError::Write { path: self.path, why })
+    }
+}
+
+/// The text of a number in a column of fixed or free decimals; none where it is missing.
+fn number_text(number: f64, decimals: Option<usize>) -> Option<String> {
+    if !number.is_finite() {
+        return None;
+    }
+    let text = match decimals {
+        Some(decimals) => format!("{number:.decimals$}"),
+        // `{:?}` is the shortest text that reads as the same number; it has an exponent where that is shorter.
+        None => {
+            let text = format!("{number:?}");
+            text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
+        }
+    };
+    // A negative number that rounds to nothing has no sign.
+    let unsigned = text.strip_prefix('-').filter(|rest| rest.bytes().all(|b| b == b'0' || b == b'.'));
+    Some(unsigned.map_or(text.clone(), str::to_owned))
+}
+
+/// The number that [`number_text`] writes.
+fn number_value(number: f64, decimals: Option<usize>) -> Option<f64> {
+    match decimals {
+        None => number.is_finite().then_some(number + 0.0),
+        Some(_) => number_text(number, decimals)?.parse().ok(),
+    }
+}
+
+#[cfg(test)]
+mod tests;

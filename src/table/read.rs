@@ -1,0 +1,172 @@
+//! A table in memory, its columns asked for by name.
+
+use std::path::{Path, PathBuf};
+
+use super::{TableError, TableFormat, csv, parquet};
+
+/// A table that was read.
+#[derive(Debug, Clone)]
+pub struct Table {
+    path: PathBuf,
+    names: Vec<String>,
+    rows: usize,
+    cells: Cells,
+    facts: Vec<(String, String)>,
+}
+
+#[derive(Debug, Clone)]
+enum Cells {
+    Csv(Vec<::csv::StringRecord>),
+    Parquet(Vec<parquet::Read>),
+}
+
+impl Table {
+    /// Reads a CSV or Parquet file.
+    ///
+    /// # Errors
+    /// An unknown extension, a file that is missing or damaged, rows of unequal length, two columns of one name.
+    pub fn read(path: &Path) -> Result<Self, TableError> {
+        let failed = |what: String| TableError::Read { path: path.to_owned(), what };
+        let (names, cells, facts) = match TableFormat::of(path)? {
+            TableFormat::Csv => {
+                let (names, rows) = csv::read(path).map_err(failed)?;
+                (names, Cells::Csv(rows), Vec::new())
+            }
+            TableFormat::Parquet => {
+                let read = parquet::read(path).map_err(failed)?;
+                (read.names, Cells::Parquet(read.columns), read.facts)
+            }
+        };
+        if names.is_empty() {
+            return Err(failed("is empty; a table begins with the names of its columns".to_owned()));
+        }
+        if let Some(double) = names.iter().enumerate().find(|(k, name)| names[..*k].contains(name)) {
+            return Err(failed(format!("two columns are named `{}`; rename one", double.1)));
+        }
+        let rows = match &cells {
+            Cells::Csv(rows) => rows.len(),
+            Cells::Parquet(columns) => match &columns[0] {
+                parquet::Read::Integers(column) => column.len(),
+                parquet::Read::Numbers(column) => column.len(),
+                parquet::Read::Texts(column) => column.len(),
+            },
+        };
+        Ok(Self { path: path.to_owned(), names, rows, cells, facts })
+    }
+
+    /// The columns' names, in order.
+    #[must_use]
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// The number of rows.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Facts on the whole table; only Parquet keeps them.
+    #[must_use]
+    pub fn facts(&self) -> &[(String, String)] {
+        &self.facts
+    }
+
+    /// A column of numbers; none where a cell is empty.
+    ///
+    /// # Errors
+    /// No such column, or a cell that is no finite number.
+    pub fn numbers(&self, name: &str) -> Result<Vec<Option<f64>>, TableError> {
+        const WHAT: &str = "is no finite number; correct it or leave it empty";
+        let checked = |row: usize, number: f64| {
+            if number.is_finite() { Ok(number) } else { Err(self.cell(row, name, format!("`{number}` {WHAT}"))) }
+        };
+        self.column(name, |cells, column| match cells {
+            Cells::Csv(rows) => each(rows.iter().map(|r| Some(&r[column]).filter(|t| !t.is_empty())), |row, text| {
+                let number = text.parse::<f64>().map_err(|_| self.cell(row, name, format!("`{text}` {WHAT}")))?;
+                checked(row, number)
+            }),
+            Cells::Parquet(columns) => match &columns[column] {
+                parquet::Read::Integers(known) => Ok(known.iter().map(|v| v.map(|v| v as f64)).collect()),
+                parquet::Read::Numbers(known) => each(known.iter().copied(), checked),
+                parquet::Read::Texts(known) => each(known.iter().map(Option::as_ref), |row, text| {
+                    Err(self.cell(row, name, format!("`{text}` {WHAT}")))
+                }),
+            },
+        })
+    }
+
+    /// A column of whole numbers; none where a cell is empty.
+    ///
+    /// # Errors
+    /// No such column, or a cell that is no whole number.
+    pub fn integers(&self, name: &str) -> Result<Vec<Option<i64>>, TableError> {
+        const WHAT: &str = "is no whole number; correct it or leave it empty";
+        let bad = |row: usize, shown: String| self.cell(row, name, format!("`{shown}` {WHAT}"));
+        self.column(name, |cells, column| match cells {
+            Cells::Csv(rows) => each(rows.iter().map(|r| Some(&r[column]).filter(|t| !t.is_empty())), |row, text| {
+                text.parse().map_err(|_| bad(row, text.to_owned()))
+            }),
+            Cells::Parquet(columns) => match &columns[column] {
+                parquet::Read::Integers(known) => Ok(known.clone()),
+                parquet::Read::Numbers(known) => each(known.iter().copied(), |row, number: f64| {
+                    // Whole numbers up to 2^53 are exact.
+                    let whole = number.fract() == 0.0 && number.abs() <= 9_007_199_254_740_992.0;
+                    if whole { Ok(number as i64) } else { Err(bad(row, number.to_string())) }
+                }),
+                parquet::Read::Texts(known) => {
+                    each(known.iter().map(Option::as_ref), |row, text| Err(bad(row, text.clone())))
+                }
+            },
+        })
+    }
+
+    /// A column as text; none where a cell is empty.
+    ///
+    /// # Errors
+    /// No such column.
+    pub fn texts(&self, name: &str) -> Result<Vec<Option<String>>, TableError> {
+        self.column(name, |cells, column| {
+            Ok(match cells {
+                Cells::Csv(rows) => rows.iter().map(|r| Some(r[column].to_owned()).filter(|t| !t.is_empty())).collect(),
+                Cells::Parquet(columns) => match &columns[column] {
+                    parquet::Read::Integers(known) => known.iter().map(|v| v.map(|v| v.to_string())).collect(),
+                    parquet::Read::Numbers(known) => known.iter().map(|v| v.map(|v| v.to_string())).collect(),
+                    parquet::Read::Texts(known) => known.iter().map(|v| v.clone().filter(|t| !t.is_empty())).collect(),
+                },
+            })
+        })
+    }
+
+    fn column<V>(
+        &self,
+        name: &str,
+        get: impl FnOnce(&Cells, usize) -> Result<Vec<Option<V>>, TableError>,
+    ) -> Result<Vec<Option<V>>, TableError> {
+        let Some(column) = self.names.iter().position(|n| n == name) else {
+            let what = format!("has no column `{name}`; its columns are {}", self.names.join(", "));
+            return Err(TableError::Read { path: self.path.clone(), what });
+        };
+        get(&self.cells, column)
+    }
+
+    /// The error of a cell, or of a row at one of its cells, that is wrong.
+    pub(crate) fn cell(&self, row: usize, name: &str, what: String) -> TableError {
+        let path = self.path.display();
+        let place = match &self.cells {
+            Cells::Csv(rows) => {
+                format!("{path}:{}: column `{name}`", rows[row].position().map_or(0, ::csv::Position::line))
+            }
+            Cells::Parquet(_) => format!("{path}: row {}, column `{name}`", row + 1),
+        };
+        TableError::Cell { place, what }
+    }
+}
+
+/// Converts the known cells.
+fn each<T, V>(
+    cells: impl Iterator<Item = Option<T>>,
+    convert: impl Fn(usize, T) -> Result<V, TableError>,
+) -> Result<Vec<Option<V>>, TableError> {
+    cells.enumerate().map(|(row, cell)| cell.map(|cell| convert(row, cell)).transpose()).collect()
+}

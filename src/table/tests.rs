@@ -1,0 +1,200 @@
+use std::fs;
+
+use proptest::prelude::*;
+
+use super::*;
+
+const FORMATS: [&str; 2] = ["csv", "parquet"];
+
+fn columns() -> Vec<Column> {
+    vec![
+        Column::integer("frame"),
+        Column::rounded("time_s", 6),
+        Column::number("free"),
+        Column::rounded("J2_deg", 5),
+        Column::text("status"),
+    ]
+}
+
+/// A folder and the table of `rows` in it.
+fn written(extension: &str, rows: &[[Value<'_>; 5]]) -> (tempfile::TempDir, PathBuf) {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("t").with_extension(extension);
+    let facts = [("angles".to_owned(), "positive in flexion".to_owned())];
+    let mut table = TableWriter::create(&path, &path, columns(), &facts).unwrap();
+    for row in rows {
+        table.write(row).unwrap();
+    }
+    table.finish().unwrap();
+    (dir, path)
+}
+
+const ROWS: [[Value<'static>; 5]; 4] = [
+    [Value::Integer(0), Value::Number(0.0), Value::Number(0.1), Value::Number(-0.000_001), Value::Text("ok")],
+    [Value::Integer(1), Value::Number(1.0 / 30.0), Value::Missing, Value::Missing, Value::Text("lost: a, \"b\"\nä")],
+    [Value::Integer(i64::MIN), Value::Integer(-2), Value::Number(1e-300), Value::Number(f64::NAN), Value::Missing],
+    [
+        Value::Missing,
+        Value::Number(-1_234.567_890_12),
+        Value::Number(-0.0),
+        Value::Number(f64::INFINITY),
+        Value::Text(""),
+    ],
+];
+
+#[test]
+fn tables_read_alike_from_both_formats() {
+    for extension in FORMATS {
+        let (_dir, path) = written(extension, &ROWS);
+        let table = Table::read(&path).unwrap();
+        assert_eq!((table.rows(), table.names().join(",").as_str()), (4, "frame,time_s,free,J2_deg,status"));
+        assert_eq!(table.integers("frame").unwrap(), [Some(0), Some(1), Some(i64::MIN), None]);
+        assert_eq!(table.numbers("time_s").unwrap(), [Some(0.0), Some(0.033_333), Some(-2.0), Some(-1_234.567_89)]);
+        assert_eq!(table.numbers("free").unwrap(), [Some(0.1), None, Some(1e-300), Some(0.0)]);
+        assert!(table.numbers("free").unwrap()[3].unwrap().is_sign_positive(), "{extension}");
+        assert_eq!(table.numbers("J2_deg").unwrap(), [Some(0.0), None, None, None]);
+        assert!(table.numbers("J2_deg").unwrap()[0].unwrap().is_sign_positive(), "{extension}");
+        let status: Vec<Option<&str>> = vec![Some("ok"), Some("lost: a, \"b\"\nä"), None, None];
+        assert_eq!(table.texts("status").unwrap(), status.iter().map(|s| s.map(str::to_owned)).collect::<Vec<_>>());
+        assert_eq!(table.facts().len(), usize::from(extension == "parquet"));
+    }
+}
+
+#[test]
+fn csv_is_what_a_person_expects() {
+    let (_dir, path) = written("csv", &ROWS[..2]);
+    let text = fs::read_to_string(path).unwrap();
+    assert_eq!(
+        text,
+        "frame,time_s,free,J2_deg,status\n0,0.000000,0.1,0.00000,ok\n1,0.033333,,,\"lost: a, \"\"b\"\"\nä\"\n"
+    );
+}
+
+#[test]
+fn a_table_may_have_no_rows() {
+    for extension in FORMATS {
+        let (_dir, path) = written(extension, &[]);
+        let table = Table::read(&path).unwrap();
+        assert_eq!((table.rows(), table.names().len()), (0, 5));
+        assert!(table.numbers("time_s").unwrap().is_empty() && table.texts("status").unwrap().is_empty());
+    }
+}
+
+#[test]
+fn long_tables_span_row_groups() {
+    let rows = 2 * 65_536 + 3;
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("long.parquet");
+    let columns = vec![Column::integer("frame"), Column::rounded("x", 3), Column::text("status")];
+    let mut table = TableWriter::create(&path, &path, columns, &[]).unwrap();
+    for k in 0..rows {
+        let x = if k % 3 == 0 { Value::Missing } else { Value::Number(k as f64 / 7.0) };
+        table.write(&[Value::Integer(k), x, Value::Text(if k % 5 == 0 { "lost: a" } else { "ok" })]).unwrap();
+    }
+    table.finish().unwrap();
+    let table = Table::read(&path).unwrap();
+    assert_eq!(table.integers("frame").unwrap(), (0..rows).map(Some).collect::<Vec<_>>());
+    let x = table.numbers("x").unwrap();
+    assert!((0..rows as usize).all(|k| x[k].is_some() == (k % 3 != 0)));
+    assert_eq!(x[131_074], Some(18_724.857));
+    assert_eq!(table.texts("status").unwrap()[65_540].as_deref(), Some("lost: a"));
+}
+
+#[test]
+fn the_same_rows_give_the_same_bytes() {
+    for extension in FORMATS {
+        let [a, b] = [written(extension, &ROWS), written(extension, &ROWS)].map(|(_dir, path)| fs::read(path).unwrap());
+        assert!(a == b, "{extension}");
+    }
+}
+
+#[test]
+fn wrong_rows_and_columns_are_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("t.csv");
+    let mut table = TableWriter::create(&path, &path, columns(), &[]).unwrap();
+    assert!(table.write(&ROWS[0][..4]).unwrap_err().to_string().contains("4 cells for 5 columns"));
+    let mut row = ROWS[0];
+    row[0] = Value::Number(1.5);
+    assert!(table.write(&row).unwrap_err().to_string().contains("`frame`"));
+    let twice = vec![Column::text("a"), Column::text("a")];
+    assert!(TableWriter::create(&path, &path, twice, &[]).unwrap_err().to_string().contains("two columns"));
+    let other = dir.path().join("t.xlsx");
+    let told = TableWriter::create(&other, &other, columns(), &[]).unwrap_err().to_string();
+    assert!(told.contains("t.xlsx") && told.contains(".parquet"), "{told}");
+    let nowhere = dir.path().join("no/t.parquet");
+    assert!(TableWriter::create(&nowhere, &nowhere, columns(), &[]).unwrap_err().to_string().contains("t.parquet"));
+    assert_eq!(TableFormat::of(Path::new("A.CSV")).unwrap(), TableFormat::Csv);
+}
+
+fn read_text(text: &[u8]) -> Result<Table, TableError> {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("log.csv");
+    fs::write(&path, text).unwrap();
+    Table::read(&path)
+}
+
+#[test]
+fn files_of_other_programs_are_read() {
+    let table = read_text(b"\xef\xbb\xbftime_s, P1 ,note\r\n0, 1e-3,\"a, b\"\r\n\r\n+2.5,,c\r\n").unwrap();
+    assert_eq!(table.names(), ["time_s", "P1", "note"]);
+    assert_eq!(table.numbers("time_s").unwrap(), [Some(0.0), Some(2.5)]);
+    assert_eq!(table.numbers("P1").unwrap(), [Some(0.001), None]);
+    assert_eq!(table.texts("note").unwrap()[0].as_deref(), Some("a, b"));
+}
+
+#[test]
+fn a_wrong_cell_is_named_with_file_line_and_column() {
+    let table = read_text(b"a,b\n1,\"two\nlines\"\n1,2\nnan,2.5\nx,3\n").unwrap();
+    let told = table.numbers("a").unwrap_err().to_string();
+    assert!(told.contains("log.csv:5: column `a`: `NaN` is no finite number"), "{told}");
+    let told = table.integers("b").unwrap_err().to_string();
+    assert!(told.contains("log.csv:2: column `b`"), "{told}");
+    let told = table.numbers("c").unwrap_err().to_string();
+    assert!(told.contains("no column `c`; its columns are a, b"), "{told}");
+    let (_dir, path) = written("parquet", &ROWS);
+    let table = Table::read(&path).unwrap();
+    let told = table.numbers("status").unwrap_err().to_string();
+    assert!(told.contains("t.parquet: row 1, column `status`"), "{told}");
+    assert!(table.integers("time_s").unwrap_err().to_string().contains("row 2, column `time_s`"));
+}
+
+#[test]
+fn damaged_files_are_told() {
+    for (text, words) in [
+        (&b""[..], "is empty"),
+        (b"a,b\n1,2\n1,2,3\n", "line 3 has 3 cells and the first line 2"),
+        (b"a,a\n1,2\n", "two columns are named `a`"),
+        (b"a,b\n1,\xff\n", "line 2 is not UTF-8"),
+    ] {
+        let told = read_text(text).unwrap_err().to_string();
+        assert!(told.contains(words) && told.contains("log.csv"), "{told}");
+    }
+    assert!(Table::read(Path::new("nothing.csv")).unwrap_err().to_string().contains("nothing.csv"));
+    let (_dir, path) = written("parquet", &ROWS);
+    let whole = fs::read(&path).unwrap();
+    fs::write(&path, &whole[..whole.len() / 2]).unwrap();
+    assert!(Table::read(&path).unwrap_err().to_string().contains("not a whole Parquet file"));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn numbers_come_back(
+        free in prop::collection::vec(prop::option::of(prop::num::f64::NORMAL | prop::num::f64::SUBNORMAL | prop::num::f64::ZERO), 1..20),
+        fixed in -1e6..1e6_f64,
+    ) {
+        let read = FORMATS.map(|extension| {
+            let rows: Vec<[Value<'_>; 5]> =
+                free.iter().map(|&x| [Value::Missing, Value::Number(fixed), x.into(), Value::Number(fixed), Value::Missing]).collect();
+            let (_dir, path) = written(extension, &rows);
+            let table = Table::read(&path).unwrap();
+            (table.numbers("free").unwrap(), table.numbers("J2_deg").unwrap()[0].unwrap())
+        });
+        prop_assert_eq!(&read[0], &read[1]);
+        prop_assert_eq!(&read[0].0, &free);
+        // Half of the last decimal and the rounding of a million.
+        prop_assert!((read[0].1 - fixed).abs() <= 0.5e-5 + 1e-9);
+    }
+}
