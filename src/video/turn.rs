@@ -1,0 +1,41 @@
+//! The stored picture and the shown one: quarter turns.
+
+/// How the stored picture is turned, clockwise, to be shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Turn {
+    /// Not at all.
+    #[default]
+    None,
+    /// By 90 degrees.
+    Quarter,
+    /// By 180 degrees.
+    Half,
+    /// By 270 degrees.
+    ThreeQuarters,
+}
+
+impl Turn {
+    /// The point of the shown picture of a point of the stored one, `size` the stored width and height.
+    #[must_use]
+    pub fn shown_from_stored(self, [x, y]: [f64; 2], (width, height): (usize, usize)) -> [f64; 2] {
+        let (right, bottom) = (width as f64 - 1.0, height as f64 - 1.0);
+        match self {
+            Self::None => [x, y],
+            Self::Quarter => [bottom - y, x],
+            Self::Half => [right - x, bottom - y],
+            Self::ThreeQuarters => [y, right - x],
+        }
+    }
+
+    /// The point of the stored picture of a point of the shown one, `size` the *stored* width and height.
+    #[must_use]
+    pub fn stored_from_shown(self, [x, y]: [f64; 2], (width, height): (usize, usize)) -> [f64; 2] {
+        let (right, bottom) = (width as f64 - 1.0, height as f64 - 1.0);
+        match self {
+            Self::None => [x, y],
+            Self::Quarter => [y, bottom - x],
+            Self::Half => [right - x, bottom - y],
+            Self::ThreeQuarters => [right - y, x],
+        }
+    }
+}

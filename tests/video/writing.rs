@@ -1,0 +1,51 @@
+//! Writing: the same bytes each time, and words for what can't be written.
+
+use lunula::video::{Encoder, Encoding, Format, Picture};
+
+use super::scene::{SMALL, numbered, uneven, write};
+
+#[test]
+fn the_same_pictures_make_the_same_bytes() {
+    let folder = tempfile::tempdir().unwrap();
+    let encoding = Encoding { crf: 30, ..Encoding::new(Format { width: 320, height: 180, ..SMALL }) };
+    let bytes = || {
+        let path = folder.path().join("a.mp4");
+        write(&path, &encoding, 40, uneven);
+        std::fs::read(path).unwrap()
+    };
+    let first = bytes();
+    // Beside others that keep the machine busy, so that threads take turns in another order.
+    let busy = std::thread::spawn(|| (0..200_000_000u64).fold(0, |sum, k| sum ^ k.wrapping_mul(k)));
+    for _ in 0..3 {
+        assert!(bytes() == first);
+    }
+    busy.join().unwrap();
+}
+
+#[test]
+fn what_can_not_be_written_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let refused = |name: &str, encoding: &Encoding, words: &str| {
+        let path = folder.path().join(name);
+        let error = Encoder::create(&path, encoding).err().expect("no error").to_string();
+        assert!(error.contains(words) && error.contains(name), "`{words}` is not in: {error}");
+    };
+    let small = Encoding::new(SMALL);
+    refused("nowhere/a.mp4", &small, "can't be written");
+    refused("a.txt", &small, ".mp4, .mov, .mkv");
+    refused("a.mp4", &Encoding::new(Format { width: 63, ..SMALL }), "odd width");
+    refused("a.mp4", &Encoding::new(Format { depth: 12, ..SMALL }), "8 or 10 bits");
+    std::fs::create_dir(folder.path().join("b.mp4")).unwrap();
+    refused("b.mp4", &small, "can't be written");
+}
+
+#[test]
+fn pictures_have_to_fit_and_to_come_in_order() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut encoder = Encoder::create(&folder.path().join("a.mp4"), &Encoding::new(SMALL)).unwrap();
+    encoder.push(&numbered(SMALL, 0), 5).unwrap();
+    let error = encoder.push(&numbered(SMALL, 1), 5).unwrap_err().to_string();
+    assert!(error.contains("order of their times"), "{error}");
+    let error = encoder.push(&Picture::new(Format { width: 66, ..SMALL }), 9).unwrap_err().to_string();
+    assert!(error.contains("another size"), "{error}");
+}
