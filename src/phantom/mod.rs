@@ -3,5 +3,10 @@
 //! A scene is a continuous, band-limited function of the place on the picture. The photograph is that function at the pixel
 //! centres, with noise and rounding; the truth is the same function where the job's result should hold it.
 
+pub mod finger;
 pub mod nail;
 pub mod photos;
+mod place;
+pub mod screen;
+pub mod trajectory;
+pub mod video;

@@ -16,7 +16,10 @@ use thiserror::Error;
 use super::{FileFormat, OptionFault, PhotoOptions, maps::ExactMaps};
 use crate::{
     labelme::{self, LabelMe, Shape, to_labelme},
-    phantom::nail::{NailScene, Pose, SceneFault},
+    phantom::{
+        nail::{NailScene, Pose, SceneFault},
+        place::put_in_place,
+    },
 };
 
 /// The file that says that a folder was written here.
@@ -141,30 +144,9 @@ pub fn write_watched(
     fs::create_dir_all(out).map_err(refused(out))?;
     let stage = tempfile::Builder::new().prefix(".phantom-").tempdir_in(out).map_err(refused(out))?;
     let mut summary = draw_all(options, stage.path(), watch)?;
-    put_in_place(stage.path(), out)?;
+    put_in_place(stage.path(), out, &["photos", "truth"]).map_err(|(path, source)| Error::Write { path, source })?;
     summary.stages.total_s = begin.elapsed().as_secs_f64();
     Ok(summary)
-}
-
-/// Moves a whole set from `stage` to `out`; what stood there goes into `stage`, to be deleted with it, or back where the move fails.
-fn put_in_place(stage: &Path, out: &Path) -> Result<(), Error> {
-    let mut moves = Vec::new();
-    for name in ["photos", "truth"] {
-        let place = out.join(name);
-        if place.exists() {
-            moves.push((place.clone(), stage.join(format!("old-{name}"))));
-        }
-        moves.push((stage.join(name), place));
-    }
-    for (k, (from, to)) in moves.iter().enumerate() {
-        if let Err(source) = fs::rename(from, to) {
-            for (from, to) in moves[..k].iter().rev() {
-                fs::rename(to, from).map_err(refused(from))?;
-            }
-            return Err(Error::Write { path: to.clone(), source });
-        }
-    }
-    Ok(())
 }
 
 fn draw_all(

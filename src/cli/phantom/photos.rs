@@ -1,32 +1,20 @@
-//! `lunula phantom`: synthetic scenes with exact truth.
+//! `lunula phantom photos`: photographs of nails.
 
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
-use clap::{Args, Subcommand, ValueEnum};
+use clap::{Args, ValueEnum};
 use lunula::phantom::nail::Pose;
 use lunula::phantom::photos::{Error, FileFormat, LightKind, PhotoOptions, write_watched};
 
-use super::{Common, Interrupted, Outcome};
-
-/// Synthetic scenes with exact truth: inputs as the jobs read them, and truth/ beside them
-#[derive(Debug, Args)]
-pub(super) struct PhantomArgs {
-    #[command(subcommand)]
-    kind: Kind,
-}
-
-#[derive(Debug, Subcommand)]
-enum Kind {
-    Photos(Box<PhotosArgs>),
-}
+use super::{Common, Interrupted, Outcome, parse_size};
 
 /// Photographs of nails of many shapes, sizes, skin tones and lights, in the eight poses of the thesis (4.2.3-4.2.6)
 ///
 /// Writes OUT/photos/<pose>/<subject>.png with a LabelMe file beside each, which `lunula photos OUT/photos` reads, and
 /// OUT/truth/: nails.csv, outlines/, normalized/*.npy and maps/*.npy, exact.
 #[derive(Debug, Args)]
-struct PhotosArgs {
+pub(super) struct PhotosArgs {
     /// Everything random follows from it
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -81,13 +69,7 @@ enum LightArg {
     Varied,
 }
 
-fn parse_size(text: &str) -> Result<(u32, u32), String> {
-    let sides = text.split_once('x').and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
-    sides.ok_or_else(|| format!("`{text}` is not WIDTHxHEIGHT, as 640x480"))
-}
-
-pub(super) fn run(args: &PhantomArgs) -> anyhow::Result<Outcome> {
-    let Kind::Photos(args) = &args.kind;
+pub(super) fn run(args: &PhotosArgs) -> anyhow::Result<Outcome> {
     let defaults = PhotoOptions::default();
     let options = PhotoOptions {
         seed: args.seed,

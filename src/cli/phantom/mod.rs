@@ -1,0 +1,36 @@
+//! `lunula phantom`: synthetic scenes with exact truth.
+
+mod choices;
+mod photos;
+mod video;
+
+use clap::{Args, Subcommand};
+
+pub(super) use choices::SceneArg;
+
+use super::{Common, Interrupted, Outcome};
+
+/// Synthetic scenes with exact truth: inputs as the jobs read them, and truth/ beside them
+#[derive(Debug, Args)]
+pub(super) struct PhantomArgs {
+    #[command(subcommand)]
+    kind: Kind,
+}
+
+#[derive(Debug, Subcommand)]
+enum Kind {
+    Photos(Box<photos::PhotosArgs>),
+    Video(Box<video::VideoArgs>),
+}
+
+pub(super) fn run(args: &PhantomArgs) -> anyhow::Result<Outcome> {
+    match &args.kind {
+        Kind::Photos(args) => photos::run(args),
+        Kind::Video(args) => video::run(args),
+    }
+}
+
+fn parse_size(text: &str) -> Result<(u32, u32), String> {
+    let sides = text.split_once('x').and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    sides.ok_or_else(|| format!("`{text}` is not WIDTHxHEIGHT, as 640x480"))
+}

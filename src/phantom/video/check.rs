@@ -1,0 +1,122 @@
+//! Whether a video can be made as wanted; all faults are told at once, by the command line's names.
+
+use std::fmt;
+
+use super::VideoOptions;
+use super::lens::Mapping;
+use crate::phantom::finger::JOINTS;
+use crate::phantom::trajectory::Trajectory;
+
+impl VideoOptions {
+    /// Can this video be made?
+    ///
+    /// # Errors
+    /// [`Faults`]: all that is wrong.
+    pub fn check(&self) -> Result<(), Faults> {
+        let mut faults = Faults(Vec::new());
+        let mut need = |holds: bool, words: &dyn Fn() -> String| {
+            if !holds {
+                faults.0.push(words());
+            }
+        };
+        let size = format!("{}x{}", self.width, self.height);
+        let sides = [self.width, self.height];
+        need(sides.iter().all(|side| (32..=8192).contains(side)), &|| {
+            format!("--size {size}: sides from 32 to 8192 pixels can be drawn")
+        });
+        let stored = self.format();
+        let (across, down) = stored.subsampling.unwrap_or((1, 1));
+        need(stored.width.is_multiple_of(across) && stored.height.is_multiple_of(down), &|| {
+            format!("--size {size}: this chroma needs even sides; choose them or --format 444")
+        });
+        let between = |value: f64, low: f64, high: f64| (low..=high).contains(&value);
+        let mut ranged = |option: &str, value: f64, low: f64, high: f64, unit: &str| {
+            need(between(value, low, high), &|| format!("{option} {value}: choose {low} to {high}{unit}"));
+        };
+        ranged("--fps", self.fps, 1.0, 1000.0, " frames a second");
+        ranged("--seconds", self.seconds, 0.0, 36000.0, " s");
+        ranged("--vfr", self.jitter, 0.0, 0.9, " of an interval");
+        ranged("--sway", self.sway_px, 0.0, 0.25 * self.width as f64, " px");
+        ranged("--blur", self.blur, 0.0, 1.0, " of the frame interval");
+        ranged("--flicker", 100.0 * self.flicker, 0.0, 90.0, " %");
+        ranged("--flicker-hz", self.flicker_hz, 0.0, 1e5, " Hz");
+        ranged("--gradient", 100.0 * self.gradient, 0.0, 90.0, " %");
+        ranged("--focus", self.focus_px, 0.3, 20.0, " px");
+        ranged("--noise", self.noise_sd, 0.0, 128.0, " of 255");
+        ranged("--crf", f64::from(self.crf), 0.0, 51.0, "");
+        match &self.trajectory {
+            Trajectory::Eq27 { hz } | Trajectory::Random { hz, .. } => ranged("--bend-hz", *hz, 0.0, 100.0, " Hz"),
+            Trajectory::Given { rows } => {
+                let finite = rows.iter().flatten().all(|value| value.is_finite());
+                let ascend = rows.windows(2).all(|pair| pair[1][0] > pair[0][0]);
+                need(!rows.is_empty() && finite && ascend, &|| {
+                    "--trajectory: rows with ascending times and angles in each are needed".to_owned()
+                });
+            }
+        }
+        need(self.frames() > 0, &|| format!("--seconds {}: less than a frame", self.seconds));
+        need([8, 10].contains(&self.depth), &|| format!("--depth {}: choose 8 or 10", self.depth));
+        need(Self::X264_PRESETS.contains(&self.preset), &|| {
+            format!("--x264 {}: choose one of {}", self.preset, Self::X264_PRESETS.join(", "))
+        });
+        let names = self.finger.layout.names();
+        for hide in &self.hide {
+            let (text, frames) = (format!("--hide {}@{}+{}", hide.marker, hide.frame, hide.frames), self.frames());
+            need(names.contains(&hide.marker), &|| {
+                format!("{text}: no marker of this name; there are {}", names.join(", "))
+            });
+            need(hide.frames > 0 && hide.frame < frames, &|| {
+                format!("{text}: the video has frames 0 to {}", frames - 1)
+            });
+        }
+        if let Some(leave) = self.leave {
+            let (text, frames) = (format!("--leave {}+{}", leave.frame, leave.frames), self.frames());
+            need(leave.frames > 0 && leave.frame < frames, &|| {
+                format!("{text}: the video has frames 0 to {}", frames - 1)
+            });
+        }
+        for joint in &self.joints {
+            need(JOINTS.contains(&joint.as_str()), &|| format!("--joints {joint}: there are {}", JOINTS.join(", ")));
+        }
+        need(!self.joints.is_empty(), &|| "--joints: name at least one".to_owned());
+        if let Some(clock) = &self.clock {
+            if let Some(fault) = clock.fault() {
+                need(false, &|| format!("--clock {}: {fault}", clock.format));
+            }
+            let rate = clock.refresh_hz.is_finite() && clock.refresh_hz > 0.0;
+            need(rate, &|| format!("--clock-refresh {}: choose more than 0 Hz", clock.refresh_hz));
+            need(clock.offset_s.is_finite() && clock.offset_s.abs() < 1e9, &|| {
+                format!("--clock-offset {}: choose seconds within a thousand million", clock.offset_s)
+            });
+            need(clock.drift_ppm.abs() < 1e6, &|| format!("--clock-drift-ppm {}: choose less", clock.drift_ppm));
+            let [x, y, w, h] = self.clock_roi_px(clock);
+            need(w >= 8 && h >= 8 && x + w <= self.width && y + h <= self.height, &|| {
+                format!("--clock-roi {x},{y},{w},{h}: not within {size}, or smaller than 8 pixels")
+            });
+        }
+        if let Some(lens) = &self.lens {
+            need(lens.distortion.len() <= 8 && lens.distortion.iter().all(|k| k.is_finite()), &|| {
+                "--distortion: up to eight numbers k1,k2,p1,p2,k3,k4,k5,k6".to_owned()
+            });
+            need(lens.fx_px.is_none_or(|fx| fx.is_finite() && fx > 0.0), &|| "--fx: choose more than 0 px".to_owned());
+            let mapping = Mapping::new(lens, self.width, self.height);
+            let corners = [[0, 0], [sides[0], 0], [0, sides[1]], sides].map(|c| c.map(|v| v as f64));
+            need(corners.into_iter().all(|corner| mapping.straight(corner).is_some()), &|| {
+                format!("--distortion {:?}: so strong that the picture folds over; choose less", lens.distortion)
+            });
+        }
+        if faults.0.is_empty() { Ok(()) } else { Err(faults) }
+    }
+}
+
+/// All that is wrong with the options.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Faults(pub Vec<String>);
+
+impl fmt::Display for Faults {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0.join("; "))
+    }
+}
+
+impl std::error::Error for Faults {}

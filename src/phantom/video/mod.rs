@@ -1,0 +1,43 @@
+//! Videos of a finger with coloured markers, exactly as `lunula posture` reads them, with exact truth (3.2.3, 3.3.5).
+//!
+//! In: [`VideoOptions`] (a [`Preset`], then changed). Out, under one folder:
+//! - `video.mp4`: H.264; a frame's exposure is centred on its presentation time;
+//! - `markers.toml`: `[markers]`, `[segments]`, `[joints]`, flexion, and where wanted `[start]`, `[clock]`, `[camera]`; it runs as it stands;
+//! - `truth/joints.csv`: `frame,time_s,clock_s`, then each joint's exact angle at mid-exposure;
+//! - `truth/tracks.csv`: `frame,time_s,marker,x_px,y_px,in_view,status`: centres at mid-exposure as the lens shows them; `in_view` is the share of
+//!   the marker's disc in the picture that nothing covers, and `status` ok, partial, hidden or outside;
+//! - `truth/clock.csv`, with a clock: `frame,time_s,clock_s,shown,shown_s,changing`;
+//! - `truth/scene.json`: every parameter.
+//!
+//! Coordinates are those of the picture as it is shown, where the stored one is turned.
+//!
+//! Or, without files: [`Scene::picture`] and [`Scene::truth`].
+//!
+//! How it is drawn: sums of colours are taken in R'G'B' (gamma-encoded). Every edge is a disc's or a line's seen through a Gaussian
+//! point-spread function, so that a marker's centroid is exact: it errs by under 0.002 px. Motion blur is the mean of sub-exposures no more than
+//! 0.7 px apart. Flicker and the light's gradient multiply all but the clock's screen, which shines by itself. Then comes the sensor's noise, the colour
+//! matrix and the chroma's siting. What is not modelled: demosaicing, rolling shutter, depth of field, sharpening.
+//!
+//! The same options give the same bytes whatever the number of threads.
+
+mod check;
+mod edge;
+mod lens;
+mod limb;
+mod marker_file;
+mod objects;
+mod options;
+mod paint;
+mod panel;
+mod scene;
+mod sensor;
+mod settle;
+mod share;
+mod write;
+
+pub use check::Faults;
+pub use lens::Lens;
+pub use options::{Chroma, Colours, Hide, Leave, Preset, VideoOptions};
+pub use scene::{FrameTruth, MarkerStatus, MarkerTruth, Scene, SceneMarker};
+pub use sensor::Siting;
+pub use write::{Error, Stages, Summary, write, write_watched};

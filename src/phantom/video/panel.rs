@@ -1,0 +1,61 @@
+//! The clock's screen in a frame: what it shows, averaged over the exposure, in its dark frame.
+
+use super::paint::Row;
+use super::scene::Scene;
+
+/// A screen to be drawn.
+pub(super) struct Screen {
+    roi: [usize; 4],
+    frame_px: usize,
+    back: [f32; 3],
+    front: [f32; 3],
+    lit: Vec<f32>,
+}
+
+impl Screen {
+    /// Moments of the exposure at which the screen is looked at.
+    const LOOKS: usize = 16;
+
+    pub(super) fn new(scene: &Scene, time_s: f64, exposure_s: f64) -> Option<Self> {
+        let clock = scene.options.clock.as_ref()?;
+        let roi = scene.options.clock_roi_px(clock);
+        let mut texts: Vec<(String, usize)> = Vec::new();
+        for look in 0..Self::LOOKS {
+            let at = time_s + exposure_s * ((look as f64 + 0.5) / Self::LOOKS as f64 - 0.5);
+            let (text, _) = clock.shown(at);
+            match texts.iter_mut().find(|(known, _)| *known == text) {
+                Some((_, count)) => *count += 1,
+                None => texts.push((text, 1)),
+            }
+        }
+        let mut lit = vec![0.0; roi[2] * roi[3]];
+        for (text, count) in texts {
+            let share = count as f32 / Self::LOOKS as f32;
+            lit.iter_mut().zip(clock.panel(&text, roi[2], roi[3])).for_each(|(sum, one)| *sum += share * one);
+        }
+        let (back, front) = if clock.light_digits {
+            ([0.05, 0.06, 0.07], [0.84, 0.95, 1.0])
+        } else {
+            ([0.78, 0.82, 0.76], [0.10, 0.12, 0.11])
+        };
+        Some(Self { roi, frame_px: (scene.options.width / 100).max(2), back, front, lit })
+    }
+
+    /// Draws row `y` of it.
+    pub(super) fn draw(&self, y: usize, row: &mut Row) {
+        let [left, top, width, height] = self.roi;
+        if y + self.frame_px < top || y >= top + height + self.frame_px {
+            return;
+        }
+        let end = (left + width + self.frame_px).min(row.width());
+        for x in left.saturating_sub(self.frame_px)..end {
+            row.mix(x, [0.12, 0.12, 0.13], 1.0);
+            if (left..left + width).contains(&x) && (top..top + height).contains(&y) {
+                let lit = self.lit[(y - top) * width + x - left];
+                for (c, channel) in row.rgb.iter_mut().enumerate() {
+                    channel[x] = self.back[c] + lit * (self.front[c] - self.back[c]);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,252 @@
+//! A scene to files: frames are drawn in parallel and encoded in order, and everything is put in its place at the end.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+use std::{fs, io};
+
+use rayon::prelude::*;
+use serde::Serialize;
+use thiserror::Error;
+
+use super::scene::TICKS_PER_S;
+use super::{FrameTruth, MarkerStatus, Scene, Siting};
+use crate::phantom::finger::JOINTS;
+use crate::phantom::place::put_in_place;
+use crate::table::{Column, TableError, TableWriter, Value};
+use crate::video::{Encoder, Encoding, Picture, VideoError};
+
+/// The file that says that a folder was written here.
+const RECORD: &str = "truth/scene.json";
+const RESULTS: [&str; 3] = ["video.mp4", "markers.toml", "truth"];
+
+/// Why a video was not written.
+#[derive(Debug, Error)]
+pub enum Error {
+    /// Something that this job did not write stands in the way.
+    #[error("{} stands already and is no synthetic video's; choose another --out", .0.display())]
+    InTheWay(PathBuf),
+    /// A file or folder could not be written.
+    #[error("{}: cannot be written: {source}", path.display())]
+    Write {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// A table could not be written.
+    #[error(transparent)]
+    Table(#[from] TableError),
+    /// The video could not be encoded.
+    #[error(transparent)]
+    Video(#[from] VideoError),
+    /// The caller asked to stop; nothing was left behind.
+    #[error("interrupted; nothing was written")]
+    Interrupted,
+}
+
+/// Seconds spent. Drawing and encoding run side by side.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Stages {
+    /// Drawing the frames, summed over the threads.
+    pub draw_s: f64,
+    /// Handing them to the encoder.
+    pub encode_s: f64,
+    /// The truth.
+    pub truth_s: f64,
+    /// From beginning to end.
+    pub total_s: f64,
+}
+
+/// A video that was written.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Summary {
+    /// Frames.
+    pub frames: usize,
+    /// From the first frame to the last.
+    pub seconds: f64,
+    /// Distractors that found a place.
+    pub distractors: usize,
+    /// Bytes of the video.
+    pub bytes: u64,
+    /// Where the time went.
+    pub stages: Stages,
+}
+
+fn refused(path: &Path) -> impl FnOnce(io::Error) -> Error {
+    let path = path.to_owned();
+    move |source| Error::Write { path, source }
+}
+
+/// Writes `scene` under `out`; a synthetic video written there before is replaced.
+///
+/// # Errors
+/// [`enum@Error`]; what stood under `out` before is as it was.
+pub fn write(scene: &Scene, out: &Path) -> Result<Summary, Error> {
+    write_watched(scene, out, &|_, _| true)
+}
+
+/// As [`write()`], telling `watch` how many frames are done of how many; it answers whether to go on.
+///
+/// # Errors
+/// [`enum@Error`]; what stood under `out` before is as it was.
+pub fn write_watched(
+    scene: &Scene,
+    out: &Path,
+    watch: &(dyn Fn(usize, usize) -> bool + Sync),
+) -> Result<Summary, Error> {
+    let begin = Instant::now();
+    let places = RESULTS.map(|name| out.join(name));
+    if let Some(place) = places.iter().find(|place| place.exists())
+        && !out.join(RECORD).is_file()
+    {
+        return Err(Error::InTheWay(place.clone()));
+    }
+    let stood = out.is_dir();
+    let written = write_staged(scene, out, watch);
+    if written.is_err() && !stood {
+        // Best effort: only an empty folder can be left.
+        let _ = fs::remove_dir(out);
+    }
+    let mut summary = written?;
+    summary.stages.total_s = begin.elapsed().as_secs_f64();
+    Ok(summary)
+}
+
+fn write_staged(scene: &Scene, out: &Path, watch: &(dyn Fn(usize, usize) -> bool + Sync)) -> Result<Summary, Error> {
+    fs::create_dir_all(out).map_err(refused(out))?;
+    let stage = tempfile::Builder::new().prefix(".phantom-").tempdir_in(out).map_err(refused(out))?;
+    let truth = stage.path().join("truth");
+    fs::create_dir(&truth).map_err(refused(&truth))?;
+    let mut stages = Stages::default();
+    let video = stage.path().join("video.mp4");
+    encode(scene, &video, watch, &mut stages)?;
+    let start = Instant::now();
+    write_truth(scene, &truth)?;
+    write_record(scene, &stage.path().join(RECORD))?;
+    let markers = stage.path().join("markers.toml");
+    fs::write(&markers, scene.markers_toml()).map_err(refused(&markers))?;
+    stages.truth_s = start.elapsed().as_secs_f64();
+    let bytes = fs::metadata(&video).map_err(refused(&video))?.len();
+    put_in_place(stage.path(), out, &RESULTS).map_err(|(path, source)| Error::Write { path, source })?;
+    let frames = scene.frames();
+    Ok(Summary { frames, seconds: scene.time_s(frames - 1), distractors: scene.distractors.len(), bytes, stages })
+}
+
+fn encode(
+    scene: &Scene,
+    path: &Path,
+    watch: &(dyn Fn(usize, usize) -> bool + Sync),
+    stages: &mut Stages,
+) -> Result<(), Error> {
+    let options = scene.options();
+    let encoding = Encoding {
+        matrix: options.matrix,
+        chroma_site: options.stated_siting.map(Siting::place),
+        turn: options.turn,
+        crf: options.crf,
+        preset: options.preset,
+        ticks_per_s: TICKS_PER_S,
+        ticks_a_picture: (f64::from(TICKS_PER_S) / options.fps).round() as i64,
+        ..Encoding::new(options.format())
+    };
+    let mut encoder = Encoder::create(path, &encoding)?;
+    let frames: Vec<usize> = (0..scene.frames()).collect();
+    let draw = |batch: &[usize]| -> Vec<(Picture, f64)> {
+        let one = |&frame: &usize| {
+            let start = Instant::now();
+            (scene.picture(frame), start.elapsed().as_secs_f64())
+        };
+        batch.par_iter().map(one).collect()
+    };
+    let mut batches = frames.chunks(rayon::current_num_threads());
+    let mut drawn = batches.next().map(draw).unwrap_or_default();
+    let mut done = 0;
+    while !drawn.is_empty() {
+        let next = batches.next();
+        let start = Instant::now();
+        let push = || -> Result<f64, VideoError> {
+            for (k, (picture, _)) in drawn.iter().enumerate() {
+                encoder.push(picture, scene.ticks[done + k])?;
+            }
+            Ok(start.elapsed().as_secs_f64())
+        };
+        let (pushed, following) = rayon::join(push, || next.map(draw).unwrap_or_default());
+        stages.encode_s += pushed?;
+        stages.draw_s += drawn.iter().map(|(_, seconds)| seconds).sum::<f64>();
+        done += drawn.len();
+        if !watch(done, frames.len()) {
+            return Err(Error::Interrupted);
+        }
+        drawn = following;
+    }
+    let start = Instant::now();
+    encoder.finish()?;
+    stages.encode_s += start.elapsed().as_secs_f64();
+    Ok(())
+}
+
+fn word(status: MarkerStatus) -> &'static str {
+    match status {
+        MarkerStatus::Ok => "ok",
+        MarkerStatus::Partial => "partial",
+        MarkerStatus::Hidden => "hidden",
+        MarkerStatus::Outside => "outside",
+    }
+}
+
+fn write_truth(scene: &Scene, folder: &Path) -> Result<(), Error> {
+    let truths: Vec<FrameTruth> = (0..scene.frames()).into_par_iter().map(|frame| scene.truth(frame)).collect();
+    let first = [Column::integer("frame"), Column::number("time_s")];
+    let rows = || truths.iter().enumerate().map(|(frame, truth)| (Value::Integer(frame as i64), truth));
+
+    let angles = JOINTS.map(|joint| Column::number(format!("{joint}_deg")));
+    let mut joints = start(folder, "joints.csv", &[&first[..], &[Column::number("clock_s")], &angles].concat())?;
+    for (frame, truth) in rows() {
+        let [j1, j2, j3] = truth.angles_rad.map(|angle| Value::Number(angle.to_degrees()));
+        joints.write(&[frame, Value::Number(truth.time_s), truth.clock_s.into(), j1, j2, j3])?;
+    }
+    joints.finish()?;
+
+    let [x, y, in_view] = ["x_px", "y_px", "in_view"].map(Column::number);
+    let [marker, status] = ["marker", "status"].map(Column::text);
+    let mut tracks = start(folder, "tracks.csv", &[&first[..], &[marker, x, y, in_view, status]].concat())?;
+    for (frame, truth) in rows() {
+        for (marker, seen) in scene.markers().iter().zip(&truth.markers) {
+            let [x, y] = seen.at_px.map(Value::Number);
+            let (in_view, status) = (Value::Number(seen.in_view), word(seen.status).into());
+            tracks.write(&[frame, Value::Number(truth.time_s), marker.name[..].into(), x, y, in_view, status])?;
+        }
+    }
+    tracks.finish()?;
+
+    let Some(clock) = &scene.options().clock else { return Ok(()) };
+    let [clock_s, shown_s] = ["clock_s", "shown_s"].map(Column::number);
+    let more = [clock_s, Column::text("shown"), shown_s, Column::integer("changing")];
+    let mut shows = start(folder, "clock.csv", &[&first[..], &more].concat())?;
+    let half_s = 0.5 * scene.options().blur / scene.options().fps;
+    for (frame, truth) in rows() {
+        let (shown, shown_s) = clock.shown(truth.time_s);
+        let changing = clock.shown(truth.time_s - half_s).0 != clock.shown(truth.time_s + half_s).0;
+        let (shown, shown_s) = (Value::Text(&shown), Value::Number(shown_s));
+        let changing = Value::Integer(i64::from(changing));
+        shows.write(&[frame, Value::Number(truth.time_s), truth.clock_s.into(), shown, shown_s, changing])?;
+    }
+    Ok(shows.finish()?)
+}
+
+fn start(folder: &Path, name: &str, columns: &[Column]) -> Result<TableWriter, Error> {
+    let path = folder.join(name);
+    Ok(TableWriter::create(&path, &path, columns.to_vec(), &[])?)
+}
+
+fn write_record(scene: &Scene, path: &Path) -> Result<(), Error> {
+    let record = serde_json::json!({
+        "options": scene.options(),
+        "frames": scene.frames(),
+        "ticks_per_s": TICKS_PER_S,
+        "markers": scene.markers(),
+        "distractors": scene.distractors,
+    });
+    let text = serde_json::to_vec_pretty(&record).map_err(|error| refused(path)(error.into()))?;
+    fs::write(path, text).map_err(refused(path))
+}
