@@ -1,0 +1,273 @@
+//! The posture job: a video, a checked layout and options in, tables of angles and tracks out; the one entry that command
+//! line, pipelines and trade-offs call.
+//!
+//! A frame is decoded, its planes are looked at where the last frame tells, centres get names, names get angles, the row is
+//! written, the frame forgotten: memory does not grow with the video's length, unless angles are to be smoothed.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use thiserror::Error;
+
+use super::joints::Angles;
+use super::layout::Layout;
+use super::method::Method;
+use super::plan::{CLOCK, steps};
+use super::report::{PostureReport, SearchReport, VideoReport};
+use super::results::{Results, Row};
+use super::siting::Siting;
+use super::suggest::Suggester;
+use super::survey::{Progress, Survey, Surveyor};
+use super::track::{Effort, Tracker};
+use crate::files::WriteError;
+use crate::stages::{Fate, Stages};
+use crate::table::TableError;
+use crate::video::{End, Info, Item, Turn, Video, VideoError};
+
+/// How to work.
+#[derive(Debug, Clone, Default)]
+pub struct PostureOptions {
+    /// Threads that decode (0: all cores).
+    pub threads: usize,
+    /// Smooth the angles over time.
+    pub smooth: bool,
+    /// How centres are found.
+    pub method: Method,
+}
+
+/// Where results go.
+#[derive(Debug, Clone)]
+pub struct Outputs {
+    /// The table of angles; report and pictures stand beside it, named after it.
+    pub joints: PathBuf,
+    /// The table of markers.
+    pub tracks: Option<PathBuf>,
+    /// The video with what was tracked.
+    pub overlay: Option<PathBuf>,
+    /// Whether pictures are drawn.
+    pub figures: bool,
+}
+
+/// A caller's view of a running job.
+pub struct Watch<'a> {
+    /// Becomes true where the job is to stop.
+    pub stop: &'a AtomicBool,
+    /// Called with the frames done, and with all of them where the container tells.
+    pub tick: &'a dyn Fn(u64, Option<u64>),
+}
+
+/// Why there are no results.
+#[derive(Debug, Error)]
+pub enum PostureError {
+    /// The video can't be read or the overlay not written.
+    #[error(transparent)]
+    Video(#[from] VideoError),
+    /// The markers can't be found or told apart.
+    #[error("{}: {why}", path.display())]
+    Markers {
+        /// The video.
+        path: PathBuf,
+        /// What is wrong and what to do.
+        why: String,
+    },
+    /// A result would go where the input stands.
+    #[error("{}: is the video itself; choose another name for the result", .0.display())]
+    Itself(PathBuf),
+    /// A result can't be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// A table can't be written.
+    #[error(transparent)]
+    Table(#[from] TableError),
+    /// Stopped from outside.
+    #[error("interrupted; nothing was written")]
+    Interrupted,
+}
+
+/// Runs the job; every result is in its place when it returns.
+///
+/// # Errors
+/// [`PostureError`] where there are no results.
+pub fn run(
+    path: &Path,
+    layout: &Layout,
+    options: &PostureOptions,
+    outputs: &Outputs,
+    watch: &Watch<'_>,
+) -> Result<PostureReport, PostureError> {
+    let start = Instant::now();
+    let stages = Stages::default();
+    let (survey, info) = look_first(path, layout, options, &stages, watch)?;
+    let mut video = Video::open(path, options.threads)?;
+    let mut tracker = Tracker::new(layout, &survey, &info, options.method);
+    let mut angles = Angles::new(layout, &info);
+    let mut results = Results::start(path, layout, &info, options, outputs)?;
+    let mut span = Span::default();
+    let mut first_undecoded = None;
+    loop {
+        if watch.stop.load(Ordering::Relaxed) {
+            return Err(PostureError::Interrupted);
+        }
+        let Some(item) = stages.time("decode", || video.next_item())? else { break };
+        let (index, time_s, frame) = match &item {
+            Item::Frame(frame) => (frame.index, frame.time_s, Some(frame)),
+            Item::Missing { index, time_s } => (*index, *time_s, None),
+        };
+        if frame.is_none() {
+            first_undecoded.get_or_insert((index, time_s));
+        }
+        let sights = match frame {
+            Some(frame) => stages.time("track", || tracker.step(frame)),
+            None => tracker.skip(),
+        };
+        let joints = stages.time("angles", || angles.step(sights));
+        stages.time("write", || results.add(Row { index, time_s, frame, sights, joints }))?;
+        span.add(time_s);
+        (watch.tick)(index + 1, info.declared_frames);
+    }
+    stages.time("smooth", || results.smooth())?;
+    let pictures = stages.time("figures", || results.draw_pictures())?;
+    let search = tracker.effort();
+    let mut failed = Vec::new();
+    if let Some((index, time_s)) = first_undecoded {
+        failed.push(format!(
+            "{}: {} of {} frames could not be decoded, the first of them frame {index} at {time_s:.3} s; their rows are \
+             empty; copy the file again if its original is whole",
+            path.display(),
+            results.frames.undecoded,
+            results.frames.all
+        ));
+    }
+    if let End::Early(why) = video.end() {
+        failed.push(format!("{}: {why}", path.display()));
+    }
+    let unseen = survey.unseen.iter().map(|&m| layout.markers[m].name.clone()).collect::<Vec<_>>();
+    let mut warnings = [&layout.notes[..], &info.warnings[..]].concat();
+    if layout.clock.is_some() {
+        warnings.push(CLOCK.to_owned());
+    }
+    if !unseen.is_empty() {
+        warnings.push(format!(
+            "{} not seen in the first {} frames, and looked for from then on",
+            unseen.join(", "),
+            survey.frames
+        ));
+    }
+    let draft = PostureReport {
+        job: "posture",
+        version: env!("CARGO_PKG_VERSION"),
+        video: video_report(path, &info, survey.siting, &span),
+        frames: results.frames,
+        markers: results.marker_reports(),
+        joints: results.joint_reports(),
+        coupling: results.coupling(),
+        searches: SearchReport {
+            surveyed_frames: survey.frames as u64,
+            neighbourhoods: search.near_searches,
+            wider: search.wide_searches,
+            whole_frames: search.whole_searches,
+            share_of_samples: search.share_searched,
+        },
+        left_out: left_out(layout, &info, options, outputs, &search),
+        warnings,
+        failed,
+        pictures,
+        threads: options.threads,
+        stages: Vec::new(),
+        decoding_share: 0.0,
+        wall_s: 0.0,
+    };
+    results.finish(draft, &stages, start)
+}
+
+/// Looks at a few frames of a video and returns a marker file to start from.
+///
+/// # Errors
+/// [`PostureError`] where the video can't be read or shows no markers.
+pub fn suggest(path: &Path, threads: usize) -> Result<String, PostureError> {
+    let mut video = Video::open(path, threads)?;
+    let info = video.info().clone();
+    let mut suggester = Suggester::new(&info);
+    while let Some(item) = video.next_item()? {
+        if let Item::Frame(frame) = item {
+            suggester.look(&frame);
+        }
+    }
+    suggester.finish().map_err(|why| PostureError::Markers { path: path.to_owned(), why: why.to_string() })
+}
+
+/// Reads the first frames until every marker has its name.
+fn look_first(
+    path: &Path,
+    layout: &Layout,
+    options: &PostureOptions,
+    stages: &Stages,
+    watch: &Watch<'_>,
+) -> Result<(Survey, Info), PostureError> {
+    let mut video = Video::open(path, options.threads)?;
+    let info = video.info().clone();
+    let mut surveyor = Surveyor::new(layout, &info);
+    while let Some(item) = stages.time("decode", || video.next_item())? {
+        if watch.stop.load(Ordering::Relaxed) {
+            return Err(PostureError::Interrupted);
+        }
+        let Item::Frame(frame) = item else { continue };
+        if stages.time("survey", || surveyor.look(&frame)) == Progress::Enough {
+            break;
+        }
+    }
+    let survey =
+        surveyor.finish().map_err(|why| PostureError::Markers { path: path.to_owned(), why: why.to_string() })?;
+    Ok((survey, info))
+}
+
+/// From when to when, and how evenly.
+#[derive(Default)]
+struct Span {
+    last_s: Option<f64>,
+    interval_s: Option<[f64; 2]>,
+}
+
+impl Span {
+    fn add(&mut self, time_s: f64) {
+        if let Some(last) = self.last_s {
+            let step = time_s - last;
+            let [least, most] = self.interval_s.unwrap_or([step, step]);
+            self.interval_s = Some([least.min(step), most.max(step)]);
+        }
+        self.last_s = Some(time_s);
+    }
+}
+
+fn video_report(path: &Path, info: &Info, siting: Siting, span: &Span) -> VideoReport {
+    let (width, height) = (info.format.width, info.format.height);
+    let aside = matches!(info.turn, Turn::Quarter | Turn::ThreeQuarters);
+    VideoReport {
+        file: path.to_owned(),
+        shown_px: if aside { [height, width] } else { [width, height] },
+        codec: info.codec.clone(),
+        depth: info.format.depth,
+        subsampling: info.format.subsampling.map(|(across, down)| [across, down]),
+        chroma_site_px: info.format.subsampling.map(|_| [siting.dx_px, siting.dy_px]),
+        duration_s: span.last_s.unwrap_or(0.0),
+        interval_s: span.interval_s,
+    }
+}
+
+/// What the scene did not need.
+fn left_out(layout: &Layout, info: &Info, options: &PostureOptions, outputs: &Outputs, search: &Effort) -> Vec<String> {
+    let steps = steps(layout, info, options, Some(outputs));
+    let mut left_out: Vec<String> = steps
+        .into_iter()
+        .filter(|step| step.fate == Fate::LeftOut)
+        .map(|step| format!("{}: {}", step.stage, step.reason))
+        .collect();
+    left_out.push(format!(
+        "search of whole frames: in all but {} of {} frames only where the last one tells, {:.2} % of the samples",
+        search.whole_searches,
+        search.frames,
+        100.0 * search.share_searched
+    ));
+    left_out
+}

@@ -1,0 +1,292 @@
+//! From the marker file's tables to a layout, or to all of its faults.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::clock::format_fault;
+use super::raw::{Entry, Findings, entries, instead};
+use super::{Camera, Clock, ClockRoi, Flexion, Joint, Layout, LayoutFault, Marker, Segment};
+
+const TABLES: [&str; 8] = ["flexion", "markers", "segments", "joints", "start", "clock", "camera", "zero"];
+/// The number of coefficients of OpenCV's lens models that are known here; those left out are zero.
+const DISTORTIONS: [usize; 5] = [0, 4, 5, 8, 12];
+
+pub(super) fn check(text: &str, path: &Path) -> Result<Layout, Vec<LayoutFault>> {
+    let mut findings = Findings::new(text);
+    let Some(document) = findings.parse() else {
+        return Err(findings.finish().err().unwrap_or_default());
+    };
+    let top = entries(document.get_ref());
+    findings.unknown_keys(&top, &TABLES, "key");
+    let mut notes = Vec::new();
+    let flexion = flexion(&mut findings, &top, &mut notes, path);
+
+    let marker_entries = findings.table(&top, "markers").unwrap_or_default();
+    let markers = markers(&mut findings, &top, &marker_entries);
+    let marker_names: Vec<&str> = marker_entries.iter().map(|e| e.key).collect();
+
+    let segment_entries = findings.table(&top, "segments").unwrap_or_default();
+    let segments = named(&mut findings, &segment_entries, "marker", &marker_names);
+    let segment_names: Vec<&str> = segment_entries.iter().map(|e| e.key).collect();
+
+    let joint_entries = findings.table(&top, "joints").unwrap_or_default();
+    let joints = named(&mut findings, &joint_entries, "segment", &segment_names);
+    column_clashes(&mut findings, &joint_entries);
+
+    let zeros = zeros(&mut findings, &top, &joint_entries);
+    let start = start(&mut findings, &top, &marker_names);
+    let clock = clock(&mut findings, &top);
+    let camera = camera(&mut findings, &top);
+
+    for (k, entry) in marker_entries.iter().enumerate() {
+        if !segment_entries.is_empty() && !segments.iter().any(|(_, pair)| pair.contains(&k)) {
+            let line = findings.line(entry.key_at);
+            notes.push(format!("{}:{line}: no segment uses the marker `{}`", path.display(), entry.key));
+        }
+    }
+    findings.finish()?;
+    Ok(Layout {
+        flexion,
+        markers,
+        segments: segments.into_iter().map(|(name, markers)| Segment { name, markers }).collect(),
+        joints: joints
+            .into_iter()
+            .map(|(name, segments)| Joint { zero_rad: zeros.get(&name).copied().unwrap_or(0.0), name, segments })
+            .collect(),
+        start,
+        clock,
+        camera,
+        notes,
+    })
+}
+
+fn flexion(findings: &mut Findings<'_>, top: &[Entry<'_>], notes: &mut Vec<String>, path: &Path) -> Flexion {
+    let Some(entry) = top.iter().find(|e| e.key == "flexion") else {
+        if top.iter().any(|e| e.key == "joints") {
+            notes.push(format!("{}:1: `flexion` is not given; clockwise is taken", path.display()));
+        }
+        return Flexion::Clockwise;
+    };
+    match entry.value.as_str() {
+        Some("clockwise") => Flexion::Clockwise,
+        Some("counterclockwise") => Flexion::Counterclockwise,
+        _ => {
+            findings.fault(entry.at, "`flexion` has to be \"clockwise\" or \"counterclockwise\"");
+            Flexion::Clockwise
+        }
+    }
+}
+
+fn markers(findings: &mut Findings<'_>, top: &[Entry<'_>], entries: &[Entry<'_>]) -> Vec<Marker> {
+    if entries.is_empty() && !top.iter().any(|e| e.key == "markers" && !e.value.is_table()) {
+        let at = top.iter().find(|e| e.key == "markers").map_or(0, |e| e.key_at);
+        findings.fault(at, "no markers; list them under [markers], such as tip = \"#e91e63\"");
+    }
+    let mut markers = Vec::new();
+    for entry in entries {
+        check_name(findings, *entry, "marker");
+        if entry.key.contains(char::is_whitespace) {
+            // `status` lists markers with spaces between.
+            findings
+                .fault(entry.key_at, format!("the marker name `{}` has a space; write `_`", entry.key.escape_debug()));
+        }
+        let Some(colour) = entry.value.as_str().and_then(colour) else {
+            findings.fault(
+                entry.at,
+                format!("the colour of `{}` can't be read; write it as red, green, blue: \"#e91e63\"", entry.key),
+            );
+            continue;
+        };
+        markers.push(Marker { name: entry.key.to_owned(), colour });
+    }
+    markers
+}
+
+/// `#rrggbb` or `#rgb`.
+fn colour(text: &str) -> Option<[u8; 3]> {
+    let digits = text.trim().strip_prefix('#')?;
+    let digits: Vec<u8> = digits.chars().map(|c| c.to_digit(16).map(|d| d as u8)).collect::<Option<_>>()?;
+    match digits[..] {
+        [r, g, b] => Some([17 * r, 17 * g, 17 * b]),
+        [r1, r0, g1, g0, b1, b0] => Some([16 * r1 + r0, 16 * g1 + g0, 16 * b1 + b0]),
+        _ => None,
+    }
+}
+
+/// Names become columns of tables.
+fn check_name(findings: &mut Findings<'_>, entry: Entry<'_>, kind: &str) {
+    let name = entry.key;
+    if name.is_empty() || name.trim() != name {
+        findings.fault(
+            entry.key_at,
+            format!("the {kind} name \"{name}\" is empty or begins or ends with a space; rename it"),
+        );
+    } else if name.contains([',', ';', '"']) || name.contains(char::is_control) {
+        let shown = name.escape_debug();
+        findings.fault(
+            entry.key_at,
+            format!("the {kind} name \"{shown}\" can't head a column of a table; use letters, digits, `_` and `-`"),
+        );
+    }
+}
+
+/// Segments (of markers) or joints (of segments): a name and two indices each.
+fn named(findings: &mut Findings<'_>, entries: &[Entry<'_>], of: &str, known: &[&str]) -> Vec<(String, [usize; 2])> {
+    let kind = if of == "marker" { "segment" } else { "joint" };
+    let mut found = Vec::new();
+    for entry in entries {
+        check_name(findings, *entry, kind);
+        if let Some(pair) = findings.pair(*entry, of, known) {
+            found.push((entry.key.to_owned(), pair));
+        }
+    }
+    found
+}
+
+/// Joint `J2` has the columns `J2_deg` and `J2_sd_deg`; the latter would be a joint `J2_sd`'s first too.
+fn column_clashes(findings: &mut Findings<'_>, joints: &[Entry<'_>]) {
+    for entry in joints {
+        let of = entry.key.strip_suffix("_sd");
+        if let Some(other) = joints.iter().find(|j| Some(j.key) == of) {
+            let what = format!(
+                "joint `{}` has the same column as the standard error of `{}`; rename it",
+                entry.key, other.key
+            );
+            findings.fault(entry.key_at, what);
+        }
+    }
+}
+
+/// Radians by the joint's name.
+fn zeros(findings: &mut Findings<'_>, top: &[Entry<'_>], joints: &[Entry<'_>]) -> BTreeMap<String, f64> {
+    let known: Vec<String> = joints.iter().map(|j| format!("{}_deg", j.key)).collect();
+    let known: Vec<&str> = known.iter().map(String::as_str).collect();
+    let mut zeros = BTreeMap::new();
+    for entry in findings.table(top, "zero").unwrap_or_default() {
+        match entry.key.strip_suffix("_deg") {
+            Some(joint) if joints.iter().any(|j| j.key == joint) => {
+                if let Some(degrees) = findings.number(entry) {
+                    zeros.insert(joint.to_owned(), degrees.to_radians());
+                }
+            }
+            Some(joint) => {
+                let what = format!("[zero] names the unknown joint `{joint}`; {}", instead(entry.key, &known));
+                findings.fault(entry.key_at, what);
+            }
+            None => {
+                let what = format!("`{0}` in [zero] lacks its unit; write {0}_deg, in degrees", entry.key);
+                findings.fault(entry.key_at, what);
+            }
+        }
+    }
+    zeros
+}
+
+fn start(findings: &mut Findings<'_>, top: &[Entry<'_>], markers: &[&str]) -> Vec<Option<[f64; 2]>> {
+    let mut start = vec![None; markers.len()];
+    for entry in findings.table(top, "start").unwrap_or_default() {
+        let Some(marker) = markers.iter().position(|&m| m == entry.key) else {
+            let what = format!("[start] names the unknown marker `{}`; {}", entry.key, instead(entry.key, markers));
+            findings.fault(entry.key_at, what);
+            continue;
+        };
+        let shape = format!("{} = [x, y], pixels of the first frame", entry.key);
+        if let Some(numbers) = findings.numbers(entry, &shape) {
+            match numbers[..] {
+                [x, y] => start[marker] = Some([x, y]),
+                _ => {
+                    findings.fault(entry.at, format!("`{}` has {} number(s); write {shape}", entry.key, numbers.len()))
+                }
+            }
+        }
+    }
+    start
+}
+
+fn clock(findings: &mut Findings<'_>, top: &[Entry<'_>]) -> Option<Clock> {
+    let table = findings.table(top, "clock")?;
+    let at = top.iter().find(|e| e.key == "clock").map_or(0, |e| e.key_at);
+    findings.unknown_keys(&table, &["roi", "format"], "key of [clock]");
+    let roi = match table.iter().find(|e| e.key == "roi") {
+        None => {
+            findings.fault(at, "[clock] lacks `roi`; write roi = [x, y, width, height] or roi = \"auto\"");
+            None
+        }
+        Some(entry) => roi(findings, *entry),
+    };
+    let format = match table.iter().find(|e| e.key == "format") {
+        None => {
+            findings.fault(at, "[clock] lacks `format`; write what its digits mean, such as format = \"mm:ss.t\"");
+            None
+        }
+        Some(entry) => match entry.value.as_str().map(|f| (f, format_fault(f))) {
+            Some((format, None)) => Some(format.to_owned()),
+            Some((_, Some(what))) => {
+                findings.fault(entry.at, what);
+                None
+            }
+            None => {
+                findings.fault(entry.at, "`format` has to be text, such as \"mm:ss.t\"");
+                None
+            }
+        },
+    };
+    Some(Clock { roi: roi?, format: format? })
+}
+
+fn roi(findings: &mut Findings<'_>, entry: Entry<'_>) -> Option<ClockRoi> {
+    const SHAPE: &str = "roi = [x, y, width, height] in pixels, or roi = \"auto\"";
+    if entry.value.as_str() == Some("auto") {
+        return Some(ClockRoi::Auto);
+    }
+    let numbers = findings.numbers(entry, SHAPE)?;
+    match numbers[..] {
+        [x, y, width, height] if width >= 1.0 && height >= 1.0 && x >= -0.5 && y >= -0.5 => {
+            Some(ClockRoi::Box([x, y, width, height]))
+        }
+        [_, _, _, _] => {
+            findings.fault(entry.at, format!("`roi` is outside of the picture or empty; write {SHAPE}"));
+            None
+        }
+        _ => {
+            findings.fault(entry.at, format!("`roi` has {} number(s) and needs four; write {SHAPE}", numbers.len()));
+            None
+        }
+    }
+}
+
+fn camera(findings: &mut Findings<'_>, top: &[Entry<'_>]) -> Option<Camera> {
+    let table = findings.table(top, "camera")?;
+    let at = top.iter().find(|e| e.key == "camera").map_or(0, |e| e.key_at);
+    findings.unknown_keys(&table, &["fx", "fy", "cx", "cy", "distortion"], "key of [camera]");
+    let mut lengths = ["fx", "fy", "cx", "cy"].map(|key| {
+        let entry = *table.iter().find(|e| e.key == key)?;
+        let number = findings.number(entry)?;
+        if key.starts_with('f') && number <= 0.0 {
+            findings.fault(entry.at, format!("`{key}` is a focal length in pixels and has to be above 0"));
+            return None;
+        }
+        Some(number)
+    });
+    if !table.iter().any(|e| e.key == "fx") {
+        findings.fault(at, "[camera] lacks `fx`; give OpenCV's calibration: fx (and fy, cx, cy), distortion");
+    }
+    let mut distortion = [0.0; 12];
+    if let Some(&entry) = table.iter().find(|e| e.key == "distortion") {
+        let numbers = findings.numbers(entry, "[k1, k2, p1, p2, k3]")?;
+        // The tilted sensor of the 14 is left out where it is not tilted.
+        let model = if numbers.len() == 14 && numbers[12..] == [0.0, 0.0] { &numbers[..12] } else { &numbers[..] };
+        if DISTORTIONS.contains(&model.len()) {
+            distortion[..model.len()].copy_from_slice(model);
+        } else if numbers.len() == 14 {
+            findings.fault(
+                entry.at,
+                "`distortion` has a tilted sensor (tau), which is not known here; calibrate without it",
+            );
+        } else {
+            let what = format!("`distortion` has {} number(s); OpenCV's models have 4, 5, 8 or 12", numbers.len());
+            findings.fault(entry.at, what);
+        }
+    }
+    Some(Camera { fx_px: lengths[0].take()?, fy_px: lengths[1], cx_px: lengths[2], cy_px: lengths[3], distortion })
+}

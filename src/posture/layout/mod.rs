@@ -1,0 +1,217 @@
+//! The marker file: which markers, segments and joints, and what is known of the camera.
+//!
+//! In: a TOML file; out: a [`Layout`], in which every name has become an index and every fault of the file has been told at
+//! once, each with its line. Order is the file's: joints make columns in the order of `[joints]`.
+//!
+//! `[start]`, `[clock]` and `[camera]` speak of the *shown* (upright) picture, as a person or OpenCV sees it. Flexion is
+//! clockwise where the file does not say; the layout's notes tell.
+//!
+//! Source: thesis section 3.2.3, two markers on each segment of the finger.
+
+mod check;
+mod clock;
+mod raw;
+
+use std::path::{Path, PathBuf};
+
+pub use clock::{Clock, ClockRoi};
+
+use crate::flexion::Flexion;
+
+/// A sticker or a dot of paint.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Marker {
+    /// Its name.
+    pub name: String,
+    /// Its colour, sRGB.
+    pub colour: [u8; 3],
+}
+
+/// Two markers on one part of the finger.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Segment {
+    /// Its name.
+    pub name: String,
+    /// Which markers, proximal first.
+    pub markers: [usize; 2],
+}
+
+/// The angle between two segments.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Joint {
+    /// Its name, such as `J2`.
+    pub name: String,
+    /// Which segments, proximal first.
+    pub segments: [usize; 2],
+    /// The angle read when the finger is straight, which is subtracted.
+    pub zero_rad: f64,
+}
+
+/// The lens, in OpenCV's parameters, for the shown picture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Camera {
+    /// Focal length in widths of a pixel.
+    pub fx_px: f64,
+    /// Focal length in heights of a pixel; the same length as `fx_px` where it is not given.
+    pub fy_px: Option<f64>,
+    /// Column of the optical axis; the picture's middle where it is not given.
+    pub cx_px: Option<f64>,
+    /// Row of the optical axis; the picture's middle where it is not given.
+    pub cy_px: Option<f64>,
+    /// k1, k2, p1, p2, k3, k4, k5, k6, s1, s2, s3, s4; zero where they are not given.
+    pub distortion: [f64; 12],
+}
+
+/// A marker file, checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Layout {
+    /// Which way flexion turns.
+    pub flexion: Flexion,
+    /// All markers, in the file's order.
+    pub markers: Vec<Marker>,
+    /// All segments, in the file's order.
+    pub segments: Vec<Segment>,
+    /// The wanted joints, in the file's order.
+    pub joints: Vec<Joint>,
+    /// For each marker, where it is in the first frame, on the shown picture, where the file says.
+    pub start: Vec<Option<[f64; 2]>>,
+    /// The clock in the picture.
+    pub clock: Option<Clock>,
+    /// The lens.
+    pub camera: Option<Camera>,
+    /// What is no fault but worth saying, each with its place.
+    pub notes: Vec<String>,
+}
+
+/// A fault of a marker file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LayoutFault {
+    /// The line, from 1.
+    pub line: usize,
+    /// What is wrong; what to do.
+    pub what: String,
+}
+
+/// Why there is no layout.
+#[derive(Debug, thiserror::Error)]
+pub enum LayoutError {
+    /// The file can't be read.
+    #[error("{}: {why}; name a marker file (TOML), or let `lunula posture VIDEO --suggest` write one to start from", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// The system's words.
+        why: std::io::Error,
+    },
+    /// The file is wrong, perhaps in several places.
+    #[error("{}", faults.iter().map(|f| format!("{}:{}: {}", path.display(), f.line, f.what)).collect::<Vec<_>>().join("\n"))]
+    Faults {
+        /// The file.
+        path: PathBuf,
+        /// In the order of lines, at least one.
+        faults: Vec<LayoutFault>,
+    },
+    /// Joints were asked for that the file does not have.
+    #[error("{what}")]
+    NoSuchJoint {
+        /// What is wrong and what to do.
+        what: String,
+    },
+}
+
+impl Layout {
+    /// Reads a marker file.
+    ///
+    /// # Errors
+    /// Where it can't be read, or with all its faults.
+    pub fn read(path: &Path) -> Result<Self, LayoutError> {
+        let unreadable = |why| LayoutError::Unreadable { path: path.to_owned(), why };
+        let bytes = std::fs::read(path).map_err(unreadable)?;
+        match String::from_utf8(bytes) {
+            Ok(text) => Self::parse(&text, path),
+            Err(why) => {
+                let sound = &why.as_bytes()[..why.utf8_error().valid_up_to()];
+                let line = 1 + sound.iter().filter(|&&b| b == b'\n').count();
+                let what = "not UTF-8 text; save the file as UTF-8".to_owned();
+                Err(LayoutError::Faults { path: path.to_owned(), faults: vec![LayoutFault { line, what }] })
+            }
+        }
+    }
+
+    /// Checks the text of a marker file; `path` is for the messages.
+    ///
+    /// # Errors
+    /// With all its faults.
+    pub fn parse(text: &str, path: &Path) -> Result<Self, LayoutError> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        check::check(text, path).map_err(|faults| LayoutError::Faults { path: path.to_owned(), faults })
+    }
+
+    /// Keeps only the joints that are named, in the file's order; all for an empty list.
+    ///
+    /// # Errors
+    /// [`LayoutError::NoSuchJoint`].
+    pub fn wanting(&self, joints: &[String]) -> Result<Self, LayoutError> {
+        let known: Vec<&str> = self.joints.iter().map(|j| j.name.as_str()).collect();
+        if let Some(name) = joints.iter().find(|name| !known.contains(&name.as_str())) {
+            let what = if known.is_empty() {
+                format!("joint `{name}` is asked for, but the marker file has no [joints]; add it there")
+            } else {
+                format!("no joint `{name}` in the marker file; {}", raw::instead(name, &known))
+            };
+            return Err(LayoutError::NoSuchJoint { what });
+        }
+        let mut kept = self.clone();
+        kept.joints.retain(|j| joints.is_empty() || joints.contains(&j.name));
+        Ok(kept)
+    }
+
+    /// For each marker, whether a wanted joint uses it; all are needed where there are no joints.
+    #[must_use]
+    pub fn needed(&self) -> Vec<bool> {
+        let mut needed = vec![self.joints.is_empty(); self.markers.len()];
+        for marker in self.joints.iter().flat_map(|j| self.markers_of(j)) {
+            needed[marker] = true;
+        }
+        needed
+    }
+
+    /// The four markers of a joint (three differ where its segments share one): the proximal segment's, then the distal one's.
+    #[must_use]
+    pub fn markers_of(&self, joint: &Joint) -> [usize; 4] {
+        let [a, b] = joint.segments.map(|s| self.segments[s].markers);
+        [a[0], a[1], b[0], b[1]]
+    }
+
+    /// The needed markers in their order along the finger, proximal first, each once.
+    ///
+    /// A segment's first marker comes before its second, a joint's proximal segment before its distal one; what this leaves
+    /// open follows the order of `[segments]`, then of `[markers]`.
+    #[must_use]
+    pub fn chain(&self) -> Vec<usize> {
+        let needed = self.needed();
+        // In the order of preference where nothing else is known.
+        let mut waiting: Vec<usize> = Vec::new();
+        for marker in self.segments.iter().flat_map(|s| s.markers).chain(0..self.markers.len()) {
+            if needed[marker] && !waiting.contains(&marker) {
+                waiting.push(marker);
+            }
+        }
+        let mut before: Vec<[usize; 2]> = self.segments.iter().map(|s| s.markers).collect();
+        for joint in &self.joints {
+            let [a, b, c, d] = self.markers_of(joint);
+            before.extend([[a, c], [a, d], [b, c], [b, d]].into_iter().filter(|[p, q]| p != q));
+        }
+        let mut chain = Vec::with_capacity(waiting.len());
+        while !waiting.is_empty() {
+            let is_next = |m: &usize| !before.iter().any(|[p, q]| q == m && p != m && waiting.contains(p));
+            // A ring of segments has no most proximal marker: the preferred one starts.
+            let next = waiting.iter().position(is_next).unwrap_or(0);
+            chain.push(waiting.remove(next));
+        }
+        chain
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,233 @@
+use super::*;
+
+/// The contract's example, with the markers that it leaves out.
+const WHOLE: &str = r##"
+flexion = "clockwise"
+[markers]
+a = "#e91e63"
+b = "#E91E63"
+c = "#00f"
+d = "#00c853"
+spare = "#ffeb3b"
+[segments]
+proximal = ["a", "b"]
+middle = ["b", "c"]
+distal = ["c", "d"]
+[joints]
+J3 = ["middle", "distal"]
+J2 = ["proximal", "middle"]
+[start]
+a = [384.0, 320]
+[clock]
+roi = [900, 40, 300, 70]
+format = "mm:ss.t"
+[camera]
+fx = 1200.0
+distortion = [0.1, 0.0, 0.0, 0.0, 0.02]
+[zero]
+J2_deg = 180
+"##;
+
+fn parse(text: &str) -> Result<Layout, LayoutError> {
+    Layout::parse(text, Path::new("m.toml"))
+}
+
+/// `line: words` of each fault.
+fn faults(text: &str) -> Vec<String> {
+    match parse(text) {
+        Err(LayoutError::Faults { faults, .. }) => faults.iter().map(|f| format!("{}: {}", f.line, f.what)).collect(),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_whole_file_is_read_in_its_own_order() {
+    let layout = parse(WHOLE).unwrap();
+    assert_eq!(layout.flexion, Flexion::Clockwise);
+    assert_eq!(layout.markers[1], Marker { name: "b".into(), colour: [0xe9, 0x1e, 0x63] });
+    assert_eq!(layout.markers[2].colour, [0, 0, 255]);
+    assert_eq!(layout.segments[1], Segment { name: "middle".into(), markers: [1, 2] });
+    assert_eq!(layout.joints[0], Joint { name: "J3".into(), segments: [1, 2], zero_rad: 0.0 });
+    assert_eq!(layout.joints[1], Joint { name: "J2".into(), segments: [0, 1], zero_rad: std::f64::consts::PI });
+    assert_eq!(layout.start, [Some([384.0, 320.0]), None, None, None, None]);
+    let clock = layout.clock.as_ref().unwrap();
+    assert_eq!((clock.roi, clock.format.as_str()), (ClockRoi::Box([900.0, 40.0, 300.0, 70.0]), "mm:ss.t"));
+    let camera = layout.camera.as_ref().unwrap();
+    assert_eq!((camera.fx_px, camera.fy_px, camera.distortion[4]), (1200.0, None, 0.02));
+    assert_eq!(layout.notes, ["m.toml:8: no segment uses the marker `spare`"]);
+}
+
+#[test]
+fn only_what_wanted_joints_use_is_needed() {
+    let layout = parse(WHOLE).unwrap();
+    assert_eq!(layout.needed(), [true, true, true, true, false]);
+    assert_eq!(layout.chain(), [0, 1, 2, 3], "J3 stands first in the file, but lies last on the finger");
+    let one = layout.wanting(&["J3".into()]).unwrap();
+    assert_eq!(one.needed(), [false, true, true, true, false]);
+    assert_eq!(one.chain(), [1, 2, 3]);
+    assert_eq!(layout.wanting(&[]).unwrap(), layout);
+    let unknown = layout.wanting(&["j2".into()]).unwrap_err().to_string();
+    assert!(unknown.contains("`j2`") && unknown.contains("did you mean `J2`"), "{unknown}");
+}
+
+#[test]
+fn without_joints_all_markers_are_needed() {
+    let layout = parse("[markers]\nb = \"#00f\"\na = \"#0f0\"\n").unwrap();
+    assert_eq!(layout.needed(), [true, true]);
+    assert_eq!(layout.chain(), [0, 1]);
+    assert!(layout.notes.is_empty(), "no joint, no sign to speak of");
+    assert!(layout.wanting(&["J2".into()]).unwrap_err().to_string().contains("no [joints]"));
+}
+
+#[test]
+fn a_ring_of_segments_has_a_chain_too() {
+    let text = "[markers]\na='#000'\nb='#111'\nc='#222'\n[segments]\np=['a','b']\nq=['b','c']\nr=['c','a']\n[joints]\nJ1=['p','q']\nJ2=['q','r']\nJ3=['r','p']";
+    let mut chain = parse(text).unwrap().chain();
+    assert_eq!(chain[0], 0);
+    chain.sort_unstable();
+    assert_eq!(chain, [0, 1, 2]);
+}
+
+#[test]
+fn all_faults_are_told_at_once_with_their_lines() {
+    let text = r##"flexion = "clock"
+[marker]
+x = 1
+[markers]
+tip = "e91e63"
+base = "#e91e6"
+"a,b" = "#fff"
+"" = "#fff"
+two = 3
+"two words" = "#123456"
+[segments]
+one = ["tip", "tip"]
+three = ["tip", "base", "two"]
+lone = ["tip"]
+odd = ["tip", "bese"]
+typo = "tip"
+good = ["tip", "base"]
+[joints]
+J1 = ["good", "good"]
+J2 = ["good", "one"]
+J3 = ["good", "lost"]
+J2_sd = ["good", "one"]
+[start]
+tap = [1, 2]
+tip = [1, nan]
+base = [1, 2, 3]
+[clock]
+roi = [1, 2, 0, 4]
+format = "mm:ss.f"
+rio = 3
+[camera]
+fy = -1.0
+distortion = [1, 2, 3]
+[zero]
+J1 = 2
+J9_deg = 2
+J2_deg = inf
+"##;
+    let told = faults(text);
+    let mut expected = vec![
+        "1: `flexion`",
+        "2: unknown key `marker`; did you mean `markers`?",
+        "5: the colour of `tip`",
+        "6: the colour of `base`",
+        "7: the marker name \"a,b\"",
+        "8: the marker name \"\"",
+        "9: the colour of `two`",
+        "10: the marker name `two words`",
+        "12: `one` names the marker `tip` twice",
+        "13: `three` has 3",
+        "14: `lone` has 1",
+        "15: `odd` names the unknown marker `bese`; did you mean `base`?",
+        "16: `typo` is no list",
+        "19: `J1` names the segment `good` twice",
+        "21: `J3` names the unknown segment `lost`",
+        "22: joint `J2_sd`",
+        "24: [start] names the unknown marker `tap`; did you mean `tip`?",
+        "25: `tip` has to be finite",
+        "26: `base` has 3",
+        "28: `roi` is outside",
+        "29: `f` is no digit",
+        "30: unknown key of [clock] `rio`; did you mean `roi`?",
+        "31: [camera] lacks `fx`",
+        "32: `fy` is a focal length",
+        "33: `distortion` has 3",
+        "35: `J1` in [zero] lacks its unit",
+        "36: [zero] names the unknown joint `J9`",
+        "37: `J2_deg` has to be a finite",
+    ];
+    for fault in &told {
+        let found = expected.iter().position(|e| fault.starts_with(e));
+        expected.remove(found.unwrap_or_else(|| panic!("not expected: {fault}")));
+    }
+    assert!(expected.is_empty(), "not told: {expected:?}");
+    let lines: Vec<usize> = told.iter().map(|t| t.split(':').next().unwrap().parse().unwrap()).collect();
+    assert!(lines.is_sorted());
+    let message = parse(text).unwrap_err().to_string();
+    assert!(message.lines().all(|l| l.starts_with("m.toml:")) && message.lines().count() == told.len());
+}
+
+#[test]
+fn broken_toml_is_told_with_its_line() {
+    for (text, line) in
+        [("[markers]\na = \n", 2), ("[markers\na='#fff'", 1), ("[markers]\na='#fff'\n\nb = '#ff", 4), ("x = = 2", 1)]
+    {
+        let told = faults(text);
+        assert!(told.iter().any(|t| t.starts_with(&format!("{line}: not TOML: "))), "{text}: {told:?}");
+        assert!(told.iter().all(|t| t.contains("not TOML")), "guesses beside the broken line: {told:?}");
+    }
+}
+
+#[test]
+fn a_doubled_name_is_told_along_with_the_rest() {
+    let told = faults("[markers]\na = '#fff'\na = '#000'\nb = 'red'\n");
+    assert_eq!(told.len(), 2, "{told:?}");
+    assert!(told[0].starts_with("3: `a` stands here a second time") && told[1].starts_with("4: the colour of `b`"));
+}
+
+#[test]
+fn a_file_without_markers_is_refused() {
+    assert!(faults("")[0].starts_with("1: no markers"));
+    assert!(faults("flexion = 'clockwise'\n[markers]\n")[0].starts_with("2: no markers"));
+    assert_eq!(faults("markers = 3"), ["1: `markers` is no table but integer; write [markers] and its lines below"]);
+}
+
+#[test]
+fn lens_models_of_known_sizes_are_taken() {
+    let with = |list: &str| parse(&format!("[markers]\na='#fff'\n[camera]\nfx=100\ndistortion={list}"));
+    for (count, known) in [
+        (0, true),
+        (3, false),
+        (4, true),
+        (5, true),
+        (6, false),
+        (8, true),
+        (12, true),
+        (13, false),
+        (14, false),
+        (15, false),
+    ] {
+        let list = format!("[{}]", vec!["0.1"; count].join(","));
+        assert_eq!(with(&list).is_ok(), known, "{count} coefficients");
+    }
+    assert!(with("[1,2,3,4,5,6,7,8,9,10,11,12,0,0.0]").is_ok(), "a sensor that is not tilted");
+}
+
+#[test]
+fn a_clock_may_be_looked_for_and_windows_files_are_read() {
+    let layout = parse("\u{feff}[markers]\r\na = '#fff'\r\n[clock]\r\nroi = 'auto'\r\nformat = 'h:mm:ss'\r\n").unwrap();
+    assert_eq!(layout.clock.unwrap().roi, ClockRoi::Auto);
+}
+
+#[test]
+fn a_file_that_is_missing_or_no_text_is_named() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("m.toml");
+    let missing = Layout::read(&path).unwrap_err().to_string();
+    assert!(missing.contains("m.toml: ") && missing.contains("--suggest"), "{missing}");
+    std::fs::write(&path, b"[markers]\na = '\xff'").unwrap();
+    assert!(Layout::read(&path).unwrap_err().to_string().contains("m.toml:2: not UTF-8"));
+}

@@ -1,0 +1,88 @@
+//! What a run would do and leave out, told from the marker file and the video's header.
+
+use std::path::Path;
+
+use super::job::{Outputs, PostureError, PostureOptions};
+use super::layout::Layout;
+use crate::stages::Step;
+use crate::video::{Info, Video};
+
+/// Plans a run; `outputs` may be open yet.
+///
+/// # Errors
+/// [`PostureError::Video`] where the video can't be read.
+pub fn plan(
+    video: &Path,
+    layout: &Layout,
+    options: &PostureOptions,
+    outputs: Option<&Outputs>,
+) -> Result<Vec<Step>, PostureError> {
+    let info = Video::open(video, options.threads)?.info().clone();
+    Ok(steps(layout, &info, options, outputs))
+}
+
+pub(super) fn steps(layout: &Layout, info: &Info, options: &PostureOptions, outputs: Option<&Outputs>) -> Vec<Step> {
+    let needed = layout.needed();
+    let names = |wanted: bool| -> Vec<&str> {
+        let all = layout.markers.iter().zip(&needed);
+        all.filter(|(_, needed)| **needed == wanted).map(|(marker, _)| marker.name.as_str()).collect()
+    };
+    let (tracked, idle) = (names(true), names(false));
+    let frames = info.declared_frames.map_or("all frames".to_owned(), |frames| format!("{frames} frames"));
+    let (width, height) = (info.format.width, info.format.height);
+    let depth = info.format.depth;
+    let grey = info.grey;
+    let asked = |what: Option<bool>, option: &str| match what {
+        Some(true) => (true, option.to_owned()),
+        _ => (false, "not asked for".to_owned()),
+    };
+    let (tracks, tracks_why) = asked(outputs.map(|o| o.tracks.is_some()), "--tracks");
+    let (overlay, overlay_why) = asked(outputs.map(|o| o.overlay.is_some()), "--overlay");
+    let (smooth, smooth_why) = asked(Some(options.smooth), "--smooth");
+    vec![
+        Step::new("decoding", true, format!("{frames}, {width} x {height}, {} of {depth} bits", info.codec)),
+        Step::new("markers tracked", true, tracked.join(", ")),
+        Step::new(
+            "other markers",
+            false,
+            if idle.is_empty() {
+                "there are none".into()
+            } else {
+                format!("no wanted joint needs {}", idle.join(", "))
+            },
+        ),
+        Step::new(
+            "chroma planes",
+            !grey,
+            if grey { "the video is grey".into() } else { "as decoded, about the markers".into() },
+        ),
+        Step::new(
+            "colours of whole frames converted",
+            info.converted.is_some(),
+            match &info.converted {
+                Some(from) => format!("the samples ({from}) are no planes of Y', Cb and Cr"),
+                None => "the video's own planes are used".into(),
+            },
+        ),
+        Step::new("pictures undistorted", false, "points are, where there is a lens".into()),
+        Step::new(
+            "lens correction",
+            layout.camera.is_some(),
+            if layout.camera.is_some() { "[camera], of the centres".into() } else { "no [camera]".into() },
+        ),
+        Step::new(
+            "pictures turned upright",
+            overlay && info.turn != crate::video::Turn::None,
+            "coordinates are; pictures only for an overlay".into(),
+        ),
+        Step::new("zero angles", layout.joints.iter().any(|joint| joint.zero_rad != 0.0), "as [zero] says".into()),
+        Step::new("clock", false, if layout.clock.is_some() { CLOCK.into() } else { "no [clock]".into() }),
+        Step::new("smoothing", smooth, smooth_why),
+        Step::new("table of markers", tracks, tracks_why),
+        Step::new("overlay", overlay, overlay_why),
+        Step::new("figures", outputs.is_none_or(|o| o.figures) && !layout.joints.is_empty(), "of the angles".into()),
+    ]
+}
+
+/// What is said of a [clock].
+pub(super) const CLOCK: &str = "this version does not read the clock; clock_s stays empty";

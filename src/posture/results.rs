@@ -1,0 +1,329 @@
+//! What the posture job writes: the tables of angles and of markers, the overlay, the pictures and the report beside them.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use super::figures::AngleFigures;
+use super::job::{Outputs, PostureError, PostureOptions};
+use super::joints::{Angle, AngleRow};
+use super::layout::Layout;
+use super::overlay::{Drawing, Mark, Overlay};
+use super::report::{
+    CouplingReport, FrameCounts, JointReport, JointSums, MarkerReport, MarkerSums, PostureReport, in_words,
+};
+use super::sight::Sight;
+use super::smooth::smooth;
+use super::view::View;
+use crate::files::{Places, WriteError};
+use crate::stages::Stages;
+use crate::table::{Column, TableWriter, Value};
+use crate::video::{Frame, Info, VideoError};
+
+/// Decimals of a time in seconds: a microsecond, finer than the ticks of most containers.
+const TIME_DECIMALS: usize = 6;
+/// Decimals of an angle in degrees: a hundredth of the least standard error seen.
+const ANGLE_DECIMALS: usize = 5;
+/// Decimals of a place in pixels.
+const PLACE_DECIMALS: usize = 4;
+
+/// What one frame gave.
+pub(super) struct Row<'a> {
+    /// The frame's place.
+    pub(super) index: u64,
+    /// The frame's time.
+    pub(super) time_s: f64,
+    /// Its planes; none where it could not be decoded.
+    pub(super) frame: Option<&'a Frame<'a>>,
+    /// Each marker of the layout.
+    pub(super) sights: &'a [Sight],
+    /// The joints.
+    pub(super) joints: AngleRow,
+}
+
+/// A row that waits for the smoother.
+struct Held {
+    index: u64,
+    time_s: f64,
+    angles: AngleRow,
+}
+
+/// Results in the making.
+pub(super) struct Results<'a> {
+    layout: &'a Layout,
+    view: View,
+    needed: Vec<usize>,
+    places: Places,
+    joints_path: PathBuf,
+    joints: TableWriter,
+    tracks: Option<TableWriter>,
+    overlay: Option<Overlay>,
+    figures: Option<AngleFigures>,
+    held: Option<Vec<Held>>,
+    pub(super) frames: FrameCounts,
+    pub(super) markers: Vec<MarkerSums>,
+    pub(super) angles: Vec<JointSums>,
+}
+
+impl<'a> Results<'a> {
+    pub(super) fn start(
+        video: &Path,
+        layout: &'a Layout,
+        info: &Info,
+        options: &PostureOptions,
+        outputs: &Outputs,
+    ) -> Result<Self, PostureError> {
+        let real = |path: &Path| std::fs::canonicalize(path).ok();
+        let all = std::iter::once(&outputs.joints).chain(&outputs.tracks).chain(&outputs.overlay);
+        if let Some(itself) = all.into_iter().find(|path| real(path).is_some_and(|path| Some(path) == real(video))) {
+            return Err(PostureError::Itself(itself.clone()));
+        }
+        let mut places = Places::default();
+        let facts = facts(layout);
+        let joints = table(&mut places, &outputs.joints, joint_columns(layout), &facts)?;
+        let tracks = outputs.tracks.as_deref();
+        let tracks = tracks.map(|path| table(&mut places, path, track_columns(), &facts)).transpose()?;
+        let overlay = outputs.overlay.as_deref();
+        let overlay = overlay.map(|path| start_overlay(&mut places, path, info)).transpose()?;
+        let needed = layout.needed();
+        Ok(Self {
+            layout,
+            view: View::new(layout, info),
+            needed: (0..needed.len()).filter(|&m| needed[m]).collect(),
+            places,
+            joints_path: outputs.joints.clone(),
+            joints,
+            tracks,
+            overlay,
+            figures: (outputs.figures && !layout.joints.is_empty()).then(|| AngleFigures::new(layout)),
+            held: options.smooth.then(Vec::new),
+            frames: FrameCounts::default(),
+            markers: vec![MarkerSums::default(); layout.markers.len()],
+            angles: vec![JointSums::default(); layout.joints.len()],
+        })
+    }
+
+    /// Takes a frame's row.
+    pub(super) fn add(&mut self, row: Row<'_>) -> Result<(), PostureError> {
+        self.frames.all += 1;
+        self.frames.undecoded += u64::from(row.frame.is_none());
+        self.frames.complete += u64::from(row.joints.lost.is_empty());
+        for &marker in &self.needed {
+            self.markers[marker].add(&row.sights[marker]);
+        }
+        self.write_tracks(&row)?;
+        self.draw(&row)?;
+        match &mut self.held {
+            Some(held) => held.push(Held { index: row.index, time_s: row.time_s, angles: row.joints }),
+            None => self.write_joints(row.index, row.time_s, &row.joints)?,
+        }
+        Ok(())
+    }
+
+    fn write_tracks(&mut self, row: &Row<'_>) -> Result<(), PostureError> {
+        let Some(table) = &mut self.tracks else { return Ok(()) };
+        for &marker in &self.needed {
+            let name = self.layout.markers[marker].name.as_str();
+            let (place, status) = match &row.sights[marker] {
+                Sight::Seen(centre) => {
+                    let [x_px, y_px] = self.view.shown(centre).at_px;
+                    ([x_px, y_px, centre.sd_px()].map(Value::Number), "ok".to_owned())
+                }
+                Sight::Lost(why) => ([Value::Missing; 3], format!("lost: {}", in_words(*why))),
+            };
+            let [x_px, y_px, sd_px] = place;
+            let (frame, time_s) = (Value::Integer(row.index as i64), Value::Number(row.time_s));
+            table.write(&[frame, time_s, name.into(), x_px, y_px, sd_px, status.as_str().into()])?;
+        }
+        Ok(())
+    }
+
+    fn draw(&mut self, row: &Row<'_>) -> Result<(), PostureError> {
+        let Some(overlay) = &mut self.overlay else { return Ok(()) };
+        let Some(frame) = row.frame else { return Ok(overlay.add_missing(row.index, row.time_s)?) };
+        let layout = self.layout;
+        // A marker that no wanted joint needs is not looked for.
+        let marks = self.needed.iter().map(|&marker| Mark {
+            name: &layout.markers[marker].name,
+            sight: row.sights[marker],
+            expected_px: None,
+        });
+        let place = |marker: usize| self.needed.iter().position(|&needed| needed == marker);
+        let segments = layout.segments.iter().filter_map(|segment| {
+            let [one, other] = segment.markers;
+            Some([place(one)?, place(other)?])
+        });
+        let texts = layout.joints.iter().zip(&row.joints.angles).map(|(joint, angle)| match angle {
+            Some(angle) => {
+                let (deg, sd_deg) = (angle.rad.to_degrees(), angle.sd_rad.to_degrees());
+                format!("{} {deg:.1}° ± {sd_deg:.2}", joint.name)
+            }
+            None => format!("{} lost", joint.name),
+        });
+        let drawing = Drawing { marks: marks.collect(), segments: segments.collect(), texts: texts.collect() };
+        Ok(overlay.add(frame, &drawing)?)
+    }
+
+    fn write_joints(&mut self, index: u64, time_s: f64, row: &AngleRow) -> Result<(), PostureError> {
+        for (sums, angle) in self.angles.iter_mut().zip(&row.angles) {
+            sums.add(angle.as_ref());
+        }
+        if let Some(figures) = &mut self.figures {
+            figures.push(time_s, &row.angles);
+        }
+        let status = row.status(self.layout);
+        // The clock's column is filled where the clock is read.
+        let mut cells = vec![Value::Integer(index as i64), Value::Number(time_s), Value::Missing];
+        for angle in &row.angles {
+            cells.push(angle.map(|angle| angle.rad.to_degrees()).into());
+            cells.push(angle.map(|angle| angle.sd_rad.to_degrees()).into());
+        }
+        cells.push(status.as_str().into());
+        Ok(self.joints.write(&cells)?)
+    }
+
+    /// Writes the rows that waited for it.
+    pub(super) fn smooth(&mut self) -> Result<(), PostureError> {
+        let Some(mut held) = self.held.take() else { return Ok(()) };
+        let times_s: Vec<f64> = held.iter().map(|row| row.time_s).collect();
+        for joint in 0..self.layout.joints.len() {
+            let raw: Vec<Option<Angle>> = held.iter().map(|row| row.angles.angles[joint]).collect();
+            let smoothed = smooth(&times_s, &raw);
+            for (row, angle) in held.iter_mut().zip(smoothed.angles) {
+                row.angles.angles[joint] = angle;
+            }
+            self.angles[joint].smoothing = smoothed.model;
+        }
+        held.iter().try_for_each(|row| self.write_joints(row.index, row.time_s, &row.angles))
+    }
+
+    pub(super) fn marker_reports(&self) -> Vec<MarkerReport> {
+        self.needed.iter().map(|&m| self.markers[m].report(&self.layout.markers[m].name)).collect()
+    }
+
+    pub(super) fn joint_reports(&self) -> Vec<JointReport> {
+        self.layout.joints.iter().zip(&self.angles).map(|(joint, sums)| sums.report(&joint.name)).collect()
+    }
+
+    pub(super) fn coupling(&self) -> Option<CouplingReport> {
+        let figures = self.figures.as_ref()?;
+        let ([from, to], line) = (figures.coupled_joints()?, figures.coupling_line()?);
+        Some(CouplingReport {
+            from: from.to_owned(),
+            to: to.to_owned(),
+            frames: line.count,
+            slope: line.slope,
+            intercept_deg: line.intercept_deg,
+            correlation: Some(line.correlation),
+        })
+    }
+
+    /// Draws the pictures beside the table; returns where those that a person looks at will stand.
+    pub(super) fn draw_pictures(&mut self) -> Result<Vec<PathBuf>, PostureError> {
+        let Some(figures) = &self.figures else { return Ok(Vec::new()) };
+        let mut pictures = Vec::new();
+        for kind in ["angles", "coupling"] {
+            if kind == "coupling" && figures.coupled_joints().is_none() {
+                continue;
+            }
+            let [png, svg] = ["png", "svg"].map(|ending| beside(&self.joints_path, &format!("-{kind}.{ending}")));
+            let places = [self.places.place(&png)?, self.places.place(&svg)?];
+            let drawn = match kind {
+                "angles" => figures.draw_angles(&places[0], &places[1]),
+                _ => figures.draw_coupling(&places[0], &places[1]).map(|_| ()),
+            };
+            drawn.map_err(|why| WriteError::File { path: png.clone(), why: format!("{why:#}") })?;
+            pictures.push(png);
+        }
+        Ok(pictures)
+    }
+
+    /// Ends the tables, adds the report and puts everything into its place.
+    pub(super) fn finish(
+        mut self,
+        mut report: PostureReport,
+        stages: &Stages,
+        start: Instant,
+    ) -> Result<PostureReport, PostureError> {
+        self.joints.finish()?;
+        if let Some(tracks) = self.tracks {
+            tracks.finish()?;
+        }
+        if let Some(overlay) = self.overlay {
+            overlay.finish()?;
+        }
+        report.stages = stages.list();
+        report.wall_s = start.elapsed().as_secs_f64();
+        let decoding: f64 = report.stages.iter().filter(|s| s.stage == "decode").map(|s| s.thread_s).sum();
+        report.decoding_share = decoding / report.wall_s;
+        let text = serde_json::to_string_pretty(&report).expect("plain data");
+        let path = beside(&self.joints_path, ".run.json");
+        let at = self.places.place(&path)?;
+        std::fs::write(&at, text + "\n").map_err(|why| WriteError::File { path, why: why.to_string() })?;
+        self.places.commit()?;
+        Ok(report)
+    }
+}
+
+/// `joints.csv` and `.run.json` give `joints.run.json`.
+fn beside(joints: &Path, ending: &str) -> PathBuf {
+    let stem = joints.file_stem().unwrap_or_default().to_string_lossy();
+    joints.with_file_name(format!("{stem}{ending}"))
+}
+
+fn start_overlay(places: &mut Places, path: &Path, info: &Info) -> Result<Overlay, PostureError> {
+    let at = places.place(path)?;
+    Overlay::create(&at, info).map_err(|error| match error {
+        // It is not yet where it will stand.
+        VideoError::Write { what, .. } => VideoError::Write { path: path.to_owned(), what }.into(),
+        other => other.into(),
+    })
+}
+
+fn table(
+    places: &mut Places,
+    path: &Path,
+    columns: Vec<Column>,
+    facts: &[(String, String)],
+) -> Result<TableWriter, PostureError> {
+    // The extension is checked before anything is made.
+    crate::table::TableFormat::of(path)?;
+    Ok(TableWriter::create(&places.place(path)?, path, columns, facts)?)
+}
+
+fn joint_columns(layout: &Layout) -> Vec<Column> {
+    let time = |name: &str| Column::rounded(name, TIME_DECIMALS);
+    let mut columns = vec![Column::integer("frame"), time("time_s"), time("clock_s")];
+    for joint in &layout.joints {
+        columns.push(Column::rounded(format!("{}_deg", joint.name), ANGLE_DECIMALS));
+        columns.push(Column::rounded(format!("{}_sd_deg", joint.name), ANGLE_DECIMALS));
+    }
+    columns.push(Column::text("status"));
+    columns
+}
+
+fn track_columns() -> Vec<Column> {
+    let place = |name: &str| Column::rounded(name, PLACE_DECIMALS);
+    vec![
+        Column::integer("frame"),
+        Column::rounded("time_s", TIME_DECIMALS),
+        Column::text("marker"),
+        place("x_px"),
+        place("y_px"),
+        place("sd_px"),
+        Column::text("status"),
+    ]
+}
+
+/// What Parquet keeps beside the cells.
+fn facts(layout: &Layout) -> Vec<(String, String)> {
+    let flexion = layout.flexion.name();
+    [
+        ("lunula", env!("CARGO_PKG_VERSION").to_owned()),
+        ("time_s", "presentation time from the first frame's, seconds".to_owned()),
+        ("angles", format!("degrees, positive in flexion, which is {flexion} on the shown picture")),
+        ("sd", "standard error, in the unit of what it belongs to".to_owned()),
+        ("pixels", "the centre of the shown picture's top-left pixel is (0, 0), x right, y down".to_owned()),
+    ]
+    .map(|(key, value)| (key.to_owned(), value))
+    .to_vec()
+}

@@ -1,0 +1,106 @@
+//! Small scenes for tests: coloured discs on a ground, drawn into the planes of a frame.
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+use crate::video::{Format, Info, Matrix, Picture};
+
+/// A disc of a colour.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Disc {
+    pub(crate) at: [f64; 2],
+    pub(crate) radius: f64,
+    pub(crate) colour: [u8; 3],
+}
+
+pub(crate) const PINK: [u8; 3] = [0xe9, 0x1e, 0x63];
+pub(crate) const BLUE: [u8; 3] = [0x1e, 0x88, 0xe5];
+pub(crate) const GREEN: [u8; 3] = [0x43, 0xa0, 0x47];
+pub(crate) const YELLOW: [u8; 3] = [0xfd, 0xd8, 0x35];
+pub(crate) const RED: [u8; 3] = [0xd3, 0x2f, 0x2f];
+pub(crate) const BLACK: [u8; 3] = [0x10, 0x10, 0x10];
+pub(crate) const SKIN: [u8; 3] = [0xd2, 0xa0, 0x82];
+pub(crate) const WALL: [u8; 3] = [0xb0, 0xb4, 0xb0];
+
+/// A scene: discs later in the list lie over earlier ones.
+#[derive(Debug, Clone)]
+pub(crate) struct Stage {
+    pub(crate) format: Format,
+    pub(crate) ground: [u8; 3],
+    pub(crate) discs: Vec<Disc>,
+    /// Standard deviation of the noise of 255.
+    pub(crate) noise: f64,
+    /// Light: factor on linear intensity.
+    pub(crate) light: f64,
+}
+
+impl Stage {
+    pub(crate) fn new(width: usize, height: usize, ground: [u8; 3]) -> Self {
+        let format = Format { width, height, subsampling: Some((2, 2)), depth: 8 };
+        Self { format, ground, discs: Vec::new(), noise: 2.0, light: 1.0 }
+    }
+
+    pub(crate) fn disc(&mut self, at: [f64; 2], radius: f64, colour: [u8; 3]) -> &mut Self {
+        self.discs.push(Disc { at, radius, colour });
+        self
+    }
+
+    pub(crate) fn info(&self) -> Info {
+        Info::plain(self.format)
+    }
+
+    /// The scene as the planes of a BT.709 video.
+    pub(crate) fn picture(&self, seed: u64) -> Picture {
+        let Format { width, height, depth, .. } = self.format;
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let gain = self.light.powf(1.0 / 2.2);
+        let lit =
+            |colour: [u8; 3]| Matrix::BT709.from_rgb(colour.map(|part| (f64::from(part) / 255.0 * gain).min(1.0)));
+        let mut full = vec![lit(self.ground); width * height];
+        for disc in &self.discs {
+            let colour = lit(disc.colour);
+            let reach = disc.radius + 1.0;
+            let span = |at: f64, size: usize| {
+                ((at - reach).max(0.0) as usize).min(size)..((at + reach).max(-1.0) + 1.0).min(size as f64) as usize
+            };
+            for y in span(disc.at[1], height) {
+                for x in span(disc.at[0], width) {
+                    let distance = (x as f64 - disc.at[0]).hypot(y as f64 - disc.at[1]);
+                    let cover = (disc.radius + 0.5 - distance).clamp(0.0, 1.0);
+                    let pixel = &mut full[y * width + x];
+                    for (value, of_disc) in pixel.iter_mut().zip(colour) {
+                        *value += cover * (of_disc - *value);
+                    }
+                }
+            }
+        }
+        let mut picture = Picture::new(self.format);
+        let (across, down) = self.format.subsampling.unwrap_or((1, 1));
+        for (number, plane) in picture.planes.iter_mut().enumerate() {
+            let (across, down) = if number == 0 { (1, 1) } else { (across, down) };
+            let (columns, rows) = (width.div_ceil(across), height.div_ceil(down));
+            for y in 0..rows {
+                for x in 0..columns {
+                    let (mut sum, mut count) = (0.0, 0.0);
+                    for line in (y * down..(y + 1) * down).filter(|&line| line < height) {
+                        for column in (x * across..(x + 1) * across).filter(|&column| column < width) {
+                            sum += full[line * width + column][number];
+                            count += 1.0;
+                        }
+                    }
+                    let noise: f64 = (0..4).map(|_| random.random::<f64>() - 0.5).sum::<f64>() * 1.732;
+                    let share = if number == 0 { 1.0 } else { 0.5 };
+                    let value = (sum / count + share * self.noise * noise).clamp(0.0, 255.0);
+                    let index = y * columns + x;
+                    if depth > 8 {
+                        let deep = (value * f64::from(1u32 << (depth - 8))).round() as u16;
+                        plane[2 * index..2 * index + 2].copy_from_slice(&deep.to_le_bytes());
+                    } else {
+                        plane[index] = value.round() as u8;
+                    }
+                }
+            }
+        }
+        picture
+    }
+}

@@ -1,0 +1,462 @@
+//! The first look at a video: which markers are there, where, and how they look.
+//!
+//! Frames from the video's start go in, one after another, until every needed marker has its name; where each was first
+//! seen, its look and the chroma's siting come out. Spots of the markers' colours are followed over these frames without
+//! names, so that what a later frame tells (a finger that was straight bends) names them back to the first one.
+//!
+//! A name is given by colour, by the order along the finger, by which way flexion turns, by lengths that must not change,
+//! and by `[start]`, which goes before all. It is given only where the best naming is better by far than any other.
+
+mod spots;
+
+use spots::Spots;
+
+use super::colour::Look;
+use super::find::Paint;
+use super::layout::Layout;
+use super::naming::{Chain, MARGIN, MISSING, Naming, Point, Scene, colour_cost, lone, rigid_cost};
+use super::siting::Siting;
+use crate::video::{Frame, Info};
+
+/// Frames that are looked at before names are given.
+const LEAST_FRAMES: usize = 3;
+/// Whole frames are searched one after another for this long while a needed marker is not seen, then every few.
+const EAGER_FRAMES: usize = 60;
+const PATIENT_REST: usize = 8;
+/// Frames with spots in them that are looked at, at most.
+const MOST_FRAMES: usize = 300;
+/// Namings kept.
+const MOST_NAMINGS: usize = 200;
+/// A naming seen in one frame costs half of this; in more frames, less.
+const FRESH: f64 = 4.0;
+/// A naming whose spots, once there, were seen together in none of the frames costs this.
+const ABSENT: f64 = 5.0;
+/// A spot further from a `[start]` than this many radii, or this share of the picture's diagonal, is not meant.
+const START_RADII: f64 = 3.0;
+const START_SHARE: f64 = 0.02;
+
+/// Where a marker was first seen.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Start {
+    /// The frame.
+    pub(crate) frame: u64,
+    /// Its place there, to about a pixel.
+    pub(crate) at_px: [f64; 2],
+    /// How far it moved to the next frame.
+    pub(crate) velocity_px: [f64; 2],
+    /// How it looks.
+    pub(crate) look: Look,
+}
+
+/// What the first frames told.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Survey {
+    /// For each marker of the layout; none for those not needed and those never seen.
+    pub(crate) starts: Vec<Option<Start>>,
+    /// For each segment, how far its markers are apart, where both were seen.
+    pub(crate) lengths_px: Vec<Option<f64>>,
+    /// Where chroma samples lie.
+    pub(crate) siting: Siting,
+    /// Frames looked at.
+    pub(crate) frames: usize,
+    /// Needed markers that were not seen in them.
+    pub(crate) unseen: Vec<usize>,
+}
+
+/// Why markers have no names.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub(crate) enum SurveyError {
+    /// No needed marker was seen.
+    #[error(
+        "none of the markers is seen in the {frames} frames looked at ({}); are their colours in the marker file those of the video? \
+         `lunula posture VIDEO --suggest` measures them",
+        markers.join(", ")
+    )]
+    NoneSeen {
+        /// The needed markers.
+        markers: Vec<String>,
+        /// Frames looked at.
+        frames: usize,
+    },
+    /// Markers can be told apart neither by colour nor by their order along the finger.
+    #[error(
+        "can't tell which is which of the markers {} in the {frames} frames looked at; give their places in the first frame under [start]{}",
+        markers.join(", "),
+        if *straight { ", or check `flexion`: the finger hardly bends" } else { "" }
+    )]
+    Ambiguous {
+        /// The markers.
+        markers: Vec<String>,
+        /// Frames looked at.
+        frames: usize,
+        /// All fit as well from the other end of the finger.
+        straight: bool,
+    },
+    /// There is nothing of a marker's colour where `[start]` has it.
+    #[error(
+        "[start] has {marker} at ({:.0}, {:.0}), where the first frame shows nothing of its colour; {}",
+        at_px[0], at_px[1],
+        nearest_px.map_or("nor anywhere else".to_owned(), |[x, y]| format!("the nearest is at ({x:.0}, {y:.0})"))
+    )]
+    WrongStart {
+        /// The marker.
+        marker: String,
+        /// Its place, on the shown picture.
+        at_px: [f64; 2],
+        /// The nearest spot of its colour, on the shown picture.
+        nearest_px: Option<[f64; 2]>,
+    },
+}
+
+/// Whether another frame is wanted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Progress {
+    /// Yes.
+    More,
+    /// All is known that can be.
+    Enough,
+}
+
+/// A naming and what the frames looked at said of it.
+#[derive(Debug, Clone)]
+struct Hypothesis {
+    naming: Naming,
+    frames: usize,
+    shape: f64,
+    backwards: f64,
+    /// Shortest and longest distance to the marker before, for each place.
+    spans: Vec<(f64, f64)>,
+}
+
+/// Looks at the first frames.
+pub(crate) struct Surveyor<'a> {
+    layout: &'a Layout,
+    info: &'a Info,
+    needed: Vec<bool>,
+    chain: Chain,
+    /// The different colours, and for each marker which of them it has.
+    paints: Vec<Paint>,
+    paint_of: Vec<usize>,
+    /// Paints of markers that are on no segment: these may be no discs.
+    loose: Vec<bool>,
+    spots: Spots,
+    /// Frames with spots in them.
+    looked: Vec<u64>,
+    frames: usize,
+    since_whole: usize,
+    /// For each place of the chain the spot that `[start]` gives it.
+    fixed: Vec<Option<usize>>,
+    hypotheses: Vec<Hypothesis>,
+    /// For each place of the chain: no length known yet, and the cost of not being seen.
+    unknown: Vec<Option<f64>>,
+    missing: Vec<f64>,
+    wrong: Option<SurveyError>,
+}
+
+impl<'a> Surveyor<'a> {
+    pub(crate) fn new(layout: &'a Layout, info: &'a Info) -> Self {
+        let grey = info.grey;
+        let mut colours: Vec<[u8; 3]> = Vec::new();
+        let chain = Chain::new(layout);
+        let paint_of: Vec<usize> = (layout.markers.iter())
+            .map(|marker| {
+                colours.iter().position(|&colour| colour == marker.colour).unwrap_or_else(|| {
+                    colours.push(marker.colour);
+                    colours.len() - 1
+                })
+            })
+            .collect();
+        let lone = lone(layout);
+        let is_loose = |paint| (0..lone.len()).any(|marker| lone[marker] && paint_of[marker] == paint);
+        Self {
+            layout,
+            info,
+            loose: (0..colours.len()).map(is_loose).collect(),
+            needed: layout.needed(),
+            fixed: vec![None; chain.links.len()],
+            unknown: vec![None; chain.links.len()],
+            missing: vec![MISSING; chain.links.len()],
+            chain,
+            paints: colours.iter().map(|&colour| Paint::new(colour, &info.matrix, grey)).collect(),
+            paint_of,
+            spots: Spots::default(),
+            looked: Vec::new(),
+            frames: 0,
+            since_whole: 0,
+            hypotheses: Vec::new(),
+            wrong: None,
+        }
+    }
+
+    /// Looks at the next frame.
+    pub(crate) fn look(&mut self, frame: &Frame<'_>) -> Progress {
+        let first = self.frames == 0;
+        self.frames += 1;
+        self.since_whole += 1;
+        let rest = if self.frames <= EAGER_FRAMES && !self.all_named() { 1 } else { PATIENT_REST };
+        let whole = self.frames <= LEAST_FRAMES || self.since_whole >= rest;
+        if whole {
+            self.since_whole = 0;
+        }
+        self.spots.look(frame, &self.paints, whole, &self.loose);
+        if first {
+            self.fix();
+        }
+        let points: Vec<Option<Point>> = self.spots.all.iter().map(|spot| spot.at(frame.index).copied()).collect();
+        if points.iter().all(Option::is_none) {
+            return self.progress();
+        }
+        self.looked.push(frame.index);
+        let choices = self.choices();
+        if whole {
+            for (naming, _) in self.scene(&points, &choices).namings() {
+                if self.hypotheses.iter().all(|other| other.naming != naming) {
+                    self.add(naming, &choices, frame.index);
+                }
+            }
+        }
+        self.judge(&points, &choices);
+        let mut hypotheses = std::mem::take(&mut self.hypotheses);
+        hypotheses.sort_by(|a, b| self.cost(a).total_cmp(&self.cost(b)));
+        hypotheses.truncate(MOST_NAMINGS);
+        self.hypotheses = hypotheses;
+        self.progress()
+    }
+
+    /// What the frames told.
+    ///
+    /// # Errors
+    /// Where markers have no names.
+    pub(crate) fn finish(self) -> Result<Survey, SurveyError> {
+        if let Some(wrong) = self.wrong {
+            return Err(wrong);
+        }
+        let name = |marker: usize| self.layout.markers[marker].name.clone();
+        let seen = self.hypotheses.first().is_some_and(|best| {
+            (0..self.chain.links.len()).any(|place| best.naming[place].is_some() && self.is_needed(place))
+        });
+        if !seen {
+            let markers = (0..self.needed.len()).filter(|&marker| self.needed[marker]).map(name).collect();
+            return Err(SurveyError::NoneSeen { markers, frames: self.frames });
+        }
+        let best = &self.hypotheses[0];
+        let unsure = self.unsure();
+        if !unsure.is_empty() {
+            let markers = unsure.iter().map(|&place| name(self.chain.links[place].marker)).collect();
+            let straight = unsure.len() > 2 && unsure.len() == self.chain.links.len();
+            return Err(SurveyError::Ambiguous { markers, frames: self.frames, straight });
+        }
+        let mut starts = vec![None; self.layout.markers.len()];
+        for (link, spot) in self.chain.links.iter().zip(&best.naming) {
+            let Some(spot) = spot.filter(|_| self.needed[link.marker]) else { continue };
+            let spot = &self.spots.all[spot];
+            if let Some((_, look)) = &spot.look {
+                let point = &spot.points[0];
+                let next = spot.points.get(1).filter(|next| next.frame == point.frame + 1).unwrap_or(point);
+                starts[link.marker] = Some(Start {
+                    frame: point.frame,
+                    at_px: point.at_px,
+                    velocity_px: [0, 1].map(|axis| next.at_px[axis] - point.at_px[axis]),
+                    look: look.clone(),
+                });
+            }
+        }
+        let unseen = (0..starts.len()).filter(|&marker| self.needed[marker] && starts[marker].is_none()).collect();
+        Ok(Survey {
+            lengths_px: self.lengths(best),
+            starts,
+            siting: self.spots.siting(self.info.chroma_site.map(|(dx_px, dy_px)| Siting { dx_px, dy_px })),
+            frames: self.frames,
+            unseen,
+        })
+    }
+
+    fn is_needed(&self, place: usize) -> bool {
+        self.needed[self.chain.links[place].marker]
+    }
+
+    fn all_named(&self) -> bool {
+        let complete = |naming: &Naming| {
+            (0..naming.len()).all(|place| {
+                !self.is_needed(place) || naming[place].is_some_and(|spot| self.spots.all[spot].look.is_some())
+            })
+        };
+        self.hypotheses.first().is_some_and(|best| complete(&best.naming))
+    }
+
+    fn progress(&self) -> Progress {
+        let sure = self.looked.len() >= LEAST_FRAMES && self.all_named() && self.unsure().is_empty();
+        if sure || self.wrong.is_some() || self.looked.len() >= MOST_FRAMES { Progress::Enough } else { Progress::More }
+    }
+
+    /// Which spots each place of the chain can have.
+    fn choices(&self) -> Vec<Vec<(usize, f64)>> {
+        let links = self.chain.links.iter().zip(&self.fixed);
+        links
+            .map(|(link, fixed)| {
+                let paint = self.paint_of[link.marker];
+                let mut choices: Vec<(usize, f64)> = (self.spots.all.iter().enumerate())
+                    .filter(|(number, spot)| spot.paints[paint] && fixed.is_none_or(|fixed| fixed == *number))
+                    .map(|(number, spot)| {
+                        let cost = |paint: &Paint| colour_cost(paint, spot.last());
+                        let mine = cost(&self.paints[paint]);
+                        // A spot that is rather another marker's colour.
+                        let least = self.paints.iter().map(cost).fold(mine, f64::min);
+                        (number, if fixed.is_some() { 0.0 } else { mine + 0.5 * (mine - least) })
+                    })
+                    .collect();
+                choices.retain(|choice| fixed.is_some() || !self.fixed.contains(&Some(choice.0)));
+                choices
+            })
+            .collect()
+    }
+
+    fn scene<'b>(&'b self, points: &'b [Option<Point>], choices: &'b [Vec<(usize, f64)>]) -> Scene<'b> {
+        Scene {
+            chain: &self.chain,
+            choices,
+            points,
+            lengths_px: &self.unknown,
+            missing: &self.missing,
+            flexion: self.layout.flexion.sign(),
+        }
+    }
+
+    /// A naming that comes up is judged by the frames before too.
+    fn add(&mut self, naming: Naming, choices: &[Vec<(usize, f64)>], now: u64) {
+        let spans = vec![(f64::INFINITY, 0.0); naming.len()];
+        let mut hypothesis = Hypothesis { naming, frames: 0, shape: 0.0, backwards: 0.0, spans };
+        for &frame in self.looked.iter().filter(|&&frame| frame != now) {
+            let points: Vec<Option<Point>> = self.spots.all.iter().map(|spot| spot.at(frame).copied()).collect();
+            update(&mut hypothesis, &self.scene(&points, choices));
+        }
+        self.hypotheses.push(hypothesis);
+    }
+
+    fn judge(&mut self, points: &[Option<Point>], choices: &[Vec<(usize, f64)>]) {
+        let mut hypotheses = std::mem::take(&mut self.hypotheses);
+        for hypothesis in &mut hypotheses {
+            update(hypothesis, &self.scene(points, choices));
+        }
+        self.hypotheses = hypotheses;
+    }
+
+    /// The mean over frames, the joints bent backwards as in the worst frame, and lengths that changed.
+    fn cost(&self, hypothesis: &Hypothesis) -> f64 {
+        if hypothesis.frames == 0 {
+            return f64::INFINITY;
+        }
+        // From the first frame that could show all its spots: those that come late are as good, those that vanish are not.
+        let born = hypothesis.naming.iter().flatten().map(|&spot| self.spots.all[spot].points[0].frame).max();
+        let span = self.looked.len() - self.looked.partition_point(|&frame| Some(frame) < born);
+        let absent = 1.0 - hypothesis.frames as f64 / span.max(1) as f64;
+        let fresh = FRESH / (hypothesis.frames as f64 + 1.0);
+        let rigid: f64 = (self.chain.links.iter().zip(&hypothesis.spans))
+            .filter(|(link, span)| link.rigid && span.1 > 0.0)
+            .map(|(_, &(shortest, longest))| rigid_cost(shortest, longest))
+            .sum();
+        hypothesis.shape / hypothesis.frames as f64 + hypothesis.backwards + rigid + ABSENT * absent + fresh
+    }
+
+    /// Needed places of the chain that another naming, about as good as the best one, fills otherwise.
+    fn unsure(&self) -> Vec<usize> {
+        let Some(best) = self.hypotheses.first() else { return Vec::new() };
+        let limit = self.cost(best) + MARGIN;
+        let mut unsure = vec![false; self.chain.links.len()];
+        for other in self.hypotheses[1..].iter().take_while(|other| self.cost(other) < limit) {
+            for (place, unsure) in unsure.iter_mut().enumerate() {
+                *unsure |= self.is_needed(place) && self.differ(best, other, place);
+            }
+        }
+        (0..unsure.len()).filter(|&place| unsure[place]).collect()
+    }
+
+    /// Whether two namings can't both be right in a place. A spot that was lost and came back as another one is no
+    /// contradiction.
+    fn differ(&self, best: &Hypothesis, other: &Hypothesis, place: usize) -> bool {
+        match (best.naming[place], other.naming[place]) {
+            (Some(a), Some(b)) if a == b => false,
+            (Some(a), Some(b)) => {
+                let [a_points, b_points] = [a, b].map(|spot| &self.spots.all[spot].points);
+                let apart = a_points[a_points.len() - 1].frame < b_points[0].frame
+                    || b_points[b_points.len() - 1].frame < a_points[0].frame;
+                !apart || other.naming.contains(&Some(a)) || best.naming.contains(&Some(b))
+            }
+            (Some(_), None) => true,
+            (None, _) => false,
+        }
+    }
+
+    /// Gives the places of `[start]` their spots.
+    fn fix(&mut self) {
+        let size = (self.info.format.width, self.info.format.height);
+        let reach = START_SHARE * (size.0 as f64).hypot(size.1 as f64);
+        for place in 0..self.chain.links.len() {
+            let marker = self.chain.links[place].marker;
+            let Some(shown) = self.layout.start[marker] else { continue };
+            let [x, y] = self.info.turn.stored_from_shown(shown, size);
+            let mut near: Vec<(f64, usize)> = (self.spots.all.iter().enumerate())
+                .filter(|(number, spot)| spot.paints[self.paint_of[marker]] && !self.fixed.contains(&Some(*number)))
+                .map(|(number, spot)| {
+                    let at = spot.points[0].at_px;
+                    ((at[0] - x).hypot(at[1] - y), number)
+                })
+                .collect();
+            near.sort_by(|a, b| a.0.total_cmp(&b.0));
+            match near.first() {
+                Some(&(distance, spot))
+                    if distance <= reach.max(START_RADII * self.spots.all[spot].points[0].radius_px) =>
+                {
+                    self.fixed[place] = Some(spot);
+                }
+                nearest => {
+                    let shown_from =
+                        |spot: usize| self.info.turn.shown_from_stored(self.spots.all[spot].points[0].at_px, size);
+                    self.wrong.get_or_insert(SurveyError::WrongStart {
+                        marker: self.layout.markers[marker].name.clone(),
+                        at_px: shown,
+                        nearest_px: nearest.map(|&(_, spot)| shown_from(spot)),
+                    });
+                }
+            }
+        }
+    }
+
+    /// How long segments are in a naming: the mean of the shortest and longest seen.
+    fn lengths(&self, best: &Hypothesis) -> Vec<Option<f64>> {
+        let place_of = |marker: usize| self.chain.links.iter().position(|link| link.marker == marker);
+        (self.layout.segments.iter())
+            .map(|segment| {
+                let place = place_of(segment.markers[1])?;
+                let link = self.chain.links[place];
+                let (shortest, longest) = best.spans[place];
+                let before = link.before.map(|before| self.chain.links[before].marker);
+                (link.rigid && before == Some(segment.markers[0]) && longest > 0.0)
+                    .then_some(0.5 * (shortest + longest))
+            })
+            .collect()
+    }
+}
+
+/// Takes a frame into account.
+fn update(hypothesis: &mut Hypothesis, scene: &Scene<'_>) {
+    // What is seen of it tells which way it bends, and how long segments are, though something be hidden.
+    let seen: Naming = hypothesis.naming.iter().map(|spot| spot.filter(|&spot| scene.points[spot].is_some())).collect();
+    let cost = scene.cost(&seen);
+    if seen == hypothesis.naming {
+        hypothesis.frames += 1;
+        hypothesis.shape += cost.shape;
+    }
+    hypothesis.backwards = hypothesis.backwards.max(cost.backwards);
+    for (place, link) in scene.chain.links.iter().enumerate() {
+        let at = |place: usize| hypothesis.naming[place].and_then(|spot| scene.points[spot]);
+        if let (Some(here), Some(before)) = (at(place), link.before.and_then(at)) {
+            let length = (here.at_px[0] - before.at_px[0]).hypot(here.at_px[1] - before.at_px[1]);
+            let span = &mut hypothesis.spans[place];
+            *span = (span.0.min(length), span.1.max(length));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

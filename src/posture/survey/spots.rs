@@ -1,0 +1,224 @@
+//! Spots of the markers' colours followed from frame to frame, not yet named.
+
+use super::super::centre::{Scratch, centre};
+use super::super::colour::Look;
+use super::super::find::{Area, Blob, Finder, Paint};
+use super::super::naming::Point;
+use super::super::siting::{Siting, SitingEvidence};
+use super::super::track::loose_look;
+use crate::video::Frame;
+
+/// A spot is lost for good after this many frames without it.
+const PATIENCE: u64 = 8;
+/// A thing that may be no disc is taken as it is after so many frames in which no disc was found.
+const LOOSE_AFTER: usize = 3;
+/// Spots followed at once, at most.
+const MOST: usize = 40;
+/// What stands out less than this share of the best of its colour, or than this, is no marker.
+const LEAST_OF_BEST: f64 = 0.3;
+const LEAST_CONTRAST: f64 = 0.15;
+
+/// A spot followed over frames.
+#[derive(Debug, Clone)]
+pub(super) struct Spot {
+    /// Where it was, in the order of frames, frames without it left out.
+    pub(super) points: Vec<Point>,
+    /// Its look and the point at which it was learnt.
+    pub(super) look: Option<(usize, Look)>,
+    /// Which paints found it.
+    pub(super) paints: Vec<bool>,
+    velocity_px: [f64; 2],
+}
+
+impl Spot {
+    pub(super) fn last(&self) -> &Point {
+        // A spot starts with a point and loses none.
+        &self.points[self.points.len() - 1]
+    }
+
+    /// Where it was in a frame, if it was seen there.
+    pub(super) fn at(&self, frame: u64) -> Option<&Point> {
+        self.points.binary_search_by_key(&frame, |point| point.frame).ok().map(|index| &self.points[index])
+    }
+
+    fn is_followed(&self, frame: u64) -> bool {
+        frame - self.last().frame <= PATIENCE
+    }
+
+    fn expected_px(&self, frame: u64) -> [f64; 2] {
+        let ahead = ((frame - self.last().frame) as f64).min(3.0);
+        [0, 1].map(|axis| self.last().at_px[axis] + ahead * self.velocity_px[axis])
+    }
+}
+
+/// All spots.
+#[derive(Debug, Default)]
+pub(super) struct Spots {
+    pub(super) all: Vec<Spot>,
+    finder: Finder,
+    found: Vec<Blob>,
+    scratch: Scratch,
+    evidence: Option<SitingEvidence>,
+}
+
+/// A blob and which paints found it.
+struct Candidate {
+    blob: Blob,
+    paints: Vec<bool>,
+}
+
+impl Spots {
+    /// Looks at a frame: in all of it, or about the spots that are followed.
+    pub(super) fn look(&mut self, frame: &Frame<'_>, paints: &[Paint], whole: bool, loose: &[bool]) {
+        let mut candidates: Vec<Candidate> = Vec::new();
+        if whole {
+            self.search(frame, None, paints, &vec![true; paints.len()], &mut candidates);
+        } else {
+            for index in 0..self.all.len() {
+                let spot = &self.all[index];
+                if spot.is_followed(frame.index) {
+                    let speed = spot.velocity_px[0].hypot(spot.velocity_px[1]);
+                    let reach = 4.0 * spot.last().radius_px + speed + 8.0;
+                    let area = Area::about(spot.expected_px(frame.index), reach);
+                    let paints_of = spot.paints.clone();
+                    self.search(frame, Some(area), paints, &paints_of, &mut candidates);
+                }
+            }
+        }
+        let inside = |candidate: &Candidate| candidates.iter().any(|other| lies_in(&candidate.blob, &other.blob));
+        let parts: Vec<bool> = candidates.iter().map(inside).collect();
+        let mut parts = parts.into_iter();
+        candidates.retain(|_| !parts.next().unwrap_or(false));
+        self.link(frame, candidates, whole);
+        self.learn(frame, loose);
+    }
+
+    fn search(
+        &mut self,
+        frame: &Frame<'_>,
+        area: Option<Area>,
+        paints: &[Paint],
+        which: &[bool],
+        candidates: &mut Vec<Candidate>,
+    ) {
+        self.finder.load(frame, area);
+        for (number, paint) in paints.iter().enumerate().filter(|&(number, _)| which[number]) {
+            self.finder.find(frame, paint, &mut self.found);
+            let best = self.found.first().map_or(0.0, |blob| blob.contrast);
+            let least = (LEAST_OF_BEST * best).max(LEAST_CONTRAST);
+            for blob in self.found.iter().filter(|blob| blob.contrast >= least && !blob.at_the_border) {
+                let known = candidates.iter_mut().find(|other| is_same(&other.blob, blob));
+                if let Some(known) = known {
+                    known.paints[number] = true;
+                    if blob.contrast > known.blob.contrast {
+                        known.blob = *blob;
+                    }
+                } else {
+                    let mut paints = vec![false; paints.len()];
+                    paints[number] = true;
+                    candidates.push(Candidate { blob: *blob, paints });
+                }
+            }
+        }
+    }
+
+    /// Gives each candidate to the spot that it continues, the nearest pairs first; the others start spots of their own.
+    fn link(&mut self, frame: &Frame<'_>, mut candidates: Vec<Candidate>, whole: bool) {
+        let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
+        for (number, spot) in self.all.iter().enumerate().filter(|(_, spot)| spot.is_followed(frame.index)) {
+            let [x, y] = spot.expected_px(frame.index);
+            let radius = spot.last().radius_px;
+            let speed = spot.velocity_px[0].hypot(spot.velocity_px[1]);
+            // A spot seen once may have any velocity.
+            let free = if spot.points.len() < 2 { 3.0 } else { 1.2 };
+            let gap = ((frame.index - spot.last().frame) as f64).sqrt();
+            let reach = free * radius * gap + 0.6 * speed + 3.0;
+            for (index, candidate) in candidates.iter().enumerate() {
+                let distance = (candidate.blob.at_px[0] - x).hypot(candidate.blob.at_px[1] - y);
+                let growth = (candidate.blob.radius_px() / radius).ln().abs();
+                let related = candidate.paints.iter().zip(&spot.paints).any(|(a, b)| *a && *b);
+                if related && distance < reach && growth < 0.35 {
+                    pairs.push((distance + 2.0 * radius * growth, number, index));
+                }
+            }
+        }
+        pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2)));
+        let mut taken = vec![false; candidates.len()];
+        for (_, number, index) in pairs {
+            let spot = &mut self.all[number];
+            if taken[index] || spot.last().frame == frame.index {
+                continue;
+            }
+            taken[index] = true;
+            let (point, before) = (Point::new(frame.index, &candidates[index].blob), *spot.last());
+            let frames = (frame.index - before.frame) as f64;
+            for axis in 0..2 {
+                spot.velocity_px[axis] = (point.at_px[axis] - before.at_px[axis]) / frames;
+            }
+            spot.points.push(point);
+            for (mine, theirs) in spot.paints.iter_mut().zip(&candidates[index].paints) {
+                *mine |= theirs;
+            }
+        }
+        if !whole {
+            return;
+        }
+        let mut followed = self.all.iter().filter(|spot| spot.is_followed(frame.index)).count();
+        let mut taken = taken.into_iter();
+        candidates.retain(|_| !taken.next().unwrap_or(false));
+        for candidate in candidates {
+            if followed < MOST {
+                followed += 1;
+                self.all.push(Spot {
+                    points: vec![Point::new(frame.index, &candidate.blob)],
+                    look: None,
+                    paints: candidate.paints,
+                    velocity_px: [0.0; 2],
+                });
+            }
+        }
+    }
+
+    /// Learns the looks of the spots that have none, and of those that have some where chroma lies.
+    fn learn(&mut self, frame: &Frame<'_>, loose: &[bool]) {
+        let siting = Siting::usual(frame);
+        let evidence = self.evidence.get_or_insert_with(|| SitingEvidence::new(siting, frame.subsampling()));
+        for spot in &mut self.all {
+            let last = *spot.last();
+            if last.frame != frame.index {
+                continue;
+            }
+            if spot.look.is_none() {
+                let look = Look::learn(frame, siting, last.at_px, last.radius_px, &mut self.scratch);
+                spot.look = look.map(|look| (spot.points.len() - 1, look));
+                let is_loose = spot.paints.iter().zip(loose).any(|(found, loose)| *found && *loose);
+                if spot.look.is_none() && is_loose && spot.points.len() >= LOOSE_AFTER {
+                    spot.look = Some((spot.points.len() - 1, loose_look(frame, &last)));
+                }
+            }
+            let Some((_, look)) = &spot.look else { continue };
+            if let Ok(fit) = centre(frame, siting, look, last.at_px, &mut self.scratch) {
+                evidence.push(&fit);
+            }
+        }
+    }
+
+    /// Where chroma samples lie: as the spots tell, else as the header does, else where most encoders put them.
+    pub(super) fn siting(&self, header: Option<Siting>) -> Siting {
+        let evidence = self.evidence.as_ref();
+        let told = evidence.and_then(SitingEvidence::told).or(header);
+        told.or(evidence.map(SitingEvidence::assumed)).unwrap_or(Siting { dx_px: 0.0, dy_px: 0.0 })
+    }
+}
+
+/// Whether a blob is only a part of a larger one that stands out more.
+fn lies_in(part: &Blob, whole: &Blob) -> bool {
+    let distance = (part.at_px[0] - whole.at_px[0]).hypot(part.at_px[1] - whole.at_px[1]);
+    part.radius_px() < whole.radius_px() && distance < whole.radius_px() && part.contrast < 0.8 * whole.contrast
+}
+
+fn is_same(a: &Blob, b: &Blob) -> bool {
+    let distance = (a.at_px[0] - b.at_px[0]).hypot(a.at_px[1] - b.at_px[1]);
+    let growth = (a.radius_px() / b.radius_px()).ln().abs();
+    distance < 0.6 * a.radius_px().min(b.radius_px()) && growth < 0.5
+}
