@@ -4,6 +4,7 @@
 
 mod phantom;
 mod photos;
+mod posture;
 mod tradeoff;
 
 use std::io::{IsTerminal, Write};
@@ -13,8 +14,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::{Args, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use lunula::stages::{Fate, Step};
 
-/// Ground truth for fingernail sensing: nail photographs to coloration maps.
+/// Ground truth for fingernail sensing: nail photographs to coloration maps, videos to joint angles.
 #[derive(Debug, Parser)]
 #[command(
     name = "lunula",
@@ -36,6 +38,7 @@ Exit status: 0 all done; 1 done, but some inputs failed (each is named on standa
 #[derive(Debug, Subcommand)]
 enum Command {
     Photos(photos::PhotosArgs),
+    Posture(posture::PostureArgs),
     Phantom(phantom::PhantomArgs),
     Tradeoff(tradeoff::TradeoffArgs),
 }
@@ -72,6 +75,7 @@ struct Interrupted;
 pub(crate) fn run() -> ExitCode {
     let outcome = match Cli::parse().command {
         Command::Photos(args) => photos::run(&args),
+        Command::Posture(args) => posture::run(&args),
         Command::Phantom(args) => phantom::run(&args),
         Command::Tradeoff(args) => tradeoff::run(&args),
     };
@@ -136,4 +140,15 @@ impl Common {
 /// A reader that has gone away is no error of ours.
 fn print_line(text: &str) {
     let _ = writeln!(std::io::stdout(), "{text}");
+}
+
+/// A plan's stages, a line each.
+fn print_steps(steps: &[Step]) {
+    for step in steps {
+        let fate = match step.fate {
+            Fate::Run => "run",
+            Fate::LeftOut => "left out",
+        };
+        print_line(&format!("{:<34} {fate:<9} {}", step.stage, step.reason));
+    }
 }

@@ -8,11 +8,11 @@ use clap::{Args, Subcommand, ValueEnum};
 use lunula::files::Staging;
 use lunula::photo::outline::{DetectOptions, Drawn, OutlineOptions, Side, Sources};
 use lunula::photo::{
-    Channel, DetectedOutline, Fate, NailTable, Normalization, PhotoSet, PhotosError, PhotosOptions, Resample,
-    RunReport, SetFault, Watch, keep_outlines, merge, plan, run as run_photos, write_nails,
+    Channel, DetectedOutline, NailTable, Normalization, PhotoSet, PhotosError, PhotosOptions, Resample, RunReport,
+    SetFault, Watch, keep_outlines, merge, plan, run as run_photos, write_nails,
 };
 
-use super::{Common, Interrupted, Outcome, print_line};
+use super::{Common, Interrupted, Outcome, print_line, print_steps};
 
 /// Photographs of nails to coloration maps: outlines, normalized pictures, mean and standard deviation over subjects
 ///
@@ -247,13 +247,7 @@ fn print_plan(args: &PhotosArgs, set: &PhotoSet, options: &PhotosOptions) -> Out
     if args.common.json {
         print_line(&serde_json::json!({ "job": "photos", "plan": steps, "failed": set.faults }).to_string());
     } else {
-        for step in &steps {
-            let fate = match step.fate {
-                Fate::Run => "run",
-                Fate::LeftOut => "left out",
-            };
-            print_line(&format!("{:<34} {fate:<9} {}", step.stage, step.reason));
-        }
+        print_steps(&steps);
     }
     name_failures(&set.faults);
     if set.faults.is_empty() { Outcome::Done } else { Outcome::SomeFailed }

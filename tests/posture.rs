@@ -1,0 +1,243 @@
+//! `lunula posture` from end to end on generated videos: tables, times, names, accuracy, and what is left out.
+
+mod util;
+
+use std::collections::BTreeMap;
+
+use util::{Answer, Dir};
+
+type Rows = Vec<BTreeMap<String, String>>;
+
+/// A video of `lunula phantom video` in `scene/`: 640 x 360, 2 s of bending at 0.5 Hz.
+fn scene(more: &[&str]) -> Dir {
+    let dir = Dir::new();
+    let few = [
+        "phantom",
+        "video",
+        "--out",
+        "scene",
+        "--seed",
+        "5",
+        "--size",
+        "640x360",
+        "--seconds",
+        "2",
+        "--bend-hz",
+        "0.5",
+    ];
+    dir.lunula(&[&few[..], more].concat()).expect(0);
+    dir
+}
+
+fn posture(dir: &Dir, more: &[&str]) -> Answer {
+    let given = ["posture", "scene/video.mp4", "--markers", "scene/markers.toml", "--out", "joints.csv"];
+    dir.lunula(&[&given[..], more].concat())
+}
+
+fn number(row: &BTreeMap<String, String>, column: &str) -> Option<f64> {
+    let cell = &row[column];
+    (!cell.is_empty()).then(|| cell.parse().unwrap_or_else(|_| panic!("{column}: `{cell}` is no number")))
+}
+
+/// Root mean square of a joint's error over the rows that have its angle, and how many these are.
+fn rms(found: &Rows, truth: &Rows, joint: &str) -> (f64, usize) {
+    assert_eq!(found.len(), truth.len(), "a row a frame");
+    let column = format!("{joint}_deg");
+    let errors: Vec<f64> =
+        found.iter().zip(truth).filter_map(|(f, t)| Some(number(f, &column)? - number(t, &column)?)).collect();
+    ((errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt(), errors.len())
+}
+
+/// The largest RMS error that a small clean scene may have, degrees; the README tells what is measured on the large ones.
+const CLEAN_RMS_DEG: [(&str, f64); 3] = [("J1", 0.15), ("J2", 0.25), ("J3", 0.5)];
+
+#[track_caller]
+fn is_accurate(dir: &Dir, joints: &[&str]) {
+    let (found, truth) = (dir.table("joints.csv"), dir.table("scene/truth/joints.csv"));
+    for (joint, bound) in CLEAN_RMS_DEG.iter().filter(|(joint, _)| joints.contains(joint)) {
+        let (error, count) = rms(&found, &truth, joint);
+        assert_eq!(count, truth.len(), "{joint} in every frame");
+        assert!(error <= *bound, "{joint}: {error} degrees RMS");
+    }
+}
+
+#[test]
+fn a_clean_scene_gives_every_angle_with_its_time() {
+    let dir = scene(&[]);
+    let report = posture(&dir, &["--tracks", "tracks.csv", "--json"]).expect(0).json();
+    is_accurate(&dir, &["J1", "J2", "J3"]);
+    let header = std::fs::read_to_string(dir.path("joints.csv")).expect("text");
+    assert_eq!(
+        header.lines().next(),
+        Some("frame,time_s,clock_s,J1_deg,J1_sd_deg,J2_deg,J2_sd_deg,J3_deg,J3_sd_deg,status")
+    );
+    let (found, truth) = (dir.table("joints.csv"), dir.table("scene/truth/joints.csv"));
+    for (index, (row, exact)) in found.iter().zip(&truth).enumerate() {
+        assert_eq!(row["frame"], index.to_string());
+        assert!((number(row, "time_s").unwrap() - number(exact, "time_s").unwrap()).abs() <= 1e-4);
+        assert_eq!((row["clock_s"].as_str(), row["status"].as_str()), ("", "ok"));
+    }
+    let tracks = dir.table("tracks.csv");
+    assert_eq!(tracks.len(), 8 * found.len(), "eight markers a frame");
+    assert_eq!(report["frames"]["all"], found.len());
+    assert_eq!(report["frames"]["complete"], found.len());
+    assert!(report["decoding_share"].as_f64().is_some_and(|share| share > 0.0 && share < 1.0));
+    for name in
+        ["joints.run.json", "joints-angles.png", "joints-angles.svg", "joints-coupling.png", "joints-coupling.svg"]
+    {
+        assert!(dir.path(name).is_file(), "{name}");
+    }
+}
+
+#[test]
+fn the_same_bytes_whatever_the_threads() {
+    let dir = scene(&["--noise", "4"]);
+    posture(&dir, &["--tracks", "tracks.csv", "--threads", "1"]).expect(0);
+    let once = ["joints.csv", "tracks.csv", "joints-angles.png"].map(|name| std::fs::read(dir.path(name)).expect(name));
+    posture(&dir, &["--tracks", "tracks.csv", "--threads", "4"]).expect(0);
+    let again =
+        ["joints.csv", "tracks.csv", "joints-angles.png"].map(|name| std::fs::read(dir.path(name)).expect(name));
+    assert!(once == again);
+}
+
+#[test]
+fn markers_of_one_colour_keep_their_names() {
+    for more in [["--colours", "red"], ["--colours", "distinct"], ["--layout", "joints"]] {
+        let dir = scene(&more);
+        posture(&dir, &["--tracks", "tracks.csv"]).expect(0);
+        is_accurate(&dir, &["J1", "J2", "J3"]);
+        let (found, truth) = (dir.table("tracks.csv"), dir.table("scene/truth/tracks.csv"));
+        for (row, exact) in found.iter().zip(&truth) {
+            assert_eq!((&row["frame"], &row["marker"]), (&exact["frame"], &exact["marker"]));
+            let off = ["x_px", "y_px"].map(|c| number(row, c).unwrap() - number(exact, c).unwrap());
+            assert!(off[0].hypot(off[1]) <= 1.0, "{more:?}: frame {} {}: {off:?}", row["frame"], row["marker"]);
+        }
+    }
+}
+
+#[test]
+fn a_joint_alone_is_as_good_and_its_own_markers_only_are_tracked() {
+    let dir = scene(&[]);
+    let report = posture(&dir, &["--joints", "J2", "--tracks", "tracks.csv", "--json"]).expect(0).json();
+    is_accurate(&dir, &["J2"]);
+    let rows = dir.table("joints.csv");
+    assert!(!rows[0].contains_key("J1_deg") && !rows[0].contains_key("J3_deg"));
+    assert_eq!(dir.table("tracks.csv").len(), 4 * rows.len());
+    let left_out = report["left_out"].to_string();
+    for marker in ["hand_prox", "distal_dist"] {
+        assert!(left_out.contains(marker), "{left_out}");
+    }
+}
+
+#[test]
+fn a_hidden_marker_gives_no_angle() {
+    let dir = scene(&["--hide", "middle_dist@20+8"]);
+    posture(&dir, &["--tracks", "tracks.csv"]).expect(0);
+    let (found, tracks) = (dir.table("joints.csv"), dir.table("scene/truth/tracks.csv"));
+    let mut hidden = 0;
+    for exact in tracks.iter().filter(|t| t["status"] == "hidden") {
+        let row = &found[exact["frame"].parse::<usize>().unwrap()];
+        assert_eq!((row["J2_deg"].as_str(), row["J3_deg"].as_str(), row["J3_sd_deg"].as_str()), ("", "", ""));
+        assert_eq!(row["status"], "lost: middle_dist");
+        assert_ne!(row["J1_deg"], "", "no marker of J1 is hidden");
+        hidden += 1;
+    }
+    assert!(hidden >= 8, "the scene hides it for eight frames");
+    assert_eq!(found[59]["status"], "ok", "it is found again");
+}
+
+#[test]
+fn times_are_the_containers_at_a_variable_rate() {
+    let dir = scene(&["--vfr"]);
+    posture(&dir, &[]).expect(0);
+    let (found, truth) = (dir.table("joints.csv"), dir.table("scene/truth/joints.csv"));
+    assert_eq!(found.len(), truth.len());
+    let times: Vec<f64> = found.iter().map(|row| number(row, "time_s").unwrap()).collect();
+    for (time, exact) in times.iter().zip(&truth) {
+        assert!((time - number(exact, "time_s").unwrap()).abs() <= 1e-4);
+    }
+    let intervals: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    assert!(intervals.iter().any(|i| (i - intervals[0]).abs() > 1e-3), "the rate varies");
+}
+
+#[test]
+fn parquet_holds_what_csv_holds() {
+    let dir = scene(&["--hide", "hand_prox@10+5"]);
+    posture(&dir, &[]).expect(0);
+    dir.lunula(&["posture", "scene/video.mp4", "--markers", "scene/markers.toml", "--out", "joints.parquet"]).expect(0);
+    let [csv, parquet] =
+        ["joints.csv", "joints.parquet"].map(|name| lunula::table::Table::read(&dir.path(name)).expect("a table"));
+    assert_eq!(csv.rows(), parquet.rows());
+    assert_eq!(csv.names(), parquet.names());
+    for name in csv.names().iter().filter(|name| **name != "status") {
+        let [ours, theirs] = [&csv, &parquet].map(|table| table.numbers(name).expect("numbers"));
+        for (a, b) in ours.iter().zip(&theirs) {
+            assert_eq!(a.map(f64::to_bits), b.map(f64::to_bits), "{name}");
+        }
+    }
+}
+
+#[test]
+fn a_suggested_marker_file_runs_as_it_stands() {
+    let dir = scene(&["--colours", "distinct"]);
+    let suggested = dir.lunula(&["posture", "scene/video.mp4", "--suggest"]).expect(0);
+    dir.write("suggested.toml", &suggested.stdout);
+    dir.lunula(&["posture", "scene/video.mp4", "--markers", "suggested.toml", "--out", "joints.csv"]).expect(0);
+    is_accurate(&dir, &["J1", "J2", "J3"]);
+}
+
+#[test]
+fn an_overlay_has_a_frame_for_each_frame() {
+    let dir = scene(&["--vfr"]);
+    posture(&dir, &["--overlay", "drawn.mp4"]).expect(0);
+    let times = |name: &str| -> Vec<f64> {
+        let mut video = lunula::video::Video::open(&dir.path(name), 2).expect("a video");
+        let mut times = Vec::new();
+        while let Some(item) = video.next_item().expect("frames") {
+            let lunula::video::Item::Frame(frame) = item else { panic!("every frame is there") };
+            times.push(frame.time_s);
+        }
+        times
+    };
+    let (drawn, given) = (times("drawn.mp4"), times("scene/video.mp4"));
+    assert_eq!(drawn.len(), given.len());
+    assert!(drawn.iter().zip(&given).all(|(a, b)| (a - b).abs() <= 1e-3));
+}
+
+#[test]
+fn smoothing_fills_nothing_and_does_better() {
+    let dir = scene(&["--noise", "6", "--crf", "28", "--hide", "proximal_dist@30+6"]);
+    let truth = dir.table("scene/truth/joints.csv");
+    posture(&dir, &[]).expect(0);
+    let raw = dir.table("joints.csv");
+    posture(&dir, &["--smooth"]).expect(0);
+    let smooth = dir.table("joints.csv");
+    for (a, b) in raw.iter().zip(&smooth) {
+        assert_eq!(a["J2_deg"].is_empty(), b["J2_deg"].is_empty(), "frame {}", a["frame"]);
+    }
+    assert!(rms(&smooth, &truth, "J3").0 < rms(&raw, &truth, "J3").0);
+}
+
+#[test]
+fn zero_angles_are_subtracted() {
+    let dir = scene(&[]);
+    posture(&dir, &[]).expect(0);
+    let plain = dir.table("joints.csv");
+    let markers = std::fs::read_to_string(dir.path("scene/markers.toml")).expect("text");
+    dir.write("scene/markers.toml", markers + "\n[zero]\nJ2_deg = 1.5\n");
+    posture(&dir, &[]).expect(0);
+    for (a, b) in plain.iter().zip(dir.table("joints.csv")) {
+        assert!((number(a, "J2_deg").unwrap() - number(&b, "J2_deg").unwrap() - 1.5).abs() <= 2e-5);
+    }
+}
+
+#[test]
+fn a_plan_says_what_is_left_out_and_does_nothing() {
+    let dir = scene(&[]);
+    let plan = dir
+        .lunula(&["posture", "scene/video.mp4", "--markers", "scene/markers.toml", "--joints", "J2", "--plan"])
+        .expect(0);
+    assert!(plan.stdout.contains("left out"), "{}", plan.stdout);
+    assert!(plan.stdout.contains("hand_prox"), "{}", plan.stdout);
+    assert_eq!(dir.bytes_of(".").keys().filter(|name| !name.starts_with("scene/")).count(), 0);
+}
