@@ -3,12 +3,17 @@
 //! It calls the same entry as the command line, so that a figure on a curve is the figure a user gets.
 
 pub mod photos;
+pub mod posture;
+pub mod recipe;
 
 use std::path::Path;
 
 use anyhow::Context;
 
 use crate::figure::{Axis, Plot, Point, Series, draw_log_log};
+
+/// What a peer's setting begins with.
+pub(crate) const PEER: &str = "OpenCV";
 
 /// One measured setting: a row of `tradeoff.csv`.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -20,7 +25,7 @@ pub struct Row {
     /// How wrong.
     pub error: f64,
     /// What the error is, and its unit.
-    pub error_unit: &'static str,
+    pub error_unit: String,
     /// Seconds on one thread per input, of the stage that the setting changes; the median over repeats.
     pub run_s: f64,
     /// What was done per input, a count that no clock disturbs.
@@ -45,8 +50,8 @@ pub fn write(rows: &[Row], title: &str, out: &Path) -> anyhow::Result<()> {
 fn panels(rows: &[Row], title: &str) -> Vec<Plot> {
     let mut units: Vec<&str> = Vec::new();
     for row in rows {
-        if !units.contains(&row.error_unit) {
-            units.push(row.error_unit);
+        if !units.contains(&row.error_unit.as_str()) {
+            units.push(&row.error_unit);
         }
     }
     units
@@ -55,16 +60,19 @@ fn panels(rows: &[Row], title: &str) -> Vec<Plot> {
             title: format!("{title}: error against run time"),
             x: Axis { label: "seconds an input, of the stage alone".into() },
             y: Axis { label: unit.to_owned() },
-            series: vec![Series {
-                name: "lunula".into(),
-                points: rows
-                    .iter()
-                    .filter(|row| row.error_unit == unit)
-                    .map(|row| Point { x: row.run_s, y: row.error, label: row.setting.clone() })
-                    .collect(),
-            }],
+            series: ["lunula", PEER].into_iter().filter_map(|name| series(rows, unit, name)).collect(),
         })
         .collect()
+}
+
+/// The points of one kind of error, of lunula's settings or of its peer's; none where there are none.
+fn series(rows: &[Row], unit: &str, name: &str) -> Option<Series> {
+    let points: Vec<Point> = rows
+        .iter()
+        .filter(|row| row.error_unit == unit && row.setting.starts_with(PEER) == (name == PEER))
+        .map(|row| Point { x: row.run_s, y: row.error, label: row.setting.clone() })
+        .collect();
+    (!points.is_empty()).then(|| Series { name: name.to_owned(), points })
 }
 
 /// The middle one of several, NaN of none.

@@ -138,7 +138,10 @@ fn resampled(set: &PhotoSet, truths: &[Truth], resample: Resample, settings: &Se
     let run_s = median(seconds);
     let setting = format!("resample {}", format!("{resample:?}").to_lowercase());
     let work = taps * (normalization.size * normalization.size) as u64;
-    let row = |(error_unit, error)| Row { job: "photos", setting: setting.clone(), error, error_unit, run_s, work };
+    let row = |(unit, error): (&str, f64)| {
+        let (setting, error_unit) = (setting.clone(), unit.to_owned());
+        Row { job: "photos", setting, error, error_unit, run_s, work }
+    };
     Ok(errors.into_iter().map(row).collect())
 }
 
@@ -195,7 +198,7 @@ fn detected(set: &PhotoSet, truths: &[Truth], working_size_px: u32, settings: &S
         job: "photos",
         setting: format!("detect on {working_size_px} px"),
         error: errors.iter().sum::<f64>() / count as f64,
-        error_unit: OUTLINE_ERROR,
+        error_unit: OUTLINE_ERROR.to_owned(),
         run_s: median(seconds),
         work: work / count as u64,
     })

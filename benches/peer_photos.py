@@ -1,6 +1,6 @@
 """The photos job as a user of Python would write it: the peer of `cargo bench --bench photos`.
 
-usage: peer.py opencv|skimage SET OUT [PROCESSES]
+usage: peer_photos.py opencv|skimage SET OUT [PROCESSES]
 
 SET as `lunula phantom photos` writes it, outlines and axes in LabelMe. Writes what `lunula photos` writes: normalized
 pictures, maps, figures, sheets (without captions) and nails.csv.
