@@ -8,7 +8,7 @@ PACKAGES := $(shell sed '/^\#/d' system-packages.txt)
 .PHONY: help demo test lint bench system clean
 
 help:
-	@echo "make demo   build, run the main job on generated photographs, say where the pictures are"
+	@echo "make demo   build, run the main jobs on generated scenes, say where the pictures are"
 	@echo "make test   build and run every test"
 	@echo "make lint   formatting, clippy and documentation, all without warnings"
 	@echo "make bench  speed against only decoding, and against Python with OpenCV and scikit-image"
@@ -17,11 +17,19 @@ demo: system
 	cargo build --release --locked
 	$(LUNULA) phantom photos --seed 1 --light chamber --out $(DEMO)/scene
 	$(LUNULA) photos $(DEMO)/scene/photos --out $(DEMO)/coloration
+	$(LUNULA) phantom video --seed 1 --out $(DEMO)/finger
+	$(LUNULA) posture $(DEMO)/finger/video.mp4 --markers $(DEMO)/finger/markers.toml --out $(DEMO)/posture/joints.csv --overlay $(DEMO)/posture/overlay.mp4
 	@echo
 	@echo "Average coloration of 16 generated subjects in eight poses:"
 	@echo "  $(DEMO)/coloration/report.html            everything on one page"
 	@echo "  $(DEMO)/coloration/figures/contrast.png   as Fig. 54 of the thesis"
 	@echo "  $(DEMO)/scene/truth/maps                  the exact maps, to compare"
+	@echo
+	@echo "Joint angles of a generated video of a bending finger:"
+	@echo "  $(DEMO)/posture/joints-angles.png         the angles over time"
+	@echo "  $(DEMO)/posture/joints-coupling.png       J3 against J2, as Fig. 33 of the thesis"
+	@echo "  $(DEMO)/posture/overlay.mp4               the video with what was tracked"
+	@echo "  $(DEMO)/finger/truth/joints.csv           the exact angles, to compare"
 
 test: system
 	cargo test --locked
@@ -33,6 +41,7 @@ lint: system
 
 bench: system
 	cargo bench --locked --bench photos
+	cargo bench --locked --bench posture
 
 # Installs the packages of system-packages.txt that are missing; does nothing where all are there.
 system:
