@@ -241,3 +241,21 @@ fn a_plan_says_what_is_left_out_and_does_nothing() {
     assert!(plan.stdout.contains("hand_prox"), "{}", plan.stdout);
     assert_eq!(dir.bytes_of(".").keys().filter(|name| !name.starts_with("scene/")).count(), 0);
 }
+
+#[test]
+fn the_tradeoff_has_every_setting_and_opencv_on_it() {
+    let dir = scene(&[]);
+    dir.lunula(&["tradeoff", "posture", "--input", "scene", "--truth", "scene/truth", "--repeats", "1", "--out", "t"])
+        .expect(0);
+    let rows = dir.table("t/tradeoff.csv");
+    let error = |setting: &str| -> f64 {
+        let row = rows.iter().find(|row| row["setting"].starts_with(setting) && row["error_unit"].starts_with("J3"));
+        row.unwrap_or_else(|| panic!("`{setting}` is in the table"))["error"].parse().expect("a number")
+    };
+    for setting in ["luma only", "chroma only", "centroid", "one round", "two rounds", "whole frames searched"] {
+        assert!(error(setting).is_finite());
+    }
+    assert!(error("default") < error("centroid"), "the fit is better than the centroid");
+    assert!(error("default") < 0.5 * error("OpenCV"), "and far better than the usual recipe");
+    assert!(dir.path("t/tradeoff.png").is_file() && dir.path("t/tradeoff.svg").is_file());
+}

@@ -22,7 +22,7 @@ use super::survey::{Progress, Survey, Surveyor};
 use super::track::{Effort, Tracker};
 use crate::files::WriteError;
 use crate::stages::{Fate, Stages};
-use crate::table::TableError;
+use crate::table::{TableError, TableFormat};
 use crate::video::{End, Info, Item, Turn, Video, VideoError};
 
 /// How to work.
@@ -98,6 +98,10 @@ pub fn run(
 ) -> Result<PostureReport, PostureError> {
     let start = Instant::now();
     let stages = Stages::default();
+    // What can't be named so is told before the work begins.
+    for table in std::iter::once(&outputs.joints).chain(&outputs.tracks) {
+        TableFormat::of(table)?;
+    }
     let (survey, info) = look_first(path, layout, options, &stages, watch)?;
     let mut video = Video::open(path, options.threads)?;
     let mut tracker = Tracker::new(layout, &survey, &info, options.method);
@@ -173,12 +177,20 @@ pub fn run(
         warnings,
         failed,
         pictures,
-        threads: options.threads,
+        threads: threads(options),
         stages: Vec::new(),
         decoding_share: 0.0,
         wall_s: 0.0,
     };
     results.finish(draft, &stages, start)
+}
+
+/// Threads that decode.
+fn threads(options: &PostureOptions) -> usize {
+    match options.threads {
+        0 => std::thread::available_parallelism().map_or(1, usize::from),
+        asked => asked,
+    }
 }
 
 /// Looks at a few frames of a video and returns a marker file to start from.
