@@ -126,7 +126,11 @@ pub fn run(
             None => tracker.skip(),
         };
         let joints = stages.time("angles", || angles.step(sights));
-        stages.time("write", || results.add(Row { index, time_s, frame, sights, joints }))?;
+        let row = Row { index, time_s, frame, sights, joints };
+        if outputs.overlay.is_some() {
+            stages.time("overlay", || results.draw(&row))?;
+        }
+        stages.time("write", || results.add(row))?;
         span.add(time_s);
         (watch.tick)(index + 1, info.declared_frames);
     }

@@ -111,7 +111,6 @@ impl<'a> Results<'a> {
             self.markers[marker].add(&row.sights[marker]);
         }
         self.write_tracks(&row)?;
-        self.draw(&row)?;
         match &mut self.held {
             Some(held) => held.push(Held { index: row.index, time_s: row.time_s, angles: row.joints }),
             None => self.write_joints(row.index, row.time_s, &row.joints)?,
@@ -137,7 +136,8 @@ impl<'a> Results<'a> {
         Ok(())
     }
 
-    fn draw(&mut self, row: &Row<'_>) -> Result<(), PostureError> {
+    /// Draws the frame for the overlay, where one is wanted.
+    pub(super) fn draw(&mut self, row: &Row<'_>) -> Result<(), PostureError> {
         let Some(overlay) = &mut self.overlay else { return Ok(()) };
         let Some(frame) = row.frame else { return Ok(overlay.add_missing(row.index, row.time_s)?) };
         let layout = self.layout;
