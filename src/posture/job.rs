@@ -13,7 +13,7 @@ use thiserror::Error;
 use super::joints::Angles;
 use super::layout::Layout;
 use super::method::Method;
-use super::plan::{CLOCK, steps};
+use super::plan::{CLOCK, WHOLE_FRAMES, steps};
 use super::report::{PostureReport, SearchReport, VideoReport};
 use super::results::{Results, Row};
 use super::siting::Siting;
@@ -276,11 +276,11 @@ fn left_out(layout: &Layout, info: &Info, options: &PostureOptions, outputs: &Ou
     let steps = steps(layout, info, options, Some(outputs));
     let mut left_out: Vec<String> = steps
         .into_iter()
-        .filter(|step| step.fate == Fate::LeftOut)
+        .filter(|step| step.fate == Fate::LeftOut && step.stage != WHOLE_FRAMES)
         .map(|step| format!("{}: {}", step.stage, step.reason))
         .collect();
     left_out.push(format!(
-        "search of whole frames: in all but {} of {} frames only where the last one tells, {:.2} % of the samples",
+        "{WHOLE_FRAMES}: in all but {} of {} frames only where the last one tells, {:.2} % of the samples",
         search.whole_searches,
         search.frames,
         100.0 * search.share_searched

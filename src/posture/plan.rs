@@ -39,6 +39,7 @@ pub(super) fn steps(layout: &Layout, info: &Info, options: &PostureOptions, outp
     let (tracks, tracks_why) = asked(outputs.map(|o| o.tracks.is_some()), "--tracks");
     let (overlay, overlay_why) = asked(outputs.map(|o| o.overlay.is_some()), "--overlay");
     let (smooth, smooth_why) = asked(Some(options.smooth), "--smooth");
+    let zeros = layout.joints.iter().any(|joint| joint.zero_rad != 0.0);
     vec![
         Step::new("decoding", true, format!("{frames}, {width} x {height}, {} of {depth} bits", info.codec)),
         Step::new("markers tracked", true, tracked.join(", ")),
@@ -50,6 +51,11 @@ pub(super) fn steps(layout: &Layout, info: &Info, options: &PostureOptions, outp
             } else {
                 format!("no wanted joint needs {}", idle.join(", "))
             },
+        ),
+        Step::new(
+            WHOLE_FRAMES,
+            false,
+            "after the first ones only where the last one tells; again where markers stay away".into(),
         ),
         Step::new(
             "chroma planes",
@@ -75,7 +81,7 @@ pub(super) fn steps(layout: &Layout, info: &Info, options: &PostureOptions, outp
             overlay && info.turn != crate::video::Turn::None,
             "coordinates are; pictures only for an overlay".into(),
         ),
-        Step::new("zero angles", layout.joints.iter().any(|joint| joint.zero_rad != 0.0), "as [zero] says".into()),
+        Step::new("zero angles", zeros, if zeros { "[zero]".into() } else { "no [zero], or of 0 degrees".into() }),
         Step::new("clock", false, if layout.clock.is_some() { CLOCK.into() } else { "no [clock]".into() }),
         Step::new("smoothing", smooth, smooth_why),
         Step::new("table of markers", tracks, tracks_why),
@@ -83,6 +89,9 @@ pub(super) fn steps(layout: &Layout, info: &Info, options: &PostureOptions, outp
         Step::new("figures", outputs.is_none_or(|o| o.figures) && !layout.joints.is_empty(), "of the angles".into()),
     ]
 }
+
+/// The stage of which a run's report tells the share.
+pub(super) const WHOLE_FRAMES: &str = "search of whole frames";
 
 /// What is said of a [clock].
 pub(super) const CLOCK: &str = "this version does not read the clock; clock_s stays empty";
