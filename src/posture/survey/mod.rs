@@ -7,14 +7,16 @@
 //! A name is given by colour, by the order along the finger, by which way flexion turns, by lengths that must not change,
 //! and by `[start]`, which goes before all. It is given only where the best naming is better by far than any other.
 
+mod judge;
 mod spots;
 
+use judge::Hypothesis;
 use spots::Spots;
 
 use super::colour::Look;
 use super::find::Paint;
 use super::layout::Layout;
-use super::naming::{Chain, MARGIN, MISSING, Naming, Point, Scene, colour_cost, lone, rigid_cost};
+use super::naming::{Chain, MISSING, Naming, Point, lone};
 use super::siting::Siting;
 use crate::video::{Frame, Info};
 
@@ -27,10 +29,6 @@ const PATIENT_REST: usize = 8;
 const MOST_FRAMES: usize = 300;
 /// Namings kept.
 const MOST_NAMINGS: usize = 200;
-/// A naming seen in one frame costs half of this; in more frames, less.
-const FRESH: f64 = 4.0;
-/// A naming whose spots, once there, were seen together in none of the frames costs this.
-const ABSENT: f64 = 5.0;
 /// A spot further from a `[start]` than this many radii, or this share of the picture's diagonal, is not meant.
 const START_RADII: f64 = 3.0;
 const START_SHARE: f64 = 0.02;
@@ -115,17 +113,6 @@ pub(crate) enum Progress {
     More,
     /// All is known that can be.
     Enough,
-}
-
-/// A naming and what the frames looked at said of it.
-#[derive(Debug, Clone)]
-struct Hypothesis {
-    naming: Naming,
-    frames: usize,
-    shape: f64,
-    backwards: f64,
-    /// Shortest and longest distance to the marker before, for each place.
-    spans: Vec<(f64, f64)>,
 }
 
 /// Looks at the first frames.
@@ -289,104 +276,6 @@ impl<'a> Surveyor<'a> {
         if sure || self.wrong.is_some() || self.looked.len() >= MOST_FRAMES { Progress::Enough } else { Progress::More }
     }
 
-    /// Which spots each place of the chain can have.
-    fn choices(&self) -> Vec<Vec<(usize, f64)>> {
-        let links = self.chain.links.iter().zip(&self.fixed);
-        links
-            .map(|(link, fixed)| {
-                let paint = self.paint_of[link.marker];
-                let mut choices: Vec<(usize, f64)> = (self.spots.all.iter().enumerate())
-                    .filter(|(number, spot)| spot.paints[paint] && fixed.is_none_or(|fixed| fixed == *number))
-                    .map(|(number, spot)| {
-                        let cost = |paint: &Paint| colour_cost(paint, spot.last());
-                        let mine = cost(&self.paints[paint]);
-                        // A spot that is rather another marker's colour.
-                        let least = self.paints.iter().map(cost).fold(mine, f64::min);
-                        (number, if fixed.is_some() { 0.0 } else { mine + 0.5 * (mine - least) })
-                    })
-                    .collect();
-                choices.retain(|choice| fixed.is_some() || !self.fixed.contains(&Some(choice.0)));
-                choices
-            })
-            .collect()
-    }
-
-    fn scene<'b>(&'b self, points: &'b [Option<Point>], choices: &'b [Vec<(usize, f64)>]) -> Scene<'b> {
-        Scene {
-            chain: &self.chain,
-            choices,
-            points,
-            lengths_px: &self.unknown,
-            missing: &self.missing,
-            flexion: self.layout.flexion.sign(),
-        }
-    }
-
-    /// A naming that comes up is judged by the frames before too.
-    fn add(&mut self, naming: Naming, choices: &[Vec<(usize, f64)>], now: u64) {
-        let spans = vec![(f64::INFINITY, 0.0); naming.len()];
-        let mut hypothesis = Hypothesis { naming, frames: 0, shape: 0.0, backwards: 0.0, spans };
-        for &frame in self.looked.iter().filter(|&&frame| frame != now) {
-            let points: Vec<Option<Point>> = self.spots.all.iter().map(|spot| spot.at(frame).copied()).collect();
-            update(&mut hypothesis, &self.scene(&points, choices));
-        }
-        self.hypotheses.push(hypothesis);
-    }
-
-    fn judge(&mut self, points: &[Option<Point>], choices: &[Vec<(usize, f64)>]) {
-        let mut hypotheses = std::mem::take(&mut self.hypotheses);
-        for hypothesis in &mut hypotheses {
-            update(hypothesis, &self.scene(points, choices));
-        }
-        self.hypotheses = hypotheses;
-    }
-
-    /// The mean over frames, the joints bent backwards as in the worst frame, and lengths that changed.
-    fn cost(&self, hypothesis: &Hypothesis) -> f64 {
-        if hypothesis.frames == 0 {
-            return f64::INFINITY;
-        }
-        // From the first frame that could show all its spots: those that come late are as good, those that vanish are not.
-        let born = hypothesis.naming.iter().flatten().map(|&spot| self.spots.all[spot].points[0].frame).max();
-        let span = self.looked.len() - self.looked.partition_point(|&frame| Some(frame) < born);
-        let absent = 1.0 - hypothesis.frames as f64 / span.max(1) as f64;
-        let fresh = FRESH / (hypothesis.frames as f64 + 1.0);
-        let rigid: f64 = (self.chain.links.iter().zip(&hypothesis.spans))
-            .filter(|(link, span)| link.rigid && span.1 > 0.0)
-            .map(|(_, &(shortest, longest))| rigid_cost(shortest, longest))
-            .sum();
-        hypothesis.shape / hypothesis.frames as f64 + hypothesis.backwards + rigid + ABSENT * absent + fresh
-    }
-
-    /// Needed places of the chain that another naming, about as good as the best one, fills otherwise.
-    fn unsure(&self) -> Vec<usize> {
-        let Some(best) = self.hypotheses.first() else { return Vec::new() };
-        let limit = self.cost(best) + MARGIN;
-        let mut unsure = vec![false; self.chain.links.len()];
-        for other in self.hypotheses[1..].iter().take_while(|other| self.cost(other) < limit) {
-            for (place, unsure) in unsure.iter_mut().enumerate() {
-                *unsure |= self.is_needed(place) && self.differ(best, other, place);
-            }
-        }
-        (0..unsure.len()).filter(|&place| unsure[place]).collect()
-    }
-
-    /// Whether two namings can't both be right in a place. A spot that was lost and came back as another one is no
-    /// contradiction.
-    fn differ(&self, best: &Hypothesis, other: &Hypothesis, place: usize) -> bool {
-        match (best.naming[place], other.naming[place]) {
-            (Some(a), Some(b)) if a == b => false,
-            (Some(a), Some(b)) => {
-                let [a_points, b_points] = [a, b].map(|spot| &self.spots.all[spot].points);
-                let apart = a_points[a_points.len() - 1].frame < b_points[0].frame
-                    || b_points[b_points.len() - 1].frame < a_points[0].frame;
-                !apart || other.naming.contains(&Some(a)) || best.naming.contains(&Some(b))
-            }
-            (Some(_), None) => true,
-            (None, _) => false,
-        }
-    }
-
     /// Gives the places of `[start]` their spots.
     fn fix(&mut self) {
         let size = (self.info.format.width, self.info.format.height);
@@ -435,26 +324,6 @@ impl<'a> Surveyor<'a> {
                     .then_some(0.5 * (shortest + longest))
             })
             .collect()
-    }
-}
-
-/// Takes a frame into account.
-fn update(hypothesis: &mut Hypothesis, scene: &Scene<'_>) {
-    // What is seen of it tells which way it bends, and how long segments are, though something be hidden.
-    let seen: Naming = hypothesis.naming.iter().map(|spot| spot.filter(|&spot| scene.points[spot].is_some())).collect();
-    let cost = scene.cost(&seen);
-    if seen == hypothesis.naming {
-        hypothesis.frames += 1;
-        hypothesis.shape += cost.shape;
-    }
-    hypothesis.backwards = hypothesis.backwards.max(cost.backwards);
-    for (place, link) in scene.chain.links.iter().enumerate() {
-        let at = |place: usize| hypothesis.naming[place].and_then(|spot| scene.points[spot]);
-        if let (Some(here), Some(before)) = (at(place), link.before.and_then(at)) {
-            let length = (here.at_px[0] - before.at_px[0]).hypot(here.at_px[1] - before.at_px[1]);
-            let span = &mut hypothesis.spans[place];
-            *span = (span.0.min(length), span.1.max(length));
-        }
     }
 }
 
