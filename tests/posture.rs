@@ -118,6 +118,8 @@ fn markers_of_one_colour_keep_their_names() {
 #[test]
 fn a_joint_alone_is_as_good_and_its_own_markers_only_are_tracked() {
     let dir = scene(&[]);
+    let report = posture(&dir, &["--no-figures", "--json"]).expect(0).json();
+    assert!(report["coupling"]["slope"].as_f64().is_some(), "the line is told without its picture: {report}");
     let report = posture(&dir, &["--joints", "J2", "--tracks", "tracks.csv", "--json"]).expect(0).json();
     is_accurate(&dir, &["J2"]);
     let rows = dir.table("joints.csv");

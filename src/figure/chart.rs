@@ -9,7 +9,7 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 
 use super::Axis;
-use super::plot::{COLOURS, Draw, short_number, write_both};
+use super::plot::{COLOURS, Draw, draw_legend, short_number, write_both};
 
 /// A chart on linear axes.
 #[derive(Debug, Clone)]
@@ -203,14 +203,7 @@ impl Chart {
             draw_item(&mut chart, item)?;
         }
         if named > 0 {
-            chart
-                .configure_series_labels()
-                .position(SeriesLabelPosition::UpperRight)
-                .background_style(WHITE.mix(0.85))
-                .border_style(RGBColor(200, 200, 200))
-                .label_font(("sans-serif", 15))
-                .draw()
-                .map_err(|e| anyhow!("{e}"))?;
+            draw_legend(&mut chart)?;
         }
         Ok(())
     }

@@ -99,6 +99,23 @@ pub(super) fn write_both(what: &impl Draw, size: (u32, u32), png: &Path, svg: &P
     draw_on_white(what, SVGBackend::new(svg, size).into_drawing_area()).with_context(|| svg.display().to_string())
 }
 
+/// The legend of all series that have a name.
+pub(super) fn draw_legend<'a, B, C>(chart: &mut ChartContext<'a, B, C>) -> anyhow::Result<()>
+where
+    B: DrawingBackend + 'a,
+    B::ErrorType: 'static,
+    C: CoordTranslate,
+{
+    chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::UpperRight)
+        .background_style(WHITE.mix(0.85))
+        .border_style(RGBColor(200, 200, 200))
+        .label_font(("sans-serif", 15))
+        .draw()
+        .map_err(|e| anyhow!("{e}"))
+}
+
 fn draw_on_white<B: DrawingBackend>(what: &impl Draw, area: DrawingArea<B, Shift>) -> anyhow::Result<()>
 where
     B::ErrorType: 'static,
@@ -156,15 +173,7 @@ impl Plot {
         for (series, colour) in self.series.iter().zip(COLOURS.iter().cycle()) {
             self.draw_series(&mut chart, series, *colour)?;
         }
-        chart
-            .configure_series_labels()
-            .position(SeriesLabelPosition::UpperRight)
-            .background_style(WHITE.mix(0.85))
-            .border_style(RGBColor(200, 200, 200))
-            .label_font(("sans-serif", 15))
-            .draw()
-            .map_err(|e| anyhow!("{e}"))?;
-        Ok(())
+        draw_legend(&mut chart)
     }
 
     fn draw_series<B: DrawingBackend, X, Y>(

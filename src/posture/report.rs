@@ -133,7 +133,7 @@ pub struct CouplingReport {
     /// Degrees at zero.
     pub intercept_deg: f64,
     /// Pearson's correlation.
-    pub correlation: Option<f64>,
+    pub correlation: f64,
 }
 
 /// What was searched for markers.

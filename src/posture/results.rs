@@ -57,7 +57,9 @@ pub(super) struct Results<'a> {
     joints: TableWriter,
     tracks: Option<TableWriter>,
     overlay: Option<Overlay>,
-    figures: Option<AngleFigures>,
+    /// What pictures and the coupling are made of.
+    figures: AngleFigures,
+    with_pictures: bool,
     held: Option<Vec<Held>>,
     pub(super) frames: FrameCounts,
     pub(super) markers: Vec<MarkerSums>,
@@ -94,7 +96,8 @@ impl<'a> Results<'a> {
             joints,
             tracks,
             overlay,
-            figures: (outputs.figures && !layout.joints.is_empty()).then(|| AngleFigures::new(layout)),
+            figures: AngleFigures::new(layout),
+            with_pictures: outputs.figures && !layout.joints.is_empty(),
             held: options.smooth.then(Vec::new),
             frames: FrameCounts::default(),
             markers: vec![MarkerSums::default(); layout.markers.len()],
@@ -167,9 +170,7 @@ impl<'a> Results<'a> {
         for (sums, angle) in self.angles.iter_mut().zip(&row.angles) {
             sums.add(angle.as_ref());
         }
-        if let Some(figures) = &mut self.figures {
-            figures.push(time_s, &row.angles);
-        }
+        self.figures.push(time_s, &row.angles);
         let status = row.status(self.layout);
         // The clock's column is filled where the clock is read.
         let mut cells = vec![Value::Integer(index as i64), Value::Number(time_s), Value::Missing];
@@ -205,21 +206,23 @@ impl<'a> Results<'a> {
     }
 
     pub(super) fn coupling(&self) -> Option<CouplingReport> {
-        let figures = self.figures.as_ref()?;
-        let ([from, to], line) = (figures.coupled_joints()?, figures.coupling_line()?);
+        let ([from, to], line) = (self.figures.coupled_joints()?, self.figures.coupling_line()?);
         Some(CouplingReport {
             from: from.to_owned(),
             to: to.to_owned(),
             frames: line.count,
             slope: line.slope,
             intercept_deg: line.intercept_deg,
-            correlation: Some(line.correlation),
+            correlation: line.correlation,
         })
     }
 
     /// Draws the pictures beside the table; returns where those that a person looks at will stand.
     pub(super) fn draw_pictures(&mut self) -> Result<Vec<PathBuf>, PostureError> {
-        let Some(figures) = &self.figures else { return Ok(Vec::new()) };
+        if !self.with_pictures {
+            return Ok(Vec::new());
+        }
+        let figures = &self.figures;
         let mut pictures = Vec::new();
         for kind in ["angles", "coupling"] {
             if kind == "coupling" && figures.coupled_joints().is_none() {
