@@ -195,9 +195,24 @@ impl Places {
     ///
     /// # Errors
     /// As [`Staging::commit`].
-    pub fn commit(self) -> Result<(), WriteError> {
-        self.folders.into_iter().try_for_each(|(_, staging)| staging.commit().map(|_| ()))
+    pub fn commit(mut self) -> Result<(), WriteError> {
+        std::mem::take(&mut self.folders).into_iter().try_for_each(|(_, staging)| staging.commit().map(|_| ()))
     }
+}
+
+impl Drop for Places {
+    fn drop(&mut self) {
+        // The last first: a folder that was made for one result may lie in one that was made for another before.
+        while self.folders.pop().is_some() {}
+    }
+}
+
+/// The place of a result that stands beside `table` and is named after it: `joints.csv` and `.run.json` give
+/// `joints.run.json`.
+#[must_use]
+pub fn beside(table: &Path, ending: &str) -> PathBuf {
+    let stem = table.file_stem().unwrap_or_default().to_string_lossy();
+    table.with_file_name(format!("{stem}{ending}"))
 }
 
 /// Writes one file whole or not at all: beside its place, then renamed.

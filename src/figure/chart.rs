@@ -18,7 +18,7 @@ pub struct Chart {
     pub title: String,
     /// Horizontal.
     pub x: Axis,
-    /// Vertical.
+    /// Vertical; without a label its numbers mean nothing and are not written.
     pub y: Axis,
     /// Whether the vertical axis begins at zero.
     pub from_zero: bool,
@@ -65,6 +65,15 @@ pub enum Item {
         /// Which colour.
         colour: usize,
     },
+    /// A line of text, which begins at a point and lies below it.
+    Text {
+        /// x and y.
+        at: [f64; 2],
+        /// What is written.
+        text: String,
+        /// Which colour.
+        colour: usize,
+    },
 }
 
 /// Height of a line of a legend.
@@ -107,6 +116,7 @@ impl Item {
             }),
             Self::Line { runs, .. } => runs.iter().flatten().for_each(|&p| reach.take(p)),
             Self::Dots { points, .. } => points.iter().for_each(|&p| reach.take(p)),
+            Self::Text { at, .. } => reach.take(*at),
         }
     }
 }
@@ -196,7 +206,7 @@ impl Chart {
             .light_line_style(TRANSPARENT)
             .bold_line_style(RGBColor(0, 0, 0).mix(0.12))
             .x_label_formatter(&short_number)
-            .y_label_formatter(&short_number)
+            .y_label_formatter(&|value| if self.y.label.is_empty() { String::new() } else { short_number(value) })
             .draw()
             .map_err(|e| anyhow!("{e}"))?;
         for item in &self.items {
@@ -213,7 +223,7 @@ impl Item {
     fn name(&self) -> Option<&str> {
         match self {
             Self::Spans { name, .. } | Self::Line { name, .. } | Self::Dots { name, .. } => name.as_deref(),
-            Self::Band { .. } => None,
+            Self::Band { .. } | Self::Text { .. } => None,
         }
     }
 }
@@ -251,6 +261,11 @@ where
             }
             let single = runs.iter().filter(|run| run.len() == 1);
             chart.draw_series(single.map(|run| Circle::new((run[0][0], run[0][1]), 2, dot))).map_err(failed)?;
+        }
+        Item::Text { at, text, colour: k } => {
+            let style = ("sans-serif", 14).into_font().color(&colour(*k));
+            let written = Text::new(text.clone(), (at[0], at[1]), style);
+            chart.draw_series(std::iter::once(written)).map_err(failed)?;
         }
         Item::Dots { name, points, colour: k } => {
             let ink = colour(*k).mix(0.6).filled();

@@ -7,6 +7,7 @@ mod html;
 mod plot;
 mod sheet;
 mod text;
+mod thin;
 
 use std::io::Cursor;
 
@@ -18,6 +19,7 @@ pub use grey::{Stretch, grey_map};
 pub use html::{Page, escape};
 pub use plot::{Axis, Plot, Point, Series, draw_log_log};
 pub use sheet::{Scale, Sheet, Tile};
+pub use thin::{Bin, MOST_BINS, Sample, Summary, Thinned};
 
 /// How much of each pixel a text covers (0 to 255), `height_px` high: to draw on pictures that are not RGB.
 #[must_use]

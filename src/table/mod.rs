@@ -3,7 +3,8 @@
 //! Out: rows one after the other through a [`TableWriter`], in memory that does not grow with their number. In: a [`Table`] of
 //! named columns. A cell is an integer, a number, text or missing: empty in CSV, null in Parquet. A number that is not finite
 //! and an empty text are missing too. Numbers of a column with fixed decimals are rounded to them in both formats, so that
-//! the same table reads the same from either.
+//! the same table reads the same from either. Dates with times of day, which other programs write into Parquet, are read as
+//! text: ISO 8601, with `Z` where they are in UTC.
 //!
 //! A writer writes where it is told; that results appear whole or not at all is the business of [`crate::files`].
 
@@ -234,17 +235,19 @@ fn number_text(number: f64, decimals: Option<usize>) -> Option<String> {
     if !number.is_finite() {
         return None;
     }
-    let text = match decimals {
+    let mut text = match decimals {
         Some(decimals) => format!("{number:.decimals$}"),
         // `{:?}` is the shortest text that reads as the same number; it has an exponent where that is shorter.
-        None => {
-            let text = format!("{number:?}");
-            text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
-        }
+        None => format!("{number:?}"),
     };
+    if decimals.is_none() && text.ends_with(".0") {
+        text.truncate(text.len() - 2);
+    }
     // A negative number that rounds to nothing has no sign.
-    let unsigned = text.strip_prefix('-').filter(|rest| rest.bytes().all(|b| b == b'0' || b == b'.'));
-    Some(unsigned.map_or(text.clone(), str::to_owned))
+    if text.starts_with('-') && text.bytes().skip(1).all(|b| b == b'0' || b == b'.') {
+        text.remove(0);
+    }
+    Some(text)
 }
 
 /// The number that [`number_text`] writes.

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;
 
-use parquet::basic::{Compression, ConvertedType, LogicalType, Repetition, Type as Physical};
+use parquet::basic::{Compression, ConvertedType, LogicalType, Repetition, TimeUnit, Type as Physical};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DataType, DoubleType, FloatType, Int32Type, Int64Type};
 use parquet::file::metadata::KeyValue;
@@ -200,6 +200,7 @@ fn read_column(reader: &SerializedFileReader<File>, column: usize) -> Result<Rea
         Physical::BOOLEAN | Physical::INT32 | Physical::INT64 if is_plain_integer(&described) => {
             Read::Integers(Vec::new())
         }
+        Physical::INT64 if stamp_kind(&described).is_some() => Read::Texts(Vec::new()),
         Physical::FLOAT | Physical::DOUBLE => Read::Numbers(Vec::new()),
         Physical::BYTE_ARRAY => Read::Texts(Vec::new()),
         other => return Err(format!("its type {other} is neither number nor text; write it as double or string")),
@@ -216,6 +217,10 @@ fn read_column(reader: &SerializedFileReader<File>, column: usize) -> Result<Rea
                 extend::<Int32Type, _>(r, into, |v| Ok(if unsigned { i64::from(v as u32) } else { i64::from(v) }))?
             }
             (ColumnReader::Int64ColumnReader(r), Read::Integers(into)) => extend::<Int64Type, _>(r, into, Ok)?,
+            (ColumnReader::Int64ColumnReader(r), Read::Texts(into)) => {
+                let (a_second, zoned) = stamp_kind(&described).unwrap_or((1, false));
+                extend::<Int64Type, _>(r, into, |v| stamp_text(v, a_second, zoned))?
+            }
             (ColumnReader::FloatColumnReader(r), Read::Numbers(into)) => {
                 extend::<FloatType, _>(r, into, |v| Ok(f64::from(v)))?
             }
@@ -235,6 +240,30 @@ fn is_plain_integer(described: &parquet::schema::types::ColumnDescriptor) -> boo
     let converted = described.converted_type();
     matches!(converted, C::NONE | C::INT_8 | C::INT_16 | C::INT_32 | C::INT_64 | C::UINT_8 | C::UINT_16 | C::UINT_32)
         && !matches!(described.logical_type_ref(), Some(LogicalType::Timestamp { .. } | LogicalType::Time { .. }))
+}
+
+/// Of a column of dates with times of day: how many of its units make a second, and whether they are in UTC.
+fn stamp_kind(described: &parquet::schema::types::ColumnDescriptor) -> Option<(i64, bool)> {
+    match (described.logical_type_ref(), described.converted_type()) {
+        (Some(LogicalType::Timestamp(stamp)), _) => {
+            let a_second = match stamp.unit {
+                TimeUnit::MILLIS => 1_000,
+                TimeUnit::MICROS => 1_000_000,
+                TimeUnit::NANOS => 1_000_000_000,
+            };
+            Some((a_second, stamp.is_adjusted_to_u_t_c))
+        }
+        (_, ConvertedType::TIMESTAMP_MILLIS) => Some((1_000, true)),
+        (_, ConvertedType::TIMESTAMP_MICROS) => Some((1_000_000, true)),
+        _ => None,
+    }
+}
+
+/// A date with a time of day as ISO 8601 writes it.
+fn stamp_text(units: i64, a_second: i64, zoned: bool) -> Result<String, String> {
+    let nanoseconds = i128::from(units) * i128::from(1_000_000_000 / a_second);
+    let stamp = jiff::Timestamp::from_nanosecond(nanoseconds).map_err(|why| why.to_string())?;
+    Ok(if zoned { stamp.to_string() } else { jiff::tz::Offset::UTC.to_datetime(stamp).to_string() })
 }
 
 fn extend<D: DataType, V>(

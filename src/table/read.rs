@@ -72,14 +72,36 @@ impl Table {
         &self.facts
     }
 
+    /// Whether a column holds text; of a CSV file every column does. None where there is no such column.
+    #[must_use]
+    pub fn is_text(&self, name: &str) -> Option<bool> {
+        let column = self.names.iter().position(|n| n == name)?;
+        Some(match &self.cells {
+            Cells::Csv(_) => true,
+            Cells::Parquet(columns) => matches!(columns[column], parquet::Read::Texts(_)),
+        })
+    }
+
     /// A column of numbers; none where a cell is empty.
     ///
     /// # Errors
     /// No such column, or a cell that is no finite number.
     pub fn numbers(&self, name: &str) -> Result<Vec<Option<f64>>, TableError> {
+        self.numbers_where(name, f64::is_finite)
+    }
+
+    /// A column of numbers as other programs write them; none where a cell is empty, NaN where it says so.
+    ///
+    /// # Errors
+    /// No such column, or a cell that is no number or infinite.
+    pub fn numbers_or_nan(&self, name: &str) -> Result<Vec<Option<f64>>, TableError> {
+        self.numbers_where(name, |number| !number.is_infinite())
+    }
+
+    fn numbers_where(&self, name: &str, allowed: fn(f64) -> bool) -> Result<Vec<Option<f64>>, TableError> {
         const WHAT: &str = "is no finite number; correct it or leave it empty";
         let checked = |row: usize, number: f64| {
-            if number.is_finite() { Ok(number) } else { Err(self.cell(row, name, format!("`{number}` {WHAT}"))) }
+            if allowed(number) { Ok(number) } else { Err(self.cell(row, name, format!("`{number}` {WHAT}"))) }
         };
         self.column(name, |cells, column| match cells {
             Cells::Csv(rows) => each(rows.iter().map(|r| Some(&r[column]).filter(|t| !t.is_empty())), |row, text| {

@@ -198,3 +198,37 @@ proptest! {
         prop_assert!((read[0].1 - fixed).abs() <= 0.5e-5 + 1e-9);
     }
 }
+
+#[test]
+fn dates_of_other_programs_are_read_as_text() {
+    use ::parquet::data_type::Int64Type;
+    use ::parquet::file::writer::SerializedFileWriter;
+    use ::parquet::schema::parser::parse_message_type;
+
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("stamps.parquet");
+    let schema =
+        "message t { required int64 zoned (TIMESTAMP(NANOS,true)); required int64 local (TIMESTAMP(MILLIS,false)); }";
+    let schema = std::sync::Arc::new(parse_message_type(schema).unwrap());
+    let mut file = SerializedFileWriter::new(fs::File::create(&path).unwrap(), schema, Default::default()).unwrap();
+    let mut group = file.next_row_group().unwrap();
+    for value in [1_634_808_058_216_642_589, 1_634_808_058_216] {
+        let mut column = group.next_column().unwrap().unwrap();
+        column.typed::<Int64Type>().write_batch(&[value], None, None).unwrap();
+        column.close().unwrap();
+    }
+    group.close().unwrap();
+    file.close().unwrap();
+    let table = Table::read(&path).unwrap();
+    assert_eq!(table.texts("zoned").unwrap(), [Some("2021-10-21T09:20:58.216642589Z".to_owned())]);
+    assert_eq!(table.texts("local").unwrap(), [Some("2021-10-21T09:20:58.216".to_owned())]);
+    assert_eq!((table.is_text("local"), table.is_text("none")), (Some(true), None));
+}
+
+#[test]
+fn not_a_number_of_other_programs_is_told_from_infinity() {
+    let table = read_text(b"a,b\n1,inf\nNaN,2\n,3\n").unwrap();
+    let a = table.numbers_or_nan("a").unwrap();
+    assert!(a[0] == Some(1.0) && a[1].is_some_and(f64::is_nan) && a[2].is_none());
+    assert!(table.numbers("a").is_err() && table.numbers_or_nan("b").is_err());
+}

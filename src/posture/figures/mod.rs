@@ -3,16 +3,14 @@
 //! Rows are fed one after the other; memory and files do not grow with the video.
 
 mod line;
-mod thin;
 
 use std::path::Path;
 
 pub use line::CouplingLine;
 use line::Pairs;
-use thin::{Bin, Thinned};
 
 use super::{Angle, Layout};
-use crate::figure::{Axis, Chart, Item, draw_charts};
+use crate::figure::{Axis, Chart, Item, Thinned, draw_charts};
 
 /// Gathers what the pictures show.
 #[derive(Debug)]
@@ -42,12 +40,13 @@ impl AngleFigures {
     pub fn new(layout: &Layout) -> Self {
         let coupling =
             last_two(layout).map(|joints| Coupling { joints, pairs: Pairs::default(), dots: Vec::new(), every: 1 });
-        Self { names: layout.joints.iter().map(|j| j.name.clone()).collect(), rows: Thinned::new(), coupling }
+        Self { names: layout.joints.iter().map(|j| j.name.clone()).collect(), rows: Thinned::default(), coupling }
     }
 
     /// Takes a row: an angle for each of the layout's joints.
     pub fn push(&mut self, time_s: f64, angles: &[Option<Angle>]) {
-        self.rows.push(time_s, angles);
+        let degrees = |angle: &Angle| [angle.rad.to_degrees(), angle.sd_rad.to_degrees()];
+        self.rows.push(time_s, angles.iter().map(|angle| angle.as_ref().map(degrees)));
         if let Some(coupling) = &mut self.coupling {
             let [x, y] = coupling.joints;
             if let (Some(x), Some(y)) = (angles[x], angles[y]) {
@@ -73,30 +72,15 @@ impl AngleFigures {
     /// # Errors
     /// A file that can't be written.
     pub fn draw_angles(&self, png: &Path, svg: &Path) -> anyhow::Result<()> {
-        let bins = self.rows.bins();
-        let spans = lacking(bins);
+        let spans = self.rows.lacking();
         let name = Some("an angle is missing".to_owned()).filter(|_| !spans.is_empty());
         let mut angles = vec![Item::Spans { name, spans: spans.clone() }];
         let mut errors = vec![Item::Spans { name: None, spans }];
         for (joint, name) in self.names.iter().enumerate() {
-            let runs = runs(bins, joint);
-            let band = |run: &&[Bin]| -> Vec<[f64; 3]> {
-                let ends = |b: &Bin| b.joints[joint].map(|s| [0.5 * (b.from_s + b.to_s), s.band[0], s.band[1]]);
-                run.iter().filter_map(ends).collect()
-            };
-            angles.push(Item::Band { runs: runs.iter().map(band).collect(), colour: joint });
-            let curve = |run: &&[Bin]| run.iter().flat_map(|b| extremes(b, joint)).collect();
-            angles.push(Item::Line {
-                name: Some(name.clone()),
-                runs: runs.iter().map(curve).collect(),
-                colour: joint,
-                width: 1,
-            });
-            let largest = |run: &&[Bin]| -> Vec<[f64; 2]> {
-                let at = |b: &Bin| b.joints[joint].map(|s| [0.5 * (b.from_s + b.to_s), s.largest_sd_deg]);
-                run.iter().filter_map(at).collect()
-            };
-            errors.push(Item::Line { name: None, runs: runs.iter().map(largest).collect(), colour: joint, width: 1 });
+            angles.push(Item::Band { runs: self.rows.band(joint), colour: joint });
+            let curve = self.rows.curve(joint);
+            angles.push(Item::Line { name: Some(name.clone()), runs: curve, colour: joint, width: 1 });
+            errors.push(Item::Line { name: None, runs: self.rows.largest_sd(joint), colour: joint, width: 1 });
         }
         let axis = |label: &str| Axis { label: label.to_owned() };
         let charts = [
@@ -188,39 +172,6 @@ fn last_two(layout: &Layout) -> Option<[usize; 2]> {
     let mut pairs: Vec<[usize; 2]> = joints.clone().flat_map(|a| joints.clone().map(move |b| [a, b])).collect();
     pairs.retain(|&[a, b]| a != b && layout.joints[a].segments[1] == layout.joints[b].segments[0]);
     pairs.into_iter().max_by_key(|&[_, b]| place(b))
-}
-
-/// Bins after each other in which the joint's angle is known.
-fn runs(bins: &[Bin], joint: usize) -> Vec<&[Bin]> {
-    bins.split(|b| b.joints[joint].is_none()).filter(|run| !run.is_empty()).collect()
-}
-
-/// The lowest and the highest angle of a bin in the order of time; one point where they are one.
-fn extremes(bin: &Bin, joint: usize) -> Vec<[f64; 2]> {
-    let Some(summary) = bin.joints[joint] else { return Vec::new() };
-    let (mut first, mut second) = (summary.lowest, summary.highest);
-    if second.time_s < first.time_s {
-        std::mem::swap(&mut first, &mut second);
-    }
-    let mut points = vec![[first.time_s, first.deg]];
-    if second != first {
-        points.push([second.time_s, second.deg]);
-    }
-    points
-}
-
-/// Where an angle is missing, from half way to the row before to half way to the row after.
-fn lacking(bins: &[Bin]) -> Vec<[f64; 2]> {
-    let mut spans: Vec<[f64; 2]> = Vec::new();
-    for (k, bin) in bins.iter().enumerate().filter(|(_, b)| b.lacking > 0) {
-        let from = if k > 0 { 0.5 * (bins[k - 1].to_s + bin.from_s) } else { bin.from_s };
-        let to = bins.get(k + 1).map_or(bin.to_s, |next| 0.5 * (bin.to_s + next.from_s));
-        match spans.last_mut() {
-            Some(last) if last[1] >= from => last[1] = to,
-            _ => spans.push([from, to]),
-        }
-    }
-    spans
 }
 
 #[cfg(test)]

@@ -58,11 +58,11 @@ fn the_coupled_joints_are_the_last_two_along_the_finger() {
 #[test]
 fn gaps_are_gaps() {
     let figures = bending(600);
-    let spans = lacking(figures.rows.bins());
+    let spans = figures.rows.lacking();
     assert_eq!(spans.len(), 3, "one row and two runs");
     assert!((spans[0][0] - 29.5 / 30.0).abs() < 1e-9 && (spans[1][1] - 161.5 / 30.0).abs() < 1e-9);
-    assert_eq!(runs(figures.rows.bins(), 0).len(), 4);
-    assert_eq!(runs(figures.rows.bins(), 1).len(), 1);
+    assert_eq!(figures.rows.curve(0).len(), 4);
+    assert_eq!(figures.rows.curve(1).len(), 1);
     let picture = drawn(&figures, "angles", false);
     assert_eq!(picture.picture.dimensions(), (1400, 840));
     let grey = picture.picture.pixels().filter(|p| p.0 == [226, 226, 226]).count();
