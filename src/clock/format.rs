@@ -1,0 +1,244 @@
+//! How a clock is written: which of its characters are digits, and of what.
+
+/// A unit of time that has digits of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Unit {
+    /// Hours.
+    Hours,
+    /// Minutes.
+    Minutes,
+    /// Seconds.
+    Seconds,
+    /// Tenths of a second and finer.
+    Fraction,
+}
+
+/// One character of a clock.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Cell {
+    /// A digit that counts units of `10^-9` seconds, so many of them a step; the digit of a tens place of minutes or seconds
+    /// that another unit stands before goes to 5 only.
+    Digit {
+        /// Of what.
+        unit: Unit,
+        /// Nanoseconds that one step of this digit is worth.
+        worth_ns: i64,
+        /// The highest digit that can stand here: 9, or 5 for tens of minutes and seconds below another unit.
+        highest: u8,
+    },
+    /// A mark that stands as it is, such as `:`.
+    Mark(char),
+}
+
+/// A clock's format, checked: `h`, `m`, `s` stand for a digit of hours, minutes, seconds, `t` for tenths and finer; anything
+/// else stands as it is. Such as `mm:ss.t`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ClockFormat {
+    text: String,
+    cells: Vec<Cell>,
+}
+
+const SECOND_NS: i64 = 1_000_000_000;
+
+impl ClockFormat {
+    /// Checks a format.
+    ///
+    /// # Errors
+    /// What is wrong and what to write instead.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        if let Some(fault) = fault(text) {
+            return Err(fault);
+        }
+        let letters: Vec<char> = text.chars().collect();
+        let first = letters.iter().find(|c| c.is_alphanumeric());
+        let mut cells = Vec::with_capacity(letters.len());
+        for (k, &letter) in letters.iter().enumerate() {
+            let unit = match letter {
+                'h' => Unit::Hours,
+                'm' => Unit::Minutes,
+                's' => Unit::Seconds,
+                't' => Unit::Fraction,
+                mark => {
+                    cells.push(Cell::Mark(mark));
+                    continue;
+                }
+            };
+            let of_its_kind = |letters: &[char]| letters.iter().filter(|&&c| c == letter).count() as u32;
+            let worth_ns = match unit {
+                Unit::Hours => 3600 * SECOND_NS * 10i64.pow(of_its_kind(&letters[k + 1..])),
+                Unit::Minutes => 60 * SECOND_NS * 10i64.pow(of_its_kind(&letters[k + 1..])),
+                Unit::Seconds => SECOND_NS * 10i64.pow(of_its_kind(&letters[k + 1..])),
+                Unit::Fraction => SECOND_NS / 10i64.pow(1 + of_its_kind(&letters[..k])),
+            };
+            let tens = matches!(unit, Unit::Minutes | Unit::Seconds) && of_its_kind(&letters[k + 1..]) == 1;
+            let highest = if tens && first != Some(&letter) { 5 } else { 9 };
+            cells.push(Cell::Digit { unit, worth_ns, highest });
+        }
+        Ok(Self { text: text.to_owned(), cells })
+    }
+
+    /// As the user wrote it.
+    #[must_use]
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// Its characters, in order.
+    #[must_use]
+    pub fn cells(&self) -> &[Cell] {
+        &self.cells
+    }
+
+    /// How many of its characters are digits.
+    #[must_use]
+    pub fn digits(&self) -> usize {
+        self.cells.iter().filter(|cell| matches!(cell, Cell::Digit { .. })).count()
+    }
+
+    /// The least step that it shows, seconds: 0.1 for `mm:ss.t`.
+    #[must_use]
+    pub fn resolution_s(&self) -> f64 {
+        let worth = |cell: &Cell| if let Cell::Digit { worth_ns, .. } = cell { Some(*worth_ns) } else { None };
+        self.cells.iter().filter_map(worth).min().unwrap_or(SECOND_NS) as f64 / SECOND_NS as f64
+    }
+
+    /// How many digits of tenths and finer it has.
+    #[must_use]
+    pub fn decimals(&self) -> usize {
+        self.cells.iter().filter(|cell| matches!(cell, Cell::Digit { unit: Unit::Fraction, .. })).count()
+    }
+
+    /// After how many seconds it can show the same again. Of a leading `hh` a day, half of one or, of a timer, 100 hours; of leading `mm` and `ss` an hour and a minute
+    /// or, of a timer that counts on, 100 of them; so there may be several.
+    #[must_use]
+    pub fn wraps_s(&self) -> Vec<f64> {
+        let mut leading = None;
+        let mut count = 0;
+        for cell in &self.cells {
+            if let Cell::Digit { unit, .. } = cell {
+                if *leading.get_or_insert(*unit) != *unit {
+                    break;
+                }
+                count += 1;
+            }
+        }
+        let all = 10f64.powi(count);
+        match leading {
+            Some(Unit::Hours) if count == 2 => vec![86_400.0, 43_200.0, 360_000.0],
+            Some(Unit::Hours) if count == 1 => vec![36_000.0, 43_200.0, 86_400.0],
+            Some(Unit::Hours) => vec![3600.0 * all],
+            Some(Unit::Minutes) if count == 2 => vec![3600.0, 6000.0],
+            Some(Unit::Minutes) => vec![60.0 * all],
+            Some(Unit::Seconds) if count == 2 => vec![60.0, 100.0],
+            _ => vec![all],
+        }
+    }
+
+    /// The seconds that these digits mean, one for each [`Cell::Digit`], in order; none where a digit can't stand in its place.
+    #[must_use]
+    pub fn seconds(&self, digits: &[u8]) -> Option<f64> {
+        let mut left = digits.iter();
+        let mut sum_ns = 0;
+        for cell in &self.cells {
+            if let Cell::Digit { worth_ns, highest, .. } = cell {
+                let digit = *left.next()?;
+                if digit > *highest {
+                    return None;
+                }
+                sum_ns += i64::from(digit) * worth_ns;
+            }
+        }
+        left.next().is_none().then(|| sum_ns as f64 / SECOND_NS as f64)
+    }
+}
+
+/// Why `format` is no clock format, if so.
+fn fault(format: &str) -> Option<String> {
+    let groups: Vec<(char, usize)> = format
+        .chars()
+        .fold(Vec::new(), |mut groups, c| {
+            match groups.last_mut() {
+                Some((last, count)) if *last == c => *count += 1,
+                _ => groups.push((c, 1)),
+            }
+            groups
+        })
+        .into_iter()
+        .filter(|(c, _)| c.is_alphanumeric())
+        .collect();
+    const UNITS: [char; 4] = ['h', 'm', 's', 't'];
+    let help = "write the digits as `h`, `m`, `s` and `t` (tenths and finer), such as \"mm:ss.t\"";
+    if let Some((c, _)) = groups.iter().find(|(c, _)| !UNITS.contains(c)) {
+        return Some(format!("`{c}` is no digit of a clock format; {help}"));
+    }
+    if format.chars().any(char::is_control) {
+        return Some(format!("a clock format is one line of digits and marks; {help}"));
+    }
+    if groups.is_empty() {
+        return Some(format!("a clock format needs digits; {help}"));
+    }
+    let place = |c: char| UNITS.iter().position(|&u| u == c).unwrap_or(0);
+    for pair in groups.windows(2) {
+        let [(a, _), (b, count)] = [pair[0], pair[1]];
+        if place(b) != place(a) + 1 {
+            return Some(format!(
+                "`{b}` can't follow `{a}` in a clock format; the order is h, m, s, t with none between left out"
+            ));
+        }
+        if b != 't' && count != 2 {
+            return Some(format!(
+                "`{b}` stands {count} time(s) after `{a}`; minutes and seconds that follow have two digits"
+            ));
+        }
+    }
+    match groups[0] {
+        ('t', _) => Some("`t` needs the seconds before it; write \"s.t\"".to_owned()),
+        // Readings become 64-bit floating-point seconds.
+        _ if groups.iter().any(|&(_, count)| count > 9) => {
+            Some("more than 9 digits of one unit; shorten it".to_owned())
+        }
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn formats_of_clocks_are_told_from_others() {
+        for good in ["mm:ss.t", "h:mm:ss", "hh:mm:ss.ttt", "s.tt", "sss", "mmm:ss", "hhmmss", "mm'ss\"tt"] {
+            assert!(ClockFormat::parse(good).is_ok(), "{good}");
+        }
+        for bad in
+            ["", ":", "HH:mm", "mm:ss.f", "ss:mm", "hh:ss", "m:s", "t", "mm:ss:ss", "00:ss", "ss.t\n", "tttttttttt"]
+        {
+            assert!(ClockFormat::parse(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn digits_become_seconds_exactly() {
+        let of = |format: &str, digits: &[u8]| ClockFormat::parse(format).unwrap().seconds(digits);
+        assert_eq!(of("mm:ss.t", &[6, 2, 0, 3, 5]), Some(3723.5));
+        assert_eq!(of("hh:mm:ss", &[2, 3, 5, 9, 5, 9]), Some(86_399.0));
+        assert_eq!(of("hh:mm:ss.ttt", &[0, 0, 0, 0, 0, 1, 2, 0, 7]), Some(1.207));
+        assert_eq!(of("ssss", &[3, 7, 2, 3]), Some(3723.0));
+        // Tens of seconds below minutes end at 5; leading minutes may go on to 99.
+        assert_eq!(of("mm:ss.t", &[0, 0, 6, 0, 0]), None);
+        assert_eq!(of("mm:ss.t", &[9, 9, 5, 9, 9]), Some(5999.9));
+        assert_eq!(of("mm:ss.t", &[0, 0, 0]), None);
+    }
+
+    #[test]
+    fn resolution_and_wraps_follow_the_digits() {
+        let of = |format: &str| ClockFormat::parse(format).unwrap();
+        assert_eq!(
+            (of("mm:ss.t").resolution_s(), of("ss.tt").resolution_s(), of("ss").resolution_s()),
+            (0.1, 0.01, 1.0)
+        );
+        assert_eq!(of("hh:mm:ss").wraps_s(), [86_400.0, 43_200.0, 360_000.0]);
+        assert_eq!(of("mm:ss").wraps_s(), [3600.0, 6000.0]);
+        assert_eq!(of("sss.t").wraps_s(), [1000.0]);
+    }
+}

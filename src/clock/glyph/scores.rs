@@ -1,0 +1,75 @@
+//! How probably a patch shows each digit.
+
+/// A digit that is at least this probable is read. On drawn digits of typefaces and displays that nothing was trained on, sharp and
+/// in good light, 93 % are (4 in a million wrong), and under any conditions 75 %, 1 in 6000 wrong (test `training::figures`).
+pub const SURE: f64 = 0.95;
+
+/// How probably a patch shows each digit, or anything else: nothing, a mark, two digits blended, a digit half covered. They add up
+/// to 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scores {
+    /// Of the digits 0 to 9.
+    pub digits: [f64; 10],
+    /// Of anything else.
+    pub other: f64,
+}
+
+impl Scores {
+    /// From the network's answers, natural logarithms up to a common term.
+    pub(super) fn of(answers: [f32; 11]) -> Self {
+        let most = answers.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+        let shares = answers.map(|a| f64::from(a - most).exp());
+        let sum: f64 = shares.iter().sum();
+        Self { digits: std::array::from_fn(|k| shares[k] / sum), other: shares[10] / sum }
+    }
+
+    /// The same where anything but a whole digit is rarer than in training (28 of 100 there), by this factor.
+    #[must_use]
+    pub fn with_other_rarer(&self, factor: f64) -> Self {
+        let other = factor * self.other;
+        let sum = other + self.digits.iter().sum::<f64>();
+        Self { digits: self.digits.map(|p| p / sum), other: other / sum }
+    }
+
+    /// The likeliest digit and how probable it is, sure or not.
+    #[must_use]
+    pub fn likeliest(&self) -> (u8, f64) {
+        let mut best = (0, self.digits[0]);
+        for (digit, &probability) in (1..).zip(&self.digits[1..]) {
+            if probability > best.1 {
+                best = (digit, probability);
+            }
+        }
+        best
+    }
+
+    /// The digit, if one is at least as probable as [`SURE`], and how probable the likeliest digit is.
+    #[must_use]
+    pub fn best(&self) -> (Option<u8>, f64) {
+        let (digit, probability) = self.likeliest();
+        ((probability >= SURE).then_some(digit), probability)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn answers_become_probabilities() {
+        let mut answers = [0.0; 11];
+        answers[7] = 8.0;
+        answers[10] = 2.0;
+        let scores = Scores::of(answers);
+        assert!((scores.digits.iter().sum::<f64>() + scores.other - 1.0).abs() <= 1e-12);
+        assert!((scores.digits[7] / scores.other - 6f64.exp()).abs() <= 1e-6);
+        assert_eq!(scores.best().0, Some(7));
+        answers[10] = 7.0;
+        let (digit, probability) = Scores::of(answers).best();
+        assert_eq!(digit, None);
+        assert!(probability < SURE && probability > 0.7);
+        let (digit, probability) = Scores::of(answers).with_other_rarer(0.1).best();
+        assert_eq!(digit, Some(7));
+        assert!((probability - 1.0 / (1.0 + 0.1 * (-1f64).exp() + 9.0 * (-8f64).exp())).abs() <= 1e-6);
+    }
+}

@@ -1,0 +1,168 @@
+use super::*;
+use crate::phantom::screen::ClockFont;
+use crate::video::{Format, Turn};
+use show::Show;
+
+#[path = "show.rs"]
+mod show;
+
+/// Shares of right readings, of wrong ones, and of the rest of a clock's frames.
+#[derive(Debug)]
+struct Tally {
+    right: usize,
+    wrong: usize,
+    readings: Vec<Reading>,
+    region: Option<[f64; 4]>,
+    effort: ReaderEffort,
+}
+
+fn clock(roi: ClockRoi, format: &str) -> Clock {
+    Clock { roi, format: ClockFormat::parse(format).unwrap(), refresh_hz: None }
+}
+
+/// Reads frames; those in `hidden` show no clock.
+fn read(show: &Show, roi: ClockRoi, frames: usize, hidden: std::ops::Range<usize>) -> Tally {
+    let blind = Show { clock: None, panel: show.panel, turn: show.turn, ..Show::new(ClockFont::Mono, true) };
+    let format = show.clock.as_ref().map_or("mm:ss.t", |clock| &clock.format);
+    let mut reader = ClockReader::new(&clock(roi, format), &show.info()).unwrap();
+    let mut readings: Vec<Reading> = (0..frames)
+        .map(|k| {
+            let picture = if hidden.contains(&k) { blind.picture(k) } else { show.picture(k) };
+            reader.step(&picture.frame(k as u64, show.time_s(k)))
+        })
+        .collect();
+    for (index, reading) in reader.earlier() {
+        readings[index as usize] = reading;
+    }
+    let (mut right, mut wrong) = (0, 0);
+    for (k, reading) in readings.iter().enumerate() {
+        if let Reading::Read { shown_s, confidence } = reading {
+            assert!((0.0..=1.0).contains(confidence));
+            if (shown_s - show.shown_s(k)).abs() < 1e-6 { right += 1 } else { wrong += 1 }
+        }
+    }
+    Tally { right, wrong, readings, region: reader.region(), effort: reader.effort() }
+}
+
+fn told(show: &Show) -> ClockRoi {
+    ClockRoi::Box(show.panel.map(|side| side as f64))
+}
+
+#[test]
+fn four_fonts_in_both_polarities_are_read_without_a_mistake() {
+    // Measured: all of the 75 frames.
+    const LEAST: usize = 72;
+    for font in ClockFont::ALL {
+        for light in [true, false] {
+            let show = Show::new(font, light);
+            let tally = read(&show, told(&show), 75, 0..0);
+            assert!(tally.wrong == 0 && tally.right >= LEAST, "{font:?} {light} {} {}", tally.right, tally.wrong);
+        }
+    }
+}
+
+#[test]
+fn frames_at_an_uneven_rate_mislead_no_digit() {
+    // Measured: all of the 60 frames.
+    const LEAST: usize = 54;
+    for (font, offset_s) in ClockFont::ALL.into_iter().zip([60.0, 8.13, 1795.4, 59.97]) {
+        let mut show = Show { uneven: 0.45, ..Show::new(font, true) };
+        show.clock.as_mut().unwrap().offset_s = offset_s;
+        let tally = read(&show, told(&show), 60, 0..0);
+        assert!(tally.wrong == 0 && tally.right >= LEAST, "{font:?} {} {}", tally.right, tally.wrong);
+    }
+}
+
+#[test]
+fn a_change_during_the_exposure_is_not_misread() {
+    // 29.83 frames a second move the exposure along the clock's changes; measured: 60 to 66 of 75, flicker and noise or none.
+    const LEAST: usize = 56;
+    for font in ClockFont::ALL {
+        let show =
+            Show { fps: 29.83, exposure: 0.5, noise: 14.0, flicker: 0.12, ..Show::new(font, font == ClockFont::Mono) };
+        let tally = read(&show, told(&show), 75, 0..0);
+        assert!(tally.wrong == 0 && tally.right >= LEAST, "{font:?} {} {}", tally.right, tally.wrong);
+        let unclear = tally.readings.iter().filter(|&&reading| reading == Reading::Abstained(Doubt::Unclear)).count();
+        assert!(unclear >= 1, "{font:?} {unclear}");
+    }
+}
+
+#[test]
+fn the_clock_is_found_by_itself_however_the_picture_is_turned() {
+    for (font, turn) in
+        [(ClockFont::Mono, Turn::None), (ClockFont::Segments, Turn::Quarter), (ClockFont::Serif, Turn::Half)]
+    {
+        let show = Show { turn, flicker: 0.12, ..Show::new(font, true) };
+        let tally = read(&show, ClockRoi::Auto, 60, 0..0);
+        assert!(tally.wrong == 0 && tally.right >= 54, "{font:?} {} {}", tally.right, tally.wrong);
+        let [x, y, w, h] = tally.region.unwrap();
+        let [left, top, width, height] = show.panel.map(|side| side as f64);
+        assert!(x >= left && y >= top && x + w <= left + width && y + h <= top + height, "{:?}", tally.region);
+        // Whole frames are looked at until it is found only.
+        assert!(tally.effort.searched <= 40 && tally.effort.digits >= 60 * 5 - 60);
+    }
+}
+
+#[test]
+fn no_clock_is_found_where_there_is_none() {
+    let show = Show { clock: None, flicker: 0.12, noise: 14.0, ..Show::new(ClockFont::Mono, true) };
+    for roi in [ClockRoi::Auto, told(&show)] {
+        let tally = read(&show, roi, 90, 0..0);
+        assert!(tally.readings.iter().all(|&reading| reading == Reading::Abstained(Doubt::NotFound)));
+        assert_eq!(tally.effort.frames, 90);
+    }
+}
+
+#[test]
+fn a_clock_that_is_covered_comes_back() {
+    let show = Show::new(ClockFont::Segments, false);
+    for roi in [told(&show), ClockRoi::Auto] {
+        let tally = read(&show, roi, 150, 50..130);
+        let hidden = &tally.readings[50..130];
+        assert!(hidden.iter().all(|&reading| reading == Reading::Abstained(Doubt::NotFound)), "{hidden:?}");
+        assert!(tally.wrong == 0 && tally.right >= 64, "{} {}", tally.right, tally.wrong);
+    }
+}
+
+#[test]
+fn digits_of_different_widths_are_read_where_they_are() {
+    let show = Show { moving: true, panel: [190, 30, 190, 40], ..Show::new(ClockFont::Proportional, true) };
+    // Measured: 67.
+    let tally = read(&show, told(&show), 75, 0..0);
+    assert!(tally.wrong == 0 && tally.right >= 60, "{} {}", tally.right, tally.wrong);
+}
+
+#[test]
+fn formats_with_other_marks_and_hours_are_read() {
+    for format in ["hh:mm:ss.t", "s.tt", "mm'ss\"t", "mm ss t"] {
+        let mut show = Show { panel: [160, 30, 220, 40], ..Show::new(ClockFont::Mono, false) };
+        show.clock.as_mut().unwrap().format = format.into();
+        let tally = read(&show, told(&show), 60, 0..0);
+        assert!(tally.wrong == 0 && tally.right >= 48, "{format} {} {}", tally.right, tally.wrong);
+    }
+}
+
+#[test]
+fn a_region_that_reaches_out_of_the_picture_is_refused() {
+    let info = Show { turn: Turn::Quarter, ..Show::new(ClockFont::Mono, true) }.info();
+    let of = |roi| ClockReader::new(&clock(ClockRoi::Box(roi), "mm:ss.t"), &info);
+    assert!(of([200.0, 30.0, 160.0, 40.0]).is_ok());
+    let why = of([300.0, 30.0, 160.0, 40.0]).unwrap_err();
+    assert!(why.contains("400 x 160") && why.contains("auto"), "{why}");
+    assert!(of([-5.0, 30.0, 160.0, 40.0]).is_err());
+    assert!(of([f64::NAN, 30.0, 160.0, 40.0]).is_err());
+    assert!(of([200.0, 30.0, 10.0, 40.0]).unwrap_err().contains("5 digits"));
+}
+
+#[test]
+fn frames_of_another_size_and_short_videos_are_no_fault() {
+    let show = Show::new(ClockFont::Mono, true);
+    let mut reader = ClockReader::new(&clock(told(&show), "mm:ss.t"), &show.info()).unwrap();
+    let other = crate::video::Picture::new(Format { width: 64, height: 48, subsampling: None, depth: 8 });
+    assert_eq!(reader.step(&other.frame(0, 0.0)), Reading::Abstained(Doubt::NotFound));
+    assert!(reader.earlier().is_empty());
+    // Half a second is read after the last frame.
+    let tally = read(&show, told(&show), 15, 0..0);
+    assert!(tally.wrong == 0 && tally.right >= 12, "{} {}", tally.right, tally.wrong);
+    assert_eq!(read(&show, told(&show), 0, 0..0).right, 0);
+}

@@ -1,0 +1,29 @@
+//! What one frame tells of the clock.
+
+/// What one frame tells of the clock.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Reading {
+    /// The clock shows this.
+    Read {
+        /// The seconds that its digits mean, not yet unwrapped: `59:59.9` is 3599.9, and `00:00.0` after it is 0.
+        shown_s: f64,
+        /// How probably every digit is right, 0 to 1.
+        confidence: f64,
+    },
+    /// Not sure enough.
+    Abstained(Doubt),
+}
+
+/// Why a frame's clock was not read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Doubt {
+    /// No clock was found in the frame, or it is covered.
+    NotFound,
+    /// Its digits changed during the exposure, or a digit is unclear.
+    Unclear,
+    /// The frame could not be decoded.
+    Undecoded,
+    /// It was not looked at: told off to save time.
+    NotAsked,
+}

@@ -1,0 +1,103 @@
+//! What is wrong with a clock whose readings don't agree.
+
+use super::consensus::{Agreed, Seen, agree};
+use super::{ClockFault, FEWEST, MOST_DRIFT, SLOWEST_SCREEN_S};
+
+/// Readings that make a second clock, not a misread digit.
+const SECOND: usize = 5;
+/// A clock that shows the same for so much longer than its resolution stands still, seconds.
+const STILL_S: f64 = 0.5;
+
+/// Says what is wrong, if anything: the clock stands still at the beginning or the end or in the midst, jumps, or runs at another
+/// rate; or most readings do not agree. `middle_s` and `first_s` are taken off the readings' times and what they show.
+pub(super) fn diagnose(
+    seen: &[Seen],
+    agreed: &Agreed,
+    resolution_s: f64,
+    middle_s: f64,
+    first_s: f64,
+) -> Result<(), ClockFault> {
+    let most = 2 * agreed.count > seen.len();
+    if agreed.count == seen.len() {
+        return Ok(());
+    }
+    let refused: Vec<Seen> =
+        seen.iter().zip(&agreed.turns_s).filter(|(_, turns)| turns.is_none()).map(|(seen, _)| *seen).collect();
+    let taken = || seen.iter().zip(&agreed.turns_s).filter(|(_, turns)| turns.is_some()).map(|(seen, _)| seen.time_s);
+    let (begin_s, end_s) = (taken().fold(f64::INFINITY, f64::min), taken().fold(f64::NEG_INFINITY, f64::max));
+    // Outside of what agrees, or anywhere if little does.
+    let outside = |from_s: f64, to_s: f64| !most || to_s < begin_s + resolution_s || from_s > end_s - resolution_s;
+    if let Some([from, to]) = longest_still(seen)
+        && to.time_s - from.time_s > resolution_s + SLOWEST_SCREEN_S + STILL_S
+    {
+        let goes_on = second(&refused, agreed, resolution_s).is_some_and(|(other, _)| apart(&other, begin_s, end_s));
+        if outside(from.time_s, to.time_s) || goes_on {
+            let (from_s, to_s) = (from.time_s + middle_s, to.time_s + middle_s);
+            return Err(ClockFault::Stops { from_s, to_s, shown_s: from.shown_s + first_s });
+        }
+    }
+    if let Some(rate) = other_rate(seen, resolution_s)
+        && !most
+    {
+        return Err(ClockFault::Rate { rate });
+    }
+    if let Some((other, by_s)) = second(&refused, agreed, resolution_s)
+        && apart(&other, begin_s, end_s)
+    {
+        let later = other[0] > end_s;
+        let at_s = if later { 0.5 * (end_s + other[0]) } else { 0.5 * (other[1] + begin_s) };
+        return Err(ClockFault::Jumps { at_s: at_s + middle_s, by_s: if later { by_s } else { -by_s } });
+    }
+    if most { Ok(()) } else { Err(contradictory(seen, agreed, middle_s)) }
+}
+
+/// The fault of readings of which too few agree.
+pub(super) fn contradictory(seen: &[Seen], agreed: &Agreed, middle_s: f64) -> ClockFault {
+    let first =
+        seen.iter().zip(&agreed.turns_s).find(|(_, turns)| turns.is_none()).map_or(seen[0].time_s, |(s, _)| s.time_s);
+    ClockFault::Contradictory { agree: agreed.count, read: seen.len(), at_s: first + middle_s }
+}
+
+/// The readings between which the clock shows the same for the longest.
+fn longest_still(seen: &[Seen]) -> Option<[Seen; 2]> {
+    let runs = seen.chunk_by(|a, b| a.shown_s == b.shown_s).filter_map(|run| Some([*run.first()?, *run.last()?]));
+    runs.max_by(|a, b| (a[1].time_s - a[0].time_s).total_cmp(&(b[1].time_s - b[0].time_s)))
+}
+
+/// Whether a second clock's readings lie before or after all of the first's.
+fn apart(other: &[f64; 2], begin_s: f64, end_s: f64) -> bool {
+    other[0] > end_s || other[1] < begin_s
+}
+
+/// A second clock among what the first refused: between which times, and by how much it shows more.
+fn second(refused: &[Seen], first: &Agreed, resolution_s: f64) -> Option<([f64; 2], f64)> {
+    if refused.len() < SECOND {
+        return None;
+    }
+    let other = agree(refused, resolution_s + SLOWEST_SCREEN_S, MOST_DRIFT, None);
+    let mut taken = refused.iter().zip(&other.turns_s).filter(|(_, turns)| turns.is_some()).map(|(seen, _)| seen);
+    let from_s = taken.clone().next()?.time_s;
+    let to_s = taken.next_back()?.time_s;
+    let long = to_s - from_s >= (3.0 * resolution_s).max(STILL_S);
+    let middle_s = 0.5 * (from_s + to_s);
+    let height = |agreed: &Agreed| 0.5 * (agreed.band_s[0] + agreed.band_s[1]) + agreed.drift * middle_s;
+    (other.count >= SECOND.max(FEWEST) && long).then(|| ([from_s, to_s], height(&other) - height(first)))
+}
+
+/// The clock's rate where it clearly is another than the video's.
+fn other_rate(seen: &[Seen], resolution_s: f64) -> Option<f64> {
+    let apart = seen.len() / 2;
+    let pairs = seen[..seen.len() - apart].iter().zip(&seen[apart..]);
+    let mut rates: Vec<f64> = pairs
+        .filter(|(a, b)| b.time_s > a.time_s)
+        .map(|(a, b)| (b.shown_s - a.shown_s) / (b.time_s - a.time_s))
+        .collect();
+    if rates.len() < SECOND {
+        return None;
+    }
+    rates.sort_by(f64::total_cmp);
+    let [low, rate, high] = [1, 2, 3].map(|k| rates[k * (rates.len() - 1) / 4]);
+    let long_s = seen[seen.len() - 1].time_s - seen[0].time_s;
+    let sure = high - low <= 0.02 * rate.abs() + 8.0 * (resolution_s + SLOWEST_SCREEN_S) / long_s;
+    (sure && (rate - 1.0).abs() > MOST_DRIFT).then_some(rate)
+}

@@ -1,0 +1,72 @@
+//! Why a video's readings tie no clock.
+
+/// Why a video's readings tie no clock. Times are the video's, seconds.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum ClockFault {
+    /// Too few frames read.
+    #[error(
+        "the clock was read in {read} of {frames} frames, of which {agree} agree; at least {fewest} that agree are needed: check the clock's \
+         place and format in the marker file, or film it larger and unhidden"
+    )]
+    TooFew {
+        /// Frames read.
+        read: usize,
+        /// Frames read that agree.
+        agree: usize,
+        /// All frames.
+        frames: usize,
+        /// How many are needed.
+        fewest: usize,
+    },
+    /// It shows the same while the video goes on.
+    #[error(
+        "the clock stands still: it shows {shown_s} s from {from_s:.3} s to {to_s:.3} s of the video; cut the video to where the clock runs, or \
+         use a clock that is not paused"
+    )]
+    Stops {
+        /// From when on.
+        from_s: f64,
+        /// Until when.
+        to_s: f64,
+        /// What it shows, seconds.
+        shown_s: f64,
+    },
+    /// It runs well before and after, but not on one line.
+    #[error(
+        "the clock jumps by {by_s:+.3} s at {at_s:.3} s of the video; cut the video there and align the parts one by one"
+    )]
+    Jumps {
+        /// When.
+        at_s: f64,
+        /// By how much, seconds.
+        by_s: f64,
+    },
+    /// It runs well but too fast or too slow.
+    #[error(
+        "the clock runs {rate:.4} times as fast as the video; the file's frame times must be those of the recording: no slow motion, time \
+         lapse or countdown"
+    )]
+    Rate {
+        /// Seconds of the clock a second of the video.
+        rate: f64,
+    },
+    /// Nothing that most readings agree on.
+    #[error(
+        "the clock's readings contradict each other: no more than {agree} of {read} agree, the first that does not is at {at_s:.3} s of the \
+         video; check the clock's place and format in the marker file"
+    )]
+    Contradictory {
+        /// Frames read that agree.
+        agree: usize,
+        /// Frames read.
+        read: usize,
+        /// When the first frame is that does not.
+        at_s: f64,
+    },
+    /// What was asked for can't be.
+    #[error("the clock's resolution is {resolution_s} s; it must be a positive number of seconds")]
+    Resolution {
+        /// As asked for.
+        resolution_s: f64,
+    },
+}

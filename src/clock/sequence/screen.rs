@@ -1,0 +1,92 @@
+//! How late the screen shows what the clock counts.
+//!
+//! Readings that agree with no screen that shows at once need one that shows late. How late is seen where frames' times are irregular:
+//! the readings then fill nearly all of what the screen allows, and the screen is the fastest usual one that allows so much. Frames in
+//! which the digits change are not read, which hides a part of the delay as long as the exposure: it is told from how many such
+//! frames there are, and added. Where frames' and screen's rhythm are the same, or the screen's and the digits', the delay can't be
+//! told from the offset; then none is taken off, and interval and standard error count a usual screen.
+
+use super::{ScreenDelay, USUAL_SCREEN_S};
+
+/// Intervals of screens that there are, seconds; the last are clocks that a program draws.
+const SCREENS_S: [f64; 8] =
+    [1.0 / 144.0, 1.0 / 120.0, USUAL_SCREEN_S, 1.0 / 50.0, 1.0 / 30.0, 1.0 / 24.0, 1.0 / 20.0, 0.1];
+/// A screen is known to a fiftieth: 59.94 is told as 60.
+const NEAR: f64 = 0.98;
+/// What readings and frames not read must add up to before a screen is believed that the readings alone do not need, seconds, and in
+/// standard errors.
+const BELIEVED_S: f64 = 4e-3;
+const BELIEVED_SDS: f64 = 2.5;
+
+/// The screen's delay for estimate and interval.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Screen {
+    pub(super) known: ScreenDelay,
+    /// The longest delay that the estimate counts, seconds.
+    pub(super) estimate_s: f64,
+    /// The longest that the interval counts, seconds.
+    pub(super) most_s: f64,
+    pub(super) notes: Vec<String>,
+}
+
+/// The delay, if readings agree with none below `least_s`, `dead_s` is what [`dead_s`] tells, and `given_s` what the user says.
+pub(super) fn delay(least_s: f64, dead_s: [f64; 2], given_s: Option<f64>) -> Screen {
+    if let Some(given_s) = given_s
+        && least_s <= given_s
+    {
+        return Screen { known: ScreenDelay::Given, estimate_s: given_s, most_s: given_s, notes: Vec::new() };
+    }
+    let screen = |late_s: f64| SCREENS_S.into_iter().find(|&screen| late_s <= screen / NEAR).unwrap_or(late_s);
+    let most_s = screen(least_s.max(NEAR * USUAL_SCREEN_S)).max(least_s / NEAR);
+    let mut notes = Vec::new();
+    if given_s.is_some() {
+        notes.push(format!(
+            "the clock's digits change up to {:.1} ms later than its refresh rate explains: the rate is not believed",
+            1e3 * least_s
+        ));
+    }
+    let [dead_s, dead_sd_s] = dead_s;
+    let late_s = least_s + dead_s;
+    if least_s <= 0.0 && late_s < BELIEVED_S.max(BELIEVED_SDS * dead_sd_s) {
+        notes.push(format!(
+            "how often the clock's screen changes is not known: the offset's interval and standard error count one that shows up to \
+             {:.1} ms late; the rate, if given, narrows them",
+            1e3 * most_s
+        ));
+        return Screen { known: ScreenDelay::Assumed, estimate_s: 0.0, most_s, notes };
+    }
+    let estimate_s = screen(late_s).max(least_s / NEAR);
+    Screen { known: ScreenDelay::Found, estimate_s, most_s: most_s.max(estimate_s), notes }
+}
+
+/// Frames in a row that are not read because digits change in them: no more than this.
+const CHANGING: usize = 2;
+
+/// How long before and after a change of digits frames are not read, both together, and its standard error, seconds; from frames not
+/// read between two readings one step apart, less as many as are not read between the same readings.
+pub(super) fn dead_s(accepted_s: &[Option<f64>], resolution_s: f64, interval_s: f64) -> [f64; 2] {
+    let (mut frames, mut changing, mut other) = (0, 0, 0);
+    let mut last: Option<(usize, f64)> = None;
+    for (k, read) in accepted_s.iter().enumerate() {
+        let Some(read) = *read else { continue };
+        if let Some((before, earlier)) = last
+            && k - before <= CHANGING + 1
+        {
+            frames += k - before;
+            match ((read - earlier) / resolution_s).round() {
+                0.0 => other += k - before - 1,
+                1.0 => changing += k - before - 1,
+                _ => {}
+            }
+        }
+        last = Some((k, read));
+    }
+    // A frame not read for another reason stands between two readings this often.
+    let between = 2.0 * interval_s / resolution_s;
+    if frames == 0 || between >= 1.0 {
+        return [0.0, 0.0];
+    }
+    let expected = other as f64 * between / (1.0 - between);
+    let a_frame_s = resolution_s / frames as f64;
+    [a_frame_s * (changing as f64 - expected).max(0.0), a_frame_s * (changing as f64 + expected + 1.0).sqrt()]
+}
