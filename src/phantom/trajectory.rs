@@ -6,10 +6,9 @@
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
-use rand::RngExt;
 use serde::Serialize;
 
-use super::nail::numbers;
+use super::wave::Wave;
 use crate::table::{Table, TableError};
 
 /// Slope of J3 over J2 in free bending.
@@ -37,6 +36,8 @@ pub enum Trajectory {
         /// Where the random numbers come from.
         seed: u64,
     },
+    /// Straight and still: all angles 0, as while touching (5.2.4).
+    Rest,
     /// Given at times, a straight line in between.
     Given {
         /// Time in seconds, then J1, J2, J3 in degrees; times ascending.
@@ -73,6 +74,39 @@ impl Trajectory {
     /// J1, J2, J3 at `t_s`, radians; a given trajectory stays at its ends outside of its times.
     #[must_use]
     pub fn angles_rad(&self, t_s: f64) -> [f64; 3] {
+        self.movement().angles_rad(t_s)
+    }
+
+    /// Ready to be asked often.
+    pub(super) fn movement(&self) -> Movement<'_> {
+        match self {
+            Self::Eq27 { hz } => Movement::Eq27 { hz: *hz },
+            Self::Random { hz, seed } => {
+                Movement::Random([0, 1, 2].map(|joint| Wave::random(*hz, 0.4..4.0, *seed, KIND_TRAJECTORY, joint)))
+            }
+            Self::Rest => Movement::Rest,
+            Self::Given { rows } => Movement::Given { rows },
+        }
+    }
+}
+
+/// A [`Trajectory`] that is ready to be asked often.
+#[derive(Debug, Clone)]
+pub(super) enum Movement<'a> {
+    Eq27 {
+        hz: f64,
+    },
+    /// Of J1, J2, and J3 about its line.
+    Random([Wave; 3]),
+    Rest,
+    Given {
+        rows: &'a [[f64; 4]],
+    },
+}
+
+impl Movement<'_> {
+    /// J1, J2, J3 at `t_s`, radians.
+    pub(super) fn angles_rad(&self, t_s: f64) -> [f64; 3] {
         match self {
             Self::Eq27 { hz } => {
                 let j2 = (35.0 - 40.0 * (TAU * hz * t_s).cos()).to_radians();
@@ -81,21 +115,12 @@ impl Trajectory {
                 let j1 = middle + half * (TAU * rate * hz.min(0.2) * t_s + 1.0).sin();
                 [j1, j2, J3_PER_J2 * j2 + wander * (TAU * wander_hz * t_s + 0.5).sin()]
             }
-            Self::Random { hz, seed } => {
-                let wave = |index: u32| {
-                    let mut rng = numbers(*seed, KIND_TRAJECTORY, index);
-                    [0.5, 0.3, 0.2]
-                        .into_iter()
-                        .map(|share: f64| {
-                            let rate = hz * rng.random_range(0.4..4.0);
-                            share * (TAU * (rate * t_s + rng.random_range(0.0..1.0))).sin()
-                        })
-                        .sum::<f64>()
-                };
-                let j2 = (40.0 + 45.0 * wave(1)).to_radians();
-                let j1 = (20.0 + 25.0 * wave(0)).to_radians();
-                [j1, j2, J3_PER_J2 * j2 + 5f64.to_radians() * wave(2)]
+            Self::Random([first, second, third]) => {
+                let j2 = (40.0 + 45.0 * second.at(t_s)).to_radians();
+                let j1 = (20.0 + 25.0 * first.at(t_s)).to_radians();
+                [j1, j2, J3_PER_J2 * j2 + 5f64.to_radians() * third.at(t_s)]
             }
+            Self::Rest => [0.0; 3],
             Self::Given { rows } => {
                 let after = rows.partition_point(|row| row[0] <= t_s);
                 let at = |k: usize| [rows[k][1], rows[k][2], rows[k][3]];

@@ -1,6 +1,12 @@
-//! What `lunula phantom video` takes in words: choices, spans of frames, colours, panels.
+//! What `lunula phantom video` and `log` take in words: choices, movements, spans, colours, panels.
 
+use std::path::Path;
+
+use anyhow::Context;
 use clap::ValueEnum;
+use lunula::phantom::screen::Jump;
+use lunula::phantom::sensor::CHANNELS;
+use lunula::phantom::trajectory::Trajectory;
 use lunula::phantom::video::{Hide, Leave, Preset, Siting};
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -41,13 +47,6 @@ pub(super) enum ColoursArg {
     Pairs,
     Distinct,
     Red,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub(super) enum FontArg {
-    Mono,
-    Proportional,
-    Segments,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -98,6 +97,20 @@ pub(super) enum FormatArg {
     Grey,
 }
 
+/// A movement by its name or from a table, and how long a table goes on, seconds.
+pub(super) fn trajectory(text: &str, hz: f64, seed: u64) -> anyhow::Result<(Trajectory, Option<f64>)> {
+    Ok(match text {
+        "eq27" => (Trajectory::Eq27 { hz }, None),
+        "random" => (Trajectory::Random { hz, seed }, None),
+        "rest" => (Trajectory::Rest, None),
+        file => {
+            let given = Trajectory::read(Path::new(file));
+            let (given, span_s) = given.context("--trajectory is eq27, random, rest or a table")?;
+            (given, Some(span_s))
+        }
+    })
+}
+
 fn parse_span(text: &str) -> Option<(usize, usize)> {
     let (frame, frames) = text.split_once('+')?;
     Some((frame.parse().ok()?, frames.parse().ok()?))
@@ -113,6 +126,39 @@ pub(super) fn parse_hide(text: &str) -> Result<Hide, String> {
 pub(super) fn parse_leave(text: &str) -> Result<Leave, String> {
     let (frame, frames) = parse_span(text).ok_or_else(|| format!("`{text}` is not FRAME+N, as 60+20"))?;
     Ok(Leave { frame, frames })
+}
+
+pub(super) fn parse_span_of_frames(text: &str) -> Result<[usize; 2], String> {
+    parse_span(text).map(|(frame, frames)| [frame, frames]).ok_or_else(|| format!("`{text}` is not FRAME+N, as 60+20"))
+}
+
+/// A number after the first sign that is not at the beginning, and the text before it.
+fn parse_signed(text: &str) -> Option<(&str, f64)> {
+    let at = text.char_indices().skip(1).find(|(_, c)| matches!(c, '+' | '-'))?.0;
+    let by: f64 = text[at..].parse().ok()?;
+    by.is_finite().then(|| (&text[..at], by))
+}
+
+pub(super) fn parse_jump(text: &str) -> Result<(usize, f64), String> {
+    let parts = parse_signed(text).and_then(|(frame, by_s)| Some((frame.parse().ok()?, by_s)));
+    parts.ok_or_else(|| format!("`{text}` is not FRAME+SECONDS, as 90+5 or 90-5"))
+}
+
+pub(super) fn parse_set_clock(text: &str) -> Result<Jump, String> {
+    let parts = parse_signed(text).and_then(|(at_s, by_s)| Some(Jump { at_s: at_s.parse().ok()?, by_s }));
+    parts.ok_or_else(|| format!("`{text}` is not TIME+SECONDS, as 5+3.5 or 5-3.5"))
+}
+
+pub(super) fn parse_gap(text: &str) -> Result<[f64; 2], String> {
+    let parts = text.split_once('+').and_then(|(from, length)| Some([from.parse().ok()?, length.parse().ok()?]));
+    parts.ok_or_else(|| format!("`{text}` is not FROM+LENGTH, as 4+1.5"))
+}
+
+pub(super) fn parse_photodiode(text: &str) -> Result<usize, String> {
+    let number = text.strip_prefix('P').and_then(|number| number.parse().ok());
+    number
+        .filter(|number| (1..=CHANNELS).contains(number))
+        .ok_or_else(|| format!("`{text}` is no photodiode; there are P1 to P{CHANNELS}"))
 }
 
 pub(super) fn parse_colour(text: &str) -> Result<u32, String> {

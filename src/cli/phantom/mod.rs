@@ -1,6 +1,8 @@
 //! `lunula phantom`: synthetic scenes with exact truth.
 
 mod choices;
+mod clock;
+mod log;
 mod photos;
 mod video;
 
@@ -19,12 +21,14 @@ pub(super) struct PhantomArgs {
 
 #[derive(Debug, Subcommand)]
 enum Kind {
+    Log(Box<log::LogArgs>),
     Photos(Box<photos::PhotosArgs>),
     Video(Box<video::VideoArgs>),
 }
 
 pub(super) fn run(args: &PhantomArgs) -> anyhow::Result<Outcome> {
     match &args.kind {
+        Kind::Log(args) => log::run(args),
         Kind::Photos(args) => photos::run(args),
         Kind::Video(args) => video::run(args),
     }

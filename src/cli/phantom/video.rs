@@ -1,21 +1,21 @@
 //! `lunula phantom video`: videos of a finger with coloured markers.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
 use anyhow::Context;
 use clap::Args;
 use lunula::flexion::Flexion;
 use lunula::phantom::finger::{Finger, MarkerLayout};
-use lunula::phantom::screen::{Clock, ClockFont};
 use lunula::phantom::trajectory::Trajectory;
 use lunula::phantom::video::{Chroma, Colours, Error, Hide, Leave, Lens, Scene, VideoOptions, write_watched};
 use lunula::video::{Matrix, Turn};
 
 use super::choices::{
-    ColoursArg, FlexionArg, FontArg, FormatArg, LayoutArg, MatrixArg, RotateArg, SceneArg, SitingArg, parse_colour,
-    parse_hide, parse_leave, parse_roi,
+    ColoursArg, FlexionArg, FormatArg, LayoutArg, MatrixArg, RotateArg, SceneArg, SitingArg, parse_colour, parse_hide,
+    parse_leave, trajectory,
 };
+use super::clock::ClockArgs;
 use super::{Common, Interrupted, Outcome, parse_size};
 
 /// A video of a finger with coloured markers, with exact joint angles and marker centres (3.2.3, 3.3.5)
@@ -47,8 +47,8 @@ pub(super) struct VideoArgs {
     #[arg(long, value_name = "SHARE", num_args = 0..=1, default_missing_value = "0.4")]
     vfr: Option<f64>,
 
-    /// Joint angles over time: eq27, random, or a table (CSV or Parquet) with time_s, J1_deg, J2_deg, J3_deg
-    #[arg(long, value_name = "eq27|random|FILE")]
+    /// Joint angles over time: eq27, random, rest (straight and still), or a table (CSV or Parquet) with time_s, J1_deg, J2_deg, J3_deg
+    #[arg(long, value_name = "eq27|random|rest|FILE")]
     trajectory: Option<String>,
     /// Bending rate f of equation 27; random movement has rates of 0.4 to 4 times it
     #[arg(long, value_name = "HZ")]
@@ -112,27 +112,8 @@ pub(super) struct VideoArgs {
     #[arg(long, value_name = "PX", requires = "distortion")]
     fx: Option<f64>,
 
-    /// A clock on a screen in the picture, h m s digits of hours, minutes, seconds, t tenths and finer; as mm:ss.t
-    #[arg(long, value_name = "FORMAT")]
-    clock: Option<String>,
-    /// What the clock counts at the first frame [default: 60]
-    #[arg(long, value_name = "SECONDS", requires = "clock", allow_negative_numbers = true)]
-    clock_offset: Option<f64>,
-    /// How much faster than the video's time the clock runs, millionths
-    #[arg(long, value_name = "PPM", requires = "clock", allow_negative_numbers = true)]
-    clock_drift_ppm: Option<f64>,
-    /// Refreshes of the clock's screen a second [default: 60]
-    #[arg(long, value_name = "HZ", requires = "clock")]
-    clock_refresh: Option<f64>,
-    /// The clock's digits
-    #[arg(long, value_enum, requires = "clock")]
-    clock_font: Option<FontArg>,
-    /// Dark digits on a light panel
-    #[arg(long, requires = "clock")]
-    clock_dark: bool,
-    /// The clock's panel [default: 900,40,300,70 at 1280x720]
-    #[arg(long, value_name = "X,Y,WIDTH,HEIGHT", requires = "clock", value_parser = parse_roi)]
-    clock_roi: Option<[usize; 4]>,
+    #[command(flatten)]
+    clock: ClockArgs,
 
     /// The video's colour matrix
     #[arg(long, value_enum, default_value = "709")]
@@ -199,7 +180,7 @@ impl VideoArgs {
         options.desk = self.desk.unwrap_or(options.desk);
         options.lens =
             (!self.distortion.is_empty()).then(|| Lens { fx_px: self.fx, distortion: self.distortion.clone() });
-        options.clock = self.clock();
+        self.clock.settle(&mut options);
         options.matrix = match self.matrix {
             MatrixArg::Bt601 => Matrix::BT601,
             MatrixArg::Bt709 => Matrix::BT709,
@@ -253,37 +234,15 @@ impl VideoArgs {
         }
         let scenes_hz = match options.trajectory {
             Trajectory::Eq27 { hz } | Trajectory::Random { hz, .. } => hz,
-            Trajectory::Given { .. } => 0.1,
+            Trajectory::Rest | Trajectory::Given { .. } => 0.1,
         };
         let hz = self.bend_hz.unwrap_or(scenes_hz);
-        options.trajectory = match self.trajectory.as_deref() {
-            None | Some("eq27") => Trajectory::Eq27 { hz },
-            Some("random") => Trajectory::Random { hz, seed: self.seed },
-            Some(file) => {
-                let (given, span_s) =
-                    Trajectory::read(Path::new(file)).context("--trajectory is eq27, random or a table")?;
-                options.seconds = span_s.max(1.0 / options.fps);
-                given
-            }
-        };
+        let (movement, span_s) = trajectory(self.trajectory.as_deref().unwrap_or("eq27"), hz, self.seed)?;
+        options.trajectory = movement;
+        if let Some(span_s) = span_s {
+            options.seconds = span_s.max(1.0 / options.fps);
+        }
         Ok(())
-    }
-
-    fn clock(&self) -> Option<Clock> {
-        let clock = Clock::default();
-        Some(Clock {
-            format: self.clock.clone()?,
-            offset_s: self.clock_offset.unwrap_or(clock.offset_s),
-            drift_ppm: self.clock_drift_ppm.unwrap_or(clock.drift_ppm),
-            refresh_hz: self.clock_refresh.unwrap_or(clock.refresh_hz),
-            font: match self.clock_font {
-                Some(FontArg::Proportional) => ClockFont::Proportional,
-                Some(FontArg::Segments) => ClockFont::Segments,
-                Some(FontArg::Mono) | None => ClockFont::Mono,
-            },
-            light_digits: !self.clock_dark,
-            roi_px: self.clock_roi,
-        })
     }
 }
 

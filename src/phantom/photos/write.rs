@@ -18,12 +18,11 @@ use crate::{
     labelme::{self, LabelMe, Shape, to_labelme},
     phantom::{
         nail::{NailScene, Pose, SceneFault},
-        place::put_in_place,
+        place::{PHOTOS_RECORD as RECORD, in_the_way, put_in_place},
     },
 };
 
-/// The file that says that a folder was written here.
-const RECORD: &str = "truth/phantom.json";
+const RESULTS: [&str; 2] = ["photos", "truth"];
 
 /// Why a set was not written.
 #[derive(Debug, Error)]
@@ -135,16 +134,13 @@ pub fn write_watched(
 ) -> Result<Summary, Error> {
     let begin = Instant::now();
     options.check()?;
-    let places = ["photos", "truth"].map(|name| out.join(name));
-    if let Some(place) = places.iter().find(|p| p.exists())
-        && !out.join(RECORD).is_file()
-    {
-        return Err(Error::InTheWay(place.clone()));
+    if let Some(place) = in_the_way(out, &RESULTS, RECORD) {
+        return Err(Error::InTheWay(place));
     }
     fs::create_dir_all(out).map_err(refused(out))?;
     let stage = tempfile::Builder::new().prefix(".phantom-").tempdir_in(out).map_err(refused(out))?;
     let mut summary = draw_all(options, stage.path(), watch)?;
-    put_in_place(stage.path(), out, &["photos", "truth"]).map_err(|(path, source)| Error::Write { path, source })?;
+    put_in_place(stage.path(), out, &RESULTS).map_err(|(path, source)| Error::Write { path, source })?;
     summary.stages.total_s = begin.elapsed().as_secs_f64();
     Ok(summary)
 }

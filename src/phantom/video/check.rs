@@ -1,9 +1,7 @@
 //! Whether a video can be made as wanted; all faults are told at once, by the command line's names.
 
-use std::fmt;
-
-use super::VideoOptions;
 use super::lens::Mapping;
+use super::{Faults, VideoOptions};
 use crate::phantom::finger::JOINTS;
 use crate::phantom::trajectory::Trajectory;
 
@@ -46,6 +44,7 @@ impl VideoOptions {
         ranged("--crf", f64::from(self.crf), 0.0, 51.0, "");
         match &self.trajectory {
             Trajectory::Eq27 { hz } | Trajectory::Random { hz, .. } => ranged("--bend-hz", *hz, 0.0, 100.0, " Hz"),
+            Trajectory::Rest => {}
             Trajectory::Given { rows } => {
                 let finite = rows.iter().flatten().all(|value| value.is_finite());
                 let ascend = rows.windows(2).all(|pair| pair[1][0] > pair[0][0]);
@@ -83,8 +82,23 @@ impl VideoOptions {
             if let Some(fault) = clock.fault() {
                 need(false, &|| format!("--clock {}: {fault}", clock.format));
             }
-            let rate = clock.refresh_hz.is_finite() && clock.refresh_hz > 0.0;
-            need(rate, &|| format!("--clock-refresh {}: choose more than 0 Hz", clock.refresh_hz));
+            if let Some(hz) = clock.refresh_hz {
+                need(hz.is_finite() && hz > 0.0, &|| format!("--clock-refresh {hz}: choose more than 0 Hz"));
+            }
+            let frames = self.frames();
+            let hidden = self
+                .screen
+                .hide
+                .iter()
+                .map(|&[frame, count]| (format!("--clock-hide {frame}+{count}"), count > 0 && frame < frames));
+            let stops = self.screen.stop.iter().map(|&frame| (format!("--clock-stop {frame}"), frame < frames));
+            let jumps =
+                self.screen.jump.iter().map(|&(frame, by_s)| {
+                    (format!("--clock-jump {frame}{by_s:+}"), frame < frames && by_s.abs() < 1e9)
+                });
+            for (text, holds) in hidden.chain(stops).chain(jumps) {
+                need(holds, &|| format!("{text}: the video has frames 0 to {}", frames - 1));
+            }
             need(clock.offset_s.is_finite() && clock.offset_s.abs() < 1e9, &|| {
                 format!("--clock-offset {}: choose seconds within a thousand million", clock.offset_s)
             });
@@ -108,15 +122,3 @@ impl VideoOptions {
         if faults.0.is_empty() { Ok(()) } else { Err(faults) }
     }
 }
-
-/// All that is wrong with the options.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Faults(pub Vec<String>);
-
-impl fmt::Display for Faults {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.0.join("; "))
-    }
-}
-
-impl std::error::Error for Faults {}

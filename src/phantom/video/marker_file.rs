@@ -29,7 +29,11 @@ impl Scene {
             }
         }
         if let Some(clock) = &options.clock {
-            text += &format!("\n[clock]\nroi = {:?}\nformat = \"{}\"\n", options.clock_roi_px(clock), clock.format);
+            let roi = format!("{:?}", options.clock_roi_px(clock));
+            let roi = if options.clock_roi_auto { "\"auto\"".to_owned() } else { roi };
+            text += &format!("\n[clock]\nroi = {roi}\nformat = \"{}\"\n", clock.format);
+            // TOML knows infinity: a screen that changes at once.
+            text += &format!("refresh_hz = {:?}\n", clock.refresh_hz.unwrap_or(f64::INFINITY));
         }
         if let (Some(lens), Some(mapping)) = (&options.lens, &self.mapping) {
             text += &format!("\n[camera]\nfx = {:?}\ndistortion = {:?}\n", mapping.fx_px, lens.distortion);

@@ -6,7 +6,8 @@
 //! - `truth/joints.csv`: `frame,time_s,clock_s`, then each joint's exact angle at mid-exposure;
 //! - `truth/tracks.csv`: `frame,time_s,marker,x_px,y_px,in_view,status`: centres at mid-exposure as the lens shows them; `in_view` is the share of
 //!   the marker's disc in the picture that nothing covers, and `status` ok, partial, hidden or outside;
-//! - `truth/clock.csv`, with a clock: `frame,time_s,clock_s,shown,shown_s,changing`;
+//! - `truth/clock.csv`, with a clock: `frame,time_s,clock_s,shown,shown_s,changing,status`: what the clock counts; what its screen shows,
+//!   or would show where it is covered; whether that changes within the exposure; and ok, hidden, stopped or jumped;
 //! - `truth/scene.json`: every parameter.
 //!
 //! Coordinates are those of the picture as it is shown, where the stored one is turned.
@@ -35,9 +36,9 @@ mod settle;
 mod share;
 mod write;
 
-pub use check::Faults;
+pub use super::faults::Faults;
 pub use lens::Lens;
-pub use options::{Chroma, Colours, Hide, Leave, Preset, VideoOptions};
+pub use options::{Chroma, Colours, Hide, Leave, Preset, ScreenEvents, VideoOptions};
 pub use scene::{FrameTruth, MarkerStatus, MarkerTruth, Scene, SceneMarker};
 pub use sensor::Siting;
 pub use write::{Error, Stages, Summary, write, write_watched};

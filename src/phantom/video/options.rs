@@ -74,6 +74,17 @@ pub struct Leave {
     pub frames: usize,
 }
 
+/// What happens to the clock's screen, in frames; the clock itself counts on.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct ScreenEvents {
+    /// A plain sheet covers it: the first frame and how many frames long.
+    pub hide: Vec<[usize; 2]>,
+    /// From this frame on it stands still.
+    pub stop: Option<usize>,
+    /// From this frame on it shows so many seconds more.
+    pub jump: Option<(usize, f64)>,
+}
+
 /// Colour planes of the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum Chroma {
@@ -138,6 +149,10 @@ pub struct VideoOptions {
     pub lens: Option<Lens>,
     /// A clock on a screen.
     pub clock: Option<Clock>,
+    /// What happens to its screen.
+    pub screen: ScreenEvents,
+    /// The marker file says `roi = "auto"`, not where the clock is.
+    pub clock_roi_auto: bool,
     /// Colour matrix and range.
     #[serde(serialize_with = "matrix_in_words")]
     pub matrix: Matrix,
@@ -233,6 +248,8 @@ impl VideoOptions {
             noise_sd: 2.0,
             lens: None,
             clock: None,
+            screen: ScreenEvents::default(),
+            clock_roi_auto: false,
             matrix: Matrix::BT709,
             siting: Siting::Left,
             stated_siting: None,

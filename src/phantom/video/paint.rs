@@ -122,7 +122,7 @@ impl<'a> Exposure<'a> {
             below: below.collect(),
             above: markers.chain(sticks).collect(),
             brightness: 1.0 + options.flicker * (TAU * options.flicker_hz * time_s + 0.8).sin(),
-            screen: Screen::new(scene, time_s, exposure_s),
+            screen: Screen::new(scene, frame, exposure_s),
         }
     }
 

@@ -1,4 +1,4 @@
-//! The clock's screen in a frame: what it shows, averaged over the exposure, in its dark frame.
+//! The clock's screen in a frame: what it shows, averaged over the exposure, in its dark frame; or the sheet that covers it.
 
 use super::paint::Row;
 use super::scene::Scene;
@@ -9,16 +9,21 @@ pub(super) struct Screen {
     frame_px: usize,
     back: [f32; 3],
     front: [f32; 3],
-    lit: Vec<f32>,
+    /// The lit shares; none: a sheet covers it.
+    lit: Option<Vec<f32>>,
 }
+
+/// R'G'B' of the sheet: paper.
+const SHEET: [f32; 3] = [0.80, 0.79, 0.76];
 
 impl Screen {
     /// Moments of the exposure at which the screen is looked at.
     const LOOKS: usize = 16;
 
-    pub(super) fn new(scene: &Scene, time_s: f64, exposure_s: f64) -> Option<Self> {
+    pub(super) fn new(scene: &Scene, frame: usize, exposure_s: f64) -> Option<Self> {
         let clock = scene.options.clock.as_ref()?;
         let roi = scene.options.clock_roi_px(clock);
+        let time_s = scene.time_s(frame);
         let mut texts: Vec<(String, usize)> = Vec::new();
         for look in 0..Self::LOOKS {
             let at = time_s + exposure_s * ((look as f64 + 0.5) / Self::LOOKS as f64 - 0.5);
@@ -38,6 +43,7 @@ impl Screen {
         } else {
             ([0.78, 0.82, 0.76], [0.10, 0.12, 0.11])
         };
+        let lit = (!scene.clock_hidden(frame)).then_some(lit);
         Some(Self { roi, frame_px: (scene.options.width / 100).max(2), back, front, lit })
     }
 
@@ -49,9 +55,13 @@ impl Screen {
         }
         let end = (left + width + self.frame_px).min(row.width());
         for x in left.saturating_sub(self.frame_px)..end {
+            let Some(lit) = &self.lit else {
+                row.mix(x, SHEET, 1.0);
+                continue;
+            };
             row.mix(x, [0.12, 0.12, 0.13], 1.0);
             if (left..left + width).contains(&x) && (top..top + height).contains(&y) {
-                let lit = self.lit[(y - top) * width + x - left];
+                let lit = lit[(y - top) * width + x - left];
                 for (c, channel) in row.rgb.iter_mut().enumerate() {
                     channel[x] = self.back[c] + lit * (self.front[c] - self.back[c]);
                 }

@@ -122,13 +122,14 @@ impl Scene {
         scene.straighten =
             scene.mapping.as_ref().map(|mapping| mapping.straighten(scene.options.width, scene.options.height));
         scene.row_moves = scene.straighten.as_ref().map(|moves| row_moves(moves, scene.options.width));
+        scene.options.clock = scene.settle_clock();
         scene.leave = scene.settle_leave();
         scene.sticks = scene.settle_sticks();
         scene.distractors = scene.settle_distractors();
         Ok(scene)
     }
 
-    /// What was asked for.
+    /// What was asked for; of the clock, its stop and its jump are times now.
     #[must_use]
     pub fn options(&self) -> &VideoOptions {
         &self.options
@@ -175,6 +176,11 @@ impl Scene {
             angles_rad: self.options.trajectory.angles_rad(time_s),
             markers,
         }
+    }
+
+    /// Whether the clock's screen is covered in a frame.
+    pub(super) fn clock_hidden(&self, frame: usize) -> bool {
+        self.options.screen.hide.iter().any(|&[first, frames]| (first..first + frames).contains(&frame))
     }
 
     /// A frame's picture, as the encoder gets it: stored, not shown.

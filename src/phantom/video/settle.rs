@@ -9,6 +9,7 @@ use super::objects::{Distractor, Stick};
 use super::scene::{Scene, TICKS_PER_S};
 use super::{Hide, VideoOptions};
 use crate::phantom::nail::numbers;
+use crate::phantom::screen::{Clock, Jump};
 
 const KIND_TIMES: u32 = 13;
 /// A share of the frames that is dropped where the frame rate varies.
@@ -40,6 +41,22 @@ impl Scene {
         // Exposures are within half a mean interval.
         let half = 0.5 / self.options.fps;
         (self.time_s(frame) - half, self.time_s(last) + half)
+    }
+
+    /// The middle between frame `frame` and the one before.
+    fn before_s(&self, frame: usize) -> f64 {
+        let earlier_s = frame.checked_sub(1).map_or(-1.0 / self.options.fps, |earlier| self.time_s(earlier));
+        0.5 * (earlier_s + self.time_s(frame))
+    }
+
+    /// When the clock's screen stops and jumps.
+    pub(super) fn settle_clock(&self) -> Option<Clock> {
+        let mut clock = self.options.clock.clone()?;
+        let events = &self.options.screen;
+        clock.stop_s = events.stop.map(|frame| self.before_s(frame)).or(clock.stop_s);
+        let jump = events.jump.map(|(frame, by_s)| Jump { at_s: self.before_s(frame), by_s });
+        clock.jump = jump.or(clock.jump);
+        Some(clock)
     }
 
     pub(super) fn settle_leave(&self) -> Option<(f64, f64, f64)> {

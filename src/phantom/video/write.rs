@@ -11,13 +11,14 @@ use thiserror::Error;
 use super::scene::TICKS_PER_S;
 use super::{FrameTruth, MarkerStatus, Scene, Siting};
 use crate::phantom::finger::JOINTS;
-use crate::phantom::place::put_in_place;
+use crate::phantom::place::{in_the_way, put_in_place};
 use crate::table::{Column, TableError, TableWriter, Value};
 use crate::video::{Encoder, Encoding, Picture, VideoError};
 
 /// The file that says that a folder was written here.
 const RECORD: &str = "truth/scene.json";
-const RESULTS: [&str; 3] = ["video.mp4", "markers.toml", "truth"];
+const RESULTS: [&str; 6] =
+    ["video.mp4", "markers.toml", "truth/joints.csv", "truth/tracks.csv", "truth/clock.csv", RECORD];
 
 /// Why a video was not written.
 #[derive(Debug, Error)]
@@ -77,7 +78,7 @@ fn refused(path: &Path) -> impl FnOnce(io::Error) -> Error {
     move |source| Error::Write { path, source }
 }
 
-/// Writes `scene` under `out`; a synthetic video written there before is replaced.
+/// Writes `scene` under `out`; a synthetic video written there before is replaced, a log stays.
 ///
 /// # Errors
 /// [`enum@Error`]; what stood under `out` before is as it was.
@@ -95,11 +96,8 @@ pub fn write_watched(
     watch: &(dyn Fn(usize, usize) -> bool + Sync),
 ) -> Result<Summary, Error> {
     let begin = Instant::now();
-    let places = RESULTS.map(|name| out.join(name));
-    if let Some(place) = places.iter().find(|place| place.exists())
-        && !out.join(RECORD).is_file()
-    {
-        return Err(Error::InTheWay(place.clone()));
+    if let Some(place) = in_the_way(out, &RESULTS, RECORD) {
+        return Err(Error::InTheWay(place));
     }
     let stood = out.is_dir();
     let written = write_staged(scene, out, watch);
@@ -221,15 +219,22 @@ fn write_truth(scene: &Scene, folder: &Path) -> Result<(), Error> {
 
     let Some(clock) = &scene.options().clock else { return Ok(()) };
     let [clock_s, shown_s] = ["clock_s", "shown_s"].map(Column::number);
-    let more = [clock_s, Column::text("shown"), shown_s, Column::integer("changing")];
+    let more = [clock_s, Column::text("shown"), shown_s, Column::integer("changing"), Column::text("status")];
     let mut shows = start(folder, "clock.csv", &[&first[..], &more].concat())?;
     let half_s = 0.5 * scene.options().blur / scene.options().fps;
-    for (frame, truth) in rows() {
+    for (at, (frame, truth)) in rows().enumerate() {
         let (shown, shown_s) = clock.shown(truth.time_s);
         let changing = clock.shown(truth.time_s - half_s).0 != clock.shown(truth.time_s + half_s).0;
+        let status = match clock {
+            _ if scene.clock_hidden(at) => "hidden",
+            _ if clock.stop_s.is_some_and(|stop_s| truth.time_s >= stop_s) => "stopped",
+            _ if clock.jump.is_some_and(|jump| truth.time_s >= jump.at_s) => "jumped",
+            _ => "ok",
+        };
         let (shown, shown_s) = (Value::Text(&shown), Value::Number(shown_s));
         let changing = Value::Integer(i64::from(changing));
-        shows.write(&[frame, Value::Number(truth.time_s), truth.clock_s.into(), shown, shown_s, changing])?;
+        let (time_s, clock_s) = (Value::Number(truth.time_s), truth.clock_s.into());
+        shows.write(&[frame, time_s, clock_s, shown, shown_s, changing, status.into()])?;
     }
     Ok(shows.finish()?)
 }

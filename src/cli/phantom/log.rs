@@ -1,0 +1,226 @@
+//! `lunula phantom log`: logs of photodiodes and forces.
+
+use std::path::PathBuf;
+
+use anyhow::Context;
+use clap::{Args, ValueEnum};
+use lunula::phantom::force::{ForceTrajectory, Spiral};
+use lunula::phantom::log::{LogOptions, LogScene, Stamps, write};
+use lunula::phantom::screen::Jump;
+use lunula::phantom::sensor::{CHANNELS, Dynamics};
+use lunula::phantom::trajectory::Trajectory;
+
+use super::choices::{parse_gap, parse_photodiode, parse_set_clock, trajectory};
+use super::{Common, Outcome};
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum ForceArg {
+    /// The finger touches nothing
+    None,
+    /// Equations 21 to 23, with a soft start, the finger straight
+    Spiral,
+    /// Smooth and random within the cone of friction
+    Random,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum StampsArg {
+    /// time_s: seconds of the log's clock
+    Seconds,
+    /// time_s: seconds since 1970 began
+    Epoch,
+    /// time: as 2026-03-14T09:26:53.589793
+    Datetime,
+}
+
+/// A log of eight photodiodes and three forces, with exact truth (3.1.2c, 3.3, 5.2.3)
+///
+/// Writes OUT/log.csv, which `lunula align` reads as it stands, and OUT/truth/: log.csv, log.json. It belongs to the video that `lunula phantom video`
+/// writes from the same seed, trajectory and --bend-hz; both may stand in the same OUT.
+#[derive(Debug, Args)]
+pub(super) struct LogArgs {
+    /// Everything random follows from it, but for the person and the session
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Folder for the log and truth/
+    #[arg(long)]
+    out: PathBuf,
+    /// Whose finger it is
+    #[arg(long, value_name = "K", default_value_t = 1)]
+    subject: u32,
+    /// Which day: the sensor sits anew, its gains and offsets move by a few per cent
+    #[arg(long, value_name = "K", default_value_t = 1)]
+    session: u32,
+
+    /// Joint angles over time: eq27, random, rest (straight and still), or a table (CSV or Parquet) with time_s, J1_deg, J2_deg, J3_deg [default:
+    /// eq27; with --force spiral rest, with --force random random]
+    #[arg(long, value_name = "eq27|random|rest|FILE")]
+    trajectory: Option<String>,
+    /// Bending rate f of equation 27; random movement has rates of 0.4 to 4 times it
+    #[arg(long, value_name = "HZ", default_value_t = 0.1)]
+    bend_hz: f64,
+    /// How the fingertip presses and shears
+    #[arg(long, value_enum, default_value = "none")]
+    force: ForceArg,
+    /// The spiral's T
+    #[arg(long, value_name = "SECONDS", default_value_t = 180.0)]
+    spiral_seconds: f64,
+    /// Random forces have rates of 0.4 to 4 times it
+    #[arg(long, value_name = "HZ", default_value_t = 0.1)]
+    force_hz: f64,
+
+    /// The video's length [default: 10, or as long as a given trajectory, or the spiral's T]
+    #[arg(long)]
+    seconds: Option<f64>,
+    /// The log begins so long before the video
+    #[arg(long, value_name = "SECONDS", default_value_t = 1.0, allow_negative_numbers = true)]
+    lead: f64,
+    /// It goes on so long after the video
+    #[arg(long, value_name = "SECONDS", default_value_t = 1.0, allow_negative_numbers = true)]
+    trail: f64,
+    /// Samples a second, lit and unlit ones together
+    #[arg(long, value_name = "HZ", default_value_t = 25.0)]
+    rate: f64,
+    /// What the log's clock says at the video's first frame; as the video's --clock-offset
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, allow_negative_numbers = true)]
+    clock_offset: f64,
+    /// How much faster than the video's time the log's clock runs, millionths; as the video's
+    #[arg(long, value_name = "PPM", default_value_t = 0.0, allow_negative_numbers = true)]
+    clock_drift_ppm: f64,
+    /// The log's clock is set so many seconds forward at this time of the video, as 5+3.5 or 5-3.5
+    #[arg(long, value_name = "TIME+SECONDS", value_parser = parse_set_clock)]
+    clock_jump: Option<Jump>,
+    /// How rows say their time; for dates, the log's clock is the time of day
+    #[arg(long, value_enum, default_value = "seconds")]
+    stamps: StampsArg,
+    /// Stamps err by up to so much either way
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
+    jitter: f64,
+    /// Stamps are cut to whole steps of so much, so that some repeat
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
+    stamp_step: f64,
+    /// This share of the rows is lost
+    #[arg(long, value_name = "SHARE", default_value_t = 0.0)]
+    drop: f64,
+    /// All rows are lost from this time of the video on, for so many seconds; again for more
+    #[arg(long, value_name = "FROM+LENGTH", value_parser = parse_gap)]
+    gap: Vec<[f64; 2]>,
+
+    /// The LED is always on, and there is no column for it
+    #[arg(long)]
+    no_led: bool,
+    /// Standard deviation of a reading
+    #[arg(long, value_name = "VOLTS", default_value_t = 0.0005)]
+    noise: f64,
+    /// Light that is not the LED's
+    #[arg(long, value_name = "VOLTS", default_value_t = 0.5)]
+    ambient: f64,
+    /// It goes up and down by so much, most of it slowly, a quarter of it with the lamps' hum
+    #[arg(long, value_name = "PERCENT", default_value_t = 10.0)]
+    ambient_swing: f64,
+    /// The lamps' hum
+    #[arg(long, value_name = "HZ", default_value_t = 100.0)]
+    hum: f64,
+    /// Photodiodes drift by about so much within minutes
+    #[arg(long, value_name = "VOLTS", default_value_t = 0.01)]
+    wander: f64,
+    /// The blood's lag as a share of the usual 0.12 to 0.36 s; 0: none
+    #[arg(long, value_name = "SHARE", default_value_t = 1.0)]
+    lag: f64,
+    /// Hysteresis as a share of the usual; 0: none
+    #[arg(long, value_name = "SHARE", default_value_t = 1.0)]
+    hysteresis: f64,
+    /// P2 and P3 are amplified so much that a fifth of their lit readings is cut at 10 V
+    #[arg(long)]
+    saturate: bool,
+    /// This photodiode reads 0 V, as P6; again for more
+    #[arg(long, value_name = "NAME", value_parser = parse_photodiode)]
+    dead: Vec<usize>,
+    #[command(flatten)]
+    common: Common,
+}
+
+impl LogArgs {
+    fn options(&self) -> anyhow::Result<LogOptions> {
+        let force = match self.force {
+            ForceArg::None => ForceTrajectory::None,
+            ForceArg::Spiral => {
+                ForceTrajectory::Spiral(Spiral { duration_s: self.spiral_seconds, ..Spiral::default() })
+            }
+            ForceArg::Random => ForceTrajectory::Random { hz: self.force_hz, seed: self.seed },
+        };
+        let usual = match self.force {
+            ForceArg::None => "eq27",
+            ForceArg::Spiral => "rest",
+            ForceArg::Random => "random",
+        };
+        let wanted = self.trajectory.as_deref().unwrap_or(usual);
+        let (trajectory, span_s): (Trajectory, _) = trajectory(wanted, self.bend_hz, self.seed)?;
+        let spiral_s = (self.force == ForceArg::Spiral).then_some(self.spiral_seconds);
+        let usual = LogOptions::default();
+        Ok(LogOptions {
+            seed: self.seed,
+            subject: self.subject,
+            session: self.session,
+            trajectory,
+            force,
+            seconds: self.seconds.or(span_s).or(spiral_s).unwrap_or(usual.seconds),
+            lead_s: self.lead,
+            trail_s: self.trail,
+            rate_hz: self.rate,
+            clock_offset_s: self.clock_offset,
+            clock_drift_ppm: self.clock_drift_ppm,
+            clock_jump: self.clock_jump,
+            stamps: match self.stamps {
+                StampsArg::Seconds => Stamps::Seconds,
+                StampsArg::Epoch => Stamps::Epoch,
+                StampsArg::Datetime => Stamps::Datetime,
+            },
+            jitter_s: self.jitter,
+            stamp_step_s: self.stamp_step,
+            dropped: self.drop,
+            gaps_s: self.gap.clone(),
+            led: !self.no_led,
+            noise_sd_v: self.noise,
+            ambient_v: self.ambient,
+            ambient_swing: 0.01 * self.ambient_swing,
+            hum_hz: self.hum,
+            wander_v: self.wander,
+            dynamics: Dynamics { lag: self.lag, hysteresis: self.hysteresis },
+            saturate: self.saturate,
+            dead: self.dead.clone(),
+        })
+    }
+}
+
+pub(super) fn run(args: &LogArgs) -> anyhow::Result<Outcome> {
+    let options = args.options().context("no synthetic log")?;
+    args.common.start()?;
+    let begin = std::time::Instant::now();
+    let scene = LogScene::new(options).context("no synthetic log")?;
+    let made_s = begin.elapsed().as_secs_f64();
+    let summary = write(&scene, &args.out).context("no synthetic log")?;
+    let mut warnings = Vec::new();
+    if summary.rows == 0 {
+        warnings.push("the log has no rows: all were lost".to_owned());
+    }
+    args.common.warn(&warnings);
+    args.common.print_json(&serde_json::json!({
+        "job": "phantom log",
+        "version": env!("CARGO_PKG_VERSION"),
+        "options": scene.options(),
+        "rows": summary.rows,
+        "lit": summary.lit,
+        "photodiodes": CHANNELS,
+        "stages": { "samples_s": made_s, "write_s": summary.write_s, "total_s": begin.elapsed().as_secs_f64() },
+        "warnings": warnings,
+    }))?;
+    args.common.say(&format!(
+        "{} rows in {}, truth in {}; {:.2} s",
+        summary.rows,
+        args.out.join("log.csv").display(),
+        args.out.join("truth").display(),
+        begin.elapsed().as_secs_f64()
+    ));
+    Ok(Outcome::Done)
+}

@@ -1,0 +1,90 @@
+//! Whether a log can be made as wanted; all faults are told at once, by the command line's names.
+
+use super::{Faults, LogOptions};
+use crate::phantom::force::ForceTrajectory;
+use crate::phantom::sensor::CHANNELS;
+use crate::phantom::trajectory::Trajectory;
+
+/// More rows than anybody reads.
+const MOST_ROWS: f64 = 2e7;
+
+impl LogOptions {
+    /// Can this log be made?
+    ///
+    /// # Errors
+    /// [`Faults`]: all that is wrong.
+    pub fn check(&self) -> Result<(), Faults> {
+        let mut faults = Faults(Vec::new());
+        let mut need = |holds: bool, words: &dyn Fn() -> String| {
+            if !holds {
+                faults.0.push(words());
+            }
+        };
+        let mut ranged = |option: &str, value: f64, low: f64, high: f64, unit: &str| {
+            let holds = (low..=high).contains(&value);
+            need(holds, &|| format!("{option} {value}: choose {low} to {high}{unit}"));
+        };
+        ranged("--seconds", self.seconds, 0.0, 1e6, " s");
+        ranged("--lead", self.lead_s, -1e6, 1e6, " s");
+        ranged("--trail", self.trail_s, -1e6, 1e6, " s");
+        ranged("--rate", self.rate_hz, 0.01, 1e5, " samples a second");
+        ranged("--clock-offset", self.clock_offset_s, -1e9, 1e9, " s");
+        ranged("--clock-drift-ppm", self.clock_drift_ppm, -5e5, 5e5, " millionths");
+        ranged("--jitter", self.jitter_s, 0.0, 1e3, " s");
+        ranged("--stamp-step", self.stamp_step_s, 0.0, 1e3, " s");
+        ranged("--drop", self.dropped, 0.0, 1.0, " of the rows");
+        ranged("--noise", self.noise_sd_v, 0.0, 10.0, " V");
+        ranged("--ambient", self.ambient_v, 0.0, 10.0, " V");
+        ranged("--ambient-swing", 100.0 * self.ambient_swing, 0.0, 100.0, " %");
+        ranged("--hum", self.hum_hz, 0.0, 1e5, " Hz");
+        ranged("--wander", self.wander_v, 0.0, 10.0, " V");
+        ranged("--lag", self.dynamics.lag, 0.0, 100.0, " of the usual");
+        ranged("--hysteresis", self.dynamics.hysteresis, 0.0, 10.0, " of the usual");
+        match &self.trajectory {
+            Trajectory::Eq27 { hz } | Trajectory::Random { hz, .. } => ranged("--bend-hz", *hz, 0.0, 100.0, " Hz"),
+            Trajectory::Rest => {}
+            Trajectory::Given { rows } => {
+                let finite = rows.iter().flatten().all(|value| value.is_finite());
+                let ascend = rows.windows(2).all(|pair| pair[1][0] > pair[0][0]);
+                need(!rows.is_empty() && finite && ascend, &|| {
+                    "--trajectory: rows with ascending times and angles in each are needed".to_owned()
+                });
+            }
+        }
+        match &self.force {
+            ForceTrajectory::None => {}
+            ForceTrajectory::Spiral(spiral) => {
+                let seconds = spiral.duration_s;
+                let holds = seconds.is_finite() && seconds > 0.0;
+                need(holds, &|| format!("--spiral-seconds {seconds}: choose more than 0 s"));
+                need(self.trajectory == Trajectory::Rest, &|| {
+                    "--force spiral: the finger rests while it spirals; leave --trajectory out or choose rest"
+                        .to_owned()
+                });
+            }
+            ForceTrajectory::Random { hz, .. } => {
+                need((0.0..=100.0).contains(hz), &|| format!("--force-hz {hz}: choose 0 to 100 Hz"));
+            }
+        }
+        if let Some(jump) = self.clock_jump {
+            let holds = jump.at_s.is_finite() && jump.by_s.abs() <= 1e9;
+            need(holds, &|| {
+                format!("--clock-jump {}{:+}: choose seconds within a thousand million", jump.at_s, jump.by_s)
+            });
+        }
+        for &[from_s, length_s] in &self.gaps_s {
+            let holds = from_s.is_finite() && length_s.is_finite() && length_s > 0.0;
+            need(holds, &|| format!("--gap {from_s}+{length_s}: choose a beginning and a length of more than 0 s"));
+        }
+        for photodiode in &self.dead {
+            let holds = (1..=CHANNELS).contains(photodiode);
+            need(holds, &|| format!("--dead P{photodiode}: there are P1 to P{CHANNELS}"));
+        }
+        let span_s = self.lead_s + self.seconds + self.trail_s;
+        need(span_s > 0.0, &|| format!("--lead {}: the log ends before it begins", self.lead_s));
+        need(span_s * self.rate_hz <= MOST_ROWS, &|| {
+            format!("--rate {}: more than {MOST_ROWS} samples; choose fewer", self.rate_hz)
+        });
+        if faults.0.is_empty() { Ok(()) } else { Err(faults) }
+    }
+}

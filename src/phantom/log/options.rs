@@ -1,0 +1,118 @@
+//! What log is wanted.
+
+use serde::Serialize;
+
+use crate::phantom::force::ForceTrajectory;
+use crate::phantom::screen::{Clock, Jump};
+use crate::phantom::sensor::Dynamics;
+use crate::phantom::trajectory::Trajectory;
+
+/// How rows say their time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Stamps {
+    /// `time_s`: the log's clock, seconds.
+    Seconds,
+    /// `time_s`: seconds since 1970 began; the log's clock is the time of day of [`LogOptions::DATE`].
+    Epoch,
+    /// `time`: dates with times of day, as 2026-03-14T09:26:53.589793.
+    Datetime,
+}
+
+/// A log to be made.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LogOptions {
+    /// Everything random follows from it, but for the person and the session.
+    pub seed: u64,
+    /// Whose finger it is.
+    pub subject: u32,
+    /// How the sensor sits that day.
+    pub session: u32,
+    /// How the joints move.
+    pub trajectory: Trajectory,
+    /// How the fingertip presses.
+    pub force: ForceTrajectory,
+    /// From the video's first frame on.
+    pub seconds: f64,
+    /// How long the log goes on before the video begins; less than 0: it begins later.
+    pub lead_s: f64,
+    /// How long it goes on after the video ends.
+    pub trail_s: f64,
+    /// Samples a second of the log's clock, lit and unlit ones together.
+    pub rate_hz: f64,
+    /// What the log's clock says at the video's time 0, seconds.
+    pub clock_offset_s: f64,
+    /// How much faster than the video's time it runs, millionths.
+    pub clock_drift_ppm: f64,
+    /// The log's clock is set: from a time of the video on, its stamps say more or less.
+    pub clock_jump: Option<Jump>,
+    /// How rows say their time.
+    pub stamps: Stamps,
+    /// Stamps err by up to so much either way, seconds.
+    pub jitter_s: f64,
+    /// Stamps are cut to whole steps of so many seconds; 0: not.
+    pub stamp_step_s: f64,
+    /// The share of rows that are lost.
+    pub dropped: f64,
+    /// All rows are lost from a time of the video on, for so many seconds.
+    pub gaps_s: Vec<[f64; 2]>,
+    /// The LED goes on and off in turn, and a column says so; otherwise it is always on.
+    pub led: bool,
+    /// Standard deviation of a reading, volts.
+    pub noise_sd_v: f64,
+    /// The ambient light's mean, volts.
+    pub ambient_v: f64,
+    /// How far it goes up and down, as a share.
+    pub ambient_swing: f64,
+    /// Of the lamps' light, hertz.
+    pub hum_hz: f64,
+    /// About how far photodiodes drift within the log, volts.
+    pub wander_v: f64,
+    /// Lags and hysteresis as shares of the sensor's.
+    pub dynamics: Dynamics,
+    /// P2 and P3 are amplified so much that a fifth of what they should read is over 10 V.
+    pub saturate: bool,
+    /// Photodiodes that read nothing, 1 for P1.
+    pub dead: Vec<usize>,
+}
+
+impl LogOptions {
+    /// The date of stamps: year, month, day.
+    pub const DATE: (i16, i8, i8) = (2026, 3, 14);
+    /// Seconds from 1970's beginning to that day's midnight (UTC).
+    pub const MIDNIGHT_S: i64 = 20_526 * 86_400;
+}
+
+impl Default for LogOptions {
+    fn default() -> Self {
+        let clock = Clock::default();
+        Self {
+            seed: 1,
+            subject: 1,
+            session: 1,
+            trajectory: Trajectory::Eq27 { hz: 0.1 },
+            force: ForceTrajectory::None,
+            seconds: 10.0,
+            lead_s: 1.0,
+            trail_s: 1.0,
+            rate_hz: 25.0,
+            clock_offset_s: clock.offset_s,
+            clock_drift_ppm: clock.drift_ppm,
+            clock_jump: None,
+            stamps: Stamps::Seconds,
+            jitter_s: 0.0,
+            stamp_step_s: 0.0,
+            dropped: 0.0,
+            gaps_s: Vec::new(),
+            led: true,
+            noise_sd_v: 0.0005,
+            ambient_v: 0.5,
+            ambient_swing: 0.1,
+            hum_hz: 100.0,
+            wander_v: 0.01,
+            dynamics: Dynamics::default(),
+            saturate: false,
+            dead: Vec::new(),
+        }
+    }
+}
