@@ -13,7 +13,7 @@ use super::{Common, Interrupted, Outcome, print_line, print_steps};
 /// Video of a finger with coloured markers to joint angles, each frame with its own time and standard error
 ///
 /// MARKERS.toml names the markers and their colours, the segments (two markers each, proximal first) and the joints (two
-/// segments each); --suggest prints one to start from. A marker that is not seen is lost, and no angle comes from it.
+/// segments each), and where a digital clock is in the picture; --suggest prints one to start from. A marker that is not seen is lost, and no angle comes from it.
 /// Results: the table of angles, and beside it <joints>.run.json and pictures of the angles over time and of the last joint
 /// against the one before.
 #[derive(Debug, Args)]
@@ -23,7 +23,8 @@ pub(super) struct PostureArgs {
     /// The marker file
     #[arg(long, value_name = "MARKERS.toml", required_unless_present = "suggest")]
     markers: Option<PathBuf>,
-    /// Table of the angles: frame, time_s, clock_s, <joint>_deg, <joint>_sd_deg, status (.csv or .parquet)
+    /// Table of the angles: frame, time_s, clock_s, <joint>_deg, <joint>_sd_deg, status; with a [clock] in the marker file
+    /// also clock_read_s, clock_sd_s, clock_low_s, clock_high_s (.csv or .parquet)
     #[arg(long, value_name = "JOINTS.csv", required_unless_present_any = ["suggest", "plan"])]
     out: Option<PathBuf>,
     /// Table of the markers as well: frame, time_s, marker, x_px, y_px, sd_px, status (.csv or .parquet)
@@ -35,6 +36,9 @@ pub(super) struct PostureArgs {
     /// Only these joints of the marker file, with the markers that they need
     #[arg(long, value_name = "J1,J2", value_delimiter = ',')]
     joints: Vec<String>,
+    /// Leave the clock in the picture alone
+    #[arg(long)]
+    no_clock: bool,
     /// Smooth the angles over time (forward and backward); what is missing stays missing
     #[arg(long)]
     smooth: bool,
@@ -42,7 +46,7 @@ pub(super) struct PostureArgs {
     #[arg(long)]
     no_figures: bool,
     /// Print a marker file to start from, told from a few frames, and do nothing else
-    #[arg(long, conflicts_with_all = ["markers", "out", "tracks", "overlay", "joints", "smooth", "plan", "no_figures"])]
+    #[arg(long, conflicts_with_all = ["markers", "out", "tracks", "overlay", "joints", "smooth", "plan", "no_clock", "no_figures"])]
     suggest: bool,
     /// Say what would be done and left out, and do nothing
     #[arg(long)]
@@ -67,7 +71,12 @@ pub(super) fn run(args: &PostureArgs) -> anyhow::Result<Outcome> {
     }
     let markers = args.markers.as_ref().context("--markers is needed")?;
     let layout = Layout::read(markers)?.wanting(&args.joints)?;
-    let options = PostureOptions { threads, smooth: args.smooth, ..PostureOptions::default() };
+    let options = PostureOptions {
+        threads,
+        smooth: args.smooth,
+        clock_every: u64::from(!args.no_clock),
+        ..PostureOptions::default()
+    };
     let outputs = args.out.as_ref().map(|joints| Outputs {
         joints: joints.clone(),
         tracks: args.tracks.clone(),
@@ -126,6 +135,15 @@ fn finish(common: &Common, report: &PostureReport, outputs: &Outputs) -> anyhow:
             report.frames.all - marker.seen,
             marker.reasons()
         ));
+    }
+    if let Some(clock) = &report.clock {
+        let tie = clock.tie.as_ref().map_or("it ties nothing".to_owned(), |tie| {
+            format!(
+                "at the first frame {:.4} ± {:.4} s, drift {:.0} ± {:.0} ppm",
+                tie.offset_s, tie.offset_sd_s, tie.drift_ppm, tie.drift_sd_ppm
+            )
+        });
+        common.say(&format!("clock    read in {} of {} frames, {tie}", clock.frames_read, report.frames.all));
     }
     if common.verbose {
         for stage in &report.stages {

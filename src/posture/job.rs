@@ -10,10 +10,11 @@ use std::time::Instant;
 
 use thiserror::Error;
 
+use super::filmed_clock::FilmedClock;
 use super::joints::Angles;
 use super::layout::Layout;
 use super::method::Method;
-use super::plan::{CLOCK, WHOLE_FRAMES, steps};
+use super::plan::{WHOLE_FRAMES, steps};
 use super::report::{PostureReport, SearchReport, VideoReport};
 use super::results::{Results, Row};
 use super::siting::Siting;
@@ -26,7 +27,7 @@ use crate::table::{TableError, TableFormat};
 use crate::video::{End, Info, Item, Turn, Video, VideoError};
 
 /// How to work.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct PostureOptions {
     /// Threads that decode (0: all cores).
     pub threads: usize,
@@ -34,6 +35,15 @@ pub struct PostureOptions {
     pub smooth: bool,
     /// How centres are found.
     pub method: Method,
+    /// Every so many frames the clock of the layout is read, after the first second and a half, in which its digits are learnt
+    /// from all; 0: it is not read.
+    pub clock_every: u64,
+}
+
+impl Default for PostureOptions {
+    fn default() -> Self {
+        Self { threads: 0, smooth: false, method: Method::default(), clock_every: 1 }
+    }
 }
 
 /// Where results go.
@@ -66,6 +76,14 @@ pub enum PostureError {
     /// The markers can't be found or told apart.
     #[error("{}: {why}", path.display())]
     Markers {
+        /// The video.
+        path: PathBuf,
+        /// What is wrong and what to do.
+        why: String,
+    },
+    /// The clock can't be where the marker file says.
+    #[error("{}: [clock]: {why}", path.display())]
+    Clock {
         /// The video.
         path: PathBuf,
         /// What is wrong and what to do.
@@ -104,6 +122,9 @@ pub fn run(
     }
     let (survey, info) = look_first(path, layout, options, &stages, watch)?;
     let mut video = Video::open(path, options.threads)?;
+    let clock = layout.clock.as_ref().filter(|_| options.clock_every > 0);
+    let clock = clock.map(|clock| FilmedClock::new(clock, &info, options.clock_every)).transpose();
+    let mut clock = clock.map_err(|why| PostureError::Clock { path: path.to_owned(), why })?;
     let mut tracker = Tracker::new(layout, &survey, &info, options.method);
     let mut angles = Angles::new(layout, &info);
     let mut results = Results::start(path, layout, &info, options, outputs)?;
@@ -126,6 +147,9 @@ pub fn run(
             None => tracker.skip(),
         };
         let joints = stages.time("angles", || angles.step(sights));
+        if let Some(clock) = &mut clock {
+            stages.time("clock", || clock.look(index, time_s, frame));
+        }
         let row = Row { index, time_s, frame, sights, joints };
         if outputs.overlay.is_some() {
             stages.time("overlay", || results.draw(&row))?;
@@ -134,7 +158,9 @@ pub fn run(
         span.add(time_s);
         (watch.tick)(index + 1, info.declared_frames);
     }
-    stages.time("smooth", || results.smooth())?;
+    let clock = clock.map(|clock| stages.time("clock", || clock.finish()));
+    stages.time("smooth", || results.smooth());
+    results.write_held(clock.as_ref().and_then(|clock| clock.fit.as_ref().ok()))?;
     let pictures = stages.time("figures", || results.draw_pictures())?;
     let search = tracker.effort();
     let mut failed = Vec::new();
@@ -150,11 +176,11 @@ pub fn run(
     if let End::Early(why) = video.end() {
         failed.push(format!("{}: {why}", path.display()));
     }
+    if let Some(why) = clock.as_ref().and_then(|clock| clock.fit.as_ref().err()) {
+        failed.push(format!("{}: the clock in the picture: {why}; clock_s is empty", path.display()));
+    }
     let unseen = survey.unseen.iter().map(|&m| layout.markers[m].name.clone()).collect::<Vec<_>>();
     let mut warnings = [&layout.notes[..], &info.warnings[..]].concat();
-    if layout.clock.is_some() {
-        warnings.push(CLOCK.to_owned());
-    }
     if !unseen.is_empty() {
         warnings.push(format!(
             "{} not seen in the first {} frames, and looked for from then on",
@@ -170,6 +196,7 @@ pub fn run(
         markers: results.marker_reports(),
         joints: results.joint_reports(),
         coupling: results.coupling(),
+        clock: clock.map(|clock| clock.report),
         searches: SearchReport {
             surveyed_frames: survey.frames as u64,
             neighbourhoods: search.near_searches,

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::job::{Outputs, PostureError, PostureOptions};
 use super::layout::Layout;
+use crate::clock::ClockRoi;
 use crate::stages::Step;
 use crate::video::{Info, Video};
 
@@ -82,7 +83,7 @@ pub(super) fn steps(layout: &Layout, info: &Info, options: &PostureOptions, outp
             "coordinates are; pictures only for an overlay".into(),
         ),
         Step::new("zero angles", zeros, if zeros { "[zero]".into() } else { "no [zero], or of 0 degrees".into() }),
-        Step::new("clock", false, if layout.clock.is_some() { CLOCK.into() } else { "no [clock]".into() }),
+        Step::new("clock", layout.clock.is_some() && options.clock_every > 0, clock(layout, options)),
         Step::new("smoothing", smooth, smooth_why),
         Step::new("table of markers", tracks, tracks_why),
         Step::new("overlay", overlay, overlay_why),
@@ -93,5 +94,15 @@ pub(super) fn steps(layout: &Layout, info: &Info, options: &PostureOptions, outp
 /// The stage of which a run's report tells the share.
 pub(super) const WHOLE_FRAMES: &str = "search of whole frames";
 
-/// What is said of a [clock].
-pub(super) const CLOCK: &str = "this version does not read the clock; clock_s stays empty";
+fn clock(layout: &Layout, options: &PostureOptions) -> String {
+    let Some(clock) = &layout.clock else { return "no [clock]".to_owned() };
+    let place = match clock.roi {
+        ClockRoi::Auto => "looked for in the first frames".to_owned(),
+        ClockRoi::Box([x, y, width, height]) => format!("luma of {width} x {height} pixels at {x}, {y}"),
+    };
+    match options.clock_every {
+        0 => "not asked for".to_owned(),
+        1 => format!("{}, {place}, in the frames decoded for the markers", clock.format.text()),
+        every => format!("{}, {place}, in one of {every} frames", clock.format.text()),
+    }
+}

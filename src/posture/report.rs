@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
+use super::filmed_clock::ClockReport;
 use super::joints::Angle;
 use super::sight::{Loss, Sight};
 use super::smooth::SmoothModel;
@@ -26,6 +27,8 @@ pub struct PostureReport {
     pub joints: Vec<JointReport>,
     /// The last joint against the one before (Fig. 33); none where there are no two joints or too few angles.
     pub coupling: Option<CouplingReport>,
+    /// The clock in the picture; none where it was not read.
+    pub clock: Option<ClockReport>,
     /// What was searched.
     pub searches: SearchReport,
     /// What the scene did not need.

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use super::figures::AngleFigures;
+use super::filmed_clock::ClockRow;
 use super::job::{Outputs, PostureError, PostureOptions};
 use super::joints::{Angle, AngleRow};
 use super::layout::Layout;
@@ -14,13 +15,16 @@ use super::report::{
 use super::sight::Sight;
 use super::smooth::smooth;
 use super::view::View;
-use crate::files::{Places, WriteError};
+use crate::clock::{ClockFit, ClockFormat};
+use crate::files::{Places, WriteError, beside};
 use crate::stages::Stages;
 use crate::table::{Column, TableWriter, Value};
 use crate::video::{Frame, Info, VideoError};
 
 /// Decimals of a time in seconds: a microsecond, finer than the ticks of most containers.
 const TIME_DECIMALS: usize = 6;
+/// Decimals of the clock's standard error in seconds: enough to tell from three of them how it grows.
+const CLOCK_SD_DECIMALS: usize = 9;
 /// Decimals of an angle in degrees: a hundredth of the least standard error seen.
 const ANGLE_DECIMALS: usize = 5;
 /// Decimals of a place in pixels.
@@ -60,7 +64,10 @@ pub(super) struct Results<'a> {
     /// What pictures and the coupling are made of.
     figures: AngleFigures,
     with_pictures: bool,
+    /// Rows that wait for the clock's fit or the smoother; none where they are written at once.
     held: Option<Vec<Held>>,
+    smooths: bool,
+    clock: bool,
     pub(super) frames: FrameCounts,
     pub(super) markers: Vec<MarkerSums>,
     pub(super) angles: Vec<JointSums>,
@@ -81,7 +88,9 @@ impl<'a> Results<'a> {
         }
         let mut places = Places::default();
         let facts = facts(layout);
-        let joints = table(&mut places, &outputs.joints, joint_columns(layout), &facts)?;
+        let clock = layout.clock.as_ref().filter(|_| options.clock_every > 0);
+        let columns = joint_columns(layout, clock.map(|clock| &clock.format));
+        let joints = table(&mut places, &outputs.joints, columns, &facts)?;
         let tracks = outputs.tracks.as_deref();
         let tracks = tracks.map(|path| table(&mut places, path, track_columns(), &facts)).transpose()?;
         let overlay = outputs.overlay.as_deref();
@@ -98,7 +107,9 @@ impl<'a> Results<'a> {
             overlay,
             figures: AngleFigures::new(layout),
             with_pictures: outputs.figures && !layout.joints.is_empty(),
-            held: options.smooth.then(Vec::new),
+            held: (options.smooth || clock.is_some()).then(Vec::new),
+            smooths: options.smooth,
+            clock: clock.is_some(),
             frames: FrameCounts::default(),
             markers: vec![MarkerSums::default(); layout.markers.len()],
             angles: vec![JointSums::default(); layout.joints.len()],
@@ -116,7 +127,7 @@ impl<'a> Results<'a> {
         self.write_tracks(&row)?;
         match &mut self.held {
             Some(held) => held.push(Held { index: row.index, time_s: row.time_s, angles: row.joints }),
-            None => self.write_joints(row.index, row.time_s, &row.joints)?,
+            None => self.write_joints(row.index, row.time_s, &row.joints, None)?,
         }
         Ok(())
     }
@@ -166,25 +177,38 @@ impl<'a> Results<'a> {
         Ok(overlay.add(frame, &drawing)?)
     }
 
-    fn write_joints(&mut self, index: u64, time_s: f64, row: &AngleRow) -> Result<(), PostureError> {
+    fn write_joints(
+        &mut self,
+        index: u64,
+        time_s: f64,
+        row: &AngleRow,
+        clock: Option<ClockRow>,
+    ) -> Result<(), PostureError> {
         for (sums, angle) in self.angles.iter_mut().zip(&row.angles) {
             sums.add(angle.as_ref());
         }
         self.figures.push(time_s, &row.angles);
         let status = row.status(self.layout);
-        // The clock's column is filled where the clock is read.
-        let mut cells = vec![Value::Integer(index as i64), Value::Number(time_s), Value::Missing];
+        let mut cells =
+            vec![Value::Integer(index as i64), Value::Number(time_s), clock.map(|clock| clock.clock_s).into()];
         for angle in &row.angles {
             cells.push(angle.map(|angle| angle.rad.to_degrees()).into());
             cells.push(angle.map(|angle| angle.sd_rad.to_degrees()).into());
         }
         cells.push(status.as_str().into());
+        if self.clock {
+            let of = |value: fn(ClockRow) -> Option<f64>| Value::from(clock.and_then(value));
+            cells.push(of(|clock| clock.read_s));
+            cells.push(of(|clock| Some(clock.sd_s)));
+            cells.push(of(|clock| Some(clock.bounds_s[0])));
+            cells.push(of(|clock| Some(clock.bounds_s[1])));
+        }
         Ok(self.joints.write(&cells)?)
     }
 
-    /// Writes the rows that waited for it.
-    pub(super) fn smooth(&mut self) -> Result<(), PostureError> {
-        let Some(mut held) = self.held.take() else { return Ok(()) };
+    /// Smooths the rows that wait for it, where that is wanted.
+    pub(super) fn smooth(&mut self) {
+        let Some(held) = self.held.as_mut().filter(|_| self.smooths) else { return };
         let times_s: Vec<f64> = held.iter().map(|row| row.time_s).collect();
         for joint in 0..self.layout.joints.len() {
             let raw: Vec<Option<Angle>> = held.iter().map(|row| row.angles.angles[joint]).collect();
@@ -194,7 +218,15 @@ impl<'a> Results<'a> {
             }
             self.angles[joint].smoothing = smoothed.model;
         }
-        held.iter().try_for_each(|row| self.write_joints(row.index, row.time_s, &row.angles))
+    }
+
+    /// Writes the rows that waited, with the clock's time where its fit gives it.
+    pub(super) fn write_held(&mut self, clock: Option<&ClockFit>) -> Result<(), PostureError> {
+        for (k, row) in self.held.take().into_iter().flatten().enumerate() {
+            let clock = clock.map(|fit| ClockRow::new(fit, k, row.time_s));
+            self.write_joints(row.index, row.time_s, &row.angles, clock)?;
+        }
+        Ok(())
     }
 
     pub(super) fn marker_reports(&self) -> Vec<MarkerReport> {
@@ -267,12 +299,6 @@ impl<'a> Results<'a> {
     }
 }
 
-/// `joints.csv` and `.run.json` give `joints.run.json`.
-fn beside(joints: &Path, ending: &str) -> PathBuf {
-    let stem = joints.file_stem().unwrap_or_default().to_string_lossy();
-    joints.with_file_name(format!("{stem}{ending}"))
-}
-
 fn start_overlay(places: &mut Places, path: &Path, info: &Info) -> Result<Overlay, PostureError> {
     let at = places.place(path)?;
     Overlay::create(&at, info).map_err(|error| match error {
@@ -291,7 +317,7 @@ fn table(
     Ok(TableWriter::create(&places.place(path)?, path, columns, facts)?)
 }
 
-fn joint_columns(layout: &Layout) -> Vec<Column> {
+fn joint_columns(layout: &Layout, clock: Option<&ClockFormat>) -> Vec<Column> {
     let time = |name: &str| Column::rounded(name, TIME_DECIMALS);
     let mut columns = vec![Column::integer("frame"), time("time_s"), time("clock_s")];
     for joint in &layout.joints {
@@ -299,6 +325,11 @@ fn joint_columns(layout: &Layout) -> Vec<Column> {
         columns.push(Column::rounded(format!("{}_sd_deg", joint.name), ANGLE_DECIMALS));
     }
     columns.push(Column::text("status"));
+    if let Some(format) = clock {
+        columns.push(Column::rounded("clock_read_s", format.decimals()));
+        columns.push(Column::rounded("clock_sd_s", CLOCK_SD_DECIMALS));
+        columns.extend(["clock_low_s", "clock_high_s"].map(time));
+    }
     columns
 }
 
@@ -321,6 +352,10 @@ fn facts(layout: &Layout) -> Vec<(String, String)> {
     [
         ("lunula", env!("CARGO_PKG_VERSION").to_owned()),
         ("time_s", "presentation time from the first frame's, seconds".to_owned()),
+        ("clock_s", "what the clock in the picture says, fitted over the whole video, seconds".to_owned()),
+        ("clock_sd_s", "standard error of clock_s".to_owned()),
+        ("clock_low_s", "the least that clock_s can be by all readings; clock_high_s the greatest".to_owned()),
+        ("clock_read_s", "what it was read to show in this frame, counted on over midnight, seconds".to_owned()),
         ("angles", format!("degrees, positive in flexion, which is {flexion} on the shown picture")),
         ("sd", "standard error, in the unit of what it belongs to".to_owned()),
         ("pixels", "the centre of the shown picture's top-left pixel is (0, 0), x right, y down".to_owned()),

@@ -3,9 +3,11 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::clock::format_fault;
-use super::raw::{Entry, Findings, entries, instead};
-use super::{Camera, Clock, ClockRoi, Flexion, Joint, Layout, LayoutFault, Marker, Segment};
+use super::raw::{Entry, Findings, entries, instead, number};
+use super::{Camera, Joint, Layout, LayoutFault, Marker, Segment};
+
+use crate::clock::{Clock, ClockFormat, ClockRoi};
+use crate::flexion::Flexion;
 
 const TABLES: [&str; 8] = ["flexion", "markers", "segments", "joints", "start", "clock", "camera", "zero"];
 /// The number of coefficients of OpenCV's lens models that are known here; those left out are zero.
@@ -206,7 +208,7 @@ fn start(findings: &mut Findings<'_>, top: &[Entry<'_>], markers: &[&str]) -> Ve
 fn clock(findings: &mut Findings<'_>, top: &[Entry<'_>]) -> Option<Clock> {
     let table = findings.table(top, "clock")?;
     let at = top.iter().find(|e| e.key == "clock").map_or(0, |e| e.key_at);
-    findings.unknown_keys(&table, &["roi", "format"], "key of [clock]");
+    findings.unknown_keys(&table, &["roi", "format", "refresh_hz"], "key of [clock]");
     let roi = match table.iter().find(|e| e.key == "roi") {
         None => {
             findings.fault(at, "[clock] lacks `roi`; write roi = [x, y, width, height] or roi = \"auto\"");
@@ -219,9 +221,9 @@ fn clock(findings: &mut Findings<'_>, top: &[Entry<'_>]) -> Option<Clock> {
             findings.fault(at, "[clock] lacks `format`; write what its digits mean, such as format = \"mm:ss.t\"");
             None
         }
-        Some(entry) => match entry.value.as_str().map(|f| (f, format_fault(f))) {
-            Some((format, None)) => Some(format.to_owned()),
-            Some((_, Some(what))) => {
+        Some(entry) => match entry.value.as_str().map(ClockFormat::parse) {
+            Some(Ok(format)) => Some(format),
+            Some(Err(what)) => {
                 findings.fault(entry.at, what);
                 None
             }
@@ -231,7 +233,18 @@ fn clock(findings: &mut Findings<'_>, top: &[Entry<'_>]) -> Option<Clock> {
             }
         },
     };
-    Some(Clock { roi: roi?, format: format? })
+    let refresh_hz = table.iter().find(|e| e.key == "refresh_hz").and_then(|entry| {
+        let hertz = number(entry.value).filter(|&hertz| hertz > 0.0);
+        if hertz.is_none() {
+            findings.fault(
+                entry.at,
+                "`refresh_hz` is how often the clock's screen changes a second: a number above 0, or inf for a display that \
+                 changes at once; leave it out where it is not known",
+            );
+        }
+        hertz
+    });
+    Some(Clock { roi: roi?, format: format?, refresh_hz })
 }
 
 fn roi(findings: &mut Findings<'_>, entry: Entry<'_>) -> Option<ClockRoi> {

@@ -9,13 +9,11 @@
 //! Source: thesis section 3.2.3, two markers on each segment of the finger.
 
 mod check;
-mod clock;
 mod raw;
 
 use std::path::{Path, PathBuf};
 
-pub use clock::{Clock, ClockRoi};
-
+use crate::clock::Clock;
 use crate::flexion::Flexion;
 
 /// A sticker or a dot of paint.

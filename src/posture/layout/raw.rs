@@ -156,12 +156,16 @@ impl<'a> Findings<'a> {
 }
 
 fn finite(value: &DeValue<'_>) -> Option<f64> {
-    let number = match value {
-        DeValue::Integer(i) => i64::from_str_radix(i.as_str(), i.radix()).ok()? as f64,
-        DeValue::Float(f) => f.as_str().parse().ok()?,
-        _ => return None,
-    };
-    number.is_finite().then_some(number)
+    number(value).filter(|number| number.is_finite())
+}
+
+/// A number, which in TOML may be infinite or none.
+pub(super) fn number(value: &DeValue<'_>) -> Option<f64> {
+    match value {
+        DeValue::Integer(i) => Some(i64::from_str_radix(i.as_str(), i.radix()).ok()? as f64),
+        DeValue::Float(f) => f.as_str().parse().ok(),
+        _ => None,
+    }
 }
 
 /// What to write instead of an unknown `name`: one that differs by a slip of the finger, or the choice.

@@ -1,4 +1,5 @@
 use super::*;
+use crate::clock::ClockRoi;
 
 /// The contract's example, with the markers that it leaves out.
 const WHOLE: &str = r##"
@@ -51,7 +52,7 @@ fn a_whole_file_is_read_in_its_own_order() {
     assert_eq!(layout.joints[1], Joint { name: "J2".into(), segments: [0, 1], zero_rad: std::f64::consts::PI });
     assert_eq!(layout.start, [Some([384.0, 320.0]), None, None, None, None]);
     let clock = layout.clock.as_ref().unwrap();
-    assert_eq!((clock.roi, clock.format.as_str()), (ClockRoi::Box([900.0, 40.0, 300.0, 70.0]), "mm:ss.t"));
+    assert_eq!((clock.roi, clock.format.text()), (ClockRoi::Box([900.0, 40.0, 300.0, 70.0]), "mm:ss.t"));
     let camera = layout.camera.as_ref().unwrap();
     assert_eq!((camera.fx_px, camera.fy_px, camera.distortion[4]), (1200.0, None, 0.02));
     assert_eq!(layout.notes, ["m.toml:8: no segment uses the marker `spare`"]);
@@ -230,4 +231,16 @@ fn a_file_that_is_missing_or_no_text_is_named() {
     assert!(missing.contains("m.toml: ") && missing.contains("--suggest"), "{missing}");
     std::fs::write(&path, b"[markers]\na = '\xff'").unwrap();
     assert!(Layout::read(&path).unwrap_err().to_string().contains("m.toml:2: not UTF-8"));
+}
+
+#[test]
+fn a_clocks_screen_changes_so_often_or_at_once() {
+    let of = |hertz: &str| parse(&format!("[markers]\na = '#fff'\n[clock]\nroi = 'auto'\nformat = 'ss'\n{hertz}\n"));
+    assert_eq!(of("").unwrap().clock.unwrap().refresh_hz, None);
+    assert_eq!(of("refresh_hz = 60").unwrap().clock.unwrap().refresh_hz, Some(60.0));
+    assert_eq!(of("refresh_hz = inf").unwrap().clock.unwrap().refresh_hz, Some(f64::INFINITY));
+    for bad in ["0", "-60.0", "nan", "'60'"] {
+        let fault = of(&format!("refresh_hz = {bad}")).unwrap_err().to_string();
+        assert!(fault.contains(":6: `refresh_hz` is how often"), "{bad}: {fault}");
+    }
 }
