@@ -2,12 +2,15 @@
 //!
 //! Photographs of nails become average coloration maps with a standard deviation per pixel ([`photo`]), as in section 4.2.2
 //! of S. Mascaro's thesis on fingernail sensors; videos of a finger with coloured markers become joint angles ([`posture`]),
-//! as in 3.2.3 and 3.3.5. [`phantom`] draws such photographs and videos with exact truth; [`tradeoff`] measures error against
-//! run time. [`video`], [`table`], [`figure`], [`files`], [`flexion`], [`labelme`] and [`stages`] are the ground floor that these stand on.
+//! as in 3.2.3 and 3.3.5, with the time that a [`clock`] in the picture tells; [`align`] brings the angles onto the rows of photodiode
+//! and force logs. [`phantom`] makes such photographs, videos and logs with exact truth; [`tradeoff`] measures error against
+//! run time. [`video`], [`table`], [`figure`], [`files`], [`flexion`], [`labelme`], [`stages`] and [`timebase`] are the ground floor that these stand on.
 //!
 //! Everywhere: the centre of a picture's top-left pixel is (0, 0), x to the right, y down; units are part of a name
 //! (`length_px`, `run_s`); what is not known is missing (`None`, NaN, an empty cell), never zero.
 
+pub mod align;
+pub mod clock;
 pub mod figure;
 pub mod files;
 pub mod flexion;
@@ -17,5 +20,6 @@ pub mod photo;
 pub mod posture;
 pub mod stages;
 pub mod table;
+pub mod timebase;
 pub mod tradeoff;
 pub mod video;

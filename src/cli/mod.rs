@@ -2,6 +2,7 @@
 //!
 //! Exit status: 0 all done; 1 done, but some inputs failed (each is named on standard error); 2 nothing done; 130 interrupted.
 
+mod align;
 mod phantom;
 mod photos;
 mod posture;
@@ -16,7 +17,8 @@ use clap::{Args, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lunula::stages::{Fate, Step};
 
-/// Ground truth for fingernail sensing: nail photographs to coloration maps, videos to joint angles.
+/// Ground truth for fingernail sensing: nail photographs to coloration maps, videos to joint angles,
+/// angles and photodiode logs to labelled training sets.
 #[derive(Debug, Parser)]
 #[command(
     name = "lunula",
@@ -39,6 +41,7 @@ Exit status: 0 all done; 1 done, but some inputs failed (each is named on standa
 enum Command {
     Photos(photos::PhotosArgs),
     Posture(posture::PostureArgs),
+    Align(Box<align::AlignArgs>),
     Phantom(phantom::PhantomArgs),
     Tradeoff(tradeoff::TradeoffArgs),
 }
@@ -76,6 +79,7 @@ pub(crate) fn run() -> ExitCode {
     let outcome = match Cli::parse().command {
         Command::Photos(args) => photos::run(&args),
         Command::Posture(args) => posture::run(&args),
+        Command::Align(args) => align::run(&args),
         Command::Phantom(args) => phantom::run(&args),
         Command::Tradeoff(args) => tradeoff::run(&args),
     };

@@ -1,0 +1,72 @@
+//! Angles and markers in the formats of others: OpenSim's motion file, BIDS Motion, DeepLabCut's table.
+//!
+//! Angles stand at the frames in which they were seen, on the log's clock by the [`Tie`](super::Tie); nothing is interpolated. Whole
+//! files or none is the caller's business ([`crate::files`]).
+
+mod bids;
+mod dlc;
+mod mot;
+
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use crate::files::WriteError;
+use crate::table::TableError;
+
+pub use bids::{BidsNames, bids};
+pub use dlc::dlc;
+pub use mot::mot;
+
+/// Why there is no export.
+#[derive(Debug, Error)]
+pub enum ExportError {
+    /// The table of markers can't be read.
+    #[error(transparent)]
+    Table(#[from] TableError),
+    /// A result can't be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// A name that BIDS does not allow.
+    #[error("the {entity} {}; BIDS allows letters and digits only: name it so", .label.as_ref().map_or("is not named".to_owned(), |l| format!("is named `{l}`")))]
+    Label {
+        /// Of what: `subject`, `session`, `task`, `tracksys`.
+        entity: &'static str,
+        /// What was given.
+        label: Option<String>,
+    },
+    /// A file or a table that the format has no place for.
+    #[error("{}: {what}", path.display())]
+    Unfit {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong and what to do.
+        what: String,
+    },
+}
+
+/// Decimals of a time in seconds: as many as the table of angles has.
+const TIME_DECIMALS: usize = 6;
+/// Decimals of an angle in degrees: as many as the table of angles has.
+const ANGLE_DECIMALS: usize = 5;
+
+/// A number of fixed decimals, `missing` where it is not known; never a negative zero.
+fn fixed(number: f64, decimals: usize, missing: &str) -> String {
+    if !number.is_finite() {
+        return missing.to_owned();
+    }
+    let text = format!("{number:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(rest) if rest.bytes().all(|b| b == b'0' || b == b'.') => rest.to_owned(),
+        _ => text,
+    }
+}
+
+/// Writes what is to stand at `path` into the file `at`.
+fn write(at: &Path, path: &Path, text: &str) -> Result<(), ExportError> {
+    let refused = |why: std::io::Error| WriteError::File { path: path.to_owned(), why: why.to_string() };
+    Ok(std::fs::write(at, text).map_err(refused)?)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,144 @@
+//! Reads any lab's log: photodiodes and forces with time stamps, and whether the LED was on.
+//!
+//! In: a CSV file (of any of the usual dialects, also gzipped), a Parquet file or, with the cargo feature `xdf`, a recording of
+//! the Lab Streaming Layer; and [`Columns`], which says what the file calls its columns where that is not what the contract
+//! calls them. Out: a [`Log`], its rows in the order of time.
+//!
+//! The walk: [`text`] opens the file and finds its header, [`columns`] (and [`guess`]) choose columns by their names, [`rows`]
+//! (or [`parquet`], [`xdf`]) read cells, [`cell`] and [`stamps`] say what one cell means, [`order`] looks at time as a whole.
+//!
+//! Conventions. Time is in seconds: since 1970-01-01T00:00Z for date-time stamps with a zone, since 1970-01-01T00:00 of the
+//! log's own wall clock for those without, since midnight for times of day; numbers as they are, in the unit that the user or
+//! the column's name gives, else seconds. 64-bit floating point holds seconds since 1970 to 0.24 microseconds. What is missing
+//! (an empty cell, `NaN`, `NA`, `n/a`, `null`) is NaN; any other text and infinity are errors that name line and column. A row
+//! without time, or without `led` where the log has it, is left out and counted. Rows that stand in the wrong place by
+//! little are sorted. A clock that is reset (time falls back and goes on from there, or leaps by more than a day) is an error
+//! that says where; [`Columns::piece`] chooses the stretch between two resets.
+
+mod cell;
+mod columns;
+mod guess;
+mod order;
+mod parquet;
+mod raw;
+mod rows;
+mod stamps;
+#[cfg(test)]
+mod tests;
+mod text;
+#[cfg(feature = "xdf")]
+mod xdf;
+
+use std::path::{Path, PathBuf};
+
+pub use columns::Columns;
+pub use stamps::TimeUnit;
+
+/// A column of a log.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Channel {
+    /// Its name: `P1`, `Fz_N`.
+    pub name: String,
+    /// A value a row; NaN where it is missing.
+    pub values: Vec<f64>,
+}
+
+/// What a lab's file holds, in the order of time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Log {
+    /// The file.
+    pub path: PathBuf,
+    /// The log's time of each row, seconds, ascending; a stamp may stand several times.
+    pub time_s: Vec<f64>,
+    /// The log's time at the midnight before its first stamp, of the wall clock as the stamps write it, seconds; where stamps are
+    /// dates with times of day, or times of day.
+    pub midnight_s: Option<f64>,
+    /// For each row, whether the LED was on; none where the log does not tell: all rows are lit.
+    pub led: Option<Vec<bool>>,
+    /// Photodiodes, in the file's order.
+    pub photodiodes: Vec<Channel>,
+    /// `Fx_N`, `Fy_N`, `Fz_N`, as far as the file has them.
+    pub forces: Vec<Channel>,
+    /// What is no fault but worth saying, each with its place.
+    pub notes: Vec<String>,
+}
+
+/// Why a log can't be read.
+#[derive(Debug, thiserror::Error)]
+pub enum LogError {
+    /// The file can't be opened, unpacked or understood as a whole.
+    #[error("{}: {what}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong and what to do.
+        what: String,
+    },
+    /// The columns that are needed are not there, or it can't be told which they are.
+    #[error("{}: {what}", path.display())]
+    Columns {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong and what to do.
+        what: String,
+    },
+    /// One place of the file is wrong.
+    #[error("{place}: {what}")]
+    Cell {
+        /// File, line (CSV), row (Parquet) or sample (XDF), column.
+        place: String,
+        /// What is wrong and what to do.
+        what: String,
+    },
+    /// Time does not go forward.
+    #[error("{place}: {what}")]
+    Time {
+        /// File, line (CSV), row (Parquet) or sample (XDF) at which it does not.
+        place: String,
+        /// What is wrong and what to do.
+        what: String,
+    },
+}
+
+/// The formats of logs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Format {
+    Text,
+    Parquet,
+    Xdf,
+}
+
+impl Log {
+    /// Reads a log.
+    ///
+    /// # Errors
+    /// A file that can't be read, columns that are missing or ambiguous, a cell that is neither number nor missing, a clock that
+    /// was reset, no rows: each with its place and what to do.
+    pub fn read(path: &Path, columns: &Columns) -> Result<Self, LogError> {
+        let raw = match Format::of(path) {
+            Format::Text => rows::read(path, columns)?,
+            Format::Parquet => parquet::read(path, columns)?,
+            #[cfg(feature = "xdf")]
+            Format::Xdf => xdf::read(path, columns)?,
+            #[cfg(not(feature = "xdf"))]
+            Format::Xdf => {
+                let what = "is a recording of the Lab Streaming Layer, which this lunula was built without; build it with \
+                            `cargo build --release --features xdf`";
+                return Err(LogError::File { path: path.to_owned(), what: what.to_owned() });
+            }
+        };
+        order::settle(raw, columns.piece)
+    }
+}
+
+impl Format {
+    /// By the name's end; whatever is not known is text.
+    fn of(path: &Path) -> Self {
+        let name = path.file_name().map(|name| name.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+        match name.strip_suffix(".gz").unwrap_or(&name) {
+            plain if plain.ends_with(".xdf") || plain.ends_with(".xdfz") => Self::Xdf,
+            _ if name.ends_with(".parquet") => Self::Parquet,
+            _ => Self::Text,
+        }
+    }
+}

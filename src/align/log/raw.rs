@@ -1,0 +1,93 @@
+//! The rows of a file as they stand in it, before time is looked at as a whole.
+
+use std::path::PathBuf;
+
+use super::columns::{Choice, Role};
+use super::{Channel, LogError};
+
+/// What a row of the file is called.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum RowWord {
+    /// A line of a text file.
+    Line,
+    /// A row of a Parquet file.
+    Row,
+    /// A sample of a stream.
+    #[cfg(feature = "xdf")]
+    Sample,
+}
+
+impl RowWord {
+    /// `line 17`
+    pub(super) fn at(self, place: u64) -> String {
+        match self {
+            Self::Line => format!("line {place}"),
+            Self::Row => format!("row {place}"),
+            #[cfg(feature = "xdf")]
+            Self::Sample => format!("sample {place}"),
+        }
+    }
+}
+
+/// Rows in the file's order.
+#[derive(Debug, Clone)]
+pub(super) struct Raw {
+    pub(super) path: PathBuf,
+    pub(super) word: RowWord,
+    /// Each row's line, row or sample in the file, from 1.
+    pub(super) places: Vec<u64>,
+    /// Seconds; NaN where missing.
+    pub(super) time_s: Vec<f64>,
+    pub(super) midnight_s: Option<f64>,
+    pub(super) led: Option<Vec<Option<bool>>>,
+    pub(super) photodiodes: Vec<Channel>,
+    pub(super) forces: Vec<Channel>,
+    pub(super) notes: Vec<String>,
+}
+
+impl Raw {
+    /// No rows yet, with a channel for each number column of the choice.
+    pub(super) fn new(path: PathBuf, word: RowWord, choice: &Choice) -> Self {
+        let channels = |wanted: fn(Role) -> bool| {
+            let roles = choice.columns.iter().map(|&(role, _)| role).filter(|&role| wanted(role));
+            roles.map(|role| Channel { name: role.name(), values: Vec::new() }).collect()
+        };
+        Self {
+            path,
+            word,
+            places: Vec::new(),
+            time_s: Vec::new(),
+            midnight_s: None,
+            led: choice.columns.iter().any(|(role, _)| *role == Role::Led).then(Vec::new),
+            photodiodes: channels(|role| matches!(role, Role::Photodiode(_))),
+            forces: channels(|role| matches!(role, Role::Force(_))),
+            notes: choice.notes.clone(),
+        }
+    }
+
+    /// The values of a photodiode or force.
+    pub(super) fn channel(&mut self, role: Role) -> Option<&mut Vec<f64>> {
+        let name = role.name();
+        let all = self.photodiodes.iter_mut().chain(&mut self.forces);
+        all.into_iter().find(|channel| channel.name == name).map(|channel| &mut channel.values)
+    }
+
+    /// The place of a row, with the file.
+    pub(super) fn place(&self, row: usize) -> String {
+        place(&self.path, self.word, self.places[row])
+    }
+
+    /// The error of a file without rows.
+    pub(super) fn no_rows(&self) -> LogError {
+        let what = "has no rows that could be used; a log has one for each sample".to_owned();
+        LogError::File { path: self.path.clone(), what }
+    }
+}
+
+/// The place of a row, with the file: `log.csv:17` or `log.parquet: row 17`.
+pub(super) fn place(path: &std::path::Path, word: RowWord, place: u64) -> String {
+    match word {
+        RowWord::Line => format!("{}:{place}", path.display()),
+        _ => format!("{}: {}", path.display(), word.at(place)),
+    }
+}

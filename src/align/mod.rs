@@ -1,0 +1,31 @@
+//! Two clocks to one: joint angles on the camera's clock, photodiodes and forces on a computer's, labelled training sets out
+//! (thesis sections 3.1.2c, 3.2.3 and 5.2).
+//!
+//! [`Log`] is what a lab's file holds; [`Samples`] what is left of it when the light that is not the LED's is taken away; a
+//! [`Tie`] says how the log's time follows from the video's; [`Posture`] is the table of joint angles; [`label`] brings the
+//! angles onto the samples' rows.
+
+mod ambient;
+mod certificate;
+pub mod export;
+pub mod figures;
+mod job;
+mod label;
+mod log;
+mod plan;
+mod posture;
+mod report;
+mod results;
+mod tie;
+
+pub use ambient::{AmbientError, AmbientOptions, Samples, samples};
+pub use certificate::Certificate;
+pub use job::{AlignError, AlignInputs, AlignOptions, AlignOutputs, Sync, run};
+pub use label::{Gap, LabelCounts, Labels, Unlabelled, label};
+pub use log::{Channel, Columns, Log, LogError, TimeUnit};
+pub use plan::plan;
+pub use posture::{ClockColumns, Posture};
+pub use report::AlignReport;
+pub use tie::{
+    Correlated, LagPeak, LagSearch, LagTie, Recording, Tie, TieMethod, by_clock, by_correlation, by_offset, correlate,
+};

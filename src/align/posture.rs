@@ -1,0 +1,233 @@
+//! The table of joint angles that `lunula posture` writes, as far as labels need it.
+//!
+//! In: CSV or Parquet with `time_s` and `<joint>_deg`; `<joint>_sd_deg`, `clock_s` and what tells of its error where they are there. Out: a
+//! [`Posture`]. Other columns (`frame`, `status`) are not needed. A table of one frame is a table; one of none is refused.
+
+use std::path::{Path, PathBuf};
+
+use crate::table::{Table, TableError};
+
+/// Joint angles over the video's time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Posture {
+    /// The file.
+    pub path: PathBuf,
+    /// Each frame's presentation time, seconds, ascending.
+    pub time_s: Vec<f64>,
+    /// What the clock in the picture says, fitted over the video; NaN where it is not known.
+    pub clock_s: Vec<f64>,
+    /// What `clock_s` was fitted to, and how surely; none where the table does not tell.
+    pub clock: Option<ClockColumns>,
+    /// The joints' names, in the table's order.
+    pub joints: Vec<String>,
+    /// For each joint, its angle in each frame, degrees; NaN where it is not known.
+    pub angles_deg: Vec<Vec<f64>>,
+    /// For each joint, the angle's standard error in each frame, degrees; NaN where it is not known.
+    pub sds_deg: Vec<Vec<f64>>,
+}
+
+/// What `lunula posture` tells of the clock in each frame, seconds; NaN where it is not known.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ClockColumns {
+    /// What it was read to show, counted on over midnight.
+    pub read_s: Vec<f64>,
+    /// The standard error of `clock_s`.
+    pub sd_s: Vec<f64>,
+    /// The least that `clock_s` can be by all readings.
+    pub low_s: Vec<f64>,
+    /// The greatest.
+    pub high_s: Vec<f64>,
+}
+
+impl Posture {
+    /// Whether the clock in the picture was read.
+    #[must_use]
+    pub fn has_clock(&self) -> bool {
+        self.clock_s.iter().any(|clock_s| clock_s.is_finite())
+    }
+
+    /// Reads a table of joint angles.
+    ///
+    /// # Errors
+    /// A table that can't be read, without `time_s`, without a joint or without a frame; a frame without a time; times that do not
+    /// ascend strictly; a negative standard error. Each names its place.
+    pub fn read(path: &Path) -> Result<Self, TableError> {
+        let table = Table::read(path)?;
+        let refused = |what: &str| TableError::Read { path: path.to_owned(), what: what.to_owned() };
+        let time_s = times(&table)?;
+        let names = table.names();
+        let has = |name: &str| names.iter().any(|n| n == name);
+        let joints: Vec<String> = names.iter().filter_map(|n| joint_of(n)).map(str::to_owned).collect();
+        if joints.is_empty() {
+            let names = names.join(", ");
+            return Err(refused(&format!(
+                "has no column of a joint's angle, such as `J2_deg`; its columns are {names}; give the table that `lunula posture` \
+                 writes"
+            )));
+        }
+        if time_s.is_empty() {
+            return Err(refused("has no row; labels need frames: look at the video that it was made from"));
+        }
+        let known = |name: &str| -> Result<Option<Vec<f64>>, TableError> {
+            has(name).then(|| Ok(missing_as_nan(table.numbers(name)?))).transpose()
+        };
+        let unknown = || vec![f64::NAN; time_s.len()];
+        let mut angles_deg = Vec::with_capacity(joints.len());
+        let mut sds_deg = Vec::with_capacity(joints.len());
+        for joint in &joints {
+            angles_deg.push(missing_as_nan(table.numbers(&format!("{joint}_deg"))?));
+            let name = format!("{joint}_sd_deg");
+            let sds = known(&name)?.unwrap_or_else(unknown);
+            if let Some(row) = sds.iter().position(|&sd| sd < 0.0) {
+                let what = format!("`{}` is no standard error; correct it or leave it empty", sds[row]);
+                return Err(table.cell(row, &name, what));
+            }
+            sds_deg.push(sds);
+        }
+        let [read_s, sd_s, low_s, high_s] = ["read", "sd", "low", "high"].map(|what| known(&format!("clock_{what}_s")));
+        let clock = match (read_s?, sd_s?, low_s?, high_s?) {
+            (Some(read_s), Some(sd_s), Some(low_s), Some(high_s)) => Some(ClockColumns { read_s, sd_s, low_s, high_s }),
+            _ => None,
+        };
+        Ok(Self {
+            path: path.to_owned(),
+            clock_s: known("clock_s")?.unwrap_or_else(unknown),
+            clock,
+            time_s,
+            joints,
+            angles_deg,
+            sds_deg,
+        })
+    }
+}
+
+/// `J2_deg` is the angle of `J2`; `J2_sd_deg` is nobody's angle.
+fn joint_of(column: &str) -> Option<&str> {
+    column.strip_suffix("_deg").filter(|joint| !joint.is_empty() && !joint.ends_with("_sd"))
+}
+
+fn missing_as_nan(cells: Vec<Option<f64>>) -> Vec<f64> {
+    cells.into_iter().map(|cell| cell.unwrap_or(f64::NAN)).collect()
+}
+
+/// The frames' times, checked.
+fn times(table: &Table) -> Result<Vec<f64>, TableError> {
+    const NAME: &str = "time_s";
+    let mut times_s: Vec<f64> = Vec::with_capacity(table.rows());
+    for (row, time_s) in table.numbers(NAME)?.into_iter().enumerate() {
+        let Some(time_s) = time_s else {
+            return Err(table.cell(
+                row,
+                NAME,
+                "is empty; every frame has a time: fill it in or delete the row".to_owned(),
+            ));
+        };
+        if let Some(&before) = times_s.last().filter(|&&before| time_s <= before) {
+            let what = format!(
+                "{time_s} comes after {before}; times must ascend: sort the rows and delete what is there twice"
+            );
+            return Err(table.cell(row, NAME, what));
+        }
+        times_s.push(time_s);
+    }
+    Ok(times_s)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::table::{Column, TableWriter, Value};
+
+    fn read(text: &str) -> Result<Posture, String> {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("joints.csv");
+        std::fs::write(&path, text).unwrap();
+        Posture::read(&path).map_err(|e| e.to_string())
+    }
+
+    /// NaN is equal to NaN here.
+    fn same(a: &[f64], b: &[f64]) -> bool {
+        a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a == b || a.is_nan() && b.is_nan())
+    }
+
+    #[test]
+    fn the_table_of_posture_is_read_alike_from_both_formats() {
+        let number = |name: &str| Column::rounded(name, 6);
+        let columns = vec![
+            Column::integer("frame"),
+            number("time_s"),
+            number("clock_s"),
+            number("J2_deg"),
+            number("J2_sd_deg"),
+            number("thumb_deg"),
+            number("thumb_sd_deg"),
+            Column::text("status"),
+            number("clock_read_s"),
+            number("clock_sd_s"),
+            number("clock_low_s"),
+            number("clock_high_s"),
+        ];
+        for extension in ["csv", "parquet"] {
+            let dir = tempfile::tempdir().unwrap();
+            let path = dir.path().join("joints").with_extension(extension);
+            let mut table = TableWriter::create(&path, &path, columns.clone(), &[]).unwrap();
+            let cells = [Value::Integer(0), 0.0.v(), 71.0.v(), 12.5.v(), 0.02.v()];
+            let rest = [30.0.v(), 0.03.v(), Value::Text("ok"), 71.0.v(), 0.02.v(), 70.99.v(), 71.01.v()];
+            table.write(&[&cells[..], &rest[..]].concat()).unwrap();
+            let cells = [Value::Integer(1), 0.033_367.v(), 71.033.v(), Value::Missing, Value::Missing];
+            let rest = [31.0.v(), 0.03.v(), Value::Text("lost: a"), Value::Missing, 0.01.v(), 71.0.v(), 71.05.v()];
+            table.write(&[&cells[..], &rest[..]].concat()).unwrap();
+            table.finish().unwrap();
+            let posture = Posture::read(&path).unwrap();
+            assert_eq!((posture.joints.join(","), posture.path.clone()), ("J2,thumb".to_owned(), path));
+            assert_eq!((posture.time_s, posture.clock_s), (vec![0.0, 0.033_367], vec![71.0, 71.033]));
+            assert!(same(&posture.angles_deg.concat(), &[12.5, f64::NAN, 30.0, 31.0]), "{extension}");
+            assert!(same(&posture.sds_deg.concat(), &[0.02, f64::NAN, 0.03, 0.03]), "{extension}");
+            let clock = posture.clock.unwrap();
+            assert!(same(&clock.read_s, &[71.0, f64::NAN]), "{extension}");
+            assert_eq!((clock.sd_s[1], clock.low_s[0], clock.high_s[1]), (0.01, 70.99, 71.05));
+        }
+    }
+
+    trait Cell {
+        fn v(self) -> Value<'static>;
+    }
+
+    impl Cell for f64 {
+        fn v(self) -> Value<'static> {
+            Value::Number(self)
+        }
+    }
+
+    #[test]
+    fn the_tables_of_others_need_a_time_and_an_angle_only() {
+        let posture = read("time_s,J2_deg\n-1.5,3\n").unwrap();
+        assert_eq!((posture.time_s, posture.angles_deg), (vec![-1.5], vec![vec![3.0]]));
+        assert!(posture.clock_s[0].is_nan() && posture.sds_deg[0][0].is_nan() && posture.clock.is_none());
+        let posture = read("note,J2_sd_deg,J2_deg,knee left_deg,time_s\nx,0.1,1,,0\ny,,2,,1\n").unwrap();
+        assert_eq!(posture.joints, ["J2", "knee left"]);
+        assert!(same(&posture.sds_deg[0], &[0.1, f64::NAN]) && posture.angles_deg[1].iter().all(|a| a.is_nan()));
+    }
+
+    #[test]
+    fn what_is_wrong_is_named_with_its_place() {
+        for (text, words) in [
+            ("time_s,J2_deg\n0,1\n0.1,2\n0.1,3\n", "joints.csv:4: column `time_s`: 0.1 comes after 0.1"),
+            ("time_s,J2_deg\n0,1\n-1,2\n", "joints.csv:3: column `time_s`: -1 comes after 0"),
+            ("time_s,J2_deg\n0,1\n,2\n", "joints.csv:3: column `time_s`: is empty"),
+            ("time_s,J2_deg\n0,1\nnan,2\n", "joints.csv:3: column `time_s`: `NaN` is no finite number"),
+            ("time_s,J2_deg\n0,1\n1,ok\n", "joints.csv:3: column `J2_deg`: `ok` is no finite number"),
+            ("time_s,J2_deg,J2_sd_deg\n0,1,-0.5\n", "joints.csv:2: column `J2_sd_deg`: `-0.5` is no standard error"),
+            ("frame,J2_deg\n0,1\n", "has no column `time_s`"),
+            (
+                "time_s,_deg,J2_sd_deg\n0,1,2\n",
+                "no column of a joint's angle, such as `J2_deg`; its columns are time_s",
+            ),
+            ("time_s,J2_deg\n", "has no row"),
+            ("", "is empty"),
+        ] {
+            let told = read(text).unwrap_err();
+            assert!(told.contains(words) && told.contains("joints.csv"), "{told}");
+        }
+    }
+}

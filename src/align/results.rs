@@ -1,0 +1,160 @@
+//! What the alignment job writes: the labelled set, its certificate and report, exports and pictures.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use super::ambient::Samples;
+use super::certificate::Certificate;
+use super::export::{self, BidsNames};
+use super::figures;
+use super::job::{AlignError, AlignInputs, AlignOptions, AlignOutputs};
+use super::label::Labels;
+use super::posture::Posture;
+use super::report::AlignReport;
+use super::tie::Tie;
+use crate::files::{Places, WriteError, beside};
+use crate::stages::Stages;
+use crate::table::{Column, TableWriter, Value};
+
+/// Decimals of a label in degrees.
+const ANGLE_DECIMALS: usize = 5;
+
+/// Results in the making.
+#[derive(Default)]
+pub(super) struct Results {
+    places: Places,
+}
+
+impl Results {
+    /// Writes the labelled set and its certificate.
+    pub(super) fn training(
+        &mut self,
+        samples: &Samples,
+        posture: &Posture,
+        labels: &Labels,
+        certificate: &Certificate,
+        options: &AlignOptions,
+        outputs: &AlignOutputs,
+    ) -> Result<(), AlignError> {
+        let path = &outputs.training;
+        let channels = || samples.photodiodes.iter().chain(&samples.forces);
+        let mut columns = vec![Column::number("time_s")];
+        columns.extend(channels().map(|channel| Column::number(&channel.name)));
+        for ending in ["_deg", "_sd_deg"] {
+            columns.extend(posture.joints.iter().map(|j| Column::rounded(format!("{j}{ending}"), ANGLE_DECIMALS)));
+        }
+        columns.extend(["label_status", "subject", "session", "sensor_status"].map(Column::text));
+        let text = certificate.text();
+        let at = self.places.place(path)?;
+        let mut table = TableWriter::create(&at, path, columns, &facts(&text))?;
+        let [subject, session] = [&options.subject, &options.session].map(|name| name.as_deref().unwrap_or_default());
+        for (row, &time_s) in samples.time_s.iter().enumerate() {
+            let mut cells = vec![Value::Number(time_s)];
+            cells.extend(channels().map(|channel| Value::Number(channel.values[row])));
+            for columns in [&labels.angles_deg, &labels.sds_deg] {
+                cells.extend(columns.iter().map(|column| Value::Number(column[row])));
+            }
+            let fault = samples.faults[row].as_str();
+            let sensor = if fault.is_empty() { "ok" } else { fault };
+            let status = labels.status(row);
+            cells.extend([status.as_ref(), subject, session, sensor].map(Value::Text));
+            table.write(&cells)?;
+        }
+        table.finish()?;
+        self.write(&beside(path, ".sync.json"), &text)
+    }
+
+    /// Writes what other tools read; returns what of it a user should know.
+    pub(super) fn exports(
+        &mut self,
+        posture: &Posture,
+        tie: &Tie,
+        names: Option<&BidsNames>,
+        inputs: &AlignInputs,
+        outputs: &AlignOutputs,
+    ) -> Result<Vec<String>, AlignError> {
+        let mut notes = Vec::new();
+        if let Some(path) = &outputs.mot {
+            let left_out = export::mot(&self.places.place(path)?, path, posture, tie)?;
+            if left_out > 0 {
+                let frames = posture.time_s.len();
+                notes.push(format!(
+                    "{}: {left_out} of {frames} frames lack an angle and are left out, as OpenSim knows no missing ones",
+                    path.display()
+                ));
+            }
+        }
+        if let Some((root, names)) = outputs.bids.as_ref().zip(names) {
+            export::bids(&mut self.places, root, names, posture, tie)?;
+        }
+        if let Some((path, tracks)) = outputs.dlc.as_ref().zip(inputs.tracks.as_ref()) {
+            export::dlc(&self.places.place(path)?, path, tracks)?;
+        }
+        Ok(notes)
+    }
+
+    /// Draws the pictures beside the set; returns where those that a person looks at will stand.
+    pub(super) fn pictures(
+        &mut self,
+        posture: &Posture,
+        samples: &Samples,
+        labels: &Labels,
+        tie: &Tie,
+        outputs: &AlignOutputs,
+    ) -> Result<Vec<PathBuf>, AlignError> {
+        let mut pictures = Vec::new();
+        if !outputs.figures {
+            return Ok(pictures);
+        }
+        for kind in ["labels", "tie"] {
+            if kind == "tie" && tie.residuals_s.is_empty() {
+                continue;
+            }
+            let [png, svg] = ["png", "svg"].map(|ending| beside(&outputs.training, &format!("-{kind}.{ending}")));
+            let at = [self.places.place(&png)?, self.places.place(&svg)?];
+            let drawn = match kind {
+                "labels" => figures::draw_labels(samples, labels, &at[0], &at[1]),
+                _ => figures::draw_tie(tie, posture, &at[0], &at[1]).map(|_| ()),
+            };
+            drawn.map_err(|why| WriteError::File { path: png.clone(), why: format!("{why:#}") })?;
+            pictures.push(png);
+        }
+        Ok(pictures)
+    }
+
+    /// Adds the report and puts everything into its place.
+    pub(super) fn finish(
+        mut self,
+        mut report: AlignReport,
+        outputs: &AlignOutputs,
+        stages: &Stages,
+        start: Instant,
+    ) -> Result<AlignReport, AlignError> {
+        report.stages = stages.list();
+        report.wall_s = start.elapsed().as_secs_f64();
+        let text = serde_json::to_string_pretty(&report).expect("plain data") + "\n";
+        self.write(&beside(&outputs.training, ".run.json"), &text)?;
+        self.places.commit()?;
+        Ok(report)
+    }
+
+    fn write(&mut self, path: &Path, text: &str) -> Result<(), AlignError> {
+        let at = self.places.place(path)?;
+        Ok(std::fs::write(&at, text).map_err(|why| WriteError::File { path: path.to_owned(), why: why.to_string() })?)
+    }
+}
+
+/// What Parquet keeps beside the cells.
+fn facts(certificate: &str) -> Vec<(String, String)> {
+    [
+        ("lunula", env!("CARGO_PKG_VERSION")),
+        ("time_s", "the log's own time, seconds"),
+        ("photodiodes", "volts, the ambient light taken away where the log has a column `led`"),
+        ("forces", "newtons, of the finger on the surface: pressing down is negative Fz_N"),
+        ("angles", "degrees, positive in flexion; J1 MP, J2 PIP, J3 DIP"),
+        ("sd", "standard error of the label, the tie of the clocks included, degrees"),
+        ("certificate", certificate),
+    ]
+    .map(|(key, value)| (key.to_owned(), value.to_owned()))
+    .to_vec()
+}

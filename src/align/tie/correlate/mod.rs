@@ -1,0 +1,382 @@
+//! The lag at which the signals of one recording best explain the channels of another.
+//!
+//! In: signals over the video's time (joint angles), channels over the log's (photodiodes), both at irregular times, with gaps. Out: the
+//! log's time less the video's, with a standard error, and how surely it is that lag and no other; or why there is none.
+//!
+//! Each signal alone is bent as need be ([`basis`]), or all are taken together, to explain that combination of the channels'
+//! principal components which they explain best ([`line`]); drift over 30 s
+//! and slower is taken off. What counts is the share that is left over and how many independent samples there are ([`judge`], [`memory`]). All
+//! lags are looked at on a grid, with Fourier transforms; the best peaks closely; chance by channels of the same kind that were made anew.
+//!
+//! What is not determined: a lag of the channels behind the signals. It is part of what is found.
+
+mod basis;
+mod chance;
+mod channels;
+mod coarse;
+mod drift;
+mod fine;
+mod judge;
+mod line;
+mod memory;
+mod series;
+
+use self::basis::Model;
+use self::coarse::Coarse;
+use self::drift::Drift;
+use self::fine::{Pair, Peak, Spot};
+use self::judge::Judge;
+use self::series::Series;
+
+/// Signals or channels over times of their own.
+#[derive(Debug, Clone, Copy)]
+pub struct Recording<'a> {
+    /// Seconds; rows without a finite time don't count.
+    pub time_s: &'a [f64],
+    /// A value a time each; NaN where it is missing.
+    pub columns: &'a [&'a [f64]],
+}
+
+/// Where to look.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct LagSearch {
+    /// The lag, log time less video time, about which to look, seconds; none: that at which both begin together.
+    pub about_s: Option<f64>,
+    /// How far from there, seconds; none: as far as at least half of the shorter recording overlaps.
+    pub most_s: Option<f64>,
+    /// Of the numbers that chance is judged with.
+    pub seed: u64,
+}
+
+/// A lag that explains something.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct LagPeak {
+    /// Log time less video time, seconds.
+    pub offset_s: f64,
+    /// Share of the variance of a combination of the channels that the signals explain there.
+    pub explained: f64,
+}
+
+/// The lag that was found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Correlated {
+    /// Log time less video time, seconds.
+    pub offset_s: f64,
+    /// Its standard error, from blocks of time, seconds.
+    pub offset_sd_s: f64,
+    /// Share of the variance of a combination of the channels that the signals explain.
+    pub explained: f64,
+    /// How sure it is that this is the lag and no other, 0 to 1.
+    pub confidence: f64,
+    /// Other lags that explain much, best first.
+    pub others: Vec<LagPeak>,
+    /// How long the recordings overlap, seconds.
+    pub overlap_s: f64,
+}
+
+/// Rows of the grid of a recording.
+const MOST_ROWS: f64 = 16_384.0;
+/// The grid is no finer than this, seconds.
+const FINEST_S: f64 = 0.005;
+/// Recordings shorter than this are not compared, seconds.
+const SHORTEST_S: f64 = 5.0;
+/// At least this share of the shorter recording overlaps.
+const OVERLAP: f64 = 0.5;
+/// Peaks that are looked at closely.
+const PEAKS: usize = 24;
+/// Peaks that gain less than this share of the best are not.
+const PEAK: f64 = 0.2;
+/// The curve falls to this share of a lower peak between it and a higher one.
+const VALLEY: f64 = 0.9;
+/// Independent samples for each free number of a model, and how many free numbers there are.
+const SAMPLES_EACH: f64 = 3.0;
+const FREE: [f64; 2] = [2.0, 6.0];
+/// How far around the best peak is looked at in the end: at least this share of the grid's step and so many standard errors.
+const NEAR: f64 = 0.25;
+const NEAR_SDS: f64 = 24.0;
+/// Blocks of the bootstrap.
+const BLOCKS: [f64; 2] = [8.0, 60.0];
+/// Less is not sure enough, by the likelihoods and by the votes of blocks of time.
+const SURE: f64 = 0.99;
+const VOTES: f64 = 0.95;
+/// Chance does as well no more often than this.
+const CHANCE: f64 = 0.001;
+/// The same where the user says about where the lag is, and so that the recordings belong together.
+const CHANCE_TOLD: f64 = 0.1;
+/// Two peaks that gain as much as this share of each other and explain so much are of a motion that repeats itself.
+const ALIKE: f64 = 0.7;
+const LEAST_ALIKE: f64 = 0.5;
+/// The greatest standard error, as a share of how long one independent sample takes.
+const SHARP: f64 = 0.05;
+/// Fewer independent samples, beyond the free numbers, prove nothing.
+const LEAST_SAMPLES: f64 = 8.0;
+/// Less explained is not worth believing, whatever chance does.
+const LEAST_EXPLAINED: f64 = 0.5;
+
+/// A lag of the grid, the model that gains most there, and what it gains.
+#[derive(Debug, Clone, Copy)]
+struct Candidate {
+    lag: i64,
+    model: usize,
+    gain: f64,
+    left: f64,
+}
+
+/// Finds the lag at which `video` best explains `log`.
+///
+/// # Errors
+/// Too little to compare, chance would explain as much, or several lags do: in words, with what to do.
+pub fn correlate(video: Recording<'_>, log: Recording<'_>, search: LagSearch) -> Result<Correlated, String> {
+    let video = Series::new(video.time_s, video.columns, "the angles")?;
+    let log = Series::new(log.time_s, log.columns, "the photodiodes")?;
+    let shorter_s = video.span_s().min(log.span_s());
+    if shorter_s < SHORTEST_S {
+        return Err(format!(
+            "{shorter_s:.1} s are too short to find a lag in; at least {SHORTEST_S} s in which the finger moves are needed"
+        ));
+    }
+    let (log, weights) = channels::components(&log);
+    let longer_s = video.span_s().max(log.span_s());
+    let step_s = video.interval_s.max(log.interval_s).max(longer_s / MOST_ROWS).max(FINEST_S);
+    let rows = |series: &Series| (series.span_s() / step_s) as usize;
+    let (signals, video_there) = video.on_grid(step_s, rows(&video));
+    let (mut channels, log_there) = log.on_grid(step_s, rows(&log));
+    without_drift(&mut channels, &log_there, step_s);
+    let channels = filled(channels, &log_there);
+    let together_s = log.first_s() - video.first_s();
+    let lags = lags(&search, together_s, step_s, [rows(&video) as i64, rows(&log) as i64]);
+    let seen = |there: &[bool]| there.iter().filter(|there| **there).count() as f64;
+    let least_rows = (OVERLAP * seen(&video_there).min(seen(&log_there))).max(SHORTEST_S / step_s);
+    let of_channels = memory::own(&channels, &weights);
+    let judge = |regressors: &[Vec<f64>]| {
+        let even = vec![1.0 / regressors.len() as f64; regressors.len()];
+        let each_s = step_s * memory::rows_each(&memory::own(regressors, &even), &of_channels);
+        Judge { each_s, free: (regressors.len() + channels.len() - 1) as f64 }
+    };
+    let mut straight = signals.clone();
+    without_drift(&mut straight, &video_there, step_s);
+    let samples = shorter_s / judge(&straight).each_s;
+    let models = Model::all(&video.columns, (samples / SAMPLES_EACH).clamp(FREE[0], FREE[1]) as usize);
+    let prepared: Vec<(Judge, Coarse)> = models
+        .iter()
+        .map(|model| {
+            let regressors = regressors(model, &signals, &video_there, step_s);
+            (judge(&regressors), Coarse::new(&regressors, &video_there, &log_there, lags, least_rows))
+        })
+        .collect();
+    // Of each lag the model that gains most.
+    let curve = |channels: &[Vec<f64>]| {
+        let mut best: Vec<Candidate> = Vec::new();
+        for (model, (judge, coarse)) in prepared.iter().enumerate() {
+            for at in coarse.explain(channels) {
+                let gain = judge.gain(at.rows * step_s, at.left);
+                best.push(Candidate { lag: at.lag, model, gain, left: at.left });
+            }
+        }
+        best.sort_by(|a, b| a.lag.cmp(&b.lag).then(b.gain.total_cmp(&a.gain)).then(a.model.cmp(&b.model)));
+        best.dedup_by_key(|at| at.lag);
+        best
+    };
+    let candidates = candidates(&curve(&channels));
+    let Some(best) = candidates.first() else {
+        return Err("at no lag that is looked at the video and the log overlap by half of the shorter; check both files, or give another \
+                    offset to look about"
+            .to_owned());
+    };
+    let most_chance = if search.about_s.is_some() && search.most_s.is_some() { CHANCE_TOLD } else { CHANCE };
+    let greatest = |channels: &[Vec<f64>]| curve(channels).iter().map(|at| at.gain).fold(0.0, f64::max);
+    let chance = chance::probability(&channels, &greatest, best.gain, search.seed);
+    let alike =
+        candidates.get(1).is_some_and(|next| next.gain > ALIKE * best.gain && explained(next.left) > LEAST_ALIKE);
+    if (chance.is_nan() || chance > most_chance || explained(best.left) < LEAST_EXPLAINED) && !alike {
+        return Err(format!(
+            "the angles do not explain the photodiodes at any lag: at the best, {:.3} s, they explain {:.0} % of them, as unrelated signals \
+             of the same kind would with probability {}; check that the files belong together, or tie by the clock or an offset",
+            together_s + best.lag as f64 * step_s,
+            100.0 * explained(best.left),
+            if chance < 0.01 { "under 1 %".to_owned() } else { format!("{:.0} %", 100.0 * chance) }
+        ));
+    }
+    let at_s = |lag: i64| together_s + lag as f64 * step_s;
+    let spots: Vec<Spot<'_>> = candidates
+        .iter()
+        .map(|at| Spot { offset_s: at_s(at.lag), model: &models[at.model], judge: prepared[at.model].0 })
+        .collect();
+    let overlap_s = (video.last_s() + spots[0].offset_s).min(log.last_s())
+        - (video.first_s() + spots[0].offset_s).max(log.first_s());
+    let block_s = overlap_s / (overlap_s / (2.0 * prepared[best.model].0.each_s)).clamp(BLOCKS[0], BLOCKS[1]);
+    let pair = Pair { video: &video, log: &log, block_s, seed: search.seed };
+    let range_s = [at_s(lags[0]), at_s(lags[1])];
+    let mut peaks = different(fine::peaks(pair, &spots, 1.5 * step_s, range_s), prepared[best.model].0.each_s);
+    let spot = Spot { offset_s: peaks[0].offset_s, ..spots[peaks[0].spot] };
+    // Once more, closer, where blocks agree much better than the grid's step.
+    let near_s = (NEAR * step_s).max(NEAR_SDS * peaks[0].offset_sd_s);
+    if near_s < step_s {
+        let closer = fine::peaks(pair, &[spot], near_s, range_s);
+        peaks[0] = Peak { votes: peaks[0].votes, ..closer[0] };
+    }
+    let best = peaks[0];
+    let preferred = preferred(&peaks, &spots);
+    let as_lag = |peak: &Peak| LagPeak { offset_s: peak.offset_s, explained: explained(peak.left) };
+    if explained(best.left) < LEAST_EXPLAINED {
+        return Err(format!(
+            "the angles explain only {:.0} % of the photodiodes at the best lag, {:.3} s: check that the files belong together, or tie by the clock \
+             or an offset",
+            100.0 * explained(best.left),
+            best.offset_s
+        ));
+    }
+    if preferred < SURE || best.votes < VOTES || chance > most_chance {
+        let listed: Vec<String> = peaks
+            .iter()
+            .take(6)
+            .map(|peak| format!("{:.3} s ({:.1} %)", peak.offset_s, 100.0 * explained(peak.left)))
+            .collect();
+        return Err(format!(
+            "several lags explain the photodiodes nearly as well: {} (log time less video time, share explained); a motion that repeats itself can't \
+             tell them apart: tie by the clock or an offset, or look about a known offset",
+            listed.join(", ")
+        ));
+    }
+    let samples = spot.judge.samples(best.overlap_s);
+    if samples < LEAST_SAMPLES {
+        return Err(format!(
+            "the lag may be {:.3} s, but the finger moves too rarely or too slowly to be sure: the overlap of {:.1} s is worth {:.0} independent samples \
+             more than the curve takes; record for longer, or tie by the clock or an offset",
+            best.offset_s, best.overlap_s, samples
+        ));
+    }
+    if search.most_s.is_some() && range_s.iter().any(|end_s| (best.offset_s - end_s).abs() < 1.5 * step_s) {
+        return Err(format!(
+            "the best lag, {:.3} s, is at the end of what is looked at, so a better one may lie beyond: look further, or about another offset",
+            best.offset_s
+        ));
+    }
+    if best.offset_sd_s > SHARP * spot.judge.each_s {
+        return Err(format!(
+            "the lag is {:.3} s with a standard error of {:.3} s: the motion is too slow or too short to tell; tie by the clock or an offset",
+            best.offset_s, best.offset_sd_s
+        ));
+    }
+    Ok(Correlated {
+        offset_s: best.offset_s,
+        offset_sd_s: best.offset_sd_s,
+        explained: explained(best.left),
+        confidence: (1.0 - chance) * preferred.min(best.votes),
+        others: peaks[1..].iter().map(as_lag).collect(),
+        overlap_s,
+    })
+}
+
+/// The share that is explained where `left` is the logarithm of what is left over.
+fn explained(left: f64) -> f64 {
+    1.0 - left.exp()
+}
+
+/// The probability of the first peak among all by their likelihoods, each other one's as great as either its gain or what it leaves over
+/// makes it.
+fn preferred(peaks: &[Peak], spots: &[Spot<'_>]) -> f64 {
+    let samples = |peak: &Peak| spots[peak.spot].judge.samples(peak.overlap_s);
+    let best = &peaks[0];
+    let other = |peak: &Peak| {
+        let by_left = samples(peak).min(samples(best)) * (peak.left - best.left);
+        (-0.5 * by_left.min(best.gain - peak.gain)).exp()
+    };
+    1.0 / (1.0 + peaks[1..].iter().map(other).sum::<f64>())
+}
+
+/// Peaks, best first, without those that climbed to one that is there already, within `apart_s`/4; they give it their votes.
+fn different(mut peaks: Vec<Peak>, apart_s: f64) -> Vec<Peak> {
+    peaks.sort_by(|a, b| b.gain.total_cmp(&a.gain).then(a.spot.cmp(&b.spot)));
+    let mut taken: Vec<Peak> = Vec::new();
+    for peak in peaks {
+        match taken.iter_mut().find(|other| (other.offset_s - peak.offset_s).abs() < 0.25 * apart_s) {
+            Some(other) => other.votes += peak.votes,
+            None => taken.push(peak),
+        }
+    }
+    taken
+}
+
+/// The regressors of a model on the grid, without drift; 0 where there are none.
+fn regressors(model: &Model, signals: &[Vec<f64>], there: &[bool], step_s: f64) -> Vec<Vec<f64>> {
+    let mut columns = vec![vec![0.0; there.len()]; model.columns()];
+    let (mut row, mut values) = (Vec::new(), Vec::new());
+    for k in (0..there.len()).filter(|&k| there[k]) {
+        row.clear();
+        row.extend(signals.iter().map(|signal| signal[k]));
+        values.clear();
+        model.row(&row, &mut values);
+        columns.iter_mut().zip(&values).for_each(|(column, v)| column[k] = *v);
+    }
+    without_drift(&mut columns, there, step_s);
+    columns
+}
+
+/// Takes drift off columns on the grid where they have values.
+fn without_drift(columns: &mut [Vec<f64>], there: &[bool], step_s: f64) {
+    let rows: Vec<usize> = (0..there.len()).filter(|&k| there[k]).collect();
+    let drift = Drift::new(&rows.iter().map(|&k| k as f64 * step_s).collect::<Vec<f64>>());
+    for column in columns {
+        let mut values: Vec<f64> = rows.iter().map(|&k| column[k]).collect();
+        drift.take_off(&mut values);
+        rows.iter().zip(values).for_each(|(&k, v)| column[k] = v);
+    }
+}
+
+/// The lags to look at, in steps of the grid.
+fn lags(search: &LagSearch, together_s: f64, step_s: f64, rows: [i64; 2]) -> [i64; 2] {
+    let all = [-rows[0], rows[1]];
+    let middle = search.about_s.map_or(0.0, |about_s| (about_s - together_s) / step_s);
+    match search.most_s {
+        Some(most_s) => {
+            let ends = [middle - most_s / step_s, middle + most_s / step_s];
+            [all[0].max(ends[0].floor() as i64), all[1].min(ends[1].ceil() as i64)]
+        }
+        None => all,
+    }
+}
+
+/// Signals with straight lines over what is missing, for what needs whole sequences.
+fn filled(mut signals: Vec<Vec<f64>>, there: &[bool]) -> Vec<Vec<f64>> {
+    for signal in &mut signals {
+        let mut last: Option<usize> = None;
+        for k in (0..signal.len()).filter(|&k| there[k]) {
+            if let Some(last) = last.filter(|&last| last + 1 < k) {
+                let (from, to) = (signal[last], signal[k]);
+                for (i, v) in signal[last + 1..k].iter_mut().enumerate() {
+                    *v = from + (to - from) * (i + 1) as f64 / (k - last) as f64;
+                }
+            }
+            last = Some(k);
+        }
+    }
+    signals
+}
+
+/// The highest peaks of a curve, best first, each with a valley to the ones before.
+fn candidates(curve: &[Candidate]) -> Vec<Candidate> {
+    let is_peak = |&k: &usize| {
+        let gain = curve[k].gain;
+        (k == 0 || gain > curve[k - 1].gain) && (k + 1 == curve.len() || gain >= curve[k + 1].gain)
+    };
+    let mut tops: Vec<usize> = (0..curve.len()).filter(is_peak).collect();
+    tops.sort_by(|&a, &b| curve[b].gain.total_cmp(&curve[a].gain).then(a.cmp(&b)));
+    let mut taken: Vec<usize> = Vec::new();
+    for top in tops {
+        if taken.first().is_some_and(|&best| curve[top].gain < PEAK * curve[best].gain) || taken.len() == PEAKS {
+            break;
+        }
+        let apart = |&other: &usize| {
+            let lowest = curve[top.min(other)..=top.max(other)].iter().map(|at| at.gain).fold(f64::INFINITY, f64::min);
+            lowest < VALLEY * curve[top].gain
+        };
+        if taken.iter().all(apart) {
+            taken.push(top);
+        }
+    }
+    taken.into_iter().map(|top| curve[top]).collect()
+}
+
+#[cfg(test)]
+mod tests;

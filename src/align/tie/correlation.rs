@@ -1,0 +1,207 @@
+//! The tie by the lag at which the joints' angles best explain the photodiodes, for when there is no clock.
+
+use super::correlate::{LagSearch, Recording, correlate};
+use super::{Tie, TieMethod};
+use crate::align::{Posture, Samples};
+use crate::clock::USUAL_DRIFT;
+use crate::timebase::Timebase;
+
+/// How far the sensor's lag differs with the motion, seconds: hysteresis lasts longer the slower the finger moves. Measured over phantoms in
+/// random motion: 4 ms.
+const LAG_SD_S: f64 = 0.005;
+
+/// What the user says of the lag.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct LagTie {
+    /// Where to look.
+    pub search: LagSearch,
+    /// How long after the finger the photodiodes change, seconds; none: not known.
+    pub sensor_lag_s: Option<f64>,
+}
+
+/// Ties by correlation. The offset is what [`correlate`] finds less the sensor's lag; where that is not known it is in the offset, and a
+/// note says so. Drift can't be told from the sensor's own and is taken to be 0, with the standard error of clocks of quartz.
+///
+/// # Errors
+/// No angles, no photodiodes, or no lag that is sure: in words, with what to do.
+pub fn by_correlation(posture: &Posture, samples: &Samples, told: LagTie) -> Result<Tie, String> {
+    if let Some(lag_s) = told.sensor_lag_s.filter(|lag_s| !lag_s.is_finite()) {
+        return Err(format!("the sensor's lag is {lag_s} s; it must be a number of seconds"));
+    }
+    let angles: Vec<&[f64]> = posture.angles_deg.iter().map(Vec::as_slice).collect();
+    let channels: Vec<&[f64]> = samples.photodiodes.iter().map(|channel| channel.values.as_slice()).collect();
+    if angles.is_empty() {
+        return Err("the table has no angles to compare the photodiodes with".to_owned());
+    }
+    if channels.is_empty() {
+        return Err("the log has no photodiodes to compare the angles with".to_owned());
+    }
+    let found = correlate(
+        Recording { time_s: &posture.time_s, columns: &angles },
+        Recording { time_s: &samples.time_s, columns: &channels },
+        told.search,
+    )?;
+    let lag_s = told.sensor_lag_s.unwrap_or(0.0);
+    let offset_s = found.offset_s - lag_s;
+    let reference_s = middle_of_overlap(&posture.time_s, &samples.time_s, offset_s);
+    let mut notes = vec![match told.sensor_lag_s {
+        Some(lag_s) => format!("the sensor's lag of {lag_s} s, as told, is taken off the offset"),
+        None => "photodiodes change after the finger does, some 0.05 s in bending and 0.1 to 0.4 s in pressing: that lag can't be told from the \
+                 offset and is part of it, and not in its standard error (which has how it differs with the motion); labels are early by it unless the sensor's lag is given"
+            .to_owned(),
+    }];
+    notes.push(format!(
+        "the angles explain {:.1} % of the variance of the photodiodes' best combination at this lag",
+        100.0 * found.explained
+    ));
+    if let Some(other) = found.others.first() {
+        notes.push(format!("the next best lag is {:.3} s, with {:.1} %", other.offset_s, 100.0 * other.explained));
+    }
+    notes.push(format!("drift is taken to be 0, with a standard error of {:.0} ppm", 1e6 * USUAL_DRIFT));
+    Ok(Tie {
+        method: TieMethod::Correlate,
+        timebase: Timebase {
+            reference_s,
+            at_reference_s: reference_s + offset_s,
+            at_reference_sd_s: found.offset_sd_s.hypot(LAG_SD_S),
+            drift: 0.0,
+            drift_sd: USUAL_DRIFT,
+        },
+        offset_interval_s: None,
+        residual_rms_s: None,
+        residuals_s: Vec::new(),
+        confidence: Some(found.confidence),
+        frames_read: 0,
+        frames_abstained: 0,
+        notes,
+    })
+}
+
+/// The video's time in the middle of where both have rows.
+fn middle_of_overlap(video_s: &[f64], log_s: &[f64], offset_s: f64) -> f64 {
+    let ends = |times: &[f64]| {
+        let finite = times.iter().copied().filter(|t| t.is_finite());
+        finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], t| [a.min(t), b.max(t)])
+    };
+    let (video, log) = (ends(video_s), ends(log_s));
+    0.5 * (video[0].max(log[0] - offset_s) + video[1].min(log[1] - offset_s))
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    use super::*;
+    use crate::align::Channel;
+    use crate::phantom::force::ForceTrajectory;
+    use crate::phantom::log::{LogOptions, LogScene};
+    use crate::phantom::trajectory::Trajectory;
+
+    /// A finger that moves as no clock does, and photodiodes that follow it `lag_s` later, on a log 100 s ahead.
+    fn recordings(lag_s: f64) -> (Posture, Samples) {
+        let angle = |t: f64| 40.0 + 20.0 * (1.3 * t + 0.05 * t * t).sin() + 9.0 * (2.9 * t).cos();
+        let time_s: Vec<f64> = (0..900).map(|k| f64::from(k) / 30.0).collect();
+        let log_s: Vec<f64> = (0..500).map(|k| 95.0 + f64::from(k) / 12.5).collect();
+        let channel = |k: usize| Channel {
+            name: format!("P{k}"),
+            values: log_s.iter().map(|t| 0.02 * k as f64 * angle(t - 100.0 - lag_s) + 1.0).collect(),
+        };
+        let posture = Posture {
+            path: "joints.csv".into(),
+            clock_s: vec![f64::NAN; time_s.len()],
+            clock: None,
+            joints: vec!["J2".to_owned()],
+            angles_deg: vec![time_s.iter().map(|&t| angle(t)).collect()],
+            sds_deg: vec![vec![0.05; time_s.len()]],
+            time_s,
+        };
+        let photodiodes = (1..4).map(channel).collect();
+        let faults = vec![String::new(); log_s.len()];
+        (posture, Samples { time_s: log_s, photodiodes, forces: Vec::new(), faults, notes: Vec::new() })
+    }
+
+    /// Measured: 0.1 ms.
+    const FOUND_S: f64 = 2e-3;
+
+    #[test]
+    fn the_sensors_lag_is_stated_or_taken_off() {
+        let (posture, samples) = recordings(0.2);
+        let tie = by_correlation(&posture, &samples, LagTie::default()).unwrap();
+        assert!((tie.timebase.offset_s() - 100.2).abs() <= FOUND_S, "{}", tie.timebase.offset_s());
+        assert!(tie.notes[0].contains("can't be told") && tie.confidence.unwrap() > 0.95);
+        let told = LagTie { sensor_lag_s: Some(0.2), ..LagTie::default() };
+        let tie = by_correlation(&posture, &samples, told).unwrap();
+        assert!((tie.timebase.offset_s() - 100.0).abs() <= FOUND_S);
+    }
+
+    /// A phantom's angles with an error of 0.05 degrees, and its log with all ambient light left in; the log's clock is 60 s ahead.
+    fn phantom(seed: u64, trajectory: Trajectory, force: ForceTrajectory) -> (Posture, Samples) {
+        let time_s: Vec<f64> = (0..1800).map(|k| f64::from(k) / 30.0).collect();
+        let options = LogOptions {
+            seed,
+            trajectory: trajectory.clone(),
+            force,
+            seconds: 60.0,
+            clock_offset_s: 60.0,
+            clock_drift_ppm: 0.0,
+            led: false,
+            ..LogOptions::default()
+        };
+        let scene = LogScene::new(options).unwrap();
+        let rows = scene.rows();
+        let channel =
+            |k: usize| Channel { name: format!("P{k}"), values: rows.iter().map(|row| row.read_v[k]).collect() };
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let mut error = || 0.05 * (0..12).map(|_| rng.random_range(-0.5..0.5)).sum::<f64>();
+        let mut angle = |joint: usize| -> Vec<f64> {
+            time_s.iter().map(|&t| trajectory.angles_rad(t)[joint].to_degrees() + error()).collect()
+        };
+        let posture = Posture {
+            path: "joints.csv".into(),
+            clock_s: vec![f64::NAN; time_s.len()],
+            clock: None,
+            joints: ["J1", "J2", "J3"].map(str::to_owned).to_vec(),
+            angles_deg: (0..3).map(&mut angle).collect(),
+            sds_deg: vec![vec![0.05; time_s.len()]; 3],
+            time_s,
+        };
+        let (log_s, faults) = (rows.iter().map(|row| row.stamp_s).collect(), vec![String::new(); rows.len()]);
+        let photodiodes = (0..8).map(channel).collect();
+        (posture, Samples { time_s: log_s, photodiodes, forces: Vec::new(), faults, notes: Vec::new() })
+    }
+
+    /// The photodiodes' lag in bending: 0.04 s of the first order, and half of half a degree's play. Measured over 20 seeds: 0.044 to 0.058 s.
+    const LAG_S: f64 = 0.05;
+    const NEAR_S: f64 = 0.012;
+
+    #[test]
+    fn a_saturating_sensor_is_tied_to_the_angles() {
+        for seed in 3..9 {
+            let (posture, samples) = phantom(seed, Trajectory::Random { hz: 0.1, seed }, ForceTrajectory::None);
+            let tie = by_correlation(&posture, &samples, LagTie::default()).unwrap();
+            let late_s = tie.timebase.offset_s() - 60.0;
+            assert!((late_s - LAG_S).abs() <= NEAR_S, "{seed} {late_s} {:?}", tie.notes);
+        }
+    }
+
+    #[test]
+    fn a_periodic_bending_and_forces_alone_are_refused() {
+        let (posture, samples) = phantom(1, Trajectory::Eq27 { hz: 0.1 }, ForceTrajectory::None);
+        let why = by_correlation(&posture, &samples, LagTie::default()).unwrap_err();
+        assert!(why.contains("several lags"), "{why}");
+        let force = ForceTrajectory::Random { hz: 0.1, seed: 1 };
+        let (posture, samples) = phantom(1, Trajectory::Rest, force);
+        let why = by_correlation(&posture, &samples, LagTie::default()).unwrap_err();
+        assert!(why.contains("do not explain"), "{why}");
+    }
+
+    #[test]
+    fn without_angles_or_photodiodes_there_is_nothing_to_compare() {
+        let (mut posture, mut samples) = recordings(0.0);
+        samples.photodiodes.clear();
+        assert!(by_correlation(&posture, &samples, LagTie::default()).unwrap_err().contains("no photodiodes"));
+        posture.angles_deg.clear();
+        assert!(by_correlation(&posture, &samples, LagTie::default()).unwrap_err().contains("no angles"));
+    }
+}

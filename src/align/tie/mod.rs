@@ -1,0 +1,51 @@
+//! How the log's time follows from the video's: by the clock in the picture, by an offset that the user knows, or by the lag at
+//! which the angles best explain the photodiodes.
+
+mod clock;
+mod correlate;
+mod correlation;
+mod offset;
+mod zero;
+
+pub use clock::by_clock;
+pub(super) use clock::resolution_s;
+pub use correlate::{Correlated, LagPeak, LagSearch, Recording, correlate};
+pub use correlation::{LagTie, by_correlation};
+pub use offset::by_offset;
+
+use crate::timebase::Timebase;
+
+/// How two clocks were tied.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum TieMethod {
+    /// By the clock in the picture.
+    Clock,
+    /// By an offset that the user gave.
+    Offset,
+    /// By the lag at which the angles best explain the photodiodes.
+    Correlate,
+}
+
+/// How the log's time follows from the video's, and how surely.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tie {
+    /// How it was found.
+    pub method: TieMethod,
+    /// The log's time in the video's.
+    pub timebase: Timebase,
+    /// The least and the greatest offset (the log's time at the video's time 0) that agree with what was seen, seconds.
+    pub offset_interval_s: Option<[f64; 2]>,
+    /// Root mean square of what the tie leaves over, seconds; none where there is nothing to compare.
+    pub residual_rms_s: Option<f64>,
+    /// For a picture: the video's time and what the tie leaves over there, seconds.
+    pub residuals_s: Vec<[f64; 2]>,
+    /// How sure it is that this is the right tie and no other, 0 to 1; none where nothing tells.
+    pub confidence: Option<f64>,
+    /// Frames in which the clock was read and agrees with the rest.
+    pub frames_read: u64,
+    /// Frames in which it was not, or was not believed.
+    pub frames_abstained: u64,
+    /// What whoever uses the labels should know.
+    pub notes: Vec<String>,
+}

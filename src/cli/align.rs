@@ -1,0 +1,232 @@
+//! `lunula align`: joint angles on photodiode samples.
+
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+use anyhow::Context;
+use clap::{Args, ValueEnum};
+use lunula::align::{
+    AlignError, AlignInputs, AlignOptions, AlignOutputs, AlignReport, AmbientOptions, Columns, LagSearch, LagTie, Sync,
+    TimeUnit, plan, run as run_align,
+};
+
+use super::{Common, Interrupted, Outcome, print_steps};
+
+/// Joint angles and a log of photodiodes, on two clocks, to a labelled training set with a certificate
+///
+/// log time = offset + (1 + drift) * video time. The clock in the picture ties the two (clock_s in the table of angles); so
+/// does an offset that you know; or, without either, the lag at which the photodiodes best explain the angles. Each row of the
+/// log (each lit one, less the unlit light at its time, where there is a column `led`) gets the angles at its time, between
+/// frames that were really seen, with their standard error; what has none stays empty, and label_status says why.
+/// Results: the set, and beside it <training>.sync.json, the certificate (offset, drift, their errors, residuals, what was left
+/// unlabelled), <training>.run.json and pictures of the tie and of the labels over the photodiodes.
+#[derive(Debug, Args)]
+pub(super) struct AlignArgs {
+    /// The table of joint angles of `lunula posture`: time_s, clock_s, <joint>_deg, <joint>_sd_deg
+    #[arg(long, value_name = "JOINTS.csv")]
+    joints: PathBuf,
+    /// The log: time_s, led (1 on, 0 off; may be absent), P1.., Fx_N, Fy_N, Fz_N (.csv, .csv.gz, .parquet; .xdf where built in)
+    #[arg(long, value_name = "LOG.csv")]
+    log: PathBuf,
+    /// The labelled set: time_s, P1.., forces, <joint>_deg, <joint>_sd_deg, label_status, subject, session, sensor_status
+    /// (.csv or .parquet)
+    #[arg(long, value_name = "TRAINING.csv", required_unless_present = "plan")]
+    out: Option<PathBuf>,
+    /// How the clocks are tied: clock (in the picture), offset=SECONDS (the log's time at the video's first frame; with its
+    /// standard error offset=SECONDS+-ERROR, without which labels have no standard errors), correlate
+    /// [default: clock, where the table of angles has it]
+    #[arg(long, value_name = "clock|offset=SECONDS|correlate", value_parser = parse_sync, allow_hyphen_values = true)]
+    sync: Option<Sync>,
+    /// The log's time when the clock in the picture shows zero [default: the log's zero, hour or midnight that makes the two
+    /// overlap]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    clock_zero: Option<f64>,
+    /// With correlate: the offset about which to look [default: that at which log and video begin together]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    lag_about: Option<f64>,
+    /// With correlate: how far from there to look [default: as far as half of the shorter recording overlaps]
+    #[arg(long, value_name = "SECONDS")]
+    max_lag: Option<f64>,
+    /// With correlate: how much later than the finger the photodiodes answer, which is taken off the lag found
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    sensor_lag: Option<f64>,
+    /// Labels are interpolated over no longer time between two frames that were seen [default: two frames]
+    #[arg(long, value_name = "SECONDS")]
+    max_gap: Option<f64>,
+    /// What the log's columns are called, as time_s=stamp,P1=ch_3,Fz_N=fz
+    #[arg(long, value_name = "OURS=THEIRS,..", value_parser = Columns::parse)]
+    columns: Option<Columns>,
+    /// The unit of the log's time where it is a number [default: as its column's name says, else seconds]
+    #[arg(long, value_enum)]
+    time_unit: Option<TimeUnitArg>,
+    /// The lowest and the highest voltage that can be recorded, as 0,10 [default: found where samples pile up at an extreme]
+    #[arg(long, value_name = "LOW,HIGH", value_parser = parse_range, allow_hyphen_values = true)]
+    full_scale: Option<[f64; 2]>,
+    /// Of a log whose clock was reset, which stretch to take, from 1
+    #[arg(long, value_name = "N")]
+    piece: Option<NonZeroUsize>,
+    /// Of an XDF recording, the stream to take
+    #[arg(long, value_name = "NAME")]
+    stream: Option<String>,
+    /// Written into the set's column `subject`
+    #[arg(long)]
+    subject: Option<String>,
+    /// Written into the set's column `session`
+    #[arg(long)]
+    session: Option<String>,
+    /// The angles on the log's clock as an OpenSim motion file as well
+    #[arg(long, value_name = "FILE.mot")]
+    mot: Option<PathBuf>,
+    /// The angles on the log's clock as a BIDS Motion dataset as well (--subject and --session name its folders)
+    #[arg(long, value_name = "FOLDER")]
+    bids: Option<PathBuf>,
+    /// What the finger does, for the names of the BIDS dataset [default: bending]
+    #[arg(long, requires = "bids")]
+    task: Option<String>,
+    /// The markers as a DeepLabCut table as well
+    #[arg(long, value_name = "FILE.csv", requires = "tracks")]
+    dlc: Option<PathBuf>,
+    /// The table of markers of `lunula posture`, for --dlc
+    #[arg(long, value_name = "TRACKS.csv", requires = "dlc")]
+    tracks: Option<PathBuf>,
+    /// Draw no pictures
+    #[arg(long)]
+    no_figures: bool,
+    /// Say what would be done and left out, and do nothing
+    #[arg(long)]
+    plan: bool,
+    #[command(flatten)]
+    common: Common,
+}
+
+/// The unit of the log's time.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+enum TimeUnitArg {
+    S,
+    Ms,
+    Us,
+    Ns,
+}
+
+impl TimeUnitArg {
+    fn unit(self) -> TimeUnit {
+        match self {
+            Self::S => TimeUnit::Seconds,
+            Self::Ms => TimeUnit::Milliseconds,
+            Self::Us => TimeUnit::Microseconds,
+            Self::Ns => TimeUnit::Nanoseconds,
+        }
+    }
+}
+
+fn parse_range(text: &str) -> Result<[f64; 2], String> {
+    let ends = text.split_once(',').and_then(|(low, high)| Some([low.trim().parse().ok()?, high.trim().parse().ok()?]));
+    ends.ok_or_else(|| "write the lowest voltage, a comma, the highest, as 0,10".to_owned())
+}
+
+fn parse_sync(text: &str) -> Result<Sync, String> {
+    let number = |text: &str| text.trim().parse().ok().filter(|number: &f64| number.is_finite());
+    let offset = |text: &str| {
+        let (offset, sd) = text.split_once("+-").map_or((text, None), |(offset, sd)| (offset, Some(sd)));
+        let sd_s = sd.map(number);
+        (sd_s != Some(None)).then_some(())?;
+        Some(Sync::Offset { offset_s: number(offset)?, sd_s: sd_s.flatten() })
+    };
+    let sync = match text {
+        "clock" => Some(Sync::Clock),
+        "correlate" => Some(Sync::Correlate),
+        other => other.strip_prefix("offset=").and_then(offset),
+    };
+    sync.ok_or_else(|| {
+        "choose clock, offset=SECONDS (offset=60.25, or with its standard error offset=60.25+-0.01) or correlate"
+            .to_owned()
+    })
+}
+
+pub(super) fn run(args: &AlignArgs) -> anyhow::Result<Outcome> {
+    let stop = args.common.start()?;
+    let inputs = AlignInputs { joints: args.joints.clone(), log: args.log.clone(), tracks: args.tracks.clone() };
+    let mut columns = args.columns.clone().unwrap_or_default();
+    columns.time_unit = args.time_unit.map(TimeUnitArg::unit);
+    columns.piece = args.piece;
+    columns.stream.clone_from(&args.stream);
+    let options = AlignOptions {
+        sync: args.sync,
+        columns,
+        ambient: AmbientOptions { full_scale_v: args.full_scale },
+        max_gap_s: args.max_gap,
+        clock_zero_s: args.clock_zero,
+        lag: LagTie {
+            search: LagSearch { about_s: args.lag_about, most_s: args.max_lag, ..LagSearch::default() },
+            sensor_lag_s: args.sensor_lag,
+        },
+        subject: args.subject.clone(),
+        session: args.session.clone(),
+        task: args.task.clone(),
+    };
+    let outputs = args.out.as_ref().map(|training| AlignOutputs {
+        training: training.clone(),
+        mot: args.mot.clone(),
+        bids: args.bids.clone(),
+        dlc: args.dlc.clone(),
+        figures: !args.no_figures,
+    });
+    if args.plan {
+        let steps = plan(&inputs, &options, outputs.as_ref())?;
+        if args.common.json {
+            args.common.print_json(&serde_json::json!({ "job": "align", "plan": steps, "failed": [] }))?;
+        } else {
+            print_steps(&steps);
+        }
+        return Ok(Outcome::Done);
+    }
+    let outputs = outputs.context("--out is needed")?;
+    match run_align(&inputs, &options, &outputs, &stop) {
+        Err(AlignError::Interrupted) => Err(Interrupted.into()),
+        Err(error) => Err(error.into()),
+        Ok(report) => finish(&args.common, &report, &outputs),
+    }
+}
+
+fn finish(common: &Common, report: &AlignReport, outputs: &AlignOutputs) -> anyhow::Result<Outcome> {
+    if !common.quiet {
+        for note in &report.warnings {
+            eprintln!("note: {note}");
+        }
+    }
+    common.print_json(report)?;
+    let (tie, rows) = (&report.certificate, &report.certificate.rows);
+    let plus_minus = |sd: Option<f64>, unit: &str| sd.map_or(String::new(), |sd| format!(" ± {sd:.4}{unit}"));
+    common.say(&format!(
+        "offset {:.4}{} s, drift {:.1}{} ppm ({:?}); {} frames read, {} not",
+        tie.offset_s,
+        plus_minus(tie.offset_sd_s, ""),
+        tie.drift_ppm,
+        plus_minus(tie.drift_sd_ppm, ""),
+        tie.method,
+        tie.frames_read,
+        tie.frames_abstained
+    ));
+    common.say(&format!(
+        "{} of {} rows labelled; {} with a fault of the sensor",
+        rows.rows_labelled, report.rows, report.rows_with_faults
+    ));
+    common.say(&format!(
+        "without: {} before the video, {} after it, {} in gaps",
+        rows.before_the_video, rows.after_the_video, rows.in_gaps
+    ));
+    if common.verbose {
+        for stage in &report.stages {
+            common.say(&format!("{:<28} {:>9.3} s", stage.stage, stage.thread_s));
+        }
+        for what in &report.left_out {
+            common.say(&format!("left out: {what}"));
+        }
+    }
+    common.say(&format!(
+        "{:.2} s; look at {}",
+        report.wall_s,
+        report.pictures.first().unwrap_or(&outputs.training).display()
+    ));
+    Ok(Outcome::Done)
+}

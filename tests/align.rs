@@ -1,0 +1,307 @@
+//! `lunula align` from end to end on generated recordings: from nothing to a labelled set whose certificate agrees with the
+//! truth.
+
+mod util;
+
+use std::collections::BTreeMap;
+
+use util::{Answer, Dir};
+
+type Row = BTreeMap<String, String>;
+
+/// What the log's clock says at the first frame of every scene here.
+const OFFSET_S: f64 = 77.7123;
+
+/// A video, its log and its table of angles: 640 x 360, 4 s of bending at 0.25 Hz, irregular frames, a tenths clock.
+fn scene(video: &[&str], log: &[&str]) -> Dir {
+    let dir = Dir::new();
+    let both = ["--out", "s", "--seed", "5", "--seconds", "4", "--bend-hz", "0.25", "--clock-offset", "77.7123"];
+    let few = ["--size", "640x360", "--vfr", "--clock", "mm:ss.t", "-q"];
+    dir.lunula(&[&["phantom", "video"], &both[..], &few, video].concat()).expect(0);
+    dir.lunula(&[&["phantom", "log"], &both[..], &["-q"], log].concat()).expect(0);
+    dir
+}
+
+fn posture(dir: &Dir) -> Answer {
+    dir.lunula(&["posture", "s/video.mp4", "--markers", "s/markers.toml", "--out", "joints.csv", "--no-figures"])
+}
+
+fn align(dir: &Dir, more: &[&str]) -> Answer {
+    dir.lunula(&[&["align", "--joints", "joints.csv", "--log", "s/log.csv", "--out", "training.csv"], more].concat())
+}
+
+fn number(row: &Row, column: &str) -> Option<f64> {
+    let cell = &row[column];
+    (!cell.is_empty()).then(|| cell.parse().unwrap_or_else(|_| panic!("{column}: `{cell}` is no number")))
+}
+
+fn certificate(dir: &Dir) -> serde_json::Value {
+    serde_json::from_slice(&std::fs::read(dir.path("training.sync.json")).expect("a certificate")).expect("JSON")
+}
+
+/// The exact angle of each sample of the log, by the log's own stamp.
+fn truth(dir: &Dir, joint: &str) -> BTreeMap<String, f64> {
+    let (log, truth) = (dir.table("s/log.csv"), dir.table("s/truth/log.csv"));
+    let column = format!("{joint}_deg");
+    log.iter()
+        .zip(&truth)
+        .map(|(row, exact)| (row["time_s"].clone(), exact[&column].parse().expect("a number")))
+        .collect()
+}
+
+/// Labels of a small scene err by no more, degrees RMS; the README tells what is measured on large ones.
+const LABEL_RMS_DEG: [(&str, f64); 3] = [("J1", 0.15), ("J2", 0.3), ("J3", 0.5)];
+
+#[track_caller]
+fn labels_are_right(dir: &Dir, set: &[Row]) {
+    for (joint, bound) in LABEL_RMS_DEG {
+        let exact = truth(dir, joint);
+        let column = format!("{joint}_deg");
+        let errors: Vec<f64> =
+            set.iter().filter_map(|row| Some((number(row, &column)? - exact[&row["time_s"]]).powi(2))).collect();
+        assert!(!errors.is_empty(), "{joint} has labels");
+        let rms = (errors.iter().sum::<f64>() / errors.len() as f64).sqrt();
+        assert!(rms <= bound, "{joint}: {rms} degrees RMS over {}", errors.len());
+    }
+}
+
+#[test]
+fn from_nothing_to_a_set_whose_certificate_agrees_with_the_truth() {
+    let dir = scene(&["--hide", "middle_dist@40+14"], &[]);
+    let report = posture(&dir).expect(0);
+    assert!(report.stderr.is_empty(), "{}", report.stderr);
+    let header = std::fs::read_to_string(dir.path("joints.csv")).expect("text");
+    assert!(
+        header.starts_with(
+            "frame,time_s,clock_s,J1_deg,J1_sd_deg,J2_deg,J2_sd_deg,J3_deg,J3_sd_deg,status,\
+             clock_read_s,clock_sd_s,clock_low_s,clock_high_s\n"
+        ),
+        "{header:.200}"
+    );
+    let shown = dir.table("s/truth/clock.csv");
+    let angles = dir.table("joints.csv");
+    let read: Vec<(f64, f64)> = angles
+        .iter()
+        .zip(&shown)
+        .filter_map(|(row, exact)| Some((number(row, "clock_read_s")?, number(exact, "shown_s")?)))
+        .collect();
+    assert!(read.len() * 20 >= angles.len() * 19, "{} of {} frames read", read.len(), angles.len());
+    assert!(read.iter().all(|(read, exact)| (read - exact).abs() <= 1e-6), "none wrong");
+
+    let json = align(&dir, &["--subject", "S1", "--session", "2", "--json"]).expect(0).json();
+    let certificate = certificate(&dir);
+    assert_eq!(json["certificate"], certificate);
+    let of = |key: &str| certificate[key].as_f64().unwrap_or_else(|| panic!("{key}: {}", certificate[key]));
+    assert_eq!(certificate["method"], "clock");
+    // Sixty readings of irregular frames leave a few milliseconds.
+    assert!((of("offset_s") - OFFSET_S).abs() <= 6e-3, "{certificate}");
+    let ends = &certificate["offset_interval_s"];
+    assert!(ends[0].as_f64().unwrap() <= OFFSET_S && OFFSET_S <= ends[1].as_f64().unwrap(), "{ends}");
+    assert!(of("offset_sd_s") > 0.0 && of("residual_rms_s") > 0.01 && of("drift_sd_ppm") > 0.0);
+    assert_eq!(of("frames_read") + of("frames_abstained"), angles.len() as f64);
+
+    let set = dir.table("training.csv");
+    let header = std::fs::read_to_string(dir.path("training.csv")).expect("text");
+    assert_eq!(
+        header.lines().next(),
+        Some(
+            "time_s,P1,P2,P3,P4,P5,P6,P7,P8,Fx_N,Fy_N,Fz_N,J1_deg,J2_deg,J3_deg,J1_sd_deg,J2_sd_deg,J3_sd_deg,\
+             label_status,subject,session,sensor_status"
+        )
+    );
+    labels_are_right(&dir, &set);
+    assert!(set.iter().all(|row| row["subject"] == "S1" && row["session"] == "2"));
+    let labelled = set.iter().filter(|row| row["label_status"] == "ok").count();
+    assert_eq!((of("rows_labelled"), of("rows_unlabelled")), (labelled as f64, (set.len() - labelled) as f64));
+    // Half of the log's rows are unlit.
+    let lit = dir.table("s/log.csv").iter().filter(|row| row["led"] == "1").count();
+    assert_eq!(set.len(), lit);
+    // The log begins a second before the video and ends a second after.
+    for why in ["before the video", "after the video"] {
+        let rows: Vec<&Row> = set.iter().filter(|row| row["label_status"] == why).collect();
+        assert!((10..=14).contains(&rows.len()), "{why}: {}", rows.len());
+        assert!(rows.iter().all(|row| row["J2_deg"].is_empty() && row["J2_sd_deg"].is_empty()));
+    }
+    // Nothing is labelled where the marker was hidden; J1 does not need it.
+    let seen = |frame: usize| OFFSET_S + number(&shown[frame], "time_s").unwrap();
+    let (from, to) = (seen(41), seen(52));
+    let hidden: Vec<&Row> = set.iter().filter(|row| (from..to).contains(&number(row, "time_s").unwrap())).collect();
+    assert!(hidden.len() >= 3, "{}", hidden.len());
+    for row in hidden {
+        assert_eq!((row["J2_deg"].as_str(), row["label_status"].as_str()), ("", "gap: J2 J3"));
+        assert!(!row["J1_deg"].is_empty());
+    }
+    let gap = &certificate["gaps"][0];
+    assert!(gap["from_s"].as_f64().unwrap() <= from && gap["to_s"].as_f64().unwrap() >= to, "{gap}");
+    for picture in ["training-tie.png", "training-tie.svg", "training-labels.png", "training-labels.svg"] {
+        assert!(dir.path(picture).is_file(), "{picture}");
+    }
+}
+
+#[test]
+fn the_same_input_gives_the_same_bytes_and_parquet_the_same_set() {
+    let dir = scene(&[], &[]);
+    posture(&dir).expect(0);
+    align(&dir, &["-q"]).expect(0);
+    let first =
+        ["training.csv", "training.sync.json", "training-tie.png"].map(|name| std::fs::read(dir.path(name)).unwrap());
+    let one = ["--threads", "1"];
+    dir.lunula(
+        &[&["posture", "s/video.mp4", "--markers", "s/markers.toml", "--out", "joints.csv", "-q"], &one[..]].concat(),
+    )
+    .expect(0);
+    align(&dir, &["-q", "--threads", "1"]).expect(0);
+    let again =
+        ["training.csv", "training.sync.json", "training-tie.png"].map(|name| std::fs::read(dir.path(name)).unwrap());
+    assert_eq!(first, again);
+
+    dir.lunula(&["align", "--joints", "joints.csv", "--log", "s/log.csv", "--out", "training.parquet", "-q"]).expect(0);
+    let [csv, parquet] =
+        ["training.csv", "training.parquet"].map(|name| lunula::table::Table::read(&dir.path(name)).unwrap());
+    assert_eq!((csv.names(), csv.rows()), (parquet.names(), parquet.rows()));
+    for name in csv.names() {
+        if name.ends_with("_status") || name.starts_with('s') {
+            assert_eq!(csv.texts(name).unwrap(), parquet.texts(name).unwrap(), "{name}");
+        } else {
+            assert_eq!(csv.numbers(name).unwrap(), parquet.numbers(name).unwrap(), "{name}");
+        }
+    }
+    let fact =
+        |key: &str| parquet.facts().iter().find(|(name, _)| name == key).map(|(_, value)| value.clone()).unwrap();
+    assert!(fact("forces").contains("negative Fz_N") && fact("certificate").contains("\"offset_s\""));
+}
+
+#[test]
+fn a_clock_that_is_looked_for_says_the_same() {
+    let dir = scene(&["--clock-roi-auto", "--clock-font", "segments"], &[]);
+    posture(&dir).expect(0);
+    align(&dir, &[]).expect(0);
+    let offset_s = certificate(&dir)["offset_s"].as_f64().unwrap();
+    assert!((offset_s - OFFSET_S).abs() <= 6e-3, "{offset_s}");
+}
+
+#[test]
+fn without_a_clock_an_offset_is_needed() {
+    let dir = scene(&[], &[]);
+    let markers = std::fs::read_to_string(dir.path("s/markers.toml")).unwrap();
+    dir.write("s/markers.toml", markers.split("\n[clock]").next().unwrap());
+    let report = posture(&dir).expect(0);
+    let header = std::fs::read_to_string(dir.path("joints.csv")).unwrap();
+    assert!(
+        header.lines().next().unwrap().ends_with(",status"),
+        "no clock's columns: {report:?}",
+        report = report.stderr
+    );
+    align(&dir, &[]).expect(2).says("--sync offset=SECONDS");
+    align(&dir, &["--sync", "clock"]).expect(2).says("clock_s");
+    assert!(!dir.path("training.csv").exists() && !dir.path("training.sync.json").exists());
+
+    align(&dir, &["--sync", "offset=77.7123"]).expect(0);
+    let set = dir.table("training.csv");
+    labels_are_right(&dir, &set);
+    // How well the offset is known was not said, so no label's error is known.
+    assert!(set.iter().all(|row| row["J2_sd_deg"].is_empty()));
+    assert!(certificate(&dir)["offset_sd_s"].is_null());
+    align(&dir, &["--sync", "offset=77.7123+-0.005"]).expect(0);
+    let set = dir.table("training.csv");
+    assert!(set.iter().filter(|row| row["label_status"] == "ok").all(|row| number(row, "J2_sd_deg").unwrap() > 0.0));
+    align(&dir, &["--sync", "offset=soon"]).expect(2).says("offset=60.25");
+}
+
+#[test]
+fn midnight_in_the_picture_and_dates_in_the_log() {
+    let clock = ["--clock", "hh:mm:ss.t", "--clock-offset", "86398.3"];
+    let dir = scene(&[], &[]);
+    let both = ["--out", "s", "--seed", "5", "--seconds", "4", "--bend-hz", "0.25", "-q"];
+    dir.lunula(&[&["phantom", "video", "--size", "640x360", "--vfr"], &both[..], &clock].concat()).expect(0);
+    dir.lunula(&[&["phantom", "log", "--stamps", "datetime", "--clock-offset", "86398.3"], &both[..]].concat())
+        .expect(0);
+    posture(&dir).expect(0);
+    let read: Vec<f64> = dir.table("joints.csv").iter().filter_map(|row| number(row, "clock_read_s")).collect();
+    assert!(read.windows(2).all(|pair| pair[1] >= pair[0]), "counted on over midnight");
+    align(&dir, &[]).expect(0);
+    let rows = certificate(&dir)["rows_labelled"].as_u64().unwrap();
+    assert!((45..=51).contains(&rows), "{rows} rows of 25 Hz, every second one lit, in 4 s");
+}
+
+#[test]
+fn a_clock_that_is_hidden_half_of_the_time_ties_and_one_that_stops_or_jumps_does_not() {
+    let hidden = scene(&["--clock-hide", "20+60"], &[]);
+    posture(&hidden).expect(0);
+    align(&hidden, &[]).expect(0);
+    let offset_s = certificate(&hidden)["offset_s"].as_f64().unwrap();
+    assert!((offset_s - OFFSET_S).abs() <= 1e-2, "{offset_s}");
+    for (option, at, words) in [("--clock-stop", "60", "stand"), ("--clock-jump", "60+5", "jump")] {
+        let dir = scene(&[option, at], &[]);
+        let answer = posture(&dir).expect(1);
+        assert!(answer.stderr.contains("clock"), "{}", answer.stderr);
+        assert!(answer.stderr.contains(words), "{option}: {}", answer.stderr);
+        // The angles are there all the same.
+        assert!(dir.table("joints.csv").iter().all(|row| row["clock_s"].is_empty() && row["status"] == "ok"));
+        align(&dir, &[]).expect(2).says("no clock");
+        assert!(!dir.path("training.csv").exists());
+    }
+}
+
+#[test]
+fn exports_for_other_tools() {
+    let dir = scene(&[], &[]);
+    dir.lunula(&[
+        "posture",
+        "s/video.mp4",
+        "--markers",
+        "s/markers.toml",
+        "--out",
+        "joints.csv",
+        "--tracks",
+        "tracks.csv",
+        "-q",
+    ])
+    .expect(0);
+    let all =
+        ["--mot", "a.mot", "--bids", "bids", "--dlc", "dlc.csv", "--tracks", "tracks.csv", "--subject", "S1", "-q"];
+    align(&dir, &all).expect(0);
+    let mot = std::fs::read_to_string(dir.path("a.mot")).unwrap();
+    assert!(mot.contains("inDegrees=yes") && mot.contains("endheader"), "{mot:.200}");
+    let motion = dir.path("bids/sub-S1/motion/sub-S1_task-bending_tracksys-lunula_motion.tsv");
+    let frames = dir.table("joints.csv").len();
+    assert_eq!(std::fs::read_to_string(motion).unwrap().lines().count(), frames);
+    assert_eq!(std::fs::read_to_string(dir.path("dlc.csv")).unwrap().lines().count(), frames + 3);
+    align(&dir, &["--bids", "other"]).expect(2).says("subject");
+    assert!(!dir.path("other").exists());
+}
+
+#[test]
+fn the_plan_tells_and_does_nothing() {
+    let dir = scene(&[], &["--no-led"]);
+    posture(&dir).expect(0);
+    let plan = dir.lunula(&["align", "--joints", "joints.csv", "--log", "s/log.csv", "--plan"]).expect(0).stdout;
+    for words in ["ambient light taken away", "left out", "no column `led`", "only --sync correlate"] {
+        assert!(plan.contains(words), "`{words}` in:\n{plan}");
+    }
+    let stands = dir.bytes_of(".");
+    dir.lunula(&["align", "--joints", "joints.csv", "--log", "s/log.csv", "--out", "t/training.csv", "--plan"])
+        .expect(0);
+    assert_eq!(dir.bytes_of("."), stands);
+}
+
+#[test]
+fn the_trade_off_measures_the_clock_read_in_fewer_and_fewer_frames() {
+    let dir = scene(&[], &[]);
+    let report = dir
+        .lunula(&["tradeoff", "align", "--input", "s", "--truth", "s/truth", "--out", "t", "--repeats", "1", "--json"])
+        .expect(0)
+        .json();
+    let rows = report["rows"].as_array().unwrap();
+    let of = |setting: &str| rows.iter().find(|row| row["setting"] == setting).unwrap_or_else(|| panic!("{report}"));
+    let [every, few] = ["clock in every frame", "clock in 1 of 20 frames"].map(of);
+    // The first second and a half is read in any case.
+    assert!(every["error"].as_f64().unwrap() <= 6e-3 && few["error"].as_f64().unwrap() <= 0.1, "{report}");
+    assert!(few["work"].as_u64().unwrap() * 2 <= every["work"].as_u64().unwrap());
+    // Where nothing ties, the report says which and why.
+    let told = report["warnings"].as_array().unwrap().len();
+    assert_eq!(rows.len() + told, 6, "{report}");
+    for file in ["t/tradeoff.csv", "t/tradeoff.png", "t/tradeoff.svg"] {
+        assert!(dir.path(file).is_file(), "{file}");
+    }
+}
