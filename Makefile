@@ -17,8 +17,10 @@ demo: system
 	cargo build --release --locked
 	$(LUNULA) phantom photos --seed 1 --light chamber --out $(DEMO)/scene
 	$(LUNULA) photos $(DEMO)/scene/photos --out $(DEMO)/coloration
-	$(LUNULA) phantom video --seed 1 --out $(DEMO)/finger
+	$(LUNULA) phantom video --seed 1 --out $(DEMO)/finger --vfr --clock mm:ss.t
+	$(LUNULA) phantom log --seed 1 --out $(DEMO)/finger
 	$(LUNULA) posture $(DEMO)/finger/video.mp4 --markers $(DEMO)/finger/markers.toml --out $(DEMO)/posture/joints.csv --overlay $(DEMO)/posture/overlay.mp4
+	$(LUNULA) align --joints $(DEMO)/posture/joints.csv --log $(DEMO)/finger/log.csv --out $(DEMO)/align/training.csv
 	@echo
 	@echo "Average coloration of 16 generated subjects in eight poses:"
 	@echo "  $(DEMO)/coloration/report.html            everything on one page"
@@ -30,9 +32,14 @@ demo: system
 	@echo "  $(DEMO)/posture/joints-coupling.png       J3 against J2, as Fig. 33 of the thesis"
 	@echo "  $(DEMO)/posture/overlay.mp4               the video with what was tracked"
 	@echo "  $(DEMO)/finger/truth/joints.csv           the exact angles, to compare"
+	@echo
+	@echo "The angles on the samples of a generated log of photodiodes, by the clock in the picture:"
+	@echo "  $(DEMO)/align/training.csv                the labelled set"
+	@echo "  $(DEMO)/align/training.sync.json          its certificate"
+	@echo "  $(DEMO)/align/training-labels.png         labels over photodiodes"
 
 test: system
-	cargo test --locked
+	cargo test --locked --features xdf
 
 lint: system
 	cargo fmt --check
@@ -42,6 +49,7 @@ lint: system
 bench: system
 	cargo bench --locked --bench photos
 	cargo bench --locked --bench posture
+	cargo bench --locked --bench align
 
 # Installs the packages of system-packages.txt that are missing; does nothing where all are there.
 system:

@@ -3,11 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
+use lunula::phantom::log::{self, LogOptions, LogScene};
 use lunula::phantom::nail::Pose;
 use lunula::phantom::photos::{PhotoOptions, write};
+use lunula::phantom::screen::Clock;
+use lunula::phantom::trajectory::Trajectory;
 use lunula::phantom::video::{self, Scene, VideoOptions};
 use lunula::tradeoff::Row;
-use lunula::tradeoff::{photos as photo_jobs, posture as posture_jobs};
+use lunula::tradeoff::{align as align_jobs, photos as photo_jobs, posture as posture_jobs};
 
 use super::phantom::SceneArg;
 use super::{Common, Outcome};
@@ -23,60 +26,84 @@ pub(super) struct TradeoffArgs {
 enum Job {
     Photos(PhotosArgs),
     Posture(PostureArgs),
+    Align(AlignArgs),
+}
+
+/// What every trade-off takes.
+#[derive(Debug, Args)]
+struct Measured {
+    /// Folder for the results
+    #[arg(long)]
+    out: PathBuf,
+    /// A folder to measure on, as `lunula phantom` writes it
+    #[arg(long, requires = "truth")]
+    input: Option<PathBuf>,
+    /// Its truth/
+    #[arg(long, requires = "input")]
+    truth: Option<PathBuf>,
+    /// Seed of the synthetic inputs
+    #[arg(long, default_value_t = 1, conflicts_with = "input")]
+    seed: u64,
+    /// Runs of each setting; the median time counts
+    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    repeats: u16,
+    #[command(flatten)]
+    common: Common,
+}
+
+impl Measured {
+    /// The input and its truth; where none is given, `make` writes them into a folder that goes away with the second value.
+    fn scenes(
+        &self,
+        make: impl FnOnce(&Path) -> anyhow::Result<PathBuf>,
+    ) -> anyhow::Result<(PathBuf, PathBuf, Option<tempfile::TempDir>)> {
+        if let Some((input, truth)) = self.input.clone().zip(self.truth.clone()) {
+            return Ok((input, truth, None));
+        }
+        let folder = tempfile::tempdir()?;
+        Ok((make(folder.path())?, folder.path().join("truth"), Some(folder)))
+    }
+
+    fn threads(&self) -> usize {
+        self.common.threads.map_or(0, usize::from)
+    }
 }
 
 /// Resampling against the exact normalized pictures, and detection against the exact outlines
 ///
-/// On synthetic photographs of its own, or on --input with --truth, laid out as `lunula phantom photos` writes them.
+/// On synthetic photographs of its own, or on --input (a set of photographs) with --truth.
 #[derive(Debug, Args)]
 struct PhotosArgs {
-    /// Folder for the results
-    #[arg(long)]
-    out: PathBuf,
-    /// A set of photographs
-    #[arg(long, requires = "truth")]
-    input: Option<PathBuf>,
-    /// Its truth/
-    #[arg(long, requires = "input")]
-    truth: Option<PathBuf>,
-    /// Seed of the synthetic photographs
-    #[arg(long, default_value_t = 1, conflicts_with = "input")]
-    seed: u64,
     /// Subjects of the synthetic photographs, in four poses
     #[arg(long, default_value_t = 16, conflicts_with = "input")]
     subjects: u32,
-    /// Runs of each setting; the median time counts
-    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=1000))]
-    repeats: u16,
     #[command(flatten)]
-    common: Common,
+    measured: Measured,
 }
 
 /// Joint angles against the exact ones: planes used, rounds of refinement, where markers are searched, and OpenCV's usual recipe
 ///
-/// On a synthetic video of its own, or on --input with --truth, as `lunula phantom video` writes them.
+/// On a synthetic video of its own, or on --input (a folder with video.mp4 and markers.toml) with --truth.
 #[derive(Debug, Args)]
 struct PostureArgs {
-    /// Folder for the results
-    #[arg(long)]
-    out: PathBuf,
-    /// Folder with video.mp4 and markers.toml
-    #[arg(long, requires = "truth")]
-    input: Option<PathBuf>,
-    /// Its truth/
-    #[arg(long, requires = "input")]
-    truth: Option<PathBuf>,
-    /// Seed of the synthetic video
-    #[arg(long, default_value_t = 1, conflicts_with = "input")]
-    seed: u64,
     /// The synthetic video's scene, as of `lunula phantom video`
     #[arg(long, value_enum, default_value = "clean", conflicts_with = "input")]
     scene: SceneArg,
-    /// Runs of each setting; the median time counts
-    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=1000))]
-    repeats: u16,
     #[command(flatten)]
-    common: Common,
+    measured: Measured,
+}
+
+/// The log's time over the video against the exact one: in how many frames the clock is read, and no clock at all
+///
+/// On a synthetic video and log of its own (random movement, irregular frames), or on --input (a folder with video.mp4,
+/// markers.toml with a [clock], and log.csv) with --truth.
+#[derive(Debug, Args)]
+struct AlignArgs {
+    /// Their length
+    #[arg(long, default_value_t = 60.0, conflicts_with = "input")]
+    seconds: f64,
+    #[command(flatten)]
+    measured: Measured,
 }
 
 const POSES: [Pose; 4] = [Pose::Nominal, Pose::Normal, Pose::LateralPositive, Pose::Extension];
@@ -85,57 +112,91 @@ pub(super) fn run(args: &TradeoffArgs) -> anyhow::Result<Outcome> {
     match &args.job {
         Job::Photos(args) => photos(args),
         Job::Posture(args) => posture(args),
+        Job::Align(args) => align(args),
     }
 }
 
 fn photos(args: &PhotosArgs) -> anyhow::Result<Outcome> {
-    args.common.start()?;
-    let scenes = tempfile::tempdir()?;
-    let (set, truth) = match args.input.clone().zip(args.truth.clone()) {
-        Some(given) => given,
-        None => {
-            let options = PhotoOptions {
-                seed: args.seed,
-                subjects: args.subjects,
-                poses: POSES.to_vec(),
-                ..PhotoOptions::default()
-            };
-            write(&options, scenes.path())?;
-            (scenes.path().join("photos"), scenes.path().join("truth"))
-        }
-    };
-    let settings = photo_jobs::Settings { set, truth, repeats: usize::from(args.repeats) };
-    finish("photos", &photo_jobs::measure(&settings)?, &args.out, &args.common)
+    let measured = &args.measured;
+    measured.common.start()?;
+    let (set, truth, _kept) = measured.scenes(|folder| {
+        let options = PhotoOptions {
+            seed: measured.seed,
+            subjects: args.subjects,
+            poses: POSES.to_vec(),
+            ..PhotoOptions::default()
+        };
+        write(&options, folder)?;
+        Ok(folder.join("photos"))
+    })?;
+    let settings = photo_jobs::Settings { set, truth, repeats: usize::from(measured.repeats) };
+    finish("photos", &photo_jobs::measure(&settings)?, &[], measured)
 }
 
 fn posture(args: &PostureArgs) -> anyhow::Result<Outcome> {
-    args.common.start()?;
-    let scenes = tempfile::tempdir()?;
-    let (input, truth) = match args.input.clone().zip(args.truth.clone()) {
-        Some(given) => given,
-        None => {
-            let options = VideoOptions { seed: args.seed, ..VideoOptions::new(args.scene.preset()) };
-            video::write(&Scene::new(options)?, scenes.path())?;
-            (scenes.path().to_owned(), scenes.path().join("truth"))
-        }
-    };
+    let measured = &args.measured;
+    measured.common.start()?;
+    let (input, truth, _kept) = measured.scenes(|folder| {
+        let options = VideoOptions { seed: measured.seed, ..VideoOptions::new(args.scene.preset()) };
+        video::write(&Scene::new(options)?, folder)?;
+        Ok(folder.to_owned())
+    })?;
     let settings = posture_jobs::Settings {
         video: input.join("video.mp4"),
         markers: input.join("markers.toml"),
         truth,
-        repeats: usize::from(args.repeats),
-        threads: args.common.threads.map_or(0, usize::from),
+        repeats: usize::from(measured.repeats),
+        threads: measured.threads(),
     };
-    finish("posture", &posture_jobs::measure(&settings)?, &args.out, &args.common)
+    finish("posture", &posture_jobs::measure(&settings)?, &[], measured)
 }
 
-fn finish(job: &str, rows: &[Row], out: &Path, common: &Common) -> anyhow::Result<Outcome> {
+fn align(args: &AlignArgs) -> anyhow::Result<Outcome> {
+    let measured = &args.measured;
+    measured.common.start()?;
+    let (input, truth, _kept) = measured.scenes(|folder| {
+        let trajectory = Trajectory::Random { hz: 0.1, seed: measured.seed };
+        let clock = Clock::default();
+        let log = LogOptions {
+            seed: measured.seed,
+            seconds: args.seconds,
+            trajectory: trajectory.clone(),
+            clock_offset_s: clock.offset_s,
+            ..LogOptions::default()
+        };
+        let video = VideoOptions {
+            seed: measured.seed,
+            seconds: args.seconds,
+            trajectory,
+            jitter: 0.4,
+            clock: Some(clock),
+            ..VideoOptions::sized(640, 360)
+        };
+        video::write(&Scene::new(video)?, folder)?;
+        log::write(&LogScene::new(log)?, folder)?;
+        Ok(folder.to_owned())
+    })?;
+    let settings = align_jobs::Settings {
+        video: input.join("video.mp4"),
+        markers: input.join("markers.toml"),
+        log: input.join("log.csv"),
+        truth,
+        repeats: usize::from(measured.repeats),
+        threads: measured.threads(),
+    };
+    let (rows, refused) = align_jobs::measure(&settings)?;
+    finish("align", &rows, &refused, measured)
+}
+
+fn finish(job: &str, rows: &[Row], warnings: &[String], measured: &Measured) -> anyhow::Result<Outcome> {
+    let Measured { out, common, .. } = measured;
+    common.warn(warnings);
     lunula::tradeoff::write(rows, &format!("lunula {job}"), out)?;
     common.print_json(&serde_json::json!({
         "job": format!("tradeoff {job}"),
         "version": env!("CARGO_PKG_VERSION"),
         "rows": rows,
-        "warnings": [],
+        "warnings": warnings,
     }))?;
     for row in rows {
         let Row { setting, error, error_unit, run_s, .. } = row;

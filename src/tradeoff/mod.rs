@@ -2,6 +2,7 @@
 //!
 //! It calls the same entry as the command line, so that a figure on a curve is the figure a user gets.
 
+pub mod align;
 pub mod photos;
 pub mod posture;
 pub mod recipe;
