@@ -149,8 +149,11 @@ pub fn run(
         BidsNames::new(options.subject.as_deref(), options.session.as_deref(), task, "lunula")
     });
     let names = names.transpose()?;
-    let posture = stages.time("read angles", || Posture::read(&inputs.joints))?;
-    let log = stages.time("read log", || Log::read(&inputs.log, &options.columns))?;
+    let (posture, log) = rayon::join(
+        || stages.time("read angles", || Posture::read(&inputs.joints)),
+        || stages.time("read log", || Log::read(&inputs.log, &options.columns)),
+    );
+    let (posture, log) = (posture?, log?);
     go_on()?;
     let samples = stages.time("ambient light", || samples(&log, &options.ambient))?;
     go_on()?;

@@ -48,8 +48,8 @@ impl Results {
         let at = self.places.place(path)?;
         let mut table = TableWriter::create(&at, path, columns, &facts(&text))?;
         let [subject, session] = [&options.subject, &options.session].map(|name| name.as_deref().unwrap_or_default());
-        for (row, &time_s) in samples.time_s.iter().enumerate() {
-            let mut cells = vec![Value::Number(time_s)];
+        table.write_rows(samples.time_s.len(), &|row, write| {
+            let mut cells = vec![Value::Number(samples.time_s[row])];
             cells.extend(channels().map(|channel| Value::Number(channel.values[row])));
             for columns in [&labels.angles_deg, &labels.sds_deg] {
                 cells.extend(columns.iter().map(|column| Value::Number(column[row])));
@@ -58,8 +58,8 @@ impl Results {
             let sensor = if fault.is_empty() { "ok" } else { fault };
             let status = labels.status(row);
             cells.extend([status.as_ref(), subject, session, sensor].map(Value::Text));
-            table.write(&cells)?;
-        }
+            write(&cells);
+        })?;
         table.finish()?;
         self.write(&beside(path, ".sync.json"), &text)
     }

@@ -1,21 +1,34 @@
 //! Tables as comma-separated values.
 
 use std::fs::File;
+use std::io::Write;
 use std::path::Path;
 
 use super::{Column, ColumnKind, Value, number_text};
 
 /// A CSV file in the making.
 #[derive(Debug)]
-pub(super) struct CsvWriter {
-    rows: csv::Writer<File>,
+pub(super) struct CsvWriter<W: Write> {
+    rows: csv::Writer<W>,
 }
 
-impl CsvWriter {
+impl CsvWriter<File> {
     pub(super) fn create(at: &Path, columns: &[Column]) -> Result<Self, String> {
         let mut rows = csv::Writer::from_path(at).map_err(|e| e.to_string())?;
         rows.write_record(columns.iter().map(|c| &c.name)).map_err(|e| e.to_string())?;
         Ok(Self { rows })
+    }
+
+    /// Adds rows that were formatted elsewhere.
+    pub(super) fn append(&mut self, text: &[u8]) -> Result<(), String> {
+        self.rows.flush().and_then(|()| self.rows.get_ref().write_all(text)).map_err(|e| e.to_string())
+    }
+}
+
+impl<W: Write> CsvWriter<W> {
+    /// Rows alone, without the columns' names.
+    pub(super) fn new(into: W) -> Self {
+        Self { rows: csv::Writer::from_writer(into) }
     }
 
     pub(super) fn write(&mut self, cells: &[Value<'_>], columns: &[Column]) -> Result<(), String> {
@@ -35,8 +48,9 @@ impl CsvWriter {
         self.rows.write_record(None::<&[u8]>).map_err(|e| e.to_string())
     }
 
-    pub(super) fn finish(self) -> Result<(), String> {
-        self.rows.into_inner().map(drop).map_err(|e| e.to_string())
+    /// What was written to.
+    pub(super) fn finish(self) -> Result<W, String> {
+        self.rows.into_inner().map_err(|e| e.to_string())
     }
 }
 

@@ -232,3 +232,30 @@ fn not_a_number_of_other_programs_is_told_from_infinity() {
     assert!(a[0] == Some(1.0) && a[1].is_some_and(f64::is_nan) && a[2].is_none());
     assert!(table.numbers("a").is_err() && table.numbers_or_nan("b").is_err());
 }
+
+#[test]
+fn many_rows_at_once_are_the_same_as_row_by_row() {
+    let columns = || vec![Column::integer("k"), Column::number("x"), Column::rounded("y", 3), Column::text("words")];
+    for extension in ["csv", "parquet"] {
+        let dir = tempfile::tempdir().unwrap();
+        let rows = 2 * CHUNK + 17;
+        let make = |k: usize, write: &mut dyn FnMut(&[Value<'_>])| {
+            let x = (k as f64).sin() * 10f64.powi((k % 30) as i32 - 15);
+            let words = format!("a \"{k}\", b");
+            let x = if k.is_multiple_of(7) { Value::Missing } else { Value::Number(x) };
+            write(&[Value::Integer(k as i64), x, Value::Number(-1e-5 * k as f64), Value::Text(&words)]);
+        };
+        let [one, many] = ["one", "many"].map(|name| dir.path().join(name).with_extension(extension));
+        let mut table = TableWriter::create(&one, &one, columns(), &[]).unwrap();
+        (0..rows).for_each(|k| make(k, &mut |cells| table.write(cells).unwrap()));
+        table.finish().unwrap();
+        let mut table = TableWriter::create(&many, &many, columns(), &[]).unwrap();
+        table.write_rows(rows, &make).unwrap();
+        table.finish().unwrap();
+        assert!(std::fs::read(one).unwrap() == std::fs::read(&many).unwrap(), "{extension}");
+        assert_eq!(Table::read(&many).unwrap().rows(), rows);
+        let mut table = TableWriter::create(&many, &many, columns(), &[]).unwrap();
+        let short = |k: usize, write: &mut dyn FnMut(&[Value<'_>])| write(&[Value::Integer(k as i64)]);
+        assert!(table.write_rows(3, &short).unwrap_err().to_string().contains("row 1 has 1 cells for 4 columns"));
+    }
+}
