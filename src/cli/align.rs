@@ -196,13 +196,13 @@ fn finish(common: &Common, report: &AlignReport, outputs: &AlignOutputs) -> anyh
     }
     common.print_json(report)?;
     let (tie, rows) = (&report.certificate, &report.certificate.rows);
-    let plus_minus = |sd: Option<f64>, unit: &str| sd.map_or(String::new(), |sd| format!(" ± {sd:.4}{unit}"));
+    let plus_minus = |sd: Option<f64>, digits: usize| sd.map_or(String::new(), |sd| format!(" ± {sd:.digits$}"));
     common.say(&format!(
         "offset {:.4}{} s, drift {:.1}{} ppm ({:?}); {} frames read, {} not",
         tie.offset_s,
-        plus_minus(tie.offset_sd_s, ""),
+        plus_minus(tie.offset_sd_s, 4),
         tie.drift_ppm,
-        plus_minus(tie.drift_sd_ppm, ""),
+        plus_minus(tie.drift_sd_ppm, 1),
         tie.method,
         tie.frames_read,
         tie.frames_abstained
