@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::clock::{Clock, ClockFit, ClockReader, Doubt, Reading, ScreenDelay, fit};
+use crate::clock::{Clock, ClockFit, ClockReader, Doubt, ReaderEffort, Reading, ScreenDelay, fit};
 use crate::video::{Frame, Info};
 
 /// What the clock in the picture told.
@@ -20,6 +20,8 @@ pub struct ClockReport {
     pub frames_refused: u64,
     /// Frames in which it was not read, by reason.
     pub frames_abstained: BTreeMap<Doubt, u64>,
+    /// What was looked at to read it.
+    pub effort: ReaderEffort,
     /// The tie of its time to the video's; none where there is none.
     pub tie: Option<ClockTieReport>,
 }
@@ -143,6 +145,7 @@ impl FilmedClock {
             frames_read: read - refused,
             frames_refused: refused,
             frames_abstained: self.abstained,
+            effort: self.reader.effort(),
             tie: fit.as_ref().ok().map(|fit| ClockTieReport {
                 offset_s: fit.timebase.offset_s(),
                 offset_sd_s: fit.timebase.offset_sd_s(),
