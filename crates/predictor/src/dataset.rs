@@ -1,0 +1,252 @@
+//! Rows of voltages with the targets measured at the same time, and which recording, session and subject each comes from.
+
+use std::ops::Range;
+
+use ndarray::{Array2, Axis};
+use thiserror::Error;
+
+/// Rows that follow each other in time: one trajectory.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Recording {
+    /// Its name, usually the file's.
+    pub name: String,
+    /// Of which session: between two, the sensor was taken off.
+    pub session: String,
+    /// Of whom.
+    pub subject: String,
+    /// Which rows of the [`Dataset`].
+    pub rows: Range<usize>,
+}
+
+/// Voltages and targets. Every value is finite, every row belongs to one recording, recordings follow each other.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Dataset {
+    inputs: Vec<String>,
+    targets: Vec<String>,
+    time_s: Vec<f64>,
+    x: Array2<f64>,
+    y: Array2<f64>,
+    recordings: Vec<Recording>,
+}
+
+/// Why rows are no [`Dataset`].
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum DatasetFault {
+    /// Sizes do not agree.
+    #[error("{what}: {found} where {wanted} are needed")]
+    Shape {
+        /// Of what.
+        what: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many there should be.
+        wanted: usize,
+    },
+    /// A value is NaN or infinite.
+    #[error("{name} of row {row} is not finite; leave the row out")]
+    NotFinite {
+        /// The column.
+        name: String,
+        /// The row, from 0.
+        row: usize,
+    },
+    /// Two columns of one name.
+    #[error("two columns are named {0}")]
+    Twice(String),
+    /// Recordings do not cover the rows one after the other.
+    #[error("recording {0} does not begin where the one before ends")]
+    Order(String),
+}
+
+impl Dataset {
+    /// Checks and takes rows: `x` rows x inputs, `y` rows x targets, the time of each row within its recording in seconds (it may
+    /// be NaN where it is not known).
+    ///
+    /// # Errors
+    /// [`DatasetFault`].
+    pub fn new(
+        inputs: Vec<String>,
+        targets: Vec<String>,
+        time_s: Vec<f64>,
+        x: Array2<f64>,
+        y: Array2<f64>,
+        recordings: Vec<Recording>,
+    ) -> Result<Self, DatasetFault> {
+        let n = x.nrows();
+        let shape = |what, found, wanted| {
+            if found == wanted { Ok(()) } else { Err(DatasetFault::Shape { what, found, wanted }) }
+        };
+        shape("columns of voltages", x.ncols(), inputs.len())?;
+        shape("columns of targets", y.ncols(), targets.len())?;
+        shape("rows of targets", y.nrows(), n)?;
+        shape("times", time_s.len(), n)?;
+        let names: Vec<&String> = inputs.iter().chain(&targets).collect();
+        if let Some(name) = names.iter().enumerate().find(|(k, name)| names[..*k].contains(name)) {
+            return Err(DatasetFault::Twice(name.1.to_string()));
+        }
+        for (values, names) in [(&x, &inputs), (&y, &targets)] {
+            if let Some(((row, column), _)) = values.indexed_iter().find(|(_, v)| !v.is_finite()) {
+                return Err(DatasetFault::NotFinite { name: names[column].clone(), row });
+            }
+        }
+        let mut next = 0;
+        for recording in &recordings {
+            if recording.rows.start != next || recording.rows.end < next {
+                return Err(DatasetFault::Order(recording.name.clone()));
+            }
+            next = recording.rows.end;
+        }
+        shape("rows of all recordings", next, n)?;
+        // Rows lie one after the other in memory: kernels read them as slices.
+        let (x, y) = (x.as_standard_layout().into_owned(), y.as_standard_layout().into_owned());
+        Ok(Self { inputs, targets, time_s, x, y, recordings })
+    }
+
+    /// One recording without a name, evenly sampled from time 0.
+    ///
+    /// # Errors
+    /// [`DatasetFault`].
+    pub fn plain(
+        inputs: Vec<String>,
+        targets: Vec<String>,
+        x: Array2<f64>,
+        y: Array2<f64>,
+        step_s: f64,
+    ) -> Result<Self, DatasetFault> {
+        let n = x.nrows();
+        let one = Recording { name: String::new(), session: String::new(), subject: String::new(), rows: 0..n };
+        let time_s = (0..n).map(|k| k as f64 * step_s).collect();
+        Self::new(inputs, targets, time_s, x, y, vec![one])
+    }
+
+    /// How many rows.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.x.nrows()
+    }
+
+    /// Names of the photodiodes, column by column.
+    #[must_use]
+    pub fn inputs(&self) -> &[String] {
+        &self.inputs
+    }
+
+    /// Names of the targets, column by column.
+    #[must_use]
+    pub fn targets(&self) -> &[String] {
+        &self.targets
+    }
+
+    /// Seconds, row by row; NaN where not known.
+    #[must_use]
+    pub fn time_s(&self) -> &[f64] {
+        &self.time_s
+    }
+
+    /// Voltages, rows x inputs, in standard layout.
+    #[must_use]
+    pub fn x(&self) -> &Array2<f64> {
+        &self.x
+    }
+
+    /// Targets, rows x targets, in standard layout.
+    #[must_use]
+    pub fn y(&self) -> &Array2<f64> {
+        &self.y
+    }
+
+    /// The recordings, in order.
+    #[must_use]
+    pub fn recordings(&self) -> &[Recording] {
+        &self.recordings
+    }
+
+    /// Only the rows of some recordings, by their place in [`recordings`](Self::recordings), in the order given.
+    #[must_use]
+    pub fn only(&self, recordings: &[usize]) -> Self {
+        let mut rows = Vec::new();
+        let mut kept = Vec::new();
+        for &k in recordings {
+            let one = &self.recordings[k];
+            let start = rows.len();
+            rows.extend(one.rows.clone());
+            kept.push(Recording { rows: start..rows.len(), ..one.clone() });
+        }
+        self.take(&rows, kept)
+    }
+
+    /// Only some rows, ascending; recordings keep their names and lose rows.
+    #[must_use]
+    pub fn only_rows(&self, rows: &[usize]) -> Self {
+        debug_assert!(rows.windows(2).all(|pair| pair[0] < pair[1]), "rows ascend");
+        let mut kept = Vec::new();
+        let mut start = 0;
+        for one in &self.recordings {
+            let end = start + rows[start..].partition_point(|&row| row < one.rows.end);
+            kept.push(Recording { rows: start..end, ..one.clone() });
+            start = end;
+        }
+        kept.retain(|one| !one.rows.is_empty());
+        self.take(rows, kept)
+    }
+
+    /// Only some photodiodes, by column.
+    #[must_use]
+    pub fn only_inputs(&self, columns: &[usize]) -> Self {
+        let inputs = columns.iter().map(|&k| self.inputs[k].clone()).collect();
+        Self { inputs, x: self.x.select(Axis(1), columns), ..self.clone() }
+    }
+
+    fn take(&self, rows: &[usize], recordings: Vec<Recording>) -> Self {
+        Self {
+            inputs: self.inputs.clone(),
+            targets: self.targets.clone(),
+            time_s: rows.iter().map(|&row| self.time_s[row]).collect(),
+            x: self.x.select(Axis(0), rows),
+            y: self.y.select(Axis(0), rows),
+            recordings,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::array;
+
+    fn two() -> Dataset {
+        let recording =
+            |name: &str, rows| Recording { name: name.into(), session: "1".into(), subject: "a".into(), rows };
+        Dataset::new(
+            vec!["P1".into(), "P2".into()],
+            vec!["J2_deg".into()],
+            vec![0.0, 1.0, 0.0],
+            array![[1.0, 2.0], [3.0, 4.0], [5.0, 6.0]],
+            array![[0.1], [0.2], [0.3]],
+            vec![recording("one", 0..2), recording("two", 2..3)],
+        )
+        .unwrap()
+    }
+
+    #[test]
+    fn parts_keep_their_recordings() {
+        let data = two();
+        let second = data.only(&[1]);
+        assert_eq!((second.rows(), second.recordings()[0].name.as_str()), (1, "two"));
+        assert_eq!(data.only(&[1, 0]).y(), &array![[0.3], [0.1], [0.2]]);
+        let some = data.only_rows(&[1, 2]);
+        assert_eq!(some.recordings().iter().map(|one| one.rows.clone()).collect::<Vec<_>>(), [0..1, 1..2]);
+        assert_eq!(data.only_inputs(&[1]).x(), &array![[2.0], [4.0], [6.0]]);
+    }
+
+    #[test]
+    fn what_is_no_dataset_is_refused() {
+        let names = || (vec!["P1".to_owned()], vec!["J2_deg".to_owned()]);
+        let (inputs, targets) = names();
+        let fault = Dataset::plain(inputs, targets, array![[1.0], [f64::NAN]], array![[1.0], [2.0]], 0.04);
+        assert_eq!(fault, Err(DatasetFault::NotFinite { name: "P1".into(), row: 1 }));
+        let (inputs, targets) = names();
+        assert!(Dataset::plain(inputs, targets, array![[1.0]], array![[1.0], [2.0]], 0.04).is_err());
+        assert!(Dataset::plain(vec!["P1".into()], vec!["P1".into()], array![[1.0]], array![[1.0]], 0.04).is_err());
+    }
+}

@@ -1,0 +1,106 @@
+//! Why there is no model, in the photodiodes' names.
+
+use thiserror::Error;
+
+use crate::{Dependent, LeastSquaresFault, ModelFault};
+
+/// Why there is no model.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum FitFault {
+    /// Nothing to fit to.
+    #[error("there are no rows to fit to")]
+    NoRows,
+    /// Fewer rows than unknowns.
+    #[error("{terms} terms need at least {} rows; there are {rows} (record more, or ask for minimum norm, dropping or ridge)", .terms + 1)]
+    TooFewRows {
+        /// How many there are.
+        rows: usize,
+        /// Terms of the model, without the offset.
+        terms: usize,
+    },
+    /// Photodiodes, or terms of them, that depend on each other.
+    #[error("{} (leave out what is at fault, or ask for minimum norm, dropping or ridge)", .0.join("; "))]
+    Deficient(Vec<String>),
+    /// A coefficient beyond a number.
+    #[error(
+        "what {target} has of {term} is beyond 1e308: {term} is too small (or {target} too large) to be told in these units; scale it"
+    )]
+    Range {
+        /// The term.
+        term: String,
+        /// The target.
+        target: String,
+    },
+    /// Voltages too near to 0 or too large for squares.
+    #[error("{0} spreads over so little (or so much) that its squares can't be told; scale it to volts")]
+    Scale(String),
+    /// The solver's own.
+    #[error(transparent)]
+    Solver(LeastSquaresFault),
+    /// The numbers are no model.
+    #[error(transparent)]
+    Model(#[from] ModelFault),
+}
+
+/// `names`: of the terms; `targets`: of the targets; `inputs`: how many of them are photodiodes themselves. Faults of photodiodes explain those of their products, which are told
+/// only where there are no others.
+pub(super) fn named(fault: LeastSquaresFault, names: &[String], targets: &[String], inputs: usize) -> FitFault {
+    match fault {
+        LeastSquaresFault::NoRows => FitFault::NoRows,
+        LeastSquaresFault::TooFewRows { rows, columns } => FitFault::TooFewRows { rows, terms: columns },
+        LeastSquaresFault::Deficient { constant, dependent } => {
+            let own = |j: &usize| *j < inputs;
+            let of_inputs: Vec<Dependent> =
+                dependent.iter().filter(|one| own(&one.column) && one.with.iter().all(own)).cloned().collect();
+            let constants: Vec<usize> = constant.iter().copied().filter(own).collect();
+            FitFault::Deficient(if of_inputs.is_empty() && constants.is_empty() {
+                told(&constant, &dependent, names)
+            } else {
+                told(&constants, &of_inputs, names)
+            })
+        }
+        LeastSquaresFault::Range { column, target } => {
+            FitFault::Range { term: names[column].clone(), target: targets[target].clone() }
+        }
+        other => FitFault::Solver(other),
+    }
+}
+
+fn told(constant: &[usize], dependent: &[Dependent], names: &[String]) -> Vec<String> {
+    let mut out: Vec<String> = constant.iter().map(|&j| format!("{} is constant", names[j])).collect();
+    // Those that read like the same one are told together.
+    let mut alike: Vec<Vec<usize>> = Vec::new();
+    for one in dependent {
+        if let [with] = one.with[..] {
+            match alike.iter_mut().find(|group| group.contains(&with)) {
+                Some(group) => group.push(one.column),
+                None => alike.push(vec![with, one.column]),
+            }
+        }
+    }
+    for group in &mut alike {
+        group.sort_unstable();
+        out.push(format!("{} read alike", listed(group, names)));
+    }
+    out.extend(dependent.iter().filter(|one| one.with.len() != 1).map(|one| {
+        let column = &names[one.column];
+        if one.with.is_empty() {
+            format!("{column} is constant")
+        } else {
+            format!("{column} follows from {}", listed(&one.with, names))
+        }
+    }));
+    out
+}
+
+/// "P1, P2 and P5".
+pub(super) fn listed(columns: &[usize], names: &[String]) -> String {
+    match columns {
+        [] => String::new(),
+        [one] => names[*one].clone(),
+        [head @ .., last] => {
+            let head: Vec<&str> = head.iter().map(|&j| names[j].as_str()).collect();
+            format!("{} and {}", head.join(", "), names[*last])
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! What is known about a fit's numbers.
+
+use serde::{Deserialize, Serialize};
+
+use super::fault::listed;
+use crate::{Dataset, LeastSquares};
+
+/// Fewer digits than this are worth a warning.
+const FEW_DIGITS: f64 = 8.0;
+
+/// What is known about a fit's numbers. Terms are equation 9's or 16's, without the offset.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FitReport {
+    /// Rows fitted to.
+    pub rows: usize,
+    /// Names of the terms: `P1`, `P1^2`, `P1*P2`.
+    pub terms: Vec<String>,
+    /// Independent terms; none where not looked at (normal equations).
+    pub rank: Option<usize>,
+    /// Condition (2-norm) of the centred terms, each over its own length; none where infinite or not looked at.
+    pub condition: Option<f64>,
+    /// Decimal digits of the coefficients that rounding the rows' last bit leaves alone; none where not looked at.
+    pub digits: Option<f64>,
+    /// Terms left out.
+    pub dropped: Vec<String>,
+    /// What to look at, in words.
+    pub warnings: Vec<String>,
+    /// Residual SD a target, in its unit; none where no degrees of freedom are left.
+    pub residual_sd: Vec<Option<f64>>,
+    /// Standard errors, targets x terms, in the model's own units of its coefficients; none where none is defined.
+    pub standard_errors: Vec<Vec<Option<f64>>>,
+}
+
+impl FitReport {
+    pub(super) fn new(fit: &LeastSquares, terms: Vec<String>, data: &Dataset) -> Self {
+        let known = |value: f64| value.is_finite().then_some(value);
+        let digits = known(fit.digits());
+        let mut warnings = Vec::new();
+        if let Some(rank) = fit.rank
+            && rank < terms.len()
+        {
+            warnings.push(format!("the rows tell {rank} of {} terms apart", terms.len()));
+        }
+        if let Some(digits) = digits.filter(|&digits| digits < FEW_DIGITS) {
+            let those = listed(&fit.near_collinear, &terms);
+            warnings.push(format!(
+                "{those} hardly differ (condition {:.1e}): about {digits:.0} digits can be trusted",
+                fit.solved_condition
+            ));
+        }
+        if fit.residual_sd.iter().any(Option::is_none) {
+            warnings.push(format!("{} rows determine the terms exactly: residuals say nothing", fit.rows));
+        }
+        if data.rows() > 1 {
+            for (name, values) in data.targets().iter().zip(data.y().columns()) {
+                if values.iter().all(|value| *value == values[0]) {
+                    warnings.push(format!("{name} is {:?} in all training rows, and so in all predictions", values[0]));
+                }
+            }
+        }
+        Self {
+            rows: fit.rows,
+            rank: fit.rank,
+            condition: known(fit.condition),
+            digits,
+            dropped: fit.dropped.iter().map(|&j| terms[j].clone()).collect(),
+            warnings,
+            residual_sd: fit.residual_sd.clone(),
+            standard_errors: fit
+                .standard_errors
+                .outer_iter()
+                .map(|row| row.iter().copied().map(known).collect())
+                .collect(),
+            terms,
+        }
+    }
+}

@@ -1,0 +1,319 @@
+//! From a [`Problem`] to a [`LeastSquares`]: triangle, rank, solution, refinement.
+
+use std::ops::Range;
+
+use ndarray::Array2;
+
+use super::exact::Long;
+use super::problem::Problem;
+use super::scale::{exponent, ldexp};
+use super::settle::settle;
+use super::small::{Column, back, dot, inverse_rows, orthonormal, pivot, triangulate};
+use super::{Deficient, Dependent, LeastSquares, LeastSquaresFault, LeastSquaresOptions};
+use crate::svd::modes;
+
+/// Takes part in a dependence: above this share of the column's length. Shares of those that do not are rounding, some 1e-12.
+const PART: f64 = 1e-6;
+
+/// Takes part in the weakest direction: above this share of its largest component.
+const WEAK: f64 = 0.1;
+
+/// What the triangle of [ones, columns, targets] tells about the columns, each scaled by a power of two to a length in [0.5, 1).
+pub(super) struct Centred {
+    /// Exponents taken out.
+    pub(super) exponents: Vec<i32>,
+    /// Lengths after that.
+    pub(super) lengths: Vec<f64>,
+    /// Lengths below which a column is nothing but rounding.
+    limits: Vec<f64>,
+    /// Ones' part of each column, and of ones themselves.
+    ones: Vec<f64>,
+    pub(super) first: f64,
+    /// The centred columns.
+    columns: Vec<Column>,
+}
+
+/// A basis of the coefficients' space with the triangle that belongs to it.
+pub(super) struct Factor {
+    /// Coefficients of all columns, for each unknown.
+    pub(super) basis: Vec<Column>,
+    /// Triangle of the unknowns.
+    pub(super) f: Vec<Column>,
+    /// Ones' part of each unknown.
+    pub(super) ones: Vec<f64>,
+    /// Right-hand sides, a target each.
+    pub(super) sides: Vec<Column>,
+}
+
+pub(crate) fn solve(
+    mut problem: Problem<'_>,
+    options: &LeastSquaresOptions,
+) -> Result<LeastSquares, LeastSquaresFault> {
+    let (rows, count) = (problem.rows, problem.columns);
+    if let Deficient::Ridge(lambda) = options.deficient
+        && !(lambda > 0.0 && lambda.is_finite())
+    {
+        return Err(LeastSquaresFault::Ridge(lambda));
+    }
+    if options.deficient == Deficient::Refuse && rows < count + 1 {
+        return Err(LeastSquaresFault::TooFewRows { rows, columns: count });
+    }
+    let r = problem.triangle();
+    let problem = &problem;
+    let centred = Centred::new(problem, &r);
+    let mut pivoted = centred.columns.clone();
+    let (order, rank) = pivot(&mut pivoted, &centred.limits);
+    if options.deficient == Deficient::Refuse && rank < count {
+        return Err(dependences(&centred, &pivoted, &order, rank));
+    }
+    let all = 1 + count + problem.targets;
+    let sides: Vec<Column> = (1 + count..all).map(|k| part(&r, 1..1 + count, k)).collect();
+    let factor = Factor::new(&centred, &pivoted, &order[..rank], &sides, options.deficient);
+    let ridge = if let Deficient::Ridge(lambda) = options.deficient { lambda } else { 0.0 };
+    let first: Column = (1 + count..all).map(|k| r[[0, k]]).collect();
+    let left: Vec<f64> = (1 + count..all).map(|k| part(&r, 1 + count..all, k).iter().map(|v| v * v).sum()).collect();
+    let solution = settle(problem, &centred, &factor, ridge, &first, left, options.refinements);
+
+    let weak = Weak::new(&centred, &pivoted, &order);
+    let sigma = &weak.sigma;
+    let condition = match sigma.last() {
+        None => 1.0,
+        Some(0.0) => f64::INFINITY,
+        Some(last) => sigma[0] / last,
+    };
+    let solved_condition = match options.deficient {
+        _ if rank == 0 => 1.0,
+        Deficient::Ridge(lambda) => ((sigma[0].powi(2) + lambda) / (sigma[count - 1].powi(2) + lambda)).sqrt(),
+        _ => sigma[0] / sigma[rank - 1],
+    };
+    let dropped = if options.deficient == Deficient::Drop {
+        let mut dropped = order[rank..].to_vec();
+        dropped.sort_unstable();
+        dropped
+    } else {
+        Vec::new()
+    };
+    // Degrees of freedom: what ones and independent columns leave; a ridge's are not worked out.
+    let freedom = rows.saturating_sub(rank + 1);
+    let units = |k: usize| problem.exponents[count + k];
+    let residual_sd: Vec<Option<f64>> = solution
+        .squares
+        .iter()
+        .enumerate()
+        .map(|(k, squares)| (freedom > 0).then(|| ldexp((squares / freedom as f64).sqrt(), units(k))))
+        .collect();
+    let spread = match options.deficient {
+        Deficient::Refuse | Deficient::Drop => inverse_rows(&factor.f),
+        Deficient::MinimumNorm if rank == count => inverse_rows(&factor.f),
+        Deficient::MinimumNorm | Deficient::Ridge(_) => Vec::new(),
+    };
+    let mut standard_errors = Array2::from_elem((problem.targets, count), f64::NAN);
+    if freedom > 0 && (rank == count || options.deficient == Deficient::Drop) {
+        for (&j, spread) in order.iter().zip(&spread) {
+            for (k, squares) in solution.squares.iter().enumerate() {
+                let e = units(k) - problem.exponents[j] - centred.exponents[j];
+                standard_errors[[k, j]] = ldexp((squares / freedom as f64).sqrt() * spread, e);
+            }
+        }
+    }
+    let mut coefficients = Array2::zeros((problem.targets, count));
+    let mut intercept = Vec::new();
+    let mut target_centre = Vec::new();
+    for (k, x) in solution.coefficients.iter().enumerate() {
+        let at_centre = Long::from(problem.centres[count + k]).plus(x[0]);
+        let mut offset = at_centre;
+        for j in 0..count {
+            let e = units(k) - problem.exponents[j];
+            let value = ldexp(x[1 + j].rounded(), e);
+            if !value.is_finite() {
+                return Err(LeastSquaresFault::Range { column: j, target: k });
+            }
+            coefficients[[k, j]] = value;
+            offset = offset.plus(x[1 + j].times(problem.centres[j].into()).negative());
+        }
+        target_centre.push(ldexp(at_centre.rounded(), units(k)));
+        intercept.push(ldexp(offset.rounded(), units(k)));
+    }
+    Ok(LeastSquares {
+        centre: (0..count).map(|j| ldexp(problem.centres[j], problem.exponents[j])).collect(),
+        target_centre,
+        coefficients,
+        intercept,
+        rows,
+        rank: Some(rank),
+        condition,
+        solved_condition,
+        dropped,
+        near_collinear: weak.columns,
+        singular_values: weak.sigma,
+        standard_errors,
+        residual_sd,
+        refined: solution.refined,
+    })
+}
+
+/// Some rows of a column.
+fn part(r: &Array2<f64>, rows: Range<usize>, column: usize) -> Column {
+    rows.map(|i| r[[i, column]]).collect()
+}
+
+impl Centred {
+    fn new(problem: &Problem<'_>, r: &Array2<f64>) -> Self {
+        let count = problem.columns;
+        let rounding = rounding(problem.rows);
+        let mut out = Self {
+            exponents: Vec::new(),
+            lengths: Vec::new(),
+            limits: Vec::new(),
+            ones: Vec::new(),
+            first: r[[0, 0]],
+            columns: Vec::new(),
+        };
+        for j in 0..count {
+            let mut column = part(r, 1..1 + count, 1 + j);
+            let e = exponent(dot(&column, &column).sqrt());
+            column.iter_mut().for_each(|value| *value = ldexp(*value, -e));
+            out.exponents.push(e);
+            out.lengths.push(dot(&column, &column).sqrt());
+            out.limits.push(ldexp(rounding * problem.rough[j], -e));
+            out.ones.push(ldexp(r[[0, 1 + j]], -e));
+            out.columns.push(column);
+        }
+        out
+    }
+
+    fn constant(&self, j: usize) -> bool {
+        self.lengths[j] <= self.limits[j]
+    }
+}
+
+/// What rounding does to the norm of a column of so many rows, relative to its largest value: to the values, and in as many blocks as are
+/// folded one into the other.
+pub(crate) fn rounding(rows: usize) -> f64 {
+    (rows as f64).sqrt() * f64::EPSILON * (8.0 + (rows as f64 / 64.0).sqrt())
+}
+
+/// Who depends on whom.
+fn dependences(centred: &Centred, pivoted: &[Column], order: &[usize], rank: usize) -> LeastSquaresFault {
+    let (mut constant, mut dependent) = (Vec::new(), Vec::new());
+    for (place, &j) in order.iter().enumerate().skip(rank) {
+        if centred.constant(j) {
+            constant.push(j);
+            continue;
+        }
+        let shares = back(&pivoted[..rank], &pivoted[place]);
+        let mut with: Vec<usize> = (0..rank)
+            .filter(|&k| (shares[k] * centred.lengths[order[k]]).abs() > PART * centred.lengths[j])
+            .map(|k| order[k])
+            .collect();
+        with.sort_unstable();
+        dependent.push(Dependent { column: j, with });
+    }
+    constant.sort_unstable();
+    dependent.sort_by_key(|one| one.column);
+    LeastSquaresFault::Deficient { constant, dependent }
+}
+
+impl Factor {
+    fn new(centred: &Centred, pivoted: &[Column], taken: &[usize], sides: &[Column], how: Deficient) -> Self {
+        let count = centred.columns.len();
+        let axis = |j: usize| (0..count).map(|i| f64::from(u8::from(i == j))).collect::<Column>();
+        let basis: Vec<Column> = match how {
+            Deficient::MinimumNorm if taken.len() < count => minimum_norm(centred, pivoted, taken),
+            Deficient::Ridge(_) => (0..count).filter(|&j| !centred.constant(j)).map(axis).collect(),
+            _ => taken.iter().map(|&j| axis(j)).collect(),
+        };
+        let lambda = if let Deficient::Ridge(lambda) = how { lambda.sqrt() } else { 0.0 };
+        let mut f: Vec<Column> = basis
+            .iter()
+            .map(|weights| {
+                let mut column = vec![0.0; count];
+                for (weight, from) in weights.iter().zip(&centred.columns).filter(|(weight, _)| **weight != 0.0) {
+                    column.iter_mut().zip(from).for_each(|(value, from)| *value += weight * from);
+                }
+                if lambda > 0.0 {
+                    column
+                        .extend(weights.iter().zip(&centred.lengths).map(|(weight, length)| lambda * weight * length));
+                }
+                column
+            })
+            .collect();
+        let unknowns = f.len();
+        let height = if lambda > 0.0 { 2 * count } else { count };
+        f.extend(sides.iter().map(|side| {
+            let mut side = side.clone();
+            side.resize(height, 0.0);
+            side
+        }));
+        triangulate(&mut f, unknowns);
+        let sides = f.split_off(unknowns);
+        let ones = basis.iter().map(|weights| dot(weights, &centred.ones)).collect();
+        Self { basis, f, ones, sides }
+    }
+}
+
+/// Coefficients that lie in the space of the rows, of columns over their lengths.
+fn minimum_norm(centred: &Centred, pivoted: &[Column], taken: &[usize]) -> Vec<Column> {
+    let count = centred.columns.len();
+    let rank = taken.len();
+    // Rows of the pivoted triangle, their columns back in order. Constant columns take no part.
+    let mut order: Vec<usize> = taken.to_vec();
+    order.extend((0..count).filter(|j| !taken.contains(j)));
+    let rows: Vec<Column> = (0..rank)
+        .map(|i| {
+            let mut row = vec![0.0; count];
+            for (place, &j) in order.iter().enumerate().filter(|(_, j)| !centred.constant(**j)) {
+                row[j] = pivoted[place][i] / centred.lengths[j];
+            }
+            row
+        })
+        .collect();
+    let mut basis = orthonormal(&rows);
+    for vector in &mut basis {
+        for (j, value) in vector.iter_mut().enumerate() {
+            *value = if centred.constant(j) { 0.0 } else { *value / centred.lengths[j] };
+        }
+    }
+    basis
+}
+
+impl Factor {
+    /// From ones' and the unknowns' right-hand sides to coefficients of ones and columns, in the problem's units.
+    pub(super) fn step(&self, centred: &Centred, first: f64, side: &[f64]) -> Vec<f64> {
+        let unknowns = back(&self.f, side);
+        let mut out = vec![0.0; 1 + centred.columns.len()];
+        out[0] = (first - dot(&self.ones, &unknowns)) / centred.first;
+        for (weights, by) in self.basis.iter().zip(&unknowns) {
+            out[1..].iter_mut().zip(weights).for_each(|(out, weight)| *out += weight * by);
+        }
+        out[1..].iter_mut().zip(&centred.exponents).for_each(|(out, &e)| *out = ldexp(*out, -e));
+        out
+    }
+}
+
+/// Singular values of the columns over their lengths, and who takes part in the weakest direction.
+struct Weak {
+    sigma: Vec<f64>,
+    columns: Vec<usize>,
+}
+
+impl Weak {
+    fn new(centred: &Centred, pivoted: &[Column], order: &[usize]) -> Self {
+        let count = order.len();
+        // Transposed, as rotations of a triangle's rows settle sooner.
+        let rows = Array2::from_shape_fn((count, count), |(place, i)| {
+            let j = order[place];
+            if centred.constant(j) { 0.0 } else { pivoted[place][i] / centred.lengths[j] }
+        });
+        let modes = modes(rows.t());
+        let mut columns = Vec::new();
+        if count > 0 {
+            let weakest = modes.right.column(count - 1);
+            let most = weakest.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+            columns =
+                (0..count).filter(|&place| weakest[place].abs() >= WEAK * most).map(|place| order[place]).collect();
+            columns.sort_unstable();
+        }
+        Self { sigma: modes.sigma, columns }
+    }
+}

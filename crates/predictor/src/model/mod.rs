@@ -1,0 +1,173 @@
+//! What tells targets from voltages: the linear (equation 9), quadratic (16) and network (17, 18) models.
+//!
+//! All answer a row or many, into the caller's memory and without allocating. A row and a batch give the same bits, on every processor.
+//! A NaN among a row's voltages gives NaN for all its targets; an infinite one never gives a number.
+
+mod block;
+mod linear;
+mod network;
+mod quadratic;
+mod tansig;
+#[cfg(test)]
+mod tests;
+
+use ndarray::{Array2, ArrayView2, ArrayViewMut2};
+use thiserror::Error;
+
+pub use linear::Linear;
+pub use network::Network;
+pub use quadratic::{Quadratic, quadratic_terms};
+pub(crate) use tansig::tansig;
+
+/// A model, fitted.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Model {
+    /// Equation 9.
+    Linear(Linear),
+    /// Equation 16.
+    Quadratic(Quadratic),
+    /// Equations 17 and 18.
+    Network(Network),
+}
+
+macro_rules! each {
+    ($model:expr, $one:ident => $answer:expr) => {
+        match $model {
+            Model::Linear($one) => $answer,
+            Model::Quadratic($one) => $answer,
+            Model::Network($one) => $answer,
+        }
+    };
+}
+
+impl Model {
+    /// How many photodiodes it reads.
+    #[must_use]
+    pub fn inputs(&self) -> usize {
+        each!(self, one => one.inputs())
+    }
+
+    /// How many targets it tells.
+    #[must_use]
+    pub fn targets(&self) -> usize {
+        each!(self, one => one.targets())
+    }
+
+    /// m: the voltages that it was centred on, the means of the training rows.
+    #[must_use]
+    pub fn centre(&self) -> &[f64] {
+        each!(self, one => one.centre())
+    }
+
+    /// One row: `x` volts of each input, `out` each target.
+    ///
+    /// # Panics
+    /// Where the lengths are not the model's.
+    pub fn predict_row(&self, x: &[f64], out: &mut [f64]) {
+        each!(self, one => one.predict_row(x, out));
+    }
+
+    /// Many rows, of any layout (rows one after the other are fastest): `x` rows x inputs, volts; `out` rows x targets.
+    ///
+    /// # Panics
+    /// Where the sizes are not the model's.
+    pub fn predict_into(&self, x: ArrayView2<'_, f64>, out: ArrayViewMut2<'_, f64>) {
+        each!(self, one => one.predict_into(x, out));
+    }
+
+    /// Many rows: rows x inputs, volts, to rows x targets.
+    ///
+    /// # Panics
+    /// Where the sizes are not the model's.
+    #[must_use]
+    pub fn predict(&self, x: ArrayView2<'_, f64>) -> Array2<f64> {
+        each!(self, one => one.predict(x))
+    }
+
+    /// d target / d volt at `x` volts, targets x inputs.
+    ///
+    /// # Panics
+    /// Where the length is not the model's.
+    #[must_use]
+    pub fn jacobian_at(&self, x: &[f64]) -> Array2<f64> {
+        each!(self, one => one.jacobian_at(x))
+    }
+}
+
+/// The predictions of a model that has a [`block::Kernel`].
+macro_rules! predicting {
+    ($model:ident) => {
+        impl $model {
+            /// One row: `x` volts of each input, `out` each target.
+            ///
+            /// # Panics
+            /// Where the lengths are not the model's.
+            pub fn predict_row(&self, x: &[f64], out: &mut [f64]) {
+                $crate::model::block::predict_row(self, x, out);
+            }
+
+            /// Many rows, of any layout (rows one after the other are fastest): `x` rows x inputs, volts; `out` rows x targets.
+            ///
+            /// # Panics
+            /// Where the sizes are not the model's.
+            pub fn predict_into(&self, x: ndarray::ArrayView2<'_, f64>, out: ndarray::ArrayViewMut2<'_, f64>) {
+                $crate::model::block::predict_into(self, x, out);
+            }
+
+            /// Many rows: rows x inputs, volts, to rows x targets.
+            ///
+            /// # Panics
+            /// Where the sizes are not the model's.
+            #[must_use]
+            pub fn predict(&self, x: ndarray::ArrayView2<'_, f64>) -> ndarray::Array2<f64> {
+                let mut out = ndarray::Array2::zeros((x.nrows(), self.targets()));
+                self.predict_into(x, out.view_mut());
+                out
+            }
+        }
+    };
+}
+use predicting;
+
+/// Why numbers are no model.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+pub enum ModelFault {
+    /// Sizes do not agree.
+    #[error("{what}: {found} where {wanted} are needed")]
+    Shape {
+        /// Of what.
+        what: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many there should be.
+        wanted: usize,
+    },
+    /// A number is NaN or infinite, or a scale not positive.
+    #[error("{0} holds a number that can't be")]
+    Number(&'static str),
+}
+
+fn sizes(all: &[(&'static str, usize, usize)]) -> Result<(), ModelFault> {
+    match all.iter().find(|(_, found, wanted)| found != wanted) {
+        Some(&(what, found, wanted)) => Err(ModelFault::Shape { what, found, wanted }),
+        None => Ok(()),
+    }
+}
+
+fn finite(all: &[(&'static str, &[f64])]) -> Result<(), ModelFault> {
+    match all.iter().find(|(_, values)| values.iter().any(|value| !value.is_finite())) {
+        Some((what, _)) => Err(ModelFault::Number(what)),
+        None => Ok(()),
+    }
+}
+
+fn finite_matrix(what: &'static str, values: &Array2<f64>) -> Result<(), ModelFault> {
+    if values.iter().all(|value| value.is_finite()) { Ok(()) } else { Err(ModelFault::Number(what)) }
+}
+
+/// 1 / scale, a positive finite number each (scales from 2^-1022 to 2^1022).
+fn inverses(what: &'static str, scale: &[f64]) -> Result<Vec<f64>, ModelFault> {
+    let inverse: Vec<f64> = scale.iter().map(|scale| 1.0 / scale).collect();
+    let good = |value: &f64| value.is_normal() && *value > 0.0;
+    if scale.iter().all(good) && inverse.iter().all(good) { Ok(inverse) } else { Err(ModelFault::Number(what)) }
+}
