@@ -7,17 +7,16 @@ use std::time::Instant;
 
 use thiserror::Error;
 
-use super::ambient::{AmbientError, AmbientOptions, Samples, samples};
 use super::certificate::Certificate;
 use super::export::{BidsNames, ExportError};
 use super::label::label;
-use super::log::{Columns, Log, LogError};
 use super::plan::steps;
 use super::posture::Posture;
 use super::report::AlignReport;
 use super::results::Results;
 use super::tie::{self, LagTie, Tie};
 use crate::files::WriteError;
+use crate::log::{AmbientError, AmbientOptions, Columns, Log, LogError, Samples, samples};
 use crate::stages::{Fate, Stages};
 use crate::table::{TableError, TableFormat};
 

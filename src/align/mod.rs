@@ -5,24 +5,21 @@
 //! [`Tie`] says how the log's time follows from the video's; [`Posture`] is the table of joint angles; [`label`] brings the
 //! angles onto the samples' rows.
 
-mod ambient;
 mod certificate;
 pub mod export;
 pub mod figures;
 mod job;
 mod label;
-mod log;
 mod plan;
 mod posture;
 mod report;
 mod results;
 mod tie;
 
-pub use ambient::{AmbientError, AmbientOptions, Samples, samples};
+pub use crate::log::{AmbientError, AmbientOptions, Channel, Columns, Log, LogError, Samples, TimeUnit, samples};
 pub use certificate::Certificate;
 pub use job::{AlignError, AlignInputs, AlignOptions, AlignOutputs, Sync, run};
 pub use label::{Gap, LabelCounts, Labels, Unlabelled, label};
-pub use log::{Channel, Columns, Log, LogError, TimeUnit};
 pub use plan::plan;
 pub use posture::{ClockColumns, Posture};
 pub use report::AlignReport;

@@ -1,8 +1,8 @@
 //! What a run would do and leave out, told from the table of angles and the log.
 
 use super::job::{AlignError, AlignInputs, AlignOptions, AlignOutputs, Sync};
-use super::log::Log;
 use super::posture::Posture;
+use crate::log::Log;
 use crate::stages::Step;
 
 /// Plans a run; `outputs` may be open yet.

@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use super::ambient::Samples;
 use super::certificate::Certificate;
 use super::export::{self, BidsNames};
 use super::figures;
@@ -13,6 +12,7 @@ use super::posture::Posture;
 use super::report::AlignReport;
 use super::tie::Tie;
 use crate::files::{Places, WriteError, beside};
+use crate::log::Samples;
 use crate::stages::Stages;
 use crate::table::{Column, TableWriter, Value};
 

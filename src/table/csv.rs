@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::Write;
 use std::path::Path;
 
+use super::cells::CsvCells;
 use super::{Column, ColumnKind, Value, number_text};
 
 /// A CSV file in the making.
@@ -54,26 +55,17 @@ impl<W: Write> CsvWriter<W> {
     }
 }
 
-/// The names and the rows of a CSV file, each with its line; cells without the space around them.
-pub(super) fn read(path: &Path) -> Result<(Vec<String>, Vec<csv::StringRecord>), String> {
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(|e| e.to_string())?;
-    let names = reader.headers().map_err(|e| words(&e))?.iter().map(str::to_owned).collect();
-    let rows = reader.records().collect::<Result<_, _>>().map_err(|e| words(&e))?;
-    Ok((names, rows))
+/// The names and the rows of a CSV file.
+pub(super) fn read(path: &Path) -> Result<(Vec<String>, CsvCells), String> {
+    CsvCells::read(std::fs::read(path).map_err(|e| e.to_string())?)
 }
 
-/// What is wrong with a CSV file, with the line.
-fn words(error: &csv::Error) -> String {
-    match error.kind() {
-        csv::ErrorKind::UnequalLengths { pos, expected_len, len } => {
-            let line = pos.as_ref().map_or(0, csv::Position::line);
-            format!("line {line} has {len} cells and the first line {expected_len}; correct it")
-        }
-        csv::ErrorKind::Utf8 { pos, .. } => {
-            let line = pos.as_ref().map_or(0, csv::Position::line);
-            format!("line {line} is not UTF-8 text; save the file as UTF-8")
-        }
-        csv::ErrorKind::Io(why) => why.to_string(),
-        _ => error.to_string(),
-    }
+/// The names of a CSV file's columns, the rows unread.
+pub(super) fn names(path: &Path) -> Result<Vec<String>, String> {
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(|e| e.to_string())?;
+    let names = reader.headers().map_err(|why| match why.kind() {
+        csv::ErrorKind::Utf8 { .. } => "the line of names is not UTF-8 text; save the file as UTF-8".to_owned(),
+        _ => why.to_string(),
+    })?;
+    Ok(names.iter().map(str::to_owned).collect())
 }

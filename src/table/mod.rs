@@ -8,6 +8,7 @@
 //!
 //! A writer writes where it is told; that results appear whole or not at all is the business of [`crate::files`].
 
+mod cells;
 mod csv;
 mod parquet;
 mod read;
@@ -16,7 +17,7 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-pub use read::Table;
+pub use read::{Cell, Table, column_names};
 
 /// Why a table can't be written or read.
 #[derive(Debug, thiserror::Error)]

@@ -194,6 +194,14 @@ pub(super) fn read(path: &Path) -> Result<Contents, String> {
     Ok(Contents { names, columns, facts })
 }
 
+/// The names of a Parquet file's columns, the rows unread.
+pub(super) fn names(path: &Path) -> Result<Vec<String>, String> {
+    let file = File::open(path).map_err(|e| e.to_string())?;
+    let reader = SerializedFileReader::new(file).map_err(|e| format!("not a whole Parquet file ({e})"))?;
+    let schema = reader.metadata().file_metadata().schema_descr();
+    Ok((0..schema.num_columns()).map(|k| schema.column(k).path().string()).collect())
+}
+
 fn read_column(reader: &SerializedFileReader<File>, column: usize) -> Result<Read, String> {
     let described = reader.metadata().file_metadata().schema_descr().column(column);
     let mut read = match described.physical_type() {

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::cells::CsvCells;
 use super::{TableError, TableFormat, csv, parquet};
 
 /// A table that was read.
@@ -16,8 +17,37 @@ pub struct Table {
 
 #[derive(Debug, Clone)]
 enum Cells {
-    Csv(Vec<::csv::StringRecord>),
+    Csv(CsvCells),
     Parquet(Vec<parquet::Read>),
+}
+
+/// A cell as it stands in a table.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Cell<'a> {
+    /// Empty.
+    Missing,
+    /// A number; it need not be finite.
+    Number(f64),
+    /// Text that is no number.
+    Text(&'a str),
+}
+
+impl<'a> Cell<'a> {
+    fn of(text: &'a str) -> Self {
+        if text.is_empty() { Self::Missing } else { text.parse().map_or(Self::Text(text), Self::Number) }
+    }
+}
+
+/// The names of a table's columns, the rows unread.
+///
+/// # Errors
+/// An unknown extension, a file that is missing or damaged.
+pub fn column_names(path: &Path) -> Result<Vec<String>, TableError> {
+    match TableFormat::of(path)? {
+        TableFormat::Csv => csv::names(path),
+        TableFormat::Parquet => parquet::names(path),
+    }
+    .map_err(|what| TableError::Read { path: path.to_owned(), what })
 }
 
 impl Table {
@@ -44,7 +74,7 @@ impl Table {
             return Err(failed(format!("two columns are named `{}`; rename one", double.1)));
         }
         let rows = match &cells {
-            Cells::Csv(rows) => rows.len(),
+            Cells::Csv(rows) => rows.rows(),
             Cells::Parquet(columns) => match &columns[0] {
                 parquet::Read::Integers(column) => column.len(),
                 parquet::Read::Numbers(column) => column.len(),
@@ -100,22 +130,66 @@ impl Table {
 
     fn numbers_where(&self, name: &str, allowed: fn(f64) -> bool) -> Result<Vec<Option<f64>>, TableError> {
         const WHAT: &str = "is no finite number; correct it or leave it empty";
-        let checked = |row: usize, number: f64| {
-            if allowed(number) { Ok(number) } else { Err(self.cell(row, name, format!("`{number}` {WHAT}"))) }
-        };
-        self.column(name, |cells, column| match cells {
-            Cells::Csv(rows) => each(rows.iter().map(|r| Some(&r[column]).filter(|t| !t.is_empty())), |row, text| {
-                let number = text.parse::<f64>().map_err(|_| self.cell(row, name, format!("`{text}` {WHAT}")))?;
-                checked(row, number)
-            }),
+        let bad = |row: usize, shown: String| Err(self.cell(row, name, format!("`{shown}` {WHAT}")));
+        let mut numbers = Vec::with_capacity(self.rows);
+        self.each_cell(name, |row, cell| {
+            numbers.push(match cell {
+                Cell::Missing => None,
+                Cell::Number(number) if allowed(number) => Some(number),
+                Cell::Number(number) => return bad(row, number.to_string()),
+                Cell::Text(text) => return bad(row, text.to_owned()),
+            });
+            Ok(())
+        })?;
+        Ok(numbers)
+    }
+
+    /// Hands on a column cell by cell, with its row.
+    ///
+    /// # Errors
+    /// No such column, or the first error that `take` returns.
+    pub fn each_cell<'a>(
+        &'a self,
+        name: &str,
+        mut take: impl FnMut(usize, Cell<'a>) -> Result<(), TableError>,
+    ) -> Result<(), TableError> {
+        let column = self.place(name)?;
+        match &self.cells {
+            Cells::Csv(rows) => (0..rows.rows()).try_for_each(|row| take(row, Cell::of(rows.cell(row, column)))),
             Cells::Parquet(columns) => match &columns[column] {
-                parquet::Read::Integers(known) => Ok(known.iter().map(|v| v.map(|v| v as f64)).collect()),
-                parquet::Read::Numbers(known) => each(known.iter().copied(), checked),
-                parquet::Read::Texts(known) => each(known.iter().map(Option::as_ref), |row, text| {
-                    Err(self.cell(row, name, format!("`{text}` {WHAT}")))
+                parquet::Read::Integers(known) => known
+                    .iter()
+                    .enumerate()
+                    .try_for_each(|(row, v)| take(row, v.map_or(Cell::Missing, |v| Cell::Number(v as f64)))),
+                parquet::Read::Numbers(known) => {
+                    known.iter().enumerate().try_for_each(|(row, v)| take(row, v.map_or(Cell::Missing, Cell::Number)))
+                }
+                parquet::Read::Texts(known) => known.iter().enumerate().try_for_each(|(row, v)| {
+                    take(row, v.as_deref().filter(|t| !t.is_empty()).map_or(Cell::Missing, Cell::Text))
                 }),
             },
-        })
+        }
+    }
+
+    /// Hands on a column of text cell by cell, with its row; an empty cell is an empty text. Numbers are written out.
+    ///
+    /// # Errors
+    /// No such column.
+    pub fn each_text(&self, name: &str, mut take: impl FnMut(usize, &str)) -> Result<(), TableError> {
+        let column = self.place(name)?;
+        match &self.cells {
+            Cells::Csv(rows) => (0..rows.rows()).for_each(|row| take(row, rows.cell(row, column))),
+            Cells::Parquet(columns) => match &columns[column] {
+                parquet::Read::Texts(known) => {
+                    known.iter().enumerate().for_each(|(row, v)| take(row, v.as_deref().unwrap_or("")));
+                }
+                _ => {
+                    let texts = self.texts(name)?;
+                    texts.iter().enumerate().for_each(|(row, v)| take(row, v.as_deref().unwrap_or("")));
+                }
+            },
+        }
+        Ok(())
     }
 
     /// A column of whole numbers; none where a cell is empty.
@@ -126,9 +200,9 @@ impl Table {
         const WHAT: &str = "is no whole number; correct it or leave it empty";
         let bad = |row: usize, shown: String| self.cell(row, name, format!("`{shown}` {WHAT}"));
         self.column(name, |cells, column| match cells {
-            Cells::Csv(rows) => each(rows.iter().map(|r| Some(&r[column]).filter(|t| !t.is_empty())), |row, text| {
-                text.parse().map_err(|_| bad(row, text.to_owned()))
-            }),
+            Cells::Csv(rows) => {
+                each(known(rows, column), |row, text| text.parse().map_err(|_| bad(row, text.to_owned())))
+            }
             Cells::Parquet(columns) => match &columns[column] {
                 parquet::Read::Integers(known) => Ok(known.clone()),
                 parquet::Read::Numbers(known) => each(known.iter().copied(), |row, number: f64| {
@@ -150,7 +224,7 @@ impl Table {
     pub fn texts(&self, name: &str) -> Result<Vec<Option<String>>, TableError> {
         self.column(name, |cells, column| {
             Ok(match cells {
-                Cells::Csv(rows) => rows.iter().map(|r| Some(r[column].to_owned()).filter(|t| !t.is_empty())).collect(),
+                Cells::Csv(rows) => known(rows, column).map(|text| text.map(str::to_owned)).collect(),
                 Cells::Parquet(columns) => match &columns[column] {
                     parquet::Read::Integers(known) => known.iter().map(|v| v.map(|v| v.to_string())).collect(),
                     parquet::Read::Numbers(known) => known.iter().map(|v| v.map(|v| v.to_string())).collect(),
@@ -165,24 +239,31 @@ impl Table {
         name: &str,
         get: impl FnOnce(&Cells, usize) -> Result<Vec<Option<V>>, TableError>,
     ) -> Result<Vec<Option<V>>, TableError> {
-        let Some(column) = self.names.iter().position(|n| n == name) else {
+        get(&self.cells, self.place(name)?)
+    }
+
+    /// Where a column stands.
+    fn place(&self, name: &str) -> Result<usize, TableError> {
+        self.names.iter().position(|n| n == name).ok_or_else(|| {
             let what = format!("has no column `{name}`; its columns are {}", self.names.join(", "));
-            return Err(TableError::Read { path: self.path.clone(), what });
-        };
-        get(&self.cells, column)
+            TableError::Read { path: self.path.clone(), what }
+        })
     }
 
     /// The error of a cell, or of a row at one of its cells, that is wrong.
     pub(crate) fn cell(&self, row: usize, name: &str, what: String) -> TableError {
         let path = self.path.display();
         let place = match &self.cells {
-            Cells::Csv(rows) => {
-                format!("{path}:{}: column `{name}`", rows[row].position().map_or(0, ::csv::Position::line))
-            }
+            Cells::Csv(rows) => format!("{path}:{}: column `{name}`", rows.line(row)),
             Cells::Parquet(_) => format!("{path}: row {}, column `{name}`", row + 1),
         };
         TableError::Cell { place, what }
     }
+}
+
+/// A column's cells; none where one is empty.
+fn known(rows: &CsvCells, column: usize) -> impl Iterator<Item = Option<&str>> {
+    (0..rows.rows()).map(move |row| Some(rows.cell(row, column)).filter(|text| !text.is_empty()))
 }
 
 /// Converts the known cells.

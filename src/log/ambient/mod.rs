@@ -15,7 +15,9 @@ mod rails;
 mod tests;
 mod unlit;
 
-use super::log::{Channel, Log};
+use super::{Channel, Log};
+pub(crate) use rails::piles;
+
 use rails::Rails;
 use unlit::{Share, Unlit};
 

@@ -79,6 +79,12 @@ impl Rails {
     }
 }
 
+/// The least and the greatest value of a channel, each with how many samples have exactly it, where they are the ends of its range.
+pub(crate) fn piles(values: &[f64]) -> [Option<(f64, usize)>; 2] {
+    let Rails { low, high, found } = Rails::of(values, &[], None);
+    [(low, found[0]), (high, found[1])].map(|(value, count)| (count > 0).then_some((value, count)))
+}
+
 /// How many samples are piled up at the value `greatest`, if it is a rail for these samples.
 fn pile_at(values: &[f64], greatest: f64) -> Option<usize> {
     let values: Vec<f64> = values.iter().copied().filter(|v| !v.is_nan()).collect();

@@ -2,10 +2,11 @@
 //!
 //! In: a CSV file (of any of the usual dialects, also gzipped), a Parquet file or, with the cargo feature `xdf`, a recording of
 //! the Lab Streaming Layer; and [`Columns`], which says what the file calls its columns where that is not what the contract
-//! calls them. Out: a [`Log`], its rows in the order of time.
+//! calls them. Out: a [`Log`], its rows in the order of time; and [`samples`] of it, the light that is not the LED's taken away.
 //!
-//! The walk: [`text`] opens the file and finds its header, [`columns`] (and [`guess`]) choose columns by their names, [`rows`]
-//! (or [`parquet`], [`xdf`]) read cells, [`cell`] and [`stamps`] say what one cell means, [`order`] looks at time as a whole.
+//! The walk: `text` opens the file and finds its header, `columns` (and `guess`) choose columns by their names, `rows`
+//! (or `parquet`, `xdf`) read cells, `cell` and `stamps` say what one cell means, `order` looks at time as a whole;
+//! then `ambient`.
 //!
 //! Conventions. Time is in seconds: since 1970-01-01T00:00Z for date-time stamps with a zone, since 1970-01-01T00:00 of the
 //! log's own wall clock for those without, since midnight for times of day; numbers as they are, in the unit that the user or
@@ -15,6 +16,7 @@
 //! little are sorted. A clock that is reset (time falls back and goes on from there, or leaps by more than a day) is an error
 //! that says where; [`Columns::piece`] chooses the stretch between two resets.
 
+mod ambient;
 mod cell;
 mod columns;
 mod guess;
@@ -31,6 +33,8 @@ mod xdf;
 
 use std::path::{Path, PathBuf};
 
+pub(crate) use ambient::piles;
+pub use ambient::{AmbientError, AmbientOptions, Samples, samples};
 pub use columns::Columns;
 pub use stamps::TimeUnit;
 
