@@ -14,7 +14,7 @@ use std::io::Cursor;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{DynamicImage, ImageEncoder, ImageError};
 
-pub use chart::{Chart, Item, draw_charts};
+pub use chart::{Bar, Chart, Item, draw_charts, draw_panels};
 pub use grey::{Stretch, grey_map};
 pub use html::{Page, escape};
 pub use plot::{Axis, Plot, Point, Series, draw_log_log};

@@ -51,6 +51,11 @@ pub struct Point {
 
 /// Width and height of a panel, pixels.
 const PANEL: (u32, u32) = (820, 620);
+/// About the width of a letter and the height of a line of a point's name, pixels.
+const LETTER_PX: i32 = 7;
+const LINE_PX: i32 = 15;
+/// Half a point's size.
+const DOT_PX: i32 = 5;
 /// Colours that stay apart for colour-blind readers (Okabe and Ito 2008).
 pub(super) const COLOURS: [RGBColor; 6] = [
     RGBColor(0, 114, 178),
@@ -166,13 +171,14 @@ impl Plot {
             .label_style(("sans-serif", 15))
             .axis_desc_style(("sans-serif", 17))
             .light_line_style(RGBColor(240, 240, 240))
-            .x_label_formatter(&short_number)
-            .y_label_formatter(&short_number)
+            .x_label_formatter(&decade)
+            .y_label_formatter(&decade)
             .draw()
             .map_err(|e| anyhow!("{e}"))?;
         for (series, colour) in self.series.iter().zip(COLOURS.iter().cycle()) {
             self.draw_series(&mut chart, series, *colour)?;
         }
+        self.draw_names(&mut chart)?;
         draw_legend(&mut chart)
     }
 
@@ -190,19 +196,55 @@ impl Plot {
         let mut points: Vec<&Point> = series.points.iter().filter(|p| p.x > 0.0 && p.y > 0.0).collect();
         points.sort_by(|a, b| a.x.total_cmp(&b.x));
         chart
-            .draw_series(points.iter().map(|p| Circle::new((p.x, p.y), 5, colour.filled())))
+            .draw_series(points.iter().map(|p| Circle::new((p.x, p.y), DOT_PX, colour.filled())))
             .map_err(|e| anyhow!("{e}"))?
             .label(&series.name)
-            .legend(move |(x, y)| Circle::new((x + 10, y), 5, colour.filled()));
-        chart
-            .draw_series(points.iter().enumerate().map(|(k, p)| {
-                // Neighbours write above and below themselves in turn.
-                let offset = if k % 2 == 0 { (8, -16) } else { (8, 4) };
-                EmptyElement::at((p.x, p.y)) + Text::new(p.label.clone(), offset, ("sans-serif", 14).into_font())
-            }))
-            .map_err(|e| anyhow!("{e}"))?;
+            .legend(move |(x, y)| Circle::new((x + 10, y), DOT_PX, colour.filled()));
         Ok(())
     }
+
+    /// Names all points, none on another's name where there is room.
+    fn draw_names<B: DrawingBackend, X, Y>(
+        &self,
+        chart: &mut ChartContext<'_, B, Cartesian2d<X, Y>>,
+    ) -> anyhow::Result<()>
+    where
+        B::ErrorType: 'static,
+        X: Ranged<ValueType = f64>,
+        Y: Ranged<ValueType = f64>,
+    {
+        let (across, down) = chart.plotting_area().get_pixel_range();
+        let mut points: Vec<&Point> = self.drawable().collect();
+        points.sort_by(|a, b| a.x.total_cmp(&b.x));
+        // Left, top, right, bottom of dots and names.
+        let dot = |(x, y): (i32, i32)| [x - DOT_PX, y - DOT_PX, x + DOT_PX, y + DOT_PX];
+        let mut taken: Vec<[i32; 4]> =
+            points.iter().map(|point| dot(chart.backend_coord(&(point.x, point.y)))).collect();
+        for point in points {
+            let (x, y) = chart.backend_coord(&(point.x, point.y));
+            let width = point.label.chars().count() as i32 * LETTER_PX;
+            let dx = if x + 8 + width > across.end { -8 - width } else { 8 };
+            let place = |dy: i32| [x + dx, y + dy, x + dx + width, y + dy + LINE_PX];
+            let free = |dy: &i32| {
+                let [left, top, right, bottom] = place(*dy);
+                let inside = top >= down.start && bottom <= down.end;
+                inside && taken.iter().all(|t| t[2] < left || t[0] > right || t[3] < top || t[1] > bottom)
+            };
+            // Above, below, further above, further below, ..
+            let steps = (0..12).flat_map(|k| [-LINE_PX - k * LINE_PX, 4 + k * LINE_PX]);
+            let dy = steps.into_iter().find(free).unwrap_or(4);
+            taken.push(place(dy));
+            let name = EmptyElement::at((point.x, point.y))
+                + Text::new(point.label.clone(), (dx, dy), ("sans-serif", 14).into_font());
+            chart.draw_series(std::iter::once(name)).map_err(|e| anyhow!("{e}"))?;
+        }
+        Ok(())
+    }
+}
+
+/// `0.01`, `100`, and where that gets long `1e-9`.
+fn decade(value: &f64) -> String {
+    if (1e-4..1e6).contains(value) { short_number(value) } else { format!("1e{:.0}", value.log10()) }
 }
 
 /// `0.002`, `3`, `40`: as short as the number allows.

@@ -35,7 +35,8 @@ pub(super) fn coverage(text: &str, height: f32) -> GrayImage {
     covered
 }
 
-fn shortened(text: &str, height: f32, width: u32) -> String {
+/// `text`, shortened with an ellipsis to fit `width` pixels.
+pub(super) fn shortened(text: &str, height: f32, width: u32) -> String {
     let fits = |t: &str| text_size(PxScale::from(height), &*FONT, t).0 <= width;
     if fits(text) {
         return text.to_owned();

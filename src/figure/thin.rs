@@ -81,15 +81,22 @@ impl Bin {
 pub struct Thinned {
     bins: Vec<Bin>,
     rows_a_bin: usize,
+    most: usize,
 }
 
 impl Default for Thinned {
     fn default() -> Self {
-        Self { bins: Vec::new(), rows_a_bin: 1 }
+        Self::of_at_most(MOST_BINS)
     }
 }
 
 impl Thinned {
+    /// At most `most` bins, and at least two.
+    #[must_use]
+    pub fn of_at_most(most: usize) -> Self {
+        Self { bins: Vec::new(), rows_a_bin: 1, most: most.max(2) }
+    }
+
     /// Takes a row: of each series the value and its standard error. Times ascend.
     pub fn push(&mut self, time_s: f64, values: impl Iterator<Item = Option<[f64; 2]>>) {
         let series: Vec<Option<Summary>> =
@@ -105,9 +112,9 @@ impl Thinned {
             Some(last) if last.rows < self.rows_a_bin => last.join(bin),
             _ => self.bins.push(bin),
         }
-        if self.bins.len() > MOST_BINS {
+        if self.bins.len() > self.most {
             self.rows_a_bin *= 2;
-            let mut joined: Vec<Bin> = Vec::with_capacity(MOST_BINS);
+            let mut joined: Vec<Bin> = Vec::with_capacity(self.most);
             for bin in self.bins.drain(..) {
                 match joined.last_mut() {
                     Some(last) if last.rows + bin.rows <= self.rows_a_bin => last.join(bin),

@@ -1,0 +1,190 @@
+//! Charts on linear axes: lines with breaks where nothing is known, bands, dots, shaded spans; PNG and SVG.
+//!
+//! Charts of one picture stand below each other, or as panels in rows. What is drawn last lies on top. Values beyond 1e200 are drawn there.
+
+mod ink;
+mod item;
+mod reach;
+
+use std::path::Path;
+
+use anyhow::anyhow;
+use plotters::coord::Shift;
+use plotters::prelude::*;
+
+use super::Axis;
+use super::plot::{Draw, draw_legend, short_number, write_both};
+use ink::{NAME_LINE_PX, draw_item, draw_names};
+use reach::Reach;
+
+pub use item::{Bar, Item};
+
+/// A chart on linear axes.
+#[derive(Debug, Clone)]
+pub struct Chart {
+    /// Above the axes.
+    pub title: String,
+    /// Horizontal.
+    pub x: Axis,
+    /// Vertical; without a label its numbers mean nothing and are not written.
+    pub y: Axis,
+    /// Whether the vertical axis begins at zero.
+    pub from_zero: bool,
+    /// What is drawn, the lowest first.
+    pub items: Vec<Item>,
+    /// Its height in pixels.
+    pub height: u32,
+}
+
+/// Height of a line of a legend.
+const LEGEND_LINE_PX: u32 = 20;
+
+/// Draws `charts` below each other, `width` pixels wide, to `png` and `svg`.
+///
+/// # Errors
+/// A file that can't be written.
+pub fn draw_charts(charts: &[Chart], width: u32, png: &Path, svg: &Path) -> anyhow::Result<()> {
+    write_both(&Charts(charts), (width, charts.iter().map(|c| c.height).sum()), png, svg)
+}
+
+struct Charts<'a>(&'a [Chart]);
+
+impl Draw for Charts<'_> {
+    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> anyhow::Result<()>
+    where
+        B::ErrorType: 'static,
+    {
+        let mut rest = area.clone();
+        for chart in self.0 {
+            let (own, below) = rest.split_vertically(chart.height);
+            chart.draw(&own)?;
+            rest = below;
+        }
+        Ok(())
+    }
+}
+
+/// Draws `charts` as panels, `columns` in a row and `width` pixels wide each, to `png` and `svg`; a row is as high as its highest.
+///
+/// # Errors
+/// A file that can't be written.
+pub fn draw_panels(charts: &[Chart], columns: usize, width: u32, png: &Path, svg: &Path) -> anyhow::Result<()> {
+    let columns = columns.clamp(1, charts.len().max(1));
+    let rows = charts.chunks(columns).map(|row| row.iter().map(|c| c.height).max().unwrap_or(0));
+    let ends: Vec<u32> = rows
+        .scan(0, |end, height| {
+            *end += height;
+            Some(*end)
+        })
+        .collect();
+    let size = (width * columns as u32, ends.last().copied().unwrap_or(1));
+    write_both(&Panels { charts, columns, width, ends: &ends }, size, png, svg)
+}
+
+struct Panels<'a> {
+    charts: &'a [Chart],
+    columns: usize,
+    width: u32,
+    /// Where each row ends.
+    ends: &'a [u32],
+}
+
+impl Draw for Panels<'_> {
+    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> anyhow::Result<()>
+    where
+        B::ErrorType: 'static,
+    {
+        let across: Vec<i32> = (1..self.columns as i32).map(|k| k * self.width as i32).collect();
+        let down: Vec<i32> = self.ends.iter().map(|&end| end as i32).take(self.ends.len().saturating_sub(1)).collect();
+        let areas = area.split_by_breakpoints(across, down);
+        self.charts.iter().zip(areas).try_for_each(|(chart, own)| chart.draw(&own))
+    }
+}
+
+impl Chart {
+    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> anyhow::Result<()>
+    where
+        B::ErrorType: 'static,
+    {
+        let mut reach = Reach::default();
+        self.items.iter().for_each(|item| item.reach(&mut reach));
+        if self.from_zero {
+            reach.y.take(0.0);
+        }
+        let square = self.items.iter().any(|item| matches!(item, Item::Diagonal { .. }));
+        if square {
+            reach.square();
+        }
+        let names = self.items.iter().find_map(|item| if let Item::Names(names) = item { Some(names) } else { None });
+        let lines = names.map_or(1, |names| names.iter().map(|(_, name)| name.lines().count()).max().unwrap_or(1));
+        // The legend has room above the highest value.
+        let named = self.items.iter().filter(|item| item.name().is_some()).count();
+        let legend = if named > 0 { f64::from(LEGEND_LINE_PX) * (named as f64 + 1.0) } else { 0.0 };
+        let height = f64::from(self.height.max(200)) - 110.0;
+        let above = 0.04 + (legend / (height - legend)).clamp(0.0, 1.0);
+        let (x, y) = if square {
+            (reach.x.padded(0.03, 0.03), reach.y.padded(0.03, 0.03))
+        } else {
+            (reach.x.padded(0.01, 0.01), reach.y.padded(if self.from_zero { 0.0 } else { 0.05 }, above))
+        };
+        let mut builder = ChartBuilder::on(area);
+        let below = if self.x.label.is_empty() { 26 } else { 46 } + NAME_LINE_PX * (lines.max(1) as u32 - 1);
+        builder.margin(16).x_label_area_size(below).y_label_area_size(74);
+        if !self.title.is_empty() {
+            builder.caption(&self.title, ("sans-serif", 22));
+        }
+        let mut chart = builder.build_cartesian_2d(x.0..x.1, y.0..y.1).map_err(|e| anyhow!("{e}"))?;
+        // Spans lie below the grid.
+        for item in &self.items {
+            if let Item::Spans { name, spans } = item {
+                let grey = RGBColor(226, 226, 226).filled();
+                let drawn = chart
+                    .draw_series(spans.iter().map(|s| Rectangle::new([(s[0], y.0), (s[1], y.1)], grey)))
+                    .map_err(|e| anyhow!("{e}"))?;
+                if let Some(name) = name {
+                    drawn.label(name).legend(move |(x, y)| Rectangle::new([(x, y - 5), (x + 20, y + 5)], grey));
+                }
+            }
+        }
+        let number_x = |value: &f64| if names.is_some() { String::new() } else { number(*value, x) };
+        let number_y = |value: &f64| if self.y.label.is_empty() { String::new() } else { number(*value, y) };
+        let mut mesh = chart.configure_mesh();
+        if names.is_some() {
+            mesh.disable_x_mesh().set_tick_mark_size(LabelAreaPosition::Bottom, 0);
+        }
+        mesh.x_desc(&self.x.label)
+            .y_desc(&self.y.label)
+            .label_style(("sans-serif", 15))
+            .axis_desc_style(("sans-serif", 17))
+            .light_line_style(TRANSPARENT)
+            .bold_line_style(RGBColor(0, 0, 0).mix(0.12))
+            .x_label_formatter(&number_x)
+            .y_label_formatter(&number_y)
+            .draw()
+            .map_err(|e| anyhow!("{e}"))?;
+        for item in &self.items {
+            draw_item(&mut chart, item)?;
+        }
+        if let Some(names) = names {
+            draw_names(area, &chart, names)?;
+        }
+        if named > 0 {
+            draw_legend(&mut chart)?;
+        }
+        Ok(())
+    }
+}
+
+/// A number of an axis between two ends, as short as it can be read.
+fn number(value: f64, (low, high): (f64, f64)) -> String {
+    let size = low.abs().max(high.abs());
+    if value.abs() < 1e-9 * (high - low) {
+        return "0".to_owned();
+    }
+    if (1e-3..1e7).contains(&size) {
+        return short_number(&value);
+    }
+    let text = format!("{value:.3e}");
+    let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+    format!("{}e{exponent}", digits.trim_end_matches('0').trim_end_matches('.'))
+}
