@@ -65,7 +65,7 @@ fn the_log_belongs_to_the_video_of_its_seed_and_both_stand_together() {
     let alone = dir.bytes_of("s");
     run(&dir, log).expect(0);
     let both = dir.bytes_of("s");
-    assert_eq!(both.len(), alone.len() + 3);
+    assert_eq!(both.len(), alone.len() + 4);
     assert!(alone.iter().all(|(name, bytes)| both[name] == *bytes));
     // The other order, and each again.
     std::fs::remove_dir_all(dir.path("s")).unwrap();
@@ -94,6 +94,43 @@ fn the_log_belongs_to_the_video_of_its_seed_and_both_stand_together() {
     }
     // 25 a second for 2 s less the last frame's interval.
     assert!((48..=50).contains(&compared), "{compared}");
+}
+
+#[test]
+fn the_exact_angles_label_a_log_without_a_video() {
+    // Between frames a polynomial runs through those around; what is left is the labels' rounding. Measured 0.0002.
+    const NEAR_DEG: f64 = 0.001;
+    let dir = Dir::new();
+    run(&dir, "--protocol bending --seed 3 --clock-offset 754 --clock-drift-ppm 80 --out s").expect(0);
+    let angles = dir.table("s/truth/angles.csv");
+    assert_eq!(angles.len(), 1800);
+    let header = std::fs::read_to_string(dir.path("s/truth/angles.csv")).unwrap();
+    let columns = "frame,time_s,clock_s,J1_deg,J1_sd_deg,J2_deg,J2_sd_deg,J3_deg,J3_sd_deg,status,clock_read_s,clock_sd_s,clock_low_s,clock_high_s";
+    assert_eq!(header.lines().next(), Some(columns));
+    assert!((number(&angles[1799], "clock_s") - (754.0 + (1.0 + 80e-6) * 1799.0 / 30.0)).abs() <= 1e-9);
+    let align =
+        "align --joints s/truth/angles.csv --log s/log.csv --out training.csv --subject 1 --session 1 --no-figures";
+    dir.lunula(&align.split_whitespace().collect::<Vec<_>>()).expect(0);
+    // Lit samples have one row each.
+    let exact = dir.table("s/truth/log.csv").into_iter().filter(|row| row["led"] == "1");
+    let mut compared = 0;
+    for (row, exact) in dir.table("training.csv").iter().zip(exact) {
+        assert!((number(row, "time_s") - number(&exact, "log_s")).abs() <= 0.6e-6);
+        if row["label_status"] != "ok" {
+            let time_s = number(&exact, "time_s");
+            assert!(!(0.0..=1799.0 / 30.0).contains(&time_s), "{time_s}: {}", row["label_status"]);
+            continue;
+        }
+        for joint in ["J1_deg", "J2_deg", "J3_deg"] {
+            let miss = (number(row, joint) - number(&exact, joint)).abs();
+            assert!(miss <= NEAR_DEG, "{joint}: {miss}");
+        }
+        // The frames are exact: what is left is how the angle bends between them. Measured 0.0002.
+        assert!(number(row, "J2_sd_deg") <= NEAR_DEG);
+        compared += 1;
+    }
+    // 12.5 lit samples a second.
+    assert!((748..=751).contains(&compared), "{compared}");
 }
 
 #[test]
@@ -231,7 +268,7 @@ fn seeds_people_and_sessions_tell_the_bytes() {
         run(&dir, &format!("--seconds 3 --trajectory random --force random {more} --out {name}")).expect(0);
     }
     let one = dir.bytes_of("one");
-    assert_eq!(one.len(), 3);
+    assert_eq!(one.len(), 4);
     assert!(one == dir.bytes_of("same"));
     for name in ["seed", "subject", "session"] {
         assert!(one["log.csv"] != dir.bytes_of(name)["log.csv"], "{name}");
@@ -258,8 +295,13 @@ fn bad_options_are_refused_all_at_once() {
     refused("--dead P9").says("`P9` is no photodiode; there are P1 to P8");
     refused("--gap now").says("`now` is not FROM+LENGTH");
     refused("--clock-jump 5").says("`5` is not TIME+SECONDS");
-    refused("--trajectory nowhere.csv").says("--trajectory is eq27, random, rest or a table").says("nowhere.csv");
+    refused("--trajectory nowhere.csv").says("--trajectory is eq27, random, even, rest or a table").says("nowhere.csv");
     assert!(!dir.path("out").exists());
+    refused("--protocol touch --follow 0.5 --posture-shift -1")
+        .says("--follow 0.5: choose 0 to 0.4")
+        .says("--posture-shift -1");
+    refused("--touch-from 3").says("--touch-from: nothing is touched");
+    refused("--protocol wave").says("touch-random");
     let options = LogOptions {
         trajectory: Trajectory::Given { rows: vec![[0.0; 4], [0.0; 4]] },
         force: ForceTrajectory::Random { hz: f64::NAN, seed: 1 },
@@ -267,4 +309,90 @@ fn bad_options_are_refused_all_at_once() {
     };
     let words = LogScene::new(options).unwrap_err().to_string();
     assert!(words.contains("ascending times") && words.contains("--force-hz NaN"), "{words}");
+}
+
+/// A protocol's log and truth, with the options before `--out`.
+fn protocol(dir: &Dir, name: &str, options: &str) -> [Vec<BTreeMap<String, String>>; 2] {
+    run(dir, &format!("--protocol {options} --out {name}")).expect(0);
+    [dir.table(&format!("{name}/log.csv")), dir.table(&format!("{name}/truth/log.csv"))]
+}
+
+#[test]
+fn the_protocols_are_as_long_and_in_the_order_of_the_thesis() {
+    let dir = Dir::new();
+    // Bending, then touching, seconds.
+    for (name, bending_s, touching_s) in
+        [("touch", 60.0, 180.0), ("touch-random", 20.0, 100.0), ("bending", 60.0, 0.0), ("bending-random", 60.0, 0.0)]
+    {
+        let [log, truth] = protocol(&dir, name, &format!("{name} --rate 10 --lead 0 --trail 0"));
+        let whole_s: f64 = bending_s + touching_s;
+        assert!((log.len() as f64 - 10.0 * whole_s).abs() <= 1.0, "{name}: {} rows", log.len());
+        let (mut lowest, mut highest, mut pressing) = (f64::MAX, f64::MIN, 0.0f64);
+        for row in &truth {
+            let (time_s, j2, fz) = (number(row, "time_s"), number(row, "J2_deg"), number(row, "Fz_N"));
+            if time_s < bending_s {
+                (lowest, highest) = (lowest.min(j2), highest.max(j2));
+                assert!(fz == 0.0 && number(row, "Fx_N") == 0.0 && number(row, "Fy_N") == 0.0, "{name} at {time_s}");
+            } else if time_s > bending_s + 0.5 {
+                // The finger is straight within its shift.
+                assert!(j2.abs() <= 3.2, "{name} at {time_s}: {j2}");
+                assert!(number(row, "Fx_N").hypot(number(row, "Fy_N")) <= -0.75 * fz + 1e-9, "{name} at {time_s}");
+                pressing = pressing.max(-fz);
+            }
+        }
+        assert!(lowest < 12.0 && highest > 60.0, "{name}: {lowest} to {highest}");
+        assert!(touching_s == 0.0 || (2.5..3.5).contains(&pressing), "{name}: {pressing}");
+    }
+}
+
+#[test]
+fn repetitions_differ_as_people_do_and_exact_ones_are_the_prompt() {
+    let dir = Dir::new();
+    let short = "touch --bend-hz 0.2 --touch-from 10 --spiral-seconds 40 --rate 10";
+    let [_, first] = protocol(&dir, "first", &format!("{short} --seed 1"));
+    let [_, again] = protocol(&dir, "again", &format!("{short} --seed 1 --threads 1"));
+    let [_, second] = protocol(&dir, "second", &format!("{short} --seed 2"));
+    let [_, exact] = protocol(&dir, "exact", &format!("{short} --seed 1 --follow 0 --posture-shift 0"));
+    assert_eq!(first, again);
+    let spiral = Spiral { duration_s: 40.0, ..Spiral::default() };
+    let late = |row: &BTreeMap<String, String>| spiral.forces_n(number(row, "time_s") - 10.3)[2];
+    let mut compared = 0;
+    for row in &exact {
+        let time_s = number(row, "time_s");
+        let expected = if time_s > 10.0 { spiral.forces_n(time_s - 10.0) } else { [0.0; 3] };
+        for (force, expected) in ["Fx_N", "Fy_N", "Fz_N"].iter().zip(expected) {
+            assert!((number(row, force) - expected).abs() <= 1e-12, "{force} at {time_s}");
+        }
+        if time_s >= 10.0 {
+            assert_eq!(number(row, "J2_deg"), 0.0);
+        }
+    }
+    for repetition in [&first, &second] {
+        let touching = repetition.iter().filter(|row| (14.0..50.0).contains(&number(row, "time_s")));
+        for row in touching {
+            // 6 % of a wave whose greatest is 2.3 times its standard deviation, and the lag's own swing.
+            assert!((number(row, "Fz_N") / late(row) - 1.0).abs() <= 0.16, "{row:?}");
+            compared += 1;
+        }
+    }
+    assert!(compared >= 700, "{compared}");
+    let shift = |rows: &[BTreeMap<String, String>]| number(&rows[rows.len() / 2], "J2_deg");
+    assert!(shift(&first) != shift(&second) && shift(&first).abs() <= 3.0 && shift(&second).abs() <= 3.0);
+    let record = String::from_utf8(dir.bytes_of("first")["truth/log.json"].clone()).unwrap();
+    let record: serde_json::Value = serde_json::from_str(&record).unwrap();
+    assert!((record["posture_shift_deg"][1].as_f64().unwrap() - shift(&first)).abs() <= 1e-9);
+    assert!(record["options"]["touch_from_s"] == 10.0 && record["options"]["follow"] == 0.06);
+}
+
+#[test]
+fn logs_without_a_protocol_tell_nothing_of_one() {
+    let dir = Dir::new();
+    run(&dir, "--seconds 2 --out out").expect(0);
+    let record = String::from_utf8(dir.bytes_of("out")["truth/log.json"].clone()).unwrap();
+    assert!(["follow", "posture_shift", "touch_from"].iter().all(|word| !record.contains(word)), "{record}");
+    // The options of a protocol serve alone as well.
+    run(&dir, "--force spiral --touch-from 4 --spiral-seconds 10 --out two").expect(0);
+    let truth = dir.table("two/truth/log.csv");
+    assert!(number(truth.last().unwrap(), "time_s") > 14.9, "bending, the spiral, the trail");
+    assert!(truth.iter().all(|row| number(row, "time_s") > 4.0 || number(row, "Fz_N") == 0.0));
 }

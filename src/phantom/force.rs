@@ -1,83 +1,11 @@
 //! How a fingertip presses and shears (section 5.2.3, equations 21 to 23).
 //!
-//! In: the time. Out: `[Fx, Fy, Fz]`, newtons, those of the finger on the surface: pressing is a negative Fz. The equations' own F_z is how
-//! hard the finger presses, here the pressing N = -Fz:
-//!
-//! - (21) N = N_max sqrt(t / T)
-//! - (22) F_r = mu N sin(2 pi f_s N)
-//! - (23) F_x = F_r sin(2 pi f_c t), F_y = F_r cos(2 pi f_c t)
-//!
-//! Departures: equation 21 begins infinitely fast, so a cubic that meets it in value and slope takes its place in the first seconds
-//! ([`Spiral::soft_s`]); after T the finger lets go within [`RELEASE_S`].
+//! In: the time. Out: `[Fx, Fy, Fz]`, newtons, those of the finger on the surface: pressing is a negative Fz. The trajectories themselves are the
+//! predictor crate's, which plans calibrations with them.
 
-use std::f64::consts::{FRAC_1_SQRT_2, TAU};
-
+use lunula_predictor::{ForceSpace, RandomForce};
+pub use lunula_predictor::{RELEASE_S, Spiral};
 use serde::Serialize;
-
-use super::wave::Wave;
-
-const KIND_FORCE: u32 = 21;
-/// How long the finger takes to let go after the spiral's end, seconds.
-pub const RELEASE_S: f64 = 2.0;
-
-/// The spiral of equations 21 to 23.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Spiral {
-    /// N_max, newtons.
-    pub fz_max_n: f64,
-    /// T, seconds.
-    pub duration_s: f64,
-    /// mu, the coefficient of friction.
-    pub mu: f64,
-    /// f_s, cycles a newton.
-    pub fs_per_n: f64,
-    /// f_c, hertz.
-    pub fc_hz: f64,
-    /// How long the beginning is not equation 21's but a soft start, seconds.
-    pub soft_s: f64,
-}
-
-impl Default for Spiral {
-    fn default() -> Self {
-        Self { fz_max_n: 3.0, duration_s: 180.0, mu: 0.75, fs_per_n: 1.0, fc_hz: 0.15, soft_s: 2.0 }
-    }
-}
-
-impl Spiral {
-    /// Equation 21 with its soft start: how hard the finger presses, newtons; 0 before time 0.
-    #[must_use]
-    pub fn pressing_n(&self, t_s: f64) -> f64 {
-        let soft_s = self.soft_s.min(self.duration_s);
-        let root = |t_s: f64| self.fz_max_n * (t_s / self.duration_s).sqrt();
-        if t_s <= 0.0 {
-            0.0
-        } else if t_s < soft_s {
-            // From 0 with slope 0 to the root's value and slope.
-            let x = t_s / soft_s;
-            root(soft_s) * x * x * (2.5 - 1.5 * x)
-        } else {
-            root(t_s.min(self.duration_s))
-        }
-    }
-
-    /// Equation 22: the shear force along its direction, newtons, at a pressing.
-    #[must_use]
-    pub fn shear_n(&self, pressing_n: f64) -> f64 {
-        self.mu * pressing_n * (TAU * self.fs_per_n * pressing_n).sin()
-    }
-
-    /// Equation 23 and the pressing's sign: `[Fx, Fy, Fz]`, newtons.
-    #[must_use]
-    pub fn forces_n(&self, t_s: f64) -> [f64; 3] {
-        let until_s = t_s.min(self.duration_s);
-        let pressing_n = self.pressing_n(until_s);
-        let shear_n = self.shear_n(pressing_n);
-        let (sin, cos) = (TAU * self.fc_hz * until_s).sin_cos();
-        let late = ((t_s - self.duration_s) / RELEASE_S).clamp(0.0, 1.0);
-        let left = 1.0 - late * late * (3.0 - 2.0 * late);
-        [left * shear_n * sin, left * shear_n * cos, -left * pressing_n]
-    }
-}
 
 /// How the fingertip presses.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -94,6 +22,13 @@ pub enum ForceTrajectory {
         /// Where the random numbers come from.
         seed: u64,
     },
+    /// Smooth and band-limited, about evenly all over that cone.
+    Even {
+        /// Rates lie between 0.4 and 4 times this.
+        hz: f64,
+        /// Where the random numbers come from.
+        seed: u64,
+    },
 }
 
 /// A [`ForceTrajectory`] that is ready to be asked often.
@@ -101,8 +36,7 @@ pub enum ForceTrajectory {
 pub(super) enum Press {
     None,
     Spiral(Spiral),
-    /// Of the pressing, of Fx, of Fy.
-    Random([Wave; 3]),
+    Random(Box<RandomForce>),
 }
 
 impl ForceTrajectory {
@@ -110,9 +44,8 @@ impl ForceTrajectory {
         match self {
             Self::None => Press::None,
             Self::Spiral(spiral) => Press::Spiral(*spiral),
-            Self::Random { hz, seed } => {
-                Press::Random([0, 1, 2].map(|index| Wave::random(*hz, 0.4..4.0, *seed, KIND_FORCE, index)))
-            }
+            Self::Random { hz, seed } => Press::Random(Box::new(RandomForce::new(ForceSpace::default(), *hz, *seed))),
+            Self::Even { hz, seed } => Press::Random(Box::new(RandomForce::even(ForceSpace::default(), *hz, *seed))),
         }
     }
 
@@ -124,18 +57,20 @@ impl ForceTrajectory {
 }
 
 impl Press {
+    /// The same, but nothing is pressed before time 0; random motion comes out of rest within `soft_s`.
+    pub(super) fn out_of_rest(self, soft_s: f64) -> Self {
+        match self {
+            Self::Random(random) => Self::Random(Box::new(random.out_of_rest(soft_s, f64::INFINITY))),
+            other => other,
+        }
+    }
+
     /// `[Fx, Fy, Fz]` at `t_s`, newtons.
     pub(super) fn forces_n(&self, t_s: f64) -> [f64; 3] {
         match self {
             Self::None => [0.0; 3],
             Self::Spiral(spiral) => spiral.forces_n(t_s),
-            Self::Random([pressing, x, y]) => {
-                let Spiral { fz_max_n, mu, .. } = Spiral::default();
-                let pressing_n = 0.5 * fz_max_n * (1.0 + pressing.at(t_s));
-                // Two waves of at most 1 each lie in the circle of radius sqrt 2.
-                let shear_n = FRAC_1_SQRT_2 * mu * pressing_n;
-                [shear_n * x.at(t_s), shear_n * y.at(t_s), -pressing_n]
-            }
+            Self::Random(random) => random.forces_n(t_s),
         }
     }
 }
@@ -143,34 +78,6 @@ impl Press {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_spiral_is_the_thesis_from_the_soft_start_on() {
-        let spiral = Spiral::default();
-        assert!((spiral.pressing_n(45.0) - 1.5).abs() <= 1e-12 && (spiral.pressing_n(180.0) - 3.0).abs() <= 1e-12);
-        for t_s in [2.0, 31.0, 77.7, 180.0] {
-            let n = 3.0 * (t_s / 180.0f64).sqrt();
-            let r = 0.75 * n * (TAU * n).sin();
-            let [fx, fy, fz] = spiral.forces_n(t_s);
-            assert!((fx - r * (TAU * 0.15 * t_s).sin()).abs() <= 1e-12, "{t_s}");
-            assert!((fy - r * (TAU * 0.15 * t_s).cos()).abs() <= 1e-12 && (fz + n).abs() <= 1e-12, "{t_s}");
-        }
-    }
-
-    #[test]
-    fn the_start_is_soft_and_the_end_lets_go() {
-        // Equation 21 alone rises by 7 N/s in its first millisecond. Measured: 0.22.
-        const FASTEST_N_PER_S: f64 = 0.25;
-        let spiral = Spiral::default();
-        for k in 0..4000 {
-            let t_s = f64::from(k) * 1e-3;
-            let rise = (spiral.pressing_n(t_s + 1e-3) - spiral.pressing_n(t_s)) / 1e-3;
-            assert!((0.0..=FASTEST_N_PER_S).contains(&rise), "{t_s} {rise}");
-        }
-        assert!(spiral.forces_n(-1.0).iter().all(|force| *force == 0.0));
-        assert!(spiral.forces_n(181.0)[2] == 0.5 * spiral.forces_n(180.0)[2]);
-        assert!(spiral.forces_n(182.0).iter().all(|force| *force == 0.0));
-    }
 
     #[test]
     fn forces_stay_within_the_cone_of_friction() {
@@ -186,5 +93,14 @@ mod tests {
         }
         assert!(greatest > 2.4);
         assert_ne!(random.forces_n(1.0), ForceTrajectory::Random { hz: 0.1, seed: 6 }.forces_n(1.0));
+    }
+
+    #[test]
+    fn random_forces_are_those_that_every_log_so_far_was_made_of() {
+        // From truth/log.csv of `--force random` and these seeds, as the first version wrote it.
+        let before = ForceTrajectory::Random { hz: 0.1, seed: 3 }.forces_n(-0.736_290_583_943_329_6);
+        assert_eq!(before, [0.352_079_065_887_657_03, -0.074_672_163_413_782_72, -2.581_476_845_979_117_3]);
+        let now = ForceTrajectory::Random { hz: 0.1, seed: 5 }.forces_n(1.357_064_920_219_386_3);
+        assert_eq!(now, [-0.337_984_698_528_149_16, -0.011_927_929_742_758_973, -0.845_660_617_756_789_6]);
     }
 }

@@ -6,9 +6,10 @@
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
+use lunula_predictor::{Bending, RandomBending};
 use serde::Serialize;
 
-use super::wave::Wave;
+use super::wave::{Wave, random_wave};
 use crate::table::{Table, TableError};
 
 /// Slope of J3 over J2 in free bending.
@@ -31,6 +32,13 @@ pub enum Trajectory {
     },
     /// Smooth and band-limited: each joint a sum of three sinusoids of random rates and phases.
     Random {
+        /// Rates lie between 0.4 and 4 times this.
+        hz: f64,
+        /// Where the random numbers come from.
+        seed: u64,
+    },
+    /// Random within equation 27's range, which it covers about evenly; J3 about its line, J1 slow of its own.
+    Even {
         /// Rates lie between 0.4 and 4 times this.
         hz: f64,
         /// Where the random numbers come from.
@@ -82,8 +90,9 @@ impl Trajectory {
         match self {
             Self::Eq27 { hz } => Movement::Eq27 { hz: *hz },
             Self::Random { hz, seed } => {
-                Movement::Random([0, 1, 2].map(|joint| Wave::random(*hz, 0.4..4.0, *seed, KIND_TRAJECTORY, joint)))
+                Movement::Random([0, 1, 2].map(|joint| random_wave(*hz, 0.4..4.0, *seed, KIND_TRAJECTORY, joint)))
             }
+            Self::Even { hz, seed } => Movement::Even { hz: *hz, bending: RandomBending::new(*hz, 0.0, *seed) },
             Self::Rest => Movement::Rest,
             Self::Given { rows } => Movement::Given { rows },
         }
@@ -98,6 +107,10 @@ pub(super) enum Movement<'a> {
     },
     /// Of J1, J2, and J3 about its line.
     Random([Wave; 3]),
+    Even {
+        hz: f64,
+        bending: RandomBending,
+    },
     Rest,
     Given {
         rows: &'a [[f64; 4]],
@@ -108,13 +121,8 @@ impl Movement<'_> {
     /// J1, J2, J3 at `t_s`, radians.
     pub(super) fn angles_rad(&self, t_s: f64) -> [f64; 3] {
         match self {
-            Self::Eq27 { hz } => {
-                let j2 = (35.0 - 40.0 * (TAU * hz * t_s).cos()).to_radians();
-                let (middle, half, rate) = J1_SLOW;
-                let (wander, wander_hz) = J3_WANDER;
-                let j1 = middle + half * (TAU * rate * hz.min(0.2) * t_s + 1.0).sin();
-                [j1, j2, J3_PER_J2 * j2 + wander * (TAU * wander_hz * t_s + 0.5).sin()]
-            }
+            Self::Eq27 { hz } => coupled(Bending { hz: *hz }.j2_deg(t_s).to_radians(), *hz, t_s),
+            Self::Even { hz, bending } => coupled(bending.j2_deg(t_s).to_radians(), *hz, t_s),
             Self::Random([first, second, third]) => {
                 let j2 = (40.0 + 45.0 * second.at(t_s)).to_radians();
                 let j1 = (20.0 + 25.0 * first.at(t_s)).to_radians();
@@ -137,6 +145,14 @@ impl Movement<'_> {
             }
         }
     }
+}
+
+/// J1, J2, J3 of bending whose J2 is given: J3 about its line, J1 slow of its own.
+fn coupled(j2: f64, hz: f64, t_s: f64) -> [f64; 3] {
+    let (middle, half, rate) = J1_SLOW;
+    let (wander, wander_hz) = J3_WANDER;
+    let j1 = middle + half * (TAU * rate * hz.min(0.2) * t_s + 1.0).sin();
+    [j1, j2, J3_PER_J2 * j2 + wander * (TAU * wander_hz * t_s + 0.5).sin()]
 }
 
 #[cfg(test)]

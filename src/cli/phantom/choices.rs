@@ -102,10 +102,11 @@ pub(super) fn trajectory(text: &str, hz: f64, seed: u64) -> anyhow::Result<(Traj
     Ok(match text {
         "eq27" => (Trajectory::Eq27 { hz }, None),
         "random" => (Trajectory::Random { hz, seed }, None),
+        "even" => (Trajectory::Even { hz, seed }, None),
         "rest" => (Trajectory::Rest, None),
         file => {
             let given = Trajectory::read(Path::new(file));
-            let (given, span_s) = given.context("--trajectory is eq27, random, rest or a table")?;
+            let (given, span_s) = given.context("--trajectory is eq27, random, even, rest or a table")?;
             (given, Some(span_s))
         }
     })

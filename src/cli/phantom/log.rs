@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::Context;
 use clap::{Args, ValueEnum};
 use lunula::phantom::force::{ForceTrajectory, Spiral};
-use lunula::phantom::log::{LogOptions, LogScene, Stamps, write};
+use lunula::phantom::log::{LogOptions, LogScene, Protocol, Stamps, write};
 use lunula::phantom::screen::Jump;
 use lunula::phantom::sensor::{CHANNELS, Dynamics};
 use lunula::phantom::trajectory::Trajectory;
@@ -19,8 +19,22 @@ enum ForceArg {
     None,
     /// Equations 21 to 23, with a soft start, the finger straight
     Spiral,
-    /// Smooth and random within the cone of friction
+    /// Smooth and random within the cone of friction, most of it about its middle
     Random,
+    /// Smooth and random, about evenly all over the cone
+    Even,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum ProtocolArg {
+    /// 60 s of bending, then 180 s of the spiral with the finger straight (Fig. 94)
+    Touch,
+    /// 20 s of bending, then 100 s of random forces (Fig. 99)
+    TouchRandom,
+    /// 60 s of bending, six cycles (Fig. 101)
+    Bending,
+    /// 60 s of random bending
+    BendingRandom,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -35,8 +49,10 @@ enum StampsArg {
 
 /// A log of eight photodiodes and three forces, with exact truth (3.1.2c, 3.3, 5.2.3)
 ///
-/// Writes OUT/log.csv, which `lunula align` reads as it stands, and OUT/truth/: log.csv, log.json. It belongs to the video that `lunula phantom video`
-/// writes from the same seed, trajectory and --bend-hz; both may stand in the same OUT.
+/// Writes OUT/log.csv, which `lunula align` reads as it stands, and OUT/truth/: log.csv, angles.csv, log.json. It belongs to the video that `lunula
+/// phantom video` writes from the same seed, trajectory and --bend-hz; both may stand in the same OUT. truth/angles.csv has the exact joint angles in the
+/// format of `lunula posture`, 30 a second, clock_s on the log's clock: `lunula align --joints OUT/truth/angles.csv --log OUT/log.csv --out training.csv
+/// --subject 1 --session 1` makes a posture training set without a video.
 #[derive(Debug, Args)]
 pub(super) struct LogArgs {
     /// Everything random follows from it, but for the person and the session
@@ -52,16 +68,32 @@ pub(super) struct LogArgs {
     #[arg(long, value_name = "K", default_value_t = 1)]
     session: u32,
 
-    /// Joint angles over time: eq27, random, rest (straight and still), or a table (CSV or Parquet) with time_s, J1_deg, J2_deg, J3_deg [default:
-    /// eq27; with --force spiral rest, with --force random random]
-    #[arg(long, value_name = "eq27|random|rest|FILE")]
+    /// An experiment of 5.2.4 and 5.3, prompted to a finger that follows as people do; the options below change it. Repetitions have the same --subject and
+    /// --session and other seeds
+    #[arg(long, value_enum)]
+    protocol: Option<ProtocolArg>,
+    /// How well the finger follows: the standard deviation of its error as a share, about 0.3 s late (assumed; 5.2.2a quotes 6 %); 0: exactly
+    /// [default: 0; with a protocol 0.06]
+    #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
+    follow: Option<f64>,
+    /// The finger touches or rests by up to so many degrees of J2 off straight, the same all along a log and another for each seed (assumed, after
+    /// 5.4.1) [default: 0; with a protocol 3]
+    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
+    posture_shift: Option<f64>,
+    /// The finger bends and touches nothing until then, and presses, straight, from then on [default: it does both all along; with a protocol
+    /// that touches after its bending]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    touch_from: Option<f64>,
+    /// Joint angles over time: eq27, random, even (random, all over equation 27's range), rest (straight and still), or a table (CSV or Parquet) with time_s, J1_deg, J2_deg, J3_deg [default:
+    /// eq27; with --force spiral rest, with --force random or even random, but eq27 with --touch-from]
+    #[arg(long, value_name = "eq27|random|even|rest|FILE")]
     trajectory: Option<String>,
     /// Bending rate f of equation 27; random movement has rates of 0.4 to 4 times it
     #[arg(long, value_name = "HZ", default_value_t = 0.1)]
     bend_hz: f64,
-    /// How the fingertip presses and shears
-    #[arg(long, value_enum, default_value = "none")]
-    force: ForceArg,
+    /// How the fingertip presses and shears [default: none, or as the protocol]
+    #[arg(long, value_enum)]
+    force: Option<ForceArg>,
     /// The spiral's T
     #[arg(long, value_name = "SECONDS", default_value_t = 180.0)]
     spiral_seconds: f64,
@@ -69,7 +101,7 @@ pub(super) struct LogArgs {
     #[arg(long, value_name = "HZ", default_value_t = 0.1)]
     force_hz: f64,
 
-    /// The video's length [default: 10, or as long as a given trajectory, or the spiral's T]
+    /// The video's length [default: 10, or as long as a given trajectory, or the spiral's T, or the protocol]
     #[arg(long)]
     seconds: Option<f64>,
     /// The log begins so long before the video
@@ -142,29 +174,58 @@ pub(super) struct LogArgs {
 
 impl LogArgs {
     fn options(&self) -> anyhow::Result<LogOptions> {
-        let force = match self.force {
+        let protocol = self.protocol.map(|protocol| match protocol {
+            ProtocolArg::Touch => Protocol::Touch,
+            ProtocolArg::TouchRandom => Protocol::TouchRandom,
+            ProtocolArg::Bending => Protocol::Bending,
+            ProtocolArg::BendingRandom => Protocol::BendingRandom,
+        });
+        let kind = self.force.unwrap_or(match protocol {
+            Some(Protocol::Touch) => ForceArg::Spiral,
+            Some(Protocol::TouchRandom) => ForceArg::Even,
+            _ => ForceArg::None,
+        });
+        let force = match kind {
             ForceArg::None => ForceTrajectory::None,
             ForceArg::Spiral => {
                 ForceTrajectory::Spiral(Spiral { duration_s: self.spiral_seconds, ..Spiral::default() })
             }
             ForceArg::Random => ForceTrajectory::Random { hz: self.force_hz, seed: self.seed },
+            ForceArg::Even => ForceTrajectory::Even { hz: self.force_hz, seed: self.seed },
         };
-        let usual = match self.force {
-            ForceArg::None => "eq27",
-            ForceArg::Spiral => "rest",
-            ForceArg::Random => "random",
+        let usual = protocol.map_or_else(LogOptions::default, |protocol| LogOptions::of(protocol, self.seed));
+        let touch_from_s = self.touch_from.or(usual.touch_from_s.filter(|_| kind != ForceArg::None));
+        let movement = match (kind, protocol) {
+            (_, Some(Protocol::BendingRandom)) => "even",
+            (ForceArg::Spiral, None) if touch_from_s.is_none() => "rest",
+            (ForceArg::Random | ForceArg::Even, None) if touch_from_s.is_none() => "random",
+            _ => "eq27",
         };
-        let wanted = self.trajectory.as_deref().unwrap_or(usual);
+        let wanted = self.trajectory.as_deref().unwrap_or(movement);
         let (trajectory, span_s): (Trajectory, _) = trajectory(wanted, self.bend_hz, self.seed)?;
-        let spiral_s = (self.force == ForceArg::Spiral).then_some(self.spiral_seconds);
-        let usual = LogOptions::default();
+        let touching_s = match kind {
+            ForceArg::Spiral => Some(self.spiral_seconds),
+            ForceArg::Random | ForceArg::Even => {
+                protocol.map(|protocol| protocol.seconds()[1]).filter(|seconds| *seconds > 0.0)
+            }
+            ForceArg::None => None,
+        };
+        let after_s = touching_s.map(|seconds| touch_from_s.unwrap_or(0.0) + seconds);
         Ok(LogOptions {
             seed: self.seed,
             subject: self.subject,
             session: self.session,
             trajectory,
             force,
-            seconds: self.seconds.or(span_s).or(spiral_s).unwrap_or(usual.seconds),
+            touch_from_s,
+            follow: self.follow.unwrap_or(usual.follow),
+            posture_shift_rad: self.posture_shift.map_or(usual.posture_shift_rad, f64::to_radians),
+            seconds: self
+                .seconds
+                .or(after_s.filter(|_| touch_from_s.is_some()))
+                .or(span_s)
+                .or(after_s)
+                .unwrap_or(usual.seconds),
             lead_s: self.lead,
             trail_s: self.trail,
             rate_hz: self.rate,

@@ -47,8 +47,8 @@ pub(super) struct VideoArgs {
     #[arg(long, value_name = "SHARE", num_args = 0..=1, default_missing_value = "0.4")]
     vfr: Option<f64>,
 
-    /// Joint angles over time: eq27, random, rest (straight and still), or a table (CSV or Parquet) with time_s, J1_deg, J2_deg, J3_deg
-    #[arg(long, value_name = "eq27|random|rest|FILE")]
+    /// Joint angles over time: eq27, random, even (random, all over equation 27's range), rest (straight and still), or a table (CSV or Parquet) with time_s, J1_deg, J2_deg, J3_deg
+    #[arg(long, value_name = "eq27|random|even|rest|FILE")]
     trajectory: Option<String>,
     /// Bending rate f of equation 27; random movement has rates of 0.4 to 4 times it
     #[arg(long, value_name = "HZ")]
@@ -233,7 +233,7 @@ impl VideoArgs {
             options.hide.iter_mut().for_each(|hide| hide.marker = "dip".to_owned());
         }
         let scenes_hz = match options.trajectory {
-            Trajectory::Eq27 { hz } | Trajectory::Random { hz, .. } => hz,
+            Trajectory::Eq27 { hz } | Trajectory::Random { hz, .. } | Trajectory::Even { hz, .. } => hz,
             Trajectory::Rest | Trajectory::Given { .. } => 0.1,
         };
         let hz = self.bend_hz.unwrap_or(scenes_hz);

@@ -1,5 +1,6 @@
 //! Whether a log can be made as wanted; all faults are told at once, by the command line's names.
 
+use super::angles::FPS;
 use super::{Faults, LogOptions};
 use crate::phantom::force::ForceTrajectory;
 use crate::phantom::sensor::CHANNELS;
@@ -40,8 +41,15 @@ impl LogOptions {
         ranged("--wander", self.wander_v, 0.0, 10.0, " V");
         ranged("--lag", self.dynamics.lag, 0.0, 100.0, " of the usual");
         ranged("--hysteresis", self.dynamics.hysteresis, 0.0, 10.0, " of the usual");
+        ranged("--follow", self.follow, 0.0, 0.4, ", the standard deviation as a share");
+        ranged("--posture-shift", self.posture_shift_rad.to_degrees(), 0.0, 30.0, " degrees");
+        if let Some(from_s) = self.touch_from_s {
+            ranged("--touch-from", from_s, 0.0, 1e6, " s");
+        }
         match &self.trajectory {
-            Trajectory::Eq27 { hz } | Trajectory::Random { hz, .. } => ranged("--bend-hz", *hz, 0.0, 100.0, " Hz"),
+            Trajectory::Eq27 { hz } | Trajectory::Random { hz, .. } | Trajectory::Even { hz, .. } => {
+                ranged("--bend-hz", *hz, 0.0, 100.0, " Hz")
+            }
             Trajectory::Rest => {}
             Trajectory::Given { rows } => {
                 let finite = rows.iter().flatten().all(|value| value.is_finite());
@@ -57,15 +65,18 @@ impl LogOptions {
                 let seconds = spiral.duration_s;
                 let holds = seconds.is_finite() && seconds > 0.0;
                 need(holds, &|| format!("--spiral-seconds {seconds}: choose more than 0 s"));
-                need(self.trajectory == Trajectory::Rest, &|| {
-                    "--force spiral: the finger rests while it spirals; leave --trajectory out or choose rest"
+                need(self.trajectory == Trajectory::Rest || self.touch_from_s.is_some(), &|| {
+                    "--force spiral: the finger rests while it spirals; leave --trajectory out or choose rest, or say --touch-from"
                         .to_owned()
                 });
             }
-            ForceTrajectory::Random { hz, .. } => {
+            ForceTrajectory::Random { hz, .. } | ForceTrajectory::Even { hz, .. } => {
                 need((0.0..=100.0).contains(hz), &|| format!("--force-hz {hz}: choose 0 to 100 Hz"));
             }
         }
+        need(self.touch_from_s.is_none() || self.force != ForceTrajectory::None, &|| {
+            "--touch-from: nothing is touched; choose --force spiral or random".to_owned()
+        });
         if let Some(jump) = self.clock_jump {
             let holds = jump.at_s.is_finite() && jump.by_s.abs() <= 1e9;
             need(holds, &|| {
@@ -84,6 +95,9 @@ impl LogOptions {
         need(span_s > 0.0, &|| format!("--lead {}: the log ends before it begins", self.lead_s));
         need(span_s * self.rate_hz <= MOST_ROWS, &|| {
             format!("--rate {}: more than {MOST_ROWS} samples; choose fewer", self.rate_hz)
+        });
+        need(self.seconds * FPS <= MOST_ROWS, &|| {
+            format!("--seconds {}: more than {MOST_ROWS} rows of angles, {FPS} a second; choose fewer", self.seconds)
         });
         if faults.0.is_empty() { Ok(()) } else { Err(faults) }
     }

@@ -32,6 +32,16 @@ pub struct LogOptions {
     pub trajectory: Trajectory,
     /// How the fingertip presses.
     pub force: ForceTrajectory,
+    /// Until then the finger bends and touches nothing, from then on it presses, straight, the force's own time 0 being there, seconds; none: it does
+    /// both all along.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub touch_from_s: Option<f64>,
+    /// How well the finger follows: the standard deviation of its error as a share; 0: it does exactly what is prompted, without a lag.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub follow: f64,
+    /// How far off straight it touches or rests at most, radians.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub posture_shift_rad: f64,
     /// From the video's first frame on.
     pub seconds: f64,
     /// How long the log goes on before the video begins; less than 0: it begins later.
@@ -76,6 +86,11 @@ pub struct LogOptions {
     pub dead: Vec<usize>,
 }
 
+/// What is not there need not be told.
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
+}
+
 impl LogOptions {
     /// The date of stamps: year, month, day.
     pub const DATE: (i16, i8, i8) = (2026, 3, 14);
@@ -92,6 +107,9 @@ impl Default for LogOptions {
             session: 1,
             trajectory: Trajectory::Eq27 { hz: 0.1 },
             force: ForceTrajectory::None,
+            touch_from_s: None,
+            follow: 0.0,
+            posture_shift_rad: 0.0,
             seconds: 10.0,
             lead_s: 1.0,
             trail_s: 1.0,

@@ -3,6 +3,7 @@
 use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
 
+use super::doing::{Doing, shift_rad};
 use super::{Faults, LogOptions};
 use crate::phantom::nail::numbers;
 use crate::phantom::sensor::{Ambient, CHANNELS, Response, Sensor, Touch, Wander};
@@ -100,6 +101,12 @@ impl LogScene {
         &self.wander
     }
 
+    /// How far J1, J2, J3 are off straight while the finger touches or rests, radians.
+    #[must_use]
+    pub fn posture_shift_rad(&self) -> [f64; 3] {
+        shift_rad(&self.options)
+    }
+
     /// The rows that are not lost, in order.
     #[must_use]
     pub fn rows(&self) -> &[Row] {
@@ -146,8 +153,8 @@ fn moments(options: &LogOptions) -> Vec<Row> {
 
 /// What is true at each row.
 fn follow(options: &LogOptions, sensor: &Sensor, ambient: &Ambient, wander: &Wander, rows: &mut [Row]) {
-    let (movement, press) = (options.trajectory.movement(), options.force.press());
-    let touch = |t_s: f64| Touch { forces_n: press.forces_n(t_s), angles_rad: movement.angles_rad(t_s) };
+    let doing = Doing::new(options);
+    let touch = |t_s: f64| doing.touch(t_s);
     // The whole log, lost rows or not: what is lost changes nothing of the rest.
     let mut response = Response::new(sensor, options.dynamics, &touch, -options.lead_s - BEFORE_S);
     for row in rows {

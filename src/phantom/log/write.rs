@@ -7,6 +7,7 @@ use std::{fs, io};
 use serde::Serialize;
 use thiserror::Error;
 
+use super::angles::write_angles;
 use super::{LogOptions, LogScene, Row, Stamps};
 use crate::phantom::finger::JOINTS;
 use crate::phantom::place::{in_the_way, put_in_place};
@@ -15,7 +16,7 @@ use crate::table::{Column, TableError, TableWriter, Value};
 
 /// The file that says that a log was written here.
 const RECORD: &str = "truth/log.json";
-const RESULTS: [&str; 3] = ["log.csv", "truth/log.csv", RECORD];
+const RESULTS: [&str; 4] = ["log.csv", "truth/log.csv", "truth/angles.csv", RECORD];
 const FORCES: [&str; 3] = ["Fx_N", "Fy_N", "Fz_N"];
 /// Decimals of stamps, of readings (a step of the converter is 0.00015 V) and of forces (steps of 0.0008 N).
 const STAMP_DECIMALS: usize = 6;
@@ -84,6 +85,7 @@ fn write_staged(scene: &LogScene, out: &Path) -> Result<(), Error> {
     fs::create_dir(&truth).map_err(refused(&truth))?;
     write_log(scene, &stage.path().join(RESULTS[0]))?;
     write_truth(scene, &stage.path().join(RESULTS[1]))?;
+    write_angles(scene, &stage.path().join(RESULTS[2]))?;
     write_record(scene, &stage.path().join(RECORD))?;
     put_in_place(stage.path(), out, &RESULTS).map_err(|(path, source)| Error::Write { path, source })
 }
@@ -153,13 +155,17 @@ fn write_truth(scene: &LogScene, path: &Path) -> Result<(), Error> {
 }
 
 fn write_record(scene: &LogScene, path: &Path) -> Result<(), Error> {
-    let record = serde_json::json!({
+    let mut record = serde_json::json!({
         "options": scene.options(),
         "rows": scene.rows().len(),
         "photodiodes": scene.sensor(),
         "ambient": scene.ambient(),
         "wander": scene.wander(),
     });
+    if scene.options().posture_shift_rad != 0.0 {
+        // Beside what was allowed, what it was.
+        record["posture_shift_deg"] = scene.posture_shift_rad().map(f64::to_degrees).into_iter().collect();
+    }
     let text = serde_json::to_vec_pretty(&record).map_err(|error| refused(path)(error.into()))?;
     fs::write(path, text).map_err(refused(path))
 }

@@ -6,7 +6,7 @@ use rand::RngExt;
 use serde::Serialize;
 
 use crate::phantom::nail::numbers;
-use crate::phantom::wave::Wave;
+use crate::phantom::wave::{Wave, random_wave};
 
 const KIND_AMBIENT: u32 = 24;
 /// The hum's share of the swing; the rest is slow.
@@ -34,7 +34,7 @@ impl Ambient {
     #[must_use]
     pub fn new(seed: u64, level_v: f64, swing: f64, hum_hz: f64) -> Self {
         let hum_phase = numbers(seed, KIND_AMBIENT, 0).random_range(0.0..1.0);
-        Self { level_v, swing, hum_hz, hum_phase, slow: Wave::random(1.0, SLOW_HZ, seed, KIND_AMBIENT, 1) }
+        Self { level_v, swing, hum_hz, hum_phase, slow: random_wave(1.0, SLOW_HZ, seed, KIND_AMBIENT, 1) }
     }
 
     /// At the scene's time `t_s`, volts.

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::CHANNELS;
 use crate::phantom::nail::numbers;
-use crate::phantom::wave::Wave;
+use crate::phantom::wave::{Wave, random_wave};
 
 const KIND_WANDER: u32 = 25;
 /// How long creep takes, seconds.
@@ -31,7 +31,7 @@ impl Wander {
     pub fn new(seed: u64, size_v: f64) -> Self {
         let mut rng = numbers(seed, KIND_WANDER, 0);
         let creep = std::array::from_fn(|_| rng.random_range(-1.0..=1.0));
-        let waves = std::array::from_fn(|k| Wave::random(1.0, RATES_HZ, seed, KIND_WANDER, 1 + k as u32));
+        let waves = std::array::from_fn(|k| random_wave(1.0, RATES_HZ, seed, KIND_WANDER, 1 + k as u32));
         Self { size_v, creep, waves }
     }
 

@@ -43,7 +43,9 @@ impl VideoOptions {
         ranged("--noise", self.noise_sd, 0.0, 128.0, " of 255");
         ranged("--crf", f64::from(self.crf), 0.0, 51.0, "");
         match &self.trajectory {
-            Trajectory::Eq27 { hz } | Trajectory::Random { hz, .. } => ranged("--bend-hz", *hz, 0.0, 100.0, " Hz"),
+            Trajectory::Eq27 { hz } | Trajectory::Random { hz, .. } | Trajectory::Even { hz, .. } => {
+                ranged("--bend-hz", *hz, 0.0, 100.0, " Hz")
+            }
             Trajectory::Rest => {}
             Trajectory::Given { rows } => {
                 let finite = rows.iter().flatten().all(|value| value.is_finite());
