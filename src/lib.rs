@@ -3,8 +3,8 @@
 //! Photographs of nails become average coloration maps with a standard deviation per pixel ([`photo`]), as in section 4.2.2
 //! of S. Mascaro's thesis on fingernail sensors; videos of a finger with coloured markers become joint angles ([`posture`]),
 //! as in 3.2.3 and 3.3.5, with the time that a [`clock`] in the picture tells; [`align`] brings the angles onto the rows of photodiode
-//! and force logs. [`phantom`] makes such photographs, videos and logs with exact truth; [`tradeoff`] measures error against
-//! run time. [`video`], [`table`], [`figure`], [`files`], [`flexion`], [`labelme`], [`stages`] and [`timebase`] are the ground floor that these stand on.
+//! and force logs; [`predictor`] makes of those models of force and posture, as in chapter 5. [`phantom`] makes such photographs, videos and logs with exact truth; [`tradeoff`] measures error against
+//! run time. [`video`], [`table`], [`figure`], [`files`], [`flexion`], [`labelme`], [`log`], [`stages`] and [`timebase`] are the ground floor that these stand on.
 //!
 //! Everywhere: the centre of a picture's top-left pixel is (0, 0), x to the right, y down; units are part of a name
 //! (`length_px`, `run_s`); what is not known is missing (`None`, NaN, an empty cell), never zero.
@@ -15,9 +15,11 @@ pub mod figure;
 pub mod files;
 pub mod flexion;
 pub mod labelme;
+pub mod log;
 pub mod phantom;
 pub mod photo;
 pub mod posture;
+pub mod predictor;
 pub mod stages;
 pub mod table;
 pub mod timebase;

@@ -6,19 +6,22 @@ mod align;
 mod phantom;
 mod photos;
 mod posture;
+mod predictor;
 mod tradeoff;
+mod trajectory;
 
 use std::io::{IsTerminal, Write};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use anyhow::{Context, bail};
 use clap::{Args, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lunula::stages::{Fate, Step};
 
 /// Ground truth for fingernail sensing: nail photographs to coloration maps, videos to joint angles,
-/// angles and photodiode logs to labelled training sets.
+/// angles and photodiode logs to labelled training sets, those to models of force and posture.
 #[derive(Debug, Parser)]
 #[command(
     name = "lunula",
@@ -42,8 +45,14 @@ enum Command {
     Photos(photos::PhotosArgs),
     Posture(posture::PostureArgs),
     Align(Box<align::AlignArgs>),
+    Train(Box<predictor::TrainArgs>),
+    Evaluate(predictor::EvaluateArgs),
+    Predict(predictor::PredictArgs),
+    Analyse(predictor::AnalyseArgs),
+    Prune(predictor::PruneArgs),
     Phantom(phantom::PhantomArgs),
     Tradeoff(tradeoff::TradeoffArgs),
+    Trajectory(Box<trajectory::TrajectoryArgs>),
 }
 
 /// What every job takes.
@@ -75,13 +84,21 @@ enum Outcome {
 #[error("interrupted; nothing was written")]
 struct Interrupted;
 
-pub(crate) fn run() -> ExitCode {
+/// Parses and runs the command; what needs video (`VIDEO` false) is handed over to [`WITH_VIDEO`].
+pub(crate) fn run<const VIDEO: bool>() -> ExitCode {
     let outcome = match Cli::parse().command {
         Command::Photos(args) => photos::run(&args),
-        Command::Posture(args) => posture::run(&args),
         Command::Align(args) => align::run(&args),
-        Command::Phantom(args) => phantom::run(&args),
-        Command::Tradeoff(args) => tradeoff::run(&args),
+        Command::Train(args) => predictor::train(&args),
+        Command::Evaluate(args) => predictor::evaluate(&args),
+        Command::Predict(args) => predictor::predict(&args),
+        Command::Analyse(args) => predictor::analyse(&args),
+        Command::Prune(args) => predictor::prune(&args),
+        Command::Posture(args) if VIDEO => posture::run(&args),
+        Command::Posture(_) => hand_over(),
+        Command::Phantom(args) => phantom::run::<VIDEO>(&args),
+        Command::Tradeoff(args) => tradeoff::run::<VIDEO>(&args),
+        Command::Trajectory(args) => trajectory::run(&args),
     };
     match outcome {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
@@ -91,6 +108,20 @@ pub(crate) fn run() -> ExitCode {
             ExitCode::from(if error.is::<Interrupted>() { 130 } else { 2 })
         }
     }
+}
+
+/// The same program with FFmpeg's libraries, the loading of which takes 40 ms: a model is trained, or a question for help answered, in
+/// less. It stands beside this one.
+const WITH_VIDEO: &str = "lunula-video";
+
+/// Goes on as the program that can read and write video; returns where there is none.
+fn hand_over() -> anyhow::Result<Outcome> {
+    let own = std::env::current_exe().context("where this program stands")?;
+    let other = own.with_file_name(format!("{WITH_VIDEO}{}", std::env::consts::EXE_SUFFIX));
+    let mut command = std::process::Command::new(&other);
+    command.args(std::env::args_os().skip(1));
+    let why = std::os::unix::process::CommandExt::exec(&mut command);
+    bail!("{}: cannot be run ({why}); it does what needs video: install it beside {}", other.display(), own.display())
 }
 
 impl Common {

@@ -2,18 +2,21 @@
 
 use std::path::{Path, PathBuf};
 
+use anyhow::Context;
 use clap::{Args, Subcommand};
-use lunula::phantom::log::{self, LogOptions, LogScene};
+use lunula::phantom::log::{self, LogOptions, LogScene, Protocol};
 use lunula::phantom::nail::Pose;
 use lunula::phantom::photos::{PhotoOptions, write};
 use lunula::phantom::screen::Clock;
 use lunula::phantom::trajectory::Trajectory;
 use lunula::phantom::video::{self, Scene, VideoOptions};
 use lunula::tradeoff::Row;
-use lunula::tradeoff::{align as align_jobs, photos as photo_jobs, posture as posture_jobs};
+use lunula::tradeoff::{
+    align as align_jobs, photos as photo_jobs, posture as posture_jobs, predictor as predictor_jobs,
+};
 
 use super::phantom::SceneArg;
-use super::{Common, Outcome};
+use super::{Common, Outcome, hand_over};
 
 /// Error against run time, over the settings of a job: table (tradeoff.csv) and picture (tradeoff.png, .svg)
 #[derive(Debug, Args)]
@@ -27,6 +30,7 @@ enum Job {
     Photos(PhotosArgs),
     Posture(PostureArgs),
     Align(AlignArgs),
+    Predictor(PredictorArgs),
 }
 
 /// What every trade-off takes.
@@ -106,13 +110,25 @@ struct AlignArgs {
     measured: Measured,
 }
 
+/// Forces against measured ones for all models and sizes, with the time of a fit and of a prediction; and solvers on ill-conditioned sets
+///
+/// On synthetic recordings of its own (two spirals to train on, random movement to tell the error on), or on --input (a folder of
+/// recordings to train on) with --truth (a folder of recordings to tell the error on).
+#[derive(Debug, Args)]
+struct PredictorArgs {
+    #[command(flatten)]
+    measured: Measured,
+}
+
 const POSES: [Pose; 4] = [Pose::Nominal, Pose::Normal, Pose::LateralPositive, Pose::Extension];
 
-pub(super) fn run(args: &TradeoffArgs) -> anyhow::Result<Outcome> {
+pub(super) fn run<const VIDEO: bool>(args: &TradeoffArgs) -> anyhow::Result<Outcome> {
     match &args.job {
         Job::Photos(args) => photos(args),
-        Job::Posture(args) => posture(args),
-        Job::Align(args) => align(args),
+        Job::Predictor(args) => predictor(args),
+        Job::Posture(args) if VIDEO => posture(args),
+        Job::Align(args) if VIDEO => align(args),
+        Job::Posture(_) | Job::Align(_) => hand_over(),
     }
 }
 
@@ -188,6 +204,43 @@ fn align(args: &AlignArgs) -> anyhow::Result<Outcome> {
     finish("align", &rows, &refused, measured)
 }
 
+fn predictor(args: &PredictorArgs) -> anyhow::Result<Outcome> {
+    let measured = &args.measured;
+    measured.common.start()?;
+    let (train, test, _kept) = measured.scenes(|folder| {
+        let seed = 3 * measured.seed;
+        let scenes = [("train/1", Protocol::Touch, seed), ("train/2", Protocol::Touch, seed + 1)];
+        for (name, protocol, seed) in scenes.into_iter().chain([("truth/1", Protocol::TouchRandom, seed + 2)]) {
+            log::write(&LogScene::new(LogOptions::of(protocol, seed))?, &folder.join(name))?;
+        }
+        Ok(folder.join("train"))
+    })?;
+    let settings = predictor_jobs::Settings {
+        train: recordings(&train)?,
+        test: recordings(&test)?,
+        repeats: usize::from(measured.repeats),
+    };
+    let (rows, refused) = predictor_jobs::measure(&settings)?;
+    finish("predictor", &rows, &refused, measured)
+}
+
+/// The tables and logs of a folder, and the logs of its folders, by name.
+fn recordings(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).with_context(|| folder.display().to_string())? {
+        let path = entry?.path();
+        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+        if path.join("log.csv").is_file() {
+            found.push(path.join("log.csv"));
+        } else if path.is_file() && ["csv", "parquet", "gz"].contains(&ending) {
+            found.push(path);
+        }
+    }
+    found.sort();
+    anyhow::ensure!(!found.is_empty(), "{}: holds no recordings (.csv, .parquet)", folder.display());
+    Ok(found)
+}
+
 fn finish(job: &str, rows: &[Row], warnings: &[String], measured: &Measured) -> anyhow::Result<Outcome> {
     let Measured { out, common, .. } = measured;
     common.warn(warnings);
@@ -200,7 +253,9 @@ fn finish(job: &str, rows: &[Row], warnings: &[String], measured: &Measured) -> 
     }))?;
     for row in rows {
         let Row { setting, error, error_unit, run_s, .. } = row;
-        common.say(&format!("{setting:<34} {error:>8.4}  {run_s:>8.5} s an input  {error_unit}"));
+        let error = if *error < 1e-3 { format!("{error:>8.1e}") } else { format!("{error:>8.4}") };
+        let run_s = if *run_s < 1e-4 { format!("{run_s:>8.1e}") } else { format!("{run_s:>8.5}") };
+        common.say(&format!("{setting:<34} {error}  {run_s} s an input  {error_unit}"));
     }
     common.say(&format!("look at {}", out.join("tradeoff.png").display()));
     Ok(Outcome::Done)

@@ -5,6 +5,7 @@
 pub mod align;
 pub mod photos;
 pub mod posture;
+pub mod predictor;
 pub mod recipe;
 
 use std::path::Path;

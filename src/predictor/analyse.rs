@@ -1,0 +1,147 @@
+//! `lunula analyse`: which combinations of forces depend on which combinations of photodiodes (Fig. 98).
+//!
+//! In: a model file. Out: the singular values and modes of its Jacobian, targets over photodiodes; of a model that is not linear, the
+//! Jacobian at the middle of the training rows, which holds near there only.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+use lunula_predictor::{Model, Modes, linear_f0, modes, quadratic_printed, quadratic_terms};
+use serde::Serialize;
+
+use super::error::{PredictorError, go_on};
+use super::figures_of_merit::ByTarget;
+use super::open_models;
+use crate::stages::{Stage, Stages};
+
+/// A mode of a model.
+#[derive(Debug, Clone, Serialize)]
+pub struct ModelMode {
+    /// sigma, targets' unit a volt.
+    pub singular_value: f64,
+    /// What each target has of it; the largest is positive.
+    pub targets: ByTarget<f64>,
+    /// What each photodiode has of it.
+    pub inputs: ByTarget<f64>,
+}
+
+/// The modes of a model.
+#[derive(Debug, Clone, Serialize)]
+pub struct ModelModes {
+    /// Strongest first.
+    pub modes: Vec<ModelMode>,
+    /// The strongest singular value over the weakest; none where that is 0.
+    pub condition: Option<f64>,
+}
+
+/// The model as the thesis prints it: what each target has of each term of voltages as they are, and the offset.
+#[derive(Debug, Clone, Serialize)]
+pub struct Printed {
+    /// P1, .., and for equation 16 P1^2, P1 P2, ..
+    pub terms: Vec<String>,
+    /// J, a row a target.
+    pub jacobian: ByTarget<Vec<f64>>,
+    /// F_0 of equation 9: the prediction where all voltages are 0.
+    pub offset: ByTarget<f64>,
+}
+
+/// What a model is made of.
+#[derive(Debug, Clone, Serialize)]
+pub struct AnalyseReport {
+    /// Which job.
+    pub job: &'static str,
+    /// The model file.
+    pub model: PathBuf,
+    /// What it reads.
+    pub inputs: Vec<String>,
+    /// What it tells.
+    pub targets: Vec<String>,
+    /// Where the Jacobian was taken, volts; none for a linear model, whose Jacobian is the same everywhere.
+    pub at_v: Option<Vec<f64>>,
+    /// The Jacobian, a row a target.
+    pub jacobian: ByTarget<Vec<f64>>,
+    /// Its modes.
+    #[serde(flatten)]
+    pub modes: ModelModes,
+    /// As the thesis prints it; a network has no such form.
+    pub printed: Option<Printed>,
+    /// What whoever reads this should know.
+    pub warnings: Vec<String>,
+    /// The pictures.
+    pub pictures: Vec<PathBuf>,
+    /// Time by stage.
+    pub stages: Vec<Stage>,
+    /// Seconds from start to end.
+    pub wall_s: f64,
+}
+
+/// Takes a model apart; writes a table and a picture where `out` names a folder.
+///
+/// # Errors
+/// [`PredictorError`] where there is nothing to tell.
+pub fn analyse(model: &Path, out: Option<&Path>, stop: &AtomicBool) -> Result<AnalyseReport, PredictorError> {
+    let start = Instant::now();
+    let stages = Stages::default();
+    let (predictor, mut warnings) = open_models(&[model.to_owned()])?.one();
+    let inputs = predictor.seen_names();
+    let targets = predictor.target_names();
+    let at = predictor.model().centre();
+    let jacobian = stages.time("jacobian", || predictor.model().jacobian_at(at));
+    let found: Modes = stages.time("modes", || modes(jacobian.view()));
+    let linear = matches!(predictor.model(), Model::Linear(_));
+    if !linear {
+        warnings.push("the model is not linear: its modes are those at the middle of the training rows".to_owned());
+    }
+    go_on(stop)?;
+    let column = |matrix: &ndarray::Array2<f64>, k: usize| matrix.column(k).to_vec();
+    let mode = |(k, sigma): (usize, &f64)| ModelMode {
+        singular_value: *sigma,
+        targets: ByTarget::new(&targets, column(&found.left, k)),
+        inputs: ByTarget::new(&inputs, column(&found.right, k)),
+    };
+    let (strongest, weakest) = (found.sigma.first().copied(), found.sigma.last().copied());
+    let condition = strongest.zip(weakest).map(|(a, b)| a / b).filter(|ratio| ratio.is_finite());
+    let mut report = AnalyseReport {
+        job: "analyse",
+        model: model.to_owned(),
+        at_v: (!linear).then(|| at.to_vec()),
+        jacobian: ByTarget::new(&targets, jacobian.outer_iter().map(|row| row.to_vec())),
+        modes: ModelModes { modes: found.sigma.iter().enumerate().map(mode).collect(), condition },
+        printed: printed(predictor.model(), &inputs, &targets),
+        inputs,
+        targets,
+        warnings,
+        pictures: Vec::new(),
+        stages: Vec::new(),
+        wall_s: 0.0,
+    };
+    match out {
+        Some(out) => super::results::analysis(&mut report, out, &stages, start)?,
+        None => {
+            report.stages = stages.list();
+            report.wall_s = start.elapsed().as_secs_f64();
+        }
+    }
+    Ok(report)
+}
+
+/// The model in the thesis' own form.
+fn printed(model: &Model, inputs: &[String], targets: &[String]) -> Option<Printed> {
+    let (products, jacobian, offset) = match model {
+        Model::Linear(model) => (Vec::new(), model.jacobian().clone(), linear_f0(model)),
+        Model::Quadratic(model) => {
+            let printed = quadratic_printed(model);
+            (quadratic_terms(inputs.len()), printed.coefficients, printed.f0)
+        }
+        Model::Network(_) => return None,
+    };
+    let product = |(i, j): (usize, usize)| {
+        if i == j { format!("{}^2", inputs[i]) } else { format!("{} {}", inputs[i], inputs[j]) }
+    };
+    Some(Printed {
+        terms: inputs.iter().cloned().chain(products.into_iter().map(product)).collect(),
+        jacobian: ByTarget::new(targets, jacobian.outer_iter().map(|row| row.to_vec())),
+        offset: ByTarget::new(targets, offset),
+    })
+}

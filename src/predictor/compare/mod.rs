@@ -1,0 +1,107 @@
+//! The comparisons of section 5.4 (Fig. 105-113): models and sets of recordings over several people.
+//!
+//! In: of each person three repetitions of the touch protocol, a random touch recording and bending labelled with J2. Out: for each figure a
+//! [`Comparison`], RMSE by person with their mean and SD; as a table, as pictures, as Markdown.
+//!
+//! The first two repetitions are trained on, the third validates; of the bending, the first half of its time is trained on and the second
+//! validates. What is reported was never trained on, and no network stops on it (5.3.1 validates on spiral 3 and stops on it too).
+
+mod comparison;
+mod measure;
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+use lunula_predictor::Recipe;
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::error::{PredictorError, go_on};
+use crate::stages::{Stage, Stages};
+use measure::measure;
+
+pub use comparison::{Comparison, Spread};
+
+/// One person's recordings: tables with photodiodes and targets, or raw logs where forces are told.
+#[derive(Debug, Clone)]
+pub struct Person {
+    /// Whose.
+    pub name: String,
+    /// Three repetitions of the touch protocol: two to train on, the third to validate.
+    pub touch: [PathBuf; 3],
+    /// Random touching.
+    pub touch_random: PathBuf,
+    /// Bending with `J2_deg`; its first half is trained on, its second half validates.
+    pub bending: PathBuf,
+    /// Random bending with `J2_deg`.
+    pub bending_random: PathBuf,
+}
+
+/// What is compared.
+#[derive(Debug, Clone)]
+pub struct CompareOptions {
+    /// The models, one of a kind.
+    pub models: Vec<Recipe>,
+    /// For how long the touch protocol bends before it touches (5.2.4), seconds.
+    pub bending_s: f64,
+}
+
+/// What was found.
+#[derive(Debug, Clone, Serialize)]
+pub struct CompareReport {
+    /// Which job.
+    pub job: &'static str,
+    /// The people, in the order of each [`Spread`]'s values.
+    pub people: Vec<String>,
+    /// Figure by figure.
+    pub comparisons: Vec<Comparison>,
+    /// What whoever reads this should know.
+    pub warnings: Vec<String>,
+    /// The pictures.
+    pub pictures: Vec<PathBuf>,
+    /// Time by stage.
+    pub stages: Vec<Stage>,
+    /// Seconds from start to end.
+    pub wall_s: f64,
+}
+
+/// Compares models and sets; writes a table, pictures and `run.json` where `out` names a folder.
+///
+/// # Errors
+/// [`PredictorError`] where there is nothing to tell. A model that can't be fitted to somebody's rows is a warning, and missing.
+pub fn compare(
+    people: &[Person],
+    options: &CompareOptions,
+    out: Option<&Path>,
+    stop: &AtomicBool,
+) -> Result<CompareReport, PredictorError> {
+    let start = Instant::now();
+    let stages = Stages::default();
+    if people.is_empty() || options.models.is_empty() {
+        return Err(PredictorError::Request("nothing is compared; name people and models".to_owned()));
+    }
+    let kinds: Vec<String> = options.models.iter().map(|recipe| comparison::name_of(recipe.kind)).collect();
+    if let Some(again) = (0..kinds.len()).find(|&k| kinds[..k].contains(&kinds[k])) {
+        return Err(PredictorError::Request(format!("the model `{}` is there twice", kinds[again])));
+    }
+    let measured: Vec<_> = people.par_iter().map(|person| measure(person, options, &stages, stop)).collect();
+    let measured = measured.into_iter().collect::<Result<Vec<_>, _>>()?;
+    go_on(stop)?;
+    let (found, warnings): (Vec<_>, Vec<_>) = measured.into_iter().unzip();
+    let comparisons = comparison::over_people(found).map_err(PredictorError::Request)?;
+    let mut report = CompareReport {
+        job: "compare",
+        people: people.iter().map(|person| person.name.clone()).collect(),
+        comparisons,
+        warnings: warnings.concat(),
+        pictures: Vec::new(),
+        stages: Vec::new(),
+        wall_s: 0.0,
+    };
+    match out {
+        Some(out) => super::results::comparison(&mut report, out, &stages, start)?,
+        None => (report.stages, report.wall_s) = (stages.list(), start.elapsed().as_secs_f64()),
+    }
+    Ok(report)
+}

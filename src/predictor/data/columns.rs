@@ -1,0 +1,72 @@
+//! Which columns of a table are photodiodes, and what to say of one that is not there.
+
+use lunula_predictor::FORCES;
+
+use super::DataError;
+use super::source::Source;
+
+/// The number of a photodiode: `P12` is 12; `P01` and `P` are none.
+fn number(name: &str) -> Option<u32> {
+    let digits = name.strip_prefix('P')?;
+    let plain = !digits.starts_with('0') && digits.bytes().all(|b| b.is_ascii_digit());
+    digits.parse().ok().filter(|_| plain)
+}
+
+/// All photodiodes, in the order of their numbers.
+pub(super) fn photodiodes(names: &[String]) -> Vec<String> {
+    let mut found: Vec<(u32, &String)> = names.iter().filter_map(|name| Some((number(name)?, name))).collect();
+    found.sort();
+    found.into_iter().map(|(_, name)| name.clone()).collect()
+}
+
+/// That a column is not there, the nearest name and those that are.
+pub(super) fn missing(name: &str, names: &[String]) -> String {
+    const MOST: usize = 40;
+    if names.iter().all(|name| name.parse::<f64>().is_ok()) {
+        return format!("holds numbers where the names of the columns should be. {}", listed(names, 8));
+    }
+    let alike = |other: &String| {
+        let (other, name) = (other.to_lowercase(), name.to_lowercase());
+        let stem = other.len() >= 2 && (name.starts_with(&other) || other.starts_with(&name));
+        strsim::normalized_damerau_levenshtein(&other, &name) + if stem { 0.5 } else { 0.0 }
+    };
+    // P3 is not P4 written wrongly, nor Fx_N Fz_N.
+    let both = |is: fn(&str) -> bool, other: &str| is(name) && is(other);
+    let another = |other: &str| both(|n| number(n).is_some(), other) || both(|n| FORCES.contains(&n), other);
+    let others = names.iter().filter(|other| !another(other));
+    let nearest = others.map(|n| (alike(n), n)).filter(|(alike, _)| *alike >= 0.5);
+    // Of equals the first.
+    let nearest = nearest.rev().max_by(|a, b| a.0.total_cmp(&b.0));
+    let help = nearest.map_or_else(|| ".".to_owned(), |(_, near)| format!("; is it `{near}`?"));
+    format!("has no column `{name}`{help} {}", listed(names, MOST))
+}
+
+/// The columns there are, and what to do where they are one because something else than commas separates them.
+pub(super) fn listed(names: &[String], most: usize) -> String {
+    const LONGEST: usize = 40;
+    let shown = |name: &String| name.chars().take(LONGEST).flat_map(char::escape_debug).collect::<String>();
+    let mut all: Vec<String> = names.iter().take(most).map(shown).collect();
+    if names.len() > most {
+        all.push(format!(".. ({} in all)", names.len()));
+    }
+    let one = names.len() == 1 && names[0].contains([';', '\t']);
+    let help = if one { "; cells are separated by commas: save the table so" } else { "" };
+    format!("Its columns are {}{help}", all.join(", "))
+}
+
+/// Whether all files have the same photodiodes.
+pub(super) fn agree(sources: &[Source]) -> Result<(), DataError> {
+    let first = &sources[0];
+    let Some(other) = sources.iter().find(|source| source.inputs != first.inputs) else { return Ok(()) };
+    let lacks = |a: &Source, b: &Source| {
+        let lacking: Vec<&str> = b.inputs.iter().filter(|p| !a.inputs.contains(p)).map(String::as_str).collect();
+        (!lacking.is_empty()).then(|| format!("{} lacks {}", a.path.display(), lacking.join(", ")))
+    };
+    let told: Vec<String> = [lacks(other, first), lacks(first, other)].into_iter().flatten().collect();
+    let what = format!(
+        "has other photodiodes than {} ({}); choose those that all files have, or leave a file out",
+        first.path.display(),
+        told.join("; ")
+    );
+    Err(DataError::Columns { path: other.path.clone(), what })
+}

@@ -1,0 +1,253 @@
+//! Tables and logs of the user into rows for the models (5.2).
+//!
+//! In: CSV or Parquet tables with `P1`.. in volts and the targets, as `lunula align` and anybody else writes them, or raw logs with a column
+//! `led` (section 3.1.2c), which are brought to the LED's own light by the same code as in align. Out: a [`Dataset`] with what was left out and why
+//! ([`read_data`]); voltages alone ([`read_inputs`]); rows of a stream, one at a time ([`RowStream`]).
+//!
+//! Conventions. A file is a recording; it is several where `session`, `subject` or `trajectory` change or `time_s` goes back. Where
+//! `session` or `subject` is not told, the file stands for it. A row with an empty cell that is needed is left out and counted; `nan`, `inf` or text
+//! there is an error, or with `drop_invalid` left out and counted. A row whose `sensor_status` (as align writes it) says that a photodiode in use is
+//! saturated or without ambient light is left out and counted, unless faults are kept. A row that is left out for several reasons is counted
+//! once: as a fault, else as invalid, else as empty. In a raw log `nan` and `NA` mean missing, as in align.
+
+mod columns;
+mod health;
+mod recordings;
+mod source;
+mod status;
+mod stream;
+#[cfg(test)]
+mod tests;
+
+use std::path::{Path, PathBuf};
+
+use lunula_predictor::{Dataset, DatasetFault, Recording};
+use ndarray::Array2;
+use rayon::prelude::*;
+
+use crate::log::{AmbientError, LogError};
+use crate::table::TableError;
+use columns::agree;
+use recordings::Splitter;
+use source::Source;
+
+pub use stream::{Row, RowStream};
+
+/// What is read of tables.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Wanted {
+    /// The photodiodes; none: all columns `P<number>`, in the order of their numbers.
+    pub inputs: Option<Vec<String>>,
+    /// The targets: `Fx_N`, `Fy_N`, `Fz_N`, or `J2_deg`.
+    pub targets: Vec<String>,
+    /// Whether rows with `nan`, `inf` or text where a number is needed are left out, rather than an error.
+    pub drop_invalid: bool,
+    /// Whether rows are kept that `sensor_status` warns of.
+    pub keep_faults: bool,
+}
+
+/// What was read.
+#[derive(Debug, Clone)]
+pub struct Read {
+    /// The rows.
+    pub data: Dataset,
+    /// The files, as given.
+    pub files: Vec<FileRows>,
+    /// What is no error but worth saying.
+    pub warnings: Vec<String>,
+}
+
+/// What became of a file's rows.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+pub struct FileRows {
+    /// The file.
+    pub path: PathBuf,
+    /// Its rows (of a raw log: its lit rows).
+    pub rows: usize,
+    /// Rows that are used.
+    pub used: usize,
+    /// Rows left out for an empty cell.
+    pub empty: usize,
+    /// Rows left out for a cell that is no finite number.
+    pub invalid: usize,
+    /// Rows left out for what `sensor_status` says.
+    pub faults: usize,
+    /// What was done to a raw log: how its ambient light was taken away.
+    pub notes: Vec<String>,
+}
+
+/// Voltages without targets; every row of the file is there.
+#[derive(Debug, Clone)]
+pub struct Inputs {
+    /// Seconds, row by row; NaN where not known.
+    pub time_s: Vec<f64>,
+    /// Volts, rows x photodiodes, in standard layout; NaN where a cell is empty or invalid.
+    pub x: Array2<f64>,
+    /// Rows in which `sensor_status` says that a photodiode in use is saturated or without ambient light.
+    pub faulty: Vec<bool>,
+    /// Rows with a cell that is no finite number, only with `drop_invalid`.
+    pub invalid: usize,
+    /// Rows with an empty cell.
+    pub empty: usize,
+    /// The recordings, in order.
+    pub recordings: Vec<Recording>,
+    /// What is no error but worth saying.
+    pub warnings: Vec<String>,
+}
+
+/// Why there are no rows.
+#[derive(Debug, thiserror::Error)]
+pub enum DataError {
+    /// A table can't be read.
+    #[error(transparent)]
+    Table(#[from] TableError),
+    /// A raw log can't be read.
+    #[error(transparent)]
+    Log(#[from] LogError),
+    /// A raw log has no lit rows.
+    #[error(transparent)]
+    Ambient(#[from] AmbientError),
+    /// A file lacks a column, or has other photodiodes than the others.
+    #[error("{}: {what}", path.display())]
+    Columns {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong and what to do.
+        what: String,
+    },
+    /// One place of a stream is wrong.
+    #[error("{place}: {what}")]
+    Cell {
+        /// File, line, column.
+        place: String,
+        /// What is wrong and what to do.
+        what: String,
+    },
+    /// A stream can't be read on.
+    #[error("{name}: cannot be read ({why})")]
+    Stream {
+        /// The stream's name.
+        name: String,
+        /// The system's words.
+        why: std::io::Error,
+    },
+    /// No row is left.
+    #[error("no row can be used: {0}")]
+    NoRows(String),
+    /// The request is no request.
+    #[error("{0}")]
+    Request(String),
+    /// The rows are no dataset.
+    #[error(transparent)]
+    Dataset(#[from] DatasetFault),
+}
+
+/// Reads labelled rows from tables and raw logs; the result does not depend on the number of threads.
+///
+/// # Errors
+/// [`DataError`]; of several files, that of the first.
+pub fn read_data(paths: &[PathBuf], wanted: &Wanted) -> Result<Read, DataError> {
+    if paths.is_empty() {
+        return Err(DataError::Request("no DATA is given; name at least one table or log".to_owned()));
+    }
+    if wanted.targets.is_empty() {
+        return Err(DataError::Request("no target is given".to_owned()));
+    }
+    let inputs = wanted.inputs.as_deref().unwrap_or_default();
+    if let Some((_, name)) = inputs.iter().enumerate().find(|(k, name)| inputs[..*k].contains(name)) {
+        return Err(DataError::Request(format!("{name} is named twice among the inputs; name each once")));
+    }
+    if let Some(name) = inputs.iter().find(|name| wanted.targets.contains(name)) {
+        return Err(DataError::Request(format!("{name} is both an input and a target; leave it out of one of them")));
+    }
+    let sources = paths.par_iter().map(|path| Source::read(path, wanted)).collect::<Vec<_>>();
+    let sources = sources.into_iter().collect::<Result<Vec<_>, _>>()?;
+    agree(&sources)?;
+    let mut warnings = twice(paths);
+    let inputs = sources[0].inputs.clone();
+    let mut files = Vec::with_capacity(sources.len());
+    let mut recordings: Vec<Recording> = Vec::new();
+    let (mut time_s, mut x, mut y) = (Vec::new(), Vec::new(), Vec::new());
+    for source in &sources {
+        warnings.extend(source.warnings.iter().cloned());
+        let (path, notes) = (source.path.clone(), source.notes.clone());
+        let mut file = FileRows { path, rows: source.rows(), used: 0, empty: 0, invalid: 0, faults: 0, notes };
+        let mut splitter = Splitter::new(source, time_s.len());
+        for row in 0..source.rows() {
+            if source.faulty[row] && !wanted.keep_faults {
+                file.faults += 1;
+            } else if source.invalid[row] {
+                file.invalid += 1;
+            } else if source.columns().any(|column| column[row].is_nan()) {
+                file.empty += 1;
+            } else {
+                file.used += 1;
+                splitter.take(row);
+                time_s.push(source.time_s[row]);
+                x.extend(source.x.iter().map(|column| column[row]));
+                y.extend(source.y.iter().map(|column| column[row]));
+            }
+        }
+        splitter.finish(&mut recordings, &mut warnings);
+        warnings.extend(health::warnings(source, wanted.keep_faults));
+        files.push(file);
+    }
+    let rows = time_s.len();
+    if rows == 0 {
+        return Err(DataError::NoRows(why_none(&files)));
+    }
+    let shaped = |values: Vec<f64>| {
+        let columns = values.len() / rows;
+        Array2::from_shape_vec((rows, columns), values).expect("every row gives as many values")
+    };
+    let data = Dataset::new(inputs, wanted.targets.clone(), time_s, shaped(x), shaped(y), recordings)?;
+    Ok(Read { data, files, warnings })
+}
+
+/// Reads the voltages of `inputs` from a table or raw log; targets need not be there. With `drop_invalid`, a cell that is no finite number
+/// is NaN rather than an error.
+///
+/// # Errors
+/// [`DataError`].
+pub fn read_inputs(path: &Path, inputs: &[String], drop_invalid: bool) -> Result<Inputs, DataError> {
+    if inputs.is_empty() {
+        return Err(DataError::Request("no photodiode is given".to_owned()));
+    }
+    let wanted = Wanted { inputs: Some(inputs.to_vec()), drop_invalid, ..Wanted::default() };
+    let source = Source::read(path, &wanted)?;
+    let mut warnings = source.warnings.clone();
+    let mut recordings = Vec::new();
+    let mut splitter = Splitter::new(&source, 0);
+    (0..source.rows()).for_each(|row| splitter.take(row));
+    splitter.finish(&mut recordings, &mut warnings);
+    let missing = |row: &usize| !source.invalid[*row] && source.x.iter().any(|column| column[*row].is_nan());
+    let empty = (0..source.rows()).filter(missing).count();
+    let x = Array2::from_shape_fn((source.rows(), inputs.len()), |(row, column)| source.x[column][row]);
+    let invalid = source.invalid.iter().filter(|invalid| **invalid).count();
+    Ok(Inputs { time_s: source.time_s, x, faulty: source.faulty, invalid, empty, recordings, warnings })
+}
+
+/// Files that are given more than once.
+fn twice(paths: &[PathBuf]) -> Vec<String> {
+    let real: Vec<PathBuf> =
+        paths.iter().map(|path| std::fs::canonicalize(path).unwrap_or_else(|_| path.clone())).collect();
+    let again = (0..paths.len()).filter(|&k| real[..k].contains(&real[k]));
+    again.map(|k| format!("{}: is given twice; its rows count twice", paths[k].display())).collect()
+}
+
+/// Why no row is left.
+fn why_none(files: &[FileRows]) -> String {
+    let sum = |of: fn(&FileRows) -> usize| files.iter().map(of).sum::<usize>();
+    let all = sum(|f| f.rows);
+    let names = files.iter().map(|f| f.path.display().to_string()).collect::<Vec<_>>().join(", ");
+    if all == 0 {
+        return format!("{names}: there is no row below the names of the columns");
+    }
+    let reasons = [
+        (sum(|f| f.empty), "have an empty cell that is needed"),
+        (sum(|f| f.invalid), "have a cell that is no finite number"),
+        (sum(|f| f.faults), "are saturated or without ambient light (sensor_status; --keep-faults keeps them)"),
+    ];
+    let told: Vec<String> = reasons.iter().filter(|(n, _)| *n > 0).map(|(n, why)| format!("{n} {why}")).collect();
+    format!("{names}: of {all} rows {}", told.join(", "))
+}

@@ -1,0 +1,75 @@
+//! A file's rows into recordings: a new one where session, subject or trajectory change, or time goes back.
+
+use lunula_predictor::Recording;
+
+use super::source::Source;
+
+/// Takes the used rows of a file, ascending.
+pub(super) struct Splitter<'a> {
+    source: &'a Source,
+    /// Rows of the files before, and those taken so far.
+    taken: usize,
+    /// Which change of the groups the last row belongs to.
+    group: Option<usize>,
+    last_s: f64,
+    /// Where each recording begins, and its group.
+    starts: Vec<(usize, Option<usize>)>,
+    /// Where time went back: from, to.
+    resets: Vec<[f64; 2]>,
+}
+
+impl<'a> Splitter<'a> {
+    /// For a file after `before` rows of others.
+    pub(super) fn new(source: &'a Source, before: usize) -> Self {
+        Self { source, taken: before, group: None, last_s: f64::NAN, starts: Vec::new(), resets: Vec::new() }
+    }
+
+    /// Takes a row.
+    pub(super) fn take(&mut self, row: usize) {
+        let groups = &self.source.groups;
+        let mut group = self.group.or((!groups.is_empty()).then_some(0));
+        while let Some(next) = group.map(|k| k + 1).filter(|&next| groups.get(next).is_some_and(|g| g.0 <= row)) {
+            group = Some(next);
+        }
+        let time_s = self.source.time_s[row];
+        let changed = self.group != group || self.starts.is_empty();
+        // Unknown times are passed over.
+        let back = time_s < self.last_s;
+        if changed || back {
+            self.starts.push((self.taken, group));
+            if back && !changed {
+                self.resets.push([self.last_s, time_s]);
+            }
+            self.last_s = f64::NAN;
+        }
+        if !time_s.is_nan() {
+            self.last_s = time_s;
+        }
+        self.group = group;
+        self.taken += 1;
+    }
+
+    /// The recordings; warns where time went back.
+    pub(super) fn finish(self, recordings: &mut Vec<Recording>, warnings: &mut Vec<String>) {
+        let file = self.source.path.display().to_string();
+        let several = self.starts.len() > 1;
+        for (k, &(start, group)) in self.starts.iter().enumerate() {
+            let end = self.starts.get(k + 1).map_or(self.taken, |next| next.0);
+            let [session, subject, trajectory] = group.map(|g| self.source.groups[g].1.clone()).unwrap_or_default();
+            let or_file = |name: String| if name.is_empty() { file.clone() } else { name };
+            let name = match (trajectory.is_empty(), several) {
+                (false, _) => format!("{file} ({trajectory})"),
+                (true, true) => format!("{file} #{}", k + 1),
+                (true, false) => file.clone(),
+            };
+            recordings.push(Recording { name, session: or_file(session), subject: or_file(subject), rows: start..end });
+        }
+        if let Some([from, to]) = self.resets.first() {
+            let count = self.resets.len();
+            let times = if count == 1 { "once".to_owned() } else { format!("{count} times, first") };
+            warnings.push(format!(
+                "{file}: `time_s` goes back {times} from {from} to {to} s; a new recording begins there"
+            ));
+        }
+    }
+}

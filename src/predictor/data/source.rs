@@ -1,0 +1,265 @@
+//! One file, column by column: a table, or a raw log brought to the LED's own light.
+
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+
+use super::columns::{listed, missing, photodiodes};
+use super::status::{Statuses, Verdict};
+use super::{DataError, Wanted};
+use crate::log::{AmbientOptions, Channel, Columns, Log, samples};
+use crate::table::{Cell, Table, TableError, column_names};
+
+/// Columns that say where one recording ends and the next begins.
+pub(super) const GROUPS: [&str; 3] = ["session", "subject", "trajectory"];
+
+/// The rows of a file, all of them.
+#[derive(Debug)]
+pub(super) struct Source {
+    pub(super) path: PathBuf,
+    pub(super) inputs: Vec<String>,
+    /// Seconds; NaN where not known.
+    pub(super) time_s: Vec<f64>,
+    /// Each photodiode's values; NaN where missing or invalid.
+    pub(super) x: Vec<Vec<f64>>,
+    /// Each target's values; NaN where missing or invalid.
+    pub(super) y: Vec<Vec<f64>>,
+    /// Rows with a cell that is no finite number.
+    pub(super) invalid: Vec<bool>,
+    /// Rows that `sensor_status` warns of.
+    pub(super) faulty: Vec<bool>,
+    /// Session, subject and trajectory, and the first row that has them.
+    pub(super) groups: Vec<(usize, [String; 3])>,
+    /// How the ambient light of a raw log was taken away.
+    pub(super) notes: Vec<String>,
+    /// What whoever uses the rows should know.
+    pub(super) warnings: Vec<String>,
+}
+
+impl Source {
+    /// Reads a file: a raw log where it has a column `led` or is no CSV or Parquet table.
+    pub(super) fn read(path: &Path, wanted: &Wanted) -> Result<Self, DataError> {
+        match column_names(path) {
+            Ok(names) if !names.iter().any(|name| name == "led") => Self::of_table(path, wanted),
+            Ok(_) | Err(TableError::Extension(_)) => Self::of_log(path, wanted),
+            Err(why) => Err(why.into()),
+        }
+    }
+
+    /// How many rows.
+    pub(super) fn rows(&self) -> usize {
+        self.time_s.len()
+    }
+
+    /// Photodiodes and targets.
+    pub(super) fn columns(&self) -> impl Iterator<Item = &Vec<f64>> {
+        self.x.iter().chain(&self.y)
+    }
+
+    fn of_table(path: &Path, wanted: &Wanted) -> Result<Self, DataError> {
+        let table = Table::read(path)?;
+        let names = table.names();
+        let inputs = chosen(path, wanted, names)?;
+        let has = |name: &str| names.iter().any(|n| n == name);
+        if let Some(lacking) = inputs.iter().chain(&wanted.targets).find(|name| !has(name)) {
+            return Err(DataError::Columns { path: path.to_owned(), what: missing(lacking, names) });
+        }
+        let time = has("time_s").then_some("time_s");
+        let asked: Vec<&str> =
+            time.into_iter().chain(inputs.iter().chain(&wanted.targets).map(String::as_str)).collect();
+        let read: Vec<NumberColumn> =
+            asked.par_iter().map(|name| NumberColumn::read(&table, name)).collect::<Result<_, _>>()?;
+        let mut invalid = vec![false; table.rows()];
+        read.iter().flat_map(|column| &column.invalid).for_each(|&row| invalid[row] = true);
+        // Of several wrong cells the first by row, then by column as asked.
+        let first = read.iter().zip(&asked).filter_map(|(column, name)| Some((*column.invalid.first()?, *name)));
+        if let Some((row, name)) = first.min_by_key(|(row, _)| *row).filter(|_| !wanted.drop_invalid) {
+            return Err(bad_cell(&table, row, name)?.into());
+        }
+        let mut values = read.into_iter().map(|column| column.values);
+        let time_s = match time {
+            Some(_) => values.next().unwrap_or_default(),
+            None => vec![f64::NAN; table.rows()],
+        };
+        let x: Vec<Vec<f64>> = values.by_ref().take(inputs.len()).collect();
+        let mut source = Self {
+            path: path.to_owned(),
+            time_s,
+            x,
+            y: values.collect(),
+            invalid,
+            faulty: vec![false; table.rows()],
+            groups: groups(&table)?,
+            notes: Vec::new(),
+            warnings: Vec::new(),
+            inputs,
+        };
+        if has("sensor_status") {
+            source.read_status(|take| table.each_text("sensor_status", take))?;
+        }
+        Ok(source)
+    }
+
+    fn of_log(path: &Path, wanted: &Wanted) -> Result<Self, DataError> {
+        let log = Log::read(path, &Columns::default())?;
+        let samples = samples(&log, &AmbientOptions::default())?;
+        let names: Vec<String> =
+            samples.photodiodes.iter().chain(&samples.forces).map(|channel| channel.name.clone()).collect();
+        let inputs = chosen(path, wanted, &names)?;
+        let column = |name: &String| -> Result<Vec<f64>, DataError> {
+            let mut all = samples.photodiodes.iter().chain(&samples.forces);
+            match all.find(|channel| channel.name == *name) {
+                Some(Channel { values, .. }) => Ok(values.clone()),
+                None => {
+                    let angle = if name.ends_with("_deg") {
+                        "; angles come from a video: run `lunula align` first"
+                    } else {
+                        ""
+                    };
+                    let what = format!("is a raw log and {}{angle}", missing(name, &names));
+                    Err(DataError::Columns { path: path.to_owned(), what })
+                }
+            }
+        };
+        let x = inputs.iter().map(column).collect::<Result<_, _>>()?;
+        let y = wanted.targets.iter().map(column).collect::<Result<_, _>>()?;
+        let rows = samples.time_s.len();
+        let place = path.display();
+        let mut source = Self {
+            path: path.to_owned(),
+            inputs,
+            x,
+            y,
+            invalid: vec![false; rows],
+            faulty: vec![false; rows],
+            groups: Vec::new(),
+            notes: samples.notes.iter().map(|note| format!("{place}: {note}")).collect(),
+            warnings: log.notes.iter().map(|note| format!("{place}: {note}")).collect(),
+            time_s: samples.time_s,
+        };
+        source.read_status(|take| {
+            samples.faults.iter().enumerate().for_each(|(row, fault)| take(row, fault));
+            Ok(())
+        })?;
+        Ok(source)
+    }
+
+    /// Marks the rows that statuses warn of.
+    fn read_status(
+        &mut self,
+        each: impl FnOnce(&mut dyn FnMut(usize, &str)) -> Result<(), TableError>,
+    ) -> Result<(), DataError> {
+        let mut statuses = Statuses::new(&self.inputs);
+        let mut unknown: (usize, String) = (0, String::new());
+        let faulty = &mut self.faulty;
+        each(&mut |row, status| match statuses.read(status) {
+            Verdict::Sound => {}
+            Verdict::Fault => faulty[row] = true,
+            Verdict::Unknown => {
+                if unknown.0 == 0 {
+                    unknown.1 = status.to_owned();
+                }
+                unknown.0 += 1;
+            }
+        })?;
+        if unknown.0 > 0 {
+            let (rows, status) = unknown;
+            let path = self.path.display();
+            self.warnings.push(format!(
+                "{path}: `sensor_status` says something that lunula does not know in {rows} rows, first `{status}`; they are used"
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// The photodiodes to read: as wanted, else all.
+fn chosen(path: &Path, wanted: &Wanted, names: &[String]) -> Result<Vec<String>, DataError> {
+    let inputs = wanted.inputs.clone().unwrap_or_else(|| photodiodes(names));
+    if inputs.is_empty() {
+        let what = format!("has no photodiode `P1`, `P2`, ... {}", listed(names, 40));
+        return Err(DataError::Columns { path: path.to_owned(), what });
+    }
+    Ok(inputs)
+}
+
+/// A column of numbers.
+struct NumberColumn {
+    /// NaN where missing or invalid.
+    values: Vec<f64>,
+    /// Rows with a cell that is no finite number.
+    invalid: Vec<usize>,
+}
+
+impl NumberColumn {
+    fn read(table: &Table, name: &str) -> Result<Self, TableError> {
+        let mut column = Self { values: Vec::with_capacity(table.rows()), invalid: Vec::new() };
+        table.each_cell(name, |row, cell| {
+            column.values.push(match cell {
+                Cell::Number(number) if number.is_finite() => number,
+                Cell::Missing => f64::NAN,
+                Cell::Number(_) | Cell::Text(_) => {
+                    column.invalid.push(row);
+                    f64::NAN
+                }
+            });
+            Ok(())
+        })?;
+        Ok(column)
+    }
+}
+
+/// The error of a cell that is no finite number.
+fn bad_cell(table: &Table, row: usize, name: &str) -> Result<TableError, TableError> {
+    let mut shown = String::new();
+    table.each_cell(name, |at, cell| {
+        if at == row {
+            shown = match cell {
+                Cell::Missing => String::new(),
+                Cell::Number(number) => number.to_string(),
+                Cell::Text(text) => text.chars().take(40).collect(),
+            };
+        }
+        Ok(())
+    })?;
+    let what = format!(
+        "`{shown}` is no finite number; correct it, leave it empty, or leave out such rows with --drop-invalid"
+    );
+    Ok(table.cell(row, name, what))
+}
+
+/// Session, subject and trajectory where they change, with the first row that has them.
+fn groups(table: &Table) -> Result<Vec<(usize, [String; 3])>, TableError> {
+    let names = table.names();
+    let mut changes: Vec<(usize, [String; 3])> = Vec::new();
+    for (k, group) in GROUPS.iter().enumerate().filter(|(_, group)| names.iter().any(|n| n == *group)) {
+        let mut own: Vec<(usize, String)> = Vec::new();
+        table.each_text(group, |row, text| {
+            if own.last().is_none_or(|(_, last)| last != text) {
+                own.push((row, text.to_owned()));
+            }
+        })?;
+        changes = merged(&changes, k, own);
+    }
+    Ok(changes)
+}
+
+/// Changes of the groups before joined with those of group `k`.
+fn merged(before: &[(usize, [String; 3])], k: usize, own: Vec<(usize, String)>) -> Vec<(usize, [String; 3])> {
+    let mut rows: Vec<usize> = before.iter().map(|c| c.0).chain(own.iter().map(|c| c.0)).collect();
+    rows.sort_unstable();
+    rows.dedup();
+    let (mut last, mut own) = (before.iter().peekable(), own.into_iter().peekable());
+    let mut group: [String; 3] = Default::default();
+    let mut joined = Vec::with_capacity(rows.len());
+    for row in rows {
+        if let Some((_, known)) = last.next_if(|change| change.0 == row) {
+            group[..k].clone_from_slice(&known[..k]);
+        }
+        if let Some((_, text)) = own.next_if(|change| change.0 == row) {
+            group[k] = text;
+        }
+        joined.push((row, group.clone()));
+    }
+    joined
+}

@@ -1,0 +1,74 @@
+//! What align writes into `sensor_status`: `ok`, `saturated: P1, P3`, `no ambient: P2`, `no ambient` (of all), several joined by `; `.
+
+/// What a status means for the photodiodes in use.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Verdict {
+    /// Nothing is wrong with any in use.
+    Sound,
+    /// One in use is saturated or without ambient light.
+    Fault,
+    /// It says something else.
+    Unknown,
+}
+
+/// Reads statuses; neighbouring rows mostly have the same one, which is read once.
+#[derive(Debug)]
+pub(super) struct Statuses<'a> {
+    inputs: &'a [String],
+    last: (Vec<u8>, Verdict),
+}
+
+impl<'a> Statuses<'a> {
+    /// For the photodiodes in use.
+    pub(super) fn new(inputs: &'a [String]) -> Self {
+        Self { inputs, last: (Vec::new(), Verdict::Sound) }
+    }
+
+    /// What a status means.
+    pub(super) fn read(&mut self, status: &str) -> Verdict {
+        if self.last.0 != status.as_bytes() {
+            self.last.0.clear();
+            self.last.0.extend_from_slice(status.as_bytes());
+            self.last.1 = self.verdict(status);
+        }
+        self.last.1
+    }
+
+    fn verdict(&self, status: &str) -> Verdict {
+        let mut all = Verdict::Sound;
+        for part in status.split(';').map(str::trim).filter(|part| !part.is_empty() && *part != "ok") {
+            let (what, whose) = part.split_once(':').map_or((part, None), |(what, whose)| (what.trim(), Some(whose)));
+            if !matches!(what, "saturated" | "no ambient") {
+                all = if all == Verdict::Fault { all } else { Verdict::Unknown };
+            } else if whose.is_none_or(|whose| whose.split(',').any(|p| self.inputs.iter().any(|i| i == p.trim()))) {
+                all = Verdict::Fault;
+            }
+        }
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_status_counts_for_the_photodiodes_in_use() {
+        let inputs = ["P1", "P12"].map(str::to_owned);
+        let mut statuses = Statuses::new(&inputs);
+        for (status, verdict) in [
+            ("ok", Verdict::Sound),
+            ("", Verdict::Sound),
+            ("saturated: P2", Verdict::Sound),
+            ("saturated: P2, P12", Verdict::Fault),
+            ("saturated: P2; no ambient: P1", Verdict::Fault),
+            ("no ambient", Verdict::Fault),
+            ("no ambient", Verdict::Fault),
+            ("loose", Verdict::Unknown),
+            ("loose; saturated: P1", Verdict::Fault),
+            ("saturated: P1; loose", Verdict::Fault),
+        ] {
+            assert_eq!(statuses.read(status), verdict, "{status}");
+        }
+    }
+}

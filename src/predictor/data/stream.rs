@@ -1,0 +1,254 @@
+//! Rows of a stream, each as soon as its line is complete: for answers with one row's latency.
+//!
+//! In: lines of CSV, the names of the columns first; columns in any order, those that are not needed are passed over unread. Out: one row's voltages
+//! into the caller's buffer. Nothing is allocated for a row once the longest line has been seen.
+//!
+//! A cell may stand in double quotes and then hold commas, but no line break: whoever waits for a row can't wait for its next line. Empty
+//! lines are passed over. A last line without its end is a row.
+
+use std::io::{BufRead, Read};
+
+use super::columns::{listed, missing};
+use super::status::{Statuses, Verdict};
+use super::{DataError, source::GROUPS};
+
+/// No line of a sensor is longer, bytes; without an end to it, a stream of something else would fill the memory.
+const LONGEST: u64 = 1 << 20;
+
+/// What a column of the stream is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Use {
+    Time,
+    Input(usize),
+    Status,
+    Group(usize),
+    None,
+}
+
+/// One row of a stream.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Row {
+    /// Its line, from 1.
+    pub line: u64,
+    /// Seconds; NaN where not known.
+    pub time_s: f64,
+    /// Whether `sensor_status` says that a photodiode in use is saturated or without ambient light.
+    pub faulty: bool,
+    /// Whether a cell is no finite number, or cells are too many or too few; only with `drop_invalid`.
+    pub invalid: bool,
+    /// Whether a recording begins: the first row, another session, subject or trajectory, or a time that goes back.
+    pub begins: bool,
+}
+
+/// Reads voltages row by row.
+#[derive(Debug)]
+pub struct RowStream<'a, R> {
+    from: R,
+    name: String,
+    names: Vec<String>,
+    uses: Vec<Use>,
+    inputs: &'a [String],
+    statuses: Statuses<'a>,
+    drop_invalid: bool,
+    line: u64,
+    text: Vec<u8>,
+    /// Session, subject, trajectory of the row before; none before the first.
+    groups: Option<[Vec<u8>; 3]>,
+    last_s: f64,
+}
+
+impl<'a, R: BufRead> RowStream<'a, R> {
+    /// Reads the line of names; `name` is the stream's in messages. With `drop_invalid`, a cell that is no finite number is NaN rather than an
+    /// error.
+    ///
+    /// # Errors
+    /// No line of names, a photodiode that is not among them, two columns of one name, a column `led` (its light can only be taken
+    /// away when the samples after are known).
+    pub fn new(from: R, name: &str, inputs: &'a [String], drop_invalid: bool) -> Result<Self, DataError> {
+        let mut stream = Self {
+            from,
+            name: name.to_owned(),
+            names: Vec::new(),
+            uses: Vec::new(),
+            inputs,
+            statuses: Statuses::new(inputs),
+            drop_invalid,
+            line: 0,
+            text: Vec::new(),
+            groups: None,
+            last_s: f64::NAN,
+        };
+        let refused = |what: String| DataError::Columns { path: name.into(), what };
+        if !stream.next_line()? {
+            return Err(refused("is empty; a stream begins with the names of its columns".to_owned()));
+        }
+        let text = stream.text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&stream.text);
+        let text = std::str::from_utf8(text).map_err(|_| refused("line 1 is not UTF-8 text; send UTF-8".to_owned()))?;
+        let names: Vec<String> = Cells { rest: Some(text.as_bytes()) }
+            .map(|cell| String::from_utf8_lossy(cell).replace("\"\"", "\""))
+            .collect();
+        if text.contains('\r') {
+            return Err(refused("ends its lines with carriage returns alone; end them with line feeds".to_owned()));
+        }
+        if let Some(double) = names.iter().enumerate().find(|(k, name)| names[..*k].contains(name)) {
+            return Err(refused(format!("two columns are named `{}`; rename one", double.1)));
+        }
+        if names.iter().any(|name| name == "led") {
+            let what = "has a column `led`: unlit light is only known when the samples after have come; give the log as a file, \
+                        or voltages without the unlit light";
+            return Err(refused(what.to_owned()));
+        }
+        if inputs.is_empty() {
+            return Err(DataError::Request("no photodiode is given".to_owned()));
+        }
+        if let Some(lacking) = inputs.iter().find(|input| !names.contains(input)) {
+            let all_numbers = names.iter().all(|name| name.parse::<f64>().is_ok());
+            let what = if all_numbers {
+                format!("line 1 holds numbers where the names of the columns should be. {}", listed(&names, 8))
+            } else {
+                missing(lacking, &names)
+            };
+            return Err(refused(what));
+        }
+        let use_of = |name: &String| {
+            if let Some(k) = inputs.iter().position(|input| input == name) {
+                return Use::Input(k);
+            }
+            match name.as_str() {
+                "time_s" => Use::Time,
+                "sensor_status" => Use::Status,
+                _ => GROUPS.iter().position(|group| group == name).map_or(Use::None, Use::Group),
+            }
+        };
+        stream.uses = names.iter().map(use_of).collect();
+        stream.names = names;
+        Ok(stream)
+    }
+
+    /// Whether rows have a time.
+    #[must_use]
+    pub fn has_time(&self) -> bool {
+        self.uses.contains(&Use::Time)
+    }
+
+    /// Reads the next row's voltages into `x`, in the order of the photodiodes; NaN where a cell is empty. None at the stream's end.
+    ///
+    /// # Errors
+    /// A cell that is no finite number, or too many or too few cells (unless invalid ones are dropped); a stream that breaks.
+    ///
+    /// # Panics
+    /// If `x` does not hold one value for each photodiode.
+    pub fn next_row(&mut self, x: &mut [f64]) -> Result<Option<Row>, DataError> {
+        assert_eq!(x.len(), self.inputs.len(), "a value for each photodiode");
+        if !self.next_line()? {
+            return Ok(None);
+        }
+        let mut row =
+            Row { line: self.line, time_s: f64::NAN, faulty: false, invalid: false, begins: self.groups.is_none() };
+        x.fill(f64::NAN);
+        let groups = self.groups.get_or_insert_default();
+        let mut wrong: Option<(usize, String)> = None;
+        let mut cells = 0;
+        for cell in (Cells { rest: Some(&self.text) }) {
+            let column = cells;
+            cells += 1;
+            match self.uses.get(column) {
+                None | Some(Use::None) => {}
+                Some(&Use::Group(k)) => {
+                    if groups[k] != cell {
+                        groups[k].clear();
+                        groups[k].extend_from_slice(cell);
+                        row.begins = true;
+                    }
+                }
+                Some(Use::Status) => {
+                    let status = std::str::from_utf8(cell).unwrap_or_default();
+                    row.faulty = self.statuses.read(status) == Verdict::Fault;
+                }
+                Some(&what @ (Use::Time | Use::Input(_))) if !cell.is_empty() => {
+                    let number = std::str::from_utf8(cell).ok().and_then(|text| text.parse::<f64>().ok());
+                    let place = if let Use::Input(k) = what { &mut x[k] } else { &mut row.time_s };
+                    match number.filter(|number| number.is_finite()) {
+                        Some(number) => *place = number,
+                        None if self.drop_invalid => row.invalid = true,
+                        None => {
+                            let text = String::from_utf8_lossy(cell).chars().take(40).collect();
+                            wrong.get_or_insert((column, text));
+                        }
+                    }
+                }
+                Some(Use::Time | Use::Input(_)) => {}
+            }
+        }
+        if cells != self.names.len() {
+            if !self.drop_invalid {
+                let what = format!("{cells} cells for {} columns; correct it", self.names.len());
+                return Err(DataError::Cell { place: format!("{}:{}", self.name, self.line), what });
+            }
+            x.fill(f64::NAN);
+            (row.time_s, row.invalid) = (f64::NAN, true);
+        }
+        if let Some((column, text)) = wrong {
+            let place = format!("{}:{}: column `{}`", self.name, self.line, self.names[column]);
+            let what = format!(
+                "`{text}` is no finite number; correct it, leave it empty, or pass over such rows with --drop-invalid"
+            );
+            return Err(DataError::Cell { place, what });
+        }
+        row.begins |= row.time_s < self.last_s;
+        // As in a table, a new recording knows nothing of the times before.
+        if !row.time_s.is_nan() || row.begins {
+            self.last_s = row.time_s;
+        }
+        Ok(Some(row))
+    }
+
+    /// The next line that is not empty, without its end.
+    fn next_line(&mut self) -> Result<bool, DataError> {
+        loop {
+            self.text.clear();
+            let read = self.from.by_ref().take(LONGEST + 1).read_until(b'\n', &mut self.text);
+            if self.text.len() as u64 > LONGEST {
+                let place = format!("{}:{}", self.name, self.line + 1);
+                let what = format!(
+                    "the line is longer than {LONGEST} bytes; a stream is lines of CSV, each ended by a line feed"
+                );
+                return Err(DataError::Cell { place, what });
+            }
+            if read.map_err(|why| DataError::Stream { name: self.name.clone(), why })? == 0 {
+                return Ok(false);
+            }
+            self.line += 1;
+            while self.text.last().is_some_and(|b| matches!(b, b'\n' | b'\r')) {
+                self.text.pop();
+            }
+            if !self.text.is_empty() {
+                return Ok(true);
+            }
+        }
+    }
+}
+
+/// The cells of a line, without the space and the quotes around them.
+struct Cells<'a> {
+    rest: Option<&'a [u8]>,
+}
+
+impl<'a> Iterator for Cells<'a> {
+    type Item = &'a [u8];
+
+    fn next(&mut self) -> Option<&'a [u8]> {
+        let rest = self.rest?;
+        let mut quoted = false;
+        let end = rest.iter().position(|&b| {
+            quoted ^= b == b'"';
+            b == b',' && !quoted
+        });
+        self.rest = end.map(|end| &rest[end + 1..]);
+        let cell = rest[..end.unwrap_or(rest.len())].trim_ascii();
+        Some(match cell {
+            [b'"', inside @ .., b'"'] => inside.trim_ascii(),
+            _ => cell,
+        })
+    }
+}

@@ -1,0 +1,411 @@
+use std::fmt::Write as _;
+use std::fs;
+
+use super::*;
+use crate::log::{AmbientOptions, Columns, Log, samples};
+use crate::table::{Column, TableWriter, Value};
+
+/// A folder with files in it.
+struct Folder(tempfile::TempDir);
+
+impl Folder {
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    fn file(&self, name: &str, text: impl AsRef<[u8]>) -> PathBuf {
+        let path = self.0.path().join(name);
+        fs::write(&path, text).unwrap();
+        path
+    }
+}
+
+fn forces() -> Wanted {
+    Wanted { targets: ["Fx_N", "Fy_N", "Fz_N"].map(str::to_owned).to_vec(), ..Wanted::default() }
+}
+
+fn angle() -> Wanted {
+    Wanted { targets: vec!["J2_deg".to_owned()], ..Wanted::default() }
+}
+
+fn read(text: impl AsRef<[u8]>, wanted: &Wanted) -> Result<Read, DataError> {
+    let folder = Folder::new();
+    read_data(&[folder.file("a.csv", text)], wanted)
+}
+
+fn told(text: impl AsRef<[u8]>, wanted: &Wanted) -> String {
+    read(text, wanted).unwrap_err().to_string()
+}
+
+/// What became of the rows: all, used, empty, invalid, faults.
+fn counts(read: &Read) -> [usize; 5] {
+    let f = &read.files[0];
+    [f.rows, f.used, f.empty, f.invalid, f.faults]
+}
+
+#[test]
+fn columns_are_found_by_name_whatever_their_order_and_dialect() {
+    for text in [
+        "time_s,P1,P2,P10,J2_deg\n0,1,2,10,5\n0.04,1.5,2.5,10.5,6\n",
+        "\u{feff}J2_deg,note,P10,\"P2\",P1,time_s\r\n5,\"a, b\",10,2,1,0\r\n\r\n6,,10.5,2.5,1.5,0.04\r\n",
+        "P2 , P10,J2_deg,time_s,P1,P01,Px\n2,10,5,0, 1,x,nan\n2.5,10.5,6,0.04, 1.5,,",
+    ] {
+        let read = read(text, &angle()).unwrap();
+        assert_eq!(read.data.inputs(), ["P1", "P2", "P10"], "{text}");
+        assert_eq!(read.data.x(), &ndarray::array![[1.0, 2.0, 10.0], [1.5, 2.5, 10.5]]);
+        assert_eq!((read.data.y(), read.data.time_s()), (&ndarray::array![[5.0], [6.0]], &[0.0, 0.04][..]));
+        assert_eq!((counts(&read), read.warnings.len()), ([2, 2, 0, 0, 0], 0), "{:?}", read.warnings);
+    }
+}
+
+#[test]
+fn photodiodes_may_be_chosen_and_time_may_lack() {
+    let wanted = Wanted { inputs: Some(vec!["P3".into(), "P1".into()]), ..angle() };
+    let read = read("P1,P2,P3,J2_deg\n1,x,3,0\n4,,6,1\n", &wanted).unwrap();
+    assert_eq!(read.data.inputs(), ["P3", "P1"]);
+    assert_eq!(read.data.x(), &ndarray::array![[3.0, 1.0], [6.0, 4.0]]);
+    assert!(read.data.time_s().iter().all(|t| t.is_nan()));
+}
+
+#[test]
+fn rows_are_left_out_and_counted_once() {
+    let text = "P1,P2,J2_deg,sensor_status\n1,2,3,ok\n,2,3,ok\n1,2,,\nnan,2,3,ok\n1,inf,,ok\n1,2,x,saturated: P2\n1,2,4,no ambient: P9\n2,1,5,ok\n";
+    let first = told(text, &angle());
+    assert!(
+        first.contains("a.csv:5: column `P1`: `NaN` is no finite number") && first.contains("--drop-invalid"),
+        "{first}"
+    );
+    let read = |wanted: &Wanted| read(text, wanted).unwrap();
+    assert_eq!(counts(&read(&Wanted { drop_invalid: true, ..angle() })), [8, 3, 2, 2, 1]);
+    let kept = read(&Wanted { drop_invalid: true, keep_faults: true, ..angle() });
+    assert_eq!(counts(&kept), [8, 3, 2, 3, 0]);
+    assert_eq!(kept.data.y(), &ndarray::array![[3.0], [4.0], [5.0]]);
+    let other = Wanted { drop_invalid: true, inputs: Some(vec!["P1".into()]), ..angle() };
+    assert_eq!(counts(&read(&other)), [8, 3, 3, 2, 0]);
+}
+
+#[test]
+fn the_first_wrong_cell_by_line_is_told() {
+    let said = told("P1,J2_deg,time_s\n1,2,3\n2,3,soon\nx,3,4\n", &angle());
+    assert!(said.contains("a.csv:3: column `time_s`: `soon`"), "{said}");
+    for wrong in ["1e999", "-inf", "NaN", "1 V", "0x1", "1,5e", "\"1,5\""] {
+        let said = told(format!("P1,J2_deg\n1,2\n3,{wrong}\n").replace("1,5e", "\"1.5e\""), &angle());
+        assert!(said.contains("a.csv:3: column `J2_deg`"), "{said}");
+    }
+}
+
+#[test]
+fn missing_columns_are_told_with_the_nearest_and_all() {
+    let said = told("time_s,P1,fz_n,Fx_N,Fy_N\n0,1,2,3,4\n", &forces());
+    assert!(said.contains("a.csv: has no column `Fz_N`; is it `fz_n`? Its columns are time_s, P1, fz_n"), "{said}");
+    let said = told("time_s,ch1,J2_deg\n0,1,2\n", &angle());
+    assert!(said.contains("has no photodiode `P1`") && said.contains("time_s, ch1, J2_deg"), "{said}");
+    let wanted = Wanted { inputs: Some(vec!["P8".into()]), ..angle() };
+    assert!(told("P1,J2_deg\n0,1\n", &wanted).contains("no column `P8`"));
+    assert!(told("time_s;P1;J2_deg\n0;1;2\n", &angle()).contains("cells are separated by commas"));
+    assert!(told("P1,P1,J2_deg\n0,1,2\n", &angle()).contains("two columns are named `P1`"));
+}
+
+#[test]
+fn empty_and_damaged_files_are_told() {
+    for (text, words) in [
+        ("", "a.csv: is empty"),
+        ("\n\r\n", "a.csv: is empty"),
+        ("P1,J2_deg\n", "a.csv: there is no row below the names"),
+        ("P1,J2_deg\n1,\n,2\n", "of 2 rows 2 have an empty cell"),
+        ("P1,J2_deg\n1,2\n1\n", "line 3 has 1 cells and the first line 2"),
+    ] {
+        assert!(told(text, &angle()).contains(words), "{text:?}: {}", told(text, &angle()));
+    }
+    let wanted = Wanted { drop_invalid: true, ..angle() };
+    let said = told("P1,J2_deg,sensor_status\nnan,1,\n2,2,saturated: P1\n", &wanted);
+    assert!(said.contains("1 have a cell that is no finite number") && said.contains("1 are saturated"), "{said}");
+    assert!(read_data(&[], &angle()).unwrap_err().to_string().contains("no DATA"));
+    assert!(read_data(&["nothing.csv".into()], &angle()).unwrap_err().to_string().contains("nothing.csv"));
+}
+
+#[test]
+fn one_row_and_huge_and_tiny_values_are_rows() {
+    let read = read("P1,P2,J2_deg\n1e300,-1e-300,5e-324\n", &angle()).unwrap();
+    assert_eq!((read.data.x(), read.data.y()), (&ndarray::array![[1e300, -1e-300]], &ndarray::array![[5e-324]]));
+    assert_eq!((read.data.recordings().len(), read.warnings.len()), (1, 0));
+}
+
+#[test]
+fn recordings_follow_session_subject_trajectory_and_time() {
+    let text = "time_s,P1,J2_deg,session,subject,trajectory\n\
+                0,1,0,s1,anna,spiral1\n1,2,0,s1,anna,spiral1\n0,3,0,s1,anna,spiral2\n1,4,0,,anna,\n0.5,5,0,,anna,\n,6,0,,anna,\n2,7,0,s2,bert,\n";
+    let folder = Folder::new();
+    let path = folder.file("a.csv", text);
+    let read = read_data(std::slice::from_ref(&path), &angle()).unwrap();
+    let file = path.display().to_string();
+    let seen: Vec<(String, String, String, std::ops::Range<usize>)> = read
+        .data
+        .recordings()
+        .iter()
+        .map(|r| (r.name.replace(&file, "f"), r.session.replace(&file, "f"), r.subject.clone(), r.rows.clone()))
+        .collect();
+    let row = |name: &str, session: &str, subject: &str, rows| {
+        (name.to_owned(), session.to_owned(), subject.to_owned(), rows)
+    };
+    assert_eq!(
+        seen,
+        [
+            row("f (spiral1)", "s1", "anna", 0..2),
+            row("f (spiral2)", "s1", "anna", 2..3),
+            row("f #3", "f", "anna", 3..4),
+            row("f #4", "f", "anna", 4..6),
+            row("f #5", "s2", "bert", 6..7),
+        ]
+    );
+    assert_eq!(read.warnings.len(), 1, "{:?}", read.warnings);
+    assert!(read.warnings[0].contains("goes back once from 1 to 0.5 s"), "{:?}", read.warnings);
+}
+
+#[test]
+fn a_row_left_out_divides_nothing_and_a_recording_without_rows_is_none() {
+    let text = "time_s,P1,J2_deg,session\n0,1,0,a\n9,2,,a\n1,3,0,a\n2,4,,b\n3,5,0,c\n";
+    let read = read(text, &angle()).unwrap();
+    let seen: Vec<_> = read.data.recordings().iter().map(|r| (r.session.as_str(), r.rows.clone())).collect();
+    assert_eq!((seen, read.warnings.len()), (vec![("a", 0..2), ("c", 2..3)], 0));
+}
+
+#[test]
+fn files_follow_each_other_and_have_to_agree() {
+    let folder = Folder::new();
+    let a = folder.file("a.csv", "P1,P2,J2_deg\n1,2,3\n4,5,6\n");
+    let b = folder.file("b.csv", "J2_deg,P2,P1\n7,8,9\n");
+    let c = folder.file("c.csv", "J2_deg,P3,P1\n7,8,9\n");
+    let read = read_data(&[b.clone(), a.clone()], &angle()).unwrap();
+    assert_eq!(read.data.x(), &ndarray::array![[9.0, 8.0], [1.0, 2.0], [4.0, 5.0]]);
+    assert_eq!(read.data.recordings().iter().map(|r| r.rows.clone()).collect::<Vec<_>>(), [0..1, 1..3]);
+    let again = read_data(&[a.clone(), a.clone()], &angle()).unwrap();
+    assert!(again.warnings.len() == 1 && again.warnings[0].contains("given twice"), "{:?}", again.warnings);
+    let said = read_data(&[a.clone(), c], &angle()).unwrap_err().to_string();
+    assert!(
+        said.contains("c.csv: has other photodiodes than") && said.contains("lacks P2") && said.contains("lacks P3"),
+        "{said}"
+    );
+    assert!(read_data(&[a, folder.file("d.csv", "P1,P2,J2_deg\n")], &angle()).unwrap().files[1].rows == 0);
+}
+
+#[test]
+fn parquet_is_read_like_csv() {
+    let folder = Folder::new();
+    let rows = 300;
+    let value = |k: usize, p: usize| (k as f64 * 0.1 + p as f64).sin();
+    let paths = ["t.csv", "t.parquet"].map(|name| folder.0.path().join(name));
+    for path in &paths {
+        let mut columns = vec![Column::number("time_s")];
+        columns.extend((1..=3).map(|p| Column::number(format!("P{p}"))));
+        columns.extend([Column::number("J2_deg"), Column::text("session"), Column::text("sensor_status")]);
+        let mut table = TableWriter::create(path, path, columns, &[]).unwrap();
+        for k in 0..rows {
+            let hole = if k % 7 == 3 { Value::Missing } else { Value::Number(value(k, 9)) };
+            let status = if k % 11 == 0 { "saturated: P2" } else { "ok" };
+            let session = Value::Text(if k < 100 { "one" } else { "two" });
+            let mut cells = vec![Value::Number(k as f64 * 0.04)];
+            cells.extend((1..=3).map(|p| Value::Number(value(k, p))));
+            cells.extend([hole, session, Value::Text(status)]);
+            table.write(&cells).unwrap();
+        }
+        table.finish().unwrap();
+    }
+    let [csv, parquet] = paths.map(|path| read_data(&[path], &angle()).unwrap());
+    assert_eq!(
+        (csv.data.x(), csv.data.y(), csv.data.time_s()),
+        (parquet.data.x(), parquet.data.y(), parquet.data.time_s())
+    );
+    assert_eq!(counts(&csv), counts(&parquet));
+    assert_eq!(counts(&csv), [300, 233, 39, 0, 28]);
+    assert_eq!(csv.data.recordings().len(), 2);
+}
+
+/// A modulated log: lit and unlit samples of three photodiodes, with forces.
+fn modulated(rows: usize) -> String {
+    let mut text = "time_s,led,P1,P2,P3,Fx_N,Fy_N,Fz_N\n".to_owned();
+    for k in 0..rows {
+        let (t, lit) = (k as f64 * 0.01, k % 2);
+        let p = [1.0, 1.3, 0.7].map(|a| a * lit as f64 * (1.5 + 0.3 * (a * t).sin()) + 0.2 + 0.01 * (7.0 * t).sin());
+        let p3 = if k % 50 == 5 { String::new() } else { format!("{:.4}", p[2]) };
+        writeln!(text, "{t:.3},{lit},{:.4},{:.4},{p3},{:.3},{:.3},{:.3}", p[0], p[1], t.sin(), t.cos(), -t).unwrap();
+    }
+    text
+}
+
+#[test]
+fn a_modulated_log_is_what_align_makes_of_it() {
+    let folder = Folder::new();
+    let path = folder.file("log.csv", modulated(400));
+    let read = read_data(std::slice::from_ref(&path), &forces()).unwrap();
+    let same = samples(&Log::read(&path, &Columns::default()).unwrap(), &AmbientOptions::default()).unwrap();
+    let whole: Vec<usize> = (0..same.time_s.len())
+        .filter(|&k| same.photodiodes.iter().all(|c| !c.values[k].is_nan()) && same.faults[k].is_empty())
+        .collect();
+    assert_eq!((read.files[0].rows, read.files[0].used), (200, whole.len()));
+    assert!(whole.len() > 180 && whole.len() < 200, "{}", whole.len());
+    for (row, &k) in whole.iter().enumerate() {
+        assert_eq!(read.data.time_s()[row].to_bits(), same.time_s[k].to_bits());
+        for (column, channel) in same.photodiodes.iter().enumerate() {
+            assert_eq!(read.data.x()[[row, column]].to_bits(), channel.values[k].to_bits());
+        }
+        for (column, channel) in same.forces.iter().enumerate() {
+            assert_eq!(read.data.y()[[row, column]].to_bits(), channel.values[k].to_bits());
+        }
+    }
+    let notes = &read.files[0].notes;
+    assert!(notes.iter().any(|note| note.contains("log.csv: ambient light taken away")), "{notes:?}");
+    let said = read_data(&[path], &angle()).unwrap_err().to_string();
+    assert!(said.contains("is a raw log and has no column `J2_deg`") && said.contains("lunula align"), "{said}");
+}
+
+#[test]
+fn dead_and_saturated_photodiodes_are_told() {
+    let mut text = "P1,P2,P3,J2_deg\n".to_owned();
+    for k in 0..600 {
+        let wave = 2.5 + 3.0 * (k as f64 * 0.05).sin();
+        writeln!(text, "{:.4},2.5,{wave:.4},1", wave.min(4.0)).unwrap();
+    }
+    let read = read(text, &angle()).unwrap();
+    let [saturated, dead] = &read.warnings[..] else { panic!("{:?}", read.warnings) };
+    assert!(saturated.contains("P1 stays at exactly 4 V, its greatest value, in") && saturated.contains("of 600 rows"));
+    assert!(dead.contains("P2 is 2.5 V in all 600 rows: dead"), "{dead}");
+}
+
+#[test]
+fn an_unknown_status_is_told_and_used() {
+    let read = read("P1,J2_deg,sensor_status\n1,2,loose\n2,3,loose\n3,4,ok\n", &angle()).unwrap();
+    assert_eq!(counts(&read)[1], 3);
+    assert!(read.warnings.len() == 1 && read.warnings[0].contains("in 2 rows, first `loose`"), "{:?}", read.warnings);
+}
+
+#[test]
+fn voltages_alone_keep_every_row() {
+    let folder = Folder::new();
+    let path = folder.file("a.csv", "time_s,P2,P1,sensor_status\n0,2,1,ok\n1,,1,ok\n2,x,1,saturated: P1\n");
+    let inputs = ["P1", "P2"].map(str::to_owned);
+    assert!(read_inputs(&path, &inputs, false).unwrap_err().to_string().contains("a.csv:4: column `P2`"));
+    let read = read_inputs(&path, &inputs, true).unwrap();
+    assert_eq!((read.x.dim(), read.x[[0, 1]], read.x[[2, 0]]), ((3, 2), 2.0, 1.0));
+    assert!(read.x[[1, 1]].is_nan() && read.x[[2, 1]].is_nan());
+    assert_eq!(
+        (read.faulty, read.invalid, read.empty, read.time_s),
+        (vec![false, false, true], 1, 1, vec![0.0, 1.0, 2.0])
+    );
+    assert_eq!(read.recordings[0].rows, 0..3);
+    let none = read_inputs(&folder.file("b.csv", "P1,P2\n"), &inputs, false).unwrap();
+    assert_eq!((none.x.dim(), none.recordings.len()), ((0, 2), 0));
+    assert!(read_inputs(&path, &[], false).is_err());
+}
+
+fn streamed(text: &str, drop_invalid: bool) -> Result<Vec<(Row, Vec<f64>)>, String> {
+    let inputs = ["P1", "P2"].map(str::to_owned);
+    let mut stream = RowStream::new(text.as_bytes(), "-", &inputs, drop_invalid).map_err(|why| why.to_string())?;
+    let mut rows = Vec::new();
+    let mut x = vec![0.0; 2];
+    while let Some(row) = stream.next_row(&mut x).map_err(|why| why.to_string())? {
+        rows.push((row, x.clone()));
+    }
+    Ok(rows)
+}
+
+#[test]
+fn a_stream_gives_what_the_table_gives() {
+    let text = "\u{feff}note,P2,time_s,P1,sensor_status\r\n\"a, b\",2,0,1,ok\r\n\r\n,,0.04,1.5,\"saturated: P1, P2\"\r\nx,\"3\",0.02,-1e-3,saturated: P7";
+    let rows = streamed(text, false).unwrap();
+    let folder = Folder::new();
+    let table = read_inputs(&folder.file("a.csv", text), &["P1", "P2"].map(str::to_owned), false).unwrap();
+    assert_eq!(rows.len(), 3);
+    for (k, (row, x)) in rows.iter().enumerate() {
+        assert_eq!(row.time_s, table.time_s[k]);
+        assert!(x.iter().zip(table.x.row(k)).all(|(a, b)| a == b || a.is_nan() && b.is_nan()), "{x:?}");
+        assert_eq!(row.faulty, table.faulty[k]);
+        assert_eq!(row.begins, table.recordings.iter().any(|r| r.rows.start == k));
+    }
+    assert_eq!(rows.iter().map(|(row, _)| row.line).collect::<Vec<_>>(), [2, 4, 5]);
+}
+
+#[test]
+fn a_streams_faults_are_told_with_their_line_or_dropped() {
+    for (bad, words) in [
+        ("nan,1", "-:3: column `P1`: `nan` is no finite number"),
+        ("1,inf", "-:3: column `P2`: `inf`"),
+        ("1,1 V", "-:3: column `P2`: `1 V`"),
+        ("1", "-:3: 1 cells for 2 columns"),
+        ("1,2,3", "-:3: 3 cells for 2 columns"),
+    ] {
+        let text = format!("P1,P2\n1,2\n{bad}\n3,4\n");
+        let said = streamed(&text, false).unwrap_err();
+        assert!(said.contains(words), "{said}");
+        let rows = streamed(&text, true).unwrap();
+        assert!(rows.len() == 3 && rows[1].0.invalid && rows[1].1.iter().any(|v| v.is_nan()), "{rows:?}");
+        assert_eq!(rows[2].1, [3.0, 4.0]);
+    }
+    for (header, words) in [
+        ("", "is empty"),
+        ("P1,p2\n", "no column `P2`; is it `p2`?"),
+        ("P1,P2,P1\n", "two columns are named `P1`"),
+        ("P1,P2,led\n", "has a column `led`"),
+        ("0.1,0.2\n", "line 1 holds numbers"),
+    ] {
+        let said = streamed(header, true).unwrap_err();
+        assert!(said.contains(words), "{said}");
+    }
+    assert!(streamed("P1,P2\n", false).unwrap().is_empty());
+}
+
+/// How long it takes to read a table as the size of the task has it; `LUNULA_TIME=1` prints it.
+#[test]
+fn a_table_of_twelve_thousand_rows_is_read() {
+    let mut text =
+        "time_s,P1,P2,P3,P4,P5,P6,P7,P8,Fx_N,Fy_N,Fz_N,label_status,subject,session,sensor_status\n".to_owned();
+    for k in 0..12_000 {
+        write!(text, "{}", k as f64 * 0.01).unwrap();
+        for p in 0..8 {
+            write!(text, ",{:.6}", 2.0 + (k as f64 * 0.001 * (p + 1) as f64).sin()).unwrap();
+        }
+        let f = k as f64 * 0.0007;
+        writeln!(text, ",{:.4},{:.4},{:.4},ok,anna,s1,ok", f.sin(), f.cos(), -f).unwrap();
+    }
+    let folder = Folder::new();
+    let paths = [folder.file("a.csv", text)];
+    let rounds = if std::env::var_os("LUNULA_TIME").is_some() { 50 } else { 1 };
+    let time = |work: &dyn Fn()| {
+        let one = |_| {
+            let start = std::time::Instant::now();
+            work();
+            start.elapsed().as_secs_f64() * 1e3
+        };
+        (0..rounds).map(one).fold(f64::INFINITY, f64::min)
+    };
+    let read_ms = time(&|| assert_eq!(read_data(&paths, &forces()).unwrap().data.rows(), 12_000));
+    let table_ms = time(&|| assert_eq!(crate::table::Table::read(&paths[0]).unwrap().rows(), 12_000));
+    println!("read_data {read_ms:.2} ms, of that the table {table_ms:.2} ms");
+}
+
+#[test]
+fn a_line_without_an_end_and_other_ends_are_refused() {
+    let endless = "P1,P2\n".to_owned() + &"1".repeat(1 << 21);
+    let said = streamed(&endless, true).unwrap_err();
+    assert!(said.contains("-:2: the line is longer than 1048576 bytes"), "{said}");
+    let said = streamed("P1,P2\r1,2\r", true).unwrap_err();
+    assert!(said.contains("carriage returns"), "{said}");
+}
+
+#[test]
+fn a_new_recording_of_a_stream_forgets_the_times_before() {
+    let rows = streamed("time_s,P1,P2,session\n10,1,2,a\n,1,2,b\n5,1,2,b\n6,1,2,b\n", false).unwrap();
+    assert_eq!(rows.iter().map(|(row, _)| row.begins).collect::<Vec<_>>(), [true, true, false, false]);
+}
+
+#[test]
+fn columns_named_twice_are_told_with_where() {
+    let twice = Wanted { inputs: Some(vec!["P1".into(), "P1".into()]), ..angle() };
+    assert!(told("P1,J2_deg\n1,2\n", &twice).contains("named twice among the inputs"));
+    let both = Wanted { inputs: Some(vec!["P1".into(), "J2_deg".into()]), ..angle() };
+    assert!(told("P1,J2_deg\n1,2\n", &both).contains("is both an input and a target"));
+    let said = told("0.1,0.2\n1,2\n", &Wanted { inputs: Some(vec!["P1".into()]), ..angle() });
+    assert!(said.contains("holds numbers where the names"), "{said}");
+    let dead = read("P1,J2_deg\n1e-300,2\n1e-300,3\n", &angle()).unwrap();
+    assert!(dead.warnings[0].contains("P1 is 1e-300 V in all 2 rows"), "{:?}", dead.warnings);
+}

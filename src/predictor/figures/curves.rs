@@ -1,0 +1,138 @@
+//! Errors over the number of photodiodes, the best of each number named (beyond Fig. 113), and over the training rows.
+
+use std::path::Path;
+
+use super::WIDTH;
+use crate::figure::{Axis, Chart, Item, draw_charts};
+
+/// Height of the pictures, pixels.
+const HEIGHT_PX: u32 = 600;
+
+/// The best subset of one size.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::predictor) struct Subset {
+    /// The photodiodes in it.
+    pub photodiodes: Vec<String>,
+    /// Its error.
+    pub error: f64,
+}
+
+/// The best subsets by one measure.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::predictor) struct SubsetSeries {
+    /// For the legend: `Fz_N`, `all targets`.
+    pub name: String,
+    /// One of each size, in any order.
+    pub best: Vec<Subset>,
+}
+
+/// Errors on a learning curve.
+#[derive(Debug, Clone, PartialEq)]
+pub(in crate::predictor) struct LearningSeries {
+    /// For the legend.
+    pub name: String,
+    /// By ascending x.
+    pub points: Vec<CurvePoint>,
+}
+
+/// A point with its spread.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::predictor) struct CurvePoint {
+    /// How much was learnt from.
+    pub x: f64,
+    /// The error.
+    pub y: f64,
+    /// The ends of its spread, if they are known.
+    pub spread: Option<[f64; 2]>,
+}
+
+/// Draws the error of the best subset of each size; the photodiodes in it are written at the points, `all` is every one of `photodiodes`.
+///
+/// # Errors
+/// A file that can't be written.
+pub(in crate::predictor) fn draw_best_subsets(
+    title: &str,
+    y_label: &str,
+    photodiodes: &[String],
+    series: &[SubsetSeries],
+    png: &Path,
+    svg: &Path,
+) -> anyhow::Result<()> {
+    let most = photodiodes.len();
+    let mut items = vec![
+        Item::Room(vec![[0.5, 0.0], [most as f64 + 0.5, 0.0]]),
+        Item::Names((1..=most).map(|n| (n as f64, n.to_string())).collect()),
+    ];
+    for (colour, one) in series.iter().enumerate() {
+        let mut best: Vec<&Subset> = one.best.iter().filter(|subset| subset.error.is_finite()).collect();
+        best.sort_by_key(|subset| subset.photodiodes.len());
+        let points: Vec<[f64; 2]> = best.iter().map(|s| [s.photodiodes.len() as f64, s.error]).collect();
+        items.push(Item::Line { name: Some(one.name.clone()), runs: vec![points.clone()], colour, width: 2 });
+        items.push(Item::Dots { name: None, points: points.clone(), colour });
+        items.extend(best.iter().zip(points).map(|(subset, at)| Item::Label {
+            at,
+            text: in_words(&subset.photodiodes, photodiodes),
+            colour,
+            above: !(series.len() > 1 && lowest(series, subset)),
+        }));
+    }
+    let chart = Chart {
+        title: title.to_owned(),
+        x: Axis { label: "number of photodiodes".to_owned() },
+        y: Axis { label: y_label.to_owned() },
+        from_zero: true,
+        items,
+        height: HEIGHT_PX,
+    };
+    draw_charts(&[chart], WIDTH, png, svg)
+}
+
+/// Whether no other subset of the same size has a lower error.
+fn lowest(series: &[SubsetSeries], subset: &Subset) -> bool {
+    let rivals = series.iter().flat_map(|one| &one.best).filter(|s| s.photodiodes.len() == subset.photodiodes.len());
+    rivals.filter(|s| s.error.is_finite()).all(|s| s.error >= subset.error)
+}
+
+/// `P1 P4`, `all but P3`, `all`: whichever is shorter.
+fn in_words(subset: &[String], all: &[String]) -> String {
+    let without: Vec<&str> = all.iter().filter(|p| !subset.contains(p)).map(String::as_str).collect();
+    match without.len() {
+        0 => "all".to_owned(),
+        n if n < subset.len() => format!("all but {}", without.join(" ")),
+        _ => subset.join(" "),
+    }
+}
+
+/// Draws errors over how much was learnt from, with their spread as a band.
+///
+/// # Errors
+/// A file that can't be written.
+pub(in crate::predictor) fn draw_learning_curve(
+    title: &str,
+    x_label: &str,
+    y_label: &str,
+    series: &[LearningSeries],
+    png: &Path,
+    svg: &Path,
+) -> anyhow::Result<()> {
+    let mut items = Vec::new();
+    for (colour, one) in series.iter().enumerate() {
+        let band = one.points.iter().filter_map(|p| p.spread.map(|[low, high]| [p.x, low, high]));
+        let band = band.filter(|p| p.iter().all(|v| v.is_finite())).collect();
+        items.push(Item::Band { runs: vec![band], colour });
+    }
+    for (colour, one) in series.iter().enumerate() {
+        let points: Vec<[f64; 2]> = one.points.iter().map(|p| [p.x, p.y]).filter(|p| p[1].is_finite()).collect();
+        items.push(Item::Line { name: Some(one.name.clone()), runs: vec![points.clone()], colour, width: 2 });
+        items.push(Item::Dots { name: None, points, colour });
+    }
+    let chart = Chart {
+        title: title.to_owned(),
+        x: Axis { label: x_label.to_owned() },
+        y: Axis { label: y_label.to_owned() },
+        from_zero: true,
+        items,
+        height: HEIGHT_PX,
+    };
+    draw_charts(&[chart], WIDTH, png, svg)
+}

@@ -1,0 +1,97 @@
+//! Predictors of touch force and posture (chapter 5): recordings in, models, predictions, figures of merit and pictures out.
+//!
+//! The models and their mathematics are the crate `lunula-predictor`'s; here are the files and the jobs of the command line, an entry each:
+//! [`train()`], [`evaluate()`], [`predict()`] (and [`predict_stream`]), [`analyse()`], [`prune()`], [`compare()`], [`trajectory::run`].
+
+mod analyse;
+mod answer;
+mod compare;
+mod data;
+mod error;
+mod evaluate;
+mod figures;
+mod figures_of_merit;
+mod learning;
+mod predict;
+mod prune;
+mod results;
+mod target;
+#[cfg(test)]
+mod tests;
+mod train;
+pub mod trajectory;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The crate that does the mathematics.
+pub use lunula_predictor as models;
+use lunula_predictor::{Dataset, Predictor, recording_hashes};
+
+pub use analyse::{AnalyseReport, ModelMode, ModelModes, Printed, analyse};
+pub use answer::Answering;
+pub use compare::{CompareOptions, CompareReport, Comparison, Person, Spread, compare};
+pub use data::{DataError, FileRows, Inputs, Read, Row, RowStream, Wanted, read_data, read_inputs};
+pub use error::PredictorError;
+pub use evaluate::{BinMerit, EvaluateOptions, EvaluateReport, HeldOut, Magnitudes, Part, RecordingMerit, evaluate};
+pub use figures_of_merit::{ByTarget, Merit};
+pub use predict::{PredictOptions, PredictReport, predict, predict_stream};
+pub use prune::{PruneReport, PruneRow, prune};
+pub use target::{POSTURE, Target};
+pub use train::{TrainInputs, TrainOptions, TrainOutputs, TrainReport, Without, train, train_plan};
+
+/// Model files, read.
+struct OpenedModels {
+    predictors: Vec<Predictor>,
+    warnings: Vec<String>,
+}
+
+impl OpenedModels {
+    /// The only one.
+    fn one(mut self) -> (Predictor, Vec<String>) {
+        (self.predictors.remove(0), self.warnings)
+    }
+}
+
+/// Reads model files.
+fn open_models(paths: &[PathBuf]) -> Result<OpenedModels, PredictorError> {
+    let mut opened = OpenedModels { predictors: Vec::new(), warnings: Vec::new() };
+    for path in paths {
+        let text = fs::read_to_string(path).map_err(|why| PredictorError::Open { path: path.clone(), why })?;
+        let found = Predictor::from_json(&text).map_err(|why| PredictorError::Model { path: path.clone(), why })?;
+        if found.edited {
+            opened.warnings.push(format!(
+                "{}: was edited after it was trained; what it says of its training need not be true of its numbers",
+                path.display()
+            ));
+        }
+        opened.predictors.push(found.predictor);
+    }
+    Ok(opened)
+}
+
+/// What to say of recordings that a model was trained on.
+fn seen_in_training(predictor: &Predictor, data: &Dataset) -> Option<String> {
+    let trained: Vec<&str> = predictor.training().recordings.iter().map(|one| one.sha256.as_str()).collect();
+    let hashes = recording_hashes(data);
+    let again = data.recordings().iter().zip(&hashes).filter(|(_, hash)| trained.contains(&hash.as_str()));
+    let names: Vec<&str> = again.map(|(recording, _)| recording.name.as_str()).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "{}: the model was trained on this; its errors flatter. Name recordings that it has not seen",
+            names.join(", ")
+        )
+    })
+}
+
+/// Refuses to write over an input.
+fn is_no_input(inputs: &[&Path], out: &Path) -> Result<(), PredictorError> {
+    let real = |path: &Path| fs::canonicalize(path).ok();
+    match real(out).filter(|out| inputs.iter().any(|input| real(input).as_ref() == Some(out))) {
+        Some(_) => Err(PredictorError::Request(format!(
+            "{}: is an input itself; choose another name for the result",
+            out.display()
+        ))),
+        None => Ok(()),
+    }
+}

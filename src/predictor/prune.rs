@@ -1,0 +1,157 @@
+//! `lunula prune`: which photodiodes could be removed (5.5, Fig. 113), for every subset rather than for one at a time.
+//!
+//! In: recordings to train on and others to validate on. Out: the linear model's errors on both for every subset of the photodiodes, the best of each size, and Fig. 113's
+//! bars. Of more photodiodes than can be tried in every way, the one that is missed least is removed again and again.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+use std::time::Instant;
+
+use lunula_predictor::{MOST_INPUTS, Subset, backward_elimination, every_subset, row_hashes, shared_rows};
+use serde::Serialize;
+
+use super::data::{FileRows, Wanted, read_data};
+use super::error::{PredictorError, go_on};
+use super::figures_of_merit::ByTarget;
+use crate::stages::{Stage, Stages};
+
+/// A subset's errors.
+#[derive(Debug, Clone, Serialize)]
+pub struct PruneRow {
+    /// The photodiodes in it.
+    pub inputs: Vec<String>,
+    /// How many of them are independent on the training rows; where not all are, there is no one model and no error.
+    pub rank: usize,
+    /// On the rows trained on.
+    pub train_rmse: Option<ByTarget<f64>>,
+    /// On the rows validated on.
+    pub validate_rmse: Option<ByTarget<f64>>,
+    /// What subsets are compared by: the mean over targets of the validation RMSE over the target's SD on the training rows.
+    pub score: Option<f64>,
+}
+
+/// What was found.
+#[derive(Debug, Clone, Serialize)]
+pub struct PruneReport {
+    /// Which job.
+    pub job: &'static str,
+    /// The recordings trained on.
+    pub data: Vec<FileRows>,
+    /// The recordings validated on.
+    pub validate: Vec<FileRows>,
+    /// The photodiodes.
+    pub inputs: Vec<String>,
+    /// The targets.
+    pub targets: Vec<String>,
+    /// How many subsets were looked at.
+    pub subsets: usize,
+    /// The training mean, no photodiode at all, on the rows validated on.
+    pub none: Option<ByTarget<f64>>,
+    /// The best of each size.
+    pub best_of_size: Vec<PruneRow>,
+    /// All, then all but one each (Fig. 113).
+    pub without_one: Vec<PruneRow>,
+    /// Every subset; in the table `subsets.csv` rather than in JSON.
+    #[serde(skip)]
+    pub all: Vec<PruneRow>,
+    /// What the job did not need.
+    pub left_out: Vec<String>,
+    /// What whoever reads this should know.
+    pub warnings: Vec<String>,
+    /// The pictures.
+    pub pictures: Vec<PathBuf>,
+    /// Time by stage.
+    pub stages: Vec<Stage>,
+    /// Seconds from start to end.
+    pub wall_s: f64,
+}
+
+/// Compares subsets; writes a table and pictures where `out` names a folder.
+///
+/// # Errors
+/// [`PredictorError`] where there is nothing to tell.
+pub fn prune(
+    data: &[PathBuf],
+    validate: &[PathBuf],
+    wanted: &Wanted,
+    out: Option<&Path>,
+    stop: &AtomicBool,
+) -> Result<PruneReport, PredictorError> {
+    let start = Instant::now();
+    let stages = Stages::default();
+    let train = stages.time("read", || read_data(data, wanted))?;
+    let inputs = train.data.inputs().to_vec();
+    let same = Wanted { inputs: Some(inputs.clone()), ..wanted.clone() };
+    let told = stages.time("read", || read_data(validate, &same))?;
+    go_on(stop)?;
+    let targets = train.data.targets().to_vec();
+    let row = |subset: &Subset| row(subset, &inputs, &targets);
+    let mut warnings = [train.warnings, told.warnings].concat();
+    let shared = shared_rows(&row_hashes(&train.data), &row_hashes(&told.data));
+    if shared > 0 {
+        warnings.push(format!(
+            "{shared} of {} rows to compare on are among those trained on; their errors flatter. Name recordings that are not",
+            told.data.rows()
+        ));
+    }
+    let left_out = vec!["quadratic and network models: a fit of each subset would take hours".to_owned()];
+    let mut report = PruneReport {
+        job: "prune",
+        data: train.files,
+        validate: told.files,
+        inputs: inputs.clone(),
+        targets: targets.clone(),
+        subsets: 0,
+        none: None,
+        best_of_size: Vec::new(),
+        without_one: Vec::new(),
+        all: Vec::new(),
+        left_out,
+        warnings,
+        pictures: Vec::new(),
+        stages: Vec::new(),
+        wall_s: 0.0,
+    };
+    if inputs.len() > MOST_INPUTS {
+        let path = stages.time("subsets", || backward_elimination(&train.data, &told.data))?;
+        report.all = path.iter().map(row).collect();
+        report.best_of_size = report.all.iter().rev().cloned().collect();
+        report.left_out.push(format!(
+            "most subsets: {} photodiodes have 2^{0} of them; the one missed least was removed again and again",
+            inputs.len()
+        ));
+    } else {
+        let found = stages.time("subsets", || every_subset(&train.data, &told.data))?;
+        report.all = found.all.iter().map(row).collect();
+        report.best_of_size = found.best_of_size.iter().flatten().map(|&k| report.all[k].clone()).collect();
+        report.without_one = found.without_one.iter().map(|one| report.all[one.subset].clone()).collect();
+        report.none = Some(ByTarget::new(&targets, found.none.validate_rmse.iter().copied()));
+    }
+    report.subsets = report.all.len();
+    if report.best_of_size.is_empty() {
+        let what = "no subset has a model: the photodiodes do not change, or there are too few rows to train on";
+        report.warnings.push(what.to_owned());
+    }
+    go_on(stop)?;
+    match out {
+        Some(out) => super::results::pruning(&mut report, out, &stages, start)?,
+        None => {
+            report.left_out.push("table and pictures: no --out".to_owned());
+            report.stages = stages.list();
+            report.wall_s = start.elapsed().as_secs_f64();
+        }
+    }
+    Ok(report)
+}
+
+fn row(subset: &Subset, inputs: &[String], targets: &[String]) -> PruneRow {
+    let errors = subset.errors.as_ref();
+    let by = |values: &[f64]| ByTarget::new(targets, values.iter().copied());
+    PruneRow {
+        inputs: subset.inputs.iter().map(|&k| inputs[k].clone()).collect(),
+        rank: subset.rank,
+        train_rmse: errors.map(|errors| by(&errors.train_rmse)),
+        validate_rmse: errors.map(|errors| by(&errors.validate_rmse)),
+        score: errors.and_then(|errors| errors.score),
+    }
+}

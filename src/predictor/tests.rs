@@ -1,0 +1,137 @@
+//! What the jobs refuse or warn of, on small recordings.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
+
+use lunula_predictor::{By, Gate, Kind, Recipe};
+
+use super::*;
+
+static RUN: AtomicBool = AtomicBool::new(false);
+
+struct Folder(tempfile::TempDir);
+
+impl Folder {
+    fn new() -> Self {
+        Self(tempfile::tempdir().unwrap())
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    /// Rows of a force and an angle seen by three photodiodes; `timed`: with a column of times.
+    fn file(&self, name: &str, phase: f64, scale: f64, timed: bool) -> PathBuf {
+        let mut text = if timed { "time_s," } else { "" }.to_owned() + "P1,P2,P3,Fx_N,Fy_N,Fz_N,J2_deg\n";
+        for k in 0..60 {
+            let t = f64::from(k) * 0.04;
+            let [a, b, c] = [3.1, 5.3, 7.7].map(|rate| (rate * t + phase).sin());
+            let noise = [0.01, 0.02].map(|size| size * (97.0 * t + phase).sin());
+            let volts = [2.0 + a + noise[0], 2.0 + b - c, 2.0 + c + noise[1]].map(|volt| volt * scale);
+            if timed {
+                write!(text, "{t},").unwrap();
+            }
+            writeln!(text, "{:?},{:?},{:?},{a},{b},{},{}", volts[0], volts[1], volts[2], -1.0 - c, 20.0 * b).unwrap();
+        }
+        let path = self.path(name);
+        std::fs::write(&path, text).unwrap();
+        path
+    }
+
+    fn train(&self, inputs: &TrainInputs, target: &str, recipe: Recipe) -> Result<(PathBuf, TrainReport), String> {
+        let wanted = Wanted { targets: Target::parse(target).unwrap().columns().to_vec(), ..Wanted::default() };
+        let model = self.path(&format!("{target}.json"));
+        let outputs = TrainOutputs { model: model.clone(), learning_curve: None };
+        let options = TrainOptions { wanted, recipe, level: 0.9 };
+        let report = train(inputs, &options, &outputs, &RUN).map_err(|why| why.to_string())?;
+        Ok((model, report))
+    }
+}
+
+fn inputs(data: &[&PathBuf], validate: &[&PathBuf], stop_on: &[&PathBuf]) -> TrainInputs {
+    let all = |paths: &[&PathBuf]| paths.iter().map(|path| (*path).clone()).collect();
+    TrainInputs { data: all(data), validate: all(validate), stop_on: all(stop_on) }
+}
+
+fn linear() -> Recipe {
+    Recipe::new(Kind::Linear)
+}
+
+#[test]
+fn what_is_reported_is_no_place_to_stop() {
+    let folder = Folder::new();
+    let (a, b) = (folder.file("a.csv", 0.0, 1.0, true), folder.file("b.csv", 0.5, 1.0, true));
+    let copy = folder.path("copy.csv");
+    std::fs::copy(&b, &copy).unwrap();
+    let recipe = Recipe { restarts: 1, max_epochs: 3, ..Recipe::new(Kind::Network { hidden: 2 }) };
+    let said = folder.train(&inputs(&[&a], &[&b], &[&copy]), "force", recipe).unwrap_err();
+    assert!(said.contains("--stop-on and --validate"), "{said}");
+}
+
+#[test]
+fn a_recording_under_two_names_is_told() {
+    let folder = Folder::new();
+    let (a, b) = (folder.file("a.csv", 0.0, 1.0, true), folder.file("b.csv", 0.5, 1.0, true));
+    let copy = folder.path("copy.csv");
+    std::fs::copy(&a, &copy).unwrap();
+    let (model, report) = folder.train(&inputs(&[&a, &copy], &[], &[]), "force", linear()).unwrap();
+    assert!(report.warnings.iter().any(|w| w.contains("copy.csv holds the rows of")), "{:?}", report.warnings);
+    let options = EvaluateOptions { drop_invalid: false, keep_faults: false, by: Some(By::Trajectory), level: 0.9 };
+    let found = evaluate(&model, &[a, copy, b], &options, None, &RUN).unwrap();
+    let told = |words: &str| found.warnings.iter().any(|warning| warning.contains(words));
+    assert!(told("120 of 180 rows stand in other parts as well"), "{:?}", found.warnings);
+}
+
+#[test]
+fn predictions_beyond_a_number_are_no_success() {
+    let folder = Folder::new();
+    let (a, huge) = (folder.file("a.csv", 0.0, 1e-300, true), folder.file("b.csv", 0.5, 1e300, true));
+    let (model, report) = folder.train(&inputs(&[&a], &[&huge], &[]), "force", linear()).unwrap();
+    assert!(report.warnings.iter().any(|w| w.contains("beyond 1e308")), "{:?}", report.warnings);
+    let options = EvaluateOptions { drop_invalid: false, keep_faults: false, by: None, level: 0.9 };
+    let said = evaluate(&model, &[huge], &options, None, &RUN).unwrap_err().to_string();
+    assert!(said.contains("of 60 of 60 rows is beyond 1e308"), "{said}");
+}
+
+fn options() -> PredictOptions {
+    let gate = Gate::new(0.5, 0.0, 0.0).unwrap();
+    PredictOptions { gate, intervals: true, drop_invalid: false, keep_faults: false }
+}
+
+#[test]
+fn lags_without_times_are_refused() {
+    let folder = Folder::new();
+    let (a, b) = (folder.file("a.csv", 0.0, 1.0, true), folder.file("b.csv", 0.5, 1.0, false));
+    let recipe = Recipe { lags_s: vec![0.1], ..linear() };
+    let c = folder.file("c.csv", 0.9, 1.0, true);
+    let (model, _) = folder.train(&inputs(&[&a], &[&c], &[]), "force", recipe).unwrap();
+    let said =
+        predict(std::slice::from_ref(&model), &b, &options(), &folder.path("p.csv"), &RUN).unwrap_err().to_string();
+    assert!(said.contains("b.csv: has no time_s"), "{said}");
+    let text = std::fs::read(&b).unwrap();
+    let said = predict_stream(&[model], &text[..], &options(), Vec::new(), |_| (), &RUN).unwrap_err().to_string();
+    assert!(said.contains("standard input: has no time_s"), "{said}");
+}
+
+#[test]
+fn an_angle_that_the_gate_rules_has_no_interval() {
+    let folder = Folder::new();
+    let (a, b) = (folder.file("a.csv", 0.0, 1.0, true), folder.file("b.csv", 0.5, 1.0, true));
+    let models =
+        ["force", "posture"].map(|target| folder.train(&inputs(&[&a], &[&b], &[]), target, linear()).unwrap().0);
+    let mut out = Vec::new();
+    predict_stream(&models, &std::fs::read(&b).unwrap()[..], &options(), &mut out, |_| (), &RUN).unwrap();
+    let text = String::from_utf8(out).unwrap();
+    let rows: Vec<Vec<&str>> = text.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    let mut seen = [0, 0];
+    for row in &rows {
+        let touches = row[row.len() - 1] == "touch";
+        assert_eq!([row[11], row[12]].map(str::is_empty), [touches; 2], "{row:?}");
+        assert!(!row[5].is_empty());
+        seen[usize::from(touches)] += 1;
+    }
+    assert!(seen[0] > 5 && seen[1] > 5, "{seen:?}");
+    predict(&models, &b, &options(), &folder.path("p.csv"), &RUN).unwrap();
+    assert_eq!(std::fs::read_to_string(folder.path("p.csv")).unwrap(), text);
+}

@@ -1,0 +1,211 @@
+//! The trajectory job: options in, a table with its report and pictures out; the one entry that command line and pipelines call.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use lunula_predictor::ForceSpaceFault;
+use thiserror::Error;
+
+use super::check::faults;
+use super::motion::Motion;
+use super::report::{ForceFigures, PostureFigures, TrajectoryReport};
+use super::{Kind, TrajectoryOptions, figures};
+use crate::files::{Places, WriteError, beside};
+use crate::stages::{Fate, Stages, Step};
+use crate::table::{Column, TableError, TableFormat, TableWriter, Value};
+
+/// Decimals of forces (a transducer's step is 0.0008 N) and of angles.
+const FORCE_DECIMALS: usize = 6;
+const ANGLE_DECIMALS: usize = 5;
+/// Rows between two looks at whether to stop.
+const AT_ONCE: usize = 1 << 20;
+
+/// Where results go.
+#[derive(Debug, Clone)]
+pub struct TrajectoryOutputs {
+    /// The table; report and pictures stand beside it, named after it.
+    pub table: PathBuf,
+    /// Whether pictures are drawn.
+    pub figures: bool,
+}
+
+/// Why there is no trajectory.
+#[derive(Debug, Error)]
+pub enum TrajectoryError {
+    /// All that is wrong with the options.
+    #[error("{}", .0.join("; "))]
+    Options(Vec<String>),
+    /// There is no cone of forces.
+    #[error(transparent)]
+    Space(#[from] ForceSpaceFault),
+    /// The table can't be written.
+    #[error(transparent)]
+    Table(#[from] TableError),
+    /// A result can't be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// Stopped from outside.
+    #[error("interrupted; nothing was written")]
+    Interrupted,
+}
+
+/// Plans a run; `outputs` may be open yet.
+///
+/// # Errors
+/// [`TrajectoryError::Options`].
+pub fn plan(options: &TrajectoryOptions, outputs: Option<&TrajectoryOutputs>) -> Result<Vec<Step>, TrajectoryError> {
+    let faults = faults(options);
+    if !faults.is_empty() {
+        return Err(TrajectoryError::Options(faults));
+    }
+    let force = options.is_force();
+    let of_forces = |what: &str| if force { what.to_owned() } else { "only of forces".to_owned() };
+    let columns = if force { "time_s, Fx_N, Fy_N, Fz_N" } else { "time_s, J2_deg" };
+    let spiral = matches!(options.kind, Kind::Force { .. });
+    let pictures = outputs.is_none_or(|outputs| outputs.figures);
+    Ok(vec![
+        Step::new("table", true, format!("{} rows of {columns}", options.rows())),
+        Step::new("rates", true, "how fast it is at most".to_owned()),
+        Step::new("coverage of the cone of friction", force, of_forces("of its rows")),
+        Step::new(
+            "equations 24 to 26",
+            spiral,
+            if spiral { "as printed and with the true maximum" } else { "only of the spiral" }.to_owned(),
+        ),
+        Step::new("figures", pictures, if pictures { "of its path and over time" } else { "--no-figures" }.to_owned()),
+    ])
+}
+
+/// Runs the job; every result is in its place when it returns.
+///
+/// # Errors
+/// [`TrajectoryError`] where there are no results.
+pub fn run(
+    options: &TrajectoryOptions,
+    outputs: &TrajectoryOutputs,
+    stop: &AtomicBool,
+) -> Result<TrajectoryReport, TrajectoryError> {
+    let start = Instant::now();
+    let stages = Stages::default();
+    let go_on = || if stop.load(Ordering::Relaxed) { Err(TrajectoryError::Interrupted) } else { Ok(()) };
+    let steps = plan(options, Some(outputs))?;
+    TableFormat::of(&outputs.table)?;
+    let motion = Motion::new(options)?;
+    let (force, posture) = stages.time("figures of merit", || match &motion {
+        Motion::Force(motion) => (Some(ForceFigures::new(options, motion)), None),
+        Motion::Posture { path, .. } => (None, Some(PostureFigures::new(options, path))),
+    });
+    go_on()?;
+    let mut places = Places::default();
+    let rows = options.rows() as usize;
+    stages.time("table", || write_table(options, &motion, rows, &outputs.table, &mut places, &go_on))?;
+    let pictures = stages.time("pictures", || {
+        if outputs.figures { draw(options, &motion, &outputs.table, &mut places) } else { Ok(Vec::new()) }
+    })?;
+    go_on()?;
+    let report = TrajectoryReport {
+        job: "trajectory",
+        version: env!("CARGO_PKG_VERSION"),
+        options: *options,
+        table: outputs.table.clone(),
+        rows: rows as u64,
+        span_s: (rows - 1) as f64 * options.every_s,
+        warnings: force.as_ref().map_or_else(Vec::new, |force| force.warnings(options)),
+        force,
+        posture,
+        left_out: steps
+            .into_iter()
+            .filter(|step| step.fate == Fate::LeftOut)
+            .map(|step| format!("{}: {}", step.stage, step.reason))
+            .collect(),
+        failed: Vec::new(),
+        pictures,
+        stages: stages.list(),
+        wall_s: start.elapsed().as_secs_f64(),
+    };
+    let run = beside(&outputs.table, ".run.json");
+    let text = serde_json::to_string_pretty(&report).expect("plain data") + "\n";
+    let at = places.place(&run)?;
+    std::fs::write(&at, text).map_err(|why| WriteError::File { path: run, why: why.to_string() })?;
+    places.commit()?;
+    Ok(report)
+}
+
+/// As many decimals as multiples of the step need; none where nine are not enough.
+fn time_column(every_s: f64) -> Column {
+    let whole = |decimals: &usize| {
+        let steps = every_s * 10_f64.powi(*decimals as i32);
+        steps >= 0.5 && (steps - steps.round()).abs() <= 1e-9 * steps
+    };
+    match (0..=9).find(whole) {
+        Some(decimals) => Column::rounded("time_s", decimals),
+        None => Column::number("time_s"),
+    }
+}
+
+fn write_table(
+    options: &TrajectoryOptions,
+    motion: &Motion,
+    rows: usize,
+    path: &Path,
+    places: &mut Places,
+    go_on: &dyn Fn() -> Result<(), TrajectoryError>,
+) -> Result<(), TrajectoryError> {
+    let mut columns = vec![time_column(options.every_s)];
+    match motion {
+        Motion::Force(_) => columns.extend(["Fx_N", "Fy_N", "Fz_N"].map(|name| Column::rounded(name, FORCE_DECIMALS))),
+        Motion::Posture { .. } => columns.push(Column::rounded("J2_deg", ANGLE_DECIMALS)),
+    }
+    let facts = [
+        ("lunula", env!("CARGO_PKG_VERSION")),
+        ("time_s", "seconds from the first row on"),
+        ("forces", "newtons, of the finger on the surface: pressing down is negative Fz_N"),
+        ("angles", "degrees, positive in flexion; J2 PIP"),
+    ];
+    let facts = facts.map(|(key, value)| (key.to_owned(), value.to_owned()));
+    let at = places.place(path)?;
+    let mut table = TableWriter::create(&at, path, columns, &facts)?;
+    for from in (0..rows).step_by(AT_ONCE) {
+        go_on()?;
+        table.write_rows(AT_ONCE.min(rows - from), &|row, write| {
+            let time_s = (from + row) as f64 * options.every_s;
+            match motion {
+                Motion::Force(motion) => {
+                    let [fx_n, fy_n, fz_n] = motion.at(time_s).map(Value::Number);
+                    write(&[Value::Number(time_s), fx_n, fy_n, fz_n]);
+                }
+                Motion::Posture { path, lead_s, seconds } => {
+                    write(&[Value::Number(time_s), Value::Number(path.during(time_s, *lead_s, *seconds))]);
+                }
+            }
+        })?;
+    }
+    Ok(table.finish()?)
+}
+
+/// Draws the pictures beside the table; returns where they will stand.
+fn draw(
+    options: &TrajectoryOptions,
+    motion: &Motion,
+    table: &Path,
+    places: &mut Places,
+) -> Result<Vec<PathBuf>, TrajectoryError> {
+    let kinds: &[&str] = match motion {
+        Motion::Force(_) => &["force", "path"],
+        Motion::Posture { .. } => &["posture"],
+    };
+    let mut pictures = Vec::new();
+    for kind in kinds {
+        let [png, svg] = ["png", "svg"].map(|ending| beside(table, &format!("-{kind}.{ending}")));
+        let at = [places.place(&png)?, places.place(&svg)?];
+        let drawn = match motion {
+            Motion::Force(motion) if *kind == "path" => figures::draw_path(options, motion, &at[0], &at[1]),
+            Motion::Force(motion) => figures::draw_forces(options, motion, &at[0], &at[1]),
+            Motion::Posture { path, .. } => figures::draw_posture(options, path, &at[0], &at[1]),
+        };
+        drawn.map_err(|why| WriteError::File { path: png.clone(), why: format!("{why:#}") })?;
+        pictures.push(png);
+    }
+    Ok(pictures)
+}

@@ -1,0 +1,456 @@
+//! `lunula train` from end to end, on a sensor whose coefficients are known.
+
+mod util;
+
+use util::Dir;
+use util::sensor::{Recording, near, numbers, offset, slope};
+
+/// The sensor's tables hold exact numbers; the fit is centred and refined (measured: exact, or 1e-32 for a coefficient of 0).
+const EXACT: f64 = 1e-15;
+/// F_0 is a sum of 8 products of volts (measured: 2e-15).
+const EXACT_OFFSET: f64 = 1e-13;
+
+/// `train.csv` of 200 rows, `held.csv` of 100 others of another session.
+fn sensor() -> Dir {
+    let dir = Dir::new();
+    dir.recording("train.csv", &Recording::of(0..200));
+    dir.recording("held.csv", &Recording::of(200..300));
+    dir
+}
+
+fn keys(value: &serde_json::Value) -> Vec<&str> {
+    value.as_object().expect("an object").keys().map(String::as_str).collect()
+}
+
+#[test]
+fn the_coefficients_come_back_exactly() {
+    let dir = sensor();
+    for (target, first, count) in [("force", 0, 3), ("posture", 3, 1)] {
+        dir.train("train.csv", target, "m.json", &["-q"]).expect(0);
+        let model = dir.parsed("m.json");
+        for t in 0..count {
+            let wanted: Vec<f64> = (0..8).map(|k| slope(first + t, k)).collect();
+            near(&numbers(&model["model"]["jacobian"][t]), &wanted, EXACT);
+        }
+        let told = dir.lunula(&["analyse", "m.json", "--json"]).expect(0).json();
+        for (t, name) in model["targets"].as_array().expect("an array").iter().enumerate() {
+            let f0 = told["printed"]["offset"][name["name"].as_str().expect("text")].as_f64().expect("a number");
+            near(&[f0], &[offset(first + t)], EXACT_OFFSET);
+        }
+    }
+}
+
+#[test]
+fn the_report_tells_the_fit_the_rows_and_the_errors() {
+    let dir = sensor();
+    let answer = dir.train("train.csv", "force", "m.json", &["--validate", "held.csv", "--json"]).expect(0);
+    assert!(answer.stderr.is_empty(), "{}", answer.stderr);
+    let report = answer.json();
+    let mut all = keys(&report);
+    all.sort_unstable();
+    assert_eq!(
+        all,
+        [
+            "data",
+            "fit",
+            "half_width",
+            "inputs",
+            "job",
+            "left_out",
+            "model",
+            "pictures",
+            "recipe",
+            "stages",
+            "targets",
+            "training",
+            "validate",
+            "validation",
+            "wall_s",
+            "warnings",
+            "without"
+        ]
+    );
+    assert_eq!((&report["job"], &report["model"]), (&"train".into(), &"m.json".into()));
+    let of = |path: &str, rows: u64| serde_json::json!({"path": path, "rows": rows, "used": rows, "empty": 0, "invalid": 0, "faults": 0, "notes": []});
+    assert_eq!((&report["data"][0], &report["validate"][0]), (&of("train.csv", 200), &of("held.csv", 100)));
+    let fit = &report["fit"]["least_squares"];
+    assert_eq!(
+        (&fit["rank"], &fit["rows"], fit["dropped"].as_array().expect("an array").len()),
+        (&8.into(), &200.into(), 0)
+    );
+    assert!(
+        fit["condition"].as_f64().expect("a number") < 2.0 && fit["digits"].as_f64().expect("a number") > 14.0,
+        "{fit}"
+    );
+    for part in ["training", "validation"] {
+        for target in ["Fx_N", "Fy_N", "Fz_N"] {
+            let merit = |what: &str| report[part][what][target].as_f64().expect("a number");
+            assert!(merit("rmse") <= EXACT && merit("bias").abs() <= EXACT && merit("r2") == 1.0, "{part} {target}");
+        }
+    }
+    assert!(numbers(&serde_json::json!([report["half_width"]["Fz_N"]]))[0] <= EXACT);
+    assert!(report["stages"].as_array().expect("an array").iter().any(|stage| stage["stage"] == "fit"));
+    assert!(report["left_out"].to_string().contains("learning curve"), "{}", report["left_out"]);
+
+    let plain = dir.train("train.csv", "force", "m.json", &["--validate", "held.csv"]).expect(0);
+    assert!(
+        plain.stdout.contains("Fz_N     RMSE   0.0000") && plain.stdout.contains("validated (100 rows)"),
+        "{}",
+        plain.stdout
+    );
+    assert_eq!(dir.train("train.csv", "force", "m.json", &["-q"]).expect(0).stdout, "");
+}
+
+#[test]
+fn the_model_file_holds_names_units_ranges_hashes_and_a_version() {
+    let dir = sensor();
+    let (a, b) = (Recording::of(0..200), Recording::of(400..460));
+    let b = b.with("session", |_, _| "2".to_owned()).with("subject", |_, _| "anna".to_owned());
+    dir.recording("b.csv", &b);
+    dir.train("train.csv b.csv", "force", "m.json", &["-q"]).expect(0);
+    let model = dir.parsed("m.json");
+    assert_eq!((&model["format"], &model["version"]), (&"lunula predictor".into(), &1.into()));
+    let channel = |list: &str, k: usize| &model[list][k];
+    for (list, columns, unit) in [("inputs", &["P1", "P2", "P8"][..], "V"), ("targets", &["Fx_N", "Fz_N"], "N")] {
+        for name in columns {
+            let k = model[list].as_array().expect("an array").iter().position(|one| one["name"] == *name).unwrap();
+            let values = [a.numbers(name), b.numbers(name)].concat();
+            let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let wanted = serde_json::json!({"name": name, "unit": unit, "low": low, "high": high});
+            assert_eq!(channel(list, k), &wanted);
+        }
+    }
+    let training = &model["training"];
+    assert_eq!(training["rows"], 260);
+    let recordings = training["recordings"].as_array().expect("an array");
+    let told = |k: usize| ["name", "session", "subject"].map(|key| recordings[k][key].as_str().expect("text"));
+    assert_eq!((told(0), told(1)), (["train.csv"; 3], ["b.csv", "2", "anna"]));
+    let hash = |value: &serde_json::Value| value.as_str().expect("text").to_owned();
+    let hashes = [&training["sha256"], &recordings[0]["sha256"], &recordings[1]["sha256"], &model["sha256"]].map(hash);
+    assert!(hashes.iter().all(|hash| hash.len() == 64 && hash.bytes().all(|b| b.is_ascii_hexdigit())), "{hashes:?}");
+    assert_eq!(training["recipe"]["kind"], "linear");
+    assert_eq!(keys(&model["model"]), ["centre", "jacobian", "kind", "offset"].map(|key| key));
+
+    // A cell of the training rows is another training set; the order of columns is not.
+    dir.recording("train.csv", &a.clone().map("P3", |row, v| if row == 7 { v + 0.5 } else { v }));
+    dir.train("train.csv b.csv", "force", "m.json", &["-q"]).expect(0);
+    let other = dir.parsed("m.json");
+    assert_ne!(other["training"]["sha256"], model["training"]["sha256"]);
+    assert_eq!(other["training"]["recordings"][1]["sha256"], model["training"]["recordings"][1]["sha256"]);
+    let mut names: Vec<&str> = a.names.iter().map(String::as_str).collect();
+    names.reverse();
+    dir.recording("train.csv", &a.only(&names));
+    dir.train("train.csv b.csv", "force", "m.json", &["-q"]).expect(0);
+    assert_eq!(dir.parsed("m.json"), model);
+}
+
+#[test]
+fn the_same_bytes_whatever_the_number_of_threads() {
+    let dir = sensor();
+    // Noise, so that rounding shows.
+    for (name, rows) in [("train.csv", 0..200), ("more.csv", 300..420)] {
+        let noisy = Recording::of(rows).map("Fz_N", |row, v| v + ((row * 37) % 101) as f64 / 997.0);
+        dir.recording(name, &noisy);
+    }
+    let network = ["--model", "network", "--hidden", "3", "--restarts", "4", "--epochs", "15"];
+    for model in [&["--model", "linear"][..], &["--model", "quadratic"], &network] {
+        let texts = ["1", "2", "4"].map(|threads| {
+            let more = [model, &["--threads", threads, "-q", "--validate", "held.csv"]].concat();
+            dir.train("train.csv more.csv", "force", "m.json", &more).expect(0);
+            dir.text("m.json")
+        });
+        assert!(texts[0] == texts[1] && texts[0] == texts[2], "{model:?}");
+    }
+}
+
+#[test]
+fn the_seed_is_another_network_and_the_same_seed_the_same() {
+    let dir = sensor();
+    let network = |seed: &str| {
+        let few = ["--model", "network", "--hidden", "3", "--restarts", "1", "--epochs", "10", "--seed", seed, "-q"];
+        dir.train("train.csv", "posture", "m.json", &few).expect(0);
+        dir.parsed("m.json")
+    };
+    let (one, again, other) = (network("1"), network("1"), network("2"));
+    assert_eq!(one, again);
+    assert_ne!(one["model"]["hidden_weights"], other["model"]["hidden_weights"]);
+    assert_eq!(one["training"]["sha256"], other["training"]["sha256"]);
+    // A linear fit has no seed to depend on.
+    let linear = |seed: &str| {
+        dir.train("train.csv", "posture", "m.json", &["--seed", seed, "-q"]).expect(0);
+        dir.parsed("m.json")["model"].clone()
+    };
+    assert_eq!(linear("1"), linear("2"));
+}
+
+#[test]
+fn a_network_follows_what_is_not_linear_and_tells_its_restarts() {
+    let dir = Dir::new();
+    for (name, rows) in [("train.csv", 0..400), ("stop.csv", 400..500), ("held.csv", 500..600)] {
+        let volts = Recording::of(rows).only(&["time_s", "P1", "P2", "J2_deg"]);
+        let (p1, p2) = (volts.numbers("P1"), volts.numbers("P2"));
+        let bent = |row: usize, _: f64| 30.0 * (4.0 * (p1[row] - 2.5)).tanh() + 10.0 * (p2[row] - 2.5);
+        dir.recording(name, &volts.clone().map("J2_deg", bent));
+    }
+    let few = ["--model", "network", "--hidden", "2", "--restarts", "4", "--epochs", "60", "--json"];
+    let own = dir
+        .train("train.csv", "posture", "own.json", &[&few[..], &["--validate", "held.csv"]].concat())
+        .expect(0)
+        .json();
+    let fit = &own["fit"]["network"];
+    // A fifth of the rows is set aside to stop on.
+    assert_eq!((&fit["rows"], &fit["stop_rows"]), (&320.into(), &80.into()));
+    let scores: Vec<f64> = fit["restarts"]
+        .as_array()
+        .expect("an array")
+        .iter()
+        .map(|one| one["score"].as_f64().expect("a number"))
+        .collect();
+    let best = fit["best"].as_u64().unwrap() as usize;
+    assert!(scores.len() == 4 && scores.iter().all(|score| *score >= scores[best]), "{fit}");
+    assert!(
+        fit["median_score"].as_f64().expect("a number") >= scores[best]
+            && fit["score_iqr"].as_f64().expect("a number") >= 0.0
+    );
+
+    let stopped = ["--stop-on", "stop.csv", "--validate", "held.csv"];
+    let given = dir.train("train.csv", "posture", "given.json", &[&few[..], &stopped].concat()).expect(0).json();
+    let fit = &given["fit"]["network"];
+    assert_eq!((&fit["rows"], &fit["stop_rows"]), (&400.into(), &100.into()));
+    assert_ne!(dir.parsed("own.json")["model"], dir.parsed("given.json")["model"]);
+
+    // Made by a network of one bend and a line: two nodes tell it far better than a linear model.
+    let linear = dir.train("train.csv", "posture", "line.json", &["--validate", "held.csv", "--json"]).expect(0).json();
+    let rmse = |report: &serde_json::Value| report["validation"]["rmse"]["J2_deg"].as_f64().expect("a number");
+    assert!(rmse(&given) * 10.0 <= rmse(&linear), "{} against {}", rmse(&given), rmse(&linear));
+}
+
+#[test]
+fn the_quadratic_model_has_44_terms_and_finds_them() {
+    let dir = Dir::new();
+    for (name, rows) in [("train.csv", 0..200), ("held.csv", 200..260)] {
+        let volts = Recording::of(rows);
+        let (p1, p2) = (volts.numbers("P1"), volts.numbers("P2"));
+        dir.recording(name, &volts.map("Fz_N", |row, v| v - 0.5 * p1[row] * p2[row] + 0.25 * p1[row] * p1[row]));
+    }
+    let report =
+        dir.train("train.csv", "Fz_N", "m.json", &["--model", "quadratic", "--validate", "held.csv", "--json"]);
+    let report = report.expect(0).json();
+    let fit = &report["fit"]["least_squares"];
+    assert_eq!((fit["terms"].as_array().expect("an array").len(), &fit["rank"]), (44, &44.into()));
+    assert!(report["validation"]["rmse"]["Fz_N"].as_f64().expect("a number") <= 1e-14, "{report}");
+    let printed = &dir.lunula(&["analyse", "m.json", "--json"]).expect(0).json()["printed"];
+    let terms = printed["terms"].as_array().expect("an array");
+    let value = |term: &str| {
+        let place = terms.iter().position(|t| *t == term).unwrap_or_else(|| panic!("{term}: {terms:?}"));
+        printed["jacobian"]["Fz_N"][place].as_f64().expect("a number")
+    };
+    // Volts as they are: products cancel some digits (measured: 2e-14).
+    near(&[value("P1 P2"), value("P1^2"), value("P3^2"), value("P4")], &[-0.5, 0.25, 0.0, slope(2, 3)], 1e-11);
+}
+
+#[test]
+fn lags_are_further_inputs_and_both_ways_are_told() {
+    let dir = Dir::new();
+    // The force follows the photodiode of a tenth of a second ago: no row can tell it without.
+    let late = |rows: std::ops::Range<usize>| {
+        let base = Recording::of(rows).with("time_s", |row, _| (row as f64 / 10.0).to_string());
+        let p1 = base.numbers("P1");
+        base.only(&["time_s", "P1", "P2", "Fz_N"]).map("Fz_N", move |row, _| p1[row.saturating_sub(1)] - 3.0)
+    };
+    dir.recording("train.csv", &late(0..120));
+    dir.recording("held.csv", &late(200..260));
+    let more = ["--lags", "0.1", "--validate", "held.csv", "--json"];
+    let report = dir.train("train.csv", "Fz_N", "m.json", &more).expect(0).json();
+    assert_eq!(report["fit"]["least_squares"]["terms"], serde_json::json!(["P1", "P2", "P1@-0.1s", "P2@-0.1s"]));
+    // The first row of each recording has no history.
+    assert_eq!((&report["training"]["rows"], &report["validation"]["rows"]), (&119.into(), &59.into()));
+    let with = report["validation"]["rmse"]["Fz_N"].as_f64().expect("a number");
+    let without = &report["without"][0];
+    assert_eq!(without["without"], "lags");
+    let plain = without["validation"]["rmse"]["Fz_N"].as_f64().expect("a number");
+    assert!(with <= 1e-14 && plain > 0.1, "{with} with, {plain} without");
+    near(&numbers(&dir.parsed("m.json")["model"]["jacobian"][0]), &[0.0, 0.0, 1.0, 0.0], 1e-14);
+    dir.train("train.csv", "Fz_N", "n.json", &["--lags", "20"]).expect(2).says("take shorter lags");
+    dir.train("train.csv", "Fz_N", "n.json", &["--lags", "0.1,0.1"]).expect(2).says("different from each other");
+    let timeless = Recording::of(0..40).without("time_s");
+    dir.recording("timeless.csv", &timeless);
+    dir.train("timeless.csv", "Fz_N", "n.json", &["--lags", "0.1"]).expect(2).says("time_s");
+    dir.train("timeless.csv", "Fz_N", "n.json", &[]).expect(0);
+}
+
+#[test]
+fn friction_brings_forces_into_the_cone_and_both_ways_are_told() {
+    let dir = sensor();
+    let more = ["--friction", "0.3", "--validate", "held.csv", "--json"];
+    let report = dir.train("train.csv", "force", "m.json", &more).expect(0).json();
+    let without = &report["without"][0];
+    assert_eq!(without["without"], "the cone of friction");
+    // The sensor's forces lie in no cone: exact without, not exact with.
+    assert!(without["validation"]["rmse"]["Fx_N"].as_f64().expect("a number") <= EXACT);
+    assert!(report["validation"]["rmse"]["Fx_N"].as_f64().expect("a number") > 0.01);
+    let again = dir.lunula(&["evaluate", "m.json", "held.csv", "--json"]).expect(0).json();
+    assert_eq!(again["rmse"], report["validation"]["rmse"]);
+    assert_eq!(again["without_friction"]["rmse"], without["validation"]["rmse"]);
+
+    dir.lunula(&["predict", "m.json", "held.csv", "--out", "p.csv", "-q"]).expect(0);
+    let rows = dir.table("p.csv");
+    let number = |row: &std::collections::BTreeMap<String, String>, name: &str| row[name].parse::<f64>().unwrap();
+    let mut at_the_edge = 0;
+    for row in &rows {
+        let shear = number(row, "Fx_N").hypot(number(row, "Fy_N"));
+        let most = 0.3 * -number(row, "Fz_N");
+        assert!(shear <= most + 1e-12 && most >= 0.0, "{row:?}");
+        at_the_edge += usize::from((shear - most).abs() <= 1e-12);
+    }
+    assert!(rows.len() == 100 && at_the_edge > 20, "{at_the_edge} at the edge");
+    dir.train("train.csv", "posture", "n.json", &["--friction", "0.5"])
+        .expect(2)
+        .says("needs the targets Fx_N, Fy_N, Fz_N");
+    dir.train("train.csv", "force", "n.json", &["--friction=-1"]).expect(2).says("coefficient of friction of -1");
+    assert!(!dir.path("n.json").exists());
+}
+
+#[test]
+fn chosen_photodiodes_and_targets() {
+    let dir = sensor();
+    let report = dir.train("train.csv", "Fz_N,J2_deg", "m.json", &["--inputs", "P8,P1", "--json"]).expect(0).json();
+    assert_eq!(
+        (&report["inputs"], &report["targets"]),
+        (&serde_json::json!(["P8", "P1"]), &serde_json::json!(["Fz_N", "J2_deg"]))
+    );
+    let units: Vec<String> = dir.parsed("m.json")["targets"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|one| one["unit"].as_str().expect("text").to_owned())
+        .collect();
+    assert_eq!(units, ["N", "deg"]);
+    dir.train("train.csv", "Fz_N", "m.json", &["--inputs", "P1,P1"]).expect(2).says("P1");
+    dir.train("train.csv", "Fz_N", "m.json", &["--inputs", "P1,Fz_N"]).expect(2).says("Fz_N");
+    dir.train("train.csv", "Fz_N,", "m.json", &[]).expect(2).says("force, posture or columns");
+}
+
+#[test]
+fn validation_only_reports_and_says_what_was_trained_on() {
+    let dir = sensor();
+    dir.train("train.csv", "force", "alone.json", &["-q"]).expect(0);
+    let shifted = Recording::of(200..300).map("Fy_N", |_, v| v + 0.5).map("Fx_N", |row, v| v + [0.25, -0.25][row % 2]);
+    dir.recording("shifted.csv", &shifted);
+    let report = dir.train("train.csv", "force", "m.json", &["--validate", "shifted.csv", "--json"]).expect(0).json();
+    let [mut alone, mut with] = ["alone.json", "m.json"].map(|name| dir.parsed(name));
+    let intervals = with["intervals"].take();
+    for one in [&mut alone, &mut with] {
+        one["intervals"].take();
+        one["sha256"].take();
+    }
+    assert_eq!(alone, with, "the fit has not seen what it is validated on");
+    let told = |what: &str| {
+        ["Fx_N", "Fy_N", "Fz_N"].map(|target| report["validation"][what][target].as_f64().expect("a number"))
+    };
+    near(&told("rmse"), &[0.25, 0.5, 0.0], EXACT);
+    near(&told("bias"), &[0.0, -0.5, 0.0], EXACT);
+    near(&numbers(&intervals["half_width"]), &[0.25, 0.5, 0.0], EXACT);
+    assert_eq!((&intervals["level"], &intervals["rows"]), (&0.9.into(), &100.into()));
+
+    let seen = dir.train("train.csv", "force", "m.json", &["--validate", "train.csv"]).expect(0);
+    seen.says("train.csv: the model was trained on this; its errors flatter");
+    let few = Recording::of(200..205);
+    dir.recording("few.csv", &few);
+    let few = dir.train("train.csv", "force", "m.json", &["--validate", "few.csv"]).expect(0);
+    few.says("no prediction intervals: 5 held-out rows");
+    assert!(dir.parsed("m.json")["intervals"].is_null());
+    for level in ["0", "1", "nan", "2"] {
+        dir.train("train.csv", "force", "m.json", &["--level", level]).expect(2).says("--level");
+    }
+}
+
+#[test]
+fn the_learning_curve_goes_down_the_recordings() {
+    let dir = sensor();
+    let noise = |row: usize, v: f64| v + ((row * 7919) % 211) as f64 / 211.0 - 0.5;
+    let names = ["a.csv", "b.csv", "c.csv"];
+    for (k, name) in names.iter().enumerate() {
+        dir.recording(name, &Recording::of(300 + 60 * k..360 + 60 * k).map("Fz_N", noise));
+    }
+    let more = ["--validate", "held.csv", "--learning-curve", "curve.csv", "--json"];
+    let report = dir.train(&names.join(" "), "force", "m.json", &more).expect(0).json();
+    let rows = dir.table("curve.csv");
+    let whole: Vec<[&str; 2]> = rows
+        .iter()
+        .filter(|row| row["share"] == "1")
+        .map(|row| [row["recordings"].as_str(), row["rows"].as_str()])
+        .collect();
+    assert_eq!(whole, [["1", "60"], ["2", "120"], ["3", "180"]]);
+    let share = rows.iter().filter(|row| row["share"] != "1").count();
+    assert_eq!(share, 9, "tenths of each recording");
+    let last = rows.last().unwrap();
+    let told = report["validation"]["rmse"]["Fz_N"].as_f64().expect("a number");
+    near(&[last["Fz_N_validate_rmse"].parse().unwrap()], &[told], 1e-12);
+    let first: f64 = rows.iter().find(|row| row["share"] == "1").unwrap()["Fz_N_validate_rmse"].parse().unwrap();
+    assert!(told < first, "three recordings are better than one: {told} against {first}");
+    // A tenth of 60 rows is fewer than the 9 unknowns: told, not fitted.
+    assert!(
+        rows.iter().any(|row| row["rows"].parse::<usize>().unwrap() < 9
+            && row["Fz_N_validate_rmse"].is_empty()
+            && !row["fault"].is_empty())
+            || rows.iter().all(|row| row["rows"].parse::<usize>().unwrap() > 9)
+    );
+    assert!(dir.path("curve.png").is_file() && dir.path("curve.svg").is_file());
+    assert_eq!(report["pictures"], serde_json::json!(["curve.png"]));
+    dir.train("a.csv", "force", "m.json", &["--learning-curve", "curve.csv"]).expect(2);
+    dir.train("a.csv", "force", "m.json", &["--validate", "held.csv", "--learning-curve", "held.csv"])
+        .expect(2)
+        .says("held.csv: is an input itself");
+}
+
+#[test]
+fn a_plan_does_nothing() {
+    let dir = sensor();
+    let plan = dir.lunula(&["train", "nowhere.csv", "--target", "force", "--model", "network", "--plan"]).expect(0);
+    let line = |stage: &str| {
+        plan.stdout.lines().find(|line| line.starts_with(stage)).unwrap_or_else(|| panic!("{stage}")).to_owned()
+    };
+    assert!(line("fit").contains("run") && line("early stopping").contains("a fifth"), "{}", plan.stdout);
+    assert!(line("validation").contains("left out") && line("lags").contains("none asked for"), "{}", plan.stdout);
+    let more = ["--plan", "--json", "--validate", "held.csv", "--friction", "0.5"];
+    let plan = dir.train("train.csv", "force", "m.json", &more).expect(0).json();
+    let fate = |stage: &str| {
+        plan["plan"].as_array().expect("an array").iter().find(|one| one["stage"] == stage).unwrap()["fate"].clone()
+    };
+    assert_eq!(
+        (fate("validation"), fate("early stopping"), fate("cone of friction")),
+        ("run".into(), "left_out".into(), "run".into())
+    );
+    assert!(!dir.path("m.json").exists());
+}
+
+#[test]
+fn a_raw_log_of_the_phantom_is_trained_on_as_it_stands() {
+    let dir = Dir::new();
+    for seed in ["1", "2"] {
+        dir.lunula(&[
+            "phantom",
+            "log",
+            "--force",
+            "spiral",
+            "--spiral-seconds",
+            "20",
+            "--seed",
+            seed,
+            "--out",
+            seed,
+            "-q",
+        ])
+        .expect(0);
+    }
+    let report = dir.train("1/log.csv", "force", "m.json", &["--validate", "2/log.csv", "--json"]).expect(0).json();
+    // Half of a log's rows are unlit.
+    let lit = dir.table("1/log.csv").iter().filter(|row| row["led"] == "1").count();
+    assert_eq!(report["data"][0]["rows"], lit);
+    // Another spiral of the same finger: most of the force is told, and not all (noise, and a sensor that is not linear).
+    let r2 = report["validation"]["r2"]["Fz_N"].as_f64().expect("a number");
+    assert!((0.7..0.9999).contains(&r2), "{r2}");
+    dir.train("1/log.csv", "posture", "n.json", &[]).expect(2).says("run `lunula align` first");
+}

@@ -1,0 +1,219 @@
+//! `lunula trajectory`: the tables are the thesis' equations from rest on, what is told of them is true, bad requests are refused whole.
+
+mod util;
+
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+use util::{Answer, Dir};
+
+/// Half a step of a force's sixth decimal, and of an angle's fifth.
+const FORCE_N: f64 = 0.51e-6;
+const ANGLE_DEG: f64 = 0.51e-5;
+
+fn run(dir: &Dir, options: &str) -> Answer {
+    let mut arguments = vec!["trajectory"];
+    arguments.extend(options.split_whitespace());
+    dir.lunula(&arguments)
+}
+
+fn number(row: &BTreeMap<String, String>, column: &str) -> f64 {
+    row[column].parse().unwrap_or_else(|_| panic!("`{}` in `{column}`", row[column]))
+}
+
+fn forces(row: &BTreeMap<String, String>) -> [f64; 3] {
+    ["Fx_N", "Fy_N", "Fz_N"].map(|name| number(row, name))
+}
+
+#[test]
+fn the_spiral_is_the_thesis_equations_after_its_soft_start() {
+    let dir = Dir::new();
+    let report = run(&dir, "force --every 0.04 --out t.csv --json").expect(0).json();
+    let rows = dir.table("t.csv");
+    assert_eq!((rows.len(), rows[1]["time_s"].as_str(), rows[4500]["time_s"].as_str()), (4501, "0.04", "180.00"));
+    assert_eq!(forces(&rows[0]), [0.0; 3]);
+    let mut compared = 0;
+    for row in &rows {
+        let t_s = number(row, "time_s");
+        let [fx, fy, fz] = forces(row);
+        assert!(fx.hypot(fy) <= -0.75 * fz + 2.0 * FORCE_N);
+        if t_s >= 2.0 {
+            let n = 3.0 * (t_s / 180.0f64).sqrt();
+            let r = 0.75 * n * (TAU * n).sin();
+            let (sin, cos) = (TAU * 0.15 * t_s).sin_cos();
+            let miss = [fx - r * sin, fy - r * cos, fz + n].map(f64::abs);
+            assert!(miss.iter().all(|miss| *miss <= FORCE_N), "{t_s} {miss:?}");
+            compared += 1;
+        }
+    }
+    assert_eq!(compared, 4451);
+    let spiral = &report["force"]["spiral"];
+    let told = |name: &str| spiral[name].as_f64().unwrap();
+    assert!((told("radial_rate_printed_n_per_s") - 0.117_81).abs() <= 1e-5);
+    assert!((told("radial_rate_true_n_per_s") - 0.235_62).abs() <= 1e-5);
+    assert!((told("shortest_printed_s") - 141.37).abs() <= 0.01 && (told("shortest_true_s") - 282.74).abs() <= 0.01);
+    assert_eq!(report["force"]["keeps_limit"], true);
+    assert_eq!(report["warnings"].as_array().unwrap().len(), 0);
+    let files: Vec<String> = dir.bytes_of(".").into_keys().collect();
+    assert_eq!(files, ["t-force.png", "t-force.svg", "t-path.png", "t-path.svg", "t.csv", "t.run.json"]);
+}
+
+#[test]
+fn what_is_told_of_the_rates_is_what_the_rows_do() {
+    // Rows a fortieth of a second apart cut the corners of what is measured a millisecond apart; measured 1.9e-4 of it.
+    const NEAR: f64 = 1e-3;
+    let dir = Dir::new();
+    for (name, kind) in [("f", "force --every 0.025"), ("r", "random --every 0.025 --seed 3")] {
+        let report = run(&dir, &format!("{kind} --out {name}.csv --no-figures --json")).expect(0).json();
+        let rows = dir.table(&format!("{name}.csv"));
+        let told = &report["force"]["rates"]["components_n_per_s"];
+        for k in 0..3 {
+            let rate = rows.windows(2).map(|pair| (forces(&pair[1])[k] - forces(&pair[0])[k]).abs() / 0.025);
+            let largest = rate.fold(0.0, f64::max);
+            let told = told[k].as_f64().unwrap();
+            assert!((largest / told - 1.0).abs() <= NEAR, "{name} {k}: {largest} {told}");
+        }
+    }
+}
+
+#[test]
+fn random_forces_begin_at_rest_stay_in_the_cone_and_are_the_seeds() {
+    let dir = Dir::new();
+    for (name, more) in [("one", "--seed 7"), ("same", "--seed 7 --threads 1"), ("other", "--seed 8")] {
+        let report =
+            run(&dir, &format!("random {more} --fz-max 2 --mu 0.5 --out {name}/t.csv --json")).expect(0).json();
+        assert_eq!(report["force"]["coverage"]["outside"], 0);
+    }
+    let rows = dir.table("one/t.csv");
+    assert_eq!((rows.len(), forces(&rows[0])), (2501, [0.0; 3]));
+    for row in &rows {
+        let [fx, fy, fz] = forces(row);
+        assert!((-2.0..=0.0).contains(&fz) && fx.hypot(fy) <= -0.5 * fz + 2.0 * FORCE_N);
+    }
+    let without_times = |name: &str| {
+        let mut bytes = dir.bytes_of(name);
+        bytes.remove("t.run.json");
+        bytes
+    };
+    assert!(without_times("one") == without_times("same"));
+    assert!(without_times("one")["t.csv"] != without_times("other")["t.csv"]);
+}
+
+#[test]
+fn bending_is_equation_27_and_random_bending_stays_in_its_range() {
+    let dir = Dir::new();
+    let report = run(&dir, "posture --every 0.1 --lead 2 --trail 1 --out p.parquet --json").expect(0).json();
+    assert_eq!(report["rows"], 631);
+    run(&dir, "posture --every 0.1 --lead 2 --trail 1 --out p.csv").expect(0);
+    for row in dir.table("p.csv") {
+        let t_s = (number(&row, "time_s") - 2.0).clamp(0.0, 60.0);
+        let j2_deg = 35.0 - 40.0 * (TAU * 0.1 * t_s).cos();
+        assert!((number(&row, "J2_deg") - j2_deg).abs() <= ANGLE_DEG, "{t_s}");
+    }
+    let table = lunula::table::Table::read(&dir.path("p.parquet")).unwrap();
+    let numbers = table.numbers("J2_deg").unwrap();
+    let csv = dir.table("p.csv");
+    assert!(numbers.len() == 631 && numbers.iter().zip(&csv).all(|(a, row)| *a == Some(number(row, "J2_deg"))));
+    let posture = &report["posture"];
+    assert!((posture["fastest_deg_per_s"].as_f64().unwrap() - 25.13).abs() <= 0.01);
+    assert!(dir.path("p-posture.png").is_file());
+    run(&dir, "posture --random --seed 4 --seconds 300 --out r.csv --no-figures").expect(0);
+    let rows = dir.table("r.csv");
+    assert_eq!(number(&rows[0], "J2_deg"), -5.0);
+    assert!(rows.iter().all(|row| (-5.0..=75.0).contains(&number(row, "J2_deg"))));
+    assert!(rows.iter().any(|row| number(row, "J2_deg") > 60.0));
+    assert!(!dir.path("r-posture.png").exists());
+}
+
+#[test]
+fn lead_and_trail_are_at_rest() {
+    let dir = Dir::new();
+    for kind in ["force --seconds 30", "random --seconds 30"] {
+        run(&dir, &format!("{kind} --lead 1.5 --trail 3 --every 0.1 --out t.csv --no-figures")).expect(0);
+        let rows = dir.table("t.csv");
+        assert_eq!(rows.len(), 346);
+        for row in &rows {
+            let t_s = number(row, "time_s");
+            let rest = forces(row) == [0.0; 3];
+            if !(1.5..33.5).contains(&t_s) {
+                assert!(rest, "{kind} at {t_s}");
+            } else if (2.0..33.0).contains(&t_s) {
+                assert!(!rest, "{kind} at {t_s}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_cannot_be_is_refused_all_at_once_and_nothing_is_written() {
+    let dir = Dir::new();
+    let refused = |options: &str| run(&dir, &format!("{options} --out out/t.csv")).expect(2);
+    refused("force --every 0 --mu 0 --fc nan --fz-max -3 --tau inf")
+        .says("--every 0: choose more than 0 s")
+        .says("--mu 0: choose 0.01 to 10")
+        .says("--fc NaN: choose 0.001 to 10 Hz")
+        .says("--fz-max -3: choose 0.01 to 100 N")
+        .says("--tau inf: choose 0.001 to 1000 s");
+    refused("force --every nan").says("--every NaN: choose more than 0 s");
+    refused("force --every 181").says("--every 181: longer than the 180 s of --seconds");
+    refused("force --every 1.8e-7").says("--every 0.00000018: 1.000e9 rows; choose 9.4e-6 s or more");
+    refused("random --seconds 1e-3")
+        .says("--seconds 0.001: choose 1 to 1000000 s")
+        .says("--soft-start 5: longer than the 0.001 s");
+    refused("posture --hz 0 --lead -1").says("--hz 0: choose 0.001 to 10 Hz").says("--lead -1: choose 0 to");
+    refused("posture --seed 3").says("--random");
+    run(&dir, "force --out out/t.txt").expect(2).says("ends in .csv or .parquet");
+    run(&dir, "force").expect(2).says("--out");
+    run(&dir, "sideways --out out/t.csv").expect(2);
+    assert!(dir.bytes_of(".").is_empty());
+}
+
+#[test]
+fn extremes_are_played_and_warned_of() {
+    let dir = Dir::new();
+    let warned = |options: &str| {
+        let report = run(&dir, &format!("{options} --out t.csv --json -q")).expect(0).json();
+        report["warnings"].as_array().unwrap().iter().map(|text| text.as_str().unwrap().to_owned()).collect::<String>()
+    };
+    // As short as can be: the soft start is all of it.
+    let hasty = warned("force --seconds 2");
+    assert!(
+        hasty.contains("equation 19 allows 1.00") && hasty.contains("less than the 141 s of equation 26"),
+        "{hasty}"
+    );
+    let rows = dir.table("t.csv");
+    assert_eq!((rows.len(), forces(&rows[0])[2], forces(&rows[50])[2]), (51, 0.0, -3.0));
+    assert!(warned("force --soft-start 0").contains("begins infinitely fast"));
+    // One step: the first row and the last.
+    assert_eq!(warned("force --every 180"), "");
+    assert_eq!(dir.table("t.csv").len(), 2);
+    // Steps that are no decimal numbers keep all their digits.
+    run(&dir, "posture --every 0.03333333333333333 --out third.csv --no-figures").expect(0);
+    let rows = dir.table("third.csv");
+    assert_eq!((rows.len(), rows[1]["time_s"].as_str()), (1801, "0.03333333333333333"));
+    // The largest cone, and the smallest.
+    assert_eq!(warned("force --fz-max 0.01 --mu 0.01 --seconds 1000"), "");
+    assert!(warned("force --fz-max 100 --mu 10 --fs 100 --fc 10").contains("equation 26"));
+}
+
+#[test]
+fn a_plan_says_what_is_left_out_and_does_nothing() {
+    let dir = Dir::new();
+    let plan = run(&dir, "posture --plan --no-figures --out t.csv --json").expect(0).json();
+    let fates: Vec<_> = plan["plan"].as_array().unwrap().iter().map(|step| step["fate"].as_str().unwrap()).collect();
+    assert_eq!(fates, ["run", "run", "left_out", "left_out", "left_out"]);
+    assert!(run(&dir, "force --plan").expect(0).stdout.contains("4501 rows of time_s, Fx_N, Fy_N, Fz_N"));
+    run(&dir, "force --plan --every 0").expect(2).says("--every 0");
+    assert!(dir.bytes_of(".").is_empty());
+}
+
+#[test]
+fn an_earlier_table_is_replaced_whole_and_others_stay() {
+    let dir = Dir::new();
+    dir.write("t.csv", "mine before");
+    dir.write("t.txt", "mine");
+    std::fs::create_dir(dir.path("folder.csv")).unwrap();
+    run(&dir, "force --out folder.csv").expect(2).says("is a folder");
+    run(&dir, "force --seconds 10 --out t.csv --no-figures").expect(0);
+    assert_eq!((dir.table("t.csv").len(), dir.bytes_of(".")["t.txt"].as_slice()), (251, b"mine".as_slice()));
+}
