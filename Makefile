@@ -11,7 +11,7 @@ help:
 	@echo "make demo   build, run the main jobs on generated scenes, say where the pictures are"
 	@echo "make test   build and run every test"
 	@echo "make lint   formatting, clippy and documentation, all without warnings"
-	@echo "make bench  speed against only decoding, and against Python with OpenCV and scikit-image"
+	@echo "make bench  speed against only decoding, and against Python with OpenCV, scikit-image, pandas, numpy and scikit-learn"
 
 demo: system
 	cargo build --release --locked
@@ -21,6 +21,14 @@ demo: system
 	$(LUNULA) phantom log --seed 1 --out $(DEMO)/finger
 	$(LUNULA) posture $(DEMO)/finger/video.mp4 --markers $(DEMO)/finger/markers.toml --out $(DEMO)/posture/joints.csv --overlay $(DEMO)/posture/overlay.mp4
 	$(LUNULA) align --joints $(DEMO)/posture/joints.csv --log $(DEMO)/finger/log.csv --out $(DEMO)/align/training.csv
+	$(LUNULA) phantom log --protocol touch --seed 1 --out $(DEMO)/touch/1
+	$(LUNULA) phantom log --protocol touch --seed 2 --out $(DEMO)/touch/2
+	$(LUNULA) phantom log --protocol touch --seed 3 --out $(DEMO)/touch/3
+	$(LUNULA) phantom log --protocol touch-random --seed 4 --out $(DEMO)/touch/random
+	$(LUNULA) train $(DEMO)/touch/1/log.csv $(DEMO)/touch/2/log.csv --target force --validate $(DEMO)/touch/3/log.csv --out $(DEMO)/predictor/force.json
+	$(LUNULA) evaluate $(DEMO)/predictor/force.json $(DEMO)/touch/random/log.csv --out $(DEMO)/predictor/random
+	$(LUNULA) analyse $(DEMO)/predictor/force.json --out $(DEMO)/predictor/modes
+	$(LUNULA) prune $(DEMO)/touch/1/log.csv $(DEMO)/touch/2/log.csv --validate $(DEMO)/touch/3/log.csv --out $(DEMO)/predictor/prune
 	@echo
 	@echo "Average coloration of 16 generated subjects in eight poses:"
 	@echo "  $(DEMO)/coloration/report.html            everything on one page"
@@ -37,19 +45,26 @@ demo: system
 	@echo "  $(DEMO)/align/training.csv                the labelled set"
 	@echo "  $(DEMO)/align/training.sync.json          its certificate"
 	@echo "  $(DEMO)/align/training-labels.png         labels over photodiodes"
+	@echo
+	@echo "Forces predicted from photodiodes, trained on two generated spirals:"
+	@echo "  $(DEMO)/predictor/random/over-time.png    predicted and measured on random movement, as Fig. 99"
+	@echo "  $(DEMO)/predictor/random/scatter.png      the same as Fig. 100"
+	@echo "  $(DEMO)/predictor/modes/modes.png         singular values and modes, as Fig. 98"
+	@echo "  $(DEMO)/predictor/prune/without-one.png   each photodiode removed, as Fig. 113"
 
 test: system
-	cargo test --locked --features xdf
+	cargo test --locked --workspace --features xdf
 
 lint: system
-	cargo fmt --check
-	cargo clippy --locked --all-targets -- -D warnings
-	RUSTDOCFLAGS="-D warnings" cargo doc --locked --no-deps
+	cargo fmt --all --check
+	cargo clippy --locked --workspace --all-targets -- -D warnings
+	RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --no-deps
 
 bench: system
 	cargo bench --locked --bench photos
 	cargo bench --locked --bench posture
 	cargo bench --locked --bench align
+	cargo bench --locked -p lunula-predictor
 
 # Installs the packages of system-packages.txt that are missing; does nothing where all are there.
 system:
