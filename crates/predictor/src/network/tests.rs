@@ -132,7 +132,7 @@ fn without_vectors_training_is_the_same_bits() {
     }
 }
 
-/// The figure on fewer rows: RMSE within 5 % of the noise from at least 8 of 10 seeds.
+/// The README's figure on fewer rows: RMSE within 5 % of the noise from at least 8 of 10 seeds.
 #[test]
 fn a_network_is_learnt_to_the_noise() {
     let noise = 0.05;
@@ -151,7 +151,7 @@ fn a_network_is_learnt_to_the_noise() {
 
 /// `cargo test -p lunula-predictor --release -- --ignored --nocapture learnt_in_full`
 #[test]
-#[ignore = "half a minute: the issue's figure in full"]
+#[ignore = "half a minute: the figure of the README in full"]
 fn a_network_of_8_is_learnt_in_full() {
     let noise = 0.05;
     let (data, stop, held) =
