@@ -157,6 +157,10 @@ pub fn read_data(paths: &[PathBuf], wanted: &Wanted) -> Result<Read, DataError> 
     if let Some((_, name)) = inputs.iter().enumerate().find(|(k, name)| inputs[..*k].contains(name)) {
         return Err(DataError::Request(format!("{name} is named twice among the inputs; name each once")));
     }
+    if inputs.iter().chain(&wanted.targets).any(|name| name == "time_s") {
+        let what = "time_s is when a row was measured, neither an input nor a target; leave it out of both";
+        return Err(DataError::Request(what.to_owned()));
+    }
     if let Some(name) = inputs.iter().find(|name| wanted.targets.contains(name)) {
         return Err(DataError::Request(format!("{name} is both an input and a target; leave it out of one of them")));
     }

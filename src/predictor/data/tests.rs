@@ -401,7 +401,9 @@ fn a_new_recording_of_a_stream_forgets_the_times_before() {
 #[test]
 fn columns_named_twice_are_told_with_where() {
     let twice = Wanted { inputs: Some(vec!["P1".into(), "P1".into()]), ..angle() };
-    assert!(told("P1,J2_deg\n1,2\n", &twice).contains("named twice among the inputs"));
+    assert!(told("P1,J2_deg\n1,2\n", &twice).contains("P1 is named twice among the inputs"));
+    let time = Wanted { inputs: Some(vec!["time_s".into(), "P1".into()]), ..angle() };
+    assert!(told("time_s,P1,J2_deg\n1,2,3\n", &time).contains("time_s is when a row was measured"));
     let both = Wanted { inputs: Some(vec!["P1".into(), "J2_deg".into()]), ..angle() };
     assert!(told("P1,J2_deg\n1,2\n", &both).contains("is both an input and a target"));
     let said = told("0.1,0.2\n1,2\n", &Wanted { inputs: Some(vec!["P1".into()]), ..angle() });
