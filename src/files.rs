@@ -207,6 +207,13 @@ impl Drop for Places {
     }
 }
 
+/// Whether both stand and are one file, whatever they are called.
+#[must_use]
+pub fn is_same_file(one: &Path, other: &Path) -> bool {
+    let real = |path: &Path| fs::canonicalize(path).ok();
+    real(one).is_some_and(|one| real(other) == Some(one))
+}
+
 /// The place of a result that stands beside `table` and is named after it: `joints.csv` and `.run.json` give
 /// `joints.run.json`.
 #[must_use]

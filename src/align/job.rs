@@ -15,7 +15,7 @@ use super::posture::Posture;
 use super::report::AlignReport;
 use super::results::Results;
 use super::tie::{self, LagTie, Tie};
-use crate::files::WriteError;
+use crate::files::{WriteError, is_same_file};
 use crate::log::{AmbientError, AmbientOptions, Columns, Log, LogError, Samples, samples};
 use crate::stages::{Fate, Stages};
 use crate::table::{TableError, TableFormat};
@@ -228,14 +228,10 @@ fn nothing_labelled(posture: &Posture, samples: &Samples, tie: &Tie) -> String {
 
 /// Refuses to write over an input.
 fn is_no_input(inputs: &AlignInputs, outputs: &AlignOutputs) -> Result<(), AlignError> {
-    let real = |path: &Path| std::fs::canonicalize(path).ok();
-    let given: Vec<PathBuf> = [Some(&inputs.joints), Some(&inputs.log), inputs.tracks.as_ref()]
-        .into_iter()
-        .flatten()
-        .filter_map(|path| real(path))
-        .collect();
+    let given = [Some(&inputs.joints), Some(&inputs.log), inputs.tracks.as_ref()];
+    let is_given = |path: &Path| given.into_iter().flatten().any(|input| is_same_file(input, path));
     let written = [Some(&outputs.training), outputs.mot.as_ref(), outputs.dlc.as_ref()];
-    match written.into_iter().flatten().find(|path| real(path).is_some_and(|path| given.contains(&path))) {
+    match written.into_iter().flatten().find(|path| is_given(path)) {
         Some(path) => Err(AlignError::Itself(path.clone())),
         None => Ok(()),
     }

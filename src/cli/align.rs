@@ -10,7 +10,7 @@ use lunula::align::{
     TimeUnit, plan, run as run_align,
 };
 
-use super::{Common, Interrupted, Outcome, print_steps};
+use super::{Common, Interrupted, Outcome};
 
 /// Joint angles and a log of photodiodes, on two clocks, to a labelled training set with a certificate
 ///
@@ -173,12 +173,7 @@ pub(super) fn run(args: &AlignArgs) -> anyhow::Result<Outcome> {
     });
     if args.plan {
         let steps = plan(&inputs, &options, outputs.as_ref())?;
-        if args.common.json {
-            args.common.print_json(&serde_json::json!({ "job": "align", "plan": steps, "failed": [] }))?;
-        } else {
-            print_steps(&steps);
-        }
-        return Ok(Outcome::Done);
+        return args.common.show_plan("align", &steps);
     }
     let outputs = outputs.context("--out is needed")?;
     match run_align(&inputs, &options, &outputs, &stop) {
@@ -216,12 +211,8 @@ fn finish(common: &Common, report: &AlignReport, outputs: &AlignOutputs) -> anyh
         rows.before_the_video, rows.after_the_video, rows.in_gaps
     ));
     if common.verbose {
-        for stage in &report.stages {
-            common.say(&format!("{:<28} {:>9.3} s", stage.stage, stage.thread_s));
-        }
-        for what in &report.left_out {
-            common.say(&format!("left out: {what}"));
-        }
+        common.say_stages(&report.stages);
+        common.say_left_out(&report.left_out);
     }
     common.say(&format!(
         "{:.2} s; look at {}",

@@ -18,7 +18,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use anyhow::{Context, bail};
 use clap::{Args, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use lunula::stages::{Fate, Step};
+use lunula::stages::{Fate, Stage, Step};
 
 /// Ground truth for fingernail sensing: nail photographs to coloration maps, videos to joint angles,
 /// angles and photodiode logs to labelled training sets, those to models of force and posture.
@@ -154,6 +154,25 @@ impl Common {
         if !self.json && !self.quiet {
             print_line(text);
         }
+    }
+
+    /// What would be done and left out, as words or, with `--json`, as an object.
+    fn show_plan(&self, job: &str, steps: &[Step]) -> anyhow::Result<Outcome> {
+        if self.json {
+            self.print_json(&serde_json::json!({ "job": job, "plan": steps, "failed": [] }))?;
+        } else {
+            print_steps(steps);
+        }
+        Ok(Outcome::Done)
+    }
+
+    /// Each stage's time, a line each.
+    fn say_stages(&self, stages: &[Stage]) {
+        stages.iter().for_each(|stage| self.say(&format!("{:<28} {:>9.3} s", stage.stage, stage.thread_s)));
+    }
+
+    fn say_left_out(&self, left_out: &[String]) {
+        left_out.iter().for_each(|what| self.say(&format!("left out: {what}")));
     }
 
     fn warn(&self, warnings: &[String]) {

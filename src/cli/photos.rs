@@ -270,9 +270,7 @@ fn finish(common: &Common, report: &RunReport, out: &Path) -> anyhow::Result<Out
         for stage in &report.stages {
             common.say(&format!("{:<28} {:>9.3} s of threads, {} runs", stage.stage, stage.thread_s, stage.runs));
         }
-        for what in &report.left_out {
-            common.say(&format!("left out: {what}"));
-        }
+        common.say_left_out(&report.left_out);
     }
     common.say(&format!("{:.2} s; look at {}", report.wall_s, out.join("report.html").display()));
     Ok(if report.failed.is_empty() { Outcome::Done } else { Outcome::SomeFailed })

@@ -8,7 +8,7 @@ use lunula::posture::{
     Layout, Outputs, PostureError, PostureOptions, PostureReport, Watch, plan, run as run_posture, suggest,
 };
 
-use super::{Common, Interrupted, Outcome, print_line, print_steps};
+use super::{Common, Interrupted, Outcome, print_line};
 
 /// Video of a finger with coloured markers to joint angles, each frame with its own time and standard error
 ///
@@ -85,12 +85,7 @@ pub(super) fn run(args: &PostureArgs) -> anyhow::Result<Outcome> {
     });
     if args.plan {
         let steps = plan(&args.video, &layout, &options, outputs.as_ref())?;
-        if args.common.json {
-            args.common.print_json(&serde_json::json!({ "job": "posture", "plan": steps, "failed": [] }))?;
-        } else {
-            print_steps(&steps);
-        }
-        return Ok(Outcome::Done);
+        return args.common.show_plan("posture", &steps);
     }
     let outputs = outputs.context("--out is needed")?;
     let bar = args.common.progress(0, "frames");
@@ -149,9 +144,7 @@ fn finish(common: &Common, report: &PostureReport, outputs: &Outputs) -> anyhow:
         for stage in &report.stages {
             common.say(&format!("{:<28} {:>9.3} s, {} runs", stage.stage, stage.thread_s, stage.runs));
         }
-        for what in &report.left_out {
-            common.say(&format!("left out: {what}"));
-        }
+        common.say_left_out(&report.left_out);
     }
     common.say(&format!(
         "{:.2} s, {:.0} % of it decoding; look at {}",

@@ -9,7 +9,7 @@ use lunula::predictor::trajectory::{
     run as run_trajectory,
 };
 
-use super::{Common, Interrupted, Outcome, print_steps};
+use super::{Common, Interrupted, Outcome};
 
 /// Calibration trajectories (5.2.3) as tables that a prompter can play, with how fast they are and how evenly they cover
 ///
@@ -174,12 +174,7 @@ pub(super) fn run(args: &TrajectoryArgs) -> anyhow::Result<Outcome> {
     let stop = common.start()?;
     if planned.plan {
         let steps = plan(&options, outputs.as_ref())?;
-        if common.json {
-            common.print_json(&serde_json::json!({ "job": "trajectory", "plan": steps, "failed": [] }))?;
-        } else {
-            print_steps(&steps);
-        }
-        return Ok(Outcome::Done);
+        return common.show_plan("trajectory", &steps);
     }
     let outputs = outputs.context("--out is needed")?;
     match run_trajectory(&options, &outputs, &stop) {
@@ -204,12 +199,8 @@ fn finish(common: &Common, report: &TrajectoryReport) -> anyhow::Result<Outcome>
         ));
     }
     if common.verbose {
-        for stage in &report.stages {
-            common.say(&format!("{:<28} {:>9.3} s", stage.stage, stage.thread_s));
-        }
-        for what in &report.left_out {
-            common.say(&format!("left out: {what}"));
-        }
+        common.say_stages(&report.stages);
+        common.say_left_out(&report.left_out);
     }
     let look = report.pictures.first().unwrap_or(&report.table);
     common.say(&format!("{:.2} s; look at {}", report.wall_s, look.display()));

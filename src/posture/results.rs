@@ -16,7 +16,7 @@ use super::sight::Sight;
 use super::smooth::smooth;
 use super::view::View;
 use crate::clock::{ClockFit, ClockFormat};
-use crate::files::{Places, WriteError, beside};
+use crate::files::{Places, WriteError, beside, is_same_file};
 use crate::stages::Stages;
 use crate::table::{Column, TableWriter, Value};
 use crate::video::{Frame, Info, VideoError};
@@ -81,9 +81,8 @@ impl<'a> Results<'a> {
         options: &PostureOptions,
         outputs: &Outputs,
     ) -> Result<Self, PostureError> {
-        let real = |path: &Path| std::fs::canonicalize(path).ok();
         let all = std::iter::once(&outputs.joints).chain(&outputs.tracks).chain(&outputs.overlay);
-        if let Some(itself) = all.into_iter().find(|path| real(path).is_some_and(|path| Some(path) == real(video))) {
+        if let Some(itself) = all.into_iter().find(|path| is_same_file(path, video)) {
             return Err(PostureError::Itself(itself.clone()));
         }
         let mut places = Places::default();

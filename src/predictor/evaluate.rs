@@ -18,6 +18,7 @@ use serde::Serialize;
 use super::data::{FileRows, Wanted, read_data};
 use super::error::{PredictorError, go_on};
 use super::figures_of_merit::{ByTarget, Merit};
+use super::train::merit_without_cone;
 use super::{open_models, seen_in_training};
 use crate::stages::{Stage, Stages};
 
@@ -194,10 +195,7 @@ pub fn evaluate(
             let found = coverage((&shown.values - shown.data.y()).view(), intervals, "all");
             ByTarget::new(shown.data.targets(), found.reached)
         }),
-        without_friction: predictor.cone().map(|_| {
-            let plain = predict(predictor.model(), None, shown.data.x().view());
-            Merit::from(&score(shown.data.y().view(), plain.view(), shown.data.targets()))
-        }),
+        without_friction: predictor.cone().map(|_| merit_without_cone(&predictor, &shown.data)),
         merit,
         held_out,
         left_out: left_out(&predictor, options, out),

@@ -28,6 +28,8 @@ use std::path::{Path, PathBuf};
 pub use lunula_predictor as models;
 use lunula_predictor::{Dataset, Predictor, recording_hashes};
 
+use crate::files::is_same_file;
+
 pub use analyse::{AnalyseReport, ModelMode, ModelModes, Printed, analyse};
 pub use answer::Answering;
 pub use compare::{CompareOptions, CompareReport, Comparison, Person, Spread, compare};
@@ -86,8 +88,7 @@ fn seen_in_training(predictor: &Predictor, data: &Dataset) -> Option<String> {
 
 /// Refuses to write over an input.
 fn is_no_input(inputs: &[&Path], out: &Path) -> Result<(), PredictorError> {
-    let real = |path: &Path| fs::canonicalize(path).ok();
-    match real(out).filter(|out| inputs.iter().any(|input| real(input).as_ref() == Some(out))) {
+    match inputs.iter().find(|input| is_same_file(input, out)) {
         Some(_) => Err(PredictorError::Request(format!(
             "{}: is an input itself; choose another name for the result",
             out.display()

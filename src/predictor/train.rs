@@ -7,7 +7,9 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-use lunula_predictor::{Dataset, Intervals, Kind, Predictor, Recipe, Report, calibrate, recording_hashes, score};
+use lunula_predictor::{
+    Dataset, Intervals, Kind, Predictor, Recipe, Report, calibrate, predict, recording_hashes, score, with_lags,
+};
 use serde::Serialize;
 
 use super::data::{FileRows, Wanted, read_data};
@@ -151,7 +153,7 @@ pub fn train(
         validate.as_ref().map(|read| stages.time("score", || merit(&predictor, &read.data))).transpose()?;
     warnings.extend(validation.iter().chain([&training]).filter_map(Merit::warning));
     let without = match &validate {
-        Some(told) => stages.time("fit without options", || without(recipe, &read.data, early, &told.data))?,
+        Some(told) => stages.time("fit without options", || without(&predictor, &read.data, early, &told.data))?,
         None => Vec::new(),
     };
     go_on(stop)?;
@@ -204,26 +206,30 @@ pub(super) fn merit(predictor: &Predictor, data: &Dataset) -> Result<Merit, Pred
     Ok(Merit::from(&score(seen.y().view(), predicted.view(), seen.targets())))
 }
 
+/// How far off it is on recordings without its cone of friction: the model is the same.
+pub(super) fn merit_without_cone(predictor: &Predictor, seen: &Dataset) -> Merit {
+    let plain = predict(predictor.model(), None, seen.x().view());
+    Merit::from(&score(seen.y().view(), plain.view(), seen.targets()))
+}
+
 /// What is reached without each option of the recipe.
 fn without(
-    recipe: &Recipe,
+    predictor: &Predictor,
     data: &Dataset,
     early: Option<&Dataset>,
     told: &Dataset,
 ) -> Result<Vec<Without>, PredictorError> {
+    let recipe = &predictor.training().recipe;
     let mut all = Vec::new();
-    if recipe.friction_mu.is_some() {
-        let plain = Recipe { friction_mu: None, ..recipe.clone() };
-        all.push(("the cone of friction", plain));
+    if predictor.cone().is_some() {
+        let seen = with_lags(told, predictor.lags())?;
+        all.push(Without { without: "the cone of friction", validation: merit_without_cone(predictor, &seen) });
     }
     if !recipe.lags_s.is_empty() {
-        all.push(("lags", Recipe { lags_s: Vec::new(), ..recipe.clone() }));
+        let plain = Predictor::fit(data, early, &Recipe { lags_s: Vec::new(), ..recipe.clone() })?;
+        all.push(Without { without: "lags", validation: merit(&plain, told)? });
     }
-    let one = |(without, recipe): (&'static str, Recipe)| {
-        let predictor = Predictor::fit(data, early, &recipe)?;
-        Ok(Without { without, validation: merit(&predictor, told)? })
-    };
-    all.into_iter().map(one).collect()
+    Ok(all)
 }
 
 /// Half widths from the errors on recordings that were not trained on; why there are none goes to the warnings.

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use thiserror::Error;
 
-use crate::evaluate::Intervals;
+use crate::evaluate::{Intervals, hex};
 use crate::lags::Lags;
 use crate::predictor::{Channel, Predictor, Training, fits};
 use crate::recipe::Kind;
@@ -151,7 +151,7 @@ impl Predictor {
 /// Of all but itself, in the order and spelling that is written.
 fn checksum(file: &File) -> String {
     let text = serde_json::to_string(file).expect("plain data with names as keys");
-    Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect()
+    hex(Sha256::new_with_prefix(text))
 }
 
 /// Whether the parts of a file belong together.

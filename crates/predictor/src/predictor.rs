@@ -6,9 +6,10 @@ use ndarray::{Array2, Axis};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use crate::evaluate::{Intervals, recording_hashes};
+use crate::evaluate::{Intervals, hex, recording_hashes};
 use crate::friction::FrictionCone;
 use crate::lags::Lags;
+use crate::model::sizes;
 use crate::recipe::{Recipe, RecipeFault, Report, predict, with_lags};
 use crate::{Dataset, Model, ModelFault};
 
@@ -204,7 +205,7 @@ impl Predictor {
 
 /// SHA-256 of texts, one after the other.
 fn hash_of(texts: &[String]) -> String {
-    Sha256::digest(texts.concat()).iter().map(|byte| format!("{byte:02x}")).collect()
+    hex(Sha256::new_with_prefix(texts.concat()))
 }
 
 fn channels(names: &[String], values: &Array2<f64>) -> Vec<Channel> {
@@ -228,9 +229,5 @@ pub fn unit_of(name: &str) -> &'static str {
 
 /// Whether a model of a size can stand with these columns.
 pub(crate) fn fits(model: &Model, inputs: usize, targets: usize) -> Result<(), ModelFault> {
-    let shape = |what, found, wanted| {
-        if found == wanted { Ok(()) } else { Err(ModelFault::Shape { what, found, wanted }) }
-    };
-    shape("inputs of the model", model.inputs(), inputs)?;
-    shape("targets of the model", model.targets(), targets)
+    sizes(&[("inputs of the model", model.inputs(), inputs), ("targets of the model", model.targets(), targets)])
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use lunula::predictor::{ModelMode, analyse as run_analyse};
 
-use super::{Common, Outcome, ended, say_notes};
+use super::{Common, Outcome, ended, say_end, say_notes};
 
 /// Which combinations of forces depend on which combinations of photodiodes (Fig. 98)
 ///
@@ -41,7 +41,6 @@ pub(crate) fn run(args: &AnalyseArgs) -> anyhow::Result<Outcome> {
     if let Some(condition) = report.modes.condition {
         common.say(&format!("the strongest over the weakest: {condition:.2}"));
     }
-    let look = report.pictures.first().map_or(String::new(), |picture| format!("; look at {}", picture.display()));
-    common.say(&format!("{:.2} s{look}", report.wall_s));
+    say_end(common, report.wall_s, &report.pictures);
     Ok(Outcome::Done)
 }

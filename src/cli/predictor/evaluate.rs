@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use lunula::predictor::models::By;
 use lunula::predictor::{EvaluateOptions, EvaluateReport, evaluate as run_evaluate};
 
-use super::{Common, Outcome, RowsArgs, ended, say_merit, say_notes};
+use super::{Common, Outcome, RowsArgs, ended, say_end, say_merit, say_notes};
 
 /// How far off a model is on recordings, and how far off its recipe is on recordings that are held out
 ///
@@ -107,11 +107,10 @@ pub(crate) fn run(args: &EvaluateArgs) -> anyhow::Result<Outcome> {
     }
     if common.verbose {
         report.data.iter().flat_map(|file| &file.notes).for_each(|note| common.say(note));
-        report.left_out.iter().for_each(|what| common.say(&format!("left out: {what}")));
-        report.stages.iter().for_each(|stage| common.say(&format!("{:<28} {:>9.3} s", stage.stage, stage.thread_s)));
+        common.say_left_out(&report.left_out);
+        common.say_stages(&report.stages);
     }
-    let look = report.pictures.first().map_or(String::new(), |picture| format!("; look at {}", picture.display()));
-    common.say(&format!("{:.2} s{look}", report.wall_s));
+    say_end(common, report.wall_s, &report.pictures);
     Ok(Outcome::Done)
 }
 

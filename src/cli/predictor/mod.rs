@@ -6,6 +6,8 @@ mod predict;
 mod prune;
 mod train;
 
+use std::path::PathBuf;
+
 use clap::Args;
 use lunula::predictor::{ByTarget, Merit, Target, Wanted};
 
@@ -68,6 +70,12 @@ fn figure(value: f64) -> String {
         _ if value.abs() >= 1e7 => format!("{value:.3e}"),
         _ => format!("{value:.4}"),
     }
+}
+
+/// How long it took, and where to look.
+fn say_end(common: &Common, wall_s: f64, pictures: &[PathBuf]) {
+    let look = pictures.first().map_or(String::new(), |picture| format!("; look at {}", picture.display()));
+    common.say(&format!("{wall_s:.2} s{look}"));
 }
 
 /// Notes for the reader, on standard error.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use lunula::predictor::{PruneRow, Target, prune as run_prune};
 
-use super::{Common, Outcome, RowsArgs, ended, figure, say_notes};
+use super::{Common, Outcome, RowsArgs, ended, figure, say_end, say_notes};
 
 /// The linear model's errors for every subset of the photodiodes (Fig. 113 and beyond)
 ///
@@ -54,7 +54,6 @@ pub(crate) fn run(args: &PruneArgs) -> anyhow::Result<Outcome> {
         common.say("all, then all but one:");
         report.without_one.iter().for_each(|row| common.say(&line(row)));
     }
-    let look = report.pictures.first().map_or(String::new(), |picture| format!("; look at {}", picture.display()));
-    common.say(&format!("{:.2} s{look}", report.wall_s));
+    say_end(common, report.wall_s, &report.pictures);
     Ok(Outcome::Done)
 }

@@ -8,7 +8,6 @@ use lunula::predictor::models::{Deficient, Kind, Recipe, Report};
 use lunula::predictor::{Target, TrainInputs, TrainOptions, TrainOutputs, train as run_train, train_plan};
 
 use super::{Common, Outcome, RowsArgs, ended, figure, say_merit, say_notes};
-use crate::cli::print_steps;
 
 /// Recordings of photodiodes with forces or angles to a model that tells forces or angles from photodiodes (5.)
 ///
@@ -131,12 +130,7 @@ pub(crate) fn run(args: &TrainArgs) -> anyhow::Result<Outcome> {
     };
     if args.plan {
         let steps = train_plan(&inputs, &options.recipe, args.learning_curve.is_some());
-        if args.common.json {
-            args.common.print_json(&serde_json::json!({ "job": "train", "plan": steps, "failed": [] }))?;
-        } else {
-            print_steps(&steps);
-        }
-        return Ok(Outcome::Done);
+        return args.common.show_plan("train", &steps);
     }
     let out = args.out.as_ref().context("--out is needed")?;
     let outputs = TrainOutputs { model: out.clone(), learning_curve: args.learning_curve.clone() };
@@ -194,8 +188,8 @@ pub(crate) fn run(args: &TrainArgs) -> anyhow::Result<Outcome> {
     }
     if common.verbose {
         report.data.iter().chain(&report.validate).flat_map(|file| &file.notes).for_each(|note| common.say(note));
-        report.left_out.iter().for_each(|what| common.say(&format!("left out: {what}")));
-        report.stages.iter().for_each(|stage| common.say(&format!("{:<28} {:>9.3} s", stage.stage, stage.thread_s)));
+        common.say_left_out(&report.left_out);
+        common.say_stages(&report.stages);
     }
     common.say(&format!("{:.2} s; the model is {}", report.wall_s, out.display()));
     Ok(Outcome::Done)

@@ -24,6 +24,7 @@ pub use effect::{Effect, EffectFault, friction_effect, lag_effect};
 pub use interval::{IntervalFault, Intervals, calibrate};
 pub use learning::{LearningFault, LearningPoint, learn_by_recordings, learn_by_share};
 pub use magnitude::{Bin, ByMagnitude, MagnitudeFault, by_magnitude, magnitude_edges};
+pub(crate) use rows::hex;
 pub use rows::{dataset_hash, recording_hashes, row_hashes, shared_rows};
 pub use score::{Scores, TargetScore, score};
 pub use split::{By, Fold, SplitFault, folds};

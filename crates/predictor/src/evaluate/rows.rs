@@ -65,7 +65,8 @@ fn hash(data: &Dataset, rows: Range<usize>) -> Sha256 {
     all
 }
 
-fn hex(hash: Sha256) -> String {
+/// A hash as text, hexadecimal.
+pub(crate) fn hex(hash: Sha256) -> String {
     hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 

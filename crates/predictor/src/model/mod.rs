@@ -147,7 +147,8 @@ pub enum ModelFault {
     Number(&'static str),
 }
 
-fn sizes(all: &[(&'static str, usize, usize)]) -> Result<(), ModelFault> {
+/// Whether sizes agree: of what, found, wanted.
+pub(crate) fn sizes(all: &[(&'static str, usize, usize)]) -> Result<(), ModelFault> {
     match all.iter().find(|(_, found, wanted)| found != wanted) {
         Some(&(what, found, wanted)) => Err(ModelFault::Shape { what, found, wanted }),
         None => Ok(()),
