@@ -1,0 +1,48 @@
+//! Blood flow under a pressed fingernail: the lumped-parameter model of section 4.3 of S. Mascaro's thesis.
+//!
+//! In: [`Parameters`] of the vessels and [`Loads`] on the fingertip. Out: how the capillaries under the nail swell and empty, and what the
+//! photodiodes on the nail see of it.
+//!
+//! Conventions: SI units throughout. Capillary units are counted from proximal to distal, C1, C2, ..; behind them stands the vein, V: arrays
+//! over walls hold the capillaries first and the vein last. A wall's state is its lumen `d / D` (diameter over nominal diameter, the thesis'
+//! `1 + x / D`) and the rate of it `v / D` in 1/s. What is not known is missing (`None`, NaN), never zero.
+//!
+//! No pictures, no command line.
+
+mod equilibrium;
+mod fit;
+mod live;
+mod load;
+mod model;
+mod optics;
+mod parameters;
+mod printed;
+mod radau;
+mod reduced;
+mod sensitivity;
+mod state;
+mod transient;
+
+pub use equilibrium::{
+    AT_REST, CurvePoint, Eigenvalue, Equilibrium, EquilibriumFault, Fate, LoadCurve, LoadPath, LoadRange, MapFault,
+    MapPlan, MapRow, ReachFault, Reached, Stability, Turn, TurnKind, equilibria, load_curve, reached_from, rest,
+    stability_map, stability_row,
+};
+pub use fit::{
+    Bound, Bounds, Calibrated, Calibration, Combination, Course, Estimate, FitFault, FitOptions, FitResult,
+    FitStatistics, Free, Group, Recording, Rival, Stop, Trace, fit, time_constant,
+};
+pub use live::{Live, LiveFault, LiveStatistics};
+pub use load::{Inputs, Load, LoadFault, Loads, Segment};
+pub use model::{Arrow, Collapse, Model, Pressures};
+pub use optics::{Optics, OpticsFault, Photodiodes};
+pub use parameters::{ParameterFault, Parameters, Site, Symbol, Unit, Vessel};
+pub use printed::{Matrices, Printed, PrintedFault};
+pub use reduced::{Inertia, Reduced, ReducedFault, simulate_reduced};
+pub use state::{State, StateFault};
+pub use transient::{Order, SolveFault, SolveOptions, Solver, Statistics, Stopped, Trajectory, simulate};
+
+/// The example of the README, run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -1,0 +1,140 @@
+//! The state of the walls: lumens and their rates, scaled by the nominal diameters.
+
+use crate::parameters::{Parameters, Site};
+
+/// The state `x` of equation 2, scaled: for every wall, capillaries first and the vein last, the lumen `d / D = 1 + x / D` and its rate
+/// `v / D` in 1/s.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    /// Lumens over nominal diameters; open where greater than 0.
+    pub lumens: Vec<f64>,
+    /// Rates of the lumens, 1/s.
+    pub rates: Vec<f64>,
+}
+
+/// Why a state can't be used.
+#[derive(Debug, thiserror::Error, Clone, PartialEq)]
+pub enum StateFault {
+    /// Not a value for every wall.
+    #[error("the state has {got} values for {walls} walls; it needs a displacement and a velocity for each")]
+    Length {
+        /// Walls of the model.
+        walls: usize,
+        /// Values given.
+        got: usize,
+    },
+    /// No finite number.
+    #[error("the state of {site} is {value}; it has to be a finite number")]
+    NotFinite {
+        /// Which vessel.
+        site: Site,
+        /// The value.
+        value: f64,
+    },
+    /// A vessel is closed.
+    #[error(
+        "{site} is closed in this state (its lumen is {lumen} times its nominal diameter); the model knows open vessels only"
+    )]
+    Closed {
+        /// Which vessel.
+        site: Site,
+        /// Its lumen over its nominal diameter.
+        lumen: f64,
+    },
+}
+
+impl State {
+    /// The state in which no wall is displaced (`x = 0`) and none moves. It is not the state at rest: pressed by the blood alone, the walls
+    /// stand further out.
+    pub fn undisplaced(parameters: &Parameters) -> State {
+        let walls = parameters.walls().len();
+        State { lumens: vec![1.0; walls], rates: vec![0.0; walls] }
+    }
+
+    /// From displacements (m) and velocities (m/s) of the walls. An error where a number is missing, not finite, or closes a vessel.
+    pub fn from_metres(
+        parameters: &Parameters,
+        displacements_m: &[f64],
+        velocities_mps: &[f64],
+    ) -> Result<State, StateFault> {
+        let walls = parameters.walls().len();
+        for values in [displacements_m, velocities_mps] {
+            if values.len() != walls {
+                return Err(StateFault::Length { walls, got: values.len() });
+            }
+        }
+        let scaled = |values: &[f64]| -> Vec<f64> {
+            values.iter().zip(parameters.walls()).map(|(value, wall)| value / wall.diameter_m).collect()
+        };
+        let state = State {
+            lumens: scaled(displacements_m).into_iter().map(|x| 1.0 + x).collect(),
+            rates: scaled(velocities_mps),
+        };
+        state.check()?;
+        Ok(state)
+    }
+
+    /// Whether all values are finite and all vessels open. An error names the first that is not.
+    pub fn check(&self) -> Result<(), StateFault> {
+        let units = self.lumens.len().saturating_sub(1);
+        if self.rates.len() != self.lumens.len() {
+            return Err(StateFault::Length { walls: self.lumens.len(), got: self.rates.len() });
+        }
+        for (j, (&lumen, &rate)) in self.lumens.iter().zip(&self.rates).enumerate() {
+            let site = Site::of_wall(j, units);
+            if let Some(&value) = [lumen, rate].iter().find(|value| !value.is_finite()) {
+                return Err(StateFault::NotFinite { site, value });
+            }
+            if lumen <= 0.0 {
+                return Err(StateFault::Closed { site, lumen });
+            }
+        }
+        Ok(())
+    }
+
+    /// Displacement of wall `j`, m: `x = D (d / D - 1)`.
+    pub fn displacement_m(&self, parameters: &Parameters, j: usize) -> f64 {
+        parameters.wall(j).diameter_m * (self.lumens[j] - 1.0)
+    }
+
+    /// Velocity of wall `j`, m/s.
+    pub fn velocity_mps(&self, parameters: &Parameters, j: usize) -> f64 {
+        parameters.wall(j).diameter_m * self.rates[j]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn metres_become_lumens_and_back() {
+        let parameters = Parameters::thesis();
+        let state = State::from_metres(&parameters, &[9e-6, -5e-6, 1e-4], &[1e-6, 0.0, -2e-3]).unwrap();
+        assert_eq!(state.lumens, [1.9, 0.5, 2.0]);
+        for (j, (x, v)) in [(9e-6, 1e-6), (-5e-6, 0.0), (1e-4, -2e-3)].into_iter().enumerate() {
+            // A rounding of the lumen's, which is of the order of D.
+            assert!((state.displacement_m(&parameters, j) - x).abs() <= 1e-15 * parameters.wall(j).diameter_m);
+            assert!((state.velocity_mps(&parameters, j) - v).abs() <= 1e-16 * v.abs());
+        }
+    }
+
+    #[test]
+    fn closed_missing_and_endless_walls_are_named() {
+        let told = |x: &[f64], v: &[f64]| State::from_metres(&Parameters::thesis(), x, v).unwrap_err();
+        assert_eq!(told(&[0.0; 2], &[0.0; 3]), StateFault::Length { walls: 3, got: 2 });
+        assert_eq!(told(&[0.0; 3], &[0.0; 4]), StateFault::Length { walls: 3, got: 4 });
+        // An empty capillary is closed, and so is one that is turned inside out.
+        assert_eq!(told(&[0.0, -1e-5, 0.0], &[0.0; 3]), StateFault::Closed { site: Site::Capillary(1), lumen: 0.0 });
+        assert_eq!(told(&[0.0, 0.0, -2e-4], &[0.0; 3]), StateFault::Closed { site: Site::Vein, lumen: -1.0 });
+        assert!(matches!(
+            told(&[f64::NAN, 0.0, 0.0], &[0.0; 3]),
+            StateFault::NotFinite { site: Site::Capillary(0), .. }
+        ));
+        assert!(matches!(told(&[0.0; 3], &[0.0, 0.0, f64::INFINITY]), StateFault::NotFinite { site: Site::Vein, .. }));
+        // Too many diameters for a double.
+        assert!(matches!(told(&[1e305, 0.0, 0.0], &[0.0; 3]), StateFault::NotFinite { .. }));
+        assert_eq!(State { lumens: vec![1.0; 3], rates: vec![] }.check(), Err(StateFault::Length { walls: 3, got: 0 }));
+        assert_eq!(State::undisplaced(&Parameters::along_nail(5).unwrap()).check(), Ok(()));
+    }
+}
