@@ -1,0 +1,26 @@
+//! Transients against the reference trajectories of tests/reference, where vessels close, and where input is extreme.
+
+mod closing;
+mod extremes;
+mod live;
+mod memory;
+mod order;
+mod random;
+mod reference;
+mod tolerance;
+
+use lunula_hemodynamics::{Load, Loads, Parameters, State};
+
+/// The state of no load, as in the reference tables.
+pub(crate) fn rest() -> State {
+    State { lumens: vec![1.927_397_108_816_434_3, 1.927_397_108_816_434_3, 2.076_925_007_320_9], rates: vec![0.0; 3] }
+}
+
+pub(crate) fn load(text: &str) -> Load {
+    text.parse().expect(text)
+}
+
+/// Pressures on the two surfaces over the blood pressures of the thesis.
+pub(crate) fn loads(proximal: &str, distal: &str) -> Loads {
+    Loads::on(&Parameters::thesis(), load(proximal), load(distal))
+}
