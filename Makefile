@@ -11,7 +11,7 @@ help:
 	@echo "make demo   build, run the main jobs on generated scenes, say where the pictures are"
 	@echo "make test   build and run every test"
 	@echo "make lint   formatting, clippy and documentation, all without warnings"
-	@echo "make bench  speed against only decoding, and against Python with OpenCV, scikit-image, pandas, numpy and scikit-learn"
+	@echo "make bench  speed against only decoding, and against Python with OpenCV, scikit-image, pandas, numpy and scikit-learn, against diffsol"
 
 demo: system
 	cargo build --release --locked
@@ -29,6 +29,9 @@ demo: system
 	$(LUNULA) evaluate $(DEMO)/predictor/force.json $(DEMO)/touch/random/log.csv --out $(DEMO)/predictor/random
 	$(LUNULA) analyse $(DEMO)/predictor/force.json --out $(DEMO)/predictor/modes
 	$(LUNULA) prune $(DEMO)/touch/1/log.csv $(DEMO)/touch/2/log.csv --validate $(DEMO)/touch/3/log.csv --out $(DEMO)/predictor/prune
+	$(LUNULA) simulate --pf1 step:5000@0..2 --pf2 step:5000@0..2 --with-loads --out $(DEMO)/hemodynamics/steps.csv
+	$(LUNULA) simulate --static 0..12000/50 --load distal --out $(DEMO)/hemodynamics/static.csv
+	$(LUNULA) fit $(DEMO)/hemodynamics/steps.csv --free k_C,b_C,k_V,b_V --set k_C1_N_per_m=7e4 --set k_C2_N_per_m=7e4 --set k_V_N_per_m=1500 --between held --unloaded-before --out $(DEMO)/hemodynamics/fit.json
 	@echo
 	@echo "Average coloration of 16 generated subjects in eight poses:"
 	@echo "  $(DEMO)/coloration/report.html            everything on one page"
@@ -65,6 +68,7 @@ bench: system
 	cargo bench --locked --bench posture
 	cargo bench --locked --bench align
 	cargo bench --locked -p lunula-predictor
+	cargo bench --locked -p lunula-hemodynamics
 
 # Installs the packages of system-packages.txt that are missing; does nothing where all are there.
 system:

@@ -229,7 +229,12 @@ pub fn beside(table: &Path, ending: &str) -> PathBuf {
 pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     let refused = |why: io::Error| WriteError::File { path: path.to_owned(), why: why.to_string() };
     let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut file = tempfile::Builder::new().prefix(".lunula-").tempfile_in(folder).map_err(refused)?;
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".lunula-");
+    // As any new file: a temporary one is its owner's alone.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let mut file = builder.tempfile_in(folder).map_err(refused)?;
     io::Write::write_all(&mut file, bytes).map_err(refused)?;
     file.persist(path).map_err(|e| refused(e.error))?;
     Ok(())

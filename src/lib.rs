@@ -3,7 +3,8 @@
 //! Photographs of nails become average coloration maps with a standard deviation per pixel ([`photo`]), as in section 4.2.2
 //! of S. Mascaro's thesis on fingernail sensors; videos of a finger with coloured markers become joint angles ([`posture`]),
 //! as in 3.2.3 and 3.3.5, with the time that a [`clock`] in the picture tells; [`align`] brings the angles onto the rows of photodiode
-//! and force logs; [`predictor`] makes of those models of force and posture, as in chapter 5. [`phantom`] makes such photographs, videos and logs with exact truth; [`tradeoff`] measures error against
+//! and force logs; [`predictor`] makes of those models of force and posture, as in chapter 5. [`hemodynamics`] is the blood under the nail
+//! that the photodiodes see, as in 4.3. [`phantom`] makes such photographs, videos and logs with exact truth; [`tradeoff`] measures error against
 //! run time. [`video`], [`table`], [`figure`], [`files`], [`flexion`], [`labelme`], [`log`], [`stages`] and [`timebase`] are the ground floor that these stand on.
 //!
 //! Everywhere: the centre of a picture's top-left pixel is (0, 0), x to the right, y down; units are part of a name
@@ -14,6 +15,7 @@ pub mod clock;
 pub mod figure;
 pub mod files;
 pub mod flexion;
+pub mod hemodynamics;
 pub mod labelme;
 pub mod log;
 pub mod phantom;

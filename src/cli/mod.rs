@@ -3,6 +3,7 @@
 //! Exit status: 0 all done; 1 done, but some inputs failed (each is named on standard error); 2 nothing done; 130 interrupted.
 
 mod align;
+mod hemodynamics;
 mod phantom;
 mod photos;
 mod posture;
@@ -50,6 +51,8 @@ enum Command {
     Predict(predictor::PredictArgs),
     Analyse(predictor::AnalyseArgs),
     Prune(predictor::PruneArgs),
+    Simulate(Box<hemodynamics::SimulateArgs>),
+    Fit(Box<hemodynamics::FitArgs>),
     Phantom(phantom::PhantomArgs),
     Tradeoff(tradeoff::TradeoffArgs),
     Trajectory(Box<trajectory::TrajectoryArgs>),
@@ -94,6 +97,8 @@ pub(crate) fn run<const VIDEO: bool>() -> ExitCode {
         Command::Predict(args) => predictor::predict(&args),
         Command::Analyse(args) => predictor::analyse(&args),
         Command::Prune(args) => predictor::prune(&args),
+        Command::Simulate(args) => hemodynamics::simulate(&args),
+        Command::Fit(args) => hemodynamics::fit(&args),
         Command::Posture(args) if VIDEO => posture::run(&args),
         Command::Posture(_) => hand_over(),
         Command::Phantom(args) => phantom::run::<VIDEO>(&args),

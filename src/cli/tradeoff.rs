@@ -12,7 +12,8 @@ use lunula::phantom::trajectory::Trajectory;
 use lunula::phantom::video::{self, Scene, VideoOptions};
 use lunula::tradeoff::Row;
 use lunula::tradeoff::{
-    align as align_jobs, photos as photo_jobs, posture as posture_jobs, predictor as predictor_jobs,
+    align as align_jobs, hemodynamics as hemodynamics_jobs, photos as photo_jobs, posture as posture_jobs,
+    predictor as predictor_jobs,
 };
 
 use super::phantom::SceneArg;
@@ -31,6 +32,7 @@ enum Job {
     Posture(PostureArgs),
     Align(AlignArgs),
     Predictor(PredictorArgs),
+    Hemodynamics(HemodynamicsArgs),
 }
 
 /// What every trade-off takes.
@@ -120,12 +122,31 @@ struct PredictorArgs {
     measured: Measured,
 }
 
+/// Step responses of the hemodynamic model for every tolerance, order and mode, with stability maps (stability.csv, .png, .svg)
+///
+/// The error is the largest of any displacement over its nominal diameter; the reference is the full model at its tightest tolerance.
+#[derive(Debug, Args)]
+struct HemodynamicsArgs {
+    /// Folder for the results
+    #[arg(long)]
+    out: PathBuf,
+    /// Other solvers on the same responses: a table solver,rtol,error,microseconds[,evaluations], drawn beside (times on this machine only)
+    #[arg(long, value_name = "FILE.csv")]
+    peers: Option<PathBuf>,
+    /// Runs of each setting; the median time counts
+    #[arg(long, default_value_t = 9, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    repeats: u16,
+    #[command(flatten)]
+    common: Common,
+}
+
 const POSES: [Pose; 4] = [Pose::Nominal, Pose::Normal, Pose::LateralPositive, Pose::Extension];
 
 pub(super) fn run<const VIDEO: bool>(args: &TradeoffArgs) -> anyhow::Result<Outcome> {
     match &args.job {
         Job::Photos(args) => photos(args),
         Job::Predictor(args) => predictor(args),
+        Job::Hemodynamics(args) => hemodynamics(args),
         Job::Posture(args) if VIDEO => posture(args),
         Job::Align(args) if VIDEO => align(args),
         Job::Posture(_) | Job::Align(_) => hand_over(),
@@ -224,6 +245,17 @@ fn predictor(args: &PredictorArgs) -> anyhow::Result<Outcome> {
     finish("predictor", &rows, &refused, measured)
 }
 
+fn hemodynamics(args: &HemodynamicsArgs) -> anyhow::Result<Outcome> {
+    args.common.start()?;
+    let peers = args.peers.as_deref().map(hemodynamics_jobs::read_peers).transpose()?.unwrap_or_default();
+    let settings = hemodynamics_jobs::Settings { repeats: usize::from(args.repeats) };
+    let (rows, refused) = hemodynamics_jobs::measure(&settings)?;
+    let maps = hemodynamics_jobs::stability()?;
+    hemodynamics_jobs::write(&rows, &peers, &maps, &args.out)?;
+    let all: Vec<Row> = rows.into_iter().chain(peers).collect();
+    tell("hemodynamics", &all, &refused, &args.out, &args.common)
+}
+
 /// The tables and logs of a folder, and the logs of its folders, by name.
 fn recordings(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
     let mut found = Vec::new();
@@ -243,8 +275,12 @@ fn recordings(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
 
 fn finish(job: &str, rows: &[Row], warnings: &[String], measured: &Measured) -> anyhow::Result<Outcome> {
     let Measured { out, common, .. } = measured;
-    common.warn(warnings);
     lunula::tradeoff::write(rows, &format!("lunula {job}"), out)?;
+    tell(job, rows, warnings, out, common)
+}
+
+fn tell(job: &str, rows: &[Row], warnings: &[String], out: &Path, common: &Common) -> anyhow::Result<Outcome> {
+    common.warn(warnings);
     common.print_json(&serde_json::json!({
         "job": format!("tradeoff {job}"),
         "version": env!("CARGO_PKG_VERSION"),

@@ -214,7 +214,7 @@ impl Plot {
         Y: Ranged<ValueType = f64>,
     {
         let (across, down) = chart.plotting_area().get_pixel_range();
-        let mut points: Vec<&Point> = self.drawable().collect();
+        let mut points: Vec<&Point> = self.drawable().filter(|point| !point.label.is_empty()).collect();
         points.sort_by(|a, b| a.x.total_cmp(&b.x));
         // Left, top, right, bottom of dots and names.
         let dot = |(x, y): (i32, i32)| [x - DOT_PX, y - DOT_PX, x + DOT_PX, y + DOT_PX];

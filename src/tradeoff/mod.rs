@@ -3,6 +3,7 @@
 //! It calls the same entry as the command line, so that a figure on a curve is the figure a user gets.
 
 pub mod align;
+pub mod hemodynamics;
 pub mod photos;
 pub mod posture;
 pub mod predictor;
@@ -39,6 +40,11 @@ pub struct Row {
 /// # Errors
 /// Where a file can't be written, or there is nothing to draw.
 pub fn write(rows: &[Row], title: &str, out: &Path) -> anyhow::Result<()> {
+    write_panels(rows, &panels(rows, title), out)
+}
+
+/// The same with panels of one's own.
+fn write_panels(rows: &[Row], panels: &[Plot], out: &Path) -> anyhow::Result<()> {
     std::fs::create_dir_all(out).with_context(|| out.display().to_string())?;
     let table = out.join("tradeoff.csv");
     let mut writer = csv::Writer::from_writer(Vec::new());
@@ -46,7 +52,7 @@ pub fn write(rows: &[Row], title: &str, out: &Path) -> anyhow::Result<()> {
         writer.serialize(row)?;
     }
     crate::files::write_whole(&table, &writer.into_inner().context("tradeoff.csv")?)?;
-    draw_log_log(&panels(rows, title), &out.join("tradeoff.png"), &out.join("tradeoff.svg"))
+    draw_log_log(panels, &out.join("tradeoff.png"), &out.join("tradeoff.svg"))
 }
 
 fn panels(rows: &[Row], title: &str) -> Vec<Plot> {

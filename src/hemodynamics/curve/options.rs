@@ -1,0 +1,153 @@
+//! Which equilibria are wanted.
+
+use std::str::FromStr;
+
+use lunula_hemodynamics::{Collapse, Load, LoadPath};
+use serde::Serialize;
+
+use crate::hemodynamics::choices::OpticsChoice;
+use crate::hemodynamics::given::GivenParameters;
+use crate::hemodynamics::grid::{multiple, multiples_within};
+
+/// What a load presses on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Pressed {
+    /// `P_F1`.
+    Proximal,
+    /// `P_F2`.
+    Distal,
+    /// `P_F1` and `P_F2` alike.
+    #[default]
+    Both,
+}
+
+impl Pressed {
+    /// `[P_F1, P_F2]` of a load.
+    #[must_use]
+    pub fn of(self, load_pa: f64) -> [f64; 2] {
+        match self {
+            Self::Proximal => [load_pa, 0.0],
+            Self::Distal => [0.0, load_pa],
+            Self::Both => [load_pa, load_pa],
+        }
+    }
+
+    /// As the crate calls it.
+    #[must_use]
+    pub fn path(self) -> LoadPath {
+        match self {
+            Self::Proximal => LoadPath::Proximal,
+            Self::Distal => LoadPath::Distal,
+            Self::Both => LoadPath::Both,
+        }
+    }
+
+    /// Its word.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Proximal => "proximal",
+            Self::Distal => "distal",
+            Self::Both => "both",
+        }
+    }
+}
+
+/// Loads from one to another by steps, Pa; the last is left out where the steps don't meet it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct LoadRange {
+    /// The first.
+    pub from_pa: f64,
+    /// Not beyond.
+    pub to_pa: f64,
+    /// Between two.
+    pub step_pa: f64,
+}
+
+/// More loads than a curve is told at.
+const MOST_LOADS: f64 = 1e5;
+
+impl LoadRange {
+    /// The loads, Pa.
+    #[must_use]
+    pub fn loads_pa(&self) -> Vec<f64> {
+        let count = multiples_within(self.to_pa - self.from_pa, self.step_pa) as usize;
+        (0..count).map(|k| self.from_pa + multiple(k, self.step_pa)).collect()
+    }
+}
+
+impl FromStr for LoadRange {
+    type Err = String;
+
+    /// `FROM..TO/STEP`, as `0..12000/100`; a single load is `FROM`.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || format!("{text:?} is no range of loads: write FROM..TO/STEP in pascals, as 0..12000/100");
+        let number = |part: &str| part.trim().parse().ok().filter(|value: &f64| value.is_finite()).ok_or_else(wrong);
+        let Some((from, rest)) = text.split_once("..") else {
+            let only = number(text)?;
+            return Ok(Self { from_pa: only, to_pa: only, step_pa: 1.0 });
+        };
+        let (to, step) = rest.split_once('/').ok_or_else(wrong)?;
+        let range = Self { from_pa: number(from)?, to_pa: number(to)?, step_pa: number(step)? };
+        if range.step_pa <= 0.0 {
+            return Err(format!("{text:?}: the step has to be more than 0 Pa, as 0..12000/100"));
+        }
+        if range.to_pa < range.from_pa {
+            return Err(format!("{text:?}: ends before it begins; write the smaller load first"));
+        }
+        let count = multiples_within(range.to_pa - range.from_pa, range.step_pa);
+        if count > MOST_LOADS {
+            return Err(format!("{text:?}: {count:.3e} loads are more than {MOST_LOADS:e}; choose a longer step"));
+        }
+        Ok(range)
+    }
+}
+
+/// Equilibria to be found.
+#[derive(Debug, Clone)]
+pub struct CurveOptions {
+    /// Of which nail.
+    pub parameters: GivenParameters,
+    /// `P_H`; none: the parameters'. A constant.
+    pub upstream: Option<Load>,
+    /// `P_L`; none: the parameters'. A constant.
+    pub downstream: Option<Load>,
+    /// What the loads press on.
+    pub pressed: Pressed,
+    /// The loads.
+    pub range: LoadRange,
+    /// What happens where a vessel closes.
+    pub collapse: Collapse,
+    /// How light depends on the capillaries.
+    pub optics: OpticsChoice,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_range_is_read_and_counted() {
+        let range: LoadRange = "0..12000/100".parse().unwrap();
+        let loads = range.loads_pa();
+        assert_eq!((loads.len(), loads[0], loads[120]), (121, 0.0, 12_000.0));
+        assert_eq!("5e3".parse::<LoadRange>().unwrap().loads_pa(), [5e3]);
+        assert_eq!("-100..100/150".parse::<LoadRange>().unwrap().loads_pa(), [-100.0, 50.0]);
+    }
+
+    #[test]
+    fn what_is_no_range_says_why() {
+        for (text, why) in [
+            ("0..1e9/1", "more than"),
+            ("5..1/1", "before"),
+            ("0..1/0", "more than 0"),
+            ("0..1", "FROM..TO/STEP"),
+            ("0..nan/1", "FROM..TO/STEP"),
+            ("a", "FROM..TO/STEP"),
+        ] {
+            let told = text.parse::<LoadRange>().unwrap_err();
+            assert!(told.contains(why), "{text}: {told}");
+        }
+    }
+}

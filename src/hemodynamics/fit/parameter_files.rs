@@ -1,0 +1,62 @@
+//! The fitted parameters as files: one for all whose photodiodes have the same offset and scaling.
+
+use std::path::PathBuf;
+
+use lunula_hemodynamics::{Calibration, FitResult, Parameters};
+
+use super::{FitOptions, FitOutputs, fitted};
+use crate::files::{Places, WriteError, beside};
+use crate::hemodynamics::HemodynamicsError;
+
+/// Parameter files and whose recordings each is for: one for all whose photodiodes have the same offset and scaling.
+pub(super) fn parameter_paths(options: &FitOptions, outputs: &FitOutputs) -> Vec<(PathBuf, Vec<usize>)> {
+    let label = |k: usize| match options.calibration {
+        Calibration::Fixed | Calibration::Shared => String::new(),
+        Calibration::PerSubject => options.subject(k).to_owned(),
+        Calibration::PerRecording => {
+            options.recordings[k].file_stem().unwrap_or_default().to_string_lossy().into_owned()
+        }
+    };
+    let mut labels: Vec<(String, Vec<usize>)> = Vec::new();
+    for k in 0..options.recordings.len() {
+        let shared = options.calibration != Calibration::PerRecording;
+        match labels.iter_mut().find(|(own, _)| shared && *own == label(k)) {
+            Some((_, own)) => own.push(k),
+            None => labels.push((label(k), vec![k])),
+        }
+    }
+    let plain = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' };
+    let names: Vec<String> = labels.iter().map(|(label, _)| label.chars().map(plain).collect()).collect();
+    let all = labels.len();
+    let one = |(k, (_, own)): (usize, (String, Vec<usize>))| {
+        // Recordings of several folders may have one name.
+        let name = &names[k];
+        let ending = match (all, names[..k].iter().filter(|before| *before == name).count()) {
+            (1, _) => ".toml".to_owned(),
+            (_, 0) => format!("-{name}.toml"),
+            (_, before) => format!("-{name}-{}.toml", before + 1),
+        };
+        (beside(&outputs.result, &ending), own)
+    };
+    labels.into_iter().enumerate().map(one).collect()
+}
+
+/// Writes the fitted parameters; tells where they will stand.
+pub(super) fn parameter_files(
+    options: &FitOptions,
+    result: &FitResult,
+    outputs: &FitOutputs,
+    places: &mut Places,
+) -> Result<Vec<PathBuf>, HemodynamicsError> {
+    let mut files = Vec::new();
+    for (path, own) in parameter_paths(options, outputs) {
+        // One subject's recordings may hold different photodiodes.
+        let with = |all: Parameters, &k: &usize| fitted::own_parameters(&all, &result.photodiodes, k);
+        let parameters = own.iter().fold(result.parameters.clone(), with);
+        let at = places.place(&path)?;
+        std::fs::write(&at, parameters.to_toml())
+            .map_err(|why| WriteError::File { path: path.clone(), why: why.to_string() })?;
+        files.push(path);
+    }
+    Ok(files)
+}

@@ -1,0 +1,220 @@
+//! Recorded responses: loads and photodiodes of a table, over time or static.
+
+use std::path::{Path, PathBuf};
+
+use lunula_hemodynamics::{Course, Load, LoadFault, Recording, Trace};
+
+use crate::hemodynamics::HemodynamicsError;
+use crate::hemodynamics::curve::Pressed;
+use crate::hemodynamics::given::{BLOOD, Columns, PRESSED, TIME, numbers};
+use crate::table::{Cell, Table, column_names};
+
+/// A measured force instead of pressures: the finger's force on the surface, newtons, negative where it presses.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ForceColumn {
+    /// Its name.
+    pub name: String,
+    /// The area that it presses on, m2.
+    pub area_m2: f64,
+    /// Where it presses.
+    pub pressed: Pressed,
+}
+
+/// A photodiode's column, and the capillary unit below it, from 0 at the proximal end.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PhotodiodeColumn {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: usize,
+}
+
+/// What a load does between two rows.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Between {
+    /// It goes straight.
+    #[default]
+    Straight,
+    /// It stays, and jumps at the next row.
+    Held,
+}
+
+/// How recordings are read.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct RecordingColumns {
+    /// What loads do between two rows of a recording over time.
+    pub between: Between,
+    /// Nothing pressed before the first row; otherwise its load did, for long.
+    pub unloaded_before: bool,
+    /// A force instead of `pf1_Pa` and `pf2_Pa`.
+    pub force: Option<ForceColumn>,
+    /// The photodiodes; none: all of `VP1`, `VP2`, .. that there are.
+    pub photodiodes: Vec<PhotodiodeColumn>,
+}
+
+/// A recording, read.
+#[derive(Debug, Clone)]
+pub(super) struct ReadRecording {
+    pub(super) path: PathBuf,
+    /// As in the report: the file's name.
+    pub(super) name: String,
+    pub(super) recording: Recording,
+    /// The photodiodes' names, as the traces of the recording.
+    pub(super) photodiodes: Vec<String>,
+    /// Samples' times, s; none of a static one.
+    pub(super) times_s: Option<Vec<f64>>,
+    /// `[P_F1, P_F2]` of each sample, Pa.
+    pub(super) pressed_pa: Vec<[f64; 2]>,
+    /// Photodiodes' cells that are empty.
+    pub(super) missing: usize,
+}
+
+/// Reads a recording of a model of `units` units.
+///
+/// # Errors
+/// Every fault with its row and column.
+pub(super) fn read(path: &Path, columns: &RecordingColumns, units: usize) -> Result<ReadRecording, HemodynamicsError> {
+    let refused = |what: String| HemodynamicsError::table(path, what);
+    let names = column_names(path)?;
+    let has = |name: &str| names.iter().any(|own| own == name);
+    let dynamic = has(TIME);
+    let mut needed: Vec<&str> = if dynamic { vec![TIME] } else { Vec::new() };
+    match &columns.force {
+        Some(force) => needed.push(&force.name),
+        None => needed.extend(PRESSED),
+    }
+    let wanted: &[&str] = if dynamic { &BLOOD } else { &[] };
+    let read = numbers(path, &needed, wanted, TIME)?;
+    if let Some(force) = &columns.force {
+        let forces = read.get(&force.name).unwrap_or_default();
+        if forces.iter().any(|&force_n| force_n > 0.0) && !forces.iter().any(|&force_n| force_n < 0.0) {
+            return Err(refused(format!(
+                "`{}` is never negative: nothing presses; the finger's force on the surface is negative where it presses, so turn its sign",
+                force.name
+            )));
+        }
+    }
+    let pressed_pa = pressed(&read, columns.force.as_ref());
+    let photodiodes = photodiodes(&names, columns, units).map_err(refused)?;
+    let table = Table::read(path)?;
+    let mut traces = Vec::new();
+    let mut missing = 0;
+    for one in &photodiodes {
+        let voltages_v = voltages(&table, &one.name)?;
+        missing += voltages_v.iter().filter(|value| value.is_nan()).count();
+        traces.push(Trace::new(one.unit, voltages_v));
+    }
+    let [proximal, distal] = [0, 1].map(|k| pressed_pa.iter().map(|both| both[k]).collect::<Vec<f64>>());
+    let times_s = read.get(TIME).map(<[f64]>::to_vec);
+    let course = match &times_s {
+        None => Course::Static { proximal_pa: proximal, distal_pa: distal },
+        Some(times_s) => {
+            let load = |values: &[f64], before: Option<f64>| {
+                load(times_s, values, columns.between, before).map_err(|why| refused(why.to_string()))
+            };
+            let blood = |name: &str| read.get(name).map(|values| load(values, None)).transpose();
+            let before = columns.unloaded_before.then_some(0.0);
+            Course::Transient {
+                times_s: times_s.clone(),
+                proximal: load(&proximal, before)?,
+                distal: load(&distal, before)?,
+                upstream: blood(BLOOD[0])?,
+                downstream: blood(BLOOD[1])?,
+            }
+        }
+    };
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    Ok(ReadRecording {
+        path: path.to_owned(),
+        recording: Recording { course, photodiodes: traces, subject: None },
+        name,
+        photodiodes: photodiodes.into_iter().map(|one| one.name).collect(),
+        times_s,
+        pressed_pa,
+        missing,
+    })
+}
+
+/// A jump at a row takes so long, s.
+const JUMP_S: f64 = 1e-9;
+
+/// The load that rows tell; `before` is its value before the first one, where that is another.
+fn load(times_s: &[f64], values: &[f64], between: Between, before: Option<f64>) -> Result<Load, LoadFault> {
+    let (mut times, mut loads) = (Vec::new(), Vec::new());
+    let mut last = before;
+    for (row, (&time_s, &value)) in times_s.iter().zip(values).enumerate() {
+        if let Some(last) = last.filter(|&last| last != value && (row == 0 || between == Between::Held)) {
+            // The jump begins at the row: just before it, and in the equilibrium before the first one, the load is still the old one.
+            times.push(time_s);
+            loads.push(last);
+            times.push((time_s + JUMP_S).max(time_s.next_up()));
+        } else {
+            times.push(time_s);
+        }
+        loads.push(value);
+        last = Some(value);
+    }
+    Load::table(&times, &loads)
+}
+
+/// `[P_F1, P_F2]` of each row.
+fn pressed(read: &Columns, force: Option<&ForceColumn>) -> Vec<[f64; 2]> {
+    let column = |name: &str| read.get(name).unwrap_or_default();
+    match force {
+        Some(force) => column(&force.name).iter().map(|force_n| force.pressed.of(-force_n / force.area_m2)).collect(),
+        None => column(PRESSED[0]).iter().zip(column(PRESSED[1])).map(|(first, second)| [*first, *second]).collect(),
+    }
+}
+
+/// The photodiodes to be fitted.
+fn photodiodes(names: &[String], columns: &RecordingColumns, units: usize) -> Result<Vec<PhotodiodeColumn>, String> {
+    if !columns.photodiodes.is_empty() {
+        for one in &columns.photodiodes {
+            if one.unit >= units {
+                return Err(format!(
+                    "--photodiode {}={}: the model has {units} units; --units says how many",
+                    one.name,
+                    one.unit + 1
+                ));
+            }
+        }
+        let own: Vec<PhotodiodeColumn> =
+            columns.photodiodes.iter().filter(|one| names.contains(&one.name)).cloned().collect();
+        let wanted: Vec<&str> = columns.photodiodes.iter().map(|one| one.name.as_str()).collect();
+        return if own.is_empty() {
+            Err(format!("has none of the photodiodes {}; its columns are {}", wanted.join(", "), names.join(", ")))
+        } else {
+            Ok(own)
+        };
+    }
+    let usual = (0..units).map(|unit| PhotodiodeColumn { name: format!("VP{}", unit + 1), unit });
+    let own: Vec<PhotodiodeColumn> = usual.filter(|one| names.contains(&one.name)).collect();
+    if own.is_empty() {
+        return Err(format!(
+            "has none of VP1, .. VP{units}; --photodiode P3=1 tells which column stands above which unit; its columns are {}",
+            names.join(", ")
+        ));
+    }
+    Ok(own)
+}
+
+/// A photodiode's column; NaN where a cell is empty.
+fn voltages(table: &Table, name: &str) -> Result<Vec<f64>, HemodynamicsError> {
+    let mut voltages = Vec::with_capacity(table.rows());
+    table.each_cell(name, |row, cell| {
+        voltages.push(match cell {
+            Cell::Missing => f64::NAN,
+            Cell::Number(value) if value.is_finite() => value,
+            Cell::Number(value) => {
+                let what =
+                    format!("`{value}` is no finite number; a photodiode's cell may be empty, but no other thing");
+                return Err(table.cell(row, name, what));
+            }
+            Cell::Text(text) => {
+                return Err(table.cell(row, name, format!("`{text}` is no number; correct it or leave it empty")));
+            }
+        });
+        Ok(())
+    })?;
+    Ok(voltages)
+}

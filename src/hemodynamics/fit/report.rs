@@ -1,0 +1,176 @@
+//! What a fit found, and how sure it is.
+
+use std::path::PathBuf;
+
+use lunula_hemodynamics::{Bound, FitResult, Stop};
+use serde::Serialize;
+
+use crate::stages::Stage;
+
+/// A free group of parameters.
+#[derive(Debug, Clone, Serialize)]
+pub struct FittedGroup {
+    /// Their names in files.
+    pub names: Vec<String>,
+    /// What they were at the start, each in its unit.
+    pub start: Vec<f64>,
+    /// Their fitted values.
+    pub values: Vec<f64>,
+    /// Their standard errors; none where the recordings don't determine them, or at a bound.
+    pub standard_errors: Option<Vec<f64>>,
+    /// Below and above: where the squares, all else fitted anew, are higher by four variances of the noise, which is two standard errors for
+    /// what acts straight and right for what does not. None where a bound comes first.
+    pub interval: [Option<Vec<f64>>; 2],
+    /// `lower` or `upper` where the fit ended on that bound.
+    pub at_bound: Option<&'static str>,
+    /// Whether the recordings determine it.
+    pub identifiable: bool,
+}
+
+/// A photodiode's offset and scaling.
+#[derive(Debug, Clone, Serialize)]
+pub struct FittedPhotodiode {
+    /// The unit below it, counted from 1.
+    pub unit: usize,
+    /// The recordings that share it.
+    pub recordings: Vec<String>,
+    /// Their subjects; none where no subjects were named.
+    pub subjects: Vec<String>,
+    /// `V_0`, V.
+    pub offset_v: f64,
+    /// Its standard error.
+    pub offset_standard_error_v: Option<f64>,
+    /// `V_1`, V.
+    pub scaling_v: f64,
+    /// Its standard error.
+    pub scaling_standard_error_v: Option<f64>,
+    /// RMS of its residuals, V.
+    pub residual_rms_v: f64,
+}
+
+/// Parameters that can change together with next to no change of the voltages.
+#[derive(Debug, Clone, Serialize)]
+pub struct FittedCombination {
+    /// Names and weights.
+    pub weights: Vec<(String, f64)>,
+    /// SD of the change along it; none where the voltages don't change at all.
+    pub sd: Option<f64>,
+}
+
+/// Another minimum that the recordings don't tell from the best one.
+#[derive(Debug, Clone, Serialize)]
+pub struct FittedRival {
+    /// The values of each free group there.
+    pub values: Vec<Vec<f64>>,
+    /// By how much the sum of squares is larger, over the variance of the residuals.
+    pub rise: f64,
+}
+
+/// A recording as it was read.
+#[derive(Debug, Clone, Serialize)]
+pub struct RecordingReport {
+    /// The file.
+    pub file: PathBuf,
+    /// Whose.
+    pub subject: String,
+    /// `over time` or `static`.
+    pub kind: &'static str,
+    /// Its rows.
+    pub samples: usize,
+    /// Its photodiodes.
+    pub photodiodes: Vec<String>,
+    /// Photodiodes' cells that are empty.
+    pub missing: usize,
+    /// RMS of measured less fitted, V, a photodiode each.
+    pub residual_rms_v: Vec<Option<f64>>,
+    /// SD of the noise by which the fit weighs it, V, a photodiode each: as given, or estimated from the residuals.
+    pub noise_v: Vec<f64>,
+}
+
+/// What a fit found.
+#[derive(Debug, Clone, Serialize)]
+pub struct FitReport {
+    /// Which job.
+    pub job: &'static str,
+    /// The program's version.
+    pub version: &'static str,
+    /// The recordings.
+    pub recordings: Vec<RecordingReport>,
+    /// Why the fit stopped.
+    pub stopped: &'static str,
+    /// Whether it stopped because there was nothing left to gain.
+    pub converged: bool,
+    /// The free groups.
+    pub free: Vec<FittedGroup>,
+    /// Offsets and scalings.
+    pub photodiodes: Vec<FittedPhotodiode>,
+    /// What the rows and columns of the correlations are.
+    pub names: Vec<String>,
+    /// Correlations of the estimates; none where one has no standard error.
+    pub correlations: Vec<Vec<Option<f64>>>,
+    /// SD of the residuals, V; where photodiodes differ in noise, that of the quietest.
+    pub residual_sd_v: f64,
+    /// Share of the variance that is explained.
+    pub r2: Option<f64>,
+    /// Voltages that were fitted.
+    pub values: usize,
+    /// Voltages less unknowns that they determine.
+    pub freedom: usize,
+    /// What the recordings don't determine.
+    pub not_identifiable: Vec<FittedCombination>,
+    /// Other minima, found from other starts, that the recordings don't tell from this one.
+    pub rivals: Vec<FittedRival>,
+    /// Points in the space of parameters that were tried.
+    pub points: u64,
+    /// Those of them at which the model has no response.
+    pub points_refused: u64,
+    /// All parameters, those that were held among them, by their names in files.
+    #[serde(serialize_with = "crate::hemodynamics::as_map")]
+    pub parameters: Vec<(String, f64)>,
+    /// The fitted parameters as files for `--params`.
+    pub parameter_files: Vec<PathBuf>,
+    /// Measured and fitted voltages.
+    pub table: PathBuf,
+    /// What was not asked for.
+    pub left_out: Vec<String>,
+    /// What whoever reads this should know.
+    pub warnings: Vec<String>,
+    /// Always empty: recordings are fitted all or not at all.
+    pub failed: Vec<String>,
+    /// The pictures.
+    pub pictures: Vec<PathBuf>,
+    /// Time by stage.
+    pub stages: Vec<Stage>,
+    /// Seconds from start to end, this report not counted.
+    pub wall_s: f64,
+}
+
+/// Why a fit stopped, in words, and whether that is convergence.
+pub(super) fn stopped(stop: Stop) -> (&'static str, bool) {
+    match stop {
+        Stop::Converged => ("nothing was left to gain", true),
+        Stop::Exact => ("the residuals are rounding", true),
+        Stop::Precision => ("no step that counts was left within the simulations' precision", true),
+        Stop::Points => ("the points allowed were used", false),
+    }
+}
+
+/// The free groups of a result.
+pub(super) fn groups(result: &FitResult, start: &lunula_hemodynamics::Parameters) -> Vec<FittedGroup> {
+    let one = |group: &lunula_hemodynamics::Group| FittedGroup {
+        names: group.symbols.iter().map(ToString::to_string).collect(),
+        start: group.symbols.iter().filter_map(|&symbol| start.get(symbol)).collect(),
+        values: group.values.clone(),
+        standard_errors: group.standard_errors.clone(),
+        interval: group.interval.clone(),
+        at_bound: group.at_bound.map(|bound| if bound == Bound::Lower { "lower" } else { "upper" }),
+        identifiable: group.identifiable,
+    };
+    result.groups.iter().map(one).collect()
+}
+
+/// Correlations, none where they are not known.
+pub(super) fn correlations(result: &FitResult) -> Vec<Vec<Option<f64>>> {
+    let known = |value: &f64| value.is_finite().then_some(*value);
+    result.correlations.iter().map(|row| row.iter().map(known).collect()).collect()
+}

@@ -1,0 +1,76 @@
+//! Loads over time from options and a file.
+
+use std::path::PathBuf;
+
+use lunula_hemodynamics::{Load, LoadFault, Loads, Parameters};
+
+use super::columns::{BLOOD, Columns, PRESSED, TIME, numbers};
+use crate::hemodynamics::HemodynamicsError;
+
+/// What presses, over time.
+#[derive(Debug, Clone, Default)]
+pub struct GivenLoads {
+    /// `P_F1`; none: nothing presses there.
+    pub proximal: Option<Load>,
+    /// `P_F2`; none: nothing presses there.
+    pub distal: Option<Load>,
+    /// `P_H`; none: the parameters' constant.
+    pub upstream: Option<Load>,
+    /// `P_L`; none: the parameters' constant.
+    pub downstream: Option<Load>,
+    /// A table `time_s,pf1_Pa,pf2_Pa` instead of `P_F1` and `P_F2`, and `ph_Pa`, `pl_Pa` where it has them.
+    pub file: Option<PathBuf>,
+}
+
+/// Loads, and until when a file knows them.
+#[derive(Debug, Clone)]
+pub(in crate::hemodynamics) struct ReadLoads {
+    pub(in crate::hemodynamics) loads: Loads,
+    /// The first and the last time of the file.
+    pub(in crate::hemodynamics) known_s: Option<[f64; 2]>,
+}
+
+impl GivenLoads {
+    /// Whether nothing presses.
+    #[must_use]
+    pub fn is_none(&self) -> bool {
+        self.proximal.is_none() && self.distal.is_none() && self.file.is_none()
+    }
+
+    /// Reads and checks them.
+    ///
+    /// # Errors
+    /// [`HemodynamicsError`] with every fault of the file by row and column.
+    pub(in crate::hemodynamics) fn read(&self, parameters: &Parameters) -> Result<ReadLoads, HemodynamicsError> {
+        let nothing = || Load::constant(0.0).expect("zero is finite");
+        let or_nothing = |load: &Option<Load>| load.clone().unwrap_or_else(nothing);
+        let mut loads = Loads::on(parameters, or_nothing(&self.proximal), or_nothing(&self.distal));
+        let mut known_s = None;
+        if let Some(path) = &self.file {
+            let columns = numbers(path, &[TIME, PRESSED[0], PRESSED[1]], &BLOOD, TIME)?;
+            known_s = place_columns(&columns, &mut loads)?;
+        }
+        for (given, place) in [(&self.upstream, &mut loads.upstream), (&self.downstream, &mut loads.downstream)] {
+            if let Some(load) = given {
+                *place = load.clone();
+            }
+        }
+        Ok(ReadLoads { loads, known_s })
+    }
+}
+
+/// Puts the columns of a table of loads into `loads`; returns its first and last time.
+///
+/// # Errors
+/// What the crate refuses of them, with the file.
+fn place_columns(columns: &Columns, loads: &mut Loads) -> Result<Option<[f64; 2]>, HemodynamicsError> {
+    let refused = |why: LoadFault| HemodynamicsError::table(&columns.path, why);
+    let times_s = columns.get(TIME).unwrap_or_default();
+    let places = [&mut loads.proximal, &mut loads.distal, &mut loads.upstream, &mut loads.downstream];
+    for (name, place) in PRESSED.iter().chain(&BLOOD).zip(places) {
+        if let Some(values) = columns.get(name) {
+            *place = Load::table(times_s, values).map_err(refused)?;
+        }
+    }
+    Ok(times_s.first().zip(times_s.last()).map(|(first, last)| [*first, *last]))
+}

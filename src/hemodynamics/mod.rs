@@ -1,0 +1,44 @@
+//! The hemodynamic model of section 4.3: loads in, responses, equilibria, fits and pictures out.
+//!
+//! The model and its mathematics are the crate `lunula-hemodynamics`'; here are the files and the jobs of the command line, an entry each:
+//! [`simulate()`], [`curve()`], [`fit()`].
+
+mod choices;
+mod curve;
+mod error;
+mod figures;
+mod fit;
+mod given;
+mod grid;
+mod response;
+mod section;
+mod simulate;
+mod solve;
+
+/// The crate that does the mathematics.
+pub use lunula_hemodynamics as model;
+use lunula_hemodynamics::Parameters;
+
+pub use choices::OpticsChoice;
+pub use curve::{CurveOptions, CurveOutputs, CurvePoint, CurveReport, Fold, LoadRange, Pressed, curve, curve_plan};
+pub use error::HemodynamicsError;
+pub use fit::{
+    Between, FitOptions, FitOutputs, FitReport, FittedCombination, FittedGroup, FittedPhotodiode, FittedRival,
+    ForceColumn, PhotodiodeColumn, RecordingColumns, RecordingReport, fit, fit_plan,
+};
+pub use given::{GivenLoads, GivenParameters, Start};
+pub use response::Response;
+pub use section::section_4_3;
+pub use simulate::{Collapsed, SimulateOptions, SimulateOutputs, SimulateReport, Work, simulate, simulate_plan};
+pub use solve::{Run, RunSettings, respond};
+
+/// Parameters by their names in files.
+fn named(parameters: &Parameters) -> Vec<(String, f64)> {
+    let of = |symbol: lunula_hemodynamics::Symbol| Some((symbol.to_string(), parameters.get(symbol)?));
+    parameters.symbols().into_iter().filter_map(of).collect()
+}
+
+/// Names and values as an object, in their order.
+fn as_map<S: serde::Serializer>(values: &[(String, f64)], to: S) -> Result<S::Ok, S::Error> {
+    to.collect_map(values.iter().map(|(name, value)| (name, value)))
+}

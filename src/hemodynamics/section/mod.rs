@@ -1,0 +1,168 @@
+//! Figures 76 to 82 of section 4.3 made anew: the thesis' simulations, and its experiments on eight generated people.
+//!
+//! In: a folder. Out: the pictures in it, and Markdown with every number that is told of them ([`section_4_3`]); the same bytes each time.
+//! "Literal" are the thesis' orders of magnitude taken as they are printed; "tuned" has stiffness and damping of capillaries and vein changed
+//! within tenfold until step responses have the time constants that the thesis measured (0.16/0.12 s proximal, 0.18/0.36 s distal).
+
+mod experiments;
+mod people;
+mod statics;
+mod steps;
+mod tune;
+
+use std::fmt::Write;
+use std::path::Path;
+
+use lunula_hemodynamics::Parameters;
+
+use crate::files::Staging;
+use crate::hemodynamics::Response;
+use crate::hemodynamics::curve::Pressed;
+use crate::hemodynamics::figures::N_PER_CM2;
+use steps::{Signal, Stepped, change, steps};
+use tune::{GROUPS, constants_s, scaled, tune};
+
+/// What the thesis measured, s: proximal loading and unloading, distal loading and unloading.
+const MEASURED_S: [f64; 4] = [0.16, 0.12, 0.18, 0.36];
+/// The step at which the model is tuned to that, Pa.
+const TUNED_AT_PA: f64 = 1e4;
+/// Tolerance of what is drawn and told.
+const RTOL: f64 = 1e-9;
+
+/// A set of parameters with its name.
+struct Named {
+    name: &'static str,
+    parameters: Parameters,
+}
+
+/// Draws Fig. 76 to 82 into `out` and tells their numbers as Markdown.
+///
+/// # Errors
+/// Where a file can't be written.
+pub fn section_4_3(out: &Path) -> anyhow::Result<String> {
+    let staging = Staging::new(out)?;
+    let mut text = String::new();
+    let literal = Parameters::thesis();
+    let factors = tune(&literal, MEASURED_S, TUNED_AT_PA);
+    let tuned = scaled(&literal, &factors).unwrap_or_else(|| literal.clone());
+    tell_tuning(&mut text, &literal, &tuned, &factors)?;
+    let sets =
+        [Named { name: "literal", parameters: literal.clone() }, Named { name: "tuned", parameters: tuned.clone() }];
+    for set in &sets {
+        figure_76(&mut text, set, &staging)?;
+    }
+    for set in &sets {
+        figure_77(&mut text, set, &staging)?;
+    }
+    statics::figure_78(&mut text, &sets, &staging)?;
+    experiments::figures(&mut text, &literal, &tuned, &staging)?;
+    staging.commit()?;
+    Ok(text)
+}
+
+/// Three digits, or a dash where nothing is known.
+fn figure(value: Option<f64>) -> String {
+    value.map_or("-".to_owned(), |value| format!("{value:.3}"))
+}
+
+fn tell_tuning(text: &mut String, literal: &Parameters, tuned: &Parameters, factors: &[f64; 4]) -> anyhow::Result<()> {
+    writeln!(text, "Time constants at {} N/cm2 (s), loading / unloading:\n", TUNED_AT_PA / N_PER_CM2)?;
+    writeln!(text, "| | VP1, proximal step | VP2, distal step |\n|---|---|---|")?;
+    for (name, parameters) in [("literal", literal), ("tuned", tuned)] {
+        let found = constants_s(parameters, TUNED_AT_PA).unwrap_or([f64::NAN; 4]);
+        let [a, b, c, d] = found.map(|value| format!("{value:.3}"));
+        writeln!(text, "| {name} | {a} / {b} | {c} / {d} |")?;
+    }
+    let [a, b, c, d] = MEASURED_S;
+    writeln!(text, "| measured in the thesis | {a} / {b} | {c} / {d} |\n")?;
+    let factors: Vec<String> =
+        GROUPS.iter().zip(factors).map(|((name, _), factor)| format!("{name} x {factor:.3}")).collect();
+    writeln!(text, "Tuned: {}.\n", factors.join(", "))?;
+    Ok(())
+}
+
+fn loads_pa() -> Vec<f64> {
+    (1..=10).map(|k| 1e3 * f64::from(k)).collect()
+}
+
+/// The steps of a set that have an answer: under tuned values a vessel may close before 1 N/cm2.
+fn answered(parameters: &Parameters, pressed: Pressed) -> (Vec<Stepped>, Option<f64>) {
+    let mut answered = Vec::new();
+    for load_pa in loads_pa() {
+        match steps(parameters, pressed, &[load_pa], RTOL) {
+            Ok(found) => answered.extend(found),
+            Err(_) => return (answered, Some(load_pa)),
+        }
+    }
+    (answered, None)
+}
+
+fn say_closed(text: &mut String, closed: Option<f64>) -> anyhow::Result<()> {
+    if let Some(load_pa) = closed {
+        writeln!(text, "\nFrom {} N/cm2 on, the model has no answer: a vessel closes.", load_pa / N_PER_CM2)?;
+    }
+    writeln!(text)?;
+    Ok(())
+}
+
+/// Steps on the proximal surface.
+fn figure_76(text: &mut String, set: &Named, staging: &Staging) -> anyhow::Result<()> {
+    let (stepped, closed) = answered(&set.parameters, Pressed::Proximal);
+    let parameters = &set.parameters;
+    let capillary = |response: &Response| response.diameters_um(parameters, 0);
+    let vein = |response: &Response| response.diameters_um(parameters, 2);
+    let light = |response: &Response| response.photodiode_v(0);
+    let title = format!("Steps in PF1, {} values: capillaries (C1 and C2 alike)", set.name);
+    let [png, svg] = ["png", "svg"].map(|ending| format!("fig-76-{}.{ending}", set.name));
+    steps::draw(
+        &stepped,
+        &[
+            Signal { title: &title, y: "diameter, um", of: &capillary },
+            Signal { title: "Vein", y: "diameter, um", of: &vein },
+            Signal { title: "Photodiode", y: "VP1, V", of: &light },
+        ],
+        &staging.place(&png)?,
+        &staging.place(&svg)?,
+    )?;
+    writeln!(
+        text,
+        "Fig. 76, {} values: a step in P_F1; changes of diameters (um) and of VP1 (mV per volt of scaling), time constants of loading / unloading (s)\n",
+        set.name
+    )?;
+    writeln!(text, "| N/cm2 | capillary | vein | VP1 | capillary | vein | VP1 |\n|---|---|---|---|---|---|---|")?;
+    for one in &stepped {
+        let times_s = &one.response.times_s;
+        let of = [capillary(&one.response), vein(&one.response), light(&one.response)]
+            .map(|values| change(times_s, &values));
+        let sizes = [of[0].size, of[1].size, 1e3 * of[2].size].map(|size| format!("{size:.3}"));
+        let constants = of.map(|one| one.constants_s.map(figure).join(" / "));
+        writeln!(text, "| {} | {} | {} |", one.load_pa / N_PER_CM2, sizes.join(" | "), constants.join(" | "))?;
+    }
+    say_closed(text, closed)
+}
+
+/// Steps on both surfaces.
+fn figure_77(text: &mut String, set: &Named, staging: &Staging) -> anyhow::Result<()> {
+    let (stepped, closed) = answered(&set.parameters, Pressed::Both);
+    let light = |unit: usize| move |response: &Response| response.photodiode_v(unit);
+    let [png, svg] = ["png", "svg"].map(|ending| format!("fig-77-{}.{ending}", set.name));
+    let title = format!("Steps in PF1 and PF2, {} values: proximal photodiode", set.name);
+    let signals = [
+        Signal { title: &title, y: "VP1, V", of: &light(0) },
+        Signal { title: "Distal photodiode", y: "VP2, V", of: &light(1) },
+    ];
+    steps::draw(&stepped, &signals, &staging.place(&png)?, &staging.place(&svg)?)?;
+    writeln!(
+        text,
+        "Fig. 77, {} values: a step in P_F1 and P_F2; changes (mV per volt of scaling), time constants of loading / unloading (s)\n",
+        set.name
+    )?;
+    writeln!(text, "| N/cm2 | VP1 | VP2 | VP1 | VP2 |\n|---|---|---|---|---|")?;
+    for one in &stepped {
+        let of = [0, 1].map(|unit| change(&one.response.times_s, &one.response.photodiode_v(unit)));
+        let sizes = of.map(|one| format!("{:.3}", 1e3 * one.size));
+        let constants = of.map(|one| one.constants_s.map(figure).join(" / "));
+        writeln!(text, "| {} | {} | {} |", one.load_pa / N_PER_CM2, sizes.join(" | "), constants.join(" | "))?;
+    }
+    say_closed(text, closed)
+}

@@ -1,0 +1,125 @@
+//! What a run did, and how sure it is.
+
+use std::path::PathBuf;
+
+use lunula_hemodynamics::Loads;
+use serde::Serialize;
+
+use crate::hemodynamics::choices::OpticsChoice;
+use crate::stages::Stage;
+
+/// What a solver did.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct Work {
+    /// Stages of the method.
+    pub stages: u32,
+    /// Steps that were taken.
+    pub steps: u64,
+    /// Steps that were tried and not taken.
+    pub rejected: u64,
+    /// Evaluations of the equations, all walls at one state.
+    pub evaluations: u64,
+    /// Jacobians that were evaluated and factored.
+    pub factorizations: u64,
+    /// The smallest step, s; none where there was no step.
+    pub smallest_step_s: Option<f64>,
+    /// The largest step, s.
+    pub largest_step_s: Option<f64>,
+}
+
+/// A vessel that closed.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Collapsed {
+    /// Which, by the thesis' name.
+    pub vessel: String,
+    /// When, s.
+    pub time_s: f64,
+}
+
+impl Collapsed {
+    /// In words.
+    pub(in crate::hemodynamics) fn words(&self) -> String {
+        format!("{} closes at {:.9} s", self.vessel, self.time_s)
+    }
+}
+
+/// The loads of a run, as the command line writes them.
+#[derive(Debug, Clone, Serialize)]
+pub struct LoadsReport {
+    /// `P_F1`.
+    pub pf1: String,
+    /// `P_F2`.
+    pub pf2: String,
+    /// `P_H`.
+    pub ph: String,
+    /// `P_L`.
+    pub pl: String,
+    /// The table that they are from.
+    pub file: Option<PathBuf>,
+}
+
+impl LoadsReport {
+    pub(in crate::hemodynamics) fn of(loads: &Loads, file: Option<PathBuf>) -> Self {
+        let [pf1, pf2, ph, pl] =
+            [&loads.proximal, &loads.distal, &loads.upstream, &loads.downstream].map(|load| load.to_string());
+        Self { pf1, pf2, ph, pl, file }
+    }
+}
+
+/// What a run did.
+#[derive(Debug, Clone, Serialize)]
+pub struct SimulateReport {
+    /// Which job.
+    pub job: &'static str,
+    /// The program's version.
+    pub version: &'static str,
+    /// The table.
+    pub table: PathBuf,
+    /// Its rows.
+    pub rows: u64,
+    /// The last row's time, s.
+    pub last_s: Option<f64>,
+    /// Capillary units.
+    pub units: usize,
+    /// What pressed.
+    pub loads: LoadsReport,
+    /// The file of the parameters; none: the thesis' table.
+    pub parameters_file: Option<PathBuf>,
+    /// From where.
+    pub from: String,
+    /// How much of the walls' motion was kept.
+    pub model: &'static str,
+    /// How light depends on the capillaries.
+    pub optics: OpticsChoice,
+    /// What happens where a vessel closes.
+    pub collapse: &'static str,
+    /// Until when, s.
+    pub until_s: f64,
+    /// Between rows, s.
+    pub every_s: f64,
+    /// The tolerance that was asked for: the error of every lumen over its nominal diameter.
+    pub rtol: f64,
+    /// Of a reduced model, its own error over the nominal diameter, estimated; none of the full one.
+    pub model_error: Option<f64>,
+    /// Why the run stopped.
+    pub stopped: String,
+    /// A vessel that closed, where a part of the table was to be kept.
+    pub collapsed: Option<Collapsed>,
+    /// What the solver did.
+    pub work: Work,
+    /// The parameters, by their names in files.
+    #[serde(serialize_with = "crate::hemodynamics::as_map")]
+    pub parameters: Vec<(String, f64)>,
+    /// What was not asked for.
+    pub left_out: Vec<String>,
+    /// What whoever reads this should know.
+    pub warnings: Vec<String>,
+    /// What failed: a vessel that closed before the end.
+    pub failed: Vec<String>,
+    /// The pictures.
+    pub pictures: Vec<PathBuf>,
+    /// Time by stage.
+    pub stages: Vec<Stage>,
+    /// Seconds from start to end, this report not counted.
+    pub wall_s: f64,
+}

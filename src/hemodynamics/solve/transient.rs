@@ -1,0 +1,98 @@
+//! A run over time, and how it ended.
+
+use lunula_hemodynamics::{
+    Collapse, Inertia, Loads, Model, Optics, Parameters, Photodiodes, ReducedFault, SolveFault, SolveOptions, State,
+    Statistics, Trajectory, simulate_reduced,
+};
+
+use crate::hemodynamics::simulate::{Collapsed, Work};
+use crate::hemodynamics::{HemodynamicsError, Response};
+
+/// How a run is solved.
+#[derive(Debug, Clone)]
+pub struct RunSettings {
+    /// How much of the walls' motion is kept.
+    pub inertia: Inertia,
+    /// What happens where a vessel closes.
+    pub collapse: Collapse,
+    /// See the command line.
+    pub rtol: f64,
+    /// How light depends on the capillaries.
+    pub optics: Optics,
+    /// When the run starts, s.
+    pub from_s: f64,
+}
+
+/// What a run gave.
+#[derive(Debug, Clone)]
+pub struct Run {
+    /// All rows, or those before a vessel closed.
+    pub response: Response,
+    /// What the solver did.
+    pub work: Work,
+    /// The vessel that closed.
+    pub collapsed: Option<Collapsed>,
+    /// Of a reduced model, its own error over the nominal diameter.
+    pub model_error: Option<f64>,
+}
+
+/// Solves for rows at `times_s` from `start` on.
+///
+/// # Errors
+/// Whatever ends a run but a vessel that closes.
+pub fn respond(
+    parameters: &Parameters,
+    loads: &Loads,
+    start: &State,
+    times_s: &[f64],
+    settings: &RunSettings,
+) -> Result<Run, HemodynamicsError> {
+    let model = Model::new(parameters, settings.collapse);
+    let photodiodes =
+        Photodiodes::new(parameters, &settings.optics).map_err(|why| HemodynamicsError::Model(why.to_string()))?;
+    let options = SolveOptions { start_s: Some(settings.from_s), ..SolveOptions::at(settings.rtol) };
+    let solved = simulate_reduced(&model, loads, start, times_s, &options, settings.inertia);
+    let (trajectory, model_error, collapsed) = match solved {
+        Ok(reduced) => (reduced.trajectory, Some(reduced.model_error), None),
+        Err(ReducedFault::Solve(SolveFault::Collapsed { site, time_s, before })) => {
+            (*before, None, Some(Collapsed { vessel: site.to_string(), time_s }))
+        }
+        Err(why) => return Err(HemodynamicsError::Model(why.to_string())),
+    };
+    Ok(Run {
+        response: response(&trajectory, model.walls(), &photodiodes),
+        work: work(trajectory.statistics()),
+        collapsed,
+        model_error: model_error.filter(|_| settings.inertia != Inertia::Full),
+    })
+}
+
+fn response(trajectory: &Trajectory, walls: usize, photodiodes: &Photodiodes) -> Response {
+    let rows = trajectory.len();
+    let mut response = Response {
+        times_s: trajectory.times_s().to_vec(),
+        walls,
+        lumens: Vec::with_capacity(rows * walls),
+        rates: Vec::with_capacity(rows * walls),
+        volts: vec![0.0; rows * (walls - 1)],
+    };
+    for row in 0..rows {
+        response.lumens.extend(trajectory.lumens(row));
+        response.rates.extend(trajectory.rates(row));
+    }
+    let volts = response.volts.chunks_exact_mut(walls - 1);
+    volts.enumerate().for_each(|(row, volts)| photodiodes.voltages(trajectory.lumens(row), volts));
+    response
+}
+
+fn work(statistics: &Statistics) -> Work {
+    Work {
+        stages: statistics.stages,
+        steps: statistics.steps,
+        rejected: statistics.rejected,
+        evaluations: statistics.evaluations,
+        factorizations: statistics.factorizations,
+        smallest_step_s: Some(statistics.smallest_step_s).filter(|step_s| step_s.is_finite()),
+        largest_step_s: Some(statistics.largest_step_s).filter(|step_s| *step_s > 0.0),
+    }
+}

@@ -1,0 +1,358 @@
+//! `lunula fit`: parameters that made a recording are found again from it, with what it does not tell said; bad requests are refused whole.
+
+mod util;
+
+use std::collections::BTreeMap;
+
+use util::{Answer, Dir};
+
+fn run(dir: &Dir, command: &str, options: &str) -> Answer {
+    let mut arguments = vec![command];
+    arguments.extend(options.split_whitespace());
+    dir.lunula(&arguments)
+}
+
+fn number(row: &BTreeMap<String, String>, column: &str) -> f64 {
+    row[column].parse().unwrap_or_else(|_| panic!("`{}` in `{column}`", row[column]))
+}
+
+/// A parameter of a parameter file.
+fn parameter(dir: &Dir, file: &str, name: &str) -> f64 {
+    let text = std::fs::read_to_string(dir.path(file)).expect("a parameter file");
+    let value = text.lines().find_map(|line| line.strip_prefix(name)?.strip_prefix(" = "));
+    value.expect("a parameter of the file").parse().expect("a number")
+}
+
+/// A response to steps on both places, with the nail's values.
+const STEPS: &str = "--pf1 step:6000@0..2 --pf2 step:4000@0.5..2.5 --every 0.02 --rtol 1e-9 --with-loads --no-figures";
+
+#[test]
+fn what_made_a_recording_is_found_again() {
+    // The recording's loads bend at its samples: measured 1.3e-8 of the parameters, 2.1e-10 V of the fitted voltages.
+    const NEAR: f64 = 1e-6;
+    const NEAR_V: f64 = 1e-8;
+    let dir = Dir::new();
+    dir.write("ramps.csv", "time_s,pf1_Pa,pf2_Pa\n0,0,0\n0.1,6000,0\n1.5,6000,5000\n2,6000,5000\n2.1,0,0\n");
+    let nail = "--set k_C1_N_per_m=7e4 --set k_C2_N_per_m=7e4 --set b_V_N_s_per_m=250 --set V0_1_V=0.5 --set V1_1_V=3 --set V1_2_V=2";
+    run(
+        &dir,
+        "simulate",
+        &format!("--loads ramps.csv {nail} --every 0.02 --rtol 1e-9 --with-loads --out r.csv --no-figures"),
+    )
+    .expect(0);
+    let report = run(&dir, "fit", "r.csv --free k_C,b_V --out f.json --json").expect(0).json();
+    let told: serde_json::Value = serde_json::from_slice(&std::fs::read(dir.path("f.json")).unwrap()).unwrap();
+    assert_eq!(told["free"], report["free"]);
+    assert_eq!(report["converged"], true);
+    for (name, truth) in [
+        ("k_C1_N_per_m", 7e4),
+        ("k_C2_N_per_m", 7e4),
+        ("b_V_N_s_per_m", 250.0),
+        ("V0_1_V", 0.5),
+        ("V1_1_V", 3.0),
+        ("V1_2_V", 2.0),
+    ] {
+        let found = parameter(&dir, "f.toml", name);
+        assert!((found / truth - 1.0).abs() <= NEAR, "{name}: {found} {truth}");
+    }
+    assert!(report["r2"].as_f64().unwrap() > 0.999_999);
+    assert!(report["correlations"].as_array().unwrap().len() == 6);
+    // The fitted parameters are a file for simulate.
+    run(&dir, "simulate", "--loads ramps.csv --params f.toml --every 0.02 --out again.csv --no-figures").expect(0);
+    let (measured, again) = (dir.table("r.csv"), dir.table("again.csv"));
+    let worst =
+        measured.iter().zip(&again).map(|(a, b)| (number(a, "VP1") - number(b, "VP1")).abs()).fold(0.0, f64::max);
+    assert!(worst <= NEAR_V, "{worst}");
+    let fitted = dir.table("f-fitted.csv");
+    assert_eq!(fitted.len(), 2 * measured.len());
+    let misses = fitted.iter().map(|row| (number(row, "measured_V") - number(row, "fitted_V")).abs());
+    assert!(misses.fold(0.0, f64::max) <= NEAR_V);
+    let files: Vec<String> = dir.bytes_of(".").into_keys().filter(|name| name.starts_with('f')).collect();
+    assert_eq!(files, ["f-fitted.csv", "f-fitted.png", "f-fitted.svg", "f.json", "f.toml"]);
+}
+
+#[test]
+fn steps_that_jump_at_their_rows_are_found_exactly() {
+    // The jumps take a nanosecond: measured 1.0e-7.
+    const NEAR: f64 = 1e-5;
+    let dir = Dir::new();
+    run(&dir, "simulate", &format!("{STEPS} --set k_V_N_per_m=1500 --set b_V_N_s_per_m=150 --out r.csv")).expect(0);
+    run(&dir, "fit", "r.csv --free k_V,b_V,b_C --between held --unloaded-before --out f.json").expect(0);
+    for (name, truth) in [("k_V_N_per_m", 1500.0), ("b_V_N_s_per_m", 150.0), ("b_C1_N_s_per_m", 1e4), ("V1_2_V", 1.0)] {
+        let found = parameter(&dir, "f.toml", name);
+        assert!((found / truth - 1.0).abs() <= NEAR, "{name}: {found} {truth}");
+    }
+}
+
+#[test]
+fn a_static_recording_tells_offset_and_scaling() {
+    // Equilibria have no steps: measured 1.1e-15.
+    const NEAR: f64 = 1e-12;
+    let dir = Dir::new();
+    let nail = "--set V0_1_V=2.5 --set V1_1_V=4 --set V0_2_V=-1 --set V1_2_V=0.5";
+    run(&dir, "simulate", &format!("--static 0..10000/250 {nail} --out s.csv --no-figures")).expect(0);
+    run(&dir, "fit", "s.csv --free none --out f.json").expect(0);
+    for (name, truth) in [("V0_1_V", 2.5), ("V1_1_V", 4.0), ("V0_2_V", -1.0), ("V1_2_V", 0.5)] {
+        let found = parameter(&dir, "f.toml", name);
+        assert!((found / truth - 1.0).abs() <= NEAR, "{name}: {found} {truth}");
+    }
+}
+
+#[test]
+fn every_subject_has_photodiodes_of_its_own() {
+    // Measured 2.0e-15.
+    const NEAR: f64 = 1e-12;
+    let dir = Dir::new();
+    for (name, scaling) in [("a", 2.0), ("b", 5.0)] {
+        run(&dir, "simulate", &format!("--static 0..9000/500 --set V1_1_V={scaling} --out {name}.csv --no-figures"))
+            .expect(0);
+    }
+    let report = run(&dir, "fit", "a.csv b.csv --subject anna,ben --free k_V --out f.json --json").expect(0).json();
+    assert_eq!(report["photodiodes"].as_array().unwrap().len(), 4);
+    for (file, scaling) in [("f-anna.toml", 2.0), ("f-ben.toml", 5.0)] {
+        assert!((parameter(&dir, file, "V1_1_V") / scaling - 1.0).abs() <= NEAR, "{file}");
+        assert!((parameter(&dir, file, "k_V_N_per_m") / 1e3 - 1.0).abs() <= NEAR, "{file}");
+    }
+    // Recordings of the same name have files of their own.
+    dir.write("day/a.csv", std::fs::read(dir.path("b.csv")).unwrap());
+    run(&dir, "fit", "a.csv day/a.csv --calibrate recording --free none --out g.json").expect(0);
+    for (file, scaling) in [("g-a.toml", 2.0), ("g-a-2.toml", 5.0)] {
+        assert!((parameter(&dir, file, "V1_1_V") / scaling - 1.0).abs() <= NEAR, "{file}");
+    }
+}
+
+#[test]
+fn a_log_of_forces_and_photodiodes_of_other_names_is_read() {
+    // Measured 2.2e-16.
+    const NEAR: f64 = 1e-12;
+    let dir = Dir::new();
+    run(&dir, "simulate", "--static 0..9000/500 --load distal --set V1_2_V=3 --out s.csv --no-figures").expect(0);
+    let mut log = "Fz_N,P3,other\n".to_owned();
+    for row in dir.table("s.csv") {
+        // On 2 cm2, pressing is negative.
+        log += &format!("{},{},x\n", -2e-4 * number(&row, "pf2_Pa"), row["VP2"]);
+    }
+    // A photodiode's cell may be empty.
+    log += "-1,,x\n";
+    dir.write("log.csv", log);
+    let options = "log.csv --force Fz_N --area-cm2 2 --load distal --photodiode P3=2 --free none --out f.json --json";
+    let report = run(&dir, "fit", options).expect(0).json();
+    assert!((parameter(&dir, "f.toml", "V1_2_V") / 3.0 - 1.0).abs() <= NEAR);
+    assert_eq!((report["recordings"][0]["missing"].as_u64(), report["values"].as_u64()), (Some(1), Some(19)));
+}
+
+#[test]
+fn what_recordings_do_not_determine_is_said() {
+    let dir = Dir::new();
+    let mut constant = "time_s,pf1_Pa,pf2_Pa,VP1,VP2\n".to_owned();
+    for k in 0..50 {
+        constant += &format!("{},0,0,0.9,0.8\n", f64::from(k) * 0.02);
+    }
+    dir.write("constant.csv", constant);
+    let report = run(&dir, "fit", "constant.csv --free b_C --out f.json --json").expect(0).json();
+    assert_eq!(report["free"][0]["identifiable"], false);
+    assert!(report["free"][0]["standard_errors"].is_null());
+    assert!(!report["not_identifiable"].as_array().unwrap().is_empty());
+    assert!(report["warnings"].to_string().contains("b_C1_N_s_per_m"), "{}", report["warnings"]);
+    run(&dir, "simulate", &format!("{STEPS} --set k_V_N_per_m=3000 --out r.csv")).expect(0);
+    let report =
+        run(&dir, "fit", "r.csv --free k_V --bounds k_V=0.5x..2x --between held --unloaded-before --out b.json --json")
+            .expect(0)
+            .json();
+    assert_eq!(report["free"][0]["at_bound"], "upper");
+}
+
+#[test]
+fn photodiodes_that_see_nothing_change_are_said_to_tell_nothing() {
+    let dir = Dir::new();
+    let mut flat = "time_s,pf1_Pa,pf2_Pa,VP1,VP2\n".to_owned();
+    for k in 0..100 {
+        let pressed = if k < 20 { 0 } else { 4000 };
+        flat += &format!("{},{pressed},{pressed},0.9,0.8\n", f64::from(k) * 0.02);
+    }
+    dir.write("flat.csv", flat);
+    let report = run(&dir, "fit", "flat.csv --free k_C --out f.json --json").expect(0).json();
+    assert_eq!(report["free"][0]["identifiable"], false);
+    assert!(report["free"][0]["standard_errors"].is_null() && report["r2"].is_null());
+    for (k, level) in [0.9, 0.8].into_iter().enumerate() {
+        let diode = &report["photodiodes"][k];
+        assert!((diode["offset_v"].as_f64().unwrap() - level).abs() <= 1e-6, "{diode}");
+        assert!(diode["scaling_v"].as_f64().unwrap().abs() <= 1e-6, "{diode}");
+    }
+}
+
+#[test]
+fn voltages_may_be_missing_but_not_be_no_numbers() {
+    // The missing ones were exact, the rest tells the same: measured 9.4e-8.
+    const NEAR: f64 = 1e-5;
+    let dir = Dir::new();
+    run(&dir, "simulate", &format!("{STEPS} --set k_V_N_per_m=1500 --out r.csv")).expect(0);
+    let with = |missing: &str| -> String {
+        let rows = dir.table("r.csv").into_iter().enumerate().map(|(k, row)| {
+            let first = if k % 3 == 1 { missing } else { &row["VP1"] };
+            format!("{},{},{},{first},{}\n", row["time_s"], row["pf1_Pa"], row["pf2_Pa"], row["VP2"])
+        });
+        format!("time_s,pf1_Pa,pf2_Pa,VP1,VP2\n{}", rows.collect::<String>())
+    };
+    dir.write("empty.csv", with(""));
+    let jumps = "--between held --unloaded-before";
+    let report = run(&dir, "fit", &format!("empty.csv --free k_V {jumps} --out f.json --json")).expect(0).json();
+    assert_eq!((report["recordings"][0]["missing"].as_u64(), report["values"].as_u64()), (Some(67), Some(335)));
+    assert!((parameter(&dir, "f.toml", "k_V_N_per_m") / 1500.0 - 1.0).abs() <= NEAR);
+    let empty = dir.table("f-fitted.csv").iter().filter(|row| row["measured_V"].is_empty()).count();
+    assert_eq!(empty, 67);
+    for (cell, words) in [("NaN", "is no finite number"), ("inf", "is no finite number"), ("off", "is no number")] {
+        dir.write("bad.csv", with(cell));
+        let answer = run(&dir, "fit", &format!("bad.csv --free k_V {jumps} --out g.json")).expect(2);
+        assert!(
+            answer.stderr.contains("bad.csv:3: column `VP1`") && answer.stderr.contains(words),
+            "{}",
+            answer.stderr
+        );
+    }
+    dir.write("none.csv", "time_s,pf1_Pa,pf2_Pa,VP1\n0,0,0,\n1,0,0,\n");
+    run(&dir, "fit", "none.csv --free k_V --out g.json").expect(2).says("none.csv");
+    assert!(!dir.path("g.json").exists());
+}
+
+#[test]
+fn the_same_request_gives_the_same_bytes_whatever_the_threads() {
+    let dir = Dir::new();
+    run(&dir, "simulate", &format!("{STEPS} --set k_V_N_per_m=1500 --out r.csv")).expect(0);
+    for (name, threads) in [("one", 1), ("four", 4)] {
+        run(&dir, "fit", &format!("r.csv --free k_V,b_V --threads {threads} --out {name}/f.json")).expect(0);
+    }
+    let results = |name: &str| {
+        let mut bytes = dir.bytes_of(name);
+        bytes.remove("f.json");
+        bytes
+    };
+    assert!(results("one").len() == 4 && results("one") == results("four"));
+}
+
+#[test]
+fn bad_requests_are_refused_whole() {
+    let dir = Dir::new();
+    run(&dir, "simulate", &format!("{STEPS} --out r.csv")).expect(0);
+    dir.write("short.csv", "time_s,pf1_Pa,pf2_Pa,VP1\n0,0,0,0.9\n1,0,0,0.9\n");
+    dir.write("bad.csv", "time_s,pf1_Pa,pf2_Pa,VP1\n0,0,0,0.9\n1,,0,0.9\n0.5,nan,0,0.9\n");
+    dir.write("volts.csv", "time_s,pf1_Pa,pf2_Pa,VP1\n0,0,0,0.9\n1,0,0,inf\n");
+    dir.write("names.csv", "time_s,pf1_Pa,pf2_Pa,P1\n0,0,0,0.9\n");
+    let before = dir.bytes_of(".").len();
+    for (options, words) in [
+        ("r.csv --free speed --out f.json", "--free speed"),
+        ("r.csv --free k_C --bounds k_V=1..2 --out f.json", "--bounds k_V"),
+        ("r.csv --free k_C --bounds k_C=5..2 --out f.json", "bounds"),
+        ("r.csv --free k_C --bounds k_C=wide --out f.json", "0.1x..10x"),
+        ("r.csv --free k_C,k_C1 --out f.json", "free twice"),
+        ("r.csv --free none --calibrate held --out f.json", "nothing is free"),
+        ("r.csv --free k_C --subject a,b --out f.json", "--subject"),
+        ("r.csv --free k_C --photodiode P3=1 --out f.json", "P3"),
+        ("r.csv --free k_C --photodiode VP1=3 --out f.json", "2 units"),
+        ("r.csv --free k_C --force Fz_N --out f.json", "--area-cm2"),
+        ("r.csv --free k_C --force VP1 --area-cm2 0 --out f.json", "greater than 0"),
+        ("r.csv --free k_C --force VP1 --area-cm2 -1 --out f.json", "greater than 0"),
+        ("r.csv --free k_C --out r.csv", "is an input itself"),
+        ("short.csv --free k_C,b_C,k_V --out f.json", "2 voltages can't determine 5 unknowns"),
+        ("bad.csv --free k_C --out f.json", "bad.csv:3: column `pf1_Pa`: is empty"),
+        ("bad.csv --free k_C --out f.json", "bad.csv:4: column `time_s`"),
+        ("volts.csv --free k_C --out f.json", "volts.csv:3: column `VP1`"),
+        ("names.csv --free k_C --out f.json", "--photodiode P3=1"),
+        ("nowhere.csv --free k_C --out f.json", "nowhere.csv"),
+        ("r.csv --out f.json", "--free"),
+    ] {
+        run(&dir, "fit", options).expect(2).says(words);
+    }
+    assert_eq!(dir.bytes_of(".").len(), before);
+}
+
+#[test]
+fn the_plan_says_what_runs() {
+    let dir = Dir::new();
+    run(&dir, "simulate", &format!("{STEPS} --out r.csv")).expect(0);
+    let plan = run(&dir, "fit", "r.csv --free k_C --plan").expect(0).stdout;
+    assert!(plan.contains("1 free groups, 1 recordings, 201 samples"), "{plan}");
+}
+
+#[test]
+fn no_side_file_replaces_an_input() {
+    let dir = Dir::new();
+    run(&dir, "simulate", &format!("{STEPS} --out v-fitted.csv")).expect(0);
+    run(&dir, "fit", "v-fitted.csv --free none --out w.json --no-figures").expect(0);
+    let before = dir.bytes_of(".");
+    for options in [
+        "v-fitted.csv --free k_C --out v.json",
+        "v-fitted.csv --params w.toml --free k_C --out w.json",
+        "v-fitted.csv --params w.toml --free k_C --out w.toml",
+    ] {
+        run(&dir, "fit", options).expect(2).says("is an input itself");
+        run(&dir, "fit", &format!("{options} --plan")).expect(2).says("is an input itself");
+    }
+    assert!(dir.bytes_of(".") == before);
+}
+
+#[test]
+fn noisier_photodiodes_count_less() {
+    // The noise's SD from 201 values has a standard error of 5 %: four of them.
+    const NEAR: f64 = 0.2;
+    let dir = Dir::new();
+    run(&dir, "simulate", &format!("{STEPS} --set k_V_N_per_m=1500 --out r.csv")).expect(0);
+    let (mut log, mut seed) = ("time_s,pf1_Pa,pf2_Pa,VP1,VP2\n".to_owned(), 1_u64);
+    // Twelve uniform numbers less six have SD 1.
+    let mut gauss = || -> f64 {
+        let mut next = || {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        (0..12).map(|_| next()).sum::<f64>() - 6.0
+    };
+    for row in dir.table("r.csv") {
+        let [first, second] = [("VP1", 1e-5), ("VP2", 1e-3)].map(|(name, sd)| number(&row, name) + sd * gauss());
+        log += &format!("{},{},{},{first},{second}\n", row["time_s"], row["pf1_Pa"], row["pf2_Pa"]);
+    }
+    dir.write("noisy.csv", log);
+    let options = "noisy.csv --free k_V --between held --unloaded-before --no-figures --json";
+    let report = run(&dir, "fit", &format!("{options} --out f.json")).expect(0).json();
+    for (k, sd) in [1e-5, 1e-3].into_iter().enumerate() {
+        let noise_v = report["recordings"][0]["noise_v"][k].as_f64().unwrap();
+        assert!((noise_v / sd - 1.0).abs() <= NEAR, "{noise_v} {sd}");
+    }
+    // With the same noises given it is the same fit; with others it is another.
+    let found = |options: &str| {
+        let report = run(&dir, "fit", options).expect(0).json();
+        (report["free"][0]["values"][0].as_f64().unwrap(), report["free"][0]["standard_errors"][0].as_f64().unwrap())
+    };
+    let (told, sure) = found(&format!("{options} --noise VP1=1e-5,VP2=1e-3 --out g.json"));
+    let (_, unsure) = found(&format!("{options} --noise VP1=1,VP2=1 --out h.json"));
+    let value = report["free"][0]["values"][0].as_f64().unwrap();
+    assert!((told - value).abs() <= sure, "{told} {value} {sure}");
+    assert!(sure < 0.5 * unsure, "{sure} {unsure}");
+    run(&dir, "fit", &format!("{options} --noise VP1=0 --out i.json")).expect(2).says("VP1=5e-5");
+}
+
+#[test]
+fn a_force_that_never_presses_and_an_area_of_nothing_are_refused() {
+    let dir = Dir::new();
+    dir.write("log.csv", "Fz_N,VP1\n0,0.9\n1,0.8\n2,0.7\n3,0.6\n");
+    let options = "log.csv --force Fz_N --free none --out f.json";
+    run(&dir, "fit", &format!("{options} --area-cm2 1")).expect(2).says("`Fz_N` is never negative: nothing presses");
+    run(&dir, "fit", &format!("{options} --area-cm2 0")).expect(2).says("--area-cm2");
+    assert!(!dir.path("f.json").exists());
+}
+
+#[test]
+fn words_name_subjects_and_constant_photodiodes_and_every_wrong_name_once() {
+    let dir = Dir::new();
+    run(&dir, "simulate", "--static 0..9000/500 --out s.csv --no-figures").expect(0);
+    let mut flat = "pf1_Pa,pf2_Pa,VP1,VP2\n".to_owned();
+    for row in dir.table("s.csv") {
+        flat += &format!("{},{},0.9,{}\n", row["pf1_Pa"], row["pf2_Pa"], row["VP2"]);
+    }
+    dir.write("flat.csv", flat);
+    let answer = run(&dir, "fit", "s.csv flat.csv --subject anna,ben --free none --out f.json --no-figures").expect(0);
+    let words = answer.stdout.clone() + &answer.stderr;
+    assert!(words.contains("flat.csv: VP1 is constant: nothing can be learnt from it"), "{words}");
+    assert!(!words.contains("VP2 is constant") && words.contains("unit 1 of anna") && words.contains("unit 2 of ben"));
+    let wrong = run(&dir, "fit", "s.csv --free k_Q,zz --out g.json").expect(2).stderr;
+    assert!(wrong.contains("--free k_Q,zz") && wrong.matches("k_C, k_V").count() == 1, "{wrong}");
+}

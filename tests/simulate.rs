@@ -1,0 +1,293 @@
+//! `lunula simulate`: the table is the model's response, collapse ends it with a word, bad requests are refused whole.
+
+mod util;
+
+use std::collections::BTreeMap;
+
+use util::{Answer, Dir};
+
+fn run(dir: &Dir, options: &str) -> Answer {
+    let mut arguments = vec!["simulate"];
+    arguments.extend(options.split_whitespace());
+    dir.lunula(&arguments)
+}
+
+fn number(row: &BTreeMap<String, String>, column: &str) -> f64 {
+    row[column].parse().unwrap_or_else(|_| panic!("`{}` in `{column}`", row[column]))
+}
+
+/// Displacements of the walls at rest, m, with ten digits (facts: unloaded, they stand further out than x = 0).
+const REST_M: [(&str, f64); 3] = [("xC1_m", 9.273971e-6), ("xC2_m", 9.273971e-6), ("xV_m", 1.076_925e-4)];
+/// Half a step of the last digit.
+const DIGITS: f64 = 1e-7;
+
+#[test]
+fn a_step_begins_at_rest_and_its_rows_stand_at_multiples() {
+    let dir = Dir::new();
+    let report = run(&dir, "--pf1 step:5000@0..2 --out t.csv --json").expect(0).json();
+    let header = std::fs::read_to_string(dir.path("t.csv")).unwrap();
+    assert_eq!(header.lines().next(), Some("time_s,xC1_m,xC2_m,xV_m,vC1_mps,vC2_mps,vV_mps,VP1,VP2"));
+    let rows = dir.table("t.csv");
+    assert_eq!((rows.len(), report["rows"].as_u64()), (401, Some(401)));
+    for (k, row) in rows.iter().enumerate() {
+        let decimal: f64 = format!("{}.{:02}", k / 100, k % 100).parse().unwrap();
+        assert!(number(row, "time_s") == decimal, "{k}: {}", row["time_s"]);
+    }
+    for (column, rest_m) in REST_M {
+        assert!((number(&rows[0], column) / rest_m - 1.0).abs() <= DIGITS, "{column}");
+    }
+    // Pressed on the vein, it narrows and the capillaries swell: less light (Fig. 76).
+    assert!(number(&rows[199], "xV_m") < number(&rows[0], "xV_m"));
+    assert!(number(&rows[199], "xC1_m") > number(&rows[0], "xC1_m"));
+    assert!(number(&rows[199], "VP1") < number(&rows[0], "VP1"));
+    let files: Vec<String> = dir.bytes_of(".").into_keys().collect();
+    assert_eq!(files, ["t-response.png", "t-response.svg", "t.csv", "t.run.json"]);
+}
+
+#[test]
+fn the_same_request_gives_the_same_bytes_whatever_the_threads() {
+    let dir = Dir::new();
+    for (name, more) in [("one", "--threads 1"), ("four", "--threads 4")] {
+        run(&dir, &format!("--pf2 ramp:0..8000@0..1 {more} --until 2 --out {name}/t.csv")).expect(0);
+        run(&dir, &format!("--static 0..9000/500 {more} --out {name}/s.csv")).expect(0);
+    }
+    let without_times = |name: &str| {
+        let mut bytes = dir.bytes_of(name);
+        bytes.retain(|file, _| !file.ends_with("run.json"));
+        bytes
+    };
+    let (one, four) = (without_times("one"), without_times("four"));
+    assert_eq!(one.len(), 6);
+    assert!(one == four);
+}
+
+#[test]
+fn a_file_of_loads_is_the_load_that_it_holds() {
+    // Both are solved to 1e-10 D, and D is 1e-5 and 1e-4 m: measured 0.
+    const NEAR_M: f64 = 2e-14;
+    let dir = Dir::new();
+    dir.write("loads.csv", "time_s,pf1_Pa,pf2_Pa\n0,0,0\n1,4000,2000\n3,4000,2000\n");
+    run(&dir, "--loads loads.csv --until 3 --rtol 1e-10 --out a.csv --no-figures").expect(0);
+    run(&dir, "--pf1 ramp:0..4000@0..1 --pf2 ramp:0..2000@0..1 --until 3 --rtol 1e-10 --out b.csv --no-figures")
+        .expect(0);
+    let (a, b) = (dir.table("a.csv"), dir.table("b.csv"));
+    assert_eq!(a.len(), 301);
+    for (a, b) in a.iter().zip(&b) {
+        for column in ["xC1_m", "xC2_m", "xV_m"] {
+            let gap = (number(a, column) - number(b, column)).abs();
+            assert!(gap <= NEAR_M, "{column} at {}: {gap}", a["time_s"]);
+        }
+    }
+}
+
+#[test]
+fn faults_of_a_file_of_loads_are_told_with_row_and_column() {
+    let dir = Dir::new();
+    dir.write("bad.csv", "time_s,pf1_Pa,pf2_Pa\n0,0,0\n1,nan,0\n0.5,3,\n0.5,inf,soft\n");
+    let answer = run(&dir, "--loads bad.csv --out t.csv").expect(2);
+    for words in [
+        "bad.csv:3: column `pf1_Pa`: `NaN` is no finite number",
+        "bad.csv:4: column `time_s`: 0.5 s comes after 1 s",
+        "bad.csv:4: column `pf2_Pa`: is empty",
+        "bad.csv:5: column `time_s`: 0.5 s comes after 0.5 s",
+        "bad.csv:5: column `pf1_Pa`: `inf` is no finite number",
+        "bad.csv:5: column `pf2_Pa`: `soft` is no number",
+    ] {
+        assert!(answer.stderr.contains(words), "`{words}` is not in:\n{}", answer.stderr);
+    }
+    dir.write("columns.csv", "time_s,force\n0,0\n");
+    run(&dir, "--loads columns.csv --out t.csv").expect(2).says("`pf1_Pa`, `pf2_Pa`");
+    dir.write("none.csv", "time_s,pf1_Pa,pf2_Pa\n");
+    run(&dir, "--loads none.csv --out t.csv").expect(2).says("no rows");
+    run(&dir, "--loads nowhere.csv --out t.csv").expect(2).says("nowhere.csv");
+    assert!(!dir.path("t.csv").exists());
+}
+
+#[test]
+fn a_vessel_that_closes_is_an_error_with_its_time_and_nothing_is_written() {
+    // The lumen crosses zero at 0.388736 s and 0.078334 s (six digits of independent solvers): measured 3.1e-7.
+    const SIX_DIGITS_S: f64 = 5e-7;
+    let dir = Dir::new();
+    for (load, time_s) in [("1.2e4", 0.388_736), ("2e4", 0.078_334)] {
+        let answer = run(&dir, &format!("--pf1 step:{load}@0..2 --out t.csv")).expect(2);
+        let said = &answer.stderr;
+        assert!(said.contains('V') && said.contains("--collapse contact"), "{said}");
+        let digits =
+            said.split_whitespace().find_map(|word| word.trim_end_matches([';', ':', ',']).parse::<f64>().ok());
+        let told = digits.expect("a time");
+        assert!((told - time_s).abs() <= SIX_DIGITS_S, "{said}");
+        assert_eq!(dir.bytes_of(".").len(), 0);
+    }
+    let answer = run(&dir, "--pf1 step:1.2e4@0..2 --out t.csv --keep-partial --json").expect(1);
+    let report = answer.json();
+    assert_eq!(report["collapsed"]["vessel"], "V");
+    assert_eq!(report["failed"].as_array().map(Vec::len), Some(1));
+    let rows = dir.table("t.csv");
+    assert_eq!((rows.len(), rows[38]["time_s"].as_str()), (39, "0.38"));
+    run(&dir, "--pf1 step:1.2e4@0..2 --collapse contact --out c.csv").expect(0);
+    let open = dir.table("c.csv").iter().all(|row| number(row, "xV_m") > -1e-4);
+    assert!(open, "no vessel is closed");
+}
+
+#[test]
+fn a_run_goes_on_from_another_and_from_zero() {
+    // Both are solved to 1e-10 D: measured 1.9e-16.
+    const NEAR_M: f64 = 2e-14;
+    let dir = Dir::new();
+    run(&dir, "--pf1 step:5000@0..9 --until 2 --rtol 1e-10 --out whole.csv --no-figures").expect(0);
+    run(&dir, "--pf1 step:5000@0..9 --until 1 --rtol 1e-10 --out first.csv --no-figures").expect(0);
+    run(&dir, "--pf1 5000 --from first.csv --until 1 --rtol 1e-10 --out second.csv --no-figures").expect(0);
+    let (whole, second) = (dir.table("whole.csv"), dir.table("second.csv"));
+    for (k, row) in second.iter().enumerate() {
+        let gap = (number(row, "xV_m") - number(&whole[100 + k], "xV_m")).abs();
+        assert!(gap <= NEAR_M, "{k}: {gap}");
+    }
+    run(&dir, "--from zero --until 0 --out zero.csv --no-figures").expect(0);
+    let zero = dir.table("zero.csv");
+    assert_eq!(zero.len(), 1);
+    assert!(["xC1_m", "xV_m", "vC1_mps", "vV_mps"].iter().all(|column| number(&zero[0], column) == 0.0));
+    dir.write("closed.csv", "xC1_m,xC2_m,xV_m,vC1_mps,vC2_mps,vV_mps\n0,0,-2e-4,0,0,0\n");
+    run(&dir, "--from closed.csv --out t.csv").expect(2).says("V is closed");
+    run(&dir, "--from first.csv --units 3 --out t.csv").expect(2).says("`xC3_m`");
+}
+
+#[test]
+fn parameters_are_printed_read_set_and_all_faults_told() {
+    let dir = Dir::new();
+    let printed = run(&dir, "--print-params --units 3").expect(0).stdout;
+    assert!(printed.contains("units = 3\n") && printed.contains("k_C3_N_per_m = 6.66"), "{printed}");
+    dir.write("p.toml", &printed);
+    run(&dir, "--pf2 step:3000@0..1 --params p.toml --until 1 --out three.csv --no-figures").expect(0);
+    assert!(dir.table("three.csv")[0].contains_key("VP3"));
+    run(&dir, "--params p.toml --units 2 --out t.csv").expect(2).says("--units 2");
+    dir.write("bad.toml", "base = \"thesis\"\nk_C1_N_per_m = -1\nm_V_kg = 0\nspeed = 3\n");
+    let answer = run(&dir, "--params bad.toml --out t.csv").expect(2);
+    for words in ["bad.toml", "k_C1_N_per_m = -1", "m_V_kg = 0", "speed"] {
+        assert!(answer.stderr.contains(words), "`{words}` is not in:\n{}", answer.stderr);
+    }
+    let set = run(&dir, "--print-params --set k_V_N_per_m=500").expect(0).stdout;
+    assert!(set.contains("k_V_N_per_m = 5e2\n"), "{set}");
+    let answer = run(&dir, "--set k_V_N_per_m=-5 --set m_V_kg=0 --out t.csv").expect(2);
+    assert!(answer.stderr.contains("k_V_N_per_m = -5") && answer.stderr.contains("m_V_kg = 0"), "{}", answer.stderr);
+    run(&dir, "--set speed=3 --out t.csv").expect(2).says("no parameter speed");
+}
+
+#[test]
+fn equilibria_are_told_for_every_load_and_none_where_there_is_none() {
+    let dir = Dir::new();
+    let report = run(&dir, "--static 0..12000/100 --load proximal --out s.csv --json").expect(0).json();
+    let rows = dir.table("s.csv");
+    assert_eq!((rows.len(), report["loads"].as_u64()), (121, Some(121)));
+    for (column, rest_m) in REST_M {
+        assert!((number(&rows[0], column) / rest_m - 1.0).abs() <= DIGITS, "{column}");
+    }
+    for row in &rows {
+        // From 1.1e4 Pa on, no equilibrium has open vessels.
+        if number(row, "pf1_Pa") < 1.1e4 - 100.0 {
+            assert!(number(row, "stable") == 1.0 && row["why"].is_empty() && number(row, "xV_m") > -1e-4);
+        } else if number(row, "pf1_Pa") >= 1.1e4 {
+            assert!(["xC1_m", "xV_m", "VP1", "stable", "branch"].iter().all(|column| row[*column].is_empty()));
+            assert_eq!(row["why"], "no equilibrium with open vessels");
+        }
+        assert!(number(row, "pf2_Pa") == 0.0);
+    }
+    assert!(dir.path("s-static.png").is_file() && dir.path("s.run.json").is_file());
+    let report =
+        run(&dir, "--static 0..12000/100 --load proximal --collapse contact --out c.csv --json").expect(0).json();
+    assert_eq!((report["with_one"].as_u64(), report["with_none"].as_u64()), (Some(121), Some(0)));
+}
+
+#[test]
+fn several_equilibria_at_a_load_are_rows_of_their_own() {
+    let dir = Dir::new();
+    let set = "--set k_C1_N_per_m=5e4 --set k_C2_N_per_m=5e4";
+    let report = run(&dir, &format!("--static 0..10000/100 --load distal {set} --out s.csv --json")).expect(0).json();
+    let several = report["with_several"].as_u64().unwrap();
+    assert!(several > 0 && !report["bistable_pa"].as_array().unwrap().is_empty(), "{report}");
+    let folds = report["folds"].as_array().unwrap().iter().filter(|fold| fold["what"] == "fold").count();
+    assert_eq!(folds, 2);
+    let rows = dir.table("s.csv");
+    assert!(rows.iter().any(|row| row["stable"] == "0"), "an unstable one between them");
+    assert_eq!(rows.len() as u64, report["rows"].as_u64().unwrap());
+}
+
+#[test]
+fn bad_requests_are_refused_whole() {
+    let dir = Dir::new();
+    for (options, words) in [
+        ("--pf1 1 --every 0 --until -1 --rtol 2 --out t.csv", "--until -1"),
+        ("--pf1 1 --every 0 --until -1 --rtol 2 --out t.csv", "--every 0"),
+        ("--pf1 1 --every 0 --until -1 --rtol 2 --out t.csv", "--rtol 2"),
+        ("--pf1 1 --until 1e9 --every 1e-6 --out t.csv", "rows"),
+        ("--pf1 1 --until inf --out t.csv", "--until inf"),
+        ("--pf1 step:5000 --out t.csv", "step:5000@0..2"),
+        ("--pf1 step:5000@2..0 --out t.csv", "grow"),
+        ("--pf1 nan --out t.csv", "finite"),
+        ("--pf1 1 --loads l.csv --out t.csv", "--loads"),
+        ("--static 0..1e9/1 --out t.csv", "more than"),
+        ("--static 0..100/10 --until 3 --out t.csv", "--until"),
+        ("--static 0..100/10 --ph sine:10000+1000@1 --out t.csv", "--ph"),
+        ("--load distal --pf1 1 --out t.csv", "--static"),
+        ("--pf1 1 --out t.txt", ".csv or .parquet"),
+        ("--pf1 1 --units 0 --out t.csv", "--units"),
+        ("--pf1 1", "--out"),
+        ("--pf1 1 --params no.toml --out t.csv", "no.toml"),
+    ] {
+        run(&dir, options).expect(2).says(words);
+    }
+    dir.write("in-the-way", "a file");
+    run(&dir, "--pf1 1 --out in-the-way/t.csv").expect(2).says("in-the-way");
+    let left: Vec<String> = dir.bytes_of(".").into_keys().collect();
+    assert_eq!(left, ["in-the-way"]);
+}
+
+#[test]
+fn an_input_is_not_written_over() {
+    let dir = Dir::new();
+    dir.write("loads.csv", "time_s,pf1_Pa,pf2_Pa\n0,0,0\n1,10,10\n");
+    run(&dir, "--loads loads.csv --out loads.csv").expect(2).says("is an input itself");
+}
+
+#[test]
+fn the_plan_says_what_runs_and_what_is_left_out() {
+    let dir = Dir::new();
+    let plan = run(&dir, "--pf1 1000 --plan").expect(0).stdout;
+    assert!(plan.contains("401 rows") && plan.contains("left out"), "{plan}");
+    let plan = run(&dir, "--static 0..100/10 --plan --json").expect(0).json();
+    assert_eq!(plan["plan"][0]["fate"], "run");
+    assert!(dir.bytes_of(".").is_empty());
+}
+
+#[test]
+fn the_tradeoff_keeps_every_tolerance_and_draws_peers_and_maps() {
+    let dir = Dir::new();
+    dir.write("peers.csv", "# made elsewhere\nsolver,rtol,error,microseconds\nOther (C),1e-03,1e-3,100\n");
+    dir.lunula(&["tradeoff", "hemodynamics", "--repeats", "1", "--peers", "peers.csv", "--out", "t"]).expect(0);
+    let rows = dir.table("t/tradeoff.csv");
+    let mut kept = 0;
+    for row in &rows {
+        let Some(rtol) = row["setting"].strip_prefix("lunula, ") else { continue };
+        let rtol: f64 = rtol.parse().unwrap();
+        assert!(number(row, "error") <= rtol, "{}: {}", row["setting"], row["error"]);
+        kept += 1;
+    }
+    assert_eq!(kept, 10);
+    for series in
+        ["full, order 5", "full, order 13", "inertia dropped", "inertia corrected", "printed form", "Other (C)"]
+    {
+        assert!(rows.iter().any(|row| row["setting"].starts_with(series)), "{series}");
+    }
+    let maps = dir.table("t/stability.csv");
+    assert_eq!(maps.len(), 9 * 81 * 121);
+    for fate in ["converged", "bistable", "collapsed"] {
+        assert!(maps.iter().any(|row| row["fate"] == fate), "{fate}");
+    }
+    let files: Vec<String> = dir.bytes_of("t").into_keys().collect();
+    assert_eq!(
+        files,
+        ["stability.csv", "stability.png", "stability.svg", "tradeoff.csv", "tradeoff.png", "tradeoff.svg"]
+    );
+    dir.write("bad.csv", "solver,error\nA,1\n");
+    let answer = dir.lunula(&["tradeoff", "hemodynamics", "--peers", "bad.csv", "--out", "u"]).expect(2);
+    assert!(answer.stderr.contains("bad.csv") && !dir.path("u").exists(), "{}", answer.stderr);
+}

@@ -1,0 +1,159 @@
+//! `lunula simulate` far from the thesis' figures: pulses, other optics, undamped and heavy walls, loads that close every vessel, long files.
+
+mod util;
+
+use std::collections::BTreeMap;
+
+use util::{Answer, Dir};
+
+fn run(dir: &Dir, options: &str) -> Answer {
+    let mut arguments = vec!["simulate"];
+    arguments.extend(options.split_whitespace());
+    dir.lunula(&arguments)
+}
+
+fn number(row: &BTreeMap<String, String>, column: &str) -> f64 {
+    row[column].parse().unwrap_or_else(|_| panic!("`{}` in `{column}`", row[column]))
+}
+
+fn column(dir: &Dir, table: &str, name: &str) -> Vec<f64> {
+    dir.table(table).iter().map(|row| number(row, name)).collect()
+}
+
+fn worst(a: &[f64], b: &[f64]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, |worst, gap| if gap <= worst { worst } else { gap })
+}
+
+const WALLS: [&str; 3] = ["xC1_m", "xC2_m", "xV_m"];
+
+#[test]
+fn a_pulse_of_the_blood_goes_through_the_capillaries() {
+    // Six seconds are fifty time constants: what is left is within the solver's tolerance, 1e-8 of 1e-5 m; measured 1.8e-14.
+    const PERIODIC_M: f64 = 1e-13;
+    let dir = Dir::new();
+    run(&dir, "--ph sine:10000+2000@1 --until 8 --with-loads --out p.csv --no-figures").expect(0);
+    let (x, light) = (column(&dir, "p.csv", "xC1_m"), column(&dir, "p.csv", "VP1"));
+    let pressure = column(&dir, "p.csv", "ph_Pa");
+    assert_eq!((x.len(), pressure[25]), (801, 12_000.0));
+    let gap = worst(&x[600..700], &x[700..800]);
+    assert!(gap <= PERIODIC_M, "{gap}");
+    // More pressure swells the capillaries, which take more light; both lag the pressure, whose top is at 0.25 s.
+    let top = (700..800).max_by(|&a, &b| x[a].total_cmp(&x[b])).unwrap();
+    assert!((726..=750).contains(&top), "{top}");
+    assert!(light[top] < light[top - 50] && x[top] - x[top - 50] > 1e-8, "{} {}", x[top], x[top - 50]);
+    // A pulse of no height is none.
+    run(&dir, "--ph sine:10000+0@1 --pf1 step:5000@0..1 --until 2 --out flat.csv --no-figures").expect(0);
+    run(&dir, "--pf1 step:5000@0..1 --until 2 --out plain.csv --no-figures").expect(0);
+    for wall in WALLS {
+        let gap = worst(&column(&dir, "flat.csv", wall), &column(&dir, "plain.csv", wall));
+        assert!(gap <= PERIODIC_M, "{wall}: {gap}");
+    }
+}
+
+#[test]
+fn every_kind_of_optics_is_its_equation() {
+    // Last digits of exp, its logarithm and a root: measured 4.4e-16.
+    const DIGITS: f64 = 4e-15;
+    let dir = Dir::new();
+    for optics in ["beer-lambert", "quadratic", "linear"] {
+        run(&dir, &format!("--pf2 step:8000@0..1 --until 2 --optics {optics} --out {optics}.csv --no-figures"))
+            .expect(0);
+    }
+    let exact = column(&dir, "beer-lambert.csv", "VP2");
+    // V_0 = 0 and V_1 = 1: absorption is alpha d^2.
+    let absorption: Vec<f64> = exact.iter().map(|light| -light.ln()).collect();
+    let quadratic: Vec<f64> = absorption.iter().map(|absorption| 1.0 - absorption).collect();
+    let gap = worst(&quadratic, &column(&dir, "quadratic.csv", "VP2"));
+    assert!(gap <= DIGITS, "{gap}");
+    // The run begins at rest, the working point.
+    let slope = -2.0 * absorption[0] * exact[0];
+    let tangent = absorption.iter().map(|own| exact[0] + slope * ((own / absorption[0]).sqrt() - 1.0));
+    let gap = worst(&tangent.collect::<Vec<_>>(), &column(&dir, "linear.csv", "VP2"));
+    assert!(gap <= DIGITS, "{gap}");
+    assert!(worst(&exact, &quadratic) > 1e-3);
+}
+
+#[test]
+fn walls_without_damping_or_of_any_mass_come_to_the_same_rest() {
+    // Measured 7.8e-20 m.
+    const NEAR_M: f64 = 1e-16;
+    let dir = Dir::new();
+    let all = |symbol: &str, unit_and_value: &str| -> String {
+        ["C1", "C2", "V"].iter().map(|site| format!(" --set {symbol}_{site}_{unit_and_value}")).collect()
+    };
+    let rest = {
+        run(&dir, "--pf1 5000 --pf2 3000 --until 0 --out rest.csv --no-figures").expect(0);
+        dir.table("rest.csv").remove(0)
+    };
+    for (case, set) in
+        [("undamped", all("b", "N_s_per_m=0")), ("light", all("m", "kg=1e-12")), ("heavy", all("m", "kg=1"))]
+    {
+        run(
+            &dir,
+            &format!(
+                "--pf1 step:5000@0..9 --pf2 step:3000@0..9 --until 4 --every 0.1 {set} --out {case}.csv --no-figures"
+            ),
+        )
+        .expect(0);
+        let rows = dir.table(&format!("{case}.csv"));
+        assert_eq!(rows.len(), 41);
+        for wall in WALLS {
+            let gap = (number(&rows[40], wall) - number(&rest, wall)).abs();
+            assert!(gap <= NEAR_M, "{case}, {wall}: {gap:e}");
+        }
+    }
+}
+
+#[test]
+fn walls_that_touch_bear_any_load() {
+    // Lumens over 1e-4 m at rest under these loads are known to nine digits after the point: measured 4.6e-10.
+    const DIGITS: f64 = 5e-10;
+    // Two seconds after, a time constant of a tenth of a second leaves next to nothing: measured 2.3e-7 of a displacement.
+    const LEFT: f64 = 1e-6;
+    let dir = Dir::new();
+    for (load, lumen) in [("2e4", 0.016_226_742), ("1e5", 0.009_149_301)] {
+        run(&dir, &format!("--pf1 {load} --until 0 --collapse contact --out rest.csv --no-figures")).expect(0);
+        let found = 1.0 + column(&dir, "rest.csv", "xV_m")[0] / 1e-4;
+        assert!((found - lumen).abs() <= DIGITS, "{load}: {found}");
+    }
+    for both in ["--pf1 step:1e6@0..2", "--pf2 step:1e6@0..2", "--pf1 step:1e6@0..2 --pf2 step:1e6@0..2"] {
+        let report = run(&dir, &format!("{both} --collapse contact --out c.csv --no-figures --json")).expect(0).json();
+        assert_eq!(report["rows"].as_u64(), Some(401));
+        for (wall, diameter_m) in WALLS.into_iter().zip([1e-5, 1e-5, 1e-4]) {
+            let x = column(&dir, "c.csv", wall);
+            assert!(x.iter().all(|x| x + diameter_m > 0.0), "{both}: {wall}");
+            assert!((x[400] / x[0] - 1.0).abs() <= LEFT, "{both}: {wall} {} {}", x[0], x[400]);
+        }
+        run(&dir, &format!("{both} --out e.csv")).expect(2).says("--collapse contact");
+    }
+}
+
+#[test]
+fn a_file_of_a_thousand_rows_is_what_it_draws() {
+    // Both are solved to 1e-10 D, and D is 1e-5 and 1e-4 m: measured 1.6e-14.
+    const NEAR_M: f64 = 2e-14;
+    let dir = Dir::new();
+    let mut text = "time_s,pf1_Pa,pf2_Pa,ph_Pa\n".to_owned();
+    for k in 0..=1000 {
+        let time_s = f64::from(k) / 250.0;
+        text += &format!("{time_s},{},{},10000\n", 2000.0 * time_s, 500.0 * time_s);
+    }
+    dir.write("loads.csv", text);
+    run(&dir, "--loads loads.csv --rtol 1e-10 --every 0.05 --out a.csv --no-figures").expect(0);
+    run(&dir, "--pf1 ramp:0..8000@0..4 --pf2 ramp:0..2000@0..4 --rtol 1e-10 --every 0.05 --out b.csv --no-figures")
+        .expect(0);
+    for wall in WALLS {
+        let gap = worst(&column(&dir, "a.csv", wall), &column(&dir, "b.csv", wall));
+        assert!(gap <= NEAR_M, "{wall}: {gap:e}");
+    }
+}
+
+#[test]
+fn a_touch_of_a_millisecond_is_not_stepped_over() {
+    let dir = Dir::new();
+    run(&dir, "--pf1 step:5000@1..1.001 --until 2 --out t.csv --no-figures").expect(0);
+    let x = column(&dir, "t.csv", "xV_m");
+    assert!(worst(&x[..100], &vec![x[0]; 100]) <= 1e-12);
+    assert!(x[0] - x[101] > 1e-7, "{} {}", x[0], x[101]);
+}
