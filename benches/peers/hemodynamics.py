@@ -207,20 +207,20 @@ def build(folder):
 
 class Native:
     def __init__(self, library, solver):
-        self.library, self.solver = library, solver
+        self.native, self.solver = library, solver
 
     def run(self, rtol, rates, first, second):
         out = np.empty((len(LOADS), len(first) + len(second), 6))
         pointer = lambda v: np.ascontiguousarray(v, dtype=float).ctypes.data_as(ctypes.POINTER(ctypes.c_double))  # noqa: E731
         loads = [np.ascontiguousarray(LOADS[:, 0]), np.ascontiguousarray(LOADS[:, 1])]
         atol = absolute(rtol, rates)
-        fault = self.library.responses(
+        fault = self.native.responses(
             self.solver, len(LOADS), pointer(loads[0]), pointer(loads[1]), pointer(REST), ctypes.c_double(HALF_S), ctypes.c_double(rtol),
             pointer(atol), len(first), pointer(first), len(second), pointer(second), pointer(out),
         )  # fmt: skip
         if fault:
             raise RuntimeError(f"stopped with {fault}")
-        return out, self.library.evaluations()
+        return out, self.native.evaluations()
 
 
 def native(folder):
