@@ -119,8 +119,10 @@ pub enum EquilibriumFault {
     },
     /// There is no stable equilibrium.
     #[error(
-        "there is no stable equilibrium with open vessels at P_F1 = {} Pa, P_F2 = {} Pa (and {unstable} that are not stable); press less, or let walls touch (contact)",
-        inputs.proximal_pa, inputs.distal_pa
+        "there is no stable equilibrium with open vessels at P_F1 = {} Pa, P_F2 = {} Pa{}; press less, or let walls touch (contact)",
+        inputs.proximal_pa,
+        inputs.distal_pa,
+        if *unstable > 0 { format!(" ({unstable} are not stable)") } else { String::new() }
     )]
     None {
         /// The inputs.
