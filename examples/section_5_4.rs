@@ -12,7 +12,7 @@ use anyhow::Context;
 use lunula::align::{AlignInputs, AlignOptions, AlignOutputs, run as align};
 use lunula::phantom::log::{LogOptions, LogScene, Protocol, write};
 use lunula::predictor::models::{Kind, Recipe};
-use lunula::predictor::{CompareOptions, Person, compare};
+use lunula::predictor::{CompareOptions, FolderOutputs, Person, compare};
 use rayon::prelude::*;
 
 const PEOPLE: u32 = 7;
@@ -32,7 +32,7 @@ fn main() -> anyhow::Result<()> {
     let people = people.collect::<anyhow::Result<Vec<_>>>()?;
     let kinds = [Kind::Linear, Kind::Quadratic, Kind::Network { hidden: 8 }];
     let options = CompareOptions { models: kinds.map(Recipe::new).to_vec(), bending_s: Protocol::Touch.seconds()[0] };
-    let report = compare(&people, &options, Some(&out), &AtomicBool::new(false))?;
+    let report = compare(&people, &options, Some(&FolderOutputs::all(out.clone())), &AtomicBool::new(false))?;
     report.warnings.iter().for_each(|warning| eprintln!("note: {warning}"));
     for comparison in &report.comparisons {
         println!("{}", comparison.markdown());

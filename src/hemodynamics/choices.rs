@@ -1,14 +1,16 @@
-//! Which optics a job is asked for, by a word.
+//! What a job is asked for, by a word.
 
-use lunula_hemodynamics::{Optics, Parameters};
-use serde::Serialize;
+use lunula_hemodynamics::{Calibration, Collapse, Inertia, Optics, Parameters};
+use serde::{Serialize, Serializer};
 
 use super::HemodynamicsError;
+use super::curve::Pressed;
+use super::fit::Between;
 use super::solve::rest;
+use crate::words::Words;
 
 /// How light depends on the capillaries.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum OpticsChoice {
     /// Equation 6.
     #[default]
@@ -35,4 +37,47 @@ impl OpticsChoice {
             }
         })
     }
+}
+
+impl Words for OpticsChoice {
+    const WORDS: &'static [(Self, &'static str, &'static str)] = &[
+        (Self::BeerLambert, "beer-lambert", "Equation 6: V0 + V1 exp(-alpha d^2)"),
+        (Self::Quadratic, "quadratic", "Equation 8, two terms of its series"),
+        (Self::Linear, "linear", "The tangent of equation 6 at rest"),
+    ];
+}
+
+impl Serialize for OpticsChoice {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        crate::words::serialize(self, to)
+    }
+}
+
+impl Words for Collapse {
+    const WORDS: &'static [(Self, &'static str, &'static str)] =
+        &[(Self::Error, "error", ""), (Self::Contact, "contact", "")];
+}
+
+impl Words for Inertia {
+    const WORDS: &'static [(Self, &'static str, &'static str)] =
+        &[(Self::Full, "full", ""), (Self::Dropped, "dropped", ""), (Self::Corrected, "corrected", "")];
+}
+
+impl Words for Pressed {
+    const WORDS: &'static [(Self, &'static str, &'static str)] =
+        &[(Self::Proximal, "proximal", ""), (Self::Distal, "distal", ""), (Self::Both, "both", "")];
+}
+
+impl Words for Between {
+    const WORDS: &'static [(Self, &'static str, &'static str)] =
+        &[(Self::Straight, "straight", ""), (Self::Held, "held", "")];
+}
+
+impl Words for Calibration {
+    const WORDS: &'static [(Self, &'static str, &'static str)] = &[
+        (Self::PerSubject, "subject", ""),
+        (Self::PerRecording, "recording", ""),
+        (Self::Shared, "shared", ""),
+        (Self::Fixed, "held", ""),
+    ];
 }

@@ -10,6 +10,8 @@ mod figures;
 mod fit;
 mod given;
 mod grid;
+mod groups;
+mod people;
 mod response;
 mod section;
 mod simulate;
@@ -20,16 +22,21 @@ pub use lunula_hemodynamics as model;
 use lunula_hemodynamics::Parameters;
 
 pub use choices::OpticsChoice;
-pub use curve::{CurveOptions, CurveOutputs, CurvePoint, CurveReport, Fold, LoadRange, Pressed, curve, curve_plan};
+pub use curve::{
+    CurveOptions, CurveOutputs, CurvePoint, CurveReport, Fold, LoadRange, Pressed, curve, curve_outline, curve_plan,
+};
 pub use error::HemodynamicsError;
 pub use fit::{
     Between, FitOptions, FitOutputs, FitReport, FittedCombination, FittedGroup, FittedPhotodiode, FittedRival,
-    ForceColumn, PhotodiodeColumn, RecordingColumns, RecordingReport, fit, fit_plan,
+    ForceColumn, PhotodiodeColumn, RecordingColumns, RecordingReport, STARTS, fit, fit_outline, fit_plan,
 };
 pub use given::{GivenLoads, GivenParameters, Start};
+pub use people::{Person, Recorded};
 pub use response::Response;
-pub use section::section_4_3;
-pub use simulate::{Collapsed, SimulateOptions, SimulateOutputs, SimulateReport, Work, simulate, simulate_plan};
+pub use section::{Presses, QuickPress, SectionTold, section_4_3, section_presses, section_simulations};
+pub use simulate::{
+    Collapsed, SimulateOptions, SimulateOutputs, SimulateReport, Work, simulate, simulate_outline, simulate_plan,
+};
 pub use solve::{Run, RunSettings, respond};
 
 /// Parameters by their names in files.

@@ -22,8 +22,6 @@ const RTOL: f64 = 1e-8;
 const WIDER_LIFTED: f64 = 30.0;
 const WIDER_PLAIN: f64 = 300.0;
 const WIDER_PROBED: f64 = 10.0;
-/// What Newton's method leaves adds up over the samples of a time constant.
-const SMALLER_NEWTON: f64 = 1.0;
 /// The evaluations that a sample may take.
 const MOST_EVALUATIONS: u64 = 100_000;
 
@@ -103,7 +101,6 @@ impl Live {
             lifted: WIDER_LIFTED * bounds.lifted,
             plain: WIDER_PLAIN * bounds.plain,
             probed: WIDER_PROBED * bounds.probed,
-            newton: SMALLER_NEWTON * bounds.newton,
             ..bounds
         };
         let mut live = Live {

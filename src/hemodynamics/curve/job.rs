@@ -4,16 +4,20 @@ use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-use lunula_hemodynamics::{Collapse, Load, Parameters};
+use lunula_hemodynamics::{Load, Parameters};
 
 use super::{CurveOptions, CurveReport, figure, table};
-use crate::files::{Places, WriteError, beside};
+use crate::files::{Places, beside, pictures_beside};
 use crate::hemodynamics::error::go_on;
 use crate::hemodynamics::given::keep_inputs;
 use crate::hemodynamics::solve::{Curve, along};
 use crate::hemodynamics::{HemodynamicsError, named};
-use crate::stages::{Fate, Stages, Step};
+use crate::stages::{Stages, Step, left_out};
 use crate::table::TableFormat;
+use crate::words::Words;
+
+/// The picture's name, after the table's.
+const PICTURE: &str = "static";
 
 /// Where results go.
 #[derive(Debug, Clone)]
@@ -31,14 +35,21 @@ pub struct CurveOutputs {
 pub fn plan(options: &CurveOptions, outputs: Option<&CurveOutputs>) -> Result<Vec<Step>, HemodynamicsError> {
     let parameters = options.parameters.read()?;
     blood(options, &parameters)?;
-    Ok(steps(options, outputs, &parameters))
+    Ok(steps(options, outputs, Some(parameters.units().len())))
 }
 
-fn steps(options: &CurveOptions, outputs: Option<&CurveOutputs>, parameters: &Parameters) -> Vec<Step> {
+/// Plans a curve whose parameters do not stand yet.
+#[must_use]
+pub fn outline(options: &CurveOptions, outputs: Option<&CurveOutputs>) -> Vec<Step> {
+    steps(options, outputs, options.parameters.units)
+}
+
+fn steps(options: &CurveOptions, outputs: Option<&CurveOutputs>, units: Option<usize>) -> Vec<Step> {
     let pictures = outputs.is_none_or(|outputs| outputs.figures);
-    let (units, loads) = (parameters.units().len(), options.range.loads_pa().len());
+    let loads = options.range.loads_pa().len();
+    let units = units.map_or(String::new(), |units| format!("{units} units, "));
     vec![
-        Step::new("equilibria", true, format!("{units} units, {loads} loads, {}", options.pressed.name())),
+        Step::new("equilibria", true, format!("{units}{loads} loads, {}", options.pressed.word())),
         Step::new("run over time", false, "--static".to_owned()),
         Step::new("figures", pictures, if pictures { "photodiodes over the load" } else { "--no-figures" }.to_owned()),
     ]
@@ -63,11 +74,6 @@ fn blood(options: &CurveOptions, parameters: &Parameters) -> Result<[f64; 2], He
     ])
 }
 
-/// The pictures, PNG and SVG.
-fn pictures_of(outputs: &CurveOutputs) -> [PathBuf; 2] {
-    ["png", "svg"].map(|ending| beside(&outputs.table, &format!("-static.{ending}")))
-}
-
 /// Runs the job; every result is in its place when it returns.
 ///
 /// # Errors
@@ -81,7 +87,7 @@ pub fn curve(
     let stages = Stages::default();
     TableFormat::of(&outputs.table)?;
     let parameters = options.parameters.read()?;
-    let figures = outputs.figures.then(|| pictures_of(outputs)).into_iter().flatten();
+    let figures = outputs.figures.then(|| pictures_beside(&outputs.table, PICTURE)).into_iter().flatten();
     let own = [outputs.table.clone(), beside(&outputs.table, ".run.json")].into_iter().chain(figures);
     keep_inputs(options.parameters.file.iter(), &own.collect::<Vec<_>>())?;
     let blood_pa = blood(options, &parameters)?;
@@ -97,13 +103,10 @@ pub fn curve(
     let mut pictures = Vec::new();
     let nothing_open = points.iter().all(|point| point.lumens.is_none());
     if outputs.figures && !nothing_open {
-        let [png, svg] = pictures_of(outputs);
-        let at = [places.place(&png)?, places.place(&svg)?];
-        let title = format!("Equilibria under {} load", options.pressed.name());
-        let drawn =
-            stages.time("figures", || figure::draw_curve(&title, &points, &folds, &bistable_pa, &at[0], &at[1]));
-        drawn.map_err(|why| WriteError::File { path: png.clone(), why: format!("{why:#}") })?;
-        pictures.push(png);
+        let title = format!("Equilibria under {} load", options.pressed.word());
+        pictures.push(places.draw(&outputs.table, PICTURE, |png, svg| {
+            stages.time("figures", || figure::draw_curve(&title, &points, &folds, &bistable_pa, png, svg))
+        })?);
     }
     go_on(stop)?;
     // Points follow the loads.
@@ -118,7 +121,7 @@ pub fn curve(
         units: parameters.units().len(),
         load: options.pressed,
         range: options.range,
-        collapse: if options.collapse == Collapse::Error { "error" } else { "contact" },
+        collapse: options.collapse.name(),
         optics: options.optics,
         loads: loads_pa.len(),
         with_one: with(|count| count == 1),
@@ -128,11 +131,7 @@ pub fn curve(
         bistable_pa,
         closed_pa,
         parameters: named(&parameters),
-        left_out: steps(options, Some(outputs), &parameters)
-            .into_iter()
-            .filter(|step| step.fate == Fate::LeftOut)
-            .map(|step| format!("{}: {}", step.stage, step.reason))
-            .collect(),
+        left_out: left_out(steps(options, Some(outputs), Some(parameters.units().len()))),
         warnings: if nothing_open {
             vec!["no load has an equilibrium with open vessels: nothing is drawn".to_owned()]
         } else {
@@ -143,10 +142,8 @@ pub fn curve(
         stages: stages.list(),
         wall_s: begin.elapsed().as_secs_f64(),
     };
-    let run = beside(&outputs.table, ".run.json");
     let text = serde_json::to_string_pretty(&report).expect("plain data") + "\n";
-    let at = places.place(&run)?;
-    std::fs::write(&at, text).map_err(|why| WriteError::File { path: run, why: why.to_string() })?;
+    places.write(&beside(&outputs.table, ".run.json"), &text)?;
     places.commit()?;
     Ok(report)
 }

@@ -6,6 +6,6 @@ mod options;
 mod report;
 mod table;
 
-pub use job::{CurveOutputs, curve, plan as curve_plan};
+pub use job::{CurveOutputs, curve, outline as curve_outline, plan as curve_plan};
 pub use options::{CurveOptions, LoadRange, Pressed};
 pub use report::{CurvePoint, CurveReport, Fold};

@@ -42,16 +42,6 @@ impl Pressed {
             Self::Both => LoadPath::Both,
         }
     }
-
-    /// Its word.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Proximal => "proximal",
-            Self::Distal => "distal",
-            Self::Both => "both",
-        }
-    }
 }
 
 /// Loads from one to another by steps, Pa; the last is left out where the steps don't meet it.

@@ -11,12 +11,12 @@ use super::recording::{ReadRecording, read};
 use super::report::{
     FitReport, FittedCombination, FittedPhotodiode, FittedRival, RecordingReport, correlations, groups, stopped,
 };
-use super::{FitOptions, figure, fitted, noise};
-use crate::files::{Places, WriteError, beside};
+use super::{FitOptions, estimates, figure, fitted, noise};
+use crate::files::{Places, beside, pictures_beside};
 use crate::hemodynamics::error::go_on;
 use crate::hemodynamics::given::keep_inputs;
 use crate::hemodynamics::{HemodynamicsError, named};
-use crate::stages::{Fate, Stages, Step};
+use crate::stages::{Stages, Step, left_out};
 use crate::table::{Column, TableWriter, Value};
 
 /// Where results go.
@@ -44,7 +44,13 @@ pub fn plan(options: &FitOptions, outputs: Option<&FitOutputs>) -> Result<Vec<St
     if let Some(outputs) = outputs {
         is_no_input(options, outputs)?;
     }
-    Ok(steps(options, outputs, &ready))
+    Ok(steps(options, outputs, Some(&ready)))
+}
+
+/// Plans a fit whose recordings do not stand yet.
+#[must_use]
+pub fn outline(options: &FitOptions, outputs: Option<&FitOutputs>) -> Vec<Step> {
+    steps(options, outputs, None)
 }
 
 fn ready(options: &FitOptions) -> Result<Ready, HemodynamicsError> {
@@ -54,6 +60,9 @@ fn ready(options: &FitOptions) -> Result<Ready, HemodynamicsError> {
     let one = |(k, path): (usize, &PathBuf)| -> Result<ReadRecording, HemodynamicsError> {
         let mut found = read(path, &options.columns, units)?;
         found.recording.subject = Some(options.subject(k).to_owned());
+        if let Some(name) = options.names.get(k) {
+            found.name.clone_from(name);
+        }
         Ok(found)
     };
     let recordings = options.recordings.iter().enumerate().map(one).collect::<Result<_, _>>()?;
@@ -65,13 +74,16 @@ fn ready(options: &FitOptions) -> Result<Ready, HemodynamicsError> {
     Ok(Ready { start, free, recordings })
 }
 
-fn steps(options: &FitOptions, outputs: Option<&FitOutputs>, ready: &Ready) -> Vec<Step> {
+fn steps(options: &FitOptions, outputs: Option<&FitOutputs>, ready: Option<&Ready>) -> Vec<Step> {
     let pictures = outputs.is_none_or(|outputs| outputs.figures);
-    let samples: usize = ready.recordings.iter().map(|one| one.recording.samples()).sum();
-    let (free, recordings) = (ready.free.len(), ready.recordings.len());
+    let samples = ready.map_or(String::new(), |ready| {
+        let samples: usize = ready.recordings.iter().map(|one| one.recording.samples()).sum();
+        format!(", {samples} samples")
+    });
+    let (free, recordings) = (options.free.len(), options.recordings.len());
     let held = options.calibration == Calibration::Fixed;
     vec![
-        Step::new("fit", true, format!("{free} free groups, {recordings} recordings, {samples} samples")),
+        Step::new("fit", true, format!("{free} free groups, {recordings} recordings{samples}")),
         Step::new(
             "offset and scaling",
             !held,
@@ -130,16 +142,16 @@ pub fn fit(options: &FitOptions, outputs: &FitOutputs, stop: &AtomicBool) -> Res
     };
     let mut places = Places::default();
     let parameter_files = parameter_files(options, &result, outputs, &mut places)?;
+    let estimates = beside(&outputs.result, "-estimates.csv");
+    estimates::write(&result, &ready.start, &places.place(&estimates)?, &estimates)?;
     let table = beside(&outputs.result, "-fitted.csv");
     let at = places.place(&table)?;
     stages.time("table", || write_table(&ready.recordings, &curves, &at, &table))?;
     let mut pictures = Vec::new();
     if outputs.figures {
-        let [png, svg] = ["png", "svg"].map(|ending| beside(&outputs.result, &format!("-fitted.{ending}")));
-        let at = [places.place(&png)?, places.place(&svg)?];
-        let drawn = stages.time("figures", || figure::draw_fit(&ready.recordings, &curves, &at[0], &at[1]));
-        drawn.map_err(|why| WriteError::File { path: png.clone(), why: format!("{why:#}") })?;
-        pictures.push(png);
+        pictures.push(places.draw(&outputs.result, "fitted", |png, svg| {
+            stages.time("figures", || figure::draw_fit(&ready.recordings, &curves, png, svg))
+        })?);
     }
     go_on(stop)?;
     let (words, converged) = stopped(result.stop);
@@ -182,11 +194,7 @@ pub fn fit(options: &FitOptions, outputs: &FitOutputs, stop: &AtomicBool) -> Res
         parameters: named(&result.parameters),
         parameter_files,
         table,
-        left_out: steps(options, Some(outputs), &ready)
-            .into_iter()
-            .filter(|step| step.fate == Fate::LeftOut)
-            .map(|step| format!("{}: {}", step.stage, step.reason))
-            .collect(),
+        left_out: left_out(steps(options, Some(outputs), Some(&ready))),
         warnings: warnings(&result, &ready.recordings, outputs.figures),
         failed: Vec::new(),
         pictures,
@@ -194,8 +202,7 @@ pub fn fit(options: &FitOptions, outputs: &FitOutputs, stop: &AtomicBool) -> Res
         wall_s: begin.elapsed().as_secs_f64(),
     };
     let text = serde_json::to_string_pretty(&report).expect("plain data") + "\n";
-    let at = places.place(&outputs.result)?;
-    std::fs::write(&at, text).map_err(|why| WriteError::File { path: outputs.result.clone(), why: why.to_string() })?;
+    places.write(&outputs.result, &text)?;
     places.commit()?;
     Ok(report)
 }
@@ -277,10 +284,11 @@ fn recording_reports(
 
 /// Refuses to write over an input.
 fn is_no_input(options: &FitOptions, outputs: &FitOutputs) -> Result<(), HemodynamicsError> {
-    let mut results = vec![outputs.result.clone(), beside(&outputs.result, "-fitted.csv")];
+    let mut results = vec![outputs.result.clone()];
+    results.extend(["-estimates.csv", "-fitted.csv", ".toml"].map(|ending| beside(&outputs.result, ending)));
     results.extend(parameter_paths(options, outputs).into_iter().map(|one| one.0));
     if outputs.figures {
-        results.extend(["-fitted.png", "-fitted.svg"].map(|ending| beside(&outputs.result, ending)));
+        results.extend(pictures_beside(&outputs.result, "fitted"));
     }
     keep_inputs(options.recordings.iter().chain(&options.parameters.file), &results)
 }

@@ -10,6 +10,9 @@ use crate::hemodynamics::HemodynamicsError;
 use crate::hemodynamics::choices::OpticsChoice;
 use crate::hemodynamics::given::GivenParameters;
 
+/// From how many points a fit is begun.
+pub const STARTS: u16 = 4;
+
 /// A fit to be made.
 #[derive(Debug, Clone)]
 pub struct FitOptions {
@@ -19,6 +22,8 @@ pub struct FitOptions {
     pub columns: RecordingColumns,
     /// Whose finger each recording is; none: all are one's.
     pub subjects: Vec<String>,
+    /// What tables and pictures call each recording, in the order of the recordings; none: its file's name.
+    pub names: Vec<String>,
     /// Names of what is free; none: the photodiodes alone.
     pub free: Vec<String>,
     /// Bounds of some of these names.

@@ -1,11 +1,11 @@
 //! The fitted parameters as files: one for all whose photodiodes have the same offset and scaling.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use lunula_hemodynamics::{Calibration, FitResult, Parameters};
 
 use super::{FitOptions, FitOutputs, fitted};
-use crate::files::{Places, WriteError, beside};
+use crate::files::{Places, beside};
 use crate::hemodynamics::HemodynamicsError;
 
 /// Parameter files and whose recordings each is for: one for all whose photodiodes have the same offset and scaling.
@@ -14,7 +14,9 @@ pub(super) fn parameter_paths(options: &FitOptions, outputs: &FitOutputs) -> Vec
         Calibration::Fixed | Calibration::Shared => String::new(),
         Calibration::PerSubject => options.subject(k).to_owned(),
         Calibration::PerRecording => {
-            options.recordings[k].file_stem().unwrap_or_default().to_string_lossy().into_owned()
+            let path = options.recordings[k].as_path();
+            let named = options.names.get(k).map(|name| Path::new(name).with_extension("").into_os_string());
+            named.unwrap_or_else(|| path.file_stem().unwrap_or_default().to_owned()).to_string_lossy().into_owned()
         }
     };
     let mut labels: Vec<(String, Vec<usize>)> = Vec::new();
@@ -41,7 +43,8 @@ pub(super) fn parameter_paths(options: &FitOptions, outputs: &FitOutputs) -> Vec
     labels.into_iter().enumerate().map(one).collect()
 }
 
-/// Writes the fitted parameters; tells where they will stand.
+/// Writes the fitted parameters; tells where they will stand. Where there are several files, one more, under the result's own name, has offset and
+/// scaling as they were at the start.
 pub(super) fn parameter_files(
     options: &FitOptions,
     result: &FitResult,
@@ -53,10 +56,12 @@ pub(super) fn parameter_files(
         // One subject's recordings may hold different photodiodes.
         let with = |all: Parameters, &k: &usize| fitted::own_parameters(&all, &result.photodiodes, k);
         let parameters = own.iter().fold(result.parameters.clone(), with);
-        let at = places.place(&path)?;
-        std::fs::write(&at, parameters.to_toml())
-            .map_err(|why| WriteError::File { path: path.clone(), why: why.to_string() })?;
+        places.write(&path, &parameters.to_toml())?;
         files.push(path);
+    }
+    let shared = beside(&outputs.result, ".toml");
+    if !files.contains(&shared) {
+        places.write(&shared, &result.parameters.to_toml())?;
     }
     Ok(files)
 }

@@ -29,6 +29,18 @@ pub struct PhotodiodeColumn {
     pub unit: usize,
 }
 
+impl PhotodiodeColumn {
+    /// A column above a unit that is counted from 1.
+    ///
+    /// # Errors
+    /// Unit 0, in words.
+    pub fn above(name: &str, unit: usize) -> Result<Self, String> {
+        let unit =
+            unit.checked_sub(1).ok_or_else(|| format!("{name}=0: units are counted from 1 at the proximal end"))?;
+        Ok(Self { name: name.to_owned(), unit })
+    }
+}
+
 /// What a load does between two rows.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Between {

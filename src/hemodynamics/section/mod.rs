@@ -1,15 +1,16 @@
 //! Figures 76 to 82 of section 4.3 made anew: the thesis' simulations, and its experiments on eight generated people.
 //!
-//! In: a folder. Out: the pictures in it, and Markdown with every number that is told of them ([`section_4_3`]); the same bytes each time.
+//! In: a folder. Out: the pictures in it, and Markdown with every number that is told of them ([`section_4_3`]); the same bytes each time. The simulations alone
+//! are [`section_simulations`]; the experiments on recorded people instead of generated ones are [`section_presses`].
 //! "Literal" are the thesis' orders of magnitude taken as they are printed; "tuned" has stiffness and damping of capillaries and vein changed
 //! within tenfold until step responses have the time constants that the thesis measured (0.16/0.12 s proximal, 0.18/0.36 s distal).
 
 mod experiments;
-mod people;
 mod statics;
 mod steps;
 mod tune;
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -19,13 +20,17 @@ use crate::files::Staging;
 use crate::hemodynamics::Response;
 use crate::hemodynamics::curve::Pressed;
 use crate::hemodynamics::figures::N_PER_CM2;
-use steps::{Signal, Stepped, change, steps};
-use tune::{GROUPS, constants_s, scaled, tune};
+use crate::hemodynamics::groups::{GROUPS, scaled};
+pub use experiments::{Presses, QuickPress};
+use steps::{Change, Signal, Stepped, change, steps};
+use tune::{constants_s, tune};
 
 /// What the thesis measured, s: proximal loading and unloading, distal loading and unloading.
 const MEASURED_S: [f64; 4] = [0.16, 0.12, 0.18, 0.36];
 /// The step at which the model is tuned to that, Pa.
 const TUNED_AT_PA: f64 = 1e4;
+/// The values as they are printed.
+const LITERAL: &str = "literal";
 /// Tolerance of what is drawn and told.
 const RTOL: f64 = 1e-9;
 
@@ -35,29 +40,100 @@ struct Named {
     parameters: Parameters,
 }
 
+/// What is told of figures.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct SectionTold {
+    /// Tables, as Markdown.
+    pub text: String,
+    /// What the thesis' words speak of, by name: `fig76.vein_um`. Of the simulations, those of the literal values.
+    pub numbers: BTreeMap<String, f64>,
+}
+
+impl Write for SectionTold {
+    fn write_str(&mut self, text: &str) -> std::fmt::Result {
+        self.text.write_str(text)
+    }
+}
+
+impl SectionTold {
+    /// Keeps a number that is known.
+    fn number(&mut self, name: String, value: Option<f64>) {
+        if let Some(value) = value.filter(|value| value.is_finite()) {
+            self.numbers.insert(name, value);
+        }
+    }
+
+    /// Keeps what a signal does from the lowest to the highest load: its change, how far that is from proportional, its time constants.
+    fn signal(&mut self, figure: &str, name: &str, unit: &str, changes: &[(f64, Change)]) {
+        let Some(((_, first), (load_pa, last))) = changes.first().zip(changes.last()) else { return };
+        if *load_pa < TUNED_AT_PA {
+            return;
+        }
+        self.number(format!("{figure}.{name}_{unit}"), Some(last.size));
+        let before = changes.iter().rev().nth(1).map(|(_, before)| before.size);
+        let increments = before.map(|before| (last.size - before) / first.size);
+        self.number(format!("{figure}.{name}_disproportion"), increments.map(|ratio| (1.0 - ratio).abs()));
+        for (way, k) in [("loading", 0), ("unloading", 1)] {
+            self.number(format!("{figure}.{name}_{way}_low_s"), first.constants_s[k]);
+            self.number(format!("{figure}.{name}_{way}_high_s"), last.constants_s[k]);
+        }
+    }
+}
+
 /// Draws Fig. 76 to 82 into `out` and tells their numbers as Markdown.
 ///
 /// # Errors
 /// Where a file can't be written.
 pub fn section_4_3(out: &Path) -> anyhow::Result<String> {
     let staging = Staging::new(out)?;
-    let mut text = String::new();
+    let mut told = SectionTold::default();
+    let tuned = simulations(&mut told, &staging)?;
+    let presses = Presses::generated(&tuned)?;
+    experiments::figures(&mut told, &presses, Some(&tuned), &staging)?;
+    staging.commit()?;
+    Ok(told.text)
+}
+
+/// Draws Fig. 76 to 78 into `out` and tells of them.
+///
+/// # Errors
+/// Where a file can't be written.
+pub fn section_simulations(out: &Path) -> anyhow::Result<SectionTold> {
+    let staging = Staging::new(out)?;
+    let mut told = SectionTold::default();
+    simulations(&mut told, &staging)?;
+    staging.commit()?;
+    Ok(told)
+}
+
+/// Draws Fig. 79 to 82 of recorded people into `out` and tells of them; what was not recorded is left out.
+///
+/// # Errors
+/// No presses at all, a fit without an answer, or where a file can't be written.
+pub fn section_presses(presses: &Presses, out: &Path) -> anyhow::Result<SectionTold> {
+    let staging = Staging::new(out)?;
+    let mut told = SectionTold::default();
+    experiments::figures(&mut told, presses, None, &staging)?;
+    staging.commit()?;
+    Ok(told)
+}
+
+/// Fig. 76 to 78; gives the tuned parameters.
+fn simulations(told: &mut SectionTold, staging: &Staging) -> anyhow::Result<Parameters> {
     let literal = Parameters::thesis();
     let factors = tune(&literal, MEASURED_S, TUNED_AT_PA);
     let tuned = scaled(&literal, &factors).unwrap_or_else(|| literal.clone());
-    tell_tuning(&mut text, &literal, &tuned, &factors)?;
+    tell_tuning(told, &literal, &tuned, &factors)?;
     let sets =
-        [Named { name: "literal", parameters: literal.clone() }, Named { name: "tuned", parameters: tuned.clone() }];
+        [Named { name: LITERAL, parameters: literal.clone() }, Named { name: "tuned", parameters: tuned.clone() }];
     for set in &sets {
-        figure_76(&mut text, set, &staging)?;
+        figure_76(told, set, staging)?;
     }
     for set in &sets {
-        figure_77(&mut text, set, &staging)?;
+        figure_77(told, set, staging)?;
     }
-    statics::figure_78(&mut text, &sets, &staging)?;
-    experiments::figures(&mut text, &literal, &tuned, &staging)?;
-    staging.commit()?;
-    Ok(text)
+    statics::figure_78(told, &sets, staging)?;
+    Ok(tuned)
 }
 
 /// Three digits, or a dash where nothing is known.
@@ -65,7 +141,12 @@ fn figure(value: Option<f64>) -> String {
     value.map_or("-".to_owned(), |value| format!("{value:.3}"))
 }
 
-fn tell_tuning(text: &mut String, literal: &Parameters, tuned: &Parameters, factors: &[f64; 4]) -> anyhow::Result<()> {
+fn tell_tuning(
+    text: &mut SectionTold,
+    literal: &Parameters,
+    tuned: &Parameters,
+    factors: &[f64; 4],
+) -> anyhow::Result<()> {
     writeln!(text, "Time constants at {} N/cm2 (s), loading / unloading:\n", TUNED_AT_PA / N_PER_CM2)?;
     writeln!(text, "| | VP1, proximal step | VP2, distal step |\n|---|---|---|")?;
     for (name, parameters) in [("literal", literal), ("tuned", tuned)] {
@@ -97,7 +178,7 @@ fn answered(parameters: &Parameters, pressed: Pressed) -> (Vec<Stepped>, Option<
     (answered, None)
 }
 
-fn say_closed(text: &mut String, closed: Option<f64>) -> anyhow::Result<()> {
+fn say_closed(text: &mut SectionTold, closed: Option<f64>) -> anyhow::Result<()> {
     if let Some(load_pa) = closed {
         writeln!(text, "\nFrom {} N/cm2 on, the model has no answer: a vessel closes.", load_pa / N_PER_CM2)?;
     }
@@ -106,7 +187,7 @@ fn say_closed(text: &mut String, closed: Option<f64>) -> anyhow::Result<()> {
 }
 
 /// Steps on the proximal surface.
-fn figure_76(text: &mut String, set: &Named, staging: &Staging) -> anyhow::Result<()> {
+fn figure_76(text: &mut SectionTold, set: &Named, staging: &Staging) -> anyhow::Result<()> {
     let (stepped, closed) = answered(&set.parameters, Pressed::Proximal);
     let parameters = &set.parameters;
     let capillary = |response: &Response| response.diameters_um(parameters, 0);
@@ -130,19 +211,26 @@ fn figure_76(text: &mut String, set: &Named, staging: &Staging) -> anyhow::Resul
         set.name
     )?;
     writeln!(text, "| N/cm2 | capillary | vein | VP1 | capillary | vein | VP1 |\n|---|---|---|---|---|---|---|")?;
+    let mut changes: [Vec<(f64, Change)>; 3] = Default::default();
     for one in &stepped {
         let times_s = &one.response.times_s;
         let of = [capillary(&one.response), vein(&one.response), light(&one.response)]
             .map(|values| change(times_s, &values));
+        changes.iter_mut().zip(of).for_each(|(all, own)| all.push((one.load_pa, own)));
         let sizes = [of[0].size, of[1].size, 1e3 * of[2].size].map(|size| format!("{size:.3}"));
         let constants = of.map(|one| one.constants_s.map(figure).join(" / "));
         writeln!(text, "| {} | {} | {} |", one.load_pa / N_PER_CM2, sizes.join(" | "), constants.join(" | "))?;
+    }
+    if set.name == LITERAL {
+        for ((name, unit), all) in [("capillary", "um"), ("vein", "um"), ("VP1", "V")].into_iter().zip(&changes) {
+            text.signal("fig76", name, unit, all);
+        }
     }
     say_closed(text, closed)
 }
 
 /// Steps on both surfaces.
-fn figure_77(text: &mut String, set: &Named, staging: &Staging) -> anyhow::Result<()> {
+fn figure_77(text: &mut SectionTold, set: &Named, staging: &Staging) -> anyhow::Result<()> {
     let (stepped, closed) = answered(&set.parameters, Pressed::Both);
     let light = |unit: usize| move |response: &Response| response.photodiode_v(unit);
     let [png, svg] = ["png", "svg"].map(|ending| format!("fig-77-{}.{ending}", set.name));
@@ -158,11 +246,18 @@ fn figure_77(text: &mut String, set: &Named, staging: &Staging) -> anyhow::Resul
         set.name
     )?;
     writeln!(text, "| N/cm2 | VP1 | VP2 | VP1 | VP2 |\n|---|---|---|---|---|")?;
+    let mut changes: [Vec<(f64, Change)>; 2] = Default::default();
     for one in &stepped {
         let of = [0, 1].map(|unit| change(&one.response.times_s, &one.response.photodiode_v(unit)));
+        changes.iter_mut().zip(of).for_each(|(all, own)| all.push((one.load_pa, own)));
         let sizes = of.map(|one| format!("{:.3}", 1e3 * one.size));
         let constants = of.map(|one| one.constants_s.map(figure).join(" / "));
         writeln!(text, "| {} | {} | {} |", one.load_pa / N_PER_CM2, sizes.join(" | "), constants.join(" | "))?;
+    }
+    if set.name == LITERAL {
+        for (name, all) in ["VP1", "VP2"].into_iter().zip(&changes) {
+            text.signal("fig77", name, "V", all);
+        }
     }
     say_closed(text, closed)
 }

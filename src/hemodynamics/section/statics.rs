@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use lunula_hemodynamics::{Collapse, Optics};
 
-use super::Named;
+use super::{LITERAL, Named, SectionTold};
 use crate::figure::{Item, draw_charts};
 use crate::files::Staging;
 use crate::hemodynamics::curve::Pressed;
@@ -18,7 +18,7 @@ const LOADS: u32 = 480;
 const PARTS: [[f64; 2]; 4] = [[0.0, 0.1], [0.1, 0.4], [0.4, 0.7], [0.9, 1.0]];
 
 /// Draws and tells the curves of all sets.
-pub(super) fn figure_78(text: &mut String, sets: &[Named], staging: &Staging) -> anyhow::Result<()> {
+pub(super) fn figure_78(text: &mut SectionTold, sets: &[Named], staging: &Staging) -> anyhow::Result<()> {
     let loads_pa: Vec<f64> = (0..=LOADS).map(|k| STEP_PA * f64::from(k)).collect();
     writeln!(
         text,
@@ -33,7 +33,7 @@ pub(super) fn figure_78(text: &mut String, sets: &[Named], staging: &Staging) ->
         for (k, set) in sets.iter().enumerate() {
             let blood_pa = [set.parameters.upstream_pa(), set.parameters.downstream_pa()];
             let found = along(&set.parameters, Collapse::Error, &Optics::BeerLambert, pressed, &loads_pa, blood_pa)?;
-            tell(text, &format!("VP{}, {}", unit + 1, set.name), &found, unit)?;
+            tell(text, set.name, &found, unit)?;
             items.extend(shown(set.name, &found, unit, k));
         }
         let title = if unit == 0 { "Steady state: light less that of rest; unstable parts thin" } else { "" };
@@ -44,17 +44,20 @@ pub(super) fn figure_78(text: &mut String, sets: &[Named], staging: &Staging) ->
     draw_charts(&charts, WIDTH, &staging.place("fig-78.png")?, &staging.place("fig-78.svg")?)
 }
 
-fn tell(text: &mut String, name: &str, found: &Curve, unit: usize) -> anyhow::Result<()> {
+fn tell(text: &mut SectionTold, name: &str, found: &Curve, unit: usize) -> anyhow::Result<()> {
     let at = |load: f64| {
         let stable = found.points.iter().filter(|point| point.stable == Some(true));
         let mut near = stable.filter(|point| (point.load_pa - load * N_PER_CM2).abs() < 0.1 * STEP_PA);
         near.next().map(|point| 1e3 * point.volts[unit])
     };
-    let slope = |[from, to]: &[f64; 2]| {
-        let both = at(*from).zip(at(*to));
-        both.map_or("-".to_owned(), |(low, high)| format!("{:.2}", (high - low) / (to - from)))
-    };
-    let slopes: Vec<String> = PARTS.iter().map(slope).collect();
+    let slope = |[from, to]: &[f64; 2]| at(*from).zip(at(*to)).map(|(low, high)| (high - low) / (to - from));
+    if name == LITERAL {
+        for part in &PARTS {
+            text.number(format!("fig78.VP{}_slope_{}_to_{}", unit + 1, part[0], part[1]), slope(part));
+        }
+    }
+    let words = |part| slope(part).map_or("-".to_owned(), |slope: f64| format!("{slope:.2}"));
+    let slopes: Vec<String> = PARTS.iter().map(words).collect();
     let open = found.closed_pa.first().map_or("1.2".to_owned(), |closed| format!("{:.6}", closed[0] / N_PER_CM2));
     let bistable: Vec<String> = found
         .bistable_pa
@@ -62,7 +65,7 @@ fn tell(text: &mut String, name: &str, found: &Curve, unit: usize) -> anyhow::Re
         .map(|[from, to]| format!("{:.6} to {:.6}", from / N_PER_CM2, to / N_PER_CM2))
         .collect();
     let bistable = if bistable.is_empty() { "none".to_owned() } else { bistable.join(", ") };
-    writeln!(text, "| {name} | {} | {open} | {bistable} |", slopes.join(" | "))?;
+    writeln!(text, "| VP{}, {name} | {} | {open} | {bistable} |", unit + 1, slopes.join(" | "))?;
     Ok(())
 }
 

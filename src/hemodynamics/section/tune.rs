@@ -1,18 +1,11 @@
 //! Stiffness and damping tuned to time constants, within an order of magnitude, as the thesis tunes them for Fig. 80 and 82.
 
-use lunula_hemodynamics::{Parameters, Site, Symbol};
+use lunula_hemodynamics::Parameters;
 use rayon::prelude::*;
 
 use super::steps::{change, steps};
 use crate::hemodynamics::curve::Pressed;
-
-/// What is tuned: each group moves by one factor.
-pub(super) const GROUPS: [(&str, &[Symbol]); 4] = [
-    ("k_C", &[Symbol::Stiffness(Site::Capillary(0)), Symbol::Stiffness(Site::Capillary(1))]),
-    ("b_C", &[Symbol::Damping(Site::Capillary(0)), Symbol::Damping(Site::Capillary(1))]),
-    ("k_V", &[Symbol::Stiffness(Site::Vein)]),
-    ("b_V", &[Symbol::Damping(Site::Vein)]),
-];
+use crate::hemodynamics::groups::scaled;
 
 /// Tenfold either way.
 const MOST: f64 = std::f64::consts::LN_10;
@@ -20,16 +13,6 @@ const MOST: f64 = std::f64::consts::LN_10;
 const CORNER: f64 = 1.2;
 /// A search's first and last step, in the logarithm of a factor.
 const STEPS: [f64; 2] = [0.8, 2e-3];
-
-/// Parameters whose groups are multiplied; none where one is no parameter any more.
-pub(super) fn scaled(parameters: &Parameters, factors: &[f64; 4]) -> Option<Parameters> {
-    let all = GROUPS.iter().zip(factors).flat_map(|((_, symbols), factor)| symbols.iter().map(move |s| (*s, *factor)));
-    let mut scaled = parameters.clone();
-    for (symbol, factor) in all {
-        scaled = scaled.set(symbol, factor * parameters.get(symbol)?).ok()?;
-    }
-    Some(scaled)
-}
 
 /// Time constants, s: of the proximal photodiode under proximal steps (loading, unloading) and of the distal one under distal steps.
 pub(super) fn constants_s(parameters: &Parameters, load_pa: f64) -> Option<[f64; 4]> {
@@ -43,7 +26,7 @@ pub(super) fn constants_s(parameters: &Parameters, load_pa: f64) -> Option<[f64;
     Some(found)
 }
 
-/// The factors of [`GROUPS`] whose time constants under steps of this load are the nearest to those wanted, in ratio: the best of searches
+/// The factors of [`GROUPS`](crate::hemodynamics::groups::GROUPS) whose time constants under steps of this load are the nearest to those wanted, in ratio: the best of searches
 /// from the parameters themselves and from all corners about them, the same each time.
 pub(super) fn tune(parameters: &Parameters, wanted_s: [f64; 4], load_pa: f64) -> [f64; 4] {
     let cost = |logs: &[f64; 4]| -> f64 {
@@ -94,4 +77,18 @@ fn around(mut at: [f64; 4], mut best: f64, step: f64, cost: &impl Fn(&[f64; 4]) 
         }
     }
     (at, best)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn people_are_about_values_with_the_time_constants_that_were_tuned_to() {
+        // As docs/section-4-3.md has them, of the tuned values under steps of 1 N/cm2.
+        let told_s = [0.136, 0.144, 0.175, 0.362];
+        let middle = crate::hemodynamics::Person::middle().unwrap();
+        let found_s = constants_s(&middle, crate::hemodynamics::section::TUNED_AT_PA).unwrap();
+        assert!(found_s.iter().zip(told_s).all(|(found, told)| (found - told).abs() <= 0.0006), "{found_s:?}");
+    }
 }

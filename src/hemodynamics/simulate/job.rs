@@ -4,18 +4,22 @@ use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-use lunula_hemodynamics::{Collapse, Inertia, Parameters};
+use lunula_hemodynamics::{Inertia, Parameters};
 
 use super::report::{Collapsed, LoadsReport, SimulateReport};
 use super::{SimulateOptions, table};
-use crate::files::{Places, WriteError, beside};
+use crate::files::{Places, beside, pictures_beside};
 use crate::hemodynamics::error::go_on;
 use crate::hemodynamics::figures::draw_response;
 use crate::hemodynamics::given::{ReadLoads, Start, keep_inputs};
 use crate::hemodynamics::solve::{Run, RunSettings, respond, start_state};
 use crate::hemodynamics::{HemodynamicsError, named};
-use crate::stages::{Fate, Stages, Step};
+use crate::stages::{Stages, Step, left_out};
 use crate::table::TableFormat;
+use crate::words::Words;
+
+/// The picture's name, after the table's.
+const PICTURE: &str = "response";
 
 /// Where results go.
 #[derive(Debug, Clone)]
@@ -38,7 +42,13 @@ struct Ready {
 /// What is wrong with the options or the files that they name.
 pub fn plan(options: &SimulateOptions, outputs: Option<&SimulateOutputs>) -> Result<Vec<Step>, HemodynamicsError> {
     let ready = ready(options)?;
-    Ok(steps(options, outputs, &ready.parameters))
+    Ok(steps(options, outputs, Some(ready.parameters.units().len())))
+}
+
+/// Plans a run whose files do not stand yet: what hangs on them is left open.
+#[must_use]
+pub fn outline(options: &SimulateOptions, outputs: Option<&SimulateOutputs>) -> Vec<Step> {
+    steps(options, outputs, options.parameters.units)
 }
 
 fn ready(options: &SimulateOptions) -> Result<Ready, HemodynamicsError> {
@@ -51,8 +61,8 @@ fn ready(options: &SimulateOptions) -> Result<Ready, HemodynamicsError> {
     Ok(Ready { parameters, loads })
 }
 
-fn steps(options: &SimulateOptions, outputs: Option<&SimulateOutputs>, parameters: &Parameters) -> Vec<Step> {
-    let units = parameters.units().len();
+fn steps(options: &SimulateOptions, outputs: Option<&SimulateOutputs>, units: Option<usize>) -> Vec<Step> {
+    let units = units.map_or(String::new(), |units| format!("{units} units, "));
     let equilibrium = options.start == Start::Equilibrium;
     let start = match &options.start {
         Start::Equilibrium => "of the loads just before t = 0".to_owned(),
@@ -63,7 +73,7 @@ fn steps(options: &SimulateOptions, outputs: Option<&SimulateOutputs>, parameter
     let pictures = outputs.is_none_or(|outputs| outputs.figures);
     vec![
         Step::new("equilibrium to start from", equilibrium, start),
-        Step::new("run", true, format!("{units} units, {} rows, rtol {:e}", options.rows(), options.rtol)),
+        Step::new("run", true, format!("{units}{} rows, rtol {:e}", options.rows(), options.rtol)),
         Step::new(
             "error of the reduced model",
             reduced,
@@ -118,18 +128,12 @@ pub fn simulate(
     stages.time("table", || table::write(&parameters, &response, shown, &at, &outputs.table))?;
     let mut pictures = Vec::new();
     if outputs.figures {
-        let [png, svg] = pictures_of(outputs);
-        let at = [places.place(&png)?, places.place(&svg)?];
-        let drawn = stages.time("figures", || draw_response(&parameters, &loads.loads, &response, &at[0], &at[1]));
-        drawn.map_err(|why| WriteError::File { path: png.clone(), why: format!("{why:#}") })?;
-        pictures.push(png);
+        pictures.push(places.draw(&outputs.table, PICTURE, |png, svg| {
+            stages.time("figures", || draw_response(&parameters, &loads.loads, &response, png, svg))
+        })?);
     }
     go_on(stop)?;
-    let left_out = steps(options, Some(outputs), &parameters)
-        .into_iter()
-        .filter(|step| step.fate == Fate::LeftOut)
-        .map(|step| format!("{}: {}", step.stage, step.reason))
-        .collect();
+    let left_out = left_out(steps(options, Some(outputs), Some(parameters.units().len())));
     let report = SimulateReport {
         job: "simulate",
         version: env!("CARGO_PKG_VERSION"),
@@ -144,13 +148,9 @@ pub fn simulate(
             Start::Zero => "zero".to_owned(),
             Start::File(path) => path.display().to_string(),
         },
-        model: match options.inertia {
-            Inertia::Full => "full",
-            Inertia::Dropped => "dropped",
-            Inertia::Corrected => "corrected",
-        },
+        model: options.inertia.word(),
         optics: options.optics,
-        collapse: if options.collapse == Collapse::Error { "error" } else { "contact" },
+        collapse: options.collapse.name(),
         until_s: options.until_s,
         every_s: options.every_s,
         rtol: options.rtol,
@@ -166,10 +166,8 @@ pub fn simulate(
         stages: stages.list(),
         wall_s: begin.elapsed().as_secs_f64(),
     };
-    let run = beside(&outputs.table, ".run.json");
     let text = serde_json::to_string_pretty(&report).expect("plain data") + "\n";
-    let at = places.place(&run)?;
-    std::fs::write(&at, text).map_err(|why| WriteError::File { path: run, why: why.to_string() })?;
+    places.write(&beside(&outputs.table, ".run.json"), &text)?;
     places.commit()?;
     Ok(report)
 }
@@ -178,14 +176,9 @@ pub fn simulate(
 fn is_no_input(options: &SimulateOptions, outputs: &SimulateOutputs) -> Result<(), HemodynamicsError> {
     let start = if let Start::File(path) = &options.start { Some(path) } else { None };
     let inputs = [options.parameters.file.as_ref(), options.loads.file.as_ref(), start];
-    let figures = outputs.figures.then(|| pictures_of(outputs)).into_iter().flatten();
+    let figures = outputs.figures.then(|| pictures_beside(&outputs.table, PICTURE)).into_iter().flatten();
     let own = [outputs.table.clone(), beside(&outputs.table, ".run.json")].into_iter().chain(figures);
     keep_inputs(inputs.into_iter().flatten(), &own.collect::<Vec<_>>())
-}
-
-/// The pictures, PNG and SVG.
-fn pictures_of(outputs: &SimulateOutputs) -> [PathBuf; 2] {
-    ["png", "svg"].map(|ending| beside(&outputs.table, &format!("-response.{ending}")))
 }
 
 fn warnings(options: &SimulateOptions, loads: &ReadLoads) -> Vec<String> {
@@ -193,7 +186,7 @@ fn warnings(options: &SimulateOptions, loads: &ReadLoads) -> Vec<String> {
     if options.loads.is_none() {
         warnings.push("nothing presses: --pf1, --pf2 or --loads say what does".to_owned());
     }
-    let last_s = options.times_s().last().copied().unwrap_or(0.0);
+    let last_s = options.last_s();
     if last_s < options.until_s * (1.0 - 1e-9) {
         let (until_s, every_s) = (options.until_s, options.every_s);
         warnings

@@ -5,6 +5,6 @@ mod options;
 mod report;
 mod table;
 
-pub use job::{SimulateOutputs, plan as simulate_plan, simulate};
+pub use job::{SimulateOutputs, outline as simulate_outline, plan as simulate_plan, simulate};
 pub use options::SimulateOptions;
 pub use report::{Collapsed, SimulateReport, Work};

@@ -67,6 +67,11 @@ impl SimulateOptions {
         (0..self.rows() as usize).map(|k| multiple(k, self.every_s)).collect()
     }
 
+    /// The time of the last row.
+    pub(super) fn last_s(&self) -> f64 {
+        multiple(self.rows() as usize - 1, self.every_s)
+    }
+
     /// All that is wrong, by the command line's names; `units` is the number of capillary units.
     pub(super) fn faults(&self, units: usize) -> Vec<String> {
         let mut faults = Vec::new();

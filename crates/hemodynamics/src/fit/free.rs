@@ -28,6 +28,24 @@ pub enum Bounds {
     Values(f64, f64),
 }
 
+impl std::str::FromStr for Bounds {
+    type Err = String;
+
+    /// `LOW..HIGH` in the parameter's unit, as `200..5000`, or of its start, as `0.1x..10x`.
+    fn from_str(text: &str) -> Result<Bounds, String> {
+        let wrong = || {
+            format!("{text:?}: write LOW..HIGH in the parameter's unit, as 200..5000, or of its start, as 0.1x..10x")
+        };
+        let (low, high) = text.split_once("..").ok_or_else(wrong)?;
+        let number = |part: &str| part.trim().parse::<f64>().ok().filter(|value| value.is_finite()).ok_or_else(wrong);
+        match (low.trim().strip_suffix('x'), high.trim().strip_suffix('x')) {
+            (Some(low), Some(high)) => Ok(Bounds::Factors(number(low)?, number(high)?)),
+            (None, None) => Ok(Bounds::Values(number(low)?, number(high)?)),
+            _ => Err(wrong()),
+        }
+    }
+}
+
 impl Free {
     /// One parameter within its default bounds.
     pub fn one(symbol: Symbol) -> Free {

@@ -39,7 +39,7 @@ pub use fault::ReducedFault;
 use crate::load::Loads;
 use crate::model::Model;
 use crate::parameters::Site;
-use crate::state::{State, StateFault};
+use crate::state::State;
 use crate::transient::{SolveFault, SolveOptions, Statistics, Stopped, Trajectory, simulate};
 use run::{Bounds, Halt, Run};
 
@@ -113,25 +113,12 @@ pub fn simulate_reduced(
 
 /// What [`simulate`] checks, and that every wall has something to hold it back; where the run starts, s.
 fn check(model: &Model, start: &State, times_s: &[f64], options: &SolveOptions) -> Result<f64, ReducedFault> {
-    options.check()?;
-    start.check().map_err(SolveFault::from)?;
-    let walls = model.walls();
-    if start.lumens.len() != walls {
-        return Err(SolveFault::from(StateFault::Length { walls, got: start.lumens.len() }).into());
-    }
+    let from_s = options.begins_at(model, start, times_s)?;
     let undamped = |i: &usize| model.walls[*i].damper == 0.0 && model.units[*i].resistance == 0.0;
-    if let Some(i) = (0..model.units.len()).find(undamped) {
-        return Err(ReducedFault::Undamped { site: Site::Capillary(i) });
+    match (0..model.units.len()).find(undamped) {
+        Some(i) => Err(ReducedFault::Undamped { site: Site::Capillary(i) }),
+        None => Ok(from_s),
     }
-    let from_s = options.start_s.or(times_s.first().copied()).ok_or(SolveFault::NoTimes)?;
-    let mut before_s = from_s;
-    for (row, &time_s) in times_s.iter().enumerate() {
-        if !(time_s >= before_s && time_s.is_finite()) {
-            return Err(SolveFault::Times { row: row + 1, time_s, before_s }.into());
-        }
-        before_s = time_s;
-    }
-    Ok(from_s)
 }
 
 fn fault(model: &Model, halt: Halt, mut before: Trajectory) -> ReducedFault {

@@ -12,8 +12,8 @@
 //! amplifies no more than twofold (the worst 0.77 `rtol`); with contact and loads up to 2e4 Pa in 2498 of 2500 (the others 1.5 at 1e-12).
 //! Errors of the rates are not bounded; beyond the layers they follow those of the displacements.
 //!
-//! Where a vessel closes under [`crate::Collapse::Error`], or comes within a few `rtol` of it, the run is repeated from its start at the finest tolerance, and that one's time and
-//! trajectory are given: a loose tolerance moves the end of a long slow fall by far more than itself.
+//! Where a vessel closes under [`crate::Collapse::Error`], or comes within a few `rtol` of it, the run is repeated from its start at the
+//! finest tolerance, and that one's time and trajectory are given: a loose tolerance moves the end of a long slow fall by far more than itself.
 //!
 //! [`simulate`] is the whole of it for one run; [`Solver`] keeps its memory for those who run it ten thousand times. Inside the crate,
 //! [`StepObserver`] hears of every accepted step.
@@ -35,7 +35,7 @@ use crate::load::Loads;
 use crate::model::{Collapse, InputLanes, Model};
 use crate::parameters::Site;
 use crate::radau::{Bounds, RADAU5, RADAU9, RADAU13, Stepper, root};
-use crate::state::{State, StateFault};
+use crate::state::State;
 
 /// The tolerance at which the time of a collapse is found.
 const COLLAPSE_RTOL: f64 = 1e-13;
@@ -107,20 +107,7 @@ impl Solver {
         observer: &mut impl StepObserver,
     ) -> Result<(), SolveFault> {
         out.begin(self.model.walls(), times_s.len());
-        options.check()?;
-        start.check()?;
-        if start.lumens.len() != self.model.walls() {
-            let (walls, got) = (self.model.walls(), start.lumens.len());
-            return Err(StateFault::Length { walls, got }.into());
-        }
-        let from_s = options.start_s.or(times_s.first().copied()).ok_or(SolveFault::NoTimes)?;
-        let mut before_s = from_s;
-        for (row, &time_s) in times_s.iter().enumerate() {
-            if !(time_s >= before_s && time_s.is_finite()) {
-                return Err(SolveFault::Times { row: row + 1, time_s, before_s });
-            }
-            before_s = time_s;
-        }
+        let from_s = options.begins_at(&self.model, start, times_s)?;
         let mut run = Run { loads, start, times_s, from_s, options };
         let first = self.dispatch(&run, out, observer);
         let tight = SolveOptions { rtol: COLLAPSE_RTOL, order: Order::Auto, ..options.clone() };

@@ -1,6 +1,8 @@
 //! How a transient is solved.
 
 use super::fault::SolveFault;
+use crate::model::Model;
+use crate::state::{State, StateFault};
 
 /// Tolerances that can be asked for.
 const TOLERANCES: [f64; 2] = [1e-13, 1e-1];
@@ -72,5 +74,24 @@ impl SolveOptions {
             Some(value) if !value.is_finite() => Err(SolveFault::Option { what: "the start", value }),
             _ => Ok(()),
         }
+    }
+
+    /// Whether a run from `start` through `times_s` can be asked for with these options; where it begins, s.
+    pub(crate) fn begins_at(&self, model: &Model, start: &State, times_s: &[f64]) -> Result<f64, SolveFault> {
+        self.check()?;
+        start.check()?;
+        let (walls, got) = (model.walls(), start.lumens.len());
+        if got != walls {
+            return Err(StateFault::Length { walls, got }.into());
+        }
+        let from_s = self.start_s.or(times_s.first().copied()).ok_or(SolveFault::NoTimes)?;
+        let mut before_s = from_s;
+        for (row, &time_s) in times_s.iter().enumerate() {
+            if !(time_s >= before_s && time_s.is_finite()) {
+                return Err(SolveFault::Times { row: row + 1, time_s, before_s });
+            }
+            before_s = time_s;
+        }
+        Ok(from_s)
     }
 }

@@ -72,6 +72,24 @@ pub enum Deficient {
     Ridge(f64),
 }
 
+impl std::str::FromStr for Deficient {
+    type Err = String;
+
+    /// `refuse`, `minimum-norm`, `drop` or `ridge=LAMBDA`.
+    fn from_str(text: &str) -> Result<Self, String> {
+        let ridge = |lambda: &str| lambda.parse().ok().filter(|lambda: &f64| *lambda > 0.0 && lambda.is_finite());
+        let parsed = match text {
+            "refuse" => Some(Self::Refuse),
+            "minimum-norm" => Some(Self::MinimumNorm),
+            "drop" => Some(Self::Drop),
+            other => other.strip_prefix("ridge=").and_then(ridge).map(Self::Ridge),
+        };
+        parsed.ok_or_else(|| {
+            "choose refuse, minimum-norm, drop or ridge=LAMBDA (as ridge=1e-6, of voltages in units of their spread)".to_owned()
+        })
+    }
+}
+
 /// How the coefficients are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Solver {

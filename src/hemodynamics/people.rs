@@ -1,4 +1,7 @@
-//! Eight people that are generated: the model with values and photodiodes of their own, pressing as section 4.3.4 lets them, with noise.
+//! People that are generated: the model with values and photodiodes of their own, pressing as section 4.3.4 lets them, with noise.
+//!
+//! In: the middle of people's values, and a seed for each. Out: what is recorded of them, Fig. 79 and 81 slowly, Fig. 80 and 82 quickly. Forces here are
+//! pressing ones: positive.
 //!
 //! Walls touch instead of closing ([`Collapse::Contact`]): the thesis' forces reach 2 N, and on 1 cm2 the model of its table closes at 1.1 N.
 
@@ -7,15 +10,11 @@ use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use super::tune::scaled;
-use crate::hemodynamics::HemodynamicsError;
-use crate::hemodynamics::curve::Pressed;
-use crate::hemodynamics::fit::voltages;
+use super::HemodynamicsError;
+use super::curve::Pressed;
+use super::fit::voltages;
+use super::groups::scaled;
 
-/// How many, as in the thesis.
-pub(super) const PEOPLE: usize = 8;
-/// The force's area, m2: a newton is 1 N/cm2.
-pub(super) const AREA_M2: f64 = 1e-4;
 /// SD of people's stiffness and damping, of the logarithm.
 const SPREAD: f64 = 0.12;
 /// SD of people's scaling, of the logarithm, and its middle, V.
@@ -27,27 +26,30 @@ const FORCE_NOISE_N: f64 = 0.01;
 /// Of a dynamic recording: rows a second, its end, pressing and letting go (s), how long that takes, and the force held.
 const RATE: u32 = 100;
 const END_S: f64 = 4.5;
-pub(super) const PRESSED_S: f64 = 0.5;
-pub(super) const RELEASED_S: f64 = 2.5;
+pub(in crate::hemodynamics) const PRESSED_S: f64 = 0.5;
+pub(in crate::hemodynamics) const RELEASED_S: f64 = 2.5;
 const QUICKLY_S: f64 = 0.15;
 const HELD_N: f64 = 1.0;
+/// Of the first of the thesis' eight people.
+const FIRST_SEED: u64 = 430;
 
 /// A generated person.
 #[derive(Debug, Clone)]
-pub(super) struct Person {
-    pub(super) name: String,
+pub struct Person {
+    name: String,
     parameters: Parameters,
     seed: u64,
 }
 
 /// What was recorded of a person, with the force as it was measured.
 #[derive(Debug, Clone)]
-pub(super) struct Recorded {
-    pub(super) recording: Recording,
-    /// N, a sample each.
-    pub(super) force_n: Vec<f64>,
+pub struct Recorded {
+    /// Loads by the measured force, and the photodiode of the pressed place.
+    pub recording: Recording,
+    /// The measured force, N, a sample each; positive where it presses.
+    pub force_n: Vec<f64>,
     /// s; none of a static one.
-    pub(super) times_s: Option<Vec<f64>>,
+    pub times_s: Option<Vec<f64>>,
 }
 
 fn normals(seed: u64) -> impl FnMut() -> f64 {
@@ -55,10 +57,18 @@ fn normals(seed: u64) -> impl FnMut() -> f64 {
     move || StandardNormal.sample(&mut random)
 }
 
-/// The people about these parameters.
-pub(super) fn people(middle: &Parameters) -> Option<Vec<Person>> {
-    let one = |k: usize| -> Option<Person> {
-        let seed = 430 + k as u64;
+impl Person {
+    /// How many there are in the thesis.
+    pub const COUNT: usize = 8;
+    /// The force's area, m2: a newton is 1 N/cm2.
+    pub const AREA_M2: f64 = 1e-4;
+    /// What `k_C`, `b_C`, `k_V` and `b_V` of the thesis' table are multiplied by to have its measured time constants, as docs/section-4-3.md tells.
+    const TUNED: [f64; 4] =
+        [0.733_905_503_853_136_7, 1.176_448_318_448_69, 10.000_000_000_000_002, 0.099_999_999_999_999_98];
+
+    /// A person about these parameters; none where they can't be moved so.
+    #[must_use]
+    pub fn about(middle: &Parameters, name: &str, seed: u64) -> Option<Self> {
         let mut normal = normals(seed);
         let mut own = scaled(middle, &std::array::from_fn(|_| (SPREAD * normal()).exp()))?;
         for unit in 0..2 {
@@ -66,22 +76,49 @@ pub(super) fn people(middle: &Parameters) -> Option<Vec<Person>> {
             own = own.set(Symbol::Scaling(unit), scaling).ok()?;
             own = own.set(Symbol::Offset(unit), 0.3 * normal()).ok()?;
         }
-        Some(Person { name: (k + 1).to_string(), parameters: own, seed })
-    };
-    (0..PEOPLE).map(one).collect()
-}
+        Some(Self { name: name.to_owned(), parameters: own, seed })
+    }
 
-impl Person {
+    /// The thesis' eight about these parameters; of the tuned ones, docs/section-4-3.md tells.
+    #[must_use]
+    pub fn of_section_4_3(middle: &Parameters) -> Option<Vec<Self>> {
+        (0..Self::COUNT).map(|k| Self::about(middle, &(k + 1).to_string(), FIRST_SEED + k as u64)).collect()
+    }
+
+    /// The middle of people: the thesis' table with stiffness and damping tuned to the time constants that it measured.
+    #[must_use]
+    pub fn middle() -> Option<Parameters> {
+        scaled(&Parameters::thesis(), &Self::TUNED)
+    }
+
+    /// What they are called.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The values that are true of them.
+    #[must_use]
+    pub fn parameters(&self) -> &Parameters {
+        &self.parameters
+    }
+
     /// The photodiode of the pressed place over a force from 0 to 2 N and back, slowly: an average of three cycles.
-    pub(super) fn slowly(&self, pressed: Pressed) -> Result<Recorded, HemodynamicsError> {
+    ///
+    /// # Errors
+    /// A model without an answer.
+    pub fn slowly(&self, pressed: Pressed) -> Result<Recorded, HemodynamicsError> {
         let force_n: Vec<f64> = (0..=40).map(|k| 0.05 * f64::from(k)).collect();
-        let pressures = |k: usize| force_n.iter().map(|force| pressed.of(force / AREA_M2)[k]).collect();
+        let pressures = |k: usize| force_n.iter().map(|force| pressed.of(force / Self::AREA_M2)[k]).collect();
         let recording = Recording::steady(pressures(0), pressures(1), vec![self.unknown(pressed, force_n.len())]);
         self.recorded(recording, force_n, None, 1.0 / 3.0_f64.sqrt(), pressed)
     }
 
     /// The photodiode of the pressed place as the finger presses quickly, holds, and lets go quickly.
-    pub(super) fn quickly(&self, pressed: Pressed) -> Result<Recorded, HemodynamicsError> {
+    ///
+    /// # Errors
+    /// A model without an answer.
+    pub fn quickly(&self, pressed: Pressed) -> Result<Recorded, HemodynamicsError> {
         let times_s: Vec<f64> =
             (0..=(END_S * f64::from(RATE)) as u32).map(|k| f64::from(k) / f64::from(RATE)).collect();
         let ease = |since_s: f64| 0.5 - 0.5 * (std::f64::consts::PI * (since_s / QUICKLY_S).clamp(0.0, 1.0)).cos();
@@ -94,7 +131,7 @@ impl Person {
         let true_n: Vec<f64> = times_s.iter().map(|&time_s| force(time_s)).collect();
         let force_n: Vec<f64> = true_n.iter().map(|force| force + FORCE_NOISE_N * normal()).collect();
         let of = |forces: &[f64], k: usize| {
-            let pressures: Vec<f64> = forces.iter().map(|force| pressed.of(force / AREA_M2)[k]).collect();
+            let pressures: Vec<f64> = forces.iter().map(|force| pressed.of(force / Self::AREA_M2)[k]).collect();
             Load::table(&times_s, &pressures).map_err(|why| HemodynamicsError::Model(why.to_string()))
         };
         let with = |forces: &[f64]| -> Result<Recording, HemodynamicsError> {
@@ -131,6 +168,6 @@ impl Person {
 }
 
 /// The least and the greatest.
-pub(super) fn ends(values: &[f64]) -> (f64, f64) {
+pub(in crate::hemodynamics) fn ends(values: &[f64]) -> (f64, f64) {
     values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| (low.min(value), high.max(value)))
 }

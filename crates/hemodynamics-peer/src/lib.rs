@@ -1,21 +1,33 @@
-//! diffsol's BDF on the same equations.
+//! diffsol's BDF on the equations of `lunula-hemodynamics`, for its bench and for a test that both agree.
+//!
+//! A package of its own, and none of the workspace's default members: diffsol brings matrices that take minutes to compile.
 
 use std::cell::{Cell, RefCell};
 
 use diffsol::{NalgebraLU, NalgebraMat, OdeBuilder, OdeSolverMethod, OdeSolverStopReason, Vector};
 use lunula_hemodynamics::{Arrow, Collapse, Inputs, Model, Parameters, State};
 
-use crate::Case;
-
 /// When the loads end, s.
 const HALF_S: f64 = 2.0;
 /// The first step after a jump, s: of 1e-5 to 1e-9 the one that served best.
 const FIRST_STEP_S: f64 = 1e-7;
 
-/// What a response starts from, and the absolute tolerance of rates over that of lumens.
-pub(crate) struct Peer<'a> {
-    pub(crate) rest: &'a State,
-    pub(crate) rates: f64,
+/// What a response starts from, and how it is solved.
+#[derive(Debug, Clone, Copy)]
+pub struct Peer<'a> {
+    /// The state before the load.
+    pub rest: &'a State,
+    /// The absolute tolerance of rates over that of lumens.
+    pub rates: f64,
+}
+
+/// The loads on the pulp from 0 to 2 s, pascals; none after.
+#[derive(Debug, Clone, Copy)]
+pub struct Step {
+    /// Over the vein.
+    pub proximal_pa: f64,
+    /// Over the capillaries of the distal unit.
+    pub distal_pa: f64,
 }
 
 /// The accelerations of three walls without memory of their own: `Model::accelerations` makes two vectors at every call.
@@ -73,21 +85,18 @@ struct Memo {
     arrow: Arrow,
 }
 
-/// Lumens of a response at times; evaluations of the right-hand side.
-pub(crate) fn bdf(
-    peer: &Peer<'_>,
-    case: &Case,
-    rtol: f64,
-    times: &[f64],
-    lumens: &mut Vec<[f64; 3]>,
-) -> Result<u64, String> {
+/// Solves for the lumens at `times`, seconds, and gives how often the right-hand side was evaluated.
+///
+/// # Errors
+/// diffsol's, in its words.
+pub fn bdf(peer: &Peer<'_>, step: Step, rtol: f64, times: &[f64], lumens: &mut Vec<[f64; 3]>) -> Result<u64, String> {
     let parameters = Parameters::thesis();
     let (walls, model) = (Walls::new(&parameters), Model::new(&parameters, Collapse::Error));
     let loaded = Inputs {
         upstream_pa: parameters.upstream_pa(),
         downstream_pa: parameters.downstream_pa(),
-        proximal_pa: case.proximal_pa,
-        distal_pa: case.distal_pa,
+        proximal_pa: step.proximal_pa,
+        distal_pa: step.distal_pa,
     };
     let inputs = Cell::new(loaded);
     let memo = RefCell::new(Memo { at: [f64::NAN; 6], arrow: Arrow::default() });

@@ -1,6 +1,6 @@
 //! Time and error of the transient solver against diffsol's BDF, in turns in one run, and against what Python and C have.
 //!
-//! `cargo bench -p lunula-hemodynamics --bench transient [-- --quick] [--peers] [--out FILE]`
+//! `cargo bench -p lunula-hemodynamics-peer [-- --quick] [--peers] [--out FILE]`
 //!
 //! `--peers` runs `benches/peers/hemodynamics.py` of the repository as well (RADAU5, LSODA, CVODE, SciPy, scikit-sundae), right after, and
 //! puts its rows into the same table.
@@ -12,11 +12,9 @@
 //!
 //! `solver,rtol,error,microseconds,evaluations`
 //!
-//! error: the greatest `|x - x_ref| / D` over the times of tests/reference, all walls and responses. microseconds: a response, the fastest of
+//! error: the greatest `|x - x_ref| / D` over the times of that crate's tests/reference, all walls and responses. microseconds: a response, the fastest of
 //! several rounds over all. evaluations: of the accelerations of all walls, a response. Then the times at equal error, by straight lines
 //! between the logarithms, and one sample a step at 1 kHz.
-
-mod peer;
 
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
@@ -28,12 +26,11 @@ use lunula_hemodynamics::{
     Collapse, Inputs, Live, Load, Loads, Model, Order, Parameters, SolveOptions, Solver, State, Trajectory, simulate,
 };
 
-use peer::{Peer, bdf};
+use lunula_hemodynamics_peer::{Peer, Step, bdf};
 
 /// A response: its loads in pascals, when they are asked for, what the lumens are then.
-pub(crate) struct Case {
-    pub(crate) proximal_pa: f64,
-    pub(crate) distal_pa: f64,
+struct Case {
+    step: Step,
     loads: Loads,
     reference: Vec<(f64, [f64; 3])>,
 }
@@ -69,7 +66,7 @@ fn main() {
     }
     for (name, rates) in [("", 10.0), (" loose rates", 1e4)] {
         let peer = Peer { rest: &rest, rates };
-        solvers.push((format!("diffsol BDF{name}"), Box::new(move |c, r, t, o| bdf(&peer, c, r, t, o))));
+        solvers.push((format!("diffsol BDF{name}"), Box::new(move |c, r, t, o| bdf(&peer, c.step, r, t, o))));
     }
 
     let exponents: Vec<i32> = if quick { vec![4, 6, 9, 12] } else { (3..=12).collect() };
@@ -231,7 +228,10 @@ fn rest() -> State {
 }
 
 fn cases() -> Vec<Case> {
-    let tables = [include_str!("../tests/reference/proximal.csv"), include_str!("../tests/reference/both.csv")];
+    let tables = [
+        include_str!("../../hemodynamics/tests/reference/proximal.csv"),
+        include_str!("../../hemodynamics/tests/reference/both.csv"),
+    ];
     let mut cases = Vec::new();
     for (kind, table) in tables.into_iter().enumerate() {
         let mut of: BTreeMap<u64, Vec<(f64, [f64; 3])>> = BTreeMap::new();
@@ -243,7 +243,7 @@ fn cases() -> Vec<Case> {
             let (proximal_pa, distal_pa) = (load_pa as f64, if kind == 1 { load_pa as f64 } else { 0.0 });
             let step = |height: f64| format!("step:{height}@0..2").parse().expect("a load");
             let loads = Loads::on(&Parameters::thesis(), step(proximal_pa), step(distal_pa));
-            cases.push(Case { proximal_pa, distal_pa, loads, reference });
+            cases.push(Case { step: Step { proximal_pa, distal_pa }, loads, reference });
         }
     }
     assert_eq!(cases.len(), 20);

@@ -1,19 +1,10 @@
-//! The transient solver against diffsol's BDF, which shares no code with it but the Jacobian.
-
-#[path = "../../benches/peer/mod.rs"]
-mod peer;
+//! The transient solver against diffsol's BDF, which shares no code with it but the Jacobian: `cargo test -p lunula-hemodynamics-peer`.
 
 use lunula_hemodynamics::{Collapse, Load, Loads, Model, Parameters, SolveOptions, State, simulate};
 
-use peer::{Peer, bdf};
+use lunula_hemodynamics_peer::{Peer, Step, bdf};
 
-/// A response: its loads in pascals.
-pub(crate) struct Case {
-    pub(crate) proximal_pa: f64,
-    pub(crate) distal_pa: f64,
-}
-
-/// `|x - x_diffsol| / D` where diffsol is asked for 1e-10; measured 6e-9, nearly all of it diffsol's (tests/reference).
+/// `|x - x_diffsol| / D` where diffsol is asked for 1e-10; measured 6e-9, nearly all of it diffsol's (that crate's tests/reference).
 const TOLERANCE: f64 = 3e-8;
 
 #[test]
@@ -32,7 +23,7 @@ fn step_responses_are_those_of_diffsol() {
         let ours = simulate(&model, &loads, &rest, &times, &options).expect("no vessel closes");
         let mut theirs = Vec::new();
         let peer = Peer { rest: &rest, rates: 1e4 };
-        bdf(&peer, &Case { proximal_pa, distal_pa }, 1e-10, &times, &mut theirs).expect("diffsol comes through");
+        bdf(&peer, Step { proximal_pa, distal_pa }, 1e-10, &times, &mut theirs).expect("diffsol comes through");
         assert_eq!(theirs.len(), times.len());
         for (k, theirs) in theirs.iter().enumerate() {
             for (j, theirs) in theirs.iter().enumerate() {

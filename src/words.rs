@@ -1,0 +1,99 @@
+//! Choices by a word, the same on the command line and in pipeline files.
+//!
+//! A choice lists its words once ([`Words::WORDS`]); serde reads and writes it with `#[serde(with = "crate::words")]`.
+
+use serde::{Deserialize, Deserializer, Serializer};
+
+/// A choice of few, each with a word.
+pub trait Words: Copy + PartialEq + Send + Sync + 'static {
+    /// Each choice, its word and what it means; the meaning may be empty.
+    const WORDS: &'static [(Self, &'static str, &'static str)];
+
+    /// Its word.
+    #[must_use]
+    fn word(self) -> &'static str {
+        Self::WORDS.iter().find(|one| one.0 == self).map_or("", |one| one.1)
+    }
+
+    /// The choice of a word.
+    ///
+    /// # Errors
+    /// Another word, with those that there are.
+    fn by_word(text: &str) -> Result<Self, String> {
+        Self::WORDS.iter().find(|one| one.1 == text).map(|one| one.0).ok_or_else(|| {
+            let words: Vec<&str> = Self::WORDS.iter().map(|one| one.1).collect();
+            let (last, before) = words.split_last().map_or(("", &[][..]), |(last, before)| (*last, before));
+            format!("`{text}`: choose {} or {last}", before.join(", "))
+        })
+    }
+}
+
+/// Writes the word.
+///
+/// # Errors
+/// The serializer's.
+pub fn serialize<T: Words, S: Serializer>(choice: &T, to: S) -> Result<S::Ok, S::Error> {
+    to.serialize_str(choice.word())
+}
+
+/// Reads a word.
+///
+/// # Errors
+/// No text, or a word that there is not.
+pub fn deserialize<'de, T: Words, D: Deserializer<'de>>(from: D) -> Result<T, D::Error> {
+    T::by_word(&String::deserialize(from)?).map_err(serde::de::Error::custom)
+}
+
+/// A choice that need not be made: `#[serde(with = "crate::words::optional")]`.
+pub mod optional {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    use super::Words;
+
+    /// Writes the word.
+    ///
+    /// # Errors
+    /// The serializer's.
+    pub fn serialize<T: Words, S: Serializer>(choice: &Option<T>, to: S) -> Result<S::Ok, S::Error> {
+        choice.map(T::word).serialize(to)
+    }
+
+    /// Reads a word.
+    ///
+    /// # Errors
+    /// No text, or a word that there is not.
+    pub fn deserialize<'de, T: Words, D: Deserializer<'de>>(from: D) -> Result<Option<T>, D::Error> {
+        let word = Option::<String>::deserialize(from)?;
+        word.map(|word| T::by_word(&word)).transpose().map_err(serde::de::Error::custom)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[derive(Debug, Clone, Copy, PartialEq)]
+    enum Side {
+        Left,
+        Right,
+    }
+
+    impl Words for Side {
+        const WORDS: &'static [(Self, &'static str, &'static str)] =
+            &[(Self::Left, "left", ""), (Self::Right, "right", "the other")];
+    }
+
+    #[derive(Debug, serde::Serialize, Deserialize)]
+    struct Turn {
+        #[serde(with = "crate::words")]
+        to: Side,
+    }
+
+    #[test]
+    fn words_stand_for_choices_and_others_are_told_which_there_are() {
+        let read: Turn = toml::from_str("to = \"right\"").unwrap();
+        assert_eq!((read.to, serde_json::to_string(&read).unwrap().as_str()), (Side::Right, "{\"to\":\"right\"}"));
+        assert_eq!(Side::by_word("up").unwrap_err(), "`up`: choose left or right");
+        assert!(toml::from_str::<Turn>("to = \"up\"").unwrap_err().to_string().contains("choose left or right"));
+    }
+}
