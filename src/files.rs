@@ -191,6 +191,31 @@ impl Places {
         self.folders[at].1.place(name)
     }
 
+    /// Writes the result that is to stand at `path`.
+    ///
+    /// # Errors
+    /// As [`Places::place`], and where it can't be written.
+    pub fn write(&mut self, path: &Path, text: &str) -> Result<(), WriteError> {
+        let at = self.place(path)?;
+        fs::write(at, text).map_err(|why| WriteError::File { path: path.to_owned(), why: why.to_string() })
+    }
+
+    /// Draws a picture, PNG and SVG, named after `table`; tells where the PNG will stand.
+    ///
+    /// # Errors
+    /// As [`Places::place`], and where it can't be drawn.
+    pub fn draw(
+        &mut self,
+        table: &Path,
+        name: &str,
+        draw: impl FnOnce(&Path, &Path) -> anyhow::Result<()>,
+    ) -> Result<PathBuf, WriteError> {
+        let [png, svg] = pictures_beside(table, name);
+        draw(&self.place(&png)?, &self.place(&svg)?)
+            .map_err(|why| WriteError::File { path: png.clone(), why: format!("{why:#}") })?;
+        Ok(png)
+    }
+
     /// Puts every result into its place.
     ///
     /// # Errors
@@ -220,6 +245,12 @@ pub fn is_same_file(one: &Path, other: &Path) -> bool {
 pub fn beside(table: &Path, ending: &str) -> PathBuf {
     let stem = table.file_stem().unwrap_or_default().to_string_lossy();
     table.with_file_name(format!("{stem}{ending}"))
+}
+
+/// The places of a picture beside `table`, PNG and SVG: `joints.csv` and `angles` give `joints-angles.png` and `.svg`.
+#[must_use]
+pub fn pictures_beside(table: &Path, name: &str) -> [PathBuf; 2] {
+    ["png", "svg"].map(|ending| beside(table, &format!("-{name}.{ending}")))
 }
 
 /// Writes one file whole or not at all: beside its place, then renamed.

@@ -5,13 +5,14 @@
 //! as in 3.2.3 and 3.3.5, with the time that a [`clock`] in the picture tells; [`align`] brings the angles onto the rows of photodiode
 //! and force logs; [`predictor`] makes of those models of force and posture, as in chapter 5. [`hemodynamics`] is the blood under the nail
 //! that the photodiodes see, as in 4.3. [`phantom`] makes such photographs, videos and logs with exact truth; [`tradeoff`] measures error against
-//! run time. [`video`], [`table`], [`figure`], [`files`], [`flexion`], [`labelme`], [`log`], [`stages`] and [`timebase`] are the ground floor that these stand on.
+//! run time; [`doctor`] looks at what is installed. [`video`], [`table`], [`figure`], [`files`], [`flexion`], [`labelme`], [`log`], [`stages`], [`timebase`] and [`words`] are the ground floor that these stand on.
 //!
 //! Everywhere: the centre of a picture's top-left pixel is (0, 0), x to the right, y down; units are part of a name
 //! (`length_px`, `run_s`); what is not known is missing (`None`, NaN, an empty cell), never zero.
 
 pub mod align;
 pub mod clock;
+pub mod doctor;
 pub mod figure;
 pub mod files;
 pub mod flexion;
@@ -20,10 +21,14 @@ pub mod labelme;
 pub mod log;
 pub mod phantom;
 pub mod photo;
+pub mod pipeline;
 pub mod posture;
 pub mod predictor;
 pub mod stages;
+pub mod study;
 pub mod table;
 pub mod timebase;
+mod toml_file;
 pub mod tradeoff;
 pub mod video;
+pub mod words;

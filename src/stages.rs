@@ -1,5 +1,6 @@
 //! The stages of a job: which will run and why not, and how long each took.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
@@ -11,10 +12,10 @@ pub struct Stages {
 }
 
 /// One stage's share.
-#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Stage {
     /// Its name.
-    pub stage: &'static str,
+    pub stage: Cow<'static, str>,
     /// Seconds, summed over threads.
     pub thread_s: f64,
     /// How often it ran.
@@ -40,7 +41,10 @@ impl Stages {
         let spent = self.spent.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         let mut ranked: Vec<_> = spent.iter().map(|(&stage, &(rank, time, runs))| (rank, stage, time, runs)).collect();
         ranked.sort_unstable();
-        ranked.into_iter().map(|(_, stage, time, runs)| Stage { stage, thread_s: time.as_secs_f64(), runs }).collect()
+        ranked
+            .into_iter()
+            .map(|(_, stage, time, runs)| Stage { stage: stage.into(), thread_s: time.as_secs_f64(), runs })
+            .collect()
     }
 }
 
@@ -70,4 +74,10 @@ impl Step {
     pub fn new(stage: &'static str, runs: bool, reason: String) -> Self {
         Self { stage, fate: if runs { Fate::Run } else { Fate::LeftOut }, reason }
     }
+}
+
+/// What of a plan does not run, and why, a line each as reports tell it.
+pub fn left_out(steps: impl IntoIterator<Item = Step>) -> Vec<String> {
+    let left_out = steps.into_iter().filter(|step| step.fate == Fate::LeftOut);
+    left_out.map(|step| format!("{}: {}", step.stage, step.reason)).collect()
 }

@@ -9,6 +9,9 @@ pub fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;").replace('\'', "&#39;")
 }
 
+/// Rows of a table from which on it scrolls by itself.
+const LONG: usize = 60;
+
 /// A page in the making: headings, paragraphs, tables, pictures, in the order they are added.
 #[derive(Debug, Clone)]
 pub struct Page {
@@ -19,7 +22,7 @@ pub struct Page {
 const STYLE: &str = "body{font:16px/1.45 system-ui,sans-serif;max-width:72rem;margin:2rem auto;padding:0 1rem;color:#222}\
 h1{font-weight:500}h2{font-weight:500;margin-top:2.5rem}img{max-width:100%;border:1px solid #ddd}\
 table{border-collapse:collapse;font-size:14px;font-variant-numeric:tabular-nums}th,td{padding:.2rem .6rem;border-bottom:1px solid #e4e4e4;text-align:left}\
-th{position:sticky;top:0;background:#fff}tr.out td{background:#fff3e0}.scroll{max-height:36rem;overflow:auto}@media print{.scroll{max-height:none}}";
+th{position:sticky;top:0;background:#fff}tr.out td{background:#fff3e0}figure{margin:2rem 0}figcaption{font-size:15px;color:#444;max-width:60rem}.scroll{max-height:36rem;overflow:auto}@media print{.scroll{max-height:none}}";
 
 impl Page {
     /// An empty page.
@@ -30,6 +33,28 @@ impl Page {
     /// A section's heading.
     pub fn heading(&mut self, text: &str) {
         let _ = writeln!(self.body, "<h2>{}</h2>", escape(text));
+    }
+
+    /// A section's heading, and a name that links go to.
+    pub fn anchored_heading(&mut self, name: &str, text: &str) {
+        let _ = writeln!(self.body, "<h2 id=\"{}\">{}</h2>", escape(name), escape(text));
+    }
+
+    /// Links, each a place and words, one after the other.
+    pub fn links(&mut self, before: &str, links: &[(String, String)]) {
+        let link = |(to, words): &(String, String)| format!("<a href=\"{}\">{}</a>", escape(to), escape(words));
+        let all: Vec<String> = links.iter().map(link).collect();
+        let _ = writeln!(self.body, "<p>{} {}</p>", escape(before), all.join(" \u{b7} "));
+    }
+
+    /// A PNG file's bytes as a picture with its number and words below.
+    pub fn figure(&mut self, png: &[u8], number: &str, caption: &str) {
+        let data = base64::engine::general_purpose::STANDARD.encode(png);
+        let (number, caption) = (escape(number), escape(caption));
+        let _ = writeln!(
+            self.body,
+            "<figure><img alt=\"{number}\" src=\"data:image/png;base64,{data}\"><figcaption><b>{number}.</b> {caption}</figcaption></figure>"
+        );
     }
 
     /// Plain words.
@@ -45,14 +70,15 @@ impl Page {
         }
     }
 
-    /// A table; rows for which `marked` holds stand out.
+    /// A table; rows for which `marked` holds stand out. A long one scrolls by itself.
     pub fn table(&mut self, header: &[&str], rows: &[Vec<String>], marked: impl Fn(usize) -> bool) {
         let cells = |tag: &str, row: &mut dyn Iterator<Item = &str>| -> String {
             row.map(|c| format!("<{tag}>{}</{tag}>", escape(c))).collect()
         };
         let _ = writeln!(
             self.body,
-            "<div class=\"scroll\"><table>\n<thead><tr>{}</tr></thead>\n<tbody>",
+            "<div{}><table>\n<thead><tr>{}</tr></thead>\n<tbody>",
+            if rows.len() > LONG { " class=\"scroll\"" } else { "" },
             cells("th", &mut header.iter().copied())
         );
         for (at, row) in rows.iter().enumerate() {

@@ -4,6 +4,7 @@
 mod chart;
 mod grey;
 mod html;
+mod places;
 mod plot;
 mod sheet;
 mod text;
@@ -14,10 +15,10 @@ use std::io::Cursor;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{DynamicImage, ImageEncoder, ImageError};
 
-pub use chart::{Bar, Chart, Item, draw_charts, draw_panels};
+pub use chart::{Bar, Cell, Chart, Item, draw_charts, draw_grid, draw_panels};
 pub use grey::{Stretch, grey_map};
 pub use html::{Page, escape};
-pub use plot::{Axis, Plot, Point, Series, draw_log_log};
+pub use plot::{Axis, Mark, MarkShape, Plot, Point, Series, draw_log_log};
 pub use sheet::{Scale, Sheet, Tile};
 pub use thin::{Bin, MOST_BINS, Sample, Summary, Thinned};
 

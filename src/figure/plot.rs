@@ -7,6 +7,7 @@ use anyhow::{Context, anyhow, ensure};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
+use super::places::{LETTER_PX, Place, names, ticks};
 use super::text::TYPEFACE;
 
 /// A plot with one or several named series.
@@ -20,6 +21,32 @@ pub struct Plot {
     pub y: Axis,
     /// What is drawn.
     pub series: Vec<Series>,
+    /// A thin line beneath, from point to point.
+    pub line: Vec<[f64; 2]>,
+    /// Points that stand out.
+    pub marks: Vec<Mark>,
+}
+
+/// A ring or a square about a point.
+#[derive(Debug, Clone)]
+pub struct Mark {
+    /// Along the horizontal axis.
+    pub x: f64,
+    /// Along the vertical axis.
+    pub y: f64,
+    /// Its form.
+    pub shape: MarkShape,
+    /// For the legend.
+    pub name: String,
+}
+
+/// A mark's form; one of each fits about the same point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MarkShape {
+    /// A circle.
+    Ring,
+    /// An upright square.
+    Square,
 }
 
 /// One axis.
@@ -36,6 +63,8 @@ pub struct Series {
     pub name: String,
     /// In any order.
     pub points: Vec<Point>,
+    /// Whether its dots are empty.
+    pub hollow: bool,
 }
 
 /// One point. Only positive numbers have a place on logarithmic axes.
@@ -47,15 +76,22 @@ pub struct Point {
     pub y: f64,
     /// Written beside it.
     pub label: String,
+    /// How far it reaches horizontally, drawn as a line.
+    pub x_range: Option<[f64; 2]>,
 }
 
 /// Width and height of a panel, pixels.
 const PANEL: (u32, u32) = (820, 620);
-/// About the width of a letter and the height of a line of a point's name, pixels.
-const LETTER_PX: i32 = 7;
-const LINE_PX: i32 = 15;
+/// A legend's lines, and what it has beside and below its names, pixels.
+const LEGEND_LINE_PX: i32 = 20;
+const LEGEND_EDGE_PX: (i32, i32) = (48, 14);
 /// Half a point's size.
 const DOT_PX: i32 = 5;
+/// Half a ring's and a square's.
+const RING_PX: i32 = 11;
+const SQUARE_PX: i32 = 9;
+const MARK: RGBColor = RGBColor(40, 40, 40);
+const LINE: RGBColor = RGBColor(170, 170, 170);
 /// Colours that stay apart for colour-blind readers (Okabe and Ito 2008).
 pub(super) const COLOURS: [RGBColor; 6] = [
     RGBColor(0, 114, 178),
@@ -105,7 +141,7 @@ pub(super) fn write_both(what: &impl Draw, size: (u32, u32), png: &Path, svg: &P
 }
 
 /// The legend of all series that have a name.
-pub(super) fn draw_legend<'a, B, C>(chart: &mut ChartContext<'a, B, C>) -> anyhow::Result<()>
+pub(super) fn draw_legend<'a, B, C>(chart: &mut ChartContext<'a, B, C>, at: SeriesLabelPosition) -> anyhow::Result<()>
 where
     B: DrawingBackend + 'a,
     B::ErrorType: 'static,
@@ -113,7 +149,7 @@ where
 {
     chart
         .configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
+        .position(at)
         .background_style(WHITE.mix(0.85))
         .border_style(RGBColor(200, 200, 200))
         .label_font(("sans-serif", 15))
@@ -157,12 +193,15 @@ impl Plot {
         let (x, y) = (self.range(|p| p.x)?, self.range(|p| p.y)?);
         // Ticks stand at the decades.
         let x = (0.999 * 10_f64.powf(x.0.log10().floor()), 1.001 * 10_f64.powf(x.1.log10().ceil()));
+        // Where there is none within, others do.
+        let (named, light) = ticks(y.0, y.1);
+        let y = (y.0..y.1).log_scale().with_key_points(named).with_light_points(light);
         let mut chart = ChartBuilder::on(area)
             .caption(&self.title, ("sans-serif", 22))
             .margin(16)
             .x_label_area_size(46)
             .y_label_area_size(74)
-            .build_cartesian_2d((x.0..x.1).log_scale(), (y.0..y.1).log_scale())
+            .build_cartesian_2d((x.0..x.1).log_scale(), y)
             .map_err(|e| anyhow!("{e}"))?;
         chart
             .configure_mesh()
@@ -175,11 +214,15 @@ impl Plot {
             .y_label_formatter(&decade)
             .draw()
             .map_err(|e| anyhow!("{e}"))?;
+        let line = self.line.iter().filter(|[x, y]| *x > 0.0 && *y > 0.0).map(|&[x, y]| (x, y));
+        chart.draw_series(LineSeries::new(line, LINE)).map_err(|e| anyhow!("{e}"))?;
         for (series, colour) in self.series.iter().zip(COLOURS.iter().cycle()) {
             self.draw_series(&mut chart, series, *colour)?;
         }
-        self.draw_names(&mut chart)?;
-        draw_legend(&mut chart)
+        self.draw_marks(&mut chart)?;
+        let (at, legend) = self.legend(&chart);
+        self.draw_names(&mut chart, legend)?;
+        draw_legend(&mut chart, at)
     }
 
     fn draw_series<B: DrawingBackend, X, Y>(
@@ -195,16 +238,23 @@ impl Plot {
     {
         let mut points: Vec<&Point> = series.points.iter().filter(|p| p.x > 0.0 && p.y > 0.0).collect();
         points.sort_by(|a, b| a.x.total_cmp(&b.x));
+        let reaches =
+            points.iter().filter_map(|p| p.x_range.filter(|[low, _]| *low > 0.0).map(|[low, high]| (low, high, p.y)));
+        let reach =
+            |(low, high, y): (f64, f64, f64)| PathElement::new(vec![(low, y), (high, y)], colour.stroke_width(2));
+        chart.draw_series(reaches.map(reach)).map_err(|e| anyhow!("{e}"))?;
+        let style = if series.hollow { colour.stroke_width(2) } else { colour.filled() };
+        let size = if series.hollow { DOT_PX - 1 } else { DOT_PX };
         chart
-            .draw_series(points.iter().map(|p| Circle::new((p.x, p.y), DOT_PX, colour.filled())))
+            .draw_series(points.iter().map(|p| Circle::new((p.x, p.y), size, style)))
             .map_err(|e| anyhow!("{e}"))?
             .label(&series.name)
-            .legend(move |(x, y)| Circle::new((x + 10, y), DOT_PX, colour.filled()));
+            .legend(move |(x, y)| Circle::new((x + 10, y), size, style));
         Ok(())
     }
 
-    /// Names all points, none on another's name where there is room.
-    fn draw_names<B: DrawingBackend, X, Y>(
+    /// Rings and squares, each name once in the legend.
+    fn draw_marks<B: DrawingBackend, X, Y>(
         &self,
         chart: &mut ChartContext<'_, B, Cartesian2d<X, Y>>,
     ) -> anyhow::Result<()>
@@ -213,38 +263,102 @@ impl Plot {
         X: Ranged<ValueType = f64>,
         Y: Ranged<ValueType = f64>,
     {
+        let style = MARK.stroke_width(2);
+        for mark in self.marks.iter().filter(|mark| mark.x > 0.0 && mark.y > 0.0) {
+            let at = std::iter::once((mark.x, mark.y));
+            let square = || Rectangle::new([(-SQUARE_PX, -SQUARE_PX), (SQUARE_PX, SQUARE_PX)], style);
+            let drawn = match mark.shape {
+                MarkShape::Ring => chart.draw_series(at.map(|at| Circle::new(at, RING_PX, style))),
+                MarkShape::Square => chart.draw_series(at.map(|at| EmptyElement::at(at) + square())),
+            };
+            let drawn = drawn.map_err(|e| anyhow!("{e}"))?.label(&mark.name);
+            match mark.shape {
+                MarkShape::Ring => drawn.legend(move |(x, y)| Circle::new((x + 10, y), DOT_PX + 1, style)),
+                MarkShape::Square => {
+                    drawn.legend(move |(x, y)| Rectangle::new([(x + 5, y - 5), (x + 15, y + 5)], style))
+                }
+            };
+        }
+        Ok(())
+    }
+
+    /// Names all points, none on another's name or on the legend where there is room.
+    fn draw_names<B: DrawingBackend, X, Y>(
+        &self,
+        chart: &mut ChartContext<'_, B, Cartesian2d<X, Y>>,
+        legend: Place,
+    ) -> anyhow::Result<()>
+    where
+        B::ErrorType: 'static,
+        X: Ranged<ValueType = f64>,
+        Y: Ranged<ValueType = f64>,
+    {
         let (across, down) = chart.plotting_area().get_pixel_range();
+        let about = |(x, y): (i32, i32), half: i32| [x - half, y - half, x + half, y + half];
+        let mut taken: Vec<Place> = vec![legend];
+        taken.extend(self.drawable().map(|point| about(chart.backend_coord(&(point.x, point.y)), DOT_PX)));
+        let reaches = self.drawable().filter_map(|point| Some((point.x_range.filter(|[low, _]| *low > 0.0)?, point.y)));
+        taken.extend(reaches.map(|([low, high], y)| {
+            let [(left, y), (right, _)] = [low, high].map(|x| chart.backend_coord(&(x, y)));
+            [left, y - 1, right, y + 1]
+        }));
+        let marks = self.marks.iter().filter(|mark| mark.x > 0.0 && mark.y > 0.0);
+        taken.extend(marks.map(|mark| about(chart.backend_coord(&(mark.x, mark.y)), RING_PX)));
         let mut points: Vec<&Point> = self.drawable().filter(|point| !point.label.is_empty()).collect();
         points.sort_by(|a, b| a.x.total_cmp(&b.x));
-        // Left, top, right, bottom of dots and names.
-        let dot = |(x, y): (i32, i32)| [x - DOT_PX, y - DOT_PX, x + DOT_PX, y + DOT_PX];
-        let mut taken: Vec<[i32; 4]> =
-            points.iter().map(|point| dot(chart.backend_coord(&(point.x, point.y)))).collect();
-        for point in points {
-            let (x, y) = chart.backend_coord(&(point.x, point.y));
-            let width = point.label.chars().count() as i32 * LETTER_PX;
-            let dx = if x + 8 + width > across.end { -8 - width } else { 8 };
-            let place = |dy: i32| [x + dx, y + dy, x + dx + width, y + dy + LINE_PX];
-            let free = |dy: &i32| {
-                let [left, top, right, bottom] = place(*dy);
-                let inside = top >= down.start && bottom <= down.end;
-                inside && taken.iter().all(|t| t[2] < left || t[0] > right || t[3] < top || t[1] > bottom)
-            };
-            // Above, below, further above, further below, ..
-            let steps = (0..12).flat_map(|k| [-LINE_PX - k * LINE_PX, 4 + k * LINE_PX]);
-            let dy = steps.into_iter().find(free).unwrap_or(4);
-            taken.push(place(dy));
+        let marked = |point: &Point| self.marks.iter().any(|mark| mark.x == point.x && mark.y == point.y);
+        let beside: Vec<((i32, i32), i32, &str)> = points
+            .iter()
+            .map(|point| {
+                let clear = if marked(point) { RING_PX } else { DOT_PX };
+                (chart.backend_coord(&(point.x, point.y)), clear, point.label.as_str())
+            })
+            .collect();
+        for (point, step) in points.iter().zip(names(&beside, taken, &across, &down)) {
             let name = EmptyElement::at((point.x, point.y))
-                + Text::new(point.label.clone(), (dx, dy), ("sans-serif", 14).into_font());
+                + Text::new(point.label.clone(), step, ("sans-serif", 14).into_font());
             chart.draw_series(std::iter::once(name)).map_err(|e| anyhow!("{e}"))?;
         }
         Ok(())
     }
+
+    /// In which corner the legend covers the fewest points, the right top one if they are alike, and about where it stands there.
+    fn legend<B: DrawingBackend, X, Y>(
+        &self,
+        chart: &ChartContext<'_, B, Cartesian2d<X, Y>>,
+    ) -> (SeriesLabelPosition, Place)
+    where
+        X: Ranged<ValueType = f64>,
+        Y: Ranged<ValueType = f64>,
+    {
+        let entries = || self.series.iter().map(|series| &series.name).chain(self.marks.iter().map(|mark| &mark.name));
+        let letters = entries().map(|name| name.chars().count() as i32).max().unwrap_or(0);
+        let (beside, below) = LEGEND_EDGE_PX;
+        let (width, height) = (letters * LETTER_PX + beside, entries().count() as i32 * LEGEND_LINE_PX + below);
+        let (across, down) = chart.plotting_area().get_pixel_range();
+        let covered = |place: &Place| {
+            let points = self.drawable().map(|point| chart.backend_coord(&(point.x, point.y)));
+            let [left, top, right, bottom] = *place;
+            points.filter(|(x, y)| (left..=right).contains(x) && (top..=bottom).contains(y)).count()
+        };
+        let (left, right) = ([across.start, across.start + width], [across.end - width, across.end]);
+        let (upper, lower) = ([down.start, down.start + height], [down.end - height, down.end]);
+        let place = |x: [i32; 2], y: [i32; 2]| [x[0], y[0], x[1], y[1]];
+        let upper_right = (SeriesLabelPosition::UpperRight, place(right, upper));
+        let others = [
+            (SeriesLabelPosition::LowerLeft, place(left, lower)),
+            (SeriesLabelPosition::UpperLeft, place(left, upper)),
+            (SeriesLabelPosition::LowerRight, place(right, lower)),
+        ];
+        others
+            .into_iter()
+            .fold(upper_right, |best, other| if covered(&other.1) < covered(&best.1) { other } else { best })
+    }
 }
 
-/// `0.01`, `100`, and where that gets long `1e-9`.
+/// `0.01`, `100`, and where that gets long `2e-9`.
 fn decade(value: &f64) -> String {
-    if (1e-4..1e6).contains(value) { short_number(value) } else { format!("1e{:.0}", value.log10()) }
+    if (1e-4..1e6).contains(value) { short_number(value) } else { format!("{value:.0e}") }
 }
 
 /// `0.002`, `3`, `40`: as short as the number allows.

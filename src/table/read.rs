@@ -67,6 +67,26 @@ impl Table {
                 (read.names, Cells::Parquet(read.columns), read.facts)
             }
         };
+        Self::checked(path, names, cells, facts)
+    }
+
+    /// Reads the text of a CSV file that is to stand at `path`.
+    ///
+    /// # Errors
+    /// Rows of unequal length, two columns of one name.
+    pub(crate) fn of_csv(path: &Path, text: &str) -> Result<Self, TableError> {
+        let failed = |what: String| TableError::Read { path: path.to_owned(), what };
+        let (names, rows) = CsvCells::read(text.as_bytes().to_vec()).map_err(failed)?;
+        Self::checked(path, names, Cells::Csv(rows), Vec::new())
+    }
+
+    fn checked(
+        path: &Path,
+        names: Vec<String>,
+        cells: Cells,
+        facts: Vec<(String, String)>,
+    ) -> Result<Self, TableError> {
+        let failed = |what: String| TableError::Read { path: path.to_owned(), what };
         if names.is_empty() {
             return Err(failed("is empty; a table begins with the names of its columns".to_owned()));
         }
@@ -248,6 +268,15 @@ impl Table {
             let what = format!("has no column `{name}`; its columns are {}", self.names.join(", "));
             TableError::Read { path: self.path.clone(), what }
         })
+    }
+
+    /// Where a row stands: its line of a CSV file, else its number, from 1.
+    #[must_use]
+    pub fn row_place(&self, row: usize) -> String {
+        match &self.cells {
+            Cells::Csv(rows) => format!("line {}", rows.line(row)),
+            Cells::Parquet(_) => format!("row {}", row + 1),
+        }
     }
 
     /// The error of a cell, or of a row at one of its cells, that is wrong.

@@ -89,6 +89,15 @@ where
                 )
                 .map_err(failed)?;
         }
+        Item::Errors { marks, colour: k } => {
+            let ink = colour(*k).stroke_width(1);
+            let known = marks.iter().filter(|mark| mark.iter().all(|value| value.is_finite()));
+            let upright = known.clone().map(|&[x, low, high]| PathElement::new([near(x, low), near(x, high)], ink));
+            chart.draw_series(upright).map_err(failed)?;
+            let cap = |(x, y)| EmptyElement::at((x, y)) + PathElement::new([(-3, 0), (3, 0)], ink);
+            let ends = known.flat_map(|&[x, low, high]| [near(x, low), near(x, high)]);
+            chart.draw_series(ends.map(cap)).map_err(failed)?;
+        }
         Item::Dots { name, points, colour: k } => {
             let ink = colour(*k).mix(0.6).filled();
             let drawn =

@@ -39,6 +39,13 @@ pub enum Item {
         /// Which colour.
         colour: usize,
     },
+    /// Upright marks from a low to a high end: a standard deviation about a curve's point.
+    Errors {
+        /// x, low end, high end; those that are not finite are not drawn.
+        marks: Vec<[f64; 3]>,
+        /// Which colour.
+        colour: usize,
+    },
     /// Bars that stand on zero.
     Bars {
         /// For the legend; without a name it is not in it.
@@ -109,6 +116,10 @@ impl Item {
                 reach.take([bar.at + 0.5 * bar.width, bar.value]);
                 bar.error.iter().flatten().for_each(|&end| reach.y.take(end));
             }),
+            Self::Errors { marks, .. } => marks.iter().for_each(|&[x, low, high]| {
+                reach.take([x, low]);
+                reach.y.take(high);
+            }),
             Self::Text { at, .. } | Self::Label { at, .. } => reach.take(*at),
             Self::Diagonal { .. } | Self::Names(_) => {}
         }
@@ -122,7 +133,12 @@ impl Item {
             | Self::Dots { name, .. }
             | Self::Bars { name, .. }
             | Self::Diagonal { name } => name.as_deref(),
-            Self::Band { .. } | Self::Text { .. } | Self::Label { .. } | Self::Names(_) | Self::Room(_) => None,
+            Self::Band { .. }
+            | Self::Errors { .. }
+            | Self::Text { .. }
+            | Self::Label { .. }
+            | Self::Names(_)
+            | Self::Room(_) => None,
         }
     }
 }

@@ -2,6 +2,7 @@
 //!
 //! Charts of one picture stand below each other, or as panels in rows. What is drawn last lies on top. Values beyond 1e200 are drawn there.
 
+mod grid;
 mod ink;
 mod item;
 mod reach;
@@ -17,6 +18,7 @@ use super::plot::{Draw, draw_legend, short_number, write_both};
 use ink::{NAME_LINE_PX, draw_item, draw_names};
 use reach::Reach;
 
+pub use grid::{Cell, draw_grid};
 pub use item::{Bar, Item};
 
 /// A chart on linear axes.
@@ -169,7 +171,7 @@ impl Chart {
             draw_names(area, &chart, names)?;
         }
         if named > 0 {
-            draw_legend(&mut chart)?;
+            draw_legend(&mut chart, SeriesLabelPosition::UpperRight)?;
         }
         Ok(())
     }
