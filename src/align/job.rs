@@ -12,12 +12,12 @@ use super::export::{BidsNames, ExportError};
 use super::label::label;
 use super::plan::steps;
 use super::posture::Posture;
-use super::report::AlignReport;
+use super::report::{AlignReport, LabelReport};
 use super::results::Results;
 use super::tie::{self, LagTie, Tie};
 use crate::files::{WriteError, is_same_file};
 use crate::log::{AmbientError, AmbientOptions, Columns, Log, LogError, Samples, samples};
-use crate::stages::{Fate, Stages};
+use crate::stages::{Stages, left_out};
 use crate::table::{TableError, TableFormat};
 
 /// What is aligned.
@@ -45,6 +45,31 @@ pub enum Sync {
     },
     /// By the lag at which the photodiodes best explain the angles.
     Correlate,
+}
+
+impl Sync {
+    /// Reads `clock`, `offset=SECONDS`, `offset=SECONDS+-ERROR` or `correlate`.
+    ///
+    /// # Errors
+    /// What to write instead.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let number = |text: &str| text.trim().parse().ok().filter(|number: &f64| number.is_finite());
+        let offset = |text: &str| {
+            let (offset, sd) = text.split_once("+-").map_or((text, None), |(offset, sd)| (offset, Some(sd)));
+            let sd_s = sd.map(number);
+            (sd_s != Some(None)).then_some(())?;
+            Some(Self::Offset { offset_s: number(offset)?, sd_s: sd_s.flatten() })
+        };
+        let sync = match text {
+            "clock" => Some(Self::Clock),
+            "correlate" => Some(Self::Correlate),
+            other => other.strip_prefix("offset=").and_then(offset),
+        };
+        sync.ok_or_else(|| {
+            "choose clock, offset=SECONDS (offset=60.25, or with its standard error offset=60.25+-0.01) or correlate"
+                .to_owned()
+        })
+    }
 }
 
 /// How to work.
@@ -172,11 +197,7 @@ pub fn run(
     let exported = stages.time("export", || results.exports(&posture, &tie, names.as_ref(), inputs, outputs))?;
     let pictures = stages.time("figures", || results.pictures(&posture, &samples, &labels, &tie, outputs))?;
     go_on()?;
-    let left_out = steps(&posture, &log, options, Some(outputs))
-        .into_iter()
-        .filter(|step| step.fate == Fate::LeftOut)
-        .map(|step| format!("{}: {}", step.stage, step.reason))
-        .collect();
+    let left_out = left_out(steps(&posture, &log, options, Some(outputs)));
     let draft = AlignReport {
         job: "align",
         joints: inputs.joints.clone(),
@@ -185,6 +206,7 @@ pub fn run(
         rows: samples.time_s.len() as u64,
         rows_with_faults: samples.faults.iter().filter(|fault| !fault.is_empty()).count() as u64,
         certificate,
+        labels: LabelReport::of(&labels),
         left_out,
         warnings: [notes, exported].concat(),
         failed: Vec::new(),

@@ -3,12 +3,13 @@
 //!
 //! [`Log`] is what a lab's file holds; [`Samples`] what is left of it when the light that is not the LED's is taken away; a
 //! [`Tie`] says how the log's time follows from the video's; [`Posture`] is the table of joint angles; [`label`] brings the
-//! angles onto the samples' rows.
+//! angles onto the samples' rows; [`join`](fn@join) makes one set of several videos'.
 
 mod certificate;
 pub mod export;
 pub mod figures;
 mod job;
+mod join;
 mod label;
 mod plan;
 mod posture;
@@ -16,13 +17,16 @@ mod report;
 mod results;
 mod tie;
 
-pub use crate::log::{AmbientError, AmbientOptions, Channel, Columns, Log, LogError, Samples, TimeUnit, samples};
+pub use crate::log::{
+    AmbientError, AmbientOptions, Channel, Columns, Log, LogError, LogHeader, Samples, TimeUnit, samples,
+};
 pub use certificate::Certificate;
 pub use job::{AlignError, AlignInputs, AlignOptions, AlignOutputs, Sync, run};
+pub use join::{JoinError, join};
 pub use label::{Gap, LabelCounts, Labels, Unlabelled, label};
-pub use plan::plan;
+pub use plan::{Foreknown, plan, plan_foreknown};
 pub use posture::{ClockColumns, Posture};
-pub use report::AlignReport;
+pub use report::{AlignReport, LabelReport};
 pub use tie::{
     Correlated, LagPeak, LagSearch, LagTie, Recording, Tie, TieMethod, by_clock, by_correlation, by_offset, correlate,
 };

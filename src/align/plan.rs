@@ -19,10 +19,43 @@ pub fn plan(
     Ok(steps(&posture, &log, options, outputs))
 }
 
+/// What is known of the recordings before they are opened; none: not known.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Foreknown {
+    /// The joints' names.
+    pub joints: Option<Vec<String>>,
+    /// Frames with angles.
+    pub frames: Option<usize>,
+    /// The angles carry the time of the clock in the picture.
+    pub clock: Option<bool>,
+    /// The log tells when the LED was on.
+    pub led: Option<bool>,
+    /// Lit rows, and all.
+    pub lit_rows: Option<[usize; 2]>,
+    /// Photodiodes.
+    pub photodiodes: Option<usize>,
+}
+
 pub(super) fn steps(posture: &Posture, log: &Log, options: &AlignOptions, outputs: Option<&AlignOutputs>) -> Vec<Step> {
-    let sync = options.sync.or_else(|| posture.has_clock().then_some(Sync::Clock));
-    let frames = posture.time_s.len();
     let lit = log.led.as_ref().map(|led| led.iter().filter(|on| **on).count());
+    let known = Foreknown {
+        joints: Some(posture.joints.clone()),
+        frames: Some(posture.time_s.len()),
+        clock: Some(posture.has_clock()),
+        led: Some(lit.is_some()),
+        lit_rows: lit.map(|lit| [lit, log.time_s.len()]),
+        photodiodes: Some(log.photodiodes.len()),
+    };
+    plan_foreknown(&known, options, outputs)
+}
+
+/// Plans a run on recordings of which not all need stand.
+#[must_use]
+pub fn plan_foreknown(known: &Foreknown, options: &AlignOptions, outputs: Option<&AlignOutputs>) -> Vec<Step> {
+    let sync = options.sync.or_else(|| (known.clock != Some(false)).then_some(Sync::Clock));
+    let joints = known.joints.as_ref().map_or("all".to_owned(), |joints| joints.join(", "));
+    let frames = known.frames.map_or("all frames".to_owned(), |frames| format!("{frames} frames"));
+    let photodiodes = known.photodiodes.map_or("the".to_owned(), |photodiodes| photodiodes.to_string());
     let asked = |wanted: Option<bool>, option: &str| match wanted {
         Some(true) => (true, option.to_owned()),
         _ => (false, "not asked for".to_owned()),
@@ -30,14 +63,17 @@ pub(super) fn steps(posture: &Posture, log: &Log, options: &AlignOptions, output
     let (mot, mot_why) = asked(outputs.map(|o| o.mot.is_some()), "--mot");
     let (bids, bids_why) = asked(outputs.map(|o| o.bids.is_some()), "--bids");
     let (dlc, dlc_why) = asked(outputs.map(|o| o.dlc.is_some()), "--dlc");
+    let figures = outputs.is_none_or(|o| o.figures);
     vec![
-        Step::new("labels of joints", true, format!("{} from {frames} frames", posture.joints.join(", "))),
+        Step::new("labels of joints", true, format!("{joints} from {frames}")),
         Step::new(
             "ambient light taken away",
-            lit.is_some(),
-            match lit {
-                Some(lit) => format!("{lit} of {} rows are lit", log.time_s.len()),
-                None => "the log has no column `led`; all rows are lit".to_owned(),
+            known.led != Some(false),
+            match (known.led, known.lit_rows) {
+                (Some(false), _) => "the log has no column `led`; all rows are lit".to_owned(),
+                (_, Some([lit, rows])) => format!("{lit} of {rows} rows are lit"),
+                (Some(true), None) => "the log has a column `led`".to_owned(),
+                (None, None) => "where the log has a column `led`".to_owned(),
             },
         ),
         Step::new(
@@ -53,7 +89,7 @@ pub(super) fn steps(posture: &Posture, log: &Log, options: &AlignOptions, output
             "search for the lag",
             sync == Some(Sync::Correlate),
             if sync == Some(Sync::Correlate) {
-                format!("{} photodiodes against the angles", log.photodiodes.len())
+                format!("{photodiodes} photodiodes against the angles")
             } else {
                 "only --sync correlate needs it".to_owned()
             },
@@ -61,6 +97,10 @@ pub(super) fn steps(posture: &Posture, log: &Log, options: &AlignOptions, output
         Step::new("OpenSim motion file", mot, mot_why),
         Step::new("BIDS Motion folder", bids, bids_why),
         Step::new("DeepLabCut table", dlc, dlc_why),
-        Step::new("figures", outputs.is_none_or(|o| o.figures), "of the tie and of the labels".to_owned()),
+        Step::new(
+            "figures",
+            figures,
+            if figures { "of the tie and of the labels" } else { "not asked for" }.to_owned(),
+        ),
     ]
 }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use serde::Serialize;
 
 use super::certificate::Certificate;
+use super::label::Labels;
 use crate::stages::Stage;
 
 /// What a run did.
@@ -24,6 +25,8 @@ pub struct AlignReport {
     pub rows_with_faults: u64,
     /// How the clocks were tied, how well, and what was left unlabelled.
     pub certificate: Certificate,
+    /// The joints' labels, in the table's order.
+    pub labels: Vec<LabelReport>,
     /// What the recordings did not need.
     pub left_out: Vec<String>,
     /// What whoever uses the set should know.
@@ -36,4 +39,28 @@ pub struct AlignReport {
     pub stages: Vec<Stage>,
     /// Seconds from start to end, this report not counted.
     pub wall_s: f64,
+}
+
+/// How a joint's labels came out.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LabelReport {
+    /// The joint.
+    pub joint: String,
+    /// Rows with its label.
+    pub rows: u64,
+    /// The root mean square of the labels' standard errors, degrees; none where none is known.
+    pub sd_deg: Option<f64>,
+}
+
+impl LabelReport {
+    pub(super) fn of(labels: &Labels) -> Vec<Self> {
+        let report = |(k, joint): (usize, &String)| {
+            let known = labels.sds_deg[k].iter().filter(|sd| sd.is_finite());
+            let (squares, count) = known.fold((0.0, 0_u64), |(squares, count), sd| (squares + sd * sd, count + 1));
+            let rows = labels.angles_deg[k].iter().filter(|angle| angle.is_finite()).count() as u64;
+            let sd_deg = (count > 0).then(|| (squares / count as f64).sqrt());
+            Self { joint: joint.clone(), rows, sd_deg }
+        };
+        labels.joints.iter().enumerate().map(report).collect()
+    }
 }

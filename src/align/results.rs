@@ -1,6 +1,6 @@
 //! What the alignment job writes: the labelled set, its certificate and report, exports and pictures.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 use super::certificate::Certificate;
@@ -11,13 +11,15 @@ use super::label::Labels;
 use super::posture::Posture;
 use super::report::AlignReport;
 use super::tie::Tie;
-use crate::files::{Places, WriteError, beside};
+use crate::files::{Places, beside};
 use crate::log::Samples;
 use crate::stages::Stages;
 use crate::table::{Column, TableWriter, Value};
 
 /// Decimals of a label in degrees.
-const ANGLE_DECIMALS: usize = 5;
+pub(super) const ANGLE_DECIMALS: usize = 5;
+/// Columns of text.
+pub(super) const TEXTS: [&str; 4] = ["label_status", "subject", "session", "sensor_status"];
 
 /// Results in the making.
 #[derive(Default)]
@@ -43,7 +45,7 @@ impl Results {
         for ending in ["_deg", "_sd_deg"] {
             columns.extend(posture.joints.iter().map(|j| Column::rounded(format!("{j}{ending}"), ANGLE_DECIMALS)));
         }
-        columns.extend(["label_status", "subject", "session", "sensor_status"].map(Column::text));
+        columns.extend(TEXTS.map(Column::text));
         let text = certificate.text();
         let at = self.places.place(path)?;
         let mut table = TableWriter::create(&at, path, columns, &facts(&text))?;
@@ -61,7 +63,7 @@ impl Results {
             write(&cells);
         })?;
         table.finish()?;
-        self.write(&beside(path, ".sync.json"), &text)
+        Ok(self.places.write(&beside(path, ".sync.json"), &text)?)
     }
 
     /// Writes what other tools read; returns what of it a user should know.
@@ -110,14 +112,10 @@ impl Results {
             if kind == "tie" && tie.residuals_s.is_empty() {
                 continue;
             }
-            let [png, svg] = ["png", "svg"].map(|ending| beside(&outputs.training, &format!("-{kind}.{ending}")));
-            let at = [self.places.place(&png)?, self.places.place(&svg)?];
-            let drawn = match kind {
-                "labels" => figures::draw_labels(samples, labels, &at[0], &at[1]),
-                _ => figures::draw_tie(tie, posture, &at[0], &at[1]).map(|_| ()),
-            };
-            drawn.map_err(|why| WriteError::File { path: png.clone(), why: format!("{why:#}") })?;
-            pictures.push(png);
+            pictures.push(self.places.draw(&outputs.training, kind, |png, svg| match kind {
+                "labels" => figures::draw_labels(samples, labels, png, svg),
+                _ => figures::draw_tie(tie, posture, png, svg).map(|_| ()),
+            })?);
         }
         Ok(pictures)
     }
@@ -133,14 +131,9 @@ impl Results {
         report.stages = stages.list();
         report.wall_s = start.elapsed().as_secs_f64();
         let text = serde_json::to_string_pretty(&report).expect("plain data") + "\n";
-        self.write(&beside(&outputs.training, ".run.json"), &text)?;
+        self.places.write(&beside(&outputs.training, ".run.json"), &text)?;
         self.places.commit()?;
         Ok(report)
-    }
-
-    fn write(&mut self, path: &Path, text: &str) -> Result<(), AlignError> {
-        let at = self.places.place(path)?;
-        Ok(std::fs::write(&at, text).map_err(|why| WriteError::File { path: path.to_owned(), why: why.to_string() })?)
     }
 }
 

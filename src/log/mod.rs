@@ -20,6 +20,7 @@ mod ambient;
 mod cell;
 mod columns;
 mod guess;
+mod header;
 mod order;
 mod parquet;
 mod raw;
@@ -36,6 +37,7 @@ use std::path::{Path, PathBuf};
 pub(crate) use ambient::piles;
 pub use ambient::{AmbientError, AmbientOptions, Samples, samples};
 pub use columns::Columns;
+pub use header::LogHeader;
 pub use stamps::TimeUnit;
 
 /// A column of a log.

@@ -15,11 +15,17 @@ use super::{LogError, cell::shown};
 /// Reads a text file.
 pub(super) fn read(path: &Path, columns: &Columns) -> Result<Raw, LogError> {
     let text = text::open(path)?;
-    let layout = Layout::find(&text).map_err(|what| LogError::File { path: path.to_owned(), what })?;
-    let choice = columns
-        .choose(&layout.names, &stamped(&text, &layout))
-        .map_err(|what| LogError::Columns { path: path.to_owned(), what })?;
+    let (layout, choice) = choose(path, &text, columns)?;
     Rows { path, text: &text, layout: &layout, choice: &choice }.read()
+}
+
+/// Finds the header and chooses among its columns.
+pub(super) fn choose(path: &Path, text: &[u8], columns: &Columns) -> Result<(Layout, Choice), LogError> {
+    let layout = Layout::find(text).map_err(|what| LogError::File { path: path.to_owned(), what })?;
+    let choice = columns
+        .choose(&layout.names, &stamped(text, &layout))
+        .map_err(|what| LogError::Columns { path: path.to_owned(), what })?;
+    Ok((layout, choice))
 }
 
 /// Nameless columns whose first cell is a date.

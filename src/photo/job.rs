@@ -31,6 +31,15 @@ pub struct PhotosOptions {
     pub outlines: OutlineOptions,
     /// Save detected outlines as LabelMe files.
     pub keep_detected: bool,
+    /// Write sums (`partials/`) instead of maps and figures: those of many such parts are [gathered](fn@super::gather) later.
+    pub parts: Option<PartOptions>,
+}
+
+/// What of a part is written besides its sums.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PartOptions {
+    /// The normalized pictures.
+    pub pictures: bool,
 }
 
 /// One nail of the result: a row of `nails.csv`.
@@ -48,7 +57,7 @@ pub struct NailRow {
     pub frame: Option<NailFrame>,
     /// Its axis may be known where its box is not.
     pub axis: Option<Axis>,
-    /// Name of its normalized picture among the results; `None` where it was left out.
+    /// Name of its normalized picture among the results, if those are written; `None` where it was left out.
     pub normalized: Option<String>,
     /// Why it was left out, or what of it the photograph does not show; else empty.
     pub reason: String,
@@ -180,14 +189,18 @@ pub fn run(
         match subjects {
             0 => result.warnings.push(format!("pose `{pose}`: no nail could be used, so it has no maps")),
             _ => {
-                if subjects == 1 {
+                if subjects == 1 && options.parts.is_none() {
                     result.warnings.push(one_subject(pose));
                 }
                 result.partials.poses.insert(pose.to_owned(), sums);
             }
         }
     }
-    results::write_maps(&result.partials, staging, &stages)?;
+    if options.parts.is_some() {
+        results::write_parts(&result.partials, staging, &stages)?;
+    } else {
+        results::write_maps(&result.partials, true, staging, &stages)?;
+    }
     if watch.stop.load(Ordering::Relaxed) {
         return Err(PhotosError::Interrupted);
     }
@@ -243,11 +256,15 @@ impl Work<'_> {
                     row.reason = unseen(&normalized, self.options.normalization.margin);
                     let tail = if several { format!("-{number}") } else { String::new() };
                     let name = format!("normalized/{}/{}{tail}.png", photo.pose, photo.subject);
-                    self.stages.time("write pictures", || {
-                        results::write_normalized(&normalized, picture.depth(), self.staging, &name)
-                    })?;
+                    if self.options.parts.is_none_or(|parts| parts.pictures) {
+                        self.stages.time("write pictures", || {
+                            results::write_normalized(&normalized, picture.depth(), self.staging, &name)
+                        })?;
+                    }
                     row.normalized = Some(name);
-                    row.thumbnail = Some(results::thumbnail(&normalized, THUMBNAIL_PX));
+                    // For the sheets of a report, which a part has none of.
+                    let small = || results::thumbnail(&normalized, THUMBNAIL_PX);
+                    row.thumbnail = self.options.parts.is_none().then(small);
                     pictures.push(normalized);
                 }
                 Err(reason) => row.reason = reason,
@@ -355,7 +372,7 @@ fn left_out(set: &PhotoSet, options: &PhotosOptions, done: &[Done]) -> Vec<Strin
     if !options.normalization.linear {
         left_out.push("sRGB curve: values are as the file encodes them".into());
     }
-    if set.poses().len() == 1 {
+    if set.poses().len() == 1 && options.parts.is_none() {
         left_out.push("comparison between poses: there is one".into());
     }
     left_out

@@ -28,6 +28,9 @@ pub enum MergeError {
     /// The results can't be written.
     #[error(transparent)]
     Write(#[from] WriteError),
+    /// Stopped from outside.
+    #[error("interrupted; nothing was written")]
+    Interrupted,
 }
 
 /// Joins the sums and the tables of nails of `parts` (folders that `lunula photos` wrote) into `staging`. Normalized
@@ -44,7 +47,7 @@ pub fn merge(parts: &[PathBuf], staging: &Staging) -> Result<RunReport, MergeErr
         rows.extend(read_nails(&part.join("nails.csv"))?);
     }
     let nails = NailTable::of_parts(rows);
-    results::write_maps(&partials, staging, &stages)?;
+    results::write_maps(&partials, true, staging, &stages)?;
     results::write_nails(nails.rows(), staging)?;
     let warnings = partials
         .poses
@@ -58,7 +61,7 @@ pub fn merge(parts: &[PathBuf], staging: &Staging) -> Result<RunReport, MergeErr
     Ok(report)
 }
 
-fn read_nails(file: &Path) -> Result<Vec<Vec<String>>, MergeError> {
+pub(super) fn read_nails(file: &Path) -> Result<Vec<Vec<String>>, MergeError> {
     let wrong = |why: String| MergeError::Nails { file: file.to_owned(), why };
     let mut table = csv::Reader::from_path(file).map_err(|e| wrong(e.to_string()))?;
     if table.headers().map_err(|e| wrong(e.to_string()))?.iter().ne(NAIL_COLUMNS) {

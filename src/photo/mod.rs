@@ -3,12 +3,14 @@
 //! A photograph is read, outlined, framed, normalized, added up, drawn: [`PhotoSet`] lists which, [`Photograph`] holds upright
 //! pixels, [`outline`] finds the nails, [`NailFrame`] measures axis and box, [`normalize`](fn@normalize) brings the green
 //! channel into the nail's frame, [`Sums`] become mean and SD. [`run`] is the one entry; [`merge`](fn@merge) joins results
-//! made in parts.
+//! made in parts, [`gather`](fn@gather) those of a pipeline, going on from the sums that stand.
 
 mod frame;
+mod gather;
 mod job;
 mod keep;
 mod maps;
+mod members;
 mod merge;
 mod normalize;
 pub mod outline;
@@ -22,15 +24,17 @@ mod results;
 mod set;
 
 pub use frame::{FrameFault, NailFrame, SMALLEST_EXTENT_PX};
-pub use job::{DetectedOutline, NailRow, PhotosError, PhotosOptions, PhotosResult, Watch, run};
+pub use gather::{Gathered, gather};
+pub use job::{DetectedOutline, NailRow, PartOptions, PhotosError, PhotosOptions, PhotosResult, Watch, run};
 pub use keep::{Kept, keep_outlines};
 pub use maps::{DuplicateSubject, Maps, Sums};
 pub use merge::{MergeError, merge};
 pub use normalize::{FULL_SCALE, Normalization, Normalized, Resample, normalize};
 pub use partial::{PartialFault, Partials, join};
-pub use plan::plan;
+pub use plan::{Foreknown, plan, plan_foreknown};
 pub use plane::Channel;
 pub use read::{Depth, Photograph, ReadFault};
 pub use report::{NailTable, PoseCount, RunReport};
 pub use results::{NAIL_COLUMNS, nail_cells, write_nails};
+pub(crate) use set::is_picture;
 pub use set::{Photo, PhotoSet, SetError, SetFault};

@@ -3,21 +3,28 @@
 //! An NPZ archive of `sum` (uint64, values of 0 to 65535), `sum_sq` (uint64), `count` (uint32), each `size` x `size`,
 //! and `meta` (uint8): a JSON text with the format's version, the pose, the normalization and the subjects' names.
 //! `numpy.load(..)["meta"].tobytes()` shows it.
+//!
+//! One subject's, as pipelines keep them apart (`partials/<pose>.partial.npz`), are its levels themselves, a sixth of the size: `level` (uint16)
+//! and, where the photograph does not show all, `seen` (uint8, 0 or 1); format 2.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::io::{BufReader, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use ndarray::{Array1, Array2};
-use ndarray_npy::{NpzReader, NpzWriter};
+use ndarray::{Array1, Array2, ArrayView2};
+use ndarray_npy::{NpzReader, NpzWriter, ReadableElement};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::maps::Sums;
-use super::normalize::Normalization;
+use super::members::Members;
+use super::normalize::{Normalization, Normalized};
 
+/// Of sums.
 const FORMAT: u32 = 1;
+/// Of one subject's levels.
+const FORMAT_OF_ONE: u32 = 2;
 
 /// Why partial maps can't be read or don't join.
 #[derive(Debug, Error)]
@@ -31,7 +38,7 @@ pub enum PartialFault {
         why: String,
     },
     /// Written by another version.
-    #[error("{}: has format {found}, this version reads {FORMAT}; make it anew", .file.display())]
+    #[error("{}: has format {found}, this version reads {FORMAT} and {FORMAT_OF_ONE}; make it anew", .file.display())]
     Version {
         /// Which file.
         file: PathBuf,
@@ -65,12 +72,21 @@ pub enum PartialFault {
     Nothing(PathBuf),
 }
 
+/// What a partial map says of itself.
 #[derive(Serialize, Deserialize)]
-struct Meta {
+pub(super) struct Meta {
     format: u32,
-    pose: String,
-    normalization: Normalization,
+    pub(super) pose: String,
+    pub(super) normalization: Normalization,
     subjects: BTreeSet<String>,
+}
+
+/// What a partial map holds.
+pub(super) enum Held {
+    /// Sums over subjects.
+    Sums(Sums),
+    /// One subject's picture.
+    One(String, Normalized),
 }
 
 /// Sums of every pose, all made with one normalization.
@@ -87,18 +103,45 @@ pub struct Partials {
 /// # Errors
 /// Where the file can't be written.
 pub(super) fn write(path: &Path, pose: &str, sums: &Sums, normalization: &Normalization) -> anyhow::Result<()> {
-    let subjects = sums.subjects.clone();
-    let meta = Meta { format: FORMAT, pose: pose.to_owned(), normalization: *normalization, subjects };
     let shape = (sums.size, sums.size);
     let mut file = BufWriter::new(File::create(path)?);
     let mut npz = NpzWriter::new(&mut file);
-    npz.add_array("sum", &ndarray::ArrayView2::from_shape(shape, &sums.sum)?)?;
-    npz.add_array("sum_sq", &ndarray::ArrayView2::from_shape(shape, &sums.sum_sq)?)?;
-    npz.add_array("count", &ndarray::ArrayView2::from_shape(shape, &sums.count)?)?;
-    npz.add_array("meta", &Array1::from(serde_json::to_vec(&meta)?))?;
+    npz.add_array("sum", &ArrayView2::from_shape(shape, &sums.sum)?)?;
+    npz.add_array("sum_sq", &ArrayView2::from_shape(shape, &sums.sum_sq)?)?;
+    npz.add_array("count", &ArrayView2::from_shape(shape, &sums.count)?)?;
+    npz.add_array("meta", &meta(FORMAT, pose, sums, normalization)?)?;
     npz.finish()?;
     file.flush()?;
     Ok(())
+}
+
+/// Writes one pose's sums; one subject's as its levels.
+///
+/// # Errors
+/// Where the file can't be written.
+pub(super) fn write_part(path: &Path, pose: &str, sums: &Sums, normalization: &Normalization) -> anyhow::Result<()> {
+    if sums.subjects.len() != 1 {
+        return write(path, pose, sums, normalization);
+    }
+    let shape = (sums.size, sums.size);
+    let level = |&sum: &u64| u16::try_from(sum).expect("one subject's sum is its level");
+    let levels: Vec<u16> = sums.sum.iter().map(level).collect();
+    let mut file = BufWriter::new(File::create(path)?);
+    let mut npz = NpzWriter::new(&mut file);
+    npz.add_array("level", &ArrayView2::from_shape(shape, &levels)?)?;
+    if sums.count.contains(&0) {
+        let seen: Vec<u8> = sums.count.iter().map(|&count| u8::from(count > 0)).collect();
+        npz.add_array("seen", &ArrayView2::from_shape(shape, &seen)?)?;
+    }
+    npz.add_array("meta", &meta(FORMAT_OF_ONE, pose, sums, normalization)?)?;
+    npz.finish()?;
+    file.flush()?;
+    Ok(())
+}
+
+fn meta(format: u32, pose: &str, sums: &Sums, normalization: &Normalization) -> serde_json::Result<Array1<u8>> {
+    let (pose, normalization, subjects) = (pose.to_owned(), *normalization, sums.subjects.clone());
+    Ok(Array1::from(serde_json::to_vec(&Meta { format, pose, normalization, subjects })?))
 }
 
 /// Joins the partial maps of several results of `lunula photos`.
@@ -109,67 +152,95 @@ pub fn join(parts: &[PathBuf]) -> Result<Partials, PartialFault> {
     let mut joined: Option<Partials> = None;
     for part in parts {
         for file in partial_files(part)? {
-            let (meta, sums) = read(&file)?;
+            let (meta, held) = read(&file)?;
             let joined =
                 joined.get_or_insert_with(|| Partials { normalization: meta.normalization, poses: BTreeMap::new() });
-            if joined.normalization != meta.normalization {
-                let text = |n: &Normalization| serde_json::to_string(n).unwrap_or_default();
-                return Err(PartialFault::Options {
-                    file,
-                    pose: meta.pose,
-                    found: text(&meta.normalization),
-                    expected: text(&joined.normalization),
-                });
-            }
-            let whole = joined.poses.entry(meta.pose.clone()).or_insert_with(|| Sums::new(sums.size));
-            whole.merge(&sums).map_err(|both| PartialFault::Overlap { file, pose: meta.pose, subject: both.0 })?;
+            agree(&file, &meta, &joined.normalization)?;
+            let whole = joined.poses.entry(meta.pose.clone()).or_insert_with(|| Sums::new(meta.normalization.size));
+            add(whole, &file, meta, held)?;
         }
     }
     joined.ok_or_else(|| PartialFault::Nothing(parts.first().cloned().unwrap_or_default()))
 }
 
-/// The partial maps that the part's own `run.json` names: an earlier run's may stand beside them.
+/// Checks that a partial map is made as the others.
+pub(super) fn agree(file: &Path, meta: &Meta, expected: &Normalization) -> Result<(), PartialFault> {
+    if meta.normalization == *expected {
+        return Ok(());
+    }
+    let text = |n: &Normalization| serde_json::to_string(n).unwrap_or_default();
+    Err(PartialFault::Options {
+        file: file.to_owned(),
+        pose: meta.pose.clone(),
+        found: text(&meta.normalization),
+        expected: text(expected),
+    })
+}
+
+/// Adds what a partial map holds.
+pub(super) fn add(whole: &mut Sums, file: &Path, meta: Meta, held: Held) -> Result<(), PartialFault> {
+    let added = match held {
+        Held::Sums(sums) => whole.merge(&sums),
+        Held::One(subject, picture) => whole.add(&subject, &[picture]),
+    };
+    added.map_err(|both| PartialFault::Overlap { file: file.to_owned(), pose: meta.pose, subject: both.0 })
+}
+
+/// The partial maps that the part's own `run.json` names: an earlier run's may stand beside them. Of a pipeline's part, those of its list.
 fn partial_files(part: &Path) -> Result<Vec<PathBuf>, PartialFault> {
     let nothing = || PartialFault::Nothing(part.to_owned());
-    let text = std::fs::read(part.join("run.json")).map_err(|_| nothing())?;
+    let Ok(text) = std::fs::read(part.join("run.json")) else {
+        let members = Members::read(part).map_err(|_| nothing())?;
+        return Ok(members.poses.keys().map(|pose| part.join(part_name(pose))).collect());
+    };
     let run: serde_json::Value = serde_json::from_slice(&text).map_err(|_| nothing())?;
     let poses = run["poses"].as_array().ok_or_else(nothing)?.iter().filter_map(|p| p["pose"].as_str());
     let files: Vec<PathBuf> = poses.map(|pose| part.join(format!("maps/{pose}.partial.npz"))).collect();
     if files.is_empty() { Err(nothing()) } else { Ok(files) }
 }
 
-fn read(path: &Path) -> Result<(Meta, Sums), PartialFault> {
+/// Where a part of a pipeline keeps a pose's sums.
+pub(super) fn part_name(pose: &str) -> String {
+    format!("partials/{pose}.partial.npz")
+}
+
+pub(super) fn read(path: &Path) -> Result<(Meta, Held), PartialFault> {
     let unreadable = |why: String| PartialFault::Unreadable { file: path.to_owned(), why };
     let file = File::open(path).map_err(|e| unreadable(e.to_string()))?;
     let mut npz = NpzReader::new(BufReader::new(file)).map_err(|e| unreadable(e.to_string()))?;
     let meta: Array1<u8> = npz.by_name("meta").map_err(|e| unreadable(e.to_string()))?;
     let (bytes, _) = meta.into_raw_vec_and_offset();
     let json: serde_json::Value = serde_json::from_slice(&bytes).map_err(|e| unreadable(e.to_string()))?;
-    if let Some(found) = json["format"].as_u64().filter(|&f| f != u64::from(FORMAT)) {
+    let known = [FORMAT, FORMAT_OF_ONE].map(u64::from);
+    if let Some(found) = json["format"].as_u64().filter(|found| !known.contains(found)) {
         return Err(PartialFault::Version { file: path.to_owned(), found: found as u32 });
     }
     let meta: Meta = serde_json::from_value(json).map_err(|e| unreadable(e.to_string()))?;
-    let normalization = meta.normalization.check().map_err(unreadable)?;
-    let size = normalization.size;
-    let mut wide = |name: &str| -> Result<Vec<u64>, PartialFault> {
-        let array: Array2<u64> = npz.by_name(name).map_err(|e| unreadable(e.to_string()))?;
-        expect_size(array.dim(), size).map_err(unreadable)?;
-        Ok(array.into_iter().collect())
-    };
-    let (sum, sum_sq) = (wide("sum")?, wide("sum_sq")?);
-    let count: Array2<u32> = npz.by_name("count").map_err(|e| unreadable(e.to_string()))?;
-    expect_size(count.dim(), size).map_err(unreadable)?;
-    let sums = Sums { size, sum, sum_sq, count: count.into_iter().collect(), subjects: meta.subjects.clone() };
+    let size = meta.normalization.check().map_err(unreadable)?.size;
+    if meta.format == FORMAT_OF_ONE {
+        let Some(subject) = meta.subjects.first().filter(|_| meta.subjects.len() == 1).cloned() else {
+            return Err(unreadable("holds levels, which are one subject's, and names none or several".into()));
+        };
+        let levels = array::<u16>(&mut npz, "level", size).map_err(unreadable)?;
+        let has_seen = npz.names().is_ok_and(|names| names.iter().any(|name| name == "seen"));
+        let seen = has_seen.then(|| array::<u8>(&mut npz, "seen", size)).transpose().map_err(unreadable)?;
+        let seen = seen.map(|seen| seen.into_iter().map(|seen| seen > 0).collect());
+        return Ok((meta, Held::One(subject, Normalized { size, levels, seen })));
+    }
+    let sum = array(&mut npz, "sum", size).map_err(unreadable)?;
+    let sum_sq = array(&mut npz, "sum_sq", size).map_err(unreadable)?;
+    let count = array(&mut npz, "count", size).map_err(unreadable)?;
+    let sums = Sums { size, sum, sum_sq, count, subjects: meta.subjects.clone() };
     if !sums.are_possible() {
         return Err(unreadable("its sums contradict one another".into()));
     }
-    Ok((meta, sums))
+    Ok((meta, Held::Sums(sums)))
 }
 
-fn expect_size((rows, columns): (usize, usize), size: usize) -> Result<(), String> {
-    if (rows, columns) == (size, size) {
-        Ok(())
-    } else {
-        Err(format!("an array of {rows} x {columns}, not {size} x {size}"))
+fn array<T: ReadableElement>(npz: &mut NpzReader<BufReader<File>>, name: &str, size: usize) -> Result<Vec<T>, String> {
+    let array: Array2<T> = npz.by_name(name).map_err(|e| e.to_string())?;
+    match array.dim() {
+        (rows, columns) if (rows, columns) == (size, size) => Ok(array.into_iter().collect()),
+        (rows, columns) => Err(format!("an array of {rows} x {columns}, not {size} x {size}")),
     }
 }

@@ -5,25 +5,62 @@ use std::collections::BTreeMap;
 use super::job::PhotosOptions;
 use super::outline::Found;
 use super::read::header_is_grey;
-use super::set::PhotoSet;
+use super::set::{Photo, PhotoSet};
 use crate::stages::Step;
+
+/// What is known of a photograph before it is opened.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Foreknown {
+    /// Its pose.
+    pub pose: String,
+    /// It has no colours; none: not known.
+    pub grey: Option<bool>,
+    /// Where its outlines come from.
+    pub outlines: Found,
+}
+
+impl Foreknown {
+    /// Looks at a photograph's header and at what stands beside it.
+    #[must_use]
+    pub fn of(photo: &Photo, options: &PhotosOptions) -> Self {
+        let (pose, outlines) = (photo.pose.clone(), options.outlines.locate(photo));
+        Self { pose, grey: header_is_grey(&photo.path).ok(), outlines }
+    }
+}
 
 /// Plans a run of `photos`.
 pub fn plan(set: &PhotoSet, options: &PhotosOptions) -> Vec<Step> {
-    let count = |found: fn(&Found) -> bool| set.photos.iter().filter(|p| found(&options.outlines.locate(p))).count();
+    let photos: Vec<Foreknown> = set.photos.iter().map(|photo| Foreknown::of(photo, options)).collect();
+    plan_foreknown(&photos, options)
+}
+
+/// Plans a run on photographs of which not all need stand.
+pub fn plan_foreknown(photos: &[Foreknown], options: &PhotosOptions) -> Vec<Step> {
+    let count = |found: fn(&Found) -> bool| photos.iter().filter(|p| found(&p.outlines)).count();
     let labelme = count(|f| matches!(f, Found::LabelMe(_)));
     let masks = count(|f| matches!(f, Found::Mask(_)));
     let detected = count(|f| matches!(f, Found::Detection));
-    let grey = set.photos.iter().filter(|p| header_is_grey(&p.path).unwrap_or(false)).count();
-    let colour = set.photos.len() - grey;
+    let grey = photos.iter().filter(|p| p.grey == Some(true)).count();
+    let colour = photos.len() - grey;
     let mut subjects: BTreeMap<&str, usize> = BTreeMap::new();
-    for photo in &set.photos {
+    for photo in photos {
         *subjects.entry(&photo.pose).or_default() += 1;
     }
     let most = subjects.values().copied().max().unwrap_or(0);
     let none_drawn = "nobody drew any";
+    let maps = if options.parts.is_some() {
+        let sums = Step::new("sums", true, format!("{} pose(s)", subjects.len()));
+        [sums, Step::new("maps", false, "they are made of all subjects' sums".into())]
+    } else {
+        let spread =
+            if most > 1 { format!("up to {most} subjects a pose") } else { "it needs two subjects in a pose".into() };
+        let mean = Step::new("mean", true, format!("{} pose(s)", subjects.len()));
+        [mean, Step::new("standard deviation", most > 1, spread)]
+    };
+    let [sums, spread] = maps;
+    let pictures = options.parts.is_none_or(|parts| parts.pictures);
     vec![
-        Step::new("read", true, format!("{} photograph(s) of {} pose(s)", set.photos.len(), subjects.len())),
+        Step::new("read", true, format!("{} photograph(s) of {} pose(s)", photos.len(), subjects.len())),
         Step::new("outlines from LabelMe", labelme > 0, said(labelme, none_drawn)),
         Step::new("outlines from masks", masks > 0, said(masks, none_drawn)),
         Step::new("detection", detected > 0, said(detected, "every outline is known, or detection is not wanted")),
@@ -47,11 +84,12 @@ pub fn plan(set: &PhotoSet, options: &PhotosOptions) -> Vec<Step> {
             true,
             format!("{0} x {0} px of {1} nail boxes", options.normalization.size, options.normalization.margin),
         ),
-        Step::new("mean", true, format!("{} pose(s)", subjects.len())),
+        sums,
+        spread,
         Step::new(
-            "standard deviation",
-            most > 1,
-            if most > 1 { format!("up to {most} subjects a pose") } else { "it needs two subjects in a pose".into() },
+            "pictures written",
+            pictures,
+            if pictures { "the normalized ones".into() } else { "not asked for".into() },
         ),
         Step::new(
             "LabelMe files of what is detected",

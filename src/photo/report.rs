@@ -166,7 +166,7 @@ impl RunReport {
             .iter()
             .map(|s| {
                 let share = if total > 0.0 { 100.0 * s.thread_s / total } else { 0.0 };
-                vec![s.stage.to_owned(), format!("{:.3}", s.thread_s), format!("{share:.0} %"), s.runs.to_string()]
+                vec![s.stage.to_string(), format!("{:.3}", s.thread_s), format!("{share:.0} %"), s.runs.to_string()]
             })
             .collect();
         page.table(&["stage", "s, summed over threads", "share", "runs"], &rows, |_| false);

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 use super::job::NailRow;
 use super::maps::Maps;
+use super::members::{Member, Members};
 use super::normalize::Normalized;
 use super::partial::{self, Partials};
 use super::read::Depth;
@@ -117,9 +118,28 @@ pub(super) fn thumbnail(picture: &Normalized, longest: usize) -> GrayAlphaImage 
     small
 }
 
-/// Maps, partial sums and figures of every pose, and the sheets over all poses.
-pub(super) fn write_maps(partials: &Partials, staging: &Staging, stages: &Stages) -> Result<(), WriteError> {
-    let drawn: Vec<[Tile; 4]> = partials
+/// Sums of every pose and the list of them, for [`gather`](fn@super::gather).
+pub(super) fn write_parts(partials: &Partials, staging: &Staging, stages: &Stages) -> Result<(), WriteError> {
+    stages.time("write sums", || {
+        let mut members = Members::new(partials.normalization);
+        for (pose, sums) in &partials.poses {
+            let name = partial::part_name(pose);
+            partial::write_part(&staging.place(&name)?, pose, sums, &partials.normalization)
+                .map_err(|why| staging.refused(&name, why))?;
+            members.add(pose, Member::of(sums, &staging.read(&name)?));
+        }
+        members.write(staging)
+    })
+}
+
+/// Maps and partial sums of every pose, and where they are wanted figures and the sheets over all poses.
+pub(super) fn write_maps(
+    partials: &Partials,
+    figures: bool,
+    staging: &Staging,
+    stages: &Stages,
+) -> Result<(), WriteError> {
+    let drawn: Vec<Option<[Tile; 4]>> = partials
         .poses
         .par_iter()
         .map(|(pose, sums)| {
@@ -132,9 +152,14 @@ pub(super) fn write_maps(partials: &Partials, staging: &Staging, stages: &Stages
                 let path = staging.place(&name)?;
                 partial::write(&path, pose, sums, &partials.normalization).map_err(|why| staging.refused(&name, why))
             })?;
-            stages.time("figures", || draw_pose(pose, sums.subjects().len(), &maps, staging))
+            let draw = || draw_pose(pose, sums.subjects().len(), &maps, staging);
+            figures.then(|| stages.time("figures", draw)).transpose()
         })
         .collect::<Result<_, WriteError>>()?;
+    let drawn: Vec<[Tile; 4]> = drawn.into_iter().flatten().collect();
+    if !figures {
+        return Ok(());
+    }
     stages.time("sheets", || {
         (0..KINDS.len()).into_par_iter().try_for_each(|kind| {
             let small = drawn.len() > LARGE_TILES;

@@ -95,15 +95,35 @@ impl PhotoSet {
         } else {
             set.list_folder(apart)?
         }
-        set.photos.sort();
-        set.leave_out_doubles();
-        set.leave_out_clashing_names();
-        set.faults.sort();
+        set.settle();
         if set.photos.is_empty() {
             let also = set.faults.iter().map(|f| format!("\n  {}: {}", f.place, f.what)).collect();
             return Err(SetError::Empty { folder: folder.to_owned(), also });
         }
         Ok(set)
+    }
+
+    /// A set of photographs that are known one by one; those that can't be used are among its faults.
+    #[must_use]
+    pub fn of(photos: Vec<Photo>) -> Self {
+        let mut set = Self { folder: PathBuf::new(), photos: Vec::new(), faults: Vec::new() };
+        for photo in photos {
+            match name_fault("subject", &photo.subject).or_else(|| name_fault("pose", &photo.pose)) {
+                Some(what) => set.fault(photo.file, what),
+                None if !is_picture(&photo.path) => set.fault(photo.file, NO_PICTURE),
+                None => set.photos.push(photo),
+            }
+        }
+        set.settle();
+        set
+    }
+
+    /// Sorts, and leaves out what can't be told apart.
+    fn settle(&mut self) {
+        self.photos.sort();
+        self.leave_out_doubles();
+        self.leave_out_clashing_names();
+        self.faults.sort();
     }
 
     /// The poses, sorted.
@@ -207,7 +227,7 @@ impl PhotoSet {
                     files,
                     format!(
                         "subject `{subject}` is there {} times in pose `{pose}`, and a subject counts once: remove all but one, \
-                         or give each its own subject in photos.csv",
+                         or give each its own subject in photos.csv (in a pipeline: by {{pose}} and {{subject}} in the pattern)",
                         photos.len()
                     ),
                 );
@@ -256,15 +276,20 @@ fn row_fault(folder: &Path, file: &str, subject: &str, pose: &str) -> Option<Str
     if let Some((name, _)) = cells.iter().find(|(_, value)| value.is_empty()) {
         return Some(format!("the cell `{name}` is empty"));
     }
-    for (name, value) in [("subject", subject), ("pose", pose)] {
-        let mut parts = Path::new(value).components();
-        if !matches!((parts.next(), parts.next()), (Some(Component::Normal(_)), None))
-            || value.contains(['/', '\\', '\0'])
-        {
-            return Some(format!("`{value}` names files of the results, so a {name} cannot hold a path"));
-        }
+    if let Some(what) = name_fault("subject", subject).or_else(|| name_fault("pose", pose)) {
+        return Some(what);
     }
     (!folder.join(file).is_file()).then(|| format!("{file} does not exist beside photos.csv"))
+}
+
+const NO_PICTURE: &str = "is no photograph that is read; export it as PNG, TIFF, BMP or JPEG";
+
+/// What is wrong with a name that files of the results will have.
+fn name_fault(name: &str, value: &str) -> Option<String> {
+    let mut parts = Path::new(value).components();
+    let plain = matches!((parts.next(), parts.next()), (Some(Component::Normal(_)), None));
+    let sound = plain && !value.contains(['/', '\\', '\0']);
+    (!sound).then(|| format!("`{value}` names files of the results, so a {name} cannot hold a path"))
 }
 
 /// Files and folders of a folder, hidden ones left out, sorted by name.

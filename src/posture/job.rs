@@ -22,7 +22,7 @@ use super::suggest::Suggester;
 use super::survey::{Progress, Survey, Surveyor};
 use super::track::{Effort, Tracker};
 use crate::files::WriteError;
-use crate::stages::{Fate, Stages};
+use crate::stages::{self, Stages};
 use crate::table::{TableError, TableFormat};
 use crate::video::{End, Info, Item, Turn, Video, VideoError};
 
@@ -301,11 +301,7 @@ fn video_report(path: &Path, info: &Info, siting: Siting, span: &Span) -> VideoR
 /// What the scene did not need.
 fn left_out(layout: &Layout, info: &Info, options: &PostureOptions, outputs: &Outputs, search: &Effort) -> Vec<String> {
     let steps = steps(layout, info, options, Some(outputs));
-    let mut left_out: Vec<String> = steps
-        .into_iter()
-        .filter(|step| step.fate == Fate::LeftOut && step.stage != WHOLE_FRAMES)
-        .map(|step| format!("{}: {}", step.stage, step.reason))
-        .collect();
+    let mut left_out = stages::left_out(steps.into_iter().filter(|step| step.stage != WHOLE_FRAMES));
     left_out.push(format!(
         "{WHOLE_FRAMES}: in all but {} of {} frames only where the last one tells, {:.2} % of the samples",
         search.whole_searches,

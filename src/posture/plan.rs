@@ -40,6 +40,7 @@ pub(super) fn steps(layout: &Layout, info: &Info, options: &PostureOptions, outp
     let (tracks, tracks_why) = asked(outputs.map(|o| o.tracks.is_some()), "--tracks");
     let (overlay, overlay_why) = asked(outputs.map(|o| o.overlay.is_some()), "--overlay");
     let (smooth, smooth_why) = asked(Some(options.smooth), "--smooth");
+    let figures = outputs.is_none_or(|o| o.figures);
     let zeros = layout.joints.iter().any(|joint| joint.zero_rad != 0.0);
     vec![
         Step::new("decoding", true, format!("{frames}, {width} x {height}, {} of {depth} bits", info.codec)),
@@ -87,7 +88,11 @@ pub(super) fn steps(layout: &Layout, info: &Info, options: &PostureOptions, outp
         Step::new("smoothing", smooth, smooth_why),
         Step::new("table of markers", tracks, tracks_why),
         Step::new("overlay", overlay, overlay_why),
-        Step::new("figures", outputs.is_none_or(|o| o.figures) && !layout.joints.is_empty(), "of the angles".into()),
+        Step::new(
+            "figures",
+            figures && !layout.joints.is_empty(),
+            if figures { "of the angles".into() } else { "not asked for".into() },
+        ),
     ]
 }
 

@@ -16,7 +16,7 @@ use super::sight::Sight;
 use super::smooth::smooth;
 use super::view::View;
 use crate::clock::{ClockFit, ClockFormat};
-use crate::files::{Places, WriteError, beside, is_same_file};
+use crate::files::{Places, beside, is_same_file};
 use crate::stages::Stages;
 use crate::table::{Column, TableWriter, Value};
 use crate::video::{Frame, Info, VideoError};
@@ -259,14 +259,10 @@ impl<'a> Results<'a> {
             if kind == "coupling" && figures.coupled_joints().is_none() {
                 continue;
             }
-            let [png, svg] = ["png", "svg"].map(|ending| beside(&self.joints_path, &format!("-{kind}.{ending}")));
-            let places = [self.places.place(&png)?, self.places.place(&svg)?];
-            let drawn = match kind {
-                "angles" => figures.draw_angles(&places[0], &places[1]),
-                _ => figures.draw_coupling(&places[0], &places[1]).map(|_| ()),
-            };
-            drawn.map_err(|why| WriteError::File { path: png.clone(), why: format!("{why:#}") })?;
-            pictures.push(png);
+            pictures.push(self.places.draw(&self.joints_path, kind, |png, svg| match kind {
+                "angles" => figures.draw_angles(png, svg),
+                _ => figures.draw_coupling(png, svg).map(|_| ()),
+            })?);
         }
         Ok(pictures)
     }
@@ -289,10 +285,8 @@ impl<'a> Results<'a> {
         report.wall_s = start.elapsed().as_secs_f64();
         let decoding: f64 = report.stages.iter().filter(|s| s.stage == "decode").map(|s| s.thread_s).sum();
         report.decoding_share = decoding / report.wall_s;
-        let text = serde_json::to_string_pretty(&report).expect("plain data");
-        let path = beside(&self.joints_path, ".run.json");
-        let at = self.places.place(&path)?;
-        std::fs::write(&at, text + "\n").map_err(|why| WriteError::File { path, why: why.to_string() })?;
+        let text = serde_json::to_string_pretty(&report).expect("plain data") + "\n";
+        self.places.write(&beside(&self.joints_path, ".run.json"), &text)?;
         self.places.commit()?;
         Ok(report)
     }

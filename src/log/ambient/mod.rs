@@ -43,6 +43,18 @@ pub struct AmbientOptions {
     pub full_scale_v: Option<[f64; 2]>,
 }
 
+impl AmbientOptions {
+    /// Reads the range that can be recorded, volts: `0,10`.
+    ///
+    /// # Errors
+    /// What to write instead.
+    pub fn parse_full_scale(text: &str) -> Result<[f64; 2], String> {
+        let ends =
+            text.split_once(',').and_then(|(low, high)| Some([low.trim().parse().ok()?, high.trim().parse().ok()?]));
+        ends.ok_or_else(|| "write the lowest voltage, a comma, the highest, as 0,10".to_owned())
+    }
+}
+
 /// Why a log gives no samples.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum AmbientError {

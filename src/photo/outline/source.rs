@@ -34,6 +34,8 @@ pub enum Sources {
 pub struct OutlineOptions {
     /// Which sources may be asked.
     pub sources: Sources,
+    /// Only what the set lists: nothing is looked for beside photographs.
+    pub listed_only: bool,
     /// Masks named as the photographs: `<pose>/<stem>.*` or `<stem>.*`.
     pub masks: Option<PathBuf>,
     /// Settles the direction of nails without an axis, for the whole set.
@@ -142,7 +144,7 @@ impl OutlineOptions {
             return if is_picture(outline) { Found::Mask(outline.clone()) } else { Found::LabelMe(outline.clone()) };
         }
         let beside = photo.path.with_extension("json");
-        if beside.is_file() {
+        if beside.is_file() && !self.listed_only {
             return Found::LabelMe(beside);
         }
         if let Some(mask) = self.masks.as_ref().and_then(|folder| mask_of(folder, photo)) {
@@ -175,7 +177,11 @@ impl OutlineOptions {
                     confidence: Some(1.0),
                     reason: String::new(),
                 },
-                Err(fault) => left_out(Source::Annotated, None, format!("{}: {fault}", file.display())),
+                // A row of the results does not hang on where the photographs lie.
+                Err(fault) => {
+                    let name = file.file_name().unwrap_or_default().to_string_lossy();
+                    left_out(Source::Annotated, None, format!("{name}: {fault}"))
+                }
             });
         }
         self.complete_axes(picture, &mut nails);

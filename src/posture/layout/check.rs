@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::raw::{Entry, Findings, entries, instead, number};
+use super::raw::pair;
 use super::{Camera, Joint, Layout, LayoutFault, Marker, Segment};
 
 use crate::clock::{Clock, ClockFormat, ClockRoi};
 use crate::flexion::Flexion;
+use crate::toml_file::{Entry, Fault, Findings, entries, instead, number};
 
 const TABLES: [&str; 8] = ["flexion", "markers", "segments", "joints", "start", "clock", "camera", "zero"];
 /// The number of coefficients of OpenCV's lens models that are known here; those left out are zero.
@@ -16,7 +17,7 @@ const DISTORTIONS: [usize; 5] = [0, 4, 5, 8, 12];
 pub(super) fn check(text: &str, path: &Path) -> Result<Layout, Vec<LayoutFault>> {
     let mut findings = Findings::new(text);
     let Some(document) = findings.parse() else {
-        return Err(findings.finish().err().unwrap_or_default());
+        return Err(faults(findings));
     };
     let top = entries(document.get_ref());
     findings.unknown_keys(&top, &TABLES, "key");
@@ -46,7 +47,9 @@ pub(super) fn check(text: &str, path: &Path) -> Result<Layout, Vec<LayoutFault>>
             notes.push(format!("{}:{line}: no segment uses the marker `{}`", path.display(), entry.key));
         }
     }
-    findings.finish()?;
+    if !findings.is_empty() {
+        return Err(faults(findings));
+    }
     Ok(Layout {
         flexion,
         markers,
@@ -60,6 +63,11 @@ pub(super) fn check(text: &str, path: &Path) -> Result<Layout, Vec<LayoutFault>>
         camera,
         notes,
     })
+}
+
+fn faults(findings: Findings<'_>) -> Vec<LayoutFault> {
+    let found = findings.finish().err().unwrap_or_default();
+    found.into_iter().map(|Fault { line, what, .. }| LayoutFault { line, what }).collect()
 }
 
 fn flexion(findings: &mut Findings<'_>, top: &[Entry<'_>], notes: &mut Vec<String>, path: &Path) -> Flexion {
@@ -138,7 +146,7 @@ fn named(findings: &mut Findings<'_>, entries: &[Entry<'_>], of: &str, known: &[
     let mut found = Vec::new();
     for entry in entries {
         check_name(findings, *entry, kind);
-        if let Some(pair) = findings.pair(*entry, of, known) {
+        if let Some(pair) = pair(findings, *entry, of, known) {
             found.push((entry.key.to_owned(), pair));
         }
     }

@@ -1,0 +1,88 @@
+//! Which subjects' pictures sums are made of, and their contents' hashes: what tells whether sums that stand can be added to.
+//!
+//! `members.json`: the normalization and, by pose, the parts that were added up. Of a part of a pipeline (`partials/members.json`) it lists that part's
+//! own.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use super::maps::Sums;
+use super::normalize::Normalization;
+use crate::files::{Staging, WriteError};
+
+/// Where the list stands among a part's results.
+const OF_A_PART: &str = "partials/members.json";
+/// Where it stands among maps.
+pub(super) const OF_MAPS: &str = "members.json";
+
+/// Sums that were added, all of one file.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub(super) struct Member {
+    /// Whose pictures.
+    pub(super) subjects: BTreeSet<String>,
+    /// Of the file's content.
+    sha256: String,
+}
+
+/// All that was added, by pose.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct Members {
+    /// What the normalized pictures were made with.
+    pub(super) normalization: Normalization,
+    /// By pose, sorted.
+    pub(super) poses: BTreeMap<String, BTreeSet<Member>>,
+}
+
+impl Member {
+    /// What was written of `sums`.
+    pub(super) fn of(sums: &Sums, file: &[u8]) -> Self {
+        Self { subjects: sums.subjects.clone(), sha256: format!("{:x}", Sha256::digest(file)) }
+    }
+}
+
+impl Members {
+    /// None yet.
+    pub(super) fn new(normalization: Normalization) -> Self {
+        Self { normalization, poses: BTreeMap::new() }
+    }
+
+    pub(super) fn add(&mut self, pose: &str, member: Member) {
+        self.poses.entry(pose.to_owned()).or_default().insert(member);
+    }
+
+    /// The list of a part of a pipeline.
+    ///
+    /// # Errors
+    /// Where there is none that can be read: in words.
+    pub(super) fn read(part: &Path) -> Result<Self, String> {
+        Self::read_file(&part.join(OF_A_PART))
+    }
+
+    /// The list of maps that stand; none where there is none that can be read.
+    pub(super) fn of_maps(maps: &Path) -> Option<Self> {
+        Self::read_file(&maps.join(OF_MAPS)).ok()
+    }
+
+    fn read_file(file: &Path) -> Result<Self, String> {
+        let text = std::fs::read(file).map_err(|why| why.to_string())?;
+        serde_json::from_slice(&text).map_err(|why| why.to_string())
+    }
+
+    /// Writes the list of a part.
+    pub(super) fn write(&self, staging: &Staging) -> Result<(), WriteError> {
+        self.write_to(staging, OF_A_PART)
+    }
+
+    /// Writes the list of maps.
+    pub(super) fn write_of_maps(&self, staging: &Staging) -> Result<(), WriteError> {
+        self.write_to(staging, OF_MAPS)
+    }
+
+    fn write_to(&self, staging: &Staging, name: &str) -> Result<(), WriteError> {
+        let text = serde_json::to_string_pretty(self).map_err(|why| staging.refused(name, why))?;
+        staging.write(name, (text + "\n").as_bytes())
+    }
+}
