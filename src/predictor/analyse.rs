@@ -13,7 +13,8 @@ use serde::Serialize;
 use super::error::{PredictorError, go_on};
 use super::figures_of_merit::ByTarget;
 use super::open_models;
-use crate::stages::{Stage, Stages};
+use super::results::FolderOutputs;
+use crate::stages::{Stage, Stages, Step};
 
 /// A mode of a model.
 #[derive(Debug, Clone, Serialize)]
@@ -80,7 +81,7 @@ pub struct AnalyseReport {
 ///
 /// # Errors
 /// [`PredictorError`] where there is nothing to tell.
-pub fn analyse(model: &Path, out: Option<&Path>, stop: &AtomicBool) -> Result<AnalyseReport, PredictorError> {
+pub fn analyse(model: &Path, out: Option<&FolderOutputs>, stop: &AtomicBool) -> Result<AnalyseReport, PredictorError> {
     let start = Instant::now();
     let stages = Stages::default();
     let (predictor, mut warnings) = open_models(&[model.to_owned()])?.one();
@@ -124,6 +125,17 @@ pub fn analyse(model: &Path, out: Option<&Path>, stop: &AtomicBool) -> Result<An
         }
     }
     Ok(report)
+}
+
+/// What would be done and what not.
+#[must_use]
+pub fn analyse_plan(out: Option<&FolderOutputs>) -> Vec<Step> {
+    vec![
+        Step::new("jacobian", true, "of the model".to_owned()),
+        Step::new("modes", true, "its singular values".to_owned()),
+        FolderOutputs::table_step(out, "modes"),
+        FolderOutputs::figures_step(out, "modes (Fig. 98)"),
+    ]
 }
 
 /// The model in the thesis' own form.

@@ -15,12 +15,14 @@ use lunula_predictor::{
 use ndarray::{Array2, Axis};
 use serde::Serialize;
 
-use super::data::{FileRows, Wanted, read_data};
+use super::choices::LEVEL;
+use super::data::{DataFile, FileRows, Wanted, read_files};
 use super::error::{PredictorError, go_on};
 use super::figures_of_merit::{ByTarget, Merit};
+use super::results::FolderOutputs;
 use super::train::merit_without_cone;
 use super::{open_models, seen_in_training};
-use crate::stages::{Stage, Stages};
+use crate::stages::{Stage, Stages, Step, left_out};
 
 /// Up to this many parts, each part's coverage is of intervals that have not seen it; it takes fits as many as parts, squared.
 const MOST_NESTED: usize = 30;
@@ -39,6 +41,14 @@ pub struct EvaluateOptions {
     pub by: Option<By>,
     /// The share of rows that intervals of held-out parts are to hold.
     pub level: f64,
+    /// What pictures call the model; none: its file, as its path is written.
+    pub called: Option<String>,
+}
+
+impl Default for EvaluateOptions {
+    fn default() -> Self {
+        Self { drop_invalid: false, keep_faults: false, by: None, level: LEVEL, called: None }
+    }
 }
 
 /// A recording's errors.
@@ -143,6 +153,8 @@ pub struct EvaluateReport {
 /// Rows with what was measured and predicted, for tables and pictures.
 #[derive(Debug, Clone)]
 pub(super) struct Predicted {
+    /// What pictures call the model.
+    pub(super) title: String,
     pub(super) data: Dataset,
     pub(super) values: Array2<f64>,
     /// Half the width of the prediction intervals, and the share of rows that they are to hold.
@@ -155,9 +167,9 @@ pub(super) struct Predicted {
 /// [`PredictorError`] where there is nothing to tell.
 pub fn evaluate(
     model: &Path,
-    data: &[PathBuf],
+    data: &[DataFile],
     options: &EvaluateOptions,
-    out: Option<&Path>,
+    out: Option<&FolderOutputs>,
     stop: &AtomicBool,
 ) -> Result<EvaluateReport, PredictorError> {
     let start = Instant::now();
@@ -169,14 +181,15 @@ pub fn evaluate(
         drop_invalid: options.drop_invalid,
         keep_faults: options.keep_faults,
     };
-    let read = stages.time("read", || read_data(data, &wanted))?;
+    let read = stages.time("read", || read_files(data, &wanted))?;
     go_on(stop)?;
     warnings.extend(read.warnings.iter().cloned());
     warnings.extend(seen_in_training(&predictor, &read.data));
     let (seen, values) = stages.time("predict", || predictor.predict(&read.data))?;
     warnings.extend(beyond_a_number(&values, "the model")?);
     let half_width = predictor.intervals().map(|intervals| (intervals.half_width.clone(), intervals.level));
-    let shown = Predicted { data: seen.into_owned(), values, half_width };
+    let title = options.called.clone().unwrap_or_else(|| model.display().to_string());
+    let shown = Predicted { title, data: seen.into_owned(), values, half_width };
     let merit = merit_of(&shown, None);
     warnings.extend(merit.warning());
     let held_out = options
@@ -198,7 +211,7 @@ pub fn evaluate(
         without_friction: predictor.cone().map(|_| merit_without_cone(&predictor, &shown.data)),
         merit,
         held_out,
-        left_out: left_out(&predictor, options, out),
+        left_out: left_out(evaluate_plan(data.len(), options, Some(predictor.intervals().is_some()), out)),
         warnings,
         pictures: Vec::new(),
         stages: Vec::new(),
@@ -317,16 +330,39 @@ fn hold_out(
     })
 }
 
-fn left_out(predictor: &Predictor, options: &EvaluateOptions, out: Option<&Path>) -> Vec<String> {
-    let mut left = Vec::new();
-    if options.by.is_none() {
-        left.push("fits with parts held out: no --by".to_owned());
-    }
-    if predictor.intervals().is_none() {
-        left.push("coverage of prediction intervals: the model has none (train it with --validate)".to_owned());
-    }
-    if out.is_none() {
-        left.push("tables and pictures: no --out".to_owned());
-    }
-    left
+/// What would be done and what not; `files`: recordings; `intervals`: whether the model has prediction intervals, none where it is not known yet.
+#[must_use]
+pub fn evaluate_plan(
+    files: usize,
+    options: &EvaluateOptions,
+    intervals: Option<bool>,
+    out: Option<&FolderOutputs>,
+) -> Vec<Step> {
+    let covered = match intervals {
+        Some(false) => "the model has none (train it with --validate)",
+        Some(true) => "on all rows",
+        None => "where the model has them",
+    };
+    let held_out = match options.by {
+        None => "no --by".to_owned(),
+        Some(By::Trajectory) => "a trajectory at a time".to_owned(),
+        Some(By::Session) => "a session at a time".to_owned(),
+        Some(By::Subject) => "a subject at a time".to_owned(),
+        Some(By::Rows { folds, .. }) => format!("{folds} parts of shuffled rows"),
+    };
+    let rows = out.is_some_and(|out| out.rows);
+    let why = match out {
+        None => "no --out",
+        Some(_) if rows => "a row each",
+        Some(_) => "not asked for",
+    };
+    vec![
+        Step::new("read", true, format!("{files} files")),
+        Step::new("errors", true, "on all rows, by recording and by size".to_owned()),
+        Step::new("coverage of prediction intervals", intervals != Some(false), covered.to_owned()),
+        Step::new("fits with parts held out", options.by.is_some(), held_out),
+        FolderOutputs::table_step(out, "errors"),
+        Step::new("predicted rows", rows, why.to_owned()),
+        FolderOutputs::figures_step(out, "predicted and measured over time, as scatter, errors by size"),
+    ]
 }

@@ -5,6 +5,7 @@
 
 mod analyse;
 mod answer;
+mod choices;
 mod compare;
 mod data;
 mod error;
@@ -12,6 +13,7 @@ mod evaluate;
 mod figures;
 mod figures_of_merit;
 mod learning;
+mod merit_table;
 mod predict;
 mod prune;
 mod results;
@@ -30,15 +32,21 @@ use lunula_predictor::{Dataset, Predictor, recording_hashes};
 
 use crate::files::is_same_file;
 
-pub use analyse::{AnalyseReport, ModelMode, ModelModes, Printed, analyse};
+pub use analyse::{AnalyseReport, ModelMode, ModelModes, Printed, analyse, analyse_plan};
 pub use answer::Answering;
-pub use compare::{CompareOptions, CompareReport, Comparison, Person, Spread, compare};
-pub use data::{DataError, FileRows, Inputs, Read, Row, RowStream, Wanted, read_data, read_inputs};
+pub use choices::{ByChoice, F_MIN_N, FOLDS, HIDDEN, LEVEL, ModelChoice, share};
+pub use compare::{CompareOptions, CompareReport, Comparison, Person, Spread, compare, compare_plan};
+pub use data::{
+    DataError, DataFile, FileRows, Inputs, Read, Row, RowStream, Wanted, read_data, read_files, read_inputs,
+};
 pub use error::PredictorError;
-pub use evaluate::{BinMerit, EvaluateOptions, EvaluateReport, HeldOut, Magnitudes, Part, RecordingMerit, evaluate};
+pub use evaluate::{
+    BinMerit, EvaluateOptions, EvaluateReport, HeldOut, Magnitudes, Part, RecordingMerit, evaluate, evaluate_plan,
+};
 pub use figures_of_merit::{ByTarget, Merit};
-pub use predict::{PredictOptions, PredictReport, predict, predict_stream};
-pub use prune::{PruneReport, PruneRow, prune};
+pub use predict::{PredictOptions, PredictReport, predict, predict_plan, predict_stream};
+pub use prune::{PruneReport, PruneRow, prune, prune_plan};
+pub use results::FolderOutputs;
 pub use target::{POSTURE, Target};
 pub use train::{TrainInputs, TrainOptions, TrainOutputs, TrainReport, Without, train, train_plan};
 

@@ -13,7 +13,7 @@ use super::data::{Inputs, RowStream, read_inputs};
 use super::error::{PredictorError, go_on};
 use super::open_models;
 use crate::files::Places;
-use crate::stages::{Stage, Stages};
+use crate::stages::{Stage, Stages, Step};
 use crate::table::{Column, TableFormat, TableWriter, Value};
 
 /// How to predict.
@@ -130,6 +130,20 @@ pub fn predict(
     places.commit()?;
     warnings.extend(extrapolated(&answering, counts));
     Ok(report(data, Some(out), &answering, counts, warnings, &stages, start))
+}
+
+/// What would be done and what not, with so many models.
+#[must_use]
+pub fn predict_plan(models: usize, options: &PredictOptions) -> Vec<Step> {
+    let gated = models > 1;
+    let why = if gated { "where one model tells forces and one posture" } else { "one model" };
+    let intervals = if options.intervals { "of each prediction" } else { "without --intervals" };
+    vec![
+        Step::new("read", true, "a recording".to_owned()),
+        Step::new("predict", true, format!("{models} models")),
+        Step::new("gate", gated, why.to_owned()),
+        Step::new("intervals", options.intervals, intervals.to_owned()),
+    ]
 }
 
 /// What to say where more than a twentieth of the rows are extrapolated.

@@ -3,17 +3,18 @@
 //! In: recordings to train on and others to validate on. Out: the linear model's errors on both for every subset of the photodiodes, the best of each size, and Fig. 113's
 //! bars. Of more photodiodes than can be tried in every way, the one that is missed least is removed again and again.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use lunula_predictor::{MOST_INPUTS, Subset, backward_elimination, every_subset, row_hashes, shared_rows};
 use serde::Serialize;
 
-use super::data::{FileRows, Wanted, read_data};
+use super::data::{DataFile, FileRows, Wanted, read_files};
 use super::error::{PredictorError, go_on};
 use super::figures_of_merit::ByTarget;
-use crate::stages::{Stage, Stages};
+use super::results::FolderOutputs;
+use crate::stages::{Stage, Stages, Step, left_out};
 
 /// A subset's errors.
 #[derive(Debug, Clone, Serialize)]
@@ -71,18 +72,18 @@ pub struct PruneReport {
 /// # Errors
 /// [`PredictorError`] where there is nothing to tell.
 pub fn prune(
-    data: &[PathBuf],
-    validate: &[PathBuf],
+    data: &[DataFile],
+    validate: &[DataFile],
     wanted: &Wanted,
-    out: Option<&Path>,
+    out: Option<&FolderOutputs>,
     stop: &AtomicBool,
 ) -> Result<PruneReport, PredictorError> {
     let start = Instant::now();
     let stages = Stages::default();
-    let train = stages.time("read", || read_data(data, wanted))?;
+    let train = stages.time("read", || read_files(data, wanted))?;
     let inputs = train.data.inputs().to_vec();
     let same = Wanted { inputs: Some(inputs.clone()), ..wanted.clone() };
-    let told = stages.time("read", || read_data(validate, &same))?;
+    let told = stages.time("read", || read_files(validate, &same))?;
     go_on(stop)?;
     let targets = train.data.targets().to_vec();
     let row = |subset: &Subset| row(subset, &inputs, &targets);
@@ -94,7 +95,7 @@ pub fn prune(
             told.data.rows()
         ));
     }
-    let left_out = vec!["quadratic and network models: a fit of each subset would take hours".to_owned()];
+    let left_out = left_out(prune_plan([data.len(), validate.len()], out));
     let mut report = PruneReport {
         job: "prune",
         data: train.files,
@@ -136,12 +137,23 @@ pub fn prune(
     match out {
         Some(out) => super::results::pruning(&mut report, out, &stages, start)?,
         None => {
-            report.left_out.push("table and pictures: no --out".to_owned());
             report.stages = stages.list();
             report.wall_s = start.elapsed().as_secs_f64();
         }
     }
     Ok(report)
+}
+
+/// What would be done and what not; `files`: how many to train and to validate on.
+#[must_use]
+pub fn prune_plan(files: [usize; 2], out: Option<&FolderOutputs>) -> Vec<Step> {
+    vec![
+        Step::new("read", true, format!("{} files to train on, {} to compare on", files[0], files[1])),
+        Step::new("subsets", true, "the linear model of each".to_owned()),
+        Step::new("quadratic and network models", false, "a fit of each subset would take hours".to_owned()),
+        FolderOutputs::table_step(out, "subsets"),
+        FolderOutputs::figures_step(out, "without one photodiode, the best of each number"),
+    ]
 }
 
 fn row(subset: &Subset, inputs: &[String], targets: &[String]) -> PruneRow {

@@ -42,7 +42,7 @@ impl Folder {
     fn train(&self, inputs: &TrainInputs, target: &str, recipe: Recipe) -> Result<(PathBuf, TrainReport), String> {
         let wanted = Wanted { targets: Target::parse(target).unwrap().columns().to_vec(), ..Wanted::default() };
         let model = self.path(&format!("{target}.json"));
-        let outputs = TrainOutputs { model: model.clone(), learning_curve: None };
+        let outputs = TrainOutputs { model: model.clone(), learning_curve: None, merit: None };
         let options = TrainOptions { wanted, recipe, level: 0.9 };
         let report = train(inputs, &options, &outputs, &RUN).map_err(|why| why.to_string())?;
         Ok((model, report))
@@ -50,7 +50,7 @@ impl Folder {
 }
 
 fn inputs(data: &[&PathBuf], validate: &[&PathBuf], stop_on: &[&PathBuf]) -> TrainInputs {
-    let all = |paths: &[&PathBuf]| paths.iter().map(|path| (*path).clone()).collect();
+    let all = |paths: &[&PathBuf]| paths.iter().map(|path| DataFile::from((*path).clone())).collect();
     TrainInputs { data: all(data), validate: all(validate), stop_on: all(stop_on) }
 }
 
@@ -77,8 +77,8 @@ fn a_recording_under_two_names_is_told() {
     std::fs::copy(&a, &copy).unwrap();
     let (model, report) = folder.train(&inputs(&[&a, &copy], &[], &[]), "force", linear()).unwrap();
     assert!(report.warnings.iter().any(|w| w.contains("copy.csv holds the rows of")), "{:?}", report.warnings);
-    let options = EvaluateOptions { drop_invalid: false, keep_faults: false, by: Some(By::Trajectory), level: 0.9 };
-    let found = evaluate(&model, &[a, copy, b], &options, None, &RUN).unwrap();
+    let options = EvaluateOptions { by: Some(By::Trajectory), ..EvaluateOptions::default() };
+    let found = evaluate(&model, &DataFile::of(&[a, copy, b]), &options, None, &RUN).unwrap();
     let told = |words: &str| found.warnings.iter().any(|warning| warning.contains(words));
     assert!(told("120 of 180 rows stand in other parts as well"), "{:?}", found.warnings);
 }
@@ -89,8 +89,8 @@ fn predictions_beyond_a_number_are_no_success() {
     let (a, huge) = (folder.file("a.csv", 0.0, 1e-300, true), folder.file("b.csv", 0.5, 1e300, true));
     let (model, report) = folder.train(&inputs(&[&a], &[&huge], &[]), "force", linear()).unwrap();
     assert!(report.warnings.iter().any(|w| w.contains("beyond 1e308")), "{:?}", report.warnings);
-    let options = EvaluateOptions { drop_invalid: false, keep_faults: false, by: None, level: 0.9 };
-    let said = evaluate(&model, &[huge], &options, None, &RUN).unwrap_err().to_string();
+    let options = EvaluateOptions::default();
+    let said = evaluate(&model, &[huge.into()], &options, None, &RUN).unwrap_err().to_string();
     assert!(said.contains("of 60 of 60 rows is beyond 1e308"), "{said}");
 }
 

@@ -12,22 +12,23 @@ use lunula_predictor::{
 };
 use serde::Serialize;
 
-use super::data::{FileRows, Wanted, read_data};
+use super::data::{DataFile, FileRows, Wanted, read_files};
 use super::error::{PredictorError, go_on};
 use super::figures_of_merit::{ByTarget, Merit};
 use super::learning;
+use super::merit_table::{Told, merit_table};
 use crate::files::{Places, WriteError};
-use crate::stages::{Fate, Stage, Stages, Step};
+use crate::stages::{Stage, Stages, Step, left_out};
 
 /// What a model is made from.
 #[derive(Debug, Clone)]
 pub struct TrainInputs {
     /// Recordings to train on.
-    pub data: Vec<PathBuf>,
+    pub data: Vec<DataFile>,
     /// Recordings to report on; their errors tell the prediction intervals.
-    pub validate: Vec<PathBuf>,
+    pub validate: Vec<DataFile>,
     /// Recordings on which a network stops early; none: a part of those to train on.
-    pub stop_on: Vec<PathBuf>,
+    pub stop_on: Vec<DataFile>,
 }
 
 /// How it is made.
@@ -48,6 +49,8 @@ pub struct TrainOutputs {
     pub model: PathBuf,
     /// A table of the error against how much was trained on; a picture of it goes beside.
     pub learning_curve: Option<PathBuf>,
+    /// A table of the errors on the rows trained on and reported on.
+    pub merit: Option<PathBuf>,
 }
 
 /// What the model reaches.
@@ -114,15 +117,18 @@ pub fn train(
         let what = "a learning curve tells errors on recordings that are not trained on; name some with --validate";
         return Err(PredictorError::Request(what.to_owned()));
     }
-    let given: Vec<&Path> =
-        [&inputs.data, &inputs.validate, &inputs.stop_on].into_iter().flatten().map(PathBuf::as_path).collect();
+    let given: Vec<&Path> = [&inputs.data, &inputs.validate, &inputs.stop_on]
+        .into_iter()
+        .flatten()
+        .map(|file| file.path.as_path())
+        .collect();
     let out = &outputs.model;
-    for written in std::iter::once(out).chain(&outputs.learning_curve) {
+    for written in std::iter::once(out).chain(&outputs.learning_curve).chain(&outputs.merit) {
         super::is_no_input(&given, written)?;
     }
-    let read = stages.time("read", || read_data(&inputs.data, &options.wanted))?;
+    let read = stages.time("read", || read_files(&inputs.data, &options.wanted))?;
     let same_inputs = Wanted { inputs: Some(read.data.inputs().to_vec()), ..options.wanted.clone() };
-    let others = |paths: &[PathBuf]| (!paths.is_empty()).then(|| read_data(paths, &same_inputs)).transpose();
+    let others = |files: &[DataFile]| (!files.is_empty()).then(|| read_files(files, &same_inputs)).transpose();
     let validate = stages.time("read", || others(&inputs.validate))?;
     let stop_on = stages.time("read", || others(&inputs.stop_on))?;
     go_on(stop)?;
@@ -173,6 +179,11 @@ pub fn train(
         let points = stages.time("learning curve", || learning::points(recipe, &read.data, &told.data))?;
         pictures.push(stages.time("write", || learning::write(&points, curve, &mut places))?);
     }
+    if let Some(path) = &outputs.merit {
+        let mut told = vec![Told::new("training", &training)];
+        told.extend(validation.iter().map(|merit| Told::new("validation", merit)));
+        merit_table(&places.place(path)?, path, &told)?;
+    }
     go_on(stop)?;
     places.commit()?;
     Ok(TrainReport {
@@ -188,11 +199,7 @@ pub fn train(
         validation,
         without,
         half_width,
-        left_out: train_plan(inputs, recipe, outputs.learning_curve.is_some())
-            .into_iter()
-            .filter(|step| step.fate == Fate::LeftOut)
-            .map(|step| format!("{}: {}", step.stage, step.reason))
-            .collect(),
+        left_out: left_out(train_plan(inputs, recipe, outputs.learning_curve.is_some())),
         warnings,
         pictures,
         stages: stages.list(),

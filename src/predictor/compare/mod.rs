@@ -9,7 +9,7 @@
 mod comparison;
 mod measure;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
@@ -18,7 +18,8 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::error::{PredictorError, go_on};
-use crate::stages::{Stage, Stages};
+use super::results::FolderOutputs;
+use crate::stages::{Stage, Stages, Step};
 use measure::measure;
 
 pub use comparison::{Comparison, Spread};
@@ -73,7 +74,7 @@ pub struct CompareReport {
 pub fn compare(
     people: &[Person],
     options: &CompareOptions,
-    out: Option<&Path>,
+    out: Option<&FolderOutputs>,
     stop: &AtomicBool,
 ) -> Result<CompareReport, PredictorError> {
     let start = Instant::now();
@@ -104,4 +105,17 @@ pub fn compare(
         None => (report.stages, report.wall_s) = (stages.list(), start.elapsed().as_secs_f64()),
     }
     Ok(report)
+}
+
+/// What would be done and what not, of so many people.
+#[must_use]
+pub fn compare_plan(people: usize, options: &CompareOptions, out: Option<&FolderOutputs>) -> Vec<Step> {
+    let models = options.models.len();
+    vec![
+        Step::new("read", true, format!("6 files of each of {people} people")),
+        Step::new("fit", true, format!("{models} models of touch by 3 sets, {models} of posture, of each")),
+        Step::new("subsets", true, "the linear model of each, of each".to_owned()),
+        FolderOutputs::table_step(out, "comparisons"),
+        FolderOutputs::figures_step(out, "Fig. 105 to 113"),
+    ]
 }

@@ -2,15 +2,16 @@
 //!
 //! In: CSV or Parquet tables with `P1`.. in volts and the targets, as `lunula align` and anybody else writes them, or raw logs with a column
 //! `led` (section 3.1.2c), which are brought to the LED's own light by the same code as in align. Out: a [`Dataset`] with what was left out and why
-//! ([`read_data`]); voltages alone ([`read_inputs`]); rows of a stream, one at a time ([`RowStream`]).
+//! ([`read_data`], [`read_files`]); voltages alone ([`read_inputs`]); rows of a stream, one at a time ([`RowStream`]).
 //!
 //! Conventions. A file is a recording; it is several where `session`, `subject` or `trajectory` change or `time_s` goes back. Where
-//! `session` or `subject` is not told, the file stands for it. A row with an empty cell that is needed is left out and counted; `nan`, `inf` or text
+//! `session` or `subject` is told neither by the file nor with it, the file stands for it. A row with an empty cell that is needed is left out and counted; `nan`, `inf` or text
 //! there is an error, or with `drop_invalid` left out and counted. A row whose `sensor_status` (as align writes it) says that a photodiode in use is
 //! saturated or without ambient light is left out and counted, unless faults are kept. A row that is left out for several reasons is counted
 //! once: as a fault, else as invalid, else as empty. In a raw log `nan` and `NA` mean missing, as in align.
 
 mod columns;
+mod file;
 mod health;
 mod recordings;
 mod source;
@@ -31,6 +32,7 @@ use columns::agree;
 use recordings::Splitter;
 use source::Source;
 
+pub use file::DataFile;
 pub use stream::{Row, RowStream};
 
 /// What is read of tables.
@@ -147,7 +149,15 @@ pub enum DataError {
 /// # Errors
 /// [`DataError`]; of several files, that of the first.
 pub fn read_data(paths: &[PathBuf], wanted: &Wanted) -> Result<Read, DataError> {
-    if paths.is_empty() {
+    read_files(&DataFile::of(paths), wanted)
+}
+
+/// As [`read_data`], of files that are called otherwise than their paths are written.
+///
+/// # Errors
+/// As [`read_data`].
+pub fn read_files(data: &[DataFile], wanted: &Wanted) -> Result<Read, DataError> {
+    if data.is_empty() {
         return Err(DataError::Request("no DATA is given; name at least one table or log".to_owned()));
     }
     if wanted.targets.is_empty() {
@@ -164,19 +174,19 @@ pub fn read_data(paths: &[PathBuf], wanted: &Wanted) -> Result<Read, DataError> 
     if let Some(name) = inputs.iter().find(|name| wanted.targets.contains(name)) {
         return Err(DataError::Request(format!("{name} is both an input and a target; leave it out of one of them")));
     }
-    let sources = paths.par_iter().map(|path| Source::read(path, wanted)).collect::<Vec<_>>();
+    let sources = data.par_iter().map(|file| Source::read(&file.path, wanted)).collect::<Vec<_>>();
     let sources = sources.into_iter().collect::<Result<Vec<_>, _>>()?;
     agree(&sources)?;
-    let mut warnings = twice(paths);
+    let mut warnings = twice(data);
     let inputs = sources[0].inputs.clone();
     let mut files = Vec::with_capacity(sources.len());
     let mut recordings: Vec<Recording> = Vec::new();
     let (mut time_s, mut x, mut y) = (Vec::new(), Vec::new(), Vec::new());
-    for source in &sources {
+    for (source, called) in sources.iter().zip(data) {
         warnings.extend(source.warnings.iter().cloned());
         let (path, notes) = (source.path.clone(), source.notes.clone());
         let mut file = FileRows { path, rows: source.rows(), used: 0, empty: 0, invalid: 0, faults: 0, notes };
-        let mut splitter = Splitter::new(source, time_s.len());
+        let mut splitter = Splitter::new(source, called, time_s.len());
         for row in 0..source.rows() {
             if source.faulty[row] && !wanted.keep_faults {
                 file.faults += 1;
@@ -221,7 +231,8 @@ pub fn read_inputs(path: &Path, inputs: &[String], drop_invalid: bool) -> Result
     let source = Source::read(path, &wanted)?;
     let mut warnings = source.warnings.clone();
     let mut recordings = Vec::new();
-    let mut splitter = Splitter::new(&source, 0);
+    let called = DataFile::from(path.to_owned());
+    let mut splitter = Splitter::new(&source, &called, 0);
     (0..source.rows()).for_each(|row| splitter.take(row));
     splitter.finish(&mut recordings, &mut warnings);
     let missing = |row: &usize| !source.invalid[*row] && source.x.iter().any(|column| column[*row].is_nan());
@@ -232,11 +243,11 @@ pub fn read_inputs(path: &Path, inputs: &[String], drop_invalid: bool) -> Result
 }
 
 /// Files that are given more than once.
-fn twice(paths: &[PathBuf]) -> Vec<String> {
+fn twice(data: &[DataFile]) -> Vec<String> {
     let real: Vec<PathBuf> =
-        paths.iter().map(|path| std::fs::canonicalize(path).unwrap_or_else(|_| path.clone())).collect();
-    let again = (0..paths.len()).filter(|&k| real[..k].contains(&real[k]));
-    again.map(|k| format!("{}: is given twice; its rows count twice", paths[k].display())).collect()
+        data.iter().map(|file| std::fs::canonicalize(&file.path).unwrap_or_else(|_| file.path.clone())).collect();
+    let again = (0..data.len()).filter(|&k| real[..k].contains(&real[k]));
+    again.map(|k| format!("{}: is given twice; its rows count twice", data[k].path.display())).collect()
 }
 
 /// Why no row is left.

@@ -2,11 +2,13 @@
 
 use lunula_predictor::Recording;
 
+use super::DataFile;
 use super::source::Source;
 
 /// Takes the used rows of a file, ascending.
 pub(super) struct Splitter<'a> {
     source: &'a Source,
+    called: &'a DataFile,
     /// Rows of the files before, and those taken so far.
     taken: usize,
     /// Which change of the groups the last row belongs to.
@@ -19,9 +21,9 @@ pub(super) struct Splitter<'a> {
 }
 
 impl<'a> Splitter<'a> {
-    /// For a file after `before` rows of others.
-    pub(super) fn new(source: &'a Source, before: usize) -> Self {
-        Self { source, taken: before, group: None, last_s: f64::NAN, starts: Vec::new(), resets: Vec::new() }
+    /// For a file, as it is called, after `before` rows of others.
+    pub(super) fn new(source: &'a Source, called: &'a DataFile, before: usize) -> Self {
+        Self { source, called, taken: before, group: None, last_s: f64::NAN, starts: Vec::new(), resets: Vec::new() }
     }
 
     /// Takes a row.
@@ -51,24 +53,30 @@ impl<'a> Splitter<'a> {
 
     /// The recordings; warns where time went back.
     pub(super) fn finish(self, recordings: &mut Vec<Recording>, warnings: &mut Vec<String>) {
-        let file = self.source.path.display().to_string();
+        let DataFile { path, name: file, session: own_session, subject: own_subject } = self.called;
         let several = self.starts.len() > 1;
         for (k, &(start, group)) in self.starts.iter().enumerate() {
             let end = self.starts.get(k + 1).map_or(self.taken, |next| next.0);
             let [session, subject, trajectory] = group.map(|g| self.source.groups[g].1.clone()).unwrap_or_default();
-            let or_file = |name: String| if name.is_empty() { file.clone() } else { name };
+            let or_own = |name: String, own: &Option<String>| match own {
+                _ if !name.is_empty() => name,
+                Some(own) => own.clone(),
+                None => file.clone(),
+            };
+            let (session, subject) = (or_own(session, own_session), or_own(subject, own_subject));
             let name = match (trajectory.is_empty(), several) {
                 (false, _) => format!("{file} ({trajectory})"),
                 (true, true) => format!("{file} #{}", k + 1),
                 (true, false) => file.clone(),
             };
-            recordings.push(Recording { name, session: or_file(session), subject: or_file(subject), rows: start..end });
+            recordings.push(Recording { name, session, subject, rows: start..end });
         }
         if let Some([from, to]) = self.resets.first() {
             let count = self.resets.len();
             let times = if count == 1 { "once".to_owned() } else { format!("{count} times, first") };
             warnings.push(format!(
-                "{file}: `time_s` goes back {times} from {from} to {to} s; a new recording begins there"
+                "{}: `time_s` goes back {times} from {from} to {to} s; a new recording begins there",
+                path.display()
             ));
         }
     }

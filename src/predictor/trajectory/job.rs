@@ -12,7 +12,7 @@ use super::motion::Motion;
 use super::report::{ForceFigures, PostureFigures, TrajectoryReport};
 use super::{Kind, TrajectoryOptions, figures};
 use crate::files::{Places, WriteError, beside};
-use crate::stages::{Fate, Stages, Step};
+use crate::stages::{Stages, Step, left_out};
 use crate::table::{Column, TableError, TableFormat, TableWriter, Value};
 
 /// Decimals of forces (a transducer's step is 0.0008 N) and of angles.
@@ -114,20 +114,14 @@ pub fn run(
         warnings: force.as_ref().map_or_else(Vec::new, |force| force.warnings(options)),
         force,
         posture,
-        left_out: steps
-            .into_iter()
-            .filter(|step| step.fate == Fate::LeftOut)
-            .map(|step| format!("{}: {}", step.stage, step.reason))
-            .collect(),
+        left_out: left_out(steps),
         failed: Vec::new(),
         pictures,
         stages: stages.list(),
         wall_s: start.elapsed().as_secs_f64(),
     };
-    let run = beside(&outputs.table, ".run.json");
     let text = serde_json::to_string_pretty(&report).expect("plain data") + "\n";
-    let at = places.place(&run)?;
-    std::fs::write(&at, text).map_err(|why| WriteError::File { path: run, why: why.to_string() })?;
+    places.write(&beside(&outputs.table, ".run.json"), &text)?;
     places.commit()?;
     Ok(report)
 }
@@ -197,15 +191,11 @@ fn draw(
     };
     let mut pictures = Vec::new();
     for kind in kinds {
-        let [png, svg] = ["png", "svg"].map(|ending| beside(table, &format!("-{kind}.{ending}")));
-        let at = [places.place(&png)?, places.place(&svg)?];
-        let drawn = match motion {
-            Motion::Force(motion) if *kind == "path" => figures::draw_path(options, motion, &at[0], &at[1]),
-            Motion::Force(motion) => figures::draw_forces(options, motion, &at[0], &at[1]),
-            Motion::Posture { path, .. } => figures::draw_posture(options, path, &at[0], &at[1]),
-        };
-        drawn.map_err(|why| WriteError::File { path: png.clone(), why: format!("{why:#}") })?;
-        pictures.push(png);
+        pictures.push(places.draw(table, kind, |png, svg| match motion {
+            Motion::Force(motion) if *kind == "path" => figures::draw_path(options, motion, png, svg),
+            Motion::Force(motion) => figures::draw_forces(options, motion, png, svg),
+            Motion::Posture { path, .. } => figures::draw_posture(options, path, png, svg),
+        })?);
     }
     Ok(pictures)
 }

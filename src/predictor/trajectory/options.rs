@@ -56,6 +56,15 @@ pub struct TrajectoryOptions {
     pub error: f64,
 }
 
+impl Kind {
+    /// The spiral of the thesis.
+    pub const FORCE: Self = Self::Force { fs_per_n: 1.0, fc_hz: 0.15 };
+    /// Random forces that keep equation 19's usual limit.
+    pub const RANDOM: Self = Self::Random { hz: 0.03, seed: 1 };
+    /// The thesis' bending.
+    pub const POSTURE: Self = Self::Posture { hz: 0.1, seed: None };
+}
+
 impl TrajectoryOptions {
     /// The thesis' own figures.
     #[must_use]
@@ -72,7 +81,12 @@ impl TrajectoryOptions {
             lead_s: 0.0,
             trail_s: 0.0,
             // The spiral begins with little force, random motion anywhere.
-            soft_s: if matches!(kind, Kind::Random { .. }) { 5.0 } else { spiral.soft_s },
+            soft_s: match kind {
+                Kind::Random { .. } => 5.0,
+                // Equation 27 begins at rest by itself.
+                Kind::Posture { seed: None, .. } => 0.0,
+                _ => spiral.soft_s,
+            },
             fz_max_n: space.fz_max_n(),
             mu: space.mu(),
             tau_s: 0.1,

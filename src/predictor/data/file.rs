@@ -1,0 +1,31 @@
+//! A file of recordings, and what results call it.
+
+use std::path::PathBuf;
+
+/// A table or log, what it is called and whose it is where it does not say so itself.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct DataFile {
+    /// The file.
+    pub path: PathBuf,
+    /// What tables, pictures and models call it.
+    pub name: String,
+    /// The session where it has no such column; none: the file stands for it.
+    pub session: Option<String>,
+    /// The subject where it has no such column; none: the file stands for them.
+    pub subject: Option<String>,
+}
+
+impl From<PathBuf> for DataFile {
+    /// Called as its path is written.
+    fn from(path: PathBuf) -> Self {
+        Self { name: path.display().to_string(), path, session: None, subject: None }
+    }
+}
+
+impl DataFile {
+    /// Files, each called as its path is written.
+    #[must_use]
+    pub fn of(paths: &[PathBuf]) -> Vec<Self> {
+        paths.iter().cloned().map(Self::from).collect()
+    }
+}
