@@ -6,13 +6,21 @@
 
 mod faults;
 pub mod finger;
+mod follow;
 pub mod force;
 pub mod log;
 pub mod nail;
 pub mod photos;
 mod place;
+pub mod presses;
+mod recording;
+pub mod request;
 pub mod screen;
 pub mod sensor;
+pub mod study;
 pub mod trajectory;
 pub mod video;
 mod wave;
+
+pub use faults::Faults;
+pub use recording::{Cost, Recording, RecordingError};

@@ -46,18 +46,8 @@ impl LogOptions {
         if let Some(from_s) = self.touch_from_s {
             ranged("--touch-from", from_s, 0.0, 1e6, " s");
         }
-        match &self.trajectory {
-            Trajectory::Eq27 { hz } | Trajectory::Random { hz, .. } | Trajectory::Even { hz, .. } => {
-                ranged("--bend-hz", *hz, 0.0, 100.0, " Hz")
-            }
-            Trajectory::Rest => {}
-            Trajectory::Given { rows } => {
-                let finite = rows.iter().flatten().all(|value| value.is_finite());
-                let ascend = rows.windows(2).all(|pair| pair[1][0] > pair[0][0]);
-                need(!rows.is_empty() && finite && ascend, &|| {
-                    "--trajectory: rows with ascending times and angles in each are needed".to_owned()
-                });
-            }
+        if let Some(fault) = self.trajectory.fault() {
+            need(false, &|| fault.clone());
         }
         match &self.force {
             ForceTrajectory::None => {}
@@ -70,7 +60,9 @@ impl LogOptions {
                         .to_owned()
                 });
             }
-            ForceTrajectory::Random { hz, .. } | ForceTrajectory::Even { hz, .. } => {
+            ForceTrajectory::Random { hz, .. }
+            | ForceTrajectory::Even { hz, .. }
+            | ForceTrajectory::Cycles { hz, .. } => {
                 need((0.0..=100.0).contains(hz), &|| format!("--force-hz {hz}: choose 0 to 100 Hz"));
             }
         }

@@ -3,10 +3,7 @@
 //! With [`LogOptions::touch_from_s`] it bends first and touches nothing; in the second before that time it straightens; from then on it
 //! presses from rest, the force's own time 0 being there (5.2.4, 5.3.1).
 //!
-//! **Following** ([`LogOptions::follow`], assumed): what is prompted is done about 0.3 s later, the lag itself moving by up to 30 %, and with smooth
-//! errors: of the pressing and of the angles a share of what is prompted, of the shear's components the same share of what friction holds.
-//! `follow` is the standard deviation of that share. 5.2.2a quotes 6 % for people who watch a picture of their force (Jones 1998). A shear that friction
-//! would not hold slips: it is cut at the cone.
+//! **Following** ([`LogOptions::follow`]): it is late and errs as [`Follow`] tells.
 //!
 //! **Posture** ([`LogOptions::posture_shift_rad`], assumed): 5.4.1 takes "the finger having a slightly different posture on the force measurement
 //! platform" for what changes between repetitions. While it touches, or rests, J2 is off straight by a share of it from -1 to 1 that is the seed's, and J3 by
@@ -15,18 +12,12 @@
 use rand::RngExt;
 
 use super::LogOptions;
+use crate::phantom::follow::{Follow, KIND_FOLLOW};
 use crate::phantom::force::{Press, Spiral};
 use crate::phantom::nail::numbers;
 use crate::phantom::sensor::Touch;
 use crate::phantom::trajectory::{J3_PER_J2, Movement, Trajectory};
-use crate::phantom::wave::{Wave, random_wave};
 
-const KIND_FOLLOW: u32 = 28;
-/// Rates of the errors lie between 0.4 and 4 times this, hertz.
-const FOLLOW_HZ: f64 = 0.3;
-/// How late a finger follows, seconds, and how far that moves as a share.
-const LATE_S: f64 = 0.3;
-const LATE_SWING: f64 = 0.3;
 /// How long a finger takes to straighten, seconds.
 const STRAIGHTEN_S: f64 = 1.0;
 
@@ -41,25 +32,10 @@ pub(super) struct Doing<'a> {
     follow: Option<Follow>,
 }
 
-/// How a finger departs from what is prompted.
-struct Follow {
-    /// What waves are multiplied by.
-    size: f64,
-    late: Wave,
-    /// Of the pressing, Fx, Fy, the angles.
-    errors: [Wave; 4],
-}
-
 impl<'a> Doing<'a> {
     pub(super) fn new(options: &'a LogOptions) -> Self {
         let usual = Spiral::default();
         let press = options.force.press();
-        let wave = |index: u32| random_wave(FOLLOW_HZ, 0.4..4.0, options.seed, KIND_FOLLOW, index);
-        let follow = (options.follow > 0.0).then(|| Follow {
-            size: options.follow / Wave::RMS,
-            late: wave(1),
-            errors: [2, 3, 4, 5].map(wave),
-        });
         Self {
             movement: options.trajectory.movement(),
             press: if options.touch_from_s.is_some() { press.out_of_rest(usual.soft_s) } else { press },
@@ -67,16 +43,17 @@ impl<'a> Doing<'a> {
             rests: options.trajectory == Trajectory::Rest,
             mu: usual.mu,
             shift_rad: shift_rad(options),
-            follow,
+            follow: Follow::new(options.follow, options.seed),
         }
     }
 
     /// What it does at `t_s`.
     pub(super) fn touch(&self, t_s: f64) -> Touch {
-        let late_s = self.follow.as_ref().map_or(0.0, |follow| LATE_S * (1.0 + LATE_SWING * follow.late.at(t_s)));
+        let late_s = self.follow.as_ref().map_or(0.0, |follow| follow.late_s(t_s));
         let (mut touch, straight) = self.prompted(t_s - late_s);
         if let Some(follow) = &self.follow {
-            follow.err(&mut touch, t_s, self.mu);
+            touch.forces_n = follow.forces_n(touch.forces_n, t_s, self.mu);
+            touch.angles_rad = follow.angles_rad(touch.angles_rad, t_s);
         }
         for (angle, shift) in touch.angles_rad.iter_mut().zip(self.shift_rad) {
             *angle += straight * shift;
@@ -99,19 +76,6 @@ impl<'a> Doing<'a> {
     }
 }
 
-impl Follow {
-    fn err(&self, touch: &mut Touch, t_s: f64, mu: f64) {
-        let [pressing, x, y, bending] = self.errors.each_ref().map(|wave| self.size * wave.at(t_s));
-        let [fx_n, fy_n, fz_n] = touch.forces_n;
-        let pressing_n = -fz_n * (1.0 + pressing);
-        let most_n = mu * pressing_n;
-        let (fx_n, fy_n) = (fx_n + x * most_n, fy_n + y * most_n);
-        let held = if fx_n.hypot(fy_n) > most_n { most_n / fx_n.hypot(fy_n) } else { 1.0 };
-        touch.forces_n = [held * fx_n, held * fy_n, -pressing_n];
-        touch.angles_rad = touch.angles_rad.map(|angle| angle * (1.0 + bending));
-    }
-}
-
 /// How far the joints of a log's finger are off straight while it touches or rests.
 pub(super) fn shift_rad(options: &LogOptions) -> [f64; 3] {
     if options.posture_shift_rad == 0.0 {
@@ -124,7 +88,9 @@ pub(super) fn shift_rad(options: &LogOptions) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::phantom::follow::LATE_S;
     use crate::phantom::log::Protocol;
+    use crate::phantom::wave::Wave;
 
     /// A protocol's log whose finger does exactly what is prompted.
     fn exact(protocol: Protocol) -> LogOptions {

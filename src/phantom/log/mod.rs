@@ -27,4 +27,5 @@ pub use super::faults::Faults;
 pub use options::{LogOptions, Stamps};
 pub use protocol::Protocol;
 pub use record::{LogScene, Row};
+pub(super) use write::files;
 pub use write::{Error, Summary, write};

@@ -53,6 +53,11 @@ pub struct Summary {
     pub write_s: f64,
 }
 
+/// The files of a log, relative to its folder.
+pub(in crate::phantom) fn files() -> Vec<String> {
+    RESULTS.map(str::to_owned).to_vec()
+}
+
 fn refused(path: &Path) -> impl FnOnce(io::Error) -> Error {
     let path = path.to_owned();
     move |source| Error::Write { path, source }

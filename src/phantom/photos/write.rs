@@ -105,6 +105,27 @@ pub struct Summary {
     pub stages: Stages,
 }
 
+impl PhotoOptions {
+    /// The files of the set, relative to its folder.
+    pub(in crate::phantom) fn files(&self) -> Vec<String> {
+        let mut files = vec!["truth/nails.csv".to_owned(), RECORD.to_owned()];
+        for pose in self.poses.iter().copied().map(Pose::name) {
+            files.extend(["mean", "sd", "count"].map(|what| format!("truth/maps/{pose}-{what}.npy")));
+            for name in (0..self.subjects).map(|subject| self.subject_name(subject)) {
+                files.push(format!("photos/{pose}/{name}.{}", self.format.extension()));
+                files.push(format!("truth/outlines/{pose}/{name}.json"));
+                if self.annotate {
+                    files.push(format!("photos/{pose}/{name}.json"));
+                }
+                if self.truth_normalized {
+                    files.push(format!("truth/normalized/{pose}/{name}.npy"));
+                }
+            }
+        }
+        files
+    }
+}
+
 fn refused(path: &Path) -> impl FnOnce(io::Error) -> Error {
     let path = path.to_owned();
     move |source| Error::Write { path, source }

@@ -3,7 +3,6 @@
 use super::lens::Mapping;
 use super::{Faults, VideoOptions};
 use crate::phantom::finger::JOINTS;
-use crate::phantom::trajectory::Trajectory;
 
 impl VideoOptions {
     /// Can this video be made?
@@ -42,18 +41,8 @@ impl VideoOptions {
         ranged("--focus", self.focus_px, 0.3, 20.0, " px");
         ranged("--noise", self.noise_sd, 0.0, 128.0, " of 255");
         ranged("--crf", f64::from(self.crf), 0.0, 51.0, "");
-        match &self.trajectory {
-            Trajectory::Eq27 { hz } | Trajectory::Random { hz, .. } | Trajectory::Even { hz, .. } => {
-                ranged("--bend-hz", *hz, 0.0, 100.0, " Hz")
-            }
-            Trajectory::Rest => {}
-            Trajectory::Given { rows } => {
-                let finite = rows.iter().flatten().all(|value| value.is_finite());
-                let ascend = rows.windows(2).all(|pair| pair[1][0] > pair[0][0]);
-                need(!rows.is_empty() && finite && ascend, &|| {
-                    "--trajectory: rows with ascending times and angles in each are needed".to_owned()
-                });
-            }
+        if let Some(fault) = self.trajectory.fault() {
+            need(false, &|| fault.clone());
         }
         need(self.frames() > 0, &|| format!("--seconds {}: less than a frame", self.seconds));
         need([8, 10].contains(&self.depth), &|| format!("--depth {}: choose 8 or 10", self.depth));

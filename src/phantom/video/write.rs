@@ -9,7 +9,7 @@ use serde::Serialize;
 use thiserror::Error;
 
 use super::scene::TICKS_PER_S;
-use super::{FrameTruth, MarkerStatus, Scene, Siting};
+use super::{FrameTruth, MarkerStatus, Scene, Siting, VideoOptions};
 use crate::phantom::finger::JOINTS;
 use crate::phantom::place::{in_the_way, put_in_place};
 use crate::table::{Column, TableError, TableWriter, Value};
@@ -17,8 +17,9 @@ use crate::video::{Encoder, Encoding, Picture, VideoError};
 
 /// The file that says that a folder was written here.
 const RECORD: &str = "truth/scene.json";
-const RESULTS: [&str; 6] =
-    ["video.mp4", "markers.toml", "truth/joints.csv", "truth/tracks.csv", "truth/clock.csv", RECORD];
+/// Only where there is a clock.
+const CLOCK: &str = "truth/clock.csv";
+const RESULTS: [&str; 6] = ["video.mp4", "markers.toml", "truth/joints.csv", "truth/tracks.csv", CLOCK, RECORD];
 
 /// Why a video was not written.
 #[derive(Debug, Error)]
@@ -71,6 +72,13 @@ pub struct Summary {
     pub bytes: u64,
     /// Where the time went.
     pub stages: Stages,
+}
+
+impl VideoOptions {
+    /// The files of the video, relative to its folder.
+    pub(in crate::phantom) fn files(&self) -> Vec<String> {
+        RESULTS.into_iter().filter(|name| self.clock.is_some() || *name != CLOCK).map(str::to_owned).collect()
+    }
 }
 
 fn refused(path: &Path) -> impl FnOnce(io::Error) -> Error {

@@ -1,0 +1,191 @@
+//! What videos and logs take in words: choices, movements, spans, colours, panels, sizes.
+
+use std::path::Path;
+
+use crate::phantom::screen::Jump;
+use crate::phantom::sensor::CHANNELS;
+use crate::phantom::trajectory::Trajectory;
+use crate::phantom::video::{Hide, Leave, Preset, Siting};
+use anyhow::Context;
+use clap::ValueEnum;
+
+/// A [`Preset`] by its name.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum SceneArg {
+    /// [`Preset::Clean`].
+    Clean,
+    /// [`Preset::Hard`].
+    Hard,
+    /// [`Preset::Small`].
+    Small,
+    /// [`Preset::Fast`].
+    Fast,
+    /// [`Preset::Uhd`].
+    Uhd,
+}
+
+impl SceneArg {
+    /// Which it is.
+    #[must_use]
+    pub fn preset(self) -> Preset {
+        match self {
+            Self::Clean => Preset::Clean,
+            Self::Hard => Preset::Hard,
+            Self::Small => Preset::Small,
+            Self::Fast => Preset::Fast,
+            Self::Uhd => Preset::Uhd,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum FlexionArg {
+    Clockwise,
+    Counterclockwise,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum LayoutArg {
+    Pairs,
+    Joints,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum ColoursArg {
+    Pairs,
+    Distinct,
+    Red,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum MatrixArg {
+    #[value(name = "601")]
+    Bt601,
+    #[value(name = "709")]
+    Bt709,
+    #[value(name = "2020")]
+    Bt2020,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum SitingArg {
+    Left,
+    Centre,
+}
+
+impl SitingArg {
+    pub(super) fn siting(self) -> Siting {
+        match self {
+            Self::Left => Siting::Left,
+            Self::Centre => Siting::Centre,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum RotateArg {
+    #[value(name = "0")]
+    None,
+    #[value(name = "90")]
+    Quarter,
+    #[value(name = "180")]
+    Half,
+    #[value(name = "270")]
+    ThreeQuarters,
+}
+
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(super) enum FormatArg {
+    #[value(name = "420")]
+    Quarter,
+    #[value(name = "422")]
+    Half,
+    #[value(name = "444")]
+    Full,
+    Grey,
+}
+
+/// A movement by its name or from a table, and how long a table goes on, seconds.
+pub(super) fn trajectory(text: &str, hz: f64, seed: u64) -> anyhow::Result<(Trajectory, Option<f64>)> {
+    Ok(match text {
+        "eq27" => (Trajectory::Eq27 { hz }, None),
+        "free" => (Trajectory::Free { hz }, None),
+        "random" => (Trajectory::Random { hz, seed }, None),
+        "even" => (Trajectory::Even { hz, seed }, None),
+        "rest" => (Trajectory::Rest, None),
+        file => {
+            let given = Trajectory::read(Path::new(file));
+            let (given, span_s) = given.context("--trajectory is eq27, free, random, even, rest or a table")?;
+            (given, Some(span_s))
+        }
+    })
+}
+
+fn parse_span(text: &str) -> Option<(usize, usize)> {
+    let (frame, frames) = text.split_once('+')?;
+    Some((frame.parse().ok()?, frames.parse().ok()?))
+}
+
+pub(super) fn parse_hide(text: &str) -> Result<Hide, String> {
+    let parts = text.split_once('@').and_then(|(name, span)| Some((name, parse_span(span)?)));
+    let (marker, (frame, frames)) =
+        parts.ok_or_else(|| format!("`{text}` is not NAME@FRAME+N, as middle_dist@120+12"))?;
+    Ok(Hide { marker: marker.to_owned(), frame, frames })
+}
+
+pub(super) fn parse_leave(text: &str) -> Result<Leave, String> {
+    let (frame, frames) = parse_span(text).ok_or_else(|| format!("`{text}` is not FRAME+N, as 60+20"))?;
+    Ok(Leave { frame, frames })
+}
+
+pub(super) fn parse_span_of_frames(text: &str) -> Result<[usize; 2], String> {
+    parse_span(text).map(|(frame, frames)| [frame, frames]).ok_or_else(|| format!("`{text}` is not FRAME+N, as 60+20"))
+}
+
+/// A number after the first sign that is not at the beginning, and the text before it.
+fn parse_signed(text: &str) -> Option<(&str, f64)> {
+    let at = text.char_indices().skip(1).find(|(_, c)| matches!(c, '+' | '-'))?.0;
+    let by: f64 = text[at..].parse().ok()?;
+    by.is_finite().then(|| (&text[..at], by))
+}
+
+pub(super) fn parse_jump(text: &str) -> Result<(usize, f64), String> {
+    let parts = parse_signed(text).and_then(|(frame, by_s)| Some((frame.parse().ok()?, by_s)));
+    parts.ok_or_else(|| format!("`{text}` is not FRAME+SECONDS, as 90+5 or 90-5"))
+}
+
+pub(super) fn parse_set_clock(text: &str) -> Result<Jump, String> {
+    let parts = parse_signed(text).and_then(|(at_s, by_s)| Some(Jump { at_s: at_s.parse().ok()?, by_s }));
+    parts.ok_or_else(|| format!("`{text}` is not TIME+SECONDS, as 5+3.5 or 5-3.5"))
+}
+
+pub(super) fn parse_gap(text: &str) -> Result<[f64; 2], String> {
+    let parts = text.split_once('+').and_then(|(from, length)| Some([from.parse().ok()?, length.parse().ok()?]));
+    parts.ok_or_else(|| format!("`{text}` is not FROM+LENGTH, as 4+1.5"))
+}
+
+pub(super) fn parse_photodiode(text: &str) -> Result<usize, String> {
+    let number = text.strip_prefix('P').and_then(|number| number.parse().ok());
+    number
+        .filter(|number| (1..=CHANNELS).contains(number))
+        .ok_or_else(|| format!("`{text}` is no photodiode; there are P1 to P{CHANNELS}"))
+}
+
+pub(super) fn parse_colour(text: &str) -> Result<u32, String> {
+    let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6);
+    digits
+        .and_then(|digits| u32::from_str_radix(digits, 16).ok())
+        .ok_or_else(|| format!("`{text}` is not a colour as #8a9299"))
+}
+
+pub(super) fn parse_roi(text: &str) -> Result<[usize; 4], String> {
+    let sides: Option<Vec<usize>> = text.split(',').map(|side| side.trim().parse().ok()).collect();
+    sides
+        .and_then(|sides| sides.try_into().ok())
+        .ok_or_else(|| format!("`{text}` is not X,Y,WIDTH,HEIGHT, as 900,40,300,70"))
+}
+
+pub(super) fn parse_size(text: &str) -> Result<(u32, u32), String> {
+    let sides = text.split_once('x').and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    sides.ok_or_else(|| format!("`{text}` is not WIDTHxHEIGHT, as 640x480"))
+}

@@ -1,0 +1,16 @@
+//! What `lunula phantom ..` takes, in words: the command line's options, which are a pipeline file's keys.
+
+mod choices;
+mod clock;
+mod log;
+mod photos;
+mod study;
+mod table;
+mod video;
+
+pub use choices::SceneArg;
+pub use log::LogRequest;
+pub use photos::PhotosRequest;
+pub use study::StudyRequest;
+pub use table::{OptionFault, read};
+pub use video::VideoRequest;

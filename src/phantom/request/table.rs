@@ -1,0 +1,159 @@
+//! The command line's options as the keys of a TOML table: `--clock-offset 30` is `clock_offset = 30`, a flag is `true`.
+//!
+//! Values go through the very parsers of the command line. An option that may be given again takes a list.
+
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::{ArgAction, Args, Command};
+use thiserror::Error;
+use toml::{Table, Value};
+
+/// What is wrong with a key.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("{what}")]
+pub struct OptionFault {
+    /// The key; empty: the table as a whole.
+    pub key: String,
+    /// What is wrong, and what to write.
+    pub what: String,
+}
+
+/// Reads a request from a table; `of` is the command, as `lunula phantom video`.
+///
+/// # Errors
+/// [`OptionFault`], the first thing that is wrong.
+pub fn read<R: Args>(table: &Table, of: &str) -> Result<R, OptionFault> {
+    let command = R::augment_args(Command::new("lunula").no_binary_name(true).disable_help_flag(true));
+    let mut words = Vec::new();
+    for (key, value) in table {
+        let fault = |what: String| OptionFault { key: key.clone(), what };
+        let long = key.replace('_', "-");
+        let Some(option) = command.get_arguments().find(|one| one.get_long() == Some(&long)) else {
+            let known: Vec<String> =
+                command.get_arguments().filter_map(|one| Some(one.get_long()?.replace('-', "_"))).collect();
+            let near = known.iter().map(|name| (strsim::damerau_levenshtein(name, key), name)).min();
+            let near = near.filter(|(far, _)| *far <= 2).map(|(_, name)| format!("; did you mean `{name}`?"));
+            let or = || format!("; there are {}", known.join(", "));
+            return Err(fault(format!("`{key}` is no option of `{of}`{}", near.unwrap_or_else(or))));
+        };
+        let flag = matches!(option.get_action(), ArgAction::SetTrue);
+        let again = matches!(option.get_action(), ArgAction::Append);
+        match value {
+            Value::Boolean(yes) if flag => words.extend(yes.then(|| format!("--{long}"))),
+            _ if flag => return Err(fault(format!("`{key}` is a flag: write true or false"))),
+            Value::Array(values) if again => {
+                for value in values {
+                    words.push(format!("--{long}={}", word(value).ok_or_else(|| fault(no_value(key)))?));
+                }
+            }
+            value => words.push(format!("--{long}={}", word(value).ok_or_else(|| fault(no_value(key)))?)),
+        }
+    }
+    let refused = |error: clap::Error| told(&error);
+    R::from_arg_matches(&command.try_get_matches_from(words).map_err(refused)?).map_err(refused)
+}
+
+fn no_value(key: &str) -> String {
+    format!("`{key}` can't be given so; write a number or a text, or a list of them where the command takes it again")
+}
+
+/// A value as one would type it.
+fn word(value: &Value) -> Option<String> {
+    match value {
+        Value::String(text) => Some(text.clone()),
+        Value::Integer(number) => Some(number.to_string()),
+        Value::Float(number) => Some(number.to_string()),
+        _ => None,
+    }
+}
+
+/// The command line's complaint, of keys instead of options.
+fn told(error: &clap::Error) -> OptionFault {
+    let of = |kind: ContextKind| match error.get(kind) {
+        Some(ContextValue::String(text)) => Some(text.clone()),
+        Some(ContextValue::Strings(all)) => all.first().cloned(),
+        _ => None,
+    };
+    // As `--clock-offset <SECONDS>`.
+    let name = |usage: &str| {
+        let long = usage.split([' ', '=', '[']).next().unwrap_or_default();
+        long.trim_start_matches("--").replace('-', "_")
+    };
+    let invalid = of(ContextKind::InvalidArg).unwrap_or_default();
+    let key = name(&invalid);
+    let what = match error.kind() {
+        ErrorKind::MissingRequiredArgument => format!("`{key}` is needed too"),
+        ErrorKind::ArgumentConflict => {
+            let other = of(ContextKind::PriorArg).map(|usage| name(&usage)).unwrap_or_default();
+            format!("`{key}` can't be given together with `{other}`")
+        }
+        _ => {
+            let value = of(ContextKind::InvalidValue).unwrap_or_default();
+            let why = std::error::Error::source(error).map(|why| format!(": {why}")).unwrap_or_default();
+            let choices = match error.get(ContextKind::ValidValue) {
+                Some(ContextValue::Strings(all)) if !all.is_empty() => format!("; choose {}", all.join(", ")),
+                _ => String::new(),
+            };
+            format!("`{value}` is no value of `{key}`{why}{choices}")
+        }
+    };
+    OptionFault { key, what }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::phantom::request::{LogRequest, PhotosRequest, StudyRequest, VideoRequest};
+    use crate::phantom::video::{Hide, Preset, VideoOptions};
+
+    fn table(text: &str) -> Table {
+        text.parse().unwrap()
+    }
+
+    fn refused<R: Args + std::fmt::Debug>(text: &str) -> (String, String) {
+        let fault = read::<R>(&table(text), "lunula phantom x").unwrap_err();
+        (fault.key, fault.what)
+    }
+
+    #[test]
+    fn keys_are_the_options_of_the_command_line() {
+        let text = "scene = \"small\"\nseconds = 2\nclock = \"mm:ss.t\"\nclock_offset = -3.5\nclock_dark = true\nstart = false\n\
+            hide = [\"middle_dist@3+2\", \"hand_prox@9+1\"]\njoints = [\"J2\", \"J3\"]\nblur = 0.25";
+        let options = read::<VideoRequest>(&table(text), "lunula phantom video").unwrap().options().unwrap();
+        let mut expected = VideoOptions { seconds: 2.0, blur: 0.25, ..VideoOptions::new(Preset::Small) };
+        let clock = options.clock.clone().unwrap();
+        assert_eq!((clock.offset_s, clock.light_digits, clock.format.as_str()), (-3.5, false, "mm:ss.t"));
+        expected.clock = Some(clock);
+        let hide = |marker: &str, frame, frames| Hide { marker: marker.to_owned(), frame, frames };
+        expected.hide = vec![hide("middle_dist", 3, 2), hide("hand_prox", 9, 1)];
+        expected.joints = vec!["J2".to_owned(), "J3".to_owned()];
+        assert_eq!(options, expected);
+        let photos =
+            read::<PhotosRequest>(&table("poses = [\"nominal\"]\nsubjects = 3\ngrey = true"), "").unwrap().options();
+        assert_eq!((photos.poses.len(), photos.subjects, photos.grey), (1, 3, true));
+        let study = read::<StudyRequest>(&table("subjects = 2\nvideo_size = \"160x96\""), "").unwrap().options();
+        assert_eq!((study.subjects, study.sensors, study.width, study.fps), (2, 2, 160, 30.0));
+    }
+
+    #[test]
+    fn what_is_wrong_is_told_of_its_key() {
+        let (key, what) = refused::<VideoRequest>("secnds = 2");
+        assert_eq!(
+            (key.as_str(), what.as_str()),
+            ("secnds", "`secnds` is no option of `lunula phantom x`; did you mean `seconds`?")
+        );
+        let (key, what) = refused::<StudyRequest>("quick = 2");
+        assert!(key == "quick" && what.contains("there are seed, subjects, sensors"), "{what}");
+        let (key, what) = refused::<VideoRequest>("video_size = 2");
+        assert!(key == "video_size" && what.contains("is no option"), "{what}");
+        let (key, what) = refused::<StudyRequest>("video_size = \"wide\"");
+        assert!(key == "video_size" && what.contains("`wide` is not WIDTHxHEIGHT"), "{what}");
+        let (key, what) = refused::<LogRequest>("protocol = \"touchy\"");
+        assert!(key == "protocol" && what.contains("touch-random"), "{what}");
+        let (key, what) = refused::<PhotosRequest>("grey = 1");
+        assert!(key == "grey" && what.contains("true or false"), "{what}");
+        let (key, what) = refused::<PhotosRequest>("seed = [1, 2]");
+        assert!(key == "seed" && what.contains("a number or a text"), "{what}");
+        let (key, what) = refused::<VideoRequest>("clock_offset = 2");
+        assert!(key == "clock" && what.contains("is needed too"), "{what}");
+    }
+}

@@ -1,0 +1,174 @@
+//! A study to files: recordings side by side, everything put in its place at the end.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
+use std::{fs, io};
+
+use rayon::prelude::*;
+use serde::Serialize;
+use thiserror::Error;
+
+use super::{RECORD, Study, StudyOptions, TABLES};
+use crate::phantom::place::{in_the_way, put_in_place};
+use crate::phantom::{Recording, RecordingError};
+use crate::stages::{Stage, Stages};
+
+/// Why a study was not written.
+#[derive(Debug, Error)]
+pub enum StudyError {
+    /// Something that this job did not write stands in the way.
+    #[error("{} stands already and is no synthetic study's; choose another --out", .0.display())]
+    InTheWay(PathBuf),
+    /// A file or folder could not be written.
+    #[error("{}: cannot be written: {source}", path.display())]
+    Write {
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// A recording could not be made.
+    #[error("{name}: {why}")]
+    Recording {
+        /// Which.
+        name: String,
+        /// Why.
+        why: RecordingError,
+    },
+    /// The caller asked to stop; nothing was left behind.
+    #[error("interrupted; nothing was written")]
+    Interrupted,
+}
+
+/// A study that was written.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StudySummary {
+    /// Recordings, the tables among them.
+    pub recordings: usize,
+    /// Files.
+    pub files: usize,
+    /// Bytes of them.
+    pub bytes: u64,
+    /// Where the time went, seconds from a recording's beginning to its end, summed: several are made at a time.
+    pub stages: Vec<Stage>,
+    /// From beginning to end.
+    pub total_s: f64,
+}
+
+fn refused(path: &Path) -> impl FnOnce(io::Error) -> StudyError {
+    let path = path.to_owned();
+    move |source| StudyError::Write { path, source }
+}
+
+/// Writes a study under `out`; a study written there before is replaced, unless somebody put files of their own into its folders. Tells `watch` after every recording how many are done of how many; it answers
+/// whether to go on.
+///
+/// # Errors
+/// [`StudyError`]; what stood under `out` before is as it was.
+pub fn write_watched(
+    study: &Study,
+    out: &Path,
+    watch: &(dyn Fn(usize, usize) -> bool + Sync),
+) -> Result<StudySummary, StudyError> {
+    let begin = Instant::now();
+    let recordings = study.recordings();
+    let before = stands(out);
+    let folders: BTreeSet<String> = folders(study).into_iter().chain(before.iter().flat_map(folders)).collect();
+    let folders: Vec<&str> = folders.iter().map(String::as_str).collect();
+    if let Some(place) = in_the_way(out, &folders, &format!("{TABLES}/{RECORD}")).or_else(|| foreign(out, &before)) {
+        return Err(StudyError::InTheWay(place));
+    }
+    let stood = out.is_dir();
+    fs::create_dir_all(out).map_err(refused(out))?;
+    let stage = tempfile::Builder::new().prefix(".phantom-").tempdir_in(out).map_err(refused(out))?;
+    let stages = Stages::default();
+    let done = AtomicUsize::new(0);
+    let goes_on = || watch(done.load(Ordering::Relaxed), recordings.len());
+    // The longest first, so that none is left over at the end.
+    let mut order: Vec<usize> = (0..recordings.len()).collect();
+    order.sort_by(|&a, &b| {
+        let cost = |k: usize| recordings[k].recording.cost().seconds;
+        cost(b).total_cmp(&cost(a)).then(a.cmp(&b))
+    });
+    let made = order.into_par_iter().with_max_len(1).try_for_each(|k| {
+        let one = &recordings[k];
+        if !goes_on() {
+            return Err(StudyError::Interrupted);
+        }
+        let folder = stage.path().join(&one.name);
+        fs::create_dir_all(&folder).map_err(refused(&folder))?;
+        let written = stages.time(stage_of(&one.recording), || one.recording.write(&folder, &goes_on));
+        written.map_err(|why| match why.interrupted() {
+            true => StudyError::Interrupted,
+            false => StudyError::Recording { name: one.name.clone(), why },
+        })?;
+        done.fetch_add(1, Ordering::Relaxed);
+        goes_on();
+        Ok(())
+    });
+    let placed = made.and_then(|()| {
+        let files =
+            recordings.iter().flat_map(|one| one.recording.files().into_iter().map(move |file| (&one.name, file)));
+        let (mut count, mut bytes) = (0, 0);
+        for (name, file) in files {
+            let path = stage.path().join(name).join(file);
+            bytes += fs::metadata(&path).map_err(refused(&path))?.len();
+            count += 1;
+        }
+        put_in_place(stage.path(), out, &folders).map_err(|(path, source)| StudyError::Write { path, source })?;
+        Ok((count, bytes))
+    });
+    drop(stage);
+    if placed.is_err() && !stood {
+        // Best effort: only an empty folder can be left.
+        let _ = fs::remove_dir(out);
+    }
+    let (files, bytes) = placed?;
+    let total_s = begin.elapsed().as_secs_f64();
+    Ok(StudySummary { recordings: recordings.len(), files, bytes, stages: stages.list(), total_s })
+}
+
+/// The outermost folders of a study: they are moved whole.
+fn folders(study: &Study) -> BTreeSet<String> {
+    study.recordings().iter().filter_map(|one| one.name.split('/').next().map(str::to_owned)).collect()
+}
+
+/// The study that was written there before.
+fn stands(out: &Path) -> Option<Study> {
+    let record = fs::read(out.join(TABLES).join(RECORD)).ok()?;
+    let mut record: serde_json::Value = serde_json::from_slice(&record).ok()?;
+    let options: StudyOptions = serde_json::from_value(record["study"].take()).ok()?;
+    Study::new(options).ok()
+}
+
+/// A file in the folders of the study that stands there that is none of its own: somebody's results beside a recording.
+fn foreign(out: &Path, before: &Option<Study>) -> Option<PathBuf> {
+    let before = before.as_ref()?;
+    let recordings = before.recordings();
+    let files =
+        recordings.iter().flat_map(|one| one.recording.files().into_iter().map(|file| out.join(&one.name).join(file)));
+    let own: BTreeSet<PathBuf> = files.collect();
+    let mut open: Vec<PathBuf> = folders(before).into_iter().map(|folder| out.join(folder)).collect();
+    while let Some(folder) = open.pop() {
+        for path in fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()) {
+            if path.is_dir() {
+                open.push(path);
+            } else if !own.contains(&path) {
+                return Some(path);
+            }
+        }
+    }
+    None
+}
+
+fn stage_of(recording: &Recording) -> &'static str {
+    match recording {
+        Recording::Photos(_) => "photographs",
+        Recording::Video(_) | Recording::Filmed { .. } => "videos",
+        Recording::Log(_) => "logs",
+        Recording::Press(_) => "presses",
+        Recording::Texts(_) => "tables",
+    }
+}
