@@ -1,0 +1,200 @@
+//! What lies in a folder.
+
+use std::io;
+use std::path::Path;
+
+use crate::log::{Columns, LogHeader};
+use crate::table::{Table, column_names};
+
+/// How deep is looked.
+const DEEPEST: usize = 6;
+
+/// What was found, by sort; paths are relative to the folder, with `/`, sorted.
+#[derive(Debug, Default)]
+pub(super) struct Found {
+    pub(super) files: usize,
+    pub(super) photos: Vec<String>,
+    pub(super) videos: Vec<String>,
+    pub(super) markers: Vec<String>,
+    /// Whether a marker file names a clock.
+    pub(super) clock: bool,
+    pub(super) logs: Vec<String>,
+    /// Whether logs hold forces.
+    pub(super) forces: bool,
+    pub(super) joints: Vec<String>,
+    /// Whether tables of angles tell the clock's time.
+    pub(super) joints_clock: bool,
+    pub(super) sets: Vec<String>,
+    pub(super) sessions: Option<Sessions>,
+    pub(super) unknown: Vec<String>,
+}
+
+/// A table that names files.
+#[derive(Debug, Default)]
+pub(super) struct Sessions {
+    pub(super) path: String,
+    pub(super) rows: usize,
+    pub(super) keys: Vec<String>,
+    pub(super) video: Option<String>,
+    pub(super) markers: Option<String>,
+    pub(super) log: Option<String>,
+    pub(super) joints: Option<String>,
+}
+
+/// What a file is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Sort {
+    Photo,
+    Video,
+    Markers {
+        clock: bool,
+    },
+    Log {
+        forces: bool,
+    },
+    Joints {
+        clock: bool,
+    },
+    Set,
+    Other,
+    /// Of no interest, and not worth a word.
+    Silent,
+}
+
+/// Looks at a folder.
+///
+/// # Errors
+/// Where it can't be read.
+pub(super) fn look(folder: &Path) -> io::Result<Found> {
+    let mut paths = Vec::new();
+    std::fs::read_dir(folder)?;
+    walk(folder, "", 0, &mut paths);
+    let mut found = Found { files: paths.len(), ..Found::default() };
+    let mut tables = Vec::new();
+    for path in paths {
+        match sort(&folder.join(&path)) {
+            Sort::Photo => found.photos.push(path),
+            Sort::Video => found.videos.push(path),
+            Sort::Markers { clock } => {
+                found.clock |= clock;
+                found.markers.push(path);
+            }
+            Sort::Log { forces } => {
+                found.forces |= forces;
+                found.logs.push(path);
+            }
+            Sort::Joints { clock } => {
+                found.joints_clock |= clock;
+                found.joints.push(path);
+            }
+            Sort::Set => found.sets.push(path),
+            Sort::Silent => {}
+            Sort::Other if path.ends_with(".csv") || path.ends_with(".parquet") => tables.push(path),
+            Sort::Other => found.unknown.push(path),
+        }
+    }
+    for path in tables {
+        match sessions(folder, &path) {
+            Some(sessions) if found.sessions.is_none() => found.sessions = Some(sessions),
+            _ => found.unknown.push(path),
+        }
+    }
+    Ok(found)
+}
+
+fn walk(folder: &Path, at: &str, depth: usize, paths: &mut Vec<String>) {
+    let mut entries: Vec<(String, bool)> = std::fs::read_dir(folder.join(at))
+        .into_iter()
+        .flatten()
+        .flatten()
+        .filter_map(|entry| Some((entry.file_name().into_string().ok()?, entry.path().is_dir())))
+        .filter(|(name, _)| !name.starts_with('.'))
+        .collect();
+    entries.sort();
+    for (name, is_folder) in entries {
+        let path = if at.is_empty() { name.clone() } else { format!("{at}/{name}") };
+        let results = || folder.join(&path).join(".lunula").is_dir();
+        if !is_folder {
+            paths.push(path);
+        } else if depth < DEEPEST && name != "truth" && !results() {
+            walk(folder, &path, depth + 1, paths);
+        }
+    }
+}
+
+fn sort(path: &Path) -> Sort {
+    let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default().to_ascii_lowercase();
+    let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending);
+    match ending {
+        "png" | "jpg" | "jpeg" | "tif" | "tiff" | "bmp" => Sort::Photo,
+        "mp4" | "mov" | "avi" | "mkv" | "m4v" | "webm" => Sort::Video,
+        "toml" => toml_file(path),
+        "csv" | "parquet" => table(path),
+        "gz" if name.ends_with(".csv.gz") => log(path),
+        "xdf" => Sort::Log { forces: false },
+        // Outlines lie beside photographs, reports beside results.
+        "json" | "html" | "md" | "txt" => Sort::Silent,
+        _ => Sort::Other,
+    }
+}
+
+fn toml_file(path: &Path) -> Sort {
+    let text = std::fs::read_to_string(path).unwrap_or_default();
+    let document: toml::Table = text.parse().unwrap_or_default();
+    if document.contains_key("markers") && document.contains_key("joints") {
+        Sort::Markers { clock: document.contains_key("clock") }
+    } else if document.contains_key("stage") {
+        Sort::Silent
+    } else {
+        Sort::Other
+    }
+}
+
+fn table(path: &Path) -> Sort {
+    let Ok(names) = column_names(path) else { return log(path) };
+    let has = |name: &str| names.iter().any(|known| known == name);
+    let angles = names.iter().any(|name| name.ends_with("_deg") && !name.ends_with("_sd_deg"));
+    if has("label_status") && has("time_s") {
+        Sort::Set
+    } else if has("frame") && has("time_s") && angles {
+        Sort::Joints { clock: has("clock_s") }
+    } else {
+        log(path)
+    }
+}
+
+fn log(path: &Path) -> Sort {
+    match LogHeader::read(path, &Columns::default()) {
+        Ok(header) if header.photodiodes > 0 => Sort::Log { forces: header.forces > 0 },
+        _ => Sort::Other,
+    }
+}
+
+/// A table whose columns name files, most of which stand.
+fn sessions(folder: &Path, path: &str) -> Option<Sessions> {
+    let table = Table::read(&folder.join(path)).ok()?;
+    let beside = folder.join(path).parent()?.to_owned();
+    let mut sessions = Sessions { path: path.to_owned(), rows: table.rows(), ..Sessions::default() };
+    let mut any = false;
+    for name in table.names() {
+        let cells = table.texts(name).ok()?;
+        let standing = cells.iter().flatten().map(|cell| beside.join(cell)).find(|file| file.is_file());
+        let Some(file) = standing.filter(|_| !name.starts_with("truth")) else {
+            let is_file = cells.iter().flatten().any(|cell| cell.contains('/'));
+            if !is_file {
+                sessions.keys.push(name.clone());
+            }
+            continue;
+        };
+        let place = match sort(&file) {
+            Sort::Video => &mut sessions.video,
+            Sort::Markers { .. } => &mut sessions.markers,
+            Sort::Log { .. } => &mut sessions.log,
+            Sort::Joints { .. } => &mut sessions.joints,
+            _ => continue,
+        };
+        any |= place.is_none();
+        place.get_or_insert_with(|| name.clone());
+    }
+    (any && !sessions.keys.is_empty()).then_some(sessions)
+}

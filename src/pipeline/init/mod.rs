@@ -1,0 +1,49 @@
+//! A pipeline for a folder: what lies there is looked at, and a file is written that runs as it stands, saying what was taken for what.
+//!
+//! In: a folder; out: the text of a pipeline file. Files are told by their ending and tables by their columns; `truth` folders, hidden files
+//! and folders of results are not looked at.
+
+mod look;
+mod shape;
+#[cfg(test)]
+mod tests;
+mod write;
+
+use std::path::{Path, PathBuf};
+
+/// Why there is no pipeline for a folder.
+#[derive(Debug, thiserror::Error)]
+pub enum InitError {
+    /// The folder can't be read.
+    #[error("{}: {why}; name a folder with recordings", path.display())]
+    Unreadable {
+        /// The folder.
+        path: PathBuf,
+        /// The system's words.
+        why: std::io::Error,
+    },
+    /// Nothing in it is of use.
+    #[error("{}: {what}; photographs of nails, videos with a marker file, logs of photodiodes (time_s, P1, ..) or tables of angles are looked for", path.display())]
+    Nothing {
+        /// The folder.
+        path: PathBuf,
+        /// What was found instead.
+        what: String,
+    },
+}
+
+/// Writes a pipeline for what lies in `folder`; `from` is that folder as the pipeline file will name it, with `/`, empty for its own.
+///
+/// # Errors
+/// [`InitError`].
+pub fn propose(folder: &Path, from: &str) -> Result<String, InitError> {
+    let found = look::look(folder).map_err(|why| InitError::Unreadable { path: folder.to_owned(), why })?;
+    write::pipeline(&found, from).ok_or_else(|| {
+        let what = if found.files == 0 {
+            "holds no files".to_owned()
+        } else {
+            format!("nothing that is known among {} file(s)", found.files)
+        };
+        InitError::Nothing { path: folder.to_owned(), what }
+    })
+}

@@ -1,0 +1,58 @@
+//! From files' names to a pattern: what differs becomes a place in braces.
+
+use std::collections::BTreeMap;
+
+/// A pattern and how many files it is for.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Shape {
+    pub(super) pattern: String,
+    /// The places' names, in order.
+    pub(super) names: Vec<String>,
+    pub(super) count: usize,
+    /// Files of the same sort that lie elsewhere or are called otherwise.
+    pub(super) others: Vec<String>,
+}
+
+/// The pattern of most of the files; `innermost` are the names of the last places, the last first.
+pub(super) fn shape(paths: &[String], innermost: &[&str]) -> Option<Shape> {
+    // Files of one depth, ending and top folder are of one pattern.
+    let mut groups: BTreeMap<(usize, String, bool), Vec<&String>> = BTreeMap::new();
+    for path in paths {
+        let ending = path.rsplit_once('.').map_or("", |(_, ending)| ending).to_owned();
+        groups.entry((path.matches('/').count(), ending, false)).or_default().push(path);
+    }
+    let (_, group) = groups.into_iter().max_by_key(|((depth, ..), group)| (group.len(), usize::MAX - depth))?;
+    let parts: Vec<Vec<&str>> = group.iter().map(|path| stemmed(path)).collect();
+    let depth = parts[0].len();
+    let differs: Vec<usize> = (0..depth).filter(|&at| parts.iter().any(|part| part[at] != parts[0][at])).collect();
+    let name = |place: usize| {
+        let from_the_end = differs.len() - 1 - place;
+        innermost.get(from_the_end).map_or_else(|| format!("part{}", from_the_end + 1), |name| (*name).to_owned())
+    };
+    let mut names = Vec::new();
+    let mut pattern = Vec::new();
+    for (at, &part) in parts[0].iter().enumerate() {
+        match differs.iter().position(|&differing| differing == at) {
+            Some(place) => {
+                names.push(name(place));
+                pattern.push(format!("{{{}}}", name(place)));
+            }
+            None => pattern.push(plain(part)),
+        }
+    }
+    let ending = group[0].rsplit_once('.').map_or(String::new(), |(_, ending)| format!(".{ending}"));
+    let others = paths.iter().filter(|path| !group.contains(path)).cloned().collect();
+    Some(Shape { pattern: pattern.join("/") + &ending, names, count: group.len(), others })
+}
+
+/// A path's names, the last without its ending.
+fn stemmed(path: &str) -> Vec<&str> {
+    let stem = path.rsplit_once('.').map_or(path, |(stem, _)| stem);
+    stem.split('/').collect()
+}
+
+/// A name in which nothing is a wildcard.
+fn plain(name: &str) -> String {
+    // What means something in a pattern is any one character.
+    name.chars().map(|c| if "*?[]{}".contains(c) { '?' } else { c }).collect()
+}

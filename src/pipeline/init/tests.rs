@@ -1,0 +1,96 @@
+//! Pipelines for folders of files that are what their names and headers say.
+
+use super::shape::shape;
+use super::{InitError, propose};
+use crate::pipeline::{Plan, Spec, kinds};
+
+const MARKERS: &str = "[markers]\na = \"#ff0000\"\n[segments]\n[joints]\nJ2 = [\"a\", \"b\"]\n";
+const LOG: &str = "time_s,P1,P2,Fz_N\n0,1,2,-1\n";
+
+fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {
+    let dir = tempfile::tempdir().unwrap();
+    for (name, text) in files {
+        let path = dir.path().join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, text).unwrap();
+    }
+    dir
+}
+
+/// What is proposed, after it was planned without fault.
+fn proposed(files: &[(&str, &str)]) -> (String, Vec<String>) {
+    let dir = folder(files);
+    let text = propose(dir.path(), "").unwrap();
+    let spec =
+        Spec::parse(&text, &dir.path().join("pipeline.toml"), kinds()).unwrap_or_else(|why| panic!("{why}\n{text}"));
+    let plan = Plan::new(&spec, &dir.path().join("out"), None).unwrap_or_else(|why| panic!("{why}\n{text}"));
+    (text, plan.tasks.into_iter().map(|task| task.id).collect())
+}
+
+#[test]
+fn names_that_differ_become_places() {
+    let shaped = |paths: &[&str]| {
+        let paths: Vec<String> = paths.iter().map(|path| (*path).to_owned()).collect();
+        shape(&paths, &["subject", "pose"]).map(|shape| (shape.pattern, shape.others.len()))
+    };
+    assert_eq!(shaped(&["p/rest/a.png", "p/press/b.png"]), Some(("p/{pose}/{subject}.png".into(), 0)));
+    assert_eq!(shaped(&["a.png", "b.png", "deep/c.png"]), Some(("{subject}.png".into(), 1)));
+    assert_eq!(shaped(&["one[1].png"]), Some(("one?1?.png".into(), 0)));
+    assert_eq!(shaped(&["x/1/a/v.mp4", "x/2/b/v.mp4"]), Some(("x/{pose}/{subject}/v.mp4".into(), 0)));
+    assert_eq!(shaped(&["1/2/a.x", "3/4/b.x"]), Some(("{part3}/{pose}/{subject}.x".into(), 0)));
+    assert_eq!(shaped(&[]), None);
+}
+
+#[test]
+fn photographs_become_maps() {
+    let (text, tasks) =
+        proposed(&[("nails/rest/S01.png", ""), ("nails/rest/S02.png", ""), ("nails/press/S01.png", "")]);
+    assert!(text.contains("files = \"nails/{pose}/{subject}.png\""), "{text}");
+    assert_eq!(tasks, ["normalized/S01", "normalized/S02", "maps"]);
+}
+
+#[test]
+fn names_of_several_parts_are_pointed_at() {
+    let parts = proposed(&[("S01_rest.png", ""), ("S01_press.png", ""), ("S02_rest.png", ""), ("S02_press.png", "")]);
+    assert!(parts.0.contains("write files = \"..{subject}_{pose}..\""), "{}", parts.0);
+    let plain = proposed(&[("S_01.png", ""), ("S_02.png", ""), ("S_03.png", "")]);
+    assert!(!plain.0.contains("seem to have parts"), "{}", plain.0);
+}
+
+#[test]
+fn videos_and_logs_become_sets_and_models_of_force() {
+    let (text, tasks) = proposed(&[
+        ("v/S01.mp4", ""),
+        ("v/S02.mp4", ""),
+        ("markers.toml", MARKERS),
+        ("l/S01.csv", LOG),
+        ("l/S02.csv", LOG),
+        ("notes.docx", ""),
+    ]);
+    assert!(text.contains("sync = \"correlate\"") && text.contains("not used: notes.docx"), "{text}");
+    assert_eq!(tasks, ["angles/S01", "angles/S02", "sets/S01", "sets/S02", "force"]);
+}
+
+#[test]
+fn a_table_of_sessions_is_taken_before_names() {
+    let (text, tasks) = proposed(&[
+        ("sessions.csv", "subject,kind,film,log\nS01,bending,a.mp4,a.csv\nS01,touch,,b.csv\n"),
+        ("a.mp4", ""),
+        ("markers.toml", &MARKERS.replace("[joints]", "[clock]\n[joints]")),
+        ("a.csv", LOG),
+        ("b.csv", LOG),
+    ]);
+    assert!(text.contains("video = \"recordings.film\"") && text.contains("keys = [\"subject\", \"kind\"]"), "{text}");
+    assert!(!text.contains("correlate"), "{text}");
+    assert_eq!(tasks, ["angles/S01/bending", "sets/S01/bending", "force/S01"]);
+}
+
+#[test]
+fn what_cannot_be_used_is_told() {
+    let (text, tasks) = proposed(&[("v.mp4", ""), ("log.csv", LOG)]);
+    assert!(text.contains("--suggest"), "{text}");
+    assert_eq!(tasks, ["force"]);
+    assert!(matches!(propose(folder(&[]).path(), ""), Err(InitError::Nothing { .. })));
+    assert!(matches!(propose(folder(&[("x.docx", "")]).path(), ""), Err(InitError::Nothing { .. })));
+    assert!(matches!(propose(&folder(&[]).path().join("none"), ""), Err(InitError::Unreadable { .. })));
+}

@@ -1,0 +1,195 @@
+//! The pipeline file for what was found, with the reasons in comments.
+
+use std::collections::BTreeSet;
+use std::fmt::Write;
+
+use super::look::Found;
+use super::shape::{Shape, shape};
+
+/// How many names of a sort are told.
+const TOLD: usize = 3;
+
+/// An input of the file: its name in references, and its keys.
+struct Input {
+    reference: String,
+    names: Vec<String>,
+}
+
+/// A pipeline file in the making.
+struct Draft<'a> {
+    from: &'a str,
+    notes: Vec<String>,
+    inputs: String,
+    stages: String,
+    wanted: Vec<&'static str>,
+}
+
+/// The text; none where nothing found can be worked on.
+pub(super) fn pipeline(found: &Found, from: &str) -> Option<String> {
+    let mut draft = Draft { from, notes: Vec::new(), inputs: String::new(), stages: String::new(), wanted: Vec::new() };
+    draft.photographs(found);
+    draft.recordings(found);
+    if !found.unknown.is_empty() {
+        draft.notes.push(format!("not known, and not used: {}", listed(&found.unknown)));
+    }
+    if draft.wanted.is_empty() {
+        return None;
+    }
+    let wanted: Vec<String> = draft.wanted.iter().map(|name| format!("\"{name}\"")).collect();
+    let notes: String = draft.notes.iter().map(|note| format!("#   {note}\n")).collect();
+    Some(format!(
+        "# Written by `lunula init`.\n#\n#   lunula run THIS.toml --out results --plan      what would be done, and what not\n#   lunula run THIS.toml --out results             again: only what is new\n#\n# What was found:\n{notes}\nwanted = [{}]\n{}{}",
+        wanted.join(", "),
+        draft.inputs,
+        draft.stages
+    ))
+}
+
+impl Draft<'_> {
+    fn photographs(&mut self, found: &Found) {
+        let Some(photos) = self.files("photos", "photographs of nails", &found.photos, &["subject", "pose"]) else {
+            return;
+        };
+        if photos.names.is_empty() {
+            self.notes.push("one photograph: a map needs several subjects".to_owned());
+        }
+        if photos.names == ["subject"] && have_parts(&found.photos) {
+            self.notes.push(
+                "every photograph is taken for a subject of its own, but names seem to have parts: where they tell subject and pose,\n#   write files = \"..{subject}_{pose}..\"".to_owned(),
+            );
+        }
+        let _ = write!(
+            self.stages,
+            "\n# Each nail upright and of one size, in the green channel; outlines from <photo>.json, else detected.\n[stage.normalized]\njob = \"normalize\"\nphoto = \"photos\"\n\n\
+             # Mean and standard deviation over subjects, for each pose.\n[stage.maps]\njob = \"maps\"\nsums = \"normalized\"\n"
+        );
+        self.wanted.push("maps");
+    }
+
+    fn recordings(&mut self, found: &Found) {
+        let (video, markers, log, joints) = match &found.sessions {
+            Some(sessions) => {
+                self.notes.push(format!("{}: a table of {} recordings", sessions.path, sessions.rows));
+                let path = quoted(&format!("{}{}", self.from, sessions.path));
+                let keys: Vec<String> = sessions.keys.iter().map(|key| quoted(key)).collect();
+                let _ = write!(
+                    self.inputs,
+                    "\n# Its columns of files are named below; an empty cell: there is no such file.\n[inputs.recordings]\ntable = {path}\nkeys = [{}]\n",
+                    keys.join(", ")
+                );
+                let column = |column: &Option<String>| {
+                    column
+                        .as_ref()
+                        .map(|column| Input { reference: format!("recordings.{column}"), names: sessions.keys.clone() })
+                };
+                (column(&sessions.video), column(&sessions.markers), column(&sessions.log), column(&sessions.joints))
+            }
+            None => {
+                let names: &[&str] = &["session", "subject"];
+                (
+                    self.files("videos", "videos", &found.videos, names),
+                    None,
+                    self.files("logs", "logs of photodiodes", &found.logs, names),
+                    self.files("joints", "tables of angles", &found.joints, names),
+                )
+            }
+        };
+        let markers = markers.or_else(|| self.markers(found, video.as_ref()));
+        let angles = self.angles(video, markers, joints);
+        self.sets(found, angles, log.as_ref());
+        self.models(found, log.as_ref());
+    }
+
+    /// One marker file for all videos, or one beside each.
+    fn markers(&mut self, found: &Found, video: Option<&Input>) -> Option<Input> {
+        video?;
+        self.files("markers", "marker files", &found.markers, &["session", "subject"])
+    }
+
+    fn angles(&mut self, video: Option<Input>, markers: Option<Input>, joints: Option<Input>) -> Option<String> {
+        match (video, markers) {
+            (Some(video), Some(markers)) => {
+                let _ = write!(
+                    self.stages,
+                    "\n# Joint angles of every frame; joints = [\"J2\"] measures only some of them.\n[stage.angles]\njob = \"posture\"\nvideo = {}\nmarkers = {}\n",
+                    quoted(&video.reference),
+                    quoted(&markers.reference)
+                );
+                self.wanted.push("angles");
+                Some("angles".to_owned())
+            }
+            (Some(_), None) => {
+                self.notes.push("videos without a marker file are not used: write one with `lunula posture VIDEO --suggest`, then run `lunula init` again".to_owned());
+                joints.map(|joints| joints.reference)
+            }
+            (None, _) => joints.map(|joints| joints.reference),
+        }
+    }
+
+    fn sets(&mut self, found: &Found, angles: Option<String>, log: Option<&Input>) {
+        let (Some(angles), Some(log)) = (angles, log) else { return };
+        let of_video = angles == "angles";
+        let clock = if of_video { found.clock } else { found.joints_clock };
+        let sync = if clock {
+            "# The clock in the picture ties video and log.\n".to_owned()
+        } else {
+            self.notes.push("no clock in the picture is known: the lag between video and log is looked for".to_owned());
+            "# No clock is known: the lag is looked for; if you know it, write sync = \"offset=SECONDS\".\n".to_owned()
+        };
+        let line = if clock { "" } else { "sync = \"correlate\"\n" };
+        let _ = write!(
+            self.stages,
+            "\n# Angles on the rows of the logs.\n{sync}[stage.sets]\njob = \"align\"\njoints = {}\nlog = {}\n{line}",
+            quoted(&angles),
+            quoted(&log.reference)
+        );
+        self.wanted.push("sets");
+    }
+
+    fn models(&mut self, found: &Found, log: Option<&Input>) {
+        let Some(log) = log.filter(|_| found.forces) else { return };
+        let each = if log.names.iter().any(|name| name == "subject") { "each = [\"subject\"]\n" } else { "" };
+        let _ = write!(
+            self.stages,
+            "\n# Forces from the photodiodes; validate = .. names recordings to report on that are not trained on.\n[stage.force]\njob = \"train\"\n{each}data = {}\ntarget = \"force\"\n",
+            quoted(&log.reference)
+        );
+        self.wanted.push("force");
+    }
+
+    /// An input of files, if there are any.
+    fn files(&mut self, name: &str, what: &str, paths: &[String], innermost: &[&str]) -> Option<Input> {
+        let Shape { pattern, names, count, others } = shape(paths, innermost)?;
+        self.notes.push(format!("{count} {what}: {pattern}"));
+        if !others.is_empty() {
+            self.notes.push(format!("{what} that lie elsewhere, and are not used: {}", listed(&others)));
+        }
+        let _ = write!(self.inputs, "\n[inputs.{name}]\nfiles = {}\n", quoted(&format!("{}{pattern}", self.from)));
+        Some(Input { reference: name.to_owned(), names })
+    }
+}
+
+/// Whether names are of several parts, of which the first ones or the last ones come again: `S01_rest`, `S01_press`.
+fn have_parts(paths: &[String]) -> bool {
+    let stem = |path: &String| {
+        let name = path.rsplit('/').next().unwrap_or_default();
+        name.rsplit_once('.').map_or(name, |(stem, _)| stem).to_owned()
+    };
+    let stems: Vec<String> = paths.iter().map(stem).collect();
+    let parted: Option<Vec<(&str, &str)>> = stems.iter().map(|stem| stem.split_once(['_', '-'])).collect();
+    parted.is_some_and(|parts| {
+        let first: BTreeSet<&str> = parts.iter().map(|(first, _)| *first).collect();
+        let last: BTreeSet<&str> = parts.iter().map(|(_, last)| *last).collect();
+        first.len() > 1 && first.len() < parts.len() && last.len() > 1 && last.len() < parts.len()
+    })
+}
+
+fn listed(names: &[String]) -> String {
+    let shown = names[..names.len().min(TOLD)].join(", ");
+    if names.len() > TOLD { format!("{shown}, .. ({} in all)", names.len()) } else { shown }
+}
+
+/// A text of TOML.
+fn quoted(text: &str) -> String {
+    toml::Value::from(text).to_string()
+}

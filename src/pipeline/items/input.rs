@@ -1,0 +1,251 @@
+//! An input of a pipeline file, looked at: its rows or files, with all that is wrong with them.
+
+use std::collections::BTreeMap;
+
+use super::table::{Rows, read};
+use super::{Item, Missing, Origin, Relation, World, holds, plain};
+use crate::pipeline::pattern::{Disk, Pattern};
+use crate::pipeline::spec::{Filter, InputSource, InputSpec, Spec};
+use crate::toml_file::{Fault, instead};
+
+/// How many places of one fault are told.
+const TOLD: usize = 5;
+
+/// An input's items, for each of the columns that stages name, or its files.
+pub(in crate::pipeline) struct InputItems {
+    relations: Vec<Relation>,
+    /// The names that a filter may use.
+    pub(in crate::pipeline) columns: Vec<String>,
+}
+
+impl InputItems {
+    /// The items of a column, or the files.
+    pub(in crate::pipeline) fn of(&self, column: Option<usize>) -> Relation {
+        self.relations.get(column.unwrap_or(0)).cloned().unwrap_or_default()
+    }
+}
+
+/// Looks at an input.
+///
+/// # Errors
+/// All that is wrong with it, at the lines that name it.
+pub(in crate::pipeline) fn input_items(
+    spec: &Spec,
+    input: &InputSpec,
+    world: &World<'_>,
+) -> Result<InputItems, Vec<Fault>> {
+    match &input.source {
+        InputSource::Table(named) => {
+            let rows = read(named, world).map_err(|why| vec![spec.fault(input.source_at, why)])?;
+            of_table(spec, input, named, &rows, world)
+        }
+        InputSource::Files(pattern) => of_files(spec, input, pattern, world).map_err(|fault| vec![fault]),
+    }
+}
+
+fn of_files(spec: &Spec, input: &InputSpec, said: &str, world: &World<'_>) -> Result<InputItems, Fault> {
+    let fault = |what: String| spec.fault(input.source_at, what);
+    let inside = said.strip_prefix("{phantom}/");
+    let pattern = Pattern::parse(inside.unwrap_or(said)).map_err(fault)?;
+    let found = if inside.is_some() {
+        if world.catalogue.is_none() {
+            return Err(fault(
+                "`{phantom}` is named, but there is no [phantom]; add it, or name your own files".to_owned(),
+            ));
+        }
+        pattern.find(&world.listed)
+    } else {
+        pattern.find(&Disk { base: world.base.clone(), out: world.out.canonicalize().ok() })
+    };
+    if let Some(why) = found.nothing {
+        let why = if inside.is_some() { format!("of the generated recordings, {why}") } else { why };
+        return Err(fault(format!("nothing matches `{said}`: {why}")));
+    }
+    if !found.ambiguous.is_empty() {
+        let told = found.ambiguous[..found.ambiguous.len().min(TOLD)].join("; ");
+        let what = format!(
+            "`{said}` fits {} name(s) in two ways: {told}; rename them, or write the pattern more narrowly",
+            found.ambiguous.len()
+        );
+        return Err(fault(what));
+    }
+    let mut items = Vec::with_capacity(found.matches.len());
+    for found in found.matches {
+        let origin = match inside {
+            Some(_) => Origin::Generated(found.path.clone()),
+            None => Origin::Given { path: world.at(&found.path), name: found.path.clone() },
+        };
+        if inside.is_some() && world.maker(&found.path).is_none() {
+            let what = format!("{{phantom}}/{} is made by several tasks; name folders within it", found.path);
+            return Err(fault(what));
+        }
+        items.push(Item { columns: found.keys.clone(), keys: found.keys, origin, place: found.path });
+    }
+    check_filter(spec, &input.filter, &pattern.names, |key| {
+        items.iter().filter_map(|item| item.columns.get(key)).collect()
+    })?;
+    let relation = Relation { names: pattern.names.clone(), items, missing: Vec::new() }.only(&input.filter);
+    if relation.items.is_empty() {
+        return Err(nothing_left(spec, input));
+    }
+    Ok(InputItems { relations: vec![relation], columns: pattern.names })
+}
+
+fn of_table(
+    spec: &Spec,
+    input: &InputSpec,
+    named: &str,
+    rows: &Rows,
+    world: &World<'_>,
+) -> Result<InputItems, Vec<Fault>> {
+    let mut faults = Vec::new();
+    if rows.rows.is_empty() {
+        faults.push(spec.fault(input.source_at, format!("{named} has no rows; add one for each recording")));
+    }
+    let known: Vec<&str> = rows.columns.iter().map(String::as_str).collect();
+    if let [only] = known[..]
+        && let Some(mark) = [';', '\t'].into_iter().find(|mark| only.contains(*mark))
+    {
+        let what = format!("{named}: its cells are parted by {mark:?}; save it with commas");
+        faults.push(spec.fault(input.source_at, what));
+        return Err(faults);
+    }
+    let place_of = |name: &str| rows.columns.iter().position(|column| column == name);
+    let mut file_columns = Vec::new();
+    for (column, at) in &input.columns {
+        match place_of(column) {
+            Some(column) => file_columns.push(column),
+            None => {
+                faults.push(spec.fault(*at, format!("{named} has no column `{column}`; {}", instead(column, &known))))
+            }
+        }
+    }
+    for (key, at) in input.keys.iter().flatten() {
+        match place_of(key) {
+            None => faults.push(spec.fault(*at, format!("{named} has no column `{key}`; {}", instead(key, &known)))),
+            Some(column) if file_columns.contains(&column) => {
+                faults
+                    .push(spec.fault(*at, format!("the column `{key}` holds files, which are no keys; leave it out")));
+            }
+            Some(_) => {}
+        }
+    }
+    if let Err(fault) = check_filter(spec, &input.filter, &rows.columns, |key| {
+        let column = place_of(key);
+        let cells = rows.rows.iter().filter_map(|(cells, _)| Some(cells[column?].as_str()));
+        cells.filter(|cell| !cell.is_empty()).collect()
+    }) {
+        faults.push(fault);
+    }
+    if !faults.is_empty() {
+        return Err(faults);
+    }
+    let key_columns: Vec<usize> = match &input.keys {
+        Some(keys) => keys.iter().filter_map(|(key, _)| place_of(key)).collect(),
+        None => (0..known.len()).filter(|c| !file_columns.contains(c) && !rows.looks_like_files(*c)).collect(),
+    };
+    let taken: Vec<usize> =
+        (0..rows.rows.len()).filter(|&row| holds(&input.filter, &rows.known(row, 0..known.len()))).collect();
+    if taken.is_empty() {
+        return Err(vec![nothing_left(spec, input)]);
+    }
+    let doubled = doubled(rows, &taken, &key_columns, &file_columns);
+    if !doubled.is_empty() {
+        let told = doubled[..doubled.len().min(TOLD)].join("; ");
+        let what = format!("{named} holds {} row(s) twice: {told}; remove one of each", doubled.len());
+        return Err(vec![spec.fault(input.source_at, what)]);
+    }
+    let names: Vec<String> = key_columns.iter().map(|&column| rows.columns[column].clone()).collect();
+    let relations = file_columns
+        .iter()
+        .map(|&file| {
+            let mut relation = Relation { names: names.clone(), ..Relation::default() };
+            let mut without = 0;
+            for &row in &taken {
+                let (cells, place) = &rows.rows[row];
+                if cells[file].is_empty() {
+                    without += 1;
+                    continue;
+                }
+                relation.items.push(Item {
+                    keys: rows.known(row, key_columns.iter().copied()),
+                    columns: rows.known(row, 0..known.len()),
+                    origin: origin(&cells[file], rows, world),
+                    place: format!("{named}, {place}"),
+                });
+            }
+            if without > 0 {
+                let reason = format!("{named} names no `{}` for it", rows.columns[file]);
+                relation.missing.push(Missing { reason, count: without });
+            }
+            relation
+        })
+        .collect();
+    Ok(InputItems { relations, columns: rows.columns.clone() })
+}
+
+/// Where the file of a cell stands.
+fn origin(cell: &str, rows: &Rows, world: &World<'_>) -> Origin {
+    let inside = cell.strip_prefix("{phantom}/").map(plain);
+    let beside = || plain(&if cell.starts_with('/') { cell.to_owned() } else { format!("{}{cell}", rows.folder) });
+    let generated = inside.or_else(|| rows.generated.then(beside));
+    match generated {
+        None => {
+            let name = beside();
+            Origin::Given { path: world.at(&name), name }
+        }
+        Some(path) if world.generates(&path) && world.maker(&path).is_some() => Origin::Generated(path),
+        Some(path) => {
+            Origin::Given { path: world.out.join("phantom").join(&path), name: format!("{{phantom}}/{path}") }
+        }
+    }
+}
+
+/// Rows that say the same as an earlier one, as messages tell.
+fn doubled(rows: &Rows, taken: &[usize], keys: &[usize], files: &[usize]) -> Vec<String> {
+    let mut seen: BTreeMap<Vec<&str>, usize> = BTreeMap::new();
+    let mut doubled = Vec::new();
+    for &row in taken {
+        let said: Vec<&str> = keys.iter().chain(files).map(|&column| rows.rows[row].0[column].as_str()).collect();
+        if let Some(earlier) = seen.insert(said, row) {
+            doubled.push(format!("{} and {}", rows.rows[earlier].1, rows.rows[row].1));
+        }
+    }
+    doubled
+}
+
+fn nothing_left(spec: &Spec, input: &InputSpec) -> Fault {
+    let at = input.filter.first().map_or(input.source_at, |(_, _, at)| *at);
+    spec.fault(at, format!("no item of `{}` has all that `where` asks for", input.name))
+}
+
+/// Faults of a filter: keys that are none, values that nothing has.
+pub(in crate::pipeline) fn check_filter<'v>(
+    spec: &Spec,
+    filter: &Filter,
+    names: &[String],
+    values_of: impl Fn(&str) -> Vec<&'v str>,
+) -> Result<(), Fault> {
+    for (key, values, at) in filter {
+        let known: Vec<&str> = names.iter().map(String::as_str).collect();
+        if !known.contains(&key.as_str()) {
+            return Err(spec.fault(*at, format!("there is no key `{key}` to choose by; {}", instead(key, &known))));
+        }
+        let mut there = values_of(key);
+        there.sort_unstable();
+        there.dedup();
+        if let Some(value) = values.iter().find(|value| !there.contains(&value.as_str())) {
+            let what = match there.len() {
+                0 => format!("nothing has a `{key}`"),
+                1..=12 => format!("nothing has {key} = \"{value}\"; {}", instead(value, &there)),
+                more => format!(
+                    "nothing has {key} = \"{value}\"; there are {more} others, from {} to {}",
+                    there[0],
+                    there[more - 1]
+                ),
+            };
+            return Err(spec.fault(*at, what));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,247 @@
+//! `normalize`: photographs, by default all of one subject, to nails in their frames and the sums that maps are made of (4.2.2).
+//!
+//! A photograph's subject and pose are its keys. Its outline is the file of role `outlines` that has its keys, else the LabelMe file beside it, else
+//! detected. A photograph that gives nothing is told, and the others are done.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+use serde_json::json;
+
+use super::given::{Given, fault};
+use super::pool::in_pool;
+use crate::files::Staging;
+use crate::photo::outline::{DetectOptions, Drawn, Found, OutlineOptions, Side, Sources};
+use crate::photo::{
+    Channel, Foreknown, NailTable, Normalization, PartOptions, Photo, PhotoSet, PhotosOptions, Resample, RunReport,
+    Watch, is_picture, plan_foreknown, run, write_nails,
+};
+use crate::pipeline::{
+    At, Demand, Facts, Foreseen, Job, KeyFault, Keys, Kind, Made, Part, Prepared, Role, Takes, Work,
+};
+use crate::stages::Step;
+
+/// The kind.
+pub(super) static NORMALIZE: Kind = Kind {
+    name: "normalize",
+    about: "photographs of nails to pictures in the nail's frame and their sums, a subject at a time",
+    roles: &[
+        Role { name: "photo", takes: Takes::Many, about: "photographs; their keys are `subject` and `pose`" },
+        Role {
+            name: OUTLINES,
+            takes: Takes::AnyNumber,
+            about: "LabelMe files or masks of the same subject and pose; where there is none, <photo>.json, else detection",
+        },
+    ],
+    parts: &[
+        Part { name: "sums", file: "", only_if_wanted: false, about: "nails.csv and the sums by pose, for `maps`" },
+        Part { name: "nails", file: "nails.csv", only_if_wanted: false, about: "every nail, used or not" },
+        Part {
+            name: PICTURES,
+            file: "normalized",
+            only_if_wanted: true,
+            about: "the normalized pictures, <pose>/<subject>.png",
+        },
+    ],
+    revision: 1,
+    keys: KEYS,
+    prepare: |keys| Ok(Arc::new(Normalize::prepare(keys)?)),
+};
+
+const OUTLINES: &str = "outlines";
+const PICTURES: &str = "pictures";
+const KEYS: &[&str] =
+    &["outline", "distal", "annotations", "size", "margin", "channel", "linear", "resample", "detect_size"];
+
+#[derive(Debug, Clone)]
+struct Normalize {
+    normalization: Normalization,
+    outlines: OutlineOptions,
+}
+
+impl Normalize {
+    fn prepare(keys: toml::Table) -> Result<Self, KeyFault> {
+        let mut given = Given::new(keys, KEYS)?;
+        let usual = Normalization::default();
+        let sources = [("auto", Sources::Auto), ("annotated", Sources::Annotated), ("detect", Sources::Detect)];
+        let sides = [("up", Side::Up), ("down", Side::Down), ("left", Side::Left), ("right", Side::Right)];
+        let drawn = [("auto", Drawn::Auto), ("upright", Drawn::Upright), ("stored", Drawn::Stored)];
+        let channels = [("red", Channel::Red), ("green", Channel::Green), ("blue", Channel::Blue)];
+        let resamples = [("nearest", Resample::Nearest), ("linear", Resample::Linear), ("cubic", Resample::Cubic)];
+        let detect = DetectOptions::default();
+        let working_size_px = match given.whole("detect_size", 64..=4096)? {
+            Some(size) => u32::try_from(size).expect("at most 4096"),
+            None => detect.working_size_px,
+        };
+        let normalization = Normalization {
+            size: match given
+                .whole("size", *Normalization::SIZES.start() as u64..=*Normalization::SIZES.end() as u64)?
+            {
+                Some(size) => usize::try_from(size).expect("at most 4096"),
+                None => usual.size,
+            },
+            margin: given.number("margin", Normalization::MARGINS)?.unwrap_or(usual.margin),
+            channel: given.choice("channel", &channels)?.unwrap_or(usual.channel),
+            linear: given.flag("linear")?,
+            resample: given.choice("resample", &resamples)?.unwrap_or(usual.resample),
+        };
+        let outlines = OutlineOptions {
+            sources: given.choice("outline", &sources)?.unwrap_or_default(),
+            // What the task's results hang on is among its inputs.
+            listed_only: true,
+            masks: None,
+            distal: given.choice("distal", &sides)?,
+            drawn: given.choice("annotations", &drawn)?.unwrap_or_default(),
+            detect: DetectOptions { working_size_px, ..detect },
+        };
+        Ok(Self { normalization: normalization.check().map_err(|what| fault("", what))?, outlines })
+    }
+
+    fn photos_options(&self, demand: &Demand) -> PhotosOptions {
+        PhotosOptions {
+            normalization: self.normalization,
+            outlines: self.outlines.clone(),
+            keep_detected: false,
+            parts: Some(PartOptions { pictures: demand.parts.contains(PICTURES) }),
+        }
+    }
+}
+
+/// The pose of photographs whose keys tell none.
+const ONLY_POSE: &str = "photos";
+
+/// Whose photograph it is, and in what pose.
+fn subject_and_pose(keys: &Keys, path: &Path) -> (String, String) {
+    let stem = || path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    let subject = keys.get("subject").map_or_else(stem, str::to_owned);
+    (subject, keys.get("pose").unwrap_or(ONLY_POSE).to_owned())
+}
+
+/// The outline of a photograph: that of its very keys before one that speaks of fewer.
+fn outline_of<'a>(keys: &Keys, outlines: impl Iterator<Item = (&'a Keys, &'a Path)>) -> Option<PathBuf> {
+    let agreeing = outlines.filter(|(theirs, _)| theirs.agree(keys));
+    let best = agreeing.max_by_key(|(theirs, _)| theirs.0.keys().filter(|name| keys.get(name).is_some()).count());
+    best.map(|(_, path)| path.to_owned())
+}
+
+impl Prepared for Normalize {
+    fn demand(&self, _role: &str, _own: &Demand) -> Demand {
+        Demand::default()
+    }
+
+    fn options(&self, demand: &Demand) -> serde_json::Value {
+        json!({
+            "normalization": self.normalization,
+            "outline": self.outlines.sources,
+            "distal": self.outlines.distal,
+            "annotations": self.outlines.drawn,
+            "detect_size": self.outlines.detect.working_size_px,
+            "pictures": demand.parts.contains(PICTURES),
+        })
+    }
+
+    fn job(&self, _keys: &Keys, demand: &Demand) -> Arc<dyn Job> {
+        Arc::new(NormalizeJob { options: self.photos_options(demand) })
+    }
+
+    fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
+        let options = self.photos_options(demand);
+        let outlines: Vec<_> = inputs.iter().filter(|input| input.role == OUTLINES).collect();
+        let foreknown = inputs.iter().filter(|input| input.role == "photo").map(|input| {
+            let (subject, pose) = subject_and_pose(&input.keys, &input.path);
+            let outline = outline_of(&input.keys, outlines.iter().map(|o| (&o.keys, o.path.as_path())));
+            if input.stands {
+                let file = String::new();
+                let photo = Photo { pose, subject, file, path: input.path.clone(), outline };
+                return Foreknown::of(&photo, &options);
+            }
+            let drawn = outline.or_else(|| (input.facts.outlined == Some(true)).then(|| labelme_beside(&input.path)));
+            let outlines = match (self.outlines.sources, drawn) {
+                (Sources::Detect, _) | (Sources::Auto, None) => Found::Detection,
+                (Sources::Annotated, None) => Found::Nothing,
+                (_, Some(file)) if is_picture(&file) => Found::Mask(file),
+                (_, Some(file)) => Found::LabelMe(file),
+            };
+            Foreknown { pose, grey: input.facts.grey, outlines }
+        });
+        let mut steps = plan_foreknown(&foreknown.collect::<Vec<_>>(), &options);
+        // There is no such thing to ask for in a pipeline.
+        steps.retain(|step| !step.stage.starts_with("LabelMe files"));
+        Ok(steps)
+    }
+
+    fn facts(&self, _inputs: &[Foreseen], _demand: &Demand) -> Facts {
+        Facts::default()
+    }
+
+    fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {
+        let photos = inputs.iter().filter(|input| input.role == "photo").count();
+        let outlines = inputs.iter().filter(|input| input.role == OUTLINES).count();
+        let detected = match self.outlines.sources {
+            Sources::Auto => photos.saturating_sub(outlines),
+            Sources::Annotated => 0,
+            Sources::Detect => photos,
+        };
+        // The first stands for all: a subject's photographs are one camera's.
+        let first = inputs.iter().find(|input| input.role == "photo" && input.stands);
+        let size_px = first.and_then(|input| image::image_dimensions(&input.path).ok()).unwrap_or((640, 480));
+        let pixels = f64::from(size_px.0) * f64::from(size_px.1);
+        let at_once = photos.min(std::thread::available_parallelism().map_or(1, usize::from)) as u64;
+        let sums = 20 * (self.normalization.size * self.normalization.size) as u64 * photos as u64;
+        let memory = at_once * (BYTES_A_PIXEL * pixels) as u64 + sums + BYTES_AT_LEAST;
+        let seconds = photos as f64 * (NORMALIZE_S + READ_S_A_PIXEL * pixels) + detected as f64 * DETECT_S;
+        (memory, seconds)
+    }
+
+    fn beside(&self, role: &str, path: &Path) -> Vec<(&'static str, PathBuf)> {
+        let reads = role == "photo" && self.outlines.sources != Sources::Detect;
+        reads.then(|| (OUTLINES, labelme_beside(path))).into_iter().collect()
+    }
+
+    fn each(&self) -> &'static [&'static str] {
+        &["subject"]
+    }
+}
+
+/// Memory while one photograph is worked on, with detection; measured with 640 x 480 to 24 million pixels.
+const BYTES_A_PIXEL: f64 = 24.0;
+const BYTES_AT_LEAST: u64 = 16 << 20;
+/// Time of one photograph, measured on one core of 2.5 GHz.
+const READ_S_A_PIXEL: f64 = 2.4e-8;
+const NORMALIZE_S: f64 = 0.007;
+const DETECT_S: f64 = 0.17;
+
+fn labelme_beside(photo: &Path) -> PathBuf {
+    photo.with_extension("json")
+}
+
+struct NormalizeJob {
+    options: PhotosOptions,
+}
+
+impl Job for NormalizeJob {
+    fn run(&self, work: &Work) -> anyhow::Result<Made> {
+        let start = Instant::now();
+        let photo = |at: &At| {
+            let (subject, pose) = subject_and_pose(&at.keys, &at.path);
+            let outline = outline_of(&at.keys, work.of(OUTLINES).map(|o| (&o.keys, o.path.as_path())));
+            Photo { pose, subject, file: at.name.clone(), path: at.path.clone(), outline }
+        };
+        let set = PhotoSet::of(work.of("photo").map(photo).collect());
+        let staging = Staging::new(work.folder)?;
+        let watch = Watch { stop: work.stop, tick: &|| {} };
+        let result = in_pool(work.threads, || run(&set, &self.options, &staging, &watch))??;
+        write_nails(NailTable::of(&result.rows, &set).rows(), &staging)?;
+        staging.commit()?;
+        let report = RunReport::of_photos(&set, &self.options, &result, start.elapsed());
+        Ok(Made {
+            left_out: report.left_out.clone(),
+            warnings: report.warnings.clone(),
+            failed: report.failed.iter().map(|fault| format!("{}: {}", fault.place, fault.what)).collect(),
+            stages: report.stages.clone(),
+            quality: Vec::new(),
+            report: serde_json::to_value(report)?,
+        })
+    }
+}

@@ -1,0 +1,49 @@
+//! Pipelines over all jobs: what is wanted, once; only what is needed for it, and nothing twice.
+
+mod catalogue;
+mod commit;
+mod graph;
+mod hashes;
+mod init;
+mod items;
+mod keys;
+mod kind;
+mod kinds;
+mod lock;
+mod merge;
+mod pattern;
+mod plan;
+mod record;
+mod report;
+mod run;
+mod shard;
+mod spec;
+mod standing;
+mod store;
+mod task;
+#[cfg(test)]
+mod tests;
+#[cfg(test)]
+mod toys;
+
+pub use catalogue::{Catalogue, CatalogueFile, CatalogueTask, Catalogues};
+pub use graph::GraphFault;
+pub use hashes::ContentHash;
+pub use init::{InitError, propose};
+pub use keys::Keys;
+pub use kind::{Demand, Facts, Foreseen, KeyFault, Kind, Part, Prepared, Role, Takes};
+pub use kinds::{kinds, kinds_without_video, phantom_catalogue};
+pub use lock::Holder;
+pub use merge::{MergeFault, Merged, Parts};
+pub use plan::{Plan, PlanFate, PlanLine, StagePlan, plan_text};
+pub use record::Output;
+pub use report::{Count, QualitySummary, RunSummary, StageSummary, TaskSummary, summary, write_reports};
+pub use run::{
+    Event, Outcome, Progress, Results, RunFault, RunOptions, RunReport, RunWatch, TaskFailure, TaskReport, run,
+};
+pub use shard::{PartMark, PipelineMark, Shard, ShardFault};
+pub use spec::{PipelineError, Spec, names_others};
+pub use standing::{Standing, Why, survey};
+pub use task::{At, Input, Job, Made, Quality, Share, Source, Task, TaskId, Work};
+
+pub use crate::toml_file::Fault;

@@ -1,0 +1,386 @@
+//! Plans with toys: what is needed, of whom, in which share, and what is wrong with inputs.
+
+use crate::pipeline::plan::{PlanFate, plan_text};
+use crate::pipeline::standing::{Standing, Why};
+use crate::pipeline::task::{Share, Source};
+use crate::pipeline::toys::Bench;
+
+const SESSIONS: &str = "subject,session,kind,video,log,note_file\n\
+    S01,1,bending,v/S01.mp4,l/S01.csv,n/a.txt\n\
+    S02,1,bending,v/S02.mp4,l/S02.csv,n/b.txt\n\
+    S02,2,bending,,l/S02b.csv,\n\
+    S03,1,touch,v/S03.mp4,l/S03.csv,\n";
+
+const STUDY: &str = r#"wanted = ["sets"]
+[inputs.bending]
+table = "sessions.csv"
+where = { kind = "bending" }
+[stage.angles]
+job = "track"
+video = "bending.video"
+[stage.sets]
+job = "tie"
+joints = "angles"
+log = "bending.log"
+"#;
+
+fn files() -> Vec<(&'static str, &'static str)> {
+    vec![
+        ("sessions.csv", SESSIONS),
+        ("v/S01.mp4", "1"),
+        ("v/S02.mp4", "2"),
+        ("v/S03.mp4", "3"),
+        ("l/S01.csv", "1"),
+        ("l/S02.csv", "2"),
+        ("l/S02b.csv", "2"),
+        ("l/S03.csv", "3"),
+        ("markers.toml", ""),
+    ]
+}
+
+fn bench() -> Bench {
+    Bench::new(&files())
+}
+
+fn ids(text: &str) -> Vec<String> {
+    bench().plan(text).tasks.into_iter().map(|task| task.id).collect()
+}
+
+#[test]
+fn rows_become_tasks_and_join_by_keys() {
+    let plan = bench().plan(STUDY);
+    let ids: Vec<&str> = plan.tasks.iter().map(|task| task.id.as_str()).collect();
+    assert_eq!(
+        ids,
+        ["angles/S01/1/bending", "angles/S02/1/bending", "sets/S01/1/bending", "sets/S02/1/bending"],
+        "in the table's order, without columns of files"
+    );
+    let sets = &plan.tasks[3];
+    assert_eq!(sets.keys.to_string(), "kind=bending session=1 subject=S02");
+    let named: Vec<String> = sets.inputs.iter().map(|input| format!("{} {:?}", input.role, input.source)).collect();
+    assert!(
+        named[0].starts_with("joints Result { task: \"angles/S02/1/bending\", name: \"joints.csv\" }"),
+        "{named:?}"
+    );
+    assert!(matches!(&sets.inputs[1].source, Source::Given { name, .. } if name == "l/S02.csv"));
+    assert!(plan.warnings.is_empty(), "{:?}", plan.warnings);
+}
+
+#[test]
+fn what_has_no_file_or_no_partner_is_left_out_with_the_reason() {
+    let text = plan_text(&bench().plan(STUDY).stage_plans(&[]));
+    let expected = "\
+angles (track)        run       2: never made
+                      left out  1: sessions.csv names no `video` for it
+  work                run       2: 1 input(s)
+  clock               run       2: wanted
+  channel             run       2: in colour
+sets (tie)            run       2: never made
+                      left out  1: its `log` has no `joints`: kind=bending session=2 subject=S02
+  work                run       2: 2 input(s)
+  clock               run       2: wanted
+  channel             run       2: in colour
+";
+    assert_eq!(text, expected);
+}
+
+#[test]
+fn a_stage_that_nothing_wanted_needs_is_left_out_and_its_inputs_are_not_looked_at() {
+    let more =
+        format!("{STUDY}[inputs.none]\nfiles = \"nowhere/*.csv\"\n[stage.model]\njob = \"train\"\ndata = \"none\"\n");
+    let plan = bench().plan(&more);
+    assert_eq!(plan.tasks.len(), 4);
+    let stages = plan.stage_plans(&[]);
+    let model = stages.iter().find(|stage| stage.stage == "model").unwrap();
+    assert_eq!((model.run, model.tasks[0].reason.as_str()), (0, "nothing wanted needs it"));
+    assert!(plan_text(&stages).contains("model (train)         left out  nothing wanted needs it\n"));
+}
+
+#[test]
+fn only_tasks_that_a_wanted_one_needs_run() {
+    let text =
+        STUDY.replace("log = \"bending.log\"", "log = { from = \"bending.log\", where = { subject = \"S01\" } }");
+    let plan = bench().plan(&text);
+    let ids: Vec<&str> = plan.tasks.iter().map(|task| task.id.as_str()).collect();
+    assert_eq!(ids, ["angles/S01/1/bending", "sets/S01/1/bending"]);
+    let angles = &plan.stage_plans(&[])[0];
+    assert!(
+        angles
+            .tasks
+            .iter()
+            .any(|l| l.fate == PlanFate::LeftOut && l.count == 1 && l.reason == "nothing wanted needs it")
+    );
+}
+
+#[test]
+fn demands_flow_back_from_what_is_wanted() {
+    let options = |text: &str, id: &str| {
+        let plan = bench().plan(text);
+        plan.tasks.iter().find(|task| task.id.starts_with(id)).unwrap().options["options"].clone()
+    };
+    let with_clock = options(STUDY, "angles");
+    assert_eq!((&with_clock["clock"], &with_clock["joints"]), (&true.into(), &serde_json::Value::Null));
+    assert_eq!(with_clock["parts"], serde_json::json!(["joints"]));
+    let offset = STUDY.replace("log = \"bending.log\"", "log = \"bending.log\"\nsync = \"offset=3\"");
+    assert_eq!(options(&offset, "angles")["clock"], false);
+    // Wanted itself, all of it is wanted; a part that is made only where it is wanted has to be named.
+    let both = offset.replace("[\"sets\"]", "[\"sets\", \"angles\"]");
+    assert_eq!(options(&both, "angles")["clock"], true);
+    let tracks = offset.replace("[\"sets\"]", "[\"sets\", \"angles.tracks\"]");
+    assert_eq!(options(&tracks, "angles")["parts"], serde_json::json!(["joints", "tracks"]));
+    let train =
+        format!("{}[stage.model]\njob = \"train\"\ndata = \"sets\"\n", offset.replace("[\"sets\"]", "[\"model\"]"));
+    assert_eq!(options(&train, "angles")["joints"], serde_json::json!(["J2"]));
+    assert_eq!(options(&train, "sets")["parts"], serde_json::json!(["training"]));
+}
+
+#[test]
+fn gathering_jobs_make_a_task_for_each_value_and_join_what_has_no_keys() {
+    let gather = |each: &str| {
+        format!(
+            "[inputs.all]\ntable = \"sessions.csv\"\n[inputs.extra]\nfiles = \"markers.toml\"\n[stage.model]\njob = \"train\"\n{each}data = \"all.log\"\nvalidate = \"extra\"\n"
+        )
+    };
+    assert_eq!(ids(&gather("")), ["model"]);
+    assert_eq!(ids(&gather("each = [\"subject\"]\n")), ["model/S01", "model/S02", "model/S03"]);
+    assert_eq!(
+        ids(&gather("each = [\"kind\", \"subject\"]\n")),
+        ["model/bending/S01", "model/bending/S02", "model/touch/S03"]
+    );
+    let plan = bench().plan(&gather("each = [\"subject\"]\n"));
+    let roles: Vec<&str> = plan.tasks[1].inputs.iter().map(|input| input.role).collect();
+    assert_eq!(roles, ["data", "data", "validate"]);
+    assert!(plan.tasks[1].inputs.iter().all(|input| input.may_fail));
+    let held = gather("each = [\"subject\"]\n")
+        .replace("validate = \"extra\"", "validate = { from = \"all.log\", where = { session = 2 } }");
+    assert_eq!(bench().plan(&held).tasks.len(), 3, "any number may be none");
+}
+
+#[test]
+fn models_meet_the_logs_of_their_subject() {
+    let text = "wanted = [\"how_good\"]\n[inputs.all]\ntable = \"sessions.csv\"\n[stage.model]\njob = \"train\"\neach = [\"subject\"]\ndata = \"all.log\"\n\
+                [stage.how_good]\njob = \"evaluate\"\nmodel = \"model\"\ndata = { from = \"all.log\", where = { session = 1 } }\n";
+    let plan = bench().plan(text);
+    let last = plan.tasks.last().unwrap();
+    assert_eq!((last.id.as_str(), last.inputs.len()), ("how_good/S03", 2));
+    assert_eq!(plan.parts(), 3);
+}
+
+#[test]
+fn files_become_tasks_with_what_lies_beside_them() {
+    let bench = Bench::new(&[("p/rest/S01.png", ""), ("p/rest/S01.json", ""), ("p/press/S01.png", "")]);
+    let plan = bench.plan(
+        "[inputs.photos]\nfiles = \"p/{pose}/{subject}.png\"\n[stage.n]\njob = \"normalize\"\nphoto = \"photos\"\n",
+    );
+    let ids: Vec<&str> = plan.tasks.iter().map(|task| task.id.as_str()).collect();
+    assert_eq!(ids, ["n/press/S01", "n/rest/S01"]);
+    assert_eq!(plan.tasks[0].inputs.len(), 1);
+    let beside = &plan.tasks[1].inputs[1];
+    assert_eq!((beside.role, beside.keys.to_string()), ("annotation", "pose=rest subject=S01".to_owned()));
+    assert!(matches!(&beside.source, Source::Given { name, .. } if name == "p/rest/S01.json"));
+}
+
+#[test]
+fn generated_recordings_are_planned_before_they_stand() {
+    let text = "wanted = [\"sets\"]\n[phantom]\nstudy = {}\n[inputs.all]\ntable = \"{phantom}/tables/sessions.csv\"\n[inputs.markers]\nfiles = \"{phantom}/markers/markers.toml\"\n\
+                [inputs.logs]\nfiles = \"{phantom}/recordings/{subject}/*.csv\"\n\
+                [stage.angles]\njob = \"track\"\nvideo = \"all.video\"\nmarkers = \"markers\"\n[stage.sets]\njob = \"tie\"\njoints = \"angles\"\nlog = \"logs\"\n";
+    let plan = bench().plan(text);
+    let ids: Vec<(&str, Share)> = plan.tasks.iter().map(|task| (task.id.as_str(), task.share)).collect();
+    assert_eq!(
+        ids,
+        [
+            ("phantom/recordings/S01", Share::Part(0)),
+            ("phantom/recordings/S02", Share::Part(1)),
+            ("phantom/markers", Share::Each),
+            ("angles/S01/bending", Share::Part(0)),
+            ("angles/S02/bending", Share::Part(1)),
+            ("sets/S01/bending", Share::Part(0)),
+            ("sets/S02/bending", Share::Part(1)),
+        ]
+    );
+    let video = &plan.tasks[3].inputs[0].source;
+    assert!(
+        matches!(video, Source::Result { task, name } if task == "phantom/recordings/S01" && name == "bending.mp4")
+    );
+    let shown = plan_text(&plan.stage_plans(&[]));
+    assert!(shown.contains("phantom               run       3: never made\n"), "{shown}");
+    assert!(shown.contains("  channel             left out  2: it is grey\n"), "facts are known beforehand:\n{shown}");
+}
+
+#[test]
+fn what_gathers_everything_is_made_when_parts_are_merged() {
+    let text = format!(
+        "{}[stage.model]\njob = \"train\"\ndata = \"sets\"\n[stage.test]\njob = \"evaluate\"\nmodel = \"model\"\ndata = \"sets\"\n",
+        STUDY.replace("[\"sets\"]", "[\"test\"]")
+    );
+    let plan = bench().plan(&text);
+    let shares: Vec<(&str, Share)> = plan.tasks.iter().map(|task| (task.id.as_str(), task.share)).collect();
+    assert_eq!(
+        shares,
+        [
+            ("angles/S01/1/bending", Share::Part(0)),
+            ("angles/S02/1/bending", Share::Part(1)),
+            ("sets/S01/1/bending", Share::Part(0)),
+            ("sets/S02/1/bending", Share::Part(1)),
+            ("model", Share::Whole),
+            ("test", Share::Whole),
+        ]
+    );
+}
+
+#[test]
+fn what_stands_is_told_as_done() {
+    let plan = bench().plan(STUDY);
+    let standing = [
+        Standing::Done,
+        Standing::Run(Why::InputChanged("v".into())),
+        Standing::Done,
+        Standing::Run(Why::Follows("x".into())),
+    ];
+    let stages = plan.stage_plans(&standing);
+    assert_eq!((stages[0].run, stages[0].done), (1, 1));
+    let text = plan_text(&stages);
+    assert!(text.contains("angles (track)        run       1: an input changed\n"), "{text}");
+    assert!(text.contains("                      done      1: its results stand\n"), "{text}");
+    assert!(text.contains("  work                done      1: 1 input(s)\n"), "{text}");
+}
+
+#[test]
+fn files_that_do_not_stand_are_told_and_stop_nothing_else() {
+    let bench = Bench::new(&files().into_iter().filter(|(name, _)| *name != "v/S02.mp4").collect::<Vec<_>>());
+    let plan = bench.plan(STUDY);
+    assert_eq!(plan.tasks.len(), 4);
+    assert_eq!(plan.warnings.len(), 1);
+    assert!(plan.warnings[0].starts_with("sessions.csv, line 3: the `video` of `angles`, "), "{:?}", plan.warnings);
+    assert!(plan.stage_plans(&[])[0].cannot_tell[0].contains("angles/S02/1/bending: "));
+}
+
+/// Faults of the study with some files changed.
+fn with(name: &'static str, content: &'static str, pipeline: &str) -> Vec<String> {
+    let mut files = files();
+    files.retain(|(known, _)| *known != name);
+    files.push((name, content));
+    Bench::new(&files).faults(pipeline)
+}
+
+#[test]
+fn two_inputs_that_would_write_the_same_files_are_told() {
+    let double = "subject,kind,video,log\nS01,bending,v/S01.mp4,l/S01.csv\nS01,bending,v/S02.mp4,l/S02.csv\n";
+    let what = "sessions.csv, line 2 and sessions.csv, line 3 would both be written to `angles/S01/bending`; add a column or a {place} that tells them apart, or choose with `where`";
+    assert_eq!(with("sessions.csv", double, STUDY)[0], format!("5:8: {what}"));
+    let no_place = "[inputs.v]\nfiles = \"v/*.mp4\"\n\n[stage.angles]\njob = \"track\"\nvideo = \"v\"\n";
+    let found = bench().faults(no_place);
+    assert!(found[0].starts_with("4:8: v/S01.mp4 and v/S02.mp4 would both be written to `angles`;"), "{found:?}");
+    let odd = "subject,kind,video,log\na/b,bending,v/S01.mp4,l/S01.csv\na_b,bending,v/S02.mp4,l/S02.csv\n";
+    let keyed = STUDY.replace("where = {", "keys = [\"subject\"]\nwhere = {");
+    let found = with("sessions.csv", odd, &keyed);
+    assert!(found[0].starts_with("6:8: ") && found[0].contains("differ only in characters"), "{found:?}");
+}
+
+#[test]
+fn many_inputs_of_one_name_are_told_once() {
+    let rows = "subject,kind,video,log\nS01,bending,v/S01.mp4,l/S01.csv\nS01,bending,v/S02.mp4,l/S02.csv\nS01,bending,v/S03.mp4,l/S03.csv\n";
+    let found = with("sessions.csv", rows, STUDY);
+    assert_eq!(found.iter().filter(|told| told.contains("to `angles/S01/bending`")).count(), 1, "{found:?}");
+}
+
+#[test]
+fn a_table_with_semicolons_is_told() {
+    let found = with("sessions.csv", "subject;kind;video;log\nS01;bending;v/S01.mp4;l/S01.csv\n", STUDY);
+    assert!(found[0].starts_with("3:9: sessions.csv: its cells are parted by ';'; save it with commas"), "{found:?}");
+}
+
+#[test]
+fn doubled_rows_are_told_with_their_lines() {
+    let double = "subject,kind,video,log\nS01,bending,v/S01.mp4,l/S01.csv\n\nS01,bending,v/S01.mp4,l/S01.csv\n";
+    assert_eq!(
+        with("sessions.csv", double, STUDY),
+        ["3:9: sessions.csv holds 1 row(s) twice: line 2 and line 4; remove one of each"]
+    );
+}
+
+#[test]
+fn tables_that_are_empty_missing_or_lack_columns_are_told() {
+    assert_eq!(
+        with("sessions.csv", "subject,kind,video,log\n", STUDY)[0],
+        "3:9: sessions.csv has no rows; add one for each recording"
+    );
+    assert!(with("sessions.csv", "", STUDY)[0].starts_with("3:9: "));
+    assert!(bench().faults(&STUDY.replace("sessions.csv", "session.csv"))[0].starts_with("3:9: "));
+    assert_eq!(
+        bench().faults(&STUDY.replace("bending.video", "bending.vidoe")),
+        ["7:9: sessions.csv has no column `vidoe`; did you mean `video`?"]
+    );
+    assert_eq!(
+        bench().faults(&STUDY.replace("kind = \"bending\"", "knid = \"bending\"")),
+        ["4:11: there is no key `knid` to choose by; did you mean `kind`?"]
+    );
+    assert_eq!(
+        bench().faults(&STUDY.replace("kind = \"bending\"", "kind = \"bendign\"")),
+        ["4:11: nothing has kind = \"bendign\"; did you mean `bending`?"]
+    );
+}
+
+#[test]
+fn a_glob_that_matches_nothing_is_told_with_the_nearest_folder() {
+    let text = "[inputs.v]\nfiles = \"videos/{subject}.mp4\"\n[stage.angles]\njob = \"track\"\nvideo = \"v\"\n";
+    let found = bench().faults(text);
+    assert!(
+        found[0].starts_with("2:9: nothing matches `videos/{subject}.mp4`: there is no `videos` in the folder ."),
+        "{found:?}"
+    );
+    let found = bench().faults(&text.replace("videos/{subject}.mp4", "v/{subject}.avi"));
+    assert!(
+        found[0].ends_with("nothing like `{subject}.avi` is in the folder v, which holds S01.mp4, S02.mp4, S03.mp4"),
+        "{found:?}"
+    );
+    let found = bench().faults(&text.replace("videos/", "{phantom}/"));
+    assert!(found[0].starts_with("2:9: `{phantom}` is named, but there is no [phantom]"), "{found:?}");
+}
+
+#[test]
+fn a_wanted_stage_without_anything_to_work_on_is_told_with_the_reason() {
+    let none = "subject,session,kind,video,log\nS01,1,bending,,l/S01.csv\nS02,1,bending,,l/S02.csv\n";
+    let what = "`sets` is wanted and has nothing to work on: its `joints` comes from `angles` (line 5), which has nothing: sessions.csv names no `video` for it (2)";
+    assert_eq!(with("sessions.csv", none, STUDY), [format!("1:11: {what}")]);
+}
+
+#[test]
+fn relations_that_cannot_be_joined_are_told() {
+    let text = STUDY
+        .replace("[stage.angles]", "[inputs.days]\nfiles = \"l/{day}.csv\"\n[stage.angles]")
+        .replace("bending.log", "days");
+    let found = bench().faults(&text);
+    assert!(
+        found[0].starts_with("13:7: `joints` (subject, session, kind) and `log` (day) have no key in common"),
+        "{found:?}"
+    );
+    let many = STUDY
+        .replace("video = \"bending.video\"", "video = \"one\"\nmarkers = \"bending.log\"")
+        .replace("[stage.angles]", "[inputs.one]\nfiles = \"v/S01.mp4\"\n[stage.angles]");
+    let found = bench().faults(&many.replace("[\"sets\"]", "[\"angles\"]"));
+    assert!(found[0].starts_with("10:11: `markers` of `angles` takes one file, and for all there are 3:"), "{found:?}");
+    let each =
+        "[inputs.v]\nfiles = \"v/{subject}.mp4\"\n[stage.m]\njob = \"train\"\neach = [\"subjcet\"]\ndata = \"v\"\n";
+    assert_eq!(
+        bench().faults(each),
+        ["5:8: `each` names `subjcet`, which nothing that `m` works on has; did you mean `subject`?"]
+    );
+}
+
+#[test]
+fn options_of_what_is_generated_are_told_at_their_line() {
+    let text = "[inputs.v]\nfiles = \"v/{s}.mp4\"\n[phantom]\nstduy = {}\n[stage.m]\njob = \"train\"\ndata = \"v\"\n";
+    assert_eq!(bench().faults(text), ["4:1: no phantom `stduy`; there is `study`"]);
+}
+
+#[test]
+fn odd_key_values_are_folders_and_empty_ones_hold_for_all() {
+    let odd = "subject,session,video,log\nMüller 日本,1.5,v/S01.mp4,l/S01.csv\n../x,..,v/S02.mp4,l/S02.csv\n,3,v/S03.mp4,l/S03.csv\n";
+    let mut files = files();
+    files[0].1 = odd;
+    let text = STUDY.replace("where = { kind = \"bending\" }\n", "").replace("[\"sets\"]", "[\"angles\"]");
+    let ids: Vec<String> = Bench::new(&files).plan(&text).tasks.into_iter().map(|task| task.id).collect();
+    assert_eq!(ids, ["angles/Müller_日本/1.5", "angles/_._x/_.", "angles/_/3"]);
+}

@@ -1,0 +1,11 @@
+//! The engine of pipelines with toy jobs: their results are texts that tell all that they hang on.
+
+mod clock;
+mod failures;
+mod hands;
+mod kill;
+mod limits;
+mod parts;
+mod random;
+mod speed;
+mod toys;
