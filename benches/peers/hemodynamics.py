@@ -1,6 +1,6 @@
 """The step responses of Fig. 76 and 77 by the solvers that others use: the peers of lunula-hemodynamics. One thread.
 
-usage: hemodynamics.py [--quick] [--out FILE] [SOLVER ...]
+usage: hemodynamics.py [--quick] [--out FILE] [--reference FOLDER] [SOLVER ...]
 
 Twenty responses (P_F1 alone and P_F1 = P_F2, ten loads each) of 4 s with 400 outputs, from the rest equilibrium, the load acting until 2 s, where
 every solver is started anew. All get the same equations (in conductances, states scaled by nominal diameters), the analytic Jacobian and the same
@@ -11,6 +11,9 @@ wants lumens only gets them up to twice as fast. A row of CSV for each solver an
 
 error: the greatest |x - x_ref| / D over the reference's times, all walls and responses. microseconds: a response, the fastest of several rounds over
 all of them. evaluations: of the right-hand side, a response.
+
+FOLDER holds other responses to be compared with: `proximal.csv`, `distal.csv`, `both.csv` or some of them, a row
+load_Pa,time_s,C1,C2,V of displacements over nominal diameters for each load and time, 0 and 2 s among them.
 
 Native solvers, where the machine has them (a C compiler for all): CVODE of Debian's libsundials-dev; RADAU5 and LSODA of r-cran-desolve. The others
 call back into Python. A solver is left out at tolerances at which it would take too long, with a word on standard error.
@@ -35,7 +38,7 @@ from scipy.integrate import odeint, solve_ivp  # noqa: E402
 
 warnings.filterwarnings("ignore")  # a solver's complaints; its errors count
 HERE = Path(__file__).resolve().parent
-REFERENCE = HERE.parents[1] / "crates" / "hemodynamics" / "tests" / "reference"
+PATHS = {"proximal": lambda load: (load, 0.0), "distal": lambda load: (0.0, load), "both": lambda load: (load, load)}
 DESOLVE = [Path("/usr/lib/R/site-library/deSolve/libs/deSolve.so"), Path("/usr/local/lib/R/site-library/deSolve/libs/deSolve.so")]
 HALF_S = 2.0
 OUTPUTS = np.arange(1, 201) / 100.0  # of each half
@@ -97,11 +100,24 @@ def jacobian(y):
     ]
 
 
-# ---- the reference ----
+# ---- options, and the reference ----
+parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+parser.add_argument("solvers", nargs="*", help="only those whose names begin with one of these")
+parser.add_argument("--quick", action="store_true", help="four tolerances, few rounds, a second a solver")
+parser.add_argument("--budget", type=float, help="seconds for all responses of a solver at one tolerance; slower: no tighter ones")
+parser.add_argument("--out", type=Path, help="a CSV file; else standard output")
+parser.add_argument("--reference", type=Path, help="a folder of other responses")
+OPTIONS = parser.parse_args()
+REFERENCE = OPTIONS.reference or HERE.parents[1] / "crates" / "hemodynamics" / "tests" / "reference"
+
+
 def reference():
-    """Loads (P_F1, P_F2), times, lumens [case, time, wall] of both figures."""
+    """Loads (P_F1, P_F2), times, lumens [case, time, wall] of all responses."""
     loads, lumens, times = [], [], None
-    for name, of in (("proximal", lambda load: (load, 0.0)), ("both", lambda load: (load, load))):
+    for name in PATHS if OPTIONS.reference else ("proximal", "both"):
+        if not (REFERENCE / f"{name}.csv").exists():
+            continue
+        of = PATHS[name]
         rows = [line.split(",") for line in (REFERENCE / f"{name}.csv").read_text().splitlines() if line[0].isdigit()]
         values = np.array(rows, dtype=float)
         for load in np.unique(values[:, 0]):
@@ -292,18 +308,13 @@ def course(name, solver, rates, quick):
         rows.append(f"{name},{rtol:.0e},{error:.3e},{1e6 * seconds / len(LOADS):.1f},{calls / len(LOADS):.0f}")
         print(rows[-1], flush=True)
         used = time.perf_counter() - start
-        if isinstance(solver, Python) and used > (2.0 if quick else BUDGET_S):
+        if isinstance(solver, Python) and used > (OPTIONS.budget or (2.0 if quick else BUDGET_S)):
             print(f"{name} beyond {rtol:.0e}: left out, this took {used:.0f} s", file=sys.stderr)
             break
     return rows
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("solvers", nargs="*", help="only those whose names begin with one of these")
-    parser.add_argument("--quick", action="store_true", help="four tolerances, few rounds, a second a solver")
-    parser.add_argument("--out", type=Path, help="a CSV file; else standard output")
-    options = parser.parse_args()
     rows = ["solver,rtol,error,microseconds,evaluations"]
     print(rows[0], flush=True)
     with tempfile.TemporaryDirectory() as folder:
@@ -316,12 +327,12 @@ def main():
         for method in ("LSODA", "BDF", "Radau"):
             solvers[f"{method} (SciPy)"] = Python(of_scipy(method))
         for name, solver in solvers.items():
-            if options.solvers and not any(name.startswith(s) for s in options.solvers):
+            if OPTIONS.solvers and not any(name.startswith(s) for s in OPTIONS.solvers):
                 continue
             for kind, rates in RATES.items():
-                rows += course(name + kind, solver, rates, options.quick)
-    if options.out:
-        options.out.write_text("\n".join(rows) + "\n")
+                rows += course(name + kind, solver, rates, OPTIONS.quick)
+    if OPTIONS.out:
+        OPTIONS.out.write_text("\n".join(rows) + "\n")
 
 
 if __name__ == "__main__":

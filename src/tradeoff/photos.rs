@@ -10,32 +10,78 @@ use ndarray::Array2;
 use ndarray_npy::ReadNpyExt;
 use rayon::prelude::*;
 
-use super::{Row, median};
+use super::peers::{PeerReport, Python, Script};
+use super::rows::{Measured, Row};
+use super::timing::{Effort, Run, Timing, in_turns};
 use crate::files::Staging;
 use crate::photo::outline::{Axis, DetectOptions, Drawn, Outline, OutlineOptions, Sources, detect, read_annotated};
 use crate::photo::{
     NailFrame, Normalization, Photo, PhotoSet, Photograph, PhotosOptions, Resample, Watch, run as run_photos,
 };
 
+/// How values between pixels are told.
+pub(super) const RESAMPLING: (&str, &str) = ("photos", "resampling");
+/// How large a picture is searched.
+pub(super) const DETECTION: (&str, &str) = ("photos", "detection");
 /// Root mean square difference inside the nail.
 const PICTURE_ERROR: &str = "normalized picture inside the nail, RMS of 255";
+/// The same of nails with few pixels.
+pub(super) const SMALL_PICTURE_ERROR: &str = "normalized picture, nails of 20 to 30 px, RMS of 255";
 /// Root mean square difference over the pixels of all poses' maps.
 const MAP_ERRORS: [(&str, &str); 2] = [("mean", "map of the mean, RMS of 255"), ("sd", "map of the SD, RMS of 255")];
 /// Of all nails, a missed one counting as 1.
-const OUTLINE_ERROR: &str = "detected outline, mean of 1 - IoU (missed = 1)";
+pub(super) const OUTLINE_ERROR: &str = "detected outline, mean of 1 - IoU (missed = 1)";
 const RESAMPLE: [Resample; 3] = [Resample::Nearest, Resample::Linear, Resample::Cubic];
-/// Longest sides that detection searches, pixels.
+/// Longest sides that detection searches, pixels; the default beside them.
 const WORKING_PX: [u32; 4] = [128, 200, 320, 640];
+/// The script's word, its name, packages as they are imported and as they are called.
+type Peer = (&'static str, &'static str, [(&'static str, &'static str); 2]);
+/// What can resample a photograph in Python.
+const PEERS: [Peer; 2] = [
+    ("opencv", "OpenCV", [("numpy", "numpy"), ("cv2", "opencv-python-headless")]),
+    ("skimage", "scikit-image", [("numpy", "numpy"), ("skimage", "scikit-image")]),
+];
+const SCRIPT: Script = Script { files: &[("photos.py", include_str!("../../benches/peers/photos.py"))] };
 
-/// What is measured, and how often.
+/// What is measured.
 #[derive(Debug, Clone)]
 pub struct Settings {
     /// The set of photographs.
     pub set: PathBuf,
     /// Its truth, as `lunula phantom photos` writes it.
     pub truth: PathBuf,
-    /// Runs of each setting; the median time counts.
-    pub repeats: usize,
+    /// A set of small nails and its truth.
+    pub small: Option<(PathBuf, PathBuf)>,
+    /// How much.
+    pub effort: Effort,
+    /// What runs other programs.
+    pub python: Python,
+}
+
+/// What `lunula photos` resamples with.
+pub(super) fn resampling_default() -> String {
+    resampling(Resample::default())
+}
+
+/// What `lunula photos` searches.
+pub(super) fn detection_default() -> String {
+    detection(DetectOptions::default().working_size_px)
+}
+
+fn resampling(resample: Resample) -> String {
+    format!("resample {}", kernel(resample))
+}
+
+fn kernel(resample: Resample) -> &'static str {
+    match resample {
+        Resample::Nearest => "nearest",
+        Resample::Linear => "linear",
+        Resample::Cubic => "cubic",
+    }
+}
+
+fn detection(working_size_px: u32) -> String {
+    format!("detect on {working_size_px} px")
 }
 
 /// One photograph's truth.
@@ -45,22 +91,118 @@ struct Truth {
     inside: Vec<bool>,
 }
 
-/// Measures every setting.
+/// A set with its truth in memory.
+struct Scene {
+    set: PhotoSet,
+    folder: PathBuf,
+    truth: PathBuf,
+    truths: Vec<Truth>,
+    /// Whether its nails are small.
+    small: bool,
+}
+
+impl Scene {
+    fn read(folder: &Path, truth: &Path, small: bool) -> anyhow::Result<Self> {
+        let set = PhotoSet::open(folder, &[])?;
+        let truths = set.photos.par_iter().map(|photo| read_truth(photo, truth)).collect::<anyhow::Result<_>>()?;
+        Ok(Self { set, folder: folder.to_owned(), truth: truth.to_owned(), truths, small })
+    }
+}
+
+/// Measures every setting, and other programs.
 ///
 /// # Errors
-/// A set or truth that can't be read, with its file.
-pub fn measure(settings: &Settings) -> anyhow::Result<Vec<Row>> {
-    let set = PhotoSet::open(&settings.set, &[])?;
-    let truths: Vec<Truth> =
-        set.photos.par_iter().map(|photo| read_truth(photo, &settings.truth)).collect::<anyhow::Result<_>>()?;
-    let mut rows: Vec<Row> = Vec::new();
-    for resample in RESAMPLE {
-        rows.extend(resampled(&set, &truths, resample, settings)?);
+/// A set or truth that can't be read, with its file; [`Interrupted`](super::Interrupted).
+pub fn measure(settings: &Settings) -> anyhow::Result<Measured> {
+    let mut scenes = vec![Scene::read(&settings.set, &settings.truth, false)?];
+    if let Some((set, truth)) = &settings.small {
+        scenes.push(Scene::read(set, truth, true)?);
     }
-    for working_size_px in WORKING_PX {
-        rows.push(detected(&set, &truths, working_size_px, settings)?);
+    let effort = &settings.effort;
+    let mut measured = Measured::default();
+    // One thread, as the times of all jobs here are.
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    for scene in &scenes {
+        let found = in_turns(&RESAMPLE, effort, |&resample, first| one.install(|| resampled(scene, resample, first)))?;
+        for (resample, found) in RESAMPLE.into_iter().zip(found) {
+            let (time, errors) = found?;
+            measured
+                .rows
+                .extend(errors.into_iter().map(|error| resampling_row(&resampling(resample), resample, error, time)));
+        }
     }
-    Ok(rows)
+    let mut sizes = WORKING_PX.to_vec();
+    let default = DetectOptions::default().working_size_px;
+    if !sizes.contains(&default) {
+        sizes.push(default);
+    }
+    let pictures: Vec<Photograph> = scenes[0].set.photos.iter().map(read_picture).collect::<anyhow::Result<_>>()?;
+    let found = in_turns(&sizes, effort, |&px, _| detected(&pictures, &scenes[0].truths, px))?;
+    for (px, found) in sizes.into_iter().zip(found) {
+        let (time, (error, work)) = found?;
+        measured.rows.push(Row::own(DETECTION, &detection(px), (error, OUTLINE_ERROR), time, work));
+    }
+    for peer in PEERS {
+        peer_rows(peer, &scenes, settings, &mut measured)?;
+    }
+    Ok(measured)
+}
+
+fn resampling_row(setting: &str, resample: Resample, error: (&str, f64), time: Timing) -> Row {
+    let taps: u64 = match resample {
+        Resample::Nearest => 1,
+        Resample::Linear => 4,
+        Resample::Cubic => 16,
+    };
+    let size = Normalization::default().size as u64;
+    Row::own(RESAMPLING, setting, (error.1, error.0), time, taps * size * size)
+}
+
+/// Another program on the same photographs.
+fn peer_rows(
+    (word, name, packages): (&str, &str, [(&str, &str); 2]),
+    scenes: &[Scene],
+    settings: &Settings,
+    measured: &mut Measured,
+) -> anyhow::Result<()> {
+    if let Err(missing) = settings.python.has(name, &packages) {
+        measured.peers.push(missing);
+        return Ok(());
+    }
+    let repeats = settings.effort.repeats.to_string();
+    let mut rows = Vec::new();
+    let mut all = || -> anyhow::Result<()> {
+        for scene in scenes {
+            for resample in RESAMPLE {
+                let (folder, out) = (tempfile::tempdir()?, tempfile::tempdir()?);
+                let set = std::path::absolute(&scene.folder)?.display().to_string();
+                let arguments = [word, &set, &out.path().display().to_string(), "1", kernel(resample), &repeats];
+                let answers = settings.python.answers(SCRIPT, folder.path(), &arguments, &settings.effort)?;
+                let time = Timing::of(answers.into_iter().flat_map(|answer| answer.seconds).collect());
+                let named = (0..scene.set.photos.len()).map(|k| {
+                    let photo = &scene.set.photos[k];
+                    (k, format!("normalized/{}/{}.png", photo.pose, photo.subject))
+                });
+                for error in errors(scene, out.path(), named)? {
+                    let setting = format!("{name}, {}", kernel(resample));
+                    rows.push(resampling_row(&setting, resample, error, time).peer());
+                }
+            }
+        }
+        Ok(())
+    };
+    let outcome = all();
+    settings.effort.check()?;
+    measured.peers.push(match outcome {
+        Ok(()) => PeerReport::measured(name, "resampling of the same photographs, three kernels"),
+        Err(why) => PeerReport::missing(name, format!("{why:#}")),
+    });
+    measured.rows.extend(rows);
+    Ok(())
+}
+
+fn read_picture(photo: &Photo) -> anyhow::Result<Photograph> {
+    Photograph::read(&photo.path).with_context(|| photo.file.clone())
 }
 
 fn read_truth(photo: &Photo, truth: &Path) -> anyhow::Result<Truth> {
@@ -90,59 +232,54 @@ fn inside(outline: &Outline, axis: Axis) -> anyhow::Result<Vec<bool>> {
     Ok((0..size * size).map(|at| pixel(at / size, at % size)).collect())
 }
 
-/// The whole job with drawn outlines: errors of its normalized pictures and of its maps.
-fn resampled(set: &PhotoSet, truths: &[Truth], resample: Resample, settings: &Settings) -> anyhow::Result<Vec<Row>> {
+/// Errors, each with its name.
+type Errors = Vec<(&'static str, f64)>;
+
+/// The whole job with drawn outlines: the time of the only stage that the setting changes, and the errors of its results.
+fn resampled(scene: &Scene, resample: Resample, first: bool) -> Run<Errors> {
     let normalization = Normalization { resample, ..Normalization::default() };
     let outlines = OutlineOptions { sources: Sources::Annotated, ..OutlineOptions::default() };
-    let options = PhotosOptions { normalization, outlines, keep_detected: false };
-    let mut seconds = Vec::new();
-    let mut errors = Vec::new();
-    for repeat in 0..settings.repeats {
-        let out = tempfile::tempdir()?;
-        let staging = Staging::new(out.path())?;
-        let result = run_photos(set, &options, &staging, &Watch { stop: &AtomicBool::new(false), tick: &|| {} })?;
-        // The only stage that the setting changes.
-        let stages = result.stages.list();
-        seconds.extend(stages.iter().filter(|s| s.stage == "normalize").map(|s| s.thread_s / s.runs as f64));
-        if repeat > 0 {
-            continue;
-        }
-        staging.commit()?;
-        let mut difference = Difference::default();
-        for row in &result.rows {
-            let Some(name) = &row.normalized else { continue };
-            let picture = image::open(out.path().join(name)).with_context(|| name.clone())?.to_luma16();
-            let truth = &truths[row.photo];
-            let made = picture.iter().map(|&level| f32::from(level) / 65535.0);
-            for ((made, exact), _) in made.zip(&truth.normalized).zip(&truth.inside).filter(|(_, inside)| **inside) {
-                difference.add(made, *exact);
-            }
-        }
-        errors.push((PICTURE_ERROR, difference.rms_of_255()));
-        for (kind, unit) in MAP_ERRORS {
-            let mut difference = Difference::default();
-            for pose in set.poses() {
-                let name = format!("maps/{pose}-{kind}.npy");
-                let (made, exact) = (read_map(&out.path().join(&name))?, read_map(&settings.truth.join(&name))?);
-                ensure!(made.dim() == exact.dim(), "{name}: {:?} and {:?} pixels", made.dim(), exact.dim());
-                made.iter().zip(&exact).for_each(|(made, exact)| difference.add(*made, *exact));
-            }
-            errors.push((unit, difference.rms_of_255()));
+    let options = PhotosOptions { normalization, outlines, ..PhotosOptions::default() };
+    let out = tempfile::tempdir()?;
+    let staging = Staging::new(out.path())?;
+    let result = run_photos(&scene.set, &options, &staging, &Watch { stop: &AtomicBool::new(false), tick: &|| {} })?;
+    let stages = result.stages.list();
+    let stage = stages.iter().find(|s| s.stage == "normalize").context("nothing was normalized")?;
+    let seconds = stage.thread_s / stage.runs as f64;
+    if !first {
+        return Ok((seconds, None));
+    }
+    staging.commit()?;
+    let named = result.rows.iter().filter_map(|row| Some((row.photo, row.normalized.clone()?)));
+    Ok((seconds, Some(errors(scene, out.path(), named)?)))
+}
+
+/// Of the normalized pictures, each a photograph's, and of the maps under `out`.
+fn errors(scene: &Scene, out: &Path, pictures: impl Iterator<Item = (usize, String)>) -> anyhow::Result<Errors> {
+    let mut difference = Difference::default();
+    for (photo, name) in pictures {
+        let picture = image::open(out.join(&name)).with_context(|| name.clone())?.to_luma16();
+        let truth = &scene.truths[photo];
+        let made = picture.iter().map(|&level| f32::from(level) / 65535.0);
+        for ((made, exact), _) in made.zip(&truth.normalized).zip(&truth.inside).filter(|(_, inside)| **inside) {
+            difference.add(made, *exact);
         }
     }
-    let taps: u64 = match resample {
-        Resample::Nearest => 1,
-        Resample::Linear => 4,
-        Resample::Cubic => 16,
-    };
-    let run_s = median(seconds);
-    let setting = format!("resample {}", format!("{resample:?}").to_lowercase());
-    let work = taps * (normalization.size * normalization.size) as u64;
-    let row = |(unit, error): (&str, f64)| {
-        let (setting, error_unit) = (setting.clone(), unit.to_owned());
-        Row { job: "photos", setting, error, error_unit, run_s, work }
-    };
-    Ok(errors.into_iter().map(row).collect())
+    if scene.small {
+        return Ok(vec![(SMALL_PICTURE_ERROR, difference.rms_of_255())]);
+    }
+    let mut errors = vec![(PICTURE_ERROR, difference.rms_of_255())];
+    for (kind, unit) in MAP_ERRORS {
+        let mut difference = Difference::default();
+        for pose in scene.set.poses() {
+            let name = format!("maps/{pose}-{kind}.npy");
+            let (made, exact) = (read_map(&out.join(&name))?, read_map(&scene.truth.join(&name))?);
+            ensure!(made.dim() == exact.dim(), "{name}: {:?} and {:?} pixels", made.dim(), exact.dim());
+            made.iter().zip(&exact).for_each(|(made, exact)| difference.add(*made, *exact));
+        }
+        errors.push((unit, difference.rms_of_255()));
+    }
+    Ok(errors)
 }
 
 fn read_map(path: &Path) -> anyhow::Result<Array2<f32>> {
@@ -170,36 +307,19 @@ impl Difference {
     }
 }
 
-/// Detection alone, on decoded photographs.
-fn detected(set: &PhotoSet, truths: &[Truth], working_size_px: u32, settings: &Settings) -> anyhow::Result<Row> {
+/// Detection alone, on decoded photographs: seconds a photograph, the mean error and pixels searched.
+fn detected(pictures: &[Photograph], truths: &[Truth], working_size_px: u32) -> Run<(f64, u64)> {
     let options = DetectOptions { working_size_px, ..DetectOptions::default() };
-    let mut errors = Vec::new();
-    let mut seconds = Vec::new();
-    let mut work = 0;
-    for (photo, truth) in set.photos.iter().zip(truths) {
-        let picture = Photograph::read(&photo.path).with_context(|| photo.file.clone())?;
-        let (width, height) = (picture.image.width(), picture.image.height());
-        let shrunk = (f64::from(working_size_px) / f64::from(width.max(height))).min(1.0);
-        work += (f64::from(width) * f64::from(height) * shrunk * shrunk) as u64;
-        let mut times = Vec::new();
-        for repeat in 0..settings.repeats {
-            let start = Instant::now();
-            let found = detect(&picture.image, &options);
-            times.push(start.elapsed().as_secs_f64());
-            if repeat == 0 {
-                let best = found.nails.iter().map(|n| n.outline.iou(&truth.outline)).fold(0.0, f64::max);
-                errors.push(1.0 - best);
-            }
-        }
-        seconds.push(median(times));
+    let (mut errors, mut work, mut seconds) = (0.0, 0, 0.0);
+    for (picture, truth) in pictures.iter().zip(truths) {
+        let (width, height) = (f64::from(picture.image.width()), f64::from(picture.image.height()));
+        let shrunk = (f64::from(working_size_px) / width.max(height)).min(1.0);
+        work += (width * height * shrunk * shrunk) as u64;
+        let start = Instant::now();
+        let found = detect(&picture.image, &options);
+        seconds += start.elapsed().as_secs_f64();
+        errors += 1.0 - found.nails.iter().map(|n| n.outline.iou(&truth.outline)).fold(0.0, f64::max);
     }
-    let count = set.photos.len();
-    Ok(Row {
-        job: "photos",
-        setting: format!("detect on {working_size_px} px"),
-        error: errors.iter().sum::<f64>() / count as f64,
-        error_unit: OUTLINE_ERROR.to_owned(),
-        run_s: median(seconds),
-        work: work / count as u64,
-    })
+    let count = pictures.len();
+    Ok((seconds / count as f64, Some((errors / count as f64, work / count as u64))))
 }

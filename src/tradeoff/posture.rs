@@ -3,12 +3,13 @@
 
 use std::f64::consts::{PI, TAU};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
 
-use anyhow::{Context, ensure};
+use anyhow::ensure;
 
+use super::peers::PeerReport;
 use super::recipe::{self, Recipe, Wanted};
-use super::{Row, median};
+use super::rows::{Measured, Row};
+use super::timing::{Effort, Run, Timing, in_turns};
 use crate::posture::{
     Joint, Layout, Marker, Method, Outputs, Planes, PostureOptions, Search, Watch, run as run_posture,
 };
@@ -24,15 +25,17 @@ pub struct Settings {
     pub markers: PathBuf,
     /// Its truth, as `lunula phantom video` writes it.
     pub truth: PathBuf,
-    /// Runs of each setting; the median time counts.
-    pub repeats: usize,
-    /// Threads that decode (0: all cores).
-    pub threads: usize,
+    /// How much.
+    pub effort: Effort,
 }
 
-/// Name, planes, rounds of refinement, search; the first is what `lunula posture` does.
+/// How centres are found.
+pub(super) const TRACKING: (&str, &str) = ("posture", "tracking");
+/// Of all angles together.
+pub(super) const ALL_JOINTS: &str = "all joints, degrees RMS";
+/// Name, planes, rounds of refinement, search.
 const SETTINGS: [(&str, Planes, usize, Search); 7] = [
-    ("default", Planes::All, Method::ROUNDS, Search::Near),
+    ("fitted to a standstill", Planes::All, Method::ROUNDS, Search::Near),
     ("luma only", Planes::Luma, Method::ROUNDS, Search::Near),
     ("chroma only", Planes::Chroma, Method::ROUNDS, Search::Near),
     ("centroid", Planes::All, 0, Search::Near),
@@ -44,63 +47,72 @@ const SETTINGS: [(&str, Planes, usize, Search); 7] = [
 /// What users of OpenCV write.
 const OPENCV: &str = "OpenCV: BGR, HSV, inRange, contours";
 
+fn method((_, planes, rounds, search): (&str, Planes, usize, Search)) -> Method {
+    Method { planes, rounds, search }
+}
+
+/// What `lunula posture` does.
+pub(super) fn tracking_default() -> String {
+    let default = SETTINGS.into_iter().find(|&setting| method(setting) == Method::default());
+    default.map_or("none of those measured", |(name, ..)| name).to_owned()
+}
+
 /// Measures every setting.
 ///
 /// # Errors
-/// A video, marker file or truth that can't be read, with its file.
-pub fn measure(settings: &Settings) -> anyhow::Result<Vec<Row>> {
+/// A video, marker file or truth that can't be read, with its file; [`Interrupted`](super::Interrupted).
+pub fn measure(settings: &Settings) -> anyhow::Result<Measured> {
     let layout = Layout::read(&settings.markers)?;
     let truth = Angles::read(&settings.truth.join("joints.csv"), &layout)?;
-    let mut rows = Vec::new();
-    for (name, planes, rounds, search) in SETTINGS {
-        let method = Method { planes, rounds, search };
-        let options = PostureOptions { threads: settings.threads, method, ..PostureOptions::default() };
-        rows.extend(ours(name, &options, &layout, &truth, settings)?);
+    let wanted = wanted(&layout, &settings.truth)?;
+    let ways: Vec<Option<Method>> = SETTINGS.map(|setting| Some(method(setting))).into_iter().chain([None]).collect();
+    let found = in_turns(&ways, &settings.effort, |way, first| match way {
+        Some(method) => ours(*method, first, &layout, &truth, settings),
+        None => theirs(first, &wanted, &layout, &truth, settings),
+    })?;
+    let mut measured = Measured::default();
+    for (found, name) in found.into_iter().zip(SETTINGS.map(|(name, ..)| name).into_iter().chain([OPENCV])) {
+        let (time, (errors, work)) = found?;
+        let rows = errors.iter().map(|(unit, error)| row(name, (*error, unit), time, work));
+        measured.rows.extend(rows.map(|row| if name == OPENCV { row.peer() } else { row }));
     }
-    rows.extend(theirs(&layout, &truth, settings)?);
-    Ok(rows)
+    measured.peers.push(PeerReport::measured("OpenCV", "its users' recipe, run in this program on the same frames"));
+    Ok(measured)
 }
 
-/// The job itself, with these options.
-fn ours(
-    name: &str,
-    options: &PostureOptions,
-    layout: &Layout,
-    truth: &Angles,
-    settings: &Settings,
-) -> anyhow::Result<Vec<Row>> {
+fn row(setting: &str, error: (f64, &str), time: Timing, work: u64) -> Row {
+    Row::own(TRACKING, setting, error, time, work)
+}
+
+/// Errors with their names, and samples looked at.
+type Errors = (Vec<(String, f64)>, u64);
+
+/// The job itself.
+fn ours(method: Method, first: bool, layout: &Layout, truth: &Angles, settings: &Settings) -> Run<Errors> {
+    let options =
+        PostureOptions { threads: settings.effort.threads, method, clock_every: 0, ..PostureOptions::default() };
     let folder = tempfile::tempdir()?;
     let joints = folder.path().join("joints.csv");
     let outputs = Outputs { joints: joints.clone(), tracks: None, overlay: None, figures: false };
-    let watch = Watch { stop: &AtomicBool::new(false), tick: &|_, _| {} };
-    let mut seconds = Vec::new();
-    let mut work = 0;
-    for _ in 0..settings.repeats {
-        let report = run_posture(&settings.video, layout, options, &outputs, &watch)?;
-        let track: f64 = report.stages.iter().filter(|s| s.stage == "track").map(|s| s.thread_s).sum();
-        seconds.push(track / report.frames.all as f64);
-        let samples = (report.video.shown_px[0] * report.video.shown_px[1]) as f64;
-        work = (samples * report.searches.share_of_samples).round() as u64;
-    }
-    let found = Angles::read(&joints, layout)?;
-    Ok(rows(name, &found.errors(truth, layout)?, median(seconds), work))
+    let watch = Watch { stop: &settings.effort.stop, tick: &|_, _| {} };
+    let report = run_posture(&settings.video, layout, &options, &outputs, &watch)?;
+    let track: f64 = report.stages.iter().filter(|s| s.stage == "track").map(|s| s.thread_s).sum();
+    let seconds = track / report.frames.all as f64;
+    let samples = (report.video.shown_px[0] * report.video.shown_px[1]) as f64;
+    let work = (samples * report.searches.share_of_samples).round() as u64;
+    let errors = || anyhow::Ok((Angles::read(&joints, layout)?.errors(truth, layout)?, work));
+    Ok((seconds, first.then(errors).transpose()?))
 }
 
 /// The recipe of OpenCV's users on the same frames.
-fn theirs(layout: &Layout, truth: &Angles, settings: &Settings) -> anyhow::Result<Vec<Row>> {
-    let wanted = wanted(layout, &settings.truth)?;
-    let mut seconds = Vec::new();
-    let mut found = None;
-    for _ in 0..settings.repeats {
-        let recipe = recipe::run(&settings.video, settings.threads, &wanted)?;
-        seconds.push((recipe.bgr_s + recipe.opencv_s) / recipe.frames.len() as f64);
-        found = Some(Angles::of(&recipe, layout));
-    }
-    let found = found.context("no repeats")?;
-    let format = Video::open(&settings.video, settings.threads)?.info().format;
+fn theirs(first: bool, wanted: &[Wanted], layout: &Layout, truth: &Angles, settings: &Settings) -> Run<Errors> {
+    let recipe = recipe::run(&settings.video, settings.effort.threads, wanted)?;
+    let seconds = (recipe.bgr_s + recipe.opencv_s) / recipe.frames.len() as f64;
+    let format = Video::open(&settings.video, settings.effort.threads)?.info().format;
     // Every sample of every plane is converted.
     let work = (format.width * format.height) as u64;
-    Ok(rows(OPENCV, &found.errors(truth, layout)?, median(seconds), work))
+    let errors = || anyhow::Ok((Angles::of(&recipe, layout).errors(truth, layout)?, work));
+    Ok((seconds, first.then(errors).transpose()?))
 }
 
 /// The markers, with where they are at first.
@@ -115,18 +127,6 @@ fn wanted(layout: &Layout, truth: &Path) -> anyhow::Result<Vec<Wanted>> {
     let wanted =
         |marker: &Marker| Wanted { name: marker.name.clone(), srgb: marker.colour, start_px: first(&marker.name) };
     Ok(layout.markers.iter().map(wanted).collect())
-}
-
-fn rows(setting: &str, errors: &[(String, f64)], run_s: f64, work: u64) -> Vec<Row> {
-    let row = |(error_unit, error): &(String, f64)| Row {
-        job: "posture",
-        setting: setting.to_owned(),
-        error: *error,
-        error_unit: error_unit.clone(),
-        run_s,
-        work,
-    };
-    errors.iter().map(row).collect()
 }
 
 /// Each joint's angle in each frame, degrees.
@@ -156,14 +156,17 @@ impl Angles {
 
     /// Each joint's error over the frames in which all settings can have its angle: those that have it; with the error's name.
     fn errors(&self, truth: &Self, layout: &Layout) -> anyhow::Result<Vec<(String, f64)>> {
-        let mut errors = Vec::new();
+        let (mut errors, mut squares) = (Vec::new(), 0.0);
         for ((joint, found), exact) in layout.joints.iter().zip(&self.0).zip(&truth.0) {
             ensure!(found.len() == exact.len(), "{} frames in the video, {} in its truth", found.len(), exact.len());
             let both = found.iter().zip(exact).filter_map(|(found, exact)| Some(((*found)? - (*exact)?).powi(2)));
             let (sum, count) = both.fold((0.0, 0), |(sum, count), square| (sum + square, count + 1));
             ensure!(count > 0, "{}: no frame has its angle", joint.name);
-            errors.push((format!("{}, degrees RMS", joint.name), (sum / f64::from(count)).sqrt()));
+            let square = sum / f64::from(count);
+            errors.push((format!("{}, degrees RMS", joint.name), square.sqrt()));
+            squares += square;
         }
+        errors.push((ALL_JOINTS.to_owned(), (squares / errors.len() as f64).sqrt()));
         Ok(errors)
     }
 }

@@ -75,11 +75,10 @@ const FATES: [(Fate, &str, &str, usize); 4] = [
 ];
 
 /// Writes `stability.csv`, `stability.png` and `stability.svg`.
-pub(super) fn write(maps: &[Map], out: &Path) -> anyhow::Result<()> {
-    let staging = Staging::new(out)?;
+pub(in crate::tradeoff) fn write(maps: &[Map], staging: &Staging) -> anyhow::Result<()> {
     let mut columns = vec![Column::text("varied"), Column::text("load"), Column::number("factor")];
     columns.extend([Column::number("load_Pa"), Column::text("fate"), Column::number("tau_s")]);
-    let mut table = TableWriter::create(&staging.place("stability.csv")?, &out.join("stability.csv"), columns, &[])?;
+    let mut table = TableWriter::create(&staging.place("stability.csv")?, Path::new("stability.csv"), columns, &[])?;
     for map in maps {
         for row in &map.rows {
             for (k, fate) in row.fates.iter().enumerate() {
@@ -92,9 +91,7 @@ pub(super) fn write(maps: &[Map], out: &Path) -> anyhow::Result<()> {
     }
     table.finish()?;
     let charts: Vec<Chart> = maps.iter().map(chart).collect();
-    draw_panels(&charts, 3, 520, &staging.place("stability.png")?, &staging.place("stability.svg")?)?;
-    staging.commit()?;
-    Ok(())
+    draw_panels(&charts, 3, 520, &staging.place("stability.png")?, &staging.place("stability.svg")?)
 }
 
 fn chart(map: &Map) -> Chart {

@@ -4,8 +4,9 @@ use std::path::Path;
 
 use anyhow::Context;
 
-use super::ERROR;
-use crate::tradeoff::Row;
+use super::{ERROR, SOLVING};
+use crate::tradeoff::rows::Row;
+use crate::tradeoff::timing::Timing;
 
 /// A row of a peer's table: `solver,rtol,error,microseconds,evaluations`; lines that begin with `#` say how it was made.
 #[derive(Debug, serde::Deserialize)]
@@ -43,18 +44,14 @@ pub fn read_peers(path: &Path) -> anyhow::Result<Vec<Row>> {
         if row.solver.starts_with("lunula") {
             continue; // Our own rows of the bench are measured here anew.
         }
-        rows.push(Row {
-            job: "hemodynamics",
-            // Where tolerances of the rates are loosened, the series is the same solver's.
-            setting: match row.solver.strip_suffix(" loose rates") {
-                Some(solver) => format!("{solver}, {:.0e} (loose)", row.rtol),
-                None => format!("{}, {:.0e}", row.solver, row.rtol),
-            },
-            error: row.error,
-            error_unit: ERROR.to_owned(),
-            run_s: 1e-6 * row.microseconds,
-            work: row.evaluations.unwrap_or(0),
-        });
+        // Where tolerances of the rates are loosened, the series is the same solver's.
+        let setting = match row.solver.strip_suffix(" loose rates") {
+            Some(solver) => format!("{solver}, {:.0e} (loose)", row.rtol),
+            None => format!("{}, {:.0e}", row.solver, row.rtol),
+        };
+        let time = Timing::of(vec![1e-6 * row.microseconds]);
+        let own = Row::own(SOLVING, &setting, (row.error, ERROR), time, row.evaluations.unwrap_or(0)).peer();
+        rows.push(Row { repeats: 0, ..own });
     }
     anyhow::ensure!(!rows.is_empty(), "{}: has no rows of peers", path.display());
     Ok(rows)

@@ -1,6 +1,6 @@
 """The posture job's tracking as a user of Python would write it: the peer of `lunula posture`.
 
-usage: peer_posture.py VIDEO MARKERS.toml [OUT.csv] [THREADS]
+usage: posture.py VIDEO MARKERS.toml [OUT.csv] [THREADS]
 
 VIDEO and MARKERS.toml as `lunula phantom video` writes them. Each whole frame to HSV, a mask of each colour's range of hue,
 its largest contours, their centroids; markers of one colour keep to their last places. Writes frame,time_s,marker,x_px,y_px

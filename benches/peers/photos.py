@@ -1,9 +1,10 @@
 """The photos job as a user of Python would write it: the peer of `cargo bench --bench photos`.
 
-usage: peer_photos.py opencv|skimage SET OUT [PROCESSES]
+usage: photos.py opencv|skimage SET OUT [PROCESSES [nearest|linear|cubic [REPEATS]]]
 
 SET as `lunula phantom photos` writes it, outlines and axes in LabelMe. Writes what `lunula photos` writes: normalized
-pictures, maps, figures, sheets (without captions) and nails.csv.
+pictures, maps, figures, sheets (without captions) and nails.csv. Prints a line of JSON: for each of REPEATS, the seconds
+that resampling one photograph in its nail's frame took on average.
 """
 
 import csv
@@ -12,17 +13,21 @@ import math
 import multiprocessing
 import os
 import sys
+import time
 
 import numpy as np
 
 PEER, SET, OUT = sys.argv[1:4]
 PROCESSES = int(sys.argv[4]) if len(sys.argv) > 4 else 1
+KERNEL = ("nearest", "linear", "cubic").index(sys.argv[5] if len(sys.argv) > 5 else "cubic")
+REPEATS = int(sys.argv[6]) if len(sys.argv) > 6 else 1
 SIZE, NAIL = 400, 320
 
 if PEER == "opencv":
     import cv2
 
-    if PROCESSES > 1:
+    cv2_kernel = (cv2.INTER_NEAREST, cv2.INTER_LINEAR, cv2.INTER_CUBIC)[KERNEL]
+    if PROCESSES > 1 or len(sys.argv) > 6:
         cv2.setNumThreads(1)
 
     def read(path):
@@ -32,7 +37,7 @@ if PEER == "opencv":
         cv2.imwrite(path, picture)
 
     def warp(green, matrix):
-        return cv2.warpAffine(green, matrix[:2], (SIZE, SIZE), flags=cv2.INTER_CUBIC | cv2.WARP_INVERSE_MAP,
+        return cv2.warpAffine(green, matrix[:2], (SIZE, SIZE), flags=cv2_kernel | cv2.WARP_INVERSE_MAP,
                               borderMode=cv2.BORDER_REPLICATE)
 else:
     from skimage import io, transform
@@ -44,7 +49,7 @@ else:
         io.imsave(path, picture, check_contrast=False)
 
     def warp(green, matrix):
-        warped = transform.warp(green, transform.AffineTransform(matrix), output_shape=(SIZE, SIZE), order=3,
+        warped = transform.warp(green, transform.AffineTransform(matrix), output_shape=(SIZE, SIZE), order=(0, 1, 3)[KERNEL],
                                 mode="edge", preserve_range=True)
         return np.clip(np.round(warped), 0, 255).astype(np.uint8)
 
@@ -71,11 +76,17 @@ def stretch(values, low, high):
 
 def pose_job(pose):
     os.makedirs(f"{OUT}/normalized/{pose}", exist_ok=True)
-    pictures, rows = [], []
+    pictures, rows, seconds = [], [], [0.0] * REPEATS
     for name in sorted(n for n in os.listdir(f"{SET}/{pose}") if n.endswith(".png")):
         subject = name[:-4]
         matrix, box = frame(f"{SET}/{pose}/{subject}.json")
-        normalized = warp(read(f"{SET}/{pose}/{name}"), matrix)
+        green = read(f"{SET}/{pose}/{name}")
+        if REPEATS > 1:
+            warp(green, matrix)  # warms up
+        for k in range(REPEATS):
+            start = time.perf_counter()
+            normalized = warp(green, matrix)
+            seconds[k] += time.perf_counter() - start
         write(f"{OUT}/normalized/{pose}/{name}", normalized)
         pictures.append(normalized)
         rows.append([f"{pose}/{name}", 1, subject, pose, "annotated", 1, *box, "true", ""])
@@ -92,7 +103,7 @@ def pose_job(pose):
     }
     for kind, picture in figures.items():
         write(f"{OUT}/figures/{pose}-{kind}.png", picture)
-    return rows, figures
+    return rows, figures, seconds
 
 
 def main():
@@ -105,12 +116,14 @@ def main():
     else:
         done = [pose_job(pose) for pose in poses]
     for kind in ("mean", "contrast", "threshold", "sd"):
-        tiles = [figures[kind] for _, figures in done]
+        tiles = [figures[kind] for _, figures, _ in done]
         write(f"{OUT}/figures/{kind}.png", np.vstack([np.hstack(tiles[k:k + 4]) for k in range(0, len(tiles), 4)]))
     with open(f"{OUT}/nails.csv", "w", newline="") as table:
         writer = csv.writer(table)
         writer.writerow("file nail subject pose outline confidence center_x_px center_y_px length_px width_px axis_deg used reason".split())
-        writer.writerows(row for rows, _ in done for row in rows)
+        writer.writerows(row for rows, _, _ in done for row in rows)
+    photographs = sum(len(rows) for rows, _, _ in done)
+    print(json.dumps({"seconds": [sum(s[k] for _, _, s in done) / photographs for k in range(REPEATS)]}))
 
 
 main()

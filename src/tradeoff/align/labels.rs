@@ -1,0 +1,166 @@
+//! Labels over gaps: markers are lost now and then, and angles interpolated over longer and longer gaps.
+//!
+//! The angles are the job's own, with frames taken out: every [`APART`] frames a gap of as many as [`LOST`] says, in turn. The error is that
+//! of the labels that rows have; how many have one is told as `work`. Beside it a user of pandas, on the same tables.
+
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+use anyhow::{Context, ensure};
+
+use super::{Settings, column};
+use crate::align::{AlignInputs, AlignOptions, AlignOutputs, run as run_align};
+use crate::posture::Layout;
+use crate::table::Table;
+use crate::tradeoff::peers::{PeerReport, Script};
+use crate::tradeoff::rows::{Measured, Row};
+use crate::tradeoff::timing::{Timing, in_turns};
+
+/// How long a gap is labelled over.
+pub(in crate::tradeoff) const BRIDGING: (&str, &str) = ("align", "bridging");
+/// The error's name and unit.
+pub(in crate::tradeoff) const LABEL_ERROR: &str = "labels of joint angles, markers lost now and then, degrees RMS";
+/// Frames from a gap's beginning to the next one's.
+const APART: usize = 45;
+/// Frames lost in a gap, in turn.
+const LOST: [usize; 5] = [1, 2, 4, 8, 16];
+/// The longest gap that is bridged, in frame intervals; none: what the job does.
+const INTERVALS: [(&str, Option<f64>); 4] = [
+    ("no frame bridged", Some(1.5)),
+    ("gaps of two frames", None),
+    ("gaps of five frames", Some(5.5)),
+    ("gaps of twenty frames", Some(20.5)),
+];
+const PANDAS: &str = "pandas";
+const PANDAS_SETTING: &str = "pandas, interp";
+const PACKAGES: [(&str, &str); 2] = [("numpy", "numpy"), ("pandas", "pandas")];
+const SCRIPT: Script = Script { files: &[("align.py", include_str!("../../../benches/peers/align.py"))] };
+
+/// What `lunula align` does.
+pub(in crate::tradeoff) fn bridging_default() -> String {
+    let default =
+        INTERVALS.into_iter().find(|(_, intervals)| intervals.is_none() == AlignOptions::default().max_gap_s.is_none());
+    default.map_or("none of those measured", |(name, _)| name).to_owned()
+}
+
+/// Measures every setting, where the log's truth is known.
+pub(super) fn measure(
+    layout: &Layout,
+    joints: &Path,
+    settings: &Settings,
+    measured: &mut Measured,
+) -> anyhow::Result<()> {
+    let truth = settings.truth.join("log.csv");
+    if !truth.is_file() {
+        measured.refused.push(format!("labels: {} is missing", truth.display()));
+        return Ok(());
+    }
+    let truth = Truth::read(&settings.log, &truth, layout)?;
+    let folder = tempfile::tempdir()?;
+    let gappy = folder.path().join("joints.csv");
+    lose(joints, &gappy)?;
+    let times_s = column(&gappy, "time_s")?;
+    let span_s = times_s.last().zip(times_s.first()).map_or(f64::NAN, |(last, first)| last - first);
+    let interval_s = span_s / (times_s.len() as f64 - 1.0);
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    let training = folder.path().join("training.csv");
+    let found = in_turns(&INTERVALS, &settings.effort, |(_, intervals), first| {
+        let inputs = AlignInputs { joints: gappy.clone(), log: settings.log.clone(), tracks: None };
+        let options = AlignOptions { max_gap_s: intervals.map(|n| n * interval_s), ..AlignOptions::default() };
+        let outputs = AlignOutputs { training: training.clone(), mot: None, bids: None, dlc: None, figures: false };
+        let report = one.install(|| run_align(&inputs, &options, &outputs, &AtomicBool::new(false)))?;
+        Ok((report.wall_s, first.then(|| truth.error(&training)).transpose()?))
+    })?;
+    for ((name, _), found) in INTERVALS.into_iter().zip(found) {
+        match found {
+            Ok((time, (error, rows))) => measured.rows.push(Row::own(BRIDGING, name, (error, LABEL_ERROR), time, rows)),
+            Err(why) => measured.refused.push(format!("{name}: {why:#}")),
+        }
+    }
+    if let Err(missing) = settings.python.has(PANDAS, &PACKAGES) {
+        measured.peers.push(missing);
+        return Ok(());
+    }
+    let pandas = || -> anyhow::Result<Row> {
+        let log = std::path::absolute(&settings.log)?.display().to_string();
+        let [gappy, training] = [&gappy, &training].map(|path| path.display().to_string());
+        let arguments = [gappy.as_str(), &log, &training, &settings.effort.repeats.to_string()];
+        let answers = settings.python.answers(SCRIPT, folder.path(), &arguments, &settings.effort)?;
+        let time = Timing::of(answers.into_iter().flat_map(|answer| answer.seconds).collect());
+        let (error, rows) = truth.error(Path::new(&training))?;
+        Ok(Row::own(BRIDGING, PANDAS_SETTING, (error, LABEL_ERROR), time, rows).peer())
+    };
+    let outcome = pandas();
+    settings.effort.check()?;
+    measured.peers.push(match outcome {
+        Ok(row) => {
+            measured.rows.push(row);
+            PeerReport::measured(
+                PANDAS,
+                "the same tables by numpy's interp, without standard errors; loading pandas is not counted",
+            )
+        }
+        Err(why) => PeerReport::missing(PANDAS, format!("{why:#}")),
+    });
+    Ok(())
+}
+
+/// Takes frames out of a table of angles.
+fn lose(joints: &Path, gappy: &Path) -> anyhow::Result<()> {
+    let mut reader = csv::Reader::from_path(joints).with_context(|| joints.display().to_string())?;
+    let header = reader.headers()?.clone();
+    let mut writer = csv::Writer::from_path(gappy).with_context(|| gappy.display().to_string())?;
+    writer.write_record(&header)?;
+    for (frame, record) in reader.records().enumerate() {
+        let lost = frame >= APART && frame % APART < LOST[frame / APART % LOST.len()];
+        let record = record?;
+        let cell = |(name, cell): (&str, &str)| match name {
+            "status" if lost => "lost: taken out".to_owned(),
+            _ if lost && name.ends_with("_deg") => String::new(),
+            _ => cell.to_owned(),
+        };
+        writer.write_record(header.iter().zip(&record).map(cell))?;
+    }
+    Ok(writer.flush()?)
+}
+
+/// The exact angles at the log's rows.
+struct Truth {
+    joints: Vec<String>,
+    /// By the bits of the log's time.
+    rows: HashMap<u64, Vec<f64>>,
+}
+
+impl Truth {
+    fn read(log: &Path, truth: &Path, layout: &Layout) -> anyhow::Result<Self> {
+        let joints: Vec<String> = layout.joints.iter().map(|joint| format!("{}_deg", joint.name)).collect();
+        let times_s = column(log, "time_s")?;
+        let angles = joints.iter().map(|name| column(truth, name)).collect::<anyhow::Result<Vec<_>>>()?;
+        ensure!(
+            angles.iter().all(|angles| angles.len() == times_s.len()),
+            "{}: has not the log's rows",
+            truth.display()
+        );
+        let row = |(k, time_s): (usize, &f64)| (time_s.to_bits(), angles.iter().map(|angles| angles[k]).collect());
+        Ok(Self { rows: times_s.iter().enumerate().map(row).collect(), joints })
+    }
+
+    /// The error of a labelled set, and how many rows have all labels.
+    fn error(&self, training: &Path) -> anyhow::Result<(f64, u64)> {
+        let table = Table::read(training)?;
+        let times_s = column(training, "time_s")?;
+        let labels = self.joints.iter().map(|name| table.numbers(name)).collect::<Result<Vec<_>, _>>()?;
+        let (mut squares, mut count, mut whole) = (0.0, 0_u64, 0);
+        for (k, time_s) in times_s.iter().enumerate() {
+            let exact = self.rows.get(&time_s.to_bits()).with_context(|| format!("{time_s} s is no row of the log"))?;
+            let misses: Vec<f64> =
+                labels.iter().zip(exact).filter_map(|(labels, exact)| Some(labels[k]? - exact)).collect();
+            squares += misses.iter().map(|miss| miss * miss).sum::<f64>();
+            count += misses.len() as u64;
+            whole += u64::from(misses.len() == self.joints.len());
+        }
+        ensure!(count > 0, "no row has a label");
+        Ok(((squares / count as f64).sqrt(), whole))
+    }
+}

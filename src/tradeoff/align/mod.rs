@@ -1,0 +1,139 @@
+//! Tying the clocks over its settings: in how many frames the clock in the picture is read, and no clock at all; and labelling over longer
+//! and longer gaps.
+
+mod labels;
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+
+use anyhow::{Context, ensure};
+
+use super::peers::Python;
+use super::rows::{Measured, Row};
+use super::timing::{Effort, Run, in_turns};
+use crate::align::{AlignInputs, AlignOptions, AlignOutputs, LagSearch, LagTie, Sync, run as run_align};
+use crate::posture::{Layout, Outputs, PostureOptions, PostureReport, Watch, run as run_posture};
+use crate::table::Table;
+
+pub(super) use labels::{BRIDGING, LABEL_ERROR, bridging_default};
+
+/// What is measured.
+#[derive(Debug, Clone)]
+pub struct Settings {
+    /// The video, with a clock in the picture.
+    pub video: PathBuf,
+    /// Its marker file.
+    pub markers: PathBuf,
+    /// The log that belongs to it.
+    pub log: PathBuf,
+    /// The video's truth, as `lunula phantom video` writes it; where the log's stands with it, labels are measured too.
+    pub truth: PathBuf,
+    /// How much.
+    pub effort: Effort,
+    /// What runs other programs.
+    pub python: Python,
+}
+
+/// How the clocks are tied.
+pub(super) const TYING: (&str, &str) = ("align", "tying");
+/// The error's name and unit.
+pub(super) const TIE_ERROR: &str = "largest error of the log's time over the video, seconds";
+const CORRELATE: &str = "no clock, lag within 3 s";
+/// Every so many frames the clock is read.
+const EVERY: [u64; 5] = [1, 2, 5, 20, 50];
+/// Where the lag is looked for without a clock: whoever pressed two buttons knows it to some seconds.
+const KNOWN_S: f64 = 3.0;
+
+/// What `lunula posture` and `lunula align` do.
+pub(super) fn tying_default() -> String {
+    every(PostureOptions::default().clock_every)
+}
+
+fn every(frames: u64) -> String {
+    match frames {
+        1 => "clock in every frame".to_owned(),
+        _ => format!("clock in 1 of {frames} frames"),
+    }
+}
+
+/// Measures every setting.
+///
+/// # Errors
+/// A video, marker file, log or truth that can't be read, with its file; [`Interrupted`](super::Interrupted).
+pub fn measure(settings: &Settings) -> anyhow::Result<Measured> {
+    let layout = Layout::read(&settings.markers)?;
+    ensure!(layout.clock.is_some(), "{}: has no [clock], and a clock is what is measured", settings.markers.display());
+    let truth = column(&settings.truth.join("clock.csv"), "clock_s")?;
+    let folder = tempfile::tempdir()?;
+    let joints = |frames: u64| folder.path().join(format!("{frames}.csv"));
+    let mut measured = Measured::default();
+    let found = in_turns(&EVERY, &settings.effort, |&frames, first| {
+        let report = follow(&layout, frames, &joints(frames), settings)?;
+        let seconds = report.stages.iter().filter(|s| s.stage == "clock").map(|s| s.thread_s).sum();
+        let clock = report.clock.context("the clock was not read")?;
+        ensure!(clock.tie.is_some(), "{}", report.failed.join("; "));
+        let told = || {
+            anyhow::Ok((worst(&column(&joints(frames), "clock_s")?, &truth)?, clock.frames_read + clock.frames_refused))
+        };
+        Ok((seconds, first.then(told).transpose()?))
+    })?;
+    for (frames, found) in EVERY.into_iter().zip(found) {
+        match found {
+            Ok((time, (error, work))) => {
+                measured.rows.push(Row::own(TYING, &every(frames), (error, TIE_ERROR), time, work))
+            }
+            Err(why) => measured.refused.push(format!("{}: {why:#}", every(frames))),
+        }
+    }
+    let lag = in_turns(&[()], &settings.effort, |(), first| correlated(&joints(EVERY[0]), &truth, first, settings))?;
+    for found in lag {
+        match found {
+            Ok((time, (error, work))) => measured.rows.push(Row::own(TYING, CORRELATE, (error, TIE_ERROR), time, work)),
+            // The folder's name tells nobody anything.
+            Err(why) => measured
+                .refused
+                .push(format!("{CORRELATE}: {why:#}").replace(&format!("{}: ", joints(EVERY[0]).display()), "")),
+        }
+    }
+    labels::measure(&layout, &joints(EVERY[0]), settings, &mut measured)?;
+    Ok(measured)
+}
+
+fn follow(layout: &Layout, clock_every: u64, joints: &Path, settings: &Settings) -> anyhow::Result<PostureReport> {
+    let options = PostureOptions { threads: settings.effort.threads, clock_every, ..PostureOptions::default() };
+    let outputs = Outputs { joints: joints.to_owned(), tracks: None, overlay: None, figures: false };
+    let watch = Watch { stop: &settings.effort.stop, tick: &|_, _| {} };
+    Ok(run_posture(&settings.video, layout, &options, &outputs, &watch)?)
+}
+
+/// The lag at which the photodiodes best explain the angles, for whoever filmed no clock.
+fn correlated(joints: &Path, truth: &[f64], first: bool, settings: &Settings) -> Run<(f64, u64)> {
+    let folder = tempfile::tempdir()?;
+    let inputs = AlignInputs { joints: joints.to_owned(), log: settings.log.clone(), tracks: None };
+    let about_s = truth.first().copied();
+    let lag =
+        LagTie { search: LagSearch { about_s, most_s: Some(KNOWN_S), ..LagSearch::default() }, sensor_lag_s: None };
+    let options = AlignOptions { sync: Some(Sync::Correlate), lag, ..AlignOptions::default() };
+    let outputs =
+        AlignOutputs { training: folder.path().join("training.csv"), mot: None, bids: None, dlc: None, figures: false };
+    let report = run_align(&inputs, &options, &outputs, &AtomicBool::new(false))?;
+    let seconds = report.stages.iter().filter(|s| s.stage == "tie").map(|s| s.thread_s).sum();
+    if !first {
+        return Ok((seconds, None));
+    }
+    let times_s = column(joints, "time_s")?;
+    let tie = report.certificate;
+    let found: Vec<f64> = times_s.iter().map(|t| tie.offset_s + (1.0 + 1e-6 * tie.drift_ppm) * t).collect();
+    Ok((seconds, Some((worst(&found, truth)?, times_s.len() as u64))))
+}
+
+fn column(path: &Path, name: &str) -> anyhow::Result<Vec<f64>> {
+    let cells = Table::read(path)?.numbers(name)?;
+    let known: Option<Vec<f64>> = cells.into_iter().collect();
+    known.with_context(|| format!("{}: `{name}` has empty cells", path.display()))
+}
+
+fn worst(found: &[f64], truth: &[f64]) -> anyhow::Result<f64> {
+    ensure!(found.len() == truth.len(), "{} frames in the video, {} in its truth", found.len(), truth.len());
+    Ok(found.iter().zip(truth).map(|(found, truth)| (found - truth).abs()).fold(0.0, f64::max))
+}

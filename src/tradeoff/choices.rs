@@ -1,0 +1,149 @@
+//! What can be chosen in each job, what is chosen unless the user says otherwise, and why: the one place of it. The page tells it, the
+//! README repeats it, and a test compares the two.
+
+use super::{align, hemodynamics, photos, posture, predictor};
+
+/// Settings of which one is chosen.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Choice {
+    /// Of which job.
+    pub job: &'static str,
+    /// What is chosen.
+    pub name: &'static str,
+    /// By which option, or where in the library.
+    pub option: &'static str,
+    /// The setting that is taken unless told otherwise, as rows name it; made from the job's own default.
+    pub default: String,
+    /// What the unit of the error begins with that decides; others are told beside it.
+    pub judged_by: &'static str,
+    /// Why the default is the default, where it is the knee and where it is not.
+    pub why: &'static str,
+}
+
+/// Every choice, by job.
+#[must_use]
+pub fn choices() -> Vec<Choice> {
+    let choice = |(job, name): (&'static str, &'static str), option, default, judged_by, why| Choice {
+        job,
+        name,
+        option,
+        default,
+        judged_by,
+        why,
+    };
+    vec![
+        choice(
+            photos::RESAMPLING,
+            "--resample",
+            photos::resampling_default(),
+            photos::SMALL_PICTURE_ERROR,
+            "It is chosen for small nails, where it errs least; on nails of 200 px and more \
+             linear errs a little less, and is faster.",
+        ),
+        choice(
+            photos::DETECTION,
+            "--detect-size",
+            photos::detection_default(),
+            photos::OUTLINE_ERROR,
+            "It is beyond the knee because the curve is of close-ups, on which 200 px find even more nails; on \
+             photographs of whole hands nails are small.",
+        ),
+        choice(
+            posture::TRACKING,
+            "library: posture::Method",
+            posture::tracking_default(),
+            posture::ALL_JOINTS,
+            "It is beyond the knee because less of it saves little: the whole job takes 1.14 times as long as \
+             only decoding, and rounds end by themselves where nothing is gained.",
+        ),
+        choice(
+            align::TYING,
+            "--sync; library: posture::PostureOptions::clock_every",
+            align::tying_default(),
+            align::TIE_ERROR,
+            "It is beyond the knee because reading the clock adds 2 to 4 % to the time of a video, and a clock \
+             that stops or jumps is noticed \
+             only in frames in which it is read.",
+        ),
+        choice(
+            align::BRIDGING,
+            "--max-gap",
+            align::bridging_default(),
+            align::LABEL_ERROR,
+            "Run time does not hang on it. Two frames bridge a marker that is lost in a single one; longer gaps \
+             label more rows, and worse.",
+        ),
+        choice(
+            predictor::MODEL,
+            "--model, --hidden, --restarts",
+            predictor::model_default(),
+            predictor::FIT,
+            "On random movement no model is better by more than some hundredths of a newton, and which one hangs \
+             on the person \
+             (docs/section-5-4.md).",
+        ),
+        choice(
+            predictor::ROWS,
+            "all that are given",
+            predictor::rows_default(),
+            predictor::ROWS_ERROR,
+            "It is beyond the knee because a fit of all rows takes milliseconds, and which rows can be missed is \
+             not known beforehand.",
+        ),
+        choice(
+            predictor::SOLVER,
+            "library: LeastSquaresOptions",
+            predictor::solver_default(),
+            predictor::SOLVER_DECIDES,
+            "Photodiodes that are nearly alike are what this sensor has; refined, no digit is lost on them, in a \
+             millisecond.",
+        ),
+        choice(
+            hemodynamics::SOLVING,
+            "--rtol, --model; library: Order",
+            hemodynamics::solving_default(),
+            hemodynamics::ERROR,
+            "It is before the knee because each further digit costs about a fifth more time, and eight are more \
+             than any recording has; --rtol 1e-12 is there for whoever compares solvers.",
+        ),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_reason_and_default_stands_in_the_readme() {
+        let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+        let readme = words(include_str!("../../README.md"));
+        for choice in choices() {
+            assert!(
+                readme.contains(&words(choice.why)),
+                "README.md does not say of {}, {}: {}",
+                choice.job,
+                choice.name,
+                choice.why
+            );
+            assert!(
+                readme.contains(&choice.default),
+                "README.md does not name the default of {}: {}",
+                choice.name,
+                choice.default
+            );
+        }
+    }
+
+    #[test]
+    fn reasons_are_told_of_each_choice_once() {
+        let all = choices();
+        for (k, choice) in all.iter().enumerate() {
+            assert!(
+                all[..k].iter().all(|other| (other.job, other.name) != (choice.job, choice.name)),
+                "{}",
+                choice.name
+            );
+            assert!(choice.why.ends_with('.') && !choice.default.is_empty());
+        }
+    }
+}
