@@ -35,7 +35,7 @@ pub(super) struct AlignArgs {
     /// How the clocks are tied: clock (in the picture), offset=SECONDS (the log's time at the video's first frame; with its
     /// standard error offset=SECONDS+-ERROR, without which labels have no standard errors), correlate
     /// [default: clock, where the table of angles has it]
-    #[arg(long, value_name = "clock|offset=SECONDS|correlate", value_parser = parse_sync, allow_hyphen_values = true)]
+    #[arg(long, value_name = "clock|offset=SECONDS|correlate", value_parser = Sync::parse, allow_hyphen_values = true)]
     sync: Option<Sync>,
     /// The log's time when the clock in the picture shows zero [default: the log's zero, hour or midnight that makes the two
     /// overlap]
@@ -60,7 +60,7 @@ pub(super) struct AlignArgs {
     #[arg(long, value_enum)]
     time_unit: Option<TimeUnitArg>,
     /// The lowest and the highest voltage that can be recorded, as 0,10 [default: found where samples pile up at an extreme]
-    #[arg(long, value_name = "LOW,HIGH", value_parser = parse_range, allow_hyphen_values = true)]
+    #[arg(long, value_name = "LOW,HIGH", value_parser = AmbientOptions::parse_full_scale, allow_hyphen_values = true)]
     full_scale: Option<[f64; 2]>,
     /// Of a log whose clock was reset, which stretch to take, from 1
     #[arg(long, value_name = "N")]
@@ -117,30 +117,6 @@ impl TimeUnitArg {
             Self::Ns => TimeUnit::Nanoseconds,
         }
     }
-}
-
-fn parse_range(text: &str) -> Result<[f64; 2], String> {
-    let ends = text.split_once(',').and_then(|(low, high)| Some([low.trim().parse().ok()?, high.trim().parse().ok()?]));
-    ends.ok_or_else(|| "write the lowest voltage, a comma, the highest, as 0,10".to_owned())
-}
-
-fn parse_sync(text: &str) -> Result<Sync, String> {
-    let number = |text: &str| text.trim().parse().ok().filter(|number: &f64| number.is_finite());
-    let offset = |text: &str| {
-        let (offset, sd) = text.split_once("+-").map_or((text, None), |(offset, sd)| (offset, Some(sd)));
-        let sd_s = sd.map(number);
-        (sd_s != Some(None)).then_some(())?;
-        Some(Sync::Offset { offset_s: number(offset)?, sd_s: sd_s.flatten() })
-    };
-    let sync = match text {
-        "clock" => Some(Sync::Clock),
-        "correlate" => Some(Sync::Correlate),
-        other => other.strip_prefix("offset=").and_then(offset),
-    };
-    sync.ok_or_else(|| {
-        "choose clock, offset=SECONDS (offset=60.25, or with its standard error offset=60.25+-0.01) or correlate"
-            .to_owned()
-    })
 }
 
 pub(super) fn run(args: &AlignArgs) -> anyhow::Result<Outcome> {
@@ -210,14 +186,7 @@ fn finish(common: &Common, report: &AlignReport, outputs: &AlignOutputs) -> anyh
         "without: {} before the video, {} after it, {} in gaps",
         rows.before_the_video, rows.after_the_video, rows.in_gaps
     ));
-    if common.verbose {
-        common.say_stages(&report.stages);
-        common.say_left_out(&report.left_out);
-    }
-    common.say(&format!(
-        "{:.2} s; look at {}",
-        report.wall_s,
-        report.pictures.first().unwrap_or(&outputs.training).display()
-    ));
+    let look = report.pictures.first().unwrap_or(&outputs.training);
+    common.say_done(&report.stages, &report.left_out, report.wall_s, look);
     Ok(Outcome::Done)
 }

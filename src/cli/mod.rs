@@ -3,23 +3,33 @@
 //! Exit status: 0 all done; 1 done, but some inputs failed (each is named on standard error); 2 nothing done; 130 interrupted.
 
 mod align;
+mod completions;
+mod doctor;
 mod hemodynamics;
+mod init;
+mod man;
+mod memory;
+mod merge;
 mod phantom;
 mod photos;
 mod posture;
 mod predictor;
+mod run;
 mod tradeoff;
 mod trajectory;
 
 use std::io::{IsTerminal, Write};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, bail};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lunula::stages::{Fate, Stage, Step};
+use lunula::words::Words;
 
 /// Ground truth for fingernail sensing: nail photographs to coloration maps, videos to joint angles,
 /// angles and photodiode logs to labelled training sets, those to models of force and posture.
@@ -53,9 +63,15 @@ enum Command {
     Prune(predictor::PruneArgs),
     Simulate(Box<hemodynamics::SimulateArgs>),
     Fit(Box<hemodynamics::FitArgs>),
+    Merge(merge::MergeArgs),
     Phantom(phantom::PhantomArgs),
     Tradeoff(tradeoff::TradeoffArgs),
     Trajectory(Box<trajectory::TrajectoryArgs>),
+    Run(run::RunArgs),
+    Init(init::InitArgs),
+    Doctor(doctor::DoctorArgs),
+    Completions(completions::CompletionsArgs),
+    Man(man::ManArgs),
 }
 
 /// What every job takes.
@@ -75,6 +91,16 @@ struct Common {
     verbose: bool,
 }
 
+/// Reads a choice by its word; help lists them.
+fn one_of<T: Words>() -> impl TypedValueParser<Value = T> {
+    let told = |word: &'static str, about: &'static str| {
+        let value = PossibleValue::new(word);
+        if about.is_empty() { value } else { value.help(about) }
+    };
+    PossibleValuesParser::new(T::WORDS.iter().map(|&(_, word, about)| told(word, about)))
+        .try_map(|word| T::by_word(&word))
+}
+
 /// How a job ended well.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Outcome {
@@ -86,6 +112,11 @@ enum Outcome {
 #[derive(Debug, thiserror::Error)]
 #[error("interrupted; nothing was written")]
 struct Interrupted;
+
+/// A run of many tasks was stopped from outside.
+#[derive(Debug, thiserror::Error)]
+#[error("interrupted; what was done stands, and the same command goes on from there")]
+struct Stopped;
 
 /// Parses and runs the command; what needs video (`VIDEO` false) is handed over to [`WITH_VIDEO`].
 pub(crate) fn run<const VIDEO: bool>() -> ExitCode {
@@ -101,16 +132,22 @@ pub(crate) fn run<const VIDEO: bool>() -> ExitCode {
         Command::Fit(args) => hemodynamics::fit(&args),
         Command::Posture(args) if VIDEO => posture::run(&args),
         Command::Posture(_) => hand_over(),
+        Command::Merge(args) => merge::run::<VIDEO>(&args),
         Command::Phantom(args) => phantom::run::<VIDEO>(&args),
         Command::Tradeoff(args) => tradeoff::run::<VIDEO>(&args),
         Command::Trajectory(args) => trajectory::run(&args),
+        Command::Run(args) => run::run::<VIDEO>(&args),
+        Command::Init(args) => init::run(&args),
+        Command::Doctor(args) => doctor::run::<VIDEO>(&args),
+        Command::Completions(args) => completions::run(&args),
+        Command::Man(args) => man::run(&args),
     };
     match outcome {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
         Ok(Outcome::SomeFailed) => ExitCode::from(1),
         Err(error) => {
             eprintln!("error: {error:#}");
-            ExitCode::from(if error.is::<Interrupted>() { 130 } else { 2 })
+            ExitCode::from(if error.is::<Interrupted>() || error.is::<Stopped>() { 130 } else { 2 })
         }
     }
 }
@@ -119,10 +156,16 @@ pub(crate) fn run<const VIDEO: bool>() -> ExitCode {
 /// less. It stands beside this one.
 const WITH_VIDEO: &str = "lunula-video";
 
-/// Goes on as the program that can read and write video; returns where there is none.
-fn hand_over() -> anyhow::Result<Outcome> {
+/// Where this program stands, and where the one that can read and write video should.
+fn programs() -> anyhow::Result<(PathBuf, PathBuf)> {
     let own = std::env::current_exe().context("where this program stands")?;
     let other = own.with_file_name(format!("{WITH_VIDEO}{}", std::env::consts::EXE_SUFFIX));
+    Ok((own, other))
+}
+
+/// Goes on as the program that can read and write video; returns where there is none.
+fn hand_over() -> anyhow::Result<Outcome> {
+    let (own, other) = programs()?;
     let mut command = std::process::Command::new(&other);
     command.args(std::env::args_os().skip(1));
     let why = std::os::unix::process::CommandExt::exec(&mut command);
@@ -178,6 +221,15 @@ impl Common {
 
     fn say_left_out(&self, left_out: &[String]) {
         left_out.iter().for_each(|what| self.say(&format!("left out: {what}")));
+    }
+
+    /// How a job ended: with `--verbose` its stages and what was left out, then its time and where to look.
+    fn say_done(&self, stages: &[Stage], left_out: &[String], wall_s: f64, look: &Path) {
+        if self.verbose {
+            self.say_stages(stages);
+            self.say_left_out(left_out);
+        }
+        self.say(&format!("{wall_s:.2} s; look at {}", look.display()));
     }
 
     fn warn(&self, warnings: &[String]) {

@@ -151,6 +151,7 @@ impl PhotosArgs {
                 OutlineArg::Annotated => Sources::Annotated,
                 OutlineArg::Detect => Sources::Detect,
             },
+            listed_only: false,
             masks: self.masks.clone(),
             distal: self.distal.map(|side| match side {
                 SideArg::Up => Side::Up,
@@ -172,6 +173,7 @@ impl PhotosArgs {
             normalization: normalization.check().map_err(anyhow::Error::msg)?,
             outlines,
             keep_detected: self.write_outlines.is_some(),
+            parts: None,
         })
     }
 }

@@ -1,25 +1,19 @@
 //! `lunula tradeoff`: error against run time.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
-use anyhow::Context;
 use clap::{Args, Subcommand};
-use lunula::phantom::log::{self, LogOptions, LogScene, Protocol};
-use lunula::phantom::nail::Pose;
-use lunula::phantom::photos::{PhotoOptions, write};
-use lunula::phantom::screen::Clock;
-use lunula::phantom::trajectory::Trajectory;
-use lunula::phantom::video::{self, Scene, VideoOptions};
-use lunula::tradeoff::Row;
-use lunula::tradeoff::{
-    align as align_jobs, hemodynamics as hemodynamics_jobs, photos as photo_jobs, posture as posture_jobs,
-    predictor as predictor_jobs,
-};
+use lunula::tradeoff::peers::Peers;
+use lunula::tradeoff::{self as curves, Effort, Interrupted, Plan, Row, Setting, Tradeoff, Verdict};
 
 use super::phantom::SceneArg;
 use super::{Common, Outcome, hand_over};
 
-/// Error against run time, over the settings of a job: table (tradeoff.csv) and picture (tradeoff.png, .svg)
+/// Error against run time, over the settings of a job or of all: the knee of each curve, where the default stands, other programs
+///
+/// Writes a table (tradeoff.csv) and a picture (tradeoff.png, .svg); `all` one page (index.html).
 #[derive(Debug, Args)]
 pub(super) struct TradeoffArgs {
     #[command(subcommand)]
@@ -28,6 +22,7 @@ pub(super) struct TradeoffArgs {
 
 #[derive(Debug, Subcommand)]
 enum Job {
+    All(AllArgs),
     Photos(PhotosArgs),
     Posture(PostureArgs),
     Align(AlignArgs),
@@ -35,12 +30,45 @@ enum Job {
     Hemodynamics(HemodynamicsArgs),
 }
 
+/// What `--peers` alone stands for: other programs are run here.
+const HERE: &str = "python3";
+
 /// What every trade-off takes.
 #[derive(Debug, Args)]
-struct Measured {
+struct Measuring {
     /// Folder for the results
     #[arg(long)]
     out: PathBuf,
+    /// Runs of each setting; the median time counts [default: 3; hemodynamics: 9]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
+    repeats: Option<u16>,
+    /// Fewer settings on smaller scenes
+    #[arg(long)]
+    quick: bool,
+    /// Other programs on the same scenes: run here where python3 has their packages; or, with a FILE, figures measured elsewhere
+    /// (a tradeoff.csv; for hemodynamics also a table solver,rtol,error,microseconds[,evaluations]); may be given again
+    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = HERE)]
+    peers: Vec<PathBuf>,
+    #[command(flatten)]
+    common: Common,
+}
+
+impl Measuring {
+    fn plan(&self, repeats: usize, seed: u64, stop: Arc<AtomicBool>) -> Plan {
+        let effort = Effort {
+            repeats: self.repeats.map_or(repeats, usize::from),
+            quick: self.quick,
+            threads: self.common.threads.map_or(0, usize::from),
+            stop,
+        };
+        let (here, tables): (Vec<_>, Vec<_>) = self.peers.iter().cloned().partition(|path| path.as_os_str() == HERE);
+        Plan::new(seed, effort, Peers { measured: !here.is_empty(), tables })
+    }
+}
+
+/// What trade-offs on scenes take.
+#[derive(Debug, Args)]
+struct Measured {
     /// A folder to measure on, as `lunula phantom` writes it
     #[arg(long, requires = "truth")]
     input: Option<PathBuf>,
@@ -50,29 +78,34 @@ struct Measured {
     /// Seed of the synthetic inputs
     #[arg(long, default_value_t = 1, conflicts_with = "input")]
     seed: u64,
-    /// Runs of each setting; the median time counts
-    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u16).range(1..=1000))]
-    repeats: u16,
     #[command(flatten)]
-    common: Common,
+    measuring: Measuring,
 }
 
 impl Measured {
-    /// The input and its truth; where none is given, `make` writes them into a folder that goes away with the second value.
-    fn scenes(
-        &self,
-        make: impl FnOnce(&Path) -> anyhow::Result<PathBuf>,
-    ) -> anyhow::Result<(PathBuf, PathBuf, Option<tempfile::TempDir>)> {
-        if let Some((input, truth)) = self.input.clone().zip(self.truth.clone()) {
-            return Ok((input, truth, None));
-        }
-        let folder = tempfile::tempdir()?;
-        Ok((make(folder.path())?, folder.path().join("truth"), Some(folder)))
+    /// Measures `job` as `change` makes the plan.
+    fn run(&self, job: curves::Job, change: impl FnOnce(&mut Plan)) -> anyhow::Result<Outcome> {
+        let stop = self.measuring.common.start()?;
+        let mut plan = self.measuring.plan(REPEATS, self.seed, stop);
+        plan.input = self.input.clone().zip(self.truth.clone());
+        change(&mut plan);
+        one(job, &plan, &self.measuring)
     }
+}
 
-    fn threads(&self) -> usize {
-        self.common.threads.map_or(0, usize::from)
-    }
+/// Runs of each setting.
+const REPEATS: usize = 3;
+/// Of those that take a tenth of a millisecond.
+const SHORT_REPEATS: usize = 9;
+
+/// Every job's settings on synthetic scenes, on one page: DIR/index.html, DIR/tradeoff.csv, a picture a job
+#[derive(Debug, Args)]
+struct AllArgs {
+    /// Seed of the synthetic inputs
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    #[command(flatten)]
+    measuring: Measuring,
 }
 
 /// Resampling against the exact normalized pictures, and detection against the exact outlines
@@ -80,9 +113,9 @@ impl Measured {
 /// On synthetic photographs of its own, or on --input (a set of photographs) with --truth.
 #[derive(Debug, Args)]
 struct PhotosArgs {
-    /// Subjects of the synthetic photographs, in four poses
-    #[arg(long, default_value_t = 16, conflicts_with = "input")]
-    subjects: u32,
+    /// Subjects of the synthetic photographs, in four poses [default: 16; --quick: 4]
+    #[arg(long, value_name = "N", conflicts_with = "input")]
+    subjects: Option<u32>,
     #[command(flatten)]
     measured: Measured,
 }
@@ -99,15 +132,15 @@ struct PostureArgs {
     measured: Measured,
 }
 
-/// The log's time over the video against the exact one: in how many frames the clock is read, and no clock at all
+/// The log's time over the video against the exact one: in how many frames the clock is read, and no clock at all; labels over gaps
 ///
 /// On a synthetic video and log of its own (random movement, irregular frames), or on --input (a folder with video.mp4,
 /// markers.toml with a [clock], and log.csv) with --truth.
 #[derive(Debug, Args)]
 struct AlignArgs {
-    /// Their length
-    #[arg(long, default_value_t = 60.0, conflicts_with = "input")]
-    seconds: f64,
+    /// Their length [default: 60; --quick: 20]
+    #[arg(long, conflicts_with = "input")]
+    seconds: Option<f64>,
     #[command(flatten)]
     measured: Measured,
 }
@@ -127,172 +160,114 @@ struct PredictorArgs {
 /// The error is the largest of any displacement over its nominal diameter; the reference is the full model at its tightest tolerance.
 #[derive(Debug, Args)]
 struct HemodynamicsArgs {
-    /// Folder for the results
-    #[arg(long)]
-    out: PathBuf,
-    /// Other solvers on the same responses: a table solver,rtol,error,microseconds[,evaluations], drawn beside (times on this machine only)
-    #[arg(long, value_name = "FILE.csv")]
-    peers: Option<PathBuf>,
-    /// Runs of each setting; the median time counts
-    #[arg(long, default_value_t = 9, value_parser = clap::value_parser!(u16).range(1..=1000))]
-    repeats: u16,
     #[command(flatten)]
-    common: Common,
+    measuring: Measuring,
 }
-
-const POSES: [Pose; 4] = [Pose::Nominal, Pose::Normal, Pose::LateralPositive, Pose::Extension];
 
 pub(super) fn run<const VIDEO: bool>(args: &TradeoffArgs) -> anyhow::Result<Outcome> {
-    match &args.job {
-        Job::Photos(args) => photos(args),
-        Job::Predictor(args) => predictor(args),
-        Job::Hemodynamics(args) => hemodynamics(args),
-        Job::Posture(args) if VIDEO => posture(args),
-        Job::Align(args) if VIDEO => align(args),
-        Job::Posture(_) | Job::Align(_) => hand_over(),
-    }
+    // All of it: one plan measures whatever job, so naming it at all links the program with video.
+    if VIDEO { measure(args) } else { hand_over() }
 }
 
-fn photos(args: &PhotosArgs) -> anyhow::Result<Outcome> {
-    let measured = &args.measured;
-    measured.common.start()?;
-    let (set, truth, _kept) = measured.scenes(|folder| {
-        let options = PhotoOptions {
-            seed: measured.seed,
-            subjects: args.subjects,
-            poses: POSES.to_vec(),
-            ..PhotoOptions::default()
-        };
-        write(&options, folder)?;
-        Ok(folder.join("photos"))
-    })?;
-    let settings = photo_jobs::Settings { set, truth, repeats: usize::from(measured.repeats) };
-    finish("photos", &photo_jobs::measure(&settings)?, &[], measured)
-}
-
-fn posture(args: &PostureArgs) -> anyhow::Result<Outcome> {
-    let measured = &args.measured;
-    measured.common.start()?;
-    let (input, truth, _kept) = measured.scenes(|folder| {
-        let options = VideoOptions { seed: measured.seed, ..VideoOptions::new(args.scene.preset()) };
-        video::write(&Scene::new(options)?, folder)?;
-        Ok(folder.to_owned())
-    })?;
-    let settings = posture_jobs::Settings {
-        video: input.join("video.mp4"),
-        markers: input.join("markers.toml"),
-        truth,
-        repeats: usize::from(measured.repeats),
-        threads: measured.threads(),
-    };
-    finish("posture", &posture_jobs::measure(&settings)?, &[], measured)
-}
-
-fn align(args: &AlignArgs) -> anyhow::Result<Outcome> {
-    let measured = &args.measured;
-    measured.common.start()?;
-    let (input, truth, _kept) = measured.scenes(|folder| {
-        let trajectory = Trajectory::Random { hz: 0.1, seed: measured.seed };
-        let clock = Clock::default();
-        let log = LogOptions {
-            seed: measured.seed,
-            seconds: args.seconds,
-            trajectory: trajectory.clone(),
-            clock_offset_s: clock.offset_s,
-            ..LogOptions::default()
-        };
-        let video = VideoOptions {
-            seed: measured.seed,
-            seconds: args.seconds,
-            trajectory,
-            jitter: 0.4,
-            clock: Some(clock),
-            ..VideoOptions::sized(640, 360)
-        };
-        video::write(&Scene::new(video)?, folder)?;
-        log::write(&LogScene::new(log)?, folder)?;
-        Ok(folder.to_owned())
-    })?;
-    let settings = align_jobs::Settings {
-        video: input.join("video.mp4"),
-        markers: input.join("markers.toml"),
-        log: input.join("log.csv"),
-        truth,
-        repeats: usize::from(measured.repeats),
-        threads: measured.threads(),
-    };
-    let (rows, refused) = align_jobs::measure(&settings)?;
-    finish("align", &rows, &refused, measured)
-}
-
-fn predictor(args: &PredictorArgs) -> anyhow::Result<Outcome> {
-    let measured = &args.measured;
-    measured.common.start()?;
-    let (train, test, _kept) = measured.scenes(|folder| {
-        let seed = 3 * measured.seed;
-        let scenes = [("train/1", Protocol::Touch, seed), ("train/2", Protocol::Touch, seed + 1)];
-        for (name, protocol, seed) in scenes.into_iter().chain([("truth/1", Protocol::TouchRandom, seed + 2)]) {
-            log::write(&LogScene::new(LogOptions::of(protocol, seed))?, &folder.join(name))?;
+fn measure(args: &TradeoffArgs) -> anyhow::Result<Outcome> {
+    let done = match &args.job {
+        Job::Photos(args) => args.measured.run(curves::Job::Photos, |plan| {
+            plan.subjects = args.subjects.unwrap_or(plan.subjects);
+        }),
+        Job::Predictor(args) => args.measured.run(curves::Job::Predictor, |_| {}),
+        Job::Hemodynamics(HemodynamicsArgs { measuring }) => {
+            let stop = measuring.common.start()?;
+            one(curves::Job::Hemodynamics, &measuring.plan(SHORT_REPEATS, 1, stop), measuring)
         }
-        Ok(folder.join("train"))
-    })?;
-    let settings = predictor_jobs::Settings {
-        train: recordings(&train)?,
-        test: recordings(&test)?,
-        repeats: usize::from(measured.repeats),
+        Job::Posture(args) => args.measured.run(curves::Job::Posture, |plan| plan.preset = args.scene.preset()),
+        Job::Align(args) => args.measured.run(curves::Job::Align, |plan| {
+            plan.seconds = args.seconds.unwrap_or(plan.seconds);
+        }),
+        Job::All(args) => all(args),
     };
-    let (rows, refused) = predictor_jobs::measure(&settings)?;
-    finish("predictor", &rows, &refused, measured)
+    done.map_err(|why| if why.is::<Interrupted>() { super::Interrupted.into() } else { why })
 }
 
-fn hemodynamics(args: &HemodynamicsArgs) -> anyhow::Result<Outcome> {
-    args.common.start()?;
-    let peers = args.peers.as_deref().map(hemodynamics_jobs::read_peers).transpose()?.unwrap_or_default();
-    let settings = hemodynamics_jobs::Settings { repeats: usize::from(args.repeats) };
-    let (rows, refused) = hemodynamics_jobs::measure(&settings)?;
-    let maps = hemodynamics_jobs::stability()?;
-    hemodynamics_jobs::write(&rows, &peers, &maps, &args.out)?;
-    let all: Vec<Row> = rows.into_iter().chain(peers).collect();
-    tell("hemodynamics", &all, &refused, &args.out, &args.common)
-}
-
-/// The tables and logs of a folder, and the logs of its folders, by name.
-fn recordings(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
-    let mut found = Vec::new();
-    for entry in std::fs::read_dir(folder).with_context(|| folder.display().to_string())? {
-        let path = entry?.path();
-        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-        if path.join("log.csv").is_file() {
-            found.push(path.join("log.csv"));
-        } else if path.is_file() && ["csv", "parquet", "gz"].contains(&ending) {
-            found.push(path);
-        }
-    }
-    found.sort();
-    anyhow::ensure!(!found.is_empty(), "{}: holds no recordings (.csv, .parquet)", folder.display());
-    Ok(found)
-}
-
-fn finish(job: &str, rows: &[Row], warnings: &[String], measured: &Measured) -> anyhow::Result<Outcome> {
-    let Measured { out, common, .. } = measured;
-    lunula::tradeoff::write(rows, &format!("lunula {job}"), out)?;
-    tell(job, rows, warnings, out, common)
-}
-
-fn tell(job: &str, rows: &[Row], warnings: &[String], out: &Path, common: &Common) -> anyhow::Result<Outcome> {
-    common.warn(warnings);
+fn one(job: curves::Job, plan: &Plan, measuring: &Measuring) -> anyhow::Result<Outcome> {
+    let Measuring { out, common, .. } = measuring;
+    let found = plan.run(job, &plan.peers.read()?)?;
+    found.write(out)?;
+    common.warn(&found.refused);
     common.print_json(&serde_json::json!({
-        "job": format!("tradeoff {job}"),
+        "job": format!("tradeoff {}", job.name()),
         "version": env!("CARGO_PKG_VERSION"),
-        "rows": rows,
-        "warnings": warnings,
+        "rows": found.rows,
+        "curves": found.curves,
+        "peers": found.peers,
+        "warnings": found.refused,
+        "wall_s": found.wall_s,
     }))?;
-    for row in rows {
-        let Row { setting, error, error_unit, run_s, .. } = row;
-        let error = if *error < 1e-3 { format!("{error:>8.1e}") } else { format!("{error:>8.4}") };
-        let run_s = if *run_s < 1e-4 { format!("{run_s:>8.1e}") } else { format!("{run_s:>8.5}") };
-        common.say(&format!("{setting:<34} {error}  {run_s} s an input  {error_unit}"));
-    }
+    found.rows.iter().for_each(|row| common.say(&line(row)));
+    say_curves(&found, common);
     common.say(&format!("look at {}", out.join("tradeoff.png").display()));
     Ok(Outcome::Done)
+}
+
+fn all(args: &AllArgs) -> anyhow::Result<Outcome> {
+    let Measuring { out, common, .. } = &args.measuring;
+    let plan = args.measuring.plan(REPEATS, args.seed, common.start()?);
+    let progress = common.progress(curves::Job::ALL.len(), "jobs");
+    let outcomes = curves::all(&plan, |job| {
+        progress.set_message(job.name());
+        progress.inc(1);
+    })?;
+    progress.finish_and_clear();
+    let (mut done, mut failed): (Vec<Tradeoff>, Vec<(&str, String)>) = (Vec::new(), Vec::new());
+    for (job, outcome) in outcomes {
+        match outcome {
+            Ok(found) => done.push(found),
+            Err(why) => failed.push((job.name(), format!("{why:#}"))),
+        }
+    }
+    anyhow::ensure!(
+        !done.is_empty(),
+        "no job could be measured: {}",
+        failed.iter().map(|(_, why)| why.as_str()).collect::<Vec<_>>().join("; ")
+    );
+    let tables = plan.peers.tables.iter().map(|path| path.display().to_string()).collect();
+    curves::index(&done, &failed, &Setting { seed: plan.seed, effort: plan.effort.clone(), tables }, out)?;
+    let warnings: Vec<String> = done.iter().flat_map(|job| &job.refused).cloned().collect();
+    common.warn(&warnings);
+    common.print_json(&serde_json::json!({
+        "job": "tradeoff all",
+        "version": env!("CARGO_PKG_VERSION"),
+        "jobs": done,
+        "failed": failed,
+        "warnings": warnings,
+    }))?;
+    done.iter().for_each(|job| say_curves(job, common));
+    failed.iter().for_each(|(job, why)| eprintln!("error: {job}: {why}"));
+    common.say(&format!("look at {}", out.join("index.html").display()));
+    Ok(if failed.is_empty() { Outcome::Done } else { Outcome::SomeFailed })
+}
+
+fn line(row: &Row) -> String {
+    let Row { setting, error, error_unit, run_s, .. } = row;
+    let error = if *error < 1e-3 { format!("{error:>8.1e}") } else { format!("{error:>8.4}") };
+    let run_s = if *run_s < 1e-4 { format!("{run_s:>8.1e}") } else { format!("{run_s:>8.5}") };
+    let marks = [(row.knee, " [knee]"), (row.default, " [default]")];
+    let marks: String = marks.into_iter().filter_map(|(is, mark)| is.then_some(mark)).collect();
+    format!("{setting:<34} {error}  {run_s} s an input  {error_unit}{marks}")
+}
+
+fn say_curves(found: &Tradeoff, common: &Common) {
+    for Verdict { job, choice, error_unit, knee, default, default_is, default_why, decides, .. } in &found.curves {
+        let told = |what: &Option<curves::Told>| what.as_ref().map_or("none".to_owned(), |told| told.setting.clone());
+        common.say(&format!(
+            "{job}, {choice} ({error_unit}): knee {}; default {}, {default_is}",
+            told(knee),
+            told(default)
+        ));
+        if *decides && default_is != "the knee" {
+            common.say(&format!("  {default_why}"));
+        }
+    }
+    for peer in found.peers.iter().filter(|peer| !peer.measured) {
+        common.say(&format!("not on it: {}: {}", peer.peer, peer.what));
+    }
 }

@@ -158,9 +158,9 @@ impl KindArg {
             }
             Self::Posture(args) => {
                 let kind = Kind::Posture { hz: args.hz, seed: args.random.then_some(args.seed) };
-                // Equation 27 begins at rest by itself.
-                let soft_s = if args.random { args.soft_start } else { 0.0 };
-                (TrajectoryOptions { soft_s, ..usual(kind, args.seconds, &args.planned) }, &args.planned)
+                let options = usual(kind, args.seconds, &args.planned);
+                let soft_s = if args.random { args.soft_start } else { options.soft_s };
+                (TrajectoryOptions { soft_s, ..options }, &args.planned)
             }
         }
     }
@@ -198,12 +198,7 @@ fn finish(common: &Common, report: &TrajectoryReport) -> anyhow::Result<Outcome>
             report.options.tau_s
         ));
     }
-    if common.verbose {
-        common.say_stages(&report.stages);
-        common.say_left_out(&report.left_out);
-    }
-    let look = report.pictures.first().unwrap_or(&report.table);
-    common.say(&format!("{:.2} s; look at {}", report.wall_s, look.display()));
+    common.say_done(&report.stages, &report.left_out, report.wall_s, report.pictures.first().unwrap_or(&report.table));
     Ok(Outcome::Done)
 }
 

@@ -3,14 +3,14 @@
 use std::path::PathBuf;
 
 use anyhow::Context;
-use clap::{Args, ValueEnum};
-use lunula::hemodynamics::model::{Bounds, Calibration};
+use clap::Args;
+use lunula::hemodynamics::model::{Bounds, Calibration, Collapse};
 use lunula::hemodynamics::{
-    Between, FitOptions, FitOutputs, FitReport, ForceColumn, PhotodiodeColumn, RecordingColumns, fit, fit_plan,
+    Between, FitOptions, FitOutputs, FitReport, ForceColumn, OpticsChoice, PhotodiodeColumn, Pressed, RecordingColumns,
+    STARTS, fit, fit_plan,
 };
 
-use super::simulate::{CollapseArg, PressedArg};
-use super::{Common, NailArgs, OpticsArg, Outcome, ended};
+use super::{Common, NailArgs, Outcome, ended, one_of};
 
 const EXAMPLES: &str = "Examples:
 Stiffness and damping of all walls, and the photodiodes:
@@ -51,11 +51,11 @@ pub(crate) struct FitArgs {
     #[arg(long, value_name = "NAME=LOW..HIGH", value_parser = parse_bounds)]
     bounds: Vec<(String, Bounds)>,
     /// Begin the fit from so many points within the bounds; the best counts
-    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    #[arg(long, value_name = "N", default_value_t = STARTS, value_parser = clap::value_parser!(u16).range(1..=1000))]
     starts: u16,
     /// Offset and scaling of the photodiodes: subject (one of each for every subject), recording (for every recording), shared, or held
-    #[arg(long, value_enum, default_value = "subject")]
-    calibrate: CalibrateArg,
+    #[arg(long, value_parser = one_of::<Calibration>(), default_value = "subject")]
+    calibrate: Calibration,
     /// Whose finger each recording is, in the order of the recordings, as anna,anna,ben [default: all one's]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     subject: Vec<String>,
@@ -72,20 +72,20 @@ pub(crate) struct FitArgs {
     #[arg(long, value_name = "CM2", requires = "force", value_parser = parse_area, allow_negative_numbers = true)]
     area_cm2: Option<f64>,
     /// Where the force presses
-    #[arg(long, value_enum, default_value = "both", requires = "force")]
-    load: PressedArg,
+    #[arg(long, value_parser = one_of::<Pressed>(), default_value = "both", requires = "force")]
+    load: Pressed,
     /// What loads do from row to row: straight lines, or held until the next row, where they jump
-    #[arg(long, value_enum, default_value = "straight")]
-    between: BetweenArg,
+    #[arg(long, value_parser = one_of::<Between>(), default_value = "straight")]
+    between: Between,
     /// Nothing pressed before the first row [default: the first row's load did, for long]
     #[arg(long)]
     unloaded_before: bool,
     /// Where a vessel closes: error, or contact
-    #[arg(long, value_enum, default_value = "error")]
-    collapse: CollapseArg,
+    #[arg(long, value_parser = one_of::<Collapse>(), default_value = "error")]
+    collapse: Collapse,
     /// How light depends on the capillaries
-    #[arg(long, value_enum, default_value = "beer-lambert")]
-    optics: OpticsArg,
+    #[arg(long, value_parser = one_of::<OpticsChoice>(), default_value = "beer-lambert")]
+    optics: OpticsChoice,
     #[command(flatten)]
     nail: NailArgs,
     /// The result; parameters, table and picture stand beside it, named after it
@@ -101,42 +101,15 @@ pub(crate) struct FitArgs {
     common: Common,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum CalibrateArg {
-    Subject,
-    Recording,
-    Shared,
-    Held,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum BetweenArg {
-    Straight,
-    Held,
-}
-
 fn parse_bounds(text: &str) -> Result<(String, Bounds), String> {
-    let wrong = || {
-        format!(
-            "{text:?}: write NAME=LOW..HIGH in the parameter's unit, as k_V=200..5000, or of its start, as k_C=0.1x..10x"
-        )
-    };
-    let (name, range) = text.split_once('=').ok_or_else(wrong)?;
-    let (low, high) = range.split_once("..").ok_or_else(wrong)?;
-    let number = |part: &str| part.trim().parse::<f64>().ok().filter(|value| value.is_finite()).ok_or_else(wrong);
-    let between = match (low.trim().strip_suffix('x'), high.trim().strip_suffix('x')) {
-        (Some(low), Some(high)) => Bounds::Factors(number(low)?, number(high)?),
-        (None, None) => Bounds::Values(number(low)?, number(high)?),
-        _ => return Err(wrong()),
-    };
-    Ok((name.trim().to_owned(), between))
+    let (name, range) = text.split_once('=').ok_or_else(|| format!("{text:?}: write NAME=LOW..HIGH"))?;
+    Ok((name.trim().to_owned(), range.parse()?))
 }
 
 fn parse_photodiode(text: &str) -> Result<PhotodiodeColumn, String> {
     let wrong = || format!("{text:?}: write COLUMN=UNIT, as P3=1; units are counted from 1 at the proximal end");
     let (name, unit) = text.split_once('=').ok_or_else(wrong)?;
-    let unit: usize = unit.trim().parse().ok().filter(|unit| *unit >= 1).ok_or_else(wrong)?;
-    Ok(PhotodiodeColumn { name: name.trim().to_owned(), unit: unit - 1 })
+    PhotodiodeColumn::above(name.trim(), unit.trim().parse().map_err(|_| wrong())?)
 }
 
 fn parse_noise(text: &str) -> Result<(String, f64), String> {
@@ -158,32 +131,21 @@ impl FitArgs {
         FitOptions {
             recordings: self.recordings.clone(),
             columns: RecordingColumns {
-                between: match self.between {
-                    BetweenArg::Straight => Between::Straight,
-                    BetweenArg::Held => Between::Held,
-                },
+                between: self.between,
                 unloaded_before: self.unloaded_before,
-                force: force.map(|(name, area_cm2)| ForceColumn {
-                    name,
-                    area_m2: 1e-4 * area_cm2,
-                    pressed: self.load.pressed(),
-                }),
+                force: force.map(|(name, area_cm2)| ForceColumn { name, area_m2: 1e-4 * area_cm2, pressed: self.load }),
                 photodiodes: self.photodiode.clone(),
             },
             subjects: self.subject.clone(),
+            names: Vec::new(),
             free: if self.free == ["none"] { Vec::new() } else { self.free.clone() },
             bounds: self.bounds.clone(),
             noise: self.noise.clone(),
-            calibration: match self.calibrate {
-                CalibrateArg::Subject => Calibration::PerSubject,
-                CalibrateArg::Recording => Calibration::PerRecording,
-                CalibrateArg::Shared => Calibration::Shared,
-                CalibrateArg::Held => Calibration::Fixed,
-            },
+            calibration: self.calibrate,
             starts: usize::from(self.starts),
             parameters: self.nail.given(),
-            collapse: self.collapse.collapse(),
-            optics: self.optics.choice(),
+            collapse: self.collapse,
+            optics: self.optics,
         }
     }
 }
@@ -245,11 +207,6 @@ fn finish(common: &Common, report: &FitReport) -> anyhow::Result<Outcome> {
         let noises: Vec<String> = one.photodiodes.iter().zip(&one.noise_v).map(of).collect();
         common.say(&format!("  noise in {}: {}", one.file.display(), noises.join(", ")));
     }
-    if common.verbose {
-        common.say_stages(&report.stages);
-        common.say_left_out(&report.left_out);
-    }
-    let look = report.pictures.first().unwrap_or(&report.table);
-    common.say(&format!("{:.2} s; look at {}", report.wall_s, look.display()));
+    common.say_done(&report.stages, &report.left_out, report.wall_s, report.pictures.first().unwrap_or(&report.table));
     Ok(Outcome::Done)
 }

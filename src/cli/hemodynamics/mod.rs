@@ -5,11 +5,11 @@ mod simulate;
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use lunula::hemodynamics::model::Symbol;
-use lunula::hemodynamics::{GivenParameters, HemodynamicsError, OpticsChoice};
+use lunula::hemodynamics::{GivenParameters, HemodynamicsError};
 
-use super::{Common, Interrupted, Outcome, print_line};
+use super::{Common, Interrupted, Outcome, one_of, print_line};
 
 pub(super) use fit::{FitArgs, run as fit};
 pub(super) use simulate::{SimulateArgs, run as simulate};
@@ -40,27 +40,6 @@ fn parse_setting(text: &str) -> Result<(Symbol, f64), String> {
     let (name, value) = text.split_once('=').ok_or("write NAME=VALUE, as k_C1_N_per_m=5e4")?;
     let value = value.trim().parse().map_err(|_| format!("{value}: is no number"))?;
     Ok((name.trim().parse()?, value))
-}
-
-/// How light depends on the capillaries.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum OpticsArg {
-    /// Equation 6: V0 + V1 exp(-alpha d^2)
-    BeerLambert,
-    /// Equation 8, two terms of its series
-    Quadratic,
-    /// The tangent of equation 6 at rest
-    Linear,
-}
-
-impl OpticsArg {
-    fn choice(self) -> OpticsChoice {
-        match self {
-            Self::BeerLambert => OpticsChoice::BeerLambert,
-            Self::Quadratic => OpticsChoice::Quadratic,
-            Self::Linear => OpticsChoice::Linear,
-        }
-    }
 }
 
 /// An error of a job, with a word of its own where somebody stopped it.

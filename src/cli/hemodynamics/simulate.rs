@@ -4,14 +4,14 @@ use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
 use anyhow::Context;
-use clap::{Args, ValueEnum};
+use clap::Args;
 use lunula::hemodynamics::model::{Collapse, Inertia, Load};
 use lunula::hemodynamics::{
-    CurveOptions, CurveOutputs, CurveReport, GivenLoads, LoadRange, Pressed, SimulateOptions, SimulateOutputs,
-    SimulateReport, Start, curve, curve_plan, simulate, simulate_plan,
+    CurveOptions, CurveOutputs, CurveReport, GivenLoads, LoadRange, OpticsChoice, Pressed, SimulateOptions,
+    SimulateOutputs, SimulateReport, Start, curve, curve_plan, simulate, simulate_plan,
 };
 
-use super::{Common, NailArgs, OpticsArg, Outcome, ended, print_line};
+use super::{Common, NailArgs, Outcome, ended, one_of, print_line};
 
 const EXAMPLES: &str = "Examples:
 5000 Pa on the proximal pulp for two seconds (Fig. 76), and on both places (Fig. 77):
@@ -61,8 +61,8 @@ pub(crate) struct SimulateArgs {
     #[arg(long, value_name = "zero|FILE")]
     from: Option<PathBuf>,
     /// Where a vessel closes: error, or contact (opposite walls push each other apart below a twentieth of the nominal diameter)
-    #[arg(long, value_enum, default_value = "error")]
-    collapse: CollapseArg,
+    #[arg(long, value_parser = one_of::<Collapse>(), default_value = "error")]
+    collapse: Collapse,
     /// The last row's time; the first is 0
     #[arg(long, value_name = "SECONDS", default_value_t = 4.0, allow_negative_numbers = true)]
     until: f64,
@@ -73,11 +73,11 @@ pub(crate) struct SimulateArgs {
     #[arg(long, value_name = "ERROR", default_value = "1e-8", allow_negative_numbers = true)]
     rtol: f64,
     /// The walls' inertia kept (full), dropped, or dropped with its first-order correction; the error of the latter two is told
-    #[arg(long, value_enum, default_value = "full")]
-    model: InertiaArg,
+    #[arg(long, value_parser = one_of::<Inertia>(), default_value = "full")]
+    model: Inertia,
     /// How light depends on the capillaries
-    #[arg(long, value_enum, default_value = "beer-lambert")]
-    optics: OpticsArg,
+    #[arg(long, value_parser = one_of::<OpticsChoice>(), default_value = "beer-lambert")]
+    optics: OpticsChoice,
     /// The loads' columns stand in the table as well, as `lunula fit` reads them
     #[arg(long, conflicts_with = "static_")]
     with_loads: bool,
@@ -94,8 +94,8 @@ pub(crate) struct SimulateArgs {
     )]
     static_: Option<LoadRange>,
     /// What the loads of --static press on [default: both]
-    #[arg(long, value_enum)]
-    load: Option<PressedArg>,
+    #[arg(long, value_parser = one_of::<Pressed>())]
+    load: Option<Pressed>,
     #[command(flatten)]
     nail: NailArgs,
     /// Print all parameters as a file for --params, and do nothing else
@@ -114,45 +114,6 @@ pub(crate) struct SimulateArgs {
     common: Common,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum CollapseArg {
-    Error,
-    Contact,
-}
-
-impl CollapseArg {
-    pub(super) fn collapse(self) -> Collapse {
-        match self {
-            Self::Error => Collapse::Error,
-            Self::Contact => Collapse::Contact,
-        }
-    }
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum InertiaArg {
-    Full,
-    Dropped,
-    Corrected,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum PressedArg {
-    Proximal,
-    Distal,
-    Both,
-}
-
-impl PressedArg {
-    pub(super) fn pressed(self) -> Pressed {
-        match self {
-            Self::Proximal => Pressed::Proximal,
-            Self::Distal => Pressed::Distal,
-            Self::Both => Pressed::Both,
-        }
-    }
-}
-
 impl SimulateArgs {
     fn options(&self) -> SimulateOptions {
         SimulateOptions {
@@ -169,13 +130,9 @@ impl SimulateArgs {
                 Some(path) if path.as_os_str() == "zero" => Start::Zero,
                 Some(path) => Start::File(path.clone()),
             },
-            collapse: self.collapse.collapse(),
-            inertia: match self.model {
-                InertiaArg::Full => Inertia::Full,
-                InertiaArg::Dropped => Inertia::Dropped,
-                InertiaArg::Corrected => Inertia::Corrected,
-            },
-            optics: self.optics.choice(),
+            collapse: self.collapse,
+            inertia: self.model,
+            optics: self.optics,
             until_s: self.until,
             every_s: self.every,
             rtol: self.rtol,
@@ -189,10 +146,10 @@ impl SimulateArgs {
             parameters: self.nail.given(),
             upstream: self.ph.clone(),
             downstream: self.pl.clone(),
-            pressed: self.load.map_or(Pressed::Both, PressedArg::pressed),
+            pressed: self.load.unwrap_or_default(),
             range,
-            collapse: self.collapse.collapse(),
-            optics: self.optics.choice(),
+            collapse: self.collapse,
+            optics: self.optics,
         }
     }
 }
@@ -239,12 +196,7 @@ fn finish(common: &Common, report: &SimulateReport) -> anyhow::Result<Outcome> {
         "{} steps ({} more rejected), {} evaluations, {} factorizations; {}",
         work.steps, work.rejected, work.evaluations, work.factorizations, report.stopped
     ));
-    if common.verbose {
-        common.say_stages(&report.stages);
-        common.say_left_out(&report.left_out);
-    }
-    let look = report.pictures.first().unwrap_or(&report.table);
-    common.say(&format!("{:.2} s; look at {}", report.wall_s, look.display()));
+    common.say_done(&report.stages, &report.left_out, report.wall_s, report.pictures.first().unwrap_or(&report.table));
     Ok(if report.failed.is_empty() { Outcome::Done } else { Outcome::SomeFailed })
 }
 
@@ -276,11 +228,6 @@ fn say_curve(common: &Common, report: &CurveReport) -> anyhow::Result<Outcome> {
     for [from, to] in &report.closed_pa {
         common.say(&format!("no equilibrium with open vessels from {from:.6} to {to:.6} Pa"));
     }
-    if common.verbose {
-        common.say_stages(&report.stages);
-        common.say_left_out(&report.left_out);
-    }
-    let look = report.pictures.first().unwrap_or(&report.table);
-    common.say(&format!("{:.2} s; look at {}", report.wall_s, look.display()));
+    common.say_done(&report.stages, &report.left_out, report.wall_s, report.pictures.first().unwrap_or(&report.table));
     Ok(Outcome::Done)
 }

@@ -3,49 +3,12 @@
 use std::path::PathBuf;
 
 use anyhow::Context;
-use clap::{Args, ValueEnum};
-use lunula::phantom::force::{ForceTrajectory, Spiral};
-use lunula::phantom::log::{LogOptions, LogScene, Protocol, Stamps, write};
-use lunula::phantom::screen::Jump;
-use lunula::phantom::sensor::{CHANNELS, Dynamics};
-use lunula::phantom::trajectory::Trajectory;
+use clap::Args;
+use lunula::phantom::log::{LogScene, write};
+use lunula::phantom::request::LogRequest;
+use lunula::phantom::sensor::CHANNELS;
 
-use super::choices::{parse_gap, parse_photodiode, parse_set_clock, trajectory};
 use super::{Common, Outcome};
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum ForceArg {
-    /// The finger touches nothing
-    None,
-    /// Equations 21 to 23, with a soft start, the finger straight
-    Spiral,
-    /// Smooth and random within the cone of friction, most of it about its middle
-    Random,
-    /// Smooth and random, about evenly all over the cone
-    Even,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum ProtocolArg {
-    /// 60 s of bending, then 180 s of the spiral with the finger straight (Fig. 94)
-    Touch,
-    /// 20 s of bending, then 100 s of random forces (Fig. 99)
-    TouchRandom,
-    /// 60 s of bending, six cycles (Fig. 101)
-    Bending,
-    /// 60 s of random bending
-    BendingRandom,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum StampsArg {
-    /// time_s: seconds of the log's clock
-    Seconds,
-    /// time_s: seconds since 1970 began
-    Epoch,
-    /// time: as 2026-03-14T09:26:53.589793
-    Datetime,
-}
 
 /// A log of eight photodiodes and three forces, with exact truth (3.1.2c, 3.3, 5.2.3)
 ///
@@ -55,207 +18,17 @@ enum StampsArg {
 /// --subject 1 --session 1` makes a posture training set without a video.
 #[derive(Debug, Args)]
 pub(super) struct LogArgs {
-    /// Everything random follows from it, but for the person and the session
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
     /// Folder for the log and truth/
     #[arg(long)]
     out: PathBuf,
-    /// Whose finger it is
-    #[arg(long, value_name = "K", default_value_t = 1)]
-    subject: u32,
-    /// Which day: the sensor sits anew, its gains and offsets move by a few per cent
-    #[arg(long, value_name = "K", default_value_t = 1)]
-    session: u32,
-
-    /// An experiment of 5.2.4 and 5.3, prompted to a finger that follows as people do; the options below change it. Repetitions have the same --subject and
-    /// --session and other seeds
-    #[arg(long, value_enum)]
-    protocol: Option<ProtocolArg>,
-    /// How well the finger follows: the standard deviation of its error as a share, about 0.3 s late (assumed; 5.2.2a quotes 6 %); 0: exactly
-    /// [default: 0; with a protocol 0.06]
-    #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
-    follow: Option<f64>,
-    /// The finger touches or rests by up to so many degrees of J2 off straight, the same all along a log and another for each seed (assumed, after
-    /// 5.4.1) [default: 0; with a protocol 3]
-    #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
-    posture_shift: Option<f64>,
-    /// The finger bends and touches nothing until then, and presses, straight, from then on [default: it does both all along; with a protocol
-    /// that touches after its bending]
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
-    touch_from: Option<f64>,
-    /// Joint angles over time: eq27, random, even (random, all over equation 27's range), rest (straight and still), or a table (CSV or Parquet) with time_s, J1_deg, J2_deg, J3_deg [default:
-    /// eq27; with --force spiral rest, with --force random or even random, but eq27 with --touch-from]
-    #[arg(long, value_name = "eq27|random|even|rest|FILE")]
-    trajectory: Option<String>,
-    /// Bending rate f of equation 27; random movement has rates of 0.4 to 4 times it
-    #[arg(long, value_name = "HZ", default_value_t = 0.1)]
-    bend_hz: f64,
-    /// How the fingertip presses and shears [default: none, or as the protocol]
-    #[arg(long, value_enum)]
-    force: Option<ForceArg>,
-    /// The spiral's T
-    #[arg(long, value_name = "SECONDS", default_value_t = 180.0)]
-    spiral_seconds: f64,
-    /// Random forces have rates of 0.4 to 4 times it
-    #[arg(long, value_name = "HZ", default_value_t = 0.1)]
-    force_hz: f64,
-
-    /// The video's length [default: 10, or as long as a given trajectory, or the spiral's T, or the protocol]
-    #[arg(long)]
-    seconds: Option<f64>,
-    /// The log begins so long before the video
-    #[arg(long, value_name = "SECONDS", default_value_t = 1.0, allow_negative_numbers = true)]
-    lead: f64,
-    /// It goes on so long after the video
-    #[arg(long, value_name = "SECONDS", default_value_t = 1.0, allow_negative_numbers = true)]
-    trail: f64,
-    /// Samples a second, lit and unlit ones together
-    #[arg(long, value_name = "HZ", default_value_t = 25.0)]
-    rate: f64,
-    /// What the log's clock says at the video's first frame; as the video's --clock-offset
-    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, allow_negative_numbers = true)]
-    clock_offset: f64,
-    /// How much faster than the video's time the log's clock runs, millionths; as the video's
-    #[arg(long, value_name = "PPM", default_value_t = 0.0, allow_negative_numbers = true)]
-    clock_drift_ppm: f64,
-    /// The log's clock is set so many seconds forward at this time of the video, as 5+3.5 or 5-3.5
-    #[arg(long, value_name = "TIME+SECONDS", value_parser = parse_set_clock)]
-    clock_jump: Option<Jump>,
-    /// How rows say their time; for dates, the log's clock is the time of day
-    #[arg(long, value_enum, default_value = "seconds")]
-    stamps: StampsArg,
-    /// Stamps err by up to so much either way
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
-    jitter: f64,
-    /// Stamps are cut to whole steps of so much, so that some repeat
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
-    stamp_step: f64,
-    /// This share of the rows is lost
-    #[arg(long, value_name = "SHARE", default_value_t = 0.0)]
-    drop: f64,
-    /// All rows are lost from this time of the video on, for so many seconds; again for more
-    #[arg(long, value_name = "FROM+LENGTH", value_parser = parse_gap)]
-    gap: Vec<[f64; 2]>,
-
-    /// The LED is always on, and there is no column for it
-    #[arg(long)]
-    no_led: bool,
-    /// Standard deviation of a reading
-    #[arg(long, value_name = "VOLTS", default_value_t = 0.0005)]
-    noise: f64,
-    /// Light that is not the LED's
-    #[arg(long, value_name = "VOLTS", default_value_t = 0.5)]
-    ambient: f64,
-    /// It goes up and down by so much, most of it slowly, a quarter of it with the lamps' hum
-    #[arg(long, value_name = "PERCENT", default_value_t = 10.0)]
-    ambient_swing: f64,
-    /// The lamps' hum
-    #[arg(long, value_name = "HZ", default_value_t = 100.0)]
-    hum: f64,
-    /// Photodiodes drift by about so much within minutes
-    #[arg(long, value_name = "VOLTS", default_value_t = 0.01)]
-    wander: f64,
-    /// The blood's lag as a share of the usual 0.12 to 0.36 s; 0: none
-    #[arg(long, value_name = "SHARE", default_value_t = 1.0)]
-    lag: f64,
-    /// Hysteresis as a share of the usual; 0: none
-    #[arg(long, value_name = "SHARE", default_value_t = 1.0)]
-    hysteresis: f64,
-    /// P2 and P3 are amplified so much that a fifth of their lit readings is cut at 10 V
-    #[arg(long)]
-    saturate: bool,
-    /// This photodiode reads 0 V, as P6; again for more
-    #[arg(long, value_name = "NAME", value_parser = parse_photodiode)]
-    dead: Vec<usize>,
+    #[command(flatten)]
+    request: LogRequest,
     #[command(flatten)]
     common: Common,
 }
 
-impl LogArgs {
-    fn options(&self) -> anyhow::Result<LogOptions> {
-        let protocol = self.protocol.map(|protocol| match protocol {
-            ProtocolArg::Touch => Protocol::Touch,
-            ProtocolArg::TouchRandom => Protocol::TouchRandom,
-            ProtocolArg::Bending => Protocol::Bending,
-            ProtocolArg::BendingRandom => Protocol::BendingRandom,
-        });
-        let kind = self.force.unwrap_or(match protocol {
-            Some(Protocol::Touch) => ForceArg::Spiral,
-            Some(Protocol::TouchRandom) => ForceArg::Even,
-            _ => ForceArg::None,
-        });
-        let force = match kind {
-            ForceArg::None => ForceTrajectory::None,
-            ForceArg::Spiral => {
-                ForceTrajectory::Spiral(Spiral { duration_s: self.spiral_seconds, ..Spiral::default() })
-            }
-            ForceArg::Random => ForceTrajectory::Random { hz: self.force_hz, seed: self.seed },
-            ForceArg::Even => ForceTrajectory::Even { hz: self.force_hz, seed: self.seed },
-        };
-        let usual = protocol.map_or_else(LogOptions::default, |protocol| LogOptions::of(protocol, self.seed));
-        let touch_from_s = self.touch_from.or(usual.touch_from_s.filter(|_| kind != ForceArg::None));
-        let movement = match (kind, protocol) {
-            (_, Some(Protocol::BendingRandom)) => "even",
-            (ForceArg::Spiral, None) if touch_from_s.is_none() => "rest",
-            (ForceArg::Random | ForceArg::Even, None) if touch_from_s.is_none() => "random",
-            _ => "eq27",
-        };
-        let wanted = self.trajectory.as_deref().unwrap_or(movement);
-        let (trajectory, span_s): (Trajectory, _) = trajectory(wanted, self.bend_hz, self.seed)?;
-        let touching_s = match kind {
-            ForceArg::Spiral => Some(self.spiral_seconds),
-            ForceArg::Random | ForceArg::Even => {
-                protocol.map(|protocol| protocol.seconds()[1]).filter(|seconds| *seconds > 0.0)
-            }
-            ForceArg::None => None,
-        };
-        let after_s = touching_s.map(|seconds| touch_from_s.unwrap_or(0.0) + seconds);
-        Ok(LogOptions {
-            seed: self.seed,
-            subject: self.subject,
-            session: self.session,
-            trajectory,
-            force,
-            touch_from_s,
-            follow: self.follow.unwrap_or(usual.follow),
-            posture_shift_rad: self.posture_shift.map_or(usual.posture_shift_rad, f64::to_radians),
-            seconds: self
-                .seconds
-                .or(after_s.filter(|_| touch_from_s.is_some()))
-                .or(span_s)
-                .or(after_s)
-                .unwrap_or(usual.seconds),
-            lead_s: self.lead,
-            trail_s: self.trail,
-            rate_hz: self.rate,
-            clock_offset_s: self.clock_offset,
-            clock_drift_ppm: self.clock_drift_ppm,
-            clock_jump: self.clock_jump,
-            stamps: match self.stamps {
-                StampsArg::Seconds => Stamps::Seconds,
-                StampsArg::Epoch => Stamps::Epoch,
-                StampsArg::Datetime => Stamps::Datetime,
-            },
-            jitter_s: self.jitter,
-            stamp_step_s: self.stamp_step,
-            dropped: self.drop,
-            gaps_s: self.gap.clone(),
-            led: !self.no_led,
-            noise_sd_v: self.noise,
-            ambient_v: self.ambient,
-            ambient_swing: 0.01 * self.ambient_swing,
-            hum_hz: self.hum,
-            wander_v: self.wander,
-            dynamics: Dynamics { lag: self.lag, hysteresis: self.hysteresis },
-            saturate: self.saturate,
-            dead: self.dead.clone(),
-        })
-    }
-}
-
 pub(super) fn run(args: &LogArgs) -> anyhow::Result<Outcome> {
-    let options = args.options().context("no synthetic log")?;
+    let options = args.request.options().context("no synthetic log")?;
     args.common.start()?;
     let begin = std::time::Instant::now();
     let scene = LogScene::new(options).context("no synthetic log")?;

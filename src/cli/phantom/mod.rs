@@ -1,14 +1,13 @@
 //! `lunula phantom`: synthetic scenes with exact truth.
 
-mod choices;
-mod clock;
 mod log;
 mod photos;
+mod study;
 mod video;
 
 use clap::{Args, Subcommand};
 
-pub(super) use choices::SceneArg;
+pub(super) use lunula::phantom::request::SceneArg;
 
 use super::{Common, Interrupted, Outcome, hand_over};
 
@@ -23,6 +22,7 @@ pub(super) struct PhantomArgs {
 enum Kind {
     Log(Box<log::LogArgs>),
     Photos(Box<photos::PhotosArgs>),
+    Study(Box<study::StudyArgs>),
     Video(Box<video::VideoArgs>),
 }
 
@@ -31,11 +31,7 @@ pub(super) fn run<const VIDEO: bool>(args: &PhantomArgs) -> anyhow::Result<Outco
         Kind::Log(args) => log::run(args),
         Kind::Photos(args) => photos::run(args),
         Kind::Video(args) if VIDEO => video::run(args),
-        Kind::Video(_) => hand_over(),
+        Kind::Study(args) if VIDEO => study::run(args),
+        Kind::Study(_) | Kind::Video(_) => hand_over(),
     }
-}
-
-fn parse_size(text: &str) -> Result<(u32, u32), String> {
-    let sides = text.split_once('x').and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
-    sides.ok_or_else(|| format!("`{text}` is not WIDTHxHEIGHT, as 640x480"))
 }

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
-use clap::{Args, ValueEnum};
-use lunula::phantom::nail::Pose;
-use lunula::phantom::photos::{Error, FileFormat, LightKind, PhotoOptions, write_watched};
+use clap::Args;
+use lunula::phantom::photos::{Error, write_watched};
+use lunula::phantom::request::PhotosRequest;
 
-use super::{Common, Interrupted, Outcome, parse_size};
+use super::{Common, Interrupted, Outcome};
 
 /// Photographs of nails of many shapes, sizes, skin tones and lights, in the eight poses of the thesis (4.2.3-4.2.6)
 ///
@@ -15,85 +15,17 @@ use super::{Common, Interrupted, Outcome, parse_size};
 /// OUT/truth/: nails.csv, outlines/, normalized/*.npy and maps/*.npy, exact.
 #[derive(Debug, Args)]
 pub(super) struct PhotosArgs {
-    /// Everything random follows from it
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
     /// Folder for photos/ and truth/
     #[arg(long)]
     out: PathBuf,
-    /// How many subjects; 16 cover all skin tones
-    #[arg(long, default_value_t = 16)]
-    subjects: u32,
-    /// Which poses, separated by commas [default: all eight]
-    #[arg(long, value_delimiter = ',')]
-    poses: Vec<Pose>,
-    /// Width and height of the photographs, pixels
-    #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "640x480", value_parser = parse_size)]
-    size: (u32, u32),
-    /// Bits a channel
-    #[arg(long, default_value_t = 8)]
-    depth: u32,
-    /// One channel, as through the thesis' green filter
-    #[arg(long)]
-    grey: bool,
-    /// Standard deviation of the sensor's noise, in 255ths of full scale
-    #[arg(long, default_value_t = 0.5)]
-    noise: f64,
-    /// File format of the photographs
-    #[arg(long, value_enum, default_value = "png")]
-    format: FormatArg,
-    /// The thesis' chamber, or dim to bright, tinted, with glare, nails of many sizes up to 30 degrees off upright
-    #[arg(long, value_enum, default_value = "varied")]
-    light: LightArg,
-    /// Draw no outlines beside the photographs
-    #[arg(long)]
-    no_annotations: bool,
-    /// Leave out truth/normalized (0.6 MB a photograph)
-    #[arg(long)]
-    no_normalized: bool,
+    #[command(flatten)]
+    request: PhotosRequest,
     #[command(flatten)]
     common: Common,
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum FormatArg {
-    Png,
-    Jpg,
-    Tif,
-    Bmp,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum LightArg {
-    Chamber,
-    Varied,
-}
-
 pub(super) fn run(args: &PhotosArgs) -> anyhow::Result<Outcome> {
-    let defaults = PhotoOptions::default();
-    let options = PhotoOptions {
-        seed: args.seed,
-        subjects: args.subjects,
-        poses: if args.poses.is_empty() { defaults.poses } else { args.poses.clone() },
-        width: args.size.0,
-        height: args.size.1,
-        depth: args.depth,
-        grey: args.grey,
-        noise_sd: args.noise,
-        format: match args.format {
-            FormatArg::Png => FileFormat::Png,
-            FormatArg::Jpg => FileFormat::Jpg,
-            FormatArg::Tif => FileFormat::Tif,
-            FormatArg::Bmp => FileFormat::Bmp,
-        },
-        light: match args.light {
-            LightArg::Chamber => LightKind::Chamber,
-            LightArg::Varied => LightKind::Varied,
-        },
-        annotate: !args.no_annotations,
-        truth_normalized: !args.no_normalized,
-        ..defaults
-    };
+    let options = args.request.options();
     let stop = args.common.start()?;
     let bar = args.common.progress(options.subjects as usize * options.poses.len(), "photographs");
     let watch = |done: usize, _: usize| {

@@ -5,18 +5,10 @@ use std::sync::atomic::Ordering;
 
 use anyhow::Context;
 use clap::Args;
-use lunula::flexion::Flexion;
-use lunula::phantom::finger::{Finger, MarkerLayout};
-use lunula::phantom::trajectory::Trajectory;
-use lunula::phantom::video::{Chroma, Colours, Error, Hide, Leave, Lens, Scene, VideoOptions, write_watched};
-use lunula::video::{Matrix, Turn};
+use lunula::phantom::request::VideoRequest;
+use lunula::phantom::video::{Error, Scene, write_watched};
 
-use super::choices::{
-    ColoursArg, FlexionArg, FormatArg, LayoutArg, MatrixArg, RotateArg, SceneArg, SitingArg, parse_colour, parse_hide,
-    parse_leave, trajectory,
-};
-use super::clock::ClockArgs;
-use super::{Common, Interrupted, Outcome, parse_size};
+use super::{Common, Interrupted, Outcome};
 
 /// A video of a finger with coloured markers, with exact joint angles and marker centres (3.2.3, 3.3.5)
 ///
@@ -24,230 +16,17 @@ use super::{Common, Interrupted, Outcome, parse_size};
 /// scene.json. A scene sets all that follows; each option changes one thing of it.
 #[derive(Debug, Args)]
 pub(super) struct VideoArgs {
-    /// Everything random follows from it
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
     /// Folder for the video, the marker file and truth/
     #[arg(long)]
     out: PathBuf,
-    /// The scene to start from: clean (noise 2, crf 16), hard (noise 6, blur, flicker, gradient, distractors, a hidden marker, crf 30), small
-    /// (480x270, crf 23), fast (60 frames a second, bending at 1 Hz, blur), uhd (3840x2160)
-    #[arg(long, value_enum, default_value = "clean")]
-    scene: SceneArg,
-    /// Width and height of the picture, pixels; the finger grows with the width
-    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = parse_size)]
-    size: Option<(u32, u32)>,
-    /// Frames a second
-    #[arg(long)]
-    fps: Option<f64>,
-    /// How long [default: 10, or as long as a given trajectory]
-    #[arg(long)]
-    seconds: Option<f64>,
-    /// Variable frame rate: intervals differ by up to this share of the mean one, and some frames are dropped
-    #[arg(long, value_name = "SHARE", num_args = 0..=1, default_missing_value = "0.4")]
-    vfr: Option<f64>,
-
-    /// Joint angles over time: eq27, random, even (random, all over equation 27's range), rest (straight and still), or a table (CSV or Parquet) with time_s, J1_deg, J2_deg, J3_deg
-    #[arg(long, value_name = "eq27|random|even|rest|FILE")]
-    trajectory: Option<String>,
-    /// Bending rate f of equation 27; random movement has rates of 0.4 to 4 times it
-    #[arg(long, value_name = "HZ")]
-    bend_hz: Option<f64>,
-    /// How flexion turns a segment on the picture
-    #[arg(long, value_enum, default_value = "clockwise")]
-    flexion: FlexionArg,
-    /// Two markers on each segment, or one on each joint and at both ends
-    #[arg(long, value_enum, default_value = "pairs")]
-    layout: LayoutArg,
-    /// One colour a segment (a mark, with --layout joints), one a marker, or all red
-    #[arg(long, value_enum, default_value = "pairs")]
-    colours: ColoursArg,
-    /// Joints that the marker file asks for, separated by commas [default: J1,J2,J3]
-    #[arg(long, value_delimiter = ',')]
-    joints: Vec<String>,
-    /// Write the markers' places in the first frame into the marker file
-    #[arg(long)]
-    start: bool,
-    /// How far the whole finger sways, pixels
-    #[arg(long, value_name = "PX")]
-    sway: Option<f64>,
-    /// A stick covers this marker from this frame on, so many frames long; again for more
-    #[arg(long, value_name = "NAME@FRAME+N", value_parser = parse_hide)]
-    hide: Vec<Hide>,
-    /// Hide no marker, whatever the scene
-    #[arg(long, conflicts_with = "hide")]
-    no_hide: bool,
-    /// The fingertip is out of the picture from this frame on, so many frames long
-    #[arg(long, value_name = "FRAME+N", value_parser = parse_leave)]
-    leave: Option<Leave>,
-    /// Blobs of three marker colours elsewhere in the picture, still and moving
-    #[arg(long, value_name = "N")]
-    distractors: Option<usize>,
-    /// Colour of the desk
-    #[arg(long, value_name = "#RRGGBB", value_parser = parse_colour)]
-    desk: Option<u32>,
-
-    /// Exposure as a share of the frame interval
-    #[arg(long, value_name = "SHARE")]
-    blur: Option<f64>,
-    /// The light's brightness goes up and down by so many per cent
-    #[arg(long, value_name = "PERCENT")]
-    flicker: Option<f64>,
-    /// How often the light flickers; frames sample it [default: 100]
-    #[arg(long, value_name = "HZ")]
-    flicker_hz: Option<f64>,
-    /// The light's brightness over the picture: so many per cent more at the top left, less at the bottom right
-    #[arg(long, value_name = "PERCENT")]
-    gradient: Option<f64>,
-    /// Standard deviation of the sensor's noise in R'G'B', in 255ths of full scale
-    #[arg(long, value_name = "SD")]
-    noise: Option<f64>,
-    /// Standard deviation of the Gaussian that every edge is seen through [default: 0.55]
-    #[arg(long, value_name = "PX")]
-    focus: Option<f64>,
-    /// The lens, OpenCV's model; the marker file gets its [camera]
-    #[arg(long, value_name = "k1,k2,p1,p2,k3,..", value_delimiter = ',', allow_hyphen_values = true)]
-    distortion: Vec<f64>,
-    /// The lens' focal length [default: 1200 where the picture is 1280 wide]
-    #[arg(long, value_name = "PX", requires = "distortion")]
-    fx: Option<f64>,
-
     #[command(flatten)]
-    clock: ClockArgs,
-
-    /// The video's colour matrix
-    #[arg(long, value_enum, default_value = "709")]
-    matrix: MatrixArg,
-    /// Samples use all values, not the limited range
-    #[arg(long)]
-    full_range: bool,
-    /// Where chroma samples lie: left as in most camera files, or centre as in files that swscale converted from RGB
-    #[arg(long, value_enum, default_value = "left")]
-    siting: SitingArg,
-    /// What the file's header says of that [default: nothing]
-    #[arg(long, value_enum)]
-    stated_siting: Option<SitingArg>,
-    /// The stored picture is turned back by so many degrees, and the file says to turn it clockwise to show it
-    #[arg(long, value_enum, default_value = "0")]
-    rotate: RotateArg,
-    /// Chroma of the video: 4:2:0, 4:2:2, 4:4:4, none
-    #[arg(long, value_enum, default_value = "420")]
-    format: FormatArg,
-    /// Bits a sample: 8 or 10
-    #[arg(long, default_value_t = 8)]
-    depth: u32,
-    /// x264's constant rate factor: 0 lossless, 51 worst
-    #[arg(long)]
-    crf: Option<u32>,
-    /// x264's preset
-    #[arg(long, value_name = "PRESET", default_value = "medium",
-          value_parser = ["ultrafast", "superfast", "veryfast", "faster", "fast", "medium", "slow", "slower", "veryslow"])]
-    x264: String,
+    request: VideoRequest,
     #[command(flatten)]
     common: Common,
 }
 
-impl VideoArgs {
-    fn options(&self) -> anyhow::Result<VideoOptions> {
-        let mut options = VideoOptions::new(self.scene.preset());
-        options.seed = self.seed;
-        let given = |option: &mut f64, value: Option<f64>, scale: f64| {
-            if let Some(value) = value {
-                *option = scale * value;
-            }
-        };
-        let before = options.width as f64;
-        if let Some((width, height)) = self.size {
-            (options.width, options.height) = (width as usize, height as usize);
-        }
-        options.sway_px *= options.width as f64 / before;
-        self.settle_finger(&mut options)?;
-        given(&mut options.fps, self.fps, 1.0);
-        given(&mut options.seconds, self.seconds, 1.0);
-        given(&mut options.jitter, self.vfr, 1.0);
-        given(&mut options.sway_px, self.sway, 1.0);
-        given(&mut options.blur, self.blur, 1.0);
-        given(&mut options.flicker, self.flicker, 0.01);
-        given(&mut options.flicker_hz, self.flicker_hz, 1.0);
-        given(&mut options.gradient, self.gradient, 0.01);
-        given(&mut options.noise_sd, self.noise, 1.0);
-        given(&mut options.focus_px, self.focus, 1.0);
-        if self.no_hide || !self.hide.is_empty() {
-            options.hide.clone_from(&self.hide);
-        }
-        options.leave = self.leave;
-        options.distractors = self.distractors.unwrap_or(options.distractors);
-        options.desk = self.desk.unwrap_or(options.desk);
-        options.lens =
-            (!self.distortion.is_empty()).then(|| Lens { fx_px: self.fx, distortion: self.distortion.clone() });
-        self.clock.settle(&mut options);
-        options.matrix = match self.matrix {
-            MatrixArg::Bt601 => Matrix::BT601,
-            MatrixArg::Bt709 => Matrix::BT709,
-            MatrixArg::Bt2020 => Matrix::BT2020,
-        };
-        options.matrix.full_range = self.full_range;
-        options.siting = self.siting.siting();
-        options.stated_siting = self.stated_siting.map(SitingArg::siting);
-        options.turn = match self.rotate {
-            RotateArg::None => Turn::None,
-            RotateArg::Quarter => Turn::Quarter,
-            RotateArg::Half => Turn::Half,
-            RotateArg::ThreeQuarters => Turn::ThreeQuarters,
-        };
-        options.chroma = match self.format {
-            FormatArg::Quarter => Chroma::Quarter,
-            FormatArg::Half => Chroma::Half,
-            FormatArg::Full => Chroma::Full,
-            FormatArg::Grey => Chroma::None,
-        };
-        options.depth = self.depth;
-        options.crf = self.crf.unwrap_or(options.crf);
-        options.preset =
-            VideoOptions::X264_PRESETS.into_iter().find(|name| *name == self.x264).unwrap_or(options.preset);
-        options.start = self.start;
-        if !self.joints.is_empty() {
-            options.joints.clone_from(&self.joints);
-        }
-        Ok(options)
-    }
-
-    /// The finger, its markers and how it moves.
-    fn settle_finger(&self, options: &mut VideoOptions) -> anyhow::Result<()> {
-        let flexion = match self.flexion {
-            FlexionArg::Clockwise => Flexion::Clockwise,
-            FlexionArg::Counterclockwise => Flexion::Counterclockwise,
-        };
-        let layout = match self.layout {
-            LayoutArg::Pairs => MarkerLayout::Pairs,
-            LayoutArg::Joints => MarkerLayout::Joints,
-        };
-        options.finger = Finger::new(options.width, options.height, flexion, layout);
-        options.colours = match self.colours {
-            ColoursArg::Pairs => Colours::Pairs,
-            ColoursArg::Distinct => Colours::Distinct,
-            ColoursArg::Red => Colours::Red,
-        };
-        if layout == MarkerLayout::Joints {
-            // The scene's hidden marker by its name in this layout.
-            options.hide.iter_mut().for_each(|hide| hide.marker = "dip".to_owned());
-        }
-        let scenes_hz = match options.trajectory {
-            Trajectory::Eq27 { hz } | Trajectory::Random { hz, .. } | Trajectory::Even { hz, .. } => hz,
-            Trajectory::Rest | Trajectory::Given { .. } => 0.1,
-        };
-        let hz = self.bend_hz.unwrap_or(scenes_hz);
-        let (movement, span_s) = trajectory(self.trajectory.as_deref().unwrap_or("eq27"), hz, self.seed)?;
-        options.trajectory = movement;
-        if let Some(span_s) = span_s {
-            options.seconds = span_s.max(1.0 / options.fps);
-        }
-        Ok(())
-    }
-}
-
 pub(super) fn run(args: &VideoArgs) -> anyhow::Result<Outcome> {
-    let options = args.options().context("no synthetic video")?;
+    let options = args.request.options().context("no synthetic video")?;
     let wanted = options.distractors;
     let stop = args.common.start()?;
     let scene = Scene::new(options).context("no synthetic video")?;

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use lunula::predictor::{ModelMode, analyse as run_analyse};
+use lunula::predictor::{FolderOutputs, ModelMode, analyse as run_analyse};
 
 use super::{Common, Outcome, ended, say_end, say_notes};
 
@@ -26,7 +26,8 @@ pub(crate) struct AnalyseArgs {
 
 pub(crate) fn run(args: &AnalyseArgs) -> anyhow::Result<Outcome> {
     let stop = args.common.start()?;
-    let report = run_analyse(&args.model, args.out.as_deref(), &stop).map_err(ended)?;
+    let out = args.out.clone().map(FolderOutputs::all);
+    let report = run_analyse(&args.model, out.as_ref(), &stop).map_err(ended)?;
     let common = &args.common;
     say_notes(common, &report.warnings);
     common.print_json(&report)?;

@@ -2,11 +2,12 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
-use lunula::predictor::models::By;
-use lunula::predictor::{EvaluateOptions, EvaluateReport, evaluate as run_evaluate};
+use clap::Args;
+use lunula::predictor::{
+    ByChoice, DataFile, EvaluateOptions, EvaluateReport, FOLDS, FolderOutputs, LEVEL, evaluate as run_evaluate, share,
+};
 
-use super::{Common, Outcome, RowsArgs, ended, say_end, say_merit, say_notes};
+use super::{Common, Outcome, RowsArgs, ended, one_of, say_end, say_merit, say_notes};
 
 /// How far off a model is on recordings, and how far off its recipe is on recordings that are held out
 ///
@@ -23,54 +24,39 @@ pub(crate) struct EvaluateArgs {
     #[arg(required = true, value_name = "DATA")]
     data: Vec<PathBuf>,
     /// What is held out in turn
-    #[arg(long, value_enum)]
-    by: Option<ByArg>,
+    #[arg(long, value_parser = one_of::<ByChoice>())]
+    by: Option<ByChoice>,
     /// Parts of shuffled rows
-    #[arg(long, value_name = "N", default_value_t = 10, value_parser = clap::value_parser!(u16).range(2..=1000))]
+    #[arg(long, value_name = "N", default_value_t = FOLDS, value_parser = clap::value_parser!(u16).range(2..=1000))]
     folds: u16,
     /// Which shuffle
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// The share of rows that intervals of held-out parts are to hold
-    #[arg(long, value_name = "SHARE", default_value_t = 0.9)]
+    #[arg(long, value_name = "SHARE", default_value_t = LEVEL)]
     level: f64,
     #[command(flatten)]
     rows: RowsArgs,
-    /// A folder for predicted.csv, pictures and run.json
+    /// A folder for merit.csv, predicted.csv, pictures and run.json
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]
     common: Common,
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum ByArg {
-    /// Each recording
-    Trajectory,
-    /// All recordings of a subject's session
-    Session,
-    /// All recordings of a subject
-    Subject,
-    /// Shuffled rows, which flatters
-    Rows,
-}
-
 pub(crate) fn run(args: &EvaluateArgs) -> anyhow::Result<Outcome> {
     let stop = args.common.start()?;
-    anyhow::ensure!(args.level > 0.0 && args.level < 1.0, "--level is a share between 0 and 1, as 0.9");
-    let by = args.by.map(|by| match by {
-        ByArg::Trajectory => By::Trajectory,
-        ByArg::Session => By::Session,
-        ByArg::Subject => By::Subject,
-        ByArg::Rows => By::Rows { folds: usize::from(args.folds), seed: args.seed },
-    });
+    let level = share(args.level).map_err(|why| anyhow::anyhow!("--level {why}"))?;
+    let by = args.by.map(|by| by.by(args.folds, args.seed));
     let options = EvaluateOptions {
         drop_invalid: args.rows.drop_invalid,
         keep_faults: args.rows.keep_faults,
         by,
-        level: args.level,
+        level,
+        called: None,
     };
-    let report = run_evaluate(&args.model, &args.data, &options, args.out.as_deref(), &stop).map_err(ended)?;
+    let out = args.out.clone().map(FolderOutputs::all);
+    let report = run_evaluate(&args.model, &DataFile::of(&args.data), &options, out.as_ref(), &stop).map_err(ended)?;
     let common = &args.common;
     say_notes(common, &report.warnings);
     common.print_json(&report)?;

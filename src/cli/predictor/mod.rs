@@ -11,7 +11,7 @@ use std::path::PathBuf;
 use clap::Args;
 use lunula::predictor::{ByTarget, Merit, Target, Wanted};
 
-use super::{Common, Interrupted, Outcome};
+use super::{Common, Interrupted, Outcome, one_of};
 
 pub(super) use analyse::{AnalyseArgs, run as analyse};
 pub(super) use evaluate::{EvaluateArgs, run as evaluate};

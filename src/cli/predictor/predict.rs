@@ -7,7 +7,7 @@ use std::sync::atomic::AtomicBool;
 use anyhow::Context;
 use clap::Args;
 use lunula::predictor::models::Gate;
-use lunula::predictor::{PredictOptions, predict as run_predict, predict_stream};
+use lunula::predictor::{F_MIN_N, PredictOptions, predict as run_predict, predict_stream};
 
 use super::{Common, Outcome, ended, say_notes};
 
@@ -25,7 +25,7 @@ pub(crate) struct PredictArgs {
     #[arg(long, value_name = "PREDICTED.csv")]
     out: Option<PathBuf>,
     /// The pressing from which on the finger touches
-    #[arg(long, value_name = "NEWTONS", default_value_t = 0.5)]
+    #[arg(long, value_name = "NEWTONS", default_value_t = F_MIN_N)]
     f_min: f64,
     /// The angle while it touches
     #[arg(long, value_name = "DEGREES", default_value_t = 0.0, allow_negative_numbers = true)]

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use lunula::predictor::{PruneRow, Target, prune as run_prune};
+use lunula::predictor::{DataFile, FolderOutputs, PruneRow, Target, prune as run_prune};
 
 use super::{Common, Outcome, RowsArgs, ended, figure, say_end, say_notes};
 
@@ -37,7 +37,9 @@ pub(crate) struct PruneArgs {
 pub(crate) fn run(args: &PruneArgs) -> anyhow::Result<Outcome> {
     let stop = args.common.start()?;
     let wanted = args.rows.wanted(args.inputs.clone(), &args.target);
-    let report = run_prune(&args.data, &args.validate, &wanted, args.out.as_deref(), &stop).map_err(ended)?;
+    let (data, validate) = (DataFile::of(&args.data), DataFile::of(&args.validate));
+    let out = args.out.clone().map(FolderOutputs::all);
+    let report = run_prune(&data, &validate, &wanted, out.as_ref(), &stop).map_err(ended)?;
     let common = &args.common;
     say_notes(common, &report.warnings);
     common.print_json(&report)?;

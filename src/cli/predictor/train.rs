@@ -3,11 +3,14 @@
 use std::path::PathBuf;
 
 use anyhow::Context;
-use clap::{Args, ValueEnum};
+use clap::Args;
 use lunula::predictor::models::{Deficient, Kind, Recipe, Report};
-use lunula::predictor::{Target, TrainInputs, TrainOptions, TrainOutputs, train as run_train, train_plan};
+use lunula::predictor::{
+    DataFile, HIDDEN, LEVEL, ModelChoice, Target, TrainInputs, TrainOptions, TrainOutputs, share, train as run_train,
+    train_plan,
+};
 
-use super::{Common, Outcome, RowsArgs, ended, figure, say_merit, say_notes};
+use super::{Common, Outcome, RowsArgs, ended, figure, one_of, say_merit, say_notes};
 
 /// Recordings of photodiodes with forces or angles to a model that tells forces or angles from photodiodes (5.)
 ///
@@ -25,10 +28,10 @@ pub(crate) struct TrainArgs {
     #[arg(long, value_name = "force|posture|COLUMNS", value_parser = Target::parse)]
     target: Target,
     /// Which model
-    #[arg(long, value_enum, default_value = "linear")]
-    model: ModelArg,
+    #[arg(long, value_parser = one_of::<ModelChoice>(), default_value = "linear")]
+    model: ModelChoice,
     /// Hidden nodes of the network
-    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    #[arg(long, value_name = "N", default_value_t = HIDDEN, value_parser = clap::value_parser!(u16).range(1..=1000))]
     hidden: u16,
     /// Recordings to report on
     #[arg(long, value_name = "DATA", num_args = 1..)]
@@ -47,7 +50,7 @@ pub(crate) struct TrainArgs {
     friction: Option<f64>,
     /// Where rows do not determine the linear or quadratic model: refuse, minimum-norm, drop (photodiodes that add nothing) or
     /// ridge=LAMBDA
-    #[arg(long, value_name = "WHAT", default_value = "refuse", value_parser = parse_deficient)]
+    #[arg(long, value_name = "WHAT", default_value = "refuse", value_parser = str::parse::<Deficient>)]
     deficient: Deficient,
     /// Where a network's first weights come from
     #[arg(long, default_value_t = 1)]
@@ -59,7 +62,7 @@ pub(crate) struct TrainArgs {
     #[arg(long, value_name = "N", default_value_t = Recipe::new(Kind::Linear).max_epochs as u32, value_parser = clap::value_parser!(u32).range(1..))]
     epochs: u32,
     /// The share of rows that prediction intervals are to hold
-    #[arg(long, value_name = "SHARE", default_value_t = 0.9)]
+    #[arg(long, value_name = "SHARE", default_value_t = LEVEL)]
     level: f64,
     #[command(flatten)]
     rows: RowsArgs,
@@ -76,45 +79,14 @@ pub(crate) struct TrainArgs {
     common: Common,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum ModelArg {
-    /// Equation 9
-    Linear,
-    /// Equation 16
-    Quadratic,
-    /// Equations 17 and 18
-    Network,
-}
-
-impl ModelArg {
-    pub(super) fn kind(self, hidden: u16) -> Kind {
-        match self {
-            Self::Linear => Kind::Linear,
-            Self::Quadratic => Kind::Quadratic,
-            Self::Network => Kind::Network { hidden: usize::from(hidden) },
-        }
-    }
-}
-
-fn parse_deficient(text: &str) -> Result<Deficient, String> {
-    let ridge = |lambda: &str| lambda.parse().ok().filter(|lambda: &f64| *lambda > 0.0 && lambda.is_finite());
-    let parsed = match text {
-        "refuse" => Some(Deficient::Refuse),
-        "minimum-norm" => Some(Deficient::MinimumNorm),
-        "drop" => Some(Deficient::Drop),
-        other => other.strip_prefix("ridge=").and_then(ridge).map(Deficient::Ridge),
-    };
-    parsed.ok_or_else(|| {
-        "choose refuse, minimum-norm, drop or ridge=LAMBDA (as ridge=1e-6, of voltages in units of their spread)"
-            .to_owned()
-    })
-}
-
 pub(crate) fn run(args: &TrainArgs) -> anyhow::Result<Outcome> {
     let stop = args.common.start()?;
-    anyhow::ensure!(args.level > 0.0 && args.level < 1.0, "--level is a share between 0 and 1, as 0.9");
-    let inputs =
-        TrainInputs { data: args.data.clone(), validate: args.validate.clone(), stop_on: args.stop_on.clone() };
+    let level = share(args.level).map_err(|why| anyhow::anyhow!("--level {why}"))?;
+    let inputs = TrainInputs {
+        data: DataFile::of(&args.data),
+        validate: DataFile::of(&args.validate),
+        stop_on: DataFile::of(&args.stop_on),
+    };
     let options = TrainOptions {
         wanted: args.rows.wanted(args.inputs.clone(), &args.target),
         recipe: Recipe {
@@ -126,14 +98,14 @@ pub(crate) fn run(args: &TrainArgs) -> anyhow::Result<Outcome> {
             friction_mu: args.friction,
             ..Recipe::new(args.model.kind(args.hidden))
         },
-        level: args.level,
+        level,
     };
     if args.plan {
         let steps = train_plan(&inputs, &options.recipe, args.learning_curve.is_some());
         return args.common.show_plan("train", &steps);
     }
     let out = args.out.as_ref().context("--out is needed")?;
-    let outputs = TrainOutputs { model: out.clone(), learning_curve: args.learning_curve.clone() };
+    let outputs = TrainOutputs { model: out.clone(), learning_curve: args.learning_curve.clone(), merit: None };
     let report = run_train(&inputs, &options, &outputs, &stop).map_err(ended)?;
     say_notes(&args.common, &report.warnings);
     args.common.print_json(&report)?;

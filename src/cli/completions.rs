@@ -1,0 +1,29 @@
+//! `lunula completions`: what a shell needs to complete commands and options.
+
+use std::io::Write as _;
+
+use anyhow::Context as _;
+use clap::{Args, CommandFactory as _};
+use clap_complete::{Shell, generate};
+
+use super::{Cli, Outcome};
+
+/// Commands and options for a shell to complete, on standard output
+///
+/// bash:  lunula completions bash > ~/.local/share/bash-completion/completions/lunula
+/// zsh:   lunula completions zsh > "${fpath[1]}/_lunula"
+/// fish:  lunula completions fish > ~/.config/fish/completions/lunula.fish
+#[derive(Debug, Args)]
+#[command(verbatim_doc_comment)]
+pub(super) struct CompletionsArgs {
+    /// Whose
+    #[arg(value_enum)]
+    shell: Shell,
+}
+
+pub(super) fn run(args: &CompletionsArgs) -> anyhow::Result<Outcome> {
+    let mut text = Vec::new();
+    generate(args.shell, &mut Cli::command(), "lunula", &mut text);
+    std::io::stdout().write_all(&text).context("standard output")?;
+    Ok(Outcome::Done)
+}
