@@ -32,6 +32,11 @@ demo: system
 	$(LUNULA) simulate --pf1 step:5000@0..2 --pf2 step:5000@0..2 --with-loads --out $(DEMO)/hemodynamics/steps.csv
 	$(LUNULA) simulate --static 0..12000/50 --load distal --out $(DEMO)/hemodynamics/static.csv
 	$(LUNULA) fit $(DEMO)/hemodynamics/steps.csv --free k_C,b_C,k_V,b_V --set k_C1_N_per_m=7e4 --set k_C2_N_per_m=7e4 --set k_V_N_per_m=1500 --between held --unloaded-before --out $(DEMO)/hemodynamics/fit.json
+	$(LUNULA) run pipelines/study.toml --out $(DEMO)/study
+	@echo
+	@echo "The whole study, a counterpart of every data figure of the thesis:"
+	@echo "  $(DEMO)/study/page/study.html             the figures, and what the thesis states beside what came out"
+	@echo "  $(DEMO)/study/report.html                 what was done and left out, errors, the time of each stage"
 	@echo
 	@echo "Average coloration of 16 generated subjects in eight poses:"
 	@echo "  $(DEMO)/coloration/report.html            everything on one page"
@@ -56,12 +61,12 @@ demo: system
 	@echo "  $(DEMO)/predictor/prune/without-one.png   each photodiode removed, as Fig. 113"
 
 test: system
-	cargo test --locked --workspace --features xdf
+	cargo test --locked --features xdf
 
 lint: system
 	cargo fmt --all --check
-	cargo clippy --locked --workspace --all-targets -- -D warnings
-	RUSTDOCFLAGS="-D warnings" cargo doc --locked --workspace --no-deps
+	cargo clippy --locked --features xdf --all-targets -- -D warnings
+	RUSTDOCFLAGS="-D warnings" cargo doc --locked --features xdf --no-deps
 
 bench: system
 	cargo bench --locked --bench photos
@@ -69,6 +74,8 @@ bench: system
 	cargo bench --locked --bench align
 	cargo bench --locked -p lunula-predictor
 	cargo bench --locked -p lunula-hemodynamics
+	cargo bench --locked -p lunula-hemodynamics-peer
+	cargo test --locked --release -p lunula-hemodynamics-peer
 
 # Installs the packages of system-packages.txt that are missing; does nothing where all are there.
 system:

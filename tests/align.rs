@@ -1,11 +1,9 @@
 //! `lunula align` from end to end on generated recordings: from nothing to a labelled set whose certificate agrees with the
 //! truth.
 
-mod util;
-
 use std::collections::BTreeMap;
 
-use util::{Answer, Dir};
+use crate::util::{Answer, Dir};
 
 type Row = BTreeMap<String, String>;
 
@@ -300,7 +298,15 @@ fn the_trade_off_measures_the_clock_read_in_fewer_and_fewer_frames() {
     assert!(few["work"].as_u64().unwrap() * 2 <= every["work"].as_u64().unwrap());
     // Where nothing ties, the report says which and why.
     let told = report["warnings"].as_array().unwrap().len();
-    assert_eq!(rows.len() + told, 6, "{report}");
+    let labels = rows.iter().filter(|row| row["choice"] == "bridging").count();
+    assert_eq!(rows.len() + told, 6 + labels, "{report}");
+    assert_eq!(labels, 4, "{report}");
+    // Angles over longer gaps label more rows.
+    let [few, many] = ["no frame bridged", "gaps of twenty frames"].map(of);
+    assert!(few["work"].as_u64().unwrap() < many["work"].as_u64().unwrap(), "{report}");
+    assert_eq!(report["curves"][0]["default"]["setting"], "clock in every frame");
+    let pandas = &report["peers"][0];
+    assert!(pandas["measured"] == false && pandas["what"].as_str().unwrap().contains("--peers"), "{report}");
     for file in ["t/tradeoff.csv", "t/tradeoff.png", "t/tradeoff.svg"] {
         assert!(dir.path(file).is_file(), "{file}");
     }

@@ -1,8 +1,6 @@
 //! `lunula align` on tables that are wrong, odd or empty: each a clear answer, and no half-written set.
 
-mod util;
-
-use util::{Answer, Dir};
+use crate::util::{Answer, Dir};
 
 /// A table of angles with the contract's columns alone: 2 s at 30 frames a second, J2 = 10 t degrees, the clock 100 s ahead.
 fn joints() -> String {

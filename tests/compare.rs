@@ -1,14 +1,12 @@
 //! The comparisons of section 5.4 against what `train` and `evaluate` tell of the same recordings.
 
-mod util;
-
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
+use crate::util::Dir;
 use lunula::phantom::log::{LogOptions, LogScene, Protocol, write};
 use lunula::predictor::models::{Kind, Recipe};
-use lunula::predictor::{CompareOptions, CompareReport, Person, PredictorError, compare};
-use util::Dir;
+use lunula::predictor::{CompareOptions, CompareReport, FolderOutputs, Person, PredictorError, compare};
 
 /// Sums over the same rows in another order; measured 0.
 const SAME_N: f64 = 1e-12;
@@ -58,7 +56,8 @@ fn mean(report: &CompareReport, figure: &str, group: &str, series: &str) -> f64 
 fn comparisons_are_what_train_and_prune_tell_of_the_same_recordings() {
     let dir = Dir::new();
     let one = person(&dir, 1);
-    let report = compare(&[one], &options(), Some(&dir.path("out")), &AtomicBool::new(false)).unwrap();
+    let report =
+        compare(&[one], &options(), Some(&FolderOutputs::all(dir.path("out"))), &AtomicBool::new(false)).unwrap();
     let figures: Vec<&str> = report.comparisons.iter().map(|one| one.figure.as_str()).collect();
     assert_eq!(figures, ["105", "106", "108", "109", "110", "111", "112", "113"]);
     for model in ["linear", "quadratic"] {

@@ -1,10 +1,8 @@
 //! `lunula fit`: parameters that made a recording are found again from it, with what it does not tell said; bad requests are refused whole.
 
-mod util;
-
 use std::collections::BTreeMap;
 
-use util::{Answer, Dir};
+use crate::util::{Answer, Dir};
 
 fn run(dir: &Dir, command: &str, options: &str) -> Answer {
     let mut arguments = vec![command];
@@ -68,7 +66,7 @@ fn what_made_a_recording_is_found_again() {
     let misses = fitted.iter().map(|row| (number(row, "measured_V") - number(row, "fitted_V")).abs());
     assert!(misses.fold(0.0, f64::max) <= NEAR_V);
     let files: Vec<String> = dir.bytes_of(".").into_keys().filter(|name| name.starts_with('f')).collect();
-    assert_eq!(files, ["f-fitted.csv", "f-fitted.png", "f-fitted.svg", "f.json", "f.toml"]);
+    assert_eq!(files, ["f-estimates.csv", "f-fitted.csv", "f-fitted.png", "f-fitted.svg", "f.json", "f.toml"]);
 }
 
 #[test]
@@ -227,7 +225,7 @@ fn the_same_request_gives_the_same_bytes_whatever_the_threads() {
         bytes.remove("f.json");
         bytes
     };
-    assert!(results("one").len() == 4 && results("one") == results("four"));
+    assert!(results("one").len() == 5 && results("one") == results("four"));
 }
 
 #[test]

@@ -1,19 +1,17 @@
 //! Synthetic logs: readings and truth agree, the log belongs to the video of its seed, bad options are refused.
 
-mod util;
-
 use std::collections::BTreeMap;
 
+use crate::util::Dir;
 use lunula::phantom::force::{ForceTrajectory, Spiral};
 use lunula::phantom::log::{Error, LogOptions, LogScene, write};
 use lunula::phantom::sensor::CHANNELS;
 use lunula::phantom::trajectory::Trajectory;
-use util::Dir;
 
 /// Half a step of the converter and of a number's sixth decimal, volts.
 const HALF_STEP_V: f64 = 0.5 * 10.0 / 65_536.0 + 1e-6;
 
-fn run(dir: &Dir, options: &str) -> util::Answer {
+fn run(dir: &Dir, options: &str) -> crate::util::Answer {
     let mut arguments = vec!["phantom", "log"];
     arguments.extend(options.split_whitespace());
     dir.lunula(&arguments)
@@ -295,7 +293,9 @@ fn bad_options_are_refused_all_at_once() {
     refused("--dead P9").says("`P9` is no photodiode; there are P1 to P8");
     refused("--gap now").says("`now` is not FROM+LENGTH");
     refused("--clock-jump 5").says("`5` is not TIME+SECONDS");
-    refused("--trajectory nowhere.csv").says("--trajectory is eq27, random, even, rest or a table").says("nowhere.csv");
+    refused("--trajectory nowhere.csv")
+        .says("--trajectory is eq27, free, random, even, rest or a table")
+        .says("nowhere.csv");
     assert!(!dir.path("out").exists());
     refused("--protocol touch --follow 0.5 --posture-shift -1")
         .says("--follow 0.5: choose 0 to 0.4")

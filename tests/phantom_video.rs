@@ -1,7 +1,6 @@
 //! Synthetic videos: truth and picture agree, files hold what they should, bad options are refused.
 
-mod util;
-
+use crate::util::Dir;
 use lunula::flexion::Flexion;
 use lunula::phantom::finger::{JOINTS, MarkerLayout};
 use lunula::phantom::screen::Clock;
@@ -10,7 +9,6 @@ use lunula::phantom::video::{
     Chroma, Colours, Error, Hide, Leave, Lens, MarkerStatus, Preset, Scene, Siting, VideoOptions, write,
 };
 use lunula::video::{Item, Picture, Turn, Video};
-use util::Dir;
 
 /// Without noise, 10 bit, chroma for each pixel.
 fn exact(width: usize, height: usize) -> VideoOptions {
@@ -433,7 +431,7 @@ fn bad_options_are_refused_all_at_once() {
     run(&["--depth", "12"]).says("--depth 12: choose 8 or 10");
     run(&["--joints", "J4"]).says("--joints J4: there are J1, J2, J3");
     run(&["--hide", "middle_dist"]).says("is not NAME@FRAME+N");
-    run(&["--trajectory", "nowhere.csv"]).says("--trajectory is eq27, random, even, rest or a table");
+    run(&["--trajectory", "nowhere.csv"]).says("--trajectory is eq27, free, random, even, rest or a table");
     run(&["--blur", "nan"]).says("--blur NaN: choose 0 to 1");
     assert!(!dir.path("out").exists());
 }

@@ -1,10 +1,8 @@
 //! `lunula photos` from end to end: what it promises on sets as they should be.
 
-mod util;
-
+use crate::util::{Dir, drawn_axis, drawn_labels, drawn_nail, drawn_outline, labelme, small_set};
 use lunula::phantom::nail::Pose;
 use lunula::phantom::photos::{PhotoOptions, write};
-use util::{Dir, drawn_axis, drawn_labels, drawn_nail, drawn_outline, labelme, small_set};
 
 /// Root mean square of the differences that both know, in 255ths.
 fn rms_255(a: &ndarray::Array2<f32>, b: &ndarray::Array2<f32>) -> f64 {

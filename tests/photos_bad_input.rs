@@ -1,11 +1,9 @@
 //! `lunula photos` on what goes wrong on a Monday morning: each case names file and place, says what to do, and costs no more
 //! than itself.
 
-mod util;
-
 use std::process::Command;
 
-use util::{Dir, drawn_axis, drawn_labels, drawn_nail, drawn_outline, labelme};
+use crate::util::{Dir, drawn_axis, drawn_labels, drawn_nail, drawn_outline, labelme};
 
 /// A set of three good photographs.
 fn good_set() -> Dir {
@@ -283,7 +281,7 @@ fn what_is_found_but_not_trusted_is_kept_for_a_person_even_where_nothing_else_is
     let dir = Dir::new();
     // Dim, noisy and small: searched for a scene in which detection doubts.
     let doubted = (0..40).find(|&seed| {
-        let mut options = util::small_set(1, &[Pose::Nominal]);
+        let mut options = crate::util::small_set(1, &[Pose::Nominal]);
         (options.seed, options.width, options.height, options.noise_sd, options.annotate) =
             (seed, 160, 120, 12.0, false);
         options.grey = true;

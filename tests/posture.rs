@@ -1,10 +1,8 @@
 //! `lunula posture` from end to end on generated videos: tables, times, names, accuracy, and what is left out.
 
-mod util;
-
 use std::collections::BTreeMap;
 
-use util::{Answer, Dir};
+use crate::util::{Answer, Dir};
 
 type Rows = Vec<BTreeMap<String, String>>;
 
@@ -257,7 +255,14 @@ fn the_tradeoff_has_every_setting_and_opencv_on_it() {
     for setting in ["luma only", "chroma only", "centroid", "one round", "two rounds", "whole frames searched"] {
         assert!(error(setting).is_finite());
     }
-    assert!(error("default") < error("centroid"), "the fit is better than the centroid");
-    assert!(error("default") < 0.5 * error("OpenCV"), "and far better than the usual recipe");
+    let default = "fitted to a standstill";
+    assert!(error(default) < error("centroid"), "the fit is better than the centroid");
+    assert!(error(default) < 0.5 * error("OpenCV"), "and far better than the usual recipe");
+    for row in &rows {
+        assert_eq!(row["default"] == "true", row["setting"] == default);
+        assert_eq!(row["peer"] == "true", row["setting"].starts_with("OpenCV"));
+    }
+    // One knee for each joint and for all together.
+    assert_eq!(rows.iter().filter(|row| row["knee"] == "true").count(), 4);
     assert!(dir.path("t/tradeoff.png").is_file() && dir.path("t/tradeoff.svg").is_file());
 }

@@ -1,9 +1,7 @@
 //! `lunula posture` on what goes wrong on a Monday morning: each case names file and place and says what to do.
 
-mod util;
-
+use crate::util::{Answer, Dir};
 use lunula::video::{Encoder, Encoding, Format, Picture};
-use util::{Answer, Dir};
 
 const MARKERS: &str = r##"
 flexion = "clockwise"

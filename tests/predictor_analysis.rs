@@ -1,10 +1,8 @@
 //! `lunula analyse` and `lunula prune` from end to end, against values that are known.
 
-mod util;
-
+use crate::util::Dir;
+use crate::util::sensor::{Recording, near, numbers, offset, slope, volt};
 use serde_json::Value;
-use util::Dir;
-use util::sensor::{Recording, near, numbers, offset, slope, volt};
 
 /// Of a few operations on exact coefficients (measured: 3e-16).
 const EXACT: f64 = 1e-14;

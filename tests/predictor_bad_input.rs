@@ -1,10 +1,8 @@
 //! What the predictor commands say of tables and model files that are not as they should be: which file, where in it, what to do.
 
-mod util;
-
+use crate::util::Dir;
+use crate::util::sensor::{Recording, near, numbers, slope};
 use serde_json::{Value, json};
-use util::Dir;
-use util::sensor::{Recording, near, numbers, slope};
 
 fn sensor() -> Dir {
     let dir = Dir::new();
@@ -205,7 +203,7 @@ fn a_run_that_fails_leaves_the_model_that_stood_there() {
 
 /// Trains a model of `kind`, changes its file, and tells what `evaluate` says of it.
 #[track_caller]
-fn edited(dir: &Dir, change: impl FnOnce(&mut Value)) -> util::Answer {
+fn edited(dir: &Dir, change: impl FnOnce(&mut Value)) -> crate::util::Answer {
     let mut model = dir.parsed("m.json");
     change(&mut model);
     dir.write("edited.json", serde_json::to_string_pretty(&model).expect("JSON"));

@@ -1,10 +1,8 @@
 //! `lunula train` on rows that do not determine the model: which photodiodes are at fault is told, and what was asked for is done.
 
-mod util;
-
+use crate::util::Dir;
+use crate::util::sensor::{Recording, near, numbers, slope, volt};
 use serde_json::Value;
-use util::Dir;
-use util::sensor::{Recording, near, numbers, slope, volt};
 
 /// Of a fit to exact numbers (measured: 1e-16 to 5e-16).
 const EXACT: f64 = 1e-14;

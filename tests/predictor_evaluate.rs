@@ -1,10 +1,8 @@
 //! `lunula evaluate` from end to end, with errors that are known because the tests put them there.
 
-mod util;
-
+use crate::util::Dir;
+use crate::util::sensor::{Recording, near};
 use serde_json::Value;
-use util::Dir;
-use util::sensor::{Recording, near};
 
 /// The model is exact to rounding (measured: 1e-16).
 const EXACT: f64 = 1e-14;
@@ -253,7 +251,7 @@ fn the_folder_holds_the_table_the_pictures_and_the_report() {
     let pictures = ["by-magnitude", "held-out", "over-time", "scatter"];
     let mut wanted: Vec<String> =
         pictures.iter().flat_map(|name| [format!("{name}.png"), format!("{name}.svg")]).collect();
-    wanted.extend(["predicted.csv", "run.json"].map(str::to_owned));
+    wanted.extend(["merit.csv", "predicted.csv", "run.json"].map(str::to_owned));
     wanted.sort();
     assert_eq!(names, wanted);
     for name in pictures {

@@ -1,15 +1,13 @@
 //! `lunula predict` from end to end: tables, streams, the gate between force and posture.
 
-mod util;
-
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
 
-use util::sensor::{Recording, near};
-use util::{Answer, Dir};
+use crate::util::sensor::{Recording, near};
+use crate::util::{Answer, Dir};
 
 /// The model is exact to rounding, newtons (measured: 2e-16) and degrees (3e-14).
 const EXACT: f64 = 1e-13;

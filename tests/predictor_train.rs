@@ -1,9 +1,7 @@
 //! `lunula train` from end to end, on a sensor whose coefficients are known.
 
-mod util;
-
-use util::Dir;
-use util::sensor::{Recording, near, numbers, offset, slope};
+use crate::util::Dir;
+use crate::util::sensor::{Recording, near, numbers, offset, slope};
 
 /// The sensor's tables hold exact numbers; the fit is centred and refined (measured: exact, or 1e-32 for a coefficient of 0).
 const EXACT: f64 = 1e-15;

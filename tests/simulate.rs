@@ -1,10 +1,8 @@
 //! `lunula simulate`: the table is the model's response, collapse ends it with a word, bad requests are refused whole.
 
-mod util;
-
 use std::collections::BTreeMap;
 
-use util::{Answer, Dir};
+use crate::util::{Answer, Dir};
 
 fn run(dir: &Dir, options: &str) -> Answer {
     let mut arguments = vec!["simulate"];
@@ -287,7 +285,34 @@ fn the_tradeoff_keeps_every_tolerance_and_draws_peers_and_maps() {
         files,
         ["stability.csv", "stability.png", "stability.svg", "tradeoff.csv", "tradeoff.png", "tradeoff.svg"]
     );
+    let default: Vec<&str> =
+        rows.iter().filter(|row| row["default"] == "true").map(|row| row["setting"].as_str()).collect();
+    assert_eq!(default, ["lunula, 1e-8"]);
+    assert_eq!(rows.iter().filter(|row| row["knee"] == "true").count(), 1);
+    assert!(rows.iter().all(|row| (row["peer"] == "true") == row["setting"].starts_with("Other")));
     dir.write("bad.csv", "solver,error\nA,1\n");
-    let answer = dir.lunula(&["tradeoff", "hemodynamics", "--peers", "bad.csv", "--out", "u"]).expect(2);
-    assert!(answer.stderr.contains("bad.csv") && !dir.path("u").exists(), "{}", answer.stderr);
+    for job in ["hemodynamics", "all"] {
+        let answer = dir.lunula(&["tradeoff", job, "--peers", "bad.csv", "--out", "u"]).expect(2);
+        assert!(answer.stderr.contains("bad.csv") && !dir.path("u").exists(), "{}", answer.stderr);
+    }
+}
+
+#[test]
+fn the_tradeoff_tells_which_programs_are_missing_and_how_to_get_them() {
+    let dir = Dir::new();
+    let output = std::process::Command::new(env!("CARGO_BIN_EXE_lunula"))
+        .args(["tradeoff", "hemodynamics", "--repeats", "1", "--json", "--out", "t", "--peers"])
+        .current_dir(dir.path("."))
+        // There is no Python there.
+        .env("PATH", dir.path("."))
+        .output()
+        .expect("the binary runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    let scipy = report["peers"].as_array().unwrap().iter().find(|peer| peer["peer"] == "SciPy's solvers");
+    let scipy = scipy.unwrap_or_else(|| panic!("{}", report["peers"]));
+    assert_eq!(scipy["measured"], false);
+    let what = scipy["what"].as_str().unwrap();
+    assert!(what.contains("python3 (3.11 or later) is missing") && what.contains("pip install numpy=="), "{what}");
+    assert_eq!(report["curves"][0]["default"]["setting"], "lunula, 1e-8");
 }

@@ -1,10 +1,8 @@
 //! `lunula simulate` far from the thesis' figures: pulses, other optics, undamped and heavy walls, loads that close every vessel, long files.
 
-mod util;
-
 use std::collections::BTreeMap;
 
-use util::{Answer, Dir};
+use crate::util::{Answer, Dir};
 
 fn run(dir: &Dir, options: &str) -> Answer {
     let mut arguments = vec!["simulate"];

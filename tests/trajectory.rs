@@ -1,11 +1,9 @@
 //! `lunula trajectory`: the tables are the thesis' equations from rest on, what is told of them is true, bad requests are refused whole.
 
-mod util;
-
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-use util::{Answer, Dir};
+use crate::util::{Answer, Dir};
 
 /// Half a step of a force's sixth decimal, and of an angle's fifth.
 const FORCE_N: f64 = 0.51e-6;

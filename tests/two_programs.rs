@@ -1,10 +1,8 @@
 //! `lunula` without FFmpeg's libraries and `lunula-video` beside it, to which it hands over what needs video.
 
-mod util;
-
 use std::process::Command;
 
-use util::Dir;
+use crate::util::Dir;
 
 #[test]
 fn what_needs_video_is_handed_over_with_all_its_arguments() {

@@ -1,0 +1,38 @@
+//! What the library and the command line promise, seen from outside. One program, for each would link the whole library anew;
+//! `cargo test --test all photos::` runs the tests of one file.
+
+mod align;
+mod align_bad_input;
+mod cluster;
+mod compare;
+mod detection;
+mod doctor;
+mod fit;
+mod mask_outlines;
+mod merge;
+mod nail_axes;
+mod nail_axes_drawn;
+mod phantom_log;
+mod phantom_nail;
+mod phantom_photos;
+mod phantom_study;
+mod phantom_video;
+mod photos;
+mod photos_bad_input;
+mod pipeline;
+mod pipeline_models;
+mod pipeline_pictures;
+mod posture;
+mod posture_bad_input;
+mod predictor_analysis;
+mod predictor_bad_input;
+mod predictor_deficient;
+mod predictor_evaluate;
+mod predictor_predict;
+mod predictor_train;
+mod simulate;
+mod simulate_extremes;
+mod trajectory;
+mod two_programs;
+mod util;
+mod video;

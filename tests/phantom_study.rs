@@ -1,0 +1,207 @@
+//! A synthetic study: what it will write is known before, every job reads it as it stands, and its parts agree.
+
+use std::collections::BTreeMap;
+use std::sync::atomic::AtomicBool;
+
+use crate::util::Dir;
+use lunula::pipeline::{Catalogue, Work, phantom_catalogue};
+
+/// Two people, one of whom wears the sensor; four seconds of each video.
+const SMALL: &str =
+    "phantom study --seed 3 --subjects 2 --sensors 1 --presses 1 --video-size 480x270 --seconds 4 --out study";
+const SMALL_BLOCK: &str =
+    "study = { seed = 3, subjects = 2, sensors = 1, presses = 1, video_size = \"480x270\", seconds = 4 }";
+
+fn words(command: &str) -> Vec<&str> {
+    command.split_whitespace().collect()
+}
+
+fn small_catalogue() -> Catalogue {
+    phantom_catalogue(&SMALL_BLOCK.parse().expect("TOML")).map_err(|fault| fault.what).expect("a catalogue")
+}
+
+fn number(row: &BTreeMap<String, String>, column: &str) -> f64 {
+    row[column].parse().unwrap_or_else(|_| panic!("`{}` in `{column}`", row[column]))
+}
+
+#[test]
+fn a_study_is_what_its_catalogue_says_and_what_a_pipelines_tasks_make() {
+    let dir = Dir::new();
+    let report = dir.lunula(&[&words(SMALL)[..], &["--json"]].concat()).expect(0).json();
+    let written = dir.bytes_of("study");
+    let catalogue = small_catalogue();
+    let foreseen: Vec<&str> = catalogue.files.iter().map(|file| file.path.as_str()).collect();
+    assert_eq!(written.keys().map(String::as_str).collect::<Vec<_>>(), foreseen);
+    assert_eq!(report["files"], written.len());
+    for (name, text) in &catalogue.tables {
+        assert_eq!(written[name], text.as_bytes(), "{name}");
+    }
+    let stop = AtomicBool::new(false);
+    for task in &catalogue.tasks {
+        let folder = dir.path("tasks").join(&task.name);
+        std::fs::create_dir_all(&folder).expect("a folder");
+        let work = Work { inputs: Vec::new(), folder: &folder, before: None, threads: 1, stop: &stop };
+        task.job.run(&work).unwrap_or_else(|why| panic!("{}: {why:#}", task.name));
+    }
+    let made = dir.bytes_of("tasks");
+    assert_eq!(made.keys().collect::<Vec<_>>(), written.keys().collect::<Vec<_>>());
+    let differ: Vec<&String> =
+        made.iter().filter(|(name, bytes)| written[*name] != **bytes).map(|(name, _)| name).collect();
+    assert!(differ.is_empty(), "{differ:?}");
+    // A second time in the same place replaces it, another one too; and nothing else.
+    let other =
+        "phantom study --subjects 2 --sensors 2 --presses 0 --video-size 160x96 --fps 5 --seconds 1 --out study";
+    dir.lunula(&words(other)).expect(0);
+    assert!(dir.path("study/s02/bending/log.csv").is_file() && !dir.path("study/presses").exists());
+    dir.lunula(&words(SMALL)).expect(0);
+    assert_eq!(dir.bytes_of("study"), written);
+    dir.write("study/s01/bending/joints.csv", "mine");
+    dir.lunula(&words(SMALL)).expect(2).says("study/s01/bending/joints.csv stands already");
+    assert_eq!(dir.bytes_of("study").len(), written.len() + 1);
+    dir.write("other/s01/mine.txt", "mine");
+    let elsewhere = SMALL.replace("--out study", "--out other");
+    dir.lunula(&words(&elsewhere)).expect(2).says("other/s01 stands already");
+}
+
+#[test]
+fn every_job_reads_a_study_as_it_stands() {
+    let dir = Dir::new();
+    dir.lunula(&words(SMALL)).expect(0);
+    let sessions = dir.table("study/tables/sessions.csv");
+    assert_eq!(sessions.len(), 10);
+    let of =
+        |kind: &str| -> Vec<&BTreeMap<String, String>> { sessions.iter().filter(|row| row["kind"] == kind).collect() };
+    assert_eq!(of("touch").iter().map(|row| row["repetition"].as_str()).collect::<Vec<_>>(), ["1", "2", "3"]);
+    let file = |row: &BTreeMap<String, String>, column: &str| {
+        let place = format!("study/tables/{}", row[column]);
+        assert!(dir.path(&place).is_file(), "{place}");
+        place
+    };
+    for row in &sessions {
+        let filmed = row["kind"].contains("bending");
+        for column in ["video", "markers", "truth"] {
+            assert_eq!(filmed, !row[column].is_empty(), "{column} of {}", row["session"]);
+            let _ = filmed.then(|| file(row, column));
+        }
+        let _ = (file(row, "log"), file(row, "truth_log"));
+    }
+
+    let photos = dir.lunula(&["photos", "study/photos/photos", "--out", "maps", "--json"]);
+    let photos = photos.expect(0).json();
+    assert_eq!(photos["counts"]["nails_used"], 16);
+    assert!(dir.table("maps/nails.csv").iter().all(|nail| nail["outline"] == "annotated"));
+
+    for kind in ["bending", "bending-random", "free-bending"] {
+        posture_and_log_agree(&dir, kind, [&file(of(kind)[0], "video"), &file(of(kind)[0], "markers")]);
+    }
+
+    let touch: Vec<String> = of("touch").into_iter().map(|row| file(row, "log")).collect();
+    let train = ["train", &touch[0], &touch[1], "--validate", &touch[2], "--target", "force", "--model", "linear"];
+    dir.lunula(&[&train[..], &["--out", "force.json", "--json"]].concat()).expect(0);
+    let evaluated = dir.lunula(&["evaluate", "force.json", &file(of("random")[0], "log"), "--json"]).expect(0).json();
+    let rmse = evaluated["rmse"]["Fx_N"].as_f64().expect("a figure");
+    assert!(rmse > 0.0 && rmse <= 1.0, "{rmse}");
+
+    let presses = dir.table("study/tables/presses.csv");
+    assert_eq!(presses.len(), 4);
+    for row in &presses {
+        let (recording, out) = (file(row, "recording"), format!("{}-{}.json", row["site"], row["kind"]));
+        let fit = ["fit", &recording, "--free", "k_C", "--params", &file(row, "truth"), "--collapse", "contact"];
+        let fitted = dir.lunula(&[&fit[..], &["--no-figures", "--out", &out, "--json"]].concat()).expect(0).json();
+        let text = dir.bytes_of("study/presses")[&format!("s01-{}/truth/parameters.toml", row["site"])].clone();
+        let truth: toml::Table = String::from_utf8(text).expect("text").parse().expect("TOML");
+        let truth = truth["k_C1_N_per_m"].as_float().expect("a number");
+        let of = |what: &str| fitted["free"][0][what][0].as_f64().unwrap_or_else(|| panic!("{what}: {fitted:#}"));
+        let (value, error) = (of("values"), of("standard_errors"));
+        assert!((value - truth).abs() <= 4.0 * error, "{out}: {value} +- {error} and not {truth}");
+    }
+}
+
+/// What the video shows is what the log's finger did, by the clock in the picture.
+fn posture_and_log_agree(dir: &Dir, kind: &str, [video, markers]: [&str; 2]) {
+    let of = |name: &str| format!("study/s01/{kind}/{name}");
+    // The same movement twice: at the video's frames and, 30 a second, in the log's truth. Frames' times are whole ticks.
+    let (shown, done) = (dir.table(&of("truth/joints.csv")), dir.table(&of("truth/angles.csv")));
+    assert_eq!((shown.len(), done.len()), (120, 120));
+    for (shown, done) in shown.iter().zip(&done) {
+        assert!((number(shown, "time_s") - number(done, "time_s")).abs() <= 1e-5);
+        assert!((number(shown, "clock_s") - number(done, "clock_s")).abs() <= 1e-5);
+        for joint in ["J1_deg", "J2_deg", "J3_deg"] {
+            assert!((number(shown, joint) - number(done, joint)).abs() <= 2e-3, "{kind} {joint}");
+        }
+    }
+    let joints = format!("{kind}.csv");
+    dir.lunula(&["posture", video, "--markers", markers, "--out", &joints, "--json"]).expect(0);
+    let squares: Vec<f64> = dir
+        .table(&joints)
+        .iter()
+        .zip(&shown)
+        .filter(|(row, _)| row["status"] == "ok")
+        .map(|(row, truth)| (number(row, "J2_deg") - number(truth, "J2_deg")).powi(2))
+        .collect();
+    let rms = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
+    assert!(squares.len() >= 100 && rms <= 0.6, "{kind}: {rms} degrees of {} frames", squares.len());
+    let training = format!("{kind}-training.csv");
+    let log = of("log.csv");
+    dir.lunula(&["align", "--joints", &joints, "--log", &log, "--out", &training, "--json"]).expect(0);
+    let record: serde_json::Value =
+        serde_json::from_slice(&dir.bytes_of("study/s01")[&format!("{kind}/truth/log.json")]).expect("JSON");
+    let offset_s = record["options"]["clock_offset_s"].as_f64().expect("a number");
+    let certificate: serde_json::Value =
+        serde_json::from_slice(&dir.bytes_of(".")[&format!("{kind}-training.sync.json")]).expect("JSON");
+    let found_s = certificate["offset_s"].as_f64().expect("a number");
+    assert!((found_s - offset_s).abs() <= 0.05, "{kind}: {found_s} and not {offset_s}");
+}
+
+#[test]
+fn a_plan_writes_nothing_and_bad_requests_are_refused_at_once() {
+    let dir = Dir::new();
+    let plan = dir.lunula(&words("phantom study --plan --json")).expect(0).json();
+    let recordings = plan["recordings"].as_array().expect("a list");
+    // Photographs, six sessions of seven people and four more of one, two places of eight people, the tables.
+    assert_eq!(recordings.len(), 1 + 7 * 6 + 4 + 8 * 2 + 1);
+    assert_eq!(plan["options"]["subjects"], 16);
+    assert!(dir.bytes_of(".").is_empty());
+    dir.lunula(&words("phantom study --out x --subjects 2 --sensors 3")).expect(2).says("--sensors 3: there are 2");
+    dir.lunula(&words("phantom study --out x --video-size 3x4 --fps 0")).expect(2).says("--size 3x4").says("--fps 0");
+    assert!(dir.bytes_of(".").is_empty());
+}
+
+#[test]
+fn the_preliminary_experiments_have_the_forces_and_rates_of_the_thesis() {
+    let dir = Dir::new();
+    for (protocol, shear) in [("normal", None), ("lateral", Some("Fx_N")), ("longitudinal", Some("Fy_N"))] {
+        let exact = format!(
+            "phantom log --protocol {protocol} --follow 0 --posture-shift 0 --lead 0 --trail 0 --out {protocol}"
+        );
+        dir.lunula(&words(&exact)).expect(0);
+        let truth = dir.table(&format!("{protocol}/truth/log.csv"));
+        assert_eq!(truth.len(), 2500, "100 s");
+        let of = |column: &str| truth.iter().map(|row| number(row, column)).collect::<Vec<_>>();
+        let ends = |values: &[f64]| values.iter().fold((f64::MAX, f64::MIN), |(a, b), v| (a.min(*v), b.max(*v)));
+        let near = |(low, high): (f64, f64), least: f64, most: f64| {
+            assert!((low - least).abs() <= 1e-3 && (high - most).abs() <= 1e-3, "{protocol}: {low} to {high}")
+        };
+        let pressing = of("Fz_N");
+        match shear {
+            None => near(ends(&pressing), -4.0, 0.0),
+            Some("Fx_N") => near(ends(&pressing), -3.15, -2.85),
+            Some(_) => near(ends(&pressing), -3.0, -3.0),
+        }
+        for column in ["Fx_N", "Fy_N"] {
+            let most = if shear == Some(column) { 2.0 } else { 0.0 };
+            near(ends(&of(column)), -most, most);
+        }
+        // 0.05 Hz: as often as the cycled force rises through its middle, there are cycles.
+        let (cycled, middle) = shear.map_or((pressing.clone(), -2.0), |shear| (of(shear), 1.0));
+        let rises = cycled.windows(2).filter(|pair| pair[0] < middle && pair[1] >= middle).count();
+        assert_eq!(rises, 5, "{protocol}");
+        assert!(of("J2_deg").iter().all(|j2| *j2 == 0.0));
+    }
+    dir.lunula(&words("phantom log --protocol free-bending --follow 0 --lead 0 --trail 0 --out free")).expect(0);
+    let truth = dir.table("free/truth/log.csv");
+    let j2: Vec<f64> = truth.iter().map(|row| number(row, "J2_deg")).collect();
+    assert!((j2[0] - 75.0).abs() <= 0.2 && j2.iter().all(|j2| (-10.001..=75.001).contains(j2)));
+    assert_eq!(j2.windows(2).filter(|pair| pair[0] < 30.0 && pair[1] >= 30.0).count(), 6);
+    assert!(truth.iter().all(|row| (number(row, "J1_deg") - 15.0).abs() <= 1e-9 && number(row, "Fz_N") == 0.0));
+}

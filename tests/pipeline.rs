@@ -1,0 +1,210 @@
+//! `lunula run` and `lunula init` from end to end, on small phantoms.
+
+use std::fs;
+
+use crate::util::Dir;
+
+/// Photographs of two poses to maps, generated on the way.
+const COLORATION: &str = r#"name = "colours"
+wanted = ["maps"]
+[phantom]
+photos = { seed = 3, subjects = 3, poses = ["normal"], grey = true }
+[inputs.photos]
+files = "{phantom}/photos/photos/{pose}/{subject}.png"
+[stage.normalized]
+job = "normalize"
+photo = "photos"
+[stage.maps]
+job = "maps"
+sums = "normalized"
+"#;
+
+/// Three generated logs to models of force, one person's each.
+const TOUCH: &str = r#"wanted = ["force", "how_good"]
+[phantom]
+log = [
+    { name = "a", seed = 1, protocol = "touch", seconds = 20 },
+    { name = "b", seed = 2, protocol = "touch", seconds = 20 },
+    { name = "c", seed = 3, protocol = "touch", seconds = 20 },
+]
+[inputs.logs]
+files = "{phantom}/log/{session}/log.csv"
+[stage.force]
+job = "train"
+each = ["session"]
+data = "logs"
+target = "force"
+[stage.how_good]
+job = "evaluate"
+model = "force"
+data = "logs"
+"#;
+
+/// All results, without what holds times.
+fn results(dir: &Dir, out: &str) -> std::collections::BTreeMap<String, Vec<u8>> {
+    let mut found = dir.bytes_of(out);
+    found.retain(|name, _| !name.starts_with(".lunula") && name != "report.html" && name != "run.json");
+    found
+}
+
+#[test]
+fn a_plan_writes_nothing_and_is_the_same_before_and_after_but_for_what_stands() {
+    let dir = Dir::new();
+    dir.write("p.toml", COLORATION);
+    let before = dir.lunula(&["run", "p.toml", "--out", "out", "--plan", "--json"]).expect(0).json();
+    assert!(!dir.path("out").exists());
+    dir.lunula(&["run", "p.toml", "--out", "out", "--quiet"]).expect(0);
+    let after = dir.lunula(&["run", "p.toml", "--out", "out", "--plan", "--json"]).expect(0).json();
+    let counts = |plan: &serde_json::Value| (plan["run"].as_u64(), plan["done"].as_u64());
+    let all = counts(&before).0;
+    assert!(all > Some(3), "{before}");
+    assert_eq!((counts(&before), counts(&after)), ((all, Some(0)), (Some(0), all)));
+    let steps = |plan: &serde_json::Value| -> Vec<(String, String)> {
+        let stages = plan["stages"].as_array().unwrap().iter();
+        let lines = stages.flat_map(|stage| stage["steps"].as_array().unwrap());
+        lines.map(|line| (line["step"].to_string(), line["reason"].to_string())).collect()
+    };
+    assert_eq!(steps(&before), steps(&after));
+    let shown = dir.lunula(&["run", "p.toml", "--out", "out", "--plan"]).expect(0).stdout;
+    assert!(shown.contains("maps") && shown.contains("done") && shown.contains("left out"), "{shown}");
+}
+
+#[test]
+fn what_stands_is_kept_and_only_what_changed_is_made_anew() {
+    let dir = Dir::new();
+    dir.lunula(&[
+        "phantom",
+        "photos",
+        "--seed",
+        "5",
+        "--subjects",
+        "3",
+        "--poses",
+        "normal",
+        "--out",
+        "set",
+        "--quiet",
+    ])
+    .expect(0);
+    let own = COLORATION.replace(
+        "[phantom]\nphotos = { seed = 3, subjects = 3, poses = [\"rest\"], size = [160, 140], grey = true }\n",
+        "",
+    );
+    dir.write("p.toml", own.replace("{phantom}/photos/photos", "set/photos"));
+    let run = || dir.lunula(&["run", "p.toml", "--out", "out", "--json"]).expect(0).json();
+    let first = run();
+    assert_eq!((first["done"].as_u64(), first["kept"].as_u64()), (Some(4), Some(0)), "{first}");
+    let made = results(&dir, "out");
+    let second = run();
+    assert_eq!((second["done"].as_u64(), second["kept"].as_u64()), (Some(0), Some(4)), "{second}");
+    assert_eq!(results(&dir, "out"), made);
+    // One more subject touches that subject and the sums.
+    let one = fs::read_dir(dir.path("set/photos/normal"))
+        .unwrap()
+        .map(|e| e.unwrap().path())
+        .find(|p| p.extension().is_some_and(|e| e == "png"))
+        .unwrap();
+    fs::copy(&one, one.with_file_name("new.png")).unwrap();
+    fs::copy(one.with_extension("json"), one.with_file_name("new.json")).unwrap();
+    let third = run();
+    assert_eq!((third["done"].as_u64(), third["kept"].as_u64()), (Some(2), Some(3)), "{third}");
+}
+
+#[test]
+fn results_are_the_same_for_any_threads_and_any_folder() {
+    let dir = Dir::new();
+    dir.write("p.toml", TOUCH);
+    dir.lunula(&["run", "p.toml", "--out", "one", "--threads", "1", "--quiet"]).expect(0);
+    dir.lunula(&["run", "p.toml", "--out", "deep/er/four", "--threads", "4", "--quiet"]).expect(0);
+    let one = results(&dir, "one");
+    assert!(one.keys().any(|name| name == "force/b/model.json"), "{:?}", one.keys());
+    assert!(one == results(&dir, "deep/er/four"));
+}
+
+#[test]
+fn what_fails_fails_its_own_branch_and_is_a_table_at_the_end() {
+    let dir = Dir::new();
+    dir.lunula(&["phantom", "log", "--seed", "1", "--protocol", "touch", "--seconds", "20", "--out", "a", "--quiet"])
+        .expect(0);
+    let own = TOUCH[..TOUCH.find("[phantom]").unwrap()].to_owned() + &TOUCH[TOUCH.find("[inputs").unwrap()..];
+    dir.write("p.toml", own.replace("{phantom}/log/{session}/log.csv", "{session}/log.csv"));
+    dir.write("b/log.csv", "time_s,P1\n0,what\n");
+    let answer = dir.lunula(&["run", "p.toml", "--out", "out", "--json"]).expect(1);
+    assert!(answer.stderr.contains("failed: force/b"), "{}", answer.stderr);
+    let report = answer.json();
+    assert_eq!(
+        (report["done"].as_u64(), report["failed"].as_u64(), report["not_done"].as_u64()),
+        (Some(2), Some(1), Some(1))
+    );
+    assert!(dir.path("out/force/a/model.json").exists());
+    let page = fs::read_to_string(dir.path("out/report.html")).unwrap();
+    assert!(page.contains("What failed") && page.contains("force/b"));
+    let kept: serde_json::Value = serde_json::from_slice(&fs::read(dir.path("out/run.json")).unwrap()).unwrap();
+    assert_eq!(kept["stages"], report["stages"]);
+    let [share, time]: [f64; 2] = ["share", "task_s"]
+        .map(|key| kept["stages"].as_array().unwrap().iter().map(|stage| stage[key].as_f64().unwrap()).sum());
+    assert!((share - 1.0).abs() < 1e-9 && time > 0.0);
+}
+
+#[test]
+fn faults_are_told_with_file_line_and_column_and_nothing_is_begun() {
+    let dir = Dir::new();
+    dir.write("p.toml", TOUCH.replace("job = \"train\"", "job = \"trian\"").replace("\"how_good\"]", "\"how_god\"]"));
+    dir.lunula(&["run", "p.toml", "--out", "out"])
+        .expect(2)
+        .says("p.toml:1:20: `how_god` is wanted, and no stage makes it; did you mean `how_good`?")
+        .says("p.toml:11:7: no job `trian`; did you mean `train`?");
+    dir.lunula(&["run", "none.toml", "--out", "out"]).expect(2).says("none.toml: ");
+    dir.write("q.toml", TOUCH.replace("{session}/log.csv", "{session}/lgo.csv"));
+    dir.lunula(&["run", "q.toml", "--out", "out"]).expect(2).says("q.toml:9:9: nothing matches");
+    dir.write("r.toml", TOUCH.replace("seconds = 20 }", "secnds = 20 }"));
+    dir.lunula(&["run", "r.toml", "--out", "out"]).expect(2).says("r.toml:");
+    assert!(!dir.path("out").exists());
+}
+
+#[test]
+fn what_init_writes_runs_as_it_stands_and_is_never_overwritten() {
+    let dir = Dir::new();
+    for (name, seed) in [("S01", "1"), ("S02", "2")] {
+        let out = format!("lab/{name}");
+        dir.lunula(&[
+            "phantom",
+            "log",
+            "--seed",
+            seed,
+            "--protocol",
+            "touch",
+            "--seconds",
+            "20",
+            "--out",
+            &out,
+            "--quiet",
+        ])
+        .expect(0);
+    }
+    dir.lunula(&[
+        "phantom",
+        "photos",
+        "--seed",
+        "5",
+        "--subjects",
+        "2",
+        "--poses",
+        "normal",
+        "--out",
+        "lab/nails",
+        "--quiet",
+    ])
+    .expect(0);
+    dir.lunula(&["init", "lab"]).expect(0);
+    let text = fs::read_to_string(dir.path("lab/pipeline.toml")).unwrap();
+    assert!(text.contains("job = \"maps\"") && text.contains("job = \"train\""), "{text}");
+    dir.lunula(&["init", "lab"]).expect(2).says("stands already");
+    dir.lunula(&["init", "lab", "--out", "elsewhere.toml"]).expect(0);
+    let (inside, outside) =
+        (["run", "lab/pipeline.toml", "--out", "a", "--quiet"], ["run", "elsewhere.toml", "--out", "b", "--quiet"]);
+    dir.lunula(&inside).expect(0);
+    dir.lunula(&outside).expect(0);
+    assert_eq!(results(&dir, "a").keys().collect::<Vec<_>>(), results(&dir, "b").keys().collect::<Vec<_>>());
+    dir.lunula(&["init", "none"]).expect(2);
+}

@@ -1,0 +1,200 @@
+//! `lunula run` on photographs, videos and logs.
+
+use lunula::phantom::log::{LogOptions, LogScene};
+use lunula::phantom::nail::Pose;
+use lunula::phantom::photos::PhotoOptions;
+use lunula::phantom::screen::Clock;
+use lunula::phantom::trajectory::Trajectory;
+use lunula::phantom::video::{Scene, VideoOptions};
+
+use crate::util::{Answer, Dir};
+
+const COLORATION: &str = r#"
+wanted = ["coloration", "coloration.figures"]
+
+[inputs.photos]
+files = "photos/{pose}/{subject}.png"
+
+[stage.nails]
+job = "normalize"
+photo = "photos"
+
+[stage.coloration]
+job = "maps"
+sums = "nails"
+"#;
+
+/// Five subjects in two poses; all but the first `there` are put aside.
+fn photographs(dir: &Dir, there: usize) {
+    let options = PhotoOptions {
+        subjects: 5,
+        poses: vec![Pose::Nominal, Pose::Flexion],
+        width: 320,
+        height: 240,
+        truth_normalized: false,
+        ..PhotoOptions::default()
+    };
+    lunula::phantom::photos::write(&options, &dir.path("")).expect("photographs");
+    for subject in there + 1..=5 {
+        for pose in ["nominal", "flexion"] {
+            for ending in ["png", "json"] {
+                let name = format!("{pose}/s{subject:02}.{ending}");
+                std::fs::rename(dir.path(&format!("photos/{name}")), dir.place(&format!("aside/{name}")))
+                    .expect("moved");
+            }
+        }
+    }
+}
+
+fn bring(dir: &Dir, subject: &str) {
+    for pose in ["nominal", "flexion"] {
+        for ending in ["png", "json"] {
+            let name = format!("{pose}/{subject}.{ending}");
+            std::fs::rename(dir.path(&format!("aside/{name}")), dir.place(&format!("photos/{name}"))).expect("moved");
+        }
+    }
+}
+
+/// What a run did: done, kept, failed.
+fn counts(answer: &Answer) -> [u64; 3] {
+    let told = answer.json();
+    ["done", "kept", "failed"].map(|key| told[key].as_u64().expect("a count"))
+}
+
+/// The results of a stage with their bytes.
+fn results(dir: &Dir, out: &str, stage: &str) -> std::collections::BTreeMap<String, Vec<u8>> {
+    dir.bytes_of(&format!("{out}/{stage}"))
+}
+
+#[test]
+fn one_subject_more_touches_that_subject_and_the_maps() {
+    let dir = Dir::new();
+    photographs(&dir, 4);
+    dir.write("coloration.toml", COLORATION);
+    let run = |out: &str| dir.lunula(&["run", "coloration.toml", "--out", out, "--json"]).expect(0);
+    assert_eq!(counts(&run("out")), [5, 0, 0]);
+    assert_eq!(counts(&run("out")), [0, 5, 0]);
+    bring(&dir, "s05");
+    let more = run("out");
+    assert_eq!(counts(&more), [2, 4, 0]);
+    let stands = more.json().to_string();
+    assert!(stands.contains("sums: 8 stand in the maps before"), "{stands}");
+    assert_eq!(counts(&run("anew")), [6, 0, 0]);
+    for stage in ["nails", "coloration"] {
+        let (added, anew) = (results(&dir, "out", stage), results(&dir, "anew", stage));
+        assert!(added.len() > 5 && added == anew, "{stage}");
+    }
+    // The very maps of the command.
+    dir.lunula(&["photos", "photos", "--out", "at-once", "-q"]).expect(0);
+    let at_once = dir.bytes_of("at-once/maps");
+    let maps = results(&dir, "out", "coloration/maps");
+    assert!(at_once.len() == 8 && at_once == maps, "{:?} {:?}", at_once.keys(), maps.keys());
+}
+
+#[test]
+fn an_outline_drawn_anew_is_noticed() {
+    let dir = Dir::new();
+    photographs(&dir, 2);
+    dir.write("coloration.toml", COLORATION);
+    let run = || dir.lunula(&["run", "coloration.toml", "--out", "out", "--json"]).expect(0);
+    assert_eq!(counts(&run()), [3, 0, 0]);
+    let outline = dir.path("photos/nominal/s01.json");
+    let text = std::fs::read_to_string(&outline).unwrap();
+    std::fs::write(&outline, format!("{text} ")).unwrap();
+    // The same nail: what comes after stands.
+    assert_eq!(counts(&run()), [1, 2, 0]);
+    std::fs::remove_file(&outline).unwrap();
+    assert_eq!(counts(&run()), [2, 1, 0]);
+    let nails = std::fs::read_to_string(dir.path("out/coloration/nails.csv")).unwrap();
+    assert_eq!(nails.matches(",detected,").count(), 1, "{nails}");
+}
+
+#[test]
+fn a_subject_that_fails_leaves_the_maps_of_the_others() {
+    let dir = Dir::new();
+    photographs(&dir, 3);
+    for pose in ["nominal", "flexion"] {
+        dir.write(&format!("photos/{pose}/s02.png"), "no picture");
+    }
+    dir.write("coloration.toml", COLORATION);
+    let answer = dir.lunula(&["run", "coloration.toml", "--out", "out", "--json"]).expect(1).says("nails/s02");
+    assert_eq!(counts(&answer), [3, 0, 1]);
+    let nails = std::fs::read_to_string(dir.path("out/coloration/nails.csv")).unwrap();
+    assert!(nails.contains(",s01,") && nails.contains(",s03,") && !nails.contains(",s02,"), "{nails}");
+}
+
+const TRAINING: &str = r#"
+wanted = ["sets"]
+
+[inputs.bending]
+table = "sessions.csv"
+
+[stage.angles]
+job = "posture"
+video = "bending.video"
+markers = "bending.markers"
+truth = "bending.truth"
+
+[stage.labels]
+job = "align"
+joints = "angles"
+log = "bending.log"
+
+[stage.sets]
+job = "join"
+sets = "labels"
+"#;
+
+/// A filmed finger with a clock, and its log.
+fn recording(dir: &Dir, name: &str, seed: u64) {
+    let trajectory = Trajectory::Eq27 { hz: 0.4 };
+    let clock = Clock { offset_s: 60.0 + 100.0 * seed as f64, ..Clock::default() };
+    let log = LogOptions {
+        seed,
+        seconds: 2.0,
+        trajectory: trajectory.clone(),
+        clock_offset_s: clock.offset_s,
+        ..LogOptions::default()
+    };
+    let video = VideoOptions { seed, seconds: 2.0, trajectory, clock: Some(clock), ..VideoOptions::sized(640, 360) };
+    let folder = dir.path(name);
+    lunula::phantom::video::write(&Scene::new(video).expect("a scene"), &folder).expect("a video");
+    lunula::phantom::log::write(&LogScene::new(log).expect("a log"), &folder).expect("a log");
+}
+
+#[test]
+fn videos_and_logs_become_labelled_sets() {
+    let dir = Dir::new();
+    let mut table = "subject,session,video,markers,log,truth,take\n".to_owned();
+    for (k, name) in ["a", "b"].into_iter().enumerate() {
+        recording(&dir, name, k as u64 + 1);
+        table += &format!("S01,1,{name}/video.mp4,{name}/markers.toml,{name}/log.csv,{name}/truth/joints.csv,{name}\n");
+    }
+    dir.write("sessions.csv", table);
+    dir.write("training.toml", TRAINING);
+    let plan = dir.lunula(&["run", "training.toml", "--plan"]).expect(0).stdout;
+    assert!(plan.contains("no [camera]") && plan.contains("2 sets"), "{plan}");
+    let answer = dir.lunula(&["run", "training.toml", "--out", "out", "--json"]).expect(0);
+    assert_eq!(counts(&answer), [5, 0, 0]);
+    let told = answer.json()["stages"].to_string();
+    assert!(told.contains("degrees RMS") && told.contains("standard error of the label"), "{told}");
+    let sets = results(&dir, "out", "sets");
+    assert_eq!(sets.len(), 1, "{:?}", sets.keys());
+    let text = String::from_utf8(sets.into_values().next().unwrap()).unwrap();
+    assert!(text.lines().filter(|line| line.contains(",ok,S01,1,ok")).count() > 40, "{text}");
+    let none = dir.lunula(&["run", "training.toml", "--out", "out", "--json"]).expect(0);
+    assert_eq!(counts(&none), [0, 5, 0]);
+    for threads in ["1", "3"] {
+        let out = format!("out-{threads}");
+        dir.lunula(&["run", "training.toml", "--out", &out, "--threads", threads, "-q"]).expect(0);
+        for stage in ["angles", "labels", "sets"] {
+            assert!(results(&dir, "out", stage) == results(&dir, &out, stage), "{stage}, {threads} threads");
+        }
+    }
+
+    // At an offset that is known the clock is not read, and joints that nobody wants are not measured.
+    let known = TRAINING.replace("job = \"align\"", "job = \"align\"\nsync = \"offset=160\"");
+    dir.write("known.toml", known.replace("job = \"posture\"", "job = \"posture\"\njoints = [\"J2\"]"));
+    let plan = dir.lunula(&["run", "known.toml", "--plan", "--json"]).expect(0).json()["stages"].to_string();
+    assert!(plan.contains("nothing needs its time") || plan.contains("not asked for"), "{plan}");
+}
