@@ -63,8 +63,14 @@ impl Dir {
 
     /// Runs the binary in this folder.
     pub fn lunula(&self, arguments: &[&str]) -> Answer {
+        self.lunula_with(&[], arguments)
+    }
+
+    /// The same with environment variables.
+    pub fn lunula_with(&self, variables: &[(&str, &str)], arguments: &[&str]) -> Answer {
         let output = Command::new(env!("CARGO_BIN_EXE_lunula"))
             .args(arguments)
+            .envs(variables.iter().copied())
             .current_dir(self.0.path())
             .output()
             .expect("the binary runs");
