@@ -19,7 +19,11 @@ pub(super) struct Cells {
     /// One for each digit, equally large.
     still: Vec<Cut>,
     /// Digits are of different widths, so that the others move when one changes: each crop's own runs are the cells.
-    moving: bool,
+    pub(super) moving: bool,
+    /// First and last edge of the digits' rows, samples.
+    pub(super) line: [f32; 2],
+    /// From one digit's middle to the next one's, samples.
+    pub(super) pitch: f32,
     /// What background and ink are worth.
     pub(super) levels: Levels,
 }
@@ -32,6 +36,13 @@ const NARROW_WEIGHT: f64 = 0.02;
 const PRIOR: f64 = 1e-3;
 /// Centres that fit one pitch are this near to it, in widths of a digit.
 const OFF_PITCH: f64 = 0.2;
+/// Digits follow at no less than so many widths of the widest.
+const CLOSEST: f64 = 1.1;
+/// Beside the cells so many pitches are looked at for a further character, and so many heights for AM or PM; above and below this
+/// share of their height, for frames that are taller than digits and letters that reach further down.
+const BESIDE: f32 = 2.0;
+const BESIDE_HALF: f32 = 4.5;
+const ABOVE_BELOW: f32 = 0.45;
 /// How far digits that move go beyond where they were seen, in widths of a digit.
 const MOVES: f32 = 1.5;
 
@@ -71,7 +82,13 @@ impl Cells {
             width: width as f32,
             height: (height + 2.0 * margin) as f32,
         };
-        Some(Self { still: centres.into_iter().map(cut).collect(), moving: false, levels })
+        Some(Self {
+            still: centres.into_iter().map(cut).collect(),
+            moving: false,
+            line: [top as f32, bottom as f32],
+            pitch: pitch.max(CLOSEST * widest) as f32,
+            levels,
+        })
     }
 
     /// The same, of digits that move.
@@ -109,12 +126,34 @@ impl Cells {
         [left, top, right, bottom]
     }
 
+    /// The same with what is looked at beside the cells.
+    pub(super) fn bounds_beside(&self, size: [usize; 2], format: &ClockFormat) -> [usize; 4] {
+        let [left, top, right, bottom] = self.bounds(size);
+        let height = self.line[1] - self.line[0];
+        let half =
+            |leads: bool| if format.has_half() && format.half_leads() == leads { BESIDE_HALF * height } else { 0.0 };
+        let [before, after] = [true, false].map(|leads| half(leads).max(BESIDE * self.pitch).ceil() as usize);
+        let aside = (ABOVE_BELOW * height).ceil() as usize;
+        [
+            left.saturating_sub(before),
+            top.saturating_sub(aside),
+            (right + after).min(size[0]),
+            (bottom + aside).min(size[1]),
+        ]
+    }
+
+    /// The first and the last digit's cells.
+    pub(super) fn ends(&self) -> Option<[Cut; 2]> {
+        Some([*self.still.first()?, *self.still.last()?])
+    }
+
     /// Moves the cells to a crop that begins `left` and `top` samples further on.
     pub(super) fn shift(&mut self, left: usize, top: usize) {
         for cut in &mut self.still {
             cut.left -= left as f32;
             cut.top -= top as f32;
         }
+        self.line = self.line.map(|edge| edge - top as f32);
     }
 
     /// The box of the ink in a cell; none where there is none.
@@ -186,6 +225,7 @@ fn centres(spans: &[[f64; 2]], widest: f64, format: &ClockFormat) -> (Vec<f64>, 
                     so_far[2 + k] += 1.0;
                 }
             }
+            Cell::Half => {}
         }
     }
     let mut normal = DMatrix::zeros(unknowns, unknowns);
@@ -249,7 +289,7 @@ mod tests {
         for (x, y) in [(8, 5), (9, 5), (10, 8), (15, 5), (3, 5), (20, 6)] {
             gray.values[y * 30 + x] = 220.0;
         }
-        let cells = Cells { still: Vec::new(), moving: false, levels: LEVELS };
+        let cells = Cells { still: Vec::new(), moving: false, line: [0.0; 2], pitch: 1.0, levels: LEVELS };
         let cut = Cut { left: 3.0, top: 2.0, width: 18.0, height: 15.0 };
         let ink = cells.ink(&gray, cut).unwrap();
         assert_eq!((ink.left, ink.top, ink.width, ink.height), (8.0, 5.0, 8.0, 4.0));

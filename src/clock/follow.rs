@@ -6,6 +6,7 @@
 
 use super::ReaderEffort;
 use super::bank::Verdict;
+use super::beside::Beside;
 use super::crop::Gray;
 use super::format::ClockFormat;
 use super::glyph::SURE;
@@ -33,13 +34,15 @@ pub(super) struct Follower {
     pub(super) model: Model,
     format: ClockFormat,
     places: Vec<Place>,
+    /// Reads also where the format does not fit.
+    pub(super) regardless: bool,
     /// Each cell's last look, and for how many frames it has been that.
     last: Vec<(Look, u32)>,
 }
 
 impl Follower {
     pub(super) fn new(model: Model, format: &ClockFormat) -> Self {
-        Self { model, format: format.clone(), places: places(format), last: Vec::new() }
+        Self { model, format: format.clone(), places: places(format), regardless: false, last: Vec::new() }
     }
 
     /// Reads the clock in the next crop.
@@ -78,7 +81,7 @@ impl Follower {
             };
             verdicts.push(verdict);
         }
-        self.reading(&verdicts)
+        self.reading(&verdicts, gray, &boxes)
     }
 
     /// Asks the network where the glyphs don't tell.
@@ -136,7 +139,7 @@ impl Follower {
         })
     }
 
-    fn reading(&self, verdicts: &[Verdict]) -> Reading {
+    fn reading(&self, verdicts: &[Verdict], gray: &Gray, boxes: &[Cut]) -> Reading {
         let mut confidence = 1.0;
         let mut digits = Vec::with_capacity(verdicts.len());
         for verdict in verdicts {
@@ -150,7 +153,18 @@ impl Follower {
             let gone = digits.is_empty() || 2 * faint > verdicts.len();
             return Reading::Abstained(if gone { Doubt::NotFound } else { Doubt::Unclear });
         }
-        match self.format.seconds(&digits) {
+        let [Some(&first), Some(&last)] = [boxes.first(), boxes.last()] else {
+            return Reading::Abstained(Doubt::Unclear);
+        };
+        let beside = Beside::look(gray, &self.model.cells, [first, last]);
+        if !self.regardless && beside.misfit(&self.format).is_some() {
+            return Reading::Abstained(Doubt::OtherFormat);
+        }
+        let half = beside.half(&self.format);
+        if self.format.has_half() && half.is_none() {
+            return Reading::Abstained(Doubt::HalfUnclear);
+        }
+        match self.format.seconds(&digits, half) {
             Some(shown_s) => Reading::Read { shown_s, confidence },
             None => Reading::Abstained(Doubt::Unclear),
         }

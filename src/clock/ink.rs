@@ -67,8 +67,18 @@ impl Piece {
     }
 }
 
-/// The pieces of what is lighter (or darker) than the threshold.
+/// The pieces of what is lighter (or darker) than the threshold, those left out that can be no characters.
 pub(super) fn pieces(gray: &Gray, threshold: f32, light: bool) -> Vec<Piece> {
+    let (width, height) = (gray.width, gray.height);
+    let mut found = all_pieces(gray, threshold, light);
+    found.retain(|piece| piece.left > 0 && piece.top > 0 && piece.right + 1 < width && piece.bottom + 1 < height);
+    // What stands around several others is a frame; a 0 may hold a dot.
+    let around = |piece: &Piece| found.iter().filter(|other| piece.holds(other)).count() >= FRAMED;
+    found.iter().filter(|piece| !around(piece)).copied().collect()
+}
+
+/// All pieces of what is lighter (or darker) than the threshold.
+pub(super) fn all_pieces(gray: &Gray, threshold: f32, light: bool) -> Vec<Piece> {
     let (width, height) = (gray.width, gray.height);
     let mut open: Vec<bool> = gray.values.iter().map(|&value| (value > threshold) == light).collect();
     let mut found = Vec::new();
@@ -98,14 +108,9 @@ pub(super) fn pieces(gray: &Gray, threshold: f32, light: bool) -> Vec<Piece> {
                 }
             }
         }
-        let inside = piece.left > 0 && piece.top > 0 && piece.right + 1 < width && piece.bottom + 1 < height;
-        if inside {
-            found.push(piece);
-        }
+        found.push(piece);
     }
-    // What stands around several others is a frame; a 0 may hold a dot.
-    let around = |piece: &Piece| found.iter().filter(|other| piece.holds(other)).count() >= FRAMED;
-    found.iter().filter(|piece| !around(piece)).copied().collect()
+    found
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@
 //! network, by all that was seen of each.
 
 use super::bank::{Bank, Verdict};
+use super::beside::{Beside, Misfit};
 use super::cells::Cells;
 use super::crop::Gray;
 use super::format::ClockFormat;
@@ -25,6 +26,15 @@ pub(super) struct Model {
     pub(super) contrast: f32,
     /// How far one look is from the next of the same digit.
     pub(super) noise: f32,
+}
+
+/// What crops show.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Learnt {
+    /// The clock, if there is one.
+    pub(super) model: Option<Model>,
+    /// What stands beside its digits that the format does not have.
+    pub(super) misfit: Option<Misfit>,
 }
 
 /// A row of characters in one crop.
@@ -47,6 +57,8 @@ const JUDGED: usize = 4;
 /// The mean (geometric) probability of the likeliest digits from which on a row is taken for the clock's.
 const LIKELY: f64 = 0.5;
 
+/// A format does not fit where more stands beside its digits in this share of the crops.
+const MISFITS: f64 = 0.4;
 /// Looks of a digit differ by so much from frame to frame at least, noise or none.
 const LEAST_NOISE: f32 = 0.04;
 /// And looks of different digits by more than that.
@@ -62,13 +74,29 @@ const MOST_APART: f32 = 0.25;
 pub(super) const FAINT: f32 = 0.4;
 
 impl Model {
-    /// The clock that these crops show, if they do.
-    pub(super) fn learn(crops: &[Gray], times_s: &[f64], format: &ClockFormat) -> Option<Self> {
+    /// The clock that these crops show, if they do; one that the format fits before others.
+    pub(super) fn learn(crops: &[Gray], times_s: &[f64], format: &ClockFormat) -> Learnt {
         let found = search(crops, format);
-        let place = likeliest_place(crops, &found, format)?;
-        let seen: Vec<&Row> = place.iter().map(|found| &found.row).collect();
-        let middle = &place[place.len() / 2];
-        let still = Cells::around(&seen, format, middle.levels)?;
+        let mut chosen: Option<(Cells, Option<Misfit>)> = None;
+        for place in likely_places(crops, &found, format) {
+            let seen: Vec<&Row> = place.iter().map(|found| &found.row).collect();
+            let middle = &place[place.len() / 2];
+            let Some(cells) = Cells::around(&seen, format, middle.levels) else { continue };
+            let misfit = misfit(crops, &place, &cells, format);
+            let fits = misfit.is_none();
+            if fits || chosen.is_none() {
+                chosen = Some((cells, misfit));
+            }
+            if fits {
+                break;
+            }
+        }
+        let Some((still, misfit)) = chosen else { return Learnt::default() };
+        Learnt { model: Self::of(still, crops, times_s, format), misfit }
+    }
+
+    /// The better one of cells that stay and cells that move.
+    fn of(still: Cells, crops: &[Gray], times_s: &[f64], format: &ClockFormat) -> Option<Self> {
         let (model, read) = Self::with(still.clone(), crops, times_s, format)?;
         if read >= MOVING * crops.len() as f64 {
             return Some(model);
@@ -201,8 +229,8 @@ fn search_one(crop: usize, gray: &Gray, format: &ClockFormat, known: bool, found
     }
 }
 
-/// The rows at the place that shows the format most often and most probably.
-fn likeliest_place<'a>(crops: &[Gray], found: &'a [Found], format: &ClockFormat) -> Option<Vec<&'a Found>> {
+/// The rows at each place that may show the format, the place first that does most often and most probably.
+fn likely_places<'a>(crops: &[Gray], found: &'a [Found], format: &ClockFormat) -> Vec<Vec<&'a Found>> {
     let mut places: Vec<Vec<&Found>> = Vec::new();
     for one in found {
         let same = |place: &Vec<&Found>| {
@@ -221,15 +249,24 @@ fn likeliest_place<'a>(crops: &[Gray], found: &'a [Found], format: &ClockFormat)
             None => places.push(vec![one]),
         }
     }
-    let mut best: Option<(f64, Vec<&Found>)> = None;
-    for place in places {
-        let likely = likely(crops, &place, format);
-        let score = likely * place.len() as f64;
-        if likely >= LIKELY && best.as_ref().is_none_or(|(most, _)| score > *most) {
-            best = Some((score, place));
-        }
-    }
-    best.map(|(_, place)| place)
+    let scored = places.into_iter().map(|place| (likely(crops, &place, format), place));
+    let mut scored: Vec<(f64, Vec<&Found>)> = scored
+        .filter(|(likely, _)| *likely >= LIKELY)
+        .map(|(likely, place)| (likely * place.len() as f64, place))
+        .collect();
+    // Stable: of two that are alike the first one stays first.
+    scored.sort_by(|a, b| b.0.total_cmp(&a.0));
+    scored.into_iter().map(|(_, place)| place).collect()
+}
+
+/// What stands beside the digits of a place and is not in the format: in most of its crops the same.
+fn misfit(crops: &[Gray], place: &[&Found], cells: &Cells, format: &ClockFormat) -> Option<Misfit> {
+    let ends = cells.ends()?;
+    let look = |found: &&Found| Beside::look(&crops[found.crop], cells, ends).misfit(format);
+    let mut all: Vec<Misfit> = place.iter().filter_map(look).collect();
+    let enough = all.len() as f64 >= MISFITS * place.len() as f64;
+    all.sort();
+    all.chunk_by(|a, b| a == b).max_by_key(|alike| alike.len()).filter(|_| enough).map(|alike| alike[0].clone())
 }
 
 /// The geometric mean of the probabilities of the likeliest digits.

@@ -16,7 +16,7 @@ pub(super) struct Line {
 }
 
 /// Pieces of so few pixels are noise.
-const SPECK: usize = 2;
+pub(super) const SPECK: usize = 2;
 /// Rows without ink between two pieces of a line, as a share of the higher of them: between the segments of a digit.
 const BRIDGE: f64 = 0.3;
 /// Lower lines hold no digits that can be told apart.
@@ -54,7 +54,8 @@ pub(super) fn lines(pieces: &[Piece]) -> Vec<Line> {
     bands.into_iter().filter(|(band, _)| tall(band)).map(|(_, held)| Line { runs: runs(held) }).collect()
 }
 
-fn runs(mut pieces: Vec<Piece>) -> Vec<Run> {
+/// Pieces that share columns, merged, from the left to the right.
+pub(super) fn runs(mut pieces: Vec<Piece>) -> Vec<Run> {
     pieces.sort_by_key(|piece| (piece.left, piece.top));
     let mut runs: Vec<Run> = Vec::new();
     for piece in pieces {
@@ -82,15 +83,16 @@ impl Row {
 }
 
 /// Digits end within this share of their height from one another's tops and bottoms.
-const UNEVEN: f64 = 0.16;
+pub(super) const UNEVEN: f64 = 0.16;
 /// The widest digit and the widest gap between characters, in heights of a digit.
-const WIDEST: f64 = 1.1;
+pub(super) const WIDEST: f64 = 1.1;
 const WIDEST_GAP: f64 = 1.0;
 
 /// Everywhere that the format's characters may stand in a line.
 pub(super) fn rows(line: &Line, format: &ClockFormat) -> Vec<Row> {
-    let cells: Vec<Cell> =
-        format.cells().iter().filter(|cell| !matches!(cell, Cell::Mark(c) if c.is_whitespace())).copied().collect();
+    // AM and PM are looked for beside the digits.
+    let unseen = |cell: &&Cell| !matches!(cell, Cell::Half) && !matches!(cell, Cell::Mark(c) if c.is_whitespace());
+    let cells: Vec<Cell> = format.cells().iter().filter(unseen).copied().collect();
     // The strokes of a double quote stand side by side.
     let takes = |cell: &Cell| if matches!(cell, Cell::Mark('"')) { 2 } else { 1 };
     let wanted: usize = cells.iter().map(takes).sum();
@@ -104,6 +106,7 @@ pub(super) fn rows(line: &Line, format: &ClockFormat) -> Vec<Row> {
             match cell {
                 Cell::Digit { .. } => digits.push(window[at]),
                 Cell::Mark(mark) => marks.push((*mark, window[at])),
+                Cell::Half => {}
             }
             at += takes(cell);
         }

@@ -6,12 +6,12 @@
 //! stretch of the line, out of which the clock is learnt as if the user had named it ([`super::learn`]). It is the clock if it then reads,
 //! changes, and runs one second a second.
 
-use super::ReaderEffort;
-use super::Reading;
+use super::beside::Misfit;
 use super::crop::{Eye, Gray, Rect};
 use super::follow::Follower;
 use super::format::ClockFormat;
 use super::learn::Model;
+use super::{Doubt, ReaderEffort, Reading};
 use crate::video::Frame;
 
 /// A picture, averaged down.
@@ -38,6 +38,8 @@ pub(super) struct Sighting {
     pub(super) rect: Rect,
     pub(super) step: usize,
     pub(super) follower: Follower,
+    /// What the clock shows that the format does not have; it is not read then.
+    pub(super) misfit: Option<Misfit>,
     /// The readings of the pictures by their indices.
     pub(super) readings: Vec<(u64, Reading)>,
 }
@@ -56,6 +58,8 @@ const BEYOND_NOISE: u32 = 6;
 const LEAST_CHANGE: u32 = 20;
 /// The tallest line of digits, as a share of the picture's height.
 const TALLEST: usize = 3;
+/// How many heights AM or PM take with a blank.
+const HALF: f64 = 3.0;
 /// So many places are looked at.
 const MOST_PLACES: usize = 16;
 /// A clock that is found reads in this share of the pictures.
@@ -93,25 +97,36 @@ impl Scout {
     /// The clock in the pictures kept.
     pub(super) fn search(&self, format: &ClockFormat, effort: &mut ReaderEffort) -> Option<Sighting> {
         effort.searched += self.kept.len() as u64;
-        let places = self.places(format);
-        places.into_iter().take(MOST_PLACES).find_map(|place| {
+        let mut other = None;
+        for place in self.places(format).into_iter().take(MOST_PLACES) {
             // Where a few strokes changed only, the digits are taller than the place.
-            [1.0, 2.0].into_iter().find_map(|taller| self.look(self.stretch(place, taller, format), format, effort))
-        })
+            for taller in [1.0, 2.0] {
+                match self.look(self.stretch(place, taller, format), format, effort) {
+                    Some(sighting) if sighting.misfit.is_none() => return Some(sighting),
+                    Some(sighting) => other = other.or(Some(sighting)),
+                    None => {}
+                }
+            }
+        }
+        other
     }
 
     /// Learns a clock in a rectangle and reads it.
     fn look(&self, rect: Rect, format: &ClockFormat, effort: &mut ReaderEffort) -> Option<Sighting> {
         let crops: Vec<Gray> = self.kept.iter().map(|kept| self.crop(kept, rect)).collect();
         let times_s: Vec<f64> = self.kept.iter().map(|kept| kept.time_s).collect();
-        let model = Model::learn(&crops, &times_s, format)?;
-        let mut follower = Follower::new(model, format);
-        let readings: Vec<Reading> = crops.iter().map(|crop| follower.read(crop, effort)).collect();
+        let learnt = Model::learn(&crops, &times_s, format);
+        let mut follower = Follower::new(learnt.model?, format);
+        follower.regardless = learnt.misfit.is_some();
+        let mut readings: Vec<Reading> = crops.iter().map(|crop| follower.read(crop, effort)).collect();
         if !runs(&times_s, &readings, format.resolution_s()) {
             return None;
         }
+        if std::mem::take(&mut follower.regardless) {
+            readings.fill(Reading::Abstained(Doubt::OtherFormat));
+        }
         let readings = self.kept.iter().map(|kept| kept.index).zip(readings).collect();
-        Some(Sighting { rect, step: self.step, follower, readings })
+        Some(Sighting { rect, step: self.step, follower, misfit: learnt.misfit, readings })
     }
 
     fn crop(&self, kept: &Kept, rect: Rect) -> Gray {
@@ -124,8 +139,9 @@ impl Scout {
     fn stretch(&self, place: Rect, taller: f64, format: &ClockFormat) -> Rect {
         let tall = taller * place.height as f64;
         let characters = format.cells().len() as f64;
-        let left = (place.x as f64 - (characters + 0.5) * tall).max(0.0) as usize;
-        let right = ((place.x + place.width) as f64 + 1.5 * tall).min(self.width as f64) as usize;
+        let half = |leads: bool| if format.has_half() && format.half_leads() == leads { HALF } else { 0.0 };
+        let left = (place.x as f64 - (characters + half(true) + 0.5) * tall).max(0.0) as usize;
+        let right = ((place.x + place.width) as f64 + (1.5 + half(false)) * tall).min(self.width as f64) as usize;
         let middle = place.y as f64 + 0.5 * place.height as f64;
         let top = (middle - tall).max(0.0) as usize;
         let bottom = (middle + tall).min(self.height as f64) as usize;

@@ -8,11 +8,13 @@
 //! Coordinates are those of the stored picture ([`crate::video`]); [`ClockRoi`] speaks of the shown one.
 
 mod bank;
+mod beside;
 mod cells;
 mod crop;
 mod follow;
 mod format;
 mod glyph;
+mod half;
 mod ink;
 mod judge;
 mod learn;
@@ -24,7 +26,8 @@ mod reader;
 mod reading;
 mod sequence;
 
-pub use format::{Cell, ClockFormat, Unit};
+pub use beside::Misfit;
+pub use format::{Cell, ClockFormat, Half, Unit};
 pub use glyph::{Levels, Patch, Place, SURE, Scores, read_crop, recognise};
 pub use reader::{ClockReader, ReaderEffort};
 pub use reading::{Doubt, Reading};

@@ -19,7 +19,7 @@ pub(super) struct Place {
 pub(super) fn places(format: &ClockFormat) -> Vec<Place> {
     let of = |cell: &Cell| match *cell {
         Cell::Digit { highest, worth_ns, .. } => Some(Place { highest, step_s: 1e-9 * worth_ns as f64 }),
-        Cell::Mark(_) => None,
+        Cell::Mark(_) | Cell::Half => None,
     };
     format.cells().iter().filter_map(of).collect()
 }

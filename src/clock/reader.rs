@@ -5,6 +5,7 @@
 //! ([`ClockReader::earlier`]). From then on only the clock's pixels are looked at ([`super::follow`]). A clock that can't be read for a
 //! while is learnt anew beside.
 
+use super::beside::Misfit;
 use super::crop::{Eye, Gray, Rect};
 use super::follow::Follower;
 use super::format::ClockFormat;
@@ -51,6 +52,7 @@ pub struct ClockReader {
     failed: usize,
     search_from_s: f64,
     earlier: Vec<(u64, Reading)>,
+    misfit: Option<Misfit>,
     effort: ReaderEffort,
 }
 
@@ -109,6 +111,7 @@ impl ClockReader {
             failed: 0,
             search_from_s: 0.0,
             earlier: Vec::new(),
+            misfit: None,
             effort: ReaderEffort::default(),
         })
     }
@@ -175,26 +178,44 @@ impl ClockReader {
         let found = match self.search.take() {
             Some(Search::Everywhere(scout)) => scout.search(&self.format, &mut self.effort).map(|sighting| {
                 let window = Window::of_blocks(sighting.rect, sighting.step);
+                self.misfit = sighting.misfit.or(self.misfit.take());
                 (window, sighting.follower, sighting.readings)
             }),
-            Some(Search::Region(crops, frames)) => self.told.and_then(|window| {
-                let times_s: Vec<f64> = frames.iter().map(|(_, time_s)| *time_s).collect();
-                let mut follower = Follower::new(Model::learn(&crops, &times_s, &self.format)?, &self.format);
-                let readings = crops.iter().zip(&frames);
-                let readings =
-                    readings.map(|(crop, (index, _))| (*index, follower.read(crop, &mut self.effort))).collect();
-                Some((window, follower, readings))
-            }),
+            Some(Search::Region(crops, frames)) => {
+                self.told.and_then(|window| self.learn_told(window, &crops, &frames))
+            }
             None => None,
         };
         let Some((window, mut follower, readings)) = found else { return false };
         self.earlier.extend(readings);
-        let window = window.shrunk(&mut follower);
+        let (window, digits) = window.shrunk(&mut follower, &self.format);
         if self.told.is_none() {
-            self.region = Some(window.region());
+            self.region = Some(digits.region());
         }
         self.follower = Some((window, follower));
         true
+    }
+
+    /// Learns the clock in the region that was told and reads the crops; notes a format that does not fit.
+    fn learn_told(
+        &mut self,
+        window: Window,
+        crops: &[Gray],
+        frames: &[(u64, f64)],
+    ) -> Option<(Window, Follower, Vec<(u64, Reading)>)> {
+        let times_s: Vec<f64> = frames.iter().map(|(_, time_s)| *time_s).collect();
+        let learnt = Model::learn(crops, &times_s, &self.format);
+        let misfit = learnt.misfit.is_some();
+        self.misfit = learnt.misfit.or(self.misfit.take());
+        let Some(model) = learnt.model else {
+            let doubt = Reading::Abstained(Doubt::OtherFormat);
+            self.earlier.extend(frames.iter().filter(|_| misfit).map(|(index, _)| (*index, doubt)));
+            return None;
+        };
+        let mut follower = Follower::new(model, &self.format);
+        let readings = crops.iter().zip(frames);
+        let readings = readings.map(|(crop, (index, _))| (*index, follower.read(crop, &mut self.effort))).collect();
+        Some((window, follower, readings))
     }
 
     /// Readings, by the frames' indices, of frames from which [`step`](Self::step) abstained because the clock's place and glyphs were
@@ -210,6 +231,13 @@ impl ClockReader {
     #[must_use]
     pub fn region(&self) -> Option<[f64; 4]> {
         self.region
+    }
+
+    /// What stands beside the clock's digits that the format does not have, where it was seen while the clock was learnt; frames with
+    /// [`Doubt::OtherFormat`] say where else.
+    #[must_use]
+    pub fn misfit(&self) -> Option<&Misfit> {
+        self.misfit.as_ref()
     }
 
     /// What was looked at.
@@ -241,18 +269,23 @@ impl Window {
         Self { rect: Rect { x: x * step, y: y * step, width: width * step, height: height * step }, step }
     }
 
-    /// The part of it in which the clock's digits are; their cells are moved along.
-    fn shrunk(self, follower: &mut Follower) -> Self {
-        let Rect { x, y, width, height } = self.rect;
-        let [left, top, right, bottom] = follower.model.cells.bounds([width / self.step, height / self.step]);
-        follower.model.cells.shift(left, top);
-        let rect = Rect {
-            x: x + left * self.step,
-            y: y + top * self.step,
-            width: (right - left) * self.step,
-            height: (bottom - top) * self.step,
+    /// The part of it in which the clock's digits are and what stands beside them, to which their cells are moved; and that of the
+    /// digits alone.
+    fn shrunk(self, follower: &mut Follower, format: &ClockFormat) -> (Self, Self) {
+        let size = [self.rect.width / self.step, self.rect.height / self.step];
+        let cells = &mut follower.model.cells;
+        let [around, digits] = [cells.bounds_beside(size, format), cells.bounds(size)];
+        cells.shift(around[0], around[1]);
+        let part = |[left, top, right, bottom]: [usize; 4]| {
+            let rect = Rect {
+                x: self.rect.x + left * self.step,
+                y: self.rect.y + top * self.step,
+                width: (right - left) * self.step,
+                height: (bottom - top) * self.step,
+            };
+            Self { rect, ..self }
         };
-        Self { rect, ..self }
+        (part(around), part(digits))
     }
 
     fn region(&self) -> [f64; 4] {

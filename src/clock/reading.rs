@@ -22,6 +22,10 @@ pub enum Doubt {
     NotFound,
     /// Its digits changed during the exposure, or a digit is unclear.
     Unclear,
+    /// Its digits were read, and beside them stands what the format does not have: a further digit, a colon, AM or PM.
+    OtherFormat,
+    /// Its digits were read, but not AM or PM beside them.
+    HalfUnclear,
     /// The frame could not be decoded.
     Undecoded,
     /// It was not looked at: told off to save time.

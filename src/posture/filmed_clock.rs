@@ -4,7 +4,9 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::clock::{Clock, ClockFit, ClockReader, Doubt, ReaderEffort, Reading, ScreenDelay, fit};
+use crate::clock::{
+    Clock, ClockFit, ClockReader, ClockRoi, Doubt, FEWEST, Misfit, ReaderEffort, Reading, ScreenDelay, fit,
+};
 use crate::video::{Frame, Info};
 
 /// What the clock in the picture told.
@@ -60,8 +62,8 @@ pub(super) struct FilmedClock {
     reader: ClockReader,
     every: u64,
     times_s: Vec<f64>,
-    shown_s: Vec<Option<f64>>,
-    abstained: BTreeMap<Doubt, u64>,
+    /// What each frame's clock shows, seconds, or why it was not read.
+    shown_s: Vec<Result<f64, Doubt>>,
 }
 
 /// What the table of angles tells of the clock in a frame.
@@ -100,8 +102,7 @@ impl FilmedClock {
     /// Reads `clock` in every `every`th frame once its digits are known; the error says what is wrong with its region.
     pub(super) fn new(clock: &Clock, info: &Info, every: u64) -> Result<Self, String> {
         let reader = ClockReader::new(clock, info)?;
-        let (times_s, shown_s, abstained) = (Vec::new(), Vec::new(), BTreeMap::new());
-        Ok(Self { clock: clock.clone(), reader, every: every.max(1), times_s, shown_s, abstained })
+        Ok(Self { clock: clock.clone(), reader, every: every.max(1), times_s: Vec::new(), shown_s: Vec::new() })
     }
 
     /// Looks at the next frame; none where it could not be decoded.
@@ -113,38 +114,71 @@ impl FilmedClock {
         };
         self.times_s.push(time_s);
         self.shown_s.push(match reading {
-            Reading::Read { shown_s, .. } => Some(shown_s),
-            Reading::Abstained(doubt) => {
-                *self.abstained.entry(doubt).or_default() += 1;
-                None
-            }
+            Reading::Read { shown_s, .. } => Ok(shown_s),
+            Reading::Abstained(doubt) => Err(doubt),
         });
+    }
+
+    /// Puts what was learnt of earlier frames into their places.
+    fn take_earlier(&mut self) {
+        for (index, reading) in self.reader.earlier() {
+            let Some(place) = self.shown_s.get_mut(index as usize).filter(|place| place.is_err()) else { continue };
+            match reading {
+                Reading::Read { shown_s, .. } => *place = Ok(shown_s),
+                Reading::Abstained(doubt @ (Doubt::OtherFormat | Doubt::HalfUnclear)) => *place = Err(doubt),
+                Reading::Abstained(_) => {}
+            }
+        }
+    }
+
+    /// Why the clock can't be read though it may be there, if so: its format does not fit, AM or PM are not seen, or it was not found.
+    fn unfit(&self) -> Option<String> {
+        let places = |wanted: fn(&Result<f64, Doubt>) -> bool| -> Vec<usize> {
+            (0..self.shown_s.len()).filter(|&place| wanted(&self.shown_s[place])).collect()
+        };
+        let read = places(|shown| shown.is_ok());
+        let other = places(|shown| *shown == Err(Doubt::OtherFormat));
+        if Misfit::is_of_all(&read, &other) {
+            let unknown = Misfit { fitting: None };
+            return Some(self.reader.misfit().unwrap_or(&unknown).says(&self.clock.format, other.len()));
+        }
+        let halves = places(|shown| *shown == Err(Doubt::HalfUnclear)).len();
+        if read.len() < FEWEST && halves >= FEWEST {
+            return Some(format!(
+                "its digits were read in {halves} frame(s), but no AM or PM beside them: leave `a` out of format = \"{}\" where the \
+                 clock shows neither, or let the roi hold them",
+                self.clock.format.text()
+            ));
+        }
+        let lost = read.len() < FEWEST && self.clock.roi == ClockRoi::Auto;
+        lost.then(|| {
+            "it was not found: roi = \"auto\" finds only a clock that changes at least once a second, in the format given; for any other \
+             write roi = [x, y, width, height]"
+                .to_owned()
+        })
     }
 
     /// Fits the clock over the whole video.
     pub(super) fn finish(mut self) -> ClockOutcome {
-        for (index, reading) in self.reader.earlier() {
-            let Some(place) = self.shown_s.get_mut(index as usize) else { continue };
-            if let (Reading::Read { shown_s, .. }, None) = (reading, *place) {
-                *place = Some(shown_s);
-                if let Some(count) = self.abstained.get_mut(&Doubt::NotFound) {
-                    *count = count.saturating_sub(1);
-                }
-            }
-        }
-        self.abstained.retain(|_, count| *count > 0);
+        self.take_earlier();
+        let unfit = self.unfit();
         let format = &self.clock.format;
         let resolution_s = format.resolution_s();
-        let fit = fit(&self.times_s, &self.shown_s, resolution_s, &format.wraps_s(), self.clock.refresh_hz)
-            .map_err(|fault| fault.to_string());
-        let read = self.shown_s.iter().flatten().count() as u64;
+        let shown_s: Vec<Option<f64>> = self.shown_s.iter().map(|shown| shown.ok()).collect();
+        let mut frames_abstained = BTreeMap::new();
+        for doubt in self.shown_s.iter().filter_map(|shown| shown.err()) {
+            *frames_abstained.entry(doubt).or_default() += 1;
+        }
+        let fit = || fit(&self.times_s, &shown_s, resolution_s, &format.wraps_s(), self.clock.refresh_hz);
+        let fit = unfit.map_or_else(|| fit().map_err(|fault| fault.to_string()), Err);
+        let read = shown_s.iter().flatten().count() as u64;
         let refused = fit.as_ref().map_or(read, |fit| fit.refused as u64);
         let report = ClockReport {
             region_px: self.reader.region(),
             format: format.text().to_owned(),
             frames_read: read - refused,
             frames_refused: refused,
-            frames_abstained: self.abstained,
+            frames_abstained,
             effort: self.reader.effort(),
             tie: fit.as_ref().ok().map(|fit| ClockTieReport {
                 offset_s: fit.timebase.offset_s(),
@@ -160,5 +194,67 @@ impl FilmedClock {
             }),
         };
         ClockOutcome { fit, report }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clock::ClockFormat;
+    use crate::phantom::screen::Clock as Screen;
+    use crate::video::{Format, Picture};
+
+    /// What is made of a clock on a plain desk, 30 frames a second, that is read as `format`.
+    fn outcome(shown: &str, offset_s: f64, roi: ClockRoi, format: &str, frames: u64) -> ClockOutcome {
+        let layout = Format { width: 320, height: 80, subsampling: None, depth: 8 };
+        let screen = Screen { format: shown.to_owned(), offset_s, ..Screen::default() };
+        let clock = Clock { roi, format: ClockFormat::parse(format).unwrap(), refresh_hz: None };
+        let mut filmed = FilmedClock::new(&clock, &Info::plain(layout), 1).unwrap();
+        for index in 0..frames {
+            let time_s = index as f64 / 30.0;
+            let mut picture = Picture::new(layout);
+            picture.planes[0].fill(140);
+            for (k, lit) in screen.panel(&screen.shown(time_s).0, 280, 36).into_iter().enumerate() {
+                picture.planes[0][(22 + k / 280) * 320 + 20 + k % 280] = (25.0 + 190.0 * lit) as u8;
+            }
+            filmed.look(index, time_s, Some(&picture.frame(index, time_s)));
+        }
+        filmed.finish()
+    }
+
+    const ROI: ClockRoi = ClockRoi::Box([20.0, 22.0, 280.0, 36.0]);
+
+    #[test]
+    fn a_clock_of_another_format_is_refused_with_the_format_that_fits() {
+        let cases = [("hh:mm:ss", "h:mm:ss", "\"hh:mm:ss\""), ("hh:mm:ss a", "hh:mm:ss", "\"hh:mm:ss a\"")];
+        for (shown, format, fitting) in cases {
+            for roi in [ROI, ClockRoi::Auto] {
+                let outcome = outcome(shown, 70_874.017, roi, format, 75);
+                let why = outcome.fit.unwrap_err();
+                assert!(why.contains(fitting), "{roi:?} {why}");
+                let report = outcome.report;
+                assert!(report.frames_read == 0 && report.frames_abstained[&Doubt::OtherFormat] >= 60, "{report:?}");
+            }
+        }
+        let why = outcome("hh:mm:ss", 70_874.017, ROI, "hh:mm:ss a", 45).fit.unwrap_err();
+        assert!(why.contains("no AM or PM"), "{why}");
+    }
+
+    #[test]
+    fn auto_says_that_it_finds_only_clocks_that_change() {
+        let why = outcome("h:mm:ss", 36_000.017, ClockRoi::Auto, "mm:ss.t", 60).fit.unwrap_err();
+        assert!(why.contains("auto") && why.contains("changes"), "{why}");
+    }
+
+    #[test]
+    fn noon_and_the_hour_after_it_are_counted_on() {
+        let fit = outcome("hh:mm:ss a", 43_198.517, ROI, "hh:mm:ss a", 90).fit.unwrap();
+        assert!((fit.timebase.offset_s() - 43_198.517).abs() <= 0.02, "{}", fit.timebase.offset_s());
+        // 12:59:59 PM becomes 1:00:00 PM, narrower: the frames before tie the rest.
+        let fit = outcome("h:mm:ss a", 46_798.017, ROI, "hh:mm:ss a", 90).fit.unwrap();
+        let [low, high] = fit.bounds_s(2.5);
+        assert!(low <= 46_800.517 && 46_800.517 <= high, "{low} {high}");
+        let read = fit.accepted_s.iter().flatten().count();
+        assert!((45..=60).contains(&read), "{read}");
     }
 }

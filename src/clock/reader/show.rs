@@ -1,6 +1,6 @@
 //! A clock on a desk, beside a bar that moves, drawn small and fast for the tests.
 
-use crate::clock::ClockFormat;
+use crate::clock::{ClockFormat, Half};
 use crate::phantom::screen::{Clock, ClockFont};
 use crate::video::{Format, Info, Picture, Turn};
 
@@ -20,6 +20,10 @@ pub(super) struct Show {
     pub(super) flicker: f64,
     /// Draws digits one behind the other without regard to a pitch.
     pub(super) moving: bool,
+    /// What becomes of the clock's text before it is drawn.
+    pub(super) restyle: fn(&str) -> String,
+    /// Left, top, width, height on the panel of what else is lit there.
+    pub(super) lines: Vec<[usize; 4]>,
     pub(super) turn: Turn,
 }
 
@@ -40,6 +44,8 @@ impl Show {
             noise: 4.0,
             flicker: 0.0,
             moving: false,
+            restyle: str::to_owned,
+            lines: Vec::new(),
             turn: Turn::None,
         }
     }
@@ -53,7 +59,8 @@ impl Show {
         let Some(clock) = &self.clock else { return f64::NAN };
         let (text, _) = clock.shown(self.time_s(frame));
         let digits: Vec<u8> = text.bytes().filter(u8::is_ascii_digit).map(|byte| byte - b'0').collect();
-        ClockFormat::parse(&clock.format).unwrap().seconds(&digits).unwrap()
+        let half = if text.contains('P') { Half::Pm } else { Half::Am };
+        ClockFormat::parse(&clock.format).unwrap().seconds(&digits, Some(half)).unwrap()
     }
 
     pub(super) fn info(&self) -> Info {
@@ -98,9 +105,13 @@ impl Show {
         for look in 0..LOOKS {
             let share = (look as f64 + 0.5) / LOOKS as f64 - 0.5;
             let (text, _) = clock.shown(time_s + share * self.exposure / self.fps);
+            let text = (self.restyle)(&text);
             let one =
                 if self.moving { side_by_side(clock, &text, width, height) } else { clock.panel(&text, width, height) };
             lit.iter_mut().zip(one).for_each(|(sum, one)| *sum += one / LOOKS as f32);
+        }
+        for &[x, y, wide, tall] in &self.lines {
+            (y..y + tall).for_each(|y| lit[y * width + x..y * width + x + wide].fill(1.0));
         }
         let (back, front) = if clock.light_digits { (25.0, 215.0) } else { (190.0, 40.0) };
         for y in top - 3..top + height + 3 {

@@ -11,6 +11,9 @@ mod show;
 struct Tally {
     right: usize,
     wrong: usize,
+    /// Frames whose digits stand beside more than the format has, and the format that would fit.
+    other: usize,
+    fitting: Option<String>,
     readings: Vec<Reading>,
     region: Option<[f64; 4]>,
     effort: ReaderEffort,
@@ -20,10 +23,15 @@ fn clock(roi: ClockRoi, format: &str) -> Clock {
     Clock { roi, format: ClockFormat::parse(format).unwrap(), refresh_hz: None }
 }
 
-/// Reads frames; those in `hidden` show no clock.
+/// Reads frames by the format that the clock is written in; those in `hidden` show no clock.
 fn read(show: &Show, roi: ClockRoi, frames: usize, hidden: std::ops::Range<usize>) -> Tally {
-    let blind = Show { clock: None, panel: show.panel, turn: show.turn, ..Show::new(ClockFont::Mono, true) };
     let format = show.clock.as_ref().map_or("mm:ss.t", |clock| &clock.format);
+    read_as(format, show, roi, frames, hidden)
+}
+
+/// Reads frames by this format.
+fn read_as(format: &str, show: &Show, roi: ClockRoi, frames: usize, hidden: std::ops::Range<usize>) -> Tally {
+    let blind = Show { clock: None, panel: show.panel, turn: show.turn, ..Show::new(ClockFont::Mono, true) };
     let mut reader = ClockReader::new(&clock(roi, format), &show.info()).unwrap();
     let mut readings: Vec<Reading> = (0..frames)
         .map(|k| {
@@ -41,7 +49,18 @@ fn read(show: &Show, roi: ClockRoi, frames: usize, hidden: std::ops::Range<usize
             if (shown_s - show.shown_s(k)).abs() < 1e-6 { right += 1 } else { wrong += 1 }
         }
     }
-    Tally { right, wrong, readings, region: reader.region(), effort: reader.effort() }
+    let other = readings.iter().filter(|&&reading| reading == Reading::Abstained(Doubt::OtherFormat)).count();
+    let fitting = reader.misfit().and_then(|misfit| misfit.fitting.clone());
+    Tally { right, wrong, other, fitting, readings, region: reader.region(), effort: reader.effort() }
+}
+
+/// A clock of this format on a wide panel.
+fn wide(font: ClockFont, light: bool, format: &str, offset_s: f64) -> Show {
+    let mut show = Show { panel: [120, 30, 260, 40], ..Show::new(font, light) };
+    if let Some(clock) = &mut show.clock {
+        (clock.format, clock.offset_s) = (format.into(), offset_s);
+    }
+    show
 }
 
 fn told(show: &Show) -> ClockRoi {
@@ -165,4 +184,132 @@ fn frames_of_another_size_and_short_videos_are_no_fault() {
     let tally = read(&show, told(&show), 15, 0..0);
     assert!(tally.wrong == 0 && tally.right >= 12, "{} {}", tally.right, tally.wrong);
     assert_eq!(read(&show, told(&show), 0, 0..0).right, 0);
+}
+
+#[test]
+fn a_clock_that_shows_more_than_its_format_is_not_read() {
+    let (evening, noon) = (70_874.017, 46_795.017);
+    let cases = [
+        ("hh:mm:ss", "h:mm:ss", evening, "hh:mm:ss"),
+        ("hh:mm:ss", "mm:ss", evening, "hh:mm:ss"),
+        ("hh:mm:ss", "hh:mm", evening, "hh:mm:ss"),
+        ("mm:ss.t", "mm:ss", 754.017, "mm:ss.t"),
+        ("mm:ss.t", "ss.t", 754.017, "mm:ss.t"),
+        ("s.tt", "s.t", 3.017, "s.tt"),
+        ("hh:mm:ss a", "hh:mm:ss", noon, "hh:mm:ss a"),
+        ("hh:mm:ss a", "h:mm:ss a", noon, "hh:mm:ss a"),
+        ("a hh:mm:ss", "hh:mm:ss", noon, "a hh:mm:ss"),
+    ];
+    for (k, (shown, format, offset_s, fitting)) in cases.into_iter().enumerate() {
+        for (n, font) in ClockFont::ALL.into_iter().enumerate() {
+            let show = wide(font, (k + n) % 2 == 0, shown, offset_s);
+            let tally = read_as(format, &show, told(&show), 30, 0..0);
+            let read = tally.right + tally.wrong;
+            let least = if shown == "s.tt" { 10 } else { 24 };
+            assert!(10 * read <= tally.other && tally.other >= least, "{font:?} {shown} as {format}: {tally:?}");
+            assert_eq!(tally.fitting.as_deref(), Some(fitting), "{font:?} {shown} as {format}");
+        }
+    }
+}
+
+#[test]
+fn a_clock_that_becomes_wider_is_read_until_then() {
+    for font in ClockFont::ALL {
+        let show = wide(font, true, "h:mm:ss", 35_998.517);
+        let tally = read_as("h:mm:ss", &show, told(&show), 150, 0..0);
+        // 9:59:59 ends in frame 45.
+        assert!(tally.wrong == 0 && (40..=45).contains(&tally.right), "{font:?} {} {}", tally.right, tally.wrong);
+        assert!(tally.other >= 10, "{font:?} {}", tally.other);
+        assert_eq!(tally.fitting.as_deref(), Some("hh:mm:ss"));
+    }
+}
+
+#[test]
+fn a_digit_that_the_region_cuts_off_is_noticed() {
+    for font in ClockFont::ALL {
+        let show = wide(font, font == ClockFont::Serif, "hh:mm:ss", 70_874.017);
+        let whole = read(&show, told(&show), 45, 0..0);
+        assert!(whole.right >= 40 && whole.other == 0, "{font:?} {}", whole.right);
+        let [left, top, width, height] = show.panel.map(|side| side as f64);
+        let (mut seen, mut gone) = (0, 0);
+        for cut in [10.0, 18.0, 22.0, 26.0, 30.0, 34.0, 38.0] {
+            let roi = ClockRoi::Box([left + cut, top, width - cut, height]);
+            let tally = read_as("h:mm:ss", &show, roi, 24, 0..0);
+            seen += usize::from(tally.other >= 18);
+            // Once that the whole digit is gone nothing tells.
+            gone += usize::from(tally.wrong >= 18 && tally.other == 0);
+            assert!(tally.wrong <= 2 || tally.other == 0 && gone > 0, "{font:?} {cut} {} {}", tally.wrong, tally.other);
+        }
+        assert!(seen >= 3 && gone <= 3, "{font:?} {seen} {gone}");
+    }
+}
+
+#[test]
+fn frames_icons_and_lines_beside_a_clock_are_no_digits() {
+    for font in ClockFont::ALL {
+        for light in [true, false] {
+            let mut show = wide(font, light, "  mm:ss.t  ", 1796.017);
+            show.panel = [100, 30, 280, 90];
+            let plain = read(&show, told(&show), 24, 0..0);
+            let [x, y, w, h] = plain.region.unwrap().map(|side| side as usize);
+            let ([left, top, width, height], space) = (show.panel, h / 3);
+            let (x, y) = (x - left, y - top);
+            // A frame's sides, a solid icon as high as the digits and one half as high, a line above and one below.
+            show.lines = vec![
+                [x - 2 * space, 0, 3, height],
+                [x + w + 2 * space, 1, 4, height - 2],
+                [x + w + space / 2, y + 1, space, h - 2],
+                [x - space - 2, y + h / 3, space, h / 3],
+                [10, 1, width - 20, 2],
+                [30, height - 4, 100, 2],
+            ];
+            let tally = read(&show, told(&show), 40, 0..0);
+            assert!(tally.wrong == 0 && tally.right >= 36, "{font:?} {light} {} {:?}", tally.right, tally.readings);
+            assert_eq!((tally.other, tally.fitting), (0, None), "{font:?} {light}");
+        }
+    }
+}
+
+#[test]
+fn am_and_pm_are_read_over_noon_and_midnight() {
+    let styles: [fn(&str) -> String; 3] = [
+        str::to_owned,
+        |text| text.replace("AM", "am").replace("PM", "pm"),
+        |text| text.replace("AM", "A.M.").replace("PM", "P.M."),
+    ];
+    for (k, font) in ClockFont::ALL.into_iter().enumerate() {
+        for (n, (format, offset_s)) in
+            [("hh:mm:ss a", 43_198.517), ("hh:mm:ss.t a", 86_398.517), ("a hh:mm:ss", 46_798.517)]
+                .into_iter()
+                .enumerate()
+        {
+            let mut show = wide(font, (k + n) % 2 == 0, format, offset_s);
+            show.panel = [80, 30, 300, 34];
+            show.restyle = styles[(k + n) % 3];
+            let tally = read(&show, told(&show), 90, 0..0);
+            assert!(
+                tally.wrong == 0 && tally.right >= 75,
+                "{font:?} {format} {n}: {} {} {:?}",
+                tally.right,
+                tally.wrong,
+                tally.readings
+            );
+        }
+    }
+    let show = wide(ClockFont::Mono, true, "hh:mm:ss a", 43_198.517);
+    let tally = read(&show, ClockRoi::Auto, 90, 0..0);
+    assert!(tally.wrong == 0 && tally.right >= 75, "{} {}", tally.right, tally.wrong);
+    // Digits without AM or PM are not half of the day.
+    let bare = wide(ClockFont::Mono, true, "hh:mm:ss", 43_198.517);
+    let tally = read_as("hh:mm:ss a", &bare, told(&bare), 45, 0..0);
+    assert_eq!((tally.right, tally.wrong), (0, 0));
+    assert!(tally.readings.contains(&Reading::Abstained(Doubt::HalfUnclear)));
+}
+
+#[test]
+fn a_format_that_does_not_fit_is_noticed_where_the_clock_is_looked_for() {
+    let show = wide(ClockFont::Mono, true, "hh:mm:ss", 70_874.017);
+    let tally = read_as("h:mm:ss", &show, ClockRoi::Auto, 75, 0..0);
+    assert_eq!((tally.right, tally.wrong), (0, 0));
+    assert_eq!(tally.fitting.as_deref(), Some("hh:mm:ss"));
 }

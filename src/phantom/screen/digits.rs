@@ -90,10 +90,37 @@ const STROKE: f32 = 0.14;
 const DIGIT_ADVANCE: f32 = 1.62;
 const MARK_ADVANCE: f32 = 0.7;
 const SLANT: f32 = 0.1;
+/// Letters are printed on such a display, half as high as the digits.
+const LETTER_ADVANCE: f32 = 1.15;
+const LETTER_HEIGHT: f32 = 1.0;
+
+/// Draws a letter, its height and the lower end of its left side given.
+fn printed(c: char, tall: f32, [x, y]: [f32; 2], width: usize, height: usize, lit: &mut [f32]) {
+    let of_size =
+        |size: f32| MONO.outline_glyph(MONO.glyph_id('M').with_scale(size)).map(|outline| outline.px_bounds().height());
+    let Some(hundred) = of_size(100.0).filter(|&tall| tall > 0.0) else { return };
+    let size = 100.0 * tall / hundred;
+    let Some(outline) = MONO.outline_glyph(MONO.glyph_id(c).with_scale_and_position(size, ab_glyph::point(x, y)))
+    else {
+        return;
+    };
+    let bounds = outline.px_bounds();
+    outline.draw(|column, row, share| {
+        let (x, y) = (bounds.min.x as i64 + i64::from(column), bounds.min.y as i64 + i64::from(row));
+        if (0..width as i64).contains(&x) && (0..height as i64).contains(&y) {
+            let at = y as usize * width + x as usize;
+            lit[at] = (lit[at] + share).min(1.0);
+        }
+    });
+}
 
 /// Draws seven-segment digits and dots by the distance from the segments' middle lines.
 fn segments(text: &str, width: usize, height: usize, lit: &mut [f32]) {
-    let advance = |c: char| if c.is_ascii_digit() { DIGIT_ADVANCE } else { MARK_ADVANCE };
+    let advance = |c: char| match c {
+        '0'..='9' => DIGIT_ADVANCE,
+        c if c.is_alphabetic() => LETTER_ADVANCE,
+        _ => MARK_ADVANCE,
+    };
     let total: f32 = text.chars().map(advance).sum();
     let unit = (0.92 * width as f32 / total).min(0.84 * height as f32 / (2.0 + 2.0 * STROKE));
     let left = 0.5 * (width as f32 - unit * total);
@@ -122,6 +149,9 @@ fn segments(text: &str, width: usize, height: usize, lit: &mut [f32]) {
             lines.push(([0.0, 0.45, 0.0, 0.45], 1.0));
         } else if c == '.' || c == ',' {
             lines.push(([0.0, 1.0, 0.0, 1.0], 1.0));
+        } else if c.is_alphabetic() {
+            let foot = [left + unit * at, middle + unit * (1.0 + STROKE)];
+            printed(c, LETTER_HEIGHT * unit, foot, width, height, lit);
         }
         let origin = at + 0.5 * (advance(c) - if c.is_ascii_digit() { 1.0 } else { 0.0 });
         for (row, pixels) in lit.chunks_exact_mut(width).enumerate() {

@@ -1,8 +1,9 @@
 //! A digital clock on a screen in the picture.
 //!
 //! In: what the clock counts and how it is written. Out: what it shows at a time, and the share of each pixel of its panel that
-//! is lit. Formats are the marker file's: `h`, `m`, `s` are digits of hours, minutes, seconds, `t` tenths and finer; all else stands
-//! as it is. One or two digits of hours are of a day: 23:59:59 is followed by 00:00:00.
+//! is lit. Formats are the marker file's: `h`, `m`, `s` are digits of hours, minutes, seconds, `t` tenths and finer, `a` AM or PM; all else
+//! stands as it is. One or two digits of hours are of a day: 23:59:59 is followed by 00:00:00, or, of twelve hours, 11:59:59 PM by 12:00:00 AM.
+//! One `h` becomes two digits where it has to: 9:59:59 is followed by 10:00:00.
 //!
 //! The clock counts evenly. Its screen shows it at once, or at the last of its refreshes; it may stop or jump while the clock counts on.
 
@@ -87,17 +88,20 @@ impl Clock {
     /// What is wrong with the format, if anything.
     #[must_use]
     pub fn fault(&self) -> Option<&'static str> {
-        let known = |c: char| "hmst".contains(c) || !c.is_alphanumeric();
+        let known = |c: char| "hmsta".contains(c) || !c.is_alphanumeric();
         let letters: Vec<char> = self.format.chars().collect();
         let begins =
             |c: char| (0..letters.len()).filter(|&k| letters[k] == c && (k == 0 || letters[k - 1] != c)).count();
-        let runs = "hmst".chars().any(|c| begins(c) > 1);
+        let runs = "hmsta".chars().any(|c| begins(c) > 1);
+        let [hours, halves] = ['h', 'a'].map(|c| self.format.matches(c).count());
         if self.format.is_empty() || !self.format.chars().all(known) {
-            Some("only h, m, s, t and marks between them can be written")
+            Some("only h, m, s, t, a and marks between them can be written")
         } else if !self.format.contains('s') {
             Some("a clock without seconds ties no times")
         } else if runs || self.format.matches('t').count() > 6 || self.format.len() > 24 {
-            Some("each of h, m, s, t may stand in one place, t up to six times")
+            Some("each of h, m, s, t, a may stand in one place, t up to six times")
+        } else if halves > 1 || halves == 1 && !(1..=2).contains(&hours) {
+            Some("a, AM or PM, stands once, with one or two h")
         } else {
             None
         }
@@ -133,12 +137,18 @@ impl Clock {
             's' => seconds,
             'm' if has('h') => seconds.div_euclid(60).rem_euclid(60),
             'm' => seconds.div_euclid(60),
+            _ if has('a') => (seconds.div_euclid(3600) - 1).rem_euclid(DAY_H / 2) + 1,
             _ if self.format.matches('h').count() <= 2 => seconds.div_euclid(3600).rem_euclid(DAY_H),
             _ => seconds.div_euclid(3600),
         };
         let mut text = String::new();
         let mut letters = self.format.chars().peekable();
         while let Some(letter) = letters.next() {
+            if letter == 'a' {
+                let late = seconds.div_euclid(3600).rem_euclid(DAY_H) >= DAY_H / 2;
+                text.push_str(if late { "PM" } else { "AM" });
+                continue;
+            }
             if !"hmst".contains(letter) {
                 text.push(letter);
                 continue;
@@ -147,7 +157,8 @@ impl Clock {
             while letters.next_if_eq(&letter).is_some() {
                 digits += 1;
             }
-            let value = part(letter).rem_euclid(10i64.pow(digits));
+            let most = if (letter, digits) == ('h', 1) { 2 } else { digits };
+            let value = part(letter).rem_euclid(10i64.pow(most));
             text.push_str(&format!("{value:0width$}", width = digits as usize));
         }
         text
@@ -156,7 +167,16 @@ impl Clock {
     /// The lit share, 0 to 1, of each pixel of a panel of this size that shows `text`, row after row.
     #[must_use]
     pub fn panel(&self, text: &str, width: usize, height: usize) -> Vec<f32> {
-        let widest: String = self.format.chars().map(|c| if "hmst".contains(c) { '0' } else { c }).collect();
+        let alone = self.format.matches('h').count() == 1;
+        let mut widest = String::new();
+        for c in self.format.chars() {
+            match c {
+                'h' if alone => widest.push_str("00"),
+                'h' | 'm' | 's' | 't' => widest.push('0'),
+                'a' => widest.push_str("AM"),
+                mark => widest.push(mark),
+            }
+        }
         digits::panel(self.font, text, &widest, width, height)
     }
 }
@@ -205,6 +225,20 @@ mod tests {
     }
 
     #[test]
+    fn twelve_hours_go_over_noon_and_midnight() {
+        let at = |format: &str, offset_s: f64| {
+            Clock { format: format.to_owned(), offset_s, ..Clock::default() }.shown(0.0).0
+        };
+        assert_eq!(at("hh:mm:ss a", 43_199.0), "11:59:59 AM");
+        assert_eq!(at("hh:mm:ss a", 43_200.0), "12:00:00 PM");
+        assert_eq!(at("hh:mm:ss a", 46_800.0), "01:00:00 PM");
+        assert_eq!(at("h:mm:ss a", 46_800.0), "1:00:00 PM");
+        assert_eq!(at("a h:mm:ss", 46_799.0), "PM 12:59:59");
+        assert_eq!(at("hh:mm:ss a", 86_400.0), "12:00:00 AM");
+        assert_eq!(at("h:mm:ss", 36_000.0), "10:00:00");
+    }
+
+    #[test]
     fn a_screen_stops_and_jumps_while_the_clock_counts_on() {
         let stopped = Clock { stop_s: Some(2.0), ..clock("ss.t") };
         assert_eq!((stopped.shown(1.5).0, stopped.shown(9.0).0), ("24.5".to_owned(), "25.0".to_owned()));
@@ -221,10 +255,10 @@ mod tests {
 
     #[test]
     fn bad_formats_are_refused() {
-        for format in ["", "mm", "mm:ss.x", "ss:mm:ss", "ss.ttttttt"] {
+        for format in ["", "mm", "mm:ss.x", "ss:mm:ss", "ss.ttttttt", "mm:ss a", "hh:mm:ss aa"] {
             assert!(clock(format).fault().is_some(), "{format}");
         }
-        for format in ["s", "mm:ss.t", "hh:mm:ss,ttt", "ss tt"] {
+        for format in ["s", "mm:ss.t", "hh:mm:ss,ttt", "ss tt", "hh:mm:ss a"] {
             assert_eq!(clock(format).fault(), None, "{format}");
         }
     }
