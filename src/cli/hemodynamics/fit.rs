@@ -10,6 +10,7 @@ use lunula::hemodynamics::{
     STARTS, fit, fit_plan,
 };
 
+use super::super::log::LogArgs;
 use super::{Common, NailArgs, Outcome, ended, one_of};
 
 const EXAMPLES: &str = "Examples:
@@ -29,6 +30,9 @@ A recording is a table of pf1_Pa,pf2_Pa and VP1,VP2,... With time_s it is a resp
 its first row's load (--unloaded-before: at rest); without time_s it holds equilibria in the order in which they were reached. \
 lunula simulate --with-loads and --static write such tables; steps jump at their rows: read them with --between held \
 --unloaded-before.
+
+Of a log whose column led says when the LED was on, each lit row is taken, less the unlit light at its time; rows in which \
+the sensor had a fault (saturated, or without ambient light; in a table of lunula align: sensor_status) have no voltage.
 
 Names: k_C stands for k_C1, k_C2, .. that move together, as in the thesis; k_C1 for one of them; whole names as k_C1_N_per_m will do.";
 
@@ -87,6 +91,8 @@ pub(crate) struct FitArgs {
     #[arg(long, value_parser = one_of::<OpticsChoice>(), default_value = "beer-lambert")]
     optics: OpticsChoice,
     #[command(flatten)]
+    log: LogArgs,
+    #[command(flatten)]
     nail: NailArgs,
     /// The result; parameters, table and picture stand beside it, named after it
     #[arg(long, value_name = "FIT.json", required_unless_present = "plan")]
@@ -135,6 +141,7 @@ impl FitArgs {
                 unloaded_before: self.unloaded_before,
                 force: force.map(|(name, area_cm2)| ForceColumn { name, area_m2: 1e-4 * area_cm2, pressed: self.load }),
                 photodiodes: self.photodiode.clone(),
+                log: self.log.reading(),
             },
             subjects: self.subject.clone(),
             names: Vec::new(),
