@@ -222,10 +222,10 @@ fn the_same_request_gives_the_same_bytes_whatever_the_threads() {
     }
     let results = |name: &str| {
         let mut bytes = dir.bytes_of(name);
-        bytes.remove("f.json");
+        bytes.remove("f.run.json");
         bytes
     };
-    assert!(results("one").len() == 5 && results("one") == results("four"));
+    assert!(results("one").len() == 6 && results("one") == results("four"));
 }
 
 #[test]

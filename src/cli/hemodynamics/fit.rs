@@ -40,7 +40,8 @@ Names: k_C stands for k_C1, k_C2, .. that move together, as in the thesis; k_C1 
 ///
 /// All other parameters are held at --params and --set. Out come the values with standard errors and correlations, what the recordings
 /// do not determine, and which bounds were met; the fitted parameters as <out>.toml for `lunula simulate --params`; measured and fitted
-/// voltages as <out>-fitted.csv, and a picture of both (Fig. 79 to 82).
+/// voltages as <out>-fitted.csv, and a picture of both (Fig. 79 to 82). <out>.json itself is the same bytes from whatever folder; where results are and
+/// how long they took is in <out>.run.json.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct FitArgs {

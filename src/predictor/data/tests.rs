@@ -438,8 +438,9 @@ fn a_log_is_one_whatever_its_led_and_columns_are_called() {
     assert_eq!((named.data.x(), named.data.y()), (same.data.x(), same.data.y()));
     let inputs = ["P1", "P3"].map(str::to_owned);
     let alone = read_inputs(&other, &inputs, false, &log).unwrap();
-    assert_eq!((alone.time_s.len(), alone.notes.len()), (200, 1), "{:?}", alone.notes);
-    assert!(alone.notes[0].contains("interpolated between the unlit samples"), "{:?}", alone.notes);
+    assert_eq!(alone.time_s.len(), 200);
+    let rule = "interpolated between the unlit samples";
+    assert!(alone.notes.iter().any(|note| note.contains(rule)), "{:?}", alone.notes);
 }
 
 #[test]
