@@ -222,10 +222,10 @@ fn the_same_request_gives_the_same_bytes_whatever_the_threads() {
     }
     let results = |name: &str| {
         let mut bytes = dir.bytes_of(name);
-        bytes.remove("f.json");
+        bytes.remove("f.run.json");
         bytes
     };
-    assert!(results("one").len() == 5 && results("one") == results("four"));
+    assert!(results("one").len() == 6 && results("one") == results("four"));
 }
 
 #[test]
@@ -353,4 +353,88 @@ fn words_name_subjects_and_constant_photodiodes_and_every_wrong_name_once() {
     assert!(!words.contains("VP2 is constant") && words.contains("unit 1 of anna") && words.contains("unit 2 of ben"));
     let wrong = run(&dir, "fit", "s.csv --free k_Q,zz --out g.json").expect(2).stderr;
     assert!(wrong.contains("--free k_Q,zz") && wrong.matches("k_C, k_V").count() == 1, "{wrong}");
+}
+
+/// A recorded response as a log with an LED that goes on and off: unlit rows hold the room's light alone.
+fn modulated(dir: &Dir, header: &str, lit_only: bool) -> String {
+    let mut log = header.to_owned() + "\n";
+    for (k, row) in dir.table("r.csv").iter().enumerate() {
+        let (time_s, lit) = (number(row, "time_s"), k % 2 == 0);
+        let room = 0.3 + 0.05 * time_s.sin();
+        let [first, second] =
+            ["VP1", "VP2"].map(|name| if lit { number(row, name) + room } else { room }).map(|value| value.to_string());
+        if lit || !lit_only {
+            let loads = format!("{},{}", row["pf1_Pa"], row["pf2_Pa"]);
+            log += &format!("{},{},{loads},{first},{second}\n", 1000.0 + time_s, u8::from(lit));
+        }
+    }
+    log
+}
+
+fn ramps(dir: &Dir) {
+    dir.write("ramps.csv", "time_s,pf1_Pa,pf2_Pa\n0,0,0\n0.1,6000,0\n1.5,6000,5000\n2,6000,5000\n2.1,0,0\n");
+    let options =
+        "--loads ramps.csv --set k_V_N_per_m=1500 --every 0.02 --rtol 1e-9 --with-loads --out r.csv --no-figures";
+    run(dir, "simulate", options).expect(0);
+}
+
+#[test]
+fn a_log_with_an_led_is_fitted_to_the_leds_own_light() {
+    // Loads bend between lit rows, and the room's light is interpolated: measured 0.999 99. With unlit rows taken for light it is below 0.1.
+    const R2: f64 = 0.999;
+    let dir = Dir::new();
+    ramps(&dir);
+    dir.write("log.csv", modulated(&dir, "time_s,led,pf1_Pa,pf2_Pa,P1,P2", false));
+    let options = "--free k_V --photodiode P1=1 --photodiode P2=2 --no-figures --json";
+    let answer = run(&dir, "fit", &format!("log.csv {options} --out f.json")).expect(0);
+    let report = answer.json();
+    assert!(report["r2"].as_f64().unwrap() > R2, "{}", report["r2"]);
+    assert!((report["free"][0]["values"][0].as_f64().unwrap() / 1500.0 - 1.0).abs() <= 0.02, "{report}");
+    answer.says("interpolated between the unlit samples");
+    // The first and the last lit row have no unlit one on one side.
+    assert!(report["recordings"][0]["faults"].as_u64().unwrap() > 0, "{report}");
+    // Under other names, as `align` takes them.
+    dir.write("other.csv", modulated(&dir, "t,lamp,near,far,a,b", false));
+    let columns = "--columns time_s=t,led=lamp,pf1_Pa=near,pf2_Pa=far,P1=a,P2=b";
+    let named = run(&dir, "fit", &format!("other.csv {columns} {options} --out g.json")).expect(0).json();
+    assert_eq!((&named["r2"], &named["free"]), (&report["r2"], &report["free"]));
+    // The loads of a log's lit rows are loads.
+    let loads = modulated(&dir, "time_s,led,pf1_Pa,pf2_Pa,P1,P2", true).replace("led,", "x,");
+    dir.write("lit.csv", loads.replace("\n1000", "\n0").replace("\n100", "\n"));
+    dir.write(
+        "log0.csv",
+        modulated(&dir, "time_s,led,pf1_Pa,pf2_Pa,P1,P2", false).replace("\n1000", "\n0").replace("\n100", "\n"),
+    );
+    for name in ["lit", "log0"] {
+        run(&dir, "simulate", &format!("--loads {name}.csv --until 2 --out {name}-t.csv --no-figures")).expect(0);
+    }
+    assert_eq!(std::fs::read(dir.path("lit-t.csv")).unwrap(), std::fs::read(dir.path("log0-t.csv")).unwrap());
+}
+
+#[test]
+fn rows_with_a_fault_of_the_sensor_have_no_voltage() {
+    let dir = Dir::new();
+    ramps(&dir);
+    let mut set = "time_s,pf1_Pa,pf2_Pa,VP1,VP2,sensor_status\n".to_owned();
+    for (k, row) in dir.table("r.csv").iter().enumerate() {
+        let (first, status) = if k % 10 == 3 { ("10", "saturated: VP1") } else { (row["VP1"].as_str(), "ok") };
+        set += &format!("{},{},{},{first},{},{status}\n", row["time_s"], row["pf1_Pa"], row["pf2_Pa"], row["VP2"]);
+    }
+    dir.write("set.csv", set);
+    let report = run(&dir, "fit", "set.csv --free k_V --out f.json --no-figures --json").expect(0).json();
+    assert!(report["r2"].as_f64().unwrap() > 0.999_999, "{}", report["r2"]);
+    assert_eq!((&report["recordings"][0]["faults"], &report["recordings"][0]["missing"]), (&20.into(), &0.into()));
+}
+
+#[test]
+fn the_result_is_the_same_bytes_wherever_and_whenever() {
+    let dir = Dir::new();
+    ramps(&dir);
+    std::fs::create_dir(dir.path("day")).unwrap();
+    std::fs::copy(dir.path("r.csv"), dir.path("day/r.csv")).unwrap();
+    let here = run(&dir, "fit", "r.csv --free k_V --out f.json").expect(0);
+    run(&dir, "fit", "day/r.csv --free k_V --out day/g.json").expect(0);
+    let result = |name: &str| std::fs::read_to_string(dir.path(name)).unwrap();
+    assert_eq!(result("f.json"), result("day/g.json"));
+    assert!(!result("f.json").contains("wall_s") && result("f.run.json").contains("wall_s"), "{}", here.stdout);
 }

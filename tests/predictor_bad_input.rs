@@ -340,3 +340,22 @@ fn an_edited_coefficient_is_used_and_told() {
     assert!(!dir.lunula(&["evaluate", "compact.json", "b.csv"]).expect(0).stderr.contains("was edited"));
     edited(&dir, |m| drop(m.as_object_mut().unwrap().remove("sha256"))).expect(0).says("was edited");
 }
+
+#[test]
+fn a_recording_that_cant_be_read_is_skipped_only_where_that_is_asked_for() {
+    let dir = sensor();
+    dir.write("bad.csv", "time_s;P1\n");
+    let all = ["train", "bad.csv", "a.csv", "b.csv", "--target", "force", "--out", "m.json"];
+    dir.lunula(&all).expect(2).says("bad.csv");
+    assert!(!dir.path("m.json").exists());
+    let answer = dir.lunula(&[&all[..], &["--skip-failed", "--json"]].concat()).expect(1).says("failed: bad.csv: ");
+    let report = answer.json();
+    assert_eq!(report["failed"][0]["name"], "bad.csv");
+    assert_eq!(report["data"].as_array().expect("files").len(), 2);
+    let model = dir.parsed("m.json");
+    assert_eq!((&model["training"]["failed"], &model["training"]["rows"]), (&json!(["bad.csv"]), &json!(120)));
+    dir.lunula(&["evaluate", "m.json", "a.csv"]).expect(0);
+    dir.lunula(&["train", "bad.csv", "--target", "force", "--out", "n.json", "--skip-failed"])
+        .expect(2)
+        .says("bad.csv");
+}

@@ -1,7 +1,7 @@
 //! `lunula train` on rows that do not determine the model: which photodiodes are at fault is told, and what was asked for is done.
 
 use crate::util::Dir;
-use crate::util::sensor::{Recording, near, numbers, slope, volt};
+use crate::util::sensor::{Recording, TARGETS, near, numbers, slope, volt};
 use serde_json::Value;
 
 /// Of a fit to exact numbers (measured: 1e-16 to 5e-16).
@@ -246,6 +246,12 @@ fn huge_and_tiny_volts_and_forces_are_fitted_in_their_own_units() {
     let answer = dir.train("a.csv", "force", "m.json", &["--validate", "a.csv"]).expect(0);
     assert!(answer.stdout.lines().all(|line| line.len() < 120), "{}", answer.stdout);
     near(&[numbers(&dir.parsed("m.json")["model"]["jacobian"][0])[0] / 1e150], &[slope(0, 0)], 1e-13);
+    std::fs::remove_file(dir.path("m.json")).expect("a model");
+    let far = |e: &'static str| move |_: usize, cell: &str| format!("{cell}{e}");
+    let apart = (1..=8).fold(Recording::of(0..120), |all, k| all.with(&format!("P{k}"), far("e300")));
+    dir.recording("a.csv", &TARGETS[..3].iter().fold(apart, |all, name| all.with(name, far("e-300"))));
+    dir.train("a.csv", "force", "m.json", &[]).expect(2).says("beyond what a number can hold").says("P1");
+    assert!(!dir.path("m.json").exists());
     let wrong = dir.train("a.csv", "force", "m.json", &["--deficient", "ridge=0"]).expect(2);
     wrong.says("refuse, minimum-norm, drop or ridge=LAMBDA");
 }

@@ -50,6 +50,7 @@ fn the_report_tells_the_fit_the_rows_and_the_errors() {
         all,
         [
             "data",
+            "failed",
             "fit",
             "half_width",
             "inputs",

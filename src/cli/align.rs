@@ -1,15 +1,15 @@
 //! `lunula align`: joint angles on photodiode samples.
 
-use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use anyhow::Context;
-use clap::{Args, ValueEnum};
+use clap::Args;
 use lunula::align::{
-    AlignError, AlignInputs, AlignOptions, AlignOutputs, AlignReport, AmbientOptions, Columns, LagSearch, LagTie, Sync,
-    TimeUnit, plan, run as run_align,
+    AlignError, AlignInputs, AlignOptions, AlignOutputs, AlignReport, LagSearch, LagTie, Sync, plan, run as run_align,
 };
+use lunula::log::LogReading;
 
+use super::log::LogArgs;
 use super::{Common, Interrupted, Outcome};
 
 /// Joint angles and a log of photodiodes, on two clocks, to a labelled training set with a certificate
@@ -53,21 +53,8 @@ pub(super) struct AlignArgs {
     /// Labels are interpolated over no longer time between two frames that were seen [default: two frames]
     #[arg(long, value_name = "SECONDS")]
     max_gap: Option<f64>,
-    /// What the log's columns are called, as time_s=stamp,P1=ch_3,Fz_N=fz
-    #[arg(long, value_name = "OURS=THEIRS,..", value_parser = Columns::parse)]
-    columns: Option<Columns>,
-    /// The unit of the log's time where it is a number [default: as its column's name says, else seconds]
-    #[arg(long, value_enum)]
-    time_unit: Option<TimeUnitArg>,
-    /// The lowest and the highest voltage that can be recorded, as 0,10 [default: found where samples pile up at an extreme]
-    #[arg(long, value_name = "LOW,HIGH", value_parser = AmbientOptions::parse_full_scale, allow_hyphen_values = true)]
-    full_scale: Option<[f64; 2]>,
-    /// Of a log whose clock was reset, which stretch to take, from 1
-    #[arg(long, value_name = "N")]
-    piece: Option<NonZeroUsize>,
-    /// Of an XDF recording, the stream to take
-    #[arg(long, value_name = "NAME")]
-    stream: Option<String>,
+    #[command(flatten)]
+    log_reading: LogArgs,
     /// Written into the set's column `subject`
     #[arg(long)]
     subject: Option<String>,
@@ -99,37 +86,14 @@ pub(super) struct AlignArgs {
     common: Common,
 }
 
-/// The unit of the log's time.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum TimeUnitArg {
-    S,
-    Ms,
-    Us,
-    Ns,
-}
-
-impl TimeUnitArg {
-    fn unit(self) -> TimeUnit {
-        match self {
-            Self::S => TimeUnit::Seconds,
-            Self::Ms => TimeUnit::Milliseconds,
-            Self::Us => TimeUnit::Microseconds,
-            Self::Ns => TimeUnit::Nanoseconds,
-        }
-    }
-}
-
 pub(super) fn run(args: &AlignArgs) -> anyhow::Result<Outcome> {
     let stop = args.common.start()?;
     let inputs = AlignInputs { joints: args.joints.clone(), log: args.log.clone(), tracks: args.tracks.clone() };
-    let mut columns = args.columns.clone().unwrap_or_default();
-    columns.time_unit = args.time_unit.map(TimeUnitArg::unit);
-    columns.piece = args.piece;
-    columns.stream.clone_from(&args.stream);
+    let LogReading { columns, ambient } = args.log_reading.reading();
     let options = AlignOptions {
         sync: args.sync,
         columns,
-        ambient: AmbientOptions { full_scale_v: args.full_scale },
+        ambient,
         max_gap_s: args.max_gap,
         clock_zero_s: args.clock_zero,
         lag: LagTie {

@@ -7,6 +7,7 @@ mod completions;
 mod doctor;
 mod hemodynamics;
 mod init;
+mod log;
 mod man;
 mod memory;
 mod merge;

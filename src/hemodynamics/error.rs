@@ -8,6 +8,7 @@ use lunula_hemodynamics::{ParameterFault, StateFault};
 use thiserror::Error;
 
 use crate::files::WriteError;
+use crate::log::LogError;
 use crate::table::TableError;
 
 /// Why there are no results; nothing that stood before was touched.
@@ -52,6 +53,9 @@ pub enum HemodynamicsError {
     /// A table can't be read or written.
     #[error(transparent)]
     Table(#[from] TableError),
+    /// A log can't be read.
+    #[error(transparent)]
+    Log(#[from] LogError),
     /// A result can't be written.
     #[error(transparent)]
     Write(#[from] WriteError),

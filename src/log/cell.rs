@@ -78,7 +78,7 @@ pub(super) fn is_missing(cell: &[u8]) -> bool {
 ///
 /// # Errors
 /// What is wrong and what to do.
-pub(super) fn led(cell: &[u8]) -> Result<Option<bool>, String> {
+pub(crate) fn led(cell: &[u8]) -> Result<Option<bool>, String> {
     const ON: [&[u8]; 4] = [b"1", b"1.0", b"true", b"on"];
     const OFF: [&[u8]; 4] = [b"0", b"0.0", b"false", b"off"];
     if ON.iter().any(|word| cell.eq_ignore_ascii_case(word)) {

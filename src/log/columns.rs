@@ -4,13 +4,14 @@
 //! is, then without regard to case; `#2` is the second column, whatever its name. Then come the contract's own names; then, for
 //! what is still not found, [`guess`](super::guess), which only counts where a single column answers to it and is told.
 
+use std::collections::{HashMap, HashSet};
 use std::num::NonZeroUsize;
 
 use super::guess;
 use super::stamps::TimeUnit;
 
 /// What a column is for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(super) enum Role {
     /// `time_s`
     Time,
@@ -18,9 +19,18 @@ pub(super) enum Role {
     Led,
     /// `P1`, `P2`, ..
     Photodiode(u32),
+    /// `VP1`, `VP2`, ..: a photodiode above a unit of the hemodynamic model.
+    Output(u32),
     /// `Fx_N`, `Fy_N`, `Fz_N`, counted from 0.
     Force(u8),
+    /// `pf1_Pa`, `pf2_Pa`, `ph_Pa`, `pl_Pa`, counted from 0.
+    Pressure(u8),
 }
+
+/// The hemodynamic model's pressures.
+const PRESSURES: [&str; 4] = ["pf1_Pa", "pf2_Pa", "ph_Pa", "pl_Pa"];
+/// All names of the contract, for messages.
+const NAMES: &str = "time_s, led, P1, P2, .., VP1, VP2, .., Fx_N, Fy_N, Fz_N, pf1_Pa, pf2_Pa, ph_Pa, pl_Pa";
 
 impl Role {
     /// The contract's name.
@@ -29,8 +39,20 @@ impl Role {
             Self::Time => "time_s".to_owned(),
             Self::Led => "led".to_owned(),
             Self::Photodiode(number) => format!("P{number}"),
+            Self::Output(number) => format!("VP{number}"),
             Self::Force(axis) => format!("F{}_N", ["x", "y", "z"][usize::from(axis.min(2))]),
+            Self::Pressure(which) => PRESSURES[usize::from(which.min(3))].to_owned(),
         }
+    }
+
+    /// Whether it is light: what the LED shines through, and the ambient light is taken away from.
+    pub(super) fn is_light(self) -> bool {
+        matches!(self, Self::Photodiode(_) | Self::Output(_))
+    }
+
+    /// Whether it is a load, which the LED does not change.
+    pub(super) fn is_load(self) -> bool {
+        matches!(self, Self::Force(_) | Self::Pressure(_))
     }
 
     /// The role of one of the contract's names.
@@ -42,9 +64,14 @@ impl Role {
             "Fy_N" => Some(Self::Force(1)),
             "Fz_N" => Some(Self::Force(2)),
             _ => {
-                let digits = name.strip_prefix('P')?;
-                let plain = !digits.starts_with('0') && digits.bytes().all(|b| b.is_ascii_digit());
-                digits.parse().ok().filter(|_| plain).map(Self::Photodiode)
+                let number = |prefix: &str| -> Option<u32> {
+                    let digits = name.strip_prefix(prefix)?;
+                    let plain = !digits.starts_with('0') && digits.bytes().all(|b| b.is_ascii_digit());
+                    digits.parse().ok().filter(|_| plain)
+                };
+                let pressure = || PRESSURES.iter().position(|own| *own == name).map(|k| Self::Pressure(k as u8));
+                let light = number("P").map(Self::Photodiode).or_else(|| number("VP").map(Self::Output));
+                light.or_else(pressure)
             }
         }
     }
@@ -89,7 +116,7 @@ impl Columns {
             let (ours, theirs) = (ours.trim(), theirs.trim());
             let theirs = theirs.strip_prefix('"').and_then(|t| t.strip_suffix('"')).unwrap_or(theirs);
             let Some(role) = Role::of(ours) else {
-                return Err(format!("`{ours}` is none of time_s, led, P1, P2, .., Fx_N, Fy_N, Fz_N; {EXAMPLE}"));
+                return Err(format!("`{ours}` is none of {NAMES}; {EXAMPLE}"));
             };
             if theirs.is_empty() {
                 return Err(format!("`{ours}=` names no column of the file; {EXAMPLE}"));
@@ -107,6 +134,30 @@ impl Columns {
 
     /// Chooses among the columns of a file; `stamped` are those without a name whose first cell is a date.
     pub(super) fn choose(&self, names: &[String], stamped: &[usize]) -> Result<Choice, String> {
+        let choice = self.found(names, stamped)?;
+        let columns = &choice.columns;
+        if !columns.iter().any(|(role, _)| *role == Role::Time) {
+            return Err(format!(
+                "no time column found; its columns are {}; say which is the time, as in --columns \"time_s={}\"",
+                listed(names),
+                shown(names.first().map_or("", String::as_str), 0)
+            ));
+        }
+        // Pressures alone are a log as well: `lunula simulate --loads` needs no more.
+        if !columns.iter().any(|(role, _)| role.is_light() || matches!(role, Role::Pressure(_))) {
+            let places = Known::of(columns).places;
+            let other = (0..names.len()).find(|k| !places.contains(k)).unwrap_or(0);
+            return Err(format!(
+                "no photodiode found; its columns are {}; say which they are, as in --columns \"P1={}\"",
+                listed(names),
+                shown(&names[other], other)
+            ));
+        }
+        Ok(choice)
+    }
+
+    /// What there is, be it enough or not.
+    pub(super) fn found(&self, names: &[String], stamped: &[usize]) -> Result<Choice, String> {
         let mut columns: Vec<(Role, usize)> = Vec::new();
         let mut notes = Vec::new();
         for (role, name) in &self.named {
@@ -116,77 +167,87 @@ impl Columns {
             }
             columns.push((*role, column));
         }
-        let mapped = columns.len();
+        let mapped: HashSet<Role> = columns.iter().map(|(role, _)| *role).collect();
+        let mut known = Known::of(&columns);
         for (k, name) in names.iter().enumerate() {
             let Some(role) = Role::of(name) else { continue };
-            if columns.iter().any(|&(_, at)| at == k) || columns[..mapped].iter().any(|&(known, _)| known == role) {
+            if known.places.contains(&k) || mapped.contains(&role) {
                 continue;
             }
-            if columns.iter().any(|&(known, _)| known == role) {
+            if known.roles.contains(&role) {
                 return Err(format!("two columns are named `{name}`; rename one"));
             }
+            known.add(role, k);
             columns.push((role, k));
         }
-        self.add_guesses(names, stamped, &mut columns, &mut notes)?;
-        let place = |role: Role| columns.iter().find(|&&(known, _)| known == role).map(|&(_, at)| at);
-        let Some(time) = place(Role::Time) else {
-            return Err(format!(
-                "no time column found; its columns are {}; say which is the time, as in --columns \"time_s={}\"",
-                listed(names),
-                shown(names.first().map_or("", String::as_str), 0)
-            ));
-        };
-        if !columns.iter().any(|(role, _)| matches!(role, Role::Photodiode(_))) {
-            let other = (0..names.len()).find(|k| columns.iter().all(|(_, at)| at != k)).unwrap_or(0);
-            return Err(format!(
-                "no photodiode found; its columns are {}; say which they are, as in --columns \"P1={}\"",
-                listed(names),
-                shown(&names[other], other)
-            ));
-        }
-        let time_unit = self.time_unit.or_else(|| guess::unit_of_name(&names[time]));
+        add_guesses(names, stamped, &mut known, &mut columns, &mut notes)?;
+        let time = columns.iter().find(|(role, _)| *role == Role::Time).map(|&(_, at)| at);
+        let time_unit = self.time_unit.or_else(|| guess::unit_of_name(&names[time?]));
         columns.sort_by_key(|&(_, at)| at);
         Ok(Choice { columns, time_unit, notes })
     }
+}
 
-    fn add_guesses(
-        &self,
-        names: &[String],
-        stamped: &[usize],
-        columns: &mut Vec<(Role, usize)>,
-        notes: &mut Vec<String>,
-    ) -> Result<(), String> {
-        let mut guesses: Vec<(Role, usize)> = (0..names.len())
-            .filter(|k| columns.iter().all(|(_, at)| at != k))
-            .filter_map(|k| Some((guess::role_of_name(&names[k])?, k)))
-            .filter(|(role, _)| columns.iter().all(|(known, _)| known != role))
-            .collect();
-        let free = |k: &&usize| columns.iter().all(|(_, at)| at != *k);
-        if !columns.iter().chain(&guesses).any(|(role, _)| *role == Role::Time)
-            && let [only] = stamped.iter().filter(free).collect::<Vec<_>>()[..]
-        {
-            guesses.push((Role::Time, *only));
+/// The roles and places that are taken.
+struct Known {
+    roles: HashSet<Role>,
+    places: HashSet<usize>,
+}
+
+impl Known {
+    fn of(columns: &[(Role, usize)]) -> Self {
+        Self {
+            roles: columns.iter().map(|(role, _)| *role).collect(),
+            places: columns.iter().map(|(_, at)| *at).collect(),
         }
-        for &(role, at) in &guesses {
-            let rivals: Vec<&str> = guesses.iter().filter(|g| g.0 == role).map(|g| names[g.1].as_str()).collect();
-            if rivals.len() > 1 {
-                return Err(format!(
-                    "{} could be any of {}; say which, as in --columns \"{}={}\"",
-                    role.name(),
-                    rivals.iter().map(|r| format!("`{r}`")).collect::<Vec<_>>().join(", "),
-                    role.name(),
-                    rivals[0]
-                ));
-            }
-            notes.push(format!(
-                "column `{}` is taken as {}; --columns says otherwise",
-                shown(&names[at], at),
-                role.name()
-            ));
-            columns.push((role, at));
-        }
-        Ok(())
     }
+
+    fn add(&mut self, role: Role, at: usize) {
+        self.roles.insert(role);
+        self.places.insert(at);
+    }
+}
+
+fn add_guesses(
+    names: &[String],
+    stamped: &[usize],
+    known: &mut Known,
+    columns: &mut Vec<(Role, usize)>,
+    notes: &mut Vec<String>,
+) -> Result<(), String> {
+    let mut guesses: Vec<(Role, usize)> = (0..names.len())
+        .filter(|k| !known.places.contains(k))
+        .filter_map(|k| Some((guess::role_of_name(&names[k])?, k)))
+        .filter(|(role, _)| !known.roles.contains(role))
+        .collect();
+    let timed = known.roles.contains(&Role::Time) || guesses.iter().any(|(role, _)| *role == Role::Time);
+    if !timed && let [only] = stamped.iter().filter(|k| !known.places.contains(k)).collect::<Vec<_>>()[..] {
+        guesses.push((Role::Time, *only));
+    }
+    let mut rivals: HashMap<Role, Vec<usize>> = HashMap::new();
+    for &(role, at) in &guesses {
+        rivals.entry(role).or_default().push(at);
+    }
+    for &(role, at) in &guesses {
+        if let [first, _, ..] = rivals[&role][..] {
+            return Err(format!(
+                "{} could be any of {}; say which, as in --columns \"{}={}\"",
+                role.name(),
+                rivals[&role].iter().map(|&k| format!("`{}`", names[k])).collect::<Vec<_>>().join(", "),
+                role.name(),
+                names[first]
+            ));
+        }
+        notes.push(format!("column `{}` is taken as {}; --columns says otherwise", shown(&names[at], at), role.name()));
+        known.add(role, at);
+        columns.push((role, at));
+    }
+    Ok(())
+}
+
+/// Whether a column of this name says when the LED was on.
+pub(super) fn is_led(name: &str) -> bool {
+    Role::of(name).or_else(|| guess::role_of_name(name)) == Some(Role::Led)
 }
 
 /// Where the column stands that the user calls `name`.

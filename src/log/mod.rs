@@ -3,6 +3,7 @@
 //! In: a CSV file (of any of the usual dialects, also gzipped), a Parquet file or, with the cargo feature `xdf`, a recording of
 //! the Lab Streaming Layer; and [`Columns`], which says what the file calls its columns where that is not what the contract
 //! calls them. Out: a [`Log`], its rows in the order of time; and [`samples`] of it, the light that is not the LED's taken away.
+//! [`LogReading`] is both together: the road of every job that works on logs.
 //!
 //! The walk: `text` opens the file and finds its header, `columns` (and `guess`) choose columns by their names, `rows`
 //! (or `parquet`, `xdf`) read cells, `cell` and `stamps` say what one cell means, `order` looks at time as a whole;
@@ -24,8 +25,10 @@ mod header;
 mod order;
 mod parquet;
 mod raw;
+mod reading;
 mod rows;
 mod stamps;
+mod status;
 #[cfg(test)]
 mod tests;
 mod text;
@@ -34,11 +37,14 @@ mod xdf;
 
 use std::path::{Path, PathBuf};
 
-pub(crate) use ambient::piles;
 pub use ambient::{AmbientError, AmbientOptions, Samples, samples};
+pub(crate) use ambient::{Preceding, piles};
+pub(crate) use cell::led as led_state;
 pub use columns::Columns;
 pub use header::LogHeader;
+pub use reading::{LitRows, LogReading};
 pub use stamps::TimeUnit;
+pub(crate) use status::{Statuses, Verdict};
 
 /// A column of a log.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,9 +67,9 @@ pub struct Log {
     pub midnight_s: Option<f64>,
     /// For each row, whether the LED was on; none where the log does not tell: all rows are lit.
     pub led: Option<Vec<bool>>,
-    /// Photodiodes, in the file's order.
+    /// Photodiodes (`P1`.., `VP1`..), in the file's order.
     pub photodiodes: Vec<Channel>,
-    /// `Fx_N`, `Fy_N`, `Fz_N`, as far as the file has them.
+    /// `Fx_N`, `Fy_N`, `Fz_N`, and pressures (`pf1_Pa`, `pf2_Pa`, `ph_Pa`, `pl_Pa`), as far as the file has them.
     pub forces: Vec<Channel>,
     /// What is no fault but worth saying, each with its place.
     pub notes: Vec<String>,
@@ -104,6 +110,9 @@ pub enum LogError {
         /// What is wrong and what to do.
         what: String,
     },
+    /// It has no lit rows, or its range is none.
+    #[error(transparent)]
+    Ambient(#[from] AmbientError),
 }
 
 /// The formats of logs.

@@ -46,7 +46,7 @@ pub(super) fn read(path: &Path, columns: &Columns) -> Result<Raw, LogError> {
                 });
                 raw.led = Some(led.collect::<Result<_, _>>()?);
             }
-            Role::Photodiode(_) | Role::Force(_) => {
+            Role::Photodiode(_) | Role::Output(_) | Role::Force(_) | Role::Pressure(_) => {
                 let values = numbers_of(path, &table, name)?;
                 if let Some(channel) = raw.channel(role) {
                     *channel = values;

@@ -1,5 +1,6 @@
 //! The rows of a file as they stand in it, before time is looked at as a whole.
 
+use std::collections::HashMap;
 use std::path::PathBuf;
 
 use super::columns::{Choice, Role};
@@ -43,33 +44,40 @@ pub(super) struct Raw {
     pub(super) photodiodes: Vec<Channel>,
     pub(super) forces: Vec<Channel>,
     pub(super) notes: Vec<String>,
+    /// Where each channel is: among the photodiodes, then among the forces behind them.
+    channels: HashMap<Role, usize>,
 }
 
 impl Raw {
     /// No rows yet, with a channel for each number column of the choice.
     pub(super) fn new(path: PathBuf, word: RowWord, choice: &Choice) -> Self {
-        let channels = |wanted: fn(Role) -> bool| {
+        let channels = |wanted: fn(Role) -> bool| -> Vec<(Role, Channel)> {
             let roles = choice.columns.iter().map(|&(role, _)| role).filter(|&role| wanted(role));
-            roles.map(|role| Channel { name: role.name(), values: Vec::new() }).collect()
+            roles.map(|role| (role, Channel { name: role.name(), values: Vec::new() })).collect()
         };
+        let photodiodes = channels(Role::is_light);
+        let forces = channels(Role::is_load);
+        let all = photodiodes.iter().chain(&forces).enumerate();
         Self {
+            channels: all.map(|(k, (role, _))| (*role, k)).collect(),
             path,
             word,
             places: Vec::new(),
             time_s: Vec::new(),
             midnight_s: None,
             led: choice.columns.iter().any(|(role, _)| *role == Role::Led).then(Vec::new),
-            photodiodes: channels(|role| matches!(role, Role::Photodiode(_))),
-            forces: channels(|role| matches!(role, Role::Force(_))),
+            photodiodes: photodiodes.into_iter().map(|(_, channel)| channel).collect(),
+            forces: forces.into_iter().map(|(_, channel)| channel).collect(),
             notes: choice.notes.clone(),
         }
     }
 
     /// The values of a photodiode or force.
     pub(super) fn channel(&mut self, role: Role) -> Option<&mut Vec<f64>> {
-        let name = role.name();
-        let all = self.photodiodes.iter_mut().chain(&mut self.forces);
-        all.into_iter().find(|channel| channel.name == name).map(|channel| &mut channel.values)
+        let at = *self.channels.get(&role)?;
+        let lights = self.photodiodes.len();
+        let channel = if at < lights { self.photodiodes.get_mut(at) } else { self.forces.get_mut(at - lights) };
+        channel.map(|channel| &mut channel.values)
     }
 
     /// The place of a row, with the file.

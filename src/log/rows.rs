@@ -86,7 +86,9 @@ impl Rows<'_> {
                 match role {
                     Role::Time => stamps.push(cell, &mut numbers),
                     Role::Led => cell::led(cell).map(|on| raw.led.get_or_insert_default().push(on)),
-                    Role::Photodiode(_) | Role::Force(_) => numbers.read(cell).map(|number| values.push(number)),
+                    Role::Photodiode(_) | Role::Output(_) | Role::Force(_) | Role::Pressure(_) => {
+                        numbers.read(cell).map(|number| values.push(number))
+                    }
                 }
                 .map_err(|what| {
                     let place = place(self.path, RowWord::Line, line);

@@ -44,7 +44,7 @@ impl TimeUnit {
     }
 
     /// How many make a second.
-    fn a_second(self) -> f64 {
+    pub(super) fn a_second(self) -> f64 {
         match self {
             Self::Seconds => 1.0,
             Self::Milliseconds => 1e3,

@@ -16,6 +16,7 @@ mod plan;
 mod record;
 mod report;
 mod run;
+mod said;
 mod shard;
 mod spec;
 mod standing;

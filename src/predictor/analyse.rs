@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-use lunula_predictor::{Model, Modes, linear_f0, modes, quadratic_printed, quadratic_terms};
+use lunula_predictor::{Model, Modes, Predictor, linear_f0, modes, quadratic_printed, quadratic_terms};
 use serde::Serialize;
 
 use super::error::{PredictorError, go_on};
@@ -89,6 +89,7 @@ pub fn analyse(model: &Path, out: Option<&FolderOutputs>, stop: &AtomicBool) -> 
     let targets = predictor.target_names();
     let at = predictor.model().centre();
     let jacobian = stages.time("jacobian", || predictor.model().jacobian_at(at));
+    is_told(&predictor, &jacobian, model)?;
     let found: Modes = stages.time("modes", || modes(jacobian.view()));
     let linear = matches!(predictor.model(), Model::Linear(_));
     if !linear {
@@ -101,6 +102,17 @@ pub fn analyse(model: &Path, out: Option<&FolderOutputs>, stop: &AtomicBool) -> 
         targets: ByTarget::new(&targets, column(&found.left, k)),
         inputs: ByTarget::new(&inputs, column(&found.right, k)),
     };
+    let printed = printed(predictor.model(), &inputs, &targets);
+    let beyond =
+        |all: &Printed| !all.jacobian.0.iter().flat_map(|(_, row)| row).all(|value| value.is_finite() && *value != 0.0);
+    let printed = match printed {
+        Some(all) if matches!(predictor.model(), Model::Quadratic(_)) && beyond(&all) => {
+            let what = "the terms of equation 16 in volts are beyond what a number can hold (or 0): they are not told";
+            warnings.push(what.to_owned());
+            None
+        }
+        other => other,
+    };
     let (strongest, weakest) = (found.sigma.first().copied(), found.sigma.last().copied());
     let condition = strongest.zip(weakest).map(|(a, b)| a / b).filter(|ratio| ratio.is_finite());
     let mut report = AnalyseReport {
@@ -109,7 +121,7 @@ pub fn analyse(model: &Path, out: Option<&FolderOutputs>, stop: &AtomicBool) -> 
         at_v: (!linear).then(|| at.to_vec()),
         jacobian: ByTarget::new(&targets, jacobian.outer_iter().map(|row| row.to_vec())),
         modes: ModelModes { modes: found.sigma.iter().enumerate().map(mode).collect(), condition },
-        printed: printed(predictor.model(), &inputs, &targets),
+        printed,
         inputs,
         targets,
         warnings,
@@ -125,6 +137,19 @@ pub fn analyse(model: &Path, out: Option<&FolderOutputs>, stop: &AtomicBool) -> 
         }
     }
     Ok(report)
+}
+
+/// Refuses a Jacobian that no number holds, though the model itself is scaled and sound.
+fn is_told(predictor: &Predictor, jacobian: &ndarray::Array2<f64>, model: &Path) -> Result<(), PredictorError> {
+    for (target, row) in predictor.targets().iter().zip(jacobian.outer_iter()) {
+        // What does not change with any voltage was constant, or is lost.
+        let lost = row.iter().all(|value| value.abs() < f64::MIN_POSITIVE) && target.low < target.high;
+        if lost || !row.iter().all(|value| value.is_finite()) {
+            let what = "what it has of the voltages is beyond what a number can hold (1e-308 to 1e308): train it on volts and newtons";
+            return Err(PredictorError::Request(format!("{}: {}: {what}", model.display(), target.name)));
+        }
+    }
+    Ok(())
 }
 
 /// What would be done and what not.

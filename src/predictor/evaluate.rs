@@ -22,6 +22,7 @@ use super::figures_of_merit::{ByTarget, Merit};
 use super::results::FolderOutputs;
 use super::train::merit_without_cone;
 use super::{open_models, seen_in_training};
+use crate::log::LogReading;
 use crate::stages::{Stage, Stages, Step, left_out};
 
 /// Up to this many parts, each part's coverage is of intervals that have not seen it; it takes fits as many as parts, squared.
@@ -37,6 +38,8 @@ pub struct EvaluateOptions {
     pub drop_invalid: bool,
     /// See [`Wanted`].
     pub keep_faults: bool,
+    /// See [`Wanted`].
+    pub log: LogReading,
     /// What is held out in turn; none: only the model itself is evaluated.
     pub by: Option<By>,
     /// The share of rows that intervals of held-out parts are to hold.
@@ -47,7 +50,14 @@ pub struct EvaluateOptions {
 
 impl Default for EvaluateOptions {
     fn default() -> Self {
-        Self { drop_invalid: false, keep_faults: false, by: None, level: LEVEL, called: None }
+        Self {
+            drop_invalid: false,
+            keep_faults: false,
+            log: LogReading::default(),
+            by: None,
+            level: LEVEL,
+            called: None,
+        }
     }
 }
 
@@ -180,6 +190,8 @@ pub fn evaluate(
         targets: predictor.target_names(),
         drop_invalid: options.drop_invalid,
         keep_faults: options.keep_faults,
+        log: options.log.clone(),
+        skip_failed: false,
     };
     let read = stages.time("read", || read_files(data, &wanted))?;
     go_on(stop)?;

@@ -37,7 +37,7 @@ pub use answer::Answering;
 pub use choices::{ByChoice, F_MIN_N, FOLDS, HIDDEN, LEVEL, ModelChoice, share};
 pub use compare::{CompareOptions, CompareReport, Comparison, Person, Spread, compare, compare_plan};
 pub use data::{
-    DataError, DataFile, FileRows, Inputs, Read, Row, RowStream, Wanted, read_data, read_files, read_inputs,
+    DataError, DataFile, FailedFile, FileRows, Inputs, Read, Row, RowStream, Wanted, read_data, read_files, read_inputs,
 };
 pub use error::PredictorError;
 pub use evaluate::{

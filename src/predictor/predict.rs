@@ -13,6 +13,7 @@ use super::data::{Inputs, RowStream, read_inputs};
 use super::error::{PredictorError, go_on};
 use super::open_models;
 use crate::files::Places;
+use crate::log::LogReading;
 use crate::stages::{Stage, Stages, Step};
 use crate::table::{Column, TableFormat, TableWriter, Value};
 
@@ -27,6 +28,8 @@ pub struct PredictOptions {
     pub drop_invalid: bool,
     /// Rows with a fault of the sensor are answered too.
     pub keep_faults: bool,
+    /// How a raw log is read.
+    pub log: LogReading,
 }
 
 /// What was predicted.
@@ -50,6 +53,8 @@ pub struct PredictReport {
     pub touch: u64,
     /// See `touch`.
     pub bending: u64,
+    /// How a raw log's ambient light was taken away.
+    pub notes: Vec<String>,
     /// What whoever uses the predictions should know.
     pub warnings: Vec<String>,
     /// Time by stage.
@@ -95,7 +100,7 @@ pub fn predict(
     let mut warnings = opened.warnings;
     let mut answering = Answering::new(opened.predictors, options.gate, options.intervals)?;
     let inputs = answering.inputs().to_vec();
-    let read = stages.time("read", || read_inputs(data, &inputs, options.drop_invalid))?;
+    let read = stages.time("read", || read_inputs(data, &inputs, options.drop_invalid, &options.log))?;
     warnings.extend(read.warnings.iter().cloned());
     go_on(stop)?;
     if answering.needs_time() && !read.time_s.is_empty() && read.time_s.iter().all(|time| time.is_nan()) {
@@ -129,7 +134,8 @@ pub fn predict(
     })?;
     places.commit()?;
     warnings.extend(extrapolated(&answering, counts));
-    Ok(report(data, Some(out), &answering, counts, warnings, &stages, start))
+    let report = report(data, Some(out), &answering, counts, warnings, &stages, start);
+    Ok(PredictReport { notes: read.notes, ..report })
 }
 
 /// What would be done and what not, with so many models.
@@ -193,7 +199,9 @@ pub fn predict_stream(
     warnings.iter().for_each(|warning| tell(warning));
     let mut answering = Answering::new(opened.predictors, options.gate, options.intervals)?;
     let inputs = answering.inputs().to_vec();
-    let mut rows = RowStream::new(from, "standard input", &inputs, options.drop_invalid)?;
+    let mut rows = RowStream::new(from, "standard input", &inputs, options.drop_invalid, &options.log)?;
+    let mut notes = rows.notes();
+    notes.iter().for_each(|note| tell(note));
     if answering.needs_time() && !rows.has_time() {
         return Err(no_time("standard input"));
     }
@@ -232,11 +240,15 @@ pub fn predict_stream(
         // A reader that has gone away is no error of ours.
         gone = to.write_all(line.as_bytes()).and_then(|()| to.flush()).is_err();
     }
+    let after = rows.notes();
+    after.iter().for_each(|note| tell(note));
+    notes.extend(after);
     if let Some(warning) = extrapolated(&answering, counts) {
         tell(&warning);
         warnings.push(warning);
     }
-    Ok(report(Path::new("-"), None, &answering, counts, warnings, &stages, start))
+    let report = report(Path::new("-"), None, &answering, counts, warnings, &stages, start);
+    Ok(PredictReport { notes, ..report })
 }
 
 /// As tables write a number; nothing where it is not known.
@@ -299,6 +311,7 @@ fn report(
         rows_outside: answering.outside(),
         touch: counts.touch,
         bending: counts.bending,
+        notes: Vec::new(),
         warnings,
         stages: stages.list(),
         wall_s: start.elapsed().as_secs_f64(),

@@ -1,5 +1,6 @@
 //! What the jobs refuse or warn of, on small recordings.
 
+use crate::log::LogReading;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
@@ -96,7 +97,7 @@ fn predictions_beyond_a_number_are_no_success() {
 
 fn options() -> PredictOptions {
     let gate = Gate::new(0.5, 0.0, 0.0).unwrap();
-    PredictOptions { gate, intervals: true, drop_invalid: false, keep_faults: false }
+    PredictOptions { gate, intervals: true, drop_invalid: false, keep_faults: false, log: LogReading::default() }
 }
 
 #[test]

@@ -12,7 +12,7 @@ use lunula_predictor::{
 };
 use serde::Serialize;
 
-use super::data::{DataFile, FileRows, Wanted, read_files};
+use super::data::{DataFile, FailedFile, FileRows, Wanted, read_files};
 use super::error::{PredictorError, go_on};
 use super::figures_of_merit::{ByTarget, Merit};
 use super::learning;
@@ -86,6 +86,8 @@ pub struct TrainReport {
     pub warnings: Vec<String>,
     /// The picture of the learning curve.
     pub pictures: Vec<PathBuf>,
+    /// Recordings that could not be read and were skipped, as that was asked for.
+    pub failed: Vec<FailedFile>,
     /// Time by stage.
     pub stages: Vec<Stage>,
     /// Seconds from start to end.
@@ -143,9 +145,13 @@ pub fn train(
             )));
         }
     }
+    let all = || std::iter::once(&read).chain(&validate).chain(&stop_on);
+    let failed: Vec<FailedFile> = all().flat_map(|read| read.failed.iter().cloned()).collect();
     let recipe = &options.recipe;
     let early = stop_on.as_ref().map(|read| &read.data);
     let predictor = stages.time("fit", || Predictor::fit(&read.data, early, recipe))?;
+    // Of the files that were to be trained on: what a model has seen is told with it.
+    let predictor = predictor.without(read.failed.iter().map(|file| file.name.clone()).collect());
     go_on(stop)?;
     let training = stages.time("score", || merit(&predictor, &read.data))?;
     let mut warnings = read.warnings.clone();
@@ -202,6 +208,7 @@ pub fn train(
         left_out: left_out(train_plan(inputs, recipe, outputs.learning_curve.is_some())),
         warnings,
         pictures,
+        failed,
         stages: stages.list(),
         wall_s: start.elapsed().as_secs_f64(),
     })

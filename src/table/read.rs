@@ -1,5 +1,6 @@
 //! A table in memory, its columns asked for by name.
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use super::cells::CsvCells;
@@ -10,6 +11,8 @@ use super::{TableError, TableFormat, csv, parquet};
 pub struct Table {
     path: PathBuf,
     names: Vec<String>,
+    /// Where each column is.
+    places: HashMap<String, usize>,
     rows: usize,
     cells: Cells,
     facts: Vec<(String, String)>,
@@ -90,8 +93,11 @@ impl Table {
         if names.is_empty() {
             return Err(failed("is empty; a table begins with the names of its columns".to_owned()));
         }
-        if let Some(double) = names.iter().enumerate().find(|(k, name)| names[..*k].contains(name)) {
-            return Err(failed(format!("two columns are named `{}`; rename one", double.1)));
+        let mut places = HashMap::with_capacity(names.len());
+        for (k, name) in names.iter().enumerate() {
+            if places.insert(name.clone(), k).is_some() {
+                return Err(failed(format!("two columns are named `{name}`; rename one")));
+            }
         }
         let rows = match &cells {
             Cells::Csv(rows) => rows.rows(),
@@ -101,13 +107,19 @@ impl Table {
                 parquet::Read::Texts(column) => column.len(),
             },
         };
-        Ok(Self { path: path.to_owned(), names, rows, cells, facts })
+        Ok(Self { path: path.to_owned(), names, places, rows, cells, facts })
     }
 
     /// The columns' names, in order.
     #[must_use]
     pub fn names(&self) -> &[String] {
         &self.names
+    }
+
+    /// Whether there is a column of this name.
+    #[must_use]
+    pub fn has(&self, name: &str) -> bool {
+        self.places.contains_key(name)
     }
 
     /// The number of rows.
@@ -125,7 +137,7 @@ impl Table {
     /// Whether a column holds text; of a CSV file every column does. None where there is no such column.
     #[must_use]
     pub fn is_text(&self, name: &str) -> Option<bool> {
-        let column = self.names.iter().position(|n| n == name)?;
+        let column = *self.places.get(name)?;
         Some(match &self.cells {
             Cells::Csv(_) => true,
             Cells::Parquet(columns) => matches!(columns[column], parquet::Read::Texts(_)),
@@ -264,7 +276,7 @@ impl Table {
 
     /// Where a column stands.
     fn place(&self, name: &str) -> Result<usize, TableError> {
-        self.names.iter().position(|n| n == name).ok_or_else(|| {
+        self.places.get(name).copied().ok_or_else(|| {
             let what = format!("has no column `{name}`; its columns are {}", self.names.join(", "));
             TableError::Read { path: self.path.clone(), what }
         })

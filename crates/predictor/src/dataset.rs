@@ -1,5 +1,6 @@
 //! Rows of voltages with the targets measured at the same time, and which recording, session and subject each comes from.
 
+use std::collections::HashSet;
 use std::ops::Range;
 
 use ndarray::{Array2, Axis};
@@ -80,9 +81,9 @@ impl Dataset {
         shape("columns of targets", y.ncols(), targets.len())?;
         shape("rows of targets", y.nrows(), n)?;
         shape("times", time_s.len(), n)?;
-        let names: Vec<&String> = inputs.iter().chain(&targets).collect();
-        if let Some(name) = names.iter().enumerate().find(|(k, name)| names[..*k].contains(name)) {
-            return Err(DatasetFault::Twice(name.1.to_string()));
+        let mut names = HashSet::new();
+        if let Some(name) = inputs.iter().chain(&targets).find(|name| !names.insert(name.as_str())) {
+            return Err(DatasetFault::Twice(name.clone()));
         }
         for (values, names) in [(&x, &inputs), (&y, &targets)] {
             if let Some(((row, column), _)) = values.indexed_iter().find(|(_, v)| !v.is_finite()) {

@@ -53,6 +53,9 @@ pub struct Training {
     pub sha256: String,
     /// Whence they come.
     pub recordings: Vec<TrainedOn>,
+    /// Recordings that were to be trained on and could not be read, by name.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub failed: Vec<String>,
     /// What was fitted, and how.
     pub recipe: Recipe,
     /// How it went.
@@ -94,6 +97,7 @@ impl Predictor {
             rows: data.rows(),
             sha256: hash_of(&hashes),
             recordings: recordings.collect(),
+            failed: Vec::new(),
             recipe: recipe.clone(),
             report: fitted.report,
         };
@@ -154,6 +158,13 @@ impl Predictor {
     #[must_use]
     pub fn with_intervals(self, intervals: Option<Intervals>) -> Self {
         Self { intervals, ..self }
+    }
+
+    /// The same, trained without recordings that could not be read, by name.
+    #[must_use]
+    pub fn without(mut self, failed: Vec<String>) -> Self {
+        self.training.failed = failed;
+        self
     }
 
     /// Voltages of the past that it reads as well.

@@ -10,6 +10,7 @@ use lunula::hemodynamics::{
     STARTS, fit, fit_plan,
 };
 
+use super::super::log::LogArgs;
 use super::{Common, NailArgs, Outcome, ended, one_of};
 
 const EXAMPLES: &str = "Examples:
@@ -30,13 +31,17 @@ its first row's load (--unloaded-before: at rest); without time_s it holds equil
 lunula simulate --with-loads and --static write such tables; steps jump at their rows: read them with --between held \
 --unloaded-before.
 
+Of a log whose column led says when the LED was on, each lit row is taken, less the unlit light at its time; rows in which \
+the sensor had a fault (saturated, or without ambient light; in a table of lunula align: sensor_status) have no voltage.
+
 Names: k_C stands for k_C1, k_C2, .. that move together, as in the thesis; k_C1 for one of them; whole names as k_C1_N_per_m will do.";
 
 /// Fits free parameters of the hemodynamic model (4.3), and the photodiodes' offset and scaling, to recorded responses
 ///
 /// All other parameters are held at --params and --set. Out come the values with standard errors and correlations, what the recordings
 /// do not determine, and which bounds were met; the fitted parameters as <out>.toml for `lunula simulate --params`; measured and fitted
-/// voltages as <out>-fitted.csv, and a picture of both (Fig. 79 to 82).
+/// voltages as <out>-fitted.csv, and a picture of both (Fig. 79 to 82). <out>.json itself is the same bytes from whatever folder; where results are and
+/// how long they took is in <out>.run.json.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct FitArgs {
@@ -87,6 +92,8 @@ pub(crate) struct FitArgs {
     #[arg(long, value_parser = one_of::<OpticsChoice>(), default_value = "beer-lambert")]
     optics: OpticsChoice,
     #[command(flatten)]
+    log: LogArgs,
+    #[command(flatten)]
     nail: NailArgs,
     /// The result; parameters, table and picture stand beside it, named after it
     #[arg(long, value_name = "FIT.json", required_unless_present = "plan")]
@@ -135,6 +142,7 @@ impl FitArgs {
                 unloaded_before: self.unloaded_before,
                 force: force.map(|(name, area_cm2)| ForceColumn { name, area_m2: 1e-4 * area_cm2, pressed: self.load }),
                 photodiodes: self.photodiode.clone(),
+                log: self.log.reading(),
             },
             subjects: self.subject.clone(),
             names: Vec::new(),

@@ -32,7 +32,12 @@ pub(crate) fn run(args: &AnalyseArgs) -> anyhow::Result<Outcome> {
     say_notes(common, &report.warnings);
     common.print_json(&report)?;
     for (k, ModelMode { singular_value, targets, inputs }) in report.modes.modes.iter().enumerate() {
-        common.say(&format!("mode {}: singular value {singular_value:.5}", k + 1));
+        // Of very small and very large ones the digits, not zeros.
+        let value = match singular_value.abs() {
+            0.0 | 1e-4..1e7 => format!("{singular_value:.5}"),
+            _ => format!("{singular_value:.5e}"),
+        };
+        common.say(&format!("mode {}: singular value {value}", k + 1));
         let text = |values: &[(String, f64)]| {
             values.iter().map(|(name, value)| format!("{name} {value:+.3}")).collect::<Vec<_>>().join("  ")
         };

@@ -11,6 +11,7 @@ use std::path::PathBuf;
 use clap::Args;
 use lunula::predictor::{ByTarget, Merit, Target, Wanted};
 
+use super::log::LogArgs;
 use super::{Common, Interrupted, Outcome, one_of};
 
 pub(super) use analyse::{AnalyseArgs, run as analyse};
@@ -28,6 +29,8 @@ struct RowsArgs {
     /// Rows in which `lunula align` found a photodiode saturated or without ambient light count too
     #[arg(long)]
     keep_faults: bool,
+    #[command(flatten)]
+    log: LogArgs,
 }
 
 impl RowsArgs {
@@ -37,6 +40,8 @@ impl RowsArgs {
             targets: target.columns().to_vec(),
             drop_invalid: self.drop_invalid,
             keep_faults: self.keep_faults,
+            log: self.log.reading(),
+            skip_failed: false,
         }
     }
 }

@@ -9,13 +9,15 @@ use clap::Args;
 use lunula::predictor::models::Gate;
 use lunula::predictor::{F_MIN_N, PredictOptions, predict as run_predict, predict_stream};
 
+use super::super::log::LogArgs;
 use super::{Common, Outcome, ended, say_notes};
 
 /// Forces and angle from photodiodes, by models that `lunula train` wrote
 ///
 /// With a model of force and one of posture the two are gated (equations 9, 16): while the finger presses with --f-min or more (-Fz_N)
 /// it touches, and the angle is --theta-touch; else the posture model speaks. A row that lacks a voltage has no prediction. DATA may be
-/// `-`: rows of CSV on standard input, the first names the columns; each is answered as soon as its line is complete.
+/// `-`: rows of CSV on standard input, the first names the columns; each is answered as soon as its line is complete. Of a log with a column
+/// `led`, each lit row is answered: less the unlit light at its time, or, of a stream, less the unlit row before it.
 #[derive(Debug, Args)]
 pub(crate) struct PredictArgs {
     /// Model files, then the recording: a table, a log, or `-` for a stream of CSV rows
@@ -43,6 +45,8 @@ pub(crate) struct PredictArgs {
     #[arg(long)]
     keep_faults: bool,
     #[command(flatten)]
+    log: LogArgs,
+    #[command(flatten)]
     common: Common,
 }
 
@@ -53,6 +57,7 @@ pub(crate) fn run(args: &PredictArgs) -> anyhow::Result<Outcome> {
         intervals: args.intervals,
         drop_invalid: args.drop_invalid,
         keep_faults: args.keep_faults,
+        log: args.log.reading(),
     };
     let common = &args.common;
     if data == Path::new("-") {
@@ -82,6 +87,9 @@ pub(crate) fn run(args: &PredictArgs) -> anyhow::Result<Outcome> {
     ));
     if report.touch + report.bending > 0 {
         common.say(&format!("touch in {} rows, bending in {}", report.touch, report.bending));
+    }
+    if common.verbose {
+        report.notes.iter().for_each(|note| common.say(note));
     }
     common.say(&format!("{:.2} s; {}", report.wall_s, out.display()));
     Ok(Outcome::Done)

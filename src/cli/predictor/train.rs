@@ -6,8 +6,8 @@ use anyhow::Context;
 use clap::Args;
 use lunula::predictor::models::{Deficient, Kind, Recipe, Report};
 use lunula::predictor::{
-    DataFile, HIDDEN, LEVEL, ModelChoice, Target, TrainInputs, TrainOptions, TrainOutputs, share, train as run_train,
-    train_plan,
+    DataFile, HIDDEN, LEVEL, ModelChoice, Target, TrainInputs, TrainOptions, TrainOutputs, Wanted, share,
+    train as run_train, train_plan,
 };
 
 use super::{Common, Outcome, RowsArgs, ended, figure, one_of, say_merit, say_notes};
@@ -66,6 +66,9 @@ pub(crate) struct TrainArgs {
     level: f64,
     #[command(flatten)]
     rows: RowsArgs,
+    /// A recording that can't be read is named and left out (exit status 1), where others can be [default: it is an error]
+    #[arg(long)]
+    skip_failed: bool,
     /// The model file
     #[arg(long, value_name = "MODEL.json", required_unless_present = "plan")]
     out: Option<PathBuf>,
@@ -88,7 +91,7 @@ pub(crate) fn run(args: &TrainArgs) -> anyhow::Result<Outcome> {
         stop_on: DataFile::of(&args.stop_on),
     };
     let options = TrainOptions {
-        wanted: args.rows.wanted(args.inputs.clone(), &args.target),
+        wanted: Wanted { skip_failed: args.skip_failed, ..args.rows.wanted(args.inputs.clone(), &args.target) },
         recipe: Recipe {
             deficient: args.deficient,
             seed: args.seed,
@@ -107,6 +110,7 @@ pub(crate) fn run(args: &TrainArgs) -> anyhow::Result<Outcome> {
     let out = args.out.as_ref().context("--out is needed")?;
     let outputs = TrainOutputs { model: out.clone(), learning_curve: args.learning_curve.clone(), merit: None };
     let report = run_train(&inputs, &options, &outputs, &stop).map_err(ended)?;
+    report.failed.iter().for_each(|file| eprintln!("failed: {}", file.why));
     say_notes(&args.common, &report.warnings);
     args.common.print_json(&report)?;
     let common = &args.common;
@@ -164,5 +168,5 @@ pub(crate) fn run(args: &TrainArgs) -> anyhow::Result<Outcome> {
         common.say_stages(&report.stages);
     }
     common.say(&format!("{:.2} s; the model is {}", report.wall_s, out.display()));
-    Ok(Outcome::Done)
+    Ok(if report.failed.is_empty() { Outcome::Done } else { Outcome::SomeFailed })
 }

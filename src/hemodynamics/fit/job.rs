@@ -202,17 +202,26 @@ pub fn fit(options: &FitOptions, outputs: &FitOutputs, stop: &AtomicBool) -> Res
         wall_s: begin.elapsed().as_secs_f64(),
     };
     let text = serde_json::to_string_pretty(&report).expect("plain data") + "\n";
-    places.write(&outputs.result, &text)?;
+    places.write(&outputs.result, &report.result_text())?;
+    places.write(&beside(&outputs.result, ".run.json"), &text)?;
     places.commit()?;
     Ok(report)
 }
 
 /// The crate counts recordings; people name them.
 fn in_words(why: &str, recordings: &[ReadRecording]) -> String {
-    let named = recordings.iter().enumerate().rev();
-    named.fold(why.to_owned(), |why, (k, read)| {
-        why.replace(&format!("recording {}", k + 1), &read.path.display().to_string())
-    })
+    let mut parts = why.split("recording ");
+    let mut words = parts.next().unwrap_or_default().to_owned();
+    // Once each, from left to right: a file may be called `recording 2.csv` itself.
+    for part in parts {
+        let digits = part.bytes().take_while(u8::is_ascii_digit).count();
+        let read = part[..digits].parse::<usize>().ok().and_then(|number| recordings.get(number.checked_sub(1)?));
+        match read {
+            Some(read) => words += &format!("{}{}", read.path.display(), &part[digits..]),
+            None => words += &format!("recording {part}"),
+        }
+    }
+    words
 }
 
 fn warnings(result: &FitResult, recordings: &[ReadRecording], figures: bool) -> Vec<String> {
@@ -238,10 +247,17 @@ fn warnings(result: &FitResult, recordings: &[ReadRecording], figures: bool) -> 
         ));
     }
     for read in recordings {
+        warnings.extend(read.notes.iter().map(|note| format!("{}: {note}", read.name)));
+        if read.faults > 0 {
+            warnings.push(format!(
+                "{}: {} voltages of rows with a fault of the sensor (saturated, or without ambient light) are left out",
+                read.name, read.faults
+            ));
+        }
         for (name, trace) in read.photodiodes.iter().zip(&read.recording.photodiodes) {
             let mut known = trace.voltages_v.iter().filter(|value| value.is_finite());
             if known.next().is_some_and(|first| known.all(|value| value == first)) {
-                warnings.push(format!("{}: {name} is constant: nothing can be learnt from it", read.path.display()));
+                warnings.push(format!("{}: {name} is constant: nothing can be learnt from it", read.name));
             }
         }
     }
@@ -264,12 +280,15 @@ fn recording_reports(
         Some(mean.sqrt()).filter(|rms| rms.is_finite())
     };
     let one = |(k, (read, curves)): (usize, (&ReadRecording, &Vec<Vec<f64>>))| RecordingReport {
+        name: read.name.clone(),
         file: read.path.clone(),
         subject: options.subject(k).to_owned(),
         kind: if read.times_s.is_some() { "over time" } else { "static" },
         samples: read.recording.samples(),
         photodiodes: read.photodiodes.clone(),
         missing: read.missing,
+        faults: read.faults,
+        notes: read.notes.clone(),
         residual_rms_v: read
             .recording
             .photodiodes
@@ -285,7 +304,8 @@ fn recording_reports(
 /// Refuses to write over an input.
 fn is_no_input(options: &FitOptions, outputs: &FitOutputs) -> Result<(), HemodynamicsError> {
     let mut results = vec![outputs.result.clone()];
-    results.extend(["-estimates.csv", "-fitted.csv", ".toml"].map(|ending| beside(&outputs.result, ending)));
+    results
+        .extend(["-estimates.csv", "-fitted.csv", ".toml", ".run.json"].map(|ending| beside(&outputs.result, ending)));
     results.extend(parameter_paths(options, outputs).into_iter().map(|one| one.0));
     if outputs.figures {
         results.extend(pictures_beside(&outputs.result, "fitted"));

@@ -6,8 +6,8 @@ use lunula_hemodynamics::{Course, Load, LoadFault, Recording, Trace};
 
 use crate::hemodynamics::HemodynamicsError;
 use crate::hemodynamics::curve::Pressed;
-use crate::hemodynamics::given::{BLOOD, Columns, PRESSED, TIME, numbers};
-use crate::table::{Cell, Table, column_names};
+use crate::hemodynamics::given::{BLOOD, Columns, PRESSED, Rows, TIME, listed};
+use crate::log::LogReading;
 
 /// A measured force instead of pressures: the finger's force on the surface, newtons, negative where it presses.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,6 +62,8 @@ pub struct RecordingColumns {
     pub force: Option<ForceColumn>,
     /// The photodiodes; none: all of `VP1`, `VP2`, .. that there are.
     pub photodiodes: Vec<PhotodiodeColumn>,
+    /// How raw logs are read.
+    pub log: LogReading,
 }
 
 /// A recording, read.
@@ -79,6 +81,10 @@ pub(super) struct ReadRecording {
     pub(super) pressed_pa: Vec<[f64; 2]>,
     /// Photodiodes' cells that are empty.
     pub(super) missing: usize,
+    /// Photodiodes' cells that are left out, as the sensor had a fault there.
+    pub(super) faults: usize,
+    /// What is worth saying on a log, how its ambient light was taken away among it.
+    pub(super) notes: Vec<String>,
 }
 
 /// Reads a recording of a model of `units` units.
@@ -87,16 +93,16 @@ pub(super) struct ReadRecording {
 /// Every fault with its row and column.
 pub(super) fn read(path: &Path, columns: &RecordingColumns, units: usize) -> Result<ReadRecording, HemodynamicsError> {
     let refused = |what: String| HemodynamicsError::table(path, what);
-    let names = column_names(path)?;
-    let has = |name: &str| names.iter().any(|own| own == name);
-    let dynamic = has(TIME);
+    let rows = Rows::read(path, &columns.log)?;
+    let names = rows.names();
+    let dynamic = names.iter().any(|own| own == TIME);
     let mut needed: Vec<&str> = if dynamic { vec![TIME] } else { Vec::new() };
     match &columns.force {
         Some(force) => needed.push(&force.name),
         None => needed.extend(PRESSED),
     }
     let wanted: &[&str] = if dynamic { &BLOOD } else { &[] };
-    let read = numbers(path, &needed, wanted, TIME)?;
+    let read = rows.numbers(&needed, wanted, TIME)?;
     if let Some(force) = &columns.force {
         let forces = read.get(&force.name).unwrap_or_default();
         if forces.iter().any(|&force_n| force_n > 0.0) && !forces.iter().any(|&force_n| force_n < 0.0) {
@@ -107,32 +113,31 @@ pub(super) fn read(path: &Path, columns: &RecordingColumns, units: usize) -> Res
         }
     }
     let pressed_pa = pressed(&read, columns.force.as_ref());
-    let photodiodes = photodiodes(&names, columns, units).map_err(refused)?;
-    let table = Table::read(path)?;
+    let photodiodes = photodiodes(names, columns, units).map_err(refused)?;
     let mut traces = Vec::new();
-    let mut missing = 0;
+    let (mut missing, mut faults) = (0, 0);
     for one in &photodiodes {
-        let voltages_v = voltages(&table, &one.name)?;
-        missing += voltages_v.iter().filter(|value| value.is_nan()).count();
-        traces.push(Trace::new(one.unit, voltages_v));
+        let voltages = rows.voltages(&one.name)?;
+        faults += voltages.faults;
+        missing += voltages.values_v.iter().filter(|value| value.is_nan()).count() - voltages.faults;
+        traces.push(Trace::new(one.unit, voltages.values_v));
     }
     let [proximal, distal] = [0, 1].map(|k| pressed_pa.iter().map(|both| both[k]).collect::<Vec<f64>>());
     let times_s = read.get(TIME).map(<[f64]>::to_vec);
     let course = match &times_s {
         None => Course::Static { proximal_pa: proximal, distal_pa: distal },
         Some(times_s) => {
+            // A log's clock may count from 1970, which leaves a step of a solver few digits: its first row is 0 here.
+            let origin_s = if rows.is_log() { times_s[0] } else { 0.0 };
+            let times_s: Vec<f64> = times_s.iter().map(|time_s| time_s - origin_s).collect();
             let load = |values: &[f64], before: Option<f64>| {
-                load(times_s, values, columns.between, before).map_err(|why| refused(why.to_string()))
+                load(&times_s, values, columns.between, before).map_err(|why| refused(why.to_string()))
             };
             let blood = |name: &str| read.get(name).map(|values| load(values, None)).transpose();
             let before = columns.unloaded_before.then_some(0.0);
-            Course::Transient {
-                times_s: times_s.clone(),
-                proximal: load(&proximal, before)?,
-                distal: load(&distal, before)?,
-                upstream: blood(BLOOD[0])?,
-                downstream: blood(BLOOD[1])?,
-            }
+            let (proximal, distal) = (load(&proximal, before)?, load(&distal, before)?);
+            let (upstream, downstream) = (blood(BLOOD[0])?, blood(BLOOD[1])?);
+            Course::Transient { times_s, proximal, distal, upstream, downstream }
         }
     };
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -144,6 +149,8 @@ pub(super) fn read(path: &Path, columns: &RecordingColumns, units: usize) -> Res
         times_s,
         pressed_pa,
         missing,
+        faults,
+        notes: rows.notes(),
     })
 }
 
@@ -194,7 +201,7 @@ fn photodiodes(names: &[String], columns: &RecordingColumns, units: usize) -> Re
             columns.photodiodes.iter().filter(|one| names.contains(&one.name)).cloned().collect();
         let wanted: Vec<&str> = columns.photodiodes.iter().map(|one| one.name.as_str()).collect();
         return if own.is_empty() {
-            Err(format!("has none of the photodiodes {}; its columns are {}", wanted.join(", "), names.join(", ")))
+            Err(format!("has none of the photodiodes {}; its columns are {}", wanted.join(", "), listed(names)))
         } else {
             Ok(own)
         };
@@ -204,29 +211,8 @@ fn photodiodes(names: &[String], columns: &RecordingColumns, units: usize) -> Re
     if own.is_empty() {
         return Err(format!(
             "has none of VP1, .. VP{units}; --photodiode P3=1 tells which column stands above which unit; its columns are {}",
-            names.join(", ")
+            listed(names)
         ));
     }
     Ok(own)
-}
-
-/// A photodiode's column; NaN where a cell is empty.
-fn voltages(table: &Table, name: &str) -> Result<Vec<f64>, HemodynamicsError> {
-    let mut voltages = Vec::with_capacity(table.rows());
-    table.each_cell(name, |row, cell| {
-        voltages.push(match cell {
-            Cell::Missing => f64::NAN,
-            Cell::Number(value) if value.is_finite() => value,
-            Cell::Number(value) => {
-                let what =
-                    format!("`{value}` is no finite number; a photodiode's cell may be empty, but no other thing");
-                return Err(table.cell(row, name, what));
-            }
-            Cell::Text(text) => {
-                return Err(table.cell(row, name, format!("`{text}` is no number; correct it or leave it empty")));
-            }
-        });
-        Ok(())
-    })?;
-    Ok(voltages)
 }

@@ -69,6 +69,8 @@ pub struct FittedRival {
 /// A recording as it was read.
 #[derive(Debug, Clone, Serialize)]
 pub struct RecordingReport {
+    /// What tables and pictures call it.
+    pub name: String,
     /// The file.
     pub file: PathBuf,
     /// Whose.
@@ -81,6 +83,10 @@ pub struct RecordingReport {
     pub photodiodes: Vec<String>,
     /// Photodiodes' cells that are empty.
     pub missing: usize,
+    /// Photodiodes' cells that are left out, as the sensor had a fault there: saturated, or without ambient light.
+    pub faults: usize,
+    /// What is worth saying on a log, how its ambient light was taken away among it.
+    pub notes: Vec<String>,
     /// RMS of measured less fitted, V, a photodiode each.
     pub residual_rms_v: Vec<Option<f64>>,
     /// SD of the noise by which the fit weighs it, V, a photodiode each: as given, or estimated from the residuals.
@@ -143,6 +149,24 @@ pub struct FitReport {
     pub stages: Vec<Stage>,
     /// Seconds from start to end, this report not counted.
     pub wall_s: f64,
+}
+
+impl FitReport {
+    /// The result's file: what was found, the same from whatever folder and however fast. Where results are and how long they took stands in the
+    /// report beside it.
+    pub(super) fn result_text(&self) -> String {
+        let mut found = serde_json::to_value(self).expect("plain data");
+        let without = |of: &mut serde_json::Value, keys: &[&str]| {
+            if let Some(object) = of.as_object_mut() {
+                keys.iter().for_each(|key| drop(object.remove(*key)));
+            }
+        };
+        without(&mut found, &["parameter_files", "table", "pictures", "stages", "wall_s"]);
+        for recording in found["recordings"].as_array_mut().into_iter().flatten() {
+            without(recording, &["file"]);
+        }
+        serde_json::to_string_pretty(&found).expect("plain data") + "\n"
+    }
 }
 
 /// Why a fit stopped, in words, and whether that is convergence.

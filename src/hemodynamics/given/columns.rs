@@ -1,8 +1,9 @@
-//! Columns of numbers of a table, every fault told with its row and column.
+//! Columns of numbers of a table or of a log's lit rows, every fault told with its row and column.
 
 use std::path::{Path, PathBuf};
 
 use crate::hemodynamics::HemodynamicsError;
+use crate::log::{Channel, LitRows, LogReading, Statuses, Verdict};
 use crate::table::{Cell, Table};
 
 /// Seconds.
@@ -32,76 +33,226 @@ impl Columns {
     }
 }
 
-/// Reads the columns that are `needed` and those `wanted` that are there. Every cell has to be a finite number.
-///
-/// # Errors
-/// A table that can't be read; columns that are missing, all of them; cells that are empty or no finite number, with row and column; no
-/// rows; where `time` is one of the columns, times that do not ascend.
-pub(in crate::hemodynamics) fn numbers(
-    path: &Path,
-    needed: &[&str],
-    wanted: &[&str],
-    time: &str,
-) -> Result<Columns, HemodynamicsError> {
-    let table = Table::read(path)?;
-    let has = |name: &&&str| table.names().iter().any(|own| own == **name);
-    let missing: Vec<String> = needed.iter().filter(|name| !has(name)).map(|name| format!("`{name}`")).collect();
-    if !missing.is_empty() {
-        let mut what = format!(
-            "has no column {}; its columns are {}: rename or add what is missing",
-            missing.join(", "),
-            table.names().join(", ")
-        );
-        if table.names().iter().any(|name| name.contains([';', '\t'])) {
-            what += "; columns are separated by commas";
+/// A table, or the lit rows of a log.
+#[derive(Debug)]
+pub(in crate::hemodynamics) struct Rows {
+    path: PathBuf,
+    names: Vec<String>,
+    from: Source,
+}
+
+#[derive(Debug)]
+enum Source {
+    Table(Table),
+    Log(LitRows),
+}
+
+/// A photodiode's voltages, a row each.
+#[derive(Debug)]
+pub(in crate::hemodynamics) struct Voltages {
+    /// Volts; NaN where a cell is empty, and in rows in which the sensor had a fault.
+    pub(in crate::hemodynamics) values_v: Vec<f64>,
+    /// Rows in which the sensor had a fault: saturated, or without ambient light.
+    pub(in crate::hemodynamics) faults: usize,
+}
+
+impl Rows {
+    /// Reads a file: a table, or what `log` says is a log.
+    ///
+    /// # Errors
+    /// A file that can't be read.
+    pub(in crate::hemodynamics) fn read(path: &Path, log: &LogReading) -> Result<Self, HemodynamicsError> {
+        if !log.is_log(path)? {
+            return Self::table(path);
         }
-        return Err(HemodynamicsError::table(path, what));
+        let lit = log.lit_rows(path)?;
+        let channels = lit.samples.photodiodes.iter().chain(&lit.samples.forces);
+        let names = std::iter::once(TIME.to_owned()).chain(channels.map(|channel| channel.name.clone())).collect();
+        Ok(Self { path: path.to_owned(), names, from: Source::Log(lit) })
     }
-    if table.rows() == 0 {
-        return Err(HemodynamicsError::table(path, "has no rows"));
+
+    /// Reads a table.
+    ///
+    /// # Errors
+    /// A table that can't be read.
+    pub(in crate::hemodynamics) fn table(path: &Path) -> Result<Self, HemodynamicsError> {
+        let table = Table::read(path)?;
+        Ok(Self { path: path.to_owned(), names: table.names().to_vec(), from: Source::Table(table) })
     }
-    let mut faults: Vec<(usize, String)> = Vec::new();
-    let mut fault = |row: usize, name: &str, what: String| faults.push((row, table.cell(row, name, what).to_string()));
-    let mut columns = Columns { path: path.to_owned(), names: Vec::new(), values: Vec::new() };
-    for name in needed.iter().chain(wanted.iter().filter(|name| has(name))) {
-        let mut values = Vec::with_capacity(table.rows());
-        table.each_cell(name, |row, cell| {
+
+    /// The columns.
+    pub(in crate::hemodynamics) fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// Whether it is a log.
+    pub(in crate::hemodynamics) fn is_log(&self) -> bool {
+        matches!(self.from, Source::Log(_))
+    }
+
+    /// What is worth saying on a log, how its ambient light was taken away among it.
+    pub(in crate::hemodynamics) fn notes(&self) -> Vec<String> {
+        match &self.from {
+            Source::Table(_) => Vec::new(),
+            Source::Log(lit) => lit.notes.iter().chain(&lit.samples.notes).cloned().collect(),
+        }
+    }
+
+    /// The columns that are `needed` and those `wanted` that are there. Every cell has to be a finite number.
+    ///
+    /// # Errors
+    /// Columns that are missing, all of them; cells that are empty or no finite number, with row and column; no rows; where `time` is one of
+    /// the columns, times that do not ascend.
+    pub(in crate::hemodynamics) fn numbers(
+        &self,
+        needed: &[&str],
+        wanted: &[&str],
+        time: &str,
+    ) -> Result<Columns, HemodynamicsError> {
+        let has = |name: &&&str| self.names.iter().any(|own| own == **name);
+        let missing: Vec<String> = needed.iter().filter(|name| !has(name)).map(|name| format!("`{name}`")).collect();
+        if !missing.is_empty() {
+            let mut what = format!(
+                "has no column {}; its columns are {}: rename or add what is missing",
+                missing.join(", "),
+                listed(&self.names)
+            );
+            if self.names.iter().any(|name| name.contains([';', '\t'])) {
+                what += "; columns are separated by commas";
+            }
+            return Err(HemodynamicsError::table(&self.path, what));
+        }
+        let mut faults: Vec<(usize, String)> = Vec::new();
+        let mut columns = Columns { path: self.path.clone(), names: Vec::new(), values: Vec::new() };
+        for name in needed.iter().chain(wanted.iter().filter(|name| has(name))) {
+            let values = self.column(name, &mut faults)?;
+            if values.is_empty() {
+                return Err(HemodynamicsError::table(&self.path, "has no rows"));
+            }
+            if *name == time {
+                for (row, pair) in values.windows(2).enumerate() {
+                    if pair[1] <= pair[0] {
+                        let what =
+                            format!("{} s comes after {} s; times have to grow from row to row", pair[1], pair[0]);
+                        faults.push((row + 1, self.fault(row + 1, name, what)));
+                    }
+                }
+            }
+            columns.names.push((*name).to_owned());
+            columns.values.push(values);
+        }
+        if faults.is_empty() {
+            return Ok(columns);
+        }
+        faults.sort_by_key(|(row, _)| *row);
+        let more = faults.len().saturating_sub(MOST_FAULTS);
+        let mut told: Vec<String> = faults.into_iter().take(MOST_FAULTS).map(|(_, what)| what).collect();
+        if more > 0 {
+            told.push(format!("and {more} more"));
+        }
+        Err(HemodynamicsError::Rows(told))
+    }
+
+    /// A column, NaN where it is not a finite number, which is a fault.
+    fn column(&self, name: &str, faults: &mut Vec<(usize, String)>) -> Result<Vec<f64>, HemodynamicsError> {
+        const WHY: &str = "a load or response has to be known in every row: correct it or leave the row out";
+        let mut values = Vec::new();
+        let mut take = |row: usize, cell: Cell<'_>| {
             let shown = match cell {
                 Cell::Number(value) if value.is_finite() => {
                     values.push(value);
-                    return Ok(());
+                    return;
                 }
                 Cell::Number(value) => format!("`{value}` is no finite number"),
                 Cell::Text(text) => format!("`{text}` is no number"),
                 Cell::Missing => "is empty".to_owned(),
             };
             values.push(f64::NAN);
-            fault(
-                row,
-                name,
-                format!("{shown}; a load or response has to be known in every row: correct it or leave the row out"),
-            );
-            Ok(())
-        })?;
-        if *name == time {
-            for (row, pair) in values.windows(2).enumerate() {
-                if pair[1] <= pair[0] {
-                    let what = format!("{} s comes after {} s; times have to grow from row to row", pair[1], pair[0]);
-                    fault(row + 1, name, what);
+            faults.push((row, self.fault(row, name, format!("{shown}; {WHY}"))));
+        };
+        match &self.from {
+            Source::Table(table) => table.each_cell(name, |row, cell| {
+                take(row, cell);
+                Ok(())
+            })?,
+            Source::Log(lit) => {
+                let of = |value: f64| if value.is_nan() { Cell::Missing } else { Cell::Number(value) };
+                let own = channel(lit, name).map_or(&lit.samples.time_s, |channel| &channel.values);
+                own.iter().enumerate().for_each(|(row, &value)| take(row, of(value)));
+            }
+        }
+        Ok(values)
+    }
+
+    /// What is wrong with a cell, with its place.
+    fn fault(&self, row: usize, name: &str, what: String) -> String {
+        match &self.from {
+            Source::Table(table) => table.cell(row, name, what).to_string(),
+            // Its rows are sorted by time, which tells them as well as a line does.
+            Source::Log(lit) => {
+                format!("{}: column `{name}` at {} s: {what}", self.path.display(), lit.samples.time_s[row])
+            }
+        }
+    }
+
+    /// A photodiode's voltages; rows in which the sensor had a fault, as `lunula align` flags them, have none.
+    ///
+    /// # Errors
+    /// No such column, a cell that is neither empty nor a finite number.
+    pub(in crate::hemodynamics) fn voltages(&self, name: &str) -> Result<Voltages, HemodynamicsError> {
+        let own = [name.to_owned()];
+        let mut statuses = Statuses::new(&own);
+        let mut faulty = Vec::new();
+        let mut take = |status: &str| faulty.push(statuses.read(status) == Verdict::Fault);
+        let mut values_v: Vec<f64> = Vec::new();
+        match &self.from {
+            Source::Log(lit) => {
+                values_v.extend(channel(lit, name).iter().flat_map(|channel| &channel.values));
+                lit.samples.faults.iter().for_each(|status| take(status));
+                if let Some(row) = values_v.iter().position(|value| value.is_infinite()) {
+                    let what = "less the ambient light it is beyond 1e308; write the log in volts".to_owned();
+                    return Err(HemodynamicsError::Rows(vec![self.fault(row, name, what)]));
+                }
+            }
+            Source::Table(table) => {
+                table.each_cell(name, |row, cell| {
+                    let what = match cell {
+                        Cell::Missing => {
+                            values_v.push(f64::NAN);
+                            return Ok(());
+                        }
+                        Cell::Number(value) if value.is_finite() => {
+                            values_v.push(value);
+                            return Ok(());
+                        }
+                        Cell::Number(value) => {
+                            format!(
+                                "`{value}` is no finite number; a photodiode's cell may be empty, but no other thing"
+                            )
+                        }
+                        Cell::Text(text) => format!("`{text}` is no number; correct it or leave it empty"),
+                    };
+                    Err(table.cell(row, name, what))
+                })?;
+                if table.has("sensor_status") {
+                    table.each_text("sensor_status", |_, status| take(status))?;
                 }
             }
         }
-        columns.names.push((*name).to_owned());
-        columns.values.push(values);
+        let faults = faulty.iter().filter(|faulty| **faulty).count();
+        values_v.iter_mut().zip(&faulty).filter(|(_, faulty)| **faulty).for_each(|(value, _)| *value = f64::NAN);
+        Ok(Voltages { values_v, faults })
     }
-    if faults.is_empty() {
-        return Ok(columns);
-    }
-    faults.sort_by_key(|(row, _)| *row);
-    let more = faults.len().saturating_sub(MOST_FAULTS);
-    let mut told: Vec<String> = faults.into_iter().take(MOST_FAULTS).map(|(_, what)| what).collect();
-    if more > 0 {
-        told.push(format!("and {more} more"));
-    }
-    Err(HemodynamicsError::Rows(told))
+}
+
+/// A channel of a log.
+fn channel<'a>(lit: &'a LitRows, name: &str) -> Option<&'a Channel> {
+    lit.samples.photodiodes.iter().chain(&lit.samples.forces).find(|channel| channel.name == name)
+}
+
+/// The columns there are, of very many the first.
+pub(in crate::hemodynamics) fn listed(names: &[String]) -> String {
+    const MOST: usize = 40;
+    let more = if names.len() > MOST { format!(", .. ({} in all)", names.len()) } else { String::new() };
+    format!("{}{more}", names.iter().take(MOST).cloned().collect::<Vec<_>>().join(", "))
 }

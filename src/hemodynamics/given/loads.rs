@@ -4,8 +4,9 @@ use std::path::PathBuf;
 
 use lunula_hemodynamics::{Load, LoadFault, Loads, Parameters};
 
-use super::columns::{BLOOD, Columns, PRESSED, TIME, numbers};
+use super::columns::{BLOOD, Columns, PRESSED, Rows, TIME};
 use crate::hemodynamics::HemodynamicsError;
+use crate::log::LogReading;
 
 /// What presses, over time.
 #[derive(Debug, Clone, Default)]
@@ -18,7 +19,7 @@ pub struct GivenLoads {
     pub upstream: Option<Load>,
     /// `P_L`; none: the parameters' constant.
     pub downstream: Option<Load>,
-    /// A table `time_s,pf1_Pa,pf2_Pa` instead of `P_F1` and `P_F2`, and `ph_Pa`, `pl_Pa` where it has them.
+    /// A table `time_s,pf1_Pa,pf2_Pa` instead of `P_F1` and `P_F2`, and `ph_Pa`, `pl_Pa` where it has them; of a log with a column `led` its lit rows.
     pub file: Option<PathBuf>,
 }
 
@@ -28,6 +29,8 @@ pub(in crate::hemodynamics) struct ReadLoads {
     pub(in crate::hemodynamics) loads: Loads,
     /// The first and the last time of the file.
     pub(in crate::hemodynamics) known_s: Option<[f64; 2]>,
+    /// What is worth saying on a file that is a log.
+    pub(in crate::hemodynamics) notes: Vec<String>,
 }
 
 impl GivenLoads {
@@ -45,9 +48,11 @@ impl GivenLoads {
         let nothing = || Load::constant(0.0).expect("zero is finite");
         let or_nothing = |load: &Option<Load>| load.clone().unwrap_or_else(nothing);
         let mut loads = Loads::on(parameters, or_nothing(&self.proximal), or_nothing(&self.distal));
-        let mut known_s = None;
+        let (mut known_s, mut notes) = (None, Vec::new());
         if let Some(path) = &self.file {
-            let columns = numbers(path, &[TIME, PRESSED[0], PRESSED[1]], &BLOOD, TIME)?;
+            let rows = Rows::read(path, &LogReading::default())?;
+            let columns = rows.numbers(&[TIME, PRESSED[0], PRESSED[1]], &BLOOD, TIME)?;
+            notes = rows.notes().iter().map(|note| format!("{}: {note}", path.display())).collect();
             known_s = place_columns(&columns, &mut loads)?;
         }
         for (given, place) in [(&self.upstream, &mut loads.upstream), (&self.downstream, &mut loads.downstream)] {
@@ -55,7 +60,7 @@ impl GivenLoads {
                 *place = load.clone();
             }
         }
-        Ok(ReadLoads { loads, known_s })
+        Ok(ReadLoads { loads, known_s, notes })
     }
 }
 

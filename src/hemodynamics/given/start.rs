@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use lunula_hemodynamics::{Parameters, Site, State};
 
-use super::numbers;
+use super::Rows;
 use crate::hemodynamics::HemodynamicsError;
 
 /// Where a run starts.
@@ -33,7 +33,7 @@ pub(in crate::hemodynamics) fn read_state(path: &Path, parameters: &Parameters) 
     let [x, v] = state_columns(parameters.units().len());
     let names: Vec<&str> = x.iter().chain(&v).map(String::as_str).collect();
     let next = format!("x{}_m", Site::Capillary(parameters.units().len()));
-    let columns = numbers(path, &names, &[&next], "")?;
+    let columns = Rows::table(path)?.numbers(&names, &[&next], "")?;
     if columns.get(&next).is_some() {
         let what = format!(
             "has a column {next}, of a nail with more than {} units: --units says how many",

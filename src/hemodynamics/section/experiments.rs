@@ -207,7 +207,8 @@ fn tell_fit(
         let Some(start) = literal.get(symbols[0]) else { continue };
         let truth = truth.and_then(|truth| truth.get(symbols[0])).map(|value| value / start);
         let error = group.standard_errors.as_ref().map(|errors| errors[0] / start);
-        writeln!(text, "| {name} | {:.3} | {} | {} |", group.values[0] / start, figure(error), figure(truth))?;
+        let end = if group.at_bound.is_some() { " (at the end of its range)" } else { "" };
+        writeln!(text, "| {name} | {:.3}{end} | {} | {} |", group.values[0] / start, figure(error), figure(truth))?;
     }
     writeln!(text, "\nR2 of all voltages {}.\n", figure(found.r2))?;
     Ok(())

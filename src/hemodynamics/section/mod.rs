@@ -23,7 +23,7 @@ use crate::hemodynamics::figures::N_PER_CM2;
 use crate::hemodynamics::groups::{GROUPS, scaled};
 pub use experiments::{Presses, QuickPress};
 use steps::{Change, Signal, Stepped, change, steps};
-use tune::{constants_s, tune};
+use tune::{constants_s, is_at_end, tune};
 
 /// What the thesis measured, s: proximal loading and unloading, distal loading and unloading.
 const MEASURED_S: [f64; 4] = [0.16, 0.12, 0.18, 0.36];
@@ -156,10 +156,18 @@ fn tell_tuning(
     }
     let [a, b, c, d] = MEASURED_S;
     writeln!(text, "| measured in the thesis | {a} / {b} | {c} / {d} |\n")?;
-    let factors: Vec<String> =
-        GROUPS.iter().zip(factors).map(|((name, _), factor)| format!("{name} x {factor:.3}")).collect();
+    let factors: Vec<String> = GROUPS
+        .iter()
+        .zip(factors)
+        .map(|((name, _), &factor)| format!("{name} x {factor:.3}{}", at_end(factor)))
+        .collect();
     writeln!(text, "Tuned: {}.\n", factors.join(", "))?;
     Ok(())
+}
+
+/// Says of a tuned factor that a wider range would take it further.
+fn at_end(factor: f64) -> &'static str {
+    if is_at_end(factor) { " (at the end of its range)" } else { "" }
 }
 
 fn loads_pa() -> Vec<f64> {

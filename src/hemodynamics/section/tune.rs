@@ -42,6 +42,12 @@ pub(super) fn tune(parameters: &Parameters, wanted_s: [f64; 4], load_pa: f64) ->
     best.map_or([1.0; 4], |(logs, _)| logs.map(f64::exp))
 }
 
+/// Whether a factor ended where its range does.
+pub(super) fn is_at_end(factor: f64) -> bool {
+    // The search goes there in steps of 2e-3 or less, and stops at the end itself.
+    factor.ln().abs() >= MOST - STEPS[1]
+}
+
 /// Hooke and Jeeves' pattern search: along one factor after the other, then on in the direction that this took; steps are halved where
 /// nothing is better. Gives where it ends, and the cost there.
 fn search(start: [f64; 4], cost: &impl Fn(&[f64; 4]) -> f64) -> ([f64; 4], f64) {
@@ -82,6 +88,12 @@ fn around(mut at: [f64; 4], mut best: f64, step: f64, cost: &impl Fn(&[f64; 4]) 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn factors_at_the_end_of_their_range_are_known() {
+        assert!(is_at_end(10.0) && is_at_end(0.1) && is_at_end(f64::exp(-MOST)));
+        assert!(!is_at_end(0.734) && !is_at_end(1.176) && !is_at_end(9.9));
+    }
 
     #[test]
     fn people_are_about_values_with_the_time_constants_that_were_tuned_to() {

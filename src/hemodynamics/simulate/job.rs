@@ -182,7 +182,7 @@ fn is_no_input(options: &SimulateOptions, outputs: &SimulateOutputs) -> Result<(
 }
 
 fn warnings(options: &SimulateOptions, loads: &ReadLoads) -> Vec<String> {
-    let mut warnings = Vec::new();
+    let mut warnings = loads.notes.clone();
     if options.loads.is_none() {
         warnings.push("nothing presses: --pf1, --pf2 or --loads say what does".to_owned());
     }

@@ -4,18 +4,20 @@
 //! the whole. Where the log does not say when the LED was on, every row is lit and nothing is taken away.
 //!
 //! Departure from the thesis, which takes the sample before: that one is half a period of the LED late. [`unlit`] interpolates
-//! the ambient light at the lit sample's own time. [`rails`] finds samples at the end of the recorded range, in lit
+//! the ambient light at the lit sample's own time. Of a stream, whose samples after are not known yet, [`preceding`] takes the sample before. [`rails`] finds samples at the end of the recorded range, in lit
 //! samples and in the unlit ones that went into a row; [`dead`] channels that show nothing.
 //!
 //! Forces are not modulated and are taken as they stand in lit rows.
 
 mod dead;
+mod preceding;
 mod rails;
 #[cfg(test)]
 mod tests;
 mod unlit;
 
 use super::{Channel, Log};
+pub(crate) use preceding::Preceding;
 pub(crate) use rails::piles;
 
 use rails::Rails;
@@ -83,10 +85,8 @@ pub enum AmbientError {
 /// # Errors
 /// [`AmbientError`].
 pub fn samples(log: &Log, options: &AmbientOptions) -> Result<Samples, AmbientError> {
-    if let Some([low, high]) = options.full_scale_v
-        && !(low < high && low.is_finite() && high.is_finite())
-    {
-        return Err(AmbientError::FullScale { low, high });
+    if let Some(ends) = options.full_scale_v {
+        check_full_scale(ends)?;
     }
     let rows = log.time_s.len();
     let lit: Vec<usize> = (0..rows).filter(|&row| log.led.as_ref().is_none_or(|led| led[row])).collect();
@@ -127,8 +127,20 @@ pub fn samples(log: &Log, options: &AmbientOptions) -> Result<Samples, AmbientEr
     Ok(Samples { time_s, photodiodes, forces, faults, notes: found.notes })
 }
 
+/// Whether a range is one.
+fn check_full_scale([low, high]: [f64; 2]) -> Result<(), AmbientError> {
+    let is_one = low < high && low.is_finite() && high.is_finite();
+    if is_one { Ok(()) } else { Err(AmbientError::FullScale { low, high }) }
+}
+
 /// Differences are told in such steps: what is finer is the arithmetic's own rounding.
 const GRAINS_A_VOLT: f64 = 1e12;
+
+/// A difference without the arithmetic's own rounding; one that is too large to have any of it as it is.
+fn in_grains(difference: f64) -> f64 {
+    let grains = (difference * GRAINS_A_VOLT).round();
+    if grains.is_finite() { grains / GRAINS_A_VOLT } else { difference }
+}
 
 /// What is wrong with a row.
 #[derive(Debug, Clone, Default)]
@@ -181,7 +193,7 @@ impl Found {
                 sum_lit += raw;
                 sum_ambient += ambient.level;
             }
-            ((raw - ambient.level) * GRAINS_A_VOLT).round() / GRAINS_A_VOLT
+            in_grains(raw - ambient.level)
         });
         let less = less.collect();
         let known = ambient.iter().zip(raw).filter(|(a, raw)| !a.level.is_nan() && !raw.is_nan()).count() as f64;

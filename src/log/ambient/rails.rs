@@ -38,9 +38,8 @@ pub(super) struct Rails {
 impl Rails {
     /// Of a channel's lit and unlit samples.
     pub(super) fn of(lit: &[f64], dark: &[f64], full_scale_v: Option<[f64; 2]>) -> Self {
-        if let Some([low, high]) = full_scale_v {
-            let near = NEAR * (high - low);
-            return Self { low: low + near, high: high - near, found: [0; 2] };
+        if let Some(full_scale_v) = full_scale_v {
+            return Self::given(full_scale_v);
         }
         let negated = |values: &[f64]| -> Vec<f64> { values.iter().map(|v| -v).collect() };
         let top = |lit: &[f64], dark: &[f64]| {
@@ -55,6 +54,12 @@ impl Rails {
             high: if at_high > 0 { high } else { f64::INFINITY },
             found: [at_low, at_high],
         }
+    }
+
+    /// Of a given range.
+    pub(super) fn given([low, high]: [f64; 2]) -> Self {
+        let near = NEAR * (high - low);
+        Self { low: low + near, high: high - near, found: [0; 2] }
     }
 
     /// Whether a sample is at an end.

@@ -17,7 +17,7 @@
 //! [`roughness`] tells how much there is.
 
 /// Unlit samples further apart than so many usual times have a gap between them.
-const GAP_PERIODS: f64 = 3.0;
+pub(super) const GAP_PERIODS: f64 = 3.0;
 
 /// When the LED was off, and when it was on.
 #[derive(Debug)]
@@ -97,7 +97,7 @@ impl Unlit {
         let rough = known().map(|share| share.rough).fold(0.0, f64::max);
         self.noise.is_finite().then(|| {
             format!(
-                "ambient light taken away: {:.1} to {:.1} % of what the photodiodes read lit; a row's noise is {:.2} times a sample's; \
+                "ambient light taken away, as interpolated between the unlit samples around: {:.1} to {:.1} % of what the photodiodes read lit; a row's noise is {:.2} times a sample's; \
                  noise and ripple of the unlit light too fast to follow are up to {:.3} % of the LED's",
                 100.0 * least,
                 100.0 * most,

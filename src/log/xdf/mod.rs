@@ -49,7 +49,7 @@ pub(super) fn read(path: &Path, columns: &Columns) -> Result<Raw, LogError> {
                     .map(|(row, value)| cell::led(value.to_string().as_bytes()).map_err(|what| error(row, what)));
                 raw.led = Some(states.collect::<Result<_, _>>()?);
             }
-            Role::Photodiode(_) | Role::Force(_) => {
+            Role::Photodiode(_) | Role::Output(_) | Role::Force(_) | Role::Pressure(_) => {
                 if let Some(channel) = raw.channel(role) {
                     channel.clone_from(values);
                 }

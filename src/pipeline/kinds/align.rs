@@ -8,14 +8,16 @@ use std::sync::Arc;
 use serde_json::json;
 
 use super::format::{FORMAT, format, named};
-use super::given::{Given, fault};
+use super::given::Given;
+use super::log_keys::LogKeys;
 use super::pool::in_pool;
 use super::truth::against;
 use crate::align::{
-    AlignInputs, AlignOptions, AlignOutputs, AlignReport, AmbientOptions, Columns, Foreknown, LagSearch, LagTie,
-    LogHeader, Sync, TimeUnit, plan_foreknown, run,
+    AlignInputs, AlignOptions, AlignOutputs, AlignReport, Foreknown, LagSearch, LagTie, LogHeader, Sync,
+    plan_foreknown, run,
 };
 use crate::files::beside;
+use crate::log::LogReading;
 use crate::pipeline::{
     Demand, Facts, Foreseen, Job, KeyFault, Keys, Kind, Made, Part, Prepared, Quality, Role, Takes, Work,
 };
@@ -87,27 +89,15 @@ struct Align {
 }
 
 impl Align {
-    fn prepare(keys: toml::Table) -> Result<Self, KeyFault> {
+    fn prepare(mut keys: toml::Table) -> Result<Self, KeyFault> {
         let said = keys.clone();
+        let LogReading { columns, ambient } = LogKeys::take(&mut keys)?.reading;
         let mut given = Given::new(keys, KEYS)?;
         let any = f64::MIN..=f64::MAX;
-        let columns = given.pairs("columns")?;
-        let mut columns = columns.as_deref().map(Columns::parse).transpose().map_err(|what| fault("columns", what))?;
-        let columns = columns.get_or_insert_default();
-        let units = [
-            ("s", TimeUnit::Seconds),
-            ("ms", TimeUnit::Milliseconds),
-            ("us", TimeUnit::Microseconds),
-            ("ns", TimeUnit::Nanoseconds),
-        ];
-        columns.time_unit = given.choice("time_unit", &units)?;
-        let piece = given.whole("piece", 1..=u64::from(u32::MAX))?;
-        columns.piece = piece.and_then(|piece| std::num::NonZeroUsize::new(usize::try_from(piece).ok()?));
-        columns.stream = given.text("stream")?;
         let options = AlignOptions {
             sync: given.parsed("sync", Sync::parse)?,
-            columns: columns.clone(),
-            ambient: AmbientOptions { full_scale_v: given.parsed("full_scale", AmbientOptions::parse_full_scale)? },
+            columns,
+            ambient,
             max_gap_s: given.number("max_gap", 0.0..=f64::MAX)?,
             clock_zero_s: given.number("clock_zero", any.clone())?,
             lag: LagTie {

@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 use super::options::{counts, fault, read, told};
 use super::pool::in_pool;
 use super::recordings::{ambient_step, only_joints, reading};
+use crate::log::LogReading;
 use crate::phantom::log::Protocol;
 use crate::pipeline::keys::Keys;
 use crate::pipeline::kind::{Demand, Facts, Foreseen, KeyFault, Kind, Part, Prepared, Role, Takes};
@@ -130,7 +131,7 @@ impl Prepared for Comparing {
         let out = outputs(Path::new(""), demand);
         let mut steps = compare_plan(people.len(), &self.options, Some(&out));
         let roles: Vec<&str> = COMPARE.roles.iter().map(|role| role.name).collect();
-        steps.insert(1, ambient_step(inputs, &roles));
+        steps.insert(1, ambient_step(inputs, &roles, &LogReading::default()));
         Ok(steps)
     }
 

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use super::log_keys::LogKeys;
 use super::options::{fault, read, told};
 use super::pool::in_pool;
 use super::recordings::{ambient_step, data_files, measured, reading};
@@ -39,7 +40,19 @@ pub(super) static EVALUATE: Kind = Kind {
     prepare,
 };
 
-const KEYS: &[&str] = &["by", "folds", "seed", "level", "drop_invalid", "keep_faults"];
+const KEYS: &[&str] = &[
+    "by",
+    "folds",
+    "seed",
+    "level",
+    "drop_invalid",
+    "keep_faults",
+    "columns",
+    "time_unit",
+    "full_scale",
+    "piece",
+    "stream",
+];
 
 /// A stage's keys, named as the command's options.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -60,21 +73,23 @@ impl Default for Asked {
     }
 }
 
-fn prepare(table: toml::Table) -> Result<Arc<dyn Prepared>, KeyFault> {
+fn prepare(mut table: toml::Table) -> Result<Arc<dyn Prepared>, KeyFault> {
+    let log = LogKeys::take(&mut table)?;
     let asked: Asked = read(KEYS, table)?;
     share(asked.level).map_err(|why| fault("level", why))?;
     if !(2..=1000).contains(&asked.folds) {
         return Err(fault("folds", format!("{}: choose 2 to 1000", asked.folds)));
     }
-    Ok(Arc::new(Evaluation(asked)))
+    Ok(Arc::new(Evaluation(asked, log)))
 }
 
-struct Evaluation(Asked);
+struct Evaluation(Asked, LogKeys);
 
 impl Evaluation {
     fn options(&self) -> EvaluateOptions {
         let Asked { by, folds, seed, level, drop_invalid, keep_faults } = self.0;
-        EvaluateOptions { drop_invalid, keep_faults, by: by.map(|by| by.by(folds, seed)), level, called: None }
+        let (by, log) = (by.map(|by| by.by(folds, seed)), self.1.reading.clone());
+        EvaluateOptions { drop_invalid, keep_faults, log, by, level, called: None }
     }
 }
 
@@ -91,7 +106,7 @@ impl Prepared for Evaluation {
     }
 
     fn options(&self, demand: &Demand) -> serde_json::Value {
-        told(&self.0, demand, &[ROWS, PICTURES])
+        self.1.tell(told(&self.0, demand, &[ROWS, PICTURES]))
     }
 
     fn job(&self, _keys: &Keys, demand: &Demand) -> Arc<dyn Job> {
@@ -102,7 +117,7 @@ impl Prepared for Evaluation {
         let files = inputs.iter().filter(|input| input.role == "data").count();
         let out = outputs(std::path::Path::new(""), demand);
         let mut steps = evaluate_plan(files, &self.options(), None, Some(&out));
-        steps.insert(1, ambient_step(inputs, &["data"]));
+        steps.insert(1, ambient_step(inputs, &["data"], &self.1.reading));
         Ok(steps)
     }
 

@@ -8,10 +8,11 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::nail::{PARAMS, Settings, Told, all_stand, given, of_foreseen, of_task};
+use super::log_keys::LogKeys;
+use super::nail::{PARAMS, Settings, Told, all_stand, given, of_foreseen, of_task, without_report};
 use super::options::{fault, read, told};
 use super::pool::in_pool;
-use super::recordings::bytes;
+use super::recordings::{ambient_step, bytes};
 use crate::hemodynamics::model::{Bounds, Calibration, Collapse, Parameters};
 use crate::hemodynamics::{
     Between, FitOptions, FitOutputs, FitReport, ForceColumn, GivenParameters, OpticsChoice, PhotodiodeColumn, Pressed,
@@ -31,7 +32,11 @@ pub(super) static FIT: Kind = Kind {
     name: "fit",
     about: "the hemodynamic model's free parameters to recorded responses",
     roles: &[
-        Role { name: RECORDINGS, takes: Takes::Many, about: "recorded responses: loads and photodiodes" },
+        Role {
+            name: RECORDINGS,
+            takes: Takes::Many,
+            about: "recorded responses: loads and photodiodes; a log or align's set",
+        },
         PARAMS,
         Role { name: TRUTH, takes: Takes::Optional, about: "the true parameters, where they are known" },
     ],
@@ -67,6 +72,11 @@ const KEYS: &[&str] = &[
     "optics",
     "units",
     "set",
+    "columns",
+    "time_unit",
+    "full_scale",
+    "piece",
+    "stream",
 ];
 
 /// A stage's keys, named as the command's options.
@@ -117,7 +127,8 @@ impl Default for Asked {
     }
 }
 
-fn prepare(table: toml::Table) -> Result<Arc<dyn Prepared>, KeyFault> {
+fn prepare(mut table: toml::Table) -> Result<Arc<dyn Prepared>, KeyFault> {
+    let log = LogKeys::take(&mut table)?;
     let asked: Asked = read(KEYS, table)?;
     let free = asked.free.clone();
     let free = free.ok_or_else(|| fault("free", "is needed, as [\"k_C\", \"b_C\"]; [] fits the photodiodes alone"))?;
@@ -144,6 +155,7 @@ fn prepare(table: toml::Table) -> Result<Arc<dyn Prepared>, KeyFault> {
             unloaded_before: asked.unloaded_before,
             force,
             photodiodes: photodiodes.collect::<Result<_, _>>().map_err(|why| fault("photodiode", why))?,
+            log: log.reading.clone(),
         },
         subjects: Vec::new(),
         names: Vec::new(),
@@ -156,12 +168,13 @@ fn prepare(table: toml::Table) -> Result<Arc<dyn Prepared>, KeyFault> {
         collapse: asked.collapse,
         optics: asked.optics,
     };
-    Ok(Arc::new(Fitting { asked, options }))
+    Ok(Arc::new(Fitting { asked, options, log }))
 }
 
 struct Fitting {
     asked: Asked,
     options: FitOptions,
+    log: LogKeys,
 }
 
 fn outputs(folder: &Path, demand: &Demand) -> FitOutputs {
@@ -179,7 +192,7 @@ impl Prepared for Fitting {
     }
 
     fn options(&self, demand: &Demand) -> serde_json::Value {
-        told(&self.asked, demand, &[PICTURES])
+        self.log.tell(told(&self.asked, demand, &[PICTURES]))
     }
 
     fn job(&self, _keys: &Keys, demand: &Demand) -> Arc<dyn Job> {
@@ -195,11 +208,13 @@ impl Prepared for Fitting {
             ..self.options.clone()
         };
         let out = outputs(Path::new(""), demand);
-        if all_stand(inputs) {
-            fit_plan(&options, Some(&out)).map_err(|why| why.to_string())
+        let mut steps = if all_stand(inputs) {
+            fit_plan(&options, Some(&out)).map_err(|why| why.to_string())?
         } else {
-            Ok(fit_outline(&options, Some(&out)))
-        }
+            fit_outline(&options, Some(&out))
+        };
+        steps.insert(0, ambient_step(inputs, &[RECORDINGS], &self.log.reading));
+        Ok(steps)
     }
 
     fn facts(&self, _inputs: &[Foreseen], _demand: &Demand) -> Facts {
@@ -229,7 +244,8 @@ impl Job for FitJob {
         };
         let outputs = outputs(work.folder, &self.demand);
         let report = in_pool(work.threads, || fit(&options, &outputs, work.stop))??;
-        // It tells times and places.
+        without_report(&outputs.result)?;
+        // The result stands in the record.
         std::fs::remove_file(&outputs.result)?;
         let mut quality = stated(&report);
         if let Some(at) = work.one(TRUTH) {

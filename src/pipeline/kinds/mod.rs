@@ -9,6 +9,7 @@ mod fit;
 mod format;
 mod given;
 mod join;
+mod log_keys;
 mod maps;
 mod nail;
 mod normalize;

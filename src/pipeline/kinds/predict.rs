@@ -6,6 +6,7 @@ use std::sync::Arc;
 use anyhow::Context;
 use serde::{Deserialize, Serialize};
 
+use super::log_keys::LogKeys;
 use super::options::{fault, read, told};
 use super::pool::in_pool;
 use super::recordings::{ambient_step, only_joints, reading};
@@ -35,7 +36,19 @@ pub(super) static PREDICT: Kind = Kind {
     prepare,
 };
 
-const KEYS: &[&str] = &["f_min", "theta_touch", "hysteresis", "intervals", "drop_invalid", "keep_faults"];
+const KEYS: &[&str] = &[
+    "f_min",
+    "theta_touch",
+    "hysteresis",
+    "intervals",
+    "drop_invalid",
+    "keep_faults",
+    "columns",
+    "time_unit",
+    "full_scale",
+    "piece",
+    "stream",
+];
 
 /// A stage's keys, named as the command's options.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -62,17 +75,20 @@ impl Default for Asked {
     }
 }
 
-fn prepare(table: toml::Table) -> Result<Arc<dyn Prepared>, KeyFault> {
+fn prepare(mut table: toml::Table) -> Result<Arc<dyn Prepared>, KeyFault> {
+    let log = LogKeys::take(&mut table)?;
     let asked: Asked = read(KEYS, table)?;
     let gate = Gate::new(asked.f_min, asked.theta_touch, asked.hysteresis);
     let gate = gate.map_err(|why| fault("", why.to_string()))?;
     let Asked { intervals, drop_invalid, keep_faults, .. } = asked;
-    Ok(Arc::new(Prediction { options: PredictOptions { gate, intervals, drop_invalid, keep_faults }, asked }))
+    let options = PredictOptions { gate, intervals, drop_invalid, keep_faults, log: log.reading.clone() };
+    Ok(Arc::new(Prediction { options, asked, log }))
 }
 
 struct Prediction {
     asked: Asked,
     options: PredictOptions,
+    log: LogKeys,
 }
 
 impl Prepared for Prediction {
@@ -82,7 +98,7 @@ impl Prepared for Prediction {
     }
 
     fn options(&self, demand: &Demand) -> serde_json::Value {
-        told(&self.asked, demand, &[])
+        self.log.tell(told(&self.asked, demand, &[]))
     }
 
     fn job(&self, _keys: &Keys, _demand: &Demand) -> Arc<dyn Job> {
@@ -92,7 +108,7 @@ impl Prepared for Prediction {
     fn steps(&self, inputs: &[Foreseen], _demand: &Demand) -> Result<Vec<Step>, String> {
         let models = inputs.iter().filter(|input| input.role == "model").count();
         let mut steps = predict_plan(models, &self.options);
-        steps.insert(1, ambient_step(inputs, &["data"]));
+        steps.insert(1, ambient_step(inputs, &["data"], &self.options.log));
         Ok(steps)
     }
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use super::log_keys::LogKeys;
 use super::options::{read, told};
 use super::pool::in_pool;
 use super::recordings::{ambient_step, data_files, joints, only_joints, reading};
@@ -38,7 +39,8 @@ pub(super) static PRUNE: Kind = Kind {
     prepare,
 };
 
-const KEYS: &[&str] = &["target", "inputs", "drop_invalid", "keep_faults"];
+const KEYS: &[&str] =
+    &["target", "inputs", "drop_invalid", "keep_faults", "columns", "time_unit", "full_scale", "piece", "stream"];
 
 /// A stage's keys, named as the command's options.
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
@@ -50,11 +52,12 @@ struct Asked {
     keep_faults: bool,
 }
 
-fn prepare(table: toml::Table) -> Result<Arc<dyn Prepared>, KeyFault> {
-    Ok(Arc::new(Pruning(read(KEYS, table)?)))
+fn prepare(mut table: toml::Table) -> Result<Arc<dyn Prepared>, KeyFault> {
+    let log = LogKeys::take(&mut table)?;
+    Ok(Arc::new(Pruning(read(KEYS, table)?, log)))
 }
 
-struct Pruning(Asked);
+struct Pruning(Asked, LogKeys);
 
 fn outputs(folder: &Path, demand: &Demand) -> FolderOutputs {
     let figures = demand.parts.contains(PICTURES);
@@ -67,12 +70,14 @@ impl Prepared for Pruning {
     }
 
     fn options(&self, demand: &Demand) -> serde_json::Value {
-        told(&self.0, demand, &[PICTURES])
+        self.1.tell(told(&self.0, demand, &[PICTURES]))
     }
 
     fn job(&self, _keys: &Keys, demand: &Demand) -> Arc<dyn Job> {
         let Asked { target, inputs, drop_invalid, keep_faults } = self.0.clone();
-        let wanted = Wanted { inputs, targets: target.columns().to_vec(), drop_invalid, keep_faults };
+        let log = self.1.reading.clone();
+        let targets = target.columns().to_vec();
+        let wanted = Wanted { inputs, targets, drop_invalid, keep_faults, log, skip_failed: false };
         Arc::new(PruneJob { wanted, demand: demand.clone() })
     }
 
@@ -80,7 +85,7 @@ impl Prepared for Pruning {
         let count = |role: &str| inputs.iter().filter(|input| input.role == role).count();
         let out = outputs(Path::new(""), demand);
         let mut steps = prune_plan([count("data"), count("validate")], Some(&out));
-        steps.insert(1, ambient_step(inputs, &["data", "validate"]));
+        steps.insert(1, ambient_step(inputs, &["data", "validate"], &self.1.reading));
         Ok(steps)
     }
 

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeSet;
 
+use crate::log::LogReading;
 use crate::pipeline::kind::{Demand, Foreseen};
 use crate::pipeline::task::{At, Quality, Work};
 use crate::predictor::{DataFile, Merit, Target};
 use crate::stages::Step;
-use crate::table::column_names;
 
 /// A file that does not stand yet is taken to be so long: ten minutes of eight photodiodes and three forces at 25 Hz.
 const USUAL_BYTES: u64 = 2_000_000;
@@ -46,9 +46,9 @@ pub(super) fn only_joints(joints: BTreeSet<String>, own: &Demand) -> Demand {
 }
 
 /// Whether ambient light will be taken away: only of raw logs whose LED goes on and off.
-pub(super) fn ambient_step(inputs: &[Foreseen], roles: &[&str]) -> Step {
+pub(super) fn ambient_step(inputs: &[Foreseen], roles: &[&str], log: &LogReading) -> Step {
     let of_roles = inputs.iter().filter(|input| roles.contains(&input.role));
-    let led: Vec<Option<bool>> = of_roles.map(has_led).collect();
+    let led: Vec<Option<bool>> = of_roles.map(|input| has_led(input, log)).collect();
     let (lit, not, all) = (count(&led, Some(true)), count(&led, Some(false)), led.len());
     let reason = match (lit, all - lit - not) {
         (0, 0) => "no file has a column `led`".to_owned(),
@@ -63,9 +63,8 @@ fn count(all: &[Option<bool>], value: Option<bool>) -> usize {
     all.iter().filter(|one| **one == value).count()
 }
 
-fn has_led(input: &Foreseen) -> Option<bool> {
-    let known = input.stands.then(|| column_names(&input.path).ok()).flatten();
-    known.map(|names| names.iter().any(|name| name == "led")).or(input.facts.led)
+fn has_led(input: &Foreseen, log: &LogReading) -> Option<bool> {
+    input.stands.then(|| log.led_of(&input.path)).flatten().or(input.facts.led)
 }
 
 /// About how many bytes these are.

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::options::{fault, read, told};
 use super::pool::in_pool;
 use super::recordings::{ambient_step, reading};
+use crate::log::LogReading;
 use crate::pipeline::keys::Keys;
 use crate::pipeline::kind::{Demand, Facts, Foreseen, KeyFault, Kind, Part, Prepared, Role, Takes};
 use crate::pipeline::task::{Job, Made, Work};
@@ -88,7 +89,7 @@ impl Prepared for Responding {
     fn steps(&self, inputs: &[Foreseen], _demand: &Demand) -> Result<Vec<Step>, String> {
         let bends = self.options.drive == "J2_deg";
         Ok(vec![
-            ambient_step(inputs, &["data"]),
+            ambient_step(inputs, &["data"], &LogReading::default()),
             Step::new("cycles", true, format!("of {}", self.options.drive)),
             Step::new("averages", true, "over cycles, rising and falling".to_owned()),
             Step::new(

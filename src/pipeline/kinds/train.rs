@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use super::log_keys::LogKeys;
 use super::options::{counts, fault, read, told};
 use super::pool::in_pool;
 use super::recordings::{ambient_step, data_files, foreseen, joints, measured, only_joints, reading};
@@ -66,6 +67,12 @@ const KEYS: &[&str] = &[
     "level",
     "drop_invalid",
     "keep_faults",
+    "skip_failed",
+    "columns",
+    "time_unit",
+    "full_scale",
+    "piece",
+    "stream",
 ];
 
 /// A stage's keys, named as the command's options.
@@ -87,6 +94,8 @@ struct Asked {
     level: f64,
     drop_invalid: bool,
     keep_faults: bool,
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    skip_failed: bool,
 }
 
 /// `refuse`, `ridge=1e-6`, as on the command line.
@@ -111,6 +120,7 @@ impl Default for Asked {
             level: LEVEL,
             drop_invalid: false,
             keep_faults: false,
+            skip_failed: false,
         }
     }
 }
@@ -118,9 +128,11 @@ impl Default for Asked {
 struct Training {
     asked: Asked,
     target: Target,
+    log: LogKeys,
 }
 
-fn prepare(table: toml::Table) -> Result<Arc<dyn Prepared>, KeyFault> {
+fn prepare(mut table: toml::Table) -> Result<Arc<dyn Prepared>, KeyFault> {
+    let log = LogKeys::take(&mut table)?;
     let asked: Asked = read(KEYS, table)?;
     let target =
         asked.target.clone().ok_or_else(|| fault("target", "is needed: force, posture or columns as Fz_N,J3_deg"))?;
@@ -130,7 +142,7 @@ fn prepare(table: toml::Table) -> Result<Arc<dyn Prepared>, KeyFault> {
         ("restarts", asked.restarts.into(), 1000),
         ("epochs", asked.epochs, u32::MAX),
     ])?;
-    Ok(Arc::new(Training { asked, target }))
+    Ok(Arc::new(Training { asked, target, log }))
 }
 
 impl Training {
@@ -142,6 +154,8 @@ impl Training {
                 targets: self.target.columns().to_vec(),
                 drop_invalid: asked.drop_invalid,
                 keep_faults: asked.keep_faults,
+                log: self.log.reading.clone(),
+                skip_failed: asked.skip_failed,
             },
             recipe: Recipe {
                 deficient: asked.deficient,
@@ -163,7 +177,7 @@ impl Prepared for Training {
     }
 
     fn options(&self, demand: &Demand) -> serde_json::Value {
-        told(&self.asked, demand, &[CURVE])
+        self.log.tell(told(&self.asked, demand, &[CURVE]))
     }
 
     fn job(&self, _keys: &Keys, demand: &Demand) -> Arc<dyn Job> {
@@ -174,7 +188,7 @@ impl Prepared for Training {
         let of = |role: &str| foreseen(inputs, role);
         let files = TrainInputs { data: of("data"), validate: of("validate"), stop_on: of("stop_on") };
         let mut steps = train_plan(&files, &self.options().recipe, demand.parts.contains(CURVE));
-        steps.insert(1, ambient_step(inputs, &["data", "validate", "stop_on"]));
+        steps.insert(1, ambient_step(inputs, &["data", "validate", "stop_on"], &self.log.reading));
         Ok(steps)
     }
 
@@ -221,7 +235,7 @@ impl Job for TrainJob {
             report: serde_json::to_value(&report)?,
             left_out: report.left_out,
             warnings: report.warnings,
-            failed: Vec::new(),
+            failed: report.failed.into_iter().map(|file| file.why).collect(),
             stages: report.stages,
             quality,
         })

@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use super::Plan;
 use crate::pipeline::kind::{Facts, Foreseen};
+use crate::pipeline::said::in_keys;
 use crate::pipeline::standing::{Standing, Why};
 use crate::stages::Fate;
 
@@ -121,10 +122,10 @@ impl Plan {
             Ok(steps) => {
                 for step in steps {
                     let fate = if step.fate == Fate::LeftOut { PlanFate::LeftOut } else { fate };
-                    add(&mut plan.steps, step.stage, fate, step.reason, 1);
+                    add(&mut plan.steps, step.stage, fate, in_keys(&step.reason), 1);
                 }
             }
-            Err(why) => plan.cannot_tell.push(format!("{}: {why}", self.tasks[at].id)),
+            Err(why) => plan.cannot_tell.push(format!("{}: {}", self.tasks[at].id, in_keys(&why))),
         }
     }
 

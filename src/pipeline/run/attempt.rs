@@ -16,6 +16,7 @@ use super::super::commit::{CommitFault, commit, files, is_kept_aside, outputs, r
 use super::super::graph::above;
 use super::super::hashes::{FileFault, files_in};
 use super::super::record::{FORMAT, Fingerprint, Known, Record, within};
+use super::super::said::{all_in_keys, in_keys, report_in_keys};
 use super::super::standing::{Why, difference, spoilt};
 use super::super::task::{At, Input, Source, Task, TaskId, Work};
 use super::Results;
@@ -147,9 +148,15 @@ impl Bench<'_> {
         let work_given =
             Work { inputs: at, folder: &folder, before: due.stands.then_some(before.as_path()), threads, stop };
         let made = match catch_unwind(AssertUnwindSafe(|| task.job.run(&work_given))) {
-            Ok(Ok(made)) => made,
+            Ok(Ok(mut made)) => {
+                for texts in [&mut made.left_out, &mut made.warnings, &mut made.failed] {
+                    all_in_keys(texts);
+                }
+                report_in_keys(&mut made.report);
+                made
+            }
             Ok(Err(_)) if stop.load(Ordering::Relaxed) => return Err(Miss::Stopped),
-            Ok(Err(why)) => return Err(Miss::Failed(with_advice(format!("{why:#}"), is_full(&why)))),
+            Ok(Err(why)) => return Err(Miss::Failed(with_advice(in_keys(&format!("{why:#}")), is_full(&why)))),
             Err(panic) => return Err(Miss::Failed(format!("the program has a fault here: {}", words(&*panic)))),
         };
         let outputs = outputs(work, &self.results.hashes).map_err(|why| Miss::Failed(why.to_string()))?;

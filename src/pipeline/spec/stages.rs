@@ -5,6 +5,7 @@ use toml::de::DeValue;
 use super::reference::{Names, filter, reference, strings};
 use super::{Place, Reference, StageSpec};
 use crate::pipeline::kind::{Kind, Role, Takes};
+use crate::pipeline::said::in_keys;
 use crate::toml_file::{Entry, Findings, instead};
 
 /// Keys of every stage.
@@ -79,7 +80,7 @@ pub(super) fn stage(
         Ok(prepared) => prepared,
         Err(fault) => {
             let at = table.iter().find(|e| e.key == fault.key).map_or(entry.key_at, |e| e.at);
-            findings.fault(at, named(&fault.key, fault.what));
+            findings.fault(at, named(&fault.key, in_keys(&fault.what)));
             return None;
         }
     };

@@ -1,7 +1,7 @@
 //! Tables and logs of the user into rows for the models (5.2).
 //!
 //! In: CSV or Parquet tables with `P1`.. in volts and the targets, as `lunula align` and anybody else writes them, or raw logs with a column
-//! `led` (section 3.1.2c), which are brought to the LED's own light by the same code as in align. Out: a [`Dataset`] with what was left out and why
+//! `led` (section 3.1.2c), which are brought to the LED's own light by the same code as in align ([`LogReading`]). Out: a [`Dataset`] with what was left out and why
 //! ([`read_data`], [`read_files`]); voltages alone ([`read_inputs`]); rows of a stream, one at a time ([`RowStream`]).
 //!
 //! Conventions. A file is a recording; it is several where `session`, `subject` or `trajectory` change or `time_s` goes back. Where
@@ -15,18 +15,18 @@ mod file;
 mod health;
 mod recordings;
 mod source;
-mod status;
 mod stream;
 #[cfg(test)]
 mod tests;
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use lunula_predictor::{Dataset, DatasetFault, Recording};
 use ndarray::Array2;
 use rayon::prelude::*;
 
-use crate::log::{AmbientError, LogError};
+use crate::log::{LogError, LogReading};
 use crate::table::TableError;
 use columns::agree;
 use recordings::Splitter;
@@ -36,7 +36,7 @@ pub use file::DataFile;
 pub use stream::{Row, RowStream};
 
 /// What is read of tables.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Wanted {
     /// The photodiodes; none: all columns `P<number>`, in the order of their numbers.
     pub inputs: Option<Vec<String>>,
@@ -46,6 +46,10 @@ pub struct Wanted {
     pub drop_invalid: bool,
     /// Whether rows are kept that `sensor_status` warns of.
     pub keep_faults: bool,
+    /// How raw logs are read.
+    pub log: LogReading,
+    /// Whether a file that can't be read costs only itself, rather than being an error; where none can be, it is one.
+    pub skip_failed: bool,
 }
 
 /// What was read.
@@ -55,8 +59,19 @@ pub struct Read {
     pub data: Dataset,
     /// The files, as given.
     pub files: Vec<FileRows>,
+    /// Files that can't be read and were skipped, as that was asked for.
+    pub failed: Vec<FailedFile>,
     /// What is no error but worth saying.
     pub warnings: Vec<String>,
+}
+
+/// A file that was skipped.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+pub struct FailedFile {
+    /// What tables, pictures and models call it.
+    pub name: String,
+    /// Why, with its place.
+    pub why: String,
 }
 
 /// What became of a file's rows.
@@ -93,6 +108,8 @@ pub struct Inputs {
     pub empty: usize,
     /// The recordings, in order.
     pub recordings: Vec<Recording>,
+    /// What was done to a raw log: how its ambient light was taken away.
+    pub notes: Vec<String>,
     /// What is no error but worth saying.
     pub warnings: Vec<String>,
 }
@@ -106,9 +123,6 @@ pub enum DataError {
     /// A raw log can't be read.
     #[error(transparent)]
     Log(#[from] LogError),
-    /// A raw log has no lit rows.
-    #[error(transparent)]
-    Ambient(#[from] AmbientError),
     /// A file lacks a column, or has other photodiodes than the others.
     #[error("{}: {what}", path.display())]
     Columns {
@@ -164,7 +178,8 @@ pub fn read_files(data: &[DataFile], wanted: &Wanted) -> Result<Read, DataError>
         return Err(DataError::Request("no target is given".to_owned()));
     }
     let inputs = wanted.inputs.as_deref().unwrap_or_default();
-    if let Some((_, name)) = inputs.iter().enumerate().find(|(k, name)| inputs[..*k].contains(name)) {
+    let mut seen = HashSet::new();
+    if let Some(name) = inputs.iter().find(|name| !seen.insert(name.as_str())) {
         return Err(DataError::Request(format!("{name} is named twice among the inputs; name each once")));
     }
     if inputs.iter().chain(&wanted.targets).any(|name| name == "time_s") {
@@ -174,8 +189,25 @@ pub fn read_files(data: &[DataFile], wanted: &Wanted) -> Result<Read, DataError>
     if let Some(name) = inputs.iter().find(|name| wanted.targets.contains(name)) {
         return Err(DataError::Request(format!("{name} is both an input and a target; leave it out of one of them")));
     }
-    let sources = data.par_iter().map(|file| Source::read(&file.path, wanted)).collect::<Vec<_>>();
-    let sources = sources.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let read = data.par_iter().map(|file| Source::read(&file.path, wanted)).collect::<Vec<_>>();
+    let (mut sources, mut data_read, mut faults, mut failed) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    for (source, file) in read.into_iter().zip(data) {
+        match source {
+            Ok(source) => {
+                sources.push(source);
+                data_read.push(file.clone());
+            }
+            Err(why) if wanted.skip_failed => {
+                failed.push(FailedFile { name: file.name.clone(), why: why.to_string() });
+                faults.push(why);
+            }
+            Err(why) => return Err(why),
+        }
+    }
+    if sources.is_empty() {
+        return Err(faults.swap_remove(0));
+    }
+    let data = &data_read[..];
     agree(&sources)?;
     let mut warnings = twice(data);
     let inputs = sources[0].inputs.clone();
@@ -215,19 +247,19 @@ pub fn read_files(data: &[DataFile], wanted: &Wanted) -> Result<Read, DataError>
         Array2::from_shape_vec((rows, columns), values).expect("every row gives as many values")
     };
     let data = Dataset::new(inputs, wanted.targets.clone(), time_s, shaped(x), shaped(y), recordings)?;
-    Ok(Read { data, files, warnings })
+    Ok(Read { data, files, failed, warnings })
 }
 
-/// Reads the voltages of `inputs` from a table or raw log; targets need not be there. With `drop_invalid`, a cell that is no finite number
-/// is NaN rather than an error.
+/// Reads the voltages of `inputs` from a table or raw log, read as `log` says; targets need not be there. With `drop_invalid`, a cell that is no
+/// finite number is NaN rather than an error.
 ///
 /// # Errors
 /// [`DataError`].
-pub fn read_inputs(path: &Path, inputs: &[String], drop_invalid: bool) -> Result<Inputs, DataError> {
+pub fn read_inputs(path: &Path, inputs: &[String], drop_invalid: bool, log: &LogReading) -> Result<Inputs, DataError> {
     if inputs.is_empty() {
         return Err(DataError::Request("no photodiode is given".to_owned()));
     }
-    let wanted = Wanted { inputs: Some(inputs.to_vec()), drop_invalid, ..Wanted::default() };
+    let wanted = Wanted { inputs: Some(inputs.to_vec()), drop_invalid, log: log.clone(), ..Wanted::default() };
     let source = Source::read(path, &wanted)?;
     let mut warnings = source.warnings.clone();
     let mut recordings = Vec::new();
@@ -239,7 +271,8 @@ pub fn read_inputs(path: &Path, inputs: &[String], drop_invalid: bool) -> Result
     let empty = (0..source.rows()).filter(missing).count();
     let x = Array2::from_shape_fn((source.rows(), inputs.len()), |(row, column)| source.x[column][row]);
     let invalid = source.invalid.iter().filter(|invalid| **invalid).count();
-    Ok(Inputs { time_s: source.time_s, x, faulty: source.faulty, invalid, empty, recordings, warnings })
+    let Source { time_s, faulty, notes, .. } = source;
+    Ok(Inputs { time_s, x, faulty, invalid, empty, recordings, notes, warnings })
 }
 
 /// Files that are given more than once.

@@ -1,14 +1,14 @@
 //! One file, column by column: a table, or a raw log brought to the LED's own light.
 
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
 use super::columns::{listed, missing, photodiodes};
-use super::status::{Statuses, Verdict};
 use super::{DataError, Wanted};
-use crate::log::{AmbientOptions, Channel, Columns, Log, samples};
-use crate::table::{Cell, Table, TableError, column_names};
+use crate::log::{Channel, LitRows, Statuses, Verdict};
+use crate::table::{Cell, Table, TableError};
 
 /// Columns that say where one recording ends and the next begins.
 pub(super) const GROUPS: [&str; 3] = ["session", "subject", "trajectory"];
@@ -37,13 +37,9 @@ pub(super) struct Source {
 }
 
 impl Source {
-    /// Reads a file: a raw log where it has a column `led` or is no CSV or Parquet table.
+    /// Reads a file, a table or a raw log.
     pub(super) fn read(path: &Path, wanted: &Wanted) -> Result<Self, DataError> {
-        match column_names(path) {
-            Ok(names) if !names.iter().any(|name| name == "led") => Self::of_table(path, wanted),
-            Ok(_) | Err(TableError::Extension(_)) => Self::of_log(path, wanted),
-            Err(why) => Err(why.into()),
-        }
+        if wanted.log.is_log(path)? { Self::of_log(path, wanted) } else { Self::of_table(path, wanted) }
     }
 
     /// How many rows.
@@ -60,7 +56,7 @@ impl Source {
         let table = Table::read(path)?;
         let names = table.names();
         let inputs = chosen(path, wanted, names)?;
-        let has = |name: &str| names.iter().any(|n| n == name);
+        let has = |name: &str| table.has(name);
         if let Some(lacking) = inputs.iter().chain(&wanted.targets).find(|name| !has(name)) {
             return Err(DataError::Columns { path: path.to_owned(), what: missing(lacking, names) });
         }
@@ -101,15 +97,25 @@ impl Source {
     }
 
     fn of_log(path: &Path, wanted: &Wanted) -> Result<Self, DataError> {
-        let log = Log::read(path, &Columns::default())?;
-        let samples = samples(&log, &AmbientOptions::default())?;
-        let names: Vec<String> =
-            samples.photodiodes.iter().chain(&samples.forces).map(|channel| channel.name.clone()).collect();
+        let LitRows { samples, notes } = wanted.log.lit_rows(path)?;
+        let placed = |notes: &[String]| notes.iter().map(|note| format!("{}: {note}", path.display())).collect();
+        let (warnings, notes) = (placed(&notes), placed(&samples.notes));
+        let channels = || samples.photodiodes.iter().chain(&samples.forces);
+        let names: Vec<String> = channels().map(|channel| channel.name.clone()).collect();
+        let by_name: HashMap<&str, &Channel> = channels().map(|channel| (channel.name.as_str(), channel)).collect();
         let inputs = chosen(path, wanted, &names)?;
         let column = |name: &String| -> Result<Vec<f64>, DataError> {
-            let mut all = samples.photodiodes.iter().chain(&samples.forces);
-            match all.find(|channel| channel.name == *name) {
-                Some(Channel { values, .. }) => Ok(values.clone()),
+            match by_name.get(name.as_str()) {
+                Some(Channel { values, .. }) => match values.iter().position(|value| value.is_infinite()) {
+                    None => Ok(values.clone()),
+                    Some(row) => {
+                        let what = format!(
+                            "{name} less the ambient light is beyond 1e308 at {} s; write the log in volts",
+                            samples.time_s[row]
+                        );
+                        Err(DataError::Columns { path: path.to_owned(), what })
+                    }
+                },
                 None => {
                     let angle = if name.ends_with("_deg") {
                         "; angles come from a video: run `lunula align` first"
@@ -124,7 +130,6 @@ impl Source {
         let x = inputs.iter().map(column).collect::<Result<_, _>>()?;
         let y = wanted.targets.iter().map(column).collect::<Result<_, _>>()?;
         let rows = samples.time_s.len();
-        let place = path.display();
         let mut source = Self {
             path: path.to_owned(),
             inputs,
@@ -133,8 +138,8 @@ impl Source {
             invalid: vec![false; rows],
             faulty: vec![false; rows],
             groups: Vec::new(),
-            notes: samples.notes.iter().map(|note| format!("{place}: {note}")).collect(),
-            warnings: log.notes.iter().map(|note| format!("{place}: {note}")).collect(),
+            notes,
+            warnings,
             time_s: samples.time_s,
         };
         source.read_status(|take| {
@@ -230,9 +235,8 @@ fn bad_cell(table: &Table, row: usize, name: &str) -> Result<TableError, TableEr
 
 /// Session, subject and trajectory where they change, with the first row that has them.
 fn groups(table: &Table) -> Result<Vec<(usize, [String; 3])>, TableError> {
-    let names = table.names();
     let mut changes: Vec<(usize, [String; 3])> = Vec::new();
-    for (k, group) in GROUPS.iter().enumerate().filter(|(_, group)| names.iter().any(|n| n == *group)) {
+    for (k, group) in GROUPS.iter().enumerate().filter(|(_, group)| table.has(group)) {
         let mut own: Vec<(usize, String)> = Vec::new();
         table.each_text(group, |row, text| {
             if own.last().is_none_or(|(_, last)| last != text) {

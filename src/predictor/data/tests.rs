@@ -2,7 +2,7 @@ use std::fmt::Write as _;
 use std::fs;
 
 use super::*;
-use crate::log::{AmbientOptions, Columns, Log, samples};
+use crate::log::{AmbientOptions, Columns, Log, LogReading, samples};
 use crate::table::{Column, TableWriter, Value};
 
 /// A folder with files in it.
@@ -18,6 +18,10 @@ impl Folder {
         fs::write(&path, text).unwrap();
         path
     }
+}
+
+fn plain() -> LogReading {
+    LogReading::default()
 }
 
 fn forces() -> Wanted {
@@ -284,8 +288,8 @@ fn voltages_alone_keep_every_row() {
     let folder = Folder::new();
     let path = folder.file("a.csv", "time_s,P2,P1,sensor_status\n0,2,1,ok\n1,,1,ok\n2,x,1,saturated: P1\n");
     let inputs = ["P1", "P2"].map(str::to_owned);
-    assert!(read_inputs(&path, &inputs, false).unwrap_err().to_string().contains("a.csv:4: column `P2`"));
-    let read = read_inputs(&path, &inputs, true).unwrap();
+    assert!(read_inputs(&path, &inputs, false, &plain()).unwrap_err().to_string().contains("a.csv:4: column `P2`"));
+    let read = read_inputs(&path, &inputs, true, &plain()).unwrap();
     assert_eq!((read.x.dim(), read.x[[0, 1]], read.x[[2, 0]]), ((3, 2), 2.0, 1.0));
     assert!(read.x[[1, 1]].is_nan() && read.x[[2, 1]].is_nan());
     assert_eq!(
@@ -293,14 +297,18 @@ fn voltages_alone_keep_every_row() {
         (vec![false, false, true], 1, 1, vec![0.0, 1.0, 2.0])
     );
     assert_eq!(read.recordings[0].rows, 0..3);
-    let none = read_inputs(&folder.file("b.csv", "P1,P2\n"), &inputs, false).unwrap();
+    let none = read_inputs(&folder.file("b.csv", "P1,P2\n"), &inputs, false, &plain()).unwrap();
     assert_eq!((none.x.dim(), none.recordings.len()), ((0, 2), 0));
-    assert!(read_inputs(&path, &[], false).is_err());
+    assert!(read_inputs(&path, &[], false, &plain()).is_err());
 }
 
 fn streamed(text: &str, drop_invalid: bool) -> Result<Vec<(Row, Vec<f64>)>, String> {
+    streamed_as(text, drop_invalid, &plain())
+}
+
+fn streamed_as(text: &str, drop_invalid: bool, log: &LogReading) -> Result<Vec<(Row, Vec<f64>)>, String> {
     let inputs = ["P1", "P2"].map(str::to_owned);
-    let mut stream = RowStream::new(text.as_bytes(), "-", &inputs, drop_invalid).map_err(|why| why.to_string())?;
+    let mut stream = RowStream::new(text.as_bytes(), "-", &inputs, drop_invalid, log).map_err(|why| why.to_string())?;
     let mut rows = Vec::new();
     let mut x = vec![0.0; 2];
     while let Some(row) = stream.next_row(&mut x).map_err(|why| why.to_string())? {
@@ -314,7 +322,7 @@ fn a_stream_gives_what_the_table_gives() {
     let text = "\u{feff}note,P2,time_s,P1,sensor_status\r\n\"a, b\",2,0,1,ok\r\n\r\n,,0.04,1.5,\"saturated: P1, P2\"\r\nx,\"3\",0.02,-1e-3,saturated: P7";
     let rows = streamed(text, false).unwrap();
     let folder = Folder::new();
-    let table = read_inputs(&folder.file("a.csv", text), &["P1", "P2"].map(str::to_owned), false).unwrap();
+    let table = read_inputs(&folder.file("a.csv", text), &["P1", "P2"].map(str::to_owned), false, &plain()).unwrap();
     assert_eq!(rows.len(), 3);
     for (k, (row, x)) in rows.iter().enumerate() {
         assert_eq!(row.time_s, table.time_s[k]);
@@ -345,7 +353,6 @@ fn a_streams_faults_are_told_with_their_line_or_dropped() {
         ("", "is empty"),
         ("P1,p2\n", "no column `P2`; is it `p2`?"),
         ("P1,P2,P1\n", "two columns are named `P1`"),
-        ("P1,P2,led\n", "has a column `led`"),
         ("0.1,0.2\n", "line 1 holds numbers"),
     ] {
         let said = streamed(header, true).unwrap_err();
@@ -410,4 +417,98 @@ fn columns_named_twice_are_told_with_where() {
     assert!(said.contains("holds numbers where the names"), "{said}");
     let dead = read("P1,J2_deg\n1e-300,2\n1e-300,3\n", &angle()).unwrap();
     assert!(dead.warnings[0].contains("P1 is 1e-300 V in all 2 rows"), "{:?}", dead.warnings);
+}
+
+/// What a log calls its columns.
+fn called(columns: &str) -> LogReading {
+    LogReading { columns: Columns::parse(columns).unwrap(), ..plain() }
+}
+
+#[test]
+fn a_log_is_one_whatever_its_led_and_columns_are_called() {
+    let folder = Folder::new();
+    let of = |name: &str, from: &str, to: &str| folder.file(name, modulated(400).replacen(from, to, 1));
+    let same = read_data(&[folder.file("log.csv", modulated(400))], &forces()).unwrap();
+    // Unlit rows are light of the room in all of them.
+    let capital = read_data(&[of("a.csv", "led", "LED")], &forces()).unwrap();
+    assert_eq!((capital.data.x(), capital.files[0].rows), (same.data.x(), 200));
+    let other = of("b.csv", "time_s,led,P1,P2,P3,Fx_N,Fy_N,Fz_N", "stamp,lamp,ch_3,ch_4,ch_5,fx,fy,load");
+    let log = called("time_s=stamp,led=lamp,P1=ch_3,P2=ch_4,P3=ch_5,Fz_N=load");
+    let named = read_data(&[other.clone()], &Wanted { log: log.clone(), ..forces() }).unwrap();
+    assert_eq!((named.data.x(), named.data.y()), (same.data.x(), same.data.y()));
+    let inputs = ["P1", "P3"].map(str::to_owned);
+    let alone = read_inputs(&other, &inputs, false, &log).unwrap();
+    assert_eq!(alone.time_s.len(), 200);
+    let rule = "interpolated between the unlit samples";
+    assert!(alone.notes.iter().any(|note| note.contains(rule)), "{:?}", alone.notes);
+}
+
+#[test]
+fn a_streams_lit_rows_are_less_the_unlit_rows_before_them() {
+    let rows = "0,0,1,2,0.5\n0.04,1,3,5,0.5\n0.08,0,1.5,,0.5\n0.12,1,4,5,0.5\n0.16,,9,9,0.5\n0.2,1,4,5,0.5\n";
+    let text = format!("time_s,led,P1,P2,x\n{rows}");
+    let read = streamed(&text, false).unwrap();
+    let volts: Vec<f64> = read.iter().flat_map(|(_, x)| x.clone()).collect();
+    assert_eq!(format!("{volts:?}"), "[2.0, 3.0, 2.5, NaN, 2.5, NaN]");
+    assert_eq!(read.iter().map(|(row, _)| row.time_s).collect::<Vec<_>>(), [0.04, 0.12, 0.2]);
+    assert_eq!(read.iter().map(|(row, _)| row.begins).collect::<Vec<_>>(), [true, false, false]);
+    // Without a time rows are counted; under other names it is the same.
+    let untimed = streamed("led,P1,P2\n0,1,2\n1,3,5\n", false).unwrap();
+    assert_eq!(untimed[0].1, [2.0, 3.0]);
+    let log = called("time_s=t,led=lamp,P1=b,P2=a");
+    let named = streamed_as("t,lamp,a,b\n0,0,2,1\n40,1,5,3\n", false, &log).unwrap();
+    assert_eq!((named[0].1.clone(), named[0].0.time_s), (vec![2.0, 3.0], 40.0));
+    let said = streamed("time_s,led,P1,P2\n0,2,1,1\n", false).unwrap_err();
+    assert!(said.contains("-:2: column `led`: `2` is neither 1 (on) nor 0 (off)"), "{said}");
+    // Another session knows nothing of the light before.
+    let other = streamed("time_s,led,P1,P2,session\n0,0,1,1,a\n0.04,1,2,2,b\n", false).unwrap();
+    assert!(other[0].1.iter().all(|v| v.is_nan()) && other[0].0.begins, "{other:?}");
+    // The range is known only where it is given.
+    let mut log = called("");
+    log.ambient.full_scale_v = Some([0.0, 4.0]);
+    let full = streamed_as(&text, false, &log).unwrap();
+    assert_eq!(full.iter().map(|(row, _)| row.faulty).collect::<Vec<_>>(), [true, true, true]);
+    let notes = {
+        let inputs = ["P1".to_owned()];
+        let mut stream = RowStream::new(text.as_bytes(), "-", &inputs, false, &plain()).unwrap();
+        let first = stream.notes();
+        let mut x = [0.0];
+        while stream.next_row(&mut x).unwrap().is_some() {}
+        [first, stream.notes()].concat()
+    };
+    assert!(notes[0].contains("the unlit row before it is taken away") && notes[1].contains("1 rows do not say"));
+}
+
+#[test]
+fn a_file_that_cant_be_read_costs_itself_where_that_is_asked_for() {
+    let folder = Folder::new();
+    let good = folder.file("good.csv", "P1,J2_deg\n1,2\n2,3\n");
+    let bad = folder.file("bad.csv", "P1,J2_deg\n1,x\n");
+    let lost = folder.0.path().join("lost.csv");
+    let all = [bad.clone(), good.clone(), lost];
+    assert!(read_data(&all, &angle()).unwrap_err().to_string().contains("bad.csv:2"));
+    let wanted = Wanted { skip_failed: true, ..angle() };
+    let read = read_data(&all, &wanted).unwrap();
+    assert_eq!((read.data.rows(), read.files.len(), read.failed.len()), (2, 1, 2));
+    assert!(read.failed[0].why.contains("bad.csv:2: column `J2_deg`") && read.failed[1].name.ends_with("lost.csv"));
+    assert_eq!(read.data.recordings()[0].name, good.display().to_string());
+    assert!(read_data(&[bad], &wanted).unwrap_err().to_string().contains("bad.csv:2"));
+}
+
+#[test]
+fn a_hundred_thousand_columns_are_read_in_time_that_grows_with_them() {
+    // Looked up one by one they took 12 s, and minutes without optimization.
+    const COLUMNS: usize = 100_000;
+    let names: Vec<String> = (1..=COLUMNS).map(|k| format!("P{k}")).collect();
+    let header = names.join(",");
+    let row = "0.5,".repeat(COLUMNS);
+    let table = read(format!("{header},J2_deg\n{row}1\n{row}2\n"), &angle()).unwrap();
+    assert_eq!((table.data.inputs().len(), table.data.rows()), (COLUMNS, 2));
+    let folder = Folder::new();
+    let log = folder.file("log.csv", format!("time_s,led,{header},Fz_N\n0,1,{row}-1\n1,0,{row}-1\n2,1,{row}-1\n"));
+    let wanted = Wanted { targets: vec!["Fz_N".to_owned()], keep_faults: true, ..Wanted::default() };
+    assert!(read_data(&[log], &wanted).unwrap_err().to_string().contains("no row can be used"));
+    let text = format!("{header}\n{row}\n");
+    let mut stream = RowStream::new(text.as_bytes(), "-", &names, true, &plain()).unwrap();
+    assert!(stream.next_row(&mut vec![0.0; COLUMNS]).unwrap().is_some());
 }

@@ -24,7 +24,7 @@ use serde::Serialize;
 
 use super::Numbers;
 use crate::files::{Staging, WriteError};
-use crate::log::{AmbientError, LogError};
+use crate::log::LogError;
 use crate::stages::{Stage, Stages};
 use crate::table::TableError;
 pub use curve::{Curve, Point, Source};
@@ -94,9 +94,6 @@ pub enum ResponsesError {
     /// A log can't be read.
     #[error(transparent)]
     Log(#[from] LogError),
-    /// A log has no lit rows.
-    #[error(transparent)]
-    Ambient(#[from] AmbientError),
     /// A file lacks a column.
     #[error("{}: {what}", path.display())]
     Columns {

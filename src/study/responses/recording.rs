@@ -6,8 +6,8 @@
 use std::path::{Path, PathBuf};
 
 use super::ResponsesError;
-use crate::log::{AmbientOptions, Channel, Columns, Log, samples};
-use crate::table::{Table, TableError, column_names};
+use crate::log::{Channel, LogReading};
+use crate::table::{Table, TableError};
 
 /// Forces and angles that are read where they are there.
 const MOVES: [&str; 6] = ["Fx_N", "Fy_N", "Fz_N", "J1_deg", "J2_deg", "J3_deg"];
@@ -35,11 +35,7 @@ impl Recording {
     /// # Errors
     /// [`ResponsesError`] where the file can't be read or a column is missing.
     pub fn read(path: &Path, name: &str, drive: &str) -> Result<Self, ResponsesError> {
-        let raw = match column_names(path) {
-            Ok(names) => names.iter().any(|name| name == "led"),
-            Err(TableError::Extension(_)) => true,
-            Err(why) => return Err(why.into()),
-        };
+        let raw = LogReading::default().is_log(path)?;
         let mut found = if raw { Self::of_log(path, name)? } else { Self::of_table(path, name)? };
         found.outputs.sort_by_key(|channel| number_of(&channel.name));
         let refused = |what: String| ResponsesError::Columns { path: PathBuf::from(name), what };
@@ -88,8 +84,7 @@ impl Recording {
     }
 
     fn of_log(path: &Path, name: &str) -> Result<Self, ResponsesError> {
-        let log = Log::read(path, &Columns::default())?;
-        let lit = samples(&log, &AmbientOptions::default())?;
+        let lit = LogReading::default().lit_rows(path)?.samples;
         let mut outputs: Vec<Channel> =
             lit.photodiodes.into_iter().filter(|channel| number_of(&channel.name).is_some()).collect();
         let faulty: Vec<bool> = lit.faults.iter().map(|words| !words.is_empty()).collect();

@@ -23,7 +23,7 @@ pub enum FitFault {
     Deficient(Vec<String>),
     /// A coefficient beyond a number.
     #[error(
-        "what {target} has of {term} is beyond 1e308: {term} is too small (or {target} too large) to be told in these units; scale it"
+        "what {target} has of {term} is beyond what a number can hold (1e-308 to 1e308): {term} is too small or too large beside {target}; write them in volts and newtons"
     )]
     Range {
         /// The term.

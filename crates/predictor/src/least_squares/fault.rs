@@ -60,7 +60,9 @@ pub enum LeastSquaresFault {
     #[error("the normal equations can't be inverted; use the orthogonal solver")]
     Singular,
     /// A result is beyond what a number can hold.
-    #[error("the coefficient of column {column} for target {target} is beyond 1e308; scale the column or the target")]
+    #[error(
+        "the coefficient of column {column} for target {target} is beyond 1e308 or below 1e-308; scale the column or the target"
+    )]
     Range {
         /// The column.
         column: usize,

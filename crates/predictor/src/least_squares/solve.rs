@@ -15,6 +15,9 @@ use crate::svd::modes;
 /// Takes part in a dependence: above this share of the column's length. Shares of those that do not are rounding, some 1e-12.
 const PART: f64 = 1e-6;
 
+/// A coefficient may lose so much below the smallest number, as a share of the target's largest value: 2^-40, assumed; far below any noise.
+const LOST: f64 = 1.0 / (1u64 << 40) as f64;
+
 /// Takes part in the weakest direction: above this share of its largest component.
 const WEAK: f64 = 0.1;
 
@@ -125,7 +128,9 @@ pub(crate) fn solve(
         for j in 0..count {
             let e = units(k) - problem.exponents[j];
             let value = ldexp(x[1 + j].rounded(), e);
-            if !value.is_finite() {
+            // What of the target is lost where a number holds no coefficient that small, in units of its largest value.
+            let lost = (ldexp(value, -e) - x[1 + j].rounded()).abs();
+            if !(value.is_finite() && lost <= LOST) {
                 return Err(LeastSquaresFault::Range { column: j, target: k });
             }
             coefficients[[k, j]] = value;

@@ -304,7 +304,7 @@ mod tests {
         let spiral = Spiral::default();
         assert!((spiral.shortest_printed_s() - 141.371_669_4).abs() <= 1e-6);
         assert_eq!(spiral.shortest_true_s(), 2.0 * spiral.shortest_printed_s());
-        // 2 N rather than 3 N: less than half as long (5.2.3 rounds to 80 s).
+        // 2 N rather than 3 N: less than half as long. The 80 s of 5.2.3 are not this but its share of the 180 s chosen: 180 (2/3)^2.
         assert!((Spiral { fz_max_n: 2.0, ..spiral }.shortest_printed_s() - 62.831_853_1).abs() <= 1e-6);
         // With the soft start: the rate at that T is f_c, and just before it is more.
         let shortest_s = spiral.shortest_s();

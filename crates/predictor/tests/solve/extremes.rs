@@ -86,6 +86,9 @@ fn huge_and_tiny_values_are_values() {
     }
     let fault = fit(&x.mapv(|v| v * 1e-300), &y.mapv(|v| v * 1e300), Deficient::Refuse).unwrap_err();
     assert_eq!(fault, LeastSquaresFault::Range { column: 0, target: 0 });
+    // Below what a number holds it is no 0: that would be a model that says nothing.
+    let fault = fit(&x.mapv(|v| v * 1e300), &y.mapv(|v| v * 1e-300), Deficient::Refuse).unwrap_err();
+    assert_eq!(fault, LeastSquaresFault::Range { column: 0, target: 0 });
     // Both ends in one column.
     let mut wild = x;
     wild[[3, 1]] = f64::MAX;

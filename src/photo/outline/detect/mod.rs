@@ -10,7 +10,7 @@
 //! may be fingers and [`tips`] their ends; [`patch`] the picture in a finger's or nail's own frame; [`shape`] the template
 //! and [`evidence`] how well it fits there; [`search`] where it fits best, on a finger's end or anywhere on a close-up;
 //! [`refine`] the outline by dynamic programming around the template; [`candidate`] all of it for one place, with the
-//! figures that the confidence is made from. Three small networks ([`net`]) weigh the evidence; `training` makes them.
+//! figures that the confidence is made from. Five small networks ([`net`]: border, scorer, three judges) weigh the evidence; `training` makes them.
 //!
 //! What it does not do: nails seen from the side, painted nails with a pattern, and fingers folded onto skin of the same
 //! colour are mostly not found. The outline ends at the hyponychium where the free edge can be told from the bed.

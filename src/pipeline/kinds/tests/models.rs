@@ -333,3 +333,38 @@ fn who_lacks_a_recording_is_left_out_of_a_comparison_and_told() {
     let why = job("compare", stage).run(&work).unwrap_err().to_string();
     assert!(why.contains("nobody has all six recordings") && why.contains("set1 is 0.csv as well as 1.csv"), "{why}");
 }
+
+#[test]
+fn a_log_is_fitted_alike_raw_and_labelled_and_under_other_names() {
+    let dir = tempfile::tempdir().unwrap();
+    let place = Place { folder: dir.path().to_owned(), threads: 2 };
+    place.log("raw", 1);
+    let log = std::fs::read_to_string(place.path("raw/log.csv")).unwrap();
+    std::fs::write(place.path("other.csv"), log.replacen("P1", "ch_1", 1).replacen("led", "lamp", 1)).unwrap();
+    let run = |kind: &str, stage: &str, parts: &[&'static str], inputs: Vec<At>, out: &str| {
+        let folder = place.path(out);
+        std::fs::create_dir_all(&folder).unwrap();
+        let stop = AtomicBool::new(false);
+        let demand = Demand { parts: parts.iter().copied().collect(), ..Demand::default() };
+        let work = Work { inputs, folder: &folder, before: None, threads: 2, stop: &stop };
+        let job = prepare(kind, stage).expect("good keys").job(&Keys::default(), &demand);
+        job.run(&work).unwrap_or_else(|why| panic!("{out}: {why:#}"))
+    };
+    let inputs = vec![place.at("joints", "raw/truth/angles.csv", &[]), place.at("log", "raw/log.csv", &[])];
+    run("align", "", &["training"], inputs, "aligned");
+    let stage = "free = ['k_C']\nforce = 'Fz_N'\narea_cm2 = 10\nphotodiode = { P1 = 1 }\nstarts = 1";
+    let fit = |name: &str, more: &str, out: &str| {
+        let made = run("fit", &format!("{stage}{more}"), &["params"], vec![place.at("recordings", name, &[])], out);
+        (made.report["r2"].as_f64().expect("R2"), made.report["values"].clone())
+    };
+    let (raw, labelled) = (fit("raw/log.csv", "", "of-raw"), fit("aligned/training.csv", "", "of-set"));
+    // The raw log's time begins at 0 there.
+    assert!((raw.0 - labelled.0).abs() <= 1e-6 && raw.1 == labelled.1, "{raw:?} {labelled:?}");
+    let other = fit("other.csv", "\ncolumns = { P1 = 'ch_1', led = 'lamp' }", "of-other");
+    assert_eq!(other, raw);
+    let said = prepare("fit", &format!("{stage}\ncolumns = 'P1'")).err().expect("no columns");
+    assert_eq!(said.key, "columns");
+    let plain = prepare("fit", stage).unwrap().options(&Demand::default());
+    let named = prepare("fit", &format!("{stage}\nfull_scale = '0,10'")).unwrap().options(&Demand::default());
+    assert!(plain.get("log").is_none() && plain != named, "{named}");
+}

@@ -1,8 +1,10 @@
 //! What align writes into `sensor_status`: `ok`, `saturated: P1, P3`, `no ambient: P2`, `no ambient` (of all), several joined by `; `.
 
+use std::collections::HashSet;
+
 /// What a status means for the photodiodes in use.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Verdict {
+pub(crate) enum Verdict {
     /// Nothing is wrong with any in use.
     Sound,
     /// One in use is saturated or without ambient light.
@@ -13,19 +15,19 @@ pub(super) enum Verdict {
 
 /// Reads statuses; neighbouring rows mostly have the same one, which is read once.
 #[derive(Debug)]
-pub(super) struct Statuses<'a> {
-    inputs: &'a [String],
+pub(crate) struct Statuses<'a> {
+    inputs: HashSet<&'a str>,
     last: (Vec<u8>, Verdict),
 }
 
 impl<'a> Statuses<'a> {
     /// For the photodiodes in use.
-    pub(super) fn new(inputs: &'a [String]) -> Self {
-        Self { inputs, last: (Vec::new(), Verdict::Sound) }
+    pub(crate) fn new(inputs: &'a [String]) -> Self {
+        Self { inputs: inputs.iter().map(String::as_str).collect(), last: (Vec::new(), Verdict::Sound) }
     }
 
     /// What a status means.
-    pub(super) fn read(&mut self, status: &str) -> Verdict {
+    pub(crate) fn read(&mut self, status: &str) -> Verdict {
         if self.last.0 != status.as_bytes() {
             self.last.0.clear();
             self.last.0.extend_from_slice(status.as_bytes());
@@ -40,7 +42,7 @@ impl<'a> Statuses<'a> {
             let (what, whose) = part.split_once(':').map_or((part, None), |(what, whose)| (what.trim(), Some(whose)));
             if !matches!(what, "saturated" | "no ambient") {
                 all = if all == Verdict::Fault { all } else { Verdict::Unknown };
-            } else if whose.is_none_or(|whose| whose.split(',').any(|p| self.inputs.iter().any(|i| i == p.trim()))) {
+            } else if whose.is_none_or(|whose| whose.split(',').any(|p| self.inputs.contains(p.trim()))) {
                 all = Verdict::Fault;
             }
         }

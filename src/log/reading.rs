@@ -1,0 +1,83 @@
+//! The road from a file to rows of the LED's own light, for every job that works on logs.
+//!
+//! In: a file, and what the user says about it. Out: whether it is a log ([`LogReading::is_log`]) or a table of rows that are ready to be used
+//! (as `lunula align` and `lunula simulate` write them); of a log its lit rows, faults flagged ([`LogReading::lit_rows`]).
+
+use std::path::Path;
+
+use super::columns::is_led;
+use super::{AmbientOptions, Columns, Log, LogError, LogHeader, Samples, TimeUnit, samples};
+use crate::table::{TableError, column_names};
+
+/// What the user says about a log; the default says nothing.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct LogReading {
+    /// What its columns are called.
+    pub columns: Columns,
+    /// How the ambient light is taken away and what counts as saturated.
+    pub ambient: AmbientOptions,
+}
+
+/// The lit rows of a log.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LitRows {
+    /// The rows, less the ambient light, and what is worth saying on that.
+    pub samples: Samples,
+    /// What is worth saying on the file.
+    pub notes: Vec<String>,
+}
+
+impl LogReading {
+    /// Whether a file is read as a log: it has a column that says when the LED was on, is no CSV or Parquet table by its name, or the user says
+    /// something about logs.
+    ///
+    /// # Errors
+    /// A table that is missing or damaged.
+    pub fn is_log(&self, path: &Path) -> Result<bool, TableError> {
+        if *self != Self::default() {
+            return Ok(true);
+        }
+        match column_names(path) {
+            Ok(names) => Ok(self.has_led(&names)),
+            Err(TableError::Extension(_)) => Ok(true),
+            Err(why) => Err(why),
+        }
+    }
+
+    /// Whether one of these columns says when the LED was on.
+    pub(crate) fn has_led(&self, names: &[String]) -> bool {
+        names.iter().any(|name| is_led(name))
+    }
+
+    /// The columns of a stream of rows under the contract's names, how many of its time units make a second, and what was guessed.
+    ///
+    /// # Errors
+    /// A column that is named and not there, or could be several, in words.
+    pub(crate) fn renamed(&self, names: &[String]) -> Result<(Vec<String>, f64, Vec<String>), String> {
+        let choice = self.columns.found(names, &[])?;
+        let mut renamed = names.to_vec();
+        for &(role, at) in &choice.columns {
+            renamed[at] = role.name();
+        }
+        Ok((renamed, choice.time_unit.map_or(1.0, TimeUnit::a_second), choice.notes))
+    }
+
+    /// Whether a file's LED goes on and off; none where that can't be told.
+    pub(crate) fn led_of(&self, path: &Path) -> Option<bool> {
+        match self.is_log(path) {
+            Ok(true) => LogHeader::read(path, &self.columns).ok().map(|header| header.led),
+            Ok(false) => Some(false),
+            Err(_) => None,
+        }
+    }
+
+    /// Reads a log and takes the ambient light away.
+    ///
+    /// # Errors
+    /// [`LogError`].
+    pub fn lit_rows(&self, path: &Path) -> Result<LitRows, LogError> {
+        let log = Log::read(path, &self.columns)?;
+        let samples = samples(&log, &self.ambient)?;
+        Ok(LitRows { notes: log.notes, samples })
+    }
+}
