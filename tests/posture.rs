@@ -232,6 +232,49 @@ fn zero_angles_are_subtracted() {
 }
 
 #[test]
+fn reversed_flexion_is_warned_of_before_all_else() {
+    let dir = scene(&[]);
+    let report = posture(&dir, &["--no-figures", "--json"]).expect(0).json();
+    assert!(!report["warnings"].to_string().contains("can't have"), "{report}");
+    assert!(report["joints"].as_array().is_some_and(|joints| joints.iter().all(|joint| joint["outside"] == 0)));
+    let markers = std::fs::read_to_string(dir.path("scene/markers.toml")).expect("text");
+    // A note of the marker file, which comes after.
+    let markers = markers.replace("\n[segments]", "spare = \"#000000\"\n\n[segments]");
+    dir.write("scene/markers.toml", markers.replace("\"clockwise\"", "\"counterclockwise\""));
+    let report = posture(&dir, &["--no-figures", "--json"]).expect(0).says("can't have").json();
+    let first = report["warnings"][0].as_str().expect("a warning");
+    for words in ["J2 is outside of -20 to 120 degrees", "flexion = \"clockwise\"", "mirrored"] {
+        assert!(first.contains(words), "`{words}` is not in: {first}");
+    }
+    assert!(report["joints"][1]["outside"].as_u64().is_some_and(|count| count > 30), "{report}");
+}
+
+#[test]
+fn a_single_marker_has_tracks_and_no_angles() {
+    let dir = scene(&["--colours", "distinct"]);
+    let markers = std::fs::read_to_string(dir.path("scene/markers.toml")).expect("text");
+    let line = |line: &&str| line.starts_with("distal_dist = ") || line.starts_with("hand_prox = ");
+    let two: Vec<&str> = markers.lines().filter(line).collect();
+    for count in [1, 2] {
+        dir.write("scene/markers.toml", format!("[markers]\n{}\n", two[..count].join("\n")));
+        posture(&dir, &["--tracks", "tracks.csv"]).expect(0);
+        assert_eq!(
+            dir.table("joints.csv")[0].keys().cloned().collect::<Vec<_>>(),
+            ["clock_s", "frame", "status", "time_s"]
+        );
+        let truth = dir.table("scene/truth/tracks.csv");
+        let tracks = dir.table("tracks.csv");
+        assert_eq!(tracks.len(), count * dir.table("joints.csv").len());
+        for row in &tracks {
+            let exact =
+                truth.iter().find(|t| t["frame"] == row["frame"] && t["marker"] == row["marker"]).expect("truth");
+            let off = ["x_px", "y_px"].map(|c| number(row, c).unwrap() - number(exact, c).unwrap());
+            assert!(off[0].hypot(off[1]) <= 1.0, "frame {} {}: {off:?}", row["frame"], row["marker"]);
+        }
+    }
+}
+
+#[test]
 fn a_plan_says_what_is_left_out_and_does_nothing() {
     let dir = scene(&[]);
     let plan = dir

@@ -24,6 +24,7 @@ mod method;
 mod naming;
 mod overlay;
 mod plan;
+mod plausible;
 mod report;
 mod results;
 mod rough;

@@ -118,6 +118,8 @@ pub struct JointReport {
     pub max_deg: Option<f64>,
     /// The root mean square of the standard errors.
     pub sd_deg: Option<f64>,
+    /// Frames whose angle a finger can't have.
+    pub outside: u64,
     /// What the smoother took the angles for; none where it did not run or had too few.
     pub smoothing: Option<SmoothModel>,
 }
@@ -158,6 +160,8 @@ pub struct SearchReport {
 #[derive(Debug, Clone, Default)]
 pub(super) struct MarkerSums {
     seen: u64,
+    /// The first frame that shows it.
+    pub(super) first_frame: Option<u64>,
     lost: [u64; LOSSES.len()],
     radius_px: f64,
     variance_px2: f64,
@@ -188,7 +192,7 @@ impl JointSums {
         self.variance_rad2 += angle.sd_rad.powi(2);
     }
 
-    pub(super) fn report(&self, name: &str) -> JointReport {
+    pub(super) fn report(&self, name: &str, outside: u64) -> JointReport {
         let known = |rad: f64| (self.frames > 0).then(|| rad.to_degrees());
         JointReport {
             joint: name.to_owned(),
@@ -196,6 +200,7 @@ impl JointSums {
             min_deg: known(self.min_rad),
             max_deg: known(self.max_rad),
             sd_deg: known((self.variance_rad2 / self.frames as f64).sqrt()),
+            outside,
             smoothing: self.smoothing,
         }
     }
@@ -211,9 +216,10 @@ const LOSSES: [(Loss, &str); 5] = [
 ];
 
 impl MarkerSums {
-    pub(super) fn add(&mut self, sight: &Sight) {
+    pub(super) fn add(&mut self, frame: u64, sight: &Sight) {
         match sight {
             Sight::Seen(centre) => {
+                self.first_frame.get_or_insert(frame);
                 self.seen += 1;
                 self.radius_px += centre.radius_px;
                 self.variance_px2 += centre.sd_px().powi(2);

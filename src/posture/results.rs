@@ -9,6 +9,7 @@ use super::job::{Outputs, PostureError, PostureOptions};
 use super::joints::{Angle, AngleRow};
 use super::layout::Layout;
 use super::overlay::{Drawing, Mark, Overlay};
+use super::plausible::Plausibility;
 use super::report::{
     CouplingReport, FrameCounts, JointReport, JointSums, MarkerReport, MarkerSums, PostureReport, in_words,
 };
@@ -71,6 +72,7 @@ pub(super) struct Results<'a> {
     pub(super) frames: FrameCounts,
     pub(super) markers: Vec<MarkerSums>,
     pub(super) angles: Vec<JointSums>,
+    pub(super) plausibility: Plausibility,
 }
 
 impl<'a> Results<'a> {
@@ -112,6 +114,7 @@ impl<'a> Results<'a> {
             frames: FrameCounts::default(),
             markers: vec![MarkerSums::default(); layout.markers.len()],
             angles: vec![JointSums::default(); layout.joints.len()],
+            plausibility: Plausibility::new(&layout.joints),
         })
     }
 
@@ -121,7 +124,7 @@ impl<'a> Results<'a> {
         self.frames.undecoded += u64::from(row.frame.is_none());
         self.frames.complete += u64::from(row.joints.lost.is_empty());
         for &marker in &self.needed {
-            self.markers[marker].add(&row.sights[marker]);
+            self.markers[marker].add(row.index, &row.sights[marker]);
         }
         self.write_tracks(&row)?;
         match &mut self.held {
@@ -186,6 +189,7 @@ impl<'a> Results<'a> {
         for (sums, angle) in self.angles.iter_mut().zip(&row.angles) {
             sums.add(angle.as_ref());
         }
+        self.plausibility.add(&row.angles);
         self.figures.push(time_s, &row.angles);
         let status = row.status(self.layout);
         let mut cells =
@@ -233,7 +237,8 @@ impl<'a> Results<'a> {
     }
 
     pub(super) fn joint_reports(&self) -> Vec<JointReport> {
-        self.layout.joints.iter().zip(&self.angles).map(|(joint, sums)| sums.report(&joint.name)).collect()
+        let joints = self.layout.joints.iter().zip(&self.angles).enumerate();
+        joints.map(|(k, (joint, sums))| sums.report(&joint.name, self.plausibility.outside(k))).collect()
     }
 
     pub(super) fn coupling(&self) -> Option<CouplingReport> {

@@ -50,7 +50,9 @@ pub(super) fn check(text: &str, path: &Path) -> Result<Layout, Vec<LayoutFault>>
     if !findings.is_empty() {
         return Err(faults(findings));
     }
+    let before = |segment: usize| joints.iter().find(|(_, pair)| pair[1] == segment).map(|(_, pair)| pair[0]);
     Ok(Layout {
+        hung_on: (0..segments.len()).map(before).collect(),
         flexion,
         markers,
         segments: segments.into_iter().map(|(name, markers)| Segment { name, markers }).collect(),

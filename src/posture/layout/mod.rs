@@ -71,6 +71,8 @@ pub struct Layout {
     pub segments: Vec<Segment>,
     /// The wanted joints, in the file's order.
     pub joints: Vec<Joint>,
+    /// For each segment the one before it on the finger, by the file's joints, wanted or not.
+    pub hung_on: Vec<Option<usize>>,
     /// For each marker, where it is in the first frame, on the shown picture, where the file says.
     pub start: Vec<Option<[f64; 2]>>,
     /// The clock in the picture.
@@ -179,35 +181,6 @@ impl Layout {
     pub fn markers_of(&self, joint: &Joint) -> [usize; 4] {
         let [a, b] = joint.segments.map(|s| self.segments[s].markers);
         [a[0], a[1], b[0], b[1]]
-    }
-
-    /// The needed markers in their order along the finger, proximal first, each once.
-    ///
-    /// A segment's first marker comes before its second, a joint's proximal segment before its distal one; what this leaves
-    /// open follows the order of `[segments]`, then of `[markers]`.
-    #[must_use]
-    pub fn chain(&self) -> Vec<usize> {
-        let needed = self.needed();
-        // In the order of preference where nothing else is known.
-        let mut waiting: Vec<usize> = Vec::new();
-        for marker in self.segments.iter().flat_map(|s| s.markers).chain(0..self.markers.len()) {
-            if needed[marker] && !waiting.contains(&marker) {
-                waiting.push(marker);
-            }
-        }
-        let mut before: Vec<[usize; 2]> = self.segments.iter().map(|s| s.markers).collect();
-        for joint in &self.joints {
-            let [a, b, c, d] = self.markers_of(joint);
-            before.extend([[a, c], [a, d], [b, c], [b, d]].into_iter().filter(|[p, q]| p != q));
-        }
-        let mut chain = Vec::with_capacity(waiting.len());
-        while !waiting.is_empty() {
-            let is_next = |m: &usize| !before.iter().any(|[p, q]| q == m && p != m && waiting.contains(p));
-            // A ring of segments has no most proximal marker: the preferred one starts.
-            let next = waiting.iter().position(is_next).unwrap_or(0);
-            chain.push(waiting.remove(next));
-        }
-        chain
     }
 }
 

@@ -147,7 +147,10 @@ impl Scene<'_> {
                 cost.shape += 6.0;
             }
         }
-        if rigid && let Some(segment) = links.iter().find(|other| other.rigid) {
+        if rigid
+            && self.chain.links[place].bends
+            && let Some(segment) = links.iter().find(|other| other.rigid)
+        {
             let turn = self.flexion * angle(segment.vector, link);
             if turn < (-60f64).to_radians() {
                 cost.shape += 3.0;

@@ -77,3 +77,104 @@ fn one_marker_is_a_file_without_segments() {
     assert!(layout.segments.is_empty());
     assert!(layout.markers[0].name.starts_with("pink"), "{text}");
 }
+
+#[test]
+#[ignore = "dump"]
+fn dump_candidates() {
+    let videos = std::env::var("DUMP_VIDEOS").unwrap();
+    for path in videos.split(':') {
+        let mut video = crate::video::Video::open(Path::new(path), 2).unwrap();
+        let info = video.info().clone();
+        let mut finder = Finder::default();
+        let mut found = Vec::new();
+        println!("V,{path},{},{}", info.format.width, info.format.height);
+        while let Some(item) = video.next_item().unwrap() {
+            let crate::video::Item::Frame(frame) = item else { continue };
+            if frame.index % 5 > 1 {
+                continue;
+            }
+            finder.load(&frame, None);
+            for (k, paint) in palette(&info).iter().enumerate() {
+                finder.find(&frame, paint, &mut found);
+                for blob in &found {
+                    if blob.contrast < 0.15 || blob.at_the_border || blob.radius_px() < 2.0 {
+                        continue;
+                    }
+                    let point = crate::posture::naming::Point::new(frame.index, blob);
+                    let ring = crate::posture::track::loose_look(&frame, &point).background;
+                    println!(
+                        "B,{},{k},{:.1},{:.1},{:.1},{:.3},{:.2},{:.2},{:.0},{:.0},{:.0},{:.0},{:.0},{:.0}",
+                        frame.index,
+                        blob.at_px[0],
+                        blob.at_px[1],
+                        blob.radius_px(),
+                        blob.contrast,
+                        blob.elongation,
+                        blob.fill,
+                        blob.colour[0],
+                        blob.colour[1],
+                        blob.colour[2],
+                        ring[0],
+                        ring[1],
+                        ring[2]
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// The suggestion from frames of these stages.
+fn suggested(stages: &[Stage]) -> Result<String, SuggestError> {
+    let info = stages[0].info();
+    let mut suggester = Suggester::new(&info);
+    for (k, stage) in stages.iter().enumerate() {
+        suggester.look(&stage.picture(k as u64).frame(k as u64 * FIRST_STRIDE, 0.0));
+    }
+    suggester.finish()
+}
+
+/// Places of marks on a finger that bends, in frame `k`.
+fn places(k: usize) -> [[f64; 2]; 4] {
+    let (sin, cos) = (0.2 * k as f64).sin_cos();
+    [[60.0, 60.0], [130.0, 62.0], [190.0, 70.0], [190.0 + 50.0 * cos, 70.0 + 50.0 * sin]]
+}
+
+#[test]
+fn skin_is_no_marker() {
+    let nail = [0xc9, 0x83, 0x78];
+    let with = |ground: [u8; 3], colour: [u8; 3]| -> Vec<Stage> {
+        let stage = |k: usize| {
+            let mut stage = Stage::new(320, 200, ground);
+            places(k).map(|at| drop(stage.disc(at, 8.0, colour)));
+            stage
+        };
+        (0..6).map(stage).collect()
+    };
+    // Fingertips before a wall, and nails on a hand.
+    for (ground, colour) in [(WALL, SKIN), (SKIN, nail)] {
+        assert_eq!(suggested(&with(ground, colour)), Err(SuggestError::Nothing { frames: 6 }));
+    }
+    assert!(suggested(&with(WALL, PINK)).is_ok(), "stickers that move are markers wherever they are");
+}
+
+#[test]
+fn dots_of_one_dark_paint_get_their_places() {
+    let paint = [0x2b, 0x4b, 0x10];
+    let stage = |k: usize| {
+        let mut stage = Stage::new(320, 200, SKIN);
+        // Sizes of dots differ, and a nail lies between them.
+        places(k).iter().zip([7.0, 9.0, 5.5, 6.0]).for_each(|(at, radius)| drop(stage.disc(*at, radius, paint)));
+        stage.disc([100.0, 140.0], 8.0, [0xc9, 0x83, 0x78]);
+        stage
+    };
+    let stages: Vec<Stage> = (0..6).map(stage).collect();
+    let text = suggested(&stages).unwrap();
+    let layout = Layout::parse(&text, Path::new("m.toml")).unwrap();
+    assert_eq!(layout.markers.len(), 4, "{text}");
+    let starts =
+        layout.start.iter().flatten().filter(|start| {
+            places(0).iter().any(|at| (at[0] - start[0]).hypot(at[1] - start[1]) <= START_TOLERANCE_PX)
+        });
+    assert_eq!(starts.count(), 4, "{text}");
+}

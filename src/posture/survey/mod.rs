@@ -7,6 +7,7 @@
 //! A name is given by colour, by the order along the finger, by which way flexion turns, by lengths that must not change,
 //! and by `[start]`, which goes before all. It is given only where the best naming is better by far than any other.
 
+mod begin;
 mod judge;
 mod spots;
 
@@ -29,9 +30,6 @@ const PATIENT_REST: usize = 8;
 const MOST_FRAMES: usize = 300;
 /// Namings kept.
 const MOST_NAMINGS: usize = 200;
-/// A spot further from a `[start]` than this many radii, or this share of the picture's diagonal, is not meant.
-const START_RADII: f64 = 3.0;
-const START_SHARE: f64 = 0.02;
 
 /// Where a marker was first seen.
 #[derive(Debug, Clone, PartialEq)]
@@ -90,17 +88,35 @@ pub(crate) enum SurveyError {
         /// All fit as well from the other end of the finger.
         straight: bool,
     },
+    /// Markers of one colour lie on several fingers.
+    #[error(
+        "can't tell on which finger the markers {} are, for fingers that branch off or lie apart have the same colours; give \
+         their places in the first frame under [start], one on each finger at least",
+        markers.join(", ")
+    )]
+    Branches {
+        /// The markers.
+        markers: Vec<String>,
+    },
     /// There is nothing of a marker's colour where `[start]` has it.
     #[error(
-        "[start] has {marker} at ({:.0}, {:.0}), where the first frame shows nothing of its colour; {}",
+        "[start] has {marker} at ({:.0}, {:.0}), where the first frame has {} and no mark of {colour}{}; correct the place, or \
+         the colour under [markers]",
         at_px[0], at_px[1],
-        nearest_px.map_or("nor anywhere else".to_owned(), |[x, y]| format!("the nearest is at ({x:.0}, {y:.0})"))
+        if *is_mark { format!("a mark of {there}") } else { there.clone() },
+        nearest_px.map_or(", nor is there one anywhere".to_owned(), |[x, y]| format!(" (the nearest is at ({x:.0}, {y:.0}))"))
     )]
     WrongStart {
         /// The marker.
         marker: String,
+        /// Its colour in the marker file.
+        colour: String,
         /// Its place, on the shown picture.
         at_px: [f64; 2],
+        /// The colour that is there.
+        there: String,
+        /// That colour stands out from its surroundings.
+        is_mark: bool,
         /// The nearest spot of its colour, on the shown picture.
         nearest_px: Option<[f64; 2]>,
     },
@@ -187,7 +203,7 @@ impl<'a> Surveyor<'a> {
         }
         self.spots.look(frame, &self.paints, whole, &self.loose);
         if first {
-            self.fix();
+            self.fix(frame);
         }
         let points: Vec<Option<Point>> = self.spots.all.iter().map(|spot| spot.at(frame.index).copied()).collect();
         if points.iter().all(Option::is_none) {
@@ -195,8 +211,13 @@ impl<'a> Surveyor<'a> {
         }
         self.looked.push(frame.index);
         let choices = self.choices();
+        for (missing, fixed) in self.missing.iter_mut().zip(&self.fixed) {
+            // What `[start]` names is there, unless it has gone since.
+            *missing = if fixed.is_some_and(|spot| points[spot].is_some()) { f64::INFINITY } else { MISSING };
+        }
         if whole {
-            for (naming, _) in self.scene(&points, &choices).namings() {
+            for (mut naming, _) in self.scene(&points, &choices).namings() {
+                naming.iter_mut().zip(&self.fixed).for_each(|(spot, fixed)| *spot = fixed.or(*spot));
                 if self.hypotheses.iter().all(|other| other.naming != naming) {
                     self.add(naming, &choices, frame.index);
                 }
@@ -274,41 +295,6 @@ impl<'a> Surveyor<'a> {
     fn progress(&self) -> Progress {
         let sure = self.looked.len() >= LEAST_FRAMES && self.all_named() && self.unsure().is_empty();
         if sure || self.wrong.is_some() || self.looked.len() >= MOST_FRAMES { Progress::Enough } else { Progress::More }
-    }
-
-    /// Gives the places of `[start]` their spots.
-    fn fix(&mut self) {
-        let size = (self.info.format.width, self.info.format.height);
-        let reach = START_SHARE * (size.0 as f64).hypot(size.1 as f64);
-        for place in 0..self.chain.links.len() {
-            let marker = self.chain.links[place].marker;
-            let Some(shown) = self.layout.start[marker] else { continue };
-            let [x, y] = self.info.turn.stored_from_shown(shown, size);
-            let mut near: Vec<(f64, usize)> = (self.spots.all.iter().enumerate())
-                .filter(|(number, spot)| spot.paints[self.paint_of[marker]] && !self.fixed.contains(&Some(*number)))
-                .map(|(number, spot)| {
-                    let at = spot.points[0].at_px;
-                    ((at[0] - x).hypot(at[1] - y), number)
-                })
-                .collect();
-            near.sort_by(|a, b| a.0.total_cmp(&b.0));
-            match near.first() {
-                Some(&(distance, spot))
-                    if distance <= reach.max(START_RADII * self.spots.all[spot].points[0].radius_px) =>
-                {
-                    self.fixed[place] = Some(spot);
-                }
-                nearest => {
-                    let shown_from =
-                        |spot: usize| self.info.turn.shown_from_stored(self.spots.all[spot].points[0].at_px, size);
-                    self.wrong.get_or_insert(SurveyError::WrongStart {
-                        marker: self.layout.markers[marker].name.clone(),
-                        at_px: shown,
-                        nearest_px: nearest.map(|&(_, spot)| shown_from(spot)),
-                    });
-                }
-            }
-        }
     }
 
     /// How long segments are in a naming: the mean of the shortest and longest seen.

@@ -179,6 +179,42 @@ impl Spots {
         }
     }
 
+    /// The number of a new spot at a place of the first frame, of this one of so many paints.
+    pub(super) fn start(&mut self, frame: &Frame<'_>, blob: &Blob, paint: usize, paints: usize) -> usize {
+        self.all.push(Spot {
+            points: vec![Point::new(frame.index, blob)],
+            look: None,
+            paints: (0..paints).map(|number| number == paint).collect(),
+            velocity_px: [0.0; 2],
+        });
+        self.all.len() - 1
+    }
+
+    /// What stands out most from its surroundings at a place, of all these paints.
+    pub(super) fn outstanding(
+        &mut self,
+        frame: &Frame<'_>,
+        at: [f64; 2],
+        reach_px: f64,
+        paints: &[Paint],
+    ) -> Option<Blob> {
+        self.finder.load(frame, Some(Area::about(at, 4.0 * reach_px)));
+        let mut best: Option<Blob> = None;
+        for paint in paints {
+            self.finder.find(frame, paint, &mut self.found);
+            for blob in &self.found {
+                let off = (blob.at_px[0] - at[0]).hypot(blob.at_px[1] - at[1]);
+                if off < reach_px.min(1.2 * blob.radius_px() + 2.0)
+                    && blob.contrast >= LEAST_CONTRAST
+                    && best.is_none_or(|other| other.contrast < blob.contrast)
+                {
+                    best = Some(*blob);
+                }
+            }
+        }
+        best
+    }
+
     /// Learns the looks of the spots that have none, and of those that have some where chroma lies.
     fn learn(&mut self, frame: &Frame<'_>, loose: &[bool]) {
         let siting = Siting::usual(frame);
