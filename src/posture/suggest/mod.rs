@@ -21,8 +21,9 @@ use crate::video::{Frame, Info};
 const HUES: usize = 12;
 /// Distance from grey that spots are measured in, on the scale of 8 bits.
 const DISTANCE: f64 = 40.0;
-/// A spot stands out by this share of it, and by this share of the most outstanding one.
-const LEAST_CONTRAST: f64 = 0.3;
+/// A spot stands out by this share of it (a dark thing beside a real hand does by 0.37), and by this share of the most
+/// outstanding one.
+const LEAST_CONTRAST: f64 = 0.4;
 const LEAST_OF_BEST: f64 = 0.3;
 /// The shape of a marker: a disc seen somewhat from the side or blurred, or a blot of paint.
 const LONGEST: f64 = 2.6;
