@@ -12,15 +12,15 @@ use thiserror::Error;
 
 use super::filmed_clock::FilmedClock;
 use super::joints::Angles;
-use super::layout::Layout;
+use super::layout::{Layout, MarkerShape};
 use super::method::Method;
-use super::plan::{WHOLE_FRAMES, steps};
+use super::plan::{OUTLINES, WHOLE_FRAMES, steps};
 use super::report::{MarkerSums, PostureReport, SearchReport, VideoReport};
 use super::results::{Results, Row};
 use super::siting::Siting;
 use super::suggest::Suggester;
 use super::survey::{Progress, Survey, Surveyor};
-use super::track::{Effort, Tracker};
+use super::track::Tracker;
 use crate::files::WriteError;
 use crate::stages::{self, Stages};
 use crate::table::{TableError, TableFormat};
@@ -188,7 +188,7 @@ pub fn run(
         version: env!("CARGO_PKG_VERSION"),
         video: video_report(path, &info, survey.siting, &span),
         frames: results.frames,
-        markers: results.marker_reports(),
+        markers: results.marker_reports(|marker| tracker.shape(marker)),
         joints: results.joint_reports(),
         coupling: results.coupling(),
         clock: clock.map(|clock| clock.report),
@@ -199,7 +199,7 @@ pub fn run(
             whole_frames: search.whole_searches,
             share_of_samples: search.share_searched,
         },
-        left_out: left_out(layout, &info, options, outputs, &search),
+        left_out: left_out(layout, &info, options, outputs, &tracker),
         warnings,
         failed,
         pictures,
@@ -322,8 +322,14 @@ fn video_report(path: &Path, info: &Info, siting: Siting, span: &Span) -> VideoR
 }
 
 /// What the scene did not need.
-fn left_out(layout: &Layout, info: &Info, options: &PostureOptions, outputs: &Outputs, search: &Effort) -> Vec<String> {
-    let steps = steps(layout, info, options, Some(outputs));
+fn left_out(
+    layout: &Layout,
+    info: &Info,
+    options: &PostureOptions,
+    outputs: &Outputs,
+    tracker: &Tracker,
+) -> Vec<String> {
+    let (steps, search) = (steps(layout, info, options, Some(outputs)), tracker.effort());
     let mut left_out = stages::left_out(steps.into_iter().filter(|step| step.stage != WHOLE_FRAMES));
     left_out.push(format!(
         "{WHOLE_FRAMES}: in all but {} of {} frames only where the last one tells, {:.2} % of the samples",
@@ -331,6 +337,10 @@ fn left_out(layout: &Layout, info: &Info, options: &PostureOptions, outputs: &Ou
         search.frames,
         100.0 * search.share_searched
     ));
+    let mut shapes = (0..layout.markers.len()).filter_map(|marker| tracker.shape(marker));
+    if layout.shape.is_none() && shapes.all(|shape| shape == MarkerShape::Disc) {
+        left_out.push(format!("{OUTLINES}: a disc fits every marker"));
+    }
     left_out
 }
 
@@ -346,7 +356,8 @@ mod tests {
         let siting = Siting { dx_px: 0.0, dy_px: 0.0 };
         let survey =
             Survey { starts: vec![None; 3], lengths_px: Vec::new(), siting, frames: 296, unseen: vec![0, 1, 2] };
-        let centre = Centre { at_px: [9.0; 2], covariance_px2: [0.01, 0.0, 0.01], radius_px: 5.0 };
+        let centre =
+            Centre { at_px: [9.0; 2], covariance_px2: [0.01, 0.0, 0.01], lasting_px2: [0.0; 3], radius_px: 5.0 };
         let mut markers = vec![MarkerSums::default(); 3];
         markers[0].add(42, &Sight::Seen(centre));
         markers[1].add(300, &Sight::Seen(centre));

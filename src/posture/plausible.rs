@@ -128,7 +128,7 @@ mod tests {
     fn warning(names: &[&str], frames: impl Iterator<Item = Vec<f64>>) -> Option<String> {
         let mut plausibility = Plausibility::new(&joints(names));
         for degrees in frames {
-            let angle = |degrees: &f64| Some(Angle { rad: degrees.to_radians(), sd_rad: 0.001 });
+            let angle = |degrees: &f64| Some(Angle { rad: degrees.to_radians(), sd_rad: 0.001, lasting_sd_rad: 0.0 });
             plausibility.add(&degrees.iter().map(angle).collect::<Vec<_>>());
         }
         plausibility.warning(Flexion::Clockwise)

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::filmed_clock::ClockReport;
 use super::joints::Angle;
+use super::layout::MarkerShape;
 use super::sight::{Loss, Sight};
 use super::smooth::SmoothModel;
 use crate::stages::Stage;
@@ -86,6 +87,8 @@ pub struct FrameCounts {
 pub struct MarkerReport {
     /// Its name.
     pub marker: String,
+    /// What it was taken for, `disc` or `blot`; none where it was never seen.
+    pub shape: Option<&'static str>,
     /// Frames with its centre.
     pub seen: u64,
     /// Frames without, by reason; reasons that never came up are left out.
@@ -232,11 +235,12 @@ impl MarkerSums {
         }
     }
 
-    pub(super) fn report(&self, name: &str) -> MarkerReport {
+    pub(super) fn report(&self, name: &str, shape: Option<MarkerShape>) -> MarkerReport {
         let mean = |sum: f64| (self.seen > 0).then(|| sum / self.seen as f64);
         let lost = LOSSES.iter().zip(self.lost).filter(|(_, count)| *count > 0);
         MarkerReport {
             marker: name.to_owned(),
+            shape: shape.map(MarkerShape::name),
             seen: self.seen,
             lost: lost.map(|((_, words), count)| (*words, count)).collect(),
             radius_px: mean(self.radius_px),

@@ -7,7 +7,7 @@ use super::figures::AngleFigures;
 use super::filmed_clock::ClockRow;
 use super::job::{Outputs, PostureError, PostureOptions};
 use super::joints::{Angle, AngleRow};
-use super::layout::Layout;
+use super::layout::{Layout, MarkerShape};
 use super::overlay::{Drawing, Mark, Overlay};
 use super::plausible::Plausibility;
 use super::report::{
@@ -232,8 +232,8 @@ impl<'a> Results<'a> {
         Ok(())
     }
 
-    pub(super) fn marker_reports(&self) -> Vec<MarkerReport> {
-        self.needed.iter().map(|&m| self.markers[m].report(&self.layout.markers[m].name)).collect()
+    pub(super) fn marker_reports(&self, shape: impl Fn(usize) -> Option<MarkerShape>) -> Vec<MarkerReport> {
+        self.needed.iter().map(|&m| self.markers[m].report(&self.layout.markers[m].name, shape(m))).collect()
     }
 
     pub(super) fn joint_reports(&self) -> Vec<JointReport> {

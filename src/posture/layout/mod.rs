@@ -25,6 +25,26 @@ pub struct Marker {
     pub colour: [u8; 3],
 }
 
+/// What markers are taken for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MarkerShape {
+    /// Discs, whose centre a fit finds.
+    Disc,
+    /// Blots of any outline, whose centre is their outline's centroid.
+    Blot,
+}
+
+impl MarkerShape {
+    /// Its name in marker files and reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Disc => "disc",
+            Self::Blot => "blot",
+        }
+    }
+}
+
 /// Two markers on one part of the finger.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Segment {
@@ -65,6 +85,8 @@ pub struct Camera {
 pub struct Layout {
     /// Which way flexion turns.
     pub flexion: Flexion,
+    /// What all markers are; where the file does not say, each is a disc where a disc fits and a blot otherwise.
+    pub shape: Option<MarkerShape>,
     /// All markers, in the file's order.
     pub markers: Vec<Marker>,
     /// All segments, in the file's order.

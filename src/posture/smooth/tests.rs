@@ -76,7 +76,7 @@ fn draw(drawn: Drawn, seed: u64) -> Series {
         let hidden = (k / 10) * 37 % 100 < drawn.hidden;
         series.times_s.push(time);
         series.truth.push(truth);
-        series.angles.push((!hidden).then_some(Angle { rad: truth + error, sd_rad: told }));
+        series.angles.push((!hidden).then_some(Angle { rad: truth + error, sd_rad: told, lasting_sd_rad: 0.0 }));
         time += (1.0 + drawn.jitter * normal().clamp(-0.9, 0.9)) / drawn.rate_hz;
     }
     series
@@ -219,7 +219,7 @@ fn few_rows_stay_as_they_are() {
 
 #[test]
 fn a_frozen_series_keeps_its_value_and_some_of_its_error() {
-    let angles = vec![Some(Angle { rad: 0.5, sd_rad: 0.002 }); 200];
+    let angles = vec![Some(Angle { rad: 0.5, sd_rad: 0.002, lasting_sd_rad: 0.0 }); 200];
     let times: Vec<f64> = (0..200).map(|k| f64::from(k) / 30.0).collect();
     for angle in smooth(&times, &angles).angles.iter().flatten() {
         // Measured 0.0020, as given: errors that do not change at all may be the same error.

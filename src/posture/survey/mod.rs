@@ -182,7 +182,7 @@ impl<'a> Surveyor<'a> {
             chain,
             paints: colours.iter().map(|&colour| Paint::new(colour, &info.matrix, grey)).collect(),
             paint_of,
-            spots: Spots::default(),
+            spots: Spots::new(layout.shape),
             looked: Vec::new(),
             frames: 0,
             since_whole: 0,

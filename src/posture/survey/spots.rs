@@ -3,6 +3,7 @@
 use super::super::centre::{Scratch, centre};
 use super::super::colour::Look;
 use super::super::find::{Area, Blob, Finder, Paint};
+use super::super::layout::MarkerShape;
 use super::super::naming::Point;
 use super::super::siting::{Siting, SitingEvidence};
 use super::super::track::loose_look;
@@ -10,7 +11,7 @@ use crate::video::Frame;
 
 /// A spot is lost for good after this many frames without it.
 const PATIENCE: u64 = 8;
-/// A thing that may be no disc is taken as it is after so many frames in which no disc was found.
+/// A thing in which no disc was found in so many frames is none.
 const LOOSE_AFTER: usize = 3;
 /// Spots followed at once, at most.
 const MOST: usize = 40;
@@ -58,6 +59,8 @@ pub(super) struct Spots {
     finder: Finder,
     found: Vec<Blob>,
     scratch: Scratch,
+    /// What markers are, where the marker file says.
+    shape: Option<MarkerShape>,
     evidence: Option<SitingEvidence>,
 }
 
@@ -68,6 +71,11 @@ struct Candidate {
 }
 
 impl Spots {
+    /// None yet, of markers of this shape.
+    pub(super) fn new(shape: Option<MarkerShape>) -> Self {
+        Self { shape, ..Self::default() }
+    }
+
     /// Looks at a frame: in all of it, or about the spots that are followed.
     pub(super) fn look(&mut self, frame: &Frame<'_>, paints: &[Paint], whole: bool, loose: &[bool]) {
         let mut candidates: Vec<Candidate> = Vec::new();
@@ -225,12 +233,17 @@ impl Spots {
                 continue;
             }
             if spot.look.is_none() {
-                let look = Look::learn(frame, siting, last.at_px, last.radius_px, &mut self.scratch);
-                spot.look = look.map(|look| (spot.points.len() - 1, look));
+                let patient = spot.points.len() >= LOOSE_AFTER;
                 let is_loose = spot.paints.iter().zip(loose).any(|(found, loose)| *found && *loose);
-                if spot.look.is_none() && is_loose && spot.points.len() >= LOOSE_AFTER {
-                    spot.look = Some((spot.points.len() - 1, loose_look(frame, &last)));
-                }
+                let mut disc = || Look::learn(frame, siting, last.at_px, last.radius_px, &mut self.scratch);
+                let blot = || Look::learn_blot(frame, siting, last.at_px, last.radius_px);
+                let look = match self.shape {
+                    Some(MarkerShape::Disc) => disc(),
+                    Some(MarkerShape::Blot) => blot(),
+                    None => disc().or_else(|| patient.then(blot).flatten()),
+                };
+                let look = look.or_else(|| (is_loose && patient).then(|| loose_look(frame, &last)));
+                spot.look = look.map(|look| (spot.points.len() - 1, look));
             }
             let Some((_, look)) = &spot.look else { continue };
             if let Ok(fit) = centre(frame, siting, look, last.at_px, &mut self.scratch) {

@@ -19,7 +19,7 @@ use target::Target;
 use super::centre::{Scratch, centre};
 use super::find::{Area, Blob, Finder, Paint};
 use super::inflation::Inflation;
-use super::layout::Layout;
+use super::layout::{Layout, MarkerShape};
 use super::method::{Method, Search};
 use super::naming::{Chain, lone};
 use super::sight::{Loss, Sight};
@@ -178,6 +178,12 @@ impl Tracker {
         self.effort.undecoded += 1;
         self.sights.fill(Sight::Lost(Loss::Undecoded));
         &self.sights
+    }
+
+    /// What a marker was taken for; none if it was never seen.
+    pub(crate) fn shape(&self, marker: usize) -> Option<MarkerShape> {
+        let look = self.targets[marker].look.as_ref()?;
+        Some(if look.blot.is_some() { MarkerShape::Blot } else { MarkerShape::Disc })
     }
 
     /// How much looking it took so far.
