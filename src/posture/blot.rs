@@ -34,6 +34,8 @@ const LEAST_CONTRAST: f64 = 8.0;
 /// Area of an outline over what is expected: as learnt, and as found by the search.
 const AREA_RANGE: (f64, f64) = (0.7, 1.4);
 const FOUND_AREA_RANGE: (f64, f64) = (0.35, 3.0);
+/// Radii of marks, as shares of the picture's width.
+const SIZES: [f64; 4] = [0.005, 0.008, 0.013, 0.02];
 /// A mark is no longer than this many of its widths.
 const LONGEST: f64 = 5.0;
 /// The contrast over the learnt one.
@@ -76,6 +78,11 @@ impl Outline {
         (self.area_px2 / std::f64::consts::PI).sqrt()
     }
 
+    /// Levels between its colour and its surround's.
+    fn contrast(&self) -> f64 {
+        (0..3).map(|p| (self.marker[p] - self.background[p]).powi(2)).sum::<f64>().sqrt()
+    }
+
     fn spread_px2(&self) -> [f64; 2] {
         let [xx, xy, yy] = self.moments_px2;
         let (mean, half) = (0.5 * (xx + yy), (0.25 * (xx - yy) * (xx - yy) + xy * xy).sqrt());
@@ -114,6 +121,19 @@ impl Blot {
         fits.then_some((known, outline))
     }
 
+    /// What is seen of the mark at `at_px`, of any size that markers have, the one furthest from its surround's colour; none where
+    /// nothing stands out.
+    pub(crate) fn at(frame: &Frame<'_>, siting: Siting, at_px: [f64; 2]) -> Option<Outline> {
+        let of_radius = |share: f64| Self::learn(frame, siting, at_px, share * frame.luma.width as f64);
+        let found = SIZES.into_iter().filter_map(of_radius).map(|(_, outline)| outline);
+        found
+            .filter(|outline| {
+                let off = (outline.at_px[0] - at_px[0]).hypot(outline.at_px[1] - at_px[1]);
+                off < 1.2 * outline.radius_px() + 2.0
+            })
+            .max_by(|a, b| a.contrast().total_cmp(&b.contrast()))
+    }
+
     /// The outline of the mark about `near_px`.
     ///
     /// # Errors
@@ -145,6 +165,11 @@ impl Blot {
             && in_range(level, LEVEL_RANGE)
             && outline.spread_px2()[0] <= 1.6 * self.spread_px2[0];
         if whole { Ok(outline) } else { Err(Loss::Hidden) }
+    }
+
+    /// The longer over the shorter half axis of the ellipse with its second moments.
+    pub(crate) fn elongation(&self) -> f64 {
+        (self.spread_px2[0] / self.spread_px2[1]).sqrt()
     }
 
     /// Takes over what the mark looked like in another frame.

@@ -5,6 +5,7 @@
 
 use super::blot::Blot;
 use super::centre::{Fit, Scratch, fit};
+use super::find::Paint;
 use super::siting::Siting;
 use crate::video::Frame;
 
@@ -99,6 +100,11 @@ impl Look {
             inflation: INFLATION,
             blot: Some(blot),
         })
+    }
+
+    /// Its colour as last seen.
+    pub(crate) fn paint(&self, of: &Paint) -> Paint {
+        if self.blot.is_some() { of.seen_on(self.marker, self.background) } else { of.seen_as(self.marker) }
     }
 
     /// Takes over what the marker looked like in another frame.

@@ -14,6 +14,7 @@ mod spots;
 use judge::Hypothesis;
 use spots::Spots;
 
+use super::blot::Blot;
 use super::colour::Look;
 use super::find::Paint;
 use super::layout::Layout;
@@ -31,6 +32,9 @@ const MOST_FRAMES: usize = 300;
 /// Namings kept.
 const MOST_NAMINGS: usize = 200;
 
+/// The cosine between what parts a mark from its surround and what would part the marker file's colour from it (assumed).
+const LEAST_ALIKE: f64 = 0.6;
+
 /// Where a marker was first seen.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Start {
@@ -42,6 +46,8 @@ pub(crate) struct Start {
     pub(crate) velocity_px: [f64; 2],
     /// How it looks.
     pub(crate) look: Look,
+    /// How it looks as a blot, where it was taken for a disc.
+    pub(crate) as_blot: Option<Look>,
 }
 
 /// What the first frames told.
@@ -201,6 +207,9 @@ impl<'a> Surveyor<'a> {
         if whole {
             self.since_whole = 0;
         }
+        if first {
+            self.learn_colours(frame);
+        }
         self.spots.look(frame, &self.paints, whole, &self.loose);
         if first {
             self.fix(frame);
@@ -266,9 +275,11 @@ impl<'a> Surveyor<'a> {
                     at_px: point.at_px,
                     velocity_px: [0, 1].map(|axis| next.at_px[axis] - point.at_px[axis]),
                     look: look.clone(),
+                    as_blot: spot.as_blot.clone(),
                 });
             }
         }
+        agree_on_shapes(&self.paint_of, &mut starts);
         let unseen = (0..starts.len()).filter(|&marker| self.needed[marker] && starts[marker].is_none()).collect();
         Ok(Survey {
             lengths_px: self.lengths(best),
@@ -277,6 +288,29 @@ impl<'a> Surveyor<'a> {
             frames: self.frames,
             unseen,
         })
+    }
+
+    /// Takes the colours over that the first frame shows at the places of `[start]`, where they are much like the file's: light, camera and
+    /// codec turn a colour, and what a person picks by eye is no measurement.
+    fn learn_colours(&mut self, frame: &Frame<'_>) {
+        let size = (self.info.format.width, self.info.format.height);
+        for (number, paint) in self.paints.iter_mut().enumerate() {
+            let places = self.layout.start.iter().zip(&self.paint_of).filter(|(_, of)| **of == number);
+            let seen: Vec<[[f64; 3]; 2]> = places
+                .filter_map(|(place, _)| {
+                    let at_px = self.info.turn.stored_from_shown((*place)?, size);
+                    let mark = Blot::at(frame, Siting::usual(frame), at_px)?;
+                    let alike = paint.parts(mark.marker, mark.background) >= LEAST_ALIKE;
+                    alike.then_some([mark.marker, mark.background])
+                })
+                .collect();
+            if !seen.is_empty() {
+                let mean = |which: usize| {
+                    std::array::from_fn(|p| seen.iter().map(|both| both[which][p]).sum::<f64>() / seen.len() as f64)
+                };
+                *paint = paint.seen_on(mean(0), mean(1));
+            }
+        }
     }
 
     fn is_needed(&self, place: usize) -> bool {
@@ -310,6 +344,24 @@ impl<'a> Surveyor<'a> {
                     .then_some(0.5 * (shortest + longest))
             })
             .collect()
+    }
+}
+
+/// Where most markers of a colour are blots, those that a disc fits by chance are blots too.
+fn agree_on_shapes(paint_of: &[usize], starts: &mut [Option<Start>]) {
+    for paint in 0..paint_of.len() {
+        let mut alike: Vec<&mut Start> = paint_of
+            .iter()
+            .zip(starts.iter_mut())
+            .filter(|(of, _)| **of == paint)
+            .filter_map(|(_, s)| s.as_mut())
+            .collect();
+        let blots = alike.iter().filter(|start| start.look.blot.is_some()).count();
+        if 2 * blots > alike.len() {
+            for start in &mut alike {
+                start.look = start.as_blot.take().unwrap_or_else(|| start.look.clone());
+            }
+        }
     }
 }
 

@@ -214,7 +214,7 @@ impl Tracker {
         let mut near_px = target.expected_px;
         if self.scratch.method.search == Search::Whole {
             // All that a whole frame shows of its colour, and of that the nearest.
-            let paint = self.paints[marker].seen_as(look.marker);
+            let paint = look.paint(&self.paints[marker]);
             self.finder.load(frame, None);
             self.finder.find(frame, &paint, &mut self.blobs);
             let nearest =
@@ -244,7 +244,7 @@ impl Tracker {
         let target = &self.targets[marker];
         let (Some(look), Some(fit)) = (&target.look, &target.fit) else { return };
         let (at, radius) = (fit.centre.at_px, target.radius_px());
-        let paint = self.paints[marker].seen_as(look.marker);
+        let paint = look.paint(&self.paints[marker]);
         self.finder.load(frame, Some(Area::about(at, 4.0 * radius + 4.0)));
         self.finder.find(frame, &paint, &mut self.blobs);
         let outstanding = self.blobs.iter().find(|blob| {
@@ -262,7 +262,7 @@ impl Tracker {
         let Some(look) = &target.look else { return };
         let (expected, reach, radius) =
             (target.expected_px, target.reach_px() + target.radius_px(), target.radius_px());
-        let paint = self.paints[marker].seen_as(look.marker);
+        let paint = look.paint(&self.paints[marker]);
         self.effort.near_searches += 1;
         self.finder.load(frame, Some(Area::about(expected, reach + 2.0 * radius)));
         self.finder.find(frame, &paint, &mut self.blobs);

@@ -116,7 +116,7 @@ impl Tracker {
     /// Its colour as last seen, or as the marker file has it.
     fn paint(&self, marker: usize) -> Paint {
         match &self.targets[marker].look {
-            Some(look) => self.paints[marker].seen_as(look.marker),
+            Some(look) => look.paint(&self.paints[marker]),
             None => self.paints[marker],
         }
     }
