@@ -5,7 +5,7 @@
 //! without one is an error that names the colour found.
 
 use super::{SurveyError, Surveyor};
-use crate::posture::find::Blob;
+use crate::posture::find::{Blob, Paint};
 use crate::posture::suggest::{hex, palette};
 use crate::video::Frame;
 
@@ -50,14 +50,16 @@ impl Surveyor<'_> {
             }
         }
         let paints = palette(self.info);
+        let mut strange = vec![Vec::new(); self.paints.len()];
         for &(place, at) in &starts {
             if self.fixed[place].is_none() {
                 let reach = reach.min(next(place, at));
                 let there = self.spots.outstanding(frame, at, reach, &paints);
                 match there.filter(|blob| self.is_about(place, blob) && !self.is_taken(blob)) {
                     Some(blob) => {
-                        let spot = self.spots.start(frame, &blob, self.paint(place), self.paints.len());
-                        self.fixed[place] = Some(spot);
+                        let paint = self.paint(place);
+                        self.fixed[place] = Some(self.spots.start(frame, &blob, paint, self.paints.len()));
+                        strange[paint].push(blob.colour);
                     }
                     None => {
                         self.wrong.get_or_insert(self.wrong_start(frame, place, at, there));
@@ -65,7 +67,11 @@ impl Surveyor<'_> {
                 }
             }
         }
-        self.learn_paints();
+        for (paint, colours) in self.paints.iter_mut().zip(&strange) {
+            if !colours.is_empty() {
+                *paint = paint.seen_as(median(colours));
+            }
+        }
         let undecided = self.chain.undecided(&self.paint_of, &self.fixed);
         if undecided.iter().any(|&place| self.is_needed(place)) {
             let name = |&place: &usize| self.layout.markers[self.chain.links[place].marker].name.clone();
@@ -79,25 +85,14 @@ impl Surveyor<'_> {
 
     /// Whether a mark may be the marker's, though its colour is not quite the marker file's.
     fn is_about(&self, place: usize, blob: &Blob) -> bool {
-        let paint = self.paints[self.paint(place)];
+        let colour = self.layout.markers[self.chain.links[place].marker].colour;
+        let paint = Paint::new(colour, &self.info.matrix, self.info.grey);
         paint.is_like(&paint.seen_as(blob.colour), SAME_HUE_RAD)
     }
 
     fn is_taken(&self, blob: &Blob) -> bool {
         let spots = self.fixed.iter().flatten().map(|&spot| &self.spots.all[spot].points[0]);
         spots.into_iter().any(|point| distance(point.at_px, blob.at_px) < point.radius_px)
-    }
-
-    /// Colours as the marks at their places have them, rather than as the marker file says.
-    fn learn_paints(&mut self) {
-        for number in 0..self.paints.len() {
-            let fixed = self.fixed.iter().enumerate().filter(|&(place, _)| self.paint(place) == number);
-            let colours = fixed.filter_map(|(_, spot)| Some(self.spots.all[(*spot)?].points[0].colour));
-            let colours: Vec<[f64; 3]> = colours.collect();
-            if self.paints[number].is_chromatic() && !colours.is_empty() {
-                self.paints[number] = self.paints[number].seen_as(median(&colours));
-            }
-        }
     }
 
     fn wrong_start(&self, frame: &Frame<'_>, place: usize, at: [f64; 2], there: Option<Blob>) -> SurveyError {

@@ -202,6 +202,7 @@ impl Spots {
         self.all.push(Spot {
             points: vec![Point::new(frame.index, blob)],
             look: None,
+            as_blot: None,
             paints: (0..paints).map(|number| number == paint).collect(),
             velocity_px: [0.0; 2],
         });
