@@ -254,13 +254,21 @@ pub fn suggest(path: &Path, threads: usize) -> Result<String, PostureError> {
             let options = PostureOptions { threads, ..PostureOptions::default() };
             let watch = Watch { stop: &AtomicBool::new(false), tick: &|_, _| {} };
             let first = look_first(path, &layout, &options, &Stages::default(), &watch);
-            first.map(|_| ()).map_err(|why| why.to_string())
+            first.map(|_| ()).map_err(|why| match why {
+                PostureError::Markers { why, .. } => why,
+                other => other.to_string(),
+            })
         }
     };
-    Ok(match tried {
-        Ok(()) => text,
-        Err(why) => format!("# It does not run as it is: {}\n{text}", why.replace('\n', "\n# ")),
-    })
+    match tried {
+        Ok(()) => Ok(text),
+        // Spots that can't be found again where they were found are no markers.
+        Err(why) if text.contains("[start]") => Err(PostureError::Markers {
+            path: path.to_owned(),
+            why: format!("nothing looks like a marker: what stands out most can't be followed ({why})"),
+        }),
+        Err(why) => Ok(format!("# It does not run as it is: {}\n{text}", why.replace('\n', "\n# "))),
+    }
 }
 
 /// Reads the first frames until every marker has its name.

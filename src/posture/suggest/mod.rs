@@ -12,22 +12,27 @@ pub(super) use text::hex;
 
 use order::{path, row, total_turn};
 
+use super::blot::Blot;
 use super::find::{Blob, Finder, Paint};
 use super::naming::Point;
+use super::siting::Siting;
 use super::track::loose_look;
 use crate::video::{Frame, Info};
 
 /// Directions of colour that are looked in.
 const HUES: usize = 12;
-/// Distance from grey that spots are measured in, on the scale of 8 bits.
+/// Distance from grey that spots are looked for in, on the scale of 8 bits, and the share of it that they stand out by.
 const DISTANCE: f64 = 40.0;
-/// A spot stands out by this share of it (a dark thing beside a real hand does by 0.37), and by this share of the most
-/// outstanding one.
-const LEAST_CONTRAST: f64 = 0.4;
+const LEAST_SHARE: f64 = 0.2;
+/// Levels by which a marker differs from what surrounds it (assumed; dark green paint on skin differs by 20 to 40), and the
+/// share of the most outstanding one's.
+const LEAST_CONTRAST: f64 = 14.0;
 const LEAST_OF_BEST: f64 = 0.3;
 /// The shape of a marker: a disc seen somewhat from the side or blurred, or a blot of paint.
 const LONGEST: f64 = 2.6;
 const LEAST_FILL: f64 = 0.8;
+/// An outline's radius over that of the spot it is of, at least.
+const LEAST_OF_BLOB: f64 = 0.7;
 /// Radius in samples, and as a share of the picture's width.
 const LEAST_RADIUS_PX: f64 = 2.0;
 const LARGEST_RADIUS_SHARE: f64 = 0.07;
@@ -82,7 +87,11 @@ struct Mark {
 /// A spot that could be a marker.
 #[derive(Debug, Clone, Copy)]
 struct Candidate {
-    blob: Blob,
+    at_px: [f64; 2],
+    radius_px: f64,
+    colour: [f64; 3],
+    /// Levels of chroma (in grey video, of luma) between it and what surrounds it.
+    contrast: f64,
     /// What surrounds it has skin's colour.
     on_skin: bool,
 }
@@ -170,7 +179,10 @@ impl<'a> Suggester<'a> {
             });
             others.fold(0.0, f64::max) > mark.radius_px
         });
-        (few || (steady && (on_skin || moves))).then_some(best)
+        // A thing by itself may lie before any ground, and many things lie about on one.
+        let as_many = rows.iter().filter(|row| row.len() == usual).count() as f64 >= STEADY * rows.len() as f64;
+        let likely = if usual > 1 { on_skin || (moves && as_many) } else { moves };
+        (few || (steady && likely)).then_some(best)
     }
 
     /// The spots of a frame that could be markers.
@@ -182,30 +194,22 @@ impl<'a> Suggester<'a> {
         for paint in &paints {
             self.finder.find(frame, paint, &mut self.found);
             for blob in &self.found {
-                let radius = blob.radius_px();
-                let is_marker = blob.contrast >= LEAST_CONTRAST
-                    && !blob.at_the_border
-                    && blob.elongation <= LONGEST
-                    && blob.fill >= LEAST_FILL
-                    && (LEAST_RADIUS_PX..=largest).contains(&radius)
-                    && (self.info.grey || !is_skin(blob.colour));
-                if !is_marker {
+                let Some(one) = candidate(frame, self.info.grey, blob) else { continue };
+                if !(LEAST_RADIUS_PX..=largest).contains(&one.radius_px) {
                     continue;
                 }
-                let around = loose_look(frame, &Point::new(frame.index, blob)).background;
-                let candidate = Candidate { blob: *blob, on_skin: self.info.grey || is_skin(around) };
                 let same = |other: &&mut Candidate| {
-                    order::distance(other.blob.at_px, blob.at_px) < 0.7 * other.blob.radius_px().max(radius)
+                    order::distance(other.at_px, one.at_px) < 0.7 * other.radius_px.max(one.radius_px)
                 };
                 match spots.iter_mut().find(same) {
-                    Some(other) if other.blob.contrast < blob.contrast => *other = candidate,
+                    Some(other) if other.contrast < one.contrast => *other = one,
                     Some(_) => {}
-                    None => spots.push(candidate),
+                    None => spots.push(one),
                 }
             }
         }
-        let best = spots.iter().map(|spot| spot.blob.contrast).fold(0.0, f64::max);
-        spots.retain(|spot| spot.blob.contrast >= LEAST_OF_BEST * best);
+        let best = spots.iter().map(|spot| spot.contrast).fold(0.0, f64::max);
+        spots.retain(|spot| spot.contrast >= LEAST_OF_BEST * best);
         spots
     }
 
@@ -217,7 +221,7 @@ impl<'a> Suggester<'a> {
         for (number, (_, spots)) in self.frames.iter().enumerate() {
             let mut of_frame = Vec::new();
             for spot in spots {
-                let colour = spot.blob.colour;
+                let colour = spot.colour;
                 let group = groups.iter().position(|(members, _)| is_same(&mean(members), &colour, grey));
                 let group = group.unwrap_or_else(|| {
                     groups.push((Vec::new(), vec![false; self.frames.len()]));
@@ -239,8 +243,8 @@ impl<'a> Suggester<'a> {
                 (spots.iter().zip(of_frame))
                     .filter(|&(_, &group)| stays(group))
                     .map(|(spot, &colour)| Mark {
-                        at_px: spot.blob.at_px,
-                        radius_px: spot.blob.radius_px(),
+                        at_px: spot.at_px,
+                        radius_px: spot.radius_px,
                         colour,
                         on_skin: spot.on_skin,
                     })
@@ -262,6 +266,29 @@ pub(super) fn palette(info: &Info) -> Vec<Paint> {
 
 fn mean(members: &[[f64; 3]]) -> [f64; 3] {
     [0, 1, 2].map(|k| members.iter().map(|colour| colour[k]).sum::<f64>() / members.len().max(1) as f64)
+}
+
+/// A spot as a marker, by its outline where it has one; none where it is skin, or stands out too little.
+fn candidate(frame: &Frame<'_>, grey: bool, blob: &Blob) -> Option<Candidate> {
+    let is_skin = |colour: [f64; 3]| !grey && is_skin(colour);
+    if blob.contrast < LEAST_SHARE || blob.at_the_border || is_skin(blob.colour) {
+        return None;
+    }
+    // What is larger than marks of paint are shows some spot of its own.
+    let outline = Blot::at(frame, Siting::usual(frame), blob.at_px);
+    let outline = outline.filter(|outline| outline.radius_px() >= LEAST_OF_BLOB * blob.radius_px());
+    let (at_px, radius_px, colour, around) = match outline {
+        Some(outline) => (outline.at_px, outline.radius_px(), outline.marker, outline.background),
+        None if blob.elongation <= LONGEST && blob.fill >= LEAST_FILL => {
+            let around = loose_look(frame, &Point::new(frame.index, blob)).background;
+            (blob.at_px, blob.radius_px(), blob.colour, around)
+        }
+        None => return None,
+    };
+    let [luma, cb, cr] = [0, 1, 2].map(|p| colour[p] - around[p]);
+    let contrast = if grey { luma.abs() } else { cb.hypot(cr) };
+    let stands_out = contrast >= LEAST_CONTRAST && !is_skin(colour);
+    stands_out.then_some(Candidate { at_px, radius_px, colour, contrast, on_skin: grey || self::is_skin(around) })
 }
 
 /// Whether a colour may be skin's.

@@ -78,52 +78,6 @@ fn one_marker_is_a_file_without_segments() {
     assert!(layout.markers[0].name.starts_with("pink"), "{text}");
 }
 
-#[test]
-#[ignore = "dump"]
-fn dump_candidates() {
-    let videos = std::env::var("DUMP_VIDEOS").unwrap();
-    for path in videos.split(':') {
-        let mut video = crate::video::Video::open(Path::new(path), 2).unwrap();
-        let info = video.info().clone();
-        let mut finder = Finder::default();
-        let mut found = Vec::new();
-        println!("V,{path},{},{}", info.format.width, info.format.height);
-        while let Some(item) = video.next_item().unwrap() {
-            let crate::video::Item::Frame(frame) = item else { continue };
-            if frame.index % 5 > 1 {
-                continue;
-            }
-            finder.load(&frame, None);
-            for (k, paint) in palette(&info).iter().enumerate() {
-                finder.find(&frame, paint, &mut found);
-                for blob in &found {
-                    if blob.contrast < 0.15 || blob.at_the_border || blob.radius_px() < 2.0 {
-                        continue;
-                    }
-                    let point = crate::posture::naming::Point::new(frame.index, blob);
-                    let ring = crate::posture::track::loose_look(&frame, &point).background;
-                    println!(
-                        "B,{},{k},{:.1},{:.1},{:.1},{:.3},{:.2},{:.2},{:.0},{:.0},{:.0},{:.0},{:.0},{:.0}",
-                        frame.index,
-                        blob.at_px[0],
-                        blob.at_px[1],
-                        blob.radius_px(),
-                        blob.contrast,
-                        blob.elongation,
-                        blob.fill,
-                        blob.colour[0],
-                        blob.colour[1],
-                        blob.colour[2],
-                        ring[0],
-                        ring[1],
-                        ring[2]
-                    );
-                }
-            }
-        }
-    }
-}
-
 /// The suggestion from frames of these stages.
 fn suggested(stages: &[Stage]) -> Result<String, SuggestError> {
     let info = stages[0].info();
