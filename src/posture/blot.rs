@@ -43,7 +43,7 @@ const LEAST_CONTRAST: f64 = 8.0;
 /// Area of an outline over what is expected: as it was lately, as first learnt, and as found by the search.
 const AREA_RANGE: (f64, f64) = (0.75, 1.35);
 const LEARNT_AREA_RANGE: (f64, f64) = (0.55, 2.0);
-const FOUND_AREA_RANGE: (f64, f64) = (0.35, 3.0);
+const FOUND_AREA_RANGE: (f64, f64) = (0.35, 5.0);
 /// Radii of marks, as shares of the picture's width.
 const SIZES: [f64; 4] = [0.005, 0.008, 0.013, 0.02];
 /// A mark is no longer than this many of its widths.
