@@ -233,3 +233,14 @@ fn a_clocks_screen_changes_so_often_or_at_once() {
         assert!(fault.contains(":6: `refresh_hz` is how often"), "{bad}: {fault}");
     }
 }
+
+#[test]
+fn markers_are_discs_or_blots_where_the_file_says_so() {
+    let markers = "[markers]\na = \"#2b4b10\"\n";
+    assert_eq!(parse(markers).unwrap().shape, None);
+    for shape in [MarkerShape::Disc, MarkerShape::Blot] {
+        assert_eq!(parse(&format!("shape = \"{}\"\n{markers}", shape.name())).unwrap().shape, Some(shape));
+    }
+    let fault = parse(&format!("shape = \"round\"\n{markers}")).unwrap_err().to_string();
+    assert!(fault.contains(":1: `shape` has to be"), "{fault}");
+}

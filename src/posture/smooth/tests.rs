@@ -297,3 +297,20 @@ fn a_long_series_is_looked_at_in_places() {
     assert!(after <= 0.6 * before && (0.60..=0.80).contains(&within), "{before} {after} {within}");
     assert_eq!(smoothed, smooth(&series.times_s, &series.angles), "the same again");
 }
+
+#[test]
+fn what_lasts_is_not_smoothed_away() {
+    let times_s: Vec<f64> = (0..200).map(|row| f64::from(row) / 24.0).collect();
+    let at = |row: usize, lasting_sd_rad: f64| {
+        let noise = 0.001 * (1.7 * row as f64).sin() * 1.414;
+        let sd_rad = 0.001f64.hypot(lasting_sd_rad);
+        Some(Angle { rad: 0.5 + noise, sd_rad, lasting_sd_rad })
+    };
+    let [plain, lasting] =
+        [0.0, 0.004].map(|lasting| smooth(&times_s, &(0..200).map(|row| at(row, lasting)).collect::<Vec<_>>()));
+    for (plain, lasting) in plain.angles.iter().zip(&lasting.angles) {
+        let (plain, lasting) = (plain.unwrap(), lasting.unwrap());
+        assert!((plain.rad - lasting.rad).abs() < 1e-6, "the same noise is smoothed alike");
+        assert!(plain.sd_rad < 0.001 && (lasting.sd_rad - plain.sd_rad.hypot(0.004)).abs() < 1e-6);
+    }
+}

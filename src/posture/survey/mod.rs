@@ -96,7 +96,7 @@ pub(crate) enum SurveyError {
     },
     /// Markers of one colour lie on several fingers.
     #[error(
-        "can't tell on which finger the markers {} are, for fingers that branch off or lie apart have the same colours; give \
+        "can't tell on which finger the markers {} are: fingers that share a mark or lie apart have the same colours; give \
          their places in the first frame under [start], one on each finger at least",
         markers.join(", ")
     )]

@@ -269,6 +269,9 @@ impl Spots {
                 spot.look = look.map(|look| (spot.points.len() - 1, look));
             }
             let Some((_, look)) = &spot.look else { continue };
+            if self.shape.is_none() && look.blot.is_none() && spot.as_blot.is_none() {
+                spot.as_blot = Look::learn_blot(frame, siting, last.at_px, last.radius_px);
+            }
             if let Ok(fit) = centre(frame, siting, look, last.at_px, &mut self.scratch) {
                 evidence.push(&fit);
             }
