@@ -119,26 +119,183 @@ fn chroma_is_sited_as_asked() {
 
 #[test]
 fn angles_are_those_of_the_markers() {
-    for (layout, flexion) in
-        [(MarkerLayout::Pairs, Flexion::Clockwise), (MarkerLayout::Joints, Flexion::Counterclockwise)]
-    {
+    for (layout, flexion) in [
+        (MarkerLayout::Pairs, Flexion::Clockwise),
+        (MarkerLayout::Joints, Flexion::Counterclockwise),
+        (MarkerLayout::Paint, Flexion::Counterclockwise),
+        (MarkerLayout::Thumb, Flexion::Clockwise),
+        (MarkerLayout::Row, Flexion::Clockwise),
+    ] {
         let mut options = exact(640, 360);
         options.finger = lunula::phantom::finger::Finger::new(640, 360, flexion, layout);
+        options.joints = layout.joints().into_iter().map(|(joint, _)| joint.to_owned()).collect();
         options.trajectory = Trajectory::Random { hz: 0.3, seed: 5 };
         let scene = Scene::new(options).unwrap();
         for frame in [0, 50, 299] {
             let truth = scene.truth(frame);
             let direction = |segment: usize| {
-                let [a, b] = layout.ends(segment).map(|marker| truth.markers[marker].at_px);
+                let [a, b] = layout.segments()[segment].1.map(|marker| truth.markers[marker].at_px);
                 (b[1] - a[1]).atan2(b[0] - a[0])
             };
-            for joint in 0..JOINTS.len() {
-                let angle = flexion.sign() * (direction(joint + 1) - direction(joint));
-                let miss = (angle - truth.angles_rad[joint]).rem_euclid(std::f64::consts::TAU);
+            let joints = layout.joints();
+            assert_eq!(joints.len(), truth.angles_rad.len());
+            for ((_, [from, to]), truth_rad) in joints.into_iter().zip(truth.angles_rad.iter()) {
+                let angle = flexion.sign() * (direction(to) - direction(from));
+                let miss = (angle - truth_rad).rem_euclid(std::f64::consts::TAU);
                 assert!(miss.min(std::f64::consts::TAU - miss) <= 1e-9);
             }
         }
     }
+}
+
+fn painted(layout: MarkerLayout, seed: u64) -> VideoOptions {
+    VideoOptions { seed, ..VideoOptions::sized(1280, 720).painted(layout) }
+}
+
+/// Size along and across its long axis, mean and standard deviation of luma, means of Cb and Cr of the paint; least and greatest luma, means of Cb and
+/// Cr of the skin around it; how far its centroid is from the truth's.
+struct Measured {
+    size_px: [f64; 2],
+    luma: [f64; 2],
+    chroma: [f64; 2],
+    skin_luma: f64,
+    skin_chroma: [f64; 2],
+    miss_px: f64,
+}
+
+fn measured(picture: &Picture, seen_px: [f64; 2], radius: f64) -> Measured {
+    let [luma, cb, cr] = [0, 1, 2].map(|plane| plane_of(picture, plane));
+    let width = picture.format.width;
+    let (mut paint, mut skin) = (Vec::new(), Vec::new());
+    for y in (seen_px[1] - radius) as usize..=(seen_px[1] + radius) as usize {
+        for x in (seen_px[0] - radius) as usize..=(seen_px[0] + radius) as usize {
+            let [dx, dy] = [x as f64 - seen_px[0], y as f64 - seen_px[1]];
+            let [luma, cb, cr] = [&luma, &cb, &cr].map(|plane| f64::from(plane[y * width + x]));
+            match cr {
+                _ if dx.hypot(dy) > radius => {}
+                // Between the paint's and the skin's.
+                _ if cr < 132.0 => paint.push([dx, dy, luma, cb, cr]),
+                _ if cr > 138.0 => skin.push([dx, dy, luma, cb, cr]),
+                _ => {}
+            }
+        }
+    }
+    let mean = |of: &[[f64; 5]], k: usize| of.iter().map(|one| one[k]).sum::<f64>() / of.len() as f64;
+    let product = |j: usize, k: usize| {
+        let (a, b) = (mean(&paint, j), mean(&paint, k));
+        paint.iter().map(|one| (one[j] - a) * (one[k] - b)).sum::<f64>() / paint.len() as f64
+    };
+    let (half, apart) =
+        (0.5 * (product(0, 0) + product(1, 1)), (0.5 * (product(0, 0) - product(1, 1))).hypot(product(0, 1)));
+    Measured {
+        size_px: [half + apart, half - apart].map(|variance| 4.0 * variance.sqrt()),
+        luma: [mean(&paint, 2), product(2, 2).sqrt()],
+        chroma: [3, 4].map(|k| mean(&paint, k)),
+        skin_luma: mean(&skin, 2),
+        skin_chroma: [3, 4].map(|k| mean(&skin, k)),
+        miss_px: mean(&paint, 0).hypot(mean(&paint, 1)),
+    }
+}
+
+#[test]
+fn marks_of_paint_are_as_in_a_real_recording() {
+    let (mut sizes, mut spreads, mut misses) = ([Vec::new(), Vec::new()], Vec::new(), Vec::new());
+    for (seed, frame) in [(1, 0), (2, 60), (3, 120)] {
+        let options = VideoOptions { chroma: Chroma::Full, ..painted(MarkerLayout::Paint, seed) };
+        let scene = Scene::new(options).unwrap();
+        let (picture, truth) = (scene.picture(frame), scene.truth(frame));
+        for (_, [a, b]) in MarkerLayout::Paint.segments() {
+            let [a, b] = [a, b].map(|marker| truth.markers[marker].at_px);
+            assert!((60.0..=160.0).contains(&(a[0] - b[0]).hypot(a[1] - b[1])));
+        }
+        for mark in &truth.markers {
+            let one = measured(&picture, mark.seen_px.unwrap(), 26.0);
+            let within =
+                |value: f64, low: f64, high: f64| assert!((low..=high).contains(&value), "{value} {low} {high}");
+            within(one.luma[0], 30.0, 67.0);
+            within(one.skin_luma, 53.0, 127.0);
+            within(one.chroma[1], 111.0, 123.0);
+            within(one.skin_chroma[1], 132.0, 150.0);
+            // About the skin's own.
+            within(one.chroma[0] - one.skin_chroma[0], -12.0, 12.0);
+            within(one.size_px[0], 17.0, 42.0);
+            within(one.size_px[1], 7.0, 30.0);
+            (0..2).for_each(|axis| sizes[axis].push(one.size_px[axis]));
+            spreads.push(one.luma[1]);
+            misses.push(one.miss_px);
+        }
+    }
+    let median = |values: &mut Vec<f64>| {
+        values.sort_by(f64::total_cmp);
+        values[values.len() / 2]
+    };
+    let [long, wide] = &mut sizes;
+    let medians = [median(long), median(wide), median(&mut spreads)];
+    assert!((medians[0] - 27.0).abs() <= 4.0 && (medians[1] - 20.0).abs() <= 4.0, "{medians:?}");
+    assert!((8.0..=22.0).contains(&medians[2]), "{medians:?}");
+    // Plain thresholds of noisy samples: measured 0.1 at most.
+    assert!(misses.iter().all(|miss| *miss <= 0.4), "{misses:?}");
+}
+
+#[test]
+fn paint_stretches_with_the_skin() {
+    let scene = Scene::new(painted(MarkerLayout::Paint, 1)).unwrap();
+    // Straight but for J1, and flexed.
+    let away = |frame: usize| {
+        let truth = scene.truth(frame);
+        let off = |mark: usize| {
+            let (at, seen) = (truth.markers[mark].at_px, truth.markers[mark].seen_px.unwrap());
+            (at[0] - seen[0]).hypot(at[1] - seen[1])
+        };
+        [0, 2, 4].map(off)
+    };
+    let (straight, flexed) = (away(0), away(120));
+    assert!(straight.iter().chain(&[flexed[0], flexed[2]]).all(|off| *off <= 0.05), "{straight:?} {flexed:?}");
+    assert!((0.1..=1.0).contains(&flexed[1]), "{flexed:?}");
+}
+
+#[test]
+fn a_painted_layouts_marker_file_has_what_it_needs() {
+    for (layout, counts) in [
+        (MarkerLayout::Paint, [8, 7, 5]),
+        (MarkerLayout::Thumb, [4, 3, 2]),
+        (MarkerLayout::Row, [4, 3, 2]),
+        (MarkerLayout::Mark, [1, 0, 0]),
+    ] {
+        for start in [true, false] {
+            let scene = Scene::new(VideoOptions { start, ..painted(layout, 1) }).unwrap();
+            let file: toml::Table = scene.markers_toml().parse().expect("TOML");
+            let count = |table: &str| file.get(table).map_or(0, |table| table.as_table().map_or(0, toml::Table::len));
+            assert_eq!(["markers", "segments", "joints"].map(count), counts, "{layout:?}");
+            assert_eq!(count("start"), if start { counts[0] } else { 0 });
+            assert!(file["markers"].as_table().unwrap().values().all(|colour| colour.as_str() == Some("#2b4b10")));
+        }
+    }
+}
+
+#[test]
+fn the_command_line_paints() {
+    let dir = Dir::new();
+    let run = |more: &str| {
+        let line = format!("phantom video --size 320x180 --seconds 0.2 --x264 ultrafast {more} --out out");
+        dir.lunula(&line.split_whitespace().collect::<Vec<_>>()).expect(0);
+        let markers = std::fs::read_to_string(dir.path("out/markers.toml")).unwrap();
+        (markers, dir.table("out/truth/tracks.csv"), dir.table("out/truth/joints.csv"))
+    };
+    let (markers, tracks, joints) = run("--layout paint");
+    assert!(markers.contains("[start]") && markers.contains("T2 = [\"thumb_proximal\", \"thumb_distal\"]"));
+    // 24 frames a second.
+    assert_eq!((tracks.len(), joints.len()), (5 * 8, 5));
+    assert!(tracks.iter().all(|row| row["seen_x_px"].parse::<f64>().is_ok()) && joints[0].contains_key("T1_deg"));
+    let (markers, ..) = run("--layout thumb --colours pale --no-start");
+    assert!(!markers.contains("[start]") && markers.contains("thumb_ip = \"#cdd6b2\""));
+    assert!(!run("--layout paint --colours distinct").0.contains("[start]"));
+    let (markers, tracks, _) = run("--layout mark --hide index_pip@0+2");
+    assert!(!markers.contains("[segments]") && !markers.contains("[joints]"));
+    assert_eq!((tracks[0]["status"].as_str(), tracks[0]["seen_x_px"].as_str()), ("hidden", ""));
+    dir.lunula(&["phantom", "video", "--layout", "row", "--joints", "J1", "--out", "bad"])
+        .expect(2)
+        .says("--joints J1: there are J2, J3");
 }
 
 #[test]

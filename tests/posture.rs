@@ -232,6 +232,137 @@ fn zero_angles_are_subtracted() {
 }
 
 #[test]
+fn reversed_flexion_is_warned_of_before_all_else() {
+    let dir = scene(&[]);
+    let report = posture(&dir, &["--no-figures", "--json"]).expect(0).json();
+    assert!(!report["warnings"].to_string().contains("can't have"), "{report}");
+    assert!(report["joints"].as_array().is_some_and(|joints| joints.iter().all(|joint| joint["outside"] == 0)));
+    let markers = std::fs::read_to_string(dir.path("scene/markers.toml")).expect("text");
+    // A note of the marker file, which comes after.
+    let markers = markers.replace("\n[segments]", "spare = \"#000000\"\n\n[segments]");
+    dir.write("scene/markers.toml", markers.replace("\"clockwise\"", "\"counterclockwise\""));
+    let report = posture(&dir, &["--no-figures", "--json"]).expect(0).says("can't have").json();
+    let first = report["warnings"][0].as_str().expect("a warning");
+    for words in ["J2 is outside of -20 to 120 degrees", "flexion = \"clockwise\"", "mirrored"] {
+        assert!(first.contains(words), "`{words}` is not in: {first}");
+    }
+    assert!(report["joints"][1]["outside"].as_u64().is_some_and(|count| count > 30), "{report}");
+}
+
+/// Marks of paint at half the size of a real recording's are this near to their places; measured up to 0.9 px.
+const PAINT_OFF_PX: f64 = 2.5;
+/// Their angles' median error, degrees; measured 0.2 to 0.3 (segments of 30 to 75 px).
+const PAINT_MEDIAN_DEG: f64 = 0.5;
+
+/// A small video of paint on thumb and index finger in `scene/`.
+fn painted(more: &[&str]) -> Dir {
+    let dir = Dir::new();
+    let few = ["phantom", "video", "--out", "scene", "--layout", "paint", "--size", "640x360", "--bend-hz", "0.5"];
+    dir.lunula(&[&few[..], more].concat()).expect(0);
+    dir
+}
+
+/// Every mark seen is at its own place; returns how many were seen of those in view.
+#[track_caller]
+fn is_rightly_named(dir: &Dir) -> (usize, usize) {
+    let (mut seen, mut in_view) = (0, 0);
+    let (found, truth) = (dir.table("tracks.csv"), dir.table("scene/truth/tracks.csv"));
+    assert_eq!(found.len(), truth.len());
+    for (row, exact) in found.iter().zip(&truth) {
+        assert_eq!((&row["frame"], &row["marker"]), (&exact["frame"], &exact["marker"]));
+        in_view += usize::from(exact["status"] == "ok");
+        if let (Some(x), Some(y)) = (number(row, "x_px"), number(row, "y_px")) {
+            let off = (x - number(exact, "x_px").unwrap()).hypot(y - number(exact, "y_px").unwrap());
+            assert!(off <= PAINT_OFF_PX, "frame {} {}: {off} px off", row["frame"], row["marker"]);
+            seen += 1;
+        }
+    }
+    (seen, in_view)
+}
+
+#[test]
+fn marks_of_one_paint_on_thumb_and_index_have_the_names_of_their_starts() {
+    let dir = painted(&["--seconds", "2", "--seed", "11"]);
+    posture(&dir, &["--tracks", "tracks.csv", "--no-figures"]).expect(0);
+    let (seen, in_view) = is_rightly_named(&dir);
+    assert!(100 * seen >= 98 * in_view, "{seen} of {in_view} marks");
+    let (found, truth) = (dir.table("joints.csv"), dir.table("scene/truth/joints.csv"));
+    let (mut errors, mut all) = (Vec::new(), 0);
+    for joint in ["J1_deg", "J2_deg", "J3_deg", "T1_deg", "T2_deg"] {
+        for (row, exact) in found.iter().zip(&truth) {
+            all += 1;
+            errors.extend(number(row, joint).map(|deg| (deg - number(exact, joint).unwrap()).abs()));
+        }
+    }
+    assert!(100 * errors.len() >= 98 * all, "{} of {all} angles", errors.len());
+    errors.sort_by(f64::total_cmp);
+    let median = errors[errors.len() / 2];
+    assert!(median <= PAINT_MEDIAN_DEG, "{median} degrees");
+
+    // Without their places nothing says which finger is which.
+    let markers = std::fs::read_to_string(dir.path("scene/markers.toml")).expect("text");
+    let (without, _) = markers.split_once("[start]").expect("the scene's own places");
+    dir.write("without.toml", without);
+    dir.lunula(&["posture", "scene/video.mp4", "--markers", "without.toml", "--out", "none.csv"])
+        .expect(2)
+        .says("can't tell on which finger")
+        .says("thumb_tip");
+
+    // What is suggested has all eight marks and no skin, and runs.
+    let suggested = dir.lunula(&["posture", "scene/video.mp4", "--suggest"]).expect(0).stdout;
+    dir.write("suggested.toml", &suggested);
+    let given =
+        ["posture", "scene/video.mp4", "--markers", "suggested.toml", "--out", "s.csv", "--tracks", "s-tracks.csv"];
+    let report = dir.lunula(&[&given[..], &["--no-figures", "--json"]].concat()).expect(0).json();
+    assert_eq!(report["markers"].as_array().map(Vec::len), Some(8), "{suggested}");
+    let exact = dir.table("scene/truth/tracks.csv");
+    for row in dir.table("s-tracks.csv") {
+        let (Some(x), Some(y)) = (number(&row, "x_px"), number(&row, "y_px")) else { continue };
+        let near = exact
+            .iter()
+            .filter(|t| t["frame"] == row["frame"])
+            .map(|t| (x - number(t, "x_px").unwrap()).hypot(y - number(t, "y_px").unwrap()));
+        let off = near.fold(f64::INFINITY, f64::min);
+        assert!(off <= PAINT_OFF_PX, "frame {} {}: {off} px from any mark\n{suggested}", row["frame"], row["marker"]);
+    }
+}
+
+#[test]
+fn thumb_and_index_of_distinct_colours_need_no_start() {
+    let dir = painted(&["--seconds", "1", "--seed", "3", "--colours", "distinct"]);
+    let markers = std::fs::read_to_string(dir.path("scene/markers.toml")).expect("text");
+    assert!(!markers.contains("[start]"));
+    posture(&dir, &["--tracks", "tracks.csv", "--no-figures"]).expect(0);
+    let (seen, in_view) = is_rightly_named(&dir);
+    assert!(100 * seen >= 98 * in_view, "{seen} of {in_view} marks");
+}
+
+#[test]
+fn a_single_marker_has_tracks_and_no_angles() {
+    let dir = scene(&["--colours", "distinct"]);
+    let markers = std::fs::read_to_string(dir.path("scene/markers.toml")).expect("text");
+    let line = |line: &&str| line.starts_with("distal_dist = ") || line.starts_with("hand_prox = ");
+    let two: Vec<&str> = markers.lines().filter(line).collect();
+    for count in [1, 2] {
+        dir.write("scene/markers.toml", format!("[markers]\n{}\n", two[..count].join("\n")));
+        posture(&dir, &["--tracks", "tracks.csv"]).expect(0);
+        assert_eq!(
+            dir.table("joints.csv")[0].keys().cloned().collect::<Vec<_>>(),
+            ["clock_s", "frame", "status", "time_s"]
+        );
+        let truth = dir.table("scene/truth/tracks.csv");
+        let tracks = dir.table("tracks.csv");
+        assert_eq!(tracks.len(), count * dir.table("joints.csv").len());
+        for row in &tracks {
+            let exact =
+                truth.iter().find(|t| t["frame"] == row["frame"] && t["marker"] == row["marker"]).expect("truth");
+            let off = ["x_px", "y_px"].map(|c| number(row, c).unwrap() - number(exact, c).unwrap());
+            assert!(off[0].hypot(off[1]) <= 1.0, "frame {} {}: {off:?}", row["frame"], row["marker"]);
+        }
+    }
+}
+
+#[test]
 fn a_plan_says_what_is_left_out_and_does_nothing() {
     let dir = scene(&[]);
     let plan = dir

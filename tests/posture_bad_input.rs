@@ -238,3 +238,13 @@ fn hands_without_markers_give_no_angles() {
     let answer = posture(&dir, clip);
     refused(&dir, answer, &["rotation_1.mp4", "markers"]);
 }
+
+#[test]
+#[ignore = "needs ../shared/data"]
+fn nothing_on_real_hands_is_suggested_as_a_marker() {
+    let dir = Dir::new();
+    for name in ["rotation_1", "scale_1", "translation_2"] {
+        let clip = format!("{}/../shared/data/hand/{name}.mp4", env!("CARGO_MANIFEST_DIR"));
+        dir.lunula(&["posture", &clip, "--suggest"]).expect(2).says("looks like a marker");
+    }
+}

@@ -4,7 +4,8 @@
 //! [`Fit`], or why there is none. The rough place is the centroid of what is nearer to the marker's colour than to its
 //! surround's; from there a blurred disc is fitted to luma and chroma together ([`disc`]), each plane weighted by what it leaves
 //! unexplained. Radius and blur are free but held near what other frames showed; light may change, for all levels are free. A
-//! centre is refused where what is left unexplained is more than noise, as when something covers a part of the marker.
+//! centre is refused where what is left unexplained is more than noise, as when something covers a part of the marker. A
+//! marker that is no disc has the centre of its outline ([`super::blot`]).
 //!
 //! The covariance is that of independent noise, times the square of [`Look::inflation`]: what a codec changes is not independent
 //! from sample to sample, for it moves whole blocks ([`super::inflation`]).
@@ -13,6 +14,7 @@
 
 use nalgebra::{Matrix2, Matrix4, Vector4};
 
+use super::blot::Outline;
 use super::colour::Look;
 use super::disc::{Ground, Say, Shape, View, Window, sums};
 use super::method::Method;
@@ -62,6 +64,8 @@ pub(crate) struct Fit {
     pub(crate) noise: [f64; 3],
     /// Chroma's centre less luma's, and the standard error of both coordinates (independent noise).
     pub(crate) chroma_shift_px: Option<([f64; 2], f64)>,
+    /// What a blot's centre is the centroid of; none for a disc.
+    pub(crate) outline: Option<Outline>,
 }
 
 /// Room for samples, to be used again, and how to use it.
@@ -83,6 +87,9 @@ pub(crate) fn centre(
     near_px: [f64; 2],
     scratch: &mut Scratch,
 ) -> Result<Fit, Loss> {
+    if let Some(blot) = &look.blot {
+        return blot.outline(frame, siting, near_px).map(|outline| of_blot(look, outline));
+    }
     let at_px = rough(frame, siting, look, near_px)?;
     if scratch.method.rounds == 0 {
         return unrefined(frame, look, at_px);
@@ -108,7 +115,7 @@ fn unrefined(frame: &Frame<'_>, look: &Look, at_px: [f64; 2]) -> Result<Fit, Los
     let white_px2 = [variance, 0.0, variance];
     let covariance_px2 = white_px2.map(|v| v * look.inflation.powi(2));
     Ok(Fit {
-        centre: Centre { at_px, covariance_px2, radius_px: look.radius_px },
+        centre: Centre { at_px, covariance_px2, lasting_px2: [0.0; 3], radius_px: look.radius_px },
         white_px2,
         marker: look.marker,
         background: look.background,
@@ -116,7 +123,31 @@ fn unrefined(frame: &Frame<'_>, look: &Look, at_px: [f64; 2]) -> Result<Fit, Los
         misfit: look.misfit,
         noise: look.noise,
         chroma_shift_px: None,
+        outline: None,
     })
+}
+
+/// A blot's centre, the error of its outline beside that of noise.
+fn of_blot(look: &Look, outline: Outline) -> Fit {
+    let white_px2 = outline.white_px2;
+    let factor = look.inflation.powi(2);
+    let covariance_px2 = std::array::from_fn(|k| factor * white_px2[k] + outline.lasting_px2[k]);
+    Fit {
+        centre: Centre {
+            at_px: outline.at_px,
+            covariance_px2,
+            lasting_px2: outline.lasting_px2,
+            radius_px: outline.radius_px(),
+        },
+        white_px2,
+        marker: outline.marker,
+        background: outline.background,
+        blur_px: look.blur_px,
+        misfit: look.misfit,
+        noise: outline.noise,
+        chroma_shift_px: None,
+        outline: Some(outline),
+    }
 }
 
 /// The fit from a place that is right within a pixel or so, not judged.
@@ -218,8 +249,12 @@ pub(super) fn fit(
     let contrast: f64 = marker.iter().zip(&background).map(|(a, b)| (a - b).powi(2)).sum();
     let unexplained: f64 = inner[..planes].iter().map(|[squares, count]| squares / count.max(1.0)).sum();
     let factor = look.inflation.powi(2);
-    let centre =
-        Centre { at_px: shape.at_px, covariance_px2: white_px2.map(|v| v * factor), radius_px: shape.radius_px };
+    let centre = Centre {
+        at_px: shape.at_px,
+        covariance_px2: white_px2.map(|v| v * factor),
+        lasting_px2: [0.0; 3],
+        radius_px: shape.radius_px,
+    };
     let finite = white_px2.iter().chain(&shape.at_px).chain(&marker).chain(&background).all(|v| v.is_finite());
     if !(finite && contrast > 0.0) {
         return Err(Loss::NotFound);
@@ -233,6 +268,7 @@ pub(super) fn fit(
         misfit: unexplained / contrast,
         noise,
         chroma_shift_px: chroma_shift(&says, &noise),
+        outline: None,
     })
 }
 

@@ -3,7 +3,9 @@
 //! Learned where the marker is first seen and kept up to date from the fits that follow. Samples are on the scale of 8
 //! bits, in the order Y', Cb, Cr; without chroma the last two are zero.
 
+use super::blot::Blot;
 use super::centre::{Fit, Scratch, fit};
+use super::find::Paint;
 use super::siting::Siting;
 use crate::video::Frame;
 
@@ -31,6 +33,8 @@ pub(crate) struct Look {
     pub(crate) noise: [f64; 3],
     /// How many times larger the errors are than independent noise would make them ([`super::inflation`]).
     pub(crate) inflation: f64,
+    /// How its outline is found; none for a disc.
+    pub(crate) blot: Option<Blot>,
 }
 
 impl Look {
@@ -43,8 +47,16 @@ impl Look {
         scratch: &mut Scratch,
     ) -> Option<Self> {
         let (marker, background) = colours(frame, siting, at_px, radius_px)?;
-        let start =
-            Self { radius_px, marker, background, blur_px: 0.0, misfit: 0.0, noise: [1.0; 3], inflation: INFLATION };
+        let start = Self {
+            radius_px,
+            marker,
+            background,
+            blur_px: 0.0,
+            misfit: 0.0,
+            noise: [1.0; 3],
+            inflation: INFLATION,
+            blot: None,
+        };
         let mut best: Option<(f64, Fit)> = None;
         for blur_px in BLURS_PX.into_iter().filter(|&blur| blur <= BLURS_PX[0].max(0.4 * radius_px)) {
             let mut look = Self { blur_px, ..start.clone() };
@@ -74,6 +86,27 @@ impl Look {
         })
     }
 
+    /// The looks of the marker of any outline of about `radius_px` at about `at_px`; none where nothing compact stands out.
+    pub(crate) fn learn_blot(frame: &Frame<'_>, siting: Siting, at_px: [f64; 2], radius_px: f64) -> Option<Self> {
+        let (blot, outline) = Blot::learn(frame, siting, at_px, radius_px)?;
+        Some(Self {
+            radius_px: outline.radius_px(),
+            marker: outline.marker,
+            background: outline.background,
+            // What a disc would have; nothing is fitted with them.
+            blur_px: 0.0,
+            misfit: 0.0,
+            noise: outline.noise,
+            inflation: INFLATION,
+            blot: Some(blot),
+        })
+    }
+
+    /// Its colour as last seen.
+    pub(crate) fn paint(&self, of: &Paint) -> Paint {
+        if self.blot.is_some() { of.seen_on(self.marker, self.background) } else { of.seen_as(self.marker) }
+    }
+
     /// Takes over what the marker looked like in another frame.
     pub(crate) fn update(&mut self, fit: &Fit) {
         let toward = |old: &mut f64, new: f64| *old += SHARE * (new - *old);
@@ -84,6 +117,9 @@ impl Look {
             toward(&mut self.marker[p], fit.marker[p]);
             toward(&mut self.background[p], fit.background[p]);
             toward(&mut self.noise[p], fit.noise[p]);
+        }
+        if let (Some(blot), Some(outline)) = (&mut self.blot, &fit.outline) {
+            blot.update(outline);
         }
     }
 }

@@ -103,7 +103,9 @@ impl Inflation {
         }
         for later in 1..fits.len() {
             for earlier in 0..later {
-                if let (Some(one), Some(other)) = (fits[later], fits[earlier]) {
+                // Skin stretches between blots, and with them: no error.
+                let discs = [fits[later], fits[earlier]].map(|fit| fit.filter(|fit| fit.outline.is_none()));
+                if let [Some(one), Some(other)] = discs {
                     self.pairs[pair(later, earlier)].push(one, other);
                 }
             }

@@ -12,15 +12,15 @@ use thiserror::Error;
 
 use super::filmed_clock::FilmedClock;
 use super::joints::Angles;
-use super::layout::Layout;
+use super::layout::{Layout, MarkerShape};
 use super::method::Method;
-use super::plan::{WHOLE_FRAMES, steps};
-use super::report::{PostureReport, SearchReport, VideoReport};
+use super::plan::{OUTLINES, WHOLE_FRAMES, steps};
+use super::report::{MarkerSums, PostureReport, SearchReport, VideoReport};
 use super::results::{Results, Row};
 use super::siting::Siting;
 use super::suggest::Suggester;
 use super::survey::{Progress, Survey, Surveyor};
-use super::track::{Effort, Tracker};
+use super::track::Tracker;
 use crate::files::WriteError;
 use crate::stages::{self, Stages};
 use crate::table::{TableError, TableFormat};
@@ -179,21 +179,16 @@ pub fn run(
     if let Some(why) = clock.as_ref().and_then(|clock| clock.fit.as_ref().err()) {
         failed.push(format!("{}: the clock in the picture: {why}; clock_s is empty", path.display()));
     }
-    let unseen = survey.unseen.iter().map(|&m| layout.markers[m].name.clone()).collect::<Vec<_>>();
-    let mut warnings = [&layout.notes[..], &info.warnings[..]].concat();
-    if !unseen.is_empty() {
-        warnings.push(format!(
-            "{} not seen in the first {} frames, and looked for from then on",
-            unseen.join(", "),
-            survey.frames
-        ));
-    }
+    // What makes all angles wrong comes first.
+    let mut warnings: Vec<String> = results.plausibility.warning(layout.flexion).into_iter().collect();
+    warnings.extend(layout.notes.iter().chain(&info.warnings).cloned());
+    warnings.extend(late(layout, &survey, &results.markers));
     let draft = PostureReport {
         job: "posture",
         version: env!("CARGO_PKG_VERSION"),
         video: video_report(path, &info, survey.siting, &span),
         frames: results.frames,
-        markers: results.marker_reports(),
+        markers: results.marker_reports(|marker| tracker.shape(marker)),
         joints: results.joint_reports(),
         coupling: results.coupling(),
         clock: clock.map(|clock| clock.report),
@@ -204,7 +199,7 @@ pub fn run(
             whole_frames: search.whole_searches,
             share_of_samples: search.share_searched,
         },
-        left_out: left_out(layout, &info, options, outputs, &search),
+        left_out: left_out(layout, &info, options, outputs, &tracker),
         warnings,
         failed,
         pictures,
@@ -214,6 +209,19 @@ pub fn run(
         wall_s: 0.0,
     };
     results.finish(draft, &stages, start)
+}
+
+/// The markers that no frame shows, or only frames after those that names were given by.
+fn late(layout: &Layout, survey: &Survey, markers: &[MarkerSums]) -> Vec<String> {
+    let of = |marker: &usize| {
+        let name = &layout.markers[*marker].name;
+        match markers[*marker].first_frame {
+            None => Some(format!("{name} is seen in no frame; --overlay shows what was tracked")),
+            Some(frame) if frame >= survey.frames as u64 => Some(format!("{name} is not seen before frame {frame}")),
+            Some(_) => None,
+        }
+    };
+    survey.unseen.iter().filter_map(of).collect()
 }
 
 /// Threads that decode.
@@ -237,7 +245,30 @@ pub fn suggest(path: &Path, threads: usize) -> Result<String, PostureError> {
             suggester.look(&frame);
         }
     }
-    suggester.finish().map_err(|why| PostureError::Markers { path: path.to_owned(), why: why.to_string() })
+    let suggested = suggester.finish();
+    let text = suggested.map_err(|why| PostureError::Markers { path: path.to_owned(), why: why.to_string() })?;
+    // What it says is tried, as a run would.
+    let tried = match Layout::parse(&text, Path::new("the suggestion")) {
+        Err(why) => Err(why.to_string()),
+        Ok(layout) => {
+            let options = PostureOptions { threads, ..PostureOptions::default() };
+            let watch = Watch { stop: &AtomicBool::new(false), tick: &|_, _| {} };
+            let first = look_first(path, &layout, &options, &Stages::default(), &watch);
+            first.map(|_| ()).map_err(|why| match why {
+                PostureError::Markers { why, .. } => why,
+                other => other.to_string(),
+            })
+        }
+    };
+    match tried {
+        Ok(()) => Ok(text),
+        // Spots that can't be found again where they were found are no markers.
+        Err(why) if text.contains("[start]") => Err(PostureError::Markers {
+            path: path.to_owned(),
+            why: format!("nothing looks like a marker: what stands out most can't be followed ({why})"),
+        }),
+        Err(why) => Ok(format!("# It does not run as it is: {}\n{text}", why.replace('\n', "\n# "))),
+    }
 }
 
 /// Reads the first frames until every marker has its name.
@@ -299,8 +330,14 @@ fn video_report(path: &Path, info: &Info, siting: Siting, span: &Span) -> VideoR
 }
 
 /// What the scene did not need.
-fn left_out(layout: &Layout, info: &Info, options: &PostureOptions, outputs: &Outputs, search: &Effort) -> Vec<String> {
-    let steps = steps(layout, info, options, Some(outputs));
+fn left_out(
+    layout: &Layout,
+    info: &Info,
+    options: &PostureOptions,
+    outputs: &Outputs,
+    tracker: &Tracker,
+) -> Vec<String> {
+    let (steps, search) = (steps(layout, info, options, Some(outputs)), tracker.effort());
     let mut left_out = stages::left_out(steps.into_iter().filter(|step| step.stage != WHOLE_FRAMES));
     left_out.push(format!(
         "{WHOLE_FRAMES}: in all but {} of {} frames only where the last one tells, {:.2} % of the samples",
@@ -308,5 +345,32 @@ fn left_out(layout: &Layout, info: &Info, options: &PostureOptions, outputs: &Ou
         search.frames,
         100.0 * search.share_searched
     ));
+    let mut shapes = (0..layout.markers.len()).filter_map(|marker| tracker.shape(marker));
+    if layout.shape.is_none() && shapes.all(|shape| shape == MarkerShape::Disc) {
+        left_out.push(format!("{OUTLINES}: a disc fits every marker"));
+    }
     left_out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::posture::sight::{Centre, Sight};
+
+    #[test]
+    fn a_marker_found_while_names_were_sought_is_not_called_unseen() {
+        let text = "[markers]\na = '#2b4b10'\nb = '#2b4b10'\nc = '#2b4b10'\n";
+        let layout = Layout::parse(text, Path::new("m.toml")).expect("a sound marker file");
+        let siting = Siting { dx_px: 0.0, dy_px: 0.0 };
+        let survey =
+            Survey { starts: vec![None; 3], lengths_px: Vec::new(), siting, frames: 296, unseen: vec![0, 1, 2] };
+        let centre =
+            Centre { at_px: [9.0; 2], covariance_px2: [0.01, 0.0, 0.01], lasting_px2: [0.0; 3], radius_px: 5.0 };
+        let mut markers = vec![MarkerSums::default(); 3];
+        markers[0].add(42, &Sight::Seen(centre));
+        markers[1].add(300, &Sight::Seen(centre));
+        let late = late(&layout, &survey, &markers);
+        assert_eq!(late.len(), 2, "{late:?}");
+        assert!(late[0].starts_with("b ") && late[0].contains("300") && late[1].starts_with("c "), "{late:?}");
+    }
 }

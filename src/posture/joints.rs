@@ -10,7 +10,7 @@
 //! Errors of different markers are taken as independent. A marker that both segments share counts once, with both its signs.
 
 use super::view::{Spot, View};
-use super::{Layout, Sight};
+use super::{Centre, Layout, Sight};
 use crate::video::Info;
 
 use std::f64::consts::{PI, TAU};
@@ -22,6 +22,8 @@ pub struct Angle {
     pub rad: f64,
     /// Its standard error.
     pub sd_rad: f64,
+    /// The part of it that stays from frame to frame, which no smoothing over time makes smaller.
+    pub lasting_sd_rad: f64,
 }
 
 /// The joints of one frame.
@@ -80,6 +82,13 @@ impl Angles {
                 _ => None,
             })
             .collect();
+        let lasting: Vec<Option<Spot>> = sights
+            .iter()
+            .map(|sight| match sight {
+                Sight::Seen(centre) => self.view.flat(&Centre { covariance_px2: centre.lasting_px2, ..*centre }),
+                Sight::Lost(_) => None,
+            })
+            .collect();
         let mut lost: Vec<usize> = (0..spots.len()).filter(|&m| self.needed[m] && spots[m].is_none()).collect();
         let directions: Vec<Option<Direction>> = self
             .layout
@@ -113,7 +122,10 @@ impl Angles {
                 let rad = nearest_branch(sign * (b.rad - a.rad) - joint.zero_rad, *last);
                 *last = Some(rad);
                 let pairs = joint.segments.map(|s| self.layout.segments[s].markers);
-                Some(Angle { rad, sd_rad: variance(pairs, [a, b], &spots).sqrt() })
+                let second_order_rad2 = a.second_order_rad2 + b.second_order_rad2;
+                let sd_rad = variance(pairs, [a, b], &spots, second_order_rad2).sqrt();
+                let lasting_sd_rad = variance(pairs, [a, b], &lasting, 0.0).sqrt();
+                Some(Angle { rad, sd_rad, lasting_sd_rad })
             })
             .collect();
         AngleRow { angles, lost }
@@ -167,10 +179,10 @@ impl Direction {
     }
 }
 
-/// The variance of the angle from the segment `a` to the segment `b`, whose markers are `pairs`.
-fn variance(pairs: [[usize; 2]; 2], [a, b]: [&Direction; 2], spots: &[Option<Spot>]) -> f64 {
+/// The variance of the angle from the segment `a` to the segment `b`, whose markers are `pairs`, beside that of second order.
+fn variance(pairs: [[usize; 2]; 2], [a, b]: [&Direction; 2], spots: &[Option<Spot>], second_order_rad2: f64) -> f64 {
     let parts = [(pairs[0][0], a, 1.0), (pairs[0][1], a, -1.0), (pairs[1][0], b, -1.0), (pairs[1][1], b, 1.0)];
-    let mut variance = a.second_order_rad2 + b.second_order_rad2;
+    let mut variance = second_order_rad2;
     for (k, &(marker, ..)) in parts.iter().enumerate() {
         if parts[..k].iter().any(|p| p.0 == marker) {
             continue;

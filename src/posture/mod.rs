@@ -9,6 +9,7 @@
 //! Inside, coordinates are those of the *stored* picture ([`crate::video`]): the centre of its top-left luma sample is
 //! (0, 0), x to the right, y down. Angles are in radians, positive in flexion.
 
+mod blot;
 mod centre;
 mod colour;
 mod disc;
@@ -24,6 +25,7 @@ mod method;
 mod naming;
 mod overlay;
 mod plan;
+mod plausible;
 mod report;
 mod results;
 mod rough;
@@ -41,7 +43,7 @@ pub use figures::{AngleFigures, CouplingLine};
 pub use filmed_clock::{ClockReport, ClockTieReport};
 pub use job::{Outputs, PostureError, PostureOptions, Watch, run, suggest};
 pub use joints::{Angle, AngleRow, Angles};
-pub use layout::{Camera, Joint, Layout, LayoutError, LayoutFault, Marker, Segment};
+pub use layout::{Camera, Joint, Layout, LayoutError, LayoutFault, Marker, MarkerShape, Segment};
 pub use lens::{Lens, Undistorted};
 pub use method::{Method, Planes, Search};
 pub use plan::plan;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::job::{Outputs, PostureError, PostureOptions};
-use super::layout::Layout;
+use super::layout::{Layout, MarkerShape};
 use crate::clock::ClockRoi;
 use crate::stages::Step;
 use crate::video::{Info, Video};
@@ -60,6 +60,14 @@ pub(super) fn steps(layout: &Layout, info: &Info, options: &PostureOptions, outp
             "after the first ones only where the last one tells; again where markers stay away".into(),
         ),
         Step::new(
+            OUTLINES,
+            layout.shape != Some(MarkerShape::Disc),
+            match layout.shape {
+                None => "where a marker is no disc".into(),
+                Some(shape) => format!("shape = \"{}\"", shape.name()),
+            },
+        ),
+        Step::new(
             "chroma planes",
             !grey,
             if grey { "the video is grey".into() } else { "as decoded, about the markers".into() },
@@ -96,6 +104,8 @@ pub(super) fn steps(layout: &Layout, info: &Info, options: &PostureOptions, outp
     ]
 }
 
+/// The step that is needed where a marker is no disc.
+pub(super) const OUTLINES: &str = "outlines of blots";
 /// The stage of which a run's report tells the share.
 pub(super) const WHOLE_FRAMES: &str = "search of whole frames";
 

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::filmed_clock::ClockReport;
 use super::joints::Angle;
+use super::layout::MarkerShape;
 use super::sight::{Loss, Sight};
 use super::smooth::SmoothModel;
 use crate::stages::Stage;
@@ -86,6 +87,8 @@ pub struct FrameCounts {
 pub struct MarkerReport {
     /// Its name.
     pub marker: String,
+    /// What it was taken for, `disc` or `blot`; none where it was never seen.
+    pub shape: Option<&'static str>,
     /// Frames with its centre.
     pub seen: u64,
     /// Frames without, by reason; reasons that never came up are left out.
@@ -118,6 +121,8 @@ pub struct JointReport {
     pub max_deg: Option<f64>,
     /// The root mean square of the standard errors.
     pub sd_deg: Option<f64>,
+    /// Frames whose angle a finger can't have.
+    pub outside: u64,
     /// What the smoother took the angles for; none where it did not run or had too few.
     pub smoothing: Option<SmoothModel>,
 }
@@ -158,6 +163,8 @@ pub struct SearchReport {
 #[derive(Debug, Clone, Default)]
 pub(super) struct MarkerSums {
     seen: u64,
+    /// The first frame that shows it.
+    pub(super) first_frame: Option<u64>,
     lost: [u64; LOSSES.len()],
     radius_px: f64,
     variance_px2: f64,
@@ -188,7 +195,7 @@ impl JointSums {
         self.variance_rad2 += angle.sd_rad.powi(2);
     }
 
-    pub(super) fn report(&self, name: &str) -> JointReport {
+    pub(super) fn report(&self, name: &str, outside: u64) -> JointReport {
         let known = |rad: f64| (self.frames > 0).then(|| rad.to_degrees());
         JointReport {
             joint: name.to_owned(),
@@ -196,6 +203,7 @@ impl JointSums {
             min_deg: known(self.min_rad),
             max_deg: known(self.max_rad),
             sd_deg: known((self.variance_rad2 / self.frames as f64).sqrt()),
+            outside,
             smoothing: self.smoothing,
         }
     }
@@ -211,9 +219,10 @@ const LOSSES: [(Loss, &str); 5] = [
 ];
 
 impl MarkerSums {
-    pub(super) fn add(&mut self, sight: &Sight) {
+    pub(super) fn add(&mut self, frame: u64, sight: &Sight) {
         match sight {
             Sight::Seen(centre) => {
+                self.first_frame.get_or_insert(frame);
                 self.seen += 1;
                 self.radius_px += centre.radius_px;
                 self.variance_px2 += centre.sd_px().powi(2);
@@ -226,11 +235,12 @@ impl MarkerSums {
         }
     }
 
-    pub(super) fn report(&self, name: &str) -> MarkerReport {
+    pub(super) fn report(&self, name: &str, shape: Option<MarkerShape>) -> MarkerReport {
         let mean = |sum: f64| (self.seen > 0).then(|| sum / self.seen as f64);
         let lost = LOSSES.iter().zip(self.lost).filter(|(_, count)| *count > 0);
         MarkerReport {
             marker: name.to_owned(),
+            shape: shape.map(MarkerShape::name),
             seen: self.seen,
             lost: lost.map(|((_, words), count)| (*words, count)).collect(),
             radius_px: mean(self.radius_px),

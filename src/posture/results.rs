@@ -7,8 +7,9 @@ use super::figures::AngleFigures;
 use super::filmed_clock::ClockRow;
 use super::job::{Outputs, PostureError, PostureOptions};
 use super::joints::{Angle, AngleRow};
-use super::layout::Layout;
+use super::layout::{Layout, MarkerShape};
 use super::overlay::{Drawing, Mark, Overlay};
+use super::plausible::Plausibility;
 use super::report::{
     CouplingReport, FrameCounts, JointReport, JointSums, MarkerReport, MarkerSums, PostureReport, in_words,
 };
@@ -71,6 +72,7 @@ pub(super) struct Results<'a> {
     pub(super) frames: FrameCounts,
     pub(super) markers: Vec<MarkerSums>,
     pub(super) angles: Vec<JointSums>,
+    pub(super) plausibility: Plausibility,
 }
 
 impl<'a> Results<'a> {
@@ -112,6 +114,7 @@ impl<'a> Results<'a> {
             frames: FrameCounts::default(),
             markers: vec![MarkerSums::default(); layout.markers.len()],
             angles: vec![JointSums::default(); layout.joints.len()],
+            plausibility: Plausibility::new(&layout.joints),
         })
     }
 
@@ -121,7 +124,7 @@ impl<'a> Results<'a> {
         self.frames.undecoded += u64::from(row.frame.is_none());
         self.frames.complete += u64::from(row.joints.lost.is_empty());
         for &marker in &self.needed {
-            self.markers[marker].add(&row.sights[marker]);
+            self.markers[marker].add(row.index, &row.sights[marker]);
         }
         self.write_tracks(&row)?;
         match &mut self.held {
@@ -186,6 +189,7 @@ impl<'a> Results<'a> {
         for (sums, angle) in self.angles.iter_mut().zip(&row.angles) {
             sums.add(angle.as_ref());
         }
+        self.plausibility.add(&row.angles);
         self.figures.push(time_s, &row.angles);
         let status = row.status(self.layout);
         let mut cells =
@@ -228,12 +232,13 @@ impl<'a> Results<'a> {
         Ok(())
     }
 
-    pub(super) fn marker_reports(&self) -> Vec<MarkerReport> {
-        self.needed.iter().map(|&m| self.markers[m].report(&self.layout.markers[m].name)).collect()
+    pub(super) fn marker_reports(&self, shape: impl Fn(usize) -> Option<MarkerShape>) -> Vec<MarkerReport> {
+        self.needed.iter().map(|&m| self.markers[m].report(&self.layout.markers[m].name, shape(m))).collect()
     }
 
     pub(super) fn joint_reports(&self) -> Vec<JointReport> {
-        self.layout.joints.iter().zip(&self.angles).map(|(joint, sums)| sums.report(&joint.name)).collect()
+        let joints = self.layout.joints.iter().zip(&self.angles).enumerate();
+        joints.map(|(k, (joint, sums))| sums.report(&joint.name, self.plausibility.outside(k))).collect()
     }
 
     pub(super) fn coupling(&self) -> Option<CouplingReport> {

@@ -7,6 +7,8 @@ pub struct Centre {
     pub at_px: [f64; 2],
     /// Variance of x, covariance, variance of y.
     pub covariance_px2: [f64; 3],
+    /// The part of it that stays from frame to frame, as what is taken for a blot's outline does.
+    pub lasting_px2: [f64; 3],
     /// Radius of a disc of the marker's area.
     pub radius_px: f64,
 }

@@ -1,4 +1,4 @@
-//! Small scenes for tests: coloured discs on a ground, drawn into the planes of a frame.
+//! Small scenes for tests: coloured discs and blots on a ground, drawn into the planes of a frame.
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -13,6 +13,58 @@ pub(crate) struct Disc {
     pub(crate) colour: [u8; 3],
 }
 
+/// A blot of paint: an uneven outline, shine on it, stretched with the skin.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Blot {
+    pub(crate) at: [f64; 2],
+    pub(crate) radius: f64,
+    pub(crate) colour: [u8; 3],
+    /// Which outline.
+    pub(crate) kind: u64,
+    pub(crate) turn_rad: f64,
+    /// Along and across.
+    pub(crate) stretch: [f64; 2],
+}
+
+impl Blot {
+    /// Its place on the unstretched skin, of a radius of 1.
+    fn local(&self, x: f64, y: f64) -> [f64; 2] {
+        let (sin, cos) = self.turn_rad.sin_cos();
+        let (dx, dy) = (x - self.at[0], y - self.at[1]);
+        [
+            (cos * dx + sin * dy) / (self.radius * self.stretch[0]),
+            (cos * dy - sin * dx) / (self.radius * self.stretch[1]),
+        ]
+    }
+
+    /// How far within its outline a place on the unstretched skin is.
+    fn within(&self, [u, v]: [f64; 2]) -> f64 {
+        let mut random = ChaCha8Rng::seed_from_u64(self.kind);
+        let angle = v.atan2(u);
+        let bumps = (2..6).map(|k| {
+            let (size, phase) = (random.random_range(0.05..0.25), random.random_range(0.0..6.28));
+            size / (f64::from(k) - 0.8) * (f64::from(k) * angle + phase).cos()
+        });
+        1.0 + bumps.sum::<f64>() - u.hypot(v)
+    }
+
+    /// Where the centroid of its paint is.
+    pub(crate) fn centroid(&self) -> [f64; 2] {
+        let (mut area, mut sum) = (0.0, [0.0; 2]);
+        for k in 0..160 * 160 {
+            let at = [k % 160, k / 160].map(|part| f64::from(part) / 40.0 - 1.9875);
+            if self.within(at) > 0.0 {
+                area += 1.0;
+                (sum[0], sum[1]) = (sum[0] + at[0], sum[1] + at[1]);
+            }
+        }
+        let (sin, cos) = self.turn_rad.sin_cos();
+        let [u, v] = [0, 1].map(|axis| sum[axis] / area * self.radius * self.stretch[axis]);
+        [self.at[0] + cos * u - sin * v, self.at[1] + sin * u + cos * v]
+    }
+}
+
+pub(crate) const PAINT: [u8; 3] = [0x2b, 0x4b, 0x10];
 pub(crate) const PINK: [u8; 3] = [0xe9, 0x1e, 0x63];
 pub(crate) const BLUE: [u8; 3] = [0x1e, 0x88, 0xe5];
 pub(crate) const GREEN: [u8; 3] = [0x43, 0xa0, 0x47];
@@ -28,6 +80,8 @@ pub(crate) struct Stage {
     pub(crate) format: Format,
     pub(crate) ground: [u8; 3],
     pub(crate) discs: Vec<Disc>,
+    /// Over them.
+    pub(crate) blots: Vec<Blot>,
     /// Standard deviation of the noise of 255.
     pub(crate) noise: f64,
     /// Light: factor on linear intensity.
@@ -37,7 +91,7 @@ pub(crate) struct Stage {
 impl Stage {
     pub(crate) fn new(width: usize, height: usize, ground: [u8; 3]) -> Self {
         let format = Format { width, height, subsampling: Some((2, 2)), depth: 8 };
-        Self { format, ground, discs: Vec::new(), noise: 2.0, light: 1.0 }
+        Self { format, ground, discs: Vec::new(), blots: Vec::new(), noise: 2.0, light: 1.0 }
     }
 
     pub(crate) fn disc(&mut self, at: [f64; 2], radius: f64, colour: [u8; 3]) -> &mut Self {
@@ -70,6 +124,24 @@ impl Stage {
                     let pixel = &mut full[y * width + x];
                     for (value, of_disc) in pixel.iter_mut().zip(colour) {
                         *value += cover * (of_disc - *value);
+                    }
+                }
+            }
+        }
+        for blot in &self.blots {
+            let (colour, shine) = (lit(blot.colour), lit([0x80, 0x90, 0x70]));
+            let reach = 1.8 * blot.radius * blot.stretch[0].max(blot.stretch[1]);
+            let span = |at: f64, size: usize| {
+                ((at - reach).max(0.0) as usize).min(size)..((at + reach).max(-1.0) + 1.0).min(size as f64) as usize
+            };
+            for y in span(blot.at[1], height) {
+                for x in span(blot.at[0], width) {
+                    let at = blot.local(x as f64, y as f64);
+                    let cover = (blot.radius * blot.within(at) + 0.5).clamp(0.0, 1.0);
+                    let bright = 0.5 * (-((at[0] - 0.3).powi(2) + (at[1] + 0.2).powi(2)) / 0.08).exp();
+                    let pixel = &mut full[y * width + x];
+                    for (plane, value) in pixel.iter_mut().enumerate() {
+                        *value += cover * (colour[plane] + bright * (shine[plane] - colour[plane]) - *value);
                     }
                 }
             }

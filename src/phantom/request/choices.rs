@@ -48,6 +48,10 @@ pub(super) enum FlexionArg {
 pub(super) enum LayoutArg {
     Pairs,
     Joints,
+    Paint,
+    Thumb,
+    Row,
+    Mark,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -55,6 +59,8 @@ pub(super) enum ColoursArg {
     Pairs,
     Distinct,
     Red,
+    Dark,
+    Pale,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]

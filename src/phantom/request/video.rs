@@ -48,18 +48,23 @@ pub struct VideoRequest {
     /// How flexion turns a segment on the picture
     #[arg(long, value_enum, default_value = "clockwise")]
     flexion: FlexionArg,
-    /// Two markers on each segment, or one on each joint and at both ends
+    /// Two markers on each segment, or one on each joint and at both ends; or blots of paint as in a real recording (24 frames a second, a second
+    /// hand): eight on thumb and index finger (paint), of these the thumb's four, four in a row on the index finger (two joints), a single one
     #[arg(long, value_enum, default_value = "pairs")]
     layout: LayoutArg,
-    /// One colour a segment (a mark, with --layout joints), one a marker, or all red
-    #[arg(long, value_enum, default_value = "pairs")]
-    colours: ColoursArg,
-    /// Joints that the marker file asks for, separated by commas [default: J1,J2,J3]
+    /// One colour a segment (a mark, with --layout joints), one a marker, all red, or all of one dark or pale paint [default: pairs; with paint:
+    /// dark]
+    #[arg(long, value_enum)]
+    colours: Option<ColoursArg>,
+    /// Joints that the marker file asks for, separated by commas [default: all, which are J1,J2,J3, and with paint the thumb's T1,T2]
     #[arg(long, value_delimiter = ',')]
     joints: Vec<String>,
-    /// Write the markers' places in the first frame into the marker file
+    /// Write the markers' places in the first frame into the marker file [default: with marks of paint of one colour]
     #[arg(long)]
     start: bool,
+    /// Do not write them
+    #[arg(long, conflicts_with = "start")]
+    no_start: bool,
     /// How far the whole finger sways, pixels
     #[arg(long, value_name = "PX")]
     sway: Option<f64>,
@@ -72,7 +77,7 @@ pub struct VideoRequest {
     /// The fingertip is out of the picture from this frame on, so many frames long
     #[arg(long, value_name = "FRAME+N", value_parser = parse_leave)]
     leave: Option<Leave>,
-    /// Blobs of three marker colours elsewhere in the picture, still and moving
+    /// Blobs of three marker colours elsewhere in the picture, still and moving; with paint, dark spots on the other hand
     #[arg(long, value_name = "N")]
     distractors: Option<usize>,
     /// Colour of the desk
@@ -199,7 +204,7 @@ impl VideoRequest {
         options.crf = self.crf.unwrap_or(options.crf);
         options.preset =
             VideoOptions::X264_PRESETS.into_iter().find(|name| *name == self.x264).unwrap_or(options.preset);
-        options.start = self.start;
+        options.start = self.start || (options.start && !self.no_start);
         if !self.joints.is_empty() {
             options.joints.clone_from(&self.joints);
         }
@@ -215,13 +220,25 @@ impl VideoRequest {
         let layout = match self.layout {
             LayoutArg::Pairs => MarkerLayout::Pairs,
             LayoutArg::Joints => MarkerLayout::Joints,
+            LayoutArg::Paint => MarkerLayout::Paint,
+            LayoutArg::Thumb => MarkerLayout::Thumb,
+            LayoutArg::Row => MarkerLayout::Row,
+            LayoutArg::Mark => MarkerLayout::Mark,
         };
         options.finger = Finger::new(options.width, options.height, flexion, layout);
-        options.colours = match self.colours {
+        if layout.painted() {
+            *options = options.clone().painted(layout);
+            // The scene's hidden marker is none of these.
+            options.hide.clear();
+        }
+        options.colours = self.colours.map_or(options.colours, |colours| match colours {
             ColoursArg::Pairs => Colours::Pairs,
             ColoursArg::Distinct => Colours::Distinct,
             ColoursArg::Red => Colours::Red,
-        };
+            ColoursArg::Dark => Colours::Dark,
+            ColoursArg::Pale => Colours::Pale,
+        });
+        options.start &= matches!(options.colours, Colours::Red | Colours::Dark | Colours::Pale);
         if layout == MarkerLayout::Joints {
             // The scene's hidden marker by its name in this layout.
             options.hide.iter_mut().for_each(|hide| hide.marker = "dip".to_owned());

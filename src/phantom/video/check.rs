@@ -2,7 +2,6 @@
 
 use super::lens::Mapping;
 use super::{Faults, VideoOptions};
-use crate::phantom::finger::JOINTS;
 
 impl VideoOptions {
     /// Can this video be made?
@@ -65,10 +64,14 @@ impl VideoOptions {
                 format!("{text}: the video has frames 0 to {}", frames - 1)
             });
         }
+        let known: Vec<&str> = self.finger.layout.joints().into_iter().map(|(joint, _)| joint).collect();
         for joint in &self.joints {
-            need(JOINTS.contains(&joint.as_str()), &|| format!("--joints {joint}: there are {}", JOINTS.join(", ")));
+            need(known.contains(&joint.as_str()), &|| match &known[..] {
+                [] => format!("--joints {joint}: a single mark has no joints"),
+                known => format!("--joints {joint}: there are {}", known.join(", ")),
+            });
         }
-        need(!self.joints.is_empty(), &|| "--joints: name at least one".to_owned());
+        need(!self.joints.is_empty() || known.is_empty(), &|| "--joints: name at least one".to_owned());
         if let Some(clock) = &self.clock {
             if let Some(fault) = clock.fault() {
                 need(false, &|| format!("--clock {}: {fault}", clock.format));

@@ -1,34 +1,44 @@
 //! The limb's outline: tapered capsules around its bones.
 
 /// The limb at one moment.
+#[derive(Debug)]
 pub(super) struct Limb {
-    pub(super) ends: [[f64; 2]; 5],
-    /// Half widths at the bones' ends.
-    half_widths: [f64; 5],
-    /// 1 over the bones' squared lengths.
-    inverse: [f64; 4],
+    pub(super) bones: Vec<Bone>,
+}
+
+/// A capsule.
+#[derive(Debug)]
+pub(super) struct Bone {
+    pub(super) ends: [[f64; 2]; 2],
+    /// Half widths at its ends.
+    pub(super) half_widths: [f64; 2],
+    /// 1 over its squared length.
+    inverse: f64,
 }
 
 impl Limb {
-    pub(super) fn new(ends: [[f64; 2]; 5], half_widths: [f64; 5]) -> Self {
-        let inverse = std::array::from_fn(|k| {
-            let [dx, dy] = [ends[k + 1][0] - ends[k][0], ends[k + 1][1] - ends[k][1]];
-            1.0 / (dx * dx + dy * dy).max(1e-12)
-        });
-        Self { ends, half_widths, inverse }
+    /// Bones between two each of these points, at which the limb is so wide.
+    pub(super) fn new(points: &[[f64; 2]], half_widths: &[f64], bones: &[[usize; 2]]) -> Self {
+        let bone = |&bone: &[usize; 2]| {
+            let [from, to] = bone.map(|point| points[point]);
+            let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
+            let inverse = 1.0 / (dx * dx + dy * dy).max(1e-12);
+            Bone { ends: [from, to], half_widths: bone.map(|point| half_widths[point]), inverse }
+        };
+        Self { bones: bones.iter().map(bone).collect() }
     }
 
     /// The distance of a point from the outline of the bones `within`, and where it lies across the limb: from the bone's nearest point, in
     /// units of half the width there.
-    pub(super) fn nearest(&self, within: [bool; 4], [x, y]: [f64; 2]) -> (f64, [f64; 2]) {
+    pub(super) fn nearest(&self, within: &[bool], [x, y]: [f64; 2]) -> (f64, [f64; 2]) {
         let mut best = (f64::INFINITY, [0.0; 2]);
-        for k in (0..4).filter(|&k| within[k]) {
-            let [x0, y0] = self.ends[k];
-            let [dx, dy] = [self.ends[k + 1][0] - x0, self.ends[k + 1][1] - y0];
+        for bone in self.bones.iter().zip(within).filter_map(|(bone, within)| within.then_some(bone)) {
+            let [[x0, y0], [x1, y1]] = bone.ends;
+            let [dx, dy] = [x1 - x0, y1 - y0];
             let [px, py] = [x - x0, y - y0];
-            let along = ((px * dx + py * dy) * self.inverse[k]).clamp(0.0, 1.0);
+            let along = ((px * dx + py * dy) * bone.inverse).clamp(0.0, 1.0);
             let (ox, oy) = (px - along * dx, py - along * dy);
-            let half = self.half_widths[k] + along * (self.half_widths[k + 1] - self.half_widths[k]);
+            let half = bone.half_widths[0] + along * (bone.half_widths[1] - bone.half_widths[0]);
             let distance = (ox * ox + oy * oy).sqrt() - half;
             if distance < best.0 {
                 best = (distance, [ox / half, oy / half]);
@@ -44,12 +54,12 @@ mod tests {
 
     #[test]
     fn distances_are_those_from_tapered_capsules() {
-        let limb =
-            Limb::new([[0.0, 0.0], [10.0, 0.0], [20.0, 0.0], [20.0, 10.0], [20.0, 20.0]], [4.0, 3.0, 2.0, 2.0, 1.0]);
-        let (distance, across) = limb.nearest([true; 4], [5.0, -7.0]);
+        let points = [[0.0, 0.0], [10.0, 0.0], [20.0, 0.0], [20.0, 10.0], [20.0, 20.0]];
+        let limb = Limb::new(&points, &[4.0, 3.0, 2.0, 2.0, 1.0], &[[0, 1], [1, 2], [2, 3], [3, 4]]);
+        let (distance, across) = limb.nearest(&[true; 4], [5.0, -7.0]);
         assert!((distance - 3.5).abs() < 1e-12 && (across[1] + 2.0).abs() < 1e-12);
-        let (distance, across) = limb.nearest([true; 4], [20.0, 20.5]);
+        let (distance, across) = limb.nearest(&[true; 4], [20.0, 20.5]);
         assert!((distance + 0.5).abs() < 1e-12 && (across[1] - 0.5).abs() < 1e-12);
-        assert!((limb.nearest([true, false, false, false], [20.0, 20.0]).0 - (10f64.hypot(20.0) - 3.0)).abs() < 1e-12);
+        assert!((limb.nearest(&[true, false, false, false], [20.0, 20.0]).0 - (10f64.hypot(20.0) - 3.0)).abs() < 1e-12);
     }
 }

@@ -1,7 +1,6 @@
 //! The marker file of a scene, as `lunula posture` reads it.
 
 use super::Scene;
-use crate::phantom::finger::{JOINTS, SEGMENTS};
 
 impl Scene {
     /// The marker file of this scene.
@@ -13,14 +12,22 @@ impl Scene {
         for marker in &self.markers {
             text += &format!("{} = \"#{:06x}\"\n", marker.name, marker.colour);
         }
-        text += "\n[segments]\n";
-        for (segment, name) in SEGMENTS.iter().enumerate() {
-            let [first, last] = finger.layout.ends(segment).map(|marker| &self.markers[marker].name);
+        let segments = finger.layout.segments();
+        if !segments.is_empty() {
+            text += "\n[segments]\n";
+        }
+        for (name, ends) in &segments {
+            let [first, last] = ends.map(|marker| &self.markers[marker].name);
             text += &format!("{name} = [\"{first}\", \"{last}\"]\n");
         }
-        text += "\n[joints]\n";
-        for (k, joint) in JOINTS.iter().enumerate().filter(|(_, joint)| options.joints.iter().any(|j| j == *joint)) {
-            text += &format!("{joint} = [\"{}\", \"{}\"]\n", SEGMENTS[k], SEGMENTS[k + 1]);
+        let mut joints = finger.layout.joints();
+        joints.retain(|(joint, _)| options.joints.iter().any(|wanted| wanted == joint));
+        if !joints.is_empty() {
+            text += "\n[joints]\n";
+        }
+        for (joint, between) in joints {
+            let [first, last] = between.map(|segment| segments[segment].0);
+            text += &format!("{joint} = [\"{first}\", \"{last}\"]\n");
         }
         if options.start {
             text += "\n[start]\n";

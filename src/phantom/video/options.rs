@@ -35,11 +35,18 @@ pub enum Colours {
     Distinct,
     /// All red.
     Red,
+    /// All of one dark green paint; each mark is as dark as it is thick.
+    Dark,
+    /// All of one pale paint.
+    Pale,
 }
 
 const PAIRS: [u32; 4] = [0x1e6fd9, 0xe91e63, 0x2e9e4f, 0xecc25a];
 const DISTINCT: [u32; 8] = [0x1e6fd9, 0xe91e63, 0x2e9e4f, 0xecc25a, 0x7b1fa2, 0x00acc1, 0xf57c00, 0xaeea00];
 const RED: u32 = 0xd32f2f;
+/// Picked by eye in a real recording; and one that is as far above the skin in luma.
+const DARK: u32 = 0x2b4b10;
+const PALE: u32 = 0xcdd6b2;
 
 impl Colours {
     /// The colour of each marker, sRGB as 0xrrggbb.
@@ -49,6 +56,8 @@ impl Colours {
         match (self, layout) {
             (Self::Pairs, MarkerLayout::Pairs) => (0..count).map(|k| PAIRS[k / 2]).collect(),
             (Self::Red, _) => vec![RED; count],
+            (Self::Dark, _) => vec![DARK; count],
+            (Self::Pale, _) => vec![PALE; count],
             _ => DISTINCT[..count].to_vec(),
         }
     }
@@ -260,6 +269,25 @@ impl VideoOptions {
             preset: "medium",
             joints: JOINTS.map(str::to_owned).to_vec(),
             start: false,
+        }
+    }
+
+    /// This video with marks of paint in this layout, as filmed in a real recording: 24 frames a second, dark paint on skin of dim light, another
+    /// hand with three dark spots, light from one side, some blur, about 1.4 Mbit/s; the marker file has `[start]`, as all marks are of one colour.
+    #[must_use]
+    pub fn painted(self, layout: MarkerLayout) -> Self {
+        Self {
+            finger: Finger::new(self.width, self.height, self.finger.flexion, layout),
+            colours: Colours::Dark,
+            joints: layout.joints().into_iter().map(|(joint, _)| joint.to_owned()).collect(),
+            fps: 24.0,
+            blur: 0.25,
+            gradient: 0.12,
+            distractors: 3,
+            desk: 0x565c61,
+            crf: 26,
+            start: true,
+            ..self
         }
     }
 

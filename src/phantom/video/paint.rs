@@ -1,12 +1,12 @@
 //! Drawing a frame row by row in R'G'B', before the sensor.
 //!
-//! From below to above: desk, distractors, the clock's screen, limb, markers, sticks. Blobs are averaged over the sub-exposures.
+//! From below to above: desk, another hand, distractors, the clock's screen, limb, markers, sticks. Blobs are averaged over the sub-exposures.
 //! Of the limb only its edge is: its shading changes little within an exposure and is that of mid-exposure.
 
 use std::f64::consts::TAU;
 
 use super::edge::{EDGE, columns, soft};
-use super::limb::Limb;
+use super::limb::{Bone, Limb};
 use super::panel::Screen;
 use super::scene::{Moment, Scene};
 
@@ -43,6 +43,8 @@ fn colour_of(hex: u32) -> [f32; 3] {
 const SUB_STEP_PX: f64 = 0.7;
 const MOST_SUBS: f64 = 128.0;
 const SKIN: u32 = 0xd6a88c;
+/// Of scenes with paint: luma 53-127 and Cr 132-150 in the recording that they follow.
+const PAINTED_SKIN: u32 = 0x8f6552;
 const STICK: u32 = 0x3b3f46;
 /// Where the light comes from: right, down, towards the camera.
 const LIGHT: [f64; 3] = [-0.33, -0.72, 0.61];
@@ -58,6 +60,8 @@ struct Blob<'a> {
     spine: [f64; 2],
     reach_px: f64,
     distance: Box<dyn Fn([f64; 2]) -> f64 + Sync + 'a>,
+    /// What its colour is multiplied by, and what is added, at a place.
+    shade: Option<Box<dyn Fn([f64; 2]) -> [f32; 2] + Sync + 'a>>,
 }
 
 /// A frame to be drawn.
@@ -91,7 +95,8 @@ impl<'a> Exposure<'a> {
         let subs = (all / SUB_STEP_PX).ceil().clamp(1.0, MOST_SUBS) as usize;
         let moments: Vec<Moment> =
             (0..subs).map(|k| scene.moment(time_s + exposure_s * ((k as f64 + 0.5) / subs as f64 - 0.5))).collect();
-        let limb = |m: &Moment| Limb::new(m.bones_px, options.finger.half_widths_px);
+        let bones = options.finger.layout.bones();
+        let limb = |m: &Moment| Limb::new(&m.bones_px, &options.finger.half_widths_px, bones);
         let places = |of: &dyn Fn(&Moment) -> [f64; 2]| moments.iter().map(of).collect::<Vec<_>>();
         let below = scene.distractors.iter().enumerate().map(|(k, one)| {
             let distance = move |from| one.distance(from);
@@ -105,8 +110,15 @@ impl<'a> Exposure<'a> {
         });
         let radius = options.finger.marker_px;
         let markers = scene.markers.iter().enumerate().map(|(k, marker)| {
-            let distance = move |[x, y]: [f64; 2]| (x * x + y * y).sqrt() - radius;
-            Blob::new(scene, marker.colour, places(&|m| m.markers_px[k]), ([0.0; 2], radius), Box::new(distance))
+            let places = places(&|m| m.markers_px[k]);
+            let Some(blot) = scene.blots.get(k) else {
+                let distance = move |[x, y]: [f64; 2]| (x * x + y * y).sqrt() - radius;
+                return Blob::new(scene, marker.colour, places, ([0.0; 2], radius), Box::new(distance));
+            };
+            let skin = middle.skins[k];
+            let distance = Box::new(move |from| blot.distance(&skin, from));
+            let blob = Blob::new(scene, marker.colour, places, ([0.0; 2], blot.reach_px()), distance);
+            Blob { shade: Some(Box::new(move |from| blot.shade(&skin, from))), ..blob }
         });
         let sticks = scene.sticks.iter().enumerate().map(|(k, stick)| {
             // A stick is as long as it has to be.
@@ -129,13 +141,16 @@ impl<'a> Exposure<'a> {
     /// Draws row `y`.
     pub(super) fn draw(&self, y: usize, row: &mut Row) {
         self.desk(y, row);
+        if let Some(other) = &self.scene.other_hand {
+            self.limb((other, &[]), 0.0, y, row);
+        }
         for blob in &self.below {
             self.blob(blob, y, row);
         }
         if let Some(screen) = &self.screen {
             screen.draw(y, row);
         }
-        self.limb(y, row);
+        self.limb((&self.middle, &self.limbs), self.motion_px, y, row);
         for blob in &self.above {
             self.blob(blob, y, row);
         }
@@ -180,37 +195,47 @@ impl<'a> Exposure<'a> {
                 let shares = blob.places.iter().map(|at| soft((blob.distance)([px - at[0], py - at[1]]) * sharp));
                 shares.sum::<f32>() * each
             };
-            row.mix(x, blob.colour, share);
+            let colour = blob.shade.as_ref().map_or(blob.colour, |shade| {
+                let [times, more] = shade([px - mx, py - my]);
+                blob.colour.map(|value| times * value + more)
+            });
+            row.mix(x, colour, share);
         }
     }
 
-    fn limb(&self, y: usize, row: &mut Row) {
+    /// A limb at mid-exposure and, where it moves, at the sub-exposures; its bones move so far within the exposure.
+    fn limb(&self, (middle, limbs): (&Limb, &[Limb]), motion_px: f64, y: usize, row: &mut Row) {
         let options = &self.scene.options;
-        let widths = &options.finger.half_widths_px;
         let sharp = 1.0 / options.focus_px;
-        let skin = colour_of(SKIN);
-        let shadow_px = 0.3 * widths[1];
-        let margin = self.motion_px + EDGE * options.focus_px;
+        let skin = colour_of(if options.finger.layout.painted() { PAINTED_SKIN } else { SKIN });
+        let shadow_px = 0.3 * options.finger.half_widths_px[1];
+        let margin = motion_px + EDGE * options.focus_px;
         let around = margin.max(3.0 * shadow_px);
         // A bone out of whose reach a pixel lies is of no account to it.
-        let spans: [Option<[usize; 2]>; 4] = std::array::from_fn(|k| {
-            let reach = widths[k].max(widths[k + 1]) + around;
-            self.columns((self.middle.ends[k], self.middle.ends[k + 1], reach), y)
-        });
+        let span = |bone: &Bone| {
+            let reach = bone.half_widths[0].max(bone.half_widths[1]) + around;
+            self.columns((bone.ends[0], bone.ends[1], reach), y)
+        };
+        let spans: Vec<Option<[usize; 2]>> = middle.bones.iter().map(span).collect();
+        let mut within = vec![false; spans.len()];
         let first = spans.iter().flatten().map(|span| span[0]).min();
         let last = spans.iter().flatten().map(|span| span[1]).max();
         let (Some(first), Some(last)) = (first, last) else { return };
         for x in first..=last {
-            let within = spans.map(|span| span.is_some_and(|[first, last]| (first..=last).contains(&x)));
+            for (within, span) in within.iter_mut().zip(&spans) {
+                *within = span.is_some_and(|[first, last]| (first..=last).contains(&x));
+            }
             let place = self.place(x, y);
-            let (distance, [right, down]) = self.middle.nearest(within, place);
+            let (distance, [right, down]) = middle.nearest(&within, place);
             let share = if distance < -margin {
                 1.0
             } else if distance > margin {
                 0.0
+            } else if limbs.is_empty() {
+                soft(distance * sharp)
             } else {
-                let sum: f32 = self.limbs.iter().map(|limb| soft(limb.nearest(within, place).0 * sharp)).sum();
-                sum / self.limbs.len() as f32
+                let sum: f32 = limbs.iter().map(|limb| soft(limb.nearest(&within, place).0 * sharp)).sum();
+                sum / limbs.len() as f32
             };
             if share < 1.0 && distance < 3.0 * shadow_px {
                 let dark = 0.3 * (-(distance.max(0.0) / shadow_px).powi(2)).exp() as f32;
@@ -243,6 +268,7 @@ impl<'a> Blob<'a> {
         let middle = places[places.len() / 2];
         let far = |place: &[f64; 2]| (place[0] - middle[0]).hypot(place[1] - middle[1]);
         let spread_px = places.iter().map(far).fold(0.0, f64::max) + EDGE * scene.options.focus_px;
-        Self { colour: colour_of(colour), middle, spread_px, spine, reach_px: reach_px + spread_px, places, distance }
+        let reach_px = reach_px + spread_px;
+        Self { colour: colour_of(colour), middle, spread_px, spine, reach_px, places, distance, shade: None }
     }
 }

@@ -5,13 +5,16 @@ use std::f64::consts::TAU;
 use rayon::prelude::*;
 use serde::Serialize;
 
+use super::blot::Blot;
 use super::lens::{Mapping, row_moves};
+use super::limb::Limb;
 use super::objects::{Distractor, Stick};
 use super::paint::{Exposure, Row};
 use super::sensor::{Converter, add_noise};
-use super::settle::ticks;
+use super::settle::{other_hand, ticks};
 use super::share::shares;
 use super::{Faults, VideoOptions};
+use crate::phantom::finger::Skin;
 use crate::video::{Picture, Turn};
 
 /// Ticks a second of the frames' times.
@@ -51,9 +54,12 @@ pub enum MarkerStatus {
 /// What is true of a marker in a frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MarkerTruth {
-    /// Its centre in the picture as it is shown, at mid-exposure.
+    /// Its centre in the picture as it is shown, at mid-exposure; of a mark of paint, the material point that was the blot's centroid on the
+    /// straight finger.
     pub at_px: [f64; 2],
-    /// The share of its disc that is in the picture and not covered.
+    /// The centroid of what is seen of a blot of paint at mid-exposure; none of a disc, and where nothing is seen.
+    pub seen_px: Option<[f64; 2]>,
+    /// The share of its disc or blot that is in the picture and not covered.
     pub in_view: f64,
     /// In words.
     pub status: MarkerStatus,
@@ -66,8 +72,8 @@ pub struct FrameTruth {
     pub time_s: f64,
     /// What the clock counts then.
     pub clock_s: Option<f64>,
-    /// J1, J2, J3, radians.
-    pub angles_rad: [f64; 3],
+    /// Of the layout's joints, radians.
+    pub angles_rad: Vec<f64>,
     /// In the order of [`Scene::markers`].
     pub markers: Vec<MarkerTruth>,
 }
@@ -75,8 +81,9 @@ pub struct FrameTruth {
 /// Where everything is at one moment, as a lens without distortion would show it.
 #[derive(Debug, Clone)]
 pub(super) struct Moment {
-    pub(super) bones_px: [[f64; 2]; 5],
+    pub(super) bones_px: Vec<[f64; 2]>,
     pub(super) markers_px: Vec<[f64; 2]>,
+    pub(super) skins: Vec<Skin>,
     pub(super) distractors_px: Vec<[f64; 2]>,
     pub(super) sticks_px: Vec<[f64; 2]>,
 }
@@ -87,6 +94,10 @@ pub struct Scene {
     pub(super) options: VideoOptions,
     pub(super) ticks: Vec<i64>,
     pub(super) markers: Vec<SceneMarker>,
+    /// The markers' shapes, where they are marks of paint.
+    pub(super) blots: Vec<Blot>,
+    /// With paint, another hand that lies there.
+    pub(super) other_hand: Option<Limb>,
     pub(super) distractors: Vec<Distractor>,
     pub(super) sticks: Vec<Stick>,
     pub(super) mapping: Option<Mapping>,
@@ -111,6 +122,8 @@ impl Scene {
         let mut scene = Self {
             ticks: ticks(&options),
             markers,
+            blots: if options.finger.layout.painted() { Blot::all(&options) } else { Vec::new() },
+            other_hand: other_hand(&options),
             distractors: Vec::new(),
             sticks: Vec::new(),
             straighten: None,
@@ -167,13 +180,14 @@ impl Scene {
                     (_, in_view) if in_view < SEEN_OVER => MarkerStatus::Partial,
                     _ => MarkerStatus::Ok,
                 };
-                MarkerTruth { at_px: self.shown(moment.markers_px[marker]), in_view: shares.in_view, status }
+                let at_px = self.shown(moment.markers_px[marker]);
+                MarkerTruth { at_px, seen_px: shares.seen_px, in_view: shares.in_view, status }
             })
             .collect();
         FrameTruth {
             time_s,
             clock_s: self.options.clock.as_ref().map(|clock| clock.counts_s(time_s)),
-            angles_rad: self.options.trajectory.angles_rad(time_s),
+            angles_rad: self.options.finger.joints_rad(self.options.trajectory.angles_rad(time_s)),
             markers,
         }
     }
@@ -261,6 +275,7 @@ impl Scene {
             sticks_px: self.sticks.iter().map(|stick| stick.tip(t_s, posture.markers_px[stick.marker])).collect(),
             bones_px: posture.bones_px,
             markers_px: posture.markers_px,
+            skins: posture.skins,
         }
     }
 

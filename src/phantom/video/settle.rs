@@ -5,9 +5,11 @@ use std::f64::consts::TAU;
 
 use rand::RngExt;
 
-use super::objects::{Distractor, Stick};
+use super::limb::Limb;
+use super::objects::{Distractor, Outline, Stick};
 use super::scene::{Scene, TICKS_PER_S};
 use super::{Hide, VideoOptions};
+use crate::flexion::Flexion;
 use crate::phantom::nail::numbers;
 use crate::phantom::screen::{Clock, Jump};
 
@@ -64,7 +66,7 @@ impl Scene {
         let (from_s, to_s) = self.span_s(leave.frame, leave.frames);
         let last = (leave.frame + leave.frames).min(self.frames());
         let left_most = (leave.frame..last)
-            .map(|frame| self.moment(self.time_s(frame)).markers_px.last().map_or(0.0, |at| at[0]))
+            .map(|frame| self.moment(self.time_s(frame)).markers_px[self.options.finger.layout.tip()][0])
             .fold(f64::INFINITY, f64::min);
         let beyond = if self.mapping.is_some() { 1.3 } else { 1.0 } * self.options.width as f64;
         Some((from_s, to_s, (beyond + 2.0 * self.options.finger.marker_px - left_most).max(0.0)))
@@ -79,9 +81,8 @@ impl Scene {
             let (from_s, to_s) = self.span_s(hide.frame, hide.frames);
             // It comes from the back of the finger, across the marker's segment.
             let middle_s = 0.5 * (from_s + to_s);
-            let directions = self.options.finger.directions_rad(self.options.trajectory.angles_rad(middle_s));
-            let segment = (0..4).find(|&s| self.options.finger.layout.ends(s).contains(&marker))?;
-            let back = directions[segment] - self.options.finger.flexion.sign() * 0.25 * TAU;
+            let along_rad = self.moment(middle_s).skins[marker].along_rad;
+            let back = along_rad - self.options.finger.flexion.sign() * 0.25 * TAU;
             Some(Stick {
                 marker,
                 from_s,
@@ -101,7 +102,10 @@ impl Scene {
     pub(super) fn settle_distractors(&self) -> Vec<Distractor> {
         let options = &self.options;
         let every = self.frames().div_ceil(200);
-        let fingers: Vec<[[f64; 2]; 5]> =
+        if let Some(other) = &self.other_hand {
+            return spots(options.distractors, other, options.finger.marker_px);
+        }
+        let fingers: Vec<Vec<[f64; 2]>> =
             (0..self.frames()).step_by(every).map(|frame| self.moment(self.time_s(frame)).bones_px).collect();
         let widest = options.finger.half_widths_px.iter().copied().fold(0.0, f64::max);
         let panel = options.clock.as_ref().map(|clock| options.clock_roi_px(clock).map(|side| side as f64));
@@ -127,6 +131,40 @@ impl Scene {
         let size = (options.width, options.height);
         Distractor::place(options.seed, options.distractors, &colours, options.finger.marker_px, size, &free)
     }
+}
+
+/// With paint, another hand lies at the picture's right border, on the side to which the finger bends: three fingers of the same skin.
+pub(super) fn other_hand(options: &VideoOptions) -> Option<Limb> {
+    let at = |[x, y]: [f64; 2]| {
+        let y = if options.finger.flexion == Flexion::Clockwise { y } else { 1.0 - y };
+        [x * options.width as f64, y * options.height as f64]
+    };
+    let points =
+        [[1.2, 1.1], [0.92, 0.86], [0.76, 0.76], [0.69, 0.87], [0.8, 0.98], [0.84, 0.62], [0.76, 0.55]].map(at);
+    let half_widths = [80.0, 70.0, 34.0, 27.0, 26.0, 31.0, 25.0].map(|half| half * options.width as f64 / 1280.0);
+    let bones = [[0, 1], [1, 2], [2, 3], [1, 4], [1, 5], [5, 6]];
+    options.finger.layout.painted().then(|| Limb::new(&points, &half_widths, &bones))
+}
+
+/// Dark spots on the other hand that are no marks: brown, grey and nearly black ones, as shadows, hair and rings are.
+fn spots(count: usize, hand: &Limb, reach_px: f64) -> Vec<Distractor> {
+    const COLOURS: [u32; 3] = [0x4a2f24, 0x33363a, 0x241c1a];
+    let spot = |k: usize| {
+        // Along one bone after the other, each time elsewhere.
+        let bone = &hand.bones[1 + k % (hand.bones.len() - 1)];
+        let along = (0.45 + 0.31 * k as f64).fract();
+        let outline = [Outline::Disc, Outline::Strip, Outline::Square][k % 3];
+        Distractor {
+            outline,
+            size_px: reach_px * [0.5, 0.25, 0.4][k % 3],
+            colour: COLOURS[k % COLOURS.len()],
+            middle_px: [0, 1].map(|axis| bone.ends[0][axis] + along * (bone.ends[1][axis] - bone.ends[0][axis])),
+            orbit_px: 0.0,
+            orbit_hz: 0.0,
+            turn_rad: 1.1 * k as f64,
+        }
+    };
+    (0..count).map(spot).collect()
 }
 
 fn distance_to_line([x, y]: [f64; 2], from: [f64; 2], to: [f64; 2]) -> f64 {

@@ -10,7 +10,6 @@ use thiserror::Error;
 
 use super::scene::TICKS_PER_S;
 use super::{FrameTruth, MarkerStatus, Scene, Siting, VideoOptions};
-use crate::phantom::finger::JOINTS;
 use crate::phantom::place::{in_the_way, put_in_place};
 use crate::table::{Column, TableError, TableWriter, Value};
 use crate::video::{Encoder, Encoding, Picture, VideoError};
@@ -205,22 +204,31 @@ fn write_truth(scene: &Scene, folder: &Path) -> Result<(), Error> {
     let first = [Column::integer("frame"), Column::number("time_s")];
     let rows = || truths.iter().enumerate().map(|(frame, truth)| (Value::Integer(frame as i64), truth));
 
-    let angles = JOINTS.map(|joint| Column::number(format!("{joint}_deg")));
+    let layout = scene.options().finger.layout;
+    let angles: Vec<Column> =
+        layout.joints().into_iter().map(|(joint, _)| Column::number(format!("{joint}_deg"))).collect();
     let mut joints = start(folder, "joints.csv", &[&first[..], &[Column::number("clock_s")], &angles].concat())?;
     for (frame, truth) in rows() {
-        let [j1, j2, j3] = truth.angles_rad.map(|angle| Value::Number(angle.to_degrees()));
-        joints.write(&[frame, Value::Number(truth.time_s), truth.clock_s.into(), j1, j2, j3])?;
+        let mut row = vec![frame, Value::Number(truth.time_s), truth.clock_s.into()];
+        row.extend(truth.angles_rad.iter().map(|angle| Value::Number(angle.to_degrees())));
+        joints.write(&row)?;
     }
     joints.finish()?;
 
     let [x, y, in_view] = ["x_px", "y_px", "in_view"].map(Column::number);
     let [marker, status] = ["marker", "status"].map(Column::text);
-    let mut tracks = start(folder, "tracks.csv", &[&first[..], &[marker, x, y, in_view, status]].concat())?;
+    let seen = if layout.painted() { vec!["seen_x_px", "seen_y_px"] } else { Vec::new() };
+    let seen: Vec<Column> = seen.into_iter().map(Column::number).collect();
+    let mut tracks = start(folder, "tracks.csv", &[&first[..], &[marker, x, y, in_view, status], &seen].concat())?;
     for (frame, truth) in rows() {
         for (marker, seen) in scene.markers().iter().zip(&truth.markers) {
             let [x, y] = seen.at_px.map(Value::Number);
             let (in_view, status) = (Value::Number(seen.in_view), word(seen.status).into());
-            tracks.write(&[frame, Value::Number(truth.time_s), marker.name[..].into(), x, y, in_view, status])?;
+            let mut row = vec![frame, Value::Number(truth.time_s), marker.name[..].into(), x, y, in_view, status];
+            if layout.painted() {
+                row.extend([0, 1].map(|axis| Value::from(seen.seen_px.map(|at| at[axis]))));
+            }
+            tracks.write(&row)?;
         }
     }
     tracks.finish()?;

@@ -82,7 +82,7 @@ mod tests {
     use super::*;
 
     fn angle(deg: f64, sd_deg: f64) -> Angle {
-        Angle { rad: deg.to_radians(), sd_rad: sd_deg.to_radians() }
+        Angle { rad: deg.to_radians(), sd_rad: sd_deg.to_radians(), lasting_sd_rad: 0.0 }
     }
 
     #[test]

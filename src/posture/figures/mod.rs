@@ -161,17 +161,15 @@ impl Coupling {
     }
 }
 
-/// The last two joints along the finger of which the first's distal segment is the second's proximal one.
+/// The last two joints of the finger with the most joints in a row, of which the first's distal segment is the second's proximal
+/// one; of several such fingers the first in the file.
 fn last_two(layout: &Layout) -> Option<[usize; 2]> {
-    let chain = layout.chain();
-    let place = |joint: usize| {
-        let [.., last] = layout.markers_of(&layout.joints[joint]);
-        chain.iter().position(|&m| m == last)
-    };
-    let joints = 0..layout.joints.len();
-    let mut pairs: Vec<[usize; 2]> = joints.clone().flat_map(|a| joints.clone().map(move |b| [a, b])).collect();
-    pairs.retain(|&[a, b]| a != b && layout.joints[a].segments[1] == layout.joints[b].segments[0]);
-    pairs.into_iter().max_by_key(|&[_, b]| place(b))
+    let joints = &layout.joints;
+    let before = |joint: usize| (0..joints.len()).find(|&a| joints[a].segments[1] == joints[joint].segments[0]);
+    // A ring has no end: it is walked once at most.
+    let depth = |joint: usize| std::iter::successors(before(joint), |&a| before(a)).take(joints.len()).count();
+    let pairs = (0..joints.len()).rev().filter_map(|b| Some([before(b).filter(|&a| a != b)?, b]));
+    pairs.max_by_key(|&[_, b]| depth(b))
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ fn layout() -> Layout {
 }
 
 fn angle(deg: f64) -> Option<Angle> {
-    Some(Angle { rad: deg.to_radians(), sd_rad: (0.5 + 0.005 * deg.abs()).to_radians() })
+    Some(Angle { rad: deg.to_radians(), sd_rad: (0.5 + 0.005 * deg.abs()).to_radians(), lasting_sd_rad: 0.0 })
 }
 
 /// Equation 27 in all joints, with gaps.

@@ -28,10 +28,11 @@ pub(crate) struct Paint {
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Kind {
-    /// Unit vector in (Cb, Cr) from grey, and the distance from grey.
+    /// Unit vector in (Cb, Cr) from `zero` (grey, or a surround's colour, less 128), and the distance from there.
     Chromatic {
         along: [f32; 2],
         distance: f32,
+        zero: [f32; 2],
     },
     Dark {
         distance: f32,
@@ -48,7 +49,8 @@ impl Paint {
         let [luma, cb, cr] = [colour[0], colour[1] - 128.0, colour[2] - 128.0];
         let distance = cb.hypot(cr);
         let kind = if distance >= CHROMATIC && !grey {
-            Kind::Chromatic { along: [(cb / distance) as f32, (cr / distance) as f32], distance: distance as f32 }
+            let along = [(cb / distance) as f32, (cr / distance) as f32];
+            Kind::Chromatic { along, distance: distance as f32, zero: [0.0; 2] }
         } else if luma < 128.0 {
             Kind::Dark { distance: (255.0 - luma) as f32 }
         } else {
@@ -61,22 +63,53 @@ impl Paint {
     pub(crate) fn chromatic([cb, cr]: [f64; 2]) -> Self {
         let distance = cb.hypot(cr).max(LEAST_DISTANCE);
         let along = [(cb / distance) as f32, (cr / distance) as f32];
-        let kind = Kind::Chromatic { along, distance: distance as f32 };
+        let kind = Kind::Chromatic { along, distance: distance as f32, zero: [0.0; 2] };
         Self { colour: [128.0, 128.0 + cb, 128.0 + cr], kind }
     }
 
     /// The same paint with the colour that a video shows of it, in its own samples.
     pub(crate) fn seen_as(&self, colour: [f64; 3]) -> Self {
-        let [cb, cr] = [colour[1] - 128.0, colour[2] - 128.0];
         let kind = match self.kind {
-            Kind::Chromatic { .. } => {
-                let distance = cb.hypot(cr).max(LEAST_DISTANCE);
-                Kind::Chromatic { along: [(cb / distance) as f32, (cr / distance) as f32], distance: distance as f32 }
-            }
+            Kind::Chromatic { .. } => Self::chromatic([colour[1] - 128.0, colour[2] - 128.0]).kind,
             Kind::Dark { .. } => Kind::Dark { distance: (255.0 - colour[0]).max(LEAST_DISTANCE) as f32 },
             Kind::Bright { .. } => Kind::Bright { distance: colour[0].max(LEAST_DISTANCE) as f32 },
         };
         Self { colour, kind }
+    }
+
+    /// The cosine between the way from a surround's colour to a mark's and that to this paint's: in chroma, or in luma for a paint
+    /// without any.
+    pub(crate) fn parts(&self, mark: [f64; 3], surround: [f64; 3]) -> f64 {
+        let planes = if self.is_chromatic() { 1..3 } else { 0..1 };
+        let (mut dot, mut seen, mut meant) = (0.0, 0.0, 0.0);
+        for p in planes {
+            let (a, b) = (mark[p] - surround[p], self.colour[p] - surround[p]);
+            (dot, seen, meant) = (dot + a * b, seen + a * a, meant + b * b);
+        }
+        dot / (seen * meant).sqrt().max(1e-9)
+    }
+
+    /// The same paint with the colour that a video shows of it on a surround: what is neither, as a paler or darker stroke, is
+    /// judged by its way from the surround's colour, not from grey.
+    pub(crate) fn seen_on(&self, colour: [f64; 3], surround: [f64; 3]) -> Self {
+        let Kind::Chromatic { .. } = self.kind else { return self.seen_as(colour) };
+        let Self { kind, .. } = Self::chromatic([colour[1] - surround[1], colour[2] - surround[2]]);
+        let kind = match kind {
+            Kind::Chromatic { along, distance, .. } => {
+                let zero = [surround[1] - 128.0, surround[2] - 128.0].map(|part| part as f32);
+                Kind::Chromatic { along, distance, zero }
+            }
+            other => other,
+        };
+        Self { colour, kind }
+    }
+
+    /// Cb and Cr that its shares are counted from.
+    pub(crate) fn zero(&self) -> [f64; 2] {
+        match self.kind {
+            Kind::Chromatic { zero, .. } => zero.map(|part| 128.0 + f64::from(part)),
+            _ => [128.0; 2],
+        }
     }
 
     /// Whether it is looked for in the chroma planes.
@@ -108,8 +141,9 @@ impl Paint {
         let Grid { cb, cr, luma, levels, .. } = grid;
         levels.clear();
         match self.kind {
-            Kind::Chromatic { along, distance } => {
-                levels.extend(cb.iter().zip(cr.iter()).map(|(&cb, &cr)| quantized(chromatic(along, distance, cb, cr))));
+            Kind::Chromatic { along, distance, zero: [u, v] } => {
+                let samples = cb.iter().zip(cr.iter());
+                levels.extend(samples.map(|(&cb, &cr)| quantized(chromatic(along, distance, cb - u, cr - v))));
             }
             Kind::Dark { distance } | Kind::Bright { distance } => {
                 let (sign, zero) = self.grey_line();
@@ -132,14 +166,13 @@ impl Paint {
         let least = FULL_LEVEL * share as f32;
         let step = |samples: usize| ((pitch_px / samples as f64) as usize).max(1);
         match (self.kind, frame.chroma) {
-            (Kind::Chromatic { along, distance }, Some([cb, cr])) => {
+            (Kind::Chromatic { along, distance, zero: [u, v] }, Some([cb, cr])) => {
+                let (u, v) = (128.0 + u, 128.0 + v);
                 let rows = (step(down) / 2..cb.height).step_by(step(down));
                 rows.map(|y| {
                     (step(across) / 2..cb.width)
                         .step_by(step(across))
-                        .filter(|&x| {
-                            chromatic(along, distance, cb.sample(x, y) - 128.0, cr.sample(x, y) - 128.0) >= least
-                        })
+                        .filter(|&x| chromatic(along, distance, cb.sample(x, y) - u, cr.sample(x, y) - v) >= least)
                         .count()
                 })
                 .sum()

@@ -62,7 +62,7 @@ fn two_each(joints: [[f64; 2]; 5]) -> Vec<[f64; 2]> {
 }
 
 fn seen_with(at_px: [f64; 2], covariance_px2: [f64; 3]) -> Sight {
-    Sight::Seen(Centre { at_px, covariance_px2, radius_px: 10.0 })
+    Sight::Seen(Centre { at_px, covariance_px2, lasting_px2: [0.0; 3], radius_px: 10.0 })
 }
 
 fn seen(points: &[[f64; 2]]) -> Vec<Sight> {

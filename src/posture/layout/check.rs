@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::raw::pair;
-use super::{Camera, Joint, Layout, LayoutFault, Marker, Segment};
+use super::{Camera, Joint, Layout, LayoutFault, Marker, MarkerShape, Segment};
 
 use crate::clock::{Clock, ClockFormat, ClockRoi};
 use crate::flexion::Flexion;
 use crate::toml_file::{Entry, Fault, Findings, entries, instead, number};
 
-const TABLES: [&str; 8] = ["flexion", "markers", "segments", "joints", "start", "clock", "camera", "zero"];
+const TABLES: [&str; 9] = ["flexion", "shape", "markers", "segments", "joints", "start", "clock", "camera", "zero"];
 /// The number of coefficients of OpenCV's lens models that are known here; those left out are zero.
 const DISTORTIONS: [usize; 5] = [0, 4, 5, 8, 12];
 
@@ -23,6 +23,7 @@ pub(super) fn check(text: &str, path: &Path) -> Result<Layout, Vec<LayoutFault>>
     findings.unknown_keys(&top, &TABLES, "key");
     let mut notes = Vec::new();
     let flexion = flexion(&mut findings, &top, &mut notes, path);
+    let shape = shape(&mut findings, &top);
 
     let marker_entries = findings.table(&top, "markers").unwrap_or_default();
     let markers = markers(&mut findings, &top, &marker_entries);
@@ -50,8 +51,11 @@ pub(super) fn check(text: &str, path: &Path) -> Result<Layout, Vec<LayoutFault>>
     if !findings.is_empty() {
         return Err(faults(findings));
     }
+    let before = |segment: usize| joints.iter().find(|(_, pair)| pair[1] == segment).map(|(_, pair)| pair[0]);
     Ok(Layout {
+        hung_on: (0..segments.len()).map(before).collect(),
         flexion,
+        shape,
         markers,
         segments: segments.into_iter().map(|(name, markers)| Segment { name, markers }).collect(),
         joints: joints
@@ -85,6 +89,19 @@ fn flexion(findings: &mut Findings<'_>, top: &[Entry<'_>], notes: &mut Vec<Strin
             Flexion::Clockwise
         }
     }
+}
+
+fn shape(findings: &mut Findings<'_>, top: &[Entry<'_>]) -> Option<MarkerShape> {
+    let entry = top.iter().find(|e| e.key == "shape")?;
+    let shape =
+        [MarkerShape::Disc, MarkerShape::Blot].into_iter().find(|shape| entry.value.as_str() == Some(shape.name()));
+    if shape.is_none() {
+        findings.fault(
+            entry.at,
+            "`shape` has to be \"disc\" (stickers) or \"blot\" (paint); leave it out to have each marker decided by how it looks",
+        );
+    }
+    shape
 }
 
 fn markers(findings: &mut Findings<'_>, top: &[Entry<'_>], entries: &[Entry<'_>]) -> Vec<Marker> {

@@ -25,6 +25,26 @@ pub struct Marker {
     pub colour: [u8; 3],
 }
 
+/// What markers are taken for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MarkerShape {
+    /// Discs, whose centre a fit finds.
+    Disc,
+    /// Blots of any outline, whose centre is their outline's centroid.
+    Blot,
+}
+
+impl MarkerShape {
+    /// Its name in marker files and reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Disc => "disc",
+            Self::Blot => "blot",
+        }
+    }
+}
+
 /// Two markers on one part of the finger.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Segment {
@@ -65,12 +85,16 @@ pub struct Camera {
 pub struct Layout {
     /// Which way flexion turns.
     pub flexion: Flexion,
+    /// What all markers are; where the file does not say, each is a disc where a disc fits and a blot otherwise.
+    pub shape: Option<MarkerShape>,
     /// All markers, in the file's order.
     pub markers: Vec<Marker>,
     /// All segments, in the file's order.
     pub segments: Vec<Segment>,
     /// The wanted joints, in the file's order.
     pub joints: Vec<Joint>,
+    /// For each segment the one before it on the finger, by the file's joints, wanted or not.
+    pub hung_on: Vec<Option<usize>>,
     /// For each marker, where it is in the first frame, on the shown picture, where the file says.
     pub start: Vec<Option<[f64; 2]>>,
     /// The clock in the picture.
@@ -179,35 +203,6 @@ impl Layout {
     pub fn markers_of(&self, joint: &Joint) -> [usize; 4] {
         let [a, b] = joint.segments.map(|s| self.segments[s].markers);
         [a[0], a[1], b[0], b[1]]
-    }
-
-    /// The needed markers in their order along the finger, proximal first, each once.
-    ///
-    /// A segment's first marker comes before its second, a joint's proximal segment before its distal one; what this leaves
-    /// open follows the order of `[segments]`, then of `[markers]`.
-    #[must_use]
-    pub fn chain(&self) -> Vec<usize> {
-        let needed = self.needed();
-        // In the order of preference where nothing else is known.
-        let mut waiting: Vec<usize> = Vec::new();
-        for marker in self.segments.iter().flat_map(|s| s.markers).chain(0..self.markers.len()) {
-            if needed[marker] && !waiting.contains(&marker) {
-                waiting.push(marker);
-            }
-        }
-        let mut before: Vec<[usize; 2]> = self.segments.iter().map(|s| s.markers).collect();
-        for joint in &self.joints {
-            let [a, b, c, d] = self.markers_of(joint);
-            before.extend([[a, c], [a, d], [b, c], [b, d]].into_iter().filter(|[p, q]| p != q));
-        }
-        let mut chain = Vec::with_capacity(waiting.len());
-        while !waiting.is_empty() {
-            let is_next = |m: &usize| !before.iter().any(|[p, q]| q == m && p != m && waiting.contains(p));
-            // A ring of segments has no most proximal marker: the preferred one starts.
-            let next = waiting.iter().position(is_next).unwrap_or(0);
-            chain.push(waiting.remove(next));
-        }
-        chain
     }
 }
 

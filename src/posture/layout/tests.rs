@@ -62,10 +62,9 @@ fn a_whole_file_is_read_in_its_own_order() {
 fn only_what_wanted_joints_use_is_needed() {
     let layout = parse(WHOLE).unwrap();
     assert_eq!(layout.needed(), [true, true, true, true, false]);
-    assert_eq!(layout.chain(), [0, 1, 2, 3], "J3 stands first in the file, but lies last on the finger");
     let one = layout.wanting(&["J3".into()]).unwrap();
     assert_eq!(one.needed(), [false, true, true, true, false]);
-    assert_eq!(one.chain(), [1, 2, 3]);
+    assert_eq!(one.hung_on, [None, Some(0), Some(1)], "which segment follows which is known all the same");
     assert_eq!(layout.wanting(&[]).unwrap(), layout);
     let unknown = layout.wanting(&["j2".into()]).unwrap_err().to_string();
     assert!(unknown.contains("`j2`") && unknown.contains("did you mean `J2`"), "{unknown}");
@@ -75,18 +74,8 @@ fn only_what_wanted_joints_use_is_needed() {
 fn without_joints_all_markers_are_needed() {
     let layout = parse("[markers]\nb = \"#00f\"\na = \"#0f0\"\n").unwrap();
     assert_eq!(layout.needed(), [true, true]);
-    assert_eq!(layout.chain(), [0, 1]);
     assert!(layout.notes.is_empty(), "no joint, no sign to speak of");
     assert!(layout.wanting(&["J2".into()]).unwrap_err().to_string().contains("no [joints]"));
-}
-
-#[test]
-fn a_ring_of_segments_has_a_chain_too() {
-    let text = "[markers]\na='#000'\nb='#111'\nc='#222'\n[segments]\np=['a','b']\nq=['b','c']\nr=['c','a']\n[joints]\nJ1=['p','q']\nJ2=['q','r']\nJ3=['r','p']";
-    let mut chain = parse(text).unwrap().chain();
-    assert_eq!(chain[0], 0);
-    chain.sort_unstable();
-    assert_eq!(chain, [0, 1, 2]);
 }
 
 #[test]
@@ -243,4 +232,15 @@ fn a_clocks_screen_changes_so_often_or_at_once() {
         let fault = of(&format!("refresh_hz = {bad}")).unwrap_err().to_string();
         assert!(fault.contains(":6: `refresh_hz` is how often"), "{bad}: {fault}");
     }
+}
+
+#[test]
+fn markers_are_discs_or_blots_where_the_file_says_so() {
+    let markers = "[markers]\na = \"#2b4b10\"\n";
+    assert_eq!(parse(markers).unwrap().shape, None);
+    for shape in [MarkerShape::Disc, MarkerShape::Blot] {
+        assert_eq!(parse(&format!("shape = \"{}\"\n{markers}", shape.name())).unwrap().shape, Some(shape));
+    }
+    let fault = parse(&format!("shape = \"round\"\n{markers}")).unwrap_err().to_string();
+    assert!(fault.contains(":1: `shape` has to be"), "{fault}");
 }

@@ -147,7 +147,10 @@ impl Scene<'_> {
                 cost.shape += 6.0;
             }
         }
-        if rigid && let Some(segment) = links.iter().find(|other| other.rigid) {
+        if rigid
+            && self.chain.links[place].bends
+            && let Some(segment) = links.iter().find(|other| other.rigid)
+        {
             let turn = self.flexion * angle(segment.vector, link);
             if turn < (-60f64).to_radians() {
                 cost.shape += 3.0;
@@ -182,7 +185,8 @@ pub(crate) fn colour_cost(paint: &Paint, point: &Point) -> f64 {
     if !paint.is_chromatic() {
         return faint;
     }
-    let chroma = |colour: [f64; 3]| [colour[1] - 128.0, colour[2] - 128.0];
+    let zero = paint.zero();
+    let chroma = |colour: [f64; 3]| [colour[1] - zero[0], colour[2] - zero[1]];
     let (seen, told) = (chroma(point.colour), chroma(paint.colour));
     let hue = angle(told, seen);
     let share = (norm(seen).max(1.0) / norm(told)).ln();

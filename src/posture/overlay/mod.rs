@@ -201,7 +201,7 @@ mod tests {
     const SIZE: Format = Format { width: 160, height: 121, subsampling: Some((2, 2)), depth: 8 };
 
     fn mark(name: &str, at_px: [f64; 2]) -> Mark<'_> {
-        let centre = Centre { at_px, covariance_px2: [0.01, 0.0, 0.01], radius_px: 9.0 };
+        let centre = Centre { at_px, covariance_px2: [0.01, 0.0, 0.01], lasting_px2: [0.0; 3], radius_px: 9.0 };
         Mark { name, sight: Sight::Seen(centre), expected_px: None }
     }
 

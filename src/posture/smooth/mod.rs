@@ -58,7 +58,7 @@ pub fn smooth(times_s: &[f64], angles: &[Option<Angle>]) -> Smoothed {
         return Smoothed { angles: angles.to_vec(), model: None };
     }
     // In medians of the errors and of the time from row to row, all numbers are near 1.
-    let sd_rad = median(known.iter().map(|(.., a)| a.sd_rad)).max(SMALLEST_SD_RAD);
+    let unit_rad = median(known.iter().map(|(.., a)| passing_sd_rad(a))).max(SMALLEST_SD_RAD);
     let step_s = median(known.windows(2).map(|w| w[1].1 - w[0].1));
     let step_s = if step_s > 0.0 { step_s } else { 1.0 };
     let origin = known[0].1;
@@ -66,21 +66,23 @@ pub fn smooth(times_s: &[f64], angles: &[Option<Angle>]) -> Smoothed {
         .iter()
         .map(|(_, time, a)| Observation {
             time: (time - origin) / step_s,
-            value: a.rad / sd_rad,
+            value: a.rad / unit_rad,
             // Weights within a million of each other.
-            sd: (a.sd_rad / sd_rad).clamp(1e-3, 1e3),
+            sd: (passing_sd_rad(a) / unit_rad).clamp(1e-3, 1e3),
         })
         .collect();
-    let half_turn = std::f64::consts::PI / sd_rad;
+    let half_turn = std::f64::consts::PI / unit_rad;
     let parameters = fit::fit(&series, half_turn);
     let smoothed = filter::smooth(&series, &parameters, half_turn);
     let mut result = vec![None; angles.len()];
-    for ((row, ..), s) in known.iter().zip(&smoothed.rows) {
-        result[*row] = Some(Angle { rad: s.value * sd_rad, sd_rad: s.sd * sd_rad });
+    for ((row, _, a), s) in known.iter().zip(&smoothed.rows) {
+        let lasting_sd_rad = a.lasting_sd_rad;
+        let sd_rad = (s.sd * unit_rad).hypot(lasting_sd_rad);
+        result[*row] = Some(Angle { rad: s.value * unit_rad, sd_rad, lasting_sd_rad });
     }
     let Parameters { jerk, correlation, share, scale } = parameters;
     let model = SmoothModel {
-        jerk_rad2_per_s5: jerk * sd_rad.powi(2) / step_s.powi(5),
+        jerk_rad2_per_s5: jerk * unit_rad.powi(2) / step_s.powi(5),
         error_correlation: correlation,
         correlated_share: share,
         error_scale: scale,
@@ -91,6 +93,11 @@ pub fn smooth(times_s: &[f64], angles: &[Option<Angle>]) -> Smoothed {
 
 /// An error of nothing (a drawn series, say) would make every other number infinite.
 const SMALLEST_SD_RAD: f64 = 1e-9;
+
+/// The part of a standard error that is another's in another frame: what smoothing makes smaller.
+fn passing_sd_rad(angle: &Angle) -> f64 {
+    (angle.sd_rad * angle.sd_rad - angle.lasting_sd_rad * angle.lasting_sd_rad).max(0.0).sqrt()
+}
 
 fn median(values: impl Iterator<Item = f64>) -> f64 {
     let mut values: Vec<f64> = values.collect();

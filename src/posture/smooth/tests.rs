@@ -76,7 +76,7 @@ fn draw(drawn: Drawn, seed: u64) -> Series {
         let hidden = (k / 10) * 37 % 100 < drawn.hidden;
         series.times_s.push(time);
         series.truth.push(truth);
-        series.angles.push((!hidden).then_some(Angle { rad: truth + error, sd_rad: told }));
+        series.angles.push((!hidden).then_some(Angle { rad: truth + error, sd_rad: told, lasting_sd_rad: 0.0 }));
         time += (1.0 + drawn.jitter * normal().clamp(-0.9, 0.9)) / drawn.rate_hz;
     }
     series
@@ -219,7 +219,7 @@ fn few_rows_stay_as_they_are() {
 
 #[test]
 fn a_frozen_series_keeps_its_value_and_some_of_its_error() {
-    let angles = vec![Some(Angle { rad: 0.5, sd_rad: 0.002 }); 200];
+    let angles = vec![Some(Angle { rad: 0.5, sd_rad: 0.002, lasting_sd_rad: 0.0 }); 200];
     let times: Vec<f64> = (0..200).map(|k| f64::from(k) / 30.0).collect();
     for angle in smooth(&times, &angles).angles.iter().flatten() {
         // Measured 0.0020, as given: errors that do not change at all may be the same error.
@@ -296,4 +296,21 @@ fn a_long_series_is_looked_at_in_places() {
     // Measured 0.52 and 0.70.
     assert!(after <= 0.6 * before && (0.60..=0.80).contains(&within), "{before} {after} {within}");
     assert_eq!(smoothed, smooth(&series.times_s, &series.angles), "the same again");
+}
+
+#[test]
+fn what_lasts_is_not_smoothed_away() {
+    let times_s: Vec<f64> = (0..200).map(|row| f64::from(row) / 24.0).collect();
+    let at = |row: usize, lasting_sd_rad: f64| {
+        let noise = 0.001 * (1.7 * row as f64).sin() * 1.414;
+        let sd_rad = 0.001f64.hypot(lasting_sd_rad);
+        Some(Angle { rad: 0.5 + noise, sd_rad, lasting_sd_rad })
+    };
+    let [plain, lasting] =
+        [0.0, 0.004].map(|lasting| smooth(&times_s, &(0..200).map(|row| at(row, lasting)).collect::<Vec<_>>()));
+    for (plain, lasting) in plain.angles.iter().zip(&lasting.angles) {
+        let (plain, lasting) = (plain.unwrap(), lasting.unwrap());
+        assert!((plain.rad - lasting.rad).abs() < 1e-6, "the same noise is smoothed alike");
+        assert!(plain.sd_rad < 0.001 && (lasting.sd_rad - plain.sd_rad.hypot(0.004)).abs() < 1e-6);
+    }
 }

@@ -1,6 +1,6 @@
 //! Spots in a row: which belong to it, and in which order.
 
-use super::{Mark, SIZE_FACTOR};
+use super::{BLOT_SIZE_FACTOR, Mark, SIZE_FACTOR};
 
 /// Rows of more markers than this are ordered from one end by the nearest next one.
 const MOST_EXACT: usize = 12;
@@ -12,7 +12,10 @@ pub(super) fn row(marks: &[Mark]) -> Vec<Mark> {
     let mut best: Vec<Mark> = Vec::new();
     for seed in marks {
         let alike: Vec<Mark> = (marks.iter().copied())
-            .filter(|mark| (mark.radius_px / seed.radius_px).ln().abs() < 0.5 * SIZE_FACTOR.ln() + 0.1)
+            .filter(|mark| {
+                let factor = if mark.colour == seed.colour { BLOT_SIZE_FACTOR } else { SIZE_FACTOR };
+                (mark.radius_px / seed.radius_px).ln().abs() < factor.ln()
+            })
             .collect();
         let group = largest_cluster(&alike);
         if group.len() > best.len() {

@@ -77,3 +77,58 @@ fn one_marker_is_a_file_without_segments() {
     assert!(layout.segments.is_empty());
     assert!(layout.markers[0].name.starts_with("pink"), "{text}");
 }
+
+/// The suggestion from frames of these stages.
+fn suggested(stages: &[Stage]) -> Result<String, SuggestError> {
+    let info = stages[0].info();
+    let mut suggester = Suggester::new(&info);
+    for (k, stage) in stages.iter().enumerate() {
+        suggester.look(&stage.picture(k as u64).frame(k as u64 * FIRST_STRIDE, 0.0));
+    }
+    suggester.finish()
+}
+
+/// Places of marks on a finger that bends, in frame `k`.
+fn places(k: usize) -> [[f64; 2]; 4] {
+    let (sin, cos) = (0.2 * k as f64).sin_cos();
+    [[60.0, 60.0], [130.0, 62.0], [190.0, 70.0], [190.0 + 50.0 * cos, 70.0 + 50.0 * sin]]
+}
+
+#[test]
+fn skin_is_no_marker() {
+    let nail = [0xc9, 0x83, 0x78];
+    let with = |ground: [u8; 3], colour: [u8; 3]| -> Vec<Stage> {
+        let stage = |k: usize| {
+            let mut stage = Stage::new(320, 200, ground);
+            places(k).map(|at| drop(stage.disc(at, 8.0, colour)));
+            stage
+        };
+        (0..6).map(stage).collect()
+    };
+    // Fingertips before a wall, and nails on a hand.
+    for (ground, colour) in [(WALL, SKIN), (SKIN, nail)] {
+        assert_eq!(suggested(&with(ground, colour)), Err(SuggestError::Nothing { frames: 6 }));
+    }
+    assert!(suggested(&with(WALL, PINK)).is_ok(), "stickers that move are markers wherever they are");
+}
+
+#[test]
+fn dots_of_one_dark_paint_get_their_places() {
+    let paint = [0x2b, 0x4b, 0x10];
+    let stage = |k: usize| {
+        let mut stage = Stage::new(320, 200, SKIN);
+        // Sizes of dots differ, and a nail lies between them.
+        places(k).iter().zip([7.0, 9.0, 5.5, 6.0]).for_each(|(at, radius)| drop(stage.disc(*at, radius, paint)));
+        stage.disc([100.0, 140.0], 8.0, [0xc9, 0x83, 0x78]);
+        stage
+    };
+    let stages: Vec<Stage> = (0..6).map(stage).collect();
+    let text = suggested(&stages).unwrap();
+    let layout = Layout::parse(&text, Path::new("m.toml")).unwrap();
+    assert_eq!(layout.markers.len(), 4, "{text}");
+    let starts =
+        layout.start.iter().flatten().filter(|start| {
+            places(0).iter().any(|at| (at[0] - start[0]).hypot(at[1] - start[1]) <= START_TOLERANCE_PX)
+        });
+    assert_eq!(starts.count(), 4, "{text}");
+}

@@ -46,15 +46,14 @@ pub(super) fn marker_file(marks: &[Mark], colours: &[[f64; 3]], turn: f64, first
         }
         if segments.len() > 1 {
             text.push_str("\n[joints]\n");
-            let first = if segments.len() == 4 {
-                1
-            } else if segments.len() < 4 {
-                2
-            } else {
-                1
-            };
             for (k, pair) in titles.windows(2).enumerate() {
-                _ = writeln!(text, "J{} = [\"{}\", \"{}\"]", first + k, pair[0], pair[1]);
+                // A finger's joints; of a longer row nothing is known.
+                let name = match segments.len() {
+                    2 | 3 => format!("J{}", 2 + k),
+                    4 => format!("J{}", 1 + k),
+                    _ => format!("joint_{}", 1 + k),
+                };
+                _ = writeln!(text, "{name} = [\"{}\", \"{}\"]", pair[0], pair[1]);
             }
         }
     }
@@ -104,7 +103,8 @@ fn names(marks: &[Mark], colours: &[[f64; 3]], info: &Info) -> Vec<String> {
     (0..words.len()).map(|k| format!("{}_{}", words[k], before(k) + 1)).collect()
 }
 
-fn hex(rgb: [f64; 3]) -> String {
+/// An sRGB colour as marker files have it.
+pub(in crate::posture) fn hex(rgb: [f64; 3]) -> String {
     let [red, green, blue] = rgb.map(|part| (255.0 * part).round().clamp(0.0, 255.0) as u8);
     format!("#{red:02x}{green:02x}{blue:02x}")
 }

@@ -7,12 +7,14 @@
 //! A name is given by colour, by the order along the finger, by which way flexion turns, by lengths that must not change,
 //! and by `[start]`, which goes before all. It is given only where the best naming is better by far than any other.
 
+mod begin;
 mod judge;
 mod spots;
 
 use judge::Hypothesis;
 use spots::Spots;
 
+use super::blot::Blot;
 use super::colour::Look;
 use super::find::Paint;
 use super::layout::Layout;
@@ -29,9 +31,9 @@ const PATIENT_REST: usize = 8;
 const MOST_FRAMES: usize = 300;
 /// Namings kept.
 const MOST_NAMINGS: usize = 200;
-/// A spot further from a `[start]` than this many radii, or this share of the picture's diagonal, is not meant.
-const START_RADII: f64 = 3.0;
-const START_SHARE: f64 = 0.02;
+
+/// The cosine between what parts a mark from its surround and what would part the marker file's colour from it (assumed).
+const LEAST_ALIKE: f64 = 0.6;
 
 /// Where a marker was first seen.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,6 +46,8 @@ pub(crate) struct Start {
     pub(crate) velocity_px: [f64; 2],
     /// How it looks.
     pub(crate) look: Look,
+    /// How it looks as a blot, where it was taken for a disc.
+    pub(crate) as_blot: Option<Look>,
 }
 
 /// What the first frames told.
@@ -90,17 +94,35 @@ pub(crate) enum SurveyError {
         /// All fit as well from the other end of the finger.
         straight: bool,
     },
+    /// Markers of one colour lie on several fingers.
+    #[error(
+        "can't tell on which finger the markers {} are: fingers that share a mark or lie apart have the same colours; give \
+         their places in the first frame under [start], one on each finger at least",
+        markers.join(", ")
+    )]
+    Branches {
+        /// The markers.
+        markers: Vec<String>,
+    },
     /// There is nothing of a marker's colour where `[start]` has it.
     #[error(
-        "[start] has {marker} at ({:.0}, {:.0}), where the first frame shows nothing of its colour; {}",
+        "[start] has {marker} at ({:.0}, {:.0}), where the first frame has {} and no mark of {colour}{}; correct the place, or \
+         the colour under [markers]",
         at_px[0], at_px[1],
-        nearest_px.map_or("nor anywhere else".to_owned(), |[x, y]| format!("the nearest is at ({x:.0}, {y:.0})"))
+        if *is_mark { format!("a mark of {there}") } else { there.clone() },
+        nearest_px.map_or(", nor is there one anywhere".to_owned(), |[x, y]| format!(" (the nearest is at ({x:.0}, {y:.0}))"))
     )]
     WrongStart {
         /// The marker.
         marker: String,
+        /// Its colour in the marker file.
+        colour: String,
         /// Its place, on the shown picture.
         at_px: [f64; 2],
+        /// The colour that is there.
+        there: String,
+        /// That colour stands out from its surroundings.
+        is_mark: bool,
         /// The nearest spot of its colour, on the shown picture.
         nearest_px: Option<[f64; 2]>,
     },
@@ -166,7 +188,7 @@ impl<'a> Surveyor<'a> {
             chain,
             paints: colours.iter().map(|&colour| Paint::new(colour, &info.matrix, grey)).collect(),
             paint_of,
-            spots: Spots::default(),
+            spots: Spots::new(layout.shape),
             looked: Vec::new(),
             frames: 0,
             since_whole: 0,
@@ -185,9 +207,12 @@ impl<'a> Surveyor<'a> {
         if whole {
             self.since_whole = 0;
         }
+        if first {
+            self.learn_colours(frame);
+        }
         self.spots.look(frame, &self.paints, whole, &self.loose);
         if first {
-            self.fix();
+            self.fix(frame);
         }
         let points: Vec<Option<Point>> = self.spots.all.iter().map(|spot| spot.at(frame.index).copied()).collect();
         if points.iter().all(Option::is_none) {
@@ -195,8 +220,13 @@ impl<'a> Surveyor<'a> {
         }
         self.looked.push(frame.index);
         let choices = self.choices();
+        for (missing, fixed) in self.missing.iter_mut().zip(&self.fixed) {
+            // What `[start]` names is there, unless it has gone since.
+            *missing = if fixed.is_some_and(|spot| points[spot].is_some()) { f64::INFINITY } else { MISSING };
+        }
         if whole {
-            for (naming, _) in self.scene(&points, &choices).namings() {
+            for (mut naming, _) in self.scene(&points, &choices).namings() {
+                naming.iter_mut().zip(&self.fixed).for_each(|(spot, fixed)| *spot = fixed.or(*spot));
                 if self.hypotheses.iter().all(|other| other.naming != naming) {
                     self.add(naming, &choices, frame.index);
                 }
@@ -245,9 +275,11 @@ impl<'a> Surveyor<'a> {
                     at_px: point.at_px,
                     velocity_px: [0, 1].map(|axis| next.at_px[axis] - point.at_px[axis]),
                     look: look.clone(),
+                    as_blot: spot.as_blot.clone(),
                 });
             }
         }
+        agree_on_shapes(&self.paint_of, &mut starts);
         let unseen = (0..starts.len()).filter(|&marker| self.needed[marker] && starts[marker].is_none()).collect();
         Ok(Survey {
             lengths_px: self.lengths(best),
@@ -256,6 +288,29 @@ impl<'a> Surveyor<'a> {
             frames: self.frames,
             unseen,
         })
+    }
+
+    /// Takes the colours over that the first frame shows at the places of `[start]`, where they are much like the file's: light, camera and
+    /// codec turn a colour, and what a person picks by eye is no measurement.
+    fn learn_colours(&mut self, frame: &Frame<'_>) {
+        let size = (self.info.format.width, self.info.format.height);
+        for (number, paint) in self.paints.iter_mut().enumerate() {
+            let places = self.layout.start.iter().zip(&self.paint_of).filter(|(_, of)| **of == number);
+            let seen: Vec<[[f64; 3]; 2]> = places
+                .filter_map(|(place, _)| {
+                    let at_px = self.info.turn.stored_from_shown((*place)?, size);
+                    let mark = Blot::at(frame, Siting::usual(frame), at_px)?;
+                    let alike = paint.parts(mark.marker, mark.background) >= LEAST_ALIKE;
+                    alike.then_some([mark.marker, mark.background])
+                })
+                .collect();
+            if !seen.is_empty() {
+                let mean = |which: usize| {
+                    std::array::from_fn(|p| seen.iter().map(|both| both[which][p]).sum::<f64>() / seen.len() as f64)
+                };
+                *paint = paint.seen_on(mean(0), mean(1));
+            }
+        }
     }
 
     fn is_needed(&self, place: usize) -> bool {
@@ -276,41 +331,6 @@ impl<'a> Surveyor<'a> {
         if sure || self.wrong.is_some() || self.looked.len() >= MOST_FRAMES { Progress::Enough } else { Progress::More }
     }
 
-    /// Gives the places of `[start]` their spots.
-    fn fix(&mut self) {
-        let size = (self.info.format.width, self.info.format.height);
-        let reach = START_SHARE * (size.0 as f64).hypot(size.1 as f64);
-        for place in 0..self.chain.links.len() {
-            let marker = self.chain.links[place].marker;
-            let Some(shown) = self.layout.start[marker] else { continue };
-            let [x, y] = self.info.turn.stored_from_shown(shown, size);
-            let mut near: Vec<(f64, usize)> = (self.spots.all.iter().enumerate())
-                .filter(|(number, spot)| spot.paints[self.paint_of[marker]] && !self.fixed.contains(&Some(*number)))
-                .map(|(number, spot)| {
-                    let at = spot.points[0].at_px;
-                    ((at[0] - x).hypot(at[1] - y), number)
-                })
-                .collect();
-            near.sort_by(|a, b| a.0.total_cmp(&b.0));
-            match near.first() {
-                Some(&(distance, spot))
-                    if distance <= reach.max(START_RADII * self.spots.all[spot].points[0].radius_px) =>
-                {
-                    self.fixed[place] = Some(spot);
-                }
-                nearest => {
-                    let shown_from =
-                        |spot: usize| self.info.turn.shown_from_stored(self.spots.all[spot].points[0].at_px, size);
-                    self.wrong.get_or_insert(SurveyError::WrongStart {
-                        marker: self.layout.markers[marker].name.clone(),
-                        at_px: shown,
-                        nearest_px: nearest.map(|&(_, spot)| shown_from(spot)),
-                    });
-                }
-            }
-        }
-    }
-
     /// How long segments are in a naming: the mean of the shortest and longest seen.
     fn lengths(&self, best: &Hypothesis) -> Vec<Option<f64>> {
         let place_of = |marker: usize| self.chain.links.iter().position(|link| link.marker == marker);
@@ -324,6 +344,24 @@ impl<'a> Surveyor<'a> {
                     .then_some(0.5 * (shortest + longest))
             })
             .collect()
+    }
+}
+
+/// Where most markers of a colour are blots, those that a disc fits by chance are blots too.
+fn agree_on_shapes(paint_of: &[usize], starts: &mut [Option<Start>]) {
+    for paint in 0..paint_of.len() {
+        let mut alike: Vec<&mut Start> = paint_of
+            .iter()
+            .zip(starts.iter_mut())
+            .filter(|(of, _)| **of == paint)
+            .filter_map(|(_, s)| s.as_mut())
+            .collect();
+        let blots = alike.iter().filter(|start| start.look.blot.is_some()).count();
+        if 2 * blots > alike.len() {
+            for start in &mut alike {
+                start.look = start.as_blot.take().unwrap_or_else(|| start.look.clone());
+            }
+        }
     }
 }
 

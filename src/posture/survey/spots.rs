@@ -1,8 +1,10 @@
 //! Spots of the markers' colours followed from frame to frame, not yet named.
 
+use super::super::blot::Blot;
 use super::super::centre::{Scratch, centre};
 use super::super::colour::Look;
 use super::super::find::{Area, Blob, Finder, Paint};
+use super::super::layout::MarkerShape;
 use super::super::naming::Point;
 use super::super::siting::{Siting, SitingEvidence};
 use super::super::track::loose_look;
@@ -10,8 +12,14 @@ use crate::video::Frame;
 
 /// A spot is lost for good after this many frames without it.
 const PATIENCE: u64 = 8;
-/// A thing that may be no disc is taken as it is after so many frames in which no disc was found.
+/// A thing in which no disc was found in so many frames is none.
 const LOOSE_AFTER: usize = 3;
+/// A disc leaves less unexplained, or is rounder (measured: discs of 8 to 11 px at most 0.014 and 1.03, blots of paint 0.016 to
+/// 0.08 and 1.04 to 2).
+const DISC_MISFIT: f64 = 0.02;
+const DISC_ELONGATION: f64 = 1.1;
+/// What moves less than this share of its radius from frame to frame is not blurred to another shape.
+const STILL_RADII: f64 = 0.5;
 /// Spots followed at once, at most.
 const MOST: usize = 40;
 /// What stands out less than this share of the best of its colour, or than this, is no marker.
@@ -25,6 +33,8 @@ pub(super) struct Spot {
     pub(super) points: Vec<Point>,
     /// Its look and the point at which it was learnt.
     pub(super) look: Option<(usize, Look)>,
+    /// Its look as a blot, where it was taken for a disc.
+    pub(super) as_blot: Option<Look>,
     /// Which paints found it.
     pub(super) paints: Vec<bool>,
     velocity_px: [f64; 2],
@@ -58,6 +68,8 @@ pub(super) struct Spots {
     finder: Finder,
     found: Vec<Blob>,
     scratch: Scratch,
+    /// What markers are, where the marker file says.
+    shape: Option<MarkerShape>,
     evidence: Option<SitingEvidence>,
 }
 
@@ -68,6 +80,11 @@ struct Candidate {
 }
 
 impl Spots {
+    /// None yet, of markers of this shape.
+    pub(super) fn new(shape: Option<MarkerShape>) -> Self {
+        Self { shape, ..Self::default() }
+    }
+
     /// Looks at a frame: in all of it, or about the spots that are followed.
     pub(super) fn look(&mut self, frame: &Frame<'_>, paints: &[Paint], whole: bool, loose: &[bool]) {
         let mut candidates: Vec<Candidate> = Vec::new();
@@ -172,11 +189,49 @@ impl Spots {
                 self.all.push(Spot {
                     points: vec![Point::new(frame.index, &candidate.blob)],
                     look: None,
+                    as_blot: None,
                     paints: candidate.paints,
                     velocity_px: [0.0; 2],
                 });
             }
         }
+    }
+
+    /// The number of a new spot at a place of the first frame, of this one of so many paints.
+    pub(super) fn start(&mut self, frame: &Frame<'_>, blob: &Blob, paint: usize, paints: usize) -> usize {
+        self.all.push(Spot {
+            points: vec![Point::new(frame.index, blob)],
+            look: None,
+            as_blot: None,
+            paints: (0..paints).map(|number| number == paint).collect(),
+            velocity_px: [0.0; 2],
+        });
+        self.all.len() - 1
+    }
+
+    /// What stands out most from its surroundings at a place, of all these paints.
+    pub(super) fn outstanding(
+        &mut self,
+        frame: &Frame<'_>,
+        at: [f64; 2],
+        reach_px: f64,
+        paints: &[Paint],
+    ) -> Option<Blob> {
+        self.finder.load(frame, Some(Area::about(at, 4.0 * reach_px)));
+        let mut best: Option<Blob> = None;
+        for paint in paints {
+            self.finder.find(frame, paint, &mut self.found);
+            for blob in &self.found {
+                let off = (blob.at_px[0] - at[0]).hypot(blob.at_px[1] - at[1]);
+                if off < reach_px.min(1.2 * blob.radius_px() + 2.0)
+                    && blob.contrast >= LEAST_CONTRAST
+                    && best.is_none_or(|other| other.contrast < blob.contrast)
+                {
+                    best = Some(*blob);
+                }
+            }
+        }
+        best
     }
 
     /// Learns the looks of the spots that have none, and of those that have some where chroma lies.
@@ -189,14 +244,34 @@ impl Spots {
                 continue;
             }
             if spot.look.is_none() {
-                let look = Look::learn(frame, siting, last.at_px, last.radius_px, &mut self.scratch);
-                spot.look = look.map(|look| (spot.points.len() - 1, look));
+                let patient = spot.points.len() >= LOOSE_AFTER;
                 let is_loose = spot.paints.iter().zip(loose).any(|(found, loose)| *found && *loose);
-                if spot.look.is_none() && is_loose && spot.points.len() >= LOOSE_AFTER {
-                    spot.look = Some((spot.points.len() - 1, loose_look(frame, &last)));
-                }
+                let mut disc = || Look::learn(frame, siting, last.at_px, last.radius_px, &mut self.scratch);
+                let blot = || Look::learn_blot(frame, siting, last.at_px, last.radius_px);
+                let look = match self.shape {
+                    Some(MarkerShape::Disc) => disc(),
+                    Some(MarkerShape::Blot) => blot(),
+                    None => {
+                        let (disc, blot) = (disc(), blot());
+                        // What moves is longer by its blur.
+                        let still = spot.velocity_px[0].hypot(spot.velocity_px[1]) < STILL_RADII * last.radius_px;
+                        let is_round = |disc: &Look| blot.as_ref().is_none_or(|blot| is_disc(disc, blot));
+                        match disc {
+                            Some(disc) if is_round(&disc) || (patient && !still) => {
+                                spot.as_blot = blot;
+                                Some(disc)
+                            }
+                            _ => blot.filter(|_| patient),
+                        }
+                    }
+                };
+                let look = look.or_else(|| (is_loose && patient).then(|| loose_look(frame, &last)));
+                spot.look = look.map(|look| (spot.points.len() - 1, look));
             }
             let Some((_, look)) = &spot.look else { continue };
+            if self.shape.is_none() && look.blot.is_none() && spot.as_blot.is_none() {
+                spot.as_blot = Look::learn_blot(frame, siting, last.at_px, last.radius_px);
+            }
             if let Ok(fit) = centre(frame, siting, look, last.at_px, &mut self.scratch) {
                 evidence.push(&fit);
             }
@@ -209,6 +284,12 @@ impl Spots {
         let told = evidence.and_then(SitingEvidence::told).or(header);
         told.or(evidence.map(SitingEvidence::assumed)).unwrap_or(Siting { dx_px: 0.0, dy_px: 0.0 })
     }
+}
+
+/// Whether what both looks were learnt of is a disc.
+fn is_disc(disc: &Look, blot: &Look) -> bool {
+    let elongation = blot.blot.as_ref().map_or(1.0, Blot::elongation);
+    disc.misfit <= DISC_MISFIT || elongation <= DISC_ELONGATION
 }
 
 /// Whether a blob is only a part of a larger one that stands out more.

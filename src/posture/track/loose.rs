@@ -47,6 +47,7 @@ pub(crate) fn look(frame: &Frame<'_>, point: &Point) -> Look {
         misfit: 0.02,
         noise: [2.0; 3],
         inflation: 1.0,
+        blot: None,
     }
 }
 
@@ -57,7 +58,7 @@ pub(super) fn fit(look: &Look, blob: &Blob) -> Option<Fit> {
     }
     let variance = (ERROR_RADII * blob.radius_px()).powi(2) + ERROR_PX * ERROR_PX;
     let covariance_px2 = [variance, 0.0, variance];
-    let centre = Centre { at_px: blob.at_px, covariance_px2, radius_px: blob.radius_px() };
+    let centre = Centre { at_px: blob.at_px, covariance_px2, lasting_px2: [0.0; 3], radius_px: blob.radius_px() };
     Some(Fit {
         centre,
         white_px2: covariance_px2,
@@ -67,5 +68,6 @@ pub(super) fn fit(look: &Look, blob: &Blob) -> Option<Fit> {
         misfit: look.misfit,
         noise: look.noise,
         chroma_shift_px: None,
+        outline: None,
     })
 }

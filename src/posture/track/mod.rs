@@ -19,7 +19,7 @@ use target::Target;
 use super::centre::{Scratch, centre};
 use super::find::{Area, Blob, Finder, Paint};
 use super::inflation::Inflation;
-use super::layout::Layout;
+use super::layout::{Layout, MarkerShape};
 use super::method::{Method, Search};
 use super::naming::{Chain, lone};
 use super::sight::{Loss, Sight};
@@ -180,6 +180,12 @@ impl Tracker {
         &self.sights
     }
 
+    /// What a marker was taken for; none if it was never seen.
+    pub(crate) fn shape(&self, marker: usize) -> Option<MarkerShape> {
+        let look = self.targets[marker].look.as_ref()?;
+        Some(if look.blot.is_some() { MarkerShape::Blot } else { MarkerShape::Disc })
+    }
+
     /// How much looking it took so far.
     pub(crate) fn effort(&self) -> Effort {
         let all = (self.size.0 * self.size.1) as f64 * self.effort.frames.max(1) as f64;
@@ -208,7 +214,7 @@ impl Tracker {
         let mut near_px = target.expected_px;
         if self.scratch.method.search == Search::Whole {
             // All that a whole frame shows of its colour, and of that the nearest.
-            let paint = self.paints[marker].seen_as(look.marker);
+            let paint = look.paint(&self.paints[marker]);
             self.finder.load(frame, None);
             self.finder.find(frame, &paint, &mut self.blobs);
             let nearest =
@@ -238,7 +244,7 @@ impl Tracker {
         let target = &self.targets[marker];
         let (Some(look), Some(fit)) = (&target.look, &target.fit) else { return };
         let (at, radius) = (fit.centre.at_px, target.radius_px());
-        let paint = self.paints[marker].seen_as(look.marker);
+        let paint = look.paint(&self.paints[marker]);
         self.finder.load(frame, Some(Area::about(at, 4.0 * radius + 4.0)));
         self.finder.find(frame, &paint, &mut self.blobs);
         let outstanding = self.blobs.iter().find(|blob| {
@@ -256,7 +262,7 @@ impl Tracker {
         let Some(look) = &target.look else { return };
         let (expected, reach, radius) =
             (target.expected_px, target.reach_px() + target.radius_px(), target.radius_px());
-        let paint = self.paints[marker].seen_as(look.marker);
+        let paint = look.paint(&self.paints[marker]);
         self.effort.near_searches += 1;
         self.finder.load(frame, Some(Area::about(expected, reach + 2.0 * radius)));
         self.finder.find(frame, &paint, &mut self.blobs);

@@ -116,7 +116,7 @@ impl Tracker {
     /// Its colour as last seen, or as the marker file has it.
     fn paint(&self, marker: usize) -> Paint {
         match &self.targets[marker].look {
-            Some(look) => self.paints[marker].seen_as(look.marker),
+            Some(look) => look.paint(&self.paints[marker]),
             None => self.paints[marker],
         }
     }
@@ -337,7 +337,11 @@ fn take_back(
             Err(loss) => target.loss = loss,
         }
     }
-    let Some(new) = Look::learn(frame, siting, blob.at_px, blob.radius_px(), scratch) else { return };
+    let new = match &target.look {
+        Some(Look { blot: Some(_), .. }) => Look::learn_blot(frame, siting, blob.at_px, blob.radius_px()),
+        _ => Look::learn(frame, siting, blob.at_px, blob.radius_px(), scratch),
+    };
+    let Some(new) = new else { return };
     if let Some(old) = &target.look {
         let ratio = new.radius_px / old.radius_px;
         let alike = paint.seen_as(old.marker).is_like(&paint.seen_as(new.marker), super::ALIKE_RAD);

@@ -2,6 +2,7 @@ use std::path::Path;
 
 use super::scenes::{Film, Tally, discs};
 use super::*;
+use crate::posture::layout::Marker;
 use crate::posture::stage::{BLACK, BLUE, Disc, GREEN, PINK, RED, SKIN, Stage, WALL};
 use crate::posture::survey::{SurveyError, Surveyor};
 use crate::video::{Format, Picture};
@@ -104,6 +105,113 @@ fn a_mark_on_each_joint() {
     let layout = Layout::parse(&text, Path::new("m.toml")).unwrap();
     let places = |frame: usize| chain([80.0, 70.0], &[(80.0, 5.0), (60.0, bend(frame)), (45.0, 0.7 * bend(frame))]);
     assert_all(&discs(&layout, &stage(), RADIUS, 50, places, none), 4);
+}
+
+/// Index finger (from `wrist` on, J1 to J3) and thumb (T1, T2) from one mark, in these colours.
+fn hand(index: [u8; 3], thumb: [u8; 3], more: &str) -> Layout {
+    let names = [("wrist", index), ("mcp", index), ("pip", index), ("dip", index), ("tip", index)];
+    let thumbs = [("cmc", thumb), ("ip", thumb), ("end", thumb)];
+    let colours: String =
+        names.iter().chain(&thumbs).map(|(name, colour)| format!("{name} = '{}'\n", hex(*colour))).collect();
+    let text = format!(
+        "flexion = 'clockwise'\n[markers]\n{colours}[segments]\nhand = ['wrist', 'mcp']\nproximal = ['mcp', 'pip']\n\
+        middle = ['pip', 'dip']\ndistal = ['dip', 'tip']\nbase = ['wrist', 'cmc']\nthumb = ['cmc', 'ip']\nnail = ['ip', 'end']\n\
+        [joints]\nJ1 = ['hand', 'proximal']\nJ2 = ['proximal', 'middle']\nJ3 = ['middle', 'distal']\n\
+        T1 = ['base', 'thumb']\nT2 = ['thumb', 'nail']\n{more}"
+    );
+    Layout::parse(&text, Path::new("m.toml")).unwrap()
+}
+
+/// The eight marks of [`hand`], pinching: the thumb bends the other way.
+fn pinching(frame: usize) -> Vec<[f64; 2]> {
+    let wrist = [60.0, 120.0 + 6.0 * (frame as f64 / 9.0).sin()];
+    let bend = bend(frame);
+    let mut places = chain(wrist, &[(110.0, -25.0), (64.0, 0.5 * bend), (42.0, bend), (30.0, 0.6 * bend)]);
+    places.extend(&chain(wrist, &[(70.0, 45.0), (48.0, -0.4 * bend), (34.0, -0.5 * bend)])[1..]);
+    places
+}
+
+fn starts(layout: &Layout, places: &[[f64; 2]], off: f64) -> String {
+    let line = |(k, (marker, at)): (usize, (&Marker, &[f64; 2]))| {
+        let (sin, cos) = (2.4 * k as f64).sin_cos();
+        format!("{} = [{:.1}, {:.1}]\n", marker.name, at[0] + off * cos, at[1] + off * sin)
+    };
+    format!("[start]\n{}", layout.markers.iter().zip(places).enumerate().map(line).collect::<String>())
+}
+
+const PAINT: [u8; 3] = [0x2b, 0x4b, 0x10];
+
+#[test]
+fn thumb_and_index_of_one_colour_keep_the_names_of_their_starts() {
+    for off in [0.0, 0.9 * RADIUS] {
+        let more = starts(&hand(PAINT, PAINT, ""), &pinching(0), off);
+        let layout = hand(PAINT, PAINT, &more);
+        assert_all(&discs(&layout, &stage(), RADIUS, 60, pinching, none), 8);
+    }
+}
+
+#[test]
+fn starts_go_before_the_order_along_the_finger() {
+    // No finger: neighbours far apart, links that cross, one bent backwards.
+    let places = |frame: usize| {
+        let sway = 8.0 * (frame as f64 / 9.0).sin();
+        [[60.0, 60.0], [330.0, 200.0], [60.0, 200.0], [330.0, 60.0], [120.0, 130.0], [200.0, 130.0]]
+            .map(|[x, y]| [x + sway, y - sway])
+            .to_vec()
+    };
+    let more = starts(&pairs([PAINT; 6], BOTH, ""), &places(0), 3.0);
+    let layout = pairs([PAINT; 6], BOTH, &more);
+    let tally = discs(&layout, &stage(), RADIUS, 30, places, none).run().unwrap();
+    assert_eq!((tally.right, tally.surveyed), (6 * 30, 3), "{tally:?}");
+}
+
+#[test]
+fn some_starts_help_as_far_as_they_go() {
+    let starts = starts(&hand(PAINT, PAINT, ""), &pinching(0), 2.0);
+    let of = |names: &[&str]| {
+        let lines = starts.lines().filter(|line| names.iter().any(|name| line.starts_with(&format!("{name} "))));
+        hand(PAINT, PAINT, &format!("[start]\n{}", lines.map(|line| format!("{line}\n")).collect::<String>()))
+    };
+    let layout = of(&["wrist", "tip", "end"]);
+    assert_all(&discs(&layout, &stage(), RADIUS, 60, pinching, none), 8);
+}
+
+#[test]
+fn fingers_of_one_colour_need_a_start_and_are_named_where_colours_differ() {
+    let layout = hand(PAINT, PAINT, "");
+    let error = discs(&layout, &stage(), RADIUS, 6, pinching, none).run().unwrap_err();
+    let message = error.to_string();
+    assert!(matches!(error, SurveyError::Branches { .. }), "{message}");
+    assert!(message.contains("end") && message.contains("[start]") && !message.contains("wrist"), "{message}");
+    let layout = hand(GREEN, BLUE, "");
+    assert_all(&discs(&layout, &stage(), RADIUS, 60, pinching, none), 8);
+}
+
+#[test]
+fn paler_or_darker_marks_than_the_file_says_are_found_at_their_starts() {
+    // Drawn dark green; the marker file says a bright one.
+    let drawn = pairs([PAINT; 6], BOTH, "");
+    let more = starts(&drawn, &moving(0), 3.0);
+    let named = pairs([[0x30, 0xd0, 0x20]; 6], BOTH, &more);
+    let film = discs(&drawn, &stage(), RADIUS, 30, moving, none);
+    assert_all(&Film { layout: &named, ..film }, 6);
+}
+
+#[test]
+fn a_start_beside_every_mark_names_what_is_there() {
+    let more = "[start]\nm0 = [350.0, 20.0]\n";
+    let layout = pairs([BLUE; 6], BOTH, more);
+    let message = discs(&layout, &stage(), RADIUS, 3, moving, none).run().unwrap_err().to_string();
+    assert!(message.contains("m0 at (350, 20)") && message.contains(&hex(BLUE)), "{message}");
+    // What is there is the stage's skin, but for noise and rounding.
+    let skin = message.split("first frame has ").nth(1).and_then(|rest| rest.get(1..7)).expect("a colour");
+    let parts = [0, 2, 4].map(|k| i32::from_str_radix(&skin[k..k + 2], 16).expect("two digits"));
+    assert!(parts.iter().zip(SKIN).all(|(part, skin)| (part - i32::from(skin)).abs() < 12), "{message}");
+    // A mark of another colour is named as such.
+    let [x, y] = moving(0)[0];
+    let layout = pairs([PINK, BLUE, BLUE, BLUE, BLUE, BLUE], BOTH, &format!("[start]\nm1 = [{x:.1}, {y:.1}]\n"));
+    let message = discs(&layout, &stage(), RADIUS, 3, moving, none).run().unwrap_err().to_string();
+    assert!(message.contains("has a mark of #"), "{message}");
 }
 
 #[test]

@@ -1,0 +1,539 @@
+//! The centre of a mark of any outline, such as a blot of paint: the centroid of its outline.
+//!
+//! In: a frame, where its chroma lies, and a place in the mark; out: an [`Outline`], or why there is none. A sample's share of
+//! the mark is its place on the line from the surround's colour to the mark's, along the direction that parts the two best
+//! (Fisher 1936, DOI 10.1111/j.1469-1809.1936.tb02137.x): what varies within either, as luma does where paint shines, counts
+//! less. The surround has a gradient; both levels are those of the frame at hand, so that light may change. Inside of the
+//! outline all counts alike, whatever shines there, and on its edge as much as its share.
+//!
+//! The standard error has two parts: that of noise on the edge, and that of the outline itself, which stays for many frames.
+
+use nalgebra::{Matrix3, Vector3};
+
+use super::sight::Loss;
+use super::siting::Siting;
+use crate::video::Frame;
+
+/// Share from which a sample is within the outline.
+const EDGE: f32 = 0.5;
+/// Levels at which the outline is drawn as well, to see how much the centre depends on it.
+const LOW_EDGE: f32 = 0.35;
+const HIGH_EDGE: f32 = 0.65;
+/// Samples nearer to the edge than this are neither clearly within nor clearly without: blur and chroma's pitch.
+const EDGE_PX: usize = 2;
+/// How far around the outline the surround is looked at.
+const SURROUND_PX: usize = 7;
+/// The variance of the centre, of the square of its shift between these two levels, and how much skin bends along a mark, radians a
+/// radius: calibrated together on scenes of paint on fingers that bend by up to 1.3 rad a joint, drawn as [`crate::phantom`] draws them, with
+/// noise of SD 2 and 3 and quantized like video, so that 60 to 76 % of the errors of places and angles are within one standard error.
+const LEVELS_SHARE: f64 = 0.5;
+const BEND: f64 = 0.03;
+/// Areas differ by this (logarithm) from codec and stretch; beyond, a part may be hidden, and the centre off by up to so many radii
+/// times the rest (a segment cut off a disc: 0.8 to 1 times its share of the area).
+const AREA_FREE: f64 = 0.08;
+const CUT_RADII: f64 = 1.0;
+/// Rounds of levels and outline.
+const ROUNDS: usize = 3;
+/// A plane's standard deviation within mark or surround is taken as at least this, on the scale of 8 bits.
+const LEAST_SD: f64 = 2.0;
+/// Mark and surround are this many of their standard deviations apart at least (assumed).
+const LEAST_APART: f64 = 2.5;
+/// ... and so many levels, in all planes together.
+const LEAST_CONTRAST: f64 = 8.0;
+/// Area of an outline over what is expected: as it was lately, as first learnt, and as found by the search.
+const AREA_RANGE: (f64, f64) = (0.75, 1.35);
+const LEARNT_AREA_RANGE: (f64, f64) = (0.55, 2.0);
+const FOUND_AREA_RANGE: (f64, f64) = (0.35, 5.0);
+/// Radii of marks, as shares of the picture's width.
+const SIZES: [f64; 4] = [0.005, 0.008, 0.013, 0.02];
+/// A mark is no longer than this many of its widths.
+const LONGEST: f64 = 5.0;
+/// The contrast over the learnt one.
+const LEVEL_RANGE: (f64, f64) = (0.5, 2.0);
+/// How much a frame counts against what was learned before.
+const SHARE: f64 = 0.1;
+
+/// What was learnt of a mark.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Blot {
+    /// The share of a sample is this times its difference from the surround.
+    toward: [f64; 3],
+    /// As it was lately, and as first learnt.
+    area_px2: f64,
+    learnt_px2: f64,
+    /// Half axes of the ellipse of its second moments, squared, over four: the larger, the smaller.
+    spread_px2: [f64; 2],
+}
+
+/// A mark as a frame shows it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Outline {
+    /// Its centroid.
+    pub(crate) at_px: [f64; 2],
+    /// Covariance of the errors that independent noise makes.
+    pub(crate) white_px2: [f64; 3],
+    /// Covariance of the errors that stay: what is within the outline is a matter of opinion.
+    pub(crate) lasting_px2: [f64; 3],
+    pub(crate) area_px2: f64,
+    /// Central second moments: xx, xy, yy.
+    pub(crate) moments_px2: [f64; 3],
+    /// Y', Cb, Cr within and around.
+    pub(crate) marker: [f64; 3],
+    pub(crate) background: [f64; 3],
+    /// Standard deviation of the samples around in each plane.
+    pub(crate) noise: [f64; 3],
+}
+
+impl Outline {
+    pub(crate) fn radius_px(&self) -> f64 {
+        (self.area_px2 / std::f64::consts::PI).sqrt()
+    }
+
+    /// Levels between its colour and its surround's.
+    fn contrast(&self) -> f64 {
+        (0..3).map(|p| (self.marker[p] - self.background[p]).powi(2)).sum::<f64>().sqrt()
+    }
+
+    fn spread_px2(&self) -> [f64; 2] {
+        let [xx, xy, yy] = self.moments_px2;
+        let (mean, half) = (0.5 * (xx + yy), (0.25 * (xx - yy) * (xx - yy) + xy * xy).sqrt());
+        [mean + half, (mean - half).max(1e-3)]
+    }
+}
+
+impl Blot {
+    /// Learns the mark of about `radius_px` (of a disc of its area) at about `at_px`; none where nothing compact stands out.
+    pub(crate) fn learn(frame: &Frame<'_>, siting: Siting, at_px: [f64; 2], radius_px: f64) -> Option<(Self, Outline)> {
+        let window = Window::new(frame, siting, at_px, 2.6 * radius_px + 10.0)?;
+        // What is in the middle against what is around, at first.
+        let class = |from: f64, to: f64| {
+            window.gather(|k| {
+                let [x, y] = window.place(k);
+                let distance = (x - at_px[0]).hypot(y - at_px[1]);
+                distance >= from && distance <= to
+            })
+        };
+        let (mut inside, mut around) =
+            (class(0.0, 0.5 * radius_px + 0.7), class(1.5 * radius_px + 2.0, 2.2 * radius_px + 6.0));
+        let mut known = Self { toward: [0.0; 3], area_px2: 0.0, learnt_px2: 0.0, spread_px2: [0.0; 2] };
+        let mut found = None;
+        for _ in 0..ROUNDS {
+            known.toward = toward(&inside?, &around?)?;
+            let drawn = window.draw(&known.toward, at_px, radius_px)?;
+            inside = window.gather(|k| drawn.depth[k] > EDGE_PX as i8).or(inside);
+            around = window.gather(|k| drawn.is_around(k)).or(around);
+            found = Some(drawn);
+        }
+        let outline = window.outline(&found?, &inside?, &around?, &known.toward);
+        let expected = std::f64::consts::PI * radius_px * radius_px;
+        let [long, short] = outline.spread_px2();
+        let fits = in_range(outline.area_px2 / expected, FOUND_AREA_RANGE) && long <= LONGEST * LONGEST * short;
+        (known.area_px2, known.spread_px2) = (outline.area_px2, [long, short]);
+        known.learnt_px2 = outline.area_px2;
+        fits.then_some((known, outline))
+    }
+
+    /// What is seen of the mark at `at_px`, of any size that markers have, the one furthest from its surround's colour; none where
+    /// nothing stands out.
+    pub(crate) fn at(frame: &Frame<'_>, siting: Siting, at_px: [f64; 2]) -> Option<Outline> {
+        let of_radius = |share: f64| Self::learn(frame, siting, at_px, share * frame.luma.width as f64);
+        let found = SIZES.into_iter().filter_map(of_radius).map(|(_, outline)| outline);
+        found
+            .filter(|outline| {
+                let off = (outline.at_px[0] - at_px[0]).hypot(outline.at_px[1] - at_px[1]);
+                off < 1.2 * outline.radius_px() + 2.0
+            })
+            .max_by(|a, b| a.contrast().total_cmp(&b.contrast()))
+    }
+
+    /// The outline of the mark about `near_px`.
+    ///
+    /// # Errors
+    /// Why it has none.
+    pub(crate) fn outline(&self, frame: &Frame<'_>, siting: Siting, near_px: [f64; 2]) -> Result<Outline, Loss> {
+        let radius_px = (self.area_px2 / std::f64::consts::PI).sqrt();
+        let reach_px = 2.0 * self.spread_px2[0].sqrt() + SURROUND_PX as f64 + 5.0;
+        let mut at_px = near_px;
+        let mut last = Err(Loss::NotFound);
+        for _ in 0..ROUNDS {
+            let window = Window::new(frame, siting, at_px, reach_px).ok_or(Loss::NotFound)?;
+            let Some(drawn) = window.draw(&self.toward, at_px, radius_px) else { return last };
+            let classes = (window.gather(|k| drawn.depth[k] > 0), window.gather(|k| drawn.is_around(k)));
+            let (Some(inside), Some(around)) = classes else { return last };
+            if drawn.at_the_border {
+                return Err(Loss::AtTheBorder);
+            }
+            let outline = window.outline(&drawn, &inside, &around, &self.toward);
+            let moved = (outline.at_px[0] - at_px[0]).hypot(outline.at_px[1] - at_px[1]);
+            at_px = outline.at_px;
+            last = if drawn.is_cut { Err(Loss::Hidden) } else { Ok(outline) };
+            if moved < 0.25 * radius_px && !drawn.is_cut {
+                break;
+            }
+        }
+        let mut outline = last?;
+        let level: f64 = (0..3).map(|p| self.toward[p] * (outline.marker[p] - outline.background[p])).sum();
+        let whole = in_range(outline.area_px2 / self.area_px2, AREA_RANGE)
+            && in_range(outline.area_px2 / self.learnt_px2, LEARNT_AREA_RANGE)
+            && in_range(level, LEVEL_RANGE)
+            && outline.spread_px2()[0] <= 1.6 * self.spread_px2[0];
+        let cut = ((outline.area_px2 / self.area_px2).ln().abs() - AREA_FREE).max(0.0) * CUT_RADII * radius_px;
+        outline.lasting_px2[0] += cut * cut;
+        outline.lasting_px2[2] += cut * cut;
+        if whole { Ok(outline) } else { Err(Loss::Hidden) }
+    }
+
+    /// The longer over the shorter half axis of the ellipse with its second moments.
+    pub(crate) fn elongation(&self) -> f64 {
+        (self.spread_px2[0] / self.spread_px2[1]).sqrt()
+    }
+
+    /// Takes over what the mark looked like in another frame.
+    pub(crate) fn update(&mut self, outline: &Outline) {
+        let toward = |old: &mut f64, new: f64| *old += SHARE * (new - *old);
+        toward(&mut self.area_px2, outline.area_px2);
+        let spread = outline.spread_px2();
+        (0..2).for_each(|k| toward(&mut self.spread_px2[k], spread[k]));
+    }
+}
+
+fn in_range(value: f64, (least, most): (f64, f64)) -> bool {
+    value >= least && value <= most
+}
+
+/// Samples of one kind: their mean and covariance.
+#[derive(Debug, Clone, Copy)]
+struct Class {
+    mean: Vector3<f64>,
+    covariance: Matrix3<f64>,
+}
+
+/// The direction in which two kinds of samples are furthest apart, by what they vary; none where they are not apart.
+fn toward(inside: &Class, around: &Class) -> Option<[f64; 3]> {
+    let apart = inside.mean - around.mean;
+    let spread = 0.5 * (inside.covariance + around.covariance) + Matrix3::identity() * LEAST_SD * LEAST_SD;
+    let direction = spread.cholesky()?.solve(&apart);
+    let distance2 = direction.dot(&apart);
+    let sure = distance2 >= LEAST_APART * LEAST_APART && apart.norm() >= LEAST_CONTRAST;
+    sure.then(|| (direction / distance2).into())
+}
+
+/// A part of a frame, all its planes at luma's places.
+struct Window {
+    left: usize,
+    top: usize,
+    width: usize,
+    height: usize,
+    samples: Vec<[f32; 3]>,
+    /// Which sides are the picture's: left, top, right, bottom.
+    borders: [bool; 4],
+    /// Luma samples for one of chroma.
+    chroma_area: f64,
+}
+
+/// An outline on a window.
+struct Drawn {
+    /// Steps inward from the edge: 1 for the outermost samples within, 0 and less without.
+    depth: Vec<i8>,
+    /// Share of the mark, 0 around it and 1 in its middle.
+    share: Vec<f32>,
+    /// It reaches the window's border, or the picture's.
+    is_cut: bool,
+    at_the_border: bool,
+}
+
+impl Drawn {
+    fn is_around(&self, k: usize) -> bool {
+        (-((SURROUND_PX + EDGE_PX) as i8)..-(EDGE_PX as i8)).contains(&self.depth[k])
+    }
+
+    /// The weight of a sample when the edge is drawn at `edge`.
+    fn weight(&self, k: usize, edge: f32) -> f64 {
+        let depth = self.depth[k];
+        if depth > EDGE_PX as i8 {
+            1.0
+        } else if depth < -(EDGE_PX as i8) {
+            0.0
+        } else {
+            f64::from((2.0 * (self.share[k] - edge) + 0.5).clamp(0.0, 1.0))
+        }
+    }
+}
+
+impl Window {
+    fn new(frame: &Frame<'_>, siting: Siting, [x, y]: [f64; 2], reach_px: f64) -> Option<Self> {
+        let range = |at: f64, size: usize| {
+            let (from, to) = (at - reach_px, at + reach_px + 1.0);
+            (from < size as f64 && to > 0.0).then(|| (from.max(0.0) as usize, (to as usize).min(size)))
+        };
+        let ((left, right), (top, bottom)) = (range(x, frame.luma.width)?, range(y, frame.luma.height)?);
+        let (across, down) = frame.subsampling();
+        let (width, height) = (right - left, bottom - top);
+        let mut samples = Vec::with_capacity(width * height);
+        let between = |at: usize, offset: f64, pitch: usize, size: usize| {
+            let place = ((at as f64 - offset) / pitch as f64).clamp(0.0, (size - 1) as f64);
+            let first = (place as usize).min(size.saturating_sub(2));
+            (first, (first + 1).min(size - 1), (place - first as f64) as f32)
+        };
+        for y in top..bottom {
+            for x in left..right {
+                let chroma = frame.chroma.map_or([0.0; 2], |planes| {
+                    planes.map(|plane| {
+                        let (x0, x1, u) = between(x, siting.dx_px, across, plane.width);
+                        let (y0, y1, v) = between(y, siting.dy_px, down, plane.height);
+                        let row = |y: usize| (1.0 - u) * plane.sample(x0, y) + u * plane.sample(x1, y);
+                        (1.0 - v) * row(y0) + v * row(y1)
+                    })
+                });
+                samples.push([frame.luma.sample(x, y), chroma[0], chroma[1]]);
+            }
+        }
+        let borders = [left == 0, top == 0, right == frame.luma.width, bottom == frame.luma.height];
+        let chroma_area = (across * down) as f64;
+        (width > 4 && height > 4).then_some(Self { left, top, width, height, samples, borders, chroma_area })
+    }
+
+    fn place(&self, k: usize) -> [f64; 2] {
+        [(self.left + k % self.width) as f64, (self.top + k / self.width) as f64]
+    }
+
+    /// The samples that `belong`; none if there are too few.
+    fn gather(&self, belong: impl Fn(usize) -> bool) -> Option<Class> {
+        let (mut count, mut sum, mut products) = (0.0, Vector3::zeros(), Matrix3::zeros());
+        for (_, sample) in self.samples.iter().enumerate().filter(|(k, _)| belong(*k)) {
+            let sample = Vector3::from(sample.map(f64::from));
+            count += 1.0;
+            sum += sample;
+            products += sample * sample.transpose();
+        }
+        let mean = sum / count;
+        (count >= 9.0).then(|| Class { mean, covariance: products / count - mean * mean.transpose() })
+    }
+
+    /// The outline of the compact thing nearest to `near_px`, of about this radius.
+    fn draw(&self, toward: &[f64; 3], near_px: [f64; 2], radius_px: f64) -> Option<Drawn> {
+        let toward = toward.map(|part| part as f32);
+        let along: Vec<f32> = self.samples.iter().map(|s| (0..3).map(|p| toward[p] * s[p]).sum()).collect();
+        // The surround's level at first: the median far from the middle.
+        let mut far: Vec<f32> = (0..along.len())
+            .filter(|&k| {
+                let [x, y] = self.place(k);
+                (x - near_px[0]).hypot(y - near_px[1]) > 1.5 * radius_px + 2.0
+            })
+            .map(|k| along[k])
+            .collect();
+        let (mut ground, mut level) = ([median(&mut far)?, 0.0, 0.0], 1.0);
+        let mut drawn: Option<Drawn> = None;
+        for _ in 0..ROUNDS {
+            let rest = |k: usize| {
+                let (x, y) = ((k % self.width) as f32, (k / self.width) as f32);
+                along[k] - ground[0] - ground[1] * x - ground[2] * y
+            };
+            let share: Vec<f32> = (0..along.len()).map(|k| rest(k) / level).collect();
+            let inside = self.component(&share, near_px, radius_px)?;
+            let depth = self.depth(&inside);
+            let at = |side: usize, k: usize| match side {
+                0 => k % self.width == 0,
+                1 => k < self.width,
+                2 => k % self.width == self.width - 1,
+                _ => k >= self.width * (self.height - 1),
+            };
+            let cut = |picture: bool| {
+                (0..4).any(|side| {
+                    self.borders[side] == picture && inside.iter().enumerate().any(|(k, &is)| is && at(side, k))
+                })
+            };
+            let one = Drawn { is_cut: cut(false), at_the_border: cut(true), depth, share };
+            if let Some(plane) = self.ground(&along, &one) {
+                ground = plane;
+            }
+            let rest = |k: usize| {
+                let (x, y) = ((k % self.width) as f32, (k / self.width) as f32);
+                along[k] - ground[0] - ground[1] * x - ground[2] * y
+            };
+            let deepest = one.depth.iter().copied().max()?.min(EDGE_PX as i8 + 1);
+            let mut core: Vec<f32> = (0..along.len()).filter(|&k| one.depth[k] >= deepest).map(rest).collect();
+            level = median(&mut core).filter(|&level| level > 0.1)?;
+            drawn = Some(one);
+        }
+        drawn
+    }
+
+    /// The surround's level and slopes along x and y, outliers (other skin, what lies behind) left out.
+    fn ground(&self, along: &[f32], drawn: &Drawn) -> Option<[f32; 3]> {
+        let around: Vec<usize> = (0..along.len()).filter(|&k| drawn.is_around(k)).collect();
+        let mut values: Vec<f32> = around.iter().map(|&k| along[k]).collect();
+        let mut plane = [median(&mut values)?, 0.0, 0.0];
+        let scale = 1.0 / self.width.max(self.height) as f64;
+        for _ in 0..ROUNDS {
+            let off = |k: usize| {
+                along[k] - plane[0] - plane[1] * (k % self.width) as f32 - plane[2] * (k / self.width) as f32
+            };
+            let mut offs: Vec<f32> = around.iter().map(|&k| off(k).abs()).collect();
+            let wide = (3.0 * median(&mut offs)?).max(0.05);
+            // A weak prior holds the slopes: a surround seen on one side only has none to speak of.
+            let mut normal = Matrix3::from_diagonal(&Vector3::new(0.0, 0.5, 0.5));
+            let mut pull = Vector3::zeros();
+            for &k in around.iter().filter(|&&k| off(k).abs() <= wide) {
+                let (x, y) = ((k % self.width) as f64 * scale, (k / self.width) as f64 * scale);
+                let row = Vector3::new(1.0, x, y);
+                normal += row * row.transpose();
+                pull += row * f64::from(along[k]);
+            }
+            let solved = normal.cholesky()?.solve(&pull);
+            plane = [solved[0] as f32, (solved[1] * scale) as f32, (solved[2] * scale) as f32];
+        }
+        Some(plane)
+    }
+
+    /// The connected samples of a share above the edge's that are nearest for their size, holes filled.
+    fn component(&self, share: &[f32], near_px: [f64; 2], radius_px: f64) -> Option<Vec<bool>> {
+        let mut label = vec![0u16; share.len()];
+        let mut best: Option<(f64, u16)> = None;
+        let mut next = 0;
+        let mut stack = Vec::new();
+        for start in 0..share.len() {
+            if label[start] != 0 || share[start] < EDGE || next == u16::MAX {
+                continue;
+            }
+            next += 1;
+            label[start] = next;
+            stack.push(start);
+            let (mut area, mut sum) = (0.0, [0.0; 2]);
+            while let Some(k) = stack.pop() {
+                let [x, y] = self.place(k);
+                area += 1.0;
+                (sum[0], sum[1]) = (sum[0] + x, sum[1] + y);
+                for other in self.neighbours(k) {
+                    if label[other] == 0 && share[other] >= EDGE {
+                        label[other] = next;
+                        stack.push(other);
+                    }
+                }
+            }
+            let off = (sum[0] / area - near_px[0]).hypot(sum[1] / area - near_px[1]) / radius_px;
+            let score = area.min(std::f64::consts::PI * radius_px * radius_px) / (1.0 + off * off);
+            if area >= 9.0 && best.is_none_or(|(most, _)| score > most) {
+                best = Some((score, next));
+            }
+        }
+        let chosen = best?.1;
+        // Holes: what can't be reached from the border.
+        let mut outside = vec![false; share.len()];
+        let on_border = |k: usize| {
+            k < self.width
+                || k >= self.width * (self.height - 1)
+                || k.is_multiple_of(self.width)
+                || (k + 1).is_multiple_of(self.width)
+        };
+        stack.extend((0..share.len()).filter(|&k| on_border(k) && label[k] != chosen));
+        stack.iter().for_each(|&k| outside[k] = true);
+        while let Some(k) = stack.pop() {
+            for other in self.neighbours(k) {
+                if !outside[other] && label[other] != chosen {
+                    outside[other] = true;
+                    stack.push(other);
+                }
+            }
+        }
+        Some(outside.into_iter().map(|is| !is).collect())
+    }
+
+    fn neighbours(&self, k: usize) -> impl Iterator<Item = usize> {
+        let (x, y, width, height) = (k % self.width, k / self.width, self.width, self.height);
+        let four = [
+            (x > 0).then(|| k - 1),
+            (x + 1 < width).then(|| k + 1),
+            (y > 0).then(|| k - width),
+            (y + 1 < height).then(|| k + width),
+        ];
+        four.into_iter().flatten()
+    }
+
+    /// Steps from the edge of what is `inside`: 1, 2, .. within, 0, -1, .. without.
+    fn depth(&self, inside: &[bool]) -> Vec<i8> {
+        const FAR: i8 = 100;
+        let mut depth: Vec<i8> = inside.iter().map(|&is| if is { FAR } else { -FAR }).collect();
+        let mut front: Vec<usize> =
+            (0..inside.len()).filter(|&k| self.neighbours(k).any(|other| inside[other] != inside[k])).collect();
+        front.iter().for_each(|&k| depth[k] = i8::from(inside[k]));
+        let mut step = 0;
+        while !front.is_empty() && step < FAR - 2 {
+            step += 1;
+            let mut then = Vec::new();
+            for k in front {
+                for other in self.neighbours(k) {
+                    let new = if inside[other] { 1 + step } else { -step };
+                    if inside[other] == inside[k] && depth[other].abs() == FAR {
+                        depth[other] = new;
+                        then.push(other);
+                    }
+                }
+            }
+            front = then;
+        }
+        depth
+    }
+
+    /// Area and centroid of what is drawn with the edge at `edge`.
+    fn centroid(&self, drawn: &Drawn, edge: f32) -> (f64, [f64; 2]) {
+        let (mut area, mut sum) = (0.0, [0.0; 2]);
+        for k in 0..self.samples.len() {
+            let weight = drawn.weight(k, edge);
+            let [x, y] = self.place(k);
+            area += weight;
+            (sum[0], sum[1]) = (sum[0] + weight * x, sum[1] + weight * y);
+        }
+        (area, [sum[0] / area, sum[1] / area])
+    }
+
+    fn outline(&self, drawn: &Drawn, inside: &Class, around: &Class, toward: &[f64; 3]) -> Outline {
+        let (area_px2, at_px) = self.centroid(drawn, EDGE);
+        let level: f64 = (0..3).map(|p| toward[p] * (inside.mean[p] - around.mean[p])).sum();
+        let noise: [f64; 3] = std::array::from_fn(|p| around.covariance[(p, p)].max(0.0).sqrt());
+        // Chroma's samples are interpolated: what is wrong of one is so of all luma's places about it.
+        let wrong: f64 =
+            (0..3).map(|p| (toward[p] * noise[p] / level).powi(2) * if p == 0 { 1.0 } else { self.chroma_area }).sum();
+        let (mut moments, mut white) = ([0.0; 3], [0.0; 3]);
+        for k in 0..self.samples.len() {
+            let weight = drawn.weight(k, EDGE);
+            let [x, y] = self.place(k);
+            let (dx, dy) = (x - at_px[0], y - at_px[1]);
+            for (part, product) in [dx * dx, dx * dy, dy * dy].into_iter().enumerate() {
+                moments[part] += weight * product / area_px2;
+                if weight > 0.0 && weight < 1.0 {
+                    white[part] += 4.0 * wrong * product / (area_px2 * area_px2);
+                }
+            }
+        }
+        let [low, high] = [LOW_EDGE, HIGH_EDGE].map(|edge| self.centroid(drawn, edge).1);
+        let shift = [low[0] - high[0], low[1] - high[1]];
+        let mut outline = Outline {
+            at_px,
+            white_px2: white,
+            lasting_px2: [0.0; 3],
+            area_px2,
+            moments_px2: moments,
+            marker: inside.mean.into(),
+            background: around.mean.into(),
+            noise,
+        };
+        // Skin that bends along the mark moves its centroid by its curvature times its second moment.
+        let bent = (BEND * outline.spread_px2()[0]).powi(2) / (area_px2 / std::f64::consts::PI);
+        outline.lasting_px2 = [
+            LEVELS_SHARE * shift[0] * shift[0] + bent,
+            LEVELS_SHARE * shift[0] * shift[1],
+            LEVELS_SHARE * shift[1] * shift[1] + bent,
+        ];
+        outline
+    }
+}
+
+/// The middle value; none of none.
+fn median(values: &mut [f32]) -> Option<f32> {
+    let middle = values.len() / 2;
+    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f32::total_cmp).1)
+}
+
+#[cfg(test)]
+mod tests;
