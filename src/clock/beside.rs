@@ -162,9 +162,9 @@ impl Beside {
                 }
             }
         }
-        if left.half.is_some() {
+        if left.half.is_some() || format.half_leads() {
             text = format!("a {text}");
-        } else if right.half.is_some() {
+        } else if right.half.is_some() || format.has_half() {
             text += " a";
         }
         ClockFormat::parse(&text).ok().map(|_| text).filter(|text| text != format.text())
@@ -351,7 +351,7 @@ mod tests {
         let none = [false, false];
         assert_eq!(fitting("h:mm", "d", "", none).as_deref(), Some("hh:mm"));
         assert_eq!(fitting("h:mm", "d", ":dd", none).as_deref(), Some("hh:mm:ss"));
-        assert_eq!(fitting("h:mm", "d:d", "", none).as_deref(), Some("hh:mm:ss"));
+        assert_eq!(fitting("h:mm", "d:dd", "", none).as_deref(), Some("hh:mm:ss"));
         assert_eq!(fitting("mm:ss", "", ".d", none).as_deref(), Some("mm:ss.t"));
         assert_eq!(fitting("ss.t", ":dd", "d", none).as_deref(), Some("mm:ss.tt"));
         assert_eq!(fitting("hh:mm", "", "", [false, true]).as_deref(), Some("hh:mm a"));
