@@ -75,7 +75,7 @@ const AFTER_MARK: [f32; 2] = [0.2, 1.38];
 const CUT_OFF: f32 = 0.95;
 /// A blank before or after AM or PM is at most so many heights of the digits wide, one between letters such a share of their height.
 const BLANK: f64 = 1.4;
-const LETTERS_APART: f64 = 0.36;
+const LETTERS_APART: f64 = 0.46;
 /// Lower characters are no letters.
 const LEAST_LETTER: f64 = 0.28;
 /// How far characters reach above and below the digits, and how high they are at most, in heights of a digit.
@@ -85,7 +85,7 @@ const TALLEST: f64 = 1.35;
 /// A mark's parts are lower than this, in heights of a digit.
 const MARK: f64 = 0.45;
 /// Between the dots of a colon there is this share of its height.
-const DOTS_APART: f64 = 0.25;
+const DOTS_APART: f64 = 0.15;
 /// A run is a digit where the network finds all digits together this probable.
 const DIGIT: f64 = 0.5;
 
@@ -303,7 +303,10 @@ impl<'a> Scene<'a> {
         let ink = |&value: &f32| (value > limit) == (levels.ink > levels.background);
         let free = |y: &usize| !self.gray.row(*y)[run.left..=run.right].iter().any(ink);
         let apart = (run.top..=run.bottom).filter(free).count() as f64;
-        let inside = top > self.top && top < middle && bottom > middle && bottom <= self.bottom + 1.0;
+        let inside = top > self.top
+            && top < middle
+            && bottom > middle
+            && bottom <= self.bottom + (UNEVEN * self.height).max(1.5);
         (inside && apart >= DOTS_APART * tall(run)).then_some(':')
     }
 
