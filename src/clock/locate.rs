@@ -123,6 +123,7 @@ impl Scout {
             return None;
         }
         if std::mem::take(&mut follower.regardless) {
+            follower.misfit = true;
             readings.fill(Reading::Abstained(Doubt::OtherFormat));
         }
         let readings = self.kept.iter().map(|kept| kept.index).zip(readings).collect();
