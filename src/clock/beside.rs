@@ -33,7 +33,7 @@ impl Misfit {
     pub fn is_of_all(read: &[usize], other: &[usize]) -> bool {
         let Some((first, last)) = read.first().zip(read.last()) else { return other.len() >= FEWEST };
         let within = other.iter().filter(|&place| (first..=last).contains(&place)).count();
-        within >= FEWEST && STRAY * within > read.len() || read.len() < FEWEST && other.len() >= FEWEST
+        within >= FEWEST && STRAY * within > read.len() || other.len() >= read.len().max(FEWEST)
     }
 
     /// What is wrong with this format and what to write instead.
@@ -75,7 +75,7 @@ const AFTER_MARK: [f32; 2] = [0.2, 1.38];
 const CUT_OFF: f32 = 0.95;
 /// A blank before or after AM or PM is at most so many heights of the digits wide, one between letters such a share of their height.
 const BLANK: f64 = 1.4;
-const LETTERS_APART: f64 = 0.36;
+const LETTERS_APART: f64 = 0.46;
 /// Lower characters are no letters.
 const LEAST_LETTER: f64 = 0.28;
 /// How far characters reach above and below the digits, and how high they are at most, in heights of a digit.
@@ -85,7 +85,7 @@ const TALLEST: f64 = 1.35;
 /// A mark's parts are lower than this, in heights of a digit.
 const MARK: f64 = 0.45;
 /// Between the dots of a colon there is this share of its height.
-const DOTS_APART: f64 = 0.25;
+const DOTS_APART: f64 = 0.15;
 /// A run is a digit where the network finds all digits together this probable.
 const DIGIT: f64 = 0.5;
 
@@ -162,9 +162,9 @@ impl Beside {
                 }
             }
         }
-        if left.half.is_some() {
+        if left.half.is_some() || format.half_leads() {
             text = format!("a {text}");
-        } else if right.half.is_some() {
+        } else if right.half.is_some() || format.has_half() {
             text += " a";
         }
         ClockFormat::parse(&text).ok().map(|_| text).filter(|text| text != format.text())
@@ -303,7 +303,10 @@ impl<'a> Scene<'a> {
         let ink = |&value: &f32| (value > limit) == (levels.ink > levels.background);
         let free = |y: &usize| !self.gray.row(*y)[run.left..=run.right].iter().any(ink);
         let apart = (run.top..=run.bottom).filter(free).count() as f64;
-        let inside = top > self.top && top < middle && bottom > middle && bottom <= self.bottom + 1.0;
+        let inside = top > self.top
+            && top < middle
+            && bottom > middle
+            && bottom <= self.bottom + (UNEVEN * self.height).max(1.5);
         (inside && apart >= DOTS_APART * tall(run)).then_some(':')
     }
 
@@ -332,7 +335,7 @@ mod tests {
     fn strays_and_a_clock_that_becomes_wider_are_no_other_format() {
         let read: Vec<usize> = (0..100).collect();
         assert!(!Misfit::is_of_all(&read, &[40, 41, 42, 43, 44]));
-        assert!(!Misfit::is_of_all(&read, &(100..400).collect::<Vec<_>>()));
+        assert!(!Misfit::is_of_all(&read, &(100..190).collect::<Vec<_>>()));
         assert!(Misfit::is_of_all(&read, &(40..60).collect::<Vec<_>>()));
         assert!(Misfit::is_of_all(&[], &[3, 4, 5]) && !Misfit::is_of_all(&[], &[3]));
         assert!(Misfit::is_of_all(&[50], &(0..40).collect::<Vec<_>>()));
@@ -351,7 +354,7 @@ mod tests {
         let none = [false, false];
         assert_eq!(fitting("h:mm", "d", "", none).as_deref(), Some("hh:mm"));
         assert_eq!(fitting("h:mm", "d", ":dd", none).as_deref(), Some("hh:mm:ss"));
-        assert_eq!(fitting("h:mm", "d:d", "", none).as_deref(), Some("hh:mm:ss"));
+        assert_eq!(fitting("h:mm", "d:dd", "", none).as_deref(), Some("hh:mm:ss"));
         assert_eq!(fitting("mm:ss", "", ".d", none).as_deref(), Some("mm:ss.t"));
         assert_eq!(fitting("ss.t", ":dd", "d", none).as_deref(), Some("mm:ss.tt"));
         assert_eq!(fitting("hh:mm", "", "", [false, true]).as_deref(), Some("hh:mm a"));

@@ -127,17 +127,15 @@ impl Cells {
     }
 
     /// The same with what is looked at beside the cells.
-    pub(super) fn bounds_beside(&self, size: [usize; 2], format: &ClockFormat) -> [usize; 4] {
+    pub(super) fn bounds_beside(&self, size: [usize; 2]) -> [usize; 4] {
         let [left, top, right, bottom] = self.bounds(size);
         let height = self.line[1] - self.line[0];
-        let half =
-            |leads: bool| if format.has_half() && format.half_leads() == leads { BESIDE_HALF * height } else { 0.0 };
-        let [before, after] = [true, false].map(|leads| half(leads).max(BESIDE * self.pitch).ceil() as usize);
+        let beside = (BESIDE_HALF * height).max(BESIDE * self.pitch).ceil() as usize;
         let aside = (ABOVE_BELOW * height).ceil() as usize;
         [
-            left.saturating_sub(before),
+            left.saturating_sub(beside),
             top.saturating_sub(aside),
-            (right + after).min(size[0]),
+            (right + beside).min(size[0]),
             (bottom + aside).min(size[1]),
         ]
     }

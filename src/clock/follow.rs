@@ -36,13 +36,22 @@ pub(super) struct Follower {
     places: Vec<Place>,
     /// Reads also where the format does not fit.
     pub(super) regardless: bool,
+    /// The format did not fit where the clock was learnt: it is not read.
+    pub(super) misfit: bool,
     /// Each cell's last look, and for how many frames it has been that.
     last: Vec<(Look, u32)>,
 }
 
 impl Follower {
     pub(super) fn new(model: Model, format: &ClockFormat) -> Self {
-        Self { model, format: format.clone(), places: places(format), regardless: false, last: Vec::new() }
+        Self {
+            model,
+            format: format.clone(),
+            places: places(format),
+            regardless: false,
+            misfit: false,
+            last: Vec::new(),
+        }
     }
 
     /// Reads the clock in the next crop.
@@ -157,7 +166,7 @@ impl Follower {
             return Reading::Abstained(Doubt::Unclear);
         };
         let beside = Beside::look(gray, &self.model.cells, [first, last]);
-        if !self.regardless && beside.misfit(&self.format).is_some() {
+        if !self.regardless && (self.misfit || beside.misfit(&self.format).is_some()) {
             return Reading::Abstained(Doubt::OtherFormat);
         }
         let half = beside.half(&self.format);

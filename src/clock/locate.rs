@@ -123,6 +123,7 @@ impl Scout {
             return None;
         }
         if std::mem::take(&mut follower.regardless) {
+            follower.misfit = true;
             readings.fill(Reading::Abstained(Doubt::OtherFormat));
         }
         let readings = self.kept.iter().map(|kept| kept.index).zip(readings).collect();
@@ -139,9 +140,9 @@ impl Scout {
     fn stretch(&self, place: Rect, taller: f64, format: &ClockFormat) -> Rect {
         let tall = taller * place.height as f64;
         let characters = format.cells().len() as f64;
-        let half = |leads: bool| if format.has_half() && format.half_leads() == leads { HALF } else { 0.0 };
-        let left = (place.x as f64 - (characters + half(true) + 0.5) * tall).max(0.0) as usize;
-        let right = ((place.x + place.width) as f64 + (1.5 + half(false)) * tall).min(self.width as f64) as usize;
+        // Whatever the format has: AM or PM that it does not have are to be seen.
+        let left = (place.x as f64 - (characters + HALF + 0.5) * tall).max(0.0) as usize;
+        let right = ((place.x + place.width) as f64 + (1.5 + HALF) * tall).min(self.width as f64) as usize;
         let middle = place.y as f64 + 0.5 * place.height as f64;
         let top = (middle - tall).max(0.0) as usize;
         let bottom = (middle + tall).min(self.height as f64) as usize;

@@ -188,7 +188,7 @@ impl ClockReader {
         };
         let Some((window, mut follower, readings)) = found else { return false };
         self.earlier.extend(readings);
-        let (window, digits) = window.shrunk(&mut follower, &self.format);
+        let (window, digits) = window.shrunk(&mut follower);
         if self.told.is_none() {
             self.region = Some(digits.region());
         }
@@ -213,6 +213,7 @@ impl ClockReader {
             return None;
         };
         let mut follower = Follower::new(model, &self.format);
+        follower.misfit = misfit;
         let readings = crops.iter().zip(frames);
         let readings = readings.map(|(crop, (index, _))| (*index, follower.read(crop, &mut self.effort))).collect();
         Some((window, follower, readings))
@@ -271,10 +272,10 @@ impl Window {
 
     /// The part of it in which the clock's digits are and what stands beside them, to which their cells are moved; and that of the
     /// digits alone.
-    fn shrunk(self, follower: &mut Follower, format: &ClockFormat) -> (Self, Self) {
+    fn shrunk(self, follower: &mut Follower) -> (Self, Self) {
         let size = [self.rect.width / self.step, self.rect.height / self.step];
         let cells = &mut follower.model.cells;
-        let [around, digits] = [cells.bounds_beside(size, format), cells.bounds(size)];
+        let [around, digits] = [cells.bounds_beside(size), cells.bounds(size)];
         cells.shift(around[0], around[1]);
         let part = |[left, top, right, bottom]: [usize; 4]| {
             let rect = Rect {

@@ -252,14 +252,14 @@ fn frames_icons_and_lines_beside_a_clock_are_no_digits() {
             show.panel = [100, 30, 280, 90];
             let plain = read(&show, told(&show), 24, 0..0);
             let [x, y, w, h] = plain.region.unwrap().map(|side| side as usize);
-            let ([left, top, width, height], space) = (show.panel, h / 3);
+            let ([left, top, width, height], space) = (show.panel, (h / 6).max(3));
             let (x, y) = (x - left, y - top);
-            // A frame's sides, a solid icon as high as the digits and one half as high, a line above and one below.
+            // A frame's sides, an icon half as high as the digits and a solid one as high, a line above and one below.
             show.lines = vec![
-                [x - 2 * space, 0, 3, height],
-                [x + w + 2 * space, 1, 4, height - 2],
+                [x.saturating_sub(3 * space), 0, 3, height],
+                [(x + w + 4 * space).min(width - 4), 1, 3, height - 2],
+                [x.saturating_sub(space + 2), y + h / 3, space, h / 3],
                 [x + w + space / 2, y + 1, space, h - 2],
-                [x - space - 2, y + h / 3, space, h / 3],
                 [10, 1, width - 20, 2],
                 [30, height - 4, 100, 2],
             ];
