@@ -197,6 +197,12 @@ impl Spots {
         }
     }
 
+    /// Whether most spots of known look are no discs.
+    pub(super) fn are_blots(&self) -> bool {
+        let looks = || self.all.iter().filter_map(|spot| spot.look.as_ref());
+        2 * looks().filter(|(_, look)| look.blot.is_some()).count() > looks().count()
+    }
+
     /// The number of a new spot at a place of the first frame, of this one of so many paints.
     pub(super) fn start(&mut self, frame: &Frame<'_>, blob: &Blob, paint: usize, paints: usize) -> usize {
         self.all.push(Spot {
