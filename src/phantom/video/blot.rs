@@ -23,14 +23,14 @@ const KIND_BLOTS: u32 = 14;
 const LENGTH_PX: [f64; 3] = [19.0, 27.0, 40.0];
 const LENGTH_SPREAD: f64 = 0.22;
 /// Of the width over the length.
-const SLENDER: std::ops::Range<f64> = 0.45..0.95;
+const SLENDER: std::ops::Range<f64> = 0.5..1.0;
 /// Of the width.
 const WIDTH_PX: [f64; 2] = [8.0, 28.0];
 /// Waves around the outline, from two on, and their greatest amplitudes as shares of the radius.
 const WAVES: [f64; 4] = [0.07, 0.06, 0.04, 0.03];
 /// Strokes and thickness: the range of wavelengths, pixels, and the amplitude as a share of the tone.
 const STROKES: [(std::ops::Range<f64>, f64); 4] =
-    [(3.5..5.0, 0.10), (5.0..8.0, 0.15), (8.0..14.0, 0.17), (20.0..40.0, 0.22)];
+    [(3.5..5.0, 0.13), (5.0..8.0, 0.20), (8.0..14.0, 0.22), (20.0..40.0, 0.28)];
 /// Points that [`Blot::points`] gives.
 const POINTS: usize = 4096;
 
@@ -80,10 +80,10 @@ impl Blot {
             let number = TAU / (scale * rng.random_range(lengths));
             ([number * cos, number * sin], rng.random_range(0.0..TAU), amplitude)
         });
-        let tone = if pale { rng.random_range(0.85..1.0) } else { rng.random_range(0.45..0.85) };
+        let tone = if pale { rng.random_range(0.85..1.0) } else { rng.random_range(0.42..0.7) };
         let half_px = [0.5 * scale * length, 0.5 * scale * width];
         let place = half_px.map(|half| half * rng.random_range(-0.4..0.4));
-        let shine = (place, scale * rng.random_range(2.0..3.5), rng.random_range(0.08..0.22));
+        let shine = (place, scale * rng.random_range(2.0..3.5), rng.random_range(0.08..0.2));
         let mut blot = Self { half_px, turn: [turn.0, turn.1], waves, centroid: [0.0; 2], tone, strokes, shine };
         blot.centroid = blot.design_centroid();
         blot
