@@ -152,8 +152,8 @@ fn painted(layout: MarkerLayout, seed: u64) -> VideoOptions {
     VideoOptions { seed, ..VideoOptions::sized(1280, 720).painted(layout) }
 }
 
-/// Size along and across its long axis, mean and standard deviation of luma, means of Cb and Cr of the paint; means of luma, Cb and
-/// Cr of the skin around it; how far its centroid is from the truth's.
+/// Size along and across its long axis, mean and standard deviation of luma, means of Cb and Cr of the paint; means of
+/// luma, Cb and Cr of the skin around it; how far its centroid is from the truth's.
 struct Measured {
     size_px: [f64; 2],
     luma: [f64; 2],

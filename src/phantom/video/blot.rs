@@ -1,14 +1,17 @@
-//! A blot of paint: an irregular closed outline on the skin, which bends and stretches with it, with brush strokes and shine inside.
+//! A blot of paint: an irregular closed outline on the skin, which bends and stretches with it, with brush strokes and
+//! shine inside.
 //!
-//! In: the seed and the mark's number; then how the skin lies ([`Skin`]). Out: distances from the drawn outline, its shade, points spread over it.
+//! In: the seed and the mark's number; then how the skin lies ([`Skin`]). Out: distances from the drawn outline, its
+//! shade, points spread over it.
 //!
-//! Skin coordinates: pixels along the finger and across it (clockwise of along). Their origin is the centroid of the blot as it was painted on
-//! the straight finger: the material point that is the mark's place, and what joint angles are taken from. Over a bent joint the skin lies along an
-//! arc about that point, so that it stretches on the outer side, is pressed together on the inner one, and the centroid of what is seen leaves the
-//! mark's place.
+//! Skin coordinates: pixels along the finger and across it (clockwise of along). Their origin is the centroid of the
+//! blot as it was painted on the straight finger: the material point that is the mark's place, and what joint angles
+//! are taken from. Over a bent joint the skin lies along an arc about that point, so that it stretches on the outer
+//! side, is pressed together on the inner one, and the centroid of what is seen leaves the mark's place.
 //!
-//! Sizes and tones are those measured in a real recording of eight marks (1280x720): 19-40 px long (median 27), 8-28 px wide (20), solidity 0.9-1, luma
-//! inside varying by an SD of 8-22. The shares of strokes, thickness and shine are assumed, and chosen to meet that.
+//! Sizes and tones are those measured in a real recording of eight marks (1280x720): 19-40 px long (median 27), 8-28 px
+//! wide (20), solidity 0.9-1, luma inside varying by an SD of 8-22. The shares of strokes, thickness and shine are
+//! assumed, and chosen to meet that.
 
 use std::f64::consts::TAU;
 
@@ -31,6 +34,8 @@ const WAVES: [f64; 4] = [0.07, 0.06, 0.04, 0.03];
 /// Strokes and thickness: the range of wavelengths, pixels, and the amplitude as a share of the tone.
 const STROKES: [(std::ops::Range<f64>, f64); 4] =
     [(3.5..5.0, 0.13), (5.0..8.0, 0.20), (8.0..14.0, 0.22), (20.0..40.0, 0.28)];
+/// Of pale paint, whose luma is three to four times as high, by so much less.
+const PALE_STROKES: f64 = 0.3;
 /// Points that [`Blot::points`] gives.
 const POINTS: usize = 4096;
 
@@ -78,7 +83,11 @@ impl Blot {
             // Strokes lie about one way.
             let (sin, cos) = (lie + rng.random_range(-0.3..0.3)).sin_cos();
             let number = TAU / (scale * rng.random_range(lengths));
-            ([number * cos, number * sin], rng.random_range(0.0..TAU), amplitude)
+            (
+                [number * cos, number * sin],
+                rng.random_range(0.0..TAU),
+                amplitude * if pale { PALE_STROKES } else { 1.0 },
+            )
         });
         let tone = if pale { rng.random_range(0.85..1.0) } else { rng.random_range(0.42..0.7) };
         let half_px = [0.5 * scale * length, 0.5 * scale * width];

@@ -44,7 +44,8 @@ pub enum Colours {
 const PAIRS: [u32; 4] = [0x1e6fd9, 0xe91e63, 0x2e9e4f, 0xecc25a];
 const DISTINCT: [u32; 8] = [0x1e6fd9, 0xe91e63, 0x2e9e4f, 0xecc25a, 0x7b1fa2, 0x00acc1, 0xf57c00, 0xaeea00];
 const RED: u32 = 0xd32f2f;
-/// Luma 30-67 and Cr 111-123 at the tones of blots, as in a real recording; and one that is as far above the skin in luma.
+/// Luma 30-67 and Cr 111-123 at the tones of blots, as in a real recording; and one that is as far above the skin in
+/// luma.
 const DARK: u32 = 0x1c4a10;
 const PALE: u32 = 0xcdd6b2;
 
@@ -272,8 +273,9 @@ impl VideoOptions {
         }
     }
 
-    /// This video with marks of paint in this layout, as filmed in a real recording: 24 frames a second, dark paint on skin of dim light, another
-    /// hand with three dark spots, light from one side, some blur; the marker file has `[start]`, as all marks are of one colour.
+    /// This video with marks of paint in this layout, as filmed in a real recording: 24 frames a second, dark paint on
+    /// skin of dim light, another hand with three dark spots, light from one side, some blur; the marker file has
+    /// `[start]`, as all marks are of one colour.
     #[must_use]
     pub fn painted(self, layout: MarkerLayout) -> Self {
         Self {
