@@ -329,7 +329,7 @@ fn marks_of_one_paint_on_thumb_and_index_have_the_names_of_their_starts() {
 
 #[test]
 fn thumb_and_index_of_distinct_colours_need_no_start() {
-    let dir = painted(&["--seconds", "1", "--seed", "3", "--colours", "distinct"]);
+    let dir = painted(&["--seconds", "1", "--seed", "8", "--colours", "distinct"]);
     let markers = std::fs::read_to_string(dir.path("scene/markers.toml")).expect("text");
     assert!(!markers.contains("[start]"));
     posture(&dir, &["--tracks", "tracks.csv", "--no-figures"]).expect(0);

@@ -120,7 +120,8 @@ pub struct Finger {
     pub gap_px: f64,
     /// From the last marker to the middle of the fingertip's round end.
     pub tip_px: f64,
-    /// Half the limb's width at the wrist, J1, J2, J3 and the tip; with paint, at the thumb's root, T1, T2 and tip as well.
+    /// Half the limb's width at the wrist, J1, J2, J3 and the tip; with paint, at the thumb's root, T1, T2 and tip as
+    /// well.
     pub half_widths_px: Vec<f64>,
     /// Radius of a marker; of marks of paint, one within which each lies.
     pub marker_px: f64,
@@ -146,8 +147,8 @@ pub struct Skin {
 }
 
 impl Skin {
-    /// Where a point of the straight skin (along the finger, across it clockwise) lies on the picture, relative to the marker, and how much
-    /// larger the skin's area is there.
+    /// Where a point of the straight skin (along the finger, across it clockwise) lies on the picture, relative to the
+    /// marker, and how much larger the skin's area is there.
     #[must_use]
     pub fn shown(&self, [along, across]: [f64; 2]) -> ([f64; 2], f64) {
         let (sin, cos) = (self.bend_per_px * along).sin_cos();
@@ -173,7 +174,8 @@ impl Skin {
 /// Where a finger's parts lie at one moment.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Posture {
-    /// The wrist, J1, J2, J3 and the middle of the fingertip's round end; with paint, then the thumb's root, T1, T2 and the middle of its end.
+    /// The wrist, J1, J2, J3 and the middle of the fingertip's round end; with paint, then the thumb's root, T1, T2 and
+    /// the middle of its end.
     pub bones_px: Vec<[f64; 2]>,
     /// The markers' centres in the order of [`MarkerLayout::names`].
     pub markers_px: Vec<[f64; 2]>,

@@ -48,15 +48,17 @@ pub struct VideoRequest {
     /// How flexion turns a segment on the picture
     #[arg(long, value_enum, default_value = "clockwise")]
     flexion: FlexionArg,
-    /// Two markers on each segment, or one on each joint and at both ends; or blots of paint as in a real recording (24 frames a second, a second
-    /// hand): eight on thumb and index finger (paint), of these the thumb's four, four in a row on the index finger (two joints), a single one
+    /// Two markers on each segment, or one on each joint and at both ends; or blots of paint as in a real recording (24
+    /// frames a second, a second hand): eight on thumb and index finger (paint), of these the thumb's four, four in a
+    /// row on the index finger (two joints), a single one
     #[arg(long, value_enum, default_value = "pairs")]
     layout: LayoutArg,
-    /// One colour a segment (a mark, with --layout joints), one a marker, all red, or all of one dark or pale paint [default: pairs; with paint:
-    /// dark]
+    /// One colour a segment (a mark, with --layout joints), one a marker, all red, or all of one dark or pale paint
+    /// [default: pairs; with paint: dark]
     #[arg(long, value_enum)]
     colours: Option<ColoursArg>,
-    /// Joints that the marker file asks for, separated by commas [default: all, which are J1,J2,J3, and with paint the thumb's T1,T2]
+    /// Joints that the marker file asks for, separated by commas [default: all, which are J1,J2,J3, and with paint the
+    /// thumb's T1,T2]
     #[arg(long, value_delimiter = ',')]
     joints: Vec<String>,
     /// Write the markers' places in the first frame into the marker file [default: with marks of paint of one colour]
@@ -77,7 +79,8 @@ pub struct VideoRequest {
     /// The fingertip is out of the picture from this frame on, so many frames long
     #[arg(long, value_name = "FRAME+N", value_parser = parse_leave)]
     leave: Option<Leave>,
-    /// Blobs of three marker colours elsewhere in the picture, still and moving; with paint, dark spots on the other hand
+    /// Blobs of three marker colours elsewhere in the picture, still and moving; with paint, dark spots on the other
+    /// hand
     #[arg(long, value_name = "N")]
     distractors: Option<usize>,
     /// Colour of the desk

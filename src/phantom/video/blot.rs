@@ -1,14 +1,17 @@
-//! A blot of paint: an irregular closed outline on the skin, which bends and stretches with it, with brush strokes and shine inside.
+//! A blot of paint: an irregular closed outline on the skin, which bends and stretches with it, with brush strokes and
+//! shine inside.
 //!
-//! In: the seed and the mark's number; then how the skin lies ([`Skin`]). Out: distances from the drawn outline, its shade, points spread over it.
+//! In: the seed and the mark's number; then how the skin lies ([`Skin`]). Out: distances from the drawn outline, its
+//! shade, points spread over it.
 //!
-//! Skin coordinates: pixels along the finger and across it (clockwise of along). Their origin is the centroid of the blot as it was painted on
-//! the straight finger: the material point that is the mark's place, and what joint angles are taken from. Over a bent joint the skin lies along an
-//! arc about that point, so that it stretches on the outer side, is pressed together on the inner one, and the centroid of what is seen leaves the
-//! mark's place.
+//! Skin coordinates: pixels along the finger and across it (clockwise of along). Their origin is the centroid of the
+//! blot as it was painted on the straight finger: the material point that is the mark's place, and what joint angles
+//! are taken from. Over a bent joint the skin lies along an arc about that point, so that it stretches on the outer
+//! side, is pressed together on the inner one, and the centroid of what is seen leaves the mark's place.
 //!
-//! Sizes and tones are those measured in a real recording of eight marks (1280x720): 19-40 px long (median 27), 8-28 px wide (20), solidity 0.9-1, luma
-//! inside varying by an SD of 8-22. The shares of strokes, thickness and shine are assumed, and chosen to meet that.
+//! Sizes and tones are those measured in a real recording of eight marks (1280x720): 19-40 px long (median 27), 8-28 px
+//! wide (20), solidity 0.9-1, luma inside varying by an SD of 8-22. The shares of strokes, thickness and shine are
+//! assumed, and chosen to meet that.
 
 use std::f64::consts::TAU;
 
@@ -23,14 +26,16 @@ const KIND_BLOTS: u32 = 14;
 const LENGTH_PX: [f64; 3] = [19.0, 27.0, 40.0];
 const LENGTH_SPREAD: f64 = 0.22;
 /// Of the width over the length.
-const SLENDER: std::ops::Range<f64> = 0.45..0.95;
+const SLENDER: std::ops::Range<f64> = 0.5..1.0;
 /// Of the width.
 const WIDTH_PX: [f64; 2] = [8.0, 28.0];
 /// Waves around the outline, from two on, and their greatest amplitudes as shares of the radius.
 const WAVES: [f64; 4] = [0.07, 0.06, 0.04, 0.03];
 /// Strokes and thickness: the range of wavelengths, pixels, and the amplitude as a share of the tone.
 const STROKES: [(std::ops::Range<f64>, f64); 4] =
-    [(3.5..5.0, 0.10), (5.0..8.0, 0.15), (8.0..14.0, 0.17), (20.0..40.0, 0.22)];
+    [(3.5..5.0, 0.13), (5.0..8.0, 0.20), (8.0..14.0, 0.22), (20.0..40.0, 0.28)];
+/// Of pale paint, whose luma is three to four times as high, by so much less.
+const PALE_STROKES: f64 = 0.3;
 /// Points that [`Blot::points`] gives.
 const POINTS: usize = 4096;
 
@@ -78,12 +83,16 @@ impl Blot {
             // Strokes lie about one way.
             let (sin, cos) = (lie + rng.random_range(-0.3..0.3)).sin_cos();
             let number = TAU / (scale * rng.random_range(lengths));
-            ([number * cos, number * sin], rng.random_range(0.0..TAU), amplitude)
+            (
+                [number * cos, number * sin],
+                rng.random_range(0.0..TAU),
+                amplitude * if pale { PALE_STROKES } else { 1.0 },
+            )
         });
-        let tone = if pale { rng.random_range(0.85..1.0) } else { rng.random_range(0.45..0.85) };
+        let tone = if pale { rng.random_range(0.85..1.0) } else { rng.random_range(0.42..0.7) };
         let half_px = [0.5 * scale * length, 0.5 * scale * width];
         let place = half_px.map(|half| half * rng.random_range(-0.4..0.4));
-        let shine = (place, scale * rng.random_range(2.0..3.5), rng.random_range(0.08..0.22));
+        let shine = (place, scale * rng.random_range(2.0..3.5), rng.random_range(0.08..0.2));
         let mut blot = Self { half_px, turn: [turn.0, turn.1], waves, centroid: [0.0; 2], tone, strokes, shine };
         blot.centroid = blot.design_centroid();
         blot

@@ -44,8 +44,9 @@ pub enum Colours {
 const PAIRS: [u32; 4] = [0x1e6fd9, 0xe91e63, 0x2e9e4f, 0xecc25a];
 const DISTINCT: [u32; 8] = [0x1e6fd9, 0xe91e63, 0x2e9e4f, 0xecc25a, 0x7b1fa2, 0x00acc1, 0xf57c00, 0xaeea00];
 const RED: u32 = 0xd32f2f;
-/// Picked by eye in a real recording; and one that is as far above the skin in luma.
-const DARK: u32 = 0x2b4b10;
+/// Luma 30-67 and Cr 111-123 at the tones of blots, as in a real recording; and one that is as far above the skin in
+/// luma.
+const DARK: u32 = 0x1c4a10;
 const PALE: u32 = 0xcdd6b2;
 
 impl Colours {
@@ -272,8 +273,9 @@ impl VideoOptions {
         }
     }
 
-    /// This video with marks of paint in this layout, as filmed in a real recording: 24 frames a second, dark paint on skin of dim light, another
-    /// hand with three dark spots, light from one side, some blur, about 1.4 Mbit/s; the marker file has `[start]`, as all marks are of one colour.
+    /// This video with marks of paint in this layout, as filmed in a real recording: 24 frames a second, dark paint on
+    /// skin of dim light, another hand with three dark spots, light from one side, some blur; the marker file has
+    /// `[start]`, as all marks are of one colour.
     #[must_use]
     pub fn painted(self, layout: MarkerLayout) -> Self {
         Self {
@@ -282,10 +284,10 @@ impl VideoOptions {
             joints: layout.joints().into_iter().map(|(joint, _)| joint.to_owned()).collect(),
             fps: 24.0,
             blur: 0.25,
-            gradient: 0.12,
+            gradient: 0.2,
             distractors: 3,
             desk: 0x565c61,
-            crf: 26,
+            crf: 20,
             start: true,
             ..self
         }

@@ -1,7 +1,8 @@
 //! Drawing a frame row by row in R'G'B', before the sensor.
 //!
-//! From below to above: desk, another hand, distractors, the clock's screen, limb, markers, sticks. Blobs are averaged over the sub-exposures.
-//! Of the limb only its edge is: its shading changes little within an exposure and is that of mid-exposure.
+//! From below to above: desk, another hand, distractors, the clock's screen, limb, markers, sticks. Blobs are averaged
+//! over the sub-exposures. Of the limb only its edge is: its shading changes little within an exposure and is that of
+//! mid-exposure.
 
 use std::f64::consts::TAU;
 

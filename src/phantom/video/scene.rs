@@ -54,8 +54,8 @@ pub enum MarkerStatus {
 /// What is true of a marker in a frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MarkerTruth {
-    /// Its centre in the picture as it is shown, at mid-exposure; of a mark of paint, the material point that was the blot's centroid on the
-    /// straight finger.
+    /// Its centre in the picture as it is shown, at mid-exposure; of a mark of paint, the material point that was the
+    /// blot's centroid on the straight finger.
     pub at_px: [f64; 2],
     /// The centroid of what is seen of a blot of paint at mid-exposure; none of a disc, and where nothing is seen.
     pub seen_px: Option<[f64; 2]>,

@@ -133,7 +133,8 @@ impl Scene {
     }
 }
 
-/// With paint, another hand lies at the picture's right border, on the side to which the finger bends: three fingers of the same skin.
+/// With paint, another hand lies at the picture's right border, on the side to which the finger bends: three fingers of
+/// the same skin.
 pub(super) fn other_hand(options: &VideoOptions) -> Option<Limb> {
     let at = |[x, y]: [f64; 2]| {
         let y = if options.finger.flexion == Flexion::Clockwise { y } else { 1.0 - y };

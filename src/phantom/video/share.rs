@@ -1,6 +1,7 @@
 //! How much of a marker is in view: the share of its disc or blot that lies in the picture and that nothing covers.
 //!
-//! Points spread evenly over it (a sunflower's) are asked one by one; the share is exact to about 0.3 %, and a blot's visible centroid to 0.01 px.
+//! Points spread evenly over it (a sunflower's) are asked one by one; the share is exact to about 0.3 %, and a blot's
+//! visible centroid to 0.01 px.
 
 use super::scene::{Moment, Scene};
 

@@ -12,6 +12,9 @@ pub(crate) const MISSING: f64 = 7.0;
 /// A segment may seem longer or shorter than it was by this share and this much.
 pub(crate) const LENGTH_SHARE: f64 = 0.15;
 pub(crate) const LENGTH_FREE_PX: f64 = 2.0;
+/// How much radii of neighbours differ, as a logarithm (assumed; blots of a real recording are 19 to 40 px long, 8 to 28 px wide).
+const DISC_SIZES: f64 = 0.22;
+const BLOT_SIZES: f64 = 0.5;
 /// What a segment of another length costs: more than any other fault.
 const IMPOSSIBLE: f64 = 50.0;
 /// Namings carried from one marker to the next.
@@ -50,6 +53,8 @@ pub(crate) struct Scene<'a> {
     pub(crate) missing: &'a [f64],
     /// 1 where flexion is clockwise, else -1.
     pub(crate) flexion: f64,
+    /// Marks are blots of paint, of all sizes, rather than discs of one.
+    pub(crate) blots: bool,
 }
 
 impl Scene<'_> {
@@ -114,12 +119,12 @@ impl Scene<'_> {
         let Some(b) = self.before(naming, place) else {
             // A chain that starts anew is compared in size with any other marker.
             if let Some(other) = (0..place).find_map(|other| self.point(naming, other)) {
-                cost.shape += size_cost(&here, &other);
+                cost.shape += self.size_cost(&here, &other);
             }
             return cost;
         };
         let Some(before) = self.point(naming, b) else { return cost };
-        cost.shape += size_cost(&here, &before);
+        cost.shape += self.size_cost(&here, &before);
         let link = minus(here.at_px, before.at_px);
         let length = norm(link);
         cost.shape += half_square((length / (6.0 * before.radius_px.max(1.0))).ln(), 1.2);
@@ -166,6 +171,10 @@ impl Scene<'_> {
         cost
     }
 
+    fn size_cost(&self, a: &Point, b: &Point) -> f64 {
+        half_square((a.radius_px / b.radius_px).ln(), if self.blots { BLOT_SIZES } else { DISC_SIZES }).min(6.0)
+    }
+
     /// The links that lead to `place`, the last one first.
     fn links_before(&self, naming: &[Option<usize>], place: usize, links: &mut Vec<Segment>) {
         let mut at = place;
@@ -208,10 +217,6 @@ struct Segment {
     rigid: bool,
     /// The place that it leads to.
     end: usize,
-}
-
-fn size_cost(a: &Point, b: &Point) -> f64 {
-    half_square((a.radius_px / b.radius_px).ln(), 0.22).min(6.0)
 }
 
 fn half_square(value: f64, scale: f64) -> f64 {

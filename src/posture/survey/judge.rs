@@ -51,6 +51,7 @@ impl Surveyor<'_> {
             lengths_px: &self.unknown,
             missing: &self.missing,
             flexion: self.layout.flexion.sign(),
+            blots: self.spots.are_blots(),
         }
     }
 

@@ -347,7 +347,7 @@ impl<'a> Surveyor<'a> {
     }
 }
 
-/// Where most markers of a colour are blots, those that a disc fits by chance are blots too.
+/// Where half of the markers of a colour are blots, those that a disc fits by chance are blots too.
 fn agree_on_shapes(paint_of: &[usize], starts: &mut [Option<Start>]) {
     for paint in 0..paint_of.len() {
         let mut alike: Vec<&mut Start> = paint_of
@@ -357,7 +357,7 @@ fn agree_on_shapes(paint_of: &[usize], starts: &mut [Option<Start>]) {
             .filter_map(|(_, s)| s.as_mut())
             .collect();
         let blots = alike.iter().filter(|start| start.look.blot.is_some()).count();
-        if 2 * blots > alike.len() {
+        if blots > 0 && 2 * blots >= alike.len() {
             for start in &mut alike {
                 start.look = start.as_blot.take().unwrap_or_else(|| start.look.clone());
             }

@@ -18,6 +18,9 @@ const LOOSE_AFTER: usize = 3;
 /// 0.08 and 1.04 to 2).
 const DISC_MISFIT: f64 = 0.02;
 const DISC_ELONGATION: f64 = 1.1;
+/// What is round but leaves more is ragged, unless too small to say so (assumed).
+const RAGGED_MISFIT: f64 = 0.04;
+const RAGGED_RADIUS_PX: f64 = 6.0;
 /// What moves less than this share of its radius from frame to frame is not blurred to another shape.
 const STILL_RADII: f64 = 0.5;
 /// Spots followed at once, at most.
@@ -197,6 +200,12 @@ impl Spots {
         }
     }
 
+    /// Whether most spots of known look are no discs.
+    pub(super) fn are_blots(&self) -> bool {
+        let looks = || self.all.iter().filter_map(|spot| spot.look.as_ref());
+        2 * looks().filter(|(_, look)| look.blot.is_some()).count() > looks().count()
+    }
+
     /// The number of a new spot at a place of the first frame, of this one of so many paints.
     pub(super) fn start(&mut self, frame: &Frame<'_>, blob: &Blob, paint: usize, paints: usize) -> usize {
         self.all.push(Spot {
@@ -289,7 +298,8 @@ impl Spots {
 /// Whether what both looks were learnt of is a disc.
 fn is_disc(disc: &Look, blot: &Look) -> bool {
     let elongation = blot.blot.as_ref().map_or(1.0, Blot::elongation);
-    disc.misfit <= DISC_MISFIT || elongation <= DISC_ELONGATION
+    let ragged = disc.misfit > RAGGED_MISFIT && disc.radius_px > RAGGED_RADIUS_PX;
+    disc.misfit <= DISC_MISFIT || (elongation <= DISC_ELONGATION && !ragged)
 }
 
 /// Whether a blob is only a part of a larger one that stands out more.

@@ -221,6 +221,7 @@ impl Tracker {
             lengths_px: &lengths,
             missing: &missing,
             flexion: self.flexion,
+            blots: self.are_blots(),
         };
         let namings = scene.namings();
         let given = namings.first().map_or(0.0, |best| best.1);
@@ -274,6 +275,7 @@ impl Tracker {
             lengths_px: lengths,
             missing: &missing,
             flexion: self.flexion,
+            blots: self.are_blots(),
         };
         let namings = scene.namings();
         let Some((best, cost)) = namings.first() else { return };
@@ -287,6 +289,12 @@ impl Tracker {
                 target.last = None;
             }
         }
+    }
+
+    /// Whether most markers of known look are no discs.
+    fn are_blots(&self) -> bool {
+        let looks = || self.targets.iter().filter_map(|target| target.look.as_ref());
+        2 * looks().filter(|look| look.blot.is_some()).count() > looks().count()
     }
 
     /// What a blob costs as a marker; none if it can't be it.
