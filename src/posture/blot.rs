@@ -1,12 +1,13 @@
 //! The centre of a mark of any outline, such as a blot of paint: the centroid of its outline.
 //!
-//! In: a frame, where its chroma lies, and a place in the mark; out: an [`Outline`], or why there is none. A sample's share of
-//! the mark is its place on the line from the surround's colour to the mark's, along the direction that parts the two best
-//! (Fisher 1936, DOI 10.1111/j.1469-1809.1936.tb02137.x): what varies within either, as luma does where paint shines, counts
-//! less. The surround has a gradient; both levels are those of the frame at hand, so that light may change. Inside of the
-//! outline all counts alike, whatever shines there, and on its edge as much as its share.
+//! In: a frame, where its chroma lies, and a place in the mark; out: an [`Outline`], or why there is none. A sample's
+//! share of the mark is its place on the line from the surround's colour to the mark's, along the direction that parts
+//! the two best (Fisher 1936, DOI 10.1111/j.1469-1809.1936.tb02137.x): what varies within either, as luma does where
+//! paint shines, counts less. The surround has a gradient; both levels are those of the frame at hand, so that light
+//! may change. Inside of the outline all counts alike, whatever shines there, and on its edge as much as its share.
 //!
-//! The standard error has two parts: that of noise on the edge, and that of the outline itself, which stays for many frames.
+//! The standard error has two parts: that of noise on the edge, and that of the outline itself, which stays for many
+//! frames.
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -23,13 +24,14 @@ const HIGH_EDGE: f32 = 0.65;
 const EDGE_PX: usize = 2;
 /// How far around the outline the surround is looked at.
 const SURROUND_PX: usize = 7;
-/// The variance of the centre, as a share of the square of its shift between these two levels, and how much skin bends along a mark,
-/// radians a radius: calibrated together on eight videos of paint by [`crate::phantom`] (1280x720, H.264, four marks in a row on index finger
-/// or thumb, 6 s), where about 72 % of the errors of places and angles are within one standard error.
+/// The variance of the centre, as a share of the square of its shift between these two levels, and how much skin bends
+/// along a mark, radians a radius: calibrated together on eight videos of paint by [`crate::phantom`] (1280x720, H.264,
+/// four marks in a row on index finger or thumb, 6 s), where about 72 % of the errors of places and angles are within
+/// one standard error.
 const LEVELS_SHARE: f64 = 0.23;
 const BEND: f64 = 0.018;
-/// Areas differ by this (logarithm) from codec and stretch; beyond, a part may be hidden, and the centre off by up to so many radii
-/// times the rest (a segment cut off a disc: 0.8 to 1 times its share of the area).
+/// Areas differ by this (logarithm) from codec and stretch; beyond, a part may be hidden, and the centre off by up to
+/// so many radii times the rest (a segment cut off a disc: 0.8 to 1 times its share of the area).
 const AREA_FREE: f64 = 0.08;
 const CUT_RADII: f64 = 1.0;
 /// Rounds of levels and outline.
@@ -102,7 +104,8 @@ impl Outline {
 }
 
 impl Blot {
-    /// Learns the mark of about `radius_px` (of a disc of its area) at about `at_px`; none where nothing compact stands out.
+    /// Learns the mark of about `radius_px` (of a disc of its area) at about `at_px`; none where nothing compact stands
+    /// out.
     pub(crate) fn learn(frame: &Frame<'_>, siting: Siting, at_px: [f64; 2], radius_px: f64) -> Option<(Self, Outline)> {
         let window = Window::new(frame, siting, at_px, 2.6 * radius_px + 10.0)?;
         // What is in the middle against what is around, at first.
@@ -133,8 +136,8 @@ impl Blot {
         fits.then_some((known, outline))
     }
 
-    /// What is seen of the mark at `at_px`, of any size that markers have, the one furthest from its surround's colour; none where
-    /// nothing stands out.
+    /// What is seen of the mark at `at_px`, of any size that markers have, the one furthest from its surround's colour;
+    /// none where nothing stands out.
     pub(crate) fn at(frame: &Frame<'_>, siting: Siting, at_px: [f64; 2]) -> Option<Outline> {
         let of_radius = |share: f64| Self::learn(frame, siting, at_px, share * frame.luma.width as f64);
         let found = SIZES.into_iter().filter_map(of_radius).map(|(_, outline)| outline);

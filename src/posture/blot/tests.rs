@@ -98,7 +98,7 @@ fn angles_between_blots_are_right_within_their_standard_errors() {
         );
         (0..4).for_each(|marker| assert_eq!(tracker.shape(marker), Some(MarkerShape::Blot)));
         assert!(missing <= 2, "{missing} missing");
-        assert!(median <= 0.2, "{median} degrees");
+        assert!(median <= 0.05, "{median} degrees");
         // No skin bends here, which the standard errors allow for.
         assert!(share >= 0.6, "{share}");
     }

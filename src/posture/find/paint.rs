@@ -77,8 +77,8 @@ impl Paint {
         Self { colour, kind }
     }
 
-    /// The cosine between the way from a surround's colour to a mark's and that to this paint's: in chroma, or in luma for a paint
-    /// without any.
+    /// The cosine between the way from a surround's colour to a mark's and that to this paint's: in chroma, or in luma
+    /// for a paint without any.
     pub(crate) fn parts(&self, mark: [f64; 3], surround: [f64; 3]) -> f64 {
         let planes = if self.is_chromatic() { 1..3 } else { 0..1 };
         let (mut dot, mut seen, mut meant) = (0.0, 0.0, 0.0);
@@ -89,8 +89,8 @@ impl Paint {
         dot / (seen * meant).sqrt().max(1e-9)
     }
 
-    /// The same paint with the colour that a video shows of it on a surround: what is neither, as a paler or darker stroke, is
-    /// judged by its way from the surround's colour, not from grey.
+    /// The same paint with the colour that a video shows of it on a surround: what is neither, as a paler or darker
+    /// stroke, is judged by its way from the surround's colour, not from grey.
     pub(crate) fn seen_on(&self, colour: [f64; 3], surround: [f64; 3]) -> Self {
         let Kind::Chromatic { .. } = self.kind else { return self.seen_as(colour) };
         let Self { kind, .. } = Self::chromatic([colour[1] - surround[1], colour[2] - surround[2]]);

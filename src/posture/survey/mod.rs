@@ -1,11 +1,12 @@
 //! The first look at a video: which markers are there, where, and how they look.
 //!
 //! Frames from the video's start go in, one after another, until every needed marker has its name; where each was first
-//! seen, its look and the chroma's siting come out. Spots of the markers' colours are followed over these frames without
-//! names, so that what a later frame tells (a finger that was straight bends) names them back to the first one.
+//! seen, its look and the chroma's siting come out. Spots of the markers' colours are followed over these frames
+//! without names, so that what a later frame tells (a finger that was straight bends) names them back to the first one.
 //!
-//! A name is given by colour, by the order along the finger, by which way flexion turns, by lengths that must not change,
-//! and by `[start]`, which goes before all. It is given only where the best naming is better by far than any other.
+//! A name is given by colour, by the order along the finger, by which way flexion turns, by lengths that must not
+//! change, and by `[start]`, which goes before all. It is given only where the best naming is better by far than any
+//! other.
 
 mod begin;
 mod judge;
@@ -32,7 +33,8 @@ const MOST_FRAMES: usize = 300;
 /// Namings kept.
 const MOST_NAMINGS: usize = 200;
 
-/// The cosine between what parts a mark from its surround and what would part the marker file's colour from it (assumed).
+/// The cosine between what parts a mark from its surround and what would part the marker file's colour from it
+/// (assumed).
 const LEAST_ALIKE: f64 = 0.6;
 
 /// Where a marker was first seen.
@@ -290,8 +292,8 @@ impl<'a> Surveyor<'a> {
         })
     }
 
-    /// Takes the colours over that the first frame shows at the places of `[start]`, where they are much like the file's: light, camera and
-    /// codec turn a colour, and what a person picks by eye is no measurement.
+    /// Takes the colours over that the first frame shows at the places of `[start]`, where they are much like the
+    /// file's: light, camera and codec turn a colour, and what a person picks by eye is no measurement.
     fn learn_colours(&mut self, frame: &Frame<'_>) {
         let size = (self.info.format.width, self.info.format.height);
         for (number, paint) in self.paints.iter_mut().enumerate() {

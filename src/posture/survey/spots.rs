@@ -14,8 +14,8 @@ use crate::video::Frame;
 const PATIENCE: u64 = 8;
 /// A thing in which no disc was found in so many frames is none.
 const LOOSE_AFTER: usize = 3;
-/// A disc leaves less unexplained, or is rounder (measured: discs of 8 to 11 px at most 0.014 and 1.03, blots of paint 0.016 to
-/// 0.08 and 1.04 to 2).
+/// A disc leaves less unexplained, or is rounder (measured: discs of 8 to 11 px at most 0.014 and 1.03, blots of paint
+/// 0.016 to 0.08 and 1.04 to 2).
 const DISC_MISFIT: f64 = 0.02;
 const DISC_ELONGATION: f64 = 1.1;
 /// What is round but leaves more is ragged, unless too small to say so (assumed).
@@ -142,7 +142,8 @@ impl Spots {
         }
     }
 
-    /// Gives each candidate to the spot that it continues, the nearest pairs first; the others start spots of their own.
+    /// Gives each candidate to the spot that it continues, the nearest pairs first; the others start spots of their
+    /// own.
     fn link(&mut self, frame: &Frame<'_>, mut candidates: Vec<Candidate>, whole: bool) {
         let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
         for (number, spot) in self.all.iter().enumerate().filter(|(_, spot)| spot.is_followed(frame.index)) {
