@@ -2,6 +2,7 @@
 
 use super::lens::Mapping;
 use super::{Faults, VideoOptions};
+use crate::phantom::finger::Finger;
 
 impl VideoOptions {
     /// Can this video be made?
@@ -48,6 +49,11 @@ impl VideoOptions {
         need(Self::X264_PRESETS.contains(&self.preset), &|| {
             format!("--x264 {}: choose one of {}", self.preset, Self::X264_PRESETS.join(", "))
         });
+        let (parts, finger) =
+            (Finger::new(self.width, self.height, self.finger.flexion, self.finger.layout), &self.finger);
+        let whole = finger.lengths_px.len() >= parts.lengths_px.len()
+            && finger.half_widths_px.len() >= parts.half_widths_px.len();
+        need(whole, &|| "--layout: this finger has no thumb; start from one of this layout".to_owned());
         let names = self.finger.layout.names();
         for hide in &self.hide {
             let (text, frames) = (format!("--hide {}@{}+{}", hide.marker, hide.frame, hide.frames), self.frames());
