@@ -32,7 +32,8 @@ const MOST_FRAMES: usize = 300;
 /// Namings kept.
 const MOST_NAMINGS: usize = 200;
 
-/// The cosine between what parts a mark from its surround and what would part the marker file's colour from it (assumed).
+/// The cosine between what parts a mark from its surround and what would part the marker file's colour from it
+/// (assumed).
 const LEAST_ALIKE: f64 = 0.6;
 
 /// Where a marker was first seen.
@@ -290,7 +291,8 @@ impl<'a> Surveyor<'a> {
         })
     }
 
-    /// Takes the colours over that the first frame shows at the places of `[start]`, where they are much like the file's: light, camera and
+    /// Takes the colours over that the first frame shows at the places of `[start]`, where they are much like the
+    /// file's: light, camera and
     /// codec turn a colour, and what a person picks by eye is no measurement.
     fn learn_colours(&mut self, frame: &Frame<'_>) {
         let size = (self.info.format.width, self.info.format.height);

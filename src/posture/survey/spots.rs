@@ -14,7 +14,8 @@ use crate::video::Frame;
 const PATIENCE: u64 = 8;
 /// A thing in which no disc was found in so many frames is none.
 const LOOSE_AFTER: usize = 3;
-/// A disc leaves less unexplained, or is rounder (measured: discs of 8 to 11 px at most 0.014 and 1.03, blots of paint 0.016 to
+/// A disc leaves less unexplained, or is rounder (measured: discs of 8 to 11 px at most 0.014 and 1.03, blots of
+/// paint 0.016 to
 /// 0.08 and 1.04 to 2).
 const DISC_MISFIT: f64 = 0.02;
 const DISC_ELONGATION: f64 = 1.1;
