@@ -161,7 +161,8 @@ impl Coupling {
     }
 }
 
-/// The last two joints of the finger with the most joints in a row, of which the first's distal segment is the second's proximal
+/// The last two joints of the finger with the most joints in a row, of which the first's distal segment is the
+/// second's proximal
 /// one; of several such fingers the first in the file.
 fn last_two(layout: &Layout) -> Option<[usize; 2]> {
     let joints = &layout.joints;

@@ -1,6 +1,7 @@
 //! Which marker follows which along the finger, as the marker file's segments and joints say.
 //!
-//! A layout may branch: thumb and index finger from one mark at the wrist, or fingers that share nothing. Each branch is a
+//! A layout may branch: thumb and index finger from one mark at the wrist, or fingers that share nothing. Each branch
+//! is a
 //! finger by itself; nothing but colours and `[start]` says which finger is which.
 
 use crate::posture::layout::Layout;
@@ -105,7 +106,8 @@ impl Chain {
         std::iter::successors(Some(place), |&at| self.links[at].before).collect()
     }
 
-    /// The places on branches that could be taken for one another: a colour in common, no colour that only one of them has,
+    /// The places on branches that could be taken for one another: a colour in common, no colour that only one of
+    /// them has,
     /// and no place on either that is `fixed`.
     pub(crate) fn undecided(&self, paint_of: &[usize], fixed: &[Option<usize>]) -> Vec<usize> {
         let ways: Vec<Vec<usize>> = (0..self.links.len()).map(|place| self.way(place)).collect();
@@ -171,7 +173,8 @@ mod tests {
         assert_eq!(chain(text), expected);
     }
 
-    /// Thumb and index finger from one mark at the wrist, `index` and `thumb` their colours, `tip` that of the thumb's tip.
+    /// Thumb and index finger from one mark at the wrist, `index` and `thumb` their colours, `tip` that of the
+    /// thumb's tip.
     fn hand(index: &str, thumb: &str, tip: &str) -> Layout {
         let text = format!(
             "[markers]\nwrist = '{index}'\nmcp = '{index}'\npip = '{index}'\ncmc = '{thumb}'\nip = '{tip}'\n\

@@ -12,7 +12,8 @@ pub(crate) const MISSING: f64 = 7.0;
 /// A segment may seem longer or shorter than it was by this share and this much.
 pub(crate) const LENGTH_SHARE: f64 = 0.15;
 pub(crate) const LENGTH_FREE_PX: f64 = 2.0;
-/// How much radii of neighbours differ, as a logarithm (assumed; blots of a real recording are 19 to 40 px long, 8 to 28 px wide).
+/// How much radii of neighbours differ, as a logarithm (assumed; blots of a real recording are 19 to 40 px long, 8 to
+/// 28 px wide).
 const DISC_SIZES: f64 = 0.22;
 const BLOT_SIZES: f64 = 0.5;
 /// What a segment of another length costs: more than any other fault.

@@ -1,7 +1,9 @@
 //! A marker file to start from, guessed from the video itself.
 //!
-//! A few frames go in; the text of a marker file comes out, which says in comments what was guessed. Markers are taken to be
-//! compact spots of about one size that stand out in some colour other than skin's, frame after frame in about the same number,
+//! A few frames go in; the text of a marker file comes out, which says in comments what was guessed. Markers are
+//! taken to be
+//! compact spots of about one size that stand out in some colour other than skin's, frame after frame in about the
+//! same number,
 //! and lie in a row on skin, or move; the hand's end of the row is taken to be the one that moves less. Nothing
 //! distinguishes a marker from any other spot of that kind, so a person should look the file over.
 
@@ -24,7 +26,8 @@ const HUES: usize = 12;
 /// Distance from grey that spots are looked for in, on the scale of 8 bits, and the share of it that they stand out by.
 const DISTANCE: f64 = 40.0;
 const LEAST_SHARE: f64 = 0.2;
-/// Levels by which a marker differs from what surrounds it (assumed; dark green paint on skin differs by 20 to 40), and the
+/// Levels by which a marker differs from what surrounds it (assumed; dark green paint on skin differs by 20 to 40),
+/// and the
 /// share of the most outstanding one's.
 const LEAST_CONTRAST: f64 = 14.0;
 const LEAST_OF_BEST: f64 = 0.3;
@@ -36,7 +39,8 @@ const LEAST_OF_BLOB: f64 = 0.7;
 /// Radius in samples, and as a share of the picture's width.
 const LEAST_RADIUS_PX: f64 = 2.0;
 const LARGEST_RADIUS_SHARE: f64 = 0.07;
-/// Radii of the markers of one finger differ from one another's by less than this factor where colours do, and by less than
+/// Radii of the markers of one finger differ from one another's by less than this factor where colours do, and by
+/// less than
 /// the other where they do not: blots of paint do.
 const SIZE_FACTOR: f64 = 1.35;
 const BLOT_SIZE_FACTOR: f64 = 1.9;
@@ -54,7 +58,8 @@ const FEW_FRAMES: usize = 5;
 /// Frames looked at, at most, and at first every how many.
 const MOST_FRAMES: usize = 48;
 const FIRST_STRIDE: u64 = 6;
-/// Skin's Cb and Cr less 128, of all complexions: Chai and Ngan 1999 (DOI 10.1109/76.767122), Cb 77 to 127, Cr 133 to 173; and its
+/// Skin's Cb and Cr less 128, of all complexions: Chai and Ngan 1999 (DOI 10.1109/76.767122), Cb 77 to 127, Cr 133 to
+/// 173; and its
 /// distance from grey at most (assumed: stickers of skin's hue are more colourful than skin).
 const SKIN_CB: (f64, f64) = (-51.0, 1.0);
 const SKIN_CR: (f64, f64) = (5.0, 45.0);

@@ -1,6 +1,7 @@
 //! The markers that `[start]` gives a place: their spots in the first frame, and their colours as that frame has them.
 //!
-//! A place is believed: the spot of the marker's colour next to it is the marker, whatever the order along the finger says.
+//! A place is believed: the spot of the marker's colour next to it is the marker, whatever the order along the finger
+//! says.
 //! Where the marker file's colour finds none there, any mark of about that hue will do, however pale or dark; a place
 //! without one is an error that names the colour found.
 
