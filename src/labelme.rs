@@ -10,7 +10,7 @@
 //! Source: LabelMe 5.5.0, `labelme/label_file.py`.
 
 use std::{
-    io,
+    io::{self, Read as _},
     path::{Path, PathBuf},
 };
 
@@ -20,6 +20,9 @@ use thiserror::Error;
 
 /// The version written into new files.
 pub const VERSION: &str = "5.5.0";
+
+/// Bytes of a file that are read: a photograph of 50 megapixels as PNG within it, and many outlines (assumed).
+const MOST_BYTES: u64 = 128 << 20;
 
 /// Why a LabelMe file could not be read or written.
 #[derive(Debug, Error)]
@@ -39,6 +42,15 @@ pub enum Error {
         path: PathBuf,
         /// What the system says.
         source: io::Error,
+    },
+    /// The file is longer than any annotation.
+    #[error(
+        "{}: has over {} MiB, more than is read of an annotation; save it without the picture in it (imageData null)",
+        path.display(), MOST_BYTES >> 20
+    )]
+    TooLong {
+        /// The file.
+        path: PathBuf,
     },
     /// The file is not LabelMe's JSON.
     #[error("{}: not a LabelMe file: {source}; open it in LabelMe and save it again", path.display())]
@@ -143,9 +155,19 @@ impl LabelMe {
     /// Reads one file.
     ///
     /// # Errors
-    /// [`Error::Read`] and [`Error::Parse`].
+    /// [`Error::Read`], [`Error::TooLong`] and [`Error::Parse`].
     pub fn read(path: &Path) -> Result<Self, Error> {
-        let bytes = std::fs::read(path).map_err(|source| Error::Read { path: path.to_owned(), source })?;
+        let refused = |source: io::Error| Error::Read { path: path.to_owned(), source };
+        let file = std::fs::File::open(path).map_err(refused)?;
+        let too_long = || Error::TooLong { path: path.to_owned() };
+        if file.metadata().map_err(refused)?.len() > MOST_BYTES {
+            return Err(too_long());
+        }
+        let mut bytes = Vec::new();
+        file.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(refused)?;
+        if bytes.len() as u64 > MOST_BYTES {
+            return Err(too_long());
+        }
         let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
         serde_json::from_slice(text).map_err(|source| Error::Parse { path: path.to_owned(), source })
     }
@@ -209,6 +231,18 @@ mod tests {
         assert_eq!(read.shapes[0].shape_type, "polygon");
         assert_eq!(read.image_width, None);
         assert_eq!(read.image_data, None);
+    }
+
+    #[test]
+    fn a_file_longer_than_any_annotation_is_not_read() {
+        let dir = tempfile::tempdir().unwrap();
+        let path = dir.path().join("long.json");
+        std::fs::File::create(&path).unwrap().set_len(20 << 30).unwrap();
+        let error = LabelMe::read(&path).unwrap_err().to_string();
+        assert!(error.contains("long.json") && error.contains("128 MiB"), "{error}");
+        if cfg!(target_os = "linux") {
+            assert!(matches!(LabelMe::read(Path::new("/dev/zero")), Err(Error::TooLong { .. })));
+        }
     }
 
     #[test]

@@ -2,6 +2,8 @@
 //!
 //! A choice lists its words once ([`Words::WORDS`]); serde reads and writes it with `#[serde(with = "crate::words")]`.
 
+use std::borrow::Cow;
+
 use serde::{Deserialize, Deserializer, Serializer};
 
 /// A choice of few, each with a word.
@@ -26,6 +28,30 @@ pub trait Words: Copy + PartialEq + Send + Sync + 'static {
             format!("`{text}`: choose {} or {last}", before.join(", "))
         })
     }
+}
+
+/// A name from outside as a terminal may show it: control characters, which could move its cursor or hide what it shows, are
+/// escaped as in Rust (`\\u{1b}`). Line breaks are too; [`shown_lines`] keeps them.
+#[must_use]
+pub fn shown(name: &str) -> Cow<'_, str> {
+    escaped(name, |c| c.is_control())
+}
+
+/// As [`shown`], of a message that may have several lines.
+#[must_use]
+pub fn shown_lines(message: &str) -> Cow<'_, str> {
+    escaped(message, |c| c.is_control() && c != '\n')
+}
+
+fn escaped(text: &str, hidden: impl Fn(char) -> bool) -> Cow<'_, str> {
+    if !text.contains(&hidden) {
+        return Cow::Borrowed(text);
+    }
+    let mut clear = String::with_capacity(text.len() + 8);
+    for c in text.chars() {
+        if hidden(c) { clear.extend(c.escape_default()) } else { clear.push(c) }
+    }
+    Cow::Owned(clear)
 }
 
 /// Writes the word.
@@ -81,6 +107,13 @@ mod tests {
     impl Words for Side {
         const WORDS: &'static [(Self, &'static str, &'static str)] =
             &[(Self::Left, "left", ""), (Self::Right, "right", "the other")];
+    }
+
+    #[test]
+    fn control_characters_are_shown_not_obeyed() {
+        assert_eq!(shown("a\u{1b}[2Jb\n\u{9b}é 指"), "a\\u{1b}[2Jb\\n\\u{9b}é 指");
+        assert_eq!(shown_lines("one\n  two\r"), "one\n  two\\r");
+        assert!(matches!(shown("plain"), Cow::Borrowed("plain")));
     }
 
     #[derive(Debug, serde::Serialize, Deserialize)]

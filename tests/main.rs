@@ -19,6 +19,7 @@ mod phantom_study;
 mod phantom_video;
 mod photos;
 mod photos_bad_input;
+mod photos_doubtful;
 mod pipeline;
 mod pipeline_models;
 mod pipeline_pictures;

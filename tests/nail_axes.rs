@@ -10,10 +10,13 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use image::DynamicImage;
+use lunula::labelme::{LabelMe, to_labelme};
 use lunula::phantom::nail::{Background, Camera, Depth, Light, NailScene, Pose, RenderOptions, Subject};
 use lunula::photo::outline::{
-    Axis, AxisUnknown, FoundAxis, Outline, Shape, Side, axis_towards, find_axes, find_axes_towards, outlines_from_mask,
+    Axis, AxisUnknown, FoundAxis, Outline, OutlineOptions, Shape, Side, axis_towards, find_axes, find_axes_towards,
+    outlines_from_mask,
 };
+use lunula::photo::{Photo, Photograph};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -287,6 +290,61 @@ fn the_axes_of_phantoms_are_found() {
     for tally in [near, far] {
         assert!(tally.quantile(0.5) <= 2.0 && tally.quantile(1.0) <= 15.0);
     }
+}
+
+/// Nails with a reason when the hand is annotated so.
+fn doubted(hand: &Hand, folder: &Path, drawn: impl Fn(&Outline, Axis) -> (Vec<[f64; 2]>, Axis)) -> usize {
+    let picture = folder.join("hand.png");
+    hand.photo.save(&picture).unwrap();
+    let mut shapes = Vec::new();
+    for (group, (nail, truth)) in (1..).zip(hand.nails.iter().zip(&hand.truth_deg)) {
+        let (points, axis) = drawn(nail, Axis::from_clockwise_rad(truth.to_radians()));
+        let ([x, y], [dx, dy]) = (points[0], axis.distal());
+        for (label, kind, points) in
+            [("nail", "polygon", points.clone()), ("axis", "line", vec![[x, y], [x + 9.0 * dx, y + 9.0 * dy]])]
+        {
+            let mut shape = lunula::labelme::Shape::new(label, kind, points.into_iter().map(to_labelme).collect());
+            shape.group_id = Some(group);
+            shapes.push(shape);
+        }
+    }
+    let (width, height) = (hand.photo.width(), hand.photo.height());
+    LabelMe::new("hand.png", width, height, shapes).write(&folder.join("hand.json")).unwrap();
+    let name = || "hand".to_owned();
+    let photo = Photo { pose: name(), subject: name(), file: name(), path: picture.clone(), outline: None };
+    let nails = OutlineOptions::default().nails(&photo, &Photograph::read(&picture).unwrap()).unwrap();
+    nails.iter().filter(|nail| !nail.reason.is_empty()).count()
+}
+
+#[test]
+fn a_drawn_axis_is_doubted_where_it_is_wrong_and_only_there() {
+    let Some(hands) = real_hands() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let count = |drawn: &dyn Fn(&Hand, &Outline, Axis) -> (Vec<[f64; 2]>, Axis)| -> (usize, usize) {
+        let each = hands.iter().map(|hand| doubted(hand, folder.path(), |nail, axis| drawn(hand, nail, axis)));
+        let each: Vec<usize> = each.collect();
+        (each.iter().sum(), each.iter().filter(|doubted| **doubted > 0).count())
+    };
+    let last = |hand: &Hand| [f64::from(hand.photo.width()) - 1.0, f64::from(hand.photo.height()) - 1.0];
+    let (right, _) = count(&|_, nail, axis| (nail.points(), axis));
+    let reverse = |axis: Axis| Axis::from_clockwise_rad(axis.clockwise_rad() + std::f64::consts::PI);
+    let (reversed, _) = count(&|_, nail, axis| (nail.points(), reverse(axis)));
+    let turned = count(&|hand, nail, axis| {
+        let [right, bottom] = last(hand);
+        (nail.points().into_iter().map(|[x, y]| [right - x, bottom - y]).collect(), reverse(axis))
+    });
+    let mirrored = count(&|hand, nail, axis| {
+        let [right, _] = last(hand);
+        let points = nail.points().into_iter().map(|[x, y]| [right - x, y]).collect();
+        (points, Axis::from_clockwise_rad(-axis.clockwise_rad()))
+    });
+    eprintln!(
+        "doubted of 127 nails (on 26 photographs): right {right}, reversed {reversed}, turned {turned:?}, mirrored {mirrored:?}"
+    );
+    // Measured: 0; 100; and of turned and mirrored photographs all, save one nail whose place is off the picture.
+    assert_eq!(right, 0);
+    assert!(reversed >= 95, "{reversed}");
+    assert!(turned.1 >= 25 && mirrored.1 >= 25 && turned.0 >= 120 && mirrored.0 >= 120, "{turned:?} {mirrored:?}");
 }
 
 #[test]

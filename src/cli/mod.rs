@@ -30,7 +30,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lunula::stages::{Fate, Stage, Step};
-use lunula::words::Words;
+use lunula::words::{Words, shown_lines};
 
 /// Ground truth for fingernail sensing: nail photographs to coloration maps, videos to joint angles,
 /// angles and photodiode logs to labelled training sets, those to models of force and posture.
@@ -147,7 +147,7 @@ pub(crate) fn run<const VIDEO: bool>() -> ExitCode {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
         Ok(Outcome::SomeFailed) => ExitCode::from(1),
         Err(error) => {
-            eprintln!("error: {error:#}");
+            eprintln!("error: {}", shown_lines(&format!("{error:#}")));
             ExitCode::from(if error.is::<Interrupted>() || error.is::<Stopped>() { 130 } else { 2 })
         }
     }
@@ -201,7 +201,7 @@ impl Common {
     /// Plain words on standard output, unless quiet or JSON is wanted.
     fn say(&self, text: &str) {
         if !self.json && !self.quiet {
-            print_line(text);
+            print_line(&shown_lines(text));
         }
     }
 
@@ -236,7 +236,7 @@ impl Common {
     fn warn(&self, warnings: &[String]) {
         if !self.quiet {
             for warning in warnings {
-                eprintln!("warning: {warning}");
+                eprintln!("warning: {}", shown_lines(warning));
             }
         }
     }
@@ -261,6 +261,6 @@ fn print_steps(steps: &[Step]) {
             Fate::Run => "run",
             Fate::LeftOut => "left out",
         };
-        print_line(&format!("{:<34} {fate:<9} {}", step.stage, step.reason));
+        print_line(&shown_lines(&format!("{:<34} {fate:<9} {}", step.stage, step.reason)));
     }
 }

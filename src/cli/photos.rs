@@ -6,11 +6,12 @@ use std::time::Instant;
 use anyhow::Context;
 use clap::{Args, Subcommand, ValueEnum};
 use lunula::files::Staging;
-use lunula::photo::outline::{DetectOptions, Drawn, OutlineOptions, Side, Sources};
+use lunula::photo::outline::{DetectOptions, Drawn, MaskValues, OutlineOptions, Side, Sources};
 use lunula::photo::{
-    Channel, DetectedOutline, NailTable, Normalization, PhotoSet, PhotosError, PhotosOptions, Resample, RunReport,
-    SetFault, Watch, keep_outlines, merge, plan, run as run_photos, write_nails,
+    Channel, DetectedOutline, MOST_MEGAPIXELS, NailTable, Normalization, PhotoSet, PhotosError, PhotosOptions,
+    Resample, RunReport, SetFault, Watch, keep_outlines, merge, plan, run as run_photos, write_nails,
 };
+use lunula::words::{shown, shown_lines};
 
 use super::{Common, Interrupted, Outcome, print_line, print_steps};
 
@@ -37,7 +38,10 @@ pub(super) struct PhotosArgs {
     /// Masks named as the photographs (MASKS/<pose>/<stem>.* or MASKS/<stem>.*); each connected region is a nail
     #[arg(long, value_name = "MASKS")]
     masks: Option<PathBuf>,
-    /// On which side of the picture the distal ends lie, for outlines without an axis [default: told from each picture]
+    /// Which values of masks are nail, as 255 or 250..255, in the mask's own units [default: a mask has two values]
+    #[arg(long, value_name = "VALUES")]
+    mask_value: Option<MaskValues>,
+    /// On which side of the picture the distal ends lie, for outlines without an axis [default: found in each picture]
     #[arg(long, value_enum)]
     distal: Option<SideArg>,
     /// Which picture annotations and masks were drawn on, where EXIF turns it and its size can't tell
@@ -58,6 +62,12 @@ pub(super) struct PhotosArgs {
     /// Undo the sRGB curve, so that values are proportional to light
     #[arg(long)]
     linear: bool,
+    /// The sample of 16-bit files that is full scale: 4095 where 12 bits are kept in 16 [default: 65535]
+    #[arg(long, value_name = "SAMPLE")]
+    white: Option<u16>,
+    /// Megapixels beyond which a photograph is refused, before memory is taken for it
+    #[arg(long, value_name = "MP", default_value_t = MOST_MEGAPIXELS, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    max_megapixels: u32,
     /// How values between pixels come about
     #[arg(long, value_enum, default_value = "cubic")]
     resample: ResampleArg,
@@ -144,6 +154,7 @@ impl PhotosArgs {
                 ResampleArg::Linear => Resample::Linear,
                 ResampleArg::Cubic => Resample::Cubic,
             },
+            white: self.white,
         };
         let outlines = OutlineOptions {
             sources: match self.outline {
@@ -153,6 +164,7 @@ impl PhotosArgs {
             },
             listed_only: false,
             masks: self.masks.clone(),
+            mask_values: self.mask_value,
             distal: self.distal.map(|side| match side {
                 SideArg::Up => Side::Up,
                 SideArg::Down => Side::Down,
@@ -172,6 +184,7 @@ impl PhotosArgs {
         Ok(PhotosOptions {
             normalization: normalization.check().map_err(anyhow::Error::msg)?,
             outlines,
+            max_megapixels: Some(self.max_megapixels),
             keep_detected: self.write_outlines.is_some(),
             parts: None,
         })
@@ -185,6 +198,13 @@ pub(super) fn run(args: &PhotosArgs) -> anyhow::Result<Outcome> {
     let (set, out) = args.set.as_ref().zip(args.out.as_ref()).context("SET and --out are needed")?;
     let options = args.options()?;
     let apart: Vec<&Path> = std::iter::once(out.as_path()).chain(args.masks.as_deref()).collect();
+    if PhotoSet::would_take_results(set, out) {
+        anyhow::bail!(
+            "--out {}: is among the photographs of {}, where results would be taken for photographs; choose another --out",
+            out.display(),
+            set.display()
+        );
+    }
     let set = PhotoSet::open(set, &apart)?;
     if args.plan {
         return Ok(print_plan(args, &set, &options));
@@ -257,7 +277,7 @@ fn print_plan(args: &PhotosArgs, set: &PhotoSet, options: &PhotosOptions) -> Out
 
 fn name_failures(failed: &[SetFault]) {
     for fault in failed {
-        eprintln!("failed: {}: {}", fault.place, fault.what);
+        eprintln!("failed: {}: {}", shown(&fault.place), shown_lines(&fault.what));
     }
 }
 

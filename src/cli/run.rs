@@ -9,6 +9,7 @@ use lunula::pipeline::{
     Event, Outcome as Ended, Plan, Progress, RunOptions, RunReport, RunWatch, Shard, Spec, Standing, kinds,
     kinds_without_video, names_others, phantom_catalogue, plan_text, run as run_tasks, summary, survey, write_reports,
 };
+use lunula::words::{shown, shown_lines};
 use serde_json::json;
 
 use super::{Common, Outcome, Stopped, hand_over, memory, print_line};
@@ -175,7 +176,7 @@ fn failures(report: &RunReport) {
     let width = rows.iter().map(|(task, _)| task.chars().count()).max().unwrap_or(0).min(60);
     for (task, what) in rows {
         // Of several lines the further ones stand under the first.
-        let what = what.replace('\n', &format!("\n{:1$}", "", width + 10));
-        eprintln!("failed: {task:<width$}  {what}");
+        let what = shown_lines(what).replace('\n', &format!("\n{:1$}", "", width + 10));
+        eprintln!("failed: {:<width$}  {what}", shown(task));
     }
 }

@@ -5,6 +5,7 @@
 //! (across, along) in widths and lengths from the centre: the box is -0.5..0.5 both ways, across to the right and along
 //! towards the distal end, not mirrored.
 
+use geo::{Area, BooleanOps, Coord, LineString, Polygon, Rect};
 use thiserror::Error;
 
 use super::outline::{Axis, Outline};
@@ -65,6 +66,16 @@ impl NailFrame {
         Ok(Self { center_px, length_px, width_px, axis })
     }
 
+    /// What share of the box lies outside of a photograph of `width` x `height` pixels, 0 to 1.
+    pub fn share_outside(&self, [width, height]: [u32; 2]) -> f64 {
+        let corners = [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)].map(|(u, v)| self.photo_from_nail(u, v));
+        let ring = LineString::from(corners.to_vec());
+        let low = Coord { x: -0.5, y: -0.5 };
+        let high = Coord { x: f64::from(width) - 0.5, y: f64::from(height) - 0.5 };
+        let seen = Polygon::new(ring, vec![]).intersection(&Rect::new(low, high).to_polygon()).unsigned_area();
+        (1.0 - seen / (self.width_px * self.length_px)).clamp(0.0, 1.0)
+    }
+
     /// The photograph's pixel of a point of the nail, `across` in widths and `along` in lengths from the centre.
     pub fn photo_from_nail(&self, across: f64, along: f64) -> [f64; 2] {
         let (right, distal) = (self.axis.right(), self.axis.distal());
@@ -79,6 +90,8 @@ mod tests {
 
     /// Rounding of a rotation's sines and cosines over some hundred pixels.
     const ROUNDING_PX: f64 = 1e-10;
+    /// Polygons are clipped on a grid of 2^-30 of their extent.
+    const CLIPPING: f64 = 1e-6;
 
     #[test]
     fn a_turned_rectangle_keeps_its_measures() {
@@ -94,6 +107,20 @@ mod tests {
             assert!((measured.center_px[0] - 120.0).abs() <= ROUNDING_PX, "{degrees}");
             assert!((measured.center_px[1] - 80.0).abs() <= ROUNDING_PX, "{degrees}");
         }
+    }
+
+    #[test]
+    fn the_share_outside_is_that_of_the_turned_box() {
+        let share = |x: f64, degrees: f64| {
+            let axis = Axis::from_clockwise_rad(degrees.to_radians());
+            let frame = NailFrame { center_px: [x, 49.5], length_px: 40.0, width_px: 40.0, axis };
+            frame.share_outside([200, 100])
+        };
+        assert!((share(99.5, 30.0)).abs() <= CLIPPING);
+        assert!((share(-0.5, 0.0) - 0.5).abs() <= CLIPPING);
+        assert!((share(-0.5, 45.0) - 0.5).abs() <= CLIPPING);
+        assert!((share(-10.5, 90.0) - 0.75).abs() <= CLIPPING);
+        assert_eq!(share(-500.0, 10.0), 1.0);
     }
 
     #[test]

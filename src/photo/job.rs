@@ -7,20 +7,20 @@ use std::collections::BTreeMap;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use geo::BoundingRect;
 use rayon::prelude::*;
 use thiserror::Error;
 
 use super::frame::NailFrame;
 use super::maps::Sums;
 use super::normalize::{Normalization, Normalized, normalize};
-use super::outline::{Axis, Nail, Outline, OutlineOptions, Source, ToDraw};
+use super::outline::{Axis, Nail, OutlineOptions, Source, ToDraw};
 use super::partial::Partials;
-use super::read::Photograph;
+use super::read::{MOST_MEGAPIXELS, Photograph};
 use super::results;
 use super::set::{Photo, PhotoSet, SetFault};
 use crate::files::{Staging, WriteError};
 use crate::stages::Stages;
+use crate::words::shown;
 
 /// What to do with a set.
 #[derive(Debug, Clone, Default)]
@@ -29,6 +29,8 @@ pub struct PhotosOptions {
     pub normalization: Normalization,
     /// Where outlines come from.
     pub outlines: OutlineOptions,
+    /// Megapixels up to which a photograph is read; `None`: [`MOST_MEGAPIXELS`].
+    pub max_megapixels: Option<u32>,
     /// Save detected outlines as LabelMe files.
     pub keep_detected: bool,
     /// Write sums (`partials/`) instead of maps and figures: those of many such parts are [gathered](fn@super::gather) later.
@@ -82,6 +84,8 @@ struct Done {
     rows: Vec<NailRow>,
     detected: Option<DetectedOutline>,
     grey: Option<bool>,
+    /// The largest sample as stored, of 16 bits.
+    largest: Option<u16>,
     fault: Option<SetFault>,
 }
 
@@ -124,7 +128,7 @@ pub enum PhotosError {
 }
 
 fn list(failed: &[SetFault]) -> String {
-    failed.iter().map(|fault| format!("\n  {}: {}", fault.place, fault.what)).collect()
+    failed.iter().map(|fault| format!("\n  {}: {}", shown(&fault.place), fault.what)).collect()
 }
 
 /// A caller's view of a running job.
@@ -174,6 +178,7 @@ pub fn run(
         stages: Stages::default(),
     };
     result.warnings.extend(mixed_poses(set, &done));
+    result.warnings.extend(few_bits(options.normalization.white, &done));
     for one in done {
         result.rows.extend(one.rows);
         result.detected.extend(one.detected);
@@ -215,6 +220,9 @@ struct Work<'a> {
     sums: &'a BTreeMap<&'a str, Mutex<Sums>>,
 }
 
+/// Share of a nail's box outside of the photograph above which it is left out (assumed): of a nail of which less than half is
+/// seen, length and width are guessed, and the outline is rather another picture's. Below, what is not seen is missing.
+const MOST_OUTSIDE: f64 = 0.5;
 /// Longest side of a thumbnail, pixels.
 const THUMBNAIL_PX: usize = 100;
 
@@ -225,12 +233,18 @@ impl Work<'_> {
             rows: Vec::new(),
             detected: None,
             grey: None,
+            largest: None,
             fault: Some(SetFault { place: photo.file.clone(), what }),
         };
-        let picture = match self.stages.time("read", || Photograph::read(&photo.path)) {
+        let megapixels = self.options.max_megapixels.unwrap_or(MOST_MEGAPIXELS);
+        let mut picture = match self.stages.time("read", || Photograph::read_up_to(&photo.path, megapixels)) {
             Ok(picture) => picture,
             Err(why) => return Ok(fault(why.to_string())),
         };
+        let largest = picture.largest_of_16_bits();
+        if let Some(Err(why)) = self.options.normalization.white.map(|white| picture.stretch_to(white)) {
+            return Ok(fault(why.to_string()));
+        }
         let nails = match self.stages.time("outline", || self.options.outlines.nails(photo, &picture)) {
             Ok(nails) => nails,
             Err(why) => return Ok(fault(why.to_string())),
@@ -284,7 +298,7 @@ impl Work<'_> {
                 sums.add(&photo.subject, &pictures).expect("a set lists a subject once a pose");
             });
         }
-        Ok(Done { rows, detected, grey: Some(picture.is_grey()), fault })
+        Ok(Done { rows, detected, grey: Some(picture.is_grey()), largest, fault })
     }
 
     /// The normalized picture, or why there is none.
@@ -295,15 +309,19 @@ impl Work<'_> {
         let (Some(outline), Some(axis)) = (nail.outline, nail.axis) else {
             return Err("its outline or axis is not known".into());
         };
-        if lies_outside(&outline, picture) {
-            return Err(format!(
-                "the outline lies outside of the photograph ({} x {} px); is it another picture's?",
-                picture.image.width(),
-                picture.image.height()
-            ));
-        }
         let frame = NailFrame::new(&outline, axis).map_err(|fault| fault.to_string())?;
         row.frame = Some(frame);
+        let size = [picture.image.width(), picture.image.height()];
+        let outside = frame.share_outside(size);
+        if outside > MOST_OUTSIDE {
+            return Err(format!(
+                "{:.0} % of its box lies outside of the photograph ({} x {} px), more than {:.0} %; is the outline another picture's?",
+                100.0 * outside,
+                size[0],
+                size[1],
+                100.0 * MOST_OUTSIDE
+            ));
+        }
         let normalized =
             self.stages.time("normalize", || normalize(&picture.image, &frame, &self.options.normalization));
         if normalized.count_seen() == 0 {
@@ -326,15 +344,6 @@ fn unseen(picture: &Normalized, margin: f64) -> String {
         return String::new();
     }
     format!("used, but {:.1} % of its box lies outside of the photograph", 100.0 * missing as f64 / all as f64)
-}
-
-fn lies_outside(outline: &Outline, picture: &Photograph) -> bool {
-    outline.polygon().bounding_rect().is_none_or(|b| {
-        b.max().x < -0.5
-            || b.max().y < -0.5
-            || b.min().x > f64::from(picture.image.width()) - 0.5
-            || b.min().y > f64::from(picture.image.height()) - 0.5
-    })
 }
 
 fn kept(index: usize, picture: &Photograph, nails: &[Nail]) -> Option<DetectedOutline> {
@@ -396,4 +405,22 @@ fn mixed_poses(set: &PhotoSet, done: &[Done]) -> Vec<String> {
             )
         })
         .collect()
+}
+
+/// Bits that cameras of science keep in 16; a set whose largest sample has no more is noted.
+const FEW_BITS: [u32; 4] = [8, 10, 12, 14];
+
+/// Photographs of 16 bits, of which none uses more than a quarter of full scale: values are a fraction of what they should be.
+fn few_bits(white: Option<u16>, done: &[Done]) -> Option<String> {
+    let largest = done.iter().filter_map(|done| done.largest);
+    let (count, largest) = largest.fold((0, 0), |(count, most), largest| (count + 1, largest.max(most)));
+    let white_of = |bits: u32| (1_u32 << bits) - 1;
+    let bits = FEW_BITS.into_iter().find(|bits| u32::from(largest) <= white_of(*bits))?;
+    (white.is_none() && largest > 0).then(|| {
+        format!(
+            "the largest sample of the {count} photograph(s) of 16 bits is {largest} of 65535, as of {bits} bits kept in 16: if they \
+             are, --white {} makes that full scale",
+            white_of(bits)
+        )
+    })
 }

@@ -36,18 +36,24 @@ pub struct Normalization {
     pub linear: bool,
     /// How values between pixels come about.
     pub resample: Resample,
+    /// The sample of a 16-bit file that is full scale, as 4095 of 12 bits kept in 16; `None`: 65535. What was written before
+    /// there was such a choice reads as `None`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub white: Option<u16>,
 }
 
 impl Default for Normalization {
     /// The thesis' 400 x 400 pixels of 125 % of the nail, green as encoded.
     fn default() -> Self {
-        Self { size: 400, margin: 1.25, channel: Channel::Green, linear: false, resample: Resample::Cubic }
+        Self { size: 400, margin: 1.25, channel: Channel::Green, linear: false, resample: Resample::Cubic, white: None }
     }
 }
 
 impl Normalization {
     /// Sizes that make sense, pixels.
     pub const SIZES: std::ops::RangeInclusive<usize> = 8..=4096;
+    /// White levels that make sense: of 8 bits kept in 16, and more.
+    pub const WHITES: std::ops::RangeInclusive<u16> = 255..=u16::MAX;
     /// Margins that make sense, in nail boxes.
     pub const MARGINS: std::ops::RangeInclusive<f64> = 1.0..=5.0;
 
@@ -70,6 +76,13 @@ impl Normalization {
                 self.margin,
                 Self::MARGINS.start(),
                 Self::MARGINS.end()
+            ));
+        }
+        if let Some(white) = self.white.filter(|white| !Self::WHITES.contains(white)) {
+            return Err(format!(
+                "a white level of {white} is outside of {}..={} (4095 is that of 12 bits)",
+                Self::WHITES.start(),
+                Self::WHITES.end()
             ));
         }
         Ok(self)

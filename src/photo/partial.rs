@@ -9,22 +9,26 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
-use std::io::{BufReader, BufWriter, Write};
+use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use ndarray::{Array1, Array2, ArrayView2};
-use ndarray_npy::{NpzReader, NpzWriter, ReadableElement};
+use ndarray::{Array1, ArrayView2};
+use ndarray_npy::NpzWriter;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::maps::Sums;
 use super::members::Members;
 use super::normalize::{Normalization, Normalized};
+use super::npz::Npz;
 
 /// Of sums.
 const FORMAT: u32 = 1;
 /// Of one subject's levels.
 const FORMAT_OF_ONE: u32 = 2;
+
+/// Bytes of a partial map's `meta`: a million subjects' names.
+const MOST_META: u64 = 64 << 20;
 
 /// Why partial maps can't be read or don't join.
 #[derive(Debug, Error)]
@@ -206,11 +210,9 @@ pub(super) fn part_name(pose: &str) -> String {
 
 pub(super) fn read(path: &Path) -> Result<(Meta, Held), PartialFault> {
     let unreadable = |why: String| PartialFault::Unreadable { file: path.to_owned(), why };
-    let file = File::open(path).map_err(|e| unreadable(e.to_string()))?;
-    let mut npz = NpzReader::new(BufReader::new(file)).map_err(|e| unreadable(e.to_string()))?;
-    let meta: Array1<u8> = npz.by_name("meta").map_err(|e| unreadable(e.to_string()))?;
-    let (bytes, _) = meta.into_raw_vec_and_offset();
-    let json: serde_json::Value = serde_json::from_slice(&bytes).map_err(|e| unreadable(e.to_string()))?;
+    let mut npz = Npz::open(path).map_err(unreadable)?;
+    let text = npz.text("meta", MOST_META).map_err(unreadable)?;
+    let json: serde_json::Value = serde_json::from_slice(&text).map_err(|e| unreadable(e.to_string()))?;
     let known = [FORMAT, FORMAT_OF_ONE].map(u64::from);
     if let Some(found) = json["format"].as_u64().filter(|found| !known.contains(found)) {
         return Err(PartialFault::Version { file: path.to_owned(), found: found as u32 });
@@ -221,26 +223,18 @@ pub(super) fn read(path: &Path) -> Result<(Meta, Held), PartialFault> {
         let Some(subject) = meta.subjects.first().filter(|_| meta.subjects.len() == 1).cloned() else {
             return Err(unreadable("holds levels, which are one subject's, and names none or several".into()));
         };
-        let levels = array::<u16>(&mut npz, "level", size).map_err(unreadable)?;
-        let has_seen = npz.names().is_ok_and(|names| names.iter().any(|name| name == "seen"));
-        let seen = has_seen.then(|| array::<u8>(&mut npz, "seen", size)).transpose().map_err(unreadable)?;
+        let levels = npz.square::<u16>("level", size).map_err(unreadable)?;
+        let has_seen = npz.has("seen");
+        let seen = has_seen.then(|| npz.square::<u8>("seen", size)).transpose().map_err(unreadable)?;
         let seen = seen.map(|seen| seen.into_iter().map(|seen| seen > 0).collect());
         return Ok((meta, Held::One(subject, Normalized { size, levels, seen })));
     }
-    let sum = array(&mut npz, "sum", size).map_err(unreadable)?;
-    let sum_sq = array(&mut npz, "sum_sq", size).map_err(unreadable)?;
-    let count = array(&mut npz, "count", size).map_err(unreadable)?;
+    let sum = npz.square("sum", size).map_err(unreadable)?;
+    let sum_sq = npz.square("sum_sq", size).map_err(unreadable)?;
+    let count = npz.square("count", size).map_err(unreadable)?;
     let sums = Sums { size, sum, sum_sq, count, subjects: meta.subjects.clone() };
     if !sums.are_possible() {
         return Err(unreadable("its sums contradict one another".into()));
     }
     Ok((meta, Held::Sums(sums)))
-}
-
-fn array<T: ReadableElement>(npz: &mut NpzReader<BufReader<File>>, name: &str, size: usize) -> Result<Vec<T>, String> {
-    let array: Array2<T> = npz.by_name(name).map_err(|e| e.to_string())?;
-    match array.dim() {
-        (rows, columns) if (rows, columns) == (size, size) => Ok(array.into_iter().collect()),
-        (rows, columns) => Err(format!("an array of {rows} x {columns}, not {size} x {size}")),
-    }
 }

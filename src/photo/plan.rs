@@ -68,8 +68,8 @@ pub fn plan_foreknown(photos: &[Foreknown], options: &PhotosOptions) -> Vec<Step
             "axis from the picture",
             (labelme > 0 || masks > 0) && options.outlines.distal.is_none(),
             match options.outlines.distal {
-                Some(_) => "--distal settles it".into(),
-                None if labelme + masks > 0 => "of known outlines without an axis line".into(),
+                Some(_) => "--distal settles it, where the picture does not contradict".into(),
+                None if labelme + masks > 0 => "of known outlines without an axis line; drawn ones are checked".into(),
                 None => "detection finds its own".into(),
             },
         ),
@@ -78,6 +78,14 @@ pub fn plan_foreknown(photos: &[Foreknown], options: &PhotosOptions) -> Vec<Step
             "sRGB curve undone",
             options.normalization.linear,
             if options.normalization.linear { "--linear".into() } else { "values are as the file encodes them".into() },
+        ),
+        Step::new(
+            "white level",
+            options.normalization.white.is_some(),
+            match options.normalization.white {
+                Some(white) => format!("--white {white} is full scale"),
+                None => "the file's full scale".into(),
+            },
         ),
         Step::new(
             "normalize",

@@ -4,11 +4,12 @@
 //! EXIF orientation applied once, 8 or 16 bits a channel as in the file, grey or colour. A truncated JPEG decodes
 //! "successfully", grey where the data ends, in most decoders: here its end-of-image marker is looked for first.
 
-use std::io::Cursor;
+use std::fs::File;
+use std::io::{Cursor, Read};
 use std::path::Path;
 
 use image::metadata::Orientation;
-use image::{ColorType, DynamicImage, ImageDecoder, ImageFormat, ImageReader};
+use image::{ColorType, DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 use thiserror::Error;
 
 /// Why a file is no photograph. `Display` says what to do; the caller adds which file.
@@ -20,12 +21,44 @@ pub enum ReadFault {
     /// Neither PNG, JPEG, TIFF nor BMP by its first bytes.
     #[error("is not a PNG, JPEG, TIFF or BMP picture, whatever its name says; convert it to one of these")]
     NotAPicture,
+    /// More pixels than are read.
+    #[error(
+        "has {width} x {height} px, {:.1} megapixels, more than the {megapixels} that are read; make it smaller, or allow \
+         more with --max-megapixels", (f64::from(*width) * f64::from(*height) / 1e6)
+    )]
+    TooLarge {
+        /// Width by its header, pixels.
+        width: u32,
+        /// Height by its header, pixels.
+        height: u32,
+        /// How many are read.
+        megapixels: u32,
+    },
+    /// More bytes than so many pixels take.
+    #[error(
+        "is longer than a picture of {megapixels} megapixels can be; make it smaller, or allow more with --max-megapixels"
+    )]
+    TooLong {
+        /// How many are read.
+        megapixels: u32,
+    },
     /// A JPEG without an end: the rest would be grey.
     #[error("is a truncated JPEG: its data end before the picture does; copy the file again from the camera")]
     Truncated,
     /// Sample formats other than 8 and 16 bit integers.
     #[error("has {0:?} samples; save it with 8 or 16 bits a channel, grey or RGB")]
     Samples(ColorType),
+    /// A white level for a file that has its own.
+    #[error("has 8 bits a channel, whose white is 255; --white is for 16 bits: run such photographs apart, without it")]
+    WhiteOfEight,
+    /// A sample beyond white.
+    #[error("has a sample of {largest}, above --white {white}; give the sensor's largest value (4095 of 12 bits)")]
+    AboveWhite {
+        /// The largest sample.
+        largest: u16,
+        /// What white is.
+        white: u16,
+    },
     /// The decoder's own complaint.
     #[error("cannot be decoded ({0}); it may be damaged: copy or export it again")]
     Decode(#[from] image::ImageError),
@@ -50,14 +83,39 @@ pub enum Depth {
     Sixteen,
 }
 
+/// Megapixels of a photograph that are read unless more are allowed: the largest phones make 201, a scanned A4 page at 1200
+/// dots an inch has 140.
+pub const MOST_MEGAPIXELS: u32 = 250;
+/// Bytes of a file beside its pixels: profiles, previews, notes.
+const METADATA_BYTES: u64 = 64 << 20;
+/// Bytes that say what a file is.
+const FIRST_BYTES: u64 = 64;
+
 impl Photograph {
-    /// Reads, decodes and turns upright.
+    /// Reads, decodes and turns upright; as [`Photograph::read_up_to`] with [`MOST_MEGAPIXELS`].
     ///
     /// # Errors
-    /// [`ReadFault`] where the file is missing, no picture, truncated, damaged or of another sample format.
+    /// See there.
     pub fn read(path: &Path) -> Result<Self, ReadFault> {
-        let bytes = std::fs::read(path)?;
+        Self::read_up_to(path, MOST_MEGAPIXELS)
+    }
+
+    /// Reads, decodes and turns upright a picture of up to so many megapixels; its size is known from its header, before
+    /// memory is taken for it.
+    ///
+    /// # Errors
+    /// [`ReadFault`] where the file is missing, no picture, too large, truncated, damaged or of another sample format.
+    pub fn read_up_to(path: &Path, megapixels: u32) -> Result<Self, ReadFault> {
+        let bytes = bytes_of(path, megapixels)?;
         let (mut decoder, format) = decoder_for(&bytes)?;
+        let (width, height) = decoder.dimensions();
+        if u64::from(width) * u64::from(height) > pixels(megapixels) {
+            return Err(ReadFault::TooLarge { width, height, megapixels });
+        }
+        // What a decoder takes besides follows from the picture, not from what its header says of tiles and strips.
+        let mut limits = Limits::no_limits();
+        limits.max_alloc = Some(2 * decoder.total_bytes() + METADATA_BYTES);
+        decoder.set_limits(limits)?;
         if format == ImageFormat::Jpeg && !jpeg_is_complete(&bytes) {
             return Err(ReadFault::Truncated);
         }
@@ -68,6 +126,47 @@ impl Photograph {
         }
         image.apply_orientation(orientation);
         Ok(Self { image, orientation })
+    }
+
+    /// The largest sample of a photograph of 16 bits, opacity apart; `None` of 8 bits.
+    pub fn largest_of_16_bits(&self) -> Option<u16> {
+        let most = |samples: &[u16], channels: usize, taken: usize| {
+            samples.chunks_exact(channels).flat_map(|pixel| &pixel[..taken]).copied().max().unwrap_or(0)
+        };
+        match &self.image {
+            DynamicImage::ImageLuma16(p) => Some(most(p, 1, 1)),
+            DynamicImage::ImageLumaA16(p) => Some(most(p, 2, 1)),
+            DynamicImage::ImageRgb16(p) => Some(most(p, 3, 3)),
+            DynamicImage::ImageRgba16(p) => Some(most(p, 4, 3)),
+            _ => None,
+        }
+    }
+
+    /// Makes `white` full scale: of 12 bits kept in 16, the largest value is 4095. Opacity stays.
+    ///
+    /// # Errors
+    /// [`ReadFault::WhiteOfEight`] and [`ReadFault::AboveWhite`].
+    pub fn stretch_to(&mut self, white: u16) -> Result<(), ReadFault> {
+        let largest = self.largest_of_16_bits().ok_or(ReadFault::WhiteOfEight)?;
+        if largest > white {
+            return Err(ReadFault::AboveWhite { largest, white });
+        }
+        let full = u32::from(u16::MAX);
+        let stretched = |sample: &mut u16| {
+            // At most white: the quotient is at most full scale, and the product fits.
+            *sample = ((u32::from(*sample) * full + u32::from(white) / 2) / u32::from(white)) as u16;
+        };
+        let all = |samples: &mut [u16], channels: usize, taken: usize| {
+            samples.chunks_exact_mut(channels).flat_map(|pixel| &mut pixel[..taken]).for_each(stretched);
+        };
+        match &mut self.image {
+            DynamicImage::ImageLuma16(p) => all(p, 1, 1),
+            DynamicImage::ImageLumaA16(p) => all(p, 2, 1),
+            DynamicImage::ImageRgb16(p) => all(p, 3, 3),
+            DynamicImage::ImageRgba16(p) => all(p, 4, 3),
+            _ => {}
+        }
+        Ok(())
     }
 
     /// Width and height of the stored (not yet upright) picture, pixels.
@@ -108,6 +207,29 @@ pub(super) fn header_is_grey(path: &Path) -> Result<bool, ReadFault> {
         _ => return Err(ReadFault::NotAPicture),
     }
     Ok(!reader.into_decoder()?.color_type().has_color())
+}
+
+fn pixels(megapixels: u32) -> u64 {
+    u64::from(megapixels) * 1_000_000
+}
+
+/// A picture file's bytes. What is no picture is not read to its end, which some devices have none of.
+fn bytes_of(path: &Path, megapixels: u32) -> Result<Vec<u8>, ReadFault> {
+    // 16 bits of four channels, as they are.
+    let most = 8 * pixels(megapixels) + METADATA_BYTES;
+    let mut file = File::open(path)?;
+    let length = file.metadata()?.len();
+    let mut bytes = Vec::new();
+    file.by_ref().take(FIRST_BYTES).read_to_end(&mut bytes)?;
+    match image::guess_format(&bytes) {
+        Ok(ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::Tiff | ImageFormat::Bmp) => {}
+        _ => return Err(ReadFault::NotAPicture),
+    }
+    if length <= most {
+        bytes.reserve_exact(length as usize);
+        file.take(most - bytes.len() as u64 + 1).read_to_end(&mut bytes)?;
+    }
+    if length.max(bytes.len() as u64) > most { Err(ReadFault::TooLong { megapixels }) } else { Ok(bytes) }
 }
 
 fn decoder_for(bytes: &[u8]) -> Result<(impl ImageDecoder + '_, ImageFormat), ReadFault> {
@@ -204,6 +326,66 @@ mod tests {
                 assert_eq!(there.0[0], value.0[0], "{orientation:?} ({x}, {y})");
             }
         }
+    }
+
+    #[test]
+    fn a_giant_header_costs_nothing() {
+        let dir = tempfile::tempdir().expect("a folder");
+        // PNG: signature, the header's chunk with its checksum, and data that end at once.
+        let mut header = b"IHDR".to_vec();
+        header.extend(65_535_u32.to_be_bytes());
+        header.extend(30_000_u32.to_be_bytes());
+        header.extend([8, 2, 0, 0, 0]);
+        let mut crc = flate2::Crc::new();
+        crc.update(&header);
+        let mut png = b"\x89PNG\r\n\x1a\n\0\0\0\x0d".to_vec();
+        png.extend(&header);
+        png.extend(crc.sum().to_be_bytes());
+        png.extend(b"\0\0\0\0IDAT\x35\xaf\x06\x1e\0\0\0\0IEND\xae\x42\x60\x82");
+        // BMP: file header and BITMAPINFOHEADER.
+        let mut bmp = b"BM".to_vec();
+        bmp.extend([0, 0, 0, 0, 0, 0, 0, 0, 54, 0, 0, 0, 40, 0, 0, 0]);
+        bmp.extend(60_000_u32.to_le_bytes());
+        bmp.extend(60_000_u32.to_le_bytes());
+        bmp.extend([1, 0, 24, 0]);
+        bmp.extend([0; 24]);
+        // JPEG: the start of frame says how large, 65500 x 65500 of one component.
+        let mut jpeg = vec![0xFF, 0xD8, 0xFF, 0xC0, 0, 11, 8, 0xFF, 0xDC, 0xFF, 0xDC, 1, 1, 0x11, 0];
+        jpeg.extend([0xFF, 0xDA, 0, 8, 1, 1, 0, 0, 63, 0, 0xFF, 0xD9]);
+        for (name, bytes) in [("a.png", png), ("a.bmp", bmp), ("a.jpg", jpeg)] {
+            let path = dir.path().join(name);
+            std::fs::write(&path, bytes).expect("a file");
+            let fault = Photograph::read(&path).expect_err("too large");
+            assert!(matches!(fault, ReadFault::TooLarge { megapixels: MOST_MEGAPIXELS, .. }), "{name}: {fault}");
+        }
+        let path = dir.path().join("small.png");
+        image::GrayImage::new(1001, 1000).save(&path).expect("a picture");
+        assert!(matches!(Photograph::read_up_to(&path, 1), Err(ReadFault::TooLarge { width: 1001, .. })));
+        assert!(Photograph::read_up_to(&path, 2).is_ok());
+        // A file with a hole of 3 GB.
+        let path = dir.path().join("long.bmp");
+        let file = File::create(&path).expect("a file");
+        std::io::Write::write_all(&mut &file, b"BM").expect("written");
+        file.set_len(3 << 30).expect("a hole");
+        assert!(matches!(Photograph::read(&path), Err(ReadFault::TooLong { .. })));
+        if cfg!(target_os = "linux") {
+            assert!(matches!(Photograph::read(Path::new("/dev/zero")), Err(ReadFault::NotAPicture)));
+        }
+    }
+
+    #[test]
+    fn twelve_bits_are_stretched_to_sixteen() {
+        let pixels = image::ImageBuffer::from_vec(2, 1, vec![4095_u16, 0, 2048, 9, 7, 6, 1, 65_535]);
+        let image = DynamicImage::ImageRgba16(pixels.expect("eight samples"));
+        let mut photograph = Photograph { image, orientation: Orientation::NoTransforms };
+        assert_eq!(photograph.largest_of_16_bits(), Some(4095));
+        assert!(matches!(photograph.stretch_to(4094), Err(ReadFault::AboveWhite { largest: 4095, white: 4094 })));
+        photograph.stretch_to(4095).expect("within");
+        let samples = photograph.image.as_rgba16().expect("as before").as_raw();
+        assert_eq!(samples[..], [65_535, 0, 32_776, 9, 112, 96, 16, 65_535]);
+        let image = image::GrayImage::new(1, 1).into();
+        let mut eight = Photograph { image, orientation: Orientation::NoTransforms };
+        assert!(matches!(eight.stretch_to(255), Err(ReadFault::WhiteOfEight)));
     }
 
     #[test]

@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 
 use super::job::{NailRow, PhotosOptions, PhotosResult};
 use super::partial::Partials;
+use super::read::MOST_MEGAPIXELS;
 use super::results::{NAIL_COLUMNS, nail_cells, sheet_names};
 use super::set::{PhotoSet, SetFault};
 use crate::figure::{Page, Sheet, Tile};
@@ -75,8 +76,10 @@ impl RunReport {
                 "normalization": options.normalization,
                 "outline": outlines.sources,
                 "masks": outlines.masks,
+                "mask_value": outlines.mask_values,
                 "distal": outlines.distal,
                 "annotations": outlines.drawn,
+                "max_megapixels": options.max_megapixels.unwrap_or(MOST_MEGAPIXELS),
             }),
             counts: json!({
                 "photographs": set.photos.len(),

@@ -10,6 +10,8 @@ use std::path::{Component, Path, PathBuf};
 
 use thiserror::Error;
 
+use crate::words::shown;
+
 /// Names of the files that are taken as photographs.
 pub(crate) const PICTURES: [&str; 6] = ["png", "jpg", "jpeg", "tif", "tiff", "bmp"];
 /// Photographs in formats that lunula does not read: said, not passed over.
@@ -97,10 +99,22 @@ impl PhotoSet {
         }
         set.settle();
         if set.photos.is_empty() {
-            let also = set.faults.iter().map(|f| format!("\n  {}: {}", f.place, f.what)).collect();
+            let also = set.faults.iter().map(|f| format!("\n  {}: {}", shown(&f.place), f.what)).collect();
             return Err(SetError::Empty { folder: folder.to_owned(), also });
         }
         Ok(set)
+    }
+
+    /// Whether results in `out` would be taken for photographs of the set in `folder` by a later run, or photographs there be
+    /// passed over as results: where `out` is that folder, or one within it that holds pictures.
+    #[must_use]
+    pub fn would_take_results(folder: &Path, out: &Path) -> bool {
+        let (Ok(folder), Ok(out)) = (folder.canonicalize(), out.canonicalize()) else { return false };
+        if folder.join("photos.csv").is_file() {
+            return false;
+        }
+        let pictures = || list(&out).is_ok_and(|(files, _)| files.iter().any(|file| is_picture(file)));
+        out == folder || (out.starts_with(&folder) && pictures())
     }
 
     /// A set of photographs that are known one by one; those that can't be used are among its faults.
@@ -164,6 +178,10 @@ impl PhotoSet {
     fn consider(&mut self, path: &Path, pose: &str, file: String) {
         if is_picture(path) {
             let subject = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+            if let Some(what) = name_fault("subject", &subject).or_else(|| name_fault("pose", pose)) {
+                self.fault(file, what);
+                return;
+            }
             self.photos.push(Photo { pose: pose.to_owned(), subject, file, path: path.to_owned(), outline: None });
         } else if let Some(kind) = extension(path).filter(|e| OTHER_PICTURES.contains(&e.as_str())) {
             self.fault(file, format!(".{kind} is not read; export it as PNG, TIFF, BMP or JPEG"));
@@ -284,11 +302,21 @@ fn row_fault(folder: &Path, file: &str, subject: &str, pose: &str) -> Option<Str
 
 const NO_PICTURE: &str = "is no photograph that is read; export it as PNG, TIFF, BMP or JPEG";
 
+/// Bytes of a subject or pose: file systems take names of 255, and results add to it.
+const LONGEST_NAME: usize = 200;
+
 /// What is wrong with a name that files of the results will have.
 fn name_fault(name: &str, value: &str) -> Option<String> {
     let mut parts = Path::new(value).components();
     let plain = matches!((parts.next(), parts.next()), (Some(Component::Normal(_)), None));
     let sound = plain && !value.contains(['/', '\\', '\0']);
+    if value.len() > LONGEST_NAME {
+        return Some(format!(
+            "a {name} of {} bytes makes names of results that are too long; shorten it to {LONGEST_NAME} (in photos.csv it may \
+             differ from the file's name)",
+            value.len()
+        ));
+    }
     (!sound).then(|| format!("`{value}` names files of the results, so a {name} cannot hold a path"))
 }
 

@@ -16,6 +16,9 @@ use crate::photo::read::{Photograph, upright_from_stored};
 
 /// What a nail's polygon is labelled.
 pub const NAIL: &str = "nail";
+/// A point of an outline may lie this many pictures' sides beyond the picture (assumed): a hand draws somewhat beyond the
+/// border, never by pictures.
+const FARTHEST: f64 = 4.0;
 /// What a line from proximal to distal is labelled.
 pub const AXIS: &str = "axis";
 /// What a detected outline that is not trusted is labelled: a person corrects it and drops the question mark.
@@ -82,6 +85,22 @@ pub enum ShapeFault {
         number: usize,
         /// LabelMe's shape type.
         kind: String,
+    },
+    /// A point where no picture of this size can have one.
+    #[error(
+        "shape {number}: its point ({x:e}, {y:e}) lies far outside of the photograph ({width} x {height} px); draw it again"
+    )]
+    FarOff {
+        /// Counted from 1.
+        number: usize,
+        /// Where the point is, pixels.
+        x: f64,
+        /// Down, pixels.
+        y: f64,
+        /// Width of the upright photograph, pixels.
+        width: u32,
+        /// Height of the upright photograph, pixels.
+        height: u32,
     },
     /// Not an outline.
     #[error("shape {number}: {fault}")]
@@ -150,7 +169,7 @@ pub fn read(path: &Path, photo: &Photograph, drawn: Drawn) -> Result<Vec<Annotat
         .zip(&file.shapes)
         .filter(|(_, s)| s.label.trim().eq_ignore_ascii_case(NAIL))
         .map(|(number, shape)| {
-            let outline = outline_of(number, shape, upright);
+            let outline = outline_of(number, shape, upright, [photo.image.width(), photo.image.height()]);
             let axis = outline.as_ref().ok().and_then(|outline| axis_of(shape, outline, &axes));
             Annotated { outline, axis }
         })
@@ -158,11 +177,20 @@ pub fn read(path: &Path, photo: &Photograph, drawn: Drawn) -> Result<Vec<Annotat
     if nails.is_empty() { Err(AnnotationFault::NoNail(name)) } else { Ok(nails) }
 }
 
-fn outline_of(number: usize, shape: &Shape, upright: impl Fn(&[f64; 2]) -> [f64; 2]) -> Result<Outline, ShapeFault> {
+fn outline_of(
+    number: usize,
+    shape: &Shape,
+    upright: impl Fn(&[f64; 2]) -> [f64; 2],
+    [width, height]: [u32; 2],
+) -> Result<Outline, ShapeFault> {
     if shape.shape_type != "polygon" {
         return Err(ShapeFault::NotAPolygon { number, kind: shape.shape_type.clone() });
     }
     let points: Vec<[f64; 2]> = shape.points.iter().map(upright).collect();
+    let near = |at: f64, side: u32| (-FARTHEST..=1.0 + FARTHEST).contains(&(at / f64::from(side)));
+    if let Some(&[x, y]) = points.iter().find(|[x, y]| !(near(*x, width) && near(*y, height))) {
+        return Err(ShapeFault::FarOff { number, x, y, width, height });
+    }
     Outline::new(&points).map_err(|fault| ShapeFault::Outline { number, fault })
 }
 

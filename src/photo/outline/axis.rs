@@ -51,6 +51,14 @@ const PROFILE: f64 = 2.5;
 const ROUND: f64 = 1.1;
 /// Above this elongation a nail's long axis lies along the finger: nails are at most about this much wider than long.
 const WIDE: f64 = 1.35;
+/// Probability from which the picture alone is sure enough to doubt what a person said, and how far off that must be, degrees.
+/// Measured on each nail alone: at 0.9 and 60 degrees not one right axis of 127 real nails, of the same in grey and of 240
+/// phantoms is doubted, and 100, 95 and 187 of the reversed ones are. The least sure wrong answer has 0.69.
+const SURE: f64 = 0.9;
+const CONTRADICTS_DEG: f64 = 60.0;
+/// Log-likelihood a nail by which a turned or mirrored annotation must fit better than as it was drawn. Measured: a right
+/// one is never more than 1.4 behind (26 real photographs, 240 phantoms), one of a turned real picture always 3.4 or more.
+const TURNED: f64 = 3.0;
 
 /// The axis of a nail as found, and how sure that is.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -181,6 +189,77 @@ pub fn find_axes_towards(image: &DynamicImage, outlines: &[Outline], hint: Side)
     };
     outlines.iter().map(|outline| around(outline).unwrap_or_else(|| axis_towards(outline, hint))).collect()
 }
+
+/// What the picture around one nail says of an axis that a person gave.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Verdict {
+    /// The same.
+    Agrees,
+    /// Nothing sure.
+    Silent,
+    /// It is sure of another one.
+    Contradicts(FoundAxis),
+}
+
+/// Asks the picture around `outline`; other nails of the photograph are not asked.
+pub(super) fn verdict(image: &DynamicImage, outline: &Outline, axis: Axis) -> Verdict {
+    let Some(found) = look(image, outline).ok().map(|directions| directions.peak()) else { return Verdict::Silent };
+    if found.confidence < SURE {
+        Verdict::Silent
+    } else if angle_deg(found.axis, axis) > CONTRADICTS_DEG {
+        Verdict::Contradicts(found)
+    } else {
+        Verdict::Agrees
+    }
+}
+
+/// Whether two axes that people gave are the same, as far as a picture could contradict them.
+pub(super) fn agree(one: Axis, other: Axis) -> bool {
+    angle_deg(one, other) <= CONTRADICTS_DEG
+}
+
+fn angle_deg(one: Axis, other: Axis) -> f64 {
+    turn(one.clockwise_rad() - other.clockwise_rad()).abs().to_degrees()
+}
+
+/// How a picture may have been turned after it was annotated, in words; `None` where the annotation fits as well as it is.
+///
+/// Each outline and drawn axis is moved as the picture would have been, and fingers are looked for there. Turns that change
+/// the picture's size show in the size, so a quarter turn is tried on square pictures only.
+pub(super) fn turned_since(image: &DynamicImage, drawn: &[(&Outline, Axis)]) -> Option<&'static str> {
+    let size = [f64::from(image.width()), f64::from(image.height())];
+    let fits = |outline: &Outline, axis: Axis| {
+        let patch = Patch::read(image, outline, &Shape::of(outline))?;
+        Some(evidence(&patch, axis.clockwise_rad()))
+    };
+    let as_drawn: Vec<Option<f64>> = drawn.iter().map(|(outline, axis)| fits(outline, *axis)).collect();
+    let turns = if size[0] == size[1] { &TURNS[..] } else { &TURNS[..3] };
+    let gains = turns.iter().filter_map(|(name, turned)| {
+        let gain = |((outline, axis), before): (&(&Outline, Axis), &Option<f64>)| {
+            let last = [size[0] - 1.0, size[1] - 1.0];
+            let points: Vec<[f64; 2]> = outline.points().into_iter().map(|p| turned(p, last)).collect();
+            let axis = Axis::through(turned([0.0; 2], [0.0; 2]), turned(axis.distal(), [0.0; 2]))?;
+            Some(fits(&Outline::new(&points).ok()?, axis)? - (*before)?)
+        };
+        let gains: Vec<f64> = drawn.iter().zip(&as_drawn).filter_map(gain).collect();
+        (!gains.is_empty()).then(|| (gains.iter().sum::<f64>() / gains.len() as f64, *name))
+    });
+    let (gain, name) = gains.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    (gain > TURNED).then_some(name)
+}
+
+/// A point moved with a picture whose last column and row are given.
+type Turn = fn([f64; 2], [f64; 2]) -> [f64; 2];
+/// The turns that a picture may have had; the first three keep every picture's size.
+const TURNS: [(&str, Turn); 7] = [
+    ("turned by 180 degrees", |[x, y], [right, bottom]| [right - x, bottom - y]),
+    ("mirrored left to right", |[x, y], [right, _]| [right - x, y]),
+    ("mirrored top to bottom", |[x, y], [_, bottom]| [x, bottom - y]),
+    ("turned by 90 degrees clockwise", |[x, y], [_, bottom]| [bottom - y, x]),
+    ("turned by 90 degrees counterclockwise", |[x, y], [right, _]| [y, right - x]),
+    ("mirrored along a diagonal", |[x, y], _| [y, x]),
+    ("mirrored along a diagonal", |[x, y], [right, bottom]| [bottom - y, right - x]),
+];
 
 /// Probabilities of the directions, 360 / [`DIRECTIONS`] degrees apart from up clockwise.
 #[derive(Debug, Clone, PartialEq)]

@@ -8,6 +8,8 @@
 //!   (127.5 of 255) by marching squares, so that an anti-aliased edge, or a JPEG's, keeps its sub-pixel place. A
 //!   filled rectangle of pixels x0..=x1 is exactly x1 - x0 + 1 wide. Regions that touch the border end at its pixel edges.
 //! - A mask whose largest value is 1 to 32 is read as instance numbers: each number a nail, though they touch.
+//! - A picture in grey is no mask: a mask has two values, and between them the grey of its edges only. [`MaskValues`] say
+//!   which values are nail where a picture has more; outlines then run along pixel edges.
 //! - Anything between is refused: half of full scale would silently lose every nail.
 //!
 //! Holes are filled: a nail has none.
@@ -35,6 +37,50 @@ const LEAST_TOLERANCE_PX: f64 = 0.03;
 /// More regions than this of instance numbers are a noisy picture.
 const MOST_ID_REGIONS: usize = 64;
 
+/// Values this part of the largest one from it or from black are neither. ..
+const NEAR_END: f32 = 0.2;
+/// .. They lie on edges, where a neighbour differs by more than this part of full scale; ..
+const FLAT: f32 = 0.1;
+/// .. of those that do not there may be this many for each white one. Measured: none in 26 masks drawn by hand and kept as
+/// JPEG; 0.68 to 3.3 in the photographs they belong to, in grey, 0.71 and more with their nails white and all but skin black.
+const MOST_GREY: f64 = 0.1;
+/// A region above this share of the picture is no nail: in the thesis' close-ups a nail takes up to a third (assumed).
+const LARGEST_SHARE: f64 = 0.6;
+/// A region this many times as long as the median of a mask's others is no nail; measured on 26 hands: at most 2.4.
+const LONGEST: f64 = 3.0;
+
+/// Which values of a mask are nail, both ends among them, as they are stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MaskValues {
+    low: u16,
+    high: u16,
+}
+
+impl std::str::FromStr for MaskValues {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let ends = text.split_once("..").map_or((text, text), |(low, high)| (low, high.trim_start_matches('=')));
+        let number = |text: &str| text.trim().parse::<u16>().ok();
+        match number(ends.0).zip(number(ends.1)) {
+            Some((low, high)) if low <= high => Ok(Self { low, high }),
+            _ => Err("write a value or a range, as 255 or 250..255 (both among them, at most 65535)".to_owned()),
+        }
+    }
+}
+
+impl std::fmt::Display for MaskValues {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}..{}", self.low, self.high)
+    }
+}
+
+impl serde::Serialize for MaskValues {
+    fn serialize<S: serde::Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        to.collect_str(self)
+    }
+}
+
 /// Why a picture is no mask.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum MaskFault {
@@ -48,6 +94,25 @@ pub enum MaskFault {
         largest: f32,
         /// Full scale of the mask's pixels.
         full: f32,
+    },
+    /// A picture in grey.
+    #[error(
+        "a grey picture rather than a mask: for every 100 white pixels it has {:.0} that are neither white nor black, edges \
+         apart; paint the nails white on black, or say which values are nail, as --mask-value 250..255", 100.0 * .grey
+    )]
+    Grey {
+        /// Grey pixels away from edges, for each white one.
+        grey: f64,
+    },
+    /// No pixel of the values that are nail.
+    #[error("no pixel of the mask has a value of {values}; its values are {least} to {largest}")]
+    NoSuchValue {
+        /// Which values are nail.
+        values: MaskValues,
+        /// The smallest value in the mask.
+        least: f32,
+        /// The largest value in the mask.
+        largest: f32,
     },
     /// Small values all over the place.
     #[error("the mask's values 1 to 32 form {regions} regions: a noisy black picture rather than nail numbers")]
@@ -75,6 +140,23 @@ impl std::fmt::Display for DroppedRegion {
     }
 }
 
+/// A region that is too large to be a nail.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+pub enum TooLarge {
+    /// Most of the picture.
+    #[error(
+        "the region covers {:.0} % of the mask, more than any nail ({:.0} %); is the mask inverted, or a finger's?",
+        100.0 * .0, 100.0 * LARGEST_SHARE
+    )]
+    Picture(f64),
+    /// Far longer than the others.
+    #[error(
+        "the region is {0:.1} times as long as the mask's others in median, and no nail is {LONGEST:.0} times as long as its \
+         neighbours; is it a finger's?"
+    )]
+    Others(f64),
+}
+
 /// The nails of a mask.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct MaskOutlines {
@@ -89,7 +171,26 @@ pub struct MaskOutlines {
 /// # Errors
 /// [`MaskFault`] where the values make no mask.
 pub fn outlines_from_mask(mask: &DynamicImage) -> Result<MaskOutlines, MaskFault> {
-    let (values, full) = levels(mask);
+    outlines_of(levels(mask))
+}
+
+/// The outlines of the regions of `mask` that have one of `values`, along pixel edges.
+///
+/// # Errors
+/// [`MaskFault::NoSuchValue`].
+pub fn outlines_of_values(mask: &DynamicImage, values: MaskValues) -> Result<MaskOutlines, MaskFault> {
+    let (mut levels, full) = levels(mask);
+    let (least, largest) = levels.iter().fold((f32::MAX, 0.0), |(l, m), v| (v.min(l), v.max(m)));
+    // A picture with opacity has values between the stored ones.
+    let nail = f32::from(values.low) - 0.5..f32::from(values.high) + 0.5;
+    levels.iter_mut().for_each(|level| *level = if nail.contains(level) { full } else { 0.0 });
+    if levels.iter().all(|level| *level == 0.0) {
+        return Err(MaskFault::NoSuchValue { values, least, largest });
+    }
+    outlines_of((levels, full))
+}
+
+fn outlines_of((values, full): (ImageBuffer<Luma<f32>, Vec<f32>>, f32)) -> Result<MaskOutlines, MaskFault> {
     let largest = values.iter().copied().fold(0.0, f32::max);
     if largest <= 0.0 {
         return Ok(MaskOutlines::default());
@@ -97,6 +198,10 @@ pub fn outlines_from_mask(mask: &DynamicImage) -> Result<MaskOutlines, MaskFault
     let white = 2.0 * largest > full;
     if !white && largest > LARGEST_ID {
         return Err(MaskFault::Range { largest, full });
+    }
+    let grey = if white { greyness(&values, largest, full) } else { 0.0 };
+    if grey > MOST_GREY {
+        return Err(MaskFault::Grey { grey });
     }
     // Grey levels of one kind, or a kind for each number.
     let kind = |value: &f32| if white { u8::from(2.0 * value >= full) } else { *value as u8 };
@@ -123,6 +228,48 @@ pub fn outlines_from_mask(mask: &DynamicImage) -> Result<MaskOutlines, MaskFault
         }));
     }
     Ok(sorted_out(polygons))
+}
+
+/// Pixels neither black nor white and not on an edge, for each white one.
+fn greyness(values: &ImageBuffer<Luma<f32>, Vec<f32>>, largest: f32, full: f32) -> f64 {
+    let width = values.width() as usize;
+    let neither = NEAR_END * largest..(1.0 - NEAR_END) * largest;
+    let like = |a: &f32, b: Option<&f32>| b.is_none_or(|b| (a - b).abs() <= FLAT * full);
+    let (mut flat, mut white) = (0_u64, 0_u64);
+    let raw = values.as_raw();
+    for (row, line) in raw.chunks_exact(width).enumerate() {
+        let above = row.checked_sub(1).map(|row| &raw[row * width..][..width]);
+        let below = raw.get((row + 1) * width..(row + 2) * width);
+        for (x, value) in line.iter().enumerate() {
+            white += u64::from(2.0 * value >= full);
+            if neither.contains(value) {
+                let beside = like(value, x.checked_sub(1).map(|x| &line[x])) && like(value, line.get(x + 1));
+                let along = like(value, above.map(|line| &line[x])) && like(value, below.map(|line| &line[x]));
+                flat += u64::from(beside && along);
+            }
+        }
+    }
+    flat as f64 / white.max(1) as f64
+}
+
+impl MaskOutlines {
+    /// Which of the nails are too large to be any, in their order.
+    pub(super) fn too_large(&self, mask_px: f64) -> Vec<Option<TooLarge>> {
+        let lengths: Vec<f64> = self.nails.iter().map(|nail| Shape::of(nail).major_px).collect();
+        let doubt = |(at, nail): (usize, &Outline)| {
+            let share = nail.area_px2() / mask_px;
+            let mut others: Vec<f64> =
+                lengths.iter().enumerate().filter(|(k, _)| *k != at).map(|(_, length)| *length).collect();
+            others.sort_by(f64::total_cmp);
+            let times = others.get(others.len() / 2).map_or(0.0, |median| lengths[at] / median);
+            if share > LARGEST_SHARE {
+                Some(TooLarge::Picture(share))
+            } else {
+                (times > LONGEST).then_some(TooLarge::Others(times))
+            }
+        };
+        self.nails.iter().enumerate().map(doubt).collect()
+    }
 }
 
 fn outline_of(polygon: &Polygon<f64>) -> Result<Outline, OutlineFault> {

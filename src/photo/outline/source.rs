@@ -1,19 +1,21 @@
 //! The nails of one photograph, from whichever source knows them.
 //!
 //! The first of: the manifest's outline, `<stem>.json` beside the photograph, a mask of the same stem, detection. Of what is
-//! not needed nothing is done: an annotated photograph is not searched, a drawn axis is not looked for. A nail whose
-//! outline or axis is not trusted is listed with the reason and left out, not guessed.
+//! not needed nothing is done: an annotated photograph is not searched. A nail whose outline or axis is not trusted is listed
+//! with the reason and left out, not guessed: so is one whose drawn axis, or `--distal`, the picture surely contradicts, save
+//! where both say the same.
 
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
 use super::annotated::{self, AnnotationFault, Drawn};
+use super::axis::{Verdict, agree, turned_since, verdict};
 use super::{
-    Axis, DetectOptions, MaskFault, NothingFound, Outline, Side, detect, find_axes, find_axes_towards,
-    outlines_from_mask,
+    Axis, DetectOptions, MaskFault, MaskValues, NothingFound, Outline, Side, detect, find_axes, find_axes_towards,
+    outlines_from_mask, outlines_of_values,
 };
-use crate::photo::read::{Photograph, ReadFault};
+use crate::photo::read::{MOST_MEGAPIXELS, Photograph, ReadFault};
 use crate::photo::set::{PICTURES, Photo, is_picture};
 
 /// Which sources may be asked.
@@ -38,6 +40,8 @@ pub struct OutlineOptions {
     pub listed_only: bool,
     /// Masks named as the photographs: `<pose>/<stem>.*` or `<stem>.*`.
     pub masks: Option<PathBuf>,
+    /// Which values of a mask are nail; `None`: a mask has two.
+    pub mask_values: Option<MaskValues>,
     /// Settles the direction of nails without an axis, for the whole set.
     pub distal: Option<Side>,
     /// Which picture annotations and masks were drawn on.
@@ -189,13 +193,22 @@ impl OutlineOptions {
     }
 
     fn mask_nails(&self, file: &Path, picture: &Photograph) -> Result<Vec<Nail>, SourceFault> {
-        let mut mask =
-            Photograph::read(file).map_err(|why| SourceFault::MaskFile { file: file.to_owned(), why })?.image;
+        // A mask is as large as its photograph, which was read already.
+        let megapixels = (u64::from(picture.image.width()) * u64::from(picture.image.height())).div_ceil(1_000_000);
+        let megapixels = u32::try_from(megapixels).unwrap_or(u32::MAX).max(MOST_MEGAPIXELS);
+        let mut mask = Photograph::read_up_to(file, megapixels)
+            .map_err(|why| SourceFault::MaskFile { file: file.to_owned(), why })?
+            .image;
         let size = [mask.width(), mask.height()];
         if self.drawn.is_stored(Some(size), picture, &file.display().to_string())? {
             mask.apply_orientation(picture.orientation);
         }
-        let regions = outlines_from_mask(&mask).map_err(|why| SourceFault::Mask { file: file.to_owned(), why })?;
+        let regions = match self.mask_values {
+            Some(values) => outlines_of_values(&mask, values),
+            None => outlines_from_mask(&mask),
+        }
+        .map_err(|why| SourceFault::Mask { file: file.to_owned(), why })?;
+        let too_large = regions.too_large(f64::from(mask.width()) * f64::from(mask.height()));
         let mut nails: Vec<Nail> = regions
             .nails
             .into_iter()
@@ -208,6 +221,12 @@ impl OutlineOptions {
             })
             .collect();
         self.complete_axes(picture, &mut nails);
+        for (nail, why) in nails.iter_mut().zip(too_large) {
+            if let Some(why) = why {
+                nail.reason = format!("{why} Erase it from the mask where it is.");
+                nail.confidence = None;
+            }
+        }
         if nails.is_empty() && regions.dropped.is_empty() {
             return Err(SourceFault::EmptyMask(file.to_owned()));
         }
@@ -241,14 +260,26 @@ impl OutlineOptions {
             .collect())
     }
 
-    /// Looks for the axes that nobody drew.
+    /// Looks for the axes that nobody drew, and doubts those that the picture surely contradicts.
     fn complete_axes(&self, picture: &Photograph, nails: &mut [Nail]) {
+        self.doubt_drawn(picture, nails);
         let open: Vec<usize> =
             (0..nails.len()).filter(|&k| nails[k].outline.is_some() && nails[k].axis.is_none()).collect();
         let outlines: Vec<Outline> = open.iter().filter_map(|&k| nails[k].outline.clone()).collect();
         if let Some(side) = self.distal {
             for (&k, axis) in open.iter().zip(find_axes_towards(&picture.image, &outlines, side)) {
                 nails[k].axis = Some(axis);
+                let Some(outline) = &nails[k].outline else { continue };
+                if let Verdict::Contradicts(found) = verdict(&picture.image, outline, axis) {
+                    nails[k].reason = format!(
+                        "by --distal its axis is at {:.0} degrees, by the picture at {:.0} (confidence {:.2}; clockwise from up); \
+                         draw its `axis` in LabelMe, and where both are given alike they are believed",
+                        axis.clockwise_deg(),
+                        found.axis.clockwise_deg(),
+                        found.confidence
+                    );
+                    nails[k].confidence = None;
+                }
             }
         } else if !outlines.is_empty() {
             for (&k, found) in open.iter().zip(find_axes(&picture.image, &outlines)) {
@@ -263,6 +294,48 @@ impl OutlineOptions {
                     }
                 }
             }
+        }
+    }
+}
+
+impl OutlineOptions {
+    /// Doubts drawn axes that the picture surely contradicts, and all of an annotation that fits the turned picture better.
+    /// Where `--distal` says the same as a drawn axis, that is believed.
+    fn doubt_drawn(&self, picture: &Photograph, nails: &mut [Nail]) {
+        let image = &picture.image;
+        let mut drawn = Vec::new();
+        let mut sure = true;
+        for (k, nail) in nails.iter_mut().enumerate() {
+            let (Some(outline), Some(axis)) = (&nail.outline, nail.axis) else { continue };
+            if self.distal.is_some_and(|side| agree(side.axis(), axis)) {
+                continue;
+            }
+            drawn.push(k);
+            let said = verdict(image, outline, axis);
+            sure &= said == Verdict::Agrees;
+            if let Verdict::Contradicts(found) = said {
+                nail.reason = format!(
+                    "its drawn axis is at {:.0} degrees, by the picture at {:.0} (confidence {:.2}; clockwise from up); correct \
+                     the line, or, where it is right, say --distal as well",
+                    axis.clockwise_deg(),
+                    found.axis.clockwise_deg(),
+                    found.confidence
+                );
+                nail.confidence = None;
+            }
+        }
+        if sure {
+            return;
+        }
+        let both = drawn.iter().filter_map(|&k| nails[k].outline.as_ref().zip(nails[k].axis)).collect::<Vec<_>>();
+        let Some(turned) = turned_since(image, &both) else { return };
+        for k in drawn {
+            let also = if nails[k].reason.is_empty() { "" } else { "; " };
+            nails[k].reason += &format!(
+                "{also}the annotation fits the picture better {turned}: was the picture turned after it was drawn? draw it \
+                 again on the picture as it is, or, where it is right, say --distal as well"
+            );
+            nails[k].confidence = None;
         }
     }
 }

@@ -44,20 +44,33 @@ pub(super) static NORMALIZE: Kind = Kind {
             about: "the normalized pictures, <pose>/<subject>.png",
         },
     ],
-    revision: 1,
+    revision: 2,
     keys: KEYS,
     prepare: |keys| Ok(Arc::new(Normalize::prepare(keys)?)),
 };
 
 const OUTLINES: &str = "outlines";
 const PICTURES: &str = "pictures";
-const KEYS: &[&str] =
-    &["outline", "distal", "annotations", "size", "margin", "channel", "linear", "resample", "detect_size"];
+const KEYS: &[&str] = &[
+    "outline",
+    "mask_value",
+    "distal",
+    "annotations",
+    "size",
+    "margin",
+    "channel",
+    "linear",
+    "white",
+    "max_megapixels",
+    "resample",
+    "detect_size",
+];
 
 #[derive(Debug, Clone)]
 struct Normalize {
     normalization: Normalization,
     outlines: OutlineOptions,
+    max_megapixels: Option<u32>,
 }
 
 impl Normalize {
@@ -85,23 +98,31 @@ impl Normalize {
             channel: given.choice("channel", &channels)?.unwrap_or(usual.channel),
             linear: given.flag("linear")?,
             resample: given.choice("resample", &resamples)?.unwrap_or(usual.resample),
+            white: given
+                .whole("white", u64::from(*Normalization::WHITES.start())..=u64::from(*Normalization::WHITES.end()))?
+                .map(|white| u16::try_from(white).expect("at most 65535")),
         };
+        let max_megapixels = given.whole("max_megapixels", 1..=10_000)?;
+        let max_megapixels = max_megapixels.map(|most| u32::try_from(most).expect("at most 10000"));
         let outlines = OutlineOptions {
             sources: given.choice("outline", &sources)?.unwrap_or_default(),
             // What the task's results hang on is among its inputs.
             listed_only: true,
             masks: None,
+            mask_values: given.parsed("mask_value", str::parse)?,
             distal: given.choice("distal", &sides)?,
             drawn: given.choice("annotations", &drawn)?.unwrap_or_default(),
             detect: DetectOptions { working_size_px, ..detect },
         };
-        Ok(Self { normalization: normalization.check().map_err(|what| fault("", what))?, outlines })
+        let normalization = normalization.check().map_err(|what| fault("", what))?;
+        Ok(Self { normalization, outlines, max_megapixels })
     }
 
     fn photos_options(&self, demand: &Demand) -> PhotosOptions {
         PhotosOptions {
             normalization: self.normalization,
             outlines: self.outlines.clone(),
+            max_megapixels: self.max_megapixels,
             keep_detected: false,
             parts: Some(PartOptions { pictures: demand.parts.contains(PICTURES) }),
         }
@@ -135,6 +156,8 @@ impl Prepared for Normalize {
             "normalization": self.normalization,
             "outline": self.outlines.sources,
             "distal": self.outlines.distal,
+            "mask_value": self.outlines.mask_values,
+            "max_megapixels": self.max_megapixels,
             "annotations": self.outlines.drawn,
             "detect_size": self.outlines.detect.working_size_px,
             "pictures": demand.parts.contains(PICTURES),

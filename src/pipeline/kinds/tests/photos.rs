@@ -128,7 +128,7 @@ fn sums_that_stand_are_left_where_a_member_is_gone_or_has_changed() {
     assert!(anew.bytes() == without.bytes());
 
     let photo = dir.path().join("photos/flexion/s03.png");
-    image::imageops::flip_horizontal(&image::open(&photo).unwrap()).save(&photo).unwrap();
+    image::open(&photo).unwrap().brighten(-20).save(&photo).unwrap();
     let (third, _) = normalize(dir.path(), "s03", &["sums"]).run(2, None);
     let changed = maps(&[(SUBJECTS[0], &parts[0]), (SUBJECTS[1], &parts[1]), ("s03", &third)], &["maps"], None);
     let (anew, (again, made)) = (changed.run(2, None).0, changed.run(2, Some(three.path())));
@@ -206,4 +206,17 @@ fn the_plan_leaves_out_what_photographs_do_not_need() {
         .collect();
     let steps = prepared(&NORMALIZE, OPTIONS).steps(&colour, &wanting(&["sums", "pictures"])).unwrap();
     assert!(step(&steps, "channel").0 && step(&steps, "detection").0 && step(&steps, "pictures written").0);
+}
+
+#[test]
+fn white_and_mask_values_are_part_of_what_a_task_is() {
+    let options = |keys: &str| super::prepared(&NORMALIZE, keys).options(&wanting(&["sums"]));
+    let plain = options("");
+    assert!(plain["normalization"].get("white").is_none() && plain["mask_value"].is_null());
+    let said = options("white = 4095\nmask_value = '250..255'\nmax_megapixels = 400");
+    assert_eq!(said["normalization"]["white"], 4095);
+    assert_eq!((&said["mask_value"], &said["max_megapixels"]), (&"250..255".into(), &400.into()));
+    for keys in ["white = 7", "mask_value = '9..1'", "max_megapixels = 0"] {
+        assert!((NORMALIZE.prepare)(keys.parse().unwrap()).is_err(), "{keys}");
+    }
 }
