@@ -121,7 +121,7 @@ fn start(dir: &Dir, request: &str) -> Child {
 #[test]
 fn what_a_killed_run_left_is_cleared_and_what_runs_is_left_alone() {
     let dir = Dir::new();
-    let mut long = start(&dir, "phantom video --seed 1 --seconds 600 --out out -q");
+    let mut long = start(&dir, "phantom video --seed 1 --seconds 60 --out out -q");
     let begun = Instant::now();
     let at_work = loop {
         let there = hidden(&dir, "out");
@@ -198,7 +198,8 @@ fn pipes_are_read_devices_are_refused_and_a_wait_ends_at_once() {
     std::thread::sleep(Duration::from_millis(300));
     assert!(waiting.try_wait().unwrap().is_none(), "it waits");
     let interrupted = Instant::now();
-    assert!(Command::new("kill").args(["-INT", &waiting.id().to_string()]).status().unwrap().success());
+    let kill = format!("kill -INT {}", waiting.id());
+    assert!(Command::new("bash").args(["-c", &kill]).status().unwrap().success());
     let status = waiting.wait().unwrap();
     assert!(interrupted.elapsed() < Duration::from_secs(5), "{:?}", interrupted.elapsed());
     assert_eq!(status.code(), Some(130));

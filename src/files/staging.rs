@@ -565,7 +565,7 @@ mod tests {
             assert!(new > 0 && new <= changed.len(), "{after}: {now:?} {changed:?}");
             assert!(kept.iter().all(|folder| folder.is_dir()), "{kept:?}");
             let old = now.iter().filter(|(_, text)| text == "old").count();
-            assert_eq!(old, 3, "{after}: nothing is lost: {now:?}");
+            assert!(old >= 3, "{after}: nothing is lost: {now:?}");
         }
         assert!(half >= 4, "{half}");
     }
