@@ -158,15 +158,10 @@ impl LabelMe {
     /// [`Error::Read`], [`Error::TooLong`] and [`Error::Parse`].
     pub fn read(path: &Path) -> Result<Self, Error> {
         let refused = |source: io::Error| Error::Read { path: path.to_owned(), source };
-        let file = std::fs::File::open(path).map_err(refused)?;
-        let too_long = || Error::TooLong { path: path.to_owned() };
-        if file.metadata().map_err(refused)?.len() > MOST_BYTES {
-            return Err(too_long());
-        }
         let mut bytes = Vec::new();
-        file.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(refused)?;
+        crate::input::open(path).map_err(refused)?.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(refused)?;
         if bytes.len() as u64 > MOST_BYTES {
-            return Err(too_long());
+            return Err(Error::TooLong { path: path.to_owned() });
         }
         let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
         serde_json::from_slice(text).map_err(|source| Error::Parse { path: path.to_owned(), source })
