@@ -104,7 +104,7 @@ fn writes_the_seeds_of_binary_formats() {
         let all = (0..16).flat_map(|y| (0..24).map(move |x| (x, y)));
         all.map(|(x, y)| value(within(x, y), other(x, y))).collect()
     };
-    let white = pixels(&|a, b| 200 * (a | b));
+    let white = pixels(&|a, b| (a | b).saturating_mul(200));
     write("mask/white", &[&[24, 0][..], &white].concat());
     write("mask/numbers", &[&[24, 0][..], &pixels(&|a, b| a + 2 * b)].concat());
     let words: Vec<u8> = white.iter().flat_map(|value| [0, *value]).collect();

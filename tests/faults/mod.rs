@@ -37,8 +37,8 @@ const JOBS: &[Job] = &[
     fast("photos", "photos in/s01 --size 16 --out out/maps", "photos in/both --size 16 --out out/maps"),
     slow(
         "photos --write-outlines",
+        "photos in/s01 --outline detect --write-outlines=out/drawn --size 24 --out out/maps",
         "photos in/s01 --outline detect --write-outlines=out/drawn --size 16 --out out/maps",
-        "photos in/both --outline detect --write-outlines=out/drawn --size 16 --out out/maps",
     ),
     fast("photos merge", "photos merge in/maps1 --out out/maps", "photos merge in/maps1 in/maps2 --out out/maps"),
     slow(

@@ -13,7 +13,7 @@ fn main() -> ExitCode {
         TARGETS.iter().for_each(|target| println!("{}", target.name));
         return ExitCode::from(if name.is_empty() { 0 } else { 2 });
     };
-    let desk = Desk::new();
+    let desk = std::panic::AssertUnwindSafe(Desk::new());
     afl::fuzz!(|bytes: &[u8]| (target.run)(&desk, bytes));
     ExitCode::SUCCESS
 }

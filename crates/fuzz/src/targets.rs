@@ -71,7 +71,7 @@ impl Desk {
             keys: Keys::default(),
             inputs: Vec::new(),
             options: serde_json::Value::Null,
-            share: Share::Each,
+            share: Share::Part(0),
             memory: 0,
             cost_s: 0.0,
             job: Arc::new(Toy),
@@ -108,7 +108,7 @@ fn photograph(desk: &Desk, bytes: &[u8]) {
 
 /// Outlines onto a grey photograph of 48 x 64 pixels, on to the normalized nail.
 fn labelme(desk: &Desk, bytes: &[u8]) {
-    let Ok(nails) = outline::read(&desk.file("nails.json", bytes), &desk.photo, Drawn::Auto) else { return };
+    let Ok(nails) = outline::read_annotated(&desk.file("nails.json", bytes), &desk.photo, Drawn::Auto) else { return };
     let with = Normalization { size: 8, resample: Resample::Nearest, ..Normalization::default() };
     for nail in nails.into_iter().take(4) {
         let Ok(outline) = nail.outline else { continue };
