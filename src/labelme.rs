@@ -145,7 +145,7 @@ impl LabelMe {
     /// # Errors
     /// [`Error::Read`] and [`Error::Parse`].
     pub fn read(path: &Path) -> Result<Self, Error> {
-        let bytes = std::fs::read(path).map_err(|source| Error::Read { path: path.to_owned(), source })?;
+        let bytes = crate::input::read(path).map_err(|source| Error::Read { path: path.to_owned(), source })?;
         let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
         serde_json::from_slice(text).map_err(|source| Error::Parse { path: path.to_owned(), source })
     }

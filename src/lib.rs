@@ -5,7 +5,7 @@
 //! as in 3.2.3 and 3.3.5, with the time that a [`clock`] in the picture tells; [`align`] brings the angles onto the rows of photodiode
 //! and force logs; [`predictor`] makes of those models of force and posture, as in chapter 5. [`hemodynamics`] is the blood under the nail
 //! that the photodiodes see, as in 4.3. [`phantom`] makes such photographs, videos and logs with exact truth; [`tradeoff`] measures error against
-//! run time; [`doctor`] looks at what is installed. [`video`], [`table`], [`figure`], [`files`], [`flexion`], [`labelme`], [`log`], [`stages`], [`timebase`] and [`words`] are the ground floor that these stand on.
+//! run time; [`doctor`] looks at what is installed. [`video`], [`table`], [`figure`], [`files`], [`flexion`], [`input`], [`labelme`], [`log`], [`stages`], [`timebase`] and [`words`] are the ground floor that these stand on.
 //!
 //! Everywhere: the centre of a picture's top-left pixel is (0, 0), x to the right, y down; units are part of a name
 //! (`length_px`, `run_s`); what is not known is missing (`None`, NaN, an empty cell), never zero.
@@ -17,8 +17,10 @@ pub mod figure;
 pub mod files;
 pub mod flexion;
 pub mod hemodynamics;
+pub mod input;
 pub mod labelme;
 pub mod log;
+mod npy;
 pub mod phantom;
 pub mod photo;
 pub mod pipeline;

@@ -50,16 +50,21 @@ pub(crate) fn place(text: &str, at: usize) -> (usize, usize) {
     (line, 1 + String::from_utf8_lossy(&before[start..]).chars().count())
 }
 
-/// Faults as they are found.
+/// Faults that are named of one file; who corrects so many looks again (assumed).
+const MOST: usize = 100;
+
+/// Faults as they are found, the first [`MOST`] of them.
 #[derive(Debug)]
 pub(crate) struct Findings<'a> {
     text: &'a str,
     faults: Vec<Fault>,
+    /// How many more there are.
+    more: usize,
 }
 
 impl<'a> Findings<'a> {
     pub(crate) fn new(text: &'a str) -> Self {
-        Self { text, faults: Vec::new() }
+        Self { text, faults: Vec::new(), more: 0 }
     }
 
     /// The line of a place, from 1.
@@ -67,7 +72,16 @@ impl<'a> Findings<'a> {
         place(self.text, at).0
     }
 
+    /// Whether faults are only counted from here on.
+    pub(crate) fn is_full(&self) -> bool {
+        self.faults.len() >= MOST
+    }
+
     pub(crate) fn fault(&mut self, at: usize, what: impl Into<String>) {
+        if self.is_full() {
+            self.more += 1;
+            return;
+        }
         let (line, column) = place(self.text, at);
         let fault = Fault { line, column, what: what.into() };
         if !self.faults.contains(&fault) {
@@ -82,6 +96,12 @@ impl<'a> Findings<'a> {
         let mut sound = true;
         for error in &errors {
             let Range { start, end } = error.span().unwrap_or(self.text.len()..self.text.len());
+            if self.is_full() {
+                // Whatever it says: there is a fault.
+                sound = false;
+                self.more += 1;
+                continue;
+            }
             let doubled = error.message().starts_with("duplicate key");
             sound &= doubled;
             let what = if doubled {
@@ -103,6 +123,10 @@ impl<'a> Findings<'a> {
     /// The faults in the order of lines, if there are any.
     pub(crate) fn finish(mut self) -> Result<(), Vec<Fault>> {
         self.faults.sort_by_key(|f| (f.line, f.column));
+        if let Some(&Fault { line, column, .. }) = self.faults.last().filter(|_| self.more > 0) {
+            let what = format!("{} more faults are not named; correct these first", self.more);
+            self.faults.push(Fault { line, column, what });
+        }
         if self.faults.is_empty() { Ok(()) } else { Err(self.faults) }
     }
 
@@ -124,6 +148,10 @@ impl<'a> Findings<'a> {
     /// Tells of keys that are not `known`.
     pub(crate) fn unknown_keys(&mut self, entries: &[Entry<'_>], known: &[&str], within: &str) {
         for entry in entries.iter().filter(|e| !known.contains(&e.key)) {
+            if self.is_full() {
+                self.more += 1;
+                continue;
+            }
             self.fault(entry.key_at, format!("unknown {within} `{}`; {}", entry.key, instead(entry.key, known)));
         }
     }

@@ -79,6 +79,16 @@ fn by_hand_it_hands_both_to_slurm_or_says_how_it_is_called() {
     assert_eq!(calls.len(), 2, "{calls:?}");
     assert!(calls[0].contains("--array=1-3") && calls[0].ends_with("pipeline.toml out 3"), "{calls:?}");
     assert!(calls[1].contains("--dependency=afterany:41") && calls[1].ends_with("pipeline.toml out 3"), "{calls:?}");
+    // A node of one processor can run them, and whoever has more says so: no #SBATCH line, which nothing overrides, asks for any.
+    assert!(calls.iter().all(|call| call.contains("--cpus-per-task=1 ") && call.contains("--mem=4000M ")), "{calls:?}");
+    let output =
+        script(&dir, &["pipeline.toml", "out", "3"], &[("PATH", &path), ("LUNULA_CPUS", "2"), ("LUNULA_TIME", "10")]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let calls = std::fs::read_to_string(dir.path("calls")).unwrap();
+    let last: Vec<&str> = calls.lines().skip(2).collect();
+    assert!(last.iter().all(|call| call.contains("--cpus-per-task=2 ") && call.contains("--time=10 ")), "{last:?}");
+    let asked = std::fs::read_to_string(SCRIPT).unwrap();
+    assert!(!asked.lines().any(|line| line.starts_with("#SBATCH --cpus") || line.starts_with("#SBATCH --mem")));
     let output = script(&dir, &["pipeline.toml"], &[]);
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("PIPELINE.toml OUT N"));

@@ -5,7 +5,7 @@ use std::process::Command;
 use crate::util::Dir;
 
 /// The commands of `lunula --help`.
-fn commands(dir: &Dir) -> Vec<String> {
+pub(crate) fn commands(dir: &Dir) -> Vec<String> {
     let help = dir.lunula(&["--help"]).expect(0).stdout;
     let listed = help.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
     // A command begins in the third column; what follows of its description stands further in.

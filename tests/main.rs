@@ -6,6 +6,7 @@ mod align_bad_input;
 mod cluster;
 mod compare;
 mod detection;
+mod disks;
 mod doctor;
 #[cfg(all(target_os = "linux", target_arch = "x86_64"))]
 mod faults;
@@ -35,6 +36,7 @@ mod predictor_predict;
 mod predictor_train;
 mod simulate;
 mod simulate_extremes;
+mod stdout;
 mod trajectory;
 mod two_programs;
 mod util;

@@ -131,10 +131,15 @@ say "Snakemake on Slurm"
 snake slurm --profile "$here/slurm"
 same slurm
 say "an array of Slurm's"
-LUNULA=$lunula SBATCH_CPUS_PER_TASK=1 bash "$here/array.sbatch" pipeline.toml array 3
+LUNULA=$lunula LUNULA_CPUS=1 LUNULA_MEMORY=1000M bash "$here/array.sbatch" pipeline.toml array 3
 for _ in $(seq 300); do
   [ -n "$(squeue -h)" ] || break
+  # A job that this node can't run at all waits for ever: Slurm says why.
+  stuck=$(squeue -h -t PENDING -o '%i: %r' | grep -vE ': (None|Priority|Resources|Dependency|BeginTime)$' || true)
+  [ -z "$stuck" ] || { echo "jobs that Slurm can't start: $stuck" >&2; exit 1; }
   sleep 1
 done
+[ -z "$(squeue -h)" ] || { squeue >&2; echo "jobs of the array did not end in 300 s" >&2; exit 1; }
+[ -d array ] || { tail -n 20 slurm-*.out >&2; echo "the array and its merge ended without results" >&2; exit 1; }
 same array
 say "all the same"

@@ -1,12 +1,9 @@
 //! `lunula completions`: what a shell needs to complete commands and options.
 
-use std::io::Write as _;
-
-use anyhow::Context as _;
 use clap::{Args, CommandFactory as _};
 use clap_complete::{Shell, generate};
 
-use super::{Cli, Outcome};
+use super::{Cli, Outcome, out};
 
 /// Commands and options for a shell to complete, on standard output
 ///
@@ -24,6 +21,6 @@ pub(super) struct CompletionsArgs {
 pub(super) fn run(args: &CompletionsArgs) -> anyhow::Result<Outcome> {
     let mut text = Vec::new();
     generate(args.shell, &mut Cli::command(), "lunula", &mut text);
-    std::io::stdout().write_all(&text).context("standard output")?;
+    out::print(&text);
     Ok(Outcome::Done)
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use clap::Args;
-use lunula::files::write_whole;
+use lunula::files::{clear_leftovers, write_whole};
 use lunula::pipeline::propose;
 use serde_json::json;
 
@@ -33,6 +33,7 @@ pub(super) fn run(args: &InitArgs) -> anyhow::Result<Outcome> {
     }
     let from = seen_from(&args.folder, &out)?;
     let text = propose(&args.folder, &from)?;
+    clear_leftovers(out.parent().filter(|home| !home.as_os_str().is_empty()).unwrap_or(Path::new(".")));
     write_whole(&out, text.as_bytes())?;
     args.common.print_json(&json!({ "job": "init", "pipeline": out, "failed": [] }))?;
     args.common.say(&format!(

@@ -1,6 +1,7 @@
 //! The command line: one file a command. Arguments in, one job called, tables and pictures out; no thinking here.
 //!
-//! Exit status: 0 all done; 1 done, but some inputs failed (each is named on standard error); 2 nothing done; 130 interrupted.
+//! Exit status: 0 all done; 1 done, but some inputs failed, or what was to be said or written after the results could not be (each is named on
+//! standard error); 2 nothing done, nothing changed; 130 interrupted.
 
 mod align;
 mod completions;
@@ -10,6 +11,7 @@ mod init;
 mod man;
 mod memory;
 mod merge;
+mod out;
 mod phantom;
 mod photos;
 mod posture;
@@ -18,7 +20,7 @@ mod run;
 mod tradeoff;
 mod trajectory;
 
-use std::io::{IsTerminal, Write};
+use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -28,8 +30,11 @@ use anyhow::{Context, bail};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use lunula::files::results_stand;
+use lunula::input;
 use lunula::stages::{Fate, Stage, Step};
 use lunula::words::Words;
+use out::print_line;
 
 /// Ground truth for fingernail sensing: nail photographs to coloration maps, videos to joint angles,
 /// angles and photodiode logs to labelled training sets, those to models of force and posture.
@@ -48,8 +53,9 @@ struct Cli {
 
 const AFTER_HELP: &str = "lunula COMMAND --help tells more of each.
 
-Exit status: 0 all done; 1 done, but some inputs failed (each is named on standard error, the others are done); \
-2 nothing done; 130 interrupted. Results appear whole or not at all; what stood before a failed run is as it was.";
+Exit status: 0 all done; 1 done, but some inputs failed (each is named on standard error, the others are done), or results stand and what \
+comes after them, as a report or words on standard output, could not be written; 2 nothing done, nothing changed; 130 interrupted. Results \
+appear whole or not at all; what stood before a failed run is as it was.";
 
 #[derive(Debug, Subcommand)]
 enum Command {
@@ -120,7 +126,16 @@ struct Stopped;
 
 /// Parses and runs the command; what needs video (`VIDEO` false) is handed over to [`WITH_VIDEO`].
 pub(crate) fn run<const VIDEO: bool>() -> ExitCode {
-    let outcome = match Cli::parse().command {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        // Help and version.
+        Err(shown) if !shown.use_stderr() => {
+            out::note(shown.print());
+            return ended_with(Ok(Outcome::Done));
+        }
+        Err(wrong) => wrong.exit(),
+    };
+    ended_with(match cli.command {
         Command::Photos(args) => photos::run(&args),
         Command::Align(args) => align::run(&args),
         Command::Train(args) => predictor::train(&args),
@@ -141,14 +156,30 @@ pub(crate) fn run<const VIDEO: bool>() -> ExitCode {
         Command::Doctor(args) => doctor::run::<VIDEO>(&args),
         Command::Completions(args) => completions::run(&args),
         Command::Man(args) => man::run(&args),
-    };
-    match outcome {
-        Ok(Outcome::Done) => ExitCode::SUCCESS,
-        Ok(Outcome::SomeFailed) => ExitCode::from(1),
+    })
+}
+
+/// Says what is to be said at the end; the exit status.
+fn ended_with(outcome: anyhow::Result<Outcome>) -> ExitCode {
+    let failed = || if results_stand() { 1 } else { 2 };
+    let status = match outcome {
+        Ok(Outcome::Done) => 0,
+        Ok(Outcome::SomeFailed) => 1,
+        Err(_) if input::was_cut() => {
+            eprintln!("error: {Interrupted}");
+            130
+        }
         Err(error) => {
             eprintln!("error: {error:#}");
-            ExitCode::from(if error.is::<Interrupted>() || error.is::<Stopped>() { 130 } else { 2 })
+            if error.is::<Interrupted>() || error.is::<Stopped>() { 130 } else { failed() }
         }
+    };
+    match out::finish() {
+        Err(why) => {
+            eprintln!("error: standard output: cannot be written ({why}); make room, or send it elsewhere");
+            ExitCode::from(if status == 130 { 130 } else { failed() })
+        }
+        Ok(()) => ExitCode::from(status),
     }
 }
 
@@ -180,6 +211,7 @@ impl Common {
         let stop = Arc::new(AtomicBool::new(false));
         let flag = Arc::clone(&stop);
         ctrlc::set_handler(move || {
+            input::interrupt();
             if flag.swap(true, Ordering::Relaxed) {
                 // Asked twice: what was held back is a hidden folder, nothing of the results is touched.
                 std::process::exit(130);
@@ -246,11 +278,6 @@ impl Common {
         }
         Ok(())
     }
-}
-
-/// A reader that has gone away is no error of ours.
-fn print_line(text: &str) {
-    let _ = writeln!(std::io::stdout(), "{text}");
 }
 
 /// A plan's stages, a line each.

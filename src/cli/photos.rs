@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use anyhow::Context;
 use clap::{Args, Subcommand, ValueEnum};
-use lunula::files::Staging;
+use lunula::files::{Places, Staging};
 use lunula::photo::outline::{DetectOptions, Drawn, OutlineOptions, Side, Sources};
 use lunula::photo::{
     Channel, DetectedOutline, NailTable, Normalization, PhotoSet, PhotosError, PhotosOptions, Resample, RunReport,
@@ -200,7 +200,10 @@ pub(super) fn run(args: &PhotosArgs) -> anyhow::Result<Outcome> {
         Err(PhotosError::Interrupted) => return Err(Interrupted.into()),
         Err(PhotosError::NothingUsable { failed, detected }) => {
             // What was found but not trusted is what a person most needs to see.
-            save_outlines(args, &detected, &set)?;
+            let mut places = Places::default();
+            let said = save_outlines(args, &detected, &set, &mut places)?;
+            places.commit()?;
+            said.iter().for_each(|said| args.common.say(said));
             return Err(PhotosError::NothingUsable { failed, detected }.into());
         }
         other => other?,
@@ -210,38 +213,44 @@ pub(super) fn run(args: &PhotosArgs) -> anyhow::Result<Outcome> {
     write_nails(nails.rows(), &staging)?;
     report.write_html(&nails, &staging)?;
     report.write_json(&staging)?;
-    save_outlines(args, &result.detected, &set)?;
-    put_in_place(staging, &args.common, out)?;
+    let mut places = Places::default();
+    let said = save_outlines(args, &result.detected, &set, &mut places)?;
+    put_in_place(staging, places, &args.common, out)?;
+    said.iter().for_each(|said| args.common.say(said));
     finish(&args.common, &report, out)
 }
 
-fn save_outlines(args: &PhotosArgs, detected: &[DetectedOutline], set: &PhotoSet) -> anyhow::Result<()> {
-    let Some(folder) = &args.write_outlines else { return Ok(()) };
-    let kept = keep_outlines(detected, set, folder.as_deref())?;
+/// Returns what to say of them once they are in their places.
+fn save_outlines(
+    args: &PhotosArgs,
+    detected: &[DetectedOutline],
+    set: &PhotoSet,
+    places: &mut Places,
+) -> anyhow::Result<Option<String>> {
+    let Some(folder) = &args.write_outlines else { return Ok(None) };
+    let kept = keep_outlines(detected, set, folder.as_deref(), places)?;
     for path in &kept.stood {
         args.common.warn(&[format!("{} stands and stays as it is", path.display())]);
     }
     let place = folder.as_ref().map_or_else(|| "beside the photographs".into(), |f| format!("in {}", f.display()));
-    args.common.say(&format!("{} outlines saved {place} for LabelMe", kept.written.len()));
-    Ok(())
+    Ok(Some(format!("{} outlines saved {place} for LabelMe", kept.written.len())))
 }
 
 fn run_merge(args: &MergeArgs) -> anyhow::Result<Outcome> {
     args.common.start()?;
     let staging = Staging::new(&args.out)?;
     let report = merge(&args.parts, &staging)?;
-    put_in_place(staging, &args.common, &args.out)?;
+    put_in_place(staging, Places::default(), &args.common, &args.out)?;
     finish(&args.common, &report, &args.out)
 }
 
 /// An earlier run's results beside these are not deleted, but nobody should take them for this run's.
-fn put_in_place(staging: Staging, common: &Common, out: &Path) -> anyhow::Result<()> {
+fn put_in_place(staging: Staging, outlines: Places, common: &Common, out: &Path) -> anyhow::Result<()> {
     if let [first, others @ ..] = &staging.left_from_earlier()[..] {
         let also = if others.is_empty() { String::new() } else { format!(" and {} more", others.len()) };
         common.warn(&[format!("{first}{also} in {} stood before and are not of this run", out.display())]);
     }
-    staging.commit()?;
-    Ok(())
+    Ok(staging.commit_with(outlines)?)
 }
 
 fn print_plan(args: &PhotosArgs, set: &PhotoSet, options: &PhotosOptions) -> Outcome {

@@ -132,7 +132,7 @@ fn show(args: &RunArgs, plan: &Plan) -> anyhow::Result<Outcome> {
 
 /// How a run ended: reports, failures, a last line.
 pub(super) fn finish(common: &Common, plan: &Plan, report: &RunReport, out: &Path) -> anyhow::Result<Outcome> {
-    let page = write_reports(plan, report, out)?;
+    let page = write_reports(plan, report, out);
     common.warn(&report.warnings);
     if !report.strays.is_empty() && !common.quiet {
         let (count, first) = (report.strays.len(), &report.strays[0]);
@@ -146,6 +146,7 @@ pub(super) fn finish(common: &Common, plan: &Plan, report: &RunReport, out: &Pat
     if common.json {
         common.print_json(&summary(plan, report))?;
     }
+    let page = page.context("what was done is in its place, but not the report of it")?;
     let elsewhere = if report.elsewhere > 0 { format!(", {} in other parts", report.elsewhere) } else { String::new() };
     let inputs = match report.failed_inputs().count() {
         0 => String::new(),

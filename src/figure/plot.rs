@@ -136,8 +136,13 @@ pub(super) fn write_both(what: &impl Draw, size: (u32, u32), png: &Path, svg: &P
     let mut pixels = vec![0; (size.0 * size.1 * 3) as usize];
     draw_on_white(what, BitMapBackend::with_buffer(&mut pixels, size).into_drawing_area())?;
     let picture = image::RgbImage::from_raw(size.0, size.1, pixels).context("a picture's pixels")?;
-    picture.save(png).with_context(|| png.display().to_string())?;
-    draw_on_white(what, SVGBackend::new(svg, size).into_drawing_area()).with_context(|| svg.display().to_string())
+    // In memory first: what writes to a file by itself passes over the error of its last bytes.
+    let mut bytes = Vec::new();
+    picture.write_to(&mut std::io::Cursor::new(&mut bytes), image::ImageFormat::Png)?;
+    std::fs::write(png, bytes).with_context(|| png.display().to_string())?;
+    let mut text = String::new();
+    draw_on_white(what, SVGBackend::with_string(&mut text, size).into_drawing_area())?;
+    std::fs::write(svg, text).with_context(|| svg.display().to_string())
 }
 
 /// The legend of all series that have a name.

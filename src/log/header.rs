@@ -7,7 +7,7 @@ use super::columns::{Choice, Columns, Role};
 use super::rows::choose;
 use super::text::{self, Layout};
 use super::{Format, Log, LogError};
-use crate::table;
+use crate::{input, table};
 
 /// A log's columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -59,7 +59,7 @@ impl LogHeader {
 /// The first lines of a file of text; all of one that is packed or whose header is further down.
 fn head(path: &Path) -> Result<Vec<u8>, LogError> {
     let mut bytes = Vec::new();
-    let opened = std::fs::File::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut bytes));
+    let opened = input::open(path).and_then(|file| file.take(HEAD).read_to_end(&mut bytes));
     let plain = opened.is_ok() && !bytes.starts_with(&[0x1f, 0x8b]) && !bytes.contains(&0);
     let whole_lines = bytes.iter().rposition(|&b| b == b'\n').map(|end| &bytes[..=end]);
     match whole_lines.filter(|lines| plain && std::str::from_utf8(lines).is_ok() && Layout::find(lines).is_ok()) {

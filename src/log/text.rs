@@ -5,12 +5,11 @@
 //! NumPy writes it), that is the header. The delimiter is the one of tab, `;` and `,` that the header and the first rows agree
 //! on.
 
-use std::fs;
-use std::io::Read;
 use std::path::Path;
 
 use super::LogError;
 use super::cell::bare;
+use crate::input;
 
 /// Where the parts of a text file are.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -28,15 +27,8 @@ pub(super) struct Layout {
 /// The bytes of a file, unpacked where it is gzipped.
 pub(super) fn unpacked(path: &Path) -> Result<Vec<u8>, LogError> {
     let failed = |what: String| LogError::File { path: path.to_owned(), what };
-    let bytes = fs::read(path).map_err(|why| failed(format!("cannot be read ({why})")))?;
-    if !bytes.starts_with(&[0x1f, 0x8b]) {
-        return Ok(bytes);
-    }
-    let mut unpacked = Vec::new();
-    flate2::read::MultiGzDecoder::new(&bytes[..])
-        .read_to_end(&mut unpacked)
-        .map_err(|why| failed(format!("can't be unpacked ({why}); get it again, whole")))?;
-    Ok(unpacked)
+    let bytes = input::read(path).map_err(|why| failed(format!("cannot be read ({why})")))?;
+    input::unpack(bytes).map_err(failed)
 }
 
 /// The text of a file, unpacked, as UTF-8 where it was UTF-16, without byte-order mark.

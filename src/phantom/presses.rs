@@ -15,13 +15,14 @@ use std::{fs, io};
 use serde::Serialize;
 use thiserror::Error;
 
-use super::place::{in_the_way, put_in_place};
+use super::place::in_the_way;
+use crate::files::{Staging, WriteError};
 use crate::hemodynamics::{HemodynamicsError, Person, Pressed, Recorded};
 use crate::table::{Column, TableError, TableWriter, Value};
 
 const RECORD: &str = "truth/press.json";
-/// The files of a press, the recordings first.
-pub(super) const RESULTS: [&str; 4] = ["slow.csv", "quick.csv", "truth/parameters.toml", RECORD];
+/// The files of a press. The record first: where it stands, what is of one run and what of another is made again.
+pub(super) const RESULTS: [&str; 4] = [RECORD, "slow.csv", "quick.csv", "truth/parameters.toml"];
 
 /// Presses to be made.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
@@ -54,6 +55,9 @@ pub enum Error {
         /// What the system says.
         source: io::Error,
     },
+    /// The results could not be put in their places.
+    #[error(transparent)]
+    Place(#[from] WriteError),
     /// A table could not be written.
     #[error(transparent)]
     Table(#[from] TableError),
@@ -69,16 +73,15 @@ fn refused(path: &Path) -> impl FnOnce(io::Error) -> Error {
 /// # Errors
 /// [`enum@Error`]; what stood under `out` before is as it was.
 pub fn write(options: &PressOptions, out: &Path) -> Result<(), Error> {
+    let staging = Staging::new(out)?;
     if let Some(place) = in_the_way(out, &RESULTS, RECORD) {
         return Err(Error::InTheWay(place));
     }
     let person = Person::middle().and_then(|middle| Person::about(&middle, &options.name, options.seed));
     let person = person.ok_or(Error::Person(options.seed))?;
     let recorded = [person.slowly(options.site)?, person.quickly(options.site)?];
-    fs::create_dir_all(out).map_err(refused(out))?;
-    let stage = tempfile::Builder::new().prefix(".phantom-").tempdir_in(out).map_err(refused(out))?;
-    let [slow, quick, parameters, record] = RESULTS.map(|name| stage.path().join(name));
-    let truth = stage.path().join("truth");
+    let [record, slow, quick, parameters] = RESULTS.map(|name| staging.path().join(name));
+    let truth = staging.path().join("truth");
     fs::create_dir(&truth).map_err(refused(&truth))?;
     for (recorded, path) in recorded.iter().zip([slow, quick]) {
         table(recorded, options.site, &path)?;
@@ -86,7 +89,7 @@ pub fn write(options: &PressOptions, out: &Path) -> Result<(), Error> {
     fs::write(&parameters, person.parameters().to_toml()).map_err(refused(&parameters))?;
     let text = serde_json::to_vec_pretty(&serde_json::json!({ "options": options }));
     fs::write(&record, text.map_err(|error| refused(&record)(error.into()))?).map_err(refused(&record))?;
-    put_in_place(stage.path(), out, &RESULTS).map_err(|(path, source)| Error::Write { path, source })
+    Ok(staging.commit_exactly(&RESULTS)?)
 }
 
 fn table(recorded: &Recorded, site: Pressed, path: &Path) -> Result<(), Error> {

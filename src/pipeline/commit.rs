@@ -16,7 +16,8 @@ use thiserror::Error;
 use super::hashes::{ContentHash, FileFault, Hashes, files_in};
 use super::record::{Output, Record};
 use super::store::{Store, read_record};
-use crate::files::write_whole;
+use crate::files::disk::{rename, sync};
+use crate::files::{note_placed, write_whole};
 
 /// Why results did not come to their place.
 #[derive(Debug, Error)]
@@ -57,6 +58,10 @@ pub(super) fn commit(store: &Store, hashes: &Hashes, work: &Path, record: &Recor
     let place = work.join("record.json");
     let text = serde_json::to_vec(record).map_err(|why| CommitFault::Record(why.to_string()))?;
     write_whole(&place, &text).map_err(|why| CommitFault::Record(why.to_string()))?;
+    // On the disk before anything says that it is done.
+    let folder = files(work);
+    let made: Vec<PathBuf> = record.outputs.iter().map(|output| folder.join(&output.name)).chain([place]).collect();
+    sync(made.iter(), work).map_err(io_fault(work))?;
     put(store, hashes, work, record)
 }
 
@@ -71,13 +76,17 @@ pub(super) fn recover(store: &Store, hashes: &Hashes) -> io::Result<Vec<String>>
                 Err(why) => told.push(format!("{}: what an earlier run made was not put there: {why}", record.task)),
             }
         }
-        if work.is_dir() { fs::remove_dir_all(&work)? } else { fs::remove_file(&work)? }
+        let gone = if work.is_dir() { fs::remove_dir_all(&work) } else { fs::remove_file(&work) };
+        if let Err(why) = gone {
+            told.push(format!("{}: what an earlier run left cannot be removed ({why})", work.display()));
+        }
     }
     Ok(told)
 }
 
 /// The second half of [`commit`]; done again it does nothing.
 fn put(store: &Store, hashes: &Hashes, work: &Path, record: &Record) -> Result<Vec<String>, CommitFault> {
+    note_placed(store.out());
     let folder = store.folder(&record.task);
     let old = store.record(&record.task);
     let ours: HashMap<&str, ContentHash> =
@@ -93,7 +102,7 @@ fn put(store: &Store, hashes: &Hashes, work: &Path, record: &Record) -> Result<V
     if !folder.exists() && files(work).exists() {
         let parent = folder.parent().unwrap_or(store.out());
         fs::create_dir_all(parent).map_err(io_fault(parent))?;
-        fs::rename(files(work), &folder).map_err(io_fault(&folder))?;
+        rename(files(work), &folder).map_err(io_fault(&folder))?;
     }
     if folder.is_file() {
         return Err(CommitFault::FileInTheWay(folder));
@@ -107,10 +116,10 @@ fn put(store: &Store, hashes: &Hashes, work: &Path, record: &Record) -> Result<V
         }
         let to = folder.join(&output.name);
         warnings.extend(clear(hashes, &folder, &to, &[Some(output.sha256), ours.get(output.name.as_str()).copied()])?);
-        fs::rename(&from, &to).map_err(io_fault(&to))?;
+        rename(&from, &to).map_err(io_fault(&to))?;
     }
     let place = store.record_place(&record.task);
-    fs::rename(work.join("record.json"), &place).map_err(io_fault(&place))?;
+    rename(work.join("record.json"), &place).map_err(io_fault(&place))?;
     store.forget_failure(&record.task);
     Ok(warnings)
 }
@@ -176,7 +185,7 @@ fn clear(
         return Ok(None);
     }
     let kept = free_name(to);
-    fs::rename(to, &kept).map_err(io_fault(&kept))?;
+    rename(to, &kept).map_err(io_fault(&kept))?;
     Ok(Some(format!(
         "{}: was edited by hand; it is kept as {}, and the result was made anew",
         to.display(),

@@ -25,6 +25,7 @@ use sha2::{Digest, Sha256};
 use thiserror::Error;
 
 use crate::files::write_whole;
+use crate::input::open_regular;
 
 /// How long before its reading a file must have come to rest, nanoseconds: the coarsest clock of a file system in use (FAT).
 const SETTLED_NS: i128 = 2_000_000_000;
@@ -277,7 +278,7 @@ impl Hashes {
         self.read.fetch_add(1, Ordering::Relaxed);
         let fault = |why| FileFault::of(path, why);
         let read_ns = now_ns();
-        let mut file = File::open(path).map_err(fault)?;
+        let mut file = open_regular(path).map_err(fault)?;
         let before = identity(&file.metadata().map_err(fault)?);
         let mut hash = Sha256::new();
         let room = usize::try_from(before.1.size.saturating_add(1)).unwrap_or(usize::MAX);

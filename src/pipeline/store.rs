@@ -19,7 +19,7 @@ use serde_json::Value;
 use super::hashes::ContentHash;
 use super::record::{FORMAT, Record};
 use super::task::{Task, TaskId};
-use crate::files::write_whole;
+use crate::files::{clear_leftovers, write_whole};
 
 /// A task that failed when it was tried last.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -43,6 +43,13 @@ impl Store {
     /// Makes the folders.
     pub(super) fn create(&self) -> io::Result<()> {
         [self.records(), self.failures(), self.work()].iter().try_for_each(fs::create_dir_all)
+    }
+
+    /// Removes what killed runs left, as far as it is not [`Store::work`]'s.
+    pub(super) fn clear(&self) {
+        [&self.out, &self.home, &self.records(), &self.failures()]
+            .into_iter()
+            .for_each(|folder| clear_leftovers(folder));
     }
 
     pub(super) fn out(&self) -> &Path {

@@ -23,7 +23,6 @@ mod tests;
 mod train;
 pub mod trajectory;
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The crate that does the mathematics.
@@ -67,7 +66,7 @@ impl OpenedModels {
 fn open_models(paths: &[PathBuf]) -> Result<OpenedModels, PredictorError> {
     let mut opened = OpenedModels { predictors: Vec::new(), warnings: Vec::new() };
     for path in paths {
-        let text = fs::read_to_string(path).map_err(|why| PredictorError::Open { path: path.clone(), why })?;
+        let text = crate::input::read_text(path).map_err(|why| PredictorError::Open { path: path.clone(), why })?;
         let found = Predictor::from_json(&text).map_err(|why| PredictorError::Model { path: path.clone(), why })?;
         if found.edited {
             opened.warnings.push(format!(

@@ -5,17 +5,16 @@
 //! Places on the nail: `u` across, from -1 at the left edge of its box to 1 at the right, `v` along, from -1 proximal to 1 distal; the thesis shows pictures and no
 //! numbers, so the regions are read off its words ([`REGIONS`]). A change is a region's mean less that of the nominal pose. Values are shares of full scale.
 
-use std::fs::File;
 use std::path::Path;
 
 use anyhow::{Context, bail};
 use image::GrayAlphaImage;
 use ndarray::Array2;
-use ndarray_npy::ReadNpyExt;
 
 use super::Numbers;
 use crate::figure::{Scale, Sheet, Stretch, Tile, grey_map};
 use crate::files::Staging;
+use crate::npy;
 use crate::phantom::nail::Pose;
 
 /// The box's share of the normalized picture: 320 of 400 pixels (4.2.2).
@@ -45,8 +44,7 @@ struct Map(Array2<f32>);
 
 impl Map {
     fn read(path: &Path) -> anyhow::Result<Self> {
-        let file = File::open(path).with_context(|| path.display().to_string())?;
-        Ok(Self(Array2::<f32>::read_npy(file).with_context(|| path.display().to_string())?))
+        Ok(Self(npy::read(path).map_err(|why| anyhow::anyhow!("{}: {why}", path.display()))?))
     }
 
     /// Known values of a region.
@@ -113,8 +111,8 @@ pub fn coloration_numbers(photos: &Path) -> anyhow::Result<Numbers> {
         means.push((pose, found));
         spreads.extend(map(pose, "sd")?);
         let path = photos.join(format!("maps/{pose}-count.npy"));
-        if let Ok(file) = File::open(&path) {
-            let count = Array2::<u32>::read_npy(file).with_context(|| path.display().to_string())?;
+        if path.exists() {
+            let count = npy::read::<u32>(&path).map_err(|why| anyhow::anyhow!("{}: {why}", path.display()))?;
             counts.extend(count.iter().max().map(|most| f64::from(*most)));
         }
     }
@@ -229,8 +227,11 @@ pub fn coloration_sheets(pictures: &Path, subject: Option<&str>, out: &Path) -> 
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use std::fs::File;
+
     use ndarray_npy::WriteNpyExt;
+
+    use super::*;
 
     /// A map whose value is told by its place.
     fn write(folder: &Path, name: &str, value: impl Fn(f64, f64) -> f64) {

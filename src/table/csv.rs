@@ -6,6 +6,7 @@ use std::path::Path;
 
 use super::cells::CsvCells;
 use super::{Column, ColumnKind, Value, number_text};
+use crate::input;
 
 /// A CSV file in the making.
 #[derive(Debug)]
@@ -57,12 +58,13 @@ impl<W: Write> CsvWriter<W> {
 
 /// The names and the rows of a CSV file.
 pub(super) fn read(path: &Path) -> Result<(Vec<String>, CsvCells), String> {
-    CsvCells::read(std::fs::read(path).map_err(|e| e.to_string())?)
+    CsvCells::read(input::read(path).map_err(|e| e.to_string())?)
 }
 
 /// The names of a CSV file's columns, the rows unread.
 pub(super) fn names(path: &Path) -> Result<Vec<String>, String> {
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(|e| e.to_string())?;
+    let file = input::open(path).map_err(|e| e.to_string())?;
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);
     let names = reader.headers().map_err(|why| match why.kind() {
         csv::ErrorKind::Utf8 { .. } => "the line of names is not UTF-8 text; save the file as UTF-8".to_owned(),
         _ => why.to_string(),

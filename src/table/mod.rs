@@ -11,6 +11,7 @@
 mod cells;
 mod csv;
 mod parquet;
+mod plausible;
 mod read;
 
 use std::path::{Path, PathBuf};

@@ -13,7 +13,8 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::Type;
 
-use super::{Column, ColumnKind, Value, number_value};
+use super::{Column, ColumnKind, Value, number_value, plausible};
+use crate::input;
 
 /// Rows that are held before they are written.
 const GROUP_ROWS: usize = 65_536;
@@ -173,10 +174,18 @@ pub(super) struct Contents {
     pub(super) facts: Vec<(String, String)>,
 }
 
+fn open(path: &Path) -> Result<SerializedFileReader<File>, String> {
+    let file = input::open_regular(path).map_err(|e| e.to_string())?;
+    plausible::check_footer(&file)?;
+    let pages = file.try_clone().map_err(|e| e.to_string())?;
+    let reader = SerializedFileReader::new(file).map_err(|e| format!("not a whole Parquet file ({e})"))?;
+    plausible::check_pages(&pages, reader.metadata())?;
+    Ok(reader)
+}
+
 /// Reads a Parquet file without nested columns.
 pub(super) fn read(path: &Path) -> Result<Contents, String> {
-    let file = File::open(path).map_err(|e| e.to_string())?;
-    let reader = SerializedFileReader::new(file).map_err(|e| format!("not a whole Parquet file ({e})"))?;
+    let reader = open(path)?;
     let schema = reader.metadata().file_metadata().schema_descr();
     let mut names = Vec::new();
     let mut columns = Vec::new();
@@ -196,8 +205,7 @@ pub(super) fn read(path: &Path) -> Result<Contents, String> {
 
 /// The names of a Parquet file's columns, the rows unread.
 pub(super) fn names(path: &Path) -> Result<Vec<String>, String> {
-    let file = File::open(path).map_err(|e| e.to_string())?;
-    let reader = SerializedFileReader::new(file).map_err(|e| format!("not a whole Parquet file ({e})"))?;
+    let reader = open(path)?;
     let schema = reader.metadata().file_metadata().schema_descr();
     Ok((0..schema.num_columns()).map(|k| schema.column(k).path().string()).collect())
 }
@@ -215,31 +223,45 @@ fn read_column(reader: &SerializedFileReader<File>, column: usize) -> Result<Rea
     };
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group).map_err(|e| e.to_string())?;
+        // Pages may say otherwise, without end.
+        let most = rows_of(&read) + usize::try_from(group.metadata().num_rows()).unwrap_or(0);
         let cells = group.get_column_reader(column).map_err(|e| e.to_string())?;
         match (cells, &mut read) {
             (ColumnReader::BoolColumnReader(r), Read::Integers(into)) => {
-                extend::<BoolType, _>(r, into, |v| Ok(i64::from(v)))?
+                extend::<BoolType, _>(r, into, most, |v| Ok(i64::from(v)))?
             }
             (ColumnReader::Int32ColumnReader(r), Read::Integers(into)) => {
                 let unsigned = described.converted_type() == ConvertedType::UINT_32;
-                extend::<Int32Type, _>(r, into, |v| Ok(if unsigned { i64::from(v as u32) } else { i64::from(v) }))?
+                extend::<Int32Type, _>(r, into, most, |v| {
+                    Ok(if unsigned { i64::from(v as u32) } else { i64::from(v) })
+                })?
             }
-            (ColumnReader::Int64ColumnReader(r), Read::Integers(into)) => extend::<Int64Type, _>(r, into, Ok)?,
+            (ColumnReader::Int64ColumnReader(r), Read::Integers(into)) => extend::<Int64Type, _>(r, into, most, Ok)?,
             (ColumnReader::Int64ColumnReader(r), Read::Texts(into)) => {
                 let (a_second, zoned) = stamp_kind(&described).unwrap_or((1, false));
-                extend::<Int64Type, _>(r, into, |v| stamp_text(v, a_second, zoned))?
+                extend::<Int64Type, _>(r, into, most, |v| stamp_text(v, a_second, zoned))?
             }
             (ColumnReader::FloatColumnReader(r), Read::Numbers(into)) => {
-                extend::<FloatType, _>(r, into, |v| Ok(f64::from(v)))?
+                extend::<FloatType, _>(r, into, most, |v| Ok(f64::from(v)))?
             }
-            (ColumnReader::DoubleColumnReader(r), Read::Numbers(into)) => extend::<DoubleType, _>(r, into, Ok)?,
-            (ColumnReader::ByteArrayColumnReader(r), Read::Texts(into)) => extend::<ByteArrayType, _>(r, into, |v| {
-                v.as_utf8().map(str::to_owned).map_err(|_| "not UTF-8 text".to_owned())
-            })?,
+            (ColumnReader::DoubleColumnReader(r), Read::Numbers(into)) => extend::<DoubleType, _>(r, into, most, Ok)?,
+            (ColumnReader::ByteArrayColumnReader(r), Read::Texts(into)) => {
+                extend::<ByteArrayType, _>(r, into, most, |v| {
+                    v.as_utf8().map(str::to_owned).map_err(|_| "not UTF-8 text".to_owned())
+                })?
+            }
             _ => return Err("its type changes within the file".to_owned()),
         }
     }
     Ok(read)
+}
+
+fn rows_of(read: &Read) -> usize {
+    match read {
+        Read::Integers(column) => column.len(),
+        Read::Numbers(column) => column.len(),
+        Read::Texts(column) => column.len(),
+    }
 }
 
 /// Integers that count; not dates, times or decimals.
@@ -277,6 +299,7 @@ fn stamp_text(units: i64, a_second: i64, zoned: bool) -> Result<String, String> 
 fn extend<D: DataType, V>(
     mut reader: ColumnReaderImpl<D>,
     into: &mut Vec<Option<V>>,
+    most: usize,
     convert: impl Fn(D::T) -> Result<V, String>,
 ) -> Result<(), String> {
     let (mut known, mut values) = (Vec::new(), Vec::new());
@@ -287,6 +310,9 @@ fn extend<D: DataType, V>(
             reader.read_records(GROUP_ROWS, Some(&mut known), None, &mut values).map_err(|e| e.to_string())?;
         if rows == 0 {
             return Ok(());
+        }
+        if into.len() + rows > most {
+            return Err("it has more rows than the file says; get it again, whole".to_owned());
         }
         let mut values = values.drain(..);
         for row in 0..rows {

@@ -7,13 +7,13 @@ use std::time::Instant;
 use anyhow::{Context, ensure};
 use geo::{Contains, Point};
 use ndarray::Array2;
-use ndarray_npy::ReadNpyExt;
 use rayon::prelude::*;
 
 use super::peers::{PeerReport, Python, Script};
 use super::rows::{Measured, Row};
 use super::timing::{Effort, Run, Timing, in_turns};
 use crate::files::Staging;
+use crate::npy;
 use crate::photo::outline::{Axis, DetectOptions, Drawn, Outline, OutlineOptions, Sources, detect, read_annotated};
 use crate::photo::{
     NailFrame, Normalization, Photo, PhotoSet, Photograph, PhotosOptions, Resample, Watch, run as run_photos,
@@ -283,8 +283,7 @@ fn errors(scene: &Scene, out: &Path, pictures: impl Iterator<Item = (usize, Stri
 }
 
 fn read_map(path: &Path) -> anyhow::Result<Array2<f32>> {
-    let file = std::fs::File::open(path).with_context(|| path.display().to_string())?;
-    Array2::read_npy(file).with_context(|| path.display().to_string())
+    npy::read(path).map_err(|why| anyhow::anyhow!("{}: {why}", path.display()))
 }
 
 /// Squared differences where both values are known.

@@ -15,6 +15,7 @@ use ffmpeg_next as ffmpeg;
 use super::VideoError;
 use super::extent::{self, Extent};
 use super::hidden::HiddenPackets;
+use crate::input::open_regular;
 
 /// How faults in the stream are met.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -135,10 +136,10 @@ fn open_file(path: &Path) -> Result<File, VideoError> {
     if about.is_dir() {
         return Err(failed("is a folder; name a video file in it".into()));
     }
-    if about.len() == 0 {
+    if about.is_file() && about.len() == 0 {
         return Err(failed("is empty (0 bytes); copy or record it again".into()));
     }
-    File::open(path).map_err(|error| failed(format!("can't be opened: {error}")))
+    open_regular(path).map_err(|error| failed(format!("can't be opened: {error}")))
 }
 
 fn no_video(input: &context::Input) -> String {

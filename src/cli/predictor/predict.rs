@@ -1,6 +1,6 @@
 //! `lunula predict`: voltages to forces and angle.
 
-use std::io::{BufReader, stdin, stdout};
+use std::io::{BufReader, stdin};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
@@ -10,6 +10,7 @@ use lunula::predictor::models::Gate;
 use lunula::predictor::{F_MIN_N, PredictOptions, predict as run_predict, predict_stream};
 
 use super::{Common, Outcome, ended, say_notes};
+use crate::cli::out::Stream;
 
 /// Forces and angle from photodiodes, by models that `lunula train` wrote
 ///
@@ -67,8 +68,7 @@ pub(crate) fn run(args: &PredictArgs) -> anyhow::Result<Outcome> {
         let tell = |note: &str| say_notes(common, &[note.to_owned()]);
         // No row may come for long: whoever interrupts a stream ends it at once, as there is nothing to put in order.
         let stop = AtomicBool::new(false);
-        predict_stream(models, BufReader::new(stdin().lock()), &options, stdout().lock(), tell, &stop)
-            .map_err(ended)?;
+        predict_stream(models, BufReader::new(stdin().lock()), &options, Stream, tell, &stop).map_err(ended)?;
         return Ok(Outcome::Done);
     }
     let stop = common.start()?;

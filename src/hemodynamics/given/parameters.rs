@@ -27,7 +27,7 @@ impl GivenParameters {
             None => Parameters::along_nail(self.units.unwrap_or(2))?,
             Some(path) => {
                 let text =
-                    std::fs::read_to_string(path).map_err(|why| HemodynamicsError::Open { path: path.clone(), why })?;
+                    crate::input::read_text(path).map_err(|why| HemodynamicsError::Open { path: path.clone(), why })?;
                 let parameters = Parameters::from_toml(&text)
                     .map_err(|why| HemodynamicsError::ParameterFile { path: path.clone(), why })?;
                 let found = parameters.units().len();

@@ -30,6 +30,9 @@ pub(super) struct Stream {
     pub(super) offsets_s: Vec<[f64; 2]>,
 }
 
+/// Channels of a stream, and of all in a file (assumed: the largest arrays of electrodes have some thousands). What says more is damaged.
+const MOST_CHANNELS: usize = 65_536;
+
 /// Why reading stops.
 enum Stop {
     /// The bytes end.
@@ -107,6 +110,10 @@ fn add(content: &[u8], streams: &mut Vec<Stream>, places: &mut BTreeMap<[u8; 4],
     if tag == 2 {
         places.insert(id, streams.len());
         streams.push(header(content.0).map_err(Stop::Fault)?);
+        let channels: usize = streams.iter().map(|stream| stream.labels.len()).sum();
+        if channels > MOST_CHANNELS {
+            return Err(Stop::Fault(format!("{channels} channels; no file has more than {MOST_CHANNELS}")));
+        }
         return Ok(());
     }
     let place = *places.get(&id).ok_or_else(|| Stop::Fault("a stream without a header".to_owned()))?;
@@ -154,6 +161,9 @@ fn header(xml: &[u8]) -> Result<Stream, String> {
     let info = document.root_element();
     let said = |name: &str| child(info, name).and_then(|n| n.text()).unwrap_or("").trim();
     let count: usize = said("channel_count").parse().map_err(|_| "the header has no channel_count".to_owned())?;
+    if count > MOST_CHANNELS {
+        return Err(format!("the header says {count} channels; no stream has more than {MOST_CHANNELS}"));
+    }
     let format = said("channel_format").to_owned();
     let numeric = ["int8", "int16", "int32", "int64", "float32", "double64"].contains(&&format[..]);
     if !numeric && format != "string" {

@@ -196,3 +196,16 @@ fn the_formats_clock_resets_read_as_pyxdf_does() {
         assert!(noted(&log, words), "{words}: {:?}", log.notes);
     }
 }
+
+#[test]
+fn a_header_of_very_many_channels_is_refused_before_memory_is_taken() {
+    let said = |count: &str| {
+        let xml =
+            format!("<info><channel_count>{count}</channel_count><channel_format>float32</channel_format></info>");
+        chunk(2, &[&7_u32.to_le_bytes()[..], xml.as_bytes()].concat())
+    };
+    for parts in [vec![said("2147483648")], vec![said("18446744073709551615")], vec![said("65000"); 2]] {
+        let refused = read_with(&parts, None).unwrap_err();
+        assert!(refused.contains("log.xdf") && refused.contains("more than 65536"), "{refused}");
+    }
+}

@@ -9,14 +9,16 @@ use thiserror::Error;
 
 use super::angles::write_angles;
 use super::{LogOptions, LogScene, Row, Stamps};
+use crate::files::{Staging, WriteError};
 use crate::phantom::finger::JOINTS;
-use crate::phantom::place::{in_the_way, put_in_place};
+use crate::phantom::place::in_the_way;
 use crate::phantom::sensor::CHANNELS;
 use crate::table::{Column, TableError, TableWriter, Value};
 
 /// The file that says that a log was written here.
 const RECORD: &str = "truth/log.json";
-const RESULTS: [&str; 4] = ["log.csv", "truth/log.csv", "truth/angles.csv", RECORD];
+/// The record first: where it stands, what is of one run and what of another is made again.
+const RESULTS: [&str; 4] = [RECORD, "log.csv", "truth/log.csv", "truth/angles.csv"];
 const FORCES: [&str; 3] = ["Fx_N", "Fy_N", "Fz_N"];
 /// Decimals of stamps, of readings (a step of the converter is 0.00015 V) and of forces (steps of 0.0008 N).
 const STAMP_DECIMALS: usize = 6;
@@ -37,6 +39,9 @@ pub enum Error {
         /// What the system says.
         source: io::Error,
     },
+    /// The results could not be put in their places.
+    #[error(transparent)]
+    Place(#[from] WriteError),
     /// A table could not be written.
     #[error(transparent)]
     Table(#[from] TableError),
@@ -69,30 +74,24 @@ fn refused(path: &Path) -> impl FnOnce(io::Error) -> Error {
 /// [`enum@Error`]; what stood under `out` before is as it was.
 pub fn write(scene: &LogScene, out: &Path) -> Result<Summary, Error> {
     let begin = Instant::now();
+    let staging = Staging::new(out)?;
     if let Some(place) = in_the_way(out, &RESULTS, RECORD) {
         return Err(Error::InTheWay(place));
     }
-    let stood = out.is_dir();
-    let written = write_staged(scene, out);
-    if written.is_err() && !stood {
-        // Best effort: only an empty folder can be left.
-        let _ = fs::remove_dir(out);
-    }
-    written?;
+    write_staged(scene, staging)?;
     let lit = scene.rows().iter().filter(|row| row.lit).count();
     Ok(Summary { rows: scene.rows().len(), lit, write_s: begin.elapsed().as_secs_f64() })
 }
 
-fn write_staged(scene: &LogScene, out: &Path) -> Result<(), Error> {
-    fs::create_dir_all(out).map_err(refused(out))?;
-    let stage = tempfile::Builder::new().prefix(".phantom-").tempdir_in(out).map_err(refused(out))?;
-    let truth = stage.path().join("truth");
+fn write_staged(scene: &LogScene, staging: Staging) -> Result<(), Error> {
+    let truth = staging.path().join("truth");
     fs::create_dir(&truth).map_err(refused(&truth))?;
-    write_log(scene, &stage.path().join(RESULTS[0]))?;
-    write_truth(scene, &stage.path().join(RESULTS[1]))?;
-    write_angles(scene, &stage.path().join(RESULTS[2]))?;
-    write_record(scene, &stage.path().join(RECORD))?;
-    put_in_place(stage.path(), out, &RESULTS).map_err(|(path, source)| Error::Write { path, source })
+    let [record, log, true_log, angles] = RESULTS.map(|name| staging.path().join(name));
+    write_log(scene, &log)?;
+    write_truth(scene, &true_log)?;
+    write_angles(scene, &angles)?;
+    write_record(scene, &record)?;
+    Ok(staging.commit_exactly(&RESULTS)?)
 }
 
 fn photodiodes(suffix: &str) -> impl Iterator<Item = String> {

@@ -15,14 +15,16 @@ use thiserror::Error;
 
 use super::{FileFormat, OptionFault, PhotoOptions, maps::ExactMaps};
 use crate::{
+    files::{Staging, WriteError},
     labelme::{self, LabelMe, Shape, to_labelme},
     phantom::{
         nail::{NailScene, Pose, SceneFault},
-        place::{PHOTOS_RECORD as RECORD, in_the_way, put_in_place},
+        place::{PHOTOS_RECORD as RECORD, in_the_way},
     },
 };
 
-const RESULTS: [&str; 2] = ["photos", "truth"];
+/// The record's folder first: where it stands, what is of one run and what of another is made again.
+const RESULTS: [&str; 2] = ["truth", "photos"];
 
 /// Why a set was not written.
 #[derive(Debug, Error)]
@@ -44,6 +46,9 @@ pub enum Error {
         /// What the system says.
         source: io::Error,
     },
+    /// The results could not be put in their places.
+    #[error(transparent)]
+    Place(#[from] WriteError),
     /// A photograph could not be encoded.
     #[error("{}: cannot be encoded: {source}", path.display())]
     Encode {
@@ -155,13 +160,12 @@ pub fn write_watched(
 ) -> Result<Summary, Error> {
     let begin = Instant::now();
     options.check()?;
+    let staging = Staging::new(out)?;
     if let Some(place) = in_the_way(out, &RESULTS, RECORD) {
         return Err(Error::InTheWay(place));
     }
-    fs::create_dir_all(out).map_err(refused(out))?;
-    let stage = tempfile::Builder::new().prefix(".phantom-").tempdir_in(out).map_err(refused(out))?;
-    let mut summary = draw_all(options, stage.path(), watch)?;
-    put_in_place(stage.path(), out, &RESULTS).map_err(|(path, source)| Error::Write { path, source })?;
+    let mut summary = draw_all(options, staging.path(), watch)?;
+    staging.commit_exactly(&RESULTS)?;
     summary.stages.total_s = begin.elapsed().as_secs_f64();
     Ok(summary)
 }

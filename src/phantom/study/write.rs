@@ -11,7 +11,8 @@ use serde::Serialize;
 use thiserror::Error;
 
 use super::{RECORD, Study, StudyOptions, TABLES};
-use crate::phantom::place::{in_the_way, put_in_place};
+use crate::files::{Staging, WriteError};
+use crate::phantom::place::in_the_way;
 use crate::phantom::{Recording, RecordingError};
 use crate::stages::{Stage, Stages};
 
@@ -29,6 +30,9 @@ pub enum StudyError {
         /// What the system says.
         source: io::Error,
     },
+    /// The results could not be put in their places.
+    #[error(transparent)]
+    Place(#[from] WriteError),
     /// A recording could not be made.
     #[error("{name}: {why}")]
     Recording {
@@ -76,13 +80,13 @@ pub fn write_watched(
     let recordings = study.recordings();
     let before = stands(out);
     let folders: BTreeSet<String> = folders(study).into_iter().chain(before.iter().flat_map(folders)).collect();
-    let folders: Vec<&str> = folders.iter().map(String::as_str).collect();
+    let mut folders: Vec<&str> = folders.iter().map(String::as_str).collect();
+    // The record's folder first: where it stands, what is of one run and what of another is made again.
+    folders.sort_by_key(|folder| *folder != TABLES);
+    let staging = Staging::new(out)?;
     if let Some(place) = in_the_way(out, &folders, &format!("{TABLES}/{RECORD}")).or_else(|| foreign(out, &before)) {
         return Err(StudyError::InTheWay(place));
     }
-    let stood = out.is_dir();
-    fs::create_dir_all(out).map_err(refused(out))?;
-    let stage = tempfile::Builder::new().prefix(".phantom-").tempdir_in(out).map_err(refused(out))?;
     let stages = Stages::default();
     let done = AtomicUsize::new(0);
     let goes_on = || watch(done.load(Ordering::Relaxed), recordings.len());
@@ -97,7 +101,7 @@ pub fn write_watched(
         if !goes_on() {
             return Err(StudyError::Interrupted);
         }
-        let folder = stage.path().join(&one.name);
+        let folder = staging.path().join(&one.name);
         fs::create_dir_all(&folder).map_err(refused(&folder))?;
         let written = stages.time(stage_of(&one.recording), || one.recording.write(&folder, &goes_on));
         written.map_err(|why| match why.interrupted() {
@@ -108,24 +112,16 @@ pub fn write_watched(
         goes_on();
         Ok(())
     });
-    let placed = made.and_then(|()| {
-        let files =
-            recordings.iter().flat_map(|one| one.recording.files().into_iter().map(move |file| (&one.name, file)));
-        let (mut count, mut bytes) = (0, 0);
-        for (name, file) in files {
-            let path = stage.path().join(name).join(file);
+    made?;
+    let (mut files, mut bytes) = (0, 0);
+    for one in &recordings {
+        for file in one.recording.files() {
+            let path = staging.path().join(&one.name).join(file);
             bytes += fs::metadata(&path).map_err(refused(&path))?.len();
-            count += 1;
+            files += 1;
         }
-        put_in_place(stage.path(), out, &folders).map_err(|(path, source)| StudyError::Write { path, source })?;
-        Ok((count, bytes))
-    });
-    drop(stage);
-    if placed.is_err() && !stood {
-        // Best effort: only an empty folder can be left.
-        let _ = fs::remove_dir(out);
     }
-    let (files, bytes) = placed?;
+    staging.commit_exactly(&folders)?;
     let total_s = begin.elapsed().as_secs_f64();
     Ok(StudySummary { recordings: recordings.len(), files, bytes, stages: stages.list(), total_s })
 }

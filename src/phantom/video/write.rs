@@ -10,8 +10,9 @@ use thiserror::Error;
 
 use super::scene::TICKS_PER_S;
 use super::{FrameTruth, MarkerStatus, Scene, Siting, VideoOptions};
+use crate::files::{Staging, WriteError};
 use crate::phantom::finger::JOINTS;
-use crate::phantom::place::{in_the_way, put_in_place};
+use crate::phantom::place::in_the_way;
 use crate::table::{Column, TableError, TableWriter, Value};
 use crate::video::{Encoder, Encoding, Picture, VideoError};
 
@@ -19,7 +20,8 @@ use crate::video::{Encoder, Encoding, Picture, VideoError};
 const RECORD: &str = "truth/scene.json";
 /// Only where there is a clock.
 const CLOCK: &str = "truth/clock.csv";
-const RESULTS: [&str; 6] = ["video.mp4", "markers.toml", "truth/joints.csv", "truth/tracks.csv", CLOCK, RECORD];
+/// The record first: where it stands, what is of one run and what of another is made again.
+const RESULTS: [&str; 6] = [RECORD, "video.mp4", "markers.toml", "truth/joints.csv", "truth/tracks.csv", CLOCK];
 
 /// Why a video was not written.
 #[derive(Debug, Error)]
@@ -35,6 +37,9 @@ pub enum Error {
         /// What the system says.
         source: io::Error,
     },
+    /// The results could not be put in their places.
+    #[error(transparent)]
+    Place(#[from] WriteError),
     /// A table could not be written.
     #[error(transparent)]
     Table(#[from] TableError),
@@ -104,36 +109,34 @@ pub fn write_watched(
     watch: &(dyn Fn(usize, usize) -> bool + Sync),
 ) -> Result<Summary, Error> {
     let begin = Instant::now();
+    let staging = Staging::new(out)?;
     if let Some(place) = in_the_way(out, &RESULTS, RECORD) {
         return Err(Error::InTheWay(place));
     }
-    let stood = out.is_dir();
-    let written = write_staged(scene, out, watch);
-    if written.is_err() && !stood {
-        // Best effort: only an empty folder can be left.
-        let _ = fs::remove_dir(out);
-    }
-    let mut summary = written?;
+    let mut summary = write_staged(scene, staging, watch)?;
     summary.stages.total_s = begin.elapsed().as_secs_f64();
     Ok(summary)
 }
 
-fn write_staged(scene: &Scene, out: &Path, watch: &(dyn Fn(usize, usize) -> bool + Sync)) -> Result<Summary, Error> {
-    fs::create_dir_all(out).map_err(refused(out))?;
-    let stage = tempfile::Builder::new().prefix(".phantom-").tempdir_in(out).map_err(refused(out))?;
-    let truth = stage.path().join("truth");
+fn write_staged(
+    scene: &Scene,
+    staging: Staging,
+    watch: &(dyn Fn(usize, usize) -> bool + Sync),
+) -> Result<Summary, Error> {
+    let stage = staging.path();
+    let truth = stage.join("truth");
     fs::create_dir(&truth).map_err(refused(&truth))?;
     let mut stages = Stages::default();
-    let video = stage.path().join("video.mp4");
+    let video = stage.join("video.mp4");
     encode(scene, &video, watch, &mut stages)?;
     let start = Instant::now();
     write_truth(scene, &truth)?;
-    write_record(scene, &stage.path().join(RECORD))?;
-    let markers = stage.path().join("markers.toml");
+    write_record(scene, &stage.join(RECORD))?;
+    let markers = stage.join("markers.toml");
     fs::write(&markers, scene.markers_toml()).map_err(refused(&markers))?;
     stages.truth_s = start.elapsed().as_secs_f64();
     let bytes = fs::metadata(&video).map_err(refused(&video))?.len();
-    put_in_place(stage.path(), out, &RESULTS).map_err(|(path, source)| Error::Write { path, source })?;
+    staging.commit_exactly(&RESULTS)?;
     let frames = scene.frames();
     Ok(Summary { frames, seconds: scene.time_s(frames - 1), distractors: scene.distractors.len(), bytes, stages })
 }

@@ -6,13 +6,12 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use ndarray::Array2;
-use ndarray_npy::ReadNpyExt;
 use serde_json::json;
 
 use super::given::Given;
 use super::pool::in_pool;
 use crate::files::Staging;
+use crate::npy;
 use crate::photo::{Maps, Partials, gather};
 use crate::pipeline::{
     Demand, Facts, Foreseen, Job, KeyFault, Keys, Kind, Made, Part, Prepared, Quality, Role, Takes, Work,
@@ -165,8 +164,7 @@ fn quality(partials: &Partials, truth: Option<&Path>) -> anyhow::Result<Vec<Qual
                 if !file.exists() {
                     continue;
                 }
-                let exact = Array2::<f32>::read_npy(std::fs::File::open(&file).map_err(|why| wrong(&file, &why))?)
-                    .map_err(|why| wrong(&file, &why))?;
+                let exact = npy::read::<f32>(&file).map_err(|why| wrong(&file, &why))?;
                 if exact.dim() != map.dim() {
                     anyhow::bail!("{}: is of another size than the maps; make both with one `size`", file.display());
                 }

@@ -15,7 +15,7 @@ use serde::Serialize;
 use super::plan::Plan;
 use super::run::{Outcome, RunReport, TaskFailure, TaskReport};
 use super::task::TaskId;
-use crate::files::{WriteError, write_whole};
+use crate::files::{Places, WriteError};
 
 /// A run, summed up.
 #[derive(Debug, Clone, Serialize)]
@@ -239,7 +239,9 @@ pub fn write_reports(plan: &Plan, report: &RunReport, out: &Path) -> Result<Path
     let page = out.join("report.html");
     let json = out.join("run.json");
     let refused = |why: serde_json::Error| WriteError::File { path: json.clone(), why: why.to_string() };
-    write_whole(&page, page::page(&summary).as_bytes())?;
-    write_whole(&json, &serde_json::to_vec_pretty(&summary).map_err(refused)?)?;
+    let mut places = Places::default();
+    places.write(&page, &page::page(&summary))?;
+    places.write(&json, &serde_json::to_string_pretty(&summary).map_err(refused)?)?;
+    places.commit()?;
     Ok(page)
 }

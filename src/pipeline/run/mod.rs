@@ -140,6 +140,7 @@ impl Results {
             Refused::Held(holder) => RunFault::Busy { path: out.to_owned(), holder },
             Refused::Io(why) => folder(why),
         })?;
+        store.clear();
         let hashes = Hashes::keep(&store.hashes());
         let mut warnings = recover(&store, &hashes).map_err(folder)?;
         warnings.extend(held.unlocked.as_ref().map(|why| {

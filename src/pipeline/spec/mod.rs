@@ -34,6 +34,7 @@ use std::sync::Arc;
 use super::catalogue::{Catalogue, Catalogues};
 use super::kind::{Kind, Part, Prepared};
 use super::shard::PipelineMark;
+use crate::input;
 use crate::toml_file::{Fault, place};
 
 /// Why a pipeline can't be planned.
@@ -212,8 +213,16 @@ pub fn names_others(path: &Path, kinds: &[&'static Kind]) -> Result<bool, Pipeli
     Ok(document.contains_key("phantom") || jobs.any(|job| !kinds.iter().any(|kind| kind.name == job)))
 }
 
+/// Bytes of a pipeline file (assumed: the study's has 5 000, and one with a stage for each of a thousand recordings 200 000).
+const LARGEST: usize = 1 << 20;
+
 fn text_of(path: &Path) -> Result<String, PipelineError> {
-    let bytes = std::fs::read(path).map_err(|why| PipelineError::Unreadable { path: path.to_owned(), why })?;
+    let unreadable = |why| PipelineError::Unreadable { path: path.to_owned(), why };
+    let bytes = input::read(path).map_err(unreadable)?;
+    if bytes.len() > LARGEST {
+        let what = format!("it has {} bytes; a pipeline file has {LARGEST} at most", bytes.len());
+        return Err(unreadable(std::io::Error::new(std::io::ErrorKind::FileTooLarge, what)));
+    }
     String::from_utf8(bytes).map_err(|why| {
         let sound = String::from_utf8_lossy(&why.as_bytes()[..why.utf8_error().valid_up_to()]).into_owned();
         let (line, column) = place(&sound, sound.len());

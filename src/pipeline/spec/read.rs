@@ -1,6 +1,6 @@
 //! From a pipeline file's tables to a checked [`Spec`], or to all of its faults.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use toml::de::DeValue;
@@ -38,8 +38,9 @@ pub(super) fn spec(text: &str, path: &Path, kinds: &[&'static Kind]) -> Result<S
         check_stage_name(&mut findings, *entry, &input_tables);
     }
     let headers = stages::headers(&mut findings, &stage_tables, kinds);
-    let sound = |name: &str| inputs.iter().any(|input| input.name == name);
-    let faulty: Vec<&str> = input_tables.iter().map(|(entry, _)| entry.key).filter(|name| !sound(name)).collect();
+    let sound: BTreeSet<&str> = inputs.iter().map(|input| input.name.as_str()).collect();
+    let faulty: Vec<&str> =
+        input_tables.iter().map(|(entry, _)| entry.key).filter(|name| !sound.contains(name)).collect();
     let mut names = Names { inputs: &mut inputs, faulty: &faulty, stages: &headers };
     let read: Vec<_> = stage_tables
         .iter()
@@ -180,6 +181,10 @@ fn wanted(
     }
     let mut wanted = Vec::new();
     for (name, at) in listed {
+        if findings.is_full() {
+            findings.fault(at, "");
+            continue;
+        }
         let (stage_name, part_name) = name.split_once('.').map_or((name.as_str(), None), |(s, p)| (s, Some(p)));
         let Some(stage) = headers.iter().position(|header| header.name == stage_name) else {
             let what = if names.inputs.iter().any(|input| input.name == stage_name) {

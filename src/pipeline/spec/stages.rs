@@ -1,5 +1,7 @@
 //! The stages of a pipeline file: their job, what its roles are given, and options that the job accepts.
 
+use std::collections::BTreeSet;
+
 use toml::de::DeValue;
 
 use super::reference::{Names, filter, reference, strings};
@@ -62,8 +64,9 @@ pub(super) fn stage(
         kind.roles.iter().map(|role| given(findings, entry, table, kind, role, names)).collect();
     let each = table.iter().find(|e| e.key == "each").and_then(|each| {
         let keys = strings(findings, *each, "keys' names, as [\"subject\"]")?;
-        for (k, (key, at)) in keys.iter().enumerate() {
-            if keys[..k].iter().any(|(earlier, _)| earlier == key) {
+        let mut earlier = BTreeSet::new();
+        for (key, at) in &keys {
+            if !earlier.insert(key) {
                 findings.fault(*at, format!("`each` names `{key}` twice"));
             }
         }

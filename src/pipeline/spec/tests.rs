@@ -245,3 +245,28 @@ fn the_program_is_chosen_before_anything_is_checked() {
     assert!(why.ends_with("p.toml:2:3: not UTF-8 text; save the file as UTF-8"), "{why}");
     assert!(names_others(&dir.path().join("none.toml"), TOYS).unwrap_err().to_string().contains("lunula init"));
 }
+
+#[test]
+fn a_file_of_a_million_quotes_is_refused_at_once() {
+    let begun = std::time::Instant::now();
+    for (pattern, times) in
+        [("\"\n", 500_000), ("\"\"\n", 300_000), ("'a' = ''\n", 100_000), ("[\"", 500_000), ("\"", 1_000_000)]
+    {
+        let found = faults_of(&pattern.repeat(times));
+        assert!(!found.is_empty() && found.len() <= 101, "{pattern:?}: {} faults", found.len());
+        assert!(
+            found.len() < 101 || found[100].contains("more faults are not named"),
+            "{pattern:?}: {:?}",
+            found.last()
+        );
+    }
+    let wanted = format!("wanted = [{}]\n{GOOD}", "\"\", ".repeat(200_000)).replace("wanted = [\"sets\"]\n", "");
+    assert_eq!(faults_of(&wanted).len(), 101);
+    // Measured: 4 s unoptimized on a busy machine; it was 55 s of a million, and ten times that of half a million lines.
+    assert!(begun.elapsed().as_secs_f64() < 40.0, "{:?}", begun.elapsed());
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("p.toml");
+    std::fs::write(&path, "#".repeat((1 << 20) + 1)).unwrap();
+    let why = names_others(&path, TOYS).unwrap_err().to_string();
+    assert!(why.contains("1048577 bytes") && why.contains("1048576 at most"), "{why}");
+}

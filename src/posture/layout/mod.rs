@@ -124,7 +124,7 @@ impl Layout {
     /// Where it can't be read, or with all its faults.
     pub fn read(path: &Path) -> Result<Self, LayoutError> {
         let unreadable = |why| LayoutError::Unreadable { path: path.to_owned(), why };
-        let bytes = std::fs::read(path).map_err(unreadable)?;
+        let bytes = crate::input::read(path).map_err(unreadable)?;
         match String::from_utf8(bytes) {
             Ok(text) => Self::parse(&text, path),
             Err(why) => {

@@ -1,0 +1,136 @@
+//! Results appear whole or not at all.
+//!
+//! Everything that a job writes goes into a hidden folder beside its place, on the same disk (`hidden`). When the job is done and all of it
+//! is on the disk, each file is renamed to where it belongs, so that nobody ever sees half of one (`staging`); where one can't be,
+//! those before it are put back. A job that fails or is interrupted leaves what stood there before as it was; what one that was killed
+//! left is cleared by the next one in that folder.
+
+pub(crate) mod disk;
+mod hidden;
+mod staging;
+
+use std::fs;
+use std::io::{self, Write as _};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+use thiserror::Error;
+
+pub use staging::{Places, Staging};
+
+/// Why results can't be written.
+#[derive(Debug, Error)]
+pub enum WriteError {
+    /// The folder for the results.
+    #[error("{}: cannot be written to ({why}); choose another --out or make room and permission for it", .path.display())]
+    Folder {
+        /// Which folder.
+        path: PathBuf,
+        /// The system's words.
+        why: io::Error,
+    },
+    /// One file of the results.
+    #[error("{}: cannot be written ({why}); nothing there was changed", .path.display())]
+    File {
+        /// Where it would have gone.
+        path: PathBuf,
+        /// The system's or the encoder's words.
+        why: String,
+    },
+    /// Files that were replaced before one could not be, and that could not be put back.
+    #[error(
+        "{}: cannot be written ({why}), and what stood before could not be put back: {} changed; what was there is kept in {}; \
+         make room and run again",
+        .path.display(), listed(.changed), listed(.kept)
+    )]
+    Half {
+        /// The file that could not be written.
+        path: PathBuf,
+        /// The system's words.
+        why: String,
+        /// The places that are not as before.
+        changed: Vec<PathBuf>,
+        /// Folders with what stood there.
+        kept: Vec<PathBuf>,
+    },
+    /// A folder stands where a file has to go.
+    #[error("{}: is a folder, and a result of this name has to go there; move it or choose another --out", .0.display())]
+    FolderInTheWay(PathBuf),
+}
+
+fn listed(paths: &[PathBuf]) -> String {
+    paths.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ")
+}
+
+/// The folders into which this process put results.
+static PLACED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// Remembers that results were put into a folder.
+pub(crate) fn note_placed(folder: &Path) {
+    let mut placed = PLACED.lock().unwrap_or_else(PoisonError::into_inner);
+    if !hidden::is_private(folder) && !placed.iter().any(|known| known == folder) {
+        placed.push(folder.to_owned());
+    }
+}
+
+/// Whether this process put results into a folder that stands: whatever fails after that, something was done. (Folders for measuring and
+/// trying are gone when their job ends.)
+#[must_use]
+pub fn results_stand() -> bool {
+    PLACED.lock().unwrap_or_else(PoisonError::into_inner).iter().any(|folder| folder.exists())
+}
+
+/// Removes what killed runs left in a folder.
+pub fn clear_leftovers(folder: &Path) {
+    hidden::clear(folder);
+}
+
+/// Whether both stand and are one file, whatever they are called.
+#[must_use]
+pub fn is_same_file(one: &Path, other: &Path) -> bool {
+    let real = |path: &Path| fs::canonicalize(path).ok();
+    real(one).is_some_and(|one| real(other) == Some(one))
+}
+
+/// The place of a result that stands beside `table` and is named after it: `joints.csv` and `.run.json` give
+/// `joints.run.json`.
+#[must_use]
+pub fn beside(table: &Path, ending: &str) -> PathBuf {
+    let stem = table.file_stem().unwrap_or_default().to_string_lossy();
+    table.with_file_name(format!("{stem}{ending}"))
+}
+
+/// The places of a picture beside `table`, PNG and SVG: `joints.csv` and `angles` give `joints-angles.png` and `.svg`.
+#[must_use]
+pub fn pictures_beside(table: &Path, name: &str) -> [PathBuf; 2] {
+    ["png", "svg"].map(|ending| beside(table, &format!("-{name}.{ending}")))
+}
+
+/// Writes one file whole or not at all: beside its place, then renamed.
+///
+/// # Errors
+/// [`WriteError::File`].
+pub fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
+    let refused = |why: io::Error| WriteError::File { path: path.to_owned(), why: why.to_string() };
+    let folder = folder_of(path);
+    let mut file = hidden::file_within(folder).map_err(refused)?;
+    file.write_all(bytes).map_err(refused)?;
+    let is_private = hidden::is_private(folder);
+    if !is_private {
+        file.as_file().sync_all().map_err(refused)?;
+    }
+    disk::rename(file.path(), path).map_err(refused)?;
+    // It has another name now: there is nothing to remove.
+    let _ = file.into_temp_path().keep();
+    if !is_private {
+        // It is in its place; whether its name is on the disk is all that can be missing.
+        let _ = disk::sync_one(folder);
+    }
+    note_placed(folder);
+    Ok(())
+}
+
+/// The folder that a file stands in, or is to.
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}

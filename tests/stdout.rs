@@ -1,0 +1,134 @@
+//! Standard output that can't be written to: a full disk is an error, a reader that went away is none. All commands.
+
+use std::fs::{File, OpenOptions};
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use crate::doctor::commands;
+use crate::util::Dir;
+
+const PIPELINE: &str = r#"
+[inputs.photos]
+files = "ph/photos/{pose}/{subject}.png"
+
+[stage.rest]
+job = "normalize"
+photo = "photos"
+"#;
+
+/// Requests that say something on standard output; those that put results into their places have one of `--out`.
+const REQUESTS: &[&str] = &[
+    "--help",
+    "--version",
+    "photos ph/photos --out photos",
+    "photos ph/photos --out none --plan",
+    "photos merge whole --out merged --json",
+    "posture v/video.mp4 --suggest",
+    "posture v/video.mp4 --suggest --json",
+    "posture v/video.mp4 --markers v/markers.toml --plan",
+    "posture v/video.mp4 --markers v/markers.toml --out joints.csv --no-figures",
+    "align --joints v/truth/joints.csv --log lg/log.csv --sync offset=0 --plan",
+    "align --joints v/truth/joints.csv --log lg/log.csv --sync offset=0 --out set.csv --no-figures --json",
+    "train lg/log.csv --target force --out other.json",
+    "evaluate m.json lg/log.csv",
+    "evaluate m.json lg/log.csv --json",
+    "predict m.json -",
+    "predict m.json lg/log.csv --out predicted.csv",
+    "analyse m.json",
+    "prune lg/log.csv --validate lg/log.csv --target force --json",
+    "simulate --print-params",
+    "simulate --plan",
+    "simulate --until 0.1 --out s.csv --json",
+    "fit pressed.csv --free b_C --plan",
+    "merge part --out both",
+    "phantom log --seed 1 --out log",
+    "phantom photos --help",
+    "tradeoff all --help",
+    "trajectory force --plan",
+    "run p.toml --plan --json",
+    "run p.toml --out run",
+    "init . --out new.toml",
+    "doctor",
+    "doctor --json",
+    "completions bash",
+    "man --out man",
+];
+
+fn bench() -> Dir {
+    let dir = Dir::new();
+    dir.write("p.toml", PIPELINE);
+    for request in [
+        "phantom video --seed 1 --seconds 0.2 --size 320x240 --out v -q",
+        "phantom log --seed 1 --out lg -q",
+        "phantom photos --seed 1 --subjects 2 --poses extension --size 320x240 --out ph -q",
+        "train lg/log.csv --target force --out m.json -q",
+        "simulate --pf1 step:5000@0..0.05 --until 0.1 --with-loads --out pressed.csv -q",
+        "photos ph/photos --out whole -q",
+        "run p.toml --shard 1/1 --out part -q",
+    ] {
+        let words: Vec<&str> = request.split(' ').collect();
+        dir.lunula(&words).expect(0);
+    }
+    dir
+}
+
+/// The exit status and what was said on standard error, with this as standard output.
+fn answer(dir: &Dir, request: &str, to: impl Into<Stdio>) -> (Option<i32>, String) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_lunula"));
+    command.args(request.split(' ')).current_dir(dir.path(".")).stdout(to);
+    if request.ends_with(" -") {
+        command.stdin(File::open(dir.path("lg/log.csv")).unwrap());
+    }
+    let output = command.output().unwrap();
+    (output.status.code(), String::from_utf8(output.stderr).unwrap())
+}
+
+#[test]
+fn on_a_full_disk_every_command_fails_and_a_reader_that_went_away_is_no_error() {
+    let dir = bench();
+    for request in REQUESTS {
+        let full = OpenOptions::new().write(true).open("/dev/full").unwrap();
+        let (code, said) = answer(&dir, request, full);
+        // What was done before is done: 2 would say that nothing was.
+        let done =
+            request.split(' ').skip_while(|word| *word != "--out").nth(1).is_some_and(|out| dir.path(out).exists());
+        assert_eq!(code, Some(if done { 1 } else { 2 }), "{request}: {said}");
+        assert!(said.contains("error: standard output: cannot be written (No space left"), "{request}: {said}");
+        assert_eq!(done, request.contains("--out") && !request.contains("--plan"), "{request}");
+        let new = if request.starts_with("init") { "init . --out newer.toml" } else { request };
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let (code, said) = answer(&dir, new, writer);
+        assert!(code == Some(0) && !said.contains("standard output"), "{new}: {code:?} {said}");
+    }
+    for command in commands(&dir).iter().filter(|command| *command != "help") {
+        assert!(REQUESTS.iter().any(|request| request.starts_with(command)), "{command} is not tried");
+    }
+}
+
+/// Files of source text below a folder.
+fn sources(folder: &Path, found: &mut Vec<std::path::PathBuf>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            sources(&path, found);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            found.push(path);
+        }
+    }
+}
+
+#[test]
+fn nothing_but_one_file_writes_to_standard_output() {
+    let mut files = Vec::new();
+    sources(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"), &mut files);
+    let mut read = 0;
+    for path in files.iter().filter(|path| !path.ends_with("cli/out.rs") && !path.to_string_lossy().contains("tests")) {
+        read += 1;
+        let text = std::fs::read_to_string(path).unwrap().replace("eprint", "");
+        for call in ["println!(", "print!(", "stdout()"] {
+            assert!(!text.contains(call), "{}: {call}", path.display());
+        }
+    }
+    assert!(read > 300, "{read}");
+}
