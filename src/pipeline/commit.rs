@@ -102,7 +102,7 @@ fn put(store: &Store, hashes: &Hashes, work: &Path, record: &Record) -> Result<V
     if !folder.exists() && files(work).exists() {
         let parent = folder.parent().unwrap_or(store.out());
         fs::create_dir_all(parent).map_err(io_fault(parent))?;
-        rename(files(work), &folder).map_err(io_fault(&folder))?;
+        rename(&files(work), &folder).map_err(io_fault(&folder))?;
     }
     if folder.is_file() {
         return Err(CommitFault::FileInTheWay(folder));
@@ -119,7 +119,7 @@ fn put(store: &Store, hashes: &Hashes, work: &Path, record: &Record) -> Result<V
         rename(&from, &to).map_err(io_fault(&to))?;
     }
     let place = store.record_place(&record.task);
-    rename(work.join("record.json"), &place).map_err(io_fault(&place))?;
+    rename(&work.join("record.json"), &place).map_err(io_fault(&place))?;
     store.forget_failure(&record.task);
     Ok(warnings)
 }
