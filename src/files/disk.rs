@@ -47,7 +47,8 @@ pub(crate) fn sync<'a>(paths: impl ExactSizeIterator<Item = &'a PathBuf>, within
     }
     std::thread::scope(|scope| {
         let share = paths.len().div_ceil(AT_ONCE).max(1);
-        let shares = paths.chunks(share).map(|share| scope.spawn(|| share.iter().try_for_each(|path| sync_one(path))));
+        let shares =
+            paths.chunks(share).map(|share| scope.spawn(move || share.iter().try_for_each(|path| sync_one(path))));
         let shares: Vec<_> = shares.collect();
         shares
             .into_iter()
