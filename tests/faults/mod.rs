@@ -32,7 +32,7 @@ const fn slow(name: &'static str, before: &'static str, run: &'static str) -> Jo
     Job { name, before, run, fast: false }
 }
 
-/// Paths are relative to the test's folder; inputs are those of [`inputs`].
+/// Paths are relative to the test's folder; inputs are those of [`inputs`]. Without `tradeoff`, the results of which are times.
 const JOBS: &[Job] = &[
     fast("photos", "photos in/s01 --size 16 --out out/maps", "photos in/both --size 16 --out out/maps"),
     slow(
@@ -127,11 +127,6 @@ const JOBS: &[Job] = &[
     // It never writes over a file.
     fast("init", "", "init in/both --out out/pipeline.toml"),
     fast("man", "man --out out/man", "man --out out/man"),
-    slow(
-        "tradeoff photos",
-        "tradeoff photos --quick --subjects 1 --seed 1 --out out/curve",
-        "tradeoff photos --quick --subjects 1 --seed 2 --out out/curve",
-    ),
 ];
 
 /// Generates logs and fits a model to each.
