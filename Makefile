@@ -2,16 +2,18 @@
 
 SHELL := /bin/sh
 DEMO := demo
+FUZZ_SECONDS := 60
 LUNULA := target/release/lunula
 PACKAGES := $(shell sed '/^\#/d' system-packages.txt)
 
-.PHONY: help demo test lint bench system clean
+.PHONY: help demo test lint bench fuzz system clean
 
 help:
 	@echo "make demo   build, run the main jobs on generated scenes, say where the pictures are"
 	@echo "make test   build and run every test"
 	@echo "make lint   formatting, clippy and documentation, all without warnings"
 	@echo "make bench  speed against only decoding, and against Python with OpenCV, scikit-image, pandas, numpy and scikit-learn, against diffsol"
+	@echo "make fuzz   look for inputs that make a parser panic, abort or hang: FUZZ_SECONDS=60 each, PARSERS=\"csv xdf\" for some"
 
 demo: system
 	cargo build --release --locked
@@ -76,6 +78,10 @@ bench: system
 	cargo bench --locked -p lunula-hemodynamics
 	cargo bench --locked -p lunula-hemodynamics-peer
 	cargo test --locked --release -p lunula-hemodynamics-peer
+
+# Installs cargo-afl below target/ where it is missing.
+fuzz: system
+	FUZZ_SECONDS=$(FUZZ_SECONDS) crates/fuzz/fuzz.sh $(PARSERS)
 
 # Installs the packages of system-packages.txt that are missing; does nothing where all are there.
 system:

@@ -8,11 +8,14 @@ mod compare;
 mod detection;
 mod disks;
 mod doctor;
+#[cfg(all(target_os = "linux", target_arch = "x86_64"))]
+mod faults;
 mod fit;
 mod mask_outlines;
 mod merge;
 mod nail_axes;
 mod nail_axes_drawn;
+mod parsers;
 mod phantom_log;
 mod phantom_nail;
 mod phantom_photos;

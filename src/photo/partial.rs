@@ -9,7 +9,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 use ndarray::{Array1, ArrayView2};
@@ -108,14 +108,13 @@ pub struct Partials {
 /// Where the file can't be written.
 pub(super) fn write(path: &Path, pose: &str, sums: &Sums, normalization: &Normalization) -> anyhow::Result<()> {
     let shape = (sums.size, sums.size);
-    let mut file = BufWriter::new(File::create(path)?);
-    let mut npz = NpzWriter::new(&mut file);
+    let mut npz = NpzWriter::new(Cursor::new(Vec::new()));
     npz.add_array("sum", &ArrayView2::from_shape(shape, &sums.sum)?)?;
     npz.add_array("sum_sq", &ArrayView2::from_shape(shape, &sums.sum_sq)?)?;
     npz.add_array("count", &ArrayView2::from_shape(shape, &sums.count)?)?;
     npz.add_array("meta", &meta(FORMAT, pose, sums, normalization)?)?;
-    npz.finish()?;
-    file.flush()?;
+    // In memory, for a file that fails in the middle is no place to go on writing an archive to: zip asserts that it is.
+    std::fs::write(path, npz.finish()?.into_inner())?;
     Ok(())
 }
 
@@ -130,16 +129,14 @@ pub(super) fn write_part(path: &Path, pose: &str, sums: &Sums, normalization: &N
     let shape = (sums.size, sums.size);
     let level = |&sum: &u64| u16::try_from(sum).expect("one subject's sum is its level");
     let levels: Vec<u16> = sums.sum.iter().map(level).collect();
-    let mut file = BufWriter::new(File::create(path)?);
-    let mut npz = NpzWriter::new(&mut file);
+    let mut npz = NpzWriter::new(Cursor::new(Vec::new()));
     npz.add_array("level", &ArrayView2::from_shape(shape, &levels)?)?;
     if sums.count.contains(&0) {
         let seen: Vec<u8> = sums.count.iter().map(|&count| u8::from(count > 0)).collect();
         npz.add_array("seen", &ArrayView2::from_shape(shape, &seen)?)?;
     }
     npz.add_array("meta", &meta(FORMAT_OF_ONE, pose, sums, normalization)?)?;
-    npz.finish()?;
-    file.flush()?;
+    std::fs::write(path, npz.finish()?.into_inner())?;
     Ok(())
 }
 

@@ -17,7 +17,7 @@ use super::hashes::{ContentHash, FileFault, Hashes, files_in};
 use super::record::{Output, Record};
 use super::store::{Store, read_record};
 use crate::files::disk::{rename, sync};
-use crate::files::{note_placed, write_whole};
+use crate::files::{clear_leftovers, note_placed, write_whole};
 
 /// Why results did not come to their place.
 #[derive(Debug, Error)]
@@ -46,6 +46,8 @@ pub(super) fn files(work: &Path) -> PathBuf {
 /// What a task made, with what it holds, sorted by name.
 pub(super) fn outputs(work: &Path, hashes: &Hashes) -> Result<Vec<Output>, FileFault> {
     let folder = files(work);
+    // A hidden folder that the job could not remove is no result.
+    clear_leftovers(&folder);
     let output = |name: String| {
         let (sha256, size) = hashes.of_file(&folder.join(&name))?;
         Ok(Output { name, size, sha256 })

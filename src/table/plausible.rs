@@ -44,8 +44,14 @@ pub(super) fn check_footer(file: &File) -> Result<(), String> {
     if file.read_exact_at(&mut footer, size - 8 - length).is_err() {
         return Ok(());
     }
-    match (Thrift { rest: &footer }).fields(0, &mut |_, _| {}) {
+    // The fifth field of the structures in lists: how many columns one of the schema holds, and where a group of rows begins.
+    let mut fits = true;
+    let walked = (Thrift { rest: &footer }).fields(0, &mut |depth, id, value| {
+        fits &= (depth, id) != (2, 5) || u64::try_from(value).is_ok_and(|v| v <= size)
+    });
+    match walked {
         Err(Bad::False) => Err(FALSE.to_owned()),
+        _ if !fits => Err(FALSE.to_owned()),
         Ok(()) | Err(Bad::Unread) => Ok(()),
     }
 }
@@ -97,9 +103,9 @@ fn page_head(file: &File, at: u64, room: usize) -> Result<(u64, i64, i64), Bad> 
     file.read_exact_at(&mut head, at).map_err(|_| Bad::Unread)?;
     let mut walk = Thrift { rest: &head };
     let (mut unpacked, mut packed) = (0, 0);
-    walk.fields(0, &mut |id, value| match id {
-        2 => unpacked = value,
-        3 => packed = value,
+    walk.fields(0, &mut |depth, id, value| match (depth, id) {
+        (0, 2) => unpacked = value,
+        (0, 3) => packed = value,
         _ => {}
     })?;
     Ok(((head.len() - walk.rest.len()) as u64, unpacked, packed))
@@ -145,8 +151,9 @@ impl Thrift<'_> {
         Ok(())
     }
 
-    /// A structure's fields; whole numbers among them are shown with their field's number.
-    fn fields(&mut self, depth: usize, show: &mut dyn FnMut(i64, i64)) -> Result<(), Bad> {
+    /// A structure's fields; whole numbers among them, and among those of what they hold, are shown with how deep they are and their field's
+    /// number.
+    fn fields(&mut self, depth: usize, show: &mut dyn FnMut(usize, i64, i64)) -> Result<(), Bad> {
         let mut id = 0;
         loop {
             let head = self.byte()?;
@@ -157,13 +164,13 @@ impl Thrift<'_> {
             match head & 15 {
                 // A truth value is in the head itself.
                 1 | 2 => {}
-                4..=6 => show(id, self.signed()?),
-                kind => self.value(kind, depth)?,
+                4..=6 => show(depth, id, self.signed()?),
+                kind => self.value(kind, depth, show)?,
             }
         }
     }
 
-    fn value(&mut self, kind: u8, depth: usize) -> Result<(), Bad> {
+    fn value(&mut self, kind: u8, depth: usize, show: &mut dyn FnMut(usize, i64, i64)) -> Result<(), Bad> {
         if depth > DEEPEST {
             return Err(Bad::Unread);
         }
@@ -178,17 +185,17 @@ impl Thrift<'_> {
             9 | 10 => {
                 let head = self.byte()?;
                 let count = if head >> 4 == 15 { self.count()? } else { usize::from(head >> 4) };
-                (0..count).try_for_each(|_| self.value(head & 15, depth + 1))
+                (0..count).try_for_each(|_| self.value(head & 15, depth + 1, show))
             }
             11 => {
                 let count = self.count()?;
                 let kinds = if count == 0 { 0 } else { self.byte()? };
                 (0..count).try_for_each(|_| {
-                    self.value(kinds >> 4, depth + 1)?;
-                    self.value(kinds & 15, depth + 1)
+                    self.value(kinds >> 4, depth + 1, show)?;
+                    self.value(kinds & 15, depth + 1, show)
                 })
             }
-            12 => self.fields(depth + 1, &mut |_, _| {}),
+            12 => self.fields(depth + 1, show),
             13 => self.skip(16),
             _ => Err(Bad::Unread),
         }
