@@ -25,8 +25,10 @@ const PATIENCE: Duration = Duration::from_millis(20);
 
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 static CUT: AtomicBool = AtomicBool::new(false);
-/// What pipes brought, by device and inode.
-static HELD: Mutex<Option<HashMap<(u64, u64), Arc<[u8]>>>> = Mutex::new(None);
+/// Bytes by device and inode.
+type ByPlace = HashMap<(u64, u64), Arc<[u8]>>;
+/// What pipes brought.
+static HELD: Mutex<Option<ByPlace>> = Mutex::new(None);
 
 /// Ends every wait for a pipe, now and later.
 pub fn interrupt() {

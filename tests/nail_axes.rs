@@ -320,7 +320,8 @@ fn doubted(hand: &Hand, folder: &Path, drawn: impl Fn(&Outline, Axis) -> (Vec<[f
 fn a_drawn_axis_is_doubted_where_it_is_wrong_and_only_there() {
     let Some(hands) = real_hands() else { return };
     let folder = tempfile::tempdir().unwrap();
-    let count = |drawn: &dyn Fn(&Hand, &Outline, Axis) -> (Vec<[f64; 2]>, Axis)| -> (usize, usize) {
+    type Drawn<'a> = &'a dyn Fn(&Hand, &Outline, Axis) -> (Vec<[f64; 2]>, Axis);
+    let count = |drawn: Drawn<'_>| -> (usize, usize) {
         let each = hands.iter().map(|hand| doubted(hand, folder.path(), |nail, axis| drawn(hand, nail, axis)));
         let each: Vec<usize> = each.collect();
         (each.iter().sum(), each.iter().filter(|doubted| **doubted > 0).count())

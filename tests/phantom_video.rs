@@ -2,7 +2,7 @@
 
 use crate::util::Dir;
 use lunula::flexion::Flexion;
-use lunula::phantom::finger::{JOINTS, MarkerLayout};
+use lunula::phantom::finger::MarkerLayout;
 use lunula::phantom::screen::Clock;
 use lunula::phantom::trajectory::Trajectory;
 use lunula::phantom::video::{

@@ -272,7 +272,7 @@ fn is_rightly_named(dir: &Dir) -> (usize, usize) {
         assert_eq!((&row["frame"], &row["marker"]), (&exact["frame"], &exact["marker"]));
         in_view += usize::from(exact["status"] == "ok");
         if let (Some(x), Some(y)) = (number(row, "x_px"), number(row, "y_px")) {
-            let off = (x - number(exact, "x_px").unwrap()).hypot(y - number(exact, "y_px").unwrap());
+            let off = (x - number(exact, "x_px").expect("a place")).hypot(y - number(exact, "y_px").expect("a place"));
             assert!(off <= PAINT_OFF_PX, "frame {} {}: {off} px off", row["frame"], row["marker"]);
             seen += 1;
         }

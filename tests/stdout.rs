@@ -77,10 +77,10 @@ fn answer(dir: &Dir, request: &str, to: impl Into<Stdio>) -> (Option<i32>, Strin
     let mut command = Command::new(env!("CARGO_BIN_EXE_lunula"));
     command.args(request.split(' ')).current_dir(dir.path(".")).stdout(to);
     if request.ends_with(" -") {
-        command.stdin(File::open(dir.path("lg/log.csv")).unwrap());
+        command.stdin(File::open(dir.path("lg/log.csv")).expect("a log"));
     }
-    let output = command.output().unwrap();
-    (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    let output = command.output().expect("it runs");
+    (output.status.code(), String::from_utf8(output.stderr).expect("text"))
 }
 
 #[test]
@@ -108,8 +108,8 @@ fn on_a_full_disk_every_command_fails_and_a_reader_that_went_away_is_no_error() 
 
 /// Files of source text below a folder.
 fn sources(folder: &Path, found: &mut Vec<std::path::PathBuf>) {
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
+    for entry in std::fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
         if path.is_dir() {
             sources(&path, found);
         } else if path.extension().is_some_and(|extension| extension == "rs") {

@@ -140,7 +140,7 @@ impl Beside {
         let end = all.len() - right.characters.last().map_or(0, |&c| usize::from(c != 'd'));
         let all = &all[begin..end];
         let groups: Vec<usize> = all.split(|&c| c != 'd').map(<[char]>::len).filter(|&count| count > 0).collect();
-        let fraction = format.decimals() > 0 && !right.characters.iter().any(|&c| c == ':')
+        let fraction = format.decimals() > 0 && !right.characters.contains(&':')
             || all.iter().rev().find(|&&c| c != 'd').is_some_and(|c| matches!(c, '.' | ','));
         let units = match (groups.len() - usize::from(fraction), fraction) {
             (3, _) => "hms",

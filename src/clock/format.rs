@@ -230,7 +230,7 @@ fn fault(format: &str) -> Option<String> {
     const UNITS: [char; 4] = ['h', 'm', 's', 't'];
     let help = "write the digits as `h`, `m`, `s` and `t` (tenths and finer), such as \"mm:ss.t\", and AM or PM \
                 as `a`, such as \"hh:mm:ss a\"";
-    if !halves.is_empty() && !(ends && fits && hours) {
+    if !(halves.is_empty() || ends && fits && hours) {
         return Some(format!(
             "`a` (AM or PM) stands once, before or after all digits, of which the first are hours; {help}"
         ));

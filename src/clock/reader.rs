@@ -71,6 +71,9 @@ enum Search {
     Everywhere(Scout),
 }
 
+/// Where to look, how, and what was read meanwhile.
+type Learnt = (Window, Follower, Vec<(u64, Reading)>);
+
 impl ClockReader {
     /// A reader of this clock in this video.
     ///
@@ -197,12 +200,7 @@ impl ClockReader {
     }
 
     /// Learns the clock in the region that was told and reads the crops; notes a format that does not fit.
-    fn learn_told(
-        &mut self,
-        window: Window,
-        crops: &[Gray],
-        frames: &[(u64, f64)],
-    ) -> Option<(Window, Follower, Vec<(u64, Reading)>)> {
+    fn learn_told(&mut self, window: Window, crops: &[Gray], frames: &[(u64, f64)]) -> Option<Learnt> {
         let times_s: Vec<f64> = frames.iter().map(|(_, time_s)| *time_s).collect();
         let learnt = Model::learn(crops, &times_s, &self.format);
         let misfit = learnt.misfit.is_some();

@@ -8,7 +8,6 @@
 //! and, where the photograph does not show all, `seen` (uint8, 0 or 1); format 2.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs::File;
 use std::io::Cursor;
 use std::path::{Path, PathBuf};
 

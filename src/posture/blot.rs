@@ -336,9 +336,9 @@ impl Window {
             let inside = self.component(&share, near_px, radius_px)?;
             let depth = self.depth(&inside);
             let at = |side: usize, k: usize| match side {
-                0 => k % self.width == 0,
+                0 => k.is_multiple_of(self.width),
                 1 => k < self.width,
-                2 => k % self.width == self.width - 1,
+                2 => (k + 1).is_multiple_of(self.width),
                 _ => k >= self.width * (self.height - 1),
             };
             let cut = |picture: bool| {

@@ -42,7 +42,7 @@ impl Blot {
         let mut random = ChaCha8Rng::seed_from_u64(self.kind);
         let angle = v.atan2(u);
         let bumps = (2..6).map(|k| {
-            let (size, phase) = (random.random_range(0.05..0.25), random.random_range(0.0..6.28));
+            let (size, phase) = (random.random_range(0.05..0.25), random.random_range(0.0..std::f64::consts::TAU));
             size / (f64::from(k) - 0.8) * (f64::from(k) * angle + phase).cos()
         });
         1.0 + bumps.sum::<f64>() - u.hypot(v)

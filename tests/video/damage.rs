@@ -78,7 +78,6 @@ fn flipped_bytes_cost_no_more_than_their_group_and_never_the_index() {
                 bytes[at] ^= 0x5a;
             }
         });
-        let one = read(&path, 1);
         // Several threads may see that a slice ended early, or be past it: what they give is all or none of the group's rest.
         for seen in [1, 2, 4, 0].map(|threads| read(&path, threads)) {
             let lost = missing_or_noticed(&seen, packet.number);

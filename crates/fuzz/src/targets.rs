@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use lunula::align::Posture;
-use lunula::log::{AmbientOptions, Columns, Log, samples};
+use lunula::log::{AmbientOptions, Columns, Log, LogReading, samples};
 use lunula::photo::outline::{self, Axis, Drawn, find_axes, outlines_from_mask};
 use lunula::photo::{NailFrame, Normalization, Photograph, Resample, join, normalize};
 use lunula::pipeline::{Job, Keys, Made, Parts, PipelineMark, Share, Spec, Task, Work};
@@ -148,7 +148,7 @@ fn mask(desk: &Desk, bytes: &[u8]) {
 
 fn markers(desk: &Desk, bytes: &[u8]) {
     let Ok(layout) = Layout::read(&desk.file("markers.toml", bytes)) else { return };
-    let _ = (layout.needed(), layout.chain());
+    let _ = layout.needed();
     if let Some(camera) = &layout.camera {
         let lens = Lens::new(camera, (64, 48), 1.0);
         let _ = lens.undistort([3.0, 4.0]).map(|there| lens.distort(there.at_px));
@@ -213,7 +213,7 @@ fn answer(predictor: Predictor, bytes: &[u8]) {
         let Ok(mut answering) = Answering::new(vec![predictor.clone()], gate, intervals) else { continue };
         let inputs = answering.inputs().to_vec();
         let (mut volts, mut out) = (vec![f64::NAN; inputs.len()], vec![f64::NAN; answering.columns().len()]);
-        let Ok(mut rows) = RowStream::new(bytes, "fuzz", &inputs, intervals) else { continue };
+        let Ok(mut rows) = RowStream::new(bytes, "fuzz", &inputs, intervals, &LogReading::default()) else { continue };
         while let Ok(Some(row)) = rows.next_row(&mut volts) {
             answering.answer(row.time_s, row.begins, &volts, &mut out);
         }

@@ -39,7 +39,7 @@ pub enum StudyError {
         /// Which.
         name: String,
         /// Why.
-        why: RecordingError,
+        why: Box<RecordingError>,
     },
     /// The caller asked to stop; nothing was left behind.
     #[error("interrupted; nothing was written")]
@@ -106,7 +106,7 @@ pub fn write_watched(
         let written = stages.time(stage_of(&one.recording), || one.recording.write(&folder, &goes_on));
         written.map_err(|why| match why.interrupted() {
             true => StudyError::Interrupted,
-            false => StudyError::Recording { name: one.name.clone(), why },
+            false => StudyError::Recording { name: one.name.clone(), why: Box::new(why) },
         })?;
         done.fetch_add(1, Ordering::Relaxed);
         goes_on();

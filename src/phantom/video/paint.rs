@@ -62,8 +62,11 @@ struct Blob<'a> {
     reach_px: f64,
     distance: Box<dyn Fn([f64; 2]) -> f64 + Sync + 'a>,
     /// What its colour is multiplied by, and what is added, at a place.
-    shade: Option<Box<dyn Fn([f64; 2]) -> [f32; 2] + Sync + 'a>>,
+    shade: Option<Shade<'a>>,
 }
+
+/// A factor and a summand of a colour, by place.
+type Shade<'a> = Box<dyn Fn([f64; 2]) -> [f32; 2] + Sync + 'a>;
 
 /// A frame to be drawn.
 pub(super) struct Exposure<'a> {

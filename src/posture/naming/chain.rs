@@ -41,9 +41,9 @@ impl Chain {
         let count = layout.segments.len();
         let mut parent = layout.hung_on.clone();
         let jointed = |segment: usize| layout.hung_on[segment].is_some() || layout.hung_on.contains(&Some(segment));
-        for segment in 1..count {
-            if parent[segment].is_none() && (!jointed(segment) || !jointed(segment - 1)) {
-                parent[segment] = Some(segment - 1);
+        for (segment, parent) in parent.iter_mut().enumerate().skip(1) {
+            if parent.is_none() && (!jointed(segment) || !jointed(segment - 1)) {
+                *parent = Some(segment - 1);
             }
         }
         let mut links: Vec<Link> = Vec::new();

@@ -100,7 +100,9 @@ fn skin_is_no_marker() {
     let with = |ground: [u8; 3], colour: [u8; 3]| -> Vec<Stage> {
         let stage = |k: usize| {
             let mut stage = Stage::new(320, 200, ground);
-            places(k).map(|at| drop(stage.disc(at, 8.0, colour)));
+            for at in places(k) {
+                stage.disc(at, 8.0, colour);
+            }
             stage
         };
         (0..6).map(stage).collect()
@@ -118,7 +120,9 @@ fn dots_of_one_dark_paint_get_their_places() {
     let stage = |k: usize| {
         let mut stage = Stage::new(320, 200, SKIN);
         // Sizes of dots differ, and a nail lies between them.
-        places(k).iter().zip([7.0, 9.0, 5.5, 6.0]).for_each(|(at, radius)| drop(stage.disc(*at, radius, paint)));
+        for (at, radius) in places(k).into_iter().zip([7.0, 9.0, 5.5, 6.0]) {
+            stage.disc(at, radius, paint);
+        }
         stage.disc([100.0, 140.0], 8.0, [0xc9, 0x83, 0x78]);
         stage
     };

@@ -167,7 +167,7 @@ impl<'a, R: BufRead> RowStream<'a, R> {
             let preceding = Preceding::new(inputs.len(), log.ambient.full_scale_v).map_err(LogError::from)?;
             // Without a column that says so, every row is lit.
             let led = stream.uses.contains(&Use::Led);
-            stream.dark = led.then(|| Dark { preceding, begins: false, rows: 0.0, unknown: 0 });
+            stream.dark = led.then_some(Dark { preceding, begins: false, rows: 0.0, unknown: 0 });
             if led {
                 stream.notes.push(RULE.to_owned());
             }

@@ -434,7 +434,7 @@ fn a_log_is_one_whatever_its_led_and_columns_are_called() {
     assert_eq!((capital.data.x(), capital.files[0].rows), (same.data.x(), 200));
     let other = of("b.csv", "time_s,led,P1,P2,P3,Fx_N,Fy_N,Fz_N", "stamp,lamp,ch_3,ch_4,ch_5,fx,fy,load");
     let log = called("time_s=stamp,led=lamp,P1=ch_3,P2=ch_4,P3=ch_5,Fz_N=load");
-    let named = read_data(&[other.clone()], &Wanted { log: log.clone(), ..forces() }).unwrap();
+    let named = read_data(std::slice::from_ref(&other), &Wanted { log: log.clone(), ..forces() }).unwrap();
     assert_eq!((named.data.x(), named.data.y()), (same.data.x(), same.data.y()));
     let inputs = ["P1", "P3"].map(str::to_owned);
     let alone = read_inputs(&other, &inputs, false, &log).unwrap();
