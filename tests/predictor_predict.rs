@@ -391,7 +391,9 @@ fn a_stream_of_names_alone_and_an_empty_one() {
     let lacking = Recording::of(0..2).renamed("P3", "p3").csv();
     streamed(&dir, &["force.json", "-"], &lacking).expect(2).says("no column `P3`; is it `p3`?");
     let log = Recording::of(0..2).with("led", |_, _| "1".to_owned()).csv();
-    streamed(&dir, &["force.json", "-"], &log).expect(2).says("has a column `led`");
+    // Without an unlit row before it a lit row has no value.
+    let dark = streamed(&dir, &["force.json", "-"], &log).expect(0).says("the unlit row before it is taken away");
+    assert_eq!(dark.stdout, "time_s,Fx_N,Fy_N,Fz_N\n0,,,\n0.04,,,\n");
     let numbers = "1,2,3,4,5,6,7,8,9,10,11,12,13\n";
     streamed(&dir, &["force.json", "-"], numbers).expect(2).says("names of the columns");
     streamed(&dir, &["force.json", "-", "--out", "p.csv"], "").expect(2).says("leave --out away");

@@ -28,7 +28,7 @@ const REQUESTS: &[&str] = &[
     "posture v/video.mp4 --markers v/markers.toml --plan",
     "posture v/video.mp4 --markers v/markers.toml --out joints.csv --no-figures",
     "align --joints v/truth/joints.csv --log lg/log.csv --sync offset=0 --plan",
-    "align --joints v/truth/joints.csv --log lg/log.csv --sync offset=0 --out set.csv --no-figures --json",
+    "align --joints v/truth/joints.csv --log lg/log.csv --sync offset=60 --out set.csv --no-figures --json",
     "train lg/log.csv --target force --out other.json",
     "evaluate m.json lg/log.csv",
     "evaluate m.json lg/log.csv --json",

@@ -75,7 +75,7 @@ const AFTER_MARK: [f32; 2] = [0.2, 1.38];
 const CUT_OFF: f32 = 0.95;
 /// A blank before or after AM or PM is at most so many heights of the digits wide, one between letters such a share of their height.
 const BLANK: f64 = 1.4;
-const LETTERS_APART: f64 = 0.46;
+const LETTERS_APART: f64 = 0.6;
 /// Lower characters are no letters.
 const LEAST_LETTER: f64 = 0.28;
 /// How far characters reach above and below the digits, and how high they are at most, in heights of a digit.

@@ -21,7 +21,7 @@ const PARTING: [f64; 2] = [0.3, 0.62];
 /// An M is no narrower than this share of its height.
 const NARROWEST_M: f64 = 0.55;
 /// Ink covers a side where the mean over its rows of the darkest place in each is this share of the letter's darkest ink, and leaves it free
-/// below the second share. Measured on 220 typefaces at heights of 9 to 40 samples (module `beside`): 0.7 and more, and 0.2 and less.
+/// below the second share (assumed; no AM read as PM or the reverse on 48 typefaces at three heights, 5760 frames over noon and midnight).
 const COVERED: f32 = 0.6;
 const FREE: f32 = 0.27;
 /// An M is no digit for the network: it finds anything else at least this probable.

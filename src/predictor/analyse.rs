@@ -89,7 +89,7 @@ pub fn analyse(model: &Path, out: Option<&FolderOutputs>, stop: &AtomicBool) -> 
     let targets = predictor.target_names();
     let at = predictor.model().centre();
     let jacobian = stages.time("jacobian", || predictor.model().jacobian_at(at));
-    is_told(&predictor, &jacobian, model)?;
+    refuse_lost(&predictor, &jacobian, model)?;
     let found: Modes = stages.time("modes", || modes(jacobian.view()));
     let linear = matches!(predictor.model(), Model::Linear(_));
     if !linear {
@@ -103,11 +103,10 @@ pub fn analyse(model: &Path, out: Option<&FolderOutputs>, stop: &AtomicBool) -> 
         inputs: ByTarget::new(&inputs, column(&found.right, k)),
     };
     let printed = printed(predictor.model(), &inputs, &targets);
-    let beyond =
-        |all: &Printed| !all.jacobian.0.iter().flat_map(|(_, row)| row).all(|value| value.is_finite() && *value != 0.0);
+    let beyond = |all: &Printed| !all.jacobian.0.iter().flat_map(|(_, row)| row).all(|value| value.is_finite());
     let printed = match printed {
         Some(all) if matches!(predictor.model(), Model::Quadratic(_)) && beyond(&all) => {
-            let what = "the terms of equation 16 in volts are beyond what a number can hold (or 0): they are not told";
+            let what = "the terms of equation 16 in volts are beyond what a number can hold; they are left out";
             warnings.push(what.to_owned());
             None
         }
@@ -140,7 +139,7 @@ pub fn analyse(model: &Path, out: Option<&FolderOutputs>, stop: &AtomicBool) -> 
 }
 
 /// Refuses a Jacobian that no number holds, though the model itself is scaled and sound.
-fn is_told(predictor: &Predictor, jacobian: &ndarray::Array2<f64>, model: &Path) -> Result<(), PredictorError> {
+fn refuse_lost(predictor: &Predictor, jacobian: &ndarray::Array2<f64>, model: &Path) -> Result<(), PredictorError> {
     for (target, row) in predictor.targets().iter().zip(jacobian.outer_iter()) {
         // What does not change with any voltage was constant, or is lost.
         let lost = row.iter().all(|value| value.abs() < f64::MIN_POSITIVE) && target.low < target.high;
