@@ -82,6 +82,8 @@ const LEAST_LETTER: f64 = 0.28;
 const ABOVE: f64 = 0.3;
 const BELOW: f64 = 0.45;
 const TALLEST: f64 = 1.35;
+/// No character reaches further than this both above and below the digits: a screen's frame does, and would swallow a digit within.
+const BEYOND_BOTH: f64 = 0.1;
 /// A mark's parts are lower than this, in heights of a digit.
 const MARK: f64 = 0.45;
 /// Between the dots of a colon there is this share of its height.
@@ -210,7 +212,9 @@ impl<'a> Scene<'a> {
         let on_line = |piece: &Piece| {
             let [above, below] = [piece.top as f64, (piece.bottom + 1) as f64];
             let within = below.min(bottom) - above.max(top);
-            piece.area > SPECK
+            let encloses = top - above > BEYOND_BOTH * height && below - bottom > BEYOND_BOTH * height;
+            !encloses
+                && piece.area > SPECK
                 && piece.top > 0
                 && piece.bottom + 1 < gray.height
                 && tall(piece) <= TALLEST * height

@@ -260,9 +260,9 @@ fn fault(format: &str) -> Option<String> {
     }
     match groups[0] {
         ('t', _) => Some("`t` needs the seconds before it; write \"s.t\"".to_owned()),
-        // Readings become 64-bit floating-point seconds.
-        _ if groups.iter().any(|&(_, count)| count > 9) => {
-            Some("more than 9 digits of one unit; shorten it".to_owned())
+        // Readings are 64-bit numbers of nanoseconds: ten million hours have no room.
+        _ if groups.iter().any(|&(c, count)| count > if c == 't' { 9 } else { 6 }) => {
+            Some("more than 6 digits of one unit, or 9 behind the point; shorten it".to_owned())
         }
         _ => None,
     }
@@ -302,6 +302,7 @@ mod tests {
             "00:ss",
             "ss.t\n",
             "tttttttttt",
+            "hhhhhhhhh:mm",
             "mm:ss a",
             "hh a:mm",
             "a hh:mm a",
