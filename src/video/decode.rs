@@ -8,11 +8,8 @@
 //! damaged one: all frames decoded after it up to the next key frame, as what reaches how far can't be told. A flipped bit
 //! that still decodes without a contradiction can't be noticed: videos carry no checksums. Nor can a packet whose very
 //! header in the container is damaged (Matroska, transport streams): later times stay right, the index lacks it. The
-//! result does not depend on the number of threads, with two exceptions: HEVC that is damaged without FFmpeg's noticing,
-//! and H.264 whose damaged slice ends early without a contradiction. FFmpeg marks such a frame only when its thread ends,
-//! which may be after the frame was handed out (measured: 1 of 47 damaged packets, noticed in 4 of 7 readings); one
-//! thread sees it always and takes as many times longer as there are processors. After the first damage a file is read
-//! with one.
+//! result does not depend on the number of threads (but where HEVC is damaged without FFmpeg's noticing); after the first
+//! damage a file is read with one, and H.264 always.
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};

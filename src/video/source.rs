@@ -150,13 +150,16 @@ fn no_video(input: &context::Input) -> String {
     }
 }
 
-/// Codecs whose frame threads can be relied upon to stop at a fault. MPEG-4's abort the program there (FFmpeg 5.1).
+/// Codecs whose frame threads can be relied upon to stop at a fault. MPEG-4's abort the program there (FFmpeg 5.1). H.264's
+/// copy a frame's marks before it is decoded: where a damaged slice ends early without a contradiction, which `explode` does
+/// not see either, the damage was noticed or not as the threads came to run (measured: 1 of 47 damaged packets, noticed in 4
+/// of 7 readings, and 400 bytes of 0xff in the middle of a file, in some). One thread takes 1.75 times as long as two.
 fn is_threaded(codec: Id) -> bool {
-    matches!(codec, Id::H264 | Id::HEVC | Id::VP9 | Id::AV1 | Id::MJPEG)
+    matches!(codec, Id::HEVC | Id::VP9 | Id::AV1 | Id::MJPEG)
 }
 
 /// With frame threads, the marks on frames come too late to be relied upon; refusing to go on at a fault (`explode`) does
-/// not. With one thread the marks of H.264 and of the MPEG family tell what was concealed, and the decoder forgives slips
+/// not. With one thread the marks of H.264 and of the MPEG family show what was concealed, and the decoder forgives slips
 /// beside the picture that a refusal would not.
 fn decoder(stream: &Stream<'_>, threads: usize, care: Care) -> Result<ffmpeg::decoder::Video, ffmpeg::Error> {
     let mut context = codec::Context::from_parameters(stream.parameters())?;
@@ -170,7 +173,7 @@ fn decoder(stream: &Stream<'_>, threads: usize, care: Care) -> Result<ffmpeg::de
     };
     context.set_threading(threading::Config { kind: threading::Type::Frame, count, ..Default::default() });
     let mut options = Dictionary::new();
-    if threaded || is_threaded(id) && id != Id::H264 {
+    if is_threaded(id) {
         options.set("err_detect", "explode");
     }
     let mut decoder = context.decoder();
