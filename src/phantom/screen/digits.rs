@@ -48,14 +48,7 @@ fn typeset(font: &FontRef<'static>, text: &str, widest: &str, width: usize, heig
         so_far.push(c);
         let glyph = scaled.glyph_id(c).with_scale_and_position(size, ab_glyph::point(x, baseline));
         let Some(outline) = font.outline_glyph(glyph) else { continue };
-        let bounds = outline.px_bounds();
-        outline.draw(|column, row, share| {
-            let (x, y) = (bounds.min.x as i64 + i64::from(column), bounds.min.y as i64 + i64::from(row));
-            if (0..width as i64).contains(&x) && (0..height as i64).contains(&y) {
-                let at = y as usize * width + x as usize;
-                lit[at] = (lit[at] + share).min(1.0);
-            }
-        });
+        ink(&outline, width, height, lit);
     }
 }
 
@@ -94,6 +87,18 @@ const SLANT: f32 = 0.1;
 const LETTER_ADVANCE: f32 = 1.15;
 const LETTER_HEIGHT: f32 = 1.0;
 
+/// Adds a glyph where it lies.
+fn ink(outline: &ab_glyph::OutlinedGlyph, width: usize, height: usize, lit: &mut [f32]) {
+    let bounds = outline.px_bounds();
+    outline.draw(|column, row, share| {
+        let (x, y) = (bounds.min.x as i64 + i64::from(column), bounds.min.y as i64 + i64::from(row));
+        if (0..width as i64).contains(&x) && (0..height as i64).contains(&y) {
+            let at = y as usize * width + x as usize;
+            lit[at] = (lit[at] + share).min(1.0);
+        }
+    });
+}
+
 /// Draws a letter, its height and the lower end of its left side given.
 fn printed(c: char, tall: f32, [x, y]: [f32; 2], width: usize, height: usize, lit: &mut [f32]) {
     let of_size =
@@ -104,14 +109,7 @@ fn printed(c: char, tall: f32, [x, y]: [f32; 2], width: usize, height: usize, li
     else {
         return;
     };
-    let bounds = outline.px_bounds();
-    outline.draw(|column, row, share| {
-        let (x, y) = (bounds.min.x as i64 + i64::from(column), bounds.min.y as i64 + i64::from(row));
-        if (0..width as i64).contains(&x) && (0..height as i64).contains(&y) {
-            let at = y as usize * width + x as usize;
-            lit[at] = (lit[at] + share).min(1.0);
-        }
-    });
+    ink(&outline, width, height, lit);
 }
 
 /// Draws seven-segment digits and dots by the distance from the segments' middle lines.
