@@ -1,11 +1,11 @@
-//! The command line of lunula: parse, run, exit status. What needs video is done by `lunula-video` beside it.
+//! The command line of lunula: parse, run, exit status.
 
 mod cli;
 
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    cli::run::<false>()
+    cli::run()
 }
 
 /// Photographs come and go by the megabyte: this allocator keeps their pages, the system's returns them each time.

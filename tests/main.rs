@@ -39,6 +39,5 @@ mod simulate;
 mod simulate_extremes;
 mod stdout;
 mod trajectory;
-mod two_programs;
 mod util;
 mod video;

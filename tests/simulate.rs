@@ -270,9 +270,7 @@ fn the_tradeoff_keeps_every_tolerance_and_draws_peers_and_maps() {
         kept += 1;
     }
     assert_eq!(kept, 10);
-    for series in
-        ["full, order 5", "full, order 13", "inertia dropped", "inertia corrected", "printed form", "Other (C)"]
-    {
+    for series in ["full, order 5", "full, order 13", "printed form", "Other (C)"] {
         assert!(rows.iter().any(|row| row["setting"].starts_with(series)), "{series}");
     }
     let maps = dir.table("t/stability.csv");

@@ -20,12 +20,9 @@ pub(super) fn parse(text: &str) -> Result<u64, String> {
     if (1.0..=1e18).contains(&bytes) { Ok(bytes as u64) } else { Err(refused()) }
 }
 
-/// Three quarters of what the system has free; 4 GB where it does not tell.
+/// Three quarters of what the system has free; 4 GB where that is not known.
 pub(super) fn free() -> u64 {
-    let told = std::fs::read_to_string("/proc/meminfo").unwrap_or_default();
-    let line = told.lines().find_map(|line| line.strip_prefix("MemAvailable:"));
-    let kib: Option<u64> = line.and_then(|line| line.split_whitespace().next()?.parse().ok());
-    kib.map_or(4_000_000_000, |kib| kib / 4 * 3 * 1024)
+    lunula::doctor::free_memory().map_or(4_000_000_000, |bytes| bytes / 4 * 3)
 }
 
 /// As many as there are cores.

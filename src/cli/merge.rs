@@ -7,7 +7,7 @@ use clap::Args;
 use lunula::pipeline::{Parts, PipelineMark, Plan, RunOptions, Spec, kinds, phantom_catalogue};
 
 use super::run::{finish, watched};
-use super::{Common, Outcome, hand_over, memory};
+use super::{Common, Outcome, memory};
 
 /// Parts of a run made with --shard to one folder of results: the same bytes as made at once
 ///
@@ -33,12 +33,7 @@ pub(super) struct MergeArgs {
     common: Common,
 }
 
-pub(super) fn run<const VIDEO: bool>(args: &MergeArgs) -> anyhow::Result<Outcome> {
-    // What changed since the parts were run may be videos. Told apart so that the program without video is not linked with it.
-    if VIDEO { merge(args) } else { hand_over() }
-}
-
-fn merge(args: &MergeArgs) -> anyhow::Result<Outcome> {
+pub(super) fn run(args: &MergeArgs) -> anyhow::Result<Outcome> {
     let common = &args.common;
     let stop = common.start()?;
     let parts = Parts::open(&args.parts)?;

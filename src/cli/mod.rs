@@ -22,12 +22,11 @@ mod tradeoff;
 mod trajectory;
 
 use std::io::IsTerminal;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use anyhow::{Context, bail};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
@@ -125,8 +124,8 @@ struct Interrupted;
 #[error("interrupted; what was done stands, and the same command goes on from there")]
 struct Stopped;
 
-/// Parses and runs the command; what needs video (`VIDEO` false) is handed over to [`WITH_VIDEO`].
-pub(crate) fn run<const VIDEO: bool>() -> ExitCode {
+/// Parses and runs the command.
+pub(crate) fn run() -> ExitCode {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         // Help and version.
@@ -146,15 +145,14 @@ pub(crate) fn run<const VIDEO: bool>() -> ExitCode {
         Command::Prune(args) => predictor::prune(&args),
         Command::Simulate(args) => hemodynamics::simulate(&args),
         Command::Fit(args) => hemodynamics::fit(&args),
-        Command::Posture(args) if VIDEO => posture::run(&args),
-        Command::Posture(_) => hand_over(),
-        Command::Merge(args) => merge::run::<VIDEO>(&args),
-        Command::Phantom(args) => phantom::run::<VIDEO>(&args),
-        Command::Tradeoff(args) => tradeoff::run::<VIDEO>(&args),
+        Command::Posture(args) => posture::run(&args),
+        Command::Merge(args) => merge::run(&args),
+        Command::Phantom(args) => phantom::run(&args),
+        Command::Tradeoff(args) => tradeoff::run(&args),
         Command::Trajectory(args) => trajectory::run(&args),
-        Command::Run(args) => run::run::<VIDEO>(&args),
+        Command::Run(args) => run::run(&args),
         Command::Init(args) => init::run(&args),
-        Command::Doctor(args) => doctor::run::<VIDEO>(&args),
+        Command::Doctor(args) => doctor::run(&args),
         Command::Completions(args) => completions::run(&args),
         Command::Man(args) => man::run(&args),
     })
@@ -182,26 +180,6 @@ fn ended_with(outcome: anyhow::Result<Outcome>) -> ExitCode {
         }
         Ok(()) => ExitCode::from(status),
     }
-}
-
-/// The same program with FFmpeg's libraries, the loading of which takes 40 ms: a model is trained, or a question for help answered, in
-/// less. It stands beside this one.
-const WITH_VIDEO: &str = "lunula-video";
-
-/// Where this program stands, and where the one that can read and write video should.
-fn programs() -> anyhow::Result<(PathBuf, PathBuf)> {
-    let own = std::env::current_exe().context("where this program stands")?;
-    let other = own.with_file_name(format!("{WITH_VIDEO}{}", std::env::consts::EXE_SUFFIX));
-    Ok((own, other))
-}
-
-/// Goes on as the program that can read and write video; returns where there is none.
-fn hand_over() -> anyhow::Result<Outcome> {
-    let (own, other) = programs()?;
-    let mut command = std::process::Command::new(&other);
-    command.args(std::env::args_os().skip(1));
-    let why = std::os::unix::process::CommandExt::exec(&mut command);
-    bail!("{}: cannot be run ({why}); it does what needs video: install it beside {}", other.display(), own.display())
 }
 
 impl Common {

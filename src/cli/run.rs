@@ -7,12 +7,12 @@ use anyhow::Context;
 use clap::Args;
 use lunula::pipeline::{
     Event, Outcome as Ended, Plan, Progress, RunOptions, RunReport, RunWatch, Shard, Spec, Standing, kinds,
-    kinds_without_video, names_others, phantom_catalogue, plan_text, run as run_tasks, summary, survey, write_reports,
+    phantom_catalogue, plan_text, run as run_tasks, summary, survey, write_reports,
 };
 use lunula::words::{shown, shown_lines};
 use serde_json::json;
 
-use super::{Common, Outcome, Stopped, hand_over, memory, print_line};
+use super::{Common, Outcome, Stopped, memory, print_line};
 
 /// A pipeline file: the results it wants, and only what they need; what stands is kept
 ///
@@ -42,12 +42,11 @@ pub(super) struct RunArgs {
     common: Common,
 }
 
-pub(super) fn run<const VIDEO: bool>(args: &RunArgs) -> anyhow::Result<Outcome> {
-    if !VIDEO && names_others(&args.pipeline, kinds_without_video())? {
-        return hand_over();
-    }
-    // Told apart so that the program without video is not linked with it.
-    let (spec, plan) = if VIDEO { with_video(args)? } else { without_video(args)? };
+pub(super) fn run(args: &RunArgs) -> anyhow::Result<Outcome> {
+    let spec = Spec::read(&args.pipeline, kinds())?;
+    let generated = spec.catalogue(phantom_catalogue)?;
+    // A plan needs no folder; without one nothing is there yet.
+    let plan = Plan::new(&spec, args.out.as_deref().unwrap_or(Path::new("OUT")), generated.as_ref())?;
     if args.plan {
         return show(args, &plan);
     }
@@ -84,24 +83,6 @@ pub(super) fn watched<E>(
     let report = run(&RunWatch { stop, tick: &tick });
     bar.finish_and_clear();
     report
-}
-
-fn with_video(args: &RunArgs) -> anyhow::Result<(Spec, Plan)> {
-    let spec = Spec::read(&args.pipeline, kinds())?;
-    let generated = spec.catalogue(phantom_catalogue)?;
-    let plan = Plan::new(&spec, out_or_any(args), generated.as_ref())?;
-    Ok((spec, plan))
-}
-
-fn without_video(args: &RunArgs) -> anyhow::Result<(Spec, Plan)> {
-    let spec = Spec::read(&args.pipeline, kinds_without_video())?;
-    let plan = Plan::new(&spec, out_or_any(args), None)?;
-    Ok((spec, plan))
-}
-
-/// A plan needs no folder; without one nothing stands.
-fn out_or_any(args: &RunArgs) -> &Path {
-    args.out.as_deref().unwrap_or(Path::new("OUT"))
 }
 
 fn show(args: &RunArgs, plan: &Plan) -> anyhow::Result<Outcome> {

@@ -9,7 +9,7 @@ use lunula::tradeoff::peers::Peers;
 use lunula::tradeoff::{self as curves, Effort, Interrupted, Plan, Row, Setting, Tradeoff, Verdict};
 
 use super::phantom::SceneArg;
-use super::{Common, Outcome, hand_over};
+use super::{Common, Outcome};
 
 /// Error against run time, over the settings of a job or of all: the knee of each curve, where the default stands, other programs
 ///
@@ -164,12 +164,7 @@ struct HemodynamicsArgs {
     measuring: Measuring,
 }
 
-pub(super) fn run<const VIDEO: bool>(args: &TradeoffArgs) -> anyhow::Result<Outcome> {
-    // All of it: one plan measures whatever job, so naming it at all links the program with video.
-    if VIDEO { measure(args) } else { hand_over() }
-}
-
-fn measure(args: &TradeoffArgs) -> anyhow::Result<Outcome> {
+pub(super) fn run(args: &TradeoffArgs) -> anyhow::Result<Outcome> {
     let done = match &args.job {
         Job::Photos(args) => args.measured.run(curves::Job::Photos, |plan| {
             plan.subjects = args.subjects.unwrap_or(plan.subjects);

@@ -1,6 +1,6 @@
 //! What a job is asked for, by a word.
 
-use lunula_hemodynamics::{Calibration, Collapse, Inertia, Optics, Parameters};
+use lunula_hemodynamics::{Calibration, Collapse, Optics, Parameters};
 use serde::{Serialize, Serializer};
 
 use super::HemodynamicsError;
@@ -56,11 +56,6 @@ impl Serialize for OpticsChoice {
 impl Words for Collapse {
     const WORDS: &'static [(Self, &'static str, &'static str)] =
         &[(Self::Error, "error", ""), (Self::Contact, "contact", "")];
-}
-
-impl Words for Inertia {
-    const WORDS: &'static [(Self, &'static str, &'static str)] =
-        &[(Self::Full, "full", ""), (Self::Dropped, "dropped", ""), (Self::Corrected, "corrected", "")];
 }
 
 impl Words for Pressed {

@@ -33,7 +33,7 @@ pub use hashes::ContentHash;
 pub use init::{InitError, propose};
 pub use keys::Keys;
 pub use kind::{Demand, Facts, Foreseen, KeyFault, Kind, Part, Prepared, Role, Takes};
-pub use kinds::{kinds, kinds_without_video, phantom_catalogue};
+pub use kinds::{kinds, phantom_catalogue};
 pub use lock::Holder;
 pub use merge::{MergeFault, Merged, Parts};
 pub use plan::{Plan, PlanFate, PlanLine, StagePlan, plan_text};
@@ -43,7 +43,7 @@ pub use run::{
     Event, Outcome, Progress, Results, RunFault, RunOptions, RunReport, RunWatch, TaskFailure, TaskReport, run,
 };
 pub use shard::{PartMark, PipelineMark, Shard, ShardFault};
-pub use spec::{PipelineError, Spec, names_others};
+pub use spec::{PipelineError, Spec};
 pub use standing::{Standing, Why, survey};
 pub use task::{At, Input, Job, Made, Quality, Share, Source, Task, TaskId, Work};
 

@@ -100,7 +100,7 @@ pub fn choices() -> Vec<Choice> {
         ),
         choice(
             hemodynamics::SOLVING,
-            "--rtol, --model; library: Order",
+            "--rtol; library: Order",
             hemodynamics::solving_default(),
             hemodynamics::ERROR,
             "It is before the knee because each further digit costs about a fifth more time, and eight are more \

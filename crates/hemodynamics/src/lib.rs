@@ -18,7 +18,6 @@ mod optics;
 mod parameters;
 mod printed;
 mod radau;
-mod reduced;
 mod sensitivity;
 mod state;
 mod transient;
@@ -38,7 +37,6 @@ pub use model::{Arrow, Collapse, Model, Pressures};
 pub use optics::{Optics, OpticsFault, Photodiodes};
 pub use parameters::{ParameterFault, Parameters, Site, Symbol, Unit, Vessel};
 pub use printed::{Matrices, Printed, PrintedFault};
-pub use reduced::{Inertia, Reduced, ReducedFault, simulate_reduced};
 pub use state::{State, StateFault};
 pub use transient::{Order, SolveFault, SolveOptions, Solver, Statistics, Stopped, Trajectory, simulate};
 

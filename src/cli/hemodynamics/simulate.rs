@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 
 use anyhow::Context;
 use clap::Args;
-use lunula::hemodynamics::model::{Collapse, Inertia, Load};
+use lunula::hemodynamics::model::{Collapse, Load};
 use lunula::hemodynamics::{
     CurveOptions, CurveOutputs, CurveReport, GivenLoads, LoadRange, OpticsChoice, Pressed, SimulateOptions,
     SimulateOutputs, SimulateReport, Start, curve, curve_plan, simulate, simulate_plan,
@@ -72,9 +72,6 @@ pub(crate) struct SimulateArgs {
     /// Every lumen's error over its nominal diameter is at most this
     #[arg(long, value_name = "ERROR", default_value = "1e-8", allow_negative_numbers = true)]
     rtol: f64,
-    /// The walls' inertia kept (full), dropped, or dropped with its first-order correction; the error of the latter two is told
-    #[arg(long, value_parser = one_of::<Inertia>(), default_value = "full")]
-    model: Inertia,
     /// How light depends on the capillaries
     #[arg(long, value_parser = one_of::<OpticsChoice>(), default_value = "beer-lambert")]
     optics: OpticsChoice,
@@ -90,7 +87,7 @@ pub(crate) struct SimulateArgs {
         id = "static_",
         value_name = "FROM..TO/STEP",
         allow_hyphen_values = true,
-        conflicts_with_all = ["pf1", "pf2", "loads", "from", "until", "every", "rtol", "model"]
+        conflicts_with_all = ["pf1", "pf2", "loads", "from", "until", "every", "rtol"]
     )]
     static_: Option<LoadRange>,
     /// What the loads of --static press on [default: both]
@@ -131,7 +128,6 @@ impl SimulateArgs {
                 Some(path) => Start::File(path.clone()),
             },
             collapse: self.collapse,
-            inertia: self.model,
             optics: self.optics,
             until_s: self.until,
             every_s: self.every,
@@ -188,9 +184,6 @@ fn finish(common: &Common, report: &SimulateReport) -> anyhow::Result<Outcome> {
     let last_s =
         report.last_s.map_or("no rows".to_owned(), |last_s| format!("{} rows from 0 to {last_s} s", report.rows));
     common.say(&format!("{last_s}; the error of every lumen is at most {:e} of its nominal diameter", report.rtol));
-    if let Some(error) = report.model_error {
-        common.say(&format!("the reduced model's own error comes on top: about {error:.1e} of the nominal diameter"));
-    }
     let work = &report.work;
     common.say(&format!(
         "{} steps ({} more rejected), {} evaluations, {} factorizations; {}",

@@ -9,7 +9,7 @@ use clap::{Args, Subcommand};
 
 pub(super) use lunula::phantom::request::SceneArg;
 
-use super::{Common, Interrupted, Outcome, hand_over};
+use super::{Common, Interrupted, Outcome};
 
 /// Synthetic scenes with exact truth: inputs as the jobs read them, and truth/ beside them
 #[derive(Debug, Args)]
@@ -26,12 +26,11 @@ enum Kind {
     Video(Box<video::VideoArgs>),
 }
 
-pub(super) fn run<const VIDEO: bool>(args: &PhantomArgs) -> anyhow::Result<Outcome> {
+pub(super) fn run(args: &PhantomArgs) -> anyhow::Result<Outcome> {
     match &args.kind {
         Kind::Log(args) => log::run(args),
         Kind::Photos(args) => photos::run(args),
-        Kind::Video(args) if VIDEO => video::run(args),
-        Kind::Study(args) if VIDEO => study::run(args),
-        Kind::Study(_) | Kind::Video(_) => hand_over(),
+        Kind::Video(args) => video::run(args),
+        Kind::Study(args) => study::run(args),
     }
 }

@@ -1,8 +1,8 @@
 //! What a fitted model says to the samples of a recording.
 
 use lunula_hemodynamics::{
-    Calibrated, Collapse, Course, Inertia, Inputs, Loads, Model, Optics, Parameters, Photodiodes, Recording, Stability,
-    Symbol, equilibria,
+    Calibrated, Collapse, Course, Inputs, Loads, Model, Optics, Parameters, Photodiodes, Recording, Stability, Symbol,
+    equilibria,
 };
 
 use crate::hemodynamics::HemodynamicsError;
@@ -45,7 +45,7 @@ pub(in crate::hemodynamics) fn voltages(
             }
             let from_s = times_s[0];
             let start = state_before(from_s, parameters, &loads, collapse)?;
-            let settings = RunSettings { inertia: Inertia::Full, collapse, rtol: RTOL, optics: optics.clone(), from_s };
+            let settings = RunSettings { collapse, rtol: RTOL, optics: optics.clone(), from_s };
             let run = respond(parameters, &loads, &start, times_s, &settings)?;
             if let Some(collapsed) = run.collapsed {
                 return Err(HemodynamicsError::Model(collapsed.words()));

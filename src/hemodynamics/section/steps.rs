@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use lunula_hemodynamics::{Collapse, Inertia, Load, Loads, Optics, Parameters, time_constant};
+use lunula_hemodynamics::{Collapse, Load, Loads, Optics, Parameters, time_constant};
 
 use crate::hemodynamics::curve::Pressed;
 use crate::hemodynamics::figures::{Curve, N_PER_CM2, Panel, draw_over_time};
@@ -41,7 +41,7 @@ pub(super) fn steps(
     let rows = (END_S * f64::from(RATE)) as u32;
     let times_s: Vec<f64> = (0..=rows).map(|k| f64::from(k) / f64::from(RATE)).collect();
     let collapse = Collapse::Error;
-    let settings = RunSettings { inertia: Inertia::Full, collapse, rtol, optics: Optics::BeerLambert, from_s: 0.0 };
+    let settings = RunSettings { collapse, rtol, optics: Optics::BeerLambert, from_s: 0.0 };
     let one = |&load_pa: &f64| {
         let step =
             |height: f64| Load::step(height, 0.0, RELEASED_S).map_err(|why| HemodynamicsError::Model(why.to_string()));

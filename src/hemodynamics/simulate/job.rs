@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-use lunula_hemodynamics::{Inertia, Parameters};
+use lunula_hemodynamics::Parameters;
 
 use super::report::{Collapsed, LoadsReport, SimulateReport};
 use super::{SimulateOptions, table};
@@ -16,7 +16,6 @@ use crate::hemodynamics::solve::{Run, RunSettings, respond, start_state};
 use crate::hemodynamics::{HemodynamicsError, named};
 use crate::stages::{Stages, Step, left_out};
 use crate::table::TableFormat;
-use crate::words::Words;
 
 /// The picture's name, after the table's.
 const PICTURE: &str = "response";
@@ -69,16 +68,10 @@ fn steps(options: &SimulateOptions, outputs: Option<&SimulateOutputs>, units: Op
         Start::Zero => "--from zero: no displacement, no velocity".to_owned(),
         Start::File(path) => format!("--from: the last row of {}", path.display()),
     };
-    let reduced = options.inertia != Inertia::Full;
     let pictures = outputs.is_none_or(|outputs| outputs.figures);
     vec![
         Step::new("equilibrium to start from", equilibrium, start),
         Step::new("run", true, format!("{units}{} rows, rtol {:e}", options.rows(), options.rtol)),
-        Step::new(
-            "error of the reduced model",
-            reduced,
-            if reduced { "beside the tolerance" } else { "the walls' motion is kept whole" }.to_owned(),
-        ),
         Step::new(
             "loads in the table",
             options.with_loads,
@@ -104,13 +97,12 @@ pub fn simulate(
     is_no_input(options, outputs)?;
     let warnings = warnings(options, &loads);
     let optics = options.optics.optics(&parameters)?;
-    let settings =
-        RunSettings { inertia: options.inertia, collapse: options.collapse, rtol: options.rtol, optics, from_s: 0.0 };
+    let settings = RunSettings { collapse: options.collapse, rtol: options.rtol, optics, from_s: 0.0 };
     let start = stages.time("start", || start_state(&options.start, &parameters, &loads.loads, options.collapse))?;
     go_on(stop)?;
     let times_s = options.times_s();
     let solved = stages.time("run", || respond(&parameters, &loads.loads, &start, &times_s, &settings))?;
-    let Run { response, work, collapsed, model_error } = solved;
+    let Run { response, work, collapsed } = solved;
     let mut failed = Vec::new();
     if let Some(collapsed) = &collapsed {
         let what = collapsed.words();
@@ -148,13 +140,11 @@ pub fn simulate(
             Start::Zero => "zero".to_owned(),
             Start::File(path) => path.display().to_string(),
         },
-        model: options.inertia.word(),
         optics: options.optics,
         collapse: options.collapse.name(),
         until_s: options.until_s,
         every_s: options.every_s,
         rtol: options.rtol,
-        model_error,
         stopped: collapsed.as_ref().map_or("the last row was reached".to_owned(), Collapsed::words),
         collapsed,
         work,

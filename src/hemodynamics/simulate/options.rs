@@ -1,6 +1,6 @@
 //! What run is wanted.
 
-use lunula_hemodynamics::{Collapse, Inertia};
+use lunula_hemodynamics::Collapse;
 
 use crate::hemodynamics::choices::OpticsChoice;
 use crate::hemodynamics::given::{GivenLoads, GivenParameters, Start};
@@ -17,8 +17,6 @@ pub struct SimulateOptions {
     pub start: Start,
     /// What happens where a vessel closes.
     pub collapse: Collapse,
-    /// How much of the walls' motion is kept.
-    pub inertia: Inertia,
     /// How light depends on the capillaries.
     pub optics: OpticsChoice,
     /// The time of the last row; the first is 0.
@@ -40,7 +38,6 @@ impl Default for SimulateOptions {
             loads: GivenLoads::default(),
             start: Start::default(),
             collapse: Collapse::default(),
-            inertia: Inertia::default(),
             optics: OpticsChoice::default(),
             until_s: 4.0,
             every_s: 0.01,

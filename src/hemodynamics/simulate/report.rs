@@ -87,8 +87,6 @@ pub struct SimulateReport {
     pub parameters_file: Option<PathBuf>,
     /// From where.
     pub from: String,
-    /// How much of the walls' motion was kept.
-    pub model: &'static str,
     /// How light depends on the capillaries.
     pub optics: OpticsChoice,
     /// What happens where a vessel closes.
@@ -99,8 +97,6 @@ pub struct SimulateReport {
     pub every_s: f64,
     /// The tolerance that was asked for: the error of every lumen over its nominal diameter.
     pub rtol: f64,
-    /// Of a reduced model, its own error over the nominal diameter, estimated; none of the full one.
-    pub model_error: Option<f64>,
     /// Why the run stopped.
     pub stopped: String,
     /// A vessel that closed, where a part of the table was to be kept.

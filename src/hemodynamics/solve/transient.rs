@@ -1,8 +1,8 @@
 //! A run over time, and how it ended.
 
 use lunula_hemodynamics::{
-    Collapse, Inertia, Loads, Model, Optics, Parameters, Photodiodes, ReducedFault, SolveFault, SolveOptions, State,
-    Statistics, Trajectory, simulate_reduced,
+    Collapse, Loads, Model, Optics, Parameters, Photodiodes, SolveFault, SolveOptions, State, Statistics, Trajectory,
+    simulate,
 };
 
 use crate::hemodynamics::simulate::{Collapsed, Work};
@@ -11,8 +11,6 @@ use crate::hemodynamics::{HemodynamicsError, Response};
 /// How a run is solved.
 #[derive(Debug, Clone)]
 pub struct RunSettings {
-    /// How much of the walls' motion is kept.
-    pub inertia: Inertia,
     /// What happens where a vessel closes.
     pub collapse: Collapse,
     /// See the command line.
@@ -32,8 +30,6 @@ pub struct Run {
     pub work: Work,
     /// The vessel that closed.
     pub collapsed: Option<Collapsed>,
-    /// Of a reduced model, its own error over the nominal diameter.
-    pub model_error: Option<f64>,
 }
 
 /// Solves for rows at `times_s` from `start` on.
@@ -51,11 +47,10 @@ pub fn respond(
     let photodiodes =
         Photodiodes::new(parameters, &settings.optics).map_err(|why| HemodynamicsError::Model(why.to_string()))?;
     let options = SolveOptions { start_s: Some(settings.from_s), ..SolveOptions::at(settings.rtol) };
-    let solved = simulate_reduced(&model, loads, start, times_s, &options, settings.inertia);
-    let (trajectory, model_error, collapsed) = match solved {
-        Ok(reduced) => (reduced.trajectory, Some(reduced.model_error), None),
-        Err(ReducedFault::Solve(SolveFault::Collapsed { site, time_s, before })) => {
-            (*before, None, Some(Collapsed { vessel: site.to_string(), time_s }))
+    let (trajectory, collapsed) = match simulate(&model, loads, start, times_s, &options) {
+        Ok(trajectory) => (trajectory, None),
+        Err(SolveFault::Collapsed { site, time_s, before }) => {
+            (*before, Some(Collapsed { vessel: site.to_string(), time_s }))
         }
         Err(why) => return Err(HemodynamicsError::Model(why.to_string())),
     };
@@ -63,7 +58,6 @@ pub fn respond(
         response: response(&trajectory, model.walls(), &photodiodes),
         work: work(trajectory.statistics()),
         collapsed,
-        model_error: model_error.filter(|_| settings.inertia != Inertia::Full),
     })
 }
 

@@ -39,12 +39,6 @@ pub fn kinds() -> &'static [&'static Kind] {
     KINDS
 }
 
-/// Those that need no video. A program that names no others is linked without FFmpeg's libraries, the loading of which takes 40 ms.
-#[must_use]
-pub fn kinds_without_video() -> &'static [&'static Kind] {
-    WITHOUT_VIDEO
-}
-
 /// A line each, sorted by name.
 static KINDS: &[&Kind] = &[
     &align::ALIGN,
@@ -56,29 +50,6 @@ static KINDS: &[&Kind] = &[
     &maps::MAPS,
     &normalize::NORMALIZE,
     &posture::POSTURE,
-    &predict::PREDICT,
-    &section::PRESSES,
-    &prune::PRUNE,
-    &responses::RESPONSES,
-    &section::SECTION,
-    &simulate::SIMULATE,
-    &curve::STATIC,
-    &study::STUDY,
-    &train::TRAIN,
-    &trajectory::TRAJECTORY,
-    &typical::TYPICAL,
-];
-
-/// The same without `posture`.
-static WITHOUT_VIDEO: &[&Kind] = &[
-    &align::ALIGN,
-    &analyse::ANALYSE,
-    &compare::COMPARE,
-    &evaluate::EVALUATE,
-    &fit::FIT,
-    &join::JOIN,
-    &maps::MAPS,
-    &normalize::NORMALIZE,
     &predict::PREDICT,
     &section::PRESSES,
     &prune::PRUNE,

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::nail::{PARAMS, Settings, Told, all_stand, given, of_foreseen, of_task, without_report};
 use super::options::{fault, read, told};
 use super::pool::in_pool;
-use crate::hemodynamics::model::{Collapse, Inertia, Load};
+use crate::hemodynamics::model::{Collapse, Load};
 use crate::hemodynamics::{
     GivenLoads, OpticsChoice, SimulateOptions, SimulateOutputs, Start, simulate, simulate_outline, simulate_plan,
 };
@@ -33,7 +33,7 @@ pub(super) static SIMULATE: Kind = Kind {
         Part { name: "trajectory", file: TABLE, only_if_wanted: false, about: "walls and photodiodes over time" },
         Part { name: PICTURES, file: "", only_if_wanted: true, about: "the response over time" },
     ],
-    revision: 1,
+    revision: 2,
     keys: KEYS,
     prepare,
 };
@@ -48,7 +48,6 @@ const KEYS: &[&str] = &[
     "until",
     "every",
     "rtol",
-    "model",
     "optics",
     "with_loads",
     "keep_partial",
@@ -72,8 +71,6 @@ struct Asked {
     every: f64,
     rtol: f64,
     #[serde(with = "crate::words")]
-    model: Inertia,
-    #[serde(with = "crate::words")]
     optics: OpticsChoice,
     with_loads: bool,
     keep_partial: bool,
@@ -94,7 +91,6 @@ impl Default for Asked {
             until: usual.until_s,
             every: usual.every_s,
             rtol: usual.rtol,
-            model: usual.inertia,
             optics: usual.optics,
             with_loads: usual.with_loads,
             keep_partial: usual.keep_partial,
@@ -128,7 +124,6 @@ fn prepare(table: toml::Table) -> Result<Arc<dyn Prepared>, KeyFault> {
         },
         start,
         collapse: asked.collapse,
-        inertia: asked.model,
         optics: asked.optics,
         until_s: asked.until,
         every_s: asked.every,
@@ -224,14 +219,12 @@ impl Job for SimulateJob {
         let outputs = outputs(work.folder, &self.demand);
         let report = in_pool(work.threads, || simulate(&options, &outputs, work.stop))??;
         without_report(&outputs.table)?;
-        let stated = |what: &str, value: f64| Quality {
-            what: what.to_owned(),
-            value,
+        let quality = vec![Quality {
+            what: "lumens".to_owned(),
+            value: report.rtol,
             unit: "of the nominal diameter, at most".to_owned(),
             against_truth: false,
-        };
-        let mut quality = vec![stated("lumens", report.rtol)];
-        quality.extend(report.model_error.map(|error| stated("the reduced model", error)));
+        }];
         Ok(Made {
             report: serde_json::to_value(&report)?,
             left_out: report.left_out,

@@ -201,18 +201,6 @@ impl Spec {
     }
 }
 
-/// Whether a pipeline file names jobs other than those of `kinds`, or generates recordings, as far as the text can be read: to choose the
-/// program that runs it, before anything is checked.
-///
-/// # Errors
-/// Where the file can't be read.
-pub fn names_others(path: &Path, kinds: &[&'static Kind]) -> Result<bool, PipelineError> {
-    let document: toml::Table = text_of(path)?.parse().unwrap_or_default();
-    let stages = document.get("stage").and_then(toml::Value::as_table);
-    let mut jobs = stages.into_iter().flat_map(toml::Table::values).filter_map(|stage| stage.get("job")?.as_str());
-    Ok(document.contains_key("phantom") || jobs.any(|job| !kinds.iter().any(|kind| kind.name == job)))
-}
-
 /// Bytes of a pipeline file (assumed: the study's has 5 000, and one with a stage for each of a thousand recordings 200 000).
 const LARGEST: usize = 1 << 20;
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{PipelineError, Spec, names_others};
+use super::{PipelineError, Spec};
 use crate::pipeline::toys::TOYS;
 
 const GOOD: &str = r#"# a comment
@@ -229,21 +229,13 @@ fn columns_are_characters_and_other_line_ends_are_read() {
 }
 
 #[test]
-fn the_program_is_chosen_before_anything_is_checked() {
+fn a_file_that_is_missing_or_no_text_is_refused_with_the_place() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("p.toml");
-    let others = |text: &str, kinds| {
-        std::fs::write(&path, text).unwrap();
-        names_others(&path, kinds).unwrap()
-    };
-    assert!(!others(GOOD, TOYS));
-    assert!(others(GOOD, &TOYS[1..]), "a job that is not among them");
-    assert!(others(&format!("{GOOD}[phantom]\nstudy = {{}}\n"), TOYS));
-    assert!(!others("no toml", TOYS));
     std::fs::write(&path, b"name = \"x\"\n# \xff").unwrap();
-    let why = names_others(&path, TOYS).unwrap_err().to_string();
+    let why = Spec::read(&path, TOYS).err().unwrap().to_string();
     assert!(why.ends_with("p.toml:2:3: not UTF-8 text; save the file as UTF-8"), "{why}");
-    assert!(names_others(&dir.path().join("none.toml"), TOYS).unwrap_err().to_string().contains("lunula init"));
+    assert!(Spec::read(&dir.path().join("none.toml"), TOYS).err().unwrap().to_string().contains("lunula init"));
 }
 
 #[test]
@@ -267,6 +259,6 @@ fn a_file_of_a_million_quotes_is_refused_at_once() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("p.toml");
     std::fs::write(&path, "#".repeat((1 << 20) + 1)).unwrap();
-    let why = names_others(&path, TOYS).unwrap_err().to_string();
+    let why = Spec::read(&path, TOYS).err().unwrap().to_string();
     assert!(why.contains("1048577 bytes") && why.contains("1048576 at most"), "{why}");
 }

@@ -5,8 +5,7 @@ use std::time::Instant;
 
 use anyhow::anyhow;
 use lunula_hemodynamics::{
-    Collapse, Inertia, Live, Load, Loads, Model, Order, Parameters, SolveOptions, Solver, State, Trajectory, rest,
-    simulate_reduced,
+    Collapse, Live, Load, Loads, Model, Order, Parameters, SolveOptions, Solver, State, Trajectory, rest,
 };
 
 use super::{ERROR, SOLVING, python};
@@ -67,7 +66,6 @@ type Told = (f64, u64);
 enum Way<'a> {
     Full(&'a Model, SolveOptions),
     Live(u32),
-    Reduced(SolveOptions, Inertia),
 }
 
 /// Measures every setting, and other programs.
@@ -84,7 +82,6 @@ pub fn measure(settings: &Settings) -> anyhow::Result<Measured> {
     let each = in_turns(&ways, &settings.effort, |(_, way), first| match way {
         Way::Full(model, options) => bench.full(model, options, first, &mut found),
         Way::Live(hz) => bench.live(*hz, first),
-        Way::Reduced(options, inertia) => bench.reduced(options, *inertia, first, &mut found),
     })?;
     for ((setting, _), found) in ways.iter().zip(each) {
         match found {
@@ -117,11 +114,6 @@ fn ways<'a>(model: &'a Model, printed: &'a Model) -> Vec<(String, Way<'a>)> {
     }
     for hz in LIVE_HZ {
         ways.push((format!("live, {hz} Hz"), Way::Live(hz)));
-    }
-    for (name, inertia) in [("inertia dropped", Inertia::Dropped), ("inertia corrected", Inertia::Corrected)] {
-        for rtol in TOLERANCES.into_iter().take(7) {
-            ways.push((format!("{name}, {rtol:.0e}"), Way::Reduced(SolveOptions::at(rtol), inertia)));
-        }
     }
     for rtol in TOLERANCES {
         ways.push((format!("printed form, {rtol:.0e}"), Way::Full(printed, SolveOptions::at(rtol))));
@@ -236,15 +228,6 @@ impl Bench {
             }
         }
         Ok((seconds, first.then_some((error, work))))
-    }
-
-    fn reduced(&self, options: &SolveOptions, inertia: Inertia, first: bool, found: &mut Trajectory) -> Run<Told> {
-        let options = SolveOptions { start_s: Some(0.0), ..options.clone() };
-        self.over(first, found, |case, found| {
-            *found =
-                simulate_reduced(&self.model, &case.loads, &self.start, &self.times_s, &options, inertia)?.trajectory;
-            Ok(())
-        })
     }
 }
 

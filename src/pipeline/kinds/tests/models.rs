@@ -272,7 +272,6 @@ fn plans_leave_out_what_a_scene_does_not_need() {
     assert!(!fate("predict", "", &[flat, coming("model", None)], &["predicted"], "gate").0);
     let recordings = [coming("recordings", None)];
     assert!(!fate("fit", "free = ['k_C']\ncalibrate = 'held'", &recordings, &["params"], "offset and scaling").0);
-    assert!(!fate("simulate", "", &[coming("params", None)], &["trajectory"], "error of the reduced model").0);
     assert!(!fate("static", "static = 0", &[], &["curve"], "figures").0);
     assert!(!fate("trajectory", "kind = 'posture'", &[], &["trajectory"], "equations 24 to 26").0);
     assert!(!fate("prune", "", &validated, &["subsets"], "quadratic and network models").0);
