@@ -1,156 +1,24 @@
 //! The alignment job: a table of joint angles and a log in, a labelled set with its certificate out; the one entry that command
 //! line, pipelines and trade-offs call.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use thiserror::Error;
-
 use super::certificate::Certificate;
-use super::export::{BidsNames, ExportError};
+use super::error::AlignError;
+use super::export::BidsNames;
 use super::label::label;
+use super::options::{AlignInputs, AlignOptions, AlignOutputs, Sync};
 use super::plan::steps;
 use super::posture::Posture;
 use super::report::{AlignReport, LabelReport};
 use super::results::Results;
-use super::tie::{self, LagTie, Tie};
-use crate::files::{WriteError, is_same_file};
-use crate::log::{AmbientError, AmbientOptions, Columns, Log, LogError, Samples, samples};
+use super::tie::{self, Tie};
+use crate::files::is_same_file;
+use crate::log::{Log, Samples, samples};
 use crate::stages::{Stages, left_out};
-use crate::table::{TableError, TableFormat};
-
-/// What is aligned.
-#[derive(Debug, Clone)]
-pub struct AlignInputs {
-    /// The table of joint angles, as `lunula posture` writes it.
-    pub joints: PathBuf,
-    /// The log of photodiodes and forces.
-    pub log: PathBuf,
-    /// The table of markers; only [`AlignOutputs::dlc`] needs it.
-    pub tracks: Option<PathBuf>,
-}
-
-/// How the clocks are tied.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Sync {
-    /// By the clock in the picture.
-    Clock,
-    /// By an offset that the user knows.
-    Offset {
-        /// The log's time at the video's first frame, seconds.
-        offset_s: f64,
-        /// Its standard error, seconds; none: not known.
-        sd_s: Option<f64>,
-    },
-    /// By the lag at which the photodiodes best explain the angles.
-    Correlate,
-}
-
-impl Sync {
-    /// Reads `clock`, `offset=SECONDS`, `offset=SECONDS+-ERROR` or `correlate`.
-    ///
-    /// # Errors
-    /// What to write instead.
-    pub fn parse(text: &str) -> Result<Self, String> {
-        let number = |text: &str| text.trim().parse().ok().filter(|number: &f64| number.is_finite());
-        let offset = |text: &str| {
-            let (offset, sd) = text.split_once("+-").map_or((text, None), |(offset, sd)| (offset, Some(sd)));
-            let sd_s = sd.map(number);
-            (sd_s != Some(None)).then_some(())?;
-            Some(Self::Offset { offset_s: number(offset)?, sd_s: sd_s.flatten() })
-        };
-        let sync = match text {
-            "clock" => Some(Self::Clock),
-            "correlate" => Some(Self::Correlate),
-            other => other.strip_prefix("offset=").and_then(offset),
-        };
-        sync.ok_or_else(|| {
-            "choose clock, offset=SECONDS (offset=60.25, or with its standard error offset=60.25+-0.01) or correlate"
-                .to_owned()
-        })
-    }
-}
-
-/// How to work.
-#[derive(Debug, Clone, Default)]
-pub struct AlignOptions {
-    /// How the clocks are tied; none: by the clock where the table of angles has it.
-    pub sync: Option<Sync>,
-    /// What the log's columns are called.
-    pub columns: Columns,
-    /// How the ambient light is taken away and what counts as saturated.
-    pub ambient: AmbientOptions,
-    /// The longest time between two frames that were seen over which labels are interpolated, seconds; none: two frames.
-    pub max_gap_s: Option<f64>,
-    /// The log's time when the clock in the picture shows zero, seconds; none: told from the overlap.
-    pub clock_zero_s: Option<f64>,
-    /// Where the lag is looked for, and the sensor's own.
-    pub lag: LagTie,
-    /// Whose finger.
-    pub subject: Option<String>,
-    /// Which session.
-    pub session: Option<String>,
-    /// What the finger does, for the names of a BIDS dataset.
-    pub task: Option<String>,
-}
-
-/// Where results go.
-#[derive(Debug, Clone)]
-pub struct AlignOutputs {
-    /// The labelled set; certificate, report and pictures stand beside it, named after it.
-    pub training: PathBuf,
-    /// The angles as an OpenSim motion file, on the log's clock.
-    pub mot: Option<PathBuf>,
-    /// The angles as a BIDS Motion folder.
-    pub bids: Option<PathBuf>,
-    /// The markers as a DeepLabCut table.
-    pub dlc: Option<PathBuf>,
-    /// Whether pictures are drawn.
-    pub figures: bool,
-}
-
-/// Why there is no labelled set.
-#[derive(Debug, Error)]
-pub enum AlignError {
-    /// A table can't be read or written.
-    #[error(transparent)]
-    Table(#[from] TableError),
-    /// The log can't be read.
-    #[error(transparent)]
-    Log(#[from] LogError),
-    /// The log has no lit rows, or its range is none.
-    #[error(transparent)]
-    Ambient(#[from] AmbientError),
-    /// An export can't be written, or not so.
-    #[error(transparent)]
-    Export(#[from] ExportError),
-    /// The clocks can't be tied with confidence.
-    #[error("{}: {why}", path.display())]
-    NotTied {
-        /// The table of angles.
-        path: PathBuf,
-        /// Why, and what to do.
-        why: String,
-    },
-    /// No row gets a label.
-    #[error("{}: {why}", path.display())]
-    NothingLabelled {
-        /// The log.
-        path: PathBuf,
-        /// Why, and what to do.
-        why: String,
-    },
-    /// A result would go where an input stands.
-    #[error("{}: is an input itself; choose another name for the result", .0.display())]
-    Itself(PathBuf),
-    /// A result can't be written.
-    #[error(transparent)]
-    Write(#[from] WriteError),
-    /// Stopped from outside.
-    #[error("interrupted; nothing was written")]
-    Interrupted,
-}
+use crate::table::TableFormat;
 
 /// Runs the job; every result is in its place when it returns.
 ///

@@ -6,11 +6,13 @@
 //! angles onto the samples' rows; [`join`](fn@join) makes one set of several videos'.
 
 mod certificate;
+mod error;
 pub mod export;
 pub mod figures;
 mod job;
 mod join;
 mod label;
+mod options;
 mod plan;
 mod posture;
 mod report;
@@ -21,9 +23,11 @@ pub use crate::log::{
     AmbientError, AmbientOptions, Channel, Columns, Log, LogError, LogHeader, Samples, TimeUnit, samples,
 };
 pub use certificate::Certificate;
-pub use job::{AlignError, AlignInputs, AlignOptions, AlignOutputs, Sync, run};
+pub use error::AlignError;
+pub use job::run;
 pub use join::{JoinError, join};
 pub use label::{Gap, LabelCounts, Labels, Unlabelled, label};
+pub use options::{AlignInputs, AlignOptions, AlignOutputs, Sync};
 pub use plan::{Foreknown, plan, plan_foreknown};
 pub use posture::{ClockColumns, Posture};
 pub use report::{AlignReport, LabelReport};

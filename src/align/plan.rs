@@ -1,6 +1,7 @@
 //! What a run would do and leave out, told from the table of angles and the log.
 
-use super::job::{AlignError, AlignInputs, AlignOptions, AlignOutputs, Sync};
+use super::error::AlignError;
+use super::options::{AlignInputs, AlignOptions, AlignOutputs, Sync};
 use super::posture::Posture;
 use crate::log::Log;
 use crate::stages::Step;

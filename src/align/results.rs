@@ -4,10 +4,11 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use super::certificate::Certificate;
+use super::error::AlignError;
 use super::export::{self, BidsNames};
 use super::figures;
-use super::job::{AlignError, AlignInputs, AlignOptions, AlignOutputs};
 use super::label::Labels;
+use super::options::{AlignInputs, AlignOptions, AlignOutputs};
 use super::posture::Posture;
 use super::report::AlignReport;
 use super::tie::Tie;

@@ -2,7 +2,7 @@
 //!
 //! A name is taken apart into words and numbers, case and marks apart; the words have to be all of them known.
 
-use super::columns::Role;
+use super::role::Role;
 use super::stamps::TimeUnit;
 
 /// What may stand for the time, without its unit and with nothing between the words.

@@ -3,7 +3,8 @@
 use std::io::Read;
 use std::path::Path;
 
-use super::columns::{Choice, Columns, Role};
+use super::columns::{Choice, Columns};
+use super::role::Role;
 use super::rows::choose;
 use super::text::{self, Layout};
 use super::{Format, Log, LogError};

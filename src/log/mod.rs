@@ -26,6 +26,7 @@ mod order;
 mod parquet;
 mod raw;
 mod reading;
+mod role;
 mod rows;
 mod stamps;
 mod status;

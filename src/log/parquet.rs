@@ -4,8 +4,9 @@ use std::path::Path;
 
 use super::LogError;
 use super::cell::{self, Numbers};
-use super::columns::{Columns, Role};
+use super::columns::Columns;
 use super::raw::{Raw, RowWord, place};
+use super::role::Role;
 use super::stamps::Stamps;
 use crate::table::{Table, TableError};
 

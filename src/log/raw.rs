@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 use std::path::PathBuf;
 
-use super::columns::{Choice, Role};
+use super::columns::Choice;
+use super::role::Role;
 use super::{Channel, LogError};
 
 /// What a row of the file is called.

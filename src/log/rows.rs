@@ -6,8 +6,9 @@
 use std::path::Path;
 
 use super::cell::{self, Numbers, bare};
-use super::columns::{Choice, Columns, Role};
+use super::columns::{Choice, Columns};
 use super::raw::{Raw, RowWord, place};
+use super::role::Role;
 use super::stamps::Stamps;
 use super::text::{self, Layout};
 use super::{LogError, cell::shown};

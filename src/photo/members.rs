@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::maps::Sums;
-use super::normalize::Normalization;
+use super::normalization::Normalization;
 use crate::files::{Staging, WriteError};
 
 /// Where the list stands among a part's results.

@@ -18,7 +18,8 @@ use thiserror::Error;
 
 use super::maps::Sums;
 use super::members::Members;
-use super::normalize::{Normalization, Normalized};
+use super::normalization::Normalization;
+use super::normalize::Normalized;
 use super::npz::Npz;
 
 /// Of sums.

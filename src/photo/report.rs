@@ -6,7 +6,8 @@ use std::time::Duration;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::job::{NailRow, PhotosOptions, PhotosResult};
+use super::job::{PhotosOptions, PhotosResult};
+use super::nail_row::NailRow;
 use super::partial::Partials;
 use super::read::MOST_MEGAPIXELS;
 use super::results::{NAIL_COLUMNS, nail_cells, sheet_names};

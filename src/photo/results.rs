@@ -7,9 +7,9 @@ use ndarray::Array2;
 use ndarray_npy::WriteNpyExt;
 use rayon::prelude::*;
 
-use super::job::NailRow;
 use super::maps::Maps;
 use super::members::{Member, Members};
+use super::nail_row::NailRow;
 use super::normalize::Normalized;
 use super::partial::{self, Partials};
 use super::read::Depth;

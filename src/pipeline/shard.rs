@@ -20,21 +20,41 @@ use crate::files::{WriteError, write_whole};
 
 /// One part of a run that is cut into parts; written `2/7`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(try_from = "Numbers")]
 pub struct Shard {
     index: usize,
     of: usize,
 }
 
+/// A part as a file has it, not checked.
+#[derive(Deserialize)]
+#[serde(rename = "Shard")]
+struct Numbers {
+    index: usize,
+    of: usize,
+}
+
+impl TryFrom<Numbers> for Shard {
+    type Error = ShardFault;
+
+    fn try_from(Numbers { index, of }: Numbers) -> Result<Self, ShardFault> {
+        Self::new(index, of).ok_or_else(|| ShardFault(format!("{index}/{of}")))
+    }
+}
+
+/// Parts of a run, at most (assumed: clusters take arrays of up to 75 000 jobs, and those that are missing are listed).
+const MOST: usize = 100_000;
+
 /// What is no part.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error("{0:?}: a part is written I/N, from 1/N to N/N: 2/7 is the second of seven")]
+#[error("{0:?}: a part is written I/N, from 1/N to N/N, N up to {MOST}: 2/7 is the second of seven")]
 pub struct ShardFault(String);
 
 impl Shard {
     /// Part `index`, from 1, of `of`; `None` where there is no such part.
     #[must_use]
     pub fn new(index: usize, of: usize) -> Option<Self> {
-        (1..=of).contains(&index).then_some(Self { index, of })
+        (of <= MOST && (1..=of).contains(&index)).then_some(Self { index, of })
     }
 
     /// Which, from 1.

@@ -4,104 +4,25 @@
 //! A frame is decoded, its planes are looked at where the last frame tells, centres get names, names get angles, the row is
 //! written, the frame forgotten: memory does not grow with the video's length, unless angles are to be smoothed.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use thiserror::Error;
-
+use super::angle::joints::Angles;
+use super::error::PostureError;
 use super::filmed_clock::FilmedClock;
-use super::joints::Angles;
 use super::layout::{Layout, MarkerShape};
-use super::method::Method;
+use super::marker::siting::Siting;
+use super::options::{Outputs, PostureOptions, Watch};
 use super::plan::{OUTLINES, WHOLE_FRAMES, steps};
 use super::report::{MarkerSums, PostureReport, SearchReport, VideoReport};
 use super::results::{Results, Row};
-use super::siting::Siting;
 use super::suggest::Suggester;
 use super::survey::{Progress, Survey, Surveyor};
 use super::track::Tracker;
-use crate::files::WriteError;
 use crate::stages::{self, Stages};
-use crate::table::{TableError, TableFormat};
-use crate::video::{End, Info, Item, Turn, Video, VideoError};
-
-/// How to work.
-#[derive(Debug, Clone)]
-pub struct PostureOptions {
-    /// Threads that decode (0: all cores).
-    pub threads: usize,
-    /// Smooth the angles over time.
-    pub smooth: bool,
-    /// How centres are found.
-    pub method: Method,
-    /// Every so many frames the clock of the layout is read, after the first second and a half, in which its digits are learnt
-    /// from all; 0: it is not read.
-    pub clock_every: u64,
-}
-
-impl Default for PostureOptions {
-    fn default() -> Self {
-        Self { threads: 0, smooth: false, method: Method::default(), clock_every: 1 }
-    }
-}
-
-/// Where results go.
-#[derive(Debug, Clone)]
-pub struct Outputs {
-    /// The table of angles; report and pictures stand beside it, named after it.
-    pub joints: PathBuf,
-    /// The table of markers.
-    pub tracks: Option<PathBuf>,
-    /// The video with what was tracked.
-    pub overlay: Option<PathBuf>,
-    /// Whether pictures are drawn.
-    pub figures: bool,
-}
-
-/// A caller's view of a running job.
-pub struct Watch<'a> {
-    /// Becomes true where the job is to stop.
-    pub stop: &'a AtomicBool,
-    /// Called with the frames done, and with all of them where the container tells.
-    pub tick: &'a dyn Fn(u64, Option<u64>),
-}
-
-/// Why there are no results.
-#[derive(Debug, Error)]
-pub enum PostureError {
-    /// The video can't be read or the overlay not written.
-    #[error(transparent)]
-    Video(#[from] VideoError),
-    /// The markers can't be found or told apart.
-    #[error("{}: {why}", path.display())]
-    Markers {
-        /// The video.
-        path: PathBuf,
-        /// What is wrong and what to do.
-        why: String,
-    },
-    /// The clock can't be where the marker file says.
-    #[error("{}: [clock]: {why}", path.display())]
-    Clock {
-        /// The video.
-        path: PathBuf,
-        /// What is wrong and what to do.
-        why: String,
-    },
-    /// A result would go where the input stands.
-    #[error("{}: is the video itself; choose another name for the result", .0.display())]
-    Itself(PathBuf),
-    /// A result can't be written.
-    #[error(transparent)]
-    Write(#[from] WriteError),
-    /// A table can't be written.
-    #[error(transparent)]
-    Table(#[from] TableError),
-    /// Stopped from outside.
-    #[error("interrupted; nothing was written")]
-    Interrupted,
-}
+use crate::table::TableFormat;
+use crate::video::{End, Info, Item, Turn, Video};
 
 /// Runs the job; every result is in its place when it returns.
 ///
@@ -355,7 +276,7 @@ fn left_out(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::posture::sight::{Centre, Sight};
+    use crate::posture::marker::sight::{Centre, Sight};
 
     #[test]
     fn a_marker_found_while_names_were_sought_is_not_called_unseen() {

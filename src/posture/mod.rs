@@ -9,45 +9,37 @@
 //! Inside, coordinates are those of the *stored* picture ([`crate::video`]): the centre of its top-left luma sample is
 //! (0, 0), x to the right, y down. Angles are in radians, positive in flexion.
 
-mod blot;
-mod centre;
-mod colour;
-mod disc;
+mod angle;
+mod error;
 mod figures;
 mod filmed_clock;
 mod find;
-mod inflation;
 mod job;
-mod joints;
 mod layout;
-mod lens;
-mod method;
+mod marker;
 mod naming;
+mod options;
 mod overlay;
 mod plan;
-mod plausible;
 mod report;
 mod results;
-mod rough;
-mod sight;
-mod siting;
-mod smooth;
 #[cfg(test)]
 mod stage;
 mod suggest;
 mod survey;
 mod track;
-mod view;
 
+pub use angle::joints::{Angle, AngleRow, Angles};
+pub use angle::lens::{Lens, Undistorted};
+pub use angle::smooth::{SmoothModel, Smoothed, smooth};
+pub use angle::view::{Spot, View};
+pub use error::PostureError;
 pub use figures::{AngleFigures, CouplingLine};
 pub use filmed_clock::{ClockReport, ClockTieReport};
-pub use job::{Outputs, PostureError, PostureOptions, Watch, run, suggest};
-pub use joints::{Angle, AngleRow, Angles};
+pub use job::{run, suggest};
 pub use layout::{Camera, Joint, Layout, LayoutError, LayoutFault, Marker, MarkerShape, Segment};
-pub use lens::{Lens, Undistorted};
-pub use method::{Method, Planes, Search};
+pub use marker::method::{Method, Planes, Search};
+pub use marker::sight::{Centre, Loss, Sight};
+pub use options::{Outputs, PostureOptions, Watch};
 pub use plan::plan;
 pub use report::{CouplingReport, FrameCounts, JointReport, MarkerReport, PostureReport, SearchReport, VideoReport};
-pub use sight::{Centre, Loss, Sight};
-pub use smooth::{SmoothModel, Smoothed, smooth};
-pub use view::{Spot, View};

@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use super::job::{Outputs, PostureError, PostureOptions};
+use super::error::PostureError;
 use super::layout::{Layout, MarkerShape};
+use super::options::{Outputs, PostureOptions};
 use crate::clock::ClockRoi;
 use crate::stages::Step;
 use crate::video::{Info, Video};

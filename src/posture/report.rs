@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
+use super::angle::joints::Angle;
+use super::angle::smooth::SmoothModel;
 use super::filmed_clock::ClockReport;
-use super::joints::Angle;
 use super::layout::MarkerShape;
-use super::sight::{Loss, Sight};
-use super::smooth::SmoothModel;
+use super::marker::sight::{Loss, Sight};
 use crate::stages::Stage;
 
 /// What a run did.

@@ -3,19 +3,20 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use super::angle::joints::{Angle, AngleRow};
+use super::angle::plausible::Plausibility;
+use super::angle::smooth::smooth;
+use super::angle::view::View;
+use super::error::PostureError;
 use super::figures::AngleFigures;
 use super::filmed_clock::ClockRow;
-use super::job::{Outputs, PostureError, PostureOptions};
-use super::joints::{Angle, AngleRow};
 use super::layout::{Layout, MarkerShape};
+use super::marker::sight::Sight;
+use super::options::{Outputs, PostureOptions};
 use super::overlay::{Drawing, Mark, Overlay};
-use super::plausible::Plausibility;
 use super::report::{
     CouplingReport, FrameCounts, JointReport, JointSums, MarkerReport, MarkerSums, PostureReport, in_words,
 };
-use super::sight::Sight;
-use super::smooth::smooth;
-use super::view::View;
 use crate::clock::{ClockFit, ClockFormat};
 use crate::files::{Places, beside, is_same_file};
 use crate::stages::Stages;

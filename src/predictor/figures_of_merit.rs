@@ -1,6 +1,6 @@
 //! How far off predictions are, by the targets' names, as reports tell it.
 
-use lunula_predictor::{Scores, TargetScore};
+use lunula_predictor::{Dataset, Predictor, Scores, TargetScore, predict, score};
 use serde::ser::SerializeMap;
 use serde::{Serialize, Serializer};
 
@@ -64,4 +64,10 @@ impl From<&Scores> for Merit {
             mae: by(scores, |one| one.mae),
         }
     }
+}
+
+/// How far off it is on recordings without its cone of friction: the model is the same.
+pub(super) fn merit_without_cone(predictor: &Predictor, seen: &Dataset) -> Merit {
+    let plain = predict(predictor.model(), None, seen.x().view());
+    Merit::from(&score(seen.y().view(), plain.view(), seen.targets()))
 }

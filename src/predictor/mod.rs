@@ -14,9 +14,9 @@ mod figures;
 mod figures_of_merit;
 mod learning;
 mod merit_table;
+mod outputs;
 mod predict;
 mod prune;
-mod results;
 mod target;
 #[cfg(test)]
 mod tests;
@@ -43,9 +43,9 @@ pub use evaluate::{
     BinMerit, EvaluateOptions, EvaluateReport, HeldOut, Magnitudes, Part, RecordingMerit, evaluate, evaluate_plan,
 };
 pub use figures_of_merit::{ByTarget, Merit};
+pub use outputs::FolderOutputs;
 pub use predict::{PredictOptions, PredictReport, predict, predict_plan, predict_stream};
 pub use prune::{PruneReport, PruneRow, prune, prune_plan};
-pub use results::FolderOutputs;
 pub use target::{POSTURE, Target};
 pub use train::{TrainInputs, TrainOptions, TrainOutputs, TrainReport, Without, train, train_plan};
 

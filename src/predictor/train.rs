@@ -8,15 +8,15 @@ use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use lunula_predictor::{
-    Dataset, Intervals, Kind, Predictor, Recipe, Report, calibrate, predict, recording_hashes, score, with_lags,
+    Dataset, Intervals, Kind, Predictor, Recipe, Report, calibrate, recording_hashes, score, with_lags,
 };
 use serde::Serialize;
 
 use super::data::{DataFile, FailedFile, FileRows, Wanted, read_files};
 use super::error::{PredictorError, go_on};
-use super::figures_of_merit::{ByTarget, Merit};
+use super::figures_of_merit::{ByTarget, Merit, merit_without_cone};
 use super::learning;
-use super::merit_table::{Told, merit_table};
+use super::merit_table::{MeritRows, merit_table};
 use crate::files::{Places, WriteError};
 use crate::stages::{Stage, Stages, Step, left_out};
 
@@ -186,8 +186,8 @@ pub fn train(
         pictures.push(stages.time("write", || learning::write(&points, curve, &mut places))?);
     }
     if let Some(path) = &outputs.merit {
-        let mut told = vec![Told::new("training", &training)];
-        told.extend(validation.iter().map(|merit| Told::new("validation", merit)));
+        let mut told = vec![MeritRows::new("training", &training)];
+        told.extend(validation.iter().map(|merit| MeritRows::new("validation", merit)));
         merit_table(&places.place(path)?, path, &told)?;
     }
     go_on(stop)?;
@@ -218,12 +218,6 @@ pub fn train(
 pub(super) fn merit(predictor: &Predictor, data: &Dataset) -> Result<Merit, PredictorError> {
     let (seen, predicted) = predictor.predict(data)?;
     Ok(Merit::from(&score(seen.y().view(), predicted.view(), seen.targets())))
-}
-
-/// How far off it is on recordings without its cone of friction: the model is the same.
-pub(super) fn merit_without_cone(predictor: &Predictor, seen: &Dataset) -> Merit {
-    let plain = predict(predictor.model(), None, seen.x().view());
-    Merit::from(&score(seen.y().view(), plain.view(), seen.targets()))
 }
 
 /// What is reached without each option of the recipe.

@@ -1,15 +1,11 @@
 //! A job's curves as panels: settings, other programs, the front, knee and default.
 
-use super::hemodynamics;
 use super::judge::{Tradeoff, Verdict};
 use super::rows::Row;
 use crate::figure::{Axis, Mark, MarkShape, Plot, Point, Series};
 
 /// A panel for each curve.
 pub(super) fn panels(tradeoff: &Tradeoff) -> Vec<Plot> {
-    if tradeoff.job == hemodynamics::SOLVING.0 {
-        return hemodynamics::panels(tradeoff);
-    }
     tradeoff.curves.iter().map(|curve| panel(curve, &tradeoff.rows)).collect()
 }
 

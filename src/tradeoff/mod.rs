@@ -9,6 +9,7 @@ pub mod align;
 mod all;
 mod choices;
 mod draw;
+mod draw_solvers;
 pub mod hemodynamics;
 mod judge;
 mod knee;

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::choices::choices;
 use super::draw::panels;
+use super::draw_solvers::solver_panels;
 use super::judge::{Told, Tradeoff, Verdict};
 use super::knee::{BEND, SAME};
 use super::rows::{Row, write_table};
@@ -39,7 +40,9 @@ impl Tradeoff {
     /// Its pictures: the curves as `name`, and maps.
     fn draw(&self, name: &str, staging: &Staging) -> anyhow::Result<()> {
         let [png, svg] = ["png", "svg"].map(|ending| staging.place(&format!("{name}.{ending}")));
-        draw_log_log(&panels(self), &png?, &svg?)?;
+        let solvers = self.job == hemodynamics::SOLVING.0;
+        let panels = if solvers { solver_panels(self) } else { panels(self) };
+        draw_log_log(&panels, &png?, &svg?)?;
         if self.maps.is_empty() { Ok(()) } else { hemodynamics::write_maps(&self.maps, staging) }
     }
 }

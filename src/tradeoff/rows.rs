@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::Context;
 
-use super::peers::PeerReport;
+use super::peers::report::PeerReport;
 use super::timing::Timing;
 use crate::files::Staging;
 

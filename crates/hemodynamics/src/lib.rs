@@ -16,7 +16,6 @@ mod load;
 mod model;
 mod optics;
 mod parameters;
-mod printed;
 mod radau;
 mod sensitivity;
 mod state;
@@ -33,10 +32,9 @@ pub use fit::{
 };
 pub use live::{Live, LiveFault, LiveStatistics};
 pub use load::{Inputs, Load, LoadFault, Loads, Segment};
-pub use model::{Arrow, Collapse, Model, Pressures};
+pub use model::{Arrow, Collapse, Matrices, Model, Pressures, Printed, PrintedFault};
 pub use optics::{Optics, OpticsFault, Photodiodes};
 pub use parameters::{ParameterFault, Parameters, Site, Symbol, Unit, Vessel};
-pub use printed::{Matrices, Printed, PrintedFault};
 pub use state::{State, StateFault};
 pub use transient::{Order, SolveFault, SolveOptions, Solver, Statistics, Stopped, Trajectory, simulate};
 

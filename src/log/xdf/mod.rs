@@ -12,8 +12,9 @@ mod tests;
 
 use std::path::Path;
 
-use super::columns::{Columns, Role};
+use super::columns::Columns;
 use super::raw::{Raw, RowWord, place};
+use super::role::Role;
 use super::{LogError, cell, text};
 use chunks::Stream;
 

@@ -37,10 +37,13 @@ mod objects;
 mod options;
 mod paint;
 mod panel;
+mod picture;
+mod row;
 mod scene;
 mod sensor;
 mod settle;
 mod share;
+mod truth;
 mod write;
 
 pub use super::faults::Faults;

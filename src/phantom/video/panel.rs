@@ -1,6 +1,6 @@
 //! The clock's screen in a frame: what it shows, averaged over the exposure, in its dark frame; or the sheet that covers it.
 
-use super::paint::Row;
+use super::row::Row;
 use super::scene::Scene;
 
 /// A screen to be drawn.

@@ -5,10 +5,12 @@ use std::f64::consts::TAU;
 
 use rand::RngExt;
 
+use super::blot::Blot;
+use super::lens::{Mapping, row_moves};
 use super::limb::Limb;
 use super::objects::{Distractor, Outline, Stick};
-use super::scene::{Scene, TICKS_PER_S};
-use super::{Hide, VideoOptions};
+use super::scene::{Scene, SceneMarker, TICKS_PER_S};
+use super::{Faults, Hide, VideoOptions};
 use crate::flexion::Flexion;
 use crate::phantom::nail::numbers;
 use crate::phantom::screen::{Clock, Jump};
@@ -18,7 +20,7 @@ const KIND_TIMES: u32 = 13;
 const DROPPED: f64 = 0.04;
 
 /// The frames' times in ticks.
-pub(super) fn ticks(options: &VideoOptions) -> Vec<i64> {
+fn ticks(options: &VideoOptions) -> Vec<i64> {
     let per_frame = f64::from(TICKS_PER_S) / options.fps;
     if options.jitter <= 0.0 {
         return (0..options.frames()).map(|frame| (per_frame * frame as f64).round() as i64).collect();
@@ -37,6 +39,39 @@ pub(super) fn ticks(options: &VideoOptions) -> Vec<i64> {
 }
 
 impl Scene {
+    /// Settles a scene.
+    ///
+    /// # Errors
+    /// [`Faults`]: all that is wrong with the options.
+    pub fn new(options: VideoOptions) -> Result<Self, Faults> {
+        options.check()?;
+        let colours = options.colours.of(options.finger.layout);
+        let names = options.finger.layout.names();
+        let markers = names.into_iter().zip(colours).map(|(name, colour)| SceneMarker { name, colour }).collect();
+        let mapping = options.lens.as_ref().map(|lens| Mapping::new(lens, options.width, options.height));
+        let mut scene = Self {
+            ticks: ticks(&options),
+            markers,
+            blots: if options.finger.layout.painted() { Blot::all(&options) } else { Vec::new() },
+            other_hand: other_hand(&options),
+            distractors: Vec::new(),
+            sticks: Vec::new(),
+            straighten: None,
+            row_moves: None,
+            mapping,
+            leave: None,
+            options,
+        };
+        scene.straighten =
+            scene.mapping.as_ref().map(|mapping| mapping.straighten(scene.options.width, scene.options.height));
+        scene.row_moves = scene.straighten.as_ref().map(|moves| row_moves(moves, scene.options.width));
+        scene.options.clock = scene.settle_clock();
+        scene.leave = scene.settle_leave();
+        scene.sticks = scene.settle_sticks();
+        scene.distractors = scene.settle_distractors();
+        Ok(scene)
+    }
+
     /// The times of frames `frame` to `frame + frames - 1`, as far as there are such.
     fn span_s(&self, frame: usize, frames: usize) -> (f64, f64) {
         let last = (frame + frames - 1).min(self.frames() - 1);
@@ -52,7 +87,7 @@ impl Scene {
     }
 
     /// When the clock's screen stops and jumps.
-    pub(super) fn settle_clock(&self) -> Option<Clock> {
+    fn settle_clock(&self) -> Option<Clock> {
         let mut clock = self.options.clock.clone()?;
         let events = &self.options.screen;
         clock.stop_s = events.stop.map(|frame| self.before_s(frame)).or(clock.stop_s);
@@ -61,7 +96,7 @@ impl Scene {
         Some(clock)
     }
 
-    pub(super) fn settle_leave(&self) -> Option<(f64, f64, f64)> {
+    fn settle_leave(&self) -> Option<(f64, f64, f64)> {
         let leave = self.options.leave?;
         let (from_s, to_s) = self.span_s(leave.frame, leave.frames);
         let last = (leave.frame + leave.frames).min(self.frames());
@@ -72,7 +107,7 @@ impl Scene {
         Some((from_s, to_s, (beyond + 2.0 * self.options.finger.marker_px - left_most).max(0.0)))
     }
 
-    pub(super) fn settle_sticks(&self) -> Vec<Stick> {
+    fn settle_sticks(&self) -> Vec<Stick> {
         let radius = self.options.finger.marker_px;
         // The softness of the edges, covered as well.
         let edge_px = 3.5 * self.options.focus_px;
@@ -99,7 +134,7 @@ impl Scene {
     }
 
     /// Distractors keep away from the finger wherever it goes, and from the clock.
-    pub(super) fn settle_distractors(&self) -> Vec<Distractor> {
+    fn settle_distractors(&self) -> Vec<Distractor> {
         let options = &self.options;
         let every = self.frames().div_ceil(200);
         if let Some(other) = &self.other_hand {
@@ -135,7 +170,7 @@ impl Scene {
 
 /// With paint, another hand lies at the picture's right border, on the side to which the finger bends: three fingers of
 /// the same skin.
-pub(super) fn other_hand(options: &VideoOptions) -> Option<Limb> {
+fn other_hand(options: &VideoOptions) -> Option<Limb> {
     let at = |[x, y]: [f64; 2]| {
         let y = if options.finger.flexion == Flexion::Clockwise { y } else { 1.0 - y };
         [x * options.width as f64, y * options.height as f64]

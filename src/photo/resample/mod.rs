@@ -11,7 +11,7 @@ use image::DynamicImage;
 use wide::f32x4;
 
 use super::frame::NailFrame;
-use super::normalize::{Normalization, Resample};
+use super::normalization::{Normalization, Resample};
 use super::plane::{Plane, Taking};
 
 /// The values, row by row from the top (distal), fractions of full scale; NaN where the photograph does not show the

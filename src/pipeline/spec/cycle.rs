@@ -1,6 +1,6 @@
 //! The order of stages: each after those that it works on, or the circle in which they stand.
 
-use super::stages::Header;
+use super::header::Header;
 use super::{From, StageSpec};
 use crate::toml_file::Findings;
 

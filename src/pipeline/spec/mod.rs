@@ -21,6 +21,7 @@
 //! ```
 
 mod cycle;
+mod header;
 mod read;
 mod reference;
 mod stages;

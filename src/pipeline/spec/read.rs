@@ -5,6 +5,7 @@ use std::path::Path;
 
 use toml::de::DeValue;
 
+use super::header::Header;
 use super::reference::{Names, filter, strings};
 use super::{Generated, InputSource, InputSpec, Place, Spec, Wanted, cycle, stages};
 use crate::pipeline::kind::Kind;
@@ -166,7 +167,7 @@ fn check_stage_name(findings: &mut Findings<'_>, entry: Entry<'_>, inputs: &[(En
 fn wanted(
     findings: &mut Findings<'_>,
     top: &[Entry<'_>],
-    headers: &[stages::Header],
+    headers: &[Header],
     names: &Names<'_>,
     read: &[Option<super::StageSpec>],
 ) -> Vec<Wanted> {

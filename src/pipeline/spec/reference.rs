@@ -2,7 +2,7 @@
 
 use toml::de::DeValue;
 
-use super::stages::Header;
+use super::header::Header;
 use super::{Filter, From, InputSource, InputSpec, Place, Reference};
 use crate::toml_file::{Entry, Findings, entries, instead};
 

@@ -4,21 +4,15 @@ use std::collections::BTreeSet;
 
 use toml::de::DeValue;
 
+use super::header::Header;
 use super::reference::{Names, filter, reference, strings};
-use super::{Place, Reference, StageSpec};
+use super::{Reference, StageSpec};
 use crate::pipeline::kind::{Kind, Role, Takes};
 use crate::pipeline::said::in_keys;
 use crate::toml_file::{Entry, Findings, instead};
 
 /// Keys of every stage.
 const OWN: [&str; 3] = ["job", "each", "where"];
-
-/// A stage's name and job, before its references can be read.
-pub(super) struct Header {
-    pub(super) name: String,
-    pub(super) at: Place,
-    pub(super) kind: Option<&'static Kind>,
-}
 
 /// The names and jobs of all stages.
 pub(super) fn headers(

@@ -1,7 +1,6 @@
 //! The samples that a search looks at: chroma less grey, thinned out in large pictures, smoothed a little.
 
 use super::Blob;
-use super::tree::Spot;
 use crate::video::{Frame, Plane};
 
 /// A grid has at most this many samples; larger planes are averaged over blocks.
@@ -21,6 +20,19 @@ impl Area {
     pub(crate) fn about([x, y]: [f64; 2], reach_px: f64) -> Self {
         Self { left: x - reach_px, top: y - reach_px, right: x + reach_px, bottom: y + reach_px }
     }
+}
+
+/// A spot on the grid.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Spot {
+    pub(super) at: [f64; 2],
+    pub(super) area: f64,
+    /// Central second moments: xx, xy, yy.
+    pub(super) moments: [f64; 3],
+    /// Levels from the core to the ground.
+    pub(super) contrast: f32,
+    /// It touches the grid's left, top, right, bottom side.
+    pub(super) touches: [bool; 4],
 }
 
 /// Samples on a grid. With chroma planes their grid (or a coarser one), else luma's.

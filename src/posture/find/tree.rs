@@ -1,6 +1,6 @@
 //! The component tree of a grid of levels, and the spots in it.
 
-use super::grid::Grid;
+use super::grid::{Grid, Spot};
 
 /// A spot has at most this many, chosen by contrast.
 const MOST_SPOTS: usize = 48;
@@ -18,19 +18,6 @@ const LONGEST: f64 = 4.0;
 const LEAST_FILL: f64 = 0.6;
 
 const NONE: u32 = u32::MAX;
-
-/// A spot on the grid.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Spot {
-    pub(super) at: [f64; 2],
-    pub(super) area: f64,
-    /// Central second moments: xx, xy, yy.
-    pub(super) moments: [f64; 3],
-    /// Levels from the core to the ground.
-    pub(super) contrast: f32,
-    /// It touches the grid's left, top, right, bottom side.
-    pub(super) touches: [bool; 4],
-}
 
 /// A connected component as it stands at the present level.
 #[derive(Debug, Clone, Copy)]

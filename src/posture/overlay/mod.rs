@@ -12,8 +12,8 @@ mod upright;
 use std::path::Path;
 
 use self::canvas::{Canvas, Text};
+use super::marker::sight::{Centre, Sight};
 use super::report::in_words;
-use super::sight::{Centre, Sight};
 use crate::video::{Encoder, Encoding, Frame, Info, Picture, Turn, VideoError};
 
 /// Ticks a second, where those of the video do not fit.

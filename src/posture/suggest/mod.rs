@@ -14,10 +14,10 @@ pub(super) use text::hex;
 
 use order::{path, row, total_turn};
 
-use super::blot::Blot;
 use super::find::{Blob, Finder, Paint};
+use super::marker::blot::Blot;
+use super::marker::siting::Siting;
 use super::naming::Point;
-use super::siting::Siting;
 use super::track::loose_look;
 use crate::video::{Frame, Info};
 

@@ -15,12 +15,12 @@ mod spots;
 use judge::Hypothesis;
 use spots::Spots;
 
-use super::blot::Blot;
-use super::colour::Look;
 use super::find::Paint;
 use super::layout::Layout;
+use super::marker::blot::Blot;
+use super::marker::look::Look;
+use super::marker::siting::Siting;
 use super::naming::{Chain, MISSING, Naming, Point, lone};
-use super::siting::Siting;
 use crate::video::{Frame, Info};
 
 /// Frames that are looked at before names are given.

@@ -1,12 +1,12 @@
 //! Spots of the markers' colours followed from frame to frame, not yet named.
 
-use super::super::blot::Blot;
-use super::super::centre::{Scratch, centre};
-use super::super::colour::Look;
 use super::super::find::{Area, Blob, Finder, Paint};
 use super::super::layout::MarkerShape;
+use super::super::marker::blot::Blot;
+use super::super::marker::centre::{Scratch, centre};
+use super::super::marker::look::Look;
+use super::super::marker::siting::{Siting, SitingEvidence};
 use super::super::naming::Point;
-use super::super::siting::{Siting, SitingEvidence};
 use super::super::track::loose_look;
 use crate::video::Frame;
 
@@ -283,7 +283,7 @@ impl Spots {
                 spot.as_blot = Look::learn_blot(frame, siting, last.at_px, last.radius_px);
             }
             if let Ok(fit) = centre(frame, siting, look, last.at_px, &mut self.scratch) {
-                evidence.push(&fit);
+                evidence.push(fit.chroma_shift_px);
             }
         }
     }

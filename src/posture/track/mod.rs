@@ -16,14 +16,14 @@ pub(crate) use loose::look as loose_look;
 use agree::{Rod, distance};
 use target::Target;
 
-use super::centre::{Scratch, centre};
 use super::find::{Area, Blob, Finder, Paint};
-use super::inflation::Inflation;
 use super::layout::{Layout, MarkerShape};
-use super::method::{Method, Search};
+use super::marker::centre::{Scratch, centre};
+use super::marker::inflation::Inflation;
+use super::marker::method::{Method, Search};
+use super::marker::sight::{Loss, Sight};
+use super::marker::siting::Siting;
 use super::naming::{Chain, lone};
-use super::sight::{Loss, Sight};
-use super::siting::Siting;
 use super::survey::{Start, Survey};
 use crate::video::{Frame, Info};
 
@@ -117,7 +117,7 @@ impl Tracker {
             sights: vec![Sight::Lost(Loss::NotFound); needed.len()],
             finder: Finder::default(),
             blobs: Vec::new(),
-            scratch: Scratch { method, ..Scratch::default() },
+            scratch: Scratch::new(method),
             inflation: Inflation::new(survey.starts.len()),
             next_frame: 0,
             lost: regain::Search::default(),

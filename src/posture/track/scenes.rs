@@ -4,8 +4,8 @@ use std::path::Path;
 
 use crate::phantom::video::{MarkerStatus, Scene, VideoOptions};
 use crate::posture::layout::Layout;
-use crate::posture::method::Method;
-use crate::posture::sight::Sight;
+use crate::posture::marker::method::Method;
+use crate::posture::marker::sight::Sight;
 use crate::posture::stage::{Disc, SKIN, Stage};
 use crate::posture::survey::{Progress, SurveyError, Surveyor};
 use crate::posture::track::{Effort, Tracker};

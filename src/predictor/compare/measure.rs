@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 use lunula_predictor::{Dataset, FORCES, Kind, Predictor, Recipe, every_subset};
 
 use super::comparison::{Comparison, figure_of, name_of};
-use super::{CompareOptions, Person};
+use super::options::{CompareOptions, Person};
 use crate::predictor::data::{Wanted, read_data};
 use crate::predictor::error::{PredictorError, go_on};
 use crate::predictor::target::POSTURE;

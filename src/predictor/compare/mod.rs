@@ -8,64 +8,23 @@
 
 mod comparison;
 mod measure;
+mod options;
+mod report;
+mod results;
 
-use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
-use lunula_predictor::Recipe;
 use rayon::prelude::*;
-use serde::Serialize;
 
 use super::error::{PredictorError, go_on};
-use super::results::FolderOutputs;
-use crate::stages::{Stage, Stages, Step};
+use super::outputs::FolderOutputs;
+use crate::stages::{Stages, Step};
 use measure::measure;
 
 pub use comparison::{Comparison, Spread};
-
-/// One person's recordings: tables with photodiodes and targets, or raw logs where forces are told.
-#[derive(Debug, Clone)]
-pub struct Person {
-    /// Whose.
-    pub name: String,
-    /// Three repetitions of the touch protocol: two to train on, the third to validate.
-    pub touch: [PathBuf; 3],
-    /// Random touching.
-    pub touch_random: PathBuf,
-    /// Bending with `J2_deg`; its first half is trained on, its second half validates.
-    pub bending: PathBuf,
-    /// Random bending with `J2_deg`.
-    pub bending_random: PathBuf,
-}
-
-/// What is compared.
-#[derive(Debug, Clone)]
-pub struct CompareOptions {
-    /// The models, one of a kind.
-    pub models: Vec<Recipe>,
-    /// For how long the touch protocol bends before it touches (5.2.4), seconds.
-    pub bending_s: f64,
-}
-
-/// What was found.
-#[derive(Debug, Clone, Serialize)]
-pub struct CompareReport {
-    /// Which job.
-    pub job: &'static str,
-    /// The people, in the order of each [`Spread`]'s values.
-    pub people: Vec<String>,
-    /// Figure by figure.
-    pub comparisons: Vec<Comparison>,
-    /// What whoever reads this should know.
-    pub warnings: Vec<String>,
-    /// The pictures.
-    pub pictures: Vec<PathBuf>,
-    /// Time by stage.
-    pub stages: Vec<Stage>,
-    /// Seconds from start to end.
-    pub wall_s: f64,
-}
+pub use options::{CompareOptions, Person};
+pub use report::CompareReport;
 
 /// Compares models and sets; writes a table, pictures and `run.json` where `out` names a folder.
 ///
@@ -101,7 +60,7 @@ pub fn compare(
         wall_s: 0.0,
     };
     match out {
-        Some(out) => super::results::comparison(&mut report, out, &stages, start)?,
+        Some(out) => results::write(&mut report, out, &stages, start)?,
         None => (report.stages, report.wall_s) = (stages.list(), start.elapsed().as_secs_f64()),
     }
     Ok(report)

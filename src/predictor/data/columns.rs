@@ -2,9 +2,6 @@
 
 use lunula_predictor::FORCES;
 
-use super::DataError;
-use super::source::Source;
-
 /// The number of a photodiode: `P12` is 12; `P01` and `P` are none.
 fn number(name: &str) -> Option<u32> {
     let digits = name.strip_prefix('P')?;
@@ -52,21 +49,4 @@ pub(super) fn listed(names: &[String], most: usize) -> String {
     let one = names.len() == 1 && names[0].contains([';', '\t']);
     let help = if one { "; cells are separated by commas: save the table so" } else { "" };
     format!("Its columns are {}{help}", all.join(", "))
-}
-
-/// Whether all files have the same photodiodes.
-pub(super) fn agree(sources: &[Source]) -> Result<(), DataError> {
-    let first = &sources[0];
-    let Some(other) = sources.iter().find(|source| source.inputs != first.inputs) else { return Ok(()) };
-    let lacks = |a: &Source, b: &Source| {
-        let lacking: Vec<&str> = b.inputs.iter().filter(|p| !a.inputs.contains(p)).map(String::as_str).collect();
-        (!lacking.is_empty()).then(|| format!("{} lacks {}", a.path.display(), lacking.join(", ")))
-    };
-    let told: Vec<String> = [lacks(other, first), lacks(first, other)].into_iter().flatten().collect();
-    let what = format!(
-        "has other photodiodes than {} ({}); choose those that all files have, or leave a file out",
-        first.path.display(),
-        told.join("; ")
-    );
-    Err(DataError::Columns { path: other.path.clone(), what })
 }

@@ -28,9 +28,8 @@ use rayon::prelude::*;
 
 use crate::log::{LogError, LogReading};
 use crate::table::TableError;
-use columns::agree;
 use recordings::Splitter;
-use source::Source;
+use source::{Source, agree};
 
 pub use file::DataFile;
 pub use stream::{Row, RowStream};

@@ -267,3 +267,20 @@ fn merged(before: &[(usize, [String; 3])], k: usize, own: Vec<(usize, String)>) 
     }
     joined
 }
+
+/// Whether all files have the same photodiodes.
+pub(super) fn agree(sources: &[Source]) -> Result<(), DataError> {
+    let first = &sources[0];
+    let Some(other) = sources.iter().find(|source| source.inputs != first.inputs) else { return Ok(()) };
+    let lacks = |a: &Source, b: &Source| {
+        let lacking: Vec<&str> = b.inputs.iter().filter(|p| !a.inputs.contains(p)).map(String::as_str).collect();
+        (!lacking.is_empty()).then(|| format!("{} lacks {}", a.path.display(), lacking.join(", ")))
+    };
+    let told: Vec<String> = [lacks(other, first), lacks(first, other)].into_iter().flatten().collect();
+    let what = format!(
+        "has other photodiodes than {} ({}); choose those that all files have, or leave a file out",
+        first.path.display(),
+        told.join("; ")
+    );
+    Err(DataError::Columns { path: other.path.clone(), what })
+}

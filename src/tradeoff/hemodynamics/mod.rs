@@ -4,18 +4,13 @@
 //! is the largest `|x - x_ref| / D` of any wall at any output; the reference is the full model by the method of order 13 at its tightest
 //! tolerance, which tests of the crate tie to trajectories of 60 digits.
 
+mod bench;
 mod maps;
 mod modes;
 mod peers;
 mod python;
 
-use std::collections::BTreeSet;
-
-use super::draw::{front_line, marks};
-use super::judge::Tradeoff;
-use super::rows::Row;
-use crate::figure::{Axis, Plot, Point, Series};
-
+pub(super) use bench::AUTO;
 pub(super) use maps::write as write_maps;
 pub use maps::{Map, stability};
 pub(super) use modes::solving_default;
@@ -26,61 +21,3 @@ pub use peers::read_peers;
 pub(super) const SOLVING: (&str, &str) = ("hemodynamics", "solving");
 /// What the error is.
 pub(super) const ERROR: &str = "largest |x - x_ref| / D over 20 step responses, full model";
-/// Series of a panel; more than there are colours go to the next one.
-const SERIES: usize = 5;
-
-/// A setting is `series, label`.
-fn split(row: &Row) -> (&str, &str) {
-    row.setting.rsplit_once(", ").unwrap_or((&row.setting, ""))
-}
-
-fn series(rows: &[&Row], name: &str) -> Series {
-    let own = rows.iter().filter(|row| split(row).0 == name);
-    // Every third tolerance has its name beside it: with all of them nothing could be read.
-    let named = |label: &str| {
-        ["1e-3", "1e-6", "1e-9", "1e-12"].contains(&label) || [" s", " Hz"].iter().any(|unit| label.ends_with(unit))
-    };
-    let point = |row: &&Row| {
-        let label = split(row).1;
-        let label = if named(label) { label.to_owned() } else { String::new() };
-        Point { x: row.run_s, y: row.error, label, x_range: None }
-    };
-    Series {
-        name: name.to_owned(),
-        points: own.map(point).collect(),
-        hollow: rows.iter().any(|row| split(row).0 == name && row.peer),
-    }
-}
-
-fn names<'a>(rows: &[&'a Row]) -> Vec<&'a str> {
-    let mut seen = BTreeSet::new();
-    rows.iter().map(|row| split(row).0).filter(|name| seen.insert(*name)).collect()
-}
-
-/// Orders, modes, and other programs beside the default's method.
-pub(super) fn panels(tradeoff: &Tradeoff) -> Vec<Plot> {
-    let curve = tradeoff.curves.first();
-    let plot = |title: &str, rows: &[&Row], series: Vec<Series>| Plot {
-        title: title.to_owned(),
-        x: Axis { label: "seconds a response of 4 s".into() },
-        y: Axis { label: "|x - x_ref| / D".into() },
-        series,
-        line: curve.map(front_line).unwrap_or_default(),
-        marks: marks(rows),
-    };
-    let (peers, own): (Vec<&Row>, Vec<&Row>) = tradeoff.rows.iter().partition(|row| row.peer);
-    let of = |name: &str| own.iter().copied().filter(|row| split(row).0 == name).collect::<Vec<_>>();
-    let all = names(&own);
-    let (orders, modes): (Vec<&str>, Vec<&str>) = all.iter().partition(|name| name.starts_with("full, "));
-    let panel = |title: &str, names: &[&str]| {
-        let shown: Vec<&Row> = names.iter().flat_map(|name| of(name)).collect();
-        plot(title, &shown, names.iter().map(|name| series(&own, name)).collect())
-    };
-    let mut panels = vec![panel("Orders of the method, steps", &orders), panel("Modes", &modes)];
-    for (k, some) in names(&peers).chunks(SERIES).enumerate() {
-        let lunula = std::iter::once(series(&own, modes::AUTO));
-        let all = lunula.chain(some.iter().map(|name| series(&peers, name))).collect();
-        panels.push(plot(if k == 0 { "Other programs" } else { "More of them" }, &of(modes::AUTO), all));
-    }
-    panels
-}

@@ -1,17 +1,12 @@
 //! Every mode of the solver on step responses.
 
-use std::hint::black_box;
-use std::time::Instant;
+use lunula_hemodynamics::{Collapse, Model, Order, SolveOptions, Trajectory};
 
-use anyhow::anyhow;
-use lunula_hemodynamics::{
-    Collapse, Live, Load, Loads, Model, Order, Parameters, SolveOptions, Solver, State, Trajectory, rest,
-};
-
+use super::bench::{AUTO, Bench};
 use super::{ERROR, SOLVING, python};
 use crate::tradeoff::peers::Python;
 use crate::tradeoff::rows::{Measured, Row};
-use crate::tradeoff::timing::{Effort, Run, in_turns};
+use crate::tradeoff::timing::{Effort, in_turns};
 
 /// What is measured.
 #[derive(Debug, Clone)]
@@ -22,45 +17,17 @@ pub struct Settings {
     pub python: Python,
 }
 
-/// The series that stands for lunula among its peers.
-pub(super) const AUTO: &str = "lunula";
 /// Tolerances that are asked for.
 const TOLERANCES: [f64; 10] = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12];
 /// Fixed steps, s.
 const FIXED_S: [f64; 4] = [1e-2, 5e-3, 2e-3, 1e-3];
 /// Samples a second of live signals.
 const LIVE_HZ: [u32; 3] = [100, 500, 1000];
-/// A response's length, s, and its outputs a second.
-const SECONDS: u32 = 4;
-const RATE: u32 = 100;
-/// The reference's tolerance.
-const REFERENCE: f64 = 1e-13;
-
-/// A step response to be solved.
-pub(super) struct Case {
-    loads: Loads,
-    /// Whether proximal, else distal.
-    pub(super) proximal: bool,
-    pub(super) load_pa: f64,
-    pub(super) reference: Trajectory,
-}
-
-/// The model, its start and the responses.
-pub(super) struct Bench {
-    parameters: Parameters,
-    model: Model,
-    pub(super) start: State,
-    pub(super) times_s: Vec<f64>,
-    pub(super) cases: Vec<Case>,
-}
 
 /// What `lunula simulate` does.
 pub(in crate::tradeoff) fn solving_default() -> String {
     format!("{AUTO}, {:.0e}", SolveOptions::default().rtol)
 }
-
-/// What is told of a setting: its error, its work a response.
-type Told = (f64, u64);
 
 /// How the responses are solved.
 enum Way<'a> {
@@ -119,116 +86,6 @@ fn ways<'a>(model: &'a Model, printed: &'a Model) -> Vec<(String, Way<'a>)> {
         ways.push((format!("printed form, {rtol:.0e}"), Way::Full(printed, SolveOptions::at(rtol))));
     }
     ways
-}
-
-impl Bench {
-    fn new() -> anyhow::Result<Self> {
-        let parameters = Parameters::thesis();
-        let model = Model::new(&parameters, Collapse::Error);
-        let times_s: Vec<f64> = (1..=SECONDS * RATE).map(|k| f64::from(k) / f64::from(RATE)).collect();
-        let zero = || Load::constant(0.0);
-        let unloaded = Loads::on(&parameters, zero()?, zero()?);
-        let start = rest(&model, &unloaded.at(0.0))?.state;
-        let mut cases = Vec::new();
-        let options = SolveOptions { order: Order::Thirteenth, start_s: Some(0.0), ..SolveOptions::at(REFERENCE) };
-        for k in 1..=10 {
-            let step = || Load::step(1e3 * f64::from(k), 0.0, 2.0);
-            for proximal in [true, false] {
-                let (on, off) = (step()?, zero()?);
-                let loads = if proximal { Loads::on(&parameters, on, off) } else { Loads::on(&parameters, off, on) };
-                let mut reference = Trajectory::default();
-                Solver::new(&model)
-                    .run(&loads, &start, &times_s, &options, &mut reference)
-                    .map_err(|why| anyhow!("the reference: {why}"))?;
-                cases.push(Case { loads, proximal, load_pa: 1e3 * f64::from(k), reference });
-            }
-        }
-        Ok(Self { parameters, model, start, times_s, cases })
-    }
-
-    /// Seconds a response of what `solve` makes of every case; the first time also error and work, which warms up.
-    fn over(
-        &self,
-        first: bool,
-        found: &mut Trajectory,
-        mut solve: impl FnMut(&Case, &mut Trajectory) -> anyhow::Result<()>,
-    ) -> Run<Told> {
-        let told = if first { Some(self.told(found, &mut solve)?) } else { None };
-        let begin = Instant::now();
-        for case in &self.cases {
-            solve(black_box(case), found)?;
-            black_box(&*found);
-        }
-        Ok((begin.elapsed().as_secs_f64() / self.cases.len() as f64, told))
-    }
-
-    fn told(
-        &self,
-        found: &mut Trajectory,
-        solve: &mut impl FnMut(&Case, &mut Trajectory) -> anyhow::Result<()>,
-    ) -> anyhow::Result<Told> {
-        let (mut error, mut work) = (0.0_f64, 0);
-        for case in &self.cases {
-            solve(case, found)?;
-            anyhow::ensure!(found.len() == self.times_s.len(), "it ended early");
-            for k in 0..found.len() {
-                for (own, exact) in found.lumens(k).iter().zip(case.reference.lumens(k)) {
-                    let miss = (own - exact).abs();
-                    anyhow::ensure!(miss.is_finite(), "it is no number");
-                    error = error.max(miss);
-                }
-            }
-            work += found.statistics().evaluations;
-        }
-        Ok((error, work / self.cases.len() as u64))
-    }
-
-    fn full(&self, model: &Model, options: &SolveOptions, first: bool, found: &mut Trajectory) -> Run<Told> {
-        let options = SolveOptions { start_s: Some(0.0), ..options.clone() };
-        let mut solver = Solver::new(model);
-        self.over(first, found, |case, found| {
-            Ok(solver.run(&case.loads, &self.start, &self.times_s, &options, found)?)
-        })
-    }
-
-    /// Sample by sample, a step each; where the load jumps, it is told so.
-    fn live(&self, hz: u32, first: bool) -> Run<Told> {
-        let sample_s = 1.0 / f64::from(hz);
-        let mut live = Live::new(&self.model, &self.start, &self.cases[0].loads.at(0.0), sample_s)?;
-        let (mut error, mut work, mut seconds) = (0.0_f64, 0, f64::NAN);
-        // The very first run is for the error.
-        for &telling in if first { &[true, false][..] } else { &[false][..] } {
-            let begin = Instant::now();
-            let before = live.statistics().evaluations;
-            for case in &self.cases {
-                let mut pressed = case.loads.at(0.0);
-                live.restart(&self.start, &pressed)?;
-                let mut next_row = 0;
-                for k in 1..=SECONDS * hz {
-                    let state = live.sample(&pressed)?;
-                    if k % (hz / RATE) == 0 {
-                        if telling {
-                            for (own, exact) in state.lumens.iter().zip(case.reference.lumens(next_row)) {
-                                error = error.max((own - exact).abs());
-                            }
-                        }
-                        next_row += 1;
-                    }
-                    let now = case.loads.at(f64::from(k) / f64::from(hz));
-                    if now != pressed {
-                        pressed = now;
-                        let state = state.clone();
-                        live.restart(&state, &pressed)?;
-                    }
-                }
-            }
-            seconds = begin.elapsed().as_secs_f64() / self.cases.len() as f64;
-            if telling {
-                work = (live.statistics().evaluations - before) / self.cases.len() as u64;
-            }
-        }
-        Ok((seconds, first.then_some((error, work))))
-    }
 }
 
 #[cfg(test)]

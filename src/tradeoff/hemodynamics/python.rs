@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::Settings;
-use super::modes::Bench;
+use super::bench::Bench;
 use super::peers::read_peers;
 use crate::tradeoff::peers::{PeerReport, Script};
 use crate::tradeoff::rows::{Measured, Row};

@@ -4,14 +4,14 @@
 //! What is not measured is told, with how to get it. Packages are those of `benches/peers/requirements.txt`, from PyPI.
 
 mod python;
+pub(in crate::tradeoff) mod report;
 mod table;
 
 use std::path::PathBuf;
 
-use serde::Serialize;
-
 pub(super) use python::Answer;
 pub use python::{Python, Script};
+pub use report::PeerReport;
 pub(super) use table::join;
 pub use table::read_peers;
 
@@ -37,26 +37,5 @@ impl Peers {
     pub fn read(&self) -> anyhow::Result<Vec<Row>> {
         let tables = self.tables.iter().map(|path| read_peers(path)).collect::<anyhow::Result<Vec<_>>>()?;
         Ok(tables.into_iter().flatten().collect())
-    }
-}
-
-/// What became of another program.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
-pub struct PeerReport {
-    /// What it is.
-    pub peer: String,
-    /// Whether it is on the curves.
-    pub measured: bool,
-    /// What was done, or why it is missing and how to get it.
-    pub what: String,
-}
-
-impl PeerReport {
-    pub(super) fn measured(peer: &str, what: impl Into<String>) -> Self {
-        Self { peer: peer.to_owned(), measured: true, what: what.into() }
-    }
-
-    pub(super) fn missing(peer: &str, why: impl Into<String>) -> Self {
-        Self { peer: peer.to_owned(), measured: false, what: why.into() }
     }
 }

@@ -6,7 +6,7 @@
 use super::cell::Cell;
 use super::interval::Interval;
 use super::network::{Network, Vessel};
-use super::search::LEAST_LUMEN;
+use super::root::LEAST_LUMEN;
 use crate::model::TOUCH;
 
 /// A box that holds every equilibrium with open vessels; `None` where there is none.

@@ -17,6 +17,7 @@ mod network;
 mod polish;
 mod proof;
 mod reached;
+mod root;
 mod search;
 mod twins;
 
@@ -29,7 +30,8 @@ use crate::load::Inputs;
 use crate::model::{Arrow, Model, Pressures};
 use crate::state::State;
 use network::Network;
-use search::{GaveUp, Root};
+use root::Root;
+use search::GaveUp;
 
 /// What becomes of a small push.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -12,10 +12,9 @@ use super::cell::{Cell, Step};
 use super::domain::first_box;
 use super::interval::Interval;
 use super::network::Network;
+use super::root::{LEAST_LUMEN, MOST_EQUILIBRIA, Root};
 use super::twins::{mirrored, order_twins, twins};
 
-/// A lumen below this (over its nominal diameter) is closed: on a capillary of 10 micrometres the wall's thickness of an atom.
-pub(super) const LEAST_LUMEN: f64 = 1e-9;
 /// Boxes narrower than this (over the nominal diameters) are not cut any more.
 const NARROWEST: f64 = 1e-10;
 /// Boxes narrower than this may be tried for the equilibrium that they hold.
@@ -26,18 +25,6 @@ const MOST_BOXES: usize = 100_000;
 const NEAR: f64 = 1e-6;
 /// How much wider than an equilibrium in numbers the boxes are in which it is proved, over the nominal diameters.
 const MARGINS: [f64; 3] = [1e-13, 1e-11, 1e-9];
-/// Equilibria with all orders of equal units before the search gives up.
-pub(super) const MOST_EQUILIBRIA: usize = 10_000;
-
-/// Lumens at an equilibrium.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Root {
-    pub(super) vein: f64,
-    pub(super) units: Vec<f64>,
-    /// Proved to be there and to be one; false at a fold within rounding.
-    pub(super) certified: bool,
-}
-
 /// The search did not end within its bounds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum GaveUp {

@@ -69,7 +69,7 @@ fn none_is_missed_that_newton_finds_from_anywhere() {
             let vein = start();
             let units = network.units.iter().map(|_| start()).collect();
             let Some((vein, units)) = network.polish(vein, units) else { continue };
-            if vein < search::LEAST_LUMEN || units.iter().any(|&lumen| lumen < search::LEAST_LUMEN) {
+            if vein < root::LEAST_LUMEN || units.iter().any(|&lumen| lumen < root::LEAST_LUMEN) {
                 continue;
             }
             let own = units.iter().chain([&vein]);

@@ -5,7 +5,7 @@
 
 use super::cell::Cell;
 use super::network::Network;
-use super::search::{MOST_EQUILIBRIA, Root};
+use super::root::{MOST_EQUILIBRIA, Root};
 
 /// For each unit the last unit before it that is the same.
 pub(super) fn twins(network: &Network) -> Vec<Option<usize>> {

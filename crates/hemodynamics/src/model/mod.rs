@@ -17,6 +17,7 @@ mod arrow;
 mod by_parameter;
 mod contact;
 mod lanes;
+mod printed;
 
 use std::f64::consts::PI;
 
@@ -24,10 +25,10 @@ pub use arrow::Arrow;
 pub(crate) use by_parameter::{Currents, Tangent};
 pub(crate) use contact::{TOUCH, contact, contact_slope};
 pub(crate) use lanes::{InputLanes, Scratch};
+pub use printed::{Matrices, Printed, PrintedFault};
 
 use crate::load::Inputs;
 use crate::parameters::Parameters;
-use crate::printed::Printed;
 
 /// What happens where a vessel closes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]

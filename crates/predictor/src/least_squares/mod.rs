@@ -17,6 +17,7 @@
 
 mod blocks;
 mod exact;
+mod factor;
 mod fault;
 mod normal;
 mod problem;
@@ -32,12 +33,13 @@ use ndarray::{Array2, ArrayView2};
 use serde::{Deserialize, Serialize};
 
 pub(crate) use exact::Long;
+pub(crate) use factor::rounding;
 pub use fault::{Dependent, LeastSquaresFault};
 pub(crate) use problem::Problem;
 pub(crate) use reflect::triangle;
 pub(crate) use scale::{exponent, ldexp};
 pub(crate) use small::{back, pivot, triangulate};
-pub(crate) use solve::{rounding, solve};
+pub(crate) use solve::solve;
 
 /// What is asked of a fit.
 #[derive(Debug, Clone, PartialEq)]

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use super::follow::{Follower, Place, Tangent};
 use super::{LoadPath, Turn, TurnKind};
-use crate::equilibrium::search::LEAST_LUMEN;
+use crate::equilibrium::root::LEAST_LUMEN;
 use crate::equilibrium::{Equilibrium, EquilibriumFault, Stability};
 use crate::load::Inputs;
 use crate::model::{Collapse, Model};

@@ -1,0 +1,96 @@
+//! What is aligned, how, and where results go.
+
+use std::path::PathBuf;
+
+use super::tie::LagTie;
+use crate::log::{AmbientOptions, Columns};
+
+/// What is aligned.
+#[derive(Debug, Clone)]
+pub struct AlignInputs {
+    /// The table of joint angles, as `lunula posture` writes it.
+    pub joints: PathBuf,
+    /// The log of photodiodes and forces.
+    pub log: PathBuf,
+    /// The table of markers; only [`AlignOutputs::dlc`] needs it.
+    pub tracks: Option<PathBuf>,
+}
+
+/// How the clocks are tied.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Sync {
+    /// By the clock in the picture.
+    Clock,
+    /// By an offset that the user knows.
+    Offset {
+        /// The log's time at the video's first frame, seconds.
+        offset_s: f64,
+        /// Its standard error, seconds; none: not known.
+        sd_s: Option<f64>,
+    },
+    /// By the lag at which the photodiodes best explain the angles.
+    Correlate,
+}
+
+impl Sync {
+    /// Reads `clock`, `offset=SECONDS`, `offset=SECONDS+-ERROR` or `correlate`.
+    ///
+    /// # Errors
+    /// What to write instead.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let number = |text: &str| text.trim().parse().ok().filter(|number: &f64| number.is_finite());
+        let offset = |text: &str| {
+            let (offset, sd) = text.split_once("+-").map_or((text, None), |(offset, sd)| (offset, Some(sd)));
+            let sd_s = sd.map(number);
+            (sd_s != Some(None)).then_some(())?;
+            Some(Self::Offset { offset_s: number(offset)?, sd_s: sd_s.flatten() })
+        };
+        let sync = match text {
+            "clock" => Some(Self::Clock),
+            "correlate" => Some(Self::Correlate),
+            other => other.strip_prefix("offset=").and_then(offset),
+        };
+        sync.ok_or_else(|| {
+            "choose clock, offset=SECONDS (offset=60.25, or with its standard error offset=60.25+-0.01) or correlate"
+                .to_owned()
+        })
+    }
+}
+
+/// How to work.
+#[derive(Debug, Clone, Default)]
+pub struct AlignOptions {
+    /// How the clocks are tied; none: by the clock where the table of angles has it.
+    pub sync: Option<Sync>,
+    /// What the log's columns are called.
+    pub columns: Columns,
+    /// How the ambient light is taken away and what counts as saturated.
+    pub ambient: AmbientOptions,
+    /// The longest time between two frames that were seen over which labels are interpolated, seconds; none: two frames.
+    pub max_gap_s: Option<f64>,
+    /// The log's time when the clock in the picture shows zero, seconds; none: told from the overlap.
+    pub clock_zero_s: Option<f64>,
+    /// Where the lag is looked for, and the sensor's own.
+    pub lag: LagTie,
+    /// Whose finger.
+    pub subject: Option<String>,
+    /// Which session.
+    pub session: Option<String>,
+    /// What the finger does, for the names of a BIDS dataset.
+    pub task: Option<String>,
+}
+
+/// Where results go.
+#[derive(Debug, Clone)]
+pub struct AlignOutputs {
+    /// The labelled set; certificate, report and pictures stand beside it, named after it.
+    pub training: PathBuf,
+    /// The angles as an OpenSim motion file, on the log's clock.
+    pub mot: Option<PathBuf>,
+    /// The angles as a BIDS Motion folder.
+    pub bids: Option<PathBuf>,
+    /// The markers as a DeepLabCut table.
+    pub dlc: Option<PathBuf>,
+    /// Whether pictures are drawn.
+    pub figures: bool,
+}

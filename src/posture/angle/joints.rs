@@ -1,0 +1,201 @@
+//! Joint angles of one frame after the other, with their standard errors.
+//!
+//! In: what each frame shows of each marker; out: each joint's angle, positive in flexion, its zero subtracted, and the markers
+//! for want of which an angle is missing. A segment points from its proximal marker to its distal one; a joint's angle is the
+//! direction of its distal segment from that of its proximal one, so a straight finger is at 0.
+//!
+//! Angles are continuous: the first known one lies in (-180, 180] degrees, each later one on the branch nearest to the last known.
+//! Each joint is followed by itself, so their sum may pass 180 degrees.
+//!
+//! Errors of different markers are taken as independent. A marker that both segments share counts once, with both its signs.
+
+use super::view::{Spot, View};
+use crate::posture::{Centre, Layout, Sight};
+use crate::video::Info;
+
+use std::f64::consts::{PI, TAU};
+
+/// A joint's angle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Angle {
+    /// Positive in flexion.
+    pub rad: f64,
+    /// Its standard error.
+    pub sd_rad: f64,
+    /// The part of it that stays from frame to frame, which no smoothing over time makes smaller.
+    pub lasting_sd_rad: f64,
+}
+
+/// The joints of one frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AngleRow {
+    /// One for each of the layout's joints; none where it is not known.
+    pub angles: Vec<Option<Angle>>,
+    /// The needed markers that are not seen, or coincide with their partner; in the layout's order.
+    pub lost: Vec<usize>,
+}
+
+impl AngleRow {
+    /// `ok`, or `lost:` and the markers.
+    #[must_use]
+    pub fn status(&self, layout: &Layout) -> String {
+        if self.lost.is_empty() {
+            return "ok".to_owned();
+        }
+        self.lost.iter().fold("lost:".to_owned(), |text, &m| text + " " + &layout.markers[m].name)
+    }
+}
+
+/// Follows the joints through a video.
+#[derive(Debug, Clone)]
+pub struct Angles {
+    layout: Layout,
+    view: View,
+    needed: Vec<bool>,
+    /// The last known angle of each joint.
+    last_rad: Vec<Option<f64>>,
+}
+
+/// Two markers nearer to each other than this many standard errors of their distance have no direction.
+const APART_SD: f64 = 3.0;
+/// Nor have two that are nearer than this, however sure their places.
+const APART_PX: f64 = 1e-6;
+
+impl Angles {
+    /// For the frames of one video, in order.
+    #[must_use]
+    pub fn new(layout: &Layout, info: &Info) -> Self {
+        Self::seen_by(layout, View::new(layout, info))
+    }
+
+    fn seen_by(layout: &Layout, view: View) -> Self {
+        Self { view, needed: layout.needed(), last_rad: vec![None; layout.joints.len()], layout: layout.clone() }
+    }
+
+    /// The angles of the next frame, one sight a marker of the layout.
+    pub fn step(&mut self, sights: &[Sight]) -> AngleRow {
+        let spots: Vec<Option<Spot>> = sights
+            .iter()
+            .zip(&self.needed)
+            .map(|(sight, needed)| match sight {
+                Sight::Seen(centre) if *needed => self.view.flat(centre).filter(Spot::is_finite),
+                _ => None,
+            })
+            .collect();
+        let lasting: Vec<Option<Spot>> = sights
+            .iter()
+            .map(|sight| match sight {
+                Sight::Seen(centre) => self.view.flat(&Centre { covariance_px2: centre.lasting_px2, ..*centre }),
+                Sight::Lost(_) => None,
+            })
+            .collect();
+        let mut lost: Vec<usize> = (0..spots.len()).filter(|&m| self.needed[m] && spots[m].is_none()).collect();
+        let directions: Vec<Option<Direction>> = self
+            .layout
+            .segments
+            .iter()
+            .enumerate()
+            .map(|(k, segment)| {
+                let [a, b] = segment.markers;
+                let wanted = self.layout.joints.iter().any(|j| j.segments.contains(&k));
+                if !wanted {
+                    return None;
+                }
+                let direction = Direction::between(&spots[a]?, &spots[b]?);
+                if direction.is_none() {
+                    lost.extend([a, b]);
+                }
+                direction
+            })
+            .collect();
+        lost.sort_unstable();
+        lost.dedup();
+        let sign = self.layout.flexion.sign();
+        let angles = self
+            .layout
+            .joints
+            .iter()
+            .zip(&mut self.last_rad)
+            .map(|(joint, last)| {
+                let [a, b] = joint.segments.map(|s| directions[s].as_ref());
+                let (a, b) = (a?, b?);
+                let rad = nearest_branch(sign * (b.rad - a.rad) - joint.zero_rad, *last);
+                *last = Some(rad);
+                let pairs = joint.segments.map(|s| self.layout.segments[s].markers);
+                let second_order_rad2 = a.second_order_rad2 + b.second_order_rad2;
+                let sd_rad = variance(pairs, [a, b], &spots, second_order_rad2).sqrt();
+                let lasting_sd_rad = variance(pairs, [a, b], &lasting, 0.0).sqrt();
+                Some(Angle { rad, sd_rad, lasting_sd_rad })
+            })
+            .collect();
+        AngleRow { angles, lost }
+    }
+}
+
+/// `rad` plus or minus whole turns: nearest to `last`, or in (-pi, pi].
+fn nearest_branch(rad: f64, last: Option<f64>) -> f64 {
+    match last {
+        Some(last) => rad - TAU * ((rad - last) / TAU).round(),
+        None => rad - TAU * ((rad - PI) / TAU).ceil(),
+    }
+}
+
+impl Spot {
+    fn is_finite(&self) -> bool {
+        self.at_px.iter().chain(&self.covariance_px2).all(|v| v.is_finite())
+    }
+}
+
+/// Where a segment points.
+#[derive(Debug, Clone, Copy)]
+struct Direction {
+    /// Clockwise from the picture's right.
+    rad: f64,
+    /// Its derivatives by the distal marker's place; those by the proximal one's are the opposite.
+    slope: [f64; 2],
+    /// What the curvature of the arc tangent adds to its variance.
+    second_order_rad2: f64,
+}
+
+impl Direction {
+    /// None where the two can't be told apart.
+    fn between(proximal: &Spot, distal: &Spot) -> Option<Self> {
+        let [dx, dy] = [distal.at_px[0] - proximal.at_px[0], distal.at_px[1] - proximal.at_px[1]];
+        let length = dx.hypot(dy);
+        if length <= APART_PX {
+            return None;
+        }
+        let [xx, xy, yy] = std::array::from_fn(|k| proximal.covariance_px2[k] + distal.covariance_px2[k]);
+        let (ux, uy) = (dx / length, dy / length);
+        let along = ux * ux * xx + 2.0 * ux * uy * xy + uy * uy * yy;
+        let across = uy * uy * xx - 2.0 * ux * uy * xy + ux * ux * yy;
+        if length <= APART_SD * along.max(across).sqrt() {
+            return None;
+        }
+        // atan(t / (length + a)) for independent normal errors t across and a along, to the fourth order.
+        let (along, across) = (along / (length * length), across / (length * length));
+        let second_order_rad2 = across * (3.0 * along - 2.0 * across).max(0.0);
+        Some(Self { rad: dy.atan2(dx), slope: [-uy / length, ux / length], second_order_rad2 })
+    }
+}
+
+/// The variance of the angle from the segment `a` to the segment `b`, whose markers are `pairs`, beside that of second order.
+fn variance(pairs: [[usize; 2]; 2], [a, b]: [&Direction; 2], spots: &[Option<Spot>], second_order_rad2: f64) -> f64 {
+    let parts = [(pairs[0][0], a, 1.0), (pairs[0][1], a, -1.0), (pairs[1][0], b, -1.0), (pairs[1][1], b, 1.0)];
+    let mut variance = second_order_rad2;
+    for (k, &(marker, ..)) in parts.iter().enumerate() {
+        if parts[..k].iter().any(|p| p.0 == marker) {
+            continue;
+        }
+        let same = parts.iter().filter(|p| p.0 == marker);
+        let [gx, gy] = same.fold([0.0, 0.0], |g, (_, d, sign)| [g[0] + sign * d.slope[0], g[1] + sign * d.slope[1]]);
+        if let Some(spot) = &spots[marker] {
+            let [xx, xy, yy] = spot.covariance_px2;
+            variance += gx * gx * xx + 2.0 * gx * gy * xy + gy * gy * yy;
+        }
+    }
+    variance.max(0.0)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,7 @@
+//! From centres to joint angles: lens, picture as shown, joints, smoothing, and whether a finger can have such angles.
+
+pub(super) mod joints;
+pub(super) mod lens;
+pub(super) mod plausible;
+pub(super) mod smooth;
+pub(super) mod view;

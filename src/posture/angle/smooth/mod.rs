@@ -1,0 +1,109 @@
+//! Smoothing of a joint's angle over a whole video, for those who ask for it.
+//!
+//! In: frame times and one joint's angles with their standard errors; out: the same rows, smoothed, with standard errors that
+//! hold. A missing angle stays missing. Fewer than eight known angles stay as they are.
+//!
+//! The angle's third derivative is taken as white noise (the integrated Wiener process of Wecker and Ansley 1983,
+//! doi:10.1080/01621459.1983.10477935), over the true times. The errors of neighbouring frames are
+//! alike, since a codec hands on what it did to the last frame; a smoother that does not know that promises too much. So an error is in
+//! part a first-order autoregression, in part white, and its size the given standard error times a common scale. The process' strength, the
+//! correlation, its share and the scale are those of the greatest likelihood, with weak priors; the scale is never below 1.
+//! Smoothing is the fixed interval one of Rauch, Tung and Striebel (1965, doi:10.2514/3.3166) in Bierman's form (1973,
+//! doi:10.1080/00207177308932487), which inverts no matrix. An angle that no motion explains is left out of it.
+
+mod filter;
+mod fit;
+
+use super::joints::Angle;
+use filter::{Observation, Parameters};
+
+/// Fewer known angles than this are left as they are.
+const FEWEST: usize = 8;
+
+/// A smoothed series and what was found of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Smoothed {
+    /// Known exactly where the given angle is.
+    pub angles: Vec<Option<Angle>>,
+    /// What the smoother took the series for; none where it was left as it is.
+    pub model: Option<SmoothModel>,
+}
+
+/// What the smoother took a series for.
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+pub struct SmoothModel {
+    /// Spectral density of the angle's third derivative.
+    pub jerk_rad2_per_s5: f64,
+    /// Correlation of the errors of frames a median frame's time apart, of their correlated part.
+    pub error_correlation: f64,
+    /// The share of the errors' variance that is correlated.
+    pub correlated_share: f64,
+    /// The errors over the given standard errors.
+    pub error_scale: f64,
+    /// Angles that no motion explains, in whose place their neighbours speak.
+    pub left_out: usize,
+}
+
+/// Smooths one joint's angles at `times_s` (not decreasing).
+#[must_use]
+pub fn smooth(times_s: &[f64], angles: &[Option<Angle>]) -> Smoothed {
+    let known: Vec<(usize, f64, Angle)> = times_s
+        .iter()
+        .zip(angles)
+        .enumerate()
+        .filter_map(|(row, (&time, angle))| angle.map(|a| (row, time, a)))
+        .filter(|(_, time, a)| time.is_finite() && a.rad.is_finite() && a.sd_rad.is_finite())
+        .collect();
+    if known.len() < FEWEST {
+        return Smoothed { angles: angles.to_vec(), model: None };
+    }
+    // In medians of the errors and of the time from row to row, all numbers are near 1.
+    let unit_rad = median(known.iter().map(|(.., a)| passing_sd_rad(a))).max(SMALLEST_SD_RAD);
+    let step_s = median(known.windows(2).map(|w| w[1].1 - w[0].1));
+    let step_s = if step_s > 0.0 { step_s } else { 1.0 };
+    let origin = known[0].1;
+    let series: Vec<Observation> = known
+        .iter()
+        .map(|(_, time, a)| Observation {
+            time: (time - origin) / step_s,
+            value: a.rad / unit_rad,
+            // Weights within a million of each other.
+            sd: (passing_sd_rad(a) / unit_rad).clamp(1e-3, 1e3),
+        })
+        .collect();
+    let half_turn = std::f64::consts::PI / unit_rad;
+    let parameters = fit::fit(&series, half_turn);
+    let smoothed = filter::smooth(&series, &parameters, half_turn);
+    let mut result = vec![None; angles.len()];
+    for ((row, _, a), s) in known.iter().zip(&smoothed.rows) {
+        let lasting_sd_rad = a.lasting_sd_rad;
+        let sd_rad = (s.sd * unit_rad).hypot(lasting_sd_rad);
+        result[*row] = Some(Angle { rad: s.value * unit_rad, sd_rad, lasting_sd_rad });
+    }
+    let Parameters { jerk, correlation, share, scale } = parameters;
+    let model = SmoothModel {
+        jerk_rad2_per_s5: jerk * unit_rad.powi(2) / step_s.powi(5),
+        error_correlation: correlation,
+        correlated_share: share,
+        error_scale: scale,
+        left_out: smoothed.left_out,
+    };
+    Smoothed { angles: result, model: Some(model) }
+}
+
+/// An error of nothing (a drawn series, say) would make every other number infinite.
+const SMALLEST_SD_RAD: f64 = 1e-9;
+
+/// The part of a standard error that is another's in another frame: what smoothing makes smaller.
+fn passing_sd_rad(angle: &Angle) -> f64 {
+    (angle.sd_rad * angle.sd_rad - angle.lasting_sd_rad * angle.lasting_sd_rad).max(0.0).sqrt()
+}
+
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+#[cfg(test)]
+mod tests;

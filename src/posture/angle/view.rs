@@ -1,0 +1,95 @@
+//! From the stored picture to the shown one, and on to the plane on which angles are measured.
+//!
+//! In: a marker's centre on the stored picture with its covariance; out: the same on the shown (upright) picture, or on a picture
+//! of square pixels without the lens' distortion. All three: pixels, x right, y down.
+
+use super::lens::Lens;
+use crate::posture::{Camera, Centre};
+use crate::video::{Info, Turn};
+
+use crate::posture::layout::Layout;
+
+/// A point with the covariance of its error: variance of x, covariance, variance of y.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spot {
+    /// Column and row.
+    pub at_px: [f64; 2],
+    /// Variance of x, covariance, variance of y.
+    pub covariance_px2: [f64; 3],
+}
+
+impl Spot {
+    /// The spot's image under a map that takes its place to `at_px` and has the derivatives `jacobian` there.
+    fn carried(self, at_px: [f64; 2], [[a, b], [c, d]]: [[f64; 2]; 2]) -> Self {
+        let [xx, xy, yy] = self.covariance_px2;
+        let covariance_px2 = [
+            a * a * xx + 2.0 * a * b * xy + b * b * yy,
+            a * c * xx + (a * d + b * c) * xy + b * d * yy,
+            c * c * xx + 2.0 * c * d * xy + d * d * yy,
+        ];
+        Self { at_px, covariance_px2 }
+    }
+}
+
+/// How a video's stored picture is seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct View {
+    turn: Turn,
+    stored_size: (usize, usize),
+    /// Width of the shown picture's pixels over their height.
+    aspect: f64,
+    lens: Option<Lens>,
+}
+
+impl View {
+    /// The view of a video, through the layout's camera where it names one.
+    #[must_use]
+    pub fn new(layout: &Layout, info: &Info) -> Self {
+        let size = (info.format.width, info.format.height);
+        Self::of(layout.camera.as_ref(), size, info.turn, info.pixel_aspect)
+    }
+
+    /// The view of a picture of `stored_size`, whose pixels' width over height is `pixel_aspect`.
+    pub(in crate::posture) fn of(
+        camera: Option<&Camera>,
+        stored_size: (usize, usize),
+        turn: Turn,
+        pixel_aspect: f64,
+    ) -> Self {
+        let aside = matches!(turn, Turn::Quarter | Turn::ThreeQuarters);
+        let (size, aspect) =
+            if aside { ((stored_size.1, stored_size.0), pixel_aspect.recip()) } else { (stored_size, pixel_aspect) };
+        let lens = camera.map(|camera| Lens::new(camera, size, aspect));
+        Self { turn, stored_size, aspect, lens }
+    }
+
+    /// The centre on the shown picture.
+    #[must_use]
+    pub fn shown(&self, centre: &Centre) -> Spot {
+        let stored = Spot { at_px: centre.at_px, covariance_px2: centre.covariance_px2 };
+        let at_px = self.turn.shown_from_stored(centre.at_px, self.stored_size);
+        let jacobian = match self.turn {
+            Turn::None => [[1.0, 0.0], [0.0, 1.0]],
+            Turn::Quarter => [[0.0, -1.0], [1.0, 0.0]],
+            Turn::Half => [[-1.0, 0.0], [0.0, -1.0]],
+            Turn::ThreeQuarters => [[0.0, 1.0], [-1.0, 0.0]],
+        };
+        stored.carried(at_px, jacobian)
+    }
+
+    /// The centre on square pixels without distortion; none where the lens' model shows no such point.
+    #[must_use]
+    pub fn flat(&self, centre: &Centre) -> Option<Spot> {
+        let shown = self.shown(centre);
+        match &self.lens {
+            Some(lens) => {
+                let there = lens.undistort(shown.at_px)?;
+                Some(shown.carried(there.at_px, there.jacobian))
+            }
+            None => {
+                let [x, y] = shown.at_px;
+                Some(shown.carried([x * self.aspect, y], [[self.aspect, 0.0], [0.0, 1.0]]))
+            }
+        }
+    }
+}

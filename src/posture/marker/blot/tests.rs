@@ -1,0 +1,130 @@
+//! Blots of paint whose places are known.
+
+use std::path::Path;
+
+use super::*;
+use crate::posture::angle::joints::Angles;
+use crate::posture::layout::{Layout, MarkerShape};
+use crate::posture::marker::look::Look;
+use crate::posture::marker::method::Method;
+use crate::posture::marker::sight::{Centre, Sight};
+use crate::posture::stage::{self, PAINT, SKIN, Stage};
+use crate::posture::survey::{Progress, Surveyor};
+use crate::posture::track::Tracker;
+
+/// Four marks of one paint, all in a row.
+const MARKS: &str = "flexion = \"clockwise\"
+[markers]
+hand = \"#2b4b10\"
+near = \"#2b4b10\"
+middle = \"#2b4b10\"
+tip = \"#2b4b10\"
+[segments]
+first = [\"hand\", \"near\"]
+second = [\"near\", \"middle\"]
+third = [\"middle\", \"tip\"]
+[joints]
+J1 = [\"first\", \"second\"]
+J2 = [\"second\", \"third\"]
+[start]
+hand = [60, 110]
+near = [140, 104]
+middle = [205, 100]
+tip = [260, 97]
+";
+
+/// A finger that bends twice in 60 frames.
+fn finger(frame: u64) -> Stage {
+    let bend = 0.5 - 0.5 * (frame as f64 / 60.0 * 2.0 * std::f64::consts::TAU).cos();
+    let mut stage = Stage::new(320, 240, SKIN);
+    stage.light = 1.0 + 0.05 * (frame as f64 * 0.7).sin();
+    let (mut at, mut turn_rad) = ([60.0, 110.0], -0.07);
+    for (kind, (length, joint)) in [(80.0, 0.0), (65.0, 0.9), (55.0, 0.7), (0.0, 0.0)].into_iter().enumerate() {
+        let stretch = [1.15 + 0.2 * bend, 0.85];
+        stage.blots.push(stage::Blot {
+            at,
+            radius: 10.0 + kind as f64,
+            colour: PAINT,
+            kind: kind as u64,
+            turn_rad,
+            stretch,
+        });
+        turn_rad += joint * bend;
+        at = [at[0] + length * turn_rad.cos(), at[1] + length * turn_rad.sin()];
+    }
+    stage
+}
+
+#[test]
+fn angles_between_blots_are_right_within_their_standard_errors() {
+    for (text, shape) in [(MARKS.to_owned(), "left open"), (format!("shape = \"blot\"\n{MARKS}"), "said")] {
+        let layout = Layout::parse(&text, Path::new("markers.toml")).unwrap();
+        let info = finger(0).info();
+        let pictures: Vec<_> = (0..60).map(|frame| finger(frame).picture(frame)).collect();
+        let mut surveyor = Surveyor::new(&layout, &info);
+        for (k, picture) in pictures.iter().enumerate() {
+            if surveyor.look(&picture.frame(k as u64, 0.0)) == Progress::Enough {
+                break;
+            }
+        }
+        let survey = surveyor.finish().unwrap();
+        let mut tracker = Tracker::new(&layout, &survey, &info, Method::default());
+        let (mut angles, mut real) = (Angles::new(&layout, &info), Angles::new(&layout, &info));
+        let (mut errors_deg, mut within, mut missing) = (Vec::new(), 0, 0);
+        for (k, picture) in pictures.iter().enumerate() {
+            let seen = angles.step(tracker.step(&picture.frame(k as u64, 0.0)));
+            let centres: Vec<Sight> = (finger(k as u64).blots.iter())
+                .map(|blot| {
+                    let at_px = blot.centroid();
+                    Sight::Seen(Centre { at_px, covariance_px2: [0.0; 3], lasting_px2: [0.0; 3], radius_px: 10.0 })
+                })
+                .collect();
+            for (seen, real) in seen.angles.iter().zip(&real.step(&centres).angles) {
+                let Some(seen) = seen else {
+                    missing += 1;
+                    continue;
+                };
+                let error = (seen.rad - real.unwrap().rad).abs();
+                errors_deg.push(error.to_degrees());
+                within += usize::from(error <= seen.sd_rad);
+                assert!(seen.lasting_sd_rad > 0.0 && seen.lasting_sd_rad < seen.sd_rad);
+            }
+        }
+        errors_deg.sort_by(f64::total_cmp);
+        let share = within as f64 / errors_deg.len() as f64;
+        let median = errors_deg[errors_deg.len() / 2];
+        println!(
+            "shape {shape}: median error {median:.3} degrees, within one standard error {share:.2}, {missing} missing"
+        );
+        (0..4).for_each(|marker| assert_eq!(tracker.shape(marker), Some(MarkerShape::Blot)));
+        assert!(missing <= 2, "{missing} missing");
+        assert!(median <= 0.05, "{median} degrees");
+        // No skin bends here, which the standard errors allow for.
+        assert!(share >= 0.6, "{share}");
+    }
+}
+
+#[test]
+fn what_is_hidden_in_part_has_no_centre() {
+    let mut stage = finger(0);
+    let picture = stage.picture(1);
+    let siting = Siting { dx_px: 0.5, dy_px: 0.5 };
+    let (blot, whole) = Blot::learn(&picture.frame(0, 0.0), siting, [141.0, 103.0], 11.0).unwrap();
+    let real = stage.blots[1].centroid();
+    assert!((whole.at_px[0] - real[0]).hypot(whole.at_px[1] - real[1]) < 0.2);
+    // Another finger comes over it.
+    stage.blots.push(stage::Blot { at: [170.0, 104.0], radius: 24.0, colour: SKIN, ..stage.blots[1] });
+    let picture = stage.picture(2);
+    let seen = blot.outline(&picture.frame(1, 0.0), siting, [141.0, 103.0]);
+    assert_eq!(seen, Err(Loss::Hidden));
+}
+
+#[test]
+fn a_disc_is_no_blot() {
+    let mut stage = Stage::new(120, 100, SKIN);
+    stage.disc([60.2, 49.7], 10.0, PAINT);
+    let picture = stage.picture(3);
+    let siting = Siting { dx_px: 0.5, dy_px: 0.5 };
+    let look = Look::learn(&picture.frame(0, 0.0), siting, [60.0, 50.0], 10.0, &mut Default::default());
+    assert!(look.is_some_and(|look| look.blot.is_none()));
+}
