@@ -20,6 +20,7 @@ pub mod hemodynamics;
 pub mod input;
 pub mod labelme;
 pub mod log;
+pub mod nail;
 mod npy;
 pub mod phantom;
 pub mod photo;

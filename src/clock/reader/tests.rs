@@ -3,7 +3,6 @@ use crate::phantom::screen::ClockFont;
 use crate::video::{Format, Turn};
 use show::Show;
 
-#[path = "show.rs"]
 mod show;
 
 /// Shares of right readings, of wrong ones, and of the rest of a clock's frames.

@@ -3,7 +3,7 @@
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 
-use crate::photo::outline::Axis;
+use crate::nail::Axis;
 
 /// What is seen beside the finger.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,7 +5,7 @@ use ndarray::Array2;
 use thiserror::Error;
 
 use super::{Camera, Field, Light, Pose, RenderOptions, Subject, render};
-use crate::photo::outline::{Axis, Outline};
+use crate::nail::{Axis, Outline};
 
 /// Why a scene can't be drawn.
 #[derive(Debug, Clone, PartialEq, Error)]

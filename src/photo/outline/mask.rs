@@ -207,7 +207,7 @@ fn outlines_of((values, full): (ImageBuffer<Luma<f32>, Vec<f32>>, f32)) -> Resul
     let kind = |value: &f32| if white { u8::from(2.0 * value >= full) } else { *value as u8 };
     let kinds = GrayImage::from_raw(values.width(), values.height(), values.iter().map(kind).collect())
         .expect("a kind a pixel");
-    let labels = connected_components(&kinds, Connectivity::Eight, Luma([0]));
+    let labels = labelled(&kinds);
     let regions = boxes(&labels);
     if !white && regions.len() > MOST_ID_REGIONS {
         return Err(MaskFault::Noise { regions: regions.len() });
@@ -228,6 +228,19 @@ fn outlines_of((values, full): (ImageBuffer<Luma<f32>, Vec<f32>>, f32)) -> Resul
         }));
     }
     Ok(sorted_out(polygons))
+}
+
+/// The number of each pixel's component, from 1 on; 0 in the background.
+fn labelled(kinds: &GrayImage) -> ImageBuffer<Luma<u32>, Vec<u32>> {
+    let components = |kinds: &GrayImage| connected_components(kinds, Connectivity::Eight, Luma([0]));
+    if kinds.iter().any(|kind| *kind == 0) {
+        return components(kinds);
+    }
+    // imageproc 0.27 panics where there are as many components as pixels: with a row of background there are fewer.
+    let (width, height) = kinds.dimensions();
+    let padded =
+        GrayImage::from_fn(width, height + 1, |x, y| if y < height { *kinds.get_pixel(x, y) } else { Luma([0]) });
+    image::imageops::crop_imm(&components(&padded), 0, 0, width, height).to_image()
 }
 
 /// Pixels neither black nor white and not on an edge, for each white one.

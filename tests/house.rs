@@ -1,0 +1,158 @@
+//! What holds the code's rooms together, read from its `use` lines: no circle between files, no arrow up a floor.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use regex::Regex;
+
+/// The library's rooms, from the ground up: a room knows those of lower floors, and none of its own beside it.
+const FLOORS: [&[&str]; 7] = [
+    &["flexion", "input", "nail", "stages", "timebase", "toml_file", "words"],
+    &["files", "labelme", "npy", "table", "video"],
+    &["clock", "figure", "log"],
+    &["align", "hemodynamics", "photo", "posture", "predictor"],
+    &["phantom"],
+    &["doctor", "study", "tradeoff"],
+    &["pipeline"],
+];
+
+/// A file's place among the modules, as `["posture", "job"]`.
+type Module = Vec<String>;
+
+/// The files of a crate's `src` that are no tests, and the `use` paths of each.
+fn modules(root: &Path) -> BTreeMap<Module, Vec<Module>> {
+    let line = Regex::new(r"(?ms)^\s*(pub(\([^)]*\))?\s+)?use\s+((crate|super|self)\b[^;]*);").expect("a pattern");
+    let tests = Regex::new(r"#\[cfg\(test\)\]\s*(?:pub(?:\([^)]*\))?\s+)?mod (\w+)( \{|;)").expect("a pattern");
+    let (mut found, mut only_tests) = (BTreeMap::new(), Vec::new());
+    let mut folders = vec![root.to_owned()];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(&folder).expect("a folder of the repository") {
+            let path: PathBuf = entry.expect("an entry").path();
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            let inner = path.strip_prefix(root).expect("within it").with_extension("");
+            let mut module: Module = inner.iter().map(|part| part.to_string_lossy().into_owned()).collect();
+            if path.extension().is_none_or(|ending| ending != "rs") {
+                continue;
+            }
+            if module.last().is_some_and(|name| ["mod", "lib", "main"].contains(&name.as_str())) {
+                module.pop();
+            }
+            let text = std::fs::read_to_string(&path).expect("a source file");
+            let mut end = text.len();
+            for test in tests.captures_iter(&text) {
+                only_tests.push([&module[..], &[test[1].to_owned()]].concat());
+                if &test[2] == " {" {
+                    end = end.min(test.get(0).expect("all of it").start());
+                }
+            }
+            let paths = line.captures_iter(&text[..end]).filter(|found| found.get(1).is_none());
+            let paths = paths.flat_map(|found| expanded(&found[3])).map(|path| absolute(&module, &path)).collect();
+            found.insert(module, paths);
+        }
+    }
+    found.retain(|module: &Module, _| !only_tests.iter().any(|tests| module.starts_with(tests)));
+    found
+}
+
+/// `a::{b, c::{d, e}}` as `a::b`, `a::c::d`, `a::c::e`.
+fn expanded(path: &str) -> Vec<String> {
+    let path: String = path.chars().filter(|c| !c.is_whitespace()).collect();
+    let Some((head, rest)) = path.split_once('{') else { return vec![path] };
+    let (mut all, mut depth, mut part) = (Vec::new(), 0, String::new());
+    for c in rest.strip_suffix('}').unwrap_or(rest).chars().chain([',']) {
+        match c {
+            ',' if depth == 0 => all.extend(expanded(&std::mem::take(&mut part))),
+            _ => {
+                depth += i32::from(c == '{') - i32::from(c == '}');
+                part.push(c);
+            }
+        }
+    }
+    all.into_iter().filter(|part| !part.is_empty()).map(|part| format!("{head}{part}")).collect()
+}
+
+/// A path from the crate's root.
+fn absolute(module: &[String], path: &str) -> Module {
+    let mut at = module.to_vec();
+    for part in path.split("::") {
+        match part {
+            "crate" => at.clear(),
+            "super" => drop(at.pop()),
+            "self" => {}
+            _ => at.push(part.to_owned()),
+        }
+    }
+    at
+}
+
+/// The file that a path leads to.
+fn file<'a>(files: &BTreeMap<Module, Vec<Module>>, mut path: &'a [String]) -> &'a [String] {
+    while !files.contains_key(path) && !path.is_empty() {
+        path = &path[..path.len() - 1];
+    }
+    path
+}
+
+/// Files that use each other in a circle; a parent and its own child may.
+fn circles(files: &BTreeMap<Module, Vec<Module>>) -> Vec<String> {
+    let edges: BTreeMap<&[String], BTreeSet<&[String]>> = files
+        .iter()
+        .map(|(from, paths)| {
+            let to = paths.iter().map(|path| file(files, path));
+            (from.as_slice(), to.filter(|to| !to.starts_with(from) && !from.starts_with(to)).collect())
+        })
+        .collect();
+    let reached = |from: &[String]| {
+        let (mut seen, mut left) = (BTreeSet::new(), vec![from]);
+        while let Some(at) = left.pop() {
+            left.extend(edges.get(at).into_iter().flatten().filter(|to| seen.insert(**to)));
+        }
+        seen.contains(from)
+    };
+    edges.keys().filter(|from| reached(from)).map(|from| from.join("/")).collect()
+}
+
+#[test]
+fn no_file_uses_another_that_uses_it() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for (folder, least) in [("src", 400), ("crates/predictor/src", 50), ("crates/hemodynamics/src", 50)] {
+        let files = modules(&root.join(folder));
+        assert!(files.len() >= least, "{folder}: {} files", files.len());
+        assert_eq!(circles(&files), [""; 0], "{folder}");
+    }
+}
+
+#[test]
+fn no_room_uses_one_of_its_own_floor_or_above() {
+    let files = modules(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"));
+    let floor = |room: &str| FLOORS.iter().position(|rooms| rooms.contains(&room));
+    let mut wrong = Vec::new();
+    let mut seen = 0;
+    for (from, paths) in files.iter().filter(|(from, _)| !from.is_empty() && from[0] != "cli") {
+        let own = floor(&from[0]).unwrap_or_else(|| panic!("{}: on which floor?", from[0]));
+        for to in paths.iter().filter(|to| to.first().is_some_and(|room| *room != from[0])) {
+            let Some(other) = floor(&to[0]) else { continue };
+            seen += 1;
+            if other >= own {
+                wrong.push(format!("{} -> {}", from.join("/"), to.join("/")));
+            }
+        }
+    }
+    assert!(seen > 300, "{seen} arrows between rooms");
+    assert_eq!(wrong, [""; 0]);
+}
+
+#[test]
+fn circles_and_paths_are_found() {
+    let module = |path: &str| -> Module { path.split('/').map(str::to_owned).collect() };
+    assert_eq!(expanded("super::{a, b::{c, d as e}}"), ["super::a", "super::b::c", "super::b::dase"]);
+    assert_eq!(absolute(&module("x/y"), "super::z::Q"), module("x/z/Q"));
+    let uses = |from: &str, to: &str| (module(from), vec![module(to)]);
+    let ring = BTreeMap::from([uses("a/b", "a/c/T"), uses("a/c", "d"), uses("d", "a/b"), uses("a", "a/b")]);
+    assert_eq!(circles(&ring), ["a/b", "a/c", "d"]);
+    let line = BTreeMap::from([uses("a/b", "a/c/T"), uses("a/c", "d"), uses("d", "e"), uses("a", "a/b")]);
+    assert_eq!(circles(&line), [""; 0]);
+}
