@@ -12,7 +12,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::util::Dir;
+use crate::util::{Dir, touch_pipeline};
 
 /// A command that writes below `out`: the run that left results there before (none: it refuses to write over any), and the one that is
 /// disturbed.
@@ -129,27 +129,6 @@ const JOBS: &[Job] = &[
     fast("man", "man --out out/man", "man --out out/man"),
 ];
 
-/// Generates logs and fits a model to each.
-const PIPELINE: &str = r#"name = "touch"
-wanted = ["force", "how_good"]
-[phantom]
-log = [
-    { name = "a", seed = SEED, protocol = "touch", seconds = 4, rate = 25 },
-    { name = "b", seed = 2, protocol = "touch", seconds = 4, rate = 25 },
-]
-[inputs.logs]
-files = "{phantom}/log/{session}/log.csv"
-[stage.force]
-job = "train"
-each = ["session"]
-data = "logs"
-target = "force"
-[stage.how_good]
-job = "evaluate"
-model = "force"
-data = "logs"
-"#;
-
 fn inputs(dir: &Dir) {
     let noise = |row: usize| ((row * 7919 + row * row * 31) % 1009) as f64 / 1009.0;
     for (name, first, rows) in [("a", 0, 60), ("b", 100, 40), ("c", 200, 40)] {
@@ -174,9 +153,10 @@ fn inputs(dir: &Dir) {
             }
         }
     }
-    for seed in [1, 3] {
-        let name = if seed == 1 { "before" } else { "after" };
-        dir.write(&format!("in/{name}.toml"), PIPELINE.replace("SEED", &seed.to_string()));
+    for (name, seed) in [("before", 1), ("after", 3)] {
+        let sessions = [("a", seed), ("b", 2)];
+        let named = "name = \"touch\"\n".to_owned() + &touch_pipeline(&sessions, "seconds = 4, rate = 25");
+        dir.write(&format!("in/{name}.toml"), named);
         for part in [1, 2] {
             dir.run(&format!("run in/{name}.toml --shard {part}/2 --out in/{name}{part}"));
         }
