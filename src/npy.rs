@@ -1,8 +1,11 @@
 //! Arrays of NumPy, read without belief in what their headers say of their size.
+//!
+//! In: the bytes of an `.npy` file, or of an array in an archive of such (`photo::npz`). Out: the array, in whichever order and of whichever
+//! byte order it was written. A header may promise anything: no memory is taken for more elements than the bytes hold.
 
 use std::path::Path;
 
-use ndarray::Array2;
+use ndarray::{Array, Array2, Dimension};
 use ndarray_npy::{ReadNpyExt as _, ReadableElement};
 
 use crate::input;
@@ -13,11 +16,19 @@ use crate::input;
 /// What is wrong with it, without its name.
 pub(crate) fn read<T: ReadableElement>(path: &Path) -> Result<Array2<T>, String> {
     let bytes = input::read(path).map_err(|why| format!("cannot be read ({why})"))?;
-    check(&bytes)?;
-    Array2::read_npy(&bytes[..]).map_err(|why| why.to_string())
+    parse(&bytes)
 }
 
-/// Whether the header and what it promises fit into the bytes that there are, of one byte an element at least.
+/// The array in the bytes of an `.npy` file.
+///
+/// # Errors
+/// What is wrong with it, also where it has another type or another number of dimensions.
+pub(crate) fn parse<T: ReadableElement, D: Dimension>(bytes: &[u8]) -> Result<Array<T, D>, String> {
+    check(bytes)?;
+    Array::read_npy(bytes).map_err(|why| why.to_string())
+}
+
+/// Whether the header and what it promises fit into the bytes that there are.
 fn check(bytes: &[u8]) -> Result<(), String> {
     let cut = || "is cut off: its header promises more than there is; get it again, whole".to_owned();
     let rest = bytes.strip_prefix(b"\x93NUMPY").ok_or("is no array of NumPy (.npy)")?;
@@ -33,8 +44,16 @@ fn check(bytes: &[u8]) -> Result<(), String> {
     let sides = shape.split(',').map(str::trim).filter(|side| !side.is_empty());
     let room = rest.len() - at - length;
     // A size that is no number is the reader's business.
-    let count = sides.map(|side| side.trim_end_matches('L').parse().unwrap_or(1)).try_fold(1_usize, usize::checked_mul);
+    let sides = sides.map(|side| side.trim_end_matches('L').parse().unwrap_or(1));
+    let count = sides.chain([element_bytes(&header)]).try_fold(1_usize, usize::checked_mul);
     if count.is_some_and(|count| count <= room) { Ok(()) } else { Err(cut()) }
+}
+
+/// The bytes of an element: 4 of `'descr': '<f4'`. At least one, where that is no plain type, which the reader refuses.
+fn element_bytes(header: &str) -> usize {
+    let descr = header.split_once("'descr'").and_then(|(_, rest)| rest.split('\'').nth(1)).unwrap_or_default();
+    let kind = descr.trim_end_matches(|letter: char| letter.is_ascii_digit());
+    descr[kind.len()..].parse().unwrap_or(1).max(1)
 }
 
 #[cfg(test)]
@@ -54,7 +73,8 @@ mod tests {
         assert_eq!(read::<f32>(&path).unwrap(), whole);
         let text = "(3, 4)";
         let at = bytes.windows(text.len()).position(|window| window == text.as_bytes()).unwrap();
-        for shape in ["(2147483648, 2147483648)", "(4294967296, 4294967296, 4294967296)", "(2147483648, 1)"] {
+        // The last promises as many elements as there are bytes of them.
+        for shape in ["(2147483648, 2147483648)", "(4294967296, 4294967296, 4294967296)", "(2147483648, 1)", "(6, 8)"] {
             let mut large = bytes.clone();
             // The padding behind makes room.
             let grown = shape.len() - text.len();
@@ -69,5 +89,22 @@ mod tests {
             std::fs::write(&path, broken).unwrap();
             assert!(read::<f32>(&path).is_err());
         }
+    }
+
+    #[test]
+    fn arrays_of_other_types_and_dimensions_are_refused_and_other_orders_read() {
+        let whole = Array2::from_shape_fn((3, 4), |(row, column)| (10 * row + column) as f32);
+        let mut bytes = Vec::new();
+        whole.write_npy(&mut bytes).unwrap();
+        assert!(parse::<f64, ndarray::Ix2>(&bytes).is_err() && parse::<f32, ndarray::Ix1>(&bytes).is_err());
+        let mut columns_first = Vec::new();
+        whole.t().write_npy(&mut columns_first).unwrap();
+        assert_eq!(parse::<f32, ndarray::Ix2>(&columns_first).unwrap(), whole.t());
+        // The other byte order.
+        let data = bytes.len() - 4 * whole.len();
+        bytes[data..].chunks_exact_mut(4).for_each(|element| element.reverse());
+        let order = bytes.iter().position(|&byte| byte == b'<').unwrap();
+        bytes[order] = b'>';
+        assert_eq!(parse::<f32, ndarray::Ix2>(&bytes).unwrap(), whole);
     }
 }
