@@ -398,7 +398,8 @@ fn a_tradeoff_over_one_subject_leaves_the_sd_out_and_says_so() {
     let dir = Dir::new();
     let scene = ["phantom", "photos", "--subjects", "1", "--poses", "normal", "--size", "160x120", "--out", "set"];
     dir.lunula(&scene).expect(0);
-    let request = ["tradeoff", "photos", "--input", "set/photos", "--truth", "set/truth", "--repeats", "1", "--out", "t"];
+    let request =
+        ["tradeoff", "photos", "--input", "set/photos", "--truth", "set/truth", "--repeats", "1", "--out", "t"];
     dir.lunula(&request).expect(0).says("map of the SD, RMS of 255: left out").says("two subjects in a pose");
     let rows = dir.table("t/tradeoff.csv");
     assert!(rows.iter().all(|row| !row["error"].is_empty() && !row["error_unit"].contains("SD")), "{rows:?}");

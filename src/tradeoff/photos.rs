@@ -30,7 +30,8 @@ pub(super) const SMALL_PICTURE_ERROR: &str = "normalized picture, nails of 20 to
 /// Root mean square difference over the pixels of all poses' maps.
 const MAP_ERRORS: [(&str, &str); 2] = [("mean", "map of the mean, RMS of 255"), ("sd", "map of the SD, RMS of 255")];
 /// Why the SD has no error.
-const NO_SD: &str = "left out, as there is none; it needs two subjects in a pose (--subjects 2, or an --input that has them)";
+const NO_SD: &str =
+    "left out, as there is none; it needs two subjects in a pose (--subjects 2, or an --input that has them)";
 /// Of all nails, a missed one counting as 1.
 pub(super) const OUTLINE_ERROR: &str = "detected outline, mean of 1 - IoU (missed = 1)";
 const RESAMPLE: [Resample; 3] = [Resample::Nearest, Resample::Linear, Resample::Cubic];
