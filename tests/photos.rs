@@ -361,7 +361,10 @@ fn detected_outlines_are_kept_corrected_and_used() {
     file.shapes[0].points.iter_mut().for_each(|p| p[0] += 2.0);
     file.write(&path).expect("written");
     let corrected = std::fs::read(&path).expect("a file");
+    // What a killed run left there goes, though no outline is written there any more.
+    dir.write("set/photos/normal/.lunula-killed", "half");
     dir.lunula(&["photos", "set/photos", "--out", "used", "--write-outlines"]).expect(0);
+    assert!(!dir.path("set/photos/normal/.lunula-killed").exists());
     assert!(std::fs::read(&path).expect("a file") == corrected);
     let used = dir.table("used/nails.csv");
     assert!(used.iter().all(|r| r["outline"] == "annotated"));
@@ -388,6 +391,20 @@ fn detected_outlines_are_kept_corrected_and_used() {
     assert!(again.len() == 4 && again.iter().all(|r| r["outline"] == "annotated" && r["used"] == "true"));
     let (apart, again) = (dir.bytes_of("apart"), dir.bytes_of("again"));
     assert!(apart.keys().all(|name| again.contains_key(name)), "the same results");
+}
+
+#[test]
+fn a_tradeoff_over_one_subject_leaves_the_sd_out_and_says_so() {
+    let dir = Dir::new();
+    let scene = ["phantom", "photos", "--subjects", "1", "--poses", "normal", "--size", "160x120", "--out", "set"];
+    dir.lunula(&scene).expect(0);
+    let request =
+        ["tradeoff", "photos", "--input", "set/photos", "--truth", "set/truth", "--repeats", "1", "--out", "t"];
+    dir.lunula(&request).expect(0).says("map of the SD, RMS of 255: left out").says("two subjects in a pose");
+    let rows = dir.table("t/tradeoff.csv");
+    assert!(rows.iter().all(|row| !row["error"].is_empty() && !row["error_unit"].contains("SD")), "{rows:?}");
+    let of_mean = rows.iter().filter(|row| row["error_unit"] == "map of the mean, RMS of 255");
+    assert_eq!(of_mean.count(), 3);
 }
 
 #[test]

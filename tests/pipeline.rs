@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::util::Dir;
+use crate::util::{Dir, touch_pipeline, without_phantom};
 
 /// Photographs of two poses to maps, generated on the way.
 const COLORATION: &str = r#"name = "colours"
@@ -20,25 +20,9 @@ sums = "normalized"
 "#;
 
 /// Three generated logs to models of force, one person's each.
-const TOUCH: &str = r#"wanted = ["force", "how_good"]
-[phantom]
-log = [
-    { name = "a", seed = 1, protocol = "touch", seconds = 20 },
-    { name = "b", seed = 2, protocol = "touch", seconds = 20 },
-    { name = "c", seed = 3, protocol = "touch", seconds = 20 },
-]
-[inputs.logs]
-files = "{phantom}/log/{session}/log.csv"
-[stage.force]
-job = "train"
-each = ["session"]
-data = "logs"
-target = "force"
-[stage.how_good]
-job = "evaluate"
-model = "force"
-data = "logs"
-"#;
+fn touch() -> String {
+    touch_pipeline(&[("a", 1), ("b", 2), ("c", 3)], "seconds = 20")
+}
 
 /// All results, without what holds times.
 fn results(dir: &Dir, out: &str) -> std::collections::BTreeMap<String, Vec<u8>> {
@@ -86,11 +70,7 @@ fn what_stands_is_kept_and_only_what_changed_is_made_anew() {
         "--quiet",
     ])
     .expect(0);
-    let own = COLORATION.replace(
-        "[phantom]\nphotos = { seed = 3, subjects = 3, poses = [\"rest\"], size = [160, 140], grey = true }\n",
-        "",
-    );
-    dir.write("p.toml", own.replace("{phantom}/photos/photos", "set/photos"));
+    dir.write("p.toml", without_phantom(COLORATION).replace("{phantom}/photos/photos", "set/photos"));
     let run = || dir.lunula(&["run", "p.toml", "--out", "out", "--json"]).expect(0).json();
     let first = run();
     assert_eq!((first["done"].as_u64(), first["kept"].as_u64()), (Some(4), Some(0)), "{first}");
@@ -113,7 +93,7 @@ fn what_stands_is_kept_and_only_what_changed_is_made_anew() {
 #[test]
 fn results_are_the_same_for_any_threads_and_any_folder() {
     let dir = Dir::new();
-    dir.write("p.toml", TOUCH);
+    dir.write("p.toml", touch());
     dir.lunula(&["run", "p.toml", "--out", "one", "--threads", "1", "--quiet"]).expect(0);
     dir.lunula(&["run", "p.toml", "--out", "deep/er/four", "--threads", "4", "--quiet"]).expect(0);
     let one = results(&dir, "one");
@@ -126,7 +106,7 @@ fn what_fails_fails_its_own_branch_and_is_a_table_at_the_end() {
     let dir = Dir::new();
     dir.lunula(&["phantom", "log", "--seed", "1", "--protocol", "touch", "--seconds", "20", "--out", "a", "--quiet"])
         .expect(0);
-    let own = TOUCH[..TOUCH.find("[phantom]").unwrap()].to_owned() + &TOUCH[TOUCH.find("[inputs").unwrap()..];
+    let own = without_phantom(&touch());
     dir.write("p.toml", own.replace("{phantom}/log/{session}/log.csv", "{session}/log.csv"));
     dir.write("b/log.csv", "time_s,P1\n0,what\n");
     let answer = dir.lunula(&["run", "p.toml", "--out", "out", "--json"]).expect(1);
@@ -149,15 +129,15 @@ fn what_fails_fails_its_own_branch_and_is_a_table_at_the_end() {
 #[test]
 fn faults_are_told_with_file_line_and_column_and_nothing_is_begun() {
     let dir = Dir::new();
-    dir.write("p.toml", TOUCH.replace("job = \"train\"", "job = \"trian\"").replace("\"how_good\"]", "\"how_god\"]"));
+    dir.write("p.toml", touch().replace("job = \"train\"", "job = \"trian\"").replace("\"how_good\"]", "\"how_god\"]"));
     dir.lunula(&["run", "p.toml", "--out", "out"])
         .expect(2)
         .says("p.toml:1:20: `how_god` is wanted, and no stage makes it; did you mean `how_good`?")
         .says("p.toml:11:7: no job `trian`; did you mean `train`?");
     dir.lunula(&["run", "none.toml", "--out", "out"]).expect(2).says("none.toml: ");
-    dir.write("q.toml", TOUCH.replace("{session}/log.csv", "{session}/lgo.csv"));
+    dir.write("q.toml", touch().replace("{session}/log.csv", "{session}/lgo.csv"));
     dir.lunula(&["run", "q.toml", "--out", "out"]).expect(2).says("q.toml:9:9: nothing matches");
-    dir.write("r.toml", TOUCH.replace("seconds = 20 }", "secnds = 20 }"));
+    dir.write("r.toml", touch().replace("seconds = 20 }", "secnds = 20 }"));
     dir.lunula(&["run", "r.toml", "--out", "out"]).expect(2).says("r.toml:");
     assert!(!dir.path("out").exists());
 }

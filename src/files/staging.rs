@@ -352,6 +352,14 @@ pub struct Places {
 }
 
 impl Places {
+    /// A folder where results live though this run may have nothing to write there: what killed runs left in it is cleared, as it is
+    /// where something is written.
+    pub fn look_after(&self, folder: &Path) {
+        if !hidden::is_private(folder) {
+            hidden::clear(folder);
+        }
+    }
+
     /// Where to write the result that is to stand at `path`.
     ///
     /// # Errors

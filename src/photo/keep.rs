@@ -33,6 +33,10 @@ pub fn keep_outlines(
 ) -> Result<Kept, WriteError> {
     let mut kept = Kept::default();
     let mut new = BTreeSet::new();
+    // Also where all outlines stand, or where none is detected any more because they do.
+    let homes: BTreeSet<PathBuf> =
+        set.photos.iter().filter_map(|photo| Some(place(photo, folder).parent()?.to_owned())).collect();
+    homes.iter().for_each(|home| places.look_after(home));
     for detected in detected {
         let photo = &set.photos[detected.photo];
         let path = place(photo, folder);

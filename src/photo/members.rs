@@ -12,6 +12,7 @@ use sha2::{Digest, Sha256};
 use super::maps::Sums;
 use super::normalization::Normalization;
 use crate::files::{Staging, WriteError};
+use crate::input;
 
 /// Where the list stands among a part's results.
 const OF_A_PART: &str = "partials/members.json";
@@ -67,7 +68,7 @@ impl Members {
     }
 
     fn read_file(file: &Path) -> Result<Self, String> {
-        let text = std::fs::read(file).map_err(|why| why.to_string())?;
+        let text = input::read(file).map_err(|why| why.to_string())?;
         serde_json::from_slice(&text).map_err(|why| why.to_string())
     }
 

@@ -9,6 +9,7 @@ use super::partial::{self, PartialFault};
 use super::report::{NailTable, RunReport};
 use super::results::{self, NAIL_COLUMNS};
 use crate::files::{Staging, WriteError};
+use crate::input;
 use crate::stages::Stages;
 
 /// Why results were not joined; nothing is written then.
@@ -63,7 +64,7 @@ pub fn merge(parts: &[PathBuf], staging: &Staging) -> Result<RunReport, MergeErr
 
 pub(super) fn read_nails(file: &Path) -> Result<Vec<Vec<String>>, MergeError> {
     let wrong = |why: String| MergeError::Nails { file: file.to_owned(), why };
-    let mut table = csv::Reader::from_path(file).map_err(|e| wrong(e.to_string()))?;
+    let mut table = csv::Reader::from_reader(input::open(file).map_err(|e| wrong(e.to_string()))?);
     if table.headers().map_err(|e| wrong(e.to_string()))?.iter().ne(NAIL_COLUMNS) {
         return Err(wrong(format!("its columns are not {}", NAIL_COLUMNS.join(","))));
     }

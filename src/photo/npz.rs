@@ -1,15 +1,17 @@
 //! The arrays of an NPZ archive, read without trusting what it says of their sizes.
 //!
 //! In: a ZIP file (PKWARE's APPNOTE 6.3.10, without ZIP64) of NPY arrays, stored. Out: an entry's bytes, never more than the
-//! caller expects of it, with their checksum verified; arrays are views of these, so that no header's claim takes memory.
+//! caller expects of it, with their checksum verified, and the array in them ([`npy`]).
 
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
-use ndarray::{ArrayView2, Ix1};
-use ndarray_npy::{ViewElement, ViewNpyExt};
+use ndarray::{Ix1, Ix2};
+use ndarray_npy::ReadableElement;
+
+use crate::{input, npy};
 
 /// Bytes of an archive's directory that are read: a partial map's has a few hundred.
 const MOST_DIRECTORY: u64 = 1 << 20;
@@ -47,7 +49,7 @@ impl Npz {
     /// In words, where there is none.
     pub(super) fn open(path: &Path) -> Result<Self, String> {
         let read = |why: std::io::Error| why.to_string();
-        let mut file = File::open(path).map_err(read)?;
+        let mut file = input::open_regular(path).map_err(read)?;
         let length = file.metadata().map_err(read)?.len();
         let mut tail = Vec::new();
         file.seek(SeekFrom::Start(length.saturating_sub(LONGEST_END))).map_err(read)?;
@@ -82,19 +84,21 @@ impl Npz {
     /// In words.
     pub(super) fn text(&mut self, name: &str, most: u64) -> Result<Vec<u8>, String> {
         let bytes = self.bytes(name, most)?;
-        let view = ndarray::ArrayView::<u8, Ix1>::view_npy(&bytes).map_err(|why| format!("`{name}`: {why}"))?;
-        Ok(view.iter().copied().collect())
+        let text = npy::parse::<u8, Ix1>(&bytes).map_err(|why| format!("`{name}`: {why}"))?;
+        Ok(text.into_raw_vec_and_offset().0)
     }
 
     /// A square array of `size` rows.
     ///
     /// # Errors
     /// In words, also where it has another size.
-    pub(super) fn square<T: ViewElement + Copy>(&mut self, name: &str, size: usize) -> Result<Vec<T>, String> {
+    pub(super) fn square<T: ReadableElement + Copy>(&mut self, name: &str, size: usize) -> Result<Vec<T>, String> {
         let bytes = self.bytes(name, (size * size * size_of::<T>()) as u64)?;
-        let view = ArrayView2::<T>::view_npy(&bytes).map_err(|why| format!("`{name}`: {why}"))?;
-        match view.dim() {
-            (rows, columns) if (rows, columns) == (size, size) => Ok(view.iter().copied().collect()),
+        let array = npy::parse::<T, Ix2>(&bytes).map_err(|why| format!("`{name}`: {why}"))?;
+        match array.dim() {
+            (rows, columns) if (rows, columns) == (size, size) => {
+                Ok(array.as_standard_layout().into_owned().into_raw_vec_and_offset().0)
+            }
             (rows, columns) => Err(format!("an array of {rows} x {columns}, not {size} x {size}")),
         }
     }

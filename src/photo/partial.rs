@@ -21,6 +21,7 @@ use super::members::Members;
 use super::normalization::Normalization;
 use super::normalize::Normalized;
 use super::npz::Npz;
+use crate::input;
 
 /// Of sums.
 const FORMAT: u32 = 1;
@@ -190,7 +191,7 @@ pub(super) fn add(whole: &mut Sums, file: &Path, meta: Meta, held: Held) -> Resu
 /// The partial maps that the part's own `run.json` names: an earlier run's may stand beside them. Of a pipeline's part, those of its list.
 fn partial_files(part: &Path) -> Result<Vec<PathBuf>, PartialFault> {
     let nothing = || PartialFault::Nothing(part.to_owned());
-    let Ok(text) = std::fs::read(part.join("run.json")) else {
+    let Ok(text) = input::read(&part.join("run.json")) else {
         let members = Members::read(part).map_err(|_| nothing())?;
         return Ok(members.poses.keys().map(|pose| part.join(part_name(pose))).collect());
     };

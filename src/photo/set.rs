@@ -10,6 +10,7 @@ use std::path::{Component, Path, PathBuf};
 
 use thiserror::Error;
 
+use crate::input;
 use crate::words::shown;
 
 /// Names of the files that are taken as photographs.
@@ -190,7 +191,7 @@ impl PhotoSet {
 
     fn read_manifest(&mut self, path: &Path) -> Result<(), SetError> {
         let wrong = |why: String| SetError::Manifest { file: path.to_owned(), why };
-        let text = std::fs::read_to_string(path).map_err(|e| match e.kind() {
+        let text = input::read_text(path).map_err(|e| match e.kind() {
             std::io::ErrorKind::InvalidData => wrong("is not UTF-8; save it as CSV in UTF-8".into()),
             _ => wrong(e.to_string()),
         })?;

@@ -30,7 +30,7 @@ pub(super) enum CommitFault {
     FileInTheWay(PathBuf),
     #[error(transparent)]
     File(#[from] FileFault),
-    #[error("{0}: is written twice, as a file and as a folder")]
+    #[error("the record of what the task made: {0}")]
     Record(String),
 }
 

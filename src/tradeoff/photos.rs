@@ -29,6 +29,9 @@ const PICTURE_ERROR: &str = "normalized picture inside the nail, RMS of 255";
 pub(super) const SMALL_PICTURE_ERROR: &str = "normalized picture, nails of 20 to 30 px, RMS of 255";
 /// Root mean square difference over the pixels of all poses' maps.
 const MAP_ERRORS: [(&str, &str); 2] = [("mean", "map of the mean, RMS of 255"), ("sd", "map of the SD, RMS of 255")];
+/// Why the SD has no error.
+const NO_SD: &str =
+    "left out, as there is none; it needs two subjects in a pose (--subjects 2, or an --input that has them)";
 /// Of all nails, a missed one counting as 1.
 pub(super) const OUTLINE_ERROR: &str = "detected outline, mean of 1 - IoU (missed = 1)";
 const RESAMPLE: [Resample; 3] = [Resample::Nearest, Resample::Linear, Resample::Cubic];
@@ -109,7 +112,8 @@ impl Scene {
     }
 }
 
-/// Measures every setting, and other programs.
+/// Measures every setting, and other programs. Without a pose of two subjects there is no SD to be wrong: its curve is left out, and
+/// [`Measured::refused`] says so.
 ///
 /// # Errors
 /// A set or truth that can't be read, with its file; [`Interrupted`](super::Interrupted).
@@ -130,6 +134,10 @@ pub fn measure(settings: &Settings) -> anyhow::Result<Measured> {
                 .rows
                 .extend(errors.into_iter().map(|error| resampling_row(&resampling(resample), resample, error, time)));
         }
+    }
+    let [_, (_, of_sd)] = MAP_ERRORS;
+    if measured.rows.iter().all(|row| row.error_unit != of_sd) {
+        measured.refused.push(format!("{of_sd}: {NO_SD}"));
     }
     let mut sizes = WORKING_PX.to_vec();
     let default = DetectOptions::default().working_size_px;
@@ -265,10 +273,11 @@ fn errors(scene: &Scene, out: &Path, pictures: impl Iterator<Item = (usize, Stri
             difference.add(made, *exact);
         }
     }
+    let what = if scene.small { SMALL_PICTURE_ERROR } else { PICTURE_ERROR };
+    let mut errors = vec![(what, difference.rms_of_255().context("no nail was normalized")?)];
     if scene.small {
-        return Ok(vec![(SMALL_PICTURE_ERROR, difference.rms_of_255())]);
+        return Ok(errors);
     }
-    let mut errors = vec![(PICTURE_ERROR, difference.rms_of_255())];
     for (kind, unit) in MAP_ERRORS {
         let mut difference = Difference::default();
         for pose in scene.set.poses() {
@@ -277,7 +286,7 @@ fn errors(scene: &Scene, out: &Path, pictures: impl Iterator<Item = (usize, Stri
             ensure!(made.dim() == exact.dim(), "{name}: {:?} and {:?} pixels", made.dim(), exact.dim());
             made.iter().zip(&exact).for_each(|(made, exact)| difference.add(*made, *exact));
         }
-        errors.push((unit, difference.rms_of_255()));
+        errors.extend(difference.rms_of_255().map(|error| (unit, error)));
     }
     Ok(errors)
 }
@@ -301,8 +310,9 @@ impl Difference {
         }
     }
 
-    fn rms_of_255(&self) -> f64 {
-        255.0 * (self.squares / self.count as f64).sqrt()
+    /// None where nothing was compared.
+    fn rms_of_255(&self) -> Option<f64> {
+        (self.count > 0).then(|| 255.0 * (self.squares / self.count as f64).sqrt())
     }
 }
 

@@ -175,13 +175,22 @@ impl Encoder {
 
     fn write_packets(&mut self) -> Result<(), VideoError> {
         let mut packet = Packet::empty();
-        while self.encoder.receive_packet(&mut packet).is_ok() {
+        while brought(self.encoder.receive_packet(&mut packet)).map_err(|error| write_error(&self.path, &error))? {
             packet.set_stream(0);
             packet.set_duration(self.ticks_a_picture);
             packet.rescale_ts(self.time_base, self.stream_base);
             packet.write_interleaved(&mut self.output).map_err(|error| write_error(&self.path, &error))?;
         }
         Ok(())
+    }
+}
+
+/// Whether a request for a packet brought one: not where the encoder waits for more pictures or has ended.
+fn brought(answer: Result<(), ffmpeg::Error>) -> Result<bool, ffmpeg::Error> {
+    match answer {
+        Ok(()) => Ok(true),
+        Err(ffmpeg::Error::Eof | ffmpeg::Error::Other { errno: ffmpeg::error::EAGAIN }) => Ok(false),
+        Err(error) => Err(error),
     }
 }
 
@@ -258,5 +267,19 @@ fn space(matrix: &Matrix) -> color::Space {
         color::Space::BT2020NCL
     } else {
         color::Space::SMPTE170M
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_encoder_that_fails_is_not_one_that_waits_or_has_ended() {
+        let waits = ffmpeg::Error::Other { errno: ffmpeg::error::EAGAIN };
+        assert_eq!([Ok(()), Err(waits), Err(ffmpeg::Error::Eof)].map(brought), [Ok(true), Ok(false), Ok(false)]);
+        for error in [ffmpeg::Error::Other { errno: ffmpeg::error::ENOMEM }, ffmpeg::Error::External] {
+            assert_eq!(brought(Err(error)), Err(error));
+        }
     }
 }

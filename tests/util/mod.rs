@@ -166,3 +166,35 @@ pub fn small_set(subjects: u32, poses: &[Pose]) -> PhotoOptions {
         ..PhotoOptions::default()
     }
 }
+
+/// A pipeline that generates a log of touches for each session with its seed, of this length, fits a model of force to it and evaluates that.
+pub fn touch_pipeline(sessions: &[(&str, u64)], length: &str) -> String {
+    let logs: String = sessions
+        .iter()
+        .map(|(name, seed)| format!("    {{ name = \"{name}\", seed = {seed}, protocol = \"touch\", {length} }},\n"))
+        .collect();
+    format!(
+        r#"wanted = ["force", "how_good"]
+[phantom]
+log = [
+{logs}]
+[inputs.logs]
+files = "{{phantom}}/log/{{session}}/log.csv"
+[stage.force]
+job = "train"
+each = ["session"]
+data = "logs"
+target = "force"
+[stage.how_good]
+job = "evaluate"
+model = "force"
+data = "logs"
+"#
+    )
+}
+
+/// The same pipeline without its phantoms.
+pub fn without_phantom(pipeline: &str) -> String {
+    let at = |section| pipeline.find(section).expect("the section");
+    pipeline[..at("[phantom]")].to_owned() + &pipeline[at("[inputs")..]
+}

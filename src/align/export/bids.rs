@@ -13,6 +13,7 @@ use serde_json::json;
 use super::{ANGLE_DECIMALS, ExportError, TIME_DECIMALS, fixed, write};
 use crate::align::{Posture, Tie};
 use crate::files::Places;
+use crate::input;
 
 /// The names that BIDS files of a recording are made of, checked.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -73,6 +74,8 @@ pub fn bids(
     let times_s: Vec<f64> = posture.time_s.iter().map(|&t| tie.timebase.other_s(t)).collect();
     let channels = Channels::of(posture);
     let mut files = Vec::new();
+    // In a dataset that stands nothing may be written at its root.
+    places.look_after(root);
     let stands = |name: &str| std::fs::symlink_metadata(root.join(name)).is_ok();
     if !stands("dataset_description.json") {
         files.push((root.join("dataset_description.json"), pretty(&description())));
@@ -212,7 +215,7 @@ fn pretty(value: &serde_json::Value) -> String {
 fn participants(path: &Path, subject: &str) -> Result<Option<String>, ExportError> {
     let unfit = |what: String| ExportError::Unfit { path: path.to_owned(), what };
     let own = format!("sub-{subject}");
-    let standing = match std::fs::read_to_string(path) {
+    let standing = match input::read_text(path) {
         Ok(text) => text,
         Err(why) if why.kind() == std::io::ErrorKind::NotFound => {
             return Ok(Some(format!("participant_id\n{own}\n")));

@@ -117,7 +117,10 @@ fn a_bids_dataset_is_begun_and_continued() {
     assert_eq!(second[0], "participants.tsv");
     assert_eq!(second[3], "sub-02/ses-a/motion/sub-02_ses-a_task-bend_tracksys-camera_motion.tsv");
     assert_eq!(text("participants.tsv"), "participant_id\tage\nsub-01\t31\nsub-02\tn/a\n");
+    // What a killed run left at the root goes, though nothing is written there.
+    std::fs::write(root.join(".lunula-killed"), "half").unwrap();
     assert_eq!(write("01", None, &posture()).len(), 3, "written again: its own files only");
+    assert!(!root.join(".lunula-killed").exists());
     assert!(text("dataset_description.json").contains("thumb"));
 }
 
