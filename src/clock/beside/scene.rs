@@ -45,6 +45,8 @@ const NARROWEST_LONG: f64 = 0.3;
 const OLD_STYLE_DIGIT: f64 = 0.8;
 /// No character reaches further than this both above and below the digits: a screen's frame does, and would swallow a digit within.
 const BEYOND_BOTH: f64 = 0.1;
+/// And what stands around anything this high is a frame; the dot in a 0 is lower.
+const FRAMED: f64 = 0.3;
 /// A mark's parts are lower than this, in heights of a digit.
 const MARK: f64 = 0.45;
 /// Between the dots of a colon there is this share of its height.
@@ -116,8 +118,9 @@ impl<'a> Scene<'a> {
                 && below <= bottom + BELOW * height
                 && within >= 0.5 * tall(piece)
         };
-        let mut pieces = all_pieces(&strip, limit, levels.ink > levels.background);
-        pieces.retain(on_line);
+        let all = all_pieces(&strip, limit, levels.ink > levels.background);
+        let frames = |piece: &Piece| all.iter().any(|other| piece.holds(other) && tall(other) >= FRAMED * height);
+        let pieces = all.iter().filter(|piece| on_line(piece) && !frames(piece)).copied().collect();
         runs(pieces).into_iter().map(|run| Run { left: run.left + from, right: run.right + from, ..run }).collect()
     }
 
@@ -269,5 +272,33 @@ impl<'a> Scene<'a> {
             letters.reverse();
         }
         word(self.gray, &letters, self.cells.levels, |run| self.other(run))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::clock::format::ClockFormat;
+    use crate::clock::glyph::Levels;
+    use crate::clock::line::Row;
+
+    #[test]
+    fn old_style_figures_are_no_brackets_bars_or_letters() {
+        let run = |left, top, right, bottom| Run { left, top, right, bottom, area: 100 };
+        let row = Row { digits: vec![run(50, 30, 61, 49), run(70, 30, 81, 49)], top: 30, bottom: 49 };
+        let levels = Levels { background: 20.0, ink: 220.0 };
+        let cells = Cells::around(&[&row], &ClockFormat::parse("ss").unwrap(), levels).unwrap();
+        let gray = Gray { width: 130, height: 80, values: vec![20.0; 130 * 80] };
+        let scene = Scene::new(&gray, &cells);
+        // Beside figures that reach down: a low one and one that reaches up. Beside low ones: one that reaches down and one that reaches up.
+        for figure in [run(90, 30, 101, 42), run(90, 23, 101, 42), run(90, 30, 101, 57), run(90, 22, 101, 49)] {
+            assert!(scene.is_old_style(&figure) && !scene.is_aligned(&figure), "{figure:?}");
+        }
+        // A bracket, a bar, small letters without and with a descender, a degree sign.
+        let others =
+            [run(90, 26, 96, 55), run(90, 30, 94, 56), run(90, 36, 101, 49), run(90, 36, 101, 55), run(90, 28, 97, 35)];
+        for other in others {
+            assert!(!scene.is_old_style(&other), "{other:?}");
+        }
     }
 }
