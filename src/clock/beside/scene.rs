@@ -40,7 +40,7 @@ const TALLEST: f64 = 1.65;
 const OLD_STYLE: f64 = 0.55;
 const LOW_FIGURE: f64 = 0.55;
 /// Figures that reach up or down are no narrower than this share of their height: a bar or bracket is.
-const NARROWEST_LONG: f64 = 0.3;
+const NARROWEST_LONG: f64 = 0.4;
 /// What is not on the digits' lines is a digit where the network finds all digits together this probable.
 const OLD_STYLE_DIGIT: f64 = 0.8;
 /// No character reaches further than this both above and below the digits: a screen's frame does, and would swallow a digit within.
