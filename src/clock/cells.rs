@@ -42,7 +42,7 @@ const CLOSEST: f64 = 1.1;
 /// share of their height, for frames that are taller than digits and letters that reach further down.
 const BESIDE: f32 = 2.0;
 const BESIDE_HALF: f32 = 4.5;
-const ABOVE_BELOW: f32 = 0.45;
+const ABOVE_BELOW: f32 = 0.6;
 /// How far digits that move go beyond where they were seen, in widths of a digit.
 const MOVES: f32 = 1.5;
 

@@ -27,8 +27,17 @@ const FREE: f32 = 0.27;
 /// An M is no digit for the network: it finds anything else at least this probable.
 const NO_DIGIT: f64 = 0.5;
 
-/// What a word of these runs, from the left to the right, says; `other` is how probably the network finds no digit in a run.
-pub(super) fn half(gray: &Gray, word: &[Run], levels: Levels, other: impl Fn(&Run) -> f64) -> Option<Half> {
+/// A word that is AM or PM.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Word {
+    /// Which of them.
+    Half(Half),
+    /// One of them, for an M follows another letter.
+    Unclear,
+}
+
+/// What a word of these runs, from the left to the right, is, if it is AM or PM; `other` is how probably the network finds no digit in a run.
+pub(super) fn word(gray: &Gray, word: &[Run], levels: Levels, other: impl Fn(&Run) -> f64) -> Option<Word> {
     let tall = |run: &Run| run.bottom - run.top + 1;
     let wide = |run: &Run| run.right - run.left + 1;
     let most = word.iter().map(tall).max().filter(|&most| most >= LEAST_HEIGHT)?;
@@ -45,7 +54,8 @@ pub(super) fn half(gray: &Gray, word: &[Run], levels: Levels, other: impl Fn(&Ru
         && letter.covers([0.62, 1.0], [0.15, 0.85]) >= COVERED
         && wide(&second) as f64 >= NARROWEST_M * tall(&second) as f64
         && other(&second) >= NO_DIGIT;
-    is_m.then(|| Letter::new(gray, first, levels)?.half()).flatten()
+    let half = Letter::new(gray, first, levels)?.half();
+    is_m.then(|| half.map_or(Word::Unclear, Word::Half))
 }
 
 /// Two letters that touch.

@@ -58,7 +58,8 @@ pub(super) struct Piece {
 }
 
 impl Piece {
-    fn holds(&self, other: &Self) -> bool {
+    /// Whether another piece's box is within this one's.
+    pub(super) fn holds(&self, other: &Self) -> bool {
         self != other
             && self.left <= other.left
             && self.top <= other.top

@@ -43,7 +43,7 @@ pub(crate) use ambient::{Preceding, piles};
 pub(crate) use cell::led as led_state;
 pub use columns::Columns;
 pub use header::LogHeader;
-pub use reading::{LitRows, LogReading};
+pub use reading::{LitRows, LogReading, UnlitLoads};
 pub use stamps::TimeUnit;
 pub(crate) use status::{Statuses, Verdict};
 

@@ -1,12 +1,13 @@
 //! The road from a file to rows of the LED's own light, for every job that works on logs.
 //!
 //! In: a file, and what the user says about it. Out: whether it is a log ([`LogReading::is_log`]) or a table of rows that are ready to be used
-//! (as `lunula align` and `lunula simulate` write them); of a log its lit rows, faults flagged ([`LogReading::lit_rows`]).
+//! (as `lunula align` and `lunula simulate` write them); of a log its lit rows, faults flagged ([`LogReading::lit_rows`]), and the loads of its
+//! unlit ones.
 
 use std::path::Path;
 
 use super::columns::is_led;
-use super::{AmbientOptions, Columns, Log, LogError, LogHeader, Samples, TimeUnit, samples};
+use super::{AmbientOptions, Channel, Columns, Log, LogError, LogHeader, Samples, TimeUnit, samples};
 use crate::table::{TableError, column_names};
 
 /// What the user says about a log; the default says nothing.
@@ -23,8 +24,29 @@ pub struct LogReading {
 pub struct LitRows {
     /// The rows, less the ambient light, and what is worth saying on that.
     pub samples: Samples,
+    /// The loads between the lit rows, before the first and after the last.
+    pub unlit: UnlitLoads,
     /// What is worth saying on the file.
     pub notes: Vec<String>,
+}
+
+/// The loads of a log's unlit rows: forces and pressures do not depend on the LED.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct UnlitLoads {
+    /// The log's time, seconds, ascending.
+    pub time_s: Vec<f64>,
+    /// The same channels as [`Samples::forces`]; NaN where missing.
+    pub forces: Vec<Channel>,
+}
+
+impl UnlitLoads {
+    fn of(log: &Log) -> Self {
+        let Some(led) = &log.led else { return Self::default() };
+        let unlit =
+            |values: &[f64]| values.iter().zip(led).filter(|(_, lit)| !**lit).map(|(value, _)| *value).collect();
+        let channel = |channel: &Channel| Channel { name: channel.name.clone(), values: unlit(&channel.values) };
+        Self { time_s: unlit(&log.time_s), forces: log.forces.iter().map(channel).collect() }
+    }
 }
 
 impl LogReading {
@@ -78,6 +100,6 @@ impl LogReading {
     pub fn lit_rows(&self, path: &Path) -> Result<LitRows, LogError> {
         let log = Log::read(path, &self.columns)?;
         let samples = samples(&log, &self.ambient)?;
-        Ok(LitRows { notes: log.notes, samples })
+        Ok(LitRows { unlit: UnlitLoads::of(&log), notes: log.notes, samples })
     }
 }

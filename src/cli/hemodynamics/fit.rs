@@ -31,8 +31,8 @@ its first row's load (--unloaded-before: at rest); without time_s it holds equil
 lunula simulate --with-loads and --static write such tables; steps jump at their rows: read them with --between held \
 --unloaded-before.
 
-Of a log whose column led says when the LED was on, each lit row is taken, less the unlit light at its time; rows in which \
-the sensor had a fault (saturated, or without ambient light; in a table of lunula align: sensor_status) have no voltage.
+Of a log whose column led says when the LED was on, each lit row is taken, less the unlit light at its time, and the loads of all \
+rows; rows in which the sensor had a fault (saturated, or without ambient light; in a table of lunula align: sensor_status) have no voltage.
 
 Names: k_C stands for k_C1, k_C2, .. that move together, as in the thesis; k_C1 for one of them; whole names as k_C1_N_per_m will do.";
 

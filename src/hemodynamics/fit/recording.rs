@@ -6,7 +6,7 @@ use lunula_hemodynamics::{Course, Load, LoadFault, Recording, Trace};
 
 use crate::hemodynamics::HemodynamicsError;
 use crate::hemodynamics::curve::Pressed;
-use crate::hemodynamics::given::{BLOOD, Columns, PRESSED, Rows, TIME, listed};
+use crate::hemodynamics::given::{BLOOD, Columns, Knots, PRESSED, Rows, TIME, listed};
 use crate::log::LogReading;
 
 /// A measured force instead of pressures: the finger's force on the surface, newtons, negative where it presses.
@@ -18,6 +18,13 @@ pub struct ForceColumn {
     pub area_m2: f64,
     /// Where it presses.
     pub pressed: Pressed,
+}
+
+impl ForceColumn {
+    /// `[P_F1, P_F2]` under a force, Pa.
+    fn on(&self, force_n: f64) -> [f64; 2] {
+        self.pressed.of(-force_n / self.area_m2)
+    }
 }
 
 /// A photodiode's column, and the capillary unit below it, from 0 at the proximal end.
@@ -75,7 +82,7 @@ pub(super) struct ReadRecording {
     pub(super) recording: Recording,
     /// The photodiodes' names, as the traces of the recording.
     pub(super) photodiodes: Vec<String>,
-    /// Samples' times, s; none of a static one.
+    /// Samples' times, s, of a log the first row's among them; none of a static one.
     pub(super) times_s: Option<Vec<f64>>,
     /// `[P_F1, P_F2]` of each sample, Pa.
     pub(super) pressed_pa: Vec<[f64; 2]>,
@@ -112,7 +119,7 @@ pub(super) fn read(path: &Path, columns: &RecordingColumns, units: usize) -> Res
             )));
         }
     }
-    let pressed_pa = pressed(&read, columns.force.as_ref());
+    let mut pressed_pa = pressed(&read, columns.force.as_ref());
     let photodiodes = photodiodes(names, columns, units).map_err(refused)?;
     let mut traces = Vec::new();
     let (mut missing, mut faults) = (0, 0);
@@ -122,21 +129,32 @@ pub(super) fn read(path: &Path, columns: &RecordingColumns, units: usize) -> Res
         missing += voltages.values_v.iter().filter(|value| value.is_nan()).count() - voltages.faults;
         traces.push(Trace::new(one.unit, voltages.values_v));
     }
-    let [proximal, distal] = [0, 1].map(|k| pressed_pa.iter().map(|both| both[k]).collect::<Vec<f64>>());
-    let times_s = read.get(TIME).map(<[f64]>::to_vec);
-    let course = match &times_s {
-        None => Course::Static { proximal_pa: proximal, distal_pa: distal },
+    let mut times_s = read.get(TIME).map(<[f64]>::to_vec);
+    let course = match &mut times_s {
+        None => {
+            let [proximal_pa, distal_pa] = [0, 1].map(|k| pressed_pa.iter().map(|both| both[k]).collect());
+            Course::Static { proximal_pa, distal_pa }
+        }
         Some(times_s) => {
+            let [proximal, distal] = pressed_knots(&rows, &read, columns.force.as_ref());
+            let earliest_s = proximal.times_s[0].min(distal.times_s[0]);
+            if earliest_s < times_s[0] {
+                // The response begins at the log's first row; unlit, it has no voltage.
+                times_s.insert(0, earliest_s);
+                pressed_pa.insert(0, [proximal.values[0], distal.values[0]]);
+                traces.iter_mut().for_each(|trace| trace.voltages_v.insert(0, f64::NAN));
+            }
             // A log's clock may count from 1970, which leaves a step of a solver few digits: its first row is 0 here.
             let origin_s = if rows.is_log() { times_s[0] } else { 0.0 };
-            let times_s: Vec<f64> = times_s.iter().map(|time_s| time_s - origin_s).collect();
-            let load = |values: &[f64], before: Option<f64>| {
-                load(&times_s, values, columns.between, before).map_err(|why| refused(why.to_string()))
+            let load = |knots: &Knots, before: Option<f64>| {
+                let times_s: Vec<f64> = knots.times_s.iter().map(|time_s| time_s - origin_s).collect();
+                load(&times_s, &knots.values, columns.between, before).map_err(|why| refused(why.to_string()))
             };
-            let blood = |name: &str| read.get(name).map(|values| load(values, None)).transpose();
+            let blood = |name: &str| read.get(name).map(|_| load(&rows.knots(name, &read), None)).transpose();
             let before = columns.unloaded_before.then_some(0.0);
             let (proximal, distal) = (load(&proximal, before)?, load(&distal, before)?);
             let (upstream, downstream) = (blood(BLOOD[0])?, blood(BLOOD[1])?);
+            let times_s = times_s.iter().map(|time_s| time_s - origin_s).collect();
             Course::Transient { times_s, proximal, distal, upstream, downstream }
         }
     };
@@ -180,9 +198,17 @@ fn load(times_s: &[f64], values: &[f64], between: Between, before: Option<f64>) 
 fn pressed(read: &Columns, force: Option<&ForceColumn>) -> Vec<[f64; 2]> {
     let column = |name: &str| read.get(name).unwrap_or_default();
     match force {
-        Some(force) => column(&force.name).iter().map(|force_n| force.pressed.of(-force_n / force.area_m2)).collect(),
+        Some(force) => column(&force.name).iter().map(|force_n| force.on(*force_n)).collect(),
         None => column(PRESSED[0]).iter().zip(column(PRESSED[1])).map(|(first, second)| [*first, *second]).collect(),
     }
+}
+
+/// `P_F1` and `P_F2` over time, Pa, at all rows at which they are known.
+fn pressed_knots(rows: &Rows, read: &Columns, force: Option<&ForceColumn>) -> [Knots; 2] {
+    let Some(force) = force else { return PRESSED.map(|name| rows.knots(name, read)) };
+    let Knots { times_s, values } = rows.knots(&force.name, read);
+    let pressed_pa: Vec<[f64; 2]> = values.iter().map(|force_n| force.on(*force_n)).collect();
+    [0, 1].map(|k| Knots { times_s: times_s.clone(), values: pressed_pa.iter().map(|both| both[k]).collect() })
 }
 
 /// The photodiodes to be fitted.

@@ -33,7 +33,7 @@ impl Columns {
     }
 }
 
-/// A table, or the lit rows of a log.
+/// A table, or the lit rows of a log and the loads of its unlit ones.
 #[derive(Debug)]
 pub(in crate::hemodynamics) struct Rows {
     path: PathBuf,
@@ -45,6 +45,15 @@ pub(in crate::hemodynamics) struct Rows {
 enum Source {
     Table(Table),
     Log(LitRows),
+}
+
+/// A load at growing times.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(in crate::hemodynamics) struct Knots {
+    /// Seconds.
+    pub(in crate::hemodynamics) times_s: Vec<f64>,
+    /// The column's values.
+    pub(in crate::hemodynamics) values: Vec<f64>,
 }
 
 /// A photodiode's voltages, a row each.
@@ -151,6 +160,23 @@ impl Rows {
             told.push(format!("and {more} more"));
         }
         Err(HemodynamicsError::Rows(told))
+    }
+
+    /// The times and values of one of the loads `read`, at all rows at which it is known: of a log the unlit rows among them, for a load may turn a
+    /// corner there. Of rows of one time the lit one counts, otherwise the first.
+    pub(in crate::hemodynamics) fn knots(&self, name: &str, read: &Columns) -> Knots {
+        let own = |name: &str| read.get(name).unwrap_or_default();
+        let mut all: Vec<(f64, f64)> = own(TIME).iter().copied().zip(own(name).iter().copied()).collect();
+        if let Source::Log(lit) = &self.from {
+            let unlit = lit.unlit.forces.iter().filter(|channel| channel.name == name);
+            let unlit = unlit.flat_map(|channel| lit.unlit.time_s.iter().copied().zip(channel.values.iter().copied()));
+            all.extend(unlit.filter(|(_, value)| !value.is_nan()));
+            // Stable: the lit row of a time stays first.
+            all.sort_by(|a, b| a.0.total_cmp(&b.0));
+            all.dedup_by(|later, first| later.0 == first.0);
+        }
+        let (times_s, values) = all.into_iter().unzip();
+        Knots { times_s, values }
     }
 
     /// A column, NaN where it is not a finite number, which is a fault.

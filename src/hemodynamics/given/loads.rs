@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use lunula_hemodynamics::{Load, LoadFault, Loads, Parameters};
 
-use super::columns::{BLOOD, Columns, PRESSED, Rows, TIME};
+use super::columns::{BLOOD, Columns, Knots, PRESSED, Rows, TIME};
 use crate::hemodynamics::HemodynamicsError;
 use crate::log::LogReading;
 
@@ -19,7 +19,8 @@ pub struct GivenLoads {
     pub upstream: Option<Load>,
     /// `P_L`; none: the parameters' constant.
     pub downstream: Option<Load>,
-    /// A table `time_s,pf1_Pa,pf2_Pa` instead of `P_F1` and `P_F2`, and `ph_Pa`, `pl_Pa` where it has them; of a log with a column `led` its lit rows.
+    /// A table `time_s,pf1_Pa,pf2_Pa` instead of `P_F1` and `P_F2`, and `ph_Pa`, `pl_Pa` where it has them; a log's unlit rows are taken
+    /// too.
     pub file: Option<PathBuf>,
 }
 
@@ -53,7 +54,7 @@ impl GivenLoads {
             let rows = Rows::read(path, &LogReading::default())?;
             let columns = rows.numbers(&[TIME, PRESSED[0], PRESSED[1]], &BLOOD, TIME)?;
             notes = rows.notes().iter().map(|note| format!("{}: {note}", path.display())).collect();
-            known_s = place_columns(&columns, &mut loads)?;
+            known_s = place_columns(&rows, &columns, &mut loads)?;
         }
         for (given, place) in [(&self.upstream, &mut loads.upstream), (&self.downstream, &mut loads.downstream)] {
             if let Some(load) = given {
@@ -68,14 +69,18 @@ impl GivenLoads {
 ///
 /// # Errors
 /// What the crate refuses of them, with the file.
-fn place_columns(columns: &Columns, loads: &mut Loads) -> Result<Option<[f64; 2]>, HemodynamicsError> {
+fn place_columns(rows: &Rows, columns: &Columns, loads: &mut Loads) -> Result<Option<[f64; 2]>, HemodynamicsError> {
     let refused = |why: LoadFault| HemodynamicsError::table(&columns.path, why);
-    let times_s = columns.get(TIME).unwrap_or_default();
+    let mut known_s: Option<[f64; 2]> = None;
     let places = [&mut loads.proximal, &mut loads.distal, &mut loads.upstream, &mut loads.downstream];
     for (name, place) in PRESSED.iter().chain(&BLOOD).zip(places) {
-        if let Some(values) = columns.get(name) {
-            *place = Load::table(times_s, values).map_err(refused)?;
+        if columns.get(name).is_some() {
+            let Knots { times_s, values } = rows.knots(name, columns);
+            *place = Load::table(&times_s, &values).map_err(refused)?;
+            if let (Some(&first), Some(&last)) = (times_s.first(), times_s.last()) {
+                known_s = Some(known_s.map_or([first, last], |[from, to]| [from.min(first), to.max(last)]));
+            }
         }
     }
-    Ok(times_s.first().zip(times_s.last()).map(|(first, last)| [*first, *last]))
+    Ok(known_s)
 }

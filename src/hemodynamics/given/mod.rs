@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use super::HemodynamicsError;
 use crate::files::is_same_file;
 
-pub(super) use columns::{BLOOD, Columns, PRESSED, Rows, TIME, listed};
+pub(super) use columns::{BLOOD, Columns, Knots, PRESSED, Rows, TIME, listed};
 pub(super) use loads::ReadLoads;
 pub(super) use start::{read_state, state_columns};
 

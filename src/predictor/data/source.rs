@@ -97,7 +97,7 @@ impl Source {
     }
 
     fn of_log(path: &Path, wanted: &Wanted) -> Result<Self, DataError> {
-        let LitRows { samples, notes } = wanted.log.lit_rows(path)?;
+        let LitRows { samples, notes, .. } = wanted.log.lit_rows(path)?;
         let placed = |notes: &[String]| notes.iter().map(|note| format!("{}: {note}", path.display())).collect();
         let (warnings, notes) = (placed(&notes), placed(&samples.notes));
         let channels = || samples.photodiodes.iter().chain(&samples.forces);
