@@ -1,5 +1,6 @@
-//! How long `lunula align` takes for an hour of log at 100 Hz (eight photodiodes, three forces, LED on and off) and as much
-//! video at 30 frames a second, as a ratio in one run with what a user of Python would write. Whole processes, in turn; medians.
+//! How long `lunula align` takes for an hour of log at 100 Hz (eight photodiodes, three forces, LED on and off) and as
+//! much video at 30 frames a second, as a ratio in one run with what a user of Python would write. Whole processes, in
+//! turn; medians.
 //!
 //! `cargo bench --bench align`. The peer needs `python3` with pandas; where it is missing that is said.
 

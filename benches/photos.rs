@@ -1,8 +1,9 @@
-//! How long `lunula photos` takes for 128 annotated photographs of 640 x 480, all results written, as a ratio in one run with
-//! only decoding the same files on the same cores, and with the same job in Python. Whole processes, in turn; medians.
+//! How long `lunula photos` takes for 128 annotated photographs of 640 x 480, all results written, as a ratio in one
+//! run with only decoding the same files on the same cores, and with the same job in Python. Whole processes, in turn;
+//! medians.
 //!
-//! `cargo bench --bench photos`. The peers need `python3` with opencv-python-headless or scikit-image; what is missing is
-//! said and left out.
+//! `cargo bench --bench photos`. The peers need `python3` with opencv-python-headless or scikit-image; what is missing
+//! is said and left out.
 
 mod util;
 

@@ -1,7 +1,8 @@
-//! How long `lunula posture` takes for a video of 1280 x 720 (H.264), as a ratio in one run with only decoding the same file
-//! with the same threads, and with what a user of OpenCV would write. Whole processes, in turn; medians.
+//! How long `lunula posture` takes for a video of 1280 x 720 (H.264), as a ratio in one run with only decoding the same
+//! file with the same threads, and with what a user of OpenCV would write. Whole processes, in turn; medians.
 //!
-//! `cargo bench --bench posture`. The peer needs `python3` with opencv-python-headless; where it is missing that is said.
+//! `cargo bench --bench posture`. The peer needs `python3` with opencv-python-headless; where it is missing that is
+//! said.
 
 mod util;
 

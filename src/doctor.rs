@@ -1,7 +1,8 @@
 //! What is installed, what is missing and how to get it.
 //!
-//! In: the folder that results are to go to, which need not exist. Out: a [`Check`] for each thing that a job may need, with what was
-//! found and what to do about it. Nothing on the machine is changed: what is written to try a folder is removed again.
+//! In: the folder that results are to go to, which need not exist. Out: a [`Check`] for each thing that a job may need,
+//! with what was found and what to do about it. Nothing on the machine is changed: what is written to try a folder is
+//! removed again.
 
 use std::fs::{self, File, TryLockError};
 use std::io::{self, Write as _};
@@ -140,8 +141,8 @@ fn threads() -> Check {
     }
 }
 
-/// Bytes that are free: of the machine, or of the group of processes (a container, a batch job) that this one was put into, whichever is
-/// less; none where the system doesn't say.
+/// Bytes that are free: of the machine, or of the group of processes (a container, a batch job) that this one was put
+/// into, whichever is less; none where the system doesn't say.
 #[must_use]
 pub fn free_memory() -> Option<u64> {
     let read = |path: &str| fs::read_to_string(path).unwrap_or_default();
@@ -167,7 +168,8 @@ fn gib(bytes: u64) -> String {
     format!("{:.1} GiB free", bytes as f64 / (1u64 << 30) as f64)
 }
 
-/// The folder for results, or the one that it would be made in: files written, renamed over others and locked; its room and its clock.
+/// The folder for results, or the one that it would be made in: files written, renamed over others and locked; its room
+/// and its clock.
 fn folder(out: &Path) -> Vec<Check> {
     let whole = std::path::absolute(out).unwrap_or_else(|_| out.to_owned());
     let at = whole.ancestors().find(|folder| folder.exists()).map_or_else(|| PathBuf::from("/"), Path::to_owned);

@@ -1,8 +1,9 @@
 //! Input files: what may be read at all, and how much of it.
 //!
-//! A regular file is read; a pipe (`<(zcat log.csv.gz)`, `/dev/stdin`) is read once, kept, and read again from there, for most inputs are looked
-//! at twice. Whoever waits for a pipe can be interrupted ([`interrupt`]). Devices, which never end (`/dev/zero`), sockets and folders are
-//! refused. What unpacks to far more than it is, or never ends, is refused before it fills the memory.
+//! A regular file is read; a pipe (`<(zcat log.csv.gz)`, `/dev/stdin`) is read once, kept, and read again from there,
+//! for most inputs are looked at twice. Whoever waits for a pipe can be interrupted ([`interrupt`]). Devices, which
+//! never end (`/dev/zero`), sockets and folders are refused. What unpacks to far more than it is, or never ends, is
+//! refused before it fills the memory.
 
 use std::collections::HashMap;
 use std::fs::{self, File};
@@ -18,7 +19,8 @@ use std::time::Duration;
 pub const PIPE_BYTES: u64 = 1 << 30;
 /// What a packed file may unpack to, however small it is.
 pub const UNPACKED_BYTES: u64 = 64 << 20;
-/// Beyond that, how many times its size (measured: logs of photodiodes as CSV pack to a third to a twentieth; deflate's own most is 1032).
+/// Beyond that, how many times its size (measured: logs of photodiodes as CSV pack to a third to a twentieth; deflate's
+/// own most is 1032).
 pub const UNPACKED_TIMES: u64 = 200;
 /// How often it is looked whether somebody interrupts a wait.
 const PATIENCE: Duration = Duration::from_millis(20);
@@ -150,7 +152,8 @@ pub(crate) fn unpack(bytes: Vec<u8>) -> Result<Vec<u8>, String> {
         .map_err(|why| format!("can't be unpacked ({why}); get it again, whole"))?;
     if unpacked.len() as u64 > most {
         return Err(format!(
-            "unpacks to more than {UNPACKED_TIMES} times its size and {} MiB, as no recording does; if it is one, unpack it first",
+            "unpacks to more than {UNPACKED_TIMES} times its size and {} MiB, as no recording does; if it is one, \
+             unpack it first",
             UNPACKED_BYTES >> 20
         ));
     }

@@ -1,11 +1,13 @@
 //! LabelMe files: the polygons, lines and points that a person drew on one picture.
 //!
-//! In and out: one JSON file per picture, as LabelMe 5 reads and writes it. Reading is tolerant (everything that a hand-written file
-//! leaves out has a default) and keeps what it does not know in `other`, so that a file read and written again loses nothing.
+//! In and out: one JSON file per picture, as LabelMe 5 reads and writes it. Reading is tolerant (everything that a
+//! hand-written file leaves out has a default) and keeps what it does not know in `other`, so that a file read and
+//! written again loses nothing.
 //!
-//! Conventions: LabelMe's points have their origin at the picture's corner, so the centre of the top-left pixel is at (0.5, 0.5);
-//! [`to_labelme`] and [`from_labelme`] go between them and this project's pixels (whose centres are whole numbers). Width and height
-//! are those of the picture that the person saw, in pixels; whether that was the upright one is for the caller to find out.
+//! Conventions: LabelMe's points have their origin at the picture's corner, so the centre of the top-left pixel is at
+//! (0.5, 0.5); [`to_labelme`] and [`from_labelme`] go between them and this project's pixels (whose centres are whole
+//! numbers). Width and height are those of the picture that the person saw, in pixels; whether that was the upright one
+//! is for the caller to find out.
 //!
 //! Source: LabelMe 5.5.0, `labelme/label_file.py`.
 

@@ -1,7 +1,8 @@
 //! A nail's outline on a photograph, and the axis that it is measured along.
 //!
-//! An [`Outline`] is one simple closed polygon in the pixels of the *upright* photograph: the centre of the top-left pixel is (0, 0), x to
-//! the right, y down. An [`Axis`] is a direction on that picture, from the eponychium (proximal) to the hyponychium (distal).
+//! An [`Outline`] is one simple closed polygon in the pixels of the *upright* photograph: the centre of the top-left
+//! pixel is (0, 0), x to the right, y down. An [`Axis`] is a direction on that picture, from the eponychium (proximal)
+//! to the hyponychium (distal).
 
 use geo::{Area, BooleanOps, Coord, Intersects, Line, LineString, Polygon};
 use thiserror::Error;
@@ -26,8 +27,8 @@ pub enum OutlineFault {
     NoArea,
 }
 
-/// Points of an outline beyond which it is refused: a nail drawn to the pixel in a photograph of 200 megapixels has a fifth
-/// (assumed).
+/// Points of an outline beyond which it is refused: a nail drawn to the pixel in a photograph of 200 megapixels has a
+/// fifth (assumed).
 const MOST_POINTS: usize = 200_000;
 
 /// The outline of one nail: a simple polygon in pixels of the upright photograph.
@@ -94,8 +95,8 @@ impl Outline {
     }
 }
 
-/// Whether two sides that are not neighbours touch, or two neighbours lie on one another. Runs of sides whose extents are
-/// apart are passed over together, so that the time grows about as the number of sides does.
+/// Whether two sides that are not neighbours touch, or two neighbours lie on one another. Runs of sides whose extents
+/// are apart are passed over together, so that the time grows about as the number of sides does.
 fn crosses_itself(polygon: &Polygon<f64>) -> bool {
     let sides: Vec<Line<f64>> = polygon.exterior().lines().collect();
     let count = sides.len();

@@ -1,8 +1,8 @@
 //! Arrays of NumPy, read without belief in what their headers say of their size.
 //!
-//! In: the bytes of an `.npy` file, or of an array in an archive of such (`photo::npz`). Out: the array, in whichever order and of whichever
-//! byte order it was written. A header may promise anything: no memory is taken for more elements than the bytes hold, and what is no header
-//! of a plain array is not parsed.
+//! In: the bytes of an `.npy` file, or of an array in an archive of such (`photo::npz`). Out: the array, in whichever
+//! order and of whichever byte order it was written. A header may promise anything: no memory is taken for more
+//! elements than the bytes hold, and what is no header of a plain array is not parsed.
 
 use std::path::Path;
 

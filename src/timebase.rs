@@ -1,7 +1,7 @@
 //! One clock's time as a straight line in another's.
 //!
-//! `other = at_reference + (1 + drift) (own - reference)`. The line is held at the own time at which the errors of its height
-//! and of its slope do not depend on each other, so that the standard error at any time follows from the two.
+//! `other = at_reference + (1 + drift) (own - reference)`. The line is held at the own time at which the errors of its
+//! height and of its slope do not depend on each other, so that the standard error at any time follows from the two.
 
 /// A clock's time as a straight line in another's, with standard errors.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
@@ -37,8 +37,8 @@ impl Timebase {
         self.at_reference_sd_s.hypot(self.drift_sd * (own_s - self.reference_s))
     }
 
-    /// The same line with the errors that three own times and the standard errors there tell, `[time, error]` in seconds; the
-    /// slope's stays 0 where the times coincide or the error is the same at all of them.
+    /// The same line with the errors that three own times and the standard errors there tell, `[time, error]` in
+    /// seconds; the slope's stays 0 where the times coincide or the error is the same at all of them.
     #[must_use]
     pub fn with_errors(self, [first, middle, last]: [[f64; 2]; 3]) -> Self {
         let variance = |point: [f64; 2]| point[1] * point[1];

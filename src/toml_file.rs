@@ -1,6 +1,7 @@
 //! TOML that people write: every key and value with its place, all faults of a file told together.
 //!
-//! In: a file's text; out: its tables as [`Entry`]s in the file's order, and [`Findings`], the faults with line and column, both from 1.
+//! In: a file's text; out: its tables as [`Entry`]s in the file's order, and [`Findings`], the faults with line and
+//! column, both from 1.
 
 use std::ops::Range;
 
@@ -89,8 +90,8 @@ impl<'a> Findings<'a> {
         }
     }
 
-    /// Parses the text. A file with one wrong line is no TOML: nothing more can be said of it then, but a doubled key is told
-    /// along with all else.
+    /// Parses the text. A file with one wrong line is no TOML: nothing more can be said of it then, but a doubled key
+    /// is told along with all else.
     pub(crate) fn parse(&mut self) -> Option<Spanned<DeTable<'a>>> {
         let (table, errors) = DeTable::parse_recoverable(self.text);
         let mut sound = true;

@@ -30,8 +30,8 @@ pub trait Words: Copy + PartialEq + Send + Sync + 'static {
     }
 }
 
-/// A name from outside as a terminal may show it: control characters, which could move its cursor or hide what it shows, are
-/// escaped as in Rust (`\\u{1b}`). Line breaks are too; [`shown_lines`] keeps them.
+/// A name from outside as a terminal may show it: control characters, which could move its cursor or hide what it
+/// shows, are escaped as in Rust (`\\u{1b}`). Line breaks are too; [`shown_lines`] keeps them.
 #[must_use]
 pub fn shown(name: &str) -> Cow<'_, str> {
     escaped(name, |c| c.is_control())

@@ -1,5 +1,5 @@
-//! `lunula align` from end to end on generated recordings: from nothing to a labelled set whose certificate agrees with the
-//! truth.
+//! `lunula align` from end to end on generated recordings: from nothing to a labelled set whose certificate agrees with
+//! the truth.
 
 use std::collections::BTreeMap;
 

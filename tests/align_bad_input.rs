@@ -2,7 +2,8 @@
 
 use crate::util::{Answer, Dir};
 
-/// A table of angles with the contract's columns alone: 2 s at 30 frames a second, J2 = 10 t degrees, the clock 100 s ahead.
+/// A table of angles with the contract's columns alone: 2 s at 30 frames a second, J2 = 10 t degrees, the clock 100 s
+/// ahead.
 fn joints() -> String {
     let row = |k: usize| {
         let t = k as f64 / 30.0;

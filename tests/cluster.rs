@@ -79,7 +79,8 @@ fn by_hand_it_hands_both_to_slurm_or_says_how_it_is_called() {
     assert_eq!(calls.len(), 2, "{calls:?}");
     assert!(calls[0].contains("--array=1-3") && calls[0].ends_with("pipeline.toml out 3"), "{calls:?}");
     assert!(calls[1].contains("--dependency=afterany:41") && calls[1].ends_with("pipeline.toml out 3"), "{calls:?}");
-    // A node of one processor can run them, and whoever has more says so: no #SBATCH line, which nothing overrides, asks for any.
+    // A node of one processor can run them, and whoever has more says so: no #SBATCH line, which nothing overrides,
+    // asks for any.
     assert!(calls.iter().all(|call| call.contains("--cpus-per-task=1 ") && call.contains("--mem=4000M ")), "{calls:?}");
     let output =
         script(&dir, &["pipeline.toml", "out", "3"], &[("PATH", &path), ("LUNULA_CPUS", "2"), ("LUNULA_TIME", "10")]);

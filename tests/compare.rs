@@ -94,7 +94,8 @@ fn comparisons_are_what_train_and_prune_tell_of_the_same_recordings() {
     // All in one place: the same figure by two ways.
     assert_eq!(mean(&report, "105", "Fy_N", "both sets"), mean(&report, "109", "Fy_N", "linear"));
     assert_eq!(mean(&report, "111", "Fy_N", "with bending"), mean(&report, "109", "Fy_N", "linear"));
-    // Bending of the second half is no worse than 20 degrees for the linear model, whose photodiodes are flat beyond 30; measured 12.8 to 14.3 over seven people.
+    // Bending of the second half is no worse than 20 degrees for the linear model, whose photodiodes are flat beyond
+    // 30; measured 12.8 to 14.3 over seven people.
     assert!((5.0..20.0).contains(&mean(&report, "112", "validation", "linear")));
     let files = dir.bytes_of("out");
     let pictures = files.keys().filter(|name| name.ends_with(".png")).count();

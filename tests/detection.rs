@@ -11,7 +11,8 @@ use lunula::photo::outline::{DetectOptions, Detected, NothingFound, Outline, det
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-/// A close-up: subject, pose, light, background, grey or colour all drawn from `k`; none of these scenes trained the detector.
+/// A close-up: subject, pose, light, background, grey or colour all drawn from `k`; none of these scenes trained the
+/// detector.
 fn close_up(k: u32, size: [u32; 2]) -> (NailScene, RenderOptions) {
     const SEED: u64 = 77_001;
     let mut rng = ChaCha8Rng::seed_from_u64(SEED + u64::from(k));
@@ -83,7 +84,8 @@ fn close_ups_of_every_tone_and_light() {
     }
     let count = ious.len();
     eprintln!(
-        "{count} of {SCENES} found; IoU median {:.3}, lowest {:.3}; length off by {:.4} in median, {:.4} at 90 %; width {:.4}, \
+        "{count} of {SCENES} found; IoU median {:.3}, lowest {:.3}; length off by {:.4} in median, {:.4} at 90 %; \
+         width {:.4}, \
          {:.4}; axis {:.2}, {:.2} degrees, worst {:.1}",
         quantile(&mut ious, 0.5),
         quantile(&mut ious, 0.0),

@@ -1,4 +1,5 @@
-//! Full disks, killed runs, inputs that are no files: what is there before is there after, and the exit status says what was done.
+//! Full disks, killed runs, inputs that are no files: what is there before is there after, and the exit status says
+//! what was done.
 
 use std::collections::BTreeMap;
 use std::os::unix::fs::symlink;
@@ -73,7 +74,11 @@ fn on_a_full_disk_results_are_whole_or_as_they_were() {
 #[test]
 fn a_report_that_can_t_be_written_is_not_nothing_done() {
     let dir = Dir::new();
-    dir.write("p.toml", "[inputs.photos]\nfiles = \"set/{pose}/{subject}.png\"\n\n[stage.rest]\njob = \"normalize\"\nphoto = \"photos\"\n");
+    dir.write(
+        "p.toml",
+        "[inputs.photos]\nfiles = \"set/{pose}/{subject}.png\"\n\n[stage.rest]\njob = \
+                         \"normalize\"\nphoto = \"photos\"\n",
+    );
     dir.nail("set/rest/S1");
     dir.write("out/report.html/mine", "");
     let run = ["run", "p.toml", "--out", "out"];

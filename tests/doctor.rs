@@ -67,7 +67,8 @@ fn every_shell_completes_every_command() {
     }
     let script = dir.lunula(&["completions", "bash"]).expect(0).stdout;
     dir.write("lunula.bash", script);
-    let ask = "source lunula.bash && COMP_WORDS=(lunula pos) COMP_CWORD=1 && _lunula lunula pos lunula && echo ${COMPREPLY[@]}";
+    let ask = "source lunula.bash && COMP_WORDS=(lunula pos) COMP_CWORD=1 && _lunula lunula pos lunula && echo \
+               ${COMPREPLY[@]}";
     let output = Command::new("bash").args(["-c", ask]).current_dir(dir.path(".")).output().unwrap();
     assert_eq!(
         String::from_utf8_lossy(&output.stdout).trim(),

@@ -1,4 +1,5 @@
-//! `lunula fit`: parameters that made a recording are found again from it, with what it does not tell said; bad requests are refused whole.
+//! `lunula fit`: parameters that made a recording are found again from it, with what it does not tell said; bad
+//! requests are refused whole.
 
 use std::collections::BTreeMap;
 
@@ -35,7 +36,8 @@ fn what_made_a_recording_is_found_again() {
     const NEAR_V: f64 = 1e-8;
     let dir = Dir::new();
     dir.write("ramps.csv", "time_s,pf1_Pa,pf2_Pa\n0,0,0\n0.1,6000,0\n1.5,6000,5000\n2,6000,5000\n2.1,0,0\n");
-    let nail = "--set k_C1_N_per_m=7e4 --set k_C2_N_per_m=7e4 --set b_V_N_s_per_m=250 --set V0_1_V=0.5 --set V1_1_V=3 --set V1_2_V=2";
+    let nail = "--set k_C1_N_per_m=7e4 --set k_C2_N_per_m=7e4 --set b_V_N_s_per_m=250 --set V0_1_V=0.5 --set V1_1_V=3 \
+                --set V1_2_V=2";
     run(
         &dir,
         "simulate",
@@ -362,7 +364,8 @@ fn words_name_subjects_and_constant_photodiodes_and_every_wrong_name_once() {
     assert!(wrong.contains("--free k_Q,zz") && wrong.matches("k_C, k_V").count() == 1, "{wrong}");
 }
 
-/// A recorded response as a log with an LED that goes on and off: unlit rows hold the room's light alone. Rows of this remainder by two are lit.
+/// A recorded response as a log with an LED that goes on and off: unlit rows hold the room's light alone. Rows of this
+/// remainder by two are lit.
 fn modulated(dir: &Dir, header: &str, lit_from: usize) -> String {
     let mut log = header.to_owned() + "\n";
     for (k, row) in dir.table("r.csv").iter().enumerate() {

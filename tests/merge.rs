@@ -1,4 +1,5 @@
-//! `lunula run --shard` and `lunula merge` from end to end: parts brought together are the whole run, and what does not belong together is refused.
+//! `lunula run --shard` and `lunula merge` from end to end: parts brought together are the whole run, and what does not
+//! belong together is refused.
 
 use std::collections::BTreeMap;
 use std::fs;

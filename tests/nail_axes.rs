@@ -1,8 +1,8 @@
 //! The axes found on real photographs of hands, against directions read off by eye.
 //!
-//! `tests/data/real_nail_axes.csv` holds, for every nail of the CC0 photographs of `../shared/data/nail/vpapenko_cc0`, the
-//! centre of its mask region and the direction of its distal end, clockwise from up, as a person sees it (to about 5
-//! degrees where the nail faces the camera, 15 where it is seen from its side).
+//! `tests/data/real_nail_axes.csv` holds, for every nail of the CC0 photographs of `../shared/data/nail/vpapenko_cc0`,
+//! the centre of its mask region and the direction of its distal end, clockwise from up, as a person sees it (to about
+//! 5 degrees where the nail faces the camera, 15 where it is seen from its side).
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -166,7 +166,8 @@ fn each_nail_on_its_own() {
     assert_eq!(tally.beyond(60.0), 0);
 }
 
-/// The same photograph seen otherwise: `photo` changed, each point of an outline moved by `point`, angles by `angle_deg`.
+/// The same photograph seen otherwise: `photo` changed, each point of an outline moved by `point`, angles by
+/// `angle_deg`.
 fn changed(
     hand: &Hand,
     photo: DynamicImage,
@@ -340,7 +341,8 @@ fn a_drawn_axis_is_doubted_where_it_is_wrong_and_only_there() {
         (points, Axis::from_clockwise_rad(-axis.clockwise_rad()))
     });
     eprintln!(
-        "doubted of 127 nails (on 26 photographs): right {right}, reversed {reversed}, turned {turned:?}, mirrored {mirrored:?}"
+        "doubted of 127 nails (on 26 photographs): right {right}, reversed {reversed}, turned {turned:?}, mirrored \
+         {mirrored:?}"
     );
     // Measured: 0; 100; and of turned and mirrored photographs all, save one nail whose place is off the picture.
     assert_eq!(right, 0);

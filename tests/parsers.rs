@@ -1,4 +1,5 @@
-//! Every parser on the inputs of `tests/corpus/<parser>/`: small valid files, and cases that fuzzing (`make fuzz`) found.
+//! Every parser on the inputs of `tests/corpus/<parser>/`: small valid files, and cases that fuzzing (`make fuzz`)
+//! found.
 
 #[path = "../crates/fuzz/src/targets.rs"]
 mod targets;
@@ -12,8 +13,8 @@ use targets::{Desk, TARGETS};
 
 /// Set in the process that reads the inputs; with `write`, one that writes the seeds which are no text anew.
 const WITHIN: &str = "LUNULA_CORPUS";
-/// Address space for one process that reads all of the corpus, KiB. It takes 0.6 GiB with all libraries; a case that takes memory by
-/// what its header says takes gigabytes.
+/// Address space for one process that reads all of the corpus, KiB. It takes 0.6 GiB with all libraries; a case that
+/// takes memory by what its header says takes gigabytes.
 const MEMORY_KIB: u64 = 2 << 20;
 /// All of them take two seconds; a case that hangs never ends.
 const PATIENCE: Duration = Duration::from_secs(120);

@@ -52,10 +52,12 @@ fn a_reading_is_the_leds_light_and_the_ambient_light_and_noise() {
 
 #[test]
 fn the_log_belongs_to_the_video_of_its_seed_and_both_stand_together() {
-    // A straight line between frames errs by an eighth of the interval's square times the bending's acceleration; measured 0.0026 degrees.
+    // A straight line between frames errs by an eighth of the interval's square times the bending's acceleration;
+    // measured 0.0026 degrees.
     const NEAR_DEG: f64 = 0.005;
     let dir = Dir::new();
-    let video = "phantom video --out s --seed 4 --trajectory random --bend-hz 0.12 --seconds 2 --fps 60 --size 160x96 --x264 ultrafast \
+    let video = "phantom video --out s --seed 4 --trajectory random --bend-hz 0.12 --seconds 2 --fps 60 --size 160x96 \
+                 --x264 ultrafast \
                  --clock mm:ss.t --clock-offset 754 --clock-drift-ppm 80";
     let video: Vec<&str> = video.split_whitespace().collect();
     let log = "--out s --seed 4 --trajectory random --bend-hz 0.12 --seconds 2 --clock-offset 754 --clock-drift-ppm 80";

@@ -112,7 +112,8 @@ fn truth_of_a_large_nail_is_the_mean_over_the_pixel() {
 
 #[test]
 fn outline_is_where_the_colour_changes() {
-    /// Pixels; measured 0.20 at most: the distal band and the shade on either side of the border shift the middle of the step.
+    /// Pixels; measured 0.20 at most: the distal band and the shade on either side of the border shift the middle of
+    /// the step.
     const TOLERANCE: f64 = 0.25;
     let mut compared = 0;
     for index in 0..8 {

@@ -120,7 +120,8 @@ fn every_job_reads_a_study_as_it_stands() {
 /// What the video shows is what the log's finger did, by the clock in the picture.
 fn posture_and_log_agree(dir: &Dir, kind: &str, [video, markers]: [&str; 2]) {
     let of = |name: &str| format!("study/s01/{kind}/{name}");
-    // The same movement twice: at the video's frames and, 30 a second, in the log's truth. Frames' times are whole ticks.
+    // The same movement twice: at the video's frames and, 30 a second, in the log's truth. Frames' times are whole
+    // ticks.
     let (shown, done) = (dir.table(&of("truth/joints.csv")), dir.table(&of("truth/angles.csv")));
     assert_eq!((shown.len(), done.len()), (120, 120));
     for (shown, done) in shown.iter().zip(&done) {

@@ -19,9 +19,9 @@ fn small() -> VideoOptions {
     VideoOptions { seconds: 0.4, preset: "veryfast", ..VideoOptions::sized(320, 180) }
 }
 
-/// How far the centroids of the markers in a frame lie from the truth: where the same scene with markers of other colours differs, nothing but
-/// the markers does, by their share of each pixel. Each marker is measured in that chroma plane where it differs most; `luma_px` tells the place of
-/// a sample in luma pixels.
+/// How far the centroids of the markers in a frame lie from the truth: where the same scene with markers of other
+/// colours differs, nothing but the markers does, by their share of each pixel. Each marker is measured in that chroma
+/// plane where it differs most; `luma_px` tells the place of a sample in luma pixels.
 fn misses(options: &VideoOptions, frame: usize, luma_px: &dyn Fn(f64, f64) -> [f64; 2]) -> Vec<[f64; 2]> {
     let one = Scene::new(options.clone()).expect("a scene with chroma");
     let other =
@@ -73,7 +73,8 @@ fn worst(misses: &[[f64; 2]]) -> f64 {
 
 #[test]
 fn a_markers_centroid_is_where_the_truth_says() {
-    // Measured: 0.0020 and 0.0031, which is the rounding to 10 bits where two colours differ little; drawn without, 0.0007.
+    // Measured: 0.0020 and 0.0031, which is the rounding to 10 bits where two colours differ little; drawn without,
+    // 0.0007.
     for (options, near_px) in [(exact(1280, 720), 0.003), (exact(480, 270), 0.005)] {
         let all: Vec<_> = [0, 77].iter().flat_map(|&f| misses(&options, f, &|x, y| [x, y])).collect();
         let miss = worst(&all);
@@ -83,7 +84,8 @@ fn a_markers_centroid_is_where_the_truth_says() {
 
 #[test]
 fn motion_blur_is_about_mid_exposure() {
-    // The mean of an accelerated path differs from its middle: by 0.02 px at 1 Hz, 60 frames a second, half of the interval.
+    // The mean of an accelerated path differs from its middle: by 0.02 px at 1 Hz, 60 frames a second, half of the
+    // interval.
     const NEAR_PX: f64 = 0.025;
     let fast = VideoOptions::new(Preset::Fast);
     let options = VideoOptions { fps: fast.fps, trajectory: fast.trajectory, blur: fast.blur, ..exact(1280, 720) };

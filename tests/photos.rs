@@ -435,7 +435,8 @@ fn real_hands_with_masks_are_normalized() {
         .says("none of its 3 nails could be used");
     let rows = dir.table("out/nails.csv");
     let used = rows.iter().filter(|r| r["used"] == "true").count();
-    // 127 nails and a stray square of the masks. Measured: 122 used, each with its distal end up (`tests/nail_axes.rs`).
+    // 127 nails and a stray square of the masks. Measured: 122 used, each with its distal end up
+    // (`tests/nail_axes.rs`).
     assert_eq!(rows.len(), 128);
     assert!(used >= 120, "{used}");
     assert!(rows.iter().all(|r| r["used"] == "true" || !r["reason"].is_empty()));

@@ -1,5 +1,5 @@
-//! `lunula photos` on what goes wrong on a Monday morning: each case names file and place, says what to do, and costs no more
-//! than itself.
+//! `lunula photos` on what goes wrong on a Monday morning: each case names file and place, says what to do, and costs
+//! no more than itself.
 
 use std::process::Command;
 

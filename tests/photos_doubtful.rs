@@ -1,5 +1,5 @@
-//! `lunula photos` on what looks right and is not: axes and outlines that the picture contradicts, masks that are pictures, bits
-//! that are missing; and on names and sizes that would cost more than their own photograph.
+//! `lunula photos` on what looks right and is not: axes and outlines that the picture contradicts, masks that are
+//! pictures, bits that are missing; and on names and sizes that would cost more than their own photograph.
 
 use image::{DynamicImage, GrayImage, ImageBuffer, Luma};
 use lunula::labelme::LabelMe;

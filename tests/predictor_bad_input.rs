@@ -1,4 +1,5 @@
-//! What the predictor commands say of tables and model files that are not as they should be: which file, where in it, what to do.
+//! What the predictor commands say of tables and model files that are not as they should be: which file, where in it,
+//! what to do.
 
 use crate::util::Dir;
 use crate::util::sensor::{Recording, near, numbers, slope};

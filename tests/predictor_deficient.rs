@@ -1,4 +1,5 @@
-//! `lunula train` on rows that do not determine the model: which photodiodes are at fault is told, and what was asked for is done.
+//! `lunula train` on rows that do not determine the model: which photodiodes are at fault is told, and what was asked
+//! for is done.
 
 use crate::util::Dir;
 use crate::util::sensor::{Recording, TARGETS, near, numbers, slope, volt};

@@ -7,7 +7,8 @@ use serde_json::Value;
 /// The model is exact to rounding (measured: 1e-16).
 const EXACT: f64 = 1e-14;
 
-/// A model of force trained on `train.csv` (exact), validated on `noisy.csv`: 100 rows with noise of 100 different sizes on Fz.
+/// A model of force trained on `train.csv` (exact), validated on `noisy.csv`: 100 rows with noise of 100 different
+/// sizes on Fz.
 fn trained() -> Dir {
     let dir = Dir::new();
     dir.recording("train.csv", &Recording::of(0..200));

@@ -3,7 +3,8 @@
 use crate::util::Dir;
 use crate::util::sensor::{Recording, near, numbers, offset, slope};
 
-/// The sensor's tables hold exact numbers; the fit is centred and refined (measured: exact, or 1e-32 for a coefficient of 0).
+/// The sensor's tables hold exact numbers; the fit is centred and refined (measured: exact, or 1e-32 for a coefficient
+/// of 0).
 const EXACT: f64 = 1e-15;
 /// F_0 is a sum of 8 products of volts (measured: 2e-15).
 const EXACT_OFFSET: f64 = 1e-13;
@@ -448,7 +449,8 @@ fn a_raw_log_of_the_phantom_is_trained_on_as_it_stands() {
     // Half of a log's rows are unlit.
     let lit = dir.table("1/log.csv").iter().filter(|row| row["led"] == "1").count();
     assert_eq!(report["data"][0]["rows"], lit);
-    // Another spiral of the same finger: most of the force is told, and not all (noise, and a sensor that is not linear).
+    // Another spiral of the same finger: most of the force is told, and not all (noise, and a sensor that is not
+    // linear).
     let r2 = report["validation"]["r2"]["Fz_N"].as_f64().expect("a number");
     assert!((0.7..0.9999).contains(&r2), "{r2}");
     dir.train("1/log.csv", "posture", "n.json", &[]).expect(2).says("run `lunula align` first");

@@ -1,4 +1,5 @@
-//! `lunula simulate` far from the thesis' figures: pulses, other optics, undamped and heavy walls, loads that close every vessel, long files.
+//! `lunula simulate` far from the thesis' figures: pulses, other optics, undamped and heavy walls, loads that close
+//! every vessel, long files.
 
 use std::collections::BTreeMap;
 
@@ -27,7 +28,8 @@ const WALLS: [&str; 3] = ["xC1_m", "xC2_m", "xV_m"];
 
 #[test]
 fn a_pulse_of_the_blood_goes_through_the_capillaries() {
-    // Six seconds are fifty time constants: what is left is within the solver's tolerance, 1e-8 of 1e-5 m; measured 1.8e-14.
+    // Six seconds are fifty time constants: what is left is within the solver's tolerance, 1e-8 of 1e-5 m; measured
+    // 1.8e-14.
     const PERIODIC_M: f64 = 1e-13;
     let dir = Dir::new();
     run(&dir, "--ph sine:10000+2000@1 --until 8 --with-loads --out p.csv --no-figures").expect(0);
@@ -107,7 +109,8 @@ fn walls_without_damping_or_of_any_mass_come_to_the_same_rest() {
 fn walls_that_touch_bear_any_load() {
     // Lumens over 1e-4 m at rest under these loads are known to nine digits after the point: measured 4.6e-10.
     const DIGITS: f64 = 5e-10;
-    // Two seconds after, a time constant of a tenth of a second leaves next to nothing: measured 2.3e-7 of a displacement.
+    // Two seconds after, a time constant of a tenth of a second leaves next to nothing: measured 2.3e-7 of a
+    // displacement.
     const LEFT: f64 = 1e-6;
     let dir = Dir::new();
     for (load, lumen) in [("2e4", 0.016_226_742), ("1e5", 0.009_149_301)] {

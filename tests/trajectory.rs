@@ -1,4 +1,5 @@
-//! `lunula trajectory`: the tables are the thesis' equations from rest on, what is told of them is true, bad requests are refused whole.
+//! `lunula trajectory`: the tables are the thesis' equations from rest on, what is told of them is true, bad requests
+//! are refused whole.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;

@@ -8,8 +8,8 @@ use std::time::Instant;
 /// A command with its name in the table.
 pub type Run<'a> = (&'a str, Vec<&'a str>);
 
-/// Times every command `rounds` times, in turn, after a round that warms the disk's cache; `before` is called before each.
-/// Prints the medians and the ratio of each to the first. Returns the ratio of the first to each.
+/// Times every command `rounds` times, in turn, after a round that warms the disk's cache; `before` is called before
+/// each. Prints the medians and the ratio of each to the first. Returns the ratio of the first to each.
 pub fn compare(runs: &[Run<'_>], rounds: usize, before: impl Fn()) -> Vec<f64> {
     let mut times = vec![Vec::new(); runs.len()];
     for round in 0..=rounds {

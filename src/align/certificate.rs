@@ -1,7 +1,7 @@
 //! The certificate of a labelled set: how the clocks were tied, how well, and what was left unlabelled.
 //!
-//! It stands beside the set (`training.sync.json`), and in a Parquet set's metadata too. It tells no time of day and no run
-//! time: the same input gives the same bytes.
+//! It stands beside the set (`training.sync.json`), and in a Parquet set's metadata too. It tells no time of day and no
+//! run time: the same input gives the same bytes.
 
 use serde::Serialize;
 

@@ -1,5 +1,5 @@
-//! The alignment job: a table of joint angles and a log in, a labelled set with its certificate out; the one entry that command
-//! line, pipelines and trade-offs call.
+//! The alignment job: a table of joint angles and a log in, a labelled set with its certificate out; the one entry that
+//! command line, pipelines and trade-offs call.
 
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -87,8 +87,10 @@ pub fn run(
 
 /// Ties the clocks as asked; the error is words for the user.
 fn tie(posture: &Posture, log: &Log, samples: &Samples, options: &AlignOptions) -> Result<Tie, String> {
-    const NO_CLOCK: &str = "has no clock_s, so nothing ties it to the log; read the clock in the picture (a [clock] in the marker \
-                            file), or name --sync offset=SECONDS (the log's time at the first frame) or --sync correlate";
+    const NO_CLOCK: &str = "has no clock_s, so nothing ties it to the log; read the clock in the picture (a [clock] \
+                            in the marker \
+                            file), or name --sync offset=SECONDS (the log's time at the first frame) or --sync \
+                            correlate";
     let sync = options.sync.or_else(|| posture.has_clock().then_some(Sync::Clock)).ok_or(NO_CLOCK)?;
     match sync {
         Sync::Offset { offset_s, sd_s } => tie::by_offset(offset_s, sd_s),
@@ -106,7 +108,8 @@ fn nothing_labelled(posture: &Posture, samples: &Samples, tie: &Tie) -> String {
     let video = frames.map(|t| tie.timebase.other_s(t));
     if rows[1] < video[0] || rows[0] > video[1] {
         format!(
-            "does not overlap with the video: its rows are at {:.3} to {:.3} s, and the video is at {:.3} to {:.3} s of the \
+            "does not overlap with the video: its rows are at {:.3} to {:.3} s, and the video is at {:.3} to {:.3} s \
+             of the \
              log's clock; check that they belong together, and the offset",
             rows[0], rows[1], video[0], video[1]
         )

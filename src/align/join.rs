@@ -1,9 +1,10 @@
 //! Labelled sets of several videos to one table, in the order of time.
 //!
-//! In: sets as [`run`](super::run) writes them. Out: one table of the same columns; a column that only some have is empty in the others' rows.
-//! Sets of one subject and session are on one clock, the log's. Where the log went on between two videos, both sets have its rows: the one that
-//! was filmed then stands, once. Two whose filmed times overlap are refused, as one moment would be labelled twice. Other sessions have clocks of
-//! their own; they follow in the order of their names.
+//! In: sets as [`run`](super::run) writes them. Out: one table of the same columns; a column that only some have is
+//! empty in the others' rows. Sets of one subject and session are on one clock, the log's. Where the log went on
+//! between two videos, both sets have its rows: the one that was filmed then stands, once. Two whose filmed times
+//! overlap are refused, as one moment would be labelled twice. Other sessions have clocks of their own; they follow in
+//! the order of their names.
 
 use std::path::{Path, PathBuf};
 
@@ -20,7 +21,8 @@ pub enum JoinError {
     Table(#[from] TableError),
     /// Two sets label the same time.
     #[error(
-        "{}: what was filmed from {from_s} s on overlaps with what was filmed in {} up to {to_s} s, of one subject and session; leave one \
+        "{}: what was filmed from {from_s} s on overlaps with what was filmed in {} up to {to_s} s, of one subject \
+         and session; leave one \
          out, or give the recordings sessions of their own",
         later.display(),
         earlier.display()
@@ -100,7 +102,8 @@ pub fn join(sets: &[PathBuf], at: &Path, path: &Path) -> Result<usize, JoinError
     Ok(picks.len())
 }
 
-/// The rows of a session's sets, each as its set's position and its own, in the order of time: of a time in several sets the row that was filmed.
+/// The rows of a session's sets, each as its set's position and its own, in the order of time: of a time in several
+/// sets the row that was filmed.
 fn one_session(before: &mut usize, sets: &[Set]) -> Option<Vec<(usize, usize)>> {
     let first = *before;
     *before += sets.len();

@@ -66,7 +66,8 @@ pub struct AlignOptions {
     pub columns: Columns,
     /// How the ambient light is taken away and what counts as saturated.
     pub ambient: AmbientOptions,
-    /// The longest time between two frames that were seen over which labels are interpolated, seconds; none: two frames.
+    /// The longest time between two frames that were seen over which labels are interpolated, seconds; none: two
+    /// frames.
     pub max_gap_s: Option<f64>,
     /// The log's time when the clock in the picture shows zero, seconds; none: told from the overlap.
     pub clock_zero_s: Option<f64>,

@@ -1,7 +1,8 @@
 //! The table of joint angles that `lunula posture` writes, as far as labels need it.
 //!
-//! In: CSV or Parquet with `time_s` and `<joint>_deg`; `<joint>_sd_deg`, `clock_s` and what tells of its error where they are there. Out: a
-//! [`Posture`]. Other columns (`frame`, `status`) are not needed. A table of one frame is a table; one of none is refused.
+//! In: CSV or Parquet with `time_s` and `<joint>_deg`; `<joint>_sd_deg`, `clock_s` and what tells of its error where
+//! they are there. Out: a [`Posture`]. Other columns (`frame`, `status`) are not needed. A table of one frame is a
+//! table; one of none is refused.
 
 use std::path::{Path, PathBuf};
 
@@ -49,8 +50,8 @@ impl Posture {
     /// Reads a table of joint angles.
     ///
     /// # Errors
-    /// A table that can't be read, without `time_s`, without a joint or without a frame; a frame without a time; times that do not
-    /// ascend strictly; a negative standard error. Each names its place.
+    /// A table that can't be read, without `time_s`, without a joint or without a frame; a frame without a time; times
+    /// that do not ascend strictly; a negative standard error. Each names its place.
     pub fn read(path: &Path) -> Result<Self, TableError> {
         let table = Table::read(path)?;
         let refused = |what: &str| TableError::Read { path: path.to_owned(), what: what.to_owned() };
@@ -61,7 +62,8 @@ impl Posture {
         if joints.is_empty() {
             let names = names.join(", ");
             return Err(refused(&format!(
-                "has no column of a joint's angle, such as `J2_deg`; its columns are {names}; give the table that `lunula posture` \
+                "has no column of a joint's angle, such as `J2_deg`; its columns are {names}; give the table that \
+                 `lunula posture` \
                  writes"
             )));
         }

@@ -82,7 +82,8 @@ impl Results {
             if left_out > 0 {
                 let frames = posture.time_s.len();
                 notes.push(format!(
-                    "{}: {left_out} of {frames} frames lack an angle and are left out, as OpenSim knows no missing ones",
+                    "{}: {left_out} of {frames} frames lack an angle and are left out, as OpenSim knows no missing \
+                     ones",
                     path.display()
                 ));
             }

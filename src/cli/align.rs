@@ -14,31 +14,33 @@ use super::{Common, Interrupted, Outcome};
 
 /// Joint angles and a log of photodiodes, on two clocks, to a labelled training set with a certificate
 ///
-/// log time = offset + (1 + drift) * video time. The clock in the picture ties the two (clock_s in the table of angles); so
-/// does an offset that you know; or, without either, the lag at which the photodiodes best explain the angles. Each row of the
-/// log (each lit one, less the unlit light at its time, where there is a column `led`) gets the angles at its time, between
-/// frames that were really seen, with their standard error; what has none stays empty, and label_status says why.
-/// Results: the set, and beside it <training>.sync.json, the certificate (offset, drift, their errors, residuals, what was left
-/// unlabelled), <training>.run.json and pictures of the tie and of the labels over the photodiodes.
+/// log time = offset + (1 + drift) * video time. The clock in the picture ties the two (clock_s in the table of
+/// angles); so does an offset that you know; or, without either, the lag at which the photodiodes best explain the
+/// angles. Each row of the log (each lit one, less the unlit light at its time, where there is a column `led`) gets the
+/// angles at its time, between frames that were really seen, with their standard error; what has none stays empty, and
+/// label_status says why. Results: the set, and beside it <training>.sync.json, the certificate (offset, drift, their
+/// errors, residuals, what was left unlabelled), <training>.run.json and pictures of the tie and of the labels over the
+/// photodiodes.
 #[derive(Debug, Args)]
 pub(super) struct AlignArgs {
     /// The table of joint angles of `lunula posture`: time_s, clock_s, <joint>_deg, <joint>_sd_deg
     #[arg(long, value_name = "JOINTS.csv")]
     joints: PathBuf,
-    /// The log: time_s, led (1 on, 0 off; may be absent), P1.., Fx_N, Fy_N, Fz_N (.csv, .csv.gz, .parquet; .xdf where built in)
+    /// The log: time_s, led (1 on, 0 off; may be absent), P1.., Fx_N, Fy_N, Fz_N (.csv, .csv.gz, .parquet; .xdf where
+    /// built in)
     #[arg(long, value_name = "LOG.csv")]
     log: PathBuf,
-    /// The labelled set: time_s, P1.., forces, <joint>_deg, <joint>_sd_deg, label_status, subject, session, sensor_status
-    /// (.csv or .parquet)
+    /// The labelled set: time_s, P1.., forces, <joint>_deg, <joint>_sd_deg, label_status, subject, session,
+    /// sensor_status (.csv or .parquet)
     #[arg(long, value_name = "TRAINING.csv", required_unless_present = "plan")]
     out: Option<PathBuf>,
-    /// How the clocks are tied: clock (in the picture), offset=SECONDS (the log's time at the video's first frame; with its
-    /// standard error offset=SECONDS+-ERROR, without which labels have no standard errors), correlate
+    /// How the clocks are tied: clock (in the picture), offset=SECONDS (the log's time at the video's first frame; with
+    /// its standard error offset=SECONDS+-ERROR, without which labels have no standard errors), correlate
     /// [default: clock, where the table of angles has it]
     #[arg(long, value_name = "clock|offset=SECONDS|correlate", value_parser = Sync::parse, allow_hyphen_values = true)]
     sync: Option<Sync>,
-    /// The log's time when the clock in the picture shows zero [default: the log's zero, hour or midnight that makes the two
-    /// overlap]
+    /// The log's time when the clock in the picture shows zero [default: the log's zero, hour or midnight that makes
+    /// the two overlap]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     clock_zero: Option<f64>,
     /// With correlate: the offset about which to look [default: that at which log and video begin together]

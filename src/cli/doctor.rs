@@ -8,7 +8,8 @@ use lunula::doctor::{Check, State, examine};
 
 use super::{Common, Outcome};
 
-/// What is installed, what is missing and how to get it: this program, this machine, the folder for results, other programs
+/// What is installed, what is missing and how to get it: this program, this machine, the folder for results, other
+/// programs
 ///
 /// `ok` is as it should be, `note` misses something that only some jobs need, `WRONG` has to be mended (exit status 1).
 #[derive(Debug, Args)]

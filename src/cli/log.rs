@@ -12,10 +12,12 @@ pub(super) struct LogArgs {
     /// What the log's columns are called, as time_s=stamp,led=lamp,P1=ch_3,Fz_N=fz
     #[arg(long, value_name = "OURS=THEIRS,..", value_parser = Columns::parse)]
     columns: Option<Columns>,
-    /// The unit of the log's time where it is a number: s, ms, us or ns [default: as its column's name says, else seconds]
+    /// The unit of the log's time where it is a number: s, ms, us or ns [default: as its column's name says, else
+    /// seconds]
     #[arg(long, value_name = "UNIT", value_parser = str::parse::<TimeUnit>)]
     time_unit: Option<TimeUnit>,
-    /// The lowest and the highest voltage that can be recorded, as 0,10 [default: found where samples pile up at an extreme]
+    /// The lowest and the highest voltage that can be recorded, as 0,10 [default: found where samples pile up at an
+    /// extreme]
     #[arg(long, value_name = "LOW,HIGH", value_parser = AmbientOptions::parse_full_scale, allow_hyphen_values = true)]
     full_scale: Option<[f64; 2]>,
     /// Of a log whose clock was reset, which stretch to take, from 1

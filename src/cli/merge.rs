@@ -11,10 +11,11 @@ use super::{Common, Outcome, memory};
 
 /// Parts of a run made with --shard to one folder of results: the same bytes as made at once
 ///
-/// PARTS are the folders that `lunula run PIPELINE --shard I/N --out PART` wrote, all N of them in any order. Their results are linked or copied
-/// into --out, then what no part could do (what gathers over all of them) is done there, and whatever inputs have changed since. A part that
-/// is missing, given twice, not at its end, or made by another pipeline or version is refused, and so are parts that made different
-/// things of one name; nothing is written then. May be called again with the same --out.
+/// PARTS are the folders that `lunula run PIPELINE --shard I/N --out PART` wrote, all N of them in any order. Their
+/// results are linked or copied into --out, then what no part could do (what gathers over all of them) is done there,
+/// and whatever inputs have changed since. A part that is missing, given twice, not at its end, or made by another
+/// pipeline or version is refused, and so are parts that made different things of one name; nothing is written then.
+/// May be called again with the same --out.
 #[derive(Debug, Args)]
 pub(super) struct MergeArgs {
     /// Folders of the parts

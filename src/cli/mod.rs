@@ -1,7 +1,7 @@
 //! The command line: one file a command. Arguments in, one job called, tables and pictures out; no thinking here.
 //!
-//! Exit status: 0 all done; 1 done, but some inputs failed, or what was to be said or written after the results could not be (each is named on
-//! standard error); 2 nothing done, nothing changed; 130 interrupted.
+//! Exit status: 0 all done; 1 done, but some inputs failed, or what was to be said or written after the results could
+//! not be (each is named on standard error); 2 nothing done, nothing changed; 130 interrupted.
 
 mod align;
 mod completions;
@@ -54,7 +54,8 @@ struct Cli {
 const AFTER_HELP: &str = "lunula COMMAND --help tells more of each.
 
 Exit status: 0 all done; 1 done, but some inputs failed (each is named on standard error, the others are done), or results stand and what \
-comes after them, as a report or words on standard output, could not be written; 2 nothing done, nothing changed; 130 interrupted. Results \
+comes after them, as a report or words on standard output, could not be written; 2 nothing done, nothing changed; 130 \
+interrupted. Results \
 appear whole or not at all; what stood before a failed run is as it was.";
 
 #[derive(Debug, Subcommand)]

@@ -1,7 +1,7 @@
 //! Standard output: every word that the program says there goes through here.
 //!
-//! A reader that has gone away is no error of ours. Any other failed write is, whatever else was done: the first one is kept, what follows is
-//! not written any more, and [`finish`] hands it out.
+//! A reader that has gone away is no error of ours. Any other failed write is, whatever else was done: the first one is
+//! kept, what follows is not written any more, and [`finish`] hands it out.
 
 use std::io::{self, ErrorKind, Write};
 use std::sync::{Mutex, PoisonError};

@@ -17,10 +17,10 @@ use super::{Common, Interrupted, Outcome, print_line, print_steps};
 
 /// Photographs of nails to coloration maps: outlines, normalized pictures, mean and standard deviation over subjects
 ///
-/// SET is a folder SET/<pose>/<subject>.<png|jpg|tif|bmp>, a flat folder (one pose), or holds photos.csv with the columns
-/// file,subject,pose and optionally outline. The outline of a nail comes from the first of: that column, <stem>.json
-/// beside the photograph (LabelMe: polygon `nail`, line `axis` from proximal to distal), a mask under --masks, detection.
-/// Results: nails.csv, normalized/, maps/*.npy, figures/, report.html, run.json.
+/// SET is a folder SET/<pose>/<subject>.<png|jpg|tif|bmp>, a flat folder (one pose), or holds photos.csv with the
+/// columns file,subject,pose and optionally outline. The outline of a nail comes from the first of: that column,
+/// <stem>.json beside the photograph (LabelMe: polygon `nail`, line `axis` from proximal to distal), a mask under
+/// --masks, detection. Results: nails.csv, normalized/, maps/*.npy, figures/, report.html, run.json.
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub(super) struct PhotosArgs {
@@ -66,13 +66,23 @@ pub(super) struct PhotosArgs {
     #[arg(long, value_name = "SAMPLE")]
     white: Option<u16>,
     /// Megapixels beyond which a photograph is refused, before memory is taken for it
-    #[arg(long, value_name = "MP", default_value_t = MOST_MEGAPIXELS, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    #[arg(
+        long,
+        value_name = "MP",
+        default_value_t = MOST_MEGAPIXELS,
+        value_parser = clap::value_parser!(u32).range(1..=10_000)
+    )]
     max_megapixels: u32,
     /// How values between pixels come about
     #[arg(long, value_enum, default_value = "cubic")]
     resample: ResampleArg,
     /// Longest side, in pixels, of the picture that detection searches
-    #[arg(long, value_name = "PX", default_value_t = DetectOptions::default().working_size_px, value_parser = clap::value_parser!(u32).range(64..=4096))]
+    #[arg(
+        long,
+        value_name = "PX",
+        default_value_t = DetectOptions::default().working_size_px,
+        value_parser = clap::value_parser!(u32).range(64..=4096)
+    )]
     detect_size: u32,
     /// Say what would be done and left out, and do nothing
     #[arg(long)]
@@ -200,7 +210,8 @@ pub(super) fn run(args: &PhotosArgs) -> anyhow::Result<Outcome> {
     let apart: Vec<&Path> = std::iter::once(out.as_path()).chain(args.masks.as_deref()).collect();
     if PhotoSet::would_take_results(set, out) {
         anyhow::bail!(
-            "--out {}: is among the photographs of {}, where results would be taken for photographs; choose another --out",
+            "--out {}: is among the photographs of {}, where results would be taken for photographs; choose another \
+             --out",
             out.display(),
             set.display()
         );

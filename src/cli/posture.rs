@@ -12,10 +12,10 @@ use super::{Common, Interrupted, Outcome, print_line};
 
 /// Video of a finger with coloured markers to joint angles, each frame with its own time and standard error
 ///
-/// MARKERS.toml names the markers and their colours, the segments (two markers each, proximal first) and the joints (two
-/// segments each), and where a digital clock is in the picture; --suggest prints one to start from. A marker that is not seen is lost, and no angle comes from it.
-/// Results: the table of angles, and beside it <joints>.run.json and pictures of the angles over time and of the last joint
-/// against the one before.
+/// MARKERS.toml names the markers and their colours, the segments (two markers each, proximal first) and the joints
+/// (two segments each), and where a digital clock is in the picture; --suggest prints one to start from. A marker that
+/// is not seen is lost, and no angle comes from it. Results: the table of angles, and beside it <joints>.run.json and
+/// pictures of the angles over time and of the last joint against the one before.
 #[derive(Debug, Args)]
 pub(super) struct PostureArgs {
     /// The video, in any format that FFmpeg reads
@@ -23,8 +23,8 @@ pub(super) struct PostureArgs {
     /// The marker file
     #[arg(long, value_name = "MARKERS.toml", required_unless_present = "suggest")]
     markers: Option<PathBuf>,
-    /// Table of the angles: frame, time_s, clock_s, <joint>_deg, <joint>_sd_deg, status; with a [clock] in the marker file
-    /// also clock_read_s, clock_sd_s, clock_low_s, clock_high_s (.csv or .parquet)
+    /// Table of the angles: frame, time_s, clock_s, <joint>_deg, <joint>_sd_deg, status; with a [clock] in the marker
+    /// file also clock_read_s, clock_sd_s, clock_low_s, clock_high_s (.csv or .parquet)
     #[arg(long, value_name = "JOINTS.csv", required_unless_present_any = ["suggest", "plan"])]
     out: Option<PathBuf>,
     /// Table of the markers as well: frame, time_s, marker, x_px, y_px, sd_px, status (.csv or .parquet)
@@ -46,7 +46,10 @@ pub(super) struct PostureArgs {
     #[arg(long)]
     no_figures: bool,
     /// Print a marker file to start from, told from a few frames, and do nothing else
-    #[arg(long, conflicts_with_all = ["markers", "out", "tracks", "overlay", "joints", "smooth", "plan", "no_clock", "no_figures"])]
+    #[arg(
+        long,
+        conflicts_with_all = ["markers", "out", "tracks", "overlay", "joints", "smooth", "plan", "no_clock", "no_figures"]
+    )]
     suggest: bool,
     /// Say what would be done and left out, and do nothing
     #[arg(long)]

@@ -16,11 +16,12 @@ use super::{Common, Outcome, Stopped, memory, print_line};
 
 /// A pipeline file: the results it wants, and only what they need; what stands is kept
 ///
-/// A pipeline file (TOML) names inputs (files by a pattern, or rows of a table), stages (jobs with their options) and the results wanted.
-/// A stage runs only where a wanted result needs it and its inputs have what it works on; --plan says of each why, or why not. Each result
-/// is kept with a hash of its inputs' contents, options and version: what stands is not made again, what changed is, what was interrupted
-/// goes on. A failing input fails what needs it; all else is done, and a table at the end says what failed.
-/// Results: OUT/<stage>/<keys>/.., OUT/report.html (time, share and error of every stage) and OUT/run.json.
+/// A pipeline file (TOML) names inputs (files by a pattern, or rows of a table), stages (jobs with their options) and
+/// the results wanted. A stage runs only where a wanted result needs it and its inputs have what it works on; --plan
+/// says of each why, or why not. Each result is kept with a hash of its inputs' contents, options and version: what
+/// stands is not made again, what changed is, what was interrupted goes on. A failing input fails what needs it; all
+/// else is done, and a table at the end says what failed. Results: OUT/<stage>/<keys>/.., OUT/report.html (time, share
+/// and error of every stage) and OUT/run.json.
 #[derive(Debug, Args)]
 pub(super) struct RunArgs {
     /// The pipeline file (TOML); `lunula init` writes one for the folder you stand in

@@ -11,7 +11,8 @@ use lunula::tradeoff::{self as curves, Effort, Interrupted, Plan, Row, Setting, 
 use super::phantom::SceneArg;
 use super::{Common, Outcome};
 
-/// Error against run time, over the settings of a job or of all: the knee of each curve, where the default stands, other programs
+/// Error against run time, over the settings of a job or of all: the knee of each curve, where the default stands,
+/// other programs
 ///
 /// Writes a table (tradeoff.csv) and a picture (tradeoff.png, .svg); `all` one page (index.html).
 #[derive(Debug, Args)]
@@ -45,8 +46,9 @@ struct Measuring {
     /// Fewer settings on smaller scenes
     #[arg(long)]
     quick: bool,
-    /// Other programs on the same scenes: run here where python3 has their packages; or, with a FILE, figures measured elsewhere
-    /// (a tradeoff.csv; for hemodynamics also a table solver,rtol,error,microseconds[,evaluations]); may be given again
+    /// Other programs on the same scenes: run here where python3 has their packages; or, with a FILE, figures measured
+    /// elsewhere (a tradeoff.csv; for hemodynamics also a table solver,rtol,error,microseconds[,evaluations]); may be
+    /// given again
     #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = HERE)]
     peers: Vec<PathBuf>,
     #[command(flatten)]
@@ -120,7 +122,8 @@ struct PhotosArgs {
     measured: Measured,
 }
 
-/// Joint angles against the exact ones: planes used, rounds of refinement, where markers are searched, and OpenCV's usual recipe
+/// Joint angles against the exact ones: planes used, rounds of refinement, where markers are searched, and OpenCV's
+/// usual recipe
 ///
 /// On a synthetic video of its own, or on --input (a folder with video.mp4 and markers.toml) with --truth.
 #[derive(Debug, Args)]
@@ -132,7 +135,8 @@ struct PostureArgs {
     measured: Measured,
 }
 
-/// The log's time over the video against the exact one: in how many frames the clock is read, and no clock at all; labels over gaps
+/// The log's time over the video against the exact one: in how many frames the clock is read, and no clock at all;
+/// labels over gaps
 ///
 /// On a synthetic video and log of its own (random movement, irregular frames), or on --input (a folder with video.mp4,
 /// markers.toml with a [clock], and log.csv) with --truth.
@@ -145,19 +149,22 @@ struct AlignArgs {
     measured: Measured,
 }
 
-/// Forces against measured ones for all models and sizes, with the time of a fit and of a prediction; and solvers on ill-conditioned sets
+/// Forces against measured ones for all models and sizes, with the time of a fit and of a prediction; and solvers on
+/// ill-conditioned sets
 ///
-/// On synthetic recordings of its own (two spirals to train on, random movement to tell the error on), or on --input (a folder of
-/// recordings to train on) with --truth (a folder of recordings to tell the error on).
+/// On synthetic recordings of its own (two spirals to train on, random movement to tell the error on), or on --input (a
+/// folder of recordings to train on) with --truth (a folder of recordings to tell the error on).
 #[derive(Debug, Args)]
 struct PredictorArgs {
     #[command(flatten)]
     measured: Measured,
 }
 
-/// Step responses of the hemodynamic model for every tolerance, order and mode, with stability maps (stability.csv, .png, .svg)
+/// Step responses of the hemodynamic model for every tolerance, order and mode, with stability maps (stability.csv,
+/// .png, .svg)
 ///
-/// The error is the largest of any displacement over its nominal diameter; the reference is the full model at its tightest tolerance.
+/// The error is the largest of any displacement over its nominal diameter; the reference is the full model at its
+/// tightest tolerance.
 #[derive(Debug, Args)]
 struct HemodynamicsArgs {
     #[command(flatten)]

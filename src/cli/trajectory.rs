@@ -11,7 +11,8 @@ use lunula::predictor::trajectory::{
 
 use super::{Common, Interrupted, Outcome};
 
-/// Calibration trajectories (5.2.3) as tables that a prompter can play, with how fast they are and how evenly they cover
+/// Calibration trajectories (5.2.3) as tables that a prompter can play, with how fast they are and how evenly they
+/// cover
 ///
 /// Beside the table stand <table>.run.json and pictures (Fig. 90-93).
 #[derive(Debug, Args)]
@@ -30,7 +31,8 @@ enum KindArg {
 /// What every trajectory takes.
 #[derive(Debug, Args)]
 struct Planned {
-    /// The table: time_s and Fx_N, Fy_N, Fz_N (of the finger on the surface: pressing is negative Fz_N) or J2_deg (.csv or .parquet)
+    /// The table: time_s and Fx_N, Fy_N, Fz_N (of the finger on the surface: pressing is negative Fz_N) or J2_deg (.csv
+    /// or .parquet)
     #[arg(long, value_name = "TABLE.csv", required_unless_present = "plan")]
     out: Option<PathBuf>,
     /// Between two rows
@@ -64,7 +66,8 @@ struct Cone {
     /// The coefficient of friction
     #[arg(long, default_value_t = 0.75, allow_negative_numbers = true)]
     mu: f64,
-    /// Forces come out of rest within so long; 0: at once, as equation 21 is printed, which begins infinitely fast [default: 2, random forces 5]
+    /// Forces come out of rest within so long; 0: at once, as equation 21 is printed, which begins infinitely fast
+    /// [default: 2, random forces 5]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     soft_start: Option<f64>,
     /// The error that equation 19 may come to
@@ -193,7 +196,8 @@ fn finish(common: &Common, report: &TrajectoryReport) -> anyhow::Result<Outcome>
     }
     if let Some(PostureFigures { lowest_deg, highest_deg, fastest_deg_per_s, behind_deg }) = report.posture {
         common.say(&format!(
-            "J2 from {lowest_deg:.1} to {highest_deg:.1} degrees, at most {fastest_deg_per_s:.1} degrees a second: a sensor that lags by {} s is \
+            "J2 from {lowest_deg:.1} to {highest_deg:.1} degrees, at most {fastest_deg_per_s:.1} degrees a second: a \
+             sensor that lags by {} s is \
              {behind_deg:.1} degrees behind",
             report.options.tau_s
         ));
@@ -216,7 +220,8 @@ fn say_force(common: &Common, report: &TrajectoryReport, force: &ForceFigures) {
             None => String::new(),
         };
         common.say(&format!(
-            "relative rate (eq. 19) at most {relative} a second where the force is {:.2} N or more; {:.0} % at {} s allow {:.2}: {}",
+            "relative rate (eq. 19) at most {relative} a second where the force is {:.2} N or more; {:.0} % at {} s \
+             allow {:.2}: {}",
             force.floor_n,
             100.0 * options.error,
             options.tau_s,
@@ -230,7 +235,8 @@ fn say_force(common: &Common, report: &TrajectoryReport, force: &ForceFigures) {
     }
     if let Some(spiral) = &force.spiral {
         common.say(&format!(
-            "circling (eq. 24) below {:.3} Hz; radial rate at most {:.3} N/s with the soft start, {:.3} without (eq. 25 prints {:.3}); eq. 26 asks for {:.0} s as \
+            "circling (eq. 24) below {:.3} Hz; radial rate at most {:.3} N/s with the soft start, {:.3} without (eq. \
+             25 prints {:.3}); eq. 26 asks for {:.0} s as \
              printed, {:.0} s with the true rate, {:.0} s with the soft start",
             spiral.circling_limit_hz,
             spiral.radial_rate_max_n_per_s,
@@ -246,7 +252,8 @@ fn say_force(common: &Common, report: &TrajectoryReport, force: &ForceFigures) {
     for (name, even) in [("cylindrical", &covered.cylindrical), ("Cartesian", &covered.cartesian)] {
         let [up, out, turn] = even.of_each.map_or([None; 3], |each| each.map(Some)).map(known);
         common.say(&format!(
-            "coverage, {name}: {:.0} % of {} cells, evenness {} (pressing {up}, shear {out}, direction {turn}; 1 is even)",
+            "coverage, {name}: {:.0} % of {} cells, evenness {} (pressing {up}, shear {out}, direction {turn}; 1 is \
+             even)",
             100.0 * even.visited,
             even.cells,
             known(even.entropy)

@@ -1,8 +1,9 @@
 //! The clock's own glyphs, and what a look is when held against them.
 //!
-//! In: looks whose digit is known. Out: for another look the digit whose glyph it is, or doubt: it is like none of them, or it lies
-//! between two of them, as it does when the digit changes during the exposure. A look between the glyphs `a` and `b` is
-//! `s = alpha a + beta b`; the share of `b` is `beta / (alpha + beta)`, by least squares, whatever the gain.
+//! In: looks whose digit is known. Out: for another look the digit whose glyph it is, or doubt: it is like none of
+//! them, or it lies between two of them, as it does when the digit changes during the exposure. A look between the
+//! glyphs `a` and `b` is `s = alpha a + beta b`; the share of `b` is `beta / (alpha + beta)`, by least squares,
+//! whatever the gain.
 
 use super::look::{CELLS, Look, dot};
 
@@ -48,8 +49,8 @@ pub(super) struct Bank {
 const MOST_SEEN: f32 = 30.0;
 /// A clock of 24 cells has no more glyphs than this that are worth keeping.
 const MOST_GLYPHS: usize = 320;
-/// A look this near to a glyph ([`Look::distance`]) is that glyph. Seven-segment digits that differ in one segment are 0.42 apart,
-/// others 0.69, and the same digit in another cell up to 0.24 where it is 50 pixels high and 0.37 where 13.
+/// A look this near to a glyph ([`Look::distance`]) is that glyph. Seven-segment digits that differ in one segment are
+/// 0.42 apart, others 0.69, and the same digit in another cell up to 0.24 where it is 50 pixels high and 0.37 where 13.
 const NEAR: f32 = 0.16;
 /// A look this near to a glyph is that glyph where all ten digits are known.
 const NEAR_OF_ALL: f32 = 0.25;
@@ -65,7 +66,8 @@ impl Bank {
         self.glyphs.is_empty()
     }
 
-    /// The glyphs' digits that a cell has shown. Glyphs of two digits that look the same contradict each other, and none of them is kept.
+    /// The glyphs' digits that a cell has shown. Glyphs of two digits that look the same contradict each other, and
+    /// none of them is kept.
     pub(super) fn add(&mut self, cell: usize, digit: u8, look: Look, sure: f64) {
         let before = self.glyphs.len();
         self.glyphs.retain(|glyph| glyph.digit == digit || glyph.look.distance(&look) > NEAR);

@@ -1,8 +1,9 @@
 //! What stands beside a clock's digits: whether its format fits, and AM or PM.
 //!
-//! In: a crop, the clock's cells in it, and its format. Out: the characters that follow the cells on either side at the pitch of the digits and
-//! on their line, as high as they are: digits for the network, colons, and dots that digits follow; and AM or PM. A screen's frame, lines
-//! of text above and below, other words and icons are none of these. What a region's edge cuts off counts as a digit where it stands as one.
+//! In: a crop, the clock's cells in it, and its format. Out: the characters that follow the cells on either side at the
+//! pitch of the digits and on their line, as high as they are: digits for the network, colons, and dots that digits
+//! follow; and AM or PM. A screen's frame, lines of text above and below, other words and icons are none of these. What
+//! a region's edge cuts off counts as a digit where it stands as one.
 
 mod scene;
 
@@ -26,8 +27,9 @@ const FEWEST: usize = 3;
 const STRAY: usize = 10;
 
 impl Misfit {
-    /// Whether the whole clock is of another format: frames whose digits stand beside more than the format has (`other`) are not strays between
-    /// those that were read, nor lie before or after them as where a clock becomes wider. Both are the frames' places in order.
+    /// Whether the whole clock is of another format: frames whose digits stand beside more than the format has
+    /// (`other`) are not strays between those that were read, nor lie before or after them as where a clock becomes
+    /// wider. Both are the frames' places in order.
     #[must_use]
     pub fn is_of_all(read: &[usize], other: &[usize]) -> bool {
         let Some((first, last)) = read.first().zip(read.last()) else { return other.len() >= FEWEST };
@@ -44,7 +46,8 @@ impl Misfit {
                 .to_owned(),
         };
         format!(
-            "beside the digits of its format \"{}\" there is more of the clock in {frames} frame(s): a further digit, a colon, or AM or PM; {help}",
+            "beside the digits of its format \"{}\" there is more of the clock in {frames} frame(s): a further digit, \
+             a colon, or AM or PM; {help}",
             format.text()
         )
     }

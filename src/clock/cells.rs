@@ -1,8 +1,9 @@
 //! Where each digit of the format stands in a crop.
 //!
-//! In: rows of characters found in several crops of one video ([`super::line`]). Out: [`Cells`], a box for each digit that holds it whatever
-//! digit it is, or which of a crop's own runs they are. Digits of most typefaces are equally wide, so that a clock's digits stand in place; where a cell showed narrow digits
-//! only, the pitch of the others tells where it is: digits follow at one pitch, and each mark takes a width of its own (least squares).
+//! In: rows of characters found in several crops of one video ([`super::line`]). Out: [`Cells`], a box for each digit
+//! that holds it whatever digit it is, or which of a crop's own runs they are. Digits of most typefaces are equally
+//! wide, so that a clock's digits stand in place; where a cell showed narrow digits only, the pitch of the others tells
+//! where it is: digits follow at one pitch, and each mark takes a width of its own (least squares).
 
 use nalgebra::{DMatrix, DVector};
 
@@ -38,8 +39,8 @@ const PRIOR: f64 = 1e-3;
 const OFF_PITCH: f64 = 0.2;
 /// Digits follow at no less than so many widths of the widest.
 const CLOSEST: f64 = 1.1;
-/// Beside the cells so many pitches are looked at for a further character, and so many heights for AM or PM; above and below this
-/// share of their height, for frames that are taller than digits and letters that reach further down.
+/// Beside the cells so many pitches are looked at for a further character, and so many heights for AM or PM; above and
+/// below this share of their height, for frames that are taller than digits and letters that reach further down.
 const BESIDE: f32 = 2.0;
 const BESIDE_HALF: f32 = 4.5;
 const ABOVE_BELOW: f32 = 0.6;

@@ -1,7 +1,7 @@
 //! A rectangle of a frame's luma, upright.
 //!
-//! In: a frame and a rectangle of whole pixels of the *shown* picture. Out: its luma as the shown picture has it, on the scale of 8 bits,
-//! averaged over blocks where it holds more pixels than digits need.
+//! In: a frame and a rectangle of whole pixels of the *shown* picture. Out: its luma as the shown picture has it, on
+//! the scale of 8 bits, averaged over blocks where it holds more pixels than digits need.
 
 use crate::video::{Info, Plane, Turn};
 

@@ -1,8 +1,9 @@
 //! Crops to readings, once the clock is learnt.
 //!
-//! In: crops of one rectangle, in order. Out: a [`Reading`] of each. Every cell's look is held against the clock's own glyphs
-//! ([`super::bank`]). What is like one of them, yet not quite, is read where the network says the same; what is like none of them is shown to
-//! the network once it has stood still for a few frames, and what lies between two of them is not read.
+//! In: crops of one rectangle, in order. Out: a [`Reading`] of each. Every cell's look is held against the clock's own
+//! glyphs ([`super::bank`]). What is like one of them, yet not quite, is read where the network says the same; what is
+//! like none of them is shown to the network once it has stood still for a few frames, and what lies between two of
+//! them is not read.
 
 use super::ReaderEffort;
 use super::bank::Verdict;

@@ -16,8 +16,8 @@ pub enum Unit {
 /// One character of a clock.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cell {
-    /// A digit that counts units of `10^-9` seconds, so many of them a step; the digit of a tens place of minutes or seconds
-    /// that another unit stands before goes to 5 only.
+    /// A digit that counts units of `10^-9` seconds, so many of them a step; the digit of a tens place of minutes or
+    /// seconds that another unit stands before goes to 5 only.
     Digit {
         /// Of what.
         unit: Unit,
@@ -41,8 +41,8 @@ pub enum Half {
     Pm,
 }
 
-/// A clock's format, checked: `h`, `m`, `s` stand for a digit of hours, minutes, seconds, `t` for tenths and finer, `a` before or
-/// after all of them for AM or PM; anything else stands as it is. Such as `mm:ss.t` and `hh:mm:ss a`.
+/// A clock's format, checked: `h`, `m`, `s` stand for a digit of hours, minutes, seconds, `t` for tenths and finer, `a`
+/// before or after all of them for AM or PM; anything else stands as it is. Such as `mm:ss.t` and `hh:mm:ss a`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ClockFormat {
     text: String,
@@ -145,8 +145,9 @@ impl ClockFormat {
         self.cells.iter().filter(|cell| matches!(cell, Cell::Digit { unit: Unit::Fraction, .. })).count()
     }
 
-    /// After how many seconds it can show the same again. With AM and PM a day; of a leading `hh` a day, half of one or, of a timer, 100 hours; of leading `mm` and `ss` an hour and a minute
-    /// or, of a timer that counts on, 100 of them; so there may be several.
+    /// After how many seconds it can show the same again. With AM and PM a day; of a leading `hh` a day, half of one
+    /// or, of a timer, 100 hours; of leading `mm` and `ss` an hour and a minute or, of a timer that counts on, 100 of
+    /// them; so there may be several.
     #[must_use]
     pub fn wraps_s(&self) -> Vec<f64> {
         if self.has_half() {
@@ -174,8 +175,8 @@ impl ClockFormat {
         }
     }
 
-    /// The seconds that these digits mean, one for each [`Cell::Digit`], in order, and AM or PM; none where a digit can't stand in its
-    /// place, or AM or PM are missing where the format has them.
+    /// The seconds that these digits mean, one for each [`Cell::Digit`], in order, and AM or PM; none where a digit
+    /// can't stand in its place, or AM or PM are missing where the format has them.
     #[must_use]
     pub fn seconds(&self, digits: &[u8], half: Option<Half>) -> Option<f64> {
         let mut left = digits.iter();

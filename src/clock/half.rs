@@ -1,8 +1,9 @@
 //! AM and PM.
 //!
-//! In: runs of ink beside a clock's digits that stand close enough together to be a word. Out: AM, PM, or neither for sure. Capitals and small
-//! letters, with dots or without, of any typeface are told by what all typefaces share: the right side of an A or a reaches down to
-//! the line, that of a P or p does not, and an M or m has a stem on either side. Two letters that touch are parted where there is least ink.
+//! In: runs of ink beside a clock's digits that stand close enough together to be a word. Out: AM, PM, or neither for
+//! sure. Capitals and small letters, with dots or without, of any typeface are told by what all typefaces share: the
+//! right side of an A or a reaches down to the line, that of a P or p does not, and an M or m has a stem on either
+//! side. Two letters that touch are parted where there is least ink.
 
 use super::crop::Gray;
 use super::format::Half;
@@ -20,8 +21,9 @@ const TOUCHING: [f64; 2] = [1.3, 3.0];
 const PARTING: [f64; 2] = [0.3, 0.62];
 /// An M is no narrower than this share of its height.
 const NARROWEST_M: f64 = 0.55;
-/// Ink covers a side where the mean over its rows of the darkest place in each is this share of the letter's darkest ink, and leaves it free
-/// below the second share (assumed; no AM read as PM or the reverse on 48 typefaces at three heights, 5760 frames over noon and midnight).
+/// Ink covers a side where the mean over its rows of the darkest place in each is this share of the letter's darkest
+/// ink, and leaves it free below the second share (assumed; no AM read as PM or the reverse on 48 typefaces at three
+/// heights, 5760 frames over noon and midnight).
 const COVERED: f32 = 0.6;
 const FREE: f32 = 0.27;
 /// An M is no digit for the network: it finds anything else at least this probable.
@@ -36,7 +38,8 @@ pub(super) enum Word {
     Unclear,
 }
 
-/// What a word of these runs, from the left to the right, is, if it is AM or PM; `other` is how probably the network finds no digit in a run.
+/// What a word of these runs, from the left to the right, is, if it is AM or PM; `other` is how probably the network
+/// finds no digit in a run.
 pub(super) fn word(gray: &Gray, word: &[Run], levels: Levels, other: impl Fn(&Run) -> f64) -> Option<Word> {
     let tall = |run: &Run| run.bottom - run.top + 1;
     let wide = |run: &Run| run.right - run.left + 1;
@@ -101,7 +104,8 @@ impl<'a> Letter<'a> {
         (most > 0.3 && most.is_finite()).then_some(Self { gray, run, levels, most })
     }
 
-    /// The mean over the rows of a part of the letter's box of the darkest place in each row, as a share of the letter's darkest ink.
+    /// The mean over the rows of a part of the letter's box of the darkest place in each row, as a share of the
+    /// letter's darkest ink.
     fn covers(&self, across: [f64; 2], down: [f64; 2]) -> f32 {
         const LOOKS: usize = 8;
         let Run { left, top, right, bottom, .. } = self.run;

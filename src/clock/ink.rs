@@ -1,8 +1,8 @@
 //! What is ink in a crop, and which pieces it is made of.
 //!
-//! In: a grey picture. Out: a threshold between its two kinds of grey (N. Otsu 1979, doi:10.1109/TSMC.1979.4310076), and the connected
-//! pieces (8 neighbours) on one side of it. Pieces that touch the crop's border (a screen's frame, the desk) or stand around others are no
-//! characters and are left out.
+//! In: a grey picture. Out: a threshold between its two kinds of grey (N. Otsu 1979, doi:10.1109/TSMC.1979.4310076),
+//! and the connected pieces (8 neighbours) on one side of it. Pieces that touch the crop's border (a screen's frame,
+//! the desk) or stand around others are no characters and are left out.
 
 use super::crop::Gray;
 

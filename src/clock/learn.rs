@@ -1,9 +1,9 @@
 //! A clock's cells and glyphs out of the first crops.
 //!
-//! In: crops of about a second. Out: [`Model`], which reads crops. Each crop's ink is split at several thresholds and in both polarities; where
-//! runs of ink can be the format's characters, the network has to agree. What stands at one place in most crops is the clock. A cell's glyphs
-//! are what it shows in at least two frames one after the other, so that no glyph is a blend of two digits; they get their names from the
-//! network, by all that was seen of each.
+//! In: crops of about a second. Out: [`Model`], which reads crops. Each crop's ink is split at several thresholds and
+//! in both polarities; where runs of ink can be the format's characters, the network has to agree. What stands at one
+//! place in most crops is the clock. A cell's glyphs are what it shows in at least two frames one after the other, so
+//! that no glyph is a blend of two digits; they get their names from the network, by all that was seen of each.
 
 use super::bank::{Bank, Verdict};
 use super::beside::{Beside, Misfit};
@@ -67,8 +67,8 @@ const MOST_NOISE: f32 = 0.12;
 const MOVING: f64 = 0.5;
 /// Looks within so many times the noise are of one digit.
 pub(super) const SAME: f32 = 3.0;
-/// And means of looks of one digit, where there is little noise left, are no further apart than this: seven-segment digits that differ
-/// in one segment are 0.42 apart.
+/// And means of looks of one digit, where there is little noise left, are no further apart than this: seven-segment
+/// digits that differ in one segment are 0.42 apart.
 const MOST_APART: f32 = 0.25;
 /// A look shorter than this share of the usual one is of no digit.
 pub(super) const FAINT: f32 = 0.4;

@@ -1,7 +1,7 @@
 //! Lines of characters in a crop, and the format's characters in a line.
 //!
-//! In: the connected pieces of ink. Out: [`Line`]s of [`Run`]s, pieces that share columns, which are characters where glyphs don't touch;
-//! and of those the ones that can be the characters of a format, in order.
+//! In: the connected pieces of ink. Out: [`Line`]s of [`Run`]s, pieces that share columns, which are characters where
+//! glyphs don't touch; and of those the ones that can be the characters of a format, in order.
 
 use super::format::{Cell, ClockFormat};
 use super::ink::Piece;

@@ -1,10 +1,10 @@
 //! Finds the clock where the user did not say where it is.
 //!
-//! In: the whole pictures of about a second, averaged down to a million pixels at most. Out: the clock's rectangle and what was learnt of it.
-//! A clock changes in places of a glyph's size. So: small blocks in which edges come and go from one picture to the next (edges, since
-//! a light that flickers changes smooth places alike); connected blocks that are no larger than a line of digits; around each of them a
-//! stretch of the line, out of which the clock is learnt as if the user had named it ([`super::learn`]). It is the clock if it then reads,
-//! changes, and runs one second a second.
+//! In: the whole pictures of about a second, averaged down to a million pixels at most. Out: the clock's rectangle and
+//! what was learnt of it. A clock changes in places of a glyph's size. So: small blocks in which edges come and go from
+//! one picture to the next (edges, since a light that flickers changes smooth places alike); connected blocks that are
+//! no larger than a line of digits; around each of them a stretch of the line, out of which the clock is learnt as if
+//! the user had named it ([`super::learn`]). It is the clock if it then reads, changes, and runs one second a second.
 
 use super::beside::Misfit;
 use super::crop::{Eye, Gray, Rect};

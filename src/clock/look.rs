@@ -1,7 +1,8 @@
 //! What a digit's cell looks like, as a vector that is independent of brightness.
 //!
-//! In: a crop and a cell's box in it. Out: a [`Look`]: the means of the luma over a grid of equal shares of the box, less their own
-//! mean. Two looks are compared up to a gain, so that neither a light that flickers nor one that drifts is seen.
+//! In: a crop and a cell's box in it. Out: a [`Look`]: the means of the luma over a grid of equal shares of the box,
+//! less their own mean. Two looks are compared up to a gain, so that neither a light that flickers nor one that drifts
+//! is seen.
 
 use super::crop::Gray;
 
@@ -79,8 +80,8 @@ impl Look {
         Self { values, norm }
     }
 
-    /// How far another look is from this one, once it has this one's gain, as a share of this one's length: 0 for the same look,
-    /// about 1 for another digit, and more than 1 for its negative.
+    /// How far another look is from this one, once it has this one's gain, as a share of this one's length: 0 for the
+    /// same look, about 1 for another digit, and more than 1 for its negative.
     pub(super) fn distance(&self, other: &Self) -> f32 {
         let product = dot(&self.values, &other.values) / (self.norm * other.norm).max(1e-6);
         (2.0 - 2.0 * product).max(0.0).sqrt()

@@ -1,9 +1,9 @@
-//! The digital clock in the picture: its digits in each frame, and the time base that they tie (thesis section 3.2.3, where a
-//! computer's clock is filmed with the finger).
+//! The digital clock in the picture: its digits in each frame, and the time base that they tie (thesis section 3.2.3,
+//! where a computer's clock is filmed with the finger).
 //!
-//! [`ClockFormat`] says how it is written. A [`ClockReader`] looks at a frame and gives one [`Reading`] or none: what it is not sure
-//! of it does not say. [`fit`] takes the readings of the whole video, throws out what does not fit the rest, and ties the clock to the
-//! video's time by the moments at which its digits change.
+//! [`ClockFormat`] says how it is written. A [`ClockReader`] looks at a frame and gives one [`Reading`] or none: what
+//! it is not sure of it does not say. [`fit`] takes the readings of the whole video, throws out what does not fit the
+//! rest, and ties the clock to the video's time by the moments at which its digits change.
 //!
 //! Coordinates are those of the stored picture ([`crate::video`]); [`ClockRoi`] speaks of the shown one.
 

@@ -1,9 +1,10 @@
 //! Which digits a cell's steady looks are.
 //!
-//! In: what a cell showed for at least two frames, when, and what the network says of it. Out: a name for each look, or none. A clock counts:
-//! where a cell changed several times, the digits follow one another at the cell's own rate, and only the first of them is unknown; all of
-//! the network's answers together tell which it is, so that one glyph that the network does not know, or mistakes, gets its name from
-//! the others. Where the cell stood still the network has to be sure by itself.
+//! In: what a cell showed for at least two frames, when, and what the network says of it. Out: a name for each look, or
+//! none. A clock counts:
+//! where a cell changed several times, the digits follow one another at the cell's own rate, and only the first of them
+//! is unknown; all of the network's answers together tell which it is, so that one glyph that the network does not
+//! know, or mistakes, gets its name from the others. Where the cell stood still the network has to be sure by itself.
 
 use super::format::{Cell, ClockFormat};
 use super::look::Look;
@@ -54,8 +55,9 @@ const PHASES: usize = 20;
 
 /// Each look's digit and how probable it is, by the order in which they stood.
 ///
-/// A stand that was seen in part only has its middle anywhere between two changes, so that when the clock changes is as unknown as the
-/// first digit: a look's digit is what all phases say of it together, each by how well the network agrees with it.
+/// A stand that was seen in part only has its middle anywhere between two changes, so that when the clock changes is as
+/// unknown as the first digit: a look's digit is what all phases say of it together, each by how well the network
+/// agrees with it.
 pub(super) fn by_order(steady: &[Steady], place: Place) -> Option<Vec<Option<(u8, f64)>>> {
     let modulus = usize::from(place.highest) + 1;
     let count: usize = steady.iter().map(|one| one.stands.len()).sum();
@@ -105,7 +107,8 @@ pub(super) fn by_order(steady: &[Steady], place: Place) -> Option<Vec<Option<(u8
     kept.iter().any(Option::is_some).then_some(kept)
 }
 
-/// How many steps after `since_s` each look stands, where it is the same digit whenever it does; none where too few different ones follow.
+/// How many steps after `since_s` each look stands, where it is the same digit whenever it does; none where too few
+/// different ones follow.
 fn steps(steady: &[Steady], place: Place, since_s: f64, modulus: usize) -> Option<Vec<Option<usize>>> {
     let step = |stand: &Stand| (((stand.middle_s - since_s) / place.step_s).floor() as i64).rem_euclid(modulus as i64);
     let of = |one: &Steady| {
@@ -120,7 +123,8 @@ fn steps(steady: &[Steady], place: Place, since_s: f64, modulus: usize) -> Optio
     (different.len() >= FOLLOWING).then_some(steps)
 }
 
-/// What the network says of a look in all of its stands: the likeliest digit and the mean (geometric) of its probabilities.
+/// What the network says of a look in all of its stands: the likeliest digit and the mean (geometric) of its
+/// probabilities.
 pub(super) fn network(one: &Steady) -> Option<(u8, f64)> {
     let mean = |digit: usize| {
         let sum: f64 = one.stands.iter().map(|stand| stand.log_digits[digit]).sum();
@@ -141,7 +145,8 @@ mod tests {
     use super::*;
     use crate::clock::look::CELLS;
 
-    /// What stood from `first` on, each for a tenth; `says` gives the network's digit of each, none where it does not know.
+    /// What stood from `first` on, each for a tenth; `says` gives the network's digit of each, none where it does not
+    /// know.
     fn steady(says: &[Option<usize>]) -> Vec<Steady> {
         let one = |(k, says): (usize, &Option<usize>)| {
             let mut log_digits = [(0.1f64).ln(); 10];

@@ -1,9 +1,9 @@
 //! A frame to one reading of the clock.
 //!
-//! In: the frames of a video, in order. Out: a [`Reading`] of each. The first frames are kept until about a second is there, from which the
-//! clock's place ([`super::locate`]), its cells and its glyphs ([`super::learn`]) are learnt; those frames are read afterwards
-//! ([`ClockReader::earlier`]). From then on only the clock's pixels are looked at ([`super::follow`]). A clock that can't be read for a
-//! while is learnt anew beside.
+//! In: the frames of a video, in order. Out: a [`Reading`] of each. The first frames are kept until about a second is
+//! there, from which the clock's place ([`super::locate`]), its cells and its glyphs ([`super::learn`]) are learnt;
+//! those frames are read afterwards ([`ClockReader::earlier`]). From then on only the clock's pixels are looked at
+//! ([`super::follow`]). A clock that can't be read for a while is learnt anew beside.
 
 use super::beside::Misfit;
 use super::crop::{Eye, Gray, Rect};
@@ -92,7 +92,8 @@ impl ClockReader {
             let inside = x >= -1.0 && y >= -1.0 && x + w <= width as f64 + 1.0 && y + h <= height as f64 + 1.0;
             if !inside {
                 return Err(format!(
-                    "the clock's roi = [{x}, {y}, {w}, {h}] reaches outside of the picture, which is {width} x {height} \
+                    "the clock's roi = [{x}, {y}, {w}, {h}] reaches outside of the picture, which is {width} x \
+                     {height} \
                      pixels as it is shown; {help}"
                 ));
             }
@@ -217,8 +218,8 @@ impl ClockReader {
         Some((window, follower, readings))
     }
 
-    /// Readings, by the frames' indices, of frames from which [`step`](Self::step) abstained because the clock's place and glyphs were
-    /// not yet known: to be asked for once, after the last frame, and to be put in their places.
+    /// Readings, by the frames' indices, of frames from which [`step`](Self::step) abstained because the clock's place
+    /// and glyphs were not yet known: to be asked for once, after the last frame, and to be put in their places.
     pub fn earlier(&mut self) -> Vec<(u64, Reading)> {
         if self.search.is_some() {
             self.learn();
@@ -232,8 +233,8 @@ impl ClockReader {
         self.region
     }
 
-    /// What stands beside the clock's digits that the format does not have, where it was seen while the clock was learnt; frames with
-    /// [`Doubt::OtherFormat`] say where else.
+    /// What stands beside the clock's digits that the format does not have, where it was seen while the clock was
+    /// learnt; frames with [`Doubt::OtherFormat`] say where else.
     #[must_use]
     pub fn misfit(&self) -> Option<&Misfit> {
         self.misfit.as_ref()
@@ -268,8 +269,8 @@ impl Window {
         Self { rect: Rect { x: x * step, y: y * step, width: width * step, height: height * step }, step }
     }
 
-    /// The part of it in which the clock's digits are and what stands beside them, to which their cells are moved; and that of the
-    /// digits alone.
+    /// The part of it in which the clock's digits are and what stands beside them, to which their cells are moved; and
+    /// that of the digits alone.
     fn shrunk(self, follower: &mut Follower) -> (Self, Self) {
         let size = [self.rect.width / self.step, self.rect.height / self.step];
         let cells = &mut follower.model.cells;

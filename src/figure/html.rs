@@ -22,7 +22,8 @@ pub struct Page {
 const STYLE: &str = "body{font:16px/1.45 system-ui,sans-serif;max-width:72rem;margin:2rem auto;padding:0 1rem;color:#222}\
 h1{font-weight:500}h2{font-weight:500;margin-top:2.5rem}img{max-width:100%;border:1px solid #ddd}\
 table{border-collapse:collapse;font-size:14px;font-variant-numeric:tabular-nums}th,td{padding:.2rem .6rem;border-bottom:1px solid #e4e4e4;text-align:left}\
-th{position:sticky;top:0;background:#fff}tr.out td{background:#fff3e0}figure{margin:2rem 0}figcaption{font-size:15px;color:#444;max-width:60rem}.scroll{max-height:36rem;overflow:auto}@media print{.scroll{max-height:none}}";
+th{position:sticky;top:0;background:#fff}tr.out \
+td{background:#fff3e0}figure{margin:2rem 0}figcaption{font-size:15px;color:#444;max-width:60rem}.scroll{max-height:36rem;overflow:auto}@media print{.scroll{max-height:none}}";
 
 impl Page {
     /// An empty page.
@@ -53,7 +54,8 @@ impl Page {
         let (number, caption) = (escape(number), escape(caption));
         let _ = writeln!(
             self.body,
-            "<figure><img alt=\"{number}\" src=\"data:image/png;base64,{data}\"><figcaption><b>{number}.</b> {caption}</figcaption></figure>"
+            "<figure><img alt=\"{number}\" src=\"data:image/png;base64,{data}\"><figcaption><b>{number}.</b> \
+             {caption}</figcaption></figure>"
         );
     }
 
@@ -97,7 +99,8 @@ impl Page {
     /// The whole page.
     pub fn finish(self) -> String {
         format!(
-            "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>{}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n{}</body>\n</html>\n",
+            "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta \
+             charset=\"utf-8\">\n<title>{}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n{}</body>\n</html>\n",
             escape(&self.title),
             self.body
         )

@@ -1,7 +1,7 @@
 //! Where ticks and names stand on plots with logarithmic axes.
 //!
-//! In: the axis' range; boxes in pixels that are taken. Out: ticks; for each name the step from its point to its left top corner. Pixels
-//! count from the left top.
+//! In: the axis' range; boxes in pixels that are taken. Out: ticks; for each name the step from its point to its left
+//! top corner. Pixels count from the left top.
 
 use std::ops::Range;
 
@@ -37,8 +37,8 @@ pub(super) fn ticks(low: f64, high: f64) -> (Vec<f64>, Vec<f64>) {
     (multiples(named, step), multiples(light, 1))
 }
 
-/// Where the names of points stand, each beside its point `(x, y)` and the `clear` pixels about it, inside of `across` and `down`, on none
-/// of the places `taken` and on no other name where there is room.
+/// Where the names of points stand, each beside its point `(x, y)` and the `clear` pixels about it, inside of `across`
+/// and `down`, on none of the places `taken` and on no other name where there is room.
 pub(super) fn names(
     points: &[((i32, i32), i32, &str)],
     mut taken: Vec<Place>,

@@ -327,7 +327,8 @@ impl Plot {
         Ok(())
     }
 
-    /// In which corner the legend covers the fewest points, the right top one if they are alike, and about where it stands there.
+    /// In which corner the legend covers the fewest points, the right top one if they are alike, and about where it
+    /// stands there.
     fn legend<B: DrawingBackend, X, Y>(
         &self,
         chart: &ChartContext<'_, B, Cartesian2d<X, Y>>,

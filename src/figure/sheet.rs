@@ -133,7 +133,8 @@ impl Sheet {
         let layout = self.layout();
         let [width, height] = layout.size;
         let mut svg = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} \
+             {height}\" \
              font-family=\"Ubuntu, sans-serif\" fill=\"#222\">\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n\
              <text x=\"{GAP}\" y=\"32\" font-size=\"20\">{}</text>\n",
             escape(&self.title)

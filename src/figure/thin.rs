@@ -1,8 +1,8 @@
-//! Long series of the same rows thinned for a picture: bins of equal numbers of rows that keep the extremes, at most [`MOST_BINS`] of
-//! them.
+//! Long series of the same rows thinned for a picture: bins of equal numbers of rows that keep the extremes, at most
+//! [`MOST_BINS`] of them.
 //!
-//! Rows are fed one after the other, a value a series or none. When the bins are full, neighbours are joined and a bin holds twice the rows; so memory
-//! does not grow with the series, and no peak is lost.
+//! Rows are fed one after the other, a value a series or none. When the bins are full, neighbours are joined and a bin
+//! holds twice the rows; so memory does not grow with the series, and no peak is lost.
 
 /// More bins than a picture has columns.
 pub const MOST_BINS: usize = 2048;
@@ -136,7 +136,8 @@ impl Thinned {
         self.bins.split(move |b| b.series[series].is_none()).filter(|run| !run.is_empty())
     }
 
-    /// The curve of a series: of each bin the lowest and the highest value in the order of time. A new piece after every gap.
+    /// The curve of a series: of each bin the lowest and the highest value in the order of time. A new piece after
+    /// every gap.
     #[must_use]
     pub fn curve(&self, series: usize) -> Vec<Vec<[f64; 2]>> {
         self.runs(series).map(|run| run.iter().flat_map(|bin| extremes(bin, series)).collect()).collect()

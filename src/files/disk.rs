@@ -4,8 +4,9 @@ use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Up to so many files, a call for each; beyond, one for the whole disk, which waits for what others write there as well. Measured on ext4
-/// (virtual disk) with files of 4 kB: 5 to 7 ms for each file's own call, 5 to 18 ms for the disk's (135 ms beside a compilation).
+/// Up to so many files, a call for each; beyond, one for the whole disk, which waits for what others write there as
+/// well. Measured on ext4 (virtual disk) with files of 4 kB: 5 to 7 ms for each file's own call, 5 to 18 ms for the
+/// disk's (135 ms beside a compilation).
 const FEW: usize = 16;
 /// Calls at a time: the disk does them together.
 const AT_ONCE: usize = 8;

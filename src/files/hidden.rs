@@ -1,7 +1,8 @@
 //! Hidden folders and files beside results, in which these are made: `.lunula-*`, each locked by its maker.
 //!
-//! The lock is the process's: it is free as soon as that has ended, however it ended. So what a killed run left is known from what another
-//! run is at work on, and the next run in that folder clears it. Where the file system knows no locks, nothing is cleared.
+//! The lock is the process's: it is free as soon as that has ended, however it ended. So what a killed run left is
+//! known from what another run is at work on, and the next run in that folder clears it. Where the file system knows no
+//! locks, nothing is cleared.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io;
@@ -85,13 +86,14 @@ fn is_ours(file: &File, place: &Path) -> bool {
     }
 }
 
-/// Whether a folder lies in a hidden one of ours, or in that of a pipeline: it is nobody's business but this run's, which brings what it
-/// makes there onto the disk when it takes it out.
+/// Whether a folder lies in a hidden one of ours, or in that of a pipeline: it is nobody's business but this run's,
+/// which brings what it makes there onto the disk when it takes it out.
 pub(super) fn is_private(folder: &Path) -> bool {
     folder.components().any(|part| part.as_os_str().to_string_lossy().starts_with(".lunula"))
 }
 
-/// Removes what killed runs left in `folder`. What they had taken from its place, to put theirs there, goes back where that is free.
+/// Removes what killed runs left in `folder`. What they had taken from its place, to put theirs there, goes back where
+/// that is free.
 ///
 /// What can't be removed now, the next run tries again.
 pub(super) fn clear(folder: &Path) {

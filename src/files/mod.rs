@@ -1,9 +1,9 @@
 //! Results appear whole or not at all.
 //!
-//! Everything that a job writes goes into a hidden folder beside its place, on the same disk (`hidden`). When the job is done and all of it
-//! is on the disk, each file is renamed to where it belongs, so that nobody ever sees half of one (`staging`); where one can't be,
-//! those before it are put back. A job that fails or is interrupted leaves what stood there before as it was; what one that was killed
-//! left is cleared by the next one in that folder.
+//! Everything that a job writes goes into a hidden folder beside its place, on the same disk (`hidden`). When the job
+//! is done and all of it is on the disk, each file is renamed to where it belongs, so that nobody ever sees half of one
+//! (`staging`); where one can't be, those before it are put back. A job that fails or is interrupted leaves what stood
+//! there before as it was; what one that was killed left is cleared by the next one in that folder.
 
 pub(crate) mod disk;
 mod hidden;
@@ -22,7 +22,10 @@ pub use staging::{Places, Staging};
 #[derive(Debug, Error)]
 pub enum WriteError {
     /// The folder for the results.
-    #[error("{}: cannot be written to ({why}); choose another --out or make room and permission for it", .path.display())]
+    #[error(
+        "{}: cannot be written to ({why}); choose another --out or make room and permission for it",
+        .path.display()
+    )]
     Folder {
         /// Which folder.
         path: PathBuf,
@@ -39,7 +42,8 @@ pub enum WriteError {
     },
     /// Files that were replaced before one could not be, and that could not be put back.
     #[error(
-        "{}: cannot be written ({why}), and what stood before could not be put back: {} changed; what was there is kept in {}; \
+        "{}: cannot be written ({why}), and what stood before could not be put back: {} changed; what was there is \
+         kept in {}; \
          make room and run again",
         .path.display(), listed(.changed), listed(.kept)
     )]
@@ -54,7 +58,10 @@ pub enum WriteError {
         kept: Vec<PathBuf>,
     },
     /// A folder stands where a file has to go.
-    #[error("{}: is a folder, and a result of this name has to go there; move it or choose another --out", .0.display())]
+    #[error(
+        "{}: is a folder, and a result of this name has to go there; move it or choose another --out",
+        .0.display()
+    )]
     FolderInTheWay(PathBuf),
 }
 
@@ -73,8 +80,8 @@ pub(crate) fn note_placed(folder: &Path) {
     }
 }
 
-/// Whether this process put results into a folder that stands: whatever fails after that, something was done. (Folders for measuring and
-/// trying are gone when their job ends.)
+/// Whether this process put results into a folder that stands: whatever fails after that, something was done. (Folders
+/// for measuring and trying are gone when their job ends.)
 #[must_use]
 pub fn results_stand() -> bool {
     PLACED.lock().unwrap_or_else(PoisonError::into_inner).iter().any(|folder| folder.exists())

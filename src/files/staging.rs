@@ -131,8 +131,8 @@ impl Staging {
         commit(std::iter::once(self).chain(others).collect(), None)
     }
 
-    /// Puts the files and folders `names` of [`Staging::path`] into their places, in this order. They take the places of whatever stands
-    /// there; of a name that is not in the hidden folder, what stands in its place goes.
+    /// Puts the files and folders `names` of [`Staging::path`] into their places, in this order. They take the places
+    /// of whatever stands there; of a name that is not in the hidden folder, what stands in its place goes.
     ///
     /// # Errors
     /// As [`Staging::commit`].
@@ -352,8 +352,8 @@ pub struct Places {
 }
 
 impl Places {
-    /// A folder where results live though this run may have nothing to write there: what killed runs left in it is cleared, as it is
-    /// where something is written.
+    /// A folder where results live though this run may have nothing to write there: what killed runs left in it is
+    /// cleared, as it is where something is written.
     pub fn look_after(&self, folder: &Path) {
         if !hidden::is_private(folder) {
             hidden::clear(folder);

@@ -1,7 +1,7 @@
 //! Multiples of a step: the times and loads at which a job tells something.
 
-/// `k` times the step: of a step that is a decimal fraction the nearest number to that fraction's multiple, so that a row stands at 0.07
-/// and not at 0.07 and a last bit.
+/// `k` times the step: of a step that is a decimal fraction the nearest number to that fraction's multiple, so that a
+/// row stands at 0.07 and not at 0.07 and a last bit.
 pub(super) fn multiple(k: usize, step: f64) -> f64 {
     let scales = (0..=9).map(|digits| 10_u64.pow(digits) as f64);
     let whole = scales

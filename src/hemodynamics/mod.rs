@@ -1,6 +1,7 @@
 //! The hemodynamic model of section 4.3: loads in, responses, equilibria, fits and pictures out.
 //!
-//! The model and its mathematics are the crate `lunula-hemodynamics`'; here are the files and the jobs of the command line, an entry each:
+//! The model and its mathematics are the crate `lunula-hemodynamics`'; here are the files and the jobs of the command
+//! line, an entry each:
 //! [`simulate()`], [`curve()`], [`fit()`].
 
 mod choices;

@@ -1,9 +1,11 @@
-//! People that are generated: the model with values and photodiodes of their own, pressing as section 4.3.4 lets them, with noise.
+//! People that are generated: the model with values and photodiodes of their own, pressing as section 4.3.4 lets them,
+//! with noise.
 //!
-//! In: the middle of people's values, and a seed for each. Out: what is recorded of them, Fig. 79 and 81 slowly, Fig. 80 and 82 quickly. Forces here are
-//! pressing ones: positive.
+//! In: the middle of people's values, and a seed for each. Out: what is recorded of them, Fig. 79 and 81 slowly, Fig.
+//! 80 and 82 quickly. Forces here are pressing ones: positive.
 //!
-//! Walls touch instead of closing ([`Collapse::Contact`]): the thesis' forces reach 2 N, and on 1 cm2 the model of its table closes at 1.1 N.
+//! Walls touch instead of closing ([`Collapse::Contact`]): the thesis' forces reach 2 N, and on 1 cm2 the model of its
+//! table closes at 1.1 N.
 
 use lunula_hemodynamics::{Collapse, Load, Optics, Parameters, Recording, Symbol, Trace};
 use rand::SeedableRng;
@@ -23,7 +25,8 @@ const SCALING: (f64, f64) = (0.35, 4.0);
 const NOISE: f64 = 0.01;
 /// Noise of the force, N.
 const FORCE_NOISE_N: f64 = 0.01;
-/// Of a dynamic recording: rows a second, its end, pressing and letting go (s), how long that takes, and the force held.
+/// Of a dynamic recording: rows a second, its end, pressing and letting go (s), how long that takes, and the force
+/// held.
 const RATE: u32 = 100;
 const END_S: f64 = 4.5;
 pub(in crate::hemodynamics) const PRESSED_S: f64 = 0.5;
@@ -62,7 +65,8 @@ impl Person {
     pub const COUNT: usize = 8;
     /// The force's area, m2: a newton is 1 N/cm2.
     pub const AREA_M2: f64 = 1e-4;
-    /// What `k_C`, `b_C`, `k_V` and `b_V` of the thesis' table are multiplied by to have its measured time constants, as docs/section-4-3.md tells.
+    /// What `k_C`, `b_C`, `k_V` and `b_V` of the thesis' table are multiplied by to have its measured time constants,
+    /// as docs/section-4-3.md tells.
     const TUNED: [f64; 4] =
         [0.733_905_503_853_136_7, 1.176_448_318_448_69, 10.000_000_000_000_002, 0.099_999_999_999_999_98];
 

@@ -1,7 +1,7 @@
 //! What one cell of text means: a number, missing, or neither; and whether a cell of `led` says on or off.
 //!
-//! Numbers have a decimal point or, where cells are not separated by commas, a decimal comma; not both in one file, and no
-//! marks between thousands.
+//! Numbers have a decimal point or, where cells are not separated by commas, a decimal comma; not both in one file, and
+//! no marks between thousands.
 
 /// The words that say that a number is missing, without regard to case.
 const MISSING: [&str; 4] = ["nan", "na", "n/a", "null"];

@@ -1,8 +1,9 @@
 //! Which column of a file is time, LED, photodiode, force: as the user says, by the contract's names, by a guess.
 //!
-//! In: the names in the file's header and the user's mapping. Out: a [`Choice`]. A name that the user gives is looked for as it
-//! is, then without regard to case; `#2` is the second column, whatever its name. Then come the contract's own names; then, for
-//! what is still not found, [`guess`](super::guess), which only counts where a single column answers to it and is told.
+//! In: the names in the file's header and the user's mapping. Out: a [`Choice`]. A name that the user gives is looked
+//! for as it is, then without regard to case; `#2` is the second column, whatever its name. Then come the contract's
+//! own names; then, for what is still not found, [`guess`](super::guess), which only counts where a single column
+//! answers to it and is told.
 
 use std::collections::{HashMap, HashSet};
 use std::num::NonZeroUsize;
@@ -38,8 +39,8 @@ pub(super) struct Choice {
 }
 
 impl Columns {
-    /// Reads a mapping such as `P1=ch_3,P2=ch_4,time_s=timestamp,Fz_N=fz`: the contract's name, then the file's. The file's name
-    /// may stand in double quotes, and `#2` means its second column.
+    /// Reads a mapping such as `P1=ch_3,P2=ch_4,time_s=timestamp,Fz_N=fz`: the contract's name, then the file's. The
+    /// file's name may stand in double quotes, and `#2` means its second column.
     ///
     /// # Errors
     /// What is wrong and what to write instead.

@@ -1,21 +1,22 @@
 //! Reads any lab's log: photodiodes and forces with time stamps, and whether the LED was on.
 //!
-//! In: a CSV file (of any of the usual dialects, also gzipped), a Parquet file or, with the cargo feature `xdf`, a recording of
-//! the Lab Streaming Layer; and [`Columns`], which says what the file calls its columns where that is not what the contract
-//! calls them. Out: a [`Log`], its rows in the order of time; and [`samples`] of it, the light that is not the LED's taken away.
-//! [`LogReading`] is both together: the road of every job that works on logs.
+//! In: a CSV file (of any of the usual dialects, also gzipped), a Parquet file or, with the cargo feature `xdf`, a
+//! recording of the Lab Streaming Layer; and [`Columns`], which says what the file calls its columns where that is not
+//! what the contract calls them. Out: a [`Log`], its rows in the order of time; and [`samples`] of it, the light that
+//! is not the LED's taken away. [`LogReading`] is both together: the road of every job that works on logs.
 //!
 //! The walk: `text` opens the file and finds its header, `columns` (and `guess`) choose columns by their names, `rows`
 //! (or `parquet`, `xdf`) read cells, `cell` and `stamps` say what one cell means, `order` looks at time as a whole;
 //! then `ambient`.
 //!
-//! Conventions. Time is in seconds: since 1970-01-01T00:00Z for date-time stamps with a zone, since 1970-01-01T00:00 of the
-//! log's own wall clock for those without, since midnight for times of day; numbers as they are, in the unit that the user or
-//! the column's name gives, else seconds. 64-bit floating point holds seconds since 1970 to 0.24 microseconds. What is missing
-//! (an empty cell, `NaN`, `NA`, `n/a`, `null`) is NaN; any other text and infinity are errors that name line and column. A row
-//! without time, or without `led` where the log has it, is left out and counted. Rows that stand in the wrong place by
-//! little are sorted. A clock that is reset (time falls back and goes on from there, or leaps by more than a day) is an error
-//! that says where; [`Columns::piece`] chooses the stretch between two resets.
+//! Conventions. Time is in seconds: since 1970-01-01T00:00Z for date-time stamps with a zone, since 1970-01-01T00:00 of
+//! the log's own wall clock for those without, since midnight for times of day; numbers as they are, in the unit that
+//! the user or the column's name gives, else seconds. 64-bit floating point holds seconds since 1970 to 0.24
+//! microseconds. What is missing (an empty cell, `NaN`, `NA`, `n/a`, `null`) is NaN; any other text and infinity are
+//! errors that name line and column. A row without time, or without `led` where the log has it, is left out and
+//! counted. Rows that stand in the wrong place by little are sorted. A clock that is reset (time falls back and goes on
+//! from there, or leaps by more than a day) is an error that says where; [`Columns::piece`] chooses the stretch between
+//! two resets.
 
 mod ambient;
 mod cell;
@@ -63,8 +64,8 @@ pub struct Log {
     pub path: PathBuf,
     /// The log's time of each row, seconds, ascending; a stamp may stand several times.
     pub time_s: Vec<f64>,
-    /// The log's time at the midnight before its first stamp, of the wall clock as the stamps write it, seconds; where stamps are
-    /// dates with times of day, or times of day.
+    /// The log's time at the midnight before its first stamp, of the wall clock as the stamps write it, seconds; where
+    /// stamps are dates with times of day, or times of day.
     pub midnight_s: Option<f64>,
     /// For each row, whether the LED was on; none where the log does not tell: all rows are lit.
     pub led: Option<Vec<bool>>,
@@ -128,8 +129,8 @@ impl Log {
     /// Reads a log.
     ///
     /// # Errors
-    /// A file that can't be read, columns that are missing or ambiguous, a cell that is neither number nor missing, a clock that
-    /// was reset, no rows: each with its place and what to do.
+    /// A file that can't be read, columns that are missing or ambiguous, a cell that is neither number nor missing, a
+    /// clock that was reset, no rows: each with its place and what to do.
     pub fn read(path: &Path, columns: &Columns) -> Result<Self, LogError> {
         let raw = match Format::of(path) {
             Format::Text => rows::read(path, columns)?,
@@ -138,7 +139,8 @@ impl Log {
             Format::Xdf => xdf::read(path, columns)?,
             #[cfg(not(feature = "xdf"))]
             Format::Xdf => {
-                let what = "is a recording of the Lab Streaming Layer, which this lunula was built without; build it with \
+                let what = "is a recording of the Lab Streaming Layer, which this lunula was built without; build it \
+                            with \
                             `cargo build --release --features xdf`";
                 return Err(LogError::File { path: path.to_owned(), what: what.to_owned() });
             }

@@ -3,8 +3,9 @@
 //! In: rows in the file's order. Out: a [`Log`] whose time ascends, and notes on what its time is like.
 //!
 //! A run of rows that are late (behind the latest stamp so far) is a small disorder, and sorted, where it has at most
-//! [`LATE_ROWS`] rows, reaches back by at most as many steps, and takes a hole that is there for it: sorted, the rows there are about
-//! as dense as everywhere. Anything else that falls back is a clock that was reset, and so is a leap of more than a day.
+//! [`LATE_ROWS`] rows, reaches back by at most as many steps, and takes a hole that is there for it: sorted, the rows
+//! there are about as dense as everywhere. Anything else that falls back is a clock that was reset, and so is a leap of
+//! more than a day.
 
 use std::num::NonZeroUsize;
 
@@ -83,7 +84,8 @@ fn one_piece(raw: &mut Raw, rows: Vec<usize>, piece: Option<NonZeroUsize>) -> Re
         let does = if after < before { "falls back" } else { "leaps" };
         let which = if pieces > 2 { format!(" (the first of {} such places)", pieces - 1) } else { String::new() };
         let what = format!(
-            "time {does} from {before} s to {after} s here{which}, as where a clock is set; cut the file there, or choose \
+            "time {does} from {before} s to {after} s here{which}, as where a clock is set; cut the file there, or \
+             choose \
              one of the {pieces} pieces with --piece"
         );
         return Err(error(raw, at, what));
@@ -176,7 +178,8 @@ fn tell_repeats(raw: &mut Raw, rows: &[usize], time_s: &[f64], step_s: Option<f6
         let rows_a_block = time_s.len() as f64 / distinct as f64;
         let apart = step_s.map(|s| format!(", {} s apart", short(s))).unwrap_or_default();
         raw.notes.push(format!(
-            "rows come in blocks of one time stamp (about {rows_a_block:.1} rows each{apart}); when a row was taken is known only to the block"
+            "rows come in blocks of one time stamp (about {rows_a_block:.1} rows each{apart}); when a row was taken \
+             is known only to the block"
         ));
     } else {
         let place = raw.word.at(raw.places[rows[first]]);

@@ -1,8 +1,8 @@
 //! The road from a file to rows of the LED's own light, for every job that works on logs.
 //!
-//! In: a file, and what the user says about it. Out: whether it is a log ([`LogReading::is_log`]) or a table of rows that are ready to be used
-//! (as `lunula align` and `lunula simulate` write them); of a log its lit rows, faults flagged ([`LogReading::lit_rows`]), and the loads of its
-//! unlit ones.
+//! In: a file, and what the user says about it. Out: whether it is a log ([`LogReading::is_log`]) or a table of rows
+//! that are ready to be used (as `lunula align` and `lunula simulate` write them); of a log its lit rows, faults
+//! flagged ([`LogReading::lit_rows`]), and the loads of its unlit ones.
 
 use std::path::Path;
 
@@ -50,8 +50,8 @@ impl UnlitLoads {
 }
 
 impl LogReading {
-    /// Whether a file is read as a log: it has a column that says when the LED was on, is no CSV or Parquet table by its name, or the user says
-    /// something about logs.
+    /// Whether a file is read as a log: it has a column that says when the LED was on, is no CSV or Parquet table by
+    /// its name, or the user says something about logs.
     ///
     /// # Errors
     /// A table that is missing or damaged.
@@ -71,7 +71,8 @@ impl LogReading {
         names.iter().any(|name| is_led(name))
     }
 
-    /// The columns of a stream of rows under the contract's names, how many of its time units make a second, and what was guessed.
+    /// The columns of a stream of rows under the contract's names, how many of its time units make a second, and what
+    /// was guessed.
     ///
     /// # Errors
     /// A column that is named and not there, or could be several, in words.

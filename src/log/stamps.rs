@@ -1,13 +1,14 @@
 //! Time stamps to seconds: numbers in a unit, dates with times of day, times of day alone.
 //!
 //! - numbers: `0.04`, `1634808058216` (with a unit);
-//! - ISO 8601 and what is near it: `2021-10-21 09:20:58.216642589+00:00`, `2021-10-21T09:20:58Z`, `2021/10/21 09:20:58`,
-//!   `21.10.2021 09:20:58,216`; with or without a zone, down to nanoseconds. `10/21/2021` is refused: nobody can tell which is
-//!   the month in `10/11/2021`;
-//! - times of day: `09:20:58.216`; one that lies nearer to the last stamp on another day is taken to be on that day, so that
-//!   time goes on over midnight.
+//! - ISO 8601 and what is near it: `2021-10-21 09:20:58.216642589+00:00`, `2021-10-21T09:20:58Z`,
+//!   `2021/10/21 09:20:58`, `21.10.2021 09:20:58,216`; with or without a zone, down to nanoseconds. `10/21/2021` is
+//!   refused: nobody can tell which is the month in `10/11/2021`;
+//! - times of day: `09:20:58.216`; one that lies nearer to the last stamp on another day is taken to be on that day, so
+//!   that time goes on over midnight.
 //!
-//! Out: seconds, and the midnight of the wall clock before the first stamp. The first stamp says which kind they all are.
+//! Out: seconds, and the midnight of the wall clock before the first stamp. The first stamp says which kind they all
+//! are.
 
 use jiff::civil::{Date, Time};
 use jiff::fmt::temporal::Pieces;
@@ -164,7 +165,8 @@ impl Stamps {
     }
 }
 
-/// The unit of a bare number that may count since 1970, of the years 2001 to 2096, and a note where it does in anything but seconds.
+/// The unit of a bare number that may count since 1970, of the years 2001 to 2096, and a note where it does in anything
+/// but seconds.
 fn since_1970(stamp: f64) -> (TimeUnit, Option<String>) {
     const YEARS_2001_TO_2096: std::ops::Range<f64> = 1e9..4e9;
     let units = [

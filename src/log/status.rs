@@ -1,4 +1,5 @@
-//! What align writes into `sensor_status`: `ok`, `saturated: P1, P3`, `no ambient: P2`, `no ambient` (of all), several joined by `; `.
+//! What align writes into `sensor_status`: `ok`, `saturated: P1, P3`, `no ambient: P2`, `no ambient` (of all), several
+//! joined by `; `.
 
 use std::collections::HashSet;
 

@@ -1,9 +1,9 @@
 //! A log as text: opened, unpacked, its header found, its delimiter told.
 //!
-//! Gzip is known by its first bytes, UTF-16 by its byte-order mark; a byte-order mark of UTF-8 is taken off. Lines that begin with
-//! `#` before the header, and empty ones, are passed over; where there is no header but a line of names behind the last `#` (as
-//! NumPy writes it), that is the header. The delimiter is the one of tab, `;` and `,` that the header and the first rows agree
-//! on.
+//! Gzip is known by its first bytes, UTF-16 by its byte-order mark; a byte-order mark of UTF-8 is taken off. Lines that
+//! begin with `#` before the header, and empty ones, are passed over; where there is no header but a line of names
+//! behind the last `#` (as NumPy writes it), that is the header. The delimiter is the one of tab, `;` and `,` that the
+//! header and the first rows agree on.
 
 use std::path::Path;
 
@@ -116,7 +116,8 @@ impl Layout {
                 Ok(Self { delimiter, names, body: at, lines_before: line - 1, notes })
             }
             None => Err(format!(
-                "line {line} holds numbers where the columns' names should be; begin the file with a line such as time_s,P1,P2"
+                "line {line} holds numbers where the columns' names should be; begin the file with a line such as \
+                 time_s,P1,P2"
             )),
         }
     }

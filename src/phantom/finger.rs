@@ -2,8 +2,8 @@
 //!
 //! In: joint angles. Out: the [`Posture`] of a [`Finger`]: its bones' ends and its markers' centres.
 //!
-//! Conventions: picture coordinates are x right, y down, pixels; a segment's direction grows clockwise on the picture; joint
-//! angles are radians, positive in flexion, J1 MP, J2 PIP, J3 DIP.
+//! Conventions: picture coordinates are x right, y down, pixels; a segment's direction grows clockwise on the picture;
+//! joint angles are radians, positive in flexion, J1 MP, J2 PIP, J3 DIP.
 
 use serde::Serialize;
 
@@ -191,8 +191,8 @@ const THUMB_FOLLOWS: [[f64; 2]; 2] = [[0.17, 0.30], [0.09, 0.50]];
 const BENDING: f64 = 3.0;
 
 impl Finger {
-    /// The finger of the prototype's scenes, for a picture of this size: lengths of 100, 122, 87, 61 pixels and markers of
-    /// 10.5 pixels' radius where it is 1280 wide; with paint, a hand of 150 pixels, and a thumb.
+    /// The finger of the prototype's scenes, for a picture of this size: lengths of 100, 122, 87, 61 pixels and markers
+    /// of 10.5 pixels' radius where it is 1280 wide; with paint, a hand of 150 pixels, and a thumb.
     #[must_use]
     pub fn new(width: usize, height: usize, flexion: Flexion, layout: MarkerLayout) -> Self {
         let scale = width as f64 / 1280.0;

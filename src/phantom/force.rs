@@ -1,7 +1,8 @@
 //! How a fingertip presses and shears (section 3.3, Fig. 23, 26, 29; section 5.2.3, equations 21 to 23).
 //!
-//! In: the time. Out: `[Fx, Fy, Fz]`, newtons, those of the finger on the surface: pressing is a negative Fz. The trajectories of
-//! calibrations are the predictor crate's, which plans with them; [`Cycles`] are the preliminary experiments'.
+//! In: the time. Out: `[Fx, Fy, Fz]`, newtons, those of the finger on the surface: pressing is a negative Fz. The
+//! trajectories of calibrations are the predictor crate's, which plans with them; [`Cycles`] are the preliminary
+//! experiments'.
 
 use std::f64::consts::TAU;
 
@@ -17,7 +18,8 @@ use serde::Serialize;
 pub enum Cycles {
     /// Fz from 0 to -4 N and back, no shear (3.3.2, Fig. 23).
     Normal,
-    /// Fx to 2 N, to -2 N and back while Fz is held at -3 N; held as well as people can: it swings a little, twice a cycle (3.3.3, Fig. 26).
+    /// Fx to 2 N, to -2 N and back while Fz is held at -3 N; held as well as people can: it swings a little, twice a
+    /// cycle (3.3.3, Fig. 26).
     Lateral,
     /// Fy to 2 N, to -2 N and back while Fz is held at -3 N (3.3.4, Fig. 29).
     Longitudinal,
@@ -27,7 +29,8 @@ pub enum Cycles {
 const NORMAL_N: f64 = 4.0;
 const HELD_N: f64 = 3.0;
 const SHEAR_N: f64 = 2.0;
-/// How far the pressing swings under lateral shear, newtons. Fig. 26 is a drawing that says "small but consistent"; the size is assumed.
+/// How far the pressing swings under lateral shear, newtons. Fig. 26 is a drawing that says "small but consistent"; the
+/// size is assumed.
 const SWING_N: f64 = 0.15;
 
 impl Cycles {
@@ -64,7 +67,8 @@ pub enum ForceTrajectory {
         /// How often a second.
         hz: f64,
     },
-    /// Smooth and band-limited, within the cone of friction of the usual [`Spiral`]: the pressing goes from 0 to its greatest.
+    /// Smooth and band-limited, within the cone of friction of the usual [`Spiral`]: the pressing goes from 0 to its
+    /// greatest.
     Random {
         /// Rates lie between 0.4 and 4 times this.
         hz: f64,

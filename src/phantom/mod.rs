@@ -1,8 +1,8 @@
 //! Synthetic scenes with exact truth: inputs exactly as the jobs read them, and what should come out.
 //!
-//! A scene is a continuous, band-limited function of the place on the picture. The photograph is that function at the pixel
-//! centres, with noise and rounding; the truth is the same function where the job's result should hold it. A sensor's log is likewise
-//! the volts of a continuous movement at the samples' times.
+//! A scene is a continuous, band-limited function of the place on the picture. The photograph is that function at the
+//! pixel centres, with noise and rounding; the truth is the same function where the job's result should hold it. A
+//! sensor's log is likewise the volts of a continuous movement at the samples' times.
 
 mod faults;
 pub mod finger;

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 /// Synthetic photographs, whose `truth` is a folder of theirs alone.
 pub(super) const PHOTOS_RECORD: &str = "truth/phantom.json";
 
-/// What stands under `out`, is one of `names`, and was not written by whoever writes `record`; or belongs to photographs.
+/// What stands under `out`, is one of `names`, and was not written by whoever writes `record`; or belongs to
+/// photographs.
 pub(super) fn in_the_way(out: &Path, names: &[&str], record: &str) -> Option<PathBuf> {
     let photographs = Some(out.join(PHOTOS_RECORD)).filter(|place| record != PHOTOS_RECORD && place.exists());
     let stands = || names.iter().map(|name| out.join(name)).find(|place| place.exists());

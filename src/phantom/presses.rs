@@ -1,13 +1,15 @@
-//! Slow and quick presses on a generated person's pulp, exactly as `lunula fit` reads them, with what is true of the person (4.3.4, Fig. 79 to 82).
+//! Slow and quick presses on a generated person's pulp, exactly as `lunula fit` reads them, with what is true of the
+//! person (4.3.4, Fig. 79 to 82).
 //!
 //! In: [`PressOptions`]. Out, under one folder:
-//! - `slow.csv`: `Fz_N,pf1_Pa,pf2_Pa` and the photodiode of the pressed place (`VP1` proximal, `VP2` distal), volts; equilibria, 0 to 2 N;
+//! - `slow.csv`: `Fz_N,pf1_Pa,pf2_Pa` and the photodiode of the pressed place (`VP1` proximal, `VP2` distal), volts;
+//!   equilibria, 0 to 2 N;
 //! - `quick.csv`: `time_s` before these; pressed as quickly as one can, held, let go as quickly;
 //! - `truth/parameters.toml`: the person's values as `lunula simulate --params` takes them;
 //! - `truth/press.json`: the options.
 //!
-//! The force is the finger's on the surface, measured: pressing is a negative `Fz_N`. Pressures are that force on 1 cm2. Walls touch instead of
-//! closing: fit with `--collapse contact`.
+//! The force is the finger's on the surface, measured: pressing is a negative `Fz_N`. Pressures are that force on 1
+//! cm2. Walls touch instead of closing: fit with `--collapse contact`.
 
 use std::path::{Path, PathBuf};
 use std::{fs, io};

@@ -1,7 +1,8 @@
 //! How a finger's joints move (section 3.3.5, equation 27).
 //!
-//! In: the time. Out: J1, J2, J3, radians, positive in flexion. Equation 27 gives J2. Figure 33 gives J3 over J2 as a drawing only, "roughly
-//! linear": [`J3_PER_J2`] is assumed here, with a small wander about the line. [`Trajectory::Free`] are the six cycles of 3.3.5.
+//! In: the time. Out: J1, J2, J3, radians, positive in flexion. Equation 27 gives J2. Figure 33 gives J3 over J2 as a
+//! drawing only, "roughly linear": [`J3_PER_J2`] is assumed here, with a small wander about the line.
+//! [`Trajectory::Free`] are the six cycles of 3.3.5.
 
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
@@ -19,7 +20,8 @@ pub const J3_PER_J2: f64 = 2.0 / 3.0;
 const KIND_TRAJECTORY: u32 = 11;
 /// The wander of J3 about its line, radians and hertz.
 const J3_WANDER: (f64, f64) = (2.0 * PI / 180.0, 0.23);
-/// J2 of free bending, fully flexed and fully extended, and the J1 that is held, degrees (3.3.5; Fig. 34 goes from -10 on; the rest assumed).
+/// J2 of free bending, fully flexed and fully extended, and the J1 that is held, degrees (3.3.5; Fig. 34 goes from -10
+/// on; the rest assumed).
 const FREE_DEG: [f64; 2] = [75.0, -10.0];
 const J1_HELD_DEG: f64 = 15.0;
 /// Middle, half range and rate over the bending's of the slow J1.
@@ -34,7 +36,8 @@ pub enum Trajectory {
         /// f.
         hz: f64,
     },
-    /// Free bending from fully flexed to fully extended and back: J2 from 75 to -10 degrees, J3 about its line, J1 held.
+    /// Free bending from fully flexed to fully extended and back: J2 from 75 to -10 degrees, J3 about its line, J1
+    /// held.
     Free {
         /// How often a second.
         hz: f64,
@@ -73,7 +76,8 @@ pub enum Trajectory {
 }
 
 impl Trajectory {
-    /// A given trajectory from a table `time_s,J1_deg,J2_deg,J3_deg`, its first row at time 0; and how long it goes on, seconds.
+    /// A given trajectory from a table `time_s,J1_deg,J2_deg,J3_deg`, its first row at time 0; and how long it goes on,
+    /// seconds.
     ///
     /// # Errors
     /// A table that can't be read, lacks a column, a cell or rows, or whose times do not ascend.

@@ -4,7 +4,8 @@ use std::ops::Range;
 
 pub(super) use lunula_predictor::Wave;
 
-/// A wave with rates in `rates` times `hz`; `seed`, `kind` and `index` tell the random numbers, as [`numbers`](super::nail::numbers) does.
+/// A wave with rates in `rates` times `hz`; `seed`, `kind` and `index` tell the random numbers, as
+/// [`numbers`](super::nail::numbers) does.
 pub(super) fn random_wave(hz: f64, rates: Range<f64>, seed: u64, kind: u32, index: u32) -> Wave {
     Wave::random(hz, rates, seed, (u64::from(kind) << 32) | u64::from(index))
 }

@@ -1,8 +1,10 @@
 //! Maps of many subjects from each one's own sums, going on from those that stand.
 //!
-//! In: folders that [`run`](super::run) wrote with [`PhotosOptions::parts`](super::PhotosOptions::parts), and perhaps what was gathered before. Out:
-//! maps, their partial sums and `members.json`, `nails.csv` of all, and figures where they are wanted. Sums are integers: where all that
-//! was added before is still there with the same content, only what is new is read and added, and the bytes are those of adding all.
+//! In: folders that [`run`](super::run) wrote with [`PhotosOptions::parts`](super::PhotosOptions::parts), and perhaps
+//! what was gathered before. Out:
+//! maps, their partial sums and `members.json`, `nails.csv` of all, and figures where they are wanted. Sums are
+//! integers: where all that was added before is still there with the same content, only what is new is read and added,
+//! and the bytes are those of adding all.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};

@@ -1,4 +1,5 @@
-//! The photos job: a checked set and options in, maps out; the one entry that command line, pipelines and trade-offs call.
+//! The photos job: a checked set and options in, maps out; the one entry that command line, pipelines and trade-offs
+//! call.
 //!
 //! Photographs are worked on side by side, each once from file to sums, and forgotten: memory does not grow with their
 //! number. What cannot be used is listed and left out; the rest is done. Results go into a [`Staging`] as they come.
@@ -35,7 +36,8 @@ pub struct PhotosOptions {
     pub max_megapixels: Option<u32>,
     /// Save detected outlines as LabelMe files.
     pub keep_detected: bool,
-    /// Write sums (`partials/`) instead of maps and figures: those of many such parts are [gathered](fn@super::gather) later.
+    /// Write sums (`partials/`) instead of maps and figures: those of many such parts are [gathered](fn@super::gather)
+    /// later.
     pub parts: Option<PartOptions>,
 }
 
@@ -199,8 +201,9 @@ struct Work<'a> {
     sums: &'a BTreeMap<&'a str, Mutex<Sums>>,
 }
 
-/// Share of a nail's box outside of the photograph above which it is left out (assumed): of a nail of which less than half is
-/// seen, length and width are guessed, and the outline is rather another picture's. Below, what is not seen is missing.
+/// Share of a nail's box outside of the photograph above which it is left out (assumed): of a nail of which less than
+/// half is seen, length and width are guessed, and the outline is rather another picture's. Below, what is not seen is
+/// missing.
 const MOST_OUTSIDE: f64 = 0.5;
 /// Longest side of a thumbnail, pixels.
 const THUMBNAIL_PX: usize = 100;
@@ -294,7 +297,8 @@ impl Work<'_> {
         let outside = frame.share_outside(size);
         if outside > MOST_OUTSIDE {
             return Err(format!(
-                "{:.0} % of its box lies outside of the photograph ({} x {} px), more than {:.0} %; is the outline another picture's?",
+                "{:.0} % of its box lies outside of the photograph ({} x {} px), more than {:.0} %; is the outline \
+                 another picture's?",
                 100.0 * outside,
                 size[0],
                 size[1],
@@ -379,7 +383,8 @@ fn mixed_poses(set: &PhotoSet, done: &[Done]) -> Vec<String> {
         .filter(|(_, [colour, grey])| *colour > 0 && *grey > 0)
         .map(|(pose, [colour, grey])| {
             format!(
-                "pose `{pose}` mixes {colour} colour and {grey} grey photograph(s): grey values equal the green channel only where a green \
+                "pose `{pose}` mixes {colour} colour and {grey} grey photograph(s): grey values equal the green \
+                 channel only where a green \
                  filter was used; else make maps of each kind apart"
             )
         })
@@ -389,7 +394,8 @@ fn mixed_poses(set: &PhotoSet, done: &[Done]) -> Vec<String> {
 /// Bits that cameras of science keep in 16; a set whose largest sample has no more is noted.
 const FEW_BITS: [u32; 4] = [8, 10, 12, 14];
 
-/// Photographs of 16 bits, of which none uses more than a quarter of full scale: values are a fraction of what they should be.
+/// Photographs of 16 bits, of which none uses more than a quarter of full scale: values are a fraction of what they
+/// should be.
 fn few_bits(white: Option<u16>, done: &[Done]) -> Option<String> {
     let largest = done.iter().filter_map(|done| done.largest);
     let (count, largest) = largest.fold((0, 0), |(count, most), largest| (count + 1, largest.max(most)));
@@ -397,7 +403,8 @@ fn few_bits(white: Option<u16>, done: &[Done]) -> Option<String> {
     let bits = FEW_BITS.into_iter().find(|bits| u32::from(largest) <= white_of(*bits))?;
     (white.is_none() && largest > 0).then(|| {
         format!(
-            "the largest sample of the {count} photograph(s) of 16 bits is {largest} of 65535, as of {bits} bits kept in 16: if they \
+            "the largest sample of the {count} photograph(s) of 16 bits is {largest} of 65535, as of {bits} bits kept \
+             in 16: if they \
              are, --white {} makes that full scale",
             white_of(bits)
         )

@@ -1,6 +1,7 @@
 //! Detected outlines saved as LabelMe files for a person to correct; the next run uses the corrected ones.
 //!
-//! Beside each photograph (`<stem>.json`), or in a folder of their own with a `photos.csv` that ties them to the photographs:
+//! Beside each photograph (`<stem>.json`), or in a folder of their own with a `photos.csv` that ties them to the
+//! photographs:
 //! that folder is then the set of the next run. A file that stands is never overwritten: it may be a person's work.
 //! Outlines that are not trusted are labelled `nail?`, which no run reads until somebody relabels them.
 

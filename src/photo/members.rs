@@ -1,7 +1,8 @@
-//! Which subjects' pictures sums are made of, and their contents' hashes: what tells whether sums that stand can be added to.
+//! Which subjects' pictures sums are made of, and their contents' hashes: what tells whether sums that stand can be
+//! added to.
 //!
-//! `members.json`: the normalization and, by pose, the parts that were added up. Of a part of a pipeline (`partials/members.json`) it lists that part's
-//! own.
+//! `members.json`: the normalization and, by pose, the parts that were added up. Of a part of a pipeline
+//! (`partials/members.json`) it lists that part's own.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;

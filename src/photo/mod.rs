@@ -1,9 +1,9 @@
 //! Photographs of nails to coloration maps (section 4.2.2, Fig. 51-56).
 //!
-//! A photograph is read, outlined, framed, normalized, added up, drawn: [`PhotoSet`] lists which, [`Photograph`] holds upright
-//! pixels, [`outline`] finds the nails, [`NailFrame`] measures axis and box, [`normalize`](fn@normalize) brings the green
-//! channel into the nail's frame, [`Sums`] become mean and SD. [`run`] is the one entry; [`merge`](fn@merge) joins results
-//! made in parts, [`gather`](fn@gather) those of a pipeline, going on from the sums that stand.
+//! A photograph is read, outlined, framed, normalized, added up, drawn: [`PhotoSet`] lists which, [`Photograph`] holds
+//! upright pixels, [`outline`] finds the nails, [`NailFrame`] measures axis and box, [`normalize`](fn@normalize) brings
+//! the green channel into the nail's frame, [`Sums`] become mean and SD. [`run`] is the one entry; [`merge`](fn@merge)
+//! joins results made in parts, [`gather`](fn@gather) those of a pipeline, going on from the sums that stand.
 
 mod frame;
 mod gather;

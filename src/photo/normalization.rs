@@ -28,8 +28,8 @@ pub struct Normalization {
     pub linear: bool,
     /// How values between pixels come about.
     pub resample: Resample,
-    /// The sample of a 16-bit file that is full scale, as 4095 of 12 bits kept in 16; `None`: 65535. What was written before
-    /// there was such a choice reads as `None`.
+    /// The sample of a 16-bit file that is full scale, as 4095 of 12 bits kept in 16; `None`: 65535. What was written
+    /// before there was such a choice reads as `None`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub white: Option<u16>,
 }

@@ -1,7 +1,7 @@
 //! The arrays of an NPZ archive, read without trusting what it says of their sizes.
 //!
-//! In: a ZIP file (PKWARE's APPNOTE 6.3.10, without ZIP64) of NPY arrays, stored. Out: an entry's bytes, never more than the
-//! caller expects of it, with their checksum verified, and the array in them ([`npy`]).
+//! In: a ZIP file (PKWARE's APPNOTE 6.3.10, without ZIP64) of NPY arrays, stored. Out: an entry's bytes, never more
+//! than the caller expects of it, with their checksum verified, and the array in them ([`npy`]).
 
 use std::collections::BTreeMap;
 use std::fs::File;

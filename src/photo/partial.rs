@@ -4,8 +4,8 @@
 //! and `meta` (uint8): a JSON text with the format's version, the pose, the normalization and the subjects' names.
 //! `numpy.load(..)["meta"].tobytes()` shows it.
 //!
-//! One subject's, as pipelines keep them apart (`partials/<pose>.partial.npz`), are its levels themselves, a sixth of the size: `level` (uint16)
-//! and, where the photograph does not show all, `seen` (uint8, 0 or 1); format 2.
+//! One subject's, as pipelines keep them apart (`partials/<pose>.partial.npz`), are its levels themselves, a sixth of
+//! the size: `level` (uint16) and, where the photograph does not show all, `seen` (uint8, 0 or 1); format 2.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Cursor;
@@ -51,7 +51,10 @@ pub enum PartialFault {
         found: u32,
     },
     /// Made with other options.
-    #[error("{}: pose `{pose}` was made with {found}, the parts before it with {expected}; make one of them anew", .file.display())]
+    #[error(
+        "{}: pose `{pose}` was made with {found}, the parts before it with {expected}; make one of them anew",
+        .file.display()
+    )]
     Options {
         /// Which file.
         file: PathBuf,
@@ -63,7 +66,10 @@ pub enum PartialFault {
         expected: String,
     },
     /// A subject is in two parts.
-    #[error("{}: subject `{subject}` of pose `{pose}` is in an earlier part too; a subject counts once: leave one out", .file.display())]
+    #[error(
+        "{}: subject `{subject}` of pose `{pose}` is in an earlier part too; a subject counts once: leave one out",
+        .file.display()
+    )]
     Overlap {
         /// Which file.
         file: PathBuf,
@@ -73,7 +79,10 @@ pub enum PartialFault {
         subject: String,
     },
     /// Nothing to join.
-    #[error("{}: holds no run.json with maps/<pose>.partial.npz; name a folder that `lunula photos` wrote", .0.display())]
+    #[error(
+        "{}: holds no run.json with maps/<pose>.partial.npz; name a folder that `lunula photos` wrote",
+        .0.display()
+    )]
     Nothing(PathBuf),
 }
 
@@ -114,7 +123,8 @@ pub(super) fn write(path: &Path, pose: &str, sums: &Sums, normalization: &Normal
     npz.add_array("sum_sq", &ArrayView2::from_shape(shape, &sums.sum_sq)?)?;
     npz.add_array("count", &ArrayView2::from_shape(shape, &sums.count)?)?;
     npz.add_array("meta", &meta(FORMAT, pose, sums, normalization)?)?;
-    // In memory, for a file that fails in the middle is no place to go on writing an archive to: zip asserts that it is.
+    // In memory, for a file that fails in the middle is no place to go on writing an archive to: zip asserts that it
+    // is.
     std::fs::write(path, npz.finish()?.into_inner())?;
     Ok(())
 }
@@ -188,7 +198,8 @@ pub(super) fn add(whole: &mut Sums, file: &Path, meta: Meta, held: Held) -> Resu
     added.map_err(|both| PartialFault::Overlap { file: file.to_owned(), pose: meta.pose, subject: both.0 })
 }
 
-/// The partial maps that the part's own `run.json` names: an earlier run's may stand beside them. Of a pipeline's part, those of its list.
+/// The partial maps that the part's own `run.json` names: an earlier run's may stand beside them. Of a pipeline's part,
+/// those of its list.
 fn partial_files(part: &Path) -> Result<Vec<PathBuf>, PartialFault> {
     let nothing = || PartialFault::Nothing(part.to_owned());
     let Ok(text) = input::read(&part.join("run.json")) else {

@@ -23,7 +23,8 @@ pub enum ReadFault {
     NotAPicture,
     /// More pixels than are read.
     #[error(
-        "has {width} x {height} px, {:.1} megapixels, more than the {megapixels} that are read; make it smaller, or allow \
+        "has {width} x {height} px, {:.1} megapixels, more than the {megapixels} that are read; make it smaller, or \
+         allow \
          more with --max-megapixels", (f64::from(*width) * f64::from(*height) / 1e6)
     )]
     TooLarge {
@@ -36,7 +37,8 @@ pub enum ReadFault {
     },
     /// More bytes than so many pixels take.
     #[error(
-        "is longer than a picture of {megapixels} megapixels can be; make it smaller, or allow more with --max-megapixels"
+        "is longer than a picture of {megapixels} megapixels can be; make it smaller, or allow more with \
+         --max-megapixels"
     )]
     TooLong {
         /// How many are read.
@@ -83,8 +85,8 @@ pub enum Depth {
     Sixteen,
 }
 
-/// Megapixels of a photograph that are read unless more are allowed: the largest phones make 201, a scanned A4 page at 1200
-/// dots an inch has 140.
+/// Megapixels of a photograph that are read unless more are allowed: the largest phones make 201, a scanned A4 page at
+/// 1200 dots an inch has 140.
 pub const MOST_MEGAPIXELS: u32 = 250;
 /// Bytes of a file beside its pixels: profiles, previews, notes.
 const METADATA_BYTES: u64 = 64 << 20;
@@ -100,8 +102,8 @@ impl Photograph {
         Self::read_up_to(path, MOST_MEGAPIXELS)
     }
 
-    /// Reads, decodes and turns upright a picture of up to so many megapixels; its size is known from its header, before
-    /// memory is taken for it.
+    /// Reads, decodes and turns upright a picture of up to so many megapixels; its size is known from its header,
+    /// before memory is taken for it.
     ///
     /// # Errors
     /// [`ReadFault`] where the file is missing, no picture, too large, truncated, damaged or of another sample format.

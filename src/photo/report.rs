@@ -16,8 +16,8 @@ use crate::figure::{Page, Sheet, Tile};
 use crate::files::{Staging, WriteError};
 use crate::stages::Stage;
 
-/// One run of `photos` or `photos merge`, as `run.json` and `--json` show it. Times differ from run to run; all else is the
-/// same for the same input and options.
+/// One run of `photos` or `photos merge`, as `run.json` and `--json` show it. Times differ from run to run; all else is
+/// the same for the same input and options.
 #[derive(Debug, Clone, Serialize)]
 pub struct RunReport {
     /// `photos` or `photos merge`.
@@ -131,7 +131,8 @@ impl RunReport {
         staging.write("run.json", (text + "\n").as_bytes())
     }
 
-    /// Writes `report.html` and the sheets of all nails on it: sheets, nails, what was left out and why, times. Nothing is loaded from elsewhere.
+    /// Writes `report.html` and the sheets of all nails on it: sheets, nails, what was left out and why, times. Nothing
+    /// is loaded from elsewhere.
     ///
     /// # Errors
     /// [`WriteError`].

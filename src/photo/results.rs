@@ -58,7 +58,8 @@ const KINDS: [Kind; 4] = [
     },
 ];
 
-/// As deep as its source; with an alpha channel, 0 where the photograph does not show the place, only if there is such a place.
+/// As deep as its source; with an alpha channel, 0 where the photograph does not show the place, only if there is such
+/// a place.
 pub(super) fn write_normalized(
     picture: &Normalized,
     depth: Depth,

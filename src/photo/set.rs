@@ -1,9 +1,9 @@
 //! Which photographs: a folder of poses, or a manifest, to a sorted list.
 //!
 //! In: `SET/<pose>/<subject>.<png|jpg|tif|bmp>`, or a flat folder (one pose, named after it), or a folder with
-//! `photos.csv` (`file,subject,pose` and optionally `outline`, paths relative to it). Out: a [`PhotoSet`], its photographs
-//! sorted by pose, subject and file, and the [`SetFault`]s: entries that cannot be used, each with its place; the others
-//! go on. A subject counts once a pose, so a pose's doubled subjects are all left out.
+//! `photos.csv` (`file,subject,pose` and optionally `outline`, paths relative to it). Out: a [`PhotoSet`], its
+//! photographs sorted by pose, subject and file, and the [`SetFault`]s: entries that cannot be used, each with its
+//! place; the others go on. A subject counts once a pose, so a pose's doubled subjects are all left out.
 
 use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
@@ -64,7 +64,8 @@ pub enum SetError {
     },
     /// Not one photograph.
     #[error(
-        "{}: no photographs here (looked for .png, .jpg, .tif and .bmp in it and in the folders of poses within it){also}", .folder.display()
+        "{}: no photographs here (looked for .png, .jpg, .tif and .bmp in it and in the folders of poses within \
+         it){also}", .folder.display()
     )]
     Empty {
         /// Which folder.
@@ -106,8 +107,8 @@ impl PhotoSet {
         Ok(set)
     }
 
-    /// Whether results in `out` would be taken for photographs of the set in `folder` by a later run, or photographs there be
-    /// passed over as results: where `out` is that folder, or one within it that holds pictures.
+    /// Whether results in `out` would be taken for photographs of the set in `folder` by a later run, or photographs
+    /// there be passed over as results: where `out` is that folder, or one within it that holds pictures.
     #[must_use]
     pub fn would_take_results(folder: &Path, out: &Path) -> bool {
         let (Ok(folder), Ok(out)) = (folder.canonicalize(), out.canonicalize()) else { return false };
@@ -208,7 +209,8 @@ impl PhotoSet {
         let (Some(file), Some(subject), Some(pose)) = (column("file"), column("subject"), column("pose")) else {
             let found = header.iter().collect::<Vec<_>>().join(",");
             return Err(wrong(format!(
-                "line 1: the columns are `{found}`; it needs file,subject,pose and may have outline, separated by commas or semicolons"
+                "line 1: the columns are `{found}`; it needs file,subject,pose and may have outline, separated by \
+                 commas or semicolons"
             )));
         };
         let outline = column("outline");
@@ -245,8 +247,10 @@ impl PhotoSet {
                 self.fault(
                     files,
                     format!(
-                        "subject `{subject}` is there {} times in pose `{pose}`, and a subject counts once: remove all but one, \
-                         or give each its own subject in photos.csv (in a pipeline: by {{pose}} and {{subject}} in the pattern)",
+                        "subject `{subject}` is there {} times in pose `{pose}`, and a subject counts once: remove \
+                         all but one, \
+                         or give each its own subject in photos.csv (in a pipeline: by {{pose}} and {{subject}} in \
+                         the pattern)",
                         photos.len()
                     ),
                 );
@@ -313,7 +317,8 @@ fn name_fault(name: &str, value: &str) -> Option<String> {
     let sound = plain && !value.contains(['/', '\\', '\0']);
     if value.len() > LONGEST_NAME {
         return Some(format!(
-            "a {name} of {} bytes makes names of results that are too long; shorten it to {LONGEST_NAME} (in photos.csv it may \
+            "a {name} of {} bytes makes names of results that are too long; shorten it to {LONGEST_NAME} (in \
+             photos.csv it may \
              differ from the file's name)",
             value.len()
         ));

@@ -1,6 +1,8 @@
-//! What the generated recordings of a pipeline file will be: known before a file of them stands, so that stages can be planned on them.
+//! What the generated recordings of a pipeline file will be: known before a file of them stands, so that stages can be
+//! planned on them.
 //!
-//! A catalogue hangs on the options of `[phantom]` alone. Its names are relative to the folder that a pipeline file calls `{phantom}`, with `/`.
+//! A catalogue hangs on the options of `[phantom]` alone. Its names are relative to the folder that a pipeline file
+//! calls `{phantom}`, with `/`.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

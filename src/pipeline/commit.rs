@@ -1,8 +1,9 @@
 //! From a task's private folder to its place: whole, whenever the process is killed.
 //!
-//! A task at work has a folder with `files/`, what it makes, and at last `record.json`, what will be kept of it, renamed into place whole.
-//! From then on the task counts as done: its files are renamed into `OUT/<task>/`, and the record to the others as the last step. Killed
-//! between, the next run goes on where this one stopped ([`recover`]); killed before, it removes the folder. Moving needs no room on the disk.
+//! A task at work has a folder with `files/`, what it makes, and at last `record.json`, what will be kept of it,
+//! renamed into place whole. From then on the task counts as done: its files are renamed into `OUT/<task>/`, and the
+//! record to the others as the last step. Killed between, the next run goes on where this one stopped ([`recover`]);
+//! killed before, it removes the folder. Moving needs no room on the disk.
 //!
 //! What stands in the way and is not as this program left it was edited by hand: it is kept beside as `NAME.edited`.
 
@@ -24,9 +25,15 @@ use crate::files::{clear_leftovers, note_placed, write_whole};
 pub(super) enum CommitFault {
     #[error("{}: cannot be written ({why})", .path.display())]
     Io { path: PathBuf, why: io::Error },
-    #[error("{}: is a folder that is none of the results, and a result of this name has to go there; move it away", .0.display())]
+    #[error(
+        "{}: is a folder that is none of the results, and a result of this name has to go there; move it away",
+        .0.display()
+    )]
     FolderInTheWay(PathBuf),
-    #[error("{}: is a file that is none of the results, and a folder of results has to go there; move it away", .0.display())]
+    #[error(
+        "{}: is a file that is none of the results, and a folder of results has to go there; move it away",
+        .0.display()
+    )]
     FileInTheWay(PathBuf),
     #[error(transparent)]
     File(#[from] FileFault),

@@ -1,4 +1,5 @@
-//! Tasks and what they need of one another, checked: no two of one name, none within another's folder, nothing unknown, no circle.
+//! Tasks and what they need of one another, checked: no two of one name, none within another's folder, nothing unknown,
+//! no circle.
 
 use std::collections::{BTreeSet, HashMap};
 

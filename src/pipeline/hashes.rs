@@ -1,13 +1,14 @@
 //! What files hold, as SHA-256, without reading again what stands as it stood.
 //!
-//! A hash is remembered by the file's device and inode, and believed only where size, time of modification, time of the inode's change
-//! (to the nanosecond), device and inode are all what they were, where both times lie at least [`SETTLED_NS`] before the moment at which
-//! the file was read (else it could have changed again within the same tick of the file system's clock), and where that moment is not
-//! in the future (else the clock was set back since). Whatever is not believed is read again, so a doubt costs time and never a wrong answer.
-//! The times need not be true: a picture that a camera dates to the year 2000 is believed by the inode's time, one of tomorrow is read each time.
+//! A hash is remembered by the file's device and inode, and believed only where size, time of modification, time of the
+//! inode's change (to the nanosecond), device and inode are all what they were, where both times lie at least
+//! [`SETTLED_NS`] before the moment at which the file was read (else it could have changed again within the same tick
+//! of the file system's clock), and where that moment is not in the future (else the clock was set back since).
+//! Whatever is not believed is read again, so a doubt costs time and never a wrong answer. The times need not be true:
+//! a picture that a camera dates to the year 2000 is believed by the inode's time, one of tomorrow is read each time.
 //!
-//! What is remembered is a text of one line a file that is only ever added to, and written anew where most of it has become idle: a line
-//! that was cut short is not read.
+//! What is remembered is a text of one line a file that is only ever added to, and written anew where most of it has
+//! become idle: a line that was cut short is not read.
 
 use std::collections::HashMap;
 use std::fmt;
@@ -27,7 +28,8 @@ use thiserror::Error;
 use crate::files::write_whole;
 use crate::input::open_regular;
 
-/// How long before its reading a file must have come to rest, nanoseconds: the coarsest clock of a file system in use (FAT).
+/// How long before its reading a file must have come to rest, nanoseconds: the coarsest clock of a file system in use
+/// (FAT).
 const SETTLED_NS: i128 = 2_000_000_000;
 
 /// Folders within folders that are followed; deeper is a circle of links.
@@ -180,7 +182,8 @@ type Slot = Arc<Mutex<(Option<Seen>, bool)>>;
 /// The contents of files; shared by threads.
 #[derive(Debug)]
 pub(super) struct Hashes {
-    /// Each file's slot is held while it is read, so that no two threads read it: what is known, and whether it was asked for.
+    /// Each file's slot is held while it is read, so that no two threads read it: what is known, and whether it was
+    /// asked for.
     known: Mutex<HashMap<FileId, Slot>>,
     /// What is remembered ends within a line.
     is_cut: bool,
@@ -214,7 +217,8 @@ impl Hashes {
         }
     }
 
-    /// The same, and what is learned is remembered there. Where that can't be written, files are read again the next time.
+    /// The same, and what is learned is remembered there. Where that can't be written, files are read again the next
+    /// time.
     pub(super) fn keep(place: &Path) -> Self {
         let mut hashes = Self::look(place);
         let mut log = OpenOptions::new().create(true).append(true).open(place).ok();

@@ -1,4 +1,5 @@
-//! The kinds of jobs as pipeline files know them: what each takes, what it makes, what it needs of the stages before it.
+//! The kinds of jobs as pipeline files know them: what each takes, what it makes, what it needs of the stages before
+//! it.
 //!
 //! The planner knows jobs only through [`Kind`] and [`Prepared`]; the runner only through [`Job`].
 
@@ -37,7 +38,8 @@ pub struct Role {
 /// Something that a job makes and others may name.
 #[derive(Debug, Clone, Copy)]
 pub struct Part {
-    /// Its name after the stage's: `tracks` of `angles.tracks`. A kind's first part is what the stage's bare name means.
+    /// Its name after the stage's: `tracks` of `angles.tracks`. A kind's first part is what the stage's bare name
+    /// means.
     pub name: &'static str,
     /// The file in the task's folder; empty: the whole folder.
     pub file: &'static str,
@@ -140,13 +142,15 @@ pub trait Prepared: Send + Sync {
     /// About how much memory a task takes, bytes, and how long on one thread, seconds.
     fn cost(&self, inputs: &[Foreseen]) -> (u64, f64);
 
-    /// Files that are read with an input of `role`, with the role that each has, if they stand (or will be generated): an outline beside its
-    /// photograph. Where one does, it is an input of the task, of the same keys, unless the stage names one of that role and these keys.
+    /// Files that are read with an input of `role`, with the role that each has, if they stand (or will be generated):
+    /// an outline beside its photograph. Where one does, it is an input of the task, of the same keys, unless the stage
+    /// names one of that role and these keys.
     fn beside(&self, _role: &str, _path: &Path) -> Vec<(&'static str, PathBuf)> {
         Vec::new()
     }
 
-    /// The keys for each value of which a gathering job makes a task where the stage has no `each`; none: one task for all.
+    /// The keys for each value of which a gathering job makes a task where the stage has no `each`; none: one task for
+    /// all.
     fn each(&self) -> &'static [&'static str] {
         &[]
     }

@@ -1,6 +1,7 @@
 //! One run at a time in a folder of results.
 //!
-//! The lock is the process's: it is free as soon as that has ended, however it ended. What stands in the file is for people.
+//! The lock is the process's: it is free as soon as that has ended, however it ended. What stands in the file is for
+//! people.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Read, Seek, SeekFrom, Write};
@@ -36,7 +37,8 @@ pub(super) struct Held {
 
 impl Drop for Held {
     fn drop(&mut self) {
-        // Closing is not enough where another thread is about to start a program: that holds the file too, for a moment.
+        // Closing is not enough where another thread is about to start a program: that holds the file too, for a
+        // moment.
         let _ = self.file.unlock();
     }
 }
@@ -67,7 +69,8 @@ pub(super) fn hold(place: &Path) -> Result<Held, Refused> {
     Ok(Held { file, unlocked })
 }
 
-/// Keeps others from taking the lock while this lives, where nobody has it; the folder may be one that can only be read.
+/// Keeps others from taking the lock while this lives, where nobody has it; the folder may be one that can only be
+/// read.
 pub(super) fn share(place: &Path) -> Result<Option<File>, Refused> {
     let Ok(mut file) = File::open(place) else { return Ok(None) };
     match file.try_lock_shared() {

@@ -1,8 +1,9 @@
 //! Parts of a run that was cut become one folder of results, as if it had been made at once.
 //!
-//! In: folders that `--shard i/n` runs wrote, and the tasks, planned anew. Every part must be there once, be of the same pipeline, options
-//! and version, and have come to an end. Their results and records are linked (or copied) into the folder; then a run does there what no
-//! part could, and whatever inputs have changed since: that is told by the tasks' keys, not by times.
+//! In: folders that `--shard i/n` runs wrote, and the tasks, planned anew. Every part must be there once, be of the
+//! same pipeline, options and version, and have come to an end. Their results and records are linked (or copied) into
+//! the folder; then a run does there what no part could, and whatever inputs have changed since: that is told by the
+//! tasks' keys, not by times.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -33,7 +34,10 @@ const NAMED: usize = 5;
 #[derive(Debug, Error)]
 pub enum MergeFault {
     /// A folder without mark.
-    #[error("{}: is no part of a run; make it with lunula run PIPELINE --shard I/N --out {}", .0.display(), .0.display())]
+    #[error(
+        "{}: is no part of a run; make it with lunula run PIPELINE --shard I/N --out {}",
+        .0.display(), .0.display()
+    )]
     NoPart(PathBuf),
     /// Somebody works in it.
     #[error("{}: a run works here ({}); wait for it", .path.display(), said(.holder.as_ref()))]
@@ -54,7 +58,10 @@ pub enum MergeFault {
         other: PathBuf,
     },
     /// Parts that are not there.
-    #[error("{}: of {of} parts {} is missing; run it with --shard, or give its folder too", .missing.join(", "), if .missing.len() == 1 { "this" } else { "each of these" })]
+    #[error(
+        "{}: of {of} parts {} is missing; run it with --shard, or give its folder too",
+        .missing.join(", "), if .missing.len() == 1 { "this" } else { "each of these" }
+    )]
     Gap {
         /// Which, as `2/7`.
         missing: Vec<String>,
@@ -62,7 +69,10 @@ pub enum MergeFault {
         of: usize,
     },
     /// Parts of different runs.
-    #[error("{} and {}: are parts of different runs: {what}; run one of them again as the other", .one.display(), .other.display())]
+    #[error(
+        "{} and {}: are parts of different runs: {what}; run one of them again as the other",
+        .one.display(), .other.display()
+    )]
     Differ {
         /// One folder.
         one: PathBuf,
@@ -72,7 +82,8 @@ pub enum MergeFault {
         what: String,
     },
     /// The pipeline is not the one of the parts.
-    #[error("{}: the parts were made by another pipeline than {pipeline} is now: {what}; run the parts again, or give theirs with --pipeline", .part.display())]
+    #[error("{}: the parts were made by another pipeline than {pipeline} is now: {what}; run the parts again, or give \
+             theirs with --pipeline", .part.display())]
     Pipeline {
         /// A part.
         part: PathBuf,
@@ -92,7 +103,10 @@ pub enum MergeFault {
         missing: Vec<TaskId>,
     },
     /// Two parts made different things under one name.
-    #[error("{task}: came out differently in {} and in {}; remove it from one of them and run that part again", .one.display(), .other.display())]
+    #[error(
+        "{task}: came out differently in {} and in {}; remove it from one of them and run that part again",
+        .one.display(), .other.display()
+    )]
     Overlap {
         /// The task.
         task: TaskId,
@@ -164,7 +178,8 @@ impl Parts {
     /// Opens the folders of parts, in any order; nothing is written to them.
     ///
     /// # Errors
-    /// [`MergeFault`] where one is no part, is worked in, is there twice or missing, or where they are of different runs.
+    /// [`MergeFault`] where one is no part, is worked in, is there twice or missing, or where they are of different
+    /// runs.
     pub fn open(paths: &[PathBuf]) -> Result<Self, MergeFault> {
         let mut parts = paths.iter().map(|path| Part::open(path)).collect::<Result<Vec<_>, _>>()?;
         parts.sort_by_key(|part| part.mark.shard.index());
@@ -202,8 +217,8 @@ impl Parts {
         self.0.first().map(|part| &part.mark.pipeline)
     }
 
-    /// Checks that the parts have done what was theirs of these tasks, then brings it into `out`, which may hold an earlier merge. What no part
-    /// does is left for [`Results::run`].
+    /// Checks that the parts have done what was theirs of these tasks, then brings it into `out`, which may hold an
+    /// earlier merge. What no part does is left for [`Results::run`].
     ///
     /// # Errors
     /// [`MergeFault`]; except for [`MergeFault::Put`], nothing was written.
@@ -257,7 +272,8 @@ impl Parts {
         Ok((results, merged))
     }
 
-    /// Which part each task's result is taken from: its own, or the first that has it where each may. No two may have made different ones.
+    /// Which part each task's result is taken from: its own, or the first that has it where each may. No two may have
+    /// made different ones.
     fn choose<'a>(
         &'a self,
         tasks: &[Task],

@@ -1,9 +1,10 @@
 //! Patterns of files' names: `photos/{pose}/{subject}.png`.
 //!
-//! `*` is any characters, `?` one, `[ab]` one of these, `[!ab]` one of others, `**` any folders (but not those of runs' results), and a place in braces at least one character,
-//! which become a key; none of them goes past a `/`. A place that stands twice is the same twice. What begins with a dot is found only where the
-//! pattern says the dot. A pattern that ends in `/` finds folders, else files; one that ends in a plain name finds what has it. A name that can be read in two ways is told, not guessed.
-//! Results are sorted by name, whatever the disk's order.
+//! `*` is any characters, `?` one, `[ab]` one of these, `[!ab]` one of others, `**` any folders (but not those of runs'
+//! results), and a place in braces at least one character, which become a key; none of them goes past a `/`. A place
+//! that stands twice is the same twice. What begins with a dot is found only where the pattern says the dot. A pattern
+//! that ends in `/` finds folders, else files; one that ends in a plain name finds what has it. A name that can be read
+//! in two ways is told, not guessed. Results are sorted by name, whatever the disk's order.
 
 mod walk;
 

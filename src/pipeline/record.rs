@@ -1,7 +1,8 @@
 //! What is kept of a task that was done: from what it was made, what came out, how long it took.
 //!
-//! The key is the SHA-256 of all that the result hangs on: the task's name and keys, its options (kind, revision, options) and, for each
-//! input in the task's order, role, keys, name and content. Times and the machine are told in the record too, but are no part of the key.
+//! The key is the SHA-256 of all that the result hangs on: the task's name and keys, its options (kind, revision,
+//! options) and, for each input in the task's order, role, keys, name and content. Times and the machine are told in
+//! the record too, but are no part of the key.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -82,7 +83,8 @@ pub(super) struct Record {
 }
 
 impl Record {
-    /// What an input of this name in the task's folder holds: a file, or a folder of files (empty: all). `None`: there is none.
+    /// What an input of this name in the task's folder holds: a file, or a folder of files (empty: all). `None`: there
+    /// is none.
     pub(super) fn content(&self, name: &str) -> Option<ContentHash> {
         if let Some(output) = self.outputs.iter().find(|output| output.name == name) {
             return Some(output.sha256);

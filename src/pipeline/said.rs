@@ -1,4 +1,5 @@
-//! What a job says in the words of the command line, in those of a pipeline file: `--full-scale LOW,HIGH` is the key `full_scale` there.
+//! What a job says in the words of the command line, in those of a pipeline file: `--full-scale LOW,HIGH` is the key
+//! `full_scale` there.
 
 /// A text with keys in place of options.
 pub(super) fn in_keys(text: &str) -> String {

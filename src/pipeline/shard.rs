@@ -1,7 +1,8 @@
 //! A run cut into parts: which tasks are a part's own, and the mark that a part leaves in its folder of results.
 //!
-//! Part `i` of `n` does the tasks of [`Share::Part`]`(k)` with `k % n == i - 1`, and those of [`Share::Each`] that they need. Whatever needs
-//! tasks of several numbers is [`Share::Whole`], whatever it says itself; so is what needs such a one. These are done when parts are merged.
+//! Part `i` of `n` does the tasks of [`Share::Part`]`(k)` with `k % n == i - 1`, and those of [`Share::Each`] that they
+//! need. Whatever needs tasks of several numbers is [`Share::Whole`], whatever it says itself; so is what needs such a
+//! one. These are done when parts are merged.
 
 use std::fmt;
 use std::fs;

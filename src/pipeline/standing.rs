@@ -1,7 +1,8 @@
 //! What stands of what tasks have made, and why the rest does not.
 //!
-//! A task stands where its record's key is that of its inputs, options and version now, and every file that it made is there and holds
-//! what it held. What needs a task that does not stand is said to follow from it; it may yet stand where that comes out the same as before.
+//! A task stands where its record's key is that of its inputs, options and version now, and every file that it made is
+//! there and holds what it held. What needs a task that does not stand is said to follow from it; it may yet stand
+//! where that comes out the same as before.
 
 use std::fmt;
 use std::path::Path;
@@ -72,7 +73,8 @@ pub enum Standing {
     Run(Why),
 }
 
-/// What stands of these tasks in `out`, in their order. Nothing is written, and nothing locked: a run at the same time may change it.
+/// What stands of these tasks in `out`, in their order. Nothing is written, and nothing locked: a run at the same time
+/// may change it.
 ///
 /// # Errors
 /// [`GraphFault`] where the tasks can't be worked through.
@@ -142,14 +144,16 @@ impl Looked {
         let Some(record) = &self.record else {
             return Some(self.failed.clone().map_or(Why::NeverMade, Why::Failed));
         };
-        // An input that failed and may is not told from one that is to be made: its task does not stand, so this one follows from it.
+        // An input that failed and may is not told from one that is to be made: its task does not stand, so this one
+        // follows from it.
         without.extend(record.without.iter().cloned());
         let now = Fingerprint::new(task, inputs, without);
         difference(record, task, &now, open).or_else(|| self.spoilt.clone())
     }
 }
 
-/// Why a record is not that of the task as it is now. Where inputs are `open`, those that are not among `now` may be the same.
+/// Why a record is not that of the task as it is now. Where inputs are `open`, those that are not among `now` may be
+/// the same.
 pub(super) fn difference(record: &Record, task: &Task, now: &Fingerprint, open: bool) -> Option<Why> {
     if record.key == now.key {
         return None;

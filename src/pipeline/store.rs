@@ -1,7 +1,9 @@
 //! Where things stand in a folder of results.
 //!
-//! `OUT/<task>/` holds what a task made and nothing else. All else is under `OUT/.lunula/`, which may be thrown away (then all is made anew):
-//! - `records/*.json`: one file a task that was done, renamed into its place whole, so that there are no halves whenever the power goes
+//! `OUT/<task>/` holds what a task made and nothing else. All else is under `OUT/.lunula/`, which may be thrown away
+//! (then all is made anew):
+//! - `records/*.json`: one file a task that was done, renamed into its place whole, so that there are no halves
+//!   whenever the power goes
 //! - `failures/*.json`: one file a task that failed when it was tried last
 //! - `work/`: a folder for each task at work; what a run that was killed left there is finished or removed by the next
 //! - `hashes`: which files hold what, so as not to read them again

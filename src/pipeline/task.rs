@@ -1,7 +1,7 @@
 //! One thing to be made: a job on its inputs, with its options, and the files that it promises.
 //!
-//! The planner makes tasks from a pipeline file; the runner makes of them what does not stand yet. A runner knows no job, and a job knows
-//! neither pipeline nor store: between them stand [`Work`] and [`Made`].
+//! The planner makes tasks from a pipeline file; the runner makes of them what does not stand yet. A runner knows no
+//! job, and a job knows neither pipeline nor store: between them stand [`Work`] and [`Made`].
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -12,7 +12,8 @@ use serde::{Deserialize, Serialize};
 use super::keys::Keys;
 use crate::stages::Stage;
 
-/// A task's name: the stage's, then the values of its keys, as `angles/S01/bending`. Unlike any other's, and no other's beginning up to a `/`:
+/// A task's name: the stage's, then the values of its keys, as `angles/S01/bending`. Unlike any other's, and no other's
+/// beginning up to a `/`:
 /// it is also the folder, under the folder of results, that holds what the task makes and nothing else.
 pub type TaskId = String;
 
@@ -23,7 +24,8 @@ pub enum Source {
     Given {
         /// Where it stands.
         path: PathBuf,
-        /// As the pipeline file names it, with `/`: the same from whatever folder the pipeline is run, for results may hold it.
+        /// As the pipeline file names it, with `/`: the same from whatever folder the pipeline is run, for results may
+        /// hold it.
         name: String,
     },
     /// A result.
@@ -70,7 +72,8 @@ pub struct Task {
     pub keys: Keys,
     /// What it works on.
     pub inputs: Vec<Input>,
-    /// All that its result hangs on besides the inputs' contents: the job's name, its version and its options, as they change bytes.
+    /// All that its result hangs on besides the inputs' contents: the job's name, its version and its options, as they
+    /// change bytes.
     pub options: serde_json::Value,
     /// Who makes it in a run cut into parts.
     pub share: Share,
@@ -91,7 +94,8 @@ pub struct At {
     pub keys: Keys,
     /// The file or folder.
     pub path: PathBuf,
-    /// What results may call it: as the pipeline file names it, or `<task>/<name>`; the same in whatever folder results go to.
+    /// What results may call it: as the pipeline file names it, or `<task>/<name>`; the same in whatever folder results
+    /// go to.
     pub name: String,
 }
 

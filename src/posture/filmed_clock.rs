@@ -1,4 +1,5 @@
-//! The clock in the picture along with the markers: read in the frames that are decoded for them, fitted over the whole video.
+//! The clock in the picture along with the markers: read in the frames that are decoded for them, fitted over the whole
+//! video.
 
 use std::collections::BTreeMap;
 
@@ -47,7 +48,8 @@ pub struct ClockTieReport {
     pub resolution_s: f64,
     /// How its screen's delay is known.
     pub screen: ScreenDelay,
-    /// The longest that the estimate takes the screen to wait before it shows the next reading; half of it is taken off.
+    /// The longest that the estimate takes the screen to wait before it shows the next reading; half of it is taken
+    /// off.
     pub screen_delay_s: f64,
     /// The longest that the interval counts.
     pub screen_delay_most_s: f64,
@@ -131,7 +133,8 @@ impl FilmedClock {
         }
     }
 
-    /// Why the clock can't be read though it may be there, if so: its format does not fit, AM or PM are not seen, or it was not found.
+    /// Why the clock can't be read though it may be there, if so: its format does not fit, AM or PM are not seen, or it
+    /// was not found.
     fn unfit(&self) -> Option<String> {
         let places = |wanted: fn(&Result<f64, Doubt>) -> bool| -> Vec<usize> {
             (0..self.shown_s.len()).filter(|&place| wanted(&self.shown_s[place])).collect()
@@ -145,14 +148,16 @@ impl FilmedClock {
         let halves = places(|shown| *shown == Err(Doubt::HalfUnclear)).len();
         if read.len() < FEWEST && halves >= FEWEST {
             return Some(format!(
-                "its digits were read in {halves} frame(s), but no AM or PM beside them: leave `a` out of format = \"{}\" where the \
+                "its digits were read in {halves} frame(s), but no AM or PM beside them: leave `a` out of format = \
+                 \"{}\" where the \
                  clock shows neither, or let the roi hold them",
                 self.clock.format.text()
             ));
         }
         let lost = read.len() < FEWEST && self.clock.roi == ClockRoi::Auto;
         lost.then(|| {
-            "it was not found: roi = \"auto\" finds only a clock that changes at least once a second, in the format given; for any other \
+            "it was not found: roi = \"auto\" finds only a clock that changes at least once a second, in the format \
+             given; for any other \
              write roi = [x, y, width, height]"
                 .to_owned()
         })

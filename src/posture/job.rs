@@ -1,8 +1,8 @@
-//! The posture job: a video, a checked layout and options in, tables of angles and tracks out; the one entry that command
-//! line, pipelines and trade-offs call.
+//! The posture job: a video, a checked layout and options in, tables of angles and tracks out; the one entry that
+//! command line, pipelines and trade-offs call.
 //!
-//! A frame is decoded, its planes are looked at where the last frame tells, centres get names, names get angles, the row is
-//! written, the frame forgotten: memory does not grow with the video's length, unless angles are to be smoothed.
+//! A frame is decoded, its planes are looked at where the last frame tells, centres get names, names get angles, the
+//! row is written, the frame forgotten: memory does not grow with the video's length, unless angles are to be smoothed.
 
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -87,7 +87,8 @@ pub fn run(
     let mut failed = Vec::new();
     if let Some((index, time_s)) = first_undecoded {
         failed.push(format!(
-            "{}: {} of {} frames could not be decoded, the first of them frame {index} at {time_s:.3} s; their rows are \
+            "{}: {} of {} frames could not be decoded, the first of them frame {index} at {time_s:.3} s; their rows \
+             are \
              empty; copy the file again if its original is whole",
             path.display(),
             results.frames.undecoded,

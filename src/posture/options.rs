@@ -14,8 +14,8 @@ pub struct PostureOptions {
     pub smooth: bool,
     /// How centres are found.
     pub method: Method,
-    /// Every so many frames the clock of the layout is read, after the first second and a half, in which its digits are learnt
-    /// from all; 0: it is not read.
+    /// Every so many frames the clock of the layout is read, after the first second and a half, in which its digits are
+    /// learnt from all; 0: it is not read.
     pub clock_every: u64,
 }
 

@@ -1,4 +1,5 @@
-//! What the posture job writes: the tables of angles and of markers, the overlay, the pictures and the report beside them.
+//! What the posture job writes: the tables of angles and of markers, the overlay, the pictures and the report beside
+//! them.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;

@@ -1,9 +1,9 @@
 //! A row of voltages in, forces and angle out, as a recording or a live sensor gives one row after the other.
 //!
-//! With a model of force and one of posture the two are gated as in equations 9 and 16: while the finger presses (N = -Fz at F_min or more)
-//! the angle is theta_touch, else the posture model tells it. A row that lacks a voltage that a model reads has no prediction of that model;
-//! without an Fz there is no telling touch from bending, and no angle. Where a recording begins, what was remembered of the one before (lags, the gate's
-//! state) is forgotten.
+//! With a model of force and one of posture the two are gated as in equations 9 and 16: while the finger presses (N =
+//! -Fz at F_min or more) the angle is theta_touch, else the posture model tells it. A row that lacks a voltage that a
+//! model reads has no prediction of that model; without an Fz there is no telling touch from bending, and no angle.
+//! Where a recording begins, what was remembered of the one before (lags, the gate's state) is forgotten.
 
 use lunula_predictor::{Contact, FORCES, Gate, GateState, LagStream, Predictor};
 
@@ -137,8 +137,9 @@ impl Answering {
         self.outside
     }
 
-    /// Answers a row: `row` volts as [`inputs`](Self::inputs) (NaN where missing), `out` as [`columns`](Self::columns), NaN where not
-    /// known; `begins` where a recording does. Nothing is allocated. Returns what the gate says, where there is one.
+    /// Answers a row: `row` volts as [`inputs`](Self::inputs) (NaN where missing), `out` as [`columns`](Self::columns),
+    /// NaN where not known; `begins` where a recording does. Nothing is allocated. Returns what the gate says, where
+    /// there is one.
     pub fn answer(&mut self, time_s: f64, begins: bool, row: &[f64], out: &mut [f64]) -> Option<Contact> {
         if begins {
             self.voices.iter_mut().filter_map(|voice| voice.buffer.as_mut()).for_each(LagStream::reset);

@@ -1,7 +1,7 @@
 //! The error on validation recordings against how much was trained on (Fig. 105 to 107: one set, the other, both).
 //!
-//! In: the recordings trained on, in order, and those reported on. Out: a table and a picture: the first recording, the first two, .. all; and the
-//! first tenths of the time of each, as shorter calibrations would have given.
+//! In: the recordings trained on, in order, and those reported on. Out: a table and a picture: the first recording, the
+//! first two, .. all; and the first tenths of the time of each, as shorter calibrations would have given.
 
 use std::path::{Path, PathBuf};
 

@@ -1,7 +1,8 @@
 //! `merit.csv`: how far off a model is, a row a target and for each set of recordings.
 //!
-//! Columns: `of` (`all`, `recording`, `size`, `without friction`, `held out`, `part held out`, `training`, `validation`), `name`, `session`, `subject`,
-//! `target`, `rows`, then `rmse`, `bias`, `r2`, `mae` in the target's unit, and `within`, the share of rows within the prediction intervals.
+//! Columns: `of` (`all`, `recording`, `size`, `without friction`, `held out`, `part held out`, `training`,
+//! `validation`), `name`, `session`, `subject`, `target`, `rows`, then `rmse`, `bias`, `r2`, `mae` in the target's
+//! unit, and `within`, the share of rows within the prediction intervals.
 
 use std::path::Path;
 

@@ -1,7 +1,10 @@
-//! Predictors of touch force and posture (chapter 5): recordings in, models, predictions, figures of merit and pictures out.
+//! Predictors of touch force and posture (chapter 5): recordings in, models, predictions, figures of merit and pictures
+//! out.
 //!
-//! The models and their mathematics are the crate `lunula-predictor`'s; here are the files and the jobs of the command line, an entry each:
-//! [`train()`], [`evaluate()`], [`predict()`] (and [`predict_stream`]), [`analyse()`], [`prune()`], [`compare()`], [`trajectory::run`].
+//! The models and their mathematics are the crate `lunula-predictor`'s; here are the files and the jobs of the command
+//! line, an entry each:
+//! [`train()`], [`evaluate()`], [`predict()`] (and [`predict_stream`]), [`analyse()`], [`prune()`], [`compare()`],
+//! [`trajectory::run`].
 
 mod analyse;
 mod answer;

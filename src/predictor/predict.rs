@@ -156,7 +156,10 @@ pub fn predict_plan(models: usize, options: &PredictOptions) -> Vec<Step> {
 fn extrapolated(answering: &Answering, counts: Counts) -> Option<String> {
     let (outside, rows) = (answering.outside(), counts.rows);
     (outside * 20 > rows).then(|| {
-        format!("{outside} of {rows} rows lie outside of the voltages that the model was trained on; their predictions are extrapolated")
+        format!(
+            "{outside} of {rows} rows lie outside of the voltages that the model was trained on; their \
+                 predictions are extrapolated"
+        )
     })
 }
 
@@ -179,11 +182,12 @@ fn all_rows(answering: &mut Answering, read: &Inputs, keep_faults: bool) -> (Vec
     (answers, contacts, counts)
 }
 
-/// Answers a stream of CSV rows, each as soon as its line is complete, on `to`; `tell` hears what is worth saying as soon as it is known, as
-/// the end of a stream may be far.
+/// Answers a stream of CSV rows, each as soon as its line is complete, on `to`; `tell` hears what is worth saying as
+/// soon as it is known, as the end of a stream may be far.
 ///
 /// # Errors
-/// A stream that begins without the columns needed, or a row that is wrong (with its line): rows before it are answered.
+/// A stream that begins without the columns needed, or a row that is wrong (with its line): rows before it are
+/// answered.
 pub fn predict_stream(
     models: &[PathBuf],
     from: impl BufRead,
@@ -288,7 +292,8 @@ fn ruled(answering: &Answering, contact: Option<Contact>) -> Option<usize> {
 }
 
 fn no_time(whose: &str) -> PredictorError {
-    let what = "has no time_s, and a model reads voltages of the past (it was trained with --lags); give it the time in seconds";
+    let what = "has no time_s, and a model reads voltages of the past (it was trained with --lags); give it the time \
+                in seconds";
     PredictorError::Request(format!("{whose}: {what}"))
 }
 

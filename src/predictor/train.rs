@@ -1,7 +1,8 @@
 //! `lunula train`: recordings to a model file (5.2.4: built from one set of recordings, validated on another).
 //!
-//! In: recordings to train on; optionally others to report on, which also tell the prediction intervals; optionally others on which a network
-//! stops early. Out: the model file and what it reaches. Rows that are reported are never those that training has seen.
+//! In: recordings to train on; optionally others to report on, which also tell the prediction intervals; optionally
+//! others on which a network stops early. Out: the model file and what it reaches. Rows that are reported are never
+//! those that training has seen.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
@@ -140,7 +141,8 @@ pub fn train(
             told.data.recordings().iter().zip(recording_hashes(&told.data)).find(|(_, hash)| hashes.contains(hash));
         if let Some((recording, _)) = both {
             return Err(PredictorError::Request(format!(
-                "{}: training can't stop on what is reported (--stop-on and --validate), its errors would flatter; name another",
+                "{}: training can't stop on what is reported (--stop-on and --validate), its errors would flatter; \
+                 name another",
                 recording.name
             )));
         }

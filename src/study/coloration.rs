@@ -1,9 +1,12 @@
-//! The maps of photographs (4.2.2 to 4.2.6): one subject's coloration in all poses (Fig. 51 and 52), and numbers of the average maps.
+//! The maps of photographs (4.2.2 to 4.2.6): one subject's coloration in all poses (Fig. 51 and 52), and numbers of the
+//! average maps.
 //!
-//! In: a folder as `lunula photos` writes it, its poses named as the thesis' eight. Out: sheets of one subject's normalized pictures, and [`Numbers`].
+//! In: a folder as `lunula photos` writes it, its poses named as the thesis' eight. Out: sheets of one subject's
+//! normalized pictures, and [`Numbers`].
 //!
-//! Places on the nail: `u` across, from -1 at the left edge of its box to 1 at the right, `v` along, from -1 proximal to 1 distal; the thesis shows pictures and no
-//! numbers, so the regions are read off its words ([`REGIONS`]). A change is a region's mean less that of the nominal pose. Values are shares of full scale.
+//! Places on the nail: `u` across, from -1 at the left edge of its box to 1 at the right, `v` along, from -1 proximal
+//! to 1 distal; the thesis shows pictures and no numbers, so the regions are read off its words ([`REGIONS`]). A change
+//! is a region's mean less that of the nominal pose. Values are shares of full scale.
 
 use std::path::Path;
 
@@ -27,7 +30,8 @@ const CONTRAST: [f32; 2] = [0.3, 0.5];
 /// Whether a place belongs to a region.
 type Within = fn(f64, f64) -> bool;
 
-/// Regions by name: over the bone and its two sides, the tip beyond the bone, the sides of the nail, the bed, the nail's perimeter.
+/// Regions by name: over the bone and its two sides, the tip beyond the bone, the sides of the nail, the bed, the
+/// nail's perimeter.
 pub const REGIONS: [(&str, Within); 8] = [
     ("bone", |u, v| u.abs() < 0.35 && (-0.6..0.05).contains(&v)),
     ("bone_left", |u, v| (-0.5..-0.1).contains(&u) && (-0.5..0.2).contains(&v)),
@@ -170,7 +174,8 @@ fn alike(numbers: &mut Numbers, means: &[(Pose, Map)]) {
     numbers.set("least_difference", apart.reduce(f64::min));
 }
 
-/// One subject's normalized pictures, `<pose>/<subject>.png` in a folder: as they are (Fig. 51) and with 30 to 50 % stretched (Fig. 52). Tells which subject's.
+/// One subject's normalized pictures, `<pose>/<subject>.png` in a folder: as they are (Fig. 51) and with 30 to 50 %
+/// stretched (Fig. 52). Tells which subject's.
 ///
 /// # Errors
 /// No subject has a picture of every pose there is, a picture that can't be read, a folder that can't be written to.

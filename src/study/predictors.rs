@@ -1,7 +1,8 @@
-//! Numbers of the predictors: of one subject's evaluations and modes (Fig. 94 to 104), and of the comparison over subjects (Fig. 105 to 113).
+//! Numbers of the predictors: of one subject's evaluations and modes (Fig. 94 to 104), and of the comparison over
+//! subjects (Fig. 105 to 113).
 //!
-//! In: the tables `merit.csv`, `predicted.csv`, `modes.csv`, `comparisons.csv` that evaluate, analyse and compare write. Out: [`Numbers`]; what a table does not
-//! hold is not told.
+//! In: the tables `merit.csv`, `predicted.csv`, `modes.csv`, `comparisons.csv` that evaluate, analyse and compare
+//! write. Out: [`Numbers`]; what a table does not hold is not told.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -13,7 +14,8 @@ fn texts(table: &Table, name: &str) -> Result<Vec<String>, TableError> {
     Ok(table.texts(name)?.into_iter().map(Option::unwrap_or_default).collect())
 }
 
-/// Of an evaluation's folder: by target `rmse`, `r2`; from its predictions `rmse_over_sd` and `rmse_bending`, that of rows without any force.
+/// Of an evaluation's folder: by target `rmse`, `r2`; from its predictions `rmse_over_sd` and `rmse_bending`, that of
+/// rows without any force.
 ///
 /// # Errors
 /// A table that can't be read.
@@ -66,8 +68,9 @@ pub fn evaluation_numbers(folder: &Path) -> Result<Numbers, TableError> {
 /// Forces below this are none: a transducer's noise, newtons.
 const REST_N: f64 = 0.05;
 
-/// Of an analysis' folder: `least_over_greatest` of the singular values, `least_dominance`, the least share that a mode's greatest force has of the mode,
-/// `different_forces`, how many forces dominate one, `greatest_photodiode`, the greatest share that one photodiode has of a mode.
+/// Of an analysis' folder: `least_over_greatest` of the singular values, `least_dominance`, the least share that a
+/// mode's greatest force has of the mode, `different_forces`, how many forces dominate one, `greatest_photodiode`, the
+/// greatest share that one photodiode has of a mode.
 ///
 /// # Errors
 /// A table that can't be read.
@@ -105,7 +108,8 @@ pub fn modes_numbers(folder: &Path) -> Result<Numbers, TableError> {
     Ok(numbers)
 }
 
-/// Of a comparison's folder: `<figure>.<group>.<series>`, RMSE, mean over people, networks called `network`; and what 5.4 and 5.5 say of them together.
+/// Of a comparison's folder: `<figure>.<group>.<series>`, RMSE, mean over people, networks called `network`; and what
+/// 5.4 and 5.5 say of them together.
 ///
 /// # Errors
 /// A table that can't be read.

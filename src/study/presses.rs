@@ -1,11 +1,13 @@
 //! Recorded presses of people on a photodiode's place (4.3.4), for Fig. 79 to 82.
 //!
-//! In: tables as `lunula fit` reads them, a person and a place each: `Fz_N` and the photodiode of the pressed place, `VP1` proximal or `VP2` distal, in volts. With
-//! `time_s` it is a quick press: pressed as quickly as one can, held, let go. Without, it is a static curve. The force is the finger's on the surface: pressing
-//! is negative; it presses on 1 cm2.
+//! In: tables as `lunula fit` reads them, a person and a place each: `Fz_N` and the photodiode of the pressed place,
+//! `VP1` proximal or `VP2` distal, in volts. With `time_s` it is a quick press: pressed as quickly as one can, held,
+//! let go. Without, it is a static curve. The force is the finger's on the surface: pressing is negative; it presses on
+//! 1 cm2.
 //!
-//! Out: [`Presses`]. Static curves are brought to common forces, every [`STEP_N`] as far as all reach, straight between rows; a quick press begins, and is let go,
-//! where the force leaves rest, or its height, on the way through half of it.
+//! Out: [`Presses`]. Static curves are brought to common forces, every [`STEP_N`] as far as all reach, straight between
+//! rows; a quick press begins, and is let go, where the force leaves rest, or its height, on the way through half of
+//! it.
 
 use std::path::Path;
 

@@ -1,7 +1,8 @@
 //! The cells of a CSV file: one text, and where in it each cell ends.
 //!
-//! A file without a quotation mark is its own text: cells are cut out of it, nothing is copied. One with quotation marks goes through
-//! the CSV reader, row by row into a text of the same shape. Lines are those of the file, counted from 1; empty ones are no rows.
+//! A file without a quotation mark is its own text: cells are cut out of it, nothing is copied. One with quotation
+//! marks goes through the CSV reader, row by row into a text of the same shape. Lines are those of the file, counted
+//! from 1; empty ones are no rows.
 
 use std::ops::Range;
 

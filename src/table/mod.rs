@@ -1,10 +1,10 @@
 //! Tables in CSV or Parquet by the file's extension, written and read alike.
 //!
-//! Out: rows one after the other through a [`TableWriter`], in memory that does not grow with their number. In: a [`Table`] of
-//! named columns. A cell is an integer, a number, text or missing: empty in CSV, null in Parquet. A number that is not finite
-//! and an empty text are missing too. Numbers of a column with fixed decimals are rounded to them in both formats, so that
-//! the same table reads the same from either. Dates with times of day, which other programs write into Parquet, are read as
-//! text: ISO 8601, with `Z` where they are in UTC.
+//! Out: rows one after the other through a [`TableWriter`], in memory that does not grow with their number. In: a
+//! [`Table`] of named columns. A cell is an integer, a number, text or missing: empty in CSV, null in Parquet. A number
+//! that is not finite and an empty text are missing too. Numbers of a column with fixed decimals are rounded to them in
+//! both formats, so that the same table reads the same from either. Dates with times of day, which other programs write
+//! into Parquet, are read as text: ISO 8601, with `Z` where they are in UTC.
 //!
 //! A writer writes where it is told; that results appear whole or not at all is the business of [`crate::files`].
 
@@ -172,8 +172,8 @@ enum Sink {
 }
 
 impl TableWriter {
-    /// Starts the table that is to stand at `path` (its extension chooses the format) in the file `at`, with facts on the whole
-    /// table (units, signs) that Parquet keeps and CSV has no place for.
+    /// Starts the table that is to stand at `path` (its extension chooses the format) in the file `at`, with facts on
+    /// the whole table (units, signs) that Parquet keeps and CSV has no place for.
     ///
     /// # Errors
     /// An unknown extension, two columns of one name, or a file that can't be written.
@@ -212,7 +212,8 @@ impl TableWriter {
         written.map_err(|why| TableError::Write { path: self.path.clone(), why })
     }
 
-    /// Writes `rows` rows: `make` is asked for each, and hands its cells on. The same as row by row; CSV is formatted on all cores.
+    /// Writes `rows` rows: `make` is asked for each, and hands its cells on. The same as row by row; CSV is formatted
+    /// on all cores.
     ///
     /// # Errors
     /// As [`write`](Self::write).

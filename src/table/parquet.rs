@@ -185,8 +185,8 @@ fn open(path: &Path) -> Result<SerializedFileReader<File>, String> {
     Ok(reader)
 }
 
-/// The format's reader panics on some damaged files (15 of 50,000 that fuzzing made, at three places) where it should refuse them: that costs
-/// the file and nothing else.
+/// The format's reader panics on some damaged files (15 of 50,000 that fuzzing made, at three places) where it should
+/// refuse them: that costs the file and nothing else.
 fn unharmed<T>(read: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
     static HOOK: Once = Once::new();
     thread_local! {

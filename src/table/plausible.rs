@@ -1,9 +1,9 @@
 //! Whether the sizes that a Parquet file states of itself can be true, before anybody takes memory for them.
 //!
-//! The format's reader makes room for as many things as a header says. Here the headers are walked first, as Thrift's compact protocol
-//! (<https://github.com/apache/thrift/blob/master/doc/specs/thrift-compact-protocol.md>) and nothing more: no list may have more entries than
-//! bytes are left, no text more bytes, and no page may unpack to more than a file of that size can. What can't be walked at all is left to
-//! the reader, which says what is wrong.
+//! The format's reader makes room for as many things as a header says. Here the headers are walked first, as Thrift's
+//! compact protocol (<https://github.com/apache/thrift/blob/master/doc/specs/thrift-compact-protocol.md>) and nothing
+//! more: no list may have more entries than bytes are left, no text more bytes, and no page may unpack to more than a
+//! file of that size can. What can't be walked at all is left to the reader, which says what is wrong.
 
 use std::fs::File;
 use std::os::unix::fs::FileExt as _;
@@ -44,7 +44,8 @@ pub(super) fn check_footer(file: &File) -> Result<(), String> {
     if file.read_exact_at(&mut footer, size - 8 - length).is_err() {
         return Ok(());
     }
-    // The fifth field of the structures in lists: how many columns one of the schema holds, and where a group of rows begins.
+    // The fifth field of the structures in lists: how many columns one of the schema holds, and where a group of rows
+    // begins.
     let mut fits = true;
     let walked = (Thrift { rest: &footer }).fields(0, &mut |depth, id, value| {
         fits &= (depth, id) != (2, 5) || u64::try_from(value).is_ok_and(|v| v <= size)
@@ -151,8 +152,8 @@ impl Thrift<'_> {
         Ok(())
     }
 
-    /// A structure's fields; whole numbers among them, and among those of what they hold, are shown with how deep they are and their field's
-    /// number.
+    /// A structure's fields; whole numbers among them, and among those of what they hold, are shown with how deep they
+    /// are and their field's number.
     fn fields(&mut self, depth: usize, show: &mut dyn FnMut(usize, i64, i64)) -> Result<(), Bad> {
         let mut id = 0;
         loop {

@@ -1,5 +1,5 @@
-//! What can be chosen in each job, what is chosen unless the user says otherwise, and why: the one place of it. The page tells it, the
-//! README repeats it, and a test compares the two.
+//! What can be chosen in each job, what is chosen unless the user says otherwise, and why: the one place of it. The
+//! page tells it, the README repeats it, and a test compares the two.
 
 use super::{align, hemodynamics, photos, posture, predictor};
 

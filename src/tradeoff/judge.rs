@@ -71,7 +71,8 @@ pub struct Tradeoff {
     pub maps: Vec<super::hemodynamics::Map>,
 }
 
-/// Finds the knees of what `measured` gave for `job`, with `others` of other programs beside it. `begun`: when measuring began.
+/// Finds the knees of what `measured` gave for `job`, with `others` of other programs beside it. `begun`: when
+/// measuring began.
 ///
 /// # Errors
 /// Rows of `others` whose error is none of the curves'.

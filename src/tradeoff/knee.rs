@@ -1,15 +1,18 @@
 //! The knee of error against run time: the setting beyond which more time buys little.
 //!
-//! In: settings with their error and the median and quartiles of their time. Out: which of them are worth their time (the front) and the knee.
+//! In: settings with their error and the median and quartiles of their time. Out: which of them are worth their time
+//! (the front) and the knee.
 //!
-//! **The front.** From the fastest on, a setting is on it whose error is lower by more than [`SAME`] than that of all faster ones. Settings
-//! whose times are not told apart, their quartiles touching or their medians within [`SAME`], are one place of it, and the most exact of them
-//! stands there. A setting without a positive finite time or with an error that is no number or negative has no place.
+//! **The front.** From the fastest on, a setting is on it whose error is lower by more than [`SAME`] than that of all
+//! faster ones. Settings whose times are not told apart, their quartiles touching or their medians within [`SAME`], are
+//! one place of it, and the most exact of them stands there. A setting without a positive finite time or with an error
+//! that is no number or negative has no place.
 //!
-//! **The knee.** Of three places or more, the one that lies farthest below the chord from the first to the last, with the logarithms of both
-//! axes brought to the unit square (Satopaa et al. 2011, doi:10.1109/ICDCSW.2011.20, whose curve is this one upside down), if that is at
-//! least [`BEND`]. Where there is no such bend, also of two places: the most exact setting if over the whole front the error falls at least as
-//! many times as the time grows, else the cheapest. Of one place: that one; nothing that costs more errs less.
+//! **The knee.** Of three places or more, the one that lies farthest below the chord from the first to the last, with
+//! the logarithms of both axes brought to the unit square (Satopaa et al. 2011, doi:10.1109/ICDCSW.2011.20, whose curve
+//! is this one upside down), if that is at least [`BEND`]. Where there is no such bend, also of two places: the most
+//! exact setting if over the whole front the error falls at least as many times as the time grows, else the cheapest.
+//! Of one place: that one; nothing that costs more errs less.
 //!
 //! An error of exactly zero can't be bettered. For the chord it counts as a tenth of the least other error.
 

@@ -1,9 +1,9 @@
 //! Error against run time: a job run over its settings on scenes whose truth is known.
 //!
-//! In: a job's `Settings` (a scene with its truth) and an [`Effort`]. Out: [`Measured`], a [`Row`] for each setting, other programs' among them;
-//! [`judge`] finds the knee of each curve and says where the default stands; [`write`] makes table and picture, [`index`] one page of
-//! all jobs. It calls the same entries as the command line, so that a figure on a curve is the figure a user gets. Times are of one
-//! thread and of the stage alone that a setting changes.
+//! In: a job's `Settings` (a scene with its truth) and an [`Effort`]. Out: [`Measured`], a [`Row`] for each setting,
+//! other programs' among them; [`judge`] finds the knee of each curve and says where the default stands; [`write`]
+//! makes table and picture, [`index`] one page of all jobs. It calls the same entries as the command line, so that a
+//! figure on a curve is the figure a user gets. Times are of one thread and of the stage alone that a setting changes.
 
 pub mod align;
 mod all;

@@ -112,8 +112,8 @@ impl Scene {
     }
 }
 
-/// Measures every setting, and other programs. Without a pose of two subjects there is no SD to be wrong: its curve is left out, and
-/// [`Measured::refused`] says so.
+/// Measures every setting, and other programs. Without a pose of two subjects there is no SD to be wrong: its curve is
+/// left out, and [`Measured::refused`] says so.
 ///
 /// # Errors
 /// A set or truth that can't be read, with its file; [`Interrupted`](super::Interrupted).
@@ -243,7 +243,8 @@ fn inside(outline: &Outline, axis: Axis) -> anyhow::Result<Vec<bool>> {
 /// Errors, each with its name.
 type Errors = Vec<(&'static str, f64)>;
 
-/// The whole job with drawn outlines: the time of the only stage that the setting changes, and the errors of its results.
+/// The whole job with drawn outlines: the time of the only stage that the setting changes, and the errors of its
+/// results.
 fn resampled(scene: &Scene, resample: Resample, first: bool) -> Run<Errors> {
     let normalization = Normalization { resample, ..Normalization::default() };
     let outlines = OutlineOptions { sources: Sources::Annotated, ..OutlineOptions::default() };

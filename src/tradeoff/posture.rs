@@ -1,5 +1,5 @@
-//! The posture job over its settings: which planes give the centres, how they are refined, where markers are searched; and
-//! beside them what a user of OpenCV would write.
+//! The posture job over its settings: which planes give the centres, how they are refined, where markers are searched;
+//! and beside them what a user of OpenCV would write.
 
 use std::f64::consts::{PI, TAU};
 use std::path::{Path, PathBuf};
@@ -154,7 +154,8 @@ impl Angles {
         Self(layout.joints.iter().map(column).collect())
     }
 
-    /// Each joint's error over the frames in which all settings can have its angle: those that have it; with the error's name.
+    /// Each joint's error over the frames in which all settings can have its angle: those that have it; with the
+    /// error's name.
     fn errors(&self, truth: &Self, layout: &Layout) -> anyhow::Result<Vec<(String, f64)>> {
         let (mut errors, mut squares) = (Vec::new(), 0.0);
         for ((joint, found), exact) in layout.joints.iter().zip(&self.0).zip(&truth.0) {

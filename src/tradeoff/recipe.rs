@@ -1,10 +1,10 @@
-//! The usual recipe with OpenCV, as its users write it: each whole frame to BGR, to HSV, a mask of a marker's range of hue,
-//! the largest contours of the mask, the centroid of each. The peer of the posture job's tracker.
+//! The usual recipe with OpenCV, as its users write it: each whole frame to BGR, to HSV, a mask of a marker's range of
+//! hue, the largest contours of the mask, the centroid of each. The peer of the posture job's tracker.
 //!
-//! In: a video, the markers' names and colours, and where they are at first, where colours do not tell. Out: for each frame and
-//! marker a centroid in pixels or none, and the time that each step took. It knows no standard error, takes the video's
-//! matrix for BT.601 as VideoCapture does, and gives the centroid of what is seen of a half-hidden marker. No `Mat` leaves
-//! this file.
+//! In: a video, the markers' names and colours, and where they are at first, where colours do not tell. Out: for each
+//! frame and marker a centroid in pixels or none, and the time that each step took. It knows no standard error, takes
+//! the video's matrix for BT.601 as VideoCapture does, and gives the centroid of what is seen of a half-hidden marker.
+//! No `Mat` leaves this file.
 
 use std::path::Path;
 use std::sync::Once;
@@ -34,8 +34,8 @@ pub struct Wanted {
     pub name: String,
     /// Its colour, sRGB.
     pub srgb: [u8; 3],
-    /// Where it is in the first frame, in coordinates of the stored picture; markers of one colour without it are taken from
-    /// left to right.
+    /// Where it is in the first frame, in coordinates of the stored picture; markers of one colour without it are taken
+    /// from left to right.
     pub start_px: Option<[f64; 2]>,
 }
 
@@ -178,8 +178,8 @@ impl Work {
     }
 }
 
-/// Blobs to the markers of their colour: each to the nearest last place, the nearest pair first; from left to right among
-/// those that have none.
+/// Blobs to the markers of their colour: each to the nearest last place, the nearest pair first; from left to right
+/// among those that have none.
 fn assign(markers: &[usize], mut blobs: Vec<[f64; 2]>, last: &mut [Option<[f64; 2]>], at_px: &mut [Option<[f64; 2]>]) {
     loop {
         let waiting = markers.iter().filter(|&&marker| at_px[marker].is_none());

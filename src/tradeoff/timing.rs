@@ -63,8 +63,8 @@ fn quantile(sorted: &[f64], share: f64) -> f64 {
 /// What one run of a setting gives: its seconds, and in the first round what is told of it.
 pub(super) type Run<T> = anyhow::Result<(f64, Option<T>)>;
 
-/// Runs every setting as often as `effort` says, all of them once, then all again. `run` is told whether it is the setting's first run, and
-/// has to give what is told of it then. A setting that fails runs no more.
+/// Runs every setting as often as `effort` says, all of them once, then all again. `run` is told whether it is the
+/// setting's first run, and has to give what is told of it then. A setting that fails runs no more.
 ///
 /// # Errors
 /// [`Interrupted`].

@@ -1,5 +1,5 @@
-//! Whole frames as blue, green and red bytes, as OpenCV's VideoCapture gives them: by libswscale with its bicubic flag and its
-//! default matrix, BT.601, whatever the video's own. For comparison; nothing here measures on it.
+//! Whole frames as blue, green and red bytes, as OpenCV's VideoCapture gives them: by libswscale with its bicubic flag
+//! and its default matrix, BT.601, whatever the video's own. For comparison; nothing here measures on it.
 
 use ffmpeg::format::Pixel;
 use ffmpeg::frame;

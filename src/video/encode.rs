@@ -1,10 +1,12 @@
-//! Pictures with given times to a file: H.264 in MP4, MOV, Matroska, AVI or a transport stream, by the file's extension.
+//! Pictures with given times to a file: H.264 in MP4, MOV, Matroska, AVI or a transport stream, by the file's
+//! extension.
 //!
 //! The bytes depend on the pictures and on [`Encoding`] alone: x264 cuts its work by the number of its threads, so this
-//! number is fixed, and its macroblock tree is off. With it the AVX-512 code of x264 164 (Debian 12) uses memory that nothing
-//! was written to, so the bytes followed what other encoders had left on the heap: measured with `MALLOC_PERTURB_` 0, 1, 77
-//! and 200, four different files, from FFmpeg's own program too; without it one file, and the same with SSE4.2, AVX2 and
-//! AVX-512. An MP4's index comes first, so that a file cut off still plays as far as it goes.
+//! number is fixed, and its macroblock tree is off. With it the AVX-512 code of x264 164 (Debian 12) uses memory that
+//! nothing was written to, so the bytes followed what other encoders had left on the heap: measured with
+//! `MALLOC_PERTURB_` 0, 1, 77 and 200, four different files, from FFmpeg's own program too; without it one file, and
+//! the same with SSE4.2, AVX2 and AVX-512. An MP4's index comes first, so that a file cut off still plays as far as it
+//! goes.
 
 use std::path::{Path, PathBuf};
 

@@ -100,7 +100,8 @@ impl Format {
 pub struct Picture {
     /// How the samples are laid out.
     pub format: Format,
-    /// Luma, Cb, Cr (the first alone without chroma), rows without gaps; two bytes a sample, the low one first, over 8 bits.
+    /// Luma, Cb, Cr (the first alone without chroma), rows without gaps; two bytes a sample, the low one first, over 8
+    /// bits.
     pub planes: Vec<Vec<u8>>,
 }
 

@@ -1,7 +1,7 @@
 //! Packets that an edit list hides: decoded for what follows, never shown.
 //!
-//! FFmpeg marks them with a flag that its Rust interface does not pass on. A decoder does honour it: it gives no frame for
-//! such a packet. So a decoder of raw pictures of one sample is asked, with one byte of the packet.
+//! FFmpeg marks them with a flag that its Rust interface does not pass on. A decoder does honour it: it gives no frame
+//! for such a packet. So a decoder of raw pictures of one sample is asked, with one byte of the packet.
 
 use ffmpeg::codec::{self, Parameters};
 use ffmpeg::{Packet, format::Pixel, frame};

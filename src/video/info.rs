@@ -66,8 +66,8 @@ impl Info {
     }
 }
 
-/// Reads it off the stream and the first frame; `planes` is the same frame as it is handed out. The error is words for the
-/// user.
+/// Reads it off the stream and the first frame; `planes` is the same frame as it is handed out. The error is words for
+/// the user.
 pub(super) fn info(
     source: &Source,
     first: &frame::Video,

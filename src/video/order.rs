@@ -1,9 +1,10 @@
 //! Which frames are missing: packets sent to the decoder against the frames that came out of it.
 //!
-//! Frames come out in the order of presentation. When one comes out, every packet of an earlier presentation time that has
-//! not come out never will: its frame is missing. A packet that the decoder can't make sense of damages what is predicted
-//! from it, which can be every frame decoded after it up to the next key frame, and those that follow this key frame in the
-//! file but are shown before it. Only what is under way is kept, so memory does not grow with the video.
+//! Frames come out in the order of presentation. When one comes out, every packet of an earlier presentation time that
+//! has not come out never will: its frame is missing. A packet that the decoder can't make sense of damages what is
+//! predicted from it, which can be every frame decoded after it up to the next key frame, and those that follow this
+//! key frame in the file but are shown before it. Only what is under way is kept, so memory does not grow with the
+//! video.
 
 use std::collections::BTreeMap;
 
@@ -16,8 +17,8 @@ pub(super) struct Sent {
     pub(super) group: u64,
     /// Shown before its group's key frame: it may be predicted from the group before.
     pub(super) leading: bool,
-    /// Sent before the first key frame, where it counts only if a sound frame comes of it; or shown before it, where it never
-    /// counts.
+    /// Sent before the first key frame, where it counts only if a sound frame comes of it; or shown before it, where it
+    /// never counts.
     pub(super) prelude: bool,
 }
 

@@ -1,8 +1,8 @@
 //! Decoding in the order of presentation, with the frames that are missing.
 //!
 //! What comes out does not depend on the number of threads: with several, the first fault ends the fast reading
-//! ([`Alarm`]), and whoever reads starts again with [`Care::Exact`], where each fault is known with its packet. Up to the
-//! alarm both give the same: a packet's fault is reported before anything of that packet comes out.
+//! ([`Alarm`]), and whoever reads starts again with [`Care::Exact`], where each fault is known with its packet. Up to
+//! the alarm both give the same: a packet's fault is reported before anything of that packet comes out.
 
 use std::collections::VecDeque;
 
@@ -58,8 +58,8 @@ pub(super) struct Reader {
     stopped_by: Option<ffmpeg::Error>,
     /// The file ended early, in words.
     pub(super) cut: Option<String>,
-    /// Of frames up to this key it is certain that none lacks before them. A frame to come is decoded after all that are
-    /// there, and none is shown before it is decoded: that is the last packet's decoding time.
+    /// Of frames up to this key it is certain that none lacks before them. A frame to come is decoded after all that
+    /// are there, and none is shown before it is decoded: that is the last packet's decoding time.
     certain_to: i64,
 }
 
@@ -139,8 +139,8 @@ impl Reader {
         }
     }
 
-    /// The first that is ready, once nothing new can be heard of it: frames may be predicted from one that is shown after
-    /// them and turns out to be damaged, and the file may end before one that is shown before them.
+    /// The first that is ready, once nothing new can be heard of it: frames may be predicted from one that is shown
+    /// after them and turns out to be damaged, and the file may end before one that is shown before them.
     fn hand_out(&mut self) -> Option<Event> {
         loop {
             let (sent, event) = self.ready.front()?;

@@ -57,7 +57,8 @@ impl Source {
             .map_err(|error| failed(format!("can't be read: {error}")))?;
         if extent.no_index {
             return Err(failed(
-                "was cut off before its index (moov) was written, so that no program can tell its frames apart; copy it \
+                "was cut off before its index (moov) was written, so that no program can tell its frames apart; copy \
+                 it \
                  again if the original is whole, or repair it with a tool such as `untrunc` and another video of the \
                  same camera"
                     .into(),
@@ -150,17 +151,18 @@ fn no_video(input: &context::Input) -> String {
     }
 }
 
-/// Codecs whose frame threads can be relied upon to stop at a fault. MPEG-4's abort the program there (FFmpeg 5.1). H.264's
-/// copy a frame's marks before it is decoded: where a damaged slice ends early without a contradiction, which `explode` does
-/// not see either, the damage was noticed or not as the threads came to run (measured: 1 of 47 damaged packets, noticed in 4
-/// of 7 readings, and 400 bytes of 0xff in the middle of a file, in some). One thread takes 1.75 times as long as two.
+/// Codecs whose frame threads can be relied upon to stop at a fault. MPEG-4's abort the program there (FFmpeg 5.1).
+/// H.264's copy a frame's marks before it is decoded: where a damaged slice ends early without a contradiction, which
+/// `explode` does not see either, the damage was noticed or not as the threads came to run (measured: 1 of 47 damaged
+/// packets, noticed in 4 of 7 readings, and 400 bytes of 0xff in the middle of a file, in some). One thread takes 1.75
+/// times as long as two.
 fn is_threaded(codec: Id) -> bool {
     matches!(codec, Id::HEVC | Id::VP9 | Id::AV1 | Id::MJPEG)
 }
 
-/// With frame threads, the marks on frames come too late to be relied upon; refusing to go on at a fault (`explode`) does
-/// not. With one thread the marks of H.264 and of the MPEG family show what was concealed, and the decoder forgives slips
-/// beside the picture that a refusal would not.
+/// With frame threads, the marks on frames come too late to be relied upon; refusing to go on at a fault (`explode`)
+/// does not. With one thread the marks of H.264 and of the MPEG family show what was concealed, and the decoder
+/// forgives slips beside the picture that a refusal would not.
 fn decoder(stream: &Stream<'_>, threads: usize, care: Care) -> Result<ffmpeg::decoder::Video, ffmpeg::Error> {
     let mut context = codec::Context::from_parameters(stream.parameters())?;
     let id = context.id();

@@ -1,12 +1,15 @@
-//! What every command leaves behind where the disk is full, breaks, or the process is killed, at each of its calls that change files.
+//! What every command leaves behind where the disk is full, breaks, or the process is killed, at each of its calls that
+//! change files.
 //!
-//! After a fault: with exit status 2 every file is as it was and none is new; with 0 all results are there; with 1 standard error says
-//! what failed; and always each file is whole, an earlier run's or this one's, and the same command run again gives the same bytes as
-//! one that nothing disturbed and leaves nothing else. Hidden leftovers are the next run's to clear.
+//! After a fault: with exit status 2 every file is as it was and none is new; with 0 all results are there; with 1
+//! standard error says what failed; and always each file is whole, an earlier run's or this one's, and the same command
+//! run again gives the same bytes as one that nothing disturbed and leaves nothing else. Hidden leftovers are the next
+//! run's to clear.
 //!
 //! `cargo test` tries a few calls of the fast commands. All calls of all commands print a table:
-//! `LUNULA_FAULTS=all cargo test --features xdf --test all faults:: -- --nocapture`; a command's name in place of `all` tries that one. With
-//! `TMPDIR` in memory it takes half an hour, as no disk is waited for, but for `phantom study`, whose 3500 calls take most of a day:
+//! `LUNULA_FAULTS=all cargo test --features xdf --test all faults:: -- --nocapture`; a command's name in place of `all`
+//! tries that one. With `TMPDIR` in memory it takes half an hour, as no disk is waited for, but for `phantom study`,
+//! whose 3500 calls take most of a day:
 //! `LUNULA_FAULTS_EVERY=211` tries every 211th, from the last on.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -16,8 +19,8 @@ use std::process::Command;
 
 use crate::util::{Dir, touch_pipeline};
 
-/// A command that writes below `out`: the run that left results there before (none: it refuses to write over any), and the one that is
-/// disturbed.
+/// A command that writes below `out`: the run that left results there before (none: it refuses to write over any), and
+/// the one that is disturbed.
 struct Job {
     name: &'static str,
     before: &'static str,
@@ -34,7 +37,8 @@ const fn slow(name: &'static str, before: &'static str, run: &'static str) -> Jo
     Job { name, before, run, fast: false }
 }
 
-/// Paths are relative to the test's folder; inputs are those of [`inputs`]. Without `tradeoff`, the results of which are times.
+/// Paths are relative to the test's folder; inputs are those of [`inputs`]. Without `tradeoff`, the results of which
+/// are times.
 const JOBS: &[Job] = &[
     fast("photos", "photos in/s01 --size 16 --out out/maps", "photos in/both --size 16 --out out/maps"),
     slow(
@@ -69,8 +73,10 @@ const JOBS: &[Job] = &[
     ),
     fast(
         "train --learning-curve",
-        "train in/a.csv in/b.csv --target force --validate in/c.csv --out out/model.json --learning-curve out/curve.csv",
-        "train in/a.csv in/c.csv --target force --validate in/b.csv --out out/model.json --learning-curve out/curve.csv",
+        "train in/a.csv in/b.csv --target force --validate in/c.csv --out out/model.json --learning-curve \
+         out/curve.csv",
+        "train in/a.csv in/c.csv --target force --validate in/b.csv --out out/model.json --learning-curve \
+         out/curve.csv",
     ),
     fast(
         "evaluate",
@@ -121,8 +127,10 @@ const JOBS: &[Job] = &[
     ),
     slow(
         "phantom study",
-        "phantom study --seed 1 --subjects 1 --sensors 1 --presses 1 --seconds 1 --video-size 160x120 --fps 5 --out out/study",
-        "phantom study --seed 2 --subjects 1 --sensors 1 --presses 1 --seconds 1 --video-size 160x120 --fps 5 --out out/study",
+        "phantom study --seed 1 --subjects 1 --sensors 1 --presses 1 --seconds 1 --video-size 160x120 --fps 5 --out \
+         out/study",
+        "phantom study --seed 2 --subjects 1 --sensors 1 --presses 1 --seconds 1 --video-size 160x120 --fps 5 --out \
+         out/study",
     ),
     fast("run", "run in/before.toml --out out/run", "run in/after.toml --out out/run"),
     fast("merge", "merge in/before1 in/before2 --out out/run", "merge in/after1 in/after2 --out out/run"),

@@ -167,7 +167,8 @@ pub fn small_set(subjects: u32, poses: &[Pose]) -> PhotoOptions {
     }
 }
 
-/// A pipeline that generates a log of touches for each session with its seed, of this length, fits a model of force to it and evaluates that.
+/// A pipeline that generates a log of touches for each session with its seed, of this length, fits a model of force to
+/// it and evaluates that.
 pub fn touch_pipeline(sessions: &[(&str, u64)], length: &str) -> String {
     let logs: String = sessions
         .iter()

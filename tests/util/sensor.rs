@@ -1,7 +1,8 @@
-//! A sensor whose physics is known: forces and angle are linear in the volts, with coefficients that a double holds exactly.
+//! A sensor whose physics is known: forces and angle are linear in the volts, with coefficients that a double holds
+//! exactly.
 //!
-//! Volts are multiples of 2^-10, coefficients of 2^-4: every cell of the table is exact, so that coefficients, RMSE, bias and R2
-//! of what is fitted to it are known.
+//! Volts are multiples of 2^-10, coefficients of 2^-4: every cell of the table is exact, so that coefficients, RMSE,
+//! bias and R2 of what is fitted to it are known.
 
 use super::Dir;
 

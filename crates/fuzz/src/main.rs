@@ -1,5 +1,5 @@
-//! Feeds one parser of lunula with inputs: `lunula-fuzz PARSER` is the program that `cargo afl fuzz` runs again and again, with an input
-//! on standard input at a time; without a name it lists the parsers.
+//! Feeds one parser of lunula with inputs: `lunula-fuzz PARSER` is the program that `cargo afl fuzz` runs again and
+//! again, with an input on standard input at a time; without a name it lists the parsers.
 
 mod targets;
 

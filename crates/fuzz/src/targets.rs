@@ -1,8 +1,8 @@
-//! Every parser of lunula as a function of bytes: no input may make it panic, abort, hang or take memory without bound; an error is
-//! an answer.
+//! Every parser of lunula as a function of bytes: no input may make it panic, abort, hang or take memory without bound;
+//! an error is an answer.
 //!
-//! `lunula-fuzz` looks for inputs that do, and `tests/parsers.rs`, which includes this file, tries those of `tests/corpus/` again. What can
-//! be read only from files is written into a folder in memory first.
+//! `lunula-fuzz` looks for inputs that do, and `tests/parsers.rs`, which includes this file, tries those of
+//! `tests/corpus/` again. What can be read only from files is written into a folder in memory first.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -123,7 +123,8 @@ fn labelme(desk: &Desk, bytes: &[u8]) {
     }
 }
 
-/// A picture file, or else a width and a depth (a byte each) and the pixels: an encoded picture is hardly ever changed into another mask.
+/// A picture file, or else a width and a depth (a byte each) and the pixels: an encoded picture is hardly ever changed
+/// into another mask.
 fn mask(desk: &Desk, bytes: &[u8]) {
     use image::{DynamicImage, GrayImage, ImageBuffer};
     let picture = match bytes {

@@ -1,20 +1,22 @@
-//! Time and error of the transient solver against diffsol's BDF, in turns in one run, and against what Python and C have.
+//! Time and error of the transient solver against diffsol's BDF, in turns in one run, and against what Python and C
+//! have.
 //!
 //! `cargo bench -p lunula-hemodynamics-peer [-- --quick] [--peers] [--out FILE]`
 //!
-//! `--peers` runs `benches/peers/hemodynamics.py` of the repository as well (RADAU5, LSODA, CVODE, SciPy, scikit-sundae), right after, and
-//! puts its rows into the same table.
+//! `--peers` runs `benches/peers/hemodynamics.py` of the repository as well (RADAU5, LSODA, CVODE, SciPy,
+//! scikit-sundae), right after, and puts its rows into the same table.
 //!
-//! Twenty step responses (P_F1 alone and P_F1 = P_F2, ten loads each, 0 to 2 s) of 4 s with 400 outputs from rest. All solve the same
-//! equations in conductances, in states scaled by the nominal diameters. diffsol has the analytic Jacobian, `atol = rtol` on lumens and
-//! `10 rtol` on rates or, "loose rates", `1e4 rtol` (as the Python peers), dense matrices of nalgebra (those of faer take 2.6 times as
-//! long), the first step that served it best, and is started anew at 2 s. A row of CSV for each solver and tolerance:
+//! Twenty step responses (P_F1 alone and P_F1 = P_F2, ten loads each, 0 to 2 s) of 4 s with 400 outputs from rest. All
+//! solve the same equations in conductances, in states scaled by the nominal diameters. diffsol has the analytic
+//! Jacobian, `atol = rtol` on lumens and `10 rtol` on rates or, "loose rates", `1e4 rtol` (as the Python peers), dense
+//! matrices of nalgebra (those of faer take 2.6 times as long), the first step that served it best, and is started anew
+//! at 2 s. A row of CSV for each solver and tolerance:
 //!
 //! `solver,rtol,error,microseconds,evaluations`
 //!
-//! error: the greatest `|x - x_ref| / D` over the times of that crate's tests/reference, all walls and responses. microseconds: a response, the fastest of
-//! several rounds over all. evaluations: of the accelerations of all walls, a response. Then the times at equal error, by straight lines
-//! between the logarithms, and one sample a step at 1 kHz.
+//! error: the greatest `|x - x_ref| / D` over the times of that crate's tests/reference, all walls and responses.
+//! microseconds: a response, the fastest of several rounds over all. evaluations: of the accelerations of all walls, a
+//! response. Then the times at equal error, by straight lines between the logarithms, and one sample a step at 1 kHz.
 
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};

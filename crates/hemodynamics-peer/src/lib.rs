@@ -1,6 +1,7 @@
 //! diffsol's BDF on the equations of `lunula-hemodynamics`, for its bench and for a test that both agree.
 //!
-//! A package of its own, and none of the workspace's default members: diffsol brings matrices that take minutes to compile.
+//! A package of its own, and none of the workspace's default members: diffsol brings matrices that take minutes to
+//! compile.
 
 use std::cell::{Cell, RefCell};
 
@@ -30,7 +31,8 @@ pub struct Step {
     pub distal_pa: f64,
 }
 
-/// The accelerations of three walls without memory of their own: `Model::accelerations` makes two vectors at every call.
+/// The accelerations of three walls without memory of their own: `Model::accelerations` makes two vectors at every
+/// call.
 struct Walls {
     push: [f64; 3],
     spring: [f64; 3],

@@ -1,10 +1,12 @@
-//! The transient solver against diffsol's BDF, which shares no code with it but the Jacobian: `cargo test -p lunula-hemodynamics-peer`.
+//! The transient solver against diffsol's BDF, which shares no code with it but the Jacobian:
+//! `cargo test -p lunula-hemodynamics-peer`.
 
 use lunula_hemodynamics::{Collapse, Load, Loads, Model, Parameters, SolveOptions, State, simulate};
 
 use lunula_hemodynamics_peer::{Peer, Step, bdf};
 
-/// `|x - x_diffsol| / D` where diffsol is asked for 1e-10; measured 6e-9, nearly all of it diffsol's (that crate's tests/reference).
+/// `|x - x_diffsol| / D` where diffsol is asked for 1e-10; measured 6e-9, nearly all of it diffsol's (that crate's
+/// tests/reference).
 const TOLERANCE: f64 = 3e-8;
 
 #[test]

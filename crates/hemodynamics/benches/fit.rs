@@ -40,7 +40,8 @@ fn main() {
             let points = points as f64 / RUNS as f64;
             let with = if intervals { ", intervals" } else { "" };
             println!(
-                "{name}, {starts} starts{with}: {best:.2} ms best, {median:.2} ms median, {most:.2} ms most, {points:.1} points"
+                "{name}, {starts} starts{with}: {best:.2} ms best, {median:.2} ms median, {most:.2} ms most, \
+                 {points:.1} points"
             );
         }
     }

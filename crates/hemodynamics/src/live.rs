@@ -1,12 +1,13 @@
 //! The model driven by a sensor: one implicit step a sample.
 //!
-//! In: the inputs at every sample, a fixed time apart. Between two samples they are taken as straight. Out: the state at the sample.
+//! In: the inputs at every sample, a fixed time apart. Between two samples they are taken as straight. Out: the state
+//! at the sample.
 //!
-//! A sample is one step of Radau IIA with 5 stages. Where the estimate of its error or Newton's method ask for it (a load that jumps between
-//! two samples, a vessel that closes), the step is cut into shorter ones, in bounded work. The error against the exact response to the same
-//! straight pieces is below 1e-8 D at 1 kHz, for a touch that rises within 50 ms over beating blood, and for one that jumps within a
-//! sample (tests). A sample that fails leaves the state of the last one that did not; the next goes on from
-//! that state and the failed sample's inputs, if those were numbers.
+//! A sample is one step of Radau IIA with 5 stages. Where the estimate of its error or Newton's method ask for it (a
+//! load that jumps between two samples, a vessel that closes), the step is cut into shorter ones, in bounded work. The
+//! error against the exact response to the same straight pieces is below 1e-8 D at 1 kHz, for a touch that rises within
+//! 50 ms over beating blood, and for one that jumps within a sample (tests). A sample that fails leaves the state of
+//! the last one that did not; the next goes on from that state and the failed sample's inputs, if those were numbers.
 
 use crate::load::Inputs;
 use crate::model::Model;
@@ -17,8 +18,8 @@ use crate::transient::{Begins, Course, Halt, Pace, bounds};
 
 /// The tolerance, `|x - x_exact| / D`.
 const RTOL: f64 = 1e-8;
-/// Only the steps' ends are put out, where the error of a layer that is stepped over has gone by: the bounds on the estimates within the
-/// step are so many times wider.
+/// Only the steps' ends are put out, where the error of a layer that is stepped over has gone by: the bounds on the
+/// estimates within the step are so many times wider.
 const WIDER_LIFTED: f64 = 30.0;
 const WIDER_PLAIN: f64 = 300.0;
 const WIDER_PROBED: f64 = 10.0;
@@ -153,7 +154,8 @@ impl Live {
             }
             Err(halt) => {
                 self.failed += 1;
-                // What made it fail has come all the same: the next sample goes on from there, not from the load before it.
+                // What made it fail has come all the same: the next sample goes on from there, not from the load before
+                // it.
                 self.inputs = to;
                 self.stepper.place_at(&self.state.lumens, &self.state.rates);
                 Err(match halt {

@@ -1,12 +1,13 @@
 //! What photodiodes on the nail see of the capillaries under them.
 //!
-//! In: the capillaries' lumens `l = d / D` and [`Parameters`]. Out: voltages, and their derivatives by the lumens. Every choice of [`Optics`]
-//! is `V_Pi = V_0i + V_1i f_i(l_i)` with one [`Photodiodes::signal`] `f_i`; offset and scaling are each photodiode's own.
+//! In: the capillaries' lumens `l = d / D` and [`Parameters`]. Out: voltages, and their derivatives by the lumens.
+//! Every choice of [`Optics`] is `V_Pi = V_0i + V_1i f_i(l_i)` with one [`Photodiodes::signal`] `f_i`; offset and
+//! scaling are each photodiode's own.
 //!
-//! With `a = alpha_i D_Ci^2` (equation 7) the thesis has `f = exp(-a l^2)` (equation 6, Beer and Lambert) and its first two Taylor terms
-//! `f = 1 - a l^2`, which are equation 8 with `V'_0 = V_0 + V_1` and `V'_1 = V_1 alpha`. The thesis estimates `alpha (D + x)^2` as 1e-2; its
-//! table gives 0.134 at rest, and there the two terms overstate changes by 7 % (capillaries emptying) to 15 % (swelling) unless `V_0` and
-//! `V_1` are fitted anew. So equation 6 is the default.
+//! With `a = alpha_i D_Ci^2` (equation 7) the thesis has `f = exp(-a l^2)` (equation 6, Beer and Lambert) and its first
+//! two Taylor terms `f = 1 - a l^2`, which are equation 8 with `V'_0 = V_0 + V_1` and `V'_1 = V_1 alpha`. The thesis
+//! estimates `alpha (D + x)^2` as 1e-2; its table gives 0.134 at rest, and there the two terms overstate changes by 7 %
+//! (capillaries emptying) to 15 % (swelling) unless `V_0` and `V_1` are fitted anew. So equation 6 is the default.
 //!
 //! `exp` is that of the crate `libm`: the same digits on every machine.
 
@@ -69,7 +70,8 @@ pub enum OpticsFault {
 }
 
 impl Photodiodes {
-    /// The photodiodes of these parameters. An error where the working point of [`Optics::Linear`] is not an open lumen for each unit.
+    /// The photodiodes of these parameters. An error where the working point of [`Optics::Linear`] is not an open lumen
+    /// for each unit.
     pub fn new(parameters: &Parameters, optics: &Optics) -> Result<Photodiodes, OpticsFault> {
         let units = parameters.units();
         if let Optics::Linear(lumens) = optics {
@@ -147,7 +149,8 @@ impl Photodiodes {
         self.diodes[i].scaling * self.signal_slope(i, lumen)
     }
 
-    /// All voltages (V) at the lumens of all capillaries (the vein's may follow), written to `out`, a value for each unit.
+    /// All voltages (V) at the lumens of all capillaries (the vein's may follow), written to `out`, a value for each
+    /// unit.
     pub fn voltages(&self, lumens: &[f64], out: &mut [f64]) {
         for (i, volts) in out.iter_mut().enumerate() {
             *volts = self.voltage(i, lumens[i]);

@@ -2,8 +2,8 @@
 
 use crate::parameters::{Parameters, Site};
 
-/// The state `x` of equation 2, scaled: for every wall, capillaries first and the vein last, the lumen `d / D = 1 + x / D` and its rate
-/// `v / D` in 1/s.
+/// The state `x` of equation 2, scaled: for every wall, capillaries first and the vein last, the lumen
+/// `d / D = 1 + x / D` and its rate `v / D` in 1/s.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
     /// Lumens over nominal diameters; open where greater than 0.
@@ -33,7 +33,8 @@ pub enum StateFault {
     },
     /// A vessel is closed.
     #[error(
-        "{site} is closed in this state (its lumen is {lumen} times its nominal diameter); the model knows open vessels only"
+        "{site} is closed in this state (its lumen is {lumen} times its nominal diameter); the model knows open \
+         vessels only"
     )]
     Closed {
         /// Which vessel.
@@ -44,14 +45,15 @@ pub enum StateFault {
 }
 
 impl State {
-    /// The state in which no wall is displaced (`x = 0`) and none moves. It is not the state at rest: pressed by the blood alone, the walls
-    /// stand further out.
+    /// The state in which no wall is displaced (`x = 0`) and none moves. It is not the state at rest: pressed by the
+    /// blood alone, the walls stand further out.
     pub fn undisplaced(parameters: &Parameters) -> State {
         let walls = parameters.walls().len();
         State { lumens: vec![1.0; walls], rates: vec![0.0; walls] }
     }
 
-    /// From displacements (m) and velocities (m/s) of the walls. An error where a number is missing, not finite, or closes a vessel.
+    /// From displacements (m) and velocities (m/s) of the walls. An error where a number is missing, not finite, or
+    /// closes a vessel.
     pub fn from_metres(
         parameters: &Parameters,
         displacements_m: &[f64],

@@ -1,8 +1,8 @@
-//! How long fits, predictions and epochs take for 12 000 rows of 8 photodiodes to 3 forces on one thread, as ratios in one run with numpy and
-//! scikit-learn (`benches/peers/predictor.py`, versions in its `requirements.txt`), in turns.
+//! How long fits, predictions and epochs take for 12 000 rows of 8 photodiodes to 3 forces on one thread, as ratios in
+//! one run with numpy and scikit-learn (`benches/peers/predictor.py`, versions in its `requirements.txt`), in turns.
 //!
-//! `cargo bench -p lunula-predictor --bench predictor [-- NAME]` (only lines whose name holds NAME); `PYTHON` names the interpreter (default
-//! python3). Where it lacks the packages, or has other versions than those pinned, that is said.
+//! `cargo bench -p lunula-predictor --bench predictor [-- NAME]` (only lines whose name holds NAME); `PYTHON` names the
+//! interpreter (default python3). Where it lacks the packages, or has other versions than those pinned, that is said.
 
 use std::hint::black_box;
 use std::io::{BufRead, BufReader, Write};
@@ -109,7 +109,8 @@ impl Peers {
         let there = Command::new(&python).args(["-c", "import numpy, sklearn"]).stderr(Stdio::null()).status();
         if !there.is_ok_and(|status| status.success()) {
             println!(
-                "peers left out: {python} has no numpy or no scikit-learn (pip install -r benches/peers/requirements.txt)"
+                "peers left out: {python} has no numpy or no scikit-learn (pip install -r \
+                 benches/peers/requirements.txt)"
             );
             return None;
         }
@@ -139,7 +140,8 @@ fn versions(python: &str) {
         let found = String::from_utf8_lossy(&found);
         if found != wanted {
             println!(
-                "{package} is {found}, not {wanted} as pinned in benches/peers/requirements.txt: ratios are another version's"
+                "{package} is {found}, not {wanted} as pinned in benches/peers/requirements.txt: ratios are another \
+                 version's"
             );
         }
     }

@@ -1,5 +1,5 @@
-//! Time of every subset, 12 000 training and 12 000 validation rows, 3 targets: `cargo bench -p lunula-predictor --bench subsets`. Prints the
-//! best and the median of many runs in milliseconds.
+//! Time of every subset, 12 000 training and 12 000 validation rows, 3 targets:
+//! `cargo bench -p lunula-predictor --bench subsets`. Prints the best and the median of many runs in milliseconds.
 
 use std::time::Instant;
 

@@ -1,4 +1,5 @@
-//! Rows of voltages with the targets measured at the same time, and which recording, session and subject each comes from.
+//! Rows of voltages with the targets measured at the same time, and which recording, session and subject each comes
+//! from.
 
 use std::collections::HashSet;
 use std::ops::Range;
@@ -60,8 +61,8 @@ pub enum DatasetFault {
 }
 
 impl Dataset {
-    /// Checks and takes rows: `x` rows x inputs, `y` rows x targets, the time of each row within its recording in seconds (it may
-    /// be NaN where it is not known).
+    /// Checks and takes rows: `x` rows x inputs, `y` rows x targets, the time of each row within its recording in
+    /// seconds (it may be NaN where it is not known).
     ///
     /// # Errors
     /// [`DatasetFault`].

@@ -1,8 +1,9 @@
 //! Model files: versioned JSON, readable, exact. Out: text; in: a [`Predictor`], or why the text is none.
 //!
-//! Every number is written with as many digits as bring back the same `f64`. A file holds names, units, coefficients, the training rows' hash and
-//! ranges, and a checksum of all that: a file that was edited by hand and still fits is used, and says so ([`Opened::edited`]); one that does
-//! not fit (sizes, names, numbers, another version, unknown keys) is refused.
+//! Every number is written with as many digits as bring back the same `f64`. A file holds names, units, coefficients,
+//! the training rows' hash and ranges, and a checksum of all that: a file that was edited by hand and still fits is
+//! used, and says so ([`Opened::edited`]); one that does not fit (sizes, names, numbers, another version, unknown keys)
+//! is refused.
 
 use ndarray::Array2;
 use serde::{Deserialize, Serialize};
@@ -31,7 +32,8 @@ pub enum FileFault {
     Format(String),
     /// Of another version.
     #[error(
-        "is a model file of version {found}, and this program reads version {VERSION}; train the model anew or use the program that wrote it"
+        "is a model file of version {found}, and this program reads version {VERSION}; train the model anew or use \
+         the program that wrote it"
     )]
     Version {
         /// The file's.

@@ -1,17 +1,20 @@
 //! Forces that a finger can have: the nearest point of the friction cone.
 //!
-//! In: a predicted force, newtons, and the coefficient of friction mu. Out: the nearest force (in newtons, all three axes alike) with
-//! |(Fx, Fy)| <= mu N and N = -Fz >= 0 (5.2.2: mu is about 0.75 on the thesis' platform). Closed form: a force within the cone stays, one
-//! within the polar cone (mu |(Fx, Fy)| <= -N) becomes 0, any other goes straight to the cone's surface.
+//! In: a predicted force, newtons, and the coefficient of friction mu. Out: the nearest force (in newtons, all three
+//! axes alike) with
+//! |(Fx, Fy)| <= mu N and N = -Fz >= 0 (5.2.2: mu is about 0.75 on the thesis' platform). Closed form: a force within
+//! the cone stays, one within the polar cone (mu |(Fx, Fy)| <= -N) becomes 0, any other goes straight to the cone's
+//! surface.
 //!
-//! A force that was measured within the cone is never farther from the result than from the prediction. Whether mu is right for the surface
-//! is not known here: evaluate with and without.
+//! A force that was measured within the cone is never farther from the result than from the prediction. Whether mu is
+//! right for the surface is not known here: evaluate with and without.
 
 use ndarray::ArrayViewMut2;
 use serde::Serialize;
 use thiserror::Error;
 
-/// Digits that rounding may take: a force beyond the surface by no more counts as on it, so that projecting twice changes nothing.
+/// Digits that rounding may take: a force beyond the surface by no more counts as on it, so that projecting twice
+/// changes nothing.
 const SLACK: f64 = 8.0 * f64::EPSILON;
 
 /// The friction cone.
@@ -57,7 +60,8 @@ impl FrictionCone {
         if shear <= self.mu * normal * (1.0 + SLACK) && normal >= 0.0 {
             return force_n;
         }
-        // The surface's direction in the plane of shear and normal; how far along it the force reaches. In halves, which can't overflow.
+        // The surface's direction in the plane of shear and normal; how far along it the force reaches. In halves,
+        // which can't overflow.
         let slant = self.mu.hypot(1.0);
         let (along_shear, along_normal) = (self.mu / slant, 1.0 / slant);
         let half = 0.5 * normal * along_normal + 0.5 * shear * along_shear;

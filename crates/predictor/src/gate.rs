@@ -1,12 +1,13 @@
 //! The cases of equations 9 and 16: does the finger touch, so that the posture model has nothing to say?
 //!
-//! In: the predicted normal force of each row, `Fz_N`, newtons; pressing is negative. Out: whether the finger touches or bends, and which
-//! angle goes with it: that of the posture model while N < F_min, theta_touch from N >= F_min on, with N = -Fz.
+//! In: the predicted normal force of each row, `Fz_N`, newtons; pressing is negative. Out: whether the finger touches
+//! or bends, and which angle goes with it: that of the posture model while N < F_min, theta_touch from N >= F_min on,
+//! with N = -Fz.
 //!
-//! Departures from the thesis. Equation 9 as printed compares Fz itself with F_min; as pressing is negative, it would call every touch
-//! bending. |Fz| would be wrong too: a linear model predicts impossible pulling while the finger bends. Optional hysteresis: a touch that
-//! has begun at F_min ends below F_min - hysteresis. A row whose Fz is not finite is neither: it has no force and no angle, and does not
-//! begin or end a touch.
+//! Departures from the thesis. Equation 9 as printed compares Fz itself with F_min; as pressing is negative, it would
+//! call every touch bending. |Fz| would be wrong too: a linear model predicts impossible pulling while the finger
+//! bends. Optional hysteresis: a touch that has begun at F_min ends below F_min - hysteresis. A row whose Fz is not
+//! finite is neither: it has no force and no angle, and does not begin or end a touch.
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
@@ -48,7 +49,8 @@ pub enum GateFault {
     Angle(f64),
     /// The hysteresis.
     #[error(
-        "a hysteresis of {hysteresis_n} N; it must be from 0 to below the threshold of {f_min_n} N, or touch would not end"
+        "a hysteresis of {hysteresis_n} N; it must be from 0 to below the threshold of {f_min_n} N, or touch would \
+         not end"
     )]
     Hysteresis {
         /// Asked for.
@@ -59,8 +61,9 @@ pub enum GateFault {
 }
 
 impl Gate {
-    /// `f_min_n`: the normal force from which on the finger touches, newtons, above 0; `theta_touch_deg`: its angle then, degrees (the
-    /// thesis' is 0, 5.2.2); `hysteresis_n`: by how much the force must fall below F_min to end a touch, newtons.
+    /// `f_min_n`: the normal force from which on the finger touches, newtons, above 0; `theta_touch_deg`: its angle
+    /// then, degrees (the thesis' is 0, 5.2.2); `hysteresis_n`: by how much the force must fall below F_min to end a
+    /// touch, newtons.
     ///
     /// # Errors
     /// [`GateFault`].
@@ -105,7 +108,8 @@ impl Gate {
         if state.touching { Contact::Touch } else { Contact::Bending }
     }
 
-    /// The angle of a row, degrees: theta_touch, what the posture model says (`posture_deg`), or none where neither is known.
+    /// The angle of a row, degrees: theta_touch, what the posture model says (`posture_deg`), or none where neither is
+    /// known.
     #[must_use]
     pub fn angle_deg(&self, contact: Contact, posture_deg: f64) -> Option<f64> {
         match contact {

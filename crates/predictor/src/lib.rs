@@ -1,10 +1,11 @@
 //! Touch force and finger posture from the photodiodes of a fingernail sensor: chapter 5 of S. Mascaro's thesis.
 //!
-//! In: a [`Dataset`], voltages of photodiodes with the forces or the joint angle measured at the same time. Out: a [`Model`] that tells
-//! forces or angle from voltages, with what is known about how well.
+//! In: a [`Dataset`], voltages of photodiodes with the forces or the joint angle measured at the same time. Out: a
+//! [`Model`] that tells forces or angle from voltages, with what is known about how well.
 //!
-//! Conventions: a row is a moment; arrays are rows x inputs or rows x targets. Voltages are volts, forces newtons and those of the finger on
-//! the surface (pressing is a negative `Fz_N`), angles degrees, positive in flexion. What is not known is missing (`None`, NaN), never zero.
+//! Conventions: a row is a moment; arrays are rows x inputs or rows x targets. Voltages are volts, forces newtons and
+//! those of the finger on the surface (pressing is a negative `Fz_N`), angles degrees, positive in flexion. What is not
+//! known is missing (`None`, NaN), never zero.
 //!
 //! No pictures, no files but the model's own, no command line.
 

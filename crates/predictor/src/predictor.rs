@@ -1,4 +1,5 @@
-//! A fitted model with all that is needed to use it on another day: names, units, ranges, what it was trained on, how sure it is.
+//! A fitted model with all that is needed to use it on another day: names, units, ranges, what it was trained on, how
+//! sure it is.
 
 use std::borrow::Cow;
 
@@ -186,7 +187,8 @@ impl Predictor {
         self.lags.as_ref().map_or(names.clone(), |lags| lags.names(&names))
     }
 
-    /// The rows of recordings as the model sees them (with lags, without rows that lack the history), and what is predicted for them.
+    /// The rows of recordings as the model sees them (with lags, without rows that lack the history), and what is
+    /// predicted for them.
     ///
     /// # Errors
     /// No row with enough history.

@@ -1,8 +1,8 @@
 //! What to fit and how, in one value that a model file keeps: the same recipe is fitted again where rows are held out.
 //!
-//! In: a [`Dataset`] and a [`Recipe`]. Out: a [`Model`] with what its fit tells ([`Fitted`]). Networks stop early on rows that they are not
-//! trained on; where none are given, [`stopping_rows`] sets aside a part of every recording. Those rows are training rows all the same: what is
-//! reported has to come from others.
+//! In: a [`Dataset`] and a [`Recipe`]. Out: a [`Model`] with what its fit tells ([`Fitted`]). Networks stop early on
+//! rows that they are not trained on; where none are given, [`stopping_rows`] sets aside a part of every recording.
+//! Those rows are training rows all the same: what is reported has to come from others.
 
 use std::borrow::Cow;
 
@@ -130,7 +130,8 @@ impl Recipe {
         Ok(Some(FrictionCone::new(mu)?))
     }
 
-    /// Fits to rows that have their lags already ([`with_lags`]); a network stops early on `stop`, or on a part of the rows.
+    /// Fits to rows that have their lags already ([`with_lags`]); a network stops early on `stop`, or on a part of the
+    /// rows.
     ///
     /// # Errors
     /// [`RecipeFault`].
@@ -180,8 +181,9 @@ pub fn with_lags<'a>(data: &'a Dataset, lags: Option<&Lags>) -> Result<Cow<'a, D
 const BLOCKS: usize = 20;
 const OF_FIVE: usize = 2;
 
-/// Parts rows into those that a network is trained on and those that it stops on: every recording is cut into 20 blocks of time, every fifth
-/// of which is set aside, so that both parts hold small and large forces. None where recordings are too short for that.
+/// Parts rows into those that a network is trained on and those that it stops on: every recording is cut into 20 blocks
+/// of time, every fifth of which is set aside, so that both parts hold small and large forces. None where recordings
+/// are too short for that.
 #[must_use]
 pub fn stopping_rows(data: &Dataset) -> Option<(Dataset, Dataset)> {
     let (mut train, mut stop) = (Vec::new(), Vec::new());
@@ -195,7 +197,8 @@ pub fn stopping_rows(data: &Dataset) -> Option<(Dataset, Dataset)> {
     (!stop.is_empty() && !train.is_empty()).then(|| (data.only_rows(&train), data.only_rows(&stop)))
 }
 
-/// Predicts rows that have their lags already, bringing forces (in [`FORCES`]' order, as [`Recipe::cone`] has it) into a cone where there is one.
+/// Predicts rows that have their lags already, bringing forces (in [`FORCES`]' order, as [`Recipe::cone`] has it) into
+/// a cone where there is one.
 #[must_use]
 pub fn predict(model: &Model, cone: Option<&FrictionCone>, x: ArrayView2<'_, f64>) -> Array2<f64> {
     let mut predicted = model.predict(x);

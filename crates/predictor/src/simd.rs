@@ -1,11 +1,11 @@
 //! The widest vectors that this machine has, chosen as the program runs.
 //!
-//! Operations and their order are as written, so every machine gives the same bits. Nothing is fused that is not written as `mul_add`, which
-//! rounds once everywhere: one instruction where the processor has it (x86-64 since 2013, all of aarch64), on older ones
-//! a call of the system's `fma`, some ten times slower.
+//! Operations and their order are as written, so every machine gives the same bits. Nothing is fused that is not
+//! written as `mul_add`, which rounds once everywhere: one instruction where the processor has it (x86-64 since 2013,
+//! all of aarch64), on older ones a call of the system's `fma`, some ten times slower.
 
-/// What is to be done: a type rather than a closure, as its `call` must be `#[inline(always)]`, and all that it calls, to be compiled for
-/// those vectors.
+/// What is to be done: a type rather than a closure, as its `call` must be `#[inline(always)]`, and all that it calls,
+/// to be compiled for those vectors.
 pub(crate) use pulp::NullaryFnOnce as Work;
 /// A machine's vectors.
 pub(crate) use pulp::Simd;

@@ -1,9 +1,11 @@
 //! Singular values and modes of a small dense matrix, as of a Jacobian (section 5.1.3, Fig. 98).
 //!
-//! In: a matrix, targets x inputs. Out: A = sum of sigma_k left_k right_k^T, largest sigma first. One-sided Jacobi rotations (Hestenes 1958,
-//! doi:10.1137/0106005; Demmel and Veselic 1992, doi:10.1137/0613074), which keep small singular values accurate where others lose them next to large ones.
+//! In: a matrix, targets x inputs. Out: A = sum of sigma_k left_k right_k^T, largest sigma first. One-sided Jacobi
+//! rotations (Hestenes 1958, doi:10.1137/0106005; Demmel and Veselic 1992, doi:10.1137/0613074), which keep small
+//! singular values accurate where others lose them next to large ones.
 //!
-//! Signs, which a decomposition leaves open: the largest component of each left vector (the force or angle) is positive, of equal ones the first.
+//! Signs, which a decomposition leaves open: the largest component of each left vector (the force or angle) is
+//! positive, of equal ones the first.
 
 use ndarray::{Array2, ArrayView2};
 
@@ -29,8 +31,8 @@ pub struct Modes {
     pub right: Array2<f64>,
 }
 
-/// The modes of a matrix, targets x inputs, of finite values. Where a singular value is zero its vectors are any that are at right
-/// angles to the others, the same ones every time.
+/// The modes of a matrix, targets x inputs, of finite values. Where a singular value is zero its vectors are any that
+/// are at right angles to the others, the same ones every time.
 #[must_use]
 pub fn modes(matrix: ArrayView2<'_, f64>) -> Modes {
     let (targets, inputs) = matrix.dim();

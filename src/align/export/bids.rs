@@ -1,9 +1,10 @@
 //! Joint angles as BIDS Motion (doi:10.1038/s41597-024-03559-8; specification 1.9 and later).
 //!
-//! `sub-<subject>/[ses-<session>/]motion/` gets `_motion.tsv` (no line of names, `n/a` where there is no angle), `_channels.tsv` and
-//! `_motion.json`. Channels: `LATENCY`, each frame's time on the log's clock, seconds; for each joint `JNTANG`, degrees, positive in flexion, and,
-//! where the table tells it, its standard error as `MISC`. In a new folder `dataset_description.json`, `README` and `participants.tsv` are
-//! written too. In a dataset that stands they are left as they are, but for a participant who is new: a row is added.
+//! `sub-<subject>/[ses-<session>/]motion/` gets `_motion.tsv` (no line of names, `n/a` where there is no angle),
+//! `_channels.tsv` and `_motion.json`. Channels: `LATENCY`, each frame's time on the log's clock, seconds; for each
+//! joint `JNTANG`, degrees, positive in flexion, and, where the table tells it, its standard error as `MISC`. In a new
+//! folder `dataset_description.json`, `README` and `participants.tsv` are written too. In a dataset that stands they
+//! are left as they are, but for a participant who is new: a row is added.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -63,7 +64,8 @@ impl BidsNames {
 /// Writes the angles into the dataset that stands, or is to stand, in the folder `root`; returns the files' places.
 ///
 /// # Errors
-/// Fewer than two frames, which have no sampling frequency; a `participants.tsv` without `participant_id`; a file that can't be written.
+/// Fewer than two frames, which have no sampling frequency; a `participants.tsv` without `participant_id`; a file that
+/// can't be written.
 pub fn bids(
     places: &mut Places,
     root: &Path,
@@ -203,8 +205,10 @@ fn description() -> serde_json::Value {
 /// `README` of a new dataset.
 const README: &str = "Joint angles of a finger, measured in videos of coloured markers by lunula.\n\
     \n\
-    Each row of a *_motion.tsv is a frame of the video. The channel `time` is the frame's time on the clock of the log that was \n\
-    recorded along with the video (photodiodes, forces), in seconds. Angles are in degrees, positive in flexion; n/a where a marker \n\
+    Each row of a *_motion.tsv is a frame of the video. The channel `time` is the frame's time on the clock of the \
+    log that was \n\
+    recorded along with the video (photodiodes, forces), in seconds. Angles are in degrees, positive in flexion; n/a \
+    where a marker \n\
     was not seen. Nothing is interpolated.\n";
 
 fn pretty(value: &serde_json::Value) -> String {

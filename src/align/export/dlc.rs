@@ -1,12 +1,15 @@
-//! Markers as DeepLabCut's table of a single animal: three lines of names (scorer, bodyparts, coords), then a row a frame: its number, and x, y
-//! and likelihood of each marker.
+//! Markers as DeepLabCut's table of a single animal: three lines of names (scorer, bodyparts, coords), then a row a
+//! frame: its number, and x, y and likelihood of each marker.
 //!
-//! In: the table of markers that `lunula posture` writes (`tracks.csv`). Places are pixels of the shown picture as there. DeepLabCut's table has no
-//! time: of a video of variable frame rate, take it from the table of angles by the frame's number. Some readers count rows instead of reading
-//! that number; the table of `lunula posture` has all frames, so both are the same.
+//! In: the table of markers that `lunula posture` writes (`tracks.csv`). Places are pixels of the shown picture as
+//! there. DeepLabCut's table has no time: of a video of variable frame rate, take it from the table of angles by the
+//! frame's number. Some readers count rows instead of reading that number; the table of `lunula posture` has all
+//! frames, so both are the same.
 //!
-//! Likelihood is the probability that the marker's centre lies within a pixel of where it is told, by its standard error along each axis:
-//! 1 - exp(-1 / (2 sd^2)), so 1 where sd is 0.2 px and 0.39 where it is 1 px. A marker that was not seen has empty places and likelihood
+//! Likelihood is the probability that the marker's centre lies within a pixel of where it is told, by its standard
+//! error along each axis:
+//! 1 - exp(-1 / (2 sd^2)), so 1 where sd is 0.2 px and 0.39 where it is 1 px. A marker that was not seen has empty
+//! places and likelihood
 //! 0. One whose error is not known has no likelihood.
 
 use std::collections::BTreeMap;

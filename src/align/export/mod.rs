@@ -1,7 +1,7 @@
 //! Angles and markers in the formats of others: OpenSim's motion file, BIDS Motion, DeepLabCut's table.
 //!
-//! Angles stand at the frames in which they were seen, on the log's clock by the [`Tie`](super::Tie); nothing is interpolated. Whole
-//! files or none is the caller's business ([`crate::files`]).
+//! Angles stand at the frames in which they were seen, on the log's clock by the [`Tie`](super::Tie); nothing is
+//! interpolated. Whole files or none is the caller's business ([`crate::files`]).
 
 mod bids;
 mod dlc;
@@ -28,7 +28,10 @@ pub enum ExportError {
     #[error(transparent)]
     Write(#[from] WriteError),
     /// A name that BIDS does not allow.
-    #[error("the {entity} {}; BIDS allows letters and digits only: name it so", .label.as_ref().map_or("is not named".to_owned(), |l| format!("is named `{l}`")))]
+    #[error(
+        "the {entity} {}; BIDS allows letters and digits only: name it so",
+        .label.as_ref().map_or("is not named".to_owned(), |l| format!("is named `{l}`"))
+    )]
     Label {
         /// Of what: `subject`, `session`, `task`, `tracksys`.
         entity: &'static str,

@@ -1,8 +1,8 @@
 //! Joint angles as an OpenSim motion file (`.mot`): a coordinate a joint, degrees, a row a frame, on the log's clock.
 //!
-//! A frame in which an angle is missing is left out. OpenSim has two readers: its tables take `NaN` for missing, but its older `Storage`
-//! (4.6, which motions are loaded with) stops at the first `NaN`, reads 0 for it and drops all later rows without a word.
-//! OpenSim's labels have no spaces: one in a joint's name becomes `_`.
+//! A frame in which an angle is missing is left out. OpenSim has two readers: its tables take `NaN` for missing, but
+//! its older `Storage` (4.6, which motions are loaded with) stops at the first `NaN`, reads 0 for it and drops all
+//! later rows without a word. OpenSim's labels have no spaces: one in a joint's name becomes `_`.
 
 use std::fmt::Write as _;
 use std::path::Path;

@@ -158,7 +158,8 @@ fn markers_become_a_table_of_deeplabcut() {
     let (tracks, path) = (folder.join("tracks.csv"), folder.join("markers.csv"));
     std::fs::write(
         &tracks,
-        "frame,time_s,marker,x_px,y_px,sd_px,status\n0,0,tip,10.5,20.25,0.02,ok\n0,0,\"a, b\",1,2,1,ok\n1,0.03,tip,,,,lost: hidden\n\
+        "frame,time_s,marker,x_px,y_px,sd_px,status\n0,0,tip,10.5,20.25,0.02,ok\n0,0,\"a, \
+         b\",1,2,1,ok\n1,0.03,tip,,,,lost: hidden\n\
          1,0.03,\"a, b\",1.5,2,,ok\n5,0.2,tip,11,21,0.5,ok\n",
     )
     .unwrap();

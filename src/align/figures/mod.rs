@@ -17,8 +17,9 @@ const LANE_SHARE: f64 = 0.68;
 /// Times beyond this are written from a whole second on: seconds since 1970 have too many digits for an axis.
 const LONG_S: f64 = 1e5;
 
-/// Draws what the tie leaves over at each frame that it was found by, with the tie's standard error and, of a clock, half its last
-/// digit's step: so much a reading leaves open. Draws nothing and says so where there is nothing left over to be drawn.
+/// Draws what the tie leaves over at each frame that it was found by, with the tie's standard error and, of a clock,
+/// half its last digit's step: so much a reading leaves open. Draws nothing and says so where there is nothing left
+/// over to be drawn.
 ///
 /// # Errors
 /// A file that can't be written.
@@ -109,8 +110,8 @@ fn with_error(value: f64, sd: f64, decimals: usize) -> String {
     format!("{value:.decimals$}{sd}")
 }
 
-/// Draws the photodiodes, each in a lane of its own from its lowest to its highest value, and below them the labels with their
-/// standard errors, on the log's time. Where a label is missing it is grey.
+/// Draws the photodiodes, each in a lane of its own from its lowest to its highest value, and below them the labels
+/// with their standard errors, on the log's time. Where a label is missing it is grey.
 ///
 /// # Errors
 /// A file that can't be written.

@@ -1,16 +1,17 @@
 //! One joint's angle between the frames in which it was really seen.
 //!
-//! In: the frames' times, angles and standard errors, missing ones NaN. Out: the angle, its rate of change and its error at any time
-//! between two seen frames that are no further apart than the longest gap.
+//! In: the frames' times, angles and standard errors, missing ones NaN. Out: the angle, its rate of change and its
+//! error at any time between two seen frames that are no further apart than the longest gap.
 //!
-//! Between two frames runs the polynomial through them and the next seen frame on either side (Lagrange): a cubic, at the ends of
-//! a run a parabola, between two lone frames a line. A neighbour beyond a gap is not taken, nor one that is nearer than half the
-//! two frames' distance: it would magnify its error.
+//! Between two frames runs the polynomial through them and the next seen frame on either side (Lagrange): a cubic, at
+//! the ends of a run a parabola, between two lone frames a line. A neighbour beyond a gap is not taken, nor one that is
+//! nearer than half the two frames' distance: it would magnify its error.
 //!
-//! The error has two shares. The frames' own errors, taken as independent, go through the polynomial's weights. The polynomial's
-//! is told by the next term of Newton's form: what the next frame on either side would change, the larger of the two, less what the
-//! frames' errors explain of it. Where no further frame is near, it is what one frame fewer would change; between two lone
-//! frames it follows from the joint's root mean square second derivative over the whole recording.
+//! The error has two shares. The frames' own errors, taken as independent, go through the polynomial's weights. The
+//! polynomial's is told by the next term of Newton's form: what the next frame on either side would change, the larger
+//! of the two, less what the frames' errors explain of it. Where no further frame is near, it is what one frame fewer
+//! would change; between two lone frames it follows from the joint's root mean square second derivative over the whole
+//! recording.
 
 /// Times nearer than this are one: half the last decimal of a table and the rounding of sums of seconds since 1970.
 pub(super) const SAME_TIME_S: f64 = 1e-6;
@@ -37,7 +38,8 @@ pub(super) struct Hole {
 }
 
 /// The polynomial between two frames that follow each other, by its barycentric weights (Berrut and Trefethen 2004,
-/// doi:10.1137/S0036144502417715): the value at t is the sum of `inverse[i] * deg[i]` times the distances of t from all other frames.
+/// doi:10.1137/S0036144502417715): the value at t is the sum of `inverse[i] * deg[i]` times the distances of t from all
+/// other frames.
 #[derive(Debug, Clone, Copy)]
 struct Piece {
     left: usize,
@@ -186,7 +188,8 @@ impl Curve {
         }
     }
 
-    /// Of each frame one over the product of its distances from the others; of at most one frame more than a polynomial has.
+    /// Of each frame one over the product of its distances from the others; of at most one frame more than a polynomial
+    /// has.
     fn inverse(&self, nodes: &[usize]) -> [f64; MOST_NODES + 1] {
         let mut inverse = [0.0; MOST_NODES + 1];
         for (i, (inverse, &own)) in inverse.iter_mut().zip(nodes).enumerate() {
@@ -207,7 +210,8 @@ impl Curve {
         if rest < 0.0 { 0.0 } else { rest }
     }
 
-    /// The mean square of the second derivative at all seen frames with two near neighbours, less what the frames' errors explain.
+    /// The mean square of the second derivative at all seen frames with two near neighbours, less what the frames'
+    /// errors explain.
     fn mean_square_bend(&self) -> f64 {
         let (mut sum, mut count) = (0.0, 0);
         for k in 1..self.time_s.len().saturating_sub(1) {

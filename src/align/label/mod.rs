@@ -1,13 +1,14 @@
 //! Joint angles onto the rows of a log.
 //!
-//! In: the table of angles over the video's time, the rows' times on the log's clock, ascending, and the [`Tie`] of the two. Out:
+//! In: the table of angles over the video's time, the rows' times on the log's clock, ascending, and the [`Tie`] of the
+//! two. Out:
 //! [`Labels`]: each row's angles at its own time, with standard errors, and why rows have none.
 //!
-//! An angle is interpolated between frames in which it was really seen, never outside of the video and never over a gap: two
-//! seen frames further apart than the longest gap, be it that the marker was hidden or that the camera dropped
-//! frames. How it runs between frames, and how sure it is there, is [`curve`]'s. The tie's error at that time, times the angle's rate of
-//! change, is a share of the label's error; it is the same for neighbouring rows, so it does not average out.
-//! A label whose frames' errors are not known has none either.
+//! An angle is interpolated between frames in which it was really seen, never outside of the video and never over a
+//! gap: two seen frames further apart than the longest gap, be it that the marker was hidden or that the camera dropped
+//! frames. How it runs between frames, and how sure it is there, is [`curve`]'s. The tie's error at that time, times
+//! the angle's rate of change, is a share of the label's error; it is the same for neighbouring rows, so it does not
+//! average out. A label whose frames' errors are not known has none either.
 
 mod curve;
 
@@ -16,8 +17,8 @@ use std::borrow::Cow;
 use super::{Posture, Samples, Tie};
 use curve::{Curve, SAME_TIME_S};
 
-/// Frame intervals that a gap may have where the user does not say. A gap has as many as its length rounds to, so that frames
-/// that come a little irregularly do not make gaps: up to 2.5 median intervals are two.
+/// Frame intervals that a gap may have where the user does not say. A gap has as many as its length rounds to, so that
+/// frames that come a little irregularly do not make gaps: up to 2.5 median intervals are two.
 const MOST_INTERVALS: f64 = 2.5;
 
 /// Why a row has no label, or not all of them.

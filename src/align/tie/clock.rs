@@ -1,8 +1,8 @@
 //! The tie by the clock in the picture.
 //!
-//! In: the table of angles with the clock's time in each frame, and the log's times. `lunula posture` has fitted the clock over the
-//! whole video: its line, standard errors and bounds are taken as they are. Of a table that has only `clock_s`, a line through it is
-//! taken, whatever made it.
+//! In: the table of angles with the clock's time in each frame, and the log's times. `lunula posture` has fitted the
+//! clock over the whole video: its line, standard errors and bounds are taken as they are. Of a table that has only
+//! `clock_s`, a line through it is taken, whatever made it.
 
 use super::zero::zero_s;
 use super::{Tie, TieMethod};
@@ -14,12 +14,12 @@ use crate::timebase::Timebase;
 const RESOLUTIONS_S: [f64; 5] = [1.0, 0.1, 0.01, 1e-3, 1e-4];
 /// Readings are multiples of the resolution but for so many seconds.
 const ROUNDED_S: f64 = 1e-6;
-/// Ties by the clock in the picture. `log_time_s` are the log's times and `midnight_s` the log's time at its midnight, where its stamps
-/// are times of day.
+/// Ties by the clock in the picture. `log_time_s` are the log's times and `midnight_s` the log's time at its midnight,
+/// where its stamps are times of day.
 ///
 /// # Errors
-/// No clock in the table, one that ties nothing, or that may be tied to none or several hours or days of the log: in words, with what
-/// to do.
+/// No clock in the table, one that ties nothing, or that may be tied to none or several hours or days of the log: in
+/// words, with what to do.
 pub fn by_clock(
     posture: &Posture,
     log_time_s: &[f64],
@@ -55,7 +55,8 @@ pub fn by_clock(
     let [from_s, to_s] = video_s.map(|t| tie.timebase.other_s(t));
     if to_s < log_s[0] || from_s > log_s[1] {
         return Err(format!(
-            "the video and the log do not overlap: on the log's clock the video goes from {from_s:.3} to {to_s:.3} s, the log from {:.3} to \
+            "the video and the log do not overlap: on the log's clock the video goes from {from_s:.3} to {to_s:.3} s, \
+             the log from {:.3} to \
              {:.3} s; check the log's time when the clock shows zero",
             log_s[0], log_s[1]
         ));
@@ -71,7 +72,8 @@ pub(in crate::align) fn resolution_s(read_s: &[f64]) -> Option<f64> {
     RESOLUTIONS_S.into_iter().find(|&of| read().all(|read| multiple(read, of)))
 }
 
-const ONLY_A_LINE: &str = "the table has the clock's line but not what was read (`clock_read_s`): the standard error is the line's \
+const ONLY_A_LINE: &str = "the table has the clock's line but not what was read (`clock_read_s`): the standard error \
+                           is the line's \
                            scatter, missing where there is none, and does not count what the clock's digits leave open";
 
 /// Puts the errors of the fit that made the table in the place of the line's scatter.
@@ -106,7 +108,8 @@ fn by_line(posture: &Posture) -> Result<Tie, String> {
         .collect();
     seen.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let [Some(first), Some(last)] = [seen.first(), seen.last()] else {
-        return Err("no clock was read in the video (`clock_s` is empty); see its .run.json for why, or tie by an offset or by \
+        return Err("no clock was read in the video (`clock_s` is empty); see its .run.json for why, or tie by an \
+                    offset or by \
                     correlation instead"
             .to_owned());
     };

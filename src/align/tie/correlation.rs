@@ -6,8 +6,8 @@ use crate::align::{Posture, Samples};
 use crate::clock::USUAL_DRIFT;
 use crate::timebase::Timebase;
 
-/// How far the sensor's lag differs with the motion, seconds: hysteresis lasts longer the slower the finger moves. Measured over phantoms in
-/// random motion: 4 ms.
+/// How far the sensor's lag differs with the motion, seconds: hysteresis lasts longer the slower the finger moves.
+/// Measured over phantoms in random motion: 4 ms.
 const LAG_SD_S: f64 = 0.005;
 
 /// What the user says of the lag.
@@ -19,8 +19,9 @@ pub struct LagTie {
     pub sensor_lag_s: Option<f64>,
 }
 
-/// Ties by correlation. The offset is what [`correlate`] finds less the sensor's lag; where that is not known it is in the offset, and a
-/// note says so. Drift can't be told from the sensor's own and is taken to be 0, with the standard error of clocks of quartz.
+/// Ties by correlation. The offset is what [`correlate`] finds less the sensor's lag; where that is not known it is in
+/// the offset, and a note says so. Drift can't be told from the sensor's own and is taken to be 0, with the standard
+/// error of clocks of quartz.
 ///
 /// # Errors
 /// No angles, no photodiodes, or no lag that is sure: in words, with what to do.
@@ -46,8 +47,10 @@ pub fn by_correlation(posture: &Posture, samples: &Samples, told: LagTie) -> Res
     let reference_s = middle_of_overlap(&posture.time_s, &samples.time_s, offset_s);
     let mut notes = vec![match told.sensor_lag_s {
         Some(lag_s) => format!("the sensor's lag of {lag_s} s, as told, is taken off the offset"),
-        None => "photodiodes change after the finger does, some 0.05 s in bending and 0.1 to 0.4 s in pressing: that lag can't be told from the \
-                 offset and is part of it, and not in its standard error (which has how it differs with the motion); labels are early by it unless the sensor's lag is given"
+        None => "photodiodes change after the finger does, some 0.05 s in bending and 0.1 to 0.4 s in pressing: that \
+                 lag can't be told from the \
+                 offset and is part of it, and not in its standard error (which has how it differs with the motion); \
+                 labels are early by it unless the sensor's lag is given"
             .to_owned(),
     }];
     notes.push(format!(
@@ -135,7 +138,8 @@ mod tests {
         assert!((tie.timebase.offset_s() - 100.0).abs() <= FOUND_S);
     }
 
-    /// A phantom's angles with an error of 0.05 degrees, and its log with all ambient light left in; the log's clock is 60 s ahead.
+    /// A phantom's angles with an error of 0.05 degrees, and its log with all ambient light left in; the log's clock is
+    /// 60 s ahead.
     fn phantom(seed: u64, trajectory: Trajectory, force: ForceTrajectory) -> (Posture, Samples) {
         let time_s: Vec<f64> = (0..1800).map(|k| f64::from(k) / 30.0).collect();
         let options = LogOptions {
@@ -171,7 +175,8 @@ mod tests {
         (posture, Samples { time_s: log_s, photodiodes, forces: Vec::new(), faults, notes: Vec::new() })
     }
 
-    /// The photodiodes' lag in bending: 0.04 s of the first order, and half of half a degree's play. Measured over 20 seeds: 0.044 to 0.058 s.
+    /// The photodiodes' lag in bending: 0.04 s of the first order, and half of half a degree's play. Measured over 20
+    /// seeds: 0.044 to 0.058 s.
     const LAG_S: f64 = 0.05;
     const NEAR_S: f64 = 0.012;
 

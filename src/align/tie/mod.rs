@@ -1,5 +1,5 @@
-//! How the log's time follows from the video's: by the clock in the picture, by an offset that the user knows, or by the lag at
-//! which the angles best explain the photodiodes.
+//! How the log's time follows from the video's: by the clock in the picture, by an offset that the user knows, or by
+//! the lag at which the angles best explain the photodiodes.
 
 mod clock;
 mod correlate;

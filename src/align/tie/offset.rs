@@ -3,8 +3,8 @@
 use super::{Tie, TieMethod};
 use crate::timebase::Timebase;
 
-/// A tie by the offset that the user knows: log time = `offset_s` + video time. `offset_sd_s` is how well, if the user says so; otherwise
-/// the standard errors are NaN, which is not known.
+/// A tie by the offset that the user knows: log time = `offset_s` + video time. `offset_sd_s` is how well, if the user
+/// says so; otherwise the standard errors are NaN, which is not known.
 ///
 /// # Errors
 /// Numbers that can't be.

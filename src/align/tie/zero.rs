@@ -1,7 +1,8 @@
 //! What the log's time is when the clock in the picture shows zero.
 //!
-//! The log may count seconds of the epoch, or of a day, where the clock shows the time of day, or minutes and seconds only. Of the times
-//! that the clock's zero may then stand for, that is taken which lays the video over the log, if there is just one.
+//! The log may count seconds of the epoch, or of a day, where the clock shows the time of day, or minutes and seconds
+//! only. Of the times that the clock's zero may then stand for, that is taken which lays the video over the log, if
+//! there is just one.
 
 const HOUR_S: f64 = 3600.0;
 const DAY_S: f64 = 86_400.0;
@@ -14,8 +15,9 @@ const EPOCH_S: f64 = 1e8;
 /// More possible zeros than this are not listed.
 const LISTED: usize = 4;
 
-/// The log's time when the clock shows zero, and what is worth saying of it; `clock_s` and `log_s` are the least and the greatest time
-/// of the video, on the clock, and of the log. `midnight_s` is the log's time at its midnight, where its stamps are times of day.
+/// The log's time when the clock shows zero, and what is worth saying of it; `clock_s` and `log_s` are the least and
+/// the greatest time of the video, on the clock, and of the log. `midnight_s` is the log's time at its midnight, where
+/// its stamps are times of day.
 pub(super) fn zero_s(
     clock_s: [f64; 2],
     log_s: [f64; 2],
@@ -47,7 +49,8 @@ pub(super) fn zero_s(
         ));
     }
     Err(format!(
-        "the video and the log do not overlap: the clock in the picture shows {} to {} s, the log's time goes from {} to {} s; give the log's \
+        "the video and the log do not overlap: the clock in the picture shows {} to {} s, the log's time goes from {} \
+         to {} s; give the log's \
          time when the clock shows zero, or another log",
         seconds(clock_s[0]),
         seconds(clock_s[1]),
@@ -77,7 +80,8 @@ fn over(clock_s: [f64; 2], log_s: [f64; 2], base_s: f64, every_s: f64) -> Vec<(f
         .collect()
 }
 
-/// The one zero with which at least half of the shorter overlaps or, if there is none such, the one with which anything does.
+/// The one zero with which at least half of the shorter overlaps or, if there is none such, the one with which anything
+/// does.
 fn the_one(zeros: &[(f64, f64)]) -> Result<Option<f64>, String> {
     let half: Vec<f64> = zeros.iter().filter(|(_, share)| *share >= 0.5).map(|(zero, _)| *zero).collect();
     let all: Vec<f64> = zeros.iter().map(|(zero, _)| *zero).collect();
@@ -90,7 +94,8 @@ fn the_one(zeros: &[(f64, f64)]) -> Result<Option<f64>, String> {
                 listed.push(format!("{} more", several.len() - LISTED));
             }
             Err(format!(
-                "the clock in the picture doesn't tell which hour or day of the log it shows: its zero may be {} of the log's time; give \
+                "the clock in the picture doesn't tell which hour or day of the log it shows: its zero may be {} of \
+                 the log's time; give \
                  the log's time when the clock shows zero",
                 listed.join(" or ")
             ))

@@ -27,7 +27,8 @@ What the fitted model does:
   lunula simulate --params fit.toml --pf1 step:5000@0..2 --out t.csv
 
 A recording is a table of pf1_Pa,pf2_Pa and VP1,VP2,... With time_s it is a response over time, which begins in the equilibrium of \
-its first row's load (--unloaded-before: at rest); without time_s it holds equilibria in the order in which they were reached. \
+its first row's load (--unloaded-before: at rest); without time_s it holds equilibria in the order in which they were \
+reached. \
 lunula simulate --with-loads and --static write such tables; steps jump at their rows: read them with --between held \
 --unloaded-before.
 
@@ -38,10 +39,11 @@ Names: k_C stands for k_C1, k_C2, .. that move together, as in the thesis; k_C1 
 
 /// Fits free parameters of the hemodynamic model (4.3), and the photodiodes' offset and scaling, to recorded responses
 ///
-/// All other parameters are held at --params and --set. Out come the values with standard errors and correlations, what the recordings
-/// do not determine, and which bounds were met; the fitted parameters as <out>.toml for `lunula simulate --params`; measured and fitted
-/// voltages as <out>-fitted.csv, and a picture of both (Fig. 79 to 82). <out>.json itself is the same bytes from whatever folder; where results are and
-/// how long they took is in <out>.run.json.
+/// All other parameters are held at --params and --set. Out come the values with standard errors and correlations, what
+/// the recordings do not determine, and which bounds were met; the fitted parameters as <out>.toml for
+/// `lunula simulate --params`; measured and fitted voltages as <out>-fitted.csv, and a picture of both (Fig. 79 to 82).
+/// <out>.json itself is the same bytes from whatever folder; where results are and how long they took is in
+/// <out>.run.json.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct FitArgs {
@@ -51,14 +53,15 @@ pub(crate) struct FitArgs {
     /// Parameters to be fitted, as k_C,b_C,k_V; none: offset and scaling of the photodiodes alone
     #[arg(long, value_name = "NAMES", value_delimiter = ',', required = true)]
     free: Vec<String>,
-    /// Where a free parameter may go, as k_C=0.1x..10x (of its start) or k_V=200..5000 (in its unit) [default: a tenth to ten times its
-    /// start, as the thesis tunes]
+    /// Where a free parameter may go, as k_C=0.1x..10x (of its start) or k_V=200..5000 (in its unit) [default: a tenth
+    /// to ten times its start, as the thesis tunes]
     #[arg(long, value_name = "NAME=LOW..HIGH", value_parser = parse_bounds)]
     bounds: Vec<(String, Bounds)>,
     /// Begin the fit from so many points within the bounds; the best counts
     #[arg(long, value_name = "N", default_value_t = STARTS, value_parser = clap::value_parser!(u16).range(1..=1000))]
     starts: u16,
-    /// Offset and scaling of the photodiodes: subject (one of each for every subject), recording (for every recording), shared, or held
+    /// Offset and scaling of the photodiodes: subject (one of each for every subject), recording (for every recording),
+    /// shared, or held
     #[arg(long, value_parser = one_of::<Calibration>(), default_value = "subject")]
     calibrate: Calibration,
     /// Whose finger each recording is, in the order of the recordings, as anna,anna,ben [default: all one's]
@@ -67,10 +70,12 @@ pub(crate) struct FitArgs {
     /// SD of photodiodes' noise in volts, as VP1=5e-5,VP2=6e-4 [default: estimated for each photodiode and subject]
     #[arg(long, value_name = "COLUMN=V", value_parser = parse_noise, value_delimiter = ',')]
     noise: Vec<(String, f64)>,
-    /// A photodiode's column and the unit that it stands above, counted from the proximal end, as P3=1 [default: VP1=1, VP2=2, ..]
+    /// A photodiode's column and the unit that it stands above, counted from the proximal end, as P3=1 [default: VP1=1,
+    /// VP2=2, ..]
     #[arg(long, value_name = "COLUMN=UNIT", value_parser = parse_photodiode)]
     photodiode: Vec<PhotodiodeColumn>,
-    /// A force's column instead of pf1_Pa, pf2_Pa: of the finger on the surface in newtons, negative where it presses, as Fz_N
+    /// A force's column instead of pf1_Pa, pf2_Pa: of the finger on the surface in newtons, negative where it presses,
+    /// as Fz_N
     #[arg(long, value_name = "COLUMN", requires = "area_cm2")]
     force: Option<String>,
     /// The area that the force presses on

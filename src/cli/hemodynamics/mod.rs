@@ -17,12 +17,12 @@ pub(super) use simulate::{SimulateArgs, run as simulate};
 /// Which nail.
 #[derive(Debug, Clone, Args)]
 struct NailArgs {
-    /// Parameters by the thesis' symbols with their units, as k_C1_N_per_m = 1e5 [default: the thesis' table]; --print-params writes a
-    /// whole file to start from
+    /// Parameters by the thesis' symbols with their units, as k_C1_N_per_m = 1e5 [default: the thesis' table];
+    /// --print-params writes a whole file to start from
     #[arg(long, value_name = "PARAMS.toml")]
     params: Option<PathBuf>,
-    /// Capillary units along the nail, each with its photodiode and its share of the distal load [default: what --params says, or 2, the
-    /// thesis' model]
+    /// Capillary units along the nail, each with its photodiode and its share of the distal load [default: what
+    /// --params says, or 2, the thesis' model]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1000))]
     units: Option<u16>,
     /// A single parameter, before the file's; as often as wanted, as --set b_V_N_s_per_m=300

@@ -34,11 +34,13 @@ Loads, in pascals, seconds and hertz (1 N/cm2 is 1e4 Pa):
 
 Exit status: 0 all done; 1 a vessel closed and --keep-partial wrote what is before it; 2 nothing done; 130 interrupted.";
 
-/// The hemodynamic model of a pressed fingertip (4.3): vessels and photodiodes over time, or in equilibrium with --static
+/// The hemodynamic model of a pressed fingertip (4.3): vessels and photodiodes over time, or in equilibrium with
+/// --static
 ///
-/// The table has time_s, displacements of the walls (xC1_m, xC2_m, xV_m), their velocities (vC1_mps, ..) and photodiodes (VP1, VP2); a
-/// run begins in the equilibrium of the loads just before t = 0. Beside it stand <table>.run.json (how sure it is, what the solver did,
-/// all parameters) and a picture. A vessel that closes ends the model: the error names it and when.
+/// The table has time_s, displacements of the walls (xC1_m, xC2_m, xV_m), their velocities (vC1_mps, ..) and
+/// photodiodes (VP1, VP2); a run begins in the equilibrium of the loads just before t = 0. Beside it stand
+/// <table>.run.json (how sure it is, what the solver did, all parameters) and a picture. A vessel that closes ends the
+/// model: the error names it and when.
 #[derive(Debug, Args)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct SimulateArgs {
@@ -48,7 +50,8 @@ pub(crate) struct SimulateArgs {
     /// P_F2, on the distal palmar surface: it presses on the distal capillaries [default: nothing]
     #[arg(long, value_name = "LOAD", allow_hyphen_values = true)]
     pf2: Option<Load>,
-    /// A table time_s,pf1_Pa,pf2_Pa instead (and ph_Pa, pl_Pa where they change), straight between rows, held before and after
+    /// A table time_s,pf1_Pa,pf2_Pa instead (and ph_Pa, pl_Pa where they change), straight between rows, held before
+    /// and after
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["pf1", "pf2"])]
     loads: Option<PathBuf>,
     /// P_H, upstream blood pressure, as sine:10000+2000@1.2 for a pulse [default: the parameters' constant]
@@ -57,10 +60,12 @@ pub(crate) struct SimulateArgs {
     /// P_L, downstream blood pressure [default: the parameters' constant]
     #[arg(long, value_name = "LOAD", allow_hyphen_values = true)]
     pl: Option<Load>,
-    /// Another state to start from: zero (no displacement, no velocity), or the last row of a trajectory's table; time begins at 0 again
+    /// Another state to start from: zero (no displacement, no velocity), or the last row of a trajectory's table; time
+    /// begins at 0 again
     #[arg(long, value_name = "zero|FILE")]
     from: Option<PathBuf>,
-    /// Where a vessel closes: error, or contact (opposite walls push each other apart below a twentieth of the nominal diameter)
+    /// Where a vessel closes: error, or contact (opposite walls push each other apart below a twentieth of the nominal
+    /// diameter)
     #[arg(long, value_parser = one_of::<Collapse>(), default_value = "error")]
     collapse: Collapse,
     /// The last row's time; the first is 0

@@ -11,12 +11,12 @@ use lunula::phantom::study::{Study, StudyError, write_watched};
 use super::{Common, Interrupted, Outcome};
 use crate::cli::print_line;
 
-/// A whole experiment: photographs in eight poses, logs of three spirals, of bending and of random movement, posture videos with a clock, the
-/// preliminary experiments of one person, presses (3.3, 4.2.2, 4.3.4, 5.3)
+/// A whole experiment: photographs in eight poses, logs of three spirals, of bending and of random movement, posture
+/// videos with a clock, the preliminary experiments of one person, presses (3.3, 4.2.2, 4.3.4, 5.3)
 ///
-/// Writes OUT/photos/ as `lunula phantom photos` does, OUT/<subject>/<session>/ with log.csv and, where the finger only bends, video.mp4 and
-/// markers.toml, OUT/presses/<subject>-<site>/ as `lunula fit` reads them, truth/ in each of these, and OUT/tables/: sessions.csv, presses.csv,
-/// subjects.csv, study.json.
+/// Writes OUT/photos/ as `lunula phantom photos` does, OUT/<subject>/<session>/ with log.csv and, where the finger only
+/// bends, video.mp4 and markers.toml, OUT/presses/<subject>-<site>/ as `lunula fit` reads them, truth/ in each of
+/// these, and OUT/tables/: sessions.csv, presses.csv, subjects.csv, study.json.
 #[derive(Debug, Args)]
 pub(super) struct StudyArgs {
     /// Folder for the study

@@ -12,8 +12,8 @@ use super::{Common, Interrupted, Outcome};
 
 /// A video of a finger with coloured markers, with exact joint angles and marker centres (3.2.3, 3.3.5)
 ///
-/// Writes OUT/video.mp4 and OUT/markers.toml, which `lunula posture` reads as they stand, and OUT/truth/: joints.csv, tracks.csv, clock.csv,
-/// scene.json. A scene sets all that follows; each option changes one thing of it.
+/// Writes OUT/video.mp4 and OUT/markers.toml, which `lunula posture` reads as they stand, and OUT/truth/: joints.csv,
+/// tracks.csv, clock.csv, scene.json. A scene sets all that follows; each option changes one thing of it.
 #[derive(Debug, Args)]
 pub(super) struct VideoArgs {
     /// Folder for the video, the marker file and truth/

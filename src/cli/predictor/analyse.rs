@@ -9,9 +9,9 @@ use super::{Common, Outcome, ended, say_end, say_notes};
 
 /// Which combinations of forces depend on which combinations of photodiodes (Fig. 98)
 ///
-/// Singular values and modes of the model's Jacobian; of a quadratic or network model, of the Jacobian at the middle of its training rows.
-/// Singular values of like size mean that the targets can be told independently. --json also tells the model as the thesis prints
-/// it (equation 9 or 16, with F_0).
+/// Singular values and modes of the model's Jacobian; of a quadratic or network model, of the Jacobian at the middle of
+/// its training rows. Singular values of like size mean that the targets can be told independently. --json also tells
+/// the model as the thesis prints it (equation 9 or 16, with F_0).
 #[derive(Debug, Args)]
 pub(crate) struct AnalyseArgs {
     /// A model file of `lunula train`

@@ -15,10 +15,11 @@ use crate::cli::out::Stream;
 
 /// Forces and angle from photodiodes, by models that `lunula train` wrote
 ///
-/// With a model of force and one of posture the two are gated (equations 9, 16): while the finger presses with --f-min or more (-Fz_N)
-/// it touches, and the angle is --theta-touch; else the posture model speaks. A row that lacks a voltage has no prediction. DATA may be
-/// `-`: rows of CSV on standard input, the first names the columns; each is answered as soon as its line is complete. Of a log with a column
-/// `led`, each lit row is answered: less the unlit light at its time, or, of a stream, less the unlit row before it.
+/// With a model of force and one of posture the two are gated (equations 9, 16): while the finger presses with --f-min
+/// or more (-Fz_N) it touches, and the angle is --theta-touch; else the posture model speaks. A row that lacks a
+/// voltage has no prediction. DATA may be `-`: rows of CSV on standard input, the first names the columns; each is
+/// answered as soon as its line is complete. Of a log with a column `led`, each lit row is answered: less the unlit
+/// light at its time, or, of a stream, less the unlit row before it.
 #[derive(Debug, Args)]
 pub(crate) struct PredictArgs {
     /// Model files, then the recording: a table, a log, or `-` for a stream of CSV rows
@@ -36,7 +37,8 @@ pub(crate) struct PredictArgs {
     /// The finger stops to touch only so far below --f-min
     #[arg(long, value_name = "NEWTONS", default_value_t = 0.0)]
     hysteresis: f64,
-    /// Each prediction's interval as well, as <target>_low, <target>_high (the models need to be trained with --validate)
+    /// Each prediction's interval as well, as <target>_low, <target>_high (the models need to be trained with
+    /// --validate)
     #[arg(long)]
     intervals: bool,
     /// A cell that is no finite number counts as missing [default: it is an error]

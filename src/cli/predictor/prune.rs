@@ -9,8 +9,9 @@ use super::{Common, Outcome, RowsArgs, ended, figure, say_end, say_notes};
 
 /// The linear model's errors for every subset of the photodiodes (Fig. 113 and beyond)
 ///
-/// Each subset is fitted to DATA and told on what --validate names. Says which photodiodes are the best of each number, and what the
-/// removal of each one costs. Subsets are compared by the mean over targets of RMSE over the target's spread.
+/// Each subset is fitted to DATA and told on what --validate names. Says which photodiodes are the best of each number,
+/// and what the removal of each one costs. Subsets are compared by the mean over targets of RMSE over the target's
+/// spread.
 #[derive(Debug, Args)]
 pub(crate) struct PruneArgs {
     /// Recordings to train on

@@ -14,11 +14,11 @@ use super::{Common, Outcome, RowsArgs, ended, figure, one_of, say_merit, say_not
 
 /// Recordings of photodiodes with forces or angles to a model that tells forces or angles from photodiodes (5.)
 ///
-/// A recording is a table with P1.. and Fx_N,Fy_N,Fz_N or J2_deg, as `lunula align` writes it, or a log with forces (with a column
-/// `led`, lit less unlit samples are taken). Each file, session and subject in it is a recording of its own. Rows with an empty cell
-/// that is needed are left out and counted. Models: linear (equation 9), quadratic (16: all squares and products) and
-/// network (17, 18). What --validate names is only reported on, and its errors tell the prediction intervals: name
-/// recordings of another session.
+/// A recording is a table with P1.. and Fx_N,Fy_N,Fz_N or J2_deg, as `lunula align` writes it, or a log with forces
+/// (with a column `led`, lit less unlit samples are taken). Each file, session and subject in it is a recording of its
+/// own. Rows with an empty cell that is needed are left out and counted. Models: linear (equation 9), quadratic (16:
+/// all squares and products) and network (17, 18). What --validate names is only reported on, and its errors tell the
+/// prediction intervals: name recordings of another session.
 #[derive(Debug, Args)]
 pub(crate) struct TrainArgs {
     /// Recordings to train on (.csv, .csv.gz where a log, .parquet)
@@ -36,7 +36,8 @@ pub(crate) struct TrainArgs {
     /// Recordings to report on
     #[arg(long, value_name = "DATA", num_args = 1..)]
     validate: Vec<PathBuf>,
-    /// Recordings on which the network's training stops early [default: every fifth of 20 blocks of each training recording]
+    /// Recordings on which the network's training stops early [default: every fifth of 20 blocks of each training
+    /// recording]
     #[arg(long, value_name = "DATA", num_args = 1..)]
     stop_on: Vec<PathBuf>,
     /// The photodiodes to read, as P1,P3,P4 [default: all columns P1, P2, ..]
@@ -48,25 +49,36 @@ pub(crate) struct TrainArgs {
     /// Predicted forces are brought into the cone of this coefficient of friction
     #[arg(long, value_name = "MU")]
     friction: Option<f64>,
-    /// Where rows do not determine the linear or quadratic model: refuse, minimum-norm, drop (photodiodes that add nothing) or
-    /// ridge=LAMBDA
+    /// Where rows do not determine the linear or quadratic model: refuse, minimum-norm, drop (photodiodes that add
+    /// nothing) or ridge=LAMBDA
     #[arg(long, value_name = "WHAT", default_value = "refuse", value_parser = str::parse::<Deficient>)]
     deficient: Deficient,
     /// Where a network's first weights come from
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Networks that are trained, of which the best on the rows to stop on is taken
-    #[arg(long, value_name = "N", default_value_t = Recipe::new(Kind::Linear).restarts as u16, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = Recipe::new(Kind::Linear).restarts as u16,
+        value_parser = clap::value_parser!(u16).range(1..=1000)
+    )]
     restarts: u16,
     /// Epochs that a network is trained for at most
-    #[arg(long, value_name = "N", default_value_t = Recipe::new(Kind::Linear).max_epochs as u32, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = Recipe::new(Kind::Linear).max_epochs as u32,
+        value_parser = clap::value_parser!(u32).range(1..)
+    )]
     epochs: u32,
     /// The share of rows that prediction intervals are to hold
     #[arg(long, value_name = "SHARE", default_value_t = LEVEL)]
     level: f64,
     #[command(flatten)]
     rows: RowsArgs,
-    /// A recording that can't be read is named and left out (exit status 1), where others can be [default: it is an error]
+    /// A recording that can't be read is named and left out (exit status 1), where others can be [default: it is an
+    /// error]
     #[arg(long)]
     skip_failed: bool,
     /// The model file
@@ -136,7 +148,8 @@ pub(crate) fn run(args: &TrainArgs) -> anyhow::Result<Outcome> {
         Report::Network(fit) => {
             let best = &fit.restarts[fit.best];
             common.say(&format!(
-                "{} parameters; best of {} networks after {} epochs; RMSE in SDs: best {:.4}, median {:.4}, quartiles {:.4} apart",
+                "{} parameters; best of {} networks after {} epochs; RMSE in SDs: best {:.4}, median {:.4}, quartiles \
+                 {:.4} apart",
                 fit.parameters,
                 fit.restarts.len(),
                 best.best_epoch,

@@ -1,7 +1,7 @@
 //! The ink beside a clock's digits, on their line.
 //!
-//! In: a crop and the clock's cells. Out: the runs of ink on either side that can be characters ([`Scene::runs`]), and what each side says
-//! ([`Scene::side`]).
+//! In: a crop and the clock's cells. Out: the runs of ink on either side that can be characters ([`Scene::runs`]), and
+//! what each side says ([`Scene::side`]).
 
 use std::cell::OnceCell;
 
@@ -14,8 +14,8 @@ use crate::clock::judge::Page;
 use crate::clock::line::{Run, SPECK, UNEVEN, WIDEST, runs};
 use crate::clock::look::Cut;
 
-/// The middles of neighbouring digits are so many pitches apart: a narrow digit may stand on either side of its cell, and a blank between
-/// two words makes it 1.5 or 2.
+/// The middles of neighbouring digits are so many pitches apart: a narrow digit may stand on either side of its cell,
+/// and a blank between two words makes it 1.5 or 2.
 const NEXT: [f32; 2] = [0.4, 1.38];
 /// And so many a digit and the mark beside it, and a mark and the digit that follows.
 const NEXT_TO_MARK: [f32; 2] = [0.2, 1.2];
@@ -26,7 +26,8 @@ const HALF_INK: f32 = 0.5;
 const OTHER_SHARES: [f32; 2] = [0.35, 0.65];
 /// A digit that the edge cuts off begins at most so many pitches from the middle of its neighbour.
 const CUT_OFF: f32 = 0.95;
-/// A blank before or after AM or PM is at most so many heights of the digits wide, one between letters such a share of their height.
+/// A blank before or after AM or PM is at most so many heights of the digits wide, one between letters such a share of
+/// their height.
 const BLANK: f64 = 1.4;
 const LETTERS_APART: f64 = 0.6;
 /// Lower characters are no letters.
@@ -35,15 +36,16 @@ const LEAST_LETTER: f64 = 0.28;
 const ABOVE: f64 = 0.5;
 const BELOW: f64 = 0.55;
 const TALLEST: f64 = 1.65;
-/// Old-style figures are of three kinds: low ones, some that reach down and some that reach up by such a share of the others' height; the
-/// low ones are so much lower.
+/// Old-style figures are of three kinds: low ones, some that reach down and some that reach up by such a share of the
+/// others' height; the low ones are so much lower.
 const OLD_STYLE: f64 = 0.55;
 const LOW_FIGURE: f64 = 0.55;
 /// Figures that reach up or down are no narrower than this share of their height: a bar or bracket is.
 const NARROWEST_LONG: f64 = 0.4;
 /// What is not on the digits' lines is a digit where the network finds all digits together this probable.
 const OLD_STYLE_DIGIT: f64 = 0.8;
-/// No character reaches further than this both above and below the digits: a screen's frame does, and would swallow a digit within.
+/// No character reaches further than this both above and below the digits: a screen's frame does, and would swallow a
+/// digit within.
 const BEYOND_BOTH: f64 = 0.1;
 /// And what stands around anything this high is a frame; the dot in a 0 is lower.
 const FRAMED: f64 = 0.3;
@@ -203,8 +205,8 @@ impl<'a> Scene<'a> {
         1.0 - self.other(run) >= least
     }
 
-    /// Whether a run may be an old-style figure beside figures that reach up or down otherwise. Its top is no lower than theirs, for a letter or
-    /// icon beside others often is.
+    /// Whether a run may be an old-style figure beside figures that reach up or down otherwise. Its top is no lower
+    /// than theirs, for a letter or icon beside others often is.
     fn is_old_style(&self, run: &Run) -> bool {
         let slack = (UNEVEN * self.height).max(1.5);
         let [up, down] = [self.top - run.top as f64, (run.bottom + 1) as f64 - self.bottom];
@@ -290,7 +292,8 @@ mod tests {
         let cells = Cells::around(&[&row], &ClockFormat::parse("ss").unwrap(), levels).unwrap();
         let gray = Gray { width: 130, height: 80, values: vec![20.0; 130 * 80] };
         let scene = Scene::new(&gray, &cells);
-        // Beside figures that reach down: a low one and one that reaches up. Beside low ones: one that reaches down and one that reaches up.
+        // Beside figures that reach down: a low one and one that reaches up. Beside low ones: one that reaches down and
+        // one that reaches up.
         for figure in [run(90, 30, 101, 42), run(90, 23, 101, 42), run(90, 30, 101, 57), run(90, 22, 101, 49)] {
             assert!(scene.is_old_style(&figure) && !scene.is_aligned(&figure), "{figure:?}");
         }

@@ -1,8 +1,9 @@
 //! The network that tells digits: two layers of small filters, one hidden layer, eleven answers.
 //!
-//! In: a [`Patch`]. Out: for 0 to 9 and for anything else the logarithm of its probability, up to a common term. The first filters
-//! look at 5 x 5 cells and step by two, the second at 3 x 3 and step by two; then come all the places' values and the box's aspect
-//! into one hidden layer. Units pass what is above zero. Weights are text, numbers in the order of [`PARTS`]; `training` makes them.
+//! In: a [`Patch`]. Out: for 0 to 9 and for anything else the logarithm of its probability, up to a common term. The
+//! first filters look at 5 x 5 cells and step by two, the second at 3 x 3 and step by two; then come all the places'
+//! values and the box's aspect into one hidden layer. Units pass what is above zero. Weights are text, numbers in the
+//! order of [`PARTS`]; `training` makes them.
 
 use super::patch::{HEIGHT, Patch, WIDTH};
 
@@ -27,8 +28,9 @@ pub(super) const ROWS_2: usize = ROWS_1 / 2;
 /// What comes into the hidden layer but for the aspect.
 pub(super) const FLAT: usize = COLUMNS_2 * ROWS_2 * SECOND;
 
-/// How many numbers: the first filters' weights (by cell, then filter) and biases, the second's (by place, first filter, second
-/// filter) and biases, the hidden units' (by input, then unit; the aspect last) and biases, the answers' (by unit) and biases.
+/// How many numbers: the first filters' weights (by cell, then filter) and biases, the second's (by place, first
+/// filter, second filter) and biases, the hidden units' (by input, then unit; the aspect last) and biases, the answers'
+/// (by unit) and biases.
 pub(super) const PARTS: [usize; 8] =
     [REACH * REACH * FIRST, FIRST, 9 * FIRST * SECOND, SECOND, (FLAT + 1) * HIDDEN, HIDDEN, HIDDEN * ANSWERS, ANSWERS];
 

@@ -1,8 +1,9 @@
 //! One character's picture, always of the same size, contrast and polarity.
 //!
-//! In: a plane, the box of the character's ink on it, and what background and ink are worth there. Out: a [`Patch`], background 0
-//! and ink 1 whichever of them is lighter. The box's height fills 20 of 24 rows, two are left above and below; its width keeps
-//! the picture's proportions and is centred, so that a `1` stays narrow, unless it is wider than the patch has room for.
+//! In: a plane, the box of the character's ink on it, and what background and ink are worth there. Out: a [`Patch`],
+//! background 0 and ink 1 whichever of them is lighter. The box's height fills 20 of 24 rows, two are left above and
+//! below; its width keeps the picture's proportions and is centred, so that a `1` stays narrow, unless it is wider than
+//! the patch has room for.
 
 use super::Place;
 use crate::video::Plane;
@@ -41,8 +42,8 @@ pub struct Patch {
 }
 
 impl Patch {
-    /// Cuts the character at `place` out of a plane. What lies outside of the plane counts as background; so does all of it where the
-    /// box is empty or background and ink are worth the same.
+    /// Cuts the character at `place` out of a plane. What lies outside of the plane counts as background; so does all
+    /// of it where the box is empty or background and ink are worth the same.
     #[must_use]
     pub fn cut(plane: &Plane<'_>, place: &Place, levels: Levels) -> Self {
         let mut patch = Self { ink: [0.0; WIDTH * HEIGHT], aspect: 0.0 };

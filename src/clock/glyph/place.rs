@@ -2,8 +2,8 @@
 
 use crate::video::Turn;
 
-/// The box of a digit's ink as a parallelogram on the stored picture. Coordinates are those of its samples: the centre of the
-/// top-left one is (0, 0), x right, y down; ink on the columns 3 to 5 reaches from 2.5 to 5.5.
+/// The box of a digit's ink as a parallelogram on the stored picture. Coordinates are those of its samples: the centre
+/// of the top-left one is (0, 0), x right, y down; ink on the columns 3 to 5 reaches from 2.5 to 5.5.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Place {
     /// The box's corner at the digit's top left, samples.

@@ -1,11 +1,12 @@
 //! How probably a patch shows each digit.
 
-/// A digit that is at least this probable is read. On drawn digits of typefaces and displays that nothing was trained on, sharp and
-/// in good light, 93 % are (4 in a million wrong), and under any conditions 75 %, 1 in 6000 wrong (test `training::figures`).
+/// A digit that is at least this probable is read. On drawn digits of typefaces and displays that nothing was trained
+/// on, sharp and in good light, 93 % are (4 in a million wrong), and under any conditions 75 %, 1 in 6000 wrong (test
+/// `training::figures`).
 pub const SURE: f64 = 0.95;
 
-/// How probably a patch shows each digit, or anything else: nothing, a mark, two digits blended, a digit half covered. They add up
-/// to 1.
+/// How probably a patch shows each digit, or anything else: nothing, a mark, two digits blended, a digit half covered.
+/// They add up to 1.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scores {
     /// Of the digits 0 to 9.

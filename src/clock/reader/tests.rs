@@ -93,7 +93,8 @@ fn frames_at_an_uneven_rate_mislead_no_digit() {
 
 #[test]
 fn a_change_during_the_exposure_is_not_misread() {
-    // 29.83 frames a second move the exposure along the clock's changes; measured: 60 to 66 of 75, flicker and noise or none.
+    // 29.83 frames a second move the exposure along the clock's changes; measured: 60 to 66 of 75, flicker and noise or
+    // none.
     const LEAST: usize = 56;
     for font in ClockFont::ALL {
         let show =

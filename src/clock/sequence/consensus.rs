@@ -1,9 +1,9 @@
 //! Which readings most others agree with, and how often the clock began again.
 //!
-//! What a clock shows less the video's time is nearly constant: within its resolution and the screen's delay of a line whose slope is
-//! the drift. The line (drift and height, the height on the circle of what the clock shows before it begins again) with the most
-//! readings in such a band is looked for on a grid that gets finer. Of the readings in the band those are kept with which time only
-//! goes forward: the longest sequence that never falls.
+//! What a clock shows less the video's time is nearly constant: within its resolution and the screen's delay of a line
+//! whose slope is the drift. The line (drift and height, the height on the circle of what the clock shows before it
+//! begins again) with the most readings in such a band is looked for on a grid that gets finer. Of the readings in the
+//! band those are kept with which time only goes forward: the longest sequence that never falls.
 
 use super::polygon::Point;
 
@@ -21,7 +21,8 @@ pub(super) struct Seen {
 /// Readings that agree.
 #[derive(Debug, Clone)]
 pub(super) struct Agreed {
-    /// For each reading that agrees what the clock's beginnings again add to what it shows, seconds: 0 for the first of them.
+    /// For each reading that agrees what the clock's beginnings again add to what it shows, seconds: 0 for the first of
+    /// them.
     pub(super) turns_s: Vec<Option<f64>>,
     /// How many agree.
     pub(super) count: usize,
@@ -36,8 +37,8 @@ const LOOK: usize = 800;
 /// Times that the grid gets finer by a quarter.
 const FINER: usize = 4;
 
-/// The largest set of readings within `room_s` of a line of at most `most_drift`; `wrap_s` is what the clock shows before it begins
-/// again. `seen` is sorted by time and not empty.
+/// The largest set of readings within `room_s` of a line of at most `most_drift`; `wrap_s` is what the clock shows
+/// before it begins again. `seen` is sorted by time and not empty.
 pub(super) fn agree(seen: &[Seen], room_s: f64, most_drift: f64, wrap_s: Option<f64>) -> Agreed {
     let count = seen.len().min(LOOK);
     let look: Vec<Point> = (0..count)
@@ -82,7 +83,8 @@ struct Band {
     to_s: f64,
 }
 
-/// The interval of `room_s` with the most of `heights` in it, on a circle if they wrap: how many, and the least and the greatest of them.
+/// The interval of `room_s` with the most of `heights` in it, on a circle if they wrap: how many, and the least and the
+/// greatest of them.
 fn fullest(heights: &mut Vec<f64>, room_s: f64, wrap_s: Option<f64>) -> (usize, [f64; 2]) {
     if let Some(wrap_s) = wrap_s {
         heights.iter_mut().for_each(|height| *height = height.rem_euclid(wrap_s));

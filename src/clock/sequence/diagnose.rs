@@ -8,8 +8,9 @@ const SECOND: usize = 5;
 /// A clock that shows the same for so much longer than its resolution stands still, seconds.
 const STILL_S: f64 = 0.5;
 
-/// Says what is wrong, if anything: the clock stands still at the beginning or the end or in the midst, jumps, or runs at another
-/// rate; or most readings do not agree. `middle_s` and `first_s` are taken off the readings' times and what they show.
+/// Says what is wrong, if anything: the clock stands still at the beginning or the end or in the midst, jumps, or runs
+/// at another rate; or most readings do not agree. `middle_s` and `first_s` are taken off the readings' times and what
+/// they show.
 pub(super) fn diagnose(
     seen: &[Seen],
     agreed: &Agreed,

@@ -5,7 +5,8 @@
 pub enum ClockFault {
     /// Too few frames read.
     #[error(
-        "the clock was read in {read} of {frames} frames, of which {agree} agree; at least {fewest} that agree are needed: check the clock's \
+        "the clock was read in {read} of {frames} frames, of which {agree} agree; at least {fewest} that agree are \
+         needed: check the clock's \
          place and format in the marker file, or film it larger and unhidden"
     )]
     TooFew {
@@ -20,7 +21,8 @@ pub enum ClockFault {
     },
     /// It shows the same while the video goes on.
     #[error(
-        "the clock stands still: it shows {shown_s} s from {from_s:.3} s to {to_s:.3} s of the video; cut the video to where the clock runs, or \
+        "the clock stands still: it shows {shown_s} s from {from_s:.3} s to {to_s:.3} s of the video; cut the video \
+         to where the clock runs, or \
          use a clock that is not paused"
     )]
     Stops {
@@ -33,7 +35,8 @@ pub enum ClockFault {
     },
     /// It runs well before and after, but not on one line.
     #[error(
-        "the clock jumps by {by_s:+.3} s at {at_s:.3} s of the video; cut the video there and align the parts one by one"
+        "the clock jumps by {by_s:+.3} s at {at_s:.3} s of the video; cut the video there and align the parts one by \
+         one"
     )]
     Jumps {
         /// When.
@@ -43,7 +46,8 @@ pub enum ClockFault {
     },
     /// It runs well but too fast or too slow.
     #[error(
-        "the clock runs {rate:.4} times as fast as the video; the file's frame times must be those of the recording: no slow motion, time \
+        "the clock runs {rate:.4} times as fast as the video; the file's frame times must be those of the recording: \
+         no slow motion, time \
          lapse or countdown"
     )]
     Rate {
@@ -52,7 +56,8 @@ pub enum ClockFault {
     },
     /// Nothing that most readings agree on.
     #[error(
-        "the clock's readings contradict each other: no more than {agree} of {read} agree, the first that does not is at {at_s:.3} s of the \
+        "the clock's readings contradict each other: no more than {agree} of {read} agree, the first that does not is \
+         at {at_s:.3} s of the \
          video; check the clock's place and format in the marker file"
     )]
     Contradictory {

@@ -1,21 +1,22 @@
 //! Readings of a whole video to the clock's time in the video's, with an interval that holds the truth.
 //!
-//! In: each frame's presentation time and what the clock in it was read to show, or none. Out: a [`ClockFit`], or a [`ClockFault`]
-//! in words.
+//! In: each frame's presentation time and what the clock in it was read to show, or none. Out: a [`ClockFit`], or a
+//! [`ClockFault`] in words.
 //!
-//! A clock of resolution `r` shows `R` at the video's time `t` if its count `c` at the screen's last refresh, at most the screen's
-//! interval `T` before `t`, obeys `R <= c < R + r`. So `R <= c(t) < R + r + T`, whatever the phases. With `c(t) = t + offset +
-//! drift t` every reading bounds offset and drift from two sides; all of them leave a convex polygon, whose extent is the interval.
-//! The estimate is the mean over the polygon, and the standard errors are those about it, with all offsets alike and drifts as those
-//! of quartz clocks ([`USUAL_DRIFT`]); the interval counts every drift up to [`MOST_DRIFT`]. Readings that disagree with most others
-//! are refused before. How late the screen shows is found where the readings tell (module `screen`).
+//! A clock of resolution `r` shows `R` at the video's time `t` if its count `c` at the screen's last refresh, at most
+//! the screen's interval `T` before `t`, obeys `R <= c < R + r`. So `R <= c(t) < R + r + T`, whatever the phases. With
+//! `c(t) = t + offset + drift t` every reading bounds offset and drift from two sides; all of them leave a convex
+//! polygon, whose extent is the interval. The estimate is the mean over the polygon, and the standard errors are those
+//! about it, with all offsets alike and drifts as those of quartz clocks ([`USUAL_DRIFT`]); the interval counts every
+//! drift up to [`MOST_DRIFT`]. Readings that disagree with most others are refused before. How late the screen shows is
+//! found where the readings tell (module `screen`).
 //!
-//! Where the frames come in the rhythm of the digits, the estimate may lie anywhere in the interval, and 0.58 of all lie within a
-//! standard error, as of a uniform distribution. A screen of exactly 60 refreshes shows every tenth equally late: then its delay can't
-//! be told from the offset, nor slow drift from none, by any number of frames.
+//! Where the frames come in the rhythm of the digits, the estimate may lie anywhere in the interval, and 0.58 of all
+//! lie within a standard error, as of a uniform distribution. A screen of exactly 60 refreshes shows every tenth
+//! equally late: then its delay can't be told from the offset, nor slow drift from none, by any number of frames.
 //!
-//! What is not determined: a lag that the whole display adds (a screen's processing, slow pixels), and where in the exposure the
-//! frame's time lies.
+//! What is not determined: a lag that the whole display adds (a screen's processing, slow pixels), and where in the
+//! exposure the frame's time lies.
 
 mod consensus;
 mod diagnose;
@@ -31,13 +32,16 @@ use self::consensus::{Agreed, Seen};
 use self::polygon::{Hulls, Moments, Point, moments};
 use crate::timebase::Timebase;
 
-/// A clock drifts no more than this: files whose frame times are those of 30 frames a second though 29.97 were taken are a thousandth off.
+/// A clock drifts no more than this: files whose frame times are those of 30 frames a second though 29.97 were taken
+/// are a thousandth off.
 pub const MOST_DRIFT: f64 = 2e-3;
 /// Readings that must agree.
 pub const FEWEST: usize = 3;
-/// A screen whose rate is not told may show what it shows up to this late, seconds: 60 refreshes a second, the slowest that is usual.
+/// A screen whose rate is not told may show what it shows up to this late, seconds: 60 refreshes a second, the slowest
+/// that is usual.
 pub const USUAL_SCREEN_S: f64 = 1.0 / 60.0;
-/// Two clocks of quartz drift so much against each other: the scale of the distribution, Cauchy's, that the estimate weighs drifts with.
+/// Two clocks of quartz drift so much against each other: the scale of the distribution, Cauchy's, that the estimate
+/// weighs drifts with.
 pub const USUAL_DRIFT: f64 = 5e-5;
 /// One reading in so many may disagree, or more in no more stretches than these.
 const MISREAD: usize = 10;
@@ -62,11 +66,13 @@ pub enum ScreenDelay {
 pub struct ClockFit {
     /// The clock's time in the video's.
     pub timebase: Timebase,
-    /// The least and the greatest offset (the clock's time at the video's time 0) that agree with every accepted reading, seconds.
+    /// The least and the greatest offset (the clock's time at the video's time 0) that agree with every accepted
+    /// reading, seconds.
     pub offset_interval_s: [f64; 2],
     /// The least and the greatest drift.
     pub drift_interval: [f64; 2],
-    /// For each frame what the clock was read to show, if the reading agrees with the rest; goes on where the clock begins again.
+    /// For each frame what the clock was read to show, if the reading agrees with the rest; goes on where the clock
+    /// begins again.
     pub accepted_s: Vec<Option<f64>>,
     /// Readings that disagree with the rest.
     pub refused: usize,
@@ -76,7 +82,8 @@ pub struct ClockFit {
     pub residual_rms_s: f64,
     /// How the screen's delay is known.
     pub screen: ScreenDelay,
-    /// The longest that the estimate takes the screen to wait before it shows the next reading, seconds; half of it is taken off.
+    /// The longest that the estimate takes the screen to wait before it shows the next reading, seconds; half of it is
+    /// taken off.
     pub screen_delay_s: f64,
     /// The longest that the interval counts, seconds.
     pub screen_delay_most_s: f64,
@@ -86,7 +93,8 @@ pub struct ClockFit {
     corners: Vec<Point>,
 }
 
-/// Where the plane of lines lies: heights are the clock's less `shown_s` at the video's time `time_s`, and `end` is reached `half_s` later.
+/// Where the plane of lines lies: heights are the clock's less `shown_s` at the video's time `time_s`, and `end` is
+/// reached `half_s` later.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Place {
     time_s: f64,
@@ -110,9 +118,10 @@ impl ClockFit {
     }
 }
 
-/// Fits a clock of resolution `resolution_s` to what was read in frames at `times_s` (any order; frames without a finite time or
-/// reading don't count): `shown_s` as the digits mean, not unwrapped; `wraps_s` what it may show before it begins again, one of
-/// which is chosen; `refresh_hz` how often its screen changes a second, infinite where it shows at once, none where that is not known.
+/// Fits a clock of resolution `resolution_s` to what was read in frames at `times_s` (any order; frames without a
+/// finite time or reading don't count): `shown_s` as the digits mean, not unwrapped; `wraps_s` what it may show before
+/// it begins again, one of which is chosen; `refresh_hz` how often its screen changes a second, infinite where it shows
+/// at once, none where that is not known.
 ///
 /// # Errors
 /// Why there is no such line, with the place.
@@ -210,8 +219,8 @@ pub fn fit(
     })
 }
 
-/// The agreement of the most readings: with the screen that is given or usual or, where many more agree then, a slower one; and with
-/// that of the clock's wraps with which most agree.
+/// The agreement of the most readings: with the screen that is given or usual or, where many more agree then, a slower
+/// one; and with that of the clock's wraps with which most agree.
 fn most_agreed(seen: &[Seen], resolution_s: f64, given_s: Option<f64>, wraps_s: &[f64]) -> Agreed {
     let wraps: Vec<Option<f64>> =
         if wraps_s.is_empty() { vec![None] } else { wraps_s.iter().copied().map(Some).collect() };
@@ -233,8 +242,8 @@ fn most_agreed(seen: &[Seen], resolution_s: f64, given_s: Option<f64>, wraps_s: 
     if 10 * slow.count > 10 * usual.count + seen.len() { slow } else { usual }
 }
 
-/// Whether so many readings disagree, here and there, that a digit must be misread again and again: such a digit is wrong where it
-/// seems to agree too, next to the digit that it is taken for, and would bend the line.
+/// Whether so many readings disagree, here and there, that a digit must be misread again and again: such a digit is
+/// wrong where it seems to agree too, next to the digit that it is taken for, and would bend the line.
 fn is_misread(agreed: &Agreed) -> bool {
     let refused = agreed.turns_s.len() - agreed.count;
     let runs = agreed.turns_s.chunk_by(|a, b| a.is_some() == b.is_some()).filter(|run| run[0].is_none()).count();

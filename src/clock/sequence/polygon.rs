@@ -1,8 +1,9 @@
 //! The lines that agree with every reading, as a convex polygon.
 //!
-//! A line `c(t) - t = height + end t / half` over `-half <= t <= half` is a point `(height, end)`, both in seconds: `end` is how far
-//! the line rises from the middle to the end. A frame at `t` that shows `R` bounds it from below by `q = R - t` and from above by
-//! `q + room`. Of all frames only the hulls of the points `(t, q)` bound anything: the upper hull from below, the lower from above.
+//! A line `c(t) - t = height + end t / half` over `-half <= t <= half` is a point `(height, end)`, both in seconds:
+//! `end` is how far the line rises from the middle to the end. A frame at `t` that shows `R` bounds it from below by
+//! `q = R - t` and from above by `q + room`. Of all frames only the hulls of the points `(t, q)` bound anything: the
+//! upper hull from below, the lower from above.
 
 /// A point of the plane: time and what the clock shows less the time; or height and end of a line.
 pub(super) type Point = [f64; 2];
@@ -29,8 +30,8 @@ impl Hulls {
         self.half_s
     }
 
-    /// The least room with which a line with `|end| <= most_end_s` agrees with all, and that line's `end`; below 0 where much room is
-    /// left over.
+    /// The least room with which a line with `|end| <= most_end_s` agrees with all, and that line's `end`; below 0
+    /// where much room is left over.
     pub(super) fn least_room(&self, most_end_s: f64) -> (f64, f64) {
         let room = |end: f64| {
             let rise = |p: &Point| p[1] - end * p[0] / self.half_s;
@@ -60,8 +61,8 @@ impl Hulls {
         (best, 0.5 * (bends[low] + flat))
     }
 
-    /// The corners of the polygon of the lines with `|end| <= most_end_s` that agree with all when each frame leaves `room_s`, in
-    /// order around it; empty where none does.
+    /// The corners of the polygon of the lines with `|end| <= most_end_s` that agree with all when each frame leaves
+    /// `room_s`, in order around it; empty where none does.
     pub(super) fn polygon(&self, room_s: f64, most_end_s: f64) -> Vec<Point> {
         let height = |p: &Point| p[1].abs() + most_end_s;
         let far = self.upper.iter().chain(&self.lower).map(height).fold(room_s, f64::max) + room_s;
@@ -136,8 +137,8 @@ impl Moments {
 /// Slices between two corners of a polygon that its moments are summed over.
 const SLICES: usize = 24;
 
-/// Those of a distribution over a convex polygon: uniform in the height, and in the end as Cauchy's of the scale `usual_end_s` about 0.
-/// None for no corners.
+/// Those of a distribution over a convex polygon: uniform in the height, and in the end as Cauchy's of the scale
+/// `usual_end_s` about 0. None for no corners.
 pub(super) fn moments(corners: &[Point], usual_end_s: f64) -> Option<Moments> {
     let first = corners.first()?;
     let mut ends: Vec<f64> = corners.iter().map(|c| c[1]).collect();

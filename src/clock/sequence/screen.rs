@@ -1,10 +1,12 @@
 //! How late the screen shows what the clock counts.
 //!
-//! Readings that agree with no screen that shows at once need one that shows late. How late is seen where frames' times are irregular:
-//! the readings then fill nearly all of what the screen allows, and the screen is the fastest usual one that allows so much. Frames in
-//! which the digits change are not read, which hides a part of the delay as long as the exposure: it is told from how many such
-//! frames there are, and added. Where frames' and screen's rhythm are the same, or the screen's and the digits', the delay can't be
-//! told from the offset; then none is taken off, and interval and standard error count a usual screen.
+//! Readings that agree with no screen that shows at once need one that shows late. How late is seen where frames' times
+//! are irregular:
+//! the readings then fill nearly all of what the screen allows, and the screen is the fastest usual one that allows so
+//! much. Frames in which the digits change are not read, which hides a part of the delay as long as the exposure: it is
+//! told from how many such frames there are, and added. Where frames' and screen's rhythm are the same, or the screen's
+//! and the digits', the delay can't be told from the offset; then none is taken off, and interval and standard error
+//! count a usual screen.
 
 use super::{ScreenDelay, USUAL_SCREEN_S};
 
@@ -13,8 +15,8 @@ const SCREENS_S: [f64; 8] =
     [1.0 / 144.0, 1.0 / 120.0, USUAL_SCREEN_S, 1.0 / 50.0, 1.0 / 30.0, 1.0 / 24.0, 1.0 / 20.0, 0.1];
 /// A screen is known to a fiftieth: 59.94 is told as 60.
 const NEAR: f64 = 0.98;
-/// What readings and frames not read must add up to before a screen is believed that the readings alone do not need, seconds, and in
-/// standard errors.
+/// What readings and frames not read must add up to before a screen is believed that the readings alone do not need,
+/// seconds, and in standard errors.
 const BELIEVED_S: f64 = 4e-3;
 const BELIEVED_SDS: f64 = 2.5;
 
@@ -29,7 +31,8 @@ pub(super) struct Screen {
     pub(super) notes: Vec<String>,
 }
 
-/// The delay, if readings agree with none below `least_s`, `dead_s` is what [`dead_s`] tells, and `given_s` what the user says.
+/// The delay, if readings agree with none below `least_s`, `dead_s` is what [`dead_s`] tells, and `given_s` what the
+/// user says.
 pub(super) fn delay(least_s: f64, dead_s: [f64; 2], given_s: Option<f64>) -> Screen {
     if let Some(given_s) = given_s
         && least_s <= given_s
@@ -49,7 +52,8 @@ pub(super) fn delay(least_s: f64, dead_s: [f64; 2], given_s: Option<f64>) -> Scr
     let late_s = least_s + dead_s;
     if least_s <= 0.0 && late_s < BELIEVED_S.max(BELIEVED_SDS * dead_sd_s) {
         notes.push(format!(
-            "how often the clock's screen changes is not known: the offset's interval and standard error count one that shows up to \
+            "how often the clock's screen changes is not known: the offset's interval and standard error count one \
+             that shows up to \
              {:.1} ms late; the rate, if given, narrows them",
             1e3 * most_s
         ));
@@ -62,8 +66,8 @@ pub(super) fn delay(least_s: f64, dead_s: [f64; 2], given_s: Option<f64>) -> Scr
 /// Frames in a row that are not read because digits change in them: no more than this.
 const CHANGING: usize = 2;
 
-/// How long before and after a change of digits frames are not read, both together, and its standard error, seconds; from frames not
-/// read between two readings one step apart, less as many as are not read between the same readings.
+/// How long before and after a change of digits frames are not read, both together, and its standard error, seconds;
+/// from frames not read between two readings one step apart, less as many as are not read between the same readings.
 pub(super) fn dead_s(accepted_s: &[Option<f64>], resolution_s: f64, interval_s: f64) -> [f64; 2] {
     let (mut frames, mut changing, mut other) = (0, 0, 0);
     let mut last: Option<(usize, f64)> = None;

@@ -1,6 +1,7 @@
 //! Charts on linear axes: lines with breaks where nothing is known, bands, dots, shaded spans; PNG and SVG.
 //!
-//! Charts of one picture stand below each other, or as panels in rows. What is drawn last lies on top. Values beyond 1e200 are drawn there.
+//! Charts of one picture stand below each other, or as panels in rows. What is drawn last lies on top. Values beyond
+//! 1e200 are drawn there.
 
 mod grid;
 mod ink;
@@ -66,7 +67,8 @@ impl Draw for Charts<'_> {
     }
 }
 
-/// Draws `charts` as panels, `columns` in a row and `width` pixels wide each, to `png` and `svg`; a row is as high as its highest.
+/// Draws `charts` as panels, `columns` in a row and `width` pixels wide each, to `png` and `svg`; a row is as high as
+/// its highest.
 ///
 /// # Errors
 /// A file that can't be written.

@@ -1,7 +1,8 @@
 //! What was fitted as a table: a row a free parameter, then offset and scaling of each photodiode.
 //!
-//! Columns: `name`, `recordings` (of a photodiode, counted from 1 in the order given), `start`, `value`, `standard_error`, `low`, `high` (the
-//! interval of two standard errors where it is known), `at_bound`; each in the unit that its name holds.
+//! Columns: `name`, `recordings` (of a photodiode, counted from 1 in the order given), `start`, `value`,
+//! `standard_error`, `low`, `high` (the interval of two standard errors where it is known), `at_bound`; each in the
+//! unit that its name holds.
 
 use std::path::Path;
 

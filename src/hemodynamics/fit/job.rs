@@ -243,7 +243,8 @@ fn warnings(result: &FitResult, recordings: &[ReadRecording], figures: bool) -> 
     if let Some(rival) = result.rivals.first() {
         let both = rival.values.iter().flatten().map(|value| format!("{value:.3e}")).collect::<Vec<_>>().join(", ");
         warnings.push(format!(
-            "other values fit nearly as well ({both}); the standard errors know nothing of them: hold a parameter, or record more"
+            "other values fit nearly as well ({both}); the standard errors know nothing of them: hold a parameter, or \
+             record more"
         ));
     }
     for read in recordings {

@@ -1,4 +1,5 @@
-//! `lunula fit`: free parameters of the model, and the photodiodes' offset and scaling, to recorded responses (Fig. 79-82).
+//! `lunula fit`: free parameters of the model, and the photodiodes' offset and scaling, to recorded responses (Fig.
+//! 79-82).
 
 mod estimates;
 mod figure;

@@ -1,8 +1,9 @@
 //! How noisy each photodiode of each subject is: what is noisier counts less in the fit.
 //!
-//! A noise that is not given is estimated: a fit with all alike, the SD of each photodiode's residuals (the unknowns taken from its
-//! values in proportion), the fit anew with these as weights, until they stay. A step with noise 1 % of each photodiode's range: two
-//! standard errors hold `k_C` and `b_C` in 39 and 37 of 40 cases, with equal weights in 32 and 32.
+//! A noise that is not given is estimated: a fit with all alike, the SD of each photodiode's residuals (the unknowns
+//! taken from its values in proportion), the fit anew with these as weights, until they stay. A step with noise 1 % of
+//! each photodiode's range: two standard errors hold `k_C` and `b_C` in 39 and 37 of 40 cases, with equal weights in 32
+//! and 32.
 
 use lunula_hemodynamics::Calibration;
 

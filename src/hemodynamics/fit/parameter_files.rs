@@ -43,8 +43,8 @@ pub(super) fn parameter_paths(options: &FitOptions, outputs: &FitOutputs) -> Vec
     labels.into_iter().enumerate().map(one).collect()
 }
 
-/// Writes the fitted parameters; tells where they will stand. Where there are several files, one more, under the result's own name, has offset and
-/// scaling as they were at the start.
+/// Writes the fitted parameters; tells where they will stand. Where there are several files, one more, under the
+/// result's own name, has offset and scaling as they were at the start.
 pub(super) fn parameter_files(
     options: &FitOptions,
     result: &FitResult,

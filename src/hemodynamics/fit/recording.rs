@@ -114,7 +114,8 @@ pub(super) fn read(path: &Path, columns: &RecordingColumns, units: usize) -> Res
         let forces = read.get(&force.name).unwrap_or_default();
         if forces.iter().any(|&force_n| force_n > 0.0) && !forces.iter().any(|&force_n| force_n < 0.0) {
             return Err(refused(format!(
-                "`{}` is never negative: nothing presses; the finger's force on the surface is negative where it presses, so turn its sign",
+                "`{}` is never negative: nothing presses; the finger's force on the surface is negative where it \
+                 presses, so turn its sign",
                 force.name
             )));
         }
@@ -181,7 +182,8 @@ fn load(times_s: &[f64], values: &[f64], between: Between, before: Option<f64>) 
     let mut last = before;
     for (row, (&time_s, &value)) in times_s.iter().zip(values).enumerate() {
         if let Some(last) = last.filter(|&last| last != value && (row == 0 || between == Between::Held)) {
-            // The jump begins at the row: just before it, and in the equilibrium before the first one, the load is still the old one.
+            // The jump begins at the row: just before it, and in the equilibrium before the first one, the load is
+            // still the old one.
             times.push(time_s);
             loads.push(last);
             times.push((time_s + JUMP_S).max(time_s.next_up()));
@@ -236,7 +238,8 @@ fn photodiodes(names: &[String], columns: &RecordingColumns, units: usize) -> Re
     let own: Vec<PhotodiodeColumn> = usual.filter(|one| names.contains(&one.name)).collect();
     if own.is_empty() {
         return Err(format!(
-            "has none of VP1, .. VP{units}; --photodiode P3=1 tells which column stands above which unit; its columns are {}",
+            "has none of VP1, .. VP{units}; --photodiode P3=1 tells which column stands above which unit; its columns \
+             are {}",
             listed(names)
         ));
     }

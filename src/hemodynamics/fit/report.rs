@@ -18,8 +18,8 @@ pub struct FittedGroup {
     pub values: Vec<f64>,
     /// Their standard errors; none where the recordings don't determine them, or at a bound.
     pub standard_errors: Option<Vec<f64>>,
-    /// Below and above: where the squares, all else fitted anew, are higher by four variances of the noise, which is two standard errors for
-    /// what acts straight and right for what does not. None where a bound comes first.
+    /// Below and above: where the squares, all else fitted anew, are higher by four variances of the noise, which is
+    /// two standard errors for what acts straight and right for what does not. None where a bound comes first.
     pub interval: [Option<Vec<f64>>; 2],
     /// `lower` or `upper` where the fit ended on that bound.
     pub at_bound: Option<&'static str>,
@@ -152,8 +152,8 @@ pub struct FitReport {
 }
 
 impl FitReport {
-    /// The result's file: what was found, the same from whatever folder and however fast. Where results are and how long they took stands in the
-    /// report beside it.
+    /// The result's file: what was found, the same from whatever folder and however fast. Where results are and how
+    /// long they took stands in the report beside it.
     pub(super) fn result_text(&self) -> String {
         let mut found = serde_json::to_value(self).expect("plain data");
         let without = |of: &mut serde_json::Value, keys: &[&str]| {

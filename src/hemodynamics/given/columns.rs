@@ -110,8 +110,8 @@ impl Rows {
     /// The columns that are `needed` and those `wanted` that are there. Every cell has to be a finite number.
     ///
     /// # Errors
-    /// Columns that are missing, all of them; cells that are empty or no finite number, with row and column; no rows; where `time` is one of
-    /// the columns, times that do not ascend.
+    /// Columns that are missing, all of them; cells that are empty or no finite number, with row and column; no rows;
+    /// where `time` is one of the columns, times that do not ascend.
     pub(in crate::hemodynamics) fn numbers(
         &self,
         needed: &[&str],
@@ -162,8 +162,8 @@ impl Rows {
         Err(HemodynamicsError::Rows(told))
     }
 
-    /// The times and values of one of the loads `read`, at all rows at which it is known: of a log the unlit rows among them, for a load may turn a
-    /// corner there. Of rows of one time the lit one counts, otherwise the first.
+    /// The times and values of one of the loads `read`, at all rows at which it is known: of a log the unlit rows among
+    /// them, for a load may turn a corner there. Of rows of one time the lit one counts, otherwise the first.
     pub(in crate::hemodynamics) fn knots(&self, name: &str, read: &Columns) -> Knots {
         let own = |name: &str| read.get(name).unwrap_or_default();
         let mut all: Vec<(f64, f64)> = own(TIME).iter().copied().zip(own(name).iter().copied()).collect();

@@ -19,8 +19,8 @@ pub struct GivenLoads {
     pub upstream: Option<Load>,
     /// `P_L`; none: the parameters' constant.
     pub downstream: Option<Load>,
-    /// A table `time_s,pf1_Pa,pf2_Pa` instead of `P_F1` and `P_F2`, and `ph_Pa`, `pl_Pa` where it has them; a log's unlit rows are taken
-    /// too.
+    /// A table `time_s,pf1_Pa,pf2_Pa` instead of `P_F1` and `P_F2`, and `ph_Pa`, `pl_Pa` where it has them; a log's
+    /// unlit rows are taken too.
     pub file: Option<PathBuf>,
 }
 

@@ -123,12 +123,14 @@ fn slow(
     let found = fit(&recordings, literal, &[], settings)?;
     writeln!(
         text,
-        "Fig. {number}: the literal model in offset and scaling to {} static curves; change over 1 and over 2 N, and RMS of what is left\n",
+        "Fig. {number}: the literal model in offset and scaling to {} static curves; change over 1 and over 2 N, and \
+         RMS of what is left\n",
         if generated { "generated" } else { "recorded" }
     )?;
     writeln!(
         text,
-        "| | offset, V | scaling, V | change to 1 N, V | change to 2 N, V | left, % of the range |\n|---|---|---|---|---|---|"
+        "| | offset, V | scaling, V | change to 1 N, V | change to 2 N, V | left, % of the range \
+         |\n|---|---|---|---|---|---|"
     )?;
     let mut items = Vec::new();
     for (k, recording) in recordings.iter().enumerate() {
@@ -200,7 +202,8 @@ fn tell_fit(
     let count = if truth.is_some() && presses == 16 { "sixteen generated".to_owned() } else { presses.to_string() };
     writeln!(
         text,
-        "Fig. 80 and 82: stiffness and damping fitted within tenfold to all {count} quick presses, measured force as input, offset and scaling per person; factors on the literal values\n"
+        "Fig. 80 and 82: stiffness and damping fitted within tenfold to all {count} quick presses, measured force as \
+         input, offset and scaling per person; factors on the literal values\n"
     )?;
     writeln!(text, "| | fitted | standard error | the people's middle |\n|---|---|---|---|")?;
     for ((name, symbols), group) in GROUPS.iter().zip(&found.groups) {

@@ -1,9 +1,10 @@
 //! Figures 76 to 82 of section 4.3 made anew: the thesis' simulations, and its experiments on eight generated people.
 //!
-//! In: a folder. Out: the pictures in it, and Markdown with every number that is told of them ([`section_4_3`]); the same bytes each time. The simulations alone
-//! are [`section_simulations`]; the experiments on recorded people instead of generated ones are [`section_presses`].
-//! "Literal" are the thesis' orders of magnitude taken as they are printed; "tuned" has stiffness and damping of capillaries and vein changed
-//! within tenfold until step responses have the time constants that the thesis measured (0.16/0.12 s proximal, 0.18/0.36 s distal).
+//! In: a folder. Out: the pictures in it, and Markdown with every number that is told of them ([`section_4_3`]); the
+//! same bytes each time. The simulations alone are [`section_simulations`]; the experiments on recorded people instead
+//! of generated ones are [`section_presses`]. "Literal" are the thesis' orders of magnitude taken as they are printed;
+//! "tuned" has stiffness and damping of capillaries and vein changed within tenfold until step responses have the time
+//! constants that the thesis measured (0.16/0.12 s proximal, 0.18/0.36 s distal).
 
 mod experiments;
 mod statics;
@@ -63,7 +64,8 @@ impl SectionTold {
         }
     }
 
-    /// Keeps what a signal does from the lowest to the highest load: its change, how far that is from proportional, its time constants.
+    /// Keeps what a signal does from the lowest to the highest load: its change, how far that is from proportional, its
+    /// time constants.
     fn signal(&mut self, figure: &str, name: &str, unit: &str, changes: &[(f64, Change)]) {
         let Some(((_, first), (load_pa, last))) = changes.first().zip(changes.last()) else { return };
         if *load_pa < TUNED_AT_PA {
@@ -215,7 +217,8 @@ fn figure_76(text: &mut SectionTold, set: &Named, staging: &Staging) -> anyhow::
     )?;
     writeln!(
         text,
-        "Fig. 76, {} values: a step in P_F1; changes of diameters (um) and of VP1 (mV per volt of scaling), time constants of loading / unloading (s)\n",
+        "Fig. 76, {} values: a step in P_F1; changes of diameters (um) and of VP1 (mV per volt of scaling), time \
+         constants of loading / unloading (s)\n",
         set.name
     )?;
     writeln!(text, "| N/cm2 | capillary | vein | VP1 | capillary | vein | VP1 |\n|---|---|---|---|---|---|---|")?;
@@ -250,7 +253,8 @@ fn figure_77(text: &mut SectionTold, set: &Named, staging: &Staging) -> anyhow::
     steps::draw(&stepped, &signals, &staging.place(&png)?, &staging.place(&svg)?)?;
     writeln!(
         text,
-        "Fig. 77, {} values: a step in P_F1 and P_F2; changes (mV per volt of scaling), time constants of loading / unloading (s)\n",
+        "Fig. 77, {} values: a step in P_F1 and P_F2; changes (mV per volt of scaling), time constants of loading / \
+         unloading (s)\n",
         set.name
     )?;
     writeln!(text, "| N/cm2 | VP1 | VP2 | VP1 | VP2 |\n|---|---|---|---|---|")?;

@@ -1,4 +1,5 @@
-//! Stiffness and damping tuned to time constants, within an order of magnitude, as the thesis tunes them for Fig. 80 and 82.
+//! Stiffness and damping tuned to time constants, within an order of magnitude, as the thesis tunes them for Fig. 80
+//! and 82.
 
 use lunula_hemodynamics::Parameters;
 use rayon::prelude::*;
@@ -14,7 +15,8 @@ const CORNER: f64 = 1.2;
 /// A search's first and last step, in the logarithm of a factor.
 const STEPS: [f64; 2] = [0.8, 2e-3];
 
-/// Time constants, s: of the proximal photodiode under proximal steps (loading, unloading) and of the distal one under distal steps.
+/// Time constants, s: of the proximal photodiode under proximal steps (loading, unloading) and of the distal one under
+/// distal steps.
 pub(super) fn constants_s(parameters: &Parameters, load_pa: f64) -> Option<[f64; 4]> {
     let mut found = [0.0; 4];
     for (k, pressed) in [Pressed::Proximal, Pressed::Distal].into_iter().enumerate() {
@@ -26,8 +28,9 @@ pub(super) fn constants_s(parameters: &Parameters, load_pa: f64) -> Option<[f64;
     Some(found)
 }
 
-/// The factors of [`GROUPS`](crate::hemodynamics::groups::GROUPS) whose time constants under steps of this load are the nearest to those wanted, in ratio: the best of searches
-/// from the parameters themselves and from all corners about them, the same each time.
+/// The factors of [`GROUPS`](crate::hemodynamics::groups::GROUPS) whose time constants under steps of this load are the
+/// nearest to those wanted, in ratio: the best of searches from the parameters themselves and from all corners about
+/// them, the same each time.
 pub(super) fn tune(parameters: &Parameters, wanted_s: [f64; 4], load_pa: f64) -> [f64; 4] {
     let cost = |logs: &[f64; 4]| -> f64 {
         let own = scaled(parameters, &logs.map(f64::exp)).and_then(|scaled| constants_s(&scaled, load_pa));
@@ -48,8 +51,8 @@ pub(super) fn is_at_end(factor: f64) -> bool {
     factor.ln().abs() >= MOST - STEPS[1]
 }
 
-/// Hooke and Jeeves' pattern search: along one factor after the other, then on in the direction that this took; steps are halved where
-/// nothing is better. Gives where it ends, and the cost there.
+/// Hooke and Jeeves' pattern search: along one factor after the other, then on in the direction that this took; steps
+/// are halved where nothing is better. Gives where it ends, and the cost there.
 fn search(start: [f64; 4], cost: &impl Fn(&[f64; 4]) -> f64) -> ([f64; 4], f64) {
     let (mut at, mut best) = (start, cost(&start));
     let mut step = STEPS[0];

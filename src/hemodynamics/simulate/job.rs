@@ -84,7 +84,8 @@ fn steps(options: &SimulateOptions, outputs: Option<&SimulateOutputs>, units: Op
 /// Runs the job; every result is in its place when it returns.
 ///
 /// # Errors
-/// [`HemodynamicsError`] where there are no results; a vessel that closes is one, unless the part before it is to be kept.
+/// [`HemodynamicsError`] where there are no results; a vessel that closes is one, unless the part before it is to be
+/// kept.
 pub fn simulate(
     options: &SimulateOptions,
     outputs: &SimulateOutputs,
@@ -108,7 +109,8 @@ pub fn simulate(
         let what = collapsed.words();
         if !options.keep_partial {
             return Err(HemodynamicsError::Model(format!(
-                "{what}; the thesis' model ends there and nothing was written: --collapse contact lets the walls touch, --keep-partial writes what is before it"
+                "{what}; the thesis' model ends there and nothing was written: --collapse contact lets the walls \
+                 touch, --keep-partial writes what is before it"
             )));
         }
         failed.push(format!("{what}; the table ends before it"));
@@ -186,7 +188,8 @@ fn warnings(options: &SimulateOptions, loads: &ReadLoads) -> Vec<String> {
         let path = path.display();
         if first > options.until_s || last < 0.0 {
             warnings.push(format!(
-                "{path}: knows the loads from {first} to {last} s, the run goes from 0 to {} s; it sees a constant load only",
+                "{path}: knows the loads from {first} to {last} s, the run goes from 0 to {} s; it sees a constant \
+                 load only",
                 options.until_s
             ));
         } else if last > options.until_s {

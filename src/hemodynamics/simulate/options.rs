@@ -83,7 +83,8 @@ impl SimulateOptions {
         let values_a_row = 3.0 * (units as f64 + 1.0);
         if steps && ends && self.rows() * values_a_row > MOST_VALUES {
             faults.push(format!(
-                "--every {}: {:.3e} rows are more than a run keeps at once; choose {:.1e} s or more, or go on from the last row with --from",
+                "--every {}: {:.3e} rows are more than a run keeps at once; choose {:.1e} s or more, or go on from \
+                 the last row with --from",
                 self.every_s,
                 self.rows(),
                 1.05 * self.until_s * values_a_row / MOST_VALUES

@@ -33,7 +33,8 @@ pub(super) fn write(
         ("lunula", env!("CARGO_PKG_VERSION")),
         (
             "x",
-            "displacements of the walls from the nominal diameters, metres; capillaries C from proximal to distal, vein V",
+            "displacements of the walls from the nominal diameters, metres; capillaries C from proximal to distal, \
+             vein V",
         ),
         ("v", "their velocities, metres a second"),
         ("VP", "photodiodes, volts"),

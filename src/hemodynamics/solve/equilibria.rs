@@ -54,7 +54,8 @@ pub(in crate::hemodynamics) fn state_before(
     found.map(|one| one.state).map_err(|why| {
         let hint = match why {
             EquilibriumFault::None { .. } => {
-                " (a run begins in the equilibrium of the loads just before its first time; --from zero or FILE begins elsewhere)"
+                " (a run begins in the equilibrium of the loads just before its first time; --from zero or FILE \
+                 begins elsewhere)"
             }
             EquilibriumFault::Several { .. } => " (--from FILE: the last row of a run that led there)",
             _ => "",

@@ -1,11 +1,14 @@
-//! A modulated log to rows of the LED's own light: each lit sample less the unlit light at its time (thesis section 3.1.2c).
+//! A modulated log to rows of the LED's own light: each lit sample less the unlit light at its time (thesis section
+//! 3.1.2c).
 //!
-//! In: a [`Log`]. Out: [`Samples`], one row for each lit row of the log, with what is wrong with each row and what is worth saying on
-//! the whole. Where the log does not say when the LED was on, every row is lit and nothing is taken away.
+//! In: a [`Log`]. Out: [`Samples`], one row for each lit row of the log, with what is wrong with each row and what is
+//! worth saying on the whole. Where the log does not say when the LED was on, every row is lit and nothing is taken
+//! away.
 //!
-//! Departure from the thesis, which takes the sample before: that one is half a period of the LED late. [`unlit`] interpolates
-//! the ambient light at the lit sample's own time. Of a stream, whose samples after are not known yet, [`preceding`] takes the sample before. [`rails`] finds samples at the end of the recorded range, in lit
-//! samples and in the unlit ones that went into a row; [`dead`] channels that show nothing.
+//! Departure from the thesis, which takes the sample before: that one is half a period of the LED late. [`unlit`]
+//! interpolates the ambient light at the lit sample's own time. Of a stream, whose samples after are not known yet,
+//! [`preceding`] takes the sample before. [`rails`] finds samples at the end of the recorded range, in lit samples and
+//! in the unlit ones that went into a row; [`dead`] channels that show nothing.
 //!
 //! Forces are not modulated and are taken as they stand in lit rows.
 
@@ -32,7 +35,8 @@ pub struct Samples {
     pub photodiodes: Vec<Channel>,
     /// Forces, newtons; NaN where missing.
     pub forces: Vec<Channel>,
-    /// For each row, what is wrong with it, as `saturated: P3` or `no ambient`, several joined by `; `; empty where nothing is.
+    /// For each row, what is wrong with it, as `saturated: P3` or `no ambient`, several joined by `; `; empty where
+    /// nothing is.
     pub faults: Vec<String>,
     /// What is no fault but worth saying: dead channels, how much ambient light there was.
     pub notes: Vec<String>,
@@ -62,7 +66,8 @@ impl AmbientOptions {
 pub enum AmbientError {
     /// No row is lit.
     #[error(
-        "{path}: the LED is never on (`led` is 0 in all {rows} rows), so there is nothing to label; is 1 the unlit state here?"
+        "{path}: the LED is never on (`led` is 0 in all {rows} rows), so there is nothing to label; is 1 the unlit \
+         state here?"
     )]
     NeverOn {
         /// The log.

@@ -1,18 +1,19 @@
 //! The LED's own light of a stream: each lit sample less the unlit one before it, as in the thesis (3.1.2c).
 //!
-//! In: rows as they come. Out: lit rows, less the last unlit row before them. Nothing that comes later is needed, so that a row can be answered at
-//! once; the price is that the ambient light is half a period of the LED old: of a ripple of 1 Hz and 80 ms between unlit samples 50 % is left, where
-//! interpolation leaves 0.15 % ([`unlit`](super::unlit)).
+//! In: rows as they come. Out: lit rows, less the last unlit row before them. Nothing that comes later is needed, so
+//! that a row can be answered at once; the price is that the ambient light is half a period of the LED old: of a ripple
+//! of 1 Hz and 80 ms between unlit samples 50 % is left, where interpolation leaves 0.15 % ([`unlit`](super::unlit)).
 //!
-//! As there, never across a gap: an unlit row that is older than three usual times between unlit rows says nothing. The usual time is the median
-//! of the last [`STEPS`]; before two unlit rows are known there is none, and any is taken.
+//! As there, never across a gap: an unlit row that is older than three usual times between unlit rows says nothing. The
+//! usual time is the median of the last [`STEPS`]; before two unlit rows are known there is none, and any is taken.
 
 use super::AmbientError;
 use super::in_grains;
 use super::rails::Rails;
 use super::unlit::GAP_PERIODS;
 
-/// So many of the last times between unlit rows tell the usual one: assumed; a few lost rows don't move the median of nine.
+/// So many of the last times between unlit rows tell the usual one: assumed; a few lost rows don't move the median of
+/// nine.
 const STEPS: usize = 9;
 
 /// What is remembered of the rows before.
@@ -56,7 +57,8 @@ impl Preceding {
         self.dark.copy_from_slice(values);
     }
 
-    /// Takes the ambient light away from a lit row: NaN where it is not known. Returns whether a value is at the end of the range.
+    /// Takes the ambient light away from a lit row: NaN where it is not known. Returns whether a value is at the end of
+    /// the range.
     pub(crate) fn lit(&self, at: f64, values: &mut [f64]) -> bool {
         // Of a row without time nothing is known.
         let known = at - self.at <= GAP_PERIODS * self.usual();

@@ -1,9 +1,9 @@
 //! Samples at the end of the recorded range.
 //!
-//! Either the user gives the range, and a sample within a thousandth of it from an end is saturated (the highest code of a
-//! converter of 10 bits stands that far below the top). Or the ends are found: clipping piles samples up at exactly the greatest
-//! or least value, and stops the signal in full run. A signal that turns, or comes to rest by itself, also stays at its extreme
-//! for a while, so a pile is a rail only where all of these hold:
+//! Either the user gives the range, and a sample within a thousandth of it from an end is saturated (the highest code
+//! of a converter of 10 bits stands that far below the top). Or the ends are found: clipping piles samples up at
+//! exactly the greatest or least value, and stops the signal in full run. A signal that turns, or comes to rest by
+//! itself, also stays at its extreme for a while, so a pile is a rail only where all of these hold:
 //! - at least [`COUNT`] samples and at least [`RUN`] of them in a row have exactly this value;
 //! - they are at least [`PILE`] times as many as have the value next to it (where a parabola turns: at most 2.4 times);
 //! - the step that leads to the pile is, in the median over all arrivals, at least half of a usual step.
@@ -84,7 +84,8 @@ impl Rails {
     }
 }
 
-/// The least and the greatest value of a channel, each with how many samples have exactly it, where they are the ends of its range.
+/// The least and the greatest value of a channel, each with how many samples have exactly it, where they are the ends
+/// of its range.
 pub(crate) fn piles(values: &[f64]) -> [Option<(f64, usize)>; 2] {
     let Rails { low, high, found } = Rails::of(values, &[], None);
     [(low, found[0]), (high, found[1])].map(|(value, count)| (count > 0).then_some((value, count)))

@@ -53,7 +53,8 @@ fn ambient_light_that_varies_by_a_tenth_is_removed() {
     ] {
         assert!(left <= LEFT, "{name}: {left}");
     }
-    // A ripple at 6 Hz, near half the rate of unlit samples, stays; it is told: 0.71 % in the mean square, counted 1.86 times.
+    // A ripple at 6 Hz, near half the rate of unlit samples, stays; it is told: 0.71 % in the mean square, counted 1.86
+    // times.
     assert!(noted(
         &all(&alternating(1000, |t| 1.0 + 0.01 * (TAU * 6.0 * t).sin())),
         "too fast to follow are up to 1.3"

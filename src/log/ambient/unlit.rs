@@ -1,20 +1,23 @@
 //! The ambient light at the times of lit samples, from the unlit samples around them.
 //!
-//! In: a channel's unlit samples at their own, irregular times. Out: for each lit time, the level, NaN where it can't be told.
+//! In: a channel's unlit samples at their own, irregular times. Out: for each lit time, the level, NaN where it can't
+//! be told.
 //!
-//! Cubic Lagrange interpolation through two unlit samples before and two after. With alternating rows it takes the light
-//! from the four neighbours with weights -1/16, 9/16, 9/16, -1/16, which leaves 3/8 (2 pi f T)^4 / 16 of a ripple of frequency f
-//! (T the time between unlit samples) where the straight line leaves (2 pi f T)^2 / 8: at 1 Hz and T = 80 ms 0.15 % against
-//! 3.1 %, and 50 % where the sample before is taken. It costs little noise: a row's noise is 1.28 times a sample's, 1.22 with the
-//! line, 1.41 with the sample before. Where there is one neighbour only on a side, and where weights would make more noise than one
-//! sample has (neighbours close together and far from the lit sample), three neighbours or two do.
+//! Cubic Lagrange interpolation through two unlit samples before and two after. With alternating rows it takes the
+//! light from the four neighbours with weights -1/16, 9/16, 9/16, -1/16, which leaves 3/8 (2 pi f T)^4 / 16 of a ripple
+//! of frequency f (T the time between unlit samples) where the straight line leaves (2 pi f T)^2 / 8: at 1 Hz and T =
+//! 80 ms 0.15 % against 3.1 %, and 50 % where the sample before is taken. It costs little noise: a row's noise is 1.28
+//! times a sample's, 1.22 with the line, 1.41 with the sample before. Where there is one neighbour only on a side, and
+//! where weights would make more noise than one sample has (neighbours close together and far from the lit sample),
+//! three neighbours or two do.
 //!
-//! Never across a gap: where the unlit samples before and after are further apart than three usual times, and before the first and
-//! behind the last of them, the level is not known. Unlit samples with one stamp count as one, with their mean.
+//! Never across a gap: where the unlit samples before and after are further apart than three usual times, and before
+//! the first and behind the last of them, the level is not known. Unlit samples with one stamp count as one, with their
+//! mean.
 //!
-//! What can't be had this way: a ripple near half the rate of the unlit samples or above it, such as the hum of lamps at 100 or
-//! 120 Hz unless the log's rate divides it (25, 50 and 100 Hz divide 100 Hz). It stays in the rows as noise does;
-//! [`roughness`] tells how much there is.
+//! What can't be had this way: a ripple near half the rate of the unlit samples or above it, such as the hum of lamps
+//! at 100 or 120 Hz unless the log's rate divides it (25, 50 and 100 Hz divide 100 Hz). It stays in the rows as noise
+//! does; [`roughness`] tells how much there is.
 
 /// Unlit samples further apart than so many usual times have a gap between them.
 pub(super) const GAP_PERIODS: f64 = 3.0;
@@ -97,7 +100,8 @@ impl Unlit {
         let rough = known().map(|share| share.rough).fold(0.0, f64::max);
         self.noise.is_finite().then(|| {
             format!(
-                "ambient light taken away, as interpolated between the unlit samples around: {:.1} to {:.1} % of what the photodiodes read lit; a row's noise is {:.2} times a sample's; \
+                "ambient light taken away, as interpolated between the unlit samples around: {:.1} to {:.1} % of what \
+                 the photodiodes read lit; a row's noise is {:.2} times a sample's; \
                  noise and ripple of the unlit light too fast to follow are up to {:.3} % of the LED's",
                 100.0 * least,
                 100.0 * most,
@@ -152,8 +156,9 @@ pub(super) struct Share {
     pub(super) rough: f64,
 }
 
-/// What of a channel's unlit samples no cubic follows, root mean square, as if all of it were noise: by fourth differences, whose
-/// variance is 70 times that of independent noise. A ripple at the unlit samples' own half rate counts 1.9 times.
+/// What of a channel's unlit samples no cubic follows, root mean square, as if all of it were noise: by fourth
+/// differences, whose variance is 70 times that of independent noise. A ripple at the unlit samples' own half rate
+/// counts 1.9 times.
 pub(super) fn roughness(dark: &[f64]) -> f64 {
     let squares = dark.windows(5).filter_map(|v| {
         let fourth = v[0] - 4.0 * v[1] + 6.0 * v[2] - 4.0 * v[3] + v[4];
@@ -173,7 +178,8 @@ fn lagrange(times_s: &[f64], at_s: f64) -> [f64; 4] {
     weights
 }
 
-/// The usual distance of the unlit samples before and after a lit one, seconds; infinite where no lit one stands between two.
+/// The usual distance of the unlit samples before and after a lit one, seconds; infinite where no lit one stands
+/// between two.
 fn usual_distance_s(lit_s: &[f64], dark_s: &[f64]) -> f64 {
     let mut after = 0;
     let mut distances: Vec<f64> = Vec::new();

@@ -1,8 +1,9 @@
 //! The chunks of an XDF file, put together to streams.
 //!
-//! A file is `XDF:` and chunks: a length (1, 4 or 8 bytes, told by a byte before), a tag of two bytes, the content. Used are stream headers
-//! (2), samples (3) and clock offsets (4); all numbers are little-endian. A sample without a stamp of its own comes one nominal
-//! interval after the one before. A file that ends within a chunk (the recorder was stopped) is read up to there.
+//! A file is `XDF:` and chunks: a length (1, 4 or 8 bytes, told by a byte before), a tag of two bytes, the content.
+//! Used are stream headers (2), samples (3) and clock offsets (4); all numbers are little-endian. A sample without a
+//! stamp of its own comes one nominal interval after the one before. A file that ends within a chunk (the recorder was
+//! stopped) is read up to there.
 
 use std::collections::BTreeMap;
 
@@ -30,7 +31,8 @@ pub(super) struct Stream {
     pub(super) offsets_s: Vec<[f64; 2]>,
 }
 
-/// Channels of a stream, and of all in a file (assumed: the largest arrays of electrodes have some thousands). What says more is damaged.
+/// Channels of a stream, and of all in a file (assumed: the largest arrays of electrodes have some thousands). What
+/// says more is damaged.
 const MOST_CHANNELS: usize = 65_536;
 
 /// Why reading stops.

@@ -1,9 +1,9 @@
 //! A log as a recording of the Lab Streaming Layer (XDF, <https://github.com/sccn/xdf/wiki/Specifications>).
 //!
-//! [`chunks`] takes the file apart into streams, [`sync`] brings a stream's stamps to the recorder's clock. One stream of numbers
-//! is read: the one that the user names (or `#2`, the second of the file), or the only one. Its columns are called as its
-//! channels are labelled, else `ch1`, `ch2`, ..; the stamps are `time_s`, in seconds of the recorder's own clock, which has no
-//! midnight.
+//! [`chunks`] takes the file apart into streams, [`sync`] brings a stream's stamps to the recorder's clock. One stream
+//! of numbers is read: the one that the user names (or `#2`, the second of the file), or the only one. Its columns are
+//! called as its channels are labelled, else `ch1`, `ch2`, ..; the stamps are `time_s`, in seconds of the recorder's
+//! own clock, which has no midnight.
 
 mod chunks;
 mod sync;

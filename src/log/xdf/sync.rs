@@ -1,13 +1,13 @@
 //! A stream's stamps on the recorder's clock, and without the jitter of their delivery.
 //!
-//! The recorder measures every few seconds how far the source's clock is from its own. Between two resets of the source's clock
-//! the difference is a straight line in time, fitted to these measurements with Huber's loss (threshold 0.1 ms), as pyxdf does;
-//! a reset is where the measurements' time falls back, or where both their time and their value leap. Samples belong to the line
-//! whose measurements are nearer.
+//! The recorder measures every few seconds how far the source's clock is from its own. Between two resets of the
+//! source's clock the difference is a straight line in time, fitted to these measurements with Huber's loss (threshold
+//! 0.1 ms), as pyxdf does; a reset is where the measurements' time falls back, or where both their time and their value
+//! leap. Samples belong to the line whose measurements are nearer.
 //!
-//! Departure from pyxdf: stamps of a regular stream are only put on a straight line where none lies further than half an
-//! interval from it. Where samples were lost, or the rate is not even, a line through all of them can be off by tenths of a
-//! second.
+//! Departure from pyxdf: stamps of a regular stream are only put on a straight line where none lies further than half
+//! an interval from it. Where samples were lost, or the rate is not even, a line through all of them can be off by
+//! tenths of a second.
 
 use super::chunks::Stream;
 

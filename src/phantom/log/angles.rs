@@ -1,7 +1,9 @@
-//! The exact joint angles of a log's finger as a table of `lunula posture`, so that `lunula align` makes a posture training set without a video.
+//! The exact joint angles of a log's finger as a table of `lunula posture`, so that `lunula align` makes a posture
+//! training set without a video.
 //!
-//! In: a [`LogScene`]. Out: `frame,time_s,clock_s`, angle and standard error (0: exact) of each joint, `status`, then what posture tells of the clock in the
-//! picture. Frames come 30 a second from the video's time 0 on; `clock_s` is the log's clock, which a jump of its stamps does not change.
+//! In: a [`LogScene`]. Out: `frame,time_s,clock_s`, angle and standard error (0: exact) of each joint, `status`, then
+//! what posture tells of the clock in the picture. Frames come 30 a second from the video's time 0 on; `clock_s` is the
+//! log's clock, which a jump of its stamps does not change.
 
 use std::path::Path;
 

@@ -56,7 +56,8 @@ impl LogOptions {
                 let holds = seconds.is_finite() && seconds > 0.0;
                 need(holds, &|| format!("--spiral-seconds {seconds}: choose more than 0 s"));
                 need(self.trajectory == Trajectory::Rest || self.touch_from_s.is_some(), &|| {
-                    "--force spiral: the finger rests while it spirals; leave --trajectory out or choose rest, or say --touch-from"
+                    "--force spiral: the finger rests while it spirals; leave --trajectory out or choose rest, or say \
+                     --touch-from"
                         .to_owned()
                 });
             }

@@ -1,13 +1,13 @@
 //! What the finger does in a log: prompted to bend and to touch, it follows as people do.
 //!
-//! With [`LogOptions::touch_from_s`] it bends first and touches nothing; in the second before that time it straightens; from then on it
-//! presses from rest, the force's own time 0 being there (5.2.4, 5.3.1).
+//! With [`LogOptions::touch_from_s`] it bends first and touches nothing; in the second before that time it straightens;
+//! from then on it presses from rest, the force's own time 0 being there (5.2.4, 5.3.1).
 //!
 //! **Following** ([`LogOptions::follow`]): it is late and errs as [`Follow`] tells.
 //!
-//! **Posture** ([`LogOptions::posture_shift_rad`], assumed): 5.4.1 takes "the finger having a slightly different posture on the force measurement
-//! platform" for what changes between repetitions. While it touches, or rests, J2 is off straight by a share of it from -1 to 1 that is the seed's, and J3 by
-//! two thirds of that.
+//! **Posture** ([`LogOptions::posture_shift_rad`], assumed): 5.4.1 takes "the finger having a slightly different
+//! posture on the force measurement platform" for what changes between repetitions. While it touches, or rests, J2 is
+//! off straight by a share of it from -1 to 1 that is the seed's, and J3 by two thirds of that.
 
 use rand::RngExt;
 
@@ -144,7 +144,8 @@ mod tests {
             square += off * off / 5000.0;
             worst_late = worst_late.max(off.abs());
         }
-        // Over 150 s of a few swings the figure is not sharp; the most is the size over the wave's RMS and the lag's own swing.
+        // Over 150 s of a few swings the figure is not sharp; the most is the size over the wave's RMS and the lag's
+        // own swing.
         assert!(
             (square.sqrt() / 0.06 - 1.0).abs() <= 0.15 && worst_late <= 0.06 / Wave::RMS + 0.01,
             "{}",

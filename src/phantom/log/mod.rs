@@ -1,19 +1,23 @@
 //! Logs of photodiodes and forces, exactly as `lunula align` reads them, with exact truth (3.1.2c, 3.2.3, 5.2.3).
 //!
 //! In: [`LogOptions`]. Out, under one folder, beside a video of the same seed where one stands there:
-//! - `log.csv`: `time_s` (the log's own clock; `time` where stamps are dates), `led` (1 on, 0 off, in turn), `P1`..`P8` volts,
-//!   `Fx_N,Fy_N,Fz_N`;
-//! - `truth/log.csv`, for the same rows: `sample` (which one, the lost ones counted), `time_s` (the video's time), `log_s` (the log's clock, without
-//!   jitter, coarse stamps and jumps), `led`; the exact `J1_deg,J2_deg,J3_deg,Fx_N,Fy_N,Fz_N`; `P1`.. what the LED adds at that time when
-//!   it is on, whether it is or not, with lag, hysteresis and drift; `P1_static`.. the static map alone, without these; `P1_unlit`.. ambient light and
-//!   darkness: a lit sample reads `P1 + P1_unlit`, an unlit one `P1_unlit`, then noise, 16 bits over 0 to 10 V, and a reading in the log;
-//! - `truth/angles.csv`: the exact angles as a table of `lunula posture`, 30 frames a second of the video's time, `clock_s` the log's clock: `lunula align`
-//!   labels the log with them where no video was made;
+//! - `log.csv`: `time_s` (the log's own clock; `time` where stamps are dates), `led` (1 on, 0 off, in turn), `P1`..`P8`
+//!   volts, `Fx_N,Fy_N,Fz_N`;
+//! - `truth/log.csv`, for the same rows: `sample` (which one, the lost ones counted), `time_s` (the video's time),
+//!   `log_s` (the log's clock, without jitter, coarse stamps and jumps), `led`; the exact
+//!   `J1_deg,J2_deg,J3_deg,Fx_N,Fy_N,Fz_N`; `P1`.. what the LED adds at that time when it is on, whether it is or not,
+//!   with lag, hysteresis and drift; `P1_static`.. the static map alone, without these; `P1_unlit`.. ambient light and
+//!   darkness: a lit sample reads `P1 + P1_unlit`, an unlit one `P1_unlit`, then noise, 16 bits over 0 to 10 V, and a
+//!   reading in the log;
+//! - `truth/angles.csv`: the exact angles as a table of `lunula posture`, 30 frames a second of the video's time,
+//!   `clock_s` the log's clock: `lunula align` labels the log with them where no video was made;
 //! - `truth/log.json`: every parameter.
 //!
-//! The computer's clock decides when samples are taken: evenly on it, so that its drift is theirs. log time = offset + (1 + drift) * video time.
-//! The finger moves as in the video of the same seed; person and session are the same whatever the seed. Forces are those of the finger on
-//! the surface: pressing is a negative `Fz_N`. A [`Protocol`] is an experiment of the thesis, whose finger follows as people do. Forces are read with the resolution of the transducer of 3.2.3.
+//! The computer's clock decides when samples are taken: evenly on it, so that its drift is theirs. log time = offset +
+//! (1 + drift) * video time. The finger moves as in the video of the same seed; person and session are the same
+//! whatever the seed. Forces are those of the finger on the surface: pressing is a negative `Fz_N`. A [`Protocol`] is
+//! an experiment of the thesis, whose finger follows as people do. Forces are read with the resolution of the
+//! transducer of 3.2.3.
 
 mod angles;
 mod check;

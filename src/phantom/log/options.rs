@@ -32,11 +32,12 @@ pub struct LogOptions {
     pub trajectory: Trajectory,
     /// How the fingertip presses.
     pub force: ForceTrajectory,
-    /// Until then the finger bends and touches nothing, from then on it presses, straight, the force's own time 0 being there, seconds; none: it does
-    /// both all along.
+    /// Until then the finger bends and touches nothing, from then on it presses, straight, the force's own time 0 being
+    /// there, seconds; none: it does both all along.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub touch_from_s: Option<f64>,
-    /// How well the finger follows: the standard deviation of its error as a share; 0: it does exactly what is prompted, without a lag.
+    /// How well the finger follows: the standard deviation of its error as a share; 0: it does exactly what is
+    /// prompted, without a lag.
     #[serde(skip_serializing_if = "is_zero")]
     pub follow: f64,
     /// How far off straight it touches or rests at most, radians.

@@ -12,7 +12,8 @@ const KIND_ROWS: u32 = 26;
 /// The converter: 16 bits over 0 to 10 V (3.2.3).
 const FULL_V: f64 = 10.0;
 const CODES: f64 = 65_536.0;
-/// Resolution of the force transducer for Fx, Fy, Fz (3.2.3), and the standard deviation of its readings (assumed), newtons.
+/// Resolution of the force transducer for Fx, Fy, Fz (3.2.3), and the standard deviation of its readings (assumed),
+/// newtons.
 const FORCE_STEP_N: [f64; 3] = [0.8e-3, 0.8e-3, 1.6e-3];
 const FORCE_SD_N: f64 = 1e-3;
 /// How long before the first sample the sensor has followed the movement, seconds.

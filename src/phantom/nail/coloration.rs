@@ -1,8 +1,8 @@
 //! Which zones of the nail bed redden and which whiten in each pose (sections 4.2.3 to 4.2.6, Fig. 57-68).
 //!
-//! Red and white zones differ mainly in their green component (4.2.2). In: a place (`u`, `v`) on the nail; out: by how much the bed is
-//! lighter (white, positive) or darker (red, negative) there, about -1 to 1. The pattern is fixed to the nail; the thesis shows pictures, not
-//! numbers, so places and sizes are read off its descriptions.
+//! Red and white zones differ mainly in their green component (4.2.2). In: a place (`u`, `v`) on the nail; out: by how
+//! much the bed is lighter (white, positive) or darker (red, negative) there, about -1 to 1. The pattern is fixed to
+//! the nail; the thesis shows pictures, not numbers, so places and sizes are read off its descriptions.
 
 use super::{
     Pose,

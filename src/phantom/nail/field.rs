@@ -1,7 +1,7 @@
 //! The scene's colour at any place of the picture.
 //!
-//! In: picture coordinates in pixels, anywhere. Out: encoded red, green, blue, 0 to 1. Every edge and line is as soft as the optics
-//! and the anatomy together, so the photograph is this function at the pixel centres.
+//! In: picture coordinates in pixels, anywhere. Out: encoded red, green, blue, 0 to 1. Every edge and line is as soft
+//! as the optics and the anatomy together, so the photograph is this function at the pixel centres.
 
 use super::{
     NailScene,

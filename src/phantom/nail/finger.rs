@@ -15,7 +15,8 @@ pub struct FingerShape {
     pub offset: f64,
 }
 
-/// Beyond this many half widths, only that it is far from the finger is told: the distance there is over [`FAR_EDGE`] for every finger.
+/// Beyond this many half widths, only that it is far from the finger is told: the distance there is over [`FAR_EDGE`]
+/// for every finger.
 const FAR: f64 = 1.9;
 
 /// The distance told there, in half nail widths; beyond every shadow.

@@ -5,7 +5,8 @@ use rand_chacha::ChaCha8Rng;
 
 use super::smooth::bell;
 
-/// Encoded values in the thesis' chamber over those in full light: it puts the nail bed's green at 30 to 50 % of full scale.
+/// Encoded values in the thesis' chamber over those in full light: it puts the nail bed's green at 30 to 50 % of full
+/// scale.
 pub(super) const CHAMBER: f64 = 0.60;
 
 /// A streak of light mirrored by the plate, on the nail's own coordinates.
@@ -56,7 +57,8 @@ impl Light {
         }
     }
 
-    /// Any light a photograph of a nail is taken in: dim to bright, neutral, warm or greenish, from any side, half of them with glare.
+    /// Any light a photograph of a nail is taken in: dim to bright, neutral, warm or greenish, from any side, half of
+    /// them with glare.
     pub fn random(rng: &mut ChaCha8Rng) -> Self {
         let base: [f64; 3] = match rng.random_range(0..4u32) {
             0 => [1.06, 0.98, 0.82],

@@ -1,15 +1,17 @@
-//! Photographs of one fingertip as in the thesis' chamber (section 4.2.2, Fig. 49-56), drawn from shape, colour and light.
+//! Photographs of one fingertip as in the thesis' chamber (section 4.2.2, Fig. 49-56), drawn from shape, colour and
+//! light.
 //!
-//! In: a [`Subject`] (shape, skin, nail), a [`Pose`] (which zones of the nail bed redden or whiten, 4.2.3-4.2.6), a [`Light`] and a
-//! [`Camera`]. Out: the photograph, and what is true of it: outline, axis, and the normalized picture.
+//! In: a [`Subject`] (shape, skin, nail), a [`Pose`] (which zones of the nail bed redden or whiten, 4.2.3-4.2.6), a
+//! [`Light`] and a [`Camera`]. Out: the photograph, and what is true of it: outline, axis, and the normalized picture.
 //!
 //! Conventions:
 //! - *picture*: pixels of the upright photograph, centre of the top-left pixel at (0, 0), x right, y down;
-//! - *finger*: half nail widths from the middle of the nail's box, `across` to the right with the distal end up, `along` to the distal end;
+//! - *finger*: half nail widths from the middle of the nail's box, `across` to the right with the distal end up,
+//!   `along` to the distal end;
 //! - *nail*: `u` across, `v` along, the nail's box being -1..1 in both.
 //!
-//! Colours are fractions of full scale as a camera encodes them (sRGB's curve), composed in that space. What is not modelled: depth of
-//! field, the finger's third dimension other than by shading, interreflection.
+//! Colours are fractions of full scale as a camera encodes them (sRGB's curve), composed in that space. What is not
+//! modelled: depth of field, the finger's third dimension other than by shading, interreflection.
 
 mod camera;
 mod coloration;

@@ -11,7 +11,10 @@ use crate::nail::{Axis, Outline};
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SceneFault {
     /// The picture is too small to be one.
-    #[error("a picture of {width} x {height} pixels is too small; at least {least} x {least} are needed", least = NailScene::LEAST_SIDE)]
+    #[error(
+        "a picture of {width} x {height} pixels is too small; at least {least} x {least} are needed",
+        least = NailScene::LEAST_SIDE
+    )]
     PictureTooSmall {
         /// Width in pixels.
         width: u32,
@@ -121,7 +124,8 @@ impl NailScene {
         Outline::new(&corners).map_err(|_| SceneFault::BadNumber("the nail's shape"))
     }
 
-    /// Place on the nail (`u`, `v`) of a place on the normalized picture, in its pixels (row `i`, column `j`; fractions within).
+    /// Place on the nail (`u`, `v`) of a place on the normalized picture, in its pixels (row `i`, column `j`; fractions
+    /// within).
     fn nail_from_normalized(size: usize, margin: f64, i: f64, j: f64) -> [f64; 2] {
         let half = 0.5 * size as f64;
         let scale = margin / half;
@@ -134,11 +138,11 @@ impl NailScene {
         x >= -0.5 && y >= -0.5 && x <= width - 0.5 && y <= height - 0.5
     }
 
-    /// The exact normalized green: fraction of full scale as encoded, without noise and rounding; `size` x `size`, the nail's box
-    /// filling 1/`margin` of it, distal up. NaN where the pixel's centre is outside the photograph.
+    /// The exact normalized green: fraction of full scale as encoded, without noise and rounding; `size` x `size`, the
+    /// nail's box filling 1/`margin` of it, distal up. NaN where the pixel's centre is outside the photograph.
     ///
-    /// A pixel that covers no more than one of the camera's in a direction has the value at its centre; one that covers more has the
-    /// mean over its area, from samples two thirds of a camera pixel apart.
+    /// A pixel that covers no more than one of the camera's in a direction has the value at its centre; one that covers
+    /// more has the mean over its area, from samples two thirds of a camera pixel apart.
     pub fn normalized(&self, size: usize, margin: f64) -> Array2<f32> {
         let field = self.field();
         let samples = [self.length_px(), self.width_px()].map(|side| {

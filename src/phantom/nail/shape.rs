@@ -1,8 +1,9 @@
 //! The nail's outline: a closed curve that fills the box -1..1 in `u` and `v` exactly.
 //!
-//! |x|^p + |y|^q = 1, where x and y run from the curve's own middle (`middle_u`, `widest_v`) to the box's sides, `q` differs between the
-//! proximal and the distal half, and `p` goes smoothly from one end to the other. The exponents set how round the eponychium (proximal)
-//! and the hyponychium (distal) are and how parallel the lateral folds run. Distances are to first order, exact at the outline.
+//! |x|^p + |y|^q = 1, where x and y run from the curve's own middle (`middle_u`, `widest_v`) to the box's sides, `q`
+//! differs between the proximal and the distal half, and `p` goes smoothly from one end to the other. The exponents set
+//! how round the eponychium (proximal) and the hyponychium (distal) are and how parallel the lateral folds run.
+//! Distances are to first order, exact at the outline.
 
 use super::smooth::step01;
 

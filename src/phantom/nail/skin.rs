@@ -1,7 +1,8 @@
 //! Colours of skin and nail by tone, from very light to very dark.
 //!
-//! Tones follow Fitzpatrick's I to VI: melanin takes blue more than green more than red. The nail bed has little melanin and changes far less.
-//! Values are linear reflectances as a camera of sRGB primaries sees them (typical values, not one person's), encoded here once.
+//! Tones follow Fitzpatrick's I to VI: melanin takes blue more than green more than red. The nail bed has little
+//! melanin and changes far less. Values are linear reflectances as a camera of sRGB primaries sees them (typical
+//! values, not one person's), encoded here once.
 
 /// Linear reflectance (red, green, blue) of skin from Fitzpatrick I to VI.
 const SKIN: [[f64; 3]; 6] = [

@@ -1,5 +1,5 @@
-//! Smooth building blocks of a scene: steps, bumps and seeded noise, all with continuous second derivatives and cheap enough to be
-//! evaluated a dozen times a pixel.
+//! Smooth building blocks of a scene: steps, bumps and seeded noise, all with continuous second derivatives and cheap
+//! enough to be evaluated a dozen times a pixel.
 
 /// 0 below 0, 1 above 1, between them the quintic with vanishing first and second derivatives at both ends.
 #[inline(always)]
@@ -69,7 +69,8 @@ pub(super) fn resolved(spacing_px: f64) -> f64 {
     step(1.5, 4.0, spacing_px)
 }
 
-/// The whole number below `x` and what is left, 0 to 1 (no call of `floor`, which the oldest processors of x86-64 lack).
+/// The whole number below `x` and what is left, 0 to 1 (no call of `floor`, which the oldest processors of x86-64
+/// lack).
 fn split(x: f64) -> (i32, f64) {
     let toward_zero = x as i32;
     let below = toward_zero.wrapping_sub(i32::from(f64::from(toward_zero) > x));
@@ -79,7 +80,8 @@ fn split(x: f64) -> (i32, f64) {
 /// Entries of the noise's table, a power of two.
 const ENTRIES: usize = 4096;
 
-/// Distance of neighbouring rows in the table. Near ENTRIES over the golden ratio: the same entry comes back only some 60 features away.
+/// Distance of neighbouring rows in the table. Near ENTRIES over the golden ratio: the same entry comes back only some
+/// 60 features away.
 const ROW: u32 = 2531;
 
 /// Numbers within -1..=1 without order; reading four of them is cheaper than hashing four places.

@@ -56,7 +56,8 @@ pub(crate) fn numbers(seed: u64, kind: u32, index: u32) -> ChaCha8Rng {
 const KIND_SUBJECT: u32 = 1;
 
 impl Subject {
-    /// Subject `index` of the set `seed`. Sixteen that follow each other from a multiple of 16 hold one of each sixteenth of the tones.
+    /// Subject `index` of the set `seed`. Sixteen that follow each other from a multiple of 16 hold one of each
+    /// sixteenth of the tones.
     pub fn random(seed: u64, index: u32) -> Self {
         let mut rng = numbers(seed, KIND_SUBJECT, index);
         let sixteenth = f64::from((index % 16).reverse_bits() >> 28);

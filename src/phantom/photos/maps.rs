@@ -1,7 +1,7 @@
 //! The exact mean and standard deviation of normalized pictures, one after the other, in double precision.
 //!
-//! In: normalized pictures, NaN where not photographed. Out: mean, SD with n - 1 (NaN under two), and how many. Source: B. P. Welford (1962),
-//! doi:10.1080/00401706.1962.10490022.
+//! In: normalized pictures, NaN where not photographed. Out: mean, SD with n - 1 (NaN under two), and how many. Source:
+//! B. P. Welford (1962), doi:10.1080/00401706.1962.10490022.
 
 use ndarray::{Array2, Zip};
 

@@ -38,9 +38,11 @@ impl FileFormat {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum LightKind {
-    /// The thesis' chamber: even, dark behind the finger, no glare, the nail filling most of the picture within 6 degrees of upright.
+    /// The thesis' chamber: even, dark behind the finger, no glare, the nail filling most of the picture within 6
+    /// degrees of upright.
     Chamber,
-    /// Dim to bright, any tint, any background, half of them with glare, nails of many sizes within 30 degrees of upright.
+    /// Dim to bright, any tint, any background, half of them with glare, nails of many sizes within 30 degrees of
+    /// upright.
     Varied,
 }
 

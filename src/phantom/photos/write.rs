@@ -1,4 +1,5 @@
-//! Drawing a set and writing it down: photographs in parallel, maps in the subjects' order, everything put in place at the end.
+//! Drawing a set and writing it down: photographs in parallel, maps in the subjects' order, everything put in place at
+//! the end.
 
 use std::{
     fs, io,

@@ -16,8 +16,8 @@ pub(super) enum FontArg {
 
 #[derive(Debug, Clone, Args)]
 pub(super) struct ClockArgs {
-    /// A clock on a screen in the picture: h m s digits of hours, minutes, seconds, t tenths and finer, a AM or PM; as mm:ss.t or
-    /// 'hh:mm:ss a' (one h becomes two digits from 10 on)
+    /// A clock on a screen in the picture: h m s digits of hours, minutes, seconds, t tenths and finer, a AM or PM; as
+    /// mm:ss.t or 'hh:mm:ss a' (one h becomes two digits from 10 on)
     #[arg(long, value_name = "FORMAT")]
     clock: Option<String>,
     /// What the clock counts at the first frame [default: 60]

@@ -70,24 +70,27 @@ pub struct LogRequest {
     #[arg(long, value_name = "K", default_value_t = 1)]
     session: u32,
 
-    /// An experiment of 3.3, 5.2.4 and 5.3, prompted to a finger that follows as people do; the options below change it. Repetitions have the same --subject and
-    /// --session and other seeds
+    /// An experiment of 3.3, 5.2.4 and 5.3, prompted to a finger that follows as people do; the options below change
+    /// it. Repetitions have the same --subject and --session and other seeds
     #[arg(long, value_enum)]
     protocol: Option<ProtocolArg>,
-    /// How well the finger follows: the standard deviation of its error as a share, about 0.3 s late (assumed; 5.2.2a quotes 6 %); 0: exactly
-    /// [default: 0; with a protocol 0.06]
+    /// How well the finger follows: the standard deviation of its error as a share, about 0.3 s late (assumed; 5.2.2a
+    /// quotes 6 %); 0: exactly [default: 0; with a protocol 0.06]
     #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
     follow: Option<f64>,
-    /// The finger touches or rests by up to so many degrees of J2 off straight, the same all along a log and another for each seed (assumed, after
-    /// 5.4.1) [default: 0; with a protocol 3]
+    /// The finger touches or rests by up to so many degrees of J2 off straight, the same all along a log and another
+    /// for each seed (assumed, after 5.4.1) [default: 0; with a protocol 3]
     #[arg(long, value_name = "DEGREES", allow_negative_numbers = true)]
     posture_shift: Option<f64>,
-    /// The finger bends and touches nothing until then, and presses, straight, from then on [default: it does both all along; with a protocol
-    /// that touches after its bending]
+    /// The finger bends and touches nothing until then, and presses, straight, from then on [default: it does both all
+    /// along; with a protocol that touches after its bending]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     touch_from: Option<f64>,
-    /// Joint angles over time: eq27, free (fully flexed to fully extended and back), random, even (random, all over equation 27's range), rest (straight and still), or a table (CSV or Parquet) with time_s, J1_deg, J2_deg, J3_deg [default:
-    /// eq27; with --force spiral, normal, lateral or longitudinal rest, with --force random or even random, but eq27 with --touch-from]
+    /// Joint angles over time: eq27, free (fully flexed to fully extended and back), random, even (random, all over
+    /// equation 27's range), rest (straight and still), or a table (CSV or Parquet) with time_s, J1_deg, J2_deg, J3_deg
+    /// [default:
+    /// eq27; with --force spiral, normal, lateral or longitudinal rest, with --force random or even random, but eq27
+    /// with --touch-from]
     #[arg(long, value_name = "eq27|free|random|even|rest|FILE")]
     trajectory: Option<String>,
     /// Bending rate f of equation 27; random movement has rates of 0.4 to 4 times it
@@ -99,7 +102,8 @@ pub struct LogRequest {
     /// The spiral's T
     #[arg(long, value_name = "SECONDS", default_value_t = 180.0)]
     spiral_seconds: f64,
-    /// Random forces have rates of 0.4 to 4 times it; normal, lateral and longitudinal forces come back so often [default: 0.1; of the latter 0.05]
+    /// Random forces have rates of 0.4 to 4 times it; normal, lateral and longitudinal forces come back so often
+    /// [default: 0.1; of the latter 0.05]
     #[arg(long, value_name = "HZ")]
     force_hz: Option<f64>,
 

@@ -1,4 +1,5 @@
-//! The command line's options as the keys of a TOML table: `--clock-offset 30` is `clock_offset = 30`, a flag is `true`.
+//! The command line's options as the keys of a TOML table: `--clock-offset 30` is `clock_offset = 30`, a flag is
+//! `true`.
 //!
 //! Values go through the very parsers of the command line. An option that may be given again takes a list.
 
@@ -116,7 +117,8 @@ mod tests {
 
     #[test]
     fn keys_are_the_options_of_the_command_line() {
-        let text = "scene = \"small\"\nseconds = 2\nclock = \"mm:ss.t\"\nclock_offset = -3.5\nclock_dark = true\nstart = false\n\
+        let text = "scene = \"small\"\nseconds = 2\nclock = \"mm:ss.t\"\nclock_offset = -3.5\nclock_dark = \
+                    true\nstart = false\n\
             hide = [\"middle_dist@3+2\", \"hand_prox@9+1\"]\njoints = [\"J2\", \"J3\"]\nblur = 0.25";
         let options = read::<VideoRequest>(&table(text), "lunula phantom video").unwrap().options().unwrap();
         let mut expected = VideoOptions { seconds: 2.0, blur: 0.25, ..VideoOptions::new(Preset::Small) };

@@ -19,8 +19,8 @@ pub struct VideoRequest {
     /// Everything random follows from it
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// The scene to start from: clean (noise 2, crf 16), hard (noise 6, blur, flicker, gradient, distractors, a hidden marker, crf 30), small
-    /// (480x270, crf 23), fast (60 frames a second, bending at 1 Hz, blur), uhd (3840x2160)
+    /// The scene to start from: clean (noise 2, crf 16), hard (noise 6, blur, flicker, gradient, distractors, a hidden
+    /// marker, crf 30), small (480x270, crf 23), fast (60 frames a second, bending at 1 Hz, blur), uhd (3840x2160)
     #[arg(long, value_enum, default_value = "clean")]
     scene: SceneArg,
     /// Width and height of the picture, pixels; the finger grows with the width
@@ -36,13 +36,15 @@ pub struct VideoRequest {
     #[arg(long, value_name = "SHARE", num_args = 0..=1, default_missing_value = "0.4")]
     vfr: Option<f64>,
 
-    /// Joint angles over time: eq27, free (fully flexed to fully extended and back), random, even (random, all over equation 27's range), rest (straight and still), or a table (CSV or Parquet) with time_s, J1_deg, J2_deg, J3_deg
+    /// Joint angles over time: eq27, free (fully flexed to fully extended and back), random, even (random, all over
+    /// equation 27's range), rest (straight and still), or a table (CSV or Parquet) with time_s, J1_deg, J2_deg, J3_deg
     #[arg(long, value_name = "eq27|free|random|even|rest|FILE")]
     trajectory: Option<String>,
     /// Bending rate f of equation 27; random movement has rates of 0.4 to 4 times it
     #[arg(long, value_name = "HZ")]
     bend_hz: Option<f64>,
-    /// How well the finger follows, as of a log of the same seed: the standard deviation of its error as a share, about 0.3 s late
+    /// How well the finger follows, as of a log of the same seed: the standard deviation of its error as a share, about
+    /// 0.3 s late
     #[arg(long, value_name = "SHARE", default_value_t = 0.0, allow_negative_numbers = true)]
     follow: f64,
     /// How flexion turns a segment on the picture

@@ -78,7 +78,8 @@ const LIT: [[bool; 7]; 10] = {
 };
 /// A segment that is not lit still shows a little.
 const UNLIT: f32 = 0.05;
-/// A digit's middle lines are 1 wide and 2 high; half a segment's breadth, and what a digit and a mark take of the line.
+/// A digit's middle lines are 1 wide and 2 high; half a segment's breadth, and what a digit and a mark take of the
+/// line.
 const STROKE: f32 = 0.14;
 const DIGIT_ADVANCE: f32 = 1.62;
 const MARK_ADVANCE: f32 = 0.7;

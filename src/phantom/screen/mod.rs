@@ -1,11 +1,13 @@
 //! A digital clock on a screen in the picture.
 //!
-//! In: what the clock counts and how it is written. Out: what it shows at a time, and the share of each pixel of its panel that
-//! is lit. Formats are the marker file's: `h`, `m`, `s` are digits of hours, minutes, seconds, `t` tenths and finer, `a` AM or PM; all else
-//! stands as it is. One or two digits of hours are of a day: 23:59:59 is followed by 00:00:00, or, of twelve hours, 11:59:59 PM by 12:00:00 AM.
-//! One `h` becomes two digits where it has to: 9:59:59 is followed by 10:00:00.
+//! In: what the clock counts and how it is written. Out: what it shows at a time, and the share of each pixel of its
+//! panel that is lit. Formats are the marker file's: `h`, `m`, `s` are digits of hours, minutes, seconds, `t` tenths
+//! and finer, `a` AM or PM; all else stands as it is. One or two digits of hours are of a day: 23:59:59 is followed by
+//! 00:00:00, or, of twelve hours, 11:59:59 PM by 12:00:00 AM. One `h` becomes two digits where it has to: 9:59:59 is
+//! followed by 10:00:00.
 //!
-//! The clock counts evenly. Its screen shows it at once, or at the last of its refreshes; it may stop or jump while the clock counts on.
+//! The clock counts evenly. Its screen shows it at once, or at the last of its refreshes; it may stop or jump while the
+//! clock counts on.
 
 mod digits;
 
@@ -113,7 +115,8 @@ impl Clock {
         self.offset_s + (1.0 + 1e-6 * self.drift_ppm) * t_s
     }
 
-    /// What the screen shows at `t_s`: the text, and the seconds that it means with the days and hours that it has no digits for.
+    /// What the screen shows at `t_s`: the text, and the seconds that it means with the days and hours that it has no
+    /// digits for.
     #[must_use]
     pub fn shown(&self, t_s: f64) -> (String, f64) {
         let t_s = self.stop_s.map_or(t_s, |stop_s| t_s.min(stop_s));

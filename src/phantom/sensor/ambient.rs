@@ -14,7 +14,8 @@ const HUM_SHARE: f64 = 0.25;
 /// Rates of the slow part, hertz.
 const SLOW_HZ: std::ops::Range<f64> = 0.03..0.5;
 
-/// Ambient light over time: level (1 + swing (3/4 slow + 1/4 sin(2 pi hum t + phase))), slow a sum of three sinusoids between 0.03 and 0.5 Hz.
+/// Ambient light over time: level (1 + swing (3/4 slow + 1/4 sin(2 pi hum t + phase))), slow a sum of three sinusoids
+/// between 0.03 and 0.5 Hz.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct Ambient {
     /// Its mean at a photodiode whose share of it is 1, volts.

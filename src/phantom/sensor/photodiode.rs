@@ -17,7 +17,8 @@ const KIND_SESSION: u32 = 23;
 /// A photodiode on a nail, with the blood below it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Photodiode {
-    /// V0: the light that comes back from the nail of a straight finger that touches nothing, less bending's part, volts.
+    /// V0: the light that comes back from the nail of a straight finger that touches nothing, less bending's part,
+    /// volts.
     pub rest_v: f64,
     /// G: the amplifier's and the LED's gain, about 1.
     pub gain: f64,
@@ -70,7 +71,8 @@ const USUAL: [[f64; 9]; CHANNELS] = [
     [2.9, 0.22, 0.00, 0.00, 0.30, 0.00, 0.09, 0.00, 0.20],
     [2.5, 0.00, 0.18, 0.05, 0.12, 0.00, 0.07, 0.00, 0.15],
 ];
-/// Loading and unloading, seconds, as measured in 4.3: over distal blood (P1, P2, P5, P7) and over proximal (the others).
+/// Loading and unloading, seconds, as measured in 4.3: over distal blood (P1, P2, P5, P7) and over proximal (the
+/// others).
 const DISTAL_S: (f64, f64) = (0.18, 0.36);
 const PROXIMAL_S: (f64, f64) = (0.16, 0.12);
 const DISTAL: [bool; CHANNELS] = [true, true, false, false, true, false, true, false];

@@ -1,13 +1,16 @@
 //! What is not static: hysteresis and the blood's lag.
 //!
-//! Each of N, Fx, Fy and J2 goes through a play of half width h, as a pin in a slot: p is x held to p - h..p + h, and the static map gets the
-//! middle of x and p. It does not depend on speed. Of forces h = 0.5 N / (N + 2): it vanishes when the finger lets go. Of J2 it is half a degree.
+//! Each of N, Fx, Fy and J2 goes through a play of half width h, as a pin in a slot: p is x held to p - h..p + h, and
+//! the static map gets the middle of x and p. It does not depend on speed. Of forces h = 0.5 N / (N + 2): it vanishes
+//! when the finger lets go. Of J2 it is half a degree.
 //!
-//! Then the forces' part and bending's part of each photodiode follow the static map with a lag of first order, tau y' = s - y. For
-//! forces tau is one while the pressing grows and another while it falls or stays (4.3: blood leaves and comes back at different speeds).
+//! Then the forces' part and bending's part of each photodiode follow the static map with a lag of first order, tau y'
+//! = s - y. For forces tau is one while the pressing grows and another while it falls or stays (4.3: blood leaves and
+//! comes back at different speeds).
 //!
-//! Time goes in steps of a millisecond that start at a given time. Within a step the static map is taken for a straight line, along which the lag
-//! is exact; a moment between two steps is reached by a part of one, so that what is asked for does not change what comes after.
+//! Time goes in steps of a millisecond that start at a given time. Within a step the static map is taken for a straight
+//! line, along which the lag is exact; a moment between two steps is reached by a part of one, so that what is asked
+//! for does not change what comes after.
 
 use serde::Serialize;
 
@@ -74,7 +77,8 @@ impl<'a> Response<'a> {
         Self { sensor, dynamics, movement, start_s, steps: 0, state, decays }
     }
 
-    /// What each photodiode adds at `t_s` when the LED is on, volts. Times are asked for in ascending order, none before the start.
+    /// What each photodiode adds at `t_s` when the LED is on, volts. Times are asked for in ascending order, none
+    /// before the start.
     pub fn at(&mut self, t_s: f64) -> [f64; CHANNELS] {
         let whole = ((t_s - self.start_s) / STEP_S).floor().max(0.0) as u64;
         while self.steps < whole {
@@ -157,7 +161,8 @@ mod tests {
 
     #[test]
     fn blood_follows_with_one_lag_in_loading_and_another_in_unloading() {
-        // The jump takes one step, half of which counts: 0.3 % of the least lag. Measured: 0.0001, as what is left of loading falls with its lag.
+        // The jump takes one step, half of which counts: 0.3 % of the least lag. Measured: 0.0001, as what is left of
+        // loading falls with its lag.
         const NEAR: f64 = 0.002;
         let sensor = Sensor::new(3, 1);
         for (k, one) in sensor.photodiodes.iter().enumerate() {
@@ -177,8 +182,8 @@ mod tests {
 
     #[test]
     fn the_steps_are_fine_enough() {
-        // A straight line in each step errs by a part of the step's square; measured 1.7e-6 at 1 Hz against steps a hundredth as long,
-        // a hundredth of the converter's step.
+        // A straight line in each step errs by a part of the step's square; measured 1.7e-6 at 1 Hz against steps a
+        // hundredth as long, a hundredth of the converter's step.
         const NEAR_V: f64 = 2.5e-6;
         let sensor = Sensor::new(1, 1);
         let angle = |t_s: f64| 0.3 + 0.4 * (6.0 * t_s).sin();
@@ -211,8 +216,8 @@ mod tests {
 
     #[test]
     fn hysteresis_is_evident_for_force_and_little_for_bending() {
-        // The experiments of 3.3.2 and 3.3.5: the widest gap between the two ways as a share of the range, the mean over the photodiodes that
-        // take part. Measured over 16 people: 0.169 to 0.200 and 0.077 to 0.086.
+        // The experiments of 3.3.2 and 3.3.5: the widest gap between the two ways as a share of the range, the mean
+        // over the photodiodes that take part. Measured over 16 people: 0.169 to 0.200 and 0.077 to 0.086.
         let widest = |movement: &dyn Fn(f64) -> Touch, period_s: f64, sensor: &Sensor, photodiodes: &[usize]| {
             let mut response = Response::new(sensor, Dynamics::default(), movement, -period_s);
             let halves = 400;

@@ -13,8 +13,8 @@ const CREEP_S: f64 = 600.0;
 /// Rates of the wander, hertz.
 const RATES_HZ: std::ops::Range<f64> = 1.0 / 600.0..1.0 / 60.0;
 
-/// Drift of each photodiode: size (creep (1 - exp(-t / 600 s)) + wander / 2), t from the log's beginning and no less than 0, creep a
-/// number from -1 to 1, wander a sum of three sinusoids of periods from 1 to 10 minutes.
+/// Drift of each photodiode: size (creep (1 - exp(-t / 600 s)) + wander / 2), t from the log's beginning and no less
+/// than 0, creep a number from -1 to 1, wander a sum of three sinusoids of periods from 1 to 10 minutes.
 #[derive(Debug, Clone, Copy, Serialize)]
 pub struct Wander {
     /// About how far it goes, volts.

@@ -1,16 +1,21 @@
-//! A whole experiment: photographs, videos with a clock, logs, presses, and the tables that say which is whose (3.3, 4.2.2, 4.3.4, 5.3).
+//! A whole experiment: photographs, videos with a clock, logs, presses, and the tables that say which is whose (3.3,
+//! 4.2.2, 4.3.4, 5.3).
 //!
 //! In: [`StudyOptions`]. Out, under one folder, a recording in each:
-//! - `photos/`: a set as `lunula phantom photos` writes it, grey as through the thesis' green filter, in its chamber: `photos/photos/<pose>/<subject>.png`;
-//! - `<subject>/<session>/`: `log.csv`, and where the finger bends only `video.mp4` and `markers.toml`. Everybody who wears the sensor has `touch-1`,
-//!   `touch-2`, `touch-3` (Fig. 94 to 97), `random` (Fig. 99), `bending` (Fig. 101) and `bending-random`; the first one, the typical subject, also has the
-//!   preliminary experiments `normal`, `lateral`, `longitudinal` and `free-bending` (Fig. 23 to 34);
+//! - `photos/`: a set as `lunula phantom photos` writes it, grey as through the thesis' green filter, in its chamber:
+//!   `photos/photos/<pose>/<subject>.png`;
+//! - `<subject>/<session>/`: `log.csv`, and where the finger bends only `video.mp4` and `markers.toml`. Everybody who
+//!   wears the sensor has `touch-1`, `touch-2`, `touch-3` (Fig. 94 to 97), `random` (Fig. 99), `bending` (Fig. 101) and
+//!   `bending-random`; the first one, the typical subject, also has the preliminary experiments `normal`, `lateral`,
+//!   `longitudinal` and `free-bending` (Fig. 23 to 34);
 //! - `presses/<subject>-<site>/`: `slow.csv` and `quick.csv` (Fig. 79 to 82);
-//! - `tables/`: `sessions.csv`, `presses.csv`, `subjects.csv`, whose files are named relative to the tables, and `study.json`;
+//! - `tables/`: `sessions.csv`, `presses.csv`, `subjects.csv`, whose files are named relative to the tables, and
+//!   `study.json`;
 //! - in each of the former `truth/`.
 //!
-//! Everything is known before anything is made ([`Study::recordings`], [`Study::tables`]), and each recording is made for itself, so that whoever wants
-//! only one makes only one. The same options give the same bytes whatever the number of threads.
+//! Everything is known before anything is made ([`Study::recordings`], [`Study::tables`]), and each recording is made
+//! for itself, so that whoever wants only one makes only one. The same options give the same bytes whatever the number
+//! of threads.
 //!
 //! What is not modelled: people's sex; that a person's nail, photodiodes and pulp belong together.
 

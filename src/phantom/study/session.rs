@@ -1,7 +1,7 @@
 //! The sessions of a person who wears the sensor: which there are, and the recording of each (3.3, 5.2.4, 5.3).
 //!
-//! Whatever is filmed is filmed with the clock of the log's computer in the picture; that clock is ahead of the video's time by some minutes and runs a
-//! little faster or slower.
+//! Whatever is filmed is filmed with the clock of the log's computer in the picture; that clock is ahead of the video's
+//! time by some minutes and runs a little faster or slower.
 
 use rand::RngExt;
 

@@ -1,7 +1,8 @@
 //! The tables of a study: sessions, presses, people, and what was asked for.
 //!
-//! Files are named relative to the tables' folder; a cell is empty where there is no such file. `truth` of a session are the exact angles at the video's
-//! frames, `truth_log` the exact angles, forces and volts of the log's rows; `truth` of a press are the person's parameters.
+//! Files are named relative to the tables' folder; a cell is empty where there is no such file. `truth` of a session
+//! are the exact angles at the video's frames, `truth_log` the exact angles, forces and volts of the log's rows;
+//! `truth` of a press are the person's parameters.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;

@@ -66,8 +66,8 @@ fn refused(path: &Path) -> impl FnOnce(io::Error) -> StudyError {
     move |source| StudyError::Write { path, source }
 }
 
-/// Writes a study under `out`; a study written there before is replaced, unless somebody put files of their own into its folders. Tells `watch` after every recording how many are done of how many; it answers
-/// whether to go on.
+/// Writes a study under `out`; a study written there before is replaced, unless somebody put files of their own into
+/// its folders. Tells `watch` after every recording how many are done of how many; it answers whether to go on.
 ///
 /// # Errors
 /// [`StudyError`]; what stood under `out` before is as it was.

@@ -26,8 +26,8 @@ pub(super) fn soft(distance: f64) -> f32 {
     TABLE[low] + part * (TABLE[low + 1] - TABLE[low])
 }
 
-/// The columns of row `y`, first and last, within reach of a line (from, to, reach) in a picture so wide; `moves` are the least and greatest steps
-/// that undo the lens in this row, to the right and down.
+/// The columns of row `y`, first and last, within reach of a line (from, to, reach) in a picture so wide; `moves` are
+/// the least and greatest steps that undo the lens in this row, to the right and down.
 pub(super) fn columns(
     ([x0, y0], [x1, y1], reach): ([f64; 2], [f64; 2], f64),
     y: usize,

@@ -1,7 +1,7 @@
 //! A lens: OpenCV's model of distortion, both ways.
 //!
-//! In: a point as a lens without distortion would show it. Out: where this lens shows it, and back. Coefficients in OpenCV's
-//! order k1, k2, p1, p2, k3, k4, k5, k6; the optical axis meets the picture's middle.
+//! In: a point as a lens without distortion would show it. Out: where this lens shows it, and back. Coefficients in
+//! OpenCV's order k1, k2, p1, p2, k3, k4, k5, k6; the optical axis meets the picture's middle.
 
 use rayon::prelude::*;
 use serde::Serialize;

@@ -28,8 +28,8 @@ impl Limb {
         Self { bones: bones.iter().map(bone).collect() }
     }
 
-    /// The distance of a point from the outline of the bones `within`, and where it lies across the limb: from the bone's nearest point, in
-    /// units of half the width there.
+    /// The distance of a point from the outline of the bones `within`, and where it lies across the limb: from the
+    /// bone's nearest point, in units of half the width there.
     pub(super) fn nearest(&self, within: &[bool], [x, y]: [f64; 2]) -> (f64, [f64; 2]) {
         let mut best = (f64::INFINITY, [0.0; 2]);
         for bone in self.bones.iter().zip(within).filter_map(|(bone, within)| within.then_some(bone)) {

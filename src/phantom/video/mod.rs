@@ -2,7 +2,8 @@
 //!
 //! In: [`VideoOptions`] (a [`Preset`], then changed). Out, under one folder:
 //! - `video.mp4`: H.264; a frame's exposure is centred on its presentation time;
-//! - `markers.toml`: `[markers]`, `[segments]`, `[joints]`, flexion, and where wanted `[start]`, `[clock]`, `[camera]`; it runs as it stands;
+//! - `markers.toml`: `[markers]`, `[segments]`, `[joints]`, flexion, and where wanted `[start]`, `[clock]`, `[camera]`;
+//!   it runs as it stands;
 //! - `truth/joints.csv`: `frame,time_s,clock_s`, then each joint's exact angle at mid-exposure, which is that between
 //!   lines through the markers' places;
 //! - `truth/tracks.csv`: `frame,time_s,marker,x_px,y_px,in_view,status`: centres at mid-exposure as the lens shows
@@ -10,8 +11,9 @@
 //!   hidden or outside. Of marks of paint, `x_px,y_px` are where the material point is that was the blot's centroid on
 //!   the straight finger; `seen_x_px,seen_y_px` follow: the centroid of what is seen of the blot at mid-exposure, empty
 //!   where that is nothing. Skin stretches, so that the two differ: an error that no tracker of paint escapes;
-//! - `truth/clock.csv`, with a clock: `frame,time_s,clock_s,shown,shown_s,changing,status`: what the clock counts; what its screen shows,
-//!   or would show where it is covered; whether that changes within the exposure; and ok, hidden, stopped or jumped;
+//! - `truth/clock.csv`, with a clock: `frame,time_s,clock_s,shown,shown_s,changing,status`: what the clock counts; what
+//!   its screen shows, or would show where it is covered; whether that changes within the exposure; and ok, hidden,
+//!   stopped or jumped;
 //! - `truth/scene.json`: every parameter.
 //!
 //! Coordinates are those of the picture as it is shown, where the stored one is turned.

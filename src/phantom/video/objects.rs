@@ -1,4 +1,5 @@
-//! What is in the picture beside the finger: blobs of marker colours on the desk, and sticks that cover a marker for a while.
+//! What is in the picture beside the finger: blobs of marker colours on the desk, and sticks that cover a marker for a
+//! while.
 //!
 //! Shapes are given by the distance from their outline, negative inside.
 

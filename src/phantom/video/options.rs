@@ -15,7 +15,8 @@ use crate::video::{Format, Matrix, Turn};
 pub enum Preset {
     /// Noise 2, crf 16, 1280x720, 30 frames a second, 10 s.
     Clean,
-    /// Noise 6, blur over half a frame, flicker 12 %, gradient, distractors of three marker colours, a marker hidden for 12 frames, crf 30.
+    /// Noise 6, blur over half a frame, flicker 12 %, gradient, distractors of three marker colours, a marker hidden
+    /// for 12 frames, crf 30.
     Hard,
     /// 480x270, markers of 4 px, noise 2 (assumed), crf 23.
     Small,
@@ -125,7 +126,8 @@ pub struct VideoOptions {
     pub fps: f64,
     /// How long; the nearest number of frames is made.
     pub seconds: f64,
-    /// How far a frame's interval may differ from the mean one, as a share of it; above 0, a frame in 25 is dropped as well.
+    /// How far a frame's interval may differ from the mean one, as a share of it; above 0, a frame in 25 is dropped as
+    /// well.
     pub jitter: f64,
     /// How the joints move.
     pub trajectory: Trajectory,

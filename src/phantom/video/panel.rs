@@ -1,4 +1,5 @@
-//! The clock's screen in a frame: what it shows, averaged over the exposure, in its dark frame; or the sheet that covers it.
+//! The clock's screen in a frame: what it shows, averaged over the exposure, in its dark frame; or the sheet that
+//! covers it.
 
 use super::row::Row;
 use super::scene::Scene;

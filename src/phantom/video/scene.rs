@@ -1,5 +1,5 @@
-//! A scene: everything that [`VideoOptions`] leave open is settled (`settle`), and each frame has its picture (`picture`) and its truth
-//! (`truth`).
+//! A scene: everything that [`VideoOptions`] leave open is settled (`settle`), and each frame has its picture
+//! (`picture`) and its truth (`truth`).
 
 use std::f64::consts::TAU;
 

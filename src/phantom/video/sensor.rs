@@ -1,8 +1,9 @@
 //! The sensor: noise on R'G'B', then rows of R'G'B' to rows of Y'CbCr samples.
 //!
-//! Noise is Gaussian and independent from pixel to pixel, channel to channel, frame to frame. A pixel's value is looked up in a
-//! table of 16 384 quantiles of the normal distribution (scaled to unit variance; the furthest at 4 standard deviations) at bits
-//! of a hash (the finalizer of splitmix64) of seed, frame, row and column: no state, so threads don't show.
+//! Noise is Gaussian and independent from pixel to pixel, channel to channel, frame to frame. A pixel's value is looked
+//! up in a table of 16 384 quantiles of the normal distribution (scaled to unit variance; the furthest at 4 standard
+//! deviations) at bits of a hash (the finalizer of splitmix64) of seed, frame, row and column: no state, so threads
+//! don't show.
 
 use std::sync::LazyLock;
 

@@ -1,5 +1,5 @@
-//! What a scene's options leave open is settled: the frames' times, when and how far the finger leaves, where sticks come from, where
-//! distractors lie.
+//! What a scene's options leave open is settled: the frames' times, when and how far the finger leaves, where sticks
+//! come from, where distractors lie.
 
 use std::f64::consts::TAU;
 

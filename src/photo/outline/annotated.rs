@@ -1,9 +1,9 @@
 //! Outlines that a person drew in LabelMe, and back.
 //!
-//! In: a LabelMe file with polygons labelled `nail` and, optionally for each, a two-point line labelled `axis` from proximal
-//! to distal; lines belong to the nail of their `group_id`, else to the nail that their middle lies in. Out: outlines and
-//! axes in pixels of the *upright* photograph. Some tools draw on the upright picture, some on the stored one: the
-//! file's width and height tell which ([`Drawn`]), and where they can't the file is refused.
+//! In: a LabelMe file with polygons labelled `nail` and, optionally for each, a two-point line labelled `axis` from
+//! proximal to distal; lines belong to the nail of their `group_id`, else to the nail that their middle lies in. Out:
+//! outlines and axes in pixels of the *upright* photograph. Some tools draw on the upright picture, some on the stored
+//! one: the file's width and height tell which ([`Drawn`]), and where they can't the file is refused.
 
 use std::path::Path;
 
@@ -16,8 +16,8 @@ use crate::photo::read::{Photograph, upright_from_stored};
 
 /// What a nail's polygon is labelled.
 pub const NAIL: &str = "nail";
-/// A point of an outline may lie this many pictures' sides beyond the picture (assumed): a hand draws somewhat beyond the
-/// border, never by pictures.
+/// A point of an outline may lie this many pictures' sides beyond the picture (assumed): a hand draws somewhat beyond
+/// the border, never by pictures.
 const FARTHEST: f64 = 4.0;
 /// What a line from proximal to distal is labelled.
 pub const AXIS: &str = "axis";
@@ -45,7 +45,8 @@ pub enum AnnotationFault {
     File(#[from] crate::labelme::Error),
     /// The size is that of another picture.
     #[error(
-        "{file}: was drawn on a picture of {drawn:?} px, but the photograph has {photo:?} px; draw it again, or scale it"
+        "{file}: was drawn on a picture of {drawn:?} px, but the photograph has {photo:?} px; draw it again, or scale \
+         it"
     )]
     OtherSize {
         /// Annotation or mask.
@@ -57,7 +58,8 @@ pub enum AnnotationFault {
     },
     /// Upright and stored picture have the same size.
     #[error(
-        "{0}: the photograph's EXIF orientation turns it without changing its size, so it can't be told whether this was drawn on the upright \
+        "{0}: the photograph's EXIF orientation turns it without changing its size, so it can't be told whether this \
+         was drawn on the upright \
          or on the stored picture; say --annotations upright or --annotations stored"
     )]
     Turned(String),
@@ -88,7 +90,8 @@ pub enum ShapeFault {
     },
     /// A point where no picture of this size can have one.
     #[error(
-        "shape {number}: its point ({x:e}, {y:e}) lies far outside of the photograph ({width} x {height} px); draw it again"
+        "shape {number}: its point ({x:e}, {y:e}) lies far outside of the photograph ({width} x {height} px); draw it \
+         again"
     )]
     FarOff {
         /// Counted from 1.

@@ -4,17 +4,17 @@
 //! proximal to distal with a confidence, or why it can't be told. Directions are clockwise from up, see [`Axis`].
 //!
 //! For each of 72 directions the picture around the nail is compared with a finger that points there (`finger`: its two
-//! sides, its tip, its skin, the nail's symmetry). The likelihoods become probabilities; the confidence is the probability
-//! within 40 degrees of the best direction, and the axis the mean direction there. Fingers of one hand point about the
-//! same way, save the thumb: so the other nails of the photograph give a prior, which is mostly uniform. It can tip
-//! the scales where the nail's own surroundings leave it open, by a factor of about 4 at most; where it would turn a nail
-//! around against its own surroundings, the nail is left out instead.
+//! sides, its tip, its skin, the nail's symmetry). The likelihoods become probabilities; the confidence is the
+//! probability within 40 degrees of the best direction, and the axis the mean direction there. Fingers of one hand
+//! point about the same way, save the thumb: so the other nails of the photograph give a prior, which is mostly
+//! uniform. It can tip the scales where the nail's own surroundings leave it open, by a factor of about 4 at most;
+//! where it would turn a nail around against its own surroundings, the nail is left out instead.
 //!
 //! Not determined: tilt towards the camera, and nails without a visible finger (a drawing, a plain background).
 //!
-//! Measured by `tests/nail_axes.rs`: of 127 nails on 26 real photographs of hands 122 are told, none by over 22 degrees off,
-//! half within 3.2 (which is what the truth, read by eye, is good for); of phantom close-ups whose nail takes up to half of
-//! the photograph's height all, half within 0.4 degrees; of those up to 0.7 of it 92 %, none wrong.
+//! Measured by `tests/nail_axes.rs`: of 127 nails on 26 real photographs of hands 122 are told, none by over 22 degrees
+//! off, half within 3.2 (which is what the truth, read by eye, is good for); of phantom close-ups whose nail takes up
+//! to half of the photograph's height all, half within 0.4 degrees; of those up to 0.7 of it 92 %, none wrong.
 
 use image::DynamicImage;
 use thiserror::Error;
@@ -51,13 +51,15 @@ const PROFILE: f64 = 2.5;
 const ROUND: f64 = 1.1;
 /// Above this elongation a nail's long axis lies along the finger: nails are at most about this much wider than long.
 const WIDE: f64 = 1.35;
-/// Probability from which the picture alone is sure enough to doubt what a person said, and how far off that must be, degrees.
-/// Measured on each nail alone: at 0.9 and 60 degrees not one right axis of 127 real nails, of the same in grey and of 240
-/// phantoms is doubted, and 100, 95 and 187 of the reversed ones are. The least sure wrong answer has 0.69.
+/// Probability from which the picture alone is sure enough to doubt what a person said, and how far off that must be,
+/// degrees. Measured on each nail alone: at 0.9 and 60 degrees not one right axis of 127 real nails, of the same in
+/// grey and of 240 phantoms is doubted, and 100, 95 and 187 of the reversed ones are. The least sure wrong answer has
+/// 0.69.
 const SURE: f64 = 0.9;
 const CONTRADICTS_DEG: f64 = 60.0;
-/// Log-likelihood a nail by which a turned or mirrored annotation must fit better than as it was drawn. Measured: a right
-/// one is never more than 1.4 behind (26 real photographs, 240 phantoms), one of a turned real picture always 3.4 or more.
+/// Log-likelihood a nail by which a turned or mirrored annotation must fit better than as it was drawn. Measured: a
+/// right one is never more than 1.4 behind (26 real photographs, 240 phantoms), one of a turned real picture always 3.4
+/// or more.
 const TURNED: f64 = 3.0;
 
 /// The axis of a nail as found, and how sure that is.
@@ -143,8 +145,8 @@ impl Side {
 /// The shape's own axis that points nearest to `hint`.
 ///
 /// A nail is about mirror-symmetric, so its axis is one of the two principal axes of its area; which one and which end
-/// the hint says. Where the shape has no axis (nearly round), or is so long across the hint that the hint can't mean its
-/// short axis, the axis is the hint itself.
+/// the hint says. Where the shape has no axis (nearly round), or is so long across the hint that the hint can't mean
+/// its short axis, the axis is the hint itself.
 pub fn axis_towards(outline: &Outline, hint: Side) -> Axis {
     let shape = Shape::of(outline);
     if shape.elongation() < ROUND {
@@ -174,8 +176,8 @@ pub fn find_axes(image: &DynamicImage, outlines: &[Outline]) -> Vec<Result<Found
         .collect()
 }
 
-/// The axes of nails whose distal ends all point to one side, give or take: as [`find_axes`], but looked for around `hint`;
-/// where the picture does not tell, the shape and the hint do ([`axis_towards`]).
+/// The axes of nails whose distal ends all point to one side, give or take: as [`find_axes`], but looked for around
+/// `hint`; where the picture does not tell, the shape and the hint do ([`axis_towards`]).
 pub fn find_axes_towards(image: &DynamicImage, outlines: &[Outline], hint: Side) -> Vec<Axis> {
     let around = |outline| {
         let mut directions = look(image, outline).ok()?;
@@ -222,10 +224,11 @@ fn angle_deg(one: Axis, other: Axis) -> f64 {
     turn(one.clockwise_rad() - other.clockwise_rad()).abs().to_degrees()
 }
 
-/// How a picture may have been turned after it was annotated, in words; `None` where the annotation fits as well as it is.
+/// How a picture may have been turned after it was annotated, in words; `None` where the annotation fits as well as it
+/// is.
 ///
-/// Each outline and drawn axis is moved as the picture would have been, and fingers are looked for there. Turns that change
-/// the picture's size show in the size, so a quarter turn is tried on square pictures only.
+/// Each outline and drawn axis is moved as the picture would have been, and fingers are looked for there. Turns that
+/// change the picture's size show in the size, so a quarter turn is tried on square pictures only.
 pub(super) fn turned_since(image: &DynamicImage, drawn: &[(&Outline, Axis)]) -> Option<&'static str> {
     let size = [f64::from(image.width()), f64::from(image.height())];
     let fits = |outline: &Outline, axis: Axis| {

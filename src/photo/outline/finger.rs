@@ -1,10 +1,10 @@
 //! How well a finger lies behind a nail, for each direction that it could point to.
 //!
 //! In: the nail's surroundings ([`Patch`]) and a candidate axis. Out: a log-likelihood up to a constant. The model is a
-//! finger seen from any side: two sides parallel to the axis on both sides of the nail and of the skin behind it, a round
-//! tip just beyond the distal end, skin of the same colour behind the proximal end, and a nail that is mirror-symmetric
-//! about the axis. In the nail's own frame (distal up) the edges of 127 nails in real photographs, averaged, show exactly
-//! this: an arch over the nail, open below.
+//! finger seen from any side: two sides parallel to the axis on both sides of the nail and of the skin behind it, a
+//! round tip just beyond the distal end, skin of the same colour behind the proximal end, and a nail that is
+//! mirror-symmetric about the axis. In the nail's own frame (distal up) the edges of 127 nails in real photographs,
+//! averaged, show exactly this: an arch over the nail, open below.
 //!
 //! The four weights were fitted (conditional logit over 72 directions) on half of those photographs and rounded.
 
@@ -76,8 +76,8 @@ impl Frame<'_> {
         0.5 * (self.across[0] + self.across[1])
     }
 
-    /// The best line parallel to the axis, from the nail's side to 0.95 nail lengths beyond: mean edge across it, from a
-    /// quarter length below the distal end to 0.8 lengths behind the nail.
+    /// The best line parallel to the axis, from the nail's side to 0.95 nail lengths beyond: mean edge across it, from
+    /// a quarter length below the distal end to 0.8 lengths behind the nail.
     fn side(&self, sign: f32) -> f32 {
         let edge = if sign > 0.0 { self.across[1] } else { self.across[0] };
         let (top, bottom) = (self.along[1] - 0.25 * LENGTH, self.along[0] - 0.8 * LENGTH);

@@ -1,15 +1,16 @@
 //! Outlines from a mask picture: each connected region is a nail.
 //!
-//! In: a mask of 8 or 16 bit, grey or colour (a pixel's value is its largest channel, times its opacity), upright like its
-//! photograph; whether the sizes agree is the caller's question. Out: one [`Outline`] a region, sorted by centroid from
-//! top to bottom, then left to right, and what was too small to be a nail.
+//! In: a mask of 8 or 16 bit, grey or colour (a pixel's value is its largest channel, times its opacity), upright like
+//! its photograph; whether the sizes agree is the caller's question. Out: one [`Outline`] a region, sorted by centroid
+//! from top to bottom, then left to right, and what was too small to be a nail.
 //!
 //! - A mask whose values reach above half of full scale is read as a grey level: the outline is the level line at half
 //!   (127.5 of 255) by marching squares, so that an anti-aliased edge, or a JPEG's, keeps its sub-pixel place. A
-//!   filled rectangle of pixels x0..=x1 is exactly x1 - x0 + 1 wide. Regions that touch the border end at its pixel edges.
+//!   filled rectangle of pixels x0..=x1 is exactly x1 - x0 + 1 wide. Regions that touch the border end at its pixel
+//!   edges.
 //! - A mask whose largest value is 1 to 32 is read as instance numbers: each number a nail, though they touch.
-//! - A picture in grey is no mask: a mask has two values, and between them the grey of its edges only. [`MaskValues`] say
-//!   which values are nail where a picture has more; outlines then run along pixel edges.
+//! - A picture in grey is no mask: a mask has two values, and between them the grey of its edges only. [`MaskValues`]
+//!   say which values are nail where a picture has more; outlines then run along pixel edges.
 //! - Anything between is refused: half of full scale would silently lose every nail.
 //!
 //! Holes are filled: a nail has none.
@@ -30,8 +31,8 @@ const LEAST_AREA_PX2: f64 = 36.0;
 const LEAST_EXTENT_PX: f64 = 5.0;
 /// Regions below this part of the largest one's area are specks: no nail is ten times shorter than its neighbour.
 const LEAST_SHARE: f64 = 0.01;
-/// A level line has a corner or two a pixel; those within this part of the nail's extent, or this many pixels, of the line
-/// without them go (Douglas and Peucker).
+/// A level line has a corner or two a pixel; those within this part of the nail's extent, or this many pixels, of the
+/// line without them go (Douglas and Peucker).
 const TOLERANCE: f64 = 2e-4;
 const LEAST_TOLERANCE_PX: f64 = 0.03;
 /// More regions than this of instance numbers are a noisy picture.
@@ -41,8 +42,9 @@ const MOST_ID_REGIONS: usize = 64;
 const NEAR_END: f32 = 0.2;
 /// .. They lie on edges, where a neighbour differs by more than this part of full scale; ..
 const FLAT: f32 = 0.1;
-/// .. of those that do not there may be this many for each white one. Measured: none in 26 masks drawn by hand and kept as
-/// JPEG; 0.68 to 3.3 in the photographs they belong to, in grey, 0.71 and more with their nails white and all but skin black.
+/// .. of those that do not there may be this many for each white one. Measured: none in 26 masks drawn by hand and kept
+/// as JPEG; 0.68 to 3.3 in the photographs they belong to, in grey, 0.71 and more with their nails white and all but
+/// skin black.
 const MOST_GREY: f64 = 0.1;
 /// A region above this share of the picture is no nail: in the thesis' close-ups a nail takes up to a third (assumed).
 const LARGEST_SHARE: f64 = 0.6;
@@ -97,7 +99,8 @@ pub enum MaskFault {
     },
     /// A picture in grey.
     #[error(
-        "a grey picture rather than a mask: for every 100 white pixels it has {:.0} that are neither white nor black, edges \
+        "a grey picture rather than a mask: for every 100 white pixels it has {:.0} that are neither white nor black, \
+         edges \
          apart; paint the nails white on black, or say which values are nail, as --mask-value 250..255", 100.0 * .grey
     )]
     Grey {
@@ -151,7 +154,8 @@ pub enum TooLarge {
     Picture(f64),
     /// Far longer than the others.
     #[error(
-        "the region is {0:.1} times as long as the mask's others in median, and no nail is {LONGEST:.0} times as long as its \
+        "the region is {0:.1} times as long as the mask's others in median, and no nail is {LONGEST:.0} times as long \
+         as its \
          neighbours; is it a finger's?"
     )]
     Others(f64),
@@ -233,7 +237,7 @@ fn outlines_of((values, full): (ImageBuffer<Luma<f32>, Vec<f32>>, f32)) -> Resul
 /// The number of each pixel's component, from 1 on; 0 in the background.
 fn labelled(kinds: &GrayImage) -> ImageBuffer<Luma<u32>, Vec<u32>> {
     let components = |kinds: &GrayImage| connected_components(kinds, Connectivity::Eight, Luma([0]));
-    if kinds.iter().any(|kind| *kind == 0) {
+    if kinds.contains(&0) {
         return components(kinds);
     }
     // imageproc 0.27 panics where there are as many components as pixels: with a row of background there are fewer.
@@ -346,9 +350,9 @@ impl Region {
             .into_iter()
             .map(|mut ring| {
                 for point in &mut ring {
-                    // The crate puts a cell's centre at +0.5 and every crossing half-way between two centres; the true one
-                    // follows from the two values. At the border of the mask, beyond which there is nothing, the pixel's
-                    // edge is half-way.
+                    // The crate puts a cell's centre at +0.5 and every crossing half-way between two centres; the true
+                    // one follows from the two values. At the border of the mask, beyond which there is nothing, the
+                    // pixel's edge is half-way.
                     let (x, y) = (point.x - 0.5, point.y - 0.5);
                     let (x0, y0) = (x.floor() as i64, y.floor() as i64);
                     let (x1, y1) = (x.ceil() as i64, y.ceil() as i64);

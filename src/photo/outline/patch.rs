@@ -35,8 +35,8 @@ const COLOUR_FLOOR: f32 = 0.02;
 /// Colour differences count this much more than brightness: shading changes brightness, seldom hue.
 const COLOUR_WEIGHT: f32 = 1.5;
 
-/// What is known at one cell: the gradient's outer product summed over the channels (xx, xy, yy), and the distance from the
-/// colour of the skin next to the nail, 0 (skin) to 1. Together, so that one interpolation gives all.
+/// What is known at one cell: the gradient's outer product summed over the channels (xx, xy, yy), and the distance from
+/// the colour of the skin next to the nail, 0 (skin) to 1. Together, so that one interpolation gives all.
 type Cell = [f32; 4];
 
 /// The surroundings of one nail.
@@ -205,8 +205,8 @@ fn nail_mask(outline: &Outline, centre: [f64; 2], px_per_cell: f64) -> GrayImage
     })
 }
 
-/// Colours (luma, red less green, green less blue, as fractions of full scale) of the window's cells, and which cells lie
-/// on the photograph; those outside repeat the nearest pixel.
+/// Colours (luma, red less green, green less blue, as fractions of full scale) of the window's cells, and which cells
+/// lie on the photograph; those outside repeat the nearest pixel.
 fn gather(image: &DynamicImage, centre: [f64; 2], px_per_cell: f64) -> (Vec<[f32; 3]>, Vec<bool>) {
     macro_rules! typed {
         ($($variant:ident),+) => {

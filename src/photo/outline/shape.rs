@@ -1,8 +1,8 @@
 //! The shape of one outline: area moments, and the principal axis that follows from them.
 //!
-//! In: an [`Outline`]. Out: its centroid and the two principal axes of its area, exact for the polygon (Green's theorem;
-//! e.g. <https://en.wikipedia.org/wiki/Second_moment_of_area#Any_polygon>). A mirror-symmetric shape has its symmetry
-//! axis along one of the two, but the moments tell neither which one nor which end is distal.
+//! In: an [`Outline`]. Out: its centroid and the two principal axes of its area, exact for the polygon (Green's
+//! theorem; e.g. <https://en.wikipedia.org/wiki/Second_moment_of_area#Any_polygon>). A mirror-symmetric shape has its
+//! symmetry axis along one of the two, but the moments tell neither which one nor which end is distal.
 
 use geo::{Area, ConvexHull};
 

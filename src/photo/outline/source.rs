@@ -1,9 +1,9 @@
 //! The nails of one photograph, from whichever source knows them.
 //!
-//! The first of: the manifest's outline, `<stem>.json` beside the photograph, a mask of the same stem, detection. Of what is
-//! not needed nothing is done: an annotated photograph is not searched. A nail whose outline or axis is not trusted is listed
-//! with the reason and left out, not guessed: so is one whose drawn axis, or `--distal`, the picture surely contradicts, save
-//! where both say the same.
+//! The first of: the manifest's outline, `<stem>.json` beside the photograph, a mask of the same stem, detection. Of
+//! what is not needed nothing is done: an annotated photograph is not searched. A nail whose outline or axis is not
+//! trusted is listed with the reason and left out, not guessed: so is one whose drawn axis, or `--distal`, the picture
+//! surely contradicts, save where both say the same.
 
 use std::path::{Path, PathBuf};
 
@@ -243,7 +243,8 @@ impl OutlineOptions {
         let doubtful = found.doubtful.into_iter().map(|n| {
             let limit = self.detect.min_confidence;
             let reason = format!(
-                "the outline found is not trusted (confidence {:.2}, {limit} is needed); correct it in LabelMe (--write-outlines)",
+                "the outline found is not trusted (confidence {:.2}, {limit} is needed); correct it in LabelMe \
+                 (--write-outlines)",
                 n.confidence
             );
             (n, reason)
@@ -272,7 +273,8 @@ impl OutlineOptions {
                 let Some(outline) = &nails[k].outline else { continue };
                 if let Verdict::Contradicts(found) = verdict(&picture.image, outline, axis) {
                     nails[k].reason = format!(
-                        "by --distal its axis is at {:.0} degrees, by the picture at {:.0} (confidence {:.2}; clockwise from up); \
+                        "by --distal its axis is at {:.0} degrees, by the picture at {:.0} (confidence {:.2}; \
+                         clockwise from up); \
                          draw its `axis` in LabelMe, and where both are given alike they are believed",
                         axis.clockwise_deg(),
                         found.axis.clockwise_deg(),
@@ -299,8 +301,8 @@ impl OutlineOptions {
 }
 
 impl OutlineOptions {
-    /// Doubts drawn axes that the picture surely contradicts, and all of an annotation that fits the turned picture better.
-    /// Where `--distal` says the same as a drawn axis, that is believed.
+    /// Doubts drawn axes that the picture surely contradicts, and all of an annotation that fits the turned picture
+    /// better. Where `--distal` says the same as a drawn axis, that is believed.
     fn doubt_drawn(&self, picture: &Photograph, nails: &mut [Nail]) {
         let image = &picture.image;
         let mut drawn = Vec::new();
@@ -315,7 +317,8 @@ impl OutlineOptions {
             sure &= said == Verdict::Agrees;
             if let Verdict::Contradicts(found) = said {
                 nail.reason = format!(
-                    "its drawn axis is at {:.0} degrees, by the picture at {:.0} (confidence {:.2}; clockwise from up); correct \
+                    "its drawn axis is at {:.0} degrees, by the picture at {:.0} (confidence {:.2}; clockwise from \
+                     up); correct \
                      the line, or, where it is right, say --distal as well",
                     axis.clockwise_deg(),
                     found.axis.clockwise_deg(),
@@ -332,7 +335,8 @@ impl OutlineOptions {
         for k in drawn {
             let also = if nails[k].reason.is_empty() { "" } else { "; " };
             nails[k].reason += &format!(
-                "{also}the annotation fits the picture better {turned}: was the picture turned after it was drawn? draw it \
+                "{also}the annotation fits the picture better {turned}: was the picture turned after it was drawn? \
+                 draw it \
                  again on the picture as it is, or, where it is right, say --distal as well"
             );
             nails[k].confidence = None;

@@ -1,9 +1,9 @@
 //! Values of a turned and scaled grid of pixels on a photograph, without aliasing and without ringing.
 //!
 //! Where an output pixel covers up to 1.25 pixels of the photograph, the value is interpolated at its centre, by
-//! cubic convolution (Keys 1981, DOI 10.1109/TASSP.1981.1163711, a = -1/2), limited to the range of the pixels around so that an
-//! edge never rings. Where it covers more, it is the mean of a grid of such samples over its footprint, at least one a
-//! (block of) pixel(s) of the photograph, so that nothing aliases.
+//! cubic convolution (Keys 1981, DOI 10.1109/TASSP.1981.1163711, a = -1/2), limited to the range of the pixels around
+//! so that an edge never rings. Where it covers more, it is the mean of a grid of such samples over its footprint, at
+//! least one a (block of) pixel(s) of the photograph, so that nothing aliases.
 
 use std::sync::LazyLock;
 
@@ -219,8 +219,8 @@ impl Source {
         values
     }
 
-    /// As [`Source::points`], at less than half its work: for each output column, the photograph's rows are interpolated
-    /// along x where the column's line crosses them, then that line is along y (Catmull and Smith 1980,
+    /// As [`Source::points`], at less than half its work: for each output column, the photograph's rows are
+    /// interpolated along x where the column's line crosses them, then that line is along y (Catmull and Smith 1980,
     /// DOI 10.1145/800250.807505). On a slanted line the second pass's samples are not those of the upright
     /// neighbourhood, so values differ a little where the photograph has detail of one or two pixels.
     fn points_in_two_passes(&self, grid: &Grid) -> Vec<f32> {
@@ -299,8 +299,8 @@ impl Source {
         sum / (across * along) as f32
     }
 
-    /// The value at (column + fx, row + fy) of the reduced photograph. [`Source::new`] takes a margin of [`REACH`] pixels all
-    /// around, so that every neighbour is there.
+    /// The value at (column + fx, row + fy) of the reduced photograph. [`Source::new`] takes a margin of [`REACH`]
+    /// pixels all around, so that every neighbour is there.
     #[inline(always)]
     fn at(&self, column: usize, row: usize, fx: f32, fy: f32) -> f32 {
         match self.resample {

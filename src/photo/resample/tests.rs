@@ -123,8 +123,9 @@ fn a_single_pixel_is_a_photograph() {
     }
 }
 
-/// Largest and root mean square difference between the fast way and its plain twin on white noise of full range seen with
-/// an optical spread of 1 px, the harshest picture that a camera makes. Measured over 300 cases: 3.4 and 0.46 of 255.
+/// Largest and root mean square difference between the fast way and its plain twin on white noise of full range seen
+/// with an optical spread of 1 px, the harshest picture that a camera makes. Measured over 300 cases: 3.4 and 0.46 of
+/// 255.
 const TWINS_DIFFER_OF_255: [f64; 2] = [5.0, 0.6];
 
 proptest! {

@@ -1,7 +1,8 @@
-//! A pipeline for a folder: what lies there is looked at, and a file is written that runs as it stands, saying what was taken for what.
+//! A pipeline for a folder: what lies there is looked at, and a file is written that runs as it stands, saying what was
+//! taken for what.
 //!
-//! In: a folder; out: the text of a pipeline file. Files are told by their ending and tables by their columns; `truth` folders, hidden files
-//! and folders of results are not looked at.
+//! In: a folder; out: the text of a pipeline file. Files are told by their ending and tables by their columns; `truth`
+//! folders, hidden files and folders of results are not looked at.
 
 mod look;
 mod shape;
@@ -23,7 +24,8 @@ pub enum InitError {
         why: std::io::Error,
     },
     /// Nothing in it is of use.
-    #[error("{}: {what}; photographs of nails, videos with a marker file, logs of photodiodes (time_s, P1, ..) or tables of angles are looked for", path.display())]
+    #[error("{}: {what}; photographs of nails, videos with a marker file, logs of photodiodes (time_s, P1, ..) or \
+             tables of angles are looked for", path.display())]
     Nothing {
         /// The folder.
         path: PathBuf,
@@ -32,7 +34,8 @@ pub enum InitError {
     },
 }
 
-/// Writes a pipeline for what lies in `folder`; `from` is that folder as the pipeline file will name it, with `/`, empty for its own.
+/// Writes a pipeline for what lies in `folder`; `from` is that folder as the pipeline file will name it, with `/`,
+/// empty for its own.
 ///
 /// # Errors
 /// [`InitError`].

@@ -38,7 +38,9 @@ pub(super) fn pipeline(found: &Found, from: &str) -> Option<String> {
     let wanted: Vec<String> = draft.wanted.iter().map(|name| format!("\"{name}\"")).collect();
     let notes: String = draft.notes.iter().map(|note| format!("#   {note}\n")).collect();
     Some(format!(
-        "# Written by `lunula init`.\n#\n#   lunula run THIS.toml --out results --plan      what would be done, and what not\n#   lunula run THIS.toml --out results             again: only what is new\n#\n# What was found:\n{notes}\nwanted = [{}]\n{}{}",
+        "# Written by `lunula init`.\n#\n#   lunula run THIS.toml --out results --plan      what would be done, and \
+         what not\n#   lunula run THIS.toml --out results             again: only what is new\n#\n# What was \
+         found:\n{notes}\nwanted = [{}]\n{}{}",
         wanted.join(", "),
         draft.inputs,
         draft.stages
@@ -55,13 +57,17 @@ impl Draft<'_> {
         }
         if photos.names == ["subject"] && have_parts(&found.photos) {
             self.notes.push(
-                "every photograph is taken for a subject of its own, but names seem to have parts: where they tell subject and pose,\n#   write files = \"..{subject}_{pose}..\"".to_owned(),
+                "every photograph is taken for a subject of its own, but names seem to have parts: where they tell \
+                 subject and pose,\n#   write files = \"..{subject}_{pose}..\""
+                    .to_owned(),
             );
         }
         let _ = write!(
             self.stages,
-            "\n# Each nail upright and of one size, in the green channel; outlines from <photo>.json, else detected.\n[stage.normalized]\njob = \"normalize\"\nphoto = \"photos\"\n\n\
-             # Mean and standard deviation over subjects, for each pose.\n[stage.maps]\njob = \"maps\"\nsums = \"normalized\"\n"
+            "\n# Each nail upright and of one size, in the green channel; outlines from <photo>.json, else \
+             detected.\n[stage.normalized]\njob = \"normalize\"\nphoto = \"photos\"\n\n\
+             # Mean and standard deviation over subjects, for each pose.\n[stage.maps]\njob = \"maps\"\nsums = \
+             \"normalized\"\n"
         );
         self.wanted.push("maps");
     }
@@ -74,7 +80,8 @@ impl Draft<'_> {
                 let keys: Vec<String> = sessions.keys.iter().map(|key| quoted(key)).collect();
                 let _ = write!(
                     self.inputs,
-                    "\n# Its columns of files are named below; an empty cell: there is no such file.\n[inputs.recordings]\ntable = {path}\nkeys = [{}]\n",
+                    "\n# Its columns of files are named below; an empty cell: there is no such \
+                     file.\n[inputs.recordings]\ntable = {path}\nkeys = [{}]\n",
                     keys.join(", ")
                 );
                 let column = |column: &Option<String>| {
@@ -111,7 +118,8 @@ impl Draft<'_> {
             (Some(video), Some(markers)) => {
                 let _ = write!(
                     self.stages,
-                    "\n# Joint angles of every frame; joints = [\"J2\"] measures only some of them.\n[stage.angles]\njob = \"posture\"\nvideo = {}\nmarkers = {}\n",
+                    "\n# Joint angles of every frame; joints = [\"J2\"] measures only some of \
+                     them.\n[stage.angles]\njob = \"posture\"\nvideo = {}\nmarkers = {}\n",
                     quoted(&video.reference),
                     quoted(&markers.reference)
                 );
@@ -119,7 +127,11 @@ impl Draft<'_> {
                 Some("angles".to_owned())
             }
             (Some(_), None) => {
-                self.notes.push("videos without a marker file are not used: write one with `lunula posture VIDEO --suggest`, then run `lunula init` again".to_owned());
+                self.notes.push(
+                    "videos without a marker file are not used: write one with `lunula posture VIDEO \
+                                 --suggest`, then run `lunula init` again"
+                        .to_owned(),
+                );
                 joints.map(|joints| joints.reference)
             }
             (None, _) => joints.map(|joints| joints.reference),
@@ -151,7 +163,8 @@ impl Draft<'_> {
         let each = if log.names.iter().any(|name| name == "subject") { "each = [\"subject\"]\n" } else { "" };
         let _ = write!(
             self.stages,
-            "\n# Forces from the photodiodes; validate = .. names recordings to report on that are not trained on.\n[stage.force]\njob = \"train\"\n{each}data = {}\ntarget = \"force\"\n",
+            "\n# Forces from the photodiodes; validate = .. names recordings to report on that are not trained \
+             on.\n[stage.force]\njob = \"train\"\n{each}data = {}\ntarget = \"force\"\n",
             quoted(&log.reference)
         );
         self.wanted.push("force");

@@ -1,8 +1,10 @@
-//! What there is to work on: every input as a relation of keys and files, from a table's rows or from files found by a pattern.
+//! What there is to work on: every input as a relation of keys and files, from a table's rows or from files found by a
+//! pattern.
 //!
-//! A table's cell names a file relative to the table's folder; an empty one says that there is none. Columns that stages name, and those whose
-//! cells all look like files' names, are no keys; of the others all are, or those that the input lists. An empty cell of a key says nothing of it.
-//! `{phantom}` at the beginning of a path is the folder of the generated recordings, whose catalogue answers for it, standing or not.
+//! A table's cell names a file relative to the table's folder; an empty one says that there is none. Columns that
+//! stages name, and those whose cells all look like files' names, are no keys; of the others all are, or those that the
+//! input lists. An empty cell of a key says nothing of it. `{phantom}` at the beginning of a path is the folder of the
+//! generated recordings, whose catalogue answers for it, standing or not.
 
 mod input;
 mod join;

@@ -1,4 +1,5 @@
-//! `align`: joint angles and a log of photodiodes and forces to a labelled training set with its certificate (3.1.2c, 5.2).
+//! `align`: joint angles and a log of photodiodes and forces to a labelled training set with its certificate (3.1.2c,
+//! 5.2).
 //!
 //! The set's columns `subject` and `session` are the recording's keys of these names, unless the stage names others.
 

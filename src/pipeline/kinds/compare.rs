@@ -1,7 +1,7 @@
 //! `compare`: models and sets of recordings over several people (5.4, Fig. 105-113).
 //!
-//! Recordings of one person are those whose key `subject` is the same; each role has one recording of each person. Who lacks one is left
-//! out and told.
+//! Recordings of one person are those whose key `subject` is the same; each role has one recording of each person. Who
+//! lacks one is left out and told.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,5 @@
-//! What a stage says about the logs that it reads: the same keys for every kind that reads logs, named as the commands' options.
+//! What a stage says about the logs that it reads: the same keys for every kind that reads logs, named as the commands'
+//! options.
 
 use std::num::NonZeroUsize;
 

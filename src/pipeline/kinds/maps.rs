@@ -1,7 +1,7 @@
 //! `maps`: the sums of all subjects to mean, standard deviation and count by pose (4.2.2, Fig. 53-56).
 //!
-//! Where this task's earlier maps stand and all that they hold is still there, only new sums are read and added: the bytes are the same, as
-//! sums are integers.
+//! Where this task's earlier maps stand and all that they hold is still there, only new sums are read and added: the
+//! bytes are the same, as sums are integers.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -1,4 +1,5 @@
-//! The kinds of jobs that pipelines know, a file each: what of a task's inputs and options the job of the same name is given.
+//! The kinds of jobs that pipelines know, a file each: what of a task's inputs and options the job of the same name is
+//! given.
 
 mod align;
 mod analyse;

@@ -1,4 +1,5 @@
-//! What the kinds on the hemodynamic model have in common: which nail, values that are written as on the command line, what is left in a folder.
+//! What the kinds on the hemodynamic model have in common: which nail, values that are written as on the command line,
+//! what is left in a folder.
 
 use std::collections::BTreeMap;
 use std::fmt::Display;

@@ -1,7 +1,8 @@
-//! `normalize`: photographs, by default all of one subject, to nails in their frames and the sums that maps are made of (4.2.2).
+//! `normalize`: photographs, by default all of one subject, to nails in their frames and the sums that maps are made of
+//! (4.2.2).
 //!
-//! A photograph's subject and pose are its keys. Its outline is the file of role `outlines` that has its keys, else the LabelMe file beside it, else
-//! detected. A photograph that gives nothing is told, and the others are done.
+//! A photograph's subject and pose are its keys. Its outline is the file of role `outlines` that has its keys, else the
+//! LabelMe file beside it, else detected. A photograph that gives nothing is told, and the others are done.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -31,7 +32,8 @@ pub(super) static NORMALIZE: Kind = Kind {
         Role {
             name: OUTLINES,
             takes: Takes::AnyNumber,
-            about: "LabelMe files or masks of the same subject and pose; where there is none, <photo>.json, else detection",
+            about: "LabelMe files or masks of the same subject and pose; where there is none, <photo>.json, else \
+                    detection",
         },
     ],
     parts: &[

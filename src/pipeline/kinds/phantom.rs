@@ -9,7 +9,8 @@
 //! video = [{ name = "a", .. }, { name = "b", .. }]    # or several of a kind: {phantom}/video/a, {phantom}/video/b
 //! ```
 //!
-//! The options are those of `lunula phantom study|photos|video|log`, with `_` for `-`. Each recording is a task of its own.
+//! The options are those of `lunula phantom study|photos|video|log`, with `_` for `-`. Each recording is a task of its
+//! own.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -228,7 +229,8 @@ mod tests {
     #[test]
     fn single_scenes_have_their_folders_and_their_facts() {
         let catalogue = of("photos = { subjects = 2, poses = [\"nominal\"], no_annotations = true }\n\
-            video = [{ name = \"plain\", seconds = 1 }, { name = \"bent\", distortion = [-0.1], clock = \"mm:ss.t\" }]\n\
+            video = [{ name = \"plain\", seconds = 1 }, \
+            { name = \"bent\", distortion = [-0.1], clock = \"mm:ss.t\" }]\n\
             log = { no_led = true }")
         .unwrap();
         let names: Vec<&str> = catalogue.tasks.iter().map(|task| task.name.as_str()).collect();

@@ -1,7 +1,8 @@
 //! `posture`: a video of a finger with coloured markers to joint angles (3.2.3, 3.3.5).
 //!
-//! Only the joints that somebody needs are measured, with the markers that they need; the clock in the picture is read only where somebody needs
-//! its time. The angles of a joint hang on its own markers' places, so a table with fewer joints holds the same numbers.
+//! Only the joints that somebody needs are measured, with the markers that they need; the clock in the picture is read
+//! only where somebody needs its time. The angles of a joint hang on its own markers' places, so a table with fewer
+//! joints holds the same numbers.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -68,7 +69,8 @@ impl Posture {
         })
     }
 
-    /// The joints that are measured; empty: all of the marker file. Markers and overlay show what the stage itself names.
+    /// The joints that are measured; empty: all of the marker file. Markers and overlay show what the stage itself
+    /// names.
     fn joints(&self, demand: &Demand) -> BTreeSet<String> {
         let wanted =
             demand.joints.as_ref().filter(|_| !demand.parts.contains(TRACKS) && !demand.parts.contains(OVERLAY));

@@ -40,7 +40,8 @@ pub(super) fn joints(target: &Target) -> BTreeSet<String> {
     target.columns().iter().filter_map(|column| column.strip_suffix("_deg")).map(str::to_owned).collect()
 }
 
-/// What recordings have to hold for a target: its joints and no others; the clock in the picture where it is needed of these results.
+/// What recordings have to hold for a target: its joints and no others; the clock in the picture where it is needed of
+/// these results.
 pub(super) fn only_joints(joints: BTreeSet<String>, own: &Demand) -> Demand {
     Demand { parts: BTreeSet::new(), joints: Some(joints), clock: own.clock }
 }

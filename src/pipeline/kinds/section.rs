@@ -1,4 +1,5 @@
-//! `section`: the simulations of section 4.3 with the thesis' values (Fig. 76 to 78), and `presses`: its experiments on recorded people (Fig. 79 to 82).
+//! `section`: the simulations of section 4.3 with the thesis' values (Fig. 76 to 78), and `presses`: its experiments on
+//! recorded people (Fig. 79 to 82).
 
 use std::sync::Arc;
 

@@ -131,7 +131,8 @@ fn prepare(table: toml::Table) -> Result<Arc<dyn Prepared>, KeyFault> {
         keep_partial: asked.keep_partial,
         with_loads: asked.with_loads,
     };
-    // The numbers are checked with the parameters, which may be a file's: with the usual ones, a fault is one all the same.
+    // The numbers are checked with the parameters, which may be a file's: with the usual ones, a fault is one all the
+    // same.
     simulate_plan(&options, None).map_err(|why| fault("", why.to_string()))?;
     Ok(Arc::new(Simulation { asked, options }))
 }

@@ -1,4 +1,5 @@
-//! `study`: the page with a counterpart of every data figure of the thesis and every statement of its text beside what came out.
+//! `study`: the page with a counterpart of every data figure of the thesis and every statement of its text beside what
+//! came out.
 
 use std::sync::Arc;
 

@@ -5,8 +5,8 @@ use std::path::Path;
 use crate::pipeline::Quality;
 use crate::table::{Table, TableError};
 
-/// The root mean square error of every `<joint>_deg` of `made` that `truth` has too. Rows belong together where `made`'s column `key` and
-/// `truth`'s column `true_key` agree to within `close`; both ascend.
+/// The root mean square error of every `<joint>_deg` of `made` that `truth` has too. Rows belong together where
+/// `made`'s column `key` and `truth`'s column `true_key` agree to within `close`; both ascend.
 ///
 /// # Errors
 /// A table that can't be read.

@@ -271,7 +271,8 @@ fn generated(path: &str, world: &World<'_>) -> Option<NodeSource> {
     Some(NodeSource::Made { node, file, part: None, facts })
 }
 
-/// Files that a job reads with an input, where they stand or will be generated and the stage does not name that role itself.
+/// Files that a job reads with an input, where they stand or will be generated and the stage does not name that role
+/// itself.
 fn beside(stage: &StageSpec, item: &Item, role: &str, world: &World<'_>) -> Vec<(&'static str, NodeSource)> {
     let path = match &item.origin {
         Origin::Given { path, .. } => path.clone(),

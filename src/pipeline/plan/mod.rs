@@ -1,11 +1,11 @@
 //! From a pipeline file to tasks: worked back from the results that are wanted.
 //!
-//! In: a [`Spec`], where its results go, and what it generates; out: a [`Plan`]: the tasks that the wanted results need and no others, each
-//! after those whose results it works on, and for every stage what was left out and why. Nothing is written, and the same inputs give the same
-//! plan whatever of the results stands already.
+//! In: a [`Spec`], where its results go, and what it generates; out: a [`Plan`]: the tasks that the wanted results need
+//! and no others, each after those whose results it works on, and for every stage what was left out and why. Nothing is
+//! written, and the same inputs give the same plan whatever of the results stands already.
 //!
-//! Stages are first laid out forwards, from inputs to tasks ; then each task is told what is needed of it, backwards; what
-//! nobody needs goes.
+//! Stages are first laid out forwards, from inputs to tasks ; then each task is told what is needed of it, backwards;
+//! what nobody needs goes.
 
 mod ids;
 mod layout;

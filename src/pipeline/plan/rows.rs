@@ -1,4 +1,5 @@
-//! The tasks of a stage, as combinations of items: one for each joined row, or for each value of the keys that are gathered by.
+//! The tasks of a stage, as combinations of items: one for each joined row, or for each value of the keys that are
+//! gathered by.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -156,7 +157,8 @@ fn twice(spec: &Spec, stage: &StageSpec, given: &[Relation], many: &[usize], ite
 fn unrelated(spec: &Spec, stage: &StageSpec, given: &[Relation], one: usize, other: usize) -> Fault {
     let name = |role: usize| stage.kind.roles[role].name;
     let what = format!(
-        "`{}` ({}) and `{}` ({}) have no key in common, so none of them belong together; name the same keys in both inputs",
+        "`{}` ({}) and `{}` ({}) have no key in common, so none of them belong together; name the same keys in both \
+         inputs",
         name(one),
         given[one].names.join(", "),
         name(other),

@@ -1,8 +1,9 @@
 //! Which part of a run that is cut makes which task.
 //!
-//! Tasks that hang together go together; what would tie all of them into one, because it gathers everything, is made when the parts are merged,
-//! and so is what stands on it. What several parts stand on and is cheap, generated recordings and tasks that are nobody's in particular, each
-//! makes for itself. Parts are numbered in the order of their first task's name.
+//! Tasks that hang together go together; what would tie all of them into one, because it gathers everything, is made
+//! when the parts are merged, and so is what stands on it. What several parts stand on and is cheap, generated
+//! recordings and tasks that are nobody's in particular, each makes for itself. Parts are numbered in the order of
+//! their first task's name.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,7 +1,8 @@
-//! A plan as users see it: every stage as run, done or left out, with counts and reasons, and below it the steps of its job.
+//! A plan as users see it: every stage as run, done or left out, with counts and reasons, and below it the steps of its
+//! job.
 //!
-//! Steps that say the same of several tasks are one line. Nothing is written, and no picture is decoded: jobs tell their steps from what they
-//! are given and from files' headers.
+//! Steps that say the same of several tasks are one line. Nothing is written, and no picture is decoded: jobs tell
+//! their steps from what they are given and from files' headers.
 
 use std::fmt::Write;
 

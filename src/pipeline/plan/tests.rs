@@ -138,7 +138,8 @@ fn demands_flow_back_from_what_is_wanted() {
 fn gathering_jobs_make_a_task_for_each_value_and_join_what_has_no_keys() {
     let gather = |each: &str| {
         format!(
-            "[inputs.all]\ntable = \"sessions.csv\"\n[inputs.extra]\nfiles = \"markers.toml\"\n[stage.model]\njob = \"train\"\n{each}data = \"all.log\"\nvalidate = \"extra\"\n"
+            "[inputs.all]\ntable = \"sessions.csv\"\n[inputs.extra]\nfiles = \"markers.toml\"\n[stage.model]\njob = \
+             \"train\"\n{each}data = \"all.log\"\nvalidate = \"extra\"\n"
         )
     };
     assert_eq!(ids(&gather("")), ["model"]);
@@ -158,8 +159,10 @@ fn gathering_jobs_make_a_task_for_each_value_and_join_what_has_no_keys() {
 
 #[test]
 fn models_meet_the_logs_of_their_subject() {
-    let text = "wanted = [\"how_good\"]\n[inputs.all]\ntable = \"sessions.csv\"\n[stage.model]\njob = \"train\"\neach = [\"subject\"]\ndata = \"all.log\"\n\
-                [stage.how_good]\njob = \"evaluate\"\nmodel = \"model\"\ndata = { from = \"all.log\", where = { session = 1 } }\n";
+    let text = "wanted = [\"how_good\"]\n[inputs.all]\ntable = \"sessions.csv\"\n[stage.model]\njob = \"train\"\neach \
+                = [\"subject\"]\ndata = \"all.log\"\n\
+                [stage.how_good]\njob = \"evaluate\"\nmodel = \"model\"\ndata = \
+                { from = \"all.log\", where = { session = 1 } }\n";
     let plan = bench().plan(text);
     let last = plan.tasks.last().unwrap();
     assert_eq!((last.id.as_str(), last.inputs.len()), ("how_good/S03", 2));
@@ -182,9 +185,11 @@ fn files_become_tasks_with_what_lies_beside_them() {
 
 #[test]
 fn generated_recordings_are_planned_before_they_stand() {
-    let text = "wanted = [\"sets\"]\n[phantom]\nstudy = {}\n[inputs.all]\ntable = \"{phantom}/tables/sessions.csv\"\n[inputs.markers]\nfiles = \"{phantom}/markers/markers.toml\"\n\
+    let text = "wanted = [\"sets\"]\n[phantom]\nstudy = {}\n[inputs.all]\ntable = \
+                \"{phantom}/tables/sessions.csv\"\n[inputs.markers]\nfiles = \"{phantom}/markers/markers.toml\"\n\
                 [inputs.logs]\nfiles = \"{phantom}/recordings/{subject}/*.csv\"\n\
-                [stage.angles]\njob = \"track\"\nvideo = \"all.video\"\nmarkers = \"markers\"\n[stage.sets]\njob = \"tie\"\njoints = \"angles\"\nlog = \"logs\"\n";
+                [stage.angles]\njob = \"track\"\nvideo = \"all.video\"\nmarkers = \"markers\"\n[stage.sets]\njob = \
+                \"tie\"\njoints = \"angles\"\nlog = \"logs\"\n";
     let plan = bench().plan(text);
     let ids: Vec<(&str, Share)> = plan.tasks.iter().map(|task| (task.id.as_str(), task.share)).collect();
     assert_eq!(
@@ -211,7 +216,8 @@ fn generated_recordings_are_planned_before_they_stand() {
 #[test]
 fn what_gathers_everything_is_made_when_parts_are_merged() {
     let text = format!(
-        "{}[stage.model]\njob = \"train\"\ndata = \"sets\"\n[stage.test]\njob = \"evaluate\"\nmodel = \"model\"\ndata = \"sets\"\n",
+        "{}[stage.model]\njob = \"train\"\ndata = \"sets\"\n[stage.test]\njob = \"evaluate\"\nmodel = \"model\"\ndata \
+         = \"sets\"\n",
         STUDY.replace("[\"sets\"]", "[\"test\"]")
     );
     let plan = bench().plan(&text);
@@ -267,7 +273,8 @@ fn with(name: &'static str, content: &'static str, pipeline: &str) -> Vec<String
 #[test]
 fn two_inputs_that_would_write_the_same_files_are_told() {
     let double = "subject,kind,video,log\nS01,bending,v/S01.mp4,l/S01.csv\nS01,bending,v/S02.mp4,l/S02.csv\n";
-    let what = "sessions.csv, line 2 and sessions.csv, line 3 would both be written to `angles/S01/bending`; add a column or a {place} that tells them apart, or choose with `where`";
+    let what = "sessions.csv, line 2 and sessions.csv, line 3 would both be written to `angles/S01/bending`; add a \
+                column or a {place} that tells them apart, or choose with `where`";
     assert_eq!(with("sessions.csv", double, STUDY)[0], format!("5:8: {what}"));
     let no_place = "[inputs.v]\nfiles = \"v/*.mp4\"\n\n[stage.angles]\njob = \"track\"\nvideo = \"v\"\n";
     let found = bench().faults(no_place);
@@ -342,7 +349,8 @@ fn a_glob_that_matches_nothing_is_told_with_the_nearest_folder() {
 #[test]
 fn a_wanted_stage_without_anything_to_work_on_is_told_with_the_reason() {
     let none = "subject,session,kind,video,log\nS01,1,bending,,l/S01.csv\nS02,1,bending,,l/S02.csv\n";
-    let what = "`sets` is wanted and has nothing to work on: its `joints` comes from `angles` (line 5), which has nothing: sessions.csv names no `video` for it (2)";
+    let what = "`sets` is wanted and has nothing to work on: its `joints` comes from `angles` (line 5), which has \
+                nothing: sessions.csv names no `video` for it (2)";
     assert_eq!(with("sessions.csv", none, STUDY), [format!("1:11: {what}")]);
 }
 
@@ -377,7 +385,8 @@ fn options_of_what_is_generated_are_told_at_their_line() {
 
 #[test]
 fn odd_key_values_are_folders_and_empty_ones_hold_for_all() {
-    let odd = "subject,session,video,log\nMüller 日本,1.5,v/S01.mp4,l/S01.csv\n../x,..,v/S02.mp4,l/S02.csv\n,3,v/S03.mp4,l/S03.csv\n";
+    let odd = "subject,session,video,log\nMüller \
+               日本,1.5,v/S01.mp4,l/S01.csv\n../x,..,v/S02.mp4,l/S02.csv\n,3,v/S03.mp4,l/S03.csv\n";
     let mut files = files();
     files[0].1 = odd;
     let text = STUDY.replace("where = { kind = \"bending\" }\n", "").replace("[\"sets\"]", "[\"angles\"]");

@@ -1,8 +1,8 @@
 //! What a run did, stage by stage: `OUT/report.html` for people, `OUT/run.json` for scripts.
 //!
-//! Of every stage: its tasks, its time and its share of the whole (of what stood: the time that it took when it was made), the error where
-//! truth is known and the jobs' own uncertainty where it is not, what was left out and why, failures and warnings. Both hold times, so they are
-//! no part of what is the same bytes in every run.
+//! Of every stage: its tasks, its time and its share of the whole (of what stood: the time that it took when it was
+//! made), the error where truth is known and the jobs' own uncertainty where it is not, what was left out and why,
+//! failures and warnings. Both hold times, so they are no part of what is the same bytes in every run.
 
 mod page;
 #[cfg(test)]

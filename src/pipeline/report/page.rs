@@ -28,7 +28,10 @@ pub(super) fn page(run: &RunSummary<'_>) -> String {
         page.table(&["task", "why"], &rows, |_| true);
     }
     page.heading("Stages");
-    page.paragraph("Time is summed over tasks, as it was when they were done; the error is the middle one of all tasks, with the least and the greatest.");
+    page.paragraph(
+        "Time is summed over tasks, as it was when they were done; the error is the middle one of all \
+                    tasks, with the least and the greatest.",
+    );
     let rows: Vec<Vec<String>> = run.stages.iter().map(row).collect();
     let header = [
         "stage",

@@ -9,7 +9,12 @@ use crate::pipeline::toys::Bench;
 #[test]
 fn a_run_is_summed_up_by_stage() {
     let bench = Bench::new(&[("v/a.mp4", ""), ("v/b.mp4", ""), ("v/c.mp4", "")]);
-    let plan = bench.plan("[inputs.v]\nfiles = \"v/{s}.mp4\"\n[stage.angles]\njob = \"track\"\nvideo = \"v\"\n[stage.idle]\njob = \"track\"\nvideo = \"v\"\n".replace("[inputs", "wanted = [\"angles\"]\n[inputs").as_str());
+    let plan = bench.plan(
+        "[inputs.v]\nfiles = \"v/{s}.mp4\"\n[stage.angles]\njob = \"track\"\nvideo = \
+                           \"v\"\n[stage.idle]\njob = \"track\"\nvideo = \"v\"\n"
+            .replace("[inputs", "wanted = [\"angles\"]\n[inputs")
+            .as_str(),
+    );
     let quality =
         |value: f64, against_truth| Quality { what: "J2".into(), value, unit: "degrees RMS".into(), against_truth };
     let task = |id: &str, outcome, made: Option<Made>| TaskReport {

@@ -107,8 +107,8 @@ impl Bench<'_> {
         }
     }
 
-    /// Does a task in the folder `work`, which is empty or not made yet before and after, or another; what a user should know comes with the
-    /// record.
+    /// Does a task in the folder `work`, which is empty or not made yet before and after, or another; what a user
+    /// should know comes with the record.
     pub(super) fn attempt(
         &self,
         work: &mut PathBuf,

@@ -1,7 +1,8 @@
 //! Brings a folder of results up to date: does what does not stand, several tasks at a time, and nothing twice.
 //!
-//! A task that fails, or panics, fails what needs it and nothing else. Each task's results appear whole or not at all, and a run that is
-//! killed at whatever moment loses only what was under way. The bytes of results hang on tasks and inputs alone, not on threads, memory or order.
+//! A task that fails, or panics, fails what needs it and nothing else. Each task's results appear whole or not at all,
+//! and a run that is killed at whatever moment loses only what was under way. The bytes of results hang on tasks and
+//! inputs alone, not on threads, memory or order.
 
 mod attempt;
 mod queue;
@@ -82,7 +83,10 @@ pub enum RunFault {
     #[error(transparent)]
     Tasks(#[from] GraphFault),
     /// The folder can't be used.
-    #[error("{}: cannot be written to ({why}); choose another --out or make room and permission for it", .path.display())]
+    #[error(
+        "{}: cannot be written to ({why}); choose another --out or make room and permission for it",
+        .path.display()
+    )]
     Folder {
         /// Which.
         path: PathBuf,
@@ -90,7 +94,10 @@ pub enum RunFault {
         why: io::Error,
     },
     /// Another run is at work there.
-    #[error("{}: another run works here ({}); wait for it or choose another --out", .path.display(), said(.holder.as_ref()))]
+    #[error(
+        "{}: another run works here ({}); wait for it or choose another --out",
+        .path.display(), said(.holder.as_ref())
+    )]
     Busy {
         /// Which folder.
         path: PathBuf,
@@ -98,7 +105,10 @@ pub enum RunFault {
         holder: Option<Holder>,
     },
     /// The folder is another part's.
-    #[error("{}: holds part {found} of a run, and this is part {asked}; give each part a folder of its own", .path.display())]
+    #[error(
+        "{}: holds part {found} of a run, and this is part {asked}; give each part a folder of its own",
+        .path.display()
+    )]
     OtherPart {
         /// Which folder.
         path: PathBuf,

@@ -1,4 +1,5 @@
-//! Which task is next: those whose inputs are settled, the one with the longest way on from it first, as many as memory allows.
+//! Which task is next: those whose inputs are settled, the one with the longest way on from it first, as many as memory
+//! allows.
 
 use std::collections::VecDeque;
 use std::sync::Arc;

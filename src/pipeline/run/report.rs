@@ -73,7 +73,8 @@ pub struct RunReport {
     pub not_done: usize,
     /// How many another part does.
     pub elsewhere: usize,
-    /// What failed, and what was not done because of it, in the order of the list; not what a stopped run did not come to.
+    /// What failed, and what was not done because of it, in the order of the list; not what a stopped run did not come
+    /// to.
     pub failures: Vec<TaskFailure>,
     /// What a user should know, besides what jobs tell.
     pub warnings: Vec<String>,

@@ -1,7 +1,7 @@
 //! A pipeline file: what there is, what is to be done with it, and which results are wanted.
 //!
-//! In: TOML; out: a [`Spec`] whose names are all known, whose options each job has accepted, and in which no stage works on itself. All faults
-//! that can be told without looking at inputs are told at once, each with line and column.
+//! In: TOML; out: a [`Spec`] whose names are all known, whose options each job has accepted, and in which no stage
+//! works on itself. All faults that can be told without looking at inputs are told at once, each with line and column.
 //!
 //! ```toml
 //! wanted = ["sets"]                     # stages, or STAGE.PART; without it: the stages that no other works on
@@ -50,7 +50,10 @@ pub enum PipelineError {
         why: std::io::Error,
     },
     /// The file is wrong, perhaps in several places.
-    #[error("{}", faults.iter().map(|f| format!("{}:{}:{}: {}", path.display(), f.line, f.column, f.what)).collect::<Vec<_>>().join("\n"))]
+    #[error(
+        "{}",
+        faults.iter().map(|f| format!("{}:{}:{}: {}", path.display(), f.line, f.column, f.what)).collect::<Vec<_>>().join("\n")
+    )]
     Faults {
         /// The file.
         path: PathBuf,
@@ -202,7 +205,8 @@ impl Spec {
     }
 }
 
-/// Bytes of a pipeline file (assumed: the study's has 5 000, and one with a stage for each of a thousand recordings 200 000).
+/// Bytes of a pipeline file (assumed: the study's has 5 000, and one with a stage for each of a thousand recordings 200
+/// 000).
 const LARGEST: usize = 1 << 20;
 
 fn text_of(path: &Path) -> Result<String, PipelineError> {

@@ -121,7 +121,8 @@ fn input(findings: &mut Findings<'_>, entry: Entry<'_>, table: &[Entry<'_>]) -> 
         }
         (None, None) => {
             let what = format!(
-                "the input `{}` has neither `table` nor `files`; write table = \"sessions.csv\" or files = \"photos/{{pose}}/{{subject}}.png\"",
+                "the input `{}` has neither `table` nor `files`; write table = \"sessions.csv\" or files = \
+                 \"photos/{{pose}}/{{subject}}.png\"",
                 entry.key
             );
             findings.fault(entry.key_at, what);

@@ -78,7 +78,8 @@ fn misspelt_keys_are_told_with_the_nearest() {
     assert_eq!(faults("wanted = ", "wnated = "), ["4:1: unknown key `wnated`; did you mean `wanted`?"]);
     assert_eq!(
         faults("table = ", "tabel = ")[0],
-        "6:9: the input `bending` has neither `table` nor `files`; write table = \"sessions.csv\" or files = \"photos/{pose}/{subject}.png\""
+        "6:9: the input `bending` has neither `table` nor `files`; write table = \"sessions.csv\" or files = \
+         \"photos/{pose}/{subject}.png\""
     );
     assert_eq!(faults("sync = ", "snyc = "), ["17:1: unknown key of the job `tie`: `snyc`; did you mean `sync`?"]);
     assert_eq!(
@@ -183,7 +184,8 @@ fn wrong_types_are_told() {
 fn a_circle_is_told_with_its_lines() {
     let text =
         "[stage.a]\njob = \"evaluate\"\nmodel = \"b\"\ndata = \"b\"\n\n[stage.b]\njob = \"train\"\ndata = \"a\"\n";
-    let what = "stages work on one another in a circle: `a` (line 1) -> `b` (line 6) -> `a` (line 1); one of them has to work on an input";
+    let what = "stages work on one another in a circle: `a` (line 1) -> `b` (line 6) -> `a` (line 1); one of them has \
+                to work on an input";
     assert_eq!(faults_of(text), [format!("1:8: {what}")]);
     let own = "[stage.a]\njob = \"train\"\ndata = \"a\"\n";
     assert_eq!(faults_of(own), ["1:8: `a` (line 1) works on itself; name what it is to work on"]);
@@ -254,7 +256,8 @@ fn a_file_of_a_million_quotes_is_refused_at_once() {
     }
     let wanted = format!("wanted = [{}]\n{GOOD}", "\"\", ".repeat(200_000)).replace("wanted = [\"sets\"]\n", "");
     assert_eq!(faults_of(&wanted).len(), 101);
-    // Measured: 4 s unoptimized on a busy machine; it was 55 s of a million, and ten times that of half a million lines.
+    // Measured: 4 s unoptimized on a busy machine; it was 55 s of a million, and ten times that of half a million
+    // lines.
     assert!(begun.elapsed().as_secs_f64() < 40.0, "{:?}", begun.elapsed());
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("p.toml");

@@ -1,13 +1,14 @@
 //! Joint angles of one frame after the other, with their standard errors.
 //!
-//! In: what each frame shows of each marker; out: each joint's angle, positive in flexion, its zero subtracted, and the markers
-//! for want of which an angle is missing. A segment points from its proximal marker to its distal one; a joint's angle is the
-//! direction of its distal segment from that of its proximal one, so a straight finger is at 0.
+//! In: what each frame shows of each marker; out: each joint's angle, positive in flexion, its zero subtracted, and the
+//! markers for want of which an angle is missing. A segment points from its proximal marker to its distal one; a
+//! joint's angle is the direction of its distal segment from that of its proximal one, so a straight finger is at 0.
 //!
-//! Angles are continuous: the first known one lies in (-180, 180] degrees, each later one on the branch nearest to the last known.
-//! Each joint is followed by itself, so their sum may pass 180 degrees.
+//! Angles are continuous: the first known one lies in (-180, 180] degrees, each later one on the branch nearest to the
+//! last known. Each joint is followed by itself, so their sum may pass 180 degrees.
 //!
-//! Errors of different markers are taken as independent. A marker that both segments share counts once, with both its signs.
+//! Errors of different markers are taken as independent. A marker that both segments share counts once, with both its
+//! signs.
 
 use super::view::{Spot, View};
 use crate::posture::{Centre, Layout, Sight};
@@ -179,7 +180,8 @@ impl Direction {
     }
 }
 
-/// The variance of the angle from the segment `a` to the segment `b`, whose markers are `pairs`, beside that of second order.
+/// The variance of the angle from the segment `a` to the segment `b`, whose markers are `pairs`, beside that of second
+/// order.
 fn variance(pairs: [[usize; 2]; 2], [a, b]: [&Direction; 2], spots: &[Option<Spot>], second_order_rad2: f64) -> f64 {
     let parts = [(pairs[0][0], a, 1.0), (pairs[0][1], a, -1.0), (pairs[1][0], b, -1.0), (pairs[1][1], b, 1.0)];
     let mut variance = second_order_rad2;

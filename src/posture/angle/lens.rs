@@ -1,14 +1,15 @@
 //! The lens: points of the picture to where a camera without distortion would show them, and back.
 //!
-//! In: a point of the shown picture, pixels; out: the same on a picture of square pixels without distortion, with the Jacobian
-//! that carries its covariance. Pictures are never undistorted, points are.
+//! In: a point of the shown picture, pixels; out: the same on a picture of square pixels without distortion, with the
+//! Jacobian that carries its covariance. Pictures are never undistorted, points are.
 //!
 //! The model is OpenCV's (documentation of the module calib3d; Brown 1971, rational terms after Claus and Fitzgibbon,
-//! doi:10.1109/CVPR.2005.43, thin prism after Weng et al., doi:10.1109/34.159901), in its symbols: x' and y' on the plane z = 1,
-//! r2 = x'^2 + y'^2,
-//! x'' = x' (1 + k1 r2 + k2 r2^2 + k3 r2^3) / (1 + k4 r2 + k5 r2^2 + k6 r2^3) + 2 p1 x' y' + p2 (r2 + 2 x'^2) + s1 r2 + s2 r2^2,
-//! y'' = the same with p1 (r2 + 2 y'^2) + 2 p2 x' y' + s3 r2 + s4 r2^2, then u = fx x'' + cx, v = fy y'' + cy.
-//! OpenCV inverts it with a fixed point iteration of five steps; here Newton's method ends at rounding or says that it does not.
+//! doi:10.1109/CVPR.2005.43, thin prism after Weng et al., doi:10.1109/34.159901), in its symbols: x' and y' on the
+//! plane z = 1, r2 = x'^2 + y'^2,
+//! x'' = x' (1 + k1 r2 + k2 r2^2 + k3 r2^3) / (1 + k4 r2 + k5 r2^2 + k6 r2^3) + 2 p1 x' y' + p2 (r2 + 2 x'^2) + s1 r2 +
+//! s2 r2^2, y'' = the same with p1 (r2 + 2 y'^2) + 2 p2 x' y' + s3 r2 + s4 r2^2, then u = fx x'' + cx, v = fy y'' + cy.
+//! OpenCV inverts it with a fixed point iteration of five steps; here Newton's method ends at rounding or says that it
+//! does not.
 
 use nalgebra::{Matrix2, Vector2};
 
@@ -58,7 +59,8 @@ impl Lens {
         [fx * bent.x + cx, fy * bent.y + cy]
     }
 
-    /// Where a camera without distortion would show the picture's point; none where the model shows no point, or two, there.
+    /// Where a camera without distortion would show the picture's point; none where the model shows no point, or two,
+    /// there.
     #[must_use]
     pub fn undistort(&self, shown_px: [f64; 2]) -> Option<Undistorted> {
         let [fx, fy] = self.focal_px;
@@ -151,8 +153,8 @@ mod tests {
         &[0.35, -0.12, 0.0011, -0.0007, 0.03, 0.62, -0.05, 0.01, 0.002, -0.001, -0.0015, 0.0008],
     ];
 
-    /// OpenCV 5.0.0, cv2.undistortPoints(points, K, d, None, None, K, (COUNT + EPS, 5000, 1e-15)) with K and d as above, of these
-    /// points; its cv2.projectPoints leads back within 4e-13 px.
+    /// OpenCV 5.0.0, cv2.undistortPoints(points, K, d, None, None, K, (COUNT + EPS, 5000, 1e-15)) with K and d as
+    /// above, of these points; its cv2.projectPoints leads back within 4e-13 px.
     const SHOWN: [[f64; 2]; 3] = [[13.5, 20.25], [1279.0, 719.0], [900.0, 100.0]];
     const OPENCV_UNDISTORTED: [[[f64; 2]; 3]; 4] = [
         [[-60.5568915204, -20.1827132066], [1361.693442916, 765.1437094844], [907.4641377579, 92.6100592621]],
@@ -160,7 +162,8 @@ mod tests {
         [[-58.2075642574, -18.9188156424], [1359.4558832123, 763.8779392413], [907.170485222, 92.8990608249]],
         [[-59.2309783356, -18.3111286222], [1358.3530218642, 764.5203398384], [906.9280316557, 93.0801203216]],
     ];
-    /// cv2.projectPoints of (-0.5, -0.28, 1), (0.1, 0.2, 1), (0.4, -0.25, 1) with the same K and d, no rotation and translation.
+    /// cv2.projectPoints of (-0.5, -0.28, 1), (0.1, 0.2, 1), (0.4, -0.25, 1) with the same K and d, no rotation and
+    /// translation.
     const RAYS: [[f64; 2]; 3] = [[-0.5, -0.28], [0.1, 0.2], [0.4, -0.25]];
     const OPENCV_PROJECTED: [[[f64; 2]; 3]; 4] = [
         [[89.52122976, 52.4225250918], [758.841, 588.1348], [1092.01497, 77.9303640625]],

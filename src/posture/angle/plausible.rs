@@ -107,11 +107,13 @@ impl Plausibility {
                 Flexion::Counterclockwise => Flexion::Clockwise.name(),
             };
             format!(
-                "negated, all would be possible: `flexion` is reversed (write flexion = \"{other_flexion}\"), the video is mirrored, \
+                "negated, all would be possible: `flexion` is reversed (write flexion = \"{other_flexion}\"), the \
+                 video is mirrored, \
                  or segments and joints are listed with the distal one first"
             )
         } else {
-            "check the order of the markers in [segments] and of the segments in [joints] (proximal first), whether the markers \
+            "check the order of the markers in [segments] and of the segments in [joints] (proximal first), whether \
+             the markers \
              have the right names (--overlay shows them), and [zero]"
                 .to_owned()
         };

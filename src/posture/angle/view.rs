@@ -1,7 +1,7 @@
 //! From the stored picture to the shown one, and on to the plane on which angles are measured.
 //!
-//! In: a marker's centre on the stored picture with its covariance; out: the same on the shown (upright) picture, or on a picture
-//! of square pixels without the lens' distortion. All three: pixels, x right, y down.
+//! In: a marker's centre on the stored picture with its covariance; out: the same on the shown (upright) picture, or on
+//! a picture of square pixels without the lens' distortion. All three: pixels, x right, y down.
 
 use super::lens::Lens;
 use crate::posture::{Camera, Centre};

@@ -1,7 +1,7 @@
 //! The straight line through pairs of angles that both have errors.
 //!
-//! Deming's regression (1943; Fuller 1987, doi:10.1002/9780470316665, section 1.3): the line whose distances, in both angles' mean
-//! standard errors, have the least sum of squares. Rows are fed one after the other; no row is kept.
+//! Deming's regression (1943; Fuller 1987, doi:10.1002/9780470316665, section 1.3): the line whose distances, in both
+//! angles' mean standard errors, have the least sum of squares. Rows are fed one after the other; no row is kept.
 
 use crate::posture::Angle;
 

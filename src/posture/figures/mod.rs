@@ -104,8 +104,8 @@ impl AngleFigures {
         draw_charts(&charts, WIDTH, png, svg)
     }
 
-    /// Draws the last joint's angle against that of the one before, with its line. Draws nothing and says so where the layout has
-    /// no two joints that follow each other.
+    /// Draws the last joint's angle against that of the one before, with its line. Draws nothing and says so where the
+    /// layout has no two joints that follow each other.
     ///
     /// # Errors
     /// A file that can't be written.

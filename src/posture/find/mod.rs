@@ -1,15 +1,17 @@
 //! Blobs of a marker's colour in a frame, or in a part of it.
 //!
 //! A frame's planes and the colours of markers go in; for each colour the compact spots that stand out in it come out,
-//! each with its place in the stored picture, area, shape and colour. Nothing is converted: a chromatic colour is looked
-//! for in the chroma planes alone (a quarter of a 4:2:0 picture), along its own direction from grey, so that light and
-//! shade scale what is seen and do not turn it; black, grey and white markers, and grey video, are looked for in luma.
+//! each with its place in the stored picture, area, shape and colour. Nothing is converted: a chromatic colour is
+//! looked for in the chroma planes alone (a quarter of a 4:2:0 picture), along its own direction from grey, so that
+//! light and shade scale what is seen and do not turn it; black, grey and white markers, and grey video, are looked for
+//! in luma.
 //!
 //! The spots are nodes of the plane's component tree (Najman and Couprie 2006, DOI 10.1109/TIP.2006.877518), as in
-//! maximally stable extremal regions (Matas et al. 2004, DOI 10.1016/j.imavis.2004.02.006), chosen by their own criterion:
-//! how far the level falls from the core of a spot to where it has grown to four times its area. That needs no threshold
-//! on the colour: a marker on a ground of about its colour is a spot still, the ground itself is none. Places are good to
-//! about a sample of the grid looked at; [`super::centre`] does better.
+//! maximally stable extremal regions (Matas et al. 2004, DOI 10.1016/j.imavis.2004.02.006), chosen by their own
+//! criterion:
+//! how far the level falls from the core of a spot to where it has grown to four times its area. That needs no
+//! threshold on the colour: a marker on a ground of about its colour is a spot still, the ground itself is none. Places
+//! are good to about a sample of the grid looked at; [`super::centre`] does better.
 
 mod grid;
 mod paint;
@@ -64,7 +66,8 @@ impl Finder {
         self.samples += (self.grid.width * self.grid.height) as u64;
     }
 
-    /// The spots of `paint` in what was loaded last, the most outstanding first, into `blobs`; none that the loaded area cuts.
+    /// The spots of `paint` in what was loaded last, the most outstanding first, into `blobs`; none that the loaded
+    /// area cuts.
     pub(crate) fn find(&mut self, frame: &Frame<'_>, paint: &Paint, blobs: &mut Vec<Blob>) {
         blobs.clear();
         if self.grid.width == 0 || self.grid.height == 0 {

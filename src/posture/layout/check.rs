@@ -98,7 +98,8 @@ fn shape(findings: &mut Findings<'_>, top: &[Entry<'_>]) -> Option<MarkerShape> 
     if shape.is_none() {
         findings.fault(
             entry.at,
-            "`shape` has to be \"disc\" (stickers) or \"blot\" (paint); leave it out to have each marker decided by how it looks",
+            "`shape` has to be \"disc\" (stickers) or \"blot\" (paint); leave it out to have each marker decided by \
+             how it looks",
         );
     }
     shape
@@ -263,7 +264,8 @@ fn clock(findings: &mut Findings<'_>, top: &[Entry<'_>]) -> Option<Clock> {
         if hertz.is_none() {
             findings.fault(
                 entry.at,
-                "`refresh_hz` is how often the clock's screen changes a second: a number above 0, or inf for a display that \
+                "`refresh_hz` is how often the clock's screen changes a second: a number above 0, or inf for a \
+                 display that \
                  changes at once; leave it out where it is not known",
             );
         }

@@ -1,10 +1,10 @@
 //! The marker file: which markers, segments and joints, and what is known of the camera.
 //!
-//! In: a TOML file; out: a [`Layout`], in which every name has become an index and every fault of the file has been told at
-//! once, each with its line. Order is the file's: joints make columns in the order of `[joints]`.
+//! In: a TOML file; out: a [`Layout`], in which every name has become an index and every fault of the file has been
+//! told at once, each with its line. Order is the file's: joints make columns in the order of `[joints]`.
 //!
-//! `[start]`, `[clock]` and `[camera]` speak of the *shown* (upright) picture, as a person or OpenCV sees it. Flexion is
-//! clockwise where the file does not say; the layout's notes tell.
+//! `[start]`, `[clock]` and `[camera]` speak of the *shown* (upright) picture, as a person or OpenCV sees it. Flexion
+//! is clockwise where the file does not say; the layout's notes tell.
 //!
 //! Source: thesis section 3.2.3, two markers on each segment of the finger.
 
@@ -118,7 +118,10 @@ pub struct LayoutFault {
 #[derive(Debug, thiserror::Error)]
 pub enum LayoutError {
     /// The file can't be read.
-    #[error("{}: {why}; name a marker file (TOML), or let `lunula posture VIDEO --suggest` write one to start from", path.display())]
+    #[error(
+        "{}: {why}; name a marker file (TOML), or let `lunula posture VIDEO --suggest` write one to start from",
+        path.display()
+    )]
     Unreadable {
         /// The file.
         path: PathBuf,
@@ -126,7 +129,10 @@ pub enum LayoutError {
         why: std::io::Error,
     },
     /// The file is wrong, perhaps in several places.
-    #[error("{}", faults.iter().map(|f| format!("{}:{}: {}", path.display(), f.line, f.what)).collect::<Vec<_>>().join("\n"))]
+    #[error(
+        "{}",
+        faults.iter().map(|f| format!("{}:{}: {}", path.display(), f.line, f.what)).collect::<Vec<_>>().join("\n")
+    )]
     Faults {
         /// The file.
         path: PathBuf,
@@ -198,7 +204,8 @@ impl Layout {
         needed
     }
 
-    /// The four markers of a joint (three differ where its segments share one): the proximal segment's, then the distal one's.
+    /// The four markers of a joint (three differ where its segments share one): the proximal segment's, then the distal
+    /// one's.
     #[must_use]
     pub fn markers_of(&self, joint: &Joint) -> [usize; 4] {
         let [a, b] = joint.segments.map(|s| self.segments[s].markers);

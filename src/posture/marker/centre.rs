@@ -1,14 +1,14 @@
 //! A marker's centre to a fraction of a pixel, with its standard error.
 //!
-//! In: a frame, where its chroma lies ([`Siting`]), how the marker looks ([`Look`]) and where it is within a few pixels. Out: a
-//! [`Fit`], or why there is none. The rough place is the centroid of what is nearer to the marker's colour than to its
-//! surround's; from there a blurred disc is fitted to luma and chroma together ([`disc`]), each plane weighted by what it leaves
-//! unexplained. Radius and blur are free but held near what other frames showed; light may change, for all levels are free. A
-//! centre is refused where what is left unexplained is more than noise, as when something covers a part of the marker. A
-//! marker that is no disc has the centre of its outline ([`super::blot`]).
+//! In: a frame, where its chroma lies ([`Siting`]), how the marker looks ([`Look`]) and where it is within a few
+//! pixels. Out: a [`Fit`], or why there is none. The rough place is the centroid of what is nearer to the marker's
+//! colour than to its surround's; from there a blurred disc is fitted to luma and chroma together ([`disc`]), each
+//! plane weighted by what it leaves unexplained. Radius and blur are free but held near what other frames showed; light
+//! may change, for all levels are free. A centre is refused where what is left unexplained is more than noise, as when
+//! something covers a part of the marker. A marker that is no disc has the centre of its outline ([`super::blot`]).
 //!
-//! The covariance is that of independent noise, times the square of [`Look::inflation`]: what a codec changes is not independent
-//! from sample to sample, for it moves whole blocks ([`super::inflation`]).
+//! The covariance is that of independent noise, times the square of [`Look::inflation`]: what a codec changes is not
+//! independent from sample to sample, for it moves whole blocks ([`super::inflation`]).
 //!
 //! [`disc`]: super::disc
 
@@ -31,8 +31,9 @@ const LONGEST_STEP: f64 = 0.35;
 /// How sure the learned radius (as a share) and blur (pixels, and as a share) are.
 const RADIUS_SD: f64 = 0.03;
 const BLUR_SD_PX: f64 = 0.1;
-/// A plane's noise is taken as at least this: what a codec gets wrong of a place is not in the residuals, and is alike in all planes
-/// (measured: with 0.3, 3 and 10, J2 of a scene at crf 30 is wrong by 0.20, 0.19 and 0.18 degrees RMS; at crf 16 by 0.036, 0.035, 0.035).
+/// A plane's noise is taken as at least this: what a codec gets wrong of a place is not in the residuals, and is alike
+/// in all planes (measured: with 0.3, 3 and 10, J2 of a scene at crf 30 is wrong by 0.20, 0.19 and 0.18 degrees RMS; at
+/// crf 16 by 0.036, 0.035, 0.035).
 const LEAST_NOISE: f64 = 6.0;
 /// Residuals further than so many times the noise count less.
 const DOUBT: f64 = 4.0;
@@ -95,7 +96,8 @@ fn unrefined(frame: &Frame<'_>, look: &Look, at_px: [f64; 2]) -> Result<Fit, Los
         contrast += (look.marker[p] - look.background[p]).powi(2);
         noise += look.noise[p].powi(2);
     }
-    // Samples of noise n / c, over a disc of area A, weighed by their distance from the centre: A / (4 pi) (n / c)^2 / A.
+    // Samples of noise n / c, over a disc of area A, weighed by their distance from the centre: A / (4 pi) (n / c)^2 /
+    // A.
     let variance = noise / (contrast * 4.0 * std::f64::consts::PI);
     let white_px2 = [variance, 0.0, variance];
     let covariance_px2 = white_px2.map(|v| v * look.inflation.powi(2));

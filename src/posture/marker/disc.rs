@@ -1,11 +1,12 @@
 //! One step of fitting a blurred disc to a window of one plane, by least squares.
 //!
-//! Model of a sample at (x, y), a disc of radius R at (cx, cy), r the distance from there, u = (x - cx) / R, v = (y - cy) / R:
-//! (1 - m) (b0 + b1 u + b2 v) + m a, with m = Phi((R - r) / s), Phi the normal distribution function. The surround has a
-//! gradient of its own and the disc has none, as a sticker does not take part in the shading of what lies beneath; one gradient
-//! for both biases a centre on a finger by up to 0.09 px at 1280x720 and 0.15 px at 480x270. Unknown: the [`Ground`] (b0, b1,
-//! b2, a) of each plane, the [`Shape`] (cx, cy, R, s) of all planes. A step is Gauss-Newton's; the ground is eliminated, so
-//! steps of planes add up.
+//! Model of a sample at (x, y), a disc of radius R at (cx, cy), r the distance from there, u = (x - cx) / R, v = (y -
+//! cy) / R:
+//! (1 - m) (b0 + b1 u + b2 v) + m a, with m = Phi((R - r) / s), Phi the normal distribution function. The surround has
+//! a gradient of its own and the disc has none, as a sticker does not take part in the shading of what lies beneath;
+//! one gradient for both biases a centre on a finger by up to 0.09 px at 1280x720 and 0.15 px at 480x270. Unknown: the
+//! [`Ground`] (b0, b1, b2, a) of each plane, the [`Shape`] (cx, cy, R, s) of all planes. A step is Gauss-Newton's; the
+//! ground is eliminated, so steps of planes add up.
 
 use nalgebra::{Matrix4, SMatrix, SVector, Vector4};
 use wide::f32x4;

@@ -1,11 +1,12 @@
 //! How much larger centres' errors are than independent noise would make them.
 //!
-//! A codec moves and smooths whole blocks, and holds back slow movements for a while: errors are larger than residuals tell, by
-//! a factor that hardly depends on the marker but on the video. It shows in how the distance of two markers on one segment
-//! varies, which is that of one marker from its steadiest partner. What a distance varies by is not all error where skin
-//! stretches or no two markers belong together: the factor ends at some times what the tracks' trembling shows. Trembling is
-//! the fourth difference of a coordinate, which holds next to nothing of a smooth movement, and 70 times the variance of
-//! errors that are independent from frame to frame (those that last are not in it).
+//! A codec moves and smooths whole blocks, and holds back slow movements for a while: errors are larger than residuals
+//! tell, by a factor that hardly depends on the marker but on the video. It shows in how the distance of two markers on
+//! one segment varies, which is that of one marker from its steadiest partner. What a distance varies by is not all
+//! error where skin stretches or no two markers belong together: the factor ends at some times what the tracks'
+//! trembling shows. Trembling is the fourth difference of a coordinate, which holds next to nothing of a smooth
+//! movement, and 70 times the variance of errors that are independent from frame to frame (those that last are not in
+//! it).
 //!
 //! Positions are not changed by this, only their standard errors.
 

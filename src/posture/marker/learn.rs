@@ -13,7 +13,8 @@ const BLURS_PX: [f64; 4] = [0.6, 1.0, 1.8, 3.2];
 const INFLATION: f64 = 1.0;
 
 impl Look {
-    /// The looks of the marker of about `radius_px` (within a quarter) at about `at_px`; none where there is no such disc.
+    /// The looks of the marker of about `radius_px` (within a quarter) at about `at_px`; none where there is no such
+    /// disc.
     pub(crate) fn learn(
         frame: &Frame<'_>,
         siting: Siting,
@@ -61,7 +62,8 @@ impl Look {
         })
     }
 
-    /// The looks of the marker of any outline of about `radius_px` at about `at_px`; none where nothing compact stands out.
+    /// The looks of the marker of any outline of about `radius_px` at about `at_px`; none where nothing compact stands
+    /// out.
     pub(crate) fn learn_blot(frame: &Frame<'_>, siting: Siting, at_px: [f64; 2], radius_px: f64) -> Option<Self> {
         let (blot, outline) = Blot::learn(frame, siting, at_px, radius_px)?;
         Some(Self {

@@ -1,7 +1,7 @@
 //! A marker's looks in the video's own planes: colours, size, blur, noise.
 //!
-//! Learned where the marker is first seen ([`super::learn`]) and kept up to date from the fits that follow. Samples are on the scale of 8
-//! bits, in the order Y', Cb, Cr; without chroma the last two are zero.
+//! Learned where the marker is first seen ([`super::learn`]) and kept up to date from the fits that follow. Samples are
+//! on the scale of 8 bits, in the order Y', Cb, Cr; without chroma the last two are zero.
 
 use super::blot::Blot;
 use super::fit::Fit;

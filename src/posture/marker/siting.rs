@@ -1,7 +1,7 @@
 //! Where chroma samples lie among the luma samples, told from the video itself.
 //!
-//! Headers are often silent or wrong, and a centre is biased by up to half a pixel where they are. The chroma's centre of a
-//! marker less the luma's is by how much the siting that was assumed is off.
+//! Headers are often silent or wrong, and a centre is biased by up to half a pixel where they are. The chroma's centre
+//! of a marker less the luma's is by how much the siting that was assumed is off.
 
 use crate::video::Frame;
 

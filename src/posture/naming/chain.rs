@@ -26,8 +26,8 @@ pub(crate) struct Chain {
 }
 
 impl Chain {
-    /// The chain of a layout: the needed markers, and those that have a colour in common with another one, for they help
-    /// to tell which is which.
+    /// The chain of a layout: the needed markers, and those that have a colour in common with another one, for they
+    /// help to tell which is which.
     ///
     /// A segment follows the one that a joint hangs it on. A segment in no joint is taken to follow, and to be followed
     /// by, its neighbours in the file.
@@ -178,7 +178,8 @@ mod tests {
     fn hand(index: &str, thumb: &str, tip: &str) -> Layout {
         let text = format!(
             "[markers]\nwrist = '{index}'\nmcp = '{index}'\npip = '{index}'\ncmc = '{thumb}'\nip = '{tip}'\n\
-            [segments]\nhand = ['wrist', 'mcp']\nproximal = ['mcp', 'pip']\nbase = ['wrist', 'cmc']\nend = ['cmc', 'ip']\n\
+            [segments]\nhand = ['wrist', 'mcp']\nproximal = ['mcp', 'pip']\nbase = ['wrist', 'cmc']\nend = ['cmc', \
+            'ip']\n\
             [joints]\nJ1 = ['hand', 'proximal']\nT = ['base', 'end']\n"
         );
         Layout::parse(&text, Path::new("m.toml")).unwrap()
@@ -228,7 +229,8 @@ mod tests {
     fn markers_of_a_common_colour_help_though_no_joint_asks() {
         let text = |colour: &str| {
             format!(
-                "[markers]\na = '{colour}'\nb = '#ff0000'\nc = '#ff0000'\nd = '#ff0000'\ne = '#ff0000'\nf = '{colour}'\n\
+                "[markers]\na = '{colour}'\nb = '#ff0000'\nc = '#ff0000'\nd = '#ff0000'\ne = '#ff0000'\nf = \
+                 '{colour}'\n\
                 [segments]\nhand = ['a', 'b']\nproximal = ['c', 'd']\nmiddle = ['e', 'f']\n\
                 [joints]\nJ1 = ['hand', 'proximal']\n"
             )

@@ -1,8 +1,9 @@
 //! Which spot is which marker: what a naming costs, and the cheapest namings of a frame.
 //!
-//! A naming gives each marker of the chain a spot or none. Its cost is about minus the logarithm of how likely it is: colours
-//! as the marker file says but for light and white balance, markers of one size, neighbours near one another, no turns that a
-//! finger can't make, no crossing. Costs are weights that were set by hand on scenes, not probabilities.
+//! A naming gives each marker of the chain a spot or none. Its cost is about minus the logarithm of how likely it is:
+//! colours as the marker file says but for light and white balance, markers of one size, neighbours near one another,
+//! no turns that a finger can't make, no crossing. Costs are weights that were set by hand on scenes, not
+//! probabilities.
 
 use super::{Chain, Point};
 use crate::posture::find::Paint;

@@ -1,9 +1,9 @@
 //! What was tracked, drawn on a copy of each frame and written as a video with the same times.
 //!
 //! In: each frame, what it shows of each marker, the segments between markers, texts of the angles. Out: an H.264 file,
-//! upright, 8-bit 4:2:0. A marker that is seen has a circle of its radius, a cross at its centre and its name; one that is
-//! lost, a slanted cross where it was expected, and its name with the reason in a corner. Nothing is converted to red, green
-//! and blue: the drawing is done in the video's own planes.
+//! upright, 8-bit 4:2:0. A marker that is seen has a circle of its radius, a cross at its centre and its name; one that
+//! is lost, a slanted cross where it was expected, and its name with the reason in a corner. Nothing is converted to
+//! red, green and blue: the drawing is done in the video's own planes.
 
 mod canvas;
 mod labels;

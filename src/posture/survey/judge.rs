@@ -79,7 +79,8 @@ impl Surveyor<'_> {
         if hypothesis.frames == 0 {
             return f64::INFINITY;
         }
-        // From the first frame that could show all its spots: those that come late are as good, those that vanish are not.
+        // From the first frame that could show all its spots: those that come late are as good, those that vanish are
+        // not.
         let born = hypothesis.naming.iter().flatten().map(|&spot| self.spots.all[spot].points[0].frame).max();
         let span = self.looked.len() - self.looked.partition_point(|&frame| Some(frame) < born);
         let absent = 1.0 - hypothesis.frames as f64 / span.max(1) as f64;

@@ -2,9 +2,9 @@
 //!
 //! A survey and then frame after frame go in; for each frame and marker a centre or the reason of its loss comes out. A
 //! marker is looked for where it should be by its motion; if it is not there, about that place; if it stays away, where
-//! the segments that it belongs to allow it, and at last in the whole frame, at growing intervals. It is taken back only
-//! where size, colour, the lengths of its segments and the order along the finger agree and nothing else fits about as
-//! well; till then it is lost. Markers that can't be told apart for a while are both lost.
+//! the segments that it belongs to allow it, and at last in the whole frame, at growing intervals. It is taken back
+//! only where size, colour, the lengths of its segments and the order along the finger agree and nothing else fits
+//! about as well; till then it is lost. Markers that can't be told apart for a while are both lost.
 
 mod agree;
 mod loose;

@@ -130,7 +130,8 @@ pub(in crate::posture) fn film<'a>(scene: &Scene, layout: &'a Layout, pictures: 
     Film { layout, info: info(scene.options()), pictures, truth }
 }
 
-/// A film of discs, one for each marker of the layout at `places(frame)[marker]`, over `stage`; `cover` draws over them.
+/// A film of discs, one for each marker of the layout at `places(frame)[marker]`, over `stage`; `cover` draws over
+/// them.
 pub(in crate::posture) fn discs<'a>(
     layout: &'a Layout,
     stage: &Stage,

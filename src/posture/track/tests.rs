@@ -98,7 +98,8 @@ fn distinct_pairs_and_all_of_one_colour_keep_their_names() {
 #[test]
 fn a_mark_on_each_joint() {
     let text = format!(
-        "[markers]\na = '{red}'\nb = '{red}'\nc = '{red}'\nd = '{red}'\n[segments]\np = ['a', 'b']\nm = ['b', 'c']\nd = ['c', 'd']\n\
+        "[markers]\na = '{red}'\nb = '{red}'\nc = '{red}'\nd = '{red}'\n[segments]\np = ['a', 'b']\nm = ['b', 'c']\nd \
+         = ['c', 'd']\n\
         [joints]\nJ2 = ['p', 'm']\nJ3 = ['m', 'd']\n",
         red = hex(RED)
     );
@@ -115,7 +116,8 @@ fn hand(index: [u8; 3], thumb: [u8; 3], more: &str) -> Layout {
         names.iter().chain(&thumbs).map(|(name, colour)| format!("{name} = '{}'\n", hex(*colour))).collect();
     let text = format!(
         "flexion = 'clockwise'\n[markers]\n{colours}[segments]\nhand = ['wrist', 'mcp']\nproximal = ['mcp', 'pip']\n\
-        middle = ['pip', 'dip']\ndistal = ['dip', 'tip']\nbase = ['wrist', 'cmc']\nthumb = ['cmc', 'ip']\nnail = ['ip', 'end']\n\
+        middle = ['pip', 'dip']\ndistal = ['dip', 'tip']\nbase = ['wrist', 'cmc']\nthumb = ['cmc', 'ip']\nnail = \
+        ['ip', 'end']\n\
         [joints]\nJ1 = ['hand', 'proximal']\nJ2 = ['proximal', 'middle']\nJ3 = ['middle', 'distal']\n\
         T1 = ['base', 'thumb']\nT2 = ['thumb', 'nail']\n{more}"
     );

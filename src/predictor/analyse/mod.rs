@@ -1,7 +1,7 @@
 //! `lunula analyse`: which combinations of forces depend on which combinations of photodiodes (Fig. 98).
 //!
-//! In: a model file. Out: the singular values and modes of its Jacobian, targets over photodiodes; of a model that is not linear, the
-//! Jacobian at the middle of the training rows, which holds near there only.
+//! In: a model file. Out: the singular values and modes of its Jacobian, targets over photodiodes; of a model that is
+//! not linear, the Jacobian at the middle of the training rows, which holds near there only.
 
 mod report;
 mod results;
@@ -86,7 +86,8 @@ fn refuse_lost(predictor: &Predictor, jacobian: &ndarray::Array2<f64>, model: &P
         // What does not change with any voltage was constant, or is lost.
         let lost = row.iter().all(|value| value.abs() < f64::MIN_POSITIVE) && target.low < target.high;
         if lost || !row.iter().all(|value| value.is_finite()) {
-            let what = "what it has of the voltages is beyond what a number can hold (1e-308 to 1e308): train it on volts and newtons";
+            let what = "what it has of the voltages is beyond what a number can hold (1e-308 to 1e308): train it on \
+                        volts and newtons";
             return Err(PredictorError::Request(format!("{}: {}: {what}", model.display(), target.name)));
         }
     }

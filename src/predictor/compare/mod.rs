@@ -1,10 +1,11 @@
 //! The comparisons of section 5.4 (Fig. 105-113): models and sets of recordings over several people.
 //!
-//! In: of each person three repetitions of the touch protocol, a random touch recording and bending labelled with J2. Out: for each figure a
-//! [`Comparison`], RMSE by person with their mean and SD; as a table, as pictures, as Markdown.
+//! In: of each person three repetitions of the touch protocol, a random touch recording and bending labelled with J2.
+//! Out: for each figure a [`Comparison`], RMSE by person with their mean and SD; as a table, as pictures, as Markdown.
 //!
-//! The first two repetitions are trained on, the third validates; of the bending, the first half of its time is trained on and the second
-//! validates. What is reported was never trained on, and no network stops on it (5.3.1 validates on spiral 3 and stops on it too).
+//! The first two repetitions are trained on, the third validates; of the bending, the first half of its time is trained
+//! on and the second validates. What is reported was never trained on, and no network stops on it (5.3.1 validates on
+//! spiral 3 and stops on it too).
 
 mod comparison;
 mod measure;
@@ -29,7 +30,8 @@ pub use report::CompareReport;
 /// Compares models and sets; writes a table, pictures and `run.json` where `out` names a folder.
 ///
 /// # Errors
-/// [`PredictorError`] where there is nothing to tell. A model that can't be fitted to somebody's rows is a warning, and missing.
+/// [`PredictorError`] where there is nothing to tell. A model that can't be fitted to somebody's rows is a warning, and
+/// missing.
 pub fn compare(
     people: &[Person],
     options: &CompareOptions,

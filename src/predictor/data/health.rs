@@ -3,7 +3,8 @@
 use super::source::Source;
 use crate::log::piles;
 
-/// What is worth saying on a file's photodiodes. Rows that are left out for faults are not looked at; constant is one that has a single value.
+/// What is worth saying on a file's photodiodes. Rows that are left out for faults are not looked at; constant is one
+/// that has a single value.
 pub(super) fn warnings(source: &Source, keep_faults: bool) -> Vec<String> {
     let file = source.path.display();
     let mut told = Vec::new();

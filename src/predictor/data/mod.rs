@@ -1,14 +1,16 @@
 //! Tables and logs of the user into rows for the models (5.2).
 //!
-//! In: CSV or Parquet tables with `P1`.. in volts and the targets, as `lunula align` and anybody else writes them, or raw logs with a column
-//! `led` (section 3.1.2c), which are brought to the LED's own light by the same code as in align ([`LogReading`]). Out: a [`Dataset`] with what was left out and why
-//! ([`read_data`], [`read_files`]); voltages alone ([`read_inputs`]); rows of a stream, one at a time ([`RowStream`]).
+//! In: CSV or Parquet tables with `P1`.. in volts and the targets, as `lunula align` and anybody else writes them, or
+//! raw logs with a column `led` (section 3.1.2c), which are brought to the LED's own light by the same code as in align
+//! ([`LogReading`]). Out: a [`Dataset`] with what was left out and why ([`read_data`], [`read_files`]); voltages alone
+//! ([`read_inputs`]); rows of a stream, one at a time ([`RowStream`]).
 //!
-//! Conventions. A file is a recording; it is several where `session`, `subject` or `trajectory` change or `time_s` goes back. Where
-//! `session` or `subject` is told neither by the file nor with it, the file stands for it. A row with an empty cell that is needed is left out and counted; `nan`, `inf` or text
-//! there is an error, or with `drop_invalid` left out and counted. A row whose `sensor_status` (as align writes it) says that a photodiode in use is
-//! saturated or without ambient light is left out and counted, unless faults are kept. A row that is left out for several reasons is counted
-//! once: as a fault, else as invalid, else as empty. In a raw log `nan` and `NA` mean missing, as in align.
+//! Conventions. A file is a recording; it is several where `session`, `subject` or `trajectory` change or `time_s` goes
+//! back. Where `session` or `subject` is told neither by the file nor with it, the file stands for it. A row with an
+//! empty cell that is needed is left out and counted; `nan`, `inf` or text there is an error, or with `drop_invalid`
+//! left out and counted. A row whose `sensor_status` (as align writes it) says that a photodiode in use is saturated or
+//! without ambient light is left out and counted, unless faults are kept. A row that is left out for several reasons is
+//! counted once: as a fault, else as invalid, else as empty. In a raw log `nan` and `NA` mean missing, as in align.
 
 mod columns;
 mod file;
@@ -249,8 +251,8 @@ pub fn read_files(data: &[DataFile], wanted: &Wanted) -> Result<Read, DataError>
     Ok(Read { data, files, failed, warnings })
 }
 
-/// Reads the voltages of `inputs` from a table or raw log, read as `log` says; targets need not be there. With `drop_invalid`, a cell that is no
-/// finite number is NaN rather than an error.
+/// Reads the voltages of `inputs` from a table or raw log, read as `log` says; targets need not be there. With
+/// `drop_invalid`, a cell that is no finite number is NaN rather than an error.
 ///
 /// # Errors
 /// [`DataError`].

@@ -171,7 +171,8 @@ impl Source {
             let (rows, status) = unknown;
             let path = self.path.display();
             self.warnings.push(format!(
-                "{path}: `sensor_status` says something that lunula does not know in {rows} rows, first `{status}`; they are used"
+                "{path}: `sensor_status` says something that lunula does not know in {rows} rows, first `{status}`; \
+                 they are used"
             ));
         }
         Ok(())

@@ -1,13 +1,14 @@
 //! Rows of a stream, each as soon as its line is complete: for answers with one row's latency.
 //!
-//! In: lines of CSV, the names of the columns first; columns in any order, those that are not needed are passed over unread. Out: one row's voltages
-//! into the caller's buffer. Nothing is allocated for a row once the longest line has been seen.
+//! In: lines of CSV, the names of the columns first; columns in any order, those that are not needed are passed over
+//! unread. Out: one row's voltages into the caller's buffer. Nothing is allocated for a row once the longest line has
+//! been seen.
 //!
-//! A cell may stand in double quotes and then hold commas, but no line break: whoever waits for a row can't wait for its next line. Empty
-//! lines are passed over. A last line without its end is a row.
+//! A cell may stand in double quotes and then hold commas, but no line break: whoever waits for a row can't wait for
+//! its next line. Empty lines are passed over. A last line without its end is a row.
 //!
-//! Of a log, with a column that says when the LED was on, each lit row is one, less the unlit row before it ([`Preceding`]): what comes after, between
-//! which a file's ambient light is interpolated, is not known yet.
+//! Of a log, with a column that says when the LED was on, each lit row is one, less the unlit row before it
+//! ([`Preceding`]): what comes after, between which a file's ambient light is interpolated, is not known yet.
 
 use std::collections::{HashMap, HashSet};
 use std::io::{BufRead, Read};
@@ -20,7 +21,8 @@ use crate::log::{LogError, LogReading, Preceding, Statuses, Verdict, led_state};
 const LONGEST: u64 = 1 << 20;
 
 /// How a stream's ambient light is taken away.
-const RULE: &str = "from each lit row the unlit row before it is taken away (of a file, the unlit light is interpolated at the row's own time)";
+const RULE: &str = "from each lit row the unlit row before it is taken away (of a file, the unlit light is \
+                    interpolated at the row's own time)";
 
 /// What a column of the stream is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,7 +42,8 @@ pub struct Row {
     pub line: u64,
     /// Seconds; NaN where not known.
     pub time_s: f64,
-    /// Whether a photodiode in use is saturated or without ambient light, as `sensor_status` says or the range that can be recorded.
+    /// Whether a photodiode in use is saturated or without ambient light, as `sensor_status` says or the range that can
+    /// be recorded.
     pub faulty: bool,
     /// Whether a cell is no finite number, or cells are too many or too few; only with `drop_invalid`.
     pub invalid: bool,
@@ -86,11 +89,12 @@ struct Dark {
 type Lit = Option<bool>;
 
 impl<'a, R: BufRead> RowStream<'a, R> {
-    /// Reads the line of names; `name` is the stream's in messages. With `drop_invalid`, a cell that is no finite number is NaN rather than an
-    /// error. `log` says how a log is read.
+    /// Reads the line of names; `name` is the stream's in messages. With `drop_invalid`, a cell that is no finite
+    /// number is NaN rather than an error. `log` says how a log is read.
     ///
     /// # Errors
-    /// No line of names, a photodiode that is not among them, two columns of one name; a stretch or stream of a file asked for.
+    /// No line of names, a photodiode that is not among them, two columns of one name; a stretch or stream of a file
+    /// asked for.
     pub fn new(
         from: R,
         name: &str,
@@ -192,10 +196,12 @@ impl<'a, R: BufRead> RowStream<'a, R> {
         notes
     }
 
-    /// Reads the next row's voltages into `x`, in the order of the photodiodes; NaN where a cell is empty. None at the stream's end.
+    /// Reads the next row's voltages into `x`, in the order of the photodiodes; NaN where a cell is empty. None at the
+    /// stream's end.
     ///
     /// # Errors
-    /// A cell that is no finite number, or too many or too few cells (unless invalid ones are dropped); a stream that breaks.
+    /// A cell that is no finite number, or too many or too few cells (unless invalid ones are dropped); a stream that
+    /// breaks.
     ///
     /// # Panics
     /// If `x` does not hold one value for each photodiode.
@@ -267,7 +273,8 @@ impl<'a, R: BufRead> RowStream<'a, R> {
                         None => {
                             let text: String = String::from_utf8_lossy(cell).chars().take(40).collect();
                             let what = format!(
-                                "`{text}` is no finite number; correct it, leave it empty, or pass over such rows with --drop-invalid"
+                                "`{text}` is no finite number; correct it, leave it empty, or pass over such rows \
+                                 with --drop-invalid"
                             );
                             wrong.get_or_insert((column, what));
                         }

@@ -73,7 +73,8 @@ fn photodiodes_may_be_chosen_and_time_may_lack() {
 
 #[test]
 fn rows_are_left_out_and_counted_once() {
-    let text = "P1,P2,J2_deg,sensor_status\n1,2,3,ok\n,2,3,ok\n1,2,,\nnan,2,3,ok\n1,inf,,ok\n1,2,x,saturated: P2\n1,2,4,no ambient: P9\n2,1,5,ok\n";
+    let text = "P1,P2,J2_deg,sensor_status\n1,2,3,ok\n,2,3,ok\n1,2,,\nnan,2,3,ok\n1,inf,,ok\n1,2,x,saturated: \
+                P2\n1,2,4,no ambient: P9\n2,1,5,ok\n";
     let first = told(text, &angle());
     assert!(
         first.contains("a.csv:5: column `P1`: `NaN` is no finite number") && first.contains("--drop-invalid"),
@@ -319,7 +320,8 @@ fn streamed_as(text: &str, drop_invalid: bool, log: &LogReading) -> Result<Vec<(
 
 #[test]
 fn a_stream_gives_what_the_table_gives() {
-    let text = "\u{feff}note,P2,time_s,P1,sensor_status\r\n\"a, b\",2,0,1,ok\r\n\r\n,,0.04,1.5,\"saturated: P1, P2\"\r\nx,\"3\",0.02,-1e-3,saturated: P7";
+    let text = "\u{feff}note,P2,time_s,P1,sensor_status\r\n\"a, b\",2,0,1,ok\r\n\r\n,,0.04,1.5,\"saturated: P1, \
+                P2\"\r\nx,\"3\",0.02,-1e-3,saturated: P7";
     let rows = streamed(text, false).unwrap();
     let folder = Folder::new();
     let table = read_inputs(&folder.file("a.csv", text), &["P1", "P2"].map(str::to_owned), false, &plain()).unwrap();

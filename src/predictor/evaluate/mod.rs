@@ -1,8 +1,10 @@
-//! `lunula evaluate`: how far off a model is on recordings, and how far off its recipe is on recordings that are held out (5.3, 5.4).
+//! `lunula evaluate`: how far off a model is on recordings, and how far off its recipe is on recordings that are held
+//! out (5.3, 5.4).
 //!
-//! In: a model file and recordings. Out: errors by target, recording and magnitude; where the model has prediction intervals, how many rows
-//! they hold. With a part to be held out ([`By`]), the recipe is fitted anew without each trajectory, session or subject in turn. Shuffled rows only when asked for, and
-//! then beside whole trajectories, with how much they flatter.
+//! In: a model file and recordings. Out: errors by target, recording and magnitude; where the model has prediction
+//! intervals, how many rows they hold. With a part to be held out ([`By`]), the recipe is fitted anew without each
+//! trajectory, session or subject in turn. Shuffled rows only when asked for, and then beside whole trajectories, with
+//! how much they flatter.
 
 mod report;
 mod results;
@@ -28,7 +30,8 @@ use crate::stages::{Stages, Step, left_out};
 use report::Predicted;
 pub use report::{BinMerit, EvaluateReport, HeldOut, Magnitudes, Part, RecordingMerit};
 
-/// Up to this many parts, each part's coverage is of intervals that have not seen it; it takes fits as many as parts, squared.
+/// Up to this many parts, each part's coverage is of intervals that have not seen it; it takes fits as many as parts,
+/// squared.
 const MOST_NESTED: usize = 30;
 
 /// About how many bins of force or angle errors are told in.
@@ -198,7 +201,8 @@ fn hold_out(
     if shared > 0 && !shuffled {
         let rows = seen.rows();
         warnings.push(format!(
-            "{shared} of {rows} rows stand in other parts as well, digit by digit: where a recording was given twice, holding it out \
+            "{shared} of {rows} rows stand in other parts as well, digit by digit: where a recording was given twice, \
+             holding it out \
              hides nothing, and the errors flatter"
         ));
     }
@@ -235,7 +239,8 @@ fn hold_out(
     })
 }
 
-/// What would be done and what not; `files`: recordings; `intervals`: whether the model has prediction intervals, none where it is not known yet.
+/// What would be done and what not; `files`: recordings; `intervals`: whether the model has prediction intervals, none
+/// where it is not known yet.
 #[must_use]
 pub fn evaluate_plan(
     files: usize,

@@ -1,4 +1,5 @@
-//! Bars in groups, with error marks (Fig. 105-113): models by targets, "none, P1 .. P8 removed", errors by the size of the force.
+//! Bars in groups, with error marks (Fig. 105-113): models by targets, "none, P1 .. P8 removed", errors by the size of
+//! the force.
 
 use std::path::Path;
 

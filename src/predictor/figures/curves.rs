@@ -46,7 +46,8 @@ pub(in crate::predictor) struct CurvePoint {
     pub spread: Option<[f64; 2]>,
 }
 
-/// Draws the error of the best subset of each size; the photodiodes in it are written at the points, `all` is every one of `photodiodes`.
+/// Draws the error of the best subset of each size; the photodiodes in it are written at the points, `all` is every one
+/// of `photodiodes`.
 ///
 /// # Errors
 /// A file that can't be written.

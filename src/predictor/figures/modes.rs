@@ -1,4 +1,5 @@
-//! Singular values and modes of a Jacobian (Fig. 98): which combinations of forces depend on which combinations of photodiodes.
+//! Singular values and modes of a Jacobian (Fig. 98): which combinations of forces depend on which combinations of
+//! photodiodes.
 
 use std::path::Path;
 

@@ -34,7 +34,8 @@ impl<'a> Predicted<'a> {
         }
     }
 
-    /// Root mean square of predicted less measured over the rows in which both are known, and their number; none without such a row.
+    /// Root mean square of predicted less measured over the rows in which both are known, and their number; none
+    /// without such a row.
     #[must_use]
     pub(in crate::predictor) fn rmse(&self, target: usize) -> Option<(f64, usize)> {
         let measured = self.measured?;

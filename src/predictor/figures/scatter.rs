@@ -1,4 +1,5 @@
-//! Predicted against measured, a square panel a target, with the line on which they are the same (Fig. 95, 97, 100, 102, 104).
+//! Predicted against measured, a square panel a target, with the line on which they are the same (Fig. 95, 97, 100,
+//! 102, 104).
 
 use std::path::Path;
 

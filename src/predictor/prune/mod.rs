@@ -1,7 +1,8 @@
 //! `lunula prune`: which photodiodes could be removed (5.5, Fig. 113), for every subset rather than for one at a time.
 //!
-//! In: recordings to train on and others to validate on. Out: the linear model's errors on both for every subset of the photodiodes, the best of each size, and Fig. 113's
-//! bars. Of more photodiodes than can be tried in every way, the one that is missed least is removed again and again.
+//! In: recordings to train on and others to validate on. Out: the linear model's errors on both for every subset of the
+//! photodiodes, the best of each size, and Fig. 113's bars. Of more photodiodes than can be tried in every way, the one
+//! that is missed least is removed again and again.
 
 mod report;
 mod results;
@@ -42,7 +43,8 @@ pub fn prune(
     let shared = shared_rows(&row_hashes(&train.data), &row_hashes(&told.data));
     if shared > 0 {
         warnings.push(format!(
-            "{shared} of {} rows to compare on are among those trained on; their errors flatter. Name recordings that are not",
+            "{shared} of {} rows to compare on are among those trained on; their errors flatter. Name recordings that \
+             are not",
             told.data.rows()
         ));
     }

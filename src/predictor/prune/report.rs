@@ -19,7 +19,8 @@ pub struct PruneRow {
     pub train_rmse: Option<ByTarget<f64>>,
     /// On the rows validated on.
     pub validate_rmse: Option<ByTarget<f64>>,
-    /// What subsets are compared by: the mean over targets of the validation RMSE over the target's SD on the training rows.
+    /// What subsets are compared by: the mean over targets of the validation RMSE over the target's SD on the training
+    /// rows.
     pub score: Option<f64>,
 }
 

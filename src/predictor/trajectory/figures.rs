@@ -36,7 +36,8 @@ fn is_near(a: [f64; 2], b: [f64; 2], size: [f64; 2]) -> bool {
     (0..2).all(|k| (a[k] - b[k]).abs() < NEAR * size[k])
 }
 
-/// The shear's path as seen from above, in the colours of three thirds of the pressing, in the circle that friction allows at most (Fig. 90, 93).
+/// The shear's path as seen from above, in the colours of three thirds of the pressing, in the circle that friction
+/// allows at most (Fig. 90, 93).
 pub(super) fn draw_path(
     options: &TrajectoryOptions,
     motion: &ForceMotion,

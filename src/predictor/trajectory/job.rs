@@ -1,4 +1,5 @@
-//! The trajectory job: options in, a table with its report and pictures out; the one entry that command line and pipelines call.
+//! The trajectory job: options in, a table with its report and pictures out; the one entry that command line and
+//! pipelines call.
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};

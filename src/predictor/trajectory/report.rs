@@ -147,14 +147,15 @@ impl ForceFigures {
         let judged = self.rates.as_ref().and_then(|rates| Some((rates.relative_per_s?, rates.over_share?)));
         if let Some((relative, share)) = judged.filter(|_| !self.keeps_limit) {
             warnings.push(format!(
-                    "forces change by up to {:.2} of themselves a second; equation 19 allows {:.2} for {:.0} % at {} s, which {:.0} % of the time is \
+                "forces change by up to {:.2} of themselves a second; equation 19 allows {:.2} for {:.0} % at {} \
+                     s, which {:.0} % of the time is \
                      exceeded; choose longer --seconds or lower rates",
-                    relative,
-                    self.limit_per_s,
-                    100.0 * options.error,
-                    options.tau_s,
-                    100.0 * share
-                ));
+                relative,
+                self.limit_per_s,
+                100.0 * options.error,
+                options.tau_s,
+                100.0 * share
+            ));
         }
         if options.soft_s == 0.0 && self.spiral.is_some() {
             warnings.push(
@@ -164,7 +165,8 @@ impl ForceFigures {
         }
         if let Some(spiral) = self.spiral.as_ref().filter(|spiral| options.seconds < spiral.shortest_printed_s) {
             warnings.push(format!(
-                "{} s are less than the {:.0} s of equation 26: less than a circle for each newton of shear; choose longer --seconds, or a smaller --fs or --fz-max",
+                "{} s are less than the {:.0} s of equation 26: less than a circle for each newton of shear; choose \
+                 longer --seconds, or a smaller --fs or --fz-max",
                 options.seconds, spiral.shortest_printed_s
             ));
         }

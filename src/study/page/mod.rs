@@ -1,8 +1,10 @@
-//! The study's page: every data figure of the thesis with its counterpart, and every statement of its text beside what came out.
+//! The study's page: every data figure of the thesis with its counterpart, and every statement of its text beside what
+//! came out.
 //!
-//! In: folders of results, each of a [`Part`]; several of a part are of several subjects, and the first is shown. Out, in a folder: `study.html`, self-contained but
-//! for links to `tables/`, copies of the parts' tables; `statements.csv`; `numbers.json`, all numbers that statements are judged by. What is missing is said in
-//! its place. Nothing of these files hangs on where or when they were made.
+//! In: folders of results, each of a [`Part`]; several of a part are of several subjects, and the first is shown. Out,
+//! in a folder: `study.html`, self-contained but for links to `tables/`, copies of the parts' tables; `statements.csv`;
+//! `numbers.json`, all numbers that statements are judged by. What is missing is said in its place. Nothing of these
+//! files hangs on where or when they were made.
 
 mod figures;
 mod parts;
@@ -169,15 +171,20 @@ fn counts(judged: &[&Judged]) -> [usize; 3] {
 fn introduce(page: &mut Page, options: &PageOptions, judged: &[Judged]) {
     if options.phantom {
         page.paragraph(
-            "A phantom is no people. Every recording behind this page was generated: photographs, videos and logs of formulae whose sizes were assumed after the \
-             thesis' words. That a statement agrees says that its explanation is sufficient, or just that the formula was made after it; that it does not says \
-             that the thesis' figure needs something that the phantom lacks, or has in another size. Absolute errors are the assumptions' and forecast nothing \
+            "A phantom is no people. Every recording behind this page was generated: photographs, videos and logs of \
+             formulae whose sizes were assumed after the \
+             thesis' words. That a statement agrees says that its explanation is sufficient, or just that the formula \
+             was made after it; that it does not says \
+             that the thesis' figure needs something that the phantom lacks, or has in another size. Absolute errors \
+             are the assumptions' and forecast nothing \
              for a sensor on a finger.",
         );
     }
     page.paragraph(
-        "Each figure below is the counterpart of the thesis' figure of the same number. Each table sets what the thesis' text states beside what came out here; what \
-         was taken for \"little\", \"about\" or \"comparable\" stands with it, and nothing but the numbers decides the verdict.",
+        "Each figure below is the counterpart of the thesis' figure of the same number. Each table sets what the \
+         thesis' text states beside what came out here; what \
+         was taken for \"little\", \"about\" or \"comparable\" stands with it, and nothing but the numbers decides \
+         the verdict.",
     );
     let all: Vec<&Judged> = judged.iter().collect();
     let mut rows: Vec<Vec<String>> = SECTIONS

@@ -1,8 +1,8 @@
 //! A photodiode's output over the driving signal, averaged over cycles, rising and falling apart (Fig. 25, 28, 31, 34).
 //!
-//! The range is cut into bins of one width. Of each leg, the outputs and the driving values of a bin are averaged, and the way from bin to bin is
-//! taken as straight; what that says at the bin's middle is the leg's value there. Mean and SD (n - 1) are over legs. A bin in which a leg has no row is
-//! missing for that leg.
+//! The range is cut into bins of one width. Of each leg, the outputs and the driving values of a bin are averaged, and
+//! the way from bin to bin is taken as straight; what that says at the bin's middle is the leg's value there. Mean and
+//! SD (n - 1) are over legs. A bin in which a leg has no row is missing for that leg.
 
 use super::cycles::Leg;
 

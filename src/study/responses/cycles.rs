@@ -1,8 +1,9 @@
 //! Cycles of a driving signal, found from the signal itself (3.3: five at 0.05 Hz, six at 0.1 Hz, as people do them).
 //!
-//! In: time and a force or angle that goes up and down. Out: its legs, rising and falling in turn, each from one turning point to the next. A turning
-//! point is where the signal comes back by half of its range; so neither noise nor a halting hand makes one. A leg counts where it covers
-//! [`WHOLE`] of the range and no gap in time; the others are cut off, and counted as such. Nothing is said of the time before the first and after the last turn.
+//! In: time and a force or angle that goes up and down. Out: its legs, rising and falling in turn, each from one
+//! turning point to the next. A turning point is where the signal comes back by half of its range; so neither noise nor
+//! a halting hand makes one. A leg counts where it covers [`WHOLE`] of the range and no gap in time; the others are cut
+//! off, and counted as such. Nothing is said of the time before the first and after the last turn.
 
 use std::ops::Range;
 

@@ -1,4 +1,5 @@
-//! Pictures of a recording: forces over time, outputs over time and over the driving signal at their places on the nail, J3 over J2.
+//! Pictures of a recording: forces over time, outputs over time and over the driving signal at their places on the
+//! nail, J3 over J2.
 
 use std::path::Path;
 

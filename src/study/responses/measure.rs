@@ -1,16 +1,21 @@
-//! What the words of 3.3 speak of, as numbers: sensitivity, direction, hysteresis, repeatability, phase, symmetry, range of sensitivity.
+//! What the words of 3.3 speak of, as numbers: sensitivity, direction, hysteresis, repeatability, phase, symmetry,
+//! range of sensitivity.
 //!
 //! All of it is told from the averaged [`Curve`] of a photodiode; `middle` is halfway between rising and falling.
 //!
 //! - `range_V`: greatest less least of the middle. `sensitivity_share`: that over the greatest of all photodiodes.
-//! - `slope_V_per_N` or `_per_deg`: of the straight line through the middle; `slope_low`, `slope_high` of its parts below and above zero, or below and
-//!   above the middle of the range where zero is not within.
-//! - `change_V`: at the range's upper end less at its lower one. `from_zero_to_low_V`, `from_zero_to_high_V`: from zero, or the end next to it, to the ends.
-//! - `hysteresis`: the largest gap between rising and falling over `range_V`; only where the range stands out from the cycles' spread.
+//! - `slope_V_per_N` or `_per_deg`: of the straight line through the middle; `slope_low`, `slope_high` of its parts
+//!   below and above zero, or below and above the middle of the range where zero is not within.
+//! - `change_V`: at the range's upper end less at its lower one. `from_zero_to_low_V`, `from_zero_to_high_V`: from
+//!   zero, or the end next to it, to the ends.
+//! - `hysteresis`: the largest gap between rising and falling over `range_V`; only where the range stands out from the
+//!   cycles' spread.
 //! - `sd_V`: the mean of the SD over cycles; `sd_share`: over `range_V`.
-//! - `phase_deg`: of the first harmonic against the driving signal's, positive where the output is late; `first_harmonic`: its share of the variance.
+//! - `phase_deg`: of the first harmonic against the driving signal's, positive where the output is late;
+//!   `first_harmonic`: its share of the variance.
 //! - `symmetry`: range of the even part over the sum of the ranges of even and odd part, about zero.
-//! - `lowest_at`, `dip_V`, `recovery_V`: from rest to the lowest value as the finger presses, and from there to the end.
+//! - `lowest_at`, `dip_V`, `recovery_V`: from rest to the lowest value as the finger presses, and from there to the
+//!   end.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -135,8 +140,8 @@ fn symmetry(middle: &[[f64; 2]], reach: f64) -> Option<f64> {
     (even + odd > 0.0).then(|| even / (even + odd))
 }
 
-/// Phase of the first harmonic behind the driving signal's (radians), its share of the variance, and the second's amplitude over the first's.
-/// A cycle is taken to go as a sine: the driving signal's value says how far it is.
+/// Phase of the first harmonic behind the driving signal's (radians), its share of the variance, and the second's
+/// amplitude over the first's. A cycle is taken to go as a sine: the driving signal's value says how far it is.
 fn harmonics(curve: &Curve) -> Option<[f64; 3]> {
     let line = |points: &[Option<super::curve::Point>]| -> Vec<[f64; 2]> {
         curve.at.iter().zip(points).filter_map(|(&at, point)| Some([at, (*point)?.mean])).collect()

@@ -1,11 +1,12 @@
 //! How photodiodes answer to a force or to bending that goes up and down slowly (3.3, Fig. 23 to 34).
 //!
-//! In: recordings of one subject, and which force or angle goes up and down. Out, in a folder: forces (or angles) over time (`moves`, Fig. 23, 26, 29),
-//! outputs over time at their places on the nail (`outputs`, Fig. 24, 27, 30, 32), outputs averaged over cycles (`averages`, Fig. 25, 28, 31, 34), for
-//! bending J3 over J2 (`coupling`, Fig. 33), each as PNG and SVG; `responses.csv`, the averages; `numbers.json`, what the thesis' words speak of (`measure`).
+//! In: recordings of one subject, and which force or angle goes up and down. Out, in a folder: forces (or angles) over
+//! time (`moves`, Fig. 23, 26, 29), outputs over time at their places on the nail (`outputs`, Fig. 24, 27, 30, 32),
+//! outputs averaged over cycles (`averages`, Fig. 25, 28, 31, 34), for bending J3 over J2 (`coupling`, Fig. 33), each
+//! as PNG and SVG; `responses.csv`, the averages; `numbers.json`, what the thesis' words speak of (`measure`).
 //!
-//! Cycles are found from the driving signal itself (`cycles`). Of several recordings, all cycles are averaged together and the first is drawn over time;
-//! bending is drawn over one cycle, as Fig. 32 is.
+//! Cycles are found from the driving signal itself (`cycles`). Of several recordings, all cycles are averaged together
+//! and the first is drawn over time; bending is drawn over one cycle, as Fig. 32 is.
 
 mod curve;
 mod cycles;

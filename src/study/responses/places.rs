@@ -1,10 +1,12 @@
 //! Where photodiodes sit on the nail, for pictures arranged as Fig. 24, 27, 30 and 32 are.
 //!
-//! Fig. 16 is a picture; its words and those of 3.3 say that the eight are laterally symmetric, that P1 and P2 are distal and P3 and P4 proximal, that
-//! P1 to P4 are over the middle (they answer alike to shear to either side, or not at all), P5 on the right and P7 on the left. P6 and P8 are taken for the
-//! proximal neighbours of P5 and P7; of those the thesis says nothing.
+//! Fig. 16 is a picture; its words and those of 3.3 say that the eight are laterally symmetric, that P1 and P2 are
+//! distal and P3 and P4 proximal, that P1 to P4 are over the middle (they answer alike to shear to either side, or not
+//! at all), P5 on the right and P7 on the left. P6 and P8 are taken for the proximal neighbours of P5 and P7; of those
+//! the thesis says nothing.
 
-/// Rows from distal to proximal, each from left to right as seen from above; an empty name is a place without a photodiode.
+/// Rows from distal to proximal, each from left to right as seen from above; an empty name is a place without a
+/// photodiode.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Places(pub Vec<Vec<String>>);
 
@@ -33,7 +35,8 @@ impl Places {
         }
     }
 
-    /// Rows of what `own` makes of a photodiode, those of `names` without a place in rows of their own below; none where there is no photodiode.
+    /// Rows of what `own` makes of a photodiode, those of `names` without a place in rows of their own below; none
+    /// where there is no photodiode.
     #[must_use]
     pub fn arrange<T>(&self, names: &[String], own: impl Fn(usize) -> T) -> Vec<Vec<Option<T>>> {
         let at = |name: &String| names.iter().position(|known| known == name).map(&own);

@@ -1,7 +1,8 @@
 //! A recording of one subject whose force or angle goes up and down, with all photodiodes.
 //!
-//! In: a table with `time_s`, `P1`.. in volts and forces or angles, as `lunula align` writes it, or a raw log whose LED goes on and off (3.1.2c).
-//! Out: [`Recording`], NaN where something is missing. A photodiode's value in a row in which the sensor had a fault is missing.
+//! In: a table with `time_s`, `P1`.. in volts and forces or angles, as `lunula align` writes it, or a raw log whose LED
+//! goes on and off (3.1.2c). Out: [`Recording`], NaN where something is missing. A photodiode's value in a row in which
+//! the sensor had a fault is missing.
 
 use std::path::{Path, PathBuf};
 

@@ -1,10 +1,12 @@
 //! What all photodiodes of a sensor do together.
 //!
-//! A photodiode answers where its range is a tenth of the greatest or more: phase, sign and loop of one that does not are those of noise. Means of shares are
-//! over those with a quarter or more.
+//! A photodiode answers where its range is a tenth of the greatest or more: phase, sign and loop of one that does not
+//! are those of noise. Means of shares are over those with a quarter or more.
 //!
-//! - `in_phase_share`, `same_sign_share`, `falling_share`: of those that answer; `more_above_share`: steeper above zero than below.
-//! - `hysteresis`, `sd_share`, `beyond_30_share`, `up_to_25_share`: means; `hysteresis_others`: without P1 and P2. `sd_V`: mean over all.
+//! - `in_phase_share`, `same_sign_share`, `falling_share`: of those that answer; `more_above_share`: steeper above zero
+//!   than below.
+//! - `hysteresis`, `sd_share`, `beyond_30_share`, `up_to_25_share`: means; `hysteresis_others`: without P1 and P2.
+//!   `sd_V`: mean over all.
 //! - of each: `sensitivity_share`, range over the greatest, and `rank`, 1 the greatest.
 
 use super::measure::mean;

@@ -21,7 +21,8 @@ pub(super) const ALL: &[Statement] = &[
         section: "4.3.3",
         figure: "76",
         says: "The steady diameters are not linearly proportional to the force",
-        stated: "not proportional (taken: first and last tenth of the load differ by a tenth or more, in capillary and vein)",
+        stated: "not proportional (taken: first and last tenth of the load differ by a tenth or more, in capillary \
+                 and vein)",
         test: All(&[
             AtLeast("section.fig76.capillary_disproportion", 0.1),
             AtLeast("section.fig76.vein_disproportion", 0.1),
@@ -235,7 +236,8 @@ pub(super) const ALL: &[Statement] = &[
         id: "presses-distal-longer",
         section: "4.3.4",
         figure: "82",
-        says: "Compared to proximal touching, the time constants are noticeably longer, unloading much longer than loading",
+        says: "Compared to proximal touching, the time constants are noticeably longer, unloading much longer than \
+               loading",
         stated: "longer than proximal; unloading longer than loading",
         test: All(&[
             Below("presses.fig80.loading_s", "presses.fig82.loading_s", 1.0),

@@ -1,8 +1,9 @@
 //! What the thesis' text says of its data figures, as data, and whether a study's numbers agree.
 //!
-//! Each [`Statement`] is words of the thesis, in short, with the figure or relation that it states, and a [`Test`] on numbers by name; nothing else decides a
-//! [`Verdict`]. Where the thesis says "about", a quarter more or less is taken; where it says "little", "virtually no" or "comparable", what that is taken for
-//! stands in the statement's test and is told beside it.
+//! Each [`Statement`] is words of the thesis, in short, with the figure or relation that it states, and a [`Test`] on
+//! numbers by name; nothing else decides a [`Verdict`]. Where the thesis says "about", a quarter more or less is taken;
+//! where it says "little", "virtually no" or "comparable", what that is taken for stands in the statement's test and is
+//! told beside it.
 
 mod coloration;
 mod hemodynamics;

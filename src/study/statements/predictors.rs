@@ -316,7 +316,8 @@ pub(super) const ALL: &[Statement] = &[
         id: "110-linear",
         section: "5.4.1",
         figure: "110",
-        says: "With new random data the linear model performs better on average than the neural network for all three forces",
+        says: "With new random data the linear model performs better on average than the neural network for all three \
+               forces",
         stated: "linear better, each force",
         test: All(&[
             Below("compare.110.Fx_N.linear", "compare.110.Fx_N.network", 1.0),

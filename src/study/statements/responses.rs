@@ -191,7 +191,8 @@ pub(super) const ALL: &[Statement] = &[
         id: "longitudinal-cycles",
         section: "3.3.4",
         figure: "29",
-        says: "Longitudinal shear is cycled five times at 0.05 Hz between positive and negative 2 N at -3 N of normal force",
+        says: "Longitudinal shear is cycled five times at 0.05 Hz between positive and negative 2 N at -3 N of normal \
+               force",
         stated: "5 cycles, 0.05 Hz, -2 to 2 N, -3 N",
         test: All(&[
             Between("longitudinal.cycles", 5.0, 5.0),

@@ -1,5 +1,5 @@
-//! Tying the clocks over its settings: in how many frames the clock in the picture is read, and no clock at all; and labelling over longer
-//! and longer gaps.
+//! Tying the clocks over its settings: in how many frames the clock in the picture is read, and no clock at all; and
+//! labelling over longer and longer gaps.
 
 mod labels;
 

@@ -8,7 +8,8 @@ use super::{ERROR, SOLVING};
 use crate::tradeoff::rows::Row;
 use crate::tradeoff::timing::Timing;
 
-/// A row of a peer's table: `solver,rtol,error,microseconds,evaluations`; lines that begin with `#` say how it was made.
+/// A row of a peer's table: `solver,rtol,error,microseconds,evaluations`; lines that begin with `#` say how it was
+/// made.
 #[derive(Debug, serde::Deserialize)]
 struct Measured {
     solver: String,
@@ -65,8 +66,12 @@ mod tests {
     fn a_peers_table_is_read_with_its_comments_left_out() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("peers.csv");
-        std::fs::write(&path, "# how\nsolver,rtol,error,microseconds,evaluations\nA (C),1e-03,2e-3,100,5\nA (C) loose rates,1e-06,1e-5,200,\n")
-            .unwrap();
+        std::fs::write(
+            &path,
+            "# how\nsolver,rtol,error,microseconds,evaluations\nA (C),1e-03,2e-3,100,5\nA (C) loose \
+                               rates,1e-06,1e-5,200,\n",
+        )
+        .unwrap();
         let rows = read_peers(&path).unwrap();
         let settings: Vec<&str> = rows.iter().map(|row| row.setting.as_str()).collect();
         assert_eq!(settings, ["A (C), 1e-3", "A (C), 1e-6 (loose)"]);

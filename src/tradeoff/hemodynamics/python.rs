@@ -1,4 +1,5 @@
-//! Other solvers on the same responses: SciPy's and scikit-sundae's, and where the machine has them RADAU5, LSODA and CVODE themselves.
+//! Other solvers on the same responses: SciPy's and scikit-sundae's, and where the machine has them RADAU5, LSODA and
+//! CVODE themselves.
 
 use std::fmt::Write;
 
@@ -29,7 +30,8 @@ const BUDGET_S: [&str; 2] = ["2", "0.5"];
 /// In another language, with its own bench.
 const DIFFSOL: (&str, &str) = (
     "diffsol",
-    "cargo bench -p lunula-hemodynamics --bench transient -- --out FILE.csv measures it, and --peers FILE.csv takes it from there",
+    "cargo bench -p lunula-hemodynamics --bench transient -- --out FILE.csv measures it, and --peers FILE.csv takes \
+     it from there",
 );
 
 /// Measures them, where they are to be measured and there.

@@ -64,7 +64,8 @@ impl Python {
         Self { program: program.map(str::to_owned) }
     }
 
-    /// Whether `peer` can be run; if not, the report that says what is missing. `packages` as Python imports and as PyPI names them.
+    /// Whether `peer` can be run; if not, the report that says what is missing. `packages` as Python imports and as
+    /// PyPI names them.
     pub(in crate::tradeoff) fn has(&self, peer: &str, packages: &[(&str, &str)]) -> Result<(), PeerReport> {
         let Some(program) = &self.program else {
             return Err(PeerReport::missing(peer, "not measured; --peers does, where python3 has its packages"));

@@ -1,4 +1,5 @@
-//! Figures of other programs that were measured elsewhere: a `tradeoff.csv` of another run, or the table of the hemodynamics bench.
+//! Figures of other programs that were measured elsewhere: a `tradeoff.csv` of another run, or the table of the
+//! hemodynamics bench.
 
 use std::path::Path;
 
@@ -24,8 +25,9 @@ struct Measured {
     peer: Option<bool>,
 }
 
-/// Reads a table of other programs' figures: `job,setting,error,error_unit,run_s[,work,..]` as this program writes it, of which only rows
-/// with `peer` true are taken where there is such a column; or `solver,rtol,error,microseconds[,evaluations]` for hemodynamics.
+/// Reads a table of other programs' figures: `job,setting,error,error_unit,run_s[,work,..]` as this program writes it,
+/// of which only rows with `peer` true are taken where there is such a column; or
+/// `solver,rtol,error,microseconds[,evaluations]` for hemodynamics.
 ///
 /// # Errors
 /// A file that can't be read, or a row that is none, with its place.

@@ -1,7 +1,8 @@
 //! The predictors over their models, sizes and solvers: error against the time of a fit and of a prediction.
 //!
-//! Models are fitted to one set of recordings and their error is that on another, of random movement (5.3.1, Fig. 110). Solvers are given
-//! problems whose exact solution is known: small whole numbers, so that voltages and targets are exact and rounding is the only error.
+//! Models are fitted to one set of recordings and their error is that on another, of random movement (5.3.1, Fig. 110).
+//! Solvers are given problems whose exact solution is known: small whole numbers, so that voltages and targets are
+//! exact and rounding is the only error.
 
 mod python;
 
@@ -221,7 +222,8 @@ fn tell(fitted: &Predictor, test: &Dataset) -> Run<f64> {
     Ok((seconds, Some(mean_rmse(&seen, predicted.view()))))
 }
 
-/// Voltages about 3 V in steps of 2^-20, two of them alike but for so little; forces are small whole multiples of them: all exact.
+/// Voltages about 3 V in steps of 2^-20, two of them alike but for so little; forces are small whole multiples of them:
+/// all exact.
 fn exact(close_bits: i32) -> Dataset {
     let step = f64::exp2(-20.0);
     let wave = |row: usize, k: usize| (((row * (2 * k + 3) * 2_654_435_761) >> 7) % (1 << 20)) as f64 * step;

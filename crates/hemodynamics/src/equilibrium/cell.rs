@@ -1,10 +1,11 @@
 //! Boxes of lumens, and what an interval Newton step says of one.
 //!
-//! For any two states of a box the equations differ by a matrix times their difference, whose entries are slopes of functions of one
-//! lumen each and so lie in the ranges that [`Vessel`] gives. Eliminating the units leaves one interval number `D` for the determinant.
-//! Where 0 is not in it, the box holds at most one equilibrium; where the image of the box under the step lies within the box, it holds
-//! one (Brouwer). A venule in front of a capillary makes `p'` change its sign; where that happens for a single unit, this unit's lumen is
-//! eliminated last in place of the vein's, so that turning points of a branch need no care.
+//! For any two states of a box the equations differ by a matrix times their difference, whose entries are slopes of
+//! functions of one lumen each and so lie in the ranges that [`Vessel`] gives. Eliminating the units leaves one
+//! interval number `D` for the determinant. Where 0 is not in it, the box holds at most one equilibrium; where the
+//! image of the box under the step lies within the box, it holds one (Brouwer). A venule in front of a capillary makes
+//! `p'` change its sign; where that happens for a single unit, this unit's lumen is eliminated last in place of the
+//! vein's, so that turning points of a branch need no care.
 
 use super::interval::Interval;
 use super::network::{Network, Vessel};
@@ -47,8 +48,8 @@ pub(super) enum Last {
 }
 
 impl Last {
-    /// The lumen's step from `at` by `determinant * step = right`. Where the determinant may be 0 there is none, but where no step within
-    /// the box can make the equation hold, the box is known to be empty.
+    /// The lumen's step from `at` by `determinant * step = right`. Where the determinant may be 0 there is none, but
+    /// where no step within the box can make the equation hold, the box is known to be empty.
     pub(super) fn solve(self, cell: &Cell, at: f64, right: Interval, determinant: Interval) -> Result<Interval, Step> {
         let range = match self {
             Last::Vein => cell.vein,
@@ -62,7 +63,8 @@ impl Last {
 }
 
 impl Cell {
-    /// The lumens, more or less by `by`, or by this part of themselves where they are greater than 1; none is less than half of itself.
+    /// The lumens, more or less by `by`, or by this part of themselves where they are greater than 1; none is less than
+    /// half of itself.
     pub(super) fn about(vein: f64, units: &[f64], by: f64) -> Cell {
         let wide = |lumen: f64| {
             let by = by * lumen.max(1.0);
@@ -197,8 +199,8 @@ impl Cell {
         Some(Step::Image(Cell { vein: Interval::point(at_vein) + by, units }))
     }
 
-    /// In two: the range of a unit whose `p'` may be 0, or the vein's, whichever leaves the venous pressure more open; or the widest where
-    /// neither can be cut. `None` where all are narrower than `least` or nothing can be cut.
+    /// In two: the range of a unit whose `p'` may be 0, or the vein's, whichever leaves the venous pressure more open;
+    /// or the widest where neither can be cut. `None` where all are narrower than `least` or nothing can be cut.
     pub(super) fn cut(&self, network: &Network, least: f64) -> Option<[Cell; 2]> {
         if self.width() <= least {
             return None;
@@ -239,7 +241,8 @@ fn extent(range: Interval) -> f64 {
 }
 
 impl Slopes {
-    /// `f' / p'`, the flow's slope by the venous pressure, which is monotone in `f'` and in `w'`; `None` where `p'` may be 0.
+    /// `f' / p'`, the flow's slope by the venous pressure, which is monotone in `f'` and in `w'`; `None` where `p'` may
+    /// be 0.
     fn flow_by_venous(&self, venule: f64) -> Option<Interval> {
         if self.venous.contains(0.0) {
             return None;

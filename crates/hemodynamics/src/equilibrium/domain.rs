@@ -1,7 +1,7 @@
 //! The box in which the search begins, and where it cuts ranges.
 //!
-//! All flows go from the greater of `P_H`, `P_L` to the lesser, so every pressure of an equilibrium lies between the two, and every lumen
-//! between those at which a wall holds the one and the other.
+//! All flows go from the greater of `P_H`, `P_L` to the lesser, so every pressure of an equilibrium lies between the
+//! two, and every lumen between those at which a wall holds the one and the other.
 
 use super::cell::Cell;
 use super::interval::Interval;

@@ -1,13 +1,14 @@
 //! Eigenvalues of the model about a state, slow and fast ones to the same number of digits.
 //!
-//! The walls obey `l'' = (K + u p^T) l + (B + u q^T) l'` with diagonal `K`, `B` ([`Arrow`]), so the eigenvalues are the zeros of
+//! The walls obey `l'' = (K + u p^T) l + (B + u q^T) l'` with diagonal `K`, `B` ([`Arrow`]), so the eigenvalues are the
+//! zeros of
 //!
 //! `prod d_j(z) S(z)`, `d_j = z^2 - B_j z - K_j`, `S = 1 - sum u_j (p_j + q_j z) / d_j`.
 //!
-//! They are found all at once by the iteration of Ehrlich and Aberth (doi:10.1145/355588.365107), which needs only the logarithmic
-//! derivative of that product. No matrix with entries from 1 to 1e12 is decomposed, which would leave six digits of the slow ones. Walls
-//! that are the same, of which only the sum acts on the rest, are taken together: `m` of them have the zeros of `d_j` as eigenvalues
-//! `m - 1` times, and are one wall of `m` times the coupling in `S`.
+//! They are found all at once by the iteration of Ehrlich and Aberth (doi:10.1145/355588.365107), which needs only the
+//! logarithmic derivative of that product. No matrix with entries from 1 to 1e12 is decomposed, which would leave six
+//! digits of the slow ones. Walls that are the same, of which only the sum acts on the rest, are taken together: `m` of
+//! them have the zeros of `d_j` as eigenvalues `m - 1` times, and are one wall of `m` times the coupling in `S`.
 
 use num_complex::Complex64;
 
@@ -42,7 +43,8 @@ const MOST_ROUNDS: usize = 200;
 /// Rounds after which a step within rounding is taken for none: an eigenvalue of 0 has no digits of its own.
 const ROUGH_ROUNDS: usize = 40;
 
-/// All eigenvalues, those with the greatest real part first; `None` where the iteration does not settle or a coefficient is not finite.
+/// All eigenvalues, those with the greatest real part first; `None` where the iteration does not settle or a
+/// coefficient is not finite.
 pub(super) fn eigenvalues(arrow: &Arrow) -> Option<Vec<Eigenvalue>> {
     let groups = groups(arrow);
     let mut all = Vec::with_capacity(2 * arrow.by_lumen.len());

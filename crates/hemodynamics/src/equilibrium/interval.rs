@@ -1,8 +1,8 @@
 //! Intervals with outward rounding.
 //!
-//! Every operation is done in the nearest `f64` and its result moved outward by one step, so that the exact result of any numbers out of
-//! the operands lies in it. Nothing depends on the rounding mode or the processor. An interval that is not finite at both ends says
-//! nothing, and whoever meets one has to give up on it.
+//! Every operation is done in the nearest `f64` and its result moved outward by one step, so that the exact result of
+//! any numbers out of the operands lies in it. Nothing depends on the rounding mode or the processor. An interval that
+//! is not finite at both ends says nothing, and whoever meets one has to give up on it.
 
 use std::ops::{Add, Mul, Neg, Sub};
 

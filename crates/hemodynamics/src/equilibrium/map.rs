@@ -1,7 +1,8 @@
 //! Stability maps: over a load and over a factor on some parameters, whether a finger comes to rest.
 //!
-//! In: parameters, the symbols that are varied together, factors on their values, loads. Out: for every factor and load what
-//! [`equilibria`] says of it. The cells don't depend on each other: rows may be made one by one, in parallel ([`stability_row`]).
+//! In: parameters, the symbols that are varied together, factors on their values, loads. Out: for every factor and load
+//! what [`equilibria`] says of it. The cells don't depend on each other: rows may be made one by one, in parallel
+//! ([`stability_row`]).
 
 use super::{EquilibriumFault, LoadPath, Stability, equilibria};
 use crate::load::Inputs;
@@ -72,7 +73,8 @@ pub struct MapPlan {
     pub loads_pa: Vec<f64>,
 }
 
-/// One row of a map. An error where a parameter can't be used, where a load is not finite, or where equilibria can't be counted.
+/// One row of a map. An error where a parameter can't be used, where a load is not finite, or where equilibria can't be
+/// counted.
 pub fn stability_row(plan: &MapPlan, factor: f64) -> Result<MapRow, MapFault> {
     let multiplied = plan.symbols.iter().try_fold(plan.parameters.clone(), |parameters, &symbol| {
         let value = parameters.get(symbol).unwrap_or(f64::NAN);

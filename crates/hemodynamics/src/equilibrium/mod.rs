@@ -1,11 +1,13 @@
-//! Where the model comes to rest: all equilibria of a load, their stability, and the branches that they form over the load.
+//! Where the model comes to rest: all equilibria of a load, their stability, and the branches that they form over the
+//! load.
 //!
-//! In: a [`Model`] and the constant [`Inputs`] on it. Out: every state with open vessels at which nothing moves, each with its pressures and
-//! eigenvalues ([`equilibria`]); the one at which a finger rests ([`rest`]). In the thesis' words: the steady state of section 4.3.3, of
-//! which Figure 78 shows one for each load. There may be none (a vessel collapses) or several (the branch depends on the path).
+//! In: a [`Model`] and the constant [`Inputs`] on it. Out: every state with open vessels at which nothing moves, each
+//! with its pressures and eigenvalues ([`equilibria`]); the one at which a finger rests ([`rest`]). In the thesis'
+//! words: the steady state of section 4.3.3, of which Figure 78 shows one for each load. There may be none (a vessel
+//! collapses) or several (the branch depends on the path).
 //!
-//! How it is known that none is missed and none is spurious: module `search`. Lumens are right to 1e-14 away from folds; at a fold two
-//! equilibria nearer than 1e-6 D may be told as one that is [`Stability::Marginal`].
+//! How it is known that none is missed and none is spurious: module `search`. Lumens are right to 1e-14 away from
+//! folds; at a fold two equilibria nearer than 1e-6 D may be told as one that is [`Stability::Marginal`].
 
 mod cell;
 mod curve;
@@ -72,7 +74,8 @@ pub enum EquilibriumFault {
     },
     /// Too many branches of too many units.
     #[error(
-        "the search for all equilibria of {units} units was given up after {boxes} boxes of lumens; use fewer units, or units that are the same"
+        "the search for all equilibria of {units} units was given up after {boxes} boxes of lumens; use fewer units, \
+         or units that are the same"
     )]
     Boxes {
         /// Capillary units.
@@ -82,7 +85,8 @@ pub enum EquilibriumFault {
     },
     /// Too many equilibria.
     #[error(
-        "{units} units have more than {most} equilibria, one for each choice of who is open and who is not; use fewer units"
+        "{units} units have more than {most} equilibria, one for each choice of who is open and who is not; use fewer \
+         units"
     )]
     Equilibria {
         /// Capillary units.
@@ -92,7 +96,8 @@ pub enum EquilibriumFault {
     },
     /// Parameters or pressures whose products leave the range of numbers.
     #[error(
-        "the parameters or pressures are out of all proportion: k D / A has to be from 1e-6 to 1e30 Pa, N pi D^4 / (128 L mu) from 1e-60 to \
+        "the parameters or pressures are out of all proportion: k D / A has to be from 1e-6 to 1e30 Pa, N pi D^4 / \
+         (128 L mu) from 1e-60 to \
          1e20 m3/(s Pa), R_Vi at most 1e40 Pa s/m3, pressures at most 1e15 Pa"
     )]
     Range,
@@ -113,7 +118,8 @@ pub enum EquilibriumFault {
     },
     /// A branch could not be followed.
     #[error(
-        "the branch of equilibria could not be followed beyond a load of {load_pa} Pa; ask for loads that lie closer together"
+        "the branch of equilibria could not be followed beyond a load of {load_pa} Pa; ask for loads that lie closer \
+         together"
     )]
     Curve {
         /// Where, Pa.
@@ -121,7 +127,8 @@ pub enum EquilibriumFault {
     },
     /// There is no stable equilibrium.
     #[error(
-        "there is no stable equilibrium with open vessels at P_F1 = {} Pa, P_F2 = {} Pa{}; press less, or let walls touch (contact)",
+        "there is no stable equilibrium with open vessels at P_F1 = {} Pa, P_F2 = {} Pa{}; press less, or let walls \
+         touch (contact)",
         inputs.proximal_pa,
         inputs.distal_pa,
         if *unstable > 0 { format!(" ({unstable} are not stable)") } else { String::new() }
@@ -134,7 +141,8 @@ pub enum EquilibriumFault {
     },
     /// There are several stable equilibria.
     #[error(
-        "there are {stable} stable equilibria at P_F1 = {} Pa, P_F2 = {} Pa; which one is reached depends on the path: give the state to start from",
+        "there are {stable} stable equilibria at P_F1 = {} Pa, P_F2 = {} Pa; which one is reached depends on the \
+         path: give the state to start from",
         inputs.proximal_pa, inputs.distal_pa
     )]
     Several {
@@ -145,9 +153,9 @@ pub enum EquilibriumFault {
     },
 }
 
-/// All equilibria with open vessels (every lumen at least 1e-9 of its nominal diameter) under constant inputs, in the order of the vein's
-/// lumen. Empty where there are none. An error where an input is not finite, or where units that differ are so many that the branches
-/// can't be counted.
+/// All equilibria with open vessels (every lumen at least 1e-9 of its nominal diameter) under constant inputs, in the
+/// order of the vein's lumen. Empty where there are none. An error where an input is not finite, or where units that
+/// differ are so many that the branches can't be counted.
 pub fn equilibria(model: &Model, inputs: &Inputs) -> Result<Vec<Equilibrium>, EquilibriumFault> {
     check(inputs)?;
     let network = Network::new(model, inputs);
@@ -158,7 +166,8 @@ pub fn equilibria(model: &Model, inputs: &Inputs) -> Result<Vec<Equilibrium>, Eq
     roots.iter().map(|root| Equilibrium::of(model, inputs, root)).collect()
 }
 
-/// The one stable equilibrium under constant inputs. An error where there is none or where there are several, and those of [`equilibria`].
+/// The one stable equilibrium under constant inputs. An error where there is none or where there are several, and those
+/// of [`equilibria`].
 pub fn rest(model: &Model, inputs: &Inputs) -> Result<Equilibrium, EquilibriumFault> {
     let mut all = equilibria(model, inputs)?;
     let unstable = all.len();

@@ -1,14 +1,16 @@
 //! The model at rest as functions of one lumen each.
 //!
-//! A wall at rest holds the pressure `w(l) = P_ext + e (l - 1 - c(l))` inside, with `e = k D / A` and the contact force `c` over `k D`
-//! (0 where collapse is an error); it grows with the lumen `l`. Blood flows into the vessel from its far side, which is under `S`, at
-//! `f(l) = g l^4 (S - w(l))`, with `S = P_H` for a capillary and `S = P_L` for the vein (whose `f` is the outflow, negated). Behind a
-//! capillary stands its venule, so it wants the venous pressure `p(l) = w(l) - R_Vi f(l)`. An equilibrium is
+//! A wall at rest holds the pressure `w(l) = P_ext + e (l - 1 - c(l))` inside, with `e = k D / A` and the contact force
+//! `c` over `k D` (0 where collapse is an error); it grows with the lumen `l`. Blood flows into the vessel from its far
+//! side, which is under `S`, at `f(l) = g l^4 (S - w(l))`, with `S = P_H` for a capillary and `S = P_L` for the vein
+//! (whose `f` is the outflow, negated). Behind a capillary stands its venule, so it wants the venous pressure
+//! `p(l) = w(l) - R_Vi f(l)`. An equilibrium is
 //!
 //! `p_i(l_i) = w_V(l_V)` for every unit and `sum f_i(l_i) + f_V(l_V) = 0`.
 //!
-//! Nothing has to be inverted. Without contact `f' = g l^3 (4 h - 5 e l)` with `h = S - P_ext + e`, which has its only turning point at
-//! `l = 3 h / (5 e)`: the ranges of `f'` and `p' = w' - R f'` over an interval of lumens are known exactly but for rounding.
+//! Nothing has to be inverted. Without contact `f' = g l^3 (4 h - 5 e l)` with `h = S - P_ext + e`, which has its only
+//! turning point at `l = 3 h / (5 e)`: the ranges of `f'` and `p' = w' - R f'` over an interval of lumens are known
+//! exactly but for rounding.
 
 use super::interval::Interval;
 use crate::load::Inputs;

@@ -1,14 +1,14 @@
 //! The equations at rest in the form that does not cancel, solved by Newton's method in numbers.
 //!
-//! Where a venule resists a thousand times as much as the capillary before it, `p(l)` is a small difference of great pressures: the lumen
-//! is well known and the venous pressure that it wants is not. Here the venous pressure is taken as it is, `P = w_V(l_V)`, and with
-//! `t = 1 + G R`, `s = G / t`
+//! Where a venule resists a thousand times as much as the capillary before it, `p(l)` is a small difference of great
+//! pressures: the lumen is well known and the venous pressure that it wants is not. Here the venous pressure is taken
+//! as it is, `P = w_V(l_V)`, and with `t = 1 + G R`, `s = G / t`
 //!
 //! `w_i(l_i) - P_H + (P_H - P) / t_i = 0` and `sum s_i (P_H - P) + G_V (P_L - P) = 0`.
 //!
-//! With the slopes `alpha_i` of a unit's equation by its own lumen, `-beta_i` of it by the vein's lumen, `gamma_i` and `delta` of the
-//! balance, a Newton step is an elimination of the units one by one, the vein last; a unit at a turning point of its `p`, where `alpha` is
-//! about 0, is eliminated after the vein.
+//! With the slopes `alpha_i` of a unit's equation by its own lumen, `-beta_i` of it by the vein's lumen, `gamma_i` and
+//! `delta` of the balance, a Newton step is an elimination of the units one by one, the vein last; a unit at a turning
+//! point of its `p`, where `alpha` is about 0, is eliminated after the vein.
 
 use super::network::{Network, Vessel};
 

@@ -1,7 +1,8 @@
 //! Which equilibrium is reached from a state: where there are several, the path decides.
 //!
-//! The transient from the state under the constant load is solved until it comes to rest at one of the stable equilibria; the answer is
-//! that equilibrium as the search knows it, to its last digits, and when the walls were there.
+//! The transient from the state under the constant load is solved until it comes to rest at one of the stable
+//! equilibria; the answer is that equilibrium as the search knows it, to its last digits, and when the walls were
+//! there.
 
 use super::{Equilibrium, EquilibriumFault, Stability, equilibria};
 use crate::load::{Inputs, Load, Loads};
@@ -40,7 +41,8 @@ pub enum ReachFault {
     Transient(#[from] SolveFault),
     /// A distance to an equilibrium that is not positive.
     #[error(
-        "walls can't be told to be at rest within {within} nominal diameters; it has to be at least 1e-8 and less than 0.1"
+        "walls can't be told to be at rest within {within} nominal diameters; it has to be at least 1e-8 and less \
+         than 0.1"
     )]
     Within {
         /// What was asked for.
@@ -56,8 +58,8 @@ pub enum ReachFault {
     },
 }
 
-/// The stable equilibrium that is reached from a state under constant inputs, the walls at rest within `within` nominal diameters
-/// ([`AT_REST`]). An error where a vessel closes on the way or the walls don't come to rest.
+/// The stable equilibrium that is reached from a state under constant inputs, the walls at rest within `within` nominal
+/// diameters ([`AT_REST`]). An error where a vessel closes on the way or the walls don't come to rest.
 pub fn reached_from(model: &Model, inputs: &Inputs, start: &State, within: f64) -> Result<Reached, ReachFault> {
     if !(1e-8..0.1).contains(&within) {
         return Err(ReachFault::Within { within });

@@ -1,12 +1,13 @@
 //! All equilibria of a network with open vessels, by branch and prune.
 //!
-//! A box of lumens that holds every equilibrium is narrowed by the equations one by one and by interval Newton steps, thrown away where
-//! nothing is left of it, and cut in two where several equilibria may be in it. No box is thrown away but by a proof, so none is missed.
-//! An equilibrium is reported with a box that has been proved to hold exactly one, so none is spurious and none is counted twice.
-//! What is proved is proved of the products of parameters that the model has rounded once (`k D / A` and the like).
+//! A box of lumens that holds every equilibrium is narrowed by the equations one by one and by interval Newton steps,
+//! thrown away where nothing is left of it, and cut in two where several equilibria may be in it. No box is thrown away
+//! but by a proof, so none is missed. An equilibrium is reported with a box that has been proved to hold exactly one,
+//! so none is spurious and none is counted twice. What is proved is proved of the products of parameters that the model
+//! has rounded once (`k D / A` and the like).
 //!
-//! Near a fold two equilibria approach each other as the root of the load's distance; where they can't be told from each other or from
-//! none within rounding (nearer than [`NARROWEST`]), the place is reported once, as not certified.
+//! Near a fold two equilibria approach each other as the root of the load's distance; where they can't be told from
+//! each other or from none within rounding (nearer than [`NARROWEST`]), the place is reported once, as not certified.
 
 use super::cell::{Cell, Step};
 use super::domain::first_box;
@@ -123,7 +124,8 @@ struct Proof {
 }
 
 impl Proof {
-    /// Whether both prove the same equilibrium: the one's lies where the other's is the only one, or both lie where there is at most one.
+    /// Whether both prove the same equilibrium: the one's lies where the other's is the only one, or both lie where
+    /// there is at most one.
     fn is_that_of(&self, other: &Proof, network: &Network) -> bool {
         if other.image.within(&self.around) || self.image.within(&other.around) {
             return true;

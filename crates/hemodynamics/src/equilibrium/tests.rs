@@ -121,7 +121,8 @@ const EIGENVALUE: f64 = 1e-14;
 
 #[test]
 fn slow_and_fast_eigenvalues_have_as_many_digits() {
-    // From the same equations in 60 digits: the Jacobian by central differences of 1e-20, its eigenvalues by QR (mpmath).
+    // From the same equations in 60 digits: the Jacobian by central differences of 1e-20, its eigenvalues by QR
+    // (mpmath).
     let slow_to_fast: [(Model, Inputs, [f64; 6]); 4] = [
         (
             thesis(Collapse::Error),

@@ -85,8 +85,9 @@ fn none_is_missed_that_newton_finds_from_anywhere() {
 
 #[test]
 fn with_contact_the_indices_add_up_to_one() {
-    // Walls that can't close keep equilibria from leaving through the boundary, so the sum of the signs of the determinants is that of
-    // walls so stiff that they don't move: one. A single equilibrium missed or invented would change it.
+    // Walls that can't close keep equilibria from leaving through the boundary, so the sum of the signs of the
+    // determinants is that of walls so stiff that they don't move: one. A single equilibrium missed or invented would
+    // change it.
     let mut random = Random(5);
     let mut counts = [0; 4];
     for k in 0..1500 {

@@ -1,7 +1,8 @@
 //! Units that are the same (under the same load): exchanging them takes an equilibrium to an equilibrium.
 //!
-//! Of all orders of their lumens the search looks at the growing one alone; the others are written down afterwards. So `m` equal units
-//! take as many boxes as ways to share them out over their branches, not as many as branches to the power of `m`.
+//! Of all orders of their lumens the search looks at the growing one alone; the others are written down afterwards. So
+//! `m` equal units take as many boxes as ways to share them out over their branches, not as many as branches to the
+//! power of `m`.
 
 use super::cell::Cell;
 use super::network::Network;
@@ -12,7 +13,8 @@ pub(super) fn twins(network: &Network) -> Vec<Option<usize>> {
     (0..network.units.len()).map(|i| (0..i).rev().find(|&k| network.units[k] == network.units[i])).collect()
 }
 
-/// Looks only for states in which the same units stand in growing order: the others mirror them. False where there are none.
+/// Looks only for states in which the same units stand in growing order: the others mirror them. False where there are
+/// none.
 pub(super) fn order_twins(cell: &mut Cell, twins: &[Option<usize>]) -> bool {
     for (i, twin) in twins.iter().enumerate() {
         if let Some(k) = *twin {

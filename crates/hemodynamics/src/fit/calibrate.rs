@@ -1,7 +1,8 @@
 //! Offset and scaling of a photodiode: the best ones for given signals, and what is left when they follow.
 //!
-//! For signals `f` the voltages `V_0 + V_1 f` are linear in offset and scaling, so those are solved for at every point of a fit, and only
-//! the other parameters are searched (variable projection, Golub and Pereyra 1973, doi:10.1137/0710036, with Kaufman's derivative).
+//! For signals `f` the voltages `V_0 + V_1 f` are linear in offset and scaling, so those are solved for at every point
+//! of a fit, and only the other parameters are searched (variable projection, Golub and Pereyra 1973,
+//! doi:10.1137/0710036, with Kaufman's derivative).
 
 use super::qr::{dot, norm};
 
@@ -21,9 +22,9 @@ pub(super) struct Fitted {
     pub(super) following: Vec<[f64; 2]>,
 }
 
-/// Fits `weights (offset + scaling signal)` to `target`, of which the residuals are left; `columns` hold `weights` times the derivatives of
-/// the signal and are left as the derivatives of the fit with offset and scaling following. Where the signal does not change, the scaling
-/// stays `held_v`.
+/// Fits `weights (offset + scaling signal)` to `target`, of which the residuals are left; `columns` hold `weights`
+/// times the derivatives of the signal and are left as the derivatives of the fit with offset and scaling following.
+/// Where the signal does not change, the scaling stays `held_v`.
 pub(super) fn calibrate(
     weights: &[f64],
     signals: &[f64],
@@ -94,7 +95,8 @@ mod tests {
         let mut target: Vec<f64> = signals.iter().zip(&weights).map(|(f, w)| w * (0.4 - 2.5 * f)).collect();
         let mut column: Vec<f64> = weights.iter().zip(&signals).map(|(w, f)| w * (3.0 + 7.0 * f)).collect();
         let fitted = calibrate(&weights, &signals, &mut target, &mut [&mut column], 1.0);
-        // Measured 1.1e-13: a thousand times the rounding, as the signal changes by a thousandth of itself; 8e-16 and 9e-15; 6e-13.
+        // Measured 1.1e-13: a thousand times the rounding, as the signal changes by a thousandth of itself; 8e-16 and
+        // 9e-15; 6e-13.
         assert!((fitted.offset_v - 0.4).abs() + (fitted.scaling_v + 2.5).abs() <= 1e-11, "{fitted:?}");
         assert!(norm(&target) <= 1e-14 && norm(&column) <= 1e-13);
         // The signal moves by 3 + 7 f: offset and scaling follow by -V_1 (3, 7).

@@ -1,8 +1,9 @@
 //! How sure a fit is: standard errors, correlations, and what the data don't determine.
 //!
-//! From the singular values of the derivatives at the fitted point, offsets and scalings following. A combination of coordinates is not
-//! determined where the voltages don't change along it to within the precision of the derivatives, or where their noise leaves its
-//! logarithm uncertain by more than ln 10: the order of magnitude within which the parameters are known beforehand.
+//! From the singular values of the derivatives at the fitted point, offsets and scalings following. A combination of
+//! coordinates is not determined where the voltages don't change along it to within the precision of the derivatives,
+//! or where their noise leaves its logarithm uncertain by more than ln 10: the order of magnitude within which the
+//! parameters are known beforehand.
 
 use super::free::TENFOLD;
 use super::levenberg::Point;

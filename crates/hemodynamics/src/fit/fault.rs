@@ -55,7 +55,8 @@ pub enum FitFault {
     },
     /// Bounds that are none.
     #[error(
-        "the bounds {lower} to {upper} of {symbol} can't be used: the upper one has to be greater, and both positive for what moves by a factor"
+        "the bounds {lower} to {upper} of {symbol} can't be used: the upper one has to be greater, and both positive \
+         for what moves by a factor"
     )]
     Bounds {
         /// Of which parameter.
@@ -75,7 +76,8 @@ pub enum FitFault {
     },
     /// Fewer values than unknowns, or as many.
     #[error(
-        "{values} voltages can't determine {unknowns} unknowns with their errors; more samples or fewer free parameters are needed"
+        "{values} voltages can't determine {unknowns} unknowns with their errors; more samples or fewer free \
+         parameters are needed"
     )]
     TooFew {
         /// Voltages that are not missing.

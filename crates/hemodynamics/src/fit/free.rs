@@ -5,8 +5,8 @@ use crate::parameters::{Parameters, Symbol};
 
 /// Parameters that are free, and move together by one common factor, as the thesis' `k_C1 = k_C2` do.
 ///
-/// A parameter that can't be negative moves by a factor and is fitted in its logarithm. Blood pressures, shares of the load, offsets and
-/// scalings move by addition and have to be alone in their group.
+/// A parameter that can't be negative moves by a factor and is fitted in its logarithm. Blood pressures, shares of the
+/// load, offsets and scalings move by addition and have to be alone in their group.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Free {
     /// The parameters.
@@ -18,7 +18,8 @@ pub struct Free {
 /// Where free parameters may go.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub enum Bounds {
-    /// What moves by a factor: a tenth to ten times the start ("within an order of magnitude"). A share of the load: 0 to 1. All others:
+    /// What moves by a factor: a tenth to ten times the start ("within an order of magnitude"). A share of the load: 0
+    /// to 1. All others:
     /// anywhere.
     #[default]
     Default,

@@ -1,8 +1,9 @@
 //! Least squares by Levenberg's and Marquardt's method within bounds.
 //!
-//! In: a function of coordinates of about unit size that gives residuals and the derivatives of what is fitted, or refuses a point. Out: the
-//! best point and why the search stopped. A step minimizes `|r - J s|^2 + lambda |D s|^2` within the bounds, by orthogonal triangles; `D`
-//! holds the largest norms of the columns so far (Moré 1978, doi:10.1007/BFb0067700). A refused point shortens the step, as one that is worse.
+//! In: a function of coordinates of about unit size that gives residuals and the derivatives of what is fitted, or
+//! refuses a point. Out: the best point and why the search stopped. A step minimizes `|r - J s|^2 + lambda |D s|^2`
+//! within the bounds, by orthogonal triangles; `D` holds the largest norms of the columns so far (Moré 1978,
+//! doi:10.1007/BFb0067700). A refused point shortens the step, as one that is worse.
 
 use super::qr;
 
@@ -138,8 +139,8 @@ struct Quadratic {
 }
 
 impl Quadratic {
-    /// The minimum of this and `|damping D s|^2` within bounds that hold 0, and how much of this it gains over 0. Coordinates that would
-    /// leave their bounds are set on them one by one, the one that goes farthest beyond first.
+    /// The minimum of this and `|damping D s|^2` within bounds that hold 0, and how much of this it gains over 0.
+    /// Coordinates that would leave their bounds are set on them one by one, the one that goes farthest beyond first.
     fn step(&self, room: &[[f64; 2]], damping: f64, scales: &[f64]) -> (Vec<f64>, f64) {
         let n = scales.len();
         let mut step = vec![0.0; n];

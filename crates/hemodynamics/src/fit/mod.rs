@@ -1,12 +1,14 @@
 //! The model's parameters from recorded photodiodes (section 4.3.4).
 //!
-//! In: [`Recording`]s over time (Fig. 80, 82) or in equilibrium (Fig. 79, 81), the [`Parameters`] to start from, and which of them are
-//! [`Free`] within which bounds. Out: a [`FitResult`] with values, standard errors, correlations, and what the data don't determine.
+//! In: [`Recording`]s over time (Fig. 80, 82) or in equilibrium (Fig. 79, 81), the [`Parameters`] to start from, and
+//! which of them are [`Free`] within which bounds. Out: a [`FitResult`] with values, standard errors, correlations, and
+//! what the data don't determine.
 //!
-//! Least squares by Levenberg's and Marquardt's method within bounds, in the logarithms of what can't be negative, with the exact derivatives
-//! of the simulated voltages. The thesis tunes stiffness and damping "within an order of magnitude" for all subjects and calibrates offset
-//! and scaling to each; so offsets and scalings belong to a subject here ([`Calibration`]), and are solved for at every point. Parameters
-//! at which a vessel closes are refused, and the step towards them is shortened.
+//! Least squares by Levenberg's and Marquardt's method within bounds, in the logarithms of what can't be negative, with
+//! the exact derivatives of the simulated voltages. The thesis tunes stiffness and damping "within an order of
+//! magnitude" for all subjects and calibrates offset and scaling to each; so offsets and scalings belong to a subject
+//! here ([`Calibration`]), and are solved for at every point. Parameters at which a vessel closes are refused, and the
+//! step towards them is shortened.
 //!
 //! The noise is taken as independent from sample to sample. Same input, same bytes.
 

@@ -11,7 +11,8 @@ pub enum Calibration {
     Fixed,
     /// Each photodiode has its own, the same in all recordings.
     Shared,
-    /// Each photodiode has its own for every subject (the thesis, section 4.3.4); a recording without a subject is one of its own.
+    /// Each photodiode has its own for every subject (the thesis, section 4.3.4); a recording without a subject is one
+    /// of its own.
     #[default]
     PerSubject,
     /// Each photodiode has its own in every recording.
@@ -33,10 +34,12 @@ pub struct FitOptions {
     pub tolerance: f64,
     /// The fit gives up after so many points in the space of parameters, from each start.
     pub most_points: usize,
-    /// From how many points the fit is begun: the given start, and others spread over the bounds (Halton's sequence; where a bound is
-    /// infinite, at the start's value). The best minimum counts: the model is far from linear, and one start may end in a wrong one.
+    /// From how many points the fit is begun: the given start, and others spread over the bounds (Halton's sequence;
+    /// where a bound is infinite, at the start's value). The best minimum counts: the model is far from linear, and one
+    /// start may end in a wrong one.
     pub starts: usize,
-    /// Whether [`Group::interval`](super::Group::interval) is asked for; it takes a third to one and a half times as long again.
+    /// Whether [`Group::interval`](super::Group::interval) is asked for; it takes a third to one and a half times as
+    /// long again.
     pub intervals: bool,
 }
 

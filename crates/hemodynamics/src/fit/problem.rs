@@ -142,7 +142,8 @@ impl<'a> Problem<'a> {
         Some(parameters)
     }
 
-    /// Residuals and their derivatives at a point. An error says in which recording (from 0) the model has no response, and why.
+    /// Residuals and their derivatives at a point. An error says in which recording (from 0) the model has no response,
+    /// and why.
     pub(super) fn evaluate(&mut self, at: &[f64]) -> Result<Evaluation, (usize, String)> {
         self.points += 1;
         self.respond(at).inspect_err(|_| self.refused += 1)
@@ -259,7 +260,8 @@ fn by_symbol(parameters: &Parameters, symbol: Symbol, unit: usize) -> f64 {
     }
 }
 
-/// The photodiodes of all recordings, those with the same offset and scaling next to each other, in the order of their first.
+/// The photodiodes of all recordings, those with the same offset and scaling next to each other, in the order of their
+/// first.
 fn channels(recordings: &[Recording], calibration: Calibration) -> Vec<Channel> {
     let mut channels: Vec<Channel> = vec![];
     let noises = recordings.iter().flat_map(|recording| &recording.photodiodes).map(|trace| trace.noise_v);

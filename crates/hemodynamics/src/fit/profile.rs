@@ -1,9 +1,9 @@
 //! How far a parameter may move before the data object: intervals by the profile of the sum of squares.
 //!
-//! In: a fitted point and the standard errors there. Out: for each coordinate the two places at which the sum of squares, all other unknowns
-//! fitted anew, has risen by four times the variance of the residuals. Where the voltages go straight with the parameters that is two
-//! standard errors to each side; where they don't, it covers the truth as often all the same, and standard errors don't (Bates and Watts
-//! 1988, doi:10.1002/9780470316757, chapter 6).
+//! In: a fitted point and the standard errors there. Out: for each coordinate the two places at which the sum of
+//! squares, all other unknowns fitted anew, has risen by four times the variance of the residuals. Where the voltages
+//! go straight with the parameters that is two standard errors to each side; where they don't, it covers the truth as
+//! often all the same, and standard errors don't (Bates and Watts 1988, doi:10.1002/9780470316757, chapter 6).
 
 use super::certainty::Certainty;
 use super::levenberg::{Point, Search};
@@ -48,8 +48,8 @@ struct Profile<'a> {
 }
 
 impl Profile<'_> {
-    /// The lower and the upper end of a coordinate that has a standard error; `None` where a bound, or parameters at which the model has no
-    /// response, come first.
+    /// The lower and the upper end of a coordinate that has a standard error; `None` where a bound, or parameters at
+    /// which the model has no response, come first.
     fn ends(&self, problem: &mut Problem, q: usize) -> [Option<f64>; 2] {
         [-1.0, 1.0].map(|side| self.end(problem, q, side))
     }
@@ -84,7 +84,8 @@ impl Profile<'_> {
         None
     }
 
-    /// The root of the rise over the variance where a coordinate is held so far from the best; the others start as they followed before.
+    /// The root of the rise over the variance where a coordinate is held so far from the best; the others start as they
+    /// followed before.
     fn rise(&self, problem: &mut Problem, q: usize, by: f64, follows: &mut [f64]) -> Option<f64> {
         let (mut lower, mut upper) = (self.settings.lower.to_vec(), self.settings.upper.to_vec());
         let best = self.best.at();

@@ -1,8 +1,8 @@
-//! Least squares by Householder's reflections: a tall matrix to a triangle, never to normal equations. Fixed order of summation: the same
-//! digits on every machine.
+//! Least squares by Householder's reflections: a tall matrix to a triangle, never to normal equations. Fixed order of
+//! summation: the same digits on every machine.
 
-/// Reduces the columns of a tall matrix (each of `rows` values, at least as many as columns) to the upper triangle `R`, row-major, and
-/// `target` to `Q^T target`, whose first values belong to `R`'s rows. Columns are overwritten.
+/// Reduces the columns of a tall matrix (each of `rows` values, at least as many as columns) to the upper triangle `R`,
+/// row-major, and `target` to `Q^T target`, whose first values belong to `R`'s rows. Columns are overwritten.
 pub(super) fn triangle(columns: &mut [Vec<f64>], target: &mut [f64]) -> Vec<f64> {
     let n = columns.len();
     let mut r = vec![0.0; n * n];
@@ -16,7 +16,8 @@ pub(super) fn triangle(columns: &mut [Vec<f64>], target: &mut [f64]) -> Vec<f64>
         if norm == 0.0 {
             continue;
         }
-        // v = x + sign(x_0) |x| e_0, scaled so that |v|^2 = 2 is not needed: beta = 2 / |v|^2 = 1 / (|x| (|x| + |x_0|)).
+        // v = x + sign(x_0) |x| e_0, scaled so that |v|^2 = 2 is not needed: beta = 2 / |v|^2 = 1 / (|x| (|x| +
+        // |x_0|)).
         let diagonal = if column[k] > 0.0 { -norm } else { norm };
         let beta = 1.0 / (norm * (norm + column[k].abs()));
         column[k] -= diagonal;

@@ -10,7 +10,8 @@ pub struct Recording {
     pub course: Course,
     /// The photodiodes; each has a voltage for every sample.
     pub photodiodes: Vec<Trace>,
-    /// Whose fingertip it is; recordings with the same label share offsets and scalings under [`super::Calibration::PerSubject`].
+    /// Whose fingertip it is; recordings with the same label share offsets and scalings under
+    /// [`super::Calibration::PerSubject`].
     pub subject: Option<String>,
 }
 
@@ -30,8 +31,9 @@ pub enum Course {
         /// `P_L` where it was measured, otherwise that of the parameters.
         downstream: Option<Load>,
     },
-    /// In equilibrium at every sample (Fig. 79, 81). Where there are several equilibria, each is reached from the sample before it, the first
-    /// one from the unloaded fingertip, so the order of the samples is that in which they were taken.
+    /// In equilibrium at every sample (Fig. 79, 81). Where there are several equilibria, each is reached from the
+    /// sample before it, the first one from the unloaded fingertip, so the order of the samples is that in which they
+    /// were taken.
     Static {
         /// `P_F1` of every sample, Pa.
         proximal_pa: Vec<f64>,

@@ -1,4 +1,5 @@
-//! The model's response to a recording's loads: lumens of the capillaries at every sample, and their derivatives along each coordinate.
+//! The model's response to a recording's loads: lumens of the capillaries at every sample, and their derivatives along
+//! each coordinate.
 
 use super::recording::{Course, Recording};
 use crate::load::{Inputs, Load, Loads};
@@ -153,7 +154,8 @@ impl Responder {
     }
 }
 
-/// Pieces of the loads from which on a transient is solved with 3 stages: a smooth one takes fewer steps than this with 5.
+/// Pieces of the loads from which on a transient is solved with 3 stages: a smooth one takes fewer steps than this with
+/// 5.
 const MANY_PIECES: usize = 100;
 /// The most evaluations of a transient: a response that needs more is refused.
 const MOST_EVALUATIONS: u64 = 1_000_000;

@@ -5,20 +5,23 @@ use crate::parameters::{Parameters, Symbol};
 
 /// What a fit gives.
 ///
-/// Standard errors are those of the linearized model at the fitted point, with the residuals' own SD; a parameter at its bound is held
-/// there for those of the others. What the data don't determine has none: see [`FitResult::undetermined`]. Where one recording leaves a
-/// parameter uncertain by more than about a tenth, the voltages bend within that: two standard errors to each side hold the truth of a
-/// proximal step less often (k in 182 of 200 cases) than they should (191), [`Group::interval`] as often (194; `tests/fit/coverage.rs`).
+/// Standard errors are those of the linearized model at the fitted point, with the residuals' own SD; a parameter at
+/// its bound is held there for those of the others. What the data don't determine has none: see
+/// [`FitResult::undetermined`]. Where one recording leaves a parameter uncertain by more than about a tenth, the
+/// voltages bend within that: two standard errors to each side hold the truth of a proximal step less often (k in 182
+/// of 200 cases) than they should (191), [`Group::interval`] as often (194; `tests/fit/coverage.rs`).
 #[derive(Clone, Debug, PartialEq)]
 pub struct FitResult {
-    /// The fitted parameters; those that were not free are those of the start. Offset and scaling of a unit are the fitted ones where its
-    /// photodiode has one calibration, otherwise they are those of the start and [`FitResult::photodiodes`] tells.
+    /// The fitted parameters; those that were not free are those of the start. Offset and scaling of a unit are the
+    /// fitted ones where its photodiode has one calibration, otherwise they are those of the start and
+    /// [`FitResult::photodiodes`] tells.
     pub parameters: Parameters,
     /// The free groups, in the order given.
     pub groups: Vec<Group>,
     /// Offsets and scalings; none where calibration is fixed.
     pub photodiodes: Vec<Calibrated>,
-    /// What the rows and columns of [`FitResult::correlations`] are: the groups, and then offset and scaling of each photodiode.
+    /// What the rows and columns of [`FitResult::correlations`] are: the groups, and then offset and scaling of each
+    /// photodiode.
     pub names: Vec<String>,
     /// Correlations of the estimates; NaN where one has no standard error.
     pub correlations: Vec<Vec<f64>>,
@@ -30,13 +33,14 @@ pub struct FitResult {
     pub values: usize,
     /// Voltages less unknowns that the data determine.
     pub freedom: usize,
-    /// Singular values of the derivatives of all voltages by the groups that are at no bound, offsets and scalings following: RMS change of
-    /// a voltage, V, for a change by a factor e (or by the scale of what moves by addition), falling.
+    /// Singular values of the derivatives of all voltages by the groups that are at no bound, offsets and scalings
+    /// following: RMS change of a voltage, V, for a change by a factor e (or by the scale of what moves by addition),
+    /// falling.
     pub singular_values_v: Vec<f64>,
     /// Combinations of parameters that the data don't determine.
     pub undetermined: Vec<Combination>,
-    /// Other minima, found from other starts, that these data don't tell from the best one, the nearest first. Standard errors know
-    /// nothing of them.
+    /// Other minima, found from other starts, that these data don't tell from the best one, the nearest first. Standard
+    /// errors know nothing of them.
     pub rivals: Vec<Rival>,
     /// Why the fit stopped.
     pub stop: Stop,
@@ -53,10 +57,11 @@ pub struct Group {
     pub values: Vec<f64>,
     /// Their standard errors, each in its unit; `None` where the data don't determine them, or at a bound.
     pub standard_errors: Option<Vec<f64>>,
-    /// Where the sum of squares, all else fitted anew, has risen by four times the variance of the residuals: values below and above. Two
-    /// standard errors to each side where the voltages go straight with the parameters, and as sure where they don't. An end is `None` where a
-    /// bound, or parameters at which a vessel closes, come first; both are where there is no standard error, where the fit is exact, and
-    /// where [`FitOptions::intervals`](super::FitOptions::intervals) asks for none.
+    /// Where the sum of squares, all else fitted anew, has risen by four times the variance of the residuals: values
+    /// below and above. Two standard errors to each side where the voltages go straight with the parameters, and as
+    /// sure where they don't. An end is `None` where a bound, or parameters at which a vessel closes, come first; both
+    /// are where there is no standard error, where the fit is exact, and where
+    /// [`FitOptions::intervals`](super::FitOptions::intervals) asks for none.
     pub interval: [Option<Vec<f64>>; 2],
     /// The bound on which the fit ended.
     pub at_bound: Option<Bound>,
@@ -102,7 +107,8 @@ pub struct Estimate {
 /// Parameters that can change together with (next to) no change of the voltages.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Combination {
-    /// Names and weights: changes of logarithms; of an offset or scaling, over the scaling; of what else moves by addition, over its scale.
+    /// Names and weights: changes of logarithms; of an offset or scaling, over the scaling; of what else moves by
+    /// addition, over its scale.
     pub weights: Vec<(String, f64)>,
     /// SD of the change along it; `None` where the voltages don't change at all.
     pub sd: Option<f64>,
@@ -113,7 +119,8 @@ pub struct Combination {
 pub struct Rival {
     /// The values of each group's parameters there.
     pub values: Vec<Vec<f64>>,
-    /// By how much the sum of squares is larger, over the variance of the residuals: less than 9 (three standard errors).
+    /// By how much the sum of squares is larger, over the variance of the residuals: less than 9 (three standard
+    /// errors).
     pub rise: f64,
 }
 

@@ -1,6 +1,6 @@
-//! Singular values of a few columns by one-sided Jacobi rotations (Hestenes 1958, doi:10.1137/0106005): small ones come out as precisely as
-//! large ones. nalgebra's way does not keep them so, and has been seen to fail where the rank is deficient
-//! (<https://github.com/dimforge/nalgebra/issues/1172>), which is what is asked here.
+//! Singular values of a few columns by one-sided Jacobi rotations (Hestenes 1958, doi:10.1137/0106005): small ones come
+//! out as precisely as large ones. nalgebra's way does not keep them so, and has been seen to fail where the rank is
+//! deficient (<https://github.com/dimforge/nalgebra/issues/1172>), which is what is asked here.
 
 use super::qr::{dot, norm};
 

@@ -1,10 +1,11 @@
 //! The time constant of a step's response, as the thesis reads it off Figures 80 and 82.
 
-/// The time from `from_s` until a response has gone 1 - 1/e (63 %) of its way from its value there to its value at `to_s`, s; straight
-/// between samples. For loading `to_s` is the end of the load, for unloading the end of the recording.
+/// The time from `from_s` until a response has gone 1 - 1/e (63 %) of its way from its value there to its value at
+/// `to_s`, s; straight between samples. For loading `to_s` is the end of the load, for unloading the end of the
+/// recording.
 ///
-/// In: times (s, growing) and values of any unit, NaN where missing. `None` where the two ends are outside of the samples or equal, or where
-/// the response does not get there.
+/// In: times (s, growing) and values of any unit, NaN where missing. `None` where the two ends are outside of the
+/// samples or equal, or where the response does not get there.
 pub fn time_constant(times_s: &[f64], values: &[f64], from_s: f64, to_s: f64) -> Option<f64> {
     let samples: Vec<(f64, f64)> = times_s
         .iter()

@@ -1,8 +1,9 @@
 //! Loads on the fingertip and the blood's own pressures over time, with the times at which they break.
 //!
-//! A [`Load`] is a pressure over time, made of smooth pieces. Where two pieces meet, the load jumps or bends: a breakpoint, on which a
-//! solver has to end its step, or it steps over a short pulse and never knows. At a breakpoint the load has the value of the piece that
-//! begins there. [`Loads`] are the four inputs `u = [P_H P_L P_F1 P_F2]` of equation 2; a [`Segment`] is all four between two breakpoints.
+//! A [`Load`] is a pressure over time, made of smooth pieces. Where two pieces meet, the load jumps or bends: a
+//! breakpoint, on which a solver has to end its step, or it steps over a short pulse and never knows. At a breakpoint
+//! the load has the value of the piece that begins there. [`Loads`] are the four inputs `u = [P_H P_L P_F1 P_F2]` of
+//! equation 2; a [`Segment`] is all four between two breakpoints.
 
 mod parse;
 mod segment;
@@ -99,7 +100,8 @@ impl Load {
         Load::between(Kind::Ramp(first_pa, last_pa), from_s, to_s)
     }
 
-    /// `mean + amplitude sin(2 pi frequency t)`, Pa; `frequency_hz` in 1/s; a negative one begins downwards, 0 is the mean alone.
+    /// `mean + amplitude sin(2 pi frequency t)`, Pa; `frequency_hz` in 1/s; a negative one begins downwards, 0 is the
+    /// mean alone.
     pub fn sine(mean_pa: f64, amplitude_pa: f64, frequency_hz: f64) -> Result<Load, LoadFault> {
         finite(&[("the mean", mean_pa), ("the amplitude", amplitude_pa), ("the frequency", TAU * frequency_hz)])?;
         if amplitude_pa == 0.0 || frequency_hz == 0.0 {
@@ -134,7 +136,8 @@ impl Load {
         Ok(Load { kind: Kind::Table(values_pa.to_vec()), breakpoints: times_s.to_vec() })
     }
 
-    /// Any function of time (Pa over s), smooth between the breakpoints. At a breakpoint it is asked just before it for what ends there.
+    /// Any function of time (Pa over s), smooth between the breakpoints. At a breakpoint it is asked just before it for
+    /// what ends there.
     pub fn function(
         pressure_pa: impl Fn(f64) -> f64 + Send + Sync + 'static,
         breakpoints_s: &[f64],

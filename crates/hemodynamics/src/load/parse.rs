@@ -23,7 +23,8 @@ impl fmt::Display for Load {
 impl FromStr for Load {
     type Err = LoadFault;
 
-    /// Pascals, seconds, hertz: a number; `step:HEIGHT@FROM..TO`; `ramp:FIRST..LAST@FROM..TO`; `sine:MEAN+AMPLITUDE@FREQUENCY`.
+    /// Pascals, seconds, hertz: a number; `step:HEIGHT@FROM..TO`; `ramp:FIRST..LAST@FROM..TO`;
+    /// `sine:MEAN+AMPLITUDE@FREQUENCY`.
     fn from_str(text: &str) -> Result<Load, LoadFault> {
         let wrong = || LoadFault::Text(text.to_owned());
         let number = |part: &str| part.trim().parse::<f64>().map_err(|_| wrong());

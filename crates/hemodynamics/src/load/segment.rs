@@ -187,15 +187,16 @@ impl Segment {
         Inputs { upstream_pa, downstream_pa, proximal_pa, distal_pa }
     }
 
-    /// The inputs so long after the segment's start (s): straight pieces are exact however late by the clock that start is.
+    /// The inputs so long after the segment's start (s): straight pieces are exact however late by the clock that start
+    /// is.
     pub(crate) fn after(&self, offset_s: f64) -> Inputs {
         let [upstream_pa, downstream_pa, proximal_pa, distal_pa] =
             [0, 1, 2, 3].map(|k| self.pieces[k].after(self.from_s, offset_s));
         Inputs { upstream_pa, downstream_pa, proximal_pa, distal_pa }
     }
 
-    /// How fast the inputs change at a time of the segment, Pa/s: exact but for functions, whose slope is the difference quotient over 2e-5 of
-    /// the segment.
+    /// How fast the inputs change at a time of the segment, Pa/s: exact but for functions, whose slope is the
+    /// difference quotient over 2e-5 of the segment.
     pub fn slope(&self, time_s: f64) -> Inputs {
         let within = [self.from_s, self.to_s];
         let [upstream_pa, downstream_pa, proximal_pa, distal_pa] =

@@ -1,4 +1,5 @@
-//! The Jacobian of the accelerations: a diagonal and a border, since walls act on each other through the venous pressure alone.
+//! The Jacobian of the accelerations: a diagonal and a border, since walls act on each other through the venous
+//! pressure alone.
 
 use super::{Collapse, Model, contact_slope};
 use crate::load::Inputs;

@@ -1,15 +1,17 @@
 //! The derivative of the accelerations by the parameters, along a direction in which any of them change together.
 //!
-//! In: a direction ([`Tangent`]) and the same lumens, rates and [`Inputs`] as [`Model::accelerations`]. Out: how the accelerations of the
-//! lumens change when the parameters move along it, exact to rounding.
+//! In: a direction ([`Tangent`]) and the same lumens, rates and [`Inputs`] as [`Model::accelerations`]. Out: how the
+//! accelerations of the lumens change when the parameters move along it, exact to rounding.
 //!
-//! The lumens `l = d / D` and rates `w = v / D` are held, not the displacements: where `D` changes, `x = D (l - 1)` changes with it. With the
-//! symbols of the module above and a dot for the change along the direction, the pressures change by
+//! The lumens `l = d / D` and rates `w = v / D` are held, not the displacements: where `D` changes, `x = D (l - 1)`
+//! changes with it. With the symbols of the module above and a dot for the change along the direction, the pressures
+//! change by
 //!
-//! `G_t P_V' = sum (g_i - R_Vi' G_Ai f_i) / t_i + G_V' (P_L - P_V) + G_V P_L' - q_V'` and `t_i P_Ci' = R_Vi g_i + R_Vi' f_i + P_V'`
+//! `G_t P_V' = sum (g_i - R_Vi' G_Ai f_i) / t_i + G_V' (P_L - P_V) + G_V P_L' - q_V'` and
+//! `t_i P_Ci' = R_Vi g_i + R_Vi' f_i + P_V'`
 //!
-//! with `g_i = G_Ai' (P_H - P_Ci) - q_i' + G_Ai P_H'` and the flow `f_i = (G_Ai (P_H - P_V) - q_i) / t_i` out of capillary `i` into the
-//! vein.
+//! with `g_i = G_Ai' (P_H - P_Ci) - q_i' + G_Ai P_H'` and the flow `f_i = (G_Ai (P_H - P_V) - q_i) / t_i` out of
+//! capillary `i` into the vein.
 
 use std::f64::consts::PI;
 
@@ -27,8 +29,8 @@ pub(crate) struct Tangent {
 }
 
 impl Tangent {
-    /// Along these symbols, each changing at its speed (in its own unit). Symbols of the optics, and those that the model has not got, move
-    /// nothing.
+    /// Along these symbols, each changing at its speed (in its own unit). Symbols of the optics, and those that the
+    /// model has not got, move nothing.
     pub(crate) fn new(parameters: &Parameters, speeds: &[(Symbol, f64)]) -> Tangent {
         const STILL: Wall = Wall { push: 0.0, spring: 0.0, damper: 0.0, swept: 0.0, conductance: 0.0 };
         let n = parameters.units().len();
@@ -153,8 +155,8 @@ impl Model {
         }
     }
 
-    /// The derivative of [`Model::accelerations`] along a direction of the parameters, 1/s2 per unit of it, written to `out`, which holds a
-    /// value for each wall; `currents` are those of the same state.
+    /// The derivative of [`Model::accelerations`] along a direction of the parameters, 1/s2 per unit of it, written to
+    /// `out`, which holds a value for each wall; `currents` are those of the same state.
     pub(crate) fn along(
         &self,
         lumens: &[f64],

@@ -1,17 +1,17 @@
 //! The equations of section 4.3.2 in the form that does not cancel.
 //!
-//! In: [`Parameters`], a state (lumens `l = d / D` and rates `w = v / D` of the walls), the [`Inputs`] at that moment. Out: blood
-//! pressures, accelerations of the walls, their Jacobian.
+//! In: [`Parameters`], a state (lumens `l = d / D` and rates `w = v / D` of the walls), the [`Inputs`] at that moment.
+//! Out: blood pressures, accelerations of the walls, their Jacobian.
 //!
-//! The printed matrices `A(x)`, `B(x)` (equation 2) follow from the network of Figure 70, but subtract resistances that grow without
-//! bound as a capillary closes. In conductances nothing does: `G = d^4 / c` with `c = 128 L mu / (N pi)` (equation 1),
-//! `t_i = 1 + G_Ai R_Vi`, `s_i = G_Ai / t_i`, `G_t = s_1 + s_2 + .. + G_V`, `q = A v`,
+//! The printed matrices `A(x)`, `B(x)` (equation 2) follow from the network of Figure 70, but subtract resistances that
+//! grow without bound as a capillary closes. In conductances nothing does: `G = d^4 / c` with `c = 128 L mu / (N pi)`
+//! (equation 1), `t_i = 1 + G_Ai R_Vi`, `s_i = G_Ai / t_i`, `G_t = s_1 + s_2 + .. + G_V`, `q = A v`,
 //!
 //! `P_V = (sum s_i P_H + G_V P_L - sum q_i / t_i - q_V) / G_t`, `P_Ci = (R_Vi (G_Ai P_H - q_i) + P_V) / t_i`,
 //!
-//! and each wall moves by `m v' = A (P - P_ext) - k x - b v`, with the external pressure `share_i P_F2` on a capillary and `P_F1` on the
-//! vein. Only where all lumens are exactly 0 is there no answer. The capillaries act on each other through `P_V` alone, so the Jacobian is
-//! diagonal but for a product of two vectors ([`Arrow`]).
+//! and each wall moves by `m v' = A (P - P_ext) - k x - b v`, with the external pressure `share_i P_F2` on a capillary
+//! and `P_F1` on the vein. Only where all lumens are exactly 0 is there no answer. The capillaries act on each other
+//! through `P_V` alone, so the Jacobian is diagonal but for a product of two vectors ([`Arrow`]).
 
 mod arrow;
 mod by_parameter;
@@ -36,9 +36,9 @@ pub enum Collapse {
     /// A closed vessel ends the run: the thesis' walls know nothing of each other.
     #[default]
     Error,
-    /// Opposite walls push each other apart below a twentieth of the nominal diameter: `k D (d_c / d - 1)^3` with `d_c = 0.05 D` is added
-    /// to the wall's force, zero above `d_c` and with the exponent of the tube law of deep collapse below it (Shapiro 1977,
-    /// doi:10.1115/1.3426281).
+    /// Opposite walls push each other apart below a twentieth of the nominal diameter: `k D (d_c / d - 1)^3` with
+    /// `d_c = 0.05 D` is added to the wall's force, zero above `d_c` and with the exponent of the tube law of deep
+    /// collapse below it (Shapiro 1977, doi:10.1115/1.3426281).
     Contact,
 }
 

@@ -1,17 +1,19 @@
 //! The equations as the thesis prints them: `x' = A(x) x + B(x) u` (equation 2), for two capillary units.
 //!
-//! In: [`Parameters`], lumens, rates, [`Inputs`]. Out: the matrices `A` and `B` in SI units, or the accelerations of the walls as
-//! [`crate::Model::accelerations`] gives them. It is here as the oracle of the equations in conductances and to show what it does to a solver.
+//! In: [`Parameters`], lumens, rates, [`Inputs`]. Out: the matrices `A` and `B` in SI units, or the accelerations of
+//! the walls as [`crate::Model::accelerations`] gives them. It is here as the oracle of the equations in conductances
+//! and to show what it does to a solver.
 //!
-//! **Do not compute with it.** `R_11`, `R_22`, `B_41` and `B_51` are 1 less a fraction that goes to 1 as a capillary closes, and `R_11`
-//! multiplies what is left by a resistance that grows with `d^-4`: its relative error is 1e-8 at `d / D` = 0.01, 1e-4 at 1e-3, all of it
-//! at 1e-4, and below that the sign is as good as random: a damper drives. A solver stalls there ([`Model::printed`]): under a distal step to
-//! 10858.037 Pa at rtol 1e-8 it takes 93 000 evaluations instead of 422, at 1e-10 more than a million; at 10859.04 Pa, where the capillary
-//! closes at 1.8127 s, it stalls at 1.0 s or reports an open one.
+//! **Do not compute with it.** `R_11`, `R_22`, `B_41` and `B_51` are 1 less a fraction that goes to 1 as a capillary
+//! closes, and `R_11` multiplies what is left by a resistance that grows with `d^-4`: its relative error is 1e-8 at
+//! `d / D` = 0.01, 1e-4 at 1e-3, all of it at 1e-4, and below that the sign is as good as random: a damper drives. A
+//! solver stalls there ([`Model::printed`]): under a distal step to 10858.037 Pa at rtol 1e-8 it takes 93 000
+//! evaluations instead of 422, at 1e-10 more than a million; at 10859.04 Pa, where the capillary closes at 1.8127 s, it
+//! stalls at 1.0 s or reports an open one.
 //!
-//! The printed `B` writes `A_V(x)` in its sixth row for the constant `A_V`; nothing else is odd, and no value differs from the network of
-//! Figure 70. The thesis' distal pressure acts on the second unit only: here on each by its share (0 and 1 in the thesis' table).
-//! Walls know nothing of each other in it: there is no contact.
+//! The printed `B` writes `A_V(x)` in its sixth row for the constant `A_V`; nothing else is odd, and no value differs
+//! from the network of Figure 70. The thesis' distal pressure acts on the second unit only: here on each by its share
+//! (0 and 1 in the thesis' table). Walls know nothing of each other in it: there is no contact.
 
 use std::f64::consts::PI;
 
@@ -27,7 +29,8 @@ pub struct Printed {
     viscosity_pa_s: f64,
 }
 
-/// `A(x)` and `B(x)` of equation 2 for the state `[x_C1 x_C2 x_V x'_C1 x'_C2 x'_V]` and the inputs `[P_H P_L P_F1 P_F2]`, SI units.
+/// `A(x)` and `B(x)` of equation 2 for the state `[x_C1 x_C2 x_V x'_C1 x'_C2 x'_V]` and the inputs
+/// `[P_H P_L P_F1 P_F2]`, SI units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Matrices {
     /// `A(x)`, row by row.
@@ -131,8 +134,9 @@ impl Printed {
 }
 
 impl Model {
-    /// The model whose accelerations are those of the printed matrices, to show what they do to a solver: its Jacobian, its pressures and the
-    /// contact of walls stay those of [`Model::new`]. Never for results. An error where there are not exactly two units.
+    /// The model whose accelerations are those of the printed matrices, to show what they do to a solver: its Jacobian,
+    /// its pressures and the contact of walls stay those of [`Model::new`]. Never for results. An error where there are
+    /// not exactly two units.
     pub fn printed(parameters: &Parameters, collapse: Collapse) -> Result<Model, PrintedFault> {
         Ok(Model { printed: Some(Printed::new(parameters)?), ..Model::new(parameters, collapse) })
     }
@@ -229,13 +233,15 @@ mod tests {
             let error = lost(lumen).abs();
             assert!((least..=most).contains(&error), "{lumen}: {error:e}");
         }
-        // At 1e-4 a rounding is as large as what is left: nothing, or nearly twice as much. At 5e-5 a damper may drive (52 of 100 here).
+        // At 1e-4 a rounding is as large as what is left: nothing, or nearly twice as much. At 5e-5 a damper may drive
+        // (52 of 100 here).
         assert!(lost(1e-4).abs() >= 0.5);
         let turned = (0..100).filter(|k| lost(5e-5 * (1.0 + 0.01 * f64::from(*k))) < -1.0).count();
         assert!((5..95).contains(&turned), "{turned} of 100 turned");
     }
 
-    /// A distal load from 0 s on, from the equilibrium without load, by the equations in conductances and by the printed ones.
+    /// A distal load from 0 s on, from the equilibrium without load, by the equations in conductances and by the
+    /// printed ones.
     fn pressed(load: f64, options: &SolveOptions) -> [Result<Trajectory, SolveFault>; 2] {
         let parameters = Parameters::thesis();
         let constant = |value| Load::constant(value).expect("a number");
@@ -258,7 +264,8 @@ mod tests {
 
     #[test]
     fn a_solver_stalls_on_it_as_a_capillary_closes() {
-        // C2 narrows to d / D = 1.0001e-4. Measured at 1e-8: 422 evaluations, 93 000 by the printed form; at 1e-10: 665 and more than 1e6.
+        // C2 narrows to d / D = 1.0001e-4. Measured at 1e-8: 422 evaluations, 93 000 by the printed form; at 1e-10: 665
+        // and more than 1e6.
         let options = SolveOptions { most_evaluations: 20_000, ..SolveOptions::at(1e-8) };
         let [own, printed] = pressed(10858.037, &options);
         assert!(own.unwrap().statistics().evaluations <= 1000);
@@ -267,7 +274,8 @@ mod tests {
 
     #[test]
     fn a_solver_does_not_find_a_closing_vessel_by_it() {
-        // There is no equilibrium with open vessels; C2 closes at 1.8127 s. By the printed form no run said so: most stall at 1.0 s.
+        // There is no equilibrium with open vessels; C2 closes at 1.8127 s. By the printed form no run said so: most
+        // stall at 1.0 s.
         let options = SolveOptions { most_evaluations: 20_000, ..SolveOptions::at(1e-6) };
         let [own, printed] = pressed(10859.04, &options);
         assert!(matches!(own, Err(SolveFault::Collapsed { site: Site::Capillary(1), .. })), "{own:?}");

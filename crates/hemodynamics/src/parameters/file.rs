@@ -1,7 +1,8 @@
 //! Parameters as TOML: the thesis' symbols with their units as keys, as in `k_C1_N_per_m = 1e5`.
 //!
-//! `units` is the number of capillary units (2 where it is not said). Every parameter has to be there, unless `base = "thesis"` says that
-//! what is missing is that of [`Parameters::along_nail`]. Unknown keys are refused, all faults are told at once.
+//! `units` is the number of capillary units (2 where it is not said). Every parameter has to be there, unless
+//! `base = "thesis"` says that what is missing is that of [`Parameters::along_nail`]. Unknown keys are refused, all
+//! faults are told at once.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -96,7 +97,8 @@ mod tests {
 
     #[test]
     fn all_faults_are_told_at_once() {
-        let text = "k_C1_N_per_m = -1\nk_C2_N_per_m = nan\nm_V_kg = 0\nb_V_N_s_per_m = 0.0\nspeed = 3\nD_V_m = \"wide\"\nk_C3_N_per_m = 1e5\n";
+        let text = "k_C1_N_per_m = -1\nk_C2_N_per_m = nan\nm_V_kg = 0\nb_V_N_s_per_m = 0.0\nspeed = 3\nD_V_m = \
+                    \"wide\"\nk_C3_N_per_m = 1e5\n";
         let told = Parameters::from_toml(text).unwrap_err().to_string();
         for part in [
             "k_C1_N_per_m = -1: ",

@@ -1,8 +1,9 @@
 //! The model's parameters, checked: nothing that is negative, missing or no number goes further than here.
 //!
-//! In: the thesis' table ([`Parameters::thesis`], section 4.3.2), the same nail cut into `n` units ([`Parameters::along_nail`]), a TOML
-//! file ([`Parameters::from_toml`]) or values set one by one ([`Parameters::set`]). Out: [`Parameters`]; every fault is told at once.
-//! Units are SI; each [`Symbol`] says its own in the name that it has in files (`k_C1_N_per_m`).
+//! In: the thesis' table ([`Parameters::thesis`], section 4.3.2), the same nail cut into `n` units
+//! ([`Parameters::along_nail`]), a TOML file ([`Parameters::from_toml`]) or values set one by one
+//! ([`Parameters::set`]). Out: [`Parameters`]; every fault is told at once. Units are SI; each [`Symbol`] says its own
+//! in the name that it has in files (`k_C1_N_per_m`).
 
 mod file;
 mod symbol;
@@ -95,15 +96,16 @@ const VEIN: Vessel = Vessel {
 };
 
 impl Parameters {
-    /// The thesis' table (section 4.3.2): two units, the proximal one shielded from the distal pressure and the distal one under all of it.
-    /// Photodiodes have the offset 0 V and the scaling 1 V.
+    /// The thesis' table (section 4.3.2): two units, the proximal one shielded from the distal pressure and the distal
+    /// one under all of it. Photodiodes have the offset 0 V and the scaling 1 V.
     pub fn thesis() -> Parameters {
         Parameters::along_nail(2).expect("two units are more than none")
     }
 
-    /// The nail bed of the thesis' table cut into `n` equal units from proximal to distal: what is extensive (capillaries, area, stiffness,
-    /// damping, mass, tissue, venules) is shared out, and a unit's share of the distal pressure is the part of it that lies in the distal
-    /// half, beyond the bone. `n = 2` is [`Parameters::thesis`]. An error where `n` is not 1 to 1000.
+    /// The nail bed of the thesis' table cut into `n` equal units from proximal to distal: what is extensive
+    /// (capillaries, area, stiffness, damping, mass, tissue, venules) is shared out, and a unit's share of the distal
+    /// pressure is the part of it that lies in the distal half, beyond the bone. `n = 2` is [`Parameters::thesis`]. An
+    /// error where `n` is not 1 to 1000.
     pub fn along_nail(n: usize) -> Result<Parameters, ParameterFault> {
         if let Some(wrong) = wrong_units(n) {
             return Err(ParameterFault::Values(vec![wrong]));
@@ -133,9 +135,10 @@ impl Parameters {
         Parameters::new(units, VEIN, 3e-3, 460.0, [1e4, 0.0])
     }
 
-    /// From all of its parts: the units from proximal to distal, the vein, the blood's viscosity (Pa s) and absorption (1/m), and the blood
-    /// pressures `[P_H, P_L]` (Pa, gage). An error names every value that is not finite, not positive where it has to be, or missing, and what
-    /// of the equations comes out as no positive number from values too far apart.
+    /// From all of its parts: the units from proximal to distal, the vein, the blood's viscosity (Pa s) and absorption
+    /// (1/m), and the blood pressures `[P_H, P_L]` (Pa, gage). An error names every value that is not finite, not
+    /// positive where it has to be, or missing, and what of the equations comes out as no positive number from values
+    /// too far apart.
     pub fn new(
         units: Vec<Unit>,
         vein: Vessel,

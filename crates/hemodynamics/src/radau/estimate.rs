@@ -7,13 +7,15 @@ use super::table::dot;
 use crate::load::Inputs;
 use crate::model::{InputLanes, Model};
 
-/// The bump is added to a wall's polynomial where the filtered estimate is at least this part of the raw one: beyond the layers.
+/// The bump is added to a wall's polynomial where the filtered estimate is at least this part of the raw one: beyond
+/// the layers.
 const LEAST_OF_RAW: f64 = 0.5;
 
 impl<const S: usize> Stepper<S> {
-    /// The error of the step, over its bound, by two estimates. The one is what the equations at the step's start and the polynomial's slope
-    /// there differ by: an order lower than the lifted polynomial's error. The other is what the equations and the rates' slope differ by
-    /// where the rates' error is greatest: of the order of the lifted polynomial's error. Both are filtered by the real eigenvalue's matrix.
+    /// The error of the step, over its bound, by two estimates. The one is what the equations at the step's start and
+    /// the polynomial's slope there differ by: an order lower than the lifted polynomial's error. The other is what the
+    /// equations and the rates' slope differ by where the rates' error is greatest: of the order of the lifted
+    /// polynomial's error. Both are filtered by the real eigenvalue's matrix.
     pub(super) fn estimate(&mut self, model: &Model, inputs: [&Inputs; 2], step: f64, bounds: &Bounds) -> f64 {
         let table = self.table;
         let (basis, bump_at) = (table.basis(table.probe), table.bump(table.probe));

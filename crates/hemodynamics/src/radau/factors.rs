@@ -1,7 +1,9 @@
-//! The Newton matrices of a step, factored: one for every eigenvalue, `n + 1` walls each, in a time that grows with `n` alone.
+//! The Newton matrices of a step, factored: one for every eigenvalue, `n + 1` walls each, in a time that grows with `n`
+//! alone.
 //!
-//! With the rates eliminated from the lumens (`l' = w`), the matrix of the eigenvalue `mu` at the step size `h` is, for `w = mu / h` and the
-//! Jacobian of [`Arrow`], `diag(w^2 - w b - a) - c (w r + e)^T`: a diagonal and a product of two vectors, solved as Sherman and Morrison do.
+//! With the rates eliminated from the lumens (`l' = w`), the matrix of the eigenvalue `mu` at the step size `h` is, for
+//! `w = mu / h` and the Jacobian of [`Arrow`], `diag(w^2 - w b - a) - c (w r + e)^T`: a diagonal and a product of two
+//! vectors, solved as Sherman and Morrison do.
 
 use super::table::{reciprocal, scaled, times};
 use crate::model::Arrow;

@@ -11,8 +11,9 @@ const LAYER_SHARE: f64 = 2.5;
 const MOTION_SHARE: f64 = 2.0;
 
 impl<const S: usize> Stepper<S> {
-    /// A first step from the state under inputs that have just changed. It resolves the layers of the walls whose inertia displaces a lumen
-    /// by more than `bounds.layer` before it is spent, and the motion after them, at the rates to which the accelerations at the start lead.
+    /// A first step from the state under inputs that have just changed. It resolves the layers of the walls whose
+    /// inertia displaces a lumen by more than `bounds.layer` before it is spent, and the motion after them, at the
+    /// rates to which the accelerations at the start lead.
     pub(crate) fn first_step(&mut self, model: &Model, first: &Inputs, bounds: &Bounds) -> f64 {
         let inputs = InputLanes::of([*first]);
         model.accelerations_in_lanes(&self.lumens, &self.rates, &inputs, &mut self.single, &mut self.first);

@@ -1,4 +1,5 @@
-//! Roots by additions, multiplications and divisions alone: the same bytes on every machine, which the library's `powf` does not promise.
+//! Roots by additions, multiplications and divisions alone: the same bytes on every machine, which the library's `powf`
+//! does not promise.
 
 /// `x^(1/n)` of a positive, normal `x`; infinity of infinity, 0 of what is below.
 pub(crate) fn root(x: f64, n: u32) -> f64 {

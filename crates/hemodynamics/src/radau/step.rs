@@ -141,7 +141,8 @@ impl<const S: usize> Stepper<S> {
         self.contraction = 1.0;
     }
 
-    /// Tries a step of a size from the state, and leaves the state. The inputs: at its start, at the table's probe, at its stages.
+    /// Tries a step of a size from the state, and leaves the state. The inputs: at its start, at the table's probe, at
+    /// its stages.
     pub(crate) fn attempt(
         &mut self,
         model: &Model,

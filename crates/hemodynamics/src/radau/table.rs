@@ -1,8 +1,9 @@
 //! What a Radau IIA method is made of, and the arithmetic of its eigenvalues.
 //!
-//! The inverse of the matrix `A` of a method with `S` stages (odd) has one real eigenvalue and `(S - 1) / 2` pairs of complex ones. What
-//! belongs to the eigenvalues is kept in `S` numbers: the real parts of one of each pair, their imaginary parts, the real one. Sums and
-//! products of such arrays, eigenvalue by eigenvalue, are those of `R x C^((S - 1) / 2)`.
+//! The inverse of the matrix `A` of a method with `S` stages (odd) has one real eigenvalue and `(S - 1) / 2` pairs of
+//! complex ones. What belongs to the eigenvalues is kept in `S` numbers: the real parts of one of each pair, their
+//! imaginary parts, the real one. Sums and products of such arrays, eigenvalue by eigenvalue, are those of
+//! `R x C^((S - 1) / 2)`.
 
 /// Coefficients of a method with `S` stages; matrices by columns.
 pub(crate) struct Table<const S: usize> {
@@ -22,7 +23,8 @@ pub(crate) struct Table<const S: usize> {
     pub(crate) start_slopes: [f64; S],
     /// `1 / (c_i prod_j (c_i - c_j))`.
     pub(crate) barycentric: [f64; S],
-    /// The polynomial that is 0 at 0, has the slope 1 there and the slope 0 at every node: coefficients of its powers 1 to `S`.
+    /// The polynomial that is 0 at 0, has the slope 1 there and the slope 0 at every node: coefficients of its powers 1
+    /// to `S`.
     pub(crate) bump: [f64; S],
     /// Its coefficient of the power `S + 1`.
     pub(crate) bump_last: f64,

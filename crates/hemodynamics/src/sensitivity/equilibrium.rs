@@ -1,8 +1,9 @@
 //! An equilibrium reached from given lumens, and how it moves with the parameters.
 //!
-//! In: lumens and inputs. Out: the lumens at which no wall accelerates, reached as walls without inertia would come to rest from there
-//! (`0 = F(l, 0) + F_w w`, `w = l'`: implicit Euler steps that grow into Newton's), so that of several equilibria it is the one on whose side
-//! the walls start. The derivative along a direction `p` is that of the implicit function: `F_l s = -F_p`.
+//! In: lumens and inputs. Out: the lumens at which no wall accelerates, reached as walls without inertia would come to
+//! rest from there (`0 = F(l, 0) + F_w w`, `w = l'`: implicit Euler steps that grow into Newton's), so that of several
+//! equilibria it is the one on whose side the walls start. The derivative along a direction `p` is that of the implicit
+//! function: `F_l s = -F_p`.
 
 use super::lu::Lu;
 use crate::load::Inputs;
@@ -83,8 +84,8 @@ impl Rest {
         Err(NoRest { site: Site::of_wall(nearest, walls - 1) })
     }
 
-    /// The derivatives of an equilibrium's lumens along directions, written to `out`, the walls of each direction in turn. False where the
-    /// equilibrium is at a fold, where it has none.
+    /// The derivatives of an equilibrium's lumens along directions, written to `out`, the walls of each direction in
+    /// turn. False where the equilibrium is at a fold, where it has none.
     pub(crate) fn derivatives(
         &mut self,
         model: &Model,

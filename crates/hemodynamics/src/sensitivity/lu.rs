@@ -1,5 +1,5 @@
-//! Dense linear systems of a few unknowns, by rows scaled to their largest entry and partial pivoting. The same digits on every machine,
-//! and no memory taken anew: there is one for every step of a fit's every transient.
+//! Dense linear systems of a few unknowns, by rows scaled to their largest entry and partial pivoting. The same digits
+//! on every machine, and no memory taken anew: there is one for every step of a fit's every transient.
 
 /// A factorized square matrix; its memory is kept from one factorization to the next.
 #[derive(Clone, Debug, Default)]

@@ -102,15 +102,16 @@ fn equilibria_move_with_every_parameter_as_differences_say() {
         }
         moved += usize::from(scale > 1e-9);
     }
-    // k, A, D, L, N of three vessels, R_V and share of two units, P_H, P_L: what moves an equilibrium; mu cancels in it but for R_V.
+    // k, A, D, L, N of three vessels, R_V and share of two units, P_H, P_L: what moves an equilibrium; mu cancels in it
+    // but for R_V.
     assert!(moved >= 20, "{moved}");
 }
 
 #[test]
 fn transients_move_with_every_parameter_as_differences_say() {
     // Central differences at 1e-4 of runs at 1e-12: measured 3e-8 of a parameter's largest
-    // derivative; that of inertia is lost in the runs' own error. Derivatives of runs at 1e-6, by 3 and by 5 stages: a quarter of what is
-    // allowed.
+    // derivative; that of inertia is lost in the runs' own error. Derivatives of runs at 1e-6, by 3 and by 5 stages: a
+    // quarter of what is allowed.
     const TOLERANCE: f64 = 5e-7;
     const LOOSE: f64 = 1e-4;
     // What the runs' own errors may leave.

@@ -1,9 +1,10 @@
 //! The variational equations along a transient.
 //!
-//! In: every step that the solver accepts, with its stages, and the derivatives of the state at the start along each direction. Out: the
-//! derivatives of the lumens at every time asked for. With `U`, `W` the derivatives of lumens and rates at the stages of a step of size `h`,
-//! `U = u + h A W` and `A^-1 (W - w) / h = F_l U + F_w W + F_p`, the Jacobians taken at each stage: one linear system for all directions.
-//! What comes out is the derivative of the discrete solution on fixed steps, and of the same order as the solution itself.
+//! In: every step that the solver accepts, with its stages, and the derivatives of the state at the start along each
+//! direction. Out: the derivatives of the lumens at every time asked for. With `U`, `W` the derivatives of lumens and
+//! rates at the stages of a step of size `h`, `U = u + h A W` and `A^-1 (W - w) / h = F_l U + F_w W + F_p`, the
+//! Jacobians taken at each stage: one linear system for all directions. What comes out is the derivative of the
+//! discrete solution on fixed steps, and of the same order as the solution itself.
 
 use super::lu::Lu;
 use crate::model::{Arrow, Currents, Model, Tangent};

@@ -77,14 +77,16 @@ impl Pace {
         }
     }
 
-    /// Goes on with a step of this size, whatever was before; with so many evaluations at most, counted from the stepper's beginning.
+    /// Goes on with a step of this size, whatever was before; with so many evaluations at most, counted from the
+    /// stepper's beginning.
     pub(crate) fn restart(&mut self, next_s: f64, most_evaluations: u64) {
         self.next_s = next_s;
         self.last = [0.0; 2];
         self.most_evaluations = most_evaluations;
     }
 
-    /// After an accepted step, of which nothing is known but the estimate of its error (Gustafsson's predictive control).
+    /// After an accepted step, of which nothing is known but the estimate of its error (Gustafsson's predictive
+    /// control).
     fn accepted(&mut self, step: f64, error: f64, order: u32) {
         self.steps += 1;
         self.smallest_s = self.smallest_s.min(step);
@@ -117,7 +119,8 @@ pub(crate) enum Begins {
     Smooth,
 }
 
-/// A part of the loads without breakpoints. Its times may count from anywhere: near 0 they are exact to the smallest step.
+/// A part of the loads without breakpoints. Its times may count from anywhere: near 0 they are exact to the smallest
+/// step.
 pub(crate) struct Course<'a, F: Fn(f64) -> Inputs> {
     pub(crate) model: &'a Model,
     pub(crate) from_s: f64,
@@ -130,8 +133,8 @@ pub(crate) struct Course<'a, F: Fn(f64) -> Inputs> {
 }
 
 impl<F: Fn(f64) -> Inputs> Course<'_, F> {
-    /// Steps from its start to its end. `listen` hears of each step before it is taken, with the stepper, its start, its size and the
-    /// inputs at its stages; it answers whether the vessels are open wherever it looked.
+    /// Steps from its start to its end. `listen` hears of each step before it is taken, with the stepper, its start,
+    /// its size and the inputs at its stages; it answers whether the vessels are open wherever it looked.
     pub(crate) fn cross<const S: usize>(
         &self,
         stepper: &mut Stepper<S>,

@@ -54,8 +54,9 @@ pub enum SolveFault {
     Collapsed {
         /// Which.
         site: Site,
-        /// When, s: to 1e-9 s where the lumen falls through zero by 1e-4 / s or faster, else to about 1e-13 over that rate. A vessel that
-        /// exactly balances its load (`P_F1 = P_H + k D / A_s` of the vein) thins out for ever, and the time is that of its rounding.
+        /// When, s: to 1e-9 s where the lumen falls through zero by 1e-4 / s or faster, else to about 1e-13 over that
+        /// rate. A vessel that exactly balances its load (`P_F1 = P_H + k D / A_s` of the vein) thins out for ever, and
+        /// the time is that of its rounding.
         time_s: f64,
         /// The run before.
         before: Box<Trajectory>,

@@ -1,22 +1,25 @@
 //! Transients: the state of the walls over time under given loads, with an error that is known.
 //!
-//! In: a [`Model`], [`Loads`], a [`State`] to start from, the times asked for (growing, s), [`SolveOptions`]. Out: a [`Trajectory`] with the
-//! lumens `d / D` and rates `v / D` at every time asked for, and [`Statistics`]; or a [`SolveFault`] with the part before it.
+//! In: a [`Model`], [`Loads`], a [`State`] to start from, the times asked for (growing, s), [`SolveOptions`]. Out: a
+//! [`Trajectory`] with the lumens `d / D` and rates `v / D` at every time asked for, and [`Statistics`]; or a
+//! [`SolveFault`] with the part before it.
 //!
-//! The solver is Radau IIA collocation ([`crate::radau`], internal). It steps from breakpoint to breakpoint of the loads and never across
-//! one. At a breakpoint the state is continuous, so the output there is that of the step that ends. `rtol` is what the error
-//! `|x - x_exact| / D` of every wall is to stay below at every time asked for. Promised is that each step's own error is estimated twice, by
-//! estimates of different orders at different places, and kept well below `rtol`; how far the problem amplifies it later is the problem's
-//! conditioning (near a fold, by orders of magnitude). Measured: `rtol` held in all 30 reference responses with every order, and in all of
-//! 5040 runs of random models within a factor 2 of the thesis', 1 to 5 units, random loads and starts, at 1e-3 to 1e-12, whose conditioning
-//! amplifies no more than twofold (the worst 0.77 `rtol`); with contact and loads up to 2e4 Pa in 2498 of 2500 (the others 1.5 at 1e-12).
-//! Errors of the rates are not bounded; beyond the layers they follow those of the displacements.
+//! The solver is Radau IIA collocation ([`crate::radau`], internal). It steps from breakpoint to breakpoint of the
+//! loads and never across one. At a breakpoint the state is continuous, so the output there is that of the step that
+//! ends. `rtol` is what the error `|x - x_exact| / D` of every wall is to stay below at every time asked for. Promised
+//! is that each step's own error is estimated twice, by estimates of different orders at different places, and kept
+//! well below `rtol`; how far the problem amplifies it later is the problem's conditioning (near a fold, by orders of
+//! magnitude). Measured: `rtol` held in all 30 reference responses with every order, and in all of 5040 runs of random
+//! models within a factor 2 of the thesis', 1 to 5 units, random loads and starts, at 1e-3 to 1e-12, whose conditioning
+//! amplifies no more than twofold (the worst 0.77 `rtol`); with contact and loads up to 2e4 Pa in 2498 of 2500 (the
+//! others 1.5 at 1e-12). Errors of the rates are not bounded; beyond the layers they follow those of the displacements.
 //!
-//! Where a vessel closes under [`crate::Collapse::Error`], or comes within a few `rtol` of it, the run is repeated from its start at the
-//! finest tolerance, and that one's time and trajectory are given: a loose tolerance moves the end of a long slow fall by far more than itself.
+//! Where a vessel closes under [`crate::Collapse::Error`], or comes within a few `rtol` of it, the run is repeated from
+//! its start at the finest tolerance, and that one's time and trajectory are given: a loose tolerance moves the end of
+//! a long slow fall by far more than itself.
 //!
-//! [`simulate`] is the whole of it for one run; [`Solver`] keeps its memory for those who run it ten thousand times. Inside the crate,
-//! [`StepObserver`] hears of every accepted step.
+//! [`simulate`] is the whole of it for one run; [`Solver`] keeps its memory for those who run it ten thousand times.
+//! Inside the crate, [`StepObserver`] hears of every accepted step.
 
 mod course;
 mod fault;
@@ -55,7 +58,8 @@ pub fn simulate(
     Ok(trajectory)
 }
 
-/// The solver with its memory. After the first run of an order, a run allocates only what the trajectory has no room for.
+/// The solver with its memory. After the first run of an order, a run allocates only what the trajectory has no room
+/// for.
 #[derive(Clone)]
 pub struct Solver {
     model: Model,
@@ -84,7 +88,8 @@ impl Solver {
         }
     }
 
-    /// As [`simulate`], into a trajectory whose memory is used again. After an error it holds nothing; the error has the part before it.
+    /// As [`simulate`], into a trajectory whose memory is used again. After an error it holds nothing; the error has
+    /// the part before it.
     pub fn run(
         &mut self,
         loads: &Loads,
@@ -180,10 +185,11 @@ const FIFTH_FROM: f64 = 5e-5;
 /// Tolerance below which the 13th order is the fastest.
 const THIRTEENTH_BELOW: f64 = 3e-11;
 
-/// The bounds of a step that hold a tolerance. Where the polynomial is lifted, its error is of the order `S + 2` in the step, as is the
-/// estimate at the probe, and the estimate at the start is of `S + 1`: its bound is the tolerance to the power `(S + 1) / (S + 2)`. The
-/// factors are measured on random models (tests/transient/random.rs): with them none of 5040 runs whose conditioning does not amplify more
-/// than twofold exceeds its tolerance; the worst reaches 0.77 of it. What Newton's method leaves adds up over the steps of a time constant.
+/// The bounds of a step that hold a tolerance. Where the polynomial is lifted, its error is of the order `S + 2` in the
+/// step, as is the estimate at the probe, and the estimate at the start is of `S + 1`: its bound is the tolerance to
+/// the power `(S + 1) / (S + 2)`. The factors are measured on random models (tests/transient/random.rs): with them none
+/// of 5040 runs whose conditioning does not amplify more than twofold exceeds its tolerance; the worst reaches 0.77 of
+/// it. What Newton's method leaves adds up over the steps of a time constant.
 pub(crate) fn bounds<const S: usize>(rtol: f64) -> Bounds {
     Bounds {
         lifted: 0.02 * rtol / root(rtol, S as u32 + 2),

@@ -21,22 +21,24 @@ pub enum Order {
     Thirteenth,
 }
 
-/// How a transient is solved. [`SolveOptions::default`] asks for `rtol = 1e-8` and bounds the work at ten million evaluations.
+/// How a transient is solved. [`SolveOptions::default`] asks for `rtol = 1e-8` and bounds the work at ten million
+/// evaluations.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SolveOptions {
-    /// The largest error of a displacement over its nominal diameter, `|x - x_exact| / D`, at every time asked for; 1e-13 to 1e-1.
+    /// The largest error of a displacement over its nominal diameter, `|x - x_exact| / D`, at every time asked for;
+    /// 1e-13 to 1e-1.
     pub rtol: f64,
     /// The order of the method.
     pub order: Order,
     /// When the run starts, s; the first of the times asked for where there is none.
     pub start_s: Option<f64>,
-    /// Steps of this size (s) instead of steps chosen by the tolerance; between two breakpoints of the loads they are shortened to equal ones.
-    /// The tolerance then bounds the error of Newton's method alone.
+    /// Steps of this size (s) instead of steps chosen by the tolerance; between two breakpoints of the loads they are
+    /// shortened to equal ones. The tolerance then bounds the error of Newton's method alone.
     pub fixed_step_s: Option<f64>,
     /// No step is longer than this, s: for loads given as functions whose short pulses have no breakpoints.
     pub longest_step_s: Option<f64>,
-    /// The run gives up after so many evaluations of the accelerations (one is all walls at one state: an iteration of a method with 5
-    /// stages takes 5).
+    /// The run gives up after so many evaluations of the accelerations (one is all walls at one state: an iteration of
+    /// a method with 5 stages takes 5).
     pub most_evaluations: u64,
 }
 

@@ -1,7 +1,9 @@
-//! The equations against exact rational arithmetic: doubles are rationals, and the network of Figure 70 is solved node by node in them.
+//! The equations against exact rational arithmetic: doubles are rationals, and the network of Figure 70 is solved node
+//! by node in them.
 //!
-//! Entries of the matrices (`R_ij`, `B_ij`) are held to a relative gap. Pressures, accelerations and derivatives by lumens may cancel in
-//! truth (a wall at rest has no acceleration): their gap is relative to the sum of the magnitudes of the terms that make them up.
+//! Entries of the matrices (`R_ij`, `B_ij`) are held to a relative gap. Pressures, accelerations and derivatives by
+//! lumens may cancel in truth (a wall at rest has no acceleration): their gap is relative to the sum of the magnitudes
+//! of the terms that make them up.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -17,7 +19,8 @@ use num_rational::BigRational;
 use num_traits::{One, Signed, ToPrimitive, Zero};
 use number::{Dual, exact, gap};
 
-/// All of what follows; measured over 120 cases: R_ij 6.4e-16, B_ij 7.0e-16, pressures 6.9e-16, accelerations 7.2e-16, by lumens 1.3e-15.
+/// All of what follows; measured over 120 cases: R_ij 6.4e-16, B_ij 7.0e-16, pressures 6.9e-16, accelerations 7.2e-16,
+/// by lumens 1.3e-15.
 const TOLERANCE: f64 = 4e-15;
 const CASES: usize = 40;
 const TOUCH: f64 = 0.05;
@@ -27,7 +30,8 @@ fn worse(worst: &mut f64, now: f64) {
     *worst = worst.max(now);
 }
 
-/// The moment whose pressures are the sums of the magnitudes of the terms of this one's: they fall with every rate and rise with every input.
+/// The moment whose pressures are the sums of the magnitudes of the terms of this one's: they fall with every rate and
+/// rise with every input.
 fn magnitudes(lumens: &[f64], rates: &[f64], inputs: &Inputs) -> Moment {
     let against: Vec<f64> = rates.iter().map(|w| -w.abs()).collect();
     let up = Inputs { upstream_pa: inputs.upstream_pa.abs(), downstream_pa: inputs.downstream_pa.abs(), ..*inputs };
@@ -112,8 +116,9 @@ fn column(case: &Case, which: usize, k: usize) -> Vec<BigRational> {
     accelerations(&case.parameters, &moment, Some(TOUCH)).into_iter().map(|w| w.slope).collect()
 }
 
-/// The sum of the magnitudes of the terms of `d w'_i / d l_k`, in doubles (it is a scale): with `t`, `G`, `G_t` of the module's head in
-/// `model`, `P_V` falls or rises with a lumen by its conductance's slope times a drop of pressure, whose terms are added.
+/// The sum of the magnitudes of the terms of `d w'_i / d l_k`, in doubles (it is a scale): with `t`, `G`, `G_t` of the
+/// module's head in `model`, `P_V` falls or rises with a lumen by its conductance's slope times a drop of pressure,
+/// whose terms are added.
 fn by_lumen(case: &Case, i: usize, k: usize) -> BigRational {
     let (p, n) = (&case.parameters, case.lumens.len() - 1);
     let conductance = |j: usize| {

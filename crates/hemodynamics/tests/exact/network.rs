@@ -1,7 +1,9 @@
-//! The network of Figure 70 in exact arithmetic, straight from its nodes: what flows into a node flows out of it or widens its wall.
+//! The network of Figure 70 in exact arithmetic, straight from its nodes: what flows into a node flows out of it or
+//! widens its wall.
 //!
-//! `(P_H - P_Ci) G_Ai = A_Ci v_Ci + (P_Ci - P_V) / R_Vi` at each capillary, `sum (P_Ci - P_V) / R_Vi = A_V v_V + (P_V - P_L) G_V` at the vein,
-//! solved by elimination; then `m v' = A (P - P_ext) - k x - b v` at every wall. Pi is taken to 60 digits.
+//! `(P_H - P_Ci) G_Ai = A_Ci v_Ci + (P_Ci - P_V) / R_Vi` at each capillary,
+//! `sum (P_Ci - P_V) / R_Vi = A_V v_V + (P_V - P_L) G_V` at the vein, solved by elimination; then
+//! `m v' = A (P - P_ext) - k x - b v` at every wall. Pi is taken to 60 digits.
 
 use lunula_hemodynamics::{Inputs, Parameters, Vessel};
 use num_rational::BigRational;

@@ -1,8 +1,8 @@
-//! How often the truth lies within two standard errors: 95.4 % are expected of 200 recordings with 1 % noise (SD over the swing), 190.9 with
-//! an SD of 3.0; and how often it lies within the intervals.
+//! How often the truth lies within two standard errors: 95.4 % are expected of 200 recordings with 1 % noise (SD over
+//! the swing), 190.9 with an SD of 3.0; and how often it lies within the intervals.
 //!
-//! The recordings are like those of Fig. 80 (the proximal photodiode under a proximal step), of Fig. 82 (the distal one under a distal
-//! step), and both of a subject together; 4 s with 400 samples. The fit starts from the thesis' table.
+//! The recordings are like those of Fig. 80 (the proximal photodiode under a proximal step), of Fig. 82 (the distal one
+//! under a distal step), and both of a subject together; 4 s with 400 samples. The fit starts from the thesis' table.
 
 use lunula_hemodynamics::{Bounds, FitOptions, Parameters, Recording, fit};
 
@@ -37,8 +37,8 @@ fn phantom(kind: &Kind) -> Vec<Recording> {
     }
 }
 
-/// Of so many seeds, how many have the truth within two standard errors (k, b, then offset and scaling of each photodiode) and within the
-/// intervals (k, b).
+/// Of so many seeds, how many have the truth within two standard errors (k, b, then offset and scaling of each
+/// photodiode) and within the intervals (k, b).
 fn covered(kind: &Kind, seeds: u64) -> Vec<(String, u64)> {
     let recordings = phantom(kind);
     let mut counts: Vec<(String, u64)> = vec![];
@@ -90,7 +90,8 @@ fn a_distal_step_covers_its_truth() {
     check(&Kind::Distal, 200);
 }
 
-/// Measured: k 187, b 188, V_0 189 and 186, V_1 185 and 186; of 2000: 1895, 1897, 1906 and 1896, 1889 and 1897. Intervals: k 187, b 188.
+/// Measured: k 187, b 188, V_0 189 and 186, V_1 185 and 186; of 2000: 1895, 1897, 1906 and 1896, 1889 and 1897.
+/// Intervals: k 187, b 188.
 #[test]
 #[ignore = "takes ten seconds"]
 fn a_proximal_and_a_distal_step_cover_their_truth() {
@@ -104,8 +105,9 @@ fn a_measured_force_covers_its_truth() {
     check(&Kind::Force, 200);
 }
 
-/// The proximal photodiode alone leaves k and V_1 uncertain by 16 %; so far the model is not linear, and two standard errors are a little
-/// short; the intervals are not. Measured: k 182, b 183, V_0 189, V_1 189; of 2000: 1840, 1846, 1900, 1893. Intervals: k 194, b 195.
+/// The proximal photodiode alone leaves k and V_1 uncertain by 16 %; so far the model is not linear, and two standard
+/// errors are a little short; the intervals are not. Measured: k 182, b 183, V_0 189, V_1 189; of 2000: 1840, 1846,
+/// 1900, 1893. Intervals: k 194, b 195.
 #[test]
 #[ignore = "takes five seconds"]
 fn intervals_of_a_proximal_step_cover_its_truth_and_standard_errors_nearly() {

@@ -54,7 +54,8 @@ pub(crate) fn step(height_pa: f64) -> Load {
     Load::step(height_pa, 0.0, 2.0).expect("a finite load")
 }
 
-/// A finger that presses from `from_s` to `to_s` as fast as it can: a time constant of 40 ms, sampled as a force sensor does.
+/// A finger that presses from `from_s` to `to_s` as fast as it can: a time constant of 40 ms, sampled as a force sensor
+/// does.
 pub(crate) fn pressed(height_pa: f64, from_s: f64, to_s: f64) -> Load {
     let rise = |t: f64| if t <= 0.0 { 0.0 } else { 1.0 - (-t / 0.04).exp() };
     let values: Vec<f64> = times().iter().map(|t| height_pa * (rise(t - from_s) - rise(t - to_s))).collect();

@@ -147,7 +147,8 @@ fn same_input_same_bytes() {
 
 #[test]
 fn parameters_at_which_a_vessel_closes_are_refused_and_the_fit_goes_on() {
-    // Half of k_C and 9000 Pa close the distal capillaries: the tenth to tenfold about the thesis' values is full of such points.
+    // Half of k_C and 9000 Pa close the distal capillaries: the tenth to tenfold about the thesis' values is full of
+    // such points.
     let truth = with_photodiodes(softer(2.0, 1.0), [2.5; 2], [0.4; 2]);
     let recording = exact(&truth, &zero(), &step(9000.0), &[1]);
     let options = FitOptions { starts: 8, ..precise() };

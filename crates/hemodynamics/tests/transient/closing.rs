@@ -101,8 +101,9 @@ fn a_start_that_is_closed_is_refused_and_named() {
     }
 }
 
-/// A load that is taken away just before, or just after, the vein would close: every tolerance has to tell the two apart. (Measured: taken
-/// away 1e-8 s before, the vein closes all the same by its inertia, 1e-9 s late; 1e-7 s before, it stays open.)
+/// A load that is taken away just before, or just after, the vein would close: every tolerance has to tell the two
+/// apart. (Measured: taken away 1e-8 s before, the vein closes all the same by its inertia, 1e-9 s late; 1e-7 s before,
+/// it stays open.)
 #[test]
 fn a_loose_run_sees_a_collapse_that_a_tight_one_sees() {
     let model = Model::new(&Parameters::thesis(), Collapse::Error);

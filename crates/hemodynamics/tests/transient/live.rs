@@ -94,7 +94,8 @@ fn a_sample_that_fails_leaves_the_last_state_and_the_next_may_follow() {
     let LiveFault::Collapsed { site, after_s } = fault else { panic!("{fault}") };
     assert!(site == Site::Vein && after_s > 0.0 && after_s < SAMPLE_S);
     assert_eq!(live.state(), &before);
-    // The way back from the failed sample's load begins with that load, and closes the vessel too; the sample after it does not.
+    // The way back from the failed sample's load begins with that load, and closes the vessel too; the sample after it
+    // does not.
     let light = Inputs { proximal_pa: 1000.0, ..blood() };
     assert!(matches!(live.sample(&light), Err(LiveFault::Collapsed { site: Site::Vein, .. })));
     assert_eq!(live.state(), &before);

@@ -69,7 +69,8 @@ fn at_a_jump_the_state_is_continuous_and_repeated_times_are_answered_twice() {
     }
 }
 
-/// What a clock's own rounding (1e-7 s at 1.7e9 s) makes of the times at which a load steps: none here, as all are whole or halves.
+/// What a clock's own rounding (1e-7 s at 1.7e9 s) makes of the times at which a load steps: none here, as all are
+/// whole or halves.
 #[test]
 fn a_clock_that_counts_from_1970_or_from_the_beginning_of_all_serves_as_well() {
     let offsets: Vec<f64> = (0..=16).map(|k| f64::from(k) * 0.25).collect();

@@ -6,8 +6,8 @@ use lunula_hemodynamics::{
 
 use super::load;
 
-/// Runs over their tolerance, of those whose conditioning amplifies an error no more than twofold: of 5040 such runs measured none
-/// (with contact 2 of 2500), of the 520 here of either kind none.
+/// Runs over their tolerance, of those whose conditioning amplifies an error no more than twofold: of 5040 such runs
+/// measured none (with contact 2 of 2500), of the 520 here of either kind none.
 const MOST_OVER: f64 = 0.01;
 /// The worst of them over its tolerance; measured 0.46 here (0.75 with contact).
 const WORST: f64 = 2.0;
@@ -172,7 +172,8 @@ fn tolerances_hold_on_random_models_whose_walls_touch() {
 
 #[test]
 fn two_starts_far_from_rest_hold_at_ninety_one_tolerances() {
-    // Both were over by up to 80 times where a step could grow twelvefold on the word of a single estimate. Measured 0.14.
+    // Both were over by up to 80 times where a step could grow twelvefold on the word of a single estimate. Measured
+    // 0.14.
     let far =
         [(Parameters::thesis(), "0", vec![0.1; 3]), (Parameters::along_nail(1).unwrap(), "3000", vec![0.1, 0.25])];
     for (parameters, proximal, lumens) in far {

@@ -1,4 +1,5 @@
-//! How often measured values fall within prediction intervals, on sessions that gave neither the model nor the intervals.
+//! How often measured values fall within prediction intervals, on sessions that gave neither the model nor the
+//! intervals.
 //!
 //! In: residuals by group, or a set with how to fit and to predict. Out: the share within, group by group and over all.
 
@@ -59,8 +60,9 @@ pub fn coverage(residuals: ArrayView2<f64>, intervals: &Intervals, name: &str) -
     }
 }
 
-/// Each group's coverage by intervals calibrated on the other groups' out-of-fold residuals (of [`cross_validate`]; `groups`: name and rows
-/// of each). It costs no fit. But the models that gave the others' residuals have seen the group: [`nested_coverage`] is strict.
+/// Each group's coverage by intervals calibrated on the other groups' out-of-fold residuals (of [`cross_validate`];
+/// `groups`: name and rows of each). It costs no fit. But the models that gave the others' residuals have seen the
+/// group: [`nested_coverage`] is strict.
 ///
 /// # Errors
 /// [`IntervalFault`].
@@ -82,8 +84,9 @@ pub fn cross_coverage(
     gather(level, groups.iter().map(|(name, _)| name.clone()).collect(), results, residuals.ncols())
 }
 
-/// Each group's coverage by a model and intervals that have not seen it: the group is set aside, the others are cross-validated among
-/// themselves for the half widths, the model is fitted to all of them and predicts the group. Fits as many times as there are groups, squared.
+/// Each group's coverage by a model and intervals that have not seen it: the group is set aside, the others are
+/// cross-validated among themselves for the half widths, the model is fitted to all of them and predicts the group.
+/// Fits as many times as there are groups, squared.
 ///
 /// # Errors
 /// [`IntervalFault`].
@@ -162,7 +165,8 @@ mod tests {
 
     #[test]
     fn swappable_rows_are_covered_as_promised() {
-        // 200 draws of 40 rows to calibrate and 400 to test. Between 0.9 and 0.9 + 1 / 41 by the theorem, SD of the mean 0.004; measured 0.902.
+        // 200 draws of 40 rows to calibrate and 400 to test. Between 0.9 and 0.9 + 1 / 41 by the theorem, SD of the
+        // mean 0.004; measured 0.902.
         let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(5);
         let mut draw = |rows| Array2::from_shape_fn((rows, 1), |_| random.random_range(-1.0..1.0_f64).powi(3));
         let shares = (0..200).map(|_| {

@@ -1,8 +1,8 @@
 //! Cross-validation: each part predicted by a model that has not seen it.
 //!
-//! In: a [`Dataset`], what to hold out, how to fit and how to predict. Out: scores of each fold and of all held-out rows together, and the
-//! predictions in row order. Folds run on all cores; the result does not depend on how many there are. A fold whose fit fails is told with
-//! why, its rows are not predicted (NaN); the others stand.
+//! In: a [`Dataset`], what to hold out, how to fit and how to predict. Out: scores of each fold and of all held-out
+//! rows together, and the predictions in row order. Folds run on all cores; the result does not depend on how many
+//! there are. A fold whose fit fails is told with why, its rows are not predicted (NaN); the others stand.
 
 use std::fmt::Display;
 

@@ -1,7 +1,7 @@
 //! Does an option help? Scores with and without it, on the same held-out rows.
 //!
-//! In: predictions of held-out rows, or a set to cross-validate. Out: both scores and their ratio. Rows that an option leaves out (lags need
-//! history) are left out of both.
+//! In: predictions of held-out rows, or a set to cross-validate. Out: both scores and their ratio. Rows that an option
+//! leaves out (lags need history) are left out of both.
 
 use std::fmt::Display;
 

@@ -14,8 +14,9 @@ pub(crate) fn line(rows: usize) -> Dataset {
     Dataset::plain(vec!["P1".into()], vec!["J2_deg".into()], x, y, 0.04).unwrap()
 }
 
-/// Recordings (name, session, subject, rows) of two photodiodes and two targets, with a level and a sensitivity that each recording has of
-/// its own, as a sensor has that was taken off in between, and a drift within. Normal noise of 0.03.
+/// Recordings (name, session, subject, rows) of two photodiodes and two targets, with a level and a sensitivity that
+/// each recording has of its own, as a sensor has that was taken off in between, and a drift within. Normal noise of
+/// 0.03.
 pub(crate) fn recordings(all: &[(&str, &str, &str, usize)]) -> Dataset {
     let mut random = ChaCha8Rng::seed_from_u64(7);
     let mut normal = move || -> f64 { StandardNormal.sample(&mut random) };

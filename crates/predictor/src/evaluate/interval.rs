@@ -1,12 +1,14 @@
 //! Prediction intervals: how far a prediction may be off.
 //!
-//! In: residuals of rows that the model was not trained on. Out: a half width a target, such that `predicted +- half width` holds the
-//! measured value of a share `level` of rows: split conformal prediction, the k-th smallest magnitude of n residuals, k = ceil((n + 1) level)
-//! (doi 10.1080/01621459.2017.1307116, algorithm 2).
+//! In: residuals of rows that the model was not trained on. Out: a half width a target, such that
+//! `predicted +- half width` holds the measured value of a share `level` of rows: split conformal prediction, the k-th
+//! smallest magnitude of n residuals, k = ceil((n + 1) level) (doi 10.1080/01621459.2017.1307116, algorithm 2).
 //!
-//! What is promised: that theorem needs rows that could be swapped for each other. Rows of one session could not, so its exact coverage is
-//! not promised for a new session. What is promised is what was measured: [`Coverage`](super::coverage::Coverage) of sessions used neither for training nor for
-//! calibration, each left out in turn ([`nested_coverage`](super::coverage::nested_coverage)). With few sessions that figure itself is coarse: look at the groups' least.
+//! What is promised: that theorem needs rows that could be swapped for each other. Rows of one session could not, so
+//! its exact coverage is not promised for a new session. What is promised is what was measured:
+//! [`Coverage`](super::coverage::Coverage) of sessions used neither for training nor for calibration, each left out in
+//! turn ([`nested_coverage`](super::coverage::nested_coverage)). With few sessions that figure itself is coarse: look
+//! at the groups' least.
 
 use ndarray::ArrayView2;
 use serde::{Deserialize, Serialize};
@@ -71,7 +73,8 @@ fn needs(level: f64) -> String {
     }
 }
 
-/// Reads half widths from residuals, rows x targets, of rows that were not trained on. Rows with a residual that is not finite do not count.
+/// Reads half widths from residuals, rows x targets, of rows that were not trained on. Rows with a residual that is not
+/// finite do not count.
 ///
 /// # Errors
 /// [`IntervalFault::Level`] and [`IntervalFault::TooFew`].

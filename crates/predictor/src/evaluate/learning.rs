@@ -1,7 +1,8 @@
 //! Learning curves: how good a model gets with how much training data.
 //!
-//! In: rows to train on and rows held out. Out: a point for each amount of training data, with the scores of both. Amounts are 1, 2, .. of
-//! the recordings, in order; or the first shares of each recording's time, as a shorter calibration would have given.
+//! In: rows to train on and rows held out. Out: a point for each amount of training data, with the scores of both.
+//! Amounts are 1, 2, .. of the recordings, in order; or the first shares of each recording's time, as a shorter
+//! calibration would have given.
 
 use std::fmt::Display;
 
@@ -23,7 +24,8 @@ pub struct LearningPoint {
     pub share: f64,
     /// Rows trained on.
     pub rows: usize,
-    /// Seconds trained on, summed over recordings: rows times each recording's mean step; none where a recording has no time.
+    /// Seconds trained on, summed over recordings: rows times each recording's mean step; none where a recording has no
+    /// time.
     pub time_s: Option<f64>,
     /// Scores of the rows trained on; none where the fit failed.
     pub train: Option<Scores>,
@@ -66,8 +68,8 @@ pub fn learn_by_recordings<P, E: Display>(
     Ok(amounts.par_iter().map(one).collect())
 }
 
-/// Trains on the first shares of each recording's time, and scores on `held_out`. Of a recording whose times are not known or do not ascend,
-/// the share of its rows is taken.
+/// Trains on the first shares of each recording's time, and scores on `held_out`. Of a recording whose times are not
+/// known or do not ascend, the share of its rows is taken.
 ///
 /// # Errors
 /// [`LearningFault`].

@@ -1,7 +1,8 @@
 //! Errors by how hard the finger presses, or how far it bends.
 //!
-//! In: measured and predicted rows. Out: scores of each bin. Rows are sorted into bins by what was *measured*: the normal force N = -Fz where
-//! the targets hold `Fz_N`, else the one target there is (an angle). A bin holds its lower edge and not its upper, the last bin both.
+//! In: measured and predicted rows. Out: scores of each bin. Rows are sorted into bins by what was *measured*: the
+//! normal force N = -Fz where the targets hold `Fz_N`, else the one target there is (an angle). A bin holds its lower
+//! edge and not its upper, the last bin both.
 
 use ndarray::ArrayView2;
 use serde::Serialize;
@@ -81,7 +82,8 @@ pub fn by_magnitude(
     Ok(ByMagnitude { of, bins: bins.collect(), outside })
 }
 
-/// Round edges of about `bins` bins of one width that hold every measured row; none where nothing is measured or all is alike.
+/// Round edges of about `bins` bins of one width that hold every measured row; none where nothing is measured or all is
+/// alike.
 ///
 /// # Errors
 /// [`MagnitudeFault::Target`].
@@ -97,7 +99,8 @@ pub fn magnitude_edges(
     if !(wide.is_finite() && wide > power_of_two(least.abs().max(most.abs())) * f64::EPSILON) {
         return Ok(None);
     }
-    // A step of 1, 2, 5 or 10 tens. A power of ten below 1 is divided by its inverse, which is exact: 3 / 10 is 0.3, 3 * 0.1 is not.
+    // A step of 1, 2, 5 or 10 tens. A power of ten below 1 is divided by its inverse, which is exact: 3 / 10 is 0.3, 3
+    // * 0.1 is not.
     let power = wide.log10().floor();
     let (ten, inverse) = (10f64.powf(power.max(0.0)), 10f64.powf((-power).max(0.0)));
     let size = |tens: f64| tens * ten / inverse;

@@ -1,9 +1,9 @@
 //! How good a model is on rows that it has not seen.
 //!
-//! In: predictions and measurements, or a set with how to fit and how to predict (two closures: any model will do). Out: figures with their
-//! units, all of which can be written as JSON. Up to down: [`split`] what is held out, [`cross`] what comes of it, [`score`] how far off,
-//! [`magnitude`] where, [`interval`] and [`coverage`] how sure, [`learning`] with how much data, [`effect`] what an option changes, [`rows`]
-//! whether rows were seen after all.
+//! In: predictions and measurements, or a set with how to fit and how to predict (two closures: any model will do).
+//! Out: figures with their units, all of which can be written as JSON. Up to down: [`split`] what is held out,
+//! [`cross`] what comes of it, [`score`] how far off, [`magnitude`] where, [`interval`] and [`coverage`] how sure,
+//! [`learning`] with how much data, [`effect`] what an option changes, [`rows`] whether rows were seen after all.
 
 mod coverage;
 mod cross;

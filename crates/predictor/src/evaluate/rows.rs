@@ -1,8 +1,9 @@
 //! Whether a model is scored on rows that it was trained on.
 //!
-//! In: a [`Dataset`]. Out: hashes of its rows, its recordings or all of it: SHA-256 over the little-endian bytes of each row's voltages, then
-//! its targets (-0 counts as 0). Times, names of recordings, sessions and subjects do not enter: a file given twice under two names is found.
-//! Rows that are alike by chance (a sensor at rest, all saturated) count as shared too.
+//! In: a [`Dataset`]. Out: hashes of its rows, its recordings or all of it: SHA-256 over the little-endian bytes of
+//! each row's voltages, then its targets (-0 counts as 0). Times, names of recordings, sessions and subjects do not
+//! enter: a file given twice under two names is found. Rows that are alike by chance (a sensor at rest, all saturated)
+//! count as shared too.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -43,7 +44,8 @@ pub fn shared_rows(trained: &[u64], tested: &[u64]) -> usize {
     tested.iter().filter(|row| known.contains(row)).count()
 }
 
-/// The same for parts that are held out in turn, each tested against the rows of all others: how many of each part's rows others hold as well.
+/// The same for parts that are held out in turn, each tested against the rows of all others: how many of each part's
+/// rows others hold as well.
 pub(super) fn shared_with_others(hashes: &[u64], parts: &[&[usize]]) -> Vec<usize> {
     // Of each row the parts that hold it: the first, and whether there is another.
     let mut holders: BTreeMap<u64, (usize, bool)> = BTreeMap::new();

@@ -1,8 +1,9 @@
 //! How far predictions are from measurements.
 //!
-//! In: measured and predicted rows, a column a target. Out: RMSE, bias, mean absolute error and R2 of each target and over all. An error is
-//! predicted less measured. A row with a number that is not finite is counted and not scored; so all targets are scored on the same rows.
-//! R2 = 1 - (sum of squared errors) / (sum of squares about the mean of the rows scored); it is not defined where the target is constant.
+//! In: measured and predicted rows, a column a target. Out: RMSE, bias, mean absolute error and R2 of each target and
+//! over all. An error is predicted less measured. A row with a number that is not finite is counted and not scored; so
+//! all targets are scored on the same rows. R2 = 1 - (sum of squared errors) / (sum of squares about the mean of the
+//! rows scored); it is not defined where the target is constant.
 //!
 //! Offsets far above the errors cost no digits, and sizes from 1e-300 to 1e300 neither overflow nor underflow.
 
@@ -22,8 +23,8 @@ pub struct TargetScore {
     pub bias: f64,
     /// Mean magnitude of the errors, the target's unit; NaN of no rows.
     pub mae: f64,
-    /// Share of the variance that is explained, below 0 where the mean would do better; none where the target is constant, of fewer
-    /// than two rows, or spread beyond a double.
+    /// Share of the variance that is explained, below 0 where the mean would do better; none where the target is
+    /// constant, of fewer than two rows, or spread beyond a double.
     pub r2: Option<f64>,
     /// How many numbers were compared.
     pub n: usize,
@@ -34,7 +35,8 @@ pub struct TargetScore {
 pub struct Scores {
     /// Target by target.
     pub targets: Vec<TargetScore>,
-    /// All targets' errors in one pot (R2: summed squares over summed squares). It tells something where all have one unit.
+    /// All targets' errors in one pot (R2: summed squares over summed squares). It tells something where all have one
+    /// unit.
     pub overall: TargetScore,
     /// Rows that were scored.
     pub rows: usize,
@@ -173,8 +175,8 @@ mod tests {
 
     #[test]
     fn offsets_and_sizes_cost_no_digits() {
-        // R2 of the same rows, moved and scaled by powers of two: the same number. Measured gap 0 when scaled, 1e-12 at the offset, where
-        // the data themselves keep 2^-42 of the signal.
+        // R2 of the same rows, moved and scaled by powers of two: the same number. Measured gap 0 when scaled, 1e-12 at
+        // the offset, where the data themselves keep 2^-42 of the signal.
         let measured = [0.25, -0.5, 0.125, 0.75, -0.375];
         let predicted = [0.5, -0.25, 0.0, 0.5, -0.5];
         let r2 = |scale: f64, offset: f64| {

@@ -1,8 +1,8 @@
 //! Which rows are held out.
 //!
-//! In: a [`Dataset`]. Out: folds, each with the rows to train on and the rows to test on. What follows each other in time is alike, so rows
-//! of one trajectory on both sides flatter a model: 1.4 to 2 times on this field's data. Whole trajectories, sessions or subjects are held
-//! out; shuffled rows only when asked for.
+//! In: a [`Dataset`]. Out: folds, each with the rows to train on and the rows to test on. What follows each other in
+//! time is alike, so rows of one trajectory on both sides flatter a model: 1.4 to 2 times on this field's data. Whole
+//! trajectories, sessions or subjects are held out; shuffled rows only when asked for.
 
 use std::collections::BTreeMap;
 

@@ -1,7 +1,7 @@
 //! Sums, means and root mean squares that neither cancel, overflow nor underflow.
 //!
-//! In: finite numbers of any size, in a fixed order. Out: the same bits wherever it runs. Sums carry what each addition rounds off (Knuth's
-//! two-sum; The Art of Computer Programming 2, 4.2.2), scales are powers of two and round nothing.
+//! In: finite numbers of any size, in a fixed order. Out: the same bits wherever it runs. Sums carry what each addition
+//! rounds off (Knuth's two-sum; The Art of Computer Programming 2, 4.2.2), scales are powers of two and round nothing.
 
 /// A sum that carries what rounding takes away.
 #[derive(Debug, Clone, Copy, Default)]
@@ -67,7 +67,8 @@ pub(crate) fn rms(values: impl Iterator<Item = f64> + Clone) -> f64 {
     (squares.value() / n as f64).sqrt() * scale
 }
 
-/// A mean as its double and what the double leaves over, of finite numbers: an offset far above the signal costs no digits. NaN of nothing.
+/// A mean as its double and what the double leaves over, of finite numbers: an offset far above the signal costs no
+/// digits. NaN of nothing.
 pub(crate) fn exact_mean(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
     let near = mean(values.clone());
     (near, mean(values.map(|value| value - near)))

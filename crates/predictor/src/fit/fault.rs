@@ -11,7 +11,8 @@ pub enum FitFault {
     #[error("there are no rows to fit to")]
     NoRows,
     /// Fewer rows than unknowns.
-    #[error("{terms} terms need at least {} rows; there are {rows} (record more, or ask for minimum norm, dropping or ridge)", .terms + 1)]
+    #[error("{terms} terms need at least {} rows; there are {rows} (record more, or ask for minimum norm, dropping or \
+             ridge)", .terms + 1)]
     TooFewRows {
         /// How many there are.
         rows: usize,
@@ -23,7 +24,8 @@ pub enum FitFault {
     Deficient(Vec<String>),
     /// A coefficient beyond a number.
     #[error(
-        "what {target} has of {term} is beyond what a number can hold (1e-308 to 1e308): {term} is too small or too large beside {target}; write them in volts and newtons"
+        "what {target} has of {term} is beyond what a number can hold (1e-308 to 1e308): {term} is too small or too \
+         large beside {target}; write them in volts and newtons"
     )]
     Range {
         /// The term.
@@ -42,8 +44,8 @@ pub enum FitFault {
     Model(#[from] ModelFault),
 }
 
-/// `names`: of the terms; `targets`: of the targets; `inputs`: how many of them are photodiodes themselves. Faults of photodiodes explain those of their products, which are told
-/// only where there are no others.
+/// `names`: of the terms; `targets`: of the targets; `inputs`: how many of them are photodiodes themselves. Faults of
+/// photodiodes explain those of their products, which are told only where there are no others.
 pub(super) fn named(fault: LeastSquaresFault, names: &[String], targets: &[String], inputs: usize) -> FitFault {
     match fault {
         LeastSquaresFault::NoRows => FitFault::NoRows,

@@ -1,5 +1,6 @@
-//! A [`Dataset`](crate::Dataset) to a model by least squares: [`fit_linear`] (equations 9 and 10 to 15), [`fit_quadratic`] (equation 16), with a
-//! [`FitReport`] of what is known about the numbers. Here columns get the photodiodes' names.
+//! A [`Dataset`](crate::Dataset) to a model by least squares: [`fit_linear`] (equations 9 and 10 to 15),
+//! [`fit_quadratic`] (equation 16), with a [`FitReport`] of what is known about the numbers. Here columns get the
+//! photodiodes' names.
 
 mod fault;
 mod linear;

@@ -1,5 +1,5 @@
-//! The models as the thesis prints them, in P itself: worked out in numbers of twice the length from the model's coefficients and rounded once. Only for print: using them
-//! cancels digits that the centred models keep.
+//! The models as the thesis prints them, in P itself: worked out in numbers of twice the length from the model's
+//! coefficients and rounded once. Only for print: using them cancels digits that the centred models keep.
 
 use ndarray::Array2;
 

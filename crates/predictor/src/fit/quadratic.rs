@@ -1,5 +1,5 @@
-//! Equation 16: the quadratic model, fitted in u = (P - m) / s with m the means and s powers of two about the SDs. Products of u are carried exactly
-//! into the fit.
+//! Equation 16: the quadratic model, fitted in u = (P - m) / s with m the means and s powers of two about the SDs.
+//! Products of u are carried exactly into the fit.
 
 use ndarray::Array2;
 

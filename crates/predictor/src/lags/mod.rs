@@ -1,14 +1,15 @@
 //! Lag features: what the photodiodes said a moment ago, as further inputs.
 //!
-//! In: rows with their time, and lags in seconds. Out: the same rows with the inputs at t - lag beside those at t, named `P1@-0.1s`, for the
-//! linear, quadratic or network model to use (blood takes 0.1 to 0.3 s to come and go, 4.3). Between two rows of one recording voltages are
-//! interpolated linearly, but only where the two are no farther apart than [`Lags::longest_gap_s`]: twice the median step of the rows
-//! that a model was trained on. A row without that much history is left out and counted.
+//! In: rows with their time, and lags in seconds. Out: the same rows with the inputs at t - lag beside those at t,
+//! named `P1@-0.1s`, for the linear, quadratic or network model to use (blood takes 0.1 to 0.3 s to come and go, 4.3).
+//! Between two rows of one recording voltages are interpolated linearly, but only where the two are no farther apart
+//! than [`Lags::longest_gap_s`]: twice the median step of the rows that a model was trained on. A row without that much
+//! history is left out and counted.
 //!
-//! A set is expanded by the very code that expands a stream, so both give the same bits. Conventions: a moment within a hundred-thousandth
-//! of the longest gap of a row's time is that row's (seconds since 1970 hold no more digits); time that goes back begins a new recording; a
-//! second row of the same time is answered, and the first stays the history; a row whose time or voltages are not finite is left out of the
-//! history.
+//! A set is expanded by the very code that expands a stream, so both give the same bits. Conventions: a moment within a
+//! hundred-thousandth of the longest gap of a row's time is that row's (seconds since 1970 hold no more digits); time
+//! that goes back begins a new recording; a second row of the same time is answered, and the first stays the history; a
+//! row whose time or voltages are not finite is left out of the history.
 
 mod stream;
 
@@ -68,7 +69,8 @@ pub enum LagFault {
     Gap(f64),
     /// Nothing to take the step from.
     #[error(
-        "no two rows of a recording follow each other in time, so their step is not known; rows need a time_s that ascends"
+        "no two rows of a recording follow each other in time, so their step is not known; rows need a time_s that \
+         ascends"
     )]
     Step,
     /// No row has a time.
@@ -93,7 +95,8 @@ pub enum LagFault {
 }
 
 impl Lags {
-    /// Lags in seconds, in the order in which the inputs shall come, and the longest gap between two rows that is interpolated over.
+    /// Lags in seconds, in the order in which the inputs shall come, and the longest gap between two rows that is
+    /// interpolated over.
     ///
     /// # Errors
     /// [`LagFault`].

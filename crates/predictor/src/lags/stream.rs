@@ -28,8 +28,8 @@ impl LagStream {
         self.time_s.len()
     }
 
-    /// Takes a row, its time in seconds and its voltages, and writes it with its lags into `out`; whether it could. Where it could not, `out`
-    /// holds nothing of use.
+    /// Takes a row, its time in seconds and its voltages, and writes it with its lags into `out`; whether it could.
+    /// Where it could not, `out` holds nothing of use.
     ///
     /// # Panics
     /// Where the lengths are not the stream's.

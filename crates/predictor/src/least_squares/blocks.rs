@@ -1,5 +1,6 @@
-//! Tall matrices in blocks of [`BLOCK`] rows, column by column within a block: all that the factorization and the refinement look at lies side by side
-//! in the first-level cache, in loops of fixed length. Rows that a last block lacks are zeros, which change neither a sum nor a reflection.
+//! Tall matrices in blocks of [`BLOCK`] rows, column by column within a block: all that the factorization and the
+//! refinement look at lies side by side in the first-level cache, in loops of fixed length. Rows that a last block
+//! lacks are zeros, which change neither a sum nor a reflection.
 
 use pulp::Simd;
 
@@ -20,7 +21,8 @@ pub(super) type Lanes = ([f64; LANES], [f64; LANES]);
 /// Where a sum begins.
 pub(super) const NOTHING: Lanes = ([0.0; LANES], [0.0; LANES]);
 
-/// Copies rows `start ..` of a matrix in standard layout, `columns` wide, into the first parts; returns how many rows there were.
+/// Copies rows `start ..` of a matrix in standard layout, `columns` wide, into the first parts; returns how many rows
+/// there were.
 #[inline(always)]
 pub(super) fn transpose(from: &[f64], columns: usize, start: usize, into: &mut [Part]) -> usize {
     if columns == 0 {

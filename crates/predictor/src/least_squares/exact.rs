@@ -1,6 +1,6 @@
-//! Numbers of twice the length: a sum of two `f64` that do not overlap (Dekker, doi:10.1007/BF01397083; Ogita, Rump and Oishi,
-//! doi:10.1137/030601818). A product's rounding error comes from a fused multiplication where the machine has one, else from Dekker's split: the
-//! same bits either way, as both are exact.
+//! Numbers of twice the length: a sum of two `f64` that do not overlap (Dekker, doi:10.1007/BF01397083; Ogita, Rump and
+//! Oishi, doi:10.1137/030601818). A product's rounding error comes from a fused multiplication where the machine has
+//! one, else from Dekker's split: the same bits either way, as both are exact.
 
 use pulp::Simd;
 

@@ -9,7 +9,8 @@ use super::problem::Problem;
 use super::scale::{exponent, ldexp};
 use super::small::{Column, back, dot, orthonormal, triangulate};
 
-/// What the triangle of [ones, columns, targets] tells about the columns, each scaled by a power of two to a length in [0.5, 1).
+/// What the triangle of [ones, columns, targets] tells about the columns, each scaled by a power of two to a length in
+/// [0.5, 1).
 pub(super) struct Centred {
     /// Exponents taken out.
     pub(super) exponents: Vec<i32>,
@@ -71,8 +72,8 @@ impl Centred {
     }
 }
 
-/// What rounding does to the norm of a column of so many rows, relative to its largest value: to the values, and in as many blocks as are
-/// folded one into the other.
+/// What rounding does to the norm of a column of so many rows, relative to its largest value: to the values, and in as
+/// many blocks as are folded one into the other.
 pub(crate) fn rounding(rows: usize) -> f64 {
     (rows as f64).sqrt() * f64::EPSILON * (8.0 + (rows as f64 / 64.0).sqrt())
 }

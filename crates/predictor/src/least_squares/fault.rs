@@ -26,7 +26,10 @@ pub enum LeastSquaresFault {
     #[error("there are no rows")]
     NoRows,
     /// A value is NaN or infinite.
-    #[error("column {column} of the {} is not finite in row {row}; leave the row out", if *.target { "targets" } else { "design" })]
+    #[error(
+        "column {column} of the {} is not finite in row {row}; leave the row out",
+        if *.target { "targets" } else { "design" }
+    )]
     NotFinite {
         /// Of the targets, else of the design.
         target: bool,
@@ -45,7 +48,8 @@ pub enum LeastSquaresFault {
     },
     /// Columns depend on each other.
     #[error(
-        "the columns depend on each other: constant {constant:?}, following from others {dependent:?}; leave them out, or ask for minimum norm, dropping or ridge"
+        "the columns depend on each other: constant {constant:?}, following from others {dependent:?}; leave them \
+         out, or ask for minimum norm, dropping or ridge"
     )]
     Deficient {
         /// Columns that are constant.
@@ -61,7 +65,8 @@ pub enum LeastSquaresFault {
     Singular,
     /// A result is beyond what a number can hold.
     #[error(
-        "the coefficient of column {column} for target {target} is beyond 1e308 or below 1e-308; scale the column or the target"
+        "the coefficient of column {column} for target {target} is beyond 1e308 or below 1e-308; scale the column or \
+         the target"
     )]
     Range {
         /// The column.

@@ -1,19 +1,21 @@
 //! Least squares whose numbers can be trusted: equations 10 to 15, solved without equation 11.
 //!
-//! In: a design, rows x columns (voltages, or terms of them; no column of ones), and targets, rows x targets. Out: a [`LeastSquares`] for
-//! y = y_c + J (x - m), with rank, condition and what is known about its digits.
+//! In: a design, rows x columns (voltages, or terms of them; no column of ones), and targets, rows x targets. Out: a
+//! [`LeastSquares`] for y = y_c + J (x - m), with rank, condition and what is known about its digits.
 //!
-//! How: columns are scaled by powers of two and centred (both without rounding, [`problem`]), brought to a triangle by Householder reflections
-//! ([`reflect`]), the triangle is pivoted for the rank ([`small`]), and the solution is refined with residuals of twice the length ([`refine`]).
-//! Multiplying a column by a power of two changes nothing but the unit of its coefficient. Same bytes on every machine.
+//! How: columns are scaled by powers of two and centred (both without rounding, [`problem`]), brought to a triangle by
+//! Householder reflections ([`reflect`]), the triangle is pivoted for the rank ([`small`]), and the solution is refined
+//! with residuals of twice the length ([`refine`]). Multiplying a column by a power of two changes nothing but the unit
+//! of its coefficient. Same bytes on every machine.
 //!
-//! **Rank.** A column counts as dependent where what is left of it beside the ones and the columns taken before is shorter than
-//! sqrt(rows) (8 + sqrt(rows / 64)) 2^-52 times its largest value before centring: no further from the others than rounding its own values (and
-//! the reflections) may have moved it. That is about arithmetic, not about noise: two photodiodes that differ by 2^-30 are told apart, with a
-//! warning in [`LeastSquares::digits`]. A constant column depends on the ones.
+//! **Rank.** A column counts as dependent where what is left of it beside the ones and the columns taken before is
+//! shorter than sqrt(rows) (8 + sqrt(rows / 64)) 2^-52 times its largest value before centring: no further from the
+//! others than rounding its own values (and the reflections) may have moved it. That is about arithmetic, not about
+//! noise: two photodiodes that differ by 2^-30 are told apart, with a warning in [`LeastSquares::digits`]. A constant
+//! column depends on the ones.
 //!
-//! **What has no answer is missing.** With as many rows as terms and one for the offset, residuals are zero and there is no residual SD. A
-//! constant target has coefficients of exactly 0. Without columns there is only the mean.
+//! **What has no answer is missing.** With as many rows as terms and one for the offset, residuals are zero and there
+//! is no residual SD. A constant target has coefficients of exactly 0. Without columns there is only the mean.
 
 mod blocks;
 mod exact;
@@ -65,12 +67,13 @@ pub enum Deficient {
     /// An error that names the columns.
     #[default]
     Refuse,
-    /// Of all solutions the one with the least sum of squares of coefficient times length of its centred column: duplicates share.
+    /// Of all solutions the one with the least sum of squares of coefficient times length of its centred column:
+    /// duplicates share.
     MinimumNorm,
     /// Columns are left out, the pivoting's last: their coefficient is 0, and they are listed.
     Drop,
-    /// Adds lambda times that sum of squares to what is made small, whether the rank is full or not. Lambda is a number without unit,
-    /// above 0: 1 counts as much as the data's own spread. Constant columns get 0.
+    /// Adds lambda times that sum of squares to what is made small, whether the rank is full or not. Lambda is a number
+    /// without unit, above 0: 1 counts as much as the data's own spread. Constant columns get 0.
     Ridge(f64),
 }
 
@@ -98,8 +101,9 @@ pub enum Solver {
     /// As this module says.
     #[default]
     Orthogonal,
-    /// Equation 11 as printed, with equation 12's row of ones: products of the raw columns, inverted. For comparison only: it loses twice the
-    /// digits. [`Deficient`] and refinements do not apply; rank and condition are not looked at.
+    /// Equation 11 as printed, with equation 12's row of ones: products of the raw columns, inverted. For comparison
+    /// only: it loses twice the digits. [`Deficient`] and refinements do not apply; rank and condition are not looked
+    /// at.
     Normal,
 }
 
@@ -126,9 +130,11 @@ pub struct LeastSquares {
     pub solved_condition: f64,
     /// Columns left out.
     pub dropped: Vec<usize>,
-    /// Columns that take part in the direction that the rows tell least about: a tenth or more of its largest component.
+    /// Columns that take part in the direction that the rows tell least about: a tenth or more of its largest
+    /// component.
     pub near_collinear: Vec<usize>,
-    /// Targets x columns, as the coefficients; NaN where none is defined: no degrees of freedom, dropped, minimum norm, ridge.
+    /// Targets x columns, as the coefficients; NaN where none is defined: no degrees of freedom, dropped, minimum norm,
+    /// ridge.
     pub standard_errors: Array2<f64>,
     /// A target each, in its unit; none without degrees of freedom.
     pub residual_sd: Vec<Option<f64>>,
@@ -137,8 +143,8 @@ pub struct LeastSquares {
 }
 
 impl LeastSquares {
-    /// Decimal digits of the coefficients that rounding the rows' last bit leaves alone, to a tenth: 16 less those of the condition. NaN where
-    /// that is not known.
+    /// Decimal digits of the coefficients that rounding the rows' last bit leaves alone, to a tenth: 16 less those of
+    /// the condition. NaN where that is not known.
     #[must_use]
     pub fn digits(&self) -> f64 {
         let digits = -(self.solved_condition * f64::EPSILON / 2.0).log10().clamp(-16.0, 0.0);

@@ -1,4 +1,5 @@
-//! Equation 11 as printed, as a peer: [J F_0] = Y Z^T (Z Z^T)^-1 with Z = [P; 1] (equations 12 and 14), in plain arithmetic, by the inverse.
+//! Equation 11 as printed, as a peer: [J F_0] = Y Z^T (Z Z^T)^-1 with Z = [P; 1] (equations 12 and 14), in plain
+//! arithmetic, by the inverse.
 
 use ndarray::{Array1, Array2, ArrayView2, Axis, Slice, concatenate};
 

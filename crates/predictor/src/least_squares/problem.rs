@@ -1,9 +1,10 @@
-//! The problem as it is solved: a column of ones, the columns and the targets, scaled by powers of two and centred, nothing rounded away. It is
-//! made block by block of rows whenever it is walked over, and never stored.
+//! The problem as it is solved: a column of ones, the columns and the targets, scaled by powers of two and centred,
+//! nothing rounded away. It is made block by block of rows whenever it is walked over, and never stored.
 //!
-//! A column's value is (high + low + centre) 2^exponent. The centre is the mean rounded to a number, so high is a difference of two
-//! numbers and low what rounding it took away (mostly nothing: voltages about an offset subtract exactly). As the ones stay among the columns, the
-//! rest of the mean does no harm. Products of columns (equation 16) have what rounding took away as low, too.
+//! A column's value is (high + low + centre) 2^exponent. The centre is the mean rounded to a number, so high is a
+//! difference of two numbers and low what rounding it took away (mostly nothing: voltages about an offset subtract
+//! exactly). As the ones stay among the columns, the rest of the mean does no harm. Products of columns (equation 16)
+//! have what rounding took away as low, too.
 
 use ndarray::{Array2, ArrayView2, CowArray, Ix2};
 use pulp::{Arch, Simd, WithSimd};
@@ -92,7 +93,8 @@ impl<'a> Problem<'a> {
         Ok(problem)
     }
 
-    /// Equation 16's terms of u = (P - m) / s: returns the problem, m and s. s is the power of two about the column's SD, 1 where there is none.
+    /// Equation 16's terms of u = (P - m) / s: returns the problem, m and s. s is the power of two about the column's
+    /// SD, 1 where there is none.
     pub(crate) fn quadratic(
         inputs: ArrayView2<'a, f64>,
         targets: ArrayView2<'a, f64>,

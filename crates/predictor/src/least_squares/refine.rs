@@ -1,8 +1,10 @@
-//! Residuals and their products with the columns, in numbers of twice the length: what one step of refinement needs, in one walk over the rows.
+//! Residuals and their products with the columns, in numbers of twice the length: what one step of refinement needs, in
+//! one walk over the rows.
 //!
-//! Björck's refinement of the augmented system (doi:10.1007/BF01939321) keeps the residual r as an unknown beside the coefficients x. Here r = y - A x is worked out
-//! afresh with some 32 digits, so its equation holds exactly and only A^T r = 0 is left to be mended: the step d solves R^T R d = A^T r. That gains digits also
-//! where residuals are large, which refining x alone does not.
+//! Björck's refinement of the augmented system (doi:10.1007/BF01939321) keeps the residual r as an unknown beside the
+//! coefficients x. Here r = y - A x is worked out afresh with some 32 digits, so its equation holds exactly and only
+//! A^T r = 0 is left to be mended: the step d solves R^T R d = A^T r. That gains digits also where residuals are large,
+//! which refining x alone does not.
 
 use pulp::{Arch, Simd, WithSimd};
 

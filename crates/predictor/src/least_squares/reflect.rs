@@ -1,6 +1,7 @@
-//! Householder's factorization of a tall matrix, block of rows by block of rows: each block is folded into the triangle of those before it, so
-//! that the matrix is read once and the work stays in the first-level cache. As accurate as the usual order (Golub and Van Loan, Matrix
-//! Computations, 4th edition, 5.2 and 12.5.1), column by column: a column's scale changes nothing.
+//! Householder's factorization of a tall matrix, block of rows by block of rows: each block is folded into the triangle
+//! of those before it, so that the matrix is read once and the work stays in the first-level cache. As accurate as the
+//! usual order (Golub and Van Loan, Matrix Computations, 4th edition, 5.2 and 12.5.1), column by column: a column's
+//! scale changes nothing.
 //!
 //! No fused multiplication: the same bytes come out on every machine.
 
@@ -11,8 +12,9 @@ use super::blocks::{BLOCK, LANES, Part, registers, spill, transpose, vectors};
 use super::scale::{exponent, factors, ldexp};
 use super::survey::survey;
 
-/// The upper triangle R of A = Q R, columns x columns, without pivoting; rows past the matrix's own are zero. R^T R = A^T A, so least squares
-/// of any columns among A's can be worked out from R. Signs of rows are as they come. Values must be finite.
+/// The upper triangle R of A = Q R, columns x columns, without pivoting; rows past the matrix's own are zero. R^T R =
+/// A^T A, so least squares of any columns among A's can be worked out from R. Signs of rows are as they come. Values
+/// must be finite.
 #[must_use]
 pub(crate) fn triangle(matrix: ArrayView2<'_, f64>) -> Array2<f64> {
     let columns = matrix.ncols();

@@ -7,7 +7,8 @@ use super::refine::{Products, products};
 use super::scale::ldexp;
 use super::small::{Column, dot, forward};
 
-/// A step of refinement that moves no coefficient by more than this share: the next would move them by its square, 2^-52.
+/// A step of refinement that moves no coefficient by more than this share: the next would move them by its square,
+/// 2^-52.
 const SETTLED: f64 = 1.0 / 67_108_864.0;
 
 /// Coefficients in the problem's units (ones first) with the sums of squares of their residuals.

@@ -1,4 +1,5 @@
-//! Householder's factorization of small matrices kept column by column, with and without pivoting, and what is solved with it.
+//! Householder's factorization of small matrices kept column by column, with and without pivoting, and what is solved
+//! with it.
 
 /// A column.
 pub(crate) type Column = Vec<f64>;
@@ -37,10 +38,10 @@ pub(crate) fn triangulate(columns: &mut [Column], count: usize) {
     }
 }
 
-/// The same with pivoting: what is left of a column is measured by its limit, how long a part of it may be rounding. The column with the
-/// most of that comes next, of equals the first, and one whose rest is no longer than its limit never. Columns known to few digits so
-/// come after those known to many: one that is another seen on a large offset depends on that other, not the other way round.
-/// Returns the order of the columns and how many were taken (the rank).
+/// The same with pivoting: what is left of a column is measured by its limit, how long a part of it may be rounding.
+/// The column with the most of that comes next, of equals the first, and one whose rest is no longer than its limit
+/// never. Columns known to few digits so come after those known to many: one that is another seen on a large offset
+/// depends on that other, not the other way round. Returns the order of the columns and how many were taken (the rank).
 pub(crate) fn pivot(columns: &mut [Column], limits: &[f64]) -> (Vec<usize>, usize) {
     let mut order: Vec<usize> = (0..columns.len()).collect();
     for j in 0..columns.len() {

@@ -11,10 +11,12 @@ use super::small::{Column, back, inverse_rows, pivot};
 use super::{Deficient, Dependent, LeastSquares, LeastSquaresFault, LeastSquaresOptions};
 use crate::svd::modes;
 
-/// Takes part in a dependence: above this share of the column's length. Shares of those that do not are rounding, some 1e-12.
+/// Takes part in a dependence: above this share of the column's length. Shares of those that do not are rounding, some
+/// 1e-12.
 const PART: f64 = 1e-6;
 
-/// A coefficient may lose so much below the smallest number, as a share of the target's largest value: 2^-40, assumed; far below any noise.
+/// A coefficient may lose so much below the smallest number, as a share of the target's largest value: 2^-40, assumed;
+/// far below any noise.
 const LOST: f64 = 1.0 / (1u64 << 40) as f64;
 
 /// Takes part in the weakest direction: above this share of its largest component.

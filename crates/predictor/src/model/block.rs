@@ -1,7 +1,8 @@
-//! Predictions of many rows: blocks of rows are turned so that each input's values lie side by side, and one operation serves a whole block.
+//! Predictions of many rows: blocks of rows are turned so that each input's values lie side by side, and one operation
+//! serves a whole block.
 //!
-//! A model says once how a row's numbers are added up, for a row and for a block; the order is the same, so row by row and in batch
-//! the results are the same bits, whatever the vectors of the processor.
+//! A model says once how a row's numbers are added up, for a row and for a block; the order is the same, so row by row
+//! and in batch the results are the same bits, whatever the vectors of the processor.
 
 use ndarray::{Array2, ArrayView1, ArrayView2, ArrayViewMut2};
 
@@ -17,8 +18,8 @@ const QUAD: usize = 4;
 /// A value of each row of a block.
 pub(super) type Lanes = [f64; LANES];
 
-/// How a model works out its targets, some at a time. All methods are `#[inline(always)]`, and none takes a closure, which would not be
-/// compiled for the vectors in use.
+/// How a model works out its targets, some at a time. All methods are `#[inline(always)]`, and none takes a closure,
+/// which would not be compiled for the vectors in use.
 pub(super) trait Kernel {
     /// Targets worked out at once, at most [`MOST`].
     const GROUP: usize;
@@ -178,7 +179,8 @@ pub(super) fn vectors_mut<S: Simd>(lanes: &mut Lanes) -> &mut [S::f64s] {
     S::as_mut_simd_f64s(lanes).0
 }
 
-/// [`LANES`] rows, one after the other, to lanes. Vectors hold at most [`QUAD`] numbers (with longer ones, columns would share a vector).
+/// [`LANES`] rows, one after the other, to lanes. Vectors hold at most [`QUAD`] numbers (with longer ones, columns
+/// would share a vector).
 #[inline(always)]
 fn turn<S: Simd>(simd: S, rows: &[f64], inputs: usize, block: &mut [Lanes]) {
     let (width, rows) = (S::F64_LANES, &rows[..LANES * inputs]);
@@ -252,7 +254,8 @@ pub(super) fn scale<S: Simd>(simd: S, x: &mut [Lanes], centre: &[f64], inverse: 
 /// Targets that are worked out at once.
 pub(super) const GROUP: usize = 4;
 
-/// A matrix of targets x terms with [`GROUP`] targets side by side: target / GROUP, then term, then target % GROUP; missing targets are zero.
+/// A matrix of targets x terms with [`GROUP`] targets side by side: target / GROUP, then term, then target % GROUP;
+/// missing targets are zero.
 pub(super) fn turned(matrix: &Array2<f64>) -> Vec<[f64; GROUP]> {
     let terms = matrix.ncols();
     let mut turned = vec![[0.0; GROUP]; matrix.nrows().div_ceil(GROUP) * terms];

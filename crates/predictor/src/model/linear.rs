@@ -8,8 +8,8 @@ use super::block::{
 };
 use crate::simd::Simd;
 
-/// The linear model. It stays centred: m and y_m are the means of the training rows, and equation 9's offset F_0 = y_m - J m is only
-/// worked out where it is printed, as it cancels digits where voltages have an offset.
+/// The linear model. It stays centred: m and y_m are the means of the training rows, and equation 9's offset F_0 = y_m
+/// - J m is only worked out where it is printed, as it cancels digits where voltages have an offset.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Linear {
     centre: Vec<f64>,

@@ -1,7 +1,7 @@
 //! What tells targets from voltages: the linear (equation 9), quadratic (16) and network (17, 18) models.
 //!
-//! All answer a row or many, into the caller's memory and without allocating. A row and a batch give the same bits, on every processor.
-//! A NaN among a row's voltages gives NaN for all its targets; an infinite one never gives a number.
+//! All answer a row or many, into the caller's memory and without allocating. A row and a batch give the same bits, on
+//! every processor. A NaN among a row's voltages gives NaN for all its targets; an infinite one never gives a number.
 
 mod block;
 mod linear;
@@ -106,7 +106,8 @@ macro_rules! predicting {
                 $crate::model::block::predict_row(self, x, out);
             }
 
-            /// Many rows, of any layout (rows one after the other are fastest): `x` rows x inputs, volts; `out` rows x targets.
+            /// Many rows, of any layout (rows one after the other are fastest): `x` rows x inputs, volts; `out` rows x
+            /// targets.
             ///
             /// # Panics
             /// Where the sizes are not the model's.

@@ -1,7 +1,7 @@
 //! Equations 17 and 18: H = tansig(W_P u + b_H), y = y_m + y_s (W_H H + b_F), u = (P - m) / s.
 //!
-//! The weights stand for centred and scaled voltages and targets, as training leaves them; the thesis' own weights are W_P / s, biases
-//! b_H - W_P m / s, and so on.
+//! The weights stand for centred and scaled voltages and targets, as training leaves them; the thesis' own weights are
+//! W_P / s, biases b_H - W_P m / s, and so on.
 
 use ndarray::Array2;
 
@@ -28,15 +28,17 @@ pub struct Network {
     target_scale: Vec<f64>,
     /// 1 / s.
     inverse: Vec<f64>,
-    /// The hidden weights again, [`NODES`] nodes side by side: node / NODES, then input, then node % NODES; missing nodes are zero.
+    /// The hidden weights again, [`NODES`] nodes side by side: node / NODES, then input, then node % NODES; missing
+    /// nodes are zero.
     turned: Vec<[f64; NODES]>,
     /// The hidden biases likewise.
     biases: Vec<[f64; NODES]>,
 }
 
 impl Network {
-    /// `centre`: m, volts, and `scale`: s, volts, positive, an input each; `hidden_weights`: W_P, nodes x inputs; `hidden_biases`: b_H;
-    /// `output_weights`: W_H, targets x nodes; `output_biases`: b_F; `target_centre`: y_m and `target_scale`: y_s, positive, a target each.
+    /// `centre`: m, volts, and `scale`: s, volts, positive, an input each; `hidden_weights`: W_P, nodes x inputs;
+    /// `hidden_biases`: b_H; `output_weights`: W_H, targets x nodes; `output_biases`: b_F; `target_centre`: y_m and
+    /// `target_scale`: y_s, positive, a target each.
     ///
     /// # Errors
     /// [`ModelFault`].
@@ -198,7 +200,8 @@ impl Network {
     }
 }
 
-/// tansig of an infinite sum would be a number: `poison`, zero times every input, makes NaN of what an infinite voltage leads to.
+/// tansig of an infinite sum would be a number: `poison`, zero times every input, makes NaN of what an infinite voltage
+/// leads to.
 impl Kernel for Network {
     const GROUP: usize = GROUP;
 

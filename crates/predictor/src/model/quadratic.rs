@@ -16,7 +16,8 @@ pub fn quadratic_terms(inputs: usize) -> Vec<(usize, usize)> {
     (0..inputs).flat_map(|i| (i..inputs).map(move |j| (i, j))).collect()
 }
 
-/// The quadratic model: inputs first, then their products in [`quadratic_terms`]' order, of centred and scaled voltages.
+/// The quadratic model: inputs first, then their products in [`quadratic_terms`]' order, of centred and scaled
+/// voltages.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Quadratic {
     centre: Vec<f64>,

@@ -1,9 +1,11 @@
-//! Equation 17's activation, tansig(x) = 2 / (1 + exp(-2 x)) - 1, in operations that compilers vectorize: no branch, no table, no call.
+//! Equation 17's activation, tansig(x) = 2 / (1 + exp(-2 x)) - 1, in operations that compilers vectorize: no branch, no
+//! table, no call.
 //!
-//! |x| = k ln(2)/2 + z with k whole and |z| <= ln(2)/4; tanh(z) = a / q with a = z P(z^2), q = Q(z^2), the rational function of Cephes' `exp`
-//! (S. L. Moshier; |error| < 1e-17); then with s = 2^k - 1, t = 2^k + 1 the addition theorem gives tanh|x| = (s q + t a) / (t q + s a), one
-//! division in all. Near zero k = 0 and tanh = a / q, so the *relative* error is bounded everywhere (5e-16; tests). From |x| = 20 the
-//! result is 1 exactly. NaN stays NaN. Every operation rounds once as IEEE 754 says, so every machine gives the same bits.
+//! |x| = k ln(2)/2 + z with k whole and |z| <= ln(2)/4; tanh(z) = a / q with a = z P(z^2), q = Q(z^2), the rational
+//! function of Cephes' `exp` (S. L. Moshier; |error| < 1e-17); then with s = 2^k - 1, t = 2^k + 1 the addition theorem
+//! gives tanh|x| = (s q + t a) / (t q + s a), one division in all. Near zero k = 0 and tanh = a / q, so the *relative*
+//! error is bounded everywhere (5e-16; tests). From |x| = 20 the result is 1 exactly. NaN stays NaN. Every operation
+//! rounds once as IEEE 754 says, so every machine gives the same bits.
 
 /// Above this tanh is 1 to the last bit.
 const SATURATED: f64 = 20.0;

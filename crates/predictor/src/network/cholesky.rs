@@ -15,8 +15,8 @@ impl Damped {
         Self { factor: vec![0.0; size * size], step: vec![0.0; size] }
     }
 
-    /// Solves for `step`, of `matrix` (row by row) only what is right of the diagonal and on it. False where rounding leaves the matrix not
-    /// positive definite or anything not finite.
+    /// Solves for `step`, of `matrix` (row by row) only what is right of the diagonal and on it. False where rounding
+    /// leaves the matrix not positive definite or anything not finite.
     pub(super) fn solve(&mut self, matrix: &[f64], gradient: &[f64], mu: f64) -> bool {
         self.factor.copy_from_slice(matrix);
         let size = gradient.len();

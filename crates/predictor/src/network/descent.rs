@@ -1,9 +1,9 @@
 //! One restart: Levenberg's and Marquardt's descent from given weights.
 //!
-//! M. T. Hagan & M. B. Menhaj, Training feedforward networks with the Marquardt algorithm, IEEE Trans. Neural Networks 5 (1994), doi
-//! 10.1109/72.329697, with the damping of MATLAB's `trainlm`: mu starts at 0.001, is divided by 10 after a step that lowers the
-//! error and multiplied by 10 until one does. Departure: the error is the mean over rows and targets, not the sum, so that mu means the
-//! same for any number of rows.
+//! M. T. Hagan & M. B. Menhaj, Training feedforward networks with the Marquardt algorithm, IEEE Trans. Neural Networks
+//! 5 (1994), doi 10.1109/72.329697, with the damping of MATLAB's `trainlm`: mu starts at 0.001, is divided by 10 after
+//! a step that lowers the error and multiplied by 10 until one does. Departure: the error is the mean over rows and
+//! targets, not the sum, so that mu means the same for any number of rows.
 
 use serde::{Deserialize, Serialize};
 
@@ -58,7 +58,8 @@ struct Best {
     weights: Vec<f64>,
 }
 
-/// Descends from `weights`. The weights returned are those of the least error on `stop`, or the last where there is none.
+/// Descends from `weights`. The weights returned are those of the least error on `stop`, or the last where there is
+/// none.
 pub(super) fn descend(
     shape: Shape,
     mut weights: Vec<f64>,

@@ -1,14 +1,15 @@
 //! Training of networks (equations 17, 18): Levenberg-Marquardt from several seeded starts, stopped early.
 //!
-//! In: a [`Dataset`] to fit, another to stop at, options. Out: the best restart's [`Network`] and what every restart came to. The stop
-//! rows choose the epoch and the restart, so they are not for reporting the error: that takes a third set.
+//! In: a [`Dataset`] to fit, another to stop at, options. Out: the best restart's [`Network`] and what every restart
+//! came to. The stop rows choose the epoch and the restart, so they are not for reporting the error: that takes a third
+//! set.
 //!
-//! Inputs and targets are centred and scaled by the training rows. Photodiodes that do not change get weight 0, targets that do
-//! not change are told exactly as they are; both with a warning. Fewer errors than weights are allowed with a warning: damping keeps each step
-//! finite, and only the stop rows keep such a network from learning its rows by heart.
+//! Inputs and targets are centred and scaled by the training rows. Photodiodes that do not change get weight 0, targets
+//! that do not change are told exactly as they are; both with a warning. Fewer errors than weights are allowed with a
+//! warning: damping keeps each step finite, and only the stop rows keep such a network from learning its rows by heart.
 //!
-//! Each restart has a random stream of its own (ChaCha8: the seed, the restart's number) and runs on one thread in a fixed order of
-//! sums, so results are the same bytes for any number of threads and on any processor.
+//! Each restart has a random stream of its own (ChaCha8: the seed, the restart's number) and runs on one thread in a
+//! fixed order of sums, so results are the same bytes for any number of threads and on any processor.
 
 mod cholesky;
 mod descent;
@@ -50,8 +51,8 @@ pub struct TrainOptions {
     pub patience: usize,
     /// The gradient's length (mean square error of targets of SD 1, by weights) below which a restart has converged.
     pub min_gradient: f64,
-    /// A restart has settled when its mean square error fell by less than this share in 10 epochs; 0: never. 1e-4 costs 0.1 to
-    /// 0.5 % of the RMSE that four times as many epochs reach.
+    /// A restart has settled when its mean square error fell by less than this share in 10 epochs; 0: never. 1e-4 costs
+    /// 0.1 to 0.5 % of the RMSE that four times as many epochs reach.
     pub min_decrease: f64,
 }
 
@@ -76,8 +77,8 @@ pub struct Restart {
     pub train_rmse: Vec<f64>,
     /// RMSE of the stop rows, each target in its unit; `None` without stop rows.
     pub stop_rmse: Option<Vec<f64>>,
-    /// What restarts are compared by: RMSE of all targets that change, each in its standard deviations, on the stop rows or, where there are
-    /// none, on the training rows.
+    /// What restarts are compared by: RMSE of all targets that change, each in its standard deviations, on the stop
+    /// rows or, where there are none, on the training rows.
     pub score: f64,
 }
 
@@ -136,7 +137,8 @@ pub enum TrainFault {
     Stop,
 }
 
-/// Trains a network on `data`, stopped by `stop`; without, it runs until it converges, which fits the noise too where rows are few.
+/// Trains a network on `data`, stopped by `stop`; without, it runs until it converges, which fits the noise too where
+/// rows are few.
 ///
 /// # Errors
 /// [`TrainFault`].

@@ -1,15 +1,16 @@
 //! The normal equations of a network's errors: J^T J and J^T e, without ever holding J.
 //!
-//! For node j with output h_j, slope g_j = 1 - h_j^2, input u_i (u_0 = 1) and output weights V_kj, a row's error of target k has the derivatives
-//! V_kj g_j u_i (hidden weights) and h_j (the target's own output weights; 0 for another's). So over all rows and targets
+//! For node j with output h_j, slope g_j = 1 - h_j^2, input u_i (u_0 = 1) and output weights V_kj, a row's error of
+//! target k has the derivatives V_kj g_j u_i (hidden weights) and h_j (the target's own output weights; 0 for
+//! another's). So over all rows and targets
 //!
 //! - hidden with hidden:  (sum_k V_kj V_kl) sum g_j g_l u_i u_m
 //! - hidden with output:  V_kj sum g_j h_l u_i
 //! - output with output:  sum h_j h_l, the same for each target, and nothing between targets
 //!
-//! The sums hold no target: a network of 8 nodes, 8 inputs and 3 targets needs 2400 of them a row where J^T J as written has 14 850. Most
-//! of them are two products of matrices, [g_j g_l]^T [u_i u_m] and [g_j h_l, g_j, d_j]^T [u_i] with d_j = g_j sum_k e_k V_kj, summed over a
-//! block of rows and then over blocks.
+//! The sums hold no target: a network of 8 nodes, 8 inputs and 3 targets needs 2400 of them a row where J^T J as
+//! written has 14 850. Most of them are two products of matrices, [g_j g_l]^T [u_i u_m] and [g_j h_l, g_j, d_j]^T [u_i]
+//! with d_j = g_j sum_k e_k V_kj, summed over a block of rows and then over blocks.
 
 use super::rows::{BLOCK, Column, Rows};
 use super::weights::{Forward, Shape};
@@ -41,7 +42,8 @@ pub(super) struct Normal {
     plain: Plain,
 }
 
-/// Sums over rows of the products of outputs and errors: h_j h_l (j <= l), h_j; then for each target e_k, e_k h_j. Each in [`LANES`] parts.
+/// Sums over rows of the products of outputs and errors: h_j h_l (j <= l), h_j; then for each target e_k, e_k h_j. Each
+/// in [`LANES`] parts.
 #[derive(Debug, Clone)]
 struct Plain {
     sums: Vec<[f64; LANES]>,

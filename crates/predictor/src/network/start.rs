@@ -1,9 +1,10 @@
 //! Weights to start from: the hidden nodes' slopes shared out over the range of the inputs.
 //!
-//! D. Nguyen & B. Widrow, Improving the learning speed of 2-layer neural networks by choosing initial values of the adaptive weights, IJCNN
-//! 1990, doi 10.1109/IJCNN.1990.137819: for inputs in -1..1, weights of random direction and size 0.7 N^(1/inputs), biases that set the nodes'
-//! centres apart along it (evenly, as MATLAB's `initnw`, not at random as the paper). Then the weights are taken from -1..1 to the
-//! inputs' own ranges. Output weights are small and random.
+//! D. Nguyen & B. Widrow, Improving the learning speed of 2-layer neural networks by choosing initial values of the
+//! adaptive weights, IJCNN 1990, doi 10.1109/IJCNN.1990.137819: for inputs in -1..1, weights of random direction and
+//! size 0.7 N^(1/inputs), biases that set the nodes' centres apart along it (evenly, as MATLAB's `initnw`, not at
+//! random as the paper). Then the weights are taken from -1..1 to the inputs' own ranges. Output weights are small and
+//! random.
 
 use rand::{Rng, RngExt};
 

@@ -17,7 +17,8 @@ const NORMAL: f64 = 2e-9;
 const SQUARE: f64 = 1e-14;
 /// RMSE left of an exact network found: 1.2e-17.
 const EXACT: f64 = 1e-13;
-/// Difference found of a constant network to its targets' mean, where training ends by [`TrainOptions::min_gradient`]: 6.5e-13.
+/// Difference found of a constant network to its targets' mean, where training ends by [`TrainOptions::min_gradient`]:
+/// 6.5e-13.
 const MEAN: f64 = 1e-9;
 /// Share of the targets' SD found to be left of rows learnt by heart: 2.5e-13.
 const BY_HEART: f64 = 1e-9;
@@ -165,7 +166,8 @@ fn a_network_of_8_is_learnt_in_full() {
             let ratio = whole(&rmse(&network, &held)) / noise;
             let best = &report.restarts[report.best];
             println!(
-                "{restarts} starts, seed {seed}: RMSE / noise {ratio:.4}, {} epochs, {:?}, median score / best {:.3}, {:.2} s",
+                "{restarts} starts, seed {seed}: RMSE / noise {ratio:.4}, {} epochs, {:?}, median score / best {:.3}, \
+                 {:.2} s",
                 best.epochs,
                 best.why,
                 report.median_score / best.score,

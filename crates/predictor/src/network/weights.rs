@@ -1,7 +1,7 @@
 //! The weights of a network in training as one vector, and what the network says with them.
 //!
-//! In order: for each hidden node its bias and a weight for each input; for each target its bias and a weight for each node. All are
-//! for centred and scaled inputs and targets.
+//! In order: for each hidden node its bias and a weight for each input; for each target its bias and a weight for each
+//! node. All are for centred and scaled inputs and targets.
 
 use super::rows::{BLOCK, Column, Rows};
 use crate::model::tansig;

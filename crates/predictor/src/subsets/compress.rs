@@ -1,8 +1,8 @@
 //! Two sets of rows in two small triangles that hold all that linear models of any photodiodes can tell of them.
 //!
-//! In: training and validation rows. Out: the triangles of [voltages | targets], both centred at the *training* means and scaled by powers of
-//! two, so that the norm of a training column is from 1 to 2. Means are taken as two doubles: an offset of 2^20 V under a signal of 2^-10 V
-//! costs the signal nothing.
+//! In: training and validation rows. Out: the triangles of [voltages | targets], both centred at the *training* means
+//! and scaled by powers of two, so that the norm of a training column is from 1 to 2. Means are taken as two doubles:
+//! an offset of 2^20 V under a signal of 2^-10 V costs the signal nothing.
 
 use ndarray::{Array2, ArrayView1, ArrayView2, Axis, concatenate};
 

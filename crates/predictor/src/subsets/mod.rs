@@ -1,18 +1,21 @@
 //! Which photodiodes the linear model needs: every subset of them (Fig. 113 and beyond, 5.5).
 //!
-//! In: training and validation rows. Out: for each non-empty subset the RMSE of the linear model of those photodiodes (with its offset), fitted
-//! to the training rows and tried on both; the best of each size; the figure's bars, none and each photodiode removed.
+//! In: training and validation rows. Out: for each non-empty subset the RMSE of the linear model of those photodiodes
+//! (with its offset), fitted to the training rows and tried on both; the best of each size; the figure's bars, none and
+//! each photodiode removed.
 //!
-//! Each set of rows is compressed once, without loss, into a triangle as wide as it has columns (QR of the centred columns); each subset is
-//! then solved from its columns of that triangle. The figures are those of a fit to all rows, not an approximation. No normal equations.
+//! Each set of rows is compressed once, without loss, into a triangle as wide as it has columns (QR of the centred
+//! columns); each subset is then solved from its columns of that triangle. The figures are those of a fit to all rows,
+//! not an approximation. No normal equations.
 //!
-//! The criterion for the best: the mean over targets of validation RMSE over the target's SD on the training rows (with n); a target that is
-//! constant in training does not count. So 1 is what the mean alone would reach, and forces and angles weigh alike. Ties go to the lower mask.
-//! As the validation rows choose the subset, they flatter it: report the chosen one on rows used for neither.
+//! The criterion for the best: the mean over targets of validation RMSE over the target's SD on the training rows (with
+//! n); a target that is constant in training does not count. So 1 is what the mean alone would reach, and forces and
+//! angles weigh alike. Ties go to the lower mask. As the validation rows choose the subset, they flatter it: report the
+//! chosen one on rows used for neither.
 //!
-//! A subset whose photodiodes are not independent of each other on the training rows (dead, constant, duplicated, too few rows) has no errors,
-//! only its rank. Dependent is what is left with no more beside the others than rounding may have made, as in
-//! [`least_squares`](crate::least_squares()).
+//! A subset whose photodiodes are not independent of each other on the training rows (dead, constant, duplicated, too
+//! few rows) has no errors, only its rank. Dependent is what is left with no more beside the others than rounding may
+//! have made, as in [`least_squares`](crate::least_squares()).
 
 mod compress;
 mod solve;
@@ -89,7 +92,8 @@ pub enum SubsetFault {
     Empty(&'static str),
     /// Too many subsets.
     #[error(
-        "{inputs} photodiodes have too many subsets to look at each; choose at most {most} of them, or remove one after the other"
+        "{inputs} photodiodes have too many subsets to look at each; choose at most {most} of them, or remove one \
+         after the other"
     )]
     TooMany {
         /// How many.
@@ -99,7 +103,8 @@ pub enum SubsetFault {
     },
 }
 
-/// Looks at every non-empty subset of at most [`MOST_INPUTS`] photodiodes. The result does not depend on the number of threads.
+/// Looks at every non-empty subset of at most [`MOST_INPUTS`] photodiodes. The result does not depend on the number of
+/// threads.
 ///
 /// # Errors
 /// [`SubsetFault`].
@@ -127,9 +132,9 @@ pub fn every_subset(train: &Dataset, validate: &Dataset) -> Result<Subsets, Subs
     })
 }
 
-/// Removes the photodiode that is missed least, again and again: the subsets of all, all but one, .. one. Not every subset is looked at, so
-/// the best of a size may be missed; for more photodiodes than [`MOST_INPUTS`], at most 32. While photodiodes are dependent, those that others
-/// stand for go first.
+/// Removes the photodiode that is missed least, again and again: the subsets of all, all but one, .. one. Not every
+/// subset is looked at, so the best of a size may be missed; for more photodiodes than [`MOST_INPUTS`], at most 32.
+/// While photodiodes are dependent, those that others stand for go first.
 ///
 /// # Errors
 /// [`SubsetFault`].

@@ -1,5 +1,5 @@
-//! The linear model of some columns of a small triangle: Householder's QR with column pivoting (Golub and Van Loan, Matrix Computations, 4th
-//! edition, 5.4.2).
+//! The linear model of some columns of a small triangle: Householder's QR with column pivoting (Golub and Van Loan,
+//! Matrix Computations, 4th edition, 5.4.2).
 //!
 //! Rank: as least squares decides it, each column measured by how much of it may be rounding.
 
@@ -17,7 +17,8 @@ pub(super) struct Solved {
     pub(super) left: Vec<f64>,
 }
 
-/// Solves for each of `targets` in terms of `columns`, all of one length and norms near 1. `limits`: how long a part of each may be rounding.
+/// Solves for each of `targets` in terms of `columns`, all of one length and norms near 1. `limits`: how long a part of
+/// each may be rounding.
 pub(super) fn solve(columns: &[&[f64]], targets: &[&[f64]], limits: &[f64]) -> Solved {
     let count = columns.len();
     let mut pivoted: Vec<Vec<f64>> = columns.iter().map(|column| column.to_vec()).collect();

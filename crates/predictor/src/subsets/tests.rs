@@ -105,7 +105,8 @@ proptest! {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
-    // A photodiode that is a mixture of others, as rounded, is found whatever its offset and size; one 2^-30 aside is not taken for one.
+    // A photodiode that is a mixture of others, as rounded, is found whatever its offset and size; one 2^-30 aside is
+    // not taken for one.
     #[test]
     fn mixtures_are_found_and_near_mixtures_are_not(
         n in 20..200_usize, seed in 0..1000_u64, scale in -300..300_i32, offset in -1e2..1e2_f64, a in 0.001..3.0_f64, b in -3.0..3.0_f64,

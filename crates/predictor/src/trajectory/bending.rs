@@ -41,8 +41,9 @@ impl Bending {
     }
 }
 
-/// Smooth, band-limited bending that covers equation 27's range about evenly (5.2.4, 3i): J2 = -5 + 80 Phi(w / RMS) degrees, w a [`Wave`] with rates of
-/// 0.4 to 4 times `hz`, which is about normal. It begins straight out, at -5 degrees, and comes into the wave within a soft start.
+/// Smooth, band-limited bending that covers equation 27's range about evenly (5.2.4, 3i): J2 = -5 + 80 Phi(w / RMS)
+/// degrees, w a [`Wave`] with rates of 0.4 to 4 times `hz`, which is about normal. It begins straight out, at -5
+/// degrees, and comes into the wave within a soft start.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RandomBending {
     soft_s: f64,

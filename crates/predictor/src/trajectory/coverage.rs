@@ -1,15 +1,18 @@
 //! How evenly forces cover the cone that can be (5.2.3): planned or recorded.
 //!
-//! Rows are counted in K cells of equal measure, in cylindrical and in Cartesian density ([`ForceSpace::place`]); with p_k the share of the rows in cell k:
+//! Rows are counted in K cells of equal measure, in cylindrical and in Cartesian density ([`ForceSpace::place`]); with
+//! p_k the share of the rows in cell k:
 //!
 //! - visited: the share of the cells with a row;
-//! - entropy: -sum p_k ln p_k / ln K, 1 where all cells hold as many (Shannon 1948; Pielou's evenness, doi:10.1016/0022-5193(66)90013-0). Of n
-//!   rows drawn at random from the even density it is about 1 - (K - 1) / (2 n ln K) (Miller 1955); of fewer rows than cells at most ln n / ln K;
+//! - entropy: -sum p_k ln p_k / ln K, 1 where all cells hold as many (Shannon 1948; Pielou's evenness,
+//!   doi:10.1016/0022-5193(66)90013-0). Of n rows drawn at random from the even density it is about 1 - (K - 1) / (2 n
+//!   ln K) (Miller 1955); of fewer rows than cells at most ln n / ln K;
 //! - the same entropy of each coordinate alone (pressing, shear, direction), which tells in what the rows are uneven.
 //!
-//! The largest hole is the greatest distance, in newtons, from a force of the cone to its nearest row: the covering radius, or dispersion (Niederreiter
-//! 1992, chapter 6). No force that can be is farther from what was shown. It is sought on a lattice over the cone and refined from the best places, so
-//! it is a lower bound; where the answer is known it is right to a thousandth.
+//! The largest hole is the greatest distance, in newtons, from a force of the cone to its nearest row: the covering
+//! radius, or dispersion (Niederreiter 1992, chapter 6). No force that can be is farther from what was shown. It is
+//! sought on a lattice over the cone and refined from the best places, so it is a lower bound; where the answer is
+//! known it is right to a thousandth.
 
 use serde::Serialize;
 
@@ -63,8 +66,8 @@ pub struct Hole {
     pub middle_n: [f64; 3],
 }
 
-/// How evenly rows of `[Fx, Fy, Fz]`, newtons, cover `space`. Rows with a pressing and a shear of at most `rest_n` are the finger in the air (of a
-/// recorded set: bending, with the transducer's noise) and are only counted.
+/// How evenly rows of `[Fx, Fy, Fz]`, newtons, cover `space`. Rows with a pressing and a shear of at most `rest_n` are
+/// the finger in the air (of a recorded set: bending, with the transducer's noise) and are only counted.
 pub fn cone_coverage(forces: impl IntoIterator<Item = [f64; 3]>, space: &ForceSpace, rest_n: f64) -> ConeCoverage {
     let (mut at_rest, mut outside, mut not_finite) = (0, 0, 0);
     let mut kept: Vec<[f64; 3]> = Vec::new();
@@ -243,7 +246,8 @@ mod tests {
             }
             // Evenness in one density is not evenness in the other; measured 0.948 to 0.956.
             assert!(cylindrical.cartesian.entropy.unwrap() < 0.97 && cartesian.cylindrical.entropy.unwrap() < 0.97);
-            // 4500 in 15.9 N^3: a ball of the mean volume has 0.09 N; the emptiest is some times that; measured 0.27 to 0.35.
+            // 4500 in 15.9 N^3: a ball of the mean volume has 0.09 N; the emptiest is some times that; measured 0.27 to
+            // 0.35.
             let hole = cartesian.hole.unwrap();
             assert!((0.2..=0.6).contains(&hole.radius_n), "{hole:?}");
         }

@@ -1,11 +1,11 @@
-//! Calibration trajectories (sections 5.2.2 and 5.2.3): what a prompter asks a finger to do, how fast that may be, and how evenly it covers the
-//! space of forces.
+//! Calibration trajectories (sections 5.2.2 and 5.2.3): what a prompter asks a finger to do, how fast that may be, and
+//! how evenly it covers the space of forces.
 //!
-//! In: the parameters of the thesis. Out: forces `[Fx, Fy, Fz]` in newtons or J2 in degrees at any time, the limits of equations 19 to 26, and
-//! measures of coverage of any rows of forces, planned or recorded.
+//! In: the parameters of the thesis. Out: forces `[Fx, Fy, Fz]` in newtons or J2 in degrees at any time, the limits of
+//! equations 19 to 26, and measures of coverage of any rows of forces, planned or recorded.
 //!
-//! Forces are those of the finger on the surface: pressing is a negative Fz. The equations' own F_z is how hard the finger presses, here the
-//! pressing N = -Fz.
+//! Forces are those of the finger on the surface: pressing is a negative Fz. The equations' own F_z is how hard the
+//! finger presses, here the pressing N = -Fz.
 //!
 //! | equation | here |
 //! |---|---|

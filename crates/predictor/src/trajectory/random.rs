@@ -18,23 +18,25 @@ pub struct RandomForce {
 }
 
 impl RandomForce {
-    /// Motion of `seed` about the cone's middle: N = N_max (1 + w_1) / 2, F_x = mu N w_2 / sqrt 2, F_y = mu N w_3 / sqrt 2. Two waves of at most 1
-    /// lie in the circle of radius sqrt 2, so the cone is never left. It has no beginning and no end.
+    /// Motion of `seed` about the cone's middle: N = N_max (1 + w_1) / 2, F_x = mu N w_2 / sqrt 2, F_y = mu N w_3 /
+    /// sqrt 2. Two waves of at most 1 lie in the circle of radius sqrt 2, so the cone is never left. It has no
+    /// beginning and no end.
     #[must_use]
     pub fn new(space: ForceSpace, hz: f64, seed: u64) -> Self {
         let waves = [0, 1, 2].map(|index| Wave::random(hz, 0.4..4.0, seed, STREAM | index));
         Self { space, waves, even: false, soft_s: 0.0, until_s: f64::INFINITY }
     }
 
-    /// Motion of `seed` that covers the whole cone about evenly in cylindrical density: with z = w / RMS, which is about normal, (N / N_max)^2 = Phi(z_1)
-    /// and F_r / (mu N) = 1 - exp(-(z_2^2 + z_3^2) / 2), in the direction of (z_2, z_3); both are uniform for normal z.
+    /// Motion of `seed` that covers the whole cone about evenly in cylindrical density: with z = w / RMS, which is
+    /// about normal, (N / N_max)^2 = Phi(z_1) and F_r / (mu N) = 1 - exp(-(z_2^2 + z_3^2) / 2), in the direction of
+    /// (z_2, z_3); both are uniform for normal z.
     #[must_use]
     pub fn even(space: ForceSpace, hz: f64, seed: u64) -> Self {
         Self { even: true, ..Self::new(space, hz, seed) }
     }
 
-    /// The same motion from rest: nothing before time 0, all of it after `soft_s`, and from `until_s` on the finger lets go within
-    /// [`RELEASE_S`].
+    /// The same motion from rest: nothing before time 0, all of it after `soft_s`, and from `until_s` on the finger
+    /// lets go within [`RELEASE_S`].
     #[must_use]
     pub fn out_of_rest(self, soft_s: f64, until_s: f64) -> Self {
         Self { soft_s, until_s, ..self }
@@ -94,7 +96,8 @@ mod tests {
     #[test]
     fn even_motion_covers_the_cone_and_stays_in_it() {
         let space = ForceSpace::default();
-        // Half an hour, so that the figure is the motion's and not the seed's. Measured: 0.989 to 0.995 against 0.893 to 0.908.
+        // Half an hour, so that the figure is the motion's and not the seed's. Measured: 0.989 to 0.995 against 0.893
+        // to 0.908.
         const EVEN: f64 = 0.97;
         for seed in 0..4 {
             let rows = |random: RandomForce| (0..18_000).map(move |k| random.forces_n(0.1 * f64::from(k)));

@@ -1,8 +1,9 @@
 //! The three-dimensional space of forces (Fig. 89) and its two densities (5.2.3).
 //!
-//! By Coulomb's law the shear is at most mu times the pressing N: the forces that can be are a cone, 0 <= N <= N_max, F_r <= mu N. The thesis asks for
-//! training data of uniform density in cylindrical coordinates (dN dF_r dphi) or in Cartesian ones (dF_x dF_y dF_z). Both are here as a map
-//! of the cone onto the unit cube under which the density becomes uniform:
+//! By Coulomb's law the shear is at most mu times the pressing N: the forces that can be are a cone, 0 <= N <= N_max,
+//! F_r <= mu N. The thesis asks for training data of uniform density in cylindrical coordinates (dN dF_r dphi) or in
+//! Cartesian ones (dF_x dF_y dF_z). Both are here as a map of the cone onto the unit cube under which the density
+//! becomes uniform:
 //!
 //! - cylindrical: (N / N_max)^2, F_r / (mu N), phi / 2 pi; the time at a pressing grows with N, which is equation 20;
 //! - Cartesian: (N / N_max)^3, (F_r / (mu N))^2, phi / 2 pi; the time at a pressing grows with N^2.
@@ -144,7 +145,8 @@ mod tests {
 
     #[test]
     fn equal_cells_are_equal_volumes() {
-        // A lattice of 530 000 forces, counted in two halves of each coordinate; the layer at the middle pressing holds 2.4 % of them. Measured 0.012.
+        // A lattice of 530 000 forces, counted in two halves of each coordinate; the layer at the middle pressing holds
+        // 2.4 % of them. Measured 0.012.
         const NEAR: f64 = 0.02;
         let space = ForceSpace::new(1.0, 1.0).unwrap();
         let axis = |k: i32| (f64::from(k) + 0.5) / 80.0;

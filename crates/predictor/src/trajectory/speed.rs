@@ -1,8 +1,9 @@
 //! How fast a trajectory may be and how fast it is (5.2.2b, equations 19 and 24).
 //!
-//! The photodiodes lag behind by the fingertip's slowest time constant tau: at a rate F' they read as if the force were F - F' tau. Equation 19 takes
-//! that as a share of the force: F' tau / F = f tau, f the relative rate of change. The share of no force is infinite, and every trajectory begins at none: so f is
-//! judged where the force is at least a floor, and told besides from when on the limit is kept.
+//! The photodiodes lag behind by the fingertip's slowest time constant tau: at a rate F' they read as if the force were
+//! F - F' tau. Equation 19 takes that as a share of the force: F' tau / F = f tau, f the relative rate of change. The
+//! share of no force is infinite, and every trajectory begins at none: so f is judged where the force is at least a
+//! floor, and told besides from when on the limit is kept.
 
 use std::f64::consts::TAU;
 
@@ -14,7 +15,8 @@ pub fn percent_error(rate_n_per_s: f64, force_n: f64, tau_s: f64) -> f64 {
     rate_n_per_s * tau_s / force_n
 }
 
-/// Equation 19 solved for f: the largest relative rate, per second, whose error is `share` of the force. 1 for 10 % and 0.1 s.
+/// Equation 19 solved for f: the largest relative rate, per second, whose error is `share` of the force. 1 for 10 % and
+/// 0.1 s.
 #[must_use]
 pub fn rate_limit_per_s(share: f64, tau_s: f64) -> f64 {
     share / tau_s
@@ -35,7 +37,8 @@ pub struct RateLimits {
     pub vector_n_per_s: f64,
     /// When it is that fast, seconds.
     pub vector_at_s: f64,
-    /// f of equation 19: the largest |dF/dt| / |F| where |F| is at least the floor, per second; `None` where it never is.
+    /// f of equation 19: the largest |dF/dt| / |F| where |F| is at least the floor, per second; `None` where it never
+    /// is.
     pub relative_per_s: Option<f64>,
     /// When that is, seconds.
     pub relative_at_s: Option<f64>,
@@ -45,9 +48,9 @@ pub struct RateLimits {
     pub kept_from_s: Option<f64>,
 }
 
-/// How fast the forces of `rows` (time in seconds, `[Fx, Fy, Fz]` in newtons) change between neighbours, judged by the relative rate
-/// `limit_per_s` where the force is at least `floor_n`. Rows that are not finite and times that do not ascend are gaps. `None`
-/// where no two rows follow each other.
+/// How fast the forces of `rows` (time in seconds, `[Fx, Fy, Fz]` in newtons) change between neighbours, judged by the
+/// relative rate `limit_per_s` where the force is at least `floor_n`. Rows that are not finite and times that do not
+/// ascend are gaps. `None` where no two rows follow each other.
 pub fn rate_limits(
     rows: impl IntoIterator<Item = (f64, [f64; 3])>,
     floor_n: f64,

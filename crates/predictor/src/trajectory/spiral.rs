@@ -4,17 +4,17 @@
 //! - (22) F_r = mu N sin(2 pi f_s N)
 //! - (23) F_x = F_r sin(2 pi f_c t), F_y = F_r cos(2 pi f_c t)
 //!
-//! Departures: equation 21 begins infinitely fast, so a cubic that meets it in value and slope takes its place in the first seconds
-//! ([`Spiral::soft_s`]); after T the finger lets go within [`RELEASE_S`].
+//! Departures: equation 21 begins infinitely fast, so a cubic that meets it in value and slope takes its place in the
+//! first seconds ([`Spiral::soft_s`]); after T the finger lets go within [`RELEASE_S`].
 //!
 //! **Equation 25.** With u = 2 pi f_s N and dN/dt = N_max^2 / (2 T N), the derivative of equation 22 is
 //!
 //! dF_r/dt = mu (sin u + u cos u) dN/dt = A (sin u / u + cos u), A = mu pi f_s N_max^2 / T.
 //!
-//! A is what equation 25 prints as the maximum, at F_r = 0. There u is a multiple of pi: the rate is A at all of them but the first, u = 0, where
-//! it is 2 A. That is the true maximum, as |sin u / u| and |cos u| are at most 1, and it is reached as t goes to 0. With it, equation 26 asks for
-//! twice the time: 283 s rather than 141 s for the thesis' parameters. With the soft start neither holds in the first seconds, and
-//! the maximum is sought numerically.
+//! A is what equation 25 prints as the maximum, at F_r = 0. There u is a multiple of pi: the rate is A at all of them
+//! but the first, u = 0, where it is 2 A. That is the true maximum, as |sin u / u| and |cos u| are at most 1, and it is
+//! reached as t goes to 0. With it, equation 26 asks for twice the time: 283 s rather than 141 s for the thesis'
+//! parameters. With the soft start neither holds in the first seconds, and the maximum is sought numerically.
 
 use std::f64::consts::{PI, TAU};
 
@@ -28,7 +28,8 @@ pub const RELEASE_S: f64 = 2.0;
 const PLACES: f64 = 64.0;
 const MOST_PLACES: f64 = 1e6;
 
-/// The spiral of equations 21 to 23. Sizes are positive and finite, `soft_s` may be 0; others give numbers without meaning.
+/// The spiral of equations 21 to 23. Sizes are positive and finite, `soft_s` may be 0; others give numbers without
+/// meaning.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Spiral {
     /// N_max, newtons.
@@ -148,7 +149,8 @@ impl Spiral {
         rising.max(spiralling)
     }
 
-    /// Equation 26 as printed: the time to complete a circle is less than that to move a radial newton at equation 25's rate, seconds.
+    /// Equation 26 as printed: the time to complete a circle is less than that to move a radial newton at equation 25's
+    /// rate, seconds.
     #[must_use]
     pub fn shortest_printed_s(&self) -> f64 {
         self.duration_s * self.radial_rate_printed_n_per_s() / self.fc_hz
@@ -160,12 +162,14 @@ impl Spiral {
         2.0 * self.shortest_printed_s()
     }
 
-    /// Equation 26 with the maximum of [`radial_rate_max_n_per_s`](Self::radial_rate_max_n_per_s) and the same soft start, seconds, by bisection. A
-    /// soft start has to catch up with equation 21 and asks for up to 1.89 times as long as the true maximum; NaN where sizes are not positive and finite.
+    /// Equation 26 with the maximum of [`radial_rate_max_n_per_s`](Self::radial_rate_max_n_per_s) and the same soft
+    /// start, seconds, by bisection. A soft start has to catch up with equation 21 and asks for up to 1.89 times as
+    /// long as the true maximum; NaN where sizes are not positive and finite.
     #[must_use]
     pub fn shortest_s(&self) -> f64 {
         let keeps = |duration_s: f64| Self { duration_s, ..*self }.radial_rate_max_n_per_s() <= self.fc_hz;
-        // The cubic is at most 1.89 times as fast as the root that it replaces, 2 x^3 (2.5 - 1.5 x) (5 - 4.5 x) at x = 0.75, so 4 A is never reached.
+        // The cubic is at most 1.89 times as fast as the root that it replaces, 2 x^3 (2.5 - 1.5 x) (5 - 4.5 x) at x =
+        // 0.75, so 4 A is never reached.
         let (mut low_s, mut high_s) = (0.0, 2.0 * self.shortest_true_s());
         if !(high_s.is_finite() && keeps(high_s)) {
             return f64::NAN;
@@ -304,7 +308,8 @@ mod tests {
         let spiral = Spiral::default();
         assert!((spiral.shortest_printed_s() - 141.371_669_4).abs() <= 1e-6);
         assert_eq!(spiral.shortest_true_s(), 2.0 * spiral.shortest_printed_s());
-        // 2 N rather than 3 N: less than half as long. The 80 s of 5.2.3 are not this but its share of the 180 s chosen: 180 (2/3)^2.
+        // 2 N rather than 3 N: less than half as long. The 80 s of 5.2.3 are not this but its share of the 180 s
+        // chosen: 180 (2/3)^2.
         assert!((Spiral { fz_max_n: 2.0, ..spiral }.shortest_printed_s() - 62.831_853_1).abs() <= 1e-6);
         // With the soft start: the rate at that T is f_c, and just before it is more.
         let shortest_s = spiral.shortest_s();

@@ -1,4 +1,5 @@
-//! Least squares in rational numbers, through the normal equations without fractions (Bareiss, doi:10.1090/S0025-5718-1968-0226829-0).
+//! Least squares in rational numbers, through the normal equations without fractions (Bareiss,
+//! doi:10.1090/S0025-5718-1968-0226829-0).
 
 use num_bigint::BigInt;
 use num_rational::BigRational;

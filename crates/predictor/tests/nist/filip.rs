@@ -1,4 +1,5 @@
-//! Filippelli: a polynomial of degree 10; powers of x are rounded before they are fitted, which alone costs half the digits.
+//! Filippelli: a polynomial of degree 10; powers of x are rounded before they are fitted, which alone costs half the
+//! digits.
 
 use super::{Certified, column, polynomial};
 

@@ -1,6 +1,7 @@
-//! The linear least squares problems of NIST's Statistical Reference Datasets (<https://www.itl.nist.gov/div898/strd>): worst digits of coefficients,
-//! the offset among them, and of standard errors. Data and certified values as the GNU Scientific Library ships them
-//! (`multifit/test_{filip,longley,pontius}.c`); Wampler's as published, their coefficients checked in rational numbers.
+//! The linear least squares problems of NIST's Statistical Reference Datasets (<https://www.itl.nist.gov/div898/strd>):
+//! worst digits of coefficients, the offset among them, and of standard errors. Data and certified values as the GNU
+//! Scientific Library ships them (`multifit/test_{filip,longley,pontius}.c`); Wampler's as published, their
+//! coefficients checked in rational numbers.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 

@@ -1,4 +1,5 @@
-//! Wampler 1 to 5: polynomials of degree 5 over 0 .. 20, exact (1, 2) or with residuals, the same times 1, 100 and 10 000 (3, 4, 5), which are at right angles to all powers.
+//! Wampler 1 to 5: polynomials of degree 5 over 0 .. 20, exact (1, 2) or with residuals, the same times 1, 100 and 10
+//! 000 (3, 4, 5), which are at right angles to all powers.
 
 use super::{Certified, column, polynomial};
 

@@ -1,7 +1,8 @@
 //! What the channels are made of: each angle by itself, bent as need be, or all of them together.
 //!
-//! A photodiode answers to an angle along a curve (it is flat beyond 25 to 30 degrees, section 3.3.5). A curve is a broken line with its
-//! knots between the angle's quantiles and even steps of it; the columns are its hats but for the first, which the mean stands for.
+//! A photodiode answers to an angle along a curve (it is flat beyond 25 to 30 degrees, section 3.3.5). A curve is a
+//! broken line with its knots between the angle's quantiles and even steps of it; the columns are its hats but for the
+//! first, which the mean stands for.
 
 /// Some of the video's columns as regressors.
 #[derive(Debug, Clone, PartialEq)]
@@ -11,7 +12,8 @@ pub(super) struct Model {
 }
 
 impl Model {
-    /// Each column alone with up to `most` free numbers, and all of them together with as many altogether, if there are several.
+    /// Each column alone with up to `most` free numbers, and all of them together with as many altogether, if there are
+    /// several.
     pub(super) fn all(columns: &[Vec<f64>], most: usize) -> Vec<Self> {
         let curve = |k: usize, free: usize| (k, knots(&columns[k], free.max(1)));
         let mut models: Vec<Self> = (0..columns.len()).map(|k| Self { curves: vec![curve(k, most)] }).collect();
@@ -46,7 +48,8 @@ impl Model {
     }
 }
 
-/// Both ends, and between them the middles of quantiles and even steps; `free` + 1 of them, fewer where quantiles are the same.
+/// Both ends, and between them the middles of quantiles and even steps; `free` + 1 of them, fewer where quantiles are
+/// the same.
 fn knots(column: &[f64], free: usize) -> Vec<f64> {
     let mut sorted = column.to_vec();
     sorted.sort_by(f64::total_cmp);

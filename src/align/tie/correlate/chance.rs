@@ -1,8 +1,9 @@
 //! How much chance explains: channels of the same kind that have nothing to do with the video.
 //!
-//! Two kinds: the channels with the phases of their spectrum drawn anew, the same for all of them (J. Theiler et al. 1992,
-//! doi:10.1016/0167-2789(92)90102-S), and the channels cut into pieces that are put together in another order, each of them backwards,
-//! which keeps bursts and rests. The greatest gains over all lags and models follow Gumbel's distribution.
+//! Two kinds: the channels with the phases of their spectrum drawn anew, the same for all of them (J. Theiler et al.
+//! 1992, doi:10.1016/0167-2789(92)90102-S), and the channels cut into pieces that are put together in another order,
+//! each of them backwards, which keeps bursts and rests. The greatest gains over all lags and models follow Gumbel's
+//! distribution.
 
 use rand::seq::SliceRandom;
 use rand::{RngExt, SeedableRng};
@@ -22,8 +23,8 @@ const PIECES: usize = 9;
 /// Makes signals anew.
 type Draw = fn(&[Vec<f64>], &mut ChaCha8Rng) -> Vec<Vec<f64>>;
 
-/// How probably chance gains at least `gain` somewhere; the greater of what the two kinds of channels tell. `greatest` is the greatest gain of
-/// given channels over all lags.
+/// How probably chance gains at least `gain` somewhere; the greater of what the two kinds of channels tell. `greatest`
+/// is the greatest gain of given channels over all lags.
 pub(super) fn probability(
     channels: &[Vec<f64>],
     greatest: &(dyn Fn(&[Vec<f64>]) -> f64 + Sync),

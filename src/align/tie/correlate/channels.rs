@@ -49,7 +49,8 @@ pub(super) fn components(log: &Series) -> (Series, Vec<f64>) {
     (Series { time_s: log.time_s.clone(), columns, interval_s: log.interval_s }, weights)
 }
 
-/// The root mean square of second differences: of noise that changes from row to row it is a fixed multiple, and of slow signals it is small.
+/// The root mean square of second differences: of noise that changes from row to row it is a fixed multiple, and of
+/// slow signals it is small.
 fn noise(column: &[f64]) -> f64 {
     let squares = column.windows(3).map(|v| (v[0] - 2.0 * v[1] + v[2]).powi(2));
     (squares.sum::<f64>() / column.len() as f64).sqrt()

@@ -43,8 +43,8 @@ pub(super) struct Explained {
 }
 
 impl Coarse {
-    /// Prepares for lags from `lags[0]` to `lags[1]` with at least `least_rows` rows in which both have values. Regressors are 0 where
-    /// there are none.
+    /// Prepares for lags from `lags[0]` to `lags[1]` with at least `least_rows` rows in which both have values.
+    /// Regressors are 0 where there are none.
     pub(super) fn new(
         regressors: &[Vec<f64>],
         video_there: &[bool],

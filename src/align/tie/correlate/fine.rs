@@ -1,8 +1,9 @@
 //! The lag to a fraction of an interval, how surely, and whether another peak might be the right one.
 //!
-//! Both sides are looked at at the times of the sparser; the denser one's means over an interval of the sparser are taken there. Drift is
-//! taken off what overlaps. The sums of the regression are kept in blocks of time: blocks drawn with replacement give other peaks, whose
-//! scatter is the standard error and which vote for the peak (block bootstrap).
+//! Both sides are looked at at the times of the sparser; the denser one's means over an interval of the sparser are
+//! taken there. Drift is taken off what overlaps. The sums of the regression are kept in blocks of time: blocks drawn
+//! with replacement give other peaks, whose scatter is the standard error and which vote for the peak (block
+//! bootstrap).
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;

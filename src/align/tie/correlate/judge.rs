@@ -15,8 +15,8 @@ impl Judge {
         (overlap_s / self.each_s - 1.0 - self.free).max(0.0)
     }
 
-    /// Twice how much an explanation raises the logarithm of the likelihood, less its free numbers; `left` is the logarithm of the share
-    /// that it leaves over.
+    /// Twice how much an explanation raises the logarithm of the likelihood, less its free numbers; `left` is the
+    /// logarithm of the share that it leaves over.
     pub(super) fn gain(&self, overlap_s: f64, left: f64) -> f64 {
         -self.samples(overlap_s) * left - self.free
     }

@@ -1,8 +1,10 @@
-//! Linear regression of channels on regressors from sums over rows, so that rows can be added up, taken away and resampled in blocks.
+//! Linear regression of channels on regressors from sums over rows, so that rows can be added up, taken away and
+//! resampled in blocks.
 
 use nalgebra::DMatrix;
 
-/// A share of the greatest by which each regressor's square is raised, so that regressors that are the same don't matter.
+/// A share of the greatest by which each regressor's square is raised, so that regressors that are the same don't
+/// matter.
 const RIDGE: f64 = 1e-6;
 /// No less is said to be left over.
 const LEAST: f64 = 1e-6;
@@ -95,9 +97,9 @@ pub(super) fn factor(mut spread: DMatrix<f64>) -> Option<DMatrix<f64>> {
     spread.cholesky().map(|c| c.unpack())
 }
 
-/// The logarithm of the share that the regressors leave over of the variance of that combination of channels which they explain best (1
-/// less the square of the first canonical correlation), from the regressors' [`factor`], their covariances with the channels, and the channels'
-/// own.
+/// The logarithm of the share that the regressors leave over of the variance of that combination of channels which they
+/// explain best (1 less the square of the first canonical correlation), from the regressors' [`factor`], their
+/// covariances with the channels, and the channels' own.
 pub(super) fn left(regressors: &DMatrix<f64>, mut both: DMatrix<f64>, channels: DMatrix<f64>) -> f64 {
     let Some(own) = factor(channels) else { return 0.0 };
     if !regressors.solve_lower_triangular_mut(&mut both) {

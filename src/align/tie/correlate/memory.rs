@@ -1,7 +1,7 @@
 //! How many independent samples there are: both sides remember, and only what both remember counts.
 //!
-//! M. S. Bartlett 1935, doi:10.2307/2980235: of two independent series the correlation varies as that of `rows / sum(r_x r_y)` independent
-//! rows, r the correlation of each with itself over lags.
+//! M. S. Bartlett 1935, doi:10.2307/2980235: of two independent series the correlation varies as that of
+//! `rows / sum(r_x r_y)` independent rows, r the correlation of each with itself over lags.
 
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;

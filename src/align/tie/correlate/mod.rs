@@ -1,12 +1,14 @@
 //! The lag at which the signals of one recording best explain the channels of another.
 //!
-//! In: signals over the video's time (joint angles), channels over the log's (photodiodes), both at irregular times, with gaps. Out: the
-//! log's time less the video's, with a standard error, and how surely it is that lag and no other; or why there is none.
+//! In: signals over the video's time (joint angles), channels over the log's (photodiodes), both at irregular times,
+//! with gaps. Out: the log's time less the video's, with a standard error, and how surely it is that lag and no other;
+//! or why there is none.
 //!
-//! Each signal alone is bent as need be ([`basis`]), or all are taken together, to explain that combination of the channels'
-//! principal components which they explain best ([`line`]); drift over 30 s
-//! and slower is taken off. What counts is the share that is left over and how many independent samples there are ([`judge`], [`memory`]). All
-//! lags are looked at on a grid, with Fourier transforms; the best peaks closely; chance by channels of the same kind that were made anew.
+//! Each signal alone is bent as need be ([`basis`]), or all are taken together, to explain that combination of the
+//! channels' principal components which they explain best ([`line`]); drift over 30 s
+//! and slower is taken off. What counts is the share that is left over and how many independent samples there are
+//! ([`judge`], [`memory`]). All lags are looked at on a grid, with Fourier transforms; the best peaks closely; chance
+//! by channels of the same kind that were made anew.
 //!
 //! What is not determined: a lag of the channels behind the signals. It is part of what is found.
 
@@ -91,7 +93,8 @@ const VALLEY: f64 = 0.9;
 /// Independent samples for each free number of a model, and how many free numbers there are.
 const SAMPLES_EACH: f64 = 3.0;
 const FREE: [f64; 2] = [2.0, 6.0];
-/// How far around the best peak is looked at in the end: at least this share of the grid's step and so many standard errors.
+/// How far around the best peak is looked at in the end: at least this share of the grid's step and so many standard
+/// errors.
 const NEAR: f64 = 0.25;
 const NEAR_SDS: f64 = 24.0;
 /// Blocks of the bootstrap.
@@ -132,7 +135,8 @@ pub fn correlate(video: Recording<'_>, log: Recording<'_>, search: LagSearch) ->
     let shorter_s = video.span_s().min(log.span_s());
     if shorter_s < SHORTEST_S {
         return Err(format!(
-            "{shorter_s:.1} s are too short to find a lag in; at least {SHORTEST_S} s in which the finger moves are needed"
+            "{shorter_s:.1} s are too short to find a lag in; at least {SHORTEST_S} s in which the finger moves are \
+             needed"
         ));
     }
     let (log, weights) = channels::components(&log);
@@ -179,7 +183,8 @@ pub fn correlate(video: Recording<'_>, log: Recording<'_>, search: LagSearch) ->
     };
     let candidates = candidates(&curve(&channels));
     let Some(best) = candidates.first() else {
-        return Err("at no lag that is looked at the video and the log overlap by half of the shorter; check both files, or give another \
+        return Err("at no lag that is looked at the video and the log overlap by half of the shorter; check both \
+                    files, or give another \
                     offset to look about"
             .to_owned());
     };
@@ -190,8 +195,10 @@ pub fn correlate(video: Recording<'_>, log: Recording<'_>, search: LagSearch) ->
         candidates.get(1).is_some_and(|next| next.gain > ALIKE * best.gain && explained(next.left) > LEAST_ALIKE);
     if (chance.is_nan() || chance > most_chance || explained(best.left) < LEAST_EXPLAINED) && !alike {
         return Err(format!(
-            "the angles do not explain the photodiodes at any lag: at the best, {:.3} s, they explain {:.0} % of them, as unrelated signals \
-             of the same kind would with probability {}; check that the files belong together, or tie by the clock or an offset",
+            "the angles do not explain the photodiodes at any lag: at the best, {:.3} s, they explain {:.0} % of \
+             them, as unrelated signals \
+             of the same kind would with probability {}; check that the files belong together, or tie by the clock or \
+             an offset",
             together_s + best.lag as f64 * step_s,
             100.0 * explained(best.left),
             if chance < 0.01 { "under 1 %".to_owned() } else { format!("{:.0} %", 100.0 * chance) }
@@ -220,7 +227,8 @@ pub fn correlate(video: Recording<'_>, log: Recording<'_>, search: LagSearch) ->
     let as_lag = |peak: &Peak| LagPeak { offset_s: peak.offset_s, explained: explained(peak.left) };
     if explained(best.left) < LEAST_EXPLAINED {
         return Err(format!(
-            "the angles explain only {:.0} % of the photodiodes at the best lag, {:.3} s: check that the files belong together, or tie by the clock \
+            "the angles explain only {:.0} % of the photodiodes at the best lag, {:.3} s: check that the files belong \
+             together, or tie by the clock \
              or an offset",
             100.0 * explained(best.left),
             best.offset_s
@@ -233,7 +241,8 @@ pub fn correlate(video: Recording<'_>, log: Recording<'_>, search: LagSearch) ->
             .map(|peak| format!("{:.3} s ({:.1} %)", peak.offset_s, 100.0 * explained(peak.left)))
             .collect();
         return Err(format!(
-            "several lags explain the photodiodes nearly as well: {} (log time less video time, share explained); a motion that repeats itself can't \
+            "several lags explain the photodiodes nearly as well: {} (log time less video time, share explained); a \
+             motion that repeats itself can't \
              tell them apart: tie by the clock or an offset, or look about a known offset",
             listed.join(", ")
         ));
@@ -241,20 +250,23 @@ pub fn correlate(video: Recording<'_>, log: Recording<'_>, search: LagSearch) ->
     let samples = spot.judge.samples(best.overlap_s);
     if samples < LEAST_SAMPLES {
         return Err(format!(
-            "the lag may be {:.3} s, but the finger moves too rarely or too slowly to be sure: the overlap of {:.1} s is worth {:.0} independent samples \
+            "the lag may be {:.3} s, but the finger moves too rarely or too slowly to be sure: the overlap of {:.1} s \
+             is worth {:.0} independent samples \
              more than the curve takes; record for longer, or tie by the clock or an offset",
             best.offset_s, best.overlap_s, samples
         ));
     }
     if search.most_s.is_some() && range_s.iter().any(|end_s| (best.offset_s - end_s).abs() < 1.5 * step_s) {
         return Err(format!(
-            "the best lag, {:.3} s, is at the end of what is looked at, so a better one may lie beyond: look further, or about another offset",
+            "the best lag, {:.3} s, is at the end of what is looked at, so a better one may lie beyond: look further, \
+             or about another offset",
             best.offset_s
         ));
     }
     if best.offset_sd_s > SHARP * spot.judge.each_s {
         return Err(format!(
-            "the lag is {:.3} s with a standard error of {:.3} s: the motion is too slow or too short to tell; tie by the clock or an offset",
+            "the lag is {:.3} s with a standard error of {:.3} s: the motion is too slow or too short to tell; tie by \
+             the clock or an offset",
             best.offset_s, best.offset_sd_s
         ));
     }
@@ -273,8 +285,8 @@ fn explained(left: f64) -> f64 {
     1.0 - left.exp()
 }
 
-/// The probability of the first peak among all by their likelihoods, each other one's as great as either its gain or what it leaves over
-/// makes it.
+/// The probability of the first peak among all by their likelihoods, each other one's as great as either its gain or
+/// what it leaves over makes it.
 fn preferred(peaks: &[Peak], spots: &[Spot<'_>]) -> f64 {
     let samples = |peak: &Peak| spots[peak.spot].judge.samples(peak.overlap_s);
     let best = &peaks[0];
@@ -285,7 +297,8 @@ fn preferred(peaks: &[Peak], spots: &[Spot<'_>]) -> f64 {
     1.0 / (1.0 + peaks[1..].iter().map(other).sum::<f64>())
 }
 
-/// Peaks, best first, without those that climbed to one that is there already, within `apart_s`/4; they give it their votes.
+/// Peaks, best first, without those that climbed to one that is there already, within `apart_s`/4; they give it their
+/// votes.
 fn different(mut peaks: Vec<Peak>, apart_s: f64) -> Vec<Peak> {
     peaks.sort_by(|a, b| b.gain.total_cmp(&a.gain).then(a.spot.cmp(&b.spot)));
     let mut taken: Vec<Peak> = Vec::new();

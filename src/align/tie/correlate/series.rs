@@ -1,4 +1,5 @@
-//! Signals over times of their own, made fit to be compared: sorted, without what is missing, each of mean 0 and mean square 1.
+//! Signals over times of their own, made fit to be compared: sorted, without what is missing, each of mean 0 and mean
+//! square 1.
 
 /// Columns over common times.
 #[derive(Debug, Clone)]
@@ -68,8 +69,8 @@ impl Series {
         GAP * self.interval_s
     }
 
-    /// Its mean around each of the times `at_s` (ascending), over `width_s`; `None` in gaps and outside. The signal is taken to run
-    /// straight between its values.
+    /// Its mean around each of the times `at_s` (ascending), over `width_s`; `None` in gaps and outside. The signal is
+    /// taken to run straight between its values.
     pub(super) fn means(
         &self,
         at_s: impl Iterator<Item = f64>,
@@ -116,7 +117,8 @@ impl Series {
         }
     }
 
-    /// The columns on a grid of `count` times from the first on, `step_s` apart, and whether each of its times has values; 0 where not.
+    /// The columns on a grid of `count` times from the first on, `step_s` apart, and whether each of its times has
+    /// values; 0 where not.
     pub(super) fn on_grid(&self, step_s: f64, count: usize) -> (Vec<Vec<f64>>, Vec<bool>) {
         let mut columns = vec![vec![0.0; count]; self.columns.len()];
         let mut there = vec![false; count];

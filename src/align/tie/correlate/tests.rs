@@ -102,7 +102,8 @@ fn the_lag_of_related_signals_is_found() {
     assert!(within >= 8, "{within}");
 }
 
-/// A smooth signal of one of five kinds at `hz`: few waves, many waves, noise that is forgotten quickly or slowly, steps that are followed.
+/// A smooth signal of one of five kinds at `hz`: few waves, many waves, noise that is forgotten quickly or slowly,
+/// steps that are followed.
 fn smooth(rng: &mut ChaCha8Rng, kind: usize, hz: f64, seconds: f64) -> Vec<f64> {
     let count = (hz * seconds) as usize;
     if kind < 2 {

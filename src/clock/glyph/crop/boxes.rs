@@ -12,7 +12,8 @@ const TALL: f32 = 0.35;
 const NARROW: f32 = 0.16;
 /// Nearer than this to a side, ink counts as being at the border; as a share of the picture.
 const NEAR: f32 = 0.03;
-/// A frame takes so much of a side and is no broader than this; a sliver is finer than any stroke; shares of the picture.
+/// A frame takes so much of a side and is no broader than this; a sliver is finer than any stroke; shares of the
+/// picture.
 const LONG: f32 = 0.8;
 const THIN: f32 = 0.16;
 const SLIVER: f32 = 0.06;
@@ -37,8 +38,8 @@ fn around(a: [usize; 4], b: [usize; 4]) -> [usize; 4] {
 }
 
 impl Grey {
-    /// Boxes that may hold the digit: all ink but frames, without slivers at the border, or what hangs together; as long as next to
-    /// no ink is left outside.
+    /// Boxes that may hold the digit: all ink but frames, without slivers at the border, or what hangs together; as
+    /// long as next to no ink is left outside.
     pub(super) fn boxes(&self) -> Vec<[usize; 4]> {
         let mut found: Vec<[usize; 4]> = Vec::new();
         let faint: Vec<Piece> =
@@ -96,7 +97,8 @@ impl Grey {
         [x0 < near, y0 < near, x1 + near >= self.width, y1 + near >= self.height]
     }
 
-    /// Whether a piece is a display's frame or its shadow: a line along most of a side, or around a corner, much longer than broad.
+    /// Whether a piece is a display's frame or its shadow: a line along most of a side, or around a corner, much longer
+    /// than broad.
     fn is_frame(&self, piece: &Piece) -> bool {
         let [x0, y0, x1, y1] = piece.extent;
         let (w, h) = ((x1 - x0 + 1) as f32, (y1 - y0 + 1) as f32);
@@ -109,8 +111,8 @@ impl Grey {
         along || corner || through
     }
 
-    /// Whether a narrow box at the left or right border is one solid strip: what is beside a display, or a `1` that can't be told
-    /// from it. A display's `1` has a gap in its middle.
+    /// Whether a narrow box at the left or right border is one solid strip: what is beside a display, or a `1` that
+    /// can't be told from it. A display's `1` has a gap in its middle.
     fn is_strip(&self, [x0, y0, x1, y1]: [usize; 4]) -> bool {
         let (wide, tall) = (x1 - x0 + 1, y1 - y0 + 1);
         if 2 * wide > tall || (x0 > 1 && x1 + 2 < self.width) {

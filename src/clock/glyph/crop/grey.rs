@@ -41,8 +41,8 @@ impl Grey {
         Some(Self { width, height, values: (0..width * height).map(mean).collect() })
     }
 
-    /// The largest value (smallest, if not `largest`) so far along rows and columns. Windows that are `whole` are moved inwards at the
-    /// border instead of cut off, so that a stroke at the border is filled too.
+    /// The largest value (smallest, if not `largest`) so far along rows and columns. Windows that are `whole` are moved
+    /// inwards at the border instead of cut off, so that a stroke at the border is filled too.
     fn extreme(&self, reach: [usize; 2], largest: bool, whole: bool) -> Self {
         let pick = |values: &mut dyn Iterator<Item = f32>| {
             if largest { values.fold(f32::NEG_INFINITY, f32::max) } else { values.fold(f32::INFINITY, f32::min) }
@@ -71,7 +71,8 @@ impl Grey {
         Self { width, height, values }
     }
 
-    /// The picture without what is darker (lighter, if not `dark`) than its surroundings and narrower than a share of the picture.
+    /// The picture without what is darker (lighter, if not `dark`) than its surroundings and narrower than a share of
+    /// the picture.
     fn filled(&self, narrower: f32, dark: bool) -> Self {
         let reach = (narrower * self.width.min(self.height) as f32 / 2.0).round().max(1.0) as usize;
         self.extreme([reach; 2], dark, true).extreme([reach; 2], !dark, false)
@@ -113,8 +114,8 @@ impl Grey {
         })
     }
 
-    /// Whether a narrow box is an edge between two grounds, as a display's frame is, and no `1`: the picture left of it differs from
-    /// the picture right of it.
+    /// Whether a narrow box is an edge between two grounds, as a display's frame is, and no `1`: the picture left of it
+    /// differs from the picture right of it.
     pub(super) fn is_edge(&self, &[x0, y0, x1, y1]: &[usize; 4]) -> bool {
         let (wide, tall) = (x1 - x0 + 1, y1 - y0 + 1);
         let aside = (wide / 4).max(2);

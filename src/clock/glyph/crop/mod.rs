@@ -1,12 +1,13 @@
 //! Finds the one digit on a picture that holds nothing else, and reads it.
 //!
-//! In: a plane, such as a crop of one place of a display, 16 samples a side at least. Out: the digit and how probable it is, or none:
+//! In: a plane, such as a crop of one place of a display, 16 samples a side at least. Out: the digit and how probable
+//! it is, or none:
 //! blank, unsure, or ways of cutting it out that tell different digits.
 //!
-//! [`grey`]: the background is what remains when everything narrower than a third of the picture is filled up from around it (a
-//! morphological closing), so slow changes of light are taken away; so are shadows across the picture. [`boxes`]: connected ink at
-//! several thresholds is gathered to boxes: all of it but the display's frame along the border, or what hangs together. Of
-//! dark and light, ink is what is narrow.
+//! [`grey`]: the background is what remains when everything narrower than a third of the picture is filled up from
+//! around it (a morphological closing), so slow changes of light are taken away; so are shadows across the picture.
+//! [`boxes`]: connected ink at several thresholds is gathered to boxes: all of it but the display's frame along the
+//! border, or what hangs together. Of dark and light, ink is what is narrow.
 
 mod boxes;
 mod grey;

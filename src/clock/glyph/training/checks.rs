@@ -93,8 +93,8 @@ pub(super) fn real_crops() -> Option<Vec<(usize, String, image::GrayImage)>> {
     Some(crops)
 }
 
-/// No weights are trained on them. The rules of `read_crop` were made looking at all of them, the weight of *other* was set on those
-/// of even number: 95 of 100 digits are read of these, 98 of 100 of the others.
+/// No weights are trained on them. The rules of `read_crop` were made looking at all of them, the weight of *other* was
+/// set on those of even number: 95 of 100 digits are read of these, 98 of 100 of the others.
 #[test]
 fn digits_of_real_displays_are_read_or_left_out() {
     let Some(crops) = real_crops() else {

@@ -47,7 +47,8 @@ pub(super) struct Faces {
 }
 
 impl Faces {
-    /// Those to train with, or those held out. The folder is named by `LUNULA_FONTS`; without it, the typefaces that come along.
+    /// Those to train with, or those held out. The folder is named by `LUNULA_FONTS`; without it, the typefaces that
+    /// come along.
     pub(super) fn load(held_out: bool) -> Self {
         let mut faces = Vec::new();
         if !held_out {

@@ -3,8 +3,8 @@
 /// Rows of a mask that a digit's height takes.
 pub(super) const FINE: f32 = 48.0;
 
-/// The ink of a character or a segment. Units are a digit's height: y from 0 at a digit's top to 1 at its bottom, x from the
-/// character's left.
+/// The ink of a character or a segment. Units are a digit's height: y from 0 at a digit's top to 1 at its bottom, x
+/// from the character's left.
 #[derive(Debug, Clone)]
 pub(super) struct Mask {
     pub(super) width: usize,

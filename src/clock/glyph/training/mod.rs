@@ -1,16 +1,17 @@
-//! Where the weights come from: digits drawn with many typefaces and as seven segments, and what is no digit; no photographs.
+//! Where the weights come from: digits drawn with many typefaces and as seven segments, and what is no digit; no
+//! photographs.
 //!
 //! `LUNULA_FONTS=FOLDER cargo test --release --lib glyph::training::train -- --ignored --nocapture` rewrites
-//! `weights/digits.txt` (12 minutes of 4 cores), `figures` tells what they are worth. Without the folder, only the two typefaces
-//! that come along and the displays train. The folder held Debian 12's packages of the name `fonts-`: 3270, adf-gillius,
-//! adf-switzera, adf-universalis, adf-verana, agave, anonymous-pro, arundina, b612, cabin, cantarell, comfortaa, courier-prime,
-//! croscore, crosextra-caladea, crosextra-carlito, dejavu-core, dejavu-extra, dosis, dseg, ebgaramond, ecolier-court,
-//! fantasque-sans, fanwood, firacode, freefont-ttf, georgewilliams, gfs-neohellenic, go, hack, hermit, hosny-amiri, inconsolata,
-//! inter, jetbrains-mono, junction, jura, karla, lato, league-mono, liberation, linuxlibertine, lobster, manchufont, monofur,
-//! monoid, mononoki, mplus, national-park, noto-core, noto-mono, ocr-a, oldstandard, open-sans, oxygen, paratype, play,
-//! powerline, prociono, quicksand, recommended, roboto-unhinted, sil-andika, symbola, terminus-otb, texgyre, thai-tlwg,
-//! tomsontalks, unikurdweb, urw-base35, vlgothic, vollkorn, wine, yanone-kaffeesatz. [`faces`] leaves out what has no ten digits
-//! of one height, and holds some families out.
+//! `weights/digits.txt` (12 minutes of 4 cores), `figures` tells what they are worth. Without the folder, only the two
+//! typefaces that come along and the displays train. The folder held Debian 12's packages of the name `fonts-`: 3270,
+//! adf-gillius, adf-switzera, adf-universalis, adf-verana, agave, anonymous-pro, arundina, b612, cabin, cantarell,
+//! comfortaa, courier-prime, croscore, crosextra-caladea, crosextra-carlito, dejavu-core, dejavu-extra, dosis, dseg,
+//! ebgaramond, ecolier-court, fantasque-sans, fanwood, firacode, freefont-ttf, georgewilliams, gfs-neohellenic, go,
+//! hack, hermit, hosny-amiri, inconsolata, inter, jetbrains-mono, junction, jura, karla, lato, league-mono, liberation,
+//! linuxlibertine, lobster, manchufont, monofur, monoid, mononoki, mplus, national-park, noto-core, noto-mono, ocr-a,
+//! oldstandard, open-sans, oxygen, paratype, play, powerline, prociono, quicksand, recommended, roboto-unhinted,
+//! sil-andika, symbola, terminus-otb, texgyre, thai-tlwg, tomsontalks, unikurdweb, urw-base35, vlgothic, vollkorn,
+//! wine, yanone-kaffeesatz. [`faces`] leaves out what has no ten digits of one height, and holds some families out.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -53,7 +54,8 @@ struct Outcome {
     /// Read right and read wrong (others as digits, too) at each of [`LEVELS`].
     right: [usize; LEVELS.len()],
     wrong: [usize; LEVELS.len()],
-    /// How often the likeliest digit is at least 0.5 probable and how often it is right then; the sum of its probability.
+    /// How often the likeliest digit is at least 0.5 probable and how often it is right then; the sum of its
+    /// probability.
     told: [usize; 2],
     promised: f64,
     /// Sum of the logarithmic loss.

@@ -263,7 +263,8 @@ fn neighbours<'a>(style: Style<'a>, clean: bool, content: &mut Content<'a>, rng:
     }
 }
 
-/// Takes the picture and cuts the patch out of it; none where a cover hides too little or too much to say what it leaves.
+/// Takes the picture and cuts the patch out of it; none where a cover hides too little or too much to say what it
+/// leaves.
 fn look(style: Style<'_>, content: &Content<'_>, clean: bool, cuts: usize, rng: &mut impl Rng) -> Option<Vec<Patch>> {
     let ease = if clean { 0.25 } else { 1.0 };
     let tall_px = if clean { rng.random_range(14.0f32..50.0) } else { 8.0 * rng.random_range(0.0f32..1.8).exp() };

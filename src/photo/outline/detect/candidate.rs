@@ -95,8 +95,8 @@ impl Lead {
 
 /// Follows the leads from the best score down, `most` of them.
 ///
-/// A lead that meets what was found already adds to its support instead, and one that contradicts what is settled is not
-/// followed.
+/// A lead that meets what was found already adds to its support instead, and one that contradicts what is settled is
+/// not followed.
 pub(super) fn follow_all(levels: &Levels, mut leads: Vec<Lead>, most: usize) -> Vec<Candidate> {
     leads.sort_by(|a, b| b.score.total_cmp(&a.score));
     let mut found: Vec<Candidate> = Vec::new();
@@ -155,8 +155,8 @@ fn follow(levels: &Levels, lead: &Lead) -> Option<Candidate> {
     })
 }
 
-/// Does anything along the border's sides, just outside or just inside, shine far above the nail's own tone? A streak of
-/// reflected light has an edge on either side, and each may pass for the nail's.
+/// Does anything along the border's sides, just outside or just inside, shine far above the nail's own tone? A streak
+/// of reflected light has an edge on either side, and each may pass for the nail's.
 fn mirrored(patch: &Patch, shape: &Shape, border: &[[f64; 2]]) -> bool {
     /// ln of the ratio; skin is never that much lighter than the nail in it.
     const SHINE: f32 = 0.45;

@@ -2,18 +2,20 @@
 //!
 //! In: a photograph (upright). Out: outlines with their axis and a confidence, roughly the probability that the outline
 //! overlaps the true one by an IoU of 0.8. Below [`DetectOptions::min_confidence`] a find is *doubtful*: a person may
-//! correct it, no result uses it. Made for close-ups of one finger as in the thesis' chamber (section 4.2.2, Fig. 49-52:
+//! correct it, no result uses it. Made for close-ups of one finger as in the thesis' chamber (section 4.2.2, Fig.
+//! 49-52:
 //! colour or green-filtered grey, any skin, nail up to some 30 degrees off upright); on photographs of whole hands it
 //! finds nails at the ends of fingers that stand out from what is behind them.
 //!
-//! The way down, a file each: [`picture`] channels that do not depend on the light's brightness; [`silhouette`] masks that
-//! may be fingers and [`tips`] their ends; [`patch`] the picture in a finger's or nail's own frame; [`shape`] the template
-//! and [`evidence`] how well it fits there; [`search`] where it fits best, on a finger's end or anywhere on a close-up;
-//! [`refine`] the outline by dynamic programming around the template; [`candidate`] all of it for one place, with the
-//! figures that the confidence is made from. Five small networks ([`net`]: border, scorer, three judges) weigh the evidence; `training` makes them.
+//! The way down, a file each: [`picture`] channels that do not depend on the light's brightness; [`silhouette`] masks
+//! that may be fingers and [`tips`] their ends; [`patch`] the picture in a finger's or nail's own frame; [`shape`] the
+//! template and [`evidence`] how well it fits there; [`search`] where it fits best, on a finger's end or anywhere on a
+//! close-up; [`refine`] the outline by dynamic programming around the template; [`candidate`] all of it for one place,
+//! with the figures that the confidence is made from. Five small networks ([`net`]: border, scorer, three judges) weigh
+//! the evidence; `training` makes them.
 //!
-//! What it does not do: nails seen from the side, painted nails with a pattern, and fingers folded onto skin of the same
-//! colour are mostly not found. The outline ends at the hyponychium where the free edge can be told from the bed.
+//! What it does not do: nails seen from the side, painted nails with a pattern, and fingers folded onto skin of the
+//! same colour are mostly not found. The outline ends at the hyponychium where the free edge can be told from the bed.
 
 mod candidate;
 mod evidence;
@@ -63,8 +65,8 @@ pub struct Detected {
     pub outline: Outline,
     /// From its proximal to its distal end.
     pub axis: Axis,
-    /// 0 to 1: about the probability that the outline's IoU with the true one is at least 0.8 and the axis points the right
-    /// way.
+    /// 0 to 1: about the probability that the outline's IoU with the true one is at least 0.8 and the axis points the
+    /// right way.
     pub confidence: f64,
 }
 
@@ -135,8 +137,9 @@ const AGREE_DEG: f64 = 8.0;
 /// Axes that differ by more contradict each other, degrees.
 const CONTRADICT_DEG: f64 = 75.0;
 
-/// Asks the picture around each confident find for its axis ([`find_axes`] knows nothing of templates): a nail about as wide as
-/// long fits its template on the diagonal too. Where the two contradict each other, the find is halved in confidence.
+/// Asks the picture around each confident find for its axis ([`find_axes`] knows nothing of templates): a nail about as
+/// wide as long fits its template on the diagonal too. Where the two contradict each other, the find is halved in
+/// confidence.
 fn second_opinion(image: &DynamicImage, found: &mut [Detected], min_confidence: f64) {
     for one in found.iter_mut().filter(|d| d.confidence >= min_confidence) {
         let Ok(other) = find_axes(image, std::slice::from_ref(&one.outline)).swap_remove(0) else { continue };

@@ -1,6 +1,7 @@
 //! The template: a nail as a tapered superellipse in a frame.
 //!
-//! |u / (1 - taper v)|^n + |v|^n = 1, where u runs across in half widths and v along in half lengths, +1 the distal end.
+//! |u / (1 - taper v)|^n + |v|^n = 1, where u runs across in half widths and v along in half lengths, +1 the distal
+//! end.
 
 /// Exponent of the superellipse: 2 an ellipse, large a rectangle.
 pub(super) const EXPONENT: f64 = 2.5;

@@ -1,4 +1,5 @@
-//! The kinds on models: the same bytes in whatever folder, whenever, on however many threads; and what they say of keys and inputs.
+//! The kinds on models: the same bytes in whatever folder, whenever, on however many threads; and what they say of keys
+//! and inputs.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -119,7 +120,8 @@ impl Place {
         let step = "pf1 = 'step:5000@0..1'\nuntil = 2\nevery = 0.02\nrtol = 1e-6\nwith_loads = true";
         make("simulate", step, Vec::new(), "touched");
         let recording = vec![self.at("recordings", "touched/trajectory.csv", &one)];
-        let fit = "free = ['k_C']\nset = { k_C1_N_per_m = 8e4, k_C2_N_per_m = 8e4 }\nstarts = 1\nunloaded_before = true\nbetween = 'held'";
+        let fit = "free = ['k_C']\nset = { k_C1_N_per_m = 8e4, k_C2_N_per_m = 8e4 }\nstarts = 1\nunloaded_before = \
+                   true\nbetween = 'held'";
         make("fit", fit, recording, "fitted");
         make("simulate", "pf1 = 5000\nuntil = 0.2", data("params", &["fitted/fit.toml"]), "again");
         made

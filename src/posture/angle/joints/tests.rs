@@ -96,7 +96,8 @@ fn bent_fingers_have_their_angles_in_any_direction() {
 #[test]
 fn flexion_and_zero_are_the_files() {
     let layout = layout(
-        "flexion = 'counterclockwise'\nMARKERS[segments]\nm = ['a','b']\np = ['b','c']\n[joints]\nJ1 = ['m','p']\n[zero]\nJ1_deg = 1.5",
+        "flexion = 'counterclockwise'\nMARKERS[segments]\nm = ['a','b']\np = ['b','c']\n[joints]\nJ1 = \
+         ['m','p']\n[zero]\nJ1_deg = 1.5",
     );
     let row = angles_of(&layout, UPRIGHT).step(&seen(&finger(10.0, [-30.0, 0.0, 0.0])));
     assert_degrees(&row, &[28.5]);

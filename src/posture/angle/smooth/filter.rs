@@ -1,11 +1,11 @@
 //! The Kalman filter forwards and the smoother backwards, over the known rows of one series.
 //!
-//! State: the angle, its first and second derivative, and the correlated part of the error in its own standard deviations. Values
-//! come in medians of the standard errors, times in medians of the time between rows.
+//! State: the angle, its first and second derivative, and the correlated part of the error in its own standard
+//! deviations. Values come in medians of the standard errors, times in medians of the time between rows.
 //!
-//! A row whose prediction makes it less likely than an error anywhere on the circle, met once in [`WILD`] rows, is left out.
-//! Where several in a row would be, it was the filter that was wrong, and it begins anew; so it does when, after a long gap, it
-//! knows no more than half a turn.
+//! A row whose prediction makes it less likely than an error anywhere on the circle, met once in [`WILD`] rows, is left
+//! out. Where several in a row would be, it was the filter that was wrong, and it begins anew; so it does when, after a
+//! long gap, it knows no more than half a turn.
 
 use nalgebra::{Matrix4, RowVector4, Vector4};
 
@@ -152,7 +152,8 @@ fn forwards(
     deviance
 }
 
-/// Nothing known but that the angle is about half a turn around its first value, and moves about a quarter of that a row.
+/// Nothing known but that the angle is about half a turn around its first value, and moves about a quarter of that a
+/// row.
 fn start(first: &Observation, half_turn: f64) -> (Vector4<f64>, Matrix4<f64>) {
     let wide = half_turn * half_turn;
     let moves = wide / 16.0;

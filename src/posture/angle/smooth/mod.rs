@@ -1,15 +1,16 @@
 //! Smoothing of a joint's angle over a whole video, for those who ask for it.
 //!
-//! In: frame times and one joint's angles with their standard errors; out: the same rows, smoothed, with standard errors that
-//! hold. A missing angle stays missing. Fewer than eight known angles stay as they are.
+//! In: frame times and one joint's angles with their standard errors; out: the same rows, smoothed, with standard
+//! errors that hold. A missing angle stays missing. Fewer than eight known angles stay as they are.
 //!
 //! The angle's third derivative is taken as white noise (the integrated Wiener process of Wecker and Ansley 1983,
 //! doi:10.1080/01621459.1983.10477935), over the true times. The errors of neighbouring frames are
-//! alike, since a codec hands on what it did to the last frame; a smoother that does not know that promises too much. So an error is in
-//! part a first-order autoregression, in part white, and its size the given standard error times a common scale. The process' strength, the
-//! correlation, its share and the scale are those of the greatest likelihood, with weak priors; the scale is never below 1.
-//! Smoothing is the fixed interval one of Rauch, Tung and Striebel (1965, doi:10.2514/3.3166) in Bierman's form (1973,
-//! doi:10.1080/00207177308932487), which inverts no matrix. An angle that no motion explains is left out of it.
+//! alike, since a codec hands on what it did to the last frame; a smoother that does not know that promises too much.
+//! So an error is in part a first-order autoregression, in part white, and its size the given standard error times a
+//! common scale. The process' strength, the correlation, its share and the scale are those of the greatest likelihood,
+//! with weak priors; the scale is never below 1. Smoothing is the fixed interval one of Rauch, Tung and Striebel (1965,
+//! doi:10.2514/3.3166) in Bierman's form (1973, doi:10.1080/00207177308932487), which inverts no matrix. An angle that
+//! no motion explains is left out of it.
 
 mod filter;
 mod fit;

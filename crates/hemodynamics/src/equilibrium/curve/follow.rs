@@ -1,8 +1,9 @@
-//! A curve of equilibria over the load, followed step by step around its folds (pseudo-arclength continuation, Keller 1977).
+//! A curve of equilibria over the load, followed step by step around its folds (pseudo-arclength continuation, Keller
+//! 1977).
 //!
-//! The load is one more unknown. All units but the one nearest to a turning point of its `p` are eliminated, which leaves two equations
-//! for three unknowns: the vein's lumen, that unit's lumen, the load. Their tangent is a cross product, and so is a corrector's step
-//! across it. Loads are measured in `scale_pa`, lumens in nominal diameters.
+//! The load is one more unknown. All units but the one nearest to a turning point of its `p` are eliminated, which
+//! leaves two equations for three unknowns: the vein's lumen, that unit's lumen, the load. Their tangent is a cross
+//! product, and so is a corrector's step across it. Loads are measured in `scale_pa`, lumens in nominal diameters.
 
 use super::LoadPath;
 use crate::equilibrium::network::Network;
@@ -33,7 +34,8 @@ pub(super) struct Follower<'a> {
     pub(super) scale_pa: f64,
 }
 
-/// The equations linearized at a place, the units but one eliminated: `rows` times the steps of (vein, pivot, load) is `-values`.
+/// The equations linearized at a place, the units but one eliminated: `rows` times the steps of (vein, pivot, load) is
+/// `-values`.
 struct Reduced {
     pivot: usize,
     rows: [[f64; 3]; 2],
@@ -99,7 +101,8 @@ impl<'a> Follower<'a> {
         reduced
     }
 
-    /// All lumens' steps from those of the vein and the load; the pivot's is known. With `residuals` the equations are made to hold.
+    /// All lumens' steps from those of the vein and the load; the pivot's is known. With `residuals` the equations are
+    /// made to hold.
     fn spread(&self, at: &Place, reduced: &Reduced, [vein, pivot, load]: [f64; 3], residuals: f64) -> Vec<f64> {
         let network = self.network(at.load);
         let (venous, slope) = (network.vein.pressure(at.vein), network.vein.pressure_slope(at.vein));

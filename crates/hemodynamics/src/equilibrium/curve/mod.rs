@@ -1,13 +1,14 @@
 //! Equilibria over a load (Figure 78): branches, where they turn or end, and how many there are in between.
 //!
-//! In: a model, the inputs that don't change, a [`LoadPath`], growing loads. Out: a [`LoadCurve`]: every equilibrium at every load with the
-//! number of its branch, the [`Turn`]s at which a branch begins or ends (located to rounding, not to the distance of the loads), and the
-//! [`LoadRange`]s between these with the number of equilibria that are stable there.
+//! In: a model, the inputs that don't change, a [`LoadPath`], growing loads. Out: a [`LoadCurve`]: every equilibrium at
+//! every load with the number of its branch, the [`Turn`]s at which a branch begins or ends (located to rounding, not
+//! to the distance of the loads), and the [`LoadRange`]s between these with the number of equilibria that are stable
+//! there.
 //!
-//! At each load the equilibria are those of [`equilibria`], none missed and none spurious. Curves are followed from each of them that no
-//! curve has passed yet, around folds, until they leave the range or a vessel closes; so every equilibrium has its branch, and a fold
-//! between two loads is found where it belongs to a branch that reaches one of the loads. What begins and ends between two neighbouring
-//! loads is not seen: take loads close enough together.
+//! At each load the equilibria are those of [`equilibria`], none missed and none spurious. Curves are followed from
+//! each of them that no curve has passed yet, around folds, until they leave the range or a vessel closes; so every
+//! equilibrium has its branch, and a fold between two loads is found where it belongs to a branch that reaches one of
+//! the loads. What begins and ends between two neighbouring loads is not seen: take loads close enough together.
 
 mod follow;
 mod trace;
@@ -36,7 +37,8 @@ pub enum LoadPath {
 pub struct CurvePoint {
     /// The load, Pa.
     pub load_pa: f64,
-    /// The branch, counted from 0: the equilibria that go over into each other as the load changes, up to the next fold.
+    /// The branch, counted from 0: the equilibria that go over into each other as the load changes, up to the next
+    /// fold.
     pub branch: usize,
     /// The equilibrium.
     pub equilibrium: Equilibrium,
@@ -82,7 +84,8 @@ pub struct LoadRange {
 /// Equilibria over a load.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LoadCurve {
-    /// Every equilibrium at every load, loads growing, by the vein's lumen within one. Loads without an open equilibrium have none.
+    /// Every equilibrium at every load, loads growing, by the vein's lumen within one. Loads without an open
+    /// equilibrium have none.
     pub points: Vec<CurvePoint>,
     /// Where branches turn or end, by the load.
     pub turns: Vec<Turn>,
@@ -122,7 +125,8 @@ impl LoadRange {
     }
 }
 
-/// All equilibria along loads (Pa), which have to grow. An error where loads don't grow or are not finite, and those of [`equilibria`].
+/// All equilibria along loads (Pa), which have to grow. An error where loads don't grow or are not finite, and those of
+/// [`equilibria`].
 pub fn load_curve(
     model: &Model,
     others: &Inputs,

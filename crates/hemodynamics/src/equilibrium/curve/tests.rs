@@ -19,8 +19,8 @@ fn only_turn(curve: &LoadCurve) -> &Turn {
 #[test]
 fn the_branch_of_the_thesis_ends_where_a_vessel_closes() {
     let model = thesis(Collapse::Error);
-    // The vein closes at P_H + k_V D_V / A_V. The distal capillary closes when P_V + k_C D_C / A_C presses on it, where the blood
-    // flows through the other unit alone.
+    // The vein closes at P_H + k_V D_V / A_V. The distal capillary closes when P_V + k_C D_C / A_C presses on it, where
+    // the blood flows through the other unit alone.
     let one = Parameters::new(
         Parameters::thesis().units()[..1].to_vec(),
         *Parameters::thesis().vein(),
@@ -159,7 +159,8 @@ fn any_parameters_within_tenfold_have_their_curve() {
 
 #[test]
 fn equal_units_part_from_each_other_and_meet_again() {
-    // Four units, the distal two alike: the branches on which they differ begin and end on those on which they don't, in mirrored pairs.
+    // Four units, the distal two alike: the branches on which they differ begin and end on those on which they don't,
+    // in mirrored pairs.
     let soft = Symbol::Stiffness;
     let four = (0..4).map(Site::Capillary).fold(Parameters::along_nail(4).unwrap(), |p, site| {
         p.set(soft(site), 0.5 * p.get(soft(site)).unwrap()).unwrap()

@@ -1,10 +1,10 @@
 //! Where the weights come from: phantoms of every tone and light, pictures without nails, and photographs of hands.
 //!
-//! `LUNULA_TRAIN="first border" cargo test --release --lib detect::training -- --ignored`, then `LUNULA_TRAIN=scorer`, then
-//! `LUNULA_TRAIN=judge` rewrite `weights/*.txt`: the scorer first on drawn templates alone, then also on what its own search
-//! takes for nails, and the judge on the finds of the two others on fresh scenes. The photographs are those of even index
-//! in sorted order of the folder named by `LUNULA_HANDS` (`images/`, `masks/`); those of odd index are never looked at. The
-//! same scenes, weights before and machine give the same weights.
+//! `LUNULA_TRAIN="first border" cargo test --release --lib detect::training -- --ignored`, then `LUNULA_TRAIN=scorer`,
+//! then `LUNULA_TRAIN=judge` rewrite `weights/*.txt`: the scorer first on drawn templates alone, then also on what its
+//! own search takes for nails, and the judge on the finds of the two others on fresh scenes. The photographs are those
+//! of even index in sorted order of the folder named by `LUNULA_HANDS` (`images/`, `masks/`); those of odd index are
+//! never looked at. The same scenes, weights before and machine give the same weights.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
