@@ -253,7 +253,7 @@ fn read_column(reader: &SerializedFileReader<File>, column: usize) -> Result<Rea
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group).map_err(|e| e.to_string())?;
         // Pages may say otherwise, without end.
-        let most = rows_of(&read) + usize::try_from(group.metadata().num_rows()).unwrap_or(0);
+        let most = rows_of(&read) + usize::try_from(group.metadata().num_rows()).map_err(|e| e.to_string())?;
         let cells = group.get_column_reader(column).map_err(|e| e.to_string())?;
         match (cells, &mut read) {
             (ColumnReader::BoolColumnReader(r), Read::Integers(into)) => {
@@ -280,6 +280,9 @@ fn read_column(reader: &SerializedFileReader<File>, column: usize) -> Result<Rea
                 })?
             }
             _ => return Err("its type changes within the file".to_owned()),
+        }
+        if rows_of(&read) != most {
+            return Err("it has fewer rows than the file says; get it again, whole".to_owned());
         }
     }
     Ok(read)

@@ -3,7 +3,7 @@
 //! The format's reader makes room for as many things as a header says. Here the headers are walked first, as Thrift's
 //! compact protocol (<https://github.com/apache/thrift/blob/master/doc/specs/thrift-compact-protocol.md>) and nothing
 //! more: no list may have more entries than bytes are left, no text more bytes, and no page may unpack to more than a
-//! file of that size can. What can't be walked at all is left to the reader, which says what is wrong.
+//! file of that size can, or hold more values than there are rows. What can't be walked is refused.
 
 use std::fs::File;
 use std::os::unix::fs::FileExt as _;
@@ -18,6 +18,9 @@ const DEEPEST: usize = 32;
 const PAGE_HEADS: [u64; 2] = [1 << 9, 1 << 16];
 /// What a row's cell takes in memory.
 const CELL_BYTES: u64 = 16;
+
+/// A page's kind.
+const DICTIONARY: i64 = 2;
 
 const FALSE: &str = "is damaged: a header promises more than the file can hold; get it again, whole";
 
@@ -50,11 +53,8 @@ pub(super) fn check_footer(file: &File) -> Result<(), String> {
     let walked = (Thrift { rest: &footer }).fields(0, &mut |depth, id, value| {
         fits &= (depth, id) != (2, 5) || u64::try_from(value).is_ok_and(|v| v <= size)
     });
-    match walked {
-        Err(Bad::False) => Err(FALSE.to_owned()),
-        _ if !fits => Err(FALSE.to_owned()),
-        Ok(()) | Err(Bad::Unread) => Ok(()),
-    }
+    // What can't be walked takes the format's reader up to 2^31 steps until it says so.
+    if walked.is_ok() && fits { Ok(()) } else { Err(FALSE.to_owned()) }
 }
 
 /// The rows and the pages' sizes.
@@ -71,7 +71,9 @@ pub(super) fn check_pages(file: &File, metadata: &ParquetMetaData) -> Result<(),
                 return Err(FALSE.to_owned());
             };
             let end = at.saturating_add(length).min(size);
-            while at < end {
+            let mut left = rows;
+            // Behind the last row nobody reads on.
+            while at < end && left > 0 {
                 let rooms = PAGE_HEADS.into_iter().filter(|&room| room < end - at).chain([end - at]);
                 let mut page = Err(Bad::Unread);
                 for room in rooms {
@@ -80,36 +82,51 @@ pub(super) fn check_pages(file: &File, metadata: &ParquetMetaData) -> Result<(),
                         break;
                     }
                 }
-                let (length, unpacked, packed) = match page {
-                    Ok(page) => page,
-                    Err(Bad::Unread) => break,
-                    Err(Bad::False) => return Err(FALSE.to_owned()),
-                };
-                let (Ok(unpacked), Ok(packed)) = (u64::try_from(unpacked), u64::try_from(packed)) else {
-                    return Err(FALSE.to_owned());
-                };
-                if packed > end - at || unpacked > most(packed) {
+                let Ok(page) = page else { return Err(FALSE.to_owned()) };
+                if page.packed > end - at || page.unpacked > most(page.packed) || page.values > left {
                     return Err(FALSE.to_owned());
                 }
-                at += length + packed;
+                at += page.head + page.packed;
+                left -= if page.is_dictionary { 0 } else { page.values };
             }
         }
     }
     if cells.saturating_mul(CELL_BYTES) > most(size) { Err(FALSE.to_owned()) } else { Ok(()) }
 }
 
-/// The header of the page at a place: its length, and what it says of the page's unpacked and packed size.
-fn page_head(file: &File, at: u64, room: usize) -> Result<(u64, i64, i64), Bad> {
-    let mut head = vec![0; room];
-    file.read_exact_at(&mut head, at).map_err(|_| Bad::Unread)?;
-    let mut walk = Thrift { rest: &head };
-    let (mut unpacked, mut packed) = (0, 0);
+/// What the header of a page says.
+struct PageHead {
+    /// Its own bytes.
+    head: u64,
+    packed: u64,
+    unpacked: u64,
+    /// Rows, or entries of a dictionary, for which the reader makes room.
+    values: u64,
+    is_dictionary: bool,
+}
+
+/// The header of the page at a place.
+fn page_head(file: &File, at: u64, room: usize) -> Result<PageHead, Bad> {
+    let mut bytes = vec![0; room];
+    file.read_exact_at(&mut bytes, at).map_err(|_| Bad::Unread)?;
+    let mut walk = Thrift { rest: &bytes };
+    let (mut kind, mut unpacked, mut packed, mut values) = (0, 0, 0, 0);
     walk.fields(0, &mut |depth, id, value| match (depth, id) {
+        (0, 1) => kind = value,
         (0, 2) => unpacked = value,
         (0, 3) => packed = value,
+        // Of each kind of page the first.
+        (1, 1) => values = value,
         _ => {}
     })?;
-    Ok(((head.len() - walk.rest.len()) as u64, unpacked, packed))
+    let size = |value: i64| u64::try_from(value).map_err(|_| Bad::False);
+    Ok(PageHead {
+        head: (bytes.len() - walk.rest.len()) as u64,
+        packed: size(packed)?,
+        unpacked: size(unpacked)?,
+        values: size(values)?,
+        is_dictionary: kind == DICTIONARY,
+    })
 }
 
 /// Bytes of the compact protocol.
