@@ -8,6 +8,8 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use crate::words::instead;
+
 /// What is wrong at one place of a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fault {
@@ -185,21 +187,5 @@ pub(crate) fn number(value: &DeValue<'_>) -> Option<f64> {
         DeValue::Integer(i) => Some(i64::from_str_radix(i.as_str(), i.radix()).ok()? as f64),
         DeValue::Float(f) => f.as_str().parse().ok(),
         _ => None,
-    }
-}
-
-/// What to write instead of an unknown `name`: one that differs by a slip of the finger, or the choice.
-pub(crate) fn instead(name: &str, known: &[&str]) -> String {
-    let lower = name.to_lowercase();
-    let slips = 1.max(name.chars().count() / 3);
-    let nearest = known
-        .iter()
-        .map(|k| (strsim::osa_distance(&lower, &k.to_lowercase()), k))
-        .min_by_key(|(distance, _)| *distance)
-        .filter(|(distance, _)| *distance <= slips);
-    match nearest {
-        Some((_, known)) => format!("did you mean `{known}`?"),
-        None if known.is_empty() => "none is defined".to_owned(),
-        None => format!("known: {}", known.join(", ")),
     }
 }

@@ -30,6 +30,25 @@ pub trait Words: Copy + PartialEq + Send + Sync + 'static {
     }
 }
 
+/// The known name from which `name` differs by a slip of the finger: a letter, or one in three.
+#[must_use]
+pub fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
+    let lower = name.to_lowercase();
+    let slips = 1.max(name.chars().count() / 3);
+    let nearest = known.iter().map(|k| (strsim::osa_distance(&lower, &k.to_lowercase()), *k));
+    nearest.min_by_key(|(distance, _)| *distance).filter(|(distance, _)| *distance <= slips).map(|(_, known)| known)
+}
+
+/// What to write instead of an unknown `name`: the nearest, or the choice.
+#[must_use]
+pub fn instead(name: &str, known: &[&str]) -> String {
+    match nearest(name, known) {
+        Some(known) => format!("did you mean `{known}`?"),
+        None if known.is_empty() => "none is defined".to_owned(),
+        None => format!("known: {}", known.join(", ")),
+    }
+}
+
 /// A name from outside as a terminal may show it: control characters, which could move its cursor or hide what it
 /// shows, are escaped as in Rust (`\\u{1b}`). Line breaks are too; [`shown_lines`] keeps them.
 #[must_use]

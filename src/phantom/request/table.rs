@@ -8,6 +8,8 @@ use clap::{ArgAction, Args, Command};
 use thiserror::Error;
 use toml::{Table, Value};
 
+use crate::words::instead;
+
 /// What is wrong with a key.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("{what}")]
@@ -31,10 +33,8 @@ pub fn read<R: Args>(table: &Table, of: &str) -> Result<R, OptionFault> {
         let Some(option) = command.get_arguments().find(|one| one.get_long() == Some(&long)) else {
             let known: Vec<String> =
                 command.get_arguments().filter_map(|one| Some(one.get_long()?.replace('-', "_"))).collect();
-            let near = known.iter().map(|name| (strsim::damerau_levenshtein(name, key), name)).min();
-            let near = near.filter(|(far, _)| *far <= 2).map(|(_, name)| format!("; did you mean `{name}`?"));
-            let or = || format!("; there are {}", known.join(", "));
-            return Err(fault(format!("`{key}` is no option of `{of}`{}", near.unwrap_or_else(or))));
+            let known: Vec<&str> = known.iter().map(String::as_str).collect();
+            return Err(fault(format!("`{key}` is no option of `{of}`; {}", instead(key, &known))));
         };
         let flag = matches!(option.get_action(), ArgAction::SetTrue);
         let again = matches!(option.get_action(), ArgAction::Append);
@@ -144,7 +144,7 @@ mod tests {
             ("secnds", "`secnds` is no option of `lunula phantom x`; did you mean `seconds`?")
         );
         let (key, what) = refused::<StudyRequest>("quick = 2");
-        assert!(key == "quick" && what.contains("there are seed, subjects, sensors"), "{what}");
+        assert!(key == "quick" && what.contains("known: seed, subjects, sensors"), "{what}");
         let (key, what) = refused::<VideoRequest>("video_size = 2");
         assert!(key == "video_size" && what.contains("is no option"), "{what}");
         let (key, what) = refused::<StudyRequest>("video_size = \"wide\"");

@@ -6,7 +6,8 @@ use super::table::{Rows, read};
 use super::{Item, Missing, Origin, Relation, World, holds, plain};
 use crate::pipeline::pattern::{Disk, Pattern};
 use crate::pipeline::spec::{Filter, InputSource, InputSpec, Spec};
-use crate::toml_file::{Fault, instead};
+use crate::toml_file::Fault;
+use crate::words::instead;
 
 /// How many places of one fault are told.
 const TOLD: usize = 5;

@@ -4,6 +4,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::pipeline::kind::{Demand, KeyFault};
+use crate::words::instead;
 
 /// A fault of a key.
 pub(super) fn fault(key: &str, what: impl Into<String>) -> KeyFault {
@@ -29,13 +30,8 @@ pub(super) fn read<T: DeserializeOwned>(known: &[&str], table: toml::Table) -> R
 }
 
 fn unknown(known: &[&str], key: &str) -> KeyFault {
-    let near = known.iter().map(|one| (strsim::damerau_levenshtein(one, key), one)).min().filter(|near| near.0 <= 2);
-    let what = match near {
-        Some((_, one)) => format!("there is no such option; perhaps `{one}`"),
-        None if known.is_empty() => "there is no such option; this job has none".to_owned(),
-        None => format!("there is no such option; there are {}", known.join(", ")),
-    };
-    fault(key, what)
+    let what = if known.is_empty() { "this job has none".to_owned() } else { instead(key, known) };
+    fault(key, format!("there is no such option; {what}"))
 }
 
 /// Checks whole numbers: each with its key and the most that it may be.
@@ -77,8 +73,8 @@ mod tests {
         let good = told("first = 3").unwrap();
         assert_eq!((good.first, good.second.len()), (3, 0));
         for (text, key, what) in [
-            ("frist = 1", "frist", "perhaps `first`"),
-            ("other_thing = 1", "other_thing", "there are first, second"),
+            ("frist = 1", "frist", "did you mean `first`?"),
+            ("other_thing = 1", "other_thing", "known: first, second"),
             ("first = -1\nsecond = []", "first", "-1"),
             ("first = 1\nsecond = 1", "second", "sequence"),
         ] {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::{Part, Pattern};
 use crate::pipeline::keys::Keys;
-use crate::toml_file::instead;
+use crate::words::instead;
 
 /// Where files are looked for; paths are relative to its top, with `/`.
 pub(in crate::pipeline) trait Tree {

@@ -7,7 +7,8 @@ use crate::pipeline::items::{Index, Item, JoinedRows, Missing, Relation, Unjoine
 use crate::pipeline::keys::Keys;
 use crate::pipeline::kind::Takes;
 use crate::pipeline::spec::{Spec, StageSpec};
-use crate::toml_file::{Fault, instead};
+use crate::toml_file::Fault;
+use crate::words::instead;
 
 /// A task to be: its keys, and for each role the items it takes, by position.
 pub(super) struct Row {

@@ -9,7 +9,8 @@ use super::header::Header;
 use super::reference::{Names, filter, strings};
 use super::{Generated, InputSource, InputSpec, Place, Spec, Wanted, cycle, stages};
 use crate::pipeline::kind::Kind;
-use crate::toml_file::{Entry, Fault, Findings, entries, instead};
+use crate::toml_file::{Entry, Fault, Findings, entries};
+use crate::words::instead;
 
 const TOP: [&str; 6] = ["name", "about", "wanted", "phantom", "inputs", "stage"];
 const INPUT: [&str; 4] = ["table", "files", "where", "keys"];

@@ -4,7 +4,8 @@ use toml::de::DeValue;
 
 use super::header::Header;
 use super::{Filter, From, InputSource, InputSpec, Place, Reference};
-use crate::toml_file::{Entry, Findings, entries, instead};
+use crate::toml_file::{Entry, Findings, entries};
+use crate::words::instead;
 
 /// What references may name.
 pub(super) struct Names<'a> {

@@ -9,7 +9,8 @@ use super::reference::{Names, filter, reference, strings};
 use super::{Reference, StageSpec};
 use crate::pipeline::kind::{Kind, Role, Takes};
 use crate::pipeline::said::in_keys;
-use crate::toml_file::{Entry, Findings, instead};
+use crate::toml_file::{Entry, Findings};
+use crate::words::instead;
 
 /// Keys of every stage.
 const OWN: [&str; 3] = ["job", "each", "where"];

@@ -8,7 +8,8 @@ use super::{Camera, Joint, Layout, LayoutFault, Marker, MarkerShape, Segment};
 
 use crate::clock::{Clock, ClockFormat, ClockRoi};
 use crate::flexion::Flexion;
-use crate::toml_file::{Entry, Fault, Findings, entries, instead, number};
+use crate::toml_file::{Entry, Fault, Findings, entries, number};
+use crate::words::instead;
 
 const TABLES: [&str; 9] = ["flexion", "shape", "markers", "segments", "joints", "start", "clock", "camera", "zero"];
 /// The number of coefficients of OpenCV's lens models that are known here; those left out are zero.

@@ -185,7 +185,7 @@ impl Layout {
             let what = if known.is_empty() {
                 format!("joint `{name}` is asked for, but the marker file has no [joints]; add it there")
             } else {
-                format!("no joint `{name}` in the marker file; {}", crate::toml_file::instead(name, &known))
+                format!("no joint `{name}` in the marker file; {}", crate::words::instead(name, &known))
             };
             return Err(LayoutError::NoSuchJoint { what });
         }

@@ -1,6 +1,7 @@
 //! What marker files have that other TOML files have not: pairs of names.
 
-use crate::toml_file::{Entry, Findings, instead};
+use crate::toml_file::{Entry, Findings};
+use crate::words::instead;
 
 /// Two different names out of `known`, as indices.
 pub(super) fn pair(findings: &mut Findings<'_>, entry: Entry<'_>, kind: &str, known: &[&str]) -> Option<[usize; 2]> {

@@ -212,7 +212,7 @@ fn wrong_keys_are_told_with_what_to_write() {
         ("train", "", "target", "is needed"),
         ("train", "target = 'Fz_N,'", "target", "empty or there twice"),
         ("train", "target = 'force'\nmodel = 'cubic'", "model", "linear, quadratic or network"),
-        ("train", "target = 'force'\nhiden = 3", "hiden", "perhaps `hidden`"),
+        ("train", "target = 'force'\nhiden = 3", "hiden", "did you mean `hidden`?"),
         ("train", "target = 'force'\nhidden = 0", "hidden", "1 to 1000"),
         ("train", "target = 'force'\ndeficient = 'ridge=-1'", "deficient", "ridge=LAMBDA"),
         ("train", "target = 'force'\nlevel = 1.0", "level", "between 0 and 1"),
