@@ -20,6 +20,7 @@ pub mod files;
 pub mod flexion;
 pub mod hemodynamics;
 pub mod input;
+pub mod job;
 pub mod labelme;
 pub mod log;
 pub mod nail;

@@ -8,7 +8,7 @@ use regex::Regex;
 /// The library's rooms, from the ground up: a room knows those of lower floors, and none of its own beside it.
 const FLOORS: [&[&str]; 7] = [
     &["flexion", "input", "nail", "stages", "timebase", "words"],
-    &["files", "labelme", "npy", "table", "toml_file", "video"],
+    &["files", "job", "labelme", "npy", "table", "toml_file", "video"],
     &["clock", "figure", "log"],
     &["align", "hemodynamics", "photo", "posture", "predictor"],
     &["phantom"],

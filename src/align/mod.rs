@@ -16,6 +16,7 @@ mod options;
 mod plan;
 mod posture;
 mod report;
+mod request;
 mod results;
 mod tie;
 
@@ -31,6 +32,7 @@ pub use options::{AlignInputs, AlignOptions, AlignOutputs, Sync};
 pub use plan::{Foreknown, plan, plan_foreknown};
 pub use posture::{ClockColumns, Posture};
 pub use report::{AlignReport, LabelReport};
+pub use request::AlignRequest;
 pub use tie::{
     Correlated, LagPeak, LagSearch, LagTie, Recording, Tie, TieMethod, by_clock, by_correlation, by_offset, correlate,
 };

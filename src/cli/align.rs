@@ -2,14 +2,10 @@
 
 use std::path::PathBuf;
 
-use anyhow::Context;
+use anyhow::{Context, ensure};
 use clap::Args;
-use lunula::align::{
-    AlignError, AlignInputs, AlignOptions, AlignOutputs, AlignReport, LagSearch, LagTie, Sync, plan, run as run_align,
-};
-use lunula::log::LogReading;
+use lunula::align::{AlignError, AlignInputs, AlignOutputs, AlignReport, AlignRequest, plan, run as run_align};
 
-use super::log::LogArgs;
 use super::{Common, Interrupted, Outcome};
 
 /// Joint angles and a log of photodiodes, on two clocks, to a labelled training set with a certificate
@@ -34,44 +30,14 @@ pub(super) struct AlignArgs {
     /// sensor_status (.csv or .parquet)
     #[arg(long, value_name = "TRAINING.csv", required_unless_present = "plan")]
     out: Option<PathBuf>,
-    /// How the clocks are tied: clock (in the picture), offset=SECONDS (the log's time at the video's first frame; with
-    /// its standard error offset=SECONDS+-ERROR, without which labels have no standard errors), correlate
-    /// [default: clock, where the table of angles has it]
-    #[arg(long, value_name = "clock|offset=SECONDS|correlate", value_parser = Sync::parse, allow_hyphen_values = true)]
-    sync: Option<Sync>,
-    /// The log's time when the clock in the picture shows zero [default: the log's zero, hour or midnight that makes
-    /// the two overlap]
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
-    clock_zero: Option<f64>,
-    /// With correlate: the offset about which to look [default: that at which log and video begin together]
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
-    lag_about: Option<f64>,
-    /// With correlate: how far from there to look [default: as far as half of the shorter recording overlaps]
-    #[arg(long, value_name = "SECONDS")]
-    max_lag: Option<f64>,
-    /// With correlate: how much later than the finger the photodiodes answer, which is taken off the lag found
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
-    sensor_lag: Option<f64>,
-    /// Labels are interpolated over no longer time between two frames that were seen [default: two frames]
-    #[arg(long, value_name = "SECONDS")]
-    max_gap: Option<f64>,
     #[command(flatten)]
-    log_reading: LogArgs,
-    /// Written into the set's column `subject`
-    #[arg(long)]
-    subject: Option<String>,
-    /// Written into the set's column `session`
-    #[arg(long)]
-    session: Option<String>,
+    request: AlignRequest,
     /// The angles on the log's clock as an OpenSim motion file as well
     #[arg(long, value_name = "FILE.mot")]
     mot: Option<PathBuf>,
     /// The angles on the log's clock as a BIDS Motion dataset as well (--subject and --session name its folders)
     #[arg(long, value_name = "FOLDER")]
     bids: Option<PathBuf>,
-    /// What the finger does, for the names of the BIDS dataset [default: bending]
-    #[arg(long, requires = "bids")]
-    task: Option<String>,
     /// The markers as a DeepLabCut table as well
     #[arg(long, value_name = "FILE.csv", requires = "tracks")]
     dlc: Option<PathBuf>,
@@ -91,21 +57,8 @@ pub(super) struct AlignArgs {
 pub(super) fn run(args: &AlignArgs) -> anyhow::Result<Outcome> {
     let stop = args.common.start()?;
     let inputs = AlignInputs { joints: args.joints.clone(), log: args.log.clone(), tracks: args.tracks.clone() };
-    let LogReading { columns, ambient } = args.log_reading.reading();
-    let options = AlignOptions {
-        sync: args.sync,
-        columns,
-        ambient,
-        max_gap_s: args.max_gap,
-        clock_zero_s: args.clock_zero,
-        lag: LagTie {
-            search: LagSearch { about_s: args.lag_about, most_s: args.max_lag, ..LagSearch::default() },
-            sensor_lag_s: args.sensor_lag,
-        },
-        subject: args.subject.clone(),
-        session: args.session.clone(),
-        task: args.task.clone(),
-    };
+    let options = args.request.options();
+    ensure!(options.task.is_none() || args.bids.is_some(), "--task names the files of a BIDS dataset: give --bids too");
     let outputs = args.out.as_ref().map(|training| AlignOutputs {
         training: training.clone(),
         mot: args.mot.clone(),

@@ -8,7 +8,6 @@ mod completions;
 mod doctor;
 mod hemodynamics;
 mod init;
-mod log;
 mod man;
 mod memory;
 mod merge;

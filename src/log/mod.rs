@@ -27,6 +27,7 @@ mod order;
 mod parquet;
 mod raw;
 mod reading;
+mod request;
 mod role;
 mod rows;
 mod stamps;
@@ -45,6 +46,7 @@ pub(crate) use cell::led as led_state;
 pub use columns::Columns;
 pub use header::LogHeader;
 pub use reading::{LitRows, LogReading, UnlitLoads};
+pub use request::LogRequest;
 pub use stamps::TimeUnit;
 pub(crate) use status::{Statuses, Verdict};
 

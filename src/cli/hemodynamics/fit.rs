@@ -9,8 +9,8 @@ use lunula::hemodynamics::{
     Between, FitOptions, FitOutputs, FitReport, ForceColumn, OpticsChoice, PhotodiodeColumn, Pressed, RecordingColumns,
     STARTS, fit, fit_plan,
 };
+use lunula::log::LogRequest;
 
-use super::super::log::LogArgs;
 use super::{Common, NailArgs, Outcome, ended, one_of};
 
 const EXAMPLES: &str = "Examples:
@@ -97,7 +97,7 @@ pub(crate) struct FitArgs {
     #[arg(long, value_parser = one_of::<OpticsChoice>(), default_value = "beer-lambert")]
     optics: OpticsChoice,
     #[command(flatten)]
-    log: LogArgs,
+    log: LogRequest,
     #[command(flatten)]
     nail: NailArgs,
     /// The result; parameters, table and picture stand beside it, named after it

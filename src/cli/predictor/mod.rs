@@ -9,9 +9,9 @@ mod train;
 use std::path::PathBuf;
 
 use clap::Args;
+use lunula::log::LogRequest;
 use lunula::predictor::{ByTarget, Merit, Target, Wanted};
 
-use super::log::LogArgs;
 use super::{Common, Interrupted, Outcome, one_of};
 
 pub(super) use analyse::{AnalyseArgs, run as analyse};
@@ -30,7 +30,7 @@ struct RowsArgs {
     #[arg(long)]
     keep_faults: bool,
     #[command(flatten)]
-    log: LogArgs,
+    log: LogRequest,
 }
 
 impl RowsArgs {

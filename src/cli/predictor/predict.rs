@@ -6,10 +6,10 @@ use std::sync::atomic::AtomicBool;
 
 use anyhow::Context;
 use clap::Args;
+use lunula::log::LogRequest;
 use lunula::predictor::models::Gate;
 use lunula::predictor::{F_MIN_N, PredictOptions, predict as run_predict, predict_stream};
 
-use super::super::log::LogArgs;
 use super::{Common, Outcome, ended, say_notes};
 use crate::cli::out::Stream;
 
@@ -48,7 +48,7 @@ pub(crate) struct PredictArgs {
     #[arg(long)]
     keep_faults: bool,
     #[command(flatten)]
-    log: LogArgs,
+    log: LogRequest,
     #[command(flatten)]
     common: Common,
 }

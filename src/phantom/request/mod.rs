@@ -5,12 +5,10 @@ mod clock;
 mod log;
 mod photos;
 mod study;
-mod table;
 mod video;
 
 pub use choices::SceneArg;
 pub use log::LogRequest;
 pub use photos::PhotosRequest;
 pub use study::StudyRequest;
-pub use table::{OptionFault, read};
 pub use video::VideoRequest;

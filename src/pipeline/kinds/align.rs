@@ -10,15 +10,13 @@ use serde_json::json;
 
 use super::format::{FORMAT, format, named};
 use super::given::Given;
-use super::log_keys::LogKeys;
+use super::options::request;
 use super::pool::in_pool;
 use super::truth::against;
 use crate::align::{
-    AlignInputs, AlignOptions, AlignOutputs, AlignReport, Foreknown, LagSearch, LagTie, LogHeader, Sync,
-    plan_foreknown, run,
+    AlignInputs, AlignOptions, AlignOutputs, AlignReport, AlignRequest, Foreknown, LogHeader, Sync, plan_foreknown, run,
 };
 use crate::files::beside;
-use crate::log::LogReading;
 use crate::pipeline::{
     Demand, Facts, Foreseen, Job, KeyFault, Keys, Kind, Made, Part, Prepared, Quality, Role, Takes, Work,
 };
@@ -92,28 +90,10 @@ struct Align {
 impl Align {
     fn prepare(mut keys: toml::Table) -> Result<Self, KeyFault> {
         let said = keys.clone();
-        let LogReading { columns, ambient } = LogKeys::take(&mut keys)?.reading;
-        let mut given = Given::new(keys, KEYS)?;
-        let any = f64::MIN..=f64::MAX;
-        let options = AlignOptions {
-            sync: given.parsed("sync", Sync::parse)?,
-            columns,
-            ambient,
-            max_gap_s: given.number("max_gap", 0.0..=f64::MAX)?,
-            clock_zero_s: given.number("clock_zero", any.clone())?,
-            lag: LagTie {
-                search: LagSearch {
-                    about_s: given.number("lag_about", any.clone())?,
-                    most_s: given.number("max_lag", 0.0..=f64::MAX)?,
-                    ..LagSearch::default()
-                },
-                sensor_lag_s: given.number("sensor_lag", any)?,
-            },
-            subject: given.text("subject")?,
-            session: given.text("session")?,
-            task: given.text("task")?,
-        };
-        Ok(Self { options, format: format(&mut given)?, said })
+        let own = keys.remove(FORMAT).map(|value| (FORMAT.to_owned(), value));
+        let format = format(&mut Given::new(own.into_iter().collect(), &[FORMAT])?)?;
+        let options = request::<AlignRequest>(&keys)?.options();
+        Ok(Self { options, format, said })
     }
 
     fn needs_clock(&self) -> bool {

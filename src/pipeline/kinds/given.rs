@@ -114,16 +114,6 @@ impl Given {
             }
         }
     }
-
-    /// A text, or a table of texts written as `name="text",..`.
-    pub(super) fn pairs(&mut self, key: &str) -> Result<Option<String>, KeyFault> {
-        let Some(Value::Table(table)) = self.table.get(key) else { return self.text(key) };
-        let pair = |(name, value): (&String, &Value)| match value {
-            Value::String(text) => Ok(format!("{name}=\"{text}\"")),
-            other => Err(fault(key, format!("`{name}` is {}; write a text in quotes", shown(other)))),
-        };
-        Ok(Some(table.iter().map(pair).collect::<Result<Vec<_>, _>>()?.join(",")))
-    }
 }
 
 /// A fault of a key.
@@ -156,8 +146,6 @@ mod tests {
         assert_eq!(given("a = 'J2'").names("a").unwrap(), ["J2"]);
         assert_eq!(given("a = ['J2', 'J3']").names("a").unwrap(), ["J2", "J3"]);
         assert_eq!(given("a = 'up'").choice("a", &[("up", 1), ("down", 2)]).unwrap(), Some(1));
-        assert_eq!(given("a = {P1 = 'x y'}").pairs("a").unwrap().unwrap(), "P1=\"x y\"");
-        assert_eq!(given("a = 'P1=x'").pairs("a").unwrap().unwrap(), "P1=x");
     }
 
     #[test]

@@ -1,10 +1,8 @@
 //! What a stage says about the logs that it reads: the same keys for every kind that reads logs, named as the commands'
 //! options.
 
-use std::num::NonZeroUsize;
-
-use super::given::{Given, fault};
-use crate::log::{AmbientOptions, Columns, LogReading, TimeUnit};
+use super::options::request;
+use crate::log::{LogReading, LogRequest};
 use crate::pipeline::KeyFault;
 
 /// The keys; every kind that reads logs names them among its own.
@@ -24,22 +22,8 @@ impl LogKeys {
     pub(super) fn take(keys: &mut toml::Table) -> Result<Self, KeyFault> {
         let own = LOG_KEYS.iter().filter_map(|key| keys.remove(*key).map(|value| ((*key).to_owned(), value)));
         let said: toml::Table = own.collect();
-        let mut given = Given::new(said.clone(), &LOG_KEYS)?;
-        let columns = given.pairs("columns")?;
-        let columns = columns.as_deref().map(Columns::parse).transpose().map_err(|what| fault("columns", what))?;
-        let mut columns = columns.unwrap_or_default();
-        let units = [
-            ("s", TimeUnit::Seconds),
-            ("ms", TimeUnit::Milliseconds),
-            ("us", TimeUnit::Microseconds),
-            ("ns", TimeUnit::Nanoseconds),
-        ];
-        columns.time_unit = given.choice("time_unit", &units)?;
-        let piece = given.whole("piece", 1..=u64::from(u32::MAX))?;
-        columns.piece = piece.and_then(|piece| NonZeroUsize::new(usize::try_from(piece).ok()?));
-        columns.stream = given.text("stream")?;
-        let full_scale_v = given.parsed("full_scale", AmbientOptions::parse_full_scale)?;
-        Ok(Self { reading: LogReading { columns, ambient: AmbientOptions { full_scale_v } }, said })
+        let request = request::<LogRequest>(&said)?;
+        Ok(Self { reading: request.reading(), said })
     }
 
     /// Adds what was said to what a stage's results hang on; nothing where nothing was.

@@ -3,12 +3,21 @@
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+use crate::job::{self, OptionFault};
 use crate::pipeline::kind::{Demand, KeyFault};
 use crate::words::instead;
 
 /// A fault of a key.
 pub(super) fn fault(key: &str, what: impl Into<String>) -> KeyFault {
     KeyFault { key: key.to_owned(), what: what.into() }
+}
+
+/// Reads a stage's keys as the options of a command.
+///
+/// # Errors
+/// The first that is wrong, by name.
+pub(super) fn request<R: clap::Args>(table: &toml::Table) -> Result<R, KeyFault> {
+    job::read(table, "this job").map_err(|OptionFault { key, what }| KeyFault { key, what })
 }
 
 /// Reads a stage's keys; `T` has a value for each that is not there.

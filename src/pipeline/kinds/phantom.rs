@@ -19,7 +19,8 @@ use std::sync::atomic::Ordering;
 
 use toml::{Table, Value};
 
-use crate::phantom::request::{LogRequest, OptionFault, PhotosRequest, StudyRequest, VideoRequest, read};
+use crate::job::{OptionFault, read};
+use crate::phantom::request::{LogRequest, PhotosRequest, StudyRequest, VideoRequest};
 use crate::phantom::study::Study;
 use crate::phantom::{Faults, Recording};
 use crate::pipeline::{Catalogue, CatalogueFile, CatalogueTask, Facts, Job, KeyFault, Keys, Made, Work};

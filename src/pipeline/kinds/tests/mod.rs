@@ -147,6 +147,14 @@ fn step<'a>(steps: &'a [Step], stage: &str) -> (bool, &'a str) {
 }
 
 #[test]
+fn keys_are_the_options_of_the_command() {
+    let align = crate::job::keys::<crate::align::AlignRequest>();
+    let known: Vec<&str> = super::align::ALIGN.keys.iter().copied().filter(|key| *key != "format").collect();
+    assert_eq!(known, align);
+    assert_eq!(super::log_keys::LOG_KEYS.to_vec(), crate::job::keys::<crate::log::LogRequest>());
+}
+
+#[test]
 fn kinds_are_sorted_by_name() {
     assert!(super::kinds().is_sorted_by_key(|kind| kind.name));
 }

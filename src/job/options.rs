@@ -20,6 +20,30 @@ pub struct OptionFault {
     pub what: String,
 }
 
+/// The keys of a request, in the order of its fields.
+#[must_use]
+pub fn keys<R: Args>() -> Vec<String> {
+    let command = R::augment_args(Command::new("lunula"));
+    command.get_arguments().filter_map(|one| Some(one.get_long()?.replace('-', "_"))).collect()
+}
+
+/// Reads a number.
+///
+/// # Errors
+/// What to write instead.
+pub fn number(text: &str) -> Result<f64, String> {
+    let number = text.trim().parse().ok().filter(|number: &f64| number.is_finite());
+    number.ok_or_else(|| "write a number, such as 0.5".to_owned())
+}
+
+/// Reads a number that is not negative.
+///
+/// # Errors
+/// What to write instead.
+pub fn not_negative(text: &str) -> Result<f64, String> {
+    number(text).ok().filter(|number| *number >= 0.0).ok_or_else(|| "write a number of at least 0".to_owned())
+}
+
 /// Reads a request from a table; `of` is the command, as `lunula phantom video`.
 ///
 /// # Errors
@@ -31,8 +55,7 @@ pub fn read<R: Args>(table: &Table, of: &str) -> Result<R, OptionFault> {
         let fault = |what: String| OptionFault { key: key.clone(), what };
         let long = key.replace('_', "-");
         let Some(option) = command.get_arguments().find(|one| one.get_long() == Some(&long)) else {
-            let known: Vec<String> =
-                command.get_arguments().filter_map(|one| Some(one.get_long()?.replace('-', "_"))).collect();
+            let known = keys::<R>();
             let known: Vec<&str> = known.iter().map(String::as_str).collect();
             return Err(fault(format!("`{key}` is no option of `{of}`; {}", instead(key, &known))));
         };
@@ -63,6 +86,11 @@ fn word(value: &Value) -> Option<String> {
         Value::String(text) => Some(text.clone()),
         Value::Integer(number) => Some(number.to_string()),
         Value::Float(number) => Some(number.to_string()),
+        // Pairs, as in `--columns P1=ch_1,led=lamp`.
+        Value::Table(pairs) => {
+            let pair = |(name, text): (&String, &Value)| Some(format!("{name}=\"{}\"", text.as_str()?));
+            Some(pairs.iter().map(pair).collect::<Option<Vec<_>>>()?.join(","))
+        }
         _ => None,
     }
 }

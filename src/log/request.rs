@@ -1,14 +1,14 @@
-//! What the user says about a log, the same for every command that reads logs.
+//! What the user says about a log, the same for every command and every kind of stage that reads logs.
 
 use std::num::NonZeroUsize;
 
+use super::{AmbientOptions, Columns, LogReading, TimeUnit};
 use clap::Args;
-use lunula::log::{AmbientOptions, Columns, LogReading, TimeUnit};
 
 /// How a log is read.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Logs")]
-pub(super) struct LogArgs {
+pub struct LogRequest {
     /// What the log's columns are called, as time_s=stamp,led=lamp,P1=ch_3,Fz_N=fz
     #[arg(long, value_name = "OURS=THEIRS,..", value_parser = Columns::parse)]
     columns: Option<Columns>,
@@ -28,9 +28,10 @@ pub(super) struct LogArgs {
     stream: Option<String>,
 }
 
-impl LogArgs {
+impl LogRequest {
     /// As jobs take it.
-    pub(super) fn reading(&self) -> LogReading {
+    #[must_use]
+    pub fn reading(&self) -> LogReading {
         let mut columns = self.columns.clone().unwrap_or_default();
         columns.time_unit = self.time_unit;
         columns.piece = self.piece;
