@@ -47,12 +47,11 @@ pub(super) fn check_footer(file: &File) -> Result<(), String> {
     if file.read_exact_at(&mut footer, size - 8 - length).is_err() {
         return Ok(());
     }
-    // The fifth field of the structures in lists: how many columns one of the schema holds, and where a group of rows
-    // begins.
+    // How many columns one of the schema holds.
     let mut fits = true;
-    let walked = (Thrift { rest: &footer }).fields(0, &mut |depth, id, value| {
-        fits &= (depth, id) != (2, 5) || u64::try_from(value).is_ok_and(|v| v <= size)
-    });
+    let mut walk = Thrift { rest: &footer, kinds: footer_kind, path: Vec::new(), deep: 0 };
+    let walked =
+        walk.fields(&mut |path, value| fits &= path != [2, 5] || u64::try_from(value).is_ok_and(|v| v <= size));
     // What can't be walked takes the format's reader up to 2^31 steps until it says so.
     if walked.is_ok() && fits { Ok(()) } else { Err(FALSE.to_owned()) }
 }
@@ -109,14 +108,14 @@ struct PageHead {
 fn page_head(file: &File, at: u64, room: usize) -> Result<PageHead, Bad> {
     let mut bytes = vec![0; room];
     file.read_exact_at(&mut bytes, at).map_err(|_| Bad::Unread)?;
-    let mut walk = Thrift { rest: &bytes };
+    let mut walk = Thrift { rest: &bytes, kinds: page_kind, path: Vec::new(), deep: 0 };
     let (mut kind, mut unpacked, mut packed, mut values) = (0, 0, 0, 0);
-    walk.fields(0, &mut |depth, id, value| match (depth, id) {
-        (0, 1) => kind = value,
-        (0, 2) => unpacked = value,
-        (0, 3) => packed = value,
+    walk.fields(&mut |path, value| match path {
+        [1] => kind = value,
+        [2] => unpacked = value,
+        [3] => packed = value,
         // Of each kind of page the first.
-        (1, 1) => values = value,
+        [5 | 7 | 8, 1] => values = value,
         _ => {}
     })?;
     let size = |value: i64| u64::try_from(value).map_err(|_| Bad::False);
@@ -129,9 +128,48 @@ fn page_head(file: &File, at: u64, room: usize) -> Result<PageHead, Bad> {
     })
 }
 
+/// Kinds of the compact protocol.
+const I16: u8 = 4;
+const I32: u8 = 5;
+const I64: u8 = 6;
+const BINARY: u8 = 8;
+const LIST: u8 = 9;
+const STRUCT: u8 = 12;
+
+/// The kind that a field of the footer has, by the numbers of the fields that it is in (parquet-format's
+/// `parquet.thrift`), and of a list that of its members; none: any. The reader takes the numbers' word for it: of
+/// another kind, it would read other sizes than this walk does.
+fn footer_kind(path: &[i64]) -> Option<(u8, Option<u8>)> {
+    Some(match path {
+        [1] | [2, 1..=3 | 5..=9] | [4, 1, 5 | 7] | [4, 1, 3, 1 | 4 | 15] => (I32, None),
+        [3] | [4, 2 | 3 | 5 | 6] | [4, 1, 2 | 4 | 6] | [4, 1, 3, 5..=7 | 9..=11 | 14] => (I64, None),
+        [4, 7] => (I16, None),
+        [6 | 9] | [2, 4] | [4, 1, 1 | 9] => (BINARY, None),
+        [8] | [2, 10] | [4, 1, 3 | 8] | [4, 1, 3, 12] => (STRUCT, None),
+        [2 | 4 | 5 | 7] | [4, 1 | 4] | [4, 1, 3, 8 | 13] => (LIST, Some(STRUCT)),
+        [4, 1, 3, 2] => (LIST, Some(I32)),
+        [4, 1, 3, 3] => (LIST, Some(BINARY)),
+        _ => return None,
+    })
+}
+
+/// As [`footer_kind`], of a page's header.
+fn page_kind(path: &[i64]) -> Option<(u8, Option<u8>)> {
+    Some(match path {
+        [1..=4] | [5, 1..=4] | [7, 1 | 2] | [8, 1..=6] => (I32, None),
+        [5..=8] | [5, 5] | [8, 8] => (STRUCT, None),
+        _ => return None,
+    })
+}
+
 /// Bytes of the compact protocol.
 struct Thrift<'a> {
     rest: &'a [u8],
+    /// What kind a field has to have.
+    kinds: fn(&[i64]) -> Option<(u8, Option<u8>)>,
+    /// The numbers of the fields that the walk is in, and how many lists and structures.
+    path: Vec<i64>,
+    deep: usize,
 }
 
 impl Thrift<'_> {
@@ -169,9 +207,9 @@ impl Thrift<'_> {
         Ok(())
     }
 
-    /// A structure's fields; whole numbers among them, and among those of what they hold, are shown with how deep they
-    /// are and their field's number.
-    fn fields(&mut self, depth: usize, show: &mut dyn FnMut(usize, i64, i64)) -> Result<(), Bad> {
+    /// A structure's fields; whole numbers among them, and among those of what they hold, are shown with the numbers of
+    /// the fields that they are in.
+    fn fields(&mut self, show: &mut dyn FnMut(&[i64], i64)) -> Result<(), Bad> {
         let mut id = 0;
         loop {
             let head = self.byte()?;
@@ -179,44 +217,59 @@ impl Thrift<'_> {
                 return Ok(());
             }
             id = if head >> 4 == 0 { self.signed()? } else { id + i64::from(head >> 4) };
-            match head & 15 {
+            self.path.push(id);
+            let (kind, known) = (head & 15, (self.kinds)(&self.path));
+            if known.is_some_and(|(known, _)| known != kind) {
+                return Err(Bad::False);
+            }
+            match kind {
                 // A truth value is in the head itself.
                 1 | 2 => {}
-                4..=6 => show(depth, id, self.signed()?),
-                kind => self.value(kind, depth, show)?,
+                I16..=I64 => {
+                    let value = self.signed()?;
+                    show(&self.path, value);
+                }
+                kind => self.value(kind, known.and_then(|(_, members)| members), show)?,
             }
+            self.path.pop();
         }
     }
 
-    fn value(&mut self, kind: u8, depth: usize, show: &mut dyn FnMut(usize, i64, i64)) -> Result<(), Bad> {
-        if depth > DEEPEST {
+    fn value(&mut self, kind: u8, members: Option<u8>, show: &mut dyn FnMut(&[i64], i64)) -> Result<(), Bad> {
+        if self.deep >= DEEPEST {
             return Err(Bad::Unread);
         }
+        self.deep += 1;
         match kind {
             1..=3 => self.skip(1),
-            4..=6 => self.varint().map(drop),
+            I16..=I64 => self.varint().map(drop),
             7 => self.skip(8),
-            8 => {
+            BINARY => {
                 let length = self.count()?;
                 self.skip(length)
             }
-            9 | 10 => {
+            LIST | 10 => {
                 let head = self.byte()?;
                 let count = if head >> 4 == 15 { self.count()? } else { usize::from(head >> 4) };
-                (0..count).try_for_each(|_| self.value(head & 15, depth + 1, show))
+                if count > 0 && members.is_some_and(|members| members != head & 15) {
+                    return Err(Bad::False);
+                }
+                (0..count).try_for_each(|_| self.value(head & 15, None, show))
             }
             11 => {
                 let count = self.count()?;
                 let kinds = if count == 0 { 0 } else { self.byte()? };
                 (0..count).try_for_each(|_| {
-                    self.value(kinds >> 4, depth + 1, show)?;
-                    self.value(kinds & 15, depth + 1, show)
+                    self.value(kinds >> 4, None, show)?;
+                    self.value(kinds & 15, None, show)
                 })
             }
-            12 => self.fields(depth + 1, show),
+            STRUCT => self.fields(show),
             13 => self.skip(16),
             _ => Err(Bad::Unread),
-        }
+        }?;
+        self.deep -= 1;
+        Ok(())
     }
 }
 
