@@ -136,10 +136,13 @@ const BINARY: u8 = 8;
 const LIST: u8 = 9;
 const STRUCT: u8 = 12;
 
+/// A field's kind, and of a list that of its members.
+type Kind = (u8, Option<u8>);
+
 /// The kind that a field of the footer has, by the numbers of the fields that it is in (parquet-format's
 /// `parquet.thrift`), and of a list that of its members; none: any. The reader takes the numbers' word for it: of
 /// another kind, it would read other sizes than this walk does.
-fn footer_kind(path: &[i64]) -> Option<(u8, Option<u8>)> {
+fn footer_kind(path: &[i64]) -> Option<Kind> {
     Some(match path {
         [1] | [2, 1..=3 | 5..=9] | [4, 1, 5 | 7] | [4, 1, 3, 1 | 4 | 15] => (I32, None),
         [3] | [4, 2 | 3 | 5 | 6] | [4, 1, 2 | 4 | 6] | [4, 1, 3, 5..=7 | 9..=11 | 14] => (I64, None),
@@ -154,7 +157,7 @@ fn footer_kind(path: &[i64]) -> Option<(u8, Option<u8>)> {
 }
 
 /// As [`footer_kind`], of a page's header.
-fn page_kind(path: &[i64]) -> Option<(u8, Option<u8>)> {
+fn page_kind(path: &[i64]) -> Option<Kind> {
     Some(match path {
         [1..=4] | [5, 1..=4] | [7, 1 | 2] | [8, 1..=6] => (I32, None),
         [5..=8] | [5, 5] | [8, 8] => (STRUCT, None),
@@ -166,7 +169,7 @@ fn page_kind(path: &[i64]) -> Option<(u8, Option<u8>)> {
 struct Thrift<'a> {
     rest: &'a [u8],
     /// What kind a field has to have.
-    kinds: fn(&[i64]) -> Option<(u8, Option<u8>)>,
+    kinds: fn(&[i64]) -> Option<Kind>,
     /// The numbers of the fields that the walk is in, and how many lists and structures.
     path: Vec<i64>,
     deep: usize,
