@@ -85,8 +85,7 @@ fn close_ups_of_every_tone_and_light() {
     let count = ious.len();
     eprintln!(
         "{count} of {SCENES} found; IoU median {:.3}, lowest {:.3}; length off by {:.4} in median, {:.4} at 90 %; \
-         width {:.4}, \
-         {:.4}; axis {:.2}, {:.2} degrees, worst {:.1}",
+         width {:.4}, {:.4}; axis {:.2}, {:.2} degrees, worst {:.1}",
         quantile(&mut ious, 0.5),
         quantile(&mut ious, 0.0),
         quantile(&mut lengths, 0.5),

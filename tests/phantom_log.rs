@@ -57,8 +57,7 @@ fn the_log_belongs_to_the_video_of_its_seed_and_both_stand_together() {
     const NEAR_DEG: f64 = 0.005;
     let dir = Dir::new();
     let video = "phantom video --out s --seed 4 --trajectory random --bend-hz 0.12 --seconds 2 --fps 60 --size 160x96 \
-                 --x264 ultrafast \
-                 --clock mm:ss.t --clock-offset 754 --clock-drift-ppm 80";
+                 --x264 ultrafast --clock mm:ss.t --clock-offset 754 --clock-drift-ppm 80";
     let video: Vec<&str> = video.split_whitespace().collect();
     let log = "--out s --seed 4 --trajectory random --bend-hz 0.12 --seconds 2 --clock-offset 754 --clock-drift-ppm 80";
     dir.lunula(&video).expect(0);

@@ -87,10 +87,9 @@ pub fn run(
 
 /// Ties the clocks as asked; the error is words for the user.
 fn tie(posture: &Posture, log: &Log, samples: &Samples, options: &AlignOptions) -> Result<Tie, String> {
-    const NO_CLOCK: &str = "has no clock_s, so nothing ties it to the log; read the clock in the picture (a [clock] \
-                            in the marker \
-                            file), or name --sync offset=SECONDS (the log's time at the first frame) or --sync \
-                            correlate";
+    const NO_CLOCK: &str = "has no clock_s, so nothing ties it to the log; read the clock in the picture (a [clock] in \
+                            the marker file), or name --sync offset=SECONDS (the log's time at the first frame) or \
+                            --sync correlate";
     let sync = options.sync.or_else(|| posture.has_clock().then_some(Sync::Clock)).ok_or(NO_CLOCK)?;
     match sync {
         Sync::Offset { offset_s, sd_s } => tie::by_offset(offset_s, sd_s),
@@ -109,8 +108,7 @@ fn nothing_labelled(posture: &Posture, samples: &Samples, tie: &Tie) -> String {
     if rows[1] < video[0] || rows[0] > video[1] {
         format!(
             "does not overlap with the video: its rows are at {:.3} to {:.3} s, and the video is at {:.3} to {:.3} s \
-             of the \
-             log's clock; check that they belong together, and the offset",
+             of the log's clock; check that they belong together, and the offset",
             rows[0], rows[1], video[0], video[1]
         )
     } else {

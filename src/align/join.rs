@@ -21,9 +21,8 @@ pub enum JoinError {
     Table(#[from] TableError),
     /// Two sets label the same time.
     #[error(
-        "{}: what was filmed from {from_s} s on overlaps with what was filmed in {} up to {to_s} s, of one subject \
-         and session; leave one \
-         out, or give the recordings sessions of their own",
+        "{}: what was filmed from {from_s} s on overlaps with what was filmed in {} up to {to_s} s, of one subject and \
+         session; leave one out, or give the recordings sessions of their own",
         later.display(),
         earlier.display()
     )]

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use super::tie::LagTie;
+use crate::job::number;
 use crate::log::{AmbientOptions, Columns};
 
 /// What is aligned.
@@ -38,7 +39,7 @@ impl Sync {
     /// # Errors
     /// What to write instead.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let number = |text: &str| text.trim().parse().ok().filter(|number: &f64| number.is_finite());
+        let number = |text: &str| number(text).ok();
         let offset = |text: &str| {
             let (offset, sd) = text.split_once("+-").map_or((text, None), |(offset, sd)| (offset, Some(sd)));
             let sd_s = sd.map(number);

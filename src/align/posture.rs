@@ -63,8 +63,7 @@ impl Posture {
             let names = names.join(", ");
             return Err(refused(&format!(
                 "has no column of a joint's angle, such as `J2_deg`; its columns are {names}; give the table that \
-                 `lunula posture` \
-                 writes"
+                 `lunula posture` writes"
             )));
         }
         if time_s.is_empty() {

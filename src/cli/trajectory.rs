@@ -197,8 +197,7 @@ fn finish(common: &Common, report: &TrajectoryReport) -> anyhow::Result<Outcome>
     if let Some(PostureFigures { lowest_deg, highest_deg, fastest_deg_per_s, behind_deg }) = report.posture {
         common.say(&format!(
             "J2 from {lowest_deg:.1} to {highest_deg:.1} degrees, at most {fastest_deg_per_s:.1} degrees a second: a \
-             sensor that lags by {} s is \
-             {behind_deg:.1} degrees behind",
+             sensor that lags by {} s is {behind_deg:.1} degrees behind",
             report.options.tau_s
         ));
     }

@@ -93,8 +93,7 @@ impl ClockReader {
             if !inside {
                 return Err(format!(
                     "the clock's roi = [{x}, {y}, {w}, {h}] reaches outside of the picture, which is {width} x \
-                     {height} \
-                     pixels as it is shown; {help}"
+                     {height} pixels as it is shown; {help}"
                 ));
             }
             if !(w >= 4.0 * clock.format.digits() as f64 && h >= 8.0) {

@@ -43,8 +43,7 @@ pub enum WriteError {
     /// Files that were replaced before one could not be, and that could not be put back.
     #[error(
         "{}: cannot be written ({why}), and what stood before could not be put back: {} changed; what was there is \
-         kept in {}; \
-         make room and run again",
+         kept in {}; make room and run again",
         .path.display(), listed(.changed), listed(.kept)
     )]
     Half {

@@ -142,8 +142,7 @@ impl Log {
             #[cfg(not(feature = "xdf"))]
             Format::Xdf => {
                 let what = "is a recording of the Lab Streaming Layer, which this lunula was built without; build it \
-                            with \
-                            `cargo build --release --features xdf`";
+                            with `cargo build --release --features xdf`";
                 return Err(LogError::File { path: path.to_owned(), what: what.to_owned() });
             }
         };

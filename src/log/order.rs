@@ -85,8 +85,7 @@ fn one_piece(raw: &mut Raw, rows: Vec<usize>, piece: Option<NonZeroUsize>) -> Re
         let which = if pieces > 2 { format!(" (the first of {} such places)", pieces - 1) } else { String::new() };
         let what = format!(
             "time {does} from {before} s to {after} s here{which}, as where a clock is set; cut the file there, or \
-             choose \
-             one of the {pieces} pieces with --piece"
+             choose one of the {pieces} pieces with --piece"
         );
         return Err(error(raw, at, what));
     };

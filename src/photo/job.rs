@@ -384,8 +384,7 @@ fn mixed_poses(set: &PhotoSet, done: &[Done]) -> Vec<String> {
         .map(|(pose, [colour, grey])| {
             format!(
                 "pose `{pose}` mixes {colour} colour and {grey} grey photograph(s): grey values equal the green \
-                 channel only where a green \
-                 filter was used; else make maps of each kind apart"
+                 channel only where a green filter was used; else make maps of each kind apart"
             )
         })
         .collect()
@@ -404,8 +403,7 @@ fn few_bits(white: Option<u16>, done: &[Done]) -> Option<String> {
     (white.is_none() && largest > 0).then(|| {
         format!(
             "the largest sample of the {count} photograph(s) of 16 bits is {largest} of 65535, as of {bits} bits kept \
-             in 16: if they \
-             are, --white {} makes that full scale",
+             in 16: if they are, --white {} makes that full scale",
             white_of(bits)
         )
     })

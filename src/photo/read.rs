@@ -24,8 +24,7 @@ pub enum ReadFault {
     /// More pixels than are read.
     #[error(
         "has {width} x {height} px, {:.1} megapixels, more than the {megapixels} that are read; make it smaller, or \
-         allow \
-         more with --max-megapixels", (f64::from(*width) * f64::from(*height) / 1e6)
+         allow more with --max-megapixels", (f64::from(*width) * f64::from(*height) / 1e6)
     )]
     TooLarge {
         /// Width by its header, pixels.

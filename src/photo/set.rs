@@ -247,10 +247,9 @@ impl PhotoSet {
                 self.fault(
                     files,
                     format!(
-                        "subject `{subject}` is there {} times in pose `{pose}`, and a subject counts once: remove \
-                         all but one, \
-                         or give each its own subject in photos.csv (in a pipeline: by {{pose}} and {{subject}} in \
-                         the pattern)",
+                        "subject `{subject}` is there {} times in pose `{pose}`, and a subject counts once: remove all \
+                         but one, or give each its own subject in photos.csv (in a pipeline: by {{pose}} and \
+                         {{subject}} in the pattern)",
                         photos.len()
                     ),
                 );
@@ -318,8 +317,7 @@ fn name_fault(name: &str, value: &str) -> Option<String> {
     if value.len() > LONGEST_NAME {
         return Some(format!(
             "a {name} of {} bytes makes names of results that are too long; shorten it to {LONGEST_NAME} (in \
-             photos.csv it may \
-             differ from the file's name)",
+             photos.csv it may differ from the file's name)",
             value.len()
         ));
     }

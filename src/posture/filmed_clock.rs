@@ -149,16 +149,14 @@ impl FilmedClock {
         if read.len() < FEWEST && halves >= FEWEST {
             return Some(format!(
                 "its digits were read in {halves} frame(s), but no AM or PM beside them: leave `a` out of format = \
-                 \"{}\" where the \
-                 clock shows neither, or let the roi hold them",
+                 \"{}\" where the clock shows neither, or let the roi hold them",
                 self.clock.format.text()
             ));
         }
         let lost = read.len() < FEWEST && self.clock.roi == ClockRoi::Auto;
         lost.then(|| {
             "it was not found: roi = \"auto\" finds only a clock that changes at least once a second, in the format \
-             given; for any other \
-             write roi = [x, y, width, height]"
+             given; for any other write roi = [x, y, width, height]"
                 .to_owned()
         })
     }

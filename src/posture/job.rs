@@ -88,8 +88,7 @@ pub fn run(
     if let Some((index, time_s)) = first_undecoded {
         failed.push(format!(
             "{}: {} of {} frames could not be decoded, the first of them frame {index} at {time_s:.3} s; their rows \
-             are \
-             empty; copy the file again if its original is whole",
+             are empty; copy the file again if its original is whole",
             path.display(),
             results.frames.undecoded,
             results.frames.all

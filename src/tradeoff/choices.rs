@@ -61,9 +61,8 @@ pub fn choices() -> Vec<Choice> {
             "--sync; library: posture::PostureOptions::clock_every",
             align::tying_default(),
             align::TIE_ERROR,
-            "It is beyond the knee because reading the clock adds 2 to 4 % to the time of a video, and a clock \
-             that stops or jumps is noticed \
-             only in frames in which it is read.",
+            "It is beyond the knee because reading the clock adds 2 to 4 % to the time of a video, and a clock that \
+             stops or jumps is noticed only in frames in which it is read.",
         ),
         choice(
             align::BRIDGING,
@@ -78,9 +77,8 @@ pub fn choices() -> Vec<Choice> {
             "--model, --hidden, --restarts",
             predictor::model_default(),
             predictor::FIT,
-            "On random movement no model is better by more than some hundredths of a newton, and which one hangs \
-             on the person \
-             (docs/section-5-4.md).",
+            "On random movement no model is better by more than some hundredths of a newton, and which one hangs on \
+             the person (docs/section-5-4.md).",
         ),
         choice(
             predictor::ROWS,

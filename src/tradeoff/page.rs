@@ -109,10 +109,9 @@ fn introduce(page: &mut Page, setting: &Setting) {
     let Effort { repeats, quick, .. } = setting.effort;
     page.paragraph(&format!(
         "Each job over its settings on generated scenes whose truth is known (seed {}{}). Seconds are of one thread, \
-         an input, of the stage alone \
-         that a setting changes: the median of {repeats} repeats in turns, with quartiles; hemodynamics three times \
-         as many. Measured on {} with {cores} cores, \
-         {}; compare ratios, not seconds, between machines.",
+         an input, of the stage alone that a setting changes: the median of {repeats} repeats in turns, with \
+         quartiles; hemodynamics three times as many. Measured on {} with {cores} cores, {}; compare ratios, not \
+         seconds, between machines.",
         setting.seed,
         if quick { ", small scenes and fewer settings" } else { "" },
         std::env::consts::ARCH,
@@ -120,12 +119,10 @@ fn introduce(page: &mut Page, setting: &Setting) {
     ));
     page.paragraph(&format!(
         "Ring: the knee, beyond which more time buys little. Of the settings that are worth their time (grey line; \
-         what differs by less than {:.0} % or lies \
-         within the spread of the times is the same), it is the one farthest below the chord between their ends, both \
-         axes logarithmic and brought to a unit \
-         square (Satopaa et al. 2011, doi:10.1109/ICDCSW.2011.20), by {BEND} at least; without such a bend the most \
-         exact one if the error falls as many times as \
-         the time grows, else the cheapest. Square: the default. Empty dots: other programs.",
+         what differs by less than {:.0} % or lies within the spread of the times is the same), it is the one farthest \
+         below the chord between their ends, both axes logarithmic and brought to a unit square (Satopaa et al. 2011, \
+         doi:10.1109/ICDCSW.2011.20), by {BEND} at least; without such a bend the most exact one if the error falls as \
+         many times as the time grows, else the cheapest. Square: the default. Empty dots: other programs.",
         100.0 * SAME
     ));
     if !setting.tables.is_empty() {

@@ -58,9 +58,8 @@ impl Source {
         if extent.no_index {
             return Err(failed(
                 "was cut off before its index (moov) was written, so that no program can tell its frames apart; copy \
-                 it \
-                 again if the original is whole, or repair it with a tool such as `untrunc` and another video of the \
-                 same camera"
+                 it again if the original is whole, or repair it with a tool such as `untrunc` and another video of \
+                 the same camera"
                     .into(),
             ));
         }

@@ -56,8 +56,7 @@ pub fn by_clock(
     if to_s < log_s[0] || from_s > log_s[1] {
         return Err(format!(
             "the video and the log do not overlap: on the log's clock the video goes from {from_s:.3} to {to_s:.3} s, \
-             the log from {:.3} to \
-             {:.3} s; check the log's time when the clock shows zero",
+             the log from {:.3} to {:.3} s; check the log's time when the clock shows zero",
             log_s[0], log_s[1]
         ));
     }
@@ -109,8 +108,7 @@ fn by_line(posture: &Posture) -> Result<Tie, String> {
     seen.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let [Some(first), Some(last)] = [seen.first(), seen.last()] else {
         return Err("no clock was read in the video (`clock_s` is empty); see its .run.json for why, or tie by an \
-                    offset or by \
-                    correlation instead"
+                    offset or by correlation instead"
             .to_owned());
     };
     let span_s = last[0] - first[0];

@@ -48,9 +48,8 @@ pub fn by_correlation(posture: &Posture, samples: &Samples, told: LagTie) -> Res
     let mut notes = vec![match told.sensor_lag_s {
         Some(lag_s) => format!("the sensor's lag of {lag_s} s, as told, is taken off the offset"),
         None => "photodiodes change after the finger does, some 0.05 s in bending and 0.1 to 0.4 s in pressing: that \
-                 lag can't be told from the \
-                 offset and is part of it, and not in its standard error (which has how it differs with the motion); \
-                 labels are early by it unless the sensor's lag is given"
+                 lag can't be told from the offset and is part of it, and not in its standard error (which has how it \
+                 differs with the motion); labels are early by it unless the sensor's lag is given"
             .to_owned(),
     }];
     notes.push(format!(

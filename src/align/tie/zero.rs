@@ -50,8 +50,7 @@ pub(super) fn zero_s(
     }
     Err(format!(
         "the video and the log do not overlap: the clock in the picture shows {} to {} s, the log's time goes from {} \
-         to {} s; give the log's \
-         time when the clock shows zero, or another log",
+         to {} s; give the log's time when the clock shows zero, or another log",
         seconds(clock_s[0]),
         seconds(clock_s[1]),
         seconds(log_s[0]),
@@ -95,8 +94,7 @@ fn the_one(zeros: &[(f64, f64)]) -> Result<Option<f64>, String> {
             }
             Err(format!(
                 "the clock in the picture doesn't tell which hour or day of the log it shows: its zero may be {} of \
-                 the log's time; give \
-                 the log's time when the clock shows zero",
+                 the log's time; give the log's time when the clock shows zero",
                 listed.join(" or ")
             ))
         }

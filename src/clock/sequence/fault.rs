@@ -6,8 +6,7 @@ pub enum ClockFault {
     /// Too few frames read.
     #[error(
         "the clock was read in {read} of {frames} frames, of which {agree} agree; at least {fewest} that agree are \
-         needed: check the clock's \
-         place and format in the marker file, or film it larger and unhidden"
+         needed: check the clock's place and format in the marker file, or film it larger and unhidden"
     )]
     TooFew {
         /// Frames read.
@@ -21,9 +20,8 @@ pub enum ClockFault {
     },
     /// It shows the same while the video goes on.
     #[error(
-        "the clock stands still: it shows {shown_s} s from {from_s:.3} s to {to_s:.3} s of the video; cut the video \
-         to where the clock runs, or \
-         use a clock that is not paused"
+        "the clock stands still: it shows {shown_s} s from {from_s:.3} s to {to_s:.3} s of the video; cut the video to \
+         where the clock runs, or use a clock that is not paused"
     )]
     Stops {
         /// From when on.
@@ -47,8 +45,7 @@ pub enum ClockFault {
     /// It runs well but too fast or too slow.
     #[error(
         "the clock runs {rate:.4} times as fast as the video; the file's frame times must be those of the recording: \
-         no slow motion, time \
-         lapse or countdown"
+         no slow motion, time lapse or countdown"
     )]
     Rate {
         /// Seconds of the clock a second of the video.
@@ -57,8 +54,7 @@ pub enum ClockFault {
     /// Nothing that most readings agree on.
     #[error(
         "the clock's readings contradict each other: no more than {agree} of {read} agree, the first that does not is \
-         at {at_s:.3} s of the \
-         video; check the clock's place and format in the marker file"
+         at {at_s:.3} s of the video; check the clock's place and format in the marker file"
     )]
     Contradictory {
         /// Frames read that agree.

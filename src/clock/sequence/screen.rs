@@ -53,8 +53,7 @@ pub(super) fn delay(least_s: f64, dead_s: [f64; 2], given_s: Option<f64>) -> Scr
     if least_s <= 0.0 && late_s < BELIEVED_S.max(BELIEVED_SDS * dead_sd_s) {
         notes.push(format!(
             "how often the clock's screen changes is not known: the offset's interval and standard error count one \
-             that shows up to \
-             {:.1} ms late; the rate, if given, narrows them",
+             that shows up to {:.1} ms late; the rate, if given, narrows them",
             1e3 * most_s
         ));
         return Screen { known: ScreenDelay::Assumed, estimate_s: 0.0, most_s, notes };

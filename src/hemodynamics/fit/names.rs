@@ -54,8 +54,7 @@ pub(super) fn no_such(unknown: &[&str], parameters: &Parameters) -> String {
     }
     format!(
         "--free {}: there is no such parameter; there are {} (of all units alike), of a single unit as k_C1, or whole \
-         names as \
-         k_C1_N_per_m",
+         names as k_C1_N_per_m",
         unknown.join(","),
         names.join(", ")
     )

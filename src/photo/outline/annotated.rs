@@ -59,8 +59,7 @@ pub enum AnnotationFault {
     /// Upright and stored picture have the same size.
     #[error(
         "{0}: the photograph's EXIF orientation turns it without changing its size, so it can't be told whether this \
-         was drawn on the upright \
-         or on the stored picture; say --annotations upright or --annotations stored"
+         was drawn on the upright or on the stored picture; say --annotations upright or --annotations stored"
     )]
     Turned(String),
     /// No polygon labelled `nail`.

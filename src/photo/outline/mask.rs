@@ -155,8 +155,7 @@ pub enum TooLarge {
     /// Far longer than the others.
     #[error(
         "the region is {0:.1} times as long as the mask's others in median, and no nail is {LONGEST:.0} times as long \
-         as its \
-         neighbours; is it a finger's?"
+         as its neighbours; is it a finger's?"
     )]
     Others(f64),
 }

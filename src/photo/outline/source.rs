@@ -318,8 +318,7 @@ impl OutlineOptions {
             if let Verdict::Contradicts(found) = said {
                 nail.reason = format!(
                     "its drawn axis is at {:.0} degrees, by the picture at {:.0} (confidence {:.2}; clockwise from \
-                     up); correct \
-                     the line, or, where it is right, say --distal as well",
+                     up); correct the line, or, where it is right, say --distal as well",
                     axis.clockwise_deg(),
                     found.axis.clockwise_deg(),
                     found.confidence
@@ -336,8 +335,7 @@ impl OutlineOptions {
             let also = if nails[k].reason.is_empty() { "" } else { "; " };
             nails[k].reason += &format!(
                 "{also}the annotation fits the picture better {turned}: was the picture turned after it was drawn? \
-                 draw it \
-                 again on the picture as it is, or, where it is right, say --distal as well"
+                 draw it again on the picture as it is, or, where it is right, say --distal as well"
             );
             nails[k].confidence = None;
         }

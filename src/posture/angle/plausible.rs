@@ -108,13 +108,11 @@ impl Plausibility {
             };
             format!(
                 "negated, all would be possible: `flexion` is reversed (write flexion = \"{other_flexion}\"), the \
-                 video is mirrored, \
-                 or segments and joints are listed with the distal one first"
+                 video is mirrored, or segments and joints are listed with the distal one first"
             )
         } else {
             "check the order of the markers in [segments] and of the segments in [joints] (proximal first), whether \
-             the markers \
-             have the right names (--overlay shows them), and [zero]"
+             the markers have the right names (--overlay shows them), and [zero]"
                 .to_owned()
         };
         Some(format!("angles that a finger can't have: {} (AAOS norms and a margin); {cause}", joints.join(", ")))

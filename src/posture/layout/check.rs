@@ -265,9 +265,8 @@ fn clock(findings: &mut Findings<'_>, top: &[Entry<'_>]) -> Option<Clock> {
         if hertz.is_none() {
             findings.fault(
                 entry.at,
-                "`refresh_hz` is how often the clock's screen changes a second: a number above 0, or inf for a \
-                 display that \
-                 changes at once; leave it out where it is not known",
+                "`refresh_hz` is how often the clock's screen changes a second: a number above 0, or inf for a display \
+                 that changes at once; leave it out where it is not known",
             );
         }
         hertz

@@ -71,10 +71,8 @@ pub(crate) enum SuggestError {
     /// No spots.
     #[error(
         "nothing in the {frames} frames looked at looks like a marker: compact, of one colour that stands out and is \
-         not skin's, there \
-         most of the time, on skin or moving; use stickers or paint of a colour that neither the skin nor the \
-         background has, or write the marker file by hand \
-         (`[markers]`, `[segments]`, `[joints]`)"
+         not skin's, there most of the time, on skin or moving; use stickers or paint of a colour that neither the \
+         skin nor the background has, or write the marker file by hand (`[markers]`, `[segments]`, `[joints]`)"
     )]
     Nothing {
         /// Frames looked at.

@@ -72,9 +72,8 @@ pub(crate) struct Survey {
 pub(crate) enum SurveyError {
     /// No needed marker was seen.
     #[error(
-        "none of the markers is seen in the {frames} frames looked at ({}); are their colours in the marker file \
-         those of the video? \
-         `lunula posture VIDEO --suggest` measures them",
+        "none of the markers is seen in the {frames} frames looked at ({}); are their colours in the marker file those \
+         of the video? `lunula posture VIDEO --suggest` measures them",
         markers.join(", ")
     )]
     NoneSeen {
@@ -101,8 +100,7 @@ pub(crate) enum SurveyError {
     /// Markers of one colour lie on several fingers.
     #[error(
         "can't tell on which finger the markers {} are: fingers that share a mark or lie apart have the same colours; \
-         give \
-         their places in the first frame under [start], one on each finger at least",
+         give their places in the first frame under [start], one on each finger at least",
         markers.join(", ")
     )]
     Branches {
@@ -112,8 +110,7 @@ pub(crate) enum SurveyError {
     /// There is nothing of a marker's colour where `[start]` has it.
     #[error(
         "[start] has {marker} at ({:.0}, {:.0}), where the first frame has {} and no mark of {colour}{}; correct the \
-         place, or \
-         the colour under [markers]",
+         place, or the colour under [markers]",
         at_px[0], at_px[1],
         if *is_mark { format!("a mark of {there}") } else { there.clone() },
         nearest_px.map_or(", nor is there one anywhere".to_owned(), |[x, y]| format!(" (the nearest is at ({x:.0}, \

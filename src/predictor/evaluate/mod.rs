@@ -202,8 +202,7 @@ fn hold_out(
         let rows = seen.rows();
         warnings.push(format!(
             "{shared} of {rows} rows stand in other parts as well, digit by digit: where a recording was given twice, \
-             holding it out \
-             hides nothing, and the errors flatter"
+             holding it out hides nothing, and the errors flatter"
         ));
     }
     if let Some(why) = found.flattery.as_ref().and_then(|flattery| flattery.fault.as_ref()) {

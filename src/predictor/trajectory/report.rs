@@ -147,9 +147,8 @@ impl ForceFigures {
         let judged = self.rates.as_ref().and_then(|rates| Some((rates.relative_per_s?, rates.over_share?)));
         if let Some((relative, share)) = judged.filter(|_| !self.keeps_limit) {
             warnings.push(format!(
-                "forces change by up to {:.2} of themselves a second; equation 19 allows {:.2} for {:.0} % at {} \
-                     s, which {:.0} % of the time is \
-                     exceeded; choose longer --seconds or lower rates",
+                "forces change by up to {:.2} of themselves a second; equation 19 allows {:.2} for {:.0} % at {} s, \
+                     which {:.0} % of the time is exceeded; choose longer --seconds or lower rates",
                 relative,
                 self.limit_per_s,
                 100.0 * options.error,

@@ -172,19 +172,16 @@ fn introduce(page: &mut Page, options: &PageOptions, judged: &[Judged]) {
     if options.phantom {
         page.paragraph(
             "A phantom is no people. Every recording behind this page was generated: photographs, videos and logs of \
-             formulae whose sizes were assumed after the \
-             thesis' words. That a statement agrees says that its explanation is sufficient, or just that the formula \
-             was made after it; that it does not says \
-             that the thesis' figure needs something that the phantom lacks, or has in another size. Absolute errors \
-             are the assumptions' and forecast nothing \
-             for a sensor on a finger.",
+             formulae whose sizes were assumed after the thesis' words. That a statement agrees says that its \
+             explanation is sufficient, or just that the formula was made after it; that it does not says that the \
+             thesis' figure needs something that the phantom lacks, or has in another size. Absolute errors are the \
+             assumptions' and forecast nothing for a sensor on a finger.",
         );
     }
     page.paragraph(
         "Each figure below is the counterpart of the thesis' figure of the same number. Each table sets what the \
-         thesis' text states beside what came out here; what \
-         was taken for \"little\", \"about\" or \"comparable\" stands with it, and nothing but the numbers decides \
-         the verdict.",
+         thesis' text states beside what came out here; what was taken for \"little\", \"about\" or \"comparable\" \
+         stands with it, and nothing but the numbers decides the verdict.",
     );
     let all: Vec<&Judged> = judged.iter().collect();
     let mut rows: Vec<Vec<String>> = SECTIONS

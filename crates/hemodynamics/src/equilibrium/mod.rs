@@ -97,8 +97,7 @@ pub enum EquilibriumFault {
     /// Parameters or pressures whose products leave the range of numbers.
     #[error(
         "the parameters or pressures are out of all proportion: k D / A has to be from 1e-6 to 1e30 Pa, N pi D^4 / \
-         (128 L mu) from 1e-60 to \
-         1e20 m3/(s Pa), R_Vi at most 1e40 Pa s/m3, pressures at most 1e15 Pa"
+         (128 L mu) from 1e-60 to 1e20 m3/(s Pa), R_Vi at most 1e40 Pa s/m3, pressures at most 1e15 Pa"
     )]
     Range,
     /// The eigenvalues did not settle.

@@ -134,8 +134,7 @@ impl FromStr for Symbol {
         of_units.chain(others).find(|symbol| symbol.to_string() == name).ok_or_else(|| {
             format!(
                 "there is no parameter {name}; their names hold the unit, as in k_C1_N_per_m, b_V_N_s_per_m, \
-                 R_V1_Pa_s_per_m3, \
-                 V0_1_V, V1_1_V"
+                 R_V1_Pa_s_per_m3, V0_1_V, V1_1_V"
             )
         })
     }

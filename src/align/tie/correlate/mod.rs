@@ -184,8 +184,7 @@ pub fn correlate(video: Recording<'_>, log: Recording<'_>, search: LagSearch) ->
     let candidates = candidates(&curve(&channels));
     let Some(best) = candidates.first() else {
         return Err("at no lag that is looked at the video and the log overlap by half of the shorter; check both \
-                    files, or give another \
-                    offset to look about"
+                    files, or give another offset to look about"
             .to_owned());
     };
     let most_chance = if search.about_s.is_some() && search.most_s.is_some() { CHANCE_TOLD } else { CHANCE };
@@ -195,10 +194,9 @@ pub fn correlate(video: Recording<'_>, log: Recording<'_>, search: LagSearch) ->
         candidates.get(1).is_some_and(|next| next.gain > ALIKE * best.gain && explained(next.left) > LEAST_ALIKE);
     if (chance.is_nan() || chance > most_chance || explained(best.left) < LEAST_EXPLAINED) && !alike {
         return Err(format!(
-            "the angles do not explain the photodiodes at any lag: at the best, {:.3} s, they explain {:.0} % of \
-             them, as unrelated signals \
-             of the same kind would with probability {}; check that the files belong together, or tie by the clock or \
-             an offset",
+            "the angles do not explain the photodiodes at any lag: at the best, {:.3} s, they explain {:.0} % of them, \
+             as unrelated signals of the same kind would with probability {}; check that the files belong together, or \
+             tie by the clock or an offset",
             together_s + best.lag as f64 * step_s,
             100.0 * explained(best.left),
             if chance < 0.01 { "under 1 %".to_owned() } else { format!("{:.0} %", 100.0 * chance) }
@@ -228,8 +226,7 @@ pub fn correlate(video: Recording<'_>, log: Recording<'_>, search: LagSearch) ->
     if explained(best.left) < LEAST_EXPLAINED {
         return Err(format!(
             "the angles explain only {:.0} % of the photodiodes at the best lag, {:.3} s: check that the files belong \
-             together, or tie by the clock \
-             or an offset",
+             together, or tie by the clock or an offset",
             100.0 * explained(best.left),
             best.offset_s
         ));
