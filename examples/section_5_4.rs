@@ -11,6 +11,7 @@ use std::sync::atomic::AtomicBool;
 
 use anyhow::Context;
 use lunula::align::{AlignInputs, AlignOptions, AlignOutputs, run as align};
+use lunula::job::Watch;
 use lunula::phantom::log::{LogOptions, LogScene, Protocol, write};
 use lunula::predictor::models::{Kind, Recipe};
 use lunula::predictor::{CompareOptions, FolderOutputs, Person, compare};
@@ -67,13 +68,20 @@ fn person(subject: u32, changes: &Changes, out: &Path) -> anyhow::Result<Person>
         let folder = log(protocol, repetition)?;
         let [joints, log, training] = ["truth/angles.csv", "log.csv", "training.csv"].map(|name| folder.join(name));
         let inputs = AlignInputs { joints, log, tracks: None };
-        let outputs = AlignOutputs { training: training.clone(), mot: None, bids: None, dlc: None, figures: false };
+        let outputs = AlignOutputs {
+            training: training.clone(),
+            mot: None,
+            bids: None,
+            dlc: None,
+            figures: false,
+            report: false,
+        };
         let options = AlignOptions {
             subject: Some(subject.to_string()),
             session: Some("1".to_owned()),
             ..AlignOptions::default()
         };
-        align(&inputs, &options, &outputs, &AtomicBool::new(false))?;
+        Watch::nobody(|watch| align(&inputs, &options, &outputs, watch))?;
         Ok(training)
     };
     Ok(Person {

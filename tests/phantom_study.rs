@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
 
 use crate::util::Dir;
-use lunula::pipeline::{Catalogue, Work, phantom_catalogue};
+use lunula::job::Work;
+use lunula::pipeline::{Catalogue, phantom_catalogue};
 
 /// Two people, one of whom wears the sensor; four seconds of each video.
 const SMALL: &str =

@@ -6,6 +6,7 @@ use thiserror::Error;
 
 use super::export::ExportError;
 use crate::files::WriteError;
+use crate::job::Interrupted;
 use crate::log::{AmbientError, LogError};
 use crate::table::TableError;
 
@@ -40,13 +41,10 @@ pub enum AlignError {
         /// Why, and what to do.
         why: String,
     },
-    /// A result would go where an input stands.
-    #[error("{}: is an input itself; choose another name for the result", .0.display())]
-    Itself(PathBuf),
     /// A result can't be written.
     #[error(transparent)]
     Write(#[from] WriteError),
     /// Stopped from outside.
-    #[error("interrupted; nothing was written")]
-    Interrupted,
+    #[error("stopped")]
+    Interrupted(#[from] Interrupted),
 }

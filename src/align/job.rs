@@ -1,8 +1,6 @@
 //! The alignment job: a table of joint angles and a log in, a labelled set with its certificate out; the one entry that
 //! command line, pipelines and trade-offs call.
 
-use std::path::Path;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use super::certificate::Certificate;
@@ -10,12 +8,12 @@ use super::error::AlignError;
 use super::export::BidsNames;
 use super::label::label;
 use super::options::{AlignInputs, AlignOptions, AlignOutputs, Sync};
-use super::plan::steps;
+use super::plan::{Foreknown, steps};
 use super::posture::Posture;
-use super::report::{AlignReport, LabelReport};
+use super::report::{AlignFigures, AlignReport, LabelReport};
 use super::results::Results;
 use super::tie::{self, Tie};
-use crate::files::is_same_file;
+use crate::job::{Report, Watch};
 use crate::log::{Log, Samples, samples};
 use crate::stages::{Stages, left_out};
 use crate::table::TableFormat;
@@ -28,14 +26,13 @@ pub fn run(
     inputs: &AlignInputs,
     options: &AlignOptions,
     outputs: &AlignOutputs,
-    stop: &AtomicBool,
+    watch: &Watch<'_>,
 ) -> Result<AlignReport, AlignError> {
     let start = Instant::now();
     let stages = Stages::default();
-    let go_on = || if stop.load(Ordering::Relaxed) { Err(AlignError::Interrupted) } else { Ok(()) };
-    // What can't be named so is told before the work begins.
+    // A name that no table can have, or an input's, is refused before the work begins.
     TableFormat::of(&outputs.training)?;
-    is_no_input(inputs, outputs)?;
+    let mut results = Results::start(inputs, outputs)?;
     let names = outputs.bids.as_ref().map(|_| {
         let task = options.task.as_deref().unwrap_or("bending");
         BidsNames::new(options.subject.as_deref(), options.session.as_deref(), task, "lunula")
@@ -43,16 +40,16 @@ pub fn run(
     let names = names.transpose()?;
     let (posture, log) = rayon::join(
         || stages.time("read angles", || Posture::read(&inputs.joints)),
-        || stages.time("read log", || Log::read(&inputs.log, &options.columns)),
+        || stages.time("read log", || Log::read(&inputs.log, &options.log.columns)),
     );
     let (posture, log) = (posture?, log?);
-    go_on()?;
-    let samples = stages.time("ambient light", || samples(&log, &options.ambient))?;
-    go_on()?;
+    watch.go_on()?;
+    let samples = stages.time("ambient light", || samples(&log, &options.log.ambient))?;
+    watch.go_on()?;
     let tie = stages
         .time("tie", || tie(&posture, &log, &samples, options))
         .map_err(|why| AlignError::NotTied { path: inputs.joints.clone(), why })?;
-    go_on()?;
+    watch.go_on()?;
     let labels = stages.time("label", || label(&posture, &samples, &tie, options.max_gap_s));
     if labels.angles_deg.iter().flatten().all(|angle| angle.is_nan()) {
         let why = nothing_labelled(&posture, &samples, &tie);
@@ -60,14 +57,11 @@ pub fn run(
     }
     let notes = [&log.notes[..], &samples.notes, &tie.notes].concat();
     let certificate = Certificate::new(&tie, &labels, notes.clone());
-    let mut results = Results::default();
     stages.time("write", || results.training(&samples, &posture, &labels, &certificate, options, outputs))?;
     let exported = stages.time("export", || results.exports(&posture, &tie, names.as_ref(), inputs, outputs))?;
     let pictures = stages.time("figures", || results.pictures(&posture, &samples, &labels, &tie, outputs))?;
-    go_on()?;
-    let left_out = left_out(steps(&posture, &log, options, Some(outputs)));
-    let draft = AlignReport {
-        job: "align",
+    watch.go_on()?;
+    let figures = AlignFigures {
         joints: inputs.joints.clone(),
         log: inputs.log.clone(),
         rows_read: log.time_s.len() as u64,
@@ -75,14 +69,11 @@ pub fn run(
         rows_with_faults: samples.faults.iter().filter(|fault| !fault.is_empty()).count() as u64,
         certificate,
         labels: LabelReport::of(&labels),
-        left_out,
-        warnings: [notes, exported].concat(),
-        failed: Vec::new(),
-        pictures,
-        stages: Vec::new(),
-        wall_s: 0.0,
     };
-    results.finish(draft, outputs, &stages, start)
+    let left_out = left_out(steps(&Foreknown::of(&posture, &log), options, Some(outputs)));
+    let notes = [notes, exported].concat();
+    let report = Report { left_out, notes, pictures, ..Report::new("align", watch, figures) };
+    results.finish(report.timed(&stages, start), outputs)
 }
 
 /// Ties the clocks as asked; the error is words for the user.
@@ -114,16 +105,5 @@ fn nothing_labelled(posture: &Posture, samples: &Samples, tie: &Tie) -> String {
     } else {
         "no row lies between two frames with an angle; see `status` in the table of angles, or allow a longer --max-gap"
             .to_owned()
-    }
-}
-
-/// Refuses to write over an input.
-fn is_no_input(inputs: &AlignInputs, outputs: &AlignOutputs) -> Result<(), AlignError> {
-    let given = [Some(&inputs.joints), Some(&inputs.log), inputs.tracks.as_ref()];
-    let is_given = |path: &Path| given.into_iter().flatten().any(|input| is_same_file(input, path));
-    let written = [Some(&outputs.training), outputs.mot.as_ref(), outputs.dlc.as_ref()];
-    match written.into_iter().flatten().find(|path| is_given(path)) {
-        Some(path) => Err(AlignError::Itself(path.clone())),
-        None => Ok(()),
     }
 }

@@ -11,12 +11,12 @@ pub mod export;
 pub mod figures;
 mod job;
 mod join;
+mod kind;
 mod label;
 mod options;
 mod plan;
 mod posture;
 mod report;
-mod request;
 mod results;
 mod tie;
 
@@ -27,12 +27,12 @@ pub use certificate::Certificate;
 pub use error::AlignError;
 pub use job::run;
 pub use join::{JoinError, join};
+pub use kind::{AlignJob, JoinJob};
 pub use label::{Gap, LabelCounts, Labels, Unlabelled, label};
 pub use options::{AlignInputs, AlignOptions, AlignOutputs, Sync};
-pub use plan::{Foreknown, plan, plan_foreknown};
+pub use plan::plan;
 pub use posture::{ClockColumns, Posture};
-pub use report::{AlignReport, LabelReport};
-pub use request::AlignRequest;
+pub use report::{AlignFigures, AlignReport, LabelReport};
 pub use tie::{
     Correlated, LagPeak, LagSearch, LagTie, Recording, Tie, TieMethod, by_clock, by_correlation, by_offset, correlate,
 };

@@ -2,9 +2,11 @@
 
 use std::path::PathBuf;
 
+use clap::Args;
+
 use super::tie::LagTie;
-use crate::job::number;
-use crate::log::{AmbientOptions, Columns};
+use crate::job::{not_negative, number};
+use crate::log::LogReading;
 
 /// What is aligned.
 #[derive(Debug, Clone)]
@@ -58,27 +60,35 @@ impl Sync {
     }
 }
 
-/// How to work.
-#[derive(Debug, Clone, Default)]
+/// How to work: the options of `lunula align` and of a pipeline's stage.
+#[derive(Debug, Clone, Default, Args)]
 pub struct AlignOptions {
-    /// How the clocks are tied; none: by the clock where the table of angles has it.
+    /// How the clocks are tied: clock (in the picture), offset=SECONDS (the log's time at the video's first frame; with
+    /// its standard error offset=SECONDS+-ERROR, without which labels have no standard errors), correlate
+    /// [default: clock, where the table of angles has it]
+    #[arg(long, value_name = "clock|offset=SECONDS|correlate", value_parser = Sync::parse, allow_hyphen_values = true)]
     pub sync: Option<Sync>,
-    /// What the log's columns are called.
-    pub columns: Columns,
-    /// How the ambient light is taken away and what counts as saturated.
-    pub ambient: AmbientOptions,
-    /// The longest time between two frames that were seen over which labels are interpolated, seconds; none: two
-    /// frames.
-    pub max_gap_s: Option<f64>,
-    /// The log's time when the clock in the picture shows zero, seconds; none: told from the overlap.
+    /// The log's time when the clock in the picture shows zero [default: the log's zero, hour or midnight that makes
+    /// the two overlap]
+    #[arg(long = "clock-zero", value_name = "SECONDS", value_parser = number, allow_negative_numbers = true)]
     pub clock_zero_s: Option<f64>,
     /// Where the lag is looked for, and the sensor's own.
+    #[command(flatten)]
     pub lag: LagTie,
-    /// Whose finger.
+    /// The longest time between two frames that were seen over which labels are interpolated [default: two frames]
+    #[arg(long = "max-gap", value_name = "SECONDS", value_parser = not_negative)]
+    pub max_gap_s: Option<f64>,
+    /// How the log is read.
+    #[command(flatten)]
+    pub log: LogReading,
+    /// Written into the set's column `subject`
+    #[arg(long)]
     pub subject: Option<String>,
-    /// Which session.
+    /// Written into the set's column `session`
+    #[arg(long)]
     pub session: Option<String>,
-    /// What the finger does, for the names of a BIDS dataset.
+    /// What the finger does, for the names of the BIDS dataset [default: bending]
+    #[arg(long)]
     pub task: Option<String>,
 }
 
@@ -95,4 +105,6 @@ pub struct AlignOutputs {
     pub dlc: Option<PathBuf>,
     /// Whether pictures are drawn.
     pub figures: bool,
+    /// Whether the report is written beside the set.
+    pub report: bool,
 }

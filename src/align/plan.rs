@@ -1,4 +1,4 @@
-//! What a run would do and leave out, told from the table of angles and the log.
+//! What a run would do and leave out, by the table of angles and the log.
 
 use super::error::AlignError;
 use super::options::{AlignInputs, AlignOptions, AlignOutputs, Sync};
@@ -16,43 +16,43 @@ pub fn plan(
     outputs: Option<&AlignOutputs>,
 ) -> Result<Vec<Step>, AlignError> {
     let posture = Posture::read(&inputs.joints)?;
-    let log = Log::read(&inputs.log, &options.columns)?;
-    Ok(steps(&posture, &log, options, outputs))
+    let log = Log::read(&inputs.log, &options.log.columns)?;
+    Ok(steps(&Foreknown::of(&posture, &log), options, outputs))
 }
 
 /// What is known of the recordings before they are opened; none: not known.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Foreknown {
+pub(super) struct Foreknown {
     /// The joints' names.
-    pub joints: Option<Vec<String>>,
+    pub(super) joints: Option<Vec<String>>,
     /// Frames with angles.
-    pub frames: Option<usize>,
+    pub(super) frames: Option<usize>,
     /// The angles carry the time of the clock in the picture.
-    pub clock: Option<bool>,
-    /// The log tells when the LED was on.
-    pub led: Option<bool>,
+    pub(super) clock: Option<bool>,
+    /// The log says when the LED was on.
+    pub(super) led: Option<bool>,
     /// Lit rows, and all.
-    pub lit_rows: Option<[usize; 2]>,
+    pub(super) lit_rows: Option<[usize; 2]>,
     /// Photodiodes.
-    pub photodiodes: Option<usize>,
+    pub(super) photodiodes: Option<usize>,
 }
 
-pub(super) fn steps(posture: &Posture, log: &Log, options: &AlignOptions, outputs: Option<&AlignOutputs>) -> Vec<Step> {
-    let lit = log.led.as_ref().map(|led| led.iter().filter(|on| **on).count());
-    let known = Foreknown {
-        joints: Some(posture.joints.clone()),
-        frames: Some(posture.time_s.len()),
-        clock: Some(posture.has_clock()),
-        led: Some(lit.is_some()),
-        lit_rows: lit.map(|lit| [lit, log.time_s.len()]),
-        photodiodes: Some(log.photodiodes.len()),
-    };
-    plan_foreknown(&known, options, outputs)
+impl Foreknown {
+    pub(super) fn of(posture: &Posture, log: &Log) -> Self {
+        let lit = log.led.as_ref().map(|led| led.iter().filter(|on| **on).count());
+        Self {
+            joints: Some(posture.joints.clone()),
+            frames: Some(posture.time_s.len()),
+            clock: Some(posture.has_clock()),
+            led: Some(lit.is_some()),
+            lit_rows: lit.map(|lit| [lit, log.time_s.len()]),
+            photodiodes: Some(log.photodiodes.len()),
+        }
+    }
 }
 
-/// Plans a run on recordings of which not all need stand.
-#[must_use]
-pub fn plan_foreknown(known: &Foreknown, options: &AlignOptions, outputs: Option<&AlignOutputs>) -> Vec<Step> {
+/// The one table of steps: the plan shows them, a run's report lists those that are left out.
+pub(super) fn steps(known: &Foreknown, options: &AlignOptions, outputs: Option<&AlignOutputs>) -> Vec<Step> {
     let sync = options.sync.or_else(|| (known.clock != Some(false)).then_some(Sync::Clock));
     let joints = known.joints.as_ref().map_or("all".to_owned(), |joints| joints.join(", "));
     let frames = known.frames.map_or("all frames".to_owned(), |frames| format!("{frames} frames"));
@@ -68,7 +68,7 @@ pub fn plan_foreknown(known: &Foreknown, options: &AlignOptions, outputs: Option
     vec![
         Step::new("labels of joints", true, format!("{joints} from {frames}")),
         Step::new(
-            "ambient light taken away",
+            "ambient light subtracted",
             known.led != Some(false),
             match (known.led, known.lit_rows) {
                 (Some(false), _) => "the log has no column `led`; all rows are lit".to_owned(),
@@ -82,7 +82,7 @@ pub fn plan_foreknown(known: &Foreknown, options: &AlignOptions, outputs: Option
             sync == Some(Sync::Clock),
             match sync {
                 Some(Sync::Clock) => "clock_s ties the clocks".to_owned(),
-                None => "the table of angles has none; name --sync offset=SECONDS or correlate".to_owned(),
+                None => "the table of angles has no clock; name --sync offset=SECONDS or correlate".to_owned(),
                 Some(_) => "--sync names another tie".to_owned(),
             },
         ),

@@ -6,13 +6,14 @@ use serde::Serialize;
 
 use super::certificate::Certificate;
 use super::label::Labels;
-use crate::stages::Stage;
+use crate::job::Report;
 
 /// What a run did.
+pub type AlignReport = Report<AlignFigures>;
+
+/// The figures of a run.
 #[derive(Debug, Clone, Serialize)]
-pub struct AlignReport {
-    /// Which job.
-    pub job: &'static str,
+pub struct AlignFigures {
     /// The table of angles.
     pub joints: PathBuf,
     /// The log.
@@ -21,24 +22,12 @@ pub struct AlignReport {
     pub rows_read: u64,
     /// Rows of the set.
     pub rows: u64,
-    /// Rows of the set in which a photodiode is saturated or has no ambient light to be taken away.
+    /// Rows of the set in which a photodiode is saturated or has no ambient light to be subtracted.
     pub rows_with_faults: u64,
     /// How the clocks were tied, how well, and what was left unlabelled.
     pub certificate: Certificate,
     /// The joints' labels, in the table's order.
     pub labels: Vec<LabelReport>,
-    /// What the recordings did not need.
-    pub left_out: Vec<String>,
-    /// What whoever uses the set should know.
-    pub warnings: Vec<String>,
-    /// What of the input could not be used, each with what to do.
-    pub failed: Vec<String>,
-    /// The pictures that a person looks at first.
-    pub pictures: Vec<PathBuf>,
-    /// Time by stage.
-    pub stages: Vec<Stage>,
-    /// Seconds from start to end, this report not counted.
-    pub wall_s: f64,
 }
 
 /// How a joint's labels came out.

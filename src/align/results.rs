@@ -1,7 +1,6 @@
 //! What the alignment job writes: the labelled set, its certificate and report, exports and pictures.
 
 use std::path::PathBuf;
-use std::time::Instant;
 
 use super::certificate::Certificate;
 use super::error::AlignError;
@@ -14,7 +13,6 @@ use super::report::AlignReport;
 use super::tie::Tie;
 use crate::files::{Places, beside};
 use crate::log::Samples;
-use crate::stages::Stages;
 use crate::table::{Column, TableWriter, Value};
 
 /// Decimals of a label in degrees.
@@ -23,12 +21,20 @@ pub(super) const ANGLE_DECIMALS: usize = 5;
 pub(super) const TEXTS: [&str; 4] = ["label_status", "subject", "session", "sensor_status"];
 
 /// Results in the making.
-#[derive(Default)]
 pub(super) struct Results {
     places: Places,
 }
 
 impl Results {
+    /// Refuses to replace an input.
+    pub(super) fn start(inputs: &AlignInputs, outputs: &AlignOutputs) -> Result<Self, AlignError> {
+        let given = [Some(&inputs.joints), Some(&inputs.log), inputs.tracks.as_ref()];
+        let places = Places::not_over(given.into_iter().flatten());
+        let written = [Some(&outputs.training), outputs.mot.as_ref(), outputs.dlc.as_ref()];
+        places.check(written.into_iter().flatten())?;
+        Ok(Self { places })
+    }
+
     /// Writes the labelled set and its certificate.
     pub(super) fn training(
         &mut self,
@@ -122,20 +128,10 @@ impl Results {
         Ok(pictures)
     }
 
-    /// Adds the report and puts everything into its place.
-    pub(super) fn finish(
-        mut self,
-        mut report: AlignReport,
-        outputs: &AlignOutputs,
-        stages: &Stages,
-        start: Instant,
-    ) -> Result<AlignReport, AlignError> {
-        report.stages = stages.list();
-        report.wall_s = start.elapsed().as_secs_f64();
-        let text = serde_json::to_string_pretty(&report).expect("plain data") + "\n";
-        self.places.write(&beside(&outputs.training, ".run.json"), &text)?;
-        self.places.commit()?;
-        Ok(report)
+    /// Puts everything into its place, with the report where it is wanted.
+    pub(super) fn finish(self, report: AlignReport, outputs: &AlignOutputs) -> Result<AlignReport, AlignError> {
+        let at = outputs.report.then(|| beside(&outputs.training, ".run.json"));
+        Ok(report.commit(self.places, at.as_deref())?)
     }
 }
 

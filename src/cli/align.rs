@@ -1,22 +1,25 @@
 //! `lunula align`: joint angles on photodiode samples.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, ensure};
 use clap::Args;
-use lunula::align::{AlignError, AlignInputs, AlignOutputs, AlignReport, AlignRequest, plan, run as run_align};
+use lunula::align::{AlignFigures, AlignInputs, AlignOptions, AlignOutputs, AlignReport, plan, run};
+use lunula::job::{Given, Said, Watch};
+use lunula::stages::Step;
 
-use super::{Common, Interrupted, Outcome};
+use super::Common;
+use super::job::{Command, JobArgs};
 
 /// Joint angles and a log of photodiodes, on two clocks, to a labelled training set with a certificate
 ///
 /// log time = offset + (1 + drift) * video time. The clock in the picture ties the two (clock_s in the table of
 /// angles); so does an offset that you know; or, without either, the lag at which the photodiodes best explain the
 /// angles. Each row of the log (each lit one, less the unlit light at its time, where there is a column `led`) gets the
-/// angles at its time, between frames that were really seen, with their standard error; what has none stays empty, and
-/// label_status says why. Results: the set, and beside it <training>.sync.json, the certificate (offset, drift, their
-/// errors, residuals, what was left unlabelled), <training>.run.json and pictures of the tie and of the labels over the
-/// photodiodes.
+/// angles at its time, between frames that were really seen, with their standard error; rows without a label stay
+/// empty, and label_status gives the reason. Results: the set, and beside it <training>.sync.json, the certificate
+/// (offset, drift, their errors, residuals, what was left unlabelled), <training>.run.json and pictures of the tie and
+/// of the labels over the photodiodes.
 #[derive(Debug, Args)]
 pub(super) struct AlignArgs {
     /// The table of joint angles of `lunula posture`: time_s, clock_s, <joint>_deg, <joint>_sd_deg
@@ -31,7 +34,7 @@ pub(super) struct AlignArgs {
     #[arg(long, value_name = "TRAINING.csv", required_unless_present = "plan")]
     out: Option<PathBuf>,
     #[command(flatten)]
-    request: AlignRequest,
+    given: Given<AlignOptions>,
     /// The angles on the log's clock as an OpenSim motion file as well
     #[arg(long, value_name = "FILE.mot")]
     mot: Option<PathBuf>,
@@ -47,65 +50,77 @@ pub(super) struct AlignArgs {
     /// Draw no pictures
     #[arg(long)]
     no_figures: bool,
-    /// Say what would be done and left out, and do nothing
-    #[arg(long)]
-    plan: bool,
     #[command(flatten)]
-    common: Common,
+    job: JobArgs,
 }
 
-pub(super) fn run(args: &AlignArgs) -> anyhow::Result<Outcome> {
-    let stop = args.common.start()?;
-    let inputs = AlignInputs { joints: args.joints.clone(), log: args.log.clone(), tracks: args.tracks.clone() };
-    let options = args.request.options();
-    ensure!(options.task.is_none() || args.bids.is_some(), "--task names the files of a BIDS dataset: give --bids too");
-    let outputs = args.out.as_ref().map(|training| AlignOutputs {
-        training: training.clone(),
-        mot: args.mot.clone(),
-        bids: args.bids.clone(),
-        dlc: args.dlc.clone(),
-        figures: !args.no_figures,
-    });
-    if args.plan {
-        let steps = plan(&inputs, &options, outputs.as_ref())?;
-        return args.common.show_plan("align", &steps);
+impl AlignArgs {
+    fn inputs(&self) -> anyhow::Result<AlignInputs> {
+        let (task, bids) = (&self.given.options.task, &self.bids);
+        ensure!(task.is_none() || bids.is_some(), "--task names the files of a BIDS dataset: give --bids too");
+        Ok(AlignInputs { joints: self.joints.clone(), log: self.log.clone(), tracks: self.tracks.clone() })
     }
-    let outputs = outputs.context("--out is needed")?;
-    match run_align(&inputs, &options, &outputs, &stop) {
-        Err(AlignError::Interrupted) => Err(Interrupted.into()),
-        Err(error) => Err(error.into()),
-        Ok(report) => finish(&args.common, &report, &outputs),
+
+    fn outputs(&self) -> Option<AlignOutputs> {
+        Some(AlignOutputs {
+            training: self.out.clone()?,
+            mot: self.mot.clone(),
+            bids: self.bids.clone(),
+            dlc: self.dlc.clone(),
+            figures: !self.no_figures,
+            report: true,
+        })
     }
 }
 
-fn finish(common: &Common, report: &AlignReport, outputs: &AlignOutputs) -> anyhow::Result<Outcome> {
-    if !common.quiet {
-        for note in &report.warnings {
-            eprintln!("note: {note}");
-        }
+impl Command for AlignArgs {
+    type Figures = AlignFigures;
+
+    fn name(&self) -> &'static str {
+        "align"
     }
-    common.print_json(report)?;
-    let (tie, rows) = (&report.certificate, &report.certificate.rows);
-    let plus_minus = |sd: Option<f64>, digits: usize| sd.map_or(String::new(), |sd| format!(" ± {sd:.digits$}"));
-    common.say(&format!(
-        "offset {:.4}{} s, drift {:.1}{} ppm ({:?}); {} frames read, {} not",
-        tie.offset_s,
-        plus_minus(tie.offset_sd_s, 4),
-        tie.drift_ppm,
-        plus_minus(tie.drift_sd_ppm, 1),
-        tie.method,
-        tie.frames_read,
-        tie.frames_abstained
-    ));
-    common.say(&format!(
-        "{} of {} rows labelled; {} with a fault of the sensor",
-        rows.rows_labelled, report.rows, report.rows_with_faults
-    ));
-    common.say(&format!(
-        "without: {} before the video, {} after it, {} in gaps",
-        rows.before_the_video, rows.after_the_video, rows.in_gaps
-    ));
-    let look = report.pictures.first().unwrap_or(&outputs.training);
-    common.say_done(&report.stages, &report.left_out, report.wall_s, look);
-    Ok(Outcome::Done)
+
+    fn job(&self) -> &JobArgs {
+        &self.job
+    }
+
+    fn said(&self) -> &Said {
+        &self.given.said
+    }
+
+    fn plan(&self) -> anyhow::Result<Vec<Step>> {
+        Ok(plan(&self.inputs()?, &self.given.options, self.outputs().as_ref())?)
+    }
+
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<AlignReport> {
+        let outputs = self.outputs().context("--out is needed")?;
+        Ok(run(&self.inputs()?, &self.given.options, &outputs, watch)?)
+    }
+
+    fn say(&self, common: &Common, report: &AlignReport) {
+        let (tie, rows) = (&report.certificate, &report.certificate.rows);
+        let plus_minus = |sd: Option<f64>, digits: usize| sd.map_or(String::new(), |sd| format!(" ± {sd:.digits$}"));
+        common.say(&format!(
+            "offset {:.4}{} s, drift {:.1}{} ppm ({:?}); {} frames read, {} not",
+            tie.offset_s,
+            plus_minus(tie.offset_sd_s, 4),
+            tie.drift_ppm,
+            plus_minus(tie.drift_sd_ppm, 1),
+            tie.method,
+            tie.frames_read,
+            tie.frames_abstained
+        ));
+        common.say(&format!(
+            "{} of {} rows labelled; {} with a fault of the sensor",
+            rows.rows_labelled, report.rows, report.rows_with_faults
+        ));
+        common.say(&format!(
+            "without: {} before the video, {} after it, {} in gaps",
+            rows.before_the_video, rows.after_the_video, rows.in_gaps
+        ));
+    }
+
+    fn result(&self) -> Option<&Path> {
+        self.out.as_deref()
+    }
 }

@@ -8,6 +8,7 @@ mod completions;
 mod doctor;
 mod hemodynamics;
 mod init;
+mod job;
 mod man;
 mod memory;
 mod merge;
@@ -26,13 +27,13 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lunula::files::results_stand;
 use lunula::input;
+use lunula::job::{Interrupted, one_of};
 use lunula::stages::{Fate, Stage, Step};
-use lunula::words::{Words, shown_lines};
+use lunula::words::shown_lines;
 use out::print_line;
 
 /// Ground truth for fingernail sensing: nail photographs to coloration maps, videos to joint angles,
@@ -97,16 +98,6 @@ struct Common {
     verbose: bool,
 }
 
-/// Reads a choice by its word; help lists them.
-fn one_of<T: Words>() -> impl TypedValueParser<Value = T> {
-    let told = |word: &'static str, about: &'static str| {
-        let value = PossibleValue::new(word);
-        if about.is_empty() { value } else { value.help(about) }
-    };
-    PossibleValuesParser::new(T::WORDS.iter().map(|&(_, word, about)| told(word, about)))
-        .try_map(|word| T::by_word(&word))
-}
-
 /// How a job ended well.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Outcome {
@@ -114,14 +105,9 @@ enum Outcome {
     SomeFailed,
 }
 
-/// The request was stopped from outside.
-#[derive(Debug, thiserror::Error)]
-#[error("interrupted; nothing was written")]
-struct Interrupted;
-
 /// A run of many tasks was stopped from outside.
 #[derive(Debug, thiserror::Error)]
-#[error("interrupted; what was done stands, and the same command goes on from there")]
+#[error("interrupted; what was done is kept, and the same command goes on from there")]
 struct Stopped;
 
 /// Parses and runs the command.
@@ -137,7 +123,7 @@ pub(crate) fn run() -> ExitCode {
     };
     ended_with(match cli.command {
         Command::Photos(args) => photos::run(&args),
-        Command::Align(args) => align::run(&args),
+        Command::Align(args) => job::run(&*args),
         Command::Train(args) => predictor::train(&args),
         Command::Evaluate(args) => predictor::evaluate(&args),
         Command::Predict(args) => predictor::predict(&args),
@@ -145,7 +131,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Prune(args) => predictor::prune(&args),
         Command::Simulate(args) => hemodynamics::simulate(&args),
         Command::Fit(args) => hemodynamics::fit(&args),
-        Command::Posture(args) => posture::run(&args),
+        Command::Posture(args) => posture::run_or_suggest(&args),
         Command::Merge(args) => merge::run(&args),
         Command::Phantom(args) => phantom::run(&args),
         Command::Tradeoff(args) => tradeoff::run(&args),
@@ -169,8 +155,12 @@ fn ended_with(outcome: anyhow::Result<Outcome>) -> ExitCode {
             130
         }
         Err(error) => {
-            eprintln!("error: {}", shown_lines(&format!("{error:#}")));
-            if error.is::<Interrupted>() || error.is::<Stopped>() { 130 } else { failed() }
+            let stopped = error.chain().find(|one| one.is::<Interrupted>() || one.is::<Stopped>());
+            match stopped {
+                Some(stopped) => eprintln!("error: {stopped}"),
+                None => eprintln!("error: {}", shown_lines(&format!("{error:#}"))),
+            }
+            if stopped.is_some() { 130 } else { failed() }
         }
     };
     match out::finish() {
@@ -183,10 +173,14 @@ fn ended_with(outcome: anyhow::Result<Outcome>) -> ExitCode {
 }
 
 impl Common {
+    /// Threads to work with; 0: all cores.
+    fn threads(&self) -> usize {
+        self.threads.map_or(0, usize::from)
+    }
+
     /// Sets the threads up; a job's first step.
     fn start(&self) -> anyhow::Result<Arc<AtomicBool>> {
-        let threads = self.threads.map_or(0, usize::from);
-        rayon::ThreadPoolBuilder::new().num_threads(threads).build_global()?;
+        rayon::ThreadPoolBuilder::new().num_threads(self.threads()).build_global()?;
         let stop = Arc::new(AtomicBool::new(false));
         let flag = Arc::clone(&stop);
         ctrlc::set_handler(move || {
@@ -248,6 +242,13 @@ impl Common {
             for warning in warnings {
                 eprintln!("warning: {}", shown_lines(warning));
             }
+        }
+    }
+
+    /// What was chosen, guessed or counted on the way.
+    fn note(&self, notes: &[String]) {
+        if !self.quiet {
+            notes.iter().for_each(|note| eprintln!("note: {}", shown_lines(note)));
         }
     }
 

@@ -1,14 +1,15 @@
 //! `lunula posture`: video to joint angles.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use clap::Args;
-use lunula::posture::{
-    Layout, Outputs, PostureError, PostureOptions, PostureReport, Watch, plan, run as run_posture, suggest,
-};
+use lunula::job::{Given, Said, Watch};
+use lunula::posture::{Layout, Outputs, PostureFigures, PostureOptions, PostureReport, plan, run, suggest};
+use lunula::stages::Step;
 
-use super::{Common, Interrupted, Outcome, print_line};
+use super::job::{Command, JobArgs};
+use super::{Common, Outcome, print_line};
 
 /// Video of a finger with coloured markers to joint angles, each frame with its own time and standard error
 ///
@@ -33,127 +34,120 @@ pub(super) struct PostureArgs {
     /// Video with what was tracked drawn on it
     #[arg(long, value_name = "FILE.mp4")]
     overlay: Option<PathBuf>,
-    /// Only these joints of the marker file, with the markers that they need
-    #[arg(long, value_name = "J1,J2", value_delimiter = ',')]
-    joints: Vec<String>,
-    /// Leave the clock in the picture alone
-    #[arg(long)]
-    no_clock: bool,
-    /// Smooth the angles over time (forward and backward); what is missing stays missing
-    #[arg(long)]
-    smooth: bool,
+    #[command(flatten)]
+    given: Given<PostureOptions>,
     /// Draw no pictures
     #[arg(long)]
     no_figures: bool,
-    /// Print a marker file to start from, told from a few frames, and do nothing else
+    /// Print a marker file to start from, guessed from a few frames, and do nothing else
     #[arg(
         long,
         conflicts_with_all = ["markers", "out", "tracks", "overlay", "joints", "smooth", "plan", "no_clock", "no_figures"]
     )]
     suggest: bool,
-    /// Say what would be done and left out, and do nothing
-    #[arg(long)]
-    plan: bool,
     #[command(flatten)]
-    common: Common,
+    job: JobArgs,
 }
 
-pub(super) fn run(args: &PostureArgs) -> anyhow::Result<Outcome> {
-    let stop = args.common.start()?;
-    let threads = args.common.threads.map_or(0, usize::from);
-    if args.suggest {
-        let suggested = suggest(&args.video, threads)?;
-        if args.common.json {
-            args.common.print_json(
-                &serde_json::json!({ "job": "posture --suggest", "markers_toml": suggested, "warnings": [] }),
-            )?;
-        } else {
-            print_line(suggested.trim_end());
-        }
-        return Ok(Outcome::Done);
+/// `--suggest`, or the job.
+pub(super) fn run_or_suggest(args: &PostureArgs) -> anyhow::Result<Outcome> {
+    if !args.suggest {
+        return super::job::run(args);
     }
-    let markers = args.markers.as_ref().context("--markers is needed")?;
-    let layout = Layout::read(markers)?.wanting(&args.joints)?;
-    let options = PostureOptions {
-        threads,
-        smooth: args.smooth,
-        clock_every: u64::from(!args.no_clock),
-        ..PostureOptions::default()
-    };
-    let outputs = args.out.as_ref().map(|joints| Outputs {
-        joints: joints.clone(),
-        tracks: args.tracks.clone(),
-        overlay: args.overlay.clone(),
-        figures: !args.no_figures,
-    });
-    if args.plan {
-        let steps = plan(&args.video, &layout, &options, outputs.as_ref())?;
-        return args.common.show_plan("posture", &steps);
+    let common = &args.job.common;
+    common.start()?;
+    let suggested = suggest(&args.video, common.threads())?;
+    if common.json {
+        common.print_json(
+            &serde_json::json!({ "job": "posture --suggest", "markers_toml": suggested, "warnings": [] }),
+        )?;
+    } else {
+        print_line(suggested.trim_end());
     }
-    let outputs = outputs.context("--out is needed")?;
-    let bar = args.common.progress(0, "frames");
-    let watch = Watch {
-        stop: &stop,
-        tick: &|done, all| {
-            bar.set_length(all.unwrap_or(done));
-            bar.set_position(done);
-        },
-    };
-    let report = run_posture(&args.video, &layout, &options, &outputs, &watch);
-    bar.finish_and_clear();
-    match report {
-        Err(PostureError::Interrupted) => Err(Interrupted.into()),
-        Err(error) => Err(error.into()),
-        Ok(report) => finish(&args.common, &report, &outputs),
+    Ok(Outcome::Done)
+}
+
+impl PostureArgs {
+    fn layout(&self) -> anyhow::Result<Layout> {
+        let markers = self.markers.as_ref().context("--markers is needed")?;
+        Ok(Layout::read(markers)?.wanting(&self.given.options.joints)?)
+    }
+
+    fn options(&self) -> PostureOptions {
+        PostureOptions { threads: self.job.common.threads(), ..self.given.options.clone() }
+    }
+
+    fn outputs(&self) -> Option<Outputs> {
+        Some(Outputs {
+            joints: self.out.clone()?,
+            tracks: self.tracks.clone(),
+            overlay: self.overlay.clone(),
+            figures: !self.no_figures,
+            report: true,
+        })
     }
 }
 
-fn finish(common: &Common, report: &PostureReport, outputs: &Outputs) -> anyhow::Result<Outcome> {
-    common.warn(&report.warnings);
-    for fault in &report.failed {
-        eprintln!("failed: {fault}");
+impl Command for PostureArgs {
+    type Figures = PostureFigures;
+
+    const UNIT: &'static str = "frames";
+
+    fn name(&self) -> &'static str {
+        "posture"
     }
-    common.print_json(report)?;
-    for joint in &report.joints {
-        let known = |value: Option<f64>, digits| value.map_or("-".into(), |v| format!("{v:.digits$}"));
-        common.say(&format!(
-            "{:<8} {:>7} of {} frames, {} to {} degrees, standard error {}",
-            joint.joint,
-            joint.frames,
-            report.frames.all,
-            known(joint.min_deg, 1),
-            known(joint.max_deg, 1),
-            known(joint.sd_deg, 3)
-        ));
+
+    fn job(&self) -> &JobArgs {
+        &self.job
     }
-    for marker in report.markers.iter().filter(|m| m.seen < report.frames.all) {
-        common.say(&format!(
-            "{:<24} lost in {} frames{}",
-            marker.marker,
-            report.frames.all - marker.seen,
-            marker.reasons()
-        ));
+
+    fn said(&self) -> &Said {
+        &self.given.said
     }
-    if let Some(clock) = &report.clock {
-        let tie = clock.tie.as_ref().map_or("it ties nothing".to_owned(), |tie| {
-            format!(
-                "at the first frame {:.4} ± {:.4} s, drift {:.0} ± {:.0} ppm",
-                tie.offset_s, tie.offset_sd_s, tie.drift_ppm, tie.drift_sd_ppm
-            )
-        });
-        common.say(&format!("clock    read in {} of {} frames, {tie}", clock.frames_read, report.frames.all));
+
+    fn plan(&self) -> anyhow::Result<Vec<Step>> {
+        Ok(plan(&self.video, &self.layout()?, &self.options(), self.outputs().as_ref())?)
     }
-    if common.verbose {
-        for stage in &report.stages {
-            common.say(&format!("{:<28} {:>9.3} s, {} runs", stage.stage, stage.thread_s, stage.runs));
+
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<PostureReport> {
+        let outputs = self.outputs().context("--out is needed")?;
+        Ok(run(&self.video, &self.layout()?, &self.options(), &outputs, watch)?)
+    }
+
+    fn say(&self, common: &Common, report: &PostureReport) {
+        for joint in &report.joints {
+            let known = |value: Option<f64>, digits| value.map_or("-".into(), |v| format!("{v:.digits$}"));
+            common.say(&format!(
+                "{:<8} {:>7} of {} frames, {} to {} degrees, standard error {}",
+                joint.joint,
+                joint.frames,
+                report.frames.all,
+                known(joint.min_deg, 1),
+                known(joint.max_deg, 1),
+                known(joint.sd_deg, 3)
+            ));
         }
-        common.say_left_out(&report.left_out);
+        for marker in report.markers.iter().filter(|m| m.seen < report.frames.all) {
+            common.say(&format!(
+                "{:<24} lost in {} frames{}",
+                marker.marker,
+                report.frames.all - marker.seen,
+                marker.reasons()
+            ));
+        }
+        if let Some(clock) = &report.clock {
+            let tie = clock.tie.as_ref().map_or("it ties nothing".to_owned(), |tie| {
+                format!(
+                    "at the first frame {:.4} ± {:.4} s, drift {:.0} ± {:.0} ppm",
+                    tie.offset_s, tie.offset_sd_s, tie.drift_ppm, tie.drift_sd_ppm
+                )
+            });
+            common.say(&format!("clock    read in {} of {} frames, {tie}", clock.frames_read, report.frames.all));
+        }
+        common.say(&format!("{:.0} % of the time went into decoding", 100.0 * report.decoding_share));
     }
-    common.say(&format!(
-        "{:.2} s, {:.0} % of it decoding; look at {}",
-        report.wall_s,
-        100.0 * report.decoding_share,
-        report.pictures.first().unwrap_or(&outputs.joints).display()
-    ));
-    Ok(if report.failed.is_empty() { Outcome::Done } else { Outcome::SomeFailed })
+
+    fn result(&self) -> Option<&Path> {
+        self.out.as_deref()
+    }
 }

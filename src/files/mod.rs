@@ -56,6 +56,9 @@ pub enum WriteError {
         /// Folders with what stood there.
         kept: Vec<PathBuf>,
     },
+    /// A result would replace an input.
+    #[error("{}: is an input itself; choose another name for the result", .0.display())]
+    Input(PathBuf),
     /// A folder stands where a file has to go.
     #[error(
         "{}: is a folder, and a result of this name has to go there; move it or choose another --out",

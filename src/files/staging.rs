@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use super::hidden::{self, BEFORE, Hidden, PLACE};
-use super::{WriteError, disk, folder_of, note_placed, pictures_beside};
+use super::{WriteError, disk, folder_of, is_same_file, note_placed, pictures_beside};
 
 /// A folder of results in the making.
 #[derive(Debug)]
@@ -349,9 +349,30 @@ fn make_folders(folder: &Path, steps: &mut Vec<Step>) -> At<()> {
 pub struct Places {
     folders: Vec<(PathBuf, Staging)>,
     asked: BTreeSet<PathBuf>,
+    inputs: Vec<PathBuf>,
 }
 
 impl Places {
+    /// Places that are never one of these inputs.
+    #[must_use]
+    pub fn not_over<P: AsRef<Path>>(inputs: impl IntoIterator<Item = P>) -> Self {
+        let mut places = Self::default();
+        places.inputs.extend(inputs.into_iter().map(|input| input.as_ref().to_owned()));
+        places
+    }
+
+    /// Refuses a result that would replace an input, for a job to say so before its work begins.
+    ///
+    /// # Errors
+    /// [`WriteError::Input`].
+    pub fn check<P: AsRef<Path>>(&self, results: impl IntoIterator<Item = P>) -> Result<(), WriteError> {
+        let replaces = |result: &P| self.inputs.iter().any(|input| is_same_file(input, result.as_ref()));
+        match results.into_iter().find(replaces) {
+            Some(result) => Err(WriteError::Input(result.as_ref().to_owned())),
+            None => Ok(()),
+        }
+    }
+
     /// A folder where results live though this run may have nothing to write there: what killed runs left in it is
     /// cleared, as it is where something is written.
     pub fn look_after(&self, folder: &Path) {
@@ -370,6 +391,7 @@ impl Places {
         if path.is_dir() {
             return Err(WriteError::FolderInTheWay(path.to_owned()));
         }
+        self.check([path])?;
         let folder = folder_of(path);
         let at = match self.folders.iter().position(|(known, _)| known == folder) {
             Some(at) => at,

@@ -3,12 +3,15 @@
 //!
 //! Values go through the very parsers of the command line. An option that may be given again takes a list.
 
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
-use clap::{ArgAction, Args, Command};
+use clap::{ArgAction, ArgMatches, Args, Command, FromArgMatches};
+use serde::Serialize;
 use thiserror::Error;
 use toml::{Table, Value};
 
-use crate::words::instead;
+use crate::table::TableFormat;
+use crate::words::{Words, instead};
 
 /// What is wrong with a key.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -44,11 +47,137 @@ pub fn not_negative(text: &str) -> Result<f64, String> {
     number(text).ok().filter(|number| *number >= 0.0).ok_or_else(|| "write a number of at least 0".to_owned())
 }
 
-/// Reads a request from a table; `of` is the command, as `lunula phantom video`.
+/// Options as somebody wrote them, by name, with the defaults of all others; flags that are not set are left out.
+///
+/// They are what a pipeline's results depend on, and what reports repeat: written into a pipeline file they do the same
+/// again.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+#[serde(transparent)]
+pub struct Said(serde_json::Map<String, serde_json::Value>);
+
+impl Said {
+    /// Nothing was said, and there are no defaults.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    fn of<R: Args>(matches: &ArgMatches) -> Self {
+        let command = R::augment_args(Command::new("lunula"));
+        let said = command.get_arguments().filter_map(|one| {
+            let (key, id) = (one.get_long()?.replace('-', "_"), one.get_id().as_str());
+            let value = match one.get_action() {
+                ArgAction::SetTrue => matches.get_flag(id).then_some(true)?.into(),
+                action => {
+                    let words = matches.get_raw(id)?.map(|word| word.to_string_lossy().into_owned());
+                    let mut words: Vec<String> = words.collect();
+                    if matches!(action, ArgAction::Append) { words.into() } else { words.pop()?.into() }
+                }
+            };
+            Some((key, value))
+        });
+        Self(said.collect())
+    }
+}
+
+/// Options, read, and as they were written; flattened into a command they are its options.
+#[derive(Debug, Clone)]
+pub struct Given<R> {
+    /// As the job takes them.
+    pub options: R,
+    /// As they were written.
+    pub said: Said,
+}
+
+impl<R: Args> FromArgMatches for Given<R> {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        Ok(Self { said: Said::of::<R>(matches), options: R::from_arg_matches(matches)? })
+    }
+
+    fn from_arg_matches_mut(matches: &mut ArgMatches) -> Result<Self, clap::Error> {
+        Ok(Self { said: Said::of::<R>(matches), options: R::from_arg_matches_mut(matches)? })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        self.said = Said::of::<R>(matches);
+        self.options.update_from_arg_matches(matches)
+    }
+}
+
+impl<R: Args> Args for Given<R> {
+    fn augment_args(command: Command) -> Command {
+        R::augment_args(command)
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        R::augment_args_for_update(command)
+    }
+}
+
+/// A job without options.
+#[derive(Debug, Clone, Copy, Args)]
+pub struct NoOptions {}
+
+/// How a stage's tables are written; on the command line the name of a table's file says it.
+#[derive(Debug, Clone, Copy, Args)]
+pub struct Tables {
+    /// csv or parquet
+    #[arg(long, value_parser = format_by_word, default_value = "csv")]
+    format: TableFormat,
+}
+
+impl Tables {
+    /// The name of a table, of the two that it can have.
+    #[must_use]
+    pub fn named(self, csv: &'static str, parquet: &'static str) -> &'static str {
+        match self.format {
+            TableFormat::Csv => csv,
+            TableFormat::Parquet => parquet,
+        }
+    }
+
+    /// The format.
+    #[must_use]
+    pub fn format(self) -> TableFormat {
+        self.format
+    }
+}
+
+fn format_by_word(word: &str) -> Result<TableFormat, String> {
+    match word {
+        "csv" => Ok(TableFormat::Csv),
+        "parquet" => Ok(TableFormat::Parquet),
+        _ => Err("choose csv, parquet".to_owned()),
+    }
+}
+
+/// Reads a choice by its word; help lists them.
+pub fn one_of<T: Words>() -> impl TypedValueParser<Value = T> {
+    let value = |word: &'static str, about: &'static str| {
+        let value = PossibleValue::new(word);
+        if about.is_empty() { value } else { value.help(about) }
+    };
+    PossibleValuesParser::new(T::WORDS.iter().map(|&(_, word, about)| value(word, about)))
+        .try_map(|word| T::by_word(&word))
+}
+
+/// The options that nobody gave: all defaults.
+///
+/// # Panics
+/// Where an option has no default and is needed.
+#[must_use]
+pub fn defaults<R: Args>() -> R {
+    match read::<R>(&Table::new(), "lunula") {
+        Ok(given) => given.options,
+        Err(fault) => panic!("{fault}"),
+    }
+}
+
+/// Reads options from a table; `of` is the command or job, as `lunula phantom video`.
 ///
 /// # Errors
 /// [`OptionFault`], the first thing that is wrong.
-pub fn read<R: Args>(table: &Table, of: &str) -> Result<R, OptionFault> {
+pub fn read<R: Args>(table: &Table, of: &str) -> Result<Given<R>, OptionFault> {
     let command = R::augment_args(Command::new("lunula").no_binary_name(true).disable_help_flag(true));
     let mut words = Vec::new();
     for (key, value) in table {
@@ -57,13 +186,20 @@ pub fn read<R: Args>(table: &Table, of: &str) -> Result<R, OptionFault> {
         let Some(option) = command.get_arguments().find(|one| one.get_long() == Some(&long)) else {
             let known = keys::<R>();
             let known: Vec<&str> = known.iter().map(String::as_str).collect();
-            return Err(fault(format!("`{key}` is no option of `{of}`; {}", instead(key, &known))));
+            let choice = if known.is_empty() { "it has none".to_owned() } else { instead(key, &known) };
+            return Err(fault(format!("`{key}` is not an option of {of}; {choice}")));
         };
         let flag = matches!(option.get_action(), ArgAction::SetTrue);
         let again = matches!(option.get_action(), ArgAction::Append);
         match value {
             Value::Boolean(yes) if flag => words.extend(yes.then(|| format!("--{long}"))),
             _ if flag => return Err(fault(format!("`{key}` is a flag: write true or false"))),
+            // Pairs, as `--set b_V=300 --set k_C=1e5`.
+            Value::Table(pairs) if again => {
+                for (name, value) in pairs {
+                    words.push(format!("--{long}={name}={}", word(value).ok_or_else(|| fault(no_value(key)))?));
+                }
+            }
             Value::Array(values) if again => {
                 for value in values {
                     words.push(format!("--{long}={}", word(value).ok_or_else(|| fault(no_value(key)))?));
@@ -72,12 +208,12 @@ pub fn read<R: Args>(table: &Table, of: &str) -> Result<R, OptionFault> {
             value => words.push(format!("--{long}={}", word(value).ok_or_else(|| fault(no_value(key)))?)),
         }
     }
-    let refused = |error: clap::Error| told(&error);
-    R::from_arg_matches(&command.try_get_matches_from(words).map_err(refused)?).map_err(refused)
+    let refused = |error: clap::Error| of_keys(&error);
+    Given::from_arg_matches(&command.try_get_matches_from(words).map_err(refused)?).map_err(refused)
 }
 
 fn no_value(key: &str) -> String {
-    format!("`{key}` can't be given so; write a number or a text, or a list of them where the command takes it again")
+    format!("`{key}` has to be a number or text, or a list of them where the command takes it more than once")
 }
 
 /// A value as one would type it.
@@ -96,7 +232,7 @@ fn word(value: &Value) -> Option<String> {
 }
 
 /// The command line's complaint, of keys instead of options.
-fn told(error: &clap::Error) -> OptionFault {
+fn of_keys(error: &clap::Error) -> OptionFault {
     let of = |kind: ContextKind| match error.get(kind) {
         Some(ContextValue::String(text)) => Some(text.clone()),
         Some(ContextValue::Strings(all)) => all.first().cloned(),
@@ -110,7 +246,7 @@ fn told(error: &clap::Error) -> OptionFault {
     let invalid = of(ContextKind::InvalidArg).unwrap_or_default();
     let key = name(&invalid);
     let what = match error.kind() {
-        ErrorKind::MissingRequiredArgument => format!("`{key}` is needed too"),
+        ErrorKind::MissingRequiredArgument => format!("`{key}` is needed"),
         ErrorKind::ArgumentConflict => {
             let other = of(ContextKind::PriorArg).map(|usage| name(&usage)).unwrap_or_default();
             format!("`{key}` can't be given together with `{other}`")
@@ -122,7 +258,7 @@ fn told(error: &clap::Error) -> OptionFault {
                 Some(ContextValue::Strings(all)) if !all.is_empty() => format!("; choose {}", all.join(", ")),
                 _ => String::new(),
             };
-            format!("`{value}` is no value of `{key}`{why}{choices}")
+            format!("`{value}` is not a value of `{key}`{why}{choices}")
         }
     };
     OptionFault { key, what }

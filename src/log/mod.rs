@@ -46,7 +46,6 @@ pub(crate) use cell::led as led_state;
 pub use columns::Columns;
 pub use header::LogHeader;
 pub use reading::{LitRows, LogReading, UnlitLoads};
-pub use request::LogRequest;
 pub use stamps::TimeUnit;
 pub(crate) use status::{Statuses, Verdict};
 

@@ -1,14 +1,14 @@
-//! What the user says about a log, the same for every command and every kind of stage that reads logs.
+//! What the user says about a log: the options of every command and of every stage that reads logs.
 
 use std::num::NonZeroUsize;
 
-use super::{AmbientOptions, Columns, LogReading, TimeUnit};
-use clap::Args;
+use clap::{ArgMatches, Args, Command, FromArgMatches};
 
-/// How a log is read.
+use super::{AmbientOptions, Columns, LogReading, TimeUnit};
+
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Logs")]
-pub struct LogRequest {
+struct LogOptions {
     /// What the log's columns are called, as time_s=stamp,led=lamp,P1=ch_3,Fz_N=fz
     #[arg(long, value_name = "OURS=THEIRS,..", value_parser = Columns::parse)]
     columns: Option<Columns>,
@@ -28,14 +28,33 @@ pub struct LogRequest {
     stream: Option<String>,
 }
 
-impl LogRequest {
-    /// As jobs take it.
-    #[must_use]
-    pub fn reading(&self) -> LogReading {
-        let mut columns = self.columns.clone().unwrap_or_default();
-        columns.time_unit = self.time_unit;
-        columns.piece = self.piece;
-        columns.stream.clone_from(&self.stream);
-        LogReading { columns, ambient: AmbientOptions { full_scale_v: self.full_scale } }
+impl From<LogOptions> for LogReading {
+    fn from(said: LogOptions) -> Self {
+        let mut columns = said.columns.unwrap_or_default();
+        columns.time_unit = said.time_unit;
+        columns.piece = said.piece;
+        columns.stream = said.stream;
+        Self { columns, ambient: AmbientOptions { full_scale_v: said.full_scale } }
+    }
+}
+
+impl FromArgMatches for LogReading {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        LogOptions::from_arg_matches(matches).map(Self::from)
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+impl Args for LogReading {
+    fn augment_args(command: Command) -> Command {
+        LogOptions::augment_args(command)
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        LogOptions::augment_args_for_update(command)
     }
 }

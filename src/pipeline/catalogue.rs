@@ -4,15 +4,12 @@
 //! A catalogue hangs on the options of `[phantom]` alone. Its names are relative to the folder that a pipeline file
 //! calls `{phantom}`, with `/`.
 
+use crate::job::{Facts, Keys, Maker, OptionFault};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::keys::Keys;
-use super::kind::{Facts, KeyFault};
-use super::task::Job;
-
 /// Reads the options of `[phantom]`.
-pub type Catalogues = fn(&toml::Table) -> Result<Catalogue, KeyFault>;
+pub type Catalogues = fn(&toml::Table) -> Result<Catalogue, OptionFault>;
 
 /// What will be generated.
 pub struct Catalogue {
@@ -37,7 +34,7 @@ pub struct CatalogueTask {
     /// About how long it takes on one thread, seconds.
     pub cost_s: f64,
     /// Makes it.
-    pub job: Arc<dyn Job>,
+    pub job: Arc<dyn Maker>,
 }
 
 /// One file of them.

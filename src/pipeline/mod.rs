@@ -6,8 +6,6 @@ mod graph;
 mod hashes;
 mod init;
 mod items;
-mod keys;
-mod kind;
 mod kinds;
 mod lock;
 mod merge;
@@ -31,8 +29,6 @@ pub use catalogue::{Catalogue, CatalogueFile, CatalogueTask, Catalogues};
 pub use graph::GraphFault;
 pub use hashes::ContentHash;
 pub use init::{InitError, propose};
-pub use keys::Keys;
-pub use kind::{Demand, Facts, Foreseen, KeyFault, Kind, Part, Prepared, Role, Takes};
 pub use kinds::{kinds, phantom_catalogue};
 pub use lock::Holder;
 pub use merge::{MergeFault, Merged, Parts};
@@ -45,6 +41,6 @@ pub use run::{
 pub use shard::{PartMark, PipelineMark, Shard, ShardFault};
 pub use spec::{PipelineError, Spec};
 pub use standing::{Standing, Why, survey};
-pub use task::{At, Input, Job, Made, Quality, Share, Source, Task, TaskId, Work};
+pub use task::{Input, Share, Source, Task, TaskId};
 
 pub use crate::toml_file::Fault;

@@ -12,7 +12,7 @@ use std::fmt::Write;
 
 use regex::Regex;
 
-use super::keys::Keys;
+use crate::job::Keys;
 
 pub(super) use walk::{Disk, Listed, Tree};
 

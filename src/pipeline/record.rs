@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::hashes::{ContentHash, of_names};
-use super::keys::Keys;
-use super::task::{Input, Made, Source, Task, TaskId};
+use super::task::{Input, Source, Task, TaskId};
+use crate::job::{Keys, Made};
 
 /// The form of records; another is read as none.
 pub(super) const FORMAT: u32 = 1;

@@ -5,11 +5,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::catalogue::{Catalogue, CatalogueFile, CatalogueTask};
-use super::keys::Keys;
-use super::kind::{Demand, Facts, Foreseen, KeyFault, Kind, Part, Prepared, Role, Takes};
 use super::plan::Plan;
 use super::spec::{PipelineError, Spec};
-use super::task::{Job, Made, Work};
+use crate::job::{Demand, Facts, Foreseen, Keys, Kind, Made, Maker, OptionFault, Part, Prepared, Role, Takes, Work};
 use crate::stages::Step;
 
 /// The kinds of toys.
@@ -21,7 +19,7 @@ static TRACK: Kind = Kind {
     roles: &[role("video", Takes::One), role("markers", Takes::Optional), role("truth", Takes::Optional)],
     parts: &[part("joints", "joints.csv", false), part("tracks", "tracks.csv", true)],
     revision: 1,
-    keys: &["joints"],
+    keys: || vec!["joints".to_owned()],
     prepare: |options| Toy::prepare("track", options),
 };
 
@@ -31,7 +29,7 @@ static ALIGN: Kind = Kind {
     roles: &[role("joints", Takes::One), role("log", Takes::One)],
     parts: &[part("training", "training.csv", false), part("certificate", "training.sync.json", false)],
     revision: 1,
-    keys: &["sync"],
+    keys: || vec!["sync".to_owned()],
     prepare: |options| Toy::prepare("tie", options),
 };
 
@@ -41,7 +39,7 @@ static TRAIN: Kind = Kind {
     roles: &[role("data", Takes::Many), role("validate", Takes::AnyNumber)],
     parts: &[part("model", "model.json", false)],
     revision: 1,
-    keys: &["target"],
+    keys: || vec!["target".to_owned()],
     prepare: |options| Toy::prepare("train", options),
 };
 
@@ -51,7 +49,7 @@ static EVALUATE: Kind = Kind {
     roles: &[role("model", Takes::One), role("data", Takes::Many)],
     parts: &[part("table", "evaluated.csv", false)],
     revision: 1,
-    keys: &[],
+    keys: Vec::new,
     prepare: |options| Toy::prepare("evaluate", options),
 };
 
@@ -61,7 +59,7 @@ static NORMALIZE: Kind = Kind {
     roles: &[role("photo", Takes::One), role("annotation", Takes::Optional)],
     parts: &[part("partial", "", false)],
     revision: 1,
-    keys: &[],
+    keys: Vec::new,
     prepare: |options| Toy::prepare("normalize", options),
 };
 
@@ -79,11 +77,11 @@ struct Toy {
 }
 
 impl Toy {
-    fn prepare(job: &'static str, options: toml::Table) -> Result<Arc<dyn Prepared>, KeyFault> {
+    fn prepare(job: &'static str, options: &toml::Table) -> Result<Arc<dyn Prepared>, OptionFault> {
         if let Some((key, _)) = options.iter().find(|(key, value)| *key != "joints" && !value.is_str()) {
-            return Err(KeyFault { key: key.clone(), what: format!("`{key}` has to be text") });
+            return Err(OptionFault { key: key.clone(), what: format!("`{key}` has to be text") });
         }
-        Ok(Arc::new(Self { job, options }))
+        Ok(Arc::new(Self { job, options: options.clone() }))
     }
 }
 
@@ -97,11 +95,11 @@ impl Prepared for Toy {
         }
     }
 
-    fn options(&self, demand: &Demand) -> serde_json::Value {
+    fn depends_on(&self, demand: &Demand) -> serde_json::Value {
         serde_json::json!({ "given": self.options, "joints": demand.joints, "clock": demand.clock, "parts": demand.parts })
     }
 
-    fn job(&self, _keys: &Keys, _demand: &Demand) -> Arc<dyn Job> {
+    fn maker(self: Arc<Self>, _keys: &Keys, _demand: &Demand) -> Arc<dyn Maker> {
         Arc::new(Nothing)
     }
 
@@ -125,11 +123,19 @@ impl Prepared for Toy {
     fn beside(&self, role: &str, path: &Path) -> Vec<(&'static str, PathBuf)> {
         if role == "photo" { vec![("annotation", path.with_extension("json"))] } else { Vec::new() }
     }
+
+    fn each(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    fn file(&self, part: &Part) -> &'static str {
+        part.file
+    }
 }
 
 struct Nothing;
 
-impl Job for Nothing {
+impl Maker for Nothing {
     fn run(&self, _work: &Work) -> anyhow::Result<Made> {
         Ok(Made::default())
     }
@@ -174,9 +180,9 @@ impl Bench {
 }
 
 /// Two people's videos and logs, and a table of them.
-fn catalogue(options: &toml::Table) -> Result<Catalogue, KeyFault> {
+fn catalogue(options: &toml::Table) -> Result<Catalogue, OptionFault> {
     if let Some(key) = options.keys().find(|key| *key != "study") {
-        return Err(KeyFault { key: key.clone(), what: format!("no phantom `{key}`; there is `study`") });
+        return Err(OptionFault { key: key.clone(), what: format!("no phantom `{key}`; there is `study`") });
     }
     let mut tasks = Vec::new();
     let mut files = Vec::new();

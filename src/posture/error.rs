@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 use crate::files::WriteError;
+use crate::job::Interrupted;
 use crate::table::TableError;
 use crate::video::VideoError;
 
@@ -30,9 +31,6 @@ pub enum PostureError {
         /// What is wrong and what to do.
         why: String,
     },
-    /// A result would go where the input stands.
-    #[error("{}: is the video itself; choose another name for the result", .0.display())]
-    Itself(PathBuf),
     /// A result can't be written.
     #[error(transparent)]
     Write(#[from] WriteError),
@@ -40,6 +38,6 @@ pub enum PostureError {
     #[error(transparent)]
     Table(#[from] TableError),
     /// Stopped from outside.
-    #[error("interrupted; nothing was written")]
-    Interrupted,
+    #[error("stopped")]
+    Interrupted(#[from] Interrupted),
 }

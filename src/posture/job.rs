@@ -5,7 +5,6 @@
 //! row is written, the frame forgotten: memory does not grow with the video's length, unless angles are to be smoothed.
 
 use std::path::Path;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use super::angle::joints::Angles;
@@ -13,13 +12,14 @@ use super::error::PostureError;
 use super::filmed_clock::FilmedClock;
 use super::layout::{Layout, MarkerShape};
 use super::marker::siting::Siting;
-use super::options::{Outputs, PostureOptions, Watch};
-use super::plan::{OUTLINES, WHOLE_FRAMES, steps};
-use super::report::{MarkerSums, PostureReport, SearchReport, VideoReport};
+use super::options::{Outputs, PostureOptions};
+use super::plan::{Known, OUTLINES, WHOLE_FRAMES, steps};
+use super::report::{MarkerSums, PostureFigures, PostureReport, SearchReport, VideoReport};
 use super::results::{Results, Row};
 use super::suggest::Suggester;
 use super::survey::{Progress, Survey, Surveyor};
 use super::track::Tracker;
+use crate::job::{Report, Watch};
 use crate::stages::{self, Stages};
 use crate::table::TableFormat;
 use crate::video::{End, Info, Item, Turn, Video};
@@ -37,13 +37,13 @@ pub fn run(
 ) -> Result<PostureReport, PostureError> {
     let start = Instant::now();
     let stages = Stages::default();
-    // What can't be named so is told before the work begins.
+    // A name that no table can have is refused before the work begins.
     for table in std::iter::once(&outputs.joints).chain(&outputs.tracks) {
         TableFormat::of(table)?;
     }
     let (survey, info) = look_first(path, layout, options, &stages, watch)?;
     let mut video = Video::open(path, options.threads)?;
-    let clock = layout.clock.as_ref().filter(|_| options.clock_every > 0);
+    let clock = layout.clock.as_ref().filter(|_| options.reads_clock());
     let clock = clock.map(|clock| FilmedClock::new(clock, &info, options.clock_every)).transpose();
     let mut clock = clock.map_err(|why| PostureError::Clock { path: path.to_owned(), why })?;
     let mut tracker = Tracker::new(layout, &survey, &info, options.method);
@@ -52,9 +52,7 @@ pub fn run(
     let mut span = Span::default();
     let mut first_undecoded = None;
     loop {
-        if watch.stop.load(Ordering::Relaxed) {
-            return Err(PostureError::Interrupted);
-        }
+        watch.go_on()?;
         let Some(item) = stages.time("decode", || video.next_item())? else { break };
         let (index, time_s, frame) = match &item {
             Item::Frame(frame) => (frame.index, frame.time_s, Some(frame)),
@@ -104,9 +102,7 @@ pub fn run(
     let mut warnings: Vec<String> = results.plausibility.warning(layout.flexion).into_iter().collect();
     warnings.extend(layout.notes.iter().chain(&info.warnings).cloned());
     warnings.extend(late(layout, &survey, &results.markers));
-    let draft = PostureReport {
-        job: "posture",
-        version: env!("CARGO_PKG_VERSION"),
+    let figures = PostureFigures {
         video: video_report(path, &info, survey.siting, &span),
         frames: results.frames,
         markers: results.marker_reports(|marker| tracker.shape(marker)),
@@ -120,16 +116,12 @@ pub fn run(
             whole_frames: search.whole_searches,
             share_of_samples: search.share_searched,
         },
-        left_out: left_out(layout, &info, options, outputs, &tracker),
-        warnings,
-        failed,
-        pictures,
         threads: threads(options),
-        stages: Vec::new(),
         decoding_share: 0.0,
-        wall_s: 0.0,
     };
-    results.finish(draft, &stages, start)
+    let left_out = left_out(layout, &info, options, outputs, &tracker);
+    let report = Report { left_out, warnings, failed, pictures, ..Report::new("posture", watch, figures) };
+    results.finish(report, &stages, start, outputs.report)
 }
 
 /// The markers that no frame shows, or only frames after those that names were given by.
@@ -173,8 +165,7 @@ pub fn suggest(path: &Path, threads: usize) -> Result<String, PostureError> {
         Err(why) => Err(why.to_string()),
         Ok(layout) => {
             let options = PostureOptions { threads, ..PostureOptions::default() };
-            let watch = Watch { stop: &AtomicBool::new(false), tick: &|_, _| {} };
-            let first = look_first(path, &layout, &options, &Stages::default(), &watch);
+            let first = Watch::nobody(|watch| look_first(path, &layout, &options, &Stages::default(), watch));
             first.map(|_| ()).map_err(|why| match why {
                 PostureError::Markers { why, .. } => why,
                 other => other.to_string(),
@@ -204,9 +195,7 @@ fn look_first(
     let info = video.info().clone();
     let mut surveyor = Surveyor::new(layout, &info);
     while let Some(item) = stages.time("decode", || video.next_item())? {
-        if watch.stop.load(Ordering::Relaxed) {
-            return Err(PostureError::Interrupted);
-        }
+        watch.go_on()?;
         let Item::Frame(frame) = item else { continue };
         if stages.time("survey", || surveyor.look(&frame)) == Progress::Enough {
             break;
@@ -258,7 +247,7 @@ fn left_out(
     outputs: &Outputs,
     tracker: &Tracker,
 ) -> Vec<String> {
-    let (steps, search) = (steps(layout, info, options, Some(outputs)), tracker.effort());
+    let (steps, search) = (steps(&Known::of(layout, info), options, Some(outputs)), tracker.effort());
     let mut left_out = stages::left_out(steps.into_iter().filter(|step| step.stage != WHOLE_FRAMES));
     left_out.push(format!(
         "{WHOLE_FRAMES}: in all but {} of {} frames only where the last one tells, {:.2} % of the samples",

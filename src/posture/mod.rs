@@ -15,6 +15,7 @@ mod figures;
 mod filmed_clock;
 mod find;
 mod job;
+mod kind;
 mod layout;
 mod marker;
 mod naming;
@@ -37,9 +38,12 @@ pub use error::PostureError;
 pub use figures::{AngleFigures, CouplingLine};
 pub use filmed_clock::{ClockReport, ClockTieReport};
 pub use job::{run, suggest};
+pub use kind::PostureJob;
 pub use layout::{Camera, Joint, Layout, LayoutError, LayoutFault, Marker, MarkerShape, Segment};
 pub use marker::method::{Method, Planes, Search};
 pub use marker::sight::{Centre, Loss, Sight};
-pub use options::{Outputs, PostureOptions, Watch};
+pub use options::{Outputs, PostureOptions};
 pub use plan::plan;
-pub use report::{CouplingReport, FrameCounts, JointReport, MarkerReport, PostureReport, SearchReport, VideoReport};
+pub use report::{
+    CouplingReport, FrameCounts, JointReport, MarkerReport, PostureFigures, PostureReport, SearchReport, VideoReport,
+};

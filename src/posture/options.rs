@@ -1,27 +1,47 @@
 //! How a video is worked on, and where results go.
 
 use std::path::PathBuf;
-use std::sync::atomic::AtomicBool;
+
+use clap::Args;
 
 use super::marker::method::Method;
+use crate::job;
 
-/// How to work.
-#[derive(Debug, Clone)]
+/// How to work: the options of `lunula posture` and of a pipeline's stage.
+#[derive(Debug, Clone, Args)]
 pub struct PostureOptions {
-    /// Threads that decode (0: all cores).
-    pub threads: usize,
-    /// Smooth the angles over time.
+    /// Only these joints of the marker file, with the markers that they need
+    #[arg(long, value_name = "J1,J2", value_delimiter = ',')]
+    pub joints: Vec<String>,
+    /// Do not read the clock in the picture
+    #[arg(long)]
+    pub no_clock: bool,
+    /// Smooth the angles over time (forward and backward); what is missing stays missing
+    #[arg(long)]
     pub smooth: bool,
     /// How centres are found.
+    #[arg(skip)]
     pub method: Method,
-    /// Every so many frames the clock of the layout is read, after the first second and a half, in which its digits are
-    /// learnt from all; 0: it is not read.
+    /// The clock is read in one of so many frames, after the first second and a half, in which its digits are learnt
+    /// from all.
+    #[arg(skip = 1_u64)]
     pub clock_every: u64,
+    /// Threads that decode (0: all cores).
+    #[arg(skip)]
+    pub threads: usize,
+}
+
+impl PostureOptions {
+    /// Whether the clock that a marker file names is read.
+    #[must_use]
+    pub fn reads_clock(&self) -> bool {
+        !self.no_clock && self.clock_every > 0
+    }
 }
 
 impl Default for PostureOptions {
     fn default() -> Self {
-        Self { threads: 0, smooth: false, method: Method::default(), clock_every: 1 }
+        job::defaults()
     }
 }
 
@@ -36,12 +56,6 @@ pub struct Outputs {
     pub overlay: Option<PathBuf>,
     /// Whether pictures are drawn.
     pub figures: bool,
-}
-
-/// A caller's view of a running job.
-pub struct Watch<'a> {
-    /// Becomes true where the job is to stop.
-    pub stop: &'a AtomicBool,
-    /// Called with the frames done, and with all of them where the container tells.
-    pub tick: &'a dyn Fn(u64, Option<u64>),
+    /// Whether the report is written beside the table.
+    pub report: bool,
 }

@@ -9,15 +9,14 @@ use super::angle::smooth::SmoothModel;
 use super::filmed_clock::ClockReport;
 use super::layout::MarkerShape;
 use super::marker::sight::{Loss, Sight};
-use crate::stages::Stage;
+use crate::job::Report;
 
 /// What a run did.
+pub type PostureReport = Report<PostureFigures>;
+
+/// The figures of a run.
 #[derive(Debug, Clone, Serialize)]
-pub struct PostureReport {
-    /// Which job.
-    pub job: &'static str,
-    /// lunula's version.
-    pub version: &'static str,
+pub struct PostureFigures {
     /// The video.
     pub video: VideoReport,
     /// How many frames there were.
@@ -32,22 +31,10 @@ pub struct PostureReport {
     pub clock: Option<ClockReport>,
     /// What was searched.
     pub searches: SearchReport,
-    /// What the scene did not need.
-    pub left_out: Vec<String>,
-    /// What a reader of the angles should know.
-    pub warnings: Vec<String>,
-    /// What of the input could not be used, each with what to do.
-    pub failed: Vec<String>,
-    /// The pictures that a person looks at first.
-    pub pictures: Vec<PathBuf>,
     /// Threads that decoded.
     pub threads: usize,
-    /// Time by stage, of the thread that tracks.
-    pub stages: Vec<Stage>,
     /// The share of the whole time that was spent waiting for the decoder.
     pub decoding_share: f64,
-    /// Seconds from start to end, this report not counted.
-    pub wall_s: f64,
 }
 
 /// What the video is.

@@ -19,7 +19,7 @@ use super::report::{
     CouplingReport, FrameCounts, JointReport, JointSums, MarkerReport, MarkerSums, PostureReport, in_words,
 };
 use crate::clock::{ClockFit, ClockFormat};
-use crate::files::{Places, beside, is_same_file};
+use crate::files::{Places, beside};
 use crate::stages::Stages;
 use crate::table::{Column, TableWriter, Value};
 use crate::video::{Frame, Info, VideoError};
@@ -85,13 +85,9 @@ impl<'a> Results<'a> {
         options: &PostureOptions,
         outputs: &Outputs,
     ) -> Result<Self, PostureError> {
-        let all = std::iter::once(&outputs.joints).chain(&outputs.tracks).chain(&outputs.overlay);
-        if let Some(itself) = all.into_iter().find(|path| is_same_file(path, video)) {
-            return Err(PostureError::Itself(itself.clone()));
-        }
-        let mut places = Places::default();
+        let mut places = Places::not_over([video]);
         let facts = facts(layout);
-        let clock = layout.clock.as_ref().filter(|_| options.clock_every > 0);
+        let clock = layout.clock.as_ref().filter(|_| options.reads_clock());
         let columns = joint_columns(layout, clock.map(|clock| &clock.format));
         let joints = table(&mut places, &outputs.joints, columns, &facts)?;
         let tracks = outputs.tracks.as_deref();
@@ -274,12 +270,13 @@ impl<'a> Results<'a> {
         Ok(pictures)
     }
 
-    /// Ends the tables, adds the report and puts everything into its place.
+    /// Ends the tables and puts everything into its place, with the report where it is wanted.
     pub(super) fn finish(
-        mut self,
-        mut report: PostureReport,
+        self,
+        report: PostureReport,
         stages: &Stages,
         start: Instant,
+        with_report: bool,
     ) -> Result<PostureReport, PostureError> {
         self.joints.finish()?;
         if let Some(tracks) = self.tracks {
@@ -288,14 +285,11 @@ impl<'a> Results<'a> {
         if let Some(overlay) = self.overlay {
             overlay.finish()?;
         }
-        report.stages = stages.list();
-        report.wall_s = start.elapsed().as_secs_f64();
+        let mut report = report.timed(stages, start);
         let decoding: f64 = report.stages.iter().filter(|s| s.stage == "decode").map(|s| s.thread_s).sum();
         report.decoding_share = decoding / report.wall_s;
-        let text = serde_json::to_string_pretty(&report).expect("plain data") + "\n";
-        self.places.write(&beside(&self.joints_path, ".run.json"), &text)?;
-        self.places.commit()?;
-        Ok(report)
+        let at = with_report.then(|| beside(&self.joints_path, ".run.json"));
+        Ok(report.commit(self.places, at.as_deref())?)
     }
 }
 

@@ -10,9 +10,8 @@ use super::peers::PeerReport;
 use super::recipe::{self, Recipe, Wanted};
 use super::rows::{Measured, Row};
 use super::timing::{Effort, Run, Timing, in_turns};
-use crate::posture::{
-    Joint, Layout, Marker, Method, Outputs, Planes, PostureOptions, Search, Watch, run as run_posture,
-};
+use crate::job::Watch;
+use crate::posture::{Joint, Layout, Marker, Method, Outputs, Planes, PostureOptions, Search, run as run_posture};
 use crate::table::Table;
 use crate::video::Video;
 
@@ -93,9 +92,9 @@ fn ours(method: Method, first: bool, layout: &Layout, truth: &Angles, settings: 
         PostureOptions { threads: settings.effort.threads, method, clock_every: 0, ..PostureOptions::default() };
     let folder = tempfile::tempdir()?;
     let joints = folder.path().join("joints.csv");
-    let outputs = Outputs { joints: joints.clone(), tracks: None, overlay: None, figures: false };
-    let watch = Watch { stop: &settings.effort.stop, tick: &|_, _| {} };
-    let report = run_posture(&settings.video, layout, &options, &outputs, &watch)?;
+    let outputs = Outputs { joints: joints.clone(), tracks: None, overlay: None, figures: false, report: false };
+    let run = |watch: &Watch<'_>| run_posture(&settings.video, layout, &options, &outputs, watch);
+    let report = Watch::stopped_by(&settings.effort.stop, run)?;
     let track: f64 = report.stages.iter().filter(|s| s.stage == "track").map(|s| s.thread_s).sum();
     let seconds = track / report.frames.all as f64;
     let samples = (report.video.shown_px[0] * report.video.shown_px[1]) as f64;

@@ -1,21 +1,26 @@
 //! The tie by the lag at which the joints' angles best explain the photodiodes, for when there is no clock.
 
+use clap::Args;
+
 use super::correlate::{LagSearch, Recording, correlate};
 use super::{Tie, TieMethod};
 use crate::align::{Posture, Samples};
 use crate::clock::USUAL_DRIFT;
+use crate::job::number;
 use crate::timebase::Timebase;
 
 /// How far the sensor's lag differs with the motion, seconds: hysteresis lasts longer the slower the finger moves.
 /// Measured over phantoms in random motion: 4 ms.
 const LAG_SD_S: f64 = 0.005;
 
-/// What the user says of the lag.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+/// Where the lag is looked for, and the sensor's own.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Args)]
 pub struct LagTie {
     /// Where to look.
+    #[command(flatten)]
     pub search: LagSearch,
-    /// How long after the finger the photodiodes change, seconds; none: not known.
+    /// With correlate: how long after the finger the photodiodes answer, which is subtracted from the lag found
+    #[arg(long = "sensor-lag", value_name = "SECONDS", value_parser = number, allow_negative_numbers = true)]
     pub sensor_lag_s: Option<f64>,
 }
 

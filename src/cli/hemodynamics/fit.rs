@@ -9,7 +9,7 @@ use lunula::hemodynamics::{
     Between, FitOptions, FitOutputs, FitReport, ForceColumn, OpticsChoice, PhotodiodeColumn, Pressed, RecordingColumns,
     STARTS, fit, fit_plan,
 };
-use lunula::log::LogRequest;
+use lunula::log::LogReading;
 
 use super::{Common, NailArgs, Outcome, ended, one_of};
 
@@ -97,7 +97,7 @@ pub(crate) struct FitArgs {
     #[arg(long, value_parser = one_of::<OpticsChoice>(), default_value = "beer-lambert")]
     optics: OpticsChoice,
     #[command(flatten)]
-    log: LogRequest,
+    log: LogReading,
     #[command(flatten)]
     nail: NailArgs,
     /// The result; parameters, table and picture stand beside it, named after it
@@ -147,7 +147,7 @@ impl FitArgs {
                 unloaded_before: self.unloaded_before,
                 force: force.map(|(name, area_cm2)| ForceColumn { name, area_m2: 1e-4 * area_cm2, pressed: self.load }),
                 photodiodes: self.photodiode.clone(),
-                log: self.log.reading(),
+                log: self.log.clone(),
             },
             subjects: self.subject.clone(),
             names: Vec::new(),

@@ -9,7 +9,7 @@ use clap::Args;
 use lunula::hemodynamics::model::Symbol;
 use lunula::hemodynamics::{GivenParameters, HemodynamicsError};
 
-use super::{Common, Interrupted, Outcome, one_of, print_line};
+use super::{Common, Outcome, one_of, print_line};
 
 pub(super) use fit::{FitArgs, run as fit};
 pub(super) use simulate::{SimulateArgs, run as simulate};
@@ -45,7 +45,7 @@ fn parse_setting(text: &str) -> Result<(Symbol, f64), String> {
 /// An error of a job, with a word of its own where somebody stopped it.
 fn ended(error: HemodynamicsError) -> anyhow::Error {
     match error {
-        HemodynamicsError::Interrupted => Interrupted.into(),
+        HemodynamicsError::Interrupted => lunula::job::Interrupted.into(),
         error => error.into(),
     }
 }

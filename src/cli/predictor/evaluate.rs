@@ -52,7 +52,7 @@ pub(crate) fn run(args: &EvaluateArgs) -> anyhow::Result<Outcome> {
     let options = EvaluateOptions {
         drop_invalid: args.rows.drop_invalid,
         keep_faults: args.rows.keep_faults,
-        log: args.rows.log.reading(),
+        log: args.rows.log.clone(),
         by,
         level,
         called: None,

@@ -9,10 +9,10 @@ mod train;
 use std::path::PathBuf;
 
 use clap::Args;
-use lunula::log::LogRequest;
+use lunula::log::LogReading;
 use lunula::predictor::{ByTarget, Merit, Target, Wanted};
 
-use super::{Common, Interrupted, Outcome, one_of};
+use super::{Common, Outcome, one_of};
 
 pub(super) use analyse::{AnalyseArgs, run as analyse};
 pub(super) use evaluate::{EvaluateArgs, run as evaluate};
@@ -30,7 +30,7 @@ struct RowsArgs {
     #[arg(long)]
     keep_faults: bool,
     #[command(flatten)]
-    log: LogRequest,
+    log: LogReading,
 }
 
 impl RowsArgs {
@@ -40,7 +40,7 @@ impl RowsArgs {
             targets: target.columns().to_vec(),
             drop_invalid: self.drop_invalid,
             keep_faults: self.keep_faults,
-            log: self.log.reading(),
+            log: self.log.clone(),
             skip_failed: false,
         }
     }
@@ -49,7 +49,7 @@ impl RowsArgs {
 /// An error of a job, with a word of its own where somebody stopped it.
 fn ended(error: lunula::predictor::PredictorError) -> anyhow::Error {
     match error {
-        lunula::predictor::PredictorError::Interrupted => Interrupted.into(),
+        lunula::predictor::PredictorError::Interrupted => lunula::job::Interrupted.into(),
         error => error.into(),
     }
 }

@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 
 use anyhow::Context;
 use clap::Args;
-use lunula::log::LogRequest;
+use lunula::log::LogReading;
 use lunula::predictor::models::Gate;
 use lunula::predictor::{F_MIN_N, PredictOptions, predict as run_predict, predict_stream};
 
@@ -48,7 +48,7 @@ pub(crate) struct PredictArgs {
     #[arg(long)]
     keep_faults: bool,
     #[command(flatten)]
-    log: LogRequest,
+    log: LogReading,
     #[command(flatten)]
     common: Common,
 }
@@ -60,7 +60,7 @@ pub(crate) fn run(args: &PredictArgs) -> anyhow::Result<Outcome> {
         intervals: args.intervals,
         drop_invalid: args.drop_invalid,
         keep_faults: args.keep_faults,
-        log: args.log.reading(),
+        log: args.log.clone(),
     };
     let common = &args.common;
     if data == Path::new("-") {

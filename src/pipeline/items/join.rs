@@ -3,7 +3,7 @@
 use std::collections::{BTreeSet, HashMap};
 
 use super::Relation;
-use crate::pipeline::keys::Keys;
+use crate::job::Keys;
 
 /// Combinations of one item of each relation.
 #[derive(Debug, Default)]

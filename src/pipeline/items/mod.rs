@@ -14,10 +14,9 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use super::catalogue::Catalogue;
-use super::keys::Keys;
-use super::kind::Facts;
 use super::pattern::{Listed, Tree};
 use super::spec::Filter;
+use crate::job::{Facts, Keys};
 
 pub(super) use input::{InputItems, check_filter, input_items};
 pub(super) use join::{Index, JoinedRows, Unjoined, join};

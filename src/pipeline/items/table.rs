@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::{World, plain};
-use crate::pipeline::keys::Keys;
+use crate::job::Keys;
 use crate::table::Table;
 
 /// A table's rows, as text.

@@ -19,11 +19,11 @@ use std::sync::atomic::Ordering;
 
 use toml::{Table, Value};
 
-use crate::job::{OptionFault, read};
+use crate::job::{Facts, Keys, Made, Maker, OptionFault, Work, read};
 use crate::phantom::request::{LogRequest, PhotosRequest, StudyRequest, VideoRequest};
 use crate::phantom::study::Study;
 use crate::phantom::{Faults, Recording};
-use crate::pipeline::{Catalogue, CatalogueFile, CatalogueTask, Facts, Job, KeyFault, Keys, Made, Work};
+use crate::pipeline::{Catalogue, CatalogueFile, CatalogueTask};
 use crate::stages::Stages;
 
 /// Counted up where the same options give other bytes than before.
@@ -43,22 +43,22 @@ struct Placed {
 /// What a block `[phantom]` makes.
 ///
 /// # Errors
-/// [`KeyFault`], the first thing that is wrong; a key within a block is named as `video.seconds`.
-pub fn phantom_catalogue(block: &Table) -> Result<Catalogue, KeyFault> {
+/// [`OptionFault`], the first thing that is wrong; a key within a block is named as `video.seconds`.
+pub fn phantom_catalogue(block: &Table) -> Result<Catalogue, OptionFault> {
     let mut placed = Vec::new();
     let mut tables = BTreeMap::new();
     if block.is_empty() {
         let what = format!("[phantom] asks for nothing; write one of {}, as study = {{ seed = 1 }}", BLOCKS.join(", "));
-        return Err(KeyFault { key: String::new(), what });
+        return Err(OptionFault { key: String::new(), what });
     }
     for (key, value) in block {
         let blocks = blocks(key, value)?;
         for (name, options) in blocks {
             let fault = |fault: OptionFault| inner(key, fault);
-            let refused = |faults: Faults| KeyFault { key: key.clone(), what: format!("`{key}`: {faults}") };
+            let refused = |faults: Faults| OptionFault { key: key.clone(), what: format!("`{key}`: {faults}") };
             let one = match key.as_str() {
                 "study" => {
-                    let request = read::<StudyRequest>(&options, "lunula phantom study").map_err(fault)?;
+                    let request = read::<StudyRequest>(&options, "`lunula phantom study`").map_err(fault)?.options;
                     let study = Study::new(request.options()).map_err(refused)?;
                     tables.extend(study.tables());
                     placed.extend(study.recordings().into_iter().map(|one| Placed {
@@ -69,17 +69,17 @@ pub fn phantom_catalogue(block: &Table) -> Result<Catalogue, KeyFault> {
                     continue;
                 }
                 "photos" => {
-                    let request = read::<PhotosRequest>(&options, "lunula phantom photos").map_err(fault)?;
+                    let request = read::<PhotosRequest>(&options, "`lunula phantom photos`").map_err(fault)?.options;
                     Recording::Photos(request.options())
                 }
                 "video" => {
                     let options = without_files(key, &options)?;
-                    let request = read::<VideoRequest>(options, "lunula phantom video").map_err(fault)?;
+                    let request = read::<VideoRequest>(options, "`lunula phantom video`").map_err(fault)?.options;
                     Recording::Video(Box::new(request.options().map_err(|why| unread(key, &why))?))
                 }
                 _ => {
                     let options = without_files(key, &options)?;
-                    let request = read::<LogRequest>(options, "lunula phantom log").map_err(fault)?;
+                    let request = read::<LogRequest>(options, "`lunula phantom log`").map_err(fault)?.options;
                     Recording::Log(Box::new(request.options().map_err(|why| unread(key, &why))?))
                 }
             };
@@ -93,7 +93,7 @@ pub fn phantom_catalogue(block: &Table) -> Result<Catalogue, KeyFault> {
         let what = format!(
             "two recordings would stand in {{phantom}}/{name}; leave one out, or give single scenes other names"
         );
-        return Err(KeyFault { key: String::new(), what });
+        return Err(OptionFault { key: String::new(), what });
     }
     Ok(catalogue(placed, tables))
 }
@@ -107,8 +107,8 @@ fn twice(placed: &[Placed]) -> Option<&str> {
 }
 
 /// The options of one scene, or of several with their names.
-fn blocks(key: &str, value: &Value) -> Result<Vec<(Option<String>, Table)>, KeyFault> {
-    let fault = |what: String| KeyFault { key: key.to_owned(), what };
+fn blocks(key: &str, value: &Value) -> Result<Vec<(Option<String>, Table)>, OptionFault> {
+    let fault = |what: String| OptionFault { key: key.to_owned(), what };
     if !BLOCKS.contains(&key) {
         return Err(fault(format!("`{key}` is nothing that can be generated; there are {}", BLOCKS.join(", "))));
     }
@@ -134,24 +134,24 @@ fn blocks(key: &str, value: &Value) -> Result<Vec<(Option<String>, Table)>, KeyF
 }
 
 /// The planner knows no files but inputs: a movement is told by its name here.
-fn without_files<'a>(key: &str, options: &'a Table) -> Result<&'a Table, KeyFault> {
+fn without_files<'a>(key: &str, options: &'a Table) -> Result<&'a Table, OptionFault> {
     const NAMES: [&str; 5] = ["eq27", "free", "random", "even", "rest"];
     match options.get("trajectory").and_then(Value::as_str) {
         Some(other) if !NAMES.contains(&other) => {
             let what = format!("`trajectory` is {} in a pipeline, not a file as `{other}`", NAMES.join(", "));
-            Err(KeyFault { key: format!("{key}.trajectory"), what })
+            Err(OptionFault { key: format!("{key}.trajectory"), what })
         }
         _ => Ok(options),
     }
 }
 
-fn inner(key: &str, fault: OptionFault) -> KeyFault {
+fn inner(key: &str, fault: OptionFault) -> OptionFault {
     let key = if fault.key.is_empty() { key.to_owned() } else { format!("{key}.{}", fault.key) };
-    KeyFault { key, what: fault.what }
+    OptionFault { key, what: fault.what }
 }
 
-fn unread(key: &str, why: &anyhow::Error) -> KeyFault {
-    KeyFault { key: key.to_owned(), what: format!("{why:#}") }
+fn unread(key: &str, why: &anyhow::Error) -> OptionFault {
+    OptionFault { key: key.to_owned(), what: format!("{why:#}") }
 }
 
 fn catalogue(placed: Vec<Placed>, tables: BTreeMap<String, String>) -> Catalogue {
@@ -197,7 +197,7 @@ fn facts(recording: &Recording, file: &str) -> Facts {
 /// Makes a recording.
 struct Generate(Recording);
 
-impl Job for Generate {
+impl Maker for Generate {
     fn run(&self, work: &Work) -> anyhow::Result<Made> {
         let stages = Stages::default();
         // A pool of its own: the runner does other tasks beside it.
@@ -213,7 +213,7 @@ impl Job for Generate {
 mod tests {
     use super::*;
 
-    fn of(text: &str) -> Result<Catalogue, KeyFault> {
+    fn of(text: &str) -> Result<Catalogue, OptionFault> {
         phantom_catalogue(&text.parse().unwrap())
     }
 

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::{Part, Pattern};
-use crate::pipeline::keys::Keys;
+use crate::job::Keys;
 use crate::words::instead;
 
 /// Where files are looked for; paths are relative to its top, with `/`.

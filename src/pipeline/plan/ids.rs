@@ -1,6 +1,6 @@
 //! Tasks' names, which are folders' names: the stage's, then the values of its keys.
 
-use crate::pipeline::keys::Keys;
+use crate::job::Keys;
 
 /// Longer values make names that some disks refuse.
 const LONGEST: usize = 120;

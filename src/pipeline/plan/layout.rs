@@ -6,8 +6,8 @@ use std::path::Path;
 use super::ids::task_id;
 use super::rows::{Row, stage_rows};
 use super::{Layout, Node, NodeInput, NodeSource};
+use crate::job::{Facts, Takes};
 use crate::pipeline::items::{InputItems, Item, Missing, Origin, Relation, World, check_filter, input_items, plain};
-use crate::pipeline::kind::{Facts, Takes};
 use crate::pipeline::spec::{From, Reference, Spec, StageSpec};
 use crate::toml_file::Fault;
 

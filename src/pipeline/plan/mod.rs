@@ -22,10 +22,9 @@ use std::sync::Arc;
 
 use super::catalogue::Catalogue;
 use super::items::{Missing, World};
-use super::keys::Keys;
-use super::kind::{Demand, Facts, Foreseen, Prepared};
 use super::spec::{PipelineError, Spec};
 use super::task::Task;
+use crate::job::{Demand, Facts, Foreseen, Keys, Prepared};
 
 pub use show::{PlanFate, PlanLine, StagePlan, plan_text};
 

@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::{Demands, Laid, Layout, Node, NodeSource, Plan, Planned};
+use crate::job::{Demand, Facts, Foreseen};
 use crate::pipeline::items::{Missing, World};
-use crate::pipeline::kind::{Demand, Facts, Foreseen};
 use crate::pipeline::spec::{Spec, StageSpec};
 use crate::pipeline::task::{Input, Share, Source, Task};
 
@@ -105,7 +105,7 @@ fn foreseen(
                 (world.out.join(&nodes[*node].id).join(file), false, *facts, task)
             }
         };
-        (Foreseen { role: input.role, keys: input.keys.clone(), path, stands, facts }, task)
+        (Foreseen { role: input.role, keys: input.keys.clone(), path, exists: stands, facts }, task)
     };
     node.inputs.iter().map(foresee).collect()
 }
@@ -155,12 +155,12 @@ fn task(
         options: serde_json::json!({
             "job": stage.kind.name,
             "revision": stage.kind.revision,
-            "options": stage.prepared.options(demand),
+            "options": stage.prepared.depends_on(demand),
         }),
         share,
         memory,
         cost_s,
-        job: stage.prepared.job(&node.keys, demand),
+        job: Arc::clone(&stage.prepared).maker(&node.keys, demand),
     })
 }
 

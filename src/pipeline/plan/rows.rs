@@ -3,9 +3,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use crate::job::{Keys, Takes};
 use crate::pipeline::items::{Index, Item, JoinedRows, Missing, Relation, Unjoined, join};
-use crate::pipeline::keys::Keys;
-use crate::pipeline::kind::Takes;
 use crate::pipeline::spec::{Spec, StageSpec};
 use crate::toml_file::Fault;
 use crate::words::instead;

@@ -9,7 +9,7 @@ use std::fmt::Write;
 use serde::Serialize;
 
 use super::Plan;
-use crate::pipeline::kind::{Facts, Foreseen};
+use crate::job::{Facts, Foreseen};
 use crate::pipeline::said::in_keys;
 use crate::pipeline::standing::{Standing, Why};
 use crate::stages::Fate;

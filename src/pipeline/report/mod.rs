@@ -115,7 +115,7 @@ pub struct TaskSummary<'a> {
     /// Its stage.
     pub stage: &'a str,
     /// Whose it is.
-    pub keys: &'a super::keys::Keys,
+    pub keys: &'a crate::job::Keys,
     /// How it went.
     #[serde(flatten)]
     pub outcome: &'a Outcome,

@@ -2,8 +2,8 @@
 
 use super::page::page;
 use super::summary;
+use crate::job::{Made, Quality};
 use crate::pipeline::run::{Outcome, RunReport, TaskReport};
-use crate::pipeline::task::{Made, Quality};
 use crate::pipeline::toys::Bench;
 
 #[test]

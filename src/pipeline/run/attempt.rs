@@ -18,8 +18,9 @@ use super::super::hashes::{FileFault, files_in};
 use super::super::record::{FORMAT, Fingerprint, Known, Record, within};
 use super::super::said::{all_in_keys, in_keys, report_in_keys};
 use super::super::standing::{Why, difference, spoilt};
-use super::super::task::{At, Input, Source, Task, TaskId, Work};
+use super::super::task::{Input, Source, Task, TaskId};
 use super::Results;
+use crate::job::{At, Work};
 
 /// The records of the tasks that one works on, without those that failed.
 pub(super) type Needed = HashMap<TaskId, Arc<Record>>;

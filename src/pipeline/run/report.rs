@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::super::keys::Keys;
 use super::super::record::Output;
-use super::super::task::{Made, TaskId};
+use super::super::task::TaskId;
+use crate::job::{Keys, Made};
 
 /// How it went with a task.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]

@@ -1,7 +1,7 @@
 //! A stage's name and job.
 
 use super::Place;
-use crate::pipeline::kind::Kind;
+use crate::job::Kind;
 
 /// A stage's name and job, before its references can be read.
 pub(super) struct Header {

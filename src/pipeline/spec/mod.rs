@@ -33,9 +33,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::catalogue::{Catalogue, Catalogues};
-use super::kind::{Kind, Part, Prepared};
 use super::shard::PipelineMark;
 use crate::input;
+use crate::job::{Kind, Part, Prepared};
 use crate::toml_file::{Fault, place};
 
 /// Why a pipeline can't be planned.

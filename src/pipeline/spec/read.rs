@@ -8,7 +8,7 @@ use toml::de::DeValue;
 use super::header::Header;
 use super::reference::{Names, filter, strings};
 use super::{Generated, InputSource, InputSpec, Place, Spec, Wanted, cycle, stages};
-use crate::pipeline::kind::Kind;
+use crate::job::Kind;
 use crate::toml_file::{Entry, Fault, Findings, entries};
 use crate::words::instead;
 

@@ -7,7 +7,7 @@ use toml::de::DeValue;
 use super::header::Header;
 use super::reference::{Names, filter, reference, strings};
 use super::{Reference, StageSpec};
-use crate::pipeline::kind::{Kind, Role, Takes};
+use crate::job::{Kind, Role, Takes};
 use crate::pipeline::said::in_keys;
 use crate::toml_file::{Entry, Findings};
 use crate::words::instead;
@@ -54,7 +54,9 @@ pub(super) fn stage(
 ) -> Option<StageSpec> {
     let kind = header.kind?;
     let role_names: Vec<&str> = kind.roles.iter().map(|role| role.name).collect();
-    let known: Vec<&str> = role_names.iter().chain(kind.keys).chain(&OWN).copied().collect();
+    let keys = (kind.keys)();
+    let known = role_names.iter().copied().chain(keys.iter().map(String::as_str)).chain(OWN);
+    let known: Vec<&str> = known.collect();
     findings.unknown_keys(table, &known, &format!("key of the job `{}`:", kind.name));
     let roles: Vec<Vec<Reference>> =
         kind.roles.iter().map(|role| given(findings, entry, table, kind, role, names)).collect();
@@ -73,8 +75,8 @@ pub(super) fn stage(
     let stage = values.get("stage").and_then(|stages| stages.get(entry.key)).and_then(toml::Value::as_table);
     let mut options = stage.cloned().unwrap_or_default();
     // Keys that are not the job's have been told.
-    options.retain(|key, _| kind.keys.contains(&key));
-    let prepared = match (kind.prepare)(options) {
+    options.retain(|key, _| keys.iter().any(|known| known == key) && !role_names.contains(&key));
+    let prepared = match (kind.prepare)(&options) {
         Ok(prepared) => prepared,
         Err(fault) => {
             let at = table.iter().find(|e| e.key == fault.key).map_or(entry.key_at, |e| e.at);

@@ -8,6 +8,7 @@ use super::super::{Event, GraphFault, Input, Outcome, Results, RunFault, RunWatc
 use super::toys::{
     Act, Diary, Toy, from_scratch, given, left_at_work, options, outcomes, ran, result, results, run_on, toy,
 };
+use crate::job::{Made, Maker, Work};
 
 fn failing(id: &str, act: Act, diary: &Diary) -> super::super::Task {
     Toy { act, diary: Arc::clone(diary), ..Toy::default() }.task(id, vec![])
@@ -103,9 +104,8 @@ fn missing_inputs_and_names_are_told() {
 
 #[test]
 fn an_input_that_changes_as_it_is_worked_on_fails_the_task() {
-    use super::super::{Job, Made, Work};
     struct Spoils;
-    impl Job for Spoils {
+    impl Maker for Spoils {
         fn run(&self, work: &Work) -> anyhow::Result<Made> {
             fs::write(&work.inputs[0].path, "changed")?;
             Ok(Made::default())

@@ -6,6 +6,7 @@ use super::super::{Source, Standing, Why, survey};
 use super::toys::{
     Diary, Toy, from_scratch, given, left_at_work, options, outcomes, ran, result, results, run_on, run_with, toy,
 };
+use crate::job::{Made, Maker, Work};
 
 #[test]
 fn nothing_is_done_twice_and_a_survey_tells_why_something_is() {
@@ -191,9 +192,8 @@ fn an_unreadable_record_counts_as_none() {
 
 #[test]
 fn a_before_is_shown_only_where_it_is_whole_and_of_the_same_options() {
-    use super::super::{Job, Made, Work};
     struct Looks(std::sync::Mutex<Vec<bool>>);
-    impl Job for Looks {
+    impl Maker for Looks {
         fn run(&self, work: &Work) -> anyhow::Result<Made> {
             self.0.lock().unwrap().push(work.before.is_some());
             fs::write(work.folder.join("x.txt"), "x")?;

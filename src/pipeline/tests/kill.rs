@@ -9,8 +9,9 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::super::store::Store;
-use super::super::{Input, Job, Made, Task, Work};
+use super::super::{Input, Task};
 use super::toys::{Toy, from_scratch, left_at_work, options, result, results, run_on, run_with};
+use crate::job::{Made, Maker, Work};
 
 const OUT: &str = "LUNULA_TEST_KILLED";
 
@@ -20,7 +21,7 @@ struct Telling {
     log: String,
 }
 
-impl Job for Telling {
+impl Maker for Telling {
     fn run(&self, work: &Work) -> anyhow::Result<Made> {
         let mut log = fs::File::options().create(true).append(true).open(&self.log)?;
         log.write_all(format!("{}\n", self.toy.id).as_bytes())?;

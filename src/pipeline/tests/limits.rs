@@ -7,10 +7,11 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
-use super::super::{Job, Made, RunOptions, Task, Work};
+use super::super::{RunOptions, Task};
 use super::toys::{
     Act, Diary, Toy, from_scratch, left_at_work, options, outcomes, result, results, run_on, run_with, toy,
 };
+use crate::job::{Made, Maker, Work};
 
 /// Counts what toys at work take together.
 #[derive(Default)]
@@ -24,7 +25,7 @@ struct Heavy {
     scale: Arc<Scale>,
 }
 
-impl Job for Heavy {
+impl Maker for Heavy {
     fn run(&self, work: &Work) -> anyhow::Result<Made> {
         let now = self.scale.now.fetch_add(self.bytes, Ordering::SeqCst) + self.bytes;
         self.scale.most.fetch_max(now, Ordering::SeqCst);

@@ -8,9 +8,8 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use super::super::hashes::{ContentHash, files_in};
-use super::super::{
-    Input, Job, Keys, Made, Outcome, PipelineMark, RunOptions, RunReport, RunWatch, Share, Source, Task, Work, run,
-};
+use super::super::{Input, Outcome, PipelineMark, RunOptions, RunReport, RunWatch, Share, Source, Task, run};
+use crate::job::{Keys, Made, Maker, Work};
 
 /// What a toy does besides its text.
 #[derive(Debug, Clone, Default)]
@@ -48,7 +47,7 @@ pub(super) fn ran(diary: &Diary) -> Vec<String> {
     ran
 }
 
-impl Job for Toy {
+impl Maker for Toy {
     fn run(&self, work: &Work) -> anyhow::Result<Made> {
         self.diary.lock().unwrap().push((self.id.clone(), work.threads));
         match self.act {

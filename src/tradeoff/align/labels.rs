@@ -6,12 +6,12 @@
 
 use std::collections::HashMap;
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 
 use anyhow::{Context, ensure};
 
 use super::{Settings, column};
 use crate::align::{AlignInputs, AlignOptions, AlignOutputs, run as run_align};
+use crate::job::Watch;
 use crate::posture::Layout;
 use crate::table::Table;
 use crate::tradeoff::peers::{PeerReport, Script};
@@ -69,8 +69,15 @@ pub(super) fn measure(
     let found = in_turns(&INTERVALS, &settings.effort, |(_, intervals), first| {
         let inputs = AlignInputs { joints: gappy.clone(), log: settings.log.clone(), tracks: None };
         let options = AlignOptions { max_gap_s: intervals.map(|n| n * interval_s), ..AlignOptions::default() };
-        let outputs = AlignOutputs { training: training.clone(), mot: None, bids: None, dlc: None, figures: false };
-        let report = one.install(|| run_align(&inputs, &options, &outputs, &AtomicBool::new(false)))?;
+        let outputs = AlignOutputs {
+            training: training.clone(),
+            mot: None,
+            bids: None,
+            dlc: None,
+            figures: false,
+            report: false,
+        };
+        let report = one.install(|| Watch::nobody(|watch| run_align(&inputs, &options, &outputs, watch)))?;
         Ok((report.wall_s, first.then(|| truth.error(&training)).transpose()?))
     })?;
     for ((name, _), found) in INTERVALS.into_iter().zip(found) {

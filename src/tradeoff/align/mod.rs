@@ -4,7 +4,6 @@
 mod labels;
 
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
 
 use anyhow::{Context, ensure};
 
@@ -12,7 +11,8 @@ use super::peers::Python;
 use super::rows::{Measured, Row};
 use super::timing::{Effort, Run, in_turns};
 use crate::align::{AlignInputs, AlignOptions, AlignOutputs, LagSearch, LagTie, Sync, run as run_align};
-use crate::posture::{Layout, Outputs, PostureOptions, PostureReport, Watch, run as run_posture};
+use crate::job::Watch;
+use crate::posture::{Layout, Outputs, PostureOptions, PostureReport, run as run_posture};
 use crate::table::Table;
 
 pub(super) use labels::{BRIDGING, LABEL_ERROR, bridging_default};
@@ -70,7 +70,7 @@ pub fn measure(settings: &Settings) -> anyhow::Result<Measured> {
     let found = in_turns(&EVERY, &settings.effort, |&frames, first| {
         let report = follow(&layout, frames, &joints(frames), settings)?;
         let seconds = report.stages.iter().filter(|s| s.stage == "clock").map(|s| s.thread_s).sum();
-        let clock = report.clock.context("the clock was not read")?;
+        let clock = report.figures.clock.context("the clock was not read")?;
         ensure!(clock.tie.is_some(), "{}", report.failed.join("; "));
         let told = || {
             anyhow::Ok((worst(&column(&joints(frames), "clock_s")?, &truth)?, clock.frames_read + clock.frames_refused))
@@ -101,9 +101,9 @@ pub fn measure(settings: &Settings) -> anyhow::Result<Measured> {
 
 fn follow(layout: &Layout, clock_every: u64, joints: &Path, settings: &Settings) -> anyhow::Result<PostureReport> {
     let options = PostureOptions { threads: settings.effort.threads, clock_every, ..PostureOptions::default() };
-    let outputs = Outputs { joints: joints.to_owned(), tracks: None, overlay: None, figures: false };
-    let watch = Watch { stop: &settings.effort.stop, tick: &|_, _| {} };
-    Ok(run_posture(&settings.video, layout, &options, &outputs, &watch)?)
+    let outputs = Outputs { joints: joints.to_owned(), tracks: None, overlay: None, figures: false, report: false };
+    let run = |watch: &Watch<'_>| run_posture(&settings.video, layout, &options, &outputs, watch);
+    Ok(Watch::stopped_by(&settings.effort.stop, run)?)
 }
 
 /// The lag at which the photodiodes best explain the angles, for whoever filmed no clock.
@@ -114,15 +114,21 @@ fn correlated(joints: &Path, truth: &[f64], first: bool, settings: &Settings) ->
     let lag =
         LagTie { search: LagSearch { about_s, most_s: Some(KNOWN_S), ..LagSearch::default() }, sensor_lag_s: None };
     let options = AlignOptions { sync: Some(Sync::Correlate), lag, ..AlignOptions::default() };
-    let outputs =
-        AlignOutputs { training: folder.path().join("training.csv"), mot: None, bids: None, dlc: None, figures: false };
-    let report = run_align(&inputs, &options, &outputs, &AtomicBool::new(false))?;
+    let outputs = AlignOutputs {
+        training: folder.path().join("training.csv"),
+        mot: None,
+        bids: None,
+        dlc: None,
+        figures: false,
+        report: false,
+    };
+    let report = Watch::nobody(|watch| run_align(&inputs, &options, &outputs, watch))?;
     let seconds = report.stages.iter().filter(|s| s.stage == "tie").map(|s| s.thread_s).sum();
     if !first {
         return Ok((seconds, None));
     }
     let times_s = column(joints, "time_s")?;
-    let tie = report.certificate;
+    let tie = report.figures.certificate;
     let found: Vec<f64> = times_s.iter().map(|t| tie.offset_s + (1.0 + 1e-6 * tie.drift_ppm) * t).collect();
     Ok((seconds, Some((worst(&found, truth)?, times_s.len() as u64))))
 }

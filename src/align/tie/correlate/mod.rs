@@ -23,12 +23,15 @@ mod line;
 mod memory;
 mod series;
 
+use clap::Args;
+
 use self::basis::Model;
 use self::coarse::Coarse;
 use self::drift::Drift;
 use self::fine::{Pair, Peak, Spot};
 use self::judge::Judge;
 use self::series::Series;
+use crate::job::{not_negative, number};
 
 /// Signals or channels over times of their own.
 #[derive(Debug, Clone, Copy)]
@@ -40,13 +43,16 @@ pub struct Recording<'a> {
 }
 
 /// Where to look.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Args)]
 pub struct LagSearch {
-    /// The lag, log time less video time, about which to look, seconds; none: that at which both begin together.
+    /// With correlate: the offset about which to look [default: that at which log and video begin together]
+    #[arg(long = "lag-about", value_name = "SECONDS", value_parser = number, allow_negative_numbers = true)]
     pub about_s: Option<f64>,
-    /// How far from there, seconds; none: as far as at least half of the shorter recording overlaps.
+    /// With correlate: how far from there to look [default: as far as half of the shorter recording overlaps]
+    #[arg(long = "max-lag", value_name = "SECONDS", value_parser = not_negative)]
     pub most_s: Option<f64>,
-    /// Of the numbers that chance is judged with.
+    /// Seed of the random numbers that chance is judged with.
+    #[arg(skip)]
     pub seed: u64,
 }
 

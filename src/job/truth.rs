@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::pipeline::Quality;
+use super::Quality;
 use crate::table::{Table, TableError};
 
 /// The root mean square error of every `<joint>_deg` of `made` that `truth` has too. Rows belong together where
@@ -10,13 +10,7 @@ use crate::table::{Table, TableError};
 ///
 /// # Errors
 /// A table that can't be read.
-pub(super) fn against(
-    truth: &Path,
-    true_key: &str,
-    made: &Path,
-    key: &str,
-    close: f64,
-) -> Result<Vec<Quality>, TableError> {
+pub fn against(truth: &Path, true_key: &str, made: &Path, key: &str, close: f64) -> Result<Vec<Quality>, TableError> {
     let (truth, made) = (Table::read(truth)?, Table::read(made)?);
     let (true_at, at) = (truth.numbers(true_key)?, made.numbers(key)?);
     let pairs = pairs(&true_at, &at, close);
@@ -71,9 +65,9 @@ mod tests {
         let (truth, made) = (dir.path().join("truth.csv"), dir.path().join("made.csv"));
         std::fs::write(&truth, "frame,J1_deg,J2_deg\n0,5,10\n1,5,20\n2,5,30\n").unwrap();
         std::fs::write(&made, "frame,J2_deg,J2_sd_deg,J9_deg\n0,13,1,1\n1,,,\n2,26,1,1\n").unwrap();
-        let told = against(&truth, "frame", &made, "frame", 0.5).unwrap();
+        let measured = against(&truth, "frame", &made, "frame", 0.5).unwrap();
         let value = (12.5_f64).sqrt();
         let unit = "degrees RMS".to_owned();
-        assert_eq!(told, [Quality { what: "J2".to_owned(), value, unit, against_truth: true }]);
+        assert_eq!(measured, [Quality { what: "J2".to_owned(), value, unit, against_truth: true }]);
     }
 }

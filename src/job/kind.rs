@@ -1,0 +1,316 @@
+//! What a job says of itself, once: what it takes and makes, its options, its plan, its run.
+//!
+//! A job implements [`Job`]; the planner knows it through [`Kind`] and [`Prepared`], the runner through [`Maker`].
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use super::work::{Made, Work};
+use super::{Given, Keys, OptionFault, Said, read};
+use crate::stages::Step;
+
+/// How many files a role takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Takes {
+    /// One; it is what the task is made for.
+    One,
+    /// One or none.
+    Optional,
+    /// One or more: the task gathers them.
+    Many,
+    /// Any number.
+    AnyNumber,
+}
+
+/// Something that a job works on.
+#[derive(Debug, Clone, Copy)]
+pub struct Role {
+    /// Its key in the pipeline file: `video`.
+    pub name: &'static str,
+    /// How many.
+    pub takes: Takes,
+    /// What it is, in a few words.
+    pub about: &'static str,
+}
+
+/// Something that a job makes and others may name.
+#[derive(Debug, Clone, Copy)]
+pub struct Part {
+    /// Its name after the stage's: `tracks` of `angles.tracks`. A kind's first part is what the stage's bare name
+    /// means.
+    pub name: &'static str,
+    /// The file in the task's folder; empty: the whole folder.
+    pub file: &'static str,
+    /// Made only where it is wanted or another stage works on it.
+    pub only_if_wanted: bool,
+    /// What it is, in a few words.
+    pub about: &'static str,
+}
+
+/// A kind of job.
+pub struct Kind {
+    /// Its name in pipeline files: `posture`.
+    pub name: &'static str,
+    /// What it does, in a few words.
+    pub about: &'static str,
+    /// What it works on.
+    pub roles: &'static [Role],
+    /// What it makes.
+    pub parts: &'static [Part],
+    /// Counted up where the same inputs and options give other bytes than before.
+    pub revision: u32,
+    /// Its keys in pipeline files besides the roles, `job`, `each` and `where`: [`super::keys`] of its options.
+    pub keys: fn() -> Vec<String>,
+    /// Checks a stage's keys (without roles, `job`, `each`, `where`): [`prepare`] of the job.
+    pub prepare: fn(&toml::Table) -> Result<Arc<dyn Prepared>, OptionFault>,
+}
+
+/// What later stages and the wanted results need of a task.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Demand {
+    /// The parts, by name.
+    pub parts: BTreeSet<&'static str>,
+    /// The joints; `None`: all there are.
+    pub joints: Option<BTreeSet<String>>,
+    /// The time of the clock in the picture.
+    pub clock: bool,
+}
+
+impl Demand {
+    /// Whether a part is needed.
+    #[must_use]
+    pub fn wants(&self, part: &str) -> bool {
+        self.parts.contains(part)
+    }
+}
+
+/// What is known of a scene without opening it; `None`: not known.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Facts {
+    /// A photograph without colours.
+    pub grey: Option<bool>,
+    /// Somebody drew the nail's outline.
+    pub outlined: Option<bool>,
+    /// The lens bends lines.
+    pub distorted: Option<bool>,
+    /// A clock is in the picture.
+    pub clock: Option<bool>,
+    /// The log's LED goes on and off.
+    pub led: Option<bool>,
+    /// The log holds forces.
+    pub forces: Option<bool>,
+}
+
+/// An input as the planner sees it.
+#[derive(Debug, Clone)]
+pub struct Foreseen {
+    /// What it is to the job.
+    pub role: &'static str,
+    /// Whose it is.
+    pub keys: Keys,
+    /// The file or folder.
+    pub path: PathBuf,
+    /// Whether it exists already; else another task makes it.
+    pub exists: bool,
+    /// What is known of it where it does not.
+    pub facts: Facts,
+}
+
+impl Foreseen {
+    /// Its size in bytes; `guess` while it does not exist.
+    #[must_use]
+    pub fn bytes(&self, guess: u64) -> u64 {
+        std::fs::metadata(&self.path).map_or(guess, |file| file.len())
+    }
+
+    /// The input of a role, if there is one.
+    #[must_use]
+    pub fn of<'a>(inputs: &'a [Self], role: &str) -> Option<&'a Self> {
+        inputs.iter().find(|input| input.role == role)
+    }
+}
+
+/// What of a job's results is wanted, and for whom.
+#[derive(Clone, Copy)]
+pub struct Order<'a> {
+    /// Whose recordings they are.
+    pub keys: &'a Keys,
+    /// What later stages and the wanted results need.
+    pub demand: &'a Demand,
+    /// The stage's options as the file writes them.
+    pub said: &'a Said,
+}
+
+/// A job as pipelines know it: the options of one stage, checked.
+pub trait Job: Send + Sync + Sized + 'static {
+    /// What the planner has to know of it.
+    const KIND: Kind;
+
+    /// Its options: the command's, and a stage's keys.
+    type Options: clap::Args;
+
+    /// Checks the options of a stage.
+    ///
+    /// # Errors
+    /// [`OptionFault`], the first thing that is wrong.
+    fn new(options: Self::Options) -> Result<Self, OptionFault>;
+
+    /// Reads the keys of a stage.
+    ///
+    /// # Errors
+    /// [`OptionFault`], the first thing that is wrong.
+    fn read(table: &toml::Table) -> Result<(Self, Said), OptionFault> {
+        let Given { options, said } = read::<Self::Options>(table, &format!("the job {}", Self::KIND.name))?;
+        Ok((Self::new(options)?, said))
+    }
+
+    /// What it needs of whoever makes the input of `role`, where `own` is needed of it.
+    fn demand(&self, _role: &str, _own: &Demand) -> Demand {
+        Demand::default()
+    }
+
+    /// What its results depend on besides the inputs: the options as written, and which parts are made only if wanted.
+    fn depends_on(&self, said: &Said, demand: &Demand) -> serde_json::Value {
+        let optional = Self::KIND.parts.iter().filter(|part| part.only_if_wanted).map(|part| part.name);
+        let made: Vec<&str> = optional.filter(|part| demand.parts.contains(part)).collect();
+        serde_json::json!({ "options": said, "made": made })
+    }
+
+    /// What the task would do and leave out.
+    ///
+    /// # Errors
+    /// An input that exists and can't be read: its words name file, what is wrong and what to do.
+    fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String>;
+
+    /// What will be known of its results.
+    fn facts(&self, _inputs: &[Foreseen], _demand: &Demand) -> Facts {
+        Facts::default()
+    }
+
+    /// About how much memory a task takes, bytes, and how long on one thread, seconds.
+    fn cost(&self, inputs: &[Foreseen]) -> (u64, f64);
+
+    /// Files that are read with an input of `role`, with the role that each has, if they exist (or will be generated):
+    /// an outline beside its photograph. Where one does, it is an input of the task, of the same keys, unless the stage
+    /// names one of that role and these keys.
+    fn beside(&self, _role: &str, _path: &Path) -> Vec<(&'static str, PathBuf)> {
+        Vec::new()
+    }
+
+    /// The keys for each value of which a gathering job makes a task where the stage has no `each`; none: one task for
+    /// all.
+    fn each(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    /// The file of a part in the task's folder, where options say which: a table as CSV or as Parquet.
+    fn file(&self, part: &Part) -> &'static str {
+        part.file
+    }
+
+    /// Makes the results in `work.folder`.
+    ///
+    /// # Errors
+    /// Where there is no result; the words name file and place, and say what to do.
+    fn run(&self, order: &Order<'_>, work: &Work<'_>) -> anyhow::Result<Made>;
+}
+
+/// Any job's checked stage, as the planner holds it: [`Job`] without its types.
+pub trait Prepared: Send + Sync {
+    /// [`Job::demand`].
+    fn demand(&self, role: &str, own: &Demand) -> Demand;
+    /// [`Job::depends_on`].
+    fn depends_on(&self, demand: &Demand) -> serde_json::Value;
+    /// What does one task.
+    fn maker(self: Arc<Self>, keys: &Keys, demand: &Demand) -> Arc<dyn Maker>;
+    /// [`Job::steps`].
+    ///
+    /// # Errors
+    /// An input that exists and can't be read.
+    fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String>;
+    /// [`Job::facts`].
+    fn facts(&self, inputs: &[Foreseen], demand: &Demand) -> Facts;
+    /// [`Job::cost`].
+    fn cost(&self, inputs: &[Foreseen]) -> (u64, f64);
+    /// [`Job::beside`].
+    fn beside(&self, role: &str, path: &Path) -> Vec<(&'static str, PathBuf)>;
+    /// [`Job::each`].
+    fn each(&self) -> &'static [&'static str];
+    /// [`Job::file`].
+    fn file(&self, part: &Part) -> &'static str;
+}
+
+/// Does one task.
+pub trait Maker: Send + Sync {
+    /// Makes the results in `work.folder`.
+    ///
+    /// # Errors
+    /// Where there is no result; the words name file and place, and say what to do.
+    fn run(&self, work: &Work<'_>) -> anyhow::Result<Made>;
+}
+
+/// Checks a stage's keys for a job.
+///
+/// # Errors
+/// [`OptionFault`], the first thing that is wrong.
+pub fn prepare<J: Job>(table: &toml::Table) -> Result<Arc<dyn Prepared>, OptionFault> {
+    let (job, said) = J::read(table)?;
+    Ok(Arc::new(Stage { job, said }))
+}
+
+struct Stage<J> {
+    job: J,
+    said: Said,
+}
+
+impl<J: Job> Prepared for Stage<J> {
+    fn demand(&self, role: &str, own: &Demand) -> Demand {
+        self.job.demand(role, own)
+    }
+
+    fn depends_on(&self, demand: &Demand) -> serde_json::Value {
+        self.job.depends_on(&self.said, demand)
+    }
+
+    fn maker(self: Arc<Self>, keys: &Keys, demand: &Demand) -> Arc<dyn Maker> {
+        Arc::new(OneTask { stage: self, keys: keys.clone(), demand: demand.clone() })
+    }
+
+    fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
+        self.job.steps(inputs, demand)
+    }
+
+    fn facts(&self, inputs: &[Foreseen], demand: &Demand) -> Facts {
+        self.job.facts(inputs, demand)
+    }
+
+    fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {
+        self.job.cost(inputs)
+    }
+
+    fn beside(&self, role: &str, path: &Path) -> Vec<(&'static str, PathBuf)> {
+        self.job.beside(role, path)
+    }
+
+    fn each(&self) -> &'static [&'static str] {
+        self.job.each()
+    }
+
+    fn file(&self, part: &Part) -> &'static str {
+        self.job.file(part)
+    }
+}
+
+struct OneTask<J> {
+    stage: Arc<Stage<J>>,
+    keys: Keys,
+    demand: Demand,
+}
+
+impl<J: Job> Maker for OneTask<J> {
+    fn run(&self, work: &Work<'_>) -> anyhow::Result<Made> {
+        let order = Order { keys: &self.keys, demand: &self.demand, said: &self.stage.said };
+        self.stage.job.run(&order, work)
+    }
+}

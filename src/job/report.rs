@@ -1,0 +1,107 @@
+//! What a run did: the JSON beside its results, the object that `--json` prints, and a pipeline's record of a task.
+
+use std::ops::{Deref, DerefMut};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use serde::Serialize;
+
+use super::work::{Made, Quality};
+use super::{Said, Watch};
+use crate::files::{Places, WriteError};
+use crate::stages::{Stage, Stages};
+
+/// What a run did; `F` holds the figures of one kind of job.
+#[derive(Debug, Clone, Serialize)]
+pub struct Report<F> {
+    /// The job's name.
+    pub job: &'static str,
+    /// The program's version.
+    pub version: &'static str,
+    /// The options as the caller wrote them, defaults included; empty where a program called.
+    #[serde(skip_serializing_if = "Said::is_empty")]
+    pub options: Said,
+    /// The job's own figures.
+    #[serde(flatten)]
+    pub figures: F,
+    /// What the input did not need, and why.
+    pub left_out: Vec<String>,
+    /// What a person has to know before using the results.
+    pub warnings: Vec<String>,
+    /// What was chosen, guessed or counted on the way, and needs no action.
+    pub notes: Vec<String>,
+    /// What of the input could not be used, each with what to do.
+    pub failed: Vec<String>,
+    /// The pictures to look at first.
+    pub pictures: Vec<PathBuf>,
+    /// Time by stage.
+    pub stages: Vec<Stage>,
+    /// Seconds from start to end, this report not counted.
+    pub wall_s: f64,
+}
+
+impl<F> Deref for Report<F> {
+    type Target = F;
+
+    fn deref(&self) -> &F {
+        &self.figures
+    }
+}
+
+impl<F> DerefMut for Report<F> {
+    fn deref_mut(&mut self) -> &mut F {
+        &mut self.figures
+    }
+}
+
+impl<F: Serialize> Report<F> {
+    /// A report of a job that has yet to end.
+    #[must_use]
+    pub fn new(job: &'static str, watch: &Watch<'_>, figures: F) -> Self {
+        Self {
+            job,
+            version: env!("CARGO_PKG_VERSION"),
+            options: watch.said.clone(),
+            figures,
+            left_out: Vec::new(),
+            warnings: Vec::new(),
+            notes: Vec::new(),
+            failed: Vec::new(),
+            pictures: Vec::new(),
+            stages: Vec::new(),
+            wall_s: 0.0,
+        }
+    }
+
+    /// Adds the times.
+    #[must_use]
+    pub fn timed(mut self, stages: &Stages, start: Instant) -> Self {
+        self.stages = stages.list();
+        self.wall_s = start.elapsed().as_secs_f64();
+        self
+    }
+
+    /// Writes the report to `at`, if it is to be written, and puts all results into their places.
+    ///
+    /// # Errors
+    /// [`WriteError`]; then nothing has changed.
+    pub fn commit(self, mut places: Places, at: Option<&Path>) -> Result<Self, WriteError> {
+        if let Some(at) = at {
+            let text = serde_json::to_string_pretty(&self).expect("plain data with names as keys") + "\n";
+            places.write(at, &text)?;
+        }
+        places.commit()?;
+        Ok(self)
+    }
+
+    /// What a pipeline keeps of the run.
+    ///
+    /// # Panics
+    /// Never: figures are plain data.
+    #[must_use]
+    pub fn made(self, quality: Vec<Quality>) -> Made {
+        let report = serde_json::to_value(&self).expect("plain data with names as keys");
+        let Self { left_out, warnings, notes, failed, stages, .. } = self;
+        Made { report, left_out, warnings, notes, failed, stages, quality }
+    }
+}
