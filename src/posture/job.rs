@@ -165,7 +165,7 @@ pub fn suggest(path: &Path, threads: usize) -> Result<String, PostureError> {
         Err(why) => Err(why.to_string()),
         Ok(layout) => {
             let options = PostureOptions { threads, ..PostureOptions::default() };
-            let first = Watch::nobody(|watch| look_first(path, &layout, &options, &Stages::default(), watch));
+            let first = look_first(path, &layout, &options, &Stages::default(), &Watch::nobody());
             first.map(|_| ()).map_err(|why| match why {
                 PostureError::Markers { why, .. } => why,
                 other => other.to_string(),

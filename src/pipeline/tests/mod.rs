@@ -3,6 +3,7 @@
 mod clock;
 mod failures;
 mod hands;
+mod jobs;
 mod kill;
 mod limits;
 mod parts;

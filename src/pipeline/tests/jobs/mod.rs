@@ -1,7 +1,6 @@
-//! Kinds on small generated recordings, without a pipeline around them.
+//! The jobs on small generated recordings, without a pipeline around them.
 
 mod models;
-mod photos;
 mod recordings;
 
 use std::collections::BTreeMap;
@@ -12,7 +11,8 @@ use std::sync::atomic::AtomicBool;
 
 use tempfile::TempDir;
 
-use crate::pipeline::{At, Demand, Facts, Foreseen, Keys, Kind, Made, Prepared, Work};
+use crate::job::{At, Demand, Facts, Foreseen, Keys, Kind, Made, Prepared, Work};
+use crate::pipeline::kinds;
 use crate::stages::{Fate, Step};
 
 fn keys(pairs: &[(&str, &str)]) -> Keys {
@@ -25,7 +25,7 @@ fn at(role: &'static str, of: &[(&str, &str)], root: &Path, name: &str) -> At {
 }
 
 fn prepared(kind: &Kind, options: &str) -> Arc<dyn Prepared> {
-    (kind.prepare)(options.parse().expect("TOML")).map_err(|fault| format!("{fault:?}")).expect("sound options")
+    (kind.prepare)(&options.parse().expect("TOML")).map_err(|fault| format!("{fault:?}")).expect("sound options")
 }
 
 fn wanting(parts: &[&'static str]) -> Demand {
@@ -81,7 +81,7 @@ impl Task<'_> {
         let stop = AtomicBool::new(false);
         let inputs = self.inputs.clone();
         let work = Work { inputs, folder: folder.path(), before, threads, stop: &stop };
-        let made = prepared(self.kind, self.options).job(&self.keys, &self.demand).run(&work)?;
+        let made = prepared(self.kind, self.options).maker(&self.keys, &self.demand).run(&work)?;
         Ok((folder, made))
     }
 
@@ -114,7 +114,7 @@ fn copy(from: &Path, to: &Path) {
     }
 }
 
-/// Done in two folders, at two times, on one thread and on three: the same bytes, and none of them tells where.
+/// Done in two folders, at two times, on one thread and on three: the same bytes, and none of them says where.
 #[track_caller]
 fn is_the_same_anywhere(task: &Task, root: &Path) -> (Folder, Made) {
     let other = tempfile::tempdir().expect("a folder");
@@ -129,13 +129,13 @@ fn is_the_same_anywhere(task: &Task, root: &Path) -> (Folder, Made) {
         assert!(*bytes == second_bytes[name], "{name} differs");
         let places = [root, first.path()].map(|path| path.to_string_lossy().into_owned());
         let tells = |place: &String| bytes.windows(place.len()).any(|part| part == place.as_bytes());
-        assert!(!places.iter().any(tells), "{name} tells where it was made");
+        assert!(!places.iter().any(tells), "{name} says where it was made");
     }
     (first, made)
 }
 
-fn foreseen(input: &At, stands: bool, facts: Facts) -> Foreseen {
-    Foreseen { role: input.role, keys: input.keys.clone(), path: input.path.clone(), stands, facts }
+fn foreseen(input: &At, exists: bool, facts: Facts) -> Foreseen {
+    Foreseen { role: input.role, keys: input.keys.clone(), path: input.path.clone(), exists, facts }
 }
 
 /// A step's fate and reason.
@@ -147,26 +147,19 @@ fn step<'a>(steps: &'a [Step], stage: &str) -> (bool, &'a str) {
 }
 
 #[test]
-fn keys_are_the_options_of_the_command() {
-    let align = crate::job::keys::<crate::align::AlignRequest>();
-    let known: Vec<&str> = super::align::ALIGN.keys.iter().copied().filter(|key| *key != "format").collect();
-    assert_eq!(known, align);
-    assert_eq!(super::log_keys::LOG_KEYS.to_vec(), crate::job::keys::<crate::log::LogRequest>());
-}
-
-#[test]
 fn kinds_are_sorted_by_name() {
-    assert!(super::kinds().is_sorted_by_key(|kind| kind.name));
+    assert!(kinds().is_sorted_by_key(|kind| kind.name));
 }
 
 #[test]
 fn a_key_that_no_job_knows_is_named() {
-    for kind in super::kinds() {
-        let fault = (kind.prepare)("no_such_key = 1".parse().unwrap()).err();
+    for kind in kinds() {
+        let fault = (kind.prepare)(&"no_such_key = 1".parse().unwrap()).err();
         let fault = fault.unwrap_or_else(|| panic!("{} takes any key", kind.name));
         assert_eq!(fault.key, "no_such_key", "{}", kind.name);
         for role in kind.roles {
-            assert!(!kind.keys.contains(&role.name), "{}: `{}` is a role and an option", kind.name, role.name);
+            let keys = (kind.keys)();
+            assert!(!keys.iter().any(|key| key == role.name), "{}: `{}` is a role and an option", kind.name, role.name);
         }
     }
 }

@@ -4,13 +4,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use super::super::kinds;
-use super::{keys, step};
+use super::{keys, kinds, step};
+use crate::job::{At, Demand, Facts, Foreseen, Keys, Kind, Made, Maker, OptionFault, Prepared, Work};
 use crate::phantom::force::{ForceTrajectory, Spiral};
 use crate::phantom::log::{LogOptions, LogScene, write};
-use crate::pipeline::{At, Demand, Facts, Foreseen, Job, KeyFault, Keys, Kind, Made, Work};
 
 /// A folder of recordings and results.
 struct Place {
@@ -22,8 +22,8 @@ fn kind(name: &str) -> &'static Kind {
     kinds().iter().find(|kind| kind.name == name).expect("a kind of this name")
 }
 
-fn prepare(name: &str, keys: &str) -> Result<std::sync::Arc<dyn crate::pipeline::Prepared>, KeyFault> {
-    (kind(name).prepare)(toml::from_str(keys).expect("TOML"))
+fn prepare(name: &str, keys: &str) -> Result<Arc<dyn Prepared>, OptionFault> {
+    (kind(name).prepare)(&toml::from_str(keys).expect("TOML"))
 }
 
 /// Every part.
@@ -32,8 +32,8 @@ fn all(kind: &Kind) -> Demand {
 }
 
 /// The job of a stage whose parts are all wanted.
-fn job(name: &str, stage: &str) -> std::sync::Arc<dyn Job> {
-    prepare(name, stage).expect("good keys").job(&Keys::default(), &all(kind(name)))
+fn job(name: &str, stage: &str) -> Arc<dyn Maker> {
+    prepare(name, stage).expect("good keys").maker(&Keys::default(), &all(kind(name)))
 }
 
 impl Place {
@@ -188,7 +188,7 @@ fn what_is_not_wanted_is_not_made() {
         let (folder, stop) = (place.path(out), AtomicBool::new(false));
         std::fs::create_dir_all(&folder).unwrap();
         let work = Work { inputs, folder: &folder, before: None, threads: 1, stop: &stop };
-        prepare(name, stage).unwrap().job(&Keys::default(), &demand).run(&work).unwrap();
+        prepare(name, stage).unwrap().maker(&Keys::default(), &demand).run(&work).unwrap();
         files(&folder)
             .into_keys()
             .map(|path| path.file_name().unwrap().to_str().unwrap().to_owned())
@@ -207,21 +207,21 @@ fn what_is_not_wanted_is_not_made() {
 }
 
 #[test]
-fn wrong_keys_are_told_with_what_to_write() {
+fn wrong_keys_are_refused_with_what_to_write() {
     for (name, stage, key, what) in [
         ("train", "", "target", "is needed"),
         ("train", "target = 'Fz_N,'", "target", "empty or there twice"),
-        ("train", "target = 'force'\nmodel = 'cubic'", "model", "linear, quadratic or network"),
+        ("train", "target = 'force'\nmodel = 'cubic'", "model", "linear, quadratic, network"),
         ("train", "target = 'force'\nhiden = 3", "hiden", "did you mean `hidden`?"),
-        ("train", "target = 'force'\nhidden = 0", "hidden", "1 to 1000"),
+        ("train", "target = 'force'\nhidden = 0", "hidden", "1..=1000"),
         ("train", "target = 'force'\ndeficient = 'ridge=-1'", "deficient", "ridge=LAMBDA"),
         ("train", "target = 'force'\nlevel = 1.0", "level", "between 0 and 1"),
-        ("evaluate", "by = 'day'", "by", "trajectory, session, subject or rows"),
-        ("evaluate", "folds = 1", "folds", "2 to 1000"),
+        ("evaluate", "by = 'day'", "by", "trajectory, session, subject, rows"),
+        ("evaluate", "folds = 1", "folds", "2..=1000"),
         ("predict", "f_min = -1", "", "-1"),
-        ("analyse", "out = 'x'", "out", "this job has none"),
-        ("prune", "target = 3", "target", "string"),
-        ("compare", "models = ['cubic']", "models", "linear, quadratic or network"),
+        ("analyse", "out = 'x'", "out", "it has none"),
+        ("prune", "target = ''", "target", "empty or there twice"),
+        ("compare", "models = ['cubic']", "models", "linear, quadratic, network"),
         ("compare", "models = []", "models", "at least one"),
         ("simulate", "pf1 = 'jump:3'", "pf1", "jump:3"),
         ("simulate", "from = 'one'", "from", "`start`"),
@@ -247,7 +247,7 @@ fn wrong_keys_are_told_with_what_to_write() {
 /// An input that does not stand yet.
 fn coming(role: &'static str, led: Option<bool>) -> Foreseen {
     let facts = Facts { led, ..Facts::default() };
-    Foreseen { role, keys: Keys::default(), path: PathBuf::from("there/it.csv"), stands: false, facts }
+    Foreseen { role, keys: Keys::default(), path: PathBuf::from("there/it.csv"), exists: false, facts }
 }
 
 #[test]
@@ -298,21 +298,24 @@ fn joints_are_demanded_only_for_what_needs_them() {
 }
 
 #[test]
-fn options_tell_what_results_hang_on() {
-    let told = |stage: &str, parts: &[&'static str]| {
+fn results_depend_on_the_options_and_the_parts_wanted() {
+    let depends_on = |stage: &str, parts: &[&'static str]| {
         let demand = Demand { parts: parts.iter().copied().collect(), ..Demand::default() };
-        prepare("train", stage).unwrap().options(&demand)
+        prepare("train", stage).unwrap().depends_on(&demand)
     };
     assert_eq!(
-        told("target = 'force'", &["model"]),
-        told("target = 'Fx_N,Fy_N,Fz_N'\nhidden = 8", &["model", "merit"])
+        depends_on("target = 'force'", &["model"]),
+        depends_on("target = 'force'\nhidden = 8", &["model", "merit"])
     );
-    assert_ne!(told("target = 'force'", &["model"]), told("target = 'force'\nseed = 2", &["model"]));
-    assert_ne!(told("target = 'force'", &["model"]), told("target = 'force'", &["model", "learning_curve"]));
+    assert_ne!(depends_on("target = 'force'", &["model"]), depends_on("target = 'force'\nseed = 2", &["model"]));
+    assert_ne!(
+        depends_on("target = 'force'", &["model"]),
+        depends_on("target = 'force'", &["model", "learning_curve"])
+    );
 }
 
 #[test]
-fn who_lacks_a_recording_is_left_out_of_a_comparison_and_told() {
+fn who_lacks_a_recording_is_left_out_of_a_comparison_and_reported() {
     let dir = tempfile::tempdir().unwrap();
     let place = Place { folder: dir.path().to_owned(), threads: 1 };
     let roles = ["set1", "set2", "set3", "random", "bending", "bending_random"];
@@ -348,7 +351,7 @@ fn a_log_is_fitted_alike_raw_and_labelled_and_under_other_names() {
         let stop = AtomicBool::new(false);
         let demand = Demand { parts: parts.iter().copied().collect(), ..Demand::default() };
         let work = Work { inputs, folder: &folder, before: None, threads: 2, stop: &stop };
-        let job = prepare(kind, stage).expect("good keys").job(&Keys::default(), &demand);
+        let job = prepare(kind, stage).expect("good keys").maker(&Keys::default(), &demand);
         job.run(&work).unwrap_or_else(|why| panic!("{out}: {why:#}"))
     };
     let inputs = vec![place.at("joints", "raw/truth/angles.csv", &[]), place.at("log", "raw/log.csv", &[])];
@@ -365,7 +368,7 @@ fn a_log_is_fitted_alike_raw_and_labelled_and_under_other_names() {
     assert_eq!(other, raw);
     let said = prepare("fit", &format!("{stage}\ncolumns = 'P1'")).err().expect("no columns");
     assert_eq!(said.key, "columns");
-    let plain = prepare("fit", stage).unwrap().options(&Demand::default());
-    let named = prepare("fit", &format!("{stage}\nfull_scale = '0,10'")).unwrap().options(&Demand::default());
+    let plain = prepare("fit", stage).unwrap().depends_on(&Demand::default());
+    let named = prepare("fit", &format!("{stage}\nfull_scale = '0,10'")).unwrap().depends_on(&Demand::default());
     assert!(plain.get("log").is_none() && plain != named, "{named}");
 }

@@ -1,11 +1,13 @@
 //! `posture`, `align`, `join`.
 
-use super::super::{align::ALIGN, join::JOIN, posture::POSTURE};
 use super::*;
+use crate::align::{AlignJob, JoinJob};
+use crate::job::Job as _;
 use crate::phantom::log::{LogOptions, LogScene};
 use crate::phantom::screen::Clock;
 use crate::phantom::trajectory::Trajectory;
 use crate::phantom::video::{Scene, VideoOptions};
+use crate::posture::PostureJob;
 
 const OF: [(&str, &str); 2] = [("subject", "S01"), ("session", "1")];
 
@@ -26,7 +28,7 @@ fn filmed() -> TempDir {
 fn posture(root: &Path, options: &'static str, demand: Demand) -> Task<'static> {
     let inputs = ["video", "markers", "truth"].into_iter().zip(["video.mp4", "markers.toml", "truth/joints.csv"]);
     let inputs = inputs.map(|(role, name)| at(role, &OF, root, name)).collect();
-    Task { kind: &POSTURE, options, demand, keys: keys(&OF), inputs }
+    Task { kind: &PostureJob::KIND, options, demand, keys: keys(&OF), inputs }
 }
 
 #[test]
@@ -35,15 +37,15 @@ fn a_video_s_results_are_the_same_anywhere() {
     let parts = ["joints", "tracks", "overlay", "pictures"];
     let task = posture(dir.path(), "format = 'parquet'\nsmooth = true", wanting(&parts));
     let (folder, _) = is_the_same_anywhere(&task, dir.path());
-    has_its_parts(&POSTURE, task.options, &task.demand, &folder);
+    has_its_parts(&PostureJob::KIND, task.options, &task.demand, &folder);
 
     let task = posture(dir.path(), "joints = ['J2', 'J3']", wanting(&["joints"]));
     let (folder, made) = is_the_same_anywhere(&task, dir.path());
     assert_eq!(folder.names(), ["joints.csv"]);
-    has_its_parts(&POSTURE, task.options, &task.demand, &folder);
+    has_its_parts(&PostureJob::KIND, task.options, &task.demand, &folder);
     assert!(folder.text("joints.csv").starts_with("frame,time_s,clock_s,J2_deg,J2_sd_deg,J3_deg,"));
-    let told: Vec<(&str, bool)> = made.quality.iter().map(|q| (q.what.as_str(), q.against_truth)).collect();
-    assert_eq!(told, [("J2", true), ("J3", true)]);
+    let quality: Vec<(&str, bool)> = made.quality.iter().map(|q| (q.what.as_str(), q.against_truth)).collect();
+    assert_eq!(quality, [("J2", true), ("J3", true)]);
     assert!(made.quality.iter().all(|q| q.value <= 0.5), "{:?}", made.quality);
 }
 
@@ -57,8 +59,8 @@ fn joints_and_clock_are_measured_as_far_as_they_are_needed() {
     assert!(made.left_out.iter().any(|what| what.starts_with("clock: ")), "{:?}", made.left_out);
     assert!(made.left_out.iter().any(|what| what.contains("no wanted joint needs")), "{:?}", made.left_out);
 
-    let prepared = prepared(&POSTURE, "");
-    assert_ne!(prepared.options(&demand), prepared.options(&wanting(&["joints"])));
+    let prepared = prepared(&PostureJob::KIND, "");
+    assert_ne!(prepared.depends_on(&demand), prepared.depends_on(&wanting(&["joints"])));
     let seen = |stands| task.inputs.iter().map(|input| foreseen(input, stands, Facts::default())).collect::<Vec<_>>();
     for inputs in [seen(true), seen(false)] {
         let steps = prepared.steps(&inputs, &demand).unwrap();
@@ -95,7 +97,7 @@ fn align(root: &Path, options: &'static str, parts: &[&'static str]) -> Task<'st
     let roles = ["joints", "log", "tracks", "truth"];
     let names = ["truth/angles.csv", "log.csv", "tracks.csv", "truth/log.csv"];
     let inputs = roles.into_iter().zip(names).map(|(role, name)| at(role, &OF, root, name)).collect();
-    Task { kind: &ALIGN, options, demand: wanting(parts), keys: keys(&OF), inputs }
+    Task { kind: &AlignJob::KIND, options, demand: wanting(parts), keys: keys(&OF), inputs }
 }
 
 #[test]
@@ -105,7 +107,7 @@ fn a_labelled_set_is_the_same_anywhere() {
     for options in ["sync = 'offset=60+-0.01'", "format = 'parquet'"] {
         let task = align(dir.path(), options, &parts);
         let (folder, made) = is_the_same_anywhere(&task, dir.path());
-        has_its_parts(&ALIGN, options, &task.demand, &folder);
+        has_its_parts(&AlignJob::KIND, options, &task.demand, &folder);
         let truth: Vec<_> = made.quality.iter().filter(|q| q.against_truth).collect();
         assert_eq!(truth.iter().map(|q| q.what.as_str()).collect::<Vec<_>>(), ["J1", "J2", "J3"], "{options}");
         // The angles are exact; what is left is their interpolation between frames.
@@ -122,32 +124,32 @@ fn a_labelled_set_is_the_same_anywhere() {
 #[test]
 fn an_offset_that_is_known_needs_no_clock_and_a_lag_all_joints() {
     let own = Demand { joints: Some(["J2".to_owned()].into()), ..wanting(&["training"]) };
-    let of_joints = |options: &str| prepared(&ALIGN, options).demand("joints", &own);
+    let of_joints = |options: &str| prepared(&AlignJob::KIND, options).demand("joints", &own);
     let clock = of_joints("");
     assert_eq!((clock.clock, &clock.joints, clock.parts.contains("joints")), (true, &own.joints, true));
     assert_eq!((of_joints("sync = 'offset=60'").clock, of_joints("sync = 'clock'").clock), (false, true));
     let lag = of_joints("sync = 'correlate'");
     assert_eq!((lag.clock, lag.joints), (false, None));
-    let dlc = prepared(&ALIGN, "").demand("tracks", &wanting(&["dlc"]));
-    assert!(dlc.parts.contains("tracks") && prepared(&ALIGN, "").demand("tracks", &own).parts.is_empty());
+    let dlc = prepared(&AlignJob::KIND, "").demand("tracks", &wanting(&["dlc"]));
+    assert!(dlc.parts.contains("tracks") && prepared(&AlignJob::KIND, "").demand("tracks", &own).parts.is_empty());
 }
 
 #[test]
 fn the_plan_leaves_out_what_a_log_does_not_need() {
     let dir = logged(1, false);
     let task = align(dir.path(), "sync = 'offset=60'", &["training"]);
-    let prepared = prepared(&ALIGN, task.options);
+    let prepared = prepared(&AlignJob::KIND, task.options);
     let seen = |stands, facts| task.inputs.iter().map(|input| foreseen(input, stands, facts)).collect::<Vec<_>>();
     let unlit = Facts { led: Some(false), ..Facts::default() };
     for inputs in [seen(true, Facts::default()), seen(false, unlit)] {
         let steps = prepared.steps(&inputs, &task.demand).unwrap();
-        assert!(!step(&steps, "ambient light taken away").0);
+        assert!(!step(&steps, "ambient light subtracted").0);
         assert_eq!(step(&steps, "clock in the picture"), (false, "--sync names another tie"));
         assert!(!step(&steps, "figures").0 && !step(&steps, "DeepLabCut table").0);
     }
     let lit = seen(false, Facts { led: Some(true), clock: Some(true), forces: Some(true), ..Facts::default() });
-    let steps = super::prepared(&ALIGN, "").steps(&lit, &task.demand).unwrap();
-    assert!(step(&steps, "ambient light taken away").0 && step(&steps, "clock in the picture").0);
+    let steps = super::prepared(&AlignJob::KIND, "").steps(&lit, &task.demand).unwrap();
+    assert!(step(&steps, "ambient light subtracted").0 && step(&steps, "clock in the picture").0);
     assert_eq!(prepared.facts(&lit, &task.demand).forces, Some(true));
     assert_eq!(prepared.facts(&seen(true, Facts::default()), &task.demand).forces, Some(true));
 }
@@ -155,15 +157,12 @@ fn the_plan_leaves_out_what_a_log_does_not_need() {
 #[test]
 fn a_stage_s_wrong_values_name_their_key() {
     for (kind, options, key, words) in [
-        (&ALIGN, "sync = 'now'", "sync", "offset=SECONDS"),
-        (&ALIGN, "columns = 'Q1=x'", "columns", "`Q1` is none of"),
-        (&ALIGN, "max_gap = -1", "max_gap", "at least 0"),
-        (&ALIGN, "format = 'xlsx'", "format", "csv, parquet"),
-        (&POSTURE, "joints = 2", "joints", "write names"),
-        (&super::super::normalize::NORMALIZE, "margin = 9", "margin", "of 1 to 5"),
-        (&super::super::normalize::NORMALIZE, "outline = 'drawn'", "outline", "auto, annotated, detect"),
+        (&AlignJob::KIND, "sync = 'now'", "sync", "offset=SECONDS"),
+        (&AlignJob::KIND, "columns = 'Q1=x'", "columns", "`Q1` is none of"),
+        (&AlignJob::KIND, "max_gap = -1", "max_gap", "at least 0"),
+        (&AlignJob::KIND, "format = 'xlsx'", "format", "csv, parquet"),
     ] {
-        let fault = (kind.prepare)(options.parse().unwrap()).err().unwrap();
+        let fault = (kind.prepare)(&options.parse().unwrap()).err().unwrap();
         assert_eq!(fault.key, key);
         assert!(fault.what.contains(words), "{}", fault.what);
     }
@@ -180,7 +179,7 @@ fn one_set_is_passed_on_and_several_are_joined() {
     let set = |name: &str| at("sets", &OF, dir.path(), &format!("{name}/training.csv"));
     let task = |names: &[&str], options: &'static str| {
         let inputs = names.iter().map(|name| set(name)).collect();
-        Task { kind: &JOIN, options, demand: wanting(&["training"]), keys: keys(&OF), inputs }
+        Task { kind: &JoinJob::KIND, options, demand: wanting(&["training"]), keys: keys(&OF), inputs }
     };
     let alone = task(&["first"], "");
     let (folder, made) = is_the_same_anywhere(&alone, dir.path());
@@ -192,11 +191,11 @@ fn one_set_is_passed_on_and_several_are_joined() {
     assert_eq!(folder.text("training.csv"), first.text("training.csv") + rows);
     let both = task(&["second", "first"], "format = 'parquet'");
     let (folder, _) = is_the_same_anywhere(&both, dir.path());
-    has_its_parts(&JOIN, both.options, &both.demand, &folder);
+    has_its_parts(&JoinJob::KIND, both.options, &both.demand, &folder);
     let twice = task(&["first", "first"], "").try_run(1, None).err().unwrap().to_string();
     assert!(twice.contains("overlap"), "{twice}");
 
-    let prepared = prepared(&JOIN, "");
+    let prepared = prepared(&JoinJob::KIND, "");
     let plan = |task: &Task| {
         let inputs: Vec<_> = task.inputs.iter().map(|input| foreseen(input, false, Facts::default())).collect();
         prepared.steps(&inputs, &task.demand).unwrap()
