@@ -130,7 +130,8 @@ fn people_are_compared_alike_whatever_the_threads_and_wrong_requests_are_refused
     let both = format!("{first}{}", second.split_once('\n').unwrap().1);
     dir.write("both.csv", both);
     joined.touch[0] = dir.path("both.csv");
-    let told = compare(&[joined], &options(), None, &watch).map(|report| report.figures.people).unwrap_err().to_string();
+    let told =
+        compare(&[joined], &options(), None, &watch).map(|report| report.figures.people).unwrap_err().to_string();
     assert!(told.contains("both.csv"), "{told}");
     stop.store(true, std::sync::atomic::Ordering::Relaxed);
     assert!(matches!(compare(&people, &options(), None, &watch), Err(PredictorError::Interrupted(_))));

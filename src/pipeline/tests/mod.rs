@@ -7,6 +7,7 @@ mod jobs;
 mod kill;
 mod limits;
 mod parts;
+pub(super) mod planned;
 mod random;
 mod speed;
 mod toys;

@@ -14,14 +14,14 @@ use regex::Regex;
 
 use crate::job::Keys;
 
-pub(super) use walk::{Disk, Listed, Tree};
+pub(in crate::pipeline) use walk::{Disk, Listed, Tree};
 
 /// A pattern, taken apart.
 #[derive(Debug, Clone)]
-pub(super) struct Pattern {
+pub(in crate::pipeline) struct Pattern {
     parts: Vec<Part>,
     /// The places' names in order, each once.
-    pub(super) names: Vec<String>,
+    pub(in crate::pipeline) names: Vec<String>,
     folders: bool,
 }
 
@@ -47,7 +47,7 @@ impl Pattern {
     ///
     /// # Errors
     /// What is wrong with it.
-    pub(super) fn parse(text: &str) -> Result<Self, String> {
+    pub(in crate::pipeline) fn parse(text: &str) -> Result<Self, String> {
         let (body, folders) = text.strip_suffix('/').map_or((text, false), |body| (body, true));
         let mut parts = Vec::new();
         let mut names: Vec<String> = Vec::new();

@@ -4,14 +4,14 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::catalogue::{Catalogue, CatalogueFile, CatalogueTask};
-use super::plan::Plan;
-use super::spec::{PipelineError, Spec};
 use crate::job::{Demand, Facts, Foreseen, Keys, Kind, Made, Maker, OptionFault, Part, Prepared, Role, Takes, Work};
+use crate::pipeline::items::catalogue::{Catalogue, CatalogueFile, CatalogueTask};
+use crate::pipeline::plan::Plan;
+use crate::pipeline::spec::{PipelineError, Spec};
 use crate::stages::Step;
 
 /// The kinds of toys.
-pub(super) static TOYS: &[&Kind] = &[&TRACK, &ALIGN, &TRAIN, &EVALUATE, &NORMALIZE];
+pub(in crate::pipeline) static TOYS: &[&Kind] = &[&TRACK, &ALIGN, &TRAIN, &EVALUATE, &NORMALIZE];
 
 static TRACK: Kind = Kind {
     name: "track",
@@ -142,10 +142,10 @@ impl Maker for Nothing {
 }
 
 /// A folder with files, in which a pipeline is planned.
-pub(super) struct Bench(tempfile::TempDir);
+pub(in crate::pipeline) struct Bench(tempfile::TempDir);
 
 impl Bench {
-    pub(super) fn new(files: &[(&str, &str)]) -> Self {
+    pub(in crate::pipeline) fn new(files: &[(&str, &str)]) -> Self {
         let dir = tempfile::tempdir().expect("a folder");
         for (name, text) in files {
             let path = dir.path().join(name);
@@ -155,20 +155,20 @@ impl Bench {
         Self(dir)
     }
 
-    pub(super) fn try_plan(&self, text: &str) -> Result<Plan, PipelineError> {
+    pub(in crate::pipeline) fn try_plan(&self, text: &str) -> Result<Plan, PipelineError> {
         let path = self.0.path().join("pipeline.toml");
         let spec = Spec::parse(text, &path, TOYS)?;
         let generated = spec.catalogue(catalogue)?;
         Plan::new(&spec, &self.0.path().join("out"), generated.as_ref())
     }
 
-    pub(super) fn plan(&self, text: &str) -> Plan {
+    pub(in crate::pipeline) fn plan(&self, text: &str) -> Plan {
         self.try_plan(text).unwrap_or_else(|why| panic!("{why}"))
     }
 
     /// The faults of a pipeline, as `line:column: what`.
     #[track_caller]
-    pub(super) fn faults(&self, text: &str) -> Vec<String> {
+    pub(in crate::pipeline) fn faults(&self, text: &str) -> Vec<String> {
         match self.try_plan(text) {
             Err(PipelineError::Faults { faults, .. }) => {
                 faults.iter().map(|f| format!("{}:{}: {}", f.line, f.column, f.what)).collect()

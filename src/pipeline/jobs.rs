@@ -1,13 +1,9 @@
 //! The jobs that pipelines know.
 
-mod phantom;
-
 use crate::align::{AlignJob, JoinJob};
 use crate::job::{Job, Kind};
 use crate::posture::PostureJob;
 use crate::predictor::{AnalyseJob, CompareJob, EvaluateJob, PredictJob, PruneJob, TrainJob};
-
-pub use phantom::phantom_catalogue;
 
 /// All kinds of jobs, by name.
 #[must_use]

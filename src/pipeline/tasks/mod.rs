@@ -3,6 +3,8 @@
 //! The planner makes tasks from a pipeline file; the runner makes of them what does not exist yet. A runner knows no
 //! job, and a job knows neither pipeline nor store: they meet in `job::Work` and `job::Made`.
 
+pub(super) mod graph;
+
 use std::path::PathBuf;
 use std::sync::Arc;
 

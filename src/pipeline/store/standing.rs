@@ -10,11 +10,11 @@ use std::path::Path;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::graph::{Graph, GraphFault};
-use super::hashes::{ContentHash, FileFault, Hashes};
-use super::record::{Fingerprint, Known, Record};
-use super::store::Store;
-use super::task::{Source, Task, TaskId};
+use crate::pipeline::store::Store;
+use crate::pipeline::store::hashes::{ContentHash, FileFault, Hashes};
+use crate::pipeline::store::record::{Fingerprint, Known, Record};
+use crate::pipeline::tasks::graph::{Graph, GraphFault};
+use crate::pipeline::tasks::{Source, Task, TaskId};
 
 /// Why a task is to be done.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
@@ -154,7 +154,7 @@ impl Looked {
 
 /// Why a record is not that of the task as it is now. Where inputs are `open`, those that are not among `now` may be
 /// the same.
-pub(super) fn difference(record: &Record, task: &Task, now: &Fingerprint, open: bool) -> Option<Why> {
+pub(in crate::pipeline) fn difference(record: &Record, task: &Task, now: &Fingerprint, open: bool) -> Option<Why> {
     if record.key == now.key {
         return None;
     }
@@ -206,7 +206,7 @@ fn options_changed(before: &serde_json::Value, now: &serde_json::Value) -> Why {
 }
 
 /// A result that is not there as it was made.
-pub(super) fn spoilt(record: &Record, folder: &Path, hashes: &Hashes) -> Option<Why> {
+pub(in crate::pipeline) fn spoilt(record: &Record, folder: &Path, hashes: &Hashes) -> Option<Why> {
     record.outputs.iter().find_map(|output| match hashes.of_file(&folder.join(&output.name)) {
         Ok((found, _)) if found == output.sha256 => None,
         Ok(_) | Err(FileFault::Changing(_)) => Some(Why::Edited(output.name.clone())),

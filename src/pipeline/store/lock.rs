@@ -29,10 +29,10 @@ impl std::fmt::Display for Holder {
 
 /// A lock, held as long as this lives.
 #[derive(Debug)]
-pub(super) struct Held {
+pub(in crate::pipeline) struct Held {
     file: File,
     /// The system's words where the file system knows no locks.
-    pub(super) unlocked: Option<String>,
+    pub(in crate::pipeline) unlocked: Option<String>,
 }
 
 impl Drop for Held {
@@ -44,14 +44,14 @@ impl Drop for Held {
 }
 
 #[derive(Debug)]
-pub(super) enum Refused {
+pub(in crate::pipeline) enum Refused {
     /// Somebody else holds it.
     Held(Option<Holder>),
     Io(std::io::Error),
 }
 
 /// Takes the lock, or tells who has it.
-pub(super) fn hold(place: &Path) -> Result<Held, Refused> {
+pub(in crate::pipeline) fn hold(place: &Path) -> Result<Held, Refused> {
     let open = OpenOptions::new().create(true).truncate(false).read(true).write(true).open(place);
     let mut file = open.map_err(Refused::Io)?;
     let unlocked = match file.try_lock() {
@@ -71,7 +71,7 @@ pub(super) fn hold(place: &Path) -> Result<Held, Refused> {
 
 /// Keeps others from taking the lock while this lives, where nobody has it; the folder may be one that can only be
 /// read.
-pub(super) fn share(place: &Path) -> Result<Option<File>, Refused> {
+pub(in crate::pipeline) fn share(place: &Path) -> Result<Option<File>, Refused> {
     let Ok(mut file) = File::open(place) else { return Ok(None) };
     match file.try_lock_shared() {
         Err(TryLockError::WouldBlock) => Err(Refused::Held(read_holder(&mut file))),

@@ -92,7 +92,7 @@ impl TryFrom<String> for ContentHash {
 
 /// Why a file's content is not known.
 #[derive(Debug, Error)]
-pub(super) enum FileFault {
+pub(in crate::pipeline) enum FileFault {
     /// Nothing of this name.
     #[error("{}: is not there; put it back, or correct the pipeline file", .0.display())]
     Missing(PathBuf),
@@ -181,7 +181,7 @@ type Slot = Arc<Mutex<(Option<Seen>, bool)>>;
 
 /// The contents of files; shared by threads.
 #[derive(Debug)]
-pub(super) struct Hashes {
+pub(in crate::pipeline) struct Hashes {
     /// Each file's slot is held while it is read, so that no two threads read it: what is known, and whether it was
     /// asked for.
     known: Mutex<HashMap<FileId, Slot>>,
@@ -196,7 +196,7 @@ pub(super) struct Hashes {
 
 impl Hashes {
     /// What is remembered at `place`, if anything; nothing is written there.
-    pub(super) fn look(place: &Path) -> Self {
+    pub(in crate::pipeline) fn look(place: &Path) -> Self {
         let text = fs::read(place).unwrap_or_default();
         let mut known = HashMap::new();
         let mut lines = 0;
@@ -219,7 +219,7 @@ impl Hashes {
 
     /// The same, and what is learned is remembered there. Where that can't be written, files are read again the next
     /// time.
-    pub(super) fn keep(place: &Path) -> Self {
+    pub(in crate::pipeline) fn keep(place: &Path) -> Self {
         let mut hashes = Self::look(place);
         let mut log = OpenOptions::new().create(true).append(true).open(place).ok();
         // A line that was cut short must not swallow the next one.
@@ -232,7 +232,7 @@ impl Hashes {
     }
 
     /// Remembers what another folder's run remembers, of files that are not known here.
-    pub(super) fn learn(&self, place: &Path) {
+    pub(in crate::pipeline) fn learn(&self, place: &Path) {
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         for (file, slot) in Self::look(place).known.get_mut().unwrap_or_else(PoisonError::into_inner).drain() {
             known.entry(file).or_insert(slot);
@@ -241,12 +241,12 @@ impl Hashes {
 
     /// How many files were read, not remembered.
     #[cfg(test)]
-    pub(super) fn read(&self) -> usize {
+    pub(in crate::pipeline) fn read(&self) -> usize {
         self.read.load(Ordering::Relaxed)
     }
 
     /// What a file holds, and its size in bytes.
-    pub(super) fn of_file(&self, path: &Path) -> Result<(ContentHash, u64), FileFault> {
+    pub(in crate::pipeline) fn of_file(&self, path: &Path) -> Result<(ContentHash, u64), FileFault> {
         let metadata = fs::metadata(path).map_err(|why| FileFault::of(path, why))?;
         if !metadata.is_file() {
             return Err(FileFault::Strange(path.to_owned()));
@@ -266,7 +266,7 @@ impl Hashes {
     }
 
     /// What a file, or all files in a folder with their names, hold.
-    pub(super) fn of_given(&self, path: &Path) -> Result<ContentHash, FileFault> {
+    pub(in crate::pipeline) fn of_given(&self, path: &Path) -> Result<ContentHash, FileFault> {
         if !fs::metadata(path).map_err(|why| FileFault::of(path, why))?.is_dir() {
             return Ok(self.of_file(path)?.0);
         }
@@ -331,7 +331,7 @@ impl Drop for Hashes {
 }
 
 /// The hash of names with what they hold; in the names' order.
-pub(super) fn of_names<'a>(names: impl Iterator<Item = (&'a str, ContentHash)>) -> ContentHash {
+pub(in crate::pipeline) fn of_names<'a>(names: impl Iterator<Item = (&'a str, ContentHash)>) -> ContentHash {
     let mut named: Vec<_> = names.collect();
     named.sort_unstable();
     let mut hash = Sha256::new();
@@ -344,7 +344,7 @@ pub(super) fn of_names<'a>(names: impl Iterator<Item = (&'a str, ContentHash)>) 
 }
 
 /// All files in a folder and the folders in it, as names with `/`, sorted. Links are followed.
-pub(super) fn files_in(folder: &Path) -> Result<Vec<String>, FileFault> {
+pub(in crate::pipeline) fn files_in(folder: &Path) -> Result<Vec<String>, FileFault> {
     let mut names = Vec::new();
     walk(folder, "", 0, &mut names)?;
     names.sort_unstable();

@@ -2,7 +2,7 @@
 //! `full_scale` there.
 
 /// A text with keys in place of options.
-pub(super) fn in_keys(text: &str) -> String {
+pub(in crate::pipeline) fn in_keys(text: &str) -> String {
     if text == "--no-figures" {
         // Pictures are a part of a result there.
         return "not asked for".to_owned();
@@ -32,12 +32,12 @@ pub(super) fn in_keys(text: &str) -> String {
 }
 
 /// The same of all of a job's texts for people.
-pub(super) fn all_in_keys(texts: &mut [String]) {
+pub(in crate::pipeline) fn all_in_keys(texts: &mut [String]) {
     texts.iter_mut().for_each(|text| *text = in_keys(text));
 }
 
 /// The same of a report's.
-pub(super) fn report_in_keys(report: &mut serde_json::Value) {
+pub(in crate::pipeline) fn report_in_keys(report: &mut serde_json::Value) {
     for list in ["warnings", "left_out"] {
         for text in report.get_mut(list).and_then(|list| list.as_array_mut()).into_iter().flatten() {
             if let serde_json::Value::String(text) = text {

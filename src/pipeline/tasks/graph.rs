@@ -5,7 +5,7 @@ use std::collections::{BTreeSet, HashMap};
 
 use thiserror::Error;
 
-use super::task::{Source, Task, TaskId};
+use crate::pipeline::tasks::{Source, Task, TaskId};
 
 /// Why tasks can't be worked through.
 #[derive(Debug, Error, PartialEq, Eq)]
@@ -39,20 +39,20 @@ pub enum GraphFault {
 
 /// Who needs whom, by position in the list of tasks.
 #[derive(Debug)]
-pub(super) struct Graph {
+pub(in crate::pipeline) struct Graph {
     /// Each after all that it needs.
-    pub(super) order: Vec<usize>,
+    pub(in crate::pipeline) order: Vec<usize>,
     /// Whose results each works on; none twice.
-    pub(super) needs: Vec<Vec<usize>>,
+    pub(in crate::pipeline) needs: Vec<Vec<usize>>,
     /// Who works on each one's results.
-    pub(super) needed_by: Vec<Vec<usize>>,
+    pub(in crate::pipeline) needed_by: Vec<Vec<usize>>,
     /// Each one's own time and that of the longest way on from it, seconds.
-    pub(super) path_s: Vec<f64>,
+    pub(in crate::pipeline) path_s: Vec<f64>,
     position: HashMap<TaskId, usize>,
 }
 
 impl Graph {
-    pub(super) fn new(tasks: &[Task]) -> Result<Self, GraphFault> {
+    pub(in crate::pipeline) fn new(tasks: &[Task]) -> Result<Self, GraphFault> {
         let mut position = HashMap::with_capacity(tasks.len());
         for (at, task) in tasks.iter().enumerate() {
             let is_name = |part: &str| !matches!(part, "" | "." | ".." | ".lunula") && !part.contains(['\\', '\0']);
@@ -95,13 +95,13 @@ impl Graph {
     }
 
     /// Where a task stands in the list.
-    pub(super) fn at(&self, task: &str) -> usize {
+    pub(in crate::pipeline) fn at(&self, task: &str) -> usize {
         self.position[task]
     }
 }
 
 /// The names of folders that a task's folder lies in: of `a/b/c` they are `a/b` and `a`.
-pub(super) fn above(id: &str) -> impl Iterator<Item = &str> {
+pub(in crate::pipeline) fn above(id: &str) -> impl Iterator<Item = &str> {
     std::iter::successors(id.rfind('/').map(|end| &id[..end]), |outer| outer.rfind('/').map(|end| &outer[..end]))
 }
 

@@ -10,6 +10,12 @@
 //! - `lock`: who works here
 //! - `part.json`: which part of a run cut into parts this is
 
+pub(super) mod commit;
+pub(super) mod hashes;
+pub(super) mod lock;
+pub(super) mod record;
+pub(super) mod standing;
+
 use std::collections::BTreeSet;
 use std::fs;
 use std::io;
@@ -18,10 +24,10 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::hashes::ContentHash;
-use super::record::{FORMAT, Record};
-use super::task::{Task, TaskId};
 use crate::files::{clear_leftovers, write_whole};
+use crate::pipeline::store::hashes::ContentHash;
+use crate::pipeline::store::record::{FORMAT, Record};
+use crate::pipeline::tasks::{Task, TaskId};
 
 /// A task that failed when it was tried last.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]

@@ -7,12 +7,12 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::hashes::{ContentHash, of_names};
-use super::task::{Input, Source, Task, TaskId};
 use crate::job::{Keys, Made};
+use crate::pipeline::store::hashes::{ContentHash, of_names};
+use crate::pipeline::tasks::{Input, Source, Task, TaskId};
 
 /// The form of records; another is read as none.
-pub(super) const FORMAT: u32 = 1;
+pub(in crate::pipeline) const FORMAT: u32 = 1;
 
 /// A file that a task made.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -27,35 +27,35 @@ pub struct Output {
 
 /// An input as it was.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) struct Known {
-    pub(super) role: String,
-    pub(super) keys: Keys,
-    pub(super) name: String,
-    pub(super) sha256: ContentHash,
+pub(in crate::pipeline) struct Known {
+    pub(in crate::pipeline) role: String,
+    pub(in crate::pipeline) keys: Keys,
+    pub(in crate::pipeline) name: String,
+    pub(in crate::pipeline) sha256: ContentHash,
 }
 
 impl Known {
-    pub(super) fn new(input: &Input, sha256: ContentHash) -> Self {
+    pub(in crate::pipeline) fn new(input: &Input, sha256: ContentHash) -> Self {
         Self { role: input.role.to_owned(), keys: input.keys.clone(), name: input.name(), sha256 }
     }
 
     /// It is the same thing to the job, whatever it holds.
-    pub(super) fn is_of(&self, other: &Self) -> bool {
+    pub(in crate::pipeline) fn is_of(&self, other: &Self) -> bool {
         self.role == other.role && self.keys == other.keys && self.name == other.name
     }
 }
 
 /// All that a task's result hangs on.
 #[derive(Debug, Clone)]
-pub(super) struct Fingerprint {
-    pub(super) key: ContentHash,
-    pub(super) inputs: Vec<Known>,
+pub(in crate::pipeline) struct Fingerprint {
+    pub(in crate::pipeline) key: ContentHash,
+    pub(in crate::pipeline) inputs: Vec<Known>,
     /// Names of inputs that failed and may.
-    pub(super) without: Vec<String>,
+    pub(in crate::pipeline) without: Vec<String>,
 }
 
 impl Fingerprint {
-    pub(super) fn new(task: &Task, inputs: Vec<Known>, without: Vec<String>) -> Self {
+    pub(in crate::pipeline) fn new(task: &Task, inputs: Vec<Known>, without: Vec<String>) -> Self {
         let all = serde_json::json!({ "task": task.id, "keys": task.keys, "options": task.options, "inputs": inputs });
         let mut text = b"lunula task 1\n".to_vec();
         canonical(&all, &mut text);
@@ -65,27 +65,27 @@ impl Fingerprint {
 
 /// What is kept of a task.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub(super) struct Record {
-    pub(super) format: u32,
-    pub(super) task: TaskId,
-    pub(super) key: ContentHash,
-    pub(super) options: Value,
-    pub(super) inputs: Vec<Known>,
-    pub(super) without: Vec<String>,
-    pub(super) outputs: Vec<Output>,
-    pub(super) made: Made,
+pub(in crate::pipeline) struct Record {
+    pub(in crate::pipeline) format: u32,
+    pub(in crate::pipeline) task: TaskId,
+    pub(in crate::pipeline) key: ContentHash,
+    pub(in crate::pipeline) options: Value,
+    pub(in crate::pipeline) inputs: Vec<Known>,
+    pub(in crate::pipeline) without: Vec<String>,
+    pub(in crate::pipeline) outputs: Vec<Output>,
+    pub(in crate::pipeline) made: Made,
     /// How long it took, seconds.
-    pub(super) wall_s: f64,
+    pub(in crate::pipeline) wall_s: f64,
     /// When it was done (UTC), for people.
-    pub(super) at: String,
+    pub(in crate::pipeline) at: String,
     /// The version that did it, for people.
-    pub(super) lunula: String,
+    pub(in crate::pipeline) lunula: String,
 }
 
 impl Record {
     /// What an input of this name in the task's folder holds: a file, or a folder of files (empty: all). `None`: there
     /// is none.
-    pub(super) fn content(&self, name: &str) -> Option<ContentHash> {
+    pub(in crate::pipeline) fn content(&self, name: &str) -> Option<ContentHash> {
         if let Some(output) = self.outputs.iter().find(|output| output.name == name) {
             return Some(output.sha256);
         }
@@ -96,7 +96,7 @@ impl Record {
 }
 
 /// The outputs in a folder of the task's (empty: all), named from there.
-pub(super) fn within<'a>(outputs: &'a [Output], folder: &str) -> Vec<(&'a str, &'a Output)> {
+pub(in crate::pipeline) fn within<'a>(outputs: &'a [Output], folder: &str) -> Vec<(&'a str, &'a Output)> {
     let rest = |name: &'a str| match folder {
         "" => Some(name),
         folder => name.strip_prefix(folder)?.strip_prefix('/'),
@@ -117,7 +117,7 @@ impl Input {
 }
 
 /// JSON with the keys of objects sorted, whatever order they stand in.
-pub(super) fn canonical(value: &Value, into: &mut Vec<u8>) {
+pub(in crate::pipeline) fn canonical(value: &Value, into: &mut Vec<u8>) {
     match value {
         Value::Object(map) => {
             let mut keys: Vec<&String> = map.keys().collect();

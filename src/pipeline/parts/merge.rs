@@ -15,17 +15,17 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::commit::{commit, files};
-use super::graph::{Graph, GraphFault};
-use super::hashes::Hashes;
-use super::lock::{Holder, Refused, share};
-use super::record::Record;
-use super::run::{Results, RunFault, link, said};
-use super::shard::{PartMark, PipelineMark, hash_of, shares};
-use super::standing::{Why, spoilt};
-use super::store::Store;
-use super::task::{Share, Task, TaskId};
 use crate::files::is_same_file;
+use crate::pipeline::parts::shard::{PartMark, PipelineMark, hash_of, shares};
+use crate::pipeline::run::{Results, RunFault, link, said};
+use crate::pipeline::store::Store;
+use crate::pipeline::store::commit::{commit, files};
+use crate::pipeline::store::hashes::Hashes;
+use crate::pipeline::store::lock::{Holder, Refused, share};
+use crate::pipeline::store::record::Record;
+use crate::pipeline::store::standing::{Why, spoilt};
+use crate::pipeline::tasks::graph::{Graph, GraphFault};
+use crate::pipeline::tasks::{Share, Task, TaskId};
 
 /// How many names an error tells.
 const NAMED: usize = 5;

@@ -14,15 +14,15 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::hashes::{ContentHash, FileFault, Hashes, files_in};
-use super::record::{Output, Record};
-use super::store::{Store, read_record};
 use crate::files::disk::{rename, sync};
 use crate::files::{clear_leftovers, note_placed, write_whole};
+use crate::pipeline::store::hashes::{ContentHash, FileFault, Hashes, files_in};
+use crate::pipeline::store::record::{Output, Record};
+use crate::pipeline::store::{Store, read_record};
 
 /// Why results did not come to their place.
 #[derive(Debug, Error)]
-pub(super) enum CommitFault {
+pub(in crate::pipeline) enum CommitFault {
     #[error("{}: cannot be written ({why})", .path.display())]
     Io { path: PathBuf, why: io::Error },
     #[error(
@@ -46,12 +46,12 @@ fn io_fault(path: &Path) -> impl FnOnce(io::Error) -> CommitFault + '_ {
 }
 
 /// Where a task puts its files while it works.
-pub(super) fn files(work: &Path) -> PathBuf {
+pub(in crate::pipeline) fn files(work: &Path) -> PathBuf {
     work.join("files")
 }
 
 /// What a task made, with what it holds, sorted by name.
-pub(super) fn outputs(work: &Path, hashes: &Hashes) -> Result<Vec<Output>, FileFault> {
+pub(in crate::pipeline) fn outputs(work: &Path, hashes: &Hashes) -> Result<Vec<Output>, FileFault> {
     let folder = files(work);
     // A hidden folder that the job could not remove is no result.
     clear_leftovers(&folder);
@@ -63,7 +63,12 @@ pub(super) fn outputs(work: &Path, hashes: &Hashes) -> Result<Vec<Output>, FileF
 }
 
 /// Puts a task's files and its record into their place; tells what a user should know.
-pub(super) fn commit(store: &Store, hashes: &Hashes, work: &Path, record: &Record) -> Result<Vec<String>, CommitFault> {
+pub(in crate::pipeline) fn commit(
+    store: &Store,
+    hashes: &Hashes,
+    work: &Path,
+    record: &Record,
+) -> Result<Vec<String>, CommitFault> {
     let place = work.join("record.json");
     let text = serde_json::to_vec(record).map_err(|why| CommitFault::Record(why.to_string()))?;
     write_whole(&place, &text).map_err(|why| CommitFault::Record(why.to_string()))?;
@@ -75,7 +80,7 @@ pub(super) fn commit(store: &Store, hashes: &Hashes, work: &Path, record: &Recor
 }
 
 /// Finishes what runs that were killed had made, and removes what they had not.
-pub(super) fn recover(store: &Store, hashes: &Hashes) -> io::Result<Vec<String>> {
+pub(in crate::pipeline) fn recover(store: &Store, hashes: &Hashes) -> io::Result<Vec<String>> {
     let mut told = Vec::new();
     for entry in fs::read_dir(store.work())? {
         let work = entry?.path();
@@ -134,7 +139,7 @@ fn put(store: &Store, hashes: &Hashes, work: &Path, record: &Record) -> Result<V
 }
 
 /// Removes what a pipeline of before made, where a task of now needs its place, and its record.
-pub(super) fn retire(store: &Store, hashes: &Hashes, stray: &Record) -> Result<Vec<String>, CommitFault> {
+pub(in crate::pipeline) fn retire(store: &Store, hashes: &Hashes, stray: &Record) -> Result<Vec<String>, CommitFault> {
     let folder = store.folder(&stray.task);
     let mut warnings = Vec::new();
     for output in &stray.outputs {
@@ -212,7 +217,7 @@ fn free_name(of: &Path) -> PathBuf {
 }
 
 /// Whether a file is one that [`commit`] kept aside.
-pub(super) fn is_kept_aside(name: &str) -> bool {
+pub(in crate::pipeline) fn is_kept_aside(name: &str) -> bool {
     name.rsplit_once(".edited").is_some_and(|(_, number)| {
         number.is_empty()
             || number.strip_prefix('.').is_some_and(|digits| digits.bytes().all(|byte| byte.is_ascii_digit()))

@@ -12,12 +12,12 @@ use std::str::FromStr;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::graph::Graph;
-use super::hashes::ContentHash;
-use super::record::canonical;
-use super::store::Store;
-use super::task::{Share, Task};
 use crate::files::{WriteError, write_whole};
+use crate::pipeline::store::Store;
+use crate::pipeline::store::hashes::ContentHash;
+use crate::pipeline::store::record::canonical;
+use crate::pipeline::tasks::graph::Graph;
+use crate::pipeline::tasks::{Share, Task};
 
 /// One part of a run that is cut into parts; written `2/7`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -65,7 +65,7 @@ impl Shard {
     }
 
     /// A task of this share is its own.
-    pub(super) fn does(self, share: Share) -> bool {
+    pub(in crate::pipeline) fn does(self, share: Share) -> bool {
         matches!(share, Share::Part(number) if number % self.of == self.index - 1)
     }
 
@@ -138,23 +138,23 @@ pub struct PartMark {
 }
 
 impl PartMark {
-    pub(super) fn new(shard: Shard, pipeline: &PipelineMark, tasks: &[Task]) -> Self {
+    pub(in crate::pipeline) fn new(shard: Shard, pipeline: &PipelineMark, tasks: &[Task]) -> Self {
         Self { shard, pipeline: pipeline.clone(), lunula: env!("CARGO_PKG_VERSION").into(), tasks: hash_of(tasks) }
     }
 
     /// The mark of a folder, if it has one that can be read.
-    pub(super) fn of(store: &Store) -> Option<Self> {
+    pub(in crate::pipeline) fn of(store: &Store) -> Option<Self> {
         serde_json::from_slice(&fs::read(store.mark()).ok()?).ok()
     }
 
-    pub(super) fn write(&self, store: &Store) -> Result<(), WriteError> {
+    pub(in crate::pipeline) fn write(&self, store: &Store) -> Result<(), WriteError> {
         let refused = |why: serde_json::Error| WriteError::File { path: store.mark(), why: why.to_string() };
         write_whole(&store.mark(), &serde_json::to_vec(self).map_err(refused)?)
     }
 }
 
 /// What the tasks are, without what their inputs hold.
-pub(super) fn hash_of(tasks: &[Task]) -> ContentHash {
+pub(in crate::pipeline) fn hash_of(tasks: &[Task]) -> ContentHash {
     let mut text = Vec::new();
     for task in tasks {
         let inputs: Vec<_> =
@@ -170,7 +170,7 @@ pub(super) fn hash_of(tasks: &[Task]) -> ContentHash {
 }
 
 /// The shares of tasks, where what needs several parts is the whole's.
-pub(super) fn shares(tasks: &[Task], graph: &Graph) -> Vec<Share> {
+pub(in crate::pipeline) fn shares(tasks: &[Task], graph: &Graph) -> Vec<Share> {
     let mut shares: Vec<Share> = tasks.iter().map(|task| task.share).collect();
     for &at in &graph.order {
         let fits = |needed: &usize| match (shares[at], shares[*needed]) {
@@ -186,7 +186,7 @@ pub(super) fn shares(tasks: &[Task], graph: &Graph) -> Vec<Share> {
 }
 
 /// Which tasks a part does; all of them where there are no parts.
-pub(super) fn chosen(tasks: &[Task], graph: &Graph, shard: Option<Shard>) -> Vec<bool> {
+pub(in crate::pipeline) fn chosen(tasks: &[Task], graph: &Graph, shard: Option<Shard>) -> Vec<bool> {
     let Some(shard) = shard else { return vec![true; tasks.len()] };
     let shares = shares(tasks, graph);
     let mut chosen: Vec<bool> = shares.iter().map(|share| shard.does(*share)).collect();
