@@ -230,7 +230,7 @@ pub fn to_file(image_path: &str, size: [u32; 2], nails: &[ToDraw]) -> LabelMe {
         let points = nail.outline.points().iter().map(|p| to_labelme(p.map(|v| (v * 100.0).round() / 100.0))).collect();
         let mut polygon = Shape::new(if nail.trusted { NAIL } else { DOUBTFUL }, "polygon", points);
         polygon.description = Some(format!("detected by lunula, confidence {:.2}", nail.confidence));
-        let line = crate::photo::frame::NailFrame::new(&nail.outline, nail.axis)
+        let line = crate::photo::normalize::NailFrame::new(&nail.outline, nail.axis)
             .map(|f| vec![to_labelme(f.photo_from_nail(0.0, -0.5)), to_labelme(f.photo_from_nail(0.0, 0.5))]);
         let axis = line.map(|points| Shape::new(AXIS, "line", points));
         for mut shape in std::iter::once(polygon).chain(axis) {

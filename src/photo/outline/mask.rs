@@ -21,7 +21,7 @@ use image::{DynamicImage, GrayImage, ImageBuffer, Luma, Pixel, Primitive};
 use imageproc::region_labelling::{Connectivity, connected_components};
 use thiserror::Error;
 
-use super::{Outline, OutlineFault, Shape};
+use super::{Moments, Outline, OutlineFault};
 
 /// The largest value of a mask that is still read as instance numbers.
 const LARGEST_ID: f32 = 32.0;
@@ -271,7 +271,7 @@ fn greyness(values: &ImageBuffer<Luma<f32>, Vec<f32>>, largest: f32, full: f32) 
 impl MaskOutlines {
     /// Which of the nails are too large to be any, in their order.
     pub(super) fn too_large(&self, mask_px: f64) -> Vec<Option<TooLarge>> {
-        let lengths: Vec<f64> = self.nails.iter().map(|nail| Shape::of(nail).major_px).collect();
+        let lengths: Vec<f64> = self.nails.iter().map(|nail| Moments::of(nail).major_px).collect();
         let doubt = |(at, nail): (usize, &Outline)| {
             let share = nail.area_px2() / mask_px;
             let mut others: Vec<f64> =
@@ -311,7 +311,7 @@ fn sorted_out(polygons: Vec<Polygon<f64>>) -> MaskOutlines {
         }
     }
     found.nails.sort_by(|a, b| {
-        let ([ax, ay], [bx, by]) = (Shape::of(a).centroid_px, Shape::of(b).centroid_px);
+        let ([ax, ay], [bx, by]) = (Moments::of(a).centroid_px, Moments::of(b).centroid_px);
         ay.total_cmp(&by).then(ax.total_cmp(&bx))
     });
     found

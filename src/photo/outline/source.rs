@@ -88,7 +88,7 @@ pub struct Nail {
     pub reason: String,
 }
 
-/// Why a photograph's nails can't be told.
+/// Why a photograph has no nails to list.
 #[derive(Debug, Error)]
 pub enum SourceFault {
     /// The LabelMe file.
@@ -127,7 +127,7 @@ pub enum SourceFault {
 
 /// Where a photograph's outlines will come from, known without opening it.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Found {
+pub enum OutlinePlace {
     /// A LabelMe file.
     LabelMe(PathBuf),
     /// A mask.
@@ -135,38 +135,43 @@ pub enum Found {
     /// Nothing drawn: detection.
     Detection,
     /// Nothing drawn, and detection is not wanted.
-    Nothing,
+    Nowhere,
 }
 
 impl OutlineOptions {
     /// The first source that has something for `photo`.
-    pub fn locate(&self, photo: &Photo) -> Found {
+    pub fn locate(&self, photo: &Photo) -> OutlinePlace {
         if self.sources == Sources::Detect {
-            return Found::Detection;
+            return OutlinePlace::Detection;
         }
         if let Some(outline) = &photo.outline {
-            return if is_picture(outline) { Found::Mask(outline.clone()) } else { Found::LabelMe(outline.clone()) };
+            return if is_picture(outline) {
+                OutlinePlace::Mask(outline.clone())
+            } else {
+                OutlinePlace::LabelMe(outline.clone())
+            };
         }
         let beside = photo.path.with_extension("json");
         if beside.is_file() && !self.listed_only {
-            return Found::LabelMe(beside);
+            return OutlinePlace::LabelMe(beside);
         }
         if let Some(mask) = self.masks.as_ref().and_then(|folder| mask_of(folder, photo)) {
-            return Found::Mask(mask);
+            return OutlinePlace::Mask(mask);
         }
-        if self.sources == Sources::Annotated { Found::Nothing } else { Found::Detection }
+        if self.sources == Sources::Annotated { OutlinePlace::Nowhere } else { OutlinePlace::Detection }
     }
 
-    /// The nails of an opened photograph, in the source's order; at least one, used or not.
+    /// The nails of an opened photograph whose outlines come from `place`, in the source's order; at least one, used or
+    /// not.
     ///
     /// # Errors
     /// [`SourceFault`] where there is nothing to list.
-    pub fn nails(&self, photo: &Photo, picture: &Photograph) -> Result<Vec<Nail>, SourceFault> {
-        match self.locate(photo) {
-            Found::LabelMe(file) => self.annotated_nails(&file, picture),
-            Found::Mask(file) => self.mask_nails(&file, picture),
-            Found::Detection => self.detected_nails(picture),
-            Found::Nothing => Err(SourceFault::NotAnnotated { masks: self.masks.is_some() }),
+    pub fn nails(&self, place: &OutlinePlace, picture: &Photograph) -> Result<Vec<Nail>, SourceFault> {
+        match place {
+            OutlinePlace::LabelMe(file) => self.annotated_nails(file, picture),
+            OutlinePlace::Mask(file) => self.mask_nails(file, picture),
+            OutlinePlace::Detection => self.detected_nails(picture),
+            OutlinePlace::Nowhere => Err(SourceFault::NotAnnotated { masks: self.masks.is_some() }),
         }
     }
 
@@ -181,7 +186,7 @@ impl OutlineOptions {
                     confidence: Some(1.0),
                     reason: String::new(),
                 },
-                // A row of the results does not hang on where the photographs lie.
+                // A row of the results does not depend on where the photographs are.
                 Err(fault) => {
                     let name = file.file_name().unwrap_or_default().to_string_lossy();
                     left_out(Source::Annotated, None, format!("{name}: {fault}"))

@@ -2,21 +2,19 @@
 //! (4.2.2).
 //!
 //! A photograph's subject and pose are its keys. Its outline is the file of role `outlines` that has its keys, else the
-//! LabelMe file beside it, else detected. A photograph that gives nothing is told, and the others are done.
+//! LabelMe file beside it, else detected. A photograph that gives nothing is reported, and the others are done.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Instant;
 
 use serde_json::json;
 
 use super::given::{Given, fault};
 use super::pool::in_pool;
-use crate::files::Staging;
-use crate::photo::outline::{DetectOptions, Drawn, Found, OutlineOptions, Side, Sources};
+use crate::photo::outline::{DetectOptions, Drawn, OutlineOptions, OutlinePlace, Side, Sources};
 use crate::photo::{
-    Channel, Foreknown, NailTable, Normalization, PartOptions, Photo, PhotoSet, PhotosOptions, Resample, RunReport,
-    Watch, is_picture, plan_foreknown, run, write_nails,
+    Channel, Foreknown, Normalization, Outputs, Photo, PhotoSet, PhotosOptions, Resample, Results, Watch, is_picture,
+    plan_foreknown, run,
 };
 use crate::pipeline::{
     At, Demand, Facts, Foreseen, Job, KeyFault, Keys, Kind, Made, Part, Prepared, Role, Takes, Work,
@@ -108,7 +106,7 @@ impl Normalize {
         let max_megapixels = max_megapixels.map(|most| u32::try_from(most).expect("at most 10000"));
         let outlines = OutlineOptions {
             sources: given.choice("outline", &sources)?.unwrap_or_default(),
-            // What the task's results hang on is among its inputs.
+            // What the task's results depend on is among its inputs.
             listed_only: true,
             masks: None,
             mask_values: given.parsed("mask_value", str::parse)?,
@@ -120,18 +118,21 @@ impl Normalize {
         Ok(Self { normalization, outlines, max_megapixels })
     }
 
-    fn photos_options(&self, demand: &Demand) -> PhotosOptions {
+    fn photos_options(&self) -> PhotosOptions {
         PhotosOptions {
             normalization: self.normalization,
             outlines: self.outlines.clone(),
             max_megapixels: self.max_megapixels,
-            keep_detected: false,
-            parts: Some(PartOptions { pictures: demand.parts.contains(PICTURES) }),
         }
     }
 }
 
-/// The pose of photographs whose keys tell none.
+fn outputs(folder: &Path, demand: &Demand) -> Outputs {
+    let results = Results::Sums { pictures: demand.parts.contains(PICTURES) };
+    Outputs { folder: folder.to_owned(), results, outlines: None }
+}
+
+/// The pose of photographs whose keys name none.
 const ONLY_POSE: &str = "photos";
 
 /// Whose photograph it is, and in what pose.
@@ -167,11 +168,11 @@ impl Prepared for Normalize {
     }
 
     fn job(&self, _keys: &Keys, demand: &Demand) -> Arc<dyn Job> {
-        Arc::new(NormalizeJob { options: self.photos_options(demand) })
+        Arc::new(NormalizeJob { options: self.photos_options(), demand: demand.clone() })
     }
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
-        let options = self.photos_options(demand);
+        let options = self.photos_options();
         let outlines: Vec<_> = inputs.iter().filter(|input| input.role == OUTLINES).collect();
         let foreknown = inputs.iter().filter(|input| input.role == "photo").map(|input| {
             let (subject, pose) = subject_and_pose(&input.keys, &input.path);
@@ -183,14 +184,14 @@ impl Prepared for Normalize {
             }
             let drawn = outline.or_else(|| (input.facts.outlined == Some(true)).then(|| labelme_beside(&input.path)));
             let outlines = match (self.outlines.sources, drawn) {
-                (Sources::Detect, _) | (Sources::Auto, None) => Found::Detection,
-                (Sources::Annotated, None) => Found::Nothing,
-                (_, Some(file)) if is_picture(&file) => Found::Mask(file),
-                (_, Some(file)) => Found::LabelMe(file),
+                (Sources::Detect, _) | (Sources::Auto, None) => OutlinePlace::Detection,
+                (Sources::Annotated, None) => OutlinePlace::Nowhere,
+                (_, Some(file)) if is_picture(&file) => OutlinePlace::Mask(file),
+                (_, Some(file)) => OutlinePlace::LabelMe(file),
             };
             Foreknown { pose, grey: input.facts.grey, outlines }
         });
-        let mut steps = plan_foreknown(&foreknown.collect::<Vec<_>>(), &options);
+        let mut steps = plan_foreknown(&foreknown.collect::<Vec<_>>(), &options, &outputs(Path::new(""), demand));
         // There is no such thing to ask for in a pipeline.
         steps.retain(|step| !step.stage.starts_with("LabelMe files"));
         Ok(steps)
@@ -243,23 +244,19 @@ fn labelme_beside(photo: &Path) -> PathBuf {
 
 struct NormalizeJob {
     options: PhotosOptions,
+    demand: Demand,
 }
 
 impl Job for NormalizeJob {
     fn run(&self, work: &Work) -> anyhow::Result<Made> {
-        let start = Instant::now();
         let photo = |at: &At| {
             let (subject, pose) = subject_and_pose(&at.keys, &at.path);
             let outline = outline_of(&at.keys, work.of(OUTLINES).map(|o| (&o.keys, o.path.as_path())));
             Photo { pose, subject, file: at.name.clone(), path: at.path.clone(), outline }
         };
         let set = PhotoSet::of(work.of("photo").map(photo).collect());
-        let staging = Staging::new(work.folder)?;
-        let watch = Watch { stop: work.stop, tick: &|| {} };
-        let result = in_pool(work.threads, || run(&set, &self.options, &staging, &watch))??;
-        write_nails(NailTable::of(&result.rows, &set).rows(), &staging)?;
-        staging.commit()?;
-        let report = RunReport::of_photos(&set, &self.options, &result, start.elapsed());
+        let (outputs, watch) = (outputs(work.folder, &self.demand), Watch { stop: work.stop, tick: &|| {} });
+        let report = in_pool(work.threads, || run(&set, &self.options, &outputs, &watch))??;
         Ok(Made {
             left_out: report.left_out.clone(),
             warnings: report.warnings.clone(),

@@ -7,8 +7,8 @@
 //! colour or green-filtered grey, any skin, nail up to some 30 degrees off upright); on photographs of whole hands it
 //! finds nails at the ends of fingers that stand out from what is behind them.
 //!
-//! The way down, a file each: [`picture`] channels that do not depend on the light's brightness; [`silhouette`] masks
-//! that may be fingers and [`tips`] their ends; [`patch`] the picture in a finger's or nail's own frame; [`shape`] the
+//! The way down, a file each: [`picture`] channels that do not depend on the light's brightness; [`hand`] masks
+//! that may be fingers and their ends; [`patch`] the picture in a finger's or nail's own frame; [`shape`] the
 //! template and [`evidence`] how well it fits there; [`search`] where it fits best, on a finger's end or anywhere on a
 //! close-up; [`refine`] the outline by dynamic programming around the template; [`candidate`] all of it for one place,
 //! with the figures that the confidence is made from. Five small networks ([`net`]: border, scorer, three judges) weigh
@@ -19,14 +19,13 @@
 
 mod candidate;
 mod evidence;
+mod hand;
 mod net;
 mod patch;
 mod picture;
 mod refine;
 mod search;
 mod shape;
-mod silhouette;
-mod tips;
 
 #[cfg(test)]
 mod training;
@@ -172,8 +171,8 @@ fn different(candidates: Vec<Candidate>) -> Vec<Detected> {
 /// Finger ends: frames of a finger's width with their fit.
 fn ends(levels: &Levels, most: usize) -> Vec<(Frame, f64)> {
     let picture = levels.within(SEARCH_PX);
-    let found = silhouette::silhouettes(picture).iter().flat_map(tips::tips).collect();
-    tips::strongest(found, most)
+    let found = hand::silhouettes(picture).iter().flat_map(hand::tips).collect();
+    hand::strongest(found, most)
         .into_iter()
         .map(|t| (Frame { origin: picture.to_source(t.apex), up: t.out, unit_px: t.width * picture.step }, t.fit))
         .collect()

@@ -12,7 +12,7 @@ use std::collections::BTreeSet;
 
 use ndarray::Array2;
 
-use super::normalize::{self, Normalized};
+use crate::photo::normalize::{self, Normalized};
 
 /// Full scale of the quantized values.
 const FULL_SCALE: f64 = normalize::FULL_SCALE as f64;

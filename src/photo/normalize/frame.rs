@@ -8,7 +8,7 @@
 use geo::{Area, BooleanOps, Coord, LineString, Polygon, Rect};
 use thiserror::Error;
 
-use super::outline::{Axis, Outline};
+use crate::photo::outline::{Axis, Outline};
 
 /// The smallest box that can still be told from a speck, pixels.
 pub const SMALLEST_EXTENT_PX: f64 = 4.0;

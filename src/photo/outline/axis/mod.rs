@@ -16,13 +16,15 @@
 //! off, half within 3.2 (which is what the truth, read by eye, is good for); of phantom close-ups whose nail takes up
 //! to half of the photograph's height all, half within 0.4 degrees; of those up to 0.7 of it 92 %, none wrong.
 
+mod finger;
+mod surroundings;
+
 use image::DynamicImage;
 use thiserror::Error;
 
-use super::finger::evidence;
-use super::patch::Patch;
-use super::shape::Shape;
-use super::{Axis, Outline};
+use super::{Axis, Moments, Outline};
+use finger::evidence;
+use surroundings::Surroundings;
 
 const DIRECTIONS: usize = 72;
 /// Log-likelihood below the best one at which a direction's neighbours are not looked at.
@@ -148,7 +150,7 @@ impl Side {
 /// the hint says. Where the shape has no axis (nearly round), or is so long across the hint that the hint can't mean
 /// its short axis, the axis is the hint itself.
 pub fn axis_towards(outline: &Outline, hint: Side) -> Axis {
-    let shape = Shape::of(outline);
+    let shape = Moments::of(outline);
     if shape.elongation() < ROUND {
         return hint.axis();
     }
@@ -232,7 +234,7 @@ fn angle_deg(one: Axis, other: Axis) -> f64 {
 pub(super) fn turned_since(image: &DynamicImage, drawn: &[(&Outline, Axis)]) -> Option<&'static str> {
     let size = [f64::from(image.width()), f64::from(image.height())];
     let fits = |outline: &Outline, axis: Axis| {
-        let patch = Patch::read(image, outline, &Shape::of(outline))?;
+        let patch = Surroundings::read(image, outline, &Moments::of(outline))?;
         Some(evidence(&patch, axis.clockwise_rad()))
     };
     let as_drawn: Vec<Option<f64>> = drawn.iter().map(|(outline, axis)| fits(outline, *axis)).collect();
@@ -270,14 +272,14 @@ struct Directions([f64; DIRECTIONS]);
 
 /// What the picture around one nail says.
 fn look(image: &DynamicImage, outline: &Outline) -> Result<Directions, AxisDoubt> {
-    let shape = Shape::of(outline);
+    let shape = Moments::of(outline);
     if shape.major_px < LEAST_LENGTH_PX {
         return Err(AxisDoubt::TooSmall { length_px: shape.major_px });
     }
     if shape.solidity < DENTED && shape.elongation() < PROFILE {
         return Err(AxisDoubt::Dented { share: shape.solidity });
     }
-    let patch = Patch::read(image, outline, &shape).ok_or(AxisDoubt::Outside)?;
+    let patch = Surroundings::read(image, outline, &shape).ok_or(AxisDoubt::Outside)?;
     if patch.featureless {
         return Err(AxisDoubt::Featureless);
     }
