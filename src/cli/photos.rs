@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
-use clap::{Args, Subcommand, ValueEnum};
-use lunula::photo::outline::{DetectOptions, Drawn, MaskValues, OutlineOptions, SavedOutlines, Side, Sources};
+use clap::{Args, Subcommand};
+use lunula::photo::outline::SavedOutlines;
 use lunula::photo::{
-    Channel, MOST_MEGAPIXELS, MergeError, Normalization, OutlineHome, Outputs, PhotoSet, PhotosError, PhotosOptions,
-    PhotosReport, Resample, Results, SetFault, Watch, merge, plan, run as run_photos,
+    MergeError, OutlineHome, Outputs, PhotoSet, PhotosError, PhotosOptions, PhotosReport, Results, SetFault, Watch,
+    merge, plan, run as run_photos,
 };
 use lunula::stages::Step;
 use lunula::words::{shown, shown_lines};
@@ -31,59 +31,14 @@ pub(super) struct PhotosArgs {
     /// Folder for the results
     #[arg(long, required = true)]
     out: Option<PathBuf>,
-    /// Where outlines may come from
-    #[arg(long, value_enum, default_value = "auto")]
-    outline: OutlineArg,
     /// Masks named as the photographs (MASKS/<pose>/<stem>.* or MASKS/<stem>.*); each connected region is a nail
     #[arg(long, value_name = "MASKS")]
     masks: Option<PathBuf>,
-    /// Which values of masks are nail, as 255 or 250..255, in the mask's own units [default: a mask has two values]
-    #[arg(long, value_name = "VALUES")]
-    mask_value: Option<MaskValues>,
-    /// Side of the picture that the distal ends point to, for outlines without an axis [default: found in each picture]
-    #[arg(long, value_enum)]
-    distal: Option<SideArg>,
-    /// Whether annotations and masks were drawn on the upright or the stored picture, where EXIF turns it and its size
-    /// doesn't show which
-    #[arg(long, value_enum, default_value = "auto")]
-    annotations: DrawnArg,
+    #[command(flatten)]
+    options: PhotosOptions,
     /// Save detected outlines as LabelMe files to correct: beside the photographs, or in FOLDER with a photos.csv
     #[arg(long, value_name = "FOLDER", num_args = 0..=1, require_equals = true)]
     write_outlines: Option<Option<PathBuf>>,
-    /// Width and height of the normalized pictures, pixels
-    #[arg(long, default_value_t = 400)]
-    size: usize,
-    /// Side of the normalized pictures, as a multiple of the nail's box
-    #[arg(long, default_value_t = 1.25)]
-    margin: f64,
-    /// Channel of colour photographs to use
-    #[arg(long, value_enum, default_value = "green")]
-    channel: ChannelArg,
-    /// Undo the sRGB curve, so that values are proportional to light
-    #[arg(long)]
-    linear: bool,
-    /// Sample value of 16-bit files that is full scale: 4095 where 12 bits are kept in 16 [default: 65535]
-    #[arg(long, value_name = "SAMPLE")]
-    white: Option<u16>,
-    /// Refuse photographs of more megapixels, before memory is taken for them
-    #[arg(
-        long,
-        value_name = "MP",
-        default_value_t = MOST_MEGAPIXELS,
-        value_parser = clap::value_parser!(u32).range(1..=10_000)
-    )]
-    max_megapixels: u32,
-    /// How to interpolate between pixels
-    #[arg(long, value_enum, default_value = "cubic")]
-    resample: ResampleArg,
-    /// Longest side, in pixels, of the picture that detection searches
-    #[arg(
-        long,
-        value_name = "PX",
-        default_value_t = DetectOptions::default().working_size_px,
-        value_parser = clap::value_parser!(u32).range(64..=4096)
-    )]
-    detect_size: u32,
     /// Show what would be done and what left out, and do nothing
     #[arg(long)]
     plan: bool,
@@ -109,93 +64,14 @@ struct MergeArgs {
     common: Common,
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum OutlineArg {
-    /// Drawn where there is one, else detected
-    Auto,
-    /// Only what is drawn: manifest, LabelMe, masks
-    Annotated,
-    /// Only detection, whatever is drawn
-    Detect,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum SideArg {
-    Up,
-    Down,
-    Left,
-    Right,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum DrawnArg {
-    Auto,
-    Upright,
-    Stored,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum ChannelArg {
-    Red,
-    Green,
-    Blue,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum ResampleArg {
-    Nearest,
-    Linear,
-    Cubic,
-}
-
 impl PhotosArgs {
     fn options(&self) -> anyhow::Result<PhotosOptions> {
-        let normalization = Normalization {
-            size: self.size,
-            margin: self.margin,
-            channel: match self.channel {
-                ChannelArg::Red => Channel::Red,
-                ChannelArg::Green => Channel::Green,
-                ChannelArg::Blue => Channel::Blue,
-            },
-            linear: self.linear,
-            resample: match self.resample {
-                ResampleArg::Nearest => Resample::Nearest,
-                ResampleArg::Linear => Resample::Linear,
-                ResampleArg::Cubic => Resample::Cubic,
-            },
-            white: self.white,
-        };
-        let outlines = OutlineOptions {
-            sources: match self.outline {
-                OutlineArg::Auto => Sources::Auto,
-                OutlineArg::Annotated => Sources::Annotated,
-                OutlineArg::Detect => Sources::Detect,
-            },
-            listed_only: false,
-            masks: self.masks.clone(),
-            mask_values: self.mask_value,
-            distal: self.distal.map(|side| match side {
-                SideArg::Up => Side::Up,
-                SideArg::Down => Side::Down,
-                SideArg::Left => Side::Left,
-                SideArg::Right => Side::Right,
-            }),
-            drawn: match self.annotations {
-                DrawnArg::Auto => Drawn::Auto,
-                DrawnArg::Upright => Drawn::Upright,
-                DrawnArg::Stored => Drawn::Stored,
-            },
-            detect: DetectOptions { working_size_px: self.detect_size, ..DetectOptions::default() },
-        };
         if let Some(masks) = self.masks.as_ref().filter(|m| !m.is_dir()) {
             anyhow::bail!("--masks {}: is not a folder", masks.display());
         }
-        Ok(PhotosOptions {
-            normalization: normalization.check().map_err(anyhow::Error::msg)?,
-            outlines,
-            max_megapixels: Some(self.max_megapixels),
-        })
+        let mut options = self.options.clone();
+        options.outlines.masks = self.masks.clone();
+        Ok(options)
     }
 
     fn outputs(&self, out: &Path) -> Outputs {

@@ -6,14 +6,17 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::normalize::Normalization;
 use super::outline::OutlineOptions;
 
-/// How photographs become normalized pictures.
-#[derive(Debug, Clone, Default)]
+/// How photographs become normalized pictures: the options of `lunula photos` and of a pipeline's stage.
+#[derive(Debug, Clone, Default, clap::Args)]
 pub struct PhotosOptions {
-    /// How normalized pictures are made.
-    pub normalization: Normalization,
     /// Where outlines come from.
+    #[command(flatten)]
     pub outlines: OutlineOptions,
-    /// Megapixels up to which a photograph is read; `None`: [`MOST_MEGAPIXELS`](super::MOST_MEGAPIXELS).
+    /// How normalized pictures are made.
+    #[command(flatten)]
+    pub normalization: Normalization,
+    /// Refuse photographs of more megapixels, before memory is taken for them [default: 250]
+    #[arg(long, value_name = "MP", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub max_megapixels: Option<u32>,
 }
 

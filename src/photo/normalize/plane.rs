@@ -7,15 +7,13 @@ use image::DynamicImage;
 
 /// Which channel of a colour photograph is the value. The thesis finds the colour of the nail bed mainly in the green
 /// one (section 4.2.2).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[allow(missing_docs, reason = "the names say it, also in the help")]
 pub enum Channel {
-    /// R of RGB.
     Red,
-    /// G of RGB.
     #[default]
     Green,
-    /// B of RGB.
     Blue,
 }
 

@@ -25,15 +25,15 @@ pub const AXIS: &str = "axis";
 pub const DOUBTFUL: &str = "nail?";
 
 /// Which picture an annotation or a mask was drawn on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Drawn {
-    /// Told by width and height.
+    /// By width and height
     #[default]
     Auto,
-    /// The upright one.
+    /// The upright one
     Upright,
-    /// The stored one, before the EXIF orientation.
+    /// The stored one, before the EXIF orientation
     Stored,
 }
 

@@ -19,34 +19,42 @@ use crate::photo::read::{MOST_MEGAPIXELS, Photograph, ReadFault};
 use crate::photo::set::{PICTURES, Photo, is_picture};
 
 /// Which sources may be asked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Sources {
-    /// All, in order.
+    /// Drawn where there is one, else detected
     #[default]
     Auto,
-    /// Manifest, LabelMe and masks; nothing is detected.
+    /// Only what is drawn: manifest, LabelMe, masks
     Annotated,
-    /// Detection only, whatever is annotated.
+    /// Only detection, whatever is drawn
     Detect,
 }
 
-/// How outlines come about.
-#[derive(Debug, Clone, Default)]
+/// Where outlines come from.
+#[derive(Debug, Clone, Default, clap::Args)]
 pub struct OutlineOptions {
-    /// Which sources may be asked.
+    /// Where outlines may come from
+    #[arg(long = "outline", value_enum, default_value = "auto")]
     pub sources: Sources,
     /// Only what the set lists: nothing is looked for beside photographs.
+    #[arg(skip)]
     pub listed_only: bool,
     /// Masks named as the photographs: `<pose>/<stem>.*` or `<stem>.*`.
+    #[arg(skip)]
     pub masks: Option<PathBuf>,
-    /// Which values of a mask are nail; `None`: a mask has two.
+    /// Which values of masks are nail, as 255 or 250..255, in the mask's own units [default: a mask has two values]
+    #[arg(long = "mask-value", value_name = "VALUES")]
     pub mask_values: Option<MaskValues>,
-    /// Settles the direction of nails without an axis, for the whole set.
+    /// Side of the picture that the distal ends point to, for outlines without an axis [default: found in each picture]
+    #[arg(long, value_enum)]
     pub distal: Option<Side>,
-    /// Which picture annotations and masks were drawn on.
+    /// Whether annotations and masks were drawn on the upright or the stored picture, where EXIF turns it and its size
+    /// doesn't show which
+    #[arg(long = "annotations", value_enum, default_value = "auto")]
     pub drawn: Drawn,
-    /// For detection.
+    /// How nails are looked for where none is drawn.
+    #[command(flatten)]
     pub detect: DetectOptions,
 }
 

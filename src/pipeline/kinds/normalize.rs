@@ -9,12 +9,11 @@ use std::sync::Arc;
 
 use serde_json::json;
 
-use super::given::{Given, fault};
+use super::options::request;
 use super::pool::in_pool;
-use crate::photo::outline::{DetectOptions, Drawn, OutlineOptions, OutlinePlace, Side, Sources};
+use crate::photo::outline::{OutlinePlace, Sources};
 use crate::photo::{
-    Channel, Foreknown, Normalization, Outputs, Photo, PhotoSet, PhotosOptions, Resample, Results, Watch, is_picture,
-    plan_foreknown, run,
+    Foreknown, Outputs, Photo, PhotoSet, PhotosOptions, Results, Watch, is_picture, plan_foreknown, run,
 };
 use crate::pipeline::{
     At, Demand, Facts, Foreseen, Job, KeyFault, Keys, Kind, Made, Part, Prepared, Role, Takes, Work,
@@ -68,62 +67,15 @@ const KEYS: &[&str] = &[
 
 #[derive(Debug, Clone)]
 struct Normalize {
-    normalization: Normalization,
-    outlines: OutlineOptions,
-    max_megapixels: Option<u32>,
+    options: PhotosOptions,
 }
 
 impl Normalize {
     fn prepare(keys: toml::Table) -> Result<Self, KeyFault> {
-        let mut given = Given::new(keys, KEYS)?;
-        let usual = Normalization::default();
-        let sources = [("auto", Sources::Auto), ("annotated", Sources::Annotated), ("detect", Sources::Detect)];
-        let sides = [("up", Side::Up), ("down", Side::Down), ("left", Side::Left), ("right", Side::Right)];
-        let drawn = [("auto", Drawn::Auto), ("upright", Drawn::Upright), ("stored", Drawn::Stored)];
-        let channels = [("red", Channel::Red), ("green", Channel::Green), ("blue", Channel::Blue)];
-        let resamples = [("nearest", Resample::Nearest), ("linear", Resample::Linear), ("cubic", Resample::Cubic)];
-        let detect = DetectOptions::default();
-        let working_size_px = match given.whole("detect_size", 64..=4096)? {
-            Some(size) => u32::try_from(size).expect("at most 4096"),
-            None => detect.working_size_px,
-        };
-        let normalization = Normalization {
-            size: match given
-                .whole("size", *Normalization::SIZES.start() as u64..=*Normalization::SIZES.end() as u64)?
-            {
-                Some(size) => usize::try_from(size).expect("at most 4096"),
-                None => usual.size,
-            },
-            margin: given.number("margin", Normalization::MARGINS)?.unwrap_or(usual.margin),
-            channel: given.choice("channel", &channels)?.unwrap_or(usual.channel),
-            linear: given.flag("linear")?,
-            resample: given.choice("resample", &resamples)?.unwrap_or(usual.resample),
-            white: given
-                .whole("white", u64::from(*Normalization::WHITES.start())..=u64::from(*Normalization::WHITES.end()))?
-                .map(|white| u16::try_from(white).expect("at most 65535")),
-        };
-        let max_megapixels = given.whole("max_megapixels", 1..=10_000)?;
-        let max_megapixels = max_megapixels.map(|most| u32::try_from(most).expect("at most 10000"));
-        let outlines = OutlineOptions {
-            sources: given.choice("outline", &sources)?.unwrap_or_default(),
-            // What the task's results depend on is among its inputs.
-            listed_only: true,
-            masks: None,
-            mask_values: given.parsed("mask_value", str::parse)?,
-            distal: given.choice("distal", &sides)?,
-            drawn: given.choice("annotations", &drawn)?.unwrap_or_default(),
-            detect: DetectOptions { working_size_px, ..detect },
-        };
-        let normalization = normalization.check().map_err(|what| fault("", what))?;
-        Ok(Self { normalization, outlines, max_megapixels })
-    }
-
-    fn photos_options(&self) -> PhotosOptions {
-        PhotosOptions {
-            normalization: self.normalization,
-            outlines: self.outlines.clone(),
-            max_megapixels: self.max_megapixels,
-        }
+        let mut options: PhotosOptions = request(&keys)?;
+        // What the task's results depend on is among its inputs.
+        options.outlines.listed_only = true;
+        Ok(Self { options })
     }
 }
 
@@ -156,23 +108,23 @@ impl Prepared for Normalize {
 
     fn options(&self, demand: &Demand) -> serde_json::Value {
         json!({
-            "normalization": self.normalization,
-            "outline": self.outlines.sources,
-            "distal": self.outlines.distal,
-            "mask_value": self.outlines.mask_values,
-            "max_megapixels": self.max_megapixels,
-            "annotations": self.outlines.drawn,
-            "detect_size": self.outlines.detect.working_size_px,
+            "normalization": self.options.normalization,
+            "outline": self.options.outlines.sources,
+            "distal": self.options.outlines.distal,
+            "mask_value": self.options.outlines.mask_values,
+            "max_megapixels": self.options.max_megapixels,
+            "annotations": self.options.outlines.drawn,
+            "detect_size": self.options.outlines.detect.working_size_px,
             "pictures": demand.parts.contains(PICTURES),
         })
     }
 
     fn job(&self, _keys: &Keys, demand: &Demand) -> Arc<dyn Job> {
-        Arc::new(NormalizeJob { options: self.photos_options(), demand: demand.clone() })
+        Arc::new(NormalizeJob { options: self.options.clone(), demand: demand.clone() })
     }
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
-        let options = self.photos_options();
+        let options = self.options.clone();
         let outlines: Vec<_> = inputs.iter().filter(|input| input.role == OUTLINES).collect();
         let foreknown = inputs.iter().filter(|input| input.role == "photo").map(|input| {
             let (subject, pose) = subject_and_pose(&input.keys, &input.path);
@@ -183,7 +135,7 @@ impl Prepared for Normalize {
                 return Foreknown::of(&photo, &options);
             }
             let drawn = outline.or_else(|| (input.facts.outlined == Some(true)).then(|| labelme_beside(&input.path)));
-            let outlines = match (self.outlines.sources, drawn) {
+            let outlines = match (self.options.outlines.sources, drawn) {
                 (Sources::Detect, _) | (Sources::Auto, None) => OutlinePlace::Detection,
                 (Sources::Annotated, None) => OutlinePlace::Nowhere,
                 (_, Some(file)) if is_picture(&file) => OutlinePlace::Mask(file),
@@ -204,7 +156,7 @@ impl Prepared for Normalize {
     fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {
         let photos = inputs.iter().filter(|input| input.role == "photo").count();
         let outlines = inputs.iter().filter(|input| input.role == OUTLINES).count();
-        let detected = match self.outlines.sources {
+        let detected = match self.options.outlines.sources {
             Sources::Auto => photos.saturating_sub(outlines),
             Sources::Annotated => 0,
             Sources::Detect => photos,
@@ -214,14 +166,14 @@ impl Prepared for Normalize {
         let size_px = first.and_then(|input| image::image_dimensions(&input.path).ok()).unwrap_or((640, 480));
         let pixels = f64::from(size_px.0) * f64::from(size_px.1);
         let at_once = photos.min(std::thread::available_parallelism().map_or(1, usize::from)) as u64;
-        let sums = 20 * (self.normalization.size * self.normalization.size) as u64 * photos as u64;
+        let sums = 20 * (self.options.normalization.size * self.options.normalization.size) as u64 * photos as u64;
         let memory = at_once * (BYTES_A_PIXEL * pixels) as u64 + sums + BYTES_AT_LEAST;
         let seconds = photos as f64 * (NORMALIZE_S + READ_S_A_PIXEL * pixels) + detected as f64 * DETECT_S;
         (memory, seconds)
     }
 
     fn beside(&self, role: &str, path: &Path) -> Vec<(&'static str, PathBuf)> {
-        let reads = role == "photo" && self.outlines.sources != Sources::Detect;
+        let reads = role == "photo" && self.options.outlines.sources != Sources::Detect;
         reads.then(|| (OUTLINES, labelme_beside(path))).into_iter().collect()
     }
 

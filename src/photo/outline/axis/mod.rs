@@ -118,16 +118,13 @@ pub enum AxisDoubt {
 }
 
 /// A side of the photograph.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
+#[allow(missing_docs, reason = "the names say it, also in the help")]
 pub enum Side {
-    /// The top.
     Up,
-    /// The bottom.
     Down,
-    /// The left.
     Left,
-    /// The right.
     Right,
 }
 

@@ -39,15 +39,24 @@ use patch::{Frame, Patch};
 use picture::Levels;
 
 /// How nails are looked for.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, clap::Args)]
 pub struct DetectOptions {
-    /// Longest side in pixels of the reduced picture that everything is measured on. Smaller is faster and less exact.
+    /// Longest side, in pixels, of the picture that detection searches
+    #[arg(
+        long = "detect-size",
+        value_name = "PX",
+        default_value_t = Self::default().working_size_px,
+        value_parser = clap::value_parser!(u32).range(64..=4096)
+    )]
     pub working_size_px: u32,
     /// Least confidence, 0 to 1, of a nail that results may use.
+    #[arg(skip = Self::default().min_confidence)]
     pub min_confidence: f64,
     /// Least confidence, 0 to 1, of a doubtful one that is shown to a person.
+    #[arg(skip = Self::default().min_doubtful)]
     pub min_doubtful: f64,
     /// Most places whose outline is refined.
+    #[arg(skip = Self::default().most_places)]
     pub most_places: usize,
 }
 
