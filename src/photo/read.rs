@@ -12,7 +12,7 @@ use image::metadata::Orientation;
 use image::{ColorType, DynamicImage, ImageBuffer, ImageDecoder, ImageFormat, ImageReader, Limits, Pixel};
 use thiserror::Error;
 
-/// Why a file is no photograph. `Display` says what to do; the caller adds which file.
+/// Why a file is not a photograph. `Display` says what to do; the caller adds which file.
 #[derive(Debug, Error)]
 pub enum ReadFault {
     /// The file can't be opened or read.

@@ -10,7 +10,7 @@ use thiserror::Error;
 
 use crate::photo::outline::{Axis, Outline};
 
-/// The smallest box that can still be told from a speck, pixels.
+/// The smallest box that can still be distinguished from a speck, pixels.
 pub const SMALLEST_EXTENT_PX: f64 = 4.0;
 
 /// Why an outline gives no frame.

@@ -118,7 +118,7 @@ impl Plane {
     }
 }
 
-/// Where in a pixel's samples the value stands.
+/// Where the value is among a pixel's samples.
 #[derive(Clone, Copy)]
 struct Samples {
     channels: usize,

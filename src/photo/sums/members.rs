@@ -1,5 +1,5 @@
-//! Which subjects' pictures sums are made of, and their contents' hashes: what tells whether sums that stand can be
-//! added to.
+//! Which subjects' pictures sums are made of, and their contents' hashes: they show whether an earlier run's sums can
+//! be added to.
 //!
 //! `members.json`: the normalization and, by pose, the parts that were added up. Of a part of a pipeline
 //! (`partials/members.json`) it lists that part's own.
@@ -15,9 +15,9 @@ use crate::files::{Staging, WriteError};
 use crate::input;
 use crate::photo::normalize::Normalization;
 
-/// Where the list stands among a part's results.
+/// Where the list is among a part's results.
 const OF_A_PART: &str = "partials/members.json";
-/// Where it stands among maps.
+/// Where it is among maps.
 pub(super) const OF_MAPS: &str = "members.json";
 
 /// Sums that were added, all of one file.

@@ -27,7 +27,7 @@ const FORMAT: u32 = 1;
 /// Of one subject's levels.
 const FORMAT_OF_ONE: u32 = 2;
 
-/// Bytes of an archive beside its arrays, as it is written: their headers, the directory and a usual `meta`.
+/// Bytes of an archive beside its arrays, as it is written: their headers, the directory and a common `meta`.
 const HEADERS: usize = 16 << 10;
 /// Bytes of a partial map's `meta`: a million subjects' names.
 const MOST_META: u64 = 64 << 20;
@@ -36,7 +36,7 @@ const MOST_META: u64 = 64 << 20;
 #[derive(Debug, Error)]
 pub enum PartialFault {
     /// Not readable as a partial map.
-    #[error("{}: is no partial map ({why}); name a folder that `lunula photos` wrote", .file.display())]
+    #[error("{}: is not a partial map ({why}); name a folder that `lunula photos` wrote", .file.display())]
     Unreadable {
         /// Which file.
         file: PathBuf,
@@ -160,8 +160,8 @@ fn bytes_of_one(pose: &str, sums: &Sums, with: &Normalization) -> anyhow::Result
     Ok(npz.finish()?.into_inner())
 }
 
-/// An archive of about so many bytes of arrays. In memory, for a file that fails in the middle is no place to go on
-/// writing an archive to: zip asserts that it is.
+/// An archive of about so many bytes of arrays. In memory, for a file that fails in the middle can't be
+/// finished: zip asserts that it can.
 fn archive(bytes: usize) -> NpzWriter<Cursor<Vec<u8>>> {
     NpzWriter::new(Cursor::new(Vec::with_capacity(bytes + HEADERS)))
 }

@@ -144,7 +144,7 @@ impl Prepared for Normalize {
             Foreknown { pose, grey: input.facts.grey, outlines }
         });
         let mut steps = plan_foreknown(&foreknown.collect::<Vec<_>>(), &options, &outputs(Path::new(""), demand));
-        // There is no such thing to ask for in a pipeline.
+        // A pipeline has no such option.
         steps.retain(|step| !step.stage.starts_with("LabelMe files"));
         Ok(steps)
     }
@@ -161,7 +161,7 @@ impl Prepared for Normalize {
             Sources::Annotated => 0,
             Sources::Detect => photos,
         };
-        // The first stands for all: a subject's photographs are one camera's.
+        // The first represents all: a subject's photographs are one camera's.
         let first = inputs.iter().find(|input| input.role == "photo" && input.stands);
         let size_px = first.and_then(|input| image::image_dimensions(&input.path).ok()).unwrap_or((640, 480));
         let pixels = f64::from(size_px.0) * f64::from(size_px.1);

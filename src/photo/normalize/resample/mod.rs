@@ -57,7 +57,7 @@ struct Grid {
     covers: [f64; 2],
 }
 
-/// Up to here an output pixel's centre stands for all of it; beyond, its footprint is averaged.
+/// Up to here an output pixel's centre represents all of it; beyond, its footprint is averaged.
 const POINT_SAMPLED_UP_TO_PX: f64 = 1.25;
 /// Samples an axis of a footprint after the photograph was reduced by whole blocks.
 const SAMPLES_KEPT: f64 = 3.0;

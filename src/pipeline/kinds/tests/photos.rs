@@ -210,6 +210,14 @@ fn the_plan_leaves_out_what_photographs_do_not_need() {
 }
 
 #[test]
+fn keys_are_the_options_of_the_command() {
+    let (mut keys, mut options) = (NORMALIZE.keys.to_vec(), crate::job::keys::<PhotosOptions>());
+    keys.sort_unstable();
+    options.sort_unstable();
+    assert_eq!(keys, options);
+}
+
+#[test]
 fn white_and_mask_values_are_part_of_what_a_task_is() {
     let options = |keys: &str| super::prepared(&NORMALIZE, keys).options(&wanting(&["sums"]));
     let plain = options("");
