@@ -99,7 +99,7 @@ pub fn plan_foreknown(photos: &[Foreknown], options: &PhotosOptions, outputs: &O
     };
     let [sums, spread] = maps;
     let pictures = outputs.has_pictures();
-    vec![
+    let mut steps = vec![
         Step::new("read", true, format!("{} photograph(s) of {} pose(s)", photos.len(), poses.len())),
         Step::new("outlines from LabelMe", labelme > 0, said(labelme, none_drawn)),
         Step::new("outlines from masks", masks > 0, said(masks, none_drawn)),
@@ -139,12 +139,13 @@ pub fn plan_foreknown(photos: &[Foreknown], options: &PhotosOptions, outputs: &O
             pictures,
             if pictures { "the normalized ones".into() } else { "not requested".into() },
         ),
-        Step::new(
-            "LabelMe files of what is detected",
-            outputs.outlines.is_some(),
-            if outputs.outlines.is_some() { "--write-outlines".into() } else { "not requested".into() },
-        ),
-    ]
+    ];
+    // Sums are a pipeline's, which has no such option.
+    let saved = outputs.outlines.is_some();
+    let why = if saved { "--write-outlines" } else { "not requested" };
+    let labelme = Step::new("LabelMe files of what is detected", saved, why.into());
+    steps.extend((outputs.results == Results::Maps).then_some(labelme));
+    steps
 }
 
 fn said(count: usize, otherwise: &str) -> String {

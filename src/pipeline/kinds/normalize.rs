@@ -124,7 +124,6 @@ impl Prepared for Normalize {
     }
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
-        let options = self.options.clone();
         let outlines: Vec<_> = inputs.iter().filter(|input| input.role == OUTLINES).collect();
         let foreknown = inputs.iter().filter(|input| input.role == "photo").map(|input| {
             let (subject, pose) = subject_and_pose(&input.keys, &input.path);
@@ -132,7 +131,7 @@ impl Prepared for Normalize {
             if input.stands {
                 let file = String::new();
                 let photo = Photo { pose, subject, file, path: input.path.clone(), outline };
-                return Foreknown::of(&photo, &options);
+                return Foreknown::of(&photo, &self.options);
             }
             let drawn = outline.or_else(|| (input.facts.outlined == Some(true)).then(|| labelme_beside(&input.path)));
             let outlines = match (self.options.outlines.sources, drawn) {
@@ -143,10 +142,7 @@ impl Prepared for Normalize {
             };
             Foreknown { pose, grey: input.facts.grey, outlines }
         });
-        let mut steps = plan_foreknown(&foreknown.collect::<Vec<_>>(), &options, &outputs(Path::new(""), demand));
-        // A pipeline has no such option.
-        steps.retain(|step| !step.stage.starts_with("LabelMe files"));
-        Ok(steps)
+        Ok(plan_foreknown(&foreknown.collect::<Vec<_>>(), &self.options, &outputs(Path::new(""), demand)))
     }
 
     fn facts(&self, _inputs: &[Foreseen], _demand: &Demand) -> Facts {
