@@ -4,11 +4,16 @@
 //! the top, `margin` times the nail's box: row i, column j lies at ((j + 0.5 - size/2), (size/2 - i - 0.5)) /
 //! (size / margin) in widths and lengths from the centre. What the photograph does not show is not seen, rather than 0.
 
+mod frame;
+mod options;
+mod plane;
+mod resample;
+
 use image::DynamicImage;
 
-use super::frame::NailFrame;
-use super::normalization::Normalization;
-use super::resample;
+pub use frame::{FrameFault, NailFrame, SMALLEST_EXTENT_PX};
+pub use options::{Normalization, Resample};
+pub use plane::Channel;
 
 /// Full scale of a [`Normalized`] picture's levels.
 pub const FULL_SCALE: u16 = u16::MAX;
@@ -45,10 +50,15 @@ impl Normalized {
     }
 
     /// From fractions of full scale, 0 to 1; NaN is not seen.
+    #[cfg(test)]
     pub(crate) fn from_values(size: usize, values: &[f32]) -> Self {
+        Self::from_values_in(Vec::new(), size, values)
+    }
+
+    fn from_values_in(mut levels: Vec<u16>, size: usize, values: &[f32]) -> Self {
+        levels.clear();
         // Adding 2^23 leaves the rounded number in the sum's lowest bits: branch-free, unlike a saturating cast.
-        let mut levels: Vec<u16> =
-            values.iter().map(|v| (v * f32::from(FULL_SCALE) + 8_388_608.0).to_bits() as u16).collect();
+        levels.extend(values.iter().map(|v| (v * f32::from(FULL_SCALE) + 8_388_608.0).to_bits() as u16));
         let some_unseen = values.iter().fold(false, |some, v| some | v.is_nan());
         let seen = some_unseen.then(|| {
             for (level, value) in levels.iter_mut().zip(values) {
@@ -64,8 +74,27 @@ impl Normalized {
 
 /// Brings a nail into its frame.
 pub fn normalize(image: &DynamicImage, frame: &NailFrame, with: &Normalization) -> Normalized {
-    match resample::values(image, frame, with) {
-        Some(values) => Normalized::from_values(with.size, &values),
-        None => Normalized::nowhere(with.size),
+    Normalizer::default().normalize(image, frame, with)
+}
+
+/// Brings nails into their frames, one after the other, in the same memory.
+#[derive(Default)]
+pub(super) struct Normalizer {
+    buffers: resample::Buffers,
+    levels: Vec<Vec<u16>>,
+}
+
+impl Normalizer {
+    /// As [`normalize`].
+    pub(super) fn normalize(&mut self, image: &DynamicImage, frame: &NailFrame, with: &Normalization) -> Normalized {
+        if !resample::values(image, frame, with, &mut self.buffers) {
+            return Normalized::nowhere(with.size);
+        }
+        Normalized::from_values_in(self.levels.pop().unwrap_or_default(), with.size, &self.buffers.values)
+    }
+
+    /// Takes back the memory of a picture that is done with.
+    pub(super) fn take_back(&mut self, picture: Normalized) {
+        self.levels.push(picture.levels);
     }
 }

@@ -1,5 +1,5 @@
-//! Which subjects' pictures sums are made of, and their contents' hashes: what tells whether sums that stand can be
-//! added to.
+//! Which subjects' pictures sums are made of, and their contents' hashes: they show whether an earlier run's sums can
+//! be added to.
 //!
 //! `members.json`: the normalization and, by pose, the parts that were added up. Of a part of a pipeline
 //! (`partials/members.json`) it lists that part's own.
@@ -11,18 +11,18 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::maps::Sums;
-use super::normalization::Normalization;
 use crate::files::{Staging, WriteError};
 use crate::input;
+use crate::photo::normalize::Normalization;
 
-/// Where the list stands among a part's results.
+/// Where the list is among a part's results.
 const OF_A_PART: &str = "partials/members.json";
-/// Where it stands among maps.
+/// Where it is among maps.
 pub(super) const OF_MAPS: &str = "members.json";
 
 /// Sums that were added, all of one file.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub(super) struct Member {
+pub(in crate::photo) struct Member {
     /// Whose pictures.
     pub(super) subjects: BTreeSet<String>,
     /// Of the file's content.
@@ -31,7 +31,7 @@ pub(super) struct Member {
 
 /// All that was added, by pose.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) struct Members {
+pub(in crate::photo) struct Members {
     /// What the normalized pictures were made with.
     pub(super) normalization: Normalization,
     /// By pose, sorted.
@@ -40,18 +40,18 @@ pub(super) struct Members {
 
 impl Member {
     /// What was written of `sums`.
-    pub(super) fn of(sums: &Sums, file: &[u8]) -> Self {
+    pub(in crate::photo) fn of(sums: &Sums, file: &[u8]) -> Self {
         Self { subjects: sums.subjects.clone(), sha256: format!("{:x}", Sha256::digest(file)) }
     }
 }
 
 impl Members {
     /// None yet.
-    pub(super) fn new(normalization: Normalization) -> Self {
+    pub(in crate::photo) fn new(normalization: Normalization) -> Self {
         Self { normalization, poses: BTreeMap::new() }
     }
 
-    pub(super) fn add(&mut self, pose: &str, member: Member) {
+    pub(in crate::photo) fn add(&mut self, pose: &str, member: Member) {
         self.poses.entry(pose.to_owned()).or_default().insert(member);
     }
 
@@ -59,12 +59,12 @@ impl Members {
     ///
     /// # Errors
     /// Where there is none that can be read: in words.
-    pub(super) fn read(part: &Path) -> Result<Self, String> {
+    pub(in crate::photo) fn read(part: &Path) -> Result<Self, String> {
         Self::read_file(&part.join(OF_A_PART))
     }
 
     /// The list of maps that stand; none where there is none that can be read.
-    pub(super) fn of_maps(maps: &Path) -> Option<Self> {
+    pub(in crate::photo) fn of_maps(maps: &Path) -> Option<Self> {
         Self::read_file(&maps.join(OF_MAPS)).ok()
     }
 
@@ -74,12 +74,12 @@ impl Members {
     }
 
     /// Writes the list of a part.
-    pub(super) fn write(&self, staging: &Staging) -> Result<(), WriteError> {
+    pub(in crate::photo) fn write(&self, staging: &Staging) -> Result<(), WriteError> {
         self.write_to(staging, OF_A_PART)
     }
 
     /// Writes the list of maps.
-    pub(super) fn write_of_maps(&self, staging: &Staging) -> Result<(), WriteError> {
+    pub(in crate::photo) fn write_of_maps(&self, staging: &Staging) -> Result<(), WriteError> {
         self.write_to(staging, OF_MAPS)
     }
 

@@ -10,7 +10,7 @@ use super::{Axis, Outline};
 
 /// Area moments of an outline.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Shape {
+pub struct Moments {
     /// Centroid of the enclosed area, `[x_px, y_px]`.
     pub centroid_px: [f64; 2],
     /// Length of the long axis of the ellipse with the same second moments, pixels.
@@ -23,7 +23,7 @@ pub struct Shape {
     pub solidity: f64,
 }
 
-impl Shape {
+impl Moments {
     /// The moments of `outline`.
     pub fn of(outline: &Outline) -> Self {
         let ring = &outline.polygon().exterior().0;
@@ -74,13 +74,13 @@ mod tests {
             // 30 long, 12 wide, long side at `turn` clockwise from up, far from the origin.
             let corners = [[-6.0, -15.0], [6.0, -15.0], [6.0, 15.0], [-6.0, 15.0]]
                 .map(|[u, v]: [f64; 2]| [4000.0 + u * cos - v * sin, 3000.0 + u * sin + v * cos]);
-            let shape = Shape::of(&Outline::new(&corners).expect("a rectangle"));
+            let moments = Moments::of(&Outline::new(&corners).expect("a rectangle"));
             // A rectangle's side is sqrt(12) standard deviations, the ellipse's axis 4.
             let ratio = 4.0 / 12.0_f64.sqrt();
-            assert!((shape.major_px - 30.0 * ratio).abs() <= 1e-9);
-            assert!((shape.minor_px - 12.0 * ratio).abs() <= 1e-9);
-            assert!((shape.centroid_px[0] - 4000.0).abs() + (shape.centroid_px[1] - 3000.0).abs() <= 1e-9);
-            assert!((shape.major.clockwise_rad() - turn).sin().abs() <= 1e-9, "turn {turn}");
+            assert!((moments.major_px - 30.0 * ratio).abs() <= 1e-9);
+            assert!((moments.minor_px - 12.0 * ratio).abs() <= 1e-9);
+            assert!((moments.centroid_px[0] - 4000.0).abs() + (moments.centroid_px[1] - 3000.0).abs() <= 1e-9);
+            assert!((moments.major.clockwise_rad() - turn).sin().abs() <= 1e-9, "turn {turn}");
         }
     }
 }

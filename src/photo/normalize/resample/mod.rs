@@ -11,25 +11,38 @@ use image::DynamicImage;
 use wide::f32x4;
 
 use super::frame::NailFrame;
-use super::normalization::{Normalization, Resample};
+use super::options::{Normalization, Resample};
 use super::plane::{Plane, Taking};
 
 /// The values, row by row from the top (distal), fractions of full scale; NaN where the photograph does not show the
-/// place. `None` where it shows nothing at all.
-pub(super) fn values(image: &DynamicImage, frame: &NailFrame, with: &Normalization) -> Option<Vec<f32>> {
+/// place. False where it shows nothing at all.
+pub(super) fn values(image: &DynamicImage, frame: &NailFrame, with: &Normalization, buffers: &mut Buffers) -> bool {
     let grid = Grid::new(frame, with);
-    let source = Source::new(image, &grid, with)?;
-    let mut values = match source.samples {
+    let Buffers { plane, values, lines } = buffers;
+    let Some(source) = Source::new(image, &grid, with, std::mem::take(plane)) else { return false };
+    values.clear();
+    values.reserve_exact(grid.size * grid.size);
+    match source.samples {
         [1, 1] if source.is_whole && source.resample == Resample::Cubic && grid.is_nearly_upright() => {
-            source.points_in_two_passes(&grid)
+            source.points_in_two_passes(&grid, values, lines);
         }
-        [1, 1] if source.is_whole => source.points(&grid),
-        _ => source.means(&grid),
-    };
-    if !grid.lies_within(&source) {
-        grid.forget_outside(&source, &mut values);
+        [1, 1] if source.is_whole => source.points(&grid, values),
+        _ => source.means(&grid, values),
     }
-    Some(values)
+    if !grid.lies_within(&source) {
+        grid.forget_outside(&source, values);
+    }
+    *plane = source.values;
+    true
+}
+
+/// Memory that goes from nail to nail.
+#[derive(Default)]
+pub(super) struct Buffers {
+    /// The last nail's values, see [`values`].
+    pub(super) values: Vec<f32>,
+    plane: Vec<f32>,
+    lines: Vec<f32>,
 }
 
 /// The normalized picture's pixels on the photograph: an affine map.
@@ -44,7 +57,7 @@ struct Grid {
     covers: [f64; 2],
 }
 
-/// Up to here an output pixel's centre stands for all of it; beyond, its footprint is averaged.
+/// Up to here an output pixel's centre represents all of it; beyond, its footprint is averaged.
 const POINT_SAMPLED_UP_TO_PX: f64 = 1.25;
 /// Samples an axis of a footprint after the photograph was reduced by whole blocks.
 const SAMPLES_KEPT: f64 = 3.0;
@@ -148,7 +161,7 @@ const REACH: f64 = 3.0;
 
 impl Source {
     /// `None` where the grid lies wholly outside of the photograph.
-    fn new(image: &DynamicImage, grid: &Grid, with: &Normalization) -> Option<Self> {
+    fn new(image: &DynamicImage, grid: &Grid, with: &Normalization, memory: Vec<f32>) -> Option<Self> {
         let photo_end = [f64::from(image.width()) - 0.5, f64::from(image.height()) - 0.5];
         let factor = match with.resample {
             Resample::Nearest => 1,
@@ -169,7 +182,7 @@ impl Source {
             let whole = (end - start + factor as i64 - 1) / factor as i64 * factor as i64;
             [start, start + whole]
         });
-        let plane = Plane::take(image, Taking { channel: with.channel, linear: with.linear }, range[0], range[1]);
+        let plane = Plane::take(image, Taking { channel: with.channel, linear: with.linear }, range, memory);
         let middle = (factor - 1) as f64 / 2.0;
         let first = [plane.x0 as f64 + middle, plane.y0 as f64 + middle];
         let width = plane.width / factor;
@@ -200,8 +213,7 @@ impl Source {
     }
 
     /// Every output pixel at its centre, all of them known to lie within this source.
-    fn points(&self, grid: &Grid) -> Vec<f32> {
-        let mut values = Vec::with_capacity(grid.size * grid.size);
+    fn points(&self, grid: &Grid, values: &mut Vec<f32>) {
         let step = [0, 1].map(|k| fixed(grid.per_column[k] / self.spacing));
         for row in 0..grid.size {
             let corner = grid.corner(row, 0);
@@ -216,16 +228,15 @@ impl Source {
                 value
             }));
         }
-        values
     }
 
     /// As [`Source::points`], at less than half its work: for each output column, the photograph's rows are
     /// interpolated along x where the column's line crosses them, then that line is along y (Catmull and Smith 1980,
     /// DOI 10.1145/800250.807505). On a slanted line the second pass's samples are not those of the upright
     /// neighbourhood, so values differ a little where the photograph has detail of one or two pixels.
-    fn points_in_two_passes(&self, grid: &Grid) -> Vec<f32> {
+    fn points_in_two_passes(&self, grid: &Grid, values: &mut Vec<f32>, lines: &mut Vec<f32>) {
         let size = grid.size;
-        let mut values = vec![0.0; size * size];
+        values.resize(size * size, 0.0);
         let corner = grid.corner(0, 0);
         let place = |k: usize, column: usize| {
             let along = corner[k] + grid.per_column[k] * (column as f64 + 0.5) + 0.5 * grid.per_row[k];
@@ -236,7 +247,7 @@ impl Source {
         let slant = fixed(grid.per_row[0] / grid.per_row[1]);
         // A column's line has at most as many values as the photograph has rows.
         let tall = self.values.len() / self.width;
-        let mut lines = vec![0.0; COLUMNS * tall];
+        lines.resize(COLUMNS * tall, 0.0);
         let mut block = vec![[0.0_f32; COLUMNS]; size];
         for first in (0..size).step_by(COLUMNS) {
             let columns = COLUMNS.min(size - first);
@@ -271,14 +282,13 @@ impl Source {
                 row[first..first + columns].copy_from_slice(&block[..columns]);
             }
         }
-        values
     }
 
     /// The mean over every output pixel's footprint; NaN where part of it is not seen.
-    fn means(&self, grid: &Grid) -> Vec<f32> {
+    fn means(&self, grid: &Grid, values: &mut Vec<f32>) {
         let inside = grid.lies_within(self);
         let pixels = (0..grid.size).flat_map(|row| (0..grid.size).map(move |column| (row, column)));
-        pixels.map(|(row, column)| self.mean(grid.corner(row, column), grid, inside)).collect()
+        values.extend(pixels.map(|(row, column)| self.mean(grid.corner(row, column), grid, inside)));
     }
 
     fn mean(&self, corner: [f64; 2], grid: &Grid, inside: bool) -> f32 {

@@ -1,7 +1,7 @@
 //! The axis of each nail found from the photograph: the finger lies on its proximal side.
 //!
 //! In: the upright photograph and the outlines of its nails, which tell no direction. Out: for each nail the axis from
-//! proximal to distal with a confidence, or why it can't be told. Directions are clockwise from up, see [`Axis`].
+//! proximal to distal with a confidence, or why it is unknown. Directions are clockwise from up, see [`Axis`].
 //!
 //! For each of 72 directions the picture around the nail is compared with a finger that points there (`finger`: its two
 //! sides, its tip, its skin, the nail's symmetry). The likelihoods become probabilities; the confidence is the
@@ -12,23 +12,25 @@
 //!
 //! Not determined: tilt towards the camera, and nails without a visible finger (a drawing, a plain background).
 //!
-//! Measured by `tests/nail_axes.rs`: of 127 nails on 26 real photographs of hands 122 are told, none by over 22 degrees
+//! Measured by `tests/nail_axes.rs`: of 127 nails on 26 real photographs of hands 122 are found, none by over 22 degrees
 //! off, half within 3.2 (which is what the truth, read by eye, is good for); of phantom close-ups whose nail takes up
 //! to half of the photograph's height all, half within 0.4 degrees; of those up to 0.7 of it 92 %, none wrong.
+
+mod finger;
+mod surroundings;
 
 use image::DynamicImage;
 use thiserror::Error;
 
-use super::finger::evidence;
-use super::patch::Patch;
-use super::shape::Shape;
-use super::{Axis, Outline};
+use super::{Axis, Moments, Outline};
+use finger::evidence;
+use surroundings::Surroundings;
 
 const DIRECTIONS: usize = 72;
 /// Log-likelihood below the best one at which a direction's neighbours are not looked at.
 const HOPELESS: f64 = 5.0;
 /// Probability within 40 degrees of the best direction below which a nail is left out. At 0.5 one nail of 127 in grey
-/// versions of the real photographs was told wrong, at 0.6 none in nine versions of all of them.
+/// versions of the real photographs was wrong, at 0.6 none in nine versions of all of them.
 pub const LEAST_CONFIDENCE: f64 = 0.6;
 /// Directions that count as the same answer, degrees to either side.
 const PEAK_DEG: f64 = 40.0;
@@ -43,7 +45,7 @@ const HINT_DEG: f64 = 30.0;
 const STANDING: f64 = 0.5;
 /// Outlines below this long axis show no finger, pixels.
 const LEAST_LENGTH_PX: f64 = 5.0;
-/// A nail seen from above or aslant has an outline without dents; below this solidity it is no single nail ..
+/// A nail seen from above or aslant has an outline without dents; below this solidity it is not a single nail ..
 const DENTED: f64 = 0.91;
 /// .. save in profile, where it is a bent sliver, more elongated than this.
 const PROFILE: f64 = 2.5;
@@ -71,7 +73,7 @@ pub struct FoundAxis {
     pub confidence: f64,
 }
 
-/// A nail whose axis is not told.
+/// A nail whose axis is not known.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[error("{doubt}; say --distal, or draw an `axis` line from proximal to distal in LabelMe")]
 pub struct AxisUnknown {
@@ -81,7 +83,7 @@ pub struct AxisUnknown {
     pub best_guess: Option<FoundAxis>,
 }
 
-/// Why the axis of a nail can't be told.
+/// Why the axis of a nail is not known.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 pub enum AxisDoubt {
     /// The outline lies outside the photograph.
@@ -116,16 +118,13 @@ pub enum AxisDoubt {
 }
 
 /// A side of the photograph.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
+#[allow(missing_docs, reason = "the names say it, also in the help")]
 pub enum Side {
-    /// The top.
     Up,
-    /// The bottom.
     Down,
-    /// The left.
     Left,
-    /// The right.
     Right,
 }
 
@@ -148,7 +147,7 @@ impl Side {
 /// the hint says. Where the shape has no axis (nearly round), or is so long across the hint that the hint can't mean
 /// its short axis, the axis is the hint itself.
 pub fn axis_towards(outline: &Outline, hint: Side) -> Axis {
-    let shape = Shape::of(outline);
+    let shape = Moments::of(outline);
     if shape.elongation() < ROUND {
         return hint.axis();
     }
@@ -163,13 +162,13 @@ pub fn axis_towards(outline: &Outline, hint: Side) -> Axis {
 /// The axes of the nails of one photograph, in the order of `outlines`.
 pub fn find_axes(image: &DynamicImage, outlines: &[Outline]) -> Vec<Result<FoundAxis, AxisUnknown>> {
     let alone: Vec<Result<Directions, AxisDoubt>> = outlines.iter().map(|outline| look(image, outline)).collect();
-    let told: Vec<Option<&Directions>> = alone.iter().map(|found| found.as_ref().ok()).collect();
+    let known: Vec<Option<&Directions>> = alone.iter().map(|found| found.as_ref().ok()).collect();
     (0..outlines.len())
         .map(|i| match &alone[i] {
             Err(doubt) => Err(AxisUnknown { doubt: *doubt, best_guess: None }),
             Ok(own) => {
                 let others: Vec<&Directions> =
-                    told.iter().enumerate().filter(|(j, _)| *j != i).filter_map(|(_, d)| *d).collect();
+                    known.iter().enumerate().filter(|(j, _)| *j != i).filter_map(|(_, d)| *d).collect();
                 decide(own, &others)
             }
         })
@@ -232,7 +231,7 @@ fn angle_deg(one: Axis, other: Axis) -> f64 {
 pub(super) fn turned_since(image: &DynamicImage, drawn: &[(&Outline, Axis)]) -> Option<&'static str> {
     let size = [f64::from(image.width()), f64::from(image.height())];
     let fits = |outline: &Outline, axis: Axis| {
-        let patch = Patch::read(image, outline, &Shape::of(outline))?;
+        let patch = Surroundings::read(image, outline, &Moments::of(outline))?;
         Some(evidence(&patch, axis.clockwise_rad()))
     };
     let as_drawn: Vec<Option<f64>> = drawn.iter().map(|(outline, axis)| fits(outline, *axis)).collect();
@@ -270,14 +269,14 @@ struct Directions([f64; DIRECTIONS]);
 
 /// What the picture around one nail says.
 fn look(image: &DynamicImage, outline: &Outline) -> Result<Directions, AxisDoubt> {
-    let shape = Shape::of(outline);
+    let shape = Moments::of(outline);
     if shape.major_px < LEAST_LENGTH_PX {
         return Err(AxisDoubt::TooSmall { length_px: shape.major_px });
     }
     if shape.solidity < DENTED && shape.elongation() < PROFILE {
         return Err(AxisDoubt::Dented { share: shape.solidity });
     }
-    let patch = Patch::read(image, outline, &shape).ok_or(AxisDoubt::Outside)?;
+    let patch = Surroundings::read(image, outline, &shape).ok_or(AxisDoubt::Outside)?;
     if patch.featureless {
         return Err(AxisDoubt::Featureless);
     }

@@ -18,16 +18,17 @@ use thiserror::Error;
 
 use super::maps::Sums;
 use super::members::Members;
-use super::normalization::Normalization;
-use super::normalize::Normalized;
 use super::npz::Npz;
 use crate::input;
+use crate::photo::normalize::{Normalization, Normalized};
 
 /// Of sums.
 const FORMAT: u32 = 1;
 /// Of one subject's levels.
 const FORMAT_OF_ONE: u32 = 2;
 
+/// Bytes of an archive beside its arrays, as it is written: their headers, the directory and a common `meta`.
+const HEADERS: usize = 16 << 10;
 /// Bytes of a partial map's `meta`: a million subjects' names.
 const MOST_META: u64 = 64 << 20;
 
@@ -35,7 +36,7 @@ const MOST_META: u64 = 64 << 20;
 #[derive(Debug, Error)]
 pub enum PartialFault {
     /// Not readable as a partial map.
-    #[error("{}: is no partial map ({why}); name a folder that `lunula photos` wrote", .file.display())]
+    #[error("{}: is not a partial map ({why}); name a folder that `lunula photos` wrote", .file.display())]
     Unreadable {
         /// Which file.
         file: PathBuf,
@@ -43,7 +44,7 @@ pub enum PartialFault {
         why: String,
     },
     /// Written by another version.
-    #[error("{}: has format {found}, this version reads {FORMAT} and {FORMAT_OF_ONE}; make it anew", .file.display())]
+    #[error("{}: has format {found}, this version reads {FORMAT} and {FORMAT_OF_ONE}; make it again", .file.display())]
     Version {
         /// Which file.
         file: PathBuf,
@@ -52,7 +53,7 @@ pub enum PartialFault {
     },
     /// Made with other options.
     #[error(
-        "{}: pose `{pose}` was made with {found}, the parts before it with {expected}; make one of them anew",
+        "{}: pose `{pose}` was made with {found}, the parts before it with {expected}; make one of them again",
         .file.display()
     )]
     Options {
@@ -116,39 +117,53 @@ pub struct Partials {
 ///
 /// # Errors
 /// Where the file can't be written.
-pub(super) fn write(path: &Path, pose: &str, sums: &Sums, normalization: &Normalization) -> anyhow::Result<()> {
-    let shape = (sums.size, sums.size);
-    let mut npz = NpzWriter::new(Cursor::new(Vec::new()));
-    npz.add_array("sum", &ArrayView2::from_shape(shape, &sums.sum)?)?;
-    npz.add_array("sum_sq", &ArrayView2::from_shape(shape, &sums.sum_sq)?)?;
-    npz.add_array("count", &ArrayView2::from_shape(shape, &sums.count)?)?;
-    npz.add_array("meta", &meta(FORMAT, pose, sums, normalization)?)?;
-    // In memory, for a file that fails in the middle is no place to go on writing an archive to: zip asserts that it
-    // is.
-    std::fs::write(path, npz.finish()?.into_inner())?;
-    Ok(())
+pub(in crate::photo) fn write(path: &Path, pose: &str, sums: &Sums, with: &Normalization) -> anyhow::Result<()> {
+    Ok(std::fs::write(path, bytes(pose, sums, with)?)?)
 }
 
-/// Writes one pose's sums; one subject's as its levels.
+/// Writes one pose's sums; one subject's as its levels. Returns what the file holds.
 ///
 /// # Errors
 /// Where the file can't be written.
-pub(super) fn write_part(path: &Path, pose: &str, sums: &Sums, normalization: &Normalization) -> anyhow::Result<()> {
-    if sums.subjects.len() != 1 {
-        return write(path, pose, sums, normalization);
-    }
+pub(in crate::photo) fn write_part(
+    path: &Path,
+    pose: &str,
+    sums: &Sums,
+    with: &Normalization,
+) -> anyhow::Result<Vec<u8>> {
+    let file = if sums.subjects.len() == 1 { bytes_of_one(pose, sums, with)? } else { bytes(pose, sums, with)? };
+    std::fs::write(path, &file)?;
+    Ok(file)
+}
+
+fn bytes(pose: &str, sums: &Sums, with: &Normalization) -> anyhow::Result<Vec<u8>> {
+    let shape = (sums.size, sums.size);
+    let mut npz = archive(20 * sums.sum.len());
+    npz.add_array("sum", &ArrayView2::from_shape(shape, &sums.sum)?)?;
+    npz.add_array("sum_sq", &ArrayView2::from_shape(shape, &sums.sum_sq)?)?;
+    npz.add_array("count", &ArrayView2::from_shape(shape, &sums.count)?)?;
+    npz.add_array("meta", &meta(FORMAT, pose, sums, with)?)?;
+    Ok(npz.finish()?.into_inner())
+}
+
+fn bytes_of_one(pose: &str, sums: &Sums, with: &Normalization) -> anyhow::Result<Vec<u8>> {
     let shape = (sums.size, sums.size);
     let level = |&sum: &u64| u16::try_from(sum).expect("one subject's sum is its level");
     let levels: Vec<u16> = sums.sum.iter().map(level).collect();
-    let mut npz = NpzWriter::new(Cursor::new(Vec::new()));
+    let mut npz = archive(3 * levels.len());
     npz.add_array("level", &ArrayView2::from_shape(shape, &levels)?)?;
     if sums.count.contains(&0) {
         let seen: Vec<u8> = sums.count.iter().map(|&count| u8::from(count > 0)).collect();
         npz.add_array("seen", &ArrayView2::from_shape(shape, &seen)?)?;
     }
-    npz.add_array("meta", &meta(FORMAT_OF_ONE, pose, sums, normalization)?)?;
-    std::fs::write(path, npz.finish()?.into_inner())?;
-    Ok(())
+    npz.add_array("meta", &meta(FORMAT_OF_ONE, pose, sums, with)?)?;
+    Ok(npz.finish()?.into_inner())
+}
+
+/// An archive of about so many bytes of arrays. In memory, for a file that fails in the middle can't be
+/// finished: zip asserts that it can.
+fn archive(bytes: usize) -> NpzWriter<Cursor<Vec<u8>>> {
+    NpzWriter::new(Cursor::new(Vec::with_capacity(bytes + HEADERS)))
 }
 
 fn meta(format: u32, pose: &str, sums: &Sums, normalization: &Normalization) -> serde_json::Result<Array1<u8>> {
@@ -213,7 +228,7 @@ fn partial_files(part: &Path) -> Result<Vec<PathBuf>, PartialFault> {
 }
 
 /// Where a part of a pipeline keeps a pose's sums.
-pub(super) fn part_name(pose: &str) -> String {
+pub(in crate::photo) fn part_name(pose: &str) -> String {
     format!("partials/{pose}.partial.npz")
 }
 

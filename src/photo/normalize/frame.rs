@@ -8,9 +8,9 @@
 use geo::{Area, BooleanOps, Coord, LineString, Polygon, Rect};
 use thiserror::Error;
 
-use super::outline::{Axis, Outline};
+use crate::photo::outline::{Axis, Outline};
 
-/// The smallest box that can still be told from a speck, pixels.
+/// The smallest box that can still be distinguished from a speck, pixels.
 pub const SMALLEST_EXTENT_PX: f64 = 4.0;
 
 /// Why an outline gives no frame.

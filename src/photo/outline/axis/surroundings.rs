@@ -8,14 +8,14 @@
 //! nail's own median luma, so that exposure does not matter; a grey photograph has no colour differences and works on
 //! brightness alone. Cells outside the photograph are marked, never made up.
 
+use std::sync::LazyLock;
+
 use image::{DynamicImage, GrayImage, ImageBuffer, Luma, Pixel, Primitive};
 use imageproc::distance_transform::{Norm, distance_transform};
 use imageproc::drawing::draw_polygon_mut;
-use imageproc::filter::gaussian_blur_f32;
 use imageproc::point::Point;
 
-use super::Outline;
-use super::shape::Shape;
+use crate::photo::outline::{Moments, Outline};
 
 /// Cells along the outline's long axis.
 pub(super) const NAIL_CELLS: f64 = 16.0;
@@ -40,7 +40,7 @@ const COLOUR_WEIGHT: f32 = 1.5;
 type Cell = [f32; 4];
 
 /// The surroundings of one nail.
-pub(super) struct Patch {
+pub(super) struct Surroundings {
     cells: Vec<Cell>,
     /// Whether the cell and those right of and below it are all known.
     block: Vec<bool>,
@@ -53,12 +53,12 @@ pub(super) struct Patch {
     pub(super) featureless: bool,
 }
 
-impl Patch {
+impl Surroundings {
     /// Reads the surroundings; `None` where no cell of the nail lies on the photograph.
-    pub(super) fn read(image: &DynamicImage, outline: &Outline, shape: &Shape) -> Option<Self> {
-        let px_per_cell = shape.major_px / NAIL_CELLS;
-        let mask = nail_mask(outline, shape.centroid_px, px_per_cell);
-        let (mut colours, inside) = gather(image, shape.centroid_px, px_per_cell);
+    pub(super) fn read(image: &DynamicImage, outline: &Outline, moments: &Moments) -> Option<Self> {
+        let px_per_cell = moments.major_px / NAIL_CELLS;
+        let mask = nail_mask(outline, moments.centroid_px, px_per_cell);
+        let (mut colours, inside) = gather(image, moments.centroid_px, px_per_cell);
         let at_nail = |i: usize| mask.as_raw()[i] > 0;
 
         let distance = distance_transform(&mask, Norm::L1);
@@ -73,16 +73,11 @@ impl Patch {
         for colour in &mut colours {
             *colour = colour.map(|c| (c * scale).clamp(-3.0, 3.0));
         }
-        let planes = [0, 1, 2].map(|c| {
-            let raw = colours.iter().map(|colour| colour[c]).collect();
-            let plane: ImageBuffer<Luma<f32>, Vec<f32>> =
-                ImageBuffer::from_raw(SIDE as u32, SIDE as u32, raw).expect("one value a cell");
-            gaussian_blur_f32(&plane, BLUR).into_raw()
-        });
+        let colours = blurred(&colours);
 
         let mut skin = [0.0; 3];
-        for (value, plane) in skin.iter_mut().zip(&planes) {
-            *value = median(&mut (0..SIDE * SIDE).filter(|&i| ring(i)).map(|i| plane[i]))?;
+        for (c, value) in skin.iter_mut().enumerate() {
+            *value = median(&mut (0..SIDE * SIDE).filter(|&i| ring(i)).map(|i| colours[i][c]))?;
         }
 
         let mut cells = vec![Cell::default(); SIDE * SIDE];
@@ -92,13 +87,13 @@ impl Patch {
                 let i = y * SIDE + x;
                 whole[i] = inside[i] && inside[i - 1] && inside[i + 1] && inside[i - SIDE] && inside[i + SIDE];
                 let cell = &mut cells[i];
-                for (c, plane) in planes.iter().enumerate() {
-                    let gx = 0.5 * (plane[i + 1] - plane[i - 1]);
-                    let gy = 0.5 * (plane[i + SIDE] - plane[i - SIDE]);
+                for c in 0..3 {
+                    let gx = 0.5 * (colours[i + 1][c] - colours[i - 1][c]);
+                    let gy = 0.5 * (colours[i + SIDE][c] - colours[i - SIDE][c]);
                     cell[0] += gx * gx;
                     cell[1] += gx * gy;
                     cell[2] += gy * gy;
-                    cell[3] += (plane[i] - skin[c]).powi(2);
+                    cell[3] += (colours[i][c] - skin[c]).powi(2);
                 }
                 cell[3] = cell[3].sqrt().min(1.0);
             }
@@ -194,15 +189,19 @@ fn nail_mask(outline: &Outline, centre: [f64; 2], px_per_cell: f64) -> GrayImage
     }
     let mut fine = GrayImage::new((SIDE * FINE) as u32, (SIDE * FINE) as u32);
     draw_polygon_mut(&mut fine, &corners, Luma([1]));
-    GrayImage::from_fn(SIDE as u32, SIDE as u32, |x, y| {
-        let mut covered = 0;
-        for j in 0..FINE as u32 {
-            for i in 0..FINE as u32 {
-                covered += usize::from(fine.get_pixel(x * FINE as u32 + i, y * FINE as u32 + j).0[0]);
+    let mut mask = GrayImage::new(SIDE as u32, SIDE as u32);
+    for (cells, lines) in mask.chunks_exact_mut(SIDE).zip(fine.chunks_exact(SIDE * FINE * FINE)) {
+        let mut covered = [0; SIDE];
+        for line in lines.chunks_exact(SIDE * FINE) {
+            for (covered, fine) in covered.iter_mut().zip(line.chunks_exact(FINE)) {
+                *covered += fine.iter().map(|&fine| usize::from(fine)).sum::<usize>();
             }
         }
-        Luma([if 2 * covered >= FINE * FINE { 255 } else { 0 }])
-    })
+        for (cell, covered) in cells.iter_mut().zip(covered) {
+            *cell = if 2 * covered >= FINE * FINE { 255 } else { 0 };
+        }
+    }
+    mask
 }
 
 /// Colours (luma, red less green, green less blue, as fractions of full scale) of the window's cells, and which cells
@@ -230,20 +229,21 @@ where
 {
     let unit = 1.0 / P::Subpixel::DEFAULT_MAX_VALUE.into();
     let (width, height) = (f64::from(pixels.width()), f64::from(pixels.height()));
-    let colour_at = |x: f64, y: f64| {
-        // Nearest pixel; `round` would be a library call a pixel.
-        let x = (x + 0.5).clamp(0.0, width - 0.5) as u32;
-        let y = (y + 0.5).clamp(0.0, height - 0.5) as u32;
-        pixels.get_pixel(x, y).to_rgb().0.map(Into::<f32>::into)
+    let channels = usize::from(P::CHANNEL_COUNT);
+    let stride = channels * pixels.width() as usize;
+    let samples = pixels.as_raw();
+    let colour_at = |column: usize, row: usize| {
+        let at = row * stride + column * channels;
+        P::from_slice(&samples[at..at + channels]).to_rgb().0.map(Into::<f32>::into)
     };
     let reads = (px_per_cell.ceil() as u32).clamp(1, READS);
+    let [columns, rows] =
+        [(centre[0], width), (centre[1], height)].map(|(centre, extent)| places(centre, px_per_cell, reads, extent));
     let mut colours = Vec::with_capacity(SIDE * SIDE);
     let mut inside = Vec::with_capacity(SIDE * SIDE);
-    for row in 0..SIDE {
-        for column in 0..SIDE {
-            let x = centre[0] + (column as f64 - HALF as f64) * px_per_cell;
-            let y = centre[1] + (row as f64 - HALF as f64) * px_per_cell;
-            inside.push(x >= -0.5 && y >= -0.5 && x < width - 0.5 && y < height - 0.5);
+    for row in &rows {
+        for column in &columns {
+            inside.push(column.inside && row.inside);
             let mut sum = [0.0_f32; 3];
             let mut add = |colour: [f32; 3], weight: f32| {
                 for (total, value) in sum.iter_mut().zip(colour) {
@@ -252,18 +252,17 @@ where
             };
             if reads == 1 {
                 // Enlarged: between the four pixels around.
-                let (left, top) = (x.floor(), y.floor());
-                let (fx, fy) = ((x - left) as f32, (y - top) as f32);
+                let ([left, right, _], [top, below, _]) = (column.pixels, row.pixels);
+                let (fx, fy) = (column.fraction, row.fraction);
                 add(colour_at(left, top), (1.0 - fx) * (1.0 - fy));
-                add(colour_at(left + 1.0, top), fx * (1.0 - fy));
-                add(colour_at(left, top + 1.0), (1.0 - fx) * fy);
-                add(colour_at(left + 1.0, top + 1.0), fx * fy);
+                add(colour_at(right, top), fx * (1.0 - fy));
+                add(colour_at(left, below), (1.0 - fx) * fy);
+                add(colour_at(right, below), fx * fy);
             } else {
                 let weight = 1.0 / (reads * reads) as f32;
-                let offset = |k: u32| ((f64::from(k) + 0.5) / f64::from(reads) - 0.5) * px_per_cell;
-                for j in 0..reads {
-                    for i in 0..reads {
-                        add(colour_at(x + offset(i), y + offset(j)), weight);
+                for &y in &row.pixels[..reads as usize] {
+                    for &x in &column.pixels[..reads as usize] {
+                        add(colour_at(x, y), weight);
                     }
                 }
             }
@@ -272,4 +271,93 @@ where
         }
     }
     (colours, inside)
+}
+
+/// Where a column or row of cells lies on the photograph.
+struct Place {
+    /// The pixels that are read; where cells are smaller than pixels, the two around.
+    pixels: [usize; READS as usize],
+    /// How far it lies from the first of two.
+    fraction: f32,
+    /// Whether it lies on the photograph.
+    inside: bool,
+}
+
+fn places(centre: f64, px_per_cell: f64, reads: u32, extent: f64) -> Vec<Place> {
+    // Nearest pixel; `round` would be a library call a pixel.
+    let nearest = |at: f64| (at + 0.5).clamp(0.0, extent - 0.5) as usize;
+    let place = |cell: usize| {
+        let at = centre + (cell as f64 - HALF as f64) * px_per_cell;
+        let offset = |k: u32| ((f64::from(k) + 0.5) / f64::from(reads) - 0.5) * px_per_cell;
+        let first = at.floor();
+        Place {
+            pixels: std::array::from_fn(|k| nearest(if reads == 1 { first + k as f64 } else { at + offset(k as u32) })),
+            fraction: (at - first) as f32,
+            inside: at >= -0.5 && at < extent - 0.5,
+        }
+    };
+    (0..SIDE).map(place).collect()
+}
+
+/// Colours smoothed by [`BLUR`]: the sums of imageproc's `gaussian_blur_f32` in its order, without its calls for each
+/// pixel and channel.
+fn blurred(colours: &[[f32; 3]]) -> Vec<[f32; 3]> {
+    static KERNEL: LazyLock<[f32; TAPS]> = LazyLock::new(|| {
+        let value = |at: usize| {
+            let x = at.abs_diff(TAPS / 2) as f32;
+            (BLUR * (2.0 * std::f32::consts::PI).sqrt()).recip() * (-x.powi(2) / (2.0 * BLUR.powi(2))).exp()
+        };
+        let values: [f32; TAPS] = std::array::from_fn(value);
+        let sum: f32 = values.iter().sum();
+        values.map(|value| value / sum)
+    });
+    const TAPS: usize = 5;
+    let kernel = *KERNEL;
+    let mut across = vec![[0.0_f32; 3]; SIDE * SIDE];
+    for (out, line) in across.chunks_exact_mut(SIDE).zip(colours.chunks_exact(SIDE)) {
+        let mut padded = [[0.0; 3]; SIDE + TAPS - 1];
+        padded[..TAPS / 2].fill(line[0]);
+        padded[TAPS / 2..][..SIDE].copy_from_slice(line);
+        padded[SIDE + TAPS / 2..].fill(line[SIDE - 1]);
+        for (tap, weight) in kernel.into_iter().enumerate() {
+            add_weighted(out, &padded[tap..tap + SIDE], weight);
+        }
+    }
+    let mut both = vec![[0.0_f32; 3]; SIDE * SIDE];
+    for (row, out) in both.chunks_exact_mut(SIDE).enumerate() {
+        for (tap, weight) in kernel.into_iter().enumerate() {
+            let from = (row + tap).saturating_sub(TAPS / 2).min(SIDE - 1);
+            add_weighted(out, &across[from * SIDE..][..SIDE], weight);
+        }
+    }
+    both
+}
+
+fn add_weighted(sums: &mut [[f32; 3]], line: &[[f32; 3]], weight: f32) {
+    for (sum, value) in sums.as_flattened_mut().iter_mut().zip(line.as_flattened()) {
+        *sum += value * weight;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use imageproc::filter::gaussian_blur_f32;
+    use rand::{RngExt, SeedableRng};
+
+    use super::*;
+
+    #[test]
+    fn blurring_gives_the_values_of_its_plain_twin() {
+        let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(1);
+        let colours: Vec<[f32; 3]> =
+            (0..SIDE * SIDE).map(|_| std::array::from_fn(|_| random.random_range(-3.0..3.0))).collect();
+        let blurred = blurred(&colours);
+        for c in 0..3 {
+            let raw = colours.iter().map(|colour| colour[c]).collect();
+            let plane: ImageBuffer<Luma<f32>, Vec<f32>> =
+                ImageBuffer::from_raw(SIDE as u32, SIDE as u32, raw).expect("one value per cell");
+            let twin = gaussian_blur_f32(&plane, BLUR).into_raw();
+            assert!(twin.iter().zip(&blurred).all(|(twin, one)| twin.to_bits() == one[c].to_bits()), "channel {c}");
+        }
+    }
 }

@@ -9,15 +9,15 @@ use imageproc::contours::find_contours;
 
 /// The end of a finger in pixels of the working picture.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Tip {
+pub(in super::super) struct Tip {
     /// The foremost point.
-    pub(super) apex: [f64; 2],
+    pub(in super::super) apex: [f64; 2],
     /// Unit vector along the finger, outwards.
-    pub(super) out: [f64; 2],
+    pub(in super::super) out: [f64; 2],
     /// Width of the finger.
-    pub(super) width: f64,
+    pub(in super::super) width: f64,
     /// How well the cap and sides fit, 0 to 1.
-    pub(super) fit: f64,
+    pub(in super::super) fit: f64,
 }
 
 /// Narrowest finger that is looked for, working pixels.
@@ -28,7 +28,7 @@ const RATIO: f64 = 1.15;
 const WORST: f64 = 0.25;
 
 /// The ends on one mask.
-pub(super) fn tips(mask: &GrayImage) -> Vec<Tip> {
+pub(in super::super) fn tips(mask: &GrayImage) -> Vec<Tip> {
     let widest = 0.6 * f64::from(mask.width().max(mask.height()));
     let mut found = Vec::new();
     for contour in find_contours::<i32>(mask) {
@@ -50,7 +50,7 @@ pub(super) fn tips(mask: &GrayImage) -> Vec<Tip> {
 }
 
 /// Keeps the best of `found` that do not stand for the same end, at most `most`.
-pub(super) fn strongest(mut found: Vec<Tip>, most: usize) -> Vec<Tip> {
+pub(in super::super) fn strongest(mut found: Vec<Tip>, most: usize) -> Vec<Tip> {
     found.sort_by(|a, b| b.fit.total_cmp(&a.fit));
     let mut kept: Vec<Tip> = Vec::new();
     for tip in found {

@@ -1,57 +1,80 @@
-//! Maps of many subjects from each one's own sums, going on from those that stand.
+//! Maps of many subjects from each one's own sums, adding to those of an earlier gathering.
 //!
-//! In: folders that [`run`](super::run) wrote with [`PhotosOptions::parts`](super::PhotosOptions::parts), and perhaps
-//! what was gathered before. Out:
-//! maps, their partial sums and `members.json`, `nails.csv` of all, and figures where they are wanted. Sums are
-//! integers: where all that was added before is still there with the same content, only what is new is read and added,
-//! and the bytes are those of adding all.
+//! In: folders that [`run`](fn@crate::photo::run) wrote as [`Results::Sums`](crate::photo::Results::Sums), and perhaps
+//! what was gathered before. Out: maps, their partial sums and `members.json`, `nails.csv` of all, and figures where
+//! they are wanted. Sums are integers: where all that was added before is still there with the same content, only what
+//! is new is read and added, and the bytes are those of adding all.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
+use serde::Serialize;
 
+use super::accuracy::Accuracy;
 use super::maps::Sums;
 use super::members::{Member, Members};
-use super::merge::{MergeError, read_nails};
 use super::partial::{self, Held, PartialFault, Partials};
-use super::report::{NailTable, PoseCount};
-use super::results;
 use crate::files::Staging;
+use crate::photo::error::MergeError;
+use crate::photo::normalize::Normalization;
+use crate::photo::options::Watch;
+use crate::photo::report::{PoseCount, one_subject, pose_counts};
+use crate::photo::results::{NailTable, write_maps};
 use crate::stages::{Stage, Stages};
 
+/// What is gathered, and where results go.
+#[derive(Debug, Clone)]
+pub struct Gathering<'a> {
+    /// Folders of sums.
+    pub parts: &'a [PathBuf],
+    /// Where an earlier gathering of them, or of some, is.
+    pub before: Option<&'a Path>,
+    /// Exact maps to compare with: `<pose>-mean.npy` and `<pose>-sd.npy`.
+    pub truth: Option<&'a Path>,
+    /// Whether figures are drawn.
+    pub figures: bool,
+    /// Folder for the results.
+    pub out: &'a Path,
+}
+
 /// What was gathered.
-#[derive(Debug)]
-pub struct Gathered {
-    /// Sums of every pose.
-    pub partials: Partials,
+#[derive(Debug, Clone, Serialize)]
+pub struct GatherReport {
+    /// `maps`.
+    pub job: &'static str,
     /// Subjects by pose.
     pub poses: Vec<PoseCount>,
     /// Files of sums that were read and added.
-    pub added: usize,
-    /// Those that sums standing from before held already.
-    pub stood: usize,
-    /// What a reader of the maps should know.
-    pub warnings: Vec<String>,
+    pub sums_added: usize,
+    /// Those that the earlier gathering held already.
+    pub sums_stood: usize,
+    /// What the normalized pictures were made with.
+    pub normalization: Normalization,
+    /// What is good to know, a line for each kind.
+    #[serde(skip)]
+    pub notes: Vec<String>,
+    /// What was not needed.
+    #[serde(skip)]
+    pub left_out: Vec<String>,
     /// Time by stage.
+    #[serde(skip)]
     pub stages: Vec<Stage>,
+    /// How good the maps are.
+    #[serde(skip)]
+    pub accuracy: Accuracy,
 }
 
 /// A pose's members and the files that hold them.
 type Files = BTreeMap<Member, PathBuf>;
 
-/// Gathers `parts` into `staging`; `before` is where an earlier gathering stands.
+/// Gathers sums and puts the maps in their place.
 ///
 /// # Errors
-/// [`MergeError`].
-pub fn gather(
-    parts: &[PathBuf],
-    before: Option<&Path>,
-    figures: bool,
-    staging: &Staging,
-    stop: &AtomicBool,
-) -> Result<Gathered, MergeError> {
+/// [`MergeError`]; nothing is written then.
+pub fn gather(gathering: &Gathering, watch: &Watch) -> Result<GatherReport, MergeError> {
+    let Gathering { parts, before, truth, figures, out } = *gathering;
+    let staging = Staging::new(out)?;
     let stages = Stages::default();
     let (members, files) = stages.time("list sums", || list(parts))?;
     let before = before.and_then(|folder| Some((folder, Members::of_maps(folder)?)));
@@ -65,7 +88,7 @@ pub fn gather(
         };
         let mut added = 0;
         for (_, file) in files.iter().filter(|(member, _)| known.is_none_or(|known| !known.contains(*member))) {
-            if stop.load(Ordering::Relaxed) {
+            if watch.is_stopped() {
                 return Err(MergeError::Interrupted);
             }
             let (meta, held) = partial::read(file)?;
@@ -77,24 +100,32 @@ pub fn gather(
     };
     let summed: Vec<(String, Sums, usize)> =
         stages.time("add up", || files.par_iter().map(add_up).collect::<Result<_, MergeError>>())?;
-    let added = summed.iter().map(|(_, _, added)| added).sum();
+    let sums_added = summed.iter().map(|(_, _, added)| added).sum();
     let poses = summed.into_iter().map(|(pose, sums, _)| (pose, sums)).collect();
     let partials = Partials { normalization: members.normalization, poses };
-    results::write_maps(&partials, figures, staging, &stages)?;
-    members.write_of_maps(staging)?;
-    stages.time("table of nails", || {
-        let mut rows = Vec::new();
-        for part in parts {
-            rows.extend(read_nails(&part.join("nails.csv"))?);
-        }
-        Ok::<_, MergeError>(results::write_nails(NailTable::of_parts(rows).rows(), staging)?)
-    })?;
-    let counts = partials.poses.iter().map(|(pose, sums)| (pose, sums.subjects().len()));
-    let poses: Vec<PoseCount> = counts.map(|(pose, subjects)| PoseCount { pose: pose.clone(), subjects }).collect();
-    let alone = poses.iter().filter(|pose| pose.subjects == 1);
-    let warnings = alone.map(|pose| super::job::one_subject(&pose.pose)).collect();
-    let all: usize = files.values().map(BTreeMap::len).sum();
-    Ok(Gathered { partials, poses, added, stood: all - added, warnings, stages: stages.list() })
+    write_maps(&partials, figures, &staging, &stages)?;
+    members.write_of_maps(&staging)?;
+    stages.time("table of nails", || Ok::<_, MergeError>(NailTable::of_parts(parts)?.write(&staging)?))?;
+    let accuracy = stages.time("accuracy", || Accuracy::of(&partials, truth))?;
+    staging.commit()?;
+
+    let poses = pose_counts(&partials);
+    let sums_stood = files.values().map(BTreeMap::len).sum::<usize>() - sums_added;
+    let left_out = (sums_stood > 0)
+        .then(|| format!("sums: {sums_stood} are part of the maps made before, and are not read again"))
+        .into_iter()
+        .collect();
+    Ok(GatherReport {
+        job: "maps",
+        notes: one_subject(&poses).into_iter().collect(),
+        poses,
+        sums_added,
+        sums_stood,
+        normalization: partials.normalization,
+        left_out,
+        stages: stages.list(),
+        accuracy,
+    })
 }
 
 /// What the parts hold, by pose, from their lists alone.

@@ -9,7 +9,7 @@ use imageproc::contrast::otsu_level;
 use imageproc::distance_transform::Norm;
 use imageproc::morphology::open;
 
-use super::picture::{self, Picture, TONE, YELLOW};
+use super::super::picture::{self, Picture, TONE, YELLOW};
 
 /// ln(R/G) of skin in any common light.
 const RED: std::ops::Range<f32> = 0.08..1.1;
@@ -23,7 +23,7 @@ const SHADE: f32 = 0.7;
 const CUT: f32 = 0.09;
 
 /// Masks (255 inside), the likeliest rule first.
-pub(super) fn silhouettes(picture: &Picture) -> Vec<GrayImage> {
+pub(in super::super) fn silhouettes(picture: &Picture) -> Vec<GrayImage> {
     let cells = &picture.cells;
     let tone: Vec<f32> = cells.iter().map(|c| c[TONE]).collect();
     let steep = steepness(&tone, picture.size);

@@ -7,15 +7,13 @@ use image::DynamicImage;
 
 /// Which channel of a colour photograph is the value. The thesis finds the colour of the nail bed mainly in the green
 /// one (section 4.2.2).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[allow(missing_docs, reason = "the names say it, also in the help")]
 pub enum Channel {
-    /// R of RGB.
     Red,
-    /// G of RGB.
     #[default]
     Green,
-    /// B of RGB.
     Blue,
 }
 
@@ -39,10 +37,13 @@ pub(crate) struct Taking {
 
 impl Plane {
     /// Takes columns `x0..x1` and rows `y0..y1`; places outside of the photograph repeat its border pixel, so that an
-    /// interpolation at the border has all its neighbours.
-    pub(crate) fn take(image: &DynamicImage, taking: Taking, [x0, x1]: [i64; 2], [y0, y1]: [i64; 2]) -> Self {
+    /// interpolation at the border has all its neighbours. The values go into `memory`.
+    pub(crate) fn take(image: &DynamicImage, taking: Taking, range: [[i64; 2]; 2], mut memory: Vec<f32>) -> Self {
+        let [[x0, x1], [y0, y1]] = range;
         let (width, height) = ((x1 - x0).max(0) as usize, (y1 - y0).max(0) as usize);
-        let mut plane = Self { x0, y0, width, height, values: Vec::with_capacity(width * height) };
+        memory.clear();
+        memory.reserve_exact(width * height);
+        let mut plane = Self { x0, y0, width, height, values: memory };
         let index = taking.channel as usize;
         let size = [image.width() as usize, image.height() as usize];
         let layout = |channels| Samples {
@@ -60,7 +61,7 @@ impl Plane {
             DynamicImage::ImageRgb16(p) => plane.fill(p, size, layout(3), taking.linear),
             DynamicImage::ImageRgba16(p) => plane.fill(p, size, layout(4), taking.linear),
             // Float pictures are refused when read; one that a caller made is taken by way of 16 bits.
-            other => return Self::take(&other.to_rgba16().into(), taking, [x0, x1], [y0, y1]),
+            other => return Self::take(&other.to_rgba16().into(), taking, range, plane.values),
         }
         plane
     }
@@ -117,7 +118,7 @@ impl Plane {
     }
 }
 
-/// Where in a pixel's samples the value stands.
+/// Where the value is among a pixel's samples.
 #[derive(Clone, Copy)]
 struct Samples {
     channels: usize,
@@ -163,21 +164,21 @@ mod tests {
     #[test]
     fn green_is_green_and_not_luma() {
         let image = DynamicImage::from(RgbImage::from_pixel(2, 2, Rgb([10, 51, 200])));
-        assert_eq!(Plane::take(&image, GREEN, [0, 2], [0, 2]).values, [0.2; 4]);
+        assert_eq!(Plane::take(&image, GREEN, [[0, 2], [0, 2]], Vec::new()).values, [0.2; 4]);
         let blue = Taking { channel: Channel::Blue, linear: false };
-        assert_eq!(Plane::take(&image, blue, [0, 1], [0, 1]).values, [200.0 / 255.0]);
+        assert_eq!(Plane::take(&image, blue, [[0, 1], [0, 1]], Vec::new()).values, [200.0 / 255.0]);
     }
 
     #[test]
     fn beyond_the_border_the_border_is_repeated() {
         let image = DynamicImage::from(GrayImage::from_fn(2, 1, |x, _| Luma([if x == 0 { 0 } else { 255 }])));
-        assert_eq!(Plane::take(&image, GREEN, [-2, 4], [-1, 0]).values, [0.0, 0.0, 0.0, 1.0, 1.0, 1.0]);
+        assert_eq!(Plane::take(&image, GREEN, [[-2, 4], [-1, 0]], Vec::new()).values, [0.0, 0.0, 0.0, 1.0, 1.0, 1.0]);
     }
 
     #[test]
     fn transparent_is_missing() {
         let image = DynamicImage::from(RgbaImage::from_fn(2, 1, |x, _| Rgba([9, 9, 9, if x == 0 { 0 } else { 1 }])));
-        let values = Plane::take(&image, GREEN, [0, 2], [0, 1]).values;
+        let values = Plane::take(&image, GREEN, [[0, 2], [0, 1]], Vec::new()).values;
         assert!(values[0].is_nan() && values[1] == 9.0 / 255.0);
     }
 
@@ -186,7 +187,7 @@ mod tests {
         let image = DynamicImage::from(image::ImageBuffer::from_pixel(1, 1, Luma([65535_u16])));
         for linear in [false, true] {
             let taking = Taking { channel: Channel::Green, linear };
-            assert_eq!(Plane::take(&image, taking, [0, 1], [0, 1]).values, [1.0]);
+            assert_eq!(Plane::take(&image, taking, [[0, 1], [0, 1]], Vec::new()).values, [1.0]);
         }
     }
 

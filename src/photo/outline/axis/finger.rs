@@ -1,6 +1,6 @@
 //! How well a finger lies behind a nail, for each direction that it could point to.
 //!
-//! In: the nail's surroundings ([`Patch`]) and a candidate axis. Out: a log-likelihood up to a constant. The model is a
+//! In: the nail's surroundings ([`Surroundings`]) and a candidate axis. Out: a log-likelihood up to a constant. The model is a
 //! finger seen from any side: two sides parallel to the axis on both sides of the nail and of the skin behind it, a
 //! round tip just beyond the distal end, skin of the same colour behind the proximal end, and a nail that is
 //! mirror-symmetric about the axis. In the nail's own frame (distal up) the edges of 127 nails in real photographs,
@@ -8,7 +8,7 @@
 //!
 //! The four weights were fitted (conditional logit over 72 directions) on half of those photographs and rounded.
 
-use super::patch::{NAIL_CELLS, Patch};
+use super::surroundings::{NAIL_CELLS, Surroundings};
 
 /// Weight of the two sides (their evidence is 0 to 2).
 const SIDES: f32 = 7.5;
@@ -27,7 +27,7 @@ const LENGTH: f32 = NAIL_CELLS as f32;
 
 /// A candidate: the nail's frame in the patch.
 struct Frame<'a> {
-    patch: &'a Patch,
+    patch: &'a Surroundings,
     centre: [f32; 2],
     distal: [f32; 2],
     right: [f32; 2],
@@ -38,7 +38,7 @@ struct Frame<'a> {
 }
 
 /// Log-likelihood, up to a constant, that the finger's axis is `clockwise_rad` from up.
-pub(super) fn evidence(patch: &Patch, clockwise_rad: f64) -> f64 {
+pub(super) fn evidence(patch: &Surroundings, clockwise_rad: f64) -> f64 {
     let (sin, cos) = (clockwise_rad as f32).sin_cos();
     let count = patch.nail.len() as f32;
     let centre = patch.nail.iter().fold([0.0, 0.0], |sum, p| [sum[0] + p[0] / count, sum[1] + p[1] / count]);
@@ -86,7 +86,7 @@ impl Frame<'_> {
         for offset in 0..(0.95 * LENGTH) as usize {
             let u = edge + sign * offset as f32;
             let line = (0..steps).map(|k| self.patch.edge(self.at(u, top - k as f32), self.right));
-            best = best.max(mean(line, UNSEEN_EDGE));
+            best = best.max(mean_above(best, line, UNSEEN_EDGE));
         }
         best
     }
@@ -98,12 +98,12 @@ impl Frame<'_> {
         let mut best = 0.0_f32;
         for offset in 0..(0.5 * LENGTH) as usize {
             let centre = self.along[1] + offset as f32 - height;
-            let arch = (-6..=6).map(|k| {
-                let (sin, cos) = (k as f32 * 10.0).to_radians().sin_cos();
+            let arch = (-6_i16..=6).map(|k| {
+                let (sin, cos) = (f32::from(k) * 10.0).to_radians().sin_cos();
                 let normal = [sin * self.right[0] + cos * self.distal[0], sin * self.right[1] + cos * self.distal[1]];
                 self.patch.edge(self.at(self.middle() + half_width * sin, centre + height * cos), normal)
             });
-            best = best.max(mean(arch, UNSEEN_EDGE));
+            best = best.max(mean_above(best, arch, UNSEEN_EDGE));
         }
         best
     }
@@ -127,6 +127,29 @@ impl Frame<'_> {
         });
         stays.count() as f32 / self.patch.nail.len() as f32
     }
+}
+
+/// Values after which [`mean_above`] looks whether to go on.
+const AT_A_TIME: usize = 4;
+/// Rounding of a mean of some dozen values, and much more.
+const ROUNDING: f32 = 1e-4;
+
+/// The [`mean`] of values of 0 to 1 where it is above `best`; where it can't be, 0, and not all of them are looked at.
+fn mean_above(best: f32, mut values: impl ExactSizeIterator<Item = Option<f32>>, unseen: f32) -> f32 {
+    let (mut sum, mut weights) = (0.0, 0.0);
+    while values.len() > 0 {
+        for value in values.by_ref().take(AT_A_TIME) {
+            let weight = if value.is_some() { 1.0 } else { UNSEEN_WEIGHT };
+            sum += weight * value.unwrap_or(unseen);
+            weights += weight;
+        }
+        // Were all others seen and 1.
+        let left = values.len() as f32;
+        if sum + left < (best - ROUNDING) * (weights + left) {
+            return 0.0;
+        }
+    }
+    if weights > 0.0 { sum / weights } else { unseen }
 }
 
 /// Mean in which what is missing counts as `unseen`, but less than what is seen.

@@ -3,6 +3,11 @@ use crate::photo::outline::Axis;
 use image::{GrayImage, Luma};
 use proptest::prelude::*;
 
+fn values(image: &DynamicImage, frame: &NailFrame, with: &Normalization) -> Option<Vec<f32>> {
+    let mut buffers = Buffers::default();
+    super::values(image, frame, with, &mut buffers).then_some(buffers.values)
+}
+
 fn frame(center_px: [f64; 2], length_px: f64, width_px: f64, degrees: f64) -> NailFrame {
     NailFrame { center_px, length_px, width_px, axis: Axis::from_clockwise_rad(degrees.to_radians()) }
 }
@@ -31,14 +36,13 @@ fn a_picture_of_the_frame_s_own_pixels_is_taken_as_it_is() {
 fn distal_is_up_whichever_way_the_nail_points() {
     // Brightness grows to the right, and the nail points there.
     let image = GrayImage::from_fn(100, 100, |x, _| Luma([2 * x as u8]));
-    let values =
-        values(&image.into(), &frame([50.0, 50.0], 40.0, 40.0, 90.0), &sized(50, Resample::Cubic)).expect("shown");
-    assert!(values[0] > 0.5 && values[49 * 50] < 0.25);
+    let right = frame([50.0, 50.0], 40.0, 40.0, 90.0);
+    let shown = values(&image.into(), &right, &sized(50, Resample::Cubic)).expect("shown");
+    assert!(shown[0] > 0.5 && shown[49 * 50] < 0.25);
     // Not mirrored: seen with its tip up, what was below the nail lies to its right.
     let image = GrayImage::from_fn(100, 100, |_, y| Luma([2 * y as u8]));
-    let values = super::values(&image.into(), &frame([50.0, 50.0], 40.0, 40.0, 90.0), &sized(50, Resample::Cubic))
-        .expect("shown");
-    assert!(values[49] > 0.5 && values[0] < 0.25);
+    let shown = values(&image.into(), &right, &sized(50, Resample::Cubic)).expect("shown");
+    assert!(shown[49] > 0.5 && shown[0] < 0.25);
 }
 
 #[test]
@@ -140,12 +144,14 @@ proptest! {
         let turned = frame([100.0, 100.0], length, 0.8 * length, degrees + if flip { 180.0 } else { 0.0 });
         let with = sized(120, Resample::Cubic);
         let grid = Grid::new(&turned, &with);
-        let source = Source::new(&image, &grid, &with).expect("shown");
+        let source = Source::new(&image, &grid, &with, Vec::new()).expect("shown");
         prop_assert!(grid.is_nearly_upright() && source.samples == [1, 1]);
-        let differences: Vec<f64> = source
-            .points(&grid)
+        let (mut one, mut two) = (Vec::new(), Vec::new());
+        source.points(&grid, &mut one);
+        source.points_in_two_passes(&grid, &mut two, &mut Vec::new());
+        let differences: Vec<f64> = one
             .iter()
-            .zip(source.points_in_two_passes(&grid))
+            .zip(&two)
             .map(|(one, two)| 255.0 * f64::from((one - two).abs()))
             .collect();
         let largest = differences.iter().copied().fold(0.0, f64::max);

@@ -1,6 +1,6 @@
 //! Normalized pictures of many subjects to their mean and standard deviation per pixel (section 4.2.2, Fig. 53 and 56).
 //!
-//! In: normalized pictures, one a subject. Out: mean, SD (n - 1) and count per pixel. Values are quantized to 16 bits
+//! In: normalized pictures, one per subject. Out: mean, SD (n - 1) and count per pixel. Values are quantized to 16 bits
 //! and summed, with their squares, in integers: sums made in any order, by any number of threads, in parts and merged,
 //! are the same to the byte, and two equal pictures have an SD of exactly 0. A pixel that no subject shows has no
 //! mean; one that fewer than two show has no SD: both are NaN.
@@ -12,12 +12,12 @@ use std::collections::BTreeSet;
 
 use ndarray::Array2;
 
-use super::normalize::{self, Normalized};
+use crate::photo::normalize::{self, Normalized};
 
 /// Full scale of the quantized values.
 const FULL_SCALE: f64 = normalize::FULL_SCALE as f64;
 
-/// Sums over subjects, a pixel each, `size` x `size`, row by row from the top (distal).
+/// Sums over subjects, one per pixel, `size` x `size`, row by row from the top (distal).
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Sums {
     pub(crate) size: usize,
