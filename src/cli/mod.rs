@@ -122,7 +122,7 @@ pub(crate) fn run() -> ExitCode {
         Err(wrong) => wrong.exit(),
     };
     ended_with(match cli.command {
-        Command::Photos(args) => photos::run(&args),
+        Command::Photos(args) => photos::run_or_merge(&args),
         Command::Align(args) => job::run(&*args),
         Command::Train(args) => job::run(&*args),
         Command::Evaluate(args) => job::run(&args),

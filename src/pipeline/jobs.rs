@@ -2,6 +2,7 @@
 
 use crate::align::{AlignJob, JoinJob};
 use crate::job::{Job, Kind};
+use crate::photo::{MapsJob, NormalizeJob};
 use crate::posture::PostureJob;
 use crate::predictor::{AnalyseJob, CompareJob, EvaluateJob, PredictJob, PruneJob, TrainJob};
 
@@ -18,6 +19,8 @@ static KINDS: &[&Kind] = &[
     &CompareJob::KIND,
     &EvaluateJob::KIND,
     &JoinJob::KIND,
+    &MapsJob::KIND,
+    &NormalizeJob::KIND,
     &PostureJob::KIND,
     &PredictJob::KIND,
     &PruneJob::KIND,

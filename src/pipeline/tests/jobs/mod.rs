@@ -1,6 +1,7 @@
 //! The jobs on small generated recordings, without a pipeline around them.
 
 mod models;
+mod photos;
 mod recordings;
 
 use std::collections::BTreeMap;
