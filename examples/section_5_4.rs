@@ -7,7 +7,6 @@
 //! `hysteresis` (shares of the usual, 1).
 
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
 
 use anyhow::Context;
 use lunula::align::{AlignInputs, AlignOptions, AlignOutputs, run as align};
@@ -34,7 +33,7 @@ fn main() -> anyhow::Result<()> {
     let people = people.collect::<anyhow::Result<Vec<_>>>()?;
     let kinds = [Kind::Linear, Kind::Quadratic, Kind::Network { hidden: 8 }];
     let options = CompareOptions { models: kinds.map(Recipe::new).to_vec(), bending_s: Protocol::Touch.seconds()[0] };
-    let report = compare(&people, &options, Some(&FolderOutputs::all(out.clone())), &AtomicBool::new(false))?;
+    let report = Watch::nobody(|watch| compare(&people, &options, Some(&FolderOutputs::all(out.clone())), watch))?;
     report.warnings.iter().for_each(|warning| eprintln!("note: {warning}"));
     for comparison in &report.comparisons {
         println!("{}", comparison.markdown());

@@ -200,6 +200,11 @@ pub fn read<R: Args>(table: &Table, of: &str) -> Result<Given<R>, OptionFault> {
                     words.push(format!("--{long}={name}={}", word(value).ok_or_else(|| fault(no_value(key)))?));
                 }
             }
+            Value::Array(values) if values.is_empty() => {
+                if option.is_required_set() || !option.get_default_values().is_empty() {
+                    return Err(fault(format!("`{key}` is empty; name at least one")));
+                }
+            }
             Value::Array(values) if again => {
                 for value in values {
                     words.push(format!("--{long}={}", word(value).ok_or_else(|| fault(no_value(key)))?));

@@ -81,14 +81,22 @@ impl<F: Serialize> Report<F> {
         self
     }
 
+    /// The report as JSON text.
+    ///
+    /// # Panics
+    /// Never: figures are plain data.
+    #[must_use]
+    pub fn text(&self) -> String {
+        serde_json::to_string_pretty(self).expect("plain data with names as keys") + "\n"
+    }
+
     /// Writes the report to `at`, if it is to be written, and puts all results into their places.
     ///
     /// # Errors
     /// [`WriteError`]; then nothing has changed.
     pub fn commit(self, mut places: Places, at: Option<&Path>) -> Result<Self, WriteError> {
         if let Some(at) = at {
-            let text = serde_json::to_string_pretty(&self).expect("plain data with names as keys") + "\n";
-            places.write(at, &text)?;
+            places.write(at, &self.text())?;
         }
         places.commit()?;
         Ok(self)

@@ -21,6 +21,7 @@
 mod ambient;
 mod cell;
 mod columns;
+mod foreseen;
 mod guess;
 mod header;
 mod order;
@@ -44,6 +45,7 @@ pub use ambient::{AmbientError, AmbientOptions, Samples, samples};
 pub(crate) use ambient::{Preceding, piles};
 pub(crate) use cell::led as led_state;
 pub use columns::Columns;
+pub use foreseen::{ReadingCost, ambient_step, foreseen_bytes};
 pub use header::LogHeader;
 pub use reading::{LitRows, LogReading, UnlitLoads};
 pub use stamps::TimeUnit;

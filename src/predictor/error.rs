@@ -7,6 +7,7 @@ use thiserror::Error;
 
 use super::data::DataError;
 use crate::files::WriteError;
+use crate::job::Interrupted;
 use crate::table::TableError;
 
 /// Why there are no results; nothing that stood before was touched.
@@ -23,7 +24,7 @@ pub enum PredictorError {
         /// The system's words.
         why: std::io::Error,
     },
-    /// A model file is none.
+    /// Not a model file.
     #[error("{}: {why}", path.display())]
     Model {
         /// The file.
@@ -56,11 +57,6 @@ pub enum PredictorError {
     #[error(transparent)]
     Table(#[from] TableError),
     /// Stopped from outside.
-    #[error("interrupted; nothing was written")]
-    Interrupted,
-}
-
-/// Refuses to go on once somebody has stopped the job.
-pub(super) fn go_on(stop: &std::sync::atomic::AtomicBool) -> Result<(), PredictorError> {
-    if stop.load(std::sync::atomic::Ordering::Relaxed) { Err(PredictorError::Interrupted) } else { Ok(()) }
+    #[error("stopped")]
+    Interrupted(#[from] Interrupted),
 }

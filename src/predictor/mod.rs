@@ -15,8 +15,10 @@ mod error;
 mod evaluate;
 mod figures;
 mod figures_of_merit;
+mod kinds;
 mod learning;
 mod merit_table;
+mod options;
 mod outputs;
 mod predict;
 mod prune;
@@ -26,31 +28,33 @@ mod tests;
 mod train;
 pub mod trajectory;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// The crate that does the mathematics.
 pub use lunula_predictor as models;
 use lunula_predictor::{Dataset, Predictor, recording_hashes};
 
-use crate::files::is_same_file;
-
-pub use analyse::{AnalyseReport, ModelMode, ModelModes, Printed, analyse, analyse_plan};
+pub use analyse::{AnalyseFigures, AnalyseReport, ModelMode, ModelModes, Printed, analyse, analyse_plan};
 pub use answer::Answering;
 pub use choices::{ByChoice, F_MIN_N, FOLDS, HIDDEN, LEVEL, ModelChoice, share};
-pub use compare::{CompareOptions, CompareReport, Comparison, Person, Spread, compare, compare_plan};
+pub use compare::{CompareFigures, CompareOptions, CompareReport, Comparison, Person, Spread, compare, compare_plan};
 pub use data::{
-    DataError, DataFile, FailedFile, FileRows, Inputs, Read, Row, RowStream, Wanted, read_data, read_files, read_inputs,
+    DataError, DataFile, FailedFile, FileRows, Inputs, Read, Row, RowOptions, RowStream, Wanted, read_data, read_files,
+    read_inputs,
 };
 pub use error::PredictorError;
 pub use evaluate::{
-    BinMerit, EvaluateOptions, EvaluateReport, HeldOut, Magnitudes, Part, RecordingMerit, evaluate, evaluate_plan,
+    BinMerit, EvaluateFigures, EvaluateOptions, EvaluateReport, HeldOut, Magnitudes, Part, RecordingMerit, evaluate,
+    evaluate_plan,
 };
 pub use figures_of_merit::{ByTarget, Merit};
+pub use kinds::{AnalyseJob, CompareJob, EvaluateJob, PredictJob, PruneJob, TrainJob};
+pub use options::{CompareChoices, EvaluateChoices, NetworkOptions, PredictChoices, PruneChoices, TrainChoices};
 pub use outputs::FolderOutputs;
-pub use predict::{PredictOptions, PredictReport, predict, predict_plan, predict_stream};
-pub use prune::{PruneReport, PruneRow, prune, prune_plan};
+pub use predict::{PredictFigures, PredictOptions, PredictReport, predict, predict_plan, predict_stream};
+pub use prune::{PruneFigures, PruneReport, PruneRow, prune, prune_plan};
 pub use target::{POSTURE, Target};
-pub use train::{TrainInputs, TrainOptions, TrainOutputs, TrainReport, Without, train, train_plan};
+pub use train::{TrainFigures, TrainInputs, TrainOptions, TrainOutputs, TrainReport, Without, train, train_plan};
 
 /// Model files, read.
 struct OpenedModels {
@@ -94,15 +98,4 @@ fn seen_in_training(predictor: &Predictor, data: &Dataset) -> Option<String> {
             names.join(", ")
         )
     })
-}
-
-/// Refuses to write over an input.
-fn is_no_input(inputs: &[&Path], out: &Path) -> Result<(), PredictorError> {
-    match inputs.iter().find(|input| is_same_file(input, out)) {
-        Some(_) => Err(PredictorError::Request(format!(
-            "{}: is an input itself; choose another name for the result",
-            out.display()
-        ))),
-        None => Ok(()),
-    }
 }

@@ -7,14 +7,15 @@ use serde::Serialize;
 
 use super::error::PredictorError;
 use crate::files::Staging;
-use crate::stages::{Stage, Stages, Step};
+use crate::job::Report;
+use crate::stages::{Stages, Step};
 
 /// A folder for a job's results, and which of them.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FolderOutputs {
     /// The folder.
     pub folder: PathBuf,
-    /// Whether what is a row a row of the recordings is written: the table of predictions.
+    /// Whether the table with one row per row of the recordings is written: that of predictions.
     pub rows: bool,
     /// Whether pictures are drawn.
     pub figures: bool,
@@ -45,7 +46,7 @@ impl FolderOutputs {
     }
 }
 
-/// Draws a picture as PNG and SVG; tells where the PNG will stand.
+/// Draws a picture as PNG and SVG; returns where the PNG will be.
 pub(super) fn picture(
     staging: &Staging,
     out: &Path,
@@ -57,20 +58,20 @@ pub(super) fn picture(
     Ok(out.join(png))
 }
 
-/// Writes the report and puts everything into its place.
-pub(super) fn finish<R: Serialize>(
-    staging: Staging,
-    out: &FolderOutputs,
-    report: &mut R,
-    timed: impl FnOnce(&mut R, Vec<Stage>, f64),
+/// Adds the times, writes tables, pictures and report where there is a folder, and puts them into their place.
+pub(super) fn end<F: Serialize>(
+    mut report: Report<F>,
+    out: Option<&FolderOutputs>,
+    write: impl FnOnce(&mut Report<F>, &FolderOutputs) -> Result<Staging, PredictorError>,
     stages: &Stages,
     start: Instant,
-) -> Result<(), PredictorError> {
-    timed(report, stages.list(), start.elapsed().as_secs_f64());
+) -> Result<Report<F>, PredictorError> {
+    let Some(out) = out else { return Ok(report.timed(stages, start)) };
+    let staging = write(&mut report, out)?;
+    let report = report.timed(stages, start);
     if out.report {
-        let text = serde_json::to_string_pretty(report).expect("plain data with names as keys") + "\n";
-        staging.write("run.json", text.as_bytes())?;
+        staging.write("run.json", report.text().as_bytes())?;
     }
     staging.commit()?;
-    Ok(())
+    Ok(report)
 }

@@ -2,19 +2,18 @@
 
 use std::io::{BufRead, Write};
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use lunula_predictor::{Contact, Gate};
 use serde::Serialize;
 
 use super::answer::{Answering, contact_word};
-use super::data::{Inputs, RowStream, read_inputs};
-use super::error::{PredictorError, go_on};
+use super::data::{Inputs, RowOptions, RowStream, read_inputs};
+use super::error::PredictorError;
 use super::open_models;
 use crate::files::Places;
-use crate::log::LogReading;
-use crate::stages::{Stage, Stages, Step};
+use crate::job::{Report, Watch};
+use crate::stages::{Stages, Step, left_out};
 use crate::table::{Column, TableFormat, TableWriter, Value};
 
 /// How to predict.
@@ -24,19 +23,16 @@ pub struct PredictOptions {
     pub gate: Gate,
     /// Each prediction's interval as well.
     pub intervals: bool,
-    /// Cells that are no number count as missing.
-    pub drop_invalid: bool,
-    /// Rows with a fault of the sensor are answered too.
-    pub keep_faults: bool,
-    /// How a raw log is read.
-    pub log: LogReading,
+    /// Which rows are answered.
+    pub rows: RowOptions,
 }
 
 /// What was predicted.
+pub type PredictReport = Report<PredictFigures>;
+
+/// The figures of a run.
 #[derive(Debug, Clone, Serialize)]
-pub struct PredictReport {
-    /// Which job.
-    pub job: &'static str,
+pub struct PredictFigures {
     /// The recording.
     pub data: PathBuf,
     /// The table of predictions; none for a stream.
@@ -53,14 +49,6 @@ pub struct PredictReport {
     pub touch: u64,
     /// See `touch`.
     pub bending: u64,
-    /// How a raw log's ambient light was taken away.
-    pub notes: Vec<String>,
-    /// What whoever uses the predictions should know.
-    pub warnings: Vec<String>,
-    /// Time by stage.
-    pub stages: Vec<Stage>,
-    /// Seconds from start to end.
-    pub wall_s: f64,
 }
 
 /// Rows that were answered.
@@ -90,25 +78,26 @@ pub fn predict(
     data: &Path,
     options: &PredictOptions,
     out: &Path,
-    stop: &AtomicBool,
+    watch: &Watch<'_>,
 ) -> Result<PredictReport, PredictorError> {
     let start = Instant::now();
     let stages = Stages::default();
     TableFormat::of(out)?;
-    super::is_no_input(&models.iter().map(PathBuf::as_path).chain([data]).collect::<Vec<_>>(), out)?;
+    let mut places = Places::not_over(models.iter().map(PathBuf::as_path).chain([data]));
+    places.check([out])?;
     let opened = open_models(models)?;
     let mut warnings = opened.warnings;
     let mut answering = Answering::new(opened.predictors, options.gate, options.intervals)?;
     let inputs = answering.inputs().to_vec();
-    let read = stages.time("read", || read_inputs(data, &inputs, options.drop_invalid, &options.log))?;
+    let read = stages.time("read", || read_inputs(data, &inputs, &options.rows))?;
     warnings.extend(read.warnings.iter().cloned());
-    go_on(stop)?;
+    watch.go_on()?;
     if answering.needs_time() && !read.time_s.is_empty() && read.time_s.iter().all(|time| time.is_nan()) {
         return Err(no_time(&data.display().to_string()));
     }
-    let (answers, contacts, counts) = stages.time("predict", || all_rows(&mut answering, &read, options.keep_faults));
-    go_on(stop)?;
-    let mut places = Places::default();
+    let (answers, contacts, counts) =
+        stages.time("predict", || all_rows(&mut answering, &read, options.rows.keep_faults));
+    watch.go_on()?;
     let at = places.place(out)?;
     stages.time("write", || {
         let mut columns = vec![Column::number("time_s")];
@@ -134,8 +123,10 @@ pub fn predict(
     })?;
     places.commit()?;
     warnings.extend(extrapolated(&answering, counts));
-    let report = report(data, Some(out), &answering, counts, warnings, &stages, start);
-    Ok(PredictReport { notes: read.notes, ..report })
+    let left_out = left_out(predict_plan(models.len(), options));
+    let figures = figures(data, Some(out), &answering, counts);
+    let report = Report { left_out, warnings, notes: read.notes, ..Report::new("predict", watch, figures) };
+    Ok(report.timed(&stages, start))
 }
 
 /// What would be done and what not, with so many models.
@@ -194,16 +185,15 @@ pub fn predict_stream(
     options: &PredictOptions,
     mut to: impl Write,
     tell: impl Fn(&str),
-    stop: &AtomicBool,
+    watch: &Watch<'_>,
 ) -> Result<PredictReport, PredictorError> {
     let start = Instant::now();
-    let stages = Stages::default();
     let opened = open_models(models)?;
     let mut warnings = opened.warnings;
     warnings.iter().for_each(|warning| tell(warning));
     let mut answering = Answering::new(opened.predictors, options.gate, options.intervals)?;
     let inputs = answering.inputs().to_vec();
-    let mut rows = RowStream::new(from, "standard input", &inputs, options.drop_invalid, &options.log)?;
+    let mut rows = RowStream::new(from, "standard input", &inputs, &options.rows)?;
     let mut notes = rows.notes();
     notes.iter().for_each(|note| tell(note));
     if answering.needs_time() && !rows.has_time() {
@@ -219,9 +209,9 @@ pub fn predict_stream(
     let mut line = header.join(",") + "\n";
     let (mut volts, mut answer) = (vec![f64::NAN; inputs.len()], vec![f64::NAN; answering.columns().len()]);
     let mut gone = to.write_all(line.as_bytes()).and_then(|()| to.flush()).is_err();
-    while !gone && !stop.load(std::sync::atomic::Ordering::Relaxed) {
+    while !gone && watch.go_on().is_ok() {
         let Some(row) = rows.next_row(&mut volts)? else { break };
-        if row.faulty && !options.keep_faults {
+        if row.faulty && !options.rows.keep_faults {
             volts.fill(f64::NAN);
         }
         let contact = answering.answer(row.time_s, row.begins, &volts, &mut answer);
@@ -251,8 +241,8 @@ pub fn predict_stream(
         tell(&warning);
         warnings.push(warning);
     }
-    let report = report(Path::new("-"), None, &answering, counts, warnings, &stages, start);
-    Ok(PredictReport { notes, ..report })
+    let figures = figures(Path::new("-"), None, &answering, counts);
+    Ok(Report { warnings, notes, ..Report::new("predict", watch, figures) }.timed(&Stages::default(), start))
 }
 
 /// As tables write a number; nothing where it is not known.
@@ -297,17 +287,8 @@ fn no_time(whose: &str) -> PredictorError {
     PredictorError::Request(format!("{whose}: {what}"))
 }
 
-fn report(
-    data: &Path,
-    out: Option<&Path>,
-    answering: &Answering,
-    counts: Counts,
-    warnings: Vec<String>,
-    stages: &Stages,
-    start: Instant,
-) -> PredictReport {
-    PredictReport {
-        job: "predict",
+fn figures(data: &Path, out: Option<&Path>, answering: &Answering, counts: Counts) -> PredictFigures {
+    PredictFigures {
         data: data.to_owned(),
         out: out.map(Path::to_owned),
         columns: output_columns(answering),
@@ -316,10 +297,6 @@ fn report(
         rows_outside: answering.outside(),
         touch: counts.touch,
         bending: counts.bending,
-        notes: Vec::new(),
-        warnings,
-        stages: stages.list(),
-        wall_s: start.elapsed().as_secs_f64(),
     }
 }
 

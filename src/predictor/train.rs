@@ -4,22 +4,22 @@
 //! others on which a network stops early. Out: the model file and what it reaches. Rows that are reported are never
 //! those that training has seen.
 
-use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
+use std::path::PathBuf;
 use std::time::Instant;
 
 use lunula_predictor::{
-    Dataset, Intervals, Kind, Predictor, Recipe, Report, calibrate, recording_hashes, score, with_lags,
+    Dataset, Intervals, Kind, Predictor, Recipe, Report as FitReport, calibrate, recording_hashes, score, with_lags,
 };
 use serde::Serialize;
 
-use super::data::{DataFile, FailedFile, FileRows, Wanted, read_files};
-use super::error::{PredictorError, go_on};
+use super::data::{DataFile, FileRows, Wanted, read_files};
+use super::error::PredictorError;
 use super::figures_of_merit::{ByTarget, Merit, merit_without_cone};
 use super::learning;
 use super::merit_table::{MeritRows, merit_table};
 use crate::files::{Places, WriteError};
-use crate::stages::{Stage, Stages, Step, left_out};
+use crate::job::{Report, Watch};
+use crate::stages::{Stages, Step, left_out};
 
 /// What a model is made from.
 #[derive(Debug, Clone)]
@@ -55,10 +55,11 @@ pub struct TrainOutputs {
 }
 
 /// What the model reaches.
+pub type TrainReport = Report<TrainFigures>;
+
+/// The figures of a run.
 #[derive(Debug, Clone, Serialize)]
-pub struct TrainReport {
-    /// Which job.
-    pub job: &'static str,
+pub struct TrainFigures {
     /// The model file.
     pub model: PathBuf,
     /// What it reads.
@@ -70,7 +71,7 @@ pub struct TrainReport {
     /// The recordings trained on.
     pub data: Vec<FileRows>,
     /// How the fit went.
-    pub fit: Report,
+    pub fit: FitReport,
     /// On the rows trained on: how well the model can follow, not how well it predicts.
     pub training: Merit,
     /// The recordings reported on.
@@ -81,18 +82,8 @@ pub struct TrainReport {
     pub without: Vec<Without>,
     /// Half the width of the prediction intervals, a target each.
     pub half_width: Option<ByTarget<f64>>,
-    /// What the job did not need.
-    pub left_out: Vec<String>,
-    /// What whoever uses the model should know.
-    pub warnings: Vec<String>,
-    /// The picture of the learning curve.
-    pub pictures: Vec<PathBuf>,
-    /// Recordings that could not be read and were skipped, as that was asked for.
-    pub failed: Vec<FailedFile>,
-    /// Time by stage.
-    pub stages: Vec<Stage>,
-    /// Seconds from start to end.
-    pub wall_s: f64,
+    /// The share of rows that they are to hold.
+    pub level: f64,
 }
 
 /// What a model reaches without an option.
@@ -112,7 +103,7 @@ pub fn train(
     inputs: &TrainInputs,
     options: &TrainOptions,
     outputs: &TrainOutputs,
-    stop: &AtomicBool,
+    watch: &Watch<'_>,
 ) -> Result<TrainReport, PredictorError> {
     let start = Instant::now();
     let stages = Stages::default();
@@ -120,21 +111,16 @@ pub fn train(
         let what = "a learning curve tells errors on recordings that are not trained on; name some with --validate";
         return Err(PredictorError::Request(what.to_owned()));
     }
-    let given: Vec<&Path> = [&inputs.data, &inputs.validate, &inputs.stop_on]
-        .into_iter()
-        .flatten()
-        .map(|file| file.path.as_path())
-        .collect();
+    let given = [&inputs.data, &inputs.validate, &inputs.stop_on].into_iter().flatten().map(|file| &file.path);
+    let mut places = Places::not_over(given);
     let out = &outputs.model;
-    for written in std::iter::once(out).chain(&outputs.learning_curve).chain(&outputs.merit) {
-        super::is_no_input(&given, written)?;
-    }
+    places.check(std::iter::once(out).chain(&outputs.learning_curve).chain(&outputs.merit))?;
     let read = stages.time("read", || read_files(&inputs.data, &options.wanted))?;
     let same_inputs = Wanted { inputs: Some(read.data.inputs().to_vec()), ..options.wanted.clone() };
     let others = |files: &[DataFile]| (!files.is_empty()).then(|| read_files(files, &same_inputs)).transpose();
     let validate = stages.time("read", || others(&inputs.validate))?;
     let stop_on = stages.time("read", || others(&inputs.stop_on))?;
-    go_on(stop)?;
+    watch.go_on()?;
     if let Some((told, early)) = validate.as_ref().zip(stop_on.as_ref()) {
         let hashes = recording_hashes(&early.data);
         let both =
@@ -148,13 +134,13 @@ pub fn train(
         }
     }
     let all = || std::iter::once(&read).chain(&validate).chain(&stop_on);
-    let failed: Vec<FailedFile> = all().flat_map(|read| read.failed.iter().cloned()).collect();
+    let failed: Vec<String> = all().flat_map(|read| read.failed.iter().map(|file| file.why.clone())).collect();
     let recipe = &options.recipe;
     let early = stop_on.as_ref().map(|read| &read.data);
     let predictor = stages.time("fit", || Predictor::fit(&read.data, early, recipe))?;
     // Of the files that were to be trained on: what a model has seen is told with it.
     let predictor = predictor.without(read.failed.iter().map(|file| file.name.clone()).collect());
-    go_on(stop)?;
+    watch.go_on()?;
     let training = stages.time("score", || merit(&predictor, &read.data))?;
     let mut warnings = read.warnings.clone();
     warnings.extend(validate.iter().chain(&stop_on).flat_map(|read| read.warnings.clone()));
@@ -170,7 +156,7 @@ pub fn train(
         Some(told) => stages.time("fit without options", || without(&predictor, &read.data, early, &told.data))?,
         None => Vec::new(),
     };
-    go_on(stop)?;
+    watch.go_on()?;
     let intervals = match &validate {
         Some(told) => intervals(&predictor, &told.data, options.level, &mut warnings)?,
         None => None,
@@ -178,7 +164,6 @@ pub fn train(
     let predictor = predictor.with_intervals(intervals);
     let half_width =
         predictor.intervals().map(|found| ByTarget::new(&predictor.target_names(), found.half_width.iter().copied()));
-    let mut places = Places::default();
     let at = places.place(out)?;
     let written = stages.time("write", || std::fs::write(&at, predictor.to_json()));
     written.map_err(|why| WriteError::File { path: out.to_owned(), why: why.to_string() })?;
@@ -192,10 +177,9 @@ pub fn train(
         told.extend(validation.iter().map(|merit| MeritRows::new("validation", merit)));
         merit_table(&places.place(path)?, path, &told)?;
     }
-    go_on(stop)?;
+    watch.go_on()?;
     places.commit()?;
-    Ok(TrainReport {
-        job: "train",
+    let figures = TrainFigures {
         model: out.to_owned(),
         inputs: predictor.input_names(),
         targets: predictor.target_names(),
@@ -207,13 +191,11 @@ pub fn train(
         validation,
         without,
         half_width,
-        left_out: left_out(train_plan(inputs, recipe, outputs.learning_curve.is_some())),
-        warnings,
-        pictures,
-        failed,
-        stages: stages.list(),
-        wall_s: start.elapsed().as_secs_f64(),
-    })
+        level: options.level,
+    };
+    let left_out = left_out(train_plan(inputs, recipe, outputs.learning_curve.is_some()));
+    let report = Report { left_out, warnings, failed, pictures, ..Report::new("train", watch, figures) };
+    Ok(report.timed(&stages, start))
 }
 
 /// How far off a predictor is on recordings.
@@ -267,10 +249,10 @@ fn twice(predictor: &Predictor) -> Vec<String> {
         .collect()
 }
 
-fn fit_warnings(report: &Report) -> &[String] {
+fn fit_warnings(report: &FitReport) -> &[String] {
     match report {
-        Report::LeastSquares(report) => &report.warnings,
-        Report::Network(report) => &report.warnings,
+        FitReport::LeastSquares(report) => &report.warnings,
+        FitReport::Network(report) => &report.warnings,
     }
 }
 

@@ -1,17 +1,20 @@
 //! `lunula analyse`: singular values and modes of a model.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
-use lunula::predictor::{FolderOutputs, ModelMode, analyse as run_analyse};
+use lunula::job::{Given, NoOptions, Said, Watch};
+use lunula::predictor::{AnalyseFigures, AnalyseReport, FolderOutputs, ModelMode, analyse, analyse_plan};
+use lunula::stages::Step;
 
-use super::{Common, Outcome, ended, say_end, say_notes};
+use crate::cli::Common;
+use crate::cli::job::{Command, JobArgs};
 
 /// Which combinations of forces depend on which combinations of photodiodes (Fig. 98)
 ///
 /// Singular values and modes of the model's Jacobian; of a quadratic or network model, of the Jacobian at the middle of
-/// its training rows. Singular values of like size mean that the targets can be told independently. --json also tells
-/// the model as the thesis prints it (equation 9 or 16, with F_0).
+/// its training rows. Singular values of like size mean that the targets can be predicted independently. --json also
+/// gives the model as the thesis prints it (equation 9 or 16, with F_0).
 #[derive(Debug, Args)]
 pub(crate) struct AnalyseArgs {
     /// A model file of `lunula train`
@@ -21,32 +24,54 @@ pub(crate) struct AnalyseArgs {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]
-    common: Common,
+    given: Given<NoOptions>,
+    #[command(flatten)]
+    job: JobArgs,
 }
 
-pub(crate) fn run(args: &AnalyseArgs) -> anyhow::Result<Outcome> {
-    let stop = args.common.start()?;
-    let out = args.out.clone().map(FolderOutputs::all);
-    let report = run_analyse(&args.model, out.as_ref(), &stop).map_err(ended)?;
-    let common = &args.common;
-    say_notes(common, &report.warnings);
-    common.print_json(&report)?;
-    for (k, ModelMode { singular_value, targets, inputs }) in report.modes.modes.iter().enumerate() {
-        // Of very small and very large ones the digits, not zeros.
-        let value = match singular_value.abs() {
-            0.0 | 1e-4..1e7 => format!("{singular_value:.5}"),
-            _ => format!("{singular_value:.5e}"),
-        };
-        common.say(&format!("mode {}: singular value {value}", k + 1));
-        let text = |values: &[(String, f64)]| {
-            values.iter().map(|(name, value)| format!("{name} {value:+.3}")).collect::<Vec<_>>().join("  ")
-        };
-        common.say(&format!("  {}", text(&targets.0)));
-        common.say(&format!("  {}", text(&inputs.0)));
+impl Command for AnalyseArgs {
+    type Figures = AnalyseFigures;
+
+    fn name(&self) -> &'static str {
+        "analyse"
     }
-    if let Some(condition) = report.modes.condition {
-        common.say(&format!("the strongest over the weakest: {condition:.2}"));
+
+    fn job(&self) -> &JobArgs {
+        &self.job
     }
-    say_end(common, report.wall_s, &report.pictures);
-    Ok(Outcome::Done)
+
+    fn said(&self) -> &Said {
+        &self.given.said
+    }
+
+    fn plan(&self) -> anyhow::Result<Vec<Step>> {
+        Ok(analyse_plan(self.out.clone().map(FolderOutputs::all).as_ref()))
+    }
+
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<AnalyseReport> {
+        Ok(analyse(&self.model, self.out.clone().map(FolderOutputs::all).as_ref(), watch)?)
+    }
+
+    fn say(&self, common: &Common, report: &AnalyseReport) {
+        for (k, ModelMode { singular_value, targets, inputs }) in report.modes.modes.iter().enumerate() {
+            // Of very small and very large ones the digits, not zeros.
+            let value = match singular_value.abs() {
+                0.0 | 1e-4..1e7 => format!("{singular_value:.5}"),
+                _ => format!("{singular_value:.5e}"),
+            };
+            common.say(&format!("mode {}: singular value {value}", k + 1));
+            let text = |values: &[(String, f64)]| {
+                values.iter().map(|(name, value)| format!("{name} {value:+.3}")).collect::<Vec<_>>().join("  ")
+            };
+            common.say(&format!("  {}", text(&targets.0)));
+            common.say(&format!("  {}", text(&inputs.0)));
+        }
+        if let Some(condition) = report.modes.condition {
+            common.say(&format!("the strongest over the weakest: {condition:.2}"));
+        }
+    }
+
+    fn result(&self) -> Option<&Path> {
+        None
+    }
 }

@@ -1,15 +1,21 @@
 //! `lunula prune`: which photodiodes could be removed.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
-use lunula::predictor::{DataFile, FolderOutputs, PruneRow, Target, prune as run_prune};
+use lunula::job::{Given, Said, Watch};
+use lunula::predictor::{
+    DataFile, FolderOutputs, PruneChoices, PruneFigures, PruneReport, PruneRow, prune, prune_plan,
+};
+use lunula::stages::Step;
 
-use super::{Common, Outcome, RowsArgs, ended, figure, say_end, say_notes};
+use super::figure;
+use crate::cli::Common;
+use crate::cli::job::{Command, JobArgs};
 
 /// The linear model's errors for every subset of the photodiodes (Fig. 113 and beyond)
 ///
-/// Each subset is fitted to DATA and told on what --validate names. Says which photodiodes are the best of each number,
+/// Each subset is fitted to DATA and judged on what --validate names. Says which photodiodes are the best of each number,
 /// and what the removal of each one costs. Subsets are compared by the mean over targets of RMSE over the target's
 /// spread.
 #[derive(Debug, Args)]
@@ -20,43 +26,58 @@ pub(crate) struct PruneArgs {
     /// Recordings to compare on: others than those to train on
     #[arg(long, required = true, value_name = "DATA", num_args = 1..)]
     validate: Vec<PathBuf>,
-    /// force, posture, or columns as Fz_N,J3_deg
-    #[arg(long, value_name = "force|posture|COLUMNS", default_value = "force", value_parser = Target::parse)]
-    target: Target,
-    /// The photodiodes to choose from [default: all columns P1, P2, ..]
-    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
-    inputs: Option<Vec<String>>,
     #[command(flatten)]
-    rows: RowsArgs,
+    given: Given<PruneChoices>,
     /// A folder for subsets.csv, pictures and run.json
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]
-    common: Common,
+    job: JobArgs,
 }
 
-pub(crate) fn run(args: &PruneArgs) -> anyhow::Result<Outcome> {
-    let stop = args.common.start()?;
-    let wanted = args.rows.wanted(args.inputs.clone(), &args.target);
-    let (data, validate) = (DataFile::of(&args.data), DataFile::of(&args.validate));
-    let out = args.out.clone().map(FolderOutputs::all);
-    let report = run_prune(&data, &validate, &wanted, out.as_ref(), &stop).map_err(ended)?;
-    let common = &args.common;
-    say_notes(common, &report.warnings);
-    common.print_json(&report)?;
-    let line = |row: &PruneRow| {
-        let errors = row.validate_rmse.iter().flat_map(|by| &by.0);
-        let errors: Vec<String> = errors.map(|(name, value)| format!("{name} {}", figure(*value))).collect();
-        let told =
-            if errors.is_empty() { "dependent on each other: no one model".to_owned() } else { errors.join("  ") };
-        format!("  {:<28} {told}", row.inputs.join(" "))
-    };
-    common.say(&format!("{} subsets; the best of each number, validation RMSE:", report.subsets));
-    report.best_of_size.iter().for_each(|row| common.say(&line(row)));
-    if !report.without_one.is_empty() {
-        common.say("all, then all but one:");
-        report.without_one.iter().for_each(|row| common.say(&line(row)));
+impl Command for PruneArgs {
+    type Figures = PruneFigures;
+
+    fn name(&self) -> &'static str {
+        "prune"
     }
-    say_end(common, report.wall_s, &report.pictures);
-    Ok(Outcome::Done)
+
+    fn job(&self) -> &JobArgs {
+        &self.job
+    }
+
+    fn said(&self) -> &Said {
+        &self.given.said
+    }
+
+    fn plan(&self) -> anyhow::Result<Vec<Step>> {
+        let out = self.out.clone().map(FolderOutputs::all);
+        Ok(prune_plan([self.data.len(), self.validate.len()], out.as_ref()))
+    }
+
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<PruneReport> {
+        let out = self.out.clone().map(FolderOutputs::all);
+        let (data, validate) = (DataFile::of(&self.data), DataFile::of(&self.validate));
+        Ok(prune(&data, &validate, &self.given.options.wanted(), out.as_ref(), watch)?)
+    }
+
+    fn say(&self, common: &Common, report: &PruneReport) {
+        let line = |row: &PruneRow| {
+            let errors = row.validate_rmse.iter().flat_map(|by| &by.0);
+            let errors: Vec<String> = errors.map(|(name, value)| format!("{name} {}", figure(*value))).collect();
+            let shown =
+                if errors.is_empty() { "dependent on each other: no one model".to_owned() } else { errors.join("  ") };
+            format!("  {:<28} {shown}", row.inputs.join(" "))
+        };
+        common.say(&format!("{} subsets; the best of each number, validation RMSE:", report.subsets));
+        report.best_of_size.iter().for_each(|row| common.say(&line(row)));
+        if !report.without_one.is_empty() {
+            common.say("all, then all but one:");
+            report.without_one.iter().for_each(|row| common.say(&line(row)));
+        }
+    }
+
+    fn result(&self) -> Option<&Path> {
+        None
+    }
 }

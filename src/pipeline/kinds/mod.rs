@@ -5,6 +5,7 @@ mod phantom;
 use crate::align::{AlignJob, JoinJob};
 use crate::job::{Job, Kind};
 use crate::posture::PostureJob;
+use crate::predictor::{AnalyseJob, CompareJob, EvaluateJob, PredictJob, PruneJob, TrainJob};
 
 pub use phantom::phantom_catalogue;
 
@@ -15,4 +16,14 @@ pub fn kinds() -> &'static [&'static Kind] {
 }
 
 /// One line per kind, sorted by name.
-static KINDS: &[&Kind] = &[&AlignJob::KIND, &JoinJob::KIND, &PostureJob::KIND];
+static KINDS: &[&Kind] = &[
+    &AlignJob::KIND,
+    &AnalyseJob::KIND,
+    &CompareJob::KIND,
+    &EvaluateJob::KIND,
+    &JoinJob::KIND,
+    &PostureJob::KIND,
+    &PredictJob::KIND,
+    &PruneJob::KIND,
+    &TrainJob::KIND,
+];

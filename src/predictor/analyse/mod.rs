@@ -7,25 +7,26 @@ mod report;
 mod results;
 
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use lunula_predictor::{Model, Modes, Predictor, linear_f0, modes, quadratic_printed, quadratic_terms};
 
-use super::error::{PredictorError, go_on};
+use super::error::PredictorError;
 use super::figures_of_merit::ByTarget;
 use super::open_models;
-use super::outputs::FolderOutputs;
-use crate::stages::{Stages, Step};
-pub use report::{AnalyseReport, ModelMode, ModelModes, Printed};
+use super::outputs::{FolderOutputs, end};
+use crate::job::{Report, Watch};
+use crate::stages::{Stages, Step, left_out};
+pub use report::{AnalyseFigures, AnalyseReport, ModelMode, ModelModes, Printed};
 
 /// Takes a model apart; writes a table and a picture where `out` names a folder.
 ///
 /// # Errors
 /// [`PredictorError`] where there is nothing to tell.
-pub fn analyse(model: &Path, out: Option<&FolderOutputs>, stop: &AtomicBool) -> Result<AnalyseReport, PredictorError> {
+pub fn analyse(model: &Path, out: Option<&FolderOutputs>, watch: &Watch<'_>) -> Result<AnalyseReport, PredictorError> {
     let start = Instant::now();
     let stages = Stages::default();
+    let mut notes = Vec::new();
     let (predictor, mut warnings) = open_models(&[model.to_owned()])?.one();
     let inputs = predictor.seen_names();
     let targets = predictor.target_names();
@@ -35,9 +36,9 @@ pub fn analyse(model: &Path, out: Option<&FolderOutputs>, stop: &AtomicBool) -> 
     let found: Modes = stages.time("modes", || modes(jacobian.view()));
     let linear = matches!(predictor.model(), Model::Linear(_));
     if !linear {
-        warnings.push("the model is not linear: its modes are those at the middle of the training rows".to_owned());
+        notes.push("the model is not linear: its modes are those at the middle of the training rows".to_owned());
     }
-    go_on(stop)?;
+    watch.go_on()?;
     let column = |matrix: &ndarray::Array2<f64>, k: usize| matrix.column(k).to_vec();
     let mode = |(k, sigma): (usize, &f64)| ModelMode {
         singular_value: *sigma,
@@ -56,8 +57,7 @@ pub fn analyse(model: &Path, out: Option<&FolderOutputs>, stop: &AtomicBool) -> 
     };
     let (strongest, weakest) = (found.sigma.first().copied(), found.sigma.last().copied());
     let condition = strongest.zip(weakest).map(|(a, b)| a / b).filter(|ratio| ratio.is_finite());
-    let mut report = AnalyseReport {
-        job: "analyse",
+    let figures = AnalyseFigures {
         model: model.to_owned(),
         at_v: (!linear).then(|| at.to_vec()),
         jacobian: ByTarget::new(&targets, jacobian.outer_iter().map(|row| row.to_vec())),
@@ -65,19 +65,10 @@ pub fn analyse(model: &Path, out: Option<&FolderOutputs>, stop: &AtomicBool) -> 
         printed,
         inputs,
         targets,
-        warnings,
-        pictures: Vec::new(),
-        stages: Vec::new(),
-        wall_s: 0.0,
     };
-    match out {
-        Some(out) => results::write(&mut report, out, &stages, start)?,
-        None => {
-            report.stages = stages.list();
-            report.wall_s = start.elapsed().as_secs_f64();
-        }
-    }
-    Ok(report)
+    let left_out = left_out(analyse_plan(out));
+    let report = Report { left_out, warnings, notes, ..Report::new("analyse", watch, figures) };
+    end(report, out, |report, out| results::write(report, out, &stages), &stages, start)
 }
 
 /// Refuses a Jacobian that no number holds, though the model itself is scaled and sound.

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
+use crate::job::Report;
 use crate::predictor::figures_of_merit::ByTarget;
-use crate::stages::Stage;
 
 /// A mode of a model.
 #[derive(Debug, Clone, Serialize)]
@@ -39,10 +39,11 @@ pub struct Printed {
 }
 
 /// What a model is made of.
+pub type AnalyseReport = Report<AnalyseFigures>;
+
+/// The figures of a run.
 #[derive(Debug, Clone, Serialize)]
-pub struct AnalyseReport {
-    /// Which job.
-    pub job: &'static str,
+pub struct AnalyseFigures {
     /// The model file.
     pub model: PathBuf,
     /// What it reads.
@@ -58,12 +59,4 @@ pub struct AnalyseReport {
     pub modes: ModelModes,
     /// As the thesis prints it; a network has no such form.
     pub printed: Option<Printed>,
-    /// What whoever reads this should know.
-    pub warnings: Vec<String>,
-    /// The pictures.
-    pub pictures: Vec<PathBuf>,
-    /// Time by stage.
-    pub stages: Vec<Stage>,
-    /// Seconds from start to end.
-    pub wall_s: f64,
 }

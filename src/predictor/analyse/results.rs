@@ -1,7 +1,6 @@
 //! `modes.csv` and Fig. 98.
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use ndarray::Array2;
 
@@ -9,7 +8,7 @@ use super::report::{AnalyseReport, ModelMode};
 use crate::files::Staging;
 use crate::predictor::error::PredictorError;
 use crate::predictor::figures::{Modes, draw_modes};
-use crate::predictor::outputs::{FolderOutputs, finish, picture};
+use crate::predictor::outputs::{FolderOutputs, picture};
 use crate::stages::Stages;
 use crate::table::{Column, TableWriter, Value};
 
@@ -18,8 +17,7 @@ pub(super) fn write(
     report: &mut AnalyseReport,
     out: &FolderOutputs,
     stages: &Stages,
-    start: Instant,
-) -> Result<(), PredictorError> {
+) -> Result<Staging, PredictorError> {
     let folder = &out.folder;
     let staging = Staging::new(folder)?;
     let modes = &report.modes.modes;
@@ -36,8 +34,7 @@ pub(super) fn write(
     if out.figures {
         report.pictures = vec![stages.time("figures", || modes_picture(&staging, folder, report))?];
     }
-    let timed = |report: &mut AnalyseReport, stages, wall_s| (report.stages, report.wall_s) = (stages, wall_s);
-    finish(staging, out, report, timed, stages, start)
+    Ok(staging)
 }
 
 /// Fig. 98.

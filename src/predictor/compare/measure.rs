@@ -1,14 +1,14 @@
 //! One person's part of the comparisons.
 
 use std::path::PathBuf;
-use std::sync::atomic::AtomicBool;
 
 use lunula_predictor::{Dataset, FORCES, Kind, Predictor, Recipe, every_subset};
 
 use super::comparison::{Comparison, figure_of, name_of};
 use super::options::{CompareOptions, Person};
+use crate::job::Watch;
 use crate::predictor::data::{Wanted, read_data};
-use crate::predictor::error::{PredictorError, go_on};
+use crate::predictor::error::PredictorError;
 use crate::predictor::target::POSTURE;
 use crate::predictor::train::merit;
 use crate::stages::Stages;
@@ -23,14 +23,14 @@ const RANDOM: usize = 3;
 struct Fits<'a> {
     person: &'a str,
     stages: &'a Stages,
-    stop: &'a AtomicBool,
+    watch: &'a Watch<'a>,
     warnings: Vec<String>,
 }
 
 impl Fits<'_> {
     /// A model, or none and a warning.
     fn fit(&mut self, recipe: &Recipe, data: &Dataset) -> Result<Option<Predictor>, PredictorError> {
-        go_on(self.stop)?;
+        self.watch.go_on()?;
         Ok(match self.stages.time("fit", || Predictor::fit(data, None, recipe)) {
             Ok(predictor) => Some(predictor),
             Err(why) => {
@@ -52,9 +52,9 @@ pub(super) fn measure(
     person: &Person,
     options: &CompareOptions,
     stages: &Stages,
-    stop: &AtomicBool,
+    watch: &Watch<'_>,
 ) -> Result<(Vec<Comparison>, Vec<String>), PredictorError> {
-    let mut fits = Fits { person: &person.name, stages, stop, warnings: Vec::new() };
+    let mut fits = Fits { person: &person.name, stages, watch, warnings: Vec::new() };
     let mut found = touch(person, options, &mut fits)?;
     found.insert(found.len() - 1, posture(person, options, &mut fits)?);
     Ok((found, fits.warnings))

@@ -13,19 +13,19 @@ mod options;
 mod report;
 mod results;
 
-use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use rayon::prelude::*;
 
-use super::error::{PredictorError, go_on};
-use super::outputs::FolderOutputs;
-use crate::stages::{Stages, Step};
+use super::error::PredictorError;
+use super::outputs::{FolderOutputs, end};
+use crate::job::{Report, Watch};
+use crate::stages::{Stages, Step, left_out};
 use measure::measure;
 
 pub use comparison::{Comparison, Spread};
 pub use options::{CompareOptions, Person};
-pub use report::CompareReport;
+pub use report::{CompareFigures, CompareReport};
 
 /// Compares models and sets; writes a table, pictures and `run.json` where `out` names a folder.
 ///
@@ -36,7 +36,7 @@ pub fn compare(
     people: &[Person],
     options: &CompareOptions,
     out: Option<&FolderOutputs>,
-    stop: &AtomicBool,
+    watch: &Watch<'_>,
 ) -> Result<CompareReport, PredictorError> {
     let start = Instant::now();
     let stages = Stages::default();
@@ -47,25 +47,15 @@ pub fn compare(
     if let Some(again) = (0..kinds.len()).find(|&k| kinds[..k].contains(&kinds[k])) {
         return Err(PredictorError::Request(format!("the model `{}` is there twice", kinds[again])));
     }
-    let measured: Vec<_> = people.par_iter().map(|person| measure(person, options, &stages, stop)).collect();
+    let measured: Vec<_> = people.par_iter().map(|person| measure(person, options, &stages, watch)).collect();
     let measured = measured.into_iter().collect::<Result<Vec<_>, _>>()?;
-    go_on(stop)?;
+    watch.go_on()?;
     let (found, warnings): (Vec<_>, Vec<_>) = measured.into_iter().unzip();
     let comparisons = comparison::over_people(found).map_err(PredictorError::Request)?;
-    let mut report = CompareReport {
-        job: "compare",
-        people: people.iter().map(|person| person.name.clone()).collect(),
-        comparisons,
-        warnings: warnings.concat(),
-        pictures: Vec::new(),
-        stages: Vec::new(),
-        wall_s: 0.0,
-    };
-    match out {
-        Some(out) => results::write(&mut report, out, &stages, start)?,
-        None => (report.stages, report.wall_s) = (stages.list(), start.elapsed().as_secs_f64()),
-    }
-    Ok(report)
+    let figures = CompareFigures { people: people.iter().map(|person| person.name.clone()).collect(), comparisons };
+    let left_out = left_out(compare_plan(people.len(), options, out));
+    let report = Report { left_out, warnings: warnings.concat(), ..Report::new("compare", watch, figures) };
+    end(report, out, |report, out| results::write(report, out, &stages), &stages, start)
 }
 
 /// What would be done and what not, of so many people.

@@ -1,13 +1,11 @@
 //! `comparisons.csv` and Fig. 105-113.
 
-use std::time::Instant;
-
 use super::comparison::Comparison;
 use super::report::CompareReport;
 use crate::files::Staging;
 use crate::predictor::error::PredictorError;
 use crate::predictor::figures::{BarSeries, Bars, draw_bars};
-use crate::predictor::outputs::{FolderOutputs, finish, picture};
+use crate::predictor::outputs::{FolderOutputs, picture};
 use crate::stages::Stages;
 use crate::table::{Column, TableWriter, Value};
 
@@ -16,8 +14,7 @@ pub(super) fn write(
     report: &mut CompareReport,
     out: &FolderOutputs,
     stages: &Stages,
-    start: Instant,
-) -> Result<(), PredictorError> {
+) -> Result<Staging, PredictorError> {
     let folder = &out.folder;
     let staging = Staging::new(folder)?;
     let name = "comparisons.csv";
@@ -45,8 +42,7 @@ pub(super) fn write(
         report.pictures =
             stages.time("figures", || report.comparisons.iter().map(draw).collect::<Result<Vec<_>, _>>())?;
     }
-    let timed = |report: &mut CompareReport, stages, wall_s| (report.stages, report.wall_s) = (stages, wall_s);
-    finish(staging, out, report, timed, stages, start)
+    Ok(staging)
 }
 
 /// A figure's bars: the mean over people, marked with their SD.

@@ -21,6 +21,7 @@ mod stream;
 #[cfg(test)]
 mod tests;
 
+use clap::Args;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
@@ -36,6 +37,20 @@ use source::{Source, agree};
 pub use file::DataFile;
 pub use stream::{Row, RowStream};
 
+/// Which rows of recordings count.
+#[derive(Debug, Clone, PartialEq, Default, Args)]
+pub struct RowOptions {
+    /// A cell that is not a finite number counts as missing: its row is left out, and counted [default: it is an error]
+    #[arg(long)]
+    pub drop_invalid: bool,
+    /// Rows in which `lunula align` found a photodiode saturated or without ambient light count too
+    #[arg(long)]
+    pub keep_faults: bool,
+    /// How raw logs are read.
+    #[command(flatten)]
+    pub log: LogReading,
+}
+
 /// What is read of tables.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Wanted {
@@ -43,12 +58,8 @@ pub struct Wanted {
     pub inputs: Option<Vec<String>>,
     /// The targets: `Fx_N`, `Fy_N`, `Fz_N`, or `J2_deg`.
     pub targets: Vec<String>,
-    /// Whether rows with `nan`, `inf` or text where a number is needed are left out, rather than an error.
-    pub drop_invalid: bool,
-    /// Whether rows are kept that `sensor_status` warns of.
-    pub keep_faults: bool,
-    /// How raw logs are read.
-    pub log: LogReading,
+    /// Which rows count.
+    pub rows: RowOptions,
     /// Whether a file that can't be read costs only itself, rather than being an error; where none can be, it is one.
     pub skip_failed: bool,
 }
@@ -221,7 +232,7 @@ pub fn read_files(data: &[DataFile], wanted: &Wanted) -> Result<Read, DataError>
         let mut file = FileRows { path, rows: source.rows(), used: 0, empty: 0, invalid: 0, faults: 0, notes };
         let mut splitter = Splitter::new(source, called, time_s.len());
         for row in 0..source.rows() {
-            if source.faulty[row] && !wanted.keep_faults {
+            if source.faulty[row] && !wanted.rows.keep_faults {
                 file.faults += 1;
             } else if source.invalid[row] {
                 file.invalid += 1;
@@ -236,7 +247,7 @@ pub fn read_files(data: &[DataFile], wanted: &Wanted) -> Result<Read, DataError>
             }
         }
         splitter.finish(&mut recordings, &mut warnings);
-        warnings.extend(health::warnings(source, wanted.keep_faults));
+        warnings.extend(health::warnings(source, wanted.rows.keep_faults));
         files.push(file);
     }
     let rows = time_s.len();
@@ -256,11 +267,11 @@ pub fn read_files(data: &[DataFile], wanted: &Wanted) -> Result<Read, DataError>
 ///
 /// # Errors
 /// [`DataError`].
-pub fn read_inputs(path: &Path, inputs: &[String], drop_invalid: bool, log: &LogReading) -> Result<Inputs, DataError> {
+pub fn read_inputs(path: &Path, inputs: &[String], rows: &RowOptions) -> Result<Inputs, DataError> {
     if inputs.is_empty() {
         return Err(DataError::Request("no photodiode is given".to_owned()));
     }
-    let wanted = Wanted { inputs: Some(inputs.to_vec()), drop_invalid, log: log.clone(), ..Wanted::default() };
+    let wanted = Wanted { inputs: Some(inputs.to_vec()), rows: rows.clone(), ..Wanted::default() };
     let source = Source::read(path, &wanted)?;
     let mut warnings = source.warnings.clone();
     let mut recordings = Vec::new();

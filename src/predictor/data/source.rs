@@ -39,7 +39,7 @@ pub(super) struct Source {
 impl Source {
     /// Reads a file, a table or a raw log.
     pub(super) fn read(path: &Path, wanted: &Wanted) -> Result<Self, DataError> {
-        if wanted.log.is_log(path)? { Self::of_log(path, wanted) } else { Self::of_table(path, wanted) }
+        if wanted.rows.log.is_log(path)? { Self::of_log(path, wanted) } else { Self::of_table(path, wanted) }
     }
 
     /// How many rows.
@@ -69,7 +69,7 @@ impl Source {
         read.iter().flat_map(|column| &column.invalid).for_each(|&row| invalid[row] = true);
         // Of several wrong cells the first by row, then by column as asked.
         let first = read.iter().zip(&asked).filter_map(|(column, name)| Some((*column.invalid.first()?, *name)));
-        if let Some((row, name)) = first.min_by_key(|(row, _)| *row).filter(|_| !wanted.drop_invalid) {
+        if let Some((row, name)) = first.min_by_key(|(row, _)| *row).filter(|_| !wanted.rows.drop_invalid) {
             return Err(bad_cell(&table, row, name)?.into());
         }
         let mut values = read.into_iter().map(|column| column.values);
@@ -97,7 +97,7 @@ impl Source {
     }
 
     fn of_log(path: &Path, wanted: &Wanted) -> Result<Self, DataError> {
-        let LitRows { samples, notes, .. } = wanted.log.lit_rows(path)?;
+        let LitRows { samples, notes, .. } = wanted.rows.log.lit_rows(path)?;
         let placed = |notes: &[String]| notes.iter().map(|note| format!("{}: {note}", path.display())).collect();
         let (warnings, notes) = (placed(&notes), placed(&samples.notes));
         let channels = || samples.photodiodes.iter().chain(&samples.forces);

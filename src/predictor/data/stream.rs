@@ -13,6 +13,7 @@
 use std::collections::{HashMap, HashSet};
 use std::io::{BufRead, Read};
 
+use super::RowOptions;
 use super::columns::{listed, missing};
 use super::{DataError, source::GROUPS};
 use crate::log::{LogError, LogReading, Preceding, Statuses, Verdict, led_state};
@@ -90,18 +91,12 @@ type Lit = Option<bool>;
 
 impl<'a, R: BufRead> RowStream<'a, R> {
     /// Reads the line of names; `name` is the stream's in messages. With `drop_invalid`, a cell that is no finite
-    /// number is NaN rather than an error. `log` says how a log is read.
+    /// number is NaN rather than an error. `rows.log` says how a log is read.
     ///
     /// # Errors
     /// No line of names, a photodiode that is not among them, two columns of one name; a stretch or stream of a file
     /// asked for.
-    pub fn new(
-        from: R,
-        name: &str,
-        inputs: &'a [String],
-        drop_invalid: bool,
-        log: &LogReading,
-    ) -> Result<Self, DataError> {
+    pub fn new(from: R, name: &str, inputs: &'a [String], rows: &RowOptions) -> Result<Self, DataError> {
         let mut stream = Self {
             from,
             name: name.to_owned(),
@@ -109,7 +104,7 @@ impl<'a, R: BufRead> RowStream<'a, R> {
             uses: Vec::new(),
             inputs,
             statuses: Statuses::new(inputs),
-            drop_invalid,
+            drop_invalid: rows.drop_invalid,
             line: 0,
             text: Vec::new(),
             groups: None,
@@ -130,13 +125,13 @@ impl<'a, R: BufRead> RowStream<'a, R> {
         if text.contains('\r') {
             return Err(refused("ends its lines with carriage returns alone; end them with line feeds".to_owned()));
         }
-        if log.columns.piece.is_some() || log.columns.stream.is_some() {
+        if rows.log.columns.piece.is_some() || rows.log.columns.stream.is_some() {
             let what = "--piece and --stream choose a part of a file, and this is a stream of rows; leave them out";
             return Err(DataError::Request(what.to_owned()));
         }
-        let is_log = *log != LogReading::default() || log.has_led(&names);
+        let is_log = rows.log != LogReading::default() || rows.log.has_led(&names);
         if is_log {
-            (names, stream.a_second, stream.notes) = log.renamed(&names).map_err(&refused)?;
+            (names, stream.a_second, stream.notes) = rows.log.renamed(&names).map_err(&refused)?;
         }
         let mut seen = HashSet::new();
         if let Some(double) = names.iter().find(|name| !seen.insert(name.as_str())) {
@@ -168,7 +163,7 @@ impl<'a, R: BufRead> RowStream<'a, R> {
         };
         stream.uses = names.iter().map(use_of).collect();
         if is_log {
-            let preceding = Preceding::new(inputs.len(), log.ambient.full_scale_v).map_err(LogError::from)?;
+            let preceding = Preceding::new(inputs.len(), rows.log.ambient.full_scale_v).map_err(LogError::from)?;
             // Without a column that says so, every row is lit.
             let led = stream.uses.contains(&Use::Led);
             stream.dark = led.then_some(Dark { preceding, begins: false, rows: 0.0, unknown: 0 });

@@ -81,11 +81,11 @@ fn rows_are_left_out_and_counted_once() {
         "{first}"
     );
     let read = |wanted: &Wanted| read(text, wanted).unwrap();
-    assert_eq!(counts(&read(&Wanted { drop_invalid: true, ..angle() })), [8, 3, 2, 2, 1]);
-    let kept = read(&Wanted { drop_invalid: true, keep_faults: true, ..angle() });
+    assert_eq!(counts(&read(&Wanted { rows: dropping(), ..angle() })), [8, 3, 2, 2, 1]);
+    let kept = read(&Wanted { rows: RowOptions { keep_faults: true, ..dropping() }, ..angle() });
     assert_eq!(counts(&kept), [8, 3, 2, 3, 0]);
     assert_eq!(kept.data.y(), &ndarray::array![[3.0], [4.0], [5.0]]);
-    let other = Wanted { drop_invalid: true, inputs: Some(vec!["P1".into()]), ..angle() };
+    let other = Wanted { rows: dropping(), inputs: Some(vec!["P1".into()]), ..angle() };
     assert_eq!(counts(&read(&other)), [8, 3, 3, 2, 0]);
 }
 
@@ -122,7 +122,7 @@ fn empty_and_damaged_files_are_told() {
     ] {
         assert!(told(text, &angle()).contains(words), "{text:?}: {}", told(text, &angle()));
     }
-    let wanted = Wanted { drop_invalid: true, ..angle() };
+    let wanted = Wanted { rows: dropping(), ..angle() };
     let said = told("P1,J2_deg,sensor_status\nnan,1,\n2,2,saturated: P1\n", &wanted);
     assert!(said.contains("1 have a cell that is no finite number") && said.contains("1 are saturated"), "{said}");
     assert!(read_data(&[], &angle()).unwrap_err().to_string().contains("no DATA"));
@@ -289,8 +289,8 @@ fn voltages_alone_keep_every_row() {
     let folder = Folder::new();
     let path = folder.file("a.csv", "time_s,P2,P1,sensor_status\n0,2,1,ok\n1,,1,ok\n2,x,1,saturated: P1\n");
     let inputs = ["P1", "P2"].map(str::to_owned);
-    assert!(read_inputs(&path, &inputs, false, &plain()).unwrap_err().to_string().contains("a.csv:4: column `P2`"));
-    let read = read_inputs(&path, &inputs, true, &plain()).unwrap();
+    assert!(read_inputs(&path, &inputs, &plain()).unwrap_err().to_string().contains("a.csv:4: column `P2`"));
+    let read = read_inputs(&path, &inputs, &RowOptions { drop_invalid: true, ..plain() }).unwrap();
     assert_eq!((read.x.dim(), read.x[[0, 1]], read.x[[2, 0]]), ((3, 2), 2.0, 1.0));
     assert!(read.x[[1, 1]].is_nan() && read.x[[2, 1]].is_nan());
     assert_eq!(
@@ -298,9 +298,9 @@ fn voltages_alone_keep_every_row() {
         (vec![false, false, true], 1, 1, vec![0.0, 1.0, 2.0])
     );
     assert_eq!(read.recordings[0].rows, 0..3);
-    let none = read_inputs(&folder.file("b.csv", "P1,P2\n"), &inputs, false, &plain()).unwrap();
+    let none = read_inputs(&folder.file("b.csv", "P1,P2\n"), &inputs, &plain()).unwrap();
     assert_eq!((none.x.dim(), none.recordings.len()), ((0, 2), 0));
-    assert!(read_inputs(&path, &[], false, &plain()).is_err());
+    assert!(read_inputs(&path, &[], &plain()).is_err());
 }
 
 fn streamed(text: &str, drop_invalid: bool) -> Result<Vec<(Row, Vec<f64>)>, String> {
@@ -324,7 +324,7 @@ fn a_stream_gives_what_the_table_gives() {
                 P2\"\r\nx,\"3\",0.02,-1e-3,saturated: P7";
     let rows = streamed(text, false).unwrap();
     let folder = Folder::new();
-    let table = read_inputs(&folder.file("a.csv", text), &["P1", "P2"].map(str::to_owned), false, &plain()).unwrap();
+    let table = read_inputs(&folder.file("a.csv", text), &["P1", "P2"].map(str::to_owned), &plain()).unwrap();
     assert_eq!(rows.len(), 3);
     for (k, (row, x)) in rows.iter().enumerate() {
         assert_eq!(row.time_s, table.time_s[k]);
@@ -436,10 +436,14 @@ fn a_log_is_one_whatever_its_led_and_columns_are_called() {
     assert_eq!((capital.data.x(), capital.files[0].rows), (same.data.x(), 200));
     let other = of("b.csv", "time_s,led,P1,P2,P3,Fx_N,Fy_N,Fz_N", "stamp,lamp,ch_3,ch_4,ch_5,fx,fy,load");
     let log = called("time_s=stamp,led=lamp,P1=ch_3,P2=ch_4,P3=ch_5,Fz_N=load");
-    let named = read_data(std::slice::from_ref(&other), &Wanted { log: log.clone(), ..forces() }).unwrap();
+    let named = read_data(
+        std::slice::from_ref(&other),
+        &Wanted { rows: RowOptions { log: log.clone(), ..plain() }, ..forces() },
+    )
+    .unwrap();
     assert_eq!((named.data.x(), named.data.y()), (same.data.x(), same.data.y()));
     let inputs = ["P1", "P3"].map(str::to_owned);
-    let alone = read_inputs(&other, &inputs, false, &log).unwrap();
+    let alone = read_inputs(&other, &inputs, &RowOptions { log: log.clone(), ..plain() }).unwrap();
     assert_eq!(alone.time_s.len(), 200);
     let rule = "interpolated between the unlit samples";
     assert!(alone.notes.iter().any(|note| note.contains(rule)), "{:?}", alone.notes);
@@ -508,7 +512,11 @@ fn a_hundred_thousand_columns_are_read_in_time_that_grows_with_them() {
     assert_eq!((table.data.inputs().len(), table.data.rows()), (COLUMNS, 2));
     let folder = Folder::new();
     let log = folder.file("log.csv", format!("time_s,led,{header},Fz_N\n0,1,{row}-1\n1,0,{row}-1\n2,1,{row}-1\n"));
-    let wanted = Wanted { targets: vec!["Fz_N".to_owned()], keep_faults: true, ..Wanted::default() };
+    let wanted = Wanted {
+        targets: vec!["Fz_N".to_owned()],
+        rows: RowOptions { keep_faults: true, ..plain() },
+        ..Wanted::default()
+    };
     assert!(read_data(&[log], &wanted).unwrap_err().to_string().contains("no row can be used"));
     let text = format!("{header}\n{row}\n");
     let mut stream = RowStream::new(text.as_bytes(), "-", &names, true, &plain()).unwrap();

@@ -10,7 +10,6 @@ mod report;
 mod results;
 
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use lunula_predictor::{
@@ -20,15 +19,15 @@ use lunula_predictor::{
 use ndarray::{Array2, Axis};
 
 use super::choices::LEVEL;
-use super::data::{DataFile, Wanted, read_files};
-use super::error::{PredictorError, go_on};
+use super::data::{DataFile, RowOptions, Wanted, read_files};
+use super::error::PredictorError;
 use super::figures_of_merit::{ByTarget, Merit, merit_without_cone};
-use super::outputs::FolderOutputs;
+use super::outputs::{FolderOutputs, end};
 use super::{open_models, seen_in_training};
-use crate::log::LogReading;
+use crate::job::{Report, Watch};
 use crate::stages::{Stages, Step, left_out};
 use report::Predicted;
-pub use report::{BinMerit, EvaluateReport, HeldOut, Magnitudes, Part, RecordingMerit};
+pub use report::{BinMerit, EvaluateFigures, EvaluateReport, HeldOut, Magnitudes, Part, RecordingMerit};
 
 /// Up to this many parts, each part's coverage is of intervals that have not seen it; it takes fits as many as parts,
 /// squared.
@@ -40,30 +39,19 @@ const BINS: usize = 6;
 /// How to evaluate.
 #[derive(Debug, Clone)]
 pub struct EvaluateOptions {
-    /// See [`Wanted`].
-    pub drop_invalid: bool,
-    /// See [`Wanted`].
-    pub keep_faults: bool,
-    /// See [`Wanted`].
-    pub log: LogReading,
+    /// Which rows count.
+    pub rows: RowOptions,
     /// What is held out in turn; none: only the model itself is evaluated.
     pub by: Option<By>,
     /// The share of rows that intervals of held-out parts are to hold.
     pub level: f64,
     /// What pictures call the model; none: its file, as its path is written.
-    pub called: Option<String>,
+    pub title: Option<String>,
 }
 
 impl Default for EvaluateOptions {
     fn default() -> Self {
-        Self {
-            drop_invalid: false,
-            keep_faults: false,
-            log: LogReading::default(),
-            by: None,
-            level: LEVEL,
-            called: None,
-        }
+        Self { rows: RowOptions::default(), by: None, level: LEVEL, title: None }
     }
 }
 
@@ -76,7 +64,7 @@ pub fn evaluate(
     data: &[DataFile],
     options: &EvaluateOptions,
     out: Option<&FolderOutputs>,
-    stop: &AtomicBool,
+    watch: &Watch<'_>,
 ) -> Result<EvaluateReport, PredictorError> {
     let start = Instant::now();
     let stages = Stages::default();
@@ -84,54 +72,43 @@ pub fn evaluate(
     let wanted = Wanted {
         inputs: Some(predictor.input_names()),
         targets: predictor.target_names(),
-        drop_invalid: options.drop_invalid,
-        keep_faults: options.keep_faults,
-        log: options.log.clone(),
+        rows: options.rows.clone(),
         skip_failed: false,
     };
     let read = stages.time("read", || read_files(data, &wanted))?;
-    go_on(stop)?;
+    watch.go_on()?;
     warnings.extend(read.warnings.iter().cloned());
     warnings.extend(seen_in_training(&predictor, &read.data));
     let (seen, values) = stages.time("predict", || predictor.predict(&read.data))?;
     warnings.extend(beyond_a_number(&values, "the model")?);
     let half_width = predictor.intervals().map(|intervals| (intervals.half_width.clone(), intervals.level));
-    let title = options.called.clone().unwrap_or_else(|| model.display().to_string());
+    let title = options.title.clone().unwrap_or_else(|| model.display().to_string());
     let shown = Predicted { title, data: seen.into_owned(), values, half_width };
     let merit = merit_of(&shown, None);
     warnings.extend(merit.warning());
-    let held_out = options
-        .by
-        .map(|by| stages.time("hold out", || hold_out(&predictor, &read.data, by, options.level, stop, &mut warnings)));
+    let held_out = options.by.map(|by| {
+        stages.time("hold out", || hold_out(&predictor, &read.data, by, options.level, watch, &mut warnings))
+    });
     // Once stopped, what could not be held out is no fault of the request.
-    go_on(stop)?;
+    watch.go_on()?;
     let held_out = held_out.transpose()?;
-    let mut report = EvaluateReport {
-        job: "evaluate",
+    let intervals = predictor.intervals();
+    let figures = EvaluateFigures {
         model: model.to_owned(),
         data: read.files,
         recordings: recordings(&shown),
         by_magnitude: magnitudes(&shown),
-        coverage: predictor.intervals().map(|intervals| {
+        coverage: intervals.map(|intervals| {
             let found = coverage((&shown.values - shown.data.y()).view(), intervals, "all");
             ByTarget::new(shown.data.targets(), found.reached)
         }),
         without_friction: predictor.cone().map(|_| merit_without_cone(&predictor, &shown.data)),
         merit,
         held_out,
-        left_out: left_out(evaluate_plan(data.len(), options, Some(predictor.intervals().is_some()), out)),
-        warnings,
-        pictures: Vec::new(),
-        stages: Vec::new(),
-        wall_s: 0.0,
     };
-    if let Some(out) = out {
-        results::write(&mut report, &shown, out, &stages, start)?;
-    } else {
-        report.stages = stages.list();
-        report.wall_s = start.elapsed().as_secs_f64();
-    }
-    Ok(report)
+    let left_out = left_out(evaluate_plan(data.len(), options, Some(intervals.is_some()), out));
+    let report = Report { left_out, warnings, ..Report::new("evaluate", watch, figures) };
+    end(report, out, |report, out| results::write(report, &shown, out, &stages), &stages, start)
 }
 
 /// What to say of predictions that are no finite numbers, which no figure of merit counts.
@@ -182,14 +159,14 @@ fn hold_out(
     data: &Dataset,
     by: By,
     level: f64,
-    stop: &AtomicBool,
+    watch: &Watch<'_>,
     warnings: &mut Vec<String>,
 ) -> Result<HeldOut, PredictorError> {
     let recipe: &Recipe = &predictor.training().recipe;
     let lags = recipe.lags(data)?;
     let seen = with_lags(data, lags.as_ref())?;
     let fit = |data: &Dataset| {
-        go_on(stop).map_err(|why| why.to_string())?;
+        watch.go_on().map_err(|why| why.to_string())?;
         recipe.fit(data, None).map(|fitted| fitted.model).map_err(|why| why.to_string())
     };
     let tell = |model: &lunula_predictor::Model, data: &Dataset| predict(model, predictor.cone(), data.x().view());

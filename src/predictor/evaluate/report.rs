@@ -6,9 +6,9 @@ use lunula_predictor::{By, CrossCoverage, Dataset};
 use ndarray::Array2;
 use serde::Serialize;
 
+use crate::job::Report;
 use crate::predictor::data::FileRows;
 use crate::predictor::figures_of_merit::{ByTarget, Merit};
-use crate::stages::Stage;
 
 /// A recording's errors.
 #[derive(Debug, Clone, Serialize)]
@@ -76,10 +76,11 @@ pub struct Part {
 }
 
 /// How far off a model is.
+pub type EvaluateReport = Report<EvaluateFigures>;
+
+/// The figures of a run.
 #[derive(Debug, Clone, Serialize)]
-pub struct EvaluateReport {
-    /// Which job.
-    pub job: &'static str,
+pub struct EvaluateFigures {
     /// The model file.
     pub model: PathBuf,
     /// The recordings.
@@ -97,16 +98,6 @@ pub struct EvaluateReport {
     pub without_friction: Option<Merit>,
     /// Its recipe with parts held out.
     pub held_out: Option<HeldOut>,
-    /// What the job did not need.
-    pub left_out: Vec<String>,
-    /// What whoever reads this should know.
-    pub warnings: Vec<String>,
-    /// The pictures.
-    pub pictures: Vec<PathBuf>,
-    /// Time by stage.
-    pub stages: Vec<Stage>,
-    /// Seconds from start to end.
-    pub wall_s: f64,
 }
 
 /// Rows with what was measured and predicted, for tables and pictures.

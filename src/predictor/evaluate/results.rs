@@ -1,7 +1,6 @@
 //! An evaluation's tables and pictures.
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use ndarray::Array2;
 
@@ -12,7 +11,7 @@ use crate::predictor::figures::{
     self, BarSeries, Bars, MagnitudeBin, draw_bars, draw_error_by_magnitude, draw_over_time, draw_scatter,
 };
 use crate::predictor::merit_table::{MERIT, MeritRows, merit_table};
-use crate::predictor::outputs::{FolderOutputs, finish, picture};
+use crate::predictor::outputs::{FolderOutputs, picture};
 use crate::stages::Stages;
 use crate::table::{Column, TableWriter, Value};
 
@@ -22,8 +21,7 @@ pub(super) fn write(
     shown: &Predicted,
     out: &FolderOutputs,
     stages: &Stages,
-    start: Instant,
-) -> Result<(), PredictorError> {
+) -> Result<Staging, PredictorError> {
     let folder = &out.folder;
     let staging = Staging::new(folder)?;
     let merit = staging.place(MERIT)?;
@@ -34,8 +32,7 @@ pub(super) fn write(
     if out.figures {
         report.pictures = stages.time("figures", || evaluation_pictures(&staging, folder, report, shown))?;
     }
-    let timed = |report: &mut EvaluateReport, stages, wall_s| (report.stages, report.wall_s) = (stages, wall_s);
-    finish(staging, out, report, timed, stages, start)
+    Ok(staging)
 }
 
 /// Over time, scatter, errors by size, parts held out; tells where the PNGs will stand.

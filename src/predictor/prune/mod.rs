@@ -7,17 +7,17 @@
 mod report;
 mod results;
 
-use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use lunula_predictor::{MOST_INPUTS, Subset, backward_elimination, every_subset, row_hashes, shared_rows};
 
 use super::data::{DataFile, Wanted, read_files};
-use super::error::{PredictorError, go_on};
+use super::error::PredictorError;
 use super::figures_of_merit::ByTarget;
-use super::outputs::FolderOutputs;
+use super::outputs::{FolderOutputs, end};
+use crate::job::{Report, Watch};
 use crate::stages::{Stages, Step, left_out};
-pub use report::{PruneReport, PruneRow};
+pub use report::{PruneFigures, PruneReport, PruneRow};
 
 /// Compares subsets; writes a table and pictures where `out` names a folder.
 ///
@@ -28,31 +28,29 @@ pub fn prune(
     validate: &[DataFile],
     wanted: &Wanted,
     out: Option<&FolderOutputs>,
-    stop: &AtomicBool,
+    watch: &Watch<'_>,
 ) -> Result<PruneReport, PredictorError> {
     let start = Instant::now();
     let stages = Stages::default();
     let train = stages.time("read", || read_files(data, wanted))?;
     let inputs = train.data.inputs().to_vec();
     let same = Wanted { inputs: Some(inputs.clone()), ..wanted.clone() };
-    let told = stages.time("read", || read_files(validate, &same))?;
-    go_on(stop)?;
+    let compared = stages.time("read", || read_files(validate, &same))?;
+    watch.go_on()?;
     let targets = train.data.targets().to_vec();
     let row = |subset: &Subset| row(subset, &inputs, &targets);
-    let mut warnings = [train.warnings, told.warnings].concat();
-    let shared = shared_rows(&row_hashes(&train.data), &row_hashes(&told.data));
+    let mut warnings = [train.warnings, compared.warnings].concat();
+    let shared = shared_rows(&row_hashes(&train.data), &row_hashes(&compared.data));
     if shared > 0 {
         warnings.push(format!(
             "{shared} of {} rows to compare on are among those trained on; their errors flatter. Name recordings that \
              are not",
-            told.data.rows()
+            compared.data.rows()
         ));
     }
-    let left_out = left_out(prune_plan([data.len(), validate.len()], out));
-    let mut report = PruneReport {
-        job: "prune",
+    let mut figures = PruneFigures {
         data: train.files,
-        validate: told.files,
+        validate: compared.files,
         inputs: inputs.clone(),
         targets: targets.clone(),
         subsets: 0,
@@ -60,41 +58,31 @@ pub fn prune(
         best_of_size: Vec::new(),
         without_one: Vec::new(),
         all: Vec::new(),
-        left_out,
-        warnings,
-        pictures: Vec::new(),
-        stages: Vec::new(),
-        wall_s: 0.0,
     };
+    let mut left_out = left_out(prune_plan([data.len(), validate.len()], out));
     if inputs.len() > MOST_INPUTS {
-        let path = stages.time("subsets", || backward_elimination(&train.data, &told.data))?;
-        report.all = path.iter().map(row).collect();
-        report.best_of_size = report.all.iter().rev().cloned().collect();
-        report.left_out.push(format!(
+        let path = stages.time("subsets", || backward_elimination(&train.data, &compared.data))?;
+        figures.all = path.iter().map(row).collect();
+        figures.best_of_size = figures.all.iter().rev().cloned().collect();
+        left_out.push(format!(
             "most subsets: {} photodiodes have 2^{0} of them; the one missed least was removed again and again",
             inputs.len()
         ));
     } else {
-        let found = stages.time("subsets", || every_subset(&train.data, &told.data))?;
-        report.all = found.all.iter().map(row).collect();
-        report.best_of_size = found.best_of_size.iter().flatten().map(|&k| report.all[k].clone()).collect();
-        report.without_one = found.without_one.iter().map(|one| report.all[one.subset].clone()).collect();
-        report.none = Some(ByTarget::new(&targets, found.none.validate_rmse.iter().copied()));
+        let found = stages.time("subsets", || every_subset(&train.data, &compared.data))?;
+        figures.all = found.all.iter().map(row).collect();
+        figures.best_of_size = found.best_of_size.iter().flatten().map(|&k| figures.all[k].clone()).collect();
+        figures.without_one = found.without_one.iter().map(|one| figures.all[one.subset].clone()).collect();
+        figures.none = Some(ByTarget::new(&targets, found.none.validate_rmse.iter().copied()));
     }
-    report.subsets = report.all.len();
-    if report.best_of_size.is_empty() {
+    figures.subsets = figures.all.len();
+    if figures.best_of_size.is_empty() {
         let what = "no subset has a model: the photodiodes do not change, or there are too few rows to train on";
-        report.warnings.push(what.to_owned());
+        warnings.push(what.to_owned());
     }
-    go_on(stop)?;
-    match out {
-        Some(out) => results::write(&mut report, out, &stages, start)?,
-        None => {
-            report.stages = stages.list();
-            report.wall_s = start.elapsed().as_secs_f64();
-        }
-    }
-    Ok(report)
+    watch.go_on()?;
+    let report = Report { left_out, warnings, ..Report::new("prune", watch, figures) };
+    end(report, out, |report, out| results::write(report, out, &stages), &stages, start)
 }
 
 /// What would be done and what not; `files`: how many to train and to validate on.

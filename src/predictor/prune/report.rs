@@ -1,12 +1,10 @@
 //! Which photodiodes could be removed, as reported.
 
-use std::path::PathBuf;
-
 use serde::Serialize;
 
+use crate::job::Report;
 use crate::predictor::data::FileRows;
 use crate::predictor::figures_of_merit::ByTarget;
-use crate::stages::Stage;
 
 /// A subset's errors.
 #[derive(Debug, Clone, Serialize)]
@@ -24,11 +22,12 @@ pub struct PruneRow {
     pub score: Option<f64>,
 }
 
-/// What was found.
+/// Which photodiodes could be removed.
+pub type PruneReport = Report<PruneFigures>;
+
+/// The figures of a run.
 #[derive(Debug, Clone, Serialize)]
-pub struct PruneReport {
-    /// Which job.
-    pub job: &'static str,
+pub struct PruneFigures {
     /// The recordings trained on.
     pub data: Vec<FileRows>,
     /// The recordings validated on.
@@ -48,14 +47,4 @@ pub struct PruneReport {
     /// Every subset; in the table `subsets.csv` rather than in JSON.
     #[serde(skip)]
     pub all: Vec<PruneRow>,
-    /// What the job did not need.
-    pub left_out: Vec<String>,
-    /// What whoever reads this should know.
-    pub warnings: Vec<String>,
-    /// The pictures.
-    pub pictures: Vec<PathBuf>,
-    /// Time by stage.
-    pub stages: Vec<Stage>,
-    /// Seconds from start to end.
-    pub wall_s: f64,
 }

@@ -1,22 +1,15 @@
 //! `subsets.csv`, Fig. 113 and the best subset of each size.
 
-use std::time::Instant;
-
 use super::report::{PruneReport, PruneRow};
 use crate::files::Staging;
 use crate::predictor::error::PredictorError;
 use crate::predictor::figures::{self, BarSeries, Bars, SubsetSeries, draw_bars, draw_best_subsets};
-use crate::predictor::outputs::{FolderOutputs, finish, picture};
+use crate::predictor::outputs::{FolderOutputs, picture};
 use crate::stages::Stages;
 use crate::table::{Column, TableWriter, Value};
 
 /// `subsets.csv`, Fig. 113 and the best subset of each size.
-pub(super) fn write(
-    report: &mut PruneReport,
-    out: &FolderOutputs,
-    stages: &Stages,
-    start: Instant,
-) -> Result<(), PredictorError> {
+pub(super) fn write(report: &mut PruneReport, out: &FolderOutputs, stages: &Stages) -> Result<Staging, PredictorError> {
     let folder = &out.folder;
     let staging = Staging::new(folder)?;
     let mut columns = vec![Column::integer("photodiodes"), Column::text("inputs"), Column::integer("rank")];
@@ -64,8 +57,7 @@ pub(super) fn write(
         })?);
     }
     report.pictures = pictures;
-    let timed = |report: &mut PruneReport, stages, wall_s| (report.stages, report.wall_s) = (stages, wall_s);
-    finish(staging, out, report, timed, stages, start)
+    Ok(staging)
 }
 
 /// Fig. 113's bars.
