@@ -130,7 +130,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Analyse(args) => job::run(&args),
         Command::Prune(args) => job::run(&args),
         Command::Simulate(args) => hemodynamics::simulate(&args),
-        Command::Fit(args) => hemodynamics::fit(&args),
+        Command::Fit(args) => job::run(&*args),
         Command::Posture(args) => posture::run_or_suggest(&args),
         Command::Merge(args) => merge::run(&args),
         Command::Phantom(args) => phantom::run(&args),

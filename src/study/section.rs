@@ -8,7 +8,7 @@ use serde_json::json;
 use super::options::{read, told};
 use super::pool::in_pool;
 use crate::files::write_whole;
-use crate::hemodynamics::{SectionTold, section_presses, section_simulations};
+use crate::hemodynamics::{SectionText, section_presses, section_simulations};
 use crate::pipeline::keys::Keys;
 use crate::pipeline::kind::{Demand, Facts, Foreseen, KeyFault, Kind, Part, Prepared, Role, Takes};
 use crate::pipeline::task::{Job, Made, Work};
@@ -103,7 +103,7 @@ impl Prepared for Told {
 
 impl Job for Told {
     fn run(&self, work: &Work) -> anyhow::Result<Made> {
-        let told: SectionTold = in_pool(work.threads, || {
+        let told: SectionText = in_pool(work.threads, || {
             if !self.presses {
                 return section_simulations(work.folder);
             }

@@ -12,7 +12,7 @@ use crate::job::{
     Demand, Foreseen, Given, Job, Keys, Kind, Made, OptionFault, Order, Part, Quality, Role, Said, Takes, Work, keys,
     prepare, read,
 };
-use crate::log::ambient_step;
+use crate::log::{ambient_step, foreseen_bytes};
 use crate::stages::Step;
 
 const PICTURES: &str = "pictures";
@@ -110,8 +110,7 @@ impl Job for FitJob {
     }
 
     fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {
-        let recordings = inputs.iter().filter(|input| input.role == RECORDINGS);
-        let bytes: u64 = recordings.map(|input| input.bytes(TYPICAL_BYTES)).sum();
+        let bytes = foreseen_bytes(inputs.iter().filter(|input| input.role == RECORDINGS));
         let fits = f64::from(self.0.starts) * (1.0 + self.0.free().len() as f64);
         (32_000_000 + 10 * bytes, 0.1 + fits * (0.05 + 2e-7 * bytes as f64))
     }
@@ -132,9 +131,6 @@ impl Job for FitJob {
         Ok(report.made(quality))
     }
 }
-
-/// A recording that does not exist yet: ten minutes of eight photodiodes and three forces at 25 Hz.
-const TYPICAL_BYTES: u64 = 2_000_000;
 
 /// The residuals, and the standard errors of the values.
 fn stated(report: &FitReport) -> Vec<Quality> {
