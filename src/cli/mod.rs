@@ -31,7 +31,7 @@ use clap::{Args, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lunula::files::results_stand;
 use lunula::input;
-use lunula::job::{Interrupted, one_of};
+use lunula::job::Interrupted;
 use lunula::stages::{Fate, Stage, Step};
 use lunula::words::shown_lines;
 use out::print_line;

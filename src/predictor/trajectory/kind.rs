@@ -1,204 +1,103 @@
-//! `trajectory`: tables of forces or angles for a prompter to play (5.2.3).
+//! `trajectory` in a pipeline: tables of forces or angles for a prompter to play (5.2.3).
+//!
+//! The key `kind` is the command's word, and says which options the others are.
 
 use std::path::Path;
-use std::sync::Arc;
 
-use serde::{Deserialize, Serialize};
-
-use super::nail::without_report;
-use super::options::{fault, read, told};
-use super::pool::in_pool;
-use crate::pipeline::keys::Keys;
-use crate::pipeline::kind::{Demand, Facts, Foreseen, KeyFault, Kind, Part, Prepared};
-use crate::pipeline::task::{Job, Made, Work};
-use crate::predictor::trajectory::{Kind as Way, TrajectoryOptions, TrajectoryOutputs, plan, run};
+use super::job::{plan, run};
+use super::{
+    BendingOptions, ForceOptions, KindOptions, RandomOptions, TrajectoryOptions, TrajectoryOutputs,
+};
+use crate::job::{
+    Demand, Facts, Foreseen, Given, Job, Kind, Made, OptionFault, Order, Part, Said, Work, keys, prepare, read,
+};
 use crate::stages::Step;
-use crate::words::Words;
 
 const PICTURES: &str = "pictures";
 const TABLE: &str = "trajectory.csv";
+const KIND: &str = "kind";
 
-/// The kind.
-pub(super) static TRAJECTORY: Kind = Kind {
-    name: "trajectory",
-    about: "tables of forces or angles for a prompter to play",
-    roles: &[],
-    parts: &[
-        Part { name: "trajectory", file: TABLE, only_if_wanted: false, about: "forces or angles over time" },
-        Part { name: PICTURES, file: "", only_if_wanted: true, about: "its path and over time (Fig. 90 to 93)" },
-    ],
-    revision: 1,
-    keys: KEYS,
-    prepare,
-};
-
-const KEYS: &[&str] = &[
-    "kind",
-    "seconds",
-    "every",
-    "lead",
-    "trail",
-    "tau",
-    "fz_max",
-    "mu",
-    "soft_start",
-    "error",
-    "fs",
-    "fc",
-    "hz",
-    "random",
-    "seed",
-];
-
-/// Which of the command's kinds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Word {
-    Force,
-    Posture,
-    Random,
-}
-
-impl Words for Word {
-    const WORDS: &'static [(Self, &'static str, &'static str)] =
-        &[(Self::Force, "force", ""), (Self::Posture, "posture", ""), (Self::Random, "random", "")];
-}
-
-impl Word {
-    /// Keys that only some kinds have.
-    fn takes(self, key: &str) -> bool {
-        match key {
-            "fs" | "fc" => self == Self::Force,
-            "hz" | "seed" => self != Self::Force,
-            "fz_max" | "mu" | "error" => self != Self::Posture,
-            "random" => self == Self::Posture,
-            _ => true,
-        }
-    }
-}
-
-/// A stage's keys: `kind` is the command's, the others are its options.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
-#[serde(default)]
-struct Asked {
-    #[serde(with = "crate::words::optional")]
-    kind: Option<Word>,
-    seconds: Option<f64>,
-    every: Option<f64>,
-    lead: Option<f64>,
-    trail: Option<f64>,
-    tau: Option<f64>,
-    fz_max: Option<f64>,
-    mu: Option<f64>,
-    soft_start: Option<f64>,
-    error: Option<f64>,
-    fs: Option<f64>,
-    fc: Option<f64>,
-    hz: Option<f64>,
-    random: bool,
-    seed: Option<u64>,
-}
-
-fn prepare(table: toml::Table) -> Result<Arc<dyn Prepared>, KeyFault> {
-    let given: Vec<String> = table.keys().cloned().collect();
-    let asked: Asked = read(KEYS, table)?;
-    let word = asked.kind.ok_or_else(|| fault("kind", "is needed: force, posture or random"))?;
-    if let Some(key) = given.iter().find(|key| !word.takes(key)) {
-        return Err(fault(key, format!("is no option of a {} trajectory", word.word())));
-    }
-    if let Some(key) = ["seed", "soft_start"]
-        .into_iter()
-        .find(|key| word == Word::Posture && !asked.random && given.iter().any(|own| own == key))
-    {
-        return Err(fault(key, "is only of random bending: `random = true`"));
-    }
-    let options = asked.options(word);
-    plan(&options, None).map_err(|why| fault("", why.to_string()))?;
-    Ok(Arc::new(Planned { asked, options }))
-}
-
-impl Asked {
-    fn options(&self, word: Word) -> TrajectoryOptions {
-        let seed = self.seed.unwrap_or(1);
-        let usual = match word {
-            Word::Force => Way::FORCE,
-            Word::Random => Way::RANDOM,
-            Word::Posture => Way::POSTURE,
-        };
-        let kind = match usual {
-            Way::Force { fs_per_n, fc_hz } => {
-                Way::Force { fs_per_n: self.fs.unwrap_or(fs_per_n), fc_hz: self.fc.unwrap_or(fc_hz) }
-            }
-            Way::Random { hz, .. } => Way::Random { hz: self.hz.unwrap_or(hz), seed },
-            Way::Posture { hz, .. } => Way::Posture { hz: self.hz.unwrap_or(hz), seed: self.random.then_some(seed) },
-        };
-        let of = TrajectoryOptions::of(kind);
-        TrajectoryOptions {
-            kind,
-            seconds: self.seconds.unwrap_or(of.seconds),
-            every_s: self.every.unwrap_or(of.every_s),
-            lead_s: self.lead.unwrap_or(of.lead_s),
-            trail_s: self.trail.unwrap_or(of.trail_s),
-            soft_s: self.soft_start.unwrap_or(of.soft_s),
-            fz_max_n: self.fz_max.unwrap_or(of.fz_max_n),
-            mu: self.mu.unwrap_or(of.mu),
-            tau_s: self.tau.unwrap_or(of.tau_s),
-            error: self.error.map_or(of.error, |percent| 0.01 * percent),
-        }
-    }
-}
-
-struct Planned {
-    asked: Asked,
-    options: TrajectoryOptions,
-}
+/// A stage of a pipeline.
+#[derive(Debug, Clone, Copy)]
+pub struct TrajectoryJob(TrajectoryOptions);
 
 fn outputs(folder: &Path, demand: &Demand) -> TrajectoryOutputs {
-    TrajectoryOutputs { table: folder.join(TABLE), figures: demand.parts.contains(PICTURES) }
+    TrajectoryOutputs { table: folder.join(TABLE), figures: demand.wants(PICTURES), report: false }
 }
 
-impl Prepared for Planned {
-    fn demand(&self, _role: &str, _own: &Demand) -> Demand {
-        Demand::default()
+/// The keys of all kinds.
+fn all_keys() -> Vec<String> {
+    let mut all = vec![KIND.to_owned()];
+    for key in [keys::<ForceOptions>(), keys::<BendingOptions>(), keys::<RandomOptions>()].concat() {
+        if !all.contains(&key) {
+            all.push(key);
+        }
     }
-
-    fn options(&self, demand: &Demand) -> serde_json::Value {
-        told(&self.asked, demand, &[PICTURES])
-    }
-
-    fn job(&self, _keys: &Keys, demand: &Demand) -> Arc<dyn Job> {
-        Arc::new(TrajectoryJob { options: self.options, demand: demand.clone() })
-    }
-
-    fn steps(&self, _inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
-        plan(&self.options, Some(&outputs(Path::new(""), demand))).map_err(|why| why.to_string())
-    }
-
-    fn facts(&self, _inputs: &[Foreseen], _demand: &Demand) -> Facts {
-        Facts { led: Some(false), forces: Some(self.options.is_force()), ..Facts::default() }
-    }
-
-    fn cost(&self, _inputs: &[Foreseen]) -> (u64, f64) {
-        (48_000_000, 0.1 + 2e-6 * self.options.rows() + 1e-3 * self.options.whole_s())
-    }
+    all
 }
 
-struct TrajectoryJob {
-    options: TrajectoryOptions,
-    demand: Demand,
+fn checked(options: TrajectoryOptions) -> Result<TrajectoryJob, OptionFault> {
+    plan(&options, None).map_err(|why| OptionFault { key: String::new(), what: why.to_string() })?;
+    Ok(TrajectoryJob(options))
+}
+
+fn read_kind<K: KindOptions>(word: &str, table: &toml::Table) -> Result<(TrajectoryJob, Said), OptionFault> {
+    let Given { options, said } = read::<K>(table, &format!("a {word} trajectory"))?;
+    Ok((checked(options.options())?, said.and(KIND, word)))
 }
 
 impl Job for TrajectoryJob {
-    fn run(&self, work: &Work) -> anyhow::Result<Made> {
-        let outputs = outputs(work.folder, &self.demand);
-        let report = in_pool(work.threads, || run(&self.options, &outputs, work.stop))??;
-        without_report(&outputs.table)?;
-        Ok(Made {
-            report: serde_json::to_value(&report)?,
-            left_out: report.left_out,
-            warnings: report.warnings,
-            failed: report.failed,
-            stages: report.stages,
-            quality: Vec::new(),
-        })
+    const KIND: Kind = Kind {
+        name: "trajectory",
+        about: "tables of forces or angles for a prompter to play",
+        roles: &[],
+        parts: &[
+            Part { name: "trajectory", file: TABLE, only_if_wanted: false, about: "forces or angles over time" },
+            Part { name: PICTURES, file: "", only_if_wanted: true, about: "its path and over time (Fig. 90 to 93)" },
+        ],
+        revision: 1,
+        keys: all_keys,
+        prepare: prepare::<Self>,
+    };
+
+    type Options = ForceOptions;
+
+    fn new(options: ForceOptions) -> Result<Self, OptionFault> {
+        checked(options.options())
+    }
+
+    fn read(table: &toml::Table) -> Result<(Self, Said), OptionFault> {
+        let mut table = table.clone();
+        let word = table.remove(KIND);
+        match word.as_ref().and_then(toml::Value::as_str) {
+            Some(word @ "force") => read_kind::<ForceOptions>(word, &table),
+            Some(word @ "posture") => read_kind::<BendingOptions>(word, &table),
+            Some(word @ "random") => read_kind::<RandomOptions>(word, &table),
+            _ => {
+                let what = match word {
+                    Some(word) => format!("`{KIND}` is {word}: choose force, posture or random"),
+                    None => format!("`{KIND}` is needed: force, posture or random"),
+                };
+                Err(OptionFault { key: KIND.to_owned(), what })
+            }
+        }
+    }
+
+    fn steps(&self, _inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
+        plan(&self.0, Some(&outputs(Path::new(""), demand))).map_err(|why| why.to_string())
+    }
+
+    fn facts(&self, _inputs: &[Foreseen], _demand: &Demand) -> Facts {
+        Facts { led: Some(false), forces: Some(self.0.is_force()), ..Facts::default() }
+    }
+
+    fn cost(&self, _inputs: &[Foreseen]) -> (u64, f64) {
+        (48_000_000, 0.1 + 2e-6 * self.0.rows() + 1e-3 * self.0.whole_s())
+    }
+
+    fn run(&self, order: &Order<'_>, work: &Work<'_>) -> anyhow::Result<Made> {
+        let outputs = outputs(work.folder, order.demand);
+        let report = work.run(order.said, |watch| run(&self.0, &outputs, watch))?;
+        Ok(report.made(Vec::new()))
     }
 }
