@@ -22,7 +22,6 @@ mod tradeoff;
 mod trajectory;
 
 use std::io::IsTerminal;
-use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -226,15 +225,6 @@ impl Common {
 
     fn say_left_out(&self, left_out: &[String]) {
         left_out.iter().for_each(|what| self.say(&format!("left out: {what}")));
-    }
-
-    /// How a job ended: with `--verbose` its stages and what was left out, then its time and where to look.
-    fn say_done(&self, stages: &[Stage], left_out: &[String], wall_s: f64, look: &Path) {
-        if self.verbose {
-            self.say_stages(stages);
-            self.say_left_out(left_out);
-        }
-        self.say(&format!("{wall_s:.2} s; look at {}", look.display()));
     }
 
     fn warn(&self, warnings: &[String]) {

@@ -3,9 +3,13 @@
 mod phantom;
 
 use crate::align::{AlignJob, JoinJob};
+use crate::hemodynamics::{CurveJob, FitJob, SimulateJob};
 use crate::job::{Job, Kind};
 use crate::posture::PostureJob;
 use crate::predictor::{AnalyseJob, CompareJob, EvaluateJob, PredictJob, PruneJob, TrainJob};
+use crate::predictor::trajectory::TrajectoryJob;
+use crate::study::responses::ResponsesJob;
+use crate::study::{PressesJob, SectionJob, StudyJob, TypicalJob};
 
 pub use phantom::phantom_catalogue;
 
@@ -21,9 +25,18 @@ static KINDS: &[&Kind] = &[
     &AnalyseJob::KIND,
     &CompareJob::KIND,
     &EvaluateJob::KIND,
+    &FitJob::KIND,
     &JoinJob::KIND,
     &PostureJob::KIND,
     &PredictJob::KIND,
+    &PressesJob::KIND,
     &PruneJob::KIND,
+    &ResponsesJob::KIND,
+    &SectionJob::KIND,
+    &SimulateJob::KIND,
+    &CurveJob::KIND,
+    &StudyJob::KIND,
     &TrainJob::KIND,
+    &TrajectoryJob::KIND,
+    &TypicalJob::KIND,
 ];
