@@ -88,7 +88,10 @@ impl<K: KindOptions> Command for KindArgs<K> {
     }
 
     fn say(&self, common: &Common, report: &TrajectoryReport) {
-        common.say(&format!("{} rows from 0 to {:.3} s, every {} s", report.rows, report.span_s, report.trajectory.every_s));
+        common.say(&format!(
+            "{} rows from 0 to {:.3} s, every {} s",
+            report.rows, report.span_s, report.trajectory.every_s
+        ));
         if let Some(force) = &report.force {
             say_force(common, report, force);
         }
@@ -164,8 +167,11 @@ fn say_force(common: &Common, report: &TrajectoryReport, force: &ForceFigures) {
         common.say(&format!("largest hole: {:.2} N about ({x:.2}, {y:.2}, {z:.2}) N", hole.radius_n));
     }
     if let Some(correlation) = force.time_pressing_correlation {
-        let drift =
-            if correlation.abs() > 0.9 { ": a drift of the sensor can't be distinguished from the pressing" } else { "" };
+        let drift = if correlation.abs() > 0.9 {
+            ": a drift of the sensor can't be distinguished from the pressing"
+        } else {
+            ""
+        };
         common.say(&format!("correlation of time and pressing {correlation:.2}{drift}"));
     }
 }

@@ -109,8 +109,10 @@ impl Command for FitArgs {
 
     fn say(&self, common: &Common, report: &FitReport) {
         let r2 = report.r2.map_or(String::new(), |r2| format!(", R2 {r2:.5}"));
-        common
-            .say(&format!("{} voltages, residuals {:.3e} V{r2}; {}", report.values, report.residual_sd_v, report.stopped));
+        common.say(&format!(
+            "{} voltages, residuals {:.3e} V{r2}; {}",
+            report.values, report.residual_sd_v, report.stopped
+        ));
         for group in &report.free {
             let error = |k: usize| match (&group.standard_errors, group.at_bound) {
                 (Some(errors), _) => format!("+- {:.2e}", errors[k]),
@@ -134,7 +136,8 @@ impl Command for FitArgs {
             }
         }
         for one in &report.photodiodes {
-            let plus = |error: Option<f64>| error.map_or("not determined".to_owned(), |error| format!("+- {error:.4} V"));
+            let plus =
+                |error: Option<f64>| error.map_or("not determined".to_owned(), |error| format!("+- {error:.4} V"));
             common.say(&format!(
                 "  unit {}{}: offset {:.5} V {}, scaling {:.5} V {}; {}",
                 one.unit,

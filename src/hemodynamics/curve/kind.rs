@@ -5,9 +5,7 @@ use std::path::Path;
 use super::job::{curve, plan, steps};
 use super::{CurveOptions, CurveOutputs};
 use crate::hemodynamics::given::{PARAMS, existing, of_foreseen, of_task};
-use crate::job::{
-    Demand, Facts, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Work, keys, prepare,
-};
+use crate::job::{Demand, Facts, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Work, keys, prepare};
 use crate::stages::Step;
 
 const PICTURES: &str = "pictures";

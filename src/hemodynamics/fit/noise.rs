@@ -7,8 +7,8 @@
 
 use lunula_hemodynamics::Calibration;
 
-use super::{FitInputs, FitOptions};
 use super::recording::ReadRecording;
+use super::{FitInputs, FitOptions};
 
 /// The fit is repeated at most so often.
 pub(super) const MOST_ROUNDS: usize = 3;

@@ -38,7 +38,8 @@ pub struct PhotodiodeColumn {
 impl PhotodiodeColumn {
     /// Reads `COLUMN=UNIT`; the unit is counted from 1.
     fn parse(text: &str) -> Result<Self, String> {
-        let wrong = || format!("{text:?}: write COLUMN=UNIT, such as P3=1; units are counted from 1 at the proximal end");
+        let wrong =
+            || format!("{text:?}: write COLUMN=UNIT, such as P3=1; units are counted from 1 at the proximal end");
         let (name, unit) = text.split_once('=').ok_or_else(wrong)?;
         let unit = unit.trim().parse::<usize>().ok().and_then(|unit| unit.checked_sub(1)).ok_or_else(wrong)?;
         Ok(Self { name: name.trim().to_owned(), unit })

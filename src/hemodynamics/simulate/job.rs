@@ -48,11 +48,7 @@ fn ready(inputs: &SimulateInputs, options: &SimulateOptions) -> Result<Ready, He
 }
 
 /// The one table of steps; `units` are known once the parameters are.
-pub(super) fn steps(
-    options: &SimulateOptions,
-    outputs: Option<&SimulateOutputs>,
-    units: Option<usize>,
-) -> Vec<Step> {
+pub(super) fn steps(options: &SimulateOptions, outputs: Option<&SimulateOutputs>, units: Option<usize>) -> Vec<Step> {
     let units = units.map_or(String::new(), |units| format!("{units} units, "));
     let start = match &options.start {
         None => "of the loads just before t = 0".to_owned(),
@@ -88,14 +84,14 @@ pub fn simulate(
     TableFormat::of(&outputs.table)?;
     let report_at = outputs.report.then(|| beside(&outputs.table, ".run.json"));
     let from = if let Some(Start::File(path)) = &options.start { Some(path) } else { None };
-    let mut places =
-        Places::not_over([inputs.params.as_ref(), inputs.loads.as_ref(), from].into_iter().flatten());
+    let mut places = Places::not_over([inputs.params.as_ref(), inputs.loads.as_ref(), from].into_iter().flatten());
     places.check([Some(&outputs.table), report_at.as_ref()].into_iter().flatten())?;
     let Ready { parameters, loads } = stages.time("read", || ready(inputs, options))?;
     let model = &options.model;
     let optics = model.optics.optics(&parameters)?;
     let settings = RunSettings { collapse: model.collapse, rtol: options.rtol, optics, from_s: 0.0 };
-    let start = stages.time("start", || start_state(options.start.as_ref(), &parameters, &loads.loads, model.collapse))?;
+    let start =
+        stages.time("start", || start_state(options.start.as_ref(), &parameters, &loads.loads, model.collapse))?;
     watch.go_on()?;
     let times_s = options.times_s();
     let solved = stages.time("run", || respond(&parameters, &loads.loads, &start, &times_s, &settings))?;

@@ -25,10 +25,7 @@ fn outputs(folder: &Path, demand: &Demand) -> SimulateOutputs {
 
 impl SimulateJob {
     /// The stage's files and options; the error says what is given twice.
-    fn with(
-        &self,
-        of: impl Fn(&str) -> Option<PathBuf>,
-    ) -> Result<(SimulateInputs, SimulateOptions), &'static str> {
+    fn with(&self, of: impl Fn(&str) -> Option<PathBuf>) -> Result<(SimulateInputs, SimulateOptions), &'static str> {
         let inputs = SimulateInputs { params: of(PARAMS.name), loads: of(LOADS) };
         let own = &self.0;
         if inputs.loads.is_some() && (own.loads.pf1.is_some() || own.loads.pf2.is_some()) {

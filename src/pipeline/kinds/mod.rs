@@ -6,8 +6,8 @@ use crate::align::{AlignJob, JoinJob};
 use crate::hemodynamics::{CurveJob, FitJob, SimulateJob};
 use crate::job::{Job, Kind};
 use crate::posture::PostureJob;
-use crate::predictor::{AnalyseJob, CompareJob, EvaluateJob, PredictJob, PruneJob, TrainJob};
 use crate::predictor::trajectory::TrajectoryJob;
+use crate::predictor::{AnalyseJob, CompareJob, EvaluateJob, PredictJob, PruneJob, TrainJob};
 use crate::study::responses::ResponsesJob;
 use crate::study::{PressesJob, SectionJob, StudyJob, TypicalJob};
 

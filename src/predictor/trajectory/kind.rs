@@ -5,9 +5,7 @@
 use std::path::Path;
 
 use super::job::{plan, run};
-use super::{
-    BendingOptions, ForceOptions, KindOptions, RandomOptions, TrajectoryOptions, TrajectoryOutputs,
-};
+use super::{BendingOptions, ForceOptions, KindOptions, RandomOptions, TrajectoryOptions, TrajectoryOutputs};
 use crate::job::{
     Demand, Facts, Foreseen, Given, Job, Kind, Made, OptionFault, Order, Part, Said, Work, keys, prepare, read,
 };

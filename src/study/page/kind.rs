@@ -2,9 +2,7 @@
 //! beside what came out.
 
 use super::{PageOptions, Part as StudyPart, PartFolder, study_page};
-use crate::job::{
-    Demand, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Role, Takes, Work, keys, prepare,
-};
+use crate::job::{Demand, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Role, Takes, Work, keys, prepare};
 use crate::stages::Step;
 
 const fn role(name: &'static str, about: &'static str) -> Role {
@@ -39,7 +37,12 @@ impl Job for StudyJob {
         ],
         parts: &[
             Part { name: "page", file: "study.html", only_if_wanted: false, about: "the page" },
-            Part { name: "statements", file: "statements.csv", only_if_wanted: false, about: "every statement, judged" },
+            Part {
+                name: "statements",
+                file: "statements.csv",
+                only_if_wanted: false,
+                about: "every statement, judged",
+            },
             Part { name: "numbers", file: "numbers.json", only_if_wanted: false, about: "what they are judged by" },
         ],
         revision: 1,

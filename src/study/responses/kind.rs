@@ -3,9 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::{NamedFile, ResponsesOptions, responses, steps};
-use crate::job::{
-    Demand, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Role, Takes, Work, keys, prepare,
-};
+use crate::job::{Demand, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Role, Takes, Work, keys, prepare};
 use crate::log::{LogReading, ReadingCost, ambient_step};
 use crate::stages::Step;
 

@@ -306,9 +306,7 @@ impl<'a> Averages<'a> {
         picture(staging, "outputs", |png, svg| {
             figures::outputs(&first.time_s[rows.clone()], &outputs, places, png, svg)
         })?;
-        picture(staging, "averages", |png, svg| {
-            figures::averages(&self.curves, &options.drive, places, png, svg)
-        })?;
+        picture(staging, "averages", |png, svg| figures::averages(&self.curves, &options.drive, places, png, svg))?;
         if let (true, Some(j2), Some(j3)) = (bending, first.of("J2_deg"), first.of("J3_deg"))
             && let Some(([offset, slope], r2)) = straight(j2, j3)
         {
