@@ -33,7 +33,7 @@ fn main() -> anyhow::Result<()> {
     let people = people.collect::<anyhow::Result<Vec<_>>>()?;
     let kinds = [Kind::Linear, Kind::Quadratic, Kind::Network { hidden: 8 }];
     let options = CompareOptions { models: kinds.map(Recipe::new).to_vec(), bending_s: Protocol::Touch.seconds()[0] };
-    let report = Watch::nobody(|watch| compare(&people, &options, Some(&FolderOutputs::all(out.clone())), watch))?;
+    let report = compare(&people, &options, Some(&FolderOutputs::all(out.clone())), &Watch::nobody())?;
     report.warnings.iter().for_each(|warning| eprintln!("note: {warning}"));
     for comparison in &report.comparisons {
         println!("{}", comparison.markdown());
@@ -80,7 +80,7 @@ fn person(subject: u32, changes: &Changes, out: &Path) -> anyhow::Result<Person>
             session: Some("1".to_owned()),
             ..AlignOptions::default()
         };
-        Watch::nobody(|watch| align(&inputs, &options, &outputs, watch))?;
+        align(&inputs, &options, &outputs, &Watch::nobody())?;
         Ok(training)
     };
     Ok(Person {

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
 use crate::util::Dir;
+use lunula::job::Watch;
 use lunula::phantom::log::{LogOptions, LogScene, Protocol, write};
 use lunula::predictor::models::{Kind, Recipe};
 use lunula::predictor::{CompareOptions, CompareReport, FolderOutputs, Person, PredictorError, compare};
@@ -56,8 +57,7 @@ fn mean(report: &CompareReport, figure: &str, group: &str, series: &str) -> f64 
 fn comparisons_are_what_train_and_prune_tell_of_the_same_recordings() {
     let dir = Dir::new();
     let one = person(&dir, 1);
-    let report =
-        compare(&[one], &options(), Some(&FolderOutputs::all(dir.path("out"))), &AtomicBool::new(false)).unwrap();
+    let report = compare(&[one], &options(), Some(&FolderOutputs::all(dir.path("out"))), &Watch::nobody()).unwrap();
     let figures: Vec<&str> = report.comparisons.iter().map(|one| one.figure.as_str()).collect();
     assert_eq!(figures, ["105", "106", "108", "109", "110", "111", "112", "113"]);
     for model in ["linear", "quadratic"] {
@@ -108,18 +108,19 @@ fn people_are_compared_alike_whatever_the_threads_and_wrong_requests_are_refused
     let dir = Dir::new();
     let people = [person(&dir, 1), person(&dir, 2)];
     let stop = AtomicBool::new(false);
+    let watch = Watch::stopped_by(&stop);
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| compare(&people, &options(), None, &stop)).unwrap().comparisons
+        pool.install(|| compare(&people, &options(), None, &watch)).unwrap().figures.comparisons
     };
     let found = with(1);
     assert!(found == with(3));
     assert!(
         found.iter().flat_map(|one| one.cells.iter().flatten()).all(|cell| cell.values.len() == 2 && cell.sd.is_some())
     );
-    let refused = |people: &[Person], options: &CompareOptions| match compare(people, options, None, &stop) {
+    let refused = |people: &[Person], options: &CompareOptions| match compare(people, options, None, &watch) {
         Err(PredictorError::Request(what)) => what,
-        other => panic!("{:?}", other.map(|report| report.people)),
+        other => panic!("{:?}", other.map(|report| report.figures.people)),
     };
     assert!(refused(&[], &options()).contains("name people"));
     let twice = CompareOptions { models: vec![Recipe::new(Kind::Linear); 2], ..options() };
@@ -129,8 +130,9 @@ fn people_are_compared_alike_whatever_the_threads_and_wrong_requests_are_refused
     let both = format!("{first}{}", second.split_once('\n').unwrap().1);
     dir.write("both.csv", both);
     joined.touch[0] = dir.path("both.csv");
-    let told = compare(&[joined], &options(), None, &stop).map(|report| report.people).unwrap_err().to_string();
+    let told =
+        compare(&[joined], &options(), None, &watch).map(|report| report.figures.people).unwrap_err().to_string();
     assert!(told.contains("both.csv"), "{told}");
     stop.store(true, std::sync::atomic::Ordering::Relaxed);
-    assert!(matches!(compare(&people, &options(), None, &stop), Err(PredictorError::Interrupted)));
+    assert!(matches!(compare(&people, &options(), None, &watch), Err(PredictorError::Interrupted(_))));
 }

@@ -6,9 +6,10 @@ use std::path::{Path, PathBuf};
 use regex::Regex;
 
 /// The library's rooms, from the ground up: a room knows those of lower floors, and none of its own beside it.
-const FLOORS: [&[&str]; 7] = [
+const FLOORS: [&[&str]; 8] = [
     &["flexion", "input", "nail", "stages", "timebase", "words"],
-    &["files", "job", "labelme", "npy", "table", "toml_file", "video"],
+    &["files", "labelme", "npy", "table", "toml_file", "video"],
+    &["job"],
     &["clock", "figure", "log"],
     &["align", "hemodynamics", "photo", "posture", "predictor"],
     &["phantom"],

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use image::{DynamicImage, GrayImage, ImageBuffer, Luma, LumaA, Rgb, RgbImage, Rgba};
-use lunula::photo::outline::{MaskFault, Outline, Shape, outlines_from_mask};
+use lunula::photo::outline::{MaskFault, Moments, Outline, outlines_from_mask};
 
 fn extent(outline: &Outline) -> [[f64; 2]; 2] {
     let points = outline.points();
@@ -36,7 +36,7 @@ fn a_rectangle_is_as_wide_as_its_pixels() {
     let outline = only(&drawn(60, 50, |x, y| in_box(x, y, [10, 29], [7, 40])).into());
     assert_eq!(extent(&outline), [[9.5, 29.5], [6.5, 40.5]]);
     assert!((outline.area_px2() - (20.0 * 34.0 - CORNERS_PX2)).abs() <= 1e-9);
-    assert!(Shape::of(&outline).centroid_px.iter().zip([19.5, 23.5]).all(|(a, b)| (a - b).abs() <= 1e-9));
+    assert!(Moments::of(&outline).centroid_px.iter().zip([19.5, 23.5]).all(|(a, b)| (a - b).abs() <= 1e-9));
 }
 
 #[test]
@@ -65,7 +65,7 @@ fn an_antialiased_disc_keeps_its_place() {
     let mask = GrayImage::from_fn(64, 56, |x, y| Luma([(255.0 * covered(x, y)).round() as u8]));
     let outline = only(&mask.into());
     // Measured: 0.017 px, 0.16 % of the area (straight pieces inside the arc).
-    let place = Shape::of(&outline).centroid_px;
+    let place = Moments::of(&outline).centroid_px;
     assert!((place[0] - centre[0]).hypot(place[1] - centre[1]) <= 0.03);
     assert!((outline.area_px2() / (std::f64::consts::PI * radius * radius) - 1.0).abs() <= 0.005);
     // Every corner lies on the circle; measured: within 0.097 px.
@@ -111,7 +111,7 @@ fn nails_come_from_top_to_bottom_and_left_to_right() {
     let mask = drawn(100, 100, |x, y| places.iter().any(|&[a, b]| in_box(x, y, [a, a + 9], [b, b + 14])));
     let found = outlines_from_mask(&mask.into()).unwrap();
     let centres: Vec<[f64; 2]> =
-        found.nails.iter().map(|nail| Shape::of(nail).centroid_px.map(|c| c.round())).collect();
+        found.nails.iter().map(|nail| Moments::of(nail).centroid_px.map(|c| c.round())).collect();
     // Two at the same height: left first.
     assert_eq!(centres, [[15.0, 17.0], [75.0, 17.0], [45.0, 47.0], [15.0, 77.0]]);
 }

@@ -13,7 +13,7 @@ use image::DynamicImage;
 use lunula::labelme::{LabelMe, to_labelme};
 use lunula::phantom::nail::{Background, Camera, Depth, Light, NailScene, Pose, RenderOptions, Subject};
 use lunula::photo::outline::{
-    Axis, AxisUnknown, FoundAxis, Outline, OutlineOptions, Shape, Side, axis_towards, find_axes, find_axes_towards,
+    Axis, AxisUnknown, FoundAxis, Moments, Outline, OutlineOptions, Side, axis_towards, find_axes, find_axes_towards,
     outlines_from_mask,
 };
 use lunula::photo::{Photo, Photograph};
@@ -52,7 +52,7 @@ fn real_hands() -> Option<Vec<Hand>> {
         let nails = outlines_from_mask(&mask).unwrap().nails;
         assert_eq!(nails.len(), rows.len(), "{file}: nails in the mask");
         let nearest = |nail: &Outline| {
-            let [x, y] = Shape::of(nail).centroid_px;
+            let [x, y] = Moments::of(nail).centroid_px;
             let away = |row: &[f64; 3]| (row[0] - x).hypot(row[1] - y);
             let row = rows.iter().min_by(|a, b| away(a).total_cmp(&away(b))).unwrap();
             assert!(away(row) < 2.0, "{file}: no truth at ({x:.1}, {y:.1})");
@@ -313,7 +313,8 @@ fn doubted(hand: &Hand, folder: &Path, drawn: impl Fn(&Outline, Axis) -> (Vec<[f
     LabelMe::new("hand.png", width, height, shapes).write(&folder.join("hand.json")).unwrap();
     let name = || "hand".to_owned();
     let photo = Photo { pose: name(), subject: name(), file: name(), path: picture.clone(), outline: None };
-    let nails = OutlineOptions::default().nails(&photo, &Photograph::read(&picture).unwrap()).unwrap();
+    let options = OutlineOptions::default();
+    let nails = options.nails(&options.locate(&photo), &Photograph::read(&picture).unwrap()).unwrap();
     nails.iter().filter(|nail| !nail.reason.is_empty()).count()
 }
 

@@ -201,8 +201,8 @@ fn nothing_to_do_is_said_with_what_was_looked_for() {
     dir.write("empty/readme.txt", "nothing here");
     dir.lunula(&["photos", "empty", "--out", "out"]).expect(2).says("no photographs here");
     dir.lunula(&["photos", "nowhere", "--out", "out"]).expect(2).says("nowhere");
-    dir.lunula(&["photos", "empty", "--out", "out", "--size", "3"]).expect(2).says("8..=4096");
-    dir.lunula(&["photos", "empty", "--out", "out", "--margin", "nan"]).expect(2).says("1..=5");
+    dir.lunula(&["photos", "empty", "--out", "out", "--size", "3"]).expect(2).says("8 to 4096");
+    dir.lunula(&["photos", "empty", "--out", "out", "--margin", "nan"]).expect(2).says("1 to 5");
     dir.lunula(&["photos", "empty", "--out", "out", "--masks", "nowhere"]).expect(2).says("--masks nowhere");
     dir.lunula(&["photos", "empty"]).expect(2).says("--out");
     assert!(!dir.path("out").exists());

@@ -78,7 +78,7 @@ fn one_subject_more_touches_that_subject_and_the_maps() {
     let more = run("out");
     assert_eq!(counts(&more), [2, 4, 0]);
     let stands = more.json().to_string();
-    assert!(stands.contains("sums: 8 stand in the maps before"), "{stands}");
+    assert!(stands.contains("sums: 8 are part of the maps made before"), "{stands}");
     assert_eq!(counts(&run("anew")), [6, 0, 0]);
     for stage in ["nails", "coloration"] {
         let (added, anew) = (results(&dir, "out", stage), results(&dir, "anew", stage));

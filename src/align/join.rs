@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use super::results::{ANGLE_DECIMALS, TEXTS};
+use crate::align::run::results::{ANGLE_DECIMALS, TEXTS};
 use crate::table::{Column, ColumnKind, Table, TableError, TableWriter, Value};
 
 /// Why sets were not joined.

@@ -9,15 +9,11 @@ mod certificate;
 mod error;
 pub mod export;
 pub mod figures;
-mod job;
 mod join;
-mod kind;
 mod label;
 mod options;
-mod plan;
 mod posture;
-mod report;
-mod results;
+mod run;
 mod tie;
 
 pub use crate::log::{
@@ -25,14 +21,14 @@ pub use crate::log::{
 };
 pub use certificate::Certificate;
 pub use error::AlignError;
-pub use job::run;
 pub use join::{JoinError, join};
-pub use kind::{AlignJob, JoinJob};
 pub use label::{Gap, LabelCounts, Labels, Unlabelled, label};
 pub use options::{AlignInputs, AlignOptions, AlignOutputs, Sync};
-pub use plan::plan;
 pub use posture::{ClockColumns, Posture};
-pub use report::{AlignFigures, AlignReport, LabelReport};
+pub use run::job::run;
+pub use run::kind::{AlignJob, JoinJob};
+pub use run::plan::plan;
+pub use run::report::{AlignFigures, AlignReport, LabelReport};
 pub use tie::{
     Correlated, LagPeak, LagSearch, LagTie, Recording, Tie, TieMethod, by_clock, by_correlation, by_offset, correlate,
 };

@@ -10,10 +10,8 @@ mod sheet;
 mod text;
 mod thin;
 
-use std::io::Cursor;
-
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::{DynamicImage, ImageEncoder, ImageError};
+use image::{DynamicImage, ExtendedColorType, GrayAlphaImage, ImageEncoder, ImageError};
 
 pub use chart::{Bar, Cell, Chart, Item, draw_charts, draw_grid, draw_panels};
 pub use grey::{Stretch, grey_map};
@@ -34,7 +32,36 @@ pub fn text_coverage(text: &str, height_px: f32) -> image::GrayImage {
 /// A picture without pixels, or with samples that PNG does not hold.
 pub fn png(picture: &DynamicImage) -> Result<Vec<u8>, ImageError> {
     let mut png = Vec::new();
-    let encoder = PngEncoder::new_with_quality(Cursor::new(&mut png), CompressionType::Fast, FilterType::Up);
-    encoder.write_image(picture.as_bytes(), picture.width(), picture.height(), picture.color().into())?;
+    let size = [picture.width(), picture.height()];
+    encode_png(picture.as_bytes(), size, picture.color().into(), &mut png)?;
     Ok(png)
+}
+
+/// A grey picture as a PNG file; of one channel where nothing is transparent.
+///
+/// # Errors
+/// As [`png`].
+pub fn png_of_grey(picture: &GrayAlphaImage) -> Result<Vec<u8>, ImageError> {
+    let mut png = Vec::new();
+    let size = [picture.width(), picture.height()];
+    if picture.pixels().all(|pixel| pixel.0[1] == 255) {
+        let levels: Vec<u8> = picture.chunks_exact(2).map(|pixel| pixel[0]).collect();
+        encode_png(&levels, size, ExtendedColorType::L8, &mut png)?;
+    } else {
+        encode_png(picture, size, ExtendedColorType::La8, &mut png)?;
+    }
+    Ok(png)
+}
+
+/// Encodes samples, of 16 bits in the machine's order, at the end of `png`.
+///
+/// # Errors
+/// As [`png`].
+pub(crate) fn encode_png(
+    samples: &[u8],
+    [width, height]: [u32; 2],
+    colour: ExtendedColorType,
+    png: &mut Vec<u8>,
+) -> Result<(), ImageError> {
+    PngEncoder::new_with_quality(png, CompressionType::Fast, FilterType::Up).write_image(samples, width, height, colour)
 }

@@ -59,6 +59,12 @@ impl Staging {
         &self.at
     }
 
+    /// The folder that the results are for.
+    #[must_use]
+    pub fn target(&self) -> &Path {
+        &self.target
+    }
+
     /// Where to write the result `name` (relative, with `/`) now; its folder exists.
     ///
     /// # Errors

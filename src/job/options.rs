@@ -301,7 +301,7 @@ mod tests {
         let text = "scene = \"small\"\nseconds = 2\nclock = \"mm:ss.t\"\nclock_offset = -3.5\nclock_dark = \
                     true\nstart = false\n\
             hide = [\"middle_dist@3+2\", \"hand_prox@9+1\"]\njoints = [\"J2\", \"J3\"]\nblur = 0.25";
-        let options = read::<VideoRequest>(&table(text), "lunula phantom video").unwrap().options().unwrap();
+        let options = read::<VideoRequest>(&table(text), "lunula phantom video").unwrap().options.options().unwrap();
         let mut expected = VideoOptions { seconds: 2.0, blur: 0.25, ..VideoOptions::new(Preset::Small) };
         let clock = options.clock.clone().unwrap();
         assert_eq!((clock.offset_s, clock.light_digits, clock.format.as_str()), (-3.5, false, "mm:ss.t"));
@@ -310,10 +310,13 @@ mod tests {
         expected.hide = vec![hide("middle_dist", 3, 2), hide("hand_prox", 9, 1)];
         expected.joints = vec!["J2".to_owned(), "J3".to_owned()];
         assert_eq!(options, expected);
-        let photos =
-            read::<PhotosRequest>(&table("poses = [\"nominal\"]\nsubjects = 3\ngrey = true"), "").unwrap().options();
+        let photos = read::<PhotosRequest>(&table("poses = [\"nominal\"]\nsubjects = 3\ngrey = true"), "")
+            .unwrap()
+            .options
+            .options();
         assert_eq!((photos.poses.len(), photos.subjects, photos.grey), (1, 3, true));
-        let study = read::<StudyRequest>(&table("subjects = 2\nvideo_size = \"160x96\""), "").unwrap().options();
+        let study =
+            read::<StudyRequest>(&table("subjects = 2\nvideo_size = \"160x96\""), "").unwrap().options.options();
         assert_eq!((study.subjects, study.sensors, study.width, study.fps), (2, 2, 160, 30.0));
     }
 

@@ -1,5 +1,6 @@
 //! Who called a running job: what was asked for, whether to stop, who looks at its progress.
 
+use std::sync::LazyLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use thiserror::Error;
@@ -22,15 +23,20 @@ pub struct Watch<'a> {
     pub tick: &'a (dyn Fn(u64, Option<u64>) + Sync),
 }
 
+static NOTHING_SAID: LazyLock<Said> = LazyLock::new(Said::default);
+static GOES_ON: AtomicBool = AtomicBool::new(false);
+
 impl Watch<'_> {
-    /// Runs `work` for a program that wants nothing but to stop it.
-    pub fn stopped_by<T>(stop: &AtomicBool, work: impl FnOnce(&Watch<'_>) -> T) -> T {
-        work(&Watch { said: &Said::default(), stop, tick: &|_, _| {} })
+    /// A program that wants nothing but to stop the job.
+    #[must_use]
+    pub fn stopped_by(stop: &AtomicBool) -> Watch<'_> {
+        Watch { said: &NOTHING_SAID, stop, tick: &|_, _| {} }
     }
 
-    /// Runs `work` with a caller who asked for nothing in particular and does not interrupt.
-    pub fn nobody<T>(work: impl FnOnce(&Watch<'_>) -> T) -> T {
-        Self::stopped_by(&AtomicBool::new(false), work)
+    /// A caller who asked for nothing in particular and does not interrupt.
+    #[must_use]
+    pub fn nobody() -> Watch<'static> {
+        Watch::stopped_by(&GOES_ON)
     }
 
     /// Whether the job goes on.

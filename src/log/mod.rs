@@ -19,37 +19,26 @@
 //! two resets.
 
 mod ambient;
-mod cell;
-mod columns;
 mod foreseen;
-mod guess;
-mod header;
-mod order;
-mod parquet;
-mod raw;
+mod formats;
+mod lines;
+mod naming;
 mod reading;
 mod request;
-mod role;
-mod rows;
-mod stamps;
-mod status;
 #[cfg(test)]
 mod tests;
-mod text;
-#[cfg(feature = "xdf")]
-mod xdf;
 
 use std::path::{Path, PathBuf};
 
+pub(crate) use crate::log::lines::cell::led as led_state;
+pub use crate::log::lines::stamps::TimeUnit;
+pub(crate) use crate::log::lines::status::{Statuses, Verdict};
+pub use crate::log::naming::columns::Columns;
+pub use crate::log::naming::header::LogHeader;
 pub use ambient::{AmbientError, AmbientOptions, Samples, samples};
 pub(crate) use ambient::{Preceding, piles};
-pub(crate) use cell::led as led_state;
-pub use columns::Columns;
 pub use foreseen::{ReadingCost, ambient_step, foreseen_bytes};
-pub use header::LogHeader;
 pub use reading::{LitRows, LogReading, UnlitLoads};
-pub use stamps::TimeUnit;
-pub(crate) use status::{Statuses, Verdict};
 
 /// A column of a log.
 #[derive(Debug, Clone, PartialEq)]
@@ -136,10 +125,10 @@ impl Log {
     /// clock that was reset, no rows: each with its place and what to do.
     pub fn read(path: &Path, columns: &Columns) -> Result<Self, LogError> {
         let raw = match Format::of(path) {
-            Format::Text => rows::read(path, columns)?,
-            Format::Parquet => parquet::read(path, columns)?,
+            Format::Text => lines::rows::read(path, columns)?,
+            Format::Parquet => formats::parquet::read(path, columns)?,
             #[cfg(feature = "xdf")]
-            Format::Xdf => xdf::read(path, columns)?,
+            Format::Xdf => formats::xdf::read(path, columns)?,
             #[cfg(not(feature = "xdf"))]
             Format::Xdf => {
                 let what = "is a recording of the Lab Streaming Layer, which this lunula was built without; build it \
@@ -147,7 +136,7 @@ impl Log {
                 return Err(LogError::File { path: path.to_owned(), what: what.to_owned() });
             }
         };
-        order::settle(raw, columns.piece)
+        lines::order::settle(raw, columns.piece)
     }
 }
 

@@ -6,8 +6,8 @@
 
 use std::path::Path;
 
-use super::columns::is_led;
 use super::{AmbientOptions, Channel, Columns, Log, LogError, LogHeader, Samples, TimeUnit, samples};
+use crate::log::naming::columns::is_led;
 use crate::table::{TableError, column_names};
 
 /// What the user says about a log; the default says nothing.

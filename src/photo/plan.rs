@@ -1,14 +1,15 @@
-//! What a run would do and leave out, told from names and headers: no pixel is decoded.
+//! Which steps a run takes and leaves out, and why: one table, which a plan asks with what names and headers show, and a
+//! run with what it found.
 
 use std::collections::BTreeMap;
 
-use super::job::PhotosOptions;
-use super::outline::Found;
+use super::options::{Outputs, PhotosOptions, Results};
+use super::outline::OutlinePlace;
 use super::read::header_is_grey;
 use super::set::{Photo, PhotoSet};
-use crate::stages::Step;
+use crate::stages::{self, Step};
 
-/// What is known of a photograph before it is opened.
+/// What is known of a photograph: before it is opened, or after it was worked on.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Foreknown {
     /// Its pose.
@@ -16,11 +17,11 @@ pub struct Foreknown {
     /// It has no colours; none: not known.
     pub grey: Option<bool>,
     /// Where its outlines come from.
-    pub outlines: Found,
+    pub outlines: OutlinePlace,
 }
 
 impl Foreknown {
-    /// Looks at a photograph's header and at what stands beside it.
+    /// Looks at a photograph's header and at the files beside it; no pixel is decoded.
     #[must_use]
     pub fn of(photo: &Photo, options: &PhotosOptions) -> Self {
         let (pose, outlines) = (photo.pose.clone(), options.outlines.locate(photo));
@@ -29,46 +30,85 @@ impl Foreknown {
 }
 
 /// Plans a run of `photos`.
-pub fn plan(set: &PhotoSet, options: &PhotosOptions) -> Vec<Step> {
+pub fn plan(set: &PhotoSet, options: &PhotosOptions, outputs: &Outputs) -> Vec<Step> {
     let photos: Vec<Foreknown> = set.photos.iter().map(|photo| Foreknown::of(photo, options)).collect();
-    plan_foreknown(&photos, options)
+    plan_foreknown(&photos, options, outputs)
 }
 
-/// Plans a run on photographs of which not all need stand.
-pub fn plan_foreknown(photos: &[Foreknown], options: &PhotosOptions) -> Vec<Step> {
-    let count = |found: fn(&Found) -> bool| photos.iter().filter(|p| found(&p.outlines)).count();
-    let labelme = count(|f| matches!(f, Found::LabelMe(_)));
-    let masks = count(|f| matches!(f, Found::Mask(_)));
-    let detected = count(|f| matches!(f, Found::Detection));
-    let grey = photos.iter().filter(|p| p.grey == Some(true)).count();
-    let colour = photos.len() - grey;
-    let mut subjects: BTreeMap<&str, usize> = BTreeMap::new();
-    for photo in photos {
-        *subjects.entry(&photo.pose).or_default() += 1;
+/// What a run left out: whole steps, and those that some photographs did not need.
+pub(super) fn left_out(photos: &[Foreknown], options: &PhotosOptions, outputs: &Outputs) -> Vec<String> {
+    let counts = Counts::of(photos);
+    let mut left_out = Vec::new();
+    if counts.grey > 0 {
+        left_out.push(format!("channel: not taken from {} grey photograph(s)", counts.grey));
     }
-    let most = subjects.values().copied().max().unwrap_or(0);
+    let drawn = counts.labelme + counts.masks;
+    if drawn > 0 {
+        left_out.push(format!("detection: not run on {drawn} photograph(s) whose outlines are known"));
+    }
+    let counted = ["channel", "detection"];
+    let steps = plan_foreknown(photos, options, outputs);
+    left_out.extend(stages::left_out(steps.into_iter().filter(|step| !counted.contains(&step.stage))));
+    if counts.poses.len() == 1 && outputs.results == Results::Maps {
+        left_out.push("comparison between poses: there is one".into());
+    }
+    left_out
+}
+
+/// Photographs by what they need.
+struct Counts<'a> {
+    labelme: usize,
+    masks: usize,
+    detected: usize,
+    grey: usize,
+    /// Photographs by pose, a subject each.
+    poses: BTreeMap<&'a str, usize>,
+}
+
+impl<'a> Counts<'a> {
+    fn of(photos: &'a [Foreknown]) -> Self {
+        let count = |is: fn(&OutlinePlace) -> bool| photos.iter().filter(|p| is(&p.outlines)).count();
+        let mut poses = BTreeMap::new();
+        for photo in photos {
+            *poses.entry(photo.pose.as_str()).or_default() += 1;
+        }
+        Self {
+            labelme: count(|place| matches!(place, OutlinePlace::LabelMe(_))),
+            masks: count(|place| matches!(place, OutlinePlace::Mask(_))),
+            detected: count(|place| matches!(place, OutlinePlace::Detection)),
+            grey: photos.iter().filter(|p| p.grey == Some(true)).count(),
+            poses,
+        }
+    }
+}
+
+/// The table of steps.
+pub fn plan_foreknown(photos: &[Foreknown], options: &PhotosOptions, outputs: &Outputs) -> Vec<Step> {
+    let Counts { labelme, masks, detected, grey, poses } = Counts::of(photos);
+    let colour = photos.len() - grey;
+    let most = poses.values().copied().max().unwrap_or(0);
     let none_drawn = "nobody drew any";
-    let maps = if options.parts.is_some() {
-        let sums = Step::new("sums", true, format!("{} pose(s)", subjects.len()));
+    let maps = if outputs.results != Results::Maps {
+        let sums = Step::new("sums", true, format!("{} pose(s)", poses.len()));
         [sums, Step::new("maps", false, "they are made of all subjects' sums".into())]
     } else {
         let spread =
-            if most > 1 { format!("up to {most} subjects a pose") } else { "it needs two subjects in a pose".into() };
-        let mean = Step::new("mean", true, format!("{} pose(s)", subjects.len()));
+            if most > 1 { format!("up to {most} subjects per pose") } else { "it needs two subjects in a pose".into() };
+        let mean = Step::new("mean", true, format!("{} pose(s)", poses.len()));
         [mean, Step::new("standard deviation", most > 1, spread)]
     };
     let [sums, spread] = maps;
-    let pictures = options.parts.is_none_or(|parts| parts.pictures);
-    vec![
-        Step::new("read", true, format!("{} photograph(s) of {} pose(s)", photos.len(), subjects.len())),
+    let pictures = outputs.has_pictures();
+    let mut steps = vec![
+        Step::new("read", true, format!("{} photograph(s) of {} pose(s)", photos.len(), poses.len())),
         Step::new("outlines from LabelMe", labelme > 0, said(labelme, none_drawn)),
         Step::new("outlines from masks", masks > 0, said(masks, none_drawn)),
-        Step::new("detection", detected > 0, said(detected, "every outline is known, or detection is not wanted")),
+        Step::new("detection", detected > 0, said(detected, "every outline is known, or detection is turned off")),
         Step::new(
             "axis from the picture",
             (labelme > 0 || masks > 0) && options.outlines.distal.is_none(),
             match options.outlines.distal {
-                Some(_) => "--distal settles it, where the picture does not contradict".into(),
+                Some(_) => "--distal settles it where the picture does not contradict".into(),
                 None if labelme + masks > 0 => "of known outlines without an axis line; drawn ones are checked".into(),
                 None => "detection finds its own".into(),
             },
@@ -97,14 +137,15 @@ pub fn plan_foreknown(photos: &[Foreknown], options: &PhotosOptions) -> Vec<Step
         Step::new(
             "pictures written",
             pictures,
-            if pictures { "the normalized ones".into() } else { "not asked for".into() },
+            if pictures { "the normalized ones".into() } else { "not requested".into() },
         ),
-        Step::new(
-            "LabelMe files of what is detected",
-            options.keep_detected,
-            if options.keep_detected { "--write-outlines".into() } else { "not asked for".into() },
-        ),
-    ]
+    ];
+    // Sums are a pipeline's, which has no such option.
+    let saved = outputs.outlines.is_some();
+    let why = if saved { "--write-outlines" } else { "not requested" };
+    let labelme = Step::new("LabelMe files of what is detected", saved, why.into());
+    steps.extend((outputs.results == Results::Maps).then_some(labelme));
+    steps
 }
 
 fn said(count: usize, otherwise: &str) -> String {

@@ -9,10 +9,10 @@ use std::io::{Cursor, Read};
 use std::path::Path;
 
 use image::metadata::Orientation;
-use image::{ColorType, DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
+use image::{ColorType, DynamicImage, ImageBuffer, ImageDecoder, ImageFormat, ImageReader, Limits, Pixel};
 use thiserror::Error;
 
-/// Why a file is no photograph. `Display` says what to do; the caller adds which file.
+/// Why a file is not a photograph. `Display` says what to do; the caller adds which file.
 #[derive(Debug, Error)]
 pub enum ReadFault {
     /// The file can't be opened or read.
@@ -74,6 +74,27 @@ pub struct Photograph {
     pub orientation: Orientation,
 }
 
+/// Memory that goes from photograph to photograph, so that it is not taken from the system, and cleared by it, each time.
+#[derive(Debug, Default)]
+pub(super) struct PhotoBuffer {
+    file: Vec<u8>,
+    /// Of 8 bits.
+    samples: Vec<u8>,
+}
+
+impl PhotoBuffer {
+    /// Takes back the memory of a photograph that is done with.
+    pub(super) fn take_back(&mut self, photograph: Photograph) {
+        self.samples = match photograph.image {
+            DynamicImage::ImageLuma8(p) => p.into_raw(),
+            DynamicImage::ImageLumaA8(p) => p.into_raw(),
+            DynamicImage::ImageRgb8(p) => p.into_raw(),
+            DynamicImage::ImageRgba8(p) => p.into_raw(),
+            _ => return,
+        };
+    }
+}
+
 /// Bits a channel of the source.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -107,8 +128,14 @@ impl Photograph {
     /// # Errors
     /// [`ReadFault`] where the file is missing, no picture, too large, truncated, damaged or of another sample format.
     pub fn read_up_to(path: &Path, megapixels: u32) -> Result<Self, ReadFault> {
-        let bytes = bytes_of(path, megapixels)?;
-        let (mut decoder, format) = decoder_for(&bytes)?;
+        Self::read_into(path, megapixels, &mut PhotoBuffer::default())
+    }
+
+    /// As [`Photograph::read_up_to`], in memory that a photograph before this one left.
+    pub(super) fn read_into(path: &Path, megapixels: u32, buffer: &mut PhotoBuffer) -> Result<Self, ReadFault> {
+        let PhotoBuffer { file: bytes, samples } = buffer;
+        read_bytes(path, megapixels, bytes)?;
+        let (mut decoder, format) = decoder_for(bytes)?;
         let (width, height) = decoder.dimensions();
         if u64::from(width) * u64::from(height) > pixels(megapixels) {
             return Err(ReadFault::TooLarge { width, height, megapixels });
@@ -117,14 +144,21 @@ impl Photograph {
         let mut limits = Limits::no_limits();
         limits.max_alloc = Some(2 * decoder.total_bytes() + METADATA_BYTES);
         decoder.set_limits(limits)?;
-        if format == ImageFormat::Jpeg && !jpeg_is_complete(&bytes) {
+        if format == ImageFormat::Jpeg && !jpeg_is_complete(bytes) {
             return Err(ReadFault::Truncated);
         }
         let orientation = decoder.orientation()?;
-        let mut image = DynamicImage::from_decoder(decoder)?;
-        if !is_supported(image.color()) {
-            return Err(ReadFault::Samples(image.color()));
+        if !is_supported(decoder.color_type()) {
+            return Err(ReadFault::Samples(decoder.color_type()));
         }
+        let mut image = match decoder.color_type() {
+            ColorType::L8 => eight_bits(decoder, samples)?.map(DynamicImage::ImageLuma8),
+            ColorType::La8 => eight_bits(decoder, samples)?.map(DynamicImage::ImageLumaA8),
+            ColorType::Rgb8 => eight_bits(decoder, samples)?.map(DynamicImage::ImageRgb8),
+            ColorType::Rgba8 => eight_bits(decoder, samples)?.map(DynamicImage::ImageRgba8),
+            _ => Some(DynamicImage::from_decoder(decoder)?),
+        }
+        .expect("as many samples as the decoder says");
         image.apply_orientation(orientation);
         Ok(Self { image, orientation })
     }
@@ -214,23 +248,23 @@ fn pixels(megapixels: u32) -> u64 {
     u64::from(megapixels) * 1_000_000
 }
 
-/// A picture file's bytes. What is no picture is not read to its end, which some devices have none of.
-fn bytes_of(path: &Path, megapixels: u32) -> Result<Vec<u8>, ReadFault> {
+/// Reads a picture file's bytes. What is not a picture is not read to its end, which some devices don't have.
+fn read_bytes(path: &Path, megapixels: u32, bytes: &mut Vec<u8>) -> Result<(), ReadFault> {
     // 16 bits of four channels, as they are.
     let most = 8 * pixels(megapixels) + METADATA_BYTES;
     let mut file = File::open(path)?;
     let length = file.metadata()?.len();
-    let mut bytes = Vec::new();
-    file.by_ref().take(FIRST_BYTES).read_to_end(&mut bytes)?;
-    match image::guess_format(&bytes) {
+    bytes.clear();
+    file.by_ref().take(FIRST_BYTES).read_to_end(bytes)?;
+    match image::guess_format(bytes) {
         Ok(ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::Tiff | ImageFormat::Bmp) => {}
         _ => return Err(ReadFault::NotAPicture),
     }
     if length <= most {
         bytes.reserve_exact(length as usize);
-        file.take(most - bytes.len() as u64 + 1).read_to_end(&mut bytes)?;
+        file.take(most - bytes.len() as u64 + 1).read_to_end(bytes)?;
     }
-    if length.max(bytes.len() as u64) > most { Err(ReadFault::TooLong { megapixels }) } else { Ok(bytes) }
+    if length.max(bytes.len() as u64) > most { Err(ReadFault::TooLong { megapixels }) } else { Ok(()) }
 }
 
 fn decoder_for(bytes: &[u8]) -> Result<(impl ImageDecoder + '_, ImageFormat), ReadFault> {
@@ -241,6 +275,20 @@ fn decoder_for(bytes: &[u8]) -> Result<(impl ImageDecoder + '_, ImageFormat), Re
         }
         _ => Err(ReadFault::NotAPicture),
     }
+}
+
+/// Decodes samples of 8 bits in `memory`; what no decoder writes is 0, whatever was there before.
+fn eight_bits<P>(decoder: impl ImageDecoder, memory: &mut Vec<u8>) -> Result<Option<ImageBuffer<P, Vec<u8>>>, ReadFault>
+where
+    P: Pixel<Subpixel = u8>,
+{
+    let (width, height) = decoder.dimensions();
+    let bytes = usize::try_from(decoder.total_bytes()).unwrap_or(usize::MAX);
+    memory.clear();
+    memory.try_reserve_exact(bytes).map_err(image::ImageError::from)?;
+    memory.resize(bytes, 0);
+    decoder.read_image(memory)?;
+    Ok(ImageBuffer::from_raw(width, height, std::mem::take(memory)))
 }
 
 fn is_supported(color: ColorType) -> bool {

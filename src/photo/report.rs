@@ -1,25 +1,32 @@
-//! What a run says of itself: `run.json` for scripts, `report.html` for a colleague.
+//! What a run reports: `run.json` for scripts, `report.html` for a colleague.
+//!
+//! Warnings are what a person may have to act on; notes are what is good to know, one line for each kind.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::Duration;
 
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::job::{PhotosOptions, PhotosResult};
-use super::nail_row::NailRow;
-use super::partial::Partials;
+use super::options::{Outputs, PhotosOptions, Results};
+use super::outline::SavedOutlines;
 use super::read::MOST_MEGAPIXELS;
-use super::results::{NAIL_COLUMNS, nail_cells, sheet_names};
-use super::set::{PhotoSet, SetFault};
-use crate::figure::{Page, Sheet, Tile};
+use super::results::{DrawnSheet, NAIL_COLUMNS, NailRow, NailTable};
+use super::set::{Photo, PhotoSet, SetFault};
+use super::sums::{Partials, Sums};
+use crate::figure::Page;
 use crate::files::{Staging, WriteError};
 use crate::stages::Stage;
+
+/// Where the report goes among the results.
+const JSON: &str = "run.json";
+const HTML: &str = "report.html";
 
 /// One run of `photos` or `photos merge`, as `run.json` and `--json` show it. Times differ from run to run; all else is
 /// the same for the same input and options.
 #[derive(Debug, Clone, Serialize)]
-pub struct RunReport {
+pub struct PhotosReport {
     /// `photos` or `photos merge`.
     pub job: &'static str,
     /// Of lunula.
@@ -34,8 +41,10 @@ pub struct RunReport {
     pub poses: Vec<PoseCount>,
     /// What failed, with its place.
     pub failed: Vec<SetFault>,
-    /// What a reader of the maps should know.
+    /// What a person may have to act on.
     pub warnings: Vec<String>,
+    /// What is good to know, a line for each kind.
+    pub notes: Vec<String>,
     /// What the scene did not need.
     pub left_out: Vec<String>,
     /// Time by stage, summed over threads.
@@ -44,6 +53,12 @@ pub struct RunReport {
     pub wall_s: f64,
     /// Threads that worked.
     pub threads: usize,
+    /// Every nail, used or not, in the set's order; of merged parts none.
+    #[serde(skip)]
+    pub nails: Vec<NailRow>,
+    /// The LabelMe files of detected outlines, where they were to be saved.
+    #[serde(skip)]
+    pub outlines: Option<SavedOutlines>,
 }
 
 /// How many subjects a pose's maps hold.
@@ -55,108 +70,227 @@ pub struct PoseCount {
     pub subjects: usize,
 }
 
-fn pose_counts(partials: &Partials) -> Vec<PoseCount> {
-    partials
-        .poses
-        .iter()
-        .map(|(pose, sums)| PoseCount { pose: pose.clone(), subjects: sums.subjects().len() })
-        .collect()
+/// How many subjects each pose's maps hold.
+pub(super) fn pose_counts(partials: &Partials) -> Vec<PoseCount> {
+    let count = |(pose, sums): (&String, &Sums)| PoseCount { pose: pose.clone(), subjects: sums.subjects().len() };
+    partials.poses.iter().map(count).collect()
 }
 
-impl RunReport {
-    /// Of `lunula photos`.
-    pub fn of_photos(set: &PhotoSet, options: &PhotosOptions, result: &PhotosResult, wall: Duration) -> Self {
-        let outlines = &options.outlines;
-        let mut gave: Vec<usize> = result.rows.iter().filter(|r| r.normalized.is_some()).map(|r| r.photo).collect();
-        gave.dedup();
+/// The poses whose maps have no standard deviation, as one note.
+pub(super) fn one_subject(poses: &[PoseCount]) -> Option<String> {
+    let alone: Vec<&str> = poses.iter().filter(|pose| pose.subjects == 1).map(|pose| pose.pose.as_str()).collect();
+    match alone[..] {
+        [] => None,
+        [pose] => Some(format!("pose `{pose}`: one subject, so no standard deviation (it needs two)")),
+        [first, .., last] => Some(format!(
+            "{} poses (`{first}` to `{last}`): one subject, so no standard deviation (it needs two)",
+            alone.len()
+        )),
+    }
+}
+
+/// What a run found, photograph by photograph, before it is a report.
+pub(super) struct Findings<'a> {
+    set: &'a PhotoSet,
+    options: &'a PhotosOptions,
+    has_maps: bool,
+    /// Every nail, used or not, in the set's order.
+    pub(super) rows: Vec<NailRow>,
+    /// Photographs that gave nothing, and entries of the set that could not be used.
+    pub(super) failed: Vec<SetFault>,
+    /// What the scene did not need.
+    pub(super) left_out: Vec<String>,
+    /// Detected outlines, where they were to be saved.
+    pub(super) outlines: Option<SavedOutlines>,
+    /// Colour and grey photographs by pose.
+    colours: BTreeMap<&'a str, [usize; 2]>,
+    /// How many photographs of 16 bits, and their largest sample.
+    sixteen: (usize, u16),
+    without_maps: Vec<String>,
+}
+
+impl<'a> Findings<'a> {
+    pub(super) fn new(set: &'a PhotoSet, options: &'a PhotosOptions, outputs: &Outputs) -> Self {
         Self {
-            job: "photos",
-            version: env!("CARGO_PKG_VERSION"),
+            set,
+            options,
+            has_maps: outputs.results == Results::Maps,
+            rows: Vec::new(),
+            failed: set.faults.clone(),
+            left_out: Vec::new(),
+            outlines: None,
+            colours: BTreeMap::new(),
+            sixteen: (0, 0),
+            without_maps: Vec::new(),
+        }
+    }
+
+    /// A photograph: whether it is grey, and its largest sample of 16 bits.
+    pub(super) fn add(&mut self, photo: &'a Photo, grey: Option<bool>, largest: Option<u16>) {
+        if let Some(grey) = grey {
+            self.colours.entry(&photo.pose).or_default()[usize::from(grey)] += 1;
+        }
+        if let Some(largest) = largest {
+            self.sixteen = (self.sixteen.0 + 1, self.sixteen.1.max(largest));
+        }
+    }
+
+    pub(super) fn poses_without_maps(&mut self, poses: impl Iterator<Item = String>) {
+        self.without_maps.extend(poses);
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        let without =
+            self.without_maps.iter().map(|pose| format!("pose `{pose}`: no nail could be used, so it has no maps"));
+        self.mixed_poses().chain(self.few_bits()).chain(without).collect()
+    }
+
+    /// Grey values are comparable with a colour photograph's green channel only if a green filter was used.
+    fn mixed_poses(&self) -> impl Iterator<Item = String> {
+        let mixed = self.colours.iter().filter(|(_, [colour, grey])| *colour > 0 && *grey > 0);
+        mixed.map(|(pose, [colour, grey])| {
+            format!(
+                "pose `{pose}` mixes {colour} colour and {grey} grey photograph(s): grey values equal the green \
+                 channel only where a green filter was used; else make maps of each kind apart"
+            )
+        })
+    }
+
+    /// Photographs of 16 bits, of which none uses more than a quarter of full scale: values are a fraction of what they
+    /// should be.
+    fn few_bits(&self) -> Option<String> {
+        let (count, largest) = self.sixteen;
+        let white_of = |bits: u32| (1_u32 << bits) - 1;
+        let bits = FEW_BITS.into_iter().find(|bits| u32::from(largest) <= white_of(*bits))?;
+        (self.options.normalization.white.is_none() && largest > 0).then(|| {
+            format!(
+                "the largest sample of the {count} photograph(s) of 16 bits is {largest} of 65535, as of {bits} bits \
+                 kept in 16: if they are, --white {} makes that full scale",
+                white_of(bits)
+            )
+        })
+    }
+}
+
+/// Bits that scientific cameras keep in 16; a set whose largest sample has no more is noted.
+const FEW_BITS: [u32; 4] = [8, 10, 12, 14];
+
+impl PhotosReport {
+    /// Of `lunula photos`.
+    pub(super) fn of_photos(found: Findings<'_>, partials: &Partials, stages: Vec<Stage>, wall: Duration) -> Self {
+        let (warnings, poses) = (found.warnings(), pose_counts(partials));
+        let Findings { set, options, has_maps, rows, failed, left_out, outlines, .. } = found;
+        let mut notes: Vec<String> = outlines.iter().flat_map(SavedOutlines::notes).collect();
+        notes.extend(one_subject(&poses).filter(|_| has_maps));
+        let used = || rows.iter().filter(|row| row.normalized.is_some());
+        let mut photographs: Vec<usize> = used().map(|row| row.photo).collect();
+        photographs.dedup();
+        let from = &options.outlines;
+        Self {
             inputs: vec![set.folder.clone()],
             options: json!({
                 "normalization": options.normalization,
-                "outline": outlines.sources,
-                "masks": outlines.masks,
-                "mask_value": outlines.mask_values,
-                "distal": outlines.distal,
-                "annotations": outlines.drawn,
+                "outline": from.sources,
+                "masks": from.masks,
+                "mask_value": from.mask_values,
+                "distal": from.distal,
+                "annotations": from.drawn,
                 "max_megapixels": options.max_megapixels.unwrap_or(MOST_MEGAPIXELS),
             }),
             counts: json!({
                 "photographs": set.photos.len(),
-                "photographs_used": gave.len(),
-                "nails": result.rows.len(),
-                "nails_used": result.rows.iter().filter(|r| r.normalized.is_some()).count(),
+                "photographs_used": photographs.len(),
+                "nails": rows.len(),
+                "nails_used": used().count(),
             }),
-            poses: pose_counts(&result.partials),
-            failed: result.failed.clone(),
-            warnings: result.warnings.clone(),
-            left_out: result.left_out.clone(),
-            stages: result.stages.list(),
-            wall_s: wall.as_secs_f64(),
-            threads: rayon::current_num_threads(),
+            poses,
+            failed,
+            warnings,
+            notes,
+            left_out,
+            outlines,
+            nails: rows,
+            ..Self::empty("photos", stages, wall)
         }
     }
 
     /// Of `lunula photos merge`.
-    pub fn of_merge(
-        parts: &[PathBuf],
-        partials: &Partials,
-        warnings: Vec<String>,
-        stages: Vec<Stage>,
-        wall: Duration,
-    ) -> Self {
+    pub(super) fn of_merge(parts: &[PathBuf], partials: &Partials, stages: Vec<Stage>, wall: Duration) -> Self {
+        let poses = pose_counts(partials);
         Self {
-            job: "photos merge",
-            version: env!("CARGO_PKG_VERSION"),
             inputs: parts.to_vec(),
             options: json!({ "normalization": partials.normalization }),
             counts: json!({ "parts": parts.len() }),
-            poses: pose_counts(partials),
-            failed: Vec::new(),
-            warnings,
+            notes: one_subject(&poses).into_iter().collect(),
+            poses,
             left_out: vec!["photographs: not read again, their sums are joined".into()],
-            stages,
-            wall_s: wall.as_secs_f64(),
-            threads: rayon::current_num_threads(),
+            ..Self::empty("photos merge", stages, wall)
         }
     }
 
-    /// Writes `run.json`.
-    ///
-    /// # Errors
-    /// [`WriteError`].
-    pub fn write_json(&self, staging: &Staging) -> Result<(), WriteError> {
-        let text = serde_json::to_string_pretty(self).map_err(|why| staging.refused("run.json", why))?;
-        staging.write("run.json", (text + "\n").as_bytes())
+    fn empty(job: &'static str, stages: Vec<Stage>, wall: Duration) -> Self {
+        Self {
+            job,
+            version: env!("CARGO_PKG_VERSION"),
+            inputs: Vec::new(),
+            options: Value::Null,
+            counts: Value::Null,
+            poses: Vec::new(),
+            failed: Vec::new(),
+            warnings: Vec::new(),
+            notes: Vec::new(),
+            left_out: Vec::new(),
+            stages,
+            wall_s: wall.as_secs_f64(),
+            threads: rayon::current_num_threads(),
+            nails: Vec::new(),
+            outlines: None,
+        }
     }
 
-    /// Writes `report.html` and the sheets of all nails on it: sheets, nails, what was left out and why, times. Nothing
-    /// is loaded from elsewhere.
+    /// Writes `run.json` and `report.html`, all else of the results being written already. An earlier run's results in the same folder
+    /// are not deleted, but nobody should take them for this run's: they become a warning.
     ///
     /// # Errors
     /// [`WriteError`].
-    pub fn write_html(&self, nails: &NailTable, staging: &Staging) -> Result<(), WriteError> {
-        let refused = |why: image::ImageError| staging.refused("report.html", why);
+    pub(super) fn write(
+        &mut self,
+        nails: &NailTable,
+        sheets: &[DrawnSheet],
+        nail_sheets: &[DrawnSheet],
+        staging: &Staging,
+    ) -> Result<(), WriteError> {
+        if let [first, others @ ..] = &staging.left_from_earlier()[..] {
+            let also = if others.is_empty() { String::new() } else { format!(" and {} more", others.len()) };
+            let folder = staging.target().display();
+            self.warnings.push(format!("{first}{also} in {folder} existed before and are not of this run"));
+        }
+        staging.write(HTML, self.html(nails, sheets, nail_sheets).as_bytes())?;
+        let text = serde_json::to_string_pretty(self).map_err(|why| staging.refused(JSON, why))?;
+        staging.write(JSON, (text + "\n").as_bytes())
+    }
+
+    /// A page of sheets, nails, what was left out and why, times. Nothing is loaded from elsewhere.
+    fn html(&self, nails: &NailTable, sheets: &[DrawnSheet], nail_sheets: &[DrawnSheet]) -> String {
         let mut page = Page::new("Fingernail coloration");
         let poses: Vec<String> = self.poses.iter().map(|p| format!("{} (n = {})", p.pose, p.subjects)).collect();
         page.paragraph(&format!("lunula {} {}, {}", self.version, self.job, list_paths(&self.inputs)));
         page.paragraph(&format!("Poses and subjects: {}.", poses.join(", ")));
         page.list(&self.warnings);
-        for (name, title) in sheet_names() {
-            page.heading(title);
-            page.png(&staging.read(&format!("figures/{name}.png"))?, title);
+        page.list(&self.notes);
+        for sheet in sheets {
+            page.heading(&sheet.title);
+            page.png(&sheet.png, &sheet.title);
         }
-        if !nails.sheets.is_empty() {
+        if !nail_sheets.is_empty() {
             page.heading("Every nail, distal end up");
         }
-        for (number, sheet) in (1..).zip(&nails.sheets) {
-            let png = sheet.png().map_err(refused)?;
-            page.png(&png, &sheet.title);
-            staging.write(&format!("figures/nails-{number}.png"), &png)?;
+        for sheet in nail_sheets {
+            page.png(&sheet.png, &sheet.title);
         }
-        page.heading(&format!("Nails: {} listed, {} used", nails.rows.len(), nails.rows.len() - nails.left_out()));
-        page.table(&NAIL_COLUMNS, &nails.rows, |row| nails.rows[row][USED] != "true");
+        let used = (0..nails.rows.len()).filter(|&row| nails.is_used(row)).count();
+        page.heading(&format!("Nails: {} listed, {used} used", nails.rows.len()));
+        page.table(&NAIL_COLUMNS, &nails.rows, |row| !nails.is_used(row));
         if !self.failed.is_empty() {
             page.heading("Photographs that gave nothing");
             let rows: Vec<Vec<String>> = self.failed.iter().map(|f| vec![f.place.clone(), f.what.clone()]).collect();
@@ -166,14 +300,11 @@ impl RunReport {
         page.list(&self.left_out);
         page.heading("Time");
         let total: f64 = self.stages.iter().map(|s| s.thread_s).sum();
-        let rows: Vec<Vec<String>> = self
-            .stages
-            .iter()
-            .map(|s| {
-                let share = if total > 0.0 { 100.0 * s.thread_s / total } else { 0.0 };
-                vec![s.stage.to_string(), format!("{:.3}", s.thread_s), format!("{share:.0} %"), s.runs.to_string()]
-            })
-            .collect();
+        let share = |s: &Stage| if total > 0.0 { 100.0 * s.thread_s / total } else { 0.0 };
+        let row = |s: &Stage| {
+            vec![s.stage.to_string(), format!("{:.3}", s.thread_s), format!("{:.0} %", share(s)), s.runs.to_string()]
+        };
+        let rows: Vec<Vec<String>> = self.stages.iter().map(row).collect();
         page.table(&["stage", "s, summed over threads", "share", "runs"], &rows, |_| false);
         page.paragraph(&format!(
             "{:.2} s from start to end on {} thread(s), this page not counted.",
@@ -181,61 +312,7 @@ impl RunReport {
         ));
         page.heading("Options");
         page.paragraph(&self.options.to_string());
-        staging.write("report.html", page.finish().as_bytes())
-    }
-}
-
-const USED: usize = 11;
-/// Nails a sheet of thumbnails.
-const NAILS_A_SHEET: usize = 130;
-const NAILS_A_ROW: usize = 13;
-
-/// The nails of a report: table and thumbnails.
-#[derive(Debug, Clone, Default)]
-pub struct NailTable {
-    rows: Vec<Vec<String>>,
-    sheets: Vec<Sheet>,
-}
-
-impl NailTable {
-    /// From a run's rows.
-    pub fn of(rows: &[NailRow], set: &PhotoSet) -> Self {
-        let tiles: Vec<Tile> = rows
-            .iter()
-            .filter_map(|row| {
-                let photo = &set.photos[row.photo];
-                let caption = format!("{}: {}", row.number, photo.subject);
-                Some(Tile { caption, picture: row.thumbnail.clone()?, png: None })
-            })
-            .collect();
-        let sheets = tiles
-            .chunks(NAILS_A_SHEET)
-            .enumerate()
-            .map(|(k, tiles)| Sheet {
-                title: format!("Normalized nails, sheet {}", k + 1),
-                tiles: tiles.to_vec(),
-                columns: NAILS_A_ROW,
-                scale: None,
-            })
-            .collect();
-        Self { rows: rows.iter().map(|row| nail_cells(row, set).to_vec()).collect(), sheets }
-    }
-
-    /// From the tables of merged parts, in the order that one run would have given: by pose, subject, file, nail.
-    pub fn of_parts(mut rows: Vec<Vec<String>>) -> Self {
-        let key =
-            |row: &Vec<String>| (row[3].clone(), row[2].clone(), row[0].clone(), row[1].parse::<u32>().unwrap_or(0));
-        rows.sort_by_key(key);
-        Self { rows, sheets: Vec::new() }
-    }
-
-    /// The cells, row by row.
-    pub fn rows(&self) -> &[Vec<String>] {
-        &self.rows
-    }
-
-    fn left_out(&self) -> usize {
-        self.rows.iter().filter(|row| row[USED] != "true").count()
+        page.finish()
     }
 }
 

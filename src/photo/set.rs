@@ -3,7 +3,7 @@
 //! In: `SET/<pose>/<subject>.<png|jpg|tif|bmp>`, or a flat folder (one pose, named after it), or a folder with
 //! `photos.csv` (`file,subject,pose` and optionally `outline`, paths relative to it). Out: a [`PhotoSet`], its
 //! photographs sorted by pose, subject and file, and the [`SetFault`]s: entries that cannot be used, each with its
-//! place; the others go on. A subject counts once a pose, so a pose's doubled subjects are all left out.
+//! place; the others go on. A subject counts once per pose, so subjects that a pose has twice are all left out.
 
 use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
@@ -233,7 +233,7 @@ impl PhotoSet {
         Ok(())
     }
 
-    /// A subject counts once a pose: none of several is better than the others.
+    /// A subject counts once per pose: none of several is better than the others.
     fn leave_out_doubles(&mut self) {
         let mut by_key: BTreeMap<(String, String), Vec<Photo>> = BTreeMap::new();
         let mut by_file: BTreeMap<(String, PathBuf), usize> = BTreeMap::new();
@@ -304,7 +304,7 @@ fn row_fault(folder: &Path, file: &str, subject: &str, pose: &str) -> Option<Str
     (!folder.join(file).is_file()).then(|| format!("{file} does not exist beside photos.csv"))
 }
 
-const NO_PICTURE: &str = "is no photograph that is read; export it as PNG, TIFF, BMP or JPEG";
+const NO_PICTURE: &str = "is not a photograph that lunula reads; export it as PNG, TIFF, BMP or JPEG";
 
 /// Bytes of a subject or pose: file systems take names of 255, and results add to it.
 const LONGEST_NAME: usize = 200;

@@ -10,20 +10,12 @@
 //! (0, 0), x to the right, y down. Angles are in radians, positive in flexion.
 
 mod angle;
+mod draw;
 mod error;
-mod figures;
-mod filmed_clock;
-mod find;
-mod job;
-mod kind;
 mod layout;
 mod marker;
-mod naming;
 mod options;
-mod overlay;
-mod plan;
-mod report;
-mod results;
+mod run;
 #[cfg(test)]
 mod stage;
 mod suggest;
@@ -34,16 +26,16 @@ pub use angle::joints::{Angle, AngleRow, Angles};
 pub use angle::lens::{Lens, Undistorted};
 pub use angle::smooth::{SmoothModel, Smoothed, smooth};
 pub use angle::view::{Spot, View};
+pub use draw::figures::{AngleFigures, CouplingLine};
 pub use error::PostureError;
-pub use figures::{AngleFigures, CouplingLine};
-pub use filmed_clock::{ClockReport, ClockTieReport};
-pub use job::{run, suggest};
-pub use kind::PostureJob;
 pub use layout::{Camera, Joint, Layout, LayoutError, LayoutFault, Marker, MarkerShape, Segment};
 pub use marker::method::{Method, Planes, Search};
 pub use marker::sight::{Centre, Loss, Sight};
 pub use options::{Outputs, PostureOptions};
-pub use plan::plan;
-pub use report::{
+pub use run::filmed_clock::{ClockReport, ClockTieReport};
+pub use run::job::{run, suggest};
+pub use run::kind::PostureJob;
+pub use run::plan::plan;
+pub use run::report::{
     CouplingReport, FrameCounts, JointReport, MarkerReport, PostureFigures, PostureReport, SearchReport, VideoReport,
 };

@@ -6,26 +6,15 @@
 //! [`train()`], [`evaluate()`], [`predict()`] (and [`predict_stream`]), [`analyse()`], [`prune()`], [`compare()`],
 //! [`trajectory::run`].
 
-mod analyse;
-mod answer;
-mod choices;
-mod compare;
 mod data;
 mod error;
-mod evaluate;
 mod figures;
-mod figures_of_merit;
-mod kinds;
-mod learning;
-mod merit_table;
+mod jobs;
+mod merit;
 mod options;
 mod outputs;
-mod predict;
-mod prune;
-mod target;
 #[cfg(test)]
 mod tests;
-mod train;
 pub mod trajectory;
 
 use std::path::PathBuf;
@@ -34,27 +23,37 @@ use std::path::PathBuf;
 pub use lunula_predictor as models;
 use lunula_predictor::{Dataset, Predictor, recording_hashes};
 
-pub use analyse::{AnalyseFigures, AnalyseReport, ModelMode, ModelModes, Printed, analyse, analyse_plan};
-pub use answer::Answering;
-pub use choices::{ByChoice, F_MIN_N, FOLDS, HIDDEN, LEVEL, ModelChoice, share};
-pub use compare::{CompareFigures, CompareOptions, CompareReport, Comparison, Person, Spread, compare, compare_plan};
+pub use crate::predictor::jobs::analyse::{
+    AnalyseFigures, AnalyseReport, ModelMode, ModelModes, Printed, analyse, analyse_plan,
+};
+pub use crate::predictor::jobs::answer::Answering;
+pub use crate::predictor::jobs::compare::{
+    CompareFigures, CompareOptions, CompareReport, Comparison, Person, Spread, compare, compare_plan,
+};
+pub use crate::predictor::jobs::evaluate::{
+    BinMerit, EvaluateFigures, EvaluateOptions, EvaluateReport, HeldOut, Magnitudes, Part, RecordingMerit, evaluate,
+    evaluate_plan,
+};
+pub use crate::predictor::jobs::kinds::{AnalyseJob, CompareJob, EvaluateJob, PredictJob, PruneJob, TrainJob};
+pub use crate::predictor::jobs::predict::{
+    PredictFigures, PredictOptions, PredictReport, predict, predict_plan, predict_stream,
+};
+pub use crate::predictor::jobs::prune::{PruneFigures, PruneReport, PruneRow, prune, prune_plan};
+pub use crate::predictor::jobs::train::{
+    TrainFigures, TrainInputs, TrainOptions, TrainOutputs, TrainReport, Without, train, train_plan,
+};
+pub use crate::predictor::merit::figures::{ByTarget, Merit};
+pub use crate::predictor::options::choices::{ByChoice, F_MIN_N, FOLDS, HIDDEN, LEVEL, ModelChoice, share};
+pub use crate::predictor::options::commands::{
+    CompareChoices, EvaluateChoices, NetworkOptions, PredictChoices, PruneChoices, TrainChoices,
+};
+pub use crate::predictor::options::target::{POSTURE, Target};
 pub use data::{
     DataError, DataFile, FailedFile, FileRows, Inputs, Read, Row, RowOptions, RowStream, Wanted, read_data, read_files,
     read_inputs,
 };
 pub use error::PredictorError;
-pub use evaluate::{
-    BinMerit, EvaluateFigures, EvaluateOptions, EvaluateReport, HeldOut, Magnitudes, Part, RecordingMerit, evaluate,
-    evaluate_plan,
-};
-pub use figures_of_merit::{ByTarget, Merit};
-pub use kinds::{AnalyseJob, CompareJob, EvaluateJob, PredictJob, PruneJob, TrainJob};
-pub use options::{CompareChoices, EvaluateChoices, NetworkOptions, PredictChoices, PruneChoices, TrainChoices};
 pub use outputs::FolderOutputs;
-pub use predict::{PredictFigures, PredictOptions, PredictReport, predict, predict_plan, predict_stream};
-pub use prune::{PruneFigures, PruneReport, PruneRow, prune, prune_plan};
-pub use target::{POSTURE, Target};
-pub use train::{TrainFigures, TrainInputs, TrainOptions, TrainOutputs, TrainReport, Without, train, train_plan};
 
 /// Model files, read.
 struct OpenedModels {

@@ -1,15 +1,12 @@
 //! What the jobs refuse or warn of, on small recordings.
 
-use crate::log::LogReading;
+use crate::job::Watch;
 use std::fmt::Write as _;
 use std::path::PathBuf;
-use std::sync::atomic::AtomicBool;
 
 use lunula_predictor::{By, Gate, Kind, Recipe};
 
 use super::*;
-
-static RUN: AtomicBool = AtomicBool::new(false);
 
 struct Folder(tempfile::TempDir);
 
@@ -45,7 +42,7 @@ impl Folder {
         let model = self.path(&format!("{target}.json"));
         let outputs = TrainOutputs { model: model.clone(), learning_curve: None, merit: None };
         let options = TrainOptions { wanted, recipe, level: 0.9 };
-        let report = train(inputs, &options, &outputs, &RUN).map_err(|why| why.to_string())?;
+        let report = train(inputs, &options, &outputs, &Watch::nobody()).map_err(|why| why.to_string())?;
         Ok((model, report))
     }
 }
@@ -79,7 +76,7 @@ fn a_recording_under_two_names_is_told() {
     let (model, report) = folder.train(&inputs(&[&a, &copy], &[], &[]), "force", linear()).unwrap();
     assert!(report.warnings.iter().any(|w| w.contains("copy.csv holds the rows of")), "{:?}", report.warnings);
     let options = EvaluateOptions { by: Some(By::Trajectory), ..EvaluateOptions::default() };
-    let found = evaluate(&model, &DataFile::of(&[a, copy, b]), &options, None, &RUN).unwrap();
+    let found = evaluate(&model, &DataFile::of(&[a, copy, b]), &options, None, &Watch::nobody()).unwrap();
     let told = |words: &str| found.warnings.iter().any(|warning| warning.contains(words));
     assert!(told("120 of 180 rows stand in other parts as well"), "{:?}", found.warnings);
 }
@@ -91,13 +88,13 @@ fn predictions_beyond_a_number_are_no_success() {
     let (model, report) = folder.train(&inputs(&[&a], &[&huge], &[]), "force", linear()).unwrap();
     assert!(report.warnings.iter().any(|w| w.contains("beyond 1e308")), "{:?}", report.warnings);
     let options = EvaluateOptions::default();
-    let said = evaluate(&model, &[huge.into()], &options, None, &RUN).unwrap_err().to_string();
+    let said = evaluate(&model, &[huge.into()], &options, None, &Watch::nobody()).unwrap_err().to_string();
     assert!(said.contains("of 60 of 60 rows is beyond 1e308"), "{said}");
 }
 
 fn options() -> PredictOptions {
     let gate = Gate::new(0.5, 0.0, 0.0).unwrap();
-    PredictOptions { gate, intervals: true, drop_invalid: false, keep_faults: false, log: LogReading::default() }
+    PredictOptions { gate, intervals: true, rows: RowOptions::default() }
 }
 
 #[test]
@@ -107,11 +104,13 @@ fn lags_without_times_are_refused() {
     let recipe = Recipe { lags_s: vec![0.1], ..linear() };
     let c = folder.file("c.csv", 0.9, 1.0, true);
     let (model, _) = folder.train(&inputs(&[&a], &[&c], &[]), "force", recipe).unwrap();
-    let said =
-        predict(std::slice::from_ref(&model), &b, &options(), &folder.path("p.csv"), &RUN).unwrap_err().to_string();
+    let said = predict(std::slice::from_ref(&model), &b, &options(), &folder.path("p.csv"), &Watch::nobody())
+        .unwrap_err()
+        .to_string();
     assert!(said.contains("b.csv: has no time_s"), "{said}");
     let text = std::fs::read(&b).unwrap();
-    let said = predict_stream(&[model], &text[..], &options(), Vec::new(), |_| (), &RUN).unwrap_err().to_string();
+    let said =
+        predict_stream(&[model], &text[..], &options(), Vec::new(), |_| (), &Watch::nobody()).unwrap_err().to_string();
     assert!(said.contains("standard input: has no time_s"), "{said}");
 }
 
@@ -122,7 +121,7 @@ fn an_angle_that_the_gate_rules_has_no_interval() {
     let models =
         ["force", "posture"].map(|target| folder.train(&inputs(&[&a], &[&b], &[]), target, linear()).unwrap().0);
     let mut out = Vec::new();
-    predict_stream(&models, &std::fs::read(&b).unwrap()[..], &options(), &mut out, |_| (), &RUN).unwrap();
+    predict_stream(&models, &std::fs::read(&b).unwrap()[..], &options(), &mut out, |_| (), &Watch::nobody()).unwrap();
     let text = String::from_utf8(out).unwrap();
     let rows: Vec<Vec<&str>> = text.lines().skip(1).map(|line| line.split(',').collect()).collect();
     let mut seen = [0, 0];
@@ -133,6 +132,6 @@ fn an_angle_that_the_gate_rules_has_no_interval() {
         seen[usize::from(touches)] += 1;
     }
     assert!(seen[0] > 5 && seen[1] > 5, "{seen:?}");
-    predict(&models, &b, &options(), &folder.path("p.csv"), &RUN).unwrap();
+    predict(&models, &b, &options(), &folder.path("p.csv"), &Watch::nobody()).unwrap();
     assert_eq!(std::fs::read_to_string(folder.path("p.csv")).unwrap(), text);
 }

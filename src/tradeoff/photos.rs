@@ -12,11 +12,10 @@ use rayon::prelude::*;
 use super::peers::{PeerReport, Python, Script};
 use super::rows::{Measured, Row};
 use super::timing::{Effort, Run, Timing, in_turns};
-use crate::files::Staging;
 use crate::npy;
 use crate::photo::outline::{Axis, DetectOptions, Drawn, Outline, OutlineOptions, Sources, detect, read_annotated};
 use crate::photo::{
-    NailFrame, Normalization, Photo, PhotoSet, Photograph, PhotosOptions, Resample, Watch, run as run_photos,
+    NailFrame, Normalization, Outputs, Photo, PhotoSet, Photograph, PhotosOptions, Resample, Watch, run as run_photos,
 };
 
 /// How values between pixels are told.
@@ -250,16 +249,14 @@ fn resampled(scene: &Scene, resample: Resample, first: bool) -> Run<Errors> {
     let outlines = OutlineOptions { sources: Sources::Annotated, ..OutlineOptions::default() };
     let options = PhotosOptions { normalization, outlines, ..PhotosOptions::default() };
     let out = tempfile::tempdir()?;
-    let staging = Staging::new(out.path())?;
-    let result = run_photos(&scene.set, &options, &staging, &Watch { stop: &AtomicBool::new(false), tick: &|| {} })?;
-    let stages = result.stages.list();
-    let stage = stages.iter().find(|s| s.stage == "normalize").context("nothing was normalized")?;
+    let watch = Watch { stop: &AtomicBool::new(false), tick: &|| {} };
+    let report = run_photos(&scene.set, &options, &Outputs::maps(out.path()), &watch)?;
+    let stage = report.stages.iter().find(|s| s.stage == "normalize").context("nothing was normalized")?;
     let seconds = stage.thread_s / stage.runs as f64;
     if !first {
         return Ok((seconds, None));
     }
-    staging.commit()?;
-    let named = result.rows.iter().filter_map(|row| Some((row.photo, row.normalized.clone()?)));
+    let named = report.nails.iter().filter_map(|row| Some((row.photo, row.normalized.clone()?)));
     Ok((seconds, Some(errors(scene, out.path(), named)?)))
 }
 

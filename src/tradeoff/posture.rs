@@ -93,8 +93,8 @@ fn ours(method: Method, first: bool, layout: &Layout, truth: &Angles, settings: 
     let folder = tempfile::tempdir()?;
     let joints = folder.path().join("joints.csv");
     let outputs = Outputs { joints: joints.clone(), tracks: None, overlay: None, figures: false, report: false };
-    let run = |watch: &Watch<'_>| run_posture(&settings.video, layout, &options, &outputs, watch);
-    let report = Watch::stopped_by(&settings.effort.stop, run)?;
+    let watch = Watch::stopped_by(&settings.effort.stop);
+    let report = run_posture(&settings.video, layout, &options, &outputs, &watch)?;
     let track: f64 = report.stages.iter().filter(|s| s.stage == "track").map(|s| s.thread_s).sum();
     let seconds = track / report.frames.all as f64;
     let samples = (report.video.shown_px[0] * report.video.shown_px[1]) as f64;

@@ -8,13 +8,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use lunula::align::Posture;
-use lunula::log::{AmbientOptions, Columns, Log, LogReading, samples};
+use lunula::job::{Keys, Made, Maker, Work};
+use lunula::log::{AmbientOptions, Columns, Log, samples};
 use lunula::photo::outline::{self, Axis, Drawn, find_axes, outlines_from_mask};
 use lunula::photo::{NailFrame, Normalization, Photograph, Resample, join, normalize};
-use lunula::pipeline::{Job, Keys, Made, Parts, PipelineMark, Share, Spec, Task, Work};
+use lunula::pipeline::{Parts, PipelineMark, Share, Spec, Task};
 use lunula::pipeline::{kinds, phantom_catalogue, survey};
 use lunula::posture::{Layout, Lens};
-use lunula::predictor::{Answering, RowStream};
+use lunula::predictor::{Answering, RowOptions, RowStream};
 use lunula::table::Table;
 use lunula_hemodynamics::{Collapse, Model, Parameters};
 use lunula_predictor::{Gate, Predictor};
@@ -93,7 +94,7 @@ impl Desk {
 /// Writes one file.
 struct Toy;
 
-impl Job for Toy {
+impl Maker for Toy {
     fn run(&self, work: &Work<'_>) -> anyhow::Result<Made> {
         std::fs::write(work.folder.join("a"), "a")?;
         Ok(Made::default())
@@ -214,7 +215,11 @@ fn answer(predictor: Predictor, bytes: &[u8]) {
         let Ok(mut answering) = Answering::new(vec![predictor.clone()], gate, intervals) else { continue };
         let inputs = answering.inputs().to_vec();
         let (mut volts, mut out) = (vec![f64::NAN; inputs.len()], vec![f64::NAN; answering.columns().len()]);
-        let Ok(mut rows) = RowStream::new(bytes, "fuzz", &inputs, intervals, &LogReading::default()) else { continue };
+        let Ok(mut rows) =
+            RowStream::new(bytes, "fuzz", &inputs, &RowOptions { drop_invalid: intervals, ..RowOptions::default() })
+        else {
+            continue;
+        };
         while let Ok(Some(row)) = rows.next_row(&mut volts) {
             answering.answer(row.time_s, row.begins, &volts, &mut out);
         }

@@ -46,7 +46,7 @@ pub(crate) fn run_or_stream(args: &PredictArgs) -> anyhow::Result<Outcome> {
     let options = args.given.options.options()?;
     let note = |note: &str| common.note(&[note.to_owned()]);
     // No row may come for long: whoever interrupts a stream ends it at once, as there is nothing to put in order.
-    Watch::nobody(|watch| predict_stream(models, BufReader::new(stdin().lock()), &options, Stream, note, watch))?;
+    predict_stream(models, BufReader::new(stdin().lock()), &options, Stream, note, &Watch::nobody())?;
     Ok(Outcome::Done)
 }
 

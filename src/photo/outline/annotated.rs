@@ -3,7 +3,7 @@
 //! In: a LabelMe file with polygons labelled `nail` and, optionally for each, a two-point line labelled `axis` from
 //! proximal to distal; lines belong to the nail of their `group_id`, else to the nail that their middle lies in. Out:
 //! outlines and axes in pixels of the *upright* photograph. Some tools draw on the upright picture, some on the stored
-//! one: the file's width and height tell which ([`Drawn`]), and where they can't the file is refused.
+//! one: the file's width and height show which ([`Drawn`]), and where they can't the file is refused.
 
 use std::path::Path;
 
@@ -25,15 +25,15 @@ pub const AXIS: &str = "axis";
 pub const DOUBTFUL: &str = "nail?";
 
 /// Which picture an annotation or a mask was drawn on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Drawn {
-    /// Told by width and height.
+    /// By width and height
     #[default]
     Auto,
-    /// The upright one.
+    /// The upright one
     Upright,
-    /// The stored one, before the EXIF orientation.
+    /// The stored one, before the EXIF orientation
     Stored,
 }
 
@@ -58,7 +58,7 @@ pub enum AnnotationFault {
     },
     /// Upright and stored picture have the same size.
     #[error(
-        "{0}: the photograph's EXIF orientation turns it without changing its size, so it can't be told whether this \
+        "{0}: the photograph's EXIF orientation turns it without changing its size, so its size doesn't show whether this \
          was drawn on the upright or on the stored picture; say --annotations upright or --annotations stored"
     )]
     Turned(String),
@@ -76,7 +76,7 @@ pub struct Annotated {
     pub axis: Option<Axis>,
 }
 
-/// Why one shape is no nail.
+/// Why one shape is not a nail.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum ShapeFault {
     /// Not a polygon.
@@ -130,7 +130,7 @@ impl Drawn {
         let turned = photo.orientation != image::metadata::Orientation::NoTransforms;
         let fits = |expected: [u32; 2]| size.is_none_or(|s| s == expected);
         let (fits_upright, fits_stored) = (fits(upright), fits(stored));
-        let told = match self {
+        let stored = match self {
             Self::Upright => fits_upright.then_some(false),
             Self::Stored => fits_stored.then_some(true),
             Self::Auto if fits_upright && fits_stored && turned => {
@@ -138,7 +138,7 @@ impl Drawn {
             }
             Self::Auto => (fits_upright || fits_stored).then_some(!fits_upright),
         };
-        told.ok_or_else(|| AnnotationFault::OtherSize {
+        stored.ok_or_else(|| AnnotationFault::OtherSize {
             file: file.to_owned(),
             drawn: size.unwrap_or_default(),
             photo: upright,
@@ -230,7 +230,7 @@ pub fn to_file(image_path: &str, size: [u32; 2], nails: &[ToDraw]) -> LabelMe {
         let points = nail.outline.points().iter().map(|p| to_labelme(p.map(|v| (v * 100.0).round() / 100.0))).collect();
         let mut polygon = Shape::new(if nail.trusted { NAIL } else { DOUBTFUL }, "polygon", points);
         polygon.description = Some(format!("detected by lunula, confidence {:.2}", nail.confidence));
-        let line = crate::photo::frame::NailFrame::new(&nail.outline, nail.axis)
+        let line = crate::photo::normalize::NailFrame::new(&nail.outline, nail.axis)
             .map(|f| vec![to_labelme(f.photo_from_nail(0.0, -0.5)), to_labelme(f.photo_from_nail(0.0, 0.5))]);
         let axis = line.map(|points| Shape::new(AXIS, "line", points));
         for mut shape in std::iter::once(polygon).chain(axis) {

@@ -9,7 +9,7 @@
 //!   filled rectangle of pixels x0..=x1 is exactly x1 - x0 + 1 wide. Regions that touch the border end at its pixel
 //!   edges.
 //! - A mask whose largest value is 1 to 32 is read as instance numbers: each number a nail, though they touch.
-//! - A picture in grey is no mask: a mask has two values, and between them the grey of its edges only. [`MaskValues`]
+//! - A picture in grey is not a mask: a mask has two values, and between them the grey of its edges only. [`MaskValues`]
 //!   say which values are nail where a picture has more; outlines then run along pixel edges.
 //! - Anything between is refused: half of full scale would silently lose every nail.
 //!
@@ -21,7 +21,7 @@ use image::{DynamicImage, GrayImage, ImageBuffer, Luma, Pixel, Primitive};
 use imageproc::region_labelling::{Connectivity, connected_components};
 use thiserror::Error;
 
-use super::{Outline, OutlineFault, Shape};
+use super::{Moments, Outline, OutlineFault};
 
 /// The largest value of a mask that is still read as instance numbers.
 const LARGEST_ID: f32 = 32.0;
@@ -46,9 +46,9 @@ const FLAT: f32 = 0.1;
 /// as JPEG; 0.68 to 3.3 in the photographs they belong to, in grey, 0.71 and more with their nails white and all but
 /// skin black.
 const MOST_GREY: f64 = 0.1;
-/// A region above this share of the picture is no nail: in the thesis' close-ups a nail takes up to a third (assumed).
+/// A region above this share of the picture is not a nail: in the thesis' close-ups a nail takes up to a third (assumed).
 const LARGEST_SHARE: f64 = 0.6;
-/// A region this many times as long as the median of a mask's others is no nail; measured on 26 hands: at most 2.4.
+/// A region this many times as long as the median of a mask's others is not a nail; measured on 26 hands: at most 2.4.
 const LONGEST: f64 = 3.0;
 
 /// Which values of a mask are nail, both ends among them, as they are stored.
@@ -83,7 +83,7 @@ impl serde::Serialize for MaskValues {
     }
 }
 
-/// Why a picture is no mask.
+/// Why a picture is not a mask.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum MaskFault {
     /// Neither full-scale nor instance numbers.
@@ -125,7 +125,7 @@ pub enum MaskFault {
     },
 }
 
-/// A region of a mask that is no nail.
+/// A region of a mask that is not a nail.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DroppedRegion {
     /// Centre of its box, `[x_px, y_px]`.
@@ -271,7 +271,7 @@ fn greyness(values: &ImageBuffer<Luma<f32>, Vec<f32>>, largest: f32, full: f32) 
 impl MaskOutlines {
     /// Which of the nails are too large to be any, in their order.
     pub(super) fn too_large(&self, mask_px: f64) -> Vec<Option<TooLarge>> {
-        let lengths: Vec<f64> = self.nails.iter().map(|nail| Shape::of(nail).major_px).collect();
+        let lengths: Vec<f64> = self.nails.iter().map(|nail| Moments::of(nail).major_px).collect();
         let doubt = |(at, nail): (usize, &Outline)| {
             let share = nail.area_px2() / mask_px;
             let mut others: Vec<f64> =
@@ -311,7 +311,7 @@ fn sorted_out(polygons: Vec<Polygon<f64>>) -> MaskOutlines {
         }
     }
     found.nails.sort_by(|a, b| {
-        let ([ax, ay], [bx, by]) = (Shape::of(a).centroid_px, Shape::of(b).centroid_px);
+        let ([ax, ay], [bx, by]) = (Moments::of(a).centroid_px, Moments::of(b).centroid_px);
         ay.total_cmp(&by).then(ax.total_cmp(&bx))
     });
     found

@@ -3,10 +3,9 @@
 mod annotated;
 mod axis;
 mod detect;
-mod finger;
+mod keep;
 mod mask;
-mod patch;
-mod shape;
+mod moments;
 mod source;
 
 pub use crate::nail::{Axis, Outline, OutlineFault};
@@ -15,6 +14,8 @@ pub use annotated::{
 };
 pub use axis::{AxisDoubt, AxisUnknown, FoundAxis, LEAST_CONFIDENCE, Side, axis_towards, find_axes, find_axes_towards};
 pub use detect::{DetectOptions, Detected, Detections, NothingFound, detect};
+pub use keep::SavedOutlines;
+pub(super) use keep::{DetectedOutline, keep_outlines};
 pub use mask::{DroppedRegion, MaskFault, MaskOutlines, MaskValues, TooLarge, outlines_from_mask, outlines_of_values};
-pub use shape::Shape;
-pub use source::{Found, Nail, OutlineOptions, Source, SourceFault, Sources};
+pub use moments::Moments;
+pub use source::{Nail, OutlineOptions, OutlinePlace, Source, SourceFault, Sources};

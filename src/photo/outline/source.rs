@@ -19,34 +19,42 @@ use crate::photo::read::{MOST_MEGAPIXELS, Photograph, ReadFault};
 use crate::photo::set::{PICTURES, Photo, is_picture};
 
 /// Which sources may be asked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Sources {
-    /// All, in order.
+    /// Drawn where there is one, else detected
     #[default]
     Auto,
-    /// Manifest, LabelMe and masks; nothing is detected.
+    /// Only what is drawn: manifest, LabelMe, masks
     Annotated,
-    /// Detection only, whatever is annotated.
+    /// Only detection, whatever is drawn
     Detect,
 }
 
-/// How outlines come about.
-#[derive(Debug, Clone, Default)]
+/// Where outlines come from.
+#[derive(Debug, Clone, Default, clap::Args)]
 pub struct OutlineOptions {
-    /// Which sources may be asked.
+    /// Where outlines may come from
+    #[arg(long = "outline", value_enum, default_value = "auto")]
     pub sources: Sources,
     /// Only what the set lists: nothing is looked for beside photographs.
+    #[arg(skip)]
     pub listed_only: bool,
     /// Masks named as the photographs: `<pose>/<stem>.*` or `<stem>.*`.
+    #[arg(skip)]
     pub masks: Option<PathBuf>,
-    /// Which values of a mask are nail; `None`: a mask has two.
+    /// Which values of masks are nail, as 255 or 250..255, in the mask's own units [default: a mask has two values]
+    #[arg(long = "mask-value", value_name = "VALUES")]
     pub mask_values: Option<MaskValues>,
-    /// Settles the direction of nails without an axis, for the whole set.
+    /// Side of the picture that the distal ends point to, for outlines without an axis [default: found in each picture]
+    #[arg(long, value_enum)]
     pub distal: Option<Side>,
-    /// Which picture annotations and masks were drawn on.
+    /// Whether annotations and masks were drawn on the upright or the stored picture, where EXIF turns it and its size
+    /// doesn't show which
+    #[arg(long = "annotations", value_enum, default_value = "auto")]
     pub drawn: Drawn,
-    /// For detection.
+    /// How nails are looked for where none is drawn.
+    #[command(flatten)]
     pub detect: DetectOptions,
 }
 
@@ -88,7 +96,7 @@ pub struct Nail {
     pub reason: String,
 }
 
-/// Why a photograph's nails can't be told.
+/// Why a photograph has no nails to list.
 #[derive(Debug, Error)]
 pub enum SourceFault {
     /// The LabelMe file.
@@ -127,7 +135,7 @@ pub enum SourceFault {
 
 /// Where a photograph's outlines will come from, known without opening it.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Found {
+pub enum OutlinePlace {
     /// A LabelMe file.
     LabelMe(PathBuf),
     /// A mask.
@@ -135,38 +143,43 @@ pub enum Found {
     /// Nothing drawn: detection.
     Detection,
     /// Nothing drawn, and detection is not wanted.
-    Nothing,
+    Nowhere,
 }
 
 impl OutlineOptions {
     /// The first source that has something for `photo`.
-    pub fn locate(&self, photo: &Photo) -> Found {
+    pub fn locate(&self, photo: &Photo) -> OutlinePlace {
         if self.sources == Sources::Detect {
-            return Found::Detection;
+            return OutlinePlace::Detection;
         }
         if let Some(outline) = &photo.outline {
-            return if is_picture(outline) { Found::Mask(outline.clone()) } else { Found::LabelMe(outline.clone()) };
+            return if is_picture(outline) {
+                OutlinePlace::Mask(outline.clone())
+            } else {
+                OutlinePlace::LabelMe(outline.clone())
+            };
         }
         let beside = photo.path.with_extension("json");
         if beside.is_file() && !self.listed_only {
-            return Found::LabelMe(beside);
+            return OutlinePlace::LabelMe(beside);
         }
         if let Some(mask) = self.masks.as_ref().and_then(|folder| mask_of(folder, photo)) {
-            return Found::Mask(mask);
+            return OutlinePlace::Mask(mask);
         }
-        if self.sources == Sources::Annotated { Found::Nothing } else { Found::Detection }
+        if self.sources == Sources::Annotated { OutlinePlace::Nowhere } else { OutlinePlace::Detection }
     }
 
-    /// The nails of an opened photograph, in the source's order; at least one, used or not.
+    /// The nails of an opened photograph whose outlines come from `place`, in the source's order; at least one, used or
+    /// not.
     ///
     /// # Errors
     /// [`SourceFault`] where there is nothing to list.
-    pub fn nails(&self, photo: &Photo, picture: &Photograph) -> Result<Vec<Nail>, SourceFault> {
-        match self.locate(photo) {
-            Found::LabelMe(file) => self.annotated_nails(&file, picture),
-            Found::Mask(file) => self.mask_nails(&file, picture),
-            Found::Detection => self.detected_nails(picture),
-            Found::Nothing => Err(SourceFault::NotAnnotated { masks: self.masks.is_some() }),
+    pub fn nails(&self, place: &OutlinePlace, picture: &Photograph) -> Result<Vec<Nail>, SourceFault> {
+        match place {
+            OutlinePlace::LabelMe(file) => self.annotated_nails(file, picture),
+            OutlinePlace::Mask(file) => self.mask_nails(file, picture),
+            OutlinePlace::Detection => self.detected_nails(picture),
+            OutlinePlace::Nowhere => Err(SourceFault::NotAnnotated { masks: self.masks.is_some() }),
         }
     }
 
@@ -181,7 +194,7 @@ impl OutlineOptions {
                     confidence: Some(1.0),
                     reason: String::new(),
                 },
-                // A row of the results does not hang on where the photographs lie.
+                // A row of the results does not depend on where the photographs are.
                 Err(fault) => {
                     let name = file.file_name().unwrap_or_default().to_string_lossy();
                     left_out(Source::Annotated, None, format!("{name}: {fault}"))

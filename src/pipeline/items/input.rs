@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::table::{Rows, read};
 use super::{Item, Missing, Origin, Relation, World, holds, plain};
-use crate::pipeline::pattern::{Disk, Pattern};
+use crate::pipeline::items::pattern::{Disk, Pattern};
 use crate::pipeline::spec::{Filter, InputSource, InputSpec, Spec};
 use crate::toml_file::Fault;
 use crate::words::instead;

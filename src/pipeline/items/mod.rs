@@ -6,17 +6,20 @@
 //! input lists. An empty cell of a key says nothing of it. `{phantom}` at the beginning of a path is the folder of the
 //! generated recordings, whose catalogue answers for it, standing or not.
 
+pub(super) mod catalogue;
+pub(super) mod generated;
 mod input;
 mod join;
+pub(super) mod pattern;
 mod table;
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use super::catalogue::Catalogue;
-use super::pattern::{Listed, Tree};
 use super::spec::Filter;
 use crate::job::{Facts, Keys};
+use crate::pipeline::items::catalogue::Catalogue;
+use crate::pipeline::items::pattern::{Listed, Tree};
 
 pub(super) use input::{InputItems, check_filter, input_items};
 pub(super) use join::{Index, JoinedRows, Unjoined, join};

@@ -1,18 +1,16 @@
 //! `maps`: the sums of all subjects to mean, standard deviation and count by pose (4.2.2, Fig. 53-56).
 //!
-//! Where this task's earlier maps stand and all that they hold is still there, only new sums are read and added: the
-//! bytes are the same, as sums are integers.
+//! Where this task's earlier maps are up to date with all that they hold, only new sums are read and added: the bytes
+//! are the same, as sums are integers.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use serde_json::json;
 
 use super::given::Given;
 use super::pool::in_pool;
-use crate::files::Staging;
-use crate::npy;
-use crate::photo::{Maps, Partials, gather};
+use crate::photo::{Accuracy, Gathering, Watch, gather};
 use crate::pipeline::{
     Demand, Facts, Foreseen, Job, KeyFault, Keys, Kind, Made, Part, Prepared, Quality, Role, Takes, Work,
 };
@@ -73,14 +71,14 @@ impl Prepared for MapsOf {
         let several = inputs.iter().filter(|input| input.role == "sums").count() > 1;
         let figures = demand.parts.contains(FIGURES);
         Ok(vec![
-            Step::new("sums joined", true, "those that stand are added to".into()),
+            Step::new("sums joined", true, "new ones are added to those of the maps made before".into()),
             Step::new("mean", true, "by pose".into()),
             Step::new(
                 "standard deviation",
                 several,
                 if several { "over subjects, by pose".into() } else { "it needs two subjects in a pose".into() },
             ),
-            Step::new("figures", figures, if figures { "by pose, and sheets".into() } else { "not asked for".into() }),
+            Step::new("figures", figures, if figures { "by pose, and sheets".into() } else { "not requested".into() }),
         ])
     }
 
@@ -100,93 +98,33 @@ struct MapsJob {
 impl Job for MapsJob {
     fn run(&self, work: &Work) -> anyhow::Result<Made> {
         let parts: Vec<PathBuf> = work.of("sums").map(|at| at.path.clone()).collect();
-        let staging = Staging::new(work.folder)?;
-        let gathered = in_pool(work.threads, || gather(&parts, work.before, self.figures, &staging, work.stop))??;
-        staging.commit()?;
         let truth = work.one("truth").map(|at| at.path.as_path());
-        let quality = quality(&gathered.partials, truth)?;
-        let report = json!({
-            "job": "maps",
-            "poses": gathered.poses,
-            "sums_added": gathered.added,
-            "sums_stood": gathered.stood,
-            "normalization": gathered.partials.normalization,
-        });
-        let stood = gathered.stood;
+        let gathering =
+            Gathering { parts: &parts, before: work.before, truth, figures: self.figures, out: work.folder };
+        let watch = Watch { stop: work.stop, tick: &|| {} };
+        let report = in_pool(work.threads, || gather(&gathering, &watch))??;
         Ok(Made {
-            report,
-            left_out: (stood > 0)
-                .then(|| format!("sums: {stood} stand in the maps before, and are not read again"))
-                .into_iter()
-                .collect(),
-            warnings: gathered.warnings,
+            left_out: report.left_out.clone(),
+            warnings: report.notes.clone(),
             failed: Vec::new(),
-            stages: gathered.stages,
-            quality,
+            stages: report.stages.clone(),
+            quality: quality(&report.accuracy),
+            report: serde_json::to_value(report)?,
         })
     }
 }
 
-/// Root mean squares, added up.
-#[derive(Default)]
-struct Rms {
-    squares: f64,
-    count: usize,
-}
-
-impl Rms {
-    fn add(&mut self, difference: f64) {
-        if difference.is_finite() {
-            self.squares += difference * difference;
-            self.count += 1;
-        }
-    }
-
-    fn quality(&self, what: &str, unit: &str, against_truth: bool) -> Option<Quality> {
-        let value = (self.squares / self.count as f64).sqrt() * LEVELS;
-        let unit = unit.to_owned();
-        (self.count > 0).then(|| Quality { what: what.to_owned(), value, unit, against_truth })
-    }
-}
-
-/// Levels in which errors of maps are told.
-const LEVELS: f64 = 255.0;
-
-/// How far the maps are from the true ones; where these are not known, how far the mean can be by the subjects' spread.
-fn quality(partials: &Partials, truth: Option<&Path>) -> anyhow::Result<Vec<Quality>> {
-    let (mut mean, mut sd, mut spread) = (Rms::default(), Rms::default(), Rms::default());
-    for (pose, sums) in &partials.poses {
-        let maps: Maps = sums.maps();
-        if let Some(folder) = truth {
-            let pairs = [(&maps.mean, "mean", &mut mean), (&maps.sd, "sd", &mut sd)];
-            for (map, name, rms) in pairs {
-                let file = folder.join(format!("{pose}-{name}.npy"));
-                if !file.exists() {
-                    continue;
-                }
-                let exact = npy::read::<f32>(&file).map_err(|why| wrong(&file, &why))?;
-                if exact.dim() != map.dim() {
-                    anyhow::bail!("{}: is of another size than the maps; make both with one `size`", file.display());
-                }
-                map.iter().zip(&exact).for_each(|(map, exact)| rms.add(f64::from(*map) - f64::from(*exact)));
-            }
-        }
-        let cells = maps.sd.iter().zip(&maps.count);
-        cells.for_each(|(sd, count)| spread.add(f64::from(*sd) / f64::from(*count).sqrt()));
-    }
+/// How far the maps are from the true ones, and how far the mean can be by the subjects' spread.
+fn quality(of: &Accuracy) -> Vec<Quality> {
     let unit = "of 255, RMS over pixels";
-    let stated = "of 255, standard error over subjects, RMS over pixels";
+    let spread = "of 255, standard error over subjects, RMS over pixels";
     let all = [
-        mean.quality("mean map", unit, true),
-        sd.quality("SD map", unit, true),
-        spread.quality("mean map", stated, false),
+        ("mean map", of.mean_of_255, unit, true),
+        ("SD map", of.sd_of_255, unit, true),
+        ("mean map", of.standard_error_of_255, spread, false),
     ];
-    Ok(all.into_iter().flatten().collect())
-}
-
-fn wrong(file: &Path, why: &dyn std::fmt::Display) -> anyhow::Error {
-    anyhow::anyhow!(
-        "{}: cannot be read as a map ({why}); name a folder with <pose>-mean.npy and <pose>-sd.npy",
-        file.display()
-    )
+    let known = all.into_iter().filter_map(|(what, value, unit, against_truth)| {
+        Some(Quality { what: what.to_owned(), value: value?, unit: unit.to_owned(), against_truth })
+    });
+    known.collect()
 }

@@ -2,21 +2,18 @@
 //! (4.2.2).
 //!
 //! A photograph's subject and pose are its keys. Its outline is the file of role `outlines` that has its keys, else the
-//! LabelMe file beside it, else detected. A photograph that gives nothing is told, and the others are done.
+//! LabelMe file beside it, else detected. A photograph that gives nothing is reported, and the others are done.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Instant;
 
 use serde_json::json;
 
-use super::given::{Given, fault};
+use super::options::request;
 use super::pool::in_pool;
-use crate::files::Staging;
-use crate::photo::outline::{DetectOptions, Drawn, Found, OutlineOptions, Side, Sources};
+use crate::photo::outline::{OutlinePlace, Sources};
 use crate::photo::{
-    Channel, Foreknown, NailTable, Normalization, PartOptions, Photo, PhotoSet, PhotosOptions, Resample, RunReport,
-    Watch, is_picture, plan_foreknown, run, write_nails,
+    Foreknown, Outputs, Photo, PhotoSet, PhotosOptions, Results, Watch, is_picture, plan_foreknown, run,
 };
 use crate::pipeline::{
     At, Demand, Facts, Foreseen, Job, KeyFault, Keys, Kind, Made, Part, Prepared, Role, Takes, Work,
@@ -70,68 +67,24 @@ const KEYS: &[&str] = &[
 
 #[derive(Debug, Clone)]
 struct Normalize {
-    normalization: Normalization,
-    outlines: OutlineOptions,
-    max_megapixels: Option<u32>,
+    options: PhotosOptions,
 }
 
 impl Normalize {
     fn prepare(keys: toml::Table) -> Result<Self, KeyFault> {
-        let mut given = Given::new(keys, KEYS)?;
-        let usual = Normalization::default();
-        let sources = [("auto", Sources::Auto), ("annotated", Sources::Annotated), ("detect", Sources::Detect)];
-        let sides = [("up", Side::Up), ("down", Side::Down), ("left", Side::Left), ("right", Side::Right)];
-        let drawn = [("auto", Drawn::Auto), ("upright", Drawn::Upright), ("stored", Drawn::Stored)];
-        let channels = [("red", Channel::Red), ("green", Channel::Green), ("blue", Channel::Blue)];
-        let resamples = [("nearest", Resample::Nearest), ("linear", Resample::Linear), ("cubic", Resample::Cubic)];
-        let detect = DetectOptions::default();
-        let working_size_px = match given.whole("detect_size", 64..=4096)? {
-            Some(size) => u32::try_from(size).expect("at most 4096"),
-            None => detect.working_size_px,
-        };
-        let normalization = Normalization {
-            size: match given
-                .whole("size", *Normalization::SIZES.start() as u64..=*Normalization::SIZES.end() as u64)?
-            {
-                Some(size) => usize::try_from(size).expect("at most 4096"),
-                None => usual.size,
-            },
-            margin: given.number("margin", Normalization::MARGINS)?.unwrap_or(usual.margin),
-            channel: given.choice("channel", &channels)?.unwrap_or(usual.channel),
-            linear: given.flag("linear")?,
-            resample: given.choice("resample", &resamples)?.unwrap_or(usual.resample),
-            white: given
-                .whole("white", u64::from(*Normalization::WHITES.start())..=u64::from(*Normalization::WHITES.end()))?
-                .map(|white| u16::try_from(white).expect("at most 65535")),
-        };
-        let max_megapixels = given.whole("max_megapixels", 1..=10_000)?;
-        let max_megapixels = max_megapixels.map(|most| u32::try_from(most).expect("at most 10000"));
-        let outlines = OutlineOptions {
-            sources: given.choice("outline", &sources)?.unwrap_or_default(),
-            // What the task's results hang on is among its inputs.
-            listed_only: true,
-            masks: None,
-            mask_values: given.parsed("mask_value", str::parse)?,
-            distal: given.choice("distal", &sides)?,
-            drawn: given.choice("annotations", &drawn)?.unwrap_or_default(),
-            detect: DetectOptions { working_size_px, ..detect },
-        };
-        let normalization = normalization.check().map_err(|what| fault("", what))?;
-        Ok(Self { normalization, outlines, max_megapixels })
-    }
-
-    fn photos_options(&self, demand: &Demand) -> PhotosOptions {
-        PhotosOptions {
-            normalization: self.normalization,
-            outlines: self.outlines.clone(),
-            max_megapixels: self.max_megapixels,
-            keep_detected: false,
-            parts: Some(PartOptions { pictures: demand.parts.contains(PICTURES) }),
-        }
+        let mut options: PhotosOptions = request(&keys)?;
+        // What the task's results depend on is among its inputs.
+        options.outlines.listed_only = true;
+        Ok(Self { options })
     }
 }
 
-/// The pose of photographs whose keys tell none.
+fn outputs(folder: &Path, demand: &Demand) -> Outputs {
+    let results = Results::Sums { pictures: demand.parts.contains(PICTURES) };
+    Outputs { folder: folder.to_owned(), results, outlines: None }
+}
+
+/// The pose of photographs whose keys name none.
 const ONLY_POSE: &str = "photos";
 
 /// Whose photograph it is, and in what pose.
@@ -155,23 +108,22 @@ impl Prepared for Normalize {
 
     fn options(&self, demand: &Demand) -> serde_json::Value {
         json!({
-            "normalization": self.normalization,
-            "outline": self.outlines.sources,
-            "distal": self.outlines.distal,
-            "mask_value": self.outlines.mask_values,
-            "max_megapixels": self.max_megapixels,
-            "annotations": self.outlines.drawn,
-            "detect_size": self.outlines.detect.working_size_px,
+            "normalization": self.options.normalization,
+            "outline": self.options.outlines.sources,
+            "distal": self.options.outlines.distal,
+            "mask_value": self.options.outlines.mask_values,
+            "max_megapixels": self.options.max_megapixels,
+            "annotations": self.options.outlines.drawn,
+            "detect_size": self.options.outlines.detect.working_size_px,
             "pictures": demand.parts.contains(PICTURES),
         })
     }
 
     fn job(&self, _keys: &Keys, demand: &Demand) -> Arc<dyn Job> {
-        Arc::new(NormalizeJob { options: self.photos_options(demand) })
+        Arc::new(NormalizeJob { options: self.options.clone(), demand: demand.clone() })
     }
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
-        let options = self.photos_options(demand);
         let outlines: Vec<_> = inputs.iter().filter(|input| input.role == OUTLINES).collect();
         let foreknown = inputs.iter().filter(|input| input.role == "photo").map(|input| {
             let (subject, pose) = subject_and_pose(&input.keys, &input.path);
@@ -179,21 +131,18 @@ impl Prepared for Normalize {
             if input.stands {
                 let file = String::new();
                 let photo = Photo { pose, subject, file, path: input.path.clone(), outline };
-                return Foreknown::of(&photo, &options);
+                return Foreknown::of(&photo, &self.options);
             }
             let drawn = outline.or_else(|| (input.facts.outlined == Some(true)).then(|| labelme_beside(&input.path)));
-            let outlines = match (self.outlines.sources, drawn) {
-                (Sources::Detect, _) | (Sources::Auto, None) => Found::Detection,
-                (Sources::Annotated, None) => Found::Nothing,
-                (_, Some(file)) if is_picture(&file) => Found::Mask(file),
-                (_, Some(file)) => Found::LabelMe(file),
+            let outlines = match (self.options.outlines.sources, drawn) {
+                (Sources::Detect, _) | (Sources::Auto, None) => OutlinePlace::Detection,
+                (Sources::Annotated, None) => OutlinePlace::Nowhere,
+                (_, Some(file)) if is_picture(&file) => OutlinePlace::Mask(file),
+                (_, Some(file)) => OutlinePlace::LabelMe(file),
             };
             Foreknown { pose, grey: input.facts.grey, outlines }
         });
-        let mut steps = plan_foreknown(&foreknown.collect::<Vec<_>>(), &options);
-        // There is no such thing to ask for in a pipeline.
-        steps.retain(|step| !step.stage.starts_with("LabelMe files"));
-        Ok(steps)
+        Ok(plan_foreknown(&foreknown.collect::<Vec<_>>(), &self.options, &outputs(Path::new(""), demand)))
     }
 
     fn facts(&self, _inputs: &[Foreseen], _demand: &Demand) -> Facts {
@@ -203,24 +152,24 @@ impl Prepared for Normalize {
     fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {
         let photos = inputs.iter().filter(|input| input.role == "photo").count();
         let outlines = inputs.iter().filter(|input| input.role == OUTLINES).count();
-        let detected = match self.outlines.sources {
+        let detected = match self.options.outlines.sources {
             Sources::Auto => photos.saturating_sub(outlines),
             Sources::Annotated => 0,
             Sources::Detect => photos,
         };
-        // The first stands for all: a subject's photographs are one camera's.
+        // The first represents all: a subject's photographs are one camera's.
         let first = inputs.iter().find(|input| input.role == "photo" && input.stands);
         let size_px = first.and_then(|input| image::image_dimensions(&input.path).ok()).unwrap_or((640, 480));
         let pixels = f64::from(size_px.0) * f64::from(size_px.1);
         let at_once = photos.min(std::thread::available_parallelism().map_or(1, usize::from)) as u64;
-        let sums = 20 * (self.normalization.size * self.normalization.size) as u64 * photos as u64;
+        let sums = 20 * (self.options.normalization.size * self.options.normalization.size) as u64 * photos as u64;
         let memory = at_once * (BYTES_A_PIXEL * pixels) as u64 + sums + BYTES_AT_LEAST;
         let seconds = photos as f64 * (NORMALIZE_S + READ_S_A_PIXEL * pixels) + detected as f64 * DETECT_S;
         (memory, seconds)
     }
 
     fn beside(&self, role: &str, path: &Path) -> Vec<(&'static str, PathBuf)> {
-        let reads = role == "photo" && self.outlines.sources != Sources::Detect;
+        let reads = role == "photo" && self.options.outlines.sources != Sources::Detect;
         reads.then(|| (OUTLINES, labelme_beside(path))).into_iter().collect()
     }
 
@@ -243,23 +192,19 @@ fn labelme_beside(photo: &Path) -> PathBuf {
 
 struct NormalizeJob {
     options: PhotosOptions,
+    demand: Demand,
 }
 
 impl Job for NormalizeJob {
     fn run(&self, work: &Work) -> anyhow::Result<Made> {
-        let start = Instant::now();
         let photo = |at: &At| {
             let (subject, pose) = subject_and_pose(&at.keys, &at.path);
             let outline = outline_of(&at.keys, work.of(OUTLINES).map(|o| (&o.keys, o.path.as_path())));
             Photo { pose, subject, file: at.name.clone(), path: at.path.clone(), outline }
         };
         let set = PhotoSet::of(work.of("photo").map(photo).collect());
-        let staging = Staging::new(work.folder)?;
-        let watch = Watch { stop: work.stop, tick: &|| {} };
-        let result = in_pool(work.threads, || run(&set, &self.options, &staging, &watch))??;
-        write_nails(NailTable::of(&result.rows, &set).rows(), &staging)?;
-        staging.commit()?;
-        let report = RunReport::of_photos(&set, &self.options, &result, start.elapsed());
+        let (outputs, watch) = (outputs(work.folder, &self.demand), Watch { stop: work.stop, tick: &|| {} });
+        let report = in_pool(work.threads, || run(&set, &self.options, &outputs, &watch))??;
         Ok(Made {
             left_out: report.left_out.clone(),
             warnings: report.warnings.clone(),

@@ -100,7 +100,7 @@ fn inputs(spec: &Spec, needed: &[bool], world: &World<'_>, faults: &mut Vec<Faul
 
 fn generated_nodes(world: &World<'_>) -> Vec<Node> {
     let tasks = world.catalogue.into_iter().flat_map(|catalogue| &catalogue.tasks);
-    let node = |task: &crate::pipeline::catalogue::CatalogueTask| Node {
+    let node = |task: &crate::pipeline::items::catalogue::CatalogueTask| Node {
         id: format!("phantom/{}", task.name),
         stage: None,
         keys: task.keys.clone(),

@@ -20,11 +20,11 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::catalogue::Catalogue;
 use super::items::{Missing, World};
 use super::spec::{PipelineError, Spec};
-use super::task::Task;
 use crate::job::{Demand, Facts, Foreseen, Keys, Prepared};
+use crate::pipeline::items::catalogue::Catalogue;
+use crate::pipeline::tasks::Task;
 
 pub use show::{PlanFate, PlanLine, StagePlan, plan_text};
 
@@ -82,7 +82,7 @@ impl Plan {
     /// How many parts a run can be cut into that have something to do.
     #[must_use]
     pub fn parts(&self) -> usize {
-        let part = |task: &Task| if let super::task::Share::Part(k) = task.share { k + 1 } else { 0 };
+        let part = |task: &Task| if let crate::pipeline::tasks::Share::Part(k) = task.share { k + 1 } else { 0 };
         self.tasks.iter().map(part).max().unwrap_or(0)
     }
 }

@@ -7,7 +7,7 @@ use super::{Demands, Laid, Layout, Node, NodeSource, Plan, Planned};
 use crate::job::{Demand, Facts, Foreseen};
 use crate::pipeline::items::{Missing, World};
 use crate::pipeline::spec::{Spec, StageSpec};
-use crate::pipeline::task::{Input, Share, Source, Task};
+use crate::pipeline::tasks::{Input, Share, Source, Task};
 
 /// What wanted results, and the tasks that they stand on, need of every node; nodes that nobody needs have nothing.
 pub(super) fn demands(spec: &Spec, layout: &Layout<'_>) -> Demands {

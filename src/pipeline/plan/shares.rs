@@ -8,7 +8,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Demands, Layout, Node, NodeSource};
-use crate::pipeline::task::Share;
+use crate::pipeline::tasks::Share;
 
 /// The share of every node that is needed.
 pub(super) fn shares(layout: &Layout<'_>, demands: &Demands) -> BTreeMap<usize, Share> {

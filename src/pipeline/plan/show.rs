@@ -10,8 +10,8 @@ use serde::Serialize;
 
 use super::Plan;
 use crate::job::{Facts, Foreseen};
-use crate::pipeline::said::in_keys;
-use crate::pipeline::standing::{Standing, Why};
+use crate::pipeline::spec::said::in_keys;
+use crate::pipeline::store::standing::{Standing, Why};
 use crate::stages::Fate;
 
 /// How many reasons of one kind stand in a plan that people read.

@@ -1,9 +1,9 @@
 //! Plans with toys: what is needed, of whom, in which share, and what is wrong with inputs.
 
 use crate::pipeline::plan::{PlanFate, plan_text};
-use crate::pipeline::standing::{Standing, Why};
-use crate::pipeline::task::{Share, Source};
-use crate::pipeline::toys::Bench;
+use crate::pipeline::store::standing::{Standing, Why};
+use crate::pipeline::tasks::{Share, Source};
+use crate::pipeline::tests::planned::Bench;
 
 const SESSIONS: &str = "subject,session,kind,video,log,note_file\n\
     S01,1,bending,v/S01.mp4,l/S01.csv,n/a.txt\n\

@@ -14,8 +14,8 @@ use serde::Serialize;
 
 use super::plan::Plan;
 use super::run::{Outcome, RunReport, TaskFailure, TaskReport};
-use super::task::TaskId;
 use crate::files::{Places, WriteError};
+use crate::pipeline::tasks::TaskId;
 
 /// A run, summed up.
 #[derive(Debug, Clone, Serialize)]

@@ -4,7 +4,7 @@ use super::page::page;
 use super::summary;
 use crate::job::{Made, Quality};
 use crate::pipeline::run::{Outcome, RunReport, TaskReport};
-use crate::pipeline::toys::Bench;
+use crate::pipeline::tests::planned::Bench;
 
 #[test]
 fn a_run_is_summed_up_by_stage() {

@@ -12,15 +12,15 @@ use std::time::Instant;
 
 use jiff::Timestamp;
 
-use super::super::commit::{CommitFault, commit, files, is_kept_aside, outputs, retire};
-use super::super::graph::above;
-use super::super::hashes::{FileFault, files_in};
-use super::super::record::{FORMAT, Fingerprint, Known, Record, within};
-use super::super::said::{all_in_keys, in_keys, report_in_keys};
-use super::super::standing::{Why, difference, spoilt};
-use super::super::task::{Input, Source, Task, TaskId};
 use super::Results;
 use crate::job::{At, Work};
+use crate::pipeline::spec::said::{all_in_keys, in_keys, report_in_keys};
+use crate::pipeline::store::commit::{CommitFault, commit, files, is_kept_aside, outputs, retire};
+use crate::pipeline::store::hashes::{FileFault, files_in};
+use crate::pipeline::store::record::{FORMAT, Fingerprint, Known, Record, within};
+use crate::pipeline::store::standing::{Why, difference, spoilt};
+use crate::pipeline::tasks::graph::above;
+use crate::pipeline::tasks::{Input, Source, Task, TaskId};
 
 /// The records of the tasks that one works on, without those that failed.
 pub(super) type Needed = HashMap<TaskId, Arc<Record>>;

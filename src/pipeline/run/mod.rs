@@ -17,15 +17,15 @@ use std::time::{Duration, Instant};
 
 use thiserror::Error;
 
-use super::commit::recover;
-use super::graph::{Graph, GraphFault};
-use super::hashes::Hashes;
-use super::lock::{Held, Holder, Refused, hold};
-use super::record::Record;
-use super::shard::{PartMark, PipelineMark, Shard, chosen};
-use super::store::{FailureNote, Store};
-use super::task::{Task, TaskId};
 use crate::files::WriteError;
+use crate::pipeline::parts::shard::{PartMark, PipelineMark, Shard, chosen};
+use crate::pipeline::store::commit::recover;
+use crate::pipeline::store::hashes::Hashes;
+use crate::pipeline::store::lock::{Held, Holder, Refused, hold};
+use crate::pipeline::store::record::Record;
+use crate::pipeline::store::{FailureNote, Store};
+use crate::pipeline::tasks::graph::{Graph, GraphFault};
+use crate::pipeline::tasks::{Task, TaskId};
 pub(super) use attempt::link;
 use attempt::{Bench, Found, Miss};
 use queue::{Next, Queue};

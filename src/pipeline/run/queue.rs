@@ -4,11 +4,11 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use super::super::graph::Graph;
-use super::super::record::Record;
-use super::super::task::{Source, Task};
 use super::attempt::{Due, Needed};
 use super::report::Outcome;
+use crate::pipeline::store::record::Record;
+use crate::pipeline::tasks::graph::Graph;
+use crate::pipeline::tasks::{Source, Task};
 
 /// What is next for a thread.
 pub(super) enum Next {

@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::super::record::Output;
-use super::super::task::TaskId;
 use crate::job::{Keys, Made};
+use crate::pipeline::store::record::Output;
+use crate::pipeline::tasks::TaskId;
 
 /// How it went with a task.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]

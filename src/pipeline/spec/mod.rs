@@ -24,6 +24,7 @@ mod cycle;
 mod header;
 mod read;
 mod reference;
+pub(super) mod said;
 mod stages;
 #[cfg(test)]
 mod tests;
@@ -32,10 +33,10 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::catalogue::{Catalogue, Catalogues};
-use super::shard::PipelineMark;
 use crate::input;
 use crate::job::{Kind, Part, Prepared};
+use crate::pipeline::items::catalogue::{Catalogue, Catalogues};
+use crate::pipeline::parts::shard::PipelineMark;
 use crate::toml_file::{Fault, place};
 
 /// Why a pipeline can't be planned.

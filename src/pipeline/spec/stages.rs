@@ -8,7 +8,7 @@ use super::header::Header;
 use super::reference::{Names, filter, reference, strings};
 use super::{Reference, StageSpec};
 use crate::job::{Kind, Role, Takes};
-use crate::pipeline::said::in_keys;
+use crate::pipeline::spec::said::in_keys;
 use crate::toml_file::{Entry, Findings};
 use crate::words::instead;
 

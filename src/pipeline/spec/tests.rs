@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::{PipelineError, Spec};
-use crate::pipeline::toys::TOYS;
+use crate::pipeline::tests::planned::TOYS;
 
 const GOOD: &str = r#"# a comment
 name = "training"

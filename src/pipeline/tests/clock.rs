@@ -4,8 +4,8 @@ use std::fs::{self, File};
 use std::path::Path;
 use std::time::{Duration, SystemTime};
 
-use super::super::hashes::{ContentHash, Hashes};
 use super::toys::{Diary, given, outcomes, run_on, toy};
+use crate::pipeline::store::hashes::{ContentHash, Hashes};
 
 fn date(path: &Path, at: SystemTime) {
     File::options().write(true).open(path).unwrap().set_modified(at).unwrap();

@@ -67,7 +67,7 @@ fn a_failure_is_forgotten_where_the_inputs_are_again_what_they_were() {
     run_on(&[toy("a", 0, vec![], &Diary::default())], dir.path());
     let broken = Toy { salt: 1, act: Act::Fail, ..Toy::default() }.task("a", vec![]);
     run_on(&[broken], dir.path());
-    let store = super::super::store::Store::new(dir.path());
+    let store = crate::pipeline::store::Store::new(dir.path());
     assert_eq!(store.failure("a").unwrap().what, "the toy is broken");
     assert_eq!(outcomes(&run_on(&[toy("a", 0, vec![], &Diary::default())], dir.path())), ["kept"]);
     assert_eq!(store.failure("a"), None);

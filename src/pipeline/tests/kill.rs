@@ -8,10 +8,10 @@ use std::process::{Command, Stdio};
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::super::store::Store;
 use super::super::{Input, Task};
 use super::toys::{Toy, from_scratch, left_at_work, options, result, results, run_on, run_with};
 use crate::job::{Made, Maker, Work};
+use crate::pipeline::store::Store;
 
 const OUT: &str = "LUNULA_TEST_KILLED";
 
@@ -107,9 +107,9 @@ fn killed_at_ten_moments() {
 /// Each place where a process can end as it puts results there, one after the other.
 #[test]
 fn half_moved_is_finished() {
-    use super::super::commit::{commit, files, outputs};
-    use super::super::hashes::Hashes;
-    use super::super::record::{FORMAT, Fingerprint, Record};
+    use crate::pipeline::store::commit::{commit, files, outputs};
+    use crate::pipeline::store::hashes::Hashes;
+    use crate::pipeline::store::record::{FORMAT, Fingerprint, Record};
 
     let before = Toy { salt: 1, odd: true, ..Toy::default() }.task("a", vec![]);
     let now = Toy { salt: 2, odd: true, ..Toy::default() }.task("a", vec![]);

@@ -3,9 +3,11 @@
 mod clock;
 mod failures;
 mod hands;
+mod jobs;
 mod kill;
 mod limits;
 mod parts;
+pub(super) mod planned;
 mod random;
 mod speed;
 mod toys;

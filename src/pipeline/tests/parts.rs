@@ -128,7 +128,7 @@ fn what_does_not_belong_together_is_refused_and_nothing_written() {
     assert!(matches!(fault(&[&one, &two, &three], &mark()), MergeFault::Busy { holder: Some(_), .. }));
     drop(held);
 
-    let record = super::super::store::Store::new(&two).record_place("own/1");
+    let record = crate::pipeline::store::Store::new(&two).record_place("own/1");
     let hidden = record.with_extension("hidden");
     fs::rename(&record, &hidden).unwrap();
     let told = fault(&[&one, &two, &three], &mark()).to_string();

@@ -7,9 +7,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use super::super::hashes::{ContentHash, files_in};
 use super::super::{Input, Outcome, PipelineMark, RunOptions, RunReport, RunWatch, Share, Source, Task, run};
 use crate::job::{Keys, Made, Maker, Work};
+use crate::pipeline::store::hashes::{ContentHash, files_in};
 
 /// What a toy does besides its text.
 #[derive(Debug, Clone, Default)]

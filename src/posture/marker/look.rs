@@ -5,7 +5,7 @@
 
 use super::blot::Blot;
 use super::fit::Fit;
-use crate::posture::find::Paint;
+use crate::posture::survey::find::Paint;
 
 /// How much a fit counts against what was learned before.
 const SHARE: f64 = 0.1;

@@ -14,11 +14,11 @@ pub(super) use text::hex;
 
 use order::{path, row, total_turn};
 
-use super::find::{Blob, Finder, Paint};
 use super::marker::blot::Blot;
 use super::marker::siting::Siting;
-use super::naming::Point;
 use super::track::loose_look;
+use crate::posture::survey::find::{Blob, Finder, Paint};
+use crate::posture::survey::naming::Point;
 use crate::video::{Frame, Info};
 
 /// Directions of colour that are looked in.

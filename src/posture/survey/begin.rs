@@ -6,8 +6,8 @@
 //! without one is an error that names the colour found.
 
 use super::{SurveyError, Surveyor};
-use crate::posture::find::{Blob, Paint};
 use crate::posture::suggest::{hex, palette};
+use crate::posture::survey::find::{Blob, Paint};
 use crate::video::Frame;
 
 /// A spot further from its place than this many radii, or this share of the picture's diagonal, is not meant ...

@@ -1,8 +1,8 @@
 //! Which naming the frames looked at speak for, and where they leave a doubt.
 
 use super::Surveyor;
-use crate::posture::find::Paint;
-use crate::posture::naming::{MARGIN, Naming, Point, Scene, colour_cost, rigid_cost};
+use crate::posture::survey::find::Paint;
+use crate::posture::survey::naming::{MARGIN, Naming, Point, Scene, colour_cost, rigid_cost};
 
 /// A naming seen in one frame costs half of this; in more frames, less.
 const FRESH: f64 = 4.0;

@@ -9,18 +9,20 @@
 //! other.
 
 mod begin;
+pub(in crate::posture) mod find;
 mod judge;
+pub(in crate::posture) mod naming;
 mod spots;
 
 use judge::Hypothesis;
 use spots::Spots;
 
-use super::find::Paint;
 use super::layout::Layout;
 use super::marker::blot::Blot;
 use super::marker::look::Look;
 use super::marker::siting::Siting;
-use super::naming::{Chain, MISSING, Naming, Point, lone};
+use crate::posture::survey::find::Paint;
+use crate::posture::survey::naming::{Chain, MISSING, Naming, Point, lone};
 use crate::video::{Frame, Info};
 
 /// Frames that are looked at before names are given.

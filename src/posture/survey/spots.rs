@@ -1,13 +1,13 @@
 //! Spots of the markers' colours followed from frame to frame, not yet named.
 
-use super::super::find::{Area, Blob, Finder, Paint};
 use super::super::layout::MarkerShape;
 use super::super::marker::blot::Blot;
 use super::super::marker::centre::{Scratch, centre};
 use super::super::marker::look::Look;
 use super::super::marker::siting::{Siting, SitingEvidence};
-use super::super::naming::Point;
 use super::super::track::loose_look;
+use crate::posture::survey::find::{Area, Blob, Finder, Paint};
+use crate::posture::survey::naming::Point;
 use crate::video::Frame;
 
 /// A spot is lost for good after this many frames without it.

@@ -3,7 +3,7 @@
 
 use super::target::Target;
 use crate::posture::marker::sight::Loss;
-use crate::posture::naming::{LENGTH_FREE_PX, LENGTH_SHARE};
+use crate::posture::survey::naming::{LENGTH_FREE_PX, LENGTH_SHARE};
 
 /// A naming of two markers must be better than the other way round by this.
 const MARGIN: f64 = 4.0;

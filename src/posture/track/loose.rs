@@ -3,11 +3,11 @@
 //! Where no disc can be fitted (texture, motion blur, fingers about it), the blob of its colour tells the place, with a
 //! standard error to match. Angles never come from such places, for no segment has such a marker.
 
-use crate::posture::find::Blob;
 use crate::posture::marker::fit::Fit;
 use crate::posture::marker::look::Look;
 use crate::posture::marker::sight::Centre;
-use crate::posture::naming::Point;
+use crate::posture::survey::find::Blob;
+use crate::posture::survey::naming::Point;
 use crate::video::Frame;
 
 /// Standard error of a blob's centroid: a share of its radius, and a part of a sample.

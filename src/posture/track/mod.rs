@@ -16,15 +16,15 @@ pub(crate) use loose::look as loose_look;
 use agree::{Rod, distance};
 use target::Target;
 
-use super::find::{Area, Blob, Finder, Paint};
 use super::layout::{Layout, MarkerShape};
 use super::marker::centre::{Scratch, centre};
 use super::marker::inflation::Inflation;
 use super::marker::method::{Method, Search};
 use super::marker::sight::{Loss, Sight};
 use super::marker::siting::Siting;
-use super::naming::{Chain, lone};
 use super::survey::{Start, Survey};
+use crate::posture::survey::find::{Area, Blob, Finder, Paint};
+use crate::posture::survey::naming::{Chain, lone};
 use crate::video::{Frame, Info};
 
 /// Colours whose directions in (Cb, Cr) differ by less than this may be taken for one another.

@@ -6,12 +6,12 @@
 use super::agree::{LOOSE, distance};
 use super::target::Target;
 use super::{Tracker, loose};
-use crate::posture::find::{Area, Blob, Paint};
 use crate::posture::marker::centre::{Scratch, centre};
 use crate::posture::marker::look::Look;
 use crate::posture::marker::sight::Loss;
 use crate::posture::marker::siting::Siting;
-use crate::posture::naming::{MARGIN, MISSING, Point, Scene, colour_cost};
+use crate::posture::survey::find::{Area, Blob, Paint};
+use crate::posture::survey::naming::{MARGIN, MISSING, Point, Scene, colour_cost};
 use crate::video::Frame;
 
 /// A whole frame is searched at this interval at first, then at longer ones.

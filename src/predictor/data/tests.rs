@@ -20,8 +20,12 @@ impl Folder {
     }
 }
 
-fn plain() -> LogReading {
-    LogReading::default()
+fn plain() -> RowOptions {
+    RowOptions::default()
+}
+
+fn dropping() -> RowOptions {
+    RowOptions { drop_invalid: true, ..plain() }
 }
 
 fn forces() -> Wanted {
@@ -304,12 +308,12 @@ fn voltages_alone_keep_every_row() {
 }
 
 fn streamed(text: &str, drop_invalid: bool) -> Result<Vec<(Row, Vec<f64>)>, String> {
-    streamed_as(text, drop_invalid, &plain())
+    streamed_as(text, &RowOptions { drop_invalid, ..plain() })
 }
 
-fn streamed_as(text: &str, drop_invalid: bool, log: &LogReading) -> Result<Vec<(Row, Vec<f64>)>, String> {
+fn streamed_as(text: &str, rows: &RowOptions) -> Result<Vec<(Row, Vec<f64>)>, String> {
     let inputs = ["P1", "P2"].map(str::to_owned);
-    let mut stream = RowStream::new(text.as_bytes(), "-", &inputs, drop_invalid, log).map_err(|why| why.to_string())?;
+    let mut stream = RowStream::new(text.as_bytes(), "-", &inputs, rows).map_err(|why| why.to_string())?;
     let mut rows = Vec::new();
     let mut x = vec![0.0; 2];
     while let Some(row) = stream.next_row(&mut x).map_err(|why| why.to_string())? {
@@ -423,7 +427,7 @@ fn columns_named_twice_are_told_with_where() {
 
 /// What a log calls its columns.
 fn called(columns: &str) -> LogReading {
-    LogReading { columns: Columns::parse(columns).unwrap(), ..plain() }
+    LogReading { columns: Columns::parse(columns).unwrap(), ..LogReading::default() }
 }
 
 #[test]
@@ -462,7 +466,7 @@ fn a_streams_lit_rows_are_less_the_unlit_rows_before_them() {
     let untimed = streamed("led,P1,P2\n0,1,2\n1,3,5\n", false).unwrap();
     assert_eq!(untimed[0].1, [2.0, 3.0]);
     let log = called("time_s=t,led=lamp,P1=b,P2=a");
-    let named = streamed_as("t,lamp,a,b\n0,0,2,1\n40,1,5,3\n", false, &log).unwrap();
+    let named = streamed_as("t,lamp,a,b\n0,0,2,1\n40,1,5,3\n", &RowOptions { log: log.clone(), ..plain() }).unwrap();
     assert_eq!((named[0].1.clone(), named[0].0.time_s), (vec![2.0, 3.0], 40.0));
     let said = streamed("time_s,led,P1,P2\n0,2,1,1\n", false).unwrap_err();
     assert!(said.contains("-:2: column `led`: `2` is neither 1 (on) nor 0 (off)"), "{said}");
@@ -472,11 +476,11 @@ fn a_streams_lit_rows_are_less_the_unlit_rows_before_them() {
     // The range is known only where it is given.
     let mut log = called("");
     log.ambient.full_scale_v = Some([0.0, 4.0]);
-    let full = streamed_as(&text, false, &log).unwrap();
+    let full = streamed_as(&text, &RowOptions { log: log.clone(), ..plain() }).unwrap();
     assert_eq!(full.iter().map(|(row, _)| row.faulty).collect::<Vec<_>>(), [true, true, true]);
     let notes = {
         let inputs = ["P1".to_owned()];
-        let mut stream = RowStream::new(text.as_bytes(), "-", &inputs, false, &plain()).unwrap();
+        let mut stream = RowStream::new(text.as_bytes(), "-", &inputs, &plain()).unwrap();
         let first = stream.notes();
         let mut x = [0.0];
         while stream.next_row(&mut x).unwrap().is_some() {}
@@ -519,6 +523,6 @@ fn a_hundred_thousand_columns_are_read_in_time_that_grows_with_them() {
     };
     assert!(read_data(&[log], &wanted).unwrap_err().to_string().contains("no row can be used"));
     let text = format!("{header}\n{row}\n");
-    let mut stream = RowStream::new(text.as_bytes(), "-", &names, true, &plain()).unwrap();
+    let mut stream = RowStream::new(text.as_bytes(), "-", &names, &dropping()).unwrap();
     assert!(stream.next_row(&mut vec![0.0; COLUMNS]).unwrap().is_some());
 }

@@ -77,7 +77,7 @@ pub(super) fn measure(
             figures: false,
             report: false,
         };
-        let report = one.install(|| Watch::nobody(|watch| run_align(&inputs, &options, &outputs, watch)))?;
+        let report = one.install(|| run_align(&inputs, &options, &outputs, &Watch::nobody()))?;
         Ok((report.wall_s, first.then(|| truth.error(&training)).transpose()?))
     })?;
     for ((name, _), found) in INTERVALS.into_iter().zip(found) {

@@ -102,8 +102,8 @@ pub fn measure(settings: &Settings) -> anyhow::Result<Measured> {
 fn follow(layout: &Layout, clock_every: u64, joints: &Path, settings: &Settings) -> anyhow::Result<PostureReport> {
     let options = PostureOptions { threads: settings.effort.threads, clock_every, ..PostureOptions::default() };
     let outputs = Outputs { joints: joints.to_owned(), tracks: None, overlay: None, figures: false, report: false };
-    let run = |watch: &Watch<'_>| run_posture(&settings.video, layout, &options, &outputs, watch);
-    Ok(Watch::stopped_by(&settings.effort.stop, run)?)
+    let watch = Watch::stopped_by(&settings.effort.stop);
+    Ok(run_posture(&settings.video, layout, &options, &outputs, &watch)?)
 }
 
 /// The lag at which the photodiodes best explain the angles, for whoever filmed no clock.
@@ -122,7 +122,7 @@ fn correlated(joints: &Path, truth: &[f64], first: bool, settings: &Settings) ->
         figures: false,
         report: false,
     };
-    let report = Watch::nobody(|watch| run_align(&inputs, &options, &outputs, watch))?;
+    let report = run_align(&inputs, &options, &outputs, &Watch::nobody())?;
     let seconds = report.stages.iter().filter(|s| s.stage == "tie").map(|s| s.thread_s).sum();
     if !first {
         return Ok((seconds, None));

@@ -7,26 +7,25 @@
 //! colour or green-filtered grey, any skin, nail up to some 30 degrees off upright); on photographs of whole hands it
 //! finds nails at the ends of fingers that stand out from what is behind them.
 //!
-//! The way down, a file each: [`picture`] channels that do not depend on the light's brightness; [`silhouette`] masks
-//! that may be fingers and [`tips`] their ends; [`patch`] the picture in a finger's or nail's own frame; [`shape`] the
+//! The way down, a file each: [`picture`] channels that do not depend on the light's brightness; [`hand`] masks
+//! that may be fingers and their ends; [`patch`] the picture in a finger's or nail's own frame; [`shape`] the
 //! template and [`evidence`] how well it fits there; [`search`] where it fits best, on a finger's end or anywhere on a
 //! close-up; [`refine`] the outline by dynamic programming around the template; [`candidate`] all of it for one place,
 //! with the figures that the confidence is made from. Five small networks ([`net`]: border, scorer, three judges) weigh
 //! the evidence; `training` makes them.
 //!
 //! What it does not do: nails seen from the side, painted nails with a pattern, and fingers folded onto skin of the
-//! same colour are mostly not found. The outline ends at the hyponychium where the free edge can be told from the bed.
+//! same colour are mostly not found. The outline ends at the hyponychium where the free edge can be distinguished from the bed.
 
 mod candidate;
 mod evidence;
+mod hand;
 mod net;
 mod patch;
 mod picture;
 mod refine;
 mod search;
 mod shape;
-mod silhouette;
-mod tips;
 
 #[cfg(test)]
 mod training;
@@ -40,15 +39,24 @@ use patch::{Frame, Patch};
 use picture::Levels;
 
 /// How nails are looked for.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, clap::Args)]
 pub struct DetectOptions {
-    /// Longest side in pixels of the reduced picture that everything is measured on. Smaller is faster and less exact.
+    /// Longest side, in pixels, of the picture that detection searches
+    #[arg(
+        long = "detect-size",
+        value_name = "PX",
+        default_value_t = Self::default().working_size_px,
+        value_parser = clap::value_parser!(u32).range(64..=4096)
+    )]
     pub working_size_px: u32,
     /// Least confidence, 0 to 1, of a nail that results may use.
+    #[arg(skip = Self::default().min_confidence)]
     pub min_confidence: f64,
     /// Least confidence, 0 to 1, of a doubtful one that is shown to a person.
+    #[arg(skip = Self::default().min_doubtful)]
     pub min_doubtful: f64,
     /// Most places whose outline is refined.
+    #[arg(skip = Self::default().most_places)]
     pub most_places: usize,
 }
 
@@ -172,8 +180,8 @@ fn different(candidates: Vec<Candidate>) -> Vec<Detected> {
 /// Finger ends: frames of a finger's width with their fit.
 fn ends(levels: &Levels, most: usize) -> Vec<(Frame, f64)> {
     let picture = levels.within(SEARCH_PX);
-    let found = silhouette::silhouettes(picture).iter().flat_map(tips::tips).collect();
-    tips::strongest(found, most)
+    let found = hand::silhouettes(picture).iter().flat_map(hand::tips).collect();
+    hand::strongest(found, most)
         .into_iter()
         .map(|t| (Frame { origin: picture.to_source(t.apex), up: t.out, unit_px: t.width * picture.step }, t.fit))
         .collect()

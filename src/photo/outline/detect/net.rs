@@ -24,7 +24,7 @@ pub(super) fn softsign(x: f32) -> f32 {
 }
 
 impl Net {
-    /// Reads weights; `None` where the text is no such list.
+    /// Reads weights; `None` where the text is not such a list.
     pub(super) fn parse(text: &str) -> Option<Self> {
         let mut numbers = text.split_ascii_whitespace().map(|w| w.parse::<f32>());
         let mut next = || numbers.next()?.ok();

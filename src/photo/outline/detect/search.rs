@@ -113,7 +113,7 @@ fn closed_edge(patch: &Patch, [x, y]: [f32; 2], rim: &[[[f32; 2]; 2]; 16]) -> f3
         .sum()
 }
 
-/// The best that are not near a better one, which `near` is told second.
+/// The best that are not near a better one, which `near` takes second.
 fn best_apart(mut all: Vec<Scored>, most: usize, near: impl Fn(&Shape, &Shape) -> bool) -> Vec<Scored> {
     all.sort_by(|a, b| b.1.total_cmp(&a.1));
     let mut kept: Vec<Scored> = Vec::new();

@@ -1,0 +1,176 @@
+//! A log as text: opened, unpacked, its header found, its delimiter told.
+//!
+//! Gzip is known by its first bytes, UTF-16 by its byte-order mark; a byte-order mark of UTF-8 is taken off. Lines that
+//! begin with `#` before the header, and empty ones, are passed over; where there is no header but a line of names
+//! behind the last `#` (as NumPy writes it), that is the header. The delimiter is the one of tab, `;` and `,` that the
+//! header and the first rows agree on.
+
+use std::path::Path;
+
+use crate::input;
+use crate::log::LogError;
+use crate::log::lines::cell::bare;
+
+/// Where the parts of a text file are.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(in crate::log) struct Layout {
+    pub(in crate::log) delimiter: u8,
+    /// The columns' names.
+    pub(in crate::log) names: Vec<String>,
+    /// Where the rows begin: the byte, and the lines before it.
+    pub(in crate::log) body: usize,
+    pub(in crate::log) lines_before: u64,
+    /// What is unusual.
+    pub(in crate::log) notes: Vec<String>,
+}
+
+/// The bytes of a file, unpacked where it is gzipped.
+pub(in crate::log) fn unpacked(path: &Path) -> Result<Vec<u8>, LogError> {
+    let failed = |what: String| LogError::File { path: path.to_owned(), what };
+    let bytes = input::read(path).map_err(|why| failed(format!("cannot be read ({why})")))?;
+    input::unpack(bytes).map_err(failed)
+}
+
+/// The text of a file, unpacked, as UTF-8 where it was UTF-16, without byte-order mark.
+pub(in crate::log) fn open(path: &Path) -> Result<Vec<u8>, LogError> {
+    let failed = |what: String| LogError::File { path: path.to_owned(), what };
+    let mut bytes = unpacked(path)?;
+    let utf16 = |big: bool| {
+        let units = bytes[2..].chunks_exact(2);
+        let units =
+            units.map(|b| if big { u16::from_be_bytes([b[0], b[1]]) } else { u16::from_le_bytes([b[0], b[1]]) });
+        char::decode_utf16(units).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER)).collect::<String>().into_bytes()
+    };
+    match bytes[..] {
+        [] => return Err(failed("is empty; a log begins with the names of its columns".to_owned())),
+        [0xff, 0xfe, ..] => bytes = utf16(false),
+        [0xfe, 0xff, ..] => bytes = utf16(true),
+        [0xef, 0xbb, 0xbf, ..] => drop(bytes.drain(..3)),
+        _ => {}
+    }
+    for (magic, words) in [
+        (&b"PK\x03\x04"[..], "is a spreadsheet or an archive; save it as CSV"),
+        (b"PAR1", "is a Parquet file; let its name end in .parquet"),
+        (b"XDF:", "is a recording of the Lab Streaming Layer; let its name end in .xdf"),
+        (b"\x89HDF", "is an HDF5 file; write its signals as CSV or Parquet"),
+    ] {
+        if bytes.starts_with(magic) {
+            return Err(failed(words.to_owned()));
+        }
+    }
+    if bytes.iter().take(4096).any(|&b| b == 0) {
+        return Err(failed("is no text; a log is CSV, Parquet or XDF".to_owned()));
+    }
+    Ok(bytes)
+}
+
+impl Layout {
+    /// Finds the header.
+    ///
+    /// # Errors
+    /// What is wrong and what to do.
+    pub(in crate::log) fn find(text: &[u8]) -> Result<Self, String> {
+        let (mut at, mut line) = (0, 0);
+        let (mut comment, mut told) = (None, None);
+        while at < text.len() {
+            let (row, next) = line_at(text, at);
+            line += 1;
+            let bared = row.trim_ascii();
+            match bared {
+                [] => {}
+                [b'#', rest @ ..] => comment = Some(rest),
+                // Excel's own line.
+                [b's', b'e', b'p', b'=', mark @ (b',' | b';' | b'\t')] => told = Some(*mark),
+                _ => return Self::of(text, row, comment, told, (at, next, line)),
+            }
+            at = next;
+        }
+        Err("has no line of names; a log begins with the names of its columns".to_owned())
+    }
+
+    fn of(
+        text: &[u8],
+        row: &[u8],
+        comment: Option<&[u8]>,
+        told: Option<u8>,
+        (at, next, line): (usize, usize, u64),
+    ) -> Result<Self, String> {
+        let delimiter = told.unwrap_or_else(|| delimiter_of(row, &text[next..]));
+        let mut notes = Vec::new();
+        if delimiter != b',' {
+            notes.push(format!("cells are separated by {}", if delimiter == b'\t' { "tabs" } else { "`;`" }));
+        }
+        let cells = cells_of(row, delimiter);
+        let a_name = |cell: &String| {
+            !cell.is_empty()
+                && cell.replace(',', ".").parse::<f64>().is_err()
+                && !cell.starts_with(|c: char| c.is_ascii_digit())
+        };
+        if cells.iter().any(a_name) {
+            return Ok(Self { delimiter, names: cells, body: next, lines_before: line, notes });
+        }
+        let names = comment.map(|comment| cells_of(comment.trim_ascii(), delimiter));
+        match names.filter(|names| names.len() == cells.len() && names.iter().any(a_name)) {
+            Some(names) => {
+                notes.push("the columns' names are taken from the last line of the comment at the top".to_owned());
+                Ok(Self { delimiter, names, body: at, lines_before: line - 1, notes })
+            }
+            None => Err(format!(
+                "line {line} holds numbers where the columns' names should be; begin the file with a line such as \
+                 time_s,P1,P2"
+            )),
+        }
+    }
+}
+
+/// The line that begins at `at`, without its end, and where the next one begins.
+fn line_at(text: &[u8], at: usize) -> (&[u8], usize) {
+    let end = text[at..].iter().position(|&b| b == b'\n').map_or(text.len(), |n| at + n);
+    let row = text[at..end].strip_suffix(b"\r").unwrap_or(&text[at..end]);
+    (row, (end + 1).min(text.len()))
+}
+
+/// The line that a row stands in that may begin behind empty lines and comments: how many to go on from `at`.
+pub(in crate::log) fn lines_to_row(text: &[u8], mut at: usize) -> u64 {
+    let mut lines = 0;
+    while at < text.len() && matches!(text[at], b'\n' | b'\r' | b'#') {
+        at = line_at(text, at).1;
+        lines += 1;
+    }
+    lines
+}
+
+/// The names in a line.
+fn cells_of(row: &[u8], delimiter: u8) -> Vec<String> {
+    split(row, delimiter).map(|cell| String::from_utf8_lossy(bare(cell)).replace("\"\"", "\"")).collect()
+}
+
+/// The parts of a line between delimiters that do not stand in double quotes.
+fn split(row: &[u8], delimiter: u8) -> impl Iterator<Item = &[u8]> {
+    let mut quoted = false;
+    row.split(move |&b| {
+        quoted ^= b == b'"';
+        b == delimiter && !quoted
+    })
+}
+
+/// Tab, `;` or `,`: which one the header has and the first rows as often; of several the one that makes most columns.
+fn delimiter_of(header: &[u8], rows: &[u8]) -> u8 {
+    const ROWS: usize = 20;
+    let agreement = |delimiter: u8| {
+        let columns = split(header, delimiter).count();
+        let (mut at, mut seen, mut alike) = (0, 0, 0);
+        while at < rows.len() && seen < ROWS {
+            let (row, next) = line_at(rows, at);
+            at = next;
+            if row.trim_ascii().is_empty() || row.starts_with(b"#") {
+                continue;
+            }
+            seen += 1;
+            alike += usize::from(split(row, delimiter).count() == columns);
+        }
+        (columns > 1, alike == seen, columns)
+    };
+    // The last of equals wins.
+    [b',', b';', b'\t'].into_iter().max_by_key(|&d| agreement(d)).unwrap_or(b',')
+}

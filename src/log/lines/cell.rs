@@ -1,0 +1,177 @@
+//! What one cell of text means: a number, missing, or neither; and whether a cell of `led` says on or off.
+//!
+//! Numbers have a decimal point or, where cells are not separated by commas, a decimal comma; not both in one file, and
+//! no marks between thousands.
+
+/// The words that say that a number is missing, without regard to case.
+const MISSING: [&str; 4] = ["nan", "na", "n/a", "null"];
+
+/// Reads cells as numbers.
+#[derive(Debug, Clone, Default)]
+pub(in crate::log) struct Numbers {
+    comma_allowed: bool,
+    /// Whether a decimal point and a decimal comma have been seen.
+    point: bool,
+    comma: bool,
+}
+
+impl Numbers {
+    /// For a file whose cells are separated by `delimiter`.
+    pub(in crate::log) fn of(delimiter: u8) -> Self {
+        Self { comma_allowed: delimiter != b',', ..Self::default() }
+    }
+
+    /// Whether numbers had a decimal comma.
+    pub(in crate::log) fn had_commas(&self) -> bool {
+        self.comma
+    }
+
+    /// The number in a cell without space around it; NaN where it is missing.
+    ///
+    /// # Errors
+    /// What is wrong and what to do.
+    pub(in crate::log) fn read(&mut self, cell: &[u8]) -> Result<f64, String> {
+        if cell.is_empty() {
+            return Ok(f64::NAN);
+        }
+        if let Some(number) = std::str::from_utf8(cell).ok().and_then(|text| text.parse::<f64>().ok()) {
+            if self.comma_allowed && cell.contains(&b'.') {
+                self.point = true;
+                self.one_kind(cell)?;
+            }
+            return if number.is_infinite() {
+                Err(format!("`{}` is no finite number; correct it or leave it empty", shown(cell)))
+            } else {
+                Ok(number)
+            };
+        }
+        if is_missing(cell) {
+            return Ok(f64::NAN);
+        }
+        if self.comma_allowed
+            && let Some(number) = with_decimal_comma(cell)
+        {
+            self.comma = true;
+            self.one_kind(cell)?;
+            return Ok(number);
+        }
+        Err(format!("`{}` is no number; correct it or leave it empty", shown(cell)))
+    }
+
+    fn one_kind(&self, cell: &[u8]) -> Result<(), String> {
+        if self.point && self.comma {
+            return Err(format!(
+                "`{}`: numbers have decimal points here and decimal commas there; use one",
+                shown(cell)
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// Whether a cell is empty or says that nothing is known.
+pub(in crate::log) fn is_missing(cell: &[u8]) -> bool {
+    cell.is_empty() || MISSING.iter().any(|word| cell.eq_ignore_ascii_case(word.as_bytes()))
+}
+
+/// Whether the LED was on; none where it is missing.
+///
+/// # Errors
+/// What is wrong and what to do.
+pub(crate) fn led(cell: &[u8]) -> Result<Option<bool>, String> {
+    const ON: [&[u8]; 4] = [b"1", b"1.0", b"true", b"on"];
+    const OFF: [&[u8]; 4] = [b"0", b"0.0", b"false", b"off"];
+    if ON.iter().any(|word| cell.eq_ignore_ascii_case(word)) {
+        return Ok(Some(true));
+    }
+    if OFF.iter().any(|word| cell.eq_ignore_ascii_case(word)) {
+        return Ok(Some(false));
+    }
+    if is_missing(cell) {
+        return Ok(None);
+    }
+    // `1.000` of programs that write all columns alike.
+    match std::str::from_utf8(cell).ok().and_then(|text| text.replace(',', ".").parse::<f64>().ok()) {
+        Some(1.0) => Ok(Some(true)),
+        Some(0.0) => Ok(Some(false)),
+        _ => Err(format!("`{}` is neither 1 (on) nor 0 (off); correct it", shown(cell))),
+    }
+}
+
+/// The text of a cell for a message, not too long.
+pub(in crate::log) fn shown(cell: &[u8]) -> String {
+    const MOST: usize = 40;
+    let text = String::from_utf8_lossy(cell);
+    if text.chars().count() <= MOST {
+        return text.into_owned();
+    }
+    text.chars().take(MOST).chain("..".chars()).collect()
+}
+
+/// A cell without space and double quotes around it.
+pub(in crate::log) fn bare(cell: &[u8]) -> &[u8] {
+    let cell = cell.trim_ascii();
+    match cell {
+        [b'"', inside @ .., b'"'] => inside.trim_ascii(),
+        _ => cell,
+    }
+}
+
+fn with_decimal_comma(cell: &[u8]) -> Option<f64> {
+    // Longer than any number that a program writes.
+    let mut text = [0; 64];
+    let text = text.get_mut(..cell.len())?;
+    text.copy_from_slice(cell);
+    let comma = text.iter().position(|&b| b == b',')?;
+    text[comma] = b'.';
+    std::str::from_utf8(text).ok()?.parse().ok().filter(|number: &f64| number.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_read_missing_or_refused() {
+        let mut numbers = Numbers::of(b',');
+        for (text, number) in [("1", 1.0), ("-2.5e-3", -2.5e-3), ("+.5", 0.5), ("5.", 5.0), ("-0", 0.0)] {
+            assert_eq!(numbers.read(text.as_bytes()).unwrap(), number, "{text}");
+        }
+        for text in ["", "nan", "NaN", "-nan", "NA", "n/a", "NULL"] {
+            assert!(numbers.read(text.as_bytes()).unwrap().is_nan(), "{text}");
+        }
+        for text in ["x", "1 V", "1,5", "inf", "-Infinity", "1e999", "0x1f", "--", "1.2.3"] {
+            assert!(numbers.read(text.as_bytes()).unwrap_err().contains(&format!("`{text}`")), "{text}");
+        }
+        assert!(numbers.read(b"\xff1").is_err());
+    }
+
+    #[test]
+    fn decimal_commas_are_read_where_they_separate_nothing_else() {
+        let mut numbers = Numbers::of(b';');
+        assert_eq!(numbers.read(b"3").unwrap(), 3.0);
+        assert_eq!(numbers.read(b"-1,25e2").unwrap(), -125.0);
+        assert!(numbers.had_commas());
+        assert!(numbers.read(b"1.234,5").is_err() && numbers.read(b"1,2,3").is_err());
+        assert!(numbers.read(b"1.5").unwrap_err().contains("decimal points here"));
+        assert!(numbers.read(&[b','; 100]).is_err());
+    }
+
+    #[test]
+    fn the_led_is_on_or_off() {
+        for (text, on) in [("1", true), ("0", false), ("True", true), ("OFF", false), ("1.000", true), ("0,0", false)] {
+            assert_eq!(led(text.as_bytes()).unwrap(), Some(on), "{text}");
+        }
+        assert_eq!(led(b"").unwrap(), None);
+        for text in ["2", "0.5", "-1", "yes", "x"] {
+            assert!(led(text.as_bytes()).unwrap_err().contains("neither 1 (on) nor 0 (off)"), "{text}");
+        }
+    }
+
+    #[test]
+    fn cells_are_bared_and_shown_shortly() {
+        assert_eq!(bare(b"  \" 1.5 \" "), b"1.5");
+        assert_eq!(bare(b"\""), b"\"");
+        assert_eq!(shown(&[b'a'; 100]).len(), 42);
+    }
+}

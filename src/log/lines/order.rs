@@ -1,0 +1,224 @@
+//! A log's time as a whole: rows out of order, clocks that were reset, stamps that repeat, gaps.
+//!
+//! In: rows in the file's order. Out: a [`Log`] whose time ascends, and notes on what its time is like.
+//!
+//! A run of rows that are late (behind the latest stamp so far) is a small disorder, and sorted, where it has at most
+//! [`LATE_ROWS`] rows, reaches back by at most as many steps, and takes a hole that is there for it: sorted, the rows
+//! there are about as dense as everywhere. Anything else that falls back is a clock that was reset, and so is a leap of
+//! more than a day.
+
+use std::num::NonZeroUsize;
+
+use crate::log::formats::raw::Raw;
+use crate::log::lines::stamps::DAY_S;
+use crate::log::{Channel, Log, LogError};
+
+/// The longest run of late rows that counts as a small disorder.
+const LATE_ROWS: usize = 16;
+
+/// A step of more than so many usual ones is a gap.
+const GAP_STEPS: f64 = 5.0;
+
+/// Orders the rows by time.
+pub(in crate::log) fn settle(mut raw: Raw, piece: Option<NonZeroUsize>) -> Result<Log, LogError> {
+    let read = raw.time_s.len();
+    let untimed = raw.time_s.iter().filter(|t| t.is_nan()).count();
+    let known: Vec<bool> = match &raw.led {
+        Some(led) => raw.time_s.iter().zip(led).map(|(t, led)| !t.is_nan() && led.is_some()).collect(),
+        None => raw.time_s.iter().map(|t| !t.is_nan()).collect(),
+    };
+    let mut rows: Vec<usize> = (0..read).filter(|&row| known[row]).collect();
+    let unlabelled = read - untimed - rows.len();
+    for (count, what) in [(untimed, "have no time"), (unlabelled, "do not say whether the LED was on")] {
+        if count > 0 {
+            raw.notes.push(format!("{count} of {read} rows {what} and are left out"));
+        }
+    }
+    if rows.is_empty() {
+        return Err(raw.no_rows());
+    }
+    rows = one_piece(&mut raw, rows, piece)?;
+    sort(&mut raw, &mut rows);
+    let time_s: Vec<f64> = rows.iter().map(|&row| raw.time_s[row]).collect();
+    let step_s = median_step_s(&time_s);
+    tell_repeats(&mut raw, &rows, &time_s, step_s);
+    tell_gaps(&mut raw, &rows, &time_s, step_s);
+    let midnight_s = raw.midnight_s.map(|midnight_s| midnight_s + ((time_s[0] - midnight_s) / DAY_S).floor() * DAY_S);
+    let in_order = rows.len() == read && rows.iter().enumerate().all(|(k, &row)| k == row);
+    let channels = |channels: Vec<Channel>| -> Vec<Channel> {
+        let ordered = |channel: Channel| {
+            let Channel { name, values } = channel;
+            Channel { name, values: if in_order { values } else { rows.iter().map(|&row| values[row]).collect() } }
+        };
+        channels.into_iter().map(ordered).collect()
+    };
+    let (photodiodes, forces) = (channels(raw.photodiodes), channels(raw.forces));
+    for Channel { name, values } in photodiodes.iter().chain(&forces) {
+        let missing = values.iter().filter(|v| v.is_nan()).count();
+        if missing == values.len() {
+            raw.notes.push(format!("{name} has no value at all"));
+        } else if missing > 0 {
+            raw.notes.push(format!("{name} has no value in {missing} of {} rows", values.len()));
+        }
+    }
+    let led = raw.led.map(|led| rows.iter().map(|&row| led[row] == Some(true)).collect());
+    Ok(Log { path: raw.path, time_s, midnight_s, led, photodiodes, forces, notes: raw.notes })
+}
+
+/// The rows of the piece that is asked for; of all where the clock was not reset.
+fn one_piece(raw: &mut Raw, rows: Vec<usize>, piece: Option<NonZeroUsize>) -> Result<Vec<usize>, LogError> {
+    let time_s: Vec<f64> = rows.iter().map(|&row| raw.time_s[row]).collect();
+    let error = |raw: &Raw, row: usize, what: String| LogError::Time { place: raw.place(rows[row]), what };
+    let back = time_s.windows(2).filter(|pair| pair[1] < pair[0]).count();
+    if let Some(first) = (1..time_s.len()).find(|&k| time_s[k] < time_s[k - 1])
+        && 2 * back > time_s.len() - 1
+    {
+        let what = "time runs backwards from here on; sort the rows by time".to_owned();
+        return Err(error(raw, first, what));
+    }
+    let breaks = breaks(&time_s);
+    let pieces = breaks.len() + 1;
+    let Some(piece) = piece else {
+        let Some(&at) = breaks.first() else { return Ok(rows) };
+        let (before, after) = (time_s[at - 1], time_s[at]);
+        let does = if after < before { "falls back" } else { "leaps" };
+        let which = if pieces > 2 { format!(" (the first of {} such places)", pieces - 1) } else { String::new() };
+        let what = format!(
+            "time {does} from {before} s to {after} s here{which}, as where a clock is set; cut the file there, or \
+             choose one of the {pieces} pieces with --piece"
+        );
+        return Err(error(raw, at, what));
+    };
+    if piece.get() > pieces {
+        let what = format!("has {pieces} piece(s) between resets of its clock, so there is no --piece {piece}");
+        return Err(LogError::File { path: raw.path.clone(), what });
+    }
+    let begin = if piece.get() == 1 { 0 } else { breaks[piece.get() - 2] };
+    let end = breaks.get(piece.get() - 1).copied().unwrap_or(rows.len());
+    if pieces > 1 {
+        let (first, last) = (raw.word.at(raw.places[rows[begin]]), raw.word.at(raw.places[rows[end - 1]]));
+        raw.notes.push(format!("piece {piece} of {pieces} is taken, from {first} to {last}"));
+    }
+    Ok(rows[begin..end].to_vec())
+}
+
+/// Where the clock was reset: the rows at which time begins anew.
+fn breaks(time_s: &[f64]) -> Vec<usize> {
+    let step_s = median_step_s(time_s).unwrap_or(0.0);
+    let mut breaks = Vec::new();
+    let mut latest = time_s[0];
+    let mut begin = 0;
+    let mut k = 1;
+    while k < time_s.len() {
+        if time_s[k] >= latest {
+            if time_s[k] - latest > DAY_S {
+                breaks.push(k);
+                begin = k;
+            }
+            latest = time_s[k];
+            k += 1;
+            continue;
+        }
+        let run = time_s[k..].iter().take(LATE_ROWS + 1).take_while(|&&t| t < latest).count();
+        if is_small(&time_s[begin..], k - begin, run, latest, step_s) {
+            k += run;
+        } else {
+            breaks.push(k);
+            begin = k;
+            latest = time_s[k];
+            k += 1;
+        }
+    }
+    breaks
+}
+
+/// Whether the `run` rows from `k` on, all before `latest`, are a small disorder.
+fn is_small(time_s: &[f64], k: usize, run: usize, latest: f64, step_s: f64) -> bool {
+    let earliest = time_s[k..k + run].iter().copied().fold(f64::INFINITY, f64::min);
+    let steps = (latest - earliest) / step_s;
+    let there = time_s[k.saturating_sub(4 * LATE_ROWS)..k + run].iter().filter(|&&t| t >= earliest).count() as f64;
+    run <= LATE_ROWS.min((time_s.len() / 4).max(1))
+        && time_s.len() > 2
+        && steps <= LATE_ROWS as f64
+        && (0.6 * steps - 1.0..=1.5 * steps + 2.0).contains(&there)
+}
+
+/// Sorts rows that stand in the wrong place, and tells.
+fn sort(raw: &mut Raw, rows: &mut [usize]) {
+    let time = |row: usize| raw.time_s[row];
+    let mut latest = rows[0];
+    let (mut late, mut first, mut by_s) = (0, None, 0.0_f64);
+    for &row in rows.iter() {
+        if time(row) < time(latest) {
+            late += 1;
+            first.get_or_insert(row);
+            by_s = by_s.max(time(latest) - time(row));
+        } else {
+            latest = row;
+        }
+    }
+    if let Some(first) = first {
+        rows.sort_by(|&a, &b| raw.time_s[a].total_cmp(&raw.time_s[b]));
+        let place = raw.word.at(raw.places[first]);
+        raw.notes.push(format!(
+            "{late} row(s) stood behind later ones, by up to {} s (the first: {place}); rows are sorted by time",
+            short(by_s)
+        ));
+    }
+}
+
+fn tell_repeats(raw: &mut Raw, rows: &[usize], time_s: &[f64], step_s: Option<f64>) {
+    let repeats = |k: &usize| time_s[*k] == time_s[k - 1];
+    let count = (1..time_s.len()).filter(repeats).count();
+    let Some(first) = (1..time_s.len()).find(repeats) else { return };
+    let distinct = time_s.len() - count;
+    // More than half of the rows stand in blocks of their stamp.
+    if 2 * count >= time_s.len() / 2 && count >= distinct / 2 {
+        let rows_a_block = time_s.len() as f64 / distinct as f64;
+        let apart = step_s.map(|s| format!(", {} s apart", short(s))).unwrap_or_default();
+        raw.notes.push(format!(
+            "rows come in blocks of one time stamp (about {rows_a_block:.1} rows each{apart}); when a row was taken \
+             is known only to the block"
+        ));
+    } else {
+        let place = raw.word.at(raw.places[rows[first]]);
+        raw.notes.push(format!(
+            "{count} row(s) have the same time stamp as the row before (the first: {place}); all are kept"
+        ));
+    }
+}
+
+fn tell_gaps(raw: &mut Raw, rows: &[usize], time_s: &[f64], step_s: Option<f64>) {
+    let Some(step_s) = step_s else { return };
+    if step_s > 1.0 && raw.midnight_s.is_none() {
+        raw.notes.push(format!(
+            "rows are {} s apart, if the stamps are in seconds; --time-unit says what they are in",
+            short(step_s)
+        ));
+    }
+    let step = |k: usize| time_s[k] - time_s[k - 1];
+    let gaps: Vec<usize> = (1..time_s.len()).filter(|&k| step(k) > GAP_STEPS * step_s).collect();
+    // The first of equals.
+    let Some(&longest) = gaps.iter().rev().max_by(|&&a, &&b| step(a).total_cmp(&step(b))) else { return };
+    raw.notes.push(format!(
+        "{} gap(s) of more than {GAP_STEPS} steps of {} s; the longest, {} s, ends at {}",
+        gaps.len(),
+        short(step_s),
+        short(step(longest)),
+        raw.word.at(raw.places[rows[longest]])
+    ));
+}
+
+/// The usual step between different stamps, seconds.
+fn median_step_s(time_s: &[f64]) -> Option<f64> {
+    let mut steps: Vec<f64> = time_s.windows(2).map(|pair| pair[1] - pair[0]).filter(|&step| step > 0.0).collect();
+    let middle = steps.len() / 2;
+    (!steps.is_empty()).then(|| *steps.select_nth_unstable_by(middle, f64::total_cmp).1)
+}
+
+/// A number with three digits, for a message.
+fn short(number: f64) -> String {
+    let decimals = (2.0 - number.abs().max(1e-9).log10().floor()).clamp(0.0, 9.0) as usize;
+    let text = format!("{number:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}

@@ -1,0 +1,163 @@
+//! The rows of a text file: cells to numbers, stamps and LED states, each fault with its line and column.
+//!
+//! Rows have as many cells as the header; empty ones at a row's end may be too many. The last row, if it is cut off (a
+//! logger that was stopped), is left out and told.
+
+use std::path::Path;
+
+use crate::log::LogError;
+use crate::log::formats::raw::{Raw, RowWord, place};
+use crate::log::formats::text::{self, Layout};
+use crate::log::lines::cell::shown;
+use crate::log::lines::cell::{self, Numbers, bare};
+use crate::log::lines::stamps::Stamps;
+use crate::log::naming::columns::{Choice, Columns};
+use crate::log::naming::role::Role;
+
+/// Reads a text file.
+pub(in crate::log) fn read(path: &Path, columns: &Columns) -> Result<Raw, LogError> {
+    let text = text::open(path)?;
+    let (layout, choice) = choose(path, &text, columns)?;
+    Rows { path, text: &text, layout: &layout, choice: &choice }.read()
+}
+
+/// Finds the header and chooses among its columns.
+pub(in crate::log) fn choose(path: &Path, text: &[u8], columns: &Columns) -> Result<(Layout, Choice), LogError> {
+    let layout = Layout::find(text).map_err(|what| LogError::File { path: path.to_owned(), what })?;
+    let choice = columns
+        .choose(&layout.names, &stamped(text, &layout))
+        .map_err(|what| LogError::Columns { path: path.to_owned(), what })?;
+    Ok((layout, choice))
+}
+
+/// Nameless columns whose first cell is a date.
+fn stamped(text: &[u8], layout: &Layout) -> Vec<usize> {
+    let mut row = csv::ByteRecord::new();
+    if !matches!(reader(text, layout).read_byte_record(&mut row), Ok(true)) {
+        return Vec::new();
+    }
+    let is_stamp = |cell: &[u8]| Stamps::default().push(bare(cell), &mut Numbers::of(layout.delimiter)).is_ok();
+    let dated = |k: &usize| row.get(*k).is_some_and(|cell| cell.contains(&b':') && is_stamp(cell));
+    (0..layout.names.len()).filter(|&k| layout.names[k].is_empty()).filter(dated).collect()
+}
+
+fn reader<'a>(text: &'a [u8], layout: &Layout) -> csv::Reader<&'a [u8]> {
+    csv::ReaderBuilder::new()
+        .delimiter(layout.delimiter)
+        .has_headers(false)
+        .flexible(true)
+        .comment(Some(b'#'))
+        .from_reader(&text[layout.body..])
+}
+
+struct Rows<'a> {
+    path: &'a Path,
+    text: &'a [u8],
+    layout: &'a Layout,
+    choice: &'a Choice,
+}
+
+impl Rows<'_> {
+    fn read(&self) -> Result<Raw, LogError> {
+        let mut raw = Raw::new(self.path.to_owned(), RowWord::Line, self.choice);
+        raw.notes.splice(0..0, self.layout.notes.iter().cloned());
+        let mut numbers = Numbers::of(self.layout.delimiter);
+        let mut stamps = Stamps::default();
+        let mut channels: Vec<Vec<f64>> = vec![Vec::new(); self.choice.columns.len()];
+        let mut rows = reader(self.text, self.layout);
+        let mut row = csv::ByteRecord::new();
+        loop {
+            let line = self.line_of_next(&rows);
+            let more = rows.read_byte_record(&mut row).map_err(|why| LogError::File {
+                path: self.path.to_owned(),
+                what: format!("line {line} can't be read ({why})"),
+            })?;
+            if !more {
+                break;
+            }
+            match self.length(&row, line, self.at(&rows) == self.text.len() && !self.text.ends_with(b"\n"))? {
+                Length::Right => {}
+                Length::Blank => continue,
+                Length::CutOff => {
+                    raw.notes.push(format!("line {line}, the last, is cut off and left out"));
+                    break;
+                }
+            }
+            for (&(role, column), values) in self.choice.columns.iter().zip(&mut channels) {
+                let cell = bare(&row[column]);
+                match role {
+                    Role::Time => stamps.push(cell, &mut numbers),
+                    Role::Led => cell::led(cell).map(|on| raw.led.get_or_insert_default().push(on)),
+                    Role::Photodiode(_) | Role::Output(_) | Role::Force(_) | Role::Pressure(_) => {
+                        numbers.read(cell).map(|number| values.push(number))
+                    }
+                }
+                .map_err(|what| {
+                    let place = place(self.path, RowWord::Line, line);
+                    LogError::Cell { place: format!("{place}: column `{}`", self.layout.names[column]), what }
+                })?;
+            }
+            raw.places.push(line);
+        }
+        if numbers.had_commas() {
+            raw.notes.push("numbers have decimal commas".to_owned());
+        }
+        for (&(role, _), values) in self.choice.columns.iter().zip(channels) {
+            if let Some(channel) = raw.channel(role) {
+                *channel = values;
+            }
+        }
+        (raw.time_s, raw.midnight_s) = stamps.finish(self.choice.time_unit, &mut raw.notes);
+        Ok(raw)
+    }
+
+    /// The line of the row that is read next.
+    fn line_of_next(&self, rows: &csv::Reader<&[u8]>) -> u64 {
+        self.layout.lines_before + rows.position().line() + text::lines_to_row(self.text, self.at(rows))
+    }
+
+    /// The byte that is read next.
+    fn at(&self, rows: &csv::Reader<&[u8]>) -> usize {
+        self.layout.body + rows.position().byte() as usize
+    }
+
+    fn length(&self, row: &csv::ByteRecord, line: u64, last: bool) -> Result<Length, LogError> {
+        let names = &self.layout.names;
+        if row.len() == names.len() {
+            return Ok(Length::Right);
+        }
+        let blank = |k: usize| bare(&row[k]).is_empty();
+        if (0..row.len()).all(blank) && row.len() <= 1 {
+            return Ok(Length::Blank);
+        }
+        let missing_are_nameless = row.len() < names.len() && names[row.len()..].iter().all(String::is_empty);
+        let used = self.choice.columns.iter().all(|&(_, column)| column < row.len());
+        if (names.len()..row.len()).all(blank) && row.len() > names.len() || missing_are_nameless && used {
+            return Ok(Length::Right);
+        }
+        if row.len() < names.len() && last {
+            return Ok(Length::CutOff);
+        }
+        let comma = if self.layout.delimiter == b',' && row.len() > names.len() {
+            "; if numbers have decimal commas, separate cells by `;` or tabs"
+        } else {
+            ""
+        };
+        let what = format!(
+            "has {} cells and the header {}; correct it{comma} (it begins with `{}`)",
+            row.len(),
+            names.len(),
+            shown(&row[0])
+        );
+        Err(LogError::Cell { place: place(self.path, RowWord::Line, line), what })
+    }
+}
+
+/// Whether a row has as many cells as it should.
+enum Length {
+    Right,
+    /// Nothing but space.
+    Blank,
+    /// The end of the file was never written.
+    CutOff,
+}

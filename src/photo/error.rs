@@ -1,0 +1,64 @@
+//! Why there are no results.
+
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+use super::outline::SavedOutlines;
+use super::set::SetFault;
+use super::sums::PartialFault;
+use crate::files::WriteError;
+use crate::words::shown;
+
+/// Why a set gave no results.
+#[derive(Debug, Error)]
+pub enum PhotosError {
+    /// The results can't be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// Not one usable nail.
+    #[error("not one nail could be used, so there are no results:{}", list(.failed))]
+    NothingUsable {
+        /// Why, by photograph.
+        failed: Vec<SetFault>,
+        /// What was detected but not trusted and was saved, where that was requested: a person may correct it.
+        outlines: Option<SavedOutlines>,
+    },
+    /// Stopped from outside.
+    #[error("interrupted; nothing was written")]
+    Interrupted,
+}
+
+fn list(failed: &[SetFault]) -> String {
+    failed.iter().map(|fault| format!("\n  {}: {}", shown(&fault.place), fault.what)).collect()
+}
+
+/// Why results were not joined; nothing is written then.
+#[derive(Debug, Error)]
+pub enum MergeError {
+    /// The parts don't fit.
+    #[error(transparent)]
+    Partial(#[from] PartialFault),
+    /// A part's table of nails.
+    #[error("{}: {why}; make that part again", .file.display())]
+    Nails {
+        /// Which table.
+        file: PathBuf,
+        /// What is wrong with it.
+        why: String,
+    },
+    /// The exact maps that results are compared with.
+    #[error("{}: {why}", .file.display())]
+    Truth {
+        /// Which map.
+        file: PathBuf,
+        /// What is wrong with it.
+        why: String,
+    },
+    /// The results can't be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+    /// Stopped from outside.
+    #[error("interrupted; nothing was written")]
+    Interrupted,
+}

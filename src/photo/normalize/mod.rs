@@ -1,0 +1,100 @@
+//! Photograph to nail frame: the normalized picture (section 4.2.2, Fig. 53).
+//!
+//! In: an upright photograph and a [`NailFrame`]. Out: `size` x `size` levels, 65535 being full scale, distal end at
+//! the top, `margin` times the nail's box: row i, column j lies at ((j + 0.5 - size/2), (size/2 - i - 0.5)) /
+//! (size / margin) in widths and lengths from the centre. What the photograph does not show is not seen, rather than 0.
+
+mod frame;
+mod options;
+mod plane;
+mod resample;
+
+use image::DynamicImage;
+
+pub use frame::{FrameFault, NailFrame, SMALLEST_EXTENT_PX};
+pub use options::{Normalization, Resample};
+pub use plane::Channel;
+
+/// Full scale of a [`Normalized`] picture's levels.
+pub const FULL_SCALE: u16 = u16::MAX;
+
+/// A normalized picture, quantized to 16 bits whatever the source's depth.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Normalized {
+    /// Width and height, pixels.
+    pub size: usize,
+    /// Row by row from the top (distal), 0 to [`FULL_SCALE`]; 0 where not seen.
+    pub levels: Vec<u16>,
+    /// Which pixels the photograph shows; `None` where it shows them all.
+    pub seen: Option<Vec<bool>>,
+}
+
+impl Normalized {
+    /// Fractions of full scale, row by row; NaN where the photograph does not show the place.
+    pub fn values(&self) -> impl Iterator<Item = f32> + '_ {
+        (0..self.levels.len()).map(|at| self.level(at).map_or(f32::NAN, |l| f32::from(l) / f32::from(FULL_SCALE)))
+    }
+
+    /// One pixel's level, where it is seen.
+    pub(crate) fn level(&self, at: usize) -> Option<u16> {
+        self.seen.as_ref().is_none_or(|seen| seen[at]).then(|| self.levels[at])
+    }
+
+    /// How many pixels the photograph shows.
+    pub fn count_seen(&self) -> usize {
+        self.seen.as_ref().map_or(self.levels.len(), |seen| seen.iter().filter(|&&s| s).count())
+    }
+
+    fn nowhere(size: usize) -> Self {
+        Self { size, levels: vec![0; size * size], seen: Some(vec![false; size * size]) }
+    }
+
+    /// From fractions of full scale, 0 to 1; NaN is not seen.
+    #[cfg(test)]
+    pub(crate) fn from_values(size: usize, values: &[f32]) -> Self {
+        Self::from_values_in(Vec::new(), size, values)
+    }
+
+    fn from_values_in(mut levels: Vec<u16>, size: usize, values: &[f32]) -> Self {
+        levels.clear();
+        // Adding 2^23 leaves the rounded number in the sum's lowest bits: branch-free, unlike a saturating cast.
+        levels.extend(values.iter().map(|v| (v * f32::from(FULL_SCALE) + 8_388_608.0).to_bits() as u16));
+        let some_unseen = values.iter().fold(false, |some, v| some | v.is_nan());
+        let seen = some_unseen.then(|| {
+            for (level, value) in levels.iter_mut().zip(values) {
+                if value.is_nan() {
+                    *level = 0;
+                }
+            }
+            values.iter().map(|v| !v.is_nan()).collect()
+        });
+        Self { size, levels, seen }
+    }
+}
+
+/// Brings a nail into its frame.
+pub fn normalize(image: &DynamicImage, frame: &NailFrame, with: &Normalization) -> Normalized {
+    Normalizer::default().normalize(image, frame, with)
+}
+
+/// Brings nails into their frames, one after the other, in the same memory.
+#[derive(Default)]
+pub(super) struct Normalizer {
+    buffers: resample::Buffers,
+    levels: Vec<Vec<u16>>,
+}
+
+impl Normalizer {
+    /// As [`normalize`].
+    pub(super) fn normalize(&mut self, image: &DynamicImage, frame: &NailFrame, with: &Normalization) -> Normalized {
+        if !resample::values(image, frame, with, &mut self.buffers) {
+            return Normalized::nowhere(with.size);
+        }
+        Normalized::from_values_in(self.levels.pop().unwrap_or_default(), with.size, &self.buffers.values)
+    }
+
+    /// Takes back the memory of a picture that is done with.
+    pub(super) fn take_back(&mut self, picture: Normalized) {
+        self.levels.push(picture.levels);
+    }
+}

@@ -1,0 +1,154 @@
+//! Detected outlines saved as LabelMe files for a person to correct; the next run uses the corrected ones.
+//!
+//! Beside each photograph (`<stem>.json`), or in a folder of their own with a `photos.csv` that ties them to the
+//! photographs:
+//! that folder is then the set of the next run. A file that exists is never overwritten: it may be a person's work.
+//! Outlines that are not trusted are labelled `nail?`, which no run reads until somebody relabels them.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+use super::annotated::{ToDraw, to_file};
+use super::source::{Nail, Source};
+use crate::files::{Places, WriteError};
+use crate::photo::read::Photograph;
+use crate::photo::set::{Photo, PhotoSet};
+
+/// The detected outlines of a photograph.
+#[derive(Debug, Clone)]
+pub(in crate::photo) struct DetectedOutline {
+    /// Index of its photograph in the set.
+    photo: usize,
+    /// Width and height of the upright photograph, pixels.
+    size: [u32; 2],
+    /// Trusted and doubtful ones.
+    nails: Vec<ToDraw>,
+}
+
+impl DetectedOutline {
+    /// What was detected on a photograph; `None` where that is nothing.
+    pub(in crate::photo) fn of(photo: usize, picture: &Photograph, nails: &[Nail]) -> Option<Self> {
+        let found: Vec<ToDraw> = nails
+            .iter()
+            .filter(|n| n.source == Source::Detected)
+            .filter_map(|n| {
+                let confidence = n.confidence.unwrap_or(0.0);
+                Some(ToDraw { outline: n.outline.clone()?, axis: n.axis?, confidence, trusted: n.reason.is_empty() })
+            })
+            .collect();
+        let size = [picture.image.width(), picture.image.height()];
+        (!found.is_empty()).then_some(Self { photo, size, nails: found })
+    }
+}
+
+/// The LabelMe files of detected outlines.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct SavedOutlines {
+    /// The folder that they are in; `None`: beside the photographs.
+    pub folder: Option<PathBuf>,
+    /// New files.
+    pub written: Vec<PathBuf>,
+    /// Files that exist and stay as they are.
+    pub kept: Vec<PathBuf>,
+}
+
+impl SavedOutlines {
+    /// What a person should know of them, a line each.
+    #[must_use]
+    pub fn notes(&self) -> Vec<String> {
+        let place =
+            self.folder.as_ref().map_or_else(|| "beside the photographs".into(), |f| format!("in {}", f.display()));
+        let mut notes = vec![format!("{} outlines saved {place} for LabelMe", self.written.len())];
+        match &self.kept[..] {
+            [] => {}
+            [only] => notes.push(format!("{} exists and stays as it is", only.display())),
+            [first, .., last] => notes.push(format!(
+                "{} files of outlines exist and stay as they are: {} to {}",
+                self.kept.len(),
+                first.display(),
+                last.display()
+            )),
+        }
+        notes
+    }
+}
+
+/// Saves detected outlines of the photographs of `set`, in `folder` or beside them, as far as `places`.
+///
+/// # Errors
+/// [`WriteError`] where a file can't be written.
+pub(in crate::photo) fn keep_outlines(
+    detected: &[DetectedOutline],
+    set: &PhotoSet,
+    folder: Option<&Path>,
+    places: &mut Places,
+) -> Result<SavedOutlines, WriteError> {
+    let mut saved = SavedOutlines { folder: folder.map(Path::to_owned), ..SavedOutlines::default() };
+    let mut new = BTreeSet::new();
+    // Also where all outlines exist, or where none is detected any more because they do.
+    let homes: BTreeSet<PathBuf> =
+        set.photos.iter().filter_map(|photo| Some(place(photo, folder).parent()?.to_owned())).collect();
+    homes.iter().for_each(|home| places.look_after(home));
+    for detected in detected {
+        let photo = &set.photos[detected.photo];
+        let path = place(photo, folder);
+        if path.exists() || !new.insert(path.clone()) {
+            saved.kept.push(path);
+            continue;
+        }
+        // Its folder is there from here on, and paths relative to it can be written.
+        let at = places.place(&path)?;
+        let file = to_file(&relative(&photo.path, path.parent()), detected.size, &detected.nails);
+        let refused = |why: String| WriteError::File { path: path.clone(), why };
+        let text = file.to_text().map_err(|why| refused(why.to_string()))?;
+        std::fs::write(at, text).map_err(|why| refused(why.to_string()))?;
+        saved.written.push(path);
+    }
+    if let Some(folder) = folder {
+        write_manifest(set, folder, &new, places)?;
+    }
+    Ok(saved)
+}
+
+fn place(photo: &Photo, folder: Option<&Path>) -> PathBuf {
+    match folder {
+        Some(folder) => folder.join(&photo.pose).join(format!("{}.json", photo.subject)),
+        None => photo.path.with_extension("json"),
+    }
+}
+
+/// `photos.csv` of every photograph of the set, so that the folder can be the next run's set.
+fn write_manifest(
+    set: &PhotoSet,
+    folder: &Path,
+    new: &BTreeSet<PathBuf>,
+    places: &mut Places,
+) -> Result<(), WriteError> {
+    let path = folder.join("photos.csv");
+    let refused = |why: String| WriteError::File { path: path.clone(), why };
+    let at = places.place(&path)?;
+    let mut table = csv::Writer::from_writer(Vec::new());
+    table.write_record(["file", "subject", "pose", "outline"]).map_err(|e| refused(e.to_string()))?;
+    for photo in &set.photos {
+        let outline =
+            [Some(place(photo, Some(folder))), photo.outline.clone(), Some(photo.path.with_extension("json"))]
+                .into_iter()
+                .flatten()
+                .find(|path| path.is_file() || new.contains(path));
+        let outline = outline.map_or_else(String::new, |path| relative(&path, Some(folder)));
+        let file = relative(&photo.path, Some(folder));
+        table.write_record([&file, &photo.subject, &photo.pose, &outline]).map_err(|e| refused(e.to_string()))?;
+    }
+    let text = table.into_inner().map_err(|e| refused(e.to_string()))?;
+    std::fs::write(at, text).map_err(|e| refused(e.to_string()))
+}
+
+/// `path` as seen from `folder`, both made absolute first; as it is where that can't be known.
+fn relative(path: &Path, folder: Option<&Path>) -> String {
+    // A file that is on its way has its folder already.
+    let real = |path: &Path| {
+        path.canonicalize().ok().or_else(|| Some(path.parent()?.canonicalize().ok()?.join(path.file_name()?)))
+    };
+    let seen = folder.and_then(|folder| pathdiff::diff_paths(real(path)?, folder.canonicalize().ok()?));
+    seen.unwrap_or_else(|| path.to_owned()).to_string_lossy().into_owned()
+}

@@ -1,0 +1,176 @@
+//! Pictures: the normalized ones, the four figures of each pose, and sheets of all.
+//!
+//! Each is drawn once: its bytes go to its file, and are handed on to the report's page.
+
+use image::{GrayAlphaImage, imageops};
+use rayon::prelude::*;
+
+use crate::figure::{self, Scale, Sheet, Stretch, Tile, grey_map};
+use crate::files::{Staging, WriteError};
+use crate::photo::normalize::Normalized;
+use crate::photo::read::Depth;
+use crate::photo::sums::Maps;
+
+/// One kind of figure: its file name, how it is stretched, what its scale says.
+struct Kind {
+    name: &'static str,
+    title: &'static str,
+    stretch: Stretch,
+    label: &'static str,
+    of_sd: bool,
+}
+
+const KINDS: [Kind; 4] = [
+    Kind {
+        name: "mean",
+        title: "Average coloration (Fig. 53)",
+        stretch: Stretch::Linear { low: 0.0, high: 1.0 },
+        label: "mean, % of full scale",
+        of_sd: false,
+    },
+    Kind {
+        name: "contrast",
+        title: "Average coloration, 30-50 % stretched to the full range (Fig. 54)",
+        stretch: Stretch::Linear { low: 0.3, high: 0.5 },
+        label: "mean, % of full scale",
+        of_sd: false,
+    },
+    Kind {
+        name: "threshold",
+        title: "Average coloration above 105/255 (Fig. 55)",
+        stretch: Stretch::Above(105.0 / 255.0),
+        label: "mean, % of full scale; white above 105/255",
+        of_sd: false,
+    },
+    Kind {
+        name: "sd",
+        title: "Standard deviation over subjects, 0-20 % stretched to the full range (Fig. 56)",
+        stretch: Stretch::Linear { low: 0.0, high: 0.2 },
+        label: "SD (n - 1), % of full scale",
+        of_sd: true,
+    },
+];
+
+/// A sheet as it was written.
+pub(in crate::photo) struct DrawnSheet {
+    /// What it shows.
+    pub(in crate::photo) title: String,
+    /// Its PNG file.
+    pub(in crate::photo) png: Vec<u8>,
+}
+
+/// Memory for the pictures of a thread, kept from one photograph to the next.
+#[derive(Default)]
+pub(in crate::photo) struct Scratch {
+    samples: Vec<u8>,
+    png: Vec<u8>,
+}
+
+/// As deep as its source; with an alpha channel, 0 where the photograph does not show the place, only if there is such
+/// a place.
+pub(in crate::photo) fn write_normalized(
+    picture: &Normalized,
+    depth: Depth,
+    scratch: &mut Scratch,
+    staging: &Staging,
+    name: &str,
+) -> Result<(), WriteError> {
+    let eight = |level: u16| ((u32::from(level) * 255 + 32767) / 65535) as u8;
+    let Scratch { samples, png } = scratch;
+    samples.clear();
+    let levels = picture.levels.iter().copied();
+    match (depth, &picture.seen) {
+        (Depth::Eight, None) => samples.extend(levels.map(eight)),
+        (Depth::Sixteen, None) => samples.extend(levels.flat_map(u16::to_ne_bytes)),
+        (Depth::Eight, Some(seen)) => {
+            samples.extend(levels.zip(seen).flat_map(|(level, &seen)| [eight(level), if seen { 255 } else { 0 }]));
+        }
+        (Depth::Sixteen, Some(seen)) => samples.extend(levels.zip(seen).flat_map(|(level, &seen)| {
+            let ([a, b], opacity) = (level.to_ne_bytes(), if seen { 255 } else { 0 });
+            [a, b, opacity, opacity]
+        })),
+    }
+    let colour = match (depth, &picture.seen) {
+        (Depth::Eight, None) => image::ExtendedColorType::L8,
+        (Depth::Sixteen, None) => image::ExtendedColorType::L16,
+        (Depth::Eight, Some(_)) => image::ExtendedColorType::La8,
+        (Depth::Sixteen, Some(_)) => image::ExtendedColorType::La16,
+    };
+    png.clear();
+    let size = picture.size as u32;
+    figure::encode_png(samples, [size, size], colour, png).map_err(|why| staging.refused(name, why))?;
+    staging.write(name, png)
+}
+
+/// A small version for a sheet of all nails: means of whole blocks, at most `longest` pixels a side.
+pub(in crate::photo) fn thumbnail(picture: &Normalized, longest: usize) -> GrayAlphaImage {
+    let block = picture.size.div_ceil(longest);
+    let side = picture.size / block;
+    let scale = (block * block) as u32 * 257;
+    let mut small = GrayAlphaImage::new(side as u32, side as u32);
+    let mut sums = vec![0_u32; side];
+    for (row, pixels) in small.chunks_exact_mut(2 * side).enumerate() {
+        sums.fill(0);
+        for line in picture.levels[row * block * picture.size..].chunks(picture.size).take(block) {
+            for (sum, levels) in sums.iter_mut().zip(line.chunks_exact(block)) {
+                *sum += levels.iter().map(|&l| u32::from(l)).sum::<u32>();
+            }
+        }
+        for (column, (pixel, sum)) in pixels.chunks_exact_mut(2).zip(&sums).enumerate() {
+            let ends = |k: usize| [k * block, (k + 1) * block - 1];
+            let mut corners = ends(row).into_iter().flat_map(|r| ends(column).map(|c| r * picture.size + c));
+            let seen = corners.all(|at| picture.level(at).is_some());
+            pixel.copy_from_slice(&[(sum / scale) as u8, if seen { 255 } else { 0 }]);
+        }
+    }
+    small
+}
+
+/// Draws a pose's four figures and writes them.
+pub(super) fn draw_pose(
+    pose: &str,
+    subjects: usize,
+    maps: &Maps,
+    staging: &Staging,
+) -> Result<[Tile; KINDS.len()], WriteError> {
+    let tile = |kind: &Kind| {
+        let picture = grey_map(if kind.of_sd { &maps.sd } else { &maps.mean }, kind.stretch);
+        let name = format!("figures/{pose}-{}.png", kind.name);
+        let png = figure::png_of_grey(&picture).map_err(|why| staging.refused(&name, why))?;
+        staging.write(&name, &png)?;
+        Ok(Tile { caption: format!("{pose} (n = {subjects})"), picture, png: Some(png) })
+    };
+    Ok([tile(&KINDS[0])?, tile(&KINDS[1])?, tile(&KINDS[2])?, tile(&KINDS[3])?])
+}
+
+/// Draws the sheets over all poses and writes them.
+pub(super) fn draw_sheets(poses: Vec<[Tile; KINDS.len()]>, staging: &Staging) -> Result<Vec<DrawnSheet>, WriteError> {
+    let small = poses.len() > LARGE_TILES;
+    let mut tiles: [Vec<Tile>; KINDS.len()] = Default::default();
+    for pose in poses {
+        for (tiles, tile) in tiles.iter_mut().zip(pose) {
+            tiles.push(if small { tile.small() } else { tile });
+        }
+    }
+    let draw = |(kind, tiles): (&Kind, Vec<Tile>)| {
+        let scale = Some(Scale { stretch: kind.stretch, label: kind.label.to_owned() });
+        let sheet = Sheet { title: kind.title.to_owned(), tiles, columns: 4, scale };
+        let (png_name, svg_name) = (format!("figures/{}.png", kind.name), format!("figures/{}.svg", kind.name));
+        let png = sheet.png().map_err(|why| staging.refused(&png_name, why))?;
+        staging.write(&png_name, &png)?;
+        staging.write(&svg_name, sheet.svg().map_err(|why| staging.refused(&svg_name, why))?.as_bytes())?;
+        Ok(DrawnSheet { title: sheet.title, png })
+    };
+    KINDS.par_iter().zip(tiles).map(draw).collect()
+}
+
+/// Poses beyond which a sheet shows small tiles.
+const LARGE_TILES: usize = 16;
+const SMALL_TILE_PX: u32 = 160;
+
+impl Tile {
+    fn small(&self) -> Self {
+        let [width, height] = [self.picture.width(), self.picture.height()].map(|side| side.min(SMALL_TILE_PX));
+        Self { caption: self.caption.clone(), picture: imageops::thumbnail(&self.picture, width, height), png: None }
+    }
+}

@@ -1,0 +1,67 @@
+//! Maps, sums and figures of every pose.
+
+use std::io::{BufWriter, Write};
+
+use ndarray::Array2;
+use ndarray_npy::WriteNpyExt;
+use rayon::prelude::*;
+
+use super::draw::{DrawnSheet, draw_pose, draw_sheets};
+use crate::files::{Staging, WriteError};
+use crate::photo::sums::{Member, Members, Partials, part_name, write_part, write_partial};
+use crate::stages::Stages;
+
+/// Sums of every pose and the list of them, for [`gather`](fn@crate::photo::gather).
+pub(in crate::photo) fn write_sums(partials: &Partials, staging: &Staging, stages: &Stages) -> Result<(), WriteError> {
+    stages.time("write sums", || {
+        let mut members = Members::new(partials.normalization);
+        for (pose, sums) in &partials.poses {
+            let name = part_name(pose);
+            let refused = |why: anyhow::Error| staging.refused(&name, why);
+            let file = write_part(&staging.place(&name)?, pose, sums, &partials.normalization).map_err(refused)?;
+            members.add(pose, Member::of(sums, &file));
+        }
+        members.write(staging)
+    })
+}
+
+/// Maps and partial sums of every pose, and where they are wanted figures; returns the sheets over all poses.
+pub(in crate::photo) fn write_maps(
+    partials: &Partials,
+    figures: bool,
+    staging: &Staging,
+    stages: &Stages,
+) -> Result<Vec<DrawnSheet>, WriteError> {
+    let drawn = partials
+        .poses
+        .par_iter()
+        .map(|(pose, sums)| {
+            let maps = stages.time("maps", || sums.maps());
+            stages.time("write maps", || {
+                write_npy(&maps.mean, staging, &format!("maps/{pose}-mean.npy"))?;
+                write_npy(&maps.sd, staging, &format!("maps/{pose}-sd.npy"))?;
+                write_npy(&maps.count, staging, &format!("maps/{pose}-count.npy"))?;
+                let name = format!("maps/{pose}.partial.npz");
+                let path = staging.place(&name)?;
+                write_partial(&path, pose, sums, &partials.normalization).map_err(|why| staging.refused(&name, why))
+            })?;
+            let draw = || draw_pose(pose, sums.subjects().len(), &maps, staging);
+            figures.then(|| stages.time("figures", draw)).transpose()
+        })
+        .collect::<Result<Vec<_>, WriteError>>()?;
+    if !figures {
+        return Ok(Vec::new());
+    }
+    stages.time("sheets", || draw_sheets(drawn.into_iter().flatten().collect(), staging))
+}
+
+fn write_npy<T: ndarray_npy::WritableElement>(
+    array: &Array2<T>,
+    staging: &Staging,
+    name: &str,
+) -> Result<(), WriteError> {
+    let file = std::fs::File::create(staging.place(name)?).map_err(|why| staging.refused(name, why))?;
+    let mut file = BufWriter::new(file);
+    array.write_npy(&mut file).map_err(|why| staging.refused(name, why))?;
+    file.flush().map_err(|why| staging.refused(name, why))
+}

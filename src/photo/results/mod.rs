@@ -1,0 +1,11 @@
+//! The photos job's files: normalized pictures, maps, figures and `nails.csv`, all by way of a
+//! [`Staging`](crate::files::Staging).
+
+mod draw;
+mod maps;
+mod nails;
+
+pub(super) use draw::{DrawnSheet, Scratch, thumbnail, write_normalized};
+pub(super) use maps::{write_maps, write_sums};
+pub use nails::NailRow;
+pub(super) use nails::{NAIL_COLUMNS, NailTable};

@@ -1,0 +1,183 @@
+//! The nails of a result: rows of `nails.csv`, and their sheets of thumbnails.
+
+use std::path::{Path, PathBuf};
+
+use image::GrayAlphaImage;
+use rayon::prelude::*;
+
+use super::draw::DrawnSheet;
+use crate::figure::{Sheet, Tile};
+use crate::files::{Staging, WriteError};
+use crate::input;
+use crate::photo::error::MergeError;
+use crate::photo::normalize::NailFrame;
+use crate::photo::outline::{Axis, Nail, Source};
+use crate::photo::set::PhotoSet;
+
+/// One nail of the result: a row of `nails.csv`.
+#[derive(Debug, Clone)]
+pub struct NailRow {
+    /// Index of its photograph in the set.
+    pub photo: usize,
+    /// Counted from 1 within the photograph.
+    pub number: usize,
+    /// Where its outline came from.
+    pub source: Source,
+    /// 0 to 1, missing where nothing is known.
+    pub confidence: Option<f64>,
+    /// Its box, where there is one.
+    pub frame: Option<NailFrame>,
+    /// Its axis may be known where its box is not.
+    pub axis: Option<Axis>,
+    /// Name of its normalized picture among the results, if those are written; `None` where it was left out.
+    pub normalized: Option<String>,
+    /// Why it was left out, or what of it the photograph does not show; else empty.
+    pub reason: String,
+}
+
+impl NailRow {
+    /// A nail that was not worked on yet.
+    pub(in crate::photo) fn new(photo: usize, number: usize, nail: &Nail) -> Self {
+        Self {
+            photo,
+            number,
+            source: nail.source,
+            confidence: nail.confidence,
+            frame: None,
+            axis: nail.axis,
+            normalized: None,
+            reason: String::new(),
+        }
+    }
+}
+
+const NAME: &str = "nails.csv";
+/// The header of `nails.csv`.
+pub(in crate::photo) const NAIL_COLUMNS: [&str; 13] = [
+    "file",
+    "nail",
+    "subject",
+    "pose",
+    "outline",
+    "confidence",
+    "center_x_px",
+    "center_y_px",
+    "length_px",
+    "width_px",
+    "axis_deg",
+    "used",
+    "reason",
+];
+
+/// A row of `nails.csv`: an empty cell where nothing is known.
+fn cells(row: &NailRow, set: &PhotoSet) -> [String; NAIL_COLUMNS.len()] {
+    let photo = &set.photos[row.photo];
+    let number = |value: Option<f64>, digits: usize| value.map_or_else(String::new, |v| format!("{v:.digits$}"));
+    [
+        photo.file.clone(),
+        row.number.to_string(),
+        photo.subject.clone(),
+        photo.pose.clone(),
+        row.source.name().to_owned(),
+        number(row.confidence, 3),
+        number(row.frame.map(|f| f.center_px[0]), 3),
+        number(row.frame.map(|f| f.center_px[1]), 3),
+        number(row.frame.map(|f| f.length_px), 3),
+        number(row.frame.map(|f| f.width_px), 3),
+        number(row.axis.map(|a| a.clockwise_deg()), 3),
+        row.normalized.is_some().to_string(),
+        row.reason.clone(),
+    ]
+}
+
+/// The column that says whether a nail was used.
+const USED: usize = 11;
+/// Nails on a sheet of thumbnails.
+const NAILS_PER_SHEET: usize = 130;
+const NAILS_PER_ROW: usize = 13;
+
+/// The nails of a report: table and thumbnails.
+#[derive(Debug, Default)]
+pub(in crate::photo) struct NailTable {
+    /// Cells, row by row.
+    pub(in crate::photo) rows: Vec<Vec<String>>,
+    /// Every normalized picture, small; of merged parts none.
+    sheets: Vec<Sheet>,
+}
+
+impl NailTable {
+    /// From a run's rows and, in the same order, the thumbnails of those that have one.
+    pub(in crate::photo) fn of(rows: &[NailRow], thumbnails: Vec<Option<GrayAlphaImage>>, set: &PhotoSet) -> Self {
+        let mut sheets: Vec<Sheet> = Vec::new();
+        for (row, picture) in rows.iter().zip(thumbnails) {
+            let Some(picture) = picture else { continue };
+            if sheets.last().is_none_or(|sheet| sheet.tiles.len() == NAILS_PER_SHEET) {
+                let title = format!("Normalized nails, sheet {}", sheets.len() + 1);
+                sheets.push(Sheet { title, tiles: Vec::new(), columns: NAILS_PER_ROW, scale: None });
+            }
+            let caption = format!("{}: {}", row.number, set.photos[row.photo].subject);
+            if let Some(sheet) = sheets.last_mut() {
+                sheet.tiles.push(Tile { caption, picture, png: None });
+            }
+        }
+        Self { rows: rows.iter().map(|row| cells(row, set).to_vec()).collect(), sheets }
+    }
+
+    /// From the tables of parts, in the order that one run would have given: by pose, subject, file, nail.
+    ///
+    /// # Errors
+    /// [`MergeError::Nails`].
+    pub(in crate::photo) fn of_parts(parts: &[PathBuf]) -> Result<Self, MergeError> {
+        let mut rows = Vec::new();
+        for part in parts {
+            rows.extend(read(&part.join(NAME))?);
+        }
+        rows.sort_by_cached_key(|row: &Vec<String>| {
+            (row[3].clone(), row[2].clone(), row[0].clone(), row[1].parse::<u32>().unwrap_or(0))
+        });
+        Ok(Self { rows, sheets: Vec::new() })
+    }
+
+    /// Writes `nails.csv`: every nail, used or not.
+    ///
+    /// # Errors
+    /// [`WriteError`].
+    pub(in crate::photo) fn write(&self, staging: &Staging) -> Result<(), WriteError> {
+        let mut table = csv::Writer::from_writer(Vec::new());
+        let refused = |why: String| staging.refused(NAME, why);
+        table.write_record(NAIL_COLUMNS).map_err(|e| refused(e.to_string()))?;
+        for row in &self.rows {
+            table.write_record(row).map_err(|e| refused(e.to_string()))?;
+        }
+        staging.write(NAME, &table.into_inner().map_err(|e| refused(e.to_string()))?)
+    }
+
+    /// Draws the sheets of all nails and writes them.
+    ///
+    /// # Errors
+    /// [`WriteError`].
+    pub(in crate::photo) fn draw_sheets(&self, staging: &Staging) -> Result<Vec<DrawnSheet>, WriteError> {
+        let draw = |(at, sheet): (usize, &Sheet)| {
+            let name = format!("figures/nails-{}.png", at + 1);
+            let png = sheet.png().map_err(|why| staging.refused(&name, why))?;
+            staging.write(&name, &png)?;
+            Ok(DrawnSheet { title: sheet.title.clone(), png })
+        };
+        self.sheets.par_iter().enumerate().map(draw).collect()
+    }
+
+    /// Whether a row's nail is part of the maps.
+    pub(in crate::photo) fn is_used(&self, row: usize) -> bool {
+        self.rows[row][USED] == "true"
+    }
+}
+
+fn read(file: &Path) -> Result<Vec<Vec<String>>, MergeError> {
+    let wrong = |why: String| MergeError::Nails { file: file.to_owned(), why };
+    let mut table = csv::Reader::from_reader(input::open(file).map_err(|e| wrong(e.to_string()))?);
+    if table.headers().map_err(|e| wrong(e.to_string()))?.iter().ne(NAIL_COLUMNS) {
+        return Err(wrong(format!("its columns are not {}", NAIL_COLUMNS.join(","))));
+    }
+    let cells = |record: csv::StringRecord| record.iter().map(str::to_owned).collect();
+    table.records().map(|record| record.map(cells).map_err(|e| wrong(e.to_string()))).collect()
+}

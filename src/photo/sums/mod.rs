@@ -1,0 +1,17 @@
+//! Sums over subjects: maps from them, files of them, and how those made in parts are joined.
+
+mod accuracy;
+mod gather;
+mod maps;
+mod members;
+mod merge;
+mod npz;
+mod partial;
+
+pub use accuracy::Accuracy;
+pub use gather::{GatherReport, Gathering, gather};
+pub use maps::{DuplicateSubject, Maps, Sums};
+pub(super) use members::{Member, Members};
+pub use merge::merge;
+pub use partial::{PartialFault, Partials, join};
+pub(super) use partial::{part_name, write as write_partial, write_part};

@@ -1,0 +1,196 @@
+//! A row of voltages in, forces and angle out, as a recording or a live sensor gives one row after the other.
+//!
+//! With a model of force and one of posture the two are gated as in equations 9 and 16: while the finger presses (N =
+//! -Fz at F_min or more) the angle is theta_touch, else the posture model tells it. A row that lacks a voltage that a
+//! model reads has no prediction of that model; without an Fz there is no telling touch from bending, and no angle.
+//! Where a recording begins, what was remembered of the one before (lags, the gate's state) is forgotten.
+
+use lunula_predictor::{Contact, FORCES, Gate, GateState, LagStream, Predictor};
+
+use crate::predictor::error::PredictorError;
+use crate::predictor::options::target::POSTURE;
+
+/// How predictions are made from models.
+#[derive(Debug, Clone)]
+pub struct Answering {
+    voices: Vec<Voice>,
+    inputs: Vec<String>,
+    columns: Vec<String>,
+    gate: Option<Gated>,
+    intervals: bool,
+    /// Rows outside of what a model was trained on.
+    outside: u64,
+}
+
+#[derive(Debug, Clone)]
+struct Voice {
+    predictor: Predictor,
+    /// Where its inputs are in a row.
+    places: Vec<usize>,
+    /// Where its first target is in an answer.
+    first: usize,
+    buffer: Option<LagStream>,
+    row: Vec<f64>,
+    seen: Vec<f64>,
+}
+
+#[derive(Debug, Clone)]
+struct Gated {
+    gate: Gate,
+    state: GateState,
+    fz: usize,
+    angle: usize,
+}
+
+impl Answering {
+    /// Of one model or more; with forces and [`POSTURE`] among their targets, `gate` is applied.
+    ///
+    /// # Errors
+    /// Two models that tell the same target, or intervals of a model that has none.
+    pub fn new(models: Vec<Predictor>, gate: Gate, intervals: bool) -> Result<Self, PredictorError> {
+        let mut inputs: Vec<String> = Vec::new();
+        let mut columns: Vec<String> = Vec::new();
+        let mut voices = Vec::new();
+        for predictor in models {
+            let places = predictor.inputs().iter().map(|channel| {
+                inputs.iter().position(|name| *name == channel.name).unwrap_or_else(|| {
+                    inputs.push(channel.name.clone());
+                    inputs.len() - 1
+                })
+            });
+            let places: Vec<usize> = places.collect();
+            let first = columns.len();
+            for target in predictor.target_names() {
+                if columns.contains(&target) {
+                    return Err(PredictorError::Request(format!("two models tell {target}; name one of them")));
+                }
+                columns.push(target);
+            }
+            if intervals && predictor.intervals().is_none() {
+                let what = "has no prediction intervals; train it with --validate, on recordings of other sessions";
+                return Err(PredictorError::Request(format!(
+                    "the model of {} {what}",
+                    predictor.target_names().join(", ")
+                )));
+            }
+            let buffer = predictor.lags().map(|lags| lags.stream(places.len()));
+            let width = predictor.model().inputs();
+            voices.push(Voice {
+                row: vec![0.0; places.len()],
+                seen: vec![0.0; width],
+                predictor,
+                places,
+                first,
+                buffer,
+            });
+        }
+        let place = |name: &str| columns.iter().position(|column| column == name);
+        let gate = place(FORCES[2]).zip(place(POSTURE)).map(|(fz, angle)| Gated {
+            gate,
+            state: GateState::default(),
+            fz,
+            angle,
+        });
+        Ok(Self { voices, inputs, columns, gate, intervals, outside: 0 })
+    }
+
+    /// The photodiodes that a row holds, in order.
+    #[must_use]
+    pub fn inputs(&self) -> &[String] {
+        &self.inputs
+    }
+
+    /// What an answer holds, in order.
+    #[must_use]
+    pub fn columns(&self) -> &[String] {
+        &self.columns
+    }
+
+    /// Whether a model reads voltages of the past.
+    #[must_use]
+    pub fn needs_time(&self) -> bool {
+        self.voices.iter().any(|voice| voice.buffer.is_some())
+    }
+
+    /// Where in an answer the angle is that the gate decides.
+    #[must_use]
+    pub fn gated_angle(&self) -> Option<usize> {
+        self.gate.as_ref().map(|gated| gated.angle)
+    }
+
+    /// Whether force and posture are gated.
+    #[must_use]
+    pub fn is_gated(&self) -> bool {
+        self.gate.is_some()
+    }
+
+    /// Half the width of each column's interval, where intervals are asked for.
+    #[must_use]
+    pub fn half_widths(&self) -> Option<Vec<f64>> {
+        let of = |voice: &Voice| voice.predictor.intervals().map_or_else(Vec::new, |found| found.half_width.clone());
+        self.intervals.then(|| self.voices.iter().flat_map(of).collect())
+    }
+
+    /// How many rows lay outside of what a model was trained on.
+    #[must_use]
+    pub fn outside(&self) -> u64 {
+        self.outside
+    }
+
+    /// Answers a row: `row` volts as [`inputs`](Self::inputs) (NaN where missing), `out` as [`columns`](Self::columns),
+    /// NaN where not known; `begins` where a recording does. Nothing is allocated. Returns what the gate says, where
+    /// there is one.
+    pub fn answer(&mut self, time_s: f64, begins: bool, row: &[f64], out: &mut [f64]) -> Option<Contact> {
+        if begins {
+            self.voices.iter_mut().filter_map(|voice| voice.buffer.as_mut()).for_each(LagStream::reset);
+            if let Some(gated) = &mut self.gate {
+                gated.state = GateState::default();
+            }
+        }
+        // Of models whose word counts, and of a posture model whose word counts only where the finger does not touch.
+        let (mut outside, mut outside_bending) = (false, false);
+        for voice in &mut self.voices {
+            let Voice { predictor, places, first, buffer, row: own, seen } = voice;
+            for (value, &place) in own.iter_mut().zip(places.iter()) {
+                *value = row[place];
+            }
+            let out = &mut out[*first..*first + predictor.targets().len()];
+            let known = match buffer {
+                Some(buffer) => buffer.push(time_s, own, seen),
+                None => {
+                    seen.copy_from_slice(own);
+                    seen.iter().all(|value| value.is_finite())
+                }
+            };
+            if known {
+                predictor.predict_row(seen, out);
+                let posture_only = predictor.targets().len() == 1 && predictor.targets()[0].name == POSTURE;
+                *(if posture_only { &mut outside_bending } else { &mut outside }) |= predictor.is_outside(own);
+            } else {
+                out.fill(f64::NAN);
+            }
+        }
+        let Some(gated) = &mut self.gate else {
+            self.outside += u64::from(outside || outside_bending);
+            return None;
+        };
+        let contact = gated.gate.step(&mut gated.state, out[gated.fz]);
+        self.outside += u64::from(outside || (outside_bending && contact == Contact::Bending));
+        out[gated.angle] = match contact {
+            Contact::Bending => out[gated.angle],
+            Contact::Touch => gated.gate.theta_touch_deg(),
+            Contact::Invalid => f64::NAN,
+        };
+        Some(contact)
+    }
+}
+
+/// What a table says of a contact.
+#[must_use]
+pub(in crate::predictor) fn contact_word(contact: Contact) -> &'static str {
+    match contact {
+        Contact::Touch => "touch",
+        Contact::Bending => "bending",
+        Contact::Invalid => "invalid",
+    }
+}

@@ -1,0 +1,50 @@
+//! `analyse` in a pipeline: singular values and modes of a model (Fig. 98).
+
+use std::path::Path;
+
+use crate::job::{
+    Demand, Foreseen, Job, Kind, Made, NoOptions, OptionFault, Order, Part, Role, Takes, Work, keys, prepare,
+};
+use crate::predictor::jobs::analyse::{analyse, analyse_plan};
+use crate::predictor::jobs::kinds::{PICTURES, outputs};
+use crate::stages::Step;
+
+/// A stage of a pipeline.
+#[derive(Debug, Clone, Copy)]
+pub struct AnalyseJob;
+
+impl Job for AnalyseJob {
+    const KIND: Kind = Kind {
+        name: "analyse",
+        about: "singular values and modes of a model",
+        roles: &[Role { name: "model", takes: Takes::One, about: "a model of train" }],
+        parts: &[
+            Part { name: "modes", file: "modes.csv", only_if_wanted: false, about: "one row per mode" },
+            Part { name: PICTURES, file: "", only_if_wanted: true, about: "the modes as bars" },
+        ],
+        revision: 1,
+        keys: keys::<NoOptions>,
+        prepare: prepare::<Self>,
+    };
+
+    type Options = NoOptions;
+
+    fn new(_options: NoOptions) -> Result<Self, OptionFault> {
+        Ok(Self)
+    }
+
+    fn steps(&self, _inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
+        Ok(analyse_plan(Some(&outputs(Path::new(""), demand))))
+    }
+
+    fn cost(&self, _inputs: &[Foreseen]) -> (u64, f64) {
+        (32_000_000, 0.1)
+    }
+
+    fn run(&self, order: &Order<'_>, work: &Work<'_>) -> anyhow::Result<Made> {
+        let model = work.needed("model")?;
+        let out = outputs(work.folder, order.demand);
+        let report = work.run(order.said, |watch| analyse(&model.path, Some(&out), watch))?;
+        Ok(report.made(Vec::new()))
+    }
+}

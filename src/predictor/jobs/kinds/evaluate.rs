@@ -1,0 +1,81 @@
+//! `evaluate` in a pipeline: how far off a model is on recordings (5.3, 5.4).
+
+use std::path::Path;
+
+use crate::job::{Demand, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Role, Takes, Work, keys, prepare};
+use crate::log::{ReadingCost, ambient_step};
+use crate::predictor::jobs::evaluate::{EvaluateOptions, evaluate, evaluate_plan};
+use crate::predictor::jobs::kinds::{PICTURES, ROWS, data_files, measured, outputs};
+use crate::predictor::options::choices::ByChoice;
+use crate::predictor::options::commands::EvaluateChoices;
+use crate::stages::Step;
+
+/// A stage of a pipeline.
+#[derive(Debug, Clone)]
+pub struct EvaluateJob(EvaluateChoices);
+
+impl Job for EvaluateJob {
+    const KIND: Kind = Kind {
+        name: "evaluate",
+        about: "how far off a model is on recordings",
+        roles: &[
+            Role { name: "model", takes: Takes::One, about: "a model of train" },
+            Role { name: "data", takes: Takes::Many, about: "recordings with the model's photodiodes and targets" },
+        ],
+        parts: &[
+            Part {
+                name: "merit",
+                file: "merit.csv",
+                only_if_wanted: false,
+                about: "errors, one row per target and set of rows",
+            },
+            Part {
+                name: ROWS,
+                file: "predicted.csv",
+                only_if_wanted: true,
+                about: "measured and predicted, one row per row of the recordings",
+            },
+            Part { name: PICTURES, file: "", only_if_wanted: true, about: "over time, as scatter and by size" },
+        ],
+        revision: 1,
+        keys: keys::<EvaluateChoices>,
+        prepare: prepare::<Self>,
+    };
+
+    type Options = EvaluateChoices;
+
+    fn new(options: EvaluateChoices) -> Result<Self, OptionFault> {
+        Ok(Self(options))
+    }
+
+    fn demand(&self, _role: &str, own: &Demand) -> Demand {
+        // The model says which joints recordings have to hold, once it exists.
+        Demand { clock: own.clock, ..Demand::default() }
+    }
+
+    fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
+        let files = inputs.iter().filter(|input| input.role == "data").count();
+        let mut steps = evaluate_plan(files, &self.0.options(), None, Some(&outputs(Path::new(""), demand)));
+        steps.insert(1, ambient_step(inputs, &["data"], &self.0.rows.log));
+        Ok(steps)
+    }
+
+    fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {
+        let ReadingCost { memory, seconds, rows } = ReadingCost::of(inputs);
+        let parts = self.0.by.map_or(0.0, |by| if by == ByChoice::Rows { f64::from(self.0.folds) } else { 30.0 });
+        (memory, seconds + 0.3 + rows * 1e-6 * (1.0 + parts))
+    }
+
+    fn run(&self, order: &Order<'_>, work: &Work<'_>) -> anyhow::Result<Made> {
+        let model = work.needed("model")?;
+        let options = EvaluateOptions { title: Some(model.name.clone()), ..self.0.options() };
+        let outputs = outputs(work.folder, order.demand);
+        let data = data_files(work, "data");
+        let report = work.run(order.said, |watch| evaluate(&model.path, &data, &options, Some(&outputs), watch))?;
+        let mut quality = measured(&report.merit, "");
+        if let Some(held_out) = &report.held_out {
+            quality.extend(measured(&held_out.pooled, ", parts held out"));
+        }
+        Ok(report.made(quality))
+    }
+}

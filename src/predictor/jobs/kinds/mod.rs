@@ -1,0 +1,75 @@
+//! The predictors' jobs as pipelines know them, and what they have in common: which file is called how, which columns
+//! they need.
+
+mod analyse;
+mod compare;
+mod evaluate;
+mod predict;
+mod prune;
+mod train;
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use crate::job::{At, Demand, Foreseen, Quality, Work};
+use crate::predictor::data::DataFile;
+use crate::predictor::merit::figures::Merit;
+use crate::predictor::options::target::Target;
+use crate::predictor::outputs::FolderOutputs;
+
+pub use crate::predictor::jobs::kinds::analyse::AnalyseJob;
+pub use crate::predictor::jobs::kinds::compare::CompareJob;
+pub use crate::predictor::jobs::kinds::evaluate::EvaluateJob;
+pub use crate::predictor::jobs::kinds::predict::PredictJob;
+pub use crate::predictor::jobs::kinds::prune::PruneJob;
+pub use crate::predictor::jobs::kinds::train::TrainJob;
+
+const ROWS: &str = "predicted";
+const PICTURES: &str = "pictures";
+
+/// Which of the results, in a folder.
+fn outputs(folder: &Path, demand: &Demand) -> FolderOutputs {
+    let (rows, figures) = (demand.wants(ROWS), demand.wants(PICTURES));
+    FolderOutputs { folder: folder.to_owned(), rows, figures, report: false }
+}
+
+/// The recordings of a role as results call them: by the pipeline's name, subject and session by its keys.
+fn data_files(work: &Work<'_>, role: &str) -> Vec<DataFile> {
+    let file = |at: &At| {
+        let own = |key: &str| at.keys.get(key).map(str::to_owned);
+        DataFile { path: at.path.clone(), name: at.name.clone(), session: own("session"), subject: own("subject") }
+    };
+    work.of(role).map(file).collect()
+}
+
+/// Foreseen recordings of a role.
+fn foreseen(inputs: &[Foreseen], role: &str) -> Vec<DataFile> {
+    inputs.iter().filter(|input| input.role == role).map(|input| DataFile::from(input.path.clone())).collect()
+}
+
+/// The joints among columns: `J2` of `J2_deg`.
+fn joints(target: &Target) -> BTreeSet<String> {
+    target.columns().iter().filter_map(|column| column.strip_suffix("_deg")).map(str::to_owned).collect()
+}
+
+/// What recordings have to hold for a target: its joints and no others; the clock in the picture where these results
+/// need it.
+fn only_joints(joints: BTreeSet<String>, own: &Demand) -> Demand {
+    Demand { parts: BTreeSet::new(), joints: Some(joints), clock: own.clock }
+}
+
+/// The RMSE of each target against what was measured; `on` which rows, where that has to be said.
+fn measured(merit: &Merit, on: &str) -> Vec<Quality> {
+    let one = |(column, rmse): &(String, f64)| Quality {
+        what: format!("{column}{on}"),
+        value: *rmse,
+        unit: match column.rsplit_once('_') {
+            Some((_, "N")) => "N RMS",
+            Some((_, "deg")) => "degrees RMS",
+            _ => "RMS",
+        }
+        .to_owned(),
+        against_truth: true,
+    };
+    merit.rmse.0.iter().filter(|(_, rmse)| rmse.is_finite()).map(one).collect()
+}

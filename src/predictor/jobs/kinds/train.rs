@@ -1,0 +1,99 @@
+//! `train` in a pipeline: recordings to a model of force or posture (5.).
+
+use std::path::Path;
+
+use crate::job::{Demand, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Role, Takes, Work, keys, prepare};
+use crate::log::{ReadingCost, ambient_step};
+use crate::predictor::jobs::kinds::{data_files, foreseen, joints, measured, only_joints};
+use crate::predictor::jobs::train::{TrainInputs, TrainOutputs, train, train_plan};
+use crate::predictor::options::choices::ModelChoice;
+use crate::predictor::options::commands::TrainChoices;
+use crate::stages::Step;
+
+const CURVE: &str = "learning_curve";
+
+/// A stage of a pipeline.
+#[derive(Debug, Clone)]
+pub struct TrainJob(TrainChoices);
+
+impl Job for TrainJob {
+    const KIND: Kind = Kind {
+        name: "train",
+        about: "recordings of photodiodes with forces or angles to a model",
+        roles: &[
+            Role { name: "data", takes: Takes::Many, about: "recordings to train on" },
+            Role { name: "validate", takes: Takes::AnyNumber, about: "recordings to report on" },
+            Role {
+                name: "stop_on",
+                takes: Takes::AnyNumber,
+                about: "recordings on which a network's training stops early",
+            },
+        ],
+        parts: &[
+            Part { name: "model", file: "model.json", only_if_wanted: false, about: "the model" },
+            Part {
+                name: "merit",
+                file: "merit.csv",
+                only_if_wanted: false,
+                about: "errors on the rows trained on and reported on",
+            },
+            Part {
+                name: CURVE,
+                file: "learning-curve.csv",
+                only_if_wanted: true,
+                about: "the error against how much was trained on, and a picture",
+            },
+        ],
+        revision: 1,
+        keys: keys::<TrainChoices>,
+        prepare: prepare::<Self>,
+    };
+
+    type Options = TrainChoices;
+
+    fn new(options: TrainChoices) -> Result<Self, OptionFault> {
+        Ok(Self(options))
+    }
+
+    fn demand(&self, _role: &str, own: &Demand) -> Demand {
+        only_joints(joints(&self.0.target), own)
+    }
+
+    fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
+        let of = |role: &str| foreseen(inputs, role);
+        let files = TrainInputs { data: of("data"), validate: of("validate"), stop_on: of("stop_on") };
+        let mut steps = train_plan(&files, &self.0.options().recipe, demand.wants(CURVE));
+        steps.insert(1, ambient_step(inputs, &["data", "validate", "stop_on"], &self.0.rows.log));
+        Ok(steps)
+    }
+
+    fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {
+        let ReadingCost { memory, seconds, rows } = ReadingCost::of(inputs);
+        let fit_s = match self.0.model {
+            ModelChoice::Linear => 1e-6 * rows,
+            ModelChoice::Quadratic => 1e-5 * rows,
+            ModelChoice::Network => self.0.network.cost_s(rows),
+        };
+        (memory, seconds + fit_s)
+    }
+
+    fn run(&self, order: &Order<'_>, work: &Work<'_>) -> anyhow::Result<Made> {
+        let of = |role: &str| data_files(work, role);
+        let inputs = TrainInputs { data: of("data"), validate: of("validate"), stop_on: of("stop_on") };
+        let outputs = outputs(work.folder, order.demand);
+        let report = work.run(order.said, |watch| train(&inputs, &self.0.options(), &outputs, watch))?;
+        let quality = match &report.validation {
+            Some(merit) => measured(merit, ""),
+            None => measured(&report.training, ", rows trained on"),
+        };
+        Ok(report.made(quality))
+    }
+}
+
+fn outputs(folder: &Path, demand: &Demand) -> TrainOutputs {
+    TrainOutputs {
+        model: folder.join("model.json"),
+        learning_curve: demand.wants(CURVE).then(|| folder.join("learning-curve.csv")),
+        merit: Some(folder.join("merit.csv")),
+    }
+}

@@ -1,0 +1,316 @@
+//! `lunula predict`: voltages to forces and angle, from a table or row by row from a stream.
+
+use std::io::{BufRead, Write};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use lunula_predictor::{Contact, Gate};
+use serde::Serialize;
+
+use crate::files::Places;
+use crate::job::{Report, Watch};
+use crate::predictor::data::{Inputs, RowOptions, RowStream, read_inputs};
+use crate::predictor::error::PredictorError;
+use crate::predictor::jobs::answer::{Answering, contact_word};
+use crate::predictor::open_models;
+use crate::stages::{Stages, Step, left_out};
+use crate::table::{Column, TableFormat, TableWriter, Value};
+
+/// How to predict.
+#[derive(Debug, Clone)]
+pub struct PredictOptions {
+    /// Equation 9's threshold and angle while touching.
+    pub gate: Gate,
+    /// Each prediction's interval as well.
+    pub intervals: bool,
+    /// Which rows are answered.
+    pub rows: RowOptions,
+}
+
+/// What was predicted.
+pub type PredictReport = Report<PredictFigures>;
+
+/// The figures of a run.
+#[derive(Debug, Clone, Serialize)]
+pub struct PredictFigures {
+    /// The recording.
+    pub data: PathBuf,
+    /// The table of predictions; none for a stream.
+    pub out: Option<PathBuf>,
+    /// What is told.
+    pub columns: Vec<String>,
+    /// Rows.
+    pub rows: u64,
+    /// Rows of which something is not known.
+    pub rows_not_known: u64,
+    /// Rows outside of what a model was trained on: the prediction is an extrapolation.
+    pub rows_outside: u64,
+    /// Rows in touch and bending, where the two are gated.
+    pub touch: u64,
+    /// See `touch`.
+    pub bending: u64,
+}
+
+/// Rows that were answered.
+#[derive(Debug, Clone, Copy, Default)]
+struct Counts {
+    rows: u64,
+    not_known: u64,
+    touch: u64,
+    bending: u64,
+}
+
+impl Counts {
+    fn count(&mut self, contact: Option<Contact>, answer: &[f64]) {
+        self.rows += 1;
+        self.not_known += u64::from(!answer.iter().all(|value| value.is_finite()));
+        self.touch += u64::from(contact == Some(Contact::Touch));
+        self.bending += u64::from(contact == Some(Contact::Bending));
+    }
+}
+
+/// Predicts a table's rows into another table.
+///
+/// # Errors
+/// [`PredictorError`] where there is no table of predictions.
+pub fn predict(
+    models: &[PathBuf],
+    data: &Path,
+    options: &PredictOptions,
+    out: &Path,
+    watch: &Watch<'_>,
+) -> Result<PredictReport, PredictorError> {
+    let start = Instant::now();
+    let stages = Stages::default();
+    TableFormat::of(out)?;
+    let mut places = Places::not_over(models.iter().map(PathBuf::as_path).chain([data]));
+    places.check([out])?;
+    let opened = open_models(models)?;
+    let mut warnings = opened.warnings;
+    let mut answering = Answering::new(opened.predictors, options.gate, options.intervals)?;
+    let inputs = answering.inputs().to_vec();
+    let read = stages.time("read", || read_inputs(data, &inputs, &options.rows))?;
+    warnings.extend(read.warnings.iter().cloned());
+    watch.go_on()?;
+    if answering.needs_time() && !read.time_s.is_empty() && read.time_s.iter().all(|time| time.is_nan()) {
+        return Err(no_time(&data.display().to_string()));
+    }
+    let (answers, contacts, counts) =
+        stages.time("predict", || all_rows(&mut answering, &read, options.rows.keep_faults));
+    watch.go_on()?;
+    let at = places.place(out)?;
+    stages.time("write", || {
+        let mut columns = vec![Column::number("time_s")];
+        columns.extend(output_columns(&answering).into_iter().map(Column::number));
+        if answering.is_gated() {
+            columns.push(Column::text("contact"));
+        }
+        let mut table = TableWriter::create(&at, out, columns, &facts())?;
+        let half_widths = answering.half_widths();
+        let width = answering.columns().len();
+        table.write_rows(read.time_s.len(), &|row, write| {
+            let answer = &answers[row * width..(row + 1) * width];
+            let mut cells = vec![Value::Number(read.time_s[row])];
+            cells.extend(answer.iter().map(|value| Value::Number(*value)));
+            let ruled = ruled(&answering, contacts.get(row).copied());
+            cells.extend(interval_cells(answer, half_widths.as_deref(), ruled).map(Value::Number));
+            if let Some(contact) = contacts.get(row) {
+                cells.push(Value::Text(contact_word(*contact)));
+            }
+            write(&cells);
+        })?;
+        table.finish()
+    })?;
+    places.commit()?;
+    warnings.extend(extrapolated(&answering, counts));
+    let left_out = left_out(predict_plan(models.len(), options));
+    let figures = figures(data, Some(out), &answering, counts);
+    let report = Report { left_out, warnings, notes: read.notes, ..Report::new("predict", watch, figures) };
+    Ok(report.timed(&stages, start))
+}
+
+/// What would be done and what not, with so many models.
+#[must_use]
+pub fn predict_plan(models: usize, options: &PredictOptions) -> Vec<Step> {
+    let gated = models > 1;
+    let why = if gated { "where one model tells forces and one posture" } else { "one model" };
+    let intervals = if options.intervals { "of each prediction" } else { "without --intervals" };
+    vec![
+        Step::new("read", true, "a recording".to_owned()),
+        Step::new("predict", true, format!("{models} models")),
+        Step::new("gate", gated, why.to_owned()),
+        Step::new("intervals", options.intervals, intervals.to_owned()),
+    ]
+}
+
+/// What to say where more than a twentieth of the rows are extrapolated.
+fn extrapolated(answering: &Answering, counts: Counts) -> Option<String> {
+    let (outside, rows) = (answering.outside(), counts.rows);
+    (outside * 20 > rows).then(|| {
+        format!(
+            "{outside} of {rows} rows lie outside of the voltages that the model was trained on; their \
+                 predictions are extrapolated"
+        )
+    })
+}
+
+fn all_rows(answering: &mut Answering, read: &Inputs, keep_faults: bool) -> (Vec<f64>, Vec<Contact>, Counts) {
+    let width = answering.columns().len();
+    let mut answers = vec![f64::NAN; read.time_s.len() * width];
+    let mut contacts = Vec::new();
+    let mut counts = Counts::default();
+    let unknown = vec![f64::NAN; read.x.ncols()];
+    for recording in &read.recordings {
+        for row in recording.rows.clone() {
+            let volts = read.x.row(row).to_slice().expect("rows lie one after the other");
+            let volts = if read.faulty[row] && !keep_faults { &unknown } else { volts };
+            let out = &mut answers[row * width..(row + 1) * width];
+            let contact = answering.answer(read.time_s[row], row == recording.rows.start, volts, out);
+            counts.count(contact, out);
+            contacts.extend(contact);
+        }
+    }
+    (answers, contacts, counts)
+}
+
+/// Answers a stream of CSV rows, each as soon as its line is complete, on `to`; `tell` hears what is worth saying as
+/// soon as it is known, as the end of a stream may be far.
+///
+/// # Errors
+/// A stream that begins without the columns needed, or a row that is wrong (with its line): rows before it are
+/// answered.
+pub fn predict_stream(
+    models: &[PathBuf],
+    from: impl BufRead,
+    options: &PredictOptions,
+    mut to: impl Write,
+    tell: impl Fn(&str),
+    watch: &Watch<'_>,
+) -> Result<PredictReport, PredictorError> {
+    let start = Instant::now();
+    let opened = open_models(models)?;
+    let mut warnings = opened.warnings;
+    warnings.iter().for_each(|warning| tell(warning));
+    let mut answering = Answering::new(opened.predictors, options.gate, options.intervals)?;
+    let inputs = answering.inputs().to_vec();
+    let mut rows = RowStream::new(from, "standard input", &inputs, &options.rows)?;
+    let mut notes = rows.notes();
+    notes.iter().for_each(|note| tell(note));
+    if answering.needs_time() && !rows.has_time() {
+        return Err(no_time("standard input"));
+    }
+    let half_widths = answering.half_widths();
+    let mut header = vec!["time_s".to_owned()];
+    header.extend(output_columns(&answering));
+    if answering.is_gated() {
+        header.push("contact".to_owned());
+    }
+    let mut counts = Counts::default();
+    let mut line = header.join(",") + "\n";
+    let (mut volts, mut answer) = (vec![f64::NAN; inputs.len()], vec![f64::NAN; answering.columns().len()]);
+    let mut gone = to.write_all(line.as_bytes()).and_then(|()| to.flush()).is_err();
+    while !gone && watch.go_on().is_ok() {
+        let Some(row) = rows.next_row(&mut volts)? else { break };
+        if row.faulty && !options.rows.keep_faults {
+            volts.fill(f64::NAN);
+        }
+        let contact = answering.answer(row.time_s, row.begins, &volts, &mut answer);
+        counts.count(contact, &answer);
+        line.clear();
+        push_number(&mut line, row.time_s);
+        for value in answer.iter().copied() {
+            line.push(',');
+            push_number(&mut line, value);
+        }
+        for value in interval_cells(&answer, half_widths.as_deref(), ruled(&answering, contact)) {
+            line.push(',');
+            push_number(&mut line, value);
+        }
+        if let Some(contact) = contact {
+            line.push(',');
+            line.push_str(contact_word(contact));
+        }
+        line.push('\n');
+        // A reader that has gone away is no error of ours.
+        gone = to.write_all(line.as_bytes()).and_then(|()| to.flush()).is_err();
+    }
+    let after = rows.notes();
+    after.iter().for_each(|note| tell(note));
+    notes.extend(after);
+    if let Some(warning) = extrapolated(&answering, counts) {
+        tell(&warning);
+        warnings.push(warning);
+    }
+    let figures = figures(Path::new("-"), None, &answering, counts);
+    Ok(Report { warnings, notes, ..Report::new("predict", watch, figures) }.timed(&Stages::default(), start))
+}
+
+/// As tables write a number; nothing where it is not known.
+fn push_number(line: &mut String, value: f64) {
+    use std::fmt::Write;
+    if value.is_finite() {
+        let before = line.len();
+        let _ = write!(line, "{:?}", value + 0.0);
+        if line[before..].ends_with(".0") {
+            line.truncate(line.len() - 2);
+        }
+    }
+}
+
+/// The columns after the time: each prediction, then each interval's ends.
+fn output_columns(answering: &Answering) -> Vec<String> {
+    let mut names = answering.columns().to_vec();
+    if answering.half_widths().is_some() {
+        names.extend(answering.columns().iter().flat_map(|name| [format!("{name}_low"), format!("{name}_high")]));
+    }
+    names
+}
+
+/// Both ends of each prediction's interval; none of an angle that the gate rules.
+fn interval_cells<'a>(
+    answer: &'a [f64],
+    half_widths: Option<&'a [f64]>,
+    ruled: Option<usize>,
+) -> impl Iterator<Item = f64> + 'a {
+    let all = answer.iter().zip(half_widths.unwrap_or_default()).enumerate();
+    all.flat_map(move |(k, (value, half))| if Some(k) == ruled { [f64::NAN; 2] } else { [value - half, value + half] })
+}
+
+/// The angle that theta_touch stands for: the posture model's errors tell nothing of it.
+fn ruled(answering: &Answering, contact: Option<Contact>) -> Option<usize> {
+    answering.gated_angle().filter(|_| contact == Some(Contact::Touch))
+}
+
+fn no_time(whose: &str) -> PredictorError {
+    let what = "has no time_s, and a model reads voltages of the past (it was trained with --lags); give it the time \
+                in seconds";
+    PredictorError::Request(format!("{whose}: {what}"))
+}
+
+fn figures(data: &Path, out: Option<&Path>, answering: &Answering, counts: Counts) -> PredictFigures {
+    PredictFigures {
+        data: data.to_owned(),
+        out: out.map(Path::to_owned),
+        columns: output_columns(answering),
+        rows: counts.rows,
+        rows_not_known: counts.not_known,
+        rows_outside: answering.outside(),
+        touch: counts.touch,
+        bending: counts.bending,
+    }
+}
+
+/// What Parquet keeps beside the cells.
+fn facts() -> Vec<(String, String)> {
+    [
+        ("lunula", env!("CARGO_PKG_VERSION")),
+        ("forces", "newtons, of the finger on the surface: pressing down is negative Fz_N"),
+        ("angles", "degrees, positive in flexion"),
+        (
+            "contact",
+            "touch where the predicted -Fz_N is at the threshold or above; the angle is the touching one's then",
+        ),
+    ]
+    .map(|(key, value)| (key.to_owned(), value.to_owned()))
+    .to_vec()
+}

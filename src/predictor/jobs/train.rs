@@ -1,0 +1,287 @@
+//! `lunula train`: recordings to a model file (5.2.4: built from one set of recordings, validated on another).
+//!
+//! In: recordings to train on; optionally others to report on, which also tell the prediction intervals; optionally
+//! others on which a network stops early. Out: the model file and what it reaches. Rows that are reported are never
+//! those that training has seen.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use lunula_predictor::{
+    Dataset, Intervals, Kind, Predictor, Recipe, Report as FitReport, calibrate, recording_hashes, score, with_lags,
+};
+use serde::Serialize;
+
+use crate::files::{Places, WriteError};
+use crate::job::{Report, Watch};
+use crate::predictor::data::{DataFile, FileRows, Wanted, read_files};
+use crate::predictor::error::PredictorError;
+use crate::predictor::jobs::learning;
+use crate::predictor::merit::figures::{ByTarget, Merit, merit_without_cone};
+use crate::predictor::merit::table::{MeritRows, merit_table};
+use crate::stages::{Stages, Step, left_out};
+
+/// What a model is made from.
+#[derive(Debug, Clone)]
+pub struct TrainInputs {
+    /// Recordings to train on.
+    pub data: Vec<DataFile>,
+    /// Recordings to report on; their errors tell the prediction intervals.
+    pub validate: Vec<DataFile>,
+    /// Recordings on which a network stops early; none: a part of those to train on.
+    pub stop_on: Vec<DataFile>,
+}
+
+/// How it is made.
+#[derive(Debug, Clone)]
+pub struct TrainOptions {
+    /// Which columns, and what to do with rows that are not as they should be.
+    pub wanted: Wanted,
+    /// The model.
+    pub recipe: Recipe,
+    /// The share of rows that prediction intervals are to hold.
+    pub level: f64,
+}
+
+/// Where results go.
+#[derive(Debug, Clone)]
+pub struct TrainOutputs {
+    /// The model file.
+    pub model: PathBuf,
+    /// A table of the error against how much was trained on; a picture of it goes beside.
+    pub learning_curve: Option<PathBuf>,
+    /// A table of the errors on the rows trained on and reported on.
+    pub merit: Option<PathBuf>,
+}
+
+/// What the model reaches.
+pub type TrainReport = Report<TrainFigures>;
+
+/// The figures of a run.
+#[derive(Debug, Clone, Serialize)]
+pub struct TrainFigures {
+    /// The model file.
+    pub model: PathBuf,
+    /// What it reads.
+    pub inputs: Vec<String>,
+    /// What it tells.
+    pub targets: Vec<String>,
+    /// What was fitted.
+    pub recipe: Recipe,
+    /// The recordings trained on.
+    pub data: Vec<FileRows>,
+    /// How the fit went.
+    pub fit: FitReport,
+    /// On the rows trained on: how well the model can follow, not how well it predicts.
+    pub training: Merit,
+    /// The recordings reported on.
+    pub validate: Vec<FileRows>,
+    /// On the recordings reported on.
+    pub validation: Option<Merit>,
+    /// The same without an option that was asked for, on the recordings reported on.
+    pub without: Vec<Without>,
+    /// Half the width of the prediction intervals, a target each.
+    pub half_width: Option<ByTarget<f64>>,
+    /// The share of rows that they are to hold.
+    pub level: f64,
+}
+
+/// What a model reaches without an option.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Without {
+    /// Which option.
+    pub without: &'static str,
+    /// On the recordings reported on.
+    pub validation: Merit,
+}
+
+/// Trains, reports and writes the model file.
+///
+/// # Errors
+/// [`PredictorError`] where there is no model.
+pub fn train(
+    inputs: &TrainInputs,
+    options: &TrainOptions,
+    outputs: &TrainOutputs,
+    watch: &Watch<'_>,
+) -> Result<TrainReport, PredictorError> {
+    let start = Instant::now();
+    let stages = Stages::default();
+    if outputs.learning_curve.is_some() && inputs.validate.is_empty() {
+        let what = "a learning curve tells errors on recordings that are not trained on; name some with --validate";
+        return Err(PredictorError::Request(what.to_owned()));
+    }
+    let given = [&inputs.data, &inputs.validate, &inputs.stop_on].into_iter().flatten().map(|file| &file.path);
+    let mut places = Places::not_over(given);
+    let out = &outputs.model;
+    places.check(std::iter::once(out).chain(&outputs.learning_curve).chain(&outputs.merit))?;
+    let read = stages.time("read", || read_files(&inputs.data, &options.wanted))?;
+    let same_inputs = Wanted { inputs: Some(read.data.inputs().to_vec()), ..options.wanted.clone() };
+    let others = |files: &[DataFile]| (!files.is_empty()).then(|| read_files(files, &same_inputs)).transpose();
+    let validate = stages.time("read", || others(&inputs.validate))?;
+    let stop_on = stages.time("read", || others(&inputs.stop_on))?;
+    watch.go_on()?;
+    if let Some((told, early)) = validate.as_ref().zip(stop_on.as_ref()) {
+        let hashes = recording_hashes(&early.data);
+        let both =
+            told.data.recordings().iter().zip(recording_hashes(&told.data)).find(|(_, hash)| hashes.contains(hash));
+        if let Some((recording, _)) = both {
+            return Err(PredictorError::Request(format!(
+                "{}: training can't stop on what is reported (--stop-on and --validate), its errors would flatter; \
+                 name another",
+                recording.name
+            )));
+        }
+    }
+    let all = || std::iter::once(&read).chain(&validate).chain(&stop_on);
+    let failed: Vec<String> = all().flat_map(|read| read.failed.iter().map(|file| file.why.clone())).collect();
+    let recipe = &options.recipe;
+    let early = stop_on.as_ref().map(|read| &read.data);
+    let predictor = stages.time("fit", || Predictor::fit(&read.data, early, recipe))?;
+    // Of the files that were to be trained on: what a model has seen is told with it.
+    let predictor = predictor.without(read.failed.iter().map(|file| file.name.clone()).collect());
+    watch.go_on()?;
+    let training = stages.time("score", || merit(&predictor, &read.data))?;
+    let mut warnings = read.warnings.clone();
+    warnings.extend(validate.iter().chain(&stop_on).flat_map(|read| read.warnings.clone()));
+    warnings.extend(twice(&predictor));
+    warnings.extend(fit_warnings(&predictor.training().report).iter().cloned());
+    if let Some(told) = &validate {
+        warnings.extend(crate::predictor::seen_in_training(&predictor, &told.data));
+    }
+    let validation =
+        validate.as_ref().map(|read| stages.time("score", || merit(&predictor, &read.data))).transpose()?;
+    warnings.extend(validation.iter().chain([&training]).filter_map(Merit::warning));
+    let without = match &validate {
+        Some(told) => stages.time("fit without options", || without(&predictor, &read.data, early, &told.data))?,
+        None => Vec::new(),
+    };
+    watch.go_on()?;
+    let intervals = match &validate {
+        Some(told) => intervals(&predictor, &told.data, options.level, &mut warnings)?,
+        None => None,
+    };
+    let predictor = predictor.with_intervals(intervals);
+    let half_width =
+        predictor.intervals().map(|found| ByTarget::new(&predictor.target_names(), found.half_width.iter().copied()));
+    let at = places.place(out)?;
+    let written = stages.time("write", || std::fs::write(&at, predictor.to_json()));
+    written.map_err(|why| WriteError::File { path: out.to_owned(), why: why.to_string() })?;
+    let mut pictures = Vec::new();
+    if let Some((curve, told)) = outputs.learning_curve.as_ref().zip(validate.as_ref()) {
+        let points = stages.time("learning curve", || learning::points(recipe, &read.data, &told.data))?;
+        pictures.push(stages.time("write", || learning::write(&points, curve, &mut places))?);
+    }
+    if let Some(path) = &outputs.merit {
+        let mut told = vec![MeritRows::new("training", &training)];
+        told.extend(validation.iter().map(|merit| MeritRows::new("validation", merit)));
+        merit_table(&places.place(path)?, path, &told)?;
+    }
+    watch.go_on()?;
+    places.commit()?;
+    let figures = TrainFigures {
+        model: out.to_owned(),
+        inputs: predictor.input_names(),
+        targets: predictor.target_names(),
+        recipe: recipe.clone(),
+        data: read.files,
+        fit: predictor.training().report.clone(),
+        training,
+        validate: validate.map_or_else(Vec::new, |read| read.files),
+        validation,
+        without,
+        half_width,
+        level: options.level,
+    };
+    let left_out = left_out(train_plan(inputs, recipe, outputs.learning_curve.is_some()));
+    let report = Report { left_out, warnings, failed, pictures, ..Report::new("train", watch, figures) };
+    Ok(report.timed(&stages, start))
+}
+
+/// How far off a predictor is on recordings.
+pub(in crate::predictor) fn merit(predictor: &Predictor, data: &Dataset) -> Result<Merit, PredictorError> {
+    let (seen, predicted) = predictor.predict(data)?;
+    Ok(Merit::from(&score(seen.y().view(), predicted.view(), seen.targets())))
+}
+
+/// What is reached without each option of the recipe.
+fn without(
+    predictor: &Predictor,
+    data: &Dataset,
+    early: Option<&Dataset>,
+    told: &Dataset,
+) -> Result<Vec<Without>, PredictorError> {
+    let recipe = &predictor.training().recipe;
+    let mut all = Vec::new();
+    if predictor.cone().is_some() {
+        let seen = with_lags(told, predictor.lags())?;
+        all.push(Without { without: "the cone of friction", validation: merit_without_cone(predictor, &seen) });
+    }
+    if !recipe.lags_s.is_empty() {
+        let plain = Predictor::fit(data, early, &Recipe { lags_s: Vec::new(), ..recipe.clone() })?;
+        all.push(Without { without: "lags", validation: merit(&plain, told)? });
+    }
+    Ok(all)
+}
+
+/// Half widths from the errors on recordings that were not trained on; why there are none goes to the warnings.
+fn intervals(
+    predictor: &Predictor,
+    data: &Dataset,
+    level: f64,
+    warnings: &mut Vec<String>,
+) -> Result<Option<Intervals>, PredictorError> {
+    let (seen, predicted) = predictor.predict(data)?;
+    warnings.extend(
+        crate::predictor::jobs::evaluate::beyond_a_number(&predicted, "the model")
+            .unwrap_or_else(|why| Some(why.to_string())),
+    );
+    let found = calibrate((&predicted - seen.y()).view(), level);
+    Ok(found.map_err(|why| warnings.push(format!("no prediction intervals: {why}"))).ok())
+}
+
+/// Recordings that hold the same rows under several names.
+fn twice(predictor: &Predictor) -> Vec<String> {
+    let all = &predictor.training().recordings;
+    let before = |k: usize| all[..k].iter().find(|one| one.sha256 == all[k].sha256);
+    let again = (0..all.len()).filter_map(|k| Some((before(k)?, &all[k])));
+    again
+        .filter(|(one, two)| one.name != two.name)
+        .map(|(one, two)| format!("{} holds the rows of {}; they count twice", two.name, one.name))
+        .collect()
+}
+
+fn fit_warnings(report: &FitReport) -> &[String] {
+    match report {
+        FitReport::LeastSquares(report) => &report.warnings,
+        FitReport::Network(report) => &report.warnings,
+    }
+}
+
+/// What would be done and what not, from the request alone; `curve`: whether a learning curve is asked for.
+#[must_use]
+pub fn train_plan(inputs: &TrainInputs, recipe: &Recipe, curve: bool) -> Vec<Step> {
+    let network = matches!(recipe.kind, Kind::Network { .. });
+    let validated = !inputs.validate.is_empty();
+    let stop = match (network, inputs.stop_on.is_empty()) {
+        (false, _) => "a least-squares fit needs none",
+        (true, true) => "on a fifth of the rows of each recording, which is set aside",
+        (true, false) => "on the recordings given",
+    };
+    let told = |yes: bool, why: &'static str, why_not: &'static str| (if yes { why } else { why_not }).to_owned();
+    let reported = |yes| told(yes, "on the recordings to validate on", "no recordings to validate on");
+    vec![
+        Step::new("read", true, format!("{} files", inputs.data.len() + inputs.validate.len() + inputs.stop_on.len())),
+        Step::new("lags", !recipe.lags_s.is_empty(), told(!recipe.lags_s.is_empty(), "asked for", "none asked for")),
+        Step::new("fit", true, format!("{:?}", recipe.kind)),
+        Step::new("early stopping", network, stop.to_owned()),
+        Step::new(
+            "cone of friction",
+            recipe.friction_mu.is_some(),
+            told(recipe.friction_mu.is_some(), "asked for", "no coefficient given"),
+        ),
+        Step::new("validation", validated, reported(validated)),
+        Step::new("prediction intervals", validated, reported(validated)),
+        Step::new("learning curve", curve, told(curve, "asked for", "no --learning-curve")),
+    ]
+}

@@ -1,0 +1,4 @@
+//! Figures of merit: RMSE, bias and R2 of each target, and the table of them.
+
+pub(in crate::predictor) mod figures;
+pub(in crate::predictor) mod table;

@@ -1,0 +1,236 @@
+//! The options of the predictors' commands and of pipelines' stages, and what the jobs make of them.
+
+use clap::Args;
+use lunula_predictor::{Deficient, Gate, GateFault, Kind, Recipe};
+
+use crate::job::{not_negative, one_of};
+use crate::predictor::data::{RowOptions, Wanted};
+use crate::predictor::jobs::compare::CompareOptions;
+use crate::predictor::jobs::evaluate::EvaluateOptions;
+use crate::predictor::jobs::predict::PredictOptions;
+use crate::predictor::jobs::train::TrainOptions;
+use crate::predictor::options::choices::{ByChoice, F_MIN_N, FOLDS, HIDDEN, LEVEL, ModelChoice, share};
+use crate::predictor::options::target::Target;
+
+fn level(text: &str) -> Result<f64, String> {
+    share(text.trim().parse().map_err(|_| "write a number, such as 0.9".to_owned())?)
+}
+
+/// How a network is trained.
+#[derive(Debug, Clone, Copy, Args)]
+pub struct NetworkOptions {
+    /// Hidden nodes of the network
+    #[arg(long, value_name = "N", default_value_t = HIDDEN, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    pub hidden: u16,
+    /// Seed of a network's first weights
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// Networks that are trained; the best on the rows to stop on is taken
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = Recipe::new(Kind::Linear).restarts as u16,
+        value_parser = clap::value_parser!(u16).range(1..=1000)
+    )]
+    pub restarts: u16,
+    /// Epochs that a network is trained for at most
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = Recipe::new(Kind::Linear).max_epochs as u32,
+        value_parser = clap::value_parser!(u32).range(1..)
+    )]
+    pub epochs: u32,
+}
+
+impl NetworkOptions {
+    fn recipe(self, model: ModelChoice) -> Recipe {
+        Recipe {
+            seed: self.seed,
+            restarts: usize::from(self.restarts),
+            max_epochs: self.epochs as usize,
+            ..Recipe::new(model.kind(self.hidden))
+        }
+    }
+
+    /// About how long training takes for so many rows, seconds: measured at 3e-6 s for each row, hidden node and start.
+    pub(in crate::predictor) fn cost_s(self, rows: f64) -> f64 {
+        3e-6 * rows * f64::from(self.hidden) * f64::from(self.restarts)
+    }
+}
+
+/// The options of `lunula train`.
+#[derive(Debug, Clone, Args)]
+pub struct TrainChoices {
+    /// force (Fx_N, Fy_N, Fz_N), posture (J2_deg), or columns as Fz_N,J3_deg
+    #[arg(long, value_name = "force|posture|COLUMNS", value_parser = Target::parse)]
+    pub target: Target,
+    /// Which model
+    #[arg(long, value_parser = one_of::<ModelChoice>(), default_value = "linear")]
+    pub model: ModelChoice,
+    /// How a network is trained.
+    #[command(flatten)]
+    pub network: NetworkOptions,
+    /// The photodiodes to read, as P1,P3,P4 [default: all columns P1, P2, ..]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub inputs: Option<Vec<String>>,
+    /// Voltages so many seconds ago are inputs as well, as 0.1,0.2
+    #[arg(long, value_name = "SECONDS,..", value_delimiter = ',')]
+    pub lags: Vec<f64>,
+    /// Predicted forces are brought into the cone of this coefficient of friction
+    #[arg(long, value_name = "MU")]
+    pub friction: Option<f64>,
+    /// Where rows do not determine the linear or quadratic model: refuse, minimum-norm, drop (photodiodes that add
+    /// nothing) or ridge=LAMBDA
+    #[arg(long, value_name = "WHAT", default_value = "refuse", value_parser = str::parse::<Deficient>)]
+    pub deficient: Deficient,
+    /// The share of rows that prediction intervals are to hold
+    #[arg(long, value_name = "SHARE", default_value_t = LEVEL, value_parser = level)]
+    pub level: f64,
+    /// Which rows count.
+    #[command(flatten)]
+    pub rows: RowOptions,
+    /// A recording that can't be read is named and left out (exit status 1) as long as others can be [default: it is an
+    /// error]
+    #[arg(long)]
+    pub skip_failed: bool,
+}
+
+impl TrainChoices {
+    /// As the job takes them.
+    #[must_use]
+    pub fn options(&self) -> TrainOptions {
+        TrainOptions {
+            wanted: Wanted {
+                inputs: self.inputs.clone(),
+                targets: self.target.columns().to_vec(),
+                rows: self.rows.clone(),
+                skip_failed: self.skip_failed,
+            },
+            recipe: Recipe {
+                deficient: self.deficient,
+                lags_s: self.lags.clone(),
+                friction_mu: self.friction,
+                ..self.network.recipe(self.model)
+            },
+            level: self.level,
+        }
+    }
+}
+
+/// The options of `lunula evaluate`.
+#[derive(Debug, Clone, Args)]
+pub struct EvaluateChoices {
+    /// What is held out in turn
+    #[arg(long, value_parser = one_of::<ByChoice>())]
+    pub by: Option<ByChoice>,
+    /// Parts of shuffled rows
+    #[arg(long, value_name = "N", default_value_t = FOLDS, value_parser = clap::value_parser!(u16).range(2..=1000))]
+    pub folds: u16,
+    /// Seed of the shuffle
+    #[arg(long, default_value_t = 1)]
+    pub seed: u64,
+    /// The share of rows that intervals of held-out parts are to hold
+    #[arg(long, value_name = "SHARE", default_value_t = LEVEL, value_parser = level)]
+    pub level: f64,
+    /// Which rows count.
+    #[command(flatten)]
+    pub rows: RowOptions,
+}
+
+impl EvaluateChoices {
+    /// As the job takes them.
+    #[must_use]
+    pub fn options(&self) -> EvaluateOptions {
+        let by = self.by.map(|by| by.by(self.folds, self.seed));
+        EvaluateOptions { rows: self.rows.clone(), by, level: self.level, title: None }
+    }
+}
+
+/// The options of `lunula predict`.
+#[derive(Debug, Clone, Args)]
+pub struct PredictChoices {
+    /// The pressing at or above which the finger touches
+    #[arg(long, value_name = "NEWTONS", default_value_t = F_MIN_N)]
+    pub f_min: f64,
+    /// The angle while it touches
+    #[arg(long, value_name = "DEGREES", default_value_t = 0.0, allow_negative_numbers = true)]
+    pub theta_touch: f64,
+    /// How far below --f-min the pressing has to fall before the finger no longer touches
+    #[arg(long, value_name = "NEWTONS", default_value_t = 0.0, value_parser = not_negative)]
+    pub hysteresis: f64,
+    /// Each prediction's interval as well, as <target>_low, <target>_high (the models need to be trained with
+    /// --validate)
+    #[arg(long)]
+    pub intervals: bool,
+    /// Which rows count.
+    #[command(flatten)]
+    pub rows: RowOptions,
+}
+
+impl PredictChoices {
+    /// As the job takes them.
+    ///
+    /// # Errors
+    /// Thresholds that can't be.
+    pub fn options(&self) -> Result<PredictOptions, GateFault> {
+        let gate = Gate::new(self.f_min, self.theta_touch, self.hysteresis)?;
+        Ok(PredictOptions { gate, intervals: self.intervals, rows: self.rows.clone() })
+    }
+}
+
+/// The options of `lunula prune`.
+#[derive(Debug, Clone, Args)]
+pub struct PruneChoices {
+    /// force, posture, or columns as Fz_N,J3_deg
+    #[arg(long, value_name = "force|posture|COLUMNS", default_value = "force", value_parser = Target::parse)]
+    pub target: Target,
+    /// The photodiodes to choose from [default: all columns P1, P2, ..]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub inputs: Option<Vec<String>>,
+    /// Which rows count.
+    #[command(flatten)]
+    pub rows: RowOptions,
+}
+
+impl PruneChoices {
+    /// As the job takes them.
+    #[must_use]
+    pub fn wanted(&self) -> Wanted {
+        let targets = self.target.columns().to_vec();
+        Wanted { inputs: self.inputs.clone(), targets, rows: self.rows.clone(), skip_failed: false }
+    }
+}
+
+/// The options of a stage that compares models over people.
+#[derive(Debug, Clone, Args)]
+pub struct CompareChoices {
+    /// The models
+    #[arg(
+        long,
+        value_delimiter = ',',
+        value_parser = one_of::<ModelChoice>(),
+        default_value = "linear,quadratic,network",
+    )]
+    pub models: Vec<ModelChoice>,
+    /// How networks are trained.
+    #[command(flatten)]
+    pub network: NetworkOptions,
+    /// For how long the touch protocol bends before it touches, seconds (5.2.4)
+    #[arg(long = "bending-s", default_value_t = 60.0, value_parser = not_negative)]
+    pub bending_s: f64,
+}
+
+impl CompareChoices {
+    /// As the job takes them.
+    #[must_use]
+    pub fn options(&self) -> CompareOptions {
+        let models = self.models.iter().map(|model| self.network.recipe(*model)).collect();
+        CompareOptions { models, bending_s: self.bending_s }
+    }
+
+    /// Whether a network is among the models.
+    pub(in crate::predictor) fn has_network(&self) -> bool {
+        self.models.iter().any(|model| matches!(model.kind(self.network.hidden), Kind::Network { .. }))
+    }
+}
