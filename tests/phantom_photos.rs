@@ -4,9 +4,11 @@ use std::{
     collections::BTreeMap,
     fs,
     path::{Path, PathBuf},
+    sync::atomic::AtomicBool,
 };
 
 use lunula::{
+    job::Watch,
     labelme::{LabelMe, from_labelme},
     phantom::{
         nail::Pose,
@@ -200,8 +202,9 @@ fn a_set_is_replaced_whole_and_nothing_else_is_touched() {
     write(&options, out.path()).unwrap();
     let first = files(out.path());
     // Interrupted: as before.
-    let stopped = write_watched(&PhotoOptions { seed: 9, ..options.clone() }, out.path(), &|_, _| false);
-    assert!(matches!(stopped, Err(Error::Interrupted)));
+    let other = PhotoOptions { seed: 9, ..options.clone() };
+    let stopped = Watch::stopped_by(&AtomicBool::new(true), |watch| write_watched(&other, out.path(), watch));
+    assert!(matches!(stopped, Err(Error::Interrupted(_))));
     assert!(files(out.path()) == first);
     // A smaller set: no photograph of the larger is left.
     write(&PhotoOptions { subjects: 1, ..options.clone() }, out.path()).unwrap();

@@ -22,7 +22,6 @@ mod tradeoff;
 mod trajectory;
 
 use std::io::IsTerminal;
-use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -31,7 +30,7 @@ use clap::{Args, Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lunula::files::results_stand;
 use lunula::input;
-use lunula::job::{Interrupted, one_of};
+use lunula::job::Interrupted;
 use lunula::stages::{Fate, Stage, Step};
 use lunula::words::shown_lines;
 use out::print_line;
@@ -130,7 +129,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Analyse(args) => job::run(&args),
         Command::Prune(args) => job::run(&args),
         Command::Simulate(args) => hemodynamics::simulate(&args),
-        Command::Fit(args) => hemodynamics::fit(&args),
+        Command::Fit(args) => job::run(&*args),
         Command::Posture(args) => posture::run_or_suggest(&args),
         Command::Merge(args) => merge::run(&args),
         Command::Phantom(args) => phantom::run(&args),
@@ -226,15 +225,6 @@ impl Common {
 
     fn say_left_out(&self, left_out: &[String]) {
         left_out.iter().for_each(|what| self.say(&format!("left out: {what}")));
-    }
-
-    /// How a job ended: with `--verbose` its stages and what was left out, then its time and where to look.
-    fn say_done(&self, stages: &[Stage], left_out: &[String], wall_s: f64, look: &Path) {
-        if self.verbose {
-            self.say_stages(stages);
-            self.say_left_out(left_out);
-        }
-        self.say(&format!("{wall_s:.2} s; look at {}", look.display()));
     }
 
     fn warn(&self, warnings: &[String]) {

@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 
 use clap::{Args, Subcommand};
 use lunula::tradeoff::peers::Peers;
-use lunula::tradeoff::{self as curves, Effort, Interrupted, Plan, Row, Setting, Tradeoff, Verdict};
+use lunula::tradeoff::{self as curves, Effort, Plan, Row, Setting, Tradeoff, Verdict};
 
 use super::phantom::SceneArg;
 use super::{Common, Outcome};
@@ -172,7 +172,7 @@ struct HemodynamicsArgs {
 }
 
 pub(super) fn run(args: &TradeoffArgs) -> anyhow::Result<Outcome> {
-    let done = match &args.job {
+    match &args.job {
         Job::Photos(args) => args.measured.run(curves::Job::Photos, |plan| {
             plan.subjects = args.subjects.unwrap_or(plan.subjects);
         }),
@@ -186,8 +186,7 @@ pub(super) fn run(args: &TradeoffArgs) -> anyhow::Result<Outcome> {
             plan.seconds = args.seconds.unwrap_or(plan.seconds);
         }),
         Job::All(args) => all(args),
-    };
-    done.map_err(|why| if why.is::<Interrupted>() { super::Interrupted.into() } else { why })
+    }
 }
 
 fn one(job: curves::Job, plan: &Plan, measuring: &Measuring) -> anyhow::Result<Outcome> {

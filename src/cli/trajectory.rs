@@ -1,20 +1,23 @@
 //! `lunula trajectory`: tables of forces or angles for a prompter to play.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use clap::{Args, Subcommand};
+use lunula::job::{Given, Said, Watch};
 use lunula::predictor::trajectory::{
-    ForceFigures, Kind, PostureFigures, TrajectoryError, TrajectoryOptions, TrajectoryOutputs, TrajectoryReport, plan,
-    run as run_trajectory,
+    BendingOptions, ForceFigures, ForceOptions, KindOptions, PostureFigures, RandomOptions, TrajectoryFigures,
+    TrajectoryOutputs, TrajectoryReport, plan, run as run_trajectory,
 };
+use lunula::stages::Step;
 
-use super::{Common, Interrupted, Outcome};
+use super::job::{self, Command, JobArgs};
+use super::{Common, Outcome};
 
 /// Calibration trajectories (5.2.3) as tables that a prompter can play, with how fast they are and how evenly they
 /// cover
 ///
-/// Beside the table stand <table>.run.json and pictures (Fig. 90-93).
+/// Beside the table are <table>.run.json and pictures (Fig. 90-93).
 #[derive(Debug, Args)]
 pub(super) struct TrajectoryArgs {
     #[command(subcommand)]
@@ -23,190 +26,91 @@ pub(super) struct TrajectoryArgs {
 
 #[derive(Debug, Subcommand)]
 enum KindArg {
-    Force(ForceArgs),
-    Posture(PostureArgs),
-    Random(RandomArgs),
+    /// The spiral through the cone of friction (equations 21 to 23), with a soft start
+    Force(KindArgs<ForceOptions>),
+    /// Bending: J2 = 35 - 40 cos(2 pi f t) degrees (equation 27), or at random within that range
+    Posture(KindArgs<BendingOptions>),
+    /// Smooth random forces within the cone of friction, for tests (5.2.4, 5.3.1)
+    Random(KindArgs<RandomOptions>),
 }
 
-/// What every trajectory takes.
 #[derive(Debug, Args)]
-struct Planned {
+struct KindArgs<K: KindOptions> {
+    #[command(flatten)]
+    given: Given<K>,
     /// The table: time_s and Fx_N, Fy_N, Fz_N (of the finger on the surface: pressing is negative Fz_N) or J2_deg (.csv
     /// or .parquet)
     #[arg(long, value_name = "TABLE.csv", required_unless_present = "plan")]
     out: Option<PathBuf>,
-    /// Between two rows
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.04, allow_negative_numbers = true)]
-    every: f64,
-    /// At rest before it begins
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true)]
-    lead: f64,
-    /// It goes on so long after its end: the finger lets go within 2 s, or stays where it bent to
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true)]
-    trail: f64,
-    /// The sensor's slowest time constant, for equation 19
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.1, allow_negative_numbers = true)]
-    tau: f64,
     /// Draw no pictures
     #[arg(long)]
     no_figures: bool,
-    /// Say what would be done and left out, and do nothing
-    #[arg(long)]
-    plan: bool,
     #[command(flatten)]
-    common: Common,
-}
-
-/// The cone of the forces that can be, and how it is entered.
-#[derive(Debug, Args)]
-struct Cone {
-    /// The largest pressing
-    #[arg(long, value_name = "NEWTONS", default_value_t = 3.0, allow_negative_numbers = true)]
-    fz_max: f64,
-    /// The coefficient of friction
-    #[arg(long, default_value_t = 0.75, allow_negative_numbers = true)]
-    mu: f64,
-    /// Forces come out of rest within so long; 0: at once, as equation 21 is printed, which begins infinitely fast
-    /// [default: 2, random forces 5]
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
-    soft_start: Option<f64>,
-    /// The error that equation 19 may come to
-    #[arg(long, value_name = "PERCENT", default_value_t = 10.0, allow_negative_numbers = true)]
-    error: f64,
-}
-
-/// The spiral through the cone of friction (equations 21 to 23), with a soft start
-#[derive(Debug, Args)]
-struct ForceArgs {
-    /// T, how long it takes
-    #[arg(long, default_value_t = 180.0, allow_negative_numbers = true)]
-    seconds: f64,
-    /// f_s: how often it goes in and out, cycles a newton
-    #[arg(long, value_name = "CYCLES", default_value_t = 1.0, allow_negative_numbers = true)]
-    fs: f64,
-    /// f_c: how often it circles
-    #[arg(long, value_name = "HZ", default_value_t = 0.15, allow_negative_numbers = true)]
-    fc: f64,
-    #[command(flatten)]
-    cone: Cone,
-    #[command(flatten)]
-    planned: Planned,
-}
-
-/// Bending: J2 = 35 - 40 cos(2 pi f t) degrees (equation 27), or at random within that range
-#[derive(Debug, Args)]
-struct PostureArgs {
-    /// How long it takes
-    #[arg(long, default_value_t = 60.0, allow_negative_numbers = true)]
-    seconds: f64,
-    /// f_b, the rate of bending; random bending has rates of 0.4 to 4 times it
-    #[arg(long, default_value_t = 0.1, allow_negative_numbers = true)]
-    hz: f64,
-    /// Smooth random bending, for tests
-    #[arg(long)]
-    random: bool,
-    /// Random bending follows from it
-    #[arg(long, default_value_t = 1, requires = "random")]
-    seed: u64,
-    /// Random bending comes out of rest within so long
-    #[arg(long, value_name = "SECONDS", default_value_t = 2.0, allow_negative_numbers = true)]
-    soft_start: f64,
-    #[command(flatten)]
-    planned: Planned,
-}
-
-/// Smooth random forces within the cone of friction, for tests (5.2.4, 5.3.1)
-#[derive(Debug, Args)]
-struct RandomArgs {
-    /// How long it takes
-    #[arg(long, default_value_t = 100.0, allow_negative_numbers = true)]
-    seconds: f64,
-    /// Rates lie between 0.4 and 4 times it; at 0.03, equation 19's usual limit is kept
-    #[arg(long, default_value_t = 0.03, allow_negative_numbers = true)]
-    hz: f64,
-    /// Everything random follows from it
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
-    #[command(flatten)]
-    cone: Cone,
-    #[command(flatten)]
-    planned: Planned,
-}
-
-impl KindArg {
-    fn options(&self) -> (TrajectoryOptions, &Planned) {
-        let usual = |kind: Kind, seconds: f64, planned: &Planned| TrajectoryOptions {
-            seconds,
-            every_s: planned.every,
-            lead_s: planned.lead,
-            trail_s: planned.trail,
-            tau_s: planned.tau,
-            ..TrajectoryOptions::of(kind)
-        };
-        let in_cone = |options: TrajectoryOptions, cone: &Cone| TrajectoryOptions {
-            fz_max_n: cone.fz_max,
-            mu: cone.mu,
-            soft_s: cone.soft_start.unwrap_or(options.soft_s),
-            error: 0.01 * cone.error,
-            ..options
-        };
-        match self {
-            Self::Force(args) => {
-                let kind = Kind::Force { fs_per_n: args.fs, fc_hz: args.fc };
-                (in_cone(usual(kind, args.seconds, &args.planned), &args.cone), &args.planned)
-            }
-            Self::Random(args) => {
-                let kind = Kind::Random { hz: args.hz, seed: args.seed };
-                (in_cone(usual(kind, args.seconds, &args.planned), &args.cone), &args.planned)
-            }
-            Self::Posture(args) => {
-                let kind = Kind::Posture { hz: args.hz, seed: args.random.then_some(args.seed) };
-                let options = usual(kind, args.seconds, &args.planned);
-                let soft_s = if args.random { args.soft_start } else { options.soft_s };
-                (TrajectoryOptions { soft_s, ..options }, &args.planned)
-            }
-        }
-    }
+    job: JobArgs,
 }
 
 pub(super) fn run(args: &TrajectoryArgs) -> anyhow::Result<Outcome> {
-    let (options, planned) = args.kind.options();
-    let outputs =
-        planned.out.as_ref().map(|table| TrajectoryOutputs { table: table.clone(), figures: !planned.no_figures });
-    let common = &planned.common;
-    let stop = common.start()?;
-    if planned.plan {
-        let steps = plan(&options, outputs.as_ref())?;
-        return common.show_plan("trajectory", &steps);
-    }
-    let outputs = outputs.context("--out is needed")?;
-    match run_trajectory(&options, &outputs, &stop) {
-        Err(TrajectoryError::Interrupted) => Err(Interrupted.into()),
-        Err(error) => Err(error.into()),
-        Ok(report) => finish(common, &report),
+    match &args.kind {
+        KindArg::Force(args) => job::run(args),
+        KindArg::Posture(args) => job::run(args),
+        KindArg::Random(args) => job::run(args),
     }
 }
 
-fn finish(common: &Common, report: &TrajectoryReport) -> anyhow::Result<Outcome> {
-    common.warn(&report.warnings);
-    common.print_json(report)?;
-    common.say(&format!("{} rows from 0 to {:.3} s, every {} s", report.rows, report.span_s, report.options.every_s));
-    if let Some(force) = &report.force {
-        say_force(common, report, force);
+impl<K: KindOptions> KindArgs<K> {
+    fn outputs(&self) -> Option<TrajectoryOutputs> {
+        Some(TrajectoryOutputs { table: self.out.clone()?, figures: !self.no_figures, report: true })
     }
-    if let Some(PostureFigures { lowest_deg, highest_deg, fastest_deg_per_s, behind_deg }) = report.posture {
+}
+
+impl<K: KindOptions> Command for KindArgs<K> {
+    type Figures = TrajectoryFigures;
+
+    fn name(&self) -> &'static str {
+        "trajectory"
+    }
+
+    fn job(&self) -> &JobArgs {
+        &self.job
+    }
+
+    fn said(&self) -> &Said {
+        &self.given.said
+    }
+
+    fn plan(&self) -> anyhow::Result<Vec<Step>> {
+        Ok(plan(&self.given.options.options(), self.outputs().as_ref())?)
+    }
+
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<TrajectoryReport> {
+        let outputs = self.outputs().context("--out is needed")?;
+        Ok(run_trajectory(&self.given.options.options(), &outputs, watch)?)
+    }
+
+    fn say(&self, common: &Common, report: &TrajectoryReport) {
         common.say(&format!(
-            "J2 from {lowest_deg:.1} to {highest_deg:.1} degrees, at most {fastest_deg_per_s:.1} degrees a second: a \
-             sensor that lags by {} s is {behind_deg:.1} degrees behind",
-            report.options.tau_s
+            "{} rows from 0 to {:.3} s, every {} s",
+            report.rows, report.span_s, report.trajectory.every_s
         ));
+        if let Some(force) = &report.force {
+            say_force(common, report, force);
+        }
+        if let Some(PostureFigures { lowest_deg, highest_deg, fastest_deg_per_s, behind_deg }) = report.posture {
+            common.say(&format!(
+                "J2 from {lowest_deg:.1} to {highest_deg:.1} degrees, at most {fastest_deg_per_s:.1} degrees a second: a \
+                 sensor that lags by {} s is {behind_deg:.1} degrees behind",
+                report.trajectory.tau_s
+            ));
+        }
     }
-    common.say_done(&report.stages, &report.left_out, report.wall_s, report.pictures.first().unwrap_or(&report.table));
-    Ok(Outcome::Done)
+
+    fn result(&self) -> Option<&Path> {
+        self.out.as_deref()
+    }
 }
 
 fn say_force(common: &Common, report: &TrajectoryReport, force: &ForceFigures) {
-    let options = &report.options;
+    let options = &report.trajectory;
     if let Some(rates) = &force.rates {
         let [x, y, z] = rates.components_n_per_s;
         common.say(&format!(
@@ -263,8 +167,11 @@ fn say_force(common: &Common, report: &TrajectoryReport, force: &ForceFigures) {
         common.say(&format!("largest hole: {:.2} N about ({x:.2}, {y:.2}, {z:.2}) N", hole.radius_n));
     }
     if let Some(correlation) = force.time_pressing_correlation {
-        let drift =
-            if correlation.abs() > 0.9 { ": a drift of the sensor can't be told from the pressing" } else { "" };
+        let drift = if correlation.abs() > 0.9 {
+            ": a drift of the sensor can't be distinguished from the pressing"
+        } else {
+            ""
+        };
         common.say(&format!("correlation of time and pressing {correlation:.2}{drift}"));
     }
 }

@@ -1,11 +1,9 @@
-//! What a job is asked for, by a word.
+//! Choices by a word.
 
 use lunula_hemodynamics::{Calibration, Collapse, Optics, Parameters};
 use serde::{Serialize, Serializer};
 
 use super::HemodynamicsError;
-use super::curve::Pressed;
-use super::fit::Between;
 use super::solve::rest;
 use crate::words::Words;
 
@@ -56,16 +54,6 @@ impl Serialize for OpticsChoice {
 impl Words for Collapse {
     const WORDS: &'static [(Self, &'static str, &'static str)] =
         &[(Self::Error, "error", ""), (Self::Contact, "contact", "")];
-}
-
-impl Words for Pressed {
-    const WORDS: &'static [(Self, &'static str, &'static str)] =
-        &[(Self::Proximal, "proximal", ""), (Self::Distal, "distal", ""), (Self::Both, "both", "")];
-}
-
-impl Words for Between {
-    const WORDS: &'static [(Self, &'static str, &'static str)] =
-        &[(Self::Straight, "straight", ""), (Self::Held, "held", "")];
 }
 
 impl Words for Calibration {

@@ -2,16 +2,16 @@
 
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use lunula_hemodynamics::{ParameterFault, StateFault};
 use thiserror::Error;
 
 use crate::files::WriteError;
+use crate::job::Interrupted;
 use crate::log::LogError;
 use crate::table::TableError;
 
-/// Why there are no results; nothing that stood before was touched.
+/// Why there are no results; nothing that existed before was touched.
 #[derive(Debug, Error)]
 pub enum HemodynamicsError {
     /// All that is wrong with the options.
@@ -25,7 +25,7 @@ pub enum HemodynamicsError {
         /// The system's words.
         why: std::io::Error,
     },
-    /// A parameter file is none.
+    /// A file that is not one of parameters.
     #[error("{}: {why}", path.display())]
     ParameterFile {
         /// The file.
@@ -39,7 +39,7 @@ pub enum HemodynamicsError {
     /// A table of loads, recordings or states can't be used; a fault a line, each with its place.
     #[error("{}", .0.join("\n"))]
     Rows(Vec<String>),
-    /// The state to start from is none of this model.
+    /// The state to start from is not one of this model.
     #[error("{}: {why}", path.display())]
     Start {
         /// The table.
@@ -60,8 +60,8 @@ pub enum HemodynamicsError {
     #[error(transparent)]
     Write(#[from] WriteError),
     /// Stopped from outside.
-    #[error("interrupted; nothing was written")]
-    Interrupted,
+    #[error("stopped")]
+    Interrupted(#[from] Interrupted),
 }
 
 impl HemodynamicsError {
@@ -69,9 +69,4 @@ impl HemodynamicsError {
     pub(super) fn table(path: &Path, what: impl Display) -> Self {
         Self::Rows(vec![format!("{}: {what}", path.display())])
     }
-}
-
-/// Refuses to go on once somebody has stopped the job.
-pub(super) fn go_on(stop: &AtomicBool) -> Result<(), HemodynamicsError> {
-    if stop.load(Ordering::Relaxed) { Err(HemodynamicsError::Interrupted) } else { Ok(()) }
 }

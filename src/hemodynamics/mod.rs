@@ -24,19 +24,21 @@ use lunula_hemodynamics::Parameters;
 
 pub use choices::OpticsChoice;
 pub use curve::{
-    CurveOptions, CurveOutputs, CurvePoint, CurveReport, Fold, LoadRange, Pressed, curve, curve_outline, curve_plan,
+    CurveFigures, CurveJob, CurveOptions, CurveOutputs, CurvePoint, CurveRange, CurveReport, Fold, LoadRange, Pressed,
+    curve, curve_plan,
 };
 pub use error::HemodynamicsError;
 pub use fit::{
-    Between, FitOptions, FitOutputs, FitReport, FittedCombination, FittedGroup, FittedPhotodiode, FittedRival,
-    ForceColumn, PhotodiodeColumn, RecordingColumns, RecordingReport, STARTS, fit, fit_outline, fit_plan,
+    Between, FitFigures, FitInputs, FitJob, FitOptions, FitOutputs, FitReport, FittedCombination, FittedGroup,
+    FittedPhotodiode, FittedRival, PhotodiodeColumn, RecordingColumns, RecordingReport, fit, fit_plan,
 };
-pub use given::{GivenLoads, GivenParameters, Start};
+pub use given::{BloodOptions, LoadOptions, ModelOptions, Start};
 pub use people::{Person, Recorded};
 pub use response::Response;
-pub use section::{Presses, QuickPress, SectionTold, section_4_3, section_presses, section_simulations};
+pub use section::{Presses, QuickPress, SectionText, section_4_3, section_presses, section_simulations};
 pub use simulate::{
-    Collapsed, SimulateOptions, SimulateOutputs, SimulateReport, Work, simulate, simulate_outline, simulate_plan,
+    Collapsed, SimulateFigures, SimulateInputs, SimulateJob, SimulateOptions, SimulateOutputs, SimulateReport, Work,
+    simulate, simulate_plan,
 };
 pub use solve::{Run, RunSettings, respond};
 

@@ -62,6 +62,13 @@ impl Said {
         self.0.is_empty()
     }
 
+    /// With another option, first read by the job itself.
+    #[must_use]
+    pub fn and(mut self, key: &str, value: &str) -> Self {
+        self.0.insert(key.to_owned(), value.into());
+        self
+    }
+
     fn of<R: Args>(matches: &ArgMatches) -> Self {
         let command = R::augment_args(Command::new("lunula"));
         let said = command.get_arguments().filter_map(|one| {
@@ -227,6 +234,11 @@ fn word(value: &Value) -> Option<String> {
         Value::String(text) => Some(text.clone()),
         Value::Integer(number) => Some(number.to_string()),
         Value::Float(number) => Some(number.to_string()),
+        // A row of several, as in `--places P7,P2,P5`.
+        Value::Array(names) => {
+            let names = names.iter().map(Value::as_str).collect::<Option<Vec<_>>>()?;
+            Some(names.join(","))
+        }
         // Pairs, as in `--columns P1=ch_1,led=lamp`.
         Value::Table(pairs) => {
             let pair = |(name, text): (&String, &Value)| Some(format!("{name}=\"{}\"", text.as_str()?));

@@ -14,6 +14,7 @@ use super::photos::{self, OptionFault, PhotoOptions};
 use super::presses::{self, PressOptions};
 use super::video::{self, Scene, VideoOptions};
 use crate::files::{Staging, WriteError};
+use crate::job::Watch;
 
 /// What is written into one folder.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -59,14 +60,6 @@ pub enum RecordingError {
     /// No text.
     #[error(transparent)]
     Text(#[from] WriteError),
-}
-
-impl RecordingError {
-    /// Whether the caller asked to stop.
-    #[must_use]
-    pub fn interrupted(&self) -> bool {
-        matches!(self, Self::Photos(photos::Error::Interrupted) | Self::Video(video::Error::Interrupted))
-    }
 }
 
 /// About what a recording costs.
@@ -148,14 +141,13 @@ impl Recording {
         }
     }
 
-    /// Makes it in `folder`; `goes_on` is asked now and then. The bytes are the same whatever the number of threads.
+    /// Makes it in `folder`. The bytes are the same whatever the number of threads.
     ///
     /// # Errors
     /// [`RecordingError`]; of each of its parts what stood before is as it was.
-    pub fn write(&self, folder: &Path, goes_on: &(dyn Fn() -> bool + Sync)) -> Result<(), RecordingError> {
-        let watch = |_: usize, _: usize| goes_on();
+    pub fn write(&self, folder: &Path, watch: &Watch<'_>) -> Result<(), RecordingError> {
         let film = |options: &VideoOptions| -> Result<(), RecordingError> {
-            video::write_watched(&Scene::new(options.clone())?, folder, &watch)?;
+            video::write_watched(&Scene::new(options.clone())?, folder, watch)?;
             Ok(())
         };
         let note = |options: &LogOptions| -> Result<(), RecordingError> {
@@ -163,7 +155,7 @@ impl Recording {
             Ok(())
         };
         match self {
-            Self::Photos(options) => photos::write_watched(options, folder, &watch).map(|_| ())?,
+            Self::Photos(options) => photos::write_watched(options, folder, watch).map(|_| ())?,
             Self::Video(options) => film(options)?,
             Self::Log(options) => note(options)?,
             Self::Filmed { video, log } => {

@@ -13,10 +13,14 @@ mod page;
 mod predictors;
 mod presses;
 pub mod responses;
+mod section;
 pub mod statements;
+mod typical;
 
 pub use coloration::{REGIONS, coloration_numbers, coloration_sheets};
 pub use numbers::Numbers;
-pub use page::{PageOptions, PageReport, Part, PartFolder, study_page};
+pub use page::{PageFigures, PageOptions, PageReport, Part, PartFolder, StudyJob, study_page};
 pub use predictors::{compare_numbers, evaluation_numbers, modes_numbers};
 pub use presses::{PressFile, read_presses};
+pub use section::{PressesJob, SectionJob};
+pub use typical::TypicalJob;

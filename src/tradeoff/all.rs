@@ -7,8 +7,9 @@ use super::judge::{Tradeoff, judge};
 use super::peers::{Peers, Python};
 use super::rows::Row;
 use super::scenes::{self, Wanted};
-use super::timing::{Effort, Interrupted};
+use super::timing::Effort;
 use super::{align, hemodynamics, photos, posture, predictor};
+use crate::job::Interrupted;
 use crate::phantom::video::Preset;
 
 /// What can be measured.
@@ -143,7 +144,7 @@ pub fn all(plan: &Plan, mut tell: impl FnMut(Job)) -> anyhow::Result<Outcomes> {
             own.effort.repeats *= HEMODYNAMICS;
         }
         let found = own.run(job, &others);
-        if found.as_ref().is_err_and(|why| why.is::<Interrupted>()) {
+        if found.as_ref().is_err_and(|why| why.chain().any(|one| one.is::<Interrupted>())) {
             found?;
             continue;
         }

@@ -29,4 +29,4 @@ pub use judge::{Told, Tradeoff, Verdict, judge};
 pub use knee::{BEND, Cost, Knee, SAME, Why, front, knee};
 pub use page::{Setting, index};
 pub use rows::{Measured, Row};
-pub use timing::{Effort, Interrupted};
+pub use timing::Effort;

@@ -115,7 +115,7 @@ impl Scene {
 /// left out, and [`Measured::refused`] says so.
 ///
 /// # Errors
-/// A set or truth that can't be read, with its file; [`Interrupted`](super::Interrupted).
+/// A set or truth that can't be read, with its file; [`Interrupted`](crate::job::Interrupted).
 pub fn measure(settings: &Settings) -> anyhow::Result<Measured> {
     let mut scenes = vec![Scene::read(&settings.set, &settings.truth, false)?];
     if let Some((set, truth)) = &settings.small {

@@ -59,7 +59,7 @@ pub(super) fn tracking_default() -> String {
 /// Measures every setting.
 ///
 /// # Errors
-/// A video, marker file or truth that can't be read, with its file; [`Interrupted`](super::Interrupted).
+/// A video, marker file or truth that can't be read, with its file; [`Interrupted`](crate::job::Interrupted).
 pub fn measure(settings: &Settings) -> anyhow::Result<Measured> {
     let layout = Layout::read(&settings.markers)?;
     let truth = Angles::read(&settings.truth.join("joints.csv"), &layout)?;

@@ -5,6 +5,8 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use crate::job::Interrupted;
+
 /// How much is measured.
 #[derive(Debug, Clone, Default)]
 pub struct Effort {
@@ -17,11 +19,6 @@ pub struct Effort {
     /// Set from outside to stop.
     pub stop: Arc<AtomicBool>,
 }
-
-/// The measuring was stopped from outside.
-#[derive(Debug, Clone, Copy, thiserror::Error)]
-#[error("interrupted; nothing was written")]
-pub struct Interrupted;
 
 impl Effort {
     /// Fails once it was stopped from outside.

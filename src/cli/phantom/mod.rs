@@ -5,11 +5,13 @@ mod photos;
 mod study;
 mod video;
 
+use anyhow::Context as _;
 use clap::{Args, Subcommand};
+use lunula::job::{Said, Watch};
 
 pub(super) use lunula::phantom::request::SceneArg;
 
-use super::{Common, Interrupted, Outcome};
+use super::{Common, Outcome};
 
 /// Synthetic scenes with exact truth: inputs as the jobs read them, and truth/ beside them
 #[derive(Debug, Args)]
@@ -33,4 +35,22 @@ pub(super) fn run(args: &PhantomArgs) -> anyhow::Result<Outcome> {
         Kind::Video(args) => video::run(args),
         Kind::Study(args) => study::run(args),
     }
+}
+
+/// Runs `work` with a bar that counts what it makes; `what` is not there where it fails: `no synthetic video`.
+fn watched<T, E: Into<anyhow::Error>>(
+    common: &Common,
+    unit: &str,
+    what: &'static str,
+    work: impl FnOnce(&Watch<'_>) -> Result<T, E>,
+) -> anyhow::Result<T> {
+    let stop = common.start()?;
+    let bar = common.progress(0, unit);
+    let tick = |done: u64, all: Option<u64>| {
+        bar.set_length(all.unwrap_or(done));
+        bar.set_position(done);
+    };
+    let made = work(&Watch { said: &Said::default(), stop: &stop, tick: &tick });
+    bar.finish_and_clear();
+    made.map_err(Into::into).context(what)
 }

@@ -1,13 +1,12 @@
 //! `lunula phantom photos`: photographs of nails.
 
 use std::path::PathBuf;
-use std::sync::atomic::Ordering;
 
 use clap::Args;
-use lunula::phantom::photos::{Error, write_watched};
+use lunula::phantom::photos::write_watched;
 use lunula::phantom::request::PhotosRequest;
 
-use super::{Common, Interrupted, Outcome};
+use super::{Common, Outcome, watched};
 
 /// Photographs of nails of many shapes, sizes, skin tones and lights, in the eight poses of the thesis (4.2.3-4.2.6)
 ///
@@ -26,17 +25,9 @@ pub(super) struct PhotosArgs {
 
 pub(super) fn run(args: &PhotosArgs) -> anyhow::Result<Outcome> {
     let options = args.request.options();
-    let stop = args.common.start()?;
-    let bar = args.common.progress(options.subjects as usize * options.poses.len(), "photographs");
-    let watch = |done: usize, _: usize| {
-        bar.set_position(done as u64);
-        !stop.load(Ordering::Relaxed)
-    };
-    let summary = write_watched(&options, &args.out, &watch).map_err(|error| match error {
-        Error::Interrupted => Interrupted.into(),
-        other => anyhow::Error::from(other).context("no synthetic photographs"),
+    let summary = watched(&args.common, "photographs", "no synthetic photographs", |watch| {
+        write_watched(&options, &args.out, watch)
     })?;
-    bar.finish_and_clear();
     args.common.print_json(&serde_json::json!({
         "job": "phantom photos",
         "version": env!("CARGO_PKG_VERSION"),

@@ -1,14 +1,13 @@
 //! `lunula phantom study`: a whole experiment.
 
 use std::path::PathBuf;
-use std::sync::atomic::Ordering;
 
 use anyhow::Context;
 use clap::Args;
 use lunula::phantom::request::StudyRequest;
-use lunula::phantom::study::{Study, StudyError, write_watched};
+use lunula::phantom::study::{Study, write_watched};
 
-use super::{Common, Interrupted, Outcome};
+use super::{Common, Outcome, watched};
 use crate::cli::print_line;
 
 /// A whole experiment: photographs in eight poses, logs of three spirals, of bending and of random movement, posture
@@ -24,7 +23,7 @@ pub(super) struct StudyArgs {
     out: Option<PathBuf>,
     #[command(flatten)]
     request: StudyRequest,
-    /// Say what would be written, and write nothing
+    /// Show what would be written, and write nothing
     #[arg(long)]
     plan: bool,
     #[command(flatten)]
@@ -37,17 +36,7 @@ pub(super) fn run(args: &StudyArgs) -> anyhow::Result<Outcome> {
         return plan(args, &study);
     }
     let out = args.out.as_ref().context("--out is needed: a folder for the study")?;
-    let stop = args.common.start()?;
-    let bar = args.common.progress(study.recordings().len(), "recordings");
-    let watch = |done: usize, _: usize| {
-        bar.set_position(done as u64);
-        !stop.load(Ordering::Relaxed)
-    };
-    let summary = write_watched(&study, out, &watch).map_err(|error| match error {
-        StudyError::Interrupted => Interrupted.into(),
-        other => anyhow::Error::from(other).context("no synthetic study"),
-    })?;
-    bar.finish_and_clear();
+    let summary = watched(&args.common, "recordings", "no synthetic study", |watch| write_watched(&study, out, watch))?;
     args.common.print_json(&serde_json::json!({
         "job": "phantom study",
         "version": env!("CARGO_PKG_VERSION"),

@@ -1,14 +1,13 @@
 //! `lunula phantom video`: videos of a finger with coloured markers.
 
 use std::path::PathBuf;
-use std::sync::atomic::Ordering;
 
 use anyhow::Context;
 use clap::Args;
 use lunula::phantom::request::VideoRequest;
-use lunula::phantom::video::{Error, Scene, write_watched};
+use lunula::phantom::video::{Scene, write_watched};
 
-use super::{Common, Interrupted, Outcome};
+use super::{Common, Outcome, watched};
 
 /// A video of a finger with coloured markers, with exact joint angles and marker centres (3.2.3, 3.3.5)
 ///
@@ -28,18 +27,9 @@ pub(super) struct VideoArgs {
 pub(super) fn run(args: &VideoArgs) -> anyhow::Result<Outcome> {
     let options = args.request.options().context("no synthetic video")?;
     let wanted = options.distractors;
-    let stop = args.common.start()?;
     let scene = Scene::new(options).context("no synthetic video")?;
-    let bar = args.common.progress(scene.frames(), "frames");
-    let watch = |done: usize, _: usize| {
-        bar.set_position(done as u64);
-        !stop.load(Ordering::Relaxed)
-    };
-    let summary = write_watched(&scene, &args.out, &watch).map_err(|error| match error {
-        Error::Interrupted => Interrupted.into(),
-        other => anyhow::Error::from(other).context("no synthetic video"),
-    })?;
-    bar.finish_and_clear();
+    let summary =
+        watched(&args.common, "frames", "no synthetic video", |watch| write_watched(&scene, &args.out, watch))?;
     let mut warnings = Vec::new();
     if summary.distractors < wanted {
         warnings

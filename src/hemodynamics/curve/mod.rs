@@ -2,10 +2,12 @@
 
 mod figure;
 mod job;
+mod kind;
 mod options;
 mod report;
 mod table;
 
-pub use job::{CurveOutputs, curve, outline as curve_outline, plan as curve_plan};
-pub use options::{CurveOptions, LoadRange, Pressed};
-pub use report::{CurvePoint, CurveReport, Fold};
+pub use job::{curve, plan as curve_plan};
+pub use kind::CurveJob;
+pub use options::{CurveOptions, CurveOutputs, CurveRange, LoadRange, Pressed};
+pub use report::{CurveFigures, CurvePoint, CurveReport, Fold};

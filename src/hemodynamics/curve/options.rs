@@ -1,13 +1,16 @@
-//! Which equilibria are wanted.
+//! Which equilibria: the options of `lunula simulate --static` and of a pipeline's stage.
 
+use std::path::PathBuf;
 use std::str::FromStr;
 
-use lunula_hemodynamics::{Collapse, Load, LoadPath};
+use clap::Args;
+use lunula_hemodynamics::LoadPath;
 use serde::Serialize;
 
-use crate::hemodynamics::choices::OpticsChoice;
-use crate::hemodynamics::given::GivenParameters;
+use crate::hemodynamics::given::{BloodOptions, ModelOptions};
 use crate::hemodynamics::grid::{multiple, multiples_within};
+use crate::job::one_of;
+use crate::words::Words;
 
 /// What a load presses on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
@@ -44,6 +47,11 @@ impl Pressed {
     }
 }
 
+impl Words for Pressed {
+    const WORDS: &'static [(Self, &'static str, &'static str)] =
+        &[(Self::Proximal, "proximal", ""), (Self::Distal, "distal", ""), (Self::Both, "both", "")];
+}
+
 /// Loads from one to another by steps, Pa; the last is left out where the steps don't meet it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct LoadRange {
@@ -55,7 +63,7 @@ pub struct LoadRange {
     pub step_pa: f64,
 }
 
-/// More loads than a curve is told at.
+/// The most loads of a curve.
 const MOST_LOADS: f64 = 1e5;
 
 impl LoadRange {
@@ -72,7 +80,7 @@ impl FromStr for LoadRange {
 
     /// `FROM..TO/STEP`, as `0..12000/100`; a single load is `FROM`.
     fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || format!("{text:?} is no range of loads: write FROM..TO/STEP in pascals, as 0..12000/100");
+        let wrong = || format!("{text:?} is not a range of loads: write FROM..TO/STEP in pascals, as 0..12000/100");
         let number = |part: &str| part.trim().parse().ok().filter(|value: &f64| value.is_finite()).ok_or_else(wrong);
         let Some((from, rest)) = text.split_once("..") else {
             let only = number(text)?;
@@ -94,23 +102,40 @@ impl FromStr for LoadRange {
     }
 }
 
-/// Equilibria to be found.
-#[derive(Debug, Clone)]
-pub struct CurveOptions {
-    /// Of which nail.
-    pub parameters: GivenParameters,
-    /// `P_H`; none: the parameters'. A constant.
-    pub upstream: Option<Load>,
-    /// `P_L`; none: the parameters'. A constant.
-    pub downstream: Option<Load>,
-    /// What the loads press on.
+/// Which loads, and what they press on.
+#[derive(Debug, Clone, Args)]
+pub struct CurveRange {
+    /// Equilibria instead of a run: for these loads, in pascals
+    #[arg(long = "static", id = "static", value_name = "FROM..TO/STEP", allow_hyphen_values = true)]
+    pub loads: LoadRange,
+    /// What the loads of --static press on
+    #[arg(long = "load", value_parser = one_of::<Pressed>(), default_value = "both", requires = "static")]
     pub pressed: Pressed,
+}
+
+/// How equilibria are found.
+#[derive(Debug, Clone, Args)]
+pub struct CurveOptions {
     /// The loads.
-    pub range: LoadRange,
-    /// What happens where a vessel closes.
-    pub collapse: Collapse,
-    /// How light depends on the capillaries.
-    pub optics: OpticsChoice,
+    #[command(flatten)]
+    pub range: CurveRange,
+    /// The pressures of the blood, which have to be constants.
+    #[command(flatten)]
+    pub blood: BloodOptions,
+    /// The model.
+    #[command(flatten)]
+    pub model: ModelOptions,
+}
+
+/// Where results go.
+#[derive(Debug, Clone)]
+pub struct CurveOutputs {
+    /// The table; report and picture go beside it, named after it.
+    pub table: PathBuf,
+    /// Whether a picture is drawn.
+    pub figures: bool,
+    /// Whether the report is written beside the table.
+    pub report: bool,
 }
 
 #[cfg(test)]
@@ -127,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_range_says_why() {
+    fn the_reason_is_given_for_what_is_not_a_range() {
         for (text, why) in [
             ("0..1e9/1", "more than"),
             ("5..1/1", "before"),
@@ -136,8 +161,8 @@ mod tests {
             ("0..nan/1", "FROM..TO/STEP"),
             ("a", "FROM..TO/STEP"),
         ] {
-            let told = text.parse::<LoadRange>().unwrap_err();
-            assert!(told.contains(why), "{text}: {told}");
+            let why_not = text.parse::<LoadRange>().unwrap_err();
+            assert!(why_not.contains(why), "{text}: {why_not}");
         }
     }
 }

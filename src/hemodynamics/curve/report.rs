@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::{LoadRange, Pressed};
 use crate::hemodynamics::choices::OpticsChoice;
-use crate::stages::Stage;
+use crate::job::Report;
 
 /// An equilibrium, or that there is none.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,16 +43,15 @@ pub struct Fold {
     pub volts: Vec<f64>,
 }
 
-/// What was found.
+/// What a run did.
+pub type CurveReport = Report<CurveFigures>;
+
+/// The figures of a run.
 #[derive(Debug, Clone, Serialize)]
-pub struct CurveReport {
-    /// Which job.
-    pub job: &'static str,
-    /// The program's version.
-    pub version: &'static str,
+pub struct CurveFigures {
     /// The table.
     pub table: PathBuf,
-    /// Its rows: an equilibrium each, or that there is none.
+    /// Its rows: one for each equilibrium, and one for each load without any.
     pub rows: u64,
     /// Capillary units.
     pub units: usize,
@@ -81,16 +80,4 @@ pub struct CurveReport {
     /// The parameters, by their names in files.
     #[serde(serialize_with = "crate::hemodynamics::as_map")]
     pub parameters: Vec<(String, f64)>,
-    /// What was not asked for.
-    pub left_out: Vec<String>,
-    /// What whoever reads this should know.
-    pub warnings: Vec<String>,
-    /// Always empty: a load without an open equilibrium is a finding.
-    pub failed: Vec<String>,
-    /// The pictures.
-    pub pictures: Vec<PathBuf>,
-    /// Time by stage.
-    pub stages: Vec<Stage>,
-    /// Seconds from start to end, this report not counted.
-    pub wall_s: f64,
 }

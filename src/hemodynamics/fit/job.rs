@@ -1,7 +1,6 @@
 //! The fit: options in, its result, parameter files, a table and a picture out.
 
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use lunula_hemodynamics::{Calibration, FitOptions as Settings, FitResult, Free, Parameters, Recording, fit as search};
@@ -9,24 +8,15 @@ use lunula_hemodynamics::{Calibration, FitOptions as Settings, FitResult, Free, 
 use super::parameter_files::{parameter_files, parameter_paths};
 use super::recording::{ReadRecording, read};
 use super::report::{
-    FitReport, FittedCombination, FittedPhotodiode, FittedRival, RecordingReport, correlations, groups, stopped,
+    FitFigures, FitReport, FittedCombination, FittedPhotodiode, FittedRival, RecordingReport, correlations, groups,
+    result_text, stopped,
 };
-use super::{FitOptions, estimates, figure, fitted, noise};
+use super::{FitInputs, FitOptions, FitOutputs, estimates, figure, fitted, noise};
 use crate::files::{Places, beside, pictures_beside};
-use crate::hemodynamics::error::go_on;
-use crate::hemodynamics::given::keep_inputs;
 use crate::hemodynamics::{HemodynamicsError, named};
+use crate::job::{Report, Watch};
 use crate::stages::{Stages, Step, left_out};
 use crate::table::{Column, TableWriter, Value};
-
-/// Where results go.
-#[derive(Debug, Clone)]
-pub struct FitOutputs {
-    /// The result; parameter files, table and picture stand beside it, named after it.
-    pub result: PathBuf,
-    /// Whether a picture is drawn.
-    pub figures: bool,
-}
 
 /// What a fit needs, read and checked.
 struct Ready {
@@ -35,37 +25,41 @@ struct Ready {
     recordings: Vec<ReadRecording>,
 }
 
+impl Ready {
+    fn samples(&self) -> usize {
+        self.recordings.iter().map(|one| one.recording.samples()).sum()
+    }
+}
+
 /// Plans a fit; `outputs` may be open yet.
 ///
 /// # Errors
 /// What is wrong with the options or the recordings.
-pub fn plan(options: &FitOptions, outputs: Option<&FitOutputs>) -> Result<Vec<Step>, HemodynamicsError> {
-    let ready = ready(options)?;
+pub fn plan(
+    inputs: &FitInputs,
+    options: &FitOptions,
+    outputs: Option<&FitOutputs>,
+) -> Result<Vec<Step>, HemodynamicsError> {
+    let ready = ready(inputs, options)?;
     if let Some(outputs) = outputs {
-        is_no_input(options, outputs)?;
+        places(inputs, options, outputs)?;
     }
-    Ok(steps(options, outputs, Some(&ready)))
+    Ok(steps(inputs, options, outputs, Some(ready.samples())))
 }
 
-/// Plans a fit whose recordings do not stand yet.
-#[must_use]
-pub fn outline(options: &FitOptions, outputs: Option<&FitOutputs>) -> Vec<Step> {
-    steps(options, outputs, None)
-}
-
-fn ready(options: &FitOptions) -> Result<Ready, HemodynamicsError> {
-    let start = options.parameters.read()?;
-    let free = options.groups(&start)?;
+fn ready(inputs: &FitInputs, options: &FitOptions) -> Result<Ready, HemodynamicsError> {
+    let start = options.model.parameters(inputs.params.as_deref())?;
+    let free = options.groups(inputs, &start)?;
     let units = start.units().len();
     let one = |(k, path): (usize, &PathBuf)| -> Result<ReadRecording, HemodynamicsError> {
         let mut found = read(path, &options.columns, units)?;
-        found.recording.subject = Some(options.subject(k).to_owned());
-        if let Some(name) = options.names.get(k) {
+        found.recording.subject = Some(inputs.subject(k).to_owned());
+        if let Some(name) = inputs.names.get(k) {
             found.name.clone_from(name);
         }
         Ok(found)
     };
-    let recordings = options.recordings.iter().enumerate().map(one).collect::<Result<_, _>>()?;
+    let recordings = inputs.recordings.iter().enumerate().map(one).collect::<Result<_, _>>()?;
     let recordings: Vec<ReadRecording> = recordings;
     let known = |name: &String| recordings.iter().any(|read| read.photodiodes.contains(name));
     if let Some((name, _)) = options.noise.iter().find(|(name, _)| !known(name)) {
@@ -74,20 +68,23 @@ fn ready(options: &FitOptions) -> Result<Ready, HemodynamicsError> {
     Ok(Ready { start, free, recordings })
 }
 
-fn steps(options: &FitOptions, outputs: Option<&FitOutputs>, ready: Option<&Ready>) -> Vec<Step> {
+/// The one table of steps; `samples` are known once the recordings are read.
+pub(super) fn steps(
+    inputs: &FitInputs,
+    options: &FitOptions,
+    outputs: Option<&FitOutputs>,
+    samples: Option<usize>,
+) -> Vec<Step> {
     let pictures = outputs.is_none_or(|outputs| outputs.figures);
-    let samples = ready.map_or(String::new(), |ready| {
-        let samples: usize = ready.recordings.iter().map(|one| one.recording.samples()).sum();
-        format!(", {samples} samples")
-    });
-    let (free, recordings) = (options.free.len(), options.recordings.len());
-    let held = options.calibration == Calibration::Fixed;
+    let samples = samples.map_or(String::new(), |samples| format!(", {samples} samples"));
+    let (free, recordings) = (options.free().len(), inputs.recordings.len());
+    let held = options.calibrate == Calibration::Fixed;
     vec![
         Step::new("fit", true, format!("{free} free groups, {recordings} recordings{samples}")),
         Step::new(
             "offset and scaling",
             !held,
-            match options.calibration {
+            match options.calibrate {
                 Calibration::Fixed => "--calibrate held",
                 Calibration::Shared => "of each photodiode",
                 Calibration::PerSubject => "of each photodiode and subject",
@@ -103,18 +100,24 @@ fn steps(options: &FitOptions, outputs: Option<&FitOutputs>, ready: Option<&Read
 ///
 /// # Errors
 /// [`HemodynamicsError`] where there are no results.
-pub fn fit(options: &FitOptions, outputs: &FitOutputs, stop: &AtomicBool) -> Result<FitReport, HemodynamicsError> {
+pub fn fit(
+    inputs: &FitInputs,
+    options: &FitOptions,
+    outputs: &FitOutputs,
+    watch: &Watch<'_>,
+) -> Result<FitReport, HemodynamicsError> {
     let begin = Instant::now();
     let stages = Stages::default();
-    let mut ready = stages.time("read", || ready(options))?;
-    is_no_input(options, outputs)?;
-    go_on(stop)?;
-    let optics = options.optics.optics(&ready.start)?;
+    let mut ready = stages.time("read", || ready(inputs, options))?;
+    let mut places = places(inputs, options, outputs)?;
+    watch.go_on()?;
+    let model = &options.model;
+    let optics = model.optics.optics(&ready.start)?;
     let settings = Settings {
         optics: optics.clone(),
-        calibration: options.calibration,
-        collapse: options.collapse,
-        starts: options.starts,
+        calibration: options.calibrate,
+        collapse: model.collapse,
+        starts: usize::from(options.starts),
         intervals: true,
         ..Settings::default()
     };
@@ -125,23 +128,22 @@ pub fn fit(options: &FitOptions, outputs: &FitOutputs, stop: &AtomicBool) -> Res
         let result = stages
             .time("fit", || search(&recordings, &ready.start, &ready.free, &settings))
             .map_err(|why| HemodynamicsError::Model(in_words(&why.to_string(), &ready.recordings)))?;
-        go_on(stop)?;
+        watch.go_on()?;
         let curves = stages.time("fitted curves", || {
             let of = |(k, read): (usize, &ReadRecording)| {
                 let own = fitted::own_parameters(&result.parameters, &result.photodiodes, k);
-                fitted::voltages(&own, &read.recording, options.collapse, &optics)
+                fitted::voltages(&own, &read.recording, model.collapse, &optics)
             };
             ready.recordings.iter().enumerate().map(of).collect::<Result<Vec<_>, _>>()
         })?;
-        go_on(stop)?;
+        watch.go_on()?;
         round += 1;
-        let noises = noise::estimated(options, &ready.recordings, &curves);
+        let noises = noise::estimated(inputs, options, &ready.recordings, &curves);
         if !noise::set(&mut ready.recordings, &noises) || round > noise::MOST_ROUNDS {
             break (result, curves);
         }
     };
-    let mut places = Places::default();
-    let parameter_files = parameter_files(options, &result, outputs, &mut places)?;
+    let parameter_files = parameter_files(inputs, options, &result, outputs, &mut places)?;
     let estimates = beside(&outputs.result, "-estimates.csv");
     estimates::write(&result, &ready.start, &places.place(&estimates)?, &estimates)?;
     let table = beside(&outputs.result, "-fitted.csv");
@@ -153,13 +155,11 @@ pub fn fit(options: &FitOptions, outputs: &FitOutputs, stop: &AtomicBool) -> Res
             stages.time("figures", || figure::draw_fit(&ready.recordings, &curves, png, svg))
         })?);
     }
-    go_on(stop)?;
+    watch.go_on()?;
     let (words, converged) = stopped(result.stop);
     let names_of = |own: &[usize]| own.iter().map(|&k| ready.recordings[k].name.clone()).collect::<Vec<_>>();
-    let report = FitReport {
-        job: "fit",
-        version: env!("CARGO_PKG_VERSION"),
-        recordings: recording_reports(options, &ready.recordings, &curves),
+    let figures = FitFigures {
+        recordings: recording_reports(inputs, &ready.recordings, &curves),
         stopped: words,
         converged,
         free: groups(&result, &ready.start),
@@ -169,7 +169,7 @@ pub fn fit(options: &FitOptions, outputs: &FitOutputs, stop: &AtomicBool) -> Res
             .map(|one| FittedPhotodiode {
                 unit: one.unit + 1,
                 recordings: names_of(&one.recordings),
-                subjects: subjects_of(options, &one.recordings),
+                subjects: subjects_of(inputs, &one.recordings),
                 offset_v: one.offset.value,
                 offset_standard_error_v: one.offset.standard_error,
                 scaling_v: one.scaling.value,
@@ -194,18 +194,16 @@ pub fn fit(options: &FitOptions, outputs: &FitOutputs, stop: &AtomicBool) -> Res
         parameters: named(&result.parameters),
         parameter_files,
         table,
-        left_out: left_out(steps(options, Some(outputs), Some(&ready))),
-        warnings: warnings(&result, &ready.recordings, outputs.figures),
-        failed: Vec::new(),
-        pictures,
-        stages: stages.list(),
-        wall_s: begin.elapsed().as_secs_f64(),
     };
-    let text = serde_json::to_string_pretty(&report).expect("plain data") + "\n";
-    places.write(&outputs.result, &report.result_text())?;
-    places.write(&beside(&outputs.result, ".run.json"), &text)?;
-    places.commit()?;
-    Ok(report)
+    let left_out = left_out(steps(inputs, options, Some(outputs), Some(ready.samples())));
+    let warnings = warnings(&result, &ready.recordings);
+    let notes = notes(&ready.recordings, outputs.figures);
+    let report = Report { left_out, warnings, notes, pictures, ..Report::new("fit", watch, figures) };
+    if outputs.report {
+        places.write(&outputs.result, &result_text(&report))?;
+    }
+    let at = outputs.report.then(|| beside(&outputs.result, ".run.json"));
+    Ok(report.timed(&stages, begin).commit(places, at.as_deref())?)
 }
 
 /// The crate counts recordings; people name them.
@@ -224,7 +222,8 @@ fn in_words(why: &str, recordings: &[ReadRecording]) -> String {
     words
 }
 
-fn warnings(result: &FitResult, recordings: &[ReadRecording], figures: bool) -> Vec<String> {
+/// What has to be known before the values are used.
+fn warnings(result: &FitResult, recordings: &[ReadRecording]) -> Vec<String> {
     let mut warnings = Vec::new();
     let (words, converged) = stopped(result.stop);
     if !converged {
@@ -243,34 +242,42 @@ fn warnings(result: &FitResult, recordings: &[ReadRecording], figures: bool) -> 
     if let Some(rival) = result.rivals.first() {
         let both = rival.values.iter().flatten().map(|value| format!("{value:.3e}")).collect::<Vec<_>>().join(", ");
         warnings.push(format!(
-            "other values fit nearly as well ({both}); the standard errors know nothing of them: hold a parameter, or \
+            "other values fit nearly as well ({both}); the standard errors do not include them: hold a parameter, or \
              record more"
         ));
     }
     for read in recordings {
-        warnings.extend(read.notes.iter().map(|note| format!("{}: {note}", read.name)));
-        if read.faults > 0 {
-            warnings.push(format!(
-                "{}: {} voltages of rows with a fault of the sensor (saturated, or without ambient light) are left out",
-                read.name, read.faults
-            ));
-        }
         for (name, trace) in read.photodiodes.iter().zip(&read.recording.photodiodes) {
             let mut known = trace.voltages_v.iter().filter(|value| value.is_finite());
             if known.next().is_some_and(|first| known.all(|value| value == first)) {
-                warnings.push(format!("{}: {name} is constant: nothing can be learnt from it", read.name));
+                warnings.push(format!("{}: {name} is constant: it determines nothing", read.name));
             }
         }
-    }
-    let panels: usize = recordings.iter().map(|read| read.photodiodes.len()).sum();
-    if figures && panels > figure::MOST_PANELS {
-        warnings.push(format!("the picture shows {} of {panels} panels; the table has all", figure::MOST_PANELS));
     }
     warnings
 }
 
+/// How recordings were read, and what the picture leaves out.
+fn notes(recordings: &[ReadRecording], figures: bool) -> Vec<String> {
+    let mut notes = Vec::new();
+    for read in recordings {
+        notes.extend(read.notes.iter().map(|note| format!("{}: {note}", read.name)));
+        if read.faults > 0 {
+            notes.push(format!(
+                "{}: {} voltages of rows with a fault of the sensor (saturated, or without ambient light) are left out",
+                read.name, read.faults
+            ));
+        }
+    }
+    let panels: usize = recordings.iter().map(|read| read.photodiodes.len()).sum();
+    if figures && panels > figure::MOST_PANELS {
+        notes.push(format!("the picture shows {} of {panels} panels; the table has all", figure::MOST_PANELS));
+    }
+    notes
+}
+
 fn recording_reports(
-    options: &FitOptions,
+    inputs: &FitInputs,
     recordings: &[ReadRecording],
     curves: &[Vec<Vec<f64>>],
 ) -> Vec<RecordingReport> {
@@ -283,7 +290,7 @@ fn recording_reports(
     let one = |(k, (read, curves)): (usize, (&ReadRecording, &Vec<Vec<f64>>))| RecordingReport {
         name: read.name.clone(),
         file: read.path.clone(),
-        subject: options.subject(k).to_owned(),
+        subject: inputs.subject(k).to_owned(),
         kind: if read.times_s.is_some() { "over time" } else { "static" },
         samples: read.recording.samples(),
         photodiodes: read.photodiodes.clone(),
@@ -302,22 +309,24 @@ fn recording_reports(
     recordings.iter().zip(curves).enumerate().map(one).collect()
 }
 
-/// Refuses to write over an input.
-fn is_no_input(options: &FitOptions, outputs: &FitOutputs) -> Result<(), HemodynamicsError> {
+/// Where results go; refuses to replace an input.
+fn places(inputs: &FitInputs, options: &FitOptions, outputs: &FitOutputs) -> Result<Places, HemodynamicsError> {
     let mut results = vec![outputs.result.clone()];
     results
         .extend(["-estimates.csv", "-fitted.csv", ".toml", ".run.json"].map(|ending| beside(&outputs.result, ending)));
-    results.extend(parameter_paths(options, outputs).into_iter().map(|one| one.0));
+    results.extend(parameter_paths(inputs, options, outputs).into_iter().map(|one| one.0));
     if outputs.figures {
         results.extend(pictures_beside(&outputs.result, "fitted"));
     }
-    keep_inputs(options.recordings.iter().chain(&options.parameters.file), &results)
+    let places = Places::not_over(inputs.recordings.iter().chain(&inputs.params));
+    places.check(&results)?;
+    Ok(places)
 }
 
 /// The subjects of recordings, where any are named.
-fn subjects_of(options: &FitOptions, recordings: &[usize]) -> Vec<String> {
+fn subjects_of(inputs: &FitInputs, recordings: &[usize]) -> Vec<String> {
     let mut subjects: Vec<String> = Vec::new();
-    for subject in recordings.iter().filter_map(|&k| options.subjects.get(k)) {
+    for subject in recordings.iter().filter_map(|&k| inputs.subjects.get(k)) {
         if !subjects.contains(subject) {
             subjects.push(subject.clone());
         }
@@ -325,7 +334,7 @@ fn subjects_of(options: &FitOptions, recordings: &[usize]) -> Vec<String> {
     subjects
 }
 
-/// Writes measured and fitted voltages, a row a sample.
+/// Writes measured and fitted voltages, one row per sample.
 fn write_table(
     recordings: &[ReadRecording],
     curves: &[Vec<Vec<f64>>],

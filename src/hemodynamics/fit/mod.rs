@@ -5,6 +5,7 @@ mod estimates;
 mod figure;
 mod fitted;
 mod job;
+mod kind;
 mod names;
 mod noise;
 mod options;
@@ -13,8 +14,10 @@ mod recording;
 mod report;
 
 pub(super) use fitted::{own_parameters, voltages};
-pub use job::{FitOutputs, fit, outline as fit_outline, plan as fit_plan};
-pub use options::{FitOptions, STARTS};
-
-pub use recording::{Between, ForceColumn, PhotodiodeColumn, RecordingColumns};
-pub use report::{FitReport, FittedCombination, FittedGroup, FittedPhotodiode, FittedRival, RecordingReport};
+pub use job::{fit, plan as fit_plan};
+pub use kind::FitJob;
+pub use options::{FitInputs, FitOptions, FitOutputs};
+pub use recording::{Between, PhotodiodeColumn, RecordingColumns};
+pub use report::{
+    FitFigures, FitReport, FittedCombination, FittedGroup, FittedPhotodiode, FittedRival, RecordingReport,
+};

@@ -4,24 +4,28 @@ use std::path::{Path, PathBuf};
 
 use lunula_hemodynamics::{Calibration, FitResult, Parameters};
 
-use super::{FitOptions, FitOutputs, fitted};
+use super::{FitInputs, FitOptions, FitOutputs, fitted};
 use crate::files::{Places, beside};
 use crate::hemodynamics::HemodynamicsError;
 
 /// Parameter files and whose recordings each is for: one for all whose photodiodes have the same offset and scaling.
-pub(super) fn parameter_paths(options: &FitOptions, outputs: &FitOutputs) -> Vec<(PathBuf, Vec<usize>)> {
-    let label = |k: usize| match options.calibration {
+pub(super) fn parameter_paths(
+    inputs: &FitInputs,
+    options: &FitOptions,
+    outputs: &FitOutputs,
+) -> Vec<(PathBuf, Vec<usize>)> {
+    let label = |k: usize| match options.calibrate {
         Calibration::Fixed | Calibration::Shared => String::new(),
-        Calibration::PerSubject => options.subject(k).to_owned(),
+        Calibration::PerSubject => inputs.subject(k).to_owned(),
         Calibration::PerRecording => {
-            let path = options.recordings[k].as_path();
-            let named = options.names.get(k).map(|name| Path::new(name).with_extension("").into_os_string());
+            let path = inputs.recordings[k].as_path();
+            let named = inputs.names.get(k).map(|name| Path::new(name).with_extension("").into_os_string());
             named.unwrap_or_else(|| path.file_stem().unwrap_or_default().to_owned()).to_string_lossy().into_owned()
         }
     };
     let mut labels: Vec<(String, Vec<usize>)> = Vec::new();
-    for k in 0..options.recordings.len() {
-        let shared = options.calibration != Calibration::PerRecording;
+    for k in 0..inputs.recordings.len() {
+        let shared = options.calibrate != Calibration::PerRecording;
         match labels.iter_mut().find(|(own, _)| shared && *own == label(k)) {
             Some((_, own)) => own.push(k),
             None => labels.push((label(k), vec![k])),
@@ -43,16 +47,17 @@ pub(super) fn parameter_paths(options: &FitOptions, outputs: &FitOutputs) -> Vec
     labels.into_iter().enumerate().map(one).collect()
 }
 
-/// Writes the fitted parameters; tells where they will stand. Where there are several files, one more, under the
+/// Writes the fitted parameters; returns their places. Where there are several files, one more, under the
 /// result's own name, has offset and scaling as they were at the start.
 pub(super) fn parameter_files(
+    inputs: &FitInputs,
     options: &FitOptions,
     result: &FitResult,
     outputs: &FitOutputs,
     places: &mut Places,
 ) -> Result<Vec<PathBuf>, HemodynamicsError> {
     let mut files = Vec::new();
-    for (path, own) in parameter_paths(options, outputs) {
+    for (path, own) in parameter_paths(inputs, options, outputs) {
         // One subject's recordings may hold different photodiodes.
         let with = |all: Parameters, &k: &usize| fitted::own_parameters(&all, &result.photodiodes, k);
         let parameters = own.iter().fold(result.parameters.clone(), with);

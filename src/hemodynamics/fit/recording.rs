@@ -2,25 +2,24 @@
 
 use std::path::{Path, PathBuf};
 
+use clap::Args;
 use lunula_hemodynamics::{Course, Load, LoadFault, Recording, Trace};
 
 use crate::hemodynamics::HemodynamicsError;
 use crate::hemodynamics::curve::Pressed;
 use crate::hemodynamics::given::{BLOOD, Columns, Knots, PRESSED, Rows, TIME, listed};
+use crate::job::one_of;
 use crate::log::LogReading;
+use crate::words::Words;
 
 /// A measured force instead of pressures: the finger's force on the surface, newtons, negative where it presses.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ForceColumn {
-    /// Its name.
-    pub name: String,
-    /// The area that it presses on, m2.
-    pub area_m2: f64,
-    /// Where it presses.
-    pub pressed: Pressed,
+struct ForceColumn<'a> {
+    name: &'a str,
+    area_m2: f64,
+    pressed: Pressed,
 }
 
-impl ForceColumn {
+impl ForceColumn<'_> {
     /// `[P_F1, P_F2]` under a force, Pa.
     fn on(&self, force_n: f64) -> [f64; 2] {
         self.pressed.of(-force_n / self.area_m2)
@@ -37,15 +36,20 @@ pub struct PhotodiodeColumn {
 }
 
 impl PhotodiodeColumn {
-    /// A column above a unit that is counted from 1.
-    ///
-    /// # Errors
-    /// Unit 0, in words.
-    pub fn above(name: &str, unit: usize) -> Result<Self, String> {
-        let unit =
-            unit.checked_sub(1).ok_or_else(|| format!("{name}=0: units are counted from 1 at the proximal end"))?;
-        Ok(Self { name: name.to_owned(), unit })
+    /// Reads `COLUMN=UNIT`; the unit is counted from 1.
+    fn parse(text: &str) -> Result<Self, String> {
+        let wrong =
+            || format!("{text:?}: write COLUMN=UNIT, such as P3=1; units are counted from 1 at the proximal end");
+        let (name, unit) = text.split_once('=').ok_or_else(wrong)?;
+        let unit = unit.trim().parse::<usize>().ok().and_then(|unit| unit.checked_sub(1)).ok_or_else(wrong)?;
+        Ok(Self { name: name.trim().to_owned(), unit })
     }
+}
+
+fn area(text: &str) -> Result<f64, String> {
+    let area_cm2 = text.parse().map_err(|_| format!("{text:?}: is not a number"))?;
+    let usable = f64::is_finite(area_cm2) && area_cm2 > 0.0;
+    if usable { Ok(area_cm2) } else { Err(format!("{text}: an area is greater than 0, such as 1")) }
 }
 
 /// What a load does between two rows.
@@ -58,19 +62,44 @@ pub enum Between {
     Held,
 }
 
+impl Words for Between {
+    const WORDS: &'static [(Self, &'static str, &'static str)] =
+        &[(Self::Straight, "straight", ""), (Self::Held, "held", "")];
+}
+
 /// How recordings are read.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Args)]
 pub struct RecordingColumns {
-    /// What loads do between two rows of a recording over time.
-    pub between: Between,
-    /// Nothing pressed before the first row; otherwise its load did, for long.
-    pub unloaded_before: bool,
-    /// A force instead of `pf1_Pa` and `pf2_Pa`.
-    pub force: Option<ForceColumn>,
-    /// The photodiodes; none: all of `VP1`, `VP2`, .. that there are.
+    /// A photodiode's column and the unit below it, counted from 1 at the proximal end, such as P3=1; may be given more
+    /// than once [default: VP1=1, VP2=2, ..]
+    #[arg(long = "photodiode", value_name = "COLUMN=UNIT", value_parser = PhotodiodeColumn::parse)]
     pub photodiodes: Vec<PhotodiodeColumn>,
+    /// The column of a force instead of pf1_Pa, pf2_Pa, such as Fz_N: of the finger on the surface in newtons, negative
+    /// where it presses
+    #[arg(long, value_name = "COLUMN", requires = "area_cm2")]
+    pub force: Option<String>,
+    /// The area that the force presses on
+    #[arg(long, value_name = "CM2", requires = "force", value_parser = area, allow_negative_numbers = true)]
+    pub area_cm2: Option<f64>,
+    /// Where the force presses
+    #[arg(long = "load", value_parser = one_of::<Pressed>(), default_value = "both", requires = "force")]
+    pub pressed: Pressed,
+    /// What loads do from row to row: straight lines, or held until the next row, where they jump
+    #[arg(long, value_parser = one_of::<Between>(), default_value = "straight")]
+    pub between: Between,
+    /// Nothing pressed before the first row [default: the first row's load did, for long]
+    #[arg(long)]
+    pub unloaded_before: bool,
     /// How raw logs are read.
+    #[command(flatten)]
     pub log: LogReading,
+}
+
+impl RecordingColumns {
+    fn force(&self) -> Option<ForceColumn<'_>> {
+        let (name, area_cm2) = self.force.as_deref().zip(self.area_cm2)?;
+        Some(ForceColumn { name, area_m2: 1e-4 * area_cm2, pressed: self.pressed })
+    }
 }
 
 /// A recording, read.
@@ -104,14 +133,15 @@ pub(super) fn read(path: &Path, columns: &RecordingColumns, units: usize) -> Res
     let names = rows.names();
     let dynamic = names.iter().any(|own| own == TIME);
     let mut needed: Vec<&str> = if dynamic { vec![TIME] } else { Vec::new() };
-    match &columns.force {
-        Some(force) => needed.push(&force.name),
+    let force = columns.force();
+    match &force {
+        Some(force) => needed.push(force.name),
         None => needed.extend(PRESSED),
     }
     let wanted: &[&str] = if dynamic { &BLOOD } else { &[] };
     let read = rows.numbers(&needed, wanted, TIME)?;
-    if let Some(force) = &columns.force {
-        let forces = read.get(&force.name).unwrap_or_default();
+    if let Some(force) = &force {
+        let forces = read.get(force.name).unwrap_or_default();
         if forces.iter().any(|&force_n| force_n > 0.0) && !forces.iter().any(|&force_n| force_n < 0.0) {
             return Err(refused(format!(
                 "`{}` is never negative: nothing presses; the finger's force on the surface is negative where it \
@@ -120,7 +150,7 @@ pub(super) fn read(path: &Path, columns: &RecordingColumns, units: usize) -> Res
             )));
         }
     }
-    let mut pressed_pa = pressed(&read, columns.force.as_ref());
+    let mut pressed_pa = pressed(&read, force.as_ref());
     let photodiodes = photodiodes(names, columns, units).map_err(refused)?;
     let mut traces = Vec::new();
     let (mut missing, mut faults) = (0, 0);
@@ -137,7 +167,7 @@ pub(super) fn read(path: &Path, columns: &RecordingColumns, units: usize) -> Res
             Course::Static { proximal_pa, distal_pa }
         }
         Some(times_s) => {
-            let [proximal, distal] = pressed_knots(&rows, &read, columns.force.as_ref());
+            let [proximal, distal] = pressed_knots(&rows, &read, force.as_ref());
             let earliest_s = proximal.times_s[0].min(distal.times_s[0]);
             if earliest_s < times_s[0] {
                 // The response begins at the log's first row; unlit, it has no voltage.
@@ -176,7 +206,7 @@ pub(super) fn read(path: &Path, columns: &RecordingColumns, units: usize) -> Res
 /// A jump at a row takes so long, s.
 const JUMP_S: f64 = 1e-9;
 
-/// The load that rows tell; `before` is its value before the first one, where that is another.
+/// The load of these rows; `before` is its value before the first one, where that is another.
 fn load(times_s: &[f64], values: &[f64], between: Between, before: Option<f64>) -> Result<Load, LoadFault> {
     let (mut times, mut loads) = (Vec::new(), Vec::new());
     let mut last = before;
@@ -197,18 +227,18 @@ fn load(times_s: &[f64], values: &[f64], between: Between, before: Option<f64>) 
 }
 
 /// `[P_F1, P_F2]` of each row.
-fn pressed(read: &Columns, force: Option<&ForceColumn>) -> Vec<[f64; 2]> {
+fn pressed(read: &Columns, force: Option<&ForceColumn<'_>>) -> Vec<[f64; 2]> {
     let column = |name: &str| read.get(name).unwrap_or_default();
     match force {
-        Some(force) => column(&force.name).iter().map(|force_n| force.on(*force_n)).collect(),
+        Some(force) => column(force.name).iter().map(|force_n| force.on(*force_n)).collect(),
         None => column(PRESSED[0]).iter().zip(column(PRESSED[1])).map(|(first, second)| [*first, *second]).collect(),
     }
 }
 
 /// `P_F1` and `P_F2` over time, Pa, at all rows at which they are known.
-fn pressed_knots(rows: &Rows, read: &Columns, force: Option<&ForceColumn>) -> [Knots; 2] {
+fn pressed_knots(rows: &Rows, read: &Columns, force: Option<&ForceColumn<'_>>) -> [Knots; 2] {
     let Some(force) = force else { return PRESSED.map(|name| rows.knots(name, read)) };
-    let Knots { times_s, values } = rows.knots(&force.name, read);
+    let Knots { times_s, values } = rows.knots(force.name, read);
     let pressed_pa: Vec<[f64; 2]> = values.iter().map(|force_n| force.on(*force_n)).collect();
     [0, 1].map(|k| Knots { times_s: times_s.clone(), values: pressed_pa.iter().map(|both| both[k]).collect() })
 }
@@ -238,7 +268,7 @@ fn photodiodes(names: &[String], columns: &RecordingColumns, units: usize) -> Re
     let own: Vec<PhotodiodeColumn> = usual.filter(|one| names.contains(&one.name)).collect();
     if own.is_empty() {
         return Err(format!(
-            "has none of VP1, .. VP{units}; --photodiode P3=1 tells which column stands above which unit; its columns \
+            "has none of VP1, .. VP{units}; --photodiode P3=1 says which column is above which unit; its columns \
              are {}",
             listed(names)
         ));

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use lunula_hemodynamics::{Bound, FitResult, Stop};
 use serde::Serialize;
 
-use crate::stages::Stage;
+use crate::job::Report;
 
 /// A free group of parameters.
 #[derive(Debug, Clone, Serialize)]
@@ -18,7 +18,7 @@ pub struct FittedGroup {
     pub values: Vec<f64>,
     /// Their standard errors; none where the recordings don't determine them, or at a bound.
     pub standard_errors: Option<Vec<f64>>,
-    /// Below and above: where the squares, all else fitted anew, are higher by four variances of the noise, which is
+    /// Below and above: where the squares, all else fitted again, are higher by four variances of the noise, which is
     /// two standard errors for what acts straight and right for what does not. None where a bound comes first.
     pub interval: [Option<Vec<f64>>; 2],
     /// `lower` or `upper` where the fit ended on that bound.
@@ -57,7 +57,7 @@ pub struct FittedCombination {
     pub sd: Option<f64>,
 }
 
-/// Another minimum that the recordings don't tell from the best one.
+/// Another minimum that the recordings can't distinguish from the best one.
 #[derive(Debug, Clone, Serialize)]
 pub struct FittedRival {
     /// The values of each free group there.
@@ -85,7 +85,7 @@ pub struct RecordingReport {
     pub missing: usize,
     /// Photodiodes' cells that are left out, as the sensor had a fault there: saturated, or without ambient light.
     pub faults: usize,
-    /// What is worth saying on a log, how its ambient light was taken away among it.
+    /// How a log was read, and its ambient light subtracted.
     pub notes: Vec<String>,
     /// RMS of measured less fitted, V, a photodiode each.
     pub residual_rms_v: Vec<Option<f64>>,
@@ -94,12 +94,11 @@ pub struct RecordingReport {
 }
 
 /// What a fit found.
+pub type FitReport = Report<FitFigures>;
+
+/// The figures of a fit.
 #[derive(Debug, Clone, Serialize)]
-pub struct FitReport {
-    /// Which job.
-    pub job: &'static str,
-    /// The program's version.
-    pub version: &'static str,
+pub struct FitFigures {
     /// The recordings.
     pub recordings: Vec<RecordingReport>,
     /// Why the fit stopped.
@@ -124,7 +123,7 @@ pub struct FitReport {
     pub freedom: usize,
     /// What the recordings don't determine.
     pub not_identifiable: Vec<FittedCombination>,
-    /// Other minima, found from other starts, that the recordings don't tell from this one.
+    /// Other minima, found from other starts, that the recordings can't distinguish from this one.
     pub rivals: Vec<FittedRival>,
     /// Points in the space of parameters that were tried.
     pub points: u64,
@@ -137,36 +136,22 @@ pub struct FitReport {
     pub parameter_files: Vec<PathBuf>,
     /// Measured and fitted voltages.
     pub table: PathBuf,
-    /// What was not asked for.
-    pub left_out: Vec<String>,
-    /// What whoever reads this should know.
-    pub warnings: Vec<String>,
-    /// Always empty: recordings are fitted all or not at all.
-    pub failed: Vec<String>,
-    /// The pictures.
-    pub pictures: Vec<PathBuf>,
-    /// Time by stage.
-    pub stages: Vec<Stage>,
-    /// Seconds from start to end, this report not counted.
-    pub wall_s: f64,
 }
 
-impl FitReport {
-    /// The result's file: what was found, the same from whatever folder and however fast. Where results are and how
-    /// long they took stands in the report beside it.
-    pub(super) fn result_text(&self) -> String {
-        let mut found = serde_json::to_value(self).expect("plain data");
-        let without = |of: &mut serde_json::Value, keys: &[&str]| {
-            if let Some(object) = of.as_object_mut() {
-                keys.iter().for_each(|key| drop(object.remove(*key)));
-            }
-        };
-        without(&mut found, &["parameter_files", "table", "pictures", "stages", "wall_s"]);
-        for recording in found["recordings"].as_array_mut().into_iter().flatten() {
-            without(recording, &["file"]);
+/// The result's file: what was found, the same from whatever folder and however fast. Where results are and how long
+/// they took is in the report beside it.
+pub(super) fn result_text(report: &FitReport) -> String {
+    let mut found = serde_json::to_value(report).expect("plain data");
+    let without = |of: &mut serde_json::Value, keys: &[&str]| {
+        if let Some(object) = of.as_object_mut() {
+            keys.iter().for_each(|key| drop(object.remove(*key)));
         }
-        serde_json::to_string_pretty(&found).expect("plain data") + "\n"
+    };
+    without(&mut found, &["options", "parameter_files", "table", "pictures", "stages", "wall_s"]);
+    for recording in found["recordings"].as_array_mut().into_iter().flatten() {
+        without(recording, &["file"]);
     }
+    serde_json::to_string_pretty(&found).expect("plain data") + "\n"
 }
 
 /// Why a fit stopped, in words, and whether that is convergence.

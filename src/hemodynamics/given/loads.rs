@@ -1,27 +1,37 @@
 //! Loads over time from options and a file.
 
-use std::path::PathBuf;
+use std::path::Path;
 
+use clap::Args;
 use lunula_hemodynamics::{Load, LoadFault, Loads, Parameters};
 
 use super::columns::{BLOOD, Columns, Knots, PRESSED, Rows, TIME};
 use crate::hemodynamics::HemodynamicsError;
 use crate::log::LogReading;
 
+/// The pressures of the blood.
+#[derive(Debug, Clone, Default, Args)]
+pub struct BloodOptions {
+    /// P_H, the upstream blood pressure, for a pulse as sine:10000+2000@1.2 [default: the parameters' constant]
+    #[arg(long, value_name = "LOAD", allow_hyphen_values = true)]
+    pub ph: Option<Load>,
+    /// P_L, the downstream blood pressure [default: the parameters' constant]
+    #[arg(long, value_name = "LOAD", allow_hyphen_values = true)]
+    pub pl: Option<Load>,
+}
+
 /// What presses, over time.
-#[derive(Debug, Clone, Default)]
-pub struct GivenLoads {
-    /// `P_F1`; none: nothing presses there.
-    pub proximal: Option<Load>,
-    /// `P_F2`; none: nothing presses there.
-    pub distal: Option<Load>,
-    /// `P_H`; none: the parameters' constant.
-    pub upstream: Option<Load>,
-    /// `P_L`; none: the parameters' constant.
-    pub downstream: Option<Load>,
-    /// A table `time_s,pf1_Pa,pf2_Pa` instead of `P_F1` and `P_F2`, and `ph_Pa`, `pl_Pa` where it has them; a log's
-    /// unlit rows are taken too.
-    pub file: Option<PathBuf>,
+#[derive(Debug, Clone, Default, Args)]
+pub struct LoadOptions {
+    /// P_F1, on the proximal palmar surface: it presses on the vein [default: nothing]
+    #[arg(long, value_name = "LOAD", allow_hyphen_values = true)]
+    pub pf1: Option<Load>,
+    /// P_F2, on the distal palmar surface: it presses on the distal capillaries [default: nothing]
+    #[arg(long, value_name = "LOAD", allow_hyphen_values = true)]
+    pub pf2: Option<Load>,
+    /// The pressures of the blood.
+    #[command(flatten)]
+    pub blood: BloodOptions,
 }
 
 /// Loads, and until when a file knows them.
@@ -30,33 +40,33 @@ pub(in crate::hemodynamics) struct ReadLoads {
     pub(in crate::hemodynamics) loads: Loads,
     /// The first and the last time of the file.
     pub(in crate::hemodynamics) known_s: Option<[f64; 2]>,
-    /// What is worth saying on a file that is a log.
+    /// How a file that is a log was read.
     pub(in crate::hemodynamics) notes: Vec<String>,
 }
 
-impl GivenLoads {
-    /// Whether nothing presses.
-    #[must_use]
-    pub fn is_none(&self) -> bool {
-        self.proximal.is_none() && self.distal.is_none() && self.file.is_none()
-    }
-
-    /// Reads and checks them.
+impl LoadOptions {
+    /// Reads and checks them. `file` is a table `time_s,pf1_Pa,pf2_Pa` instead of `P_F1` and `P_F2`, and `ph_Pa`,
+    /// `pl_Pa` where it has them; a log's unlit rows are taken too.
     ///
     /// # Errors
     /// [`HemodynamicsError`] with every fault of the file by row and column.
-    pub(in crate::hemodynamics) fn read(&self, parameters: &Parameters) -> Result<ReadLoads, HemodynamicsError> {
+    pub(in crate::hemodynamics) fn read(
+        &self,
+        file: Option<&Path>,
+        parameters: &Parameters,
+    ) -> Result<ReadLoads, HemodynamicsError> {
         let nothing = || Load::constant(0.0).expect("zero is finite");
         let or_nothing = |load: &Option<Load>| load.clone().unwrap_or_else(nothing);
-        let mut loads = Loads::on(parameters, or_nothing(&self.proximal), or_nothing(&self.distal));
+        let mut loads = Loads::on(parameters, or_nothing(&self.pf1), or_nothing(&self.pf2));
         let (mut known_s, mut notes) = (None, Vec::new());
-        if let Some(path) = &self.file {
+        if let Some(path) = file {
             let rows = Rows::read(path, &LogReading::default())?;
             let columns = rows.numbers(&[TIME, PRESSED[0], PRESSED[1]], &BLOOD, TIME)?;
             notes = rows.notes().iter().map(|note| format!("{}: {note}", path.display())).collect();
             known_s = place_columns(&rows, &columns, &mut loads)?;
         }
-        for (given, place) in [(&self.upstream, &mut loads.upstream), (&self.downstream, &mut loads.downstream)] {
+        let BloodOptions { ph, pl } = &self.blood;
+        for (given, place) in [(ph, &mut loads.upstream), (pl, &mut loads.downstream)] {
             if let Some(load) = given {
                 *place = load.clone();
             }

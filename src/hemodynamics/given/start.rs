@@ -7,16 +7,19 @@ use lunula_hemodynamics::{Parameters, Site, State};
 use super::Rows;
 use crate::hemodynamics::HemodynamicsError;
 
-/// Where a run starts.
-#[derive(Debug, Clone, PartialEq, Default)]
+/// Another state to start from than the equilibrium of the loads just before t = 0.
+#[derive(Debug, Clone, PartialEq)]
 pub enum Start {
-    /// In the equilibrium of the loads just before t = 0.
-    #[default]
-    Equilibrium,
     /// With all displacements and velocities zero, which is not rest.
     Zero,
     /// In the last row of a trajectory.
     File(PathBuf),
+}
+
+impl From<PathBuf> for Start {
+    fn from(path: PathBuf) -> Self {
+        if path.as_os_str() == "zero" { Self::Zero } else { Self::File(path) }
+    }
 }
 
 /// Names of the columns of displacements, m, and of velocities, m/s.
@@ -28,7 +31,7 @@ pub(in crate::hemodynamics) fn state_columns(units: usize) -> [Vec<String>; 2] {
 /// The state in the last row of a trajectory's table.
 ///
 /// # Errors
-/// A table that is none of this model, or a state that is none.
+/// A table that is not of this model, or a state that can't be.
 pub(in crate::hemodynamics) fn read_state(path: &Path, parameters: &Parameters) -> Result<State, HemodynamicsError> {
     let [x, v] = state_columns(parameters.units().len());
     let names: Vec<&str> = x.iter().chain(&v).map(String::as_str).collect();

@@ -6,7 +6,7 @@ use lunula_hemodynamics::{
     Calibration, Collapse, FitOptions as Settings, FitResult, Free, Optics, Parameters, Recording, fit, time_constant,
 };
 
-use super::{SectionTold, figure};
+use super::{SectionText, figure};
 use crate::figure::{Item, draw_charts, draw_panels};
 use crate::files::Staging;
 use crate::hemodynamics::curve::Pressed;
@@ -61,7 +61,7 @@ impl Presses {
 
 /// Draws and tells Fig. 79 to 82, as far as they were recorded; `truth`: the middle of generated people.
 pub(super) fn figures(
-    text: &mut SectionTold,
+    text: &mut SectionText,
     presses: &Presses,
     truth: Option<&Parameters>,
     staging: &Staging,
@@ -103,7 +103,7 @@ pub(super) fn figures(
 /// A static experiment: every person's curve, their average, and the literal model in offset and scaling to each.
 #[expect(clippy::too_many_arguments, reason = "what is told of two figures alike")]
 fn slow(
-    text: &mut SectionTold,
+    text: &mut SectionText,
     number: u32,
     pressed: Pressed,
     recorded: &[Recorded],
@@ -193,7 +193,7 @@ fn slow(
 }
 
 fn tell_fit(
-    text: &mut SectionTold,
+    text: &mut SectionText,
     literal: &Parameters,
     truth: Option<&Parameters>,
     presses: usize,
@@ -219,7 +219,7 @@ fn tell_fit(
 
 /// A quick press: the force, and of two people measured and fitted; time constants of all.
 fn quick(
-    text: &mut SectionTold,
+    text: &mut SectionText,
     number: u32,
     recorded: &[QuickPress],
     curves: &[Vec<f64>],

@@ -1,6 +1,6 @@
-//! Figures 76 to 82 of section 4.3 made anew: the thesis' simulations, and its experiments on eight generated people.
+//! Figures 76 to 82 of section 4.3 made again: the thesis' simulations, and its experiments on eight generated people.
 //!
-//! In: a folder. Out: the pictures in it, and Markdown with every number that is told of them ([`section_4_3`]); the
+//! In: a folder. Out: the pictures in it, and Markdown with every number of theirs ([`section_4_3`]); the
 //! same bytes each time. The simulations alone are [`section_simulations`]; the experiments on recorded people instead
 //! of generated ones are [`section_presses`]. "Literal" are the thesis' orders of magnitude taken as they are printed;
 //! "tuned" has stiffness and damping of capillaries and vein changed within tenfold until step responses have the time
@@ -32,7 +32,7 @@ const MEASURED_S: [f64; 4] = [0.16, 0.12, 0.18, 0.36];
 const TUNED_AT_PA: f64 = 1e4;
 /// The values as they are printed.
 const LITERAL: &str = "literal";
-/// Tolerance of what is drawn and told.
+/// Tolerance of what is drawn and written.
 const RTOL: f64 = 1e-9;
 
 /// A set of parameters with its name.
@@ -41,22 +41,22 @@ struct Named {
     parameters: Parameters,
 }
 
-/// What is told of figures.
+/// What is said of figures.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct SectionTold {
+pub struct SectionText {
     /// Tables, as Markdown.
     pub text: String,
     /// What the thesis' words speak of, by name: `fig76.vein_um`. Of the simulations, those of the literal values.
     pub numbers: BTreeMap<String, f64>,
 }
 
-impl Write for SectionTold {
+impl Write for SectionText {
     fn write_str(&mut self, text: &str) -> std::fmt::Result {
         self.text.write_str(text)
     }
 }
 
-impl SectionTold {
+impl SectionText {
     /// Keeps a number that is known.
     fn number(&mut self, name: String, value: Option<f64>) {
         if let Some(value) = value.filter(|value| value.is_finite()) {
@@ -82,59 +82,59 @@ impl SectionTold {
     }
 }
 
-/// Draws Fig. 76 to 82 into `out` and tells their numbers as Markdown.
+/// Draws Fig. 76 to 82 into `out`; returns their numbers as Markdown.
 ///
 /// # Errors
 /// Where a file can't be written.
 pub fn section_4_3(out: &Path) -> anyhow::Result<String> {
     let staging = Staging::new(out)?;
-    let mut told = SectionTold::default();
-    let tuned = simulations(&mut told, &staging)?;
+    let mut text = SectionText::default();
+    let tuned = simulations(&mut text, &staging)?;
     let presses = Presses::generated(&tuned)?;
-    experiments::figures(&mut told, &presses, Some(&tuned), &staging)?;
+    experiments::figures(&mut text, &presses, Some(&tuned), &staging)?;
     staging.commit()?;
-    Ok(told.text)
+    Ok(text.text)
 }
 
-/// Draws Fig. 76 to 78 into `out` and tells of them.
+/// Draws Fig. 76 to 78 into `out`.
 ///
 /// # Errors
 /// Where a file can't be written.
-pub fn section_simulations(out: &Path) -> anyhow::Result<SectionTold> {
+pub fn section_simulations(out: &Path) -> anyhow::Result<SectionText> {
     let staging = Staging::new(out)?;
-    let mut told = SectionTold::default();
-    simulations(&mut told, &staging)?;
+    let mut text = SectionText::default();
+    simulations(&mut text, &staging)?;
     staging.commit()?;
-    Ok(told)
+    Ok(text)
 }
 
-/// Draws Fig. 79 to 82 of recorded people into `out` and tells of them; what was not recorded is left out.
+/// Draws Fig. 79 to 82 of recorded people into `out`; what was not recorded is left out.
 ///
 /// # Errors
 /// No presses at all, a fit without an answer, or where a file can't be written.
-pub fn section_presses(presses: &Presses, out: &Path) -> anyhow::Result<SectionTold> {
+pub fn section_presses(presses: &Presses, out: &Path) -> anyhow::Result<SectionText> {
     let staging = Staging::new(out)?;
-    let mut told = SectionTold::default();
-    experiments::figures(&mut told, presses, None, &staging)?;
+    let mut text = SectionText::default();
+    experiments::figures(&mut text, presses, None, &staging)?;
     staging.commit()?;
-    Ok(told)
+    Ok(text)
 }
 
 /// Fig. 76 to 78; gives the tuned parameters.
-fn simulations(told: &mut SectionTold, staging: &Staging) -> anyhow::Result<Parameters> {
+fn simulations(text: &mut SectionText, staging: &Staging) -> anyhow::Result<Parameters> {
     let literal = Parameters::thesis();
     let factors = tune(&literal, MEASURED_S, TUNED_AT_PA);
     let tuned = scaled(&literal, &factors).unwrap_or_else(|| literal.clone());
-    tell_tuning(told, &literal, &tuned, &factors)?;
+    tell_tuning(text, &literal, &tuned, &factors)?;
     let sets =
         [Named { name: LITERAL, parameters: literal.clone() }, Named { name: "tuned", parameters: tuned.clone() }];
     for set in &sets {
-        figure_76(told, set, staging)?;
+        figure_76(text, set, staging)?;
     }
     for set in &sets {
-        figure_77(told, set, staging)?;
+        figure_77(text, set, staging)?;
     }
-    statics::figure_78(told, &sets, staging)?;
+    statics::figure_78(text, &sets, staging)?;
     Ok(tuned)
 }
 
@@ -144,7 +144,7 @@ fn figure(value: Option<f64>) -> String {
 }
 
 fn tell_tuning(
-    text: &mut SectionTold,
+    text: &mut SectionText,
     literal: &Parameters,
     tuned: &Parameters,
     factors: &[f64; 4],
@@ -188,7 +188,7 @@ fn answered(parameters: &Parameters, pressed: Pressed) -> (Vec<Stepped>, Option<
     (answered, None)
 }
 
-fn say_closed(text: &mut SectionTold, closed: Option<f64>) -> anyhow::Result<()> {
+fn say_closed(text: &mut SectionText, closed: Option<f64>) -> anyhow::Result<()> {
     if let Some(load_pa) = closed {
         writeln!(text, "\nFrom {} N/cm2 on, the model has no answer: a vessel closes.", load_pa / N_PER_CM2)?;
     }
@@ -197,7 +197,7 @@ fn say_closed(text: &mut SectionTold, closed: Option<f64>) -> anyhow::Result<()>
 }
 
 /// Steps on the proximal surface.
-fn figure_76(text: &mut SectionTold, set: &Named, staging: &Staging) -> anyhow::Result<()> {
+fn figure_76(text: &mut SectionText, set: &Named, staging: &Staging) -> anyhow::Result<()> {
     let (stepped, closed) = answered(&set.parameters, Pressed::Proximal);
     let parameters = &set.parameters;
     let capillary = |response: &Response| response.diameters_um(parameters, 0);
@@ -241,7 +241,7 @@ fn figure_76(text: &mut SectionTold, set: &Named, staging: &Staging) -> anyhow::
 }
 
 /// Steps on both surfaces.
-fn figure_77(text: &mut SectionTold, set: &Named, staging: &Staging) -> anyhow::Result<()> {
+fn figure_77(text: &mut SectionText, set: &Named, staging: &Staging) -> anyhow::Result<()> {
     let (stepped, closed) = answered(&set.parameters, Pressed::Both);
     let light = |unit: usize| move |response: &Response| response.photodiode_v(unit);
     let [png, svg] = ["png", "svg"].map(|ending| format!("fig-77-{}.{ending}", set.name));

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use lunula_hemodynamics::{Collapse, Optics};
 
-use super::{LITERAL, Named, SectionTold};
+use super::{LITERAL, Named, SectionText};
 use crate::figure::{Item, draw_charts};
 use crate::files::Staging;
 use crate::hemodynamics::curve::Pressed;
@@ -18,7 +18,7 @@ const LOADS: u32 = 480;
 const PARTS: [[f64; 2]; 4] = [[0.0, 0.1], [0.1, 0.4], [0.4, 0.7], [0.9, 1.0]];
 
 /// Draws and tells the curves of all sets.
-pub(super) fn figure_78(text: &mut SectionTold, sets: &[Named], staging: &Staging) -> anyhow::Result<()> {
+pub(super) fn figure_78(text: &mut SectionText, sets: &[Named], staging: &Staging) -> anyhow::Result<()> {
     let loads_pa: Vec<f64> = (0..=LOADS).map(|k| STEP_PA * f64::from(k)).collect();
     writeln!(
         text,
@@ -44,7 +44,7 @@ pub(super) fn figure_78(text: &mut SectionTold, sets: &[Named], staging: &Stagin
     draw_charts(&charts, WIDTH, &staging.place("fig-78.png")?, &staging.place("fig-78.svg")?)
 }
 
-fn tell(text: &mut SectionTold, name: &str, found: &Curve, unit: usize) -> anyhow::Result<()> {
+fn tell(text: &mut SectionText, name: &str, found: &Curve, unit: usize) -> anyhow::Result<()> {
     let at = |load: f64| {
         let stable = found.points.iter().filter(|point| point.stable == Some(true));
         let mut near = stable.filter(|point| (point.load_pa - load * N_PER_CM2).abs() < 0.1 * STEP_PA);

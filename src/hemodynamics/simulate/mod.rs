@@ -1,10 +1,12 @@
 //! `lunula simulate`: the model's response to loads over time.
 
 mod job;
+mod kind;
 mod options;
 mod report;
 mod table;
 
-pub use job::{SimulateOutputs, outline as simulate_outline, plan as simulate_plan, simulate};
-pub use options::SimulateOptions;
-pub use report::{Collapsed, SimulateReport, Work};
+pub use job::{plan as simulate_plan, simulate};
+pub use kind::SimulateJob;
+pub use options::{SimulateInputs, SimulateOptions, SimulateOutputs};
+pub use report::{Collapsed, SimulateFigures, SimulateReport, Work};

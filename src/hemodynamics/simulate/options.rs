@@ -1,51 +1,68 @@
-//! What run is wanted.
+//! Which run: the options of `lunula simulate` and of a pipeline's stage, the files that it reads, where results go.
 
-use lunula_hemodynamics::Collapse;
+use std::path::PathBuf;
 
-use crate::hemodynamics::choices::OpticsChoice;
-use crate::hemodynamics::given::{GivenLoads, GivenParameters, Start};
+use clap::Args;
+use clap::builder::{PathBufValueParser, TypedValueParser};
+
+use crate::hemodynamics::given::{LoadOptions, ModelOptions, Start};
 use crate::hemodynamics::grid::{multiple, multiples_within};
+use crate::job;
 
-/// A run to be made.
-#[derive(Debug, Clone)]
+/// The files that a run reads.
+#[derive(Debug, Clone, Default)]
+pub struct SimulateInputs {
+    /// The parameters.
+    pub params: Option<PathBuf>,
+    /// A table `time_s,pf1_Pa,pf2_Pa` instead of `pf1` and `pf2`, and `ph_Pa`, `pl_Pa` where it has them.
+    pub loads: Option<PathBuf>,
+}
+
+/// How to run: the options of `lunula simulate` and of a pipeline's stage.
+#[derive(Debug, Clone, Args)]
 pub struct SimulateOptions {
-    /// Of which nail.
-    pub parameters: GivenParameters,
-    /// Under what.
-    pub loads: GivenLoads,
-    /// From where.
-    pub start: Start,
-    /// What happens where a vessel closes.
-    pub collapse: Collapse,
-    /// How light depends on the capillaries.
-    pub optics: OpticsChoice,
-    /// The time of the last row; the first is 0.
+    /// The loads.
+    #[command(flatten)]
+    pub loads: LoadOptions,
+    /// Start from another state: zero (no displacement, no velocity), or the last row of a trajectory's table; time
+    /// begins at 0 again [default: the equilibrium of the loads just before t = 0]
+    #[arg(long = "from", value_name = "zero|FILE", value_parser = PathBufValueParser::new().map(Start::from))]
+    pub start: Option<Start>,
+    /// The time of the last row; that of the first is 0
+    #[arg(long = "until", value_name = "SECONDS", default_value_t = 4.0, allow_negative_numbers = true)]
     pub until_s: f64,
-    /// Between two rows.
+    /// The time between two rows
+    #[arg(long = "every", value_name = "SECONDS", default_value_t = 0.01, allow_negative_numbers = true)]
     pub every_s: f64,
-    /// The error of every lumen over its nominal diameter is at most this.
+    /// The largest error of any lumen, as a share of its nominal diameter
+    #[arg(long, value_name = "ERROR", default_value = "1e-8", allow_negative_numbers = true)]
     pub rtol: f64,
-    /// A vessel that closes ends the table instead of the whole request.
-    pub keep_partial: bool,
-    /// The loads stand in the table as well.
+    /// Write the loads into the table as well, in columns that `lunula fit` reads
+    #[arg(long)]
     pub with_loads: bool,
+    /// Where a vessel closes, write the rows before it (exit status 1) [default: nothing is written]
+    #[arg(long)]
+    pub keep_partial: bool,
+    /// The model.
+    #[command(flatten)]
+    pub model: ModelOptions,
 }
 
 impl Default for SimulateOptions {
     fn default() -> Self {
-        Self {
-            parameters: GivenParameters::default(),
-            loads: GivenLoads::default(),
-            start: Start::default(),
-            collapse: Collapse::default(),
-            optics: OpticsChoice::default(),
-            until_s: 4.0,
-            every_s: 0.01,
-            rtol: 1e-8,
-            keep_partial: false,
-            with_loads: false,
-        }
+        job::defaults()
     }
+}
+
+/// Where results go.
+#[derive(Debug, Clone)]
+pub struct SimulateOutputs {
+    /// The table; report and picture go beside it, named after it.
+    pub table: PathBuf,
+    /// Whether a picture is drawn.
+    pub figures: bool,
+    /// Whether the report is written beside the table.
+    pub report: bool,
 }
 
 /// More values than a run keeps at once.
@@ -102,7 +119,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_time_is_one_row_and_every_fault_is_told() {
+    fn no_time_is_one_row_and_every_fault_is_reported() {
         let none = SimulateOptions { until_s: 0.0, ..SimulateOptions::default() };
         assert_eq!((none.times_s(), none.faults(2)), (vec![0.0], vec![]));
         let wrong = SimulateOptions { until_s: -1.0, every_s: 0.0, rtol: f64::NAN, ..SimulateOptions::default() };

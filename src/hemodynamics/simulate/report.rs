@@ -6,7 +6,7 @@ use lunula_hemodynamics::Loads;
 use serde::Serialize;
 
 use crate::hemodynamics::choices::OpticsChoice;
-use crate::stages::Stage;
+use crate::job::Report;
 
 /// What a solver did.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
@@ -67,12 +67,11 @@ impl LoadsReport {
 }
 
 /// What a run did.
+pub type SimulateReport = Report<SimulateFigures>;
+
+/// The figures of a run.
 #[derive(Debug, Clone, Serialize)]
-pub struct SimulateReport {
-    /// Which job.
-    pub job: &'static str,
-    /// The program's version.
-    pub version: &'static str,
+pub struct SimulateFigures {
     /// The table.
     pub table: PathBuf,
     /// Its rows.
@@ -95,7 +94,7 @@ pub struct SimulateReport {
     pub until_s: f64,
     /// Between rows, s.
     pub every_s: f64,
-    /// The tolerance that was asked for: the error of every lumen over its nominal diameter.
+    /// The tolerance: the largest error of every lumen over its nominal diameter.
     pub rtol: f64,
     /// Why the run stopped.
     pub stopped: String,
@@ -106,16 +105,4 @@ pub struct SimulateReport {
     /// The parameters, by their names in files.
     #[serde(serialize_with = "crate::hemodynamics::as_map")]
     pub parameters: Vec<(String, f64)>,
-    /// What was not asked for.
-    pub left_out: Vec<String>,
-    /// What whoever reads this should know.
-    pub warnings: Vec<String>,
-    /// What failed: a vessel that closed before the end.
-    pub failed: Vec<String>,
-    /// The pictures.
-    pub pictures: Vec<PathBuf>,
-    /// Time by stage.
-    pub stages: Vec<Stage>,
-    /// Seconds from start to end, this report not counted.
-    pub wall_s: f64,
 }

@@ -28,15 +28,15 @@ pub(in crate::hemodynamics) fn rest(parameters: &Parameters) -> Result<State, He
 /// # Errors
 /// A file that holds none, or loads with no stable equilibrium, or with several.
 pub(in crate::hemodynamics) fn start_state(
-    start: &Start,
+    start: Option<&Start>,
     parameters: &Parameters,
     loads: &Loads,
     collapse: Collapse,
 ) -> Result<State, HemodynamicsError> {
     match start {
-        Start::Zero => Ok(State::undisplaced(parameters)),
-        Start::File(path) => read_state(path, parameters),
-        Start::Equilibrium => state_before(0.0, parameters, loads, collapse),
+        Some(Start::Zero) => Ok(State::undisplaced(parameters)),
+        Some(Start::File(path)) => read_state(path, parameters),
+        None => state_before(0.0, parameters, loads, collapse),
     }
 }
 

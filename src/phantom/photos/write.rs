@@ -15,6 +15,7 @@ use serde::Serialize;
 use thiserror::Error;
 
 use super::{FileFormat, OptionFault, PhotoOptions, maps::ExactMaps};
+use crate::job::{Interrupted, Watch};
 use crate::{
     files::{Staging, WriteError},
     labelme::{self, LabelMe, Shape, to_labelme},
@@ -61,9 +62,9 @@ pub enum Error {
     /// An annotation could not be written.
     #[error(transparent)]
     Annotation(#[from] labelme::Error),
-    /// The caller asked to stop; nothing was left behind.
-    #[error("interrupted; nothing was written")]
-    Interrupted,
+    /// Stopped from outside; nothing was left behind.
+    #[error("stopped")]
+    Interrupted(#[from] Interrupted),
 }
 
 /// What is true of one photograph; a row of `truth/nails.csv`.
@@ -147,18 +148,14 @@ fn folder(path: PathBuf) -> Result<PathBuf, Error> {
 /// # Errors
 /// [`enum@Error`]; what stood under `out` before is as it was.
 pub fn write(options: &PhotoOptions, out: &Path) -> Result<Summary, Error> {
-    write_watched(options, out, &|_, _| true)
+    Watch::nobody(|watch| write_watched(options, out, watch))
 }
 
-/// As [`write()`], telling `watch` after every photograph how many are done of how many; it answers whether to go on.
+/// As [`write()`], watched: the ticks count photographs.
 ///
 /// # Errors
 /// [`enum@Error`]; what stood under `out` before is as it was.
-pub fn write_watched(
-    options: &PhotoOptions,
-    out: &Path,
-    watch: &(dyn Fn(usize, usize) -> bool + Sync),
-) -> Result<Summary, Error> {
+pub fn write_watched(options: &PhotoOptions, out: &Path, watch: &Watch<'_>) -> Result<Summary, Error> {
     let begin = Instant::now();
     options.check()?;
     let staging = Staging::new(out)?;
@@ -171,11 +168,7 @@ pub fn write_watched(
     Ok(summary)
 }
 
-fn draw_all(
-    options: &PhotoOptions,
-    stage: &Path,
-    watch: &(dyn Fn(usize, usize) -> bool + Sync),
-) -> Result<Summary, Error> {
+fn draw_all(options: &PhotoOptions, stage: &Path, watch: &Watch<'_>) -> Result<Summary, Error> {
     for pose in &options.poses {
         for place in ["photos", "truth/outlines", "truth/normalized"] {
             if options.truth_normalized || !place.ends_with("normalized") {
@@ -201,9 +194,8 @@ fn draw_all(
                 summary.stages.write_s += one.stages.write_s;
                 summary.stages.truth_s += one.stages.truth_s + begin.elapsed().as_secs_f64();
             }
-            if !watch(summary.photographs.len(), all) {
-                return Err(Error::Interrupted);
-            }
+            (watch.tick)(summary.photographs.len() as u64, Some(all as u64));
+            watch.go_on()?;
         }
         write_npy(&maps_folder.join(format!("{pose}-mean.npy")), &maps.mean())?;
         write_npy(&maps_folder.join(format!("{pose}-sd.npy")), &maps.sd())?;

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 use std::{fs, io};
 
@@ -12,6 +12,7 @@ use thiserror::Error;
 
 use super::{RECORD, Study, StudyOptions, TABLES};
 use crate::files::{Staging, WriteError};
+use crate::job::{Interrupted, Watch};
 use crate::phantom::place::in_the_way;
 use crate::phantom::{Recording, RecordingError};
 use crate::stages::{Stage, Stages};
@@ -41,9 +42,9 @@ pub enum StudyError {
         /// Why.
         why: Box<RecordingError>,
     },
-    /// The caller asked to stop; nothing was left behind.
-    #[error("interrupted; nothing was written")]
-    Interrupted,
+    /// Stopped from outside; nothing was left behind.
+    #[error("stopped")]
+    Interrupted(#[from] Interrupted),
 }
 
 /// A study that was written.
@@ -67,15 +68,11 @@ fn refused(path: &Path) -> impl FnOnce(io::Error) -> StudyError {
 }
 
 /// Writes a study under `out`; a study written there before is replaced, unless somebody put files of their own into
-/// its folders. Tells `watch` after every recording how many are done of how many; it answers whether to go on.
+/// its folders. The ticks count recordings.
 ///
 /// # Errors
 /// [`StudyError`]; what stood under `out` before is as it was.
-pub fn write_watched(
-    study: &Study,
-    out: &Path,
-    watch: &(dyn Fn(usize, usize) -> bool + Sync),
-) -> Result<StudySummary, StudyError> {
+pub fn write_watched(study: &Study, out: &Path, watch: &Watch<'_>) -> Result<StudySummary, StudyError> {
     let begin = Instant::now();
     let recordings = study.recordings();
     let before = stands(out);
@@ -88,28 +85,23 @@ pub fn write_watched(
         return Err(StudyError::InTheWay(place));
     }
     let stages = Stages::default();
-    let done = AtomicUsize::new(0);
-    let goes_on = || watch(done.load(Ordering::Relaxed), recordings.len());
+    let done = AtomicU64::new(0);
+    let within = Watch { tick: &|_, _| {}, ..*watch };
     // The longest first, so that none is left over at the end.
     let mut order: Vec<usize> = (0..recordings.len()).collect();
     order.sort_by(|&a, &b| {
         let cost = |k: usize| recordings[k].recording.cost().seconds;
         cost(b).total_cmp(&cost(a)).then(a.cmp(&b))
     });
-    let made = order.into_par_iter().with_max_len(1).try_for_each(|k| {
+    let made = order.into_par_iter().with_max_len(1).try_for_each(|k| -> Result<(), StudyError> {
         let one = &recordings[k];
-        if !goes_on() {
-            return Err(StudyError::Interrupted);
-        }
+        watch.go_on()?;
         let folder = staging.path().join(&one.name);
         fs::create_dir_all(&folder).map_err(refused(&folder))?;
-        let written = stages.time(stage_of(&one.recording), || one.recording.write(&folder, &goes_on));
-        written.map_err(|why| match why.interrupted() {
-            true => StudyError::Interrupted,
-            false => StudyError::Recording { name: one.name.clone(), why: Box::new(why) },
-        })?;
-        done.fetch_add(1, Ordering::Relaxed);
-        goes_on();
+        let written = stages.time(stage_of(&one.recording), || one.recording.write(&folder, &within));
+        watch.go_on()?;
+        written.map_err(|why| StudyError::Recording { name: one.name.clone(), why: Box::new(why) })?;
+        (watch.tick)(1 + done.fetch_add(1, Ordering::Relaxed), Some(recordings.len() as u64));
         Ok(())
     });
     made?;

@@ -11,6 +11,7 @@ use thiserror::Error;
 use super::scene::TICKS_PER_S;
 use super::{FrameTruth, MarkerStatus, Scene, Siting, VideoOptions};
 use crate::files::{Staging, WriteError};
+use crate::job::{Interrupted, Watch};
 use crate::phantom::place::in_the_way;
 use crate::table::{Column, TableError, TableWriter, Value};
 use crate::video::{Encoder, Encoding, Picture, VideoError};
@@ -45,9 +46,9 @@ pub enum Error {
     /// The video could not be encoded.
     #[error(transparent)]
     Video(#[from] VideoError),
-    /// The caller asked to stop; nothing was left behind.
-    #[error("interrupted; nothing was written")]
-    Interrupted,
+    /// Stopped from outside; nothing was left behind.
+    #[error("stopped")]
+    Interrupted(#[from] Interrupted),
 }
 
 /// Seconds spent. Drawing and encoding run side by side.
@@ -95,18 +96,14 @@ fn refused(path: &Path) -> impl FnOnce(io::Error) -> Error {
 /// # Errors
 /// [`enum@Error`]; what stood under `out` before is as it was.
 pub fn write(scene: &Scene, out: &Path) -> Result<Summary, Error> {
-    write_watched(scene, out, &|_, _| true)
+    Watch::nobody(|watch| write_watched(scene, out, watch))
 }
 
-/// As [`write()`], telling `watch` how many frames are done of how many; it answers whether to go on.
+/// As [`write()`], watched: the ticks count frames.
 ///
 /// # Errors
 /// [`enum@Error`]; what stood under `out` before is as it was.
-pub fn write_watched(
-    scene: &Scene,
-    out: &Path,
-    watch: &(dyn Fn(usize, usize) -> bool + Sync),
-) -> Result<Summary, Error> {
+pub fn write_watched(scene: &Scene, out: &Path, watch: &Watch<'_>) -> Result<Summary, Error> {
     let begin = Instant::now();
     let staging = Staging::new(out)?;
     if let Some(place) = in_the_way(out, &RESULTS, RECORD) {
@@ -117,11 +114,7 @@ pub fn write_watched(
     Ok(summary)
 }
 
-fn write_staged(
-    scene: &Scene,
-    staging: Staging,
-    watch: &(dyn Fn(usize, usize) -> bool + Sync),
-) -> Result<Summary, Error> {
+fn write_staged(scene: &Scene, staging: Staging, watch: &Watch<'_>) -> Result<Summary, Error> {
     let stage = staging.path();
     let truth = stage.join("truth");
     fs::create_dir(&truth).map_err(refused(&truth))?;
@@ -140,12 +133,7 @@ fn write_staged(
     Ok(Summary { frames, seconds: scene.time_s(frames - 1), distractors: scene.distractors.len(), bytes, stages })
 }
 
-fn encode(
-    scene: &Scene,
-    path: &Path,
-    watch: &(dyn Fn(usize, usize) -> bool + Sync),
-    stages: &mut Stages,
-) -> Result<(), Error> {
+fn encode(scene: &Scene, path: &Path, watch: &Watch<'_>, stages: &mut Stages) -> Result<(), Error> {
     let options = scene.options();
     let encoding = Encoding {
         matrix: options.matrix,
@@ -182,9 +170,8 @@ fn encode(
         stages.encode_s += pushed?;
         stages.draw_s += drawn.iter().map(|(_, seconds)| seconds).sum::<f64>();
         done += drawn.len();
-        if !watch(done, frames.len()) {
-            return Err(Error::Interrupted);
-        }
+        (watch.tick)(done as u64, Some(frames.len() as u64));
+        watch.go_on()?;
         drawn = following;
     }
     let start = Instant::now();

@@ -15,11 +15,10 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
 
 use toml::{Table, Value};
 
-use crate::job::{Facts, Keys, Made, Maker, OptionFault, Work, read};
+use crate::job::{Facts, Keys, Made, Maker, OptionFault, Said, Work, read};
 use crate::phantom::request::{LogRequest, PhotosRequest, StudyRequest, VideoRequest};
 use crate::phantom::study::Study;
 use crate::phantom::{Faults, Recording};
@@ -200,10 +199,8 @@ struct Generate(Recording);
 impl Maker for Generate {
     fn run(&self, work: &Work) -> anyhow::Result<Made> {
         let stages = Stages::default();
-        // A pool of its own: the runner does other tasks beside it.
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(work.threads.max(1)).build()?;
-        let goes_on = || !work.stop.load(Ordering::Relaxed);
-        pool.install(|| stages.time("generate", || self.0.write(work.folder, &goes_on)))?;
+        let said = Said::default();
+        work.run(&said, |watch| stages.time("generate", || self.0.write(work.folder, watch)))?;
         let report = serde_json::json!({ "job": "phantom", "files": self.0.files().len() });
         Ok(Made { report, stages: stages.list(), ..Made::default() })
     }

@@ -1,8 +1,6 @@
-//! The trajectory job: options in, a table with its report and pictures out; the one entry that command line and
-//! pipelines call.
+//! The trajectory job: options in, a table with its report and pictures out.
 
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use lunula_predictor::ForceSpaceFault;
@@ -10,9 +8,10 @@ use thiserror::Error;
 
 use super::check::faults;
 use super::motion::Motion;
-use super::report::{ForceFigures, PostureFigures, TrajectoryReport};
-use super::{Kind, TrajectoryOptions, figures};
+use super::report::{ForceFigures, PostureFigures, TrajectoryFigures, TrajectoryReport};
+use super::{Kind, TrajectoryOptions, TrajectoryOutputs, figures};
 use crate::files::{Places, WriteError, beside};
+use crate::job::{Interrupted, Report, Watch};
 use crate::stages::{Stages, Step, left_out};
 use crate::table::{Column, TableError, TableFormat, TableWriter, Value};
 
@@ -21,15 +20,6 @@ const FORCE_DECIMALS: usize = 6;
 const ANGLE_DECIMALS: usize = 5;
 /// Rows between two looks at whether to stop.
 const AT_ONCE: usize = 1 << 20;
-
-/// Where results go.
-#[derive(Debug, Clone)]
-pub struct TrajectoryOutputs {
-    /// The table; report and pictures stand beside it, named after it.
-    pub table: PathBuf,
-    /// Whether pictures are drawn.
-    pub figures: bool,
-}
 
 /// Why there is no trajectory.
 #[derive(Debug, Error)]
@@ -47,8 +37,8 @@ pub enum TrajectoryError {
     #[error(transparent)]
     Write(#[from] WriteError),
     /// Stopped from outside.
-    #[error("interrupted; nothing was written")]
-    Interrupted,
+    #[error("stopped")]
+    Interrupted(#[from] Interrupted),
 }
 
 /// Plans a run; `outputs` may be open yet.
@@ -85,11 +75,10 @@ pub fn plan(options: &TrajectoryOptions, outputs: Option<&TrajectoryOutputs>) ->
 pub fn run(
     options: &TrajectoryOptions,
     outputs: &TrajectoryOutputs,
-    stop: &AtomicBool,
+    watch: &Watch<'_>,
 ) -> Result<TrajectoryReport, TrajectoryError> {
     let start = Instant::now();
     let stages = Stages::default();
-    let go_on = || if stop.load(Ordering::Relaxed) { Err(TrajectoryError::Interrupted) } else { Ok(()) };
     let steps = plan(options, Some(outputs))?;
     TableFormat::of(&outputs.table)?;
     let motion = Motion::new(options)?;
@@ -97,34 +86,27 @@ pub fn run(
         Motion::Force(motion) => (Some(ForceFigures::new(options, motion)), None),
         Motion::Posture { path, .. } => (None, Some(PostureFigures::new(options, path))),
     });
-    go_on()?;
+    watch.go_on()?;
     let mut places = Places::default();
     let rows = options.rows() as usize;
-    stages.time("table", || write_table(options, &motion, rows, &outputs.table, &mut places, &go_on))?;
+    stages.time("table", || write_table(options, &motion, rows, &outputs.table, &mut places, watch))?;
     let pictures = stages.time("pictures", || {
         if outputs.figures { draw(options, &motion, &outputs.table, &mut places) } else { Ok(Vec::new()) }
     })?;
-    go_on()?;
-    let report = TrajectoryReport {
-        job: "trajectory",
-        version: env!("CARGO_PKG_VERSION"),
-        options: *options,
+    watch.go_on()?;
+    let warnings = force.as_ref().map_or_else(Vec::new, |force| force.warnings(options));
+    let figures = TrajectoryFigures {
+        trajectory: *options,
         table: outputs.table.clone(),
         rows: rows as u64,
         span_s: (rows - 1) as f64 * options.every_s,
-        warnings: force.as_ref().map_or_else(Vec::new, |force| force.warnings(options)),
         force,
         posture,
-        left_out: left_out(steps),
-        failed: Vec::new(),
-        pictures,
-        stages: stages.list(),
-        wall_s: start.elapsed().as_secs_f64(),
     };
-    let text = serde_json::to_string_pretty(&report).expect("plain data") + "\n";
-    places.write(&beside(&outputs.table, ".run.json"), &text)?;
-    places.commit()?;
-    Ok(report)
+    let left_out = left_out(steps);
+    let report = Report { left_out, warnings, pictures, ..Report::new("trajectory", watch, figures) };
+    let at = outputs.report.then(|| beside(&outputs.table, ".run.json"));
+    Ok(report.timed(&stages, start).commit(places, at.as_deref())?)
 }
 
 /// As many decimals as multiples of the step need; none where nine are not enough.
@@ -145,7 +127,7 @@ fn write_table(
     rows: usize,
     path: &Path,
     places: &mut Places,
-    go_on: &dyn Fn() -> Result<(), TrajectoryError>,
+    watch: &Watch<'_>,
 ) -> Result<(), TrajectoryError> {
     let mut columns = vec![time_column(options.every_s)];
     match motion {
@@ -162,7 +144,7 @@ fn write_table(
     let at = places.place(path)?;
     let mut table = TableWriter::create(&at, path, columns, &facts)?;
     for from in (0..rows).step_by(AT_ONCE) {
-        go_on()?;
+        watch.go_on()?;
         table.write_rows(AT_ONCE.min(rows - from), &|row, write| {
             let time_s = (from + row) as f64 * options.every_s;
             match motion {
@@ -179,7 +161,7 @@ fn write_table(
     Ok(table.finish()?)
 }
 
-/// Draws the pictures beside the table; returns where they will stand.
+/// Draws the pictures beside the table; returns their places.
 fn draw(
     options: &TrajectoryOptions,
     motion: &Motion,

@@ -1,5 +1,5 @@
-//! Trajectories to be played by a prompter (5.2.3, 5.2.4): a table of forces or angles over time, what a person wants
-//! to know of it, and pictures (Fig. 90 to 93).
+//! Trajectories for a prompter to play (5.2.3, 5.2.4): a table of forces or angles over time, what a person
+//! has to know of it, and pictures (Fig. 90 to 93).
 //!
 //! In: [`TrajectoryOptions`]. Out: the table, `time_s,Fx_N,Fy_N,Fz_N` (forces of the finger on the surface: pressing is
 //! a negative `Fz_N`) or `time_s,J2_deg`, and beside it `<table>.run.json`, the [`TrajectoryReport`], and the pictures.
@@ -8,10 +8,14 @@
 mod check;
 mod figures;
 mod job;
+mod kind;
 mod motion;
 mod options;
 mod report;
 
-pub use job::{TrajectoryError, TrajectoryOutputs, plan, run};
-pub use options::{Kind, TrajectoryOptions};
-pub use report::{ForceFigures, PostureFigures, SpiralFigures, TrajectoryReport};
+pub use job::{TrajectoryError, plan, run};
+pub use kind::TrajectoryJob;
+pub use options::{
+    BendingOptions, ForceOptions, Kind, KindOptions, RandomOptions, TrajectoryOptions, TrajectoryOutputs,
+};
+pub use report::{ForceFigures, PostureFigures, SpiralFigures, TrajectoryFigures, TrajectoryReport};

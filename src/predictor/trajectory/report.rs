@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::TrajectoryOptions;
 use super::motion::{ForceMotion, Path};
-use crate::stages::Stage;
+use crate::job::Report;
 
 /// Equation 19 is judged where the force is at least this share of the largest pressing.
 const FLOOR: f64 = 0.1;
@@ -22,14 +22,13 @@ const MOST_MOMENTS: f64 = 1e6;
 const MOST_COVERED: f64 = 1e5;
 
 /// What a run did.
+pub type TrajectoryReport = Report<TrajectoryFigures>;
+
+/// The figures of a run.
 #[derive(Debug, Clone, Serialize)]
-pub struct TrajectoryReport {
-    /// Which job.
-    pub job: &'static str,
-    /// The program's version.
-    pub version: &'static str,
-    /// What was asked for.
-    pub options: TrajectoryOptions,
+pub struct TrajectoryFigures {
+    /// The trajectory, with all that its kind leaves to defaults.
+    pub trajectory: TrajectoryOptions,
     /// The table.
     pub table: PathBuf,
     /// Its rows.
@@ -40,18 +39,6 @@ pub struct TrajectoryReport {
     pub force: Option<ForceFigures>,
     /// Of postures.
     pub posture: Option<PostureFigures>,
-    /// What was not asked for.
-    pub left_out: Vec<String>,
-    /// What whoever plays it should know.
-    pub warnings: Vec<String>,
-    /// Always empty: there are no inputs.
-    pub failed: Vec<String>,
-    /// The pictures.
-    pub pictures: Vec<PathBuf>,
-    /// Time by stage.
-    pub stages: Vec<Stage>,
-    /// Seconds from start to end, this report not counted.
-    pub wall_s: f64,
 }
 
 /// Figures of a trajectory of forces.
@@ -67,7 +54,7 @@ pub struct ForceFigures {
     pub keeps_limit: bool,
     /// How evenly the rows cover the cone of friction.
     pub coverage: ConeCoverage,
-    /// Correlation of time and pressing: near 1, a drift of the sensor can't be told from the pressing.
+    /// Correlation of time and pressing: near 1, a drift of the sensor can't be distinguished from the pressing.
     pub time_pressing_correlation: Option<f64>,
     /// Equations 24 to 26.
     pub spiral: Option<SpiralFigures>,
@@ -141,7 +128,7 @@ impl ForceFigures {
         }
     }
 
-    /// What whoever plays it should know.
+    /// What a person has to know before playing it.
     pub(super) fn warnings(&self, options: &TrajectoryOptions) -> Vec<String> {
         let mut warnings = Vec::new();
         let judged = self.rates.as_ref().and_then(|rates| Some((rates.relative_per_s?, rates.over_share?)));

@@ -3,25 +3,31 @@
 //!
 //! In: folders of results, each of a [`Part`]; several of a part are of several subjects, and the first is shown. Out,
 //! in a folder: `study.html`, self-contained but for links to `tables/`, copies of the parts' tables; `statements.csv`;
-//! `numbers.json`, all numbers that statements are judged by. What is missing is said in its place. Nothing of these
-//! files hangs on where or when they were made.
+//! `numbers.json`, all numbers that statements are judged by. What is missing is said in its place. Nothing in these
+//! files depends on where or when they were made.
 
 mod figures;
+mod kind;
 mod parts;
 #[cfg(test)]
 mod tests;
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
+use clap::Args;
 use serde::Serialize;
 
 use super::Numbers;
 use super::statements::{Judged, Verdict, judge};
 use crate::figure::Page;
 use crate::files::Staging;
+use crate::job::{Report, Watch};
+use crate::stages::Stages;
 use crate::table::{Column, TableWriter, Value};
 use figures::{SECTIONS, Section};
+pub use kind::StudyJob;
 pub use parts::Part;
 
 /// A folder of results.
@@ -35,22 +41,26 @@ pub struct PartFolder {
     pub subject: String,
 }
 
-/// What the page is told besides.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+/// What stands above the page, and whose results it shows.
+#[derive(Debug, Clone, PartialEq, Eq, Args)]
 pub struct PageOptions {
-    /// Above the page.
+    /// The page's title
+    #[arg(long, default_value = "The thesis' figures, and what it states of them")]
     pub title: String,
-    /// The recordings are generated.
+    /// The recordings are generated; the page says so
+    #[arg(long)]
     pub phantom: bool,
-    /// Whose results are shown where a part has several subjects'; empty: the first one's.
-    pub subject: String,
+    /// Whose results are shown where a part has several subjects' [default: the first one's]
+    #[arg(long)]
+    pub subject: Option<String>,
 }
 
-/// What was found.
+/// What came out.
+pub type PageReport = Report<PageFigures>;
+
+/// The figures of a run.
 #[derive(Debug, Clone, Serialize)]
-pub struct PageReport {
-    /// Which job.
-    pub job: &'static str,
+pub struct PageFigures {
     /// Figures that have a counterpart.
     pub figures: usize,
     /// Figures that have none, and why.
@@ -59,25 +69,29 @@ pub struct PageReport {
     pub agree: usize,
     /// Statements that do not.
     pub do_not: usize,
-    /// Statements that can't be told.
+    /// Statements that can't be judged.
     pub cannot_tell: usize,
-    /// What whoever reads this should know.
-    pub warnings: Vec<String>,
 }
 
 /// Writes the page into `out`.
 ///
 /// # Errors
 /// Where a file can't be read or written.
-pub fn study_page(folders: &[PartFolder], options: &PageOptions, out: &Path) -> anyhow::Result<PageReport> {
-    let shown: Vec<&PartFolder> =
-        Part::ALL.iter().filter_map(|part| chosen(folders, *part, &options.subject)).collect();
+pub fn study_page(
+    folders: &[PartFolder],
+    options: &PageOptions,
+    out: &Path,
+    watch: &Watch<'_>,
+) -> anyhow::Result<PageReport> {
+    let start = Instant::now();
+    let subject = options.subject.as_deref().unwrap_or_default();
+    let shown: Vec<&PartFolder> = Part::ALL.iter().filter_map(|part| chosen(folders, *part, subject)).collect();
     let mut warnings = Vec::new();
     let mut numbers = Numbers::default();
     for one in &shown {
         match one.part.numbers(&one.folder) {
             Ok(own) => numbers.take(one.part.name(), &own),
-            // The page stands wherever it is brought: no folder of this machine is in it.
+            // The page is the same wherever it is brought: no folder of this machine is in it.
             Err(why) => {
                 let within = format!("{}/", one.folder.display());
                 warnings.push(format!("{}: {}", one.part.name(), format!("{why:#}").replace(&within, "")));
@@ -92,7 +106,7 @@ pub fn study_page(folders: &[PartFolder], options: &PageOptions, out: &Path) -> 
     let (mut figures, mut lacking) = (0, Vec::new());
     for section in SECTIONS {
         page.anchored_heading(section.name, section.title);
-        told(&mut page, &own(section, &judged));
+        statements_of(&mut page, &own(section, &judged));
         for figure in section.figures {
             let number = format!("Fig. {}", figure.number);
             let found = shown.iter().find(|one| one.part == figure.part);
@@ -120,24 +134,25 @@ pub fn study_page(folders: &[PartFolder], options: &PageOptions, out: &Path) -> 
         page.anchored_heading("warnings", "To be known");
         page.list(&warnings);
     }
+    watch.go_on()?;
     tables(&mut page, &shown, &staging)?;
     staging.write("study.html", page.finish().as_bytes())?;
     staging.write("numbers.json", numbers.to_text().as_bytes())?;
     statements_table(&judged, &staging, out)?;
     staging.commit()?;
     let count = |word: &str| judged.iter().filter(|one| one.verdict.word() == word).count();
-    Ok(PageReport {
-        job: "study",
+    let figures = PageFigures {
         figures,
-        figures_lacking: lacking,
+        figures_lacking: lacking.clone(),
         agree: count(Verdict::Agrees.word()),
         do_not: count(Verdict::DoesNot.word()),
         cannot_tell: judged.iter().filter(|one| matches!(one.verdict, Verdict::CannotTell(_))).count(),
-        warnings,
-    })
+    };
+    let report = Report { left_out: lacking, warnings, ..Report::new("study", watch, figures) };
+    Ok(report.timed(&Stages::default(), start))
 }
 
-/// The folder of a part that is shown: the wanted subject's, else the first's.
+/// The folder of a part that is shown: the named subject's, else the first's.
 fn chosen<'a>(folders: &'a [PartFolder], part: Part, subject: &str) -> Option<&'a PartFolder> {
     let own = || folders.iter().filter(move |one| one.part == part);
     own().find(|one| !subject.is_empty() && one.subject == subject).or_else(|| own().min_by_key(|one| &one.subject))
@@ -152,13 +167,13 @@ fn over_validation(numbers: &mut Numbers) {
     }
 }
 
-/// The statements that are told in a section.
+/// The statements of a section.
 fn own<'a>(section: &Section, judged: &'a [Judged]) -> Vec<&'a Judged> {
     let within = |one: &&Judged| section.of.iter().any(|beginning| one.statement.section.starts_with(beginning));
     judged.iter().filter(within).collect()
 }
 
-/// How many agree, do not, can't be told.
+/// How many agree, do not, can't be judged.
 fn counts(judged: &[&Judged]) -> [usize; 3] {
     let of = |holds: fn(&Verdict) -> bool| judged.iter().filter(|one| holds(&one.verdict)).count();
     [
@@ -199,7 +214,7 @@ fn introduce(page: &mut Page, options: &PageOptions, judged: &[Judged]) {
 }
 
 /// Statements of a section as a table; those that do not agree stand out.
-fn told(page: &mut Page, judged: &[&Judged]) {
+fn statements_of(page: &mut Page, judged: &[&Judged]) {
     let rows: Vec<Vec<String>> = judged
         .iter()
         .map(|one| {

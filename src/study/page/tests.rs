@@ -1,6 +1,7 @@
 //! The page on parts that are made here.
 
 use super::*;
+use crate::job::defaults;
 
 fn part(at: &Path, part: Part, subject: &str, files: &[(&str, &[u8])]) -> PartFolder {
     let folder = at.join(part.name()).join(subject);
@@ -28,9 +29,9 @@ fn what_there_is_is_shown_and_the_rest_is_said_to_be_lacking() {
         ),
         part(at, Part::Normal, "S01", &[("numbers.json", b"nothing")]),
     ];
-    let options = PageOptions { title: "A study".to_owned(), phantom: true, subject: String::new() };
-    let report = study_page(&parts, &options, &at.join("out")).unwrap();
-    assert_eq!((report.figures, report.agree, report.do_not), (1, 1, 1 + 1));
+    let options = PageOptions { title: "A study".to_owned(), phantom: true, subject: None };
+    let report = Watch::nobody(|watch| study_page(&parts, &options, &at.join("out"), watch)).unwrap();
+    assert_eq!((report.figures.figures, report.agree, report.do_not), (1, 1, 1 + 1));
     assert_eq!(report.figures_lacking.len(), SECTIONS.iter().map(|one| one.figures.len()).sum::<usize>() - 1);
     assert!(report.warnings.len() == 1 && report.warnings[0].starts_with("normal: "), "{:?}", report.warnings);
     let html = fs::read_to_string(at.join("out/study.html")).unwrap();
@@ -47,8 +48,8 @@ fn what_there_is_is_shown_and_the_rest_is_said_to_be_lacking() {
 #[test]
 fn a_study_of_nothing_has_a_page_on_which_nothing_can_be_told() {
     let folder = tempfile::tempdir().unwrap();
-    let report = study_page(&[], &PageOptions::default(), folder.path()).unwrap();
-    assert_eq!((report.figures, report.agree, report.do_not), (0, 0, 0));
+    let report = Watch::nobody(|watch| study_page(&[], &defaults(), folder.path(), watch)).unwrap();
+    assert_eq!((report.figures.figures, report.agree, report.do_not), (0, 0, 0));
     assert!(report.cannot_tell > 100);
     assert!(!fs::read_to_string(folder.path().join("study.html")).unwrap().contains("A phantom"));
 }

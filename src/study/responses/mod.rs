@@ -11,6 +11,7 @@
 mod curve;
 mod cycles;
 mod figures;
+mod kind;
 mod measure;
 mod places;
 mod recording;
@@ -20,39 +21,70 @@ mod table;
 mod tests;
 
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
+use clap::Args;
+use clap::builder::PossibleValuesParser;
 use serde::Serialize;
 
 use super::Numbers;
 use crate::files::{Staging, WriteError};
+use crate::job::{Interrupted, Report, Watch};
 use crate::log::LogError;
-use crate::stages::{Stage, Stages};
+use crate::stages::{Stages, Step, left_out};
 use crate::table::TableError;
 pub use curve::{Curve, Point, Source};
 pub use cycles::{Cycles, Leg};
+pub use kind::ResponsesJob;
 pub use places::Places;
 pub use recording::Recording;
 
 /// Forces and angles that may go up and down.
 pub const DRIVES: [&str; 6] = ["Fx_N", "Fy_N", "Fz_N", "J1_deg", "J2_deg", "J3_deg"];
 
-/// What is asked for.
-#[derive(Debug, Clone, PartialEq)]
+/// Which signal, and how it is averaged.
+#[derive(Debug, Clone, PartialEq, Args)]
 pub struct ResponsesOptions {
-    /// The force or angle that goes up and down: one of [`DRIVES`].
+    /// The force or angle that goes up and down
+    #[arg(long, value_parser = PossibleValuesParser::new(DRIVES))]
     pub drive: String,
-    /// Bins of its range.
-    pub bins: usize,
-    /// Where the photodiodes sit.
-    pub places: Places,
+    /// Bins of its range
+    #[arg(long, default_value_t = 16, value_parser = clap::value_parser!(u16).range(4..=200))]
+    pub bins: u16,
+    /// A row of photodiodes on the nail, from left to right; rows from distal to proximal [default: the thesis' eight]
+    #[arg(long, value_parser = row)]
+    pub places: Vec<Vec<String>>,
+}
+
+fn row(names: &str) -> Result<Vec<String>, String> {
+    Ok(names.split(',').map(|name| name.trim().to_owned()).collect())
 }
 
 impl ResponsesOptions {
-    /// The usual, for a force or angle.
+    /// The defaults, for a force or angle.
     #[must_use]
     pub fn of(drive: &str) -> Self {
-        Self { drive: drive.to_owned(), bins: 16, places: Places::default() }
+        Self { drive: drive.to_owned(), bins: 16, places: Vec::new() }
     }
+
+    /// Where the photodiodes are.
+    ///
+    /// # Errors
+    /// A photodiode twice, or none at all.
+    fn places(&self) -> Result<Places, String> {
+        if self.places.is_empty() { Ok(Places::default()) } else { Places::checked(self.places.clone()) }
+    }
+}
+
+/// The one table of steps.
+fn steps(options: &ResponsesOptions) -> Vec<Step> {
+    let bends = options.drive == "J2_deg";
+    let coupling = if bends { "J3 over J2, where the recording has J3" } else { "only of J2" };
+    vec![
+        Step::new("cycles", true, format!("of {}", options.drive)),
+        Step::new("averages", true, "over cycles, rising and falling".to_owned()),
+        Step::new("coupling", bends, coupling.to_owned()),
+    ]
 }
 
 /// A recording's file, and what results may call it.
@@ -64,11 +96,12 @@ pub struct NamedFile {
     pub name: String,
 }
 
-/// What was found.
+/// What came out.
+pub type ResponsesReport = Report<ResponsesFigures>;
+
+/// The figures of a run.
 #[derive(Debug, Clone, Serialize)]
-pub struct ResponsesReport {
-    /// Which job.
-    pub job: &'static str,
+pub struct ResponsesFigures {
     /// What went up and down.
     pub drive: String,
     /// Whole cycles, over all recordings.
@@ -77,16 +110,12 @@ pub struct ResponsesReport {
     pub range: [f64; 2],
     /// Numbers by name.
     pub numbers: Numbers,
-    /// What whoever reads this should know.
-    pub warnings: Vec<String>,
-    /// Time by stage.
-    pub stages: Vec<Stage>,
 }
 
 /// Why there are no responses.
 #[derive(Debug, thiserror::Error)]
 pub enum ResponsesError {
-    /// The request is none.
+    /// Options that can't be.
     #[error("{0}")]
     Request(String),
     /// A table can't be read.
@@ -116,6 +145,9 @@ pub enum ResponsesError {
     /// The results can't be written.
     #[error(transparent)]
     Write(#[from] WriteError),
+    /// Stopped from outside.
+    #[error("stopped")]
+    Interrupted(#[from] Interrupted),
 }
 
 /// Finds the responses and writes them into `out`.
@@ -126,8 +158,9 @@ pub fn responses(
     files: &[NamedFile],
     options: &ResponsesOptions,
     out: &Path,
+    watch: &Watch<'_>,
 ) -> Result<ResponsesReport, ResponsesError> {
-    let stages = Stages::default();
+    let (start, stages) = (Instant::now(), Stages::default());
     if files.is_empty() {
         return Err(ResponsesError::Request("no recording is given; name at least one".to_owned()));
     }
@@ -138,28 +171,28 @@ pub fn responses(
     if !(4..=200).contains(&options.bins) {
         return Err(ResponsesError::Request(format!("bins = {}: choose 4 to 200", options.bins)));
     }
+    let places = options.places().map_err(|why| ResponsesError::Request(format!("places: {why}")))?;
     let read = |file: &NamedFile| Recording::read(&file.path, &file.name, &options.drive);
     let recordings = stages.time("read", || files.iter().map(read).collect::<Result<Vec<_>, _>>())?;
-    let found = stages.time("average", || Found::of(&recordings, options))?;
-    let mut numbers = found.numbers(options);
+    watch.go_on()?;
+    let averages = stages.time("average", || Averages::of(&recordings, options))?;
+    let mut numbers = averages.numbers(options);
+    watch.go_on()?;
     let staging = Staging::new(out)?;
-    stages.time("write", || table::write(&staging, out, &found.curves))?;
-    stages.time("figures", || found.draw(&staging, options, &mut numbers))?;
+    stages.time("write", || table::write(&staging, out, &averages.curves))?;
+    stages.time("figures", || averages.draw(&staging, options, &places, &mut numbers))?;
     staging.write("numbers.json", numbers.to_text().as_bytes())?;
     staging.commit()?;
-    Ok(ResponsesReport {
-        job: "responses",
-        drive: options.drive.clone(),
-        cycles: found.cycles.iter().map(Cycles::count).sum(),
-        range: found.range,
-        numbers,
-        warnings: found.warnings,
-        stages: stages.list(),
-    })
+    let Averages { cycles, range, warnings, notes, .. } = averages;
+    let cycles = cycles.iter().map(Cycles::count).sum();
+    let figures = ResponsesFigures { drive: options.drive.clone(), cycles, range, numbers };
+    let left_out = left_out(steps(options));
+    let report = Report { left_out, warnings, notes, ..Report::new("responses", watch, figures) };
+    Ok(report.timed(&stages, start))
 }
 
 /// Recordings with their cycles and averages.
-struct Found<'a> {
+struct Averages<'a> {
     recordings: &'a [Recording],
     cycles: Vec<Cycles>,
     range: [f64; 2],
@@ -168,21 +201,22 @@ struct Found<'a> {
     /// Forces that are to be held.
     held: Vec<(String, Curve)>,
     warnings: Vec<String>,
+    notes: Vec<String>,
 }
 
-impl<'a> Found<'a> {
+impl<'a> Averages<'a> {
     fn of(recordings: &'a [Recording], options: &ResponsesOptions) -> Result<Self, ResponsesError> {
         let drive = |one: &'a Recording| one.of(&options.drive).unwrap_or(&[]);
         let cycles: Vec<Cycles> = recordings.iter().map(|one| Cycles::of(&one.time_s, drive(one))).collect();
-        let mut warnings = Vec::new();
+        let (mut warnings, mut notes) = (Vec::new(), Vec::new());
         for (one, cycles) in recordings.iter().zip(&cycles) {
-            warnings.extend(one.notes.iter().map(|note| format!("{}: {note}", one.name)));
+            notes.extend(one.notes.iter().map(|note| format!("{}: {note}", one.name)));
             if one.faulty > 0 {
-                warnings.push(format!("{}: {} rows with a fault of the sensor are not used", one.name, one.faulty));
+                notes.push(format!("{}: {} rows with a fault of the sensor are not used", one.name, one.faulty));
             }
             if cycles.cut > 0 {
                 let what = "parts of cycles do not go all the way or have a gap, and are not used";
-                warnings.push(format!("{}: {} {what}", one.name, cycles.cut));
+                notes.push(format!("{}: {} {what}", one.name, cycles.cut));
             }
         }
         let used: Vec<[f64; 2]> = cycles.iter().filter(|one| one.count() > 0).filter_map(|one| one.range).collect();
@@ -204,7 +238,7 @@ impl<'a> Found<'a> {
                 .iter()
                 .zip(&cycles)
                 .map(|(one, cycles)| Some(Source { legs: &cycles.legs, drive: drive(one), output: of(one)? }));
-            Some(Curve::of(&sources.collect::<Option<Vec<_>>>()?, range, options.bins))
+            Some(Curve::of(&sources.collect::<Option<Vec<_>>>()?, range, usize::from(options.bins)))
         };
         let output = |one: &'a Recording, name: &str| -> Option<&'a [f64]> {
             one.outputs.iter().find(|channel| channel.name == name).map(|channel| channel.values.as_slice())
@@ -214,7 +248,7 @@ impl<'a> Found<'a> {
         let forces = DRIVES.iter().filter(|name| name.ends_with("_N") && **name != options.drive);
         let held = forces.filter_map(|name| Some(((*name).to_owned(), curve(&|one| one.of(name))?)));
         let (curves, held) = (curves.collect(), held.collect());
-        Ok(Self { recordings, cycles, range, curves, held, warnings })
+        Ok(Self { recordings, cycles, range, curves, held, warnings, notes })
     }
 
     fn numbers(&self, options: &ResponsesOptions) -> Numbers {
@@ -245,7 +279,13 @@ impl<'a> Found<'a> {
         numbers
     }
 
-    fn draw(&self, staging: &Staging, options: &ResponsesOptions, numbers: &mut Numbers) -> Result<(), WriteError> {
+    fn draw(
+        &self,
+        staging: &Staging,
+        options: &ResponsesOptions,
+        places: &Places,
+        numbers: &mut Numbers,
+    ) -> Result<(), WriteError> {
         let first = &self.recordings[0];
         let bending = options.drive.ends_with("_deg");
         let (moving, y) = if bending { ("_deg", "angle, degrees") } else { ("_N", "force, N") };
@@ -264,11 +304,9 @@ impl<'a> Found<'a> {
         let outputs: Vec<(String, &[f64])> =
             first.outputs.iter().map(|channel| (channel.name.clone(), &channel.values[rows.clone()])).collect();
         picture(staging, "outputs", |png, svg| {
-            figures::outputs(&first.time_s[rows.clone()], &outputs, &options.places, png, svg)
+            figures::outputs(&first.time_s[rows.clone()], &outputs, places, png, svg)
         })?;
-        picture(staging, "averages", |png, svg| {
-            figures::averages(&self.curves, &options.drive, &options.places, png, svg)
-        })?;
+        picture(staging, "averages", |png, svg| figures::averages(&self.curves, &options.drive, places, png, svg))?;
         if let (true, Some(j2), Some(j3)) = (bending, first.of("J2_deg"), first.of("J3_deg"))
             && let Some(([offset, slope], r2)) = straight(j2, j3)
         {

@@ -59,7 +59,7 @@ fn every(frames: u64) -> String {
 /// Measures every setting.
 ///
 /// # Errors
-/// A video, marker file, log or truth that can't be read, with its file; [`Interrupted`](super::Interrupted).
+/// A video, marker file, log or truth that can't be read, with its file; [`Interrupted`](crate::job::Interrupted).
 pub fn measure(settings: &Settings) -> anyhow::Result<Measured> {
     let layout = Layout::read(&settings.markers)?;
     ensure!(layout.clock.is_some(), "{}: has no [clock], and a clock is what is measured", settings.markers.display());

@@ -38,7 +38,7 @@ enum Way<'a> {
 /// Measures every setting, and other programs.
 ///
 /// # Errors
-/// No reference; [`Interrupted`](crate::tradeoff::Interrupted).
+/// No reference; [`Interrupted`](crate::job::Interrupted).
 pub fn measure(settings: &Settings) -> anyhow::Result<Measured> {
     let bench = Bench::new()?;
     // The same solver on the equations as they are printed, whose resistances cancel.

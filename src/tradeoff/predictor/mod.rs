@@ -100,7 +100,7 @@ fn problem(close_bits: i32) -> String {
 /// Measures every setting, and other programs.
 ///
 /// # Errors
-/// Recordings that can't be read, with their file; [`Interrupted`](super::Interrupted).
+/// Recordings that can't be read, with their file; [`Interrupted`](crate::job::Interrupted).
 pub fn measure(settings: &Settings) -> anyhow::Result<Measured> {
     let target = Target::parse("force").map_err(anyhow::Error::msg)?;
     let wanted = Wanted { targets: target.columns().to_vec(), ..Wanted::default() };

@@ -1,0 +1,157 @@
+//! `fit` in a pipeline: the hemodynamic model's free parameters to recorded responses (Fig. 79 to 82).
+//!
+//! Recordings of one subject are those whose key `subject` is the same; where not all have it, all are one's.
+
+use std::path::Path;
+
+use super::job::{fit, plan, steps};
+use super::{FitInputs, FitOptions, FitOutputs, FitReport};
+use crate::hemodynamics::given::{PARAMS, existing, of_foreseen, of_task, read_parameters};
+use crate::hemodynamics::model::Parameters;
+use crate::job::{
+    Demand, Foreseen, Given, Job, Keys, Kind, Made, OptionFault, Order, Part, Quality, Role, Said, Takes, Work, keys,
+    prepare, read,
+};
+use crate::log::{ambient_step, foreseen_bytes};
+use crate::stages::Step;
+
+const PICTURES: &str = "pictures";
+const RECORDINGS: &str = "recordings";
+const TRUTH: &str = "truth";
+
+/// A stage of a pipeline.
+#[derive(Debug, Clone)]
+pub struct FitJob(FitOptions);
+
+fn outputs(folder: &Path, demand: &Demand) -> FitOutputs {
+    FitOutputs { result: folder.join("fit.json"), figures: demand.wants(PICTURES), report: false }
+}
+
+/// Whose each recording is; none where not all have a subject.
+fn subjects<'a>(keys: impl Iterator<Item = &'a Keys>) -> Vec<String> {
+    keys.map(|keys| keys.get("subject").map(str::to_owned)).collect::<Option<Vec<_>>>().unwrap_or_default()
+}
+
+impl Job for FitJob {
+    const KIND: Kind = Kind {
+        name: "fit",
+        about: "the hemodynamic model's free parameters to recorded responses",
+        roles: &[
+            Role {
+                name: RECORDINGS,
+                takes: Takes::Many,
+                about: "recorded responses: loads and photodiodes; a log or align's set",
+            },
+            PARAMS,
+            Role { name: TRUTH, takes: Takes::Optional, about: "the true parameters, where they are known" },
+        ],
+        parts: &[
+            Part {
+                name: "params",
+                file: "fit.toml",
+                only_if_wanted: false,
+                about: "the fitted parameters, for simulate",
+            },
+            Part {
+                name: "estimates",
+                file: "fit-estimates.csv",
+                only_if_wanted: false,
+                about: "each fitted value with its standard error",
+            },
+            Part {
+                name: "fitted",
+                file: "fit-fitted.csv",
+                only_if_wanted: false,
+                about: "measured and fitted voltages",
+            },
+            Part { name: PICTURES, file: "", only_if_wanted: true, about: "measured and fitted" },
+        ],
+        revision: 1,
+        keys: keys::<FitOptions>,
+        prepare: prepare::<Self>,
+    };
+
+    type Options = FitOptions;
+
+    fn new(options: FitOptions) -> Result<Self, OptionFault> {
+        Ok(Self(options))
+    }
+
+    fn read(table: &toml::Table) -> Result<(Self, Said), OptionFault> {
+        let mut table = table.clone();
+        // An empty list says what the command's word does.
+        if table.get("free").and_then(toml::Value::as_array).is_some_and(Vec::is_empty) {
+            table.insert("free".to_owned(), "none".into());
+        }
+        let Given { options, said } = read(&table, "the job fit")?;
+        Ok((Self::new(options)?, said))
+    }
+
+    fn demand(&self, _role: &str, own: &Demand) -> Demand {
+        Demand { joints: Some(Default::default()), clock: own.clock, ..Demand::default() }
+    }
+
+    fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
+        let own = || inputs.iter().filter(|input| input.role == RECORDINGS);
+        let files = FitInputs {
+            recordings: own().map(|input| input.path.clone()).collect(),
+            subjects: subjects(own().map(|input| &input.keys)),
+            names: Vec::new(),
+            params: of_foreseen(PARAMS.name, inputs),
+        };
+        let outputs = outputs(Path::new(""), demand);
+        let mut steps = if existing(inputs) {
+            plan(&files, &self.0, Some(&outputs)).map_err(|why| why.to_string())?
+        } else {
+            steps(&files, &self.0, Some(&outputs), None)
+        };
+        steps.insert(0, ambient_step(inputs, &[RECORDINGS], &self.0.columns.log));
+        Ok(steps)
+    }
+
+    fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {
+        let bytes = foreseen_bytes(inputs.iter().filter(|input| input.role == RECORDINGS));
+        let fits = f64::from(self.0.starts) * (1.0 + self.0.free().len() as f64);
+        (32_000_000 + 10 * bytes, 0.1 + fits * (0.05 + 2e-7 * bytes as f64))
+    }
+
+    fn run(&self, order: &Order<'_>, work: &Work<'_>) -> anyhow::Result<Made> {
+        let inputs = FitInputs {
+            recordings: work.of(RECORDINGS).map(|at| at.path.clone()).collect(),
+            subjects: subjects(work.of(RECORDINGS).map(|at| &at.keys)),
+            names: work.of(RECORDINGS).map(|at| at.name.clone()).collect(),
+            params: of_task(PARAMS.name, work),
+        };
+        let outputs = outputs(work.folder, order.demand);
+        let report = work.run(order.said, |watch| fit(&inputs, &self.0, &outputs, watch))?;
+        let mut quality = stated(&report);
+        if let Some(at) = work.one(TRUTH) {
+            quality.extend(against(&report, &read_parameters(&at.path)?));
+        }
+        Ok(report.made(quality))
+    }
+}
+
+/// The residuals, and the standard errors of the values.
+fn stated(report: &FitReport) -> Vec<Quality> {
+    let mut quality = vec![Quality::stated("voltages", report.residual_sd_v, "V, SD of the residuals")];
+    for group in &report.free {
+        let errors = group.standard_errors.iter().flatten();
+        for ((name, value), error) in group.names.iter().zip(&group.values).zip(errors) {
+            quality.push(Quality::stated(name, (error / value).abs(), "of its value, standard error"));
+        }
+    }
+    quality.retain(|one| one.value.is_finite());
+    quality
+}
+
+/// How far the values are from the true ones.
+fn against(report: &FitReport, truth: &Parameters) -> Vec<Quality> {
+    let one = |(name, value): (&String, &f64)| {
+        let is = truth.get(name.parse().ok()?)?;
+        let error = ((value - is) / is).abs();
+        let unit = "of its true value".to_owned();
+        error.is_finite().then_some(Quality { what: name.clone(), value: error, unit, against_truth: true })
+    };
+    report.free.iter().flat_map(|group| group.names.iter().zip(&group.values)).filter_map(one).collect()
+}

@@ -1,0 +1,100 @@
+//! `simulate` in a pipeline: the hemodynamic model under loads over time (4.3).
+
+use std::path::{Path, PathBuf};
+
+use super::job::{plan, simulate, steps};
+use super::{SimulateInputs, SimulateOptions, SimulateOutputs};
+use crate::hemodynamics::given::{PARAMS, Start, existing, of_foreseen, of_task};
+use crate::job::{
+    Demand, Facts, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Quality, Role, Takes, Work, keys, prepare,
+};
+use crate::stages::Step;
+
+const PICTURES: &str = "pictures";
+const TABLE: &str = "trajectory.csv";
+const LOADS: &str = "loads";
+const START: &str = "start";
+
+/// A stage of a pipeline.
+#[derive(Debug, Clone)]
+pub struct SimulateJob(SimulateOptions);
+
+fn outputs(folder: &Path, demand: &Demand) -> SimulateOutputs {
+    SimulateOutputs { table: folder.join(TABLE), figures: demand.wants(PICTURES), report: false }
+}
+
+impl SimulateJob {
+    /// The stage's files and options; the error says what is given twice.
+    fn with(&self, of: impl Fn(&str) -> Option<PathBuf>) -> Result<(SimulateInputs, SimulateOptions), &'static str> {
+        let inputs = SimulateInputs { params: of(PARAMS.name), loads: of(LOADS) };
+        let own = &self.0;
+        if inputs.loads.is_some() && (own.loads.pf1.is_some() || own.loads.pf2.is_some()) {
+            return Err("`loads` replaces `pf1` and `pf2`: leave one or the other out");
+        }
+        let start = match (own.start.clone(), of(START)) {
+            (Some(_), Some(_)) => return Err("`start` and `from` both say where it starts: leave one out"),
+            (own, path) => path.map(Start::File).or(own),
+        };
+        Ok((inputs, SimulateOptions { start, ..own.clone() }))
+    }
+}
+
+impl Job for SimulateJob {
+    const KIND: Kind = Kind {
+        name: "simulate",
+        about: "the hemodynamic model under loads over time",
+        roles: &[
+            PARAMS,
+            Role { name: LOADS, takes: Takes::Optional, about: "a table time_s,pf1_Pa,pf2_Pa instead of pf1 and pf2" },
+            Role { name: START, takes: Takes::Optional, about: "a trajectory whose last row it starts from" },
+        ],
+        parts: &[
+            Part { name: "trajectory", file: TABLE, only_if_wanted: false, about: "walls and photodiodes over time" },
+            Part { name: PICTURES, file: "", only_if_wanted: true, about: "the response over time" },
+        ],
+        revision: 2,
+        keys: keys::<SimulateOptions>,
+        prepare: prepare::<Self>,
+    };
+
+    type Options = SimulateOptions;
+
+    fn new(options: SimulateOptions) -> Result<Self, OptionFault> {
+        let fault = |key: &str, what: String| OptionFault { key: key.to_owned(), what };
+        if let Some(Start::File(path)) = &options.start {
+            let what = format!("`{}`: write zero; the trajectory to start from is the input `{START}`", path.display());
+            return Err(fault("from", what));
+        }
+        // The numbers are checked with the parameters, which may be a file's: a fault with the thesis' is one with any.
+        plan(&SimulateInputs::default(), &options, None).map_err(|why| fault("", why.to_string()))?;
+        Ok(Self(options))
+    }
+
+    fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
+        let (files, options) = self.with(|role| of_foreseen(role, inputs))?;
+        let outputs = outputs(Path::new(""), demand);
+        if existing(inputs) {
+            plan(&files, &options, Some(&outputs)).map_err(|why| why.to_string())
+        } else {
+            Ok(steps(&options, Some(&outputs), options.model.units.map(usize::from)))
+        }
+    }
+
+    fn facts(&self, _inputs: &[Foreseen], _demand: &Demand) -> Facts {
+        Facts { led: Some(false), forces: Some(false), ..Facts::default() }
+    }
+
+    fn cost(&self, _inputs: &[Foreseen]) -> (u64, f64) {
+        let walls = f64::from(self.0.model.units.unwrap_or(2)) + 1.0;
+        let values = self.0.rows() * (3.0 * walls + 4.0);
+        (32_000_000 + (40.0 * values) as u64, 0.02 + 1e-7 * values + 2e-3 * self.0.until_s * walls)
+    }
+
+    fn run(&self, order: &Order<'_>, work: &Work<'_>) -> anyhow::Result<Made> {
+        let (inputs, options) = self.with(|role| of_task(role, work)).map_err(anyhow::Error::msg)?;
+        let outputs = outputs(work.folder, order.demand);
+        let report = work.run(order.said, |watch| simulate(&inputs, &options, &outputs, watch))?;
+        let quality = Quality::stated("lumens", report.rtol, "of the nominal diameter, at most");
+        Ok(report.made(vec![quality]))
+    }
+}
