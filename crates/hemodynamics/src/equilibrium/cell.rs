@@ -1,290 +1,267 @@
-//! Boxes of lumens, and what an interval Newton step says of one.
+//! Cells of venous pressures: all vessels at their two ends, and what these bound in between.
 //!
-//! For any two states of a box the equations differ by a matrix times their difference, whose entries are slopes of
-//! functions of one lumen each and so lie in the ranges that [`Vessel`] gives. Eliminating the units leaves one
-//! interval number `D` for the determinant. Where 0 is not in it, the box holds at most one equilibrium; where the
-//! image of the box under the step lies within the box, it holds one (Brouwer). A venule in front of a capillary makes
-//! `p'` change its sign; where that happens for a single unit, this unit's lumen is eliminated last in place of the
-//! vein's, so that turning points of a branch need no care.
+//! Over a cell every lumen is monotone in the venous pressure, so the lumens at its ends bound it. With `t = 1 + G R_Vi`
+//! and `s = G / t`, both of which grow with the lumen, `ds / dl = 4 s / (l t)`, and `dp / dl = t alpha` with
+//! `alpha = w' - R_Vi ds/dl (P_H - P)`, in which nothing cancels. So all factors of `F` and `F'` have bounds.
 
-use super::interval::Interval;
+use std::ops::Range;
+use std::rc::Rc;
+
+use super::branch::Branch;
 use super::network::{Network, Vessel};
 
-const ONE: Interval = Interval { lo: 1.0, hi: 1.0 };
+/// The part of the magnitudes in a sum by which rounding may move it: 18 roundings.
+const ROUNDING: f64 = 4e-15;
 
-/// Ranges of lumens.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Cell {
-    pub(super) vein: Interval,
-    pub(super) units: Vec<Interval>,
-}
-
-/// The slopes of a unit over a range of its lumens.
-#[derive(Clone, Copy, Debug)]
-struct Slopes {
-    /// `f'`.
-    flow: Interval,
-    /// `w'`.
-    pressure: Interval,
-    /// `p'`.
-    venous: Interval,
-}
-
-/// What a Newton step says.
-pub(super) enum Step {
-    /// Nothing: the box may hold several equilibria.
-    Singular,
-    /// The box holds none.
-    Empty,
-    /// The box holds at most one equilibrium, and that lies in the image.
-    Image(Cell),
-}
-
-/// The lumen that is eliminated last.
+/// A vessel at a lumen and a venous pressure.
 #[derive(Clone, Copy)]
-pub(super) enum Last {
-    Vein,
-    Unit(usize),
+pub(super) struct At {
+    pub(super) lumen: f64,
+    /// `s`.
+    conductance: f64,
+    /// `t`.
+    behind: f64,
+    /// How far rounding may move the lumen.
+    error: f64,
 }
 
-impl Last {
-    /// The lumen's step from `at` by `determinant * step = right`. Where the determinant may be 0 there is none, but
-    /// where no step within the box can make the equation hold, the box is known to be empty.
-    pub(super) fn solve(self, cell: &Cell, at: f64, right: Interval, determinant: Interval) -> Result<Interval, Step> {
-        let range = match self {
-            Last::Vein => cell.vein,
-            Last::Unit(k) => cell.units[k],
-        };
-        right.over(determinant).ok_or_else(|| match (determinant * (range - Interval::point(at))).meet(right) {
-            Some(_) => Step::Singular,
-            None => Step::Empty,
-        })
-    }
+/// All vessels at a venous pressure.
+pub(super) struct Level {
+    pub(super) venous: f64,
+    pub(super) vein: At,
+    /// By branch; `None` where the branch does not reach the pressure.
+    pub(super) units: Vec<Option<At>>,
 }
 
-impl Cell {
-    /// The lumens, more or less by `by`, or by this part of themselves where they are greater than 1; none is less than
-    /// half of itself.
-    pub(super) fn about(vein: f64, units: &[f64], by: f64) -> Cell {
-        let wide = |lumen: f64| {
-            let by = by * lumen.max(1.0);
-            Interval::new(lumen - by.min(0.5 * lumen), lumen + by)
-        };
-        Cell { vein: wide(vein), units: units.iter().map(|&lumen| wide(lumen)).collect() }
-    }
+/// The levels at the two ends.
+pub(super) type Cell = [Rc<Level>; 2];
 
-    pub(super) fn hull(&self, other: &Cell) -> Cell {
-        let units = self.units.iter().zip(&other.units).map(|(a, b)| a.hull(*b)).collect();
-        Cell { vein: self.vein.hull(other.vein), units }
-    }
+/// How many units are on which branch.
+pub(super) type Choice = Vec<(usize, usize)>;
 
-    pub(super) fn within(&self, other: &Cell) -> bool {
-        self.vein.within(other.vein) && self.units.iter().zip(&other.units).all(|(a, b)| a.within(*b))
-    }
+/// What is known of a choice over a cell.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Verdict {
+    /// It has no equilibrium.
+    Empty,
+    /// It has exactly one.
+    One,
+    /// It may have several.
+    Open,
+}
 
-    pub(super) fn meets(&self, other: &Cell) -> bool {
-        self.vein.meet(other.vein).is_some() && self.units.iter().zip(&other.units).all(|(a, b)| a.meet(*b).is_some())
-    }
+/// A branch over a cell.
+#[derive(Clone, Copy)]
+struct Part {
+    /// `s`.
+    conductance: [f64; 2],
+    /// `ds / dl`.
+    slope: [f64; 2],
+    /// `dp / dl`.
+    venous: [f64; 2],
+    /// `ds / dP`; infinite where `dp / dl` may be 0.
+    by_venous: [f64; 2],
+}
 
-    /// Whether every range comes within `by` of the other's, or within this part of lumens greater than 1.
-    pub(super) fn near(&self, other: &Cell, by: f64) -> bool {
-        let close = |a: Interval, b: Interval| a.wider(by * a.hi.max(1.0)).meet(b).is_some();
-        close(self.vein, other.vein) && self.units.iter().zip(&other.units).all(|(a, b)| close(*a, *b))
-    }
+/// What a cell bounds.
+pub(super) struct Bounds<'a> {
+    cell: &'a Cell,
+    /// By branch; `None` where it does not reach over the cell.
+    parts: Vec<Option<Part>>,
+    /// The sign of `P_H - P_L`.
+    sign: f64,
+    /// `P_H - P` and `P - P_L` at both ends, times the sign.
+    drops: [[f64; 2]; 2],
+    /// Over the cell.
+    drop: [f64; 2],
+    /// `G_V`.
+    outlet: [f64; 2],
+    /// `G_V (P - P_L)`, times the sign.
+    outflow: [f64; 2],
+    /// `dG_V / dP (P - P_L)`, times the sign.
+    widens: [f64; 2],
+}
 
-    /// The widest range, of lumens as they are or over themselves where they are greater than 1.
-    pub(super) fn width(&self) -> f64 {
-        self.units.iter().map(|range| extent(*range)).fold(extent(self.vein), f64::max)
-    }
-
-    /// Narrows the box to what the equations one by one allow; false where they allow nothing.
-    pub(super) fn narrow(&mut self, network: &Network) -> bool {
-        self.narrow_or_empty(network).is_some()
-    }
-
-    fn narrow_or_empty(&mut self, network: &Network) -> Option<()> {
-        let vein = &network.vein;
-        let mut venous = network.pressures().meet(vein.pressures(self.vein))?;
-        // The venous pressure as the mean of P_H and P_L weighted by conductances, each of which grows with its lumen.
-        let outer = Interval::point(network.units[0].source);
-        let mut inflow = Interval::point(0.0);
-        for (unit, lumens) in network.units.iter().zip(&self.units) {
-            inflow = inflow + unit.conductances(*lumens);
-        }
-        let drop = outer - Interval::point(vein.source);
-        let ratio = vein.conductances(self.vein).over(inflow);
-        let part = ratio.and_then(|ratio| ONE.over(ONE + ratio));
-        if let Some(part) = part {
-            venous = venous.meet(Interval::point(vein.source) + part * drop)?;
-        }
-        for (unit, lumens) in network.units.iter().zip(&mut self.units) {
-            // P_Ci as the mean of P_H and P_V.
-            if let Some(behind) = ONE.over(ONE + unit.venule * (unit.conductance * lumens.fourth())) {
-                *lumens = unit.lumens_at(*lumens, outer - behind * (outer - venous))?;
-            }
-            let slopes = unit.slopes(*lumens);
-            let middle = lumens.middle();
-            let at = unit.venous_about(middle);
-            let from_middle = *lumens - Interval::point(middle);
-            let natural = unit.pressures(*lumens) - unit.venule * unit.flows(*lumens);
-            venous = venous.meet(natural)?.meet(at + slopes.venous * from_middle)?;
-            if let Some(step) = (venous - at).over(slopes.venous) {
-                *lumens = lumens.meet(Interval::point(middle) + step)?;
-            }
-        }
-        self.vein = vein.lumens_at(self.vein, venous)?;
-        Some(())
-    }
-
-    /// A Newton step over the box from a state in it.
-    pub(super) fn step(&self, network: &Network, at_vein: f64, at_units: &[f64]) -> Step {
-        self.step_or_nothing(network, at_vein, at_units).unwrap_or(Step::Singular)
-    }
-
-    fn step_or_nothing(&self, network: &Network, at_vein: f64, at_units: &[f64]) -> Option<Step> {
-        let vein = &network.vein;
-        let by_vein = vein.pressure_slopes(self.vein);
-        let pressure = vein.pressure_about(at_vein);
-        let mut balance = vein.flow_about(at_vein);
-        // The unit whose p' may be 0, if there is one; the flow's slope by the venous pressure through all others.
-        let mut pivot = None;
-        let mut through = Interval::point(0.0);
-        let mut carried = Interval::point(0.0);
-        for (i, (unit, lumens)) in network.units.iter().zip(&self.units).enumerate() {
-            balance = balance + unit.flow_about(at_units[i]);
-            let slopes = unit.slopes(*lumens);
-            match slopes.flow_by_venous(unit.venule) {
-                Some(ratio) => {
-                    through = through + ratio;
-                    carried = carried + ratio * (unit.venous_about(at_units[i]) - pressure);
-                }
-                None if pivot.is_none() => pivot = Some((i, slopes)),
-                None => return None,
-            }
-        }
-        let outflow = vein.flow_slopes(self.vein);
-        let right = carried - balance;
-        let solved = match pivot {
-            None => Last::Vein.solve(self, at_vein, right, by_vein * through + outflow),
-            Some((k, slopes)) => {
-                let unit = &network.units[k];
-                let excess = through + outflow.over(by_vein)?;
-                let determinant = excess * slopes.pressure + slopes.flow * (ONE - unit.venule * excess);
-                let residual = unit.venous_about(at_units[k]) - pressure;
-                Last::Unit(k).solve(self, at_units[k], right - excess * residual, determinant)
-            }
-        };
-        let last = match solved {
-            Ok(last) => last,
-            Err(nothing) => return Some(nothing),
-        };
-        let (by, pivot_step) = match pivot {
-            None => (last, None),
-            Some((k, slopes)) => {
-                let residual = network.units[k].venous_about(at_units[k]) - pressure;
-                ((slopes.venous * last + residual).over(by_vein)?, Some((k, last)))
-            }
-        };
-        let mut units = Vec::with_capacity(self.units.len());
-        for (i, (unit, lumens)) in network.units.iter().zip(&self.units).enumerate() {
-            let step = match pivot_step {
-                Some((k, step)) if k == i => step,
-                _ => {
-                    let residual = unit.venous_about(at_units[i]) - pressure;
-                    (by_vein * by - residual).over(unit.slopes(*lumens).venous)?
-                }
-            };
-            units.push(Interval::point(at_units[i]) + step);
-        }
-        Some(Step::Image(Cell { vein: Interval::point(at_vein) + by, units }))
-    }
-
-    /// In two: the range of a unit whose `p'` may be 0, or the vein's, whichever leaves the venous pressure more open;
-    /// or the widest where neither can be cut. `None` where all are narrower than `least` or nothing can be cut.
-    pub(super) fn cut(&self, network: &Network, least: f64) -> Option<[Cell; 2]> {
-        if self.width() <= least {
-            return None;
-        }
-        let can = |range: Interval| extent(range) > 4.0 * f64::EPSILON;
-        let venous = network.vein.pressures(self.vein).width();
-        let mut widest = if can(self.vein) { (venous, None) } else { (f64::NEG_INFINITY, None) };
-        for (i, (unit, lumens)) in network.units.iter().zip(&self.units).enumerate() {
-            let slopes = unit.slopes(*lumens).venous;
-            let open = slopes.magnitude() * lumens.width();
-            if slopes.contains(0.0) && can(*lumens) && open > widest.0 {
-                widest = (open, Some(i));
-            }
-        }
-        if widest.0 == f64::NEG_INFINITY {
-            let widths = self.units.iter().map(|range| extent(*range)).enumerate();
-            widest.1 = widths.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(i, _)| i);
-        }
-        let range = widest.1.map_or(self.vein, |i| self.units[i]);
-        let at = network.vein.cut_of(range);
-        if at <= range.lo || at >= range.hi {
-            return None;
-        }
-        Some([Interval::new(range.lo, at), Interval::new(at, range.hi)].map(|part| {
-            let mut cell = self.clone();
-            match widest.1 {
-                None => cell.vein = part,
-                Some(i) => cell.units[i] = part,
-            }
-            cell
-        }))
+impl At {
+    pub(super) fn new(vessel: &Vessel, lumen: f64, venous: f64) -> At {
+        let row = vessel.row(lumen, venous, 0.0);
+        let square = lumen * lumen;
+        let behind = 1.0 + vessel.conductance * (square * square) * vessel.venule;
+        let pressures = vessel.source.abs() + vessel.outside.abs() + venous.abs();
+        let wall = vessel.pressure_slope(lumen);
+        let rounded = 2.0 * f64::EPSILON * (pressures + vessel.stiffness + wall * lumen);
+        // At a turning point a lumen has half of its digits.
+        At { lumen, conductance: row.conductance, behind, error: rounded / row.alpha.abs().max(1e-8 * wall) }
     }
 }
 
-/// The width of a range, or over itself where it reaches beyond 1.
-fn extent(range: Interval) -> f64 {
-    range.width() / range.hi.max(1.0)
-}
-
-impl Slopes {
-    /// `f' / p'`, the flow's slope by the venous pressure, which is monotone in `f'` and in `w'`; `None` where `p'` may
-    /// be 0.
-    fn flow_by_venous(&self, venule: f64) -> Option<Interval> {
-        if self.venous.contains(0.0) {
-            return None;
-        }
-        let at = |flow: f64, pressure: f64| {
-            Interval::point(flow).over(Interval::point(pressure) - venule * Interval::point(flow))
-        };
-        let ends = at(self.flow.lo, self.pressure.lo)?.hull(at(self.flow.hi, self.pressure.lo)?);
-        if self.pressure.lo == self.pressure.hi {
-            return Some(ends);
-        }
-        Some(ends.hull(at(self.flow.lo, self.pressure.hi)?).hull(at(self.flow.hi, self.pressure.hi)?))
+impl Part {
+    fn new(vessel: &Vessel, branch: &Branch, ends: [At; 2], sign: f64, drop: [f64; 2]) -> Part {
+        let [low, high] = if ends[0].lumen <= ends[1].lumen { ends } else { [ends[1], ends[0]] };
+        let slope =
+            [4.0 * low.conductance / (high.lumen * high.behind), 4.0 * high.conductance / (low.lumen * low.behind)];
+        let through = product([sign * vessel.venule; 2], product(slope, drop));
+        let mut alpha = Sum::default();
+        alpha.add(1.0, [vessel.pressure_slope(high.lumen), vessel.pressure_slope(low.lumen)]);
+        alpha.add(-1.0, through);
+        let [least, most] = alpha.range();
+        // The sign is known of the branch.
+        let alpha = if branch.rises() { [least.max(0.0), most.max(0.0)] } else { [least.min(0.0), most.min(0.0)] };
+        let venous = product(alpha, [low.behind, high.behind]);
+        let over = |value: f64| if branch.rises() { 1.0 / value.abs() } else { -1.0 / value.abs() };
+        let by_venous = product(slope, [over(venous[1]), over(venous[0])]);
+        Part { conductance: [low.conductance, high.conductance], slope, venous, by_venous }
     }
 }
 
-impl Vessel {
-    fn slopes(&self, lumens: Interval) -> Slopes {
-        let (flow, pressure) = (self.flow_slopes(lumens), self.pressure_slopes(lumens));
-        Slopes { flow, pressure, venous: pressure - self.venule * flow }
+impl<'a> Bounds<'a> {
+    pub(super) fn new(network: &'a Network, branches: &[(Vessel, Branch)], cell: &'a Cell) -> Self {
+        let (source, vein) = (network.units[0].source, &network.vein);
+        let sign = if source >= vein.source { 1.0 } else { -1.0 };
+        let drops = [0, 1].map(|end: usize| {
+            let venous = cell[end].venous;
+            [sign * (source - venous), sign * (venous - vein.source)]
+        });
+        let range = |which: usize| [drops[0][which].min(drops[1][which]), drops[0][which].max(drops[1][which])];
+        let (drop, fall) = (range(0), range(1));
+        let parts = branches.iter().enumerate().map(|(k, (vessel, branch))| {
+            let ends = [cell[0].units[k]?, cell[1].units[k]?];
+            Some(Part::new(vessel, branch, ends, sign, drop))
+        });
+        let parts = parts.collect();
+        let [low, high] = [&cell[0].vein, &cell[1].vein];
+        let outlet = [low.conductance, high.conductance];
+        let widens = [
+            4.0 * low.conductance / (high.lumen * vein.pressure_slope(low.lumen)),
+            4.0 * high.conductance / (low.lumen * vein.pressure_slope(high.lumen)),
+        ];
+        let (outflow, widens) = (product(outlet, fall), product(widens, fall));
+        Bounds { cell, parts, sign, drops, drop, outlet, outflow, widens }
     }
 
-    /// `p` at one lumen, enclosed.
-    fn venous_about(&self, lumen: f64) -> Interval {
-        self.pressure_about(lumen) - self.venule * self.flow_about(lumen)
+    /// The least and the greatest conductance on these branches; `None` where none reaches over the cell.
+    pub(super) fn conductances(&self, branches: Range<usize>) -> Option<[f64; 2]> {
+        let parts = self.parts[branches].iter().flatten().map(|part| part.conductance);
+        parts.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
     }
 
-    /// `s = G / (1 + G R)` over lumens, with which it grows.
-    pub(super) fn conductances(&self, lumens: Interval) -> Interval {
-        let bare = self.conductance * lumens.fourth();
-        let with = |g: f64| {
-            let g = Interval::point(g);
-            g.over(ONE + self.venule * g).expect("1 + G R is not 0")
-        };
-        Interval::new(with(bare.lo).lo, with(bare.hi).hi)
+    /// Whether `F` can be 0 with the units' conductances in this range.
+    pub(super) fn may_balance(&self, conductances: [f64; 2]) -> bool {
+        let inflow = product(conductances, self.drop);
+        inflow[0] <= self.outflow[1] * (1.0 + ROUNDING) && self.outflow[0] <= inflow[1] * (1.0 + ROUNDING)
     }
 
-    /// Where among the lumens the pressure inside can be in a range; `None` where nowhere.
-    fn lumens_at(&self, lumens: Interval, inside: Interval) -> Option<Interval> {
-        let middle = lumens.middle();
-        match (inside - self.pressure_about(middle)).over(self.pressure_slopes(lumens)) {
-            Some(step) => (Interval::point(middle) + step).meet(lumens),
-            None => Some(lumens),
+    /// The venous pressure in the middle; `None` where there is no number in between.
+    pub(super) fn middle(&self) -> Option<f64> {
+        let [low, high] = [self.cell[0].venous, self.cell[1].venous];
+        let middle = low + 0.5 * (high - low);
+        (low < middle && middle < high).then_some(middle)
+    }
+
+    fn part(&self, k: usize) -> &Part {
+        self.parts[k].as_ref().expect("chosen of the branches that reach over the cell")
+    }
+
+    /// The lumen of a branch at both ends.
+    pub(super) fn lumens(&self, k: usize) -> [f64; 2] {
+        [0, 1].map(|end: usize| self.at(end, k).lumen)
+    }
+
+    fn at(&self, end: usize, k: usize) -> &At {
+        self.cell[end].units[k].as_ref().expect("chosen of the branches that reach over the cell")
+    }
+
+    /// `F` at an end, and how far rounding may move it.
+    fn balance(&self, end: usize, choice: &Choice) -> [f64; 2] {
+        let ([drop, fall], vein) = (self.drops[end], &self.cell[end].vein);
+        let outflow = vein.conductance * fall;
+        let (mut inflow, mut error) = (0.0, 4.0 * outflow * (vein.error / vein.lumen));
+        for &(k, count) in choice {
+            let at = self.at(end, k);
+            let flow = count as f64 * at.conductance * drop;
+            inflow += flow;
+            error += 4.0 * flow * (at.error / (at.lumen * at.behind));
         }
+        [inflow - outflow, error + ROUNDING * (inflow + outflow)]
     }
+
+    /// What the bounds of `F'` say of a choice.
+    pub(super) fn verdict(&self, choice: &Choice) -> Verdict {
+        let [[first, rounding], [second, _]] = [0, 1].map(|end| self.balance(end, choice));
+        if self.cell[0].venous == self.cell[1].venous {
+            return if first == 0.0 { Verdict::One } else { Verdict::Empty };
+        }
+        // Of all units but the most sensitive, which comes last.
+        let mut slope = Sum::default();
+        slope.add(-1.0, self.widens);
+        slope.add(-self.sign, self.outlet);
+        let steepness = |&(k, count): &(usize, usize)| {
+            let [a, b] = self.part(k).by_venous;
+            count as f64 * a.abs().max(b.abs())
+        };
+        let last = (0..choice.len()).max_by(|&a, &b| steepness(&choice[a]).total_cmp(&steepness(&choice[b])));
+        let last = last.expect("at least one unit");
+        for (i, &(k, count)) in choice.iter().enumerate() {
+            slope.add(-self.sign * count as f64, self.part(k).conductance);
+            if i != last {
+                slope.add(count as f64, product(self.part(k).by_venous, self.drop));
+            }
+        }
+        let (part, count) = (self.part(choice[last].0), choice[last].1 as f64);
+        let mut by_venous = slope;
+        by_venous.add(count, product(part.by_venous, self.drop));
+        let mut by_lumen = Sum::default();
+        by_lumen.add(count, product(part.slope, self.drop));
+        by_lumen.add(1.0, product(part.venous, slope.range()));
+        if by_venous.keeps_its_sign() || by_lumen.keeps_its_sign() {
+            return if (first >= 0.0) == (second >= 0.0) { Verdict::Empty } else { Verdict::One };
+        }
+        let [from, to] = self.lumens(choice[last].0);
+        let steps = [(self.cell[1].venous - self.cell[0].venous, by_venous), (to - from, by_lumen)];
+        let excluded = steps.iter().any(|(step, slope)| {
+            let change = product([step.min(0.0), step.max(0.0)], slope.range());
+            first + change[0] > rounding || first + change[1] < -rounding
+        });
+        if excluded { Verdict::Empty } else { Verdict::Open }
+    }
+
+    /// The lumen of the vein at both ends.
+    pub(super) fn vein_lumens(&self) -> [f64; 2] {
+        [0, 1].map(|end: usize| self.cell[end].vein.lumen)
+    }
+}
+
+/// A sum of ranges.
+#[derive(Clone, Copy, Default)]
+struct Sum {
+    least: f64,
+    most: f64,
+    magnitude: f64,
+}
+
+impl Sum {
+    fn add(&mut self, factor: f64, range: [f64; 2]) {
+        let [least, most] = product([factor; 2], range);
+        self.least += least;
+        self.most += most;
+        let size = least.abs().max(most.abs());
+        self.magnitude += if size.is_finite() { size } else { 0.0 };
+    }
+
+    /// Wider by its rounding.
+    fn range(&self) -> [f64; 2] {
+        [self.least - ROUNDING * self.magnitude, self.most + ROUNDING * self.magnitude]
+    }
+
+    fn keeps_its_sign(&self) -> bool {
+        let [least, most] = self.range();
+        least > 0.0 || most < 0.0
+    }
+}
+
+/// The least and the greatest product of numbers out of two ranges; 0 times an infinite end has no part in it, as the
+/// range's other products bound what it goes to.
+pub(super) fn product([a, b]: [f64; 2], [c, d]: [f64; 2]) -> [f64; 2] {
+    let all = [a * c, a * d, b * c, b * d];
+    [all.iter().copied().fold(f64::INFINITY, f64::min), all.iter().copied().fold(f64::NEG_INFINITY, f64::max)]
 }

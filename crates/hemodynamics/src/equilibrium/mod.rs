@@ -9,19 +9,17 @@
 //! How it is known that none is missed and none is spurious: module `search`. Lumens are right to 1e-14 away from
 //! folds; at a fold two equilibria nearer than 1e-6 D may be told as one that is [`Stability::Marginal`].
 
+mod branch;
 mod cell;
 mod curve;
-mod domain;
 mod eigenvalues;
-mod interval;
 mod map;
 mod network;
+mod orders;
 mod polish;
-mod proof;
 mod reached;
 mod root;
 mod search;
-mod twins;
 
 pub use curve::{CurvePoint, LoadCurve, LoadPath, LoadRange, Turn, TurnKind, load_curve};
 pub use eigenvalues::Eigenvalue;
@@ -74,14 +72,14 @@ pub enum EquilibriumFault {
     },
     /// Too many branches of too many units.
     #[error(
-        "the search for all equilibria of {units} units was given up after {boxes} boxes of lumens; use fewer units, \
-         or units that are the same"
+        "the search for all equilibria of {units} units was given up after {choices} choices of open and narrow \
+         vessels; use fewer units, or units that are the same"
     )]
-    Boxes {
+    Choices {
         /// Capillary units.
         units: usize,
-        /// Boxes looked at.
-        boxes: usize,
+        /// Choices of branches looked at.
+        choices: usize,
     },
     /// Too many equilibria.
     #[error(
@@ -181,7 +179,7 @@ pub fn rest(model: &Model, inputs: &Inputs) -> Result<Equilibrium, EquilibriumFa
 impl GaveUp {
     fn of(self, units: usize) -> EquilibriumFault {
         match self {
-            GaveUp::Boxes(boxes) => EquilibriumFault::Boxes { units, boxes },
+            GaveUp::Choices(choices) => EquilibriumFault::Choices { units, choices },
             GaveUp::Equilibria(most) => EquilibriumFault::Equilibria { units, most },
         }
     }

@@ -263,7 +263,7 @@ fn too_many_equilibria_are_an_error_and_soon() {
     let fault = equilibria(&Model::new(&softer(20, 0.0), Collapse::Contact), &load(0.0, 5000.0)).unwrap_err();
     assert_eq!(fault, EquilibriumFault::Equilibria { units: 20, most: 10_000 });
     let fault = equilibria(&Model::new(&softer(20, 0.005), Collapse::Contact), &load(0.0, 5000.0)).unwrap_err();
-    assert!(matches!(fault, EquilibriumFault::Boxes { units: 20, .. }), "{fault}");
+    assert!(matches!(fault, EquilibriumFault::Choices { units: 20, .. }), "{fault}");
     // Fifty units with one equilibrium are no trouble.
     let fifty = Model::new(&Parameters::along_nail(50).unwrap(), Collapse::Error);
     assert_eq!(equilibria(&fifty, &load(5000.0, 5000.0)).unwrap().len(), 1);
