@@ -216,10 +216,13 @@ impl<'a> Bounds<'a> {
         if by_venous.keeps_its_sign() || by_lumen.keeps_its_sign() {
             return if (first >= 0.0) == (second >= 0.0) { Verdict::Empty } else { Verdict::One };
         }
-        let [from, to] = self.lumens(choice[last].0);
-        let steps = [(self.cell[1].venous - self.cell[0].venous, by_venous), (to - from, by_lumen)];
-        let excluded = steps.iter().any(|(step, slope)| {
-            let change = product([step.min(0.0), step.max(0.0)], slope.range());
+        let [from, to] = [0, 1].map(|end| self.at(end, choice[last].0));
+        let steps = [
+            (self.cell[1].venous - self.cell[0].venous, 0.0, by_venous),
+            (to.lumen - from.lumen, from.error + to.error, by_lumen),
+        ];
+        let excluded = steps.iter().any(|(step, error, slope)| {
+            let change = product([step.min(0.0) - error, step.max(0.0) + error], slope.range());
             first + change[0] > rounding || first + change[1] < -rounding
         });
         if excluded { Verdict::Empty } else { Verdict::Open }

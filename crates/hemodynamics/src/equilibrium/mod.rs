@@ -6,8 +6,9 @@
 //! words: the steady state of section 4.3.3, of which Figure 78 shows one for each load. There may be none (a vessel
 //! collapses) or several (the branch depends on the path).
 //!
-//! How it is known that none is missed and none is spurious: module `search`. Lumens are right to 1e-14 away from
-//! folds; at a fold two equilibria nearer than 1e-6 D may be told as one that is [`Stability::Marginal`].
+//! How it is known that none is missed and none is spurious, and what is assumed: module `search`. Lumens are right to
+//! 1e-14 away from folds; at a fold, equilibria nearer than 1e-6 D may be reported as one that is
+//! [`Stability::Marginal`].
 
 mod branch;
 mod cell;
@@ -55,7 +56,7 @@ pub struct Equilibrium {
     pub stability: Stability,
     /// Eigenvalues of all `2 (n + 1)` motions about it, the slowest to decay (or the fastest to grow) first.
     pub eigenvalues: Vec<Eigenvalue>,
-    /// Whether it is proved that this equilibrium is there and is one. Not so at a fold within rounding.
+    /// Whether this is known to be one equilibrium, by the sign of a derivative; false at a fold within rounding.
     pub certified: bool,
 }
 
