@@ -10,13 +10,10 @@
 //! 1e-14 away from folds; at a fold, equilibria nearer than 1e-6 D may be reported as one that is
 //! [`Stability::Marginal`].
 
-mod branch;
-mod cell;
 mod curve;
 mod eigenvalues;
 mod map;
 mod network;
-mod orders;
 mod polish;
 mod reached;
 mod root;

@@ -8,8 +8,8 @@
 //!
 //! `p_i(l_i) = w_V(l_V)` for every unit and `sum f_i(l_i) + f_V(l_V) = 0`.
 //!
-//! The walls act on each other through the venous pressure alone: module `branch` gives the lumens of one unit at a venous
-//! pressure, module `search` the venous pressures at which the flows balance.
+//! The walls act on each other through the venous pressure alone: module `search` finds the venous pressures at
+//! which the flows balance.
 
 use crate::load::Inputs;
 use crate::model::{Collapse, Model, contact, contact_slope};

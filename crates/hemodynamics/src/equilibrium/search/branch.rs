@@ -8,9 +8,9 @@
 //! `l = 3 h / (5 e)`, so there are two turning points at most, one on each side of it. Where they touch, `p'` is bounded
 //! over ranges of lumens, which are cut until `p'` or its own slope keeps its sign.
 
-use super::cell::product;
-use super::network::Vessel;
-use super::root::LEAST_LUMEN;
+use super::range::product;
+use crate::equilibrium::network::Vessel;
+use crate::equilibrium::root::LEAST_LUMEN;
 use crate::model::TOUCH;
 
 /// Lumens over which the venous pressure is monotone.

@@ -1,6 +1,6 @@
 //! Units that are the same: exchanging them takes an equilibrium to an equilibrium.
 
-use super::root::{MOST_EQUILIBRIA, Root};
+use crate::equilibrium::root::{MOST_EQUILIBRIA, Root};
 
 /// The equilibria with all orders of the lumens of units that are the same; nothing where they are too many.
 pub(super) fn in_all_orders<'a>(mut roots: Vec<Root>, classes: impl Iterator<Item = &'a [usize]>) -> Option<Vec<Root>> {

@@ -14,20 +14,25 @@
 //!
 //! What is proved: in exact arithmetic no equilibrium is missed, none is spurious and none is counted twice.
 //! Neighbouring cells share the numbers at their ends, so that a root within rounding of an end is counted once all the
-//! same. What is not: that rounding stays within the margins of module `cell`; no directed rounding checks it, and the
+//! same. What is not: that rounding stays within the margins of module `range`; no directed rounding checks it, and the
 //! turning points are those of the rounded `p'`.
 //!
 //! Near a fold two equilibria approach each other as the root of the load's distance. Where rounding leaves their
 //! number open, the place is reported once, as not certified, for all equilibria nearer than [`NEAR`].
 
+mod branch;
+mod cell;
+mod orders;
+mod range;
+
 use std::ops::Range;
 use std::rc::Rc;
 
-use super::branch::Branch;
-use super::cell::{At, Bounds, Cell, Choice, Level, Verdict};
 use super::network::{Network, Vessel};
-use super::orders::in_all_orders;
 use super::root::{LEAST_LUMEN, MOST_EQUILIBRIA, Root};
+use branch::Branch;
+use cell::{At, Bounds, Cell, Choice, Level, Verdict};
+use orders::in_all_orders;
 
 /// Cells over which no lumen changes by more than this (over the nominal diameter, or over itself where it is greater)
 /// are not halved.
