@@ -57,10 +57,10 @@ pub struct Equilibrium {
     pub certified: bool,
 }
 
-/// Why equilibria could not be told.
+/// Why equilibria could not be found.
 #[derive(Debug, thiserror::Error, Clone, PartialEq)]
 pub enum EquilibriumFault {
-    /// An input that is no finite number.
+    /// An input that is not a finite number.
     #[error("{what} is {value}; an equilibrium needs finite pressures")]
     NotFinite {
         /// Which input.
@@ -87,7 +87,7 @@ pub enum EquilibriumFault {
     Equilibria {
         /// Capillary units.
         units: usize,
-        /// How many are told at most.
+        /// The most that are listed.
         most: usize,
     },
     /// Parameters or pressures whose products leave the range of numbers.

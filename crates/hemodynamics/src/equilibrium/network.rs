@@ -3,7 +3,7 @@
 //! A wall at rest holds the pressure `w(l) = P_ext + e (l - 1 - c(l))` inside, with `e = k D / A` and the contact force
 //! `c` over `k D` (0 where collapse is an error); it grows with the lumen `l`. Blood flows into the vessel from its far
 //! side, which is under `S`, at `f(l) = g l^4 (S - w(l))`, with `S = P_H` for a capillary and `S = P_L` for the vein
-//! (whose `f` is the outflow, negated). Behind a capillary stands its venule, so it wants the venous pressure
+//! (whose `f` is the outflow, negated). Behind a capillary is its venule, so the venous pressure has to be
 //! `p(l) = w(l) - R_Vi f(l)`. An equilibrium is
 //!
 //! `p_i(l_i) = w_V(l_V)` for every unit and `sum f_i(l_i) + f_V(l_V) = 0`.

@@ -59,7 +59,7 @@ pub(super) fn soft() -> Parameters {
 const FACT: f64 = 1e-7;
 
 #[test]
-fn at_rest_the_walls_stand_where_the_facts_say() {
+fn at_rest_the_walls_are_where_the_facts_say() {
     let parameters = Parameters::thesis();
     let resting = rest(&thesis(Collapse::Error), &load(0.0, 0.0)).unwrap();
     for (j, fact) in [9.273971e-6, 9.273971e-6, 1.0769250e-4].into_iter().enumerate() {
@@ -96,7 +96,7 @@ fn beyond_the_collapse_nothing_is_open() {
 }
 
 #[test]
-fn touching_walls_stand_at_any_load() {
+fn touching_walls_hold_any_load() {
     let model = thesis(Collapse::Contact);
     for (proximal, lumen) in [(2e4, 0.016226742), (1e5, 0.009149301)] {
         let vein = rest(&model, &load(proximal, 0.0)).unwrap().state.lumens[2];
@@ -226,7 +226,7 @@ fn units_that_are_the_same_take_all_orders() {
             assert!(one.certified && all[..k].iter().all(|other| other.state.lumens != one.state.lumens));
             let open = one.state.lumens[n / 2..n].iter().filter(|&&lumen| lumen > 1.0).count();
             let shut = one.state.lumens[n / 2..n].iter().filter(|&&lumen| lumen < 0.3).count();
-            // Who stands between open and shut falls to one of the sides.
+            // A lumen between open and shut is unstable.
             let stability = if open + shut == n / 2 { Stability::Stable } else { Stability::Unstable };
             assert_eq!(one.stability, stability, "{:?}", one.state.lumens);
         }
