@@ -20,7 +20,6 @@ const NO_REDUCTION: f64 = 1e-11;
 
 /// A point and what was found there.
 pub(super) trait Point {
-    /// The coordinates.
     fn at(&self) -> &[f64];
     /// Data less what is fitted.
     fn residuals(&self) -> &[f64];

@@ -39,8 +39,8 @@ pub struct FitResult {
     pub singular_values_v: Vec<f64>,
     /// Combinations of parameters that the data don't determine.
     pub undetermined: Vec<Combination>,
-    /// Other minima, found from other starts, that these data don't separate from the best one, the nearest first. Standard
-    /// errors know nothing of them.
+    /// Other minima, found from other starts, that these data don't separate from the best one, the nearest first.
+    /// Standard errors know nothing of them.
     pub rivals: Vec<Rival>,
     /// Why the fit stopped.
     pub stop: Stop,

@@ -70,7 +70,8 @@ pub enum LoadFault {
     },
     /// A text that is not a load.
     #[error(
-        "{0:?} is not a load: write 0, step:5000@0..2, ramp:0..10000@0..5 or sine:5000+1000@0.05 (pascals, seconds, hertz)"
+        "{0:?} is not a load: write 0, step:5000@0..2, ramp:0..10000@0..5 or sine:5000+1000@0.05 (pascals, seconds, \
+         hertz)"
     )]
     Text(String),
 }

@@ -2,8 +2,8 @@
 //!
 //! In: the thesis' table ([`Parameters::thesis`], section 4.3.2), the same nail cut into `n` units
 //! ([`Parameters::along_nail`]), a TOML file ([`Parameters::from_toml`]) or values set one by one
-//! ([`Parameters::set`]). Out: [`Parameters`]; all faults are reported at once. Units are SI; each [`Symbol`] says its own
-//! in the name that it has in files (`k_C1_N_per_m`).
+//! ([`Parameters::set`]). Out: [`Parameters`]; all faults are reported at once. Units are SI; each [`Symbol`] says
+//! its own in the name that it has in files (`k_C1_N_per_m`).
 
 mod file;
 mod symbol;

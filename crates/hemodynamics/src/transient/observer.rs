@@ -9,7 +9,6 @@ pub(crate) struct AcceptedStep<'a, const S: usize> {
     pub(crate) from_s: f64,
     /// Its size, s.
     pub(crate) step_s: f64,
-    /// The method.
     pub(crate) table: &'static Table<S>,
     /// Lumens and rates of each wall at the stages.
     pub(crate) stages: [&'a [[f64; S]]; 2],
