@@ -96,9 +96,9 @@ fn maps_of_parts_are_those_of_one_run_and_go_on_from_what_stands() {
     let (two, _) = maps(&of(&[0, 2]), &["maps", "figures"], None).run(2, None);
     let all = maps(&of(&[0, 1, 2]), &["maps", "figures"], None);
     let (anew, made) = all.run(1, None);
-    assert_eq!((&made.report["sums_added"], &made.report["sums_stood"]), (&6.into(), &0.into()));
+    assert_eq!((&made.report["sums_added"], &made.report["sums_kept"]), (&6.into(), &0.into()));
     let (onto, made) = all.run(3, Some(two.path()));
-    assert_eq!((&made.report["sums_added"], &made.report["sums_stood"]), (&2.into(), &4.into()));
+    assert_eq!((&made.report["sums_added"], &made.report["sums_kept"]), (&2.into(), &4.into()));
     assert!(anew.bytes() == onto.bytes(), "added to what stands, or all anew");
     has_its_parts(&MapsJob::KIND, "", &all.demand, &anew);
 
@@ -134,13 +134,13 @@ fn sums_that_stand_are_left_where_a_member_is_gone_or_has_changed() {
     let changed = maps(&[(SUBJECTS[0], &parts[0]), (SUBJECTS[1], &parts[1]), ("s03", &third)], &["maps"], None);
     let (anew, (again, made)) = (changed.run(2, None).0, changed.run(2, Some(three.path())));
     // The other pose's sums hold all that they held.
-    assert_eq!((&made.report["sums_added"], &made.report["sums_stood"]), (&3.into(), &3.into()));
+    assert_eq!((&made.report["sums_added"], &made.report["sums_kept"]), (&3.into(), &3.into()));
     assert!(anew.bytes() == again.bytes() && anew.bytes() != three.bytes());
 
     // A result that somebody wrote over.
     fs::write(three.path().join("maps/nominal.partial.npz"), "broken").unwrap();
     let (again, made) = maps(&of(&[0, 1, 2]), &["maps"], None).run(2, Some(three.path()));
-    assert_eq!((&made.report["sums_added"], &made.report["sums_stood"]), (&3.into(), &3.into()));
+    assert_eq!((&made.report["sums_added"], &made.report["sums_kept"]), (&3.into(), &3.into()));
     assert!(again.names().contains(&"maps/nominal-mean.npy".to_owned()));
 }
 
