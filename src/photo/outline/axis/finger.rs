@@ -1,9 +1,9 @@
 //! How well a finger lies behind a nail, for each direction that it could point to.
 //!
-//! In: the nail's surroundings ([`Surroundings`]) and a candidate axis. Out: a log-likelihood up to a constant. The model is a
-//! finger seen from any side: two sides parallel to the axis on both sides of the nail and of the skin behind it, a
-//! round tip just beyond the distal end, skin of the same colour behind the proximal end, and a nail that is
-//! mirror-symmetric about the axis. In the nail's own frame (distal up) the edges of 127 nails in real photographs,
+//! In: the nail's surroundings ([`Surroundings`]) and a candidate axis. Out: a log-likelihood up to a constant. The
+//! model is a finger seen from any side: two sides parallel to the axis on both sides of the nail and of the skin
+//! behind it, a round tip just beyond the distal end, skin of the same colour behind the proximal end, and a nail that
+//! is mirror-symmetric about the axis. In the nail's own frame (distal up) the edges of 127 nails in real photographs,
 //! averaged, show exactly this: an arch over the nail, open below.
 //!
 //! The four weights were fitted (conditional logit over 72 directions) on half of those photographs and rounded.

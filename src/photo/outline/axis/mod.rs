@@ -12,9 +12,9 @@
 //!
 //! Not determined: tilt towards the camera, and nails without a visible finger (a drawing, a plain background).
 //!
-//! Measured by `tests/nail_axes.rs`: of 127 nails on 26 real photographs of hands 122 are found, none by over 22 degrees
-//! off, half within 3.2 (which is what the truth, read by eye, is good for); of phantom close-ups whose nail takes up
-//! to half of the photograph's height all, half within 0.4 degrees; of those up to 0.7 of it 92 %, none wrong.
+//! Measured by `tests/nail_axes.rs`: of 127 nails on 26 real photographs of hands 122 are found, none by over 22
+//! degrees off, half within 3.2 (which is what the truth, read by eye, is good for); of phantom close-ups whose nail
+//! takes up to half of the photograph's height all, half within 0.4 degrees; of those up to 0.7 of it 92 %, none wrong.
 
 mod finger;
 mod surroundings;
@@ -221,12 +221,12 @@ fn verdict_of(found: FoundAxis, axis: Axis) -> Verdict {
     }
 }
 
-/// Log-likelihood below the best direction's from which [`surely_agrees`] does not ask how far: 72 directions there have
-/// less than a hundredth of the probability.
+/// Log-likelihood below the best direction's from which [`surely_agrees`] does not ask how far: 72 directions there
+/// have less than a hundredth of the probability.
 const FAR_BELOW: f64 = 9.0;
 
-/// Whether the [`verdict`] is surely that the picture agrees: most drawn axes are right, and to see that takes less than
-/// to know every direction's probability.
+/// Whether the [`verdict`] is surely that the picture agrees: most drawn axes are right, and to see that takes less
+/// than to know every direction's probability.
 ///
 /// Directions far below the best one are bounded, not measured. True only where the verdict is the same whatever they
 /// are.
