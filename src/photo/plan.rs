@@ -1,5 +1,5 @@
-//! Which steps a run takes and leaves out, and why: one table, which a plan asks with what names and headers show, and a
-//! run with what it found.
+//! Which steps a run takes and leaves out, and why: one table, which a plan asks with what names and headers show, and
+//! a run with what it found.
 
 use std::collections::BTreeMap;
 

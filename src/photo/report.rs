@@ -207,8 +207,8 @@ pub(super) fn of_merge(parts: &[PathBuf], partials: &Partials, watch: &Watch<'_>
 }
 
 impl PhotosReport {
-    /// Writes `run.json` and `report.html`, all else of the results being written already. An earlier run's results in the same folder
-    /// are not deleted, but nobody should take them for this run's: they become a warning.
+    /// Writes `run.json` and `report.html`, all else of the results being written already. An earlier run's results in
+    /// the same folder are not deleted, but nobody should take them for this run's: they become a warning.
     ///
     /// # Errors
     /// [`WriteError`].
