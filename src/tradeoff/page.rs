@@ -4,7 +4,7 @@ use std::fmt::Display;
 use std::path::Path;
 
 use super::choices::choices;
-use super::draw::panels;
+use super::draw::{PANEL_PX, panels};
 use super::draw_solvers::solver_panels;
 use super::judge::{Told, Tradeoff, Verdict};
 use super::knee::{BEND, SAME};
@@ -42,7 +42,7 @@ impl Tradeoff {
         let [png, svg] = ["png", "svg"].map(|ending| staging.place(&format!("{name}.{ending}")));
         let solvers = self.job == hemodynamics::SOLVING.0;
         let panels = if solvers { solver_panels(self) } else { panels(self) };
-        draw_log_log(&panels, &png?, &svg?)?;
+        draw_log_log(&panels, panels.len().min(2), PANEL_PX.0, &png?, &svg?)?;
         if self.maps.is_empty() { Ok(()) } else { hemodynamics::write_maps(&self.maps, staging) }
     }
 }

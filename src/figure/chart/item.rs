@@ -1,5 +1,6 @@
 //! What can be drawn on a chart, and how far it reaches.
 
+use super::points::{Mark, Point};
 use super::reach::Reach;
 
 /// Something on a chart. Colours are counted; one that is not there is the first again.
@@ -39,6 +40,21 @@ pub enum Item {
         /// Which colour.
         colour: usize,
     },
+    /// Points with a label beside each, clear of the others where there is room.
+    Points {
+        /// In the legend.
+        name: String,
+        /// In any order; those that are not on the axes are not drawn.
+        points: Vec<Point>,
+        /// Whether the dots are hollow.
+        hollow: bool,
+        /// Which colour.
+        colour: usize,
+    },
+    /// A ring or a square about a point.
+    Mark(Mark),
+    /// A thin grey line from point to point.
+    Path(Vec<[f64; 2]>),
     /// Upright marks from a low to a high end: a standard deviation about a curve's point.
     Errors {
         /// x, low end, high end; those that are not finite are not drawn.
@@ -111,6 +127,9 @@ impl Item {
             }),
             Self::Line { runs, .. } => runs.iter().flatten().for_each(|&p| reach.take(p)),
             Self::Dots { points, .. } | Self::Room(points) => points.iter().for_each(|&p| reach.take(p)),
+            Self::Points { points, .. } => points.iter().for_each(|point| reach.take([point.x, point.y])),
+            Self::Mark(mark) => reach.take([mark.x, mark.y]),
+            Self::Path(points) => points.iter().for_each(|&p| reach.take(p)),
             Self::Bars { bars, .. } => bars.iter().for_each(|bar| {
                 reach.take([bar.at - 0.5 * bar.width, 0.0]);
                 reach.take([bar.at + 0.5 * bar.width, bar.value]);
@@ -125,7 +144,7 @@ impl Item {
         }
     }
 
-    /// What the legend calls it.
+    /// Its entry in the legend.
     pub(super) fn name(&self) -> Option<&str> {
         match self {
             Self::Spans { name, .. }
@@ -133,7 +152,9 @@ impl Item {
             | Self::Dots { name, .. }
             | Self::Bars { name, .. }
             | Self::Diagonal { name } => name.as_deref(),
+            Self::Points { name, .. } | Self::Mark(Mark { name, .. }) => Some(name),
             Self::Band { .. }
+            | Self::Path(_)
             | Self::Errors { .. }
             | Self::Text { .. }
             | Self::Label { .. }

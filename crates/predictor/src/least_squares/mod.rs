@@ -18,29 +18,23 @@
 //! is no residual SD. A constant target has coefficients of exactly 0. Without columns there is only the mean.
 
 mod blocks;
-mod exact;
 mod factor;
 mod fault;
 mod normal;
 mod problem;
 mod refine;
 mod reflect;
-mod scale;
 mod settle;
-mod small;
 mod solve;
 mod survey;
 
 use ndarray::{Array2, ArrayView2};
 use serde::{Deserialize, Serialize};
 
-pub(crate) use exact::Long;
 pub(crate) use factor::rounding;
 pub use fault::{Dependent, LeastSquaresFault};
 pub(crate) use problem::Problem;
 pub(crate) use reflect::triangle;
-pub(crate) use scale::{exponent, ldexp};
-pub(crate) use small::{back, pivot, triangulate};
 pub(crate) use solve::solve;
 
 /// What is asked of a fit.

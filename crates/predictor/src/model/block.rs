@@ -6,7 +6,7 @@
 
 use ndarray::{Array2, ArrayView1, ArrayView2, ArrayViewMut2};
 
-use crate::simd::{Simd, Wide, widest};
+use crate::algebra::simd::{Simd, Wide, widest};
 
 /// Rows in a block.
 pub(super) const LANES: usize = 16;

@@ -8,7 +8,7 @@ use ndarray::Array2;
 use super::ModelFault;
 use super::block::{Kernel, LANES, Lanes, MOST, Volts, scale};
 use super::tansig::tansig;
-use crate::simd::Simd;
+use crate::algebra::simd::Simd;
 
 /// Targets worked out at once; hidden nodes are worked out anew for each such group.
 const GROUP: usize = MOST;

@@ -1,6 +1,6 @@
 //! A damped step: (A + mu I) p = -g by Cholesky's factorization.
 
-use crate::simd::{Work, widest};
+use crate::algebra::simd::{Work, widest};
 
 /// Factor and step, kept from one solution to the next.
 #[derive(Debug, Clone)]

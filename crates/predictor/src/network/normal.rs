@@ -14,7 +14,7 @@
 
 use super::rows::{BLOCK, Column, Rows};
 use super::weights::{Forward, Shape};
-use crate::simd::{Simd, Wide, widest};
+use crate::algebra::simd::{Simd, Wide, widest};
 
 /// Columns of products are filled with zeros to a multiple of this, the length of most machines' vectors.
 const PAD: usize = 4;

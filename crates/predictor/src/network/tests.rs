@@ -9,7 +9,7 @@ use super::normal::Normal;
 use super::rows::Rows;
 use super::weights::Forward;
 use super::*;
-use crate::simd::without_vectors;
+use crate::algebra::simd::without_vectors;
 
 /// Largest difference of J^T J and J^T e to differences of step 1e-6 found, relative to their largest entry: 7.9e-11.
 const NORMAL: f64 = 2e-9;

@@ -10,7 +10,7 @@ pub(crate) struct Long(pub(crate) f64, pub(crate) f64);
 
 /// a + b exactly.
 #[inline(always)]
-pub(super) fn two_sum(a: f64, b: f64) -> (f64, f64) {
+pub(crate) fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     let part = sum - a;
     (sum, (a - (sum - part)) + (b - part))
@@ -18,7 +18,7 @@ pub(super) fn two_sum(a: f64, b: f64) -> (f64, f64) {
 
 /// The rounding error of `product` = a b.
 #[inline(always)]
-pub(super) fn product_error<const FUSED: bool>(a: f64, b: f64, product: f64) -> f64 {
+pub(crate) fn product_error<const FUSED: bool>(a: f64, b: f64, product: f64) -> f64 {
     if FUSED {
         a.mul_add(b, -product)
     } else {
@@ -30,7 +30,7 @@ pub(super) fn product_error<const FUSED: bool>(a: f64, b: f64, product: f64) -> 
 
 /// [`two_sum`] of vectors.
 #[inline(always)]
-pub(super) fn two_sums<S: Simd>(simd: S, a: S::f64s, b: S::f64s) -> (S::f64s, S::f64s) {
+pub(crate) fn two_sums<S: Simd>(simd: S, a: S::f64s, b: S::f64s) -> (S::f64s, S::f64s) {
     let sum = simd.add_f64s(a, b);
     let part = simd.sub_f64s(sum, a);
     (sum, simd.add_f64s(simd.sub_f64s(a, simd.sub_f64s(sum, part)), simd.sub_f64s(b, part)))
@@ -38,7 +38,7 @@ pub(super) fn two_sums<S: Simd>(simd: S, a: S::f64s, b: S::f64s) -> (S::f64s, S:
 
 /// [`product_error`] of vectors, which have a fused multiplication, or of single numbers.
 #[inline(always)]
-pub(super) fn product_errors<S: Simd, const FUSED: bool>(simd: S, a: S::f64s, b: S::f64s, product: S::f64s) -> S::f64s {
+pub(crate) fn product_errors<S: Simd, const FUSED: bool>(simd: S, a: S::f64s, b: S::f64s, product: S::f64s) -> S::f64s {
     if FUSED {
         return simd.mul_add_f64s(a, b, simd.neg_f64s(product));
     }

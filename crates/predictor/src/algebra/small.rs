@@ -4,7 +4,7 @@
 /// A column.
 pub(crate) type Column = Vec<f64>;
 
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
@@ -75,7 +75,7 @@ pub(crate) fn back(f: &[Column], b: &[f64]) -> Vec<f64> {
 }
 
 /// x of F^T x = b.
-pub(super) fn forward(f: &[Column], b: &[f64]) -> Vec<f64> {
+pub(crate) fn forward(f: &[Column], b: &[f64]) -> Vec<f64> {
     let mut x = b.to_vec();
     for j in 0..f.len() {
         x[j] = (x[j] - dot(&f[j][..j], &x[..j])) / f[j][j];
@@ -84,7 +84,7 @@ pub(super) fn forward(f: &[Column], b: &[f64]) -> Vec<f64> {
 }
 
 /// Length of each row of F's inverse: square roots of the diagonal of (F^T F)^-1.
-pub(super) fn inverse_rows(f: &[Column]) -> Vec<f64> {
+pub(crate) fn inverse_rows(f: &[Column]) -> Vec<f64> {
     let mut squares = vec![0.0; f.len()];
     for j in 0..f.len() {
         let mut unit = vec![0.0; j + 1];
@@ -97,7 +97,7 @@ pub(super) fn inverse_rows(f: &[Column]) -> Vec<f64> {
 }
 
 /// Orthonormal columns that span the same as `columns`, which are independent.
-pub(super) fn orthonormal(columns: &[Column]) -> Vec<Column> {
+pub(crate) fn orthonormal(columns: &[Column]) -> Vec<Column> {
     let mut out: Vec<Column> = Vec::new();
     for column in columns {
         let mut v = column.clone();

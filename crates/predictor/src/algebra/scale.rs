@@ -34,7 +34,7 @@ pub(crate) fn ldexp(mut x: f64, mut e: i32) -> f64 {
 }
 
 /// 2^e as two factors, each a normal number, for -2044 <= e <= 2046: what no single number may hold.
-pub(super) fn factors(e: i32) -> (f64, f64) {
+pub(crate) fn factors(e: i32) -> (f64, f64) {
     let first = e.clamp(-1022, 1023);
     (power(first), power(e - first))
 }

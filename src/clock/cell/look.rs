@@ -4,29 +4,29 @@
 //! less their own mean. Two looks are compared up to a gain, so that neither a light that flickers nor one that drifts
 //! is seen.
 
-use super::crop::Gray;
+use crate::clock::ink::crop::Gray;
 
 /// Columns and rows of the grid.
-pub(super) const COLUMNS: usize = 12;
-pub(super) const ROWS: usize = 18;
+pub(in crate::clock) const COLUMNS: usize = 12;
+pub(in crate::clock) const ROWS: usize = 18;
 /// Cells of the grid.
-pub(super) const CELLS: usize = COLUMNS * ROWS;
+pub(in crate::clock) const CELLS: usize = COLUMNS * ROWS;
 
 /// A box in a crop: left, top, width, height, in samples from the top-left corner of the first one.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Cut {
-    pub(super) left: f32,
-    pub(super) top: f32,
-    pub(super) width: f32,
-    pub(super) height: f32,
+pub(in crate::clock) struct Cut {
+    pub(in crate::clock) left: f32,
+    pub(in crate::clock) top: f32,
+    pub(in crate::clock) width: f32,
+    pub(in crate::clock) height: f32,
 }
 
 /// A digit's look.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Look {
-    pub(super) values: [f32; CELLS],
+pub(in crate::clock) struct Look {
+    pub(in crate::clock) values: [f32; CELLS],
     /// The length of `values`.
-    pub(super) norm: f32,
+    pub(in crate::clock) norm: f32,
 }
 
 /// The share of each sample in one grid line: the first sample, and weights that add up to 1.
@@ -54,7 +54,7 @@ fn shares(start: f32, length: f32, parts: usize, samples: usize) -> Vec<(usize, 
 
 impl Look {
     /// The look of a box.
-    pub(super) fn cut(gray: &Gray, cut: Cut) -> Self {
+    pub(in crate::clock) fn cut(gray: &Gray, cut: Cut) -> Self {
         let mut values = [0.0; CELLS];
         if gray.width > 0 && gray.height > 0 {
             let across = shares(cut.left, cut.width, COLUMNS, gray.width);
@@ -73,7 +73,7 @@ impl Look {
     }
 
     /// From values that need not have mean 0.
-    pub(super) fn of(mut values: [f32; CELLS]) -> Self {
+    pub(in crate::clock) fn of(mut values: [f32; CELLS]) -> Self {
         let mean = values.iter().sum::<f32>() / CELLS as f32;
         values.iter_mut().for_each(|value| *value -= mean);
         let norm = dot(&values, &values).sqrt();
@@ -82,13 +82,13 @@ impl Look {
 
     /// How far another look is from this one, once it has this one's gain, as a share of this one's length: 0 for the
     /// same look, about 1 for another digit, and more than 1 for its negative.
-    pub(super) fn distance(&self, other: &Self) -> f32 {
+    pub(in crate::clock) fn distance(&self, other: &Self) -> f32 {
         let product = dot(&self.values, &other.values) / (self.norm * other.norm).max(1e-6);
         (2.0 - 2.0 * product).max(0.0).sqrt()
     }
 }
 
-pub(super) fn dot(a: &[f32; CELLS], b: &[f32; CELLS]) -> f32 {
+pub(in crate::clock) fn dot(a: &[f32; CELLS], b: &[f32; CELLS]) -> f32 {
     // Eight sums side by side, so that they can be added at once.
     let mut sums = [0.0; 8];
     for (a, b) in a.chunks_exact(8).zip(b.chunks_exact(8)) {

@@ -7,52 +7,52 @@ use crate::video::{Info, Plane, Turn};
 
 /// A rectangle of whole pixels of the shown picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Rect {
-    pub(super) x: usize,
-    pub(super) y: usize,
-    pub(super) width: usize,
-    pub(super) height: usize,
+pub(in crate::clock) struct Rect {
+    pub(in crate::clock) x: usize,
+    pub(in crate::clock) y: usize,
+    pub(in crate::clock) width: usize,
+    pub(in crate::clock) height: usize,
 }
 
 /// A grey picture, row after row.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(super) struct Gray {
-    pub(super) width: usize,
-    pub(super) height: usize,
-    pub(super) values: Vec<f32>,
+pub(in crate::clock) struct Gray {
+    pub(in crate::clock) width: usize,
+    pub(in crate::clock) height: usize,
+    pub(in crate::clock) values: Vec<f32>,
 }
 
 impl Gray {
-    pub(super) fn row(&self, y: usize) -> &[f32] {
+    pub(in crate::clock) fn row(&self, y: usize) -> &[f32] {
         &self.values[y * self.width..(y + 1) * self.width]
     }
 }
 
 /// How the shown picture lies in the stored one.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Eye {
+pub(in crate::clock) struct Eye {
     turn: Turn,
     stored: (usize, usize),
 }
 
 impl Eye {
-    pub(super) fn new(info: &Info) -> Self {
+    pub(in crate::clock) fn new(info: &Info) -> Self {
         Self { turn: info.turn, stored: (info.format.width, info.format.height) }
     }
 
     /// Width and height of the shown picture.
-    pub(super) fn size(&self) -> (usize, usize) {
+    pub(in crate::clock) fn size(&self) -> (usize, usize) {
         let (width, height) = self.stored;
         if matches!(self.turn, Turn::Quarter | Turn::ThreeQuarters) { (height, width) } else { (width, height) }
     }
 
     /// Whether this plane is of the size that the video said.
-    pub(super) fn fits(&self, luma: &Plane<'_>) -> bool {
+    pub(in crate::clock) fn fits(&self, luma: &Plane<'_>) -> bool {
         (luma.width, luma.height) == self.stored
     }
 
     /// The means over blocks of `step` x `step` pixels of `rect`; pixels that fill no block are left out.
-    pub(super) fn cut(&self, luma: &Plane<'_>, rect: Rect, step: usize) -> Gray {
+    pub(in crate::clock) fn cut(&self, luma: &Plane<'_>, rect: Rect, step: usize) -> Gray {
         let (width, height) = (rect.width / step, rect.height / step);
         let mut gray = Gray { width, height, values: vec![0.0; width * height] };
         let mut row = vec![0.0; width * step];

@@ -7,11 +7,11 @@
 
 mod scene;
 
-use super::cells::Cells;
-use super::crop::Gray;
-use super::format::{Cell, ClockFormat, Half};
-use super::half::Word;
-use super::look::Cut;
+use crate::clock::cell::cells::Cells;
+use crate::clock::cell::half::Word;
+use crate::clock::cell::look::Cut;
+use crate::clock::format::{Cell, ClockFormat, Half};
+use crate::clock::ink::crop::Gray;
 
 use scene::Scene;
 
@@ -62,20 +62,20 @@ struct Side {
 
 /// What stands beside the digits.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Beside {
+pub(in crate::clock) struct Beside {
     /// On the left and on the right.
     sides: [Side; 2],
 }
 
 impl Beside {
     /// Looks beside the first and the last of the cells.
-    pub(super) fn look(gray: &Gray, cells: &Cells, [first, last]: [Cut; 2]) -> Self {
+    pub(in crate::clock) fn look(gray: &Gray, cells: &Cells, [first, last]: [Cut; 2]) -> Self {
         let scene = Scene::new(gray, cells);
         Self { sides: [scene.side(first, true), scene.side(last, false)] }
     }
 
     /// AM or PM on the format's side.
-    pub(super) fn half(&self, format: &ClockFormat) -> Option<Half> {
+    pub(in crate::clock) fn half(&self, format: &ClockFormat) -> Option<Half> {
         let side = usize::from(!format.half_leads());
         let Side { characters, word } = &self.sides[side];
         match word {
@@ -85,7 +85,7 @@ impl Beside {
     }
 
     /// What the format lacks, if anything.
-    pub(super) fn misfit(&self, format: &ClockFormat) -> Option<Misfit> {
+    pub(in crate::clock) fn misfit(&self, format: &ClockFormat) -> Option<Misfit> {
         let [left, right] = &self.sides;
         let half = |leads: bool, side: &Side| {
             side.word.is_some() && !(format.has_half() && format.half_leads() == leads && side.characters.is_empty())

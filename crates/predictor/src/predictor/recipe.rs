@@ -10,9 +10,9 @@ use ndarray::{Array2, ArrayView2};
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use crate::contact::friction::{FrictionCone, FrictionFault};
+use crate::data::lags::{LagFault, Lags};
 use crate::fit::{FitFault, FitReport, fit_linear, fit_quadratic};
-use crate::friction::{FrictionCone, FrictionFault};
-use crate::lags::{LagFault, Lags};
 use crate::least_squares::{Deficient, LeastSquaresOptions};
 use crate::network::{TrainFault, TrainOptions, TrainReport, train_network};
 use crate::{Dataset, Model};

@@ -6,18 +6,18 @@
 //! is unknown; all of the network's answers together tell which it is, so that one glyph that the network does not
 //! know, or mistakes, gets its name from the others. Where the cell stood still the network has to be sure by itself.
 
-use super::format::{Cell, ClockFormat};
 use super::look::Look;
+use crate::clock::format::{Cell, ClockFormat};
 
 /// What a digit of the format can be, and for how long it stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Place {
-    pub(super) highest: u8,
+pub(in crate::clock) struct Place {
+    pub(in crate::clock) highest: u8,
     step_s: f64,
 }
 
 /// The places of a format's digits.
-pub(super) fn places(format: &ClockFormat) -> Vec<Place> {
+pub(in crate::clock) fn places(format: &ClockFormat) -> Vec<Place> {
     let of = |cell: &Cell| match *cell {
         Cell::Digit { highest, worth_ns, .. } => Some(Place { highest, step_s: 1e-9 * worth_ns as f64 }),
         Cell::Mark(_) | Cell::Half => None,
@@ -27,23 +27,23 @@ pub(super) fn places(format: &ClockFormat) -> Vec<Place> {
 
 /// Once that a look stood.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Stand {
-    pub(super) middle_s: f64,
+pub(in crate::clock) struct Stand {
+    pub(in crate::clock) middle_s: f64,
     /// Logarithms of the digits' probabilities, none under [`UNLIKELIEST`]'s.
-    pub(super) log_digits: [f64; 10],
+    pub(in crate::clock) log_digits: [f64; 10],
 }
 
 /// A look that stood at least once.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Steady {
-    pub(super) look: Look,
-    pub(super) stands: Vec<Stand>,
+pub(in crate::clock) struct Steady {
+    pub(in crate::clock) look: Look,
+    pub(in crate::clock) stands: Vec<Stand>,
 }
 
 /// The network errs more often than it thinks.
-pub(super) const UNLIKELIEST: f64 = 1e-3;
+pub(in crate::clock) const UNLIKELIEST: f64 = 1e-3;
 /// A name that is at least this probable is given to a glyph.
-pub(super) const NAMED: f64 = 0.9;
+pub(in crate::clock) const NAMED: f64 = 0.9;
 /// The order tells where so many different looks follow one another.
 const FOLLOWING: usize = 4;
 /// How probable the network has to find the digits of the order (geometric mean).
@@ -58,7 +58,7 @@ const PHASES: usize = 20;
 /// A stand that was seen in part only has its middle anywhere between two changes, so that when the clock changes is as
 /// unknown as the first digit: a look's digit is what all phases say of it together, each by how well the network
 /// agrees with it.
-pub(super) fn by_order(steady: &[Steady], place: Place) -> Option<Vec<Option<(u8, f64)>>> {
+pub(in crate::clock) fn by_order(steady: &[Steady], place: Place) -> Option<Vec<Option<(u8, f64)>>> {
     let modulus = usize::from(place.highest) + 1;
     let count: usize = steady.iter().map(|one| one.stands.len()).sum();
     let start_s = steady.iter().flat_map(|one| &one.stands).map(|stand| stand.middle_s).fold(f64::INFINITY, f64::min);
@@ -125,7 +125,7 @@ fn steps(steady: &[Steady], place: Place, since_s: f64, modulus: usize) -> Optio
 
 /// What the network says of a look in all of its stands: the likeliest digit and the mean (geometric) of its
 /// probabilities.
-pub(super) fn network(one: &Steady) -> Option<(u8, f64)> {
+pub(in crate::clock) fn network(one: &Steady) -> Option<(u8, f64)> {
     let mean = |digit: usize| {
         let sum: f64 = one.stands.iter().map(|stand| stand.log_digits[digit]).sum();
         (sum / one.stands.len().max(1) as f64).exp()
@@ -135,7 +135,7 @@ pub(super) fn network(one: &Steady) -> Option<(u8, f64)> {
 }
 
 /// Each look's digit and how probable it is, by the network alone.
-pub(super) fn one_by_one(steady: &[Steady], place: Place) -> Vec<Option<(u8, f64)>> {
+pub(in crate::clock) fn one_by_one(steady: &[Steady], place: Place) -> Vec<Option<(u8, f64)>> {
     let name = |one: &Steady| network(one).filter(|&(digit, sure)| sure >= NAMED && digit <= place.highest);
     steady.iter().map(name).collect()
 }
@@ -143,7 +143,7 @@ pub(super) fn one_by_one(steady: &[Steady], place: Place) -> Vec<Option<(u8, f64
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::clock::look::CELLS;
+    use crate::clock::cell::look::CELLS;
 
     /// What stood from `first` on, each for a tenth; `says` gives the network's digit of each, none where it does not
     /// know.

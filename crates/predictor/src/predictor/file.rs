@@ -10,10 +10,10 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use thiserror::Error;
 
+use super::recipe::Kind;
+use super::{Channel, Predictor, Training, fits};
+use crate::data::lags::Lags;
 use crate::evaluate::{Intervals, hex};
-use crate::lags::Lags;
-use crate::predictor::{Channel, Predictor, Training, fits};
-use crate::recipe::Kind;
 use crate::{Linear, Model, ModelFault, Network, Quadratic};
 
 /// What a model file calls itself.

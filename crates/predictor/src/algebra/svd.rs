@@ -9,7 +9,7 @@
 
 use ndarray::{Array2, ArrayView2};
 
-use crate::least_squares::{exponent, ldexp};
+use super::scale::{exponent, ldexp};
 
 /// A sweep that finds nothing more than this to rotate ends the work.
 const ORTHOGONAL: f64 = f64::EPSILON;

@@ -1,32 +1,32 @@
 //! Where each digit of the format stands in a crop.
 //!
-//! In: rows of characters found in several crops of one video ([`super::line`]). Out: [`Cells`], a box for each digit
+//! In: rows of characters found in several crops of one video ([`crate::clock::ink::line`]). Out: [`Cells`], a box for each digit
 //! that holds it whatever digit it is, or which of a crop's own runs they are. Digits of most typefaces are equally
 //! wide, so that a clock's digits stand in place; where a cell showed narrow digits only, the pitch of the others tells
 //! where it is: digits follow at one pitch, and each mark takes a width of its own (least squares).
 
 use nalgebra::{DMatrix, DVector};
 
-use super::crop::Gray;
-use super::format::{Cell, ClockFormat};
-use super::glyph::Levels;
-use super::ink::pieces;
-use super::line::{Row, Run, lines, rows};
 use super::look::Cut;
+use crate::clock::format::{Cell, ClockFormat};
+use crate::clock::glyph::Levels;
+use crate::clock::ink::crop::Gray;
+use crate::clock::ink::line::{Row, Run, lines, rows};
+use crate::clock::ink::pieces::pieces;
 
 /// The cells of a clock's digits in a crop.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Cells {
+pub(in crate::clock) struct Cells {
     /// One for each digit, equally large.
     still: Vec<Cut>,
     /// Digits are of different widths, so that the others move when one changes: each crop's own runs are the cells.
-    pub(super) moving: bool,
+    pub(in crate::clock) moving: bool,
     /// First and last edge of the digits' rows, samples.
-    pub(super) line: [f32; 2],
+    pub(in crate::clock) line: [f32; 2],
     /// From one digit's middle to the next one's, samples.
-    pub(super) pitch: f32,
+    pub(in crate::clock) pitch: f32,
     /// What background and ink are worth.
-    pub(super) levels: Levels,
+    pub(in crate::clock) levels: Levels,
 }
 
 /// A cell whose ink is narrower than this share of the widest one's showed narrow digits only.
@@ -49,7 +49,7 @@ const MOVES: f32 = 1.5;
 
 impl Cells {
     /// The cells that hold the digits of all these rows.
-    pub(super) fn around(seen: &[&Row], format: &ClockFormat, levels: Levels) -> Option<Self> {
+    pub(in crate::clock) fn around(seen: &[&Row], format: &ClockFormat, levels: Levels) -> Option<Self> {
         let first = seen.first()?;
         let count = first.digits.len();
         let middle = |values: &mut Vec<f64>| {
@@ -93,12 +93,12 @@ impl Cells {
     }
 
     /// The same, of digits that move.
-    pub(super) fn moving(self) -> Self {
+    pub(in crate::clock) fn moving(self) -> Self {
         Self { moving: true, ..self }
     }
 
     /// The boxes of the digits in a crop; none where they move and can't be told apart.
-    pub(super) fn boxes(&self, gray: &Gray, format: &ClockFormat) -> Option<Vec<Cut>> {
+    pub(in crate::clock) fn boxes(&self, gray: &Gray, format: &ClockFormat) -> Option<Vec<Cut>> {
         if !self.moving {
             return Some(self.still.clone());
         }
@@ -115,7 +115,7 @@ impl Cells {
     }
 
     /// The part of a crop of this width and height that holds the cells and a sample around: left, top, right, bottom.
-    pub(super) fn bounds(&self, [width, height]: [usize; 2]) -> [usize; 4] {
+    pub(in crate::clock) fn bounds(&self, [width, height]: [usize; 2]) -> [usize; 4] {
         let low = |edge: f32| (edge - 1.0).floor().max(0.0) as usize;
         let high = |edge: f32, most: usize| ((edge + 1.0).ceil() as usize).min(most);
         let least = |edge: &dyn Fn(&Cut) -> f32| self.still.iter().map(edge).fold(f32::INFINITY, f32::min);
@@ -128,7 +128,7 @@ impl Cells {
     }
 
     /// The same with what is looked at beside the cells.
-    pub(super) fn bounds_beside(&self, size: [usize; 2]) -> [usize; 4] {
+    pub(in crate::clock) fn bounds_beside(&self, size: [usize; 2]) -> [usize; 4] {
         let [left, top, right, bottom] = self.bounds(size);
         let height = self.line[1] - self.line[0];
         let beside = (BESIDE_HALF * height).max(BESIDE * self.pitch).ceil() as usize;
@@ -142,12 +142,12 @@ impl Cells {
     }
 
     /// The first and the last digit's cells.
-    pub(super) fn ends(&self) -> Option<[Cut; 2]> {
+    pub(in crate::clock) fn ends(&self) -> Option<[Cut; 2]> {
         Some([*self.still.first()?, *self.still.last()?])
     }
 
     /// Moves the cells to a crop that begins `left` and `top` samples further on.
-    pub(super) fn shift(&mut self, left: usize, top: usize) {
+    pub(in crate::clock) fn shift(&mut self, left: usize, top: usize) {
         for cut in &mut self.still {
             cut.left -= left as f32;
             cut.top -= top as f32;
@@ -156,7 +156,7 @@ impl Cells {
     }
 
     /// The box of the ink in a cell; none where there is none.
-    pub(super) fn ink(&self, gray: &Gray, cut: Cut) -> Option<Cut> {
+    pub(in crate::clock) fn ink(&self, gray: &Gray, cut: Cut) -> Option<Cut> {
         let limit = 0.5 * (self.levels.background + self.levels.ink);
         let light = self.levels.ink > self.levels.background;
         let whole = |edge: f32, samples: usize| (edge.round().max(0.0) as usize).min(samples);
@@ -257,7 +257,7 @@ fn centres(spans: &[[f64; 2]], widest: f64, format: &ClockFormat) -> (Vec<f64>, 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::clock::line::Run;
+    use crate::clock::ink::line::Run;
 
     fn row(digits: &[[usize; 2]]) -> Row {
         let run = |&[left, right]: &[usize; 2]| Run { left, top: 10, right, bottom: 29, area: 100 };

@@ -21,7 +21,7 @@ struct Glyph {
 
 /// What a look is.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Verdict {
+pub(in crate::clock) enum Verdict {
     /// A digit.
     Known {
         digit: u8,
@@ -41,7 +41,7 @@ pub(super) enum Verdict {
 
 /// All glyphs so far.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Bank {
+pub(in crate::clock) struct Bank {
     glyphs: Vec<Glyph>,
 }
 
@@ -62,13 +62,13 @@ const LEAD: f32 = 0.12;
 const BLENDED: f32 = 0.3;
 
 impl Bank {
-    pub(super) fn is_empty(&self) -> bool {
+    pub(in crate::clock) fn is_empty(&self) -> bool {
         self.glyphs.is_empty()
     }
 
     /// The glyphs' digits that a cell has shown. Glyphs of two digits that look the same contradict each other, and
     /// none of them is kept.
-    pub(super) fn add(&mut self, cell: usize, digit: u8, look: Look, sure: f64) {
+    pub(in crate::clock) fn add(&mut self, cell: usize, digit: u8, look: Look, sure: f64) {
         let before = self.glyphs.len();
         self.glyphs.retain(|glyph| glyph.digit == digit || glyph.look.distance(&look) > NEAR);
         if self.glyphs.len() < before {
@@ -80,7 +80,7 @@ impl Bank {
     }
 
     /// What this look of a cell is.
-    pub(super) fn judge(&self, look: &Look) -> Verdict {
+    pub(in crate::clock) fn judge(&self, look: &Look) -> Verdict {
         let mut nearest: [Option<(f32, usize)>; 10] = [None; 10];
         for (k, glyph) in self.glyphs.iter().enumerate() {
             let distance = look.distance(&glyph.look);
@@ -116,7 +116,7 @@ impl Bank {
     }
 
     /// Takes a look that is this glyph into its mean.
-    pub(super) fn refine(&mut self, glyph: usize, look: &Look) {
+    pub(in crate::clock) fn refine(&mut self, glyph: usize, look: &Look) {
         let glyph = &mut self.glyphs[glyph];
         let share = 1.0 / (glyph.seen + 1.0);
         let mut values = [0.0; CELLS];
@@ -128,7 +128,7 @@ impl Bank {
     }
 
     /// The cell that a glyph was seen in.
-    pub(super) fn cell(&self, glyph: usize) -> usize {
+    pub(in crate::clock) fn cell(&self, glyph: usize) -> usize {
         self.glyphs[glyph].cell
     }
 }

@@ -1,17 +1,17 @@
 //! A frame to one reading of the clock.
 //!
 //! In: the frames of a video, in order. Out: a [`Reading`] of each. The first frames are kept until about a second is
-//! there, from which the clock's place ([`super::locate`]), its cells and its glyphs ([`super::learn`]) are learnt;
+//! there, from which the clock's place ([`crate::clock::read::locate`]), its cells and its glyphs ([`crate::clock::read::learn`]) are learnt;
 //! those frames are read afterwards ([`ClockReader::earlier`]). From then on only the clock's pixels are looked at
-//! ([`super::follow`]). A clock that can't be read for a while is learnt anew beside.
+//! ([`crate::clock::read::follow`]). A clock that can't be read for a while is learnt anew beside.
 
-use super::beside::Misfit;
-use super::crop::{Eye, Gray, Rect};
 use super::follow::Follower;
-use super::format::ClockFormat;
 use super::learn::Model;
 use super::locate::Scout;
-use super::{Clock, ClockRoi, Doubt, Reading};
+use crate::clock::beside::Misfit;
+use crate::clock::format::ClockFormat;
+use crate::clock::ink::crop::{Eye, Gray, Rect};
+use crate::clock::{Clock, ClockRoi, Doubt, Reading};
 use crate::video::{Frame, Info};
 
 /// What was looked at, counted.

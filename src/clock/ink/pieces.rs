@@ -8,14 +8,14 @@ use super::crop::Gray;
 
 /// The threshold between two kinds of grey and the mean of each.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Split {
-    pub(super) threshold: f32,
-    pub(super) dark: f32,
-    pub(super) light: f32,
+pub(in crate::clock) struct Split {
+    pub(in crate::clock) threshold: f32,
+    pub(in crate::clock) dark: f32,
+    pub(in crate::clock) light: f32,
 }
 
 /// Splits grey values where the variance between the two sides is greatest; none where all are alike.
-pub(super) fn split(values: &[f32]) -> Option<Split> {
+pub(in crate::clock) fn split(values: &[f32]) -> Option<Split> {
     let mut counts = [0u32; 256];
     for &value in values {
         counts[(value + 0.5) as usize & 255] += 1;
@@ -49,17 +49,17 @@ const FRAMED: usize = 3;
 
 /// A connected piece: its first and last column and row, and how many pixels it has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Piece {
-    pub(super) left: usize,
-    pub(super) top: usize,
-    pub(super) right: usize,
-    pub(super) bottom: usize,
-    pub(super) area: usize,
+pub(in crate::clock) struct Piece {
+    pub(in crate::clock) left: usize,
+    pub(in crate::clock) top: usize,
+    pub(in crate::clock) right: usize,
+    pub(in crate::clock) bottom: usize,
+    pub(in crate::clock) area: usize,
 }
 
 impl Piece {
     /// Whether another piece's box is within this one's.
-    pub(super) fn holds(&self, other: &Self) -> bool {
+    pub(in crate::clock) fn holds(&self, other: &Self) -> bool {
         self != other
             && self.left <= other.left
             && self.top <= other.top
@@ -69,7 +69,7 @@ impl Piece {
 }
 
 /// The pieces of what is lighter (or darker) than the threshold, those left out that can be no characters.
-pub(super) fn pieces(gray: &Gray, threshold: f32, light: bool) -> Vec<Piece> {
+pub(in crate::clock) fn pieces(gray: &Gray, threshold: f32, light: bool) -> Vec<Piece> {
     let (width, height) = (gray.width, gray.height);
     let mut found = all_pieces(gray, threshold, light);
     found.retain(|piece| piece.left > 0 && piece.top > 0 && piece.right + 1 < width && piece.bottom + 1 < height);
@@ -79,7 +79,7 @@ pub(super) fn pieces(gray: &Gray, threshold: f32, light: bool) -> Vec<Piece> {
 }
 
 /// All pieces of what is lighter (or darker) than the threshold.
-pub(super) fn all_pieces(gray: &Gray, threshold: f32, light: bool) -> Vec<Piece> {
+pub(in crate::clock) fn all_pieces(gray: &Gray, threshold: f32, light: bool) -> Vec<Piece> {
     let (width, height) = (gray.width, gray.height);
     let mut open: Vec<bool> = gray.values.iter().map(|&value| (value > threshold) == light).collect();
     let mut found = Vec::new();

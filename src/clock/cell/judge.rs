@@ -1,13 +1,13 @@
 //! The network's word on a digit in a crop.
 
-use super::crop::Gray;
-use super::glyph::{Levels, Patch, Place, Scores, recognise};
 use super::look::Cut;
+use crate::clock::glyph::{Levels, Patch, Place, Scores, recognise};
+use crate::clock::ink::crop::Gray;
 use crate::video::Plane;
 
 /// A crop as the network looks at it.
 #[derive(Debug)]
-pub(super) struct Page {
+pub(in crate::clock) struct Page {
     width: usize,
     height: usize,
     bytes: Vec<u8>,
@@ -17,13 +17,13 @@ pub(super) struct Page {
 const DEPTH: u32 = 16;
 
 impl Page {
-    pub(super) fn new(gray: &Gray) -> Self {
+    pub(in crate::clock) fn new(gray: &Gray) -> Self {
         let deep = |&value: &f32| ((value * 256.0 + 0.5).clamp(0.0, 65_535.0) as u16).to_le_bytes();
         Self { width: gray.width, height: gray.height, bytes: gray.values.iter().flat_map(deep).collect() }
     }
 
     /// What the network says of the character whose ink fills this box.
-    pub(super) fn judge(&self, ink: Cut, levels: Levels) -> Scores {
+    pub(in crate::clock) fn judge(&self, ink: Cut, levels: Levels) -> Scores {
         let plane =
             Plane { width: self.width, height: self.height, stride: 2 * self.width, depth: DEPTH, data: &self.bytes };
         // A box's edges lie between samples, a place's zero on the first one's centre.

@@ -1,21 +1,21 @@
 //! Crops to readings, once the clock is learnt.
 //!
 //! In: crops of one rectangle, in order. Out: a [`Reading`] of each. Every cell's look is held against the clock's own
-//! glyphs ([`super::bank`]). What is like one of them, yet not quite, is read where the network says the same; what is
+//! glyphs ([`crate::clock::cell::bank`]). What is like one of them, yet not quite, is read where the network says the same; what is
 //! like none of them is shown to the network once it has stood still for a few frames, and what lies between two of
 //! them is not read.
 
-use super::ReaderEffort;
-use super::bank::Verdict;
-use super::beside::Beside;
-use super::crop::Gray;
-use super::format::ClockFormat;
-use super::glyph::SURE;
-use super::judge::Page;
 use super::learn::{FAINT, Model};
-use super::look::{Cut, Look};
-use super::names::{NAMED, Place, places};
-use super::{Doubt, Reading};
+use super::reader::ReaderEffort;
+use crate::clock::beside::Beside;
+use crate::clock::cell::bank::Verdict;
+use crate::clock::cell::judge::Page;
+use crate::clock::cell::look::{Cut, Look};
+use crate::clock::cell::names::{NAMED, Place, places};
+use crate::clock::format::ClockFormat;
+use crate::clock::glyph::SURE;
+use crate::clock::ink::crop::Gray;
+use crate::clock::{Doubt, Reading};
 
 /// A look that is new has to stand still for so many frames before the network's word makes it a glyph.
 const STEADY: u32 = 3;

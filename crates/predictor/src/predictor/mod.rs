@@ -1,18 +1,21 @@
 //! A fitted model with all that is needed to use it on another day: names, units, ranges, what it was trained on, how
 //! sure it is.
 
+pub(crate) mod file;
+pub(crate) mod recipe;
+
 use std::borrow::Cow;
 
 use ndarray::{Array2, Axis};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use crate::contact::friction::FrictionCone;
+use crate::data::lags::Lags;
 use crate::evaluate::{Intervals, hex, recording_hashes};
-use crate::friction::FrictionCone;
-use crate::lags::Lags;
 use crate::model::sizes;
-use crate::recipe::{Recipe, RecipeFault, Report, predict, with_lags};
 use crate::{Dataset, Model, ModelFault};
+use recipe::{Recipe, RecipeFault, Report, predict, with_lags};
 
 /// A column that a model reads or tells.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

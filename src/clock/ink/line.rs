@@ -3,20 +3,20 @@
 //! In: the connected pieces of ink. Out: [`Line`]s of [`Run`]s, pieces that share columns, which are characters where
 //! glyphs don't touch; and of those the ones that can be the characters of a format, in order.
 
-use super::format::{Cell, ClockFormat};
-use super::ink::Piece;
+use super::pieces::Piece;
+use crate::clock::format::{Cell, ClockFormat};
 
 /// Pieces of one line that share columns: as a rule one character.
-pub(super) type Run = Piece;
+pub(in crate::clock) type Run = Piece;
 
 /// Pieces at the same height, from the left to the right.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Line {
-    pub(super) runs: Vec<Run>,
+pub(in crate::clock) struct Line {
+    pub(in crate::clock) runs: Vec<Run>,
 }
 
 /// Pieces of so few pixels are noise.
-pub(super) const SPECK: usize = 2;
+pub(in crate::clock) const SPECK: usize = 2;
 /// Rows without ink between two pieces of a line, as a share of the higher of them: between the segments of a digit.
 const BRIDGE: f64 = 0.3;
 /// Lower lines hold no digits that can be told apart.
@@ -33,7 +33,7 @@ fn merged(a: &Piece, b: &Piece) -> Piece {
 }
 
 /// The lines that these pieces form.
-pub(super) fn lines(pieces: &[Piece]) -> Vec<Line> {
+pub(in crate::clock) fn lines(pieces: &[Piece]) -> Vec<Line> {
     let mut pieces: Vec<Piece> = pieces.iter().filter(|piece| piece.area > SPECK).copied().collect();
     pieces.sort_by_key(|piece| (piece.top, piece.left));
     let mut bands: Vec<(Piece, Vec<Piece>)> = Vec::new();
@@ -55,7 +55,7 @@ pub(super) fn lines(pieces: &[Piece]) -> Vec<Line> {
 }
 
 /// Pieces that share columns, merged, from the left to the right.
-pub(super) fn runs(mut pieces: Vec<Piece>) -> Vec<Run> {
+pub(in crate::clock) fn runs(mut pieces: Vec<Piece>) -> Vec<Run> {
     pieces.sort_by_key(|piece| (piece.left, piece.top));
     let mut runs: Vec<Run> = Vec::new();
     for piece in pieces {
@@ -69,27 +69,27 @@ pub(super) fn runs(mut pieces: Vec<Piece>) -> Vec<Run> {
 
 /// The digits of a format in a line: one run for each digit.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Row {
-    pub(super) digits: Vec<Run>,
+pub(in crate::clock) struct Row {
+    pub(in crate::clock) digits: Vec<Run>,
     /// First and last row of the digits.
-    pub(super) top: usize,
-    pub(super) bottom: usize,
+    pub(in crate::clock) top: usize,
+    pub(in crate::clock) bottom: usize,
 }
 
 impl Row {
-    pub(super) fn height(&self) -> usize {
+    pub(in crate::clock) fn height(&self) -> usize {
         self.bottom - self.top + 1
     }
 }
 
 /// Digits end within this share of their height from one another's tops and bottoms.
-pub(super) const UNEVEN: f64 = 0.16;
+pub(in crate::clock) const UNEVEN: f64 = 0.16;
 /// The widest digit and the widest gap between characters, in heights of a digit.
-pub(super) const WIDEST: f64 = 1.1;
+pub(in crate::clock) const WIDEST: f64 = 1.1;
 const WIDEST_GAP: f64 = 1.0;
 
 /// Everywhere that the format's characters may stand in a line.
-pub(super) fn rows(line: &Line, format: &ClockFormat) -> Vec<Row> {
+pub(in crate::clock) fn rows(line: &Line, format: &ClockFormat) -> Vec<Row> {
     // AM and PM are looked for beside the digits.
     let unseen = |cell: &&Cell| !matches!(cell, Cell::Half) && !matches!(cell, Cell::Mark(c) if c.is_whitespace());
     let cells: Vec<Cell> = format.cells().iter().filter(unseen).copied().collect();
@@ -124,7 +124,7 @@ fn spaced(runs: &[Run], height: usize) -> bool {
     runs.windows(2).all(|pair| (pair[1].left - pair[0].right) as f64 <= 1.0 + WIDEST_GAP * height as f64)
 }
 
-pub(super) fn median(values: impl Iterator<Item = usize>) -> usize {
+pub(in crate::clock) fn median(values: impl Iterator<Item = usize>) -> usize {
     let mut values: Vec<usize> = values.collect();
     values.sort_unstable();
     values.get(values.len() / 2).copied().unwrap_or(0)

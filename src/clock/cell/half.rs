@@ -5,10 +5,10 @@
 //! right side of an A or a reaches down to the line, that of a P or p does not, and an M or m has a stem on either
 //! side. Two letters that touch are parted where there is least ink.
 
-use super::crop::Gray;
-use super::format::Half;
-use super::glyph::Levels;
-use super::line::Run;
+use crate::clock::format::Half;
+use crate::clock::glyph::Levels;
+use crate::clock::ink::crop::Gray;
+use crate::clock::ink::line::Run;
 
 /// A run this much lower than the highest of its word is a dot.
 const DOT: f64 = 0.4;
@@ -31,7 +31,7 @@ const NO_DIGIT: f64 = 0.5;
 
 /// A word that is AM or PM.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Word {
+pub(in crate::clock) enum Word {
     /// Which of them.
     Half(Half),
     /// One of them, for an M follows another letter.
@@ -40,7 +40,7 @@ pub(super) enum Word {
 
 /// What a word of these runs, from the left to the right, is, if it is AM or PM; `other` is how probably the network
 /// finds no digit in a run.
-pub(super) fn word(gray: &Gray, word: &[Run], levels: Levels, other: impl Fn(&Run) -> f64) -> Option<Word> {
+pub(in crate::clock) fn word(gray: &Gray, word: &[Run], levels: Levels, other: impl Fn(&Run) -> f64) -> Option<Word> {
     let tall = |run: &Run| run.bottom - run.top + 1;
     let wide = |run: &Run| run.right - run.left + 1;
     let most = word.iter().map(tall).max().filter(|&most| most >= LEAST_HEIGHT)?;

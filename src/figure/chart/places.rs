@@ -1,22 +1,22 @@
-//! Where ticks and names stand on plots with logarithmic axes.
+//! Ticks of logarithmic axes, and where the labels of points go.
 //!
-//! In: the axis' range; boxes in pixels that are taken. Out: ticks; for each name the step from its point to its left
-//! top corner. Pixels count from the left top.
+//! In: the axis' range; boxes that are taken, pixels from the top left. Out: ticks; for each label the step from its
+//! point to its top left corner.
 
 use std::ops::Range;
 
-/// About the width of a letter and the height of a line of a point's name, pixels.
+/// About the width of a letter and the height of a label, pixels.
 pub(super) const LETTER_PX: i32 = 7;
 const LINE_PX: i32 = 15;
-/// So much lower than its point a name begins that stands below.
+/// A label below its point begins this much lower.
 const BELOW_PX: i32 = 4;
-/// So many decades have a tick each; of more, some.
+/// Up to this many decades have a tick each.
 const MOST_TICKS: i32 = 14;
 
 /// Left, top, right, bottom.
 pub(super) type Place = [i32; 4];
 
-/// Ticks with a number and ticks without, from `low` to `high`: fewer decades have more numbers each.
+/// Ticks with a number and ticks without, from `low` to `high`; the fewer decades, the more numbers in each.
 pub(super) fn ticks(low: f64, high: f64) -> (Vec<f64>, Vec<f64>) {
     let (first, last) = (low.log10().floor() as i32, high.log10().ceil() as i32);
     let multiples = |of: &[i32], step: i32| -> Vec<f64> {
@@ -37,9 +37,9 @@ pub(super) fn ticks(low: f64, high: f64) -> (Vec<f64>, Vec<f64>) {
     (multiples(named, step), multiples(light, 1))
 }
 
-/// Where the names of points stand, each beside its point `(x, y)` and the `clear` pixels about it, inside of `across`
-/// and `down`, on none of the places `taken` and on no other name where there is room.
-pub(super) fn names(
+/// For each label the step from its point `(x, y)`, past the `clear` pixels about it: within `across` and `down`, and,
+/// where there is room, on none of the places `taken` and on no other label.
+pub(super) fn label_steps(
     points: &[((i32, i32), i32, &str)],
     mut taken: Vec<Place>,
     across: &Range<i32>,
@@ -87,11 +87,11 @@ mod tests {
     }
 
     #[test]
-    fn names_leave_marks_dots_and_each_other_free() {
+    fn labels_keep_clear_of_marks_dots_and_each_other() {
         // A mark about the first point, the second beside it, the legend above, the edge at the right.
         let points = [((100, 50), 11, "first"), ((130, 50), 5, "second"), ((190, 50), 5, "third")];
         let taken = vec![[89, 39, 111, 61], [125, 45, 135, 55], [185, 45, 195, 55], [60, 0, 200, 40]];
-        let steps = names(&points, taken.clone(), &(0..200), &(0..200));
+        let steps = label_steps(&points, taken.clone(), &(0..200), &(0..200));
         let places: Vec<Place> = points
             .iter()
             .zip(&steps)

@@ -5,17 +5,17 @@
 //! place in most crops is the clock. A cell's glyphs are what it shows in at least two frames one after the other, so
 //! that no glyph is a blend of two digits; they get their names from the network, by all that was seen of each.
 
-use super::bank::{Bank, Verdict};
-use super::beside::{Beside, Misfit};
-use super::cells::Cells;
-use super::crop::Gray;
-use super::format::ClockFormat;
-use super::glyph::Levels;
-use super::ink::{pieces, split};
-use super::judge::Page;
-use super::line::{Row, lines, rows};
-use super::look::{CELLS, Cut, Look};
-use super::names::{self, NAMED, Stand, Steady, UNLIKELIEST, places};
+use crate::clock::beside::{Beside, Misfit};
+use crate::clock::cell::bank::{Bank, Verdict};
+use crate::clock::cell::cells::Cells;
+use crate::clock::cell::judge::Page;
+use crate::clock::cell::look::{CELLS, Cut, Look};
+use crate::clock::cell::names::{self, NAMED, Stand, Steady, UNLIKELIEST, places};
+use crate::clock::format::ClockFormat;
+use crate::clock::glyph::Levels;
+use crate::clock::ink::crop::Gray;
+use crate::clock::ink::line::{Row, lines, rows};
+use crate::clock::ink::pieces::{pieces, split};
 
 /// What is known of a clock.
 #[derive(Debug, Clone)]

@@ -4,14 +4,14 @@
 //! what was learnt of it. A clock changes in places of a glyph's size. So: small blocks in which edges come and go from
 //! one picture to the next (edges, since a light that flickers changes smooth places alike); connected blocks that are
 //! no larger than a line of digits; around each of them a stretch of the line, out of which the clock is learnt as if
-//! the user had named it ([`super::learn`]). It is the clock if it then reads, changes, and runs one second a second.
+//! the user had named it ([`crate::clock::read::learn`]). It is the clock if it then reads, changes, and runs one second a second.
 
-use super::beside::Misfit;
-use super::crop::{Eye, Gray, Rect};
 use super::follow::Follower;
-use super::format::ClockFormat;
 use super::learn::Model;
-use super::{Doubt, ReaderEffort, Reading};
+use crate::clock::beside::Misfit;
+use crate::clock::format::ClockFormat;
+use crate::clock::ink::crop::{Eye, Gray, Rect};
+use crate::clock::{Doubt, ReaderEffort, Reading};
 use crate::video::Frame;
 
 /// A picture, averaged down.
