@@ -19,11 +19,11 @@ mod sequence;
 pub use beside::Misfit;
 pub use format::{Cell, ClockFormat, Half, Unit};
 pub use glyph::{Levels, Patch, Place, SURE, Scores, read_crop, recognise};
-pub use read::{ClockReader, ReaderEffort};
-pub use reading::{Doubt, Reading};
+pub use read::ClockReader;
+pub use reading::{Doubt, ReaderEffort, Reading};
 pub use sequence::{ClockFault, ClockFit, FEWEST, MOST_DRIFT, ScreenDelay, USUAL_DRIFT, USUAL_SCREEN_S, fit};
 
-/// A digital clock in the picture, as the marker file tells.
+/// A digital clock in the picture, as the marker file describes it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Clock {
     /// Where it is.

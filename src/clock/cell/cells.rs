@@ -1,9 +1,9 @@
 //! Where each digit of the format stands in a crop.
 //!
-//! In: rows of characters found in several crops of one video ([`crate::clock::ink::line`]). Out: [`Cells`], a box for each digit
-//! that holds it whatever digit it is, or which of a crop's own runs they are. Digits of most typefaces are equally
-//! wide, so that a clock's digits stand in place; where a cell showed narrow digits only, the pitch of the others tells
-//! where it is: digits follow at one pitch, and each mark takes a width of its own (least squares).
+//! In: rows of characters found in several crops of one video ([`crate::clock::ink::line`]). Out: [`Cells`], a box for
+//! each digit that holds it whatever digit it is, or which of a crop's own runs they are. Digits of most typefaces are
+//! equally wide, so that a clock's digits stand in place; where a cell showed narrow digits only, the pitch of the
+//! others gives where it is: digits follow at one pitch, and each mark takes a width of its own (least squares).
 
 use nalgebra::{DMatrix, DVector};
 
@@ -97,7 +97,7 @@ impl Cells {
         Self { moving: true, ..self }
     }
 
-    /// The boxes of the digits in a crop; none where they move and can't be told apart.
+    /// The boxes of the digits in a crop; none where they move and can't be separated.
     pub(in crate::clock) fn boxes(&self, gray: &Gray, format: &ClockFormat) -> Option<Vec<Cut>> {
         if !self.moving {
             return Some(self.still.clone());
@@ -105,7 +105,7 @@ impl Cells {
         let limit = 0.5 * (self.levels.background + self.levels.ink);
         let pieces = pieces(gray, limit, self.levels.ink > self.levels.background);
         let found: Vec<Row> = lines(&pieces).iter().flat_map(|line| rows(line, format)).collect();
-        // Rows that could be it are one, or none can be told.
+        // Unless exactly one row fits, there is no way to choose.
         let [row] = &found[..] else { return None };
         let top = row.top as f32 - 0.5;
         let height = row.height() as f32 + 1.0;
@@ -267,7 +267,7 @@ mod tests {
     const LEVELS: Levels = Levels { background: 20.0, ink: 220.0 };
 
     #[test]
-    fn a_cell_that_showed_a_narrow_digit_only_stands_where_the_pitch_tells() {
+    fn a_cell_with_only_narrow_digits_is_placed_by_the_pitch() {
         // Pitch 14, the mark 6 wide; the second digit is a 1 of seven segments, at the right of its cell.
         let format = ClockFormat::parse("ss.tt").unwrap();
         let rows = [row(&[[10, 19], [31, 33], [44, 53], [58, 67]]), row(&[[10, 19], [31, 33], [44, 53], [59, 66]])];

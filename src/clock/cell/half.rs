@@ -1,8 +1,8 @@
 //! AM and PM.
 //!
 //! In: runs of ink beside a clock's digits that stand close enough together to be a word. Out: AM, PM, or neither for
-//! sure. Capitals and small letters, with dots or without, of any typeface are told by what all typefaces share: the
-//! right side of an A or a reaches down to the line, that of a P or p does not, and an M or m has a stem on either
+//! sure. Capitals and small letters, with dots or without, of any typeface are recognised by what all typefaces share:
+//! the right side of an A or a reaches down to the line, that of a P or p does not, and an M or m has a stem on either
 //! side. Two letters that touch are parted where there is least ink.
 
 use crate::clock::format::Half;
@@ -14,7 +14,7 @@ use crate::clock::ink::line::Run;
 const DOT: f64 = 0.4;
 /// Letters of one word are this much alike in height: an `m` has no descender, a `p` has.
 const UNLIKE: f64 = 0.5;
-/// Lower letters can't be told apart, samples.
+/// Lower letters can't be distinguished, samples.
 const LEAST_HEIGHT: usize = 5;
 /// One run this much wider than high may be two letters that touch; they part between these shares of its width.
 const TOUCHING: [f64; 2] = [1.3, 3.0];

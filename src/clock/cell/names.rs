@@ -44,7 +44,7 @@ pub(in crate::clock) struct Steady {
 pub(in crate::clock) const UNLIKELIEST: f64 = 1e-3;
 /// A name that is at least this probable is given to a glyph.
 pub(in crate::clock) const NAMED: f64 = 0.9;
-/// The order tells where so many different looks follow one another.
+/// The order decides where at least this many different looks follow one another.
 const FOLLOWING: usize = 4;
 /// How probable the network has to find the digits of the order (geometric mean).
 const AGREED: f64 = 0.2;

@@ -19,7 +19,7 @@ pub(in crate::clock) struct Line {
 pub(in crate::clock) const SPECK: usize = 2;
 /// Rows without ink between two pieces of a line, as a share of the higher of them: between the segments of a digit.
 const BRIDGE: f64 = 0.3;
-/// Lower lines hold no digits that can be told apart.
+/// Lower lines hold no legible digits.
 const LEAST_HEIGHT: usize = 7;
 
 fn merged(a: &Piece, b: &Piece) -> Piece {

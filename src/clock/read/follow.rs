@@ -1,12 +1,11 @@
 //! Crops to readings, once the clock is learnt.
 //!
 //! In: crops of one rectangle, in order. Out: a [`Reading`] of each. Every cell's look is held against the clock's own
-//! glyphs ([`crate::clock::cell::bank`]). What is like one of them, yet not quite, is read where the network says the same; what is
-//! like none of them is shown to the network once it has stood still for a few frames, and what lies between two of
-//! them is not read.
+//! glyphs ([`crate::clock::cell::bank`]). What is like one of them, yet not quite, is read where the network says the
+//! same; what is like none of them is shown to the network once it has stood still for a few frames, and what lies
+//! between two of them is not read.
 
 use super::learn::{FAINT, Model};
-use super::reader::ReaderEffort;
 use crate::clock::beside::Beside;
 use crate::clock::cell::bank::Verdict;
 use crate::clock::cell::judge::Page;
@@ -15,7 +14,7 @@ use crate::clock::cell::names::{NAMED, Place, places};
 use crate::clock::format::ClockFormat;
 use crate::clock::glyph::SURE;
 use crate::clock::ink::crop::Gray;
-use crate::clock::{Doubt, Reading};
+use crate::clock::{Doubt, ReaderEffort, Reading};
 
 /// A look that is new has to stand still for so many frames before the network's word makes it a glyph.
 const STEADY: u32 = 3;

@@ -4,7 +4,8 @@
 //! what was learnt of it. A clock changes in places of a glyph's size. So: small blocks in which edges come and go from
 //! one picture to the next (edges, since a light that flickers changes smooth places alike); connected blocks that are
 //! no larger than a line of digits; around each of them a stretch of the line, out of which the clock is learnt as if
-//! the user had named it ([`crate::clock::read::learn`]). It is the clock if it then reads, changes, and runs one second a second.
+//! the user had named it ([`crate::clock::read::learn`]). It is the clock if it then reads, changes, and runs one
+//! second a second.
 
 use super::follow::Follower;
 use super::learn::Model;

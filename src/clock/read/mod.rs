@@ -5,4 +5,4 @@ mod learn;
 mod locate;
 mod reader;
 
-pub use reader::{ClockReader, ReaderEffort};
+pub use reader::ClockReader;

@@ -1,9 +1,9 @@
 //! A frame to one reading of the clock.
 //!
-//! In: the frames of a video, in order. Out: a [`Reading`] of each. The first frames are kept until about a second is
-//! there, from which the clock's place ([`crate::clock::read::locate`]), its cells and its glyphs ([`crate::clock::read::learn`]) are learnt;
-//! those frames are read afterwards ([`ClockReader::earlier`]). From then on only the clock's pixels are looked at
-//! ([`crate::clock::read::follow`]). A clock that can't be read for a while is learnt anew beside.
+//! In: the frames of a video, in order. Out: a [`Reading`] of each. The first frames are kept until they span about a
+//! second; from them the clock's place ([`super::locate`]), its cells and its glyphs ([`super::learn`]) are learnt, and
+//! they are read afterwards ([`ClockReader::earlier`]). From then on only the clock's pixels are looked at
+//! ([`super::follow`]). A clock that can't be read for a while is learnt again in parallel.
 
 use super::follow::Follower;
 use super::learn::Model;
@@ -11,28 +11,15 @@ use super::locate::Scout;
 use crate::clock::beside::Misfit;
 use crate::clock::format::ClockFormat;
 use crate::clock::ink::crop::{Eye, Gray, Rect};
-use crate::clock::{Clock, ClockRoi, Doubt, Reading};
+use crate::clock::{Clock, ClockRoi, Doubt, ReaderEffort, Reading};
 use crate::video::{Frame, Info};
-
-/// What was looked at, counted.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize)]
-pub struct ReaderEffort {
-    /// Frames that were asked for a reading.
-    pub frames: u64,
-    /// Whole frames that were searched for the clock.
-    pub searched: u64,
-    /// Digits whose pixels were looked at.
-    pub digits: u64,
-    /// Digits that the network judged; the others were known by the clock's own glyphs.
-    pub judged: u64,
-}
 
 /// A clock is learnt from the frames of so many seconds, and of so many frames at least and at most.
 const LEARN_S: f64 = 1.15;
 const LEARN_FRAMES: [usize; 2] = [12, 150];
 /// A crop of more samples is averaged down.
 const MOST_SAMPLES: usize = 60_000;
-/// A clock that has not been read for so long is looked for anew.
+/// A clock that has not been read for so long is searched for again.
 const LOST_S: f64 = 2.0;
 /// Where nothing was found there is a pause before the next search, each time longer, up to the last of these.
 const PAUSES_S: [f64; 5] = [0.0, 1.0, 2.0, 4.0, 8.0];
@@ -42,8 +29,8 @@ const PAUSES_S: [f64; 5] = [0.0, 1.0, 2.0, 4.0, 8.0];
 pub struct ClockReader {
     eye: Eye,
     format: ClockFormat,
-    /// The region, where the user told it.
-    told: Option<Window>,
+    /// The region, where the user gave one.
+    given: Option<Window>,
     region: Option<[f64; 4]>,
     follower: Option<(Window, Follower)>,
     search: Option<Search>,
@@ -66,7 +53,7 @@ struct Window {
 /// What a search has collected.
 #[derive(Debug)]
 enum Search {
-    /// Crops of the region that was told, with their frames' indices and times.
+    /// Crops of the given region, with their frames' indices and times.
     Region(Vec<Gray>, Vec<(u64, f64)>),
     Everywhere(Scout),
 }
@@ -82,11 +69,11 @@ impl ClockReader {
     pub fn new(clock: &Clock, info: &Info) -> Result<Self, String> {
         let eye = Eye::new(info);
         let (width, height) = eye.size();
-        let told = match clock.roi {
+        let given = match clock.roi {
             ClockRoi::Auto => None,
             ClockRoi::Box(region) => Some(region),
         };
-        if let Some([x, y, w, h]) = told {
+        if let Some([x, y, w, h]) = given {
             let help = "measure x, y, width, height on that picture, or write roi = \"auto\"";
             // A corner that is rounded up is no fault.
             let inside = x >= -1.0 && y >= -1.0 && x + w <= width as f64 + 1.0 && y + h <= height as f64 + 1.0;
@@ -98,7 +85,7 @@ impl ClockReader {
             }
             if !(w >= 4.0 * clock.format.digits() as f64 && h >= 8.0) {
                 return Err(format!(
-                    "the clock's roi = [{x}, {y}, {w}, {h}] holds no {} digits that can be told apart; {help}",
+                    "the clock's roi = [{x}, {y}, {w}, {h}] holds no {} legible digits; {help}",
                     clock.format.digits()
                 ));
             }
@@ -106,8 +93,8 @@ impl ClockReader {
         Ok(Self {
             eye,
             format: clock.format.clone(),
-            told: told.map(|region| Window::around(region, (width, height))),
-            region: told,
+            given: given.map(|region| Window::around(region, (width, height))),
+            region: given,
             follower: None,
             search: None,
             last_read_s: 0.0,
@@ -146,12 +133,12 @@ impl ClockReader {
         if frame.time_s < self.search_from_s {
             return;
         }
-        let told = self.told;
-        let search = self.search.get_or_insert_with(|| match told {
+        let given = self.given;
+        let search = self.search.get_or_insert_with(|| match given {
             Some(_) => Search::Region(Vec::new(), Vec::new()),
             None => Search::Everywhere(Scout::new(&self.eye)),
         });
-        let (span_s, frames, full) = match (search, told) {
+        let (span_s, frames, full) = match (search, given) {
             (Search::Everywhere(scout), _) => {
                 scout.keep(&self.eye, frame);
                 let (span_s, frames) = scout.span();
@@ -185,22 +172,22 @@ impl ClockReader {
                 (window, sighting.follower, sighting.readings)
             }),
             Some(Search::Region(crops, frames)) => {
-                self.told.and_then(|window| self.learn_told(window, &crops, &frames))
+                self.given.and_then(|window| self.learn_given(window, &crops, &frames))
             }
             None => None,
         };
         let Some((window, mut follower, readings)) = found else { return false };
         self.earlier.extend(readings);
         let (window, digits) = window.shrunk(&mut follower);
-        if self.told.is_none() {
+        if self.given.is_none() {
             self.region = Some(digits.region());
         }
         self.follower = Some((window, follower));
         true
     }
 
-    /// Learns the clock in the region that was told and reads the crops; notes a format that does not fit.
-    fn learn_told(&mut self, window: Window, crops: &[Gray], frames: &[(u64, f64)]) -> Option<Learnt> {
+    /// Learns the clock in the given region and reads the crops; notes a format that does not fit.
+    fn learn_given(&mut self, window: Window, crops: &[Gray], frames: &[(u64, f64)]) -> Option<Learnt> {
         let times_s: Vec<f64> = frames.iter().map(|(_, time_s)| *time_s).collect();
         let learnt = Model::learn(crops, &times_s, &self.format);
         let misfit = learnt.misfit.is_some();

@@ -6,10 +6,8 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::super::text::shortened;
 use super::item::{Bar, Item};
-use super::points::{colour, draw_mark, draw_path, draw_points};
+use super::points::{Area, colour, draw_mark, draw_path, draw_points};
 use super::reach::near;
-
-pub(super) type Area<'a, B, X, Y> = ChartContext<'a, B, Cartesian2d<X, Y>>;
 
 /// Draws an item; spans and names are drawn with the axes.
 pub(super) fn draw_item<B: DrawingBackend, X, Y>(chart: &mut Area<'_, B, X, Y>, item: &Item) -> anyhow::Result<()>

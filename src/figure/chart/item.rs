@@ -1,6 +1,5 @@
 //! What can be drawn on a chart, and how far it reaches.
 
-use super::points::{Mark, Point};
 use super::reach::Reach;
 
 /// Something on a chart. Colours are counted; one that is not there is the first again.
@@ -100,6 +99,41 @@ pub enum Item {
     },
     /// Nothing, but the axes reach to these points.
     Room(Vec<[f64; 2]>),
+}
+
+/// A point with a label beside it.
+#[derive(Debug, Clone)]
+pub struct Point {
+    /// Along the horizontal axis.
+    pub x: f64,
+    /// Along the vertical axis.
+    pub y: f64,
+    /// Written beside it; nothing if empty.
+    pub label: String,
+    /// Horizontal error bar: from, to.
+    pub x_range: Option<[f64; 2]>,
+}
+
+/// A ring or a square about a point.
+#[derive(Debug, Clone)]
+pub struct Mark {
+    /// Along the horizontal axis.
+    pub x: f64,
+    /// Along the vertical axis.
+    pub y: f64,
+    /// Ring or square; one of each fits about the same point.
+    pub shape: MarkShape,
+    /// In the legend.
+    pub name: String,
+}
+
+/// The shape of a [`Mark`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MarkShape {
+    /// A circle.
+    Ring,
+    /// An upright square.
+    Square,
 }
 
 /// A bar that stands on zero.

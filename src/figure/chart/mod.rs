@@ -17,14 +17,13 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 
 use super::picture::{Draw, draw_legend, short_number, write_both};
-use ink::{Area, NAME_LINE_PX, draw_item, draw_names};
+use ink::{NAME_LINE_PX, draw_item, draw_names};
 use places::ticks;
-use points::LEGEND_LINE_PX;
+use points::{Area, LEGEND_LINE_PX};
 use reach::Reach;
 
 pub use grid::{Cell, draw_grid};
-pub use item::{Bar, Item};
-pub use points::{Mark, MarkShape, Point};
+pub use item::{Bar, Item, Mark, MarkShape, Point};
 
 /// A chart.
 #[derive(Debug, Clone)]

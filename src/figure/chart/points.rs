@@ -5,44 +5,10 @@ use plotters::prelude::*;
 
 use super::super::picture::COLOURS;
 use super::Chart;
-use super::ink::Area;
-use super::item::Item;
+use super::item::{Item, Mark, MarkShape, Point};
 use super::places::{LETTER_PX, Place, label_steps};
 
-/// A point with a label beside it.
-#[derive(Debug, Clone)]
-pub struct Point {
-    /// Along the horizontal axis.
-    pub x: f64,
-    /// Along the vertical axis.
-    pub y: f64,
-    /// Written beside it; nothing if empty.
-    pub label: String,
-    /// Horizontal error bar: from, to.
-    pub x_range: Option<[f64; 2]>,
-}
-
-/// A ring or a square about a point.
-#[derive(Debug, Clone)]
-pub struct Mark {
-    /// Along the horizontal axis.
-    pub x: f64,
-    /// Along the vertical axis.
-    pub y: f64,
-    /// Ring or square; one of each fits about the same point.
-    pub shape: MarkShape,
-    /// In the legend.
-    pub name: String,
-}
-
-/// The shape of a [`Mark`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum MarkShape {
-    /// A circle.
-    Ring,
-    /// An upright square.
-    Square,
-}
+pub(super) type Area<'a, B, X, Y> = ChartContext<'a, B, Cartesian2d<X, Y>>;
 
 /// A legend's line height, and its width and height beyond its names, pixels.
 pub(super) const LEGEND_LINE_PX: u32 = 20;

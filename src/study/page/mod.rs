@@ -4,7 +4,7 @@
 //! In: folders of results, each of a [`Part`]; several of a part are of several subjects, and the first is shown. Out,
 //! in a folder: `study.html`, self-contained but for links to `tables/`, copies of the parts' tables; `statements.csv`;
 //! `numbers.json`, all numbers that statements are judged by. What is missing is said in its place. Nothing of these
-//! files hangs on where or when they were made.
+//! files depends on where or when they were made.
 
 mod figures;
 mod parts;
@@ -35,7 +35,7 @@ pub struct PartFolder {
     pub subject: String,
 }
 
-/// What the page is told besides.
+/// Further content of the page.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct PageOptions {
     /// Above the page.
@@ -59,7 +59,7 @@ pub struct PageReport {
     pub agree: usize,
     /// Statements that do not.
     pub do_not: usize,
-    /// Statements that can't be told.
+    /// Statements that can't be judged.
     pub cannot_tell: usize,
     /// What whoever reads this should know.
     pub warnings: Vec<String>,
@@ -92,7 +92,7 @@ pub fn study_page(folders: &[PartFolder], options: &PageOptions, out: &Path) -> 
     let (mut figures, mut lacking) = (0, Vec::new());
     for section in SECTIONS {
         page.anchored_heading(section.name, section.title);
-        told(&mut page, &own(section, &judged));
+        statements_of(&mut page, &own(section, &judged));
         for figure in section.figures {
             let number = format!("Fig. {}", figure.number);
             let found = shown.iter().find(|one| one.part == figure.part);
@@ -152,13 +152,13 @@ fn over_validation(numbers: &mut Numbers) {
     }
 }
 
-/// The statements that are told in a section.
+/// The statements shown in a section.
 fn own<'a>(section: &Section, judged: &'a [Judged]) -> Vec<&'a Judged> {
     let within = |one: &&Judged| section.of.iter().any(|beginning| one.statement.section.starts_with(beginning));
     judged.iter().filter(within).collect()
 }
 
-/// How many agree, do not, can't be told.
+/// How many agree, do not, can't be judged.
 fn counts(judged: &[&Judged]) -> [usize; 3] {
     let of = |holds: fn(&Verdict) -> bool| judged.iter().filter(|one| holds(&one.verdict)).count();
     [
@@ -191,7 +191,7 @@ fn introduce(page: &mut Page, options: &PageOptions, judged: &[Judged]) {
         .collect();
     let sums = counts(&all).map(|count| count.to_string());
     rows.push(std::iter::once(format!("all {} statements", all.len())).chain(sums).collect());
-    page.table(&["section", "agree", "do not", "can't be told"], &rows, |_| false);
+    page.table(&["section", "agree", "do not", "can't be judged"], &rows, |_| false);
     let to = |name: &str, words: &str| (format!("#{name}"), words.to_owned());
     let mut links: Vec<(String, String)> = SECTIONS.iter().map(|section| to(section.name, section.title)).collect();
     links.push(to("tables", "Tables"));
@@ -199,7 +199,7 @@ fn introduce(page: &mut Page, options: &PageOptions, judged: &[Judged]) {
 }
 
 /// Statements of a section as a table; those that do not agree stand out.
-fn told(page: &mut Page, judged: &[&Judged]) {
+fn statements_of(page: &mut Page, judged: &[&Judged]) {
     let rows: Vec<Vec<String>> = judged
         .iter()
         .map(|one| {
@@ -220,7 +220,10 @@ fn told(page: &mut Page, judged: &[&Judged]) {
         })
         .collect();
     let [agree, do_not, cannot] = counts(judged);
-    page.paragraph(&format!("Of {} statements {agree} agree, {do_not} do not, {cannot} can't be told.", judged.len()));
+    page.paragraph(&format!(
+        "Of {} statements {agree} agree, {do_not} do not, {cannot} can't be judged.",
+        judged.len()
+    ));
     page.table(&["figure", "the thesis says", "stated", "here", "verdict"], &rows, |row| {
         judged[row].verdict == Verdict::DoesNot
     });

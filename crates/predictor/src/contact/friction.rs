@@ -73,7 +73,7 @@ impl FrictionCone {
         [fx * shrink, fy * shrink, -(2.0 * (half * along_normal))]
     }
 
-    /// Moves rows x targets into the cone, and tells how many rows were moved. Targets are found by name; others stay.
+    /// Moves rows x targets into the cone and returns how many rows moved. Targets are found by name; others stay.
     ///
     /// # Errors
     /// [`FrictionFault::Target`].

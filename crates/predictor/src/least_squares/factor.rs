@@ -9,8 +9,8 @@ use super::problem::Problem;
 use crate::algebra::scale::{exponent, ldexp};
 use crate::algebra::small::{Column, back, dot, orthonormal, triangulate};
 
-/// What the triangle of [ones, columns, targets] tells about the columns, each scaled by a power of two to a length in
-/// [0.5, 1).
+/// What the triangle of [ones, columns, targets] reveals about the columns, each scaled by a power of two to a length
+/// in [0.5, 1).
 pub(super) struct Centred {
     /// Exponents taken out.
     pub(super) exponents: Vec<i32>,

@@ -55,7 +55,7 @@ impl Linear {
         self.centre.len()
     }
 
-    /// How many targets it tells.
+    /// Number of targets.
     #[must_use]
     pub fn targets(&self) -> usize {
         self.offset.len()

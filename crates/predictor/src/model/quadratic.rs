@@ -79,7 +79,7 @@ impl Quadratic {
         self.centre.len()
     }
 
-    /// How many targets it tells.
+    /// Number of targets.
     #[must_use]
     pub fn targets(&self) -> usize {
         self.offset.len()

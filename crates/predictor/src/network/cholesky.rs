@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_factor_is_told() {
+    fn a_matrix_without_a_factor_is_refused() {
         let mut damped = Damped::new(2);
         assert!(!damped.solve(&[1.0, 2.0, 2.0, 1.0], &[1.0, 1.0], 0.0));
         assert!(!damped.solve(&[1.0, f64::NAN, f64::NAN, 1.0], &[1.0, 1.0], 0.0));

@@ -33,7 +33,7 @@ pub(super) struct Normal {
     pub(super) gradient: Vec<f64>,
     forward: Forward,
     slopes: Vec<Column>,
-    /// Of a block, row by row: products of pairs of inputs, [`pair`] tells which where; first the inputs themselves.
+    /// Of a block, row by row: first the inputs themselves, then products of pairs of inputs, placed by [`pair`].
     pairs: Vec<f64>,
     /// How many those are, with the filling.
     width: usize,

@@ -314,7 +314,7 @@ fn duplicated_and_nearly_collinear_photodiodes_are_learnt_from() {
 }
 
 #[test]
-fn what_can_not_be_trained_is_told() {
+fn what_cannot_be_trained_is_refused() {
     let data = taught(20, 2, 2, 1, 0.1, 13);
     let fault = |data: &Dataset, stop: Option<&Dataset>, options: &TrainOptions| {
         train_network(data, stop, options).unwrap_err().to_string()

@@ -25,14 +25,14 @@ const VERSION: u64 = 1;
 #[derive(Debug, Error)]
 pub enum FileFault {
     /// No JSON, a key missing, unknown or of another kind.
-    #[error("is no model file: {0}; train the model anew")]
+    #[error("is not a model file: {0}; train the model again")]
     Json(#[from] serde_json::Error),
     /// JSON of something else.
     #[error("is no model of lunula (its \"format\" is {0}); name a file that `lunula train` wrote")]
     Format(String),
     /// Of another version.
     #[error(
-        "is a model file of version {found}, and this program reads version {VERSION}; train the model anew or use \
+        "is a model file of version {found}, and this program reads version {VERSION}; train the model again or use \
          the program that wrote it"
     )]
     Version {
@@ -40,10 +40,10 @@ pub enum FileFault {
         found: String,
     },
     /// Numbers that are no model.
-    #[error("does not fit together: {0}; it was edited or damaged: train the model anew")]
+    #[error("does not fit together: {0}; it was edited or damaged: train the model again")]
     Model(#[from] ModelFault),
     /// Something else that does not fit.
-    #[error("does not fit together: {0}; it was edited or damaged: train the model anew")]
+    #[error("does not fit together: {0}; it was edited or damaged: train the model again")]
     Other(String),
 }
 
@@ -129,9 +129,9 @@ impl Predictor {
             return Err(FileFault::Format("missing".to_owned()));
         }
         let any: serde_json::Value = serde_json::from_str(text)?;
-        let told = any.get("format").map_or("missing".to_owned(), ToString::to_string);
+        let format = any.get("format").map_or("missing".to_owned(), ToString::to_string);
         if any.get("format").and_then(|format| format.as_str()) != Some(FORMAT) {
-            return Err(FileFault::Format(told));
+            return Err(FileFault::Format(format));
         }
         if any.get("version").and_then(serde_json::Value::as_u64) != Some(VERSION) {
             let found = any.get("version").map_or("missing".to_owned(), ToString::to_string);
@@ -139,8 +139,8 @@ impl Predictor {
         }
         // From the text, not from the value: the place of a fault stays known.
         let mut file: File = serde_json::from_str(text)?;
-        let told = file.sha256.take();
-        let edited = told != Some(checksum(&file));
+        let stated = file.sha256.take();
+        let edited = stated != Some(checksum(&file));
         let model = file.model.clone().model()?;
         check(&model, &file)?;
         let names: Vec<String> = file.targets.iter().map(|channel| channel.name.clone()).collect();
@@ -160,11 +160,11 @@ fn checksum(file: &File) -> String {
 fn check(model: &Model, file: &File) -> Result<(), FileFault> {
     let File { inputs, targets, training, intervals, lags, .. } = file;
     let other = |what: String| Err(FileFault::Other(what));
-    let told = lags.as_ref().map_or(&[][..], Lags::lags_s);
-    if told != training.recipe.lags_s {
+    let lags_s = lags.as_ref().map_or(&[][..], Lags::lags_s);
+    if lags_s != training.recipe.lags_s {
         return other("the lags are not the recipe's".to_owned());
     }
-    fits(model, inputs.len() * (1 + told.len()), targets.len())?;
+    fits(model, inputs.len() * (1 + lags_s.len()), targets.len())?;
     let all: Vec<&Channel> = inputs.iter().chain(targets).collect();
     for (k, channel) in all.iter().enumerate() {
         if channel.name.is_empty() {

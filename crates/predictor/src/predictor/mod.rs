@@ -17,7 +17,7 @@ use crate::model::sizes;
 use crate::{Dataset, Model, ModelFault};
 use recipe::{Recipe, RecipeFault, Report, predict, with_lags};
 
-/// A column that a model reads or tells.
+/// An input or target column of a model.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Channel {
@@ -128,7 +128,7 @@ impl Predictor {
         &self.inputs
     }
 
-    /// What it tells.
+    /// The targets.
     #[must_use]
     pub fn targets(&self) -> &[Channel] {
         &self.targets
@@ -140,7 +140,7 @@ impl Predictor {
         self.inputs.iter().map(|channel| channel.name.clone()).collect()
     }
 
-    /// Names of what it tells.
+    /// Names of the targets.
     #[must_use]
     pub fn target_names(&self) -> Vec<String> {
         self.targets.iter().map(|channel| channel.name.clone()).collect()
@@ -234,13 +234,13 @@ fn channels(names: &[String], values: &Array2<f64>) -> Vec<Channel> {
     names.iter().zip(values.axis_iter(Axis(1))).map(channel).collect()
 }
 
-/// The unit that a column's name tells.
+/// The unit in a column's name.
 #[must_use]
 pub fn unit_of(name: &str) -> &'static str {
     const ENDINGS: [(&str, &str); 4] = [("_N", "N"), ("_deg", "deg"), ("_V", "V"), ("_rad", "rad")];
     let photodiode = name.strip_prefix('P').is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit()));
-    let told = ENDINGS.into_iter().find(|(ending, _)| name.ends_with(ending)).map(|(_, unit)| unit);
-    told.unwrap_or(if photodiode { "V" } else { "" })
+    let unit = ENDINGS.into_iter().find(|(ending, _)| name.ends_with(ending)).map(|(_, unit)| unit);
+    unit.unwrap_or(if photodiode { "V" } else { "" })
 }
 
 /// Whether a model of a size can stand with these columns.

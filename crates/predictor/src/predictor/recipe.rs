@@ -1,6 +1,6 @@
 //! What to fit and how, in one value that a model file keeps: the same recipe is fitted again where rows are held out.
 //!
-//! In: a [`Dataset`] and a [`Recipe`]. Out: a [`Model`] with what its fit tells ([`Fitted`]). Networks stop early on
+//! In: a [`Dataset`] and a [`Recipe`]. Out: a [`Model`] with the report of its fit ([`Fitted`]). Networks stop early on
 //! rows that they are not trained on; where none are given, [`stopping_rows`] sets aside a part of every recording.
 //! Those rows are training rows all the same: what is reported has to come from others.
 

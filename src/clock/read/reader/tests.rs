@@ -62,7 +62,7 @@ fn wide(font: ClockFont, light: bool, format: &str, offset_s: f64) -> Show {
     show
 }
 
-fn told(show: &Show) -> ClockRoi {
+fn given(show: &Show) -> ClockRoi {
     ClockRoi::Box(show.panel.map(|side| side as f64))
 }
 
@@ -73,7 +73,7 @@ fn four_fonts_in_both_polarities_are_read_without_a_mistake() {
     for font in ClockFont::ALL {
         for light in [true, false] {
             let show = Show::new(font, light);
-            let tally = read(&show, told(&show), 75, 0..0);
+            let tally = read(&show, given(&show), 75, 0..0);
             assert!(tally.wrong == 0 && tally.right >= LEAST, "{font:?} {light} {} {}", tally.right, tally.wrong);
         }
     }
@@ -86,7 +86,7 @@ fn frames_at_an_uneven_rate_mislead_no_digit() {
     for (font, offset_s) in ClockFont::ALL.into_iter().zip([60.0, 8.13, 1795.4, 59.97]) {
         let mut show = Show { uneven: 0.45, ..Show::new(font, true) };
         show.clock.as_mut().unwrap().offset_s = offset_s;
-        let tally = read(&show, told(&show), 60, 0..0);
+        let tally = read(&show, given(&show), 60, 0..0);
         assert!(tally.wrong == 0 && tally.right >= LEAST, "{font:?} {} {}", tally.right, tally.wrong);
     }
 }
@@ -99,7 +99,7 @@ fn a_change_during_the_exposure_is_not_misread() {
     for font in ClockFont::ALL {
         let show =
             Show { fps: 29.83, exposure: 0.5, noise: 14.0, flicker: 0.12, ..Show::new(font, font == ClockFont::Mono) };
-        let tally = read(&show, told(&show), 75, 0..0);
+        let tally = read(&show, given(&show), 75, 0..0);
         assert!(tally.wrong == 0 && tally.right >= LEAST, "{font:?} {} {}", tally.right, tally.wrong);
         let unclear = tally.readings.iter().filter(|&&reading| reading == Reading::Abstained(Doubt::Unclear)).count();
         assert!(unclear >= 1, "{font:?} {unclear}");
@@ -125,7 +125,7 @@ fn the_clock_is_found_by_itself_however_the_picture_is_turned() {
 #[test]
 fn no_clock_is_found_where_there_is_none() {
     let show = Show { clock: None, flicker: 0.12, noise: 14.0, ..Show::new(ClockFont::Mono, true) };
-    for roi in [ClockRoi::Auto, told(&show)] {
+    for roi in [ClockRoi::Auto, given(&show)] {
         let tally = read(&show, roi, 90, 0..0);
         assert!(tally.readings.iter().all(|&reading| reading == Reading::Abstained(Doubt::NotFound)));
         assert_eq!(tally.effort.frames, 90);
@@ -135,7 +135,7 @@ fn no_clock_is_found_where_there_is_none() {
 #[test]
 fn a_clock_that_is_covered_comes_back() {
     let show = Show::new(ClockFont::Segments, false);
-    for roi in [told(&show), ClockRoi::Auto] {
+    for roi in [given(&show), ClockRoi::Auto] {
         let tally = read(&show, roi, 150, 50..130);
         let hidden = &tally.readings[50..130];
         assert!(hidden.iter().all(|&reading| reading == Reading::Abstained(Doubt::NotFound)), "{hidden:?}");
@@ -147,7 +147,7 @@ fn a_clock_that_is_covered_comes_back() {
 fn digits_of_different_widths_are_read_where_they_are() {
     let show = Show { moving: true, panel: [190, 30, 190, 40], ..Show::new(ClockFont::Proportional, true) };
     // Measured: 67.
-    let tally = read(&show, told(&show), 75, 0..0);
+    let tally = read(&show, given(&show), 75, 0..0);
     assert!(tally.wrong == 0 && tally.right >= 60, "{} {}", tally.right, tally.wrong);
 }
 
@@ -156,7 +156,7 @@ fn formats_with_other_marks_and_hours_are_read() {
     for format in ["hh:mm:ss.t", "s.tt", "mm'ss\"t", "mm ss t"] {
         let mut show = Show { panel: [160, 30, 220, 40], ..Show::new(ClockFont::Mono, false) };
         show.clock.as_mut().unwrap().format = format.into();
-        let tally = read(&show, told(&show), 60, 0..0);
+        let tally = read(&show, given(&show), 60, 0..0);
         assert!(tally.wrong == 0 && tally.right >= 48, "{format} {} {}", tally.right, tally.wrong);
     }
 }
@@ -176,14 +176,14 @@ fn a_region_that_reaches_out_of_the_picture_is_refused() {
 #[test]
 fn frames_of_another_size_and_short_videos_are_no_fault() {
     let show = Show::new(ClockFont::Mono, true);
-    let mut reader = ClockReader::new(&clock(told(&show), "mm:ss.t"), &show.info()).unwrap();
+    let mut reader = ClockReader::new(&clock(given(&show), "mm:ss.t"), &show.info()).unwrap();
     let other = crate::video::Picture::new(Format { width: 64, height: 48, subsampling: None, depth: 8 });
     assert_eq!(reader.step(&other.frame(0, 0.0)), Reading::Abstained(Doubt::NotFound));
     assert!(reader.earlier().is_empty());
     // Half a second is read after the last frame.
-    let tally = read(&show, told(&show), 15, 0..0);
+    let tally = read(&show, given(&show), 15, 0..0);
     assert!(tally.wrong == 0 && tally.right >= 12, "{} {}", tally.right, tally.wrong);
-    assert_eq!(read(&show, told(&show), 0, 0..0).right, 0);
+    assert_eq!(read(&show, given(&show), 0, 0..0).right, 0);
 }
 
 #[test]
@@ -203,7 +203,7 @@ fn a_clock_that_shows_more_than_its_format_is_not_read() {
     for (k, (shown, format, offset_s, fitting)) in cases.into_iter().enumerate() {
         for (n, font) in ClockFont::ALL.into_iter().enumerate() {
             let show = wide(font, (k + n) % 2 == 0, shown, offset_s);
-            let tally = read_as(format, &show, told(&show), 30, 0..0);
+            let tally = read_as(format, &show, given(&show), 30, 0..0);
             let read = tally.right + tally.wrong;
             let least = if shown == "s.tt" { 10 } else { 24 };
             assert!(10 * read <= tally.other && tally.other >= least, "{font:?} {shown} as {format}: {tally:?}");
@@ -222,11 +222,11 @@ fn a_frame_close_around_a_clock_hides_no_digit() {
         let free = (8 * tall).div_ceil(100) - 1;
         show.lines = vec![[5, free - 2, 340, 2], [5, tall - free, 340, 2]];
         show.lines.extend([5, 343].map(|x| [x, free - 2, 2, tall - 2 * free + 4]));
-        let tally = read_as("h:mm:ss.t", &show, told(&show), 40, 0..0);
+        let tally = read_as("h:mm:ss.t", &show, given(&show), 40, 0..0);
         assert_eq!((tally.right, tally.wrong), (0, 0), "{tall} {tally:?}");
         assert!(tally.other >= 30, "{tall} {tally:?}");
         assert_eq!(tally.fitting.as_deref(), Some("hh:mm:ss.t"));
-        let tally = read(&show, told(&show), 40, 0..0);
+        let tally = read(&show, given(&show), 40, 0..0);
         assert!(tally.wrong + tally.other == 0 && tally.right >= 30, "{tall} {tally:?}");
     }
 }
@@ -246,7 +246,7 @@ fn am_or_pm_is_noticed_where_it_can_hardly_be_read() {
             for (k, style) in styles.into_iter().enumerate() {
                 let mut show = wide(font, k % 2 == 1, "hh:mm:ss.t a", 317.3);
                 (show.panel, show.restyle, show.noise) = ([30, 30, 350, tall], style, 12.0);
-                let tally = read_as("hh:mm:ss.t", &show, told(&show), 30, 0..0);
+                let tally = read_as("hh:mm:ss.t", &show, given(&show), 30, 0..0);
                 (read, other) = (read + tally.right + tally.wrong, other + tally.other);
             }
         }
@@ -258,7 +258,7 @@ fn am_or_pm_is_noticed_where_it_can_hardly_be_read() {
 fn a_clock_that_becomes_wider_is_read_until_then() {
     for font in ClockFont::ALL {
         let show = wide(font, true, "h:mm:ss", 35_998.517);
-        let tally = read_as("h:mm:ss", &show, told(&show), 150, 0..0);
+        let tally = read_as("h:mm:ss", &show, given(&show), 150, 0..0);
         // 9:59:59 ends in frame 45.
         assert!(tally.wrong == 0 && (40..=45).contains(&tally.right), "{font:?} {} {}", tally.right, tally.wrong);
         assert!(tally.other >= 10, "{font:?} {}", tally.other);
@@ -270,7 +270,7 @@ fn a_clock_that_becomes_wider_is_read_until_then() {
 fn a_digit_that_the_region_cuts_off_is_noticed() {
     for font in ClockFont::ALL {
         let show = wide(font, font == ClockFont::Serif, "hh:mm:ss", 70_874.017);
-        let whole = read(&show, told(&show), 45, 0..0);
+        let whole = read(&show, given(&show), 45, 0..0);
         assert!(whole.right >= 40 && whole.other == 0, "{font:?} {}", whole.right);
         let [left, top, width, height] = show.panel.map(|side| side as f64);
         let (mut seen, mut gone) = (0, 0);
@@ -278,7 +278,7 @@ fn a_digit_that_the_region_cuts_off_is_noticed() {
             let roi = ClockRoi::Box([left + cut, top, width - cut, height]);
             let tally = read_as("h:mm:ss", &show, roi, 24, 0..0);
             seen += usize::from(tally.other >= 18);
-            // Once that the whole digit is gone nothing tells.
+            // Once the whole digit is gone, nothing shows it.
             gone += usize::from(tally.wrong >= 18 && tally.other == 0);
             assert!(tally.wrong <= 2 || tally.other == 0 && gone > 0, "{font:?} {cut} {} {}", tally.wrong, tally.other);
         }
@@ -295,7 +295,7 @@ fn frames_icons_and_lines_beside_a_clock_are_no_digits() {
         for light in [true, false] {
             let mut show = wide(font, light, "  mm:ss.t  ", 1796.017);
             show.panel = [100, 30, 280, 90];
-            let plain = read(&show, told(&show), 24, 0..0);
+            let plain = read(&show, given(&show), 24, 0..0);
             let [x, y, w, h] = plain.region.unwrap().map(|side| side as usize);
             let ([left, top, width, height], space) = (show.panel, (h / 6).max(3));
             let (x, y) = (x - left, y - top);
@@ -310,7 +310,7 @@ fn frames_icons_and_lines_beside_a_clock_are_no_digits() {
             ];
             for thing in things {
                 show.lines = vec![thing];
-                let tally = read(&show, told(&show), 40, 0..0);
+                let tally = read(&show, given(&show), 40, 0..0);
                 // What is beside it may hide where the clock begins: then it is not found.
                 assert!(tally.wrong == 0, "{font:?} {light} {thing:?} {:?}", tally.readings);
                 assert_eq!((tally.other, tally.fitting), (0, None), "{font:?} {light} {thing:?}");
@@ -337,7 +337,7 @@ fn am_and_pm_are_read_over_noon_and_midnight() {
             let mut show = wide(font, (k + n) % 2 == 0, format, offset_s);
             show.panel = [80, 30, 300, 34];
             show.restyle = styles[(k + n) % 3];
-            let tally = read(&show, told(&show), 90, 0..0);
+            let tally = read(&show, given(&show), 90, 0..0);
             // Printed half as high as segments, small letters and letters with dots are a few pixels high.
             let least = if font == ClockFont::Segments && n > 0 { 0 } else { 75 };
             assert!(
@@ -354,7 +354,7 @@ fn am_and_pm_are_read_over_noon_and_midnight() {
     assert!(tally.wrong == 0 && tally.right >= 75, "{} {}", tally.right, tally.wrong);
     // Digits without AM or PM are not half of the day.
     let bare = wide(ClockFont::Mono, true, "hh:mm:ss", 43_198.517);
-    let tally = read_as("hh:mm:ss a", &bare, told(&bare), 45, 0..0);
+    let tally = read_as("hh:mm:ss a", &bare, given(&bare), 45, 0..0);
     assert_eq!((tally.right, tally.wrong), (0, 0));
     assert!(tally.readings.contains(&Reading::Abstained(Doubt::HalfUnclear)));
 }

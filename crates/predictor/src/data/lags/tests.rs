@@ -144,7 +144,7 @@ proptest! {
 }
 
 #[test]
-fn rows_without_times_are_told_so() {
+fn rows_without_times_are_refused_as_such() {
     let x = Array2::from_shape_fn((9, 1), |(row, _)| row as f64);
     let names = || (vec!["P1".to_owned()], vec!["J2_deg".to_owned()]);
     let ((inputs, targets), one) =
