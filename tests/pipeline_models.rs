@@ -91,14 +91,14 @@ fn models_in_a_pipeline_are_those_of_the_commands_and_the_same_anywhere() {
             "force/S1/model.json",
             "force/S2/merit.csv",
             "force/S2/model.json",
+            "known/S1/merit.csv",
+            "known/S2/merit.csv",
             "modes/S1/modes.csv",
             "modes/S2/modes.csv",
             "spring/fit-estimates.csv",
             "spring/fit-fitted.csv",
             "spring/fit.toml",
             "step/trajectory.csv",
-            "known/S1/merit.csv",
-            "known/S2/merit.csv",
         ]
     );
     let log = |repetition: u32| format!("one/logs/S1-{repetition}/log.csv");

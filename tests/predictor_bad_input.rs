@@ -296,8 +296,8 @@ fn a_file_that_is_cut_or_none_is_refused() {
     dir.train("a.csv", "force", "m.json", &["-q"]).expect(0);
     let whole = dir.text("m.json");
     for (text, words) in [
-        (&whole[..whole.len() / 2], "is no model file: EOF"),
-        (&whole[..1], "is no model file: EOF"),
+        (&whole[..whole.len() / 2], "is not a model file: EOF"),
+        (&whole[..1], "is not a model file: EOF"),
         ("", "is no model"),
         ("[]", "is no model of lunula"),
         ("{}", "its \"format\" is missing"),
@@ -313,7 +313,7 @@ fn a_file_that_is_cut_or_none_is_refused() {
     dir.write("cut.json", whole.replacen("0.3125", "1e999", 1));
     dir.lunula(&["analyse", "cut.json"]).expect(2).says("number out of range");
     dir.write("cut.json", whole.replacen("0.3125", "NaN", 1));
-    dir.lunula(&["analyse", "cut.json"]).expect(2).says("cut.json: is no model file");
+    dir.lunula(&["analyse", "cut.json"]).expect(2).says("cut.json: is not a model file");
     dir.write("cut.json", [0xff, 0xfe, 0x00]);
     dir.lunula(&["analyse", "cut.json"]).expect(2).says("cut.json: cannot be read");
     std::fs::create_dir(dir.path("folder.json")).unwrap();
