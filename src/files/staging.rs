@@ -436,7 +436,7 @@ impl Places {
             .map_err(|why| WriteError::File { path: path.to_owned(), why: why.to_string() })
     }
 
-    /// Draws a picture, PNG and SVG, named after `table`; tells where the PNG will stand.
+    /// Draws a picture, PNG and SVG, named after `table`; returns where the PNG will be.
     ///
     /// # Errors
     /// As [`Places::place`], and where it can't be drawn.
@@ -669,8 +669,8 @@ mod tests {
             let committed = staging.commit_exactly(&["truth", "photos", "clock"]);
             if !faults::end() {
                 committed.unwrap();
-                let told = |name: &str, text: &str| (name.to_owned(), text.to_owned());
-                assert_eq!(all_in(dir.path()), [told("photos/n", "new"), told("truth/b", "new")]);
+                let file = |name: &str, text: &str| (name.to_owned(), text.to_owned());
+                assert_eq!(all_in(dir.path()), [file("photos/n", "new"), file("truth/b", "new")]);
                 assert!(after > 6, "{after}");
                 break;
             }
