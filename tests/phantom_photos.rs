@@ -203,7 +203,7 @@ fn a_set_is_replaced_whole_and_nothing_else_is_touched() {
     let first = files(out.path());
     // Interrupted: as before.
     let other = PhotoOptions { seed: 9, ..options.clone() };
-    let stopped = Watch::stopped_by(&AtomicBool::new(true), |watch| write_watched(&other, out.path(), watch));
+    let stopped = write_watched(&other, out.path(), &Watch::stopped_by(&AtomicBool::new(true)));
     assert!(matches!(stopped, Err(Error::Interrupted(_))));
     assert!(files(out.path()) == first);
     // A smaller set: no photograph of the larger is left.

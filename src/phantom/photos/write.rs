@@ -148,7 +148,7 @@ fn folder(path: PathBuf) -> Result<PathBuf, Error> {
 /// # Errors
 /// [`enum@Error`]; what stood under `out` before is as it was.
 pub fn write(options: &PhotoOptions, out: &Path) -> Result<Summary, Error> {
-    Watch::nobody(|watch| write_watched(options, out, watch))
+    write_watched(options, out, &Watch::nobody())
 }
 
 /// As [`write()`], watched: the ticks count photographs.

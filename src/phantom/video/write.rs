@@ -96,7 +96,7 @@ fn refused(path: &Path) -> impl FnOnce(io::Error) -> Error {
 /// # Errors
 /// [`enum@Error`]; what stood under `out` before is as it was.
 pub fn write(scene: &Scene, out: &Path) -> Result<Summary, Error> {
-    Watch::nobody(|watch| write_watched(scene, out, watch))
+    write_watched(scene, out, &Watch::nobody())
 }
 
 /// As [`write()`], watched: the ticks count frames.

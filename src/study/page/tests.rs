@@ -30,7 +30,7 @@ fn what_there_is_is_shown_and_the_rest_is_said_to_be_lacking() {
         part(at, Part::Normal, "S01", &[("numbers.json", b"nothing")]),
     ];
     let options = PageOptions { title: "A study".to_owned(), phantom: true, subject: None };
-    let report = Watch::nobody(|watch| study_page(&parts, &options, &at.join("out"), watch)).unwrap();
+    let report = study_page(&parts, &options, &at.join("out"), &Watch::nobody()).unwrap();
     assert_eq!((report.figures.figures, report.agree, report.do_not), (1, 1, 1 + 1));
     assert_eq!(report.figures_lacking.len(), SECTIONS.iter().map(|one| one.figures.len()).sum::<usize>() - 1);
     assert!(report.warnings.len() == 1 && report.warnings[0].starts_with("normal: "), "{:?}", report.warnings);
@@ -48,7 +48,7 @@ fn what_there_is_is_shown_and_the_rest_is_said_to_be_lacking() {
 #[test]
 fn a_study_of_nothing_has_a_page_on_which_nothing_can_be_told() {
     let folder = tempfile::tempdir().unwrap();
-    let report = Watch::nobody(|watch| study_page(&[], &defaults(), folder.path(), watch)).unwrap();
+    let report = study_page(&[], &defaults(), folder.path(), &Watch::nobody()).unwrap();
     assert_eq!((report.figures.figures, report.agree, report.do_not), (0, 0, 0));
     assert!(report.cannot_tell > 100);
     assert!(!fs::read_to_string(folder.path().join("study.html")).unwrap().contains("A phantom"));

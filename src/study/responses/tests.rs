@@ -23,7 +23,7 @@ fn run(cycles: f64, options: &ResponsesOptions) -> (tempfile::TempDir, Result<Re
     let path = folder.path().join("lateral.csv");
     recording(&path, cycles);
     let files = [NamedFile { path, name: "lateral.csv".to_owned() }];
-    let found = Watch::nobody(|watch| responses(&files, options, &folder.path().join("out"), watch));
+    let found = responses(&files, options, &folder.path().join("out"), &Watch::nobody());
     (folder, found)
 }
 
@@ -63,5 +63,5 @@ fn a_request_that_is_none_says_what_to_choose() {
     let refused = |options: ResponsesOptions| run(2.0, &options).1.unwrap_err().to_string();
     assert!(refused(ResponsesOptions::of("Fq_N")).contains("Fz_N"));
     assert!(refused(ResponsesOptions { bins: 1, ..ResponsesOptions::of("Fx_N") }).contains("4 to 200"));
-    assert!(Watch::nobody(|watch| responses(&[], &ResponsesOptions::of("Fx_N"), Path::new("nowhere"), watch)).is_err());
+    assert!(responses(&[], &ResponsesOptions::of("Fx_N"), Path::new("nowhere"), &Watch::nobody()).is_err());
 }
