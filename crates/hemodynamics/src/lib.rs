@@ -23,9 +23,8 @@ mod state;
 mod transient;
 
 pub use equilibrium::{
-    AT_REST, CurvePoint, Eigenvalue, Equilibrium, EquilibriumFault, Fate, LoadCurve, LoadPath, LoadRange, MapFault,
-    MapPlan, MapRow, ReachFault, Reached, Stability, Turn, TurnKind, equilibria, load_curve, reached_from, rest,
-    stability_map, stability_row,
+    CurvePoint, Eigenvalue, Equilibrium, EquilibriumFault, Fate, LoadCurve, LoadPath, LoadRange, MapFault, MapPlan,
+    MapRow, Stability, Turn, TurnKind, equilibria, load_curve, rest, stability_row,
 };
 pub use fit::{
     Bound, Bounds, Calibrated, Calibration, Combination, Course, Estimate, FitFault, FitOptions, FitResult,

@@ -27,11 +27,10 @@ pub use contact::gate::{Contact, Gate, GateFault, GateState};
 pub use data::dataset::{Dataset, DatasetFault, Recording};
 pub use data::lags::{LagFault, LagStream, Lagged, Lags};
 pub use evaluate::{
-    Bin, By, ByMagnitude, Coverage, CrossCoverage, CrossFault, CrossValidation, Effect, EffectFault, Flattery, Fold,
-    FoldResult, FoldSpread, IntervalFault, Intervals, LearningFault, LearningPoint, MagnitudeFault, Scores, SplitFault,
-    TargetScore, by_magnitude, calibrate, coverage, cross_coverage, cross_validate, dataset_hash, folds,
-    friction_effect, lag_effect, learn_by_recordings, learn_by_share, magnitude_edges, nested_coverage,
-    recording_hashes, row_hashes, score, shared_rows,
+    Bin, By, ByMagnitude, Coverage, CrossCoverage, CrossFault, CrossValidation, Flattery, Fold, FoldResult, FoldSpread,
+    IntervalFault, Intervals, LearningFault, LearningPoint, MagnitudeFault, Scores, SplitFault, TargetScore,
+    by_magnitude, calibrate, coverage, cross_coverage, cross_validate, folds, learn_by_recordings, learn_by_share,
+    magnitude_edges, nested_coverage, recording_hashes, row_hashes, score, shared_rows,
 };
 pub use fit::{FitFault, FitReport, Printed, fit_linear, fit_quadratic, linear_f0, quadratic_printed};
 pub use least_squares::{
@@ -47,8 +46,7 @@ pub use subsets::{
 };
 pub use trajectory::{
     Bending, CONE_CELLS, ConeCoverage, Density, Evenness, ForceSpace, ForceSpaceFault, Hole, RELEASE_S, RandomBending,
-    RandomForce, RateLimits, Spiral, Wave, circling_limit_hz, cone_coverage, percent_error, rate_limit_per_s,
-    rate_limits,
+    RandomForce, RateLimits, Spiral, Wave, circling_limit_hz, cone_coverage, rate_limit_per_s, rate_limits,
 };
 
 /// The example of the README, run as a test.

@@ -101,11 +101,6 @@ pub fn stability_row(plan: &MapPlan, factor: f64) -> Result<MapRow, MapFault> {
     Ok(row)
 }
 
-/// All rows of a map, a factor each.
-pub fn stability_map(plan: &MapPlan, factors: &[f64]) -> Result<Vec<MapRow>, MapFault> {
-    factors.iter().map(|&factor| stability_row(plan, factor)).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -121,7 +116,7 @@ mod tests {
             path: LoadPath::Distal,
             loads_pa: vec![0.0, 5000.0, 11000.0],
         };
-        let rows = stability_map(&plan, &[1.0, 0.5]).unwrap();
+        let rows = [1.0, 0.5].map(|factor| stability_row(&plan, factor).unwrap());
         assert_eq!(rows[0].fates, [Fate::Converged, Fate::Converged, Fate::Collapsed]);
         assert_eq!(rows[1].fates, [Fate::Converged, Fate::Bistable, Fate::Collapsed]);
         assert_eq!(rows[1].slowest_s.iter().map(Option::is_some).collect::<Vec<_>>(), [true, true, false]);

@@ -15,14 +15,12 @@ mod eigenvalues;
 mod map;
 mod network;
 mod polish;
-mod reached;
 mod root;
 mod search;
 
 pub use curve::{CurvePoint, LoadCurve, LoadPath, LoadRange, Turn, TurnKind, load_curve};
 pub use eigenvalues::Eigenvalue;
-pub use map::{Fate, MapFault, MapPlan, MapRow, stability_map, stability_row};
-pub use reached::{AT_REST, ReachFault, Reached, reached_from};
+pub use map::{Fate, MapFault, MapPlan, MapRow, stability_row};
 
 use crate::load::Inputs;
 use crate::model::{Arrow, Model, Pressures};

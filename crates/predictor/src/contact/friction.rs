@@ -9,7 +9,6 @@
 //! A force that was measured within the cone is never farther from the result than from the prediction. Whether mu is
 //! right for the surface is not known here: evaluate with and without.
 
-use ndarray::ArrayViewMut2;
 use serde::Serialize;
 use thiserror::Error;
 
@@ -23,15 +22,12 @@ pub struct FrictionCone {
     mu: f64,
 }
 
-/// Why there is no cone, or nothing to put into it.
+/// Why there is no cone.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum FrictionFault {
     /// Not a coefficient.
     #[error("a coefficient of friction of {0}; it must be a finite number, 0 or above")]
     Mu(f64),
-    /// A force is missing.
-    #[error("there is no {0} among the targets; a friction cone needs Fx_N, Fy_N and Fz_N")]
-    Target(&'static str),
 }
 
 impl FrictionCone {
@@ -41,12 +37,6 @@ impl FrictionCone {
     /// [`FrictionFault::Mu`].
     pub fn new(mu: f64) -> Result<Self, FrictionFault> {
         if mu.is_finite() && mu >= 0.0 { Ok(Self { mu }) } else { Err(FrictionFault::Mu(mu)) }
-    }
-
-    /// The coefficient of friction.
-    #[must_use]
-    pub fn mu(&self) -> f64 {
-        self.mu
     }
 
     /// The nearest force of the cone to `[Fx, Fy, Fz]`, newtons. One that is not finite stays as it is.
@@ -72,35 +62,11 @@ impl FrictionCone {
         let shrink = if along_shear == 0.0 { 0.0 } else { 2.0 * (half / shear * along_shear) };
         [fx * shrink, fy * shrink, -(2.0 * (half * along_normal))]
     }
-
-    /// Moves rows x targets into the cone and returns how many rows moved. Targets are found by name; others stay.
-    ///
-    /// # Errors
-    /// [`FrictionFault::Target`].
-    ///
-    /// # Panics
-    /// Where there are not as many columns as names.
-    pub fn apply(&self, mut rows: ArrayViewMut2<f64>, names: &[String]) -> Result<usize, FrictionFault> {
-        assert!(rows.ncols() == names.len(), "a name a column");
-        let find = |wanted| names.iter().position(|name| name == wanted).ok_or(FrictionFault::Target(wanted));
-        let columns = [find("Fx_N")?, find("Fy_N")?, find("Fz_N")?];
-        let mut moved = 0;
-        for mut row in rows.rows_mut() {
-            let force = columns.map(|column| row[column]);
-            let nearest = self.nearest(force);
-            if force.iter().all(|value| value.is_finite()) && nearest != force {
-                moved += 1;
-                columns.iter().zip(nearest).for_each(|(&column, value)| row[column] = value);
-            }
-        }
-        Ok(moved)
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ndarray::array;
     use proptest::prelude::*;
 
     fn far(a: [f64; 3], b: [f64; 3]) -> f64 {
@@ -163,17 +129,5 @@ mod tests {
         for mu in [-0.1, f64::NAN, f64::INFINITY] {
             assert!(FrictionCone::new(mu).is_err());
         }
-    }
-
-    #[test]
-    fn rows_by_name() {
-        let names: Vec<String> = ["Fz_N", "Fx_N", "Fy_N"].map(str::to_owned).to_vec();
-        let mut rows = array![[-1.0, 0.1, 0.0], [1.0, 0.1, 0.0], [-1.0, f64::NAN, 9.0]];
-        let cone = FrictionCone::new(0.75).unwrap();
-        assert_eq!(cone.apply(rows.view_mut(), &names), Ok(1));
-        assert_eq!(rows.row(0).to_vec(), [-1.0, 0.1, 0.0]);
-        assert_eq!(rows.row(1).to_vec(), [0.0; 3]);
-        assert_eq!(rows[[2, 2]], 9.0, "a row that is not known stays");
-        assert_eq!(cone.apply(array![[1.0]].view_mut(), &["Fz_N".to_owned()]), Err(FrictionFault::Target("Fx_N")));
     }
 }

@@ -80,22 +80,10 @@ impl Gate {
         Ok(Self { f_min_n, theta_touch_deg, hysteresis_n })
     }
 
-    /// The normal force from which on the finger touches, newtons.
-    #[must_use]
-    pub fn f_min_n(&self) -> f64 {
-        self.f_min_n
-    }
-
     /// The angle while it touches, degrees.
     #[must_use]
     pub fn theta_touch_deg(&self) -> f64 {
         self.theta_touch_deg
-    }
-
-    /// By how much the force must fall below F_min to end a touch, newtons.
-    #[must_use]
-    pub fn hysteresis_n(&self) -> f64 {
-        self.hysteresis_n
     }
 
     /// One row, in the order of time: `fz_n` is the predicted force, newtons.
@@ -106,17 +94,6 @@ impl Gate {
         let from = if state.touching { self.f_min_n - self.hysteresis_n } else { self.f_min_n };
         state.touching = -fz_n >= from;
         if state.touching { Contact::Touch } else { Contact::Bending }
-    }
-
-    /// The angle of a row, degrees: theta_touch, what the posture model says (`posture_deg`), or none where neither is
-    /// known.
-    #[must_use]
-    pub fn angle_deg(&self, contact: Contact, posture_deg: f64) -> Option<f64> {
-        match contact {
-            Contact::Touch => Some(self.theta_touch_deg),
-            Contact::Bending => posture_deg.is_finite().then_some(posture_deg),
-            Contact::Invalid => None,
-        }
     }
 }
 
@@ -138,10 +115,6 @@ mod tests {
             contacts(&gate, &[-0.1, -0.2, -3.0, -0.19, 0.0, 0.5, 3.0]),
             [Bending, Touch, Touch, Bending, Bending, Bending, Bending]
         );
-        assert_eq!(gate.angle_deg(Touch, 30.0), Some(5.0));
-        assert_eq!(gate.angle_deg(Bending, 30.0), Some(30.0));
-        assert_eq!(gate.angle_deg(Bending, f64::NAN), None);
-        assert_eq!(gate.angle_deg(Contact::Invalid, 30.0), None);
     }
 
     #[test]

@@ -3,11 +3,10 @@
 //! In: predictions and measurements, or a set with how to fit and how to predict (two closures: any model will do).
 //! Out: figures with their units, all of which can be written as JSON. Up to down: [`split`] what is held out,
 //! [`cross`] what comes of it, [`score`] how far off, [`magnitude`] where, [`interval`] and [`coverage`] how sure,
-//! [`learning`] with how much data, [`effect`] what an option changes, [`rows`] whether rows were seen after all.
+//! [`learning`] with how much data, [`rows`] whether rows were seen after all.
 
 mod coverage;
 mod cross;
-mod effect;
 #[cfg(test)]
 pub(crate) mod fixture;
 mod interval;
@@ -20,11 +19,10 @@ pub(crate) mod sum;
 
 pub use coverage::{Coverage, CrossCoverage, coverage, cross_coverage, nested_coverage};
 pub use cross::{CrossFault, CrossValidation, Flattery, FoldResult, FoldSpread, cross_validate};
-pub use effect::{Effect, EffectFault, friction_effect, lag_effect};
 pub use interval::{IntervalFault, Intervals, calibrate};
 pub use learning::{LearningFault, LearningPoint, learn_by_recordings, learn_by_share};
 pub use magnitude::{Bin, ByMagnitude, MagnitudeFault, by_magnitude, magnitude_edges};
 pub(crate) use rows::hex;
-pub use rows::{dataset_hash, recording_hashes, row_hashes, shared_rows};
+pub use rows::{recording_hashes, row_hashes, shared_rows};
 pub use score::{Scores, TargetScore, score};
 pub use split::{By, Fold, SplitFault, folds};

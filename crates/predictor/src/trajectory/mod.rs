@@ -9,7 +9,7 @@
 //!
 //! | equation | here |
 //! |---|---|
-//! | 19, % error = F' tau / F = f tau | [`percent_error`], [`rate_limit_per_s`], [`rate_limits`] |
+//! | 19, % error = F' tau / F = f tau | [`rate_limit_per_s`], [`rate_limits`] |
 //! | 20, dt = a F_z dF_z | [`Spiral::density_s_per_n2`] |
 //! | 21 to 23, the spiral | [`Spiral`] |
 //! | 24, 2 pi f_c < f | [`circling_limit_hz`] |
@@ -29,7 +29,7 @@ pub use bending::{Bending, RandomBending};
 pub use coverage::{CONE_CELLS, ConeCoverage, Evenness, Hole, cone_coverage};
 pub use random::RandomForce;
 pub use space::{Density, ForceSpace, ForceSpaceFault};
-pub use speed::{RateLimits, circling_limit_hz, percent_error, rate_limit_per_s, rate_limits};
+pub use speed::{RateLimits, circling_limit_hz, rate_limit_per_s, rate_limits};
 pub use spiral::{RELEASE_S, Spiral};
 pub use wave::Wave;
 

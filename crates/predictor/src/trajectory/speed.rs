@@ -9,12 +9,6 @@ use std::f64::consts::TAU;
 
 use serde::Serialize;
 
-/// Equation 19: the apparent error of force as a share of it, F' tau / F.
-#[must_use]
-pub fn percent_error(rate_n_per_s: f64, force_n: f64, tau_s: f64) -> f64 {
-    rate_n_per_s * tau_s / force_n
-}
-
 /// Equation 19 solved for f: the largest relative rate, per second, whose error is `share` of the force. 1 for 10 % and
 /// 0.1 s.
 #[must_use]
@@ -120,7 +114,6 @@ mod tests {
     #[test]
     fn ten_per_cent_and_a_tenth_of_a_second_allow_one_newton_a_second_at_one_newton() {
         assert_eq!(rate_limit_per_s(0.1, 0.1), 1.0);
-        assert_eq!(percent_error(1.0, 1.0, 0.1), 0.1);
         // The thesis rounds 0.159 Hz to 0.15.
         assert!((circling_limit_hz(1.0) - 0.159_154_943).abs() <= 1e-9);
     }
