@@ -1,10 +1,8 @@
 //! Choices by a word, the same on the command line and in pipeline files.
 //!
-//! A choice lists its words once ([`Words::WORDS`]); serde reads and writes it with `#[serde(with = "crate::words")]`.
+//! A choice lists its words once ([`Words::WORDS`]).
 
 use std::borrow::Cow;
-
-use serde::{Deserialize, Deserializer, Serializer};
 
 /// A choice of few, each with a word.
 pub trait Words: Copy + PartialEq + Send + Sync + 'static {
@@ -73,46 +71,6 @@ fn escaped(text: &str, hidden: impl Fn(char) -> bool) -> Cow<'_, str> {
     Cow::Owned(clear)
 }
 
-/// Writes the word.
-///
-/// # Errors
-/// The serializer's.
-pub fn serialize<T: Words, S: Serializer>(choice: &T, to: S) -> Result<S::Ok, S::Error> {
-    to.serialize_str(choice.word())
-}
-
-/// Reads a word.
-///
-/// # Errors
-/// No text, or a word that there is not.
-pub fn deserialize<'de, T: Words, D: Deserializer<'de>>(from: D) -> Result<T, D::Error> {
-    T::by_word(&String::deserialize(from)?).map_err(serde::de::Error::custom)
-}
-
-/// A choice that need not be made: `#[serde(with = "crate::words::optional")]`.
-pub mod optional {
-    use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
-    use super::Words;
-
-    /// Writes the word.
-    ///
-    /// # Errors
-    /// The serializer's.
-    pub fn serialize<T: Words, S: Serializer>(choice: &Option<T>, to: S) -> Result<S::Ok, S::Error> {
-        choice.map(T::word).serialize(to)
-    }
-
-    /// Reads a word.
-    ///
-    /// # Errors
-    /// No text, or a word that there is not.
-    pub fn deserialize<'de, T: Words, D: Deserializer<'de>>(from: D) -> Result<Option<T>, D::Error> {
-        let word = Option::<String>::deserialize(from)?;
-        word.map(|word| T::by_word(&word)).transpose().map_err(serde::de::Error::custom)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -135,17 +93,9 @@ mod tests {
         assert!(matches!(shown("plain"), Cow::Borrowed("plain")));
     }
 
-    #[derive(Debug, serde::Serialize, Deserialize)]
-    struct Turn {
-        #[serde(with = "crate::words")]
-        to: Side,
-    }
-
     #[test]
     fn words_name_choices_and_unknown_ones_list_them() {
-        let read: Turn = toml::from_str("to = \"right\"").unwrap();
-        assert_eq!((read.to, serde_json::to_string(&read).unwrap().as_str()), (Side::Right, "{\"to\":\"right\"}"));
+        assert_eq!((Side::by_word("right"), Side::Right.word()), (Ok(Side::Right), "right"));
         assert_eq!(Side::by_word("up").unwrap_err(), "`up`: choose left or right");
-        assert!(toml::from_str::<Turn>("to = \"up\"").unwrap_err().to_string().contains("choose left or right"));
     }
 }

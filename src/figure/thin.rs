@@ -125,12 +125,6 @@ impl Thinned {
         }
     }
 
-    /// The bins, by time.
-    #[must_use]
-    pub fn bins(&self) -> &[Bin] {
-        &self.bins
-    }
-
     /// Bins after each other in which the series is known.
     fn runs(&self, series: usize) -> impl Iterator<Item = &[Bin]> {
         self.bins.split(move |b| b.series[series].is_none()).filter(|run| !run.is_empty())
@@ -217,9 +211,9 @@ mod tests {
         for k in 0..MOST_BINS {
             thinned.push(k as f64, [if k == 5 { None } else { known(k as f64) }].into_iter());
         }
-        assert_eq!(thinned.bins().len(), MOST_BINS);
-        assert_eq!((thinned.bins()[5].series[0], thinned.bins()[5].lacking), (None, 1));
-        assert!((thinned.bins()[7].series[0].unwrap().highest.value - 7.0).abs() < 1e-12);
+        assert_eq!(thinned.bins.len(), MOST_BINS);
+        assert_eq!((thinned.bins[5].series[0], thinned.bins[5].lacking), (None, 1));
+        assert!((thinned.bins[7].series[0].unwrap().highest.value - 7.0).abs() < 1e-12);
     }
 
     #[test]
@@ -236,7 +230,7 @@ mod tests {
             };
             thinned.push(k as f64, [known(deg), if k % 1000 == 0 { None } else { known(1.0) }].into_iter());
         }
-        let bins = thinned.bins();
+        let bins = &thinned.bins;
         assert!(bins.len() <= MOST_BINS && bins.len() > MOST_BINS / 2 - 2, "{}", bins.len());
         let highest = bins.iter().filter_map(|b| b.series[0]).map(|s| s.highest.value).fold(f64::MIN, f64::max);
         let lowest = bins.iter().filter_map(|b| b.series[0]).map(|s| s.lowest.value).fold(f64::MAX, f64::min);

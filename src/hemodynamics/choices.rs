@@ -47,7 +47,7 @@ impl Words for OpticsChoice {
 
 impl Serialize for OpticsChoice {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        crate::words::serialize(self, to)
+        to.serialize_str(self.word())
     }
 }
 

@@ -44,16 +44,12 @@ pub struct Part {
     pub file: &'static str,
     /// Made only where it is wanted or another stage works on it.
     pub only_if_wanted: bool,
-    /// What it is, in a few words.
-    pub about: &'static str,
 }
 
 /// A kind of job.
 pub struct Kind {
     /// Its name in pipeline files: `posture`.
     pub name: &'static str,
-    /// What it does, in a few words.
-    pub about: &'static str,
     /// What it works on.
     pub roles: &'static [Role],
     /// What it makes.

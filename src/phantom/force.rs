@@ -103,12 +103,6 @@ impl ForceTrajectory {
             Self::Even { hz, seed } => Press::Random(Box::new(RandomForce::even(ForceSpace::default(), *hz, *seed))),
         }
     }
-
-    /// `[Fx, Fy, Fz]` at `t_s`, newtons.
-    #[must_use]
-    pub fn forces_n(&self, t_s: f64) -> [f64; 3] {
-        self.press().forces_n(t_s)
-    }
 }
 
 impl Press {
@@ -148,7 +142,7 @@ mod tests {
             greatest = greatest.max(-random.forces_n(0.05 * f64::from(k))[2]);
         }
         assert!(greatest > 2.4);
-        assert_ne!(random.forces_n(1.0), ForceTrajectory::Random { hz: 0.1, seed: 6 }.forces_n(1.0));
+        assert_ne!(random.forces_n(1.0), ForceTrajectory::Random { hz: 0.1, seed: 6 }.press().forces_n(1.0));
     }
 
     #[test]
@@ -185,9 +179,9 @@ mod tests {
     #[test]
     fn random_forces_are_those_that_every_log_so_far_was_made_of() {
         // From truth/log.csv of `--force random` and these seeds, as the first version wrote it.
-        let before = ForceTrajectory::Random { hz: 0.1, seed: 3 }.forces_n(-0.736_290_583_943_329_6);
+        let before = ForceTrajectory::Random { hz: 0.1, seed: 3 }.press().forces_n(-0.736_290_583_943_329_6);
         assert_eq!(before, [0.352_079_065_887_657_03, -0.074_672_163_413_782_72, -2.581_476_845_979_117_3]);
-        let now = ForceTrajectory::Random { hz: 0.1, seed: 5 }.forces_n(1.357_064_920_219_386_3);
+        let now = ForceTrajectory::Random { hz: 0.1, seed: 5 }.press().forces_n(1.357_064_920_219_386_3);
         assert_eq!(now, [-0.337_984_698_528_149_16, -0.011_927_929_742_758_973, -0.845_660_617_756_789_6]);
     }
 }

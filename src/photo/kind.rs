@@ -54,7 +54,6 @@ fn outline_of<'a>(keys: &Keys, outlines: impl Iterator<Item = (&'a Keys, &'a Pat
 impl Job for NormalizeJob {
     const KIND: Kind = Kind {
         name: "normalize",
-        about: "photographs of nails to pictures in the nail's frame and their sums, a subject at a time",
         roles: &[
             Role { name: "photo", takes: Takes::Many, about: "photographs; their keys are `subject` and `pose`" },
             Role {
@@ -65,14 +64,9 @@ impl Job for NormalizeJob {
             },
         ],
         parts: &[
-            Part { name: "sums", file: "", only_if_wanted: false, about: "nails.csv and the sums by pose, for `maps`" },
-            Part { name: "nails", file: "nails.csv", only_if_wanted: false, about: "every nail, used or not" },
-            Part {
-                name: PICTURES,
-                file: "normalized",
-                only_if_wanted: true,
-                about: "the normalized pictures, <pose>/<subject>.png",
-            },
+            Part { name: "sums", file: "", only_if_wanted: false },
+            Part { name: "nails", file: "nails.csv", only_if_wanted: false },
+            Part { name: PICTURES, file: "normalized", only_if_wanted: true },
         ],
         revision: 2,
         keys: keys::<PhotosOptions>,
@@ -169,7 +163,6 @@ pub struct MapsJob;
 impl Job for MapsJob {
     const KIND: Kind = Kind {
         name: "maps",
-        about: "the sums of all subjects to average coloration and its standard deviation",
         roles: &[
             Role { name: "sums", takes: Takes::Many, about: "what `normalize` made" },
             Role {
@@ -179,19 +172,9 @@ impl Job for MapsJob {
             },
         ],
         parts: &[
-            Part {
-                name: "maps",
-                file: "",
-                only_if_wanted: false,
-                about: "maps/<pose>-{mean,sd,count}.npy and nails.csv",
-            },
-            Part { name: "nails", file: "nails.csv", only_if_wanted: false, about: "every nail, used or not" },
-            Part {
-                name: FIGURES,
-                file: "figures",
-                only_if_wanted: true,
-                about: "pictures: mean, contrast, threshold and sd of every pose, and sheets of all",
-            },
+            Part { name: "maps", file: "", only_if_wanted: false },
+            Part { name: "nails", file: "nails.csv", only_if_wanted: false },
+            Part { name: FIGURES, file: "figures", only_if_wanted: true },
         ],
         revision: 1,
         keys: keys::<NoOptions>,

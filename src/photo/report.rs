@@ -43,9 +43,6 @@ pub struct PhotosFigures {
     /// Every nail, used or not, in the set's order; of merged parts none.
     #[serde(skip)]
     pub nails: Vec<NailRow>,
-    /// The LabelMe files of detected outlines, where they were to be saved.
-    #[serde(skip)]
-    pub outlines: Option<SavedOutlines>,
 }
 
 /// How many subjects a pose's maps hold.
@@ -182,7 +179,6 @@ pub(super) fn of_photos(found: Findings<'_>, partials: &Partials, watch: &Watch<
         }),
         poses,
         threads: rayon::current_num_threads(),
-        outlines,
         nails: rows,
     };
     let failed = failed.iter().map(ToString::to_string).collect();
@@ -200,7 +196,6 @@ pub(super) fn of_merge(parts: &[PathBuf], partials: &Partials, watch: &Watch<'_>
         poses,
         threads: rayon::current_num_threads(),
         nails: Vec::new(),
-        outlines: None,
     };
     let left_out = vec!["photographs: not read again, their sums are joined".into()];
     Report { left_out, notes, ..Report::new("photos merge", watch, figures) }

@@ -44,14 +44,8 @@ pub struct SectionJob;
 impl Job for SectionJob {
     const KIND: Kind = Kind {
         name: "section",
-        about: "the thesis' simulations of the blood under the nail, steps and steady states",
         roles: &[],
-        parts: &[Part {
-            name: "section",
-            file: "",
-            only_if_wanted: false,
-            about: "Fig. 76 to 78, section.md, numbers.json",
-        }],
+        parts: &[Part { name: "section", file: "", only_if_wanted: false }],
         revision: 1,
         keys: keys::<NoOptions>,
         prepare: prepare::<Self>,
@@ -87,18 +81,12 @@ pub struct PressesJob;
 impl Job for PressesJob {
     const KIND: Kind = Kind {
         name: "presses",
-        about: "slow and quick presses of people, and the model fitted to them",
         roles: &[Role {
             name: "data",
             takes: Takes::Many,
             about: "presses as `lunula fit` reads them; slow ones have no time_s",
         }],
-        parts: &[Part {
-            name: "presses",
-            file: "",
-            only_if_wanted: false,
-            about: "Fig. 79 to 82, presses.md, numbers.json",
-        }],
+        parts: &[Part { name: "presses", file: "", only_if_wanted: false }],
         revision: 1,
         keys: keys::<NoOptions>,
         prepare: prepare::<Self>,

@@ -24,9 +24,8 @@ struct TypicalFigures {
 impl Job for TypicalJob {
     const KIND: Kind = Kind {
         name: "typical",
-        about: "one subject's normalized pictures in all poses, as they are and with contrast",
         roles: &[Role { name: "pictures", takes: Takes::One, about: "normalize's part `pictures` of a subject" }],
-        parts: &[Part { name: "sheets", file: "", only_if_wanted: false, about: "typical.png, typical-contrast.png" }],
+        parts: &[Part { name: "sheets", file: "", only_if_wanted: false }],
         revision: 1,
         keys: keys::<NoOptions>,
         prepare: prepare::<Self>,

@@ -74,7 +74,6 @@ impl AlignJob {
 impl Job for AlignJob {
     const KIND: Kind = Kind {
         name: "align",
-        about: "joint angles and a log, on two clocks, to a labelled training set with a certificate",
         roles: &[
             Role { name: "joints", takes: Takes::One, about: "the table of angles of `posture`" },
             Role { name: "log", takes: Takes::One, about: "the log of photodiodes, and forces where it has them" },
@@ -90,22 +89,12 @@ impl Job for AlignJob {
             },
         ],
         parts: &[
-            Part { name: "training", file: "training.csv", only_if_wanted: false, about: "the labelled set" },
-            Part {
-                name: "certificate",
-                file: "training.sync.json",
-                only_if_wanted: false,
-                about: "how the clocks were tied, how well, and what was left unlabelled",
-            },
-            Part { name: MOT, file: "angles.mot", only_if_wanted: true, about: "the angles as an OpenSim motion file" },
-            Part { name: BIDS, file: "bids", only_if_wanted: true, about: "the angles as a BIDS Motion dataset" },
-            Part { name: DLC, file: "markers.csv", only_if_wanted: true, about: "the markers as a DeepLabCut table" },
-            Part {
-                name: PICTURES,
-                file: "training-labels.png",
-                only_if_wanted: true,
-                about: "pictures of the labels over the photodiodes and of the tie",
-            },
+            Part { name: "training", file: "training.csv", only_if_wanted: false },
+            Part { name: "certificate", file: "training.sync.json", only_if_wanted: false },
+            Part { name: MOT, file: "angles.mot", only_if_wanted: true },
+            Part { name: BIDS, file: "bids", only_if_wanted: true },
+            Part { name: DLC, file: "markers.csv", only_if_wanted: true },
+            Part { name: PICTURES, file: "training-labels.png", only_if_wanted: true },
         ],
         revision: 1,
         keys: keys::<AlignKeys>,
@@ -225,9 +214,8 @@ struct JoinFigures {
 impl Job for JoinJob {
     const KIND: Kind = Kind {
         name: "join",
-        about: "labelled sets of several videos to one table in the order of time",
         roles: &[Role { name: "sets", takes: Takes::Many, about: "what `align` made" }],
-        parts: &[Part { name: "training", file: "training.csv", only_if_wanted: false, about: "all rows" }],
+        parts: &[Part { name: "training", file: "training.csv", only_if_wanted: false }],
         revision: 1,
         keys: keys::<Tables>,
         prepare: prepare::<Self>,

@@ -22,11 +22,10 @@ fn outputs(folder: &Path, demand: &Demand) -> CurveOutputs {
 impl Job for CurveJob {
     const KIND: Kind = Kind {
         name: "static",
-        about: "every equilibrium of the hemodynamic model for a range of loads",
         roles: &[PARAMS],
         parts: &[
-            Part { name: "curve", file: TABLE, only_if_wanted: false, about: "the equilibria, one per row" },
-            Part { name: PICTURES, file: "", only_if_wanted: true, about: "photodiodes over the load" },
+            Part { name: "curve", file: TABLE, only_if_wanted: false },
+            Part { name: PICTURES, file: "", only_if_wanted: true },
         ],
         revision: 1,
         keys: keys::<CurveOptions>,

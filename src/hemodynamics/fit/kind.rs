@@ -35,7 +35,6 @@ fn subjects<'a>(keys: impl Iterator<Item = &'a Keys>) -> Vec<String> {
 impl Job for FitJob {
     const KIND: Kind = Kind {
         name: "fit",
-        about: "the hemodynamic model's free parameters to recorded responses",
         roles: &[
             Role {
                 name: RECORDINGS,
@@ -46,25 +45,10 @@ impl Job for FitJob {
             Role { name: TRUTH, takes: Takes::Optional, about: "the true parameters, where they are known" },
         ],
         parts: &[
-            Part {
-                name: "params",
-                file: "fit.toml",
-                only_if_wanted: false,
-                about: "the fitted parameters, for simulate",
-            },
-            Part {
-                name: "estimates",
-                file: "fit-estimates.csv",
-                only_if_wanted: false,
-                about: "each fitted value with its standard error",
-            },
-            Part {
-                name: "fitted",
-                file: "fit-fitted.csv",
-                only_if_wanted: false,
-                about: "measured and fitted voltages",
-            },
-            Part { name: PICTURES, file: "", only_if_wanted: true, about: "measured and fitted" },
+            Part { name: "params", file: "fit.toml", only_if_wanted: false },
+            Part { name: "estimates", file: "fit-estimates.csv", only_if_wanted: false },
+            Part { name: "fitted", file: "fit-fitted.csv", only_if_wanted: false },
+            Part { name: PICTURES, file: "", only_if_wanted: true },
         ],
         revision: 1,
         keys: keys::<FitOptions>,

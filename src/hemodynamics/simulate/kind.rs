@@ -42,15 +42,14 @@ impl SimulateJob {
 impl Job for SimulateJob {
     const KIND: Kind = Kind {
         name: "simulate",
-        about: "the hemodynamic model under loads over time",
         roles: &[
             PARAMS,
             Role { name: LOADS, takes: Takes::Optional, about: "a table time_s,pf1_Pa,pf2_Pa instead of pf1 and pf2" },
             Role { name: START, takes: Takes::Optional, about: "a trajectory whose last row it starts from" },
         ],
         parts: &[
-            Part { name: "trajectory", file: TABLE, only_if_wanted: false, about: "walls and photodiodes over time" },
-            Part { name: PICTURES, file: "", only_if_wanted: true, about: "the response over time" },
+            Part { name: "trajectory", file: TABLE, only_if_wanted: false },
+            Part { name: PICTURES, file: "", only_if_wanted: true },
         ],
         revision: 2,
         keys: keys::<SimulateOptions>,

@@ -15,7 +15,6 @@ pub(in crate::pipeline) static TOYS: &[&Kind] = &[&TRACK, &ALIGN, &TRAIN, &EVALU
 
 static TRACK: Kind = Kind {
     name: "track",
-    about: "videos to angles",
     roles: &[role("video", Takes::One), role("markers", Takes::Optional), role("truth", Takes::Optional)],
     parts: &[part("joints", "joints.csv", false), part("tracks", "tracks.csv", true)],
     revision: 1,
@@ -25,7 +24,6 @@ static TRACK: Kind = Kind {
 
 static ALIGN: Kind = Kind {
     name: "tie",
-    about: "angles onto logs",
     roles: &[role("joints", Takes::One), role("log", Takes::One)],
     parts: &[part("training", "training.csv", false), part("certificate", "training.sync.json", false)],
     revision: 1,
@@ -35,7 +33,6 @@ static ALIGN: Kind = Kind {
 
 static TRAIN: Kind = Kind {
     name: "train",
-    about: "logs to models",
     roles: &[role("data", Takes::Many), role("validate", Takes::AnyNumber)],
     parts: &[part("model", "model.json", false)],
     revision: 1,
@@ -45,7 +42,6 @@ static TRAIN: Kind = Kind {
 
 static EVALUATE: Kind = Kind {
     name: "evaluate",
-    about: "models on logs",
     roles: &[role("model", Takes::One), role("data", Takes::Many)],
     parts: &[part("table", "evaluated.csv", false)],
     revision: 1,
@@ -55,7 +51,6 @@ static EVALUATE: Kind = Kind {
 
 static NORMALIZE: Kind = Kind {
     name: "normalize",
-    about: "photographs to frames",
     roles: &[role("photo", Takes::One), role("annotation", Takes::Optional)],
     parts: &[part("partial", "", false)],
     revision: 1,
@@ -68,7 +63,7 @@ const fn role(name: &'static str, takes: Takes) -> Role {
 }
 
 const fn part(name: &'static str, file: &'static str, only_if_wanted: bool) -> Part {
-    Part { name, file, only_if_wanted, about: "a toy's" }
+    Part { name, file, only_if_wanted }
 }
 
 struct Toy {

@@ -82,7 +82,6 @@ impl PostureJob {
 impl Job for PostureJob {
     const KIND: Kind = Kind {
         name: "posture",
-        about: "a video of a finger with coloured markers to joint angles, each frame with its time and standard error",
         roles: &[
             Role { name: "video", takes: Takes::One, about: "the video" },
             Role {
@@ -93,15 +92,10 @@ impl Job for PostureJob {
             Role { name: "truth", takes: Takes::Optional, about: "the true angles: frame, <joint>_deg" },
         ],
         parts: &[
-            Part { name: "joints", file: "joints.csv", only_if_wanted: false, about: "the table of angles" },
-            Part { name: TRACKS, file: "tracks.csv", only_if_wanted: true, about: "the table of markers" },
-            Part { name: OVERLAY, file: "overlay.mp4", only_if_wanted: true, about: "the video with what was tracked" },
-            Part {
-                name: PICTURES,
-                file: "joints-angles.png",
-                only_if_wanted: true,
-                about: "pictures of the angles, and of the last joint against the one before",
-            },
+            Part { name: "joints", file: "joints.csv", only_if_wanted: false },
+            Part { name: TRACKS, file: "tracks.csv", only_if_wanted: true },
+            Part { name: OVERLAY, file: "overlay.mp4", only_if_wanted: true },
+            Part { name: PICTURES, file: "joints-angles.png", only_if_wanted: true },
         ],
         revision: 1,
         keys: keys::<PostureKeys>,

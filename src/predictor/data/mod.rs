@@ -114,10 +114,6 @@ pub struct Inputs {
     pub x: Array2<f64>,
     /// Rows in which `sensor_status` says that a photodiode in use is saturated or without ambient light.
     pub faulty: Vec<bool>,
-    /// Rows with a cell that is no finite number, only with `drop_invalid`.
-    pub invalid: usize,
-    /// Rows with an empty cell.
-    pub empty: usize,
     /// The recordings, in order.
     pub recordings: Vec<Recording>,
     /// What was done to a raw log: how its ambient light was taken away.
@@ -279,12 +275,9 @@ pub fn read_inputs(path: &Path, inputs: &[String], rows: &RowOptions) -> Result<
     let mut splitter = Splitter::new(&source, &called, 0);
     (0..source.rows()).for_each(|row| splitter.take(row));
     splitter.finish(&mut recordings, &mut warnings);
-    let missing = |row: &usize| !source.invalid[*row] && source.x.iter().any(|column| column[*row].is_nan());
-    let empty = (0..source.rows()).filter(missing).count();
     let x = Array2::from_shape_fn((source.rows(), inputs.len()), |(row, column)| source.x[column][row]);
-    let invalid = source.invalid.iter().filter(|invalid| **invalid).count();
     let Source { time_s, faulty, notes, .. } = source;
-    Ok(Inputs { time_s, x, faulty, invalid, empty, recordings, notes, warnings })
+    Ok(Inputs { time_s, x, faulty, recordings, notes, warnings })
 }
 
 /// Files that are given more than once.

@@ -47,11 +47,10 @@ fn read_kind<K: KindOptions>(word: &str, table: &toml::Table) -> Result<(Traject
 impl Job for TrajectoryJob {
     const KIND: Kind = Kind {
         name: "trajectory",
-        about: "tables of forces or angles for a prompter to play",
         roles: &[],
         parts: &[
-            Part { name: "trajectory", file: TABLE, only_if_wanted: false, about: "forces or angles over time" },
-            Part { name: PICTURES, file: "", only_if_wanted: true, about: "its path and over time (Fig. 90 to 93)" },
+            Part { name: "trajectory", file: TABLE, only_if_wanted: false },
+            Part { name: PICTURES, file: "", only_if_wanted: true },
         ],
         revision: 1,
         keys: all_keys,

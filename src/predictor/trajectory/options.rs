@@ -59,15 +59,6 @@ pub struct TrajectoryOptions {
     pub error: f64,
 }
 
-impl Kind {
-    /// The spiral of the thesis.
-    pub const FORCE: Self = Self::Force { fs_per_n: 1.0, fc_hz: 0.15 };
-    /// Random forces that keep equation 19's default limit.
-    pub const RANDOM: Self = Self::Random { hz: 0.03, seed: 1 };
-    /// The thesis' bending.
-    pub const POSTURE: Self = Self::Posture { hz: 0.1, seed: None };
-}
-
 impl TrajectoryOptions {
     /// The thesis' own figures.
     #[must_use]

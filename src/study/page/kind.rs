@@ -17,7 +17,6 @@ impl Job for StudyJob {
     /// Its roles are named as the study's parts.
     const KIND: Kind = Kind {
         name: "study",
-        about: "every data figure of the thesis, and what its text states beside what came out",
         roles: &[
             role("normal", "responses to normal force"),
             role("lateral", "responses to lateral shear"),
@@ -36,14 +35,9 @@ impl Job for StudyJob {
             role("compare", "models compared over subjects"),
         ],
         parts: &[
-            Part { name: "page", file: "study.html", only_if_wanted: false, about: "the page" },
-            Part {
-                name: "statements",
-                file: "statements.csv",
-                only_if_wanted: false,
-                about: "every statement, judged",
-            },
-            Part { name: "numbers", file: "numbers.json", only_if_wanted: false, about: "what they are judged by" },
+            Part { name: "page", file: "study.html", only_if_wanted: false },
+            Part { name: "statements", file: "statements.csv", only_if_wanted: false },
+            Part { name: "numbers", file: "numbers.json", only_if_wanted: false },
         ],
         revision: 1,
         keys: keys::<PageOptions>,

@@ -14,20 +14,14 @@ pub struct ResponsesJob(ResponsesOptions);
 impl Job for ResponsesJob {
     const KIND: Kind = Kind {
         name: "responses",
-        about: "how photodiodes answer to a force or to bending that goes up and down, averaged over cycles",
         roles: &[Role {
             name: "data",
             takes: Takes::Many,
             about: "recordings with photodiodes and the force or angle",
         }],
         parts: &[
-            Part {
-                name: "responses",
-                file: "",
-                only_if_wanted: false,
-                about: "pictures, responses.csv and numbers.json",
-            },
-            Part { name: "table", file: "responses.csv", only_if_wanted: false, about: "averages over cycles" },
+            Part { name: "responses", file: "", only_if_wanted: false },
+            Part { name: "table", file: "responses.csv", only_if_wanted: false },
         ],
         revision: 1,
         keys: keys::<ResponsesOptions>,

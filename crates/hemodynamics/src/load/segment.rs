@@ -104,25 +104,6 @@ impl Piece {
     }
 }
 
-/// Half the distance over which a function's slope is taken, as a part of its segment.
-const SLOPE_PART: f64 = 1e-5;
-
-impl Piece {
-    /// The derivative by time, Pa/s, within a segment.
-    fn slope(&self, time_s: f64, [from_s, to_s]: [f64; 2]) -> f64 {
-        match self {
-            Piece::Constant(_) => 0.0,
-            Piece::Line { from: [from_s, first], to: [to_s, last] } => (last - first) / (to_s - from_s),
-            Piece::Sine { amplitude, angular, .. } => amplitude * angular * libm::cos(angular * time_s),
-            Piece::Function { .. } => {
-                let half = SLOPE_PART * (to_s - from_s);
-                let (first, last) = ((time_s - half).max(from_s), (time_s + half).min(to_s));
-                if last > first { (self.at(last) - self.at(first)) / (last - first) } else { 0.0 }
-            }
-        }
-    }
-}
-
 impl Loads {
     /// Pressures on the fingertip over the constant blood pressures of the parameters.
     pub fn on(parameters: &Parameters, proximal: Load, distal: Load) -> Loads {
@@ -192,15 +173,6 @@ impl Segment {
     pub(crate) fn after(&self, offset_s: f64) -> Inputs {
         let [upstream_pa, downstream_pa, proximal_pa, distal_pa] =
             [0, 1, 2, 3].map(|k| self.pieces[k].after(self.from_s, offset_s));
-        Inputs { upstream_pa, downstream_pa, proximal_pa, distal_pa }
-    }
-
-    /// How fast the inputs change at a time of the segment, Pa/s: exact but for functions, whose slope is the
-    /// difference quotient over 2e-5 of the segment.
-    pub fn slope(&self, time_s: f64) -> Inputs {
-        let within = [self.from_s, self.to_s];
-        let [upstream_pa, downstream_pa, proximal_pa, distal_pa] =
-            [0, 1, 2, 3].map(|k| self.pieces[k].slope(time_s, within));
         Inputs { upstream_pa, downstream_pa, proximal_pa, distal_pa }
     }
 

@@ -1,5 +1,3 @@
-use std::f64::consts::PI;
-
 use super::*;
 use crate::parameters::Parameters;
 
@@ -175,25 +173,4 @@ fn functions_may_answer_anything() {
     assert!(matches!(Load::function(|t| t, &[0.0, f64::NAN]), Err(LoadFault::NotFinite { .. })));
     assert!(matches!(Load::function(|t| t, &[1.0, 1.0]), Err(LoadFault::Order { .. })));
     assert!(matches!(Load::function(|t| t, &[1.0, 0.5]), Err(LoadFault::Order { .. })));
-}
-
-#[test]
-fn slopes_are_derivatives() {
-    // Exact for what is straight or a sine; a function's is a difference, measured 1.5e-3 Pa/s of up to 300.
-    let cubic = Load::function(|t| 100.0 * t * t * t, &[0.5]).unwrap();
-    let loads = Loads {
-        upstream: load("sine:5000+1000@2"),
-        downstream: load("7"),
-        proximal: load("ramp:0..300@0..2"),
-        distal: cubic,
-    };
-    for segment in loads.segments(0.0, 1.0) {
-        for part in [0.0, 0.3, 1.0] {
-            let t = segment.from_s + part * (segment.to_s - segment.from_s);
-            let slope = segment.slope(t);
-            assert!((slope.upstream_pa - 4000.0 * PI * (4.0 * PI * t).cos()).abs() <= 1e-9);
-            assert_eq!([slope.downstream_pa, slope.proximal_pa], [0.0, 150.0]);
-            assert!((slope.distal_pa - 300.0 * t * t).abs() <= 2e-3, "{t}: {}", slope.distal_pa);
-        }
-    }
 }

@@ -74,11 +74,6 @@ impl Solver {
         Solver { model: model.clone(), fifth: None, ninth: None, thirteenth: None }
     }
 
-    /// The model.
-    pub fn model(&self) -> &Model {
-        &self.model
-    }
-
     /// Solves another model from now on; the memory is kept where it has as many walls.
     pub fn replace(&mut self, model: &Model) {
         if model.walls() == self.model.walls() {

@@ -16,11 +16,10 @@ pub struct AnalyseJob;
 impl Job for AnalyseJob {
     const KIND: Kind = Kind {
         name: "analyse",
-        about: "singular values and modes of a model",
         roles: &[Role { name: "model", takes: Takes::One, about: "a model of train" }],
         parts: &[
-            Part { name: "modes", file: "modes.csv", only_if_wanted: false, about: "one row per mode" },
-            Part { name: PICTURES, file: "", only_if_wanted: true, about: "the modes as bars" },
+            Part { name: "modes", file: "modes.csv", only_if_wanted: false },
+            Part { name: PICTURES, file: "", only_if_wanted: true },
         ],
         revision: 1,
         keys: keys::<NoOptions>,

@@ -22,7 +22,6 @@ pub struct CompareJob(CompareChoices);
 impl Job for CompareJob {
     const KIND: Kind = Kind {
         name: "compare",
-        about: "models and sets of recordings over several people",
         roles: &[
             Role { name: "set1", takes: Takes::Many, about: "the touch protocol's first repetition, of each subject" },
             Role { name: "set2", takes: Takes::Many, about: "the second, which is trained on as well" },
@@ -32,13 +31,8 @@ impl Job for CompareJob {
             Role { name: "bending_random", takes: Takes::Many, about: "random bending, with J2" },
         ],
         parts: &[
-            Part {
-                name: "table",
-                file: "comparisons.csv",
-                only_if_wanted: false,
-                about: "RMSE, mean and SD over people",
-            },
-            Part { name: PICTURES, file: "", only_if_wanted: true, about: "Fig. 105 to 113" },
+            Part { name: "table", file: "comparisons.csv", only_if_wanted: false },
+            Part { name: PICTURES, file: "", only_if_wanted: true },
         ],
         revision: 1,
         keys: keys::<CompareChoices>,

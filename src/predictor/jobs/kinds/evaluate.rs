@@ -17,25 +17,14 @@ pub struct EvaluateJob(EvaluateChoices);
 impl Job for EvaluateJob {
     const KIND: Kind = Kind {
         name: "evaluate",
-        about: "how far off a model is on recordings",
         roles: &[
             Role { name: "model", takes: Takes::One, about: "a model of train" },
             Role { name: "data", takes: Takes::Many, about: "recordings with the model's photodiodes and targets" },
         ],
         parts: &[
-            Part {
-                name: "merit",
-                file: "merit.csv",
-                only_if_wanted: false,
-                about: "errors, one row per target and set of rows",
-            },
-            Part {
-                name: ROWS,
-                file: "predicted.csv",
-                only_if_wanted: true,
-                about: "measured and predicted, one row per row of the recordings",
-            },
-            Part { name: PICTURES, file: "", only_if_wanted: true, about: "over time, as scatter and by size" },
+            Part { name: "merit", file: "merit.csv", only_if_wanted: false },
+            Part { name: ROWS, file: "predicted.csv", only_if_wanted: true },
+            Part { name: PICTURES, file: "", only_if_wanted: true },
         ],
         revision: 1,
         keys: keys::<EvaluateChoices>,

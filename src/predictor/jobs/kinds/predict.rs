@@ -18,7 +18,6 @@ pub struct PredictJob(PredictOptions);
 impl Job for PredictJob {
     const KIND: Kind = Kind {
         name: "predict",
-        about: "forces and angle from photodiodes",
         roles: &[
             Role { name: "data", takes: Takes::One, about: "a recording" },
             Role {
@@ -27,12 +26,7 @@ impl Job for PredictJob {
                 about: "a model of force, of posture, or both: then they are gated",
             },
         ],
-        parts: &[Part {
-            name: "predicted",
-            file: "predicted.csv",
-            only_if_wanted: false,
-            about: "predictions, one row per row of the recording",
-        }],
+        parts: &[Part { name: "predicted", file: "predicted.csv", only_if_wanted: false }],
         revision: 1,
         keys: keys::<PredictChoices>,
         prepare: prepare::<Self>,

@@ -18,19 +18,13 @@ pub struct PruneJob(PruneChoices);
 impl Job for PruneJob {
     const KIND: Kind = Kind {
         name: "prune",
-        about: "the linear model's errors for every subset of the photodiodes",
         roles: &[
             Role { name: "data", takes: Takes::Many, about: "recordings to train on" },
             Role { name: "validate", takes: Takes::Many, about: "others to compare on" },
         ],
         parts: &[
-            Part { name: "subsets", file: "subsets.csv", only_if_wanted: false, about: "errors, one row per subset" },
-            Part {
-                name: PICTURES,
-                file: "",
-                only_if_wanted: true,
-                about: "without one photodiode, the best of each number",
-            },
+            Part { name: "subsets", file: "subsets.csv", only_if_wanted: false },
+            Part { name: PICTURES, file: "", only_if_wanted: true },
         ],
         revision: 1,
         keys: keys::<PruneChoices>,

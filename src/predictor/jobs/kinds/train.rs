@@ -19,7 +19,6 @@ pub struct TrainJob(TrainChoices);
 impl Job for TrainJob {
     const KIND: Kind = Kind {
         name: "train",
-        about: "recordings of photodiodes with forces or angles to a model",
         roles: &[
             Role { name: "data", takes: Takes::Many, about: "recordings to train on" },
             Role { name: "validate", takes: Takes::AnyNumber, about: "recordings to report on" },
@@ -30,19 +29,9 @@ impl Job for TrainJob {
             },
         ],
         parts: &[
-            Part { name: "model", file: "model.json", only_if_wanted: false, about: "the model" },
-            Part {
-                name: "merit",
-                file: "merit.csv",
-                only_if_wanted: false,
-                about: "errors on the rows trained on and reported on",
-            },
-            Part {
-                name: CURVE,
-                file: "learning-curve.csv",
-                only_if_wanted: true,
-                about: "the error against how much was trained on, and a picture",
-            },
+            Part { name: "model", file: "model.json", only_if_wanted: false },
+            Part { name: "merit", file: "merit.csv", only_if_wanted: false },
+            Part { name: CURVE, file: "learning-curve.csv", only_if_wanted: true },
         ],
         revision: 1,
         keys: keys::<TrainChoices>,
