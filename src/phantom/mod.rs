@@ -23,4 +23,5 @@ pub mod video;
 mod wave;
 
 pub use faults::Faults;
+pub use place::Unwritten;
 pub use recording::{Cost, Recording, RecordingError};

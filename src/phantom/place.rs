@@ -1,9 +1,25 @@
 //! What others wrote into a folder stays.
 
+use std::io;
 use std::path::{Path, PathBuf};
+
+use thiserror::Error;
 
 /// Synthetic photographs, whose `truth` is a folder of theirs alone.
 pub(super) const PHOTOS_RECORD: &str = "truth/phantom.json";
+
+/// A file or folder that could not be written.
+#[derive(Debug, Error)]
+#[error("{}: cannot be written: {source}", path.display())]
+pub struct Unwritten {
+    path: PathBuf,
+    source: io::Error,
+}
+
+pub(super) fn refused(path: &Path) -> impl FnOnce(io::Error) -> Unwritten {
+    let path = path.to_owned();
+    move |source| Unwritten { path, source }
+}
 
 /// What stands under `out`, is one of `names`, and was not written by whoever writes `record`; or belongs to
 /// photographs.

@@ -11,13 +11,13 @@
 //! The force is the finger's on the surface, measured: pressing is a negative `Fz_N`. Pressures are that force on 1
 //! cm2. Walls touch instead of closing: fit with `--collapse contact`.
 
+use std::fs;
 use std::path::{Path, PathBuf};
-use std::{fs, io};
 
 use serde::Serialize;
 use thiserror::Error;
 
-use super::place::in_the_way;
+use super::place::{Unwritten, in_the_way, refused};
 use crate::files::{Staging, WriteError};
 use crate::hemodynamics::{HemodynamicsError, Person, Pressed, Recorded};
 use crate::table::{Column, TableError, TableWriter, Value};
@@ -50,24 +50,14 @@ pub enum Error {
     #[error("{} stands already and is no synthetic press's; choose another --out", .0.display())]
     InTheWay(PathBuf),
     /// A file or folder could not be written.
-    #[error("{}: cannot be written: {source}", path.display())]
-    Write {
-        /// The file or folder.
-        path: PathBuf,
-        /// What the system says.
-        source: io::Error,
-    },
+    #[error(transparent)]
+    Write(#[from] Unwritten),
     /// The results could not be put in their places.
     #[error(transparent)]
     Place(#[from] WriteError),
     /// A table could not be written.
     #[error(transparent)]
     Table(#[from] TableError),
-}
-
-fn refused(path: &Path) -> impl FnOnce(io::Error) -> Error {
-    let path = path.to_owned();
-    move |source| Error::Write { path, source }
 }
 
 /// Writes both presses under `out`; presses written there before are replaced.

@@ -1,8 +1,8 @@
 //! A log and its truth to files; everything is put in its place at the end.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use std::{fs, io};
 
 use serde::Serialize;
 use thiserror::Error;
@@ -11,7 +11,7 @@ use super::angles::write_angles;
 use super::{LogOptions, LogScene, Row, Stamps};
 use crate::files::{Staging, WriteError};
 use crate::phantom::finger::JOINTS;
-use crate::phantom::place::in_the_way;
+use crate::phantom::place::{Unwritten, in_the_way, refused};
 use crate::phantom::sensor::CHANNELS;
 use crate::table::{Column, TableError, TableWriter, Value};
 
@@ -32,13 +32,8 @@ pub enum Error {
     #[error("{} stands already and is no synthetic log's; choose another --out", .0.display())]
     InTheWay(PathBuf),
     /// A file or folder could not be written.
-    #[error("{}: cannot be written: {source}", path.display())]
-    Write {
-        /// The file or folder.
-        path: PathBuf,
-        /// What the system says.
-        source: io::Error,
-    },
+    #[error(transparent)]
+    Write(#[from] Unwritten),
     /// The results could not be put in their places.
     #[error(transparent)]
     Place(#[from] WriteError),
@@ -61,11 +56,6 @@ pub struct Summary {
 /// The files of a log, relative to its folder.
 pub(in crate::phantom) fn files() -> Vec<String> {
     RESULTS.map(str::to_owned).to_vec()
-}
-
-fn refused(path: &Path) -> impl FnOnce(io::Error) -> Error {
-    let path = path.to_owned();
-    move |source| Error::Write { path, source }
 }
 
 /// Writes `scene` under `out`; a synthetic log written there before is replaced, a video stays.
@@ -171,7 +161,7 @@ fn write_record(scene: &LogScene, path: &Path) -> Result<(), Error> {
         record["posture_shift_deg"] = scene.posture_shift_rad().map(f64::to_degrees).into_iter().collect();
     }
     let text = serde_json::to_vec_pretty(&record).map_err(|error| refused(path)(error.into()))?;
-    fs::write(path, text).map_err(refused(path))
+    Ok(fs::write(path, text).map_err(refused(path))?)
 }
 
 #[cfg(test)]

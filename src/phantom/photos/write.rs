@@ -21,7 +21,7 @@ use crate::{
     labelme::{self, LabelMe, Shape, to_labelme},
     phantom::{
         nail::{NailScene, Pose, SceneFault},
-        place::{PHOTOS_RECORD as RECORD, in_the_way},
+        place::{PHOTOS_RECORD as RECORD, Unwritten, in_the_way, refused},
     },
 };
 
@@ -41,13 +41,8 @@ pub enum Error {
     #[error("{} stands already and is no synthetic set; choose another --out", .0.display())]
     InTheWay(PathBuf),
     /// A file or folder could not be written.
-    #[error("{}: cannot be written: {source}", path.display())]
-    Write {
-        /// The file or folder.
-        path: PathBuf,
-        /// What the system says.
-        source: io::Error,
-    },
+    #[error(transparent)]
+    Write(#[from] Unwritten),
     /// The results could not be put in their places.
     #[error(transparent)]
     Place(#[from] WriteError),
@@ -131,11 +126,6 @@ impl PhotoOptions {
         }
         files
     }
-}
-
-fn refused(path: &Path) -> impl FnOnce(io::Error) -> Error {
-    let path = path.to_owned();
-    move |source| Error::Write { path, source }
 }
 
 fn folder(path: PathBuf) -> Result<PathBuf, Error> {
@@ -281,13 +271,13 @@ fn encode(picture: &DynamicImage, format: FileFormat, path: &Path) -> Result<(),
                 .map_err(failed)?;
         }
     }
-    fs::write(path, bytes).map_err(refused(path))
+    Ok(fs::write(path, bytes).map_err(refused(path))?)
 }
 
 fn write_npy<T: WritableElement>(path: &Path, array: &Array2<T>) -> Result<(), Error> {
     let mut bytes = Vec::new();
     array.write_npy(&mut bytes).map_err(|e| refused(path)(io::Error::other(e)))?;
-    fs::write(path, bytes).map_err(refused(path))
+    Ok(fs::write(path, bytes).map_err(refused(path))?)
 }
 
 fn write_table(path: &Path, rows: &[PhotoTruth]) -> Result<(), Error> {
@@ -295,5 +285,5 @@ fn write_table(path: &Path, rows: &[PhotoTruth]) -> Result<(), Error> {
     for row in rows {
         writer.serialize(row).map_err(|e| refused(path)(e.into()))?;
     }
-    writer.flush().map_err(refused(path))
+    Ok(writer.flush().map_err(refused(path))?)
 }

@@ -1,10 +1,10 @@
 //! A study to files: recordings side by side, everything put in its place at the end.
 
 use std::collections::BTreeSet;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
-use std::{fs, io};
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -13,7 +13,7 @@ use thiserror::Error;
 use super::{RECORD, Study, StudyOptions, TABLES};
 use crate::files::{Staging, WriteError};
 use crate::job::{Interrupted, Watch};
-use crate::phantom::place::in_the_way;
+use crate::phantom::place::{Unwritten, in_the_way, refused};
 use crate::phantom::{Recording, RecordingError};
 use crate::stages::{Stage, Stages};
 
@@ -24,13 +24,8 @@ pub enum StudyError {
     #[error("{} stands already and is no synthetic study's; choose another --out", .0.display())]
     InTheWay(PathBuf),
     /// A file or folder could not be written.
-    #[error("{}: cannot be written: {source}", path.display())]
-    Write {
-        /// The file or folder.
-        path: PathBuf,
-        /// What the system says.
-        source: io::Error,
-    },
+    #[error(transparent)]
+    Write(#[from] Unwritten),
     /// The results could not be put in their places.
     #[error(transparent)]
     Place(#[from] WriteError),
@@ -60,11 +55,6 @@ pub struct StudySummary {
     pub stages: Vec<Stage>,
     /// From beginning to end.
     pub total_s: f64,
-}
-
-fn refused(path: &Path) -> impl FnOnce(io::Error) -> StudyError {
-    let path = path.to_owned();
-    move |source| StudyError::Write { path, source }
 }
 
 /// Writes a study under `out`; a study written there before is replaced, unless somebody put files of their own into

@@ -1,8 +1,8 @@
 //! A scene to files: frames are drawn in parallel and encoded in order, and everything is put in its place at the end.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use std::{fs, io};
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -12,7 +12,7 @@ use super::scene::TICKS_PER_S;
 use super::{FrameTruth, MarkerStatus, Scene, Siting, VideoOptions};
 use crate::files::{Staging, WriteError};
 use crate::job::{Interrupted, Watch};
-use crate::phantom::place::in_the_way;
+use crate::phantom::place::{Unwritten, in_the_way, refused};
 use crate::table::{Column, TableError, TableWriter, Value};
 use crate::video::{Encoder, Encoding, Picture, VideoError};
 
@@ -30,13 +30,8 @@ pub enum Error {
     #[error("{} stands already and is no synthetic video's; choose another --out", .0.display())]
     InTheWay(PathBuf),
     /// A file or folder could not be written.
-    #[error("{}: cannot be written: {source}", path.display())]
-    Write {
-        /// The file or folder.
-        path: PathBuf,
-        /// What the system says.
-        source: io::Error,
-    },
+    #[error(transparent)]
+    Write(#[from] Unwritten),
     /// The results could not be put in their places.
     #[error(transparent)]
     Place(#[from] WriteError),
@@ -84,11 +79,6 @@ impl VideoOptions {
     pub(in crate::phantom) fn files(&self) -> Vec<String> {
         RESULTS.into_iter().filter(|name| self.clock.is_some() || *name != CLOCK).map(str::to_owned).collect()
     }
-}
-
-fn refused(path: &Path) -> impl FnOnce(io::Error) -> Error {
-    let path = path.to_owned();
-    move |source| Error::Write { path, source }
 }
 
 /// Writes `scene` under `out`; a synthetic video written there before is replaced, a log stays.
@@ -259,5 +249,5 @@ fn write_record(scene: &Scene, path: &Path) -> Result<(), Error> {
         "distractors": scene.distractors,
     });
     let text = serde_json::to_vec_pretty(&record).map_err(|error| refused(path)(error.into()))?;
-    fs::write(path, text).map_err(refused(path))
+    Ok(fs::write(path, text).map_err(refused(path))?)
 }
