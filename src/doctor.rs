@@ -44,7 +44,7 @@ pub enum State {
 /// One thing that was examined.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Check {
-    /// The thing.
+    /// In a few words, as the report shows it.
     pub what: String,
     /// How well it is.
     pub state: State,

@@ -32,7 +32,7 @@ pub enum Error {
     /// The file could not be read.
     #[error("{}: cannot be read: {source}", path.display())]
     Read {
-        /// The file.
+        /// The file that was to be read.
         path: PathBuf,
         /// What the system says.
         source: io::Error,
@@ -40,7 +40,7 @@ pub enum Error {
     /// The file could not be written.
     #[error("{}: cannot be written: {source}", path.display())]
     Write {
-        /// The file.
+        /// The file that was to be written.
         path: PathBuf,
         /// What the system says.
         source: io::Error,
@@ -51,13 +51,13 @@ pub enum Error {
         path.display(), MOST_BYTES >> 20
     )]
     TooLong {
-        /// The file.
+        /// The file that was read.
         path: PathBuf,
     },
     /// The file is not LabelMe's JSON.
     #[error("{}: not a LabelMe file: {source}; open it in LabelMe and save it again", path.display())]
     Parse {
-        /// The file.
+        /// The file that was read.
         path: PathBuf,
         /// Where in the file, and what is wrong.
         source: serde_json::Error,

@@ -14,7 +14,7 @@ pub struct Stages {
 /// One stage's share.
 #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Stage {
-    /// Its name.
+    /// As the report calls it.
     pub stage: Cow<'static, str>,
     /// Seconds, summed over threads.
     pub thread_s: f64,
@@ -61,7 +61,7 @@ pub enum Fate {
 /// One stage of a plan.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct Step {
-    /// The stage.
+    /// As the report calls it.
     pub stage: &'static str,
     /// Whether it runs.
     pub fate: Fate,

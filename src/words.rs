@@ -9,7 +9,7 @@ pub trait Words: Copy + PartialEq + Send + Sync + 'static {
     /// Each choice, its word and what it means; the meaning may be empty.
     const WORDS: &'static [(Self, &'static str, &'static str)];
 
-    /// Its word.
+    /// As the command line and pipeline files have it.
     #[must_use]
     fn word(self) -> &'static str {
         Self::WORDS.iter().find(|one| one.0 == self).map_or("", |one| one.1)

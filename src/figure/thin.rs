@@ -12,7 +12,7 @@ pub const MOST_BINS: usize = 2048;
 pub struct Sample {
     /// Along the horizontal axis, seconds.
     pub time_s: f64,
-    /// The value.
+    /// In the series' unit.
     pub value: f64,
     /// Its standard error; NaN where it is not known.
     pub sd: f64,

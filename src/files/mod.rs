@@ -27,7 +27,7 @@ pub enum WriteError {
         .path.display()
     )]
     Folder {
-        /// Which folder.
+        /// The one that was to be written into.
         path: PathBuf,
         /// The system's words.
         why: io::Error,

@@ -62,7 +62,7 @@ pub enum ForceTrajectory {
     Spiral(Spiral),
     /// One force slowly up and down, as in the preliminary experiments.
     Cycles {
-        /// Which.
+        /// Normal, lateral or longitudinal.
         which: Cycles,
         /// How often a second.
         hz: f64,

@@ -29,7 +29,7 @@ pub enum TableError {
     /// The file can't be written.
     #[error("{}: cannot be written ({why})", path.display())]
     Write {
-        /// The file.
+        /// The file that was to be written.
         path: PathBuf,
         /// The system's or the format's words.
         why: String,
@@ -37,7 +37,7 @@ pub enum TableError {
     /// The file can't be read as a table.
     #[error("{}: {what}", path.display())]
     Read {
-        /// The file.
+        /// The file that was to be read.
         path: PathBuf,
         /// What is wrong and what to do.
         what: String,

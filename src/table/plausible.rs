@@ -95,7 +95,6 @@ pub(super) fn check_pages(file: &File, metadata: &ParquetMetaData) -> Result<(),
 
 /// What the header of a page says.
 struct PageHead {
-    /// Its own bytes.
     head: u64,
     packed: u64,
     unpacked: u64,

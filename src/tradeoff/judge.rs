@@ -30,7 +30,7 @@ pub struct Verdict {
     pub choice: &'static str,
     /// By which option.
     pub option: &'static str,
-    /// The error.
+    /// The unit of all errors here.
     pub error_unit: String,
     /// Whether this error decides.
     pub decides: bool,
@@ -54,11 +54,11 @@ pub struct Verdict {
 /// A job's curves.
 #[derive(Debug, Clone, Serialize)]
 pub struct Tradeoff {
-    /// Which job.
+    /// Its name, such as `posture`.
     pub job: &'static str,
     /// Every setting, marked.
     pub rows: Vec<Row>,
-    /// Its curves.
+    /// One per choice and unit of error.
     pub curves: Vec<Verdict>,
     /// Settings that have no answer, and why.
     pub refused: Vec<String>,

@@ -60,10 +60,10 @@ impl Why {
     }
 }
 
-/// The knee.
+/// Where the curve of error over time bends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Knee {
-    /// Which setting.
+    /// Its place among the settings, from 0.
     pub at: usize,
     /// Why that one.
     pub why: Why,

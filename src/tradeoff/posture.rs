@@ -18,7 +18,7 @@ use crate::video::Video;
 /// What is measured, and how often.
 #[derive(Debug, Clone)]
 pub struct Settings {
-    /// The video.
+    /// The one that all settings track.
     pub video: PathBuf,
     /// Its marker file.
     pub markers: PathBuf,

@@ -30,7 +30,7 @@ const GREATEST: [f64; 3] = [179.0, 255.0, 255.0];
 /// A marker to look for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wanted {
-    /// Its name.
+    /// As the layout calls it.
     pub name: String,
     /// Its colour, sRGB.
     pub srgb: [u8; 3],

@@ -11,7 +11,7 @@ use crate::files::Staging;
 /// One measured setting: a row of `tradeoff.csv`.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Row {
-    /// Which job.
+    /// Its name, such as `posture`.
     pub job: &'static str,
     /// Which setting of it.
     pub setting: String,

@@ -8,7 +8,7 @@ pub enum VideoError {
     /// The file can't be opened or is no video.
     #[error("{}: {what}", path.display())]
     Open {
-        /// The file.
+        /// The file that was to be read.
         path: PathBuf,
         /// What is wrong and what to do.
         what: String,
@@ -16,7 +16,7 @@ pub enum VideoError {
     /// The picture's size or samples change in mid stream.
     #[error("{}: {what}", path.display())]
     Changed {
-        /// The file.
+        /// The file that was read.
         path: PathBuf,
         /// What is wrong and what to do.
         what: String,
@@ -24,7 +24,7 @@ pub enum VideoError {
     /// A frame can't be written.
     #[error("{}: {what}", path.display())]
     Write {
-        /// The file.
+        /// The file that was to be written.
         path: PathBuf,
         /// What is wrong and what to do.
         what: String,

@@ -10,7 +10,7 @@ use super::source::{Care, Source};
 pub struct Header {
     /// Columns of the stored picture.
     pub width: usize,
-    /// Its rows.
+    /// Rows of the stored picture.
     pub height: usize,
     /// Number of frames, where the container gives it.
     pub declared_frames: Option<u64>,

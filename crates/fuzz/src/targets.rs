@@ -29,7 +29,6 @@ pub(crate) struct Target {
     pub(crate) run: fn(&Desk, &[u8]),
 }
 
-/// The parsers.
 pub(crate) const TARGETS: &[Target] = &[
     Target { name: "photograph", run: photograph },
     Target { name: "labelme", run: labelme },

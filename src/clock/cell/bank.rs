@@ -23,12 +23,7 @@ struct Glyph {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::clock) enum Verdict {
     /// A digit.
-    Known {
-        digit: u8,
-        confidence: f64,
-        /// Which glyph.
-        glyph: usize,
-    },
+    Known { digit: u8, confidence: f64, glyph: usize },
     /// Most like this digit, yet not its glyph.
     Likely(u8),
     /// Between two digits.

@@ -34,7 +34,6 @@ pub(super) const FLAT: usize = COLUMNS_2 * ROWS_2 * SECOND;
 pub(super) const PARTS: [usize; 8] =
     [REACH * REACH * FIRST, FIRST, 9 * FIRST * SECOND, SECOND, (FLAT + 1) * HIDDEN, HIDDEN, HIDDEN * ANSWERS, ANSWERS];
 
-/// Its weights.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Net {
     pub(super) weights: Vec<f32>,

@@ -25,7 +25,7 @@ pub enum Item {
         name: Option<String>,
         /// Pieces of x, y; a piece of one point is a dot.
         runs: Vec<Vec<[f64; 2]>>,
-        /// Which colour.
+        /// Counted from 0.
         colour: usize,
         /// How wide, pixels.
         width: u32,
@@ -36,7 +36,7 @@ pub enum Item {
         name: Option<String>,
         /// x and y of each.
         points: Vec<[f64; 2]>,
-        /// Which colour.
+        /// Counted from 0.
         colour: usize,
     },
     /// Points with a label beside each, clear of the others where there is room.
@@ -47,7 +47,7 @@ pub enum Item {
         points: Vec<Point>,
         /// Whether the dots are hollow.
         hollow: bool,
-        /// Which colour.
+        /// Counted from 0.
         colour: usize,
     },
     /// A ring or a square about a point.
@@ -58,7 +58,7 @@ pub enum Item {
     Errors {
         /// x, low end, high end; those that are not finite are not drawn.
         marks: Vec<[f64; 3]>,
-        /// Which colour.
+        /// Counted from 0.
         colour: usize,
     },
     /// Bars that stand on zero.
@@ -67,7 +67,7 @@ pub enum Item {
         name: Option<String>,
         /// The bars.
         bars: Vec<Bar>,
-        /// Which colour.
+        /// Counted from 0.
         colour: usize,
     },
     /// The line y = x, from one end of the axes to the other; both axes get the same ends.
@@ -83,7 +83,7 @@ pub enum Item {
         at: [f64; 2],
         /// What is written.
         text: String,
-        /// Which colour.
+        /// Counted from 0.
         colour: usize,
     },
     /// A line of text that begins above a point or ends below it: beside a falling curve.
@@ -92,7 +92,7 @@ pub enum Item {
         at: [f64; 2],
         /// What is written.
         text: String,
-        /// Which colour.
+        /// Counted from 0.
         colour: usize,
         /// Whether it is above.
         above: bool,

@@ -49,7 +49,7 @@ pub enum Error {
     /// A photograph could not be encoded.
     #[error("{}: cannot be encoded: {source}", path.display())]
     Encode {
-        /// The file.
+        /// The photograph.
         path: PathBuf,
         /// What is wrong.
         source: image::ImageError,

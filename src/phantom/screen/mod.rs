@@ -52,7 +52,7 @@ pub struct Clock {
     pub drift_ppm: f64,
     /// Refreshes of the screen a second; none: it changes at once.
     pub refresh_hz: Option<f64>,
-    /// Its digits.
+    /// How its digits are drawn.
     pub font: ClockFont,
     /// Light digits on a dark panel; dark ones on a light panel otherwise.
     pub light_digits: bool,

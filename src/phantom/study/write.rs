@@ -32,7 +32,7 @@ pub enum StudyError {
     /// A recording could not be made.
     #[error("{name}: {why}")]
     Recording {
-        /// Which.
+        /// The recording's folder.
         name: String,
         /// Why.
         why: Box<RecordingError>,

@@ -68,7 +68,7 @@ impl Colours {
 /// A marker to be covered by a stick that comes and goes.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Hide {
-    /// Its name.
+    /// As the layout calls it.
     pub marker: String,
     /// The first frame in which nothing of it is seen.
     pub frame: usize,

@@ -53,7 +53,7 @@ pub struct Stages {
     pub draw_s: f64,
     /// Handing them to the encoder.
     pub encode_s: f64,
-    /// The truth.
+    /// Writing what is in `truth`.
     pub truth_s: f64,
     /// From beginning to end.
     pub total_s: f64,

@@ -5,7 +5,6 @@ use super::Part;
 /// A figure of the thesis.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Figure {
-    /// Its number.
     pub(super) number: &'static str,
     /// The part that has its counterpart.
     pub(super) part: Part,

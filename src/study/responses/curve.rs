@@ -31,11 +31,11 @@ pub struct Curve {
 /// Legs of a recording, its driving signal and one output.
 #[derive(Debug, Clone, Copy)]
 pub struct Source<'a> {
-    /// The legs.
+    /// Parts in which the driving signal rises or falls.
     pub legs: &'a [Leg],
     /// The driving signal.
     pub drive: &'a [f64],
-    /// The output.
+    /// One value per row.
     pub output: &'a [f64],
 }
 

@@ -60,7 +60,7 @@ impl Verdict {
 /// A statement, judged.
 #[derive(Debug, Clone)]
 pub struct Judged {
-    /// The statement.
+    /// As it is in the thesis.
     pub statement: &'static Statement,
     /// What came out, in words.
     pub found: String,

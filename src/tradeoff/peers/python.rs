@@ -37,7 +37,6 @@ const THREADS: [&str; 4] = ["OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_
 pub(in crate::tradeoff) struct Answer {
     /// Seconds of the whole, a number each repeat.
     pub(in crate::tradeoff) seconds: Vec<f64>,
-    /// Which setting.
     pub(in crate::tradeoff) name: String,
     /// Which of several problems.
     pub(in crate::tradeoff) problem: Option<String>,

@@ -47,7 +47,7 @@ pub enum DatasetFault {
     /// A value is NaN or infinite.
     #[error("{name} of row {row} is not finite; leave the row out")]
     NotFinite {
-        /// The column.
+        /// Of a photodiode or a target.
         name: String,
         /// The row, from 0.
         row: usize,

@@ -37,13 +37,13 @@ pub struct FoldResult {
 /// How one target's RMSE spreads over folds.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FoldSpread {
-    /// The target.
+    /// The target's column, such as `Fz_N`.
     pub name: String,
     /// Mean of the folds' RMSE (the thesis' average over subjects), the target's unit; NaN where no fold has any.
     pub mean_rmse: f64,
-    /// The least.
+    /// Of the fold that was predicted best, the target's unit.
     pub least_rmse: f64,
-    /// The greatest.
+    /// Of the fold that was predicted worst, the target's unit.
     pub greatest_rmse: f64,
 }
 

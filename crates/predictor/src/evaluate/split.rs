@@ -27,7 +27,7 @@ pub enum By {
     Rows {
         /// In how many parts.
         folds: usize,
-        /// Which shuffle.
+        /// Decides which rows come into which part.
         seed: u64,
     },
 }

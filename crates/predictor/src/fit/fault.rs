@@ -28,9 +28,9 @@ pub enum FitFault {
          large beside {target}; write them in volts and newtons"
     )]
     Range {
-        /// The term.
+        /// A voltage or a product of two.
         term: String,
-        /// The target.
+        /// Its column, such as `Fz_N`.
         target: String,
     },
     /// Voltages too near to 0 or too large for squares.

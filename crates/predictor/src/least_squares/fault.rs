@@ -5,7 +5,7 @@ use thiserror::Error;
 /// A column that follows from others.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Dependent {
-    /// Which.
+    /// From 0.
     pub column: usize,
     /// From which, ascending; one means that both read alike up to offset and scale.
     pub with: Vec<usize>,
@@ -33,9 +33,9 @@ pub enum LeastSquaresFault {
     NotFinite {
         /// Of the targets, else of the design.
         target: bool,
-        /// The row.
+        /// From 0.
         row: usize,
-        /// The column.
+        /// From 0.
         column: usize,
     },
     /// Fewer rows than unknowns.
@@ -69,9 +69,9 @@ pub enum LeastSquaresFault {
          the target"
     )]
     Range {
-        /// The column.
+        /// From 0.
         column: usize,
-        /// The target.
+        /// From 0.
         target: usize,
     },
 }

@@ -50,7 +50,7 @@ pub enum FileFault {
 /// A model file, read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Opened {
-    /// The model.
+    /// What the file holds.
     pub predictor: Predictor,
     /// The file was edited after it was written: what it says of its training need not be true of its numbers.
     pub edited: bool,

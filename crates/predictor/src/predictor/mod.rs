@@ -21,7 +21,7 @@ use recipe::{Recipe, RecipeFault, Report, predict, with_lags};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Channel {
-    /// Its name.
+    /// Its column, such as `P1` or `Fz_N`.
     pub name: String,
     /// Its unit: V, N, deg, or empty where the name does not tell.
     pub unit: String,
@@ -35,7 +35,7 @@ pub struct Channel {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrainedOn {
-    /// Its name.
+    /// Of the recording, as the dataset has it.
     pub name: String,
     /// Of which session.
     pub session: String,
@@ -116,7 +116,7 @@ impl Predictor {
         })
     }
 
-    /// The model.
+    /// Without what it was trained on.
     #[must_use]
     pub fn model(&self) -> &Model {
         &self.model
@@ -128,7 +128,7 @@ impl Predictor {
         &self.inputs
     }
 
-    /// The targets.
+    /// In the order of the model's outputs.
     #[must_use]
     pub fn targets(&self) -> &[Channel] {
         &self.targets

@@ -36,7 +36,7 @@ pub enum Kind {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Recipe {
-    /// Which model.
+    /// Linear, quadratic or a network.
     pub kind: Kind,
     /// What to do where rows do not determine the linear or quadratic model.
     pub deficient: Deficient,
@@ -55,7 +55,7 @@ pub struct Recipe {
 /// What a fit gives.
 #[derive(Debug, Clone)]
 pub struct Fitted {
-    /// The model.
+    /// Without the names of its columns.
     pub model: Model,
     /// How the fit went.
     pub report: Report,
