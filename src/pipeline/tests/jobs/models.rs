@@ -230,13 +230,13 @@ fn wrong_keys_are_refused_with_what_to_write() {
         ("static", "", "static", "is needed"),
         ("static", "static = '5..1/1'", "static", "before it begins"),
         ("fit", "", "free", "is needed"),
-        ("fit", "free = []\nforce = 'Fz_N'", "area_cm2", "greater than 0"),
+        ("fit", "free = []\nforce = 'Fz_N'", "area_cm2", "is needed"),
         ("fit", "free = ['k_C']\nbounds = { k_C = '1..2x' }", "bounds", "LOW..HIGH"),
         ("fit", "free = []\nnoise = { VP1 = 0 }", "noise", "VP1"),
         ("fit", "free = []\nphotodiode = { P1 = 0 }", "photodiode", "counted from 1"),
         ("trajectory", "", "kind", "is needed"),
-        ("trajectory", "kind = 'posture'\nmu = 1", "mu", "no option of a posture trajectory"),
-        ("trajectory", "kind = 'posture'\nseed = 1", "seed", "random = true"),
+        ("trajectory", "kind = 'posture'\nmu = 1", "mu", "not an option of a posture trajectory"),
+        ("trajectory", "kind = 'posture'\nseed = 1", "random", "is needed"),
         ("trajectory", "kind = 'force'\nseconds = 0", "", "--seconds 0"),
     ] {
         let Err(fault) = prepare(name, stage) else { panic!("{name}: {stage}: is taken") };
