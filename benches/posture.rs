@@ -48,7 +48,7 @@ fn main() {
             ("only decoding", vec![myself.as_str(), DECODE, &video, threads]),
         ];
         if opencv {
-            // VideoCapture decodes with all cores in either case; the rest is told how many to use.
+            // VideoCapture decodes with all cores in either case; the rest is given the number to use.
             runs.push((
                 "Python, OpenCV: VideoCapture, HSV, inRange",
                 vec!["python3", peer, &video, &markers, "", threads],

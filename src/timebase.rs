@@ -88,18 +88,18 @@ mod tests {
         let line =
             Timebase { reference_s: 3.0, at_reference_s: 70.0, at_reference_sd_s: 2e-3, drift: 1e-5, drift_sd: 1e-4 };
         let plain = Timebase { reference_s: 0.0, at_reference_s: line.other_s(0.0), ..line };
-        let told = plain.with_errors([0.0, 4.0, 20.0].map(|t| [t, line.sd_s(t)]));
+        let fitted = plain.with_errors([0.0, 4.0, 20.0].map(|t| [t, line.sd_s(t)]));
         for (got, want) in [
-            (told.reference_s, 3.0),
-            (told.at_reference_sd_s, 2e-3),
-            (told.drift_sd, 1e-4),
-            (told.other_s(9.0), line.other_s(9.0)),
+            (fitted.reference_s, 3.0),
+            (fitted.at_reference_sd_s, 2e-3),
+            (fitted.drift_sd, 1e-4),
+            (fitted.other_s(9.0), line.other_s(9.0)),
         ] {
             assert!((got - want).abs() <= 1e-9, "{got} {want}");
         }
         for same in [[[5.0, 0.01]; 3], [[0.0, 0.01], [5.0, 0.01], [9.0, 0.01]]] {
-            let told = plain.with_errors(same);
-            assert!(told.drift_sd == 0.0 && told.sd_s(100.0) == 0.01);
+            let fitted = plain.with_errors(same);
+            assert!(fitted.drift_sd == 0.0 && fitted.sd_s(100.0) == 0.01);
         }
     }
 

@@ -1,4 +1,4 @@
-//! TOML that people write: every key and value with its place, all faults of a file told together.
+//! TOML that people write: every key and value with its place; all faults of a file are reported together.
 //!
 //! In: a file's text; out: its tables as [`Entry`]s in the file's order, and [`Findings`], the faults with line and
 //! column, both from 1.
@@ -93,7 +93,7 @@ impl<'a> Findings<'a> {
     }
 
     /// Parses the text. A file with one wrong line is no TOML: nothing more can be said of it then, but a doubled key
-    /// is told along with all else.
+    /// is reported along with the rest.
     pub(crate) fn parse(&mut self) -> Option<Spanned<DeTable<'a>>> {
         let (table, errors) = DeTable::parse_recoverable(self.text);
         let mut sound = true;

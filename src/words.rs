@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn words_stand_for_choices_and_others_are_told_which_there_are() {
+    fn words_name_choices_and_unknown_ones_list_them() {
         let read: Turn = toml::from_str("to = \"right\"").unwrap();
         assert_eq!((read.to, serde_json::to_string(&read).unwrap().as_str()), (Side::Right, "{\"to\":\"right\"}"));
         assert_eq!(Side::by_word("up").unwrap_err(), "`up`: choose left or right");

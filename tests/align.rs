@@ -47,7 +47,7 @@ fn truth(dir: &Dir, joint: &str) -> BTreeMap<String, f64> {
         .collect()
 }
 
-/// Labels of a small scene err by no more, degrees RMS; the README tells what is measured on large ones.
+/// Labels of a small scene err by no more, degrees RMS; the README has the figures of large ones.
 const LABEL_RMS_DEG: [(&str, f64); 3] = [("J1", 0.15), ("J2", 0.3), ("J3", 0.5)];
 
 #[track_caller]
@@ -270,7 +270,7 @@ fn exports_for_other_tools() {
 }
 
 #[test]
-fn the_plan_tells_and_does_nothing() {
+fn the_plan_changes_nothing() {
     let dir = scene(&[], &["--no-led"]);
     posture(&dir).expect(0);
     let plan = dir.lunula(&["align", "--joints", "joints.csv", "--log", "s/log.csv", "--plan"]).expect(0).stdout;
@@ -297,9 +297,9 @@ fn the_trade_off_measures_the_clock_read_in_fewer_and_fewer_frames() {
     assert!(every["error"].as_f64().unwrap() <= 6e-3 && few["error"].as_f64().unwrap() <= 0.1, "{report}");
     assert!(few["work"].as_u64().unwrap() * 2 <= every["work"].as_u64().unwrap());
     // Where nothing ties, the report says which and why.
-    let told = report["warnings"].as_array().unwrap().len();
+    let warned = report["warnings"].as_array().unwrap().len();
     let labels = rows.iter().filter(|row| row["choice"] == "bridging").count();
-    assert_eq!(rows.len() + told, 6 + labels, "{report}");
+    assert_eq!(rows.len() + warned, 6 + labels, "{report}");
     assert_eq!(labels, 4, "{report}");
     // Angles over longer gaps label more rows.
     let [few, many] = ["no frame bridged", "gaps of twenty frames"].map(of);

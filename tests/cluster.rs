@@ -42,7 +42,7 @@ fn script(dir: &Dir, arguments: &[&str], set: &[(&str, &str)]) -> Output {
     command.output().expect("bash runs")
 }
 
-/// All results, but not what tells times.
+/// All results except those with times.
 fn results(dir: &Dir, folder: &str) -> BTreeMap<String, Vec<u8>> {
     let mut all = dir.bytes_of(folder);
     all.retain(|name, _| !name.starts_with(".lunula") && name != "report.html" && name != "run.json");

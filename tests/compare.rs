@@ -62,7 +62,7 @@ fn comparisons_are_what_train_and_prune_tell_of_the_same_recordings() {
     assert_eq!(figures, ["105", "106", "108", "109", "110", "111", "112", "113"]);
     for model in ["linear", "quadratic"] {
         for (validate, figure) in [("1-3", "109"), ("1-4", "110")] {
-            let told = format!("{validate}/log.csv");
+            let joined = format!("{validate}/log.csv");
             let train = [
                 "train",
                 "1-1/log.csv",
@@ -75,7 +75,7 @@ fn comparisons_are_what_train_and_prune_tell_of_the_same_recordings() {
                 "m.json",
                 "--json",
             ];
-            let json = dir.lunula(&[&train[..], &["--validate", &told]].concat()).expect(0).json();
+            let json = dir.lunula(&[&train[..], &["--validate", &joined]].concat()).expect(0).json();
             for force in ["Fx_N", "Fy_N", "Fz_N"] {
                 let off = |figure, rmse: &str| {
                     (mean(&report, figure, force, model) - json[rmse]["rmse"][force].as_f64().expect("a number")).abs()
@@ -130,9 +130,9 @@ fn people_are_compared_alike_whatever_the_threads_and_wrong_requests_are_refused
     let both = format!("{first}{}", second.split_once('\n').unwrap().1);
     dir.write("both.csv", both);
     joined.touch[0] = dir.path("both.csv");
-    let told =
+    let message =
         compare(&[joined], &options(), None, &watch).map(|report| report.figures.people).unwrap_err().to_string();
-    assert!(told.contains("both.csv"), "{told}");
+    assert!(message.contains("both.csv"), "{message}");
     stop.store(true, std::sync::atomic::Ordering::Relaxed);
     assert!(matches!(compare(&people, &options(), None, &watch), Err(PredictorError::Interrupted(_))));
 }

@@ -15,7 +15,7 @@ fn with_room(dir: &Dir, room: u32, request: &str) -> (i32, String) {
     (output.status.code().unwrap_or(-1), String::from_utf8(output.stderr).expect("text"))
 }
 
-/// All results but what tells times.
+/// All results except those with times.
 fn timeless(mut all: BTreeMap<String, Vec<u8>>) -> BTreeMap<String, Vec<u8>> {
     all.retain(|name, _| {
         !name.ends_with("run.json") && !name.ends_with("report.html") && !name.starts_with(".lunula/")

@@ -45,8 +45,8 @@ fn what_made_a_recording_is_found_again() {
     )
     .expect(0);
     let report = run(&dir, "fit", "r.csv --free k_C,b_V --out f.json --json").expect(0).json();
-    let told: serde_json::Value = serde_json::from_slice(&std::fs::read(dir.path("f.json")).unwrap()).unwrap();
-    assert_eq!(told["free"], report["free"]);
+    let written: serde_json::Value = serde_json::from_slice(&std::fs::read(dir.path("f.json")).unwrap()).unwrap();
+    assert_eq!(written["free"], report["free"]);
     assert_eq!(report["converged"], true);
     for (name, truth) in [
         ("k_C1_N_per_m", 7e4),
@@ -92,7 +92,7 @@ fn steps_that_jump_at_their_rows_are_found_exactly() {
 }
 
 #[test]
-fn a_static_recording_tells_offset_and_scaling() {
+fn a_static_recording_gives_offset_and_scaling() {
     // Equilibria have no steps: measured 1.1e-15.
     const NEAR: f64 = 1e-12;
     let dir = Dir::new();
@@ -190,7 +190,7 @@ fn photodiodes_that_see_nothing_change_are_said_to_tell_nothing() {
 
 #[test]
 fn voltages_may_be_missing_but_not_be_no_numbers() {
-    // The missing ones were exact, the rest tells the same: measured 9.4e-8.
+    // The missing ones were exact, the rest gives the same: measured 9.4e-8.
     const NEAR: f64 = 1e-5;
     let dir = Dir::new();
     run(&dir, "simulate", &format!("{STEPS} --set k_V_N_per_m=1500 --out r.csv")).expect(0);
@@ -329,10 +329,10 @@ fn noisier_photodiodes_count_less() {
         let report = run(&dir, "fit", options).expect(0).json();
         (report["free"][0]["values"][0].as_f64().unwrap(), report["free"][0]["standard_errors"][0].as_f64().unwrap())
     };
-    let (told, sure) = found(&format!("{options} --noise VP1=1e-5,VP2=1e-3 --out g.json"));
+    let (written, sure) = found(&format!("{options} --noise VP1=1e-5,VP2=1e-3 --out g.json"));
     let (_, unsure) = found(&format!("{options} --noise VP1=1,VP2=1 --out h.json"));
     let value = report["free"][0]["values"][0].as_f64().unwrap();
-    assert!((told - value).abs() <= sure, "{told} {value} {sure}");
+    assert!((written - value).abs() <= sure, "{written} {value} {sure}");
     assert!(sure < 0.5 * unsure, "{sure} {unsure}");
     run(&dir, "fit", &format!("{options} --noise VP1=0 --out i.json")).expect(2).says("VP1=5e-5");
 }

@@ -1,5 +1,5 @@
 //! What the library and the command line promise, seen from outside. One program, for each would link the whole library
-//! anew; `cargo test --test all photos::` runs the tests of one file.
+//! again; `cargo test --test all photos::` runs the tests of one file.
 
 mod align;
 mod align_bad_input;

@@ -68,7 +68,7 @@ fn error_deg(axis: Axis, truth_deg: f64) -> f64 {
     Axis::from_clockwise_rad(axis.clockwise_rad() - truth_deg.to_radians()).clockwise_deg().abs()
 }
 
-/// What came of a set: errors of the told ones, and how many were left out.
+/// What came of a set: errors of those that were decided, and how many were left out.
 #[derive(Debug, Default)]
 struct Tally {
     nails: usize,
@@ -103,9 +103,9 @@ impl Tally {
         }
         tally.errors_deg.sort_by(f64::total_cmp);
         eprintln!(
-            "{} nails, {} told, {} off by over 45 degrees, {} by over 60; median {:.1}, 90 % {:.1}, most {:.1} degrees",
+            "{} nails, {} decided, {} off by over 45 degrees, {} by over 60; median {:.1}, 90 % {:.1}, most {:.1} degrees",
             tally.nails,
-            tally.told(),
+            tally.decided(),
             tally.beyond(45.0),
             tally.beyond(60.0),
             tally.quantile(0.5),
@@ -115,7 +115,7 @@ impl Tally {
         tally
     }
 
-    fn told(&self) -> usize {
+    fn decided(&self) -> usize {
         self.errors_deg.len()
     }
 
@@ -138,7 +138,7 @@ fn the_distal_end_of_real_nails_is_found() {
         Tally::of(&half, |hand| find_axes(&hand.photo, &hand.nails));
     }
     assert_eq!(tally.nails, 127);
-    assert!(tally.told() >= 120, "{} told", tally.told());
+    assert!(tally.decided() >= 120, "{} decided", tally.decided());
     assert_eq!(tally.beyond(45.0), 0);
     assert!(tally.quantile(0.5) < 10.0);
 }
@@ -152,7 +152,7 @@ fn grey_photographs_tell_as_well() {
             image::GrayImage::from_fn(photo.width(), photo.height(), |x, y| image::Luma([photo.get_pixel(x, y).0[1]]));
         find_axes(&green.into(), &hand.nails)
     });
-    assert!(tally.told() >= 115, "{} told", tally.told());
+    assert!(tally.decided() >= 115, "{} decided", tally.decided());
     assert_eq!(tally.beyond(60.0), 0);
 }
 
@@ -162,7 +162,7 @@ fn each_nail_on_its_own() {
     let tally = Tally::of(&hands, |hand| {
         hand.nails.iter().flat_map(|nail| find_axes(&hand.photo, std::slice::from_ref(nail))).collect()
     });
-    assert!(tally.told() >= 110, "{} told", tally.told());
+    assert!(tally.decided() >= 110, "{} decided", tally.decided());
     assert_eq!(tally.beyond(60.0), 0);
 }
 
@@ -243,7 +243,7 @@ fn photographs_seen_otherwise_tell_the_same() {
         let seen: Vec<Hand> = hands.iter().map(view).collect();
         let tally = Tally::of(&seen, |hand| find_axes(&hand.photo, &hand.nails));
         // Measured: 119 (noisy), 121 (greenish), 122 the others.
-        assert!(tally.told() >= 115, "{name}: {} told", tally.told());
+        assert!(tally.decided() >= 115, "{name}: {} decided", tally.decided());
         assert_eq!(tally.beyond(60.0), 0, "{name}");
     }
 }
@@ -286,8 +286,8 @@ fn the_axes_of_phantoms_are_found() {
     });
     assert_eq!(near.nails + far.nails, 400);
     // Measured: all of the far ones, 384 of all, the worst off by 7.2 degrees.
-    assert!(far.told() as f64 >= 0.99 * far.nails as f64, "{} of {} told", far.told(), far.nails);
-    assert!(near.told() + far.told() >= 376, "{} and {} told", near.told(), far.told());
+    assert!(far.decided() as f64 >= 0.99 * far.nails as f64, "{} of {} decided", far.decided(), far.nails);
+    assert!(near.decided() + far.decided() >= 376, "{} and {} decided", near.decided(), far.decided());
     for tally in [near, far] {
         assert!(tally.quantile(0.5) <= 2.0 && tally.quantile(1.0) <= 15.0);
     }

@@ -78,21 +78,21 @@ fn drawn_fingers_are_found_at_every_size_and_direction() {
 
 #[test]
 fn a_nail_cut_by_the_border_is_found_or_left_out() {
-    let mut told = 0;
+    let mut decided = 0;
     for axis_deg in (0..360).step_by(20) {
         for tip in [[0.0, 120.0], [239.0, 120.0], [120.0, 0.0], [120.0, 239.0], [3.0, 3.0]] {
             let (photo, nail) = drawn_finger([240, 240], tip, 40.0, f64::from(axis_deg), 180, 60);
             if let Ok(found) = find_axes(&photo, &[nail]).remove(0) {
-                told += 1;
+                decided += 1;
                 assert!(error_deg(found.axis, f64::from(axis_deg)) <= 45.0, "{axis_deg} at {tip:?}: {found:?}");
             }
         }
     }
-    assert!(told >= 20, "{told} of 90 told");
+    assert!(decided >= 20, "{decided} of 90 decided");
 }
 
 #[test]
-fn where_nothing_tells_the_nail_is_left_out() {
+fn an_undecidable_nail_is_left_out() {
     let nail = ellipse([60.0, 60.0], [12.0, 15.0]);
     let flat = DynamicImage::from(image::GrayImage::from_pixel(120, 120, image::Luma([128])));
     let black = DynamicImage::from(image::GrayImage::new(120, 120));
@@ -114,15 +114,15 @@ fn where_nothing_tells_the_nail_is_left_out() {
 
 #[test]
 fn noise_is_no_finger() {
-    let mut told = 0;
+    let mut decided = 0;
     for seed in 0..200u32 {
         let photo = image::RgbImage::from_fn(160, 160, |x, y| {
             image::Rgb(std::array::from_fn(|c| (128.0 + 90.0 * noise(x + 1000 * seed, y, c as u32)) as u8))
         });
-        told += usize::from(find_axes(&photo.into(), &[ellipse([80.0, 80.0], [10.0, 12.0])])[0].is_ok());
+        decided += usize::from(find_axes(&photo.into(), &[ellipse([80.0, 80.0], [10.0, 12.0])])[0].is_ok());
     }
     // Measured: none.
-    assert!(told <= 1, "{told} of 200 told");
+    assert!(decided <= 1, "{decided} of 200 decided");
 }
 
 #[test]

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use image::{DynamicImage, ImageFormat};
 use targets::{Desk, TARGETS};
 
-/// Set in the process that reads the inputs; with `write`, one that writes the seeds which are no text anew.
+/// Set in the process that reads the inputs; with `write`, one that rewrites the binary seeds.
 const WITHIN: &str = "LUNULA_CORPUS";
 /// Address space for one process that reads all of the corpus, KiB. It takes 0.6 GiB with all libraries; a case that
 /// takes memory by what its header says takes gigabytes.

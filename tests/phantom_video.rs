@@ -21,7 +21,7 @@ fn small() -> VideoOptions {
 
 /// How far the centroids of the markers in a frame lie from the truth: where the same scene with markers of other
 /// colours differs, nothing but the markers does, by their share of each pixel. Each marker is measured in that chroma
-/// plane where it differs most; `luma_px` tells the place of a sample in luma pixels.
+/// plane where it differs most; `luma_px` gives the place of a sample in luma pixels.
 fn misses(options: &VideoOptions, frame: usize, luma_px: &dyn Fn(f64, f64) -> [f64; 2]) -> Vec<[f64; 2]> {
     let one = Scene::new(options.clone()).expect("a scene with chroma");
     let other =
@@ -426,7 +426,7 @@ fn the_marker_file_names_all_that_the_scene_has() {
 }
 
 #[test]
-fn the_marker_file_tells_of_the_clock_as_much_as_is_wanted() {
+fn the_marker_file_describes_the_clock_as_far_as_requested() {
     let clock = Clock { refresh_hz: Some(60.0), ..Clock::default() };
     let options = VideoOptions { clock: Some(clock), clock_roi_auto: true, ..small() };
     let file: toml::Table = Scene::new(options).unwrap().markers_toml().parse().expect("TOML");

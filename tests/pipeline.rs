@@ -54,7 +54,7 @@ fn a_plan_writes_nothing_and_is_the_same_before_and_after_but_for_what_stands() 
 }
 
 #[test]
-fn what_stands_is_kept_and_only_what_changed_is_made_anew() {
+fn what_is_up_to_date_is_kept_and_only_changes_are_made_again() {
     let dir = Dir::new();
     dir.lunula(&[
         "phantom",
@@ -127,7 +127,7 @@ fn what_fails_fails_its_own_branch_and_is_a_table_at_the_end() {
 }
 
 #[test]
-fn faults_are_told_with_file_line_and_column_and_nothing_is_begun() {
+fn faults_name_file_line_and_column_and_nothing_starts() {
     let dir = Dir::new();
     dir.write("p.toml", touch().replace("job = \"train\"", "job = \"trian\"").replace("\"how_good\"]", "\"how_god\"]"));
     dir.lunula(&["run", "p.toml", "--out", "out"])

@@ -6,7 +6,7 @@ use crate::util::Dir;
 
 /// Two touch-like recordings and a third, of two people, and what is to be made of them.
 const PIPELINE: &str = r#"
-wanted = ["force", "told", "modes", "step", "spring", "again"]
+wanted = ["force", "known", "modes", "step", "spring", "again"]
 
 [inputs.touch]
 files = "logs/{subject}-{repetition}/log.csv"
@@ -18,7 +18,7 @@ data = { from = "touch", where = { repetition = ["1", "2"] } }
 validate = { from = "touch", where = { repetition = "3" } }
 target = "force"
 
-[stage.told]
+[stage.known]
 job = "evaluate"
 model = "force"
 data = { from = "touch", where = { repetition = "3" } }
@@ -91,14 +91,14 @@ fn models_in_a_pipeline_are_those_of_the_commands_and_the_same_anywhere() {
             "force/S1/model.json",
             "force/S2/merit.csv",
             "force/S2/model.json",
+            "known/S1/merit.csv",
+            "known/S2/merit.csv",
             "modes/S1/modes.csv",
             "modes/S2/modes.csv",
             "spring/fit-estimates.csv",
             "spring/fit-fitted.csv",
             "spring/fit.toml",
             "step/trajectory.csv",
-            "told/S1/merit.csv",
-            "told/S2/merit.csv",
         ]
     );
     let log = |repetition: u32| format!("one/logs/S1-{repetition}/log.csv");

@@ -57,8 +57,8 @@ fn bring(dir: &Dir, subject: &str) {
 
 /// What a run did: done, kept, failed.
 fn counts(answer: &Answer) -> [u64; 3] {
-    let told = answer.json();
-    ["done", "kept", "failed"].map(|key| told[key].as_u64().expect("a count"))
+    let counted = answer.json();
+    ["done", "kept", "failed"].map(|key| counted[key].as_u64().expect("a count"))
 }
 
 /// The results of a stage with their bytes.
@@ -79,10 +79,10 @@ fn one_subject_more_touches_that_subject_and_the_maps() {
     assert_eq!(counts(&more), [2, 4, 0]);
     let stands = more.json().to_string();
     assert!(stands.contains("sums: 8 are part of the maps made before"), "{stands}");
-    assert_eq!(counts(&run("anew")), [6, 0, 0]);
+    assert_eq!(counts(&run("afresh")), [6, 0, 0]);
     for stage in ["nails", "coloration"] {
-        let (added, anew) = (results(&dir, "out", stage), results(&dir, "anew", stage));
-        assert!(added.len() > 5 && added == anew, "{stage}");
+        let (added, afresh) = (results(&dir, "out", stage), results(&dir, "afresh", stage));
+        assert!(added.len() > 5 && added == afresh, "{stage}");
     }
     // The very maps of the command.
     dir.lunula(&["photos", "photos", "--out", "at-once", "-q"]).expect(0);
@@ -92,7 +92,7 @@ fn one_subject_more_touches_that_subject_and_the_maps() {
 }
 
 #[test]
-fn an_outline_drawn_anew_is_noticed() {
+fn a_redrawn_outline_is_noticed() {
     let dir = Dir::new();
     photographs(&dir, 2);
     dir.write("coloration.toml", COLORATION);
@@ -176,8 +176,8 @@ fn videos_and_logs_become_labelled_sets() {
     assert!(plan.contains("no [camera]") && plan.contains("2 sets"), "{plan}");
     let answer = dir.lunula(&["run", "training.toml", "--out", "out", "--json"]).expect(0);
     assert_eq!(counts(&answer), [5, 0, 0]);
-    let told = answer.json()["stages"].to_string();
-    assert!(told.contains("degrees RMS") && told.contains("standard error of the label"), "{told}");
+    let stages = answer.json()["stages"].to_string();
+    assert!(stages.contains("degrees RMS") && stages.contains("standard error of the label"), "{stages}");
     let sets = results(&dir, "out", "sets");
     assert_eq!(sets.len(), 1, "{:?}", sets.keys());
     let text = String::from_utf8(sets.into_values().next().unwrap()).unwrap();

@@ -46,7 +46,7 @@ fn rms(found: &Rows, truth: &Rows, joint: &str) -> (f64, usize) {
     ((errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt(), errors.len())
 }
 
-/// The largest RMS error that a small clean scene may have, degrees; the README tells what is measured on the large
+/// The largest RMS error that a small clean scene may have, degrees; the README has the figures of the large
 /// ones.
 const CLEAN_RMS_DEG: [(&str, f64); 3] = [("J1", 0.15), ("J2", 0.25), ("J3", 0.5)];
 
@@ -118,7 +118,7 @@ fn markers_of_one_colour_keep_their_names() {
 fn a_joint_alone_is_as_good_and_its_own_markers_only_are_tracked() {
     let dir = scene(&[]);
     let report = posture(&dir, &["--no-figures", "--json"]).expect(0).json();
-    assert!(report["coupling"]["slope"].as_f64().is_some(), "the line is told without its picture: {report}");
+    assert!(report["coupling"]["slope"].as_f64().is_some(), "the line is reported without its picture: {report}");
     let report = posture(&dir, &["--joints", "J2", "--tracks", "tracks.csv", "--json"]).expect(0).json();
     is_accurate(&dir, &["J2"]);
     let rows = dir.table("joints.csv");

@@ -189,7 +189,7 @@ fn grey_video_of_coloured_markers_is_refused_or_right() {
 }
 
 #[test]
-fn all_faults_of_a_marker_file_are_told_at_once() {
+fn all_faults_of_a_marker_file_are_reported_together() {
     let dir = scene(&[]);
     dir.write(
         "markers.toml",

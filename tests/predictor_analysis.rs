@@ -17,10 +17,10 @@ fn model_of(dir: &Dir, rows: &[&[f64]]) {
         .chain(targets.into_iter().take(rows.len()))
         .collect();
     let base = Recording::of(0..100).only(&columns);
-    let told = rows.iter().zip(targets).fold(base, |all, (row, target)| {
+    let log = rows.iter().zip(targets).fold(base, |all, (row, target)| {
         all.map(target, |k, _| row.iter().enumerate().map(|(input, slope)| slope * volt(k, input)).sum())
     });
-    dir.recording("a.csv", &told);
+    dir.recording("a.csv", &log);
     let names = targets[..rows.len()].join(",");
     dir.train("a.csv", &names, "m.json", &["-q"]).expect(0);
 }
@@ -62,7 +62,7 @@ fn modes_are_those_of_the_jacobian_with_signs_fixed() {
 }
 
 #[test]
-fn the_model_is_told_as_the_thesis_prints_it() {
+fn the_model_is_printed_as_in_the_thesis() {
     let dir = Dir::new();
     dir.recording("a.csv", &Recording::of(0..120));
     dir.train("a.csv", "force", "m.json", &["-q"]).expect(0);
@@ -75,7 +75,7 @@ fn the_model_is_told_as_the_thesis_prints_it() {
 }
 
 #[test]
-fn of_a_model_that_is_not_linear_it_is_the_middle_that_is_told() {
+fn a_nonlinear_model_is_reported_at_the_middle() {
     let dir = Dir::new();
     let base = Recording::of(0..100).only(&["time_s", "P1", "P2", "Fz_N"]);
     let (p1, p2) = (base.numbers("P1"), base.numbers("P2"));
@@ -140,7 +140,7 @@ fn names_of(row: &Value) -> String {
 }
 
 #[test]
-fn every_subset_is_compared_and_the_best_of_each_number_told() {
+fn every_subset_is_compared_and_the_best_of_each_size_reported() {
     let dir = Dir::new();
     graded(&dir);
     let prune = ["prune", "a.csv", "--validate", "b.csv", "--target", "Fz_N"];
@@ -157,12 +157,12 @@ fn every_subset_is_compared_and_the_best_of_each_number_told() {
     assert_eq!(names, ["P1 P2 P3 P4", "P2 P3 P4", "P1 P3 P4", "P1 P2 P4", "P1 P2 P3"]);
     assert!(without[1].1 > without[2].1 && without[2].1 > without[3].1 && without[4].1 <= EXACT, "{without:?}");
     // No photodiode at all is the training rows' mean.
-    let (train, told): (Vec<f64>, Vec<f64>) = {
+    let (train, predicted): (Vec<f64>, Vec<f64>) = {
         let force = |row: usize| 3.0 * volt(row, 0) + volt(row, 1) + volt(row, 2) / 4.0;
         ((0..200).map(force).collect(), (200..300).map(force).collect())
     };
     let mean = train.iter().sum::<f64>() / 200.0;
-    let none = (told.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / 100.0).sqrt();
+    let none = (predicted.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / 100.0).sqrt();
     near(&by_name(&report["none"], &["Fz_N"]), &[none], 1e-12);
 
     // Each subset's figures are those of a model trained on it.

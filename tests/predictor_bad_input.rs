@@ -20,7 +20,7 @@ fn refused(dir: &Dir, words: &[&str]) {
 }
 
 #[test]
-fn a_cell_that_is_no_finite_number_is_told_with_its_place_or_left_out_and_counted() {
+fn a_cell_that_is_not_finite_is_reported_with_its_place_or_left_out_and_counted() {
     for (text, shown) in [
         ("nan", "NaN"),
         ("inf", "inf"),
@@ -52,7 +52,7 @@ fn a_cell_that_is_no_finite_number_is_told_with_its_place_or_left_out_and_counte
 }
 
 #[test]
-fn the_first_wrong_cell_of_the_first_wrong_file_is_told() {
+fn the_first_wrong_cell_of_the_first_wrong_file_is_reported() {
     let dir = sensor();
     dir.recording("a.csv", &Recording::of(0..60).cell(30, "P1", "x").cell(12, "Fy_N", "y"));
     dir.recording("b.csv", &Recording::of(0..60).cell(1, "P1", "z"));
@@ -102,7 +102,7 @@ fn empty_cells_are_left_out_and_counted() {
 }
 
 #[test]
-fn columns_that_are_missing_renamed_or_double_are_told() {
+fn missing_renamed_or_duplicate_columns_are_reported() {
     let all = Recording::of(0..60);
     for (table, words) in [
         (all.clone().renamed("Fz_N", "Fz"), "a.csv: has no column `Fz_N`; is it `Fz`?"),
@@ -202,7 +202,7 @@ fn a_run_that_fails_leaves_the_model_that_stood_there() {
     assert_eq!(left, ["a.csv", "b.csv", "bad.csv", "few.csv", "m.json", "nowhere/m.json"]);
 }
 
-/// Trains a model of `kind`, changes its file, and tells what `evaluate` says of it.
+/// Trains a model of `kind`, changes its file, and returns what `evaluate` says of it.
 #[track_caller]
 fn edited(dir: &Dir, change: impl FnOnce(&mut Value)) -> crate::util::Answer {
     let mut model = dir.parsed("m.json");
@@ -296,8 +296,8 @@ fn a_file_that_is_cut_or_none_is_refused() {
     dir.train("a.csv", "force", "m.json", &["-q"]).expect(0);
     let whole = dir.text("m.json");
     for (text, words) in [
-        (&whole[..whole.len() / 2], "is no model file: EOF"),
-        (&whole[..1], "is no model file: EOF"),
+        (&whole[..whole.len() / 2], "is not a model file: EOF"),
+        (&whole[..1], "is not a model file: EOF"),
         ("", "is no model"),
         ("[]", "is no model of lunula"),
         ("{}", "its \"format\" is missing"),
@@ -313,7 +313,7 @@ fn a_file_that_is_cut_or_none_is_refused() {
     dir.write("cut.json", whole.replacen("0.3125", "1e999", 1));
     dir.lunula(&["analyse", "cut.json"]).expect(2).says("number out of range");
     dir.write("cut.json", whole.replacen("0.3125", "NaN", 1));
-    dir.lunula(&["analyse", "cut.json"]).expect(2).says("cut.json: is no model file");
+    dir.lunula(&["analyse", "cut.json"]).expect(2).says("cut.json: is not a model file");
     dir.write("cut.json", [0xff, 0xfe, 0x00]);
     dir.lunula(&["analyse", "cut.json"]).expect(2).says("cut.json: cannot be read");
     std::fs::create_dir(dir.path("folder.json")).unwrap();
@@ -322,7 +322,7 @@ fn a_file_that_is_cut_or_none_is_refused() {
 }
 
 #[test]
-fn an_edited_coefficient_is_used_and_told() {
+fn an_edited_coefficient_is_used_and_reported() {
     let dir = sensor();
     dir.train("a.csv", "force", "m.json", &["-q"]).expect(0);
     let honest = dir.lunula(&["evaluate", "m.json", "b.csv", "--json"]).expect(0);

@@ -1,5 +1,5 @@
-//! `lunula train` on rows that do not determine the model: which photodiodes are at fault is told, and what was asked
-//! for is done.
+//! `lunula train` on rows that do not determine the model: which photodiodes are at fault is reported, and what was
+//! asked for is done.
 
 use crate::util::Dir;
 use crate::util::sensor::{Recording, TARGETS, near, numbers, slope, volt};
@@ -61,7 +61,7 @@ fn a_dead_photodiode_is_named_and_gets_nothing() {
         }
         let note = format!("a.csv: P3 is {value} V in all 120 rows: dead or not connected");
         dir.train("a.csv", "force", "m.json", &["--deficient", "drop"]).expect(0).says(&note);
-        // Several, and the quadratic model's products are not told beside what explains them.
+        // Several, and the quadratic model's products are not reported beside what explains them.
         let several = dead.with("P7", |_, _| "1".to_owned());
         refused(&several, "P3 is constant; P7 is constant (");
         let dir = dir_with(&several);
@@ -145,8 +145,8 @@ fn fewer_rows_than_terms_exactly_as_many_and_one() {
         for how in ["minimum-norm", "drop"] {
             let (_, fit) = fitted(&dir, how);
             assert_eq!((&fit["rank"], &fit["residual_sd"][0]), (&(rows - 1).into(), &Value::Null), "{how}");
-            let told = dir.lunula(&["evaluate", "m.json", "a.csv", "--json"]).expect(0).json();
-            assert!(told["rmse"]["Fz_N"].as_f64().expect("a number") <= EXACT, "{told}");
+            let said = dir.lunula(&["evaluate", "m.json", "a.csv", "--json"]).expect(0).json();
+            assert!(said["rmse"]["Fz_N"].as_f64().expect("a number") <= EXACT, "{said}");
         }
         fitted(&dir, "ridge=1e-6");
     }
@@ -180,8 +180,8 @@ fn one_row_and_all_rows_alike_tell_their_mean() {
             assert!(jacobian.iter().flatten().all(|slope| *slope == 0.0), "{how}: {jacobian:?}");
             assert_eq!((&fit["rows"], &fit["rank"]), (&rows.into(), &0.into()));
             dir.lunula(&["predict", "m.json", "other.csv", "--out", "p.csv", "-q"]).expect(0);
-            let told = dir.table("p.csv");
-            assert!(told.len() == 10 && told.iter().all(|row| row["Fz_N"].parse::<f64>().unwrap() == force));
+            let said = dir.table("p.csv");
+            assert!(said.len() == 10 && said.iter().all(|row| row["Fz_N"].parse::<f64>().unwrap() == force));
         }
         let network = ["--model", "network", "--restarts", "1", "--epochs", "3"];
         dir.train("a.csv", "force", "m.json", &network).expect(0).says("and so in all predictions");
@@ -191,12 +191,12 @@ fn one_row_and_all_rows_alike_tell_their_mean() {
 }
 
 #[test]
-fn a_saturated_photodiode_is_told_and_rows_that_align_marks_are_left_out() {
+fn a_saturated_photodiode_is_reported_and_rows_that_align_marks_are_left_out() {
     let cut = Recording::of(0..120).map("P4", |_, v| v.min(2.5));
     let count = cut.numbers("P4").iter().filter(|v| **v == 2.5).count();
     let dir = dir_with(&cut);
-    let told = format!("a.csv: P4 stays at exactly 2.5 V, its greatest value, in {count} of 120 rows: saturated?");
-    dir.train("a.csv", "force", "m.json", &[]).expect(0).says(&told);
+    let said = format!("a.csv: P4 stays at exactly 2.5 V, its greatest value, in {count} of 120 rows: saturated?");
+    dir.train("a.csv", "force", "m.json", &[]).expect(0).says(&said);
 
     let p4 = cut.numbers("P4");
     let status = |row: usize, _: &str| if p4[row] == 2.5 { "saturated: P4" } else { "ok" }.to_owned();
@@ -226,10 +226,10 @@ fn a_constant_target_has_no_r2() {
         assert!(report["training"]["r2"]["Fx_N"].is_null() && report["training"]["r2"]["Fz_N"].is_number(), "{kind}");
         assert!(
             report["training"]["rmse"]["Fx_N"].as_f64().expect("a number") <= 1e-15,
-            "{kind}: the constant is told"
+            "{kind}: the constant is reported"
         );
-        let told = dir.lunula(&["evaluate", "m.json", "a.csv"]).expect(0).stdout;
-        assert!(told.lines().any(|line| line.contains("Fx_N") && line.trim_end().ends_with("R2        -")), "{told}");
+        let said = dir.lunula(&["evaluate", "m.json", "a.csv"]).expect(0).stdout;
+        assert!(said.lines().any(|line| line.contains("Fx_N") && line.trim_end().ends_with("R2        -")), "{said}");
     }
 }
 

@@ -29,7 +29,7 @@ fn of(report: &Value, what: &str) -> [f64; 3] {
 }
 
 #[test]
-fn errors_are_told_by_target_as_the_contract_has_them() {
+fn errors_are_reported_by_target() {
     let dir = trained();
     let base = Recording::of(300..400);
     let exact = base.numbers("Fx_N");
@@ -63,11 +63,11 @@ fn each_recording_has_its_own_errors() {
     }
     let report = evaluate(&dir, "a.csv b.csv", &[]);
     let recordings = report["recordings"].as_array().expect("an array");
-    let told: Vec<_> = recordings
+    let named: Vec<_> = recordings
         .iter()
         .map(|one| ["recording", "session", "subject"].map(|key| one[key].as_str().expect("text")))
         .collect();
-    assert_eq!(told, [["a.csv", "a", "a.csv"], ["b.csv", "b", "b.csv"]]);
+    assert_eq!(named, [["a.csv", "a", "a.csv"], ["b.csv", "b", "b.csv"]]);
     near(&[of(&recordings[0], "bias")[2], of(&recordings[1], "bias")[2]], &[-0.5, 0.25], EXACT);
     assert_eq!(
         (&recordings[0]["rows"], &recordings[1]["rows"], &report["rows"]),
@@ -77,7 +77,7 @@ fn each_recording_has_its_own_errors() {
 }
 
 #[test]
-fn errors_are_told_by_how_hard_the_finger_presses() {
+fn errors_are_reported_by_pressing_force() {
     let dir = trained();
     let base = Recording::of(300..500);
     let pressing: Vec<f64> = base.numbers("Fz_N").iter().map(|fz| -fz).collect();
@@ -100,7 +100,7 @@ fn errors_are_told_by_how_hard_the_finger_presses() {
 }
 
 #[test]
-fn what_was_trained_on_is_told() {
+fn rows_of_the_training_set_are_reported() {
     let dir = trained();
     let again = dir.lunula(&["evaluate", "m.json", "train.csv", "noisy.csv", "--json"]).expect(0);
     assert!(
@@ -286,7 +286,7 @@ fn the_folder_holds_the_table_the_pictures_and_the_report() {
 }
 
 #[test]
-fn posture_is_told_by_its_own_size() {
+fn posture_is_binned_by_its_own_size() {
     let dir = trained();
     dir.train("train.csv", "posture", "m.json", &["-q"]).expect(0);
     dir.recording("r.csv", &Recording::of(300..360).map("J2_deg", |_, v| v - 2.0));

@@ -41,7 +41,7 @@ fn column(rows: &[Row], name: &str) -> Vec<f64> {
 }
 
 #[test]
-fn forces_or_angles_are_told_for_each_row() {
+fn forces_or_angles_are_predicted_for_each_row() {
     let dir = models();
     let truth = Recording::of(300..400);
     let forces = predict(&dir, &["force.json", "r.csv"], &[]);
@@ -92,13 +92,13 @@ fn force_and_posture_are_gated() {
     let gated = |more: &[&str], f_min: f64, theta: f64| {
         let rows = predict(&dir, &["force.json", "posture.json", "r.csv"], more);
         assert_eq!(header(&dir, "p.csv"), "time_s,Fx_N,Fy_N,Fz_N,J2_deg,contact");
-        let told = column(&rows, "J2_deg");
+        let predicted = column(&rows, "J2_deg");
         let mut touch = 0;
         for (k, row) in rows.iter().enumerate() {
             let touching = -fz[k] >= f_min;
             touch += usize::from(touching);
             assert_eq!(row["contact"], if touching { "touch" } else { "bending" }, "row {k}");
-            near(&[told[k]], &[if touching { theta } else { angle[k] }], 1e-12);
+            near(&[predicted[k]], &[if touching { theta } else { angle[k] }], 1e-12);
         }
         touch
     };
@@ -192,7 +192,7 @@ fn intervals_stand_beside_the_predictions() {
 }
 
 #[test]
-fn rows_outside_of_what_was_trained_on_are_counted_and_told() {
+fn rows_outside_the_training_range_are_counted_and_reported() {
     let dir = models();
     dir.recording("far.csv", &Recording::of(300..400).map("P1", |row, v| if row < 30 { v + 5.0 } else { v }));
     let answer = dir.lunula(&["predict", "force.json", "far.csv", "--out", "p.csv", "--json"]).expect(0);
@@ -352,7 +352,7 @@ fn each_row_is_answered_before_the_next_is_written() {
 }
 
 #[test]
-fn a_stream_is_told_of_an_edited_model_before_its_first_row() {
+fn a_stream_warns_of_an_edited_model_before_its_first_row() {
     let dir = models();
     let edited = dir.text("force.json").replacen("\"low\": 2", "\"low\": 1", 1);
     dir.write("edited.json", edited);
@@ -370,8 +370,8 @@ fn what_is_beyond_a_number_is_not_known() {
     dir.recording("far.csv", &Recording::of(300..303).cell(1, "P1", "1.7e308"));
     let answer = dir.lunula(&["predict", "posture.json", "far.csv", "--out", "p.csv", "--json"]).expect(0);
     assert_eq!((&answer.json()["rows_not_known"], &answer.json()["rows_outside"]), (&1.into(), &1.into()));
-    let told: Vec<bool> = dir.table("p.csv").iter().map(|row| row["J2_deg"].is_empty()).collect();
-    assert_eq!(told, [false, true, false]);
+    let empty: Vec<bool> = dir.table("p.csv").iter().map(|row| row["J2_deg"].is_empty()).collect();
+    assert_eq!(empty, [false, true, false]);
     dir.recording("far.csv", &Recording::of(300..303).cell(1, "P1", "1.7e308").cell(1, "Fz_N", "0"));
     let judged = dir.lunula(&["evaluate", "posture.json", "far.csv", "--json"]).expect(0);
     assert_eq!((&judged.json()["rows"], &judged.json()["not_finite"]), (&2.into(), &1.into()));

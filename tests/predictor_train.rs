@@ -31,16 +31,16 @@ fn the_coefficients_come_back_exactly() {
             let wanted: Vec<f64> = (0..8).map(|k| slope(first + t, k)).collect();
             near(&numbers(&model["model"]["jacobian"][t]), &wanted, EXACT);
         }
-        let told = dir.lunula(&["analyse", "m.json", "--json"]).expect(0).json();
+        let reported = dir.lunula(&["analyse", "m.json", "--json"]).expect(0).json();
         for (t, name) in model["targets"].as_array().expect("an array").iter().enumerate() {
-            let f0 = told["printed"]["offset"][name["name"].as_str().expect("text")].as_f64().expect("a number");
+            let f0 = reported["printed"]["offset"][name["name"].as_str().expect("text")].as_f64().expect("a number");
             near(&[f0], &[offset(first + t)], EXACT_OFFSET);
         }
     }
 }
 
 #[test]
-fn the_report_tells_the_fit_the_rows_and_the_errors() {
+fn the_report_has_the_fit_the_rows_and_the_errors() {
     let dir = sensor();
     let answer = dir.train("train.csv", "force", "m.json", &["--validate", "held.csv", "--json"]).expect(0);
     assert!(answer.stderr.is_empty(), "{}", answer.stderr);
@@ -124,8 +124,8 @@ fn the_model_file_holds_names_units_ranges_hashes_and_a_version() {
     let training = &model["training"];
     assert_eq!(training["rows"], 260);
     let recordings = training["recordings"].as_array().expect("an array");
-    let told = |k: usize| ["name", "session", "subject"].map(|key| recordings[k][key].as_str().expect("text"));
-    assert_eq!((told(0), told(1)), (["train.csv"; 3], ["b.csv", "2", "anna"]));
+    let reported = |k: usize| ["name", "session", "subject"].map(|key| recordings[k][key].as_str().expect("text"));
+    assert_eq!((reported(0), reported(1)), (["train.csv"; 3], ["b.csv", "2", "anna"]));
     let hash = |value: &serde_json::Value| value.as_str().expect("text").to_owned();
     let hashes = [&training["sha256"], &recordings[0]["sha256"], &recordings[1]["sha256"], &model["sha256"]].map(hash);
     assert!(hashes.iter().all(|hash| hash.len() == 64 && hash.bytes().all(|b| b.is_ascii_hexdigit())), "{hashes:?}");
@@ -185,7 +185,7 @@ fn the_seed_is_another_network_and_the_same_seed_the_same() {
 }
 
 #[test]
-fn a_network_follows_what_is_not_linear_and_tells_its_restarts() {
+fn a_network_fits_a_nonlinear_sensor_and_reports_its_restarts() {
     let dir = Dir::new();
     for (name, rows) in [("train.csv", 0..400), ("stop.csv", 400..500), ("held.csv", 500..600)] {
         let volts = Recording::of(rows).only(&["time_s", "P1", "P2", "J2_deg"]);
@@ -251,7 +251,7 @@ fn the_quadratic_model_has_44_terms_and_finds_them() {
 }
 
 #[test]
-fn lags_are_further_inputs_and_both_ways_are_told() {
+fn lags_are_further_inputs_and_both_ways_are_reported() {
     let dir = Dir::new();
     // The force follows the photodiode of a tenth of a second ago: no row can tell it without.
     let late = |rows: std::ops::Range<usize>| {
@@ -281,7 +281,7 @@ fn lags_are_further_inputs_and_both_ways_are_told() {
 }
 
 #[test]
-fn friction_brings_forces_into_the_cone_and_both_ways_are_told() {
+fn friction_brings_forces_into_the_cone_and_both_ways_are_reported() {
     let dir = sensor();
     let more = ["--friction", "0.3", "--validate", "held.csv", "--json"];
     let report = dir.train("train.csv", "force", "m.json", &more).expect(0).json();
@@ -346,11 +346,11 @@ fn validation_only_reports_and_says_what_was_trained_on() {
         one["sha256"].take();
     }
     assert_eq!(alone, with, "the fit has not seen what it is validated on");
-    let told = |what: &str| {
+    let reported = |what: &str| {
         ["Fx_N", "Fy_N", "Fz_N"].map(|target| report["validation"][what][target].as_f64().expect("a number"))
     };
-    near(&told("rmse"), &[0.25, 0.5, 0.0], EXACT);
-    near(&told("bias"), &[0.0, -0.5, 0.0], EXACT);
+    near(&reported("rmse"), &[0.25, 0.5, 0.0], EXACT);
+    near(&reported("bias"), &[0.0, -0.5, 0.0], EXACT);
     near(&numbers(&intervals["half_width"]), &[0.25, 0.5, 0.0], EXACT);
     assert_eq!((&intervals["level"], &intervals["rows"]), (&0.9.into(), &100.into()));
 
@@ -386,11 +386,11 @@ fn the_learning_curve_goes_down_the_recordings() {
     let share = rows.iter().filter(|row| row["share"] != "1").count();
     assert_eq!(share, 9, "tenths of each recording");
     let last = rows.last().unwrap();
-    let told = report["validation"]["rmse"]["Fz_N"].as_f64().expect("a number");
-    near(&[last["Fz_N_validate_rmse"].parse().unwrap()], &[told], 1e-12);
+    let reported = report["validation"]["rmse"]["Fz_N"].as_f64().expect("a number");
+    near(&[last["Fz_N_validate_rmse"].parse().unwrap()], &[reported], 1e-12);
     let first: f64 = rows.iter().find(|row| row["share"] == "1").unwrap()["Fz_N_validate_rmse"].parse().unwrap();
-    assert!(told < first, "three recordings are better than one: {told} against {first}");
-    // A tenth of 60 rows is fewer than the 9 unknowns: told, not fitted.
+    assert!(reported < first, "three recordings are better than one: {reported} against {first}");
+    // A tenth of 60 rows is fewer than the 9 unknowns: reported, not fitted.
     assert!(
         rows.iter().any(|row| row["rows"].parse::<usize>().unwrap() < 9
             && row["Fz_N_validate_rmse"].is_empty()
@@ -449,7 +449,7 @@ fn a_raw_log_of_the_phantom_is_trained_on_as_it_stands() {
     // Half of a log's rows are unlit.
     let lit = dir.table("1/log.csv").iter().filter(|row| row["led"] == "1").count();
     assert_eq!(report["data"][0]["rows"], lit);
-    // Another spiral of the same finger: most of the force is told, and not all (noise, and a sensor that is not
+    // Another spiral of the same finger: most of the force is predicted, and not all (noise, and a sensor that is not
     // linear).
     let r2 = report["validation"]["r2"]["Fz_N"].as_f64().expect("a number");
     assert!((0.7..0.9999).contains(&r2), "{r2}");

@@ -79,7 +79,7 @@ fn a_file_of_loads_is_the_load_that_it_holds() {
 }
 
 #[test]
-fn faults_of_a_file_of_loads_are_told_with_row_and_column() {
+fn faults_of_a_load_file_name_row_and_column() {
     let dir = Dir::new();
     dir.write("bad.csv", "time_s,pf1_Pa,pf2_Pa\n0,0,0\n1,nan,0\n0.5,3,\n0.5,inf,soft\n");
     let answer = run(&dir, "--loads bad.csv --out t.csv").expect(2);
@@ -112,8 +112,8 @@ fn a_vessel_that_closes_is_an_error_with_its_time_and_nothing_is_written() {
         assert!(said.contains('V') && said.contains("--collapse contact"), "{said}");
         let digits =
             said.split_whitespace().find_map(|word| word.trim_end_matches([';', ':', ',']).parse::<f64>().ok());
-        let told = digits.expect("a time");
-        assert!((told - time_s).abs() <= SIX_DIGITS_S, "{said}");
+        let shown = digits.expect("a time");
+        assert!((shown - time_s).abs() <= SIX_DIGITS_S, "{said}");
         assert_eq!(dir.bytes_of(".").len(), 0);
     }
     let answer = run(&dir, "--pf1 step:1.2e4@0..2 --out t.csv --keep-partial --json").expect(1);
@@ -150,7 +150,7 @@ fn a_run_goes_on_from_another_and_from_zero() {
 }
 
 #[test]
-fn parameters_are_printed_read_set_and_all_faults_told() {
+fn parameters_are_printed_read_and_set_and_all_faults_reported() {
     let dir = Dir::new();
     let printed = run(&dir, "--print-params --units 3").expect(0).stdout;
     assert!(printed.contains("units = 3\n") && printed.contains("k_C3_N_per_m = 6.66"), "{printed}");
@@ -171,7 +171,7 @@ fn parameters_are_printed_read_set_and_all_faults_told() {
 }
 
 #[test]
-fn equilibria_are_told_for_every_load_and_none_where_there_is_none() {
+fn equilibria_are_listed_for_every_load_and_none_where_there_is_none() {
     let dir = Dir::new();
     let report = run(&dir, "--static 0..12000/100 --load proximal --out s.csv --json").expect(0).json();
     let rows = dir.table("s.csv");
@@ -296,7 +296,7 @@ fn the_tradeoff_keeps_every_tolerance_and_draws_peers_and_maps() {
 }
 
 #[test]
-fn the_tradeoff_tells_which_programs_are_missing_and_how_to_get_them() {
+fn the_tradeoff_names_missing_programs_and_how_to_get_them() {
     let dir = Dir::new();
     let output = std::process::Command::new(env!("CARGO_BIN_EXE_lunula"))
         .args(["tradeoff", "hemodynamics", "--repeats", "1", "--json", "--out", "t", "--peers"])

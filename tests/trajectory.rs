@@ -1,5 +1,5 @@
-//! `lunula trajectory`: the tables are the thesis' equations from rest on, what is told of them is true, bad requests
-//! are refused whole.
+//! `lunula trajectory`: the tables are the thesis' equations from rest on, what is reported of them is true, bad
+//! requests are refused whole.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -47,10 +47,12 @@ fn the_spiral_is_the_thesis_equations_after_its_soft_start() {
     }
     assert_eq!(compared, 4451);
     let spiral = &report["force"]["spiral"];
-    let told = |name: &str| spiral[name].as_f64().unwrap();
-    assert!((told("radial_rate_printed_n_per_s") - 0.117_81).abs() <= 1e-5);
-    assert!((told("radial_rate_true_n_per_s") - 0.235_62).abs() <= 1e-5);
-    assert!((told("shortest_printed_s") - 141.37).abs() <= 0.01 && (told("shortest_true_s") - 282.74).abs() <= 0.01);
+    let reported = |name: &str| spiral[name].as_f64().unwrap();
+    assert!((reported("radial_rate_printed_n_per_s") - 0.117_81).abs() <= 1e-5);
+    assert!((reported("radial_rate_true_n_per_s") - 0.235_62).abs() <= 1e-5);
+    assert!(
+        (reported("shortest_printed_s") - 141.37).abs() <= 0.01 && (reported("shortest_true_s") - 282.74).abs() <= 0.01
+    );
     assert_eq!(report["force"]["keeps_limit"], true);
     assert_eq!(report["warnings"].as_array().unwrap().len(), 0);
     let files: Vec<String> = dir.bytes_of(".").into_keys().collect();
@@ -58,19 +60,19 @@ fn the_spiral_is_the_thesis_equations_after_its_soft_start() {
 }
 
 #[test]
-fn what_is_told_of_the_rates_is_what_the_rows_do() {
+fn the_reported_rates_are_those_of_the_rows() {
     // Rows a fortieth of a second apart cut the corners of what is measured a millisecond apart; measured 1.9e-4 of it.
     const NEAR: f64 = 1e-3;
     let dir = Dir::new();
     for (name, kind) in [("f", "force --every 0.025"), ("r", "random --every 0.025 --seed 3")] {
         let report = run(&dir, &format!("{kind} --out {name}.csv --no-figures --json")).expect(0).json();
         let rows = dir.table(&format!("{name}.csv"));
-        let told = &report["force"]["rates"]["components_n_per_s"];
+        let reported = &report["force"]["rates"]["components_n_per_s"];
         for k in 0..3 {
             let rate = rows.windows(2).map(|pair| (forces(&pair[1])[k] - forces(&pair[0])[k]).abs() / 0.025);
             let largest = rate.fold(0.0, f64::max);
-            let told = told[k].as_f64().unwrap();
-            assert!((largest / told - 1.0).abs() <= NEAR, "{name} {k}: {largest} {told}");
+            let reported = reported[k].as_f64().unwrap();
+            assert!((largest / reported - 1.0).abs() <= NEAR, "{name} {k}: {largest} {reported}");
         }
     }
 }

@@ -3,7 +3,7 @@
 usage: hemodynamics.py [--quick] [--out FILE] [--reference FOLDER] [SOLVER ...]
 
 Twenty responses (P_F1 alone and P_F1 = P_F2, ten loads each) of 4 s with 400 outputs, from the rest equilibrium, the load acting until 2 s, where
-every solver is started anew. All get the same equations (in conductances, states scaled by nominal diameters), the analytic Jacobian and the same
+every solver is restarted. All get the same equations (in conductances, states scaled by nominal diameters), the analytic Jacobian and the same
 tolerances: rtol on every state, absolutely rtol D on lumens and 10 rtol D/s on rates (as large as rates get) or, "loose rates", 1e4 rtol D/s: whoever
 wants lumens only gets them up to twice as fast. A row of CSV for each solver and rtol:
 

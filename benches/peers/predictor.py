@@ -2,7 +2,7 @@
 
 usage: predictor.py FOLDER [NAME ...]
 
-FOLDER holds x.f64 (rows x 8 volts) and y.f64 (rows x 3 newtons), raw little-endian doubles, row by row. Each NAME is timed and told as a
+FOLDER holds x.f64 (rows x 8 volts) and y.f64 (rows x 3 newtons), raw little-endian doubles, row by row. Each NAME is timed and printed as a
 line of JSON: {"name", "median_ns", "min_ns", "times"}. Without names they are read from standard input, a line each, and answered one by one;
 `all` stands for all. The unit of `batch ..` is a sample, of all others a call.
 """

@@ -103,7 +103,7 @@ TOML
   "$lunula" phantom photos --seed 1 --subjects 12 --poses extension,flexion --size 320x240 --out set --quiet
 }
 
-# All results but what tells times: the records in .lunula, the report and run.json.
+# All results except those with times: the records in .lunula, the report and run.json.
 same() {
   diff -r --exclude=.lunula --exclude=report.html --exclude=run.json whole "$1"
   say "$1: the same bytes, $(find "$1" -type f -not -path '*/.lunula/*' | wc -l) files"

@@ -1,15 +1,14 @@
 //! `lunula align`: joint angles on photodiode samples.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::{Context, ensure};
 use clap::Args;
 use lunula::align::{AlignFigures, AlignInputs, AlignOptions, AlignOutputs, AlignReport, plan, run};
 use lunula::job::{Given, Said, Watch};
-use lunula::stages::Step;
 
 use super::Common;
-use super::job::{Command, JobArgs};
+use super::job::{Command, JobArgs, Plan};
 
 /// Joint angles and a log of photodiodes, on two clocks, to a labelled training set with a certificate
 ///
@@ -88,8 +87,8 @@ impl Command for AlignArgs {
         &self.given.said
     }
 
-    fn plan(&self) -> anyhow::Result<Vec<Step>> {
-        Ok(plan(&self.inputs()?, &self.given.options, self.outputs().as_ref())?)
+    fn plan(&self) -> anyhow::Result<Plan> {
+        Ok(plan(&self.inputs()?, &self.given.options, self.outputs().as_ref())?.into())
     }
 
     fn run(&self, watch: &Watch<'_>) -> anyhow::Result<AlignReport> {
@@ -120,7 +119,7 @@ impl Command for AlignArgs {
         ));
     }
 
-    fn result(&self) -> Option<&Path> {
-        self.out.as_deref()
+    fn result(&self) -> Option<PathBuf> {
+        self.out.clone()
     }
 }

@@ -31,7 +31,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use lunula::files::results_stand;
 use lunula::input;
 use lunula::job::Interrupted;
-use lunula::stages::{Fate, Stage, Step};
+use lunula::stages::Stage;
 use lunula::words::shown_lines;
 use out::print_line;
 
@@ -50,7 +50,7 @@ struct Cli {
     command: Command,
 }
 
-const AFTER_HELP: &str = "lunula COMMAND --help tells more of each.
+const AFTER_HELP: &str = "lunula COMMAND --help explains each command.
 
 Exit status: 0 all done; 1 done, but some inputs failed (each is named on standard error, the others are done), or results stand and what \
 comes after them, as a report or words on standard output, could not be written; 2 nothing done, nothing changed; 130 \
@@ -121,7 +121,7 @@ pub(crate) fn run() -> ExitCode {
         Err(wrong) => wrong.exit(),
     };
     ended_with(match cli.command {
-        Command::Photos(args) => photos::run(&args),
+        Command::Photos(args) => photos::run_or_merge(&args),
         Command::Align(args) => job::run(&*args),
         Command::Train(args) => job::run(&*args),
         Command::Evaluate(args) => job::run(&args),
@@ -208,16 +208,6 @@ impl Common {
         }
     }
 
-    /// What would be done and left out, as words or, with `--json`, as an object.
-    fn show_plan(&self, job: &str, steps: &[Step]) -> anyhow::Result<Outcome> {
-        if self.json {
-            self.print_json(&serde_json::json!({ "job": job, "plan": steps, "failed": [] }))?;
-        } else {
-            print_steps(steps);
-        }
-        Ok(Outcome::Done)
-    }
-
     /// Each stage's time, a line each.
     fn say_stages(&self, stages: &[Stage]) {
         stages.iter().for_each(|stage| self.say(&format!("{:<28} {:>9.3} s", stage.stage, stage.thread_s)));
@@ -247,16 +237,5 @@ impl Common {
             print_line(&serde_json::to_string(report)?);
         }
         Ok(())
-    }
-}
-
-/// A plan's stages, a line each.
-fn print_steps(steps: &[Step]) {
-    for step in steps {
-        let fate = match step.fate {
-            Fate::Run => "run",
-            Fate::LeftOut => "left out",
-        };
-        print_line(&shown_lines(&format!("{:<34} {fate:<9} {}", step.stage, step.reason)));
     }
 }

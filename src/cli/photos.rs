@@ -4,15 +4,15 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use clap::{Args, Subcommand};
+use lunula::job::{Given, NoOptions, Said, Watch};
 use lunula::photo::outline::SavedOutlines;
 use lunula::photo::{
-    MergeError, OutlineHome, Outputs, PhotoSet, PhotosError, PhotosOptions, PhotosReport, Results, SetFault, Watch,
-    merge, plan, run as run_photos,
+    OutlineHome, Outputs, PhotoSet, PhotosError, PhotosFigures, PhotosOptions, PhotosReport, Results, merge,
+    merge_plan, plan, run,
 };
-use lunula::stages::Step;
-use lunula::words::{shown, shown_lines};
 
-use super::{Common, Interrupted, Outcome, print_line, print_steps};
+use super::job::{self, Command, JobArgs, Plan};
+use super::{Common, Outcome};
 
 /// Photographs of nails to coloration maps: outlines, normalized pictures, mean and standard deviation over subjects
 ///
@@ -35,15 +35,12 @@ pub(super) struct PhotosArgs {
     #[arg(long, value_name = "MASKS")]
     masks: Option<PathBuf>,
     #[command(flatten)]
-    options: PhotosOptions,
+    given: Given<PhotosOptions>,
     /// Save detected outlines as LabelMe files to correct: beside the photographs, or in FOLDER with a photos.csv
     #[arg(long, value_name = "FOLDER", num_args = 0..=1, require_equals = true)]
     write_outlines: Option<Option<PathBuf>>,
-    /// Show what would be done and what left out, and do nothing
-    #[arg(long)]
-    plan: bool,
     #[command(flatten)]
-    common: Common,
+    job: JobArgs,
 }
 
 #[derive(Debug, Subcommand)]
@@ -61,7 +58,9 @@ struct MergeArgs {
     #[arg(long)]
     out: PathBuf,
     #[command(flatten)]
-    common: Common,
+    given: Given<NoOptions>,
+    #[command(flatten)]
+    job: JobArgs,
 }
 
 impl PhotosArgs {
@@ -69,94 +68,119 @@ impl PhotosArgs {
         if let Some(masks) = self.masks.as_ref().filter(|m| !m.is_dir()) {
             anyhow::bail!("--masks {}: is not a folder", masks.display());
         }
-        let mut options = self.options.clone();
+        let mut options = self.given.options.clone();
         options.outlines.masks = self.masks.clone();
         Ok(options)
     }
 
-    fn outputs(&self, out: &Path) -> Outputs {
+    fn outputs(&self) -> anyhow::Result<Outputs> {
         let outlines = self.write_outlines.as_ref().map(|folder| match folder {
             Some(folder) => OutlineHome::Folder(folder.clone()),
             None => OutlineHome::BesidePhotographs,
         });
-        Outputs { folder: out.to_owned(), results: Results::Maps, outlines }
+        let folder = self.out.clone().context("--out is needed")?;
+        Ok(Outputs { folder, results: Results::Maps, outlines })
     }
-}
 
-pub(super) fn run(args: &PhotosArgs) -> anyhow::Result<Outcome> {
-    if let Some(PhotosCommand::Merge(args)) = &args.merge {
-        return run_merge(args);
-    }
-    let (set, out) = args.set.as_ref().zip(args.out.as_ref()).context("SET and --out are needed")?;
-    let options = args.options()?;
-    let apart: Vec<&Path> = std::iter::once(out.as_path()).chain(args.masks.as_deref()).collect();
-    if PhotoSet::would_take_results(set, out) {
-        anyhow::bail!(
-            "--out {}: is among the photographs of {}, where results would be taken for photographs; choose another \
-             --out",
-            out.display(),
-            set.display()
-        );
-    }
-    let set = PhotoSet::open(set, &apart)?;
-    let outputs = args.outputs(out);
-    if args.plan {
-        return Ok(print_plan(args, &set, &plan(&set, &options, &outputs)));
-    }
-    let stop = args.common.start()?;
-    let bar = args.common.progress(set.photos.len(), "photographs");
-    let report = run_photos(&set, &options, &outputs, &Watch { stop: &stop, tick: &|| bar.inc(1) });
-    bar.finish_and_clear();
-    match report {
-        Ok(report) => finish(&args.common, &report, out),
-        Err(PhotosError::Interrupted) => Err(Interrupted.into()),
-        Err(PhotosError::NothingUsable { failed, outlines }) => {
-            outlines.iter().flat_map(SavedOutlines::notes).for_each(|note| args.common.say(&note));
-            Err(PhotosError::NothingUsable { failed, outlines }.into())
+    fn set(&self) -> anyhow::Result<PhotoSet> {
+        let (set, out) = self.set.as_ref().zip(self.out.as_ref()).context("SET and --out are needed")?;
+        if PhotoSet::would_take_results(set, out) {
+            anyhow::bail!(
+                "--out {}: is among the photographs of {}, where results would be taken for photographs; choose \
+                 another --out",
+                out.display(),
+                set.display()
+            );
         }
-        Err(other) => Err(other.into()),
+        let apart: Vec<&Path> = std::iter::once(out.as_path()).chain(self.masks.as_deref()).collect();
+        Ok(PhotoSet::open(set, &apart)?)
     }
 }
 
-fn run_merge(args: &MergeArgs) -> anyhow::Result<Outcome> {
-    let stop = args.common.start()?;
-    match merge(&args.parts, &args.out, &Watch { stop: &stop, tick: &|| {} }) {
-        Ok(report) => finish(&args.common, &report, &args.out),
-        Err(MergeError::Interrupted) => Err(Interrupted.into()),
-        Err(other) => Err(other.into()),
+/// `merge`, or the job.
+pub(super) fn run_or_merge(args: &PhotosArgs) -> anyhow::Result<Outcome> {
+    match &args.merge {
+        Some(PhotosCommand::Merge(args)) => job::run(args),
+        None => job::run(args),
     }
 }
 
-fn print_plan(args: &PhotosArgs, set: &PhotoSet, steps: &[Step]) -> Outcome {
-    if args.common.json {
-        print_line(&serde_json::json!({ "job": "photos", "plan": steps, "failed": set.faults }).to_string());
-    } else {
-        print_steps(steps);
-    }
-    name_failures(&set.faults);
-    if set.faults.is_empty() { Outcome::Done } else { Outcome::SomeFailed }
-}
-
-fn name_failures(failed: &[SetFault]) {
-    for fault in failed {
-        eprintln!("failed: {}: {}", shown(&fault.place), shown_lines(&fault.what));
-    }
-}
-
-fn finish(common: &Common, report: &PhotosReport, out: &Path) -> anyhow::Result<Outcome> {
-    common.warn(&report.warnings);
-    name_failures(&report.failed);
-    common.print_json(report)?;
-    report.notes.iter().for_each(|note| common.say(&format!("note: {note}")));
+fn say_poses(common: &Common, report: &PhotosReport) {
     for pose in &report.poses {
         common.say(&format!("{:<28} {:>4} subject(s)", pose.pose, pose.subjects));
     }
-    if common.verbose {
-        for stage in &report.stages {
-            common.say(&format!("{:<28} {:>9.3} s of threads, {} runs", stage.stage, stage.thread_s, stage.runs));
-        }
-        common.say_left_out(&report.left_out);
+}
+
+impl Command for PhotosArgs {
+    type Figures = PhotosFigures;
+
+    const UNIT: &'static str = "photographs";
+
+    fn name(&self) -> &'static str {
+        "photos"
     }
-    common.say(&format!("{:.2} s; look at {}", report.wall_s, out.join("report.html").display()));
-    Ok(if report.failed.is_empty() { Outcome::Done } else { Outcome::SomeFailed })
+
+    fn job(&self) -> &JobArgs {
+        &self.job
+    }
+
+    fn said(&self) -> &Said {
+        &self.given.said
+    }
+
+    fn plan(&self) -> anyhow::Result<Plan> {
+        let set = self.set()?;
+        let steps = plan(&set, &self.options()?, &self.outputs()?);
+        Ok(Plan { steps, failed: set.faults.iter().map(ToString::to_string).collect() })
+    }
+
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<PhotosReport> {
+        let report = run(&self.set()?, &self.options()?, &self.outputs()?, watch);
+        Ok(report.inspect_err(|why| {
+            if let PhotosError::NothingUsable { outlines, .. } = why {
+                let notes: Vec<String> = outlines.iter().flat_map(SavedOutlines::notes).collect();
+                self.job.common.note(&notes);
+            }
+        })?)
+    }
+
+    fn say(&self, common: &Common, report: &PhotosReport) {
+        say_poses(common, report);
+    }
+
+    fn result(&self) -> Option<PathBuf> {
+        Some(self.out.as_ref()?.join("report.html"))
+    }
+}
+
+impl Command for MergeArgs {
+    type Figures = PhotosFigures;
+
+    fn name(&self) -> &'static str {
+        "photos merge"
+    }
+
+    fn job(&self) -> &JobArgs {
+        &self.job
+    }
+
+    fn said(&self) -> &Said {
+        &self.given.said
+    }
+
+    fn plan(&self) -> anyhow::Result<Plan> {
+        Ok(merge_plan(&self.parts).into())
+    }
+
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<PhotosReport> {
+        Ok(merge(&self.parts, &self.out, watch)?)
+    }
+
+    fn say(&self, common: &Common, report: &PhotosReport) {
+        say_poses(common, report);
+    }
+
+    fn result(&self) -> Option<PathBuf> {
+        Some(self.out.join("report.html"))
+    }
 }

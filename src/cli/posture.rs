@@ -1,14 +1,13 @@
 //! `lunula posture`: video to joint angles.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::Context;
 use clap::Args;
 use lunula::job::{Given, Said, Watch};
 use lunula::posture::{Layout, Outputs, PostureFigures, PostureOptions, PostureReport, plan, run, suggest};
-use lunula::stages::Step;
 
-use super::job::{Command, JobArgs};
+use super::job::{Command, JobArgs, Plan};
 use super::{Common, Outcome, print_line};
 
 /// Video of a finger with coloured markers to joint angles, each frame with its own time and standard error
@@ -105,8 +104,8 @@ impl Command for PostureArgs {
         &self.given.said
     }
 
-    fn plan(&self) -> anyhow::Result<Vec<Step>> {
-        Ok(plan(&self.video, &self.layout()?, &self.options(), self.outputs().as_ref())?)
+    fn plan(&self) -> anyhow::Result<Plan> {
+        Ok(plan(&self.video, &self.layout()?, &self.options(), self.outputs().as_ref())?.into())
     }
 
     fn run(&self, watch: &Watch<'_>) -> anyhow::Result<PostureReport> {
@@ -147,7 +146,7 @@ impl Command for PostureArgs {
         common.say(&format!("{:.0} % of the time went into decoding", 100.0 * report.decoding_share));
     }
 
-    fn result(&self) -> Option<&Path> {
-        self.out.as_deref()
+    fn result(&self) -> Option<PathBuf> {
+        self.out.clone()
     }
 }

@@ -258,7 +258,8 @@ fn line(row: &Row) -> String {
 
 fn say_curves(found: &Tradeoff, common: &Common) {
     for Verdict { job, choice, error_unit, knee, default, default_is, default_why, decides, .. } in &found.curves {
-        let told = |what: &Option<curves::Told>| what.as_ref().map_or("none".to_owned(), |told| told.setting.clone());
+        let told =
+            |what: &Option<curves::Figures>| what.as_ref().map_or("none".to_owned(), |told| told.setting.clone());
         common.say(&format!(
             "{job}, {choice} ({error_unit}): knee {}; default {}, {default_is}",
             told(knee),

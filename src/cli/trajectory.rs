@@ -1,6 +1,6 @@
 //! `lunula trajectory`: tables of forces or angles for a prompter to play.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::Context;
 use clap::{Args, Subcommand};
@@ -9,9 +9,8 @@ use lunula::predictor::trajectory::{
     BendingOptions, ForceFigures, ForceOptions, KindOptions, PostureFigures, RandomOptions, TrajectoryFigures,
     TrajectoryOutputs, TrajectoryReport, plan, run as run_trajectory,
 };
-use lunula::stages::Step;
 
-use super::job::{self, Command, JobArgs};
+use super::job::{self, Command, JobArgs, Plan};
 use super::{Common, Outcome};
 
 /// Calibration trajectories (5.2.3) as tables that a prompter can play, with how fast they are and how evenly they
@@ -78,8 +77,8 @@ impl<K: KindOptions> Command for KindArgs<K> {
         &self.given.said
     }
 
-    fn plan(&self) -> anyhow::Result<Vec<Step>> {
-        Ok(plan(&self.given.options.options(), self.outputs().as_ref())?)
+    fn plan(&self) -> anyhow::Result<Plan> {
+        Ok(plan(&self.given.options.options(), self.outputs().as_ref())?.into())
     }
 
     fn run(&self, watch: &Watch<'_>) -> anyhow::Result<TrajectoryReport> {
@@ -104,8 +103,8 @@ impl<K: KindOptions> Command for KindArgs<K> {
         }
     }
 
-    fn result(&self) -> Option<&Path> {
-        self.out.as_deref()
+    fn result(&self) -> Option<PathBuf> {
+        self.out.clone()
     }
 }
 

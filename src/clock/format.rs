@@ -274,7 +274,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn formats_of_clocks_are_told_from_others() {
+    fn clock_formats_parse_and_others_are_refused() {
         for good in [
             "mm:ss.t",
             "h:mm:ss",

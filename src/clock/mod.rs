@@ -7,33 +7,23 @@
 //!
 //! Coordinates are those of the stored picture ([`crate::video`]); [`ClockRoi`] speaks of the shown one.
 
-mod bank;
 mod beside;
-mod cells;
-mod crop;
-mod follow;
+mod cell;
 mod format;
 mod glyph;
-mod half;
 mod ink;
-mod judge;
-mod learn;
-mod line;
-mod locate;
-mod look;
-mod names;
-mod reader;
+mod read;
 mod reading;
 mod sequence;
 
 pub use beside::Misfit;
 pub use format::{Cell, ClockFormat, Half, Unit};
 pub use glyph::{Levels, Patch, Place, SURE, Scores, read_crop, recognise};
-pub use reader::{ClockReader, ReaderEffort};
-pub use reading::{Doubt, Reading};
+pub use read::ClockReader;
+pub use reading::{Doubt, ReaderEffort, Reading};
 pub use sequence::{ClockFault, ClockFit, FEWEST, MOST_DRIFT, ScreenDelay, USUAL_DRIFT, USUAL_SCREEN_S, fit};
 
-/// A digital clock in the picture, as the marker file tells.
+/// A digital clock in the picture, as the marker file describes it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Clock {
     /// Where it is.

@@ -1,6 +1,6 @@
-//! What one frame tells of the clock.
+//! The clock in one frame.
 
-/// What one frame tells of the clock.
+/// What the clock shows in one frame, or why it was not read.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Reading {
     /// The clock shows this.
@@ -28,6 +28,19 @@ pub enum Doubt {
     HalfUnclear,
     /// The frame could not be decoded.
     Undecoded,
-    /// It was not looked at: told off to save time.
+    /// It was not looked at, to save time.
     NotAsked,
+}
+
+/// How much was looked at.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, serde::Serialize)]
+pub struct ReaderEffort {
+    /// Frames that were asked for a reading.
+    pub frames: u64,
+    /// Whole frames that were searched for the clock.
+    pub searched: u64,
+    /// Digits whose pixels were looked at.
+    pub digits: u64,
+    /// Digits that the network judged; the others were known by the clock's own glyphs.
+    pub judged: u64,
 }

@@ -1,11 +1,10 @@
-//! Pictures of results: grey maps, sheets with captions and scales, plots, reports. It knows numbers and pictures, not
+//! Pictures of results: grey maps, sheets with captions and scales, charts, reports. It knows numbers and pictures, not
 //! jobs.
 
 mod chart;
 mod grey;
 mod html;
-mod places;
-mod plot;
+mod picture;
 mod sheet;
 mod text;
 mod thin;
@@ -13,10 +12,11 @@ mod thin;
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{DynamicImage, ExtendedColorType, GrayAlphaImage, ImageEncoder, ImageError};
 
-pub use chart::{Bar, Cell, Chart, Item, draw_charts, draw_grid, draw_panels};
+pub use chart::{
+    Axis, Bar, Cell, Chart, Item, Mark, MarkShape, Point, draw_charts, draw_grid, draw_log_log, draw_panels,
+};
 pub use grey::{Stretch, grey_map};
 pub use html::{Page, escape};
-pub use plot::{Axis, Mark, MarkShape, Plot, Point, Series, draw_log_log};
 pub use sheet::{Scale, Sheet, Tile};
 pub use thin::{Bin, MOST_BINS, Sample, Summary, Thinned};
 

@@ -95,6 +95,19 @@ impl Staging {
         fs::read(self.at.join(name)).map_err(|why| self.refused(name, why))
     }
 
+    /// Starts to bring onto the disk what is written so far, and does other work meanwhile: of a commit little is left
+    /// to wait for then. What fails here fails there again, and is reported there.
+    pub(crate) fn sync_meanwhile<T>(&self, work: impl FnOnce() -> T) -> T {
+        std::thread::scope(|scope| {
+            if !hidden::is_private(&self.target) {
+                let files: Vec<PathBuf> = self.names().iter().map(|name| self.at.join(name)).collect();
+                // Its own thread: it waits, and takes no worker's place.
+                scope.spawn(move || disk::sync(files.iter(), &self.at));
+            }
+            work()
+        })
+    }
+
     /// The error of a writer that could not write `name`.
     pub fn refused(&self, name: &str, why: impl ToString) -> WriteError {
         WriteError::File { path: self.target.join(name), why: why.to_string() }
@@ -423,7 +436,7 @@ impl Places {
             .map_err(|why| WriteError::File { path: path.to_owned(), why: why.to_string() })
     }
 
-    /// Draws a picture, PNG and SVG, named after `table`; tells where the PNG will stand.
+    /// Draws a picture, PNG and SVG, named after `table`; returns where the PNG will be.
     ///
     /// # Errors
     /// As [`Places::place`], and where it can't be drawn.
@@ -656,8 +669,8 @@ mod tests {
             let committed = staging.commit_exactly(&["truth", "photos", "clock"]);
             if !faults::end() {
                 committed.unwrap();
-                let told = |name: &str, text: &str| (name.to_owned(), text.to_owned());
-                assert_eq!(all_in(dir.path()), [told("photos/n", "new"), told("truth/b", "new")]);
+                let file = |name: &str, text: &str| (name.to_owned(), text.to_owned());
+                assert_eq!(all_in(dir.path()), [file("photos/n", "new"), file("truth/b", "new")]);
                 assert!(after > 6, "{after}");
                 break;
             }

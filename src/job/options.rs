@@ -325,12 +325,12 @@ mod tests {
         let (key, what) = refused::<VideoRequest>("secnds = 2");
         assert_eq!(
             (key.as_str(), what.as_str()),
-            ("secnds", "`secnds` is no option of `lunula phantom x`; did you mean `seconds`?")
+            ("secnds", "`secnds` is not an option of lunula phantom x; did you mean `seconds`?")
         );
         let (key, what) = refused::<StudyRequest>("quick = 2");
         assert!(key == "quick" && what.contains("known: seed, subjects, sensors"), "{what}");
         let (key, what) = refused::<VideoRequest>("video_size = 2");
-        assert!(key == "video_size" && what.contains("is no option"), "{what}");
+        assert!(key == "video_size" && what.contains("is not a"), "{what}");
         let (key, what) = refused::<StudyRequest>("video_size = \"wide\"");
         assert!(key == "video_size" && what.contains("`wide` is not WIDTHxHEIGHT"), "{what}");
         let (key, what) = refused::<LogRequest>("protocol = \"touchy\"");

@@ -2,7 +2,7 @@
 //!
 //! What is prompted is done about 0.3 s later, the lag itself moving by up to 30 %, and with smooth errors: of the
 //! pressing and of the angles a share of what is prompted, of the shear's components the same share of what friction
-//! holds. The share is told by its standard deviation; 5.2.2a quotes 6 % for people who watch a picture of their force
+//! holds. The share is given by its standard deviation; 5.2.2a quotes 6 % for people who watch a picture of their force
 //! (Jones 1998). A shear that friction would not hold slips: it is cut at the cone. The errors are the seed's: a log
 //! and a video of the same seed are of the same movement.
 

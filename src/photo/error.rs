@@ -8,6 +8,7 @@ use super::outline::SavedOutlines;
 use super::set::SetFault;
 use super::sums::PartialFault;
 use crate::files::WriteError;
+use crate::job::Interrupted;
 use crate::words::shown;
 
 /// Why a set gave no results.
@@ -25,8 +26,8 @@ pub enum PhotosError {
         outlines: Option<SavedOutlines>,
     },
     /// Stopped from outside.
-    #[error("interrupted; nothing was written")]
-    Interrupted,
+    #[error("stopped")]
+    Interrupted(#[from] Interrupted),
 }
 
 fn list(failed: &[SetFault]) -> String {
@@ -59,6 +60,6 @@ pub enum MergeError {
     #[error(transparent)]
     Write(#[from] WriteError),
     /// Stopped from outside.
-    #[error("interrupted; nothing was written")]
-    Interrupted,
+    #[error("stopped")]
+    Interrupted(#[from] Interrupted),
 }

@@ -6,6 +6,7 @@
 //! at the end.
 
 use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
@@ -14,15 +15,16 @@ use rayon::prelude::*;
 
 use super::error::PhotosError;
 use super::normalize::{NailFrame, Normalized, Normalizer};
-use super::options::{OutlineHome, Outputs, PhotosOptions, Results, Watch};
+use super::options::{OutlineHome, Outputs, PhotosOptions, Results};
 use super::outline::{DetectedOutline, Nail, OutlinePlace, SavedOutlines, keep_outlines};
 use super::plan::{Foreknown, left_out};
 use super::read::{MOST_MEGAPIXELS, PhotoBuffer, Photograph};
-use super::report::{Findings, PhotosReport};
+use super::report::{Findings, PhotosReport, of_photos};
 use super::results::{self, NailRow, NailTable, Scratch};
 use super::set::{Photo, PhotoSet, SetFault};
 use super::sums::{Partials, Sums};
 use crate::files::{Places, Staging, WriteError};
+use crate::job::Watch;
 use crate::stages::Stages;
 
 /// Share of the nail's box outside of the photograph above which it is left out (assumed): of a nail of which less than
@@ -41,7 +43,7 @@ pub fn run(
     set: &PhotoSet,
     options: &PhotosOptions,
     outputs: &Outputs,
-    watch: &Watch,
+    watch: &Watch<'_>,
 ) -> Result<PhotosReport, PhotosError> {
     let start = Instant::now();
     let staging = Staging::new(&outputs.folder)?;
@@ -53,12 +55,11 @@ pub fn run(
         sums: set.poses().into_iter().map(|pose| (pose, Mutex::new(Sums::new(options.normalization.size)))).collect(),
         memory: Mutex::default(),
     };
+    let finished = AtomicU64::new(0);
     let one = |(index, photo)| {
-        if watch.is_stopped() {
-            return Err(PhotosError::Interrupted);
-        }
+        watch.go_on()?;
         let done = work.photograph(index, photo)?;
-        (watch.tick)();
+        (watch.tick)(finished.fetch_add(1, Ordering::Relaxed) + 1, Some(set.photos.len() as u64));
         Ok(done)
     };
     let done: Vec<Done> =
@@ -104,10 +105,8 @@ pub fn run(
         }
     };
     nails.write(&staging)?;
-    if watch.is_stopped() {
-        return Err(PhotosError::Interrupted);
-    }
-    let mut report = PhotosReport::of_photos(findings, &partials, stages.list(), start.elapsed());
+    watch.go_on()?;
+    let mut report = of_photos(findings, &partials, watch).timed(&stages, start);
     if let Some((maps, of_nails)) = sheets {
         report.write(&nails, &maps, &of_nails, &staging)?;
     }

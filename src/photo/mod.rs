@@ -8,6 +8,7 @@
 
 mod error;
 mod job;
+mod kind;
 mod normalize;
 mod options;
 pub mod outline;
@@ -20,16 +21,17 @@ mod sums;
 
 pub use error::{MergeError, PhotosError};
 pub use job::run;
+pub use kind::{MapsJob, NormalizeJob};
 pub use normalize::{
     Channel, FULL_SCALE, FrameFault, NailFrame, Normalization, Normalized, Resample, SMALLEST_EXTENT_PX, normalize,
 };
-pub use options::{OutlineHome, Outputs, PhotosOptions, Results, Watch};
-pub use plan::{Foreknown, plan, plan_foreknown};
+pub use options::{OutlineHome, Outputs, PhotosOptions, Results};
+pub use plan::plan;
 pub use read::{Depth, MOST_MEGAPIXELS, Photograph, ReadFault};
-pub use report::{PhotosReport, PoseCount};
+pub use report::{PhotosFigures, PhotosReport, PoseCount};
 pub use results::NailRow;
-pub(crate) use set::is_picture;
 pub use set::{Photo, PhotoSet, SetError, SetFault};
 pub use sums::{
-    Accuracy, DuplicateSubject, GatherReport, Gathering, Maps, PartialFault, Partials, Sums, gather, join, merge,
+    Accuracy, DuplicateSubject, GatherFigures, GatherReport, Gathering, Maps, PartialFault, Partials, Sums, gather,
+    join, merge, merge_plan,
 };

@@ -1,7 +1,6 @@
-//! What is done with a set of photographs, where results go, and how a caller follows the job.
+//! What is done with a set of photographs, where results go.
 
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::normalize::Normalization;
 use super::outline::OutlineOptions;
@@ -62,18 +61,4 @@ pub enum OutlineHome {
     BesidePhotographs,
     /// In a folder, with a `photos.csv` that refers to the photographs.
     Folder(PathBuf),
-}
-
-/// A caller's view of a running job.
-pub struct Watch<'a> {
-    /// Becomes true where the job is to stop.
-    pub stop: &'a AtomicBool,
-    /// Called after each photograph, from any thread.
-    pub tick: &'a (dyn Fn() + Sync),
-}
-
-impl Watch<'_> {
-    pub(super) fn is_stopped(&self) -> bool {
-        self.stop.load(Ordering::Relaxed)
-    }
 }

@@ -1,5 +1,5 @@
-//! Which steps a run takes and leaves out, and why: one table, which a plan asks with what names and headers show, and a
-//! run with what it found.
+//! Which steps a run takes and leaves out, and why: one table, which a plan asks with what names and headers show, and
+//! a run with what it found.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +11,7 @@ use crate::stages::{self, Step};
 
 /// What is known of a photograph: before it is opened, or after it was worked on.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Foreknown {
+pub(super) struct Foreknown {
     /// Its pose.
     pub pose: String,
     /// It has no colours; none: not known.
@@ -23,7 +23,7 @@ pub struct Foreknown {
 impl Foreknown {
     /// Looks at a photograph's header and at the files beside it; no pixel is decoded.
     #[must_use]
-    pub fn of(photo: &Photo, options: &PhotosOptions) -> Self {
+    pub(super) fn of(photo: &Photo, options: &PhotosOptions) -> Self {
         let (pose, outlines) = (photo.pose.clone(), options.outlines.locate(photo));
         Self { pose, grey: header_is_grey(&photo.path).ok(), outlines }
     }
@@ -83,7 +83,7 @@ impl<'a> Counts<'a> {
 }
 
 /// The table of steps.
-pub fn plan_foreknown(photos: &[Foreknown], options: &PhotosOptions, outputs: &Outputs) -> Vec<Step> {
+pub(super) fn plan_foreknown(photos: &[Foreknown], options: &PhotosOptions, outputs: &Outputs) -> Vec<Step> {
     let Counts { labelme, masks, detected, grey, poses } = Counts::of(photos);
     let colour = photos.len() - grey;
     let most = poses.values().copied().max().unwrap_or(0);

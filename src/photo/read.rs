@@ -74,7 +74,8 @@ pub struct Photograph {
     pub orientation: Orientation,
 }
 
-/// Memory that goes from photograph to photograph, so that it is not taken from the system, and cleared by it, each time.
+/// Memory that goes from photograph to photograph, so that it is not taken from the system, and cleared by it, each
+/// time.
 #[derive(Debug, Default)]
 pub(super) struct PhotoBuffer {
     file: Vec<u8>,

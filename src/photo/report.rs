@@ -4,19 +4,19 @@
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use std::time::Duration;
 
 use serde::Serialize;
 use serde_json::{Value, json};
 
+use super::normalize::Normalization;
 use super::options::{Outputs, PhotosOptions, Results};
 use super::outline::SavedOutlines;
-use super::read::MOST_MEGAPIXELS;
 use super::results::{DrawnSheet, NAIL_COLUMNS, NailRow, NailTable};
 use super::set::{Photo, PhotoSet, SetFault};
 use super::sums::{Partials, Sums};
 use crate::figure::Page;
 use crate::files::{Staging, WriteError};
+use crate::job::{Report, Watch};
 use crate::stages::Stage;
 
 /// Where the report goes among the results.
@@ -25,32 +25,19 @@ const HTML: &str = "report.html";
 
 /// One run of `photos` or `photos merge`, as `run.json` and `--json` show it. Times differ from run to run; all else is
 /// the same for the same input and options.
+pub type PhotosReport = Report<PhotosFigures>;
+
+/// The figures of a run.
 #[derive(Debug, Clone, Serialize)]
-pub struct PhotosReport {
-    /// `photos` or `photos merge`.
-    pub job: &'static str,
-    /// Of lunula.
-    pub version: &'static str,
+pub struct PhotosFigures {
     /// What it worked on.
     pub inputs: Vec<PathBuf>,
-    /// Every option that shapes the result.
-    pub options: Value,
+    /// How the normalized pictures were made.
+    pub normalization: Normalization,
     /// Photographs and entries given, photographs that gave at least one nail, nails listed and used.
     pub counts: Value,
     /// Subjects by pose.
     pub poses: Vec<PoseCount>,
-    /// What failed, with its place.
-    pub failed: Vec<SetFault>,
-    /// What a person may have to act on.
-    pub warnings: Vec<String>,
-    /// What is good to know, a line for each kind.
-    pub notes: Vec<String>,
-    /// What the scene did not need.
-    pub left_out: Vec<String>,
-    /// Time by stage, summed over threads.
-    pub stages: Vec<Stage>,
-    /// From start to end, seconds.
-    pub wall_s: f64,
     /// Threads that worked.
     pub threads: usize,
     /// Every nail, used or not, in the set's order; of merged parts none.
@@ -175,81 +162,53 @@ impl<'a> Findings<'a> {
 /// Bits that scientific cameras keep in 16; a set whose largest sample has no more is noted.
 const FEW_BITS: [u32; 4] = [8, 10, 12, 14];
 
+/// Of `lunula photos`.
+pub(super) fn of_photos(found: Findings<'_>, partials: &Partials, watch: &Watch<'_>) -> PhotosReport {
+    let (warnings, poses) = (found.warnings(), pose_counts(partials));
+    let Findings { set, options, has_maps, rows, failed, left_out, outlines, .. } = found;
+    let mut notes: Vec<String> = outlines.iter().flat_map(SavedOutlines::notes).collect();
+    notes.extend(one_subject(&poses).filter(|_| has_maps));
+    let used = || rows.iter().filter(|row| row.normalized.is_some());
+    let mut photographs: Vec<usize> = used().map(|row| row.photo).collect();
+    photographs.dedup();
+    let figures = PhotosFigures {
+        inputs: vec![set.folder.clone()],
+        normalization: options.normalization,
+        counts: json!({
+            "photographs": set.photos.len(),
+            "photographs_used": photographs.len(),
+            "nails": rows.len(),
+            "nails_used": used().count(),
+        }),
+        poses,
+        threads: rayon::current_num_threads(),
+        outlines,
+        nails: rows,
+    };
+    let failed = failed.iter().map(ToString::to_string).collect();
+    Report { left_out, warnings, notes, failed, ..Report::new("photos", watch, figures) }
+}
+
+/// Of `lunula photos merge`.
+pub(super) fn of_merge(parts: &[PathBuf], partials: &Partials, watch: &Watch<'_>) -> PhotosReport {
+    let poses = pose_counts(partials);
+    let notes = one_subject(&poses).into_iter().collect();
+    let figures = PhotosFigures {
+        inputs: parts.to_vec(),
+        normalization: partials.normalization,
+        counts: json!({ "parts": parts.len() }),
+        poses,
+        threads: rayon::current_num_threads(),
+        nails: Vec::new(),
+        outlines: None,
+    };
+    let left_out = vec!["photographs: not read again, their sums are joined".into()];
+    Report { left_out, notes, ..Report::new("photos merge", watch, figures) }
+}
+
 impl PhotosReport {
-    /// Of `lunula photos`.
-    pub(super) fn of_photos(found: Findings<'_>, partials: &Partials, stages: Vec<Stage>, wall: Duration) -> Self {
-        let (warnings, poses) = (found.warnings(), pose_counts(partials));
-        let Findings { set, options, has_maps, rows, failed, left_out, outlines, .. } = found;
-        let mut notes: Vec<String> = outlines.iter().flat_map(SavedOutlines::notes).collect();
-        notes.extend(one_subject(&poses).filter(|_| has_maps));
-        let used = || rows.iter().filter(|row| row.normalized.is_some());
-        let mut photographs: Vec<usize> = used().map(|row| row.photo).collect();
-        photographs.dedup();
-        let from = &options.outlines;
-        Self {
-            inputs: vec![set.folder.clone()],
-            options: json!({
-                "normalization": options.normalization,
-                "outline": from.sources,
-                "masks": from.masks,
-                "mask_value": from.mask_values,
-                "distal": from.distal,
-                "annotations": from.drawn,
-                "max_megapixels": options.max_megapixels.unwrap_or(MOST_MEGAPIXELS),
-            }),
-            counts: json!({
-                "photographs": set.photos.len(),
-                "photographs_used": photographs.len(),
-                "nails": rows.len(),
-                "nails_used": used().count(),
-            }),
-            poses,
-            failed,
-            warnings,
-            notes,
-            left_out,
-            outlines,
-            nails: rows,
-            ..Self::empty("photos", stages, wall)
-        }
-    }
-
-    /// Of `lunula photos merge`.
-    pub(super) fn of_merge(parts: &[PathBuf], partials: &Partials, stages: Vec<Stage>, wall: Duration) -> Self {
-        let poses = pose_counts(partials);
-        Self {
-            inputs: parts.to_vec(),
-            options: json!({ "normalization": partials.normalization }),
-            counts: json!({ "parts": parts.len() }),
-            notes: one_subject(&poses).into_iter().collect(),
-            poses,
-            left_out: vec!["photographs: not read again, their sums are joined".into()],
-            ..Self::empty("photos merge", stages, wall)
-        }
-    }
-
-    fn empty(job: &'static str, stages: Vec<Stage>, wall: Duration) -> Self {
-        Self {
-            job,
-            version: env!("CARGO_PKG_VERSION"),
-            inputs: Vec::new(),
-            options: Value::Null,
-            counts: Value::Null,
-            poses: Vec::new(),
-            failed: Vec::new(),
-            warnings: Vec::new(),
-            notes: Vec::new(),
-            left_out: Vec::new(),
-            stages,
-            wall_s: wall.as_secs_f64(),
-            threads: rayon::current_num_threads(),
-            nails: Vec::new(),
-            outlines: None,
-        }
-    }
-
-    /// Writes `run.json` and `report.html`, all else of the results being written already. An earlier run's results in the same folder
-    /// are not deleted, but nobody should take them for this run's: they become a warning.
+    /// Writes `run.json` and `report.html`, all else of the results being written already. An earlier run's results in
+    /// the same folder are not deleted, but nobody should take them for this run's: they become a warning.
     ///
     /// # Errors
     /// [`WriteError`].
@@ -266,8 +225,7 @@ impl PhotosReport {
             self.warnings.push(format!("{first}{also} in {folder} existed before and are not of this run"));
         }
         staging.write(HTML, self.html(nails, sheets, nail_sheets).as_bytes())?;
-        let text = serde_json::to_string_pretty(self).map_err(|why| staging.refused(JSON, why))?;
-        staging.write(JSON, (text + "\n").as_bytes())
+        staging.write(JSON, self.text().as_bytes())
     }
 
     /// A page of sheets, nails, what was left out and why, times. Nothing is loaded from elsewhere.
@@ -293,8 +251,7 @@ impl PhotosReport {
         page.table(&NAIL_COLUMNS, &nails.rows, |row| !nails.is_used(row));
         if !self.failed.is_empty() {
             page.heading("Photographs that gave nothing");
-            let rows: Vec<Vec<String>> = self.failed.iter().map(|f| vec![f.place.clone(), f.what.clone()]).collect();
-            page.table(&["where", "what is wrong, what to do"], &rows, |_| true);
+            page.list(&self.failed);
         }
         page.heading("What the scene did not need");
         page.list(&self.left_out);
@@ -311,7 +268,7 @@ impl PhotosReport {
             self.wall_s, self.threads
         ));
         page.heading("Options");
-        page.paragraph(&self.options.to_string());
+        page.paragraph(&json!({ "options": self.options, "normalization": self.normalization }).to_string());
         page.finish()
     }
 }

@@ -35,12 +35,18 @@ pub struct Photo {
 }
 
 /// An entry that cannot be used.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct SetFault {
     /// File, and line in the manifest.
     pub place: String,
     /// What is wrong and what to do.
     pub what: String,
+}
+
+impl std::fmt::Display for SetFault {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}: {}", self.place, self.what)
+    }
 }
 
 /// Why there is no set at all.

@@ -3,6 +3,7 @@
 use crate::align::{AlignJob, JoinJob};
 use crate::hemodynamics::{CurveJob, FitJob, SimulateJob};
 use crate::job::{Job, Kind};
+use crate::photo::{MapsJob, NormalizeJob};
 use crate::posture::PostureJob;
 use crate::predictor::trajectory::TrajectoryJob;
 use crate::predictor::{AnalyseJob, CompareJob, EvaluateJob, PredictJob, PruneJob, TrainJob};
@@ -23,6 +24,8 @@ static KINDS: &[&Kind] = &[
     &EvaluateJob::KIND,
     &FitJob::KIND,
     &JoinJob::KIND,
+    &MapsJob::KIND,
+    &NormalizeJob::KIND,
     &PostureJob::KIND,
     &PredictJob::KIND,
     &PressesJob::KIND,

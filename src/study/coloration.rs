@@ -97,7 +97,7 @@ fn region(name: &str) -> Within {
     REGIONS.iter().find(|(own, _)| *own == name).map_or(|_, _| false, |(_, within)| *within)
 }
 
-/// Numbers of the average maps in a folder of `lunula photos`; what is not there is not told.
+/// Numbers of the average maps in a folder of `lunula photos`; what is missing is not reported.
 ///
 /// # Errors
 /// A map that can't be read.
@@ -238,7 +238,7 @@ mod tests {
 
     use super::*;
 
-    /// A map whose value is told by its place.
+    /// A map whose value depends on the place.
     fn write(folder: &Path, name: &str, value: impl Fn(f64, f64) -> f64) {
         std::fs::create_dir_all(folder.join("maps")).unwrap();
         let map = Array2::from_shape_fn((100, 100), |(row, column)| {
@@ -248,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn regions_and_patterns_are_told_apart() {
+    fn regions_and_patterns_are_distinguished() {
         let folder = tempfile::tempdir().unwrap();
         let at = folder.path();
         write(at, "nominal-mean.npy", |_, _| 0.4);
@@ -275,7 +275,7 @@ mod tests {
     }
 
     #[test]
-    fn a_folder_without_maps_tells_nothing() {
+    fn a_folder_without_maps_has_no_numbers() {
         let folder = tempfile::tempdir().unwrap();
         assert_eq!(coloration_numbers(folder.path()).unwrap(), Numbers::default());
         assert!(coloration_sheets(folder.path(), None, &folder.path().join("out")).is_err());

@@ -2,7 +2,7 @@
 //! subjects (Fig. 105 to 113).
 //!
 //! In: the tables `merit.csv`, `predicted.csv`, `modes.csv`, `comparisons.csv` that evaluate, analyse and compare
-//! write. Out: [`Numbers`]; what a table does not hold is not told.
+//! write. Out: [`Numbers`]; what a table lacks is not reported.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn an_evaluation_is_told_by_target() {
+    fn an_evaluation_is_reported_by_target() {
         let merit = "of,name,session,subject,target,rows,rmse,bias,r2,mae,within\n\
                      all,,,,Fz_N,4,0.5,0,0.9,0.4,\nrecording,a,1,1,Fz_N,4,0.7,0,0.9,0.4,\n";
         let predicted = "time_s,Fz_N,Fz_N_predicted,recording\n0,0,0.2,a\n1,0,-0.2,a\n2,-2,-2,a\n3,,1,a\n";
@@ -197,7 +197,7 @@ mod tests {
     }
 
     #[test]
-    fn a_comparison_tells_what_a_removed_photodiode_costs() {
+    fn a_comparison_gives_the_cost_of_a_removed_photodiode() {
         let text = "figure,group,series,unit,rmse_mean,rmse_sd,people\n109,Fz_N,linear,N,0.4,0.1,7\n110,Fz_N,linear,N,0.8,0.1,7\n\
                     109,Fz_N,network of 8,N,0.5,0.1,7\n113,none,Fz_N,N,0.4,,7\n113,P1,Fz_N,N,0.5,,7\n113,P2,Fz_N,N,0.4,,6\n";
         let found = compare_numbers(folder(&[("comparisons.csv", text)]).path()).unwrap();

@@ -19,7 +19,7 @@ use crate::table::Table;
 
 /// Between two forces of a static curve, newtons.
 const STEP_N: f64 = 0.05;
-/// No static curve is told beyond this, newtons.
+/// No static curve is reported beyond this, newtons.
 const MOST_N: f64 = 2.0;
 /// Of a quick press' height: what is none of rest or of holding any more.
 const LEAVES: f64 = 0.05;
@@ -191,10 +191,10 @@ mod tests {
 
     #[test]
     fn what_is_no_press_is_named() {
-        let told = |text: &str| format!("{:#}", read_text(text).unwrap_err());
-        assert!(told("Fz_N,P1\n0,1\n").contains("VP1 (proximal)"));
-        assert!(told("VP1\n0\n").contains("Fz_N"));
-        assert!(told("time_s,Fz_N,VP1\n0,-1,1\n1,-1,1\n2,-1,1\n").contains("begin and to end without force"));
-        assert!(told("Fz_N,VP1\n0,1\n,2\n").contains("fewer than three"));
+        let fault = |text: &str| format!("{:#}", read_text(text).unwrap_err());
+        assert!(fault("Fz_N,P1\n0,1\n").contains("VP1 (proximal)"));
+        assert!(fault("VP1\n0\n").contains("Fz_N"));
+        assert!(fault("time_s,Fz_N,VP1\n0,-1,1\n1,-1,1\n2,-1,1\n").contains("begin and to end without force"));
+        assert!(fault("Fz_N,VP1\n0,1\n,2\n").contains("fewer than three"));
     }
 }

@@ -6,7 +6,7 @@
 //! both formats, so that the same table reads the same from either. Dates with times of day, which other programs write
 //! into Parquet, are read as text: ISO 8601, with `Z` where they are in UTC.
 //!
-//! A writer writes where it is told; that results appear whole or not at all is the business of [`crate::files`].
+//! A writer writes to the given path; [`crate::files`] sees to it that results appear whole or not at all.
 
 mod cells;
 mod csv;

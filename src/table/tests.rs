@@ -120,8 +120,8 @@ fn wrong_rows_and_columns_are_refused() {
     let twice = vec![Column::text("a"), Column::text("a")];
     assert!(TableWriter::create(&path, &path, twice, &[]).unwrap_err().to_string().contains("two columns"));
     let other = dir.path().join("t.xlsx");
-    let told = TableWriter::create(&other, &other, columns(), &[]).unwrap_err().to_string();
-    assert!(told.contains("t.xlsx") && told.contains(".parquet"), "{told}");
+    let message = TableWriter::create(&other, &other, columns(), &[]).unwrap_err().to_string();
+    assert!(message.contains("t.xlsx") && message.contains(".parquet"), "{message}");
     let nowhere = dir.path().join("no/t.parquet");
     assert!(TableWriter::create(&nowhere, &nowhere, columns(), &[]).unwrap_err().to_string().contains("t.parquet"));
     assert_eq!(TableFormat::of(Path::new("A.CSV")).unwrap(), TableFormat::Csv);
@@ -146,29 +146,29 @@ fn files_of_other_programs_are_read() {
 #[test]
 fn a_wrong_cell_is_named_with_file_line_and_column() {
     let table = read_text(b"a,b\n1,\"two\nlines\"\n1,2\nnan,2.5\nx,3\n").unwrap();
-    let told = table.numbers("a").unwrap_err().to_string();
-    assert!(told.contains("log.csv:5: column `a`: `NaN` is no finite number"), "{told}");
-    let told = table.integers("b").unwrap_err().to_string();
-    assert!(told.contains("log.csv:2: column `b`"), "{told}");
-    let told = table.numbers("c").unwrap_err().to_string();
-    assert!(told.contains("no column `c`; its columns are a, b"), "{told}");
+    let message = table.numbers("a").unwrap_err().to_string();
+    assert!(message.contains("log.csv:5: column `a`: `NaN` is no finite number"), "{message}");
+    let message = table.integers("b").unwrap_err().to_string();
+    assert!(message.contains("log.csv:2: column `b`"), "{message}");
+    let message = table.numbers("c").unwrap_err().to_string();
+    assert!(message.contains("no column `c`; its columns are a, b"), "{message}");
     let (_dir, path) = written("parquet", &ROWS);
     let table = Table::read(&path).unwrap();
-    let told = table.numbers("status").unwrap_err().to_string();
-    assert!(told.contains("t.parquet: row 1, column `status`"), "{told}");
+    let message = table.numbers("status").unwrap_err().to_string();
+    assert!(message.contains("t.parquet: row 1, column `status`"), "{message}");
     assert!(table.integers("time_s").unwrap_err().to_string().contains("row 2, column `time_s`"));
 }
 
 #[test]
-fn damaged_files_are_told() {
+fn damaged_files_are_refused() {
     for (text, words) in [
         (&b""[..], "is empty"),
         (b"a,b\n1,2\n1,2,3\n", "line 3 has 3 cells and the first line 2"),
         (b"a,a\n1,2\n", "two columns are named `a`"),
         (b"a,b\n1,\xff\n", "line 2 is not UTF-8"),
     ] {
-        let told = read_text(text).unwrap_err().to_string();
-        assert!(told.contains(words) && told.contains("log.csv"), "{told}");
+        let message = read_text(text).unwrap_err().to_string();
+        assert!(message.contains(words) && message.contains("log.csv"), "{message}");
     }
     assert!(Table::read(Path::new("nothing.csv")).unwrap_err().to_string().contains("nothing.csv"));
     let (_dir, path) = written("parquet", &ROWS);
@@ -226,7 +226,7 @@ fn dates_of_other_programs_are_read_as_text() {
 }
 
 #[test]
-fn not_a_number_of_other_programs_is_told_from_infinity() {
+fn nan_of_other_programs_is_distinguished_from_infinity() {
     let table = read_text(b"a,b\n1,inf\nNaN,2\n,3\n").unwrap();
     let a = table.numbers_or_nan("a").unwrap();
     assert!(a[0] == Some(1.0) && a[1].is_some_and(f64::is_nan) && a[2].is_none());

@@ -28,7 +28,7 @@ pub enum Job {
 }
 
 impl Job {
-    /// In the order in which they are told.
+    /// In the order of the page.
     pub const ALL: [Self; 5] = [Self::Photos, Self::Posture, Self::Align, Self::Predictor, Self::Hemodynamics];
 
     /// As on the command line.

@@ -1,5 +1,5 @@
 //! What can be chosen in each job, what is chosen unless the user says otherwise, and why: the one place of it. The
-//! page tells it, the README repeats it, and a test compares the two.
+//! page states it, the README repeats it, and a test compares the two.
 
 use super::{align, hemodynamics, photos, posture, predictor};
 
@@ -12,9 +12,9 @@ pub struct Choice {
     pub name: &'static str,
     /// By which option, or where in the library.
     pub option: &'static str,
-    /// The setting that is taken unless told otherwise, as rows name it; made from the job's own default.
+    /// The default setting, as rows name it; made from the job's own default.
     pub default: String,
-    /// What the unit of the error begins with that decides; others are told beside it.
+    /// How the unit of the deciding error begins; other errors are shown beside it.
     pub judged_by: &'static str,
     /// Why the default is the default, where it is the knee and where it is not.
     pub why: &'static str,
@@ -69,7 +69,7 @@ pub fn choices() -> Vec<Choice> {
             "--max-gap",
             align::bridging_default(),
             align::LABEL_ERROR,
-            "Run time does not hang on it. Two frames bridge a marker that is lost in a single one; longer gaps \
+            "Run time does not depend on it. Two frames bridge a marker that is lost in a single one; longer gaps \
              label more rows, and worse.",
         ),
         choice(
@@ -77,7 +77,7 @@ pub fn choices() -> Vec<Choice> {
             "--model, --hidden, --restarts",
             predictor::model_default(),
             predictor::FIT,
-            "On random movement no model is better by more than some hundredths of a newton, and which one hangs on \
+            "On random movement no model is better by more than some hundredths of a newton, and which one depends on \
              the person (docs/section-5-4.md).",
         ),
         choice(
@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn reasons_are_told_of_each_choice_once() {
+    fn each_choice_has_its_reason_once() {
         let all = choices();
         for (k, choice) in all.iter().enumerate() {
             assert!(

@@ -2,14 +2,47 @@
 
 use super::judge::{Tradeoff, Verdict};
 use super::rows::Row;
-use crate::figure::{Axis, Mark, MarkShape, Plot, Point, Series};
+use crate::figure::{Axis, Chart, Item, Mark, MarkShape, Point};
+
+/// Width and height of a panel, pixels.
+pub(super) const PANEL_PX: (u32, u32) = (820, 620);
+
+/// Points of one program.
+#[derive(Debug)]
+pub(super) struct Series {
+    pub(super) name: String,
+    pub(super) points: Vec<Point>,
+    /// Another program's.
+    pub(super) peer: bool,
+}
+
+/// A chart of `front`, then the points of each program, then the marks.
+pub(super) fn chart(
+    title: String,
+    [x, y]: [String; 2],
+    front: Vec<[f64; 2]>,
+    series: Vec<Series>,
+    marks: Vec<Mark>,
+) -> Chart {
+    let points =
+        |(colour, one): (usize, Series)| Item::Points { name: one.name, points: one.points, hollow: one.peer, colour };
+    let items = std::iter::once(Item::Path(front)).chain(series.into_iter().enumerate().map(points));
+    Chart {
+        title,
+        x: Axis { label: x },
+        y: Axis { label: y },
+        from_zero: false,
+        items: items.chain(marks.into_iter().map(Item::Mark)).collect(),
+        height: PANEL_PX.1,
+    }
+}
 
 /// A panel for each curve.
-pub(super) fn panels(tradeoff: &Tradeoff) -> Vec<Plot> {
+pub(super) fn panels(tradeoff: &Tradeoff) -> Vec<Chart> {
     tradeoff.curves.iter().map(|curve| panel(curve, &tradeoff.rows)).collect()
 }
 
-fn panel(curve: &Verdict, rows: &[Row]) -> Plot {
+fn panel(curve: &Verdict, rows: &[Row]) -> Chart {
     let on: Vec<&Row> =
         rows.iter().filter(|row| row.choice == curve.choice && row.error_unit == curve.error_unit).collect();
     let mut series: Vec<Series> = Vec::new();
@@ -19,29 +52,18 @@ fn panel(curve: &Verdict, rows: &[Row]) -> Plot {
         let label = if label.is_empty() { name } else { label };
         let x_range = (row.run_low_s < row.run_high_s).then_some([row.run_low_s, row.run_high_s]);
         let point = Point { x: row.run_s, y: row.error, label: label.to_owned(), x_range };
-        match series.iter_mut().find(|known| known.name == name && known.hollow == row.peer) {
+        match series.iter_mut().find(|known| known.name == name && known.peer == row.peer) {
             Some(known) => known.points.push(point),
-            None => series.push(Series { name: name.to_owned(), points: vec![point], hollow: row.peer }),
+            None => series.push(Series { name: name.to_owned(), points: vec![point], peer: row.peer }),
         }
     }
-    Plot {
-        title: format!("{}: {}", curve.job, curve.choice),
-        x: Axis { label: "seconds an input, one thread, of the stage alone".into() },
-        y: Axis { label: curve.error_unit.clone() },
-        series,
-        line: front_line(curve),
-        marks: marks(&on),
-    }
+    let axes = ["seconds an input, one thread, of the stage alone".to_owned(), curve.error_unit.clone()];
+    chart(format!("{}: {}", curve.job, curve.choice), axes, curve.front.clone(), series, marks(&on))
 }
 
 /// What a peer's setting begins with.
 fn program(setting: &str) -> &str {
     setting.split([',', ':']).next().unwrap_or(setting)
-}
-
-/// Settings worth their time; a single one makes no line.
-pub(super) fn front_line(curve: &Verdict) -> Vec<[f64; 2]> {
-    curve.front.clone()
 }
 
 /// The knee and the default, where they are among `rows`.
@@ -64,15 +86,19 @@ mod tests {
         let rows =
             vec![row("a", 1.0, 9.0), row("b", 1.5, 0.5), row(&default, 30.0, 0.4), row("Other, fast", 0.1, 0.1).peer()];
         let panels = panels(&judged(rows, &[]).unwrap());
-        let names: Vec<(&str, bool)> =
-            panels[0].series.iter().map(|series| (series.name.as_str(), series.hollow)).collect();
-        assert_eq!(names, [("lunula", false), ("Other", true)]);
-        assert_eq!(panels[0].series[1].points[0].label, "fast");
-        let marks: Vec<(f64, MarkShape)> = panels[0].marks.iter().map(|mark| (mark.x, mark.shape)).collect();
+        let [Item::Path(_), Item::Points { hollow: false, name: own, .. }, peer, marks @ ..] = &panels[0].items[..]
+        else {
+            panic!("{:?}", panels[0].items)
+        };
+        assert_eq!(own, "lunula");
+        let Item::Points { name, points, hollow: true, .. } = peer else { panic!("{peer:?}") };
+        assert_eq!((name.as_str(), points[0].label.as_str()), ("Other", "fast"));
+        let mark = |item: &Item| if let Item::Mark(mark) = item { (mark.x, mark.shape) } else { panic!("{item:?}") };
+        let marks: Vec<(f64, MarkShape)> = marks.iter().map(mark).collect();
         assert_eq!(marks, [(1.5, MarkShape::Ring), (30.0, MarkShape::Square)]);
         let folder = tempfile::tempdir().unwrap();
         let [png, svg] = ["a.png", "a.svg"].map(|name| folder.path().join(name));
-        crate::figure::draw_log_log(&panels, &png, &svg).unwrap();
+        crate::figure::draw_log_log(&panels, 2, PANEL_PX.0, &png, &svg).unwrap();
         let drawn = std::fs::read_to_string(&svg).unwrap();
         assert!(drawn.contains("knee") && drawn.contains("default") && drawn.contains("fast"));
     }

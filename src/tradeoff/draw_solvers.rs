@@ -2,11 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use super::draw::{front_line, marks};
+use super::draw::{Series, chart, marks};
 use super::hemodynamics::AUTO;
 use super::judge::Tradeoff;
 use super::rows::Row;
-use crate::figure::{Axis, Plot, Point, Series};
+use crate::figure::{Chart, Point};
 
 /// Series of a panel; more than there are colours go to the next one.
 const SERIES: usize = 5;
@@ -30,7 +30,7 @@ fn series(rows: &[&Row], name: &str) -> Series {
     Series {
         name: name.to_owned(),
         points: own.map(point).collect(),
-        hollow: rows.iter().any(|row| split(row).0 == name && row.peer),
+        peer: rows.iter().any(|row| split(row).0 == name && row.peer),
     }
 }
 
@@ -40,16 +40,12 @@ fn names<'a>(rows: &[&'a Row]) -> Vec<&'a str> {
 }
 
 /// Orders, modes, and other programs beside the default's method.
-pub(super) fn solver_panels(tradeoff: &Tradeoff) -> Vec<Plot> {
+pub(super) fn solver_panels(tradeoff: &Tradeoff) -> Vec<Chart> {
     let curve = tradeoff.curves.first();
-    let plot = |title: &str, rows: &[&Row], series: Vec<Series>| Plot {
-        title: title.to_owned(),
-        x: Axis { label: "seconds a response of 4 s".into() },
-        y: Axis { label: "|x - x_ref| / D".into() },
-        series,
-        line: curve.map(front_line).unwrap_or_default(),
-        marks: marks(rows),
-    };
+    let front = || curve.map(|curve| curve.front.clone()).unwrap_or_default();
+    let axes = || ["seconds a response of 4 s".to_owned(), "|x - x_ref| / D".to_owned()];
+    let plot =
+        |title: &str, rows: &[&Row], series: Vec<Series>| chart(title.to_owned(), axes(), front(), series, marks(rows));
     let (peers, own): (Vec<&Row>, Vec<&Row>) = tradeoff.rows.iter().partition(|row| row.peer);
     let of = |name: &str| own.iter().copied().filter(|row| split(row).0 == name).collect::<Vec<_>>();
     let all = names(&own);

@@ -12,10 +12,10 @@ use super::rows::{Measured, Row};
 
 /// A setting with its figures.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Told {
-    /// Which.
+pub struct Figures {
+    /// As in the table's column of that name.
     pub setting: String,
-    /// How wrong.
+    /// In the row's unit of error.
     pub error: f64,
     /// Seconds an input.
     pub run_s: f64,
@@ -35,17 +35,17 @@ pub struct Verdict {
     /// Whether this error decides.
     pub decides: bool,
     /// The knee; none where no setting has a place.
-    pub knee: Option<Told>,
+    pub knee: Option<Figures>,
     /// Why it is the knee.
     pub knee_why: &'static str,
     /// The default; none where it has no answer.
-    pub default: Option<Told>,
+    pub default: Option<Figures>,
     /// Where it stands by the knee, in words.
     pub default_is: String,
     /// Why it is the default.
     pub default_why: &'static str,
     /// Of the other programs that err no more than the default the fastest, else the one that errs least.
-    pub peer: Option<Told>,
+    pub peer: Option<Figures>,
     /// Settings worth their time: seconds and error, from the fastest on.
     #[serde(skip)]
     pub front: Vec<[f64; 2]>,
@@ -93,8 +93,8 @@ pub fn judge(job: &'static str, measured: Measured, others: &[Row], begun: Insta
     Ok(Tradeoff { job, rows, curves, refused, peers, wall_s: begun.elapsed().as_secs_f64(), maps: Vec::new() })
 }
 
-fn told(row: &Row) -> Told {
-    Told { setting: row.setting.clone(), error: row.error, run_s: row.run_s }
+fn figures(row: &Row) -> Figures {
+    Figures { setting: row.setting.clone(), error: row.error, run_s: row.run_s }
 }
 
 fn curve(choice: &Choice, unit: String, rows: &mut [Row]) -> Verdict {
@@ -122,12 +122,12 @@ fn curve(choice: &Choice, unit: String, rows: &mut [Row]) -> Verdict {
         choice: choice.name,
         option: choice.option,
         decides: unit.starts_with(choice.judged_by),
-        knee: knee_row.map(|k| told(&rows[k])),
+        knee: knee_row.map(|k| figures(&rows[k])),
         knee_why: found.map_or("", |found| found.why.words()),
-        default: default.map(|k| told(&rows[k])),
+        default: default.map(|k| figures(&rows[k])),
         default_is,
         default_why: choice.why,
-        peer: best(peers, default.map(|k| rows[k].error)).map(told),
+        peer: best(peers, default.map(|k| rows[k].error)).map(figures),
         front: front(&costs).into_iter().map(|k| [costs[k].run_s, costs[k].error]).collect(),
         error_unit: unit,
     }
@@ -142,7 +142,7 @@ fn stands(default: &Row, knee: &Row) -> String {
     let same = |ratio: f64| (1.0 / (1.0 + SAME)..=1.0 + SAME).contains(&ratio);
     let times = |ratio: f64| if same(ratio) { "the same".to_owned() } else { format!("{} times its", short(ratio)) };
     let place = match (same(time), same(error), time > 1.0) {
-        (true, true, _) => "not told apart from the knee",
+        (true, true, _) => "no different from the knee",
         (true, false, _) => "beside the knee",
         (false, _, true) => "beyond the knee",
         (false, _, false) => "before the knee",
@@ -179,7 +179,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn knee_and_default_are_marked_and_told() {
+    fn knee_and_default_are_marked_and_reported() {
         let default = photos::detection_default();
         let rows =
             vec![row("a", 1.0, 9.0), row("b", 1.5, 0.5), row(&default, 30.0, 0.4), row("other", 0.1, 0.1).peer()];
@@ -200,7 +200,7 @@ pub(super) mod tests {
         assert_eq!(is(vec![row("a", 1.0, 9.0), row(&default, 1.5, 0.5), row("c", 40.0, 0.4)]), "the knee");
         assert_eq!(
             is(vec![row("a", 1.0, 9.0), row(&default, 1.02, 9.1)]),
-            "not told apart from the knee: the same time, the same error"
+            "no different from the knee: the same time, the same error"
         );
         assert_eq!(is(vec![row("a", 1.0, 9.0)]), "it has no answer here");
     }

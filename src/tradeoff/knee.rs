@@ -4,9 +4,9 @@
 //! (the front) and the knee.
 //!
 //! **The front.** From the fastest on, a setting is on it whose error is lower by more than [`SAME`] than that of all
-//! faster ones. Settings whose times are not told apart, their quartiles touching or their medians within [`SAME`], are
-//! one place of it, and the most exact of them stands there. A setting without a positive finite time or with an error
-//! that is no number or negative has no place.
+//! faster ones. Settings whose times can't be distinguished, their quartiles touching or their medians within [`SAME`],
+//! are one place of it, and the most exact of them stands there. A setting without a positive finite time or with an
+//! error that is no number or negative has no place.
 //!
 //! **The knee.** Of three places or more, the one that lies farthest below the chord from the first to the last, with
 //! the logarithms of both axes brought to the unit square (Satopaa et al. 2011, doi:10.1109/ICDCSW.2011.20, whose curve
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn times_that_are_not_told_apart_are_one_place() {
+    fn indistinguishable_times_are_one_place() {
         // The second is slower by its median, but not by what is known of it.
         let noisy = [spread(0.8, 1.0, 1.4, 10.0), spread(1.3, 1.5, 2.0, 1.0), spread(90.0, 100.0, 110.0, 0.9)];
         assert_eq!(front(&noisy), [1, 2]);

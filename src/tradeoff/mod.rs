@@ -25,7 +25,7 @@ mod timing;
 
 pub use all::{Job, Outcomes, Plan, all};
 pub use choices::{Choice, choices};
-pub use judge::{Told, Tradeoff, Verdict, judge};
+pub use judge::{Figures, Tradeoff, Verdict, judge};
 pub use knee::{BEND, Cost, Knee, SAME, Why, front, knee};
 pub use page::{Setting, index};
 pub use rows::{Measured, Row};

@@ -4,9 +4,9 @@ use std::fmt::Display;
 use std::path::Path;
 
 use super::choices::choices;
-use super::draw::panels;
+use super::draw::{PANEL_PX, panels};
 use super::draw_solvers::solver_panels;
-use super::judge::{Told, Tradeoff, Verdict};
+use super::judge::{Figures, Tradeoff, Verdict};
 use super::knee::{BEND, SAME};
 use super::rows::{Row, write_table};
 use super::{hemodynamics, timing::Effort};
@@ -42,7 +42,7 @@ impl Tradeoff {
         let [png, svg] = ["png", "svg"].map(|ending| staging.place(&format!("{name}.{ending}")));
         let solvers = self.job == hemodynamics::SOLVING.0;
         let panels = if solvers { solver_panels(self) } else { panels(self) };
-        draw_log_log(&panels, &png?, &svg?)?;
+        draw_log_log(&panels, panels.len().min(2), PANEL_PX.0, &png?, &svg?)?;
         if self.maps.is_empty() { Ok(()) } else { hemodynamics::write_maps(&self.maps, staging) }
     }
 }
@@ -138,8 +138,8 @@ fn reasons(job: &str) -> Vec<String> {
 }
 
 fn summary(curve: &Verdict) -> Vec<String> {
-    let told = |told: &Option<Told>| told.as_ref().map_or("none".to_owned(), |told| told.to_string());
-    let knee = if curve.knee.is_some() { format!("{} ({})", told(&curve.knee), curve.knee_why) } else { told(&None) };
+    let shown = |shown: &Option<Figures>| shown.as_ref().map_or("none".to_owned(), |shown| shown.to_string());
+    let knee = if curve.knee.is_some() { format!("{} ({})", shown(&curve.knee), curve.knee_why) } else { shown(&None) };
     let name = |what: &str| what.to_owned();
     let unit = if curve.decides { format!("{} (decides)", curve.error_unit) } else { curve.error_unit.clone() };
     vec![
@@ -147,9 +147,9 @@ fn summary(curve: &Verdict) -> Vec<String> {
         name(curve.choice),
         unit,
         knee,
-        told(&curve.default),
+        shown(&curve.default),
         curve.default_is.clone(),
-        told(&curve.peer),
+        shown(&curve.peer),
     ]
 }
 
@@ -183,7 +183,7 @@ fn short(value: f64) -> String {
     format!("{value:.0$}", digits as usize)
 }
 
-impl Display for Told {
+impl Display for Figures {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{}: {}, {}", self.setting, number(self.error), time(self.run_s))
     }

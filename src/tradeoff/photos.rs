@@ -1,7 +1,6 @@
 //! The photos job over its settings: how values are resampled, and how large a picture detection searches.
 
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
 use std::time::Instant;
 
 use anyhow::{Context, ensure};
@@ -12,10 +11,11 @@ use rayon::prelude::*;
 use super::peers::{PeerReport, Python, Script};
 use super::rows::{Measured, Row};
 use super::timing::{Effort, Run, Timing, in_turns};
+use crate::job::Watch;
 use crate::npy;
 use crate::photo::outline::{Axis, DetectOptions, Drawn, Outline, OutlineOptions, Sources, detect, read_annotated};
 use crate::photo::{
-    NailFrame, Normalization, Outputs, Photo, PhotoSet, Photograph, PhotosOptions, Resample, Watch, run as run_photos,
+    NailFrame, Normalization, Outputs, Photo, PhotoSet, Photograph, PhotosOptions, Resample, run as run_photos,
 };
 
 /// How values between pixels are told.
@@ -249,8 +249,7 @@ fn resampled(scene: &Scene, resample: Resample, first: bool) -> Run<Errors> {
     let outlines = OutlineOptions { sources: Sources::Annotated, ..OutlineOptions::default() };
     let options = PhotosOptions { normalization, outlines, ..PhotosOptions::default() };
     let out = tempfile::tempdir()?;
-    let watch = Watch { stop: &AtomicBool::new(false), tick: &|| {} };
-    let report = run_photos(&scene.set, &options, &Outputs::maps(out.path()), &watch)?;
+    let report = run_photos(&scene.set, &options, &Outputs::maps(out.path()), &Watch::nobody())?;
     let stage = report.stages.iter().find(|s| s.stage == "normalize").context("nothing was normalized")?;
     let seconds = stage.thread_s / stage.runs as f64;
     if !first {

@@ -33,7 +33,7 @@ pub struct Row {
     pub repeats: u64,
     /// Whether it is the knee of its curve.
     pub knee: bool,
-    /// Whether it is what the job does unless told otherwise.
+    /// Whether it is the job's default.
     pub default: bool,
     /// Whether it is another program's.
     pub peer: bool,
@@ -74,7 +74,7 @@ impl Row {
 /// What a job's settings and its peers gave.
 #[derive(Debug, Clone, Default)]
 pub struct Measured {
-    /// In the order in which they are told.
+    /// In the order of the table.
     pub rows: Vec<Row>,
     /// Settings that have no answer, and why.
     pub refused: Vec<String>,

@@ -57,11 +57,11 @@ fn quantile(sorted: &[f64], share: f64) -> f64 {
     sorted[below] + part * (sorted[(below + 1).min(last)] - sorted[below])
 }
 
-/// What one run of a setting gives: its seconds, and in the first round what is told of it.
+/// What one run of a setting gives: its seconds, and in the first round its result.
 pub(super) type Run<T> = anyhow::Result<(f64, Option<T>)>;
 
-/// Runs every setting as often as `effort` says, all of them once, then all again. `run` is told whether it is the
-/// setting's first run, and has to give what is told of it then. A setting that fails runs no more.
+/// Runs every setting as often as `effort` says, all of them once, then all again. `run` gets whether it is the
+/// setting's first run, and has to give its result then. A setting that fails runs no more.
 ///
 /// # Errors
 /// [`Interrupted`].
@@ -71,10 +71,10 @@ pub(super) fn in_turns<S, T>(
     mut run: impl FnMut(&S, bool) -> Run<T>,
 ) -> Result<Vec<anyhow::Result<(Timing, T)>>, Interrupted> {
     let mut seconds = vec![Vec::new(); settings.len()];
-    let mut told: Vec<Option<anyhow::Result<T>>> = settings.iter().map(|_| None).collect();
+    let mut results: Vec<Option<anyhow::Result<T>>> = settings.iter().map(|_| None).collect();
     for round in 0..effort.repeats.max(1) {
         for (k, setting) in settings.iter().enumerate() {
-            if matches!(told[k], Some(Err(_))) {
+            if matches!(results[k], Some(Err(_))) {
                 continue;
             }
             effort.check()?;
@@ -82,18 +82,18 @@ pub(super) fn in_turns<S, T>(
                 Ok((took, first)) => {
                     seconds[k].push(took);
                     if let Some(first) = first {
-                        told[k] = Some(Ok(first));
+                        results[k] = Some(Ok(first));
                     }
                 }
-                Err(why) => told[k] = Some(Err(why)),
+                Err(why) => results[k] = Some(Err(why)),
             }
         }
     }
     effort.check()?;
-    let each = told.into_iter().zip(seconds);
+    let each = results.into_iter().zip(seconds);
     Ok(each
-        .map(|(told, seconds)| {
-            Ok((Timing::of(seconds), told.unwrap_or_else(|| Err(anyhow::anyhow!("nothing came out")))?))
+        .map(|(results, seconds)| {
+            Ok((Timing::of(seconds), results.unwrap_or_else(|| Err(anyhow::anyhow!("nothing came out")))?))
         })
         .collect())
 }
@@ -122,13 +122,13 @@ mod tests {
         })
         .unwrap();
         assert_eq!(order, ["a", "bad", "c", "a", "c", "a", "c"]);
-        let (timing, told) = found[0].as_ref().unwrap();
-        assert_eq!((timing.median_s, timing.repeats, *told), (4.0, 3, "a"));
+        let (timing, results) = found[0].as_ref().unwrap();
+        assert_eq!((timing.median_s, timing.repeats, *results), (4.0, 3, "a"));
         assert_eq!(found[1].as_ref().unwrap_err().to_string(), "it is bad");
     }
 
     #[test]
-    fn it_stops_when_told_to() {
+    fn it_stops_on_request() {
         let effort = Effort { repeats: 2, ..Effort::default() };
         let mut runs = 0;
         let stopped = in_turns(&[(); 5], &effort, |(), _| {

@@ -9,7 +9,7 @@ use super::pixel;
 
 /// The frame in a layout whose planes can be read; none where its own can. The error is words for the user.
 ///
-/// The converter is made anew for each frame: FFmpeg's can't move between threads, a video can. That takes some tens of
+/// A new converter is made for each frame: FFmpeg's can't move between threads, a video can. That takes some tens of
 /// microseconds.
 pub(super) fn planes(picture: &frame::Video) -> Result<Option<frame::Video>, String> {
     let pixel = picture.format();

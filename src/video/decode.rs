@@ -5,11 +5,11 @@
 //! decoded; and, in their places, the frames that could not be decoded, so that the index stays right.
 //!
 //! A frame counts as not decodable ([`Item::Missing`]) when its packet is damaged, and also when it may be predicted
-//! from a damaged one: all frames decoded after it up to the next key frame, as what reaches how far can't be told. A
-//! flipped bit that still decodes without a contradiction can't be noticed: videos carry no checksums. Nor can a packet
-//! whose very header in the container is damaged (Matroska, transport streams): later times stay right, the index lacks
-//! it. The result does not depend on the number of threads (but where HEVC is damaged without FFmpeg's noticing); after
-//! the first damage a file is read with one, and H.264 always.
+//! from a damaged one: all frames decoded after it up to the next key frame, as it can't be known how far the damage
+//! reaches. A flipped bit that still decodes without a contradiction can't be noticed: videos carry no checksums. Nor
+//! can a packet whose very header in the container is damaged (Matroska, transport streams): later times stay right,
+//! the index lacks it. The result does not depend on the number of threads (but where HEVC is damaged without FFmpeg's
+//! noticing); after the first damage a file is read with one, and H.264 always.
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};

@@ -12,7 +12,7 @@ pub struct Header {
     pub width: usize,
     /// Its rows.
     pub height: usize,
-    /// Frames, where the container tells.
+    /// Number of frames, where the container gives it.
     pub declared_frames: Option<u64>,
 }
 

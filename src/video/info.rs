@@ -29,9 +29,9 @@ pub struct Info {
     pub codec: String,
     /// Seconds a tick of the times, as a fraction: every time is a whole number of them.
     pub tick_s: (i64, i64),
-    /// Frames, where the container tells.
+    /// Number of frames, where the container gives it.
     pub declared_frames: Option<u64>,
-    /// Seconds, where the container tells.
+    /// Duration in seconds, where the container gives it.
     pub duration_s: Option<f64>,
     /// FFmpeg's name of the samples' layout in the file, where frames had to be converted from it.
     pub converted: Option<String>,

@@ -88,7 +88,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn planar_formats_are_told_by_their_names() {
+    fn planar_formats_are_known_by_their_names() {
         let cases = [
             (Pixel::YUV420P, Some((Some((2, 2)), 8))),
             (Pixel::YUVJ422P, Some((Some((2, 1)), 8))),

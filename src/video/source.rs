@@ -90,7 +90,7 @@ impl Source {
         self.input.stream(self.stream)
     }
 
-    /// Frames, as the container tells.
+    /// Number of frames by the container.
     pub(super) fn declared_frames(&self) -> Option<u64> {
         self.stream().and_then(|stream| u64::try_from(stream.frames()).ok()).filter(|&frames| frames > 0)
     }

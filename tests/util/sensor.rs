@@ -6,7 +6,7 @@
 
 use super::Dir;
 
-/// What is told of the sensor, in order.
+/// The sensor's description, in order.
 pub const TARGETS: [&str; 4] = ["Fx_N", "Fy_N", "Fz_N", "J2_deg"];
 
 /// What target `target` has of photodiode `k`, both from 0: newtons or degrees a volt.

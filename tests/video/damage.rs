@@ -1,4 +1,4 @@
-//! Damaged and cut files: what is missing is told, what is given is right, whatever the number of threads.
+//! Damaged and cut files: what is missing is reported, what is given is right, whatever the number of threads.
 
 use std::path::{Path, PathBuf};
 
@@ -50,7 +50,8 @@ fn packets(path: &Path) -> Vec<Sent> {
     packets.collect()
 }
 
-/// Every frame of the first `count` is there or told as missing, and what is there is right. Gives the missing ones.
+/// Every frame of the first `count` is there or reported as missing, and what is there is right. Gives the missing
+/// ones.
 #[track_caller]
 fn missing(seen: &[Seen], count: u64) -> Vec<u64> {
     assert_eq!(seen.len() as u64, count);
@@ -160,7 +161,7 @@ fn a_file_cut_off_gives_its_frames_up_to_there() {
         let seen = &results[0];
         let lost = missing(seen, seen.len() as u64);
         let there = |k: u64| packets[..order].iter().any(|packet| packet.number == k);
-        // All that is told is right, and all is told that is shown before the first frame that is lost.
+        // All that is reported is right, and everything shown before the first lost frame is reported.
         assert!(lost.iter().all(|&k| !there(k)), "{name}: {lost:?}");
         let certain = (0..FRAMES).take_while(|&k| there(k)).count();
         assert!(seen.len() + 3 >= certain, "{name}: {} of {certain}", seen.len());

@@ -94,7 +94,7 @@ fn colour_aspect_siting_and_turn_come_back() {
 }
 
 #[test]
-fn a_mirrored_or_slanted_picture_is_told() {
+fn a_mirrored_or_slanted_picture_is_reported() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.mp4");
     write(&path, &Encoding::new(SMALL), 2, uneven);
@@ -184,7 +184,7 @@ fn ramp(plane: usize, x: usize, y: usize) -> f32 {
 }
 
 #[test]
-fn other_layouts_are_converted_and_that_is_told() {
+fn other_layouts_are_converted_and_reported() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.nut");
     // Rounding to 5 or 6 bits in rgb565 is the most; else 1.5 levels (1.2 measured, at 8-bit red, green and blue).
@@ -257,7 +257,7 @@ fn planar_layouts_of_any_depth_are_taken_as_they_are() {
 }
 
 #[test]
-fn a_matrix_that_is_not_stated_is_assumed_by_size_and_that_is_told() {
+fn an_unstated_matrix_is_assumed_by_size_and_reported() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.nut");
     for (height, matrix) in [(480, Matrix::BT601), (720, Matrix::BT709)] {

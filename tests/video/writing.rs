@@ -23,7 +23,7 @@ fn the_same_pictures_make_the_same_bytes() {
 }
 
 #[test]
-fn what_can_not_be_written_is_told() {
+fn what_cannot_be_written_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let refused = |name: &str, encoding: &Encoding, words: &str| {
         let path = folder.path().join(name);

@@ -9,7 +9,7 @@
 //! Twenty step responses (P_F1 alone and P_F1 = P_F2, ten loads each, 0 to 2 s) of 4 s with 400 outputs from rest. All
 //! solve the same equations in conductances, in states scaled by the nominal diameters. diffsol has the analytic
 //! Jacobian, `atol = rtol` on lumens and `10 rtol` on rates or, "loose rates", `1e4 rtol` (as the Python peers), dense
-//! matrices of nalgebra (those of faer take 2.6 times as long), the first step that served it best, and is started anew
+//! matrices of nalgebra (those of faer take 2.6 times as long), the first step that served it best, and is restarted
 //! at 2 s. A row of CSV for each solver and tolerance:
 //!
 //! `solver,rtol,error,microseconds,evaluations`

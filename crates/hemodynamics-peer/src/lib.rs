@@ -160,7 +160,7 @@ pub fn bdf(peer: &Peer<'_>, step: Step, rtol: f64, times: &[f64], lumens: &mut V
                 break;
             }
         }
-        // Started anew without the load.
+        // Restarted without the load.
         inputs.set(Inputs { proximal_pa: 0.0, distal_pa: 0.0, ..loaded });
         memo.borrow_mut().at = [f64::NAN; 6];
         let state = solver.state_mut();

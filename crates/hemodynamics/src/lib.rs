@@ -4,7 +4,7 @@
 //! empty, and what the photodiodes on the nail see of it.
 //!
 //! Conventions: SI units throughout. Capillary units are counted from proximal to distal, C1, C2, ..; behind them
-//! stands the vein, V: arrays over walls hold the capillaries first and the vein last. A wall's state is its lumen
+//! is the vein, V: arrays over walls hold the capillaries first and the vein last. A wall's state is its lumen
 //! `d / D` (diameter over nominal diameter, the thesis' `1 + x / D`) and the rate of it `v / D` in 1/s. What is not
 //! known is missing (`None`, NaN), never zero.
 //!

@@ -65,7 +65,7 @@ pub enum LiveFault {
     /// The time between samples.
     #[error("the time between samples is {0} s; it has to be finite and longer than 0")]
     Sample(f64),
-    /// An input that is no number.
+    /// An input that is not a number.
     #[error("the load {load} of the sample is {value}; it has to be a finite pressure")]
     Input {
         /// `P_H`, `P_L`, `P_F1` or `P_F2`.

@@ -7,7 +7,7 @@
 //! With `a = alpha_i D_Ci^2` (equation 7) the thesis has `f = exp(-a l^2)` (equation 6, Beer and Lambert) and its first
 //! two Taylor terms `f = 1 - a l^2`, which are equation 8 with `V'_0 = V_0 + V_1` and `V'_1 = V_1 alpha`. The thesis
 //! estimates `alpha (D + x)^2` as 1e-2; its table gives 0.134 at rest, and there the two terms overstate changes by 7 %
-//! (capillaries emptying) to 15 % (swelling) unless `V_0` and `V_1` are fitted anew. So equation 6 is the default.
+//! (capillaries emptying) to 15 % (swelling) unless `V_0` and `V_1` are fitted again. So equation 6 is the default.
 //!
 //! `exp` is that of the crate `libm`: the same digits on every machine.
 
@@ -25,7 +25,7 @@ pub enum Optics {
     Linear(Vec<f64>),
 }
 
-/// The photodiodes of all units, ready to be asked.
+/// The photodiodes of all units, with their products computed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Photodiodes {
     diodes: Vec<Diode>,
@@ -59,7 +59,7 @@ pub enum OpticsFault {
         /// Lumens given.
         got: usize,
     },
-    /// A working point that is no open lumen.
+    /// A working point that is not an open lumen.
     #[error("the optics' working point of {site} is {lumen}; it has to be a finite lumen (d / D) greater than 0")]
     Lumen {
         /// Which capillary.
@@ -162,7 +162,7 @@ impl Photodiodes {
 mod tests {
     use super::*;
 
-    /// Lumen of both capillaries at rest (the walls stand at 9.273971e-6 m).
+    /// Lumen of both capillaries at rest (the walls are displaced by 9.273971e-6 m).
     const REST: f64 = 1.927_397_1;
 
     fn diodes(optics: Optics) -> Photodiodes {
@@ -246,12 +246,12 @@ mod tests {
 
     #[test]
     fn a_working_point_has_to_be_open_lumens_of_all_units() {
-        let told = |lumens: Vec<f64>| {
+        let message = |lumens: Vec<f64>| {
             Photodiodes::new(&Parameters::thesis(), &Optics::Linear(lumens)).unwrap_err().to_string()
         };
-        assert!(told(vec![1.0]).contains("1 lumens"));
-        assert!(told(vec![1.0, 0.0]).contains("C2 is 0"));
-        assert!(told(vec![f64::NAN, 1.0]).contains("C1 is NaN"));
+        assert!(message(vec![1.0]).contains("1 lumens"));
+        assert!(message(vec![1.0, 0.0]).contains("C2 is 0"));
+        assert!(message(vec![f64::NAN, 1.0]).contains("C1 is NaN"));
     }
 
     #[test]

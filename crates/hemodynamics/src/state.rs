@@ -46,7 +46,7 @@ pub enum StateFault {
 
 impl State {
     /// The state in which no wall is displaced (`x = 0`) and none moves. It is not the state at rest: pressed by the
-    /// blood alone, the walls stand further out.
+    /// blood alone, the walls are further out.
     pub fn undisplaced(parameters: &Parameters) -> State {
         let walls = parameters.walls().len();
         State { lumens: vec![1.0; walls], rates: vec![0.0; walls] }
@@ -123,19 +123,25 @@ mod tests {
 
     #[test]
     fn closed_missing_and_endless_walls_are_named() {
-        let told = |x: &[f64], v: &[f64]| State::from_metres(&Parameters::thesis(), x, v).unwrap_err();
-        assert_eq!(told(&[0.0; 2], &[0.0; 3]), StateFault::Length { walls: 3, got: 2 });
-        assert_eq!(told(&[0.0; 3], &[0.0; 4]), StateFault::Length { walls: 3, got: 4 });
+        let fault_of = |x: &[f64], v: &[f64]| State::from_metres(&Parameters::thesis(), x, v).unwrap_err();
+        assert_eq!(fault_of(&[0.0; 2], &[0.0; 3]), StateFault::Length { walls: 3, got: 2 });
+        assert_eq!(fault_of(&[0.0; 3], &[0.0; 4]), StateFault::Length { walls: 3, got: 4 });
         // An empty capillary is closed, and so is one that is turned inside out.
-        assert_eq!(told(&[0.0, -1e-5, 0.0], &[0.0; 3]), StateFault::Closed { site: Site::Capillary(1), lumen: 0.0 });
-        assert_eq!(told(&[0.0, 0.0, -2e-4], &[0.0; 3]), StateFault::Closed { site: Site::Vein, lumen: -1.0 });
+        assert_eq!(
+            fault_of(&[0.0, -1e-5, 0.0], &[0.0; 3]),
+            StateFault::Closed { site: Site::Capillary(1), lumen: 0.0 }
+        );
+        assert_eq!(fault_of(&[0.0, 0.0, -2e-4], &[0.0; 3]), StateFault::Closed { site: Site::Vein, lumen: -1.0 });
         assert!(matches!(
-            told(&[f64::NAN, 0.0, 0.0], &[0.0; 3]),
+            fault_of(&[f64::NAN, 0.0, 0.0], &[0.0; 3]),
             StateFault::NotFinite { site: Site::Capillary(0), .. }
         ));
-        assert!(matches!(told(&[0.0; 3], &[0.0, 0.0, f64::INFINITY]), StateFault::NotFinite { site: Site::Vein, .. }));
+        assert!(matches!(
+            fault_of(&[0.0; 3], &[0.0, 0.0, f64::INFINITY]),
+            StateFault::NotFinite { site: Site::Vein, .. }
+        ));
         // Too many diameters for a double.
-        assert!(matches!(told(&[1e305, 0.0, 0.0], &[0.0; 3]), StateFault::NotFinite { .. }));
+        assert!(matches!(fault_of(&[1e305, 0.0, 0.0], &[0.0; 3]), StateFault::NotFinite { .. }));
         assert_eq!(State { lumens: vec![1.0; 3], rates: vec![] }.check(), Err(StateFault::Length { walls: 3, got: 0 }));
         assert_eq!(State::undisplaced(&Parameters::along_nail(5).unwrap()).check(), Ok(()));
     }

@@ -103,7 +103,7 @@ struct Peers {
 }
 
 impl Peers {
-    /// `None` where python3 or a package is missing, which is told.
+    /// `None` where python3 or a package is missing, which is reported.
     fn start(folder: &Path) -> Option<Self> {
         let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".to_owned());
         let there = Command::new(&python).args(["-c", "import numpy, sklearn"]).stderr(Stdio::null()).status();

@@ -1,7 +1,7 @@
 //! Touch force and finger posture from the photodiodes of a fingernail sensor: chapter 5 of S. Mascaro's thesis.
 //!
 //! In: a [`Dataset`], voltages of photodiodes with the forces or the joint angle measured at the same time. Out: a
-//! [`Model`] that tells forces or angle from voltages, with what is known about how well.
+//! [`Model`] that estimates forces or angle from voltages, with its known accuracy.
 //!
 //! Conventions: a row is a moment; arrays are rows x inputs or rows x targets. Voltages are volts, forces newtons and
 //! those of the finger on the surface (pressing is a negative `Fz_N`), angles degrees, positive in flexion. What is not
@@ -9,24 +9,23 @@
 //!
 //! No pictures, no files but the model's own, no command line.
 
-mod dataset;
+mod algebra;
+mod contact;
+mod data;
 mod evaluate;
-mod file;
 mod fit;
-mod friction;
-mod gate;
-mod lags;
 mod least_squares;
 mod model;
 mod network;
 mod predictor;
-mod recipe;
-mod simd;
 mod subsets;
-mod svd;
 mod trajectory;
 
-pub use dataset::{Dataset, DatasetFault, Recording};
+pub use algebra::svd::{Modes, modes};
+pub use contact::friction::{FrictionCone, FrictionFault};
+pub use contact::gate::{Contact, Gate, GateFault, GateState};
+pub use data::dataset::{Dataset, DatasetFault, Recording};
+pub use data::lags::{LagFault, LagStream, Lagged, Lags};
 pub use evaluate::{
     Bin, By, ByMagnitude, Coverage, CrossCoverage, CrossFault, CrossValidation, Effect, EffectFault, Flattery, Fold,
     FoldResult, FoldSpread, IntervalFault, Intervals, LearningFault, LearningPoint, MagnitudeFault, Scores, SplitFault,
@@ -34,22 +33,18 @@ pub use evaluate::{
     friction_effect, lag_effect, learn_by_recordings, learn_by_share, magnitude_edges, nested_coverage,
     recording_hashes, row_hashes, score, shared_rows,
 };
-pub use file::{FileFault, Opened};
 pub use fit::{FitFault, FitReport, Printed, fit_linear, fit_quadratic, linear_f0, quadratic_printed};
-pub use friction::{FrictionCone, FrictionFault};
-pub use gate::{Contact, Gate, GateFault, GateState};
-pub use lags::{LagFault, LagStream, Lagged, Lags};
 pub use least_squares::{
     Deficient, Dependent, LeastSquares, LeastSquaresFault, LeastSquaresOptions, Solver, least_squares,
 };
 pub use model::{Linear, Model, ModelFault, Network, Quadratic, quadratic_terms};
 pub use network::{Restart, Stopped, TrainFault, TrainOptions, TrainReport, train_network};
+pub use predictor::file::{FileFault, Opened};
+pub use predictor::recipe::{FORCES, Fitted, Kind, Recipe, RecipeFault, Report, predict, stopping_rows, with_lags};
 pub use predictor::{Channel, Predictor, TrainedOn, Training, unit_of};
-pub use recipe::{FORCES, Fitted, Kind, Recipe, RecipeFault, Report, predict, stopping_rows, with_lags};
 pub use subsets::{
     MOST_INPUTS, Subset, SubsetErrors, SubsetFault, Subsets, WithoutOne, backward_elimination, every_subset,
 };
-pub use svd::{Modes, modes};
 pub use trajectory::{
     Bending, CONE_CELLS, ConeCoverage, Density, Evenness, ForceSpace, ForceSpaceFault, Hole, RELEASE_S, RandomBending,
     RandomForce, RateLimits, Spiral, Wave, circling_limit_hz, cone_coverage, percent_error, rate_limit_per_s,

@@ -1,15 +1,14 @@
 //! `lunula fit`: the model's free parameters to recorded responses.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::Context;
 use clap::Args;
 use lunula::hemodynamics::{FitFigures, FitInputs, FitOptions, FitOutputs, FitReport, fit, fit_plan};
 use lunula::job::{Given, Said, Watch};
-use lunula::stages::Step;
 
 use crate::cli::Common;
-use crate::cli::job::{Command, JobArgs};
+use crate::cli::job::{Command, JobArgs, Plan};
 
 const EXAMPLES: &str = "Examples:
 Stiffness and damping of all walls, and the photodiodes:
@@ -98,8 +97,8 @@ impl Command for FitArgs {
         &self.given.said
     }
 
-    fn plan(&self) -> anyhow::Result<Vec<Step>> {
-        Ok(fit_plan(&self.inputs(), &self.given.options, self.outputs().as_ref())?)
+    fn plan(&self) -> anyhow::Result<Plan> {
+        Ok(fit_plan(&self.inputs(), &self.given.options, self.outputs().as_ref())?.into())
     }
 
     fn run(&self, watch: &Watch<'_>) -> anyhow::Result<FitReport> {
@@ -156,7 +155,7 @@ impl Command for FitArgs {
         }
     }
 
-    fn result(&self) -> Option<&Path> {
-        self.out.as_deref()
+    fn result(&self) -> Option<PathBuf> {
+        self.out.clone()
     }
 }

@@ -1,6 +1,6 @@
 //! `lunula simulate`: the hemodynamic model under loads, over time or at rest.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::Context;
 use clap::{ArgMatches, Args, FromArgMatches};
@@ -9,9 +9,8 @@ use lunula::hemodynamics::{
     SimulateOptions, SimulateOutputs, SimulateReport, curve, curve_plan, simulate, simulate_plan,
 };
 use lunula::job::{Given, Said, Watch};
-use lunula::stages::Step;
 
-use crate::cli::job::{self, Command, JobArgs};
+use crate::cli::job::{self, Command, JobArgs, Plan};
 use crate::cli::{Common, Outcome, print_line};
 
 const EXAMPLES: &str = "Examples:
@@ -150,8 +149,8 @@ impl Command for OverTime<'_> {
         &self.given.said
     }
 
-    fn plan(&self) -> anyhow::Result<Vec<Step>> {
-        Ok(simulate_plan(&self.inputs(), &self.given.options, self.outputs().as_ref())?)
+    fn plan(&self) -> anyhow::Result<Plan> {
+        Ok(simulate_plan(&self.inputs(), &self.given.options, self.outputs().as_ref())?.into())
     }
 
     fn run(&self, watch: &Watch<'_>) -> anyhow::Result<SimulateReport> {
@@ -170,8 +169,8 @@ impl Command for OverTime<'_> {
         ));
     }
 
-    fn result(&self) -> Option<&Path> {
-        self.args.out.as_deref()
+    fn result(&self) -> Option<PathBuf> {
+        self.args.out.clone()
     }
 }
 
@@ -201,8 +200,8 @@ impl Command for Static<'_> {
         &self.given.said
     }
 
-    fn plan(&self) -> anyhow::Result<Vec<Step>> {
-        Ok(curve_plan(self.args.params.as_deref(), &self.given.options, self.outputs().as_ref())?)
+    fn plan(&self) -> anyhow::Result<Plan> {
+        Ok(curve_plan(self.args.params.as_deref(), &self.given.options, self.outputs().as_ref())?.into())
     }
 
     fn run(&self, watch: &Watch<'_>) -> anyhow::Result<CurveReport> {
@@ -228,7 +227,7 @@ impl Command for Static<'_> {
         }
     }
 
-    fn result(&self) -> Option<&Path> {
-        self.args.out.as_deref()
+    fn result(&self) -> Option<PathBuf> {
+        self.args.out.clone()
     }
 }

@@ -1,14 +1,13 @@
 //! `lunula analyse`: singular values and modes of a model.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use lunula::job::{Given, NoOptions, Said, Watch};
 use lunula::predictor::{AnalyseFigures, AnalyseReport, FolderOutputs, ModelMode, analyse, analyse_plan};
-use lunula::stages::Step;
 
 use crate::cli::Common;
-use crate::cli::job::{Command, JobArgs};
+use crate::cli::job::{Command, JobArgs, Plan};
 
 /// Which combinations of forces depend on which combinations of photodiodes (Fig. 98)
 ///
@@ -44,8 +43,8 @@ impl Command for AnalyseArgs {
         &self.given.said
     }
 
-    fn plan(&self) -> anyhow::Result<Vec<Step>> {
-        Ok(analyse_plan(self.out.clone().map(FolderOutputs::all).as_ref()))
+    fn plan(&self) -> anyhow::Result<Plan> {
+        Ok(analyse_plan(self.out.clone().map(FolderOutputs::all).as_ref()).into())
     }
 
     fn run(&self, watch: &Watch<'_>) -> anyhow::Result<AnalyseReport> {
@@ -71,7 +70,7 @@ impl Command for AnalyseArgs {
         }
     }
 
-    fn result(&self) -> Option<&Path> {
+    fn result(&self) -> Option<PathBuf> {
         None
     }
 }

@@ -1,17 +1,16 @@
 //! `lunula evaluate`: how far off a model is.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use lunula::job::{Given, Said, Watch};
 use lunula::predictor::{
     DataFile, EvaluateChoices, EvaluateFigures, EvaluateReport, FolderOutputs, evaluate, evaluate_plan,
 };
-use lunula::stages::Step;
 
 use super::say_merit;
 use crate::cli::Common;
-use crate::cli::job::{Command, JobArgs};
+use crate::cli::job::{Command, JobArgs, Plan};
 
 /// How far off a model is on recordings, and how far off its recipe is on recordings that are held out
 ///
@@ -52,9 +51,9 @@ impl Command for EvaluateArgs {
         &self.given.said
     }
 
-    fn plan(&self) -> anyhow::Result<Vec<Step>> {
+    fn plan(&self) -> anyhow::Result<Plan> {
         let out = self.out.clone().map(FolderOutputs::all);
-        Ok(evaluate_plan(self.data.len(), &self.given.options.options(), None, out.as_ref()))
+        Ok(evaluate_plan(self.data.len(), &self.given.options.options(), None, out.as_ref()).into())
     }
 
     fn run(&self, watch: &Watch<'_>) -> anyhow::Result<EvaluateReport> {
@@ -105,7 +104,7 @@ impl Command for EvaluateArgs {
         }
     }
 
-    fn result(&self) -> Option<&Path> {
+    fn result(&self) -> Option<PathBuf> {
         None
     }
 }

@@ -7,9 +7,8 @@ use anyhow::{Context, ensure};
 use clap::Args;
 use lunula::job::{Given, Said, Watch};
 use lunula::predictor::{PredictChoices, PredictFigures, PredictReport, predict, predict_plan, predict_stream};
-use lunula::stages::Step;
 
-use crate::cli::job::{self, Command, JobArgs};
+use crate::cli::job::{self, Command, JobArgs, Plan};
 use crate::cli::out::Stream;
 use crate::cli::{Common, Outcome};
 
@@ -72,8 +71,8 @@ impl Command for PredictArgs {
         &self.given.said
     }
 
-    fn plan(&self) -> anyhow::Result<Vec<Step>> {
-        Ok(predict_plan(self.parts()?.1.len(), &self.given.options.options()?))
+    fn plan(&self) -> anyhow::Result<Plan> {
+        Ok(predict_plan(self.parts()?.1.len(), &self.given.options.options()?).into())
     }
 
     fn run(&self, watch: &Watch<'_>) -> anyhow::Result<PredictReport> {
@@ -92,7 +91,7 @@ impl Command for PredictArgs {
         }
     }
 
-    fn result(&self) -> Option<&Path> {
-        self.out.as_deref()
+    fn result(&self) -> Option<PathBuf> {
+        self.out.clone()
     }
 }

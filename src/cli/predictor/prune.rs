@@ -1,17 +1,16 @@
 //! `lunula prune`: which photodiodes could be removed.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use lunula::job::{Given, Said, Watch};
 use lunula::predictor::{
     DataFile, FolderOutputs, PruneChoices, PruneFigures, PruneReport, PruneRow, prune, prune_plan,
 };
-use lunula::stages::Step;
 
 use super::figure;
 use crate::cli::Common;
-use crate::cli::job::{Command, JobArgs};
+use crate::cli::job::{Command, JobArgs, Plan};
 
 /// The linear model's errors for every subset of the photodiodes (Fig. 113 and beyond)
 ///
@@ -50,9 +49,9 @@ impl Command for PruneArgs {
         &self.given.said
     }
 
-    fn plan(&self) -> anyhow::Result<Vec<Step>> {
+    fn plan(&self) -> anyhow::Result<Plan> {
         let out = self.out.clone().map(FolderOutputs::all);
-        Ok(prune_plan([self.data.len(), self.validate.len()], out.as_ref()))
+        Ok(prune_plan([self.data.len(), self.validate.len()], out.as_ref()).into())
     }
 
     fn run(&self, watch: &Watch<'_>) -> anyhow::Result<PruneReport> {
@@ -77,7 +76,7 @@ impl Command for PruneArgs {
         }
     }
 
-    fn result(&self) -> Option<&Path> {
+    fn result(&self) -> Option<PathBuf> {
         None
     }
 }

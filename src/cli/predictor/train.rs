@@ -1,6 +1,6 @@
 //! `lunula train`: recordings to a model file.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::Context;
 use clap::Args;
@@ -9,11 +9,10 @@ use lunula::predictor::models::Report;
 use lunula::predictor::{
     DataFile, TrainChoices, TrainFigures, TrainInputs, TrainOutputs, TrainReport, train, train_plan,
 };
-use lunula::stages::Step;
 
 use super::{figure, say_merit};
 use crate::cli::Common;
-use crate::cli::job::{Command, JobArgs};
+use crate::cli::job::{Command, JobArgs, Plan};
 
 /// Recordings of photodiodes with forces or angles to a model that predicts forces or angles from photodiodes (5.)
 ///
@@ -71,8 +70,8 @@ impl Command for TrainArgs {
         &self.given.said
     }
 
-    fn plan(&self) -> anyhow::Result<Vec<Step>> {
-        Ok(train_plan(&self.inputs(), &self.given.options.options().recipe, self.learning_curve.is_some()))
+    fn plan(&self) -> anyhow::Result<Plan> {
+        Ok(train_plan(&self.inputs(), &self.given.options.options().recipe, self.learning_curve.is_some()).into())
     }
 
     fn run(&self, watch: &Watch<'_>) -> anyhow::Result<TrainReport> {
@@ -136,7 +135,7 @@ impl Command for TrainArgs {
         }
     }
 
-    fn result(&self) -> Option<&Path> {
-        self.out.as_deref()
+    fn result(&self) -> Option<PathBuf> {
+        self.out.clone()
     }
 }

@@ -6,13 +6,13 @@
 use std::cell::OnceCell;
 
 use super::Side;
-use crate::clock::cells::Cells;
-use crate::clock::crop::Gray;
-use crate::clock::half::{Word, word};
-use crate::clock::ink::{Piece, all_pieces};
-use crate::clock::judge::Page;
-use crate::clock::line::{Run, SPECK, UNEVEN, WIDEST, runs};
-use crate::clock::look::Cut;
+use crate::clock::cell::cells::Cells;
+use crate::clock::cell::half::{Word, word};
+use crate::clock::cell::judge::Page;
+use crate::clock::cell::look::Cut;
+use crate::clock::ink::crop::Gray;
+use crate::clock::ink::line::{Run, SPECK, UNEVEN, WIDEST, runs};
+use crate::clock::ink::pieces::{Piece, all_pieces};
 
 /// The middles of neighbouring digits are so many pitches apart: a narrow digit may stand on either side of its cell,
 /// and a blank between two words makes it 1.5 or 2.
@@ -282,7 +282,7 @@ mod tests {
     use super::*;
     use crate::clock::format::ClockFormat;
     use crate::clock::glyph::Levels;
-    use crate::clock::line::Row;
+    use crate::clock::ink::line::Row;
 
     #[test]
     fn old_style_figures_are_no_brackets_bars_or_letters() {

@@ -7,7 +7,7 @@
 //!
 //! It abstains rather than misread: two digits blended by a change during the exposure, a digit that is covered in
 //! part, a segment that is neither lit nor dark, marks, letters and blanks are *other*. A segment that is wholly gone
-//! can't be told: a covered 8 may show a clean 9.
+//! can't be detected: a covered 8 may show a clean 9.
 //!
 //! The way down, a file each: [`place`] where it is; [`patch`] the picture in the character's own frame; [`net`] the
 //! small network that weighs it; [`scores`] its answers; [`crop`] the ink on a whole picture. `training` makes the

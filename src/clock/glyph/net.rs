@@ -1,4 +1,4 @@
-//! The network that tells digits: two layers of small filters, one hidden layer, eleven answers.
+//! The network that recognises digits: two layers of small filters, one hidden layer, eleven answers.
 //!
 //! In: a [`Patch`]. Out: for 0 to 9 and for anything else the logarithm of its probability, up to a common term. The
 //! first filters look at 5 x 5 cells and step by two, the second at 3 x 3 and step by two; then come all the places'

@@ -13,7 +13,7 @@
 //!
 //! Where the frames come in the rhythm of the digits, the estimate may lie anywhere in the interval, and 0.58 of all
 //! lie within a standard error, as of a uniform distribution. A screen of exactly 60 refreshes shows every tenth
-//! equally late: then its delay can't be told from the offset, nor slow drift from none, by any number of frames.
+//! equally late: then its delay can't be separated from the offset, nor slow drift from none, by any number of frames.
 //!
 //! What is not determined: a lag that the whole display adds (a screen's processing, slow pixels), and where in the
 //! exposure the frame's time lies.
@@ -37,7 +37,7 @@ use crate::timebase::Timebase;
 pub const MOST_DRIFT: f64 = 2e-3;
 /// Readings that must agree.
 pub const FEWEST: usize = 3;
-/// A screen whose rate is not told may show what it shows up to this late, seconds: 60 refreshes a second, the slowest
+/// A screen of unknown rate may show what it shows up to this late, seconds: 60 refreshes a second, the slowest
 /// that is usual.
 pub const USUAL_SCREEN_S: f64 = 1.0 / 60.0;
 /// Two clocks of quartz drift so much against each other: the scale of the distribution, Cauchy's, that the estimate
@@ -57,7 +57,7 @@ pub enum ScreenDelay {
     Given,
     /// From the readings: the screen changes late now and then, by so much.
     Found,
-    /// Nothing tells; none is taken off, and the interval and the standard error count a usual screen.
+    /// Unknown; none is subtracted, and the interval and the standard error count a usual screen.
     Assumed,
 }
 
@@ -159,7 +159,7 @@ pub fn fit(
     let mut agreed = most_agreed(&seen, resolution_s, given_s, wraps_s);
     match diagnose::diagnose(&seen, &agreed, resolution_s, place.time_s, place.shown_s) {
         Ok(()) | Err(ClockFault::Contradictory { .. }) if agreed.count < FEWEST => return Err(too_few(agreed.count)),
-        told => told?,
+        other => other?,
     }
     let most_end_s = MOST_DRIFT * half_s;
     let hulls = loop {

@@ -4,16 +4,16 @@
 //! are irregular:
 //! the readings then fill nearly all of what the screen allows, and the screen is the fastest usual one that allows so
 //! much. Frames in which the digits change are not read, which hides a part of the delay as long as the exposure: it is
-//! told from how many such frames there are, and added. Where frames' and screen's rhythm are the same, or the screen's
-//! and the digits', the delay can't be told from the offset; then none is taken off, and interval and standard error
-//! count a usual screen.
+//! estimated from how many such frames there are, and added. Where frames' and screen's rhythm are the same, or the
+//! screen's and the digits', the delay can't be separated from the offset; then none is taken off, and interval and
+//! standard error count a usual screen.
 
 use super::{ScreenDelay, USUAL_SCREEN_S};
 
 /// Intervals of screens that there are, seconds; the last are clocks that a program draws.
 const SCREENS_S: [f64; 8] =
     [1.0 / 144.0, 1.0 / 120.0, USUAL_SCREEN_S, 1.0 / 50.0, 1.0 / 30.0, 1.0 / 24.0, 1.0 / 20.0, 0.1];
-/// A screen is known to a fiftieth: 59.94 is told as 60.
+/// A screen is known to a fiftieth: 59.94 is reported as 60.
 const NEAR: f64 = 0.98;
 /// What readings and frames not read must add up to before a screen is believed that the readings alone do not need,
 /// seconds, and in standard errors.
@@ -31,7 +31,7 @@ pub(super) struct Screen {
     pub(super) notes: Vec<String>,
 }
 
-/// The delay, if readings agree with none below `least_s`, `dead_s` is what [`dead_s`] tells, and `given_s` what the
+/// The delay, if readings agree with none below `least_s`, `dead_s` is from [`dead_s`], and `given_s` what the
 /// user says.
 pub(super) fn delay(least_s: f64, dead_s: [f64; 2], given_s: Option<f64>) -> Screen {
     if let Some(given_s) = given_s

@@ -184,7 +184,7 @@ fn the_interval_holds_the_truth_whatever_the_screen() {
 const TWENTY_PPM: f64 = 20e-6;
 
 #[test]
-fn drift_is_told_from_a_minute_of_irregular_frames() {
+fn drift_is_found_in_a_minute_of_irregular_frames() {
     let errors = Many { seconds: 60.0, irregular: true, drift: 45e-6, ..plain() }.errors(100);
     assert!(errors.outside == 0 && errors.most_drift <= TWENTY_PPM, "{errors:?}");
     assert!((0.45..=0.8).contains(&errors.drift_within_one_sd), "{errors:?}");
@@ -335,7 +335,7 @@ fn three_readings_hold_the_truth_and_fewer_are_refused() {
 }
 
 #[test]
-fn clocks_that_stop_jump_or_run_wrongly_are_told() {
+fn clocks_that_stop_jump_or_run_wrongly_are_reported() {
     let times = regular(29.7, 20.0);
     let at = |counts: &dyn Fn(f64) -> f64| -> Vec<Option<f64>> {
         times.iter().map(|&t| Some((counts(t) * 10.0).floor() / 10.0)).collect()
@@ -360,8 +360,8 @@ fn clocks_that_stop_jump_or_run_wrongly_are_told() {
     }
     for rate in [0.25, 1.05, 8.0, -1.0] {
         let why = fault(&|t| 200.0 + rate * t);
-        let ClockFault::Rate { rate: told } = why else { panic!("{rate}: {why}") };
-        assert!((told - rate).abs() <= 0.02 * rate.abs(), "{why}");
+        let ClockFault::Rate { rate: reported } = why else { panic!("{rate}: {why}") };
+        assert!((reported - rate).abs() <= 0.02 * rate.abs(), "{why}");
     }
     let mut rng = ChaCha8Rng::seed_from_u64(1);
     let any: Vec<Option<f64>> = times.iter().map(|_| Some(f64::from(rng.random_range(0..36_000)) / 10.0)).collect();

@@ -6,8 +6,9 @@ use anyhow::anyhow;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-use super::super::plot::{COLOURS, Draw, write_both};
-use super::Chart;
+use super::super::picture::{Draw, write_both};
+use super::points::colour;
+use super::{Chart, Scales};
 
 /// What stands at a place.
 #[derive(Debug, Clone)]
@@ -52,7 +53,7 @@ impl Draw for Grid<'_> {
                 let (own, right) = beside.split_horizontally(self.size[0]);
                 match cell {
                     Cell::Empty => {}
-                    Cell::Chart(chart) => chart.draw(&own)?,
+                    Cell::Chart(chart) => chart.draw(&own, Scales::Linear)?,
                     Cell::Key { words, colours } => key(&own, words, colours)?,
                 }
                 beside = right;
@@ -80,8 +81,8 @@ where
         area.draw_text(line, &style, (30, y)).map_err(failed)?;
         y += LINE_PX;
     }
-    for (colour, name) in colours {
-        let ink = COLOURS[colour % COLOURS.len()].stroke_width(3);
+    for (k, name) in colours {
+        let ink = colour(*k).stroke_width(3);
         area.draw(&PathElement::new([(30, y + 8), (58, y + 8)], ink)).map_err(failed)?;
         area.draw_text(name, &style, (68, y)).map_err(failed)?;
         y += LINE_PX;

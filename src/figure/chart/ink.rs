@@ -4,21 +4,19 @@ use anyhow::anyhow;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use super::super::plot::COLOURS;
 use super::super::text::shortened;
+use super::item::{Bar, Item};
+use super::points::{Area, colour, draw_mark, draw_path, draw_points};
 use super::reach::near;
-use super::{Bar, Item};
-
-pub(super) type Area<'a, B> =
-    ChartContext<'a, B, Cartesian2d<plotters::coord::types::RangedCoordf64, plotters::coord::types::RangedCoordf64>>;
 
 /// Draws an item; spans and names are drawn with the axes.
-pub(super) fn draw_item<B: DrawingBackend>(chart: &mut Area<'_, B>, item: &Item) -> anyhow::Result<()>
+pub(super) fn draw_item<B: DrawingBackend, X, Y>(chart: &mut Area<'_, B, X, Y>, item: &Item) -> anyhow::Result<()>
 where
     B::ErrorType: 'static,
+    X: Ranged<ValueType = f64>,
+    Y: Ranged<ValueType = f64>,
 {
     let failed = |e: DrawingAreaErrorKind<B::ErrorType>| anyhow!("{e}");
-    let colour = |k: usize| COLOURS[k % COLOURS.len()];
     match item {
         Item::Spans { .. } | Item::Names(_) | Item::Room(_) => {}
         Item::Band { runs, colour: k } => {
@@ -98,6 +96,9 @@ where
             let ends = known.flat_map(|&[x, low, high]| [near(x, low), near(x, high)]);
             chart.draw_series(ends.map(cap)).map_err(failed)?;
         }
+        Item::Points { name, points, hollow, colour: k } => draw_points(chart, name, points, *hollow, colour(*k))?,
+        Item::Mark(mark) => draw_mark(chart, mark)?,
+        Item::Path(points) => draw_path(chart, points)?,
         Item::Dots { name, points, colour: k } => {
             let ink = colour(*k).mix(0.6).filled();
             let drawn =
@@ -111,13 +112,15 @@ where
 }
 
 /// Writes names below the horizontal axis, each shortened to the room that its neighbours leave.
-pub(super) fn draw_names<B: DrawingBackend>(
+pub(super) fn draw_names<B: DrawingBackend, X, Y>(
     area: &DrawingArea<B, plotters::coord::Shift>,
-    chart: &Area<'_, B>,
+    chart: &Area<'_, B, X, Y>,
     names: &[(f64, String)],
 ) -> anyhow::Result<()>
 where
     B::ErrorType: 'static,
+    X: Ranged<ValueType = f64>,
+    Y: Ranged<ValueType = f64>,
 {
     let base = area.get_base_pixel();
     let y = chart.y_range().start;

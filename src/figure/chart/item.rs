@@ -39,6 +39,21 @@ pub enum Item {
         /// Which colour.
         colour: usize,
     },
+    /// Points with a label beside each, clear of the others where there is room.
+    Points {
+        /// In the legend.
+        name: String,
+        /// In any order; those that are not on the axes are not drawn.
+        points: Vec<Point>,
+        /// Whether the dots are hollow.
+        hollow: bool,
+        /// Which colour.
+        colour: usize,
+    },
+    /// A ring or a square about a point.
+    Mark(Mark),
+    /// A thin grey line from point to point.
+    Path(Vec<[f64; 2]>),
     /// Upright marks from a low to a high end: a standard deviation about a curve's point.
     Errors {
         /// x, low end, high end; those that are not finite are not drawn.
@@ -86,6 +101,41 @@ pub enum Item {
     Room(Vec<[f64; 2]>),
 }
 
+/// A point with a label beside it.
+#[derive(Debug, Clone)]
+pub struct Point {
+    /// Along the horizontal axis.
+    pub x: f64,
+    /// Along the vertical axis.
+    pub y: f64,
+    /// Written beside it; nothing if empty.
+    pub label: String,
+    /// Horizontal error bar: from, to.
+    pub x_range: Option<[f64; 2]>,
+}
+
+/// A ring or a square about a point.
+#[derive(Debug, Clone)]
+pub struct Mark {
+    /// Along the horizontal axis.
+    pub x: f64,
+    /// Along the vertical axis.
+    pub y: f64,
+    /// Ring or square; one of each fits about the same point.
+    pub shape: MarkShape,
+    /// In the legend.
+    pub name: String,
+}
+
+/// The shape of a [`Mark`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MarkShape {
+    /// A circle.
+    Ring,
+    /// An upright square.
+    Square,
+}
+
 /// A bar that stands on zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bar {
@@ -111,6 +161,9 @@ impl Item {
             }),
             Self::Line { runs, .. } => runs.iter().flatten().for_each(|&p| reach.take(p)),
             Self::Dots { points, .. } | Self::Room(points) => points.iter().for_each(|&p| reach.take(p)),
+            Self::Points { points, .. } => points.iter().for_each(|point| reach.take([point.x, point.y])),
+            Self::Mark(mark) => reach.take([mark.x, mark.y]),
+            Self::Path(points) => points.iter().for_each(|&p| reach.take(p)),
             Self::Bars { bars, .. } => bars.iter().for_each(|bar| {
                 reach.take([bar.at - 0.5 * bar.width, 0.0]);
                 reach.take([bar.at + 0.5 * bar.width, bar.value]);
@@ -125,7 +178,7 @@ impl Item {
         }
     }
 
-    /// What the legend calls it.
+    /// Its entry in the legend.
     pub(super) fn name(&self) -> Option<&str> {
         match self {
             Self::Spans { name, .. }
@@ -133,7 +186,9 @@ impl Item {
             | Self::Dots { name, .. }
             | Self::Bars { name, .. }
             | Self::Diagonal { name } => name.as_deref(),
+            Self::Points { name, .. } | Self::Mark(Mark { name, .. }) => Some(name),
             Self::Band { .. }
+            | Self::Path(_)
             | Self::Errors { .. }
             | Self::Text { .. }
             | Self::Label { .. }

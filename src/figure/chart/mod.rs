@@ -1,28 +1,31 @@
-//! Charts on linear axes: lines with breaks where nothing is known, bands, dots, shaded spans; PNG and SVG.
+//! Charts: lines with breaks where nothing is known, bands, dots, labelled points, shaded spans; PNG and SVG.
 //!
-//! Charts of one picture stand below each other, or as panels in rows. What is drawn last lies on top. Values beyond
-//! 1e200 are drawn there.
+//! A picture's charts are drawn below each other, or as panels in rows; the axes are linear, or both logarithmic
+//! ([`draw_log_log`]). What is drawn last lies on top. Values beyond 1e200 are drawn there.
 
 mod grid;
 mod ink;
 mod item;
+mod places;
+mod points;
 mod reach;
 
 use std::path::Path;
 
-use anyhow::anyhow;
+use anyhow::{anyhow, ensure};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-use super::Axis;
-use super::plot::{Draw, draw_legend, short_number, write_both};
+use super::picture::{Draw, draw_legend, short_number, write_both};
 use ink::{NAME_LINE_PX, draw_item, draw_names};
+use places::ticks;
+use points::{Area, LEGEND_LINE_PX};
 use reach::Reach;
 
 pub use grid::{Cell, draw_grid};
-pub use item::{Bar, Item};
+pub use item::{Bar, Item, Mark, MarkShape, Point};
 
-/// A chart on linear axes.
+/// A chart.
 #[derive(Debug, Clone)]
 pub struct Chart {
     /// Above the axes.
@@ -39,8 +42,19 @@ pub struct Chart {
     pub height: u32,
 }
 
-/// Height of a line of a legend.
-const LEGEND_LINE_PX: u32 = 20;
+/// An axis of a chart.
+#[derive(Debug, Clone)]
+pub struct Axis {
+    /// What it shows, with its unit.
+    pub label: String,
+}
+
+/// How numbers are laid out along both axes.
+#[derive(Debug, Clone, Copy)]
+enum Scales {
+    Linear,
+    Logarithmic,
+}
 
 /// Draws `charts` below each other, `width` pixels wide, to `png` and `svg`.
 ///
@@ -60,7 +74,7 @@ impl Draw for Charts<'_> {
         let mut rest = area.clone();
         for chart in self.0 {
             let (own, below) = rest.split_vertically(chart.height);
-            chart.draw(&own)?;
+            chart.draw(&own, Scales::Linear)?;
             rest = below;
         }
         Ok(())
@@ -73,6 +87,18 @@ impl Draw for Charts<'_> {
 /// # Errors
 /// A file that can't be written.
 pub fn draw_panels(charts: &[Chart], columns: usize, width: u32, png: &Path, svg: &Path) -> anyhow::Result<()> {
+    panels(charts, columns, width, Scales::Linear, png, svg)
+}
+
+/// As [`draw_panels`], on logarithmic axes. Only positive numbers have a place on them.
+///
+/// # Errors
+/// A chart without a labelled point that has two positive finite coordinates, or a file that can't be written.
+pub fn draw_log_log(charts: &[Chart], columns: usize, width: u32, png: &Path, svg: &Path) -> anyhow::Result<()> {
+    panels(charts, columns, width, Scales::Logarithmic, png, svg)
+}
+
+fn panels(charts: &[Chart], columns: usize, width: u32, scales: Scales, png: &Path, svg: &Path) -> anyhow::Result<()> {
     let columns = columns.clamp(1, charts.len().max(1));
     let rows = charts.chunks(columns).map(|row| row.iter().map(|c| c.height).max().unwrap_or(0));
     let ends: Vec<u32> = rows
@@ -82,13 +108,14 @@ pub fn draw_panels(charts: &[Chart], columns: usize, width: u32, png: &Path, svg
         })
         .collect();
     let size = (width * columns as u32, ends.last().copied().unwrap_or(1));
-    write_both(&Panels { charts, columns, width, ends: &ends }, size, png, svg)
+    write_both(&Panels { charts, columns, width, scales, ends: &ends }, size, png, svg)
 }
 
 struct Panels<'a> {
     charts: &'a [Chart],
     columns: usize,
     width: u32,
+    scales: Scales,
     /// Where each row ends.
     ends: &'a [u32],
 }
@@ -101,12 +128,22 @@ impl Draw for Panels<'_> {
         let across: Vec<i32> = (1..self.columns as i32).map(|k| k * self.width as i32).collect();
         let down: Vec<i32> = self.ends.iter().map(|&end| end as i32).take(self.ends.len().saturating_sub(1)).collect();
         let areas = area.split_by_breakpoints(across, down);
-        self.charts.iter().zip(areas).try_for_each(|(chart, own)| chart.draw(&own))
+        self.charts.iter().zip(areas).try_for_each(|(chart, own)| chart.draw(&own, self.scales))
     }
 }
 
 impl Chart {
-    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> anyhow::Result<()>
+    fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>, scales: Scales) -> anyhow::Result<()>
+    where
+        B::ErrorType: 'static,
+    {
+        match scales {
+            Scales::Linear => self.draw_linear(area),
+            Scales::Logarithmic => self.draw_log(area),
+        }
+    }
+
+    fn draw_linear<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> anyhow::Result<()>
     where
         B::ErrorType: 'static,
     {
@@ -119,8 +156,6 @@ impl Chart {
         if square {
             reach.square();
         }
-        let names = self.items.iter().find_map(|item| if let Item::Names(names) = item { Some(names) } else { None });
-        let lines = names.map_or(1, |names| names.iter().map(|(_, name)| name.lines().count()).max().unwrap_or(1));
         // The legend has room above the highest value.
         let named = self.items.iter().filter(|item| item.name().is_some()).count();
         let legend = if named > 0 { f64::from(LEGEND_LINE_PX) * (named as f64 + 1.0) } else { 0.0 };
@@ -131,13 +166,8 @@ impl Chart {
         } else {
             (reach.x.padded(0.01, 0.01), reach.y.padded(if self.from_zero { 0.0 } else { 0.05 }, above))
         };
-        let mut builder = ChartBuilder::on(area);
-        let below = if self.x.label.is_empty() { 26 } else { 46 } + NAME_LINE_PX * (lines.max(1) as u32 - 1);
-        builder.margin(16).x_label_area_size(below).y_label_area_size(74);
-        if !self.title.is_empty() {
-            builder.caption(&self.title, ("sans-serif", 22));
-        }
-        let mut chart = builder.build_cartesian_2d(x.0..x.1, y.0..y.1).map_err(|e| anyhow!("{e}"))?;
+        let built = self.builder(area).build_cartesian_2d(x.0..x.1, y.0..y.1);
+        let mut chart = built.map_err(|e| anyhow!("{e}"))?;
         // Spans lie below the grid.
         for item in &self.items {
             if let Item::Spans { name, spans } = item {
@@ -150,6 +180,7 @@ impl Chart {
                 }
             }
         }
+        let names = self.names();
         let number_x = |value: &f64| if names.is_some() { String::new() } else { number(*value, x) };
         let number_y = |value: &f64| if self.y.label.is_empty() { String::new() } else { number(*value, y) };
         let mut mesh = chart.configure_mesh();
@@ -166,9 +197,7 @@ impl Chart {
             .y_label_formatter(&number_y)
             .draw()
             .map_err(|e| anyhow!("{e}"))?;
-        for item in &self.items {
-            draw_item(&mut chart, item)?;
-        }
+        self.draw_items(&mut chart)?;
         if let Some(names) = names {
             draw_names(area, &chart, names)?;
         }
@@ -177,6 +206,74 @@ impl Chart {
         }
         Ok(())
     }
+
+    fn draw_log<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>) -> anyhow::Result<()>
+    where
+        B::ErrorType: 'static,
+    {
+        let (x, y) = (self.log_range(|p| p.x)?, self.log_range(|p| p.y)?);
+        // The horizontal axis has its ticks at the decades; the vertical one may lie within a decade.
+        let x = (0.999 * 10_f64.powf(x.0.log10().floor()), 1.001 * 10_f64.powf(x.1.log10().ceil()));
+        let (named, light) = ticks(y.0, y.1);
+        let y = (y.0..y.1).log_scale().with_key_points(named).with_light_points(light);
+        let built = self.builder(area).build_cartesian_2d((x.0..x.1).log_scale(), y);
+        let mut chart = built.map_err(|e| anyhow!("{e}"))?;
+        chart
+            .configure_mesh()
+            .x_desc(&self.x.label)
+            .y_desc(&self.y.label)
+            .label_style(("sans-serif", 15))
+            .axis_desc_style(("sans-serif", 17))
+            .light_line_style(RGBColor(240, 240, 240))
+            .x_label_formatter(&decade)
+            .y_label_formatter(&decade)
+            .draw()
+            .map_err(|e| anyhow!("{e}"))?;
+        self.draw_items(&mut chart)?;
+        let (corner, place) = self.legend_corner(&chart);
+        self.draw_labels(&mut chart, place)?;
+        draw_legend(&mut chart, corner)
+    }
+
+    /// Title, margins and room for the axes.
+    fn builder<'a, 'b, B: DrawingBackend>(&self, area: &'a DrawingArea<B, Shift>) -> ChartBuilder<'a, 'b, B> {
+        let mut builder = ChartBuilder::on(area);
+        let lines =
+            self.names().map_or(1, |names| names.iter().map(|(_, name)| name.lines().count()).max().unwrap_or(1));
+        let below = if self.x.label.is_empty() { 26 } else { 46 } + NAME_LINE_PX * (lines.max(1) as u32 - 1);
+        builder.margin(16).x_label_area_size(below).y_label_area_size(74);
+        if !self.title.is_empty() {
+            builder.caption(&self.title, ("sans-serif", 22));
+        }
+        builder
+    }
+
+    fn names(&self) -> Option<&Vec<(f64, String)>> {
+        self.items.iter().find_map(|item| if let Item::Names(names) = item { Some(names) } else { None })
+    }
+
+    fn draw_items<B: DrawingBackend, X, Y>(&self, chart: &mut Area<'_, B, X, Y>) -> anyhow::Result<()>
+    where
+        B::ErrorType: 'static,
+        X: Ranged<ValueType = f64>,
+        Y: Ranged<ValueType = f64>,
+    {
+        self.items.iter().try_for_each(|item| draw_item(chart, item))
+    }
+
+    /// The range of a coordinate over the points with a place on logarithmic axes, a little wider than they are.
+    fn log_range(&self, of: impl Fn(&Point) -> f64) -> anyhow::Result<(f64, f64)> {
+        let has_place = |v: f64| v.is_finite() && v > 0.0;
+        let points = self.points().filter(|p| has_place(p.x) && has_place(p.y));
+        let (low, high) = points.map(of).fold((f64::INFINITY, 0.0_f64), |(low, high), v| (low.min(v), high.max(v)));
+        ensure!(low.is_finite(), "no point of the chart `{}` has a place on logarithmic axes", self.title);
+        Ok((low / 1.6, high * 2.2))
+    }
+}
+
+/// `0.01`, `100`, and where that gets long `2e-9`.
+fn decade(value: &f64) -> String {
+    if (1e-4..1e6).contains(value) { short_number(value) } else { format!("{value:.0e}") }
 }
 
 /// A number of an axis between two ends, as short as it can be read.

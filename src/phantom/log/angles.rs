@@ -2,8 +2,8 @@
 //! training set without a video.
 //!
 //! In: a [`LogScene`]. Out: `frame,time_s,clock_s`, angle and standard error (0: exact) of each joint, `status`, then
-//! what posture tells of the clock in the picture. Frames come 30 a second from the video's time 0 on; `clock_s` is the
-//! log's clock, which a jump of its stamps does not change.
+//! what posture reports of the clock in the picture. Frames come 30 a second from the video's time 0 on; `clock_s` is
+//! the log's clock, which a jump of its stamps does not change.
 
 use std::path::Path;
 

@@ -3,7 +3,7 @@
 //! With [`LogOptions::touch_from_s`] it bends first and touches nothing; in the second before that time it straightens;
 //! from then on it presses from rest, the force's own time 0 being there (5.2.4, 5.3.1).
 //!
-//! **Following** ([`LogOptions::follow`]): it is late and errs as [`Follow`] tells.
+//! **Following** ([`LogOptions::follow`]): it lags and errs as [`Follow`] says.
 //!
 //! **Posture** ([`LogOptions::posture_shift_rad`], assumed): 5.4.1 takes "the finger having a slightly different
 //! posture on the force measurement platform" for what changes between repetitions. While it touches, or rests, J2 is

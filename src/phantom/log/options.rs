@@ -87,7 +87,7 @@ pub struct LogOptions {
     pub dead: Vec<usize>,
 }
 
-/// What is not there need not be told.
+/// Columns that are absent need no settings.
 fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }

@@ -15,11 +15,11 @@ pub struct FingerShape {
     pub offset: f64,
 }
 
-/// Beyond this many half widths, only that it is far from the finger is told: the distance there is over [`FAR_EDGE`]
+/// Beyond this many half widths, only that it is far from the finger is known: the distance there is over [`FAR_EDGE`]
 /// for every finger.
 const FAR: f64 = 1.9;
 
-/// The distance told there, in half nail widths; beyond every shadow.
+/// The distance given there, in half nail widths; beyond every shadow.
 const FAR_EDGE: f64 = 0.8;
 
 /// Where a place lies with respect to the finger.

@@ -66,7 +66,7 @@ pub struct LogRequest {
     /// Whose finger it is
     #[arg(long, value_name = "K", default_value_t = 1)]
     subject: u32,
-    /// Which day: the sensor sits anew, its gains and offsets move by a few per cent
+    /// Which day: the sensor is put on again, its gains and offsets change by a few per cent
     #[arg(long, value_name = "K", default_value_t = 1)]
     session: u32,
 

@@ -49,7 +49,7 @@ impl Default for StudyOptions {
 }
 
 impl StudyOptions {
-    /// Can this study be made? Of its videos and logs [`Study::new`](super::Study::new) tells.
+    /// Checks whether this study can be made; its videos and logs are checked by [`Study::new`](super::Study::new).
     ///
     /// # Errors
     /// [`Faults`]: all that is wrong.

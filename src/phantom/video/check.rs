@@ -1,4 +1,4 @@
-//! Whether a video can be made as wanted; all faults are told at once, by the command line's names.
+//! Whether a video can be made as requested; all faults are reported together, by the command line's names.
 
 use super::lens::Mapping;
 use super::{Faults, VideoOptions};

@@ -180,7 +180,7 @@ mod tests {
 
     #[test]
     fn chroma_lies_where_the_siting_says() {
-        // Cb and Cr that rise by the column: a sample's value tells its place.
+        // Cb and Cr that rise by the column: a sample's value gives its place.
         let width = 64;
         let ramp: Vec<f32> = (0..width).map(|x| x as f32 / 100.0).collect();
         let row = [ramp, vec![0.0; width], vec![0.0; width]];

@@ -26,7 +26,11 @@ pub struct Normalization {
     #[arg(long, default_value_t = 400, value_parser = |text: &str| within(text, Self::SIZES, "px"))]
     pub size: usize,
     /// Side of the normalized pictures, as a multiple of the nail's box
-    #[arg(long, default_value_t = 1.25, value_parser = |text: &str| within(text, Self::MARGINS, "nail boxes (1.25 is 125 %)"))]
+    #[arg(
+        long,
+        default_value_t = 1.25,
+        value_parser = |text: &str| within(text, Self::MARGINS, "nail boxes (1.25 is 125 %)")
+    )]
     pub margin: f64,
     /// Channel of colour photographs to use
     #[arg(long, value_enum, default_value = "green")]
@@ -39,7 +43,11 @@ pub struct Normalization {
     pub resample: Resample,
     /// Sample value of 16-bit files that is full scale: 4095 where 12 bits are kept in 16 [default: 65535]
     // Files written before there was such a choice read as `None`.
-    #[arg(long, value_name = "SAMPLE", value_parser = |text: &str| within(text, Self::WHITES, "(4095 is that of 12 bits)"))]
+    #[arg(
+        long,
+        value_name = "SAMPLE",
+        value_parser = |text: &str| within(text, Self::WHITES, "(4095 is that of 12 bits)")
+    )]
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub white: Option<u16>,
 }

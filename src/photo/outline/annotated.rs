@@ -58,7 +58,7 @@ pub enum AnnotationFault {
     },
     /// Upright and stored picture have the same size.
     #[error(
-        "{0}: the photograph's EXIF orientation turns it without changing its size, so its size doesn't show whether this \
+        "{0}: the photograph's EXIF orientation turns it without changing its size, so it is not known whether this \
          was drawn on the upright or on the stored picture; say --annotations upright or --annotations stored"
     )]
     Turned(String),

@@ -9,8 +9,8 @@
 //!   filled rectangle of pixels x0..=x1 is exactly x1 - x0 + 1 wide. Regions that touch the border end at its pixel
 //!   edges.
 //! - A mask whose largest value is 1 to 32 is read as instance numbers: each number a nail, though they touch.
-//! - A picture in grey is not a mask: a mask has two values, and between them the grey of its edges only. [`MaskValues`]
-//!   say which values are nail where a picture has more; outlines then run along pixel edges.
+//! - A picture in grey is not a mask: a mask has two values, and between them the grey of its edges only.
+//!   [`MaskValues`] say which values are nail where a picture has more; outlines then run along pixel edges.
 //! - Anything between is refused: half of full scale would silently lose every nail.
 //!
 //! Holes are filled: a nail has none.
@@ -46,7 +46,8 @@ const FLAT: f32 = 0.1;
 /// as JPEG; 0.68 to 3.3 in the photographs they belong to, in grey, 0.71 and more with their nails white and all but
 /// skin black.
 const MOST_GREY: f64 = 0.1;
-/// A region above this share of the picture is not a nail: in the thesis' close-ups a nail takes up to a third (assumed).
+/// A region above this share of the picture is not a nail: in the thesis' close-ups a nail takes up to a third
+/// (assumed).
 const LARGEST_SHARE: f64 = 0.6;
 /// A region this many times as long as the median of a mask's others is not a nail; measured on 26 hands: at most 2.4.
 const LONGEST: f64 = 3.0;

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::draw::{DrawnSheet, draw_pose, draw_sheets};
 use crate::files::{Staging, WriteError};
-use crate::photo::sums::{Member, Members, Partials, part_name, write_part, write_partial};
+use crate::photo::sums::{Maps, Member, Members, Partials, Sums, part_name, write_part, write_partial};
 use crate::stages::Stages;
 
 /// Sums of every pose and the list of them, for [`gather`](fn@crate::photo::gather).
@@ -32,27 +32,31 @@ pub(in crate::photo) fn write_maps(
     staging: &Staging,
     stages: &Stages,
 ) -> Result<Vec<DrawnSheet>, WriteError> {
-    let drawn = partials
-        .poses
-        .par_iter()
-        .map(|(pose, sums)| {
-            let maps = stages.time("maps", || sums.maps());
-            stages.time("write maps", || {
-                write_npy(&maps.mean, staging, &format!("maps/{pose}-mean.npy"))?;
-                write_npy(&maps.sd, staging, &format!("maps/{pose}-sd.npy"))?;
-                write_npy(&maps.count, staging, &format!("maps/{pose}-count.npy"))?;
-                let name = format!("maps/{pose}.partial.npz");
-                let path = staging.place(&name)?;
-                write_partial(&path, pose, sums, &partials.normalization).map_err(|why| staging.refused(&name, why))
-            })?;
-            let draw = || draw_pose(pose, sums.subjects().len(), &maps, staging);
-            figures.then(|| stages.time("figures", draw)).transpose()
-        })
-        .collect::<Result<Vec<_>, WriteError>>()?;
+    let poses: Vec<(&String, &Sums)> = partials.poses.iter().collect();
+    let write = |(pose, sums): &(&String, &Sums)| {
+        let maps = stages.time("maps", || sums.maps());
+        stages.time("write maps", || {
+            write_npy(&maps.mean, staging, &format!("maps/{pose}-mean.npy"))?;
+            write_npy(&maps.sd, staging, &format!("maps/{pose}-sd.npy"))?;
+            write_npy(&maps.count, staging, &format!("maps/{pose}-count.npy"))?;
+            let name = format!("maps/{pose}.partial.npz");
+            let path = staging.place(&name)?;
+            write_partial(&path, pose, sums, &partials.normalization).map_err(|why| staging.refused(&name, why))
+        })?;
+        Ok(figures.then_some(maps))
+    };
+    let maps: Vec<Option<Maps>> = poses.par_iter().map(write).collect::<Result<_, WriteError>>()?;
     if !figures {
         return Ok(Vec::new());
     }
-    stages.time("sheets", || draw_sheets(drawn.into_iter().flatten().collect(), staging))
+    staging.sync_meanwhile(|| {
+        let drawn = poses.par_iter().zip(maps).filter_map(|((pose, sums), maps)| {
+            let (maps, subjects) = (maps?, sums.subjects().len());
+            Some(stages.time("figures", || draw_pose(pose, subjects, &maps, staging)))
+        });
+        let drawn = drawn.collect::<Result<_, WriteError>>()?;
+        stages.time("sheets", || draw_sheets(drawn, staging))
+    })
 }
 
 fn write_npy<T: ndarray_npy::WritableElement>(

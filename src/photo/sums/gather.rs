@@ -7,6 +7,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -16,12 +17,12 @@ use super::maps::Sums;
 use super::members::{Member, Members};
 use super::partial::{self, Held, PartialFault, Partials};
 use crate::files::Staging;
+use crate::job::{Report, Watch};
 use crate::photo::error::MergeError;
 use crate::photo::normalize::Normalization;
-use crate::photo::options::Watch;
 use crate::photo::report::{PoseCount, one_subject, pose_counts};
 use crate::photo::results::{NailTable, write_maps};
-use crate::stages::{Stage, Stages};
+use crate::stages::Stages;
 
 /// What is gathered, and where results go.
 #[derive(Debug, Clone)]
@@ -39,27 +40,19 @@ pub struct Gathering<'a> {
 }
 
 /// What was gathered.
+pub type GatherReport = Report<GatherFigures>;
+
+/// The figures of a gathering.
 #[derive(Debug, Clone, Serialize)]
-pub struct GatherReport {
-    /// `maps`.
-    pub job: &'static str,
+pub struct GatherFigures {
     /// Subjects by pose.
     pub poses: Vec<PoseCount>,
     /// Files of sums that were read and added.
     pub sums_added: usize,
     /// Those that the earlier gathering held already.
-    pub sums_stood: usize,
+    pub sums_kept: usize,
     /// What the normalized pictures were made with.
     pub normalization: Normalization,
-    /// What is good to know, a line for each kind.
-    #[serde(skip)]
-    pub notes: Vec<String>,
-    /// What was not needed.
-    #[serde(skip)]
-    pub left_out: Vec<String>,
-    /// Time by stage.
-    #[serde(skip)]
-    pub stages: Vec<Stage>,
     /// How good the maps are.
     #[serde(skip)]
     pub accuracy: Accuracy,
@@ -72,25 +65,24 @@ type Files = BTreeMap<Member, PathBuf>;
 ///
 /// # Errors
 /// [`MergeError`]; nothing is written then.
-pub fn gather(gathering: &Gathering, watch: &Watch) -> Result<GatherReport, MergeError> {
+pub fn gather(gathering: &Gathering, watch: &Watch<'_>) -> Result<GatherReport, MergeError> {
     let Gathering { parts, before, truth, figures, out } = *gathering;
+    let start = Instant::now();
     let staging = Staging::new(out)?;
     let stages = Stages::default();
     let (members, files) = stages.time("list sums", || list(parts))?;
     let before = before.and_then(|folder| Some((folder, Members::of_maps(folder)?)));
-    let before = before.filter(|(_, standing)| standing.normalization == members.normalization);
+    let before = before.filter(|(_, earlier)| earlier.normalization == members.normalization);
     let add_up = |(pose, files): (&String, &Files)| {
-        let standing = before.as_ref().and_then(|(folder, standing)| Some((*folder, standing.poses.get(pose)?)));
-        let standing = standing.and_then(|(folder, known)| standing_sums(folder, pose, known, files, &members));
-        let (mut sums, known) = match standing {
+        let earlier = before.as_ref().and_then(|(folder, earlier)| Some((*folder, earlier.poses.get(pose)?)));
+        let earlier = earlier.and_then(|(folder, known)| earlier_sums(folder, pose, known, files, &members));
+        let (mut sums, known) = match earlier {
             Some((sums, known)) => (sums, Some(known)),
             None => (Sums::new(members.normalization.size), None),
         };
         let mut added = 0;
         for (_, file) in files.iter().filter(|(member, _)| known.is_none_or(|known| !known.contains(*member))) {
-            if watch.is_stopped() {
-                return Err(MergeError::Interrupted);
-            }
+            watch.go_on()?;
             let (meta, held) = partial::read(file)?;
             partial::agree(file, &meta, &members.normalization)?;
             partial::add(&mut sums, file, meta, held)?;
@@ -110,22 +102,14 @@ pub fn gather(gathering: &Gathering, watch: &Watch) -> Result<GatherReport, Merg
     staging.commit()?;
 
     let poses = pose_counts(&partials);
-    let sums_stood = files.values().map(BTreeMap::len).sum::<usize>() - sums_added;
-    let left_out = (sums_stood > 0)
-        .then(|| format!("sums: {sums_stood} are part of the maps made before, and are not read again"))
+    let sums_kept = files.values().map(BTreeMap::len).sum::<usize>() - sums_added;
+    let left_out = (sums_kept > 0)
+        .then(|| format!("sums: {sums_kept} are part of the maps made before, and are not read again"))
         .into_iter()
         .collect();
-    Ok(GatherReport {
-        job: "maps",
-        notes: one_subject(&poses).into_iter().collect(),
-        poses,
-        sums_added,
-        sums_stood,
-        normalization: partials.normalization,
-        left_out,
-        stages: stages.list(),
-        accuracy,
-    })
+    let notes = one_subject(&poses).into_iter().collect();
+    let figures = GatherFigures { poses, sums_added, sums_kept, normalization: partials.normalization, accuracy };
+    Ok(Report { left_out, notes, ..Report::new("maps", watch, figures) }.timed(&stages, start))
 }
 
 /// What the parts hold, by pose, from their lists alone.
@@ -153,8 +137,8 @@ fn list(parts: &[PathBuf]) -> Result<(Members, BTreeMap<String, Files>), MergeEr
     Ok((all, files))
 }
 
-/// The sums that stand, where all that they hold is to be added and was made in the same way.
-fn standing_sums<'a>(
+/// The sums that exist, where all that they hold is to be added and was made in the same way.
+fn earlier_sums<'a>(
     folder: &Path,
     pose: &str,
     known: &'a BTreeSet<Member>,

@@ -235,8 +235,11 @@ mod tests {
     proptest! {
         /// The sums' twin: the two-pass formula in f64 over the pictures themselves, quantization (1/131070) apart.
         #[test]
-        fn mean_and_sd_are_the_textbook_s(rows in prop::collection::vec(prop::collection::vec(0.0_f32..=1.0, 4), 2..20)) {
-            let pictures: Vec<(String, Vec<f32>)> = rows.iter().enumerate().map(|(k, r)| (format!("s{k}"), r.clone())).collect();
+        fn mean_and_sd_are_the_textbook_s(
+            rows in prop::collection::vec(prop::collection::vec(0.0_f32..=1.0, 4), 2..20),
+        ) {
+            let pictures: Vec<(String, Vec<f32>)> =
+                rows.iter().enumerate().map(|(k, r)| (format!("s{k}"), r.clone())).collect();
             let named: Vec<(&str, Vec<f32>)> = pictures.iter().map(|(n, r)| (n.as_str(), r.clone())).collect();
             let maps = sums(&named).maps();
             for at in 0..4 {
@@ -250,7 +253,10 @@ mod tests {
         }
 
         #[test]
-        fn parts_in_any_order_merge_to_the_whole(rows in prop::collection::vec(prop::collection::vec(0.0_f32..=1.0, 4), 1..12), cut in 0_usize..12) {
+        fn parts_in_any_order_merge_to_the_whole(
+            rows in prop::collection::vec(prop::collection::vec(0.0_f32..=1.0, 4), 1..12),
+            cut in 0_usize..12,
+        ) {
             let names: Vec<String> = (0..rows.len()).map(|k| format!("s{k}")).collect();
             let named: Vec<(&str, Vec<f32>)> = names.iter().map(String::as_str).zip(rows).collect();
             let cut = cut.min(named.len());

@@ -5,18 +5,18 @@ use std::time::Instant;
 
 use super::partial;
 use crate::files::Staging;
+use crate::job::Watch;
 use crate::photo::error::MergeError;
-use crate::photo::options::Watch;
-use crate::photo::report::PhotosReport;
+use crate::photo::report::{PhotosReport, of_merge};
 use crate::photo::results::{NailTable, write_maps};
-use crate::stages::Stages;
+use crate::stages::{Stages, Step};
 
 /// Joins the sums and the tables of nails of `parts` (folders that `lunula photos` wrote), and puts the results in
 /// `out`. Normalized pictures stay where they are.
 ///
 /// # Errors
 /// [`MergeError`]; nothing is written then.
-pub fn merge(parts: &[PathBuf], out: &Path, watch: &Watch) -> Result<PhotosReport, MergeError> {
+pub fn merge(parts: &[PathBuf], out: &Path, watch: &Watch<'_>) -> Result<PhotosReport, MergeError> {
     let start = Instant::now();
     let staging = Staging::new(out)?;
     let stages = Stages::default();
@@ -24,11 +24,19 @@ pub fn merge(parts: &[PathBuf], out: &Path, watch: &Watch) -> Result<PhotosRepor
     let nails = NailTable::of_parts(parts)?;
     let sheets = write_maps(&partials, true, &staging, &stages)?;
     nails.write(&staging)?;
-    let mut report = PhotosReport::of_merge(parts, &partials, stages.list(), start.elapsed());
+    let mut report = of_merge(parts, &partials, watch).timed(&stages, start);
     report.write(&nails, &sheets, &[], &staging)?;
-    if watch.is_stopped() {
-        return Err(MergeError::Interrupted);
-    }
+    watch.go_on()?;
     staging.commit()?;
     Ok(report)
+}
+
+/// What joining would do, and what it leaves out.
+#[must_use]
+pub fn merge_plan(parts: &[PathBuf]) -> Vec<Step> {
+    vec![
+        Step::new("photographs", false, "not read again, their sums are joined".to_owned()),
+        Step::new("sums joined", true, format!("of {} folders", parts.len())),
+        Step::new("figures", true, "by pose, and sheets".to_owned()),
+    ]
 }

@@ -9,9 +9,9 @@ mod npz;
 mod partial;
 
 pub use accuracy::Accuracy;
-pub use gather::{GatherReport, Gathering, gather};
+pub use gather::{GatherFigures, GatherReport, Gathering, gather};
 pub use maps::{DuplicateSubject, Maps, Sums};
 pub(super) use members::{Member, Members};
-pub use merge::merge;
+pub use merge::{merge, merge_plan};
 pub use partial::{PartialFault, Partials, join};
 pub(super) use partial::{part_name, write as write_partial, write_part};

@@ -150,7 +150,7 @@ impl Bench<'_> {
             Work { inputs: at, folder: &folder, before: due.stands.then_some(before.as_path()), threads, stop };
         let made = match catch_unwind(AssertUnwindSafe(|| task.job.run(&work_given))) {
             Ok(Ok(mut made)) => {
-                for texts in [&mut made.left_out, &mut made.warnings, &mut made.failed] {
+                for texts in [&mut made.left_out, &mut made.warnings, &mut made.notes, &mut made.failed] {
                     all_in_keys(texts);
                 }
                 report_in_keys(&mut made.report);

@@ -20,7 +20,7 @@ pub(super) struct Section {
     /// The name that links go to.
     pub(super) name: &'static str,
     pub(super) title: &'static str,
-    /// The beginnings of the numbers of sections whose statements are told here.
+    /// Prefixes of the numbers of the sections whose statements are shown here.
     pub(super) of: &'static [&'static str],
     pub(super) figures: &'static [Figure],
 }

@@ -41,7 +41,7 @@ pub struct PartFolder {
     pub subject: String,
 }
 
-/// What stands above the page, and whose results it shows.
+/// The page's title, and whose results it shows.
 #[derive(Debug, Clone, PartialEq, Eq, Args)]
 pub struct PageOptions {
     /// The page's title
@@ -206,7 +206,7 @@ fn introduce(page: &mut Page, options: &PageOptions, judged: &[Judged]) {
         .collect();
     let sums = counts(&all).map(|count| count.to_string());
     rows.push(std::iter::once(format!("all {} statements", all.len())).chain(sums).collect());
-    page.table(&["section", "agree", "do not", "can't be told"], &rows, |_| false);
+    page.table(&["section", "agree", "do not", "can't be judged"], &rows, |_| false);
     let to = |name: &str, words: &str| (format!("#{name}"), words.to_owned());
     let mut links: Vec<(String, String)> = SECTIONS.iter().map(|section| to(section.name, section.title)).collect();
     links.push(to("tables", "Tables"));
@@ -235,7 +235,10 @@ fn statements_of(page: &mut Page, judged: &[&Judged]) {
         })
         .collect();
     let [agree, do_not, cannot] = counts(judged);
-    page.paragraph(&format!("Of {} statements {agree} agree, {do_not} do not, {cannot} can't be told.", judged.len()));
+    page.paragraph(&format!(
+        "Of {} statements {agree} agree, {do_not} do not, {cannot} can't be judged.",
+        judged.len()
+    ));
     page.table(&["figure", "the thesis says", "stated", "here", "verdict"], &rows, |row| {
         judged[row].verdict == Verdict::DoesNot
     });

@@ -1,4 +1,4 @@
-//! The parts of a study: what each is called, which numbers it tells, which tables it has.
+//! The parts of a study: the title, numbers and tables of each.
 
 use std::path::Path;
 

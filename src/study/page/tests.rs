@@ -36,7 +36,7 @@ fn what_there_is_is_shown_and_the_rest_is_said_to_be_lacking() {
     assert!(report.warnings.len() == 1 && report.warnings[0].starts_with("normal: "), "{:?}", report.warnings);
     let html = fs::read_to_string(at.join("out/study.html")).unwrap();
     for words in
-        ["A phantom is no people", "Fig. 28", "Subject S01", "tables/lateral-responses.csv", "can&#39;t be told"]
+        ["A phantom is no people", "Fig. 28", "Subject S01", "tables/lateral-responses.csv", "can&#39;t be judged"]
     {
         assert!(html.contains(words), "{words}");
     }
@@ -46,7 +46,7 @@ fn what_there_is_is_shown_and_the_rest_is_said_to_be_lacking() {
 }
 
 #[test]
-fn a_study_of_nothing_has_a_page_on_which_nothing_can_be_told() {
+fn an_empty_study_has_a_page_that_judges_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let report = study_page(&[], &defaults(), folder.path(), &Watch::nobody()).unwrap();
     assert_eq!((report.figures.figures, report.agree, report.do_not), (0, 0, 0));

@@ -17,7 +17,7 @@ const NOISE: f64 = 0.5;
 const GAP: f64 = 0.2;
 /// A cycle lacks up to this share of itself and is whole all the same.
 const SLACK: f64 = 0.1;
-/// The range is told between these shares of the rows: a slip at one end is none of it.
+/// The range lies between these shares of the rows, so that a slip at one end is excluded.
 const ENDS: [f64; 2] = [0.02, 0.98];
 
 /// A way from one turning point to the next.
@@ -198,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn one_cycle_and_a_half_one_are_told_apart() {
+    fn one_cycle_and_a_half_one_are_distinguished() {
         let time_s = times(400);
         let drive: Vec<f64> =
             time_s.iter().map(|&t| if t < 20.0 { (TAU * 0.05 * t).cos() } else { 1.0 - 0.03 * (t - 20.0) }).collect();

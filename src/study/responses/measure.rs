@@ -1,7 +1,7 @@
 //! What the words of 3.3 speak of, as numbers: sensitivity, direction, hysteresis, repeatability, phase, symmetry,
 //! range of sensitivity.
 //!
-//! All of it is told from the averaged [`Curve`] of a photodiode; `middle` is halfway between rising and falling.
+//! All of it is measured on the averaged [`Curve`] of a photodiode; `middle` is halfway between rising and falling.
 //!
 //! - `range_V`: greatest less least of the middle. `sensitivity_share`: that over the greatest of all photodiodes.
 //! - `slope_V_per_N` or `_per_deg`: of the straight line through the middle; `slope_low`, `slope_high` of its parts
@@ -24,7 +24,7 @@ use crate::study::Numbers;
 
 /// A range stands out where it is this many times the spread over cycles.
 const STANDS_OUT: f64 = 2.0;
-/// Moments of a cycle at which harmonics are told.
+/// Moments of a cycle at which harmonics are computed.
 const MOMENTS: usize = 128;
 /// Bending has hardly any effect where what is left of the range is less than this share.
 const FLAT: f64 = 0.1;

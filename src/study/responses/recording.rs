@@ -67,7 +67,7 @@ impl Recording {
             Ok(table.numbers_or_nan(name)?.into_iter().map(|value| value.unwrap_or(f64::NAN)).collect())
         };
         if !table.names().iter().any(|name| name == "time_s") {
-            let what = "has no column time_s; cycles are told by time".to_owned();
+            let what = "has no column time_s; cycles are found by time".to_owned();
             return Err(ResponsesError::Columns { path: PathBuf::from(name), what });
         }
         let channels = |wanted: &dyn Fn(&str) -> bool| -> Result<Vec<Channel>, TableError> {
@@ -101,7 +101,7 @@ impl Recording {
     }
 }
 
-/// Makes rows with a fault missing; tells how many they are.
+/// Marks rows with a fault as missing; returns how many.
 fn forget(outputs: &mut [Channel], faulty: &[bool]) -> usize {
     for channel in outputs {
         channel.values.iter_mut().zip(faulty).filter(|(_, faulty)| **faulty).for_each(|(value, _)| *value = f64::NAN);
@@ -145,7 +145,7 @@ mod tests {
         assert_eq!(found.time_s.len(), 10);
         let (last, before) = found.outputs[0].values.split_last().unwrap();
         assert!(before.iter().all(|value| (value - 1.0).abs() < 1e-9), "{found:?}");
-        // After the last lit sample no unlit one tells the ambient light.
+        // After the last lit sample no unlit one measures the ambient light.
         assert!(last.is_nan() && found.faulty == 1);
     }
 

@@ -3,7 +3,7 @@
 use super::Statement;
 use super::Test::{All, AtLeast, AtMost, Below, Between};
 
-/// Levels that are told apart, a share of full scale: a 255th is 0.004.
+/// The smallest distinguishable difference of levels, a share of full scale: a 255th is 0.004.
 const SEEN: f64 = 0.01;
 
 pub(super) const ALL: &[Statement] = &[

@@ -41,7 +41,7 @@ pub enum Verdict {
     Agrees,
     /// It does not.
     DoesNot,
-    /// It can't be told, and why.
+    /// It can't be judged, and why.
     CannotTell(String),
 }
 
@@ -52,7 +52,7 @@ impl Verdict {
         match self {
             Self::Agrees => "agrees",
             Self::DoesNot => "does not",
-            Self::CannotTell(_) => "can't be told",
+            Self::CannotTell(_) => "can't be judged",
         }
     }
 }
@@ -90,7 +90,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     #[test]
-    fn names_are_told_once_and_every_statement_is_full() {
+    fn names_occur_once_and_every_statement_is_complete() {
         let mut names = BTreeSet::new();
         for one in statements() {
             assert!(names.insert(one.id), "{}", one.id);
@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn one_number_less_can_not_be_told_and_is_named() {
+    fn with_a_number_missing_nothing_is_judged_and_it_is_named() {
         for one in statements() {
             let mut numbers = Numbers::default();
             one.test.make(true, &mut numbers);

@@ -25,7 +25,7 @@ pub enum Test {
 }
 
 impl Test {
-    /// The numbers that it hangs on.
+    /// The numbers that it depends on.
     #[must_use]
     pub fn names(&self) -> Vec<&'static str> {
         match *self {
@@ -97,7 +97,7 @@ impl Test {
     #[must_use]
     pub fn found(&self, numbers: &Numbers) -> String {
         let known = self.names().into_iter().filter_map(|name| Some((name, numbers.get(name)?)));
-        let all: Vec<String> = known.map(|(name, value)| format!("{} {}", called(name), told(value))).collect();
+        let all: Vec<String> = known.map(|(name, value)| format!("{} {}", called(name), rounded(value))).collect();
         all.join("; ")
     }
 
@@ -105,18 +105,18 @@ impl Test {
     #[must_use]
     pub fn words(&self) -> String {
         match *self {
-            Self::Between(name, low, high) if low == high => format!("{} is {}", called(name), told(low)),
-            Self::Between(name, low, high) => format!("{} {} to {}", called(name), told(low), told(high)),
-            Self::SizeAtMost(name, most) => format!("{} within {} of 0", called(name), told(most)),
-            Self::SizeAtLeast(name, least) => format!("{} {} or more from 0", called(name), told(least)),
-            Self::AtMost(name, most) => format!("{} up to {}", called(name), told(most)),
-            Self::AtLeast(name, least) => format!("{} from {} on", called(name), told(least)),
+            Self::Between(name, low, high) if low == high => format!("{} is {}", called(name), rounded(low)),
+            Self::Between(name, low, high) => format!("{} {} to {}", called(name), rounded(low), rounded(high)),
+            Self::SizeAtMost(name, most) => format!("{} within {} of 0", called(name), rounded(most)),
+            Self::SizeAtLeast(name, least) => format!("{} {} or more from 0", called(name), rounded(least)),
+            Self::AtMost(name, most) => format!("{} up to {}", called(name), rounded(most)),
+            Self::AtLeast(name, least) => format!("{} from {} on", called(name), rounded(least)),
             Self::Below(name, other, 1.0) => format!("{} below {}", called(name), called(other)),
             Self::Below(name, other, factor) => {
-                format!("{} below {} x {}", called(name), told(factor), called(other))
+                format!("{} below {} x {}", called(name), rounded(factor), called(other))
             }
             Self::Ratio(name, other, low, high) => {
-                format!("{} over {} {} to {}", called(name), called(other), told(low), told(high))
+                format!("{} over {} {} to {}", called(name), called(other), rounded(low), rounded(high))
             }
             Self::All(tests) => tests.iter().map(Self::words).collect::<Vec<_>>().join("; "),
         }
@@ -165,7 +165,7 @@ fn called(name: &str) -> String {
 }
 
 /// Three digits.
-fn told(value: f64) -> String {
+fn rounded(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");
     }
@@ -180,7 +180,7 @@ mod tests {
 
     #[test]
     fn numbers_have_three_digits() {
-        let texts = [0.0, 0.01234, -1.5, 12.345, 1234.5, 0.999_96, -0.25].map(told);
+        let texts = [0.0, 0.01234, -1.5, 12.345, 1234.5, 0.999_96, -0.25].map(rounded);
         assert_eq!(texts, ["0", "0.0123", "-1.5", "12.3", "1234", "1", "-0.25"].map(str::to_owned));
     }
 

@@ -1,7 +1,7 @@
 //! Labels over gaps: markers are lost now and then, and angles interpolated over longer and longer gaps.
 //!
 //! The angles are the job's own, with frames taken out: every [`APART`] frames a gap of as many as [`LOST`] says, in
-//! turn. The error is that of the labels that rows have; how many have one is told as `work`. Beside it a user of
+//! turn. The error is that of the labels that rows have; how many have one is given as `work`. Beside it a user of
 //! pandas, on the same tables.
 
 use std::collections::HashMap;

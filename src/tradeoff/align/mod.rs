@@ -72,10 +72,10 @@ pub fn measure(settings: &Settings) -> anyhow::Result<Measured> {
         let seconds = report.stages.iter().filter(|s| s.stage == "clock").map(|s| s.thread_s).sum();
         let clock = report.figures.clock.context("the clock was not read")?;
         ensure!(clock.tie.is_some(), "{}", report.failed.join("; "));
-        let told = || {
+        let error = || {
             anyhow::Ok((worst(&column(&joints(frames), "clock_s")?, &truth)?, clock.frames_read + clock.frames_refused))
         };
-        Ok((seconds, first.then(told).transpose()?))
+        Ok((seconds, first.then(error).transpose()?))
     })?;
     for (frames, found) in EVERY.into_iter().zip(found) {
         match found {
@@ -89,7 +89,7 @@ pub fn measure(settings: &Settings) -> anyhow::Result<Measured> {
     for found in lag {
         match found {
             Ok((time, (error, work))) => measured.rows.push(Row::own(TYING, CORRELATE, (error, TIE_ERROR), time, work)),
-            // The folder's name tells nobody anything.
+            // The temporary folder's name would mean nothing to a reader.
             Err(why) => measured
                 .refused
                 .push(format!("{CORRELATE}: {why:#}").replace(&format!("{}: ", joints(EVERY[0]).display()), "")),

@@ -71,16 +71,16 @@ impl Bench {
         found: &mut Trajectory,
         mut solve: impl FnMut(&Case, &mut Trajectory) -> anyhow::Result<()>,
     ) -> Run<ErrorAndWork> {
-        let told = if first { Some(self.told(found, &mut solve)?) } else { None };
+        let scored = if first { Some(self.scored(found, &mut solve)?) } else { None };
         let begin = Instant::now();
         for case in &self.cases {
             solve(black_box(case), found)?;
             black_box(&*found);
         }
-        Ok((begin.elapsed().as_secs_f64() / self.cases.len() as f64, told))
+        Ok((begin.elapsed().as_secs_f64() / self.cases.len() as f64, scored))
     }
 
-    fn told(
+    fn scored(
         &self,
         found: &mut Trajectory,
         solve: &mut impl FnMut(&Case, &mut Trajectory) -> anyhow::Result<()>,
@@ -115,7 +115,7 @@ impl Bench {
         })
     }
 
-    /// Sample by sample, a step each; where the load jumps, it is told so.
+    /// Sample by sample, a step each; jumps of the load are announced to it.
     pub(super) fn live(&self, hz: u32, first: bool) -> Run<ErrorAndWork> {
         let sample_s = 1.0 / f64::from(hz);
         let mut live = Live::new(&self.model, &self.start, &self.cases[0].loads.at(0.0), sample_s)?;

@@ -31,7 +31,7 @@ const LOAD_PA: f64 = 100.0;
 /// The maps of stiffness, venules and the vein's length, each under proximal, distal and both loads.
 ///
 /// # Errors
-/// Equilibria that can't be told.
+/// Equilibria that can't be found.
 pub fn stability() -> anyhow::Result<Vec<Map>> {
     let parameters = Parameters::thesis();
     let capillaries = |symbol: fn(Site) -> Symbol| vec![symbol(Site::Capillary(0)), symbol(Site::Capillary(1))];

@@ -100,12 +100,12 @@ mod tests {
         assert_eq!(ways.iter().filter(|(name, _)| *name == solving_default()).count(), 1);
         let mut found = Trajectory::default();
         let options = SolveOptions::default();
-        let (_, told) = bench.full(&bench.model, &options, true, &mut found).unwrap();
-        let (error, work) = told.unwrap();
+        let (_, scored) = bench.full(&bench.model, &options, true, &mut found).unwrap();
+        let (error, work) = scored.unwrap();
         assert!(error < 1e-7 && work > 0, "{error} {work}");
         let (seconds, again) = bench.full(&bench.model, &options, false, &mut found).unwrap();
         assert!(seconds > 0.0 && again.is_none());
-        let (live, told) = bench.live(LIVE_HZ[0], true).unwrap();
-        assert!(live > 0.0 && told.unwrap().0 < 1e-6);
+        let (live, scored) = bench.live(LIVE_HZ[0], true).unwrap();
+        assert!(live > 0.0 && scored.unwrap().0 < 1e-6);
     }
 }

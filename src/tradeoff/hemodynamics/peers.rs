@@ -43,7 +43,7 @@ pub fn read_peers(path: &Path) -> anyhow::Result<Vec<Row>> {
             row.rtol
         );
         if row.solver.starts_with("lunula") {
-            continue; // Our own rows of the bench are measured here anew.
+            continue; // Our own rows of the bench are measured here again.
         }
         // Where tolerances of the rates are loosened, the series is the same solver's.
         let setting = match row.solver.strip_suffix(" loose rates") {

@@ -1,7 +1,8 @@
 //! Other programs on the curves: Python scripts that are compiled in, run on the same scenes where `python3` has what
 //! they need; and figures measured elsewhere, from a table.
 //!
-//! What is not measured is told, with how to get it. Packages are those of `benches/peers/requirements.txt`, from PyPI.
+//! What is not measured is reported, with how to get it. Packages are those of `benches/peers/requirements.txt`, from
+//! PyPI.
 
 mod python;
 pub(in crate::tradeoff) mod report;

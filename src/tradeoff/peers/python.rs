@@ -31,7 +31,7 @@ const LOOK: Duration = Duration::from_millis(20);
 /// One thread each.
 const THREADS: [&str; 4] = ["OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "BLIS_NUM_THREADS"];
 
-/// A line that a script tells.
+/// A line printed by a script.
 #[derive(Debug, Clone, Default, Deserialize)]
 #[serde(default)]
 pub(in crate::tradeoff) struct Answer {
@@ -146,7 +146,7 @@ impl Python {
 
 fn text(mut pipe: impl Read) -> String {
     let mut bytes = Vec::new();
-    // What was read before a pipe broke is told.
+    // What was read before a pipe broke is reported.
     let _ = pipe.read_to_end(&mut bytes);
     String::from_utf8_lossy(&bytes).into_owned()
 }
@@ -164,7 +164,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_missing_is_told_with_how_to_get_it() {
+    fn what_is_missing_is_reported_with_how_to_get_it() {
         let packages = [("numpy", "numpy"), ("no_such_module", "scikit-image")];
         let asked = Python::new(false).has("scikit-image", &packages).unwrap_err();
         assert!(!asked.measured && asked.what.contains("--peers"), "{asked:?}");

@@ -112,14 +112,14 @@ pub fn measure(settings: &Settings) -> anyhow::Result<Measured> {
     let mut measured = Measured::default();
     let models = models(effort.quick);
     let fits = in_turns(&models, effort, |&(kind, restarts), _| one.install(|| fit(kind, restarts, &train)))?;
-    let told =
+    let predicted =
         in_turns(&models.iter().copied().zip(&fits).collect::<Vec<_>>(), effort, |(_, fitted), _| match fitted {
             Ok((_, fitted)) => tell(fitted, &test),
             Err(why) => anyhow::bail!("{why:#}"),
         })?;
-    for ((&(kind, restarts), fitted), told) in models.iter().zip(&fits).zip(told) {
+    for ((&(kind, restarts), fitted), errors) in models.iter().zip(&fits).zip(predicted) {
         let setting = name(kind, restarts);
-        match (fitted, &told) {
+        match (fitted, &errors) {
             (Ok((fit_time, _)), Ok((tell_time, error))) => {
                 measured.rows.push(Row::own(MODEL, &setting, (*error, FIT), *fit_time, train.rows() as u64));
                 measured.rows.push(Row::own(MODEL, &setting, (*error, TELL), *tell_time, 1));

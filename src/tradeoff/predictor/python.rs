@@ -46,7 +46,7 @@ pub(super) fn measure(
         let answers = settings.python.answers(SCRIPT, folder.path(), &arguments, &settings.effort)?;
         let mut rows = Vec::new();
         for answer in answers {
-            rows.extend(told(answer, folder.path(), (inputs, targets), train, test)?);
+            rows.extend(rows_of(answer, folder.path(), (inputs, targets), train, test)?);
         }
         Ok(rows)
     };
@@ -63,7 +63,7 @@ pub(super) fn measure(
 }
 
 /// The rows of one answer; errors are computed here.
-fn told(
+fn rows_of(
     answer: Answer,
     folder: &Path,
     size: (usize, usize),

@@ -44,7 +44,7 @@ pub enum MapFault {
         /// Why.
         why: ParameterFault,
     },
-    /// Equilibria that could not be told.
+    /// The equilibria of a cell are not known.
     #[error("at factor {factor}, load {load_pa} Pa: {why}")]
     Equilibria {
         /// The factor.

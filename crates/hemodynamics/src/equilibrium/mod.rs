@@ -6,22 +6,18 @@
 //! words: the steady state of section 4.3.3, of which Figure 78 shows one for each load. There may be none (a vessel
 //! collapses) or several (the branch depends on the path).
 //!
-//! How it is known that none is missed and none is spurious: module `search`. Lumens are right to 1e-14 away from
-//! folds; at a fold two equilibria nearer than 1e-6 D may be told as one that is [`Stability::Marginal`].
+//! How it is known that none is missed and none is spurious, and what is assumed: module `search`. Lumens are right to
+//! 1e-14 away from folds; at a fold, equilibria nearer than 1e-6 D may be reported as one that is
+//! [`Stability::Marginal`].
 
-mod cell;
 mod curve;
-mod domain;
 mod eigenvalues;
-mod interval;
 mod map;
 mod network;
 mod polish;
-mod proof;
 mod reached;
 mod root;
 mod search;
-mod twins;
 
 pub use curve::{CurvePoint, LoadCurve, LoadPath, LoadRange, Turn, TurnKind, load_curve};
 pub use eigenvalues::Eigenvalue;
@@ -57,14 +53,14 @@ pub struct Equilibrium {
     pub stability: Stability,
     /// Eigenvalues of all `2 (n + 1)` motions about it, the slowest to decay (or the fastest to grow) first.
     pub eigenvalues: Vec<Eigenvalue>,
-    /// Whether it is proved that this equilibrium is there and is one. Not so at a fold within rounding.
+    /// Whether this is known to be one equilibrium, by the sign of a derivative; false at a fold within rounding.
     pub certified: bool,
 }
 
-/// Why equilibria could not be told.
+/// Why equilibria could not be found.
 #[derive(Debug, thiserror::Error, Clone, PartialEq)]
 pub enum EquilibriumFault {
-    /// An input that is no finite number.
+    /// An input that is not a finite number.
     #[error("{what} is {value}; an equilibrium needs finite pressures")]
     NotFinite {
         /// Which input.
@@ -74,14 +70,14 @@ pub enum EquilibriumFault {
     },
     /// Too many branches of too many units.
     #[error(
-        "the search for all equilibria of {units} units was given up after {boxes} boxes of lumens; use fewer units, \
-         or units that are the same"
+        "the search for all equilibria of {units} units was given up after {choices} choices of open and narrow \
+         vessels; use fewer units, or units that are the same"
     )]
-    Boxes {
+    Choices {
         /// Capillary units.
         units: usize,
-        /// Boxes looked at.
-        boxes: usize,
+        /// Choices of branches looked at.
+        choices: usize,
     },
     /// Too many equilibria.
     #[error(
@@ -91,7 +87,7 @@ pub enum EquilibriumFault {
     Equilibria {
         /// Capillary units.
         units: usize,
-        /// How many are told at most.
+        /// The most that are listed.
         most: usize,
     },
     /// Parameters or pressures whose products leave the range of numbers.
@@ -181,7 +177,7 @@ pub fn rest(model: &Model, inputs: &Inputs) -> Result<Equilibrium, EquilibriumFa
 impl GaveUp {
     fn of(self, units: usize) -> EquilibriumFault {
         match self {
-            GaveUp::Boxes(boxes) => EquilibriumFault::Boxes { units, boxes },
+            GaveUp::Choices(choices) => EquilibriumFault::Choices { units, choices },
             GaveUp::Equilibria(most) => EquilibriumFault::Equilibria { units, most },
         }
     }

@@ -12,7 +12,7 @@ use crate::transient::{SolveFault, SolveOptions, Solver, Trajectory};
 
 /// Tolerance of the transient, over the nominal diameters.
 const RTOL: f64 = 1e-11;
-/// Walls this near to an equilibrium (over the nominal diameters) have come to rest, unless asked otherwise.
+/// Walls this near to an equilibrium (over the nominal diameters) have come to rest, by default.
 pub const AT_REST: f64 = 1e-6;
 /// Times looked at in a span.
 const SAMPLES: usize = 64;
@@ -26,14 +26,14 @@ const MOST_EVALUATIONS: u64 = 300_000;
 pub struct Reached {
     /// The equilibrium.
     pub equilibrium: Equilibrium,
-    /// How long the walls took to come within what was asked for and stay there, s.
+    /// How long the walls took to come within the distance and stay there, s.
     pub settled_s: f64,
 }
 
 /// Why none was reached.
 #[derive(Debug, thiserror::Error, Clone, PartialEq)]
 pub enum ReachFault {
-    /// Equilibria that could not be told.
+    /// The equilibria are not known.
     #[error(transparent)]
     Equilibria(#[from] EquilibriumFault),
     /// A vessel closes on the way, or the transient could not be solved.
@@ -41,11 +41,11 @@ pub enum ReachFault {
     Transient(#[from] SolveFault),
     /// A distance to an equilibrium that is not positive.
     #[error(
-        "walls can't be told to be at rest within {within} nominal diameters; it has to be at least 1e-8 and less \
+        "walls can't be at rest to within {within} nominal diameters; the distance has to be at least 1e-8 and less \
          than 0.1"
     )]
     Within {
-        /// What was asked for.
+        /// The distance, in nominal diameters.
         within: f64,
     },
     /// The walls don't come to rest.
@@ -67,7 +67,7 @@ pub fn reached_from(model: &Model, inputs: &Inputs, start: &State, within: f64) 
     let mut stable = equilibria(model, inputs)?;
     stable.retain(|one| one.stability == Stability::Stable);
     let slowest = stable.iter().filter_map(Equilibrium::slowest_s).fold(0.0, f64::max);
-    let constant = |value| Load::constant(value).expect("equilibria are told of finite inputs only");
+    let constant = |value| Load::constant(value).expect("equilibria are found for finite inputs only");
     let loads = Loads {
         upstream: constant(inputs.upstream_pa),
         downstream: constant(inputs.downstream_pa),

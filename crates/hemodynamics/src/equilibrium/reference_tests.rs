@@ -7,7 +7,7 @@ use crate::parameters::Parameters;
 
 /// Lumens over nominal diameters away from folds; measured 9e-16.
 const TOLERANCE: f64 = 1e-13;
-/// The rightmost eigenvalue, relative: it is told to six digits; measured 4e-6.
+/// The rightmost eigenvalue, relative: the table has six digits; measured 4e-6.
 const LEADING: f64 = 1e-5;
 
 /// The rows of a table without its comments and heading.

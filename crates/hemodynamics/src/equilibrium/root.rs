@@ -11,6 +11,6 @@ pub(super) const MOST_EQUILIBRIA: usize = 10_000;
 pub(super) struct Root {
     pub(super) vein: f64,
     pub(super) units: Vec<f64>,
-    /// Proved to be there and to be one; false at a fold within rounding.
+    /// Known to be one, by the sign of a derivative; false at a fold within rounding.
     pub(super) certified: bool,
 }

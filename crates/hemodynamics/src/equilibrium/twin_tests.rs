@@ -166,3 +166,31 @@ fn what_nothing_damps_is_marginal() {
     }
     assert_eq!(rest(&thesis(Collapse::Error), &load(0.0, 0.0)).expect("stable").stability, Stability::Stable);
 }
+
+#[test]
+fn a_lumen_that_rounding_holds_still_hides_no_equilibrium() {
+    // A venule that resists 1e10 times as much as its capillary, in front of a limp vein: the capillary's lumen is the
+    // same number over most of the venous pressures. Lumens in 60 digits.
+    let entries = [
+        ("k_C1_N_per_m", 52397.501210046124),
+        ("A_C1_m2", 0.0005437647031401185),
+        ("D_C1_m", 0.0005439702837767024),
+        ("L_C1_m", 0.0010266203461471077),
+        ("N_C1", 18068313.886051632),
+        ("R_V1_Pa_s_per_m3", 3697589102491.257),
+        ("k_V_N_per_m", 11.82894152916327),
+        ("A_V_m2", 0.009049747509350777),
+        ("D_V_m", 1.3735722056079115e-6),
+        ("L_V_m", 0.0003190473339253287),
+        ("N_V", 955.7015961649556),
+    ];
+    let parameters = entries.iter().fold(Parameters::along_nail(1).expect("one unit"), |p, (name, value)| {
+        p.set(name.parse().expect("a symbol"), *value).expect("in range")
+    });
+    let inputs = load(1522.0462207946307, 3789.8890810853636);
+    let all = equilibria(&Model::new(&parameters, Collapse::Error), &inputs).expect("one unit");
+    assert_eq!(all.len(), 1);
+    for (lumen, truth) in all[0].state.lumens.iter().zip([1.154625548150713, 11.46335135767846]) {
+        assert!((lumen / truth - 1.0).abs() <= 1e-13, "{lumen} {truth}");
+    }
+}

@@ -9,7 +9,7 @@ use super::qr;
 
 /// The longest step of a coordinate.
 const LONGEST: f64 = 1.0;
-/// A step shorter than this is none.
+/// A shorter step is within rounding.
 const SHORTEST: f64 = 1e-10;
 /// Of the largest column's norm, what a column counts at least in `D`.
 const LEAST_COLUMN: f64 = 1e-6;
@@ -20,7 +20,6 @@ const NO_REDUCTION: f64 = 1e-11;
 
 /// A point and what was found there.
 pub(super) trait Point {
-    /// The coordinates.
     fn at(&self) -> &[f64];
     /// Data less what is fitted.
     fn residuals(&self) -> &[f64];
@@ -55,7 +54,7 @@ pub(super) struct Search<'a> {
 }
 
 /// Where a search ended.
-pub(super) struct Found<P> {
+pub(super) struct Minimum<P> {
     pub(super) point: P,
     pub(super) stop: Stop,
     pub(super) iterations: usize,
@@ -63,7 +62,7 @@ pub(super) struct Found<P> {
 
 impl Search<'_> {
     /// From a point to the nearest minimum.
-    pub(super) fn run<P: Point>(&self, first: P, mut evaluate: impl FnMut(&[f64]) -> Option<P>) -> Found<P> {
+    pub(super) fn run<P: Point>(&self, first: P, mut evaluate: impl FnMut(&[f64]) -> Option<P>) -> Minimum<P> {
         let (mut point, n) = (first, self.lower.len());
         let mut scales = vec![0.0_f64; n];
         let (mut lambda, mut growth, mut longest) = (1e-3_f64, 2.0, LONGEST);
@@ -76,7 +75,7 @@ impl Search<'_> {
             }
             let ssr = qr::dot(point.residuals(), point.residuals());
             if ssr.sqrt() <= ROUNDING * self.data {
-                return Found { point, stop: Stop::Exact, iterations };
+                return Minimum { point, stop: Stop::Exact, iterations };
             }
             let mut columns = point.columns().to_vec();
             let mut target = point.residuals().to_vec();
@@ -86,16 +85,16 @@ impl Search<'_> {
             let (_, left) = quadratic.step(&self.room(point.at(), f64::INFINITY), 1e-9, &scales);
             let worth = self.tolerance * self.tolerance * ssr / self.freedom;
             if left <= worth.max(NO_REDUCTION * ssr) {
-                return Found { point, stop: Stop::Converged, iterations };
+                return Minimum { point, stop: Stop::Converged, iterations };
             }
             loop {
                 let (step, gain) = quadratic.step(&self.room(point.at(), longest), lambda.sqrt(), &scales);
                 let size = step.iter().fold(0.0, |most: f64, s| most.max(s.abs()));
                 if size <= SHORTEST {
-                    return Found { point, stop: Stop::Precision, iterations };
+                    return Minimum { point, stop: Stop::Precision, iterations };
                 }
                 if points >= self.most_points {
-                    return Found { point, stop: Stop::Points, iterations };
+                    return Minimum { point, stop: Stop::Points, iterations };
                 }
                 points += 1;
                 let moved = point.at().iter().zip(&step).zip(self.lower.iter().zip(self.upper));
@@ -222,7 +221,7 @@ mod tests {
         })
     }
 
-    fn search(lower: [f64; 2], upper: [f64; 2], from: [f64; 2]) -> Found<Sample> {
+    fn search(lower: [f64; 2], upper: [f64; 2], from: [f64; 2]) -> Minimum<Sample> {
         let search =
             Search { lower: &lower, upper: &upper, tolerance: 1e-8, freedom: 1.0, data: 1.0, most_points: 500 };
         search.run(valley(&from).expect("in the valley"), valley)

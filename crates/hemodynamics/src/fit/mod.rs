@@ -36,7 +36,7 @@ pub use result::{Bound, Calibrated, Combination, Estimate, FitResult, FitStatist
 pub use time_constant::time_constant;
 
 use certainty::certainty;
-use levenberg::{Found, Point, Search};
+use levenberg::{Minimum, Point, Search};
 use problem::{Evaluation, Problem};
 
 use crate::parameters::{Parameters, Symbol};
@@ -44,7 +44,7 @@ use crate::parameters::{Parameters, Symbol};
 /// Fits what is free to recordings.
 ///
 /// # Errors
-/// What can't be fitted to or is asked for wrongly, and parameters to start from at which the model has no response.
+/// What can't be fitted to or is requested wrongly, and parameters to start from at which the model has no response.
 pub fn fit(
     recordings: &[Recording],
     start: &Parameters,
@@ -56,13 +56,13 @@ pub fn fit(
     let others = found.split_off(1);
     let found = &found[0];
     let best = &found.point;
-    let mut told = certainty(&problem, best);
+    let mut known = certainty(&problem, best);
     if options.intervals {
-        profile::intervals(&mut problem, best, &mut told);
+        profile::intervals(&mut problem, best, &mut known);
     }
     let mut parameters = best.parameters.clone();
-    for diode in &told.photodiodes {
-        if told.photodiodes.iter().filter(|other| other.unit == diode.unit).count() == 1 {
+    for diode in &known.photodiodes {
+        if known.photodiodes.iter().filter(|other| other.unit == diode.unit).count() == 1 {
             for (symbol, estimate) in
                 [(Symbol::Offset(diode.unit), diode.offset), (Symbol::Scaling(diode.unit), diode.scaling)]
             {
@@ -71,18 +71,18 @@ pub fn fit(
         }
     }
     Ok(FitResult {
-        rivals: rivals(&problem, best, &others, told.residual_sd_v),
+        rivals: rivals(&problem, best, &others, known.residual_sd_v),
         parameters,
-        groups: told.groups,
-        photodiodes: told.photodiodes,
-        names: told.names,
-        correlations: told.correlations,
-        residual_sd_v: told.residual_sd_v,
-        r2: told.r2,
+        groups: known.groups,
+        photodiodes: known.photodiodes,
+        names: known.names,
+        correlations: known.correlations,
+        residual_sd_v: known.residual_sd_v,
+        r2: known.r2,
         values: problem.target.len(),
-        freedom: told.freedom,
-        singular_values_v: told.singular_values_v,
-        undetermined: told.undetermined,
+        freedom: known.freedom,
+        singular_values_v: known.singular_values_v,
+        undetermined: known.undetermined,
         stop: found.stop,
         statistics: FitStatistics {
             starts: (others.len() + 1) as u64 + starts_refused,
@@ -97,10 +97,10 @@ pub fn fit(
 }
 
 /// The minima found from all starts, the best one first, and how many starts had no response.
-fn search(problem: &mut Problem) -> Result<(Vec<Found<Evaluation>>, u64), FitFault> {
+fn search(problem: &mut Problem) -> Result<(Vec<Minimum<Evaluation>>, u64), FitFault> {
     let [lower, upper] = bounds(problem);
     let settings = settings(problem, &lower, &upper);
-    let mut all: Vec<Found<Evaluation>> = vec![];
+    let mut all: Vec<Minimum<Evaluation>> = vec![];
     let (mut refused, mut seen): (u64, Vec<bool>) = (0, vec![]);
     for number in 0..starts(&lower, &upper, problem.options.starts) {
         let mut from = spread(number, &lower, &upper);
@@ -156,8 +156,8 @@ const SHORT: usize = 10;
 const UNSEEN: f64 = 1e-6;
 
 /// One start is enough where there is nothing to spread over.
-fn starts(lower: &[f64], upper: &[f64], asked: usize) -> usize {
-    if lower.iter().zip(upper).any(|(low, high)| (high - low).is_finite()) { asked } else { 1 }
+fn starts(lower: &[f64], upper: &[f64], requested: usize) -> usize {
+    if lower.iter().zip(upper).any(|(low, high)| (high - low).is_finite()) { requested } else { 1 }
 }
 
 fn squares(point: &Evaluation) -> f64 {
@@ -170,7 +170,7 @@ const NO_RIVAL: f64 = 9.0;
 const SAME: f64 = 0.02;
 
 /// Of other minima those that fit nearly as well.
-fn rivals(problem: &Problem, best: &Evaluation, others: &[Found<Evaluation>], sd: f64) -> Vec<Rival> {
+fn rivals(problem: &Problem, best: &Evaluation, others: &[Minimum<Evaluation>], sd: f64) -> Vec<Rival> {
     let mut kept: Vec<&Evaluation> = vec![best];
     let mut rivals = vec![];
     for other in others.iter().filter(|found| found.stop != Stop::Points).map(|found| &found.point) {

@@ -189,7 +189,7 @@ impl<'a> Problem<'a> {
             }
         }
         if signals.iter().chain(columns.iter().flatten()).any(|value| !value.is_finite()) {
-            return Err((0, "a photodiode's signal is no finite number".to_owned()));
+            return Err((0, "a photodiode's signal is not a finite number".to_owned()));
         }
         Ok(self.assemble(at, parameters, &signals, columns, &speeds))
     }

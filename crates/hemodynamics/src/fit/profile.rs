@@ -1,7 +1,7 @@
 //! How far a parameter may move before the data object: intervals by the profile of the sum of squares.
 //!
 //! In: a fitted point and the standard errors there. Out: for each coordinate the two places at which the sum of
-//! squares, all other unknowns fitted anew, has risen by four times the variance of the residuals. Where the voltages
+//! squares, all other unknowns fitted again, has risen by four times the variance of the residuals. Where the voltages
 //! go straight with the parameters that is two standard errors to each side; where they don't, it covers the truth as
 //! often all the same, and standard errors don't (Bates and Watts 1988, doi:10.1002/9780470316757, chapter 6).
 
@@ -16,7 +16,7 @@ const ERRORS: f64 = 2.0;
 const CLOSE: f64 = 0.02;
 /// Tries for an end.
 const TRIES: usize = 12;
-/// The others are fitted anew to this part of their standard errors.
+/// The others are fitted again to this part of their standard errors.
 const TOLERANCE: f64 = 0.03;
 /// The points of a try.
 const POINTS: usize = 12;
@@ -25,14 +25,14 @@ const POINTS: usize = 12;
 const ROUNDING: f64 = 1e-9;
 
 /// Adds the intervals of the groups that have standard errors.
-pub(super) fn intervals(problem: &mut Problem, best: &Evaluation, told: &mut Certainty) {
+pub(super) fn intervals(problem: &mut Problem, best: &Evaluation, certainty: &mut Certainty) {
     if squares(best).sqrt() <= ROUNDING * qr::norm(&problem.target) {
         return;
     }
     let [lower, upper] = bounds(problem);
     let settings = settings(problem, &lower, &upper);
-    let profile = Profile { best, covariance: &told.covariance, sd: told.residual_sd_v, settings };
-    for (q, group) in told.groups.iter_mut().enumerate().filter(|(_, group)| group.standard_errors.is_some()) {
+    let profile = Profile { best, covariance: &certainty.covariance, sd: certainty.residual_sd_v, settings };
+    for (q, group) in certainty.groups.iter_mut().enumerate().filter(|(_, group)| group.standard_errors.is_some()) {
         group.interval = profile.ends(problem, q).map(|end| end.map(|at| problem.coordinates[q].values(at)));
     }
 }

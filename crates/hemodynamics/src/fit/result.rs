@@ -14,7 +14,7 @@ use crate::parameters::{Parameters, Symbol};
 pub struct FitResult {
     /// The fitted parameters; those that were not free are those of the start. Offset and scaling of a unit are the
     /// fitted ones where its photodiode has one calibration, otherwise they are those of the start and
-    /// [`FitResult::photodiodes`] tells.
+    /// [`FitResult::photodiodes`] has the fitted ones.
     pub parameters: Parameters,
     /// The free groups, in the order given.
     pub groups: Vec<Group>,
@@ -39,8 +39,8 @@ pub struct FitResult {
     pub singular_values_v: Vec<f64>,
     /// Combinations of parameters that the data don't determine.
     pub undetermined: Vec<Combination>,
-    /// Other minima, found from other starts, that these data don't tell from the best one, the nearest first. Standard
-    /// errors know nothing of them.
+    /// Other minima, found from other starts, that these data don't separate from the best one, the nearest first.
+    /// Standard errors know nothing of them.
     pub rivals: Vec<Rival>,
     /// Why the fit stopped.
     pub stop: Stop,
@@ -57,7 +57,7 @@ pub struct Group {
     pub values: Vec<f64>,
     /// Their standard errors, each in its unit; `None` where the data don't determine them, or at a bound.
     pub standard_errors: Option<Vec<f64>>,
-    /// Where the sum of squares, all else fitted anew, has risen by four times the variance of the residuals: values
+    /// Where the sum of squares, all else fitted again, has risen by four times the variance of the residuals: values
     /// below and above. Two standard errors to each side where the voltages go straight with the parameters, and as
     /// sure where they don't. An end is `None` where a bound, or parameters at which a vessel closes, come first; both
     /// are where there is no standard error, where the fit is exact, and where

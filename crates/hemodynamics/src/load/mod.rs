@@ -42,7 +42,7 @@ enum Kind {
 /// What is wrong with a load.
 #[derive(Debug, thiserror::Error, Clone, PartialEq)]
 pub enum LoadFault {
-    /// A value or time that is no finite number.
+    /// A value or time that is not a finite number.
     #[error("{what} of the load is {value}; it has to be a finite number")]
     NotFinite {
         /// Which number.
@@ -68,9 +68,10 @@ pub enum LoadFault {
         /// Values.
         values: usize,
     },
-    /// A text that is no load.
+    /// A text that is not a load.
     #[error(
-        "{0:?} is no load: write 0, step:5000@0..2, ramp:0..10000@0..5 or sine:5000+1000@0.05 (pascals, seconds, hertz)"
+        "{0:?} is not a load: write 0, step:5000@0..2, ramp:0..10000@0..5 or sine:5000+1000@0.05 (pascals, seconds, \
+         hertz)"
     )]
     Text(String),
 }
@@ -136,8 +137,8 @@ impl Load {
         Ok(Load { kind: Kind::Table(values_pa.to_vec()), breakpoints: times_s.to_vec() })
     }
 
-    /// Any function of time (Pa over s), smooth between the breakpoints. At a breakpoint it is asked just before it for
-    /// what ends there.
+    /// Any function of time (Pa over s), smooth between the breakpoints. At a breakpoint it is evaluated just
+    /// before it for the piece that ends there.
     pub fn function(
         pressure_pa: impl Fn(f64) -> f64 + Send + Sync + 'static,
         breakpoints_s: &[f64],

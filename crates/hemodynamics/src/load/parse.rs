@@ -46,7 +46,7 @@ impl FromStr for Load {
                 Load::ramp(first, last, from, to)
             }
             "sine" => {
-                // The plus of an exponent (1e+3) is none between two numbers.
+                // The plus of an exponent (1e+3) does not separate two numbers.
                 let plus = level.char_indices().skip(1).find(|&(at, c)| c == '+' && !level[..at].ends_with(['e', 'E']));
                 let (at, _) = plus.ok_or_else(wrong)?;
                 Load::sine(number(&level[..at])?, number(&level[at + 1..])?, number(when)?)

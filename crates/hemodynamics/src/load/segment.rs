@@ -19,7 +19,7 @@ pub struct Inputs {
 }
 
 impl Inputs {
-    /// The first that is no finite number, by the thesis' symbol.
+    /// The first that is not a finite number, by the thesis' symbol.
     pub(crate) fn not_finite(&self) -> Option<(&'static str, f64)> {
         let Inputs { upstream_pa, downstream_pa, proximal_pa, distal_pa } = *self;
         let named = [("P_H", upstream_pa), ("P_L", downstream_pa), ("P_F1", proximal_pa), ("P_F2", distal_pa)];
@@ -151,7 +151,7 @@ impl Loads {
         let mut passed = loads.map(|load| load.breakpoints.partition_point(|&at| at <= from_s));
         let mut begin = from_s;
         std::iter::from_fn(move || {
-            // Written so that a time that is no number ends it.
+            // Written so that a time that is not a number ends it.
             if !matches!(begin.partial_cmp(&to_s), Some(std::cmp::Ordering::Less)) {
                 return None;
             }

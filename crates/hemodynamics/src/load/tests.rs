@@ -31,8 +31,8 @@ fn loads_are_written_as_they_are_read() {
 #[test]
 fn texts_that_are_no_loads_say_how_they_look() {
     for text in ["", "step", "step:5@0", "step:5@0..x", "ramp:0@0..1", "sine:5@1", "saw:1@2", "1..2"] {
-        let told = text.parse::<Load>().unwrap_err().to_string();
-        assert!(told.contains("step:5000@0..2"), "{text}: {told}");
+        let message = text.parse::<Load>().unwrap_err().to_string();
+        assert!(message.contains("step:5000@0..2"), "{text}: {message}");
     }
     assert!(matches!("nan".parse::<Load>(), Err(LoadFault::NotFinite { .. })));
     assert!(matches!("step:inf@0..2".parse::<Load>(), Err(LoadFault::NotFinite { .. })));
@@ -42,13 +42,13 @@ fn texts_that_are_no_loads_say_how_they_look() {
 
 #[test]
 fn tables_with_faults_name_the_row() {
-    let told = |times: &[f64], values: &[f64]| Load::table(times, values).unwrap_err().to_string();
-    assert!(told(&[0.0, 1.0, 1.0], &[1.0; 3]).contains("row 3"));
-    assert!(told(&[0.0, 2.0, 1.0], &[1.0; 3]).contains("row 3"));
-    assert!(told(&[0.0, 1.0], &[1.0, f64::NAN]).contains("the value in row 2"));
-    assert!(told(&[f64::INFINITY], &[1.0]).contains("the time in row 1"));
-    assert!(told(&[], &[]).contains("0 times"));
-    assert!(told(&[0.0], &[]).contains("0 values"));
+    let message = |times: &[f64], values: &[f64]| Load::table(times, values).unwrap_err().to_string();
+    assert!(message(&[0.0, 1.0, 1.0], &[1.0; 3]).contains("row 3"));
+    assert!(message(&[0.0, 2.0, 1.0], &[1.0; 3]).contains("row 3"));
+    assert!(message(&[0.0, 1.0], &[1.0, f64::NAN]).contains("the value in row 2"));
+    assert!(message(&[f64::INFINITY], &[1.0]).contains("the time in row 1"));
+    assert!(message(&[], &[]).contains("0 times"));
+    assert!(message(&[0.0], &[]).contains("0 values"));
 }
 
 #[test]
@@ -73,7 +73,7 @@ fn segments_lie_end_on_end_and_end_with_what_ends() {
 }
 
 #[test]
-fn a_function_is_asked_before_its_breakpoint_for_what_ends_there() {
+fn a_function_is_evaluated_before_its_breakpoint_for_what_ends_there() {
     let jump = Load::function(|t| if t < 1.0 { 3.0 } else { 7.0 }, &[1.0]).unwrap();
     let loads = Loads::on(&Parameters::thesis(), jump, Load::constant(0.0).unwrap());
     let ends: Vec<f64> = loads.segments(0.0, 2.0).map(|s| s.at(s.to_s).proximal_pa).collect();
@@ -130,10 +130,10 @@ fn huge_values_stay_finite_or_are_refused() {
         assert!(table.at(t).is_finite(), "{t}");
     }
     assert_eq!(table.at(5e-301), 0.0);
-    let told = |times: &[f64], values: &[f64]| Load::table(times, values).unwrap_err().to_string();
-    assert!(told(&[0.0, 1.0], &[-1e308, 1e308]).contains("the rise to row 2"));
-    assert!(told(&[0.0, 1.0, 2.0], &[0.0, 1e308, -1e308]).contains("the rise to row 3"));
-    assert!(told(&[-1e308, 1e308], &[0.0, 1.0]).contains("the time to row 2"));
+    let message = |times: &[f64], values: &[f64]| Load::table(times, values).unwrap_err().to_string();
+    assert!(message(&[0.0, 1.0], &[-1e308, 1e308]).contains("the rise to row 2"));
+    assert!(message(&[0.0, 1.0, 2.0], &[0.0, 1e308, -1e308]).contains("the rise to row 3"));
+    assert!(message(&[-1e308, 1e308], &[0.0, 1.0]).contains("the time to row 2"));
     assert!(Load::ramp(-1e308, 1e308, 0.0, 1.0).is_err());
 }
 

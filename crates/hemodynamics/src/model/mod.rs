@@ -78,7 +78,7 @@ pub(crate) struct Wall {
     pub(crate) conductance: f64,
 }
 
-/// What stands behind a capillary.
+/// The venules behind a capillary.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Venule {
     /// `R_Vi`, Pa s/m3.

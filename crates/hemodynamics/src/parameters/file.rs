@@ -2,7 +2,7 @@
 //!
 //! `units` is the number of capillary units (2 where it is not said). Every parameter has to be there, unless
 //! `base = "thesis"` says that what is missing is that of [`Parameters::along_nail`]. Unknown keys are refused, all
-//! faults are told at once.
+//! faults are reported at once.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -96,10 +96,10 @@ mod tests {
     }
 
     #[test]
-    fn all_faults_are_told_at_once() {
+    fn all_faults_are_reported_at_once() {
         let text = "k_C1_N_per_m = -1\nk_C2_N_per_m = nan\nm_V_kg = 0\nb_V_N_s_per_m = 0.0\nspeed = 3\nD_V_m = \
                     \"wide\"\nk_C3_N_per_m = 1e5\n";
-        let told = Parameters::from_toml(text).unwrap_err().to_string();
+        let message = Parameters::from_toml(text).unwrap_err().to_string();
         for part in [
             "k_C1_N_per_m = -1: ",
             "k_C2_N_per_m = NaN: ",
@@ -108,31 +108,31 @@ mod tests {
             "D_V_m = \"wide\": ",
             "missing: ",
         ] {
-            assert!(told.contains(part), "{part} is not in\n{told}");
+            assert!(message.contains(part), "{part} is not in\n{message}");
         }
-        assert!(told.contains("k_C3_N_per_m: there are 2 units"), "{told}");
-        assert!(!told.contains("b_V_N_s_per_m"), "no damping is allowed:\n{told}");
-        assert!(told.contains("base = \"thesis\""), "{told}");
+        assert!(message.contains("k_C3_N_per_m: there are 2 units"), "{message}");
+        assert!(!message.contains("b_V_N_s_per_m"), "no damping is allowed:\n{message}");
+        assert!(message.contains("base = \"thesis\""), "{message}");
     }
 
     #[test]
     fn values_that_cannot_be_computed_with_are_refused() {
-        let told = Parameters::from_toml("base = \"thesis\"\nD_V_m = 1e-90\n").unwrap_err().to_string();
-        assert!(told.contains("V: N pi D^4"), "{told}");
+        let message = Parameters::from_toml("base = \"thesis\"\nD_V_m = 1e-90\n").unwrap_err().to_string();
+        assert!(message.contains("V: N pi D^4"), "{message}");
     }
 
     #[test]
     fn a_file_of_a_thousand_units_called_two_is_refused_at_once() {
         // Thirteen thousand keys that are no parameters of two units: 30 ms.
         let text = Parameters::along_nail(1000).unwrap().to_toml().replace("units = 1000", "units = 2");
-        let told = Parameters::from_toml(&text).unwrap_err().to_string();
-        assert_eq!(told.matches("there are 2 units").count(), 13 * 998);
+        let message = Parameters::from_toml(&text).unwrap_err().to_string();
+        assert_eq!(message.matches("there are 2 units").count(), 13 * 998);
     }
 
     #[test]
-    fn what_is_no_toml_is_told_with_its_place() {
-        let told = Parameters::from_toml("units = 2\nk_C1 =").unwrap_err().to_string();
-        assert!(told.contains("line 2"), "{told}");
+    fn what_is_not_toml_is_reported_with_its_place() {
+        let message = Parameters::from_toml("units = 2\nk_C1 =").unwrap_err().to_string();
+        assert!(message.contains("line 2"), "{message}");
     }
 
     #[test]

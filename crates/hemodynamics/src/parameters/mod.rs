@@ -2,8 +2,8 @@
 //!
 //! In: the thesis' table ([`Parameters::thesis`], section 4.3.2), the same nail cut into `n` units
 //! ([`Parameters::along_nail`]), a TOML file ([`Parameters::from_toml`]) or values set one by one
-//! ([`Parameters::set`]). Out: [`Parameters`]; every fault is told at once. Units are SI; each [`Symbol`] says its own
-//! in the name that it has in files (`k_C1_N_per_m`).
+//! ([`Parameters::set`]). Out: [`Parameters`]; all faults are reported at once. Units are SI; each [`Symbol`] says
+//! its own in the name that it has in files (`k_C1_N_per_m`).
 
 mod file;
 mod symbol;
@@ -221,7 +221,7 @@ impl Parameters {
         Ok(changed)
     }
 
-    /// Where a parameter stands.
+    /// The place of a parameter.
     fn place(&mut self, symbol: Symbol) -> Option<&mut f64> {
         Some(match symbol {
             Symbol::Stiffness(site) => &mut self.vessel(site)?.stiffness_n_per_m,
@@ -317,8 +317,8 @@ mod tests {
     #[test]
     fn there_are_1_to_1000_units() {
         for n in [0, 1001, usize::MAX] {
-            let told = Parameters::along_nail(n).unwrap_err().to_string();
-            assert!(told.contains("from 1 to 1000"), "{told}");
+            let message = Parameters::along_nail(n).unwrap_err().to_string();
+            assert!(message.contains("from 1 to 1000"), "{message}");
         }
         assert_eq!(Parameters::along_nail(1000).unwrap().units().len(), 1000);
         let none = Parameters::new(vec![], VEIN, 3e-3, 460.0, [1e4, 0.0]).unwrap_err().to_string();
@@ -348,8 +348,8 @@ mod tests {
             ("m_C2_kg", 1e-308, "C2: k / m = inf"),
             ("epsilon_per_m", 1e308, "unit 1: alpha = inf"),
         ] {
-            let told = Parameters::thesis().set(name.parse().unwrap(), value).unwrap_err().to_string();
-            assert!(told.contains(part), "{told}");
+            let message = Parameters::thesis().set(name.parse().unwrap(), value).unwrap_err().to_string();
+            assert!(message.contains(part), "{message}");
         }
     }
 

@@ -7,7 +7,7 @@
 //! 1996, IV.5 and IV.8; doi:10.1007/978-3-642-05221-7). The unknowns are the increments of the rates over the step, in
 //! coordinates along the eigenvectors of `A^-1`; those of the lumens follow from `l' = w` without an equation of their
 //! own. The Newton matrices are then `n + 1` numbers on a diagonal and a product of two vectors ([`factors`]), so that
-//! a Jacobian and its factors cost less than an iteration and are made anew for every step, in its middle.
+//! a Jacobian and its factors cost less than an iteration and are computed again for every step, in its middle.
 //!
 //! [`Model`]: crate::Model
 

@@ -10,7 +10,7 @@ const MOST_HALVINGS: u32 = 4;
 const LONGEST_CONTINUATION: f64 = 4.0;
 /// And as long as its rates grow by no more than this.
 const FURTHEST_RATE: f64 = 2.0;
-/// A first change of a lumen beyond this tells nothing about the convergence.
+/// A first change of a lumen beyond this says nothing about the convergence.
 const LARGE_CHANGE: f64 = 0.2;
 /// Changes of a lumen that are rounding where they don't shrink any more.
 const ROUNDING: f64 = 1e-14;

@@ -114,7 +114,7 @@ impl<const S: usize> Stepper<S> {
         stepper
     }
 
-    /// Begins anew at a state, with all counters at 0.
+    /// Restarts at a state, with all counters at 0.
     pub(crate) fn restart(&mut self, lumens: &[f64], rates: &[f64]) {
         self.place_at(lumens, rates);
         (self.evaluations, self.factorizations, self.iterations) = (0, 0, 0);

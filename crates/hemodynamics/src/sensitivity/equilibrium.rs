@@ -10,7 +10,7 @@ use crate::load::Inputs;
 use crate::model::{Arrow, Currents, Model, Tangent};
 use crate::parameters::Site;
 
-/// Steps until a search is given up; .
+/// Steps until a search is given up.
 const STEPS: usize = 400;
 /// Change of any lumen at which Newton's steps have converged, relative.
 const CONVERGED: f64 = 1e-14;

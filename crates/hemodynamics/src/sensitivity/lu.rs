@@ -1,5 +1,5 @@
 //! Dense linear systems of a few unknowns, by rows scaled to their largest entry and partial pivoting. The same digits
-//! on every machine, and no memory taken anew: there is one for every step of a fit's every transient.
+//! on every machine, and no memory allocated again: there is one for every step of a fit's every transient.
 
 /// A factorized square matrix; its memory is kept from one factorization to the next.
 #[derive(Clone, Debug, Default)]
@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn a_singular_matrix_is_told() {
+    fn a_singular_matrix_is_reported() {
         let mut lu = Lu::default();
         for values in [[1.0, 2.0, 2.0, 4.0], [0.0, 0.0, 1.0, 1.0], [f64::NAN, 1.0, 1.0, 1.0]] {
             lu.clear(2).copy_from_slice(&values);

@@ -47,8 +47,8 @@ fn where_no_equilibrium_is_left_the_closing_vessel_is_named() {
     {
         let mut lumens = State::undisplaced(&parameters).lumens;
         let inputs = inputs_of(&parameters, proximal, distal);
-        let told = Rest::default().settle(&model, &inputs, &mut lumens).unwrap_err();
-        assert_eq!(told.site, site);
+        let fault = Rest::default().settle(&model, &inputs, &mut lumens).unwrap_err();
+        assert_eq!(fault.site, site);
         assert!(lumens.iter().all(|&lumen| lumen > 0.0));
     }
     // With contact there is one.

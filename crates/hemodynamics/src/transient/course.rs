@@ -14,7 +14,7 @@ const SAFETY: f64 = 0.9;
 const AFTER_FAILURE: f64 = 0.25;
 /// Of the time that a closing vessel has left at its present rate.
 const TOWARDS_CLOSURE: f64 = 0.9;
-/// Estimates below this part of their bound tell nothing more.
+/// Estimates below this part of their bound say nothing more.
 const LEAST_ERROR: f64 = 1e-10;
 /// A vessel that closes within this time, s, is closed.
 const CLOSED_WITHIN_S: f64 = 1e-10;
@@ -113,7 +113,7 @@ impl Pace {
 pub(crate) enum Begins {
     /// The inputs jump, or the run begins.
     Jump,
-    /// They bend: what the last steps told of the next is no more than a bound.
+    /// They bend: what the last steps say of the next is no more than a bound.
     Bend,
     /// Nothing: the pace knows.
     Smooth,

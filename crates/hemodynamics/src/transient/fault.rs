@@ -13,7 +13,7 @@ pub enum SolveFault {
     /// No time asked for.
     #[error("no times are asked for; at least one is needed")]
     NoTimes,
-    /// A time that is no number, or none that follows.
+    /// A time that is not a number, or is before the one that it follows.
     #[error("the times asked for have to be finite and must not fall: {time_s} s (row {row}) comes after {before_s} s")]
     Times {
         /// The row, from 1.
@@ -37,7 +37,7 @@ pub enum SolveFault {
         /// Its value.
         value: f64,
     },
-    /// A load that is no number.
+    /// A load that is not a number.
     #[error("the load {load} is {value} at {time_s} s; it has to be a finite pressure at every time of the run")]
     Load {
         /// `P_H`, `P_L`, `P_F1` or `P_F2`.

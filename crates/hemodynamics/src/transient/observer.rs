@@ -1,4 +1,4 @@
-//! What is told of every accepted step to those who solve the linear equations along a trajectory (sensitivities).
+//! What every accepted step reports to those who solve the linear equations along a trajectory (sensitivities).
 
 use crate::model::InputLanes;
 use crate::radau::Table;
@@ -9,7 +9,6 @@ pub(crate) struct AcceptedStep<'a, const S: usize> {
     pub(crate) from_s: f64,
     /// Its size, s.
     pub(crate) step_s: f64,
-    /// The method.
     pub(crate) table: &'static Table<S>,
     /// Lumens and rates of each wall at the stages.
     pub(crate) stages: [&'a [[f64; S]]; 2],
@@ -19,7 +18,7 @@ pub(crate) struct AcceptedStep<'a, const S: usize> {
     pub(crate) times_s: &'a [f64],
 }
 
-/// Who is told. `()` listens to nothing.
+/// Receives the accepted steps. `()` ignores them.
 pub(crate) trait StepObserver {
     /// A step was accepted.
     fn accepted<const S: usize>(&mut self, step: &AcceptedStep<'_, S>);

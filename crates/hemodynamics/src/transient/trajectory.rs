@@ -12,9 +12,9 @@ pub enum Stopped {
     Collapsed,
     /// The evaluations allowed were spent.
     Work,
-    /// No step that can be told from none came through.
+    /// No step longer than rounding succeeded.
     Stuck,
-    /// A load was no finite number.
+    /// A load was not a finite number.
     Load,
 }
 

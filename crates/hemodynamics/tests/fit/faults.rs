@@ -1,4 +1,4 @@
-//! What can't be fitted is told, and why.
+//! What can't be fitted is reported, and why.
 
 use lunula_hemodynamics::{
     Bounds, Calibration, Course, FitFault, FitOptions, Free, Load, Optics, Parameters, Recording, Symbol, Trace, fit,
@@ -11,7 +11,7 @@ fn recording() -> Recording {
     exact(&truth, &step(5000.0), &zero(), &[0])
 }
 
-fn told(recording: Recording) -> String {
+fn refusal(recording: Recording) -> String {
     fit(&[recording], &Parameters::thesis(), &tied(), &FitOptions::default()).expect_err("a fault").to_string()
 }
 
@@ -21,7 +21,7 @@ fn recordings_that_cant_be_used_say_where() {
     let with = |change: &dyn Fn(&mut Recording)| {
         let mut recording = recording();
         change(&mut recording);
-        told(recording)
+        refusal(recording)
     };
     let time = |row: usize, value: f64| {
         with(&|recording| {
@@ -38,7 +38,7 @@ fn recordings_that_cant_be_used_say_where() {
     assert!(with(&|r| r.photodiodes[0].unit = 2).contains("unit 3): the model has 2 units"));
     assert!(with(&|r| r.photodiodes[0].noise_v = 0.0).contains("its noise is 0 V"));
     assert!(with(&|r| r.photodiodes.clear()).contains("there is nothing in it"));
-    let steady = |proximal: Vec<f64>, distal: Vec<f64>| told(Recording::steady(proximal, distal, vec![]));
+    let steady = |proximal: Vec<f64>, distal: Vec<f64>| refusal(Recording::steady(proximal, distal, vec![]));
     assert!(steady(vec![0.0], vec![]).contains("1 proximal pressures and 0 distal ones"));
     assert!(steady(vec![0.0, f64::NAN], vec![0.0; 2]).contains("the proximal pressure of sample 2 is NaN"));
     assert!(steady(vec![], vec![]).contains("there is nothing in it"));
@@ -104,21 +104,21 @@ fn options_have_to_make_sense() {
 }
 
 #[test]
-fn a_start_at_which_a_vessel_closes_is_told() {
+fn a_start_at_which_a_vessel_closes_is_reported() {
     for distal in [step(1.2e4), Load::constant(1.2e4).unwrap()] {
         let trace = Trace::new(0, times().iter().map(|t| t.sin()).collect());
-        let told = told(Recording::transient(times(), zero(), distal, vec![trace]));
-        assert!(told.contains("the fit can't start from these parameters: in recording 1"), "{told}");
-        assert!(told.contains("C2"), "{told}");
+        let message = refusal(Recording::transient(times(), zero(), distal, vec![trace]));
+        assert!(message.contains("the fit can't start from these parameters: in recording 1"), "{message}");
+        assert!(message.contains("C2"), "{message}");
     }
     let steady =
         Recording::steady(vec![0.0, 1.2e4, 5e3, 0.0, 1e3, 2e3], vec![0.0; 6], vec![Trace::new(0, vec![1.0; 6])]);
-    assert!(told(steady).contains("V closes"));
+    assert!(refusal(steady).contains("V closes"));
 }
 
 #[test]
-fn a_load_that_is_no_number_is_told() {
+fn a_load_that_is_not_a_number_is_reported() {
     let load = Load::function(|t| if t > 1.0 { f64::NAN } else { 100.0 }, &[]).unwrap();
     let recording = Recording::transient(times(), load, zero(), vec![Trace::new(0, vec![1.0; 400])]);
-    assert!(told(recording).contains("P_F1"));
+    assert!(refusal(recording).contains("P_F1"));
 }

@@ -34,7 +34,7 @@ FAMILIES = {
 WALLS = ("C1", "C2", "V")
 COMMON = [
     "The network of Fig. 70 with the thesis' table taken literally (exact powers of ten, mu = 3e-3 Pa s, P_H = 1e4 Pa, P_L = 0).",
-    "Made by make.py beside this file; README.md tells how.",
+    "Made by make.py beside this file; README.md says how.",
 ]
 STATES = "xC1_per_D,xC2_per_D,xV_per_D,vC1_mps,vC2_mps,vV_mps"
 RESPONSE = [
@@ -72,7 +72,7 @@ def gap(first, second):
     return [max(abs(x - y) for a, b in pairs[k::2] for x, y in zip(a, b)) for k in (0, 1)]
 
 
-def told(gaps, smallest):
+def agreement(gaps, smallest):
     return (
         f"Radau IIA of {PLANS[0].stages} and {PLANS[1].stages} stages on other steps differ by at most {float(max(g[0] for g in gaps)):.1e} D, and "
         f"{float(max(g[1] for g in gaps)):.1e} D/s in velocities; smallest lumen {float(smallest):.6f} D."
@@ -89,7 +89,7 @@ def trajectories(pool):
     p = Parameters()
     for family, (title, loads) in FAMILIES.items():
         results = list(pool.map(trajectory, [loads(load) for load in STEPS_PA]))
-        head = [title + ".", *RESPONSE, told([r[1] for r in results], min(r[2] for r in results)), "No case of these collapses."]
+        head = [title + ".", *RESPONSE, agreement([r[1] for r in results], min(r[2] for r in results)), "No case of these collapses."]
         rows = [[load, repr(t), *states(u, w, p)] for load, r in zip(STEPS_PA, results) for t, (u, w) in zip(TIMES, r[0])]
         write(family + ".csv", head, "load_Pa,time_s," + STATES, rows)
 
@@ -111,21 +111,21 @@ def special(pool):
     loads = (12000, 20000, 100000)
     times = list(pool.map(crossings, [(load, plan) for load in loads for plan in (0, 1)]))
     runs = [r.result() for r in runs]
-    head = ["P_F2 = 10858.037 Pa alone: just before the distal capillary closes.", *RESPONSE, told([gap(runs[0][0], runs[1][0])], runs[0][1])]
+    head = ["P_F2 = 10858.037 Pa alone: just before the distal capillary closes.", *RESPONSE, agreement([gap(runs[0][0], runs[1][0])], runs[0][1])]
     write("near_collapse.csv", head, "load_Pa,time_s," + STATES, [["10858.037", repr(t), *states(u, w, p)] for t, (u, w) in zip(TIMES, runs[0][0])])
     first, second = [c.result() for c in contacts]
     apart = max(abs(a[0] - b[0]) for a, b in zip(first[1], second[1]))
     head = [
         "P_F1 = 2e4 Pa with the contact law: each wall's force is raised by k D (0.05 D / d - 1)^3 where d < 0.05 D.",
         *RESPONSE,
-        told([gap(first[0], second[0])], min(x for u, _ in first[0] for x in u)),
+        agreement([gap(first[0], second[0])], min(x for u, _ in first[0] for x in u)),
         f"Where the law sets in and stops (the runs differ by at most {float(apart):.1e} s):",
         *[f"  {WALLS[wall]} {'on' if on else 'off'} at {decimals(at, 25)} s" for at, wall, on in first[1]],
     ]
     write("contact.csv", head, "load_Pa,time_s," + STATES, [["20000", repr(t), *states(u, w, p)] for t, (u, w) in zip(TIMES, first[0])])
     pairs = list(zip(times[::2], times[1::2]))
     head = [
-        "When the vein's lumen reaches zero after a step to P_F1 at t = 0 from the rest equilibrium, the network's equations as they stand.",
+        "When the vein's lumen reaches zero after a step to P_F1 at t = 0 from the rest equilibrium, the network's equations unchanged.",
         f"Two runs differ by at most {float(max(abs(a - b) for a, b in pairs)):.1e} s.",
     ]
     write("crossings.csv", head, "pf1_Pa,time_s", [[load, decimals(a, 25)] for load, (a, _) in zip(loads, pairs)])
@@ -142,7 +142,7 @@ def at_rest(job):
 COLUMNS = "pf1_Pa,pf2_Pa,count,index,dC1_per_D,dC2_per_D,dV_per_D,leading_per_s"
 REST = [
     "All equilibria with open lumens (d = D + x > 0), `count` of them, by the first lumen; none missed, none spurious: zeros of one polynomial, isolated",
-    "in exact integers, as equilibria.py tells. Loads without one have a row of empty cells. 30 digits. `leading_per_s` is the rightmost eigenvalue's",
+    "in exact integers, as equilibria.py shows. Loads without one have a row of empty cells. 30 digits. `leading_per_s` is the rightmost eigenvalue's",
     "real part, in doubles: negative is stable.",
 ]
 

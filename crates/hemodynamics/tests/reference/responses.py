@@ -10,7 +10,7 @@ from model import CONTACT_FROM, Parameters, external
 PLANS = (Plan(24, "0.6", "0.03"), Plan(30, "0.5", "0.02"))
 AFTER = (1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.25, 1.5, 2.0)
 RELEASE = 2
-# The times are these doubles exactly, not the decimals that they stand for.
+# The times are these doubles exactly, not the decimals that they print as.
 TIMES = tuple([0.0] + list(AFTER) + [2.0 + t for t in AFTER])
 CLOSE = mpfr("1e-45")
 
@@ -65,7 +65,7 @@ def located(radau, u, w, h, outside, contact, wall, level):
 
 
 def crossing(pf1, pf2, wall, plan):
-    """The time at which a wall's lumen is zero, the network's equations going on as they stand."""
+    """The time at which a wall's lumen is zero, the network's equations continued unchanged."""
     p = Parameters()
     radau = Collocation(p, plan)
     u, w = rest(p)

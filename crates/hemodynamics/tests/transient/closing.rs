@@ -43,11 +43,11 @@ fn a_distal_load_beyond_the_fold_closes_the_distal_capillaries() {
     for load_pa in [10_900.0, 2e4, 1e6] {
         let loads = loads("0", &format!("step:{load_pa}@0..20"));
         let fault = simulate(&model, &loads, &rest(), &[0.0, 20.0], &SolveOptions::at(1e-4)).unwrap_err();
-        let told = fault.to_string();
-        let SolveFault::Collapsed { site, time_s, before } = fault else { panic!("{load_pa} Pa: {told}") };
+        let message = fault.to_string();
+        let SolveFault::Collapsed { site, time_s, before } = fault else { panic!("{load_pa} Pa: {message}") };
         assert_eq!(site, Site::Capillary(1));
         assert!(time_s > 0.0 && time_s < 20.0 && before.len() == 1);
-        assert!(told.contains("C2") && told.contains("contact"), "{told}");
+        assert!(message.contains("C2") && message.contains("contact"), "{message}");
     }
 }
 
@@ -95,13 +95,13 @@ fn a_start_that_is_closed_is_refused_and_named() {
     let model = Model::new(&Parameters::thesis(), Collapse::Contact);
     for lumen in [0.0, -0.5, f64::NAN] {
         let start = State { lumens: vec![1.0, lumen, 1.0], rates: vec![0.0; 3] };
-        let told =
+        let message =
             simulate(&model, &loads("0", "0"), &start, &[0.0, 1.0], &SolveOptions::default()).unwrap_err().to_string();
-        assert!(told.contains("C2"), "{told}");
+        assert!(message.contains("C2"), "{message}");
     }
 }
 
-/// A load that is taken away just before, or just after, the vein would close: every tolerance has to tell the two
+/// A load that is taken away just before, or just after, the vein would close: every tolerance has to separate the two
 /// apart. (Measured: taken away 1e-8 s before, the vein closes all the same by its inertia, 1e-9 s late; 1e-7 s before,
 /// it stays open.)
 #[test]

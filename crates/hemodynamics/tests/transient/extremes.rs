@@ -108,8 +108,8 @@ fn loads_that_are_no_numbers_are_named_with_the_time() {
         loads.distal = bad;
         let times = [0.0, 0.1, 0.2, 1.0];
         let fault = simulate(&model, &loads, &rest(), &times, &SolveOptions::default()).unwrap_err();
-        let SolveFault::Load { load, time_s, value: told } = fault else { panic!("{fault}") };
-        assert!(load == "P_F2" && time_s > 0.3 && time_s < 1.0 && told.to_bits() == value.to_bits());
+        let SolveFault::Load { load, time_s, value: reported } = fault else { panic!("{fault}") };
+        assert!(load == "P_F2" && time_s > 0.3 && time_s < 1.0 && reported.to_bits() == value.to_bits());
     }
 }
 
@@ -119,21 +119,21 @@ fn times_and_options_without_meaning_are_refused() {
     let run = |times: &[f64], options: &SolveOptions| {
         simulate(&model, &loads("0", "0"), &rest(), times, options).unwrap_err().to_string()
     };
-    let usual = SolveOptions::default();
-    assert!(run(&[], &usual).contains("no times"));
-    assert!(run(&[0.0, 2.0, 1.0], &usual).contains("row 3"));
-    assert!(run(&[0.0, f64::NAN], &usual).contains("row 2"));
-    assert!(run(&[f64::INFINITY], &usual).contains("row 1"));
+    let default = SolveOptions::default();
+    assert!(run(&[], &default).contains("no times"));
+    assert!(run(&[0.0, 2.0, 1.0], &default).contains("row 3"));
+    assert!(run(&[0.0, f64::NAN], &default).contains("row 2"));
+    assert!(run(&[f64::INFINITY], &default).contains("row 1"));
     for rtol in [0.0, -1e-6, 1e-14, 0.2, f64::NAN] {
         assert!(run(&[0.0, 1.0], &SolveOptions::at(rtol)).contains("between 1e-13 and 1e-1"));
     }
-    let fixed = SolveOptions { fixed_step_s: Some(0.0), ..usual.clone() };
+    let fixed = SolveOptions { fixed_step_s: Some(0.0), ..default.clone() };
     assert!(run(&[0.0, 1.0], &fixed).contains("the fixed step"));
-    let start = SolveOptions { start_s: Some(1.0), ..usual };
+    let start = SolveOptions { start_s: Some(1.0), ..default };
     assert!(run(&[0.0, 1.0], &start).contains("row 1"));
     let wrong = State { lumens: vec![1.0; 4], rates: vec![0.0; 4] };
-    let told = simulate(&model, &loads("0", "0"), &wrong, &[0.0], &SolveOptions::default()).unwrap_err();
-    assert!(told.to_string().contains("4 values for 3 walls"));
+    let fault = simulate(&model, &loads("0", "0"), &wrong, &[0.0], &SolveOptions::default()).unwrap_err();
+    assert!(fault.to_string().contains("4 values for 3 walls"));
 }
 
 #[test]

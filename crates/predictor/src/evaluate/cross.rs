@@ -2,7 +2,8 @@
 //!
 //! In: a [`Dataset`], what to hold out, how to fit and how to predict. Out: scores of each fold and of all held-out
 //! rows together, and the predictions in row order. Folds run on all cores; the result does not depend on how many
-//! there are. A fold whose fit fails is told with why, its rows are not predicted (NaN); the others stand.
+//! there are. A fold whose fit fails is reported with the reason and its rows are not predicted (NaN); the others
+//! count.
 
 use std::fmt::Display;
 
@@ -227,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn shuffled_rows_flatter_and_it_is_told() {
+    fn shuffled_rows_flatter_and_the_report_says_so() {
         let data = recordings(&ALL);
         let shuffled = By::Rows { folds: 5, seed: 1 };
         let all = cross_validate(&data, shuffled, Nearest::fit, Nearest::predict).unwrap();
@@ -242,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn a_recording_given_twice_is_told() {
+    fn a_recording_given_twice_is_reported() {
         let mut data = recordings(&ALL);
         data = data.only(&[0, 1, 0]);
         let all = cross_validate(&data, By::Trajectory, mean_of, |mean, data| repeat(mean, data)).unwrap();

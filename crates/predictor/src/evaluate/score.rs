@@ -35,7 +35,7 @@ pub struct TargetScore {
 pub struct Scores {
     /// Target by target.
     pub targets: Vec<TargetScore>,
-    /// All targets' errors in one pot (R2: summed squares over summed squares). It tells something where all have one
+    /// All targets' errors pooled (R2: summed squares over summed squares). Meaningful where all have one
     /// unit.
     pub overall: TargetScore,
     /// Rows that were scored.

@@ -34,7 +34,7 @@ pub enum FitFault {
         target: String,
     },
     /// Voltages too near to 0 or too large for squares.
-    #[error("{0} spreads over so little (or so much) that its squares can't be told; scale it to volts")]
+    #[error("{0} spreads over so little (or so much) that its squares can't be computed; scale it to volts")]
     Scale(String),
     /// The solver's own.
     #[error(transparent)]
@@ -45,7 +45,7 @@ pub enum FitFault {
 }
 
 /// `names`: of the terms; `targets`: of the targets; `inputs`: how many of them are photodiodes themselves. Faults of
-/// photodiodes explain those of their products, which are told only where there are no others.
+/// photodiodes explain those of their products, which are reported only where there are no others.
 pub(super) fn named(fault: LeastSquaresFault, names: &[String], targets: &[String], inputs: usize) -> FitFault {
     match fault {
         LeastSquaresFault::NoRows => FitFault::NoRows,
@@ -56,9 +56,9 @@ pub(super) fn named(fault: LeastSquaresFault, names: &[String], targets: &[Strin
                 dependent.iter().filter(|one| own(&one.column) && one.with.iter().all(own)).cloned().collect();
             let constants: Vec<usize> = constant.iter().copied().filter(own).collect();
             FitFault::Deficient(if of_inputs.is_empty() && constants.is_empty() {
-                told(&constant, &dependent, names)
+                sentences(&constant, &dependent, names)
             } else {
-                told(&constants, &of_inputs, names)
+                sentences(&constants, &of_inputs, names)
             })
         }
         LeastSquaresFault::Range { column, target } => {
@@ -68,9 +68,9 @@ pub(super) fn named(fault: LeastSquaresFault, names: &[String], targets: &[Strin
     }
 }
 
-fn told(constant: &[usize], dependent: &[Dependent], names: &[String]) -> Vec<String> {
+fn sentences(constant: &[usize], dependent: &[Dependent], names: &[String]) -> Vec<String> {
     let mut out: Vec<String> = constant.iter().map(|&j| format!("{} is constant", names[j])).collect();
-    // Those that read like the same one are told together.
+    // Those that read like the same one are reported together.
     let mut alike: Vec<Vec<usize>> = Vec::new();
     for one in dependent {
         if let [with] = one.with[..] {

@@ -3,7 +3,7 @@
 
 use ndarray::Array2;
 
-use crate::least_squares::Long;
+use crate::algebra::exact::Long;
 use crate::{Linear, Quadratic, quadratic_terms};
 
 /// Equation 9's F_0 = y_m - J m, a target each, in its unit.

@@ -4,7 +4,7 @@
 
 use pulp::Simd;
 
-use super::exact::{Long, two_sum};
+use crate::algebra::exact::{Long, two_sum};
 
 /// Rows of a block: 48 columns of it fit a first-level cache of 32 KiB.
 pub(super) const BLOCK: usize = 64;

@@ -6,11 +6,11 @@ use ndarray::Array2;
 
 use super::Deficient;
 use super::problem::Problem;
-use super::scale::{exponent, ldexp};
-use super::small::{Column, back, dot, orthonormal, triangulate};
+use crate::algebra::scale::{exponent, ldexp};
+use crate::algebra::small::{Column, back, dot, orthonormal, triangulate};
 
-/// What the triangle of [ones, columns, targets] tells about the columns, each scaled by a power of two to a length in
-/// [0.5, 1).
+/// What the triangle of [ones, columns, targets] reveals about the columns, each scaled by a power of two to a length
+/// in [0.5, 1).
 pub(super) struct Centred {
     /// Exponents taken out.
     pub(super) exponents: Vec<i32>,

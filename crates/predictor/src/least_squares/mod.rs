@@ -11,36 +11,30 @@
 //! **Rank.** A column counts as dependent where what is left of it beside the ones and the columns taken before is
 //! shorter than sqrt(rows) (8 + sqrt(rows / 64)) 2^-52 times its largest value before centring: no further from the
 //! others than rounding its own values (and the reflections) may have moved it. That is about arithmetic, not about
-//! noise: two photodiodes that differ by 2^-30 are told apart, with a warning in [`LeastSquares::digits`]. A constant
-//! column depends on the ones.
+//! noise: two photodiodes that differ by 2^-30 are distinguished, with a warning in [`LeastSquares::digits`]. A
+//! constant column depends on the ones.
 //!
 //! **What has no answer is missing.** With as many rows as terms and one for the offset, residuals are zero and there
 //! is no residual SD. A constant target has coefficients of exactly 0. Without columns there is only the mean.
 
 mod blocks;
-mod exact;
 mod factor;
 mod fault;
 mod normal;
 mod problem;
 mod refine;
 mod reflect;
-mod scale;
 mod settle;
-mod small;
 mod solve;
 mod survey;
 
 use ndarray::{Array2, ArrayView2};
 use serde::{Deserialize, Serialize};
 
-pub(crate) use exact::Long;
 pub(crate) use factor::rounding;
 pub use fault::{Dependent, LeastSquaresFault};
 pub(crate) use problem::Problem;
 pub(crate) use reflect::triangle;
-pub(crate) use scale::{exponent, ldexp};
-pub(crate) use small::{back, pivot, triangulate};
 pub(crate) use solve::solve;
 
 /// What is asked of a fit.

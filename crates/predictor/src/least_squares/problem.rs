@@ -11,10 +11,10 @@ use pulp::{Arch, Simd, WithSimd};
 
 use super::LeastSquaresFault;
 use super::blocks::{BLOCK, NOTHING, Part, add, total, transpose};
-use super::exact::{Long, product_error, two_sum};
 use super::reflect::Triangle;
-use super::scale::{exponent, factors, ldexp};
 use super::survey::{Survey, survey};
+use crate::algebra::exact::{Long, product_error, two_sum};
+use crate::algebra::scale::{exponent, factors, ldexp};
 
 pub(crate) struct Problem<'a> {
     pub(super) rows: usize,

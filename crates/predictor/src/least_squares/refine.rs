@@ -9,8 +9,8 @@
 use pulp::{Arch, Simd, WithSimd};
 
 use super::blocks::{BLOCK, LANES, Lanes, NOTHING, Part, registers, spill, total, vectors};
-use super::exact::{Long, product_error, product_errors, two_sum, two_sums};
 use super::problem::Problem;
+use crate::algebra::exact::{Long, product_error, product_errors, two_sum, two_sums};
 
 /// For one target.
 #[derive(Debug, Clone, PartialEq)]

@@ -9,8 +9,8 @@ use ndarray::{Array2, ArrayView2};
 use pulp::{Arch, Simd, WithSimd};
 
 use super::blocks::{BLOCK, LANES, Part, registers, spill, transpose, vectors};
-use super::scale::{exponent, factors, ldexp};
 use super::survey::survey;
+use crate::algebra::scale::{exponent, factors, ldexp};
 
 /// The upper triangle R of A = Q R, columns x columns, without pivoting; rows past the matrix's own are zero. R^T R =
 /// A^T A, so least squares of any columns among A's can be worked out from R. Signs of rows are as they come. Values

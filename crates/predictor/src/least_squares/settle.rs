@@ -1,11 +1,11 @@
 //! The solution of the triangle, and its refinement.
 
-use super::exact::Long;
 use super::factor::{Centred, Factor};
 use super::problem::Problem;
 use super::refine::{Products, products};
-use super::scale::ldexp;
-use super::small::{Column, dot, forward};
+use crate::algebra::exact::Long;
+use crate::algebra::scale::ldexp;
+use crate::algebra::small::{Column, dot, forward};
 
 /// A step of refinement that moves no coefficient by more than this share: the next would move them by its square,
 /// 2^-52.

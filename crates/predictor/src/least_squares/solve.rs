@@ -2,14 +2,14 @@
 
 use ndarray::Array2;
 
-use super::exact::Long;
 use super::factor::{Centred, Factor, part};
 use super::problem::Problem;
-use super::scale::ldexp;
 use super::settle::settle;
-use super::small::{Column, back, inverse_rows, pivot};
 use super::{Deficient, Dependent, LeastSquares, LeastSquaresFault, LeastSquaresOptions};
-use crate::svd::modes;
+use crate::algebra::exact::Long;
+use crate::algebra::scale::ldexp;
+use crate::algebra::small::{Column, back, inverse_rows, pivot};
+use crate::algebra::svd::modes;
 
 /// Takes part in a dependence: above this share of the column's length. Shares of those that do not are rounding, some
 /// 1e-12.

@@ -1,6 +1,6 @@
 //! Largest magnitude and mean of each column, in one walk over the rows as they lie.
 
-use super::exact::{Long, two_sum};
+use crate::algebra::exact::{Long, two_sum};
 
 /// So many rows are looked at side by side.
 const SIDE: usize = 8;

@@ -6,7 +6,7 @@
 
 use ndarray::{Array2, ArrayView1, ArrayView2, ArrayViewMut2};
 
-use crate::simd::{Simd, Wide, widest};
+use crate::algebra::simd::{Simd, Wide, widest};
 
 /// Rows in a block.
 pub(super) const LANES: usize = 16;
@@ -128,7 +128,7 @@ impl<K: Kernel> Wide for Batch<'_, K> {
         let mut done = 0;
         if let (Some(x), Some(out), 1..) = (x.as_slice(), out.as_slice_mut(), inputs) {
             for (x, out) in x.chunks_exact(LANES * inputs).zip(out.chunks_exact_mut(LANES * targets)) {
-                // The usual sizes, which the compiler does better when told.
+                // Common sizes: known at compile time, they run faster.
                 match <&mut [Lanes; 8]>::try_from(&mut *block) {
                     Ok(block) => turn(simd, x, 8, block),
                     Err(_) => turn(simd, x, inputs, block),

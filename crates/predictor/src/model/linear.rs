@@ -6,7 +6,7 @@ use super::ModelFault;
 use super::block::{
     GROUP, Kernel, LANES, Lanes, PAIR, Volts, add_term, add_terms, by_size, finish, turned, vectors_mut,
 };
-use crate::simd::Simd;
+use crate::algebra::simd::Simd;
 
 /// The linear model. It stays centred: m and y_m are the means of the training rows, and equation 9's offset F_0 = y_m
 /// - J m is only worked out where it is printed, as it cancels digits where voltages have an offset.
@@ -55,7 +55,7 @@ impl Linear {
         self.centre.len()
     }
 
-    /// How many targets it tells.
+    /// Number of targets.
     #[must_use]
     pub fn targets(&self) -> usize {
         self.offset.len()

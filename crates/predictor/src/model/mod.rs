@@ -1,4 +1,4 @@
-//! What tells targets from voltages: the linear (equation 9), quadratic (16) and network (17, 18) models.
+//! Targets from voltages: the linear (equation 9), quadratic (16) and network (17, 18) models.
 //!
 //! All answer a row or many, into the caller's memory and without allocating. A row and a batch give the same bits, on
 //! every processor. A NaN among a row's voltages gives NaN for all its targets; an infinite one never gives a number.
@@ -47,7 +47,7 @@ impl Model {
         each!(self, one => one.inputs())
     }
 
-    /// How many targets it tells.
+    /// Number of targets.
     #[must_use]
     pub fn targets(&self) -> usize {
         each!(self, one => one.targets())

@@ -8,9 +8,9 @@ use ndarray::Array2;
 use super::ModelFault;
 use super::block::{Kernel, LANES, Lanes, MOST, Volts, scale};
 use super::tansig::tansig;
-use crate::simd::Simd;
+use crate::algebra::simd::Simd;
 
-/// Targets worked out at once; hidden nodes are worked out anew for each such group.
+/// Targets worked out at once; hidden nodes are recomputed for each such group.
 const GROUP: usize = MOST;
 /// Hidden nodes of a row worked out at once.
 const NODES: usize = 8;
@@ -162,7 +162,7 @@ impl Network {
         self.centre.len()
     }
 
-    /// How many targets it tells.
+    /// Number of targets.
     #[must_use]
     pub fn targets(&self) -> usize {
         self.output_biases.len()

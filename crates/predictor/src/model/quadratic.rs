@@ -8,7 +8,7 @@ use super::ModelFault;
 use super::block::{
     GROUP, Kernel, LANES, Lanes, PAIR, Volts, add_term, add_terms, by_size, finish, scale, turned, vectors,
 };
-use crate::simd::Simd;
+use crate::algebra::simd::Simd;
 
 /// The pairs (i, j), i <= j, of the quadratic terms u_i u_j in equation 16's order: (0, 0), (0, 1), ..
 #[must_use]
@@ -79,7 +79,7 @@ impl Quadratic {
         self.centre.len()
     }
 
-    /// How many targets it tells.
+    /// Number of targets.
     #[must_use]
     pub fn targets(&self) -> usize {
         self.offset.len()

@@ -6,7 +6,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::*;
-use crate::simd::without_vectors;
+use crate::algebra::simd::without_vectors;
 
 /// Largest difference to the naive sums found, relative to the size of what is added: 7.3e-16.
 const TOLERANCE: f64 = 4e-15;

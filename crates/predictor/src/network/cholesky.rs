@@ -1,6 +1,6 @@
 //! A damped step: (A + mu I) p = -g by Cholesky's factorization.
 
-use crate::simd::{Work, widest};
+use crate::algebra::simd::{Work, widest};
 
 /// Factor and step, kept from one solution to the next.
 #[derive(Debug, Clone)]
@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_factor_is_told() {
+    fn a_matrix_without_a_factor_is_refused() {
         let mut damped = Damped::new(2);
         assert!(!damped.solve(&[1.0, 2.0, 2.0, 1.0], &[1.0, 1.0], 0.0));
         assert!(!damped.solve(&[1.0, f64::NAN, f64::NAN, 1.0], &[1.0, 1.0], 0.0));

@@ -5,7 +5,7 @@
 //! set.
 //!
 //! Inputs and targets are centred and scaled by the training rows. Photodiodes that do not change get weight 0, targets
-//! that do not change are told exactly as they are; both with a warning. Fewer errors than weights are allowed with a
+//! that do not change are predicted as they are; both with a warning. Fewer errors than weights are allowed with a
 //! warning: damping keeps each step finite, and only the stop rows keep such a network from learning its rows by heart.
 //!
 //! Each restart has a random stream of its own (ChaCha8: the seed, the restart's number) and runs on one thread in a

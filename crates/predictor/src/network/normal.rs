@@ -14,7 +14,7 @@
 
 use super::rows::{BLOCK, Column, Rows};
 use super::weights::{Forward, Shape};
-use crate::simd::{Simd, Wide, widest};
+use crate::algebra::simd::{Simd, Wide, widest};
 
 /// Columns of products are filled with zeros to a multiple of this, the length of most machines' vectors.
 const PAD: usize = 4;
@@ -33,7 +33,7 @@ pub(super) struct Normal {
     pub(super) gradient: Vec<f64>,
     forward: Forward,
     slopes: Vec<Column>,
-    /// Of a block, row by row: products of pairs of inputs, [`pair`] tells which where; first the inputs themselves.
+    /// Of a block, row by row: first the inputs themselves, then products of pairs of inputs, placed by [`pair`].
     pairs: Vec<f64>,
     /// How many those are, with the filling.
     width: usize,

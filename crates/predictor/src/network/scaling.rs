@@ -80,7 +80,7 @@ mod tests {
     }
 
     #[test]
-    fn constants_are_told() {
+    fn constants_are_reported() {
         let of = |values: Array1<f64>| Scaling::of(values.view());
         assert_eq!(of(array![0.1, 0.1, 0.1]).unwrap(), Scaling { centre: 0.1, scale: 1.0, constant: true });
         assert!(of(array![3.0, 3.0 * (1.0 + f64::EPSILON)]).unwrap().constant);

@@ -9,7 +9,7 @@ use super::normal::Normal;
 use super::rows::Rows;
 use super::weights::Forward;
 use super::*;
-use crate::simd::without_vectors;
+use crate::algebra::simd::without_vectors;
 
 /// Largest difference of J^T J and J^T e to differences of step 1e-6 found, relative to their largest entry: 7.9e-11.
 const NORMAL: f64 = 2e-9;
@@ -314,7 +314,7 @@ fn duplicated_and_nearly_collinear_photodiodes_are_learnt_from() {
 }
 
 #[test]
-fn what_can_not_be_trained_is_told() {
+fn what_cannot_be_trained_is_refused() {
     let data = taught(20, 2, 2, 1, 0.1, 13);
     let fault = |data: &Dataset, stop: Option<&Dataset>, options: &TrainOptions| {
         train_network(data, stop, options).unwrap_err().to_string()

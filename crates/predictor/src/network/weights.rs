@@ -4,8 +4,8 @@
 //! node. All are for centred and scaled inputs and targets.
 
 use super::rows::{BLOCK, Column, Rows};
+use crate::algebra::simd::{Work, widest};
 use crate::model::tansig;
-use crate::simd::{Work, widest};
 
 /// Rows of a block that are worked on at once.
 const LANES: usize = 8;

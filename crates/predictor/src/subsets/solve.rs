@@ -3,7 +3,7 @@
 //!
 //! Rank: as least squares decides it, each column measured by how much of it may be rounding.
 
-use crate::least_squares::{back, pivot, triangulate};
+use crate::algebra::small::{back, pivot, triangulate};
 
 /// What came of some columns.
 pub(super) struct Solved {

@@ -91,7 +91,7 @@ proptest! {
         let (v, z) = rows(n / 3, inputs, targets, seed + 1000);
         let volts = |value: f64| value * 2f64.powi(scale);
         let train = set(x.mapv(volts), y);
-        // The sensor was put on anew: all voltages have moved.
+        // The sensor was put on again: all voltages have moved.
         let validate = set(v.mapv(|value| volts(value + shift)), z);
         for one in every_subset(&train, &validate).unwrap().all {
             let errors = one.errors.unwrap();

@@ -7,7 +7,7 @@
 //! - entropy: -sum p_k ln p_k / ln K, 1 where all cells hold as many (Shannon 1948; Pielou's evenness,
 //!   doi:10.1016/0022-5193(66)90013-0). Of n rows drawn at random from the even density it is about 1 - (K - 1) / (2 n
 //!   ln K) (Miller 1955); of fewer rows than cells at most ln n / ln K;
-//! - the same entropy of each coordinate alone (pressing, shear, direction), which tells in what the rows are uneven.
+//! - the same entropy of each coordinate alone (pressing, shear, direction), which shows in what the rows are uneven.
 //!
 //! The largest hole is the greatest distance, in newtons, from a force of the cone to its nearest row: the covering
 //! radius, or dispersion (Niederreiter 1992, chapter 6). No force that can be is farther from what was shown. It is

@@ -3,7 +3,7 @@
 //! The photodiodes lag behind by the fingertip's slowest time constant tau: at a rate F' they read as if the force were
 //! F - F' tau. Equation 19 takes that as a share of the force: F' tau / F = f tau, f the relative rate of change. The
 //! share of no force is infinite, and every trajectory begins at none: so f is judged where the force is at least a
-//! floor, and told besides from when on the limit is kept.
+//! floor, and the time from which the limit is kept is reported.
 
 use std::f64::consts::TAU;
 

@@ -94,7 +94,7 @@ fn channels_scales_take_no_digits() {
 }
 
 #[test]
-fn near_collinear_channels_are_told_apart_with_a_warning() {
+fn near_collinear_channels_are_separated_with_a_warning() {
     let mut x = volts(150, 8, 0.5, 7);
     let mut rng = ChaCha8Rng::seed_from_u64(8);
     for mut row in x.rows_mut() {

@@ -141,7 +141,7 @@ fn a_photodiode_on_a_large_offset_is_still_dependent() {
 }
 
 #[test]
-fn voltages_and_targets_beyond_a_number_are_told_by_name() {
+fn voltages_and_targets_beyond_a_number_are_reported_by_name() {
     let (x, y) = (any(60, 2, 9), any(60, 2, 10));
     let denormal = x.mapv(|v| (v * 100.0).round() * 5e-324);
     let options = LeastSquaresOptions::default();
@@ -152,7 +152,7 @@ fn voltages_and_targets_beyond_a_number_are_told_by_name() {
 }
 
 #[test]
-fn a_constant_target_is_told() {
+fn a_constant_target_is_reported() {
     let data = dataset(any(90, 2, 6), array![[-1e-300]].broadcast((90, 1)).unwrap().to_owned());
     let options = LeastSquaresOptions::default();
     for warnings in

@@ -74,8 +74,8 @@ fn photodiodes_are_named() {
     x.column_mut(2).assign(&three);
     x.column_mut(3).assign(&three.mapv(|v| -v));
     let fault = fit_quadratic(&dataset(x, any(80, 3, 24)), &LeastSquaresOptions::default()).unwrap_err();
-    let told = fault.to_string();
-    assert!(told.starts_with("P2 is constant; P1, P3 and P4 read alike (leave out"), "{told}");
+    let message = fault.to_string();
+    assert!(message.starts_with("P2 is constant; P1, P3 and P4 read alike (leave out"), "{message}");
     let few = fit_quadratic(&dataset(any(30, 8, 25), any(30, 3, 26)), &LeastSquaresOptions::default()).unwrap_err();
     assert!(few.to_string().starts_with("44 terms need at least 45 rows; there are 30"), "{few}");
 }

@@ -112,7 +112,7 @@ impl Grey {
     }
 
     /// Whether a narrow box at the left or right border is one solid strip: what is beside a display, or a `1` that
-    /// can't be told from it. A display's `1` has a gap in its middle.
+    /// can't be distinguished from it. A display's `1` has a gap in its middle.
     fn is_strip(&self, [x0, y0, x1, y1]: [usize; 4]) -> bool {
         let (wide, tall) = (x1 - x0 + 1, y1 - y0 + 1);
         if 2 * wide > tall || (x0 > 1 && x1 + 2 < self.width) {

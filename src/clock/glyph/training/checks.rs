@@ -48,8 +48,8 @@ fn the_phantoms_typefaces_are_read() {
 fn confidences_are_kept() {
     let faces = Faces::load(true);
     let any = judge(&NET, &Faces { families: vec![], ..faces }, Kind::Any, 0, 4000);
-    let [told, right] = any.told;
-    let (promised, kept) = (any.promised / told as f64, right as f64 / told as f64);
+    let [answered, right] = any.answered;
+    let (promised, kept) = (any.promised / answered as f64, right as f64 / answered as f64);
     assert!((promised - kept).abs() <= OFF, "promised {promised:.4}, kept {kept:.4}");
 }
 

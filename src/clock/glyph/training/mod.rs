@@ -2,16 +2,17 @@
 //! photographs.
 //!
 //! `LUNULA_FONTS=FOLDER cargo test --release --lib glyph::training::train -- --ignored --nocapture` rewrites
-//! `weights/digits.txt` (12 minutes of 4 cores), `figures` tells what they are worth. Without the folder, only the two
-//! typefaces that come along and the displays train. The folder held Debian 12's packages of the name `fonts-`: 3270,
-//! adf-gillius, adf-switzera, adf-universalis, adf-verana, agave, anonymous-pro, arundina, b612, cabin, cantarell,
-//! comfortaa, courier-prime, croscore, crosextra-caladea, crosextra-carlito, dejavu-core, dejavu-extra, dosis, dseg,
-//! ebgaramond, ecolier-court, fantasque-sans, fanwood, firacode, freefont-ttf, georgewilliams, gfs-neohellenic, go,
-//! hack, hermit, hosny-amiri, inconsolata, inter, jetbrains-mono, junction, jura, karla, lato, league-mono, liberation,
-//! linuxlibertine, lobster, manchufont, monofur, monoid, mononoki, mplus, national-park, noto-core, noto-mono, ocr-a,
-//! oldstandard, open-sans, oxygen, paratype, play, powerline, prociono, quicksand, recommended, roboto-unhinted,
-//! sil-andika, symbola, terminus-otb, texgyre, thai-tlwg, tomsontalks, unikurdweb, urw-base35, vlgothic, vollkorn,
-//! wine, yanone-kaffeesatz. [`faces`] leaves out what has no ten digits of one height, and holds some families out.
+//! `weights/digits.txt` (12 minutes of 4 cores), `figures` measures what they are worth. Without the folder, only the
+//! two typefaces that come along and the displays train. The folder held Debian 12's packages of the name `fonts-`:
+//! 3270, adf-gillius, adf-switzera, adf-universalis, adf-verana, agave, anonymous-pro, arundina, b612, cabin,
+//! cantarell, comfortaa, courier-prime, croscore, crosextra-caladea, crosextra-carlito, dejavu-core, dejavu-extra,
+//! dosis, dseg, ebgaramond, ecolier-court, fantasque-sans, fanwood, firacode, freefont-ttf, georgewilliams,
+//! gfs-neohellenic, go, hack, hermit, hosny-amiri, inconsolata, inter, jetbrains-mono, junction, jura, karla, lato,
+//! league-mono, liberation, linuxlibertine, lobster, manchufont, monofur, monoid, mononoki, mplus, national-park,
+//! noto-core, noto-mono, ocr-a, oldstandard, open-sans, oxygen, paratype, play, powerline, prociono, quicksand,
+//! recommended, roboto-unhinted, sil-andika, symbola, terminus-otb, texgyre, thai-tlwg, tomsontalks, unikurdweb,
+//! urw-base35, vlgothic, vollkorn, wine, yanone-kaffeesatz. [`faces`] leaves out what has no ten digits of one height,
+//! and holds some families out.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -56,7 +57,7 @@ struct Outcome {
     wrong: [usize; LEVELS.len()],
     /// How often the likeliest digit is at least 0.5 probable and how often it is right then; the sum of its
     /// probability.
-    told: [usize; 2],
+    answered: [usize; 2],
     promised: f64,
     /// Sum of the logarithmic loss.
     loss: f64,
@@ -76,8 +77,8 @@ fn judge(net: &Net, faces: &Faces, kind: Kind, from: u64, count: u64) -> Outcome
         let (digit, probability) = scores.likeliest();
         let right = usize::from(digit) == label;
         if probability >= 0.5 {
-            outcome.told[0] += 1;
-            outcome.told[1] += usize::from(right);
+            outcome.answered[0] += 1;
+            outcome.answered[1] += usize::from(right);
             outcome.promised += probability;
         }
         for (k, _) in LEVELS.iter().enumerate().filter(|(_, level)| probability >= **level) {
@@ -127,15 +128,15 @@ fn figures() {
     for kind in [Kind::Clean, Kind::Digits, Kind::Others, Kind::Any] {
         let outcome = judge(&super::NET, &faces, kind, 1 << 51, number("LUNULA_COUNT", 20_000));
         let shares = |counts: [usize; LEVELS.len()]| counts.map(|n| n as f64 / outcome.count as f64);
-        let [told, right] = outcome.told;
+        let [answered, right] = outcome.answered;
         eprintln!(
             "{kind:?} {}: at {LEVELS:?} read {:.4?}, wrong {:?} {:.6?}; promised {:.4}, kept {:.4}",
             outcome.count,
             shares(outcome.right),
             outcome.wrong,
             shares(outcome.wrong),
-            outcome.promised / told as f64,
-            right as f64 / told as f64,
+            outcome.promised / answered as f64,
+            right as f64 / answered as f64,
         );
     }
 }

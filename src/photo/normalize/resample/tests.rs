@@ -135,7 +135,12 @@ const TWINS_DIFFER_OF_255: [f64; 2] = [5.0, 0.6];
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
     #[test]
-    fn two_passes_give_what_one_gives(degrees in -30.0_f64..30.0, flip in any::<bool>(), length in 60.0_f64..115.0, seed in any::<u64>()) {
+    fn two_passes_give_what_one_gives(
+        degrees in -30.0_f64..30.0,
+        flip in any::<bool>(),
+        length in 60.0_f64..115.0,
+        seed in any::<u64>(),
+    ) {
         let noise = GrayImage::from_fn(200, 200, |x, y| {
             let mixed = (u64::from(x) << 32 | u64::from(y)).wrapping_add(seed).wrapping_mul(0x9E37_79B9_7F4A_7C15);
             Luma([(mixed >> 56) as u8])

@@ -1,9 +1,9 @@
 //! How well a finger lies behind a nail, for each direction that it could point to.
 //!
-//! In: the nail's surroundings ([`Surroundings`]) and a candidate axis. Out: a log-likelihood up to a constant. The model is a
-//! finger seen from any side: two sides parallel to the axis on both sides of the nail and of the skin behind it, a
-//! round tip just beyond the distal end, skin of the same colour behind the proximal end, and a nail that is
-//! mirror-symmetric about the axis. In the nail's own frame (distal up) the edges of 127 nails in real photographs,
+//! In: the nail's surroundings ([`Surroundings`]) and a candidate axis. Out: a log-likelihood up to a constant. The
+//! model is a finger seen from any side: two sides parallel to the axis on both sides of the nail and of the skin
+//! behind it, a round tip just beyond the distal end, skin of the same colour behind the proximal end, and a nail that
+//! is mirror-symmetric about the axis. In the nail's own frame (distal up) the edges of 127 nails in real photographs,
 //! averaged, show exactly this: an arch over the nail, open below.
 //!
 //! The four weights were fitted (conditional logit over 72 directions) on half of those photographs and rounded.
@@ -39,6 +39,11 @@ struct Frame<'a> {
 
 /// Log-likelihood, up to a constant, that the finger's axis is `clockwise_rad` from up.
 pub(super) fn evidence(patch: &Surroundings, clockwise_rad: f64) -> f64 {
+    evidence_above(patch, clockwise_rad, f64::NEG_INFINITY).unwrap_or(f64::NEG_INFINITY)
+}
+
+/// The [`evidence`] where it is above `floor`; `None`, mostly in less time, where it can't be.
+pub(super) fn evidence_above(patch: &Surroundings, clockwise_rad: f64, floor: f64) -> Option<f64> {
     let (sin, cos) = (clockwise_rad as f32).sin_cos();
     let count = patch.nail.len() as f32;
     let centre = patch.nail.iter().fold([0.0, 0.0], |sum, p| [sum[0] + p[0] / count, sum[1] + p[1] / count]);
@@ -56,9 +61,14 @@ pub(super) fn evidence(patch: &Surroundings, clockwise_rad: f64) -> f64 {
         frame.across = [frame.across[0].min(u - 0.5), frame.across[1].max(u + 0.5)];
         frame.along = [frame.along[0].min(v - 0.5), frame.along[1].max(v + 0.5)];
     }
-    let sides = frame.side(1.0) + frame.side(-1.0);
-    let score = SIDES * sides + TIP * frame.tip() - SKIN * frame.unlike_skin_behind() + SYMMETRY * frame.symmetry();
-    f64::from(score)
+    let (tip, unlike, symmetry) = (frame.tip(), frame.unlike_skin_behind(), frame.symmetry());
+    // The sides cost most, and are at most 1 each.
+    let least = (floor as f32 - (TIP * tip - SKIN * unlike + SYMMETRY * symmetry)) / SIDES - ROUNDING;
+    let one = frame.side_above(1.0, least - 1.0)?;
+    let other = frame.side_above(-1.0, least - one)?;
+    let sides = one + other;
+    let score = SIDES * sides + TIP * tip - SKIN * unlike + SYMMETRY * symmetry;
+    Some(f64::from(score))
 }
 
 impl Frame<'_> {
@@ -77,8 +87,11 @@ impl Frame<'_> {
     }
 
     /// The best line parallel to the axis, from the nail's side to 0.95 nail lengths beyond: mean edge across it, from
-    /// a quarter length below the distal end to 0.8 lengths behind the nail.
-    fn side(&self, sign: f32) -> f32 {
+    /// a quarter length below the distal end to 0.8 lengths behind the nail. `None` where it is below `floor`.
+    fn side_above(&self, sign: f32, floor: f32) -> Option<f32> {
+        if floor > 1.0 {
+            return None;
+        }
         let edge = if sign > 0.0 { self.across[1] } else { self.across[0] };
         let (top, bottom) = (self.along[1] - 0.25 * LENGTH, self.along[0] - 0.8 * LENGTH);
         let steps = ((top - bottom).ceil() as usize).max(1);
@@ -86,9 +99,9 @@ impl Frame<'_> {
         for offset in 0..(0.95 * LENGTH) as usize {
             let u = edge + sign * offset as f32;
             let line = (0..steps).map(|k| self.patch.edge(self.at(u, top - k as f32), self.right));
-            best = best.max(mean_above(best, line, UNSEEN_EDGE));
+            best = best.max(mean_above(best.max(floor), line, UNSEEN_EDGE));
         }
-        best
+        (best >= floor).then_some(best)
     }
 
     /// The best arch of 120 degrees over the distal end, up to half a nail length beyond it.

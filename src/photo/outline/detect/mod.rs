@@ -15,7 +15,8 @@
 //! the evidence; `training` makes them.
 //!
 //! What it does not do: nails seen from the side, painted nails with a pattern, and fingers folded onto skin of the
-//! same colour are mostly not found. The outline ends at the hyponychium where the free edge can be distinguished from the bed.
+//! same colour are mostly not found. The outline ends at the hyponychium where the free edge can be distinguished from
+//! the bed.
 
 mod candidate;
 mod evidence;

@@ -1,8 +1,8 @@
 //! From a template to the outline: the best closed path through a band around the template's rim.
 //!
-//! Rays leave the template's rim along its normals. At each place on each ray a small network estimates from the channels'
-//! profile how much it looks like a nail's border there; dynamic programming finds the smooth closed path of the
-//! greatest sum. Lengths are in mean half axes of the template.
+//! Rays leave the template's rim along its normals. At each place on each ray a small network estimates from the
+//! channels' profile how much it looks like a nail's border there; dynamic programming finds the smooth closed path of
+//! the greatest sum. Lengths are in mean half axes of the template.
 
 use std::sync::LazyLock;
 

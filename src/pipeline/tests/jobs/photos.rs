@@ -1,10 +1,11 @@
 //! `normalize` and `maps`.
 
-use super::super::{maps::MAPS, normalize::NORMALIZE};
 use super::*;
+use crate::job::Job as _;
+use crate::job::Watch;
 use crate::phantom::nail::Pose;
 use crate::phantom::photos::{PhotoOptions, write};
-use crate::photo::{Normalization, Outputs, PhotoSet, PhotosOptions, Watch};
+use crate::photo::{MapsJob, Normalization, NormalizeJob, Outputs, PhotoSet, PhotosOptions};
 
 const SIZE: usize = 48;
 const OPTIONS: &str = "size = 48";
@@ -42,7 +43,7 @@ fn photos(root: &Path, subject: &str) -> Vec<At> {
 fn normalize(root: &Path, subject: &str, parts: &[&'static str]) -> Task<'static> {
     let demand = wanting(parts);
     Task {
-        kind: &NORMALIZE,
+        kind: &NormalizeJob::KIND,
         options: OPTIONS,
         demand,
         keys: keys(&[("subject", subject)]),
@@ -62,7 +63,7 @@ fn maps(of: &[(&str, &Folder)], parts: &[&'static str], truth: Option<&Path>) ->
     };
     let mut inputs: Vec<At> = of.iter().map(sums).collect();
     inputs.extend(truth.map(|root| at("truth", &[], root, "truth/maps")));
-    Task { kind: &MAPS, options: "", demand: wanting(parts), keys: Keys::default(), inputs }
+    Task { kind: &MapsJob::KIND, options: "", demand: wanting(parts), keys: Keys::default(), inputs }
 }
 
 #[test]
@@ -82,7 +83,7 @@ fn a_subject_s_results_are_the_same_anywhere() {
     assert!(folder.text("nails.csv").contains("\nphotos/flexion/s02.png,1,s02,flexion,annotated,"));
     assert!(made.left_out.iter().any(|what| what.starts_with("detection: not run on 2")), "{:?}", made.left_out);
     assert!(made.warnings.is_empty() && made.failed.is_empty(), "{made:?}");
-    has_its_parts(&NORMALIZE, OPTIONS, &task.demand, &folder);
+    has_its_parts(&NormalizeJob::KIND, OPTIONS, &task.demand, &folder);
     let (bare, _) = normalize(dir.path(), "s02", &["sums"]).run(1, None);
     assert!(!bare.names().iter().any(|name| name.starts_with("normalized")), "nobody wants the pictures");
 }
@@ -95,26 +96,24 @@ fn maps_of_parts_are_those_of_one_run_and_go_on_from_what_stands() {
     let (two, _) = maps(&of(&[0, 2]), &["maps", "figures"], None).run(2, None);
     let all = maps(&of(&[0, 1, 2]), &["maps", "figures"], None);
     let (anew, made) = all.run(1, None);
-    assert_eq!((&made.report["sums_added"], &made.report["sums_stood"]), (&6.into(), &0.into()));
+    assert_eq!((&made.report["sums_added"], &made.report["sums_kept"]), (&6.into(), &0.into()));
     let (onto, made) = all.run(3, Some(two.path()));
-    assert_eq!((&made.report["sums_added"], &made.report["sums_stood"]), (&2.into(), &4.into()));
+    assert_eq!((&made.report["sums_added"], &made.report["sums_kept"]), (&2.into(), &4.into()));
     assert!(anew.bytes() == onto.bytes(), "added to what stands, or all anew");
-    has_its_parts(&MAPS, "", &all.demand, &anew);
+    has_its_parts(&MapsJob::KIND, "", &all.demand, &anew);
 
     // The command, all at once.
     let at_once = Folder(tempfile::tempdir().unwrap());
     let set = PhotoSet::open(&dir.path().join("photos"), &[]).unwrap();
     let normalization = Normalization { size: SIZE, ..Normalization::default() };
     let options = PhotosOptions { normalization, ..PhotosOptions::default() };
-    let watch = Watch { stop: &AtomicBool::new(false), tick: &|| {} };
-    crate::photo::run(&set, &options, &Outputs::maps(at_once.path()), &watch).unwrap();
+    crate::photo::run(&set, &options, &Outputs::maps(at_once.path()), &Watch::nobody()).unwrap();
     let bytes = anew.bytes();
-    // The pictures are the parts' own, the report is the pipeline's.
-    let own = |name: &str| {
-        name.starts_with("normalized") || name.contains("nails-") || ["report.html", "run.json"].contains(&name)
-    };
-    let same = at_once.bytes().into_iter().filter(|(name, _)| !own(name));
-    assert_eq!(same.map(|(name, expected)| assert!(bytes[&name] == expected, "{name}")).count(), 2 * 8 + 8 + 1);
+    // The pictures are the parts' own, the report is the pipeline's, and a photograph's name is that among its inputs.
+    let of_both =
+        |name: &str| ["maps/", "figures/"].iter().any(|folder| name.starts_with(folder)) && !name.contains("nails-");
+    let same = at_once.bytes().into_iter().filter(|(name, _)| of_both(name));
+    assert_eq!(same.map(|(name, expected)| assert!(bytes[&name] == expected, "{name}")).count(), 2 * 8 + 8);
 }
 
 #[test]
@@ -134,13 +133,13 @@ fn sums_that_stand_are_left_where_a_member_is_gone_or_has_changed() {
     let changed = maps(&[(SUBJECTS[0], &parts[0]), (SUBJECTS[1], &parts[1]), ("s03", &third)], &["maps"], None);
     let (anew, (again, made)) = (changed.run(2, None).0, changed.run(2, Some(three.path())));
     // The other pose's sums hold all that they held.
-    assert_eq!((&made.report["sums_added"], &made.report["sums_stood"]), (&3.into(), &3.into()));
+    assert_eq!((&made.report["sums_added"], &made.report["sums_kept"]), (&3.into(), &3.into()));
     assert!(anew.bytes() == again.bytes() && anew.bytes() != three.bytes());
 
     // A result that somebody wrote over.
     fs::write(three.path().join("maps/nominal.partial.npz"), "broken").unwrap();
     let (again, made) = maps(&of(&[0, 1, 2]), &["maps"], None).run(2, Some(three.path()));
-    assert_eq!((&made.report["sums_added"], &made.report["sums_stood"]), (&3.into(), &3.into()));
+    assert_eq!((&made.report["sums_added"], &made.report["sums_kept"]), (&3.into(), &3.into()));
     assert!(again.names().contains(&"maps/nominal-mean.npy".to_owned()));
 }
 
@@ -179,10 +178,10 @@ fn an_outline_counts_only_where_the_task_was_given_it() {
     let (folder, _) = task.run(2, None);
     let nails = folder.text("nails.csv");
     assert!(nails.contains(",detected,") && !nails.contains(",annotated,"), "{nails}");
-    let prepared = prepared(&NORMALIZE, "");
+    let prepared = prepared(&NormalizeJob::KIND, "");
     let photo = Path::new("a/nominal/s01.png");
     assert_eq!(prepared.beside("photo", photo), [("outlines", PathBuf::from("a/nominal/s01.json"))]);
-    let detecting = super::prepared(&NORMALIZE, "outline = 'detect'");
+    let detecting = super::prepared(&NormalizeJob::KIND, "outline = 'detect'");
     assert!(detecting.beside("photo", photo).is_empty());
     assert_eq!(prepared.each(), ["subject"]);
 }
@@ -195,7 +194,9 @@ fn the_plan_leaves_out_what_photographs_do_not_need() {
     let standing: Vec<_> = inputs.iter().map(|input| foreseen(input, true, Facts::default())).collect();
     let facts = Facts { grey: Some(true), outlined: Some(true), ..Facts::default() };
     let to_be: Vec<_> = inputs.iter().map(|input| foreseen(input, false, facts)).collect();
-    for steps in [&standing, &to_be].map(|inputs| prepared(&NORMALIZE, OPTIONS).steps(inputs, &wanted).unwrap()) {
+    for steps in
+        [&standing, &to_be].map(|inputs| prepared(&NormalizeJob::KIND, OPTIONS).steps(inputs, &wanted).unwrap())
+    {
         assert_eq!(step(&steps, "channel"), (false, "every photograph is grey"));
         assert_eq!(step(&steps, "outlines from LabelMe"), (true, "2 photograph(s)"));
         assert!(!step(&steps, "detection").0 && !step(&steps, "pictures written").0 && !step(&steps, "maps").0);
@@ -205,27 +206,22 @@ fn the_plan_leaves_out_what_photographs_do_not_need() {
         .filter(|input| input.role == "photo")
         .map(|input| foreseen(input, false, Facts { grey: Some(false), outlined: Some(false), ..Facts::default() }))
         .collect();
-    let steps = prepared(&NORMALIZE, OPTIONS).steps(&colour, &wanting(&["sums", "pictures"])).unwrap();
+    let steps = prepared(&NormalizeJob::KIND, OPTIONS).steps(&colour, &wanting(&["sums", "pictures"])).unwrap();
     assert!(step(&steps, "channel").0 && step(&steps, "detection").0 && step(&steps, "pictures written").0);
 }
 
 #[test]
-fn keys_are_the_options_of_the_command() {
-    let (mut keys, mut options) = (NORMALIZE.keys.to_vec(), crate::job::keys::<PhotosOptions>());
-    keys.sort_unstable();
-    options.sort_unstable();
-    assert_eq!(keys, options);
-}
-
-#[test]
 fn white_and_mask_values_are_part_of_what_a_task_is() {
-    let options = |keys: &str| super::prepared(&NORMALIZE, keys).options(&wanting(&["sums"]));
+    let options = |keys: &str| super::prepared(&NormalizeJob::KIND, keys).depends_on(&wanting(&["sums"]));
     let plain = options("");
-    assert!(plain["normalization"].get("white").is_none() && plain["mask_value"].is_null());
+    assert!(plain["options"].get("white").is_none() && plain["options"].get("mask_value").is_none());
     let said = options("white = 4095\nmask_value = '250..255'\nmax_megapixels = 400");
-    assert_eq!(said["normalization"]["white"], 4095);
-    assert_eq!((&said["mask_value"], &said["max_megapixels"]), (&"250..255".into(), &400.into()));
+    let said = &said["options"];
+    assert_eq!(
+        (&said["white"], &said["mask_value"], &said["max_megapixels"]),
+        (&"4095".into(), &"250..255".into(), &"400".into())
+    );
     for keys in ["white = 7", "mask_value = '9..1'", "max_megapixels = 0"] {
-        assert!((NORMALIZE.prepare)(keys.parse().unwrap()).is_err(), "{keys}");
+        assert!((NormalizeJob::KIND.prepare)(&keys.parse().unwrap()).is_err(), "{keys}");
     }
 }

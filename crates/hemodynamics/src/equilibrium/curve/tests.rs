@@ -81,7 +81,7 @@ fn soft_capillaries_have_two_folds_however_coarse_the_loads() {
         assert_eq!(folds.len(), 2);
         for (fold, load_pa) in folds.iter().zip([3774.9634734607685, 5846.13036937093]) {
             assert!((fold.load_pa / load_pa - 1.0).abs() <= TURN, "{}", fold.load_pa);
-            // At a fold the slowest motion stands still: around it two equilibria, beyond it none of them.
+            // At a fold the slowest motion stops: around it two equilibria, beyond it none of them.
             let near = |by: f64| {
                 let all = equilibria(&model, &load(0.0, fold.load_pa + by)).unwrap();
                 let gap = |one: &Equilibrium| (one.state.lumens[1] - fold.state.lumens[1]).abs();

@@ -135,13 +135,13 @@ impl<'a> Tracer<'a> {
         Place { vein, units, load: self.loads[k] }
     }
 
-    /// Follows a curve one way and tells what it passes; true where it comes back to its start.
+    /// Follows a curve one way and reports what it passes; true where it comes back to its start.
     fn leg(
         &self,
         start: Place,
         tangent: &Tangent,
         from: (usize, usize),
-        mut tell: impl FnMut(Passed),
+        mut report: impl FnMut(Passed),
     ) -> Result<bool, EquilibriumFault> {
         let (mut at, mut tangent) = (start, tangent.clone());
         let mut step = FIRST_STEP;
@@ -161,7 +161,7 @@ impl<'a> Tracer<'a> {
                     return Ok(true);
                 }
                 let closing = matches!(one, Passed::Turn(TurnKind::Closing(_), _));
-                tell(one);
+                report(one);
                 if closing {
                     return Ok(false);
                 }
