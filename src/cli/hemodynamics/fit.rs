@@ -48,7 +48,8 @@ pub(crate) struct FitArgs {
     /// Recorded responses
     #[arg(required = true, value_name = "RECORDING")]
     recordings: Vec<PathBuf>,
-    /// Whose finger each recording is, in the order of the recordings, such as anna,anna,ben [default: all one person's]
+    /// Whose finger each recording is, in the order of the recordings, such as anna,anna,ben [default: all of one
+    /// person]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     subject: Vec<String>,
     #[command(flatten)]
