@@ -8,8 +8,8 @@ use clap::{Args, Subcommand};
 use lunula::tradeoff::peers::Peers;
 use lunula::tradeoff::{self as curves, Effort, Plan, Row, Setting, Tradeoff, Verdict};
 
-use super::phantom::SceneArg;
 use super::{Common, Outcome};
+use crate::cli::jobs::phantom::SceneArg;
 
 /// Error against run time, over the settings of a job or of all: the knee of each curve, where the default stands,
 /// other programs

@@ -21,7 +21,7 @@ use crate::{
     labelme::{self, LabelMe, Shape, to_labelme},
     phantom::{
         nail::{NailScene, Pose, SceneFault},
-        place::{PHOTOS_RECORD as RECORD, in_the_way},
+        scene::place::{PHOTOS_RECORD as RECORD, in_the_way},
     },
 };
 

@@ -3,11 +3,11 @@
 use clap::{Args, ValueEnum};
 
 use super::choices::{parse_gap, parse_photodiode, parse_set_clock, trajectory};
-use crate::phantom::force::{Cycles, ForceTrajectory, Spiral};
 use crate::phantom::log::{LogOptions, Protocol, Stamps};
+use crate::phantom::motion::force::{Cycles, ForceTrajectory, Spiral};
+use crate::phantom::motion::trajectory::Trajectory;
 use crate::phantom::screen::Jump;
 use crate::phantom::sensor::Dynamics;
-use crate::phantom::trajectory::Trajectory;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum ForceArg {

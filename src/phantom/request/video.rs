@@ -8,8 +8,8 @@ use super::choices::{
 };
 use super::clock::ClockArgs;
 use crate::flexion::Flexion;
-use crate::phantom::finger::{Finger, MarkerLayout};
-use crate::phantom::trajectory::Trajectory;
+use crate::phantom::motion::finger::{Finger, MarkerLayout};
+use crate::phantom::motion::trajectory::Trajectory;
 use crate::phantom::video::{Chroma, Colours, Hide, Leave, Lens, VideoOptions};
 use crate::video::{Matrix, Turn};
 

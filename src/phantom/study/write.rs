@@ -13,7 +13,7 @@ use thiserror::Error;
 use super::{RECORD, Study, StudyOptions, TABLES};
 use crate::files::{Staging, WriteError};
 use crate::job::{Interrupted, Watch};
-use crate::phantom::place::in_the_way;
+use crate::phantom::scene::place::in_the_way;
 use crate::phantom::{Recording, RecordingError};
 use crate::stages::{Stage, Stages};
 
