@@ -8,15 +8,15 @@ use std::path::PathBuf;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::normalize::Normalization;
-use super::options::{Outputs, PhotosOptions, Results};
-use super::outline::SavedOutlines;
-use super::results::{DrawnSheet, NAIL_COLUMNS, NailRow, NailTable};
-use super::set::{Photo, PhotoSet, SetFault};
-use super::sums::{Partials, Sums};
 use crate::figure::Page;
 use crate::files::{Staging, WriteError};
 use crate::job::{Report, Watch};
+use crate::photo::normalize::Normalization;
+use crate::photo::options::{Outputs, PhotosOptions, Results};
+use crate::photo::outline::SavedOutlines;
+use crate::photo::results::{DrawnSheet, NAIL_COLUMNS, NailRow, NailTable};
+use crate::photo::set::{Photo, PhotoSet, SetFault};
+use crate::photo::sums::{Partials, Sums};
 use crate::stages::Stage;
 
 /// Where the report goes among the results.
@@ -58,13 +58,13 @@ pub struct PoseCount {
 }
 
 /// How many subjects each pose's maps hold.
-pub(super) fn pose_counts(partials: &Partials) -> Vec<PoseCount> {
+pub(in crate::photo) fn pose_counts(partials: &Partials) -> Vec<PoseCount> {
     let count = |(pose, sums): (&String, &Sums)| PoseCount { pose: pose.clone(), subjects: sums.subjects().len() };
     partials.poses.iter().map(count).collect()
 }
 
 /// The poses whose maps have no standard deviation, as one note.
-pub(super) fn one_subject(poses: &[PoseCount]) -> Option<String> {
+pub(in crate::photo) fn one_subject(poses: &[PoseCount]) -> Option<String> {
     let alone: Vec<&str> = poses.iter().filter(|pose| pose.subjects == 1).map(|pose| pose.pose.as_str()).collect();
     match alone[..] {
         [] => None,
@@ -77,18 +77,18 @@ pub(super) fn one_subject(poses: &[PoseCount]) -> Option<String> {
 }
 
 /// What a run found, photograph by photograph, before it is a report.
-pub(super) struct Findings<'a> {
+pub(in crate::photo) struct Findings<'a> {
     set: &'a PhotoSet,
     options: &'a PhotosOptions,
     has_maps: bool,
     /// Every nail, used or not, in the set's order.
-    pub(super) rows: Vec<NailRow>,
+    pub(in crate::photo) rows: Vec<NailRow>,
     /// Photographs that gave nothing, and entries of the set that could not be used.
-    pub(super) failed: Vec<SetFault>,
+    pub(in crate::photo) failed: Vec<SetFault>,
     /// What the scene did not need.
-    pub(super) left_out: Vec<String>,
+    pub(in crate::photo) left_out: Vec<String>,
     /// Detected outlines, where they were to be saved.
-    pub(super) outlines: Option<SavedOutlines>,
+    pub(in crate::photo) outlines: Option<SavedOutlines>,
     /// Colour and grey photographs by pose.
     colours: BTreeMap<&'a str, [usize; 2]>,
     /// How many photographs of 16 bits, and their largest sample.
@@ -97,7 +97,7 @@ pub(super) struct Findings<'a> {
 }
 
 impl<'a> Findings<'a> {
-    pub(super) fn new(set: &'a PhotoSet, options: &'a PhotosOptions, outputs: &Outputs) -> Self {
+    pub(in crate::photo) fn new(set: &'a PhotoSet, options: &'a PhotosOptions, outputs: &Outputs) -> Self {
         Self {
             set,
             options,
@@ -113,7 +113,7 @@ impl<'a> Findings<'a> {
     }
 
     /// A photograph: whether it is grey, and its largest sample of 16 bits.
-    pub(super) fn add(&mut self, photo: &'a Photo, grey: Option<bool>, largest: Option<u16>) {
+    pub(in crate::photo) fn add(&mut self, photo: &'a Photo, grey: Option<bool>, largest: Option<u16>) {
         if let Some(grey) = grey {
             self.colours.entry(&photo.pose).or_default()[usize::from(grey)] += 1;
         }
@@ -122,7 +122,7 @@ impl<'a> Findings<'a> {
         }
     }
 
-    pub(super) fn poses_without_maps(&mut self, poses: impl Iterator<Item = String>) {
+    pub(in crate::photo) fn poses_without_maps(&mut self, poses: impl Iterator<Item = String>) {
         self.without_maps.extend(poses);
     }
 
@@ -163,7 +163,7 @@ impl<'a> Findings<'a> {
 const FEW_BITS: [u32; 4] = [8, 10, 12, 14];
 
 /// Of `lunula photos`.
-pub(super) fn of_photos(found: Findings<'_>, partials: &Partials, watch: &Watch<'_>) -> PhotosReport {
+pub(in crate::photo) fn of_photos(found: Findings<'_>, partials: &Partials, watch: &Watch<'_>) -> PhotosReport {
     let (warnings, poses) = (found.warnings(), pose_counts(partials));
     let Findings { set, options, has_maps, rows, failed, left_out, outlines, .. } = found;
     let mut notes: Vec<String> = outlines.iter().flat_map(SavedOutlines::notes).collect();
@@ -190,7 +190,7 @@ pub(super) fn of_photos(found: Findings<'_>, partials: &Partials, watch: &Watch<
 }
 
 /// Of `lunula photos merge`.
-pub(super) fn of_merge(parts: &[PathBuf], partials: &Partials, watch: &Watch<'_>) -> PhotosReport {
+pub(in crate::photo) fn of_merge(parts: &[PathBuf], partials: &Partials, watch: &Watch<'_>) -> PhotosReport {
     let poses = pose_counts(partials);
     let notes = one_subject(&poses).into_iter().collect();
     let figures = PhotosFigures {
@@ -212,7 +212,7 @@ impl PhotosReport {
     ///
     /// # Errors
     /// [`WriteError`].
-    pub(super) fn write(
+    pub(in crate::photo) fn write(
         &mut self,
         nails: &NailTable,
         sheets: &[DrawnSheet],

@@ -9,16 +9,16 @@
 
 use std::path::{Path, PathBuf};
 
-use super::job::run;
-use super::options::{Outputs, PhotosOptions, Results};
-use super::outline::{OutlinePlace, Sources};
-use super::plan::{Foreknown, plan_foreknown};
-use super::set::{Photo, PhotoSet, is_picture};
-use super::sums::{Accuracy, Gathering, gather};
 use crate::job::{
     At, Demand, Foreseen, Job, Keys, Kind, Made, NoOptions, OptionFault, Order, Part, Quality, Role, Takes, Work, keys,
     prepare,
 };
+use crate::photo::options::{Outputs, PhotosOptions, Results};
+use crate::photo::outline::{OutlinePlace, Sources};
+use crate::photo::run::job::run;
+use crate::photo::run::plan::{Foreknown, plan_foreknown};
+use crate::photo::set::{Photo, PhotoSet, is_picture};
+use crate::photo::sums::{Accuracy, Gathering, gather};
 use crate::stages::Step;
 
 const OUTLINES: &str = "outlines";

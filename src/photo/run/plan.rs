@@ -3,15 +3,15 @@
 
 use std::collections::BTreeMap;
 
-use super::options::{Outputs, PhotosOptions, Results};
-use super::outline::OutlinePlace;
-use super::read::header_is_grey;
-use super::set::{Photo, PhotoSet};
+use crate::photo::options::{Outputs, PhotosOptions, Results};
+use crate::photo::outline::OutlinePlace;
+use crate::photo::read::header_is_grey;
+use crate::photo::set::{Photo, PhotoSet};
 use crate::stages::{self, Step};
 
 /// What is known of a photograph: before it is opened, or after it was worked on.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Foreknown {
+pub(in crate::photo) struct Foreknown {
     /// Its pose.
     pub pose: String,
     /// It has no colours; none: not known.
@@ -23,7 +23,7 @@ pub(super) struct Foreknown {
 impl Foreknown {
     /// Looks at a photograph's header and at the files beside it; no pixel is decoded.
     #[must_use]
-    pub(super) fn of(photo: &Photo, options: &PhotosOptions) -> Self {
+    pub(in crate::photo) fn of(photo: &Photo, options: &PhotosOptions) -> Self {
         let (pose, outlines) = (photo.pose.clone(), options.outlines.locate(photo));
         Self { pose, grey: header_is_grey(&photo.path).ok(), outlines }
     }
@@ -36,7 +36,7 @@ pub fn plan(set: &PhotoSet, options: &PhotosOptions, outputs: &Outputs) -> Vec<S
 }
 
 /// What a run left out: whole steps, and those that some photographs did not need.
-pub(super) fn left_out(photos: &[Foreknown], options: &PhotosOptions, outputs: &Outputs) -> Vec<String> {
+pub(in crate::photo) fn left_out(photos: &[Foreknown], options: &PhotosOptions, outputs: &Outputs) -> Vec<String> {
     let counts = Counts::of(photos);
     let mut left_out = Vec::new();
     if counts.grey > 0 {
@@ -83,7 +83,7 @@ impl<'a> Counts<'a> {
 }
 
 /// The table of steps.
-pub(super) fn plan_foreknown(photos: &[Foreknown], options: &PhotosOptions, outputs: &Outputs) -> Vec<Step> {
+pub(in crate::photo) fn plan_foreknown(photos: &[Foreknown], options: &PhotosOptions, outputs: &Outputs) -> Vec<Step> {
     let Counts { labelme, masks, detected, grey, poses } = Counts::of(photos);
     let colour = photos.len() - grey;
     let most = poses.values().copied().max().unwrap_or(0);
