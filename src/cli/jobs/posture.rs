@@ -41,7 +41,9 @@ pub(in crate::cli) struct PostureArgs {
     /// Print a marker file to start from, guessed from a few frames, and do nothing else
     #[arg(
         long,
-        conflicts_with_all = ["markers", "out", "tracks", "overlay", "joints", "smooth", "plan", "no_clock", "no_figures"]
+        conflicts_with_all = [
+            "markers", "out", "tracks", "overlay", "joints", "smooth", "plan", "no_clock", "no_figures",
+        ]
     )]
     suggest: bool,
     #[command(flatten)]

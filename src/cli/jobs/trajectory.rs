@@ -96,7 +96,8 @@ impl<K: KindOptions> Command for KindArgs<K> {
         }
         if let Some(PostureFigures { lowest_deg, highest_deg, fastest_deg_per_s, behind_deg }) = report.posture {
             common.say(&format!(
-                "J2 from {lowest_deg:.1} to {highest_deg:.1} degrees, at most {fastest_deg_per_s:.1} degrees a second: a \
+                "J2 from {lowest_deg:.1} to {highest_deg:.1} degrees, at most {fastest_deg_per_s:.1} degrees a \
+                 second: a \
                  sensor that lags by {} s is {behind_deg:.1} degrees behind",
                 report.trajectory.tau_s
             ));

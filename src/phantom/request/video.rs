@@ -143,7 +143,8 @@ pub struct VideoRequest {
     crf: Option<u32>,
     /// x264's preset
     #[arg(long, value_name = "PRESET", default_value = "medium",
-          value_parser = ["ultrafast", "superfast", "veryfast", "faster", "fast", "medium", "slow", "slower", "veryslow"])]
+          value_parser = [
+              "ultrafast", "superfast", "veryfast", "faster", "fast", "medium", "slow", "slower", "veryslow"])]
     x264: String,
 }
 

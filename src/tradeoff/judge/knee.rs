@@ -227,7 +227,11 @@ mod tests {
             let found = knee(&own).expect("a knee");
             let places = front(&own);
             prop_assert!(places.contains(&found.at));
-            prop_assert!(places.windows(2).all(|pair| own[pair[0]].run_s < own[pair[1]].run_s && own[pair[0]].error > own[pair[1]].error));
+            let better = |pair: &[usize]| {
+                let [one, other] = [&own[pair[0]], &own[pair[1]]];
+                one.run_s < other.run_s && one.error > other.error
+            };
+            prop_assert!(places.windows(2).all(better));
             // Powers of two change no digit.
             let unit = scale.log2().round().exp2();
             let other: Vec<Cost> = costs.iter().map(|&(run_s, error)| exact(run_s, unit * error)).collect();

@@ -32,7 +32,8 @@ Loads, in pascals, seconds and hertz (1 N/cm2 is 1e4 Pa):
   ramp:0..10000@0..5   straight from 0 Pa at 0 s to 10000 Pa at 5 s, held after
   sine:5000+1000@0.05  5000 + 1000 sin(2 pi 0.05 t)
 
-Exit status: 0 all done; 1 a vessel closed and --keep-partial wrote the rows before it; 2 nothing done; 130 interrupted.";
+Exit status: 0 all done; 1 a vessel closed and --keep-partial wrote the rows before it; 2 nothing done; \
+130 interrupted.";
 
 /// The hemodynamic model of a pressed fingertip (4.3): vessels and photodiodes over time, or in equilibrium with
 /// --static

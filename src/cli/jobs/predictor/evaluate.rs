@@ -14,11 +14,11 @@ use crate::cli::jobs::{Command, JobArgs, Plan};
 
 /// How far off a model is on recordings, and how far off its recipe is on recordings that are held out
 ///
-/// RMSE, bias and R2 of each target (R2 is empty where a target does not change), by recording and by the size of force or
-/// angle, and how many rows the model's prediction intervals hold. With --by, the model's recipe is fitted again without
-/// each trajectory, session or subject in turn and judged on what it has not seen: name all recordings then. Rows of one
-/// trajectory resemble each other, so shuffled rows (--by rows) flatter; by how much is shown beside. --out draws predicted
-/// against measured over time and as scatter (Fig. 94 to 104).
+/// RMSE, bias and R2 of each target (R2 is empty where a target does not change), by recording and by the size of force
+/// or angle, and how many rows the model's prediction intervals hold. With --by, the model's recipe is fitted again
+/// without each trajectory, session or subject in turn and judged on what it has not seen: name all recordings then.
+/// Rows of one trajectory resemble each other, so shuffled rows (--by rows) flatter; by how much is shown beside. --out
+/// draws predicted against measured over time and as scatter (Fig. 94 to 104).
 #[derive(Debug, Args)]
 pub(crate) struct EvaluateArgs {
     /// A model file of `lunula train`

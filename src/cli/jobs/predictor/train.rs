@@ -103,7 +103,8 @@ impl Command for TrainArgs {
             Report::Network(fit) => {
                 let best = &fit.restarts[fit.best];
                 common.say(&format!(
-                    "{} parameters; best of {} networks after {} epochs; RMSE in SDs: best {:.4}, median {:.4}, quartiles \
+                    "{} parameters; best of {} networks after {} epochs; RMSE in SDs: best {:.4}, median {:.4}, \
+                     quartiles \
                      {:.4} apart",
                     fit.parameters,
                     fit.restarts.len(),

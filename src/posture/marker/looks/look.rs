@@ -1,7 +1,7 @@
 //! A marker's looks in the video's own planes: colours, size, blur, noise.
 //!
-//! Learned where the marker is first seen ([`crate::posture::marker::looks::learn`]) and kept up to date from the fits that follow. Samples are
-//! on the scale of 8 bits, in the order Y', Cb, Cr; without chroma the last two are zero.
+//! Learned where the marker is first seen ([`crate::posture::marker::looks::learn`]) and kept up to date from the fits
+//! that follow. Samples are on the scale of 8 bits, in the order Y', Cb, Cr; without chroma the last two are zero.
 
 use crate::posture::marker::blot::Blot;
 use crate::posture::marker::fit::Fit;
@@ -25,7 +25,8 @@ pub(crate) struct Look {
     pub(crate) misfit: f64,
     /// Standard deviation of what is left unexplained in each plane.
     pub(crate) noise: [f64; 3],
-    /// How many times larger the errors are than independent noise would make them ([`crate::posture::marker::inflation`]).
+    /// How many times larger the errors are than independent noise would make them
+    /// ([`crate::posture::marker::inflation`]).
     pub(crate) inflation: f64,
     /// How its outline is found; none for a disc.
     pub(crate) blot: Option<Blot>,
