@@ -57,7 +57,10 @@ fn the_report_has_the_fit_the_rows_and_the_errors() {
             "inputs",
             "job",
             "left_out",
+            "level",
             "model",
+            "notes",
+            "options",
             "pictures",
             "recipe",
             "stages",
@@ -65,6 +68,7 @@ fn the_report_has_the_fit_the_rows_and_the_errors() {
             "training",
             "validate",
             "validation",
+            "version",
             "wall_s",
             "warnings",
             "without"

@@ -129,13 +129,14 @@ impl Command for PhotosArgs {
     }
 
     fn plan(&self) -> anyhow::Result<Plan> {
-        let set = self.set()?;
-        let steps = plan(&set, &self.options()?, &self.outputs()?);
+        let (options, set) = (self.options()?, self.set()?);
+        let steps = plan(&set, &options, &self.outputs()?);
         Ok(Plan { steps, failed: set.faults.iter().map(ToString::to_string).collect() })
     }
 
     fn run(&self, watch: &Watch<'_>) -> anyhow::Result<PhotosReport> {
-        let report = run(&self.set()?, &self.options()?, &self.outputs()?, watch);
+        let (options, set) = (self.options()?, self.set()?);
+        let report = run(&set, &options, &self.outputs()?, watch);
         Ok(report.inspect_err(|why| {
             if let PhotosError::NothingUsable { outlines, .. } = why {
                 let notes: Vec<String> = outlines.iter().flat_map(SavedOutlines::notes).collect();

@@ -3,6 +3,8 @@
 use std::path::PathBuf;
 
 use anyhow::Context;
+use clap::error::ErrorKind;
+use clap::parser::ValueSource;
 use clap::{ArgMatches, Args, FromArgMatches};
 use lunula::hemodynamics::{
     CurveFigures, CurveOptions, CurveOutputs, CurveRange, CurveReport, SimulateFigures, SimulateInputs,
@@ -81,10 +83,16 @@ const OVER_TIME: [&str; 9] =
 
 impl FromArgMatches for Way {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        Ok(match matches.contains_id("static") {
-            true => Self::Static(Box::new(Given::from_arg_matches(matches)?)),
-            false => Self::OverTime(Box::new(Given::from_arg_matches(matches)?)),
-        })
+        if matches.contains_id("static") {
+            return Ok(Self::Static(Box::new(Given::from_arg_matches(matches)?)));
+        }
+        // `requires` is not enough: clap does not ask for what another argument excludes, as --pf1 does --static.
+        if matches.value_source("pressed") == Some(ValueSource::CommandLine) {
+            let what = "--load says what the loads of --static press on; over time, --pf1 presses proximally and --pf2 \
+                        distally\n";
+            return Err(clap::Error::raw(ErrorKind::ArgumentConflict, what));
+        }
+        Ok(Self::OverTime(Box::new(Given::from_arg_matches(matches)?)))
     }
 
     fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
