@@ -42,10 +42,10 @@ struct Cli {
 const AFTER_HELP: &str = "lunula COMMAND --help explains each command.
 
 Exit status: 0 all done; 1 done, but some inputs failed (each is named on standard error, the others are done), \
-or results stand and what \
+or results exist and what \
 comes after them, as a report or words on standard output, could not be written; 2 nothing done, nothing changed; 130 \
 interrupted. Results \
-appear whole or not at all; what stood before a failed run is as it was.";
+appear whole or not at all; what existed before a failed run is as it was.";
 
 #[derive(Debug, Subcommand)]
 enum Command {

@@ -258,12 +258,12 @@ fn line(row: &Row) -> String {
 
 fn say_curves(found: &Tradeoff, common: &Common) {
     for Verdict { job, choice, error_unit, knee, default, default_is, default_why, decides, .. } in &found.curves {
-        let told =
-            |what: &Option<curves::Figures>| what.as_ref().map_or("none".to_owned(), |told| told.setting.clone());
+        let setting =
+            |what: &Option<curves::Figures>| what.as_ref().map_or("none".to_owned(), |row| row.setting.clone());
         common.say(&format!(
             "{job}, {choice} ({error_unit}): knee {}; default {}, {default_is}",
-            told(knee),
-            told(default)
+            setting(knee),
+            setting(default)
         ));
         if *decides && default_is != "the knee" {
             common.say(&format!("  {default_why}"));

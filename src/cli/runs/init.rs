@@ -12,7 +12,7 @@ use crate::cli::{Common, Outcome};
 
 /// A pipeline file for what lies in a folder: photographs, videos, marker files, logs, tables
 ///
-/// Files are told by their endings, tables by their columns, subjects and sessions by what differs in names. The file
+/// Files are recognized by their endings, tables by their columns, subjects and sessions by what differs in names. The file
 /// runs as it stands and says in comments what was taken for what, and what is not used. A file that stands is never
 /// overwritten.
 #[derive(Debug, Args)]

@@ -47,7 +47,7 @@ pub(in crate::cli) fn run(args: &MergeArgs) -> anyhow::Result<Outcome> {
     let (results, merged) = parts.merge(&plan.tasks, &mark, &args.out)?;
     common.warn(&merged.warnings);
     let (count, brought, stood) = (args.parts.len(), merged.imported, merged.stood);
-    common.say(&format!("{brought} results of {count} parts brought together, {stood} stood"));
+    common.say(&format!("{brought} results of {count} parts brought together, {stood} were there already"));
     let options = RunOptions {
         threads: common.threads.map_or_else(memory::threads, usize::from),
         memory: args.memory.unwrap_or_else(memory::free),
@@ -65,11 +65,11 @@ fn pipeline(parts: &Parts, args: &MergeArgs) -> anyhow::Result<PipelineMark> {
         return Ok(PipelineMark::new(path, &text));
     }
     let own = parts.pipeline().context("no parts were given")?;
-    let told = match std::fs::read_to_string(&own.path) {
+    let change = match std::fs::read_to_string(&own.path) {
         Err(why) => format!("cannot be read now ({why}); if it was moved, give it with --pipeline"),
         Ok(text) if PipelineMark::new(Path::new(&own.path), &text).decides != own.decides => "has changed since".into(),
         Ok(_) => return Ok(own.clone()),
     };
-    args.common.warn(&[format!("{}: {told}; the parts are merged as it was when they were run", own.path)]);
+    args.common.warn(&[format!("{}: {change}; the parts are merged as it was when they were run", own.path)]);
     Ok(own.clone())
 }

@@ -139,7 +139,7 @@ pub(in crate::cli) fn finish(common: &Common, plan: &Plan, report: &RunReport, o
     let warned: usize = report.tasks.iter().filter_map(|task| task.made.as_ref()).map(|made| made.warnings.len()).sum();
     let warned = if warned > 0 { format!(" ({warned} warning(s) there)") } else { String::new() };
     common.say(&format!(
-        "{} done, {} stood, {} failed, {} not done{inputs}{elsewhere}; {:.2} s; look at {}{warned}",
+        "{} done, {} up to date, {} failed, {} not done{inputs}{elsewhere}; {:.2} s; look at {}{warned}",
         report.done,
         report.kept,
         report.failed,
