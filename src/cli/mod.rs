@@ -73,16 +73,16 @@ enum Command {
 /// What every job takes.
 #[derive(Debug, Clone, Args)]
 struct Common {
-    /// Print one JSON object on standard output: what was done, the figures, the times, the warnings
+    /// Print one JSON object on standard output: options, figures, warnings, notes, times
     #[arg(long, global = true)]
     json: bool,
-    /// Threads to work with [default: all cores]; the results are the same bytes whatever their number
+    /// Threads to use [default: all cores]; results are the same bytes whatever their number
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// Only errors
+    /// Print errors only
     #[arg(short, long, global = true, conflicts_with = "verbose")]
     quiet: bool,
-    /// More: every stage's time
+    /// Print every stage's time and what was left out
     #[arg(short, long, global = true)]
     verbose: bool,
 }

@@ -11,8 +11,8 @@ use lunula::tradeoff::{self as curves, Effort, Plan, Row, Setting, Tradeoff, Ver
 use super::{Common, Outcome};
 use crate::cli::jobs::phantom::SceneArg;
 
-/// Error against run time, over the settings of a job or of all: the knee of each curve, where the default stands,
-/// other programs
+/// Measure error against run time over the settings of a job, or of all: the knee of each curve, where the default
+/// lies, other programs
 ///
 /// Writes a table (tradeoff.csv) and a picture (tradeoff.png, .svg); `all` one page (index.html).
 #[derive(Debug, Args)]
@@ -100,7 +100,7 @@ const REPEATS: usize = 3;
 /// Of those that take a tenth of a millisecond.
 const SHORT_REPEATS: usize = 9;
 
-/// Every job's settings on synthetic scenes, on one page: DIR/index.html, DIR/tradeoff.csv, a picture a job
+/// Every job's settings on synthetic scenes, on one page: DIR/index.html, DIR/tradeoff.csv, one picture per job
 #[derive(Debug, Args)]
 struct AllArgs {
     /// Seed of the synthetic inputs

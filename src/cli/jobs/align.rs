@@ -10,7 +10,7 @@ use lunula::job::{Given, Said, Watch};
 use crate::cli::Common;
 use crate::cli::jobs::{Command, JobArgs, Plan};
 
-/// Joint angles and a log of photodiodes, on two clocks, to a labelled training set with a certificate
+/// Label a photodiode log with joint angles: two clocks tied together, with a certificate of how well
 ///
 /// log time = offset + (1 + drift) * video time. The clock in the picture ties the two (clock_s in the table of
 /// angles); so does an offset that you know; or, without either, the lag at which the photodiodes best explain the

@@ -14,7 +14,7 @@ use lunula::photo::{
 use crate::cli::jobs::{self, Command, JobArgs, Plan};
 use crate::cli::{Common, Outcome};
 
-/// Photographs of nails to coloration maps: outlines, normalized pictures, mean and standard deviation over subjects
+/// Turn nail photographs into coloration maps: outlines, normalized pictures, mean and standard deviation over subjects
 ///
 /// SET is a folder SET/<pose>/<subject>.<png|jpg|tif|bmp>, a flat folder (one pose), or holds photos.csv with the
 /// columns file,subject,pose and optionally outline. The outline of a nail comes from the first of: that column,
@@ -45,7 +45,7 @@ pub(in crate::cli) struct PhotosArgs {
 
 #[derive(Debug, Subcommand)]
 enum PhotosCommand {
-    /// Join maps that were made in parts: the same bytes as made at once
+    /// Join maps that were made in parts: the same bytes as from one run
     Merge(MergeArgs),
 }
 

@@ -10,7 +10,7 @@ use lunula::posture::{Layout, Outputs, PostureFigures, PostureOptions, PostureRe
 use crate::cli::jobs::{Command, JobArgs, Plan};
 use crate::cli::{Common, Outcome, print_line};
 
-/// Video of a finger with coloured markers to joint angles, each frame with its own time and standard error
+/// Measure joint angles in a video of a finger with coloured markers, each frame with its time and standard error
 ///
 /// MARKERS.toml names the markers and their colours, the segments (two markers each, proximal first) and the joints
 /// (two segments each), and where a digital clock is in the picture; --suggest prints one to start from. A marker that

@@ -13,8 +13,8 @@ use lunula::predictor::trajectory::{
 use crate::cli::jobs::{self, Command, JobArgs, Plan};
 use crate::cli::{Common, Outcome};
 
-/// Calibration trajectories (5.2.3) as tables that a prompter can play, with how fast they are and how evenly they
-/// cover
+/// Write calibration trajectories (5.2.3) as tables that a prompter can play, with how fast they are and how evenly
+/// they cover
 ///
 /// Beside the table are <table>.run.json and pictures (Fig. 90-93).
 #[derive(Debug, Args)]

@@ -10,10 +10,10 @@ use serde_json::json;
 
 use crate::cli::{Common, Outcome};
 
-/// A pipeline file for what lies in a folder: photographs, videos, marker files, logs, tables
+/// Write a pipeline file for the photographs, videos, marker files, logs and tables found in a folder
 ///
-/// Files are recognized by their endings, tables by their columns, subjects and sessions by what differs in names. The file
-/// runs as it stands and says in comments what was taken for what, and what is not used. A file that stands is never
+/// Files are recognized by their endings, tables by their columns, subjects and sessions by what differs in names. The
+/// file runs as it is, and its comments say what was taken for what, and what is not used. An existing file is never
 /// overwritten.
 #[derive(Debug, Args)]
 pub(in crate::cli) struct InitArgs {

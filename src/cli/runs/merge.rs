@@ -10,7 +10,7 @@ use crate::cli::runs::memory;
 use crate::cli::runs::run::{finish, watched};
 use crate::cli::{Common, Outcome};
 
-/// Parts of a run made with --shard to one folder of results: the same bytes as made at once
+/// Bring the parts of a run made with --shard together: the same bytes as from one run
 ///
 /// PARTS are the folders that `lunula run PIPELINE --shard I/N --out PART` wrote, all N of them in any order. Their
 /// results are linked or copied into --out, then what no part could do (what gathers over all of them) is done there,
@@ -25,10 +25,10 @@ pub(in crate::cli) struct MergeArgs {
     /// Folder for the results
     #[arg(long)]
     out: PathBuf,
-    /// The pipeline file, where it stands elsewhere than when the parts were run
+    /// The pipeline file, if it has moved since the parts were run
     #[arg(long, value_name = "FILE")]
     pipeline: Option<PathBuf>,
-    /// What tasks at a time may take together, as 4GB or 500MB [default: three quarters of what is free]
+    /// Memory that tasks may take together, as 4GB or 500MB [default: three quarters of what is free]
     #[arg(long, value_name = "SIZE", value_parser = memory::parse)]
     memory: Option<u64>,
     #[command(flatten)]

@@ -15,29 +15,29 @@ use serde_json::json;
 use crate::cli::runs::memory;
 use crate::cli::{Common, Outcome, Stopped, print_line};
 
-/// A pipeline file: the results it wants, and only what they need; what stands is kept
+/// Run a pipeline file: make the results it asks for, only what they need, and nothing that is up to date
 ///
 /// A pipeline file (TOML) names inputs (files by a pattern, or rows of a table), stages (jobs with their options) and
 /// the results wanted. A stage runs only where a wanted result needs it and its inputs have what it works on; --plan
-/// says of each why, or why not. Each result is kept with a hash of its inputs' contents, options and version: what
-/// stands is not made again, what changed is, what was interrupted goes on. A failing input fails what needs it; all
+/// says why, or why not. Each result is kept with a hash of its inputs' contents, options and version: what is up to
+/// date is not made again, what changed is, and an interrupted run goes on. A failing input fails what needs it; all
 /// else is done, and a table at the end says what failed. Results: OUT/<stage>/<keys>/.., OUT/report.html (time, share
 /// and error of every stage) and OUT/run.json.
 #[derive(Debug, Args)]
 pub(in crate::cli) struct RunArgs {
-    /// The pipeline file (TOML); `lunula init` writes one for the folder you stand in
+    /// The pipeline file (TOML); `lunula init` writes one for the current folder
     #[arg(value_name = "PIPELINE.toml")]
     pipeline: PathBuf,
-    /// The folder of results, made where it is missing
+    /// The results folder, created if it is missing
     #[arg(long, value_name = "DIR", required_unless_present = "plan")]
     out: Option<PathBuf>,
-    /// Say what would run, what stands and what is left out, and why; do nothing
+    /// Show what would run, what is up to date and what is left out, and why; do nothing
     #[arg(long)]
     plan: bool,
-    /// What tasks at a time may take together, as 4GB or 500MB [default: three quarters of what is free]
+    /// Memory that tasks may take together, as 4GB or 500MB [default: three quarters of what is free]
     #[arg(long, value_name = "SIZE", value_parser = memory::parse)]
     memory: Option<u64>,
-    /// Only the I-th of N parts, from 1/N to N/N, each into a folder of its own; `lunula merge` brings them together
+    /// Only part I of N, from 1/N to N/N, each into its own folder; `lunula merge` brings them together
     #[arg(long, value_name = "I/N", conflicts_with = "plan")]
     shard: Option<Shard>,
     #[command(flatten)]

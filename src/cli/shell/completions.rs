@@ -5,7 +5,7 @@ use clap_complete::{Shell, generate};
 
 use crate::cli::{Cli, Outcome, out};
 
-/// Commands and options for a shell to complete, on standard output
+/// Print completions of commands and options for a shell
 ///
 /// bash:  lunula completions bash > ~/.local/share/bash-completion/completions/lunula
 /// zsh:   lunula completions zsh > "${fpath[1]}/_lunula"
@@ -13,7 +13,7 @@ use crate::cli::{Cli, Outcome, out};
 #[derive(Debug, Args)]
 #[command(verbatim_doc_comment)]
 pub(in crate::cli) struct CompletionsArgs {
-    /// Whose
+    /// Which shell
     #[arg(value_enum)]
     shell: Shell,
 }

@@ -8,7 +8,7 @@ use lunula::files::Staging;
 
 use crate::cli::{Cli, Common, Outcome};
 
-/// Pages of the manual, one a command: OUT/lunula.1, OUT/lunula-photos.1, ..
+/// Write manual pages, one per command: OUT/lunula.1, OUT/lunula-photos.1, ..
 ///
 /// `man -l OUT/lunula.1` shows one; `--out ~/.local/share/man/man1` is where `man lunula` looks.
 #[derive(Debug, Args)]

@@ -60,7 +60,7 @@ enum StampsArg {
 /// What `lunula phantom log` takes.
 #[derive(Debug, Clone, Args)]
 pub struct LogRequest {
-    /// Everything random follows from it, but for the person and the session
+    /// Seed of everything random but the person and the session
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Whose finger it is

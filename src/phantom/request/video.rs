@@ -16,7 +16,7 @@ use crate::video::{Matrix, Turn};
 /// What `lunula phantom video` takes.
 #[derive(Debug, Clone, Args)]
 pub struct VideoRequest {
-    /// Everything random follows from it
+    /// Seed of everything random
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// The scene to start from: clean (noise 2, crf 16), hard (noise 6, blur, flicker, gradient, distractors, a hidden
@@ -26,7 +26,7 @@ pub struct VideoRequest {
     /// Width and height of the picture, pixels; the finger grows with the width
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = parse_size)]
     size: Option<(u32, u32)>,
-    /// Frames a second
+    /// Frames per second
     #[arg(long)]
     fps: Option<f64>,
     /// How long [default: 10, or as long as a given trajectory]

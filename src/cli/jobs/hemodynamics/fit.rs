@@ -35,7 +35,7 @@ align: sensor_status) have no voltage.
 Names: k_C means k_C1, k_C2, .. which move together, as in the thesis; k_C1 means one of them; whole names such as \
 k_C1_N_per_m work too.";
 
-/// Fits free parameters of the hemodynamic model (4.3), and the photodiodes' offset and scaling, to recorded responses
+/// Fit parameters of the hemodynamic model (4.3), and the photodiodes' offset and scaling, to recorded responses
 ///
 /// All other parameters are held at --params and --set. The results are the values with standard errors and
 /// correlations, what the recordings do not determine, and which bounds were met; the fitted parameters as <out>.toml

@@ -37,7 +37,7 @@ Loads, in pascals, seconds and hertz (1 N/cm2 is 1e4 Pa):
 Exit status: 0 all done; 1 a vessel closed and --keep-partial wrote the rows before it; 2 nothing done; \
 130 interrupted.";
 
-/// The hemodynamic model of a pressed fingertip (4.3): vessels and photodiodes over time, or in equilibrium with
+/// Simulate blood flow in a pressed fingertip (4.3): vessels and photodiodes over time, or in equilibrium with
 /// --static
 ///
 /// The table has time_s, displacements of the walls (xC1_m, xC2_m, xV_m), their velocities (vC1_mps, ..) and

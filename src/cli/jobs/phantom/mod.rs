@@ -13,7 +13,7 @@ pub(in crate::cli) use lunula::phantom::request::SceneArg;
 
 use crate::cli::{Common, Outcome};
 
-/// Synthetic scenes with exact truth: inputs as the jobs read them, and truth/ beside them
+/// Write synthetic scenes with exact truth: inputs as the jobs read them, and truth/ beside them
 #[derive(Debug, Args)]
 pub(in crate::cli) struct PhantomArgs {
     #[command(subcommand)]

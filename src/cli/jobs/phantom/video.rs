@@ -11,7 +11,7 @@ use crate::cli::jobs::phantom::{Common, Outcome, watched};
 
 /// A video of a finger with coloured markers, with exact joint angles and marker centres (3.2.3, 3.3.5)
 ///
-/// Writes OUT/video.mp4 and OUT/markers.toml, which `lunula posture` reads as they stand, and OUT/truth/: joints.csv,
+/// Writes OUT/video.mp4 and OUT/markers.toml, which `lunula posture` reads as they are, and OUT/truth/: joints.csv,
 /// tracks.csv, clock.csv, scene.json. A scene sets all that follows; each option changes one thing of it.
 #[derive(Debug, Args)]
 pub(super) struct VideoArgs {

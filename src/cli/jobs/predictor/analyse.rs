@@ -9,7 +9,7 @@ use lunula::predictor::{AnalyseFigures, AnalyseReport, FolderOutputs, ModelMode,
 use crate::cli::Common;
 use crate::cli::jobs::{Command, JobArgs, Plan};
 
-/// Which combinations of forces depend on which combinations of photodiodes (Fig. 98)
+/// Show which combinations of forces depend on which combinations of photodiodes (Fig. 98)
 ///
 /// Singular values and modes of the model's Jacobian; of a quadratic or network model, of the Jacobian at the middle of
 /// its training rows. Singular values of like size mean that the targets can be predicted independently. --json also

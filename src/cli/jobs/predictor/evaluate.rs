@@ -12,7 +12,7 @@ use crate::cli::Common;
 use crate::cli::jobs::predictor::say_merit;
 use crate::cli::jobs::{Command, JobArgs, Plan};
 
-/// How far off a model is on recordings, and how far off its recipe is on recordings that are held out
+/// Measure how far off a model is on recordings, and how far off its recipe is on recordings held out
 ///
 /// RMSE, bias and R2 of each target (R2 is empty where a target does not change), by recording and by the size of force
 /// or angle, and how many rows the model's prediction intervals hold. With --by, the model's recipe is fitted again

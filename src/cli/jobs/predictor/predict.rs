@@ -12,7 +12,7 @@ use crate::cli::jobs::{self, Command, JobArgs, Plan};
 use crate::cli::out::Stream;
 use crate::cli::{Common, Outcome};
 
-/// Forces and angle from photodiodes, by models that `lunula train` wrote
+/// Predict forces and angle from photodiodes, with models that `lunula train` wrote
 ///
 /// With a model of force and one of posture the two are gated (equations 9, 16): while the finger presses with --f-min
 /// or more (-Fz_N) it touches, and the angle is --theta-touch; else the posture model predicts the angle. A row that

@@ -12,7 +12,7 @@ use crate::cli::Common;
 use crate::cli::jobs::predictor::figure;
 use crate::cli::jobs::{Command, JobArgs, Plan};
 
-/// The linear model's errors for every subset of the photodiodes (Fig. 113 and beyond)
+/// Compare the linear model's errors for every subset of the photodiodes (Fig. 113 and beyond)
 ///
 /// Each subset is fitted to DATA and judged on what --validate names. Says which photodiodes are the best of each
 /// number, and what the removal of each one costs. Subsets are compared by the mean over targets of RMSE over the

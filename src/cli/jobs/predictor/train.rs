@@ -14,7 +14,7 @@ use crate::cli::Common;
 use crate::cli::jobs::predictor::{figure, say_merit};
 use crate::cli::jobs::{Command, JobArgs, Plan};
 
-/// Recordings of photodiodes with forces or angles to a model that predicts forces or angles from photodiodes (5.)
+/// Train a model that predicts forces or angles from photodiodes (chapter 5)
 ///
 /// A recording is a table with P1.. and Fx_N,Fy_N,Fz_N or J2_deg, as `lunula align` writes it, or a log with forces
 /// (with a column `led`, lit less unlit samples are taken). Each file, session and subject in it is a recording of its
