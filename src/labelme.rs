@@ -205,7 +205,8 @@ mod tests {
 
     #[test]
     fn read_and_written_again_loses_nothing() {
-        let text = r#"{"version":"5.4.1","flags":{"good":true},"shapes":[{"label":"nail","points":[[1.5,2.25],[3.0,4.0],[5.0,2.0]],
+        let text = r#"{"version":"5.4.1","flags":{"good":true},"shapes":[{"label":"nail",
+            "points":[[1.5,2.25],[3.0,4.0],[5.0,2.0]],
             "group_id":3,"description":"left","shape_type":"polygon","flags":{},"mask":null}],
             "imagePath":"s01.png","imageData":null,"imageHeight":480,"imageWidth":640,"lineColor":[0,255,0,128]}"#;
         let dir = tempfile::tempdir().unwrap();

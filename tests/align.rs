@@ -274,7 +274,7 @@ fn the_plan_changes_nothing() {
     let dir = scene(&[], &["--no-led"]);
     posture(&dir).expect(0);
     let plan = dir.lunula(&["align", "--joints", "joints.csv", "--log", "s/log.csv", "--plan"]).expect(0).stdout;
-    for words in ["ambient light taken away", "left out", "no column `led`", "only --sync correlate"] {
+    for words in ["ambient light subtracted", "left out", "no column `led`", "only --sync correlate"] {
         assert!(plan.contains(words), "`{words}` in:\n{plan}");
     }
     let stands = dir.bytes_of(".");

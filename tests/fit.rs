@@ -358,7 +358,7 @@ fn words_name_subjects_and_constant_photodiodes_and_every_wrong_name_once() {
     dir.write("flat.csv", flat);
     let answer = run(&dir, "fit", "s.csv flat.csv --subject anna,ben --free none --out f.json --no-figures").expect(0);
     let words = answer.stdout.clone() + &answer.stderr;
-    assert!(words.contains("flat.csv: VP1 is constant: nothing can be learnt from it"), "{words}");
+    assert!(words.contains("flat.csv: VP1 is constant: it determines nothing"), "{words}");
     assert!(!words.contains("VP2 is constant") && words.contains("unit 1 of anna") && words.contains("unit 2 of ben"));
     let wrong = run(&dir, "fit", "s.csv --free k_Q,zz --out g.json").expect(2).stderr;
     assert!(wrong.contains("--free k_Q,zz") && wrong.matches("k_C, k_V").count() == 1, "{wrong}");

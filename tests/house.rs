@@ -1,4 +1,5 @@
-//! What holds the code's rooms together, read from its `use` lines: no circle between files, no arrow up a floor.
+//! What holds the code's rooms together: no circle between files and no arrow up a floor, read from the `use` lines; no
+//! crowded folder and no long line.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -144,6 +145,44 @@ fn no_room_uses_one_of_its_own_floor_or_above() {
     }
     assert!(seen > 300, "{seen} arrows between rooms");
     assert_eq!(wrong, [""; 0]);
+}
+
+/// Folders that may hold more: the rooms by their names, and the integration tests, a file for each command.
+const OPEN_FOLDERS: [&str; 4] = ["src", "tests", "tests/corpus", "crates/hemodynamics/tests/reference"];
+/// The most entries of any other folder.
+const MOST_ENTRIES: usize = 12;
+/// The most columns of a line.
+const MOST_COLUMNS: usize = 120;
+/// Tables of numbers, a number of 60 digits a line.
+const NUMBERS: &str = "crates/hemodynamics/src/radau/tables.rs";
+
+#[test]
+fn no_folder_is_crowded_and_no_line_is_long() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let (mut crowded, mut long, mut files) = (Vec::new(), Vec::new(), 0);
+    let mut folders: Vec<PathBuf> =
+        ["src", "crates", "tests", "benches", "examples"].map(|name| root.join(name)).into();
+    while let Some(folder) = folders.pop() {
+        let entries: Vec<PathBuf> =
+            std::fs::read_dir(&folder).expect("a folder").map(|entry| entry.expect("an entry").path()).collect();
+        let name = folder.strip_prefix(root).expect("within it").to_string_lossy().into_owned();
+        if entries.len() > MOST_ENTRIES && !OPEN_FOLDERS.contains(&name.as_str()) {
+            crowded.push(format!("{name}: {}", entries.len()));
+        }
+        for path in entries {
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|ending| ending == "rs") && !path.ends_with(NUMBERS) {
+                files += 1;
+                let text = std::fs::read_to_string(&path).expect("a source file");
+                let lines = text.lines().enumerate().filter(|(_, line)| line.chars().count() > MOST_COLUMNS);
+                long.extend(lines.map(|(at, _)| format!("{}:{}", path.display(), at + 1)));
+            }
+        }
+    }
+    assert!(files > 700, "{files} files");
+    assert_eq!(crowded, [""; 0], "more than {MOST_ENTRIES} entries");
+    assert_eq!(long, [""; 0], "more than {MOST_COLUMNS} columns");
 }
 
 #[test]

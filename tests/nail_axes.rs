@@ -103,7 +103,8 @@ impl Tally {
         }
         tally.errors_deg.sort_by(f64::total_cmp);
         eprintln!(
-            "{} nails, {} decided, {} off by over 45 degrees, {} by over 60; median {:.1}, 90 % {:.1}, most {:.1} degrees",
+            "{} nails, {} decided, {} off by over 45 degrees, {} by over 60; median {:.1}, 90 % {:.1}, most {:.1} \
+             degrees",
             tally.nails,
             tally.decided(),
             tally.beyond(45.0),

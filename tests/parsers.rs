@@ -178,7 +178,8 @@ fn xdf() {
     };
     let header = |format: &str, channels: &str, count: usize| {
         let xml = format!(
-            "<?xml version=\"1.0\"?><info><name>a</name><channel_count>{count}</channel_count><nominal_srate>10</nominal_srate>\
+            "<?xml version=\"1.0\"?><info><name>a</name><channel_count>{count}</channel_count>\
+             <nominal_srate>10</nominal_srate>\
              <channel_format>{format}</channel_format><desc><channels>{channels}</channels></desc></info>"
         );
         chunk(2, &[&1_u32.to_le_bytes()[..], xml.as_bytes()].concat())

@@ -104,7 +104,8 @@ fn the_exact_angles_label_a_log_without_a_video() {
     let angles = dir.table("s/truth/angles.csv");
     assert_eq!(angles.len(), 1800);
     let header = std::fs::read_to_string(dir.path("s/truth/angles.csv")).unwrap();
-    let columns = "frame,time_s,clock_s,J1_deg,J1_sd_deg,J2_deg,J2_sd_deg,J3_deg,J3_sd_deg,status,clock_read_s,clock_sd_s,clock_low_s,clock_high_s";
+    let columns = "frame,time_s,clock_s,J1_deg,J1_sd_deg,J2_deg,J2_sd_deg,J3_deg,J3_sd_deg,status,\
+        clock_read_s,clock_sd_s,clock_low_s,clock_high_s";
     assert_eq!(header.lines().next(), Some(columns));
     assert!((number(&angles[1799], "clock_s") - (754.0 + (1.0 + 80e-6) * 1799.0 / 30.0)).abs() <= 1e-9);
     let align =

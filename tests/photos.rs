@@ -264,7 +264,7 @@ fn two_equal_photographs_have_no_deviation_and_one_has_none_to_show() {
     assert!(dir.array("pair-out/maps/pair-sd.npy").iter().all(|&v| v == 0.0));
     let answer = dir.lunula(&["photos", "single", "--out", "single-out"]).expect(0);
     for words in ["note: pose `single`: one subject, so no standard deviation", "report.html"] {
-        assert!(answer.stdout.contains(words), "{}", answer.stdout);
+        assert!((answer.stdout.clone() + &answer.stderr).contains(words), "{}{}", answer.stdout, answer.stderr);
     }
     assert!(dir.array("single-out/maps/single-sd.npy").iter().all(|v| v.is_nan()));
     assert!(dir.array("single-out/maps/single-mean.npy").iter().all(|v| !v.is_nan()));

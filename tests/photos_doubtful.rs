@@ -180,7 +180,8 @@ fn twelve_bits_in_sixteen_are_noted_and_mended() {
             "{dark} {right} {mended}"
         );
     }
-    assert_eq!(dir.parsed("mended/run.json")["options"]["normalization"]["white"], 4095);
+    let report = dir.parsed("mended/run.json");
+    assert_eq!((&report["normalization"]["white"], &report["options"]["white"]), (&4095.into(), &"4095".into()));
     // Parts made with another white don't add up.
     dir.lunula(&["photos", "merge", "dark", "mended", "--out", "both"]).expect(2).says("\"white\":4095");
     dir.lunula(&["photos", "twelve", "--out", "out", "--white", "3000"]).expect(2).says("above --white 3000");
@@ -266,14 +267,15 @@ fn results_are_not_put_among_the_photographs() {
 
 #[cfg(unix)]
 #[test]
-fn control_characters_of_names_are_escaped_on_the_terminal_and_exact_in_json() {
+fn control_characters_of_names_are_escaped() {
     let dir = Dir::new();
     dir.nail("set/a");
     dir.write("set/d\u{1b}[2J\rb\n.png", "no picture");
     let answer = dir.lunula(&["photos", "set", "--out", "out", "--json"]).expect(1);
     assert!(answer.stderr.contains("failed: d\\u{1b}[2J\\rb\\n.png: is not a PNG"), "{:?}", answer.stderr);
     assert!(!answer.stderr.contains(['\u{1b}', '\r']));
-    assert_eq!(answer.json()["failed"][0]["place"], "d\u{1b}[2J\rb\n.png");
+    let failed = answer.json()["failed"][0].as_str().expect("words").to_owned();
+    assert!(failed.starts_with("d\\u{1b}[2J\\rb\\n.png: is not a PNG"), "{failed:?}");
     std::fs::remove_file(dir.path("set/a.png")).expect("removed");
     let answer = dir.lunula(&["photos", "set", "--out", "other"]).expect(2);
     assert!(

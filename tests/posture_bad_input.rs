@@ -208,7 +208,7 @@ fn results_never_replace_the_input_or_one_another() {
     let before = std::fs::read(dir.path("scene/video.mp4")).expect("a file");
     let given = ["posture", "scene/video.mp4", "--markers", "markers.toml"];
     for (more, words) in [
-        (&["--out", "joints.csv", "--overlay", "scene/video.mp4"][..], "the video itself"),
+        (&["--out", "joints.csv", "--overlay", "scene/video.mp4"][..], "an input itself"),
         (&["--out", "joints.csv", "--tracks", "joints.csv"], "two results"),
         (&["--out", "joints.txt"], ".csv or .parquet"),
         (&["--out", "scene"], "scene"),

@@ -351,7 +351,7 @@ fn a_recording_that_cant_be_read_is_skipped_only_where_that_is_asked_for() {
     assert!(!dir.path("m.json").exists());
     let answer = dir.lunula(&[&all[..], &["--skip-failed", "--json"]].concat()).expect(1).says("failed: bad.csv: ");
     let report = answer.json();
-    assert_eq!(report["failed"][0]["name"], "bad.csv");
+    assert!(report["failed"][0].as_str().is_some_and(|why| why.starts_with("bad.csv: ")), "{report}");
     assert_eq!(report["data"].as_array().expect("files").len(), 2);
     let model = dir.parsed("m.json");
     assert_eq!((&model["training"]["failed"], &model["training"]["rows"]), (&json!(["bad.csv"]), &json!(120)));

@@ -121,7 +121,7 @@ fn a_nearly_collinear_photodiode_is_fitted_with_a_warning() {
     let dir = dir_with(&forced);
     let answer = dir.train("a.csv", "force", "m.json", &["--json"]).expect(0);
     let report = answer.json();
-    answer.says("note: P2 and P5 hardly differ");
+    answer.says("warning: P2 and P5 hardly differ");
     let fit = &report["fit"]["least_squares"];
     assert_eq!(fit["rank"], 8);
     assert!(

@@ -57,7 +57,10 @@ fn the_report_has_the_fit_the_rows_and_the_errors() {
             "inputs",
             "job",
             "left_out",
+            "level",
             "model",
+            "notes",
+            "options",
             "pictures",
             "recipe",
             "stages",
@@ -65,13 +68,18 @@ fn the_report_has_the_fit_the_rows_and_the_errors() {
             "training",
             "validate",
             "validation",
+            "version",
             "wall_s",
             "warnings",
             "without"
         ]
     );
     assert_eq!((&report["job"], &report["model"]), (&"train".into(), &"m.json".into()));
-    let of = |path: &str, rows: u64| serde_json::json!({"path": path, "rows": rows, "used": rows, "empty": 0, "invalid": 0, "faults": 0, "notes": []});
+    let of = |path: &str, rows: u64| {
+        serde_json::json!({
+            "path": path, "rows": rows, "used": rows, "empty": 0, "invalid": 0, "faults": 0, "notes": []
+        })
+    };
     assert_eq!((&report["data"][0], &report["validate"][0]), (&of("train.csv", 200), &of("held.csv", 100)));
     let fit = &report["fit"]["least_squares"];
     assert_eq!(

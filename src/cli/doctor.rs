@@ -8,10 +8,10 @@ use lunula::doctor::{Check, State, examine};
 
 use super::{Common, Outcome};
 
-/// What is installed, what is missing and how to get it: this program, this machine, the folder for results, other
+/// Check what is installed, what is missing and how to get it: this program, this machine, the results folder, other
 /// programs
 ///
-/// `ok` is as it should be, `note` misses something that only some jobs need, `WRONG` has to be mended (exit status 1).
+/// `ok` is as it should be, `note` misses something that only some jobs need, `WRONG` has to be fixed (exit status 1).
 #[derive(Debug, Args)]
 pub(super) struct DoctorArgs {
     /// The folder for results: whether it can be written to and locked; it need not exist

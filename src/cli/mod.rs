@@ -3,23 +3,12 @@
 //! Exit status: 0 all done; 1 done, but some inputs failed, or what was to be said or written after the results could
 //! not be (each is named on standard error); 2 nothing done, nothing changed; 130 interrupted.
 
-mod align;
-mod completions;
 mod doctor;
-mod hemodynamics;
-mod init;
-mod job;
-mod man;
-mod memory;
-mod merge;
+mod jobs;
 mod out;
-mod phantom;
-mod photos;
-mod posture;
-mod predictor;
-mod run;
+mod runs;
+mod shell;
 mod tradeoff;
-mod trajectory;
 
 use std::io::IsTerminal;
 use std::process::ExitCode;
@@ -52,47 +41,48 @@ struct Cli {
 
 const AFTER_HELP: &str = "lunula COMMAND --help explains each command.
 
-Exit status: 0 all done; 1 done, but some inputs failed (each is named on standard error, the others are done), or results stand and what \
+Exit status: 0 all done; 1 done, but some inputs failed (each is named on standard error, the others are done), \
+or results exist and what \
 comes after them, as a report or words on standard output, could not be written; 2 nothing done, nothing changed; 130 \
 interrupted. Results \
-appear whole or not at all; what stood before a failed run is as it was.";
+appear whole or not at all; what existed before a failed run is as it was.";
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    Photos(photos::PhotosArgs),
-    Posture(posture::PostureArgs),
-    Align(Box<align::AlignArgs>),
-    Train(Box<predictor::TrainArgs>),
-    Evaluate(predictor::EvaluateArgs),
-    Predict(predictor::PredictArgs),
-    Analyse(predictor::AnalyseArgs),
-    Prune(predictor::PruneArgs),
-    Simulate(Box<hemodynamics::SimulateArgs>),
-    Fit(Box<hemodynamics::FitArgs>),
-    Merge(merge::MergeArgs),
-    Phantom(phantom::PhantomArgs),
+    Photos(jobs::photos::PhotosArgs),
+    Posture(jobs::posture::PostureArgs),
+    Align(Box<jobs::align::AlignArgs>),
+    Train(Box<jobs::predictor::TrainArgs>),
+    Evaluate(jobs::predictor::EvaluateArgs),
+    Predict(jobs::predictor::PredictArgs),
+    Analyse(jobs::predictor::AnalyseArgs),
+    Prune(jobs::predictor::PruneArgs),
+    Simulate(Box<jobs::hemodynamics::SimulateArgs>),
+    Fit(Box<jobs::hemodynamics::FitArgs>),
+    Merge(runs::merge::MergeArgs),
+    Phantom(jobs::phantom::PhantomArgs),
     Tradeoff(tradeoff::TradeoffArgs),
-    Trajectory(Box<trajectory::TrajectoryArgs>),
-    Run(run::RunArgs),
-    Init(init::InitArgs),
+    Trajectory(Box<jobs::trajectory::TrajectoryArgs>),
+    Run(runs::run::RunArgs),
+    Init(runs::init::InitArgs),
     Doctor(doctor::DoctorArgs),
-    Completions(completions::CompletionsArgs),
-    Man(man::ManArgs),
+    Completions(shell::completions::CompletionsArgs),
+    Man(shell::man::ManArgs),
 }
 
 /// What every job takes.
 #[derive(Debug, Clone, Args)]
 struct Common {
-    /// Print one JSON object on standard output: what was done, the figures, the times, the warnings
+    /// Print one JSON object on standard output: options, figures, warnings, notes, times
     #[arg(long, global = true)]
     json: bool,
-    /// Threads to work with [default: all cores]; the results are the same bytes whatever their number
+    /// Threads to use [default: all cores]; results are the same bytes whatever their number
     #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// Only errors
+    /// Print errors only
     #[arg(short, long, global = true, conflicts_with = "verbose")]
     quiet: bool,
-    /// More: every stage's time
+    /// Print every stage's time and what was left out
     #[arg(short, long, global = true)]
     verbose: bool,
 }
@@ -121,25 +111,25 @@ pub(crate) fn run() -> ExitCode {
         Err(wrong) => wrong.exit(),
     };
     ended_with(match cli.command {
-        Command::Photos(args) => photos::run_or_merge(&args),
-        Command::Align(args) => job::run(&*args),
-        Command::Train(args) => job::run(&*args),
-        Command::Evaluate(args) => job::run(&args),
-        Command::Predict(args) => predictor::run_or_stream(&args),
-        Command::Analyse(args) => job::run(&args),
-        Command::Prune(args) => job::run(&args),
-        Command::Simulate(args) => hemodynamics::simulate(&args),
-        Command::Fit(args) => job::run(&*args),
-        Command::Posture(args) => posture::run_or_suggest(&args),
-        Command::Merge(args) => merge::run(&args),
-        Command::Phantom(args) => phantom::run(&args),
+        Command::Photos(args) => jobs::photos::run_or_merge(&args),
+        Command::Align(args) => jobs::run(&*args),
+        Command::Train(args) => jobs::run(&*args),
+        Command::Evaluate(args) => jobs::run(&args),
+        Command::Predict(args) => jobs::predictor::run_or_stream(&args),
+        Command::Analyse(args) => jobs::run(&args),
+        Command::Prune(args) => jobs::run(&args),
+        Command::Simulate(args) => jobs::hemodynamics::simulate(&args),
+        Command::Fit(args) => jobs::run(&*args),
+        Command::Posture(args) => jobs::posture::run_or_suggest(&args),
+        Command::Merge(args) => runs::merge::run(&args),
+        Command::Phantom(args) => jobs::phantom::run(&args),
         Command::Tradeoff(args) => tradeoff::run(&args),
-        Command::Trajectory(args) => trajectory::run(&args),
-        Command::Run(args) => run::run(&args),
-        Command::Init(args) => init::run(&args),
+        Command::Trajectory(args) => jobs::trajectory::run(&args),
+        Command::Run(args) => runs::run::run(&args),
+        Command::Init(args) => runs::init::run(&args),
         Command::Doctor(args) => doctor::run(&args),
-        Command::Completions(args) => completions::run(&args),
-        Command::Man(args) => man::run(&args),
+        Command::Completions(args) => shell::completions::run(&args),
+        Command::Man(args) => shell::man::run(&args),
     })
 }
 

@@ -8,11 +8,11 @@ use clap::{Args, Subcommand};
 use lunula::tradeoff::peers::Peers;
 use lunula::tradeoff::{self as curves, Effort, Plan, Row, Setting, Tradeoff, Verdict};
 
-use super::phantom::SceneArg;
 use super::{Common, Outcome};
+use crate::cli::jobs::phantom::SceneArg;
 
-/// Error against run time, over the settings of a job or of all: the knee of each curve, where the default stands,
-/// other programs
+/// Measure error against run time over the settings of a job, or of all: the knee of each curve, where the default
+/// lies, other programs
 ///
 /// Writes a table (tradeoff.csv) and a picture (tradeoff.png, .svg); `all` one page (index.html).
 #[derive(Debug, Args)]
@@ -100,7 +100,7 @@ const REPEATS: usize = 3;
 /// Of those that take a tenth of a millisecond.
 const SHORT_REPEATS: usize = 9;
 
-/// Every job's settings on synthetic scenes, on one page: DIR/index.html, DIR/tradeoff.csv, a picture a job
+/// Every job's settings on synthetic scenes, on one page: DIR/index.html, DIR/tradeoff.csv, one picture per job
 #[derive(Debug, Args)]
 struct AllArgs {
     /// Seed of the synthetic inputs
@@ -258,12 +258,12 @@ fn line(row: &Row) -> String {
 
 fn say_curves(found: &Tradeoff, common: &Common) {
     for Verdict { job, choice, error_unit, knee, default, default_is, default_why, decides, .. } in &found.curves {
-        let told =
-            |what: &Option<curves::Figures>| what.as_ref().map_or("none".to_owned(), |told| told.setting.clone());
+        let setting =
+            |what: &Option<curves::Figures>| what.as_ref().map_or("none".to_owned(), |row| row.setting.clone());
         common.say(&format!(
             "{job}, {choice} ({error_unit}): knee {}; default {}, {default_is}",
-            told(knee),
-            told(default)
+            setting(knee),
+            setting(default)
         ));
         if *decides && default_is != "the knee" {
             common.say(&format!("  {default_why}"));

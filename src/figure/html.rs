@@ -19,11 +19,15 @@ pub struct Page {
     body: String,
 }
 
-const STYLE: &str = "body{font:16px/1.45 system-ui,sans-serif;max-width:72rem;margin:2rem auto;padding:0 1rem;color:#222}\
+const STYLE: &str = "\
+body{font:16px/1.45 system-ui,sans-serif;max-width:72rem;margin:2rem auto;padding:0 1rem;color:#222}\
 h1{font-weight:500}h2{font-weight:500;margin-top:2.5rem}img{max-width:100%;border:1px solid #ddd}\
-table{border-collapse:collapse;font-size:14px;font-variant-numeric:tabular-nums}th,td{padding:.2rem .6rem;border-bottom:1px solid #e4e4e4;text-align:left}\
+table{border-collapse:collapse;font-size:14px;font-variant-numeric:tabular-nums}\
+th,td{padding:.2rem .6rem;border-bottom:1px solid #e4e4e4;text-align:left}\
 th{position:sticky;top:0;background:#fff}tr.out \
-td{background:#fff3e0}figure{margin:2rem 0}figcaption{font-size:15px;color:#444;max-width:60rem}.scroll{max-height:36rem;overflow:auto}@media print{.scroll{max-height:none}}";
+td{background:#fff3e0}figure{margin:2rem 0}\
+figcaption{font-size:15px;color:#444;max-width:60rem}.scroll{max-height:36rem;overflow:auto}\
+@media print{.scroll{max-height:none}}";
 
 impl Page {
     /// An empty page.

@@ -11,8 +11,6 @@ mod figures;
 mod fit;
 mod given;
 mod grid;
-mod groups;
-mod people;
 mod response;
 mod section;
 mod simulate;
@@ -22,6 +20,7 @@ mod solve;
 pub use lunula_hemodynamics as model;
 use lunula_hemodynamics::Parameters;
 
+pub use crate::hemodynamics::section::people::{Person, Recorded};
 pub use choices::OpticsChoice;
 pub use curve::{
     CurveFigures, CurveJob, CurveOptions, CurveOutputs, CurvePoint, CurveRange, CurveReport, Fold, LoadRange, Pressed,
@@ -33,7 +32,6 @@ pub use fit::{
     FittedPhotodiode, FittedRival, PhotodiodeColumn, RecordingColumns, RecordingReport, fit, fit_plan,
 };
 pub use given::{BloodOptions, LoadOptions, ModelOptions, Start};
-pub use people::{Person, Recorded};
 pub use response::Response;
 pub use section::{Presses, QuickPress, SectionText, section_4_3, section_presses, section_simulations};
 pub use simulate::{

@@ -30,14 +30,14 @@ mod tests;
 
 use std::path::{Path, PathBuf};
 
-pub(crate) use crate::log::lines::cell::led as led_state;
-pub use crate::log::lines::stamps::TimeUnit;
-pub(crate) use crate::log::lines::status::{Statuses, Verdict};
-pub use crate::log::naming::columns::Columns;
-pub use crate::log::naming::header::LogHeader;
 pub use ambient::{AmbientError, AmbientOptions, Samples, samples};
 pub(crate) use ambient::{Preceding, piles};
 pub use foreseen::{ReadingCost, ambient_step, foreseen_bytes};
+pub(crate) use lines::cell::led as led_state;
+pub use lines::stamps::TimeUnit;
+pub(crate) use lines::status::{Statuses, Verdict};
+pub use naming::columns::Columns;
+pub use naming::header::LogHeader;
 pub use reading::{LitRows, LogReading, UnlitLoads};
 
 /// A column of a log.

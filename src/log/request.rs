@@ -17,7 +17,13 @@ struct LogOptions {
     time_unit: Option<TimeUnit>,
     /// The lowest and the highest voltage that can be recorded, as 0,10 [default: found where samples pile up at an
     /// extreme]
-    #[arg(long, help_heading = "Logs", value_name = "LOW,HIGH", value_parser = AmbientOptions::parse_full_scale, allow_hyphen_values = true)]
+    #[arg(
+        long,
+        help_heading = "Logs",
+        value_name = "LOW,HIGH",
+        value_parser = AmbientOptions::parse_full_scale,
+        allow_hyphen_values = true
+    )]
     full_scale: Option<[f64; 2]>,
     /// Of a log whose clock was reset, which stretch to take, from 1
     #[arg(long, help_heading = "Logs", value_name = "N")]

@@ -310,7 +310,9 @@ proptest! {
 
     /// Whatever bytes stand in a file, reading ends in words.
     #[test]
-    fn any_bytes_are_answered(bytes in prop::collection::vec(prop::sample::select(&b"time_s,P1;led\n\r\t\"#0123.-:e\xff"[..]), 0..200)) {
+    fn any_bytes_are_answered(
+        bytes in prop::collection::vec(prop::sample::select(&b"time_s,P1;led\n\r\t\"#0123.-:e\xff"[..]), 0..200)
+    ) {
         let text = [&b"time_s,P1\n"[..], &bytes].concat();
         for bytes in [&bytes, &text] {
             if let Err(why) = read_as("log.csv", bytes, &Columns::default()) {

@@ -4,24 +4,19 @@
 //! pixel centres, with noise and rounding; the truth is the same function where the job's result should hold it. A
 //! sensor's log is likewise the volts of a continuous movement at the samples' times.
 
-mod faults;
-pub mod finger;
-mod follow;
-pub mod force;
 pub mod log;
+mod motion;
 pub mod nail;
 pub mod photos;
-mod place;
-pub mod presses;
-mod recording;
 pub mod request;
+mod scene;
 pub mod screen;
 pub mod sensor;
 pub mod study;
-pub mod trajectory;
 pub mod video;
-mod wave;
 
-pub use faults::Faults;
-pub use place::Unwritten;
-pub use recording::{Cost, Recording, RecordingError};
+pub use motion::{finger, force, trajectory};
+pub use scene::faults::Faults;
+pub use scene::place::Unwritten;
+pub use scene::recording::{Cost, Recording, RecordingError};
+pub use study::presses;

@@ -7,28 +7,25 @@
 //! Each writes all of its results in one commit and returns its report.
 
 mod error;
-mod job;
-mod kind;
 mod normalize;
 mod options;
 pub mod outline;
-mod plan;
 mod read;
-mod report;
 mod results;
+mod run;
 mod set;
 mod sums;
 
+pub use crate::photo::run::job::run;
+pub use crate::photo::run::kind::{MapsJob, NormalizeJob};
+pub use crate::photo::run::plan::plan;
+pub use crate::photo::run::report::{PhotosFigures, PhotosReport, PoseCount};
 pub use error::{MergeError, PhotosError};
-pub use job::run;
-pub use kind::{MapsJob, NormalizeJob};
 pub use normalize::{
     Channel, FULL_SCALE, FrameFault, NailFrame, Normalization, Normalized, Resample, SMALLEST_EXTENT_PX, normalize,
 };
 pub use options::{OutlineHome, Outputs, PhotosOptions, Results};
-pub use plan::plan;
 pub use read::{Depth, MOST_MEGAPIXELS, Photograph, ReadFault};
-pub use report::{PhotosFigures, PhotosReport, PoseCount};
 pub use results::NailRow;
 pub use set::{Photo, PhotoSet, SetError, SetFault};
 pub use sums::{

@@ -45,7 +45,7 @@ pub struct SetFault {
 
 impl std::fmt::Display for SetFault {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}: {}", self.place, self.what)
+        write!(f, "{}: {}", shown(&self.place), self.what)
     }
 }
 

@@ -23,36 +23,30 @@ use std::path::PathBuf;
 pub use lunula_predictor as models;
 use lunula_predictor::{Dataset, Predictor, recording_hashes};
 
-pub use crate::predictor::jobs::analyse::{
-    AnalyseFigures, AnalyseReport, ModelMode, ModelModes, Printed, analyse, analyse_plan,
-};
-pub use crate::predictor::jobs::answer::Answering;
-pub use crate::predictor::jobs::compare::{
-    CompareFigures, CompareOptions, CompareReport, Comparison, Person, Spread, compare, compare_plan,
-};
-pub use crate::predictor::jobs::evaluate::{
-    BinMerit, EvaluateFigures, EvaluateOptions, EvaluateReport, HeldOut, Magnitudes, Part, RecordingMerit, evaluate,
-    evaluate_plan,
-};
-pub use crate::predictor::jobs::kinds::{AnalyseJob, CompareJob, EvaluateJob, PredictJob, PruneJob, TrainJob};
-pub use crate::predictor::jobs::predict::{
-    PredictFigures, PredictOptions, PredictReport, predict, predict_plan, predict_stream,
-};
-pub use crate::predictor::jobs::prune::{PruneFigures, PruneReport, PruneRow, prune, prune_plan};
-pub use crate::predictor::jobs::train::{
-    TrainFigures, TrainInputs, TrainOptions, TrainOutputs, TrainReport, Without, train, train_plan,
-};
-pub use crate::predictor::merit::figures::{ByTarget, Merit};
-pub use crate::predictor::options::choices::{ByChoice, F_MIN_N, FOLDS, HIDDEN, LEVEL, ModelChoice, share};
-pub use crate::predictor::options::commands::{
-    CompareChoices, EvaluateChoices, NetworkOptions, PredictChoices, PruneChoices, TrainChoices,
-};
-pub use crate::predictor::options::target::{POSTURE, Target};
 pub use data::{
     DataError, DataFile, FailedFile, FileRows, Inputs, Read, Row, RowOptions, RowStream, Wanted, read_data, read_files,
     read_inputs,
 };
 pub use error::PredictorError;
+pub use jobs::analyse::{AnalyseFigures, AnalyseReport, ModelMode, ModelModes, Printed, analyse, analyse_plan};
+pub use jobs::answer::Answering;
+pub use jobs::compare::{
+    CompareFigures, CompareOptions, CompareReport, Comparison, Person, Spread, compare, compare_plan,
+};
+pub use jobs::evaluate::{
+    BinMerit, EvaluateFigures, EvaluateOptions, EvaluateReport, HeldOut, Magnitudes, Part, RecordingMerit, evaluate,
+    evaluate_plan,
+};
+pub use jobs::kinds::{AnalyseJob, CompareJob, EvaluateJob, PredictJob, PruneJob, TrainJob};
+pub use jobs::predict::{PredictFigures, PredictOptions, PredictReport, predict, predict_plan, predict_stream};
+pub use jobs::prune::{PruneFigures, PruneReport, PruneRow, prune, prune_plan};
+pub use jobs::train::{TrainFigures, TrainInputs, TrainOptions, TrainOutputs, TrainReport, Without, train, train_plan};
+pub use merit::figures::{ByTarget, Merit};
+pub use options::choices::{ByChoice, F_MIN_N, FOLDS, HIDDEN, LEVEL, ModelChoice, share};
+pub use options::commands::{
+    CompareChoices, EvaluateChoices, NetworkOptions, PredictChoices, PruneChoices, TrainChoices,
+};
+pub use options::target::{POSTURE, Target};
 pub use outputs::FolderOutputs;
 
 /// Model files, read.

@@ -198,8 +198,10 @@ mod tests {
 
     #[test]
     fn a_comparison_gives_the_cost_of_a_removed_photodiode() {
-        let text = "figure,group,series,unit,rmse_mean,rmse_sd,people\n109,Fz_N,linear,N,0.4,0.1,7\n110,Fz_N,linear,N,0.8,0.1,7\n\
-                    109,Fz_N,network of 8,N,0.5,0.1,7\n113,none,Fz_N,N,0.4,,7\n113,P1,Fz_N,N,0.5,,7\n113,P2,Fz_N,N,0.4,,6\n";
+        let text = "figure,group,series,unit,rmse_mean,rmse_sd,people\n\
+                    109,Fz_N,linear,N,0.4,0.1,7\n110,Fz_N,linear,N,0.8,0.1,7\n\
+                    109,Fz_N,network of 8,N,0.5,0.1,7\n\
+                    113,none,Fz_N,N,0.4,,7\n113,P1,Fz_N,N,0.5,,7\n113,P2,Fz_N,N,0.4,,6\n";
         let found = compare_numbers(folder(&[("comparisons.csv", text)]).path()).unwrap();
         assert_eq!((found.get("109.Fz_N.network"), found.get("110.Fz_N.linear over 109")), (Some(0.5), Some(2.0)));
         assert!((found.get("113.P1.Fz_N_loss").unwrap() - 0.25).abs() < 1e-12);

@@ -182,12 +182,17 @@ proptest! {
 
     #[test]
     fn numbers_come_back(
-        free in prop::collection::vec(prop::option::of(prop::num::f64::NORMAL | prop::num::f64::SUBNORMAL | prop::num::f64::ZERO), 1..20),
+        free in prop::collection::vec(
+            prop::option::of(prop::num::f64::NORMAL | prop::num::f64::SUBNORMAL | prop::num::f64::ZERO),
+            1..20,
+        ),
         fixed in -1e6..1e6_f64,
     ) {
         let read = FORMATS.map(|extension| {
             let rows: Vec<[Value<'_>; 5]> =
-                free.iter().map(|&x| [Value::Missing, Value::Number(fixed), x.into(), Value::Number(fixed), Value::Missing]).collect();
+                free.iter()
+                    .map(|&x| [Value::Missing, Value::Number(fixed), x.into(), Value::Number(fixed), Value::Missing])
+                    .collect();
             let (_dir, path) = written(extension, &rows);
             let table = Table::read(&path).unwrap();
             (table.numbers("free").unwrap(), table.numbers("J2_deg").unwrap()[0].unwrap())

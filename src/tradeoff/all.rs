@@ -5,12 +5,12 @@ use std::time::Instant;
 
 use super::judge::{Tradeoff, judge};
 use super::peers::{Peers, Python};
-use super::rows::Row;
-use super::scenes::{self, Wanted};
-use super::timing::Effort;
 use super::{align, hemodynamics, photos, posture, predictor};
 use crate::job::Interrupted;
 use crate::phantom::video::Preset;
+use crate::tradeoff::measure::rows::Row;
+use crate::tradeoff::measure::scenes::{self, Wanted};
+use crate::tradeoff::measure::timing::Effort;
 
 /// What can be measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -9,14 +9,14 @@ use ndarray::Array2;
 use rayon::prelude::*;
 
 use super::peers::{PeerReport, Python, Script};
-use super::rows::{Measured, Row};
-use super::timing::{Effort, Run, Timing, in_turns};
 use crate::job::Watch;
 use crate::npy;
 use crate::photo::outline::{Axis, DetectOptions, Drawn, Outline, OutlineOptions, Sources, detect, read_annotated};
 use crate::photo::{
     NailFrame, Normalization, Outputs, Photo, PhotoSet, Photograph, PhotosOptions, Resample, run as run_photos,
 };
+use crate::tradeoff::measure::rows::{Measured, Row};
+use crate::tradeoff::measure::timing::{Effort, Run, Timing, in_turns};
 
 /// How values between pixels are told.
 pub(super) const RESAMPLING: (&str, &str) = ("photos", "resampling");

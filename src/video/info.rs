@@ -6,8 +6,9 @@ use ffmpeg::util::chroma::Location;
 use ffmpeg::{Rational, color, frame};
 use ffmpeg_next as ffmpeg;
 
-use super::source::Source;
-use super::{Format, Matrix, Plane, Turn, pixel};
+use super::{Format, Matrix, Plane, Turn};
+use crate::video::colour::pixel;
+use crate::video::read::source::Source;
 
 /// What the container and the first frame say of the video.
 #[derive(Debug, Clone, PartialEq)]

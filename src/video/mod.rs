@@ -5,30 +5,20 @@
 //! those of the *stored* picture; [`Turn`] leads from there to the picture as it is shown (upright). The centre of the
 //! top-left sample of the luma is (0, 0), x to the right, y down.
 
-mod bgr;
-mod convert;
-mod decode;
-mod encode;
+mod colour;
 mod error;
-mod extent;
 mod frame;
-mod header;
-mod hidden;
 mod info;
-mod matrix;
-mod order;
-mod pixel;
-mod reader;
-mod source;
+mod read;
 mod turn;
-mod upright;
+mod write;
 
-pub use bgr::Bgr;
-pub use decode::{End, Item, Video};
-pub use encode::{Encoder, Encoding};
+pub use colour::bgr::Bgr;
+pub use colour::matrix::Matrix;
 pub use error::VideoError;
 pub use frame::{Format, Frame, Picture, Plane};
-pub use header::Header;
 pub use info::Info;
-pub use matrix::Matrix;
+pub use read::decode::{End, Item, Video};
+pub use read::header::Header;
 pub use turn::Turn;
+pub use write::encode::{Encoder, Encoding};

@@ -85,7 +85,7 @@ impl ClockReader {
             }
             if !(w >= 4.0 * clock.format.digits() as f64 && h >= 8.0) {
                 return Err(format!(
-                    "the clock's roi = [{x}, {y}, {w}, {h}] holds no {} legible digits; {help}",
+                    "the clock's roi = [{x}, {y}, {w}, {h}] is too small for {} legible digits; {help}",
                     clock.format.digits()
                 ));
             }

@@ -12,8 +12,8 @@ use crate::files::Staging;
 use crate::hemodynamics::curve::Pressed;
 use crate::hemodynamics::figures::{WIDTH, chart, line, over_time};
 use crate::hemodynamics::fit::{own_parameters, voltages};
-use crate::hemodynamics::groups::GROUPS;
-use crate::hemodynamics::people::{PRESSED_S, Person, RELEASED_S, Recorded, ends};
+use crate::hemodynamics::section::groups::GROUPS;
+use crate::hemodynamics::section::people::{PRESSED_S, Person, RELEASED_S, Recorded, ends};
 use crate::words::Words;
 
 /// A force is one of the curve's where it is so near, N.

@@ -7,6 +7,8 @@
 //! constants that the thesis measured (0.16/0.12 s proximal, 0.18/0.36 s distal).
 
 mod experiments;
+pub(in crate::hemodynamics) mod groups;
+pub(in crate::hemodynamics) mod people;
 mod statics;
 mod steps;
 mod tune;
@@ -21,7 +23,7 @@ use crate::files::Staging;
 use crate::hemodynamics::Response;
 use crate::hemodynamics::curve::Pressed;
 use crate::hemodynamics::figures::N_PER_CM2;
-use crate::hemodynamics::groups::{GROUPS, scaled};
+use crate::hemodynamics::section::groups::{GROUPS, scaled};
 pub use experiments::{Presses, QuickPress};
 use steps::{Change, Signal, Stepped, change, steps};
 use tune::{constants_s, is_at_end, tune};

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::steps::{change, steps};
 use crate::hemodynamics::curve::Pressed;
-use crate::hemodynamics::groups::scaled;
+use crate::hemodynamics::section::groups::scaled;
 
 /// Tenfold either way.
 const MOST: f64 = std::f64::consts::LN_10;
@@ -28,9 +28,9 @@ pub(super) fn constants_s(parameters: &Parameters, load_pa: f64) -> Option<[f64;
     Some(found)
 }
 
-/// The factors of [`GROUPS`](crate::hemodynamics::groups::GROUPS) whose time constants under steps of this load are the
-/// nearest to those wanted, in ratio: the best of searches from the parameters themselves and from all corners about
-/// them, the same each time.
+/// The factors of [`GROUPS`](crate::hemodynamics::section::groups::GROUPS) whose time constants under steps of this
+/// load are the nearest to those wanted, in ratio: the best of searches from the parameters themselves and from all
+/// corners about them, the same each time.
 pub(super) fn tune(parameters: &Parameters, wanted_s: [f64; 4], load_pa: f64) -> [f64; 4] {
     let cost = |logs: &[f64; 4]| -> f64 {
         let own = scaled(parameters, &logs.map(f64::exp)).and_then(|scaled| constants_s(&scaled, load_pa));

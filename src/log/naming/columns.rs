@@ -2,8 +2,8 @@
 //!
 //! In: the names in the file's header and the user's mapping. Out: a [`Choice`]. A name that the user gives is looked
 //! for as it is, then without regard to case; `#2` is the second column, whatever its name. Then come the contract's
-//! own names; then, for what is still not found, [`guess`](crate::log::naming::guess), which only counts where a single column
-//! answers to it and is told.
+//! own names; then, for what is still not found, [`guess`](crate::log::naming::guess), which only counts where a single
+//! column answers to it and is told.
 
 use std::collections::{HashMap, HashSet};
 use std::num::NonZeroUsize;

@@ -9,7 +9,7 @@ use std::path::Path;
 
 use super::LogScene;
 use super::doing::Doing;
-use crate::phantom::finger::JOINTS;
+use crate::phantom::motion::finger::JOINTS;
 use crate::table::{Column, TableError, TableWriter, Value};
 
 /// Frames a second.

@@ -2,9 +2,9 @@
 
 use super::angles::FPS;
 use super::{Faults, LogOptions};
-use crate::phantom::force::ForceTrajectory;
+use crate::phantom::motion::force::ForceTrajectory;
+use crate::phantom::motion::trajectory::Trajectory;
 use crate::phantom::sensor::CHANNELS;
-use crate::phantom::trajectory::Trajectory;
 
 /// More rows than anybody reads.
 const MOST_ROWS: f64 = 2e7;

@@ -12,11 +12,11 @@
 use rand::RngExt;
 
 use super::LogOptions;
-use crate::phantom::follow::{Follow, KIND_FOLLOW};
-use crate::phantom::force::{Press, Spiral};
+use crate::phantom::motion::follow::{Follow, KIND_FOLLOW};
+use crate::phantom::motion::force::{Press, Spiral};
+use crate::phantom::motion::trajectory::{J3_PER_J2, Movement, Trajectory};
 use crate::phantom::nail::numbers;
 use crate::phantom::sensor::Touch;
-use crate::phantom::trajectory::{J3_PER_J2, Movement, Trajectory};
 
 /// How long a finger takes to straighten, seconds.
 const STRAIGHTEN_S: f64 = 1.0;
@@ -88,9 +88,9 @@ pub(super) fn shift_rad(options: &LogOptions) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::phantom::follow::LATE_S;
     use crate::phantom::log::Protocol;
-    use crate::phantom::wave::Wave;
+    use crate::phantom::motion::follow::LATE_S;
+    use crate::phantom::motion::wave::Wave;
 
     /// A protocol's log whose finger does exactly what is prompted.
     fn exact(protocol: Protocol) -> LogOptions {

@@ -27,7 +27,7 @@ mod protocol;
 mod record;
 mod write;
 
-pub use super::faults::Faults;
+pub use crate::phantom::scene::faults::Faults;
 pub use options::{LogOptions, Stamps};
 pub use protocol::Protocol;
 pub use record::{LogScene, Row};

@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
-use crate::phantom::force::ForceTrajectory;
+use crate::phantom::motion::force::ForceTrajectory;
+use crate::phantom::motion::trajectory::Trajectory;
 use crate::phantom::screen::{Clock, Jump};
 use crate::phantom::sensor::Dynamics;
-use crate::phantom::trajectory::Trajectory;
 
 /// How rows say their time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]

@@ -4,8 +4,8 @@ use lunula_predictor::Bending;
 use serde::Serialize;
 
 use super::LogOptions;
-use crate::phantom::force::{Cycles, ForceTrajectory, Spiral};
-use crate::phantom::trajectory::Trajectory;
+use crate::phantom::motion::force::{Cycles, ForceTrajectory, Spiral};
+use crate::phantom::motion::trajectory::Trajectory;
 
 /// How long the finger bends before it touches at random, and touches then, seconds (5.3.1).
 const RANDOM_S: [f64; 2] = [20.0, 100.0];

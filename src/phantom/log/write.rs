@@ -10,8 +10,8 @@ use thiserror::Error;
 use super::angles::write_angles;
 use super::{LogOptions, LogScene, Row, Stamps};
 use crate::files::{Staging, WriteError};
-use crate::phantom::finger::JOINTS;
-use crate::phantom::place::{Unwritten, in_the_way, refused};
+use crate::phantom::motion::finger::JOINTS;
+use crate::phantom::scene::place::{Unwritten, in_the_way, refused};
 use crate::phantom::sensor::CHANNELS;
 use crate::table::{Column, TableError, TableWriter, Value};
 

@@ -7,10 +7,10 @@ use super::{
     NailScene,
     coloration::zones,
     finger::FingerPlace,
-    light::CHAMBER,
     shape::NailPlace,
     smooth::{Edge, Line, bell, noise1, noise2, resolved, step},
 };
+use crate::phantom::nail::chamber::light::CHAMBER;
 
 /// A scene made ready to be evaluated.
 #[derive(Debug, Clone)]

@@ -13,11 +13,10 @@
 //! Colours are fractions of full scale as a camera encodes them (sRGB's curve), composed in that space. What is not
 //! modelled: depth of field, the finger's third dimension other than by shading, interreflection.
 
-mod camera;
+mod chamber;
 mod coloration;
 mod field;
 mod finger;
-mod light;
 mod pose;
 mod render;
 mod scene;
@@ -26,10 +25,10 @@ mod skin;
 mod smooth;
 mod subject;
 
-pub use camera::{Background, Camera};
+pub use chamber::camera::{Background, Camera};
+pub use chamber::light::{Glare, Light};
 pub use field::Field;
 pub use finger::FingerShape;
-pub use light::{Glare, Light};
 pub use pose::{Pose, UnknownPose};
 pub use render::{Depth, RenderOptions};
 pub use scene::{NailScene, SceneFault};

@@ -21,7 +21,7 @@ use crate::{
     labelme::{self, LabelMe, Shape, to_labelme},
     phantom::{
         nail::{NailScene, Pose, SceneFault},
-        place::{PHOTOS_RECORD as RECORD, Unwritten, in_the_way, refused},
+        scene::place::{PHOTOS_RECORD as RECORD, Unwritten, in_the_way, refused},
     },
 };
 

@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
+use crate::phantom::motion::trajectory::Trajectory;
 use crate::phantom::screen::Jump;
 use crate::phantom::sensor::CHANNELS;
-use crate::phantom::trajectory::Trajectory;
 use crate::phantom::video::{Hide, Leave, Preset, Siting};
 use anyhow::Context;
 use clap::ValueEnum;

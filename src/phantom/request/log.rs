@@ -3,11 +3,11 @@
 use clap::{Args, ValueEnum};
 
 use super::choices::{parse_gap, parse_photodiode, parse_set_clock, trajectory};
-use crate::phantom::force::{Cycles, ForceTrajectory, Spiral};
 use crate::phantom::log::{LogOptions, Protocol, Stamps};
+use crate::phantom::motion::force::{Cycles, ForceTrajectory, Spiral};
+use crate::phantom::motion::trajectory::Trajectory;
 use crate::phantom::screen::Jump;
 use crate::phantom::sensor::Dynamics;
-use crate::phantom::trajectory::Trajectory;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum ForceArg {
@@ -60,7 +60,7 @@ enum StampsArg {
 /// What `lunula phantom log` takes.
 #[derive(Debug, Clone, Args)]
 pub struct LogRequest {
-    /// Everything random follows from it, but for the person and the session
+    /// Seed of everything random but the person and the session
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// Whose finger it is

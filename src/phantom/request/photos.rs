@@ -8,7 +8,7 @@ use clap::{Args, ValueEnum};
 /// What `lunula phantom photos` takes.
 #[derive(Debug, Clone, Args)]
 pub struct PhotosRequest {
-    /// Everything random follows from it
+    /// Seed of everything random
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// How many subjects; 16 cover all skin tones
@@ -20,7 +20,7 @@ pub struct PhotosRequest {
     /// Width and height of the photographs, pixels
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "640x480", value_parser = parse_size)]
     size: (u32, u32),
-    /// Bits a channel
+    /// Bits per channel
     #[arg(long, default_value_t = 8)]
     depth: u32,
     /// One channel, as through the thesis' green filter

@@ -8,7 +8,7 @@ use crate::phantom::study::StudyOptions;
 /// What `lunula phantom study` takes.
 #[derive(Debug, Clone, Args)]
 pub struct StudyRequest {
-    /// Everything random follows from it
+    /// Seed of everything random
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// How many people are photographed; 16 cover all skin tones
@@ -23,7 +23,7 @@ pub struct StudyRequest {
     /// Width and height of the videos, pixels
     #[arg(long, value_name = "WIDTHxHEIGHT", default_value = "640x360", value_parser = parse_size)]
     video_size: (u32, u32),
-    /// Frames a second
+    /// Frames per second
     #[arg(long, default_value_t = 30.0)]
     fps: f64,
     /// How long the finger bends before the camera

@@ -8,15 +8,15 @@ use super::choices::{
 };
 use super::clock::ClockArgs;
 use crate::flexion::Flexion;
-use crate::phantom::finger::{Finger, MarkerLayout};
-use crate::phantom::trajectory::Trajectory;
+use crate::phantom::motion::finger::{Finger, MarkerLayout};
+use crate::phantom::motion::trajectory::Trajectory;
 use crate::phantom::video::{Chroma, Colours, Hide, Leave, Lens, VideoOptions};
 use crate::video::{Matrix, Turn};
 
 /// What `lunula phantom video` takes.
 #[derive(Debug, Clone, Args)]
 pub struct VideoRequest {
-    /// Everything random follows from it
+    /// Seed of everything random
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// The scene to start from: clean (noise 2, crf 16), hard (noise 6, blur, flicker, gradient, distractors, a hidden
@@ -26,7 +26,7 @@ pub struct VideoRequest {
     /// Width and height of the picture, pixels; the finger grows with the width
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = parse_size)]
     size: Option<(u32, u32)>,
-    /// Frames a second
+    /// Frames per second
     #[arg(long)]
     fps: Option<f64>,
     /// How long [default: 10, or as long as a given trajectory]
@@ -143,7 +143,8 @@ pub struct VideoRequest {
     crf: Option<u32>,
     /// x264's preset
     #[arg(long, value_name = "PRESET", default_value = "medium",
-          value_parser = ["ultrafast", "superfast", "veryfast", "faster", "fast", "medium", "slow", "slower", "veryslow"])]
+          value_parser = [
+              "ultrafast", "superfast", "veryfast", "faster", "fast", "medium", "slow", "slower", "veryslow"])]
     x264: String,
 }
 

@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 use rand::RngExt;
 use serde::Serialize;
 
+use crate::phantom::motion::wave::{Wave, random_wave};
 use crate::phantom::nail::numbers;
-use crate::phantom::wave::{Wave, random_wave};
 
 const KIND_AMBIENT: u32 = 24;
 /// The hum's share of the swing; the rest is slow.

@@ -4,8 +4,8 @@ use rand::RngExt;
 use serde::Serialize;
 
 use super::CHANNELS;
+use crate::phantom::motion::wave::{Wave, random_wave};
 use crate::phantom::nail::numbers;
-use crate::phantom::wave::{Wave, random_wave};
 
 const KIND_WANDER: u32 = 25;
 /// How long creep takes, seconds.

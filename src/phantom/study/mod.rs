@@ -20,6 +20,7 @@
 //! What is not modelled: people's sex; that a person's nail, photodiodes and pulp belong together.
 
 mod options;
+pub mod presses;
 mod session;
 mod tables;
 mod write;
@@ -31,10 +32,10 @@ use session::{Session, sessions};
 pub use write::{StudyError, StudySummary, write_watched};
 
 use super::photos::{LightKind, PhotoOptions};
-use super::presses::PressOptions;
 use super::{Faults, Recording};
 use crate::hemodynamics::Pressed;
 use crate::words::Words;
+use presses::PressOptions;
 
 /// The tables' folder, and which of its files says what was asked for.
 const TABLES: &str = "tables";

@@ -8,9 +8,9 @@ use rand::RngExt;
 use super::StudyOptions;
 use crate::phantom::Recording;
 use crate::phantom::log::{LogOptions, Protocol};
+use crate::phantom::motion::trajectory::Trajectory;
 use crate::phantom::nail::numbers;
 use crate::phantom::screen::Clock;
-use crate::phantom::trajectory::Trajectory;
 use crate::phantom::video::VideoOptions;
 
 /// A session of somebody.

@@ -13,7 +13,7 @@ use thiserror::Error;
 use super::{RECORD, Study, StudyOptions, TABLES};
 use crate::files::{Staging, WriteError};
 use crate::job::{Interrupted, Watch};
-use crate::phantom::place::{Unwritten, in_the_way, refused};
+use crate::phantom::scene::place::{Unwritten, in_the_way, refused};
 use crate::phantom::{Recording, RecordingError};
 use crate::stages::{Stage, Stages};
 

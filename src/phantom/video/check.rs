@@ -2,7 +2,7 @@
 
 use super::lens::Mapping;
 use super::{Faults, VideoOptions};
-use crate::phantom::finger::Finger;
+use crate::phantom::motion::finger::Finger;
 
 impl VideoOptions {
     /// Can this video be made?

@@ -29,28 +29,19 @@
 //!
 //! The same options give the same bytes whatever the number of threads.
 
-mod blot;
 mod check;
-mod edge;
+mod draw;
 mod lens;
-mod limb;
 mod marker_file;
-mod objects;
 mod options;
-mod paint;
-mod panel;
-mod picture;
-mod row;
 mod scene;
-mod sensor;
 mod settle;
-mod share;
 mod truth;
 mod write;
 
-pub use super::faults::Faults;
+pub use crate::phantom::scene::faults::Faults;
+pub use draw::sensor::Siting;
 pub use lens::Lens;
 pub use options::{Chroma, Colours, Hide, Leave, Preset, ScreenEvents, VideoOptions};
 pub use scene::{FrameTruth, MarkerStatus, MarkerTruth, Scene, SceneMarker};
-pub use sensor::Siting;
 pub use write::{Error, Stages, Summary, write, write_watched};

@@ -4,9 +4,9 @@ use serde::{Serialize, Serializer};
 
 use super::{Lens, Siting};
 use crate::flexion::Flexion;
-use crate::phantom::finger::{Finger, JOINTS, MarkerLayout};
+use crate::phantom::motion::finger::{Finger, JOINTS, MarkerLayout};
+use crate::phantom::motion::trajectory::Trajectory;
 use crate::phantom::screen::Clock;
-use crate::phantom::trajectory::Trajectory;
 use crate::video::{Format, Matrix, Turn};
 
 /// The scenes of the table.

@@ -6,11 +6,11 @@ use std::f64::consts::TAU;
 use serde::Serialize;
 
 use super::VideoOptions;
-use super::blot::Blot;
 use super::lens::Mapping;
-use super::limb::Limb;
-use super::objects::{Distractor, Stick};
-use crate::phantom::finger::Skin;
+use crate::phantom::motion::finger::Skin;
+use crate::phantom::video::draw::blot::Blot;
+use crate::phantom::video::draw::limb::Limb;
+use crate::phantom::video::draw::objects::{Distractor, Stick};
 
 /// Ticks a second of the frames' times.
 pub(super) const TICKS_PER_S: i32 = 90_000;

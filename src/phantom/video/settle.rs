@@ -5,15 +5,15 @@ use std::f64::consts::TAU;
 
 use rand::RngExt;
 
-use super::blot::Blot;
 use super::lens::{Mapping, row_moves};
-use super::limb::Limb;
-use super::objects::{Distractor, Outline, Stick};
 use super::scene::{Scene, SceneMarker, TICKS_PER_S};
 use super::{Faults, Hide, VideoOptions};
 use crate::flexion::Flexion;
 use crate::phantom::nail::numbers;
 use crate::phantom::screen::{Clock, Jump};
+use crate::phantom::video::draw::blot::Blot;
+use crate::phantom::video::draw::limb::Limb;
+use crate::phantom::video::draw::objects::{Distractor, Outline, Stick};
 
 const KIND_TIMES: u32 = 13;
 /// A share of the frames that is dropped where the frame rate varies.

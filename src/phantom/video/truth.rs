@@ -1,7 +1,7 @@
 //! What is true of a frame.
 
 use super::scene::{FrameTruth, MarkerStatus, MarkerTruth, Scene};
-use super::share::shares;
+use crate::phantom::video::draw::share::shares;
 
 /// A marker's visible shares under and over which it counts as hidden and as seen.
 const HIDDEN_UNDER: f64 = 0.005;

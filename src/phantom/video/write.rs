@@ -12,7 +12,7 @@ use super::scene::TICKS_PER_S;
 use super::{FrameTruth, MarkerStatus, Scene, Siting, VideoOptions};
 use crate::files::{Staging, WriteError};
 use crate::job::{Interrupted, Watch};
-use crate::phantom::place::{Unwritten, in_the_way, refused};
+use crate::phantom::scene::place::{Unwritten, in_the_way, refused};
 use crate::table::{Column, TableError, TableWriter, Value};
 use crate::video::{Encoder, Encoding, Picture, VideoError};
 

@@ -20,8 +20,8 @@ use crate::files::Staging;
 use crate::job::{Report, Watch};
 use crate::photo::error::MergeError;
 use crate::photo::normalize::Normalization;
-use crate::photo::report::{PoseCount, one_subject, pose_counts};
 use crate::photo::results::{NailTable, write_maps};
+use crate::photo::run::report::{PoseCount, one_subject, pose_counts};
 use crate::stages::Stages;
 
 /// What is gathered, and where results go.

@@ -7,8 +7,8 @@ use super::partial;
 use crate::files::Staging;
 use crate::job::Watch;
 use crate::photo::error::MergeError;
-use crate::photo::report::{PhotosReport, of_merge};
 use crate::photo::results::{NailTable, write_maps};
+use crate::photo::run::report::{PhotosReport, of_merge};
 use crate::stages::{Stages, Step};
 
 /// Joins the sums and the tables of nails of `parts` (folders that `lunula photos` wrote), and puts the results in

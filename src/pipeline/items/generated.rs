@@ -2,7 +2,7 @@
 //!
 //! ```toml
 //! [phantom]
-//! study = { seed = 1, subjects = 4 }                  # a whole experiment: {phantom}/photos, {phantom}/s01/bending, {phantom}/tables, ..
+//! study = { seed = 1, subjects = 4 }     # a whole experiment: {phantom}/photos, {phantom}/s01/bending, ..
 //! photos = { seed = 1, grey = true }                  # or single scenes: {phantom}/photos/photos/<pose>/<subject>.png
 //! video = { scene = "hard", seconds = 20 }            # {phantom}/video/video.mp4, markers.toml, truth/
 //! log = { protocol = "touch" }                        # {phantom}/log/log.csv, truth/

@@ -18,8 +18,8 @@ use std::path::{Path, PathBuf};
 
 use super::spec::Filter;
 use crate::job::{Facts, Keys};
-use crate::pipeline::items::catalogue::Catalogue;
-use crate::pipeline::items::pattern::{Listed, Tree};
+use catalogue::Catalogue;
+use pattern::{Listed, Tree};
 
 pub(super) use input::{InputItems, check_filter, input_items};
 pub(super) use join::{Index, JoinedRows, Unjoined, join};

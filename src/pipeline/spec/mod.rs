@@ -16,7 +16,8 @@
 //!
 //! [stage.angles]
 //! job = "posture"
-//! video = "bending.video"               # INPUT, INPUT.COLUMN, STAGE, STAGE.PART, or { from = "..", where = { subject = ["S01", "S02"] } }
+//! video = "bending.video"               # INPUT, INPUT.COLUMN, STAGE, STAGE.PART, or
+//!                                       # { from = "..", where = { subject = ["S01", "S02"] } }
 //! joints = ["J2"]                       # options, as the command's, with _ for -
 //! ```
 
@@ -53,7 +54,11 @@ pub enum PipelineError {
     /// The file is wrong, perhaps in several places.
     #[error(
         "{}",
-        faults.iter().map(|f| format!("{}:{}:{}: {}", path.display(), f.line, f.column, f.what)).collect::<Vec<_>>().join("\n")
+        faults
+            .iter()
+            .map(|f| format!("{}:{}:{}: {}", path.display(), f.line, f.column, f.what))
+            .collect::<Vec<_>>()
+            .join("\n")
     )]
     Faults {
         /// The file.

@@ -25,9 +25,9 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::files::{clear_leftovers, write_whole};
-use crate::pipeline::store::hashes::ContentHash;
-use crate::pipeline::store::record::{FORMAT, Record};
 use crate::pipeline::tasks::{Task, TaskId};
+use hashes::ContentHash;
+use record::{FORMAT, Record};
 
 /// A task that failed when it was tried last.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]

@@ -91,7 +91,12 @@ impl Prepared for Toy {
     }
 
     fn depends_on(&self, demand: &Demand) -> serde_json::Value {
-        serde_json::json!({ "given": self.options, "joints": demand.joints, "clock": demand.clock, "parts": demand.parts })
+        serde_json::json!({
+            "given": self.options,
+            "joints": demand.joints,
+            "clock": demand.clock,
+            "parts": demand.parts,
+        })
     }
 
     fn maker(self: Arc<Self>, _keys: &Keys, _demand: &Demand) -> Arc<dyn Maker> {

@@ -110,7 +110,11 @@ impl Toy {
             stage: id.split('/').next().unwrap_or_default().to_owned(),
             keys: Keys::default(),
             inputs,
-            options: serde_json::json!({ "job": "toy", "revision": 1, "options": { "salt": self.salt, "blunt": self.blunt } }),
+            options: serde_json::json!({
+                "job": "toy",
+                "revision": 1,
+                "options": { "salt": self.salt, "blunt": self.blunt },
+            }),
             share: Share::Whole,
             memory: 0,
             cost_s: 1.0,

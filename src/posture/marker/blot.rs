@@ -12,7 +12,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::sight::Loss;
-use super::siting::Siting;
+use crate::posture::marker::looks::siting::Siting;
 use crate::video::Frame;
 
 /// Share from which a sample is within the outline.

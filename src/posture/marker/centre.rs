@@ -17,11 +17,11 @@ use nalgebra::{Matrix2, Matrix4, Vector4};
 use super::blot::Outline;
 use super::disc::{Ground, Say, Shape, View, Window, sums};
 use super::fit::Fit;
-use super::look::Look;
 use super::method::Method;
 use super::rough::rough;
 use super::sight::{Centre, Loss};
-use super::siting::Siting;
+use crate::posture::marker::looks::look::Look;
+use crate::posture::marker::looks::siting::Siting;
 use crate::video::Frame;
 
 /// A step that is small enough.

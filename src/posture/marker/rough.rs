@@ -1,8 +1,8 @@
 //! Where a marker is to about half a pixel: the centroid of what is nearer to its colour than to its surround's.
 
-use super::look::Look;
 use super::sight::Loss;
-use super::siting::Siting;
+use crate::posture::marker::looks::look::Look;
+use crate::posture::marker::looks::siting::Siting;
 use crate::video::Frame;
 
 /// Points of the ring that tells the surround's colour.

@@ -11,7 +11,7 @@ use crate::job::{Report, Watch};
 use crate::posture::angle::joints::Angles;
 use crate::posture::error::PostureError;
 use crate::posture::layout::{Layout, MarkerShape};
-use crate::posture::marker::siting::Siting;
+use crate::posture::marker::looks::siting::Siting;
 use crate::posture::options::{Outputs, PostureOptions};
 use crate::posture::run::filmed_clock::FilmedClock;
 use crate::posture::run::plan::{Known, OUTLINES, WHOLE_FRAMES, steps};

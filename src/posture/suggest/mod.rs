@@ -15,8 +15,8 @@ pub(super) use text::hex;
 use order::{path, row, total_turn};
 
 use super::marker::blot::Blot;
-use super::marker::siting::Siting;
 use super::track::loose_look;
+use crate::posture::marker::looks::siting::Siting;
 use crate::posture::survey::find::{Blob, Finder, Paint};
 use crate::posture::survey::naming::Point;
 use crate::video::{Frame, Info};

@@ -19,11 +19,11 @@ use spots::Spots;
 
 use super::layout::Layout;
 use super::marker::blot::Blot;
-use super::marker::look::Look;
-use super::marker::siting::Siting;
-use crate::posture::survey::find::Paint;
-use crate::posture::survey::naming::{Chain, MISSING, Naming, Point, lone};
+use crate::posture::marker::looks::look::Look;
+use crate::posture::marker::looks::siting::Siting;
 use crate::video::{Frame, Info};
+use find::Paint;
+use naming::{Chain, MISSING, Naming, Point, lone};
 
 /// Frames that are looked at before names are given.
 const LEAST_FRAMES: usize = 3;

@@ -3,9 +3,9 @@
 use super::super::layout::MarkerShape;
 use super::super::marker::blot::Blot;
 use super::super::marker::centre::{Scratch, centre};
-use super::super::marker::look::Look;
-use super::super::marker::siting::{Siting, SitingEvidence};
 use super::super::track::loose_look;
+use crate::posture::marker::looks::look::Look;
+use crate::posture::marker::looks::siting::{Siting, SitingEvidence};
 use crate::posture::survey::find::{Area, Blob, Finder, Paint};
 use crate::posture::survey::naming::Point;
 use crate::video::Frame;

@@ -4,7 +4,7 @@
 //! standard error to match. Angles never come from such places, for no segment has such a marker.
 
 use crate::posture::marker::fit::Fit;
-use crate::posture::marker::look::Look;
+use crate::posture::marker::looks::look::Look;
 use crate::posture::marker::sight::Centre;
 use crate::posture::survey::find::Blob;
 use crate::posture::survey::naming::Point;

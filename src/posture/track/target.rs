@@ -1,7 +1,7 @@
 //! One marker on its way: where it was, how it moves, how it looks.
 
 use crate::posture::marker::fit::Fit;
-use crate::posture::marker::look::Look;
+use crate::posture::marker::looks::look::Look;
 use crate::posture::marker::sight::Loss;
 
 /// Motion is carried on for this many frames without a sight; then the marker is thought to stay.

@@ -143,7 +143,8 @@ fn one_row_and_huge_and_tiny_values_are_rows() {
 #[test]
 fn recordings_follow_session_subject_trajectory_and_time() {
     let text = "time_s,P1,J2_deg,session,subject,trajectory\n\
-                0,1,0,s1,anna,spiral1\n1,2,0,s1,anna,spiral1\n0,3,0,s1,anna,spiral2\n1,4,0,,anna,\n0.5,5,0,,anna,\n,6,0,,anna,\n2,7,0,s2,bert,\n";
+                0,1,0,s1,anna,spiral1\n1,2,0,s1,anna,spiral1\n0,3,0,s1,anna,spiral2\n\
+                1,4,0,,anna,\n0.5,5,0,,anna,\n,6,0,,anna,\n2,7,0,s2,bert,\n";
     let folder = Folder::new();
     let path = folder.file("a.csv", text);
     let read = read_data(std::slice::from_ref(&path), &angle()).unwrap();

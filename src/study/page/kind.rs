@@ -1,5 +1,5 @@
-//! `study` in a pipeline: the page with a counterpart of every data figure of the thesis and every statement of its text
-//! beside what came out.
+//! `study` in a pipeline: the page with a counterpart of every data figure of the thesis and every statement of its
+//! text beside what came out.
 
 use super::{PageOptions, Part as StudyPart, PartFolder, study_page};
 use crate::job::{Demand, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Role, Takes, Work, keys, prepare};

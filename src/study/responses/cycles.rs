@@ -173,7 +173,10 @@ mod tests {
         let time_s = times(1500);
         let drive: Vec<f64> = time_s
             .iter()
-            .map(|&t| if (20.0..80.0).contains(&t) { 40.0 - 50.0 * (TAU * 0.1 * (t - 20.0)).cos() } else { -10.0 } + 0.05 * t)
+            .map(|&t| {
+                let bent = if (20.0..80.0).contains(&t) { 40.0 - 50.0 * (TAU * 0.1 * (t - 20.0)).cos() } else { -10.0 };
+                bent + 0.05 * t
+            })
             .collect();
         assert_eq!(Cycles::of(&time_s, &drive).count(), 6);
     }

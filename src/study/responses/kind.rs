@@ -1,4 +1,5 @@
-//! `responses` in a pipeline: how photodiodes answer to a force or to bending that goes up and down (3.3, Fig. 23 to 34).
+//! `responses` in a pipeline: how photodiodes answer to a force or to bending that goes up and down (3.3, Fig. 23 to
+//! 34).
 
 use std::collections::BTreeSet;
 

@@ -14,9 +14,9 @@ use crate::align::{AlignInputs, AlignOptions, AlignOutputs, run as run_align};
 use crate::job::Watch;
 use crate::posture::Layout;
 use crate::table::Table;
+use crate::tradeoff::measure::rows::{Measured, Row};
+use crate::tradeoff::measure::timing::{Timing, in_turns};
 use crate::tradeoff::peers::{PeerReport, Script};
-use crate::tradeoff::rows::{Measured, Row};
-use crate::tradeoff::timing::{Timing, in_turns};
 
 /// How long a gap is labelled over.
 pub(in crate::tradeoff) const BRIDGING: (&str, &str) = ("align", "bridging");

@@ -8,12 +8,12 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, ensure};
 
 use super::peers::Python;
-use super::rows::{Measured, Row};
-use super::timing::{Effort, Run, in_turns};
 use crate::align::{AlignInputs, AlignOptions, AlignOutputs, LagSearch, LagTie, Sync, run as run_align};
 use crate::job::Watch;
 use crate::posture::{Layout, Outputs, PostureOptions, PostureReport, run as run_posture};
 use crate::table::Table;
+use crate::tradeoff::measure::rows::{Measured, Row};
+use crate::tradeoff::measure::timing::{Effort, Run, in_turns};
 
 pub(super) use labels::{BRIDGING, LABEL_ERROR, bridging_default};
 

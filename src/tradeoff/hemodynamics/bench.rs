@@ -8,7 +8,7 @@ use lunula_hemodynamics::{
     Collapse, Live, Load, Loads, Model, Order, Parameters, SolveOptions, Solver, State, Trajectory, rest,
 };
 
-use crate::tradeoff::timing::Run;
+use crate::tradeoff::measure::timing::Run;
 
 /// The series of lunula among its peers.
 pub(in crate::tradeoff) const AUTO: &str = "lunula";

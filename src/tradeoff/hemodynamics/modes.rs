@@ -4,9 +4,9 @@ use lunula_hemodynamics::{Collapse, Model, Order, SolveOptions, Trajectory};
 
 use super::bench::{AUTO, Bench};
 use super::{ERROR, SOLVING, python};
+use crate::tradeoff::measure::rows::{Measured, Row};
+use crate::tradeoff::measure::timing::{Effort, in_turns};
 use crate::tradeoff::peers::Python;
-use crate::tradeoff::rows::{Measured, Row};
-use crate::tradeoff::timing::{Effort, in_turns};
 
 /// What is measured.
 #[derive(Debug, Clone)]

@@ -5,8 +5,8 @@ use std::path::Path;
 use anyhow::Context;
 
 use super::{ERROR, SOLVING};
-use crate::tradeoff::rows::Row;
-use crate::tradeoff::timing::Timing;
+use crate::tradeoff::measure::rows::Row;
+use crate::tradeoff::measure::timing::Timing;
 
 /// A row of a peer's table: `solver,rtol,error,microseconds,evaluations`; lines that begin with `#` say how it was
 /// made.

@@ -6,8 +6,8 @@ use std::fmt::Write;
 use super::Settings;
 use super::bench::Bench;
 use super::peers::read_peers;
+use crate::tradeoff::measure::rows::{Measured, Row};
 use crate::tradeoff::peers::{PeerReport, Script};
-use crate::tradeoff::rows::{Measured, Row};
 
 const NAME: &str = "SciPy's solvers";
 /// What the script takes as well where it is there.

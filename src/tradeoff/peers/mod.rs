@@ -16,7 +16,7 @@ pub use report::PeerReport;
 pub(super) use table::join;
 pub use table::read_peers;
 
-use super::rows::Row;
+use crate::tradeoff::measure::rows::Row;
 
 /// How to get the packages.
 pub(super) const REQUIREMENTS: &str = include_str!("../../../benches/peers/requirements.txt");

@@ -125,7 +125,8 @@ mod tests {
     #[test]
     fn rows_of_another_run_come_onto_the_curve() {
         let text = format!(
-            "# another machine\njob,setting,error,error_unit,run_s,work,peer\nphotos,Other,0.2,\"{OUTLINE_ERROR}\",3.5,,true\n\
+            "# another machine\njob,setting,error,error_unit,run_s,work,peer\n\
+             photos,Other,0.2,\"{OUTLINE_ERROR}\",3.5,,true\n\
              photos,ours,0.1,\"{OUTLINE_ERROR}\",1,5,false\n"
         );
         let others = written(&text).unwrap();

@@ -14,9 +14,9 @@ use lunula_predictor::{Dataset, Kind, LeastSquaresOptions, Predictor, Recipe, So
 use ndarray::{Array2, ArrayView2};
 
 use super::peers::Python;
-use super::rows::{Measured, Row};
-use super::timing::{Effort, Run, in_turns};
 use crate::predictor::{Target, Wanted, read_data};
+use crate::tradeoff::measure::rows::{Measured, Row};
+use crate::tradeoff::measure::timing::{Effort, Run, in_turns};
 
 /// What is measured, and how often.
 #[derive(Debug, Clone)]

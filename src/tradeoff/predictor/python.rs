@@ -7,9 +7,9 @@ use lunula_predictor::Dataset;
 use ndarray::{Array2, ArrayView2};
 
 use super::{FIT, MODEL, PROBLEM_ROWS, SOLVER, Settings, TELL, mean_rmse, problem, worst};
+use crate::tradeoff::measure::rows::{Measured, Row};
+use crate::tradeoff::measure::timing::Timing;
 use crate::tradeoff::peers::{Answer, PeerReport, Script};
-use crate::tradeoff::rows::{Measured, Row};
-use crate::tradeoff::timing::Timing;
 
 const NAME: &str = "numpy and scikit-learn";
 const PACKAGES: [(&str, &str); 2] = [("numpy", "numpy"), ("sklearn", "scikit-learn")];

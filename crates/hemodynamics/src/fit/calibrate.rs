@@ -4,7 +4,7 @@
 //! of a fit, and only the other parameters are searched (variable projection, Golub and Pereyra 1973,
 //! doi:10.1137/0710036, with Kaufman's derivative).
 
-use super::qr::{dot, norm};
+use crate::fit::algebra::qr::{dot, norm};
 
 /// Of the signal's norm, changes that are rounding: nothing can be said about the scaling.
 const FLAT: f64 = 1e-9;

@@ -12,31 +12,28 @@
 //!
 //! The noise is taken as independent from sample to sample. Same input, same bytes.
 
+mod algebra;
 mod calibrate;
 mod certainty;
 mod fault;
 mod free;
-mod levenberg;
 mod options;
 mod problem;
-mod profile;
-mod qr;
 mod recording;
 mod response;
 mod result;
-mod svd;
 mod time_constant;
 
+pub use crate::fit::algebra::levenberg::Stop;
 pub use fault::FitFault;
 pub use free::{Bounds, Free};
-pub use levenberg::Stop;
 pub use options::{Calibration, FitOptions};
 pub use recording::{Course, Recording, Trace};
 pub use result::{Bound, Calibrated, Combination, Estimate, FitResult, FitStatistics, Group, Rival};
 pub use time_constant::time_constant;
 
+use crate::fit::algebra::levenberg::{Minimum, Point, Search};
 use certainty::certainty;
-use levenberg::{Minimum, Point, Search};
 use problem::{Evaluation, Problem};
 
 use crate::parameters::{Parameters, Symbol};
@@ -58,7 +55,7 @@ pub fn fit(
     let best = &found.point;
     let mut known = certainty(&problem, best);
     if options.intervals {
-        profile::intervals(&mut problem, best, &mut known);
+        certainty::profile::intervals(&mut problem, best, &mut known);
     }
     let mut parameters = best.parameters.clone();
     for diode in &known.photodiodes {
@@ -111,7 +108,8 @@ fn search(problem: &mut Problem) -> Result<(Vec<Minimum<Evaluation>>, u64), FitF
             Ok(first) => {
                 if number == 0 {
                     // What the photodiodes don't see stays where it starts.
-                    seen = first.columns().iter().map(|column| qr::norm(column) > UNSEEN * first.raw).collect();
+                    seen =
+                        first.columns().iter().map(|column| algebra::qr::norm(column) > UNSEEN * first.raw).collect();
                 }
                 let short = if number == 0 { settings.most_points } else { SHORT.min(settings.most_points) };
                 let mut found = Search { most_points: short, ..settings }.run(first, |at| problem.evaluate(at).ok());
@@ -145,7 +143,7 @@ fn settings<'a>(problem: &Problem, lower: &'a [f64], upper: &'a [f64]) -> Search
         upper,
         tolerance: problem.options.tolerance,
         freedom: problem.target.len().saturating_sub(unknowns).max(1) as f64,
-        data: qr::norm(&problem.target),
+        data: algebra::qr::norm(&problem.target),
         most_points: problem.options.most_points,
     }
 }
@@ -161,7 +159,7 @@ fn starts(lower: &[f64], upper: &[f64], requested: usize) -> usize {
 }
 
 fn squares(point: &Evaluation) -> f64 {
-    qr::dot(point.residuals(), point.residuals())
+    algebra::qr::dot(point.residuals(), point.residuals())
 }
 
 /// A rise of the sum of squares over the variance from which on a minimum is no rival: three standard errors.

@@ -1,12 +1,13 @@
 //! Recordings, free parameters and the model as one problem of least squares.
 
+use super::FitFault;
 use super::calibrate::{Fitted, calibrate};
 use super::free::{Coordinate, Free};
-use super::levenberg::Point;
 use super::options::{Calibration, FitOptions};
 use super::recording::Recording;
 use super::response::{NoResponse, Responder, Response};
-use super::{FitFault, qr};
+use crate::fit::algebra::levenberg::Point;
+use crate::fit::algebra::qr;
 use crate::model::{Model, Tangent};
 use crate::optics::Photodiodes;
 use crate::parameters::{Parameters, Site, Symbol};

@@ -1,6 +1,6 @@
 //! What a fit gives.
 
-use super::levenberg::Stop;
+use crate::fit::algebra::levenberg::Stop;
 use crate::parameters::{Parameters, Symbol};
 
 /// What a fit gives.

@@ -142,7 +142,10 @@ mod tests {
     proptest! {
         // Without hysteresis each row stands for itself: equation 9's cases.
         #[test]
-        fn without_hysteresis_there_is_no_memory(fz in proptest::collection::vec(-2.0..2.0_f64, 0..40), f_min in 0.01..1.0_f64) {
+        fn without_hysteresis_there_is_no_memory(
+            fz in proptest::collection::vec(-2.0..2.0_f64, 0..40),
+            f_min in 0.01..1.0_f64,
+        ) {
             let gate = Gate::new(f_min, 0.0, 0.0).unwrap();
             for (contact, fz) in contacts(&gate, &fz).into_iter().zip(fz) {
                 prop_assert_eq!(contact == Contact::Bending, -fz < f_min);

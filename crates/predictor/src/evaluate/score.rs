@@ -157,7 +157,9 @@ mod tests {
         #[test]
         fn the_definitions(pairs in proptest::collection::vec((-3.0..3.0_f64, -3.0..3.0_f64), 2..50)) {
             let n = pairs.len() as f64;
-            let column = |of: fn(&(f64, f64)) -> f64| Array2::from_shape_fn((pairs.len(), 1), |(row, _)| of(&pairs[row]));
+            let column = |of: fn(&(f64, f64)) -> f64| {
+                Array2::from_shape_fn((pairs.len(), 1), |(row, _)| of(&pairs[row]))
+            };
             let all = score(column(|pair| pair.0).view(), column(|pair| pair.1).view(), &names(&["J2_deg"]));
             let over = |of: &dyn Fn(&(f64, f64)) -> f64| pairs.iter().map(of).sum::<f64>() / n;
             let mean = over(&|pair| pair.0);

@@ -84,7 +84,9 @@ impl std::str::FromStr for Deficient {
             other => other.strip_prefix("ridge=").and_then(ridge).map(Self::Ridge),
         };
         parsed.ok_or_else(|| {
-            "choose refuse, minimum-norm, drop or ridge=LAMBDA (as ridge=1e-6, of voltages in units of their spread)".to_owned()
+            "choose refuse, minimum-norm, drop or ridge=LAMBDA (as ridge=1e-6, \
+             of voltages in units of their spread)"
+                .to_owned()
         })
     }
 }

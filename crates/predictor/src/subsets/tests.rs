@@ -85,7 +85,8 @@ proptest! {
 
     #[test]
     fn any_set_s_subsets_are_direct_fits(
-        n in 20..90_usize, inputs in 1..5_usize, targets in 1..4_usize, seed in 0..1000_u64, scale in -20..20_i32, shift in -10.0..10.0_f64,
+        n in 20..90_usize, inputs in 1..5_usize, targets in 1..4_usize,
+        seed in 0..1000_u64, scale in -20..20_i32, shift in -10.0..10.0_f64,
     ) {
         let (x, y) = rows(n, inputs, targets, seed);
         let (v, z) = rows(n / 3, inputs, targets, seed + 1000);
@@ -109,7 +110,8 @@ proptest! {
     // not taken for one.
     #[test]
     fn mixtures_are_found_and_near_mixtures_are_not(
-        n in 20..200_usize, seed in 0..1000_u64, scale in -300..300_i32, offset in -1e2..1e2_f64, a in 0.001..3.0_f64, b in -3.0..3.0_f64,
+        n in 20..200_usize, seed in 0..1000_u64, scale in -300..300_i32,
+        offset in -1e2..1e2_f64, a in 0.001..3.0_f64, b in -3.0..3.0_f64,
     ) {
         let (mut x, y) = rows(n, 4, 1, seed);
         let mixed = (&x.column(0) * a + &x.column(1) * b + offset) * 2f64.powi(scale);

@@ -13,8 +13,8 @@
 //! | 20, dt = a F_z dF_z | [`Spiral::density_s_per_n2`] |
 //! | 21 to 23, the spiral | [`Spiral`] |
 //! | 24, 2 pi f_c < f | [`circling_limit_hz`] |
-//! | 25, the radial rate's maximum | [`Spiral::radial_rate_printed_n_per_s`], [`Spiral::radial_rate_true_n_per_s`], [`Spiral::radial_rate_max_n_per_s`] |
-//! | 26, how long it has to take | [`Spiral::shortest_printed_s`], [`Spiral::shortest_true_s`], [`Spiral::shortest_s`] |
+//! | 25, the radial rate's maximum | `Spiral::radial_rate_{printed,true,max}_n_per_s` |
+//! | 26, how long it has to take | `Spiral::{shortest_printed_s, shortest_true_s, shortest_s}` |
 //! | 27, bending | [`Bending`] |
 
 mod bending;

@@ -88,7 +88,13 @@ proptest! {
         angles in prop::collection::vec(prop_oneof![4 => -90.0..90.0_f64, 1 => Just(f64::NAN)], 41),
         asked in prop::collection::vec(0.0..1.0_f64, 1..40),
     ) {
-        let times: Vec<f64> = std::iter::once(0.0).chain(steps.iter().scan(0.0, |t, s| { *t += s; Some(*t) })).collect();
+        let times: Vec<f64> = {
+            let sums = steps.iter().scan(0.0, |t, s| {
+                *t += s;
+                Some(*t)
+            });
+            std::iter::once(0.0).chain(sums).collect()
+        };
         let angles = &angles[..times.len()];
         let sds = vec![0.1; times.len()];
         let mut curve = Curve::new(&times, angles, &sds, GAP_S);

@@ -170,7 +170,7 @@ fn a_region_that_reaches_out_of_the_picture_is_refused() {
     assert!(why.contains("400 x 160") && why.contains("auto"), "{why}");
     assert!(of([-5.0, 30.0, 160.0, 40.0]).is_err());
     assert!(of([f64::NAN, 30.0, 160.0, 40.0]).is_err());
-    assert!(of([200.0, 30.0, 10.0, 40.0]).unwrap_err().contains("5 digits"));
+    assert!(of([200.0, 30.0, 10.0, 40.0]).unwrap_err().contains("5 legible digits"));
 }
 
 #[test]

@@ -15,10 +15,10 @@ use std::path::Path;
 use crate::log::LogError;
 use crate::log::formats::raw::{Raw, RowWord, place};
 use crate::log::formats::text;
-use crate::log::formats::xdf::chunks::Stream;
 use crate::log::lines::cell;
 use crate::log::naming::columns::Columns;
 use crate::log::naming::role::Role;
+use chunks::Stream;
 
 /// Reads a recording.
 pub(in crate::log) fn read(path: &Path, columns: &Columns) -> Result<Raw, LogError> {

@@ -15,7 +15,8 @@ fn chunk(tag: u16, content: &[u8]) -> Vec<u8> {
 fn header(id: u32, name: &str, rate: &str, format: &str, labels: &[&str]) -> Vec<u8> {
     let channels: String = labels.iter().map(|l| format!("<channel><label>{l}</label></channel>")).collect();
     let xml = format!(
-        "<?xml version=\"1.0\"?><info><name>{name}</name><channel_count>{}</channel_count><nominal_srate>{rate}</nominal_srate>\
+        "<?xml version=\"1.0\"?><info><name>{name}</name><channel_count>{}</channel_count>\
+         <nominal_srate>{rate}</nominal_srate>\
          <channel_format>{format}</channel_format><desc><channels>{channels}</channels></desc></info>",
         labels.len()
     );

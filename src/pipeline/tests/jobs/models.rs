@@ -235,8 +235,8 @@ fn wrong_keys_are_refused_with_what_to_write() {
         ("fit", "free = []\nnoise = { VP1 = 0 }", "noise", "VP1"),
         ("fit", "free = []\nphotodiode = { P1 = 0 }", "photodiode", "counted from 1"),
         ("trajectory", "", "kind", "is needed"),
-        ("trajectory", "kind = 'posture'\nmu = 1", "mu", "no option of a posture trajectory"),
-        ("trajectory", "kind = 'posture'\nseed = 1", "seed", "random = true"),
+        ("trajectory", "kind = 'posture'\nmu = 1", "mu", "not an option of a posture trajectory"),
+        ("trajectory", "kind = 'posture'\nseed = 1", "random", "is needed"),
         ("trajectory", "kind = 'force'\nseconds = 0", "", "--seconds 0"),
     ] {
         let Err(fault) = prepare(name, stage) else { panic!("{name}: {stage}: is taken") };

@@ -2,7 +2,8 @@ use super::*;
 
 /// J1, J2, J3 in the file's order J3, J1, J2.
 fn layout() -> Layout {
-    let text = "[markers]\na='#000'\nb='#111'\nc='#222'\nd='#333'\ne='#444'\n[segments]\nm=['a','b']\np=['b','c']\ni=['c','d']\n\
+    let text = "[markers]\na='#000'\nb='#111'\nc='#222'\nd='#333'\ne='#444'\n\
+        [segments]\nm=['a','b']\np=['b','c']\ni=['c','d']\n\
                 t=['d','e']\n[joints]\nJ3=['i','t']\nJ1=['m','p']\nJ2=['p','i']";
     Layout::parse(text, Path::new("m.toml")).unwrap()
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::*;
 use crate::posture::angle::joints::Angles;
 use crate::posture::layout::{Layout, MarkerShape};
-use crate::posture::marker::look::Look;
+use crate::posture::marker::looks::look::Look;
 use crate::posture::marker::method::Method;
 use crate::posture::marker::sight::{Centre, Sight};
 use crate::posture::stage::{self, PAINT, SKIN, Stage};

@@ -5,7 +5,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::*;
 use crate::posture::marker::inflation::Inflation;
-use crate::posture::marker::siting::SitingEvidence;
+use crate::posture::marker::looks::siting::SitingEvidence;
 use crate::video::{Format, Picture};
 
 const LEFT: Siting = Siting { dx_px: 0.0, dy_px: 0.5 };

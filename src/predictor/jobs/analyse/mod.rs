@@ -13,11 +13,11 @@ use lunula_predictor::{Model, Modes, Predictor, linear_f0, modes, quadratic_prin
 
 use crate::job::{Report, Watch};
 use crate::predictor::error::PredictorError;
-pub use crate::predictor::jobs::analyse::report::{AnalyseFigures, AnalyseReport, ModelMode, ModelModes, Printed};
 use crate::predictor::merit::figures::ByTarget;
 use crate::predictor::open_models;
 use crate::predictor::outputs::{FolderOutputs, end};
 use crate::stages::{Stages, Step, left_out};
+pub use report::{AnalyseFigures, AnalyseReport, ModelMode, ModelModes, Printed};
 
 /// Takes a model apart; writes a table and a picture where `out` names a folder.
 ///

@@ -19,13 +19,13 @@ use rayon::prelude::*;
 
 use crate::job::{Report, Watch};
 use crate::predictor::error::PredictorError;
-use crate::predictor::jobs::compare::measure::measure;
 use crate::predictor::outputs::{FolderOutputs, end};
 use crate::stages::{Stages, Step, left_out};
+use measure::measure;
 
-pub use crate::predictor::jobs::compare::comparison::{Comparison, Spread};
-pub use crate::predictor::jobs::compare::options::{CompareOptions, Person};
-pub use crate::predictor::jobs::compare::report::{CompareFigures, CompareReport};
+pub use comparison::{Comparison, Spread};
+pub use options::{CompareOptions, Person};
+pub use report::{CompareFigures, CompareReport};
 
 /// Compares models and sets; writes a table, pictures and `run.json` where `out` names a folder.
 ///

@@ -21,15 +21,13 @@ use ndarray::{Array2, Axis};
 use crate::job::{Report, Watch};
 use crate::predictor::data::{DataFile, RowOptions, Wanted, read_files};
 use crate::predictor::error::PredictorError;
-use crate::predictor::jobs::evaluate::report::Predicted;
-pub use crate::predictor::jobs::evaluate::report::{
-    BinMerit, EvaluateFigures, EvaluateReport, HeldOut, Magnitudes, Part, RecordingMerit,
-};
 use crate::predictor::merit::figures::{ByTarget, Merit, merit_without_cone};
 use crate::predictor::options::choices::LEVEL;
 use crate::predictor::outputs::{FolderOutputs, end};
 use crate::predictor::{open_models, seen_in_training};
 use crate::stages::{Stages, Step, left_out};
+use report::Predicted;
+pub use report::{BinMerit, EvaluateFigures, EvaluateReport, HeldOut, Magnitudes, Part, RecordingMerit};
 
 /// Up to this many parts, each part's coverage is of intervals that have not seen it; it takes fits as many as parts,
 /// squared.

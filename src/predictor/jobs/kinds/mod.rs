@@ -17,12 +17,12 @@ use crate::predictor::merit::figures::Merit;
 use crate::predictor::options::target::Target;
 use crate::predictor::outputs::FolderOutputs;
 
-pub use crate::predictor::jobs::kinds::analyse::AnalyseJob;
-pub use crate::predictor::jobs::kinds::compare::CompareJob;
-pub use crate::predictor::jobs::kinds::evaluate::EvaluateJob;
-pub use crate::predictor::jobs::kinds::predict::PredictJob;
-pub use crate::predictor::jobs::kinds::prune::PruneJob;
-pub use crate::predictor::jobs::kinds::train::TrainJob;
+pub use analyse::AnalyseJob;
+pub use compare::CompareJob;
+pub use evaluate::EvaluateJob;
+pub use predict::PredictJob;
+pub use prune::PruneJob;
+pub use train::TrainJob;
 
 const ROWS: &str = "predicted";
 const PICTURES: &str = "pictures";

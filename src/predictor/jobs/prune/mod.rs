@@ -14,10 +14,10 @@ use lunula_predictor::{MOST_INPUTS, Subset, backward_elimination, every_subset, 
 use crate::job::{Report, Watch};
 use crate::predictor::data::{DataFile, Wanted, read_files};
 use crate::predictor::error::PredictorError;
-pub use crate::predictor::jobs::prune::report::{PruneFigures, PruneReport, PruneRow};
 use crate::predictor::merit::figures::ByTarget;
 use crate::predictor::outputs::{FolderOutputs, end};
 use crate::stages::{Stages, Step, left_out};
+pub use report::{PruneFigures, PruneReport, PruneRow};
 
 /// Compares subsets; writes a table and pictures where `out` names a folder.
 ///

@@ -5,8 +5,8 @@
 //! monotone, and every venous pressure has one lumen at most: a [`Branch`].
 //!
 //! Where walls don't touch, `f' = g l^3 (4 h - 5 e l)` with `h = S - P_ext + e` has its greatest value at
-//! `l = 3 h / (5 e)`, so there are two turning points at most, one on each side of it. Where they touch, `p'` is bounded
-//! over ranges of lumens, which are cut until `p'` or its own slope keeps its sign.
+//! `l = 3 h / (5 e)`, so there are two turning points at most, one on each side of it. Where they touch, `p'` is
+//! bounded over ranges of lumens, which are cut until `p'` or its own slope keeps its sign.
 
 use super::range::product;
 use crate::equilibrium::network::Vessel;

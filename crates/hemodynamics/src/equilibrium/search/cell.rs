@@ -1,8 +1,9 @@
 //! Cells of venous pressures: all vessels at their two ends, and what these bound in between.
 //!
-//! Over a cell every lumen is monotone in the venous pressure, so the lumens at its ends bound it. With `t = 1 + G R_Vi`
-//! and `s = G / t`, both of which grow with the lumen, `ds / dl = 4 s / (l t)`, and `dp / dl = t alpha` with
-//! `alpha = w' - R_Vi ds/dl (P_H - P)`, in which nothing cancels. So all factors of `F` and `F'` have bounds.
+//! Over a cell every lumen is monotone in the venous pressure, so the lumens at its ends bound it. With
+//! `t = 1 + G R_Vi` and `s = G / t`, both of which grow with the lumen, `ds / dl = 4 s / (l t)`, and
+//! `dp / dl = t alpha` with `alpha = w' - R_Vi ds/dl (P_H - P)`, in which nothing cancels. So all factors of `F` and
+//! `F'` have bounds.
 
 use std::ops::Range;
 use std::rc::Rc;

@@ -6,11 +6,11 @@
 //! `F(P) = sum s_i (P_H - P) - G_V (P - P_L)`, `s = G / (1 + G R_Vi)`.
 //!
 //! The pressures at which branches begin and end cut the range of pressures into cells over which every lumen is
-//! monotone, so that the ends of a cell bound `F` and `F'` (module `cell`). A choice is settled where the bounds exclude
-//! a root, or where `F'` keeps its sign: then there is one root if `F` changes its sign between the ends, and none
-//! otherwise. Near a turning point of a unit, where its `dl / dP` is infinite, the derivative is taken by its lumen.
-//! Cells with a choice that is not settled are halved. Units that are the same share their branches: a choice is how
-//! many are on which one.
+//! monotone, so that the ends of a cell bound `F` and `F'` (module `cell`). A choice is settled where the bounds
+//! exclude a root, or where `F'` keeps its sign: then there is one root if `F` changes its sign between the ends, and
+//! none otherwise. Near a turning point of a unit, where its `dl / dP` is infinite, the derivative is taken by its
+//! lumen. Cells with a choice that is not settled are halved. Units that are the same share their branches: a choice is
+//! how many are on which one.
 //!
 //! What is proved: in exact arithmetic no equilibrium is missed, none is spurious and none is counted twice.
 //! Neighbouring cells share the numbers at their ends, so that a root within rounding of an end is counted once all the
@@ -140,7 +140,8 @@ impl Search<'_> {
         Level { venous, vein: vein.expect("the vein holds every pressure of the range"), units }
     }
 
-    /// Notes the equilibria of a cell where every choice is settled, otherwise returns the pressure at which to halve it.
+    /// Notes the equilibria of a cell where every choice is settled, otherwise returns the pressure at which to halve
+    /// it.
     fn settle(&mut self, cell: &Cell) -> Result<Option<f64>, GaveUp> {
         let bounds = Bounds::new(self.network, &self.branches, cell);
         let middle = bounds.middle();

@@ -124,14 +124,17 @@ fn what_makes_no_lags() {
 proptest! {
     #[test]
     fn streams_sets_and_a_look_at_every_pair_agree(
-        steps in proptest::collection::vec(0.01..0.3_f64, 2..60), lags in proptest::collection::vec(0.01..1.0_f64, 1..4), cut in 0.0..1.0_f64,
+        steps in proptest::collection::vec(0.01..0.3_f64, 2..60),
+        lags in proptest::collection::vec(0.01..1.0_f64, 1..4),
+        cut in 0.0..1.0_f64,
     ) {
         let time: Vec<f64> = steps.iter().scan(0.0, |t, step| { *t += step; Some(*t) }).collect();
         let (first, second) = time.split_at((cut * time.len() as f64) as usize);
         let data = set(&[first, second], |t, column| (t * (3.0 + column as f64)).sin());
         let lags = Lags::new(lags, 0.2).unwrap();
         let expected: Vec<Vec<f64>> = data.recordings().iter()
-            .flat_map(|one| one.rows.clone().filter_map(|row| naive(&lags, &data, one, row)).collect::<Vec<_>>()).collect();
+            .flat_map(|one| one.rows.clone().filter_map(|row| naive(&lags, &data, one, row)).collect::<Vec<_>>())
+            .collect();
         match lags.expand(&data) {
             Ok(wide) => {
                 let rows: Vec<Vec<f64>> = wide.data.x().rows().into_iter().map(|row| row.to_vec()).collect();

@@ -1,0 +1,5 @@
+//! Least squares and singular values of small problems.
+
+pub(in crate::fit) mod levenberg;
+pub(in crate::fit) mod qr;
+pub(in crate::fit) mod svd;

@@ -1,0 +1,7 @@
+//! How fingers move and press: trajectories, forces, random waves.
+
+pub mod finger;
+pub(in crate::phantom) mod follow;
+pub mod force;
+pub mod trajectory;
+pub(in crate::phantom) mod wave;

@@ -1,0 +1,293 @@
+//! The photos job: a checked set and options in, results and report out; the one entry that command line, pipelines and
+//! trade-offs call.
+//!
+//! Photographs are worked on side by side, each once from file to sums, and forgotten: memory does not grow with their
+//! number. What cannot be used is listed and left out; the rest is done. Results are put in their places in one commit,
+//! at the end.
+
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
+
+use image::GrayAlphaImage;
+use rayon::prelude::*;
+
+use crate::files::{Places, Staging, WriteError};
+use crate::job::Watch;
+use crate::photo::error::PhotosError;
+use crate::photo::normalize::{NailFrame, Normalized, Normalizer};
+use crate::photo::options::{OutlineHome, Outputs, PhotosOptions, Results};
+use crate::photo::outline::{DetectedOutline, Nail, OutlinePlace, SavedOutlines, keep_outlines};
+use crate::photo::read::{MOST_MEGAPIXELS, PhotoBuffer, Photograph};
+use crate::photo::results::{self, NailRow, NailTable, Scratch};
+use crate::photo::run::plan::{Foreknown, left_out};
+use crate::photo::run::report::{Findings, PhotosReport, of_photos};
+use crate::photo::set::{Photo, PhotoSet, SetFault};
+use crate::photo::sums::{Partials, Sums};
+use crate::stages::Stages;
+
+/// Share of the nail's box outside of the photograph above which it is left out (assumed): of a nail of which less than
+/// half is seen, length and width are guessed, and the outline is rather another picture's. Below, what is not seen is
+/// missing.
+const MOST_OUTSIDE: f64 = 0.5;
+/// Longest side of a thumbnail, pixels.
+const THUMBNAIL_PX: usize = 100;
+
+/// Runs the job and puts all its results in their places.
+///
+/// # Errors
+/// [`PhotosError`] where there is no result. What was detected but is not trusted is saved all the same, where outlines
+/// are to be: it is what a person most needs to see.
+pub fn run(
+    set: &PhotoSet,
+    options: &PhotosOptions,
+    outputs: &Outputs,
+    watch: &Watch<'_>,
+) -> Result<PhotosReport, PhotosError> {
+    let start = Instant::now();
+    let staging = Staging::new(&outputs.folder)?;
+    let work = Work {
+        options,
+        outputs,
+        staging: &staging,
+        stages: Stages::default(),
+        sums: set.poses().into_iter().map(|pose| (pose, Mutex::new(Sums::new(options.normalization.size)))).collect(),
+        memory: Mutex::default(),
+    };
+    let finished = AtomicU64::new(0);
+    let one = |(index, photo)| {
+        watch.go_on()?;
+        let done = work.photograph(index, photo)?;
+        (watch.tick)(finished.fetch_add(1, Ordering::Relaxed) + 1, Some(set.photos.len() as u64));
+        Ok(done)
+    };
+    let done: Vec<Done> =
+        set.photos.par_iter().enumerate().with_max_len(1).map(one).collect::<Result<_, PhotosError>>()?;
+    let Work { stages, sums, .. } = work;
+
+    let mut findings = Findings::new(set, options, outputs);
+    let (mut detected, mut thumbnails, mut foreknown) = (Vec::new(), Vec::new(), Vec::new());
+    for (photo, one) in set.photos.iter().zip(done) {
+        findings.add(photo, one.grey, one.largest);
+        foreknown.push(Foreknown { pose: photo.pose.clone(), grey: one.grey, outlines: one.outlines });
+        for (row, thumbnail) in one.nails {
+            findings.rows.push(row);
+            thumbnails.push(thumbnail);
+        }
+        detected.extend(one.detected);
+        findings.failed.extend(one.fault);
+    }
+    findings.failed.sort();
+    findings.left_out = left_out(&foreknown, options, outputs);
+    let mut places = Places::default();
+    findings.outlines = save_outlines(&detected, set, outputs, &mut places)?;
+    if findings.rows.iter().all(|row| row.normalized.is_none()) {
+        places.commit()?;
+        return Err(PhotosError::NothingUsable { failed: findings.failed, outlines: findings.outlines });
+    }
+
+    let all = sums
+        .into_iter()
+        .map(|(pose, sums)| (pose.to_owned(), sums.into_inner().unwrap_or_else(PoisonError::into_inner)));
+    let (poses, empty): (BTreeMap<_, _>, BTreeMap<_, _>) = all.partition(|(_, sums)| sums.subjects().len() > 0);
+    findings.poses_without_maps(empty.into_keys());
+    let partials = Partials { normalization: options.normalization, poses };
+    let nails = NailTable::of(&findings.rows, thumbnails, set);
+    let sheets = match outputs.results {
+        Results::Sums { .. } => results::write_sums(&partials, &staging, &stages).map(|()| None)?,
+        Results::Maps => {
+            let (maps, of_nails) = rayon::join(
+                || results::write_maps(&partials, true, &staging, &stages),
+                || stages.time("sheets", || nails.draw_sheets(&staging)),
+            );
+            Some((maps?, of_nails?))
+        }
+    };
+    nails.write(&staging)?;
+    watch.go_on()?;
+    let mut report = of_photos(findings, &partials, watch).timed(&stages, start);
+    if let Some((maps, of_nails)) = sheets {
+        report.write(&nails, &maps, &of_nails, &staging)?;
+    }
+    staging.commit_with(places)?;
+    Ok(report)
+}
+
+/// Saves detected outlines where they are to be saved, as far as `places`.
+fn save_outlines(
+    detected: &[DetectedOutline],
+    set: &PhotoSet,
+    outputs: &Outputs,
+    places: &mut Places,
+) -> Result<Option<SavedOutlines>, WriteError> {
+    let folder = match &outputs.outlines {
+        None => return Ok(None),
+        Some(OutlineHome::BesidePhotographs) => None,
+        Some(OutlineHome::Folder(folder)) => Some(folder.as_path()),
+    };
+    keep_outlines(detected, set, folder, places).map(Some)
+}
+
+/// What a photograph gave.
+struct Done {
+    nails: Vec<(NailRow, Option<GrayAlphaImage>)>,
+    detected: Option<DetectedOutline>,
+    outlines: OutlinePlace,
+    grey: Option<bool>,
+    /// The largest sample as stored, of 16 bits.
+    largest: Option<u16>,
+    fault: Option<SetFault>,
+}
+
+/// Memory that goes from photograph to photograph.
+#[derive(Default)]
+struct Memory {
+    photograph: PhotoBuffer,
+    normalizer: Normalizer,
+    pictures: Vec<Normalized>,
+    scratch: Scratch,
+}
+
+/// What all photographs share.
+struct Work<'a> {
+    options: &'a PhotosOptions,
+    outputs: &'a Outputs,
+    staging: &'a Staging,
+    stages: Stages,
+    sums: BTreeMap<&'a str, Mutex<Sums>>,
+    /// As many as there are threads at work at most; those that none uses.
+    memory: Mutex<Vec<Memory>>,
+}
+
+impl Work<'_> {
+    fn photograph(&self, index: usize, photo: &Photo) -> Result<Done, WriteError> {
+        let mut memory = locked(&self.memory).pop().unwrap_or_default();
+        let done = self.photograph_in(index, photo, &mut memory);
+        locked(&self.memory).push(memory);
+        done
+    }
+
+    /// Read, outline, normalize, add up: once down, never back.
+    fn photograph_in(&self, index: usize, photo: &Photo, memory: &mut Memory) -> Result<Done, WriteError> {
+        let mut done = Done {
+            nails: Vec::new(),
+            detected: None,
+            outlines: self.options.outlines.locate(photo),
+            grey: None,
+            largest: None,
+            fault: None,
+        };
+        let fault = |what: String| Some(SetFault { place: photo.file.clone(), what });
+        let megapixels = self.options.max_megapixels.unwrap_or(MOST_MEGAPIXELS);
+        let buffer = &mut memory.photograph;
+        let mut picture = match self.stages.time("read", || Photograph::read_into(&photo.path, megapixels, buffer)) {
+            Ok(picture) => picture,
+            Err(why) => return Ok(Done { fault: fault(why.to_string()), ..done }),
+        };
+        let largest = picture.largest_of_16_bits();
+        if let Some(Err(why)) = self.options.normalization.white.map(|white| picture.stretch_to(white)) {
+            return Ok(Done { fault: fault(why.to_string()), ..done });
+        }
+        let nails = match self.stages.time("outline", || self.options.outlines.nails(&done.outlines, &picture)) {
+            Ok(nails) => nails,
+            Err(why) => return Ok(Done { fault: fault(why.to_string()), ..done }),
+        };
+        done.detected = self.outputs.outlines.as_ref().and_then(|_| DetectedOutline::of(index, &picture, &nails));
+        let several = nails.len() > 1;
+        let Memory { normalizer, pictures, scratch, .. } = memory;
+        for (number, nail) in (1..).zip(nails) {
+            let mut row = NailRow::new(index, number, &nail);
+            let mut thumbnail = None;
+            match self.one_nail(&picture, nail, &mut row, normalizer) {
+                Ok(normalized) => {
+                    row.reason = unseen(&normalized, self.options.normalization.margin);
+                    let tail = if several { format!("-{number}") } else { String::new() };
+                    let name = format!("normalized/{}/{}{tail}.png", photo.pose, photo.subject);
+                    if self.outputs.has_pictures() {
+                        self.stages.time("write pictures", || {
+                            results::write_normalized(&normalized, picture.depth(), scratch, self.staging, &name)
+                        })?;
+                    }
+                    row.normalized = Some(name);
+                    // For the sheets of a report, which sums have none of.
+                    let small = || results::thumbnail(&normalized, THUMBNAIL_PX);
+                    thumbnail = (self.outputs.results == Results::Maps).then(small);
+                    pictures.push(normalized);
+                }
+                Err(reason) => row.reason = reason,
+            }
+            done.nails.push((row, thumbnail));
+        }
+        if pictures.is_empty() {
+            done.fault = fault(match &done.nails[..] {
+                [(only, _)] => only.reason.clone(),
+                all => format!("none of its {} nails could be used; the first: {}", all.len(), all[0].0.reason),
+            });
+        } else {
+            self.stages.time("add up", || {
+                let added = locked(&self.sums[photo.pose.as_str()]).add(&photo.subject, pictures);
+                added.expect("a set lists a subject once per pose");
+            });
+        }
+        pictures.drain(..).for_each(|picture| normalizer.take_back(picture));
+        (done.grey, done.largest) = (Some(picture.is_grey()), largest);
+        buffer.take_back(picture);
+        Ok(done)
+    }
+
+    /// The normalized picture, or why there is none.
+    fn one_nail(
+        &self,
+        picture: &Photograph,
+        nail: Nail,
+        row: &mut NailRow,
+        normalizer: &mut Normalizer,
+    ) -> Result<Normalized, String> {
+        if !nail.reason.is_empty() {
+            return Err(nail.reason);
+        }
+        let (Some(outline), Some(axis)) = (nail.outline, nail.axis) else {
+            return Err("its outline or axis is not known".into());
+        };
+        let frame = NailFrame::new(&outline, axis).map_err(|fault| fault.to_string())?;
+        row.frame = Some(frame);
+        let size = [picture.image.width(), picture.image.height()];
+        let outside = frame.share_outside(size);
+        if outside > MOST_OUTSIDE {
+            return Err(format!(
+                "{:.0} % of its box lies outside of the photograph ({} x {} px), more than {:.0} %; is the outline \
+                 another picture's?",
+                100.0 * outside,
+                size[0],
+                size[1],
+                100.0 * MOST_OUTSIDE
+            ));
+        }
+        let with = &self.options.normalization;
+        let normalized = self.stages.time("normalize", || normalizer.normalize(&picture.image, &frame, with));
+        if normalized.count_seen() == 0 {
+            return Err("the photograph shows nothing of it (transparent or outside)".into());
+        }
+        Ok(normalized)
+    }
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// What share of the nail's box the photograph does not show, in words; empty where it shows all.
+fn unseen(picture: &Normalized, margin: f64) -> String {
+    let Some(seen) = &picture.seen else { return String::new() };
+    let size = picture.size as f64;
+    let edge = (size - size / margin) / 2.0;
+    let in_box = |at: usize| (at as f64 + 0.5 - edge).clamp(0.0, size - 2.0 * edge) == at as f64 + 0.5 - edge;
+    let rows = (0..picture.size).filter(|&r| in_box(r));
+    let cells = rows.flat_map(|r| (0..picture.size).filter(|&c| in_box(c)).map(move |c| r * picture.size + c));
+    let (all, missing) = cells.fold((0, 0), |(all, missing), at| (all + 1, missing + usize::from(!seen[at])));
+    if missing == 0 {
+        return String::new();
+    }
+    format!("used, but {:.1} % of its box lies outside of the photograph", 100.0 * missing as f64 / all as f64)
+}

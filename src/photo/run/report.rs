@@ -1,0 +1,273 @@
+//! What a run reports: `run.json` for scripts, `report.html` for a colleague.
+//!
+//! Warnings are what a person may have to act on; notes are what is good to know, one line for each kind.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use crate::figure::Page;
+use crate::files::{Staging, WriteError};
+use crate::job::{Report, Watch};
+use crate::photo::normalize::Normalization;
+use crate::photo::options::{Outputs, PhotosOptions, Results};
+use crate::photo::outline::SavedOutlines;
+use crate::photo::results::{DrawnSheet, NAIL_COLUMNS, NailRow, NailTable};
+use crate::photo::set::{Photo, PhotoSet, SetFault};
+use crate::photo::sums::{Partials, Sums};
+use crate::stages::Stage;
+
+/// Where the report goes among the results.
+const JSON: &str = "run.json";
+const HTML: &str = "report.html";
+
+/// One run of `photos` or `photos merge`, as `run.json` and `--json` show it. Times differ from run to run; all else is
+/// the same for the same input and options.
+pub type PhotosReport = Report<PhotosFigures>;
+
+/// The figures of a run.
+#[derive(Debug, Clone, Serialize)]
+pub struct PhotosFigures {
+    /// What it worked on.
+    pub inputs: Vec<PathBuf>,
+    /// How the normalized pictures were made.
+    pub normalization: Normalization,
+    /// Photographs and entries given, photographs that gave at least one nail, nails listed and used.
+    pub counts: Value,
+    /// Subjects by pose.
+    pub poses: Vec<PoseCount>,
+    /// Threads that worked.
+    pub threads: usize,
+    /// Every nail, used or not, in the set's order; of merged parts none.
+    #[serde(skip)]
+    pub nails: Vec<NailRow>,
+}
+
+/// How many subjects a pose's maps hold.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct PoseCount {
+    /// The pose.
+    pub pose: String,
+    /// Its subjects.
+    pub subjects: usize,
+}
+
+/// How many subjects each pose's maps hold.
+pub(in crate::photo) fn pose_counts(partials: &Partials) -> Vec<PoseCount> {
+    let count = |(pose, sums): (&String, &Sums)| PoseCount { pose: pose.clone(), subjects: sums.subjects().len() };
+    partials.poses.iter().map(count).collect()
+}
+
+/// The poses whose maps have no standard deviation, as one note.
+pub(in crate::photo) fn one_subject(poses: &[PoseCount]) -> Option<String> {
+    let alone: Vec<&str> = poses.iter().filter(|pose| pose.subjects == 1).map(|pose| pose.pose.as_str()).collect();
+    match alone[..] {
+        [] => None,
+        [pose] => Some(format!("pose `{pose}`: one subject, so no standard deviation (it needs two)")),
+        [first, .., last] => Some(format!(
+            "{} poses (`{first}` to `{last}`): one subject, so no standard deviation (it needs two)",
+            alone.len()
+        )),
+    }
+}
+
+/// What a run found, photograph by photograph, before it is a report.
+pub(in crate::photo) struct Findings<'a> {
+    set: &'a PhotoSet,
+    options: &'a PhotosOptions,
+    has_maps: bool,
+    /// Every nail, used or not, in the set's order.
+    pub(in crate::photo) rows: Vec<NailRow>,
+    /// Photographs that gave nothing, and entries of the set that could not be used.
+    pub(in crate::photo) failed: Vec<SetFault>,
+    /// What the scene did not need.
+    pub(in crate::photo) left_out: Vec<String>,
+    /// Detected outlines, where they were to be saved.
+    pub(in crate::photo) outlines: Option<SavedOutlines>,
+    /// Colour and grey photographs by pose.
+    colours: BTreeMap<&'a str, [usize; 2]>,
+    /// How many photographs of 16 bits, and their largest sample.
+    sixteen: (usize, u16),
+    without_maps: Vec<String>,
+}
+
+impl<'a> Findings<'a> {
+    pub(in crate::photo) fn new(set: &'a PhotoSet, options: &'a PhotosOptions, outputs: &Outputs) -> Self {
+        Self {
+            set,
+            options,
+            has_maps: outputs.results == Results::Maps,
+            rows: Vec::new(),
+            failed: set.faults.clone(),
+            left_out: Vec::new(),
+            outlines: None,
+            colours: BTreeMap::new(),
+            sixteen: (0, 0),
+            without_maps: Vec::new(),
+        }
+    }
+
+    /// A photograph: whether it is grey, and its largest sample of 16 bits.
+    pub(in crate::photo) fn add(&mut self, photo: &'a Photo, grey: Option<bool>, largest: Option<u16>) {
+        if let Some(grey) = grey {
+            self.colours.entry(&photo.pose).or_default()[usize::from(grey)] += 1;
+        }
+        if let Some(largest) = largest {
+            self.sixteen = (self.sixteen.0 + 1, self.sixteen.1.max(largest));
+        }
+    }
+
+    pub(in crate::photo) fn poses_without_maps(&mut self, poses: impl Iterator<Item = String>) {
+        self.without_maps.extend(poses);
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        let without =
+            self.without_maps.iter().map(|pose| format!("pose `{pose}`: no nail could be used, so it has no maps"));
+        self.mixed_poses().chain(self.few_bits()).chain(without).collect()
+    }
+
+    /// Grey values are comparable with a colour photograph's green channel only if a green filter was used.
+    fn mixed_poses(&self) -> impl Iterator<Item = String> {
+        let mixed = self.colours.iter().filter(|(_, [colour, grey])| *colour > 0 && *grey > 0);
+        mixed.map(|(pose, [colour, grey])| {
+            format!(
+                "pose `{pose}` mixes {colour} colour and {grey} grey photograph(s): grey values equal the green \
+                 channel only where a green filter was used; else make maps of each kind apart"
+            )
+        })
+    }
+
+    /// Photographs of 16 bits, of which none uses more than a quarter of full scale: values are a fraction of what they
+    /// should be.
+    fn few_bits(&self) -> Option<String> {
+        let (count, largest) = self.sixteen;
+        let white_of = |bits: u32| (1_u32 << bits) - 1;
+        let bits = FEW_BITS.into_iter().find(|bits| u32::from(largest) <= white_of(*bits))?;
+        (self.options.normalization.white.is_none() && largest > 0).then(|| {
+            format!(
+                "the largest sample of the {count} photograph(s) of 16 bits is {largest} of 65535, as of {bits} bits \
+                 kept in 16: if they are, --white {} makes that full scale",
+                white_of(bits)
+            )
+        })
+    }
+}
+
+/// Bits that scientific cameras keep in 16; a set whose largest sample has no more is noted.
+const FEW_BITS: [u32; 4] = [8, 10, 12, 14];
+
+/// Of `lunula photos`.
+pub(in crate::photo) fn of_photos(found: Findings<'_>, partials: &Partials, watch: &Watch<'_>) -> PhotosReport {
+    let (warnings, poses) = (found.warnings(), pose_counts(partials));
+    let Findings { set, options, has_maps, rows, failed, left_out, outlines, .. } = found;
+    let mut notes: Vec<String> = outlines.iter().flat_map(SavedOutlines::notes).collect();
+    notes.extend(one_subject(&poses).filter(|_| has_maps));
+    let used = || rows.iter().filter(|row| row.normalized.is_some());
+    let mut photographs: Vec<usize> = used().map(|row| row.photo).collect();
+    photographs.dedup();
+    let figures = PhotosFigures {
+        inputs: vec![set.folder.clone()],
+        normalization: options.normalization,
+        counts: json!({
+            "photographs": set.photos.len(),
+            "photographs_used": photographs.len(),
+            "nails": rows.len(),
+            "nails_used": used().count(),
+        }),
+        poses,
+        threads: rayon::current_num_threads(),
+        nails: rows,
+    };
+    let failed = failed.iter().map(ToString::to_string).collect();
+    Report { left_out, warnings, notes, failed, ..Report::new("photos", watch, figures) }
+}
+
+/// Of `lunula photos merge`.
+pub(in crate::photo) fn of_merge(parts: &[PathBuf], partials: &Partials, watch: &Watch<'_>) -> PhotosReport {
+    let poses = pose_counts(partials);
+    let notes = one_subject(&poses).into_iter().collect();
+    let figures = PhotosFigures {
+        inputs: parts.to_vec(),
+        normalization: partials.normalization,
+        counts: json!({ "parts": parts.len() }),
+        poses,
+        threads: rayon::current_num_threads(),
+        nails: Vec::new(),
+    };
+    let left_out = vec!["photographs: not read again, their sums are joined".into()];
+    Report { left_out, notes, ..Report::new("photos merge", watch, figures) }
+}
+
+impl PhotosReport {
+    /// Writes `run.json` and `report.html`, all else of the results being written already. An earlier run's results in
+    /// the same folder are not deleted, but nobody should take them for this run's: they become a warning.
+    ///
+    /// # Errors
+    /// [`WriteError`].
+    pub(in crate::photo) fn write(
+        &mut self,
+        nails: &NailTable,
+        sheets: &[DrawnSheet],
+        nail_sheets: &[DrawnSheet],
+        staging: &Staging,
+    ) -> Result<(), WriteError> {
+        if let [first, others @ ..] = &staging.left_from_earlier()[..] {
+            let also = if others.is_empty() { String::new() } else { format!(" and {} more", others.len()) };
+            let folder = staging.target().display();
+            self.warnings.push(format!("{first}{also} in {folder} existed before and are not of this run"));
+        }
+        staging.write(HTML, self.html(nails, sheets, nail_sheets).as_bytes())?;
+        staging.write(JSON, self.text().as_bytes())
+    }
+
+    /// A page of sheets, nails, what was left out and why, times. Nothing is loaded from elsewhere.
+    fn html(&self, nails: &NailTable, sheets: &[DrawnSheet], nail_sheets: &[DrawnSheet]) -> String {
+        let mut page = Page::new("Fingernail coloration");
+        let poses: Vec<String> = self.poses.iter().map(|p| format!("{} (n = {})", p.pose, p.subjects)).collect();
+        page.paragraph(&format!("lunula {} {}, {}", self.version, self.job, list_paths(&self.inputs)));
+        page.paragraph(&format!("Poses and subjects: {}.", poses.join(", ")));
+        page.list(&self.warnings);
+        page.list(&self.notes);
+        for sheet in sheets {
+            page.heading(&sheet.title);
+            page.png(&sheet.png, &sheet.title);
+        }
+        if !nail_sheets.is_empty() {
+            page.heading("Every nail, distal end up");
+        }
+        for sheet in nail_sheets {
+            page.png(&sheet.png, &sheet.title);
+        }
+        let used = (0..nails.rows.len()).filter(|&row| nails.is_used(row)).count();
+        page.heading(&format!("Nails: {} listed, {used} used", nails.rows.len()));
+        page.table(&NAIL_COLUMNS, &nails.rows, |row| !nails.is_used(row));
+        if !self.failed.is_empty() {
+            page.heading("Photographs that gave nothing");
+            page.list(&self.failed);
+        }
+        page.heading("What the scene did not need");
+        page.list(&self.left_out);
+        page.heading("Time");
+        let total: f64 = self.stages.iter().map(|s| s.thread_s).sum();
+        let share = |s: &Stage| if total > 0.0 { 100.0 * s.thread_s / total } else { 0.0 };
+        let row = |s: &Stage| {
+            vec![s.stage.to_string(), format!("{:.3}", s.thread_s), format!("{:.0} %", share(s)), s.runs.to_string()]
+        };
+        let rows: Vec<Vec<String>> = self.stages.iter().map(row).collect();
+        page.table(&["stage", "s, summed over threads", "share", "runs"], &rows, |_| false);
+        page.paragraph(&format!(
+            "{:.2} s from start to end on {} thread(s), this page not counted.",
+            self.wall_s, self.threads
+        ));
+        page.heading("Options");
+        page.paragraph(&json!({ "options": self.options, "normalization": self.normalization }).to_string());
+        page.finish()
+    }
+}
+
+fn list_paths(paths: &[PathBuf]) -> String {
+    paths.iter().map(|p| p.display().to_string()).collect::<Vec<_>>().join(", ")
+}

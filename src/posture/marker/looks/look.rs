@@ -1,0 +1,56 @@
+//! A marker's looks in the video's own planes: colours, size, blur, noise.
+//!
+//! Learned where the marker is first seen ([`crate::posture::marker::looks::learn`]) and kept up to date from the fits
+//! that follow. Samples are on the scale of 8 bits, in the order Y', Cb, Cr; without chroma the last two are zero.
+
+use crate::posture::marker::blot::Blot;
+use crate::posture::marker::fit::Fit;
+use crate::posture::survey::find::Paint;
+
+/// How much a fit counts against what was learned before.
+const SHARE: f64 = 0.1;
+
+/// How a marker looks in a video.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Look {
+    /// Radius of a disc of its area.
+    pub(crate) radius_px: f64,
+    /// Y', Cb, Cr of the disc.
+    pub(crate) marker: [f64; 3],
+    /// Y', Cb, Cr around it.
+    pub(crate) background: [f64; 3],
+    /// Standard deviation of the Gaussian that luma's edge is seen through.
+    pub(crate) blur_px: f64,
+    /// What is usually left unexplained within the marker, over its contrast, both squared.
+    pub(crate) misfit: f64,
+    /// Standard deviation of what is left unexplained in each plane.
+    pub(crate) noise: [f64; 3],
+    /// How many times larger the errors are than independent noise would make them
+    /// ([`crate::posture::marker::inflation`]).
+    pub(crate) inflation: f64,
+    /// How its outline is found; none for a disc.
+    pub(crate) blot: Option<Blot>,
+}
+
+impl Look {
+    /// Its colour as last seen.
+    pub(crate) fn paint(&self, of: &Paint) -> Paint {
+        if self.blot.is_some() { of.seen_on(self.marker, self.background) } else { of.seen_as(self.marker) }
+    }
+
+    /// Takes over what the marker looked like in another frame.
+    pub(crate) fn update(&mut self, fit: &Fit) {
+        let toward = |old: &mut f64, new: f64| *old += SHARE * (new - *old);
+        toward(&mut self.radius_px, fit.centre.radius_px);
+        toward(&mut self.blur_px, fit.blur_px);
+        toward(&mut self.misfit, fit.misfit);
+        for p in 0..3 {
+            toward(&mut self.marker[p], fit.marker[p]);
+            toward(&mut self.background[p], fit.background[p]);
+            toward(&mut self.noise[p], fit.noise[p]);
+        }
+        if let (Some(blot), Some(outline)) = (&mut self.blot, &fit.outline) {
+            blot.update(outline);
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! The scenes that jobs are measured on where the user has none: generated, with exact truth. In a hurry smaller ones.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::Context;
+
+use crate::phantom::log::{self, LogOptions, LogScene, Protocol};
+use crate::phantom::nail::Pose;
+use crate::phantom::photos::{PhotoOptions, write};
+use crate::phantom::screen::Clock;
+use crate::phantom::trajectory::Trajectory;
+use crate::phantom::video::{self, Preset, Scene, VideoOptions};
+use crate::tradeoff::measure::timing::Effort;
+use crate::tradeoff::peers::Python;
+use crate::tradeoff::{align, photos, posture, predictor};
+
+const POSES: [Pose; 4] = [Pose::Nominal, Pose::Normal, Pose::LateralPositive, Pose::Extension];
+/// Width and height of photographs of nails of 20 to 30 px.
+const SMALL: (u32, u32) = (64, 48);
+
+/// How scenes are made and measured.
+#[derive(Debug, Clone)]
+pub(in crate::tradeoff) struct Wanted {
+    pub(in crate::tradeoff) seed: u64,
+    pub(in crate::tradeoff) effort: Effort,
+    pub(in crate::tradeoff) python: Python,
+}
+
+/// Photographs of `subjects`, and small ones.
+pub(in crate::tradeoff) fn photos(wanted: &Wanted, subjects: u32, folder: &Path) -> anyhow::Result<photos::Settings> {
+    let options = PhotoOptions { seed: wanted.seed, subjects, poses: POSES.to_vec(), ..PhotoOptions::default() };
+    write(&options, folder)?;
+    let small = folder.join("small");
+    write(&PhotoOptions { width: SMALL.0, height: SMALL.1, ..options }, &small)?;
+    Ok(photos::Settings {
+        set: folder.join("photos"),
+        truth: folder.join("truth"),
+        small: Some((small.join("photos"), small.join("truth"))),
+        effort: wanted.effort.clone(),
+        python: wanted.python.clone(),
+    })
+}
+
+/// A video of `preset`.
+pub(in crate::tradeoff) fn posture(
+    wanted: &Wanted,
+    preset: Preset,
+    folder: &Path,
+) -> anyhow::Result<posture::Settings> {
+    let usual = VideoOptions::new(preset);
+    let seconds = if wanted.effort.quick { 0.2 * usual.seconds } else { usual.seconds };
+    video::write(&Scene::new(VideoOptions { seed: wanted.seed, seconds, ..usual })?, folder)?;
+    Ok(posture_of(folder, folder.join("truth"), wanted))
+}
+
+/// A folder with `video.mp4` and `markers.toml`.
+pub(in crate::tradeoff) fn posture_of(folder: &Path, truth: PathBuf, wanted: &Wanted) -> posture::Settings {
+    let [video, markers] = ["video.mp4", "markers.toml"].map(|name| folder.join(name));
+    posture::Settings { video, markers, truth, effort: wanted.effort.clone() }
+}
+
+/// A video with a clock and irregular frames, and a log, of random movement.
+pub(in crate::tradeoff) fn align(wanted: &Wanted, seconds: f64, folder: &Path) -> anyhow::Result<align::Settings> {
+    let (seed, clock, trajectory) = (wanted.seed, Clock::default(), Trajectory::Random { hz: 0.1, seed: wanted.seed });
+    let log = LogOptions {
+        seed,
+        seconds,
+        trajectory: trajectory.clone(),
+        clock_offset_s: clock.offset_s,
+        ..LogOptions::default()
+    };
+    let video =
+        VideoOptions { seed, seconds, trajectory, jitter: 0.4, clock: Some(clock), ..VideoOptions::sized(640, 360) };
+    video::write(&Scene::new(video)?, folder)?;
+    log::write(&LogScene::new(log)?, folder)?;
+    Ok(align_of(folder, folder.join("truth"), wanted))
+}
+
+/// A folder with `video.mp4`, `markers.toml` and `log.csv`.
+pub(in crate::tradeoff) fn align_of(folder: &Path, truth: PathBuf, wanted: &Wanted) -> align::Settings {
+    let [video, markers, log] = ["video.mp4", "markers.toml", "log.csv"].map(|name| folder.join(name));
+    align::Settings { video, markers, log, truth, effort: wanted.effort.clone(), python: wanted.python.clone() }
+}
+
+/// Two spirals to train on, and random movement to tell the error on.
+pub(in crate::tradeoff) fn predictor(wanted: &Wanted, folder: &Path) -> anyhow::Result<predictor::Settings> {
+    let seed = wanted.seed.wrapping_mul(3);
+    let scenes =
+        [("train/1", Protocol::Touch, 0), ("train/2", Protocol::Touch, 1), ("truth/1", Protocol::TouchRandom, 2)];
+    for (name, protocol, next) in scenes {
+        log::write(&LogScene::new(LogOptions::of(protocol, seed.wrapping_add(next)))?, &folder.join(name))?;
+    }
+    predictor_of(&folder.join("train"), &folder.join("truth"), wanted)
+}
+
+/// Folders of recordings.
+pub(in crate::tradeoff) fn predictor_of(
+    train: &Path,
+    test: &Path,
+    wanted: &Wanted,
+) -> anyhow::Result<predictor::Settings> {
+    Ok(predictor::Settings {
+        train: recordings(train)?,
+        test: recordings(test)?,
+        effort: wanted.effort.clone(),
+        python: wanted.python.clone(),
+    })
+}
+
+/// The tables and logs of a folder, and the logs of its folders, by name.
+fn recordings(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).with_context(|| folder.display().to_string())? {
+        let path = entry?.path();
+        let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+        if path.join("log.csv").is_file() {
+            found.push(path.join("log.csv"));
+        } else if path.is_file() && ["csv", "parquet", "gz"].contains(&ending) {
+            found.push(path);
+        }
+    }
+    found.sort();
+    anyhow::ensure!(!found.is_empty(), "{}: holds no recordings (.csv, .parquet)", folder.display());
+    Ok(found)
+}

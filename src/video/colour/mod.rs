@@ -1,0 +1,6 @@
+//! Colours: matrices, pixel formats, conversions.
+
+pub(in crate::video) mod bgr;
+pub(in crate::video) mod convert;
+pub(in crate::video) mod matrix;
+pub(in crate::video) mod pixel;

@@ -1,0 +1,227 @@
+//! Frames of a video file, in the order of presentation.
+//!
+//! In: a file of any container and codec that FFmpeg reads. Out: each frame with its index, its time from the first
+//! shown frame's (the container's ticks, exactly: variable rate, edit lists, reordered frames), its planes as they were
+//! decoded; and, in their places, the frames that could not be decoded, so that the index stays right.
+//!
+//! A frame counts as not decodable ([`Item::Missing`]) when its packet is damaged, and also when it may be predicted
+//! from a damaged one: all frames decoded after it up to the next key frame, as it can't be known how far the damage
+//! reaches. A flipped bit that still decodes without a contradiction can't be noticed: videos carry no checksums. Nor
+//! can a packet whose very header in the container is damaged (Matroska, transport streams): later times stay right,
+//! the index lacks it. The result does not depend on the number of threads (but where HEVC is damaged without FFmpeg's
+//! noticing); after the first damage a file is read with one, and H.264 always.
+
+use std::collections::VecDeque;
+use std::path::{Path, PathBuf};
+
+use ffmpeg::frame;
+use ffmpeg_next as ffmpeg;
+
+use crate::video::colour::convert;
+use crate::video::info::info;
+use crate::video::read::reader::{Alarm, Event, Reader};
+use crate::video::read::source::Care;
+use crate::video::{Format, Frame, Info, Plane, VideoError};
+
+/// What comes next of a video.
+#[derive(Debug)]
+pub enum Item<'a> {
+    /// A frame.
+    Frame(Frame<'a>),
+    /// A frame of the container that could not be decoded.
+    Missing {
+        /// Its place in the order of presentation.
+        index: u64,
+        /// Its presentation time from the first frame's.
+        time_s: f64,
+    },
+}
+
+/// How a video ended.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum End {
+    /// There may be more frames.
+    NotReached,
+    /// Nothing speaks for more frames than were given.
+    Whole,
+    /// The file ends before its video does; why, in words for the user.
+    Early(String),
+}
+
+/// An open video file.
+pub struct Video {
+    pub(in crate::video) path: PathBuf,
+    threads: usize,
+    reader: Reader,
+    /// Events read ahead, to know the first frame.
+    ahead: VecDeque<Event>,
+    /// Events to pass over, after a second start.
+    known: u64,
+    first_ticks: Option<i64>,
+    next_index: u64,
+    /// The first frame's width, height and layout.
+    layout: (u32, u32, ffmpeg::format::Pixel),
+    /// The frame handed out last.
+    pub(in crate::video) picture: frame::Video,
+    info: Info,
+    end: End,
+}
+
+impl Video {
+    /// Opens `path`, to be decoded with `threads` threads (0: all cores).
+    ///
+    /// # Errors
+    /// When there is no such file, or no video in it of which a frame can be decoded.
+    pub fn open(path: &Path, threads: usize) -> Result<Self, VideoError> {
+        Self::open_with(path, threads, Care::Fast)
+    }
+
+    fn open_with(path: &Path, threads: usize, care: Care) -> Result<Self, VideoError> {
+        let failed = |what: String| VideoError::open(path, what);
+        let mut reader = Reader::open(path, threads, care)?;
+        let mut ahead = VecDeque::new();
+        let first = loop {
+            match reader.next_event() {
+                Ok(Some(event)) => {
+                    ahead.push_back(event);
+                    if let Some(Event { picture: Some(first), .. }) = ahead.back() {
+                        break first;
+                    }
+                }
+                Ok(None) => return Err(failed(nothing_decoded(&reader, ahead.len()))),
+                Err(Alarm) => return Self::open_with(path, threads, Care::Exact),
+            }
+        };
+        let layout = (first.width(), first.height(), first.format());
+        let planes = convert::planes(first).map_err(failed)?;
+        let info = info(
+            &reader.source,
+            first,
+            planes.as_ref().unwrap_or(first),
+            reader.rate_without_times_hz(),
+            reader.tick_s(),
+        )
+        .map_err(failed)?;
+        Ok(Self {
+            path: path.to_owned(),
+            threads,
+            reader,
+            ahead,
+            known: 0,
+            first_ticks: None,
+            next_index: 0,
+            layout,
+            picture: frame::Video::empty(),
+            info,
+            end: End::NotReached,
+        })
+    }
+
+    /// What is known of the video.
+    #[must_use]
+    pub fn info(&self) -> &Info {
+        &self.info
+    }
+
+    /// How the video ended, once [`Self::next_item`] has given none.
+    #[must_use]
+    pub fn end(&self) -> &End {
+        &self.end
+    }
+
+    /// The next frame; none at the end.
+    ///
+    /// # Errors
+    /// When the picture's size or layout changes.
+    pub fn next_item(&mut self) -> Result<Option<Item<'_>>, VideoError> {
+        let Some(event) = self.next_event()? else { return Ok(None) };
+        let index = self.next_index;
+        self.next_index += 1;
+        let first = *self.first_ticks.get_or_insert(event.ticks);
+        let (over, under) = self.info.tick_s;
+        let time_s = ((event.ticks - first) as f64 * over as f64) / under as f64;
+        let Some(picture) = event.picture else { return Ok(Some(Item::Missing { index, time_s })) };
+        self.take(picture, index)?;
+        Ok(Some(Item::Frame(borrow(&self.picture, &self.info.format, index, time_s))))
+    }
+
+    /// Decodes all frames that are left and looks at none: what any use of them takes at least.
+    ///
+    /// # Errors
+    /// As [`Self::next_item`].
+    pub fn count_rest(&mut self) -> Result<u64, VideoError> {
+        let mut frames = 0;
+        while let Some(item) = self.next_item()? {
+            frames += u64::from(matches!(item, Item::Frame(_)));
+        }
+        Ok(frames)
+    }
+
+    fn next_event(&mut self) -> Result<Option<Event>, VideoError> {
+        loop {
+            let event = match self.ahead.pop_front() {
+                Some(event) => Ok(Some(event)),
+                None => self.reader.next_event(),
+            };
+            match event {
+                Ok(Some(_)) if self.known > 0 => self.known -= 1,
+                Ok(Some(event)) => return Ok(Some(event)),
+                Ok(None) => {
+                    self.end = self.reader.cut.clone().map_or(End::Whole, End::Early);
+                    return Ok(None);
+                }
+                Err(Alarm) => {
+                    self.reader = Reader::open(&self.path, self.threads, Care::Exact)?;
+                    self.known = self.next_index;
+                }
+            }
+        }
+    }
+
+    /// The picture as planes that can be borrowed.
+    fn take(&mut self, picture: frame::Video, index: u64) -> Result<(), VideoError> {
+        let layout = (picture.width(), picture.height(), picture.format());
+        let changed = |what: String| VideoError::Changed { path: self.path.clone(), what };
+        if layout != self.layout {
+            let words = |(width, height, pixel): (u32, u32, ffmpeg::format::Pixel)| {
+                format!("{width}x{height} {}", pixel.descriptor().map_or("?", |known| known.name()))
+            };
+            return Err(changed(format!(
+                "the picture changes from {} to {} at frame {index}; split the video there",
+                words(self.layout),
+                words(layout)
+            )));
+        }
+        let converted = convert::planes(&picture).map_err(|words| changed(format!("frame {index}: {words}")))?;
+        self.picture = converted.unwrap_or(picture);
+        Ok(())
+    }
+}
+
+fn nothing_decoded(reader: &Reader, missing: usize) -> String {
+    if reader.packets == 0 {
+        "holds a video without frames; record or copy it again".into()
+    } else {
+        format!(
+            "none of its {} frames can be decoded; it is damaged or its codec ({}) is not the one that it names",
+            missing.max(reader.packets as usize),
+            reader.source.codec.name()
+        )
+    }
+}
+
+fn borrow<'a>(picture: &'a frame::Video, format: &Format, index: u64, time_s: f64) -> Frame<'a> {
+    let plane = |number: usize, (width, height)| Plane {
+        width,
+        height,
+        stride: picture.stride(number),
+        depth: format.depth,
+        data: picture.data(number),
+    };
+    Frame {
+        index,
+        time_s,
+        luma: plane(0, (format.width, format.height)),
+        chroma: format.chroma_size().map(|size| [plane(1, size), plane(2, size)]),
+    }
+}
