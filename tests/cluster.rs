@@ -1,6 +1,5 @@
 //! `pipelines/cluster/array.sbatch` as Slurm would run it, without Slurm. (Its test.sh has one, and Snakemake.)
 
-use std::collections::BTreeMap;
 use std::process::{Command, Output};
 
 use crate::util::Dir;
@@ -42,13 +41,6 @@ fn script(dir: &Dir, arguments: &[&str], set: &[(&str, &str)]) -> Output {
     command.output().expect("bash runs")
 }
 
-/// All results except those with times.
-fn results(dir: &Dir, folder: &str) -> BTreeMap<String, Vec<u8>> {
-    let mut all = dir.bytes_of(folder);
-    all.retain(|name, _| !name.starts_with(".lunula") && name != "report.html" && name != "run.json");
-    all
-}
-
 #[test]
 fn an_array_s_parts_and_its_merge_make_the_bytes_of_one_run() {
     let dir = bench();
@@ -60,9 +52,9 @@ fn an_array_s_parts_and_its_merge_make_the_bytes_of_one_run() {
     }
     let output = script(&dir, &["pipeline.toml", "out", "3"], &[("SLURM_JOB_ID", "8")]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let whole = results(&dir, "whole");
+    let whole = dir.results_of("whole");
     assert!(whole.len() > 10, "{:?}", whole.keys());
-    assert!(results(&dir, "out") == whole, "{:?}", results(&dir, "out").keys());
+    assert!(dir.results_of("out") == whole, "{:?}", dir.results_of("out").keys());
 }
 
 #[test]

@@ -1,7 +1,6 @@
 //! `lunula run --shard` and `lunula merge` from end to end: parts brought together are the whole run, and what does not
 //! belong together is refused.
 
-use std::collections::BTreeMap;
 use std::fs;
 
 use crate::util::Dir;
@@ -20,13 +19,6 @@ photo = "photos"
 job = "maps"
 sums = "normalized"
 "#;
-
-/// All results, without what holds times.
-fn results(dir: &Dir, out: &str) -> BTreeMap<String, Vec<u8>> {
-    let mut found = dir.bytes_of(out);
-    found.retain(|name, _| !name.starts_with(".lunula") && name != "report.html" && name != "run.json");
-    found
-}
 
 fn parts(dir: &Dir, of: usize) -> Vec<String> {
     let name = |k: usize| format!("part-{k}-of-{of}");
@@ -47,7 +39,7 @@ fn one_three_and_seven_parts_merged_are_the_same_bytes_as_the_whole_run() {
     let dir = Dir::new();
     dir.write("p.toml", PIPELINE);
     dir.lunula(&["run", "p.toml", "--out", "whole", "--quiet"]).expect(0);
-    let whole = results(&dir, "whole");
+    let whole = dir.results_of("whole");
     assert!(whole.keys().any(|name| name.starts_with("maps/")), "{:?}", whole.keys());
     for of in [1, 3, 7] {
         let parts = parts(&dir, of);
@@ -56,7 +48,7 @@ fn one_three_and_seven_parts_merged_are_the_same_bytes_as_the_whole_run() {
         let report = dir.lunula(&merge(&parts, &["--out", &out, "--json"])).expect(0).json();
         let (done, kept) = (report["done"].as_u64(), report["kept"].as_u64());
         assert_eq!((done, kept), (Some(1), Some(5)), "{report}");
-        assert!(results(&dir, &out) == whole, "{of} parts");
+        assert!(dir.results_of(&out) == whole, "{of} parts");
         let again = dir.lunula(&merge(&parts, &["--out", &out, "--json"])).expect(0).json();
         assert_eq!(again["done"].as_u64(), Some(0), "{again}");
     }

@@ -24,13 +24,6 @@ fn touch() -> String {
     touch_pipeline(&[("a", 1), ("b", 2), ("c", 3)], "seconds = 20")
 }
 
-/// All results, without what holds times.
-fn results(dir: &Dir, out: &str) -> std::collections::BTreeMap<String, Vec<u8>> {
-    let mut found = dir.bytes_of(out);
-    found.retain(|name, _| !name.starts_with(".lunula") && name != "report.html" && name != "run.json");
-    found
-}
-
 #[test]
 fn a_plan_writes_nothing_and_is_the_same_before_and_after_but_for_what_stands() {
     let dir = Dir::new();
@@ -74,10 +67,10 @@ fn what_is_up_to_date_is_kept_and_only_changes_are_made_again() {
     let run = || dir.lunula(&["run", "p.toml", "--out", "out", "--json"]).expect(0).json();
     let first = run();
     assert_eq!((first["done"].as_u64(), first["kept"].as_u64()), (Some(4), Some(0)), "{first}");
-    let made = results(&dir, "out");
+    let made = dir.results_of("out");
     let second = run();
     assert_eq!((second["done"].as_u64(), second["kept"].as_u64()), (Some(0), Some(4)), "{second}");
-    assert_eq!(results(&dir, "out"), made);
+    assert_eq!(dir.results_of("out"), made);
     // One more subject touches that subject and the sums.
     let one = fs::read_dir(dir.path("set/photos/normal"))
         .unwrap()
@@ -96,9 +89,9 @@ fn results_are_the_same_for_any_threads_and_any_folder() {
     dir.write("p.toml", touch());
     dir.lunula(&["run", "p.toml", "--out", "one", "--threads", "1", "--quiet"]).expect(0);
     dir.lunula(&["run", "p.toml", "--out", "deep/er/four", "--threads", "4", "--quiet"]).expect(0);
-    let one = results(&dir, "one");
+    let one = dir.results_of("one");
     assert!(one.keys().any(|name| name == "force/b/model.json"), "{:?}", one.keys());
-    assert!(one == results(&dir, "deep/er/four"));
+    assert!(one == dir.results_of("deep/er/four"));
 }
 
 #[test]
@@ -185,6 +178,6 @@ fn what_init_writes_runs_as_it_stands_and_is_never_overwritten() {
         (["run", "lab/pipeline.toml", "--out", "a", "--quiet"], ["run", "elsewhere.toml", "--out", "b", "--quiet"]);
     dir.lunula(&inside).expect(0);
     dir.lunula(&outside).expect(0);
-    assert_eq!(results(&dir, "a").keys().collect::<Vec<_>>(), results(&dir, "b").keys().collect::<Vec<_>>());
+    assert_eq!(dir.results_of("a").keys().collect::<Vec<_>>(), dir.results_of("b").keys().collect::<Vec<_>>());
     dir.lunula(&["init", "none"]).expect(2);
 }

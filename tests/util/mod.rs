@@ -100,6 +100,13 @@ impl Dir {
         found
     }
 
+    /// All results under `folder`, without what holds times.
+    pub fn results_of(&self, folder: &str) -> std::collections::BTreeMap<String, Vec<u8>> {
+        let mut found = self.bytes_of(folder);
+        found.retain(|name, _| !name.starts_with(".lunula") && name != "report.html" && name != "run.json");
+        found
+    }
+
     /// A table's rows, each by column.
     pub fn table(&self, name: &str) -> Vec<std::collections::BTreeMap<String, String>> {
         let mut reader = csv::Reader::from_path(self.path(name)).expect("a table");
