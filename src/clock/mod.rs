@@ -18,7 +18,7 @@ mod sequence;
 
 pub use beside::Misfit;
 pub use format::{Cell, ClockFormat, Half, Unit};
-pub use glyph::{Levels, Patch, Place, SURE, Scores, recognise};
+pub use glyph::{Levels, Patch, Place, SURE, Scores, read_crop, recognise};
 pub use read::ClockReader;
 pub use reading::{Doubt, ReaderEffort, Reading};
 pub use sequence::{ClockFault, ClockFit, FEWEST, MOST_DRIFT, ScreenDelay, USUAL_DRIFT, USUAL_SCREEN_S, fit};

@@ -140,7 +140,7 @@ mod tests {
         }
         let levels = Levels { background: 200.0, ink: 20.0 };
         let upright = Patch::cut(&plane(&data), &Place::upright(BAR), levels);
-        let place = Place { corner: [9.5, 39.5], across: [0.0, -10.0], down: [40.0, 0.0] };
+        let place = Place::shown(BAR, crate::video::Turn::Quarter, (60, 60));
         let other = Patch::cut(&plane(&turned), &place, levels);
         // Float sums run in another order: 1.2e-7 apart.
         assert!(upright.ink().iter().zip(other.ink()).all(|(a, b)| (a - b).abs() <= 1e-6));

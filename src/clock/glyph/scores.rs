@@ -24,6 +24,14 @@ impl Scores {
         Self { digits: std::array::from_fn(|k| shares[k] / sum), other: shares[10] / sum }
     }
 
+    /// The same where anything but a whole digit is rarer than in training (28 of 100 there), by this factor.
+    #[must_use]
+    pub fn with_other_rarer(&self, factor: f64) -> Self {
+        let other = factor * self.other;
+        let sum = other + self.digits.iter().sum::<f64>();
+        Self { digits: self.digits.map(|p| p / sum), other: other / sum }
+    }
+
     /// The likeliest digit and how probable it is, sure or not.
     #[must_use]
     pub fn likeliest(&self) -> (u8, f64) {
@@ -34,6 +42,13 @@ impl Scores {
             }
         }
         best
+    }
+
+    /// The digit, if one is at least as probable as [`SURE`], and how probable the likeliest digit is.
+    #[must_use]
+    pub fn best(&self) -> (Option<u8>, f64) {
+        let (digit, probability) = self.likeliest();
+        ((probability >= SURE).then_some(digit), probability)
     }
 }
 
@@ -49,9 +64,13 @@ mod tests {
         let scores = Scores::of(answers);
         assert!((scores.digits.iter().sum::<f64>() + scores.other - 1.0).abs() <= 1e-12);
         assert!((scores.digits[7] / scores.other - 6f64.exp()).abs() <= 1e-6);
-        assert!(scores.likeliest().0 == 7 && scores.likeliest().1 >= SURE);
+        assert_eq!(scores.best().0, Some(7));
         answers[10] = 7.0;
-        let (_, probability) = Scores::of(answers).likeliest();
+        let (digit, probability) = Scores::of(answers).best();
+        assert_eq!(digit, None);
         assert!(probability < SURE && probability > 0.7);
+        let (digit, probability) = Scores::of(answers).with_other_rarer(0.1).best();
+        assert_eq!(digit, Some(7));
+        assert!((probability - 1.0 / (1.0 + 0.1 * (-1f64).exp() + 9.0 * (-8f64).exp())).abs() <= 1e-6);
     }
 }
