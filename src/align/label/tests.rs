@@ -276,7 +276,7 @@ fn standard_errors_are_what_they_say() {
         let [one, two] = shares(rate_hz, noise, tie_sd_s, lost_every, 11);
         assert!((0.64..=0.74).contains(&one) && (0.93..=0.98).contains(&two), "{name}: {one} {two}");
     }
-    // Where the interpolation's own error rules it is no chance, and reported about as surely: measured 0.651 and 0.935.
+    // Where the interpolation's own error rules it is no chance, and known about as surely: measured 0.651 and 0.935.
     let [one, two] = shares(8.0, 0.01, 0.0, 10, 11);
     assert!(one >= 0.62 && two >= 0.9, "{one} {two}");
 }
