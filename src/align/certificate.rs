@@ -1,6 +1,6 @@
 //! The certificate of a labelled set: how the clocks were tied, how well, and what was left unlabelled.
 //!
-//! It stands beside the set (`training.sync.json`), and in a Parquet set's metadata too. It tells no time of day and no
+//! It is written beside the set (`training.sync.json`), and in a Parquet set's metadata too. No time of day, no
 //! run time: the same input gives the same bytes.
 
 use serde::Serialize;
@@ -19,17 +19,17 @@ pub struct Certificate {
     pub method: TieMethod,
     /// The log's time at the video's first frame, seconds.
     pub offset_s: f64,
-    /// Its standard error, seconds; none where nothing tells.
+    /// Its standard error, seconds; `None` where not known.
     pub offset_sd_s: Option<f64>,
     /// The least and the greatest offset that agree with all that was seen, seconds.
     pub offset_interval_s: Option<[f64; 2]>,
     /// How much faster the log's clock runs than the video's, millionths.
     pub drift_ppm: f64,
-    /// Its standard error, millionths; none where nothing tells.
+    /// Its standard error, millionths; `None` where not known.
     pub drift_sd_ppm: Option<f64>,
     /// Root mean square of what the tie leaves over, seconds.
     pub residual_rms_s: Option<f64>,
-    /// How sure it is that this is the right tie and no other, 0 to 1; none where nothing tells.
+    /// How sure it is that this is the right tie and no other, 0 to 1; `None` where not known.
     pub confidence: Option<f64>,
     /// Frames in which the clock was read and agrees with the rest.
     pub frames_read: u64,

@@ -196,14 +196,14 @@ mod tests {
         let early = "60.04,0.125,12.50000,0.02000,ok,S01,1,ok\n60.08,0.25,,,gap,S01,1,saturated: P1\n";
         let late = "70.04,1e-7,1.00000,0.02000,ok,S01,1,ok\n";
         let other = "1,0.5,1.00000,0.02000,ok,S01,2,ok\n";
-        let told = joined(&[&format!("{HEAD}{other}"), &format!("{HEAD}{late}"), &format!("{HEAD}{early}")]);
-        assert_eq!(told.unwrap(), format!("{HEAD}{early}{late}{other}"));
+        let joint = joined(&[&format!("{HEAD}{other}"), &format!("{HEAD}{late}"), &format!("{HEAD}{early}")]);
+        assert_eq!(joint.unwrap(), format!("{HEAD}{early}{late}{other}"));
     }
 
     #[test]
     fn a_column_that_some_lack_is_empty_there() {
-        let told = joined(&["time_s,P1,J2_deg\n1,2,3\n", "time_s,P1,J3_deg\n5,6,7\n", "time_s,P1\n"]).unwrap();
-        assert_eq!(told, "time_s,P1,J2_deg,J3_deg\n1,2,3.00000,\n5,6,,7.00000\n");
+        let joint = joined(&["time_s,P1,J2_deg\n1,2,3\n", "time_s,P1,J3_deg\n5,6,7\n", "time_s,P1\n"]).unwrap();
+        assert_eq!(joint, "time_s,P1,J2_deg,J3_deg\n1,2,3.00000,\n5,6,,7.00000\n");
     }
 
     #[test]
@@ -214,19 +214,19 @@ mod tests {
             [row(1, "", before), row(2, "5.00000", "ok"), row(3, "", after), row(4, "", after), row(5, "", after)];
         let second =
             [row(1, "", before), row(2, "", before), row(3, "", before), row(4, "7.00000", "ok"), row(5, "", after)];
-        let told = joined(&[&format!("{HEAD}{}", second.concat()), &format!("{HEAD}{}", first.concat())]).unwrap();
+        let joint = joined(&[&format!("{HEAD}{}", second.concat()), &format!("{HEAD}{}", first.concat())]).unwrap();
         let expected = [row(1, "", before), first[1].clone(), row(3, "", after), second[3].clone(), row(5, "", after)];
-        assert_eq!(told, format!("{HEAD}{}", expected.concat()));
+        assert_eq!(joint, format!("{HEAD}{}", expected.concat()));
     }
 
     #[test]
     fn what_would_count_twice_is_refused() {
         let row = |time_s: f64, session: u32| format!("{time_s},0,1,1,ok,S01,{session},ok\n");
         let first = format!("{HEAD}{}{}", row(1.0, 1), row(5.0, 1));
-        let told = joined(&[&first, &format!("{HEAD}{}", row(4.0, 1))]).unwrap_err();
+        let error = joined(&[&first, &format!("{HEAD}{}", row(4.0, 1))]).unwrap_err();
         assert!(
-            told.contains("set-1.csv: what was filmed from 4 s on overlaps") && told.contains("set-0.csv up to 5"),
-            "{told}"
+            error.contains("set-1.csv: what was filmed from 4 s on overlaps") && error.contains("set-0.csv up to 5"),
+            "{error}"
         );
         assert!(joined(&[&first, &format!("{HEAD}{}", row(4.0, 2))]).is_ok(), "another session's clock is another");
         assert!(joined(&[HEAD]).unwrap_err().contains("no set has a row"));

@@ -1,6 +1,6 @@
 //! The table of joint angles that `lunula posture` writes, as far as labels need it.
 //!
-//! In: CSV or Parquet with `time_s` and `<joint>_deg`; `<joint>_sd_deg`, `clock_s` and what tells of its error where
+//! In: CSV or Parquet with `time_s` and `<joint>_deg`; `<joint>_sd_deg`, `clock_s` and columns of its error where
 //! they are there. Out: a [`Posture`]. Other columns (`frame`, `status`) are not needed. A table of one frame is a
 //! table; one of none is refused.
 
@@ -27,7 +27,7 @@ pub struct Posture {
     pub sds_deg: Vec<Vec<f64>>,
 }
 
-/// What `lunula posture` tells of the clock in each frame, seconds; NaN where it is not known.
+/// What `lunula posture` reports of the clock in each frame, seconds; NaN where it is not known.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ClockColumns {
     /// What it was read to show, counted on over midnight.
@@ -227,8 +227,8 @@ mod tests {
             ("time_s,J2_deg\n", "has no row"),
             ("", "is empty"),
         ] {
-            let told = read(text).unwrap_err();
-            assert!(told.contains(words) && told.contains("joints.csv"), "{told}");
+            let error = read(text).unwrap_err();
+            assert!(error.contains(words) && error.contains("joints.csv"), "{error}");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Multiples of a step: the times and loads at which a job tells something.
+//! Multiples of a step: the times and loads at which a job reports values.
 
 /// `k` times the step: of a step that is a decimal fraction the nearest number to that fraction's multiple, so that a
 /// row stands at 0.07 and not at 0.07 and a last bit.

@@ -80,7 +80,7 @@ pub enum LogError {
         /// What is wrong and what to do.
         what: String,
     },
-    /// The columns that are needed are not there, or it can't be told which they are.
+    /// The columns that are needed are missing, or ambiguous.
     #[error("{}: {what}", path.display())]
     Columns {
         /// The file.

@@ -85,7 +85,7 @@ impl LogReading {
         Ok((renamed, choice.time_unit.map_or(1.0, TimeUnit::a_second), choice.notes))
     }
 
-    /// Whether a file's LED goes on and off; none where that can't be told.
+    /// Whether a file's LED goes on and off; `None` where that is not known.
     pub(crate) fn led_of(&self, path: &Path) -> Option<bool> {
         match self.is_log(path) {
             Ok(true) => LogHeader::read(path, &self.columns).ok().map(|header| header.led),

@@ -24,7 +24,7 @@ fn good(text: &str) -> Log {
 }
 
 /// The words of the error.
-fn told(text: &str) -> String {
+fn error_of(text: &str) -> String {
     read(text).map(|log| panic!("{log:?}")).unwrap_err().to_string()
 }
 
@@ -91,8 +91,8 @@ fn dialects_read_alike() {
     packed.write_all(b"time_s,P1,Fz_N\n0,1.5,-1\n0.5,2.5,-2\n").unwrap();
     let packed = packed.finish().unwrap();
     same("log.csv.gz", &packed, &[]);
-    let told = read_as("log.csv.gz", &packed[..packed.len() / 2], &Columns::default()).unwrap_err().to_string();
-    assert!(told.contains("log.csv.gz: can't be unpacked"), "{told}");
+    let error = read_as("log.csv.gz", &packed[..packed.len() / 2], &Columns::default()).unwrap_err().to_string();
+    assert!(error.contains("log.csv.gz: can't be unpacked"), "{error}");
 }
 
 #[test]
@@ -116,10 +116,10 @@ fn parquet_reads_as_text_does() {
     let log = Log::read(&path, &Columns::parse("time_s=stamp").unwrap()).unwrap();
     assert_eq!((log.time_s[2] - log.time_s[0], log.time_s[0] - log.midnight_s.unwrap()), (2.0, 0.25));
     assert_eq!((log.led.unwrap(), &log.photodiodes[1].values[..]), (vec![false, true, false], &[0.0, 1.0, 2.0][..]));
-    let told = Log::read(&path, &Columns::parse("time_s=stamp,P1=x").unwrap()).unwrap_err().to_string();
-    assert!(told.contains("log.parquet: row 1, column `x`: `a` is no"), "{told}");
-    let told = Log::read(&path, &Columns::parse("time_s=P2,led=P1,P1=x").unwrap()).unwrap_err().to_string();
-    assert!(told.contains("log.parquet: row 1, column `P1`: `0.5` is neither"), "{told}");
+    let error = Log::read(&path, &Columns::parse("time_s=stamp,P1=x").unwrap()).unwrap_err().to_string();
+    assert!(error.contains("log.parquet: row 1, column `x`: `a` is no"), "{error}");
+    let error = Log::read(&path, &Columns::parse("time_s=P2,led=P1,P1=x").unwrap()).unwrap_err().to_string();
+    assert!(error.contains("log.parquet: row 1, column `P1`: `0.5` is neither"), "{error}");
 }
 
 #[test]
@@ -137,8 +137,8 @@ fn a_wrong_cell_is_named_with_file_line_and_column() {
         ("time_s,P1,P2\n0,1\n0.1,1,2\n", "log.csv:2: has 2 cells and the header 3"),
         ("time_s;P1\n0;1,5\n0,1;1.5\n", "log.csv:3: column `P1`: `1.5`: numbers have decimal points here"),
     ] {
-        let told = told(text);
-        assert!(told.contains(words), "{told}");
+        let error = error_of(text);
+        assert!(error.contains(words), "{error}");
     }
 }
 
@@ -156,8 +156,8 @@ fn files_that_are_no_logs_are_told() {
         ("log.csv", b"PAR1abc", ".parquet"),
         ("log.parquet", b"PAR1abc", "not a whole Parquet file"),
     ] {
-        let told = read_as(name, bytes, &Columns::default()).unwrap_err().to_string();
-        assert!(told.contains(words) && told.contains(name), "{told}");
+        let error = read_as(name, bytes, &Columns::default()).unwrap_err().to_string();
+        assert!(error.contains(words) && error.contains(name), "{error}");
     }
     assert!(
         Log::read(Path::new("nothing.csv"), &Columns::default())
@@ -167,8 +167,8 @@ fn files_that_are_no_logs_are_told() {
     );
     #[cfg(not(feature = "xdf"))]
     {
-        let told = Log::read(Path::new("nothing.xdf"), &Columns::default()).unwrap_err().to_string();
-        assert!(told.contains("--features xdf"), "{told}");
+        let error = Log::read(Path::new("nothing.xdf"), &Columns::default()).unwrap_err().to_string();
+        assert!(error.contains("--features xdf"), "{error}");
     }
 }
 
@@ -234,9 +234,9 @@ fn rows_that_were_swapped_are_sorted() {
 fn a_clock_that_was_reset_is_an_error_that_says_where_and_pieces_are_chosen() {
     let steps = |n: i32, from: f64| (0..n).map(move |k| from + f64::from(k) * 0.01);
     let reset = of_times(steps(50, 100.0).chain(steps(30, 0.0)).chain(steps(20, 5e6)));
-    let told = told(&reset);
+    let error = error_of(&reset);
     for words in ["log.csv:52: time falls back from 100.49 s to 0 s", "the first of 2", "--piece"] {
-        assert!(told.contains(words), "{told}");
+        assert!(error.contains(words), "{error}");
     }
     let piece = |n| {
         let mut columns = Columns::default();
@@ -252,7 +252,7 @@ fn a_clock_that_was_reset_is_an_error_that_says_where_and_pieces_are_chosen() {
     }
     let words = piece(4).unwrap_err().to_string();
     assert!(words.contains("3 piece(s)"), "{words}");
-    // A leap alone, and short logs that begin anew.
+    // A leap alone, and short logs that begin again.
     for (times, words) in [
         (vec![0.0, 0.1, 1.6e9, 1.6e9 + 0.1], "log.csv:4: time leaps from 0.1 s to 1600000000 s"),
         (vec![100.0, 100.1, 100.2, 0.0, 0.1, 0.2], "log.csv:5: time falls back"),
@@ -261,12 +261,12 @@ fn a_clock_that_was_reset_is_an_error_that_says_where_and_pieces_are_chosen() {
         (vec![0.3, 0.2, 0.1], "log.csv:3: time runs backwards from here on; sort the rows by time"),
         (vec![1.0, 0.0], "log.csv:3: time runs backwards"),
     ] {
-        let told = self::told(&of_times(times));
-        assert!(told.contains(words), "{told}");
+        let error = error_of(&of_times(times));
+        assert!(error.contains(words), "{error}");
     }
     // A clock that was set back by a fifth of a second goes over the same time twice.
-    let told = self::told(&of_times(steps(50, 0.0).chain(steps(50, 0.3))));
-    assert!(told.contains("log.csv:52: time falls back"), "{told}");
+    let error = error_of(&of_times(steps(50, 0.0).chain(steps(50, 0.3))));
+    assert!(error.contains("log.csv:52: time falls back"), "{error}");
 }
 
 #[test]

@@ -140,7 +140,7 @@ impl PhotoSet {
         set
     }
 
-    /// Sorts, and leaves out what can't be told apart.
+    /// Sorts, and leaves out what can't be distinguished.
     fn settle(&mut self) {
         self.photos.sort();
         self.leave_out_doubles();

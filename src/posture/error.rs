@@ -15,7 +15,7 @@ pub enum PostureError {
     /// The video can't be read or the overlay not written.
     #[error(transparent)]
     Video(#[from] VideoError),
-    /// The markers can't be found or told apart.
+    /// The markers can't be found or distinguished.
     #[error("{}: {why}", path.display())]
     Markers {
         /// The video.

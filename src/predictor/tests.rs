@@ -77,8 +77,8 @@ fn a_recording_under_two_names_is_told() {
     assert!(report.warnings.iter().any(|w| w.contains("copy.csv holds the rows of")), "{:?}", report.warnings);
     let options = EvaluateOptions { by: Some(By::Trajectory), ..EvaluateOptions::default() };
     let found = evaluate(&model, &DataFile::of(&[a, copy, b]), &options, None, &Watch::nobody()).unwrap();
-    let told = |words: &str| found.warnings.iter().any(|warning| warning.contains(words));
-    assert!(told("120 of 180 rows stand in other parts as well"), "{:?}", found.warnings);
+    let warned = |words: &str| found.warnings.iter().any(|warning| warning.contains(words));
+    assert!(warned("120 of 180 rows stand in other parts as well"), "{:?}", found.warnings);
 }
 
 #[test]

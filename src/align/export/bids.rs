@@ -2,7 +2,7 @@
 //!
 //! `sub-<subject>/[ses-<session>/]motion/` gets `_motion.tsv` (no line of names, `n/a` where there is no angle),
 //! `_channels.tsv` and `_motion.json`. Channels: `LATENCY`, each frame's time on the log's clock, seconds; for each
-//! joint `JNTANG`, degrees, positive in flexion, and, where the table tells it, its standard error as `MISC`. In a new
+//! joint `JNTANG`, degrees, positive in flexion, and, where the table has it, its standard error as `MISC`. In a new
 //! folder `dataset_description.json`, `README` and `participants.tsv` are written too. In a dataset that stands they
 //! are left as they are, but for a participant who is new: a row is added.
 

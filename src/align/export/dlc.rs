@@ -6,7 +6,7 @@
 //! frame's number. Some readers count rows instead of reading that number; the table of `lunula posture` has all
 //! frames, so both are the same.
 //!
-//! Likelihood is the probability that the marker's centre lies within a pixel of where it is told, by its standard
+//! Likelihood is the probability that the marker's centre lies within a pixel of where it is reported, by its standard
 //! error along each axis:
 //! 1 - exp(-1 / (2 sd^2)), so 1 where sd is 0.2 px and 0.39 where it is 1 px. A marker that was not seen has empty
 //! places and likelihood

@@ -34,6 +34,7 @@ fn tie() -> Tie {
         confidence: None,
         frames_read: 0,
         frames_abstained: 0,
+        warnings: Vec::new(),
         notes: Vec::new(),
     }
 }
@@ -57,8 +58,8 @@ fn a_motion_file_has_a_row_a_frame_on_the_logs_clock() {
          71.600200\t0.00000\t7.00000\n"
     );
     let spaced = Posture { joints: vec!["a b".into(), "a_b".into()], ..posture() };
-    let told = mot(&path, &path, &spaced, &tie()).unwrap_err().to_string();
-    assert!(told.contains("second column named `a_b`") && told.contains("bend.mot"), "{told}");
+    let error = mot(&path, &path, &spaced, &tie()).unwrap_err().to_string();
+    assert!(error.contains("second column named `a_b`") && error.contains("bend.mot"), "{error}");
     let never = Posture {
         angles_deg: vec![vec![1.0, f64::NAN, 1.0, 1.0], vec![f64::NAN, 1.0, f64::NAN, f64::NAN]],
         ..posture()
@@ -132,24 +133,24 @@ fn what_bids_has_no_place_for_is_told_and_leaves_no_trace() {
         (Some("1"), Some("pre-test"), "session"),
         (Some(""), None, "subject"),
     ] {
-        let told = BidsNames::new(subject, session, "bend", "camera").unwrap_err().to_string();
-        assert!(told.contains(entity) && told.contains("letters and digits"), "{told}");
+        let error = BidsNames::new(subject, session, "bend", "camera").unwrap_err().to_string();
+        assert!(error.contains(entity) && error.contains("letters and digits"), "{error}");
     }
     let dir = tempfile::tempdir().unwrap();
     let root = dir.path().join("a/set");
     let names = BidsNames::new(Some("01"), None, "bend", "camera").unwrap();
     let one = Posture { time_s: vec![0.0], ..posture() };
     let mut places = Places::default();
-    let told = bids(&mut places, &root, &names, &one, &tie()).unwrap_err().to_string();
-    assert!(told.contains("sampling frequency") && told.contains("sub-01"), "{told}");
+    let error = bids(&mut places, &root, &names, &one, &tie()).unwrap_err().to_string();
+    assert!(error.contains("sampling frequency") && error.contains("sub-01"), "{error}");
     // A job that fails later.
     bids(&mut places, &root, &names, &posture(), &tie()).unwrap();
     drop(places);
     assert!(!dir.path().join("a").exists());
     std::fs::create_dir_all(&root).unwrap();
     std::fs::write(root.join("participants.tsv"), "id\n1\n").unwrap();
-    let told = bids(&mut Places::default(), &root, &names, &posture(), &tie()).unwrap_err().to_string();
-    assert!(told.contains("participants.tsv: has no column `participant_id`"), "{told}");
+    let error = bids(&mut Places::default(), &root, &names, &posture(), &tie()).unwrap_err().to_string();
+    assert!(error.contains("participants.tsv: has no column `participant_id`"), "{error}");
 }
 
 #[test]
@@ -180,8 +181,8 @@ fn markers_become_a_table_of_deeplabcut() {
         ("frame,x_px,y_px\n0,1,2\n", "has no column `marker`"),
     ] {
         std::fs::write(&tracks, text).unwrap();
-        let told = dlc(&path, &path, &tracks).unwrap_err().to_string();
-        assert!(told.contains(words), "{told}");
+        let error = dlc(&path, &path, &tracks).unwrap_err().to_string();
+        assert!(error.contains(words), "{error}");
     }
     std::fs::write(&tracks, "frame,marker,x_px,y_px\n").unwrap();
     dlc(&path, &path, &tracks).unwrap();

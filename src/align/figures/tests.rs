@@ -60,6 +60,7 @@ fn samples(start_s: f64, seconds: f64) -> Samples {
         photodiodes: (0..8).map(channel).collect(),
         forces: Vec::new(),
         faults: vec![String::new(); time_s.len()],
+        warnings: Vec::new(),
         notes: Vec::new(),
         time_s,
     }

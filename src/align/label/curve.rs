@@ -8,7 +8,7 @@
 //! nearer than half the two frames' distance: it would magnify its error.
 //!
 //! The error has two shares. The frames' own errors, taken as independent, go through the polynomial's weights. The
-//! polynomial's is told by the next term of Newton's form: what the next frame on either side would change, the larger
+//! polynomial's is that of the next term of Newton's form: what the next frame on either side would change, the larger
 //! of the two, less what the frames' errors explain of it. Where no further frame is near, it is what one frame fewer
 //! would change; between two lone frames it follows from the joint's root mean square second derivative over the whole
 //! recording.
@@ -26,7 +26,7 @@ pub(super) struct Between {
     pub(super) deg: f64,
     /// Of the frames' errors and the interpolation's; NaN where it is not known.
     pub(super) variance_deg2: f64,
-    /// Rate of change, degrees a second; NaN where a lone frame tells none.
+    /// Rate of change, degrees a second; NaN for a lone frame.
     pub(super) rate_deg_s: f64,
 }
 

@@ -23,12 +23,14 @@ fn tie(timebase: Timebase) -> Tie {
         confidence: None,
         frames_read: 0,
         frames_abstained: 0,
+        warnings: Vec::new(),
         notes: Vec::new(),
     }
 }
 
 fn samples(time_s: Vec<f64>) -> Samples {
-    Samples { time_s, photodiodes: Vec::new(), forces: Vec::new(), faults: Vec::new(), notes: Vec::new() }
+    let (photodiodes, forces, faults) = (Vec::new(), Vec::new(), Vec::new());
+    Samples { time_s, photodiodes, forces, faults, warnings: Vec::new(), notes: Vec::new() }
 }
 
 /// Joints J1, J2, ... with these angles; each angle's standard error `sd`.
@@ -217,7 +219,7 @@ fn what_is_not_known_of_a_frame_is_not_known_of_its_rows() {
     let labels = label(&posture, &samples(rows.clone()), &tie(still), None);
     assert!(labels.angles_deg[0].iter().all(|a| a.is_finite()));
     for (row, &t) in rows.iter().enumerate() {
-        // The frame is one of four, or the one more that tells the error.
+        // The frame is one of four, or the one more that gives the error.
         if (t - 1.0).abs() < 1.9 / 30.0 {
             assert!(labels.sds_deg[0][row].is_nan(), "{t}");
         } else if (t - 1.0).abs() > 3.1 / 30.0 {
@@ -274,7 +276,7 @@ fn standard_errors_are_what_they_say() {
         let [one, two] = shares(rate_hz, noise, tie_sd_s, lost_every, 11);
         assert!((0.64..=0.74).contains(&one) && (0.93..=0.98).contains(&two), "{name}: {one} {two}");
     }
-    // Where the interpolation's own error rules it is no chance; it is told nearly as surely: measured 0.651 and 0.935.
+    // Where the interpolation's own error rules it is no chance, and known about as surely: measured 0.651 and 0.935.
     let [one, two] = shares(8.0, 0.01, 0.0, 10, 11);
     assert!(one >= 0.62 && two >= 0.9, "{one} {two}");
 }

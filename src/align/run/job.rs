@@ -55,8 +55,9 @@ pub fn run(
         let why = nothing_labelled(&posture, &samples, &tie);
         return Err(AlignError::NothingLabelled { path: inputs.log.clone(), why });
     }
+    let warnings = [&tie.warnings[..], &samples.warnings].concat();
     let notes = [&log.notes[..], &samples.notes, &tie.notes].concat();
-    let certificate = Certificate::new(&tie, &labels, notes.clone());
+    let certificate = Certificate::new(&tie, &labels, [&warnings[..], &notes].concat());
     stages.time("write", || results.training(&samples, &posture, &labels, &certificate, options, outputs))?;
     let exported = stages.time("export", || results.exports(&posture, &tie, names.as_ref(), inputs, outputs))?;
     let pictures = stages.time("figures", || results.pictures(&posture, &samples, &labels, &tie, outputs))?;
@@ -72,7 +73,7 @@ pub fn run(
     };
     let left_out = left_out(steps(&Foreknown::of(&posture, &log), options, Some(outputs)));
     let notes = [notes, exported].concat();
-    let report = Report { left_out, notes, pictures, ..Report::new("align", watch, figures) };
+    let report = Report { left_out, warnings, notes, pictures, ..Report::new("align", watch, figures) };
     results.finish(report.timed(&stages, start), outputs)
 }
 

@@ -30,7 +30,7 @@ pub fn by_clock(
     if let Some(clock) = &posture.clock {
         as_fitted(posture, clock, &mut tie);
     } else {
-        tie.notes.push(ONLY_A_LINE.to_owned());
+        tie.warnings.push(ONLY_A_LINE.to_owned());
     }
     let ends = |times: &mut dyn Iterator<Item = f64>| {
         let ends =
@@ -141,7 +141,7 @@ fn by_line(posture: &Posture) -> Result<Tie, String> {
     let off: Vec<[f64; 2]> = seen.iter().map(|p| [p[0], height - rise(p)]).collect();
     // The median of what is off, as a standard deviation.
     let scatter_s = 1.4826 * median(&mut off.iter().map(|p| p[1].abs()).collect::<Vec<_>>()).unwrap_or(0.0);
-    // What lies on a line to the last decimal was fitted before, and how well can't be told any more.
+    // What lies on a line to the last decimal was fitted before, and how well is not known any more.
     let sd_s = if scatter_s > FITTED_S { scatter_s } else { f64::NAN };
     let squares: f64 = off.iter().map(|p| p[1] * p[1]).sum();
     let frames = seen.len() as u64;
@@ -160,6 +160,7 @@ fn by_line(posture: &Posture) -> Result<Tie, String> {
         confidence: None,
         frames_read: frames,
         frames_abstained: posture.time_s.len() as u64 - frames,
+        warnings: Vec::new(),
         notes: Vec::new(),
     })
 }
@@ -209,7 +210,7 @@ mod tests {
         assert!((line.drift_sd - 2e-4).abs() <= ROUNDING);
         let [low, high] = tie.offset_interval_s.unwrap();
         assert!((low - 65.02).abs() <= ROUNDING && (high - 65.05).abs() <= ROUNDING);
-        assert_eq!((tie.frames_read, tie.frames_abstained, tie.notes.len()), (600, 0, 0));
+        assert_eq!((tie.frames_read, tie.frames_abstained, tie.warnings.len() + tie.notes.len()), (600, 0, 0));
         // Even steps of a third of a tenth about its middle.
         assert!(tie.residuals_s.iter().all(|p| p[1].abs() <= 0.05 + ROUNDING) && tie.residual_rms_s.unwrap() > 0.02);
     }
@@ -231,7 +232,7 @@ mod tests {
         table.clock_s[9] = f64::NAN;
         let tie = by_clock(&table, &[60.0, 100.0], None, None).unwrap();
         assert!((tie.timebase.offset_s() - 65.03).abs() <= ROUNDING);
-        assert!(tie.notes[0].contains("clock_read_s") && tie.offset_interval_s.is_none());
+        assert!(tie.warnings[0].contains("clock_read_s") && tie.offset_interval_s.is_none());
         assert!(tie.timebase.at_reference_sd_s.is_nan(), "a line that was fitted before");
         let mut jittered = table.clone();
         jittered.clock_s.iter_mut().enumerate().for_each(|(k, clock)| *clock += 0.015 * ((k * k) as f64).sin());

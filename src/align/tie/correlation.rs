@@ -25,13 +25,13 @@ pub struct LagTie {
 }
 
 /// Ties by correlation. The offset is what [`correlate`] finds less the sensor's lag; where that is not known it is in
-/// the offset, and a note says so. Drift can't be told from the sensor's own and is taken to be 0, with the standard
-/// error of clocks of quartz.
+/// the offset, and a warning says so. Drift can't be separated from the sensor's own and is taken to be 0, with the
+/// standard error of clocks of quartz.
 ///
 /// # Errors
 /// No angles, no photodiodes, or no lag that is sure: in words, with what to do.
-pub fn by_correlation(posture: &Posture, samples: &Samples, told: LagTie) -> Result<Tie, String> {
-    if let Some(lag_s) = told.sensor_lag_s.filter(|lag_s| !lag_s.is_finite()) {
+pub fn by_correlation(posture: &Posture, samples: &Samples, options: LagTie) -> Result<Tie, String> {
+    if let Some(lag_s) = options.sensor_lag_s.filter(|lag_s| !lag_s.is_finite()) {
         return Err(format!("the sensor's lag is {lag_s} s; it must be a number of seconds"));
     }
     let angles: Vec<&[f64]> = posture.angles_deg.iter().map(Vec::as_slice).collect();
@@ -45,18 +45,21 @@ pub fn by_correlation(posture: &Posture, samples: &Samples, told: LagTie) -> Res
     let found = correlate(
         Recording { time_s: &posture.time_s, columns: &angles },
         Recording { time_s: &samples.time_s, columns: &channels },
-        told.search,
+        options.search,
     )?;
-    let lag_s = told.sensor_lag_s.unwrap_or(0.0);
+    let lag_s = options.sensor_lag_s.unwrap_or(0.0);
     let offset_s = found.offset_s - lag_s;
     let reference_s = middle_of_overlap(&posture.time_s, &samples.time_s, offset_s);
-    let mut notes = vec![match told.sensor_lag_s {
-        Some(lag_s) => format!("the sensor's lag of {lag_s} s, as told, is taken off the offset"),
-        None => "photodiodes change after the finger does, some 0.05 s in bending and 0.1 to 0.4 s in pressing: that \
-                 lag can't be told from the offset and is part of it, and not in its standard error (which has how it \
-                 differs with the motion); labels are early by it unless the sensor's lag is given"
-            .to_owned(),
-    }];
+    let (mut warnings, mut notes) = (Vec::new(), Vec::new());
+    match options.sensor_lag_s {
+        Some(lag_s) => notes.push(format!("the sensor's lag of {lag_s} s, as given, is taken off the offset")),
+        None => warnings.push(
+            "photodiodes change after the finger does, some 0.05 s in bending and 0.1 to 0.4 s in pressing: that \
+                 lag can't be separated from the offset and is part of it, but not of its standard error (which has \
+                 how it differs with the motion); labels are early by it unless the sensor's lag is given"
+                .to_owned(),
+        ),
+    }
     notes.push(format!(
         "the angles explain {:.1} % of the variance of the photodiodes' best combination at this lag",
         100.0 * found.explained
@@ -80,6 +83,7 @@ pub fn by_correlation(posture: &Posture, samples: &Samples, told: LagTie) -> Res
         confidence: Some(found.confidence),
         frames_read: 0,
         frames_abstained: 0,
+        warnings,
         notes,
     })
 }
@@ -125,7 +129,10 @@ mod tests {
         };
         let photodiodes = (1..4).map(channel).collect();
         let faults = vec![String::new(); log_s.len()];
-        (posture, Samples { time_s: log_s, photodiodes, forces: Vec::new(), faults, notes: Vec::new() })
+        (
+            posture,
+            Samples { time_s: log_s, photodiodes, forces: Vec::new(), faults, warnings: Vec::new(), notes: Vec::new() },
+        )
     }
 
     /// Measured: 0.1 ms.
@@ -136,9 +143,9 @@ mod tests {
         let (posture, samples) = recordings(0.2);
         let tie = by_correlation(&posture, &samples, LagTie::default()).unwrap();
         assert!((tie.timebase.offset_s() - 100.2).abs() <= FOUND_S, "{}", tie.timebase.offset_s());
-        assert!(tie.notes[0].contains("can't be told") && tie.confidence.unwrap() > 0.95);
-        let told = LagTie { sensor_lag_s: Some(0.2), ..LagTie::default() };
-        let tie = by_correlation(&posture, &samples, told).unwrap();
+        assert!(tie.warnings[0].contains("can't be separated") && tie.confidence.unwrap() > 0.95);
+        let options = LagTie { sensor_lag_s: Some(0.2), ..LagTie::default() };
+        let tie = by_correlation(&posture, &samples, options).unwrap();
         assert!((tie.timebase.offset_s() - 100.0).abs() <= FOUND_S);
     }
 
@@ -176,7 +183,10 @@ mod tests {
         };
         let (log_s, faults) = (rows.iter().map(|row| row.stamp_s).collect(), vec![String::new(); rows.len()]);
         let photodiodes = (0..8).map(channel).collect();
-        (posture, Samples { time_s: log_s, photodiodes, forces: Vec::new(), faults, notes: Vec::new() })
+        (
+            posture,
+            Samples { time_s: log_s, photodiodes, forces: Vec::new(), faults, warnings: Vec::new(), notes: Vec::new() },
+        )
     }
 
     /// The photodiodes' lag in bending: 0.04 s of the first order, and half of half a degree's play. Measured over 20

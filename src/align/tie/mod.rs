@@ -40,12 +40,14 @@ pub struct Tie {
     pub residual_rms_s: Option<f64>,
     /// For a picture: the video's time and what the tie leaves over there, seconds.
     pub residuals_s: Vec<[f64; 2]>,
-    /// How sure it is that this is the right tie and no other, 0 to 1; none where nothing tells.
+    /// How sure it is that this is the right tie and no other, 0 to 1; `None` where not known.
     pub confidence: Option<f64>,
     /// Frames in which the clock was read and agrees with the rest.
     pub frames_read: u64,
     /// Frames in which it was not, or was not believed.
     pub frames_abstained: u64,
-    /// What whoever uses the labels should know.
+    /// What has to be known before the labels are used.
+    pub warnings: Vec<String>,
+    /// What was chosen or counted, and needs no action.
     pub notes: Vec<String>,
 }

@@ -15,11 +15,14 @@ pub fn by_offset(offset_s: f64, offset_sd_s: Option<f64>) -> Result<Tie, String>
     if let Some(sd_s) = offset_sd_s.filter(|sd_s| !(sd_s.is_finite() && *sd_s >= 0.0)) {
         return Err(format!("the offset's standard error is {sd_s} s; it must be a number of seconds, 0 or more"));
     }
-    let mut notes = vec!["the offset is the user's; nothing in the data was compared with it".to_owned()];
+    let mut warnings = Vec::new();
     if offset_sd_s.is_none() {
-        notes.push("how well the offset is known was not said: no standard error counts it".to_owned());
+        warnings.push("how well the offset is known was not given: no standard error counts it".to_owned());
     }
-    notes.push("drift is taken to be 0".to_owned());
+    let notes = vec![
+        "the offset is the user's; nothing in the data was compared with it".to_owned(),
+        "drift is taken to be 0".to_owned(),
+    ];
     let at_reference_sd_s = offset_sd_s.unwrap_or(f64::NAN);
     Ok(Tie {
         method: TieMethod::Offset,
@@ -36,6 +39,7 @@ pub fn by_offset(offset_s: f64, offset_sd_s: Option<f64>) -> Result<Tie, String>
         confidence: None,
         frames_read: 0,
         frames_abstained: 0,
+        warnings,
         notes,
     })
 }
@@ -48,6 +52,7 @@ mod tests {
     fn what_the_user_does_not_say_is_not_known() {
         let tie = by_offset(12.5, None).unwrap();
         assert!(tie.timebase.other_s(2.0) == 14.5 && tie.timebase.offset_sd_s().is_nan());
+        assert!(tie.warnings.len() == 1 && tie.notes.len() == 2, "{tie:?}");
         assert_eq!(by_offset(12.5, Some(0.01)).unwrap().timebase.sd_s(100.0), 0.01);
         assert!(by_offset(f64::NAN, None).is_err() && by_offset(1.0, Some(-1.0)).is_err());
     }

@@ -38,7 +38,7 @@ pub(super) struct Learnt {
 }
 
 /// A row of characters in one crop.
-struct Found {
+struct RowInCrop {
     crop: usize,
     /// Which threshold, and whether ink is lighter.
     way: (usize, bool),
@@ -192,7 +192,7 @@ impl Model {
 }
 
 /// Rows of characters in crops spread evenly; none where the first ones show none.
-fn search(crops: &[Gray], format: &ClockFormat) -> Vec<Found> {
+fn search(crops: &[Gray], format: &ClockFormat) -> Vec<RowInCrop> {
     let count = crops.len().min(SEARCHED);
     let mut found = Vec::new();
     for k in 0..count {
@@ -208,7 +208,7 @@ fn search(crops: &[Gray], format: &ClockFormat) -> Vec<Found> {
 }
 
 /// One crop's rows; with `known`, only at the thresholds and in the polarities that showed some before.
-fn search_one(crop: usize, gray: &Gray, format: &ClockFormat, known: bool, found: &mut Vec<Found>) {
+fn search_one(crop: usize, gray: &Gray, format: &ClockFormat, known: bool, found: &mut Vec<RowInCrop>) {
     let Some(whole) = split(&gray.values) else { return };
     let side = |light: bool| -> Vec<f32> {
         gray.values.iter().copied().filter(|&value| (value > whole.threshold) == light).collect()
@@ -223,17 +223,17 @@ fn search_one(crop: usize, gray: &Gray, format: &ClockFormat, known: bool, found
             for line in lines(&pieces(gray, split.threshold, light)) {
                 let levels = if light { [split.dark, split.light] } else { [split.light, split.dark] };
                 let levels = Levels { background: levels[0], ink: levels[1] };
-                found.extend(rows(&line, format).into_iter().map(|row| Found { crop, way, row, levels }));
+                found.extend(rows(&line, format).into_iter().map(|row| RowInCrop { crop, way, row, levels }));
             }
         }
     }
 }
 
 /// The rows at each place that may show the format, the place first that does most often and most probably.
-fn likely_places<'a>(crops: &[Gray], found: &'a [Found], format: &ClockFormat) -> Vec<Vec<&'a Found>> {
-    let mut places: Vec<Vec<&Found>> = Vec::new();
+fn likely_places<'a>(crops: &[Gray], found: &'a [RowInCrop], format: &ClockFormat) -> Vec<Vec<&'a RowInCrop>> {
+    let mut places: Vec<Vec<&RowInCrop>> = Vec::new();
     for one in found {
-        let same = |place: &Vec<&Found>| {
+        let same = |place: &Vec<&RowInCrop>| {
             let (a, b) = (&place[0], one);
             let slack = 0.3 * a.row.height() as f64;
             let near = |a: usize, b: usize| a.abs_diff(b) as f64 <= slack;
@@ -250,7 +250,7 @@ fn likely_places<'a>(crops: &[Gray], found: &'a [Found], format: &ClockFormat) -
         }
     }
     let scored = places.into_iter().map(|place| (likely(crops, &place, format), place));
-    let mut scored: Vec<(f64, Vec<&Found>)> = scored
+    let mut scored: Vec<(f64, Vec<&RowInCrop>)> = scored
         .filter(|(likely, _)| *likely >= LIKELY)
         .map(|(likely, place)| (likely * place.len() as f64, place))
         .collect();
@@ -260,9 +260,9 @@ fn likely_places<'a>(crops: &[Gray], found: &'a [Found], format: &ClockFormat) -
 }
 
 /// What stands beside the digits of a place and is not in the format: in most of its crops the same.
-fn misfit(crops: &[Gray], place: &[&Found], cells: &Cells, format: &ClockFormat) -> Option<Misfit> {
+fn misfit(crops: &[Gray], place: &[&RowInCrop], cells: &Cells, format: &ClockFormat) -> Option<Misfit> {
     let ends = cells.ends()?;
-    let look = |found: &&Found| Beside::look(&crops[found.crop], cells, ends).misfit(format);
+    let look = |found: &&RowInCrop| Beside::look(&crops[found.crop], cells, ends).misfit(format);
     let mut all: Vec<Misfit> = place.iter().filter_map(look).collect();
     let enough = all.len() as f64 >= MISFITS * place.len() as f64;
     all.sort();
@@ -270,7 +270,7 @@ fn misfit(crops: &[Gray], place: &[&Found], cells: &Cells, format: &ClockFormat)
 }
 
 /// The geometric mean of the probabilities of the likeliest digits.
-fn likely(crops: &[Gray], place: &[&Found], format: &ClockFormat) -> f64 {
+fn likely(crops: &[Gray], place: &[&RowInCrop], format: &ClockFormat) -> f64 {
     let highest: Vec<u8> = places(format).iter().map(|place| place.highest).collect();
     let step = place.len().div_ceil(JUDGED).max(1);
     let (mut sum, mut count) = (0.0, 0.0);

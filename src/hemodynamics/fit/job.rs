@@ -247,6 +247,7 @@ fn warnings(result: &FitResult, recordings: &[ReadRecording]) -> Vec<String> {
         ));
     }
     for read in recordings {
+        warnings.extend(read.warnings.iter().map(|warning| format!("{}: {warning}", read.name)));
         for (name, trace) in read.photodiodes.iter().zip(&read.recording.photodiodes) {
             let mut known = trace.voltages_v.iter().filter(|value| value.is_finite());
             if known.next().is_some_and(|first| known.all(|value| value == first)) {

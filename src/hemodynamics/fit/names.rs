@@ -67,17 +67,17 @@ mod tests {
     #[test]
     fn a_name_stands_for_a_symbol_or_for_those_of_all_units() {
         let parameters = Parameters::thesis();
-        let told = |name: &str| -> Vec<String> {
+        let held = |name: &str| -> Vec<String> {
             symbols_of(name, &parameters).unwrap().iter().map(Symbol::to_string).collect()
         };
-        assert_eq!(told("k_C"), ["k_C1_N_per_m", "k_C2_N_per_m"]);
-        assert_eq!(told("k_C2"), ["k_C2_N_per_m"]);
-        assert_eq!(told("b_V_N_s_per_m"), ["b_V_N_s_per_m"]);
-        assert_eq!(told("R_V"), ["R_V1_Pa_s_per_m3", "R_V2_Pa_s_per_m3"]);
-        assert_eq!(told("V0"), ["V0_1_V", "V0_2_V"]);
-        assert_eq!(told("share"), ["share_1", "share_2"]);
+        assert_eq!(held("k_C"), ["k_C1_N_per_m", "k_C2_N_per_m"]);
+        assert_eq!(held("k_C2"), ["k_C2_N_per_m"]);
+        assert_eq!(held("b_V_N_s_per_m"), ["b_V_N_s_per_m"]);
+        assert_eq!(held("R_V"), ["R_V1_Pa_s_per_m3", "R_V2_Pa_s_per_m3"]);
+        assert_eq!(held("V0"), ["V0_1_V", "V0_2_V"]);
+        assert_eq!(held("share"), ["share_1", "share_2"]);
         assert_eq!(
-            (told("N_V"), told("L_V"), told("P_H")),
+            (held("N_V"), held("L_V"), held("P_H")),
             (vec!["N_V".into()], vec!["L_V_m".into()], vec!["P_H_Pa".into()])
         );
     }

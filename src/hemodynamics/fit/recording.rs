@@ -119,6 +119,8 @@ pub(super) struct ReadRecording {
     pub(super) missing: usize,
     /// Photodiodes' cells that are left out, as the sensor had a fault there.
     pub(super) faults: usize,
+    /// What of a log has to be known before the values are used.
+    pub(super) warnings: Vec<String>,
     /// What is worth saying on a log, how its ambient light was taken away among it.
     pub(super) notes: Vec<String>,
 }
@@ -199,6 +201,7 @@ pub(super) fn read(path: &Path, columns: &RecordingColumns, units: usize) -> Res
         pressed_pa,
         missing,
         faults,
+        warnings: rows.warnings().to_vec(),
         notes: rows.notes(),
     })
 }

@@ -1,4 +1,4 @@
-//! Columns of numbers of a table or of a log's lit rows, every fault told with its row and column.
+//! Columns of numbers of a table or of a log's lit rows, every fault reported with its row and column.
 
 use std::path::{Path, PathBuf};
 
@@ -13,7 +13,7 @@ pub(in crate::hemodynamics) const PRESSED: [&str; 2] = ["pf1_Pa", "pf2_Pa"];
 /// `P_H` and `P_L`.
 pub(in crate::hemodynamics) const BLOOD: [&str; 2] = ["ph_Pa", "pl_Pa"];
 
-/// So many faults of a table are told.
+/// How many faults of a table are reported.
 const MOST_FAULTS: usize = 10;
 
 /// Named columns of a table, whole.
@@ -99,6 +99,14 @@ impl Rows {
         matches!(self.from, Source::Log(_))
     }
 
+    /// What of a log has to be known before its values are used.
+    pub(in crate::hemodynamics) fn warnings(&self) -> &[String] {
+        match &self.from {
+            Source::Table(_) => &[],
+            Source::Log(lit) => &lit.samples.warnings,
+        }
+    }
+
     /// What is worth saying on a log, how its ambient light was taken away among it.
     pub(in crate::hemodynamics) fn notes(&self) -> Vec<String> {
         match &self.from {
@@ -155,11 +163,11 @@ impl Rows {
         }
         faults.sort_by_key(|(row, _)| *row);
         let more = faults.len().saturating_sub(MOST_FAULTS);
-        let mut told: Vec<String> = faults.into_iter().take(MOST_FAULTS).map(|(_, what)| what).collect();
+        let mut messages: Vec<String> = faults.into_iter().take(MOST_FAULTS).map(|(_, what)| what).collect();
         if more > 0 {
-            told.push(format!("and {more} more"));
+            messages.push(format!("and {more} more"));
         }
-        Err(HemodynamicsError::Rows(told))
+        Err(HemodynamicsError::Rows(messages))
     }
 
     /// The times and values of one of the loads `read`, at all rows at which it is known: of a log the unlit rows among
@@ -214,7 +222,7 @@ impl Rows {
     fn fault(&self, row: usize, name: &str, what: String) -> String {
         match &self.from {
             Source::Table(table) => table.cell(row, name, what).to_string(),
-            // Its rows are sorted by time, which tells them as well as a line does.
+            // Its rows are sorted by time, which identifies them as well as a line does.
             Source::Log(lit) => {
                 format!("{}: column `{name}` at {} s: {what}", self.path.display(), lit.samples.time_s[row])
             }

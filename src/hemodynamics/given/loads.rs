@@ -40,6 +40,8 @@ pub(in crate::hemodynamics) struct ReadLoads {
     pub(in crate::hemodynamics) loads: Loads,
     /// The first and the last time of the file.
     pub(in crate::hemodynamics) known_s: Option<[f64; 2]>,
+    /// What of a file that is a log has to be known.
+    pub(in crate::hemodynamics) warnings: Vec<String>,
     /// How a file that is a log was read.
     pub(in crate::hemodynamics) notes: Vec<String>,
 }
@@ -58,11 +60,12 @@ impl LoadOptions {
         let nothing = || Load::constant(0.0).expect("zero is finite");
         let or_nothing = |load: &Option<Load>| load.clone().unwrap_or_else(nothing);
         let mut loads = Loads::on(parameters, or_nothing(&self.pf1), or_nothing(&self.pf2));
-        let (mut known_s, mut notes) = (None, Vec::new());
+        let (mut known_s, mut warnings, mut notes) = (None, Vec::new(), Vec::new());
         if let Some(path) = file {
             let rows = Rows::read(path, &LogReading::default())?;
             let columns = rows.numbers(&[TIME, PRESSED[0], PRESSED[1]], &BLOOD, TIME)?;
-            notes = rows.notes().iter().map(|note| format!("{}: {note}", path.display())).collect();
+            let placed = |what: &[String]| what.iter().map(|one| format!("{}: {one}", path.display())).collect();
+            (warnings, notes) = (placed(rows.warnings()), placed(&rows.notes()));
             known_s = place_columns(&rows, &columns, &mut loads)?;
         }
         let BloodOptions { ph, pl } = &self.blood;
@@ -71,7 +74,7 @@ impl LoadOptions {
                 *place = load.clone();
             }
         }
-        Ok(ReadLoads { loads, known_s, notes })
+        Ok(ReadLoads { loads, known_s, warnings, notes })
     }
 }
 

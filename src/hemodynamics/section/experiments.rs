@@ -20,7 +20,7 @@ use crate::words::Words;
 const NEAR_N: f64 = 1e-6;
 /// The people whose quick presses are drawn, as in Fig. 80 and 82, from 0.
 const SHOWN: [usize; 2] = [1, 2];
-/// The end of a quick press that its time constants are told to, s.
+/// The end of a quick press that its time constants are reported to, s.
 const END_S: f64 = 4.4;
 
 /// A quick press, and its moments.
@@ -28,7 +28,7 @@ const END_S: f64 = 4.4;
 pub struct QuickPress {
     /// What was recorded; it has times.
     pub recorded: Recorded,
-    /// When the finger begins to press and to let go, and the end that time constants are told to, s.
+    /// When the finger begins to press and to let go, and the end that time constants are reported to, s.
     pub moments_s: [f64; 3],
 }
 
@@ -59,7 +59,7 @@ impl Presses {
     }
 }
 
-/// Draws and tells Fig. 79 to 82, as far as they were recorded; `truth`: the middle of generated people.
+/// Draws and reports Fig. 79 to 82, as far as they were recorded; `truth`: the middle of generated people.
 pub(super) fn figures(
     text: &mut SectionText,
     presses: &Presses,
@@ -101,7 +101,7 @@ pub(super) fn figures(
 }
 
 /// A static experiment: every person's curve, their average, and the literal model in offset and scaling to each.
-#[expect(clippy::too_many_arguments, reason = "what is told of two figures alike")]
+#[expect(clippy::too_many_arguments, reason = "two figures report the same")]
 fn slow(
     text: &mut SectionText,
     number: u32,

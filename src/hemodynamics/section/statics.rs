@@ -14,10 +14,10 @@ use crate::hemodynamics::solve::{Curve, along};
 /// Loads of a curve, Pa.
 const STEP_PA: f64 = 25.0;
 const LOADS: u32 = 480;
-/// Ends of the parts whose slopes are told, N/cm2.
+/// Ends of the parts whose slopes are reported, N/cm2.
 const PARTS: [[f64; 2]; 4] = [[0.0, 0.1], [0.1, 0.4], [0.4, 0.7], [0.9, 1.0]];
 
-/// Draws and tells the curves of all sets.
+/// Draws and reports the curves of all sets.
 pub(super) fn figure_78(text: &mut SectionText, sets: &[Named], staging: &Staging) -> anyhow::Result<()> {
     let loads_pa: Vec<f64> = (0..=LOADS).map(|k| STEP_PA * f64::from(k)).collect();
     writeln!(

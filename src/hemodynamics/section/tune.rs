@@ -104,6 +104,9 @@ mod tests {
         let told_s = [0.136, 0.144, 0.175, 0.362];
         let middle = crate::hemodynamics::Person::middle().unwrap();
         let found_s = constants_s(&middle, crate::hemodynamics::section::TUNED_AT_PA).unwrap();
-        assert!(found_s.iter().zip(told_s).all(|(found, told)| (found - told).abs() <= 0.0006), "{found_s:?}");
+        assert!(
+            found_s.iter().zip(told_s).all(|(found, published)| (found - published).abs() <= 0.0006),
+            "{found_s:?}"
+        );
     }
 }

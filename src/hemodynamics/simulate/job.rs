@@ -148,6 +148,7 @@ pub fn simulate(
 
 /// What a person has to know of the loads, and what was chosen.
 fn remarks(report: &mut SimulateReport, inputs: &SimulateInputs, options: &SimulateOptions, loads: &ReadLoads) {
+    report.warnings.clone_from(&loads.warnings);
     report.notes.clone_from(&loads.notes);
     let LoadOptions { pf1, pf2, .. } = &options.loads;
     if pf1.is_none() && pf2.is_none() && inputs.loads.is_none() {

@@ -80,7 +80,7 @@ pub(in crate::hemodynamics) struct Curve {
 /// All equilibria at growing loads over blood pressures that don't change.
 ///
 /// # Errors
-/// Parameters whose equilibria can't be told.
+/// Parameters whose equilibria are not known.
 pub(in crate::hemodynamics) fn along(
     parameters: &Parameters,
     collapse: Collapse,

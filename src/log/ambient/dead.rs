@@ -18,8 +18,8 @@ const STUCK: usize = 50;
 /// See [`STUCK`].
 const LONGER: f64 = 50.0;
 
-/// Tells what a channel's lit samples do not show.
-pub(super) fn tell(name: &str, time_s: &[f64], values: &[f64], notes: &mut Vec<String>) {
+/// Warns of what a channel's lit samples do not show.
+pub(super) fn warn(name: &str, time_s: &[f64], values: &[f64], warnings: &mut Vec<String>) {
     let known: Vec<(f64, f64)> =
         time_s.iter().copied().zip(values.iter().copied()).filter(|(_, v)| !v.is_nan()).collect();
     if known.len() < SAMPLES {
@@ -31,14 +31,14 @@ pub(super) fn tell(name: &str, time_s: &[f64], values: &[f64], notes: &mut Vec<S
     let (value, most) = alike().fold((0.0, 0), |(v, n), run| if run.len() > n { (run[0], run.len()) } else { (v, n) });
     let share = most as f64 / known.len() as f64;
     match alike().take(VALUES + 1).count() {
-        1 => return notes.push(format!("{name} is {value} V in all lit samples: dead or not connected")),
+        1 => return warnings.push(format!("{name} is {value} V in all lit samples: dead or not connected")),
         count @ 2..=VALUES => {
-            return notes
+            return warnings
                 .push(format!("{name} has only {count} different values in all lit samples: dead, or too weak"));
         }
         _ if share >= DEAD_SHARE => {
             let percent = 100.0 * share;
-            return notes.push(format!("{name} is {value} V in {percent:.1} % of the lit samples: dead, or loose"));
+            return warnings.push(format!("{name} is {value} V in {percent:.1} % of the lit samples: dead, or loose"));
         }
         _ => {}
     }
@@ -49,7 +49,7 @@ pub(super) fn tell(name: &str, time_s: &[f64], values: &[f64], notes: &mut Vec<S
     // The first of equals.
     if let Some(longest) = stuck.iter().rev().max_by_key(|run| run.len()) {
         let (first, last) = (longest[0], longest[longest.len() - 1]);
-        notes.push(format!(
+        warnings.push(format!(
             "{name} does not move at all in {} stretch(es); the longest, from {:.3} to {:.3} s, at {} V",
             stuck.len(),
             first.0,

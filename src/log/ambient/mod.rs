@@ -38,7 +38,9 @@ pub struct Samples {
     /// For each row, what is wrong with it, as `saturated: P3` or `no ambient`, several joined by `; `; empty where
     /// nothing is.
     pub faults: Vec<String>,
-    /// What is no fault but worth saying: dead channels, how much ambient light there was.
+    /// What has to be known before they are used: dead channels, much saturation, an LED that was never off.
+    pub warnings: Vec<String>,
+    /// What needs no action: little saturation, how much ambient light there was.
     pub notes: Vec<String>,
 }
 
@@ -100,18 +102,19 @@ pub fn samples(log: &Log, options: &AmbientOptions) -> Result<Samples, AmbientEr
     }
     let dark: Vec<usize> = (0..rows).filter(|&row| log.led.as_ref().is_some_and(|led| !led[row])).collect();
     let time_s: Vec<f64> = lit.iter().map(|&row| log.time_s[row]).collect();
-    let mut found = Found { faults: vec![Faults::default(); lit.len()], notes: Vec::new() };
+    let mut found = Subtraction { faults: vec![Faults::default(); lit.len()], warnings: Vec::new(), notes: Vec::new() };
     if log.led.is_some() && dark.is_empty() {
-        found.notes.push("the LED was never off: the photodiodes hold the ambient light too".to_owned());
+        found.warnings.push("the LED was never off: the photodiodes hold the ambient light too".to_owned());
     }
     let unlit = (!dark.is_empty()).then(|| Unlit::new(&log.time_s, &lit, &dark));
     let mut shares = Vec::new();
     let photodiodes = log.photodiodes.iter().map(|channel| {
         let taken = |rows: &[usize]| -> Vec<f64> { rows.iter().map(|&row| channel.values[row]).collect() };
         let (raw, raw_dark) = (taken(&lit), taken(&dark));
-        dead::tell(&channel.name, &time_s, &raw, &mut found.notes);
+        dead::warn(&channel.name, &time_s, &raw, &mut found.warnings);
         let rails = Rails::of(&raw, &raw_dark, options.full_scale_v);
-        found.notes.extend(rails.note(&channel.name));
+        let saturation = if rails.is_much_of(raw.len()) { &mut found.warnings } else { &mut found.notes };
+        saturation.extend(rails.note(&channel.name));
         let values = match &unlit {
             Some(unlit) => found.less_ambient(&channel.name, &raw, &raw_dark, unlit, &rails, &mut shares),
             None => {
@@ -129,7 +132,7 @@ pub fn samples(log: &Log, options: &AmbientOptions) -> Result<Samples, AmbientEr
     });
     let forces = forces.collect();
     let faults = found.faults.iter().map(|faults| faults.words(photodiodes.len())).collect();
-    Ok(Samples { time_s, photodiodes, forces, faults, notes: found.notes })
+    Ok(Samples { time_s, photodiodes, forces, faults, warnings: found.warnings, notes: found.notes })
 }
 
 /// Whether a range is one.
@@ -138,7 +141,7 @@ fn check_full_scale([low, high]: [f64; 2]) -> Result<(), AmbientError> {
     if is_one { Ok(()) } else { Err(AmbientError::FullScale { low, high }) }
 }
 
-/// Differences are told in such steps: what is finer is the arithmetic's own rounding.
+/// Differences are counted in such steps: anything finer is the arithmetic's own rounding.
 const GRAINS_A_VOLT: f64 = 1e12;
 
 /// A difference without the arithmetic's own rounding; one that is too large to have any of it as it is.
@@ -169,12 +172,14 @@ impl Faults {
     }
 }
 
-struct Found {
+/// The photodiodes less the ambient light, as it grows channel by channel.
+struct Subtraction {
     faults: Vec<Faults>,
+    warnings: Vec<String>,
     notes: Vec<String>,
 }
 
-impl Found {
+impl Subtraction {
     /// A channel's lit samples less the ambient light; adds to `shares` what part of the light that was.
     fn less_ambient(
         &mut self,

@@ -14,6 +14,9 @@
 
 use super::dead::DEAD_SHARE;
 
+/// The share of a channel's samples from which on saturation has to be acted on; assumed.
+const MUCH: f64 = 0.01;
+
 /// The least samples at a rail.
 const COUNT: usize = 10;
 
@@ -67,18 +70,23 @@ impl Rails {
         value <= self.low || value >= self.high
     }
 
+    /// Whether so much of `samples` is saturated that it is a warning.
+    pub(super) fn is_much_of(&self, samples: usize) -> bool {
+        self.found.iter().sum::<usize>() as f64 > MUCH * samples as f64
+    }
+
     /// What was found.
     pub(super) fn note(&self, name: &str) -> Option<String> {
         let ends = [(self.found[0], self.low, "least"), (self.found[1], self.high, "greatest")];
-        let told: Vec<String> = ends
+        let shares: Vec<String> = ends
             .iter()
             .filter(|(count, ..)| *count > 0)
             .map(|(count, value, which)| format!("its {which} value, {value} V, in {count} samples"))
             .collect();
-        (!told.is_empty()).then(|| {
+        (!shares.is_empty()).then(|| {
             format!(
                 "{name} stays at exactly {}: taken as saturated; --full-scale LOW,HIGH says where the range ends",
-                told.join(", and ")
+                shares.join(", and ")
             )
         })
     }

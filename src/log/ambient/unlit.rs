@@ -1,7 +1,7 @@
 //! The ambient light at the times of lit samples, from the unlit samples around them.
 //!
 //! In: a channel's unlit samples at their own, irregular times. Out: for each lit time, the level, NaN where it can't
-//! be told.
+//! be known.
 //!
 //! Cubic Lagrange interpolation through two unlit samples before and two after. With alternating rows it takes the
 //! light from the four neighbours with weights -1/16, 9/16, 9/16, -1/16, which leaves 3/8 (2 pi f T)^4 / 16 of a ripple
@@ -17,7 +17,7 @@
 //!
 //! What can't be had this way: a ripple near half the rate of the unlit samples or above it, such as the hum of lamps
 //! at 100 or 120 Hz unless the log's rate divides it (25, 50 and 100 Hz divide 100 Hz). It stays in the rows as noise
-//! does; [`roughness`] tells how much there is.
+//! does; [`roughness`] measures how much there is.
 
 /// Unlit samples further apart than so many usual times have a gap between them.
 pub(super) const GAP_PERIODS: f64 = 3.0;

@@ -1,4 +1,4 @@
-//! A log as text: opened, unpacked, its header found, its delimiter told.
+//! A log as text: opened, unpacked, its header and its delimiter found.
 //!
 //! Gzip is known by its first bytes, UTF-16 by its byte-order mark; a byte-order mark of UTF-8 is taken off. Lines that
 //! begin with `#` before the header, and empty ones, are passed over; where there is no header but a line of names
@@ -71,7 +71,7 @@ impl Layout {
     /// What is wrong and what to do.
     pub(in crate::log) fn find(text: &[u8]) -> Result<Self, String> {
         let (mut at, mut line) = (0, 0);
-        let (mut comment, mut told) = (None, None);
+        let (mut comment, mut declared) = (None, None);
         while at < text.len() {
             let (row, next) = line_at(text, at);
             line += 1;
@@ -80,8 +80,8 @@ impl Layout {
                 [] => {}
                 [b'#', rest @ ..] => comment = Some(rest),
                 // Excel's own line.
-                [b's', b'e', b'p', b'=', mark @ (b',' | b';' | b'\t')] => told = Some(*mark),
-                _ => return Self::of(text, row, comment, told, (at, next, line)),
+                [b's', b'e', b'p', b'=', mark @ (b',' | b';' | b'\t')] => declared = Some(*mark),
+                _ => return Self::of(text, row, comment, declared, (at, next, line)),
             }
             at = next;
         }
@@ -92,10 +92,10 @@ impl Layout {
         text: &[u8],
         row: &[u8],
         comment: Option<&[u8]>,
-        told: Option<u8>,
+        declared: Option<u8>,
         (at, next, line): (usize, usize, u64),
     ) -> Result<Self, String> {
-        let delimiter = told.unwrap_or_else(|| delimiter_of(row, &text[next..]));
+        let delimiter = declared.unwrap_or_else(|| delimiter_of(row, &text[next..]));
         let mut notes = Vec::new();
         if delimiter != b',' {
             notes.push(format!("cells are separated by {}", if delimiter == b'\t' { "tabs" } else { "`;`" }));

@@ -102,7 +102,7 @@ fn one_piece(raw: &mut Raw, rows: Vec<usize>, piece: Option<NonZeroUsize>) -> Re
     Ok(rows[begin..end].to_vec())
 }
 
-/// Where the clock was reset: the rows at which time begins anew.
+/// Where the clock was reset: the rows at which time starts again.
 fn breaks(time_s: &[f64]) -> Vec<usize> {
     let step_s = median_step_s(time_s).unwrap_or(0.0);
     let mut breaks = Vec::new();
@@ -143,7 +143,7 @@ fn is_small(time_s: &[f64], k: usize, run: usize, latest: f64, step_s: f64) -> b
         && (0.6 * steps - 1.0..=1.5 * steps + 2.0).contains(&there)
 }
 
-/// Sorts rows that stand in the wrong place, and tells.
+/// Sorts rows that are out of order, and notes it.
 fn sort(raw: &mut Raw, rows: &mut [usize]) {
     let time = |row: usize| raw.time_s[row];
     let mut latest = rows[0];

@@ -1,7 +1,7 @@
 //! The rows of a text file: cells to numbers, stamps and LED states, each fault with its line and column.
 //!
 //! Rows have as many cells as the header; empty ones at a row's end may be too many. The last row, if it is cut off (a
-//! logger that was stopped), is left out and told.
+//! logger that was stopped), is left out and reported.
 
 use std::path::Path;
 

@@ -146,8 +146,8 @@ impl Stamps {
         }
         let first = self.time.iter().copied().find(|t| !t.is_nan()).unwrap_or(0.0);
         let unit = unit.unwrap_or_else(|| {
-            let (guess, told) = since_1970(first);
-            notes.extend(told);
+            let (guess, note) = since_1970(first);
+            notes.extend(note);
             guess
         });
         if unit != TimeUnit::Seconds {
@@ -176,9 +176,9 @@ fn since_1970(stamp: f64) -> (TimeUnit, Option<String>) {
     ];
     match units.iter().find(|(unit, _)| YEARS_2001_TO_2096.contains(&(stamp / unit.a_second()))) {
         Some((unit, word)) => {
-            let told =
+            let note =
                 format!("time stamps such as {stamp} are taken as {word} since 1970; --time-unit says otherwise");
-            (*unit, Some(told))
+            (*unit, Some(note))
         }
         None => (TimeUnit::Seconds, None),
     }
@@ -313,9 +313,9 @@ mod tests {
         for (stamp, notes) in
             [("1634808058.25", 0), ("1634808058250", 1), ("1634808058250000", 1), ("1634808058250000000", 1)]
         {
-            let (time, midnight, told) = seconds(&[stamp], None);
+            let (time, midnight, note) = seconds(&[stamp], None);
             assert!((time[0] - 1_634_808_058.25).abs() <= STEP_S, "{stamp}");
-            assert_eq!((midnight, told), (None, notes), "{stamp}");
+            assert_eq!((midnight, note), (None, notes), "{stamp}");
         }
         // A unit that is given is the unit.
         assert_eq!(seconds(&["1634808058250"], Some(TimeUnit::Seconds)), (vec![1_634_808_058_250.0], None, 0));
@@ -338,8 +338,8 @@ mod tests {
             (&["09:20:58", "0.5"], "no time stamp"),
             (&["2021-10-21 09:20:58", "2021-10-21 09:20:58Z"], "of another kind"),
         ] {
-            let told = read(cells).unwrap_err();
-            assert!(told.contains(words), "{told}");
+            let error = read(cells).unwrap_err();
+            assert!(error.contains(words), "{error}");
         }
     }
 }

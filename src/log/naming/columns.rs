@@ -3,7 +3,7 @@
 //! In: the names in the file's header and the user's mapping. Out: a [`Choice`]. A name that the user gives is looked
 //! for as it is, then without regard to case; `#2` is the second column, whatever its name. Then come the contract's
 //! own names; then, for what is still not found, [`guess`](crate::log::naming::guess), which only counts where a single
-//! column answers to it and is told.
+//! column answers to it and is reported.
 
 use std::collections::{HashMap, HashSet};
 use std::num::NonZeroUsize;
@@ -32,7 +32,7 @@ pub struct Columns {
 pub(in crate::log) struct Choice {
     /// What each column that is used is for, and where it stands; in the file's order.
     pub(in crate::log) columns: Vec<(Role, usize)>,
-    /// The unit of time stamps that are numbers, if anything tells.
+    /// The unit of time stamps that are numbers, if known.
     pub(in crate::log) time_unit: Option<TimeUnit>,
     /// What was guessed.
     pub(in crate::log) notes: Vec<String>,
@@ -264,8 +264,8 @@ mod tests {
             ("P1=a,P1=b", "given twice"),
             ("P1=a,P2=a", "both P1 and P2"),
         ] {
-            let told = Columns::parse(bad).unwrap_err();
-            assert!(told.contains(words) && told.contains("P1=ch_3"), "{told}");
+            let error = Columns::parse(bad).unwrap_err();
+            assert!(error.contains(words) && error.contains("P1=ch_3"), "{error}");
         }
         assert_eq!(Columns::parse("").unwrap(), Columns::default());
     }
@@ -284,19 +284,19 @@ mod tests {
             chosen("", "Timestamp|LED|p1|PD 2|fx|note").unwrap(),
             ("time_s@0 led@1 P1@2 P2@3 Fx_N@4".to_owned(), 5)
         );
-        let told = chosen("P1=v", "time|timestamp|v").unwrap_err();
-        assert!(told.contains("`time`, `timestamp`") && told.contains("time_s=time"), "{told}");
+        let error = chosen("P1=v", "time|timestamp|v").unwrap_err();
+        assert!(error.contains("`time`, `timestamp`") && error.contains("time_s=time"), "{error}");
         assert_eq!(chosen("P1=v,time_s=time", "time|timestamp|v").unwrap().0, "time_s@0 P1@2");
     }
 
     #[test]
     fn what_is_not_found_is_told_with_the_names_there_are() {
-        let told = chosen("P1=chan3", "time_s|chan_3|x").unwrap_err();
-        assert!(told.contains("is it `chan_3`?") && told.contains("time_s, chan_3, x"), "{told}");
-        let told = chosen("", "hr|P1").unwrap_err();
-        assert!(told.contains("no time column") && told.contains("--columns \"time_s=hr\""), "{told}");
-        let told = chosen("", "time_s|hr").unwrap_err();
-        assert!(told.contains("no photodiode") && told.contains("--columns \"P1=hr\""), "{told}");
+        let error = chosen("P1=chan3", "time_s|chan_3|x").unwrap_err();
+        assert!(error.contains("is it `chan_3`?") && error.contains("time_s, chan_3, x"), "{error}");
+        let error = chosen("", "hr|P1").unwrap_err();
+        assert!(error.contains("no time column") && error.contains("--columns \"time_s=hr\""), "{error}");
+        let error = chosen("", "time_s|hr").unwrap_err();
+        assert!(error.contains("no photodiode") && error.contains("--columns \"P1=hr\""), "{error}");
         assert!(chosen("", "time_s|P1|P1").unwrap_err().contains("two columns are named `P1`"));
         assert!(chosen("P2=v", "time_s|P1|v|v").unwrap_err().contains("`#3`"));
     }

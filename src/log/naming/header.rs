@@ -13,7 +13,7 @@ use crate::{input, table};
 /// A log's columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LogHeader {
-    /// It tells when the LED was on.
+    /// It says when the LED was on.
     pub led: bool,
     /// Photodiodes.
     pub photodiodes: usize,
@@ -28,7 +28,7 @@ impl LogHeader {
     /// Reads a log's header.
     ///
     /// # Errors
-    /// As [`Log::read`], as far as the header tells.
+    /// As [`Log::read`], as far as the header says.
     pub fn read(path: &Path, columns: &Columns) -> Result<Self, LogError> {
         let choice = match Format::of(path) {
             Format::Text => choose(path, &head(path)?, columns)?.1,
@@ -79,11 +79,11 @@ mod tests {
         let path = dir.path().join("log.csv");
         let rows = "0.1,1,0.5,0.6,-1\n".repeat(10_000);
         std::fs::write(&path, format!("time_s,led,P1,P2,Fz_N\n{rows}0.2,broken")).unwrap();
-        let told = LogHeader::read(&path, &Columns::default()).unwrap();
-        assert_eq!(told, LogHeader { led: true, photodiodes: 2, forces: 1 });
+        let header = LogHeader::read(&path, &Columns::default()).unwrap();
+        assert_eq!(header, LogHeader { led: true, photodiodes: 2, forces: 1 });
         std::fs::write(&path, "time_s,P1\n0,1").unwrap();
-        let told = LogHeader::read(&path, &Columns::default()).unwrap();
-        assert_eq!(told, LogHeader { led: false, photodiodes: 1, forces: 0 });
+        let header = LogHeader::read(&path, &Columns::default()).unwrap();
+        assert_eq!(header, LogHeader { led: false, photodiodes: 1, forces: 0 });
         std::fs::write(&path, "stamp,ch_3\n0,1\n").unwrap();
         let mapped = Columns::parse("time_s=stamp,P1=ch_3").unwrap();
         assert_eq!(LogHeader::read(&path, &mapped).unwrap().photodiodes, 1);

@@ -11,7 +11,7 @@ const DEEPEST: usize = 6;
 
 /// What was found, by sort; paths are relative to the folder, with `/`, sorted.
 #[derive(Debug, Default)]
-pub(super) struct Found {
+pub(super) struct Inventory {
     pub(super) files: usize,
     pub(super) photos: Vec<String>,
     pub(super) videos: Vec<String>,
@@ -22,7 +22,7 @@ pub(super) struct Found {
     /// Whether logs hold forces.
     pub(super) forces: bool,
     pub(super) joints: Vec<String>,
-    /// Whether tables of angles tell the clock's time.
+    /// Whether tables of angles hold the clock's time.
     pub(super) joints_clock: bool,
     pub(super) sets: Vec<String>,
     pub(super) sessions: Option<Sessions>,
@@ -65,11 +65,11 @@ enum Sort {
 ///
 /// # Errors
 /// Where it can't be read.
-pub(super) fn look(folder: &Path) -> io::Result<Found> {
+pub(super) fn look(folder: &Path) -> io::Result<Inventory> {
     let mut paths = Vec::new();
     std::fs::read_dir(folder)?;
     walk(folder, "", 0, &mut paths);
-    let mut found = Found { files: paths.len(), ..Found::default() };
+    let mut found = Inventory { files: paths.len(), ..Inventory::default() };
     let mut tables = Vec::new();
     for path in paths {
         match sort(&folder.join(&path)) {

@@ -1,7 +1,7 @@
 //! A pipeline for a folder: what lies there is looked at, and a file is written that runs as it stands, saying what was
 //! taken for what.
 //!
-//! In: a folder; out: the text of a pipeline file. Files are told by their ending and tables by their columns; `truth`
+//! In: a folder; out: the text of a pipeline file. Files are known by their ending and tables by their columns; `truth`
 //! folders, hidden files and folders of results are not looked at.
 
 mod look;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 /// A pattern and how many files it is for.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Shape {
+pub(super) struct NamePattern {
     pub(super) pattern: String,
     /// The places' names, in order.
     pub(super) names: Vec<String>,
@@ -14,7 +14,7 @@ pub(super) struct Shape {
 }
 
 /// The pattern of most of the files; `innermost` are the names of the last places, the last first.
-pub(super) fn shape(paths: &[String], innermost: &[&str]) -> Option<Shape> {
+pub(super) fn shape(paths: &[String], innermost: &[&str]) -> Option<NamePattern> {
     // Files of one depth, ending and top folder are of one pattern.
     let mut groups: BTreeMap<(usize, String, bool), Vec<&String>> = BTreeMap::new();
     for path in paths {
@@ -42,7 +42,7 @@ pub(super) fn shape(paths: &[String], innermost: &[&str]) -> Option<Shape> {
     }
     let ending = group[0].rsplit_once('.').map_or(String::new(), |(_, ending)| format!(".{ending}"));
     let others = paths.iter().filter(|path| !group.contains(path)).cloned().collect();
-    Some(Shape { pattern: pattern.join("/") + &ending, names, count: group.len(), others })
+    Some(NamePattern { pattern: pattern.join("/") + &ending, names, count: group.len(), others })
 }
 
 /// A path's names, the last without its ending.

@@ -3,10 +3,10 @@
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-use super::look::Found;
-use super::shape::{Shape, shape};
+use super::look::Inventory;
+use super::shape::{NamePattern, shape};
 
-/// How many names of a sort are told.
+/// How many names of a sort are listed.
 const TOLD: usize = 3;
 
 /// An input of the file: its name in references, and its keys.
@@ -25,7 +25,7 @@ struct Draft<'a> {
 }
 
 /// The text; none where nothing found can be worked on.
-pub(super) fn pipeline(found: &Found, from: &str) -> Option<String> {
+pub(super) fn pipeline(found: &Inventory, from: &str) -> Option<String> {
     let mut draft = Draft { from, notes: Vec::new(), inputs: String::new(), stages: String::new(), wanted: Vec::new() };
     draft.photographs(found);
     draft.recordings(found);
@@ -48,7 +48,7 @@ pub(super) fn pipeline(found: &Found, from: &str) -> Option<String> {
 }
 
 impl Draft<'_> {
-    fn photographs(&mut self, found: &Found) {
+    fn photographs(&mut self, found: &Inventory) {
         let Some(photos) = self.files("photos", "photographs of nails", &found.photos, &["subject", "pose"]) else {
             return;
         };
@@ -72,7 +72,7 @@ impl Draft<'_> {
         self.wanted.push("maps");
     }
 
-    fn recordings(&mut self, found: &Found) {
+    fn recordings(&mut self, found: &Inventory) {
         let (video, markers, log, joints) = match &found.sessions {
             Some(sessions) => {
                 self.notes.push(format!("{}: a table of {} recordings", sessions.path, sessions.rows));
@@ -108,7 +108,7 @@ impl Draft<'_> {
     }
 
     /// One marker file for all videos, or one beside each.
-    fn markers(&mut self, found: &Found, video: Option<&Input>) -> Option<Input> {
+    fn markers(&mut self, found: &Inventory, video: Option<&Input>) -> Option<Input> {
         video?;
         self.files("markers", "marker files", &found.markers, &["session", "subject"])
     }
@@ -138,7 +138,7 @@ impl Draft<'_> {
         }
     }
 
-    fn sets(&mut self, found: &Found, angles: Option<String>, log: Option<&Input>) {
+    fn sets(&mut self, found: &Inventory, angles: Option<String>, log: Option<&Input>) {
         let (Some(angles), Some(log)) = (angles, log) else { return };
         let of_video = angles == "angles";
         let clock = if of_video { found.clock } else { found.joints_clock };
@@ -158,7 +158,7 @@ impl Draft<'_> {
         self.wanted.push("sets");
     }
 
-    fn models(&mut self, found: &Found, log: Option<&Input>) {
+    fn models(&mut self, found: &Inventory, log: Option<&Input>) {
         let Some(log) = log.filter(|_| found.forces) else { return };
         let each = if log.names.iter().any(|name| name == "subject") { "each = [\"subject\"]\n" } else { "" };
         let _ = write!(
@@ -172,7 +172,7 @@ impl Draft<'_> {
 
     /// An input of files, if there are any.
     fn files(&mut self, name: &str, what: &str, paths: &[String], innermost: &[&str]) -> Option<Input> {
-        let Shape { pattern, names, count, others } = shape(paths, innermost)?;
+        let NamePattern { pattern, names, count, others } = shape(paths, innermost)?;
         self.notes.push(format!("{count} {what}: {pattern}"));
         if !others.is_empty() {
             self.notes.push(format!("{what} that lie elsewhere, and are not used: {}", listed(&others)));

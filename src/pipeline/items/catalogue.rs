@@ -1,7 +1,7 @@
 //! What the generated recordings of a pipeline file will be: known before a file of them stands, so that stages can be
 //! planned on them.
 //!
-//! A catalogue hangs on the options of `[phantom]` alone. Its names are relative to the folder that a pipeline file
+//! A catalogue depends on the options of `[phantom]` alone. Its names are relative to the folder that a pipeline file
 //! calls `{phantom}`, with `/`.
 
 use crate::job::{Facts, Keys, Maker, OptionFault};
@@ -27,7 +27,7 @@ pub struct CatalogueTask {
     pub name: String,
     /// Whose it is.
     pub keys: Keys,
-    /// All that its result hangs on: the kind's name, its revision and its options.
+    /// All that its result depends on: the kind's name, its revision and its options.
     pub options: serde_json::Value,
     /// About how much memory it takes, bytes.
     pub memory: u64,

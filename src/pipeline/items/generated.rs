@@ -132,7 +132,7 @@ fn blocks(key: &str, value: &Value) -> Result<Vec<(Option<String>, Table)>, Opti
     }
 }
 
-/// The planner knows no files but inputs: a movement is told by its name here.
+/// The planner knows no files but inputs: a movement is known by its name here.
 fn without_files<'a>(key: &str, options: &'a Table) -> Result<&'a Table, OptionFault> {
     const NAMES: [&str; 5] = ["eq27", "free", "random", "even", "rest"];
     match options.get("trajectory").and_then(Value::as_str) {

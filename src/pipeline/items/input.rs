@@ -9,7 +9,7 @@ use crate::pipeline::spec::{Filter, InputSource, InputSpec, Spec};
 use crate::toml_file::Fault;
 use crate::words::instead;
 
-/// How many places of one fault are told.
+/// How many places of one fault are listed.
 const TOLD: usize = 5;
 
 /// An input's items, for each of the columns that stages name, or its files.
@@ -63,9 +63,9 @@ fn of_files(spec: &Spec, input: &InputSpec, said: &str, world: &World<'_>) -> Re
         return Err(fault(format!("nothing matches `{said}`: {why}")));
     }
     if !found.ambiguous.is_empty() {
-        let told = found.ambiguous[..found.ambiguous.len().min(TOLD)].join("; ");
+        let listed = found.ambiguous[..found.ambiguous.len().min(TOLD)].join("; ");
         let what = format!(
-            "`{said}` fits {} name(s) in two ways: {told}; rename them, or write the pattern more narrowly",
+            "`{said}` fits {} name(s) in two ways: {listed}; rename them, or write the pattern more narrowly",
             found.ambiguous.len()
         );
         return Err(fault(what));
@@ -152,8 +152,8 @@ fn of_table(
     }
     let doubled = doubled(rows, &taken, &key_columns, &file_columns);
     if !doubled.is_empty() {
-        let told = doubled[..doubled.len().min(TOLD)].join("; ");
-        let what = format!("{named} holds {} row(s) twice: {told}; remove one of each", doubled.len());
+        let listed = doubled[..doubled.len().min(TOLD)].join("; ");
+        let what = format!("{named} holds {} row(s) twice: {listed}; remove one of each", doubled.len());
         return Err(vec![spec.fault(input.source_at, what)]);
     }
     let names: Vec<String> = key_columns.iter().map(|&column| rows.columns[column].clone()).collect();

@@ -4,7 +4,7 @@
 //! results), and a place in braces at least one character, which become a key; none of them goes past a `/`. A place
 //! that stands twice is the same twice. What begins with a dot is found only where the pattern says the dot. A pattern
 //! that ends in `/` finds folders, else files; one that ends in a plain name finds what has it. A name that can be read
-//! in two ways is told, not guessed. Results are sorted by name, whatever the disk's order.
+//! in two ways is reported, not guessed. Results are sorted by name, whatever the disk's order.
 
 mod walk;
 

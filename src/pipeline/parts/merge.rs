@@ -1,8 +1,8 @@
 //! Parts of a run that was cut become one folder of results, as if it had been made at once.
 //!
-//! In: folders that `--shard i/n` runs wrote, and the tasks, planned anew. Every part must be there once, be of the
+//! In: folders that `--shard i/n` runs wrote, and the tasks, planned again. Every part must be there once, be of the
 //! same pipeline, options and version, and have come to an end. Their results and records are linked (or copied) into
-//! the folder; then a run does there what no part could, and whatever inputs have changed since: that is told by the
+//! the folder; then a run does there what no part could, and whatever inputs have changed since: that is shown by the
 //! tasks' keys, not by times.
 
 use std::collections::BTreeMap;
@@ -27,7 +27,7 @@ use crate::pipeline::store::standing::{Why, spoilt};
 use crate::pipeline::tasks::graph::{Graph, GraphFault};
 use crate::pipeline::tasks::{Share, Task, TaskId};
 
-/// How many names an error tells.
+/// How many names an error lists.
 const NAMED: usize = 5;
 
 /// Why parts can't be merged; nothing was written.

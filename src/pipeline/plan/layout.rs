@@ -11,7 +11,7 @@ use crate::pipeline::items::{InputItems, Item, Missing, Origin, Relation, World,
 use crate::pipeline::spec::{From, Reference, Spec, StageSpec};
 use crate::toml_file::Fault;
 
-/// How many clashes of a stage are told.
+/// How many clashes of a stage are reported.
 const TOLD: usize = 5;
 
 /// Lays out all stages that wanted ones stand on.
@@ -312,13 +312,13 @@ fn name_beside(name: &str, path: &Path, beside: &Path) -> String {
 fn clashes(spec: &Spec, layout: &Layout<'_>, faults: &mut Vec<Fault>) {
     let mut seen: HashMap<&str, usize> = HashMap::new();
     let mut clashing: HashSet<&str> = HashSet::new();
-    let mut told: BTreeMap<usize, usize> = BTreeMap::new();
+    let mut shown: BTreeMap<usize, usize> = BTreeMap::new();
     for (at, node) in layout.nodes.iter().enumerate() {
         // The first of a name stands for all before: of many alike one pair says it.
         let earlier = *seen.entry(&node.id).or_insert(at);
         let (Some(stage), true) = (node.stage, earlier != at && clashing.insert(&node.id)) else { continue };
         let earlier = &layout.nodes[earlier];
-        let count = told.entry(stage).or_default();
+        let count = shown.entry(stage).or_default();
         *count += 1;
         if *count > TOLD {
             continue;
@@ -331,7 +331,7 @@ fn clashes(spec: &Spec, layout: &Layout<'_>, faults: &mut Vec<Fault>) {
         let what = format!("{} and {} would both be written to `{}`; {why}", earlier.place, node.place, node.id);
         faults.push(spec.fault(spec.stages[stage].at, what));
     }
-    for (stage, count) in told {
+    for (stage, count) in shown {
         if count > TOLD {
             faults.push(
                 spec.fault(

@@ -4,7 +4,7 @@
 //! and no others, each after those whose results it works on, and for every stage what was left out and why. Nothing is
 //! written, and the same inputs give the same plan whatever of the results stands already.
 //!
-//! Stages are first laid out forwards, from inputs to tasks ; then each task is told what is needed of it, backwards;
+//! Stages are first laid out forwards, from inputs to tasks; then each task learns what is needed of it, backwards;
 //! what nobody needs goes.
 
 mod ids;

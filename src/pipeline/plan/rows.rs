@@ -167,7 +167,7 @@ fn unrelated(spec: &Spec, stage: &StageSpec, given: &[Relation], one: usize, oth
     spec.fault(stage.roles[other].first().map_or(stage.at, |reference| reference.at), what)
 }
 
-/// How items without a partner are told: `log: no joints of subject=S07`.
+/// How items without a partner are reported: `log: no joints of subject=S07`.
 fn alone(stage: &StageSpec, unjoined: &Unjoined, single: &[usize]) -> Missing {
     let name = |at: usize| stage.kind.roles[single[at]].name;
     let shown: Vec<String> = unjoined.keys.iter().take(3).map(said).collect();

@@ -66,7 +66,7 @@ pub struct StagePlan {
 }
 
 impl Plan {
-    /// Every stage with its steps; `standing` tells of each task whether it stands.
+    /// Every stage with its steps; `standing` says of each task whether it is up to date.
     #[must_use]
     pub fn stage_plans(&self, standing: &[Standing]) -> Vec<StagePlan> {
         let facts = self.facts();
@@ -149,18 +149,18 @@ impl Plan {
 
 /// Inputs with what is known of them by now; of generated recordings it is known from the beginning.
 fn known(inputs: &[(Foreseen, Option<usize>)], facts: &[Facts]) -> Vec<Foreseen> {
-    let told = |(input, task): &(Foreseen, Option<usize>)| {
+    let shown = |(input, task): &(Foreseen, Option<usize>)| {
         let facts = task.and_then(|task| facts.get(task)).copied().unwrap_or_default();
         let facts = if input.facts == Facts::default() { facts } else { input.facts };
         Foreseen { facts, ..input.clone() }
     };
-    inputs.iter().map(told).collect()
+    inputs.iter().map(shown).collect()
 }
 
 /// Why a task does not stand, without names that differ from task to task.
 fn said(why: &Why) -> String {
     match why {
-        Why::Follows(_) => "what it works on is made anew".to_owned(),
+        Why::Follows(_) => "what it works on is made again".to_owned(),
         Why::InputChanged(_) => "an input changed".to_owned(),
         Why::InputAdded(_) => "an input is new".to_owned(),
         Why::InputGone(_) => "an input is gone".to_owned(),
@@ -217,7 +217,7 @@ pub fn plan_text(stages: &[StagePlan]) -> String {
             let _ = writeln!(text, "{indented:<width$}  {:<9} {many}{reasons}", fate_said(fate));
         }
         for what in stage.cannot_tell.iter().take(SHOWN) {
-            let _ = writeln!(text, "  cannot be told beforehand of {what}");
+            let _ = writeln!(text, "  cannot be known beforehand of {what}");
         }
         if stage.cannot_tell.len() > SHOWN {
             let _ = writeln!(text, "  and of {} more", stage.cannot_tell.len() - SHOWN);

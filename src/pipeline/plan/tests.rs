@@ -290,7 +290,7 @@ fn many_inputs_of_one_name_are_told_once() {
     let rows = "subject,kind,video,log\nS01,bending,v/S01.mp4,l/S01.csv\n\
         S01,bending,v/S02.mp4,l/S02.csv\nS01,bending,v/S03.mp4,l/S03.csv\n";
     let found = with("sessions.csv", rows, STUDY);
-    assert_eq!(found.iter().filter(|told| told.contains("to `angles/S01/bending`")).count(), 1, "{found:?}");
+    assert_eq!(found.iter().filter(|fault| fault.contains("to `angles/S01/bending`")).count(), 1, "{found:?}");
 }
 
 #[test]

@@ -230,7 +230,7 @@ fn count(counts: &mut Vec<Count>, what: &str, more: usize) {
     }
 }
 
-/// Writes `report.html` and `run.json` into the folder of results; tells where the page is.
+/// Writes `report.html` and `run.json` into the folder of results; returns where the page is.
 ///
 /// # Errors
 /// Where one of them can't be written.

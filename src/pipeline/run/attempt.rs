@@ -46,9 +46,9 @@ pub(super) struct Due {
     stands: bool,
 }
 
-/// How it stands with a task.
-pub(super) enum Found {
-    /// Its results stand; and what a user should know.
+/// Whether a task is up to date, due or failed.
+pub(super) enum TaskState {
+    /// Its results are up to date; with warnings for the user.
     Kept(Box<Record>, Vec<String>),
     Due(Box<Due>),
     Failed(String),
@@ -62,7 +62,7 @@ pub(super) enum Miss {
 
 impl Bench<'_> {
     /// Whether a task stands.
-    pub(super) fn find(&self, task: &Task, needed: Needed) -> Found {
+    pub(super) fn find(&self, task: &Task, needed: Needed) -> TaskState {
         let mut inputs = Vec::new();
         let mut known = Vec::new();
         let mut without = Vec::new();
@@ -70,7 +70,7 @@ impl Bench<'_> {
             let hash = match &input.source {
                 Source::Given { path, .. } => match self.results.hashes.of_given(path) {
                     Ok(hash) => hash,
-                    Err(why) => return Found::Failed(why.to_string()),
+                    Err(why) => return TaskState::Failed(why.to_string()),
                 },
                 Source::Result { task: maker, name } => match needed.get(maker) {
                     None => {
@@ -79,7 +79,7 @@ impl Bench<'_> {
                     }
                     Some(record) => match record.content(name) {
                         Some(hash) => hash,
-                        None => return Found::Failed(format!("{maker} made no {name}")),
+                        None => return TaskState::Failed(format!("{maker} made no {name}")),
                     },
                 },
             };
@@ -87,23 +87,23 @@ impl Bench<'_> {
             known.push(Known::new(input, hash));
         }
         if let Some(role) = emptied(task, &inputs) {
-            return Found::Failed(format!("nothing to work on: all of its {role} failed"));
+            return TaskState::Failed(format!("nothing to work on: all of its {role} failed"));
         }
         let fingerprint = Fingerprint::new(task, known, without);
         let folder = self.results.store.folder(&task.id);
         let Some(record) = self.results.store.record(&task.id) else {
             let why = self.results.store.failure(&task.id).map_or(Why::NeverMade, |note| Why::Failed(note.what));
-            return Found::Due(Box::new(Due { why, fingerprint, inputs, needed, stands: false }));
+            return TaskState::Due(Box::new(Due { why, fingerprint, inputs, needed, stands: false }));
         };
         let spoilt = spoilt(&record, &folder, &self.results.hashes);
         let stands = spoilt.is_none() && record.options == task.options;
         match difference(&record, task, &fingerprint, false).or(spoilt) {
-            Some(why) => Found::Due(Box::new(Due { why, fingerprint, inputs, needed, stands })),
+            Some(why) => TaskState::Due(Box::new(Due { why, fingerprint, inputs, needed, stands })),
             None => {
                 // It may have failed since, on other inputs.
                 self.results.store.forget_failure(&task.id);
                 let warnings = self.foreign(&folder, &record);
-                Found::Kept(Box::new(record), warnings)
+                TaskState::Kept(Box::new(record), warnings)
             }
         }
     }
@@ -254,7 +254,7 @@ pub(super) fn clean(work: &Path) {
     for entry in fs::read_dir(work).into_iter().flatten().flatten() {
         let path = entry.path();
         let is_dir = entry.file_type().is_ok_and(|kind| kind.is_dir());
-        // What can't be removed is told by its being there.
+        // What can't be removed shows by its being there.
         let _ = if is_dir { fs::remove_dir_all(&path) } else { fs::remove_file(&path) };
     }
 }
@@ -276,7 +276,7 @@ pub(in super::super) fn link(from: &Path, to: &Path) -> io::Result<()> {
 
 fn words(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
-    text.unwrap_or("it told nothing").to_owned()
+    text.unwrap_or("it said nothing").to_owned()
 }
 
 fn cannot(path: &Path, why: &io::Error) -> String {
@@ -293,9 +293,9 @@ fn is_full_kind(kind: io::ErrorKind) -> bool {
 
 /// Jobs tell of the disk in the system's words, some as text only.
 fn is_full(why: &anyhow::Error) -> bool {
-    let told =
+    let disk_full =
         why.chain().filter_map(|cause| cause.downcast_ref::<io::Error>()).any(|cause| is_full_kind(cause.kind()));
-    told || is_full_text(&format!("{why:#}"))
+    disk_full || is_full_text(&format!("{why:#}"))
 }
 
 fn is_full_text(text: &str) -> bool {

@@ -27,7 +27,7 @@ use crate::pipeline::store::{FailureNote, Store};
 use crate::pipeline::tasks::graph::{Graph, GraphFault};
 use crate::pipeline::tasks::{Task, TaskId};
 pub(super) use attempt::link;
-use attempt::{Bench, Found, Miss};
+use attempt::{Bench, Miss, TaskState};
 use queue::{Next, Queue};
 use report::STOPPED;
 pub use report::{Outcome, RunReport, TaskFailure, TaskReport};
@@ -165,7 +165,7 @@ impl Results {
     /// Does what does not stand.
     ///
     /// # Errors
-    /// [`RunFault`] where nothing was begun. Tasks that fail are told in the report.
+    /// [`RunFault`] where nothing was begun. Tasks that fail are in the report.
     pub fn run(&self, tasks: &[Task], options: &RunOptions, watch: &RunWatch) -> Result<RunReport, RunFault> {
         let start = Instant::now();
         let graph = Graph::new(tasks)?;
@@ -218,7 +218,7 @@ impl Results {
 /// Opens a folder and does what does not stand there.
 ///
 /// # Errors
-/// [`RunFault`] where nothing was begun. Tasks that fail are told in the report.
+/// [`RunFault`] where nothing was begun. Tasks that fail are in the report.
 pub fn run(tasks: &[Task], out: &Path, options: &RunOptions, watch: &RunWatch) -> Result<RunReport, RunFault> {
     // What makes no sense must not leave a folder.
     Graph::new(tasks)?;
@@ -265,15 +265,15 @@ impl<'a> Run<'a> {
             drop(queue);
             match next {
                 Next::Look(at, needed) => match self.bench.find(&self.tasks[at], needed) {
-                    Found::Due(due) => {
+                    TaskState::Due(due) => {
                         self.queue().is_due(at, due);
                         self.changed.notify_one();
                     }
-                    Found::Kept(record, warnings) => {
+                    TaskState::Kept(record, warnings) => {
                         let all = self.queue().looked(at, Outcome::Kept, Some(*record));
                         self.tell(&all, warnings);
                     }
-                    Found::Failed(what) => {
+                    TaskState::Failed(what) => {
                         self.note(at, &what);
                         let all = self.queue().looked(at, Outcome::Failed(what), None);
                         self.tell(&all, Vec::new());
@@ -309,15 +309,15 @@ impl<'a> Run<'a> {
         self.bench.results.store.keep_failure(&FailureNote { task: self.tasks[at].id.clone(), what: what.to_owned() });
     }
 
-    /// Wakes the others and tells whoever watches.
+    /// Wakes the others and notifies the watcher.
     fn tell(&self, settled: &[usize], warnings: Vec<String>) {
         self.changed.notify_all();
         let mut queue = self.queue();
         queue.warnings.extend(warnings);
         let outcome = |at: usize| queue.settled[at].as_ref().map(|settled| settled.outcome.clone());
-        let told: Vec<_> = settled.iter().filter_map(|&at| Some((at, outcome(at)?))).collect();
+        let reported: Vec<_> = settled.iter().filter_map(|&at| Some((at, outcome(at)?))).collect();
         drop(queue);
-        told.iter().for_each(|(at, outcome)| self.tick(Event::Settled(&self.tasks[*at], outcome)));
+        reported.iter().for_each(|(at, outcome)| self.tick(Event::Settled(&self.tasks[*at], outcome)));
     }
 
     fn tick(&self, event: Event) {

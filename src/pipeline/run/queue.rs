@@ -140,7 +140,7 @@ impl<'a> Queue<'a> {
         self.in_use = self.in_use.saturating_sub(self.tasks[at].memory);
     }
 
-    /// Settles a task and those that can't be done because of it; tells which.
+    /// Settles a task and those that can't be done because of it; returns which.
     fn settle(&mut self, at: usize, settled: Settled) -> Vec<usize> {
         let mut all = Vec::new();
         let mut todo = vec![(at, settled)];

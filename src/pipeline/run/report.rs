@@ -38,7 +38,7 @@ pub struct TaskReport {
     pub why: Option<String>,
     /// How long it took, seconds: now, or when it was done where it was kept.
     pub wall_s: Option<f64>,
-    /// What the job tells of it.
+    /// What the job reports of it.
     pub made: Option<Made>,
     /// Its files.
     pub outputs: Vec<Output>,

@@ -1,7 +1,7 @@
 //! A pipeline file: what there is, what is to be done with it, and which results are wanted.
 //!
 //! In: TOML; out: a [`Spec`] whose names are all known, whose options each job has accepted, and in which no stage
-//! works on itself. All faults that can be told without looking at inputs are told at once, each with line and column.
+//! works on itself. All faults that show without looking at inputs are reported at once, each with line and column.
 //!
 //! ```toml
 //! wanted = ["sets"]                     # stages, or STAGE.PART; without it: the stages that no other works on

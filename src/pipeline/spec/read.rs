@@ -21,7 +21,7 @@ pub(super) fn spec(text: &str, path: &Path, kinds: &[&'static Kind]) -> Result<S
         return Err(findings.finish().err().unwrap_or_default());
     };
     let top = entries(document.get_ref());
-    // Doubled keys have been told already; without them the values are those of the entries.
+    // Doubled keys have been reported already; without them the values are those of the entries.
     let values: toml::Table = text.parse().unwrap_or_default();
     findings.unknown_keys(&top, &TOP, "key");
     let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();

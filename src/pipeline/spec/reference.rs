@@ -10,7 +10,7 @@ use crate::words::instead;
 /// What references may name.
 pub(super) struct Names<'a> {
     pub(super) inputs: &'a mut Vec<InputSpec>,
-    /// Names of inputs with faults of their own, which have been told.
+    /// Names of inputs with faults of their own, already reported.
     pub(super) faulty: &'a [&'a str],
     pub(super) stages: &'a [Header],
 }

@@ -74,7 +74,7 @@ pub(super) fn stage(
 
     let stage = values.get("stage").and_then(|stages| stages.get(entry.key)).and_then(toml::Value::as_table);
     let mut options = stage.cloned().unwrap_or_default();
-    // Keys that are not the job's have been told.
+    // Keys that are not the job's have been reported.
     options.retain(|key, _| keys.iter().any(|known| known == key) && !role_names.contains(&key));
     let prepared = match (kind.prepare)(&options) {
         Ok(prepared) => prepared,

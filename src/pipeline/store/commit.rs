@@ -62,7 +62,7 @@ pub(in crate::pipeline) fn outputs(work: &Path, hashes: &Hashes) -> Result<Vec<O
     files_in(&folder)?.into_iter().map(output).collect()
 }
 
-/// Puts a task's files and its record into their place; tells what a user should know.
+/// Puts a task's files and its record into place; returns what a user should know.
 pub(in crate::pipeline) fn commit(
     store: &Store,
     hashes: &Hashes,
@@ -81,21 +81,21 @@ pub(in crate::pipeline) fn commit(
 
 /// Finishes what runs that were killed had made, and removes what they had not.
 pub(in crate::pipeline) fn recover(store: &Store, hashes: &Hashes) -> io::Result<Vec<String>> {
-    let mut told = Vec::new();
+    let mut notices = Vec::new();
     for entry in fs::read_dir(store.work())? {
         let work = entry?.path();
         if let Some(record) = read_record(&work.join("record.json")) {
             match put(store, hashes, &work, &record) {
-                Ok(warnings) => told.extend(warnings),
-                Err(why) => told.push(format!("{}: what an earlier run made was not put there: {why}", record.task)),
+                Ok(warnings) => notices.extend(warnings),
+                Err(why) => notices.push(format!("{}: what an earlier run made was not put there: {why}", record.task)),
             }
         }
         let gone = if work.is_dir() { fs::remove_dir_all(&work) } else { fs::remove_file(&work) };
         if let Err(why) = gone {
-            told.push(format!("{}: what an earlier run left cannot be removed ({why})", work.display()));
+            notices.push(format!("{}: what an earlier run left cannot be removed ({why})", work.display()));
         }
     }
-    Ok(told)
+    Ok(notices)
 }
 
 /// The second half of [`commit`]; done again it does nothing.
@@ -201,7 +201,7 @@ fn clear(
     let kept = free_name(to);
     rename(to, &kept).map_err(io_fault(&kept))?;
     Ok(Some(format!(
-        "{}: was edited by hand; it is kept as {}, and the result was made anew",
+        "{}: was edited by hand; it is kept as {}, and the result was made again",
         to.display(),
         kept.display()
     )))

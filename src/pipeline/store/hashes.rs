@@ -7,7 +7,7 @@
 //! Whatever is not believed is read again, so a doubt costs time and never a wrong answer. The times need not be true:
 //! a picture that a camera dates to the year 2000 is believed by the inode's time, one of tomorrow is read each time.
 //!
-//! What is remembered is a text of one line a file that is only ever added to, and written anew where most of it has
+//! What is remembered is a text of one line a file that is only ever added to, and rewritten where most of it has
 //! become idle: a line that was cut short is not read.
 
 use std::collections::HashMap;
@@ -324,7 +324,7 @@ impl Drop for Hashes {
             })
             .collect();
         if self.lines.load(Ordering::Relaxed) > 2 * live.len() + 4096 {
-            // What can't be written anew stands as it is.
+            // What can't be rewritten stays as it is.
             let _ = write_whole(place, live.concat().as_bytes());
         }
     }

@@ -50,7 +50,7 @@ pub(in crate::pipeline) enum Refused {
     Io(std::io::Error),
 }
 
-/// Takes the lock, or tells who has it.
+/// Takes the lock, or says who has it.
 pub(in crate::pipeline) fn hold(place: &Path) -> Result<Held, Refused> {
     let open = OpenOptions::new().create(true).truncate(false).read(true).write(true).open(place);
     let mut file = open.map_err(Refused::Io)?;
@@ -86,6 +86,6 @@ fn read_holder(file: &mut File) -> Option<Holder> {
 }
 
 fn host() -> String {
-    let told = std::fs::read_to_string("/proc/sys/kernel/hostname").ok().or_else(|| std::env::var("HOSTNAME").ok());
-    told.map(|name| name.trim().to_owned()).filter(|name| !name.is_empty()).unwrap_or_else(|| "this machine".into())
+    let host = std::fs::read_to_string("/proc/sys/kernel/hostname").ok().or_else(|| std::env::var("HOSTNAME").ok());
+    host.map(|name| name.trim().to_owned()).filter(|name| !name.is_empty()).unwrap_or_else(|| "this machine".into())
 }

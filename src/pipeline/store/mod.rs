@@ -1,7 +1,7 @@
 //! Where things stand in a folder of results.
 //!
 //! `OUT/<task>/` holds what a task made and nothing else. All else is under `OUT/.lunula/`, which may be thrown away
-//! (then all is made anew):
+//! (then all is made again):
 //! - `records/*.json`: one file a task that was done, renamed into its place whole, so that there are no halves
 //!   whenever the power goes
 //! - `failures/*.json`: one file a task that failed when it was tried last
@@ -113,7 +113,7 @@ impl Store {
         serde_json::from_slice(&text).ok().filter(|note: &FailureNote| note.task == id)
     }
 
-    /// Keeps why a task failed. Where there is no room for it, the next run tells nothing and tries again all the same.
+    /// Keeps why a task failed. Where there is no room for it, the next run just tries again.
     pub(super) fn keep_failure(&self, note: &FailureNote) {
         if let Ok(text) = serde_json::to_vec(note) {
             let _ = write_whole(&self.failures().join(file_name(&note.task)), &text);
@@ -135,7 +135,7 @@ impl Store {
     }
 }
 
-/// The file's name of a task's record: unlike any other's, on file systems that know no case too, and told from by eye.
+/// The file's name of a task's record: unlike any other's, on file systems that know no case too, and easy to read.
 pub(super) fn file_name(id: &str) -> String {
     let seen: String =
         id.chars().map(|c| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '~' }).take(80).collect();

@@ -1,7 +1,7 @@
 //! What is kept of a task that was done: from what it was made, what came out, how long it took.
 //!
-//! The key is the SHA-256 of all that the result hangs on: the task's name and keys, its options (kind, revision,
-//! options) and, for each input in the task's order, role, keys, name and content. Times and the machine are told in
+//! The key is the SHA-256 of all that the result depends on: the task's name and keys, its options (kind, revision,
+//! options) and, for each input in the task's order, role, keys, name and content. Times and the machine are given in
 //! the record too, but are no part of the key.
 
 use serde::{Deserialize, Serialize};
@@ -45,7 +45,7 @@ impl Known {
     }
 }
 
-/// All that a task's result hangs on.
+/// All that a task's result depends on.
 #[derive(Debug, Clone)]
 pub(in crate::pipeline) struct Fingerprint {
     pub(in crate::pipeline) key: ContentHash,

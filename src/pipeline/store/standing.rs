@@ -114,7 +114,7 @@ impl Looked {
         let record = store.record(&task.id);
         let failed = if record.is_none() { store.failure(&task.id).map(|note| note.what) } else { None };
         let given = task.inputs.iter().map(|input| match &input.source {
-            // Of a task that was never done only this is told: whether it can be done.
+            // Of a task that was never done only this is known: whether it can be done.
             Source::Given { path, .. } if record.is_some() => Some(hashes.of_given(path)),
             Source::Given { path, .. } if !path.exists() => Some(Err(FileFault::Missing(path.clone()))),
             _ => None,
@@ -144,7 +144,7 @@ impl Looked {
         let Some(record) = &self.record else {
             return Some(self.failed.clone().map_or(Why::NeverMade, Why::Failed));
         };
-        // An input that failed and may is not told from one that is to be made: its task does not stand, so this one
+        // An input that failed and may is treated as one that is to be made: its task does not stand, so this one
         // follows from it.
         without.extend(record.without.iter().cloned());
         let now = Fingerprint::new(task, inputs, without);

@@ -70,7 +70,7 @@ pub struct Task {
     pub keys: Keys,
     /// What it works on.
     pub inputs: Vec<Input>,
-    /// All that its result hangs on besides the inputs' contents: the job's name, its version and its options, as they
+    /// All that its result depends on besides the inputs' contents: the job's name, version and options, as they
     /// change bytes.
     pub options: serde_json::Value,
     /// Who makes it in a run cut into parts.

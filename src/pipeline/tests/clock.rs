@@ -39,7 +39,7 @@ fn a_file_at_rest_is_read_once_and_a_changed_one_is_seen_whatever_its_date() {
     hash(&hashes, &path);
     assert_eq!(hashes.read(), 0);
 
-    // The same size, and the date that it had: the inode tells.
+    // The same size, and the date that it had: the inode differs.
     let dated = fs::metadata(&path).unwrap().modified().unwrap();
     for (text, at) in [("two", dated), ("six", SystemTime::UNIX_EPOCH), ("ten", dated)] {
         fs::write(&path, text).unwrap();
@@ -66,7 +66,7 @@ fn a_run_sees_changes_dated_before_it_and_after_it() {
         date(&path, at);
         assert_eq!(outcomes(&run_on(&tasks, &out)), ["done"], "dated {at:?}");
         assert_eq!(outcomes(&run_on(&tasks, &out)), ["kept"]);
-        // Dated anew, and the same: nothing to do.
+        // A new date, the same bytes: nothing to do.
         date(&path, at + hour);
         assert_eq!(outcomes(&run_on(&tasks, &out)), ["kept"]);
     }

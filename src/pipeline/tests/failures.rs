@@ -38,8 +38,8 @@ fn a_branch_fails_alone_and_is_tried_again() {
         assert_eq!(outcomes(&report)[..3], ["failed", outcomes(&report)[1], "not done"]);
         assert_eq!(outcomes(&report)[4], "not done");
         assert_eq!((report.failed, report.not_done), (1, 2));
-        let told: Vec<&str> = report.failures.iter().map(|failure| failure.what.as_str()).collect();
-        assert_eq!(told, [what, "needs a/1, which failed", "needs b/1, which needs a/1, which failed"]);
+        let reasons: Vec<&str> = report.failures.iter().map(|failure| failure.what.as_str()).collect();
+        assert_eq!(reasons, [what, "needs a/1, which failed", "needs b/1, which needs a/1, which failed"]);
         assert_eq!(report.tasks[5].without, ["b/1"]);
         assert_eq!(survey(&tasks(act), dir.path()).unwrap()[0], Standing::Run(Why::Failed(what.into())));
     }

@@ -1,4 +1,4 @@
-//! Results and inputs changed between runs: made anew is what that touches, and nothing that somebody wrote is lost.
+//! Results and inputs changed between runs: what that touches is made again, and nothing that somebody wrote is lost.
 
 use std::fs;
 
@@ -66,13 +66,13 @@ fn an_edited_result_is_kept_beside_and_made_anew_a_deleted_one_made_anew() {
         let report = run_on(&tasks, dir.path());
         assert_eq!(outcomes(&report), ["done", "kept"]);
         assert!(
-            report.warnings.iter().any(|told| told.contains("edited by hand") && told.contains(kept)),
+            report.warnings.iter().any(|warning| warning.contains("edited by hand") && warning.contains(kept)),
             "{report:?}"
         );
         assert_eq!(fs::read_to_string(dir.path().join("a").join(kept)).unwrap(), kept);
         assert_eq!(results(dir.path()), made);
     }
-    // It is told once, and what works on the folder does not see it.
+    // It is reported once, and what works on the folder does not see it.
     let mut tasks = tasks;
     tasks[1] = toy("b", 2, vec![result("a", "")], &diary);
     assert!(run_on(&tasks, dir.path()).warnings.is_empty());
@@ -120,7 +120,7 @@ fn what_is_no_result_is_left_told_and_not_shown_to_jobs() {
     fs::write(dir.path().join("a/deep/notes.txt"), "mine").unwrap();
     let report = run_on(&tasks(2), dir.path());
     assert_eq!(outcomes(&report), ["kept", "done"]);
-    assert!(report.warnings.iter().any(|told| told.contains("notes.txt")), "{report:?}");
+    assert!(report.warnings.iter().any(|warning| warning.contains("notes.txt")), "{report:?}");
     assert_eq!(fs::read_to_string(dir.path().join("a/deep/notes.txt")).unwrap(), "mine");
     let mut found = results(dir.path());
     found.remove("a/deep/notes.txt");
@@ -137,7 +137,7 @@ fn what_is_made_no_more_is_removed_unless_somebody_edited_it() {
     run_on(&task(3), dir.path());
     fs::write(dir.path().join("a/odd.txt"), "mine").unwrap();
     let report = run_on(&task(4), dir.path());
-    assert!(report.warnings.iter().any(|told| told.contains("odd.txt")), "{report:?}");
+    assert!(report.warnings.iter().any(|warning| warning.contains("odd.txt")), "{report:?}");
     assert_eq!(fs::read_to_string(dir.path().join("a/odd.txt")).unwrap(), "mine");
 }
 

@@ -73,7 +73,7 @@ fn killed_at_ten_moments() {
     let (mut kills, mut waited) = (0, 0);
     while kills < 10 {
         let stood = recorded();
-        let told = fs::read_to_string(&log).unwrap_or_default().lines().count();
+        let before = fs::read_to_string(&log).unwrap_or_default().lines().count();
         let mut child = Command::new(std::env::current_exe().unwrap())
             .args(["--ignored", "--exact", "pipeline::tests::kill::child_that_is_killed"])
             .env(OUT, &out)
@@ -83,7 +83,7 @@ fn killed_at_ten_moments() {
             .unwrap();
         // Moments that follow no rhythm of the run's.
         waited = (waited * 5 + 17) % 43;
-        let begun = || fs::read_to_string(&log).unwrap_or_default().lines().count() > told;
+        let begun = || fs::read_to_string(&log).unwrap_or_default().lines().count() > before;
         while !begun() && child.try_wait().unwrap().is_none() {
             std::thread::sleep(Duration::from_micros(200));
         }
@@ -92,7 +92,7 @@ fn killed_at_ten_moments() {
         child.wait().unwrap();
         kills += 1;
         let text = fs::read_to_string(&log).unwrap_or_default();
-        let again: Vec<&str> = text.lines().skip(told).filter(|id| stood.contains(*id)).collect();
+        let again: Vec<&str> = text.lines().skip(before).filter(|id| stood.contains(*id)).collect();
         assert!(again.is_empty(), "recorded and done again: {again:?}");
     }
     let stood = recorded();

@@ -59,7 +59,7 @@ fn tasks_at_work_stay_within_the_memory() {
     let most = scale.most.load(Ordering::SeqCst);
     assert_eq!(most, 100, "those that are too heavy run alone");
     assert_eq!((report.done, report.warnings.len()), (sizes.len(), 4));
-    assert!(report.warnings.iter().all(|told| told.contains("runs alone")), "{report:?}");
+    assert!(report.warnings.iter().all(|warning| warning.contains("runs alone")), "{report:?}");
 }
 
 #[test]
@@ -109,7 +109,7 @@ fn child_on_a_full_disk() {
 fn a_full_disk_fails_what_needs_room_and_nothing_else() {
     let dir = tempfile::tempdir().unwrap();
     let out = dir.path().join("out");
-    // Files end at 1 to 2 MB, and whoever writes on is told instead of killed: as a disk that is full.
+    // Files end at 1 to 2 MB, and whoever writes on gets an error instead of being killed: as a disk that is full.
     let shell =
         "trap '' XFSZ; ulimit -f 2000; exec \"$0\" --ignored --exact pipeline::tests::limits::child_on_a_full_disk";
     let child = Command::new("sh").args(["-c", shell]).arg(std::env::current_exe().unwrap()).env(FULL, &out).output();

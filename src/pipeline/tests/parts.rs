@@ -71,7 +71,7 @@ fn a_merge_is_made_again_with_what_is_new() {
     assert_eq!(results(&out), from_scratch(&tasks));
     let again = merge(&parts, &tasks, &mark(), &out).unwrap();
     assert_eq!((again.kept, again.done), (6, 0));
-    // An input that changed after the parts: its tasks are made anew, whatever times say.
+    // An input that changed after the parts: its tasks are made again, whatever times say.
     fs::write(dir.path().join("x.txt"), "y").unwrap();
     assert_eq!(merge(&parts, &tasks, &mark(), &out).unwrap().done, 6);
     assert_eq!(results(&out), from_scratch(&tasks));
@@ -108,8 +108,8 @@ fn what_does_not_belong_together_is_refused_and_nothing_written() {
         assert!(!out.exists(), "{fault}");
         fault
     };
-    let told = fault(&[&three, &one], &mark()).to_string();
-    assert!(told.starts_with("2/3: of 3 parts this is missing"), "{told}");
+    let error = fault(&[&three, &one], &mark()).to_string();
+    assert!(error.starts_with("2/3: of 3 parts this is missing"), "{error}");
     assert!(matches!(fault(&[&one, &two, &three, &one], &mark()), MergeFault::Twice { part, .. } if part == "1/3"));
     let of_two = part(&tasks, dir.path(), 2, 2);
     assert!(matches!(fault(&[&one, &of_two], &mark()), MergeFault::Differ { .. }));
@@ -117,8 +117,8 @@ fn what_does_not_belong_together_is_refused_and_nothing_written() {
 
     let changed =
         PipelineMark { decides: super::super::ContentHash::of(b"other"), text: "one\nthree\n".into(), ..mark() };
-    let told = fault(&[&one, &two, &three], &changed).to_string();
-    assert!(told.contains("line 2 says \"two\" and \"three\""), "{told}");
+    let error = fault(&[&one, &two, &three], &changed).to_string();
+    assert!(error.contains("line 2 says \"two\" and \"three\""), "{error}");
     let other = dir.path().join("other");
     let options = RunOptions { shard: Shard::new(2, 3), pipeline: changed, ..options(1) };
     run_with(&tasks, &other, &options);
@@ -131,8 +131,8 @@ fn what_does_not_belong_together_is_refused_and_nothing_written() {
     let record = crate::pipeline::store::Store::new(&two).record_place("own/1");
     let hidden = record.with_extension("hidden");
     fs::rename(&record, &hidden).unwrap();
-    let told = fault(&[&one, &two, &three], &mark()).to_string();
-    assert!(told.contains("did not come to its end: own/1 not done; run it again with --shard 2/3"), "{told}");
+    let error = fault(&[&one, &two, &three], &mark()).to_string();
+    assert!(error.contains("did not come to its end: own/1 not done; run it again with --shard 2/3"), "{error}");
     fs::rename(&hidden, &record).unwrap();
 
     fs::write(two.join("own/1/text.txt"), "mine").unwrap();

@@ -63,12 +63,12 @@ impl Maker for Toy {
                 anyhow::bail!("stopped");
             }
         }
-        let mut told = Vec::new();
+        let mut lines = Vec::new();
         for input in &work.inputs {
             let names = if input.path.is_dir() { files_in(&input.path)? } else { vec![String::new()] };
             for name in names {
                 let path = if name.is_empty() { input.path.clone() } else { input.path.join(&name) };
-                told.push(format!(
+                lines.push(format!(
                     "{} {} {}/{name} {}",
                     input.role,
                     input.keys,
@@ -77,10 +77,10 @@ impl Maker for Toy {
                 ));
             }
         }
-        let all = ContentHash::of(told.join("\n").as_bytes()).to_string();
+        let all = ContentHash::of(lines.join("\n").as_bytes()).to_string();
         let text = match self.blunt {
             Some(few) => format!("{}", u64::from_str_radix(&all[..8], 16)? % few),
-            None => format!("{}\n{}\n", self.salt, told.join("\n")),
+            None => format!("{}\n{}\n", self.salt, lines.join("\n")),
         };
         fs::write(work.folder.join("text.txt"), text)?;
         fs::create_dir(work.folder.join("deep"))?;

@@ -159,7 +159,7 @@ struct Direction {
 }
 
 impl Direction {
-    /// None where the two can't be told apart.
+    /// `None` where the two can't be distinguished.
     fn between(proximal: &Spot, distal: &Spot) -> Option<Self> {
         let [dx, dy] = [distal.at_px[0] - proximal.at_px[0], distal.at_px[1] - proximal.at_px[1]];
         let length = dx.hypot(dy);

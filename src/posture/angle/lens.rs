@@ -220,12 +220,12 @@ mod tests {
             let lens = lens(model);
             let at = |x: f64, y: f64| lens.undistort([x, y]).unwrap().at_px;
             for [x, y] in SHOWN {
-                let told = lens.undistort([x, y]).unwrap().jacobian;
-                for (axis, told) in told.iter().enumerate() {
+                let derivatives = lens.undistort([x, y]).unwrap().jacobian;
+                for (axis, derivatives) in derivatives.iter().enumerate() {
                     let by_x = (at(x + step, y)[axis] - at(x - step, y)[axis]) / (2.0 * step);
                     let by_y = (at(x, y + step)[axis] - at(x, y - step)[axis]) / (2.0 * step);
                     // Measured 1.9e-10, the rounding of the differences.
-                    assert!((told[0] - by_x).abs() <= 1e-8 && (told[1] - by_y).abs() <= 1e-8);
+                    assert!((derivatives[0] - by_x).abs() <= 1e-8 && (derivatives[1] - by_y).abs() <= 1e-8);
                 }
             }
         }

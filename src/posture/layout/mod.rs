@@ -1,7 +1,7 @@
 //! The marker file: which markers, segments and joints, and what is known of the camera.
 //!
 //! In: a TOML file; out: a [`Layout`], in which every name has become an index and every fault of the file has been
-//! told at once, each with its line. Order is the file's: joints make columns in the order of `[joints]`.
+//! reported at once, each with its line. Order is the file's: joints make columns in the order of `[joints]`.
 //!
 //! `[start]`, `[clock]` and `[camera]` speak of the *shown* (upright) picture, as a person or OpenCV sees it. Flexion
 //! is clockwise where the file does not say; the layout's notes tell.

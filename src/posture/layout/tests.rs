@@ -118,7 +118,7 @@ J1 = 2
 J9_deg = 2
 J2_deg = inf
 "##;
-    let told = faults(text);
+    let messages = faults(text);
     let mut expected = vec![
         "1: `flexion`",
         "2: unknown key `marker`; did you mean `markers`?",
@@ -149,15 +149,15 @@ J2_deg = inf
         "36: [zero] names the unknown joint `J9`",
         "37: `J2_deg` has to be a finite",
     ];
-    for fault in &told {
+    for fault in &messages {
         let found = expected.iter().position(|e| fault.starts_with(e));
         expected.remove(found.unwrap_or_else(|| panic!("not expected: {fault}")));
     }
-    assert!(expected.is_empty(), "not told: {expected:?}");
-    let lines: Vec<usize> = told.iter().map(|t| t.split(':').next().unwrap().parse().unwrap()).collect();
+    assert!(expected.is_empty(), "not messages: {expected:?}");
+    let lines: Vec<usize> = messages.iter().map(|t| t.split(':').next().unwrap().parse().unwrap()).collect();
     assert!(lines.is_sorted());
     let message = parse(text).unwrap_err().to_string();
-    assert!(message.lines().all(|l| l.starts_with("m.toml:")) && message.lines().count() == told.len());
+    assert!(message.lines().all(|l| l.starts_with("m.toml:")) && message.lines().count() == messages.len());
 }
 
 #[test]
@@ -165,17 +165,19 @@ fn broken_toml_is_told_with_its_line() {
     for (text, line) in
         [("[markers]\na = \n", 2), ("[markers\na='#fff'", 1), ("[markers]\na='#fff'\n\nb = '#ff", 4), ("x = = 2", 1)]
     {
-        let told = faults(text);
-        assert!(told.iter().any(|t| t.starts_with(&format!("{line}: not TOML: "))), "{text}: {told:?}");
-        assert!(told.iter().all(|t| t.contains("not TOML")), "guesses beside the broken line: {told:?}");
+        let messages = faults(text);
+        assert!(messages.iter().any(|t| t.starts_with(&format!("{line}: not TOML: "))), "{text}: {messages:?}");
+        assert!(messages.iter().all(|t| t.contains("not TOML")), "guesses beside the broken line: {messages:?}");
     }
 }
 
 #[test]
 fn a_doubled_name_is_told_along_with_the_rest() {
-    let told = faults("[markers]\na = '#fff'\na = '#000'\nb = 'red'\n");
-    assert_eq!(told.len(), 2, "{told:?}");
-    assert!(told[0].starts_with("3: `a` stands here a second time") && told[1].starts_with("4: the colour of `b`"));
+    let messages = faults("[markers]\na = '#fff'\na = '#000'\nb = 'red'\n");
+    assert_eq!(messages.len(), 2, "{messages:?}");
+    assert!(
+        messages[0].starts_with("3: `a` stands here a second time") && messages[1].starts_with("4: the colour of `b`")
+    );
 }
 
 #[test]

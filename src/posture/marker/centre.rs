@@ -15,7 +15,7 @@
 use nalgebra::{Matrix2, Matrix4, Vector4};
 
 use super::blot::Outline;
-use super::disc::{Ground, Say, Shape, View, Window, sums};
+use super::disc::{DiscShape, Ground, Say, View, Window, sums};
 use super::fit::Fit;
 use super::method::Method;
 use super::rough::rough;
@@ -87,7 +87,7 @@ pub(crate) fn centre(
 
 /// The centroid as it is, with the standard error that independent noise would give it.
 fn unrefined(frame: &Frame<'_>, look: &Look, at_px: [f64; 2]) -> Result<Fit, Loss> {
-    let shape = Shape { at_px, radius_px: look.radius_px, blur_px: look.blur_px };
+    let shape = DiscShape { at_px, radius_px: look.radius_px, blur_px: look.blur_px };
     if !in_the_picture(frame, &shape) {
         return Err(Loss::AtTheBorder);
     }
@@ -148,7 +148,7 @@ pub(super) fn fit(
     let method = scratch.method;
     let (views, planes) = views(frame, siting);
     let views = &views[..planes];
-    let mut shape = Shape { at_px, radius_px: look.radius_px, blur_px: look.blur_px };
+    let mut shape = DiscShape { at_px, radius_px: look.radius_px, blur_px: look.blur_px };
     let mut grounds: [Ground; 3] = std::array::from_fn(|p| [look.background[p], 0.0, 0.0, look.marker[p]]);
     let mut noise = look.noise;
     let prior = prior(look);
@@ -282,7 +282,7 @@ fn prior(look: &Look) -> Matrix4<f64> {
     Matrix4::from_diagonal(&Vector4::new(1e-9, 1e-9, radius_sd.powi(-2), blur_sd.powi(-2)))
 }
 
-fn in_the_picture(frame: &Frame<'_>, shape: &Shape) -> bool {
+fn in_the_picture(frame: &Frame<'_>, shape: &DiscShape) -> bool {
     let reach = shape.radius_px + 0.5;
     let side = |at: f64, size: usize| at - reach >= -0.5 && at + reach <= size as f64 - 0.5;
     side(shape.at_px[0], frame.luma.width) && side(shape.at_px[1], frame.luma.height)

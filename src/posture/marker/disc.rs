@@ -5,7 +5,7 @@
 //! (1 - m) (b0 + b1 u + b2 v) + m a, with m = Phi((R - r) / s), Phi the normal distribution function. The surround has
 //! a gradient of its own and the disc has none, as a sticker does not take part in the shading of what lies beneath;
 //! one gradient for both biases a centre on a finger by up to 0.09 px at 1280x720 and 0.15 px at 480x270. Unknown: the
-//! [`Ground`] (b0, b1, b2, a) of each plane, the [`Shape`] (cx, cy, R, s) of all planes. A step is Gauss-Newton's; the
+//! [`Ground`] (b0, b1, b2, a) of a plane, the [`DiscShape`] (cx, cy, R, s) of all. A step is Gauss-Newton's; the
 //! ground is eliminated, so steps of planes add up.
 
 use nalgebra::{Matrix4, SMatrix, SVector, Vector4};
@@ -22,7 +22,7 @@ const PAIRS: usize = 36;
 
 /// Where the disc is, in luma samples.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Shape {
+pub(super) struct DiscShape {
     pub(super) at_px: [f64; 2],
     pub(super) radius_px: f64,
     /// Standard deviation of the Gaussian that luma's edge is seen through.
@@ -107,7 +107,7 @@ impl Sums {
 }
 
 /// The sums of a window around `shape`.
-pub(super) fn sums(view: &View<'_>, shape: &Shape, ground: &Ground, window: Window, row: &mut Vec<f32>) -> Sums {
+pub(super) fn sums(view: &View<'_>, shape: &DiscShape, ground: &Ground, window: Window, row: &mut Vec<f32>) -> Sums {
     let Window { reach_px, doubt, every } = window;
     let plane = &view.plane;
     let range = |axis: usize, size: usize| {
@@ -166,7 +166,7 @@ struct Constants {
 }
 
 impl Constants {
-    fn new(shape: &Shape, ground: &Ground, blur: f64, doubt: f64) -> Self {
+    fn new(shape: &DiscShape, ground: &Ground, blur: f64, doubt: f64) -> Self {
         let splat = |value: f64| f32x4::splat(value as f32);
         Self {
             ground: ground.map(splat),

@@ -3,7 +3,7 @@
 use super::blot::Outline;
 use super::sight::Centre;
 
-/// What a frame tells of a marker.
+/// What a frame shows of a marker.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Fit {
     /// Its centre.

@@ -5,7 +5,7 @@ use crate::posture::marker::looks::look::Look;
 use crate::posture::marker::looks::siting::Siting;
 use crate::video::Frame;
 
-/// Points of the ring that tells the surround's colour.
+/// Points of the ring that samples the surround's colour.
 const RING: usize = 24;
 /// A disc of this share of the marker's area at least is nearer to its colour.
 const LEAST_AREA: f64 = 0.4;
@@ -43,7 +43,7 @@ fn centroid(frame: &Frame<'_>, siting: Siting, look: &Look, at: [f64; 2], reach:
     // Brighter light makes all differences larger.
     let gain = (surround[0] / look.background[0].max(1.0)).clamp(0.5, 2.0);
     let toward: [f64; 3] = std::array::from_fn(|p| gain * (look.marker[p] - look.background[p]));
-    // Luma changes most with light and shade: it counts less where chroma tells.
+    // Luma changes most with light and shade: it counts less where chroma helps.
     let chroma = toward[1].powi(2) + toward[2].powi(2);
     let luma_weight = if chroma > 400.0 { 0.1 } else { 1.0 };
     let weights = [luma_weight, 1.0, 1.0];

@@ -30,7 +30,7 @@ pub enum Loss {
     Hidden,
     /// It reaches over the picture's border.
     AtTheBorder,
-    /// It can't be told from another marker.
+    /// It can't be distinguished from another marker.
     Ambiguous,
     /// The frame could not be decoded.
     Undecoded,

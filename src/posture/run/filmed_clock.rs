@@ -10,7 +10,7 @@ use crate::clock::{
 };
 use crate::video::{Frame, Info};
 
-/// What the clock in the picture told.
+/// What the clock in the picture said.
 #[derive(Debug, Clone, Serialize)]
 pub struct ClockReport {
     /// Where it is on the shown picture: x, y of the top-left corner, width, height; none where it was not found.
@@ -68,7 +68,7 @@ pub(in crate::posture) struct FilmedClock {
     shown_s: Vec<Result<f64, Doubt>>,
 }
 
-/// What the table of angles tells of the clock in a frame.
+/// What the table of angles says of the clock in a frame.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::posture) struct ClockRow {
     /// What the clock counts, by the fit.

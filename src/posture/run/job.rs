@@ -1,7 +1,7 @@
 //! The posture job: a video, a checked layout and options in, tables of angles and tracks out; the one entry that
 //! command line, pipelines and trade-offs call.
 //!
-//! A frame is decoded, its planes are looked at where the last frame tells, centres get names, names get angles, the
+//! A frame is decoded, its planes are looked at where the last frame says, centres get names, names get angles, the
 //! row is written, the frame forgotten: memory does not grow with the video's length, unless angles are to be smoothed.
 
 use std::path::Path;
@@ -100,7 +100,7 @@ pub fn run(
     }
     // What makes all angles wrong comes first.
     let mut warnings: Vec<String> = results.plausibility.warning(layout.flexion).into_iter().collect();
-    warnings.extend(layout.notes.iter().chain(&info.warnings).cloned());
+    warnings.extend(info.warnings.iter().cloned());
     warnings.extend(late(layout, &survey, &results.markers));
     let figures = PostureFigures {
         video: video_report(path, &info, survey.siting, &span),
@@ -120,7 +120,14 @@ pub fn run(
         decoding_share: 0.0,
     };
     let left_out = left_out(layout, &info, options, outputs, &tracker);
-    let report = Report { left_out, warnings, failed, pictures, ..Report::new("posture", watch, figures) };
+    let report = Report {
+        left_out,
+        warnings,
+        notes: layout.notes.clone(),
+        failed,
+        pictures,
+        ..Report::new("posture", watch, figures)
+    };
     results.finish(report, &stages, start, outputs.report)
 }
 
@@ -250,7 +257,7 @@ fn left_out(
     let (steps, search) = (steps(&Known::of(layout, info), options, Some(outputs)), tracker.effort());
     let mut left_out = stages::left_out(steps.into_iter().filter(|step| step.stage != WHOLE_FRAMES));
     left_out.push(format!(
-        "{WHOLE_FRAMES}: in all but {} of {} frames only where the last one tells, {:.2} % of the samples",
+        "{WHOLE_FRAMES}: in all but {} of {} frames only where the last one says, {:.2} % of the samples",
         search.whole_searches,
         search.frames,
         100.0 * search.share_searched

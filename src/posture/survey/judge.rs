@@ -124,7 +124,7 @@ impl Surveyor<'_> {
 
 /// Takes a frame into account.
 fn update(hypothesis: &mut Hypothesis, scene: &Scene<'_>) {
-    // What is seen of it tells which way it bends, and how long segments are, though something be hidden.
+    // What is seen of it shows which way it bends, and how long segments are, though something be hidden.
     let seen: Naming = hypothesis.naming.iter().map(|spot| spot.filter(|&spot| scene.points[spot].is_some())).collect();
     let cost = scene.cost(&seen);
     if seen == hypothesis.naming {

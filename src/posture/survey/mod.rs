@@ -2,7 +2,7 @@
 //!
 //! Frames from the video's start go in, one after another, until every needed marker has its name; where each was first
 //! seen, its look and the chroma's siting come out. Spots of the markers' colours are followed over these frames
-//! without names, so that what a later frame tells (a finger that was straight bends) names them back to the first one.
+//! without names, so that what a later frame shows (a finger that was straight bends) names them back to the first one.
 //!
 //! A name is given by colour, by the order along the finger, by which way flexion turns, by lengths that must not
 //! change, and by `[start]`, which goes before all. It is given only where the best naming is better by far than any
@@ -54,7 +54,7 @@ pub(crate) struct Start {
     pub(crate) as_blot: Option<Look>,
 }
 
-/// What the first frames told.
+/// What the first frames showed.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Survey {
     /// For each marker of the layout; none for those not needed and those never seen.
@@ -246,7 +246,7 @@ impl<'a> Surveyor<'a> {
         self.progress()
     }
 
-    /// What the frames told.
+    /// What the frames showed.
     ///
     /// # Errors
     /// Where markers have no names.

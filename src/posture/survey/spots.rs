@@ -291,8 +291,8 @@ impl Spots {
     /// Where chroma samples lie: as the spots tell, else as the header does, else where most encoders put them.
     pub(super) fn siting(&self, header: Option<Siting>) -> Siting {
         let evidence = self.evidence.as_ref();
-        let told = evidence.and_then(SitingEvidence::told).or(header);
-        told.or(evidence.map(SitingEvidence::assumed)).unwrap_or(Siting { dx_px: 0.0, dy_px: 0.0 })
+        let measured = evidence.and_then(SitingEvidence::siting).or(header);
+        measured.or(evidence.map(SitingEvidence::assumed)).unwrap_or(Siting { dx_px: 0.0, dy_px: 0.0 })
     }
 }
 

@@ -1,6 +1,6 @@
 //! Markers on no segment: any single thing of a colour, a ball as well as a disc.
 //!
-//! Where no disc can be fitted (texture, motion blur, fingers about it), the blob of its colour tells the place, with a
+//! Where no disc can be fitted (texture, motion blur, fingers about it), the blob of its colour gives the place, with a
 //! standard error to match. Angles never come from such places, for no segment has such a marker.
 
 use crate::posture::marker::fit::Fit;

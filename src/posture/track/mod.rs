@@ -4,7 +4,7 @@
 //! marker is looked for where it should be by its motion; if it is not there, about that place; if it stays away, where
 //! the segments that it belongs to allow it, and at last in the whole frame, at growing intervals. It is taken back
 //! only where size, colour, the lengths of its segments and the order along the finger agree and nothing else fits
-//! about as well; till then it is lost. Markers that can't be told apart for a while are both lost.
+//! about as well; till then it is lost. Markers that can't be distinguished for a while are both lost.
 
 mod agree;
 mod loose;
@@ -229,7 +229,7 @@ impl Tracker {
         }
     }
 
-    /// Where most markers vanish in one frame, the others may be taken for one another: all are to be named anew.
+    /// Where most markers vanish in one frame, the others may be taken for one another: all are to be named again.
     fn doubt_a_cut(&mut self) {
         let before = self.targets.iter().filter(|target| target.last.is_some() && target.absent == 0);
         let (seen, gone) =

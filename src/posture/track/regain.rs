@@ -250,7 +250,7 @@ impl Tracker {
         self.lost.points = points;
     }
 
-    /// Drops names that the frame contradicts: where naming all markers anew fits by far better than the names given.
+    /// Drops names that the frame contradicts: where naming all markers again fits by far better than the names given.
     fn doubt(&mut self, points: &[Option<Point>], choices: &[Vec<(usize, f64)>], lengths: &[Option<f64>], given: f64) {
         let free: Vec<Vec<(usize, f64)>> = (self.chain.links.iter().zip(choices))
             .map(|(link, choices)| {

@@ -7,7 +7,7 @@ use crate::log::piles;
 /// that has a single value.
 pub(super) fn warnings(source: &Source, keep_faults: bool) -> Vec<String> {
     let file = source.path.display();
-    let mut told = Vec::new();
+    let mut warnings = Vec::new();
     for (name, values) in source.inputs.iter().zip(&source.x) {
         let seen: Vec<f64> = values
             .iter()
@@ -17,7 +17,7 @@ pub(super) fn warnings(source: &Source, keep_faults: bool) -> Vec<String> {
             .collect();
         let Some(&first) = seen.first() else { continue };
         if seen.len() > 1 && seen.iter().all(|&value| value == first) {
-            told.push(format!(
+            warnings.push(format!(
                 "{file}: {name} is {} V in all {} rows: dead or not connected",
                 short(first),
                 seen.len()
@@ -26,14 +26,14 @@ pub(super) fn warnings(source: &Source, keep_faults: bool) -> Vec<String> {
         }
         for (pile, which) in piles(&seen).into_iter().zip(["least", "greatest"]) {
             let Some((value, count)) = pile else { continue };
-            told.push(format!(
+            warnings.push(format!(
                 "{file}: {name} stays at exactly {} V, its {which} value, in {count} of {} rows: saturated?",
                 short(value),
                 seen.len()
             ));
         }
     }
-    told
+    warnings
 }
 
 /// A number without the hundreds of zeros of one near 1e-300.

@@ -6,7 +6,7 @@
 //! ([`read_inputs`]); rows of a stream, one at a time ([`RowStream`]).
 //!
 //! Conventions. A file is a recording; it is several where `session`, `subject` or `trajectory` change or `time_s` goes
-//! back. Where `session` or `subject` is told neither by the file nor with it, the file stands for it. A row with an
+//! back. Where `session` or `subject` is given neither by the file nor with it, the file stands for it. A row with an
 //! empty cell that is needed is left out and counted; `nan`, `inf` or text there is an error, or with `drop_invalid`
 //! left out and counted. A row whose `sensor_status` (as align writes it) says that a photodiode in use is saturated or
 //! without ambient light is left out and counted, unless faults are kept. A row that is left out for several reasons is
@@ -301,6 +301,6 @@ fn why_none(files: &[FileRows]) -> String {
         (sum(|f| f.invalid), "have a cell that is no finite number"),
         (sum(|f| f.faults), "are saturated or without ambient light (sensor_status; --keep-faults keeps them)"),
     ];
-    let told: Vec<String> = reasons.iter().filter(|(n, _)| *n > 0).map(|(n, why)| format!("{n} {why}")).collect();
-    format!("{names}: of {all} rows {}", told.join(", "))
+    let counts: Vec<String> = reasons.iter().filter(|(n, _)| *n > 0).map(|(n, why)| format!("{n} {why}")).collect();
+    format!("{names}: of {all} rows {}", counts.join(", "))
 }

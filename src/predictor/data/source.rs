@@ -99,7 +99,7 @@ impl Source {
     fn of_log(path: &Path, wanted: &Wanted) -> Result<Self, DataError> {
         let LitRows { samples, notes, .. } = wanted.rows.log.lit_rows(path)?;
         let placed = |notes: &[String]| notes.iter().map(|note| format!("{}: {note}", path.display())).collect();
-        let (warnings, notes) = (placed(&notes), placed(&samples.notes));
+        let (warnings, notes) = (placed(&samples.warnings), placed(&[&notes[..], &samples.notes].concat()));
         let channels = || samples.photodiodes.iter().chain(&samples.forces);
         let names: Vec<String> = channels().map(|channel| channel.name.clone()).collect();
         let by_name: HashMap<&str, &Channel> = channels().map(|channel| (channel.name.as_str(), channel)).collect();
@@ -277,11 +277,11 @@ pub(super) fn agree(sources: &[Source]) -> Result<(), DataError> {
         let lacking: Vec<&str> = b.inputs.iter().filter(|p| !a.inputs.contains(p)).map(String::as_str).collect();
         (!lacking.is_empty()).then(|| format!("{} lacks {}", a.path.display(), lacking.join(", ")))
     };
-    let told: Vec<String> = [lacks(other, first), lacks(first, other)].into_iter().flatten().collect();
+    let differences: Vec<String> = [lacks(other, first), lacks(first, other)].into_iter().flatten().collect();
     let what = format!(
         "has other photodiodes than {} ({}); choose those that all files have, or leave a file out",
         first.path.display(),
-        told.join("; ")
+        differences.join("; ")
     );
     Err(DataError::Columns { path: other.path.clone(), what })
 }

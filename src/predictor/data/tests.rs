@@ -41,7 +41,7 @@ fn read(text: impl AsRef<[u8]>, wanted: &Wanted) -> Result<Read, DataError> {
     read_data(&[folder.file("a.csv", text)], wanted)
 }
 
-fn told(text: impl AsRef<[u8]>, wanted: &Wanted) -> String {
+fn refusal(text: impl AsRef<[u8]>, wanted: &Wanted) -> String {
     read(text, wanted).unwrap_err().to_string()
 }
 
@@ -79,7 +79,7 @@ fn photodiodes_may_be_chosen_and_time_may_lack() {
 fn rows_are_left_out_and_counted_once() {
     let text = "P1,P2,J2_deg,sensor_status\n1,2,3,ok\n,2,3,ok\n1,2,,\nnan,2,3,ok\n1,inf,,ok\n1,2,x,saturated: \
                 P2\n1,2,4,no ambient: P9\n2,1,5,ok\n";
-    let first = told(text, &angle());
+    let first = refusal(text, &angle());
     assert!(
         first.contains("a.csv:5: column `P1`: `NaN` is no finite number") && first.contains("--drop-invalid"),
         "{first}"
@@ -95,24 +95,24 @@ fn rows_are_left_out_and_counted_once() {
 
 #[test]
 fn the_first_wrong_cell_by_line_is_told() {
-    let said = told("P1,J2_deg,time_s\n1,2,3\n2,3,soon\nx,3,4\n", &angle());
+    let said = refusal("P1,J2_deg,time_s\n1,2,3\n2,3,soon\nx,3,4\n", &angle());
     assert!(said.contains("a.csv:3: column `time_s`: `soon`"), "{said}");
     for wrong in ["1e999", "-inf", "NaN", "1 V", "0x1", "1,5e", "\"1,5\""] {
-        let said = told(format!("P1,J2_deg\n1,2\n3,{wrong}\n").replace("1,5e", "\"1.5e\""), &angle());
+        let said = refusal(format!("P1,J2_deg\n1,2\n3,{wrong}\n").replace("1,5e", "\"1.5e\""), &angle());
         assert!(said.contains("a.csv:3: column `J2_deg`"), "{said}");
     }
 }
 
 #[test]
 fn missing_columns_are_told_with_the_nearest_and_all() {
-    let said = told("time_s,P1,fz_n,Fx_N,Fy_N\n0,1,2,3,4\n", &forces());
+    let said = refusal("time_s,P1,fz_n,Fx_N,Fy_N\n0,1,2,3,4\n", &forces());
     assert!(said.contains("a.csv: has no column `Fz_N`; is it `fz_n`? Its columns are time_s, P1, fz_n"), "{said}");
-    let said = told("time_s,ch1,J2_deg\n0,1,2\n", &angle());
+    let said = refusal("time_s,ch1,J2_deg\n0,1,2\n", &angle());
     assert!(said.contains("has no photodiode `P1`") && said.contains("time_s, ch1, J2_deg"), "{said}");
     let wanted = Wanted { inputs: Some(vec!["P8".into()]), ..angle() };
-    assert!(told("P1,J2_deg\n0,1\n", &wanted).contains("no column `P8`"));
-    assert!(told("time_s;P1;J2_deg\n0;1;2\n", &angle()).contains("cells are separated by commas"));
-    assert!(told("P1,P1,J2_deg\n0,1,2\n", &angle()).contains("two columns are named `P1`"));
+    assert!(refusal("P1,J2_deg\n0,1\n", &wanted).contains("no column `P8`"));
+    assert!(refusal("time_s;P1;J2_deg\n0;1;2\n", &angle()).contains("cells are separated by commas"));
+    assert!(refusal("P1,P1,J2_deg\n0,1,2\n", &angle()).contains("two columns are named `P1`"));
 }
 
 #[test]
@@ -124,10 +124,10 @@ fn empty_and_damaged_files_are_told() {
         ("P1,J2_deg\n1,\n,2\n", "of 2 rows 2 have an empty cell"),
         ("P1,J2_deg\n1,2\n1\n", "line 3 has 1 cells and the first line 2"),
     ] {
-        assert!(told(text, &angle()).contains(words), "{text:?}: {}", told(text, &angle()));
+        assert!(refusal(text, &angle()).contains(words), "{text:?}: {}", refusal(text, &angle()));
     }
     let wanted = Wanted { rows: dropping(), ..angle() };
-    let said = told("P1,J2_deg,sensor_status\nnan,1,\n2,2,saturated: P1\n", &wanted);
+    let said = refusal("P1,J2_deg,sensor_status\nnan,1,\n2,2,saturated: P1\n", &wanted);
     assert!(said.contains("1 have a cell that is no finite number") && said.contains("1 are saturated"), "{said}");
     assert!(read_data(&[], &angle()).unwrap_err().to_string().contains("no DATA"));
     assert!(read_data(&["nothing.csv".into()], &angle()).unwrap_err().to_string().contains("nothing.csv"));
@@ -270,7 +270,7 @@ fn a_modulated_log_is_what_align_makes_of_it() {
 }
 
 #[test]
-fn dead_and_saturated_photodiodes_are_told() {
+fn dead_and_saturated_photodiodes_are_warned_of() {
     let mut text = "P1,P2,P3,J2_deg\n".to_owned();
     for k in 0..600 {
         let wave = 2.5 + 3.0 * (k as f64 * 0.05).sin();
@@ -283,7 +283,7 @@ fn dead_and_saturated_photodiodes_are_told() {
 }
 
 #[test]
-fn an_unknown_status_is_told_and_used() {
+fn an_unknown_status_is_warned_of_and_used() {
     let read = read("P1,J2_deg,sensor_status\n1,2,loose\n2,3,loose\n3,4,ok\n", &angle()).unwrap();
     assert_eq!(counts(&read)[1], 3);
     assert!(read.warnings.len() == 1 && read.warnings[0].contains("in 2 rows, first `loose`"), "{:?}", read.warnings);
@@ -412,12 +412,12 @@ fn a_new_recording_of_a_stream_forgets_the_times_before() {
 #[test]
 fn columns_named_twice_are_told_with_where() {
     let twice = Wanted { inputs: Some(vec!["P1".into(), "P1".into()]), ..angle() };
-    assert!(told("P1,J2_deg\n1,2\n", &twice).contains("P1 is named twice among the inputs"));
+    assert!(refusal("P1,J2_deg\n1,2\n", &twice).contains("P1 is named twice among the inputs"));
     let time = Wanted { inputs: Some(vec!["time_s".into(), "P1".into()]), ..angle() };
-    assert!(told("time_s,P1,J2_deg\n1,2,3\n", &time).contains("time_s is when a row was measured"));
+    assert!(refusal("time_s,P1,J2_deg\n1,2,3\n", &time).contains("time_s is when a row was measured"));
     let both = Wanted { inputs: Some(vec!["P1".into(), "J2_deg".into()]), ..angle() };
-    assert!(told("P1,J2_deg\n1,2\n", &both).contains("is both an input and a target"));
-    let said = told("0.1,0.2\n1,2\n", &Wanted { inputs: Some(vec!["P1".into()]), ..angle() });
+    assert!(refusal("P1,J2_deg\n1,2\n", &both).contains("is both an input and a target"));
+    let said = refusal("0.1,0.2\n1,2\n", &Wanted { inputs: Some(vec!["P1".into()]), ..angle() });
     assert!(said.contains("holds numbers where the names"), "{said}");
     let dead = read("P1,J2_deg\n1e-300,2\n1e-300,3\n", &angle()).unwrap();
     assert!(dead.warnings[0].contains("P1 is 1e-300 V in all 2 rows"), "{:?}", dead.warnings);

@@ -40,9 +40,9 @@ pub(in crate::predictor) fn draw_modes(modes: &Modes<'_>, png: &Path, svg: &Path
     let targets: Vec<String> = modes.targets.iter().map(short).collect();
     let upper = (0..count).map(|k| {
         let value = modes.values[k];
-        let told =
+        let sigma =
             if value.is_finite() { format!("= {}{unit}", three_digits(value)) } else { "is not known".to_owned() };
-        let title = format!("mode {}: \u{3c3} {told}", k + 1);
+        let title = format!("mode {}: \u{3c3} {sigma}", k + 1);
         panel(title, "part of the outputs", &targets, modes.of_targets.column(k).iter().copied(), [0, k])
     });
     let lower = (0..count).map(|k| {

@@ -1,7 +1,7 @@
 //! A row of voltages in, forces and angle out, as a recording or a live sensor gives one row after the other.
 //!
 //! With a model of force and one of posture the two are gated as in equations 9 and 16: while the finger presses (N =
-//! -Fz at F_min or more) the angle is theta_touch, else the posture model tells it. A row that lacks a voltage that a
+//! -Fz at F_min or more) the angle is theta_touch, else the posture model gives it. A row that lacks a voltage that a
 //! model reads has no prediction of that model; without an Fz there is no telling touch from bending, and no angle.
 //! Where a recording begins, what was remembered of the one before (lags, the gate's state) is forgotten.
 

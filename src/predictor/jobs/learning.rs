@@ -26,20 +26,24 @@ pub(in crate::predictor) struct Points {
 }
 
 /// Fits the recipe to each amount.
-pub(in crate::predictor) fn points(recipe: &Recipe, train: &Dataset, told: &Dataset) -> Result<Points, PredictorError> {
+pub(in crate::predictor) fn points(
+    recipe: &Recipe,
+    train: &Dataset,
+    validate: &Dataset,
+) -> Result<Points, PredictorError> {
     let lags = recipe.lags(train)?;
-    let (train, told) = (with_lags(train, lags.as_ref())?, with_lags(told, lags.as_ref())?);
+    let (train, validate) = (with_lags(train, lags.as_ref())?, with_lags(validate, lags.as_ref())?);
     let cone = recipe.cone(train.targets())?;
     let fit = |data: &Dataset| recipe.fit(data, None).map(|fitted| fitted.model);
     let tell = |model: &Model, data: &Dataset| predict(model, cone.as_ref(), data.x().view());
     Ok(Points {
         targets: train.targets().to_vec(),
-        by_share: learn_by_share(&train, &told, &SHARES, fit, tell)?,
-        by_recordings: learn_by_recordings(&train, &told, fit, tell)?,
+        by_share: learn_by_share(&train, &validate, &SHARES, fit, tell)?,
+        by_recordings: learn_by_recordings(&train, &validate, fit, tell)?,
     })
 }
 
-/// Writes the table and the picture beside it; tells where that will stand.
+/// Writes the table and the picture beside it; returns where that will be.
 pub(in crate::predictor) fn write(
     points: &Points,
     table: &Path,

@@ -37,7 +37,7 @@ pub struct PredictFigures {
     pub data: PathBuf,
     /// The table of predictions; none for a stream.
     pub out: Option<PathBuf>,
-    /// What is told.
+    /// What is predicted.
     pub columns: Vec<String>,
     /// Rows.
     pub rows: u64,
@@ -133,7 +133,7 @@ pub fn predict(
 #[must_use]
 pub fn predict_plan(models: usize, options: &PredictOptions) -> Vec<Step> {
     let gated = models > 1;
-    let why = if gated { "where one model tells forces and one posture" } else { "one model" };
+    let why = if gated { "where one model predicts forces and one posture" } else { "one model" };
     let intervals = if options.intervals { "of each prediction" } else { "without --intervals" };
     vec![
         Step::new("read", true, "a recording".to_owned()),

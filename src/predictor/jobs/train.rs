@@ -64,7 +64,7 @@ pub struct TrainFigures {
     pub model: PathBuf,
     /// What it reads.
     pub inputs: Vec<String>,
-    /// What it tells.
+    /// What it reports.
     pub targets: Vec<String>,
     /// What was fitted.
     pub recipe: Recipe,
@@ -108,7 +108,7 @@ pub fn train(
     let start = Instant::now();
     let stages = Stages::default();
     if outputs.learning_curve.is_some() && inputs.validate.is_empty() {
-        let what = "a learning curve tells errors on recordings that are not trained on; name some with --validate";
+        let what = "a learning curve shows errors on recordings that are not trained on; name some with --validate";
         return Err(PredictorError::Request(what.to_owned()));
     }
     let given = [&inputs.data, &inputs.validate, &inputs.stop_on].into_iter().flatten().map(|file| &file.path);
@@ -121,10 +121,10 @@ pub fn train(
     let validate = stages.time("read", || others(&inputs.validate))?;
     let stop_on = stages.time("read", || others(&inputs.stop_on))?;
     watch.go_on()?;
-    if let Some((told, early)) = validate.as_ref().zip(stop_on.as_ref()) {
+    if let Some((held, early)) = validate.as_ref().zip(stop_on.as_ref()) {
         let hashes = recording_hashes(&early.data);
         let both =
-            told.data.recordings().iter().zip(recording_hashes(&told.data)).find(|(_, hash)| hashes.contains(hash));
+            held.data.recordings().iter().zip(recording_hashes(&held.data)).find(|(_, hash)| hashes.contains(hash));
         if let Some((recording, _)) = both {
             return Err(PredictorError::Request(format!(
                 "{}: training can't stop on what is reported (--stop-on and --validate), its errors would flatter; \
@@ -138,7 +138,7 @@ pub fn train(
     let recipe = &options.recipe;
     let early = stop_on.as_ref().map(|read| &read.data);
     let predictor = stages.time("fit", || Predictor::fit(&read.data, early, recipe))?;
-    // Of the files that were to be trained on: what a model has seen is told with it.
+    // Of the files that were to be trained on: what a model has seen is kept with it.
     let predictor = predictor.without(read.failed.iter().map(|file| file.name.clone()).collect());
     watch.go_on()?;
     let training = stages.time("score", || merit(&predictor, &read.data))?;
@@ -146,19 +146,19 @@ pub fn train(
     warnings.extend(validate.iter().chain(&stop_on).flat_map(|read| read.warnings.clone()));
     warnings.extend(twice(&predictor));
     warnings.extend(fit_warnings(&predictor.training().report).iter().cloned());
-    if let Some(told) = &validate {
-        warnings.extend(crate::predictor::seen_in_training(&predictor, &told.data));
+    if let Some(held) = &validate {
+        warnings.extend(crate::predictor::seen_in_training(&predictor, &held.data));
     }
     let validation =
         validate.as_ref().map(|read| stages.time("score", || merit(&predictor, &read.data))).transpose()?;
     warnings.extend(validation.iter().chain([&training]).filter_map(Merit::warning));
     let without = match &validate {
-        Some(told) => stages.time("fit without options", || without(&predictor, &read.data, early, &told.data))?,
+        Some(held) => stages.time("fit without options", || without(&predictor, &read.data, early, &held.data))?,
         None => Vec::new(),
     };
     watch.go_on()?;
     let intervals = match &validate {
-        Some(told) => intervals(&predictor, &told.data, options.level, &mut warnings)?,
+        Some(held) => intervals(&predictor, &held.data, options.level, &mut warnings)?,
         None => None,
     };
     let predictor = predictor.with_intervals(intervals);
@@ -168,14 +168,14 @@ pub fn train(
     let written = stages.time("write", || std::fs::write(&at, predictor.to_json()));
     written.map_err(|why| WriteError::File { path: out.to_owned(), why: why.to_string() })?;
     let mut pictures = Vec::new();
-    if let Some((curve, told)) = outputs.learning_curve.as_ref().zip(validate.as_ref()) {
-        let points = stages.time("learning curve", || learning::points(recipe, &read.data, &told.data))?;
+    if let Some((curve, held)) = outputs.learning_curve.as_ref().zip(validate.as_ref()) {
+        let points = stages.time("learning curve", || learning::points(recipe, &read.data, &held.data))?;
         pictures.push(stages.time("write", || learning::write(&points, curve, &mut places))?);
     }
     if let Some(path) = &outputs.merit {
-        let mut told = vec![MeritRows::new("training", &training)];
-        told.extend(validation.iter().map(|merit| MeritRows::new("validation", merit)));
-        merit_table(&places.place(path)?, path, &told)?;
+        let mut merits = vec![MeritRows::new("training", &training)];
+        merits.extend(validation.iter().map(|merit| MeritRows::new("validation", merit)));
+        merit_table(&places.place(path)?, path, &merits)?;
     }
     watch.go_on()?;
     places.commit()?;
@@ -209,17 +209,17 @@ fn without(
     predictor: &Predictor,
     data: &Dataset,
     early: Option<&Dataset>,
-    told: &Dataset,
+    held: &Dataset,
 ) -> Result<Vec<Without>, PredictorError> {
     let recipe = &predictor.training().recipe;
     let mut all = Vec::new();
     if predictor.cone().is_some() {
-        let seen = with_lags(told, predictor.lags())?;
+        let seen = with_lags(held, predictor.lags())?;
         all.push(Without { without: "the cone of friction", validation: merit_without_cone(predictor, &seen) });
     }
     if !recipe.lags_s.is_empty() {
         let plain = Predictor::fit(data, early, &Recipe { lags_s: Vec::new(), ..recipe.clone() })?;
-        all.push(Without { without: "lags", validation: merit(&plain, told)? });
+        all.push(Without { without: "lags", validation: merit(&plain, held)? });
     }
     Ok(all)
 }
@@ -268,20 +268,20 @@ pub fn train_plan(inputs: &TrainInputs, recipe: &Recipe, curve: bool) -> Vec<Ste
         (true, true) => "on a fifth of the rows of each recording, which is set aside",
         (true, false) => "on the recordings given",
     };
-    let told = |yes: bool, why: &'static str, why_not: &'static str| (if yes { why } else { why_not }).to_owned();
-    let reported = |yes| told(yes, "on the recordings to validate on", "no recordings to validate on");
+    let reason = |yes: bool, why: &'static str, why_not: &'static str| (if yes { why } else { why_not }).to_owned();
+    let reported = |yes| reason(yes, "on the recordings to validate on", "no recordings to validate on");
     vec![
         Step::new("read", true, format!("{} files", inputs.data.len() + inputs.validate.len() + inputs.stop_on.len())),
-        Step::new("lags", !recipe.lags_s.is_empty(), told(!recipe.lags_s.is_empty(), "asked for", "none asked for")),
+        Step::new("lags", !recipe.lags_s.is_empty(), reason(!recipe.lags_s.is_empty(), "asked for", "none asked for")),
         Step::new("fit", true, format!("{:?}", recipe.kind)),
         Step::new("early stopping", network, stop.to_owned()),
         Step::new(
             "cone of friction",
             recipe.friction_mu.is_some(),
-            told(recipe.friction_mu.is_some(), "asked for", "no coefficient given"),
+            reason(recipe.friction_mu.is_some(), "asked for", "no coefficient given"),
         ),
         Step::new("validation", validated, reported(validated)),
         Step::new("prediction intervals", validated, reported(validated)),
-        Step::new("learning curve", curve, told(curve, "asked for", "no --learning-curve")),
+        Step::new("learning curve", curve, reason(curve, "asked for", "no --learning-curve")),
     ]
 }

@@ -1,4 +1,4 @@
-//! Whether a trajectory can be made as wanted; all faults are told at once, by the command line's names.
+//! Whether a trajectory can be made as requested; all faults are reported at once, by the command line's names.
 
 use super::{Kind, TrajectoryOptions};
 

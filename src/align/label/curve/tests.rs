@@ -30,7 +30,7 @@ fn a_polynomial_goes_as_far_as_its_neighbours_reach() {
     let mut pair = curve(&[0.0, 0.03, 0.5], line, 0.0);
     let at = pair.at(0.01).unwrap();
     assert!((at.deg - line(0.01)).abs() <= 1e-13 && (at.rate_deg_s - 20.0).abs() <= 1e-11);
-    assert!(at.variance_deg2.is_nan(), "nothing tells how the angle bends");
+    assert!(at.variance_deg2.is_nan(), "nothing shows how the angle bends");
 }
 
 #[test]
@@ -55,16 +55,19 @@ fn the_error_of_the_polynomial_is_told() {
             times.drain(0..10);
         }
         let mut curve = curve(&times, truth, 1e-9);
-        let (mut worst, mut told): (f64, f64) = (0.0, 0.0);
+        let (mut worst, mut reported): (f64, f64) = (0.0, 0.0);
         for k in 0..100 {
             let t = (f64::from(from) + f64::from(k) / 100.0) / rate_hz;
             let at = curve.at(t).unwrap();
             let error = (at.deg - truth(t)).abs();
             worst = worst.max(error);
-            told = told.max(at.variance_deg2.sqrt());
+            reported = reported.max(at.variance_deg2.sqrt());
         }
-        // Measured 0.0015 told as 0.0016, 0.0079 as 0.0049, 0.18 as 0.16.
-        assert!(worst <= most && told >= 0.5 * worst && told <= 3.0 * worst, "{name}: {worst} told as {told}");
+        // Measured 0.0015 reported as 0.0016, 0.0079 as 0.0049, 0.18 as 0.16.
+        assert!(
+            worst <= most && reported >= 0.5 * worst && reported <= 3.0 * worst,
+            "{name}: {worst} reported as {reported}"
+        );
     }
 }
 

@@ -1,6 +1,6 @@
 //! How much chance explains: channels of the same kind that have nothing to do with the video.
 //!
-//! Two kinds: the channels with the phases of their spectrum drawn anew, the same for all of them (J. Theiler et al.
+//! Two kinds: the channels with the phases of their spectrum redrawn, the same for all of them (J. Theiler et al.
 //! 1992, doi:10.1016/0167-2789(92)90102-S), and the channels cut into pieces that are put together in another order,
 //! each of them backwards, which keeps bursts and rests. The greatest gains over all lags and models follow Gumbel's
 //! distribution.
@@ -20,7 +20,7 @@ const PLAIN: f64 = 0.1;
 /// Pieces that signals are cut into.
 const PIECES: usize = 9;
 
-/// Makes signals anew.
+/// Makes surrogate signals.
 type Draw = fn(&[Vec<f64>], &mut ChaCha8Rng) -> Vec<Vec<f64>>;
 
 /// How probably chance gains at least `gain` somewhere; the greater of what the two kinds of channels tell. `greatest`

@@ -8,7 +8,7 @@
 //! channels' principal components which they explain best ([`line`]); drift over 30 s
 //! and slower is taken off. What counts is the share that is left over and how many independent samples there are
 //! ([`judge`], [`memory`]). All lags are looked at on a grid, with Fourier transforms; the best peaks closely; chance
-//! by channels of the same kind that were made anew.
+//! by channels of the same kind, made as surrogates.
 //!
 //! What is not determined: a lag of the channels behind the signals. It is part of what is found.
 

@@ -1,6 +1,6 @@
 //! The chunks of an XDF file, put together to streams.
 //!
-//! A file is `XDF:` and chunks: a length (1, 4 or 8 bytes, told by a byte before), a tag of two bytes, the content.
+//! A file is `XDF:` and chunks: a length (1, 4 or 8 bytes, as the byte before says), a tag of two bytes, the content.
 //! Used are stream headers (2), samples (3) and clock offsets (4); all numbers are little-endian. A sample without a
 //! stamp of its own comes one nominal interval after the one before. A file that ends within a chunk (the recorder was
 //! stopped) is read up to there.
@@ -63,7 +63,7 @@ impl<'a> Bytes<'a> {
         Ok(f64::from_le_bytes(self.array()?))
     }
 
-    /// A length of 1, 4 or 8 bytes, told by the byte before it.
+    /// A length of 1, 4 or 8 bytes, as the byte before it says.
     fn length(&mut self) -> Result<usize, Stop> {
         match self.array()? {
             [1] => Ok(usize::from(self.array::<1>()?[0])),

@@ -81,8 +81,8 @@ fn streams_are_chosen_by_name_or_place() {
     let parts = [one(1, "a", 1.0), one(2, "b", 2.0), text.clone()];
     let first = |stream| read_with(&parts, Some(stream)).map(|log| log.photodiodes[0].values[0]);
     assert_eq!((first("a"), first("b"), first("#2")), (Ok(1.0), Ok(2.0), Ok(2.0)));
-    let told = read_with(&parts, None).unwrap_err();
-    assert!(told.contains("more than one stream") && told.contains("`b` (#2, double64, 1 samples)"), "{told}");
+    let error = read_with(&parts, None).unwrap_err();
+    assert!(error.contains("more than one stream") && error.contains("`b` (#2, double64, 1 samples)"), "{error}");
     assert!(first("c").unwrap_err().contains("has no stream `c`"));
     assert!(first("marks").unwrap_err().contains("no numbers"));
     assert_eq!(read_with(&[one(1, "a", 1.0), text.clone()], None).unwrap().time_s, [1.0]);
@@ -138,8 +138,8 @@ fn damaged_recordings_are_told() {
             "sample 1, channel `P1`: is infinite",
         ),
     ] {
-        let told = read_with(&parts, None).unwrap_err();
-        assert!(told.contains(words) && told.contains("log.xdf"), "{told}");
+        let error = read_with(&parts, None).unwrap_err();
+        assert!(error.contains(words) && error.contains("log.xdf"), "{error}");
     }
 }
 

@@ -361,7 +361,7 @@ fn fixed_product(slope: i64, factor: f64) -> i64 {
     (slope as f64 * factor).round() as i64
 }
 
-/// Places between two values that [`between`] tells apart: a thousandth of a pixel moves no value by a level.
+/// Places between two values that [`between`] distinguishes: a thousandth of a pixel moves no value by a level.
 const PHASES: usize = 1024;
 
 static PHASE_WEIGHTS: LazyLock<[f32x4; PHASES]> =

@@ -10,7 +10,7 @@ use super::patch::{Frame, Patch};
 use super::picture::{Levels, RED, TONE, YELLOW};
 use super::refine::{Band, Path, RAYS, SIDE, fitted};
 use super::search::NAIL;
-use super::shape::Shape;
+use super::shape::OutlineShape;
 use crate::photo::outline::{Axis, Outline};
 
 /// Three judges, each trained without a third of the scenes.
@@ -30,7 +30,7 @@ pub(super) struct Candidate {
     /// What the confidence is made from.
     pub(super) figures: [f32; FIGURES],
     nail: Frame,
-    fitted: Shape,
+    fitted: OutlineShape,
     /// Other leads that mean the same.
     support: f32,
     /// A bright reflection lies along its border, which may be the reflection's.
@@ -73,7 +73,7 @@ pub(super) struct Lead {
     /// The nail's frame: origin its centre, up its axis, unit its length.
     pub(super) nail: Frame,
     /// The template there.
-    pub(super) template: Shape,
+    pub(super) template: OutlineShape,
     /// Where it comes from.
     pub(super) origin: Origin,
     /// The template's score.
@@ -82,7 +82,7 @@ pub(super) struct Lead {
 
 impl Lead {
     /// Is it the same nail at the same place, roughly?
-    fn like(&self, nail: &Frame, shape: &Shape) -> bool {
+    fn like(&self, nail: &Frame, shape: &OutlineShape) -> bool {
         let c = nail.source_to_own(self.nail.origin);
         let size = self.nail.unit_px / nail.unit_px;
         let turn = self.nail.up[0] * nail.up[0] + self.nail.up[1] * nail.up[1];
@@ -157,7 +157,7 @@ fn follow(levels: &Levels, lead: &Lead) -> Option<Candidate> {
 
 /// Does anything along the border's sides, just outside or just inside, shine far above the nail's own tone? A streak
 /// of reflected light has an edge on either side, and each may pass for the nail's.
-fn mirrored(patch: &Patch, shape: &Shape, border: &[[f64; 2]]) -> bool {
+fn mirrored(patch: &Patch, shape: &OutlineShape, border: &[[f64; 2]]) -> bool {
     /// ln of the ratio; skin is never that much lighter than the nail in it.
     const SHINE: f32 = 0.45;
     /// Distances looked at, in widths: a streak may be a twentieth of the nail wide and must not slip through.
@@ -175,8 +175,8 @@ fn mirrored(patch: &Patch, shape: &Shape, border: &[[f64; 2]]) -> bool {
 }
 
 /// Overlap (IoU) of the outline with the one found from a template that is a little too large and displaced.
-fn again(levels: &Levels, nail: &Frame, fit: &Shape, outline: &Outline) -> f32 {
-    let mut shape = Shape {
+fn again(levels: &Levels, nail: &Frame, fit: &OutlineShape, outline: &Outline) -> f32 {
+    let mut shape = OutlineShape {
         y: fit.y - 0.05 * fit.length,
         length: 1.1 * fit.length,
         width: 1.12 * fit.width,
@@ -195,12 +195,15 @@ fn again(levels: &Levels, nail: &Frame, fit: &Shape, outline: &Outline) -> f32 {
 }
 
 /// The frame of a nail itself: origin its centre, up its axis, unit its length; and the template there.
-pub(super) fn own_frame(frame: Frame, shape: &Shape) -> (Frame, Shape) {
+pub(super) fn own_frame(frame: Frame, shape: &OutlineShape) -> (Frame, OutlineShape) {
     let (sin, cos) = shape.turn.sin_cos();
     let [ux, uy] = frame.up;
     let up = [ux * cos - uy * sin, ux * sin + uy * cos];
     let own = Frame { origin: frame.to_source([shape.x, shape.y]), up, unit_px: shape.length * frame.unit_px };
-    (own, Shape { x: 0.0, y: 0.0, length: 1.0, width: shape.width / shape.length, turn: 0.0, taper: shape.taper })
+    (
+        own,
+        OutlineShape { x: 0.0, y: 0.0, length: 1.0, width: shape.width / shape.length, turn: 0.0, taper: shape.taper },
+    )
 }
 
 /// Points with outward normals of a closed path that runs counter-clockwise in a frame with y up.
@@ -217,7 +220,7 @@ fn normals(points: &[[f64; 2]]) -> Vec<([f64; 2], [f64; 2])> {
 }
 
 /// The axis along which the outline's middle line runs, started from `turn`, and the template of its box.
-fn box_of(points: &[[f64; 2]], mut turn: f64) -> (f64, Shape) {
+fn box_of(points: &[[f64; 2]], mut turn: f64) -> (f64, OutlineShape) {
     let turned = |turn: f64| -> Vec<[f64; 2]> {
         let (sin, cos) = f64::sin_cos(turn);
         points.iter().map(|p| [p[0] * cos - p[1] * sin, p[0] * sin + p[1] * cos]).collect()
@@ -253,7 +256,7 @@ fn box_of(points: &[[f64; 2]], mut turn: f64) -> (f64, Shape) {
     let (low, high) = span(&q, 1);
     let (sin, cos) = turn.sin_cos();
     let (x, y) = ((left + right) / 2.0, (low + high) / 2.0);
-    let shape = Shape {
+    let shape = OutlineShape {
         x: x * cos + y * sin,
         y: -x * sin + y * cos,
         length: high - low,
@@ -271,8 +274,8 @@ fn span(points: &[[f64; 2]], axis: usize) -> (f64, f64) {
 #[allow(clippy::too_many_arguments)]
 fn figures(
     patch: &Patch,
-    template: &Shape,
-    fitted: &Shape,
+    template: &OutlineShape,
+    fitted: &OutlineShape,
     first: &Path,
     second: &Path,
     origin: Origin,
@@ -295,7 +298,7 @@ fn figures(
     };
     let (moved, grown) = rms(&first.offset);
     let (again, _) = rms(&second.offset);
-    let flipped = Shape { turn: fitted.turn + std::f64::consts::PI, ..*fitted };
+    let flipped = OutlineShape { turn: fitted.turn + std::f64::consts::PI, ..*fitted };
     let (around, spread) = surroundings(patch, fitted);
     let own = score(patch, fitted, false);
     let before = score(patch, template, false);
@@ -336,7 +339,7 @@ fn figures(
 
 /// Colours of the skin around (on the sides and below), of the nail less the skin, of the far surroundings less the
 /// skin; and how uneven the skin's tone is.
-fn surroundings(patch: &Patch, shape: &Shape) -> ([[f32; 3]; 3], f32) {
+fn surroundings(patch: &Patch, shape: &OutlineShape) -> ([[f32; 3]; 3], f32) {
     let mean = |places: &[(f64, f64)]| {
         let (mut sum, mut square) = ([0.0f32; 3], 0.0f32);
         for &(u, v) in places {

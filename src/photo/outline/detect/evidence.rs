@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use super::net::Net;
 use super::patch::Patch;
-use super::shape::{EXPONENT, Shape};
+use super::shape::{EXPONENT, OutlineShape};
 
 /// Rim points: four arcs of 8.
 const POINTS: usize = 32;
@@ -35,12 +35,12 @@ static SCORER: LazyLock<Net> =
 pub(super) type HasTip = bool;
 
 /// How likely it is that `shape` outlines a nail: an estimate of its IoU with one (worth less upside down).
-pub(super) fn score(patch: &Patch, shape: &Shape, tip: HasTip) -> f32 {
+pub(super) fn score(patch: &Patch, shape: &OutlineShape, tip: HasTip) -> f32 {
     SCORER.answer(&inputs(patch, shape, tip))
 }
 
 /// The scorer's inputs.
-pub(super) fn inputs(patch: &Patch, shape: &Shape, tip: HasTip) -> [f32; INPUTS] {
+pub(super) fn inputs(patch: &Patch, shape: &OutlineShape, tip: HasTip) -> [f32; INPUTS] {
     let mut ring = [[[0.0f32; REACH.len()]; POINTS]; 3];
     let [x, y, length, width, taper] = [shape.x, shape.y, shape.length, shape.width, shape.taper].map(|v| v as f32);
     let half = 0.25 * (length + width);

@@ -11,7 +11,7 @@ use nalgebra::{Matrix6, Vector6};
 use super::net::Net;
 use super::patch::Frame;
 use super::picture::{Cell, Levels};
-use super::shape::Shape;
+use super::shape::OutlineShape;
 
 /// Rays around the rim.
 pub(super) const RAYS: usize = 64;
@@ -59,7 +59,7 @@ pub(super) struct Path {
 
 impl Band {
     /// The band around a template.
-    pub(super) fn around(levels: &Levels, frame: &Frame, shape: &Shape) -> Self {
+    pub(super) fn around(levels: &Levels, frame: &Frame, shape: &OutlineShape) -> Self {
         let half = 0.25 * (shape.length + shape.width);
         let at = |k: f64| {
             let [u, v] = shape.rim(k / RAYS as f64 * std::f64::consts::TAU);
@@ -154,7 +154,7 @@ impl Band {
 }
 
 /// Moves, turns and resizes `shape` towards a path found around it, each ray as far as it is trusted.
-pub(super) fn fitted(shape: &Shape, band: &Band, path: &Path) -> Shape {
+pub(super) fn fitted(shape: &OutlineShape, band: &Band, path: &Path) -> OutlineShape {
     let mut normal = Matrix6::<f64>::zeros();
     let mut right = Vector6::<f64>::zeros();
     let (sin, cos) = shape.turn.sin_cos();
@@ -175,7 +175,7 @@ pub(super) fn fitted(shape: &Shape, band: &Band, path: &Path) -> Shape {
         normal[(i, i)] += if i == 5 { 4.0 * hold } else { hold * if i < 2 { 0.2 } else { 0.5 } };
     }
     let Some(step) = normal.cholesky().map(|c| c.solve(&right)) else { return *shape };
-    Shape {
+    OutlineShape {
         x: shape.x + step[0] * cos + step[1] * sin,
         y: shape.y - step[0] * sin + step[1] * cos,
         width: shape.width * (1.0 + step[2].clamp(-0.3, 0.3)),

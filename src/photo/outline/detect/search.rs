@@ -3,7 +3,7 @@
 use super::evidence::{HasTip, score};
 use super::patch::{Extent, Frame, Patch};
 use super::picture::Levels;
-use super::shape::Shape;
+use super::shape::OutlineShape;
 
 /// What a patch in a finger's frame covers (unit: the finger's width, origin: its apex).
 pub(super) const FINGER: Extent = Extent { x: [-0.8, 0.8], y: [-1.6, 0.35], per_unit: 40.0 };
@@ -14,17 +14,17 @@ pub(super) const NAIL: Extent = Extent { x: [-1.1, 1.1], y: [-1.05, 1.05], per_u
 const COARSE_PX: usize = 112;
 
 /// A template and its score.
-pub(super) type Scored = (Shape, f32);
+pub(super) type Scored = (OutlineShape, f32);
 
 /// Templates tried in a finger's frame.
-fn finger_grid() -> impl Iterator<Item = Shape> {
+fn finger_grid() -> impl Iterator<Item = OutlineShape> {
     let all = |turn| [0.52, 0.65, 0.82].map(|width| (turn, width));
     [-0.3, 0.0, 0.3].into_iter().flat_map(all).flat_map(|(turn, width)| {
         [0.85, 1.25].into_iter().flat_map(move |aspect| {
             [-0.02, 0.1, 0.24].into_iter().flat_map(move |gap| {
                 [-0.07, 0.07].into_iter().map(move |x| {
                     let length = width * aspect;
-                    Shape { x, y: -gap - length / 2.0, length, width, turn, taper: 0.04 }
+                    OutlineShape { x, y: -gap - length / 2.0, length, width, turn, taper: 0.04 }
                 })
             })
         })
@@ -59,7 +59,7 @@ pub(super) fn anywhere(levels: &Levels, most: usize) -> (Patch, Vec<Scored>) {
                     let mut x = -wide + 0.42 * width;
                     while x <= wide - 0.42 * width {
                         let value = closed_edge(&patch, [x as f32, y as f32], &rim);
-                        all.push((Shape { x, y, length, width, turn, taper: 0.03 }, value));
+                        all.push((OutlineShape { x, y, length, width, turn, taper: 0.03 }, value));
                         x += stride;
                     }
                     y += stride;
@@ -75,7 +75,7 @@ pub(super) fn anywhere(levels: &Levels, most: usize) -> (Patch, Vec<Scored>) {
     }
     let both: Vec<Scored> = all
         .iter()
-        .flat_map(|(s, _)| [*s, Shape { turn: s.turn + std::f64::consts::PI, ..*s }])
+        .flat_map(|(s, _)| [*s, OutlineShape { turn: s.turn + std::f64::consts::PI, ..*s }])
         .map(|s| (s, score(&patch, &s, false)))
         .collect();
     (patch, best_different_scaled(both, most))
@@ -114,7 +114,7 @@ fn closed_edge(patch: &Patch, [x, y]: [f32; 2], rim: &[[[f32; 2]; 2]; 16]) -> f3
 }
 
 /// The best that are not near a better one, which `near` takes second.
-fn best_apart(mut all: Vec<Scored>, most: usize, near: impl Fn(&Shape, &Shape) -> bool) -> Vec<Scored> {
+fn best_apart(mut all: Vec<Scored>, most: usize, near: impl Fn(&OutlineShape, &OutlineShape) -> bool) -> Vec<Scored> {
     all.sort_by(|a, b| b.1.total_cmp(&a.1));
     let mut kept: Vec<Scored> = Vec::new();
     for (s, value) in all {

@@ -8,7 +8,7 @@ pub(super) const EXPONENT: f64 = 2.5;
 
 /// A nail in units of its frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Shape {
+pub(super) struct OutlineShape {
     /// Centre.
     pub(super) x: f64,
     /// Centre.
@@ -23,7 +23,7 @@ pub(super) struct Shape {
     pub(super) taper: f64,
 }
 
-impl Shape {
+impl OutlineShape {
     /// Point of the frame at (u, v).
     pub(super) fn point(&self, u: f64, v: f64) -> [f64; 2] {
         let (sin, cos) = self.turn.sin_cos();
@@ -59,7 +59,7 @@ mod tests {
 
     #[test]
     fn places_on_the_template_and_in_its_frame_go_back_and_forth() {
-        let shape = Shape { x: 0.3, y: -0.5, length: 0.9, width: 0.6, turn: 0.4, taper: 0.1 };
+        let shape = OutlineShape { x: 0.3, y: -0.5, length: 0.9, width: 0.6, turn: 0.4, taper: 0.1 };
         for k in 0..40 {
             let [u, v] = shape.rim(f64::from(k) * 0.157);
             let point = shape.point(u, v);
@@ -68,7 +68,7 @@ mod tests {
             assert!(shape.holds(shape.point(0.99 * u, 0.99 * v)) && !shape.holds(shape.point(1.01 * u, 1.01 * v)));
         }
         // Clockwise: the distal end of a template turned by 90 degrees lies to the right.
-        let turned = Shape { turn: std::f64::consts::FRAC_PI_2, x: 0.0, y: 0.0, ..shape };
+        let turned = OutlineShape { turn: std::f64::consts::FRAC_PI_2, x: 0.0, y: 0.0, ..shape };
         let distal = turned.point(0.0, 1.0);
         assert!((distal[0] - 0.45).abs() <= 1e-12 && distal[1].abs() <= 1e-12);
     }

@@ -1,9 +1,9 @@
 //! Patterns on lists of files and on the disk.
 
-use super::walk::Found;
+use super::walk::Matches;
 use super::{Disk, Listed, Pattern};
 
-fn find(pattern: &str, files: &[&str]) -> Found {
+fn find(pattern: &str, files: &[&str]) -> Matches {
     Pattern::parse(pattern).unwrap().find(&Listed::new(files.iter().copied()))
 }
 

@@ -118,7 +118,7 @@ pub(in crate::pipeline) struct Match {
 
 /// What a pattern found.
 #[derive(Debug, Default, PartialEq, Eq)]
-pub(in crate::pipeline) struct Found {
+pub(in crate::pipeline) struct Matches {
     /// By path.
     pub(in crate::pipeline) matches: Vec<Match>,
     /// Names that can be read in two ways.
@@ -137,11 +137,11 @@ struct Walk<'a> {
 
 impl Pattern {
     /// Finds files (or folders).
-    pub(in crate::pipeline) fn find(&self, tree: &dyn Tree) -> Found {
+    pub(in crate::pipeline) fn find(&self, tree: &dyn Tree) -> Matches {
         let mut walk = Walk { pattern: self, tree, found: BTreeMap::new(), deepest: (0, String::new()) };
         walk.step(0, String::new(), &Keys::default());
         let nothing = walk.found.is_empty().then(|| walk.why_nothing());
-        let mut found = Found { nothing, ..Found::default() };
+        let mut found = Matches { nothing, ..Matches::default() };
         for (path, mut keys) in walk.found {
             keys.sort();
             keys.dedup();

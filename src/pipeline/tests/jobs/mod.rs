@@ -129,8 +129,8 @@ fn is_the_same_anywhere(task: &Task, root: &Path) -> (Folder, Made) {
     for (name, bytes) in &first_bytes {
         assert!(*bytes == second_bytes[name], "{name} differs");
         let places = [root, first.path()].map(|path| path.to_string_lossy().into_owned());
-        let tells = |place: &String| bytes.windows(place.len()).any(|part| part == place.as_bytes());
-        assert!(!places.iter().any(tells), "{name} says where it was made");
+        let holds = |place: &String| bytes.windows(place.len()).any(|part| part == place.as_bytes());
+        assert!(!places.iter().any(holds), "{name} says where it was made");
     }
     (first, made)
 }

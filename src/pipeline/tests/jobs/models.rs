@@ -106,8 +106,8 @@ impl Place {
         );
         let raw = [data("data", &["raw/log.csv"]), data("validate", &["raw-again/log.csv"])].concat();
         make("train", "target = 'Fz_N'\ndeficient = 'ridge=1e-6'", raw, "of-raw");
-        let told = [data("model", &["force/model.json"]), data("data", &["3.csv", "4.csv"])].concat();
-        make("evaluate", "by = 'trajectory'", told, "evaluated");
+        let inputs = [data("model", &["force/model.json"]), data("data", &["3.csv", "4.csv"])].concat();
+        make("evaluate", "by = 'trajectory'", inputs, "evaluated");
         let both = [data("model", &["force/model.json", "posture/model.json"]), data("data", &["4.csv"])].concat();
         make("predict", "intervals = true", both, "predicted");
         make("analyse", "", data("model", &["force/model.json"]), "analysed");
@@ -197,8 +197,8 @@ fn what_is_not_wanted_is_not_made() {
     let data = |role: &'static str, name: &str| place.at(role, name, &[]);
     let sets = vec![data("data", "1.csv"), data("data", "2.csv"), data("validate", "3.csv")];
     assert_eq!(bare("train", "target = 'force'", sets.clone(), "m"), ["merit.csv", "model.json"]);
-    let told = vec![data("model", "m/model.json"), data("data", "3.csv")];
-    assert_eq!(bare("evaluate", "", told, "e"), ["merit.csv"]);
+    let inputs = vec![data("model", "m/model.json"), data("data", "3.csv")];
+    assert_eq!(bare("evaluate", "", inputs, "e"), ["merit.csv"]);
     assert_eq!(bare("analyse", "", vec![data("model", "m/model.json")], "a"), ["modes.csv"]);
     assert_eq!(bare("prune", "", sets, "p"), ["subsets.csv"]);
     assert_eq!(bare("simulate", "until = 0.1", Vec::new(), "s"), ["trajectory.csv"]);

@@ -95,12 +95,12 @@ fn maps_of_parts_are_those_of_one_run_and_go_on_from_what_stands() {
     let of = |chosen: &[usize]| chosen.iter().map(|&k| (SUBJECTS[k], &parts[k])).collect::<Vec<_>>();
     let (two, _) = maps(&of(&[0, 2]), &["maps", "figures"], None).run(2, None);
     let all = maps(&of(&[0, 1, 2]), &["maps", "figures"], None);
-    let (anew, made) = all.run(1, None);
+    let (fresh, made) = all.run(1, None);
     assert_eq!((&made.report["sums_added"], &made.report["sums_kept"]), (&6.into(), &0.into()));
     let (onto, made) = all.run(3, Some(two.path()));
     assert_eq!((&made.report["sums_added"], &made.report["sums_kept"]), (&2.into(), &4.into()));
-    assert!(anew.bytes() == onto.bytes(), "added to what stands, or all anew");
-    has_its_parts(&MapsJob::KIND, "", &all.demand, &anew);
+    assert!(fresh.bytes() == onto.bytes(), "added to what exists, or all made again");
+    has_its_parts(&MapsJob::KIND, "", &all.demand, &fresh);
 
     // The command, all at once.
     let at_once = Folder(tempfile::tempdir().unwrap());
@@ -108,7 +108,7 @@ fn maps_of_parts_are_those_of_one_run_and_go_on_from_what_stands() {
     let normalization = Normalization { size: SIZE, ..Normalization::default() };
     let options = PhotosOptions { normalization, ..PhotosOptions::default() };
     crate::photo::run(&set, &options, &Outputs::maps(at_once.path()), &Watch::nobody()).unwrap();
-    let bytes = anew.bytes();
+    let bytes = fresh.bytes();
     // The pictures are the parts' own, the report is the pipeline's, and a photograph's name is that among its inputs.
     let of_both =
         |name: &str| ["maps/", "figures/"].iter().any(|folder| name.starts_with(folder)) && !name.contains("nails-");
@@ -123,18 +123,18 @@ fn sums_that_stand_are_left_where_a_member_is_gone_or_has_changed() {
     let of = |chosen: &[usize]| chosen.iter().map(|&k| (SUBJECTS[k], &parts[k])).collect::<Vec<_>>();
     let (three, _) = maps(&of(&[0, 1, 2]), &["maps"], None).run(2, None);
     let two = maps(&of(&[0, 1]), &["maps"], None);
-    let (anew, (without, made)) = (two.run(2, None).0, two.run(2, Some(three.path())));
+    let (fresh, (without, made)) = (two.run(2, None).0, two.run(2, Some(three.path())));
     assert_eq!(made.report["sums_added"], 4);
-    assert!(anew.bytes() == without.bytes());
+    assert!(fresh.bytes() == without.bytes());
 
     let photo = dir.path().join("photos/flexion/s03.png");
     image::open(&photo).unwrap().brighten(-20).save(&photo).unwrap();
     let (third, _) = normalize(dir.path(), "s03", &["sums"]).run(2, None);
     let changed = maps(&[(SUBJECTS[0], &parts[0]), (SUBJECTS[1], &parts[1]), ("s03", &third)], &["maps"], None);
-    let (anew, (again, made)) = (changed.run(2, None).0, changed.run(2, Some(three.path())));
+    let (fresh, (again, made)) = (changed.run(2, None).0, changed.run(2, Some(three.path())));
     // The other pose's sums hold all that they held.
     assert_eq!((&made.report["sums_added"], &made.report["sums_kept"]), (&3.into(), &3.into()));
-    assert!(anew.bytes() == again.bytes() && anew.bytes() != three.bytes());
+    assert!(fresh.bytes() == again.bytes() && fresh.bytes() != three.bytes());
 
     // A result that somebody wrote over.
     fs::write(three.path().join("maps/nominal.partial.npz"), "broken").unwrap();
@@ -149,8 +149,8 @@ fn maps_tell_how_far_they_are_from_the_true_ones() {
     let parts = sums(dir.path());
     let of: Vec<_> = SUBJECTS.into_iter().zip(&parts).collect();
     let (_, made) = maps(&of, &["maps"], Some(dir.path())).run(2, None);
-    let told: Vec<(&str, bool)> = made.quality.iter().map(|q| (q.what.as_str(), q.against_truth)).collect();
-    assert_eq!(told, [("mean map", true), ("SD map", true), ("mean map", false)]);
+    let qualities: Vec<(&str, bool)> = made.quality.iter().map(|q| (q.what.as_str(), q.against_truth)).collect();
+    assert_eq!(qualities, [("mean map", true), ("SD map", true), ("mean map", false)]);
     // Of 255; 0.4 of three subjects of 320 x 240 pixels were measured.
     assert!(made.quality[0].value <= 2.0, "{:?}", made.quality);
 }
@@ -166,8 +166,8 @@ fn a_photograph_that_fails_leaves_the_others_be() {
     assert!(folder.names().contains(&"partials/nominal.partial.npz".to_owned()));
     assert!(made.left_out.iter().any(|what| what.starts_with("channel: not taken from 1 grey")), "{:?}", made.left_out);
     fs::write(dir.path().join("photos/nominal/s01.png"), "no picture").unwrap();
-    let told = task.try_run(2, None).err().unwrap().to_string();
-    assert!(told.contains("photos/nominal/s01.png") && told.contains("photos/flexion/s01.png"), "{told}");
+    let error = task.try_run(2, None).err().unwrap().to_string();
+    assert!(error.contains("photos/nominal/s01.png") && error.contains("photos/flexion/s01.png"), "{error}");
 }
 
 #[test]

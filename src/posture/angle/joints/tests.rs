@@ -241,7 +241,7 @@ fn standard_errors_are_those_of_finite_differences() {
                 sights.resize(8, Sight::Lost(Loss::NotFound));
                 angles_of(&layout, info).step(&sights)
             };
-            let told = row_of(&points);
+            let row = row_of(&points);
             let mut variances = [0.0; 3];
             for marker in 0..points.len() {
                 let slope = [0, 1].map(|axis| {
@@ -257,7 +257,7 @@ fn standard_errors_are_those_of_finite_differences() {
                     *variance += gx * gx * xx + 2.0 * gx * gy * xy + gy * gy * yy;
                 }
             }
-            for (angle, variance) in told.angles.iter().zip(variances) {
+            for (angle, variance) in row.angles.iter().zip(variances) {
                 let ratio = angle.unwrap().sd_rad / variance.sqrt();
                 // The second order, on segments of 60 px with errors of 0.3 px: measured 4.2e-5.
                 assert!((ratio - 1.0).abs() <= 1e-4, "{ratio}");
@@ -266,7 +266,7 @@ fn standard_errors_are_those_of_finite_differences() {
     }
 }
 
-/// Angles' errors of many draws over the standard errors told: root mean square and the share within one.
+/// Angles' errors of many draws over the standard errors reported: root mean square and the share within one.
 fn monte_carlo(
     layout: &Layout,
     points: &[[f64; 2]],

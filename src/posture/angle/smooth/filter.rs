@@ -4,7 +4,7 @@
 //! deviations. Values come in medians of the standard errors, times in medians of the time between rows.
 //!
 //! A row whose prediction makes it less likely than an error anywhere on the circle, met once in [`WILD`] rows, is left
-//! out. Where several in a row would be, it was the filter that was wrong, and it begins anew; so it does when, after a
+//! out. Where several in a row would be, it was the filter that was wrong, so it starts again; so it does when, after a
 //! long gap, it knows no more than half a turn.
 
 use nalgebra::{Matrix4, RowVector4, Vector4};

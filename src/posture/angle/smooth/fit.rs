@@ -11,7 +11,7 @@ type Point = [f64; 4];
 
 /// The middle and the standard deviation of the priors of correlation and share.
 const PRIORS: [Option<(f64, f64)>; 4] = [None, Some((1.5, 1.5)), Some((0.0, 1.5)), None];
-/// The standard deviation of the scale's prior, upwards. Errors that look larger than told are; errors that look
+/// The standard deviation of the scale's prior, upwards. Errors that look larger than reported are; errors that look
 /// smaller may hide in the motion, as slow ones do, and the more so the longer the series: the scale is never below 1.
 const LARGER: f64 = 0.25;
 /// ln of the density: from a motion that a thousand rows don't show to one that leaves each row by itself.

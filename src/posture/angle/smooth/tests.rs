@@ -15,7 +15,7 @@ struct Drawn {
     /// Correlation of the errors of neighbouring frames, and the share of their variance that is so.
     correlation: f64,
     share: f64,
-    /// True errors over told ones.
+    /// True errors over reported ones.
     scale: f64,
     /// Frame times move by up to so many frames.
     jitter: f64,
@@ -70,13 +70,13 @@ fn draw(drawn: Drawn, seed: u64) -> Series {
         slow = kept * slow + (1.0 - kept * kept).sqrt() * normal();
         last = time;
         // Errors of different size, as of a finger that turns.
-        let told = drawn.sd_deg.to_radians() * (1.0 + 0.5 * (k as f64 / 40.0).sin());
-        let error = drawn.scale * told * (drawn.share.sqrt() * slow + (1.0 - drawn.share).sqrt() * normal());
+        let sd_rad = drawn.sd_deg.to_radians() * (1.0 + 0.5 * (k as f64 / 40.0).sin());
+        let error = drawn.scale * sd_rad * (drawn.share.sqrt() * slow + (1.0 - drawn.share).sqrt() * normal());
         let truth = (drawn.motion)(time).to_radians();
         let hidden = (k / 10) * 37 % 100 < drawn.hidden;
         series.times_s.push(time);
         series.truth.push(truth);
-        series.angles.push((!hidden).then_some(Angle { rad: truth + error, sd_rad: told, lasting_sd_rad: 0.0 }));
+        series.angles.push((!hidden).then_some(Angle { rad: truth + error, sd_rad, lasting_sd_rad: 0.0 }));
         time += (1.0 + drawn.jitter * normal().clamp(-0.9, 0.9)) / drawn.rate_hz;
     }
     series
@@ -126,7 +126,7 @@ fn correlated_errors_shrink_and_their_standard_errors_hold() {
         ("1 Hz at 30 fps", Drawn { motion: one_hertz, ..HALF }, 0.89, 0.71),
         ("stop and go", Drawn { motion: stop_and_go, correlation: 0.5, ..HALF }, 0.83, 0.72),
         ("at rest", Drawn { motion: still, ..HALF }, 0.17, 0.65),
-        ("errors 1.4 times as told", Drawn { scale: 1.4, correlation: 0.6, ..HALF }, 0.36, 0.71),
+        ("errors 1.4 times as reported", Drawn { scale: 1.4, correlation: 0.6, ..HALF }, 0.36, 0.71),
         ("variable rate, a fifth hidden", Drawn { jitter: 0.5, hidden: 20, correlation: 0.6, ..HALF }, 0.39, 0.77),
         ("a hundredth of a degree", Drawn { sd_deg: 0.01, correlation: 0.6, ..HALF }, 0.51, 0.74),
     ] {

@@ -182,9 +182,9 @@ fn siting_is_told_from_fits_made_with_another() {
                 let picture = scene.picture();
                 let fit = centre(&picture.frame(0, 0.0), assumed, &look, at, &mut Scratch::default()).unwrap();
                 evidence.push(fit.chroma_shift_px);
-                assert!(k >= 5 || evidence.told().is_none(), "too early");
+                assert!(k >= 5 || evidence.siting().is_none(), "too early");
             }
-            assert_eq!(evidence.told(), Some(truth), "{subsampling:?}");
+            assert_eq!(evidence.siting(), Some(truth), "{subsampling:?}");
         }
     }
 }

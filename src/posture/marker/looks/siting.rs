@@ -1,4 +1,4 @@
-//! Where chroma samples lie among the luma samples, told from the video itself.
+//! Where chroma samples lie among the luma samples, measured from the video itself.
 //!
 //! Headers are often silent or wrong, and a centre is biased by up to half a pixel where they are. The chroma's centre
 //! of a marker less the luma's is by how much the siting that was assumed is off.
@@ -68,7 +68,7 @@ impl SitingEvidence {
     }
 
     /// The siting, where the fits agree on one.
-    pub(crate) fn told(&self) -> Option<Siting> {
+    pub(crate) fn siting(&self) -> Option<Siting> {
         if self.fits < LEAST_FITS {
             return None;
         }

@@ -119,7 +119,7 @@ impl Scene<'_> {
         cost.shape +=
             self.choices[place].iter().find(|choice| Some(choice.0) == spot).map_or(MISSING, |choice| choice.1);
         let Some(b) = self.before(naming, place) else {
-            // A chain that starts anew is compared in size with any other marker.
+            // A chain that starts again is compared in size with any other marker.
             if let Some(other) = (0..place).find_map(|other| self.point(naming, other)) {
                 cost.shape += self.size_cost(&here, &other);
             }
@@ -198,9 +198,9 @@ pub(crate) fn colour_cost(paint: &Paint, point: &Point) -> f64 {
     }
     let zero = paint.zero();
     let chroma = |colour: [f64; 3]| [colour[1] - zero[0], colour[2] - zero[1]];
-    let (seen, told) = (chroma(point.colour), chroma(paint.colour));
-    let hue = angle(told, seen);
-    let share = (norm(seen).max(1.0) / norm(told)).ln();
+    let (seen, painted) = (chroma(point.colour), chroma(paint.colour));
+    let hue = angle(painted, seen);
+    let share = (norm(seen).max(1.0) / norm(painted)).ln();
     // Light scales luma and chroma alike: what remains is how pale or dark the paint itself is.
     let depth = share - (point.colour[0].max(16.0) / paint.colour[0].max(16.0)).ln();
     faint + half_square(hue, 9f64.to_radians()).min(12.0) + half_square(share, 0.6) + half_square(depth, 0.6).min(3.0)

@@ -48,7 +48,7 @@ pub struct AnalyseFigures {
     pub model: PathBuf,
     /// What it reads.
     pub inputs: Vec<String>,
-    /// What it tells.
+    /// What it reports.
     pub targets: Vec<String>,
     /// Where the Jacobian was taken, volts; none for a linear model, whose Jacobian is the same everywhere.
     pub at_v: Option<Vec<f64>>,

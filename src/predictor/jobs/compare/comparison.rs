@@ -73,7 +73,7 @@ impl Comparison {
         let mut text = format!("**Fig. {}: {}** (RMSE, {}; mean ± SD)\n\n", self.figure, self.title, self.unit);
         let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
         let decimals = if self.unit == "N" { 3 } else { 2 };
-        let told = |cell: &Spread| match (cell.mean, cell.sd) {
+        let cell_text = |cell: &Spread| match (cell.mean, cell.sd) {
             (Some(mean), Some(sd)) => format!("{mean:.decimals$} ± {sd:.decimals$}"),
             (Some(mean), None) => format!("{mean:.decimals$}"),
             (None, _) => "-".to_owned(),
@@ -81,7 +81,7 @@ impl Comparison {
         text += &line(std::iter::once(String::new()).chain(self.series.iter().cloned()).collect());
         let _ = writeln!(text, "|{}", "---|".repeat(self.series.len() + 1));
         for (group, cells) in self.groups.iter().zip(&self.cells) {
-            text += &line(std::iter::once(group.clone()).chain(cells.iter().map(told)).collect());
+            text += &line(std::iter::once(group.clone()).chain(cells.iter().map(cell_text)).collect());
         }
         text
     }

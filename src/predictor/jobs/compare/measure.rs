@@ -75,7 +75,7 @@ fn read(paths: Vec<PathBuf>, targets: &[&str], fits: &mut Fits<'_>) -> Result<Da
     Ok(read.data)
 }
 
-/// The rows of a time, told from the first and the last time of their recording.
+/// The rows of a time, known from the first and the last time of their recording.
 fn only_times(data: &Dataset, keep: impl Fn(f64, [f64; 2]) -> bool) -> Dataset {
     let time_s = data.time_s();
     let kept = data.recordings().iter().flat_map(|one| {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use lunula_predictor::Recipe;
 
-/// One person's recordings: tables with photodiodes and targets, or raw logs where forces are told.
+/// One person's recordings: tables with photodiodes and targets, or raw logs where forces are predicted.
 #[derive(Debug, Clone)]
 pub struct Person {
     /// Whose.

@@ -2,7 +2,7 @@
 //! out (5.3, 5.4).
 //!
 //! In: a model file and recordings. Out: errors by target, recording and magnitude; where the model has prediction
-//! intervals, how many rows they hold. With a part to be held out ([`By`]), the recipe is fitted anew without each
+//! intervals, how many rows they hold. With a part to be held out ([`By`]), the recipe is fitted again without each
 //! trajectory, session or subject in turn. Shuffled rows only when asked for, and then beside whole trajectories, with
 //! how much they flatter.
 
@@ -33,7 +33,7 @@ pub use report::{BinMerit, EvaluateFigures, EvaluateReport, HeldOut, Magnitudes,
 /// squared.
 const MOST_NESTED: usize = 30;
 
-/// About how many bins of force or angle errors are told in.
+/// About how many bins of force or angle errors are binned into.
 const BINS: usize = 6;
 
 /// How to evaluate.
@@ -121,7 +121,7 @@ pub(in crate::predictor) fn beyond_a_number(
 ) -> Result<Option<String>, PredictorError> {
     let (lost, rows) =
         (values.outer_iter().filter(|row| row.iter().any(|value| !value.is_finite())).count(), values.nrows());
-    let what = format!("what {whose} tells of {lost} of {rows} rows is beyond 1e308");
+    let what = format!("what {whose} gives for {lost} of {rows} rows is beyond 1e308");
     let help = "these voltages are not in the unit of those it was trained on";
     match lost {
         0 => Ok(None),
@@ -156,7 +156,7 @@ fn magnitudes(shown: &Predicted) -> Option<Magnitudes> {
     Some(Magnitudes { of, bins: bins.collect() })
 }
 
-/// Fits the model's recipe anew without each part.
+/// Fits the model's recipe again without each part.
 fn hold_out(
     predictor: &Predictor,
     data: &Dataset,

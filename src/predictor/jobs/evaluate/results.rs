@@ -35,7 +35,7 @@ pub(super) fn write(
     Ok(staging)
 }
 
-/// Over time, scatter, errors by size, parts held out; tells where the PNGs will stand.
+/// Over time, scatter, errors by size, parts held out; returns where the PNGs will be.
 fn evaluation_pictures(
     staging: &Staging,
     folder: &Path,

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::super::patch::{Extent, Frame, Patch};
 use super::super::search::{FINGER, NAIL};
-use super::super::shape::Shape;
+use super::super::shape::OutlineShape;
 use super::super::{candidate, evidence, refine, search};
 use super::scenes::{Scene, bell, ends, levels, turn_between};
 use crate::photo::outline::Outline;
@@ -79,7 +79,7 @@ impl Cells {
         Self(cells)
     }
 
-    fn iou(&self, shape: &Shape) -> f64 {
+    fn iou(&self, shape: &OutlineShape) -> f64 {
         let (mut both, mut any) = (0u32, 0u32);
         for (p, truth) in &self.0 {
             let own = shape.holds(*p);
@@ -90,9 +90,9 @@ impl Cells {
     }
 }
 
-fn jitter(s: &Shape, k: f64, rng: &mut ChaCha8Rng) -> Shape {
+fn jitter(s: &OutlineShape, k: f64, rng: &mut ChaCha8Rng) -> OutlineShape {
     let size = 0.5 * (s.length + s.width);
-    Shape {
+    OutlineShape {
         x: s.x + 0.15 * k * size * bell(rng),
         y: s.y + 0.2 * k * size * bell(rng),
         length: s.length * (0.22 * k * bell(rng)).exp(),
@@ -103,7 +103,7 @@ fn jitter(s: &Shape, k: f64, rng: &mut ChaCha8Rng) -> Shape {
 }
 
 /// The template nearest to a polygon of a frame whose distal direction is `turn` clockwise from the frame's +y.
-fn nearest(points: &[[f64; 2]], turn: f64, cells: &Cells, rng: &mut ChaCha8Rng) -> (Shape, f64) {
+fn nearest(points: &[[f64; 2]], turn: f64, cells: &Cells, rng: &mut ChaCha8Rng) -> (OutlineShape, f64) {
     let (sin, cos) = turn.sin_cos();
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     for p in points {
@@ -114,7 +114,7 @@ fn nearest(points: &[[f64; 2]], turn: f64, cells: &Cells, rng: &mut ChaCha8Rng) 
         }
     }
     let m = [0, 1].map(|i| (low[i] + high[i]) / 2.0);
-    let mut best = Shape {
+    let mut best = OutlineShape {
         x: m[0] * cos + m[1] * sin,
         y: -m[0] * sin + m[1] * cos,
         length: high[1] - low[1],
@@ -152,7 +152,7 @@ pub(super) fn scorer_rows(scene: &Scene, rng: &mut ChaCha8Rng, rows: &mut Rows) 
             })
             .max_by_key(|t| t.3)
             .filter(|t| t.3 > 25);
-        let mean = Shape { x: 0.0, y: -0.5, length: 0.75, width: 0.65, turn: 0.0, taper: 0.04 };
+        let mean = OutlineShape { x: 0.0, y: -0.5, length: 0.75, width: 0.65, turn: 0.0, taper: 0.04 };
         match truth {
             Some((t, points, cells, _)) => {
                 let turn = t.up.map_or(0.0, |up| turn_between(frame.up, up));
@@ -225,7 +225,7 @@ pub(super) fn scorer_rows(scene: &Scene, rng: &mut ChaCha8Rng, rows: &mut Rows) 
         for frame in places {
             let patch = Patch::cut(&levels, frame, NAIL);
             for i in 0..6 {
-                let base = Shape { x: 0.0, y: 0.0, length: 1.0, width: 0.85, turn: 0.0, taper: 0.03 };
+                let base = OutlineShape { x: 0.0, y: 0.0, length: 1.0, width: 0.85, turn: 0.0, taper: 0.03 };
                 let s = jitter(&base, [0.2, 0.8][i % 2], rng);
                 rows.push(&evidence::inputs(&patch, &s, false), 0.0);
             }
@@ -246,7 +246,7 @@ pub(super) fn found_rows(scene: &Scene, rng: &mut ChaCha8Rng, rows: &mut Rows) {
             })
             .collect()
     };
-    let take = |patch: &Patch, shape: &Shape, tip: bool, rows: &mut Rows| {
+    let take = |patch: &Patch, shape: &OutlineShape, tip: bool, rows: &mut Rows| {
         let worth = truths(&patch.frame)
             .iter()
             .map(|(points, turn)| {
