@@ -110,8 +110,10 @@ where
 impl Chart {
     /// All labelled points.
     pub(super) fn points(&self) -> impl Iterator<Item = &Point> {
-        let of = |item| if let &Item::Points { ref points, .. } = item { points.as_slice() } else { &[] };
-        self.items.iter().flat_map(of)
+        self.items
+            .iter()
+            .filter_map(|item| if let Item::Points { points, .. } = item { Some(points) } else { None })
+            .flatten()
     }
 
     fn marks(&self) -> impl Iterator<Item = &Mark> {
