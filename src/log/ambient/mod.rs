@@ -103,6 +103,8 @@ pub fn samples(log: &Log, options: &AmbientOptions) -> Result<Samples, AmbientEr
     let dark: Vec<usize> = (0..rows).filter(|&row| log.led.as_ref().is_some_and(|led| !led[row])).collect();
     let time_s: Vec<f64> = lit.iter().map(|&row| log.time_s[row]).collect();
     let mut found = Subtraction { faults: vec![Faults::default(); lit.len()], warnings: Vec::new(), notes: Vec::new() };
+    let empty = log.photodiodes.iter().chain(&log.forces).filter(|one| one.values.iter().all(|value| value.is_nan()));
+    found.warnings.extend(empty.map(|one| format!("{} has no value at all", one.name)));
     if log.led.is_some() && dark.is_empty() {
         found.warnings.push("the LED was never off: the photodiodes hold the ambient light too".to_owned());
     }

@@ -55,9 +55,8 @@ pub(in crate::log) fn settle(mut raw: Raw, piece: Option<NonZeroUsize>) -> Resul
     let (photodiodes, forces) = (channels(raw.photodiodes), channels(raw.forces));
     for Channel { name, values } in photodiodes.iter().chain(&forces) {
         let missing = values.iter().filter(|v| v.is_nan()).count();
-        if missing == values.len() {
-            raw.notes.push(format!("{name} has no value at all"));
-        } else if missing > 0 {
+        // Of a channel without any, `samples` warns.
+        if (1..values.len()).contains(&missing) {
             raw.notes.push(format!("{name} has no value in {missing} of {} rows", values.len()));
         }
     }

@@ -19,8 +19,92 @@ static JUDGES: LazyLock<[Net; 3]> = LazyLock::new(|| {
         .map(|text| Net::parse(text).expect("weights are checked by a test"))
 });
 
-/// Number of figures that the confidence is made from.
-pub(super) const FIGURES: usize = 31;
+/// Number of features of a candidate.
+pub(super) const FEATURES: usize = 31;
+
+/// What the confidence of a candidate is made from.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Features {
+    /// The scorer's answer for the fitted template.
+    score: f32,
+    /// How much better that is than upside down.
+    over_flipped: f32,
+    /// The scorer's answer for the template before fitting.
+    template_score: f32,
+    /// Mean trust in the border's quarters: first, the worse and the better side, third.
+    arc_trust: [f32; 4],
+    /// The least mean trust over six neighbouring rays.
+    lowest_trust: f32,
+    /// Standard deviation of the border's offsets from the template, first and second pass.
+    moved: f32,
+    moved_again: f32,
+    /// Mean offset of the first pass.
+    grown: f32,
+    log_aspect: f32,
+    log_length_px: f32,
+    /// 1 for a picture without colour.
+    grey: f32,
+    /// 1 for a candidate from a finger's tip; how well the tip fits, and the template's score there.
+    tip: f32,
+    tip_fit: f32,
+    tip_score: f32,
+    /// How far the outline is turned from the template, radians.
+    turned: f32,
+    /// Colour channels, see [`surroundings`].
+    skin: [f32; 3],
+    nail_less_skin: [f32; 3],
+    far_less_skin: [f32; 3],
+    /// How uneven the skin's tone is.
+    spread: f32,
+    /// How many candidates agree, from 0 towards 1; see [`compare`].
+    agreement: f32,
+    /// How much better the best contradicting candidate scores.
+    rival_lead: f32,
+    /// Overlap with the outline found from a displaced template.
+    again_iou: f32,
+}
+
+impl Features {
+    /// In the order of the committed weights.
+    pub(super) fn to_array(self) -> [f32; FEATURES] {
+        let [first, worse, better, third] = self.arc_trust;
+        let [skin, nail, far] =
+            [self.skin, self.nail_less_skin, self.far_less_skin].map(|c| [c[TONE], c[RED], c[YELLOW]]);
+        [
+            self.score,
+            self.over_flipped,
+            self.template_score,
+            first,
+            worse,
+            better,
+            third,
+            self.lowest_trust,
+            self.moved,
+            self.moved_again,
+            self.grown,
+            self.log_aspect,
+            self.log_length_px,
+            self.grey,
+            self.tip,
+            self.tip_fit,
+            self.tip_score,
+            self.turned,
+            skin[0],
+            skin[1],
+            skin[2],
+            nail[0],
+            nail[1],
+            nail[2],
+            far[0],
+            far[1],
+            far[2],
+            self.spread,
+            self.agreement,
+            self.rival_lead,
+            self.again_iou,
+        ]
+    }
+}
 
 /// A nail that may be one.
 #[derive(Debug, Clone)]
@@ -28,7 +112,7 @@ pub(super) struct Candidate {
     pub(super) outline: Outline,
     pub(super) axis: Axis,
     /// What the confidence is made from.
-    pub(super) figures: [f32; FIGURES],
+    pub(super) features: Features,
     nail: Frame,
     fitted: OutlineShape,
     /// Other leads that mean the same.
@@ -42,14 +126,15 @@ pub(super) struct Candidate {
 impl Candidate {
     /// The chance that it is right: what the most doubtful judge says.
     pub(super) fn confidence(&self) -> f64 {
-        let lowest = JUDGES.iter().map(|judge| judge.answer(&self.figures)).fold(f32::INFINITY, f32::min);
+        let features = self.features.to_array();
+        let lowest = JUDGES.iter().map(|judge| judge.answer(&features)).fold(f32::INFINITY, f32::min);
         let sure = 1.0 / (1.0 + f64::from(-lowest).exp());
         if self.mirrored { 0.5 * sure } else { sure }
     }
 
     /// Is it so good that what contradicts it need not be looked at?
     fn settled(&self) -> bool {
-        self.figures[0] > 0.8 && self.figures[7] > 0.35
+        self.features.score > 0.8 && self.features.lowest_trust > 0.35
     }
 }
 
@@ -141,12 +226,12 @@ fn follow(levels: &Levels, lead: &Lead) -> Option<Candidate> {
     let corners: Vec<[f64; 2]> = second.points.iter().map(|p| nail.to_source(*p)).collect();
     let outline = Outline::new(&corners).ok()?;
     let patch = Patch::cut(levels, nail, NAIL);
-    let mut figures = figures(&patch, &shape, &fitted, &first, &second, origin, nail.unit_px, turn);
-    figures[FIGURES - 1] = again(levels, &nail, &fitted, &outline);
+    let mut features = features(&patch, &shape, &fitted, &first, &second, origin, nail.unit_px, turn);
+    features.again_iou = again(levels, &nail, &fitted, &outline);
     Some(Candidate {
         outline,
         axis,
-        figures,
+        features,
         nail,
         fitted,
         mirrored: mirrored(&patch, &fitted, &second.points),
@@ -272,7 +357,7 @@ fn span(points: &[[f64; 2]], axis: usize) -> (f64, f64) {
 }
 
 #[allow(clippy::too_many_arguments)]
-fn figures(
+fn features(
     patch: &Patch,
     template: &OutlineShape,
     fitted: &OutlineShape,
@@ -281,7 +366,7 @@ fn figures(
     origin: Origin,
     length_px: f64,
     turn: f64,
-) -> [f32; FIGURES] {
+) -> Features {
     let (fit, tip_score, tip) = match origin {
         Origin::Tip { fit, score } => (fit as f32, score, 1.0),
         Origin::Anywhere => (0.0, 0.0, 0.0),
@@ -297,44 +382,35 @@ fn figures(
         ((offset.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / offset.len() as f64).sqrt() as f32, mean as f32)
     };
     let (moved, grown) = rms(&first.offset);
-    let (again, _) = rms(&second.offset);
+    let (moved_again, _) = rms(&second.offset);
     let flipped = OutlineShape { turn: fitted.turn + std::f64::consts::PI, ..*fitted };
     let (around, spread) = surroundings(patch, fitted);
     let own = score(patch, fitted, false);
-    let before = score(patch, template, false);
-    [
-        own,
-        own - score(patch, &flipped, false),
-        before,
-        arcs[0],
-        arcs[1].min(arcs[3]),
-        arcs[1].max(arcs[3]),
-        arcs[2],
-        lowest,
+    let [skin, nail_less_skin, far_less_skin] = around;
+    Features {
+        score: own,
+        over_flipped: own - score(patch, &flipped, false),
+        template_score: score(patch, template, false),
+        arc_trust: [arcs[0], arcs[1].min(arcs[3]), arcs[1].max(arcs[3]), arcs[2]],
+        lowest_trust: lowest,
         moved,
-        again,
+        moved_again,
         grown,
-        (fitted.length / fitted.width).ln() as f32,
-        length_px.ln() as f32,
-        if patch.colour { 0.0 } else { 1.0 },
+        log_aspect: (fitted.length / fitted.width).ln() as f32,
+        log_length_px: length_px.ln() as f32,
+        grey: if patch.colour { 0.0 } else { 1.0 },
         tip,
-        fit,
+        tip_fit: fit,
         tip_score,
-        (turn - template.turn).abs() as f32,
-        around[0][TONE],
-        around[0][RED],
-        around[0][YELLOW],
-        around[1][TONE],
-        around[1][RED],
-        around[1][YELLOW],
-        around[2][TONE],
-        around[2][RED],
-        around[2][YELLOW],
+        turned: (turn - template.turn).abs() as f32,
+        skin,
+        nail_less_skin,
+        far_less_skin,
         spread,
-        0.0,
-        0.0,
-        0.0,
-    ]
+        agreement: 0.0,
+        rival_lead: 0.0,
+        again_iou: 0.0,
+    }
 }
 
 /// Colours of the skin around (on the sides and below), of the nail less the skin, of the far surroundings less the
@@ -388,13 +464,13 @@ pub(super) fn compare(all: &mut [Candidate]) {
                 agree[i] += 1.0;
                 agree[j] += 1.0;
             } else if shared(&all[i].outline, &all[j].outline) > 0.3 {
-                rival[i] = rival[i].max(all[j].figures[0]);
-                rival[j] = rival[j].max(all[i].figures[0]);
+                rival[i] = rival[i].max(all[j].features.score);
+                rival[j] = rival[j].max(all[i].features.score);
             }
         }
     }
     for ((c, agree), rival) in all.iter_mut().zip(agree).zip(rival) {
-        c.figures[FIGURES - 3] = agree / (2.0 + agree);
-        c.figures[FIGURES - 2] = rival - c.figures[0];
+        c.features.agreement = agree / (2.0 + agree);
+        c.features.rival_lead = rival - c.features.score;
     }
 }

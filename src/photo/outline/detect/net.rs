@@ -68,9 +68,9 @@ mod tests {
         let nets = [
             (include_str!("weights/scorer.txt"), super::super::evidence::INPUTS),
             (include_str!("weights/border.txt"), super::super::refine::INPUTS),
-            (include_str!("weights/judge-0.txt"), super::super::candidate::FIGURES),
-            (include_str!("weights/judge-1.txt"), super::super::candidate::FIGURES),
-            (include_str!("weights/judge-2.txt"), super::super::candidate::FIGURES),
+            (include_str!("weights/judge-0.txt"), super::super::candidate::FEATURES),
+            (include_str!("weights/judge-1.txt"), super::super::candidate::FEATURES),
+            (include_str!("weights/judge-2.txt"), super::super::candidate::FEATURES),
         ];
         for (text, inputs) in nets {
             let net = Net::parse(text).expect("whole");

@@ -84,7 +84,7 @@ fn train() {
                     // Annotations by hand are less exact, and rarer: each counts twice.
                     let (at, soft, times) = if s.real { (0.78, 0.04, 2) } else { (0.82, 0.02, 1) };
                     for _ in 0..times {
-                        rows.push(&c.figures, 1.0 / (1.0 + (-(worth - at) / soft).exp()));
+                        rows.push(&c.features.to_array(), 1.0 / (1.0 + (-(worth - at) / soft).exp()));
                     }
                 }
             })
