@@ -159,7 +159,7 @@ pub struct PredictChoices {
     /// How far below --f-min the pressing has to fall before the finger no longer touches
     #[arg(long, value_name = "NEWTONS", default_value_t = 0.0, value_parser = not_negative)]
     pub hysteresis: f64,
-    /// Each prediction's interval as well, as <target>_low, <target>_high (the models need to be trained with
+    /// Each prediction's interval as well, as TARGET_low, TARGET_high (the models need to be trained with
     /// --validate)
     #[arg(long)]
     pub intervals: bool,
