@@ -186,6 +186,18 @@ fn no_folder_is_crowded_and_no_line_is_long() {
 }
 
 #[test]
+fn architecture_lists_the_same_floors() {
+    let page = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("ARCHITECTURE.md")).expect("a page");
+    for (below, rooms) in FLOORS.iter().enumerate() {
+        let row = page.lines().find(|line| line.starts_with(&format!("| {} | ", below + 1)));
+        let row = row.unwrap_or_else(|| panic!("ARCHITECTURE.md has no floor {}", below + 1));
+        let named = row.split('|').nth(2).unwrap_or_default();
+        let named: BTreeSet<&str> = named.split('`').skip(1).step_by(2).collect();
+        assert_eq!(named, rooms.iter().copied().collect(), "floor {}", below + 1);
+    }
+}
+
+#[test]
 fn circles_and_paths_are_found() {
     let module = |path: &str| -> Module { path.split('/').map(str::to_owned).collect() };
     assert_eq!(expanded("super::{a, b::{c, d as e}}"), ["super::a", "super::b::c", "super::b::dase"]);
