@@ -1,6 +1,6 @@
 //! Channels that show nothing, or nothing for a while.
 //!
-//! Told, and not taken away: a channel may be dead to the LED's light and still be wanted. Looked at are the lit
+//! Warned of, and not left out: a channel may be dead to the LED's light and still be wanted. Looked at are the lit
 //! samples as they were recorded.
 
 /// A channel with so few values is called dead; its samples have to be [`SAMPLES`] at least.
