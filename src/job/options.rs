@@ -129,7 +129,7 @@ pub struct NoOptions {}
 #[derive(Debug, Clone, Copy, Args)]
 pub struct Tables {
     /// csv or parquet
-    #[arg(long, value_parser = format_by_word, default_value = "csv")]
+    #[arg(long, value_parser = one_of::<TableFormat>(), default_value = "csv")]
     format: TableFormat,
 }
 
@@ -147,14 +147,6 @@ impl Tables {
     #[must_use]
     pub fn format(self) -> TableFormat {
         self.format
-    }
-}
-
-fn format_by_word(word: &str) -> Result<TableFormat, String> {
-    match word {
-        "csv" => Ok(TableFormat::Csv),
-        "parquet" => Ok(TableFormat::Parquet),
-        _ => Err("choose csv, parquet".to_owned()),
     }
 }
 

@@ -18,6 +18,8 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
+use crate::words::Words;
+
 pub use read::{Cell, Table, column_names};
 
 /// Why a table can't be written or read.
@@ -59,6 +61,11 @@ pub enum TableFormat {
     Csv,
     /// Apache Parquet, compressed with Snappy.
     Parquet,
+}
+
+impl Words for TableFormat {
+    const WORDS: &'static [(Self, &'static str, &'static str)] =
+        &[(Self::Csv, "csv", ""), (Self::Parquet, "parquet", "")];
 }
 
 impl TableFormat {

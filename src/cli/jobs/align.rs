@@ -75,9 +75,7 @@ impl AlignArgs {
 impl Command for AlignArgs {
     type Figures = AlignFigures;
 
-    fn name(&self) -> &'static str {
-        "align"
-    }
+    const NAME: &'static str = "align";
 
     fn job(&self) -> &JobArgs {
         &self.job

@@ -47,11 +47,11 @@ pub(super) trait Command {
     /// The figures of its report.
     type Figures: Serialize;
 
+    /// The job's name, as plans give it.
+    const NAME: &'static str;
+
     /// What is counted while it runs: `frames`.
     const UNIT: &'static str = "steps";
-
-    /// The job's name, as plans give it.
-    fn name(&self) -> &'static str;
 
     fn job(&self) -> &JobArgs;
 
@@ -66,7 +66,9 @@ pub(super) trait Command {
     fn say(&self, common: &Common, report: &Report<Self::Figures>);
 
     /// Where to look if there is no picture.
-    fn result(&self) -> Option<PathBuf>;
+    fn result(&self) -> Option<PathBuf> {
+        None
+    }
 }
 
 /// Plans or runs a job, and prints its report.
@@ -74,7 +76,7 @@ pub(super) fn run<C: Command>(command: &C) -> anyhow::Result<Outcome> {
     let JobArgs { plan, common } = command.job();
     let stop = common.start()?;
     if *plan {
-        return show(common, command.name(), &command.plan()?);
+        return show(common, C::NAME, &command.plan()?);
     }
     let bar = common.progress(0, C::UNIT);
     let tick = |done: u64, all: Option<u64>| {

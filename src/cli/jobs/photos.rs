@@ -116,9 +116,7 @@ impl Command for PhotosArgs {
 
     const UNIT: &'static str = "photographs";
 
-    fn name(&self) -> &'static str {
-        "photos"
-    }
+    const NAME: &'static str = "photos";
 
     fn job(&self) -> &JobArgs {
         &self.job
@@ -157,9 +155,7 @@ impl Command for PhotosArgs {
 impl Command for MergeArgs {
     type Figures = PhotosFigures;
 
-    fn name(&self) -> &'static str {
-        "photos merge"
-    }
+    const NAME: &'static str = "photos merge";
 
     fn job(&self) -> &JobArgs {
         &self.job

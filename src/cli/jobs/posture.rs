@@ -94,9 +94,7 @@ impl Command for PostureArgs {
 
     const UNIT: &'static str = "frames";
 
-    fn name(&self) -> &'static str {
-        "posture"
-    }
+    const NAME: &'static str = "posture";
 
     fn job(&self) -> &JobArgs {
         &self.job

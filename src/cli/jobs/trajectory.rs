@@ -65,9 +65,7 @@ impl<K: KindOptions> KindArgs<K> {
 impl<K: KindOptions> Command for KindArgs<K> {
     type Figures = TrajectoryFigures;
 
-    fn name(&self) -> &'static str {
-        "trajectory"
-    }
+    const NAME: &'static str = "trajectory";
 
     fn job(&self) -> &JobArgs {
         &self.job

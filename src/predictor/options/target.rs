@@ -1,14 +1,12 @@
 //! What is to be predicted: forces, posture, or other columns of the table.
 
 use lunula_predictor::FORCES;
-use serde::{Deserialize, Serialize};
 
 /// The posture that is predicted (5.1.2): J2, which stands for the coupled flexion of PIP and DIP.
 pub const POSTURE: &str = "J2_deg";
 
 /// Columns to be predicted.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(try_from = "String")]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Target(Vec<String>);
 
 impl Target {
@@ -37,21 +35,6 @@ impl Target {
     #[must_use]
     pub fn columns(&self) -> &[String] {
         &self.0
-    }
-}
-
-impl Default for Target {
-    /// Force.
-    fn default() -> Self {
-        Self(FORCES.map(str::to_owned).to_vec())
-    }
-}
-
-impl TryFrom<String> for Target {
-    type Error = String;
-
-    fn try_from(text: String) -> Result<Self, String> {
-        Self::parse(&text)
     }
 }
 

@@ -86,9 +86,7 @@ impl FitArgs {
 impl Command for FitArgs {
     type Figures = FitFigures;
 
-    fn name(&self) -> &'static str {
-        "fit"
-    }
+    const NAME: &'static str = "fit";
 
     fn job(&self) -> &JobArgs {
         &self.job

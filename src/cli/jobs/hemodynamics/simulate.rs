@@ -146,9 +146,7 @@ impl OverTime<'_> {
 impl Command for OverTime<'_> {
     type Figures = SimulateFigures;
 
-    fn name(&self) -> &'static str {
-        "simulate"
-    }
+    const NAME: &'static str = "simulate";
 
     fn job(&self) -> &JobArgs {
         &self.args.job
@@ -197,9 +195,7 @@ impl Static<'_> {
 impl Command for Static<'_> {
     type Figures = CurveFigures;
 
-    fn name(&self) -> &'static str {
-        "simulate --static"
-    }
+    const NAME: &'static str = "simulate --static";
 
     fn job(&self) -> &JobArgs {
         &self.args.job

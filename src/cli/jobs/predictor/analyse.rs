@@ -31,9 +31,7 @@ pub(crate) struct AnalyseArgs {
 impl Command for AnalyseArgs {
     type Figures = AnalyseFigures;
 
-    fn name(&self) -> &'static str {
-        "analyse"
-    }
+    const NAME: &'static str = "analyse";
 
     fn job(&self) -> &JobArgs {
         &self.job
@@ -68,9 +66,5 @@ impl Command for AnalyseArgs {
         if let Some(condition) = report.modes.condition {
             common.say(&format!("the strongest over the weakest: {condition:.2}"));
         }
-    }
-
-    fn result(&self) -> Option<PathBuf> {
-        None
     }
 }

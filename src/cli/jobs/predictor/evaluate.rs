@@ -39,9 +39,7 @@ pub(crate) struct EvaluateArgs {
 impl Command for EvaluateArgs {
     type Figures = EvaluateFigures;
 
-    fn name(&self) -> &'static str {
-        "evaluate"
-    }
+    const NAME: &'static str = "evaluate";
 
     fn job(&self) -> &JobArgs {
         &self.job
@@ -102,10 +100,6 @@ impl Command for EvaluateArgs {
         if common.verbose {
             report.data.iter().flat_map(|file| &file.notes).for_each(|note| common.say(note));
         }
-    }
-
-    fn result(&self) -> Option<PathBuf> {
-        None
     }
 }
 

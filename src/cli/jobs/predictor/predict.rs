@@ -59,9 +59,7 @@ impl PredictArgs {
 impl Command for PredictArgs {
     type Figures = PredictFigures;
 
-    fn name(&self) -> &'static str {
-        "predict"
-    }
+    const NAME: &'static str = "predict";
 
     fn job(&self) -> &JobArgs {
         &self.job

@@ -37,9 +37,7 @@ pub(crate) struct PruneArgs {
 impl Command for PruneArgs {
     type Figures = PruneFigures;
 
-    fn name(&self) -> &'static str {
-        "prune"
-    }
+    const NAME: &'static str = "prune";
 
     fn job(&self) -> &JobArgs {
         &self.job
@@ -74,9 +72,5 @@ impl Command for PruneArgs {
             common.say("all, then all but one:");
             report.without_one.iter().for_each(|row| common.say(&line(row)));
         }
-    }
-
-    fn result(&self) -> Option<PathBuf> {
-        None
     }
 }

@@ -58,9 +58,7 @@ impl TrainArgs {
 impl Command for TrainArgs {
     type Figures = TrainFigures;
 
-    fn name(&self) -> &'static str {
-        "train"
-    }
+    const NAME: &'static str = "train";
 
     fn job(&self) -> &JobArgs {
         &self.job
