@@ -4,6 +4,7 @@
 mod chart;
 mod grey;
 mod html;
+mod letters;
 mod picture;
 mod sheet;
 mod text;

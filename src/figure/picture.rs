@@ -7,6 +7,7 @@ use anyhow::{Context, anyhow, ensure};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
+use super::letters::Bitmap;
 use super::text::TYPEFACE;
 
 /// Colours that colour-blind readers can tell apart (Okabe and Ito 2008).
@@ -30,7 +31,7 @@ pub(super) trait Draw {
 pub(super) fn write_both(what: &impl Draw, size: (u32, u32), png: &Path, svg: &Path) -> anyhow::Result<()> {
     register_typeface()?;
     let mut pixels = vec![0; (size.0 * size.1 * 3) as usize];
-    draw_on_white(what, BitMapBackend::with_buffer(&mut pixels, size).into_drawing_area())?;
+    draw_on_white(what, Bitmap(BitMapBackend::with_buffer(&mut pixels, size)).into_drawing_area())?;
     let picture = image::RgbImage::from_raw(size.0, size.1, pixels).context("a picture's pixels")?;
     // In memory first: what writes to a file by itself passes over the error of its last bytes.
     let mut bytes = Vec::new();
@@ -74,7 +75,7 @@ pub(super) fn short_number(value: &f64) -> String {
     if short == "-0" { "0".to_owned() } else { short.to_owned() }
 }
 
-fn register_typeface() -> anyhow::Result<()> {
+pub(super) fn register_typeface() -> anyhow::Result<()> {
     static ONCE: Once = Once::new();
     let mut usable = true;
     ONCE.call_once(|| {

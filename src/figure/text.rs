@@ -11,7 +11,8 @@ pub(super) const TYPEFACE: &[u8] = epaint_default_fonts::UBUNTU_LIGHT;
 /// Colour of captions.
 pub(super) const INK: image::Rgb<u8> = image::Rgb([34, 34, 34]);
 
-static FONT: LazyLock<FontRef<'static>> =
+/// The typeface, to draw with.
+pub(super) static FONT: LazyLock<FontRef<'static>> =
     LazyLock::new(|| FontRef::try_from_slice(TYPEFACE).expect("the typeface that is compiled in is a typeface"));
 
 /// Draws `text` with its middle at `x` and its top at `y`, shortened with an ellipsis to fit `width` pixels.
