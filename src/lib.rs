@@ -30,6 +30,9 @@ pub mod photo;
 pub mod pipeline;
 pub mod posture;
 pub mod predictor;
+#[cfg(test)]
+#[path = "../tests/util/real_data.rs"]
+mod real_data;
 pub mod stages;
 pub mod study;
 pub mod table;

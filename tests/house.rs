@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 
 use regex::Regex;
 
+use crate::util::real_data::repository;
+
 /// The library's rooms, from the ground up: a room knows those of lower floors, and none of its own beside it.
 const FLOORS: [&[&str]; 8] = [
     &["flexion", "input", "nail", "stages", "timebase", "words"],
@@ -119,7 +121,7 @@ fn circles(files: &BTreeMap<Module, Vec<Module>>) -> Vec<String> {
 
 #[test]
 fn no_file_uses_another_that_uses_it() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = repository();
     for (folder, least) in [("src", 400), ("crates/predictor/src", 50), ("crates/hemodynamics/src", 50)] {
         let files = modules(&root.join(folder));
         assert!(files.len() >= least, "{folder}: {} files", files.len());
@@ -129,7 +131,7 @@ fn no_file_uses_another_that_uses_it() {
 
 #[test]
 fn no_room_uses_one_of_its_own_floor_or_above() {
-    let files = modules(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"));
+    let files = modules(&repository().join("src"));
     let floor = |room: &str| FLOORS.iter().position(|rooms| rooms.contains(&room));
     let mut wrong = Vec::new();
     let mut seen = 0;
@@ -158,7 +160,7 @@ const NUMBERS: &str = "crates/hemodynamics/src/radau/tables.rs";
 
 #[test]
 fn no_folder_is_crowded_and_no_line_is_long() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let root = repository();
     let (mut crowded, mut long, mut files) = (Vec::new(), Vec::new(), 0);
     let mut folders: Vec<PathBuf> =
         ["src", "crates", "tests", "benches", "examples"].map(|name| root.join(name)).into();
@@ -185,9 +187,33 @@ fn no_folder_is_crowded_and_no_line_is_long() {
     assert_eq!(long, [""; 0], "more than {MOST_COLUMNS} columns");
 }
 
+/// The same input gives the same bytes at any time: only what locks, dates records and judges files' times reads it.
+#[test]
+fn no_job_reads_the_wall_clock() {
+    const READERS: [&str; 4] =
+        ["doctor.rs", "pipeline/run/attempt.rs", "pipeline/store/hashes.rs", "pipeline/store/lock.rs"];
+    let reads = Regex::new(r"\b(SystemTime|Timestamp|Zoned|Utc|Local|OffsetDateTime)::now\b").expect("a pattern");
+    let (mut readers, mut folders) = (BTreeSet::new(), vec![PathBuf::from("src"), PathBuf::from("crates")]);
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(repository().join(&folder)).expect("a folder of the repository") {
+            let entry = entry.expect("an entry");
+            let path = folder.join(entry.file_name());
+            if entry.path().is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|ending| ending == "rs")
+                && !path.iter().any(|part| part == "tests" || part == "tests.rs")
+                && reads.is_match(&std::fs::read_to_string(entry.path()).expect("a source file"))
+            {
+                readers.insert(path);
+            }
+        }
+    }
+    assert_eq!(readers, READERS.map(|name| Path::new("src").join(name)).into());
+}
+
 #[test]
 fn architecture_lists_the_same_floors() {
-    let page = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("ARCHITECTURE.md")).expect("a page");
+    let page = std::fs::read_to_string(repository().join("ARCHITECTURE.md")).expect("a page");
     for (below, rooms) in FLOORS.iter().enumerate() {
         let row = page.lines().find(|line| line.starts_with(&format!("| {} | ", below + 1)));
         let row = row.unwrap_or_else(|| panic!("ARCHITECTURE.md has no floor {}", below + 1));

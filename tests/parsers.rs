@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use image::{DynamicImage, ImageFormat};
 use targets::{Desk, TARGETS};
 
-/// Set in the process that reads the inputs; with `write`, one that rewrites the binary seeds.
+/// Set in the process that reads the inputs.
 const WITHIN: &str = "LUNULA_CORPUS";
 /// Address space for one process that reads all of the corpus, KiB. It takes 0.6 GiB with all libraries; a case that
 /// takes memory by what its header says takes gigabytes.
@@ -78,11 +78,45 @@ fn read_all() {
     }
 }
 
-/// Writes those seeds that are no text: `cargo test --features xdf --test all parsers::writes -- --ignored`.
+/// A folder of seeds: one folder a parser.
+struct Place(PathBuf);
+
+impl Place {
+    fn of(&self, name: &str) -> PathBuf {
+        let path = self.0.join(name);
+        std::fs::create_dir_all(path.parent().expect("a parser's folder")).expect("a folder");
+        path
+    }
+
+    fn write(&self, name: &str, bytes: &[u8]) {
+        std::fs::write(self.of(name), bytes).expect("a seed");
+    }
+}
+
+/// The seeds that are no text are still made, read without a panic, and those of the corpus.
+/// `LUNULA_SEEDS=$PWD/tests/corpus` writes them there, for formats that changed.
 #[test]
-#[ignore = "writes into tests/corpus"]
-fn writes_the_seeds_of_binary_formats() {
-    let write = |name: &str, bytes: &[u8]| std::fs::write(corpus(name), bytes).expect("a seed");
+fn the_seeds_of_binary_formats_are_made() {
+    let (desk, folder) = (Desk::new(), tempfile::tempdir().expect("a folder"));
+    let place = Place(std::env::var_os("LUNULA_SEEDS").map_or_else(|| folder.path().to_path_buf(), PathBuf::from));
+    pictures(&place);
+    parquet(&desk, &place);
+    partials(&desk, &place);
+    record(&desk, &place);
+    xdf(&place);
+    let mut made = 0;
+    for target in TARGETS.iter().filter(|target| place.0.join(target.name).is_dir()) {
+        for seed in std::fs::read_dir(place.0.join(target.name)).expect("a folder") {
+            let seed = seed.expect("an entry").path();
+            (target.run)(&desk, &std::fs::read(&seed).expect("a seed"));
+            assert!(corpus(target.name).join(seed.file_name().expect("a name")).exists(), "{}", seed.display());
+            made += 1;
+        }
+    }
+    assert!(made >= 15, "{made}");
+}
+
+fn pictures(place: &Place) {
     let colour = DynamicImage::ImageRgb8(image::RgbImage::from_fn(11, 7, |x, y| {
         image::Rgb([(x * 20) as u8, (y * 30) as u8, (x * y) as u8])
     }));
@@ -96,7 +130,7 @@ fn writes_the_seeds_of_binary_formats() {
     for (name, picture, format) in pictures {
         let mut bytes = std::io::Cursor::new(Vec::new());
         picture.write_to(&mut bytes, format).expect("a picture");
-        write(&format!("photograph/{name}"), bytes.get_ref());
+        place.write(&format!("photograph/{name}"), bytes.get_ref());
     }
     // Two nails and a speck, white and by number: the width, the depth, the pixels.
     let within = |x: u32, y: u32| u8::from((3..12).contains(&x) && (2..14).contains(&y));
@@ -106,19 +140,13 @@ fn writes_the_seeds_of_binary_formats() {
         all.map(|(x, y)| value(within(x, y), other(x, y))).collect()
     };
     let white = pixels(&|a, b| (a | b).saturating_mul(200));
-    write("mask/white", &[&[24, 0][..], &white].concat());
-    write("mask/numbers", &[&[24, 0][..], &pixels(&|a, b| a + 2 * b)].concat());
+    place.write("mask/white", &[&[24, 0][..], &white].concat());
+    place.write("mask/numbers", &[&[24, 0][..], &pixels(&|a, b| a + 2 * b)].concat());
     let words: Vec<u8> = white.iter().flat_map(|value| [0, *value]).collect();
-    write("mask/deep", &[&[24, 1][..], &words].concat());
-
-    let desk = Desk::new();
-    parquet(&desk);
-    partials(&desk);
-    record(&desk);
-    xdf();
+    place.write("mask/deep", &[&[24, 1][..], &words].concat());
 }
 
-fn parquet(desk: &Desk) {
+fn parquet(desk: &Desk, place: &Place) {
     use lunula::table::{Column, TableWriter, Value};
     let path = desk.place("seed.parquet");
     let columns = vec![Column::number("time_s"), Column::number("P1"), Column::integer("led"), Column::text("subject")];
@@ -130,11 +158,11 @@ fn parquet(desk: &Desk) {
         table.write(&cells).expect("a row");
     }
     table.finish().expect("a table");
-    std::fs::copy(&path, corpus("parquet/log.parquet")).expect("a seed");
+    std::fs::copy(&path, place.of("parquet/log.parquet")).expect("a seed");
 }
 
 /// The sums of two subjects and the levels of one.
-fn partials(desk: &Desk) {
+fn partials(desk: &Desk, place: &Place) {
     let set = desk.place("set");
     std::fs::create_dir_all(set.join("a")).expect("a folder");
     for subject in ["S01", "S02"] {
@@ -148,11 +176,11 @@ fn partials(desk: &Desk) {
     };
     let out = desk.place("maps");
     lunula(&[set.as_os_str(), "--size".as_ref(), "8".as_ref(), "--out".as_ref(), out.as_os_str()]);
-    std::fs::copy(out.join("maps/a.partial.npz"), corpus("partials/two.npz")).expect("a seed");
+    std::fs::copy(out.join("maps/a.partial.npz"), place.of("partials/two.npz")).expect("a seed");
 }
 
 /// What a run keeps of a task.
-fn record(desk: &Desk) {
+fn record(desk: &Desk, place: &Place) {
     use lunula::pipeline::{PipelineMark, Results, RunOptions, RunWatch, Shard};
     let (stop, out) = (std::sync::atomic::AtomicBool::new(false), desk.place("run"));
     let options = RunOptions {
@@ -167,11 +195,11 @@ fn record(desk: &Desk) {
     drop(results);
     let home = out.join(".lunula");
     let records = std::fs::read_dir(home.join("records")).expect("records").next().expect("one").expect("one").path();
-    std::fs::copy(records, corpus("records/record.json")).expect("a seed");
-    std::fs::copy(home.join("part.json"), corpus("records/part.json")).expect("a seed");
+    std::fs::copy(records, place.of("records/record.json")).expect("a seed");
+    std::fs::copy(home.join("part.json"), place.of("records/part.json")).expect("a seed");
 }
 
-fn xdf() {
+fn xdf(place: &Place) {
     let chunk = |tag: u16, content: &[u8]| {
         let length = content.len() as u32 + 2;
         [&[4][..], &length.to_le_bytes(), &tag.to_le_bytes(), content].concat()
@@ -208,12 +236,12 @@ fn xdf() {
         offset(5.0),
         chunk(6, &[1, 0, 0, 0]),
     ];
-    std::fs::write(corpus("xdf/doubles.xdf"), doubles.concat()).expect("a seed");
+    place.write("xdf/doubles.xdf", &doubles.concat());
     let short = |value: i16| value.to_le_bytes().to_vec();
     let shorts = [
         b"XDF:".to_vec(),
         header("int16", "<channel><label>P1</label></channel>", 1),
         samples(&[(Some(1.0), short(3)), (Some(1.1), short(-4))]),
     ];
-    std::fs::write(corpus("xdf/shorts.xdf"), shorts.concat()).expect("a seed");
+    place.write("xdf/shorts.xdf", &shorts.concat());
 }

@@ -419,24 +419,26 @@ fn a_doubted_outline_is_not_read_as_a_nail() {
     assert!(answer.stderr.contains("no polygon labelled `nail`"), "{}", answer.stderr);
 }
 
-/// The whole way on real photographs of hands; skipped where they are not at hand.
-#[test]
-fn real_hands_with_masks_are_normalized() {
-    let hands = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data/nail/vpapenko_cc0"));
-    if !hands.is_dir() {
-        eprintln!("skipped: no photographs of hands at {}", hands.display());
-        return;
+mod real_data {
+    use super::*;
+    use crate::util::real_data::real_data;
+
+    /// The whole way on real photographs of hands.
+    #[test]
+    #[ignore = "needs real recordings: LUNULA_REAL_DATA"]
+    fn real_hands_with_masks_are_normalized() {
+        let hands = real_data("nail/vpapenko_cc0");
+        let dir = Dir::new();
+        let [images, masks] = ["images", "masks"].map(|name| hands.join(name).display().to_string());
+        dir.lunula(&["photos", &images, "--masks", &masks, "--out", "out"])
+            .expect(1)
+            .says("none of its 3 nails could be used");
+        let rows = dir.table("out/nails.csv");
+        let used = rows.iter().filter(|r| r["used"] == "true").count();
+        // 127 nails and a stray square of the masks. Measured: 122 used, each with its distal end up
+        // (`tests/nail_axes.rs`).
+        assert_eq!(rows.len(), 128);
+        assert!(used >= 120, "{used}");
+        assert!(rows.iter().all(|r| r["used"] == "true" || !r["reason"].is_empty()));
     }
-    let dir = Dir::new();
-    let [images, masks] = ["images", "masks"].map(|name| hands.join(name).display().to_string());
-    dir.lunula(&["photos", &images, "--masks", &masks, "--out", "out"])
-        .expect(1)
-        .says("none of its 3 nails could be used");
-    let rows = dir.table("out/nails.csv");
-    let used = rows.iter().filter(|r| r["used"] == "true").count();
-    // 127 nails and a stray square of the masks. Measured: 122 used, each with its distal end up
-    // (`tests/nail_axes.rs`).
-    assert_eq!(rows.len(), 128);
-    assert!(used >= 120, "{used}");
-    assert!(rows.iter().all(|r| r["used"] == "true" || !r["reason"].is_empty()));
 }

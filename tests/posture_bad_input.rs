@@ -227,24 +227,25 @@ fn a_joint_that_is_not_in_the_file_is_named() {
         .says("J4");
 }
 
-#[test]
-fn hands_without_markers_give_no_angles() {
-    let clip = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data/hand/rotation_1.mp4");
-    if !std::path::Path::new(clip).exists() {
-        eprintln!("skipped: no real recordings here");
-        return;
-    }
-    let dir = folder();
-    let answer = posture(&dir, clip);
-    refused(&dir, answer, &["rotation_1.mp4", "markers"]);
-}
+mod real_data {
+    use super::*;
+    use crate::util::real_data::real_data;
 
-#[test]
-#[ignore = "needs ../shared/data"]
-fn nothing_on_real_hands_is_suggested_as_a_marker() {
-    let dir = Dir::new();
-    for name in ["rotation_1", "scale_1", "translation_2"] {
-        let clip = format!("{}/../shared/data/hand/{name}.mp4", env!("CARGO_MANIFEST_DIR"));
-        dir.lunula(&["posture", &clip, "--suggest"]).expect(2).says("looks like a marker");
+    #[test]
+    #[ignore = "needs real recordings: LUNULA_REAL_DATA"]
+    fn hands_without_markers_give_no_angles() {
+        let dir = folder();
+        let answer = posture(&dir, real_data("hand/rotation_1.mp4").to_str().unwrap());
+        refused(&dir, answer, &["rotation_1.mp4", "markers"]);
+    }
+
+    #[test]
+    #[ignore = "needs real recordings: LUNULA_REAL_DATA"]
+    fn nothing_on_real_hands_is_suggested_as_a_marker() {
+        let dir = Dir::new();
+        for name in ["rotation_1", "scale_1", "translation_2"] {
+            let clip = real_data(&format!("hand/{name}.mp4"));
+            dir.lunula(&["posture", clip.to_str().unwrap(), "--suggest"]).expect(2).says("looks like a marker");
+        }
     }
 }

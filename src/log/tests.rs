@@ -323,46 +323,40 @@ proptest! {
     }
 }
 
-/// A file of the real data, if it is there.
-fn real(name: &str) -> Option<PathBuf> {
-    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data/signals")).join(name);
-    if !path.exists() {
-        eprintln!("skipped: {} is not there", path.display());
-        return None;
-    }
-    Some(path)
-}
+mod real_data {
+    use super::*;
+    use crate::real_data::real_data;
 
-#[test]
-fn real_photoplethysmograms_are_read() {
-    let milliseconds = |text| timed(text, TimeUnit::Milliseconds);
-    if let Some(path) = real("heartpy_data2.csv") {
-        let log = Log::read(&path, &milliseconds("time_s=timer,P1=hr")).unwrap();
+    #[test]
+    #[ignore = "needs real recordings: LUNULA_REAL_DATA"]
+    fn real_photoplethysmograms_are_read() {
+        let milliseconds = |text| timed(text, TimeUnit::Milliseconds);
+        let log = Log::read(&real_data("signals/heartpy_data2.csv"), &milliseconds("time_s=timer,P1=hr")).unwrap();
         assert_eq!((log.time_s.len(), log.photodiodes[0].values[1]), (15_000, 514.0));
         assert!((log.time_s[1] - 0.008_547_903).abs() <= 1e-9);
+        for (subject, rows) in [("subject_01", 3155), ("subject_02", 2212), ("subject_03", 2219)] {
+            let path = real_data(&format!("signals/welltory/{subject}/PPG.csv"));
+            let log = Log::read(&path, &milliseconds("P1=R,P2=G,P3=B")).unwrap();
+            assert_eq!((log.time_s.len(), log.photodiodes.len()), (rows, 3), "{subject}");
+            assert!(log.time_s.is_sorted() && noted(&log, &["`time`"]), "{:?}", log.notes);
+        }
     }
-    for (subject, rows) in [("subject_01", 3155), ("subject_02", 2212), ("subject_03", 2219)] {
-        let Some(path) = real(&format!("welltory/{subject}/PPG.csv")) else { continue };
-        let log = Log::read(&path, &milliseconds("P1=R,P2=G,P3=B")).unwrap();
-        assert_eq!((log.time_s.len(), log.photodiodes.len()), (rows, 3), "{subject}");
-        assert!(log.time_s.is_sorted() && noted(&log, &["`time`"]), "{:?}", log.notes);
-    }
-}
 
-#[test]
-fn real_inertial_logs_with_dates_are_read() {
-    let Some(phone) = real("sevivi/camera_imu.csv.gz") else { return };
-    let Some(other) = real("sevivi/LF.csv.gz") else { return };
-    let columns = Columns::parse("P1=ACCELERATION_X,P2=ACCELERATION_Y,P3=ACCELERATION_Z").unwrap();
-    let [phone, other] = [phone, other].map(|path| Log::read(&path, &columns).unwrap());
-    // Both begin with a header; their stamps are 64 and 105.8 a second.
-    let swapped = phone.time_s.len() == 1717;
-    let (slow, fast) = if swapped { (phone, other) } else { (other, phone) };
-    assert_eq!((slow.time_s.len(), fast.time_s.len()), (1717, 2238));
-    for (log, step_s) in [(&slow, 1.0 / 64.0), (&fast, 0.009_448_009)] {
-        let mean_s = (log.time_s[log.time_s.len() - 1] - log.time_s[0]) / (log.time_s.len() - 1) as f64;
-        assert!((mean_s - step_s).abs() <= 1e-7, "{mean_s}");
-        assert!(log.midnight_s.is_some_and(|m| m <= log.time_s[0] && log.time_s[0] - m < 86_400.0));
+    #[test]
+    #[ignore = "needs real recordings: LUNULA_REAL_DATA"]
+    fn real_inertial_logs_with_dates_are_read() {
+        let [phone, other] = ["camera_imu", "LF"].map(|name| real_data(&format!("signals/sevivi/{name}.csv.gz")));
+        let columns = Columns::parse("P1=ACCELERATION_X,P2=ACCELERATION_Y,P3=ACCELERATION_Z").unwrap();
+        let [phone, other] = [phone, other].map(|path| Log::read(&path, &columns).unwrap());
+        // Both begin with a header; their stamps are 64 and 105.8 a second.
+        let swapped = phone.time_s.len() == 1717;
+        let (slow, fast) = if swapped { (phone, other) } else { (other, phone) };
+        assert_eq!((slow.time_s.len(), fast.time_s.len()), (1717, 2238));
+        for (log, step_s) in [(&slow, 1.0 / 64.0), (&fast, 0.009_448_009)] {
+            let mean_s = (log.time_s[log.time_s.len() - 1] - log.time_s[0]) / (log.time_s.len() - 1) as f64;
+            assert!((mean_s - step_s).abs() <= 1e-7, "{mean_s}");
+            assert!(log.midnight_s.is_some_and(|m| m <= log.time_s[0] && log.time_s[0] - m < 86_400.0));
+        }
+        assert!([&slow, &fast].iter().any(|log| noted(log, &["`#1`", "time_s"])), "the nameless column of dates");
     }
-    assert!([&slow, &fast].iter().any(|log| noted(log, &["`#1`", "time_s"])), "the nameless column of dates");
 }

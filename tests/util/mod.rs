@@ -2,6 +2,7 @@
 
 #![allow(dead_code, unreachable_pub, reason = "every test file uses a part of it")]
 
+pub(crate) mod real_data;
 pub mod sensor;
 
 use std::path::{Path, PathBuf};

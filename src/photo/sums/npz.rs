@@ -164,6 +164,10 @@ mod tests {
         let path = dir.path().join("a.npz");
         let array = Array2::from_shape_fn((9, 9), |(row, column)| (row * 1000 + column) as u64);
         archive(&path, &array);
+        // Dated by the format's first day, not by the clock.
+        let directory = std::fs::read(&path).expect("a file");
+        let at = directory.windows(4).position(|w| w == b"PK\x01\x02").expect("a directory");
+        assert_eq!((u16_at(&directory, at + 12), u16_at(&directory, at + 14)), (Some(0), Some(0x21)));
         let mut npz = Npz::open(&path).expect("an archive");
         assert!(npz.has("sum") && !npz.has("count") && npz.square::<u64>("count", 9).is_err());
         assert!(npz.square::<u32>("sum", 9).is_err());

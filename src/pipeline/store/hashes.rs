@@ -172,7 +172,8 @@ fn identity(of: &fs::Metadata) -> (FileId, Stat) {
     (FileId { device: of.dev(), inode: of.ino() }, stat)
 }
 
-fn now_ns() -> i128 {
+/// The machine's clock: nanoseconds since 1970 began.
+pub(in crate::pipeline) fn now_ns() -> i128 {
     let ns = |since: std::time::Duration| i128::try_from(since.as_nanos()).unwrap_or(i128::MAX);
     SystemTime::now().duration_since(UNIX_EPOCH).map_or_else(|before| -ns(before.duration()), ns)
 }
@@ -192,6 +193,8 @@ pub(in crate::pipeline) struct Hashes {
     lines: AtomicUsize,
     log_fails: AtomicBool,
     read: AtomicUsize,
+    /// The clock: nanoseconds since 1970 began.
+    now_ns: fn() -> i128,
 }
 
 impl Hashes {
@@ -214,6 +217,7 @@ impl Hashes {
             lines: AtomicUsize::new(lines),
             log_fails: AtomicBool::new(false),
             read: AtomicUsize::new(0),
+            now_ns,
         }
     }
 
@@ -239,6 +243,13 @@ impl Hashes {
         }
     }
 
+    /// The same by another clock, which counts nanoseconds since 1970 began.
+    #[cfg(test)]
+    pub(in crate::pipeline) fn by(mut self, now_ns: fn() -> i128) -> Self {
+        self.now_ns = now_ns;
+        self
+    }
+
     /// How many files were read, not remembered.
     #[cfg(test)]
     pub(in crate::pipeline) fn read(&self) -> usize {
@@ -255,7 +266,7 @@ impl Hashes {
         let slot = Arc::clone(self.known.lock().unwrap_or_else(PoisonError::into_inner).entry(file).or_default());
         let mut slot = slot.lock().unwrap_or_else(PoisonError::into_inner);
         slot.1 = true;
-        if let Some(seen) = slot.0.filter(|seen| seen.is_believed(stat, now_ns())) {
+        if let Some(seen) = slot.0.filter(|seen| seen.is_believed(stat, (self.now_ns)())) {
             return Ok((seen.hash, stat.size));
         }
         let (file, seen) = self.read_file(path)?;
@@ -281,7 +292,7 @@ impl Hashes {
     fn read_file(&self, path: &Path) -> Result<(FileId, Seen), FileFault> {
         self.read.fetch_add(1, Ordering::Relaxed);
         let fault = |why| FileFault::of(path, why);
-        let read_ns = now_ns();
+        let read_ns = (self.now_ns)();
         let mut file = open_regular(path).map_err(fault)?;
         let before = identity(&file.metadata().map_err(fault)?);
         let mut hash = Sha256::new();

@@ -222,100 +222,102 @@ fn an_hour_of_log_is_searched_with_few_rows() {
     assert!((found.offset_s - OFFSET_S).abs() <= LONG_S, "{found:?}");
 }
 
-/// Numbers of a table of comma-separated values behind gzip.
-fn signals(name: &str) -> Option<Vec<Vec<String>>> {
-    use std::io::Read as _;
-    let path = format!("{}/../shared/data/signals/{name}", env!("CARGO_MANIFEST_DIR"));
-    let mut text = String::new();
-    let file = std::fs::File::open(&path).ok()?;
-    if name.ends_with(".gz") {
-        flate2::read::GzDecoder::new(file).read_to_string(&mut text).ok()?;
-    } else {
-        std::io::BufReader::new(file).read_to_string(&mut text).ok()?;
-    }
-    Some(text.lines().skip(1).map(|line| line.split(',').map(str::to_owned).collect()).collect())
-}
-
-/// Seconds of the day of `2021-10-21 09:20:58.216642589+00:00`.
-fn second_of_day(stamp: &str) -> f64 {
-    let time = stamp.split(' ').nth(1).unwrap().trim_end_matches("+00:00");
-    time.split(':').fold(0.0, |sum, part| sum * 60.0 + part.parse::<f64>().unwrap())
-}
-
-/// Times and columns.
-type Axes = (Vec<f64>, Vec<Vec<f64>>);
-
-fn accelerations(name: &str) -> Option<Axes> {
-    let rows = signals(name)?;
-    let time: Vec<f64> = rows.iter().map(|row| second_of_day(&row[0])).collect();
-    let time = time.iter().map(|t| t - time[0]).collect();
-    let axes = (1..4).map(|axis| rows.iter().map(|row| row[axis].parse().unwrap()).collect()).collect();
-    Some((time, axes))
-}
-
-fn size(axes: &[Vec<f64>]) -> Vec<f64> {
-    (0..axes[0].len()).map(|k| axes.iter().map(|axis| axis[k] * axis[k]).sum::<f64>().sqrt()).collect()
-}
-
-/// The phone's and the other clock's accelerations, if the files are there.
-fn sevivi() -> Option<[Axes; 2]> {
-    let read = accelerations("sevivi/camera_imu.csv.gz").zip(accelerations("sevivi/LF.csv.gz"));
-    if read.is_none() {
-        eprintln!("skipped: ../shared/data/signals/sevivi is not there");
-    }
-    read.map(|(phone, other)| [phone, other])
-}
-
 fn slices(columns: &[Vec<f64>]) -> Vec<&[f64]> {
     columns.iter().map(Vec::as_slice).collect()
 }
 
-/// The published optimum, and how far from it the lag may be, seconds. Measured: 4 ms.
-const SEVIVI_S: f64 = 3.43;
-const NEAR_SEVIVI_S: f64 = 0.02;
+mod real_data {
+    use super::*;
+    use crate::real_data::real_data;
 
-#[test]
-fn two_inertial_logs_of_one_shaking_are_tied() {
-    let Some([(phone_s, phone), (other_s, other)]) = sevivi() else { return };
-    let sizes = [vec![size(&phone)], vec![size(&other)]];
-    let of = |a: (&[f64], &[Vec<f64>]), b: (&[f64], &[Vec<f64>])| {
-        let (video, log) = (slices(a.1), slices(b.1));
-        let recordings = [(a.0, &video), (b.0, &log)].map(|(time_s, columns)| Recording { time_s, columns });
-        correlate(recordings[0], recordings[1], LagSearch::default()).unwrap()
-    };
-    let found = [
-        of((&phone_s, &sizes[0]), (&other_s, &sizes[1])).offset_s,
-        of((&phone_s, &phone), (&other_s, &other)).offset_s,
-        -of((&other_s, &sizes[1]), (&phone_s, &sizes[0])).offset_s,
-    ];
-    assert!(found.iter().all(|found| (found - SEVIVI_S).abs() <= NEAR_SEVIVI_S), "{found:?}");
-}
+    /// Cells of a table of comma-separated values, behind gzip if its name says so.
+    fn signals(name: &str) -> Vec<Vec<String>> {
+        use std::io::Read as _;
+        let mut text = String::new();
+        let mut file = std::fs::File::open(real_data(&format!("signals/{name}"))).unwrap();
+        if name.ends_with(".gz") {
+            flate2::read::GzDecoder::new(file).read_to_string(&mut text).unwrap();
+        } else {
+            file.read_to_string(&mut text).unwrap();
+        }
+        text.lines().skip(1).map(|line| line.split(',').map(str::to_owned).collect()).collect()
+    }
 
-#[test]
-fn a_pulse_is_not_tied_to_a_shaking() {
-    let Some([(phone_s, phone), (other_s, other)]) = sevivi() else { return };
-    let mut pairs = 0;
-    let mut refused = |video: Recording<'_>, log: Recording<'_>| {
-        assert!(correlate(video, log, LagSearch::default()).is_err());
-        pairs += 1;
-    };
-    let backwards: Vec<Vec<f64>> = phone.iter().map(|axis| axis.iter().rev().copied().collect()).collect();
-    let shakings = [(&phone_s, &phone), (&other_s, &other)].map(|(time, axes)| (time, vec![size(axes)], axes));
-    for subject in 1..=3_usize {
-        let Some(rows) = signals(&format!("welltory/subject_0{subject}/PPG.csv")) else { return };
-        let time: Vec<f64> = rows.iter().map(|row| 1e-3 * row[0].parse::<f64>().unwrap()).collect();
-        let red: Vec<f64> = rows.iter().map(|row| row[1].parse().unwrap()).collect();
-        let pulse = Recording { time_s: &time, columns: &[&red] };
-        for (k, (time_s, size, axes)) in shakings.iter().enumerate() {
-            // Each subject with both shakings, each shaking in all three ways.
-            match (subject + k) % 3 {
-                0 => refused(pulse, Recording { time_s, columns: &slices(size) }),
-                1 => refused(pulse, Recording { time_s, columns: &slices(axes) }),
-                _ => refused(Recording { time_s, columns: &slices(axes) }, pulse),
+    /// Seconds of the day of `2021-10-21 09:20:58.216642589+00:00`.
+    fn second_of_day(stamp: &str) -> f64 {
+        let time = stamp.split(' ').nth(1).unwrap().trim_end_matches("+00:00");
+        time.split(':').fold(0.0, |sum, part| sum * 60.0 + part.parse::<f64>().unwrap())
+    }
+
+    /// Times and columns.
+    type Axes = (Vec<f64>, Vec<Vec<f64>>);
+
+    fn accelerations(name: &str) -> Axes {
+        let rows = signals(name);
+        let time: Vec<f64> = rows.iter().map(|row| second_of_day(&row[0])).collect();
+        let time = time.iter().map(|t| t - time[0]).collect();
+        let axes = (1..4).map(|axis| rows.iter().map(|row| row[axis].parse().unwrap()).collect()).collect();
+        (time, axes)
+    }
+
+    fn size(axes: &[Vec<f64>]) -> Vec<f64> {
+        (0..axes[0].len()).map(|k| axes.iter().map(|axis| axis[k] * axis[k]).sum::<f64>().sqrt()).collect()
+    }
+
+    /// The phone's and the other clock's accelerations.
+    fn sevivi() -> [Axes; 2] {
+        ["sevivi/camera_imu.csv.gz", "sevivi/LF.csv.gz"].map(accelerations)
+    }
+
+    /// The published optimum, and how far from it the lag may be, seconds. Measured: 4 ms.
+    const SEVIVI_S: f64 = 3.43;
+    const NEAR_SEVIVI_S: f64 = 0.02;
+
+    #[test]
+    #[ignore = "needs real recordings: LUNULA_REAL_DATA"]
+    fn two_inertial_logs_of_one_shaking_are_tied() {
+        let [(phone_s, phone), (other_s, other)] = sevivi();
+        let sizes = [vec![size(&phone)], vec![size(&other)]];
+        let of = |a: (&[f64], &[Vec<f64>]), b: (&[f64], &[Vec<f64>])| {
+            let (video, log) = (slices(a.1), slices(b.1));
+            let recordings = [(a.0, &video), (b.0, &log)].map(|(time_s, columns)| Recording { time_s, columns });
+            correlate(recordings[0], recordings[1], LagSearch::default()).unwrap()
+        };
+        let found = [
+            of((&phone_s, &sizes[0]), (&other_s, &sizes[1])).offset_s,
+            of((&phone_s, &phone), (&other_s, &other)).offset_s,
+            -of((&other_s, &sizes[1]), (&phone_s, &sizes[0])).offset_s,
+        ];
+        assert!(found.iter().all(|found| (found - SEVIVI_S).abs() <= NEAR_SEVIVI_S), "{found:?}");
+    }
+
+    #[test]
+    #[ignore = "needs real recordings: LUNULA_REAL_DATA"]
+    fn a_pulse_is_not_tied_to_a_shaking() {
+        let [(phone_s, phone), (other_s, other)] = sevivi();
+        let mut pairs = 0;
+        let mut refused = |video: Recording<'_>, log: Recording<'_>| {
+            assert!(correlate(video, log, LagSearch::default()).is_err());
+            pairs += 1;
+        };
+        let backwards: Vec<Vec<f64>> = phone.iter().map(|axis| axis.iter().rev().copied().collect()).collect();
+        let shakings = [(&phone_s, &phone), (&other_s, &other)].map(|(time, axes)| (time, vec![size(axes)], axes));
+        for subject in 1..=3_usize {
+            let rows = signals(&format!("welltory/subject_0{subject}/PPG.csv"));
+            let time: Vec<f64> = rows.iter().map(|row| 1e-3 * row[0].parse::<f64>().unwrap()).collect();
+            let red: Vec<f64> = rows.iter().map(|row| row[1].parse().unwrap()).collect();
+            let pulse = Recording { time_s: &time, columns: &[&red] };
+            for (k, (time_s, size, axes)) in shakings.iter().enumerate() {
+                // Each subject with both shakings, each shaking in all three ways.
+                match (subject + k) % 3 {
+                    0 => refused(pulse, Recording { time_s, columns: &slices(size) }),
+                    1 => refused(pulse, Recording { time_s, columns: &slices(axes) }),
+                    _ => refused(Recording { time_s, columns: &slices(axes) }, pulse),
+                }
             }
         }
+        let other = Recording { time_s: &other_s, columns: &slices(&shakings[1].1) };
+        refused(Recording { time_s: &phone_s, columns: &[&size(&backwards)] }, other);
+        assert_eq!(pairs, 7);
     }
-    let other = Recording { time_s: &other_s, columns: &slices(&shakings[1].1) };
-    refused(Recording { time_s: &phone_s, columns: &[&size(&backwards)] }, other);
-    assert_eq!(pairs, 7);
 }

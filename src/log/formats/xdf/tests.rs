@@ -1,5 +1,4 @@
 use std::fs;
-use std::path::PathBuf;
 
 use crate::log::{Columns, Log};
 
@@ -143,61 +142,6 @@ fn damaged_recordings_are_told() {
     }
 }
 
-/// A file of the real data, if it is there.
-fn real(name: &str) -> Option<PathBuf> {
-    let path = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data/signals")).join(name);
-    if !path.exists() {
-        eprintln!("skipped: {} is not there", path.display());
-        return None;
-    }
-    Some(path)
-}
-
-/// The format's own example. Stamps and values as pyxdf 1.17.5 reads them: `load_xdf("minimal.xdf")`.
-#[test]
-fn the_formats_minimal_example_reads_as_pyxdf_does() {
-    let Some(path) = real("minimal.xdf") else { return };
-    let log = Log::read(&path, &Columns::parse("P1=ch1,P2=ch2,P3=ch3").unwrap()).unwrap();
-    let stamps = [5.0, 5.1, 5.2, 5.3, 5.4, 5.5, 5.6, 5.7, 5.8];
-    assert!(
-        log.time_s.len() == 9 && log.time_s.iter().zip(stamps).all(|(a, b)| (a - b).abs() <= 1e-12),
-        "{:?}",
-        log.time_s
-    );
-    assert_eq!(log.photodiodes[0].values, [192.0, 12.0, 13.0, 14.0, 15.0, 12.0, 13.0, 14.0, 15.0]);
-    assert_eq!(log.photodiodes[2].values[..2], [238.0, 32.0]);
-}
-
-/// The format's example of a clock that was reset. Stamps and values as pyxdf 1.17.5 reads them:
-/// `load_xdf("clock_resets.xdf", dejitter_timestamps=False)`.
-#[test]
-fn the_formats_clock_resets_read_as_pyxdf_does() {
-    /// The two fit the same loss by different iterations: 5.6e-9 s measured.
-    const SAME_S: f64 = 1e-7;
-    let Some(path) = real("clock_resets.xdf") else { return };
-    let log = Log::read(&path, &Columns::parse("P1=ch1,P8=ch8").unwrap()).unwrap();
-    assert_eq!(log.time_s.len(), 27_815);
-    for (sample, time_s) in [
-        (0, 810.094_847_449_217_9),
-        (1, 810.105_656_536_645_3),
-        (100, 811.166_720_095_439_8),
-        (12_875, 948.225_983_576_499_9),
-        (12_876, 1_221.781_955_812_159_8),
-        (12_877, 1_221.792_886_964_559_8),
-        (20_000, 1_298.878_906_891_759),
-        (27_814, 1_383.092_325_882_539_2),
-    ] {
-        assert!((log.time_s[sample] - time_s).abs() <= SAME_S, "{sample}: {}", log.time_s[sample] - time_s);
-    }
-    assert!((log.photodiodes[0].values[0] - 0.141_807_869_076_728_82).abs() <= 1e-12);
-    assert!((log.photodiodes[1].values[27_814] - 0.891_636_073_589_325).abs() <= 1e-12);
-    for words in
-        ["was reset 1 time(s)", "27815 samples are left as they came", "the longest, 274 s, ends at sample 12877"]
-    {
-        assert!(noted(&log, words), "{words}: {:?}", log.notes);
-    }
-}
-
 #[test]
 fn a_header_of_very_many_channels_is_refused_before_memory_is_taken() {
     let said = |count: &str| {
@@ -208,5 +152,57 @@ fn a_header_of_very_many_channels_is_refused_before_memory_is_taken() {
     for parts in [vec![said("2147483648")], vec![said("18446744073709551615")], vec![said("65000"); 2]] {
         let refused = read_with(&parts, None).unwrap_err();
         assert!(refused.contains("log.xdf") && refused.contains("more than 65536"), "{refused}");
+    }
+}
+
+mod real_data {
+    use super::*;
+    use crate::real_data::real_data;
+
+    /// The format's own example. Stamps and values as pyxdf 1.17.5 reads them: `load_xdf("minimal.xdf")`.
+    #[test]
+    #[ignore = "needs real recordings: LUNULA_REAL_DATA"]
+    fn the_formats_minimal_example_reads_as_pyxdf_does() {
+        let path = real_data("signals/minimal.xdf");
+        let log = Log::read(&path, &Columns::parse("P1=ch1,P2=ch2,P3=ch3").unwrap()).unwrap();
+        let stamps = [5.0, 5.1, 5.2, 5.3, 5.4, 5.5, 5.6, 5.7, 5.8];
+        assert!(
+            log.time_s.len() == 9 && log.time_s.iter().zip(stamps).all(|(a, b)| (a - b).abs() <= 1e-12),
+            "{:?}",
+            log.time_s
+        );
+        assert_eq!(log.photodiodes[0].values, [192.0, 12.0, 13.0, 14.0, 15.0, 12.0, 13.0, 14.0, 15.0]);
+        assert_eq!(log.photodiodes[2].values[..2], [238.0, 32.0]);
+    }
+
+    /// The format's example of a clock that was reset. Stamps and values as pyxdf 1.17.5 reads them:
+    /// `load_xdf("clock_resets.xdf", dejitter_timestamps=False)`.
+    #[test]
+    #[ignore = "needs real recordings: LUNULA_REAL_DATA"]
+    fn the_formats_clock_resets_read_as_pyxdf_does() {
+        /// The two fit the same loss by different iterations: 5.6e-9 s measured.
+        const SAME_S: f64 = 1e-7;
+        let path = real_data("signals/clock_resets.xdf");
+        let log = Log::read(&path, &Columns::parse("P1=ch1,P8=ch8").unwrap()).unwrap();
+        assert_eq!(log.time_s.len(), 27_815);
+        for (sample, time_s) in [
+            (0, 810.094_847_449_217_9),
+            (1, 810.105_656_536_645_3),
+            (100, 811.166_720_095_439_8),
+            (12_875, 948.225_983_576_499_9),
+            (12_876, 1_221.781_955_812_159_8),
+            (12_877, 1_221.792_886_964_559_8),
+            (20_000, 1_298.878_906_891_759),
+            (27_814, 1_383.092_325_882_539_2),
+        ] {
+            assert!((log.time_s[sample] - time_s).abs() <= SAME_S, "{sample}: {}", log.time_s[sample] - time_s);
+        }
+        assert!((log.photodiodes[0].values[0] - 0.141_807_869_076_728_82).abs() <= 1e-12);
+        assert!((log.photodiodes[1].values[27_814] - 0.891_636_073_589_325).abs() <= 1e-12);
+        for words in
+            ["was reset 1 time(s)", "27815 samples are left as they came", "the longest, 274 s, ends at sample 12877"]
+        {
+            assert!(noted(&log, words), "{words}: {:?}", log.notes);
+        }
     }
 }

@@ -1,0 +1,88 @@
+//! The fixtures are what `fixtures/make.sh` makes, and the commands of README and book that use them work.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::util::Dir;
+use crate::util::real_data::repository;
+
+fn fixtures() -> PathBuf {
+    repository().join("fixtures")
+}
+
+fn files(root: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let (mut found, mut folders) = (BTreeMap::new(), vec![root.to_owned()]);
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.file_name().is_some_and(|name| name != "make.sh" && name != "README.md") {
+                let bytes = std::fs::read(&path).expect("a file");
+                found.insert(path.strip_prefix(root).expect("within it").to_owned(), bytes);
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn the_fixtures_are_made_again_byte_for_byte() {
+    let dir = Dir::new();
+    let made = dir.path("made");
+    std::fs::create_dir(&made).expect("a folder");
+    let status = Command::new("sh")
+        .arg(fixtures().join("make.sh"))
+        .arg(&made)
+        .env("LUNULA", env!("CARGO_BIN_EXE_lunula"))
+        .status()
+        .expect("a shell");
+    assert!(status.success());
+    let (committed, made) = (files(&fixtures()), files(&made));
+    assert_eq!(committed.keys().collect::<Vec<_>>(), made.keys().collect::<Vec<_>>());
+    let differ: Vec<_> =
+        committed.iter().filter(|(name, bytes)| made[*name] != **bytes).map(|(name, _)| name).collect();
+    assert!(differ.is_empty(), "{differ:?}: run fixtures/make.sh, look at what changed, and commit it");
+    assert!(committed.len() == 16 && committed.values().map(Vec::len).sum::<usize>() < 2_000_000);
+}
+
+/// The `lunula` commands within a page's blocks of `sh`, lines ended by a backslash joined.
+fn commands(page: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    for block in page.split("```sh\n").skip(1) {
+        let block = block.split("```").next().unwrap_or_default().replace("\\\n", " ");
+        found.extend(block.lines().filter(|line| line.starts_with("lunula ")).map(str::to_owned));
+    }
+    found
+}
+
+/// Each page's commands that use fixtures, or what such a command of the same page made, in the page's order.
+#[test]
+fn the_commands_of_readme_and_book_that_use_fixtures_work() {
+    let mut pages = vec![repository().join("README.md")];
+    let book = repository().join("docs/src");
+    pages.extend(std::fs::read_dir(book).expect("the book").map(|entry| entry.expect("a page").path()));
+    pages.sort();
+    let mut done = 0;
+    for page in pages.iter().filter(|page| page.extension().is_some_and(|ending| ending == "md")) {
+        let dir = Dir::new();
+        let text = std::fs::read_to_string(page).expect("a page");
+        let commands = commands(&text);
+        if !commands.iter().any(|command| command.contains("fixtures/")) {
+            continue;
+        }
+        std::os::unix::fs::symlink(fixtures(), dir.path("fixtures")).expect("a link");
+        for command in commands {
+            let words: Vec<&str> = command.split(" #").next().unwrap_or_default().split_whitespace().skip(1).collect();
+            let from_here = |word: &&str| word.starts_with("fixtures/") || dir.path(word).exists();
+            if !words.iter().any(from_here) {
+                continue;
+            }
+            let answer = dir.lunula(&words);
+            assert_eq!(answer.code, 0, "{}: {command}\n{}", page.display(), answer.stderr);
+            done += 1;
+        }
+    }
+    assert!(done >= 5, "{done}");
+}
