@@ -65,6 +65,17 @@ pub enum Error {
 }
 
 /// One LabelMe file.
+///
+/// ```
+/// use std::path::Path;
+///
+/// use lunula::labelme::LabelMe;
+///
+/// let file = LabelMe::read(Path::new("fixtures/photos/extension/s01.json"))?;
+/// let labels: Vec<&str> = file.shapes.iter().map(|shape| shape.label.as_str()).collect();
+/// assert_eq!(labels, ["nail", "axis"]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct LabelMe {

@@ -32,6 +32,16 @@ pub enum OutlineFault {
 const MOST_POINTS: usize = 200_000;
 
 /// The outline of one nail: a simple polygon in pixels of the upright photograph.
+///
+/// ```
+/// use lunula::nail::Outline;
+///
+/// let nail = Outline::new(&[[10.0, 10.0], [50.0, 10.0], [50.0, 70.0], [10.0, 70.0]])?;
+/// assert_eq!(nail.area_px2(), 2400.0);
+/// // A line that crosses itself encloses no nail.
+/// assert!(Outline::new(&[[0.0, 0.0], [9.0, 9.0], [9.0, 0.0], [0.0, 9.0]]).is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outline {
     polygon: Polygon<f64>,

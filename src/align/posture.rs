@@ -9,6 +9,17 @@ use std::path::{Path, PathBuf};
 use crate::table::{Table, TableError};
 
 /// Joint angles over the video's time.
+///
+/// ```
+/// use std::path::Path;
+///
+/// use lunula::align::Posture;
+///
+/// let posture = Posture::read(Path::new("fixtures/finger/truth/joints.csv"))?;
+/// assert_eq!(posture.joints, ["J1", "J2", "J3"]);
+/// assert_eq!(posture.angles_deg[1].len(), posture.time_s.len());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Posture {
     /// The file.

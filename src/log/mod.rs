@@ -50,6 +50,21 @@ pub struct Channel {
 }
 
 /// What a lab's file holds, in the order of time.
+///
+/// ```
+/// use std::path::Path;
+///
+/// use lunula::log::{Columns, Log};
+///
+/// let log = Log::read(Path::new("fixtures/touch/log.csv"), &Columns::default())?;
+/// let names: Vec<&str> = log.forces.iter().map(|force| force.name.as_str()).collect();
+/// assert_eq!(names, ["Fx_N", "Fy_N", "Fz_N"]);
+/// assert_eq!(log.photodiodes.len(), 8);
+/// // Every second sample was taken with the LED off.
+/// let lit = log.led.as_ref().map(|led| led.iter().filter(|lit| **lit).count());
+/// assert_eq!(lit, Some(log.time_s.len() / 2));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Log {
     /// The file.

@@ -66,6 +66,17 @@ pub enum ReadFault {
 }
 
 /// An upright photograph and what is known of its file.
+///
+/// ```
+/// use std::path::Path;
+///
+/// use lunula::photo::{Depth, Photograph};
+///
+/// let photograph = Photograph::read(Path::new("fixtures/photos/extension/s01.png"))?;
+/// assert_eq!((photograph.image.width(), photograph.image.height()), (320, 240));
+/// assert_eq!(photograph.depth(), Depth::Eight);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Photograph {
     /// Upright pixels: L, La, Rgb or Rgba of 8 or 16 bits.

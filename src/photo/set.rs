@@ -82,6 +82,21 @@ pub enum SetError {
 }
 
 /// A checked list of photographs.
+///
+/// ```
+/// use std::path::Path;
+///
+/// use lunula::job::Watch;
+/// use lunula::photo::{Outputs, PhotoSet, PhotosOptions, run};
+///
+/// let set = PhotoSet::open(Path::new("fixtures/photos"), &[])?;
+/// assert_eq!((set.poses(), set.photos.len()), (vec!["extension", "normal"], 4));
+/// let out = tempfile::tempdir()?;
+/// let report = run(&set, &PhotosOptions::default(), &Outputs::maps(out.path()), &Watch::nobody())?;
+/// assert!(report.failed.is_empty() && report.figures.poses[0].subjects == 2);
+/// assert!(out.path().join("maps/extension-mean.npy").exists());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PhotoSet {
     /// The set's folder.

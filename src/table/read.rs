@@ -7,6 +7,19 @@ use super::cells::CsvCells;
 use super::{TableError, TableFormat, csv, parquet};
 
 /// A table that was read.
+///
+/// ```
+/// use std::path::Path;
+///
+/// use lunula::table::Table;
+///
+/// let table = Table::read(Path::new("fixtures/finger/truth/joints.csv"))?;
+/// let j2 = table.numbers("J2_deg")?;
+/// // An empty cell is missing, not zero.
+/// assert!(j2.len() == 60 && j2.iter().all(Option::is_some));
+/// assert!(table.numbers("J4_deg").is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone)]
 pub struct Table {
     path: PathBuf,

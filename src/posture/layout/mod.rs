@@ -81,6 +81,17 @@ pub struct Camera {
 }
 
 /// A marker file, checked.
+///
+/// ```
+/// use std::path::Path;
+///
+/// use lunula::posture::Layout;
+///
+/// let layout = Layout::read(Path::new("fixtures/finger/markers.toml"))?;
+/// let joints: Vec<&str> = layout.joints.iter().map(|joint| joint.name.as_str()).collect();
+/// assert_eq!(joints, ["J1", "J2", "J3"]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Layout {
     /// Which way flexion turns.

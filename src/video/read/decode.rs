@@ -49,6 +49,22 @@ pub enum End {
 }
 
 /// An open video file.
+///
+/// ```
+/// use std::path::Path;
+///
+/// use lunula::video::{Item, Video};
+///
+/// let mut video = Video::open(Path::new("fixtures/finger/video.mp4"), 1)?;
+/// let (mut frames, mut last_s) = (0, 0.0);
+/// while let Some(item) = video.next_item()? {
+///     if let Item::Frame(frame) = item {
+///         (frames, last_s) = (frames + 1, frame.time_s);
+///     }
+/// }
+/// assert_eq!((frames, format!("{last_s:.3}")), (60, "1.967".to_owned()));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub struct Video {
     pub(in crate::video) path: PathBuf,
     threads: usize,
