@@ -1,7 +1,7 @@
 //! Which way flexion turns a segment of the finger on the picture.
 
 /// Which way flexion turns a segment on the shown picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum Flexion {
     /// Clockwise.

@@ -5,11 +5,11 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use clap::{Args, Subcommand};
+use lunula::phantom::video::Preset;
 use lunula::tradeoff::peers::Peers;
 use lunula::tradeoff::{self as curves, Effort, Plan, Row, Setting, Tradeoff, Verdict};
 
 use super::{Common, Outcome};
-use crate::cli::jobs::phantom::SceneArg;
 
 /// Measure error against run time over the settings of a job, or of all: the knee of each curve, where the default
 /// lies, other programs
@@ -130,7 +130,7 @@ struct PhotosArgs {
 struct PostureArgs {
     /// The synthetic video's scene, as of `lunula phantom video`
     #[arg(long, value_enum, default_value = "clean", conflicts_with = "input")]
-    scene: SceneArg,
+    scene: Preset,
     #[command(flatten)]
     measured: Measured,
 }
@@ -181,7 +181,7 @@ pub(super) fn run(args: &TradeoffArgs) -> anyhow::Result<Outcome> {
             let stop = measuring.common.start()?;
             one(curves::Job::Hemodynamics, &measuring.plan(SHORT_REPEATS, 1, stop), measuring)
         }
-        Job::Posture(args) => args.measured.run(curves::Job::Posture, |plan| plan.preset = args.scene.preset()),
+        Job::Posture(args) => args.measured.run(curves::Job::Posture, |plan| plan.preset = args.scene),
         Job::Align(args) => args.measured.run(curves::Job::Align, |plan| {
             plan.seconds = args.seconds.unwrap_or(plan.seconds);
         }),

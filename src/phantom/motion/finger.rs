@@ -24,7 +24,7 @@ const MARKS: [&str; 8] =
 const MARKS_ON: [[usize; 2]; 7] = [[0, 1], [1, 2], [2, 3], [3, 4], [0, 5], [5, 6], [6, 7]];
 
 /// Where the markers are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum MarkerLayout {
     /// Two on each segment, near its joints.

@@ -5,63 +5,9 @@ use std::path::Path;
 use crate::phantom::motion::trajectory::Trajectory;
 use crate::phantom::screen::Jump;
 use crate::phantom::sensor::CHANNELS;
-use crate::phantom::video::{Hide, Leave, Preset, Siting};
+use crate::phantom::video::{Hide, Leave};
 use anyhow::Context;
 use clap::ValueEnum;
-
-/// A [`Preset`] by its name.
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub enum SceneArg {
-    /// [`Preset::Clean`].
-    Clean,
-    /// [`Preset::Hard`].
-    Hard,
-    /// [`Preset::Small`].
-    Small,
-    /// [`Preset::Fast`].
-    Fast,
-    /// [`Preset::Uhd`].
-    Uhd,
-}
-
-impl SceneArg {
-    /// Which it is.
-    #[must_use]
-    pub fn preset(self) -> Preset {
-        match self {
-            Self::Clean => Preset::Clean,
-            Self::Hard => Preset::Hard,
-            Self::Small => Preset::Small,
-            Self::Fast => Preset::Fast,
-            Self::Uhd => Preset::Uhd,
-        }
-    }
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub(super) enum FlexionArg {
-    Clockwise,
-    Counterclockwise,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub(super) enum LayoutArg {
-    Pairs,
-    Joints,
-    Paint,
-    Thumb,
-    Row,
-    Mark,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub(super) enum ColoursArg {
-    Pairs,
-    Distinct,
-    Red,
-    Dark,
-    Pale,
-}
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
 pub(super) enum MatrixArg {
@@ -71,21 +17,6 @@ pub(super) enum MatrixArg {
     Bt709,
     #[value(name = "2020")]
     Bt2020,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub(super) enum SitingArg {
-    Left,
-    Centre,
-}
-
-impl SitingArg {
-    pub(super) fn siting(self) -> Siting {
-        match self {
-            Self::Left => Siting::Left,
-            Self::Centre => Siting::Centre,
-        }
-    }
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]

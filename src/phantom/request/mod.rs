@@ -7,7 +7,6 @@ mod photos;
 mod study;
 mod video;
 
-pub use choices::SceneArg;
 pub use log::LogRequest;
 pub use photos::PhotosRequest;
 pub use study::StudyRequest;

@@ -2,15 +2,12 @@
 
 use clap::Args;
 
-use super::choices::{
-    ColoursArg, FlexionArg, FormatArg, LayoutArg, MatrixArg, RotateArg, SceneArg, SitingArg, parse_colour, parse_hide,
-    parse_leave, parse_size, trajectory,
-};
+use super::choices::{FormatArg, MatrixArg, RotateArg, parse_colour, parse_hide, parse_leave, parse_size, trajectory};
 use super::clock::ClockArgs;
 use crate::flexion::Flexion;
 use crate::phantom::motion::finger::{Finger, MarkerLayout};
 use crate::phantom::motion::trajectory::Trajectory;
-use crate::phantom::video::{Chroma, Colours, Hide, Leave, Lens, VideoOptions};
+use crate::phantom::video::{Chroma, Colours, Hide, Leave, Lens, Preset, Siting, VideoOptions};
 use crate::video::{Matrix, Turn};
 
 /// What `lunula phantom video` takes.
@@ -19,10 +16,9 @@ pub struct VideoRequest {
     /// Seed of everything random
     #[arg(long, default_value_t = 1)]
     seed: u64,
-    /// The scene to start from: clean (noise 2, crf 16), hard (noise 6, blur, flicker, gradient, distractors, a hidden
-    /// marker, crf 30), small (480x270, crf 23), fast (60 frames a second, bending at 1 Hz, blur), uhd (3840x2160)
+    /// The scene to start from
     #[arg(long, value_enum, default_value = "clean")]
-    scene: SceneArg,
+    scene: Preset,
     /// Width and height of the picture, pixels; the finger grows with the width
     #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = parse_size)]
     size: Option<(u32, u32)>,
@@ -49,16 +45,14 @@ pub struct VideoRequest {
     follow: f64,
     /// How flexion turns a segment on the picture
     #[arg(long, value_enum, default_value = "clockwise")]
-    flexion: FlexionArg,
-    /// Two markers on each segment, or one on each joint and at both ends; or blots of paint as in a real recording (24
-    /// frames a second, a second hand): eight on thumb and index finger (paint), of these the thumb's four, four in a
-    /// row on the index finger (two joints), a single one
+    flexion: Flexion,
+    /// Where the markers are; blots of paint (paint, thumb, row, mark) come as in a real recording: 24 frames a second, a
+    /// second hand
     #[arg(long, value_enum, default_value = "pairs")]
-    layout: LayoutArg,
-    /// One colour a segment (a mark, with --layout joints), one a marker, all red, or all of one dark or pale paint
-    /// [default: pairs; with paint: dark]
+    layout: MarkerLayout,
+    /// The markers' colours [default: pairs; with paint: dark]
     #[arg(long, value_enum)]
-    colours: Option<ColoursArg>,
+    colours: Option<Colours>,
     /// Joints that the marker file asks for, separated by commas [default: all, which are J1,J2,J3, and with paint the
     /// thumb's T1,T2]
     #[arg(long, value_delimiter = ',')]
@@ -125,10 +119,10 @@ pub struct VideoRequest {
     full_range: bool,
     /// Where chroma samples lie: left as in most camera files, or centre as in files that swscale converted from RGB
     #[arg(long, value_enum, default_value = "left")]
-    siting: SitingArg,
+    siting: Siting,
     /// What the file's header says of that [default: nothing]
     #[arg(long, value_enum)]
-    stated_siting: Option<SitingArg>,
+    stated_siting: Option<Siting>,
     /// The stored picture is turned back by so many degrees, and the file says to turn it clockwise to show it
     #[arg(long, value_enum, default_value = "0")]
     rotate: RotateArg,
@@ -154,7 +148,7 @@ impl VideoRequest {
     /// # Errors
     /// A trajectory's table that can't be read.
     pub fn options(&self) -> anyhow::Result<VideoOptions> {
-        let mut options = VideoOptions::new(self.scene.preset());
+        let mut options = VideoOptions::new(self.scene);
         options.seed = self.seed;
         let given = |option: &mut f64, value: Option<f64>, scale: f64| {
             if let Some(value) = value {
@@ -192,8 +186,8 @@ impl VideoRequest {
             MatrixArg::Bt2020 => Matrix::BT2020,
         };
         options.matrix.full_range = self.full_range;
-        options.siting = self.siting.siting();
-        options.stated_siting = self.stated_siting.map(SitingArg::siting);
+        options.siting = self.siting;
+        options.stated_siting = self.stated_siting;
         options.turn = match self.rotate {
             RotateArg::None => Turn::None,
             RotateArg::Quarter => Turn::Quarter,
@@ -219,31 +213,14 @@ impl VideoRequest {
 
     /// The finger, its markers and how it moves.
     fn settle_finger(&self, options: &mut VideoOptions) -> anyhow::Result<()> {
-        let flexion = match self.flexion {
-            FlexionArg::Clockwise => Flexion::Clockwise,
-            FlexionArg::Counterclockwise => Flexion::Counterclockwise,
-        };
-        let layout = match self.layout {
-            LayoutArg::Pairs => MarkerLayout::Pairs,
-            LayoutArg::Joints => MarkerLayout::Joints,
-            LayoutArg::Paint => MarkerLayout::Paint,
-            LayoutArg::Thumb => MarkerLayout::Thumb,
-            LayoutArg::Row => MarkerLayout::Row,
-            LayoutArg::Mark => MarkerLayout::Mark,
-        };
-        options.finger = Finger::new(options.width, options.height, flexion, layout);
+        let layout = self.layout;
+        options.finger = Finger::new(options.width, options.height, self.flexion, layout);
         if layout.painted() {
             *options = options.clone().painted(layout);
             // The scene's hidden marker is none of these.
             options.hide.clear();
         }
-        options.colours = self.colours.map_or(options.colours, |colours| match colours {
-            ColoursArg::Pairs => Colours::Pairs,
-            ColoursArg::Distinct => Colours::Distinct,
-            ColoursArg::Red => Colours::Red,
-            ColoursArg::Dark => Colours::Dark,
-            ColoursArg::Pale => Colours::Pale,
-        });
+        options.colours = self.colours.unwrap_or(options.colours);
         options.start &= matches!(options.colours, Colours::Red | Colours::Dark | Colours::Pale);
         if layout == MarkerLayout::Joints {
             // The scene's hidden marker by its name in this layout.

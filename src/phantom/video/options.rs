@@ -9,8 +9,8 @@ use crate::phantom::motion::trajectory::Trajectory;
 use crate::phantom::screen::Clock;
 use crate::video::{Format, Matrix, Turn};
 
-/// The scenes of the table.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+/// A scene to start from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum Preset {
     /// Noise 2, crf 16, 1280x720, 30 frames a second, 10 s.
@@ -27,12 +27,12 @@ pub enum Preset {
 }
 
 /// The markers' colours.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum Colours {
-    /// One a segment: blue, pink, green, yellow; with a mark on each joint, one a mark.
+    /// One per segment: blue, pink, green, yellow; with one mark on each joint, one per mark.
     Pairs,
-    /// One a marker.
+    /// One per marker.
     Distinct,
     /// All red.
     Red,

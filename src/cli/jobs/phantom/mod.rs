@@ -9,8 +9,6 @@ use anyhow::Context as _;
 use clap::{Args, Subcommand};
 use lunula::job::{Said, Watch};
 
-pub(in crate::cli) use lunula::phantom::request::SceneArg;
-
 use crate::cli::{Common, Outcome};
 
 /// Write synthetic scenes with exact truth: inputs as the jobs read them, and truth/ beside them

@@ -12,7 +12,7 @@ use serde::Serialize;
 use crate::video::{Format, Matrix};
 
 /// Where chroma samples lie in their block of luma samples.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum Siting {
     /// On its left edge's luma samples, between the two rows: most camera files.
