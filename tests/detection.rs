@@ -2,14 +2,14 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use std::path::Path;
-
 use image::{DynamicImage, GrayImage, Luma, Rgb, RgbImage};
 use imageproc::contours::{BorderType, find_contours};
 use lunula::phantom::nail::{Background, Camera, Depth, Light, NailScene, Pose, RenderOptions, Subject, Tone};
 use lunula::photo::outline::{DetectOptions, Detected, NothingFound, Outline, detect};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+
+use crate::util::repository;
 
 /// A close-up: subject, pose, light, background, grey or colour all drawn from `k`; none of these scenes trained the
 /// detector.
@@ -254,7 +254,7 @@ fn annotated(mask: &GrayImage) -> Vec<Outline> {
 fn hands_are_found_with_precision() {
     /// At IoU 0.7, of the nails found with confidence; on the photographs that trained the detector and on the others.
     const PRECISION: f64 = 0.9;
-    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data/nail/vpapenko_cc0"));
+    let folder = repository().join("../shared/data/nail/vpapenko_cc0");
     let Ok(files) = std::fs::read_dir(folder.join("images")) else {
         eprintln!("skipped: no photographs of hands at {}", folder.display());
         return;

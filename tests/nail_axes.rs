@@ -20,6 +20,8 @@ use lunula::photo::{Photo, Photograph};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+use crate::util::repository;
+
 /// One photograph with its nails and their true axes, degrees clockwise from up.
 struct Hand {
     file: String,
@@ -29,9 +31,9 @@ struct Hand {
 }
 
 fn data() -> Option<PathBuf> {
-    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data/nail/vpapenko_cc0"));
+    let folder = repository().join("../shared/data/nail/vpapenko_cc0");
     if folder.is_dir() {
-        return Some(folder.to_path_buf());
+        return Some(folder);
     }
     eprintln!("skipped: the photographs of {} are not here", folder.display());
     None
@@ -40,8 +42,7 @@ fn data() -> Option<PathBuf> {
 fn real_hands() -> Option<Vec<Hand>> {
     let folder = data()?;
     let mut truth: BTreeMap<String, Vec<[f64; 3]>> = BTreeMap::new();
-    let mut rows =
-        csv::Reader::from_path(concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/real_nail_axes.csv")).unwrap();
+    let mut rows = csv::Reader::from_path(repository().join("tests/data/real_nail_axes.csv")).unwrap();
     for row in rows.deserialize() {
         let (file, x, y, axis): (String, f64, f64, f64) = row.unwrap();
         truth.entry(file).or_default().push([x, y, axis]);

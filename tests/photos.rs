@@ -1,6 +1,6 @@
 //! `lunula photos` from end to end: what it promises on sets as they should be.
 
-use crate::util::{Dir, drawn_axis, drawn_labels, drawn_nail, drawn_outline, labelme, small_set};
+use crate::util::{Dir, drawn_axis, drawn_labels, drawn_nail, drawn_outline, labelme, repository, small_set};
 use lunula::phantom::nail::Pose;
 use lunula::phantom::photos::{PhotoOptions, write};
 
@@ -422,7 +422,7 @@ fn a_doubted_outline_is_not_read_as_a_nail() {
 /// The whole way on real photographs of hands; skipped where they are not at hand.
 #[test]
 fn real_hands_with_masks_are_normalized() {
-    let hands = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data/nail/vpapenko_cc0"));
+    let hands = repository().join("../shared/data/nail/vpapenko_cc0");
     if !hands.is_dir() {
         eprintln!("skipped: no photographs of hands at {}", hands.display());
         return;

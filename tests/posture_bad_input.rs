@@ -1,6 +1,6 @@
 //! `lunula posture` on what goes wrong on a Monday morning: each case names file and place and says what to do.
 
-use crate::util::{Answer, Dir};
+use crate::util::{Answer, Dir, repository};
 use lunula::video::{Encoder, Encoding, Format, Picture};
 
 const MARKERS: &str = r##"
@@ -229,13 +229,13 @@ fn a_joint_that_is_not_in_the_file_is_named() {
 
 #[test]
 fn hands_without_markers_give_no_angles() {
-    let clip = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data/hand/rotation_1.mp4");
-    if !std::path::Path::new(clip).exists() {
+    let clip = repository().join("../shared/data/hand/rotation_1.mp4");
+    if !clip.exists() {
         eprintln!("skipped: no real recordings here");
         return;
     }
     let dir = folder();
-    let answer = posture(&dir, clip);
+    let answer = posture(&dir, &clip.display().to_string());
     refused(&dir, answer, &["rotation_1.mp4", "markers"]);
 }
 
@@ -244,7 +244,7 @@ fn hands_without_markers_give_no_angles() {
 fn nothing_on_real_hands_is_suggested_as_a_marker() {
     let dir = Dir::new();
     for name in ["rotation_1", "scale_1", "translation_2"] {
-        let clip = format!("{}/../shared/data/hand/{name}.mp4", env!("CARGO_MANIFEST_DIR"));
+        let clip = repository().join(format!("../shared/data/hand/{name}.mp4")).display().to_string();
         dir.lunula(&["posture", &clip, "--suggest"]).expect(2).says("looks like a marker");
     }
 }

@@ -12,6 +12,11 @@ use lunula::labelme::{LabelMe, Shape};
 use lunula::phantom::nail::Pose;
 use lunula::phantom::photos::{LightKind, PhotoOptions};
 
+/// The repository's root; the package of these tests is a folder within.
+pub fn repository() -> &'static Path {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
+}
+
 /// What a command answered.
 pub struct Answer {
     pub code: i32,
