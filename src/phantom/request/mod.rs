@@ -4,11 +4,9 @@ mod choices;
 mod clock;
 mod log;
 mod photos;
-mod study;
 mod video;
 
-pub use choices::SceneArg;
+pub use choices::{SceneArg, parse_size};
 pub use log::LogRequest;
 pub use photos::PhotosRequest;
-pub use study::StudyRequest;
 pub use video::VideoRequest;

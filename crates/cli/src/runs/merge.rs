@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use clap::Args;
-use lunula::pipeline::{Parts, PipelineMark, Plan, RunOptions, Spec, kinds, phantom_catalogue};
+use lunula::pipeline::{Parts, PipelineMark, Plan, RunOptions, Spec};
 
-use crate::runs::memory;
 use crate::runs::run::{finish, watched};
+use crate::runs::{generated, kinds, memory};
 use crate::{Common, Outcome};
 
 /// Bring the parts of a run made with --shard together: the same bytes as from one run
@@ -40,8 +40,8 @@ pub(crate) fn run(args: &MergeArgs) -> anyhow::Result<Outcome> {
     let stop = common.start()?;
     let parts = Parts::open(&args.parts)?;
     let mark = pipeline(&parts, args)?;
-    let spec = Spec::parse(&mark.text, Path::new(&mark.path), kinds())?;
-    let generated = spec.catalogue(phantom_catalogue)?;
+    let spec = Spec::parse(&mark.text, Path::new(&mark.path), &kinds())?;
+    let generated = generated(&spec)?;
     let plan = Plan::new(&spec, &args.out, generated.as_ref())?;
     common.warn(&plan.warnings);
     let (results, merged) = parts.merge(&plan.tasks, &mark, &args.out)?;

@@ -6,13 +6,13 @@ use std::sync::atomic::AtomicBool;
 use anyhow::Context;
 use clap::Args;
 use lunula::pipeline::{
-    Event, Outcome as Ended, Plan, Progress, RunOptions, RunReport, RunWatch, Shard, Spec, Standing, kinds,
-    phantom_catalogue, plan_text, run as run_tasks, summary, survey, write_reports,
+    Event, Outcome as Ended, Plan, Progress, RunOptions, RunReport, RunWatch, Shard, Spec, Standing, plan_text,
+    run as run_tasks, summary, survey, write_reports,
 };
 use lunula::words::{shown, shown_lines};
 use serde_json::json;
 
-use crate::runs::memory;
+use crate::runs::{generated, kinds, memory};
 use crate::{Common, Outcome, Stopped, print_line};
 
 /// Run a pipeline file: make the results it asks for, only what they need, and nothing that is up to date
@@ -45,8 +45,8 @@ pub(crate) struct RunArgs {
 }
 
 pub(crate) fn run(args: &RunArgs) -> anyhow::Result<Outcome> {
-    let spec = Spec::read(&args.pipeline, kinds())?;
-    let generated = spec.catalogue(phantom_catalogue)?;
+    let spec = Spec::read(&args.pipeline, &kinds())?;
+    let generated = generated(&spec)?;
     // A plan needs no folder; without one nothing is there yet.
     let plan = Plan::new(&spec, args.out.as_deref().unwrap_or(Path::new("OUT")), generated.as_ref())?;
     if args.plan {

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use anyhow::Context;
 use clap::Args;
-use lunula::phantom::request::StudyRequest;
-use lunula::phantom::study::{Study, write_watched};
+use lunula::phantom::Generated as _;
+use lunula_thesis::phantom::{Study, StudyRequest, write_watched};
 
 use crate::jobs::phantom::{Common, Outcome, watched};
 use crate::print_line;
