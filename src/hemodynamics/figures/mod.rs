@@ -14,7 +14,7 @@ pub(super) const HEIGHT: u32 = 340;
 /// A newton on a square centimetre, Pa.
 pub const N_PER_CM2: f64 = 1e4;
 
-/// A panel of [`HEIGHT`] with these axes.
+/// A panel with these axes.
 pub fn chart(title: &str, x: &str, y: &str, items: Vec<Item>) -> Chart {
     let axis = |label: &str| Axis { label: label.to_owned() };
     Chart { title: title.to_owned(), x: axis(x), y: axis(y), from_zero: false, items, height: HEIGHT }
