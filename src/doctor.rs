@@ -109,8 +109,8 @@ fn program() -> Vec<Check> {
         if cfg!(feature = "xdf") {
             good("logs in XDF", "built in")
         } else {
-            let again =
-                "build with --features xdf if you have such logs: `cargo install --locked --path . --features xdf`";
+            let again = "build with --features xdf if you have such logs: `cargo install --locked --path crates/cli \
+                         --features xdf`";
             note("logs in XDF", "left out when this was built", again)
         },
         good("FFmpeg", libraries.join(", ")),

@@ -24,7 +24,7 @@ pub mod job;
 pub mod labelme;
 pub mod log;
 pub mod nail;
-mod npy;
+pub mod npy;
 pub mod phantom;
 pub mod photo;
 pub mod pipeline;
@@ -34,7 +34,6 @@ pub mod predictor;
 #[path = "../tests/util/real_data.rs"]
 mod real_data;
 pub mod stages;
-pub mod study;
 pub mod table;
 pub mod timebase;
 mod toml_file;

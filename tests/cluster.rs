@@ -2,9 +2,9 @@
 
 use std::process::{Command, Output};
 
-use crate::util::Dir;
+use crate::util::{Dir, repository};
 
-const SCRIPT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/pipelines/cluster/array.sbatch");
+const SCRIPT: &str = "pipelines/cluster/array.sbatch";
 const PIPELINE: &str = r#"
 wanted = ["normalized", "maps"]
 
@@ -33,7 +33,11 @@ fn bench() -> Dir {
 /// Calls the script in `dir` with what Slurm would set.
 fn script(dir: &Dir, arguments: &[&str], set: &[(&str, &str)]) -> Output {
     let mut command = Command::new("bash");
-    command.arg(SCRIPT).args(arguments).current_dir(dir.path(".")).env("LUNULA", env!("CARGO_BIN_EXE_lunula"));
+    command
+        .arg(repository().join(SCRIPT))
+        .args(arguments)
+        .current_dir(dir.path("."))
+        .env("LUNULA", env!("CARGO_BIN_EXE_lunula"));
     for name in ["SLURM_JOB_ID", "SLURM_ARRAY_TASK_ID"] {
         command.env_remove(name);
     }
@@ -80,7 +84,7 @@ fn by_hand_it_hands_both_to_slurm_or_says_how_it_is_called() {
     let calls = std::fs::read_to_string(dir.path("calls")).unwrap();
     let last: Vec<&str> = calls.lines().skip(2).collect();
     assert!(last.iter().all(|call| call.contains("--cpus-per-task=2 ") && call.contains("--time=10 ")), "{last:?}");
-    let asked = std::fs::read_to_string(SCRIPT).unwrap();
+    let asked = std::fs::read_to_string(repository().join(SCRIPT)).unwrap();
     assert!(!asked.lines().any(|line| line.starts_with("#SBATCH --cpus") || line.starts_with("#SBATCH --mem")));
     let output = script(&dir, &["pipeline.toml"], &[]);
     assert_eq!(output.status.code(), Some(2));

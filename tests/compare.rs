@@ -7,7 +7,8 @@ use crate::util::Dir;
 use lunula::job::Watch;
 use lunula::phantom::log::{LogOptions, LogScene, Protocol, write};
 use lunula::predictor::models::{Kind, Recipe};
-use lunula::predictor::{CompareOptions, CompareReport, FolderOutputs, Person, PredictorError, compare};
+use lunula::predictor::{FolderOutputs, PredictorError};
+use lunula_thesis::compare::{CompareOptions, CompareReport, Person, compare};
 
 /// Sums over the same rows in another order; measured 0.
 const SAME_N: f64 = 1e-12;

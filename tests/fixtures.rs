@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use crate::util::Dir;
-use crate::util::real_data::repository;
+use crate::util::repository;
 
 fn fixtures() -> PathBuf {
     repository().join("fixtures")

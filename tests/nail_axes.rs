@@ -20,7 +20,8 @@ use lunula::photo::{Photo, Photograph};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use crate::util::real_data::{real_data, repository};
+use crate::util::real_data::real_data;
+use crate::util::repository;
 
 /// One photograph with its nails and their true axes, degrees clockwise from up.
 struct Hand {

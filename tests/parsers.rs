@@ -11,6 +11,8 @@ use std::time::{Duration, Instant};
 use image::{DynamicImage, ImageFormat};
 use targets::{Desk, TARGETS};
 
+use crate::util::repository;
+
 /// Set in the process that reads the inputs.
 const WITHIN: &str = "LUNULA_CORPUS";
 /// Address space for one process that reads all of the corpus, KiB. It takes 0.6 GiB with all libraries; a case that
@@ -20,7 +22,7 @@ const MEMORY_KIB: u64 = 2 << 20;
 const PATIENCE: Duration = Duration::from_secs(120);
 
 fn corpus(parser: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/corpus").join(parser)
+    repository().join("tests/corpus").join(parser)
 }
 
 fn cases(parser: &str) -> Vec<PathBuf> {

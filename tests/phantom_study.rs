@@ -6,6 +6,7 @@ use std::sync::atomic::AtomicBool;
 use crate::util::Dir;
 use lunula::job::Work;
 use lunula::pipeline::{Catalogue, phantom_catalogue};
+use lunula_thesis::experiments;
 
 /// Two people, one of whom wears the sensor; four seconds of each video.
 const SMALL: &str =
@@ -18,7 +19,8 @@ fn words(command: &str) -> Vec<&str> {
 }
 
 fn small_catalogue() -> Catalogue {
-    phantom_catalogue(&SMALL_BLOCK.parse().expect("TOML")).map_err(|fault| fault.what).expect("a catalogue")
+    let block = SMALL_BLOCK.parse().expect("TOML");
+    phantom_catalogue(&block, experiments()).map_err(|fault| fault.what).expect("a catalogue")
 }
 
 fn number(row: &BTreeMap<String, String>, column: &str) -> f64 {

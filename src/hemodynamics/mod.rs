@@ -7,20 +7,18 @@
 mod choices;
 mod curve;
 mod error;
-mod figures;
+pub mod figures;
 mod fit;
 mod given;
 mod grid;
 mod response;
-mod section;
 mod simulate;
-mod solve;
+pub mod solve;
 
 /// The crate that does the mathematics.
 pub use lunula_hemodynamics as model;
 use lunula_hemodynamics::Parameters;
 
-pub use crate::hemodynamics::section::people::{Person, Recorded};
 pub use choices::OpticsChoice;
 pub use curve::{
     CurveFigures, CurveJob, CurveOptions, CurveOutputs, CurvePoint, CurveRange, CurveReport, Fold, LoadRange, Pressed,
@@ -29,11 +27,11 @@ pub use curve::{
 pub use error::HemodynamicsError;
 pub use fit::{
     Between, FitFigures, FitInputs, FitJob, FitOptions, FitOutputs, FitReport, FittedCombination, FittedGroup,
-    FittedPhotodiode, FittedRival, PhotodiodeColumn, RecordingColumns, RecordingReport, fit, fit_plan,
+    FittedPhotodiode, FittedRival, PhotodiodeColumn, RecordingColumns, RecordingReport, fit, fit_plan, own_parameters,
+    voltages,
 };
 pub use given::{BloodOptions, LoadOptions, ModelOptions, Start};
 pub use response::Response;
-pub use section::{Presses, QuickPress, SectionText, section_4_3, section_presses, section_simulations};
 pub use simulate::{
     Collapsed, SimulateFigures, SimulateInputs, SimulateJob, SimulateOptions, SimulateOutputs, SimulateReport, Work,
     simulate, simulate_plan,

@@ -276,7 +276,7 @@ fn of_keys(error: &clap::Error) -> OptionFault {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::phantom::request::{LogRequest, PhotosRequest, StudyRequest, VideoRequest};
+    use crate::phantom::request::{LogRequest, PhotosRequest, VideoRequest};
     use crate::phantom::video::{Hide, Preset, VideoOptions};
 
     fn table(text: &str) -> Table {
@@ -302,14 +302,9 @@ mod tests {
         expected.hide = vec![hide("middle_dist", 3, 2), hide("hand_prox", 9, 1)];
         expected.joints = vec!["J2".to_owned(), "J3".to_owned()];
         assert_eq!(options, expected);
-        let photos = read::<PhotosRequest>(&table("poses = [\"nominal\"]\nsubjects = 3\ngrey = true"), "")
-            .unwrap()
-            .options
-            .options();
-        assert_eq!((photos.poses.len(), photos.subjects, photos.grey), (1, 3, true));
-        let study =
-            read::<StudyRequest>(&table("subjects = 2\nvideo_size = \"160x96\""), "").unwrap().options.options();
-        assert_eq!((study.subjects, study.sensors, study.width, study.fps), (2, 2, 160, 30.0));
+        let keys = "poses = [\"nominal\"]\nsubjects = 3\ngrey = true\nsize = \"160x96\"";
+        let photos = read::<PhotosRequest>(&table(keys), "").unwrap().options.options();
+        assert_eq!((photos.poses.len(), photos.subjects, photos.grey, photos.width), (1, 3, true, 160));
     }
 
     #[test]
@@ -319,12 +314,12 @@ mod tests {
             (key.as_str(), what.as_str()),
             ("secnds", "`secnds` is not an option of lunula phantom x; did you mean `seconds`?")
         );
-        let (key, what) = refused::<StudyRequest>("quick = 2");
-        assert!(key == "quick" && what.contains("known: seed, subjects, sensors"), "{what}");
+        let (key, what) = refused::<PhotosRequest>("quick = 2");
+        assert!(key == "quick" && what.contains("known: seed, subjects,"), "{what}");
         let (key, what) = refused::<VideoRequest>("video_size = 2");
         assert!(key == "video_size" && what.contains("is not a"), "{what}");
-        let (key, what) = refused::<StudyRequest>("video_size = \"wide\"");
-        assert!(key == "video_size" && what.contains("`wide` is not WIDTHxHEIGHT"), "{what}");
+        let (key, what) = refused::<PhotosRequest>("size = \"wide\"");
+        assert!(key == "size" && what.contains("`wide` is not WIDTHxHEIGHT"), "{what}");
         let (key, what) = refused::<LogRequest>("protocol = \"touchy\"");
         assert!(key == "protocol" && what.contains("touch-random"), "{what}");
         let (key, what) = refused::<PhotosRequest>("grey = 1");

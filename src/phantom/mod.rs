@@ -12,11 +12,9 @@ pub mod request;
 mod scene;
 pub mod screen;
 pub mod sensor;
-pub mod study;
 pub mod video;
 
 pub use motion::{finger, force, trajectory};
 pub use scene::faults::Faults;
-pub use scene::place::Unwritten;
-pub use scene::recording::{Cost, Recording, RecordingError};
-pub use study::presses;
+pub use scene::place::{Unwritten, in_the_way, refused};
+pub use scene::recording::{Cost, Generated};

@@ -1,4 +1,4 @@
-//! The jobs that pipelines know.
+//! The jobs of the library, which every pipeline knows.
 
 use crate::align::{AlignJob, JoinJob};
 use crate::hemodynamics::{CurveJob, FitJob, SimulateJob};
@@ -6,11 +6,9 @@ use crate::job::{Job, Kind};
 use crate::photo::{MapsJob, NormalizeJob};
 use crate::posture::PostureJob;
 use crate::predictor::trajectory::TrajectoryJob;
-use crate::predictor::{AnalyseJob, CompareJob, EvaluateJob, PredictJob, PruneJob, TrainJob};
-use crate::study::responses::ResponsesJob;
-use crate::study::{PressesJob, SectionJob, StudyJob, TypicalJob};
+use crate::predictor::{AnalyseJob, EvaluateJob, PredictJob, PruneJob, TrainJob};
 
-/// All kinds of jobs, by name.
+/// Their kinds, by name.
 #[must_use]
 pub fn kinds() -> &'static [&'static Kind] {
     KINDS
@@ -20,7 +18,6 @@ pub fn kinds() -> &'static [&'static Kind] {
 static KINDS: &[&Kind] = &[
     &AlignJob::KIND,
     &AnalyseJob::KIND,
-    &CompareJob::KIND,
     &EvaluateJob::KIND,
     &FitJob::KIND,
     &JoinJob::KIND,
@@ -28,14 +25,9 @@ static KINDS: &[&Kind] = &[
     &NormalizeJob::KIND,
     &PostureJob::KIND,
     &PredictJob::KIND,
-    &PressesJob::KIND,
     &PruneJob::KIND,
-    &ResponsesJob::KIND,
-    &SectionJob::KIND,
     &SimulateJob::KIND,
     &CurveJob::KIND,
-    &StudyJob::KIND,
     &TrainJob::KIND,
     &TrajectoryJob::KIND,
-    &TypicalJob::KIND,
 ];

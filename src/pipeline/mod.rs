@@ -14,8 +14,8 @@ mod tasks;
 mod tests;
 
 pub use init::{InitError, propose};
-pub use items::catalogue::{Catalogue, CatalogueFile, CatalogueTask, Catalogues};
-pub use items::generated::phantom_catalogue;
+pub use items::catalogue::{Catalogue, CatalogueFile, CatalogueTask};
+pub use items::generated::{Asked, Block, Placed, phantom_catalogue, scenes};
 pub use jobs::kinds;
 pub use parts::merge::{MergeFault, Merged, Parts};
 pub use parts::shard::{PartMark, PipelineMark, Shard, ShardFault};

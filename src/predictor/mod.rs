@@ -3,7 +3,7 @@
 //!
 //! The models and their mathematics are the crate `lunula-predictor`'s; here are the files and the jobs of the command
 //! line, an entry each:
-//! [`train()`], [`evaluate()`], [`predict()`] (and [`predict_stream`]), [`analyse()`], [`prune()`], [`compare()`],
+//! [`train()`], [`evaluate()`], [`predict()`] (and [`predict_stream`]), [`analyse()`], [`prune()`],
 //! [`trajectory::run`].
 
 mod data;
@@ -28,26 +28,22 @@ pub use data::{
     read_inputs,
 };
 pub use error::PredictorError;
+pub use figures::{BarSeries, Bars, draw_bars};
 pub use jobs::analyse::{AnalyseFigures, AnalyseReport, ModelMode, ModelModes, Printed, analyse, analyse_plan};
 pub use jobs::answer::Answering;
-pub use jobs::compare::{
-    CompareFigures, CompareOptions, CompareReport, Comparison, Person, Spread, compare, compare_plan,
-};
 pub use jobs::evaluate::{
     BinMerit, EvaluateFigures, EvaluateOptions, EvaluateReport, HeldOut, Magnitudes, Part, RecordingMerit, evaluate,
     evaluate_plan,
 };
-pub use jobs::kinds::{AnalyseJob, CompareJob, EvaluateJob, PredictJob, PruneJob, TrainJob};
+pub use jobs::kinds::{AnalyseJob, EvaluateJob, PredictJob, PruneJob, TrainJob};
 pub use jobs::predict::{PredictFigures, PredictOptions, PredictReport, predict, predict_plan, predict_stream};
 pub use jobs::prune::{PruneFigures, PruneReport, PruneRow, prune, prune_plan};
 pub use jobs::train::{TrainFigures, TrainInputs, TrainOptions, TrainOutputs, TrainReport, Without, train, train_plan};
 pub use merit::figures::{ByTarget, Merit};
 pub use options::choices::{ByChoice, F_MIN_N, FOLDS, HIDDEN, LEVEL, ModelChoice, share};
-pub use options::commands::{
-    CompareChoices, EvaluateChoices, NetworkOptions, PredictChoices, PruneChoices, TrainChoices,
-};
+pub use options::commands::{EvaluateChoices, NetworkOptions, PredictChoices, PruneChoices, TrainChoices};
 pub use options::target::{POSTURE, Target};
-pub use outputs::FolderOutputs;
+pub use outputs::{FolderOutputs, end, picture};
 
 /// Model files, read.
 struct OpenedModels {

@@ -1,4 +1,4 @@
-//! A folder for what evaluate, analyse, prune and compare write: tables, pictures and the report `run.json`.
+//! A folder for what evaluate, analyse and prune write: tables, pictures and the report `run.json`.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -31,7 +31,7 @@ impl FolderOutputs {
     }
 
     /// A step of plans for the pictures; `what` they show.
-    pub(super) fn figures_step(outputs: Option<&Self>, what: &str) -> Step {
+    pub fn figures_step(outputs: Option<&Self>, what: &str) -> Step {
         match outputs {
             None => Step::new("figures", false, "no --out".to_owned()),
             Some(outputs) if outputs.figures => Step::new("figures", true, what.to_owned()),
@@ -40,14 +40,14 @@ impl FolderOutputs {
     }
 
     /// A step of plans for a table that is always written where there is a folder.
-    pub(super) fn table_step(outputs: Option<&Self>, what: &str) -> Step {
+    pub fn table_step(outputs: Option<&Self>, what: &str) -> Step {
         let there = outputs.is_some();
         Step::new("tables", there, if there { what } else { "no --out" }.to_owned())
     }
 }
 
 /// Draws a picture as PNG and SVG; returns where the PNG will be.
-pub(super) fn picture(
+pub fn picture(
     staging: &Staging,
     out: &Path,
     name: &str,
@@ -59,7 +59,7 @@ pub(super) fn picture(
 }
 
 /// Adds the times, writes tables, pictures and report where there is a folder, and puts them into their place.
-pub(super) fn end<F: Serialize>(
+pub fn end<F: Serialize>(
     mut report: Report<F>,
     out: Option<&FolderOutputs>,
     write: impl FnOnce(&mut Report<F>, &FolderOutputs) -> Result<Staging, PredictorError>,

@@ -17,7 +17,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::util::{Dir, touch_pipeline};
+use crate::util::{Dir, repository, touch_pipeline};
 
 /// A command that writes below `out`: the run that left results there before (none: it refuses to write over any), and
 /// the one that is disturbed.
@@ -420,7 +420,7 @@ fn a_fault_at_any_call_leaves_results_whole_and_the_next_run_makes_them_right() 
     let dir = Dir::new();
     inputs(&dir);
     let inject = dir.path("inject");
-    let source = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/faults/inject.c");
+    let source = repository().join("tests/faults/inject.c");
     let built = Command::new("cc").args(["-O1", "-o"]).arg(&inject).arg(source).status().expect("cc runs");
     assert!(built.success());
     let every = std::env::var("LUNULA_FAULTS_EVERY").map_or(1, |every| every.parse().expect("a number of calls"));

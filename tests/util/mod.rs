@@ -13,6 +13,8 @@ use lunula::labelme::{LabelMe, Shape};
 use lunula::phantom::nail::Pose;
 use lunula::phantom::photos::{LightKind, PhotoOptions};
 
+pub(crate) use real_data::repository;
+
 /// What a command answered.
 pub struct Answer {
     pub code: i32,

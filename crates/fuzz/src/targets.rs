@@ -13,7 +13,7 @@ use lunula::log::{AmbientOptions, Columns, Log, samples};
 use lunula::photo::outline::{self, Axis, Drawn, find_axes, outlines_from_mask};
 use lunula::photo::{NailFrame, Normalization, Photograph, Resample, join, normalize};
 use lunula::pipeline::{Parts, PipelineMark, Share, Spec, Task};
-use lunula::pipeline::{kinds, phantom_catalogue, survey};
+use lunula::pipeline::{kinds, phantom_catalogue, scenes, survey};
 use lunula::posture::{Layout, Lens};
 use lunula::predictor::{Answering, RowOptions, RowStream};
 use lunula::table::Table;
@@ -236,9 +236,10 @@ fn parameters(_: &Desk, bytes: &[u8]) {
 /// What a pipeline file says, and what it has generated; what it finds in folders is no matter of bytes.
 fn pipeline(desk: &Desk, bytes: &[u8]) {
     let path = desk.file("pipeline.toml", bytes);
-    if let Ok(spec) = Spec::read(&path, kinds()) {
+    if let Ok(spec) = Spec::read(&path, &[kinds(), lunula_thesis::kinds()].concat()) {
         let _: PipelineMark = spec.mark();
-        let _ = spec.catalogue(phantom_catalogue);
+        let known = [lunula_thesis::experiments(), scenes()].concat();
+        let _ = spec.catalogue(|block| phantom_catalogue(block, &known));
     }
 }
 

@@ -2,22 +2,25 @@
 
 mod over_time;
 
-pub(super) use over_time::{Curve, Panel, draw_over_time, draw_response, over_time};
+pub(super) use over_time::draw_response;
+pub use over_time::{Curve, Panel, draw_over_time, over_time};
 
 use crate::figure::{Axis, Chart, Item};
 
 /// Width of a picture.
-pub(super) const WIDTH: u32 = 1100;
+pub const WIDTH: u32 = 1100;
 /// Height of a panel.
 pub(super) const HEIGHT: u32 = 340;
 /// A newton on a square centimetre, Pa.
-pub(super) const N_PER_CM2: f64 = 1e4;
+pub const N_PER_CM2: f64 = 1e4;
 
-pub(super) fn chart(title: &str, x: &str, y: &str, items: Vec<Item>) -> Chart {
+/// A panel with these axes.
+pub fn chart(title: &str, x: &str, y: &str, items: Vec<Item>) -> Chart {
     let axis = |label: &str| Axis { label: label.to_owned() };
     Chart { title: title.to_owned(), x: axis(x), y: axis(y), from_zero: false, items, height: HEIGHT }
 }
 
-pub(super) fn line(name: Option<&str>, points: Vec<[f64; 2]>, colour: usize) -> Item {
+/// A line of one stretch, 2 pixels wide.
+pub fn line(name: Option<&str>, points: Vec<[f64; 2]>, colour: usize) -> Item {
     Item::Line { name: name.map(str::to_owned), runs: vec![points], colour, width: 2 }
 }

@@ -10,38 +10,32 @@ use crate::hemodynamics::Response;
 
 /// A curve over time.
 #[derive(Debug, Clone)]
-pub(in crate::hemodynamics) struct Curve {
+pub struct Curve {
     /// For the legend; none: it is not in it.
-    pub(in crate::hemodynamics) name: Option<String>,
+    pub name: Option<String>,
     /// s.
-    pub(in crate::hemodynamics) times_s: Vec<f64>,
+    pub times_s: Vec<f64>,
     /// In the panel's unit; a break where a value is not finite.
-    pub(in crate::hemodynamics) values: Vec<f64>,
+    pub values: Vec<f64>,
     /// Which colour.
-    pub(in crate::hemodynamics) colour: usize,
+    pub colour: usize,
     /// How wide, pixels.
-    pub(in crate::hemodynamics) width: u32,
+    pub width: u32,
 }
 
 /// Curves with one vertical axis.
 #[derive(Debug, Clone)]
-pub(in crate::hemodynamics) struct Panel {
+pub struct Panel {
     /// Above the axes; may be empty.
-    pub(in crate::hemodynamics) title: String,
+    pub title: String,
     /// What the axis shows, with its unit.
-    pub(in crate::hemodynamics) y: String,
+    pub y: String,
     /// The lowest first.
-    pub(in crate::hemodynamics) curves: Vec<Curve>,
+    pub curves: Vec<Curve>,
 }
 
 /// A curve thinned to what a picture shows, extremes kept; a break where a value is not finite.
-pub(in crate::hemodynamics) fn over_time(
-    name: Option<String>,
-    times_s: &[f64],
-    values: &[f64],
-    colour: usize,
-    width: u32,
-) -> Item {
+pub fn over_time(name: Option<String>, times_s: &[f64], values: &[f64], colour: usize, width: u32) -> Item {
     let mut thinned = Thinned::default();
     for (&time_s, &value) in times_s.iter().zip(values) {
         thinned.push(time_s, std::iter::once(value.is_finite().then_some([value, f64::NAN])));
@@ -56,7 +50,7 @@ impl Curve {
 }
 
 /// Panels below each other over the same time.
-pub(in crate::hemodynamics) fn draw_over_time(panels: &[Panel], png: &Path, svg: &Path) -> anyhow::Result<()> {
+pub fn draw_over_time(panels: &[Panel], png: &Path, svg: &Path) -> anyhow::Result<()> {
     let last = panels.len() - 1;
     let of = |(k, panel): (usize, &Panel)| {
         let x = if k == last { "time, s" } else { "" };

@@ -12,11 +12,7 @@ use crate::hemodynamics::solve::{RunSettings, respond, rest, state_before};
 const RTOL: f64 = 1e-8;
 
 /// The parameters of a recording: its photodiodes' own offset and scaling among them.
-pub(in crate::hemodynamics) fn own_parameters(
-    parameters: &Parameters,
-    photodiodes: &[Calibrated],
-    recording: usize,
-) -> Parameters {
+pub fn own_parameters(parameters: &Parameters, photodiodes: &[Calibrated], recording: usize) -> Parameters {
     let own = photodiodes.iter().filter(|one| one.recordings.contains(&recording));
     own.fold(parameters.clone(), |parameters, one| {
         let offset = parameters.set(Symbol::Offset(one.unit), one.offset.value).unwrap_or(parameters);
@@ -28,7 +24,7 @@ pub(in crate::hemodynamics) fn own_parameters(
 ///
 /// # Errors
 /// Parameters with which the model has no response to this.
-pub(in crate::hemodynamics) fn voltages(
+pub fn voltages(
     parameters: &Parameters,
     recording: &Recording,
     collapse: Collapse,

@@ -13,7 +13,7 @@ mod parameter_files;
 mod recording;
 mod report;
 
-pub(super) use fitted::{own_parameters, voltages};
+pub use fitted::{own_parameters, voltages};
 pub use job::{fit, plan as fit_plan};
 pub use kind::FitJob;
 pub use options::{FitInputs, FitOptions, FitOutputs};

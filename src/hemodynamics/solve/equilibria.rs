@@ -44,7 +44,7 @@ pub(in crate::hemodynamics) fn start_state(
 ///
 /// # Errors
 /// Loads with no stable equilibrium, or with several.
-pub(in crate::hemodynamics) fn state_before(
+pub fn state_before(
     from_s: f64,
     parameters: &Parameters,
     loads: &Loads,
@@ -66,22 +66,22 @@ pub(in crate::hemodynamics) fn state_before(
 
 /// The equilibria of a range of loads.
 #[derive(Debug, Clone)]
-pub(in crate::hemodynamics) struct Curve {
+pub struct Curve {
     /// In the order of the loads; a load without an open equilibrium has a point that says so.
-    pub(in crate::hemodynamics) points: Vec<CurvePoint>,
+    pub points: Vec<CurvePoint>,
     /// Where equilibria appear, vanish or change.
-    pub(in crate::hemodynamics) folds: Vec<Fold>,
+    pub folds: Vec<Fold>,
     /// Loads at which more than one equilibrium is stable, Pa.
-    pub(in crate::hemodynamics) bistable_pa: Vec<[f64; 2]>,
+    pub bistable_pa: Vec<[f64; 2]>,
     /// Loads at which no equilibrium is open, Pa.
-    pub(in crate::hemodynamics) closed_pa: Vec<[f64; 2]>,
+    pub closed_pa: Vec<[f64; 2]>,
 }
 
 /// All equilibria at growing loads over blood pressures that don't change.
 ///
 /// # Errors
 /// Parameters whose equilibria are not known.
-pub(in crate::hemodynamics) fn along(
+pub fn along(
     parameters: &Parameters,
     collapse: Collapse,
     optics: &Optics,

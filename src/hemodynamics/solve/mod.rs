@@ -3,5 +3,6 @@
 mod equilibria;
 mod transient;
 
-pub(super) use equilibria::{Curve, along, rest, start_state, state_before};
+pub use equilibria::{Curve, along, state_before};
+pub(super) use equilibria::{rest, start_state};
 pub use transient::{Run, RunSettings, respond};

@@ -34,5 +34,4 @@ pub use render::{Depth, RenderOptions};
 pub use scene::{NailScene, SceneFault};
 pub use shape::NailShape;
 pub use skin::Tone;
-pub use subject::Subject;
-pub(crate) use subject::numbers;
+pub use subject::{Subject, numbers};

@@ -47,7 +47,7 @@ pub struct Subject {
 }
 
 /// The random numbers of one thing (`kind`) of the set `seed`, independent of all others.
-pub(crate) fn numbers(seed: u64, kind: u32, index: u32) -> ChaCha8Rng {
+pub fn numbers(seed: u64, kind: u32, index: u32) -> ChaCha8Rng {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream((u64::from(kind) << 32) | u64::from(index));
     rng

@@ -122,7 +122,11 @@ pub(super) fn parse_roi(text: &str) -> Result<[usize; 4], String> {
         .ok_or_else(|| format!("`{text}` is not X,Y,WIDTH,HEIGHT, as 900,40,300,70"))
 }
 
-pub(super) fn parse_size(text: &str) -> Result<(u32, u32), String> {
+/// Columns and rows of a picture, `640x480`, as an option takes them.
+///
+/// # Errors
+/// What else it is, in the command line's words.
+pub fn parse_size(text: &str) -> Result<(u32, u32), String> {
     let sides = text.split_once('x').and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
     sides.ok_or_else(|| format!("`{text}` is not WIDTHxHEIGHT, as 640x480"))
 }

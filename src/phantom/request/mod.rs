@@ -4,10 +4,9 @@ mod choices;
 mod clock;
 mod log;
 mod photos;
-mod study;
 mod video;
 
+pub use choices::parse_size;
 pub use log::LogRequest;
 pub use photos::PhotosRequest;
-pub use study::StudyRequest;
 pub use video::VideoRequest;

@@ -16,14 +16,15 @@ pub struct Unwritten {
     source: io::Error,
 }
 
-pub(in crate::phantom) fn refused(path: &Path) -> impl FnOnce(io::Error) -> Unwritten {
+/// Says of an error that it is of this path.
+pub fn refused(path: &Path) -> impl FnOnce(io::Error) -> Unwritten {
     let path = path.to_owned();
     move |source| Unwritten { path, source }
 }
 
 /// What stands under `out`, is one of `names`, and was not written by whoever writes `record`; or belongs to
 /// photographs.
-pub(in crate::phantom) fn in_the_way(out: &Path, names: &[&str], record: &str) -> Option<PathBuf> {
+pub fn in_the_way(out: &Path, names: &[&str], record: &str) -> Option<PathBuf> {
     let photographs = Some(out.join(PHOTOS_RECORD)).filter(|place| record != PHOTOS_RECORD && place.exists());
     let stands = || names.iter().map(|name| out.join(name)).find(|place| place.exists());
     photographs.or_else(|| if out.join(record).is_file() { None } else { stands() })

@@ -4,12 +4,9 @@
 //! A catalogue depends on the options of `[phantom]` alone. Its names are relative to the folder that a pipeline file
 //! calls `{phantom}`, with `/`.
 
-use crate::job::{Facts, Keys, Maker, OptionFault};
+use crate::job::{Facts, Keys, Maker};
 use std::collections::BTreeMap;
 use std::sync::Arc;
-
-/// Reads the options of `[phantom]`.
-pub type Catalogues = fn(&toml::Table) -> Result<Catalogue, OptionFault>;
 
 /// What will be generated.
 pub struct Catalogue {

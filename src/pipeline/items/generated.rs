@@ -2,90 +2,121 @@
 //!
 //! ```toml
 //! [phantom]
-//! study = { seed = 1, subjects = 4 }     # a whole experiment: {phantom}/photos, {phantom}/s01/bending, ..
-//! photos = { seed = 1, grey = true }                  # or single scenes: {phantom}/photos/photos/<pose>/<subject>.png
+//! photos = { seed = 1, grey = true }                  # {phantom}/photos/photos/<pose>/<subject>.png, truth/
 //! video = { scene = "hard", seconds = 20 }            # {phantom}/video/video.mp4, markers.toml, truth/
 //! log = { protocol = "touch" }                        # {phantom}/log/log.csv, truth/
 //! video = [{ name = "a", .. }, { name = "b", .. }]    # or several of a kind: {phantom}/video/a, {phantom}/video/b
 //! ```
 //!
-//! The options are those of `lunula phantom study|photos|video|log`, with `_` for `-`. Each recording is a task of its
-//! own.
+//! The options are those of `lunula phantom photos|video|log`, with `_` for `-`. Each recording is a task of its own.
+//! What may be asked for is a list ([`Block`]): others bring experiments of many recordings.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 use std::sync::Arc;
 
 use toml::{Table, Value};
 
-use crate::job::{Facts, Keys, Made, Maker, OptionFault, Said, Work, read};
-use crate::phantom::request::{LogRequest, PhotosRequest, StudyRequest, VideoRequest};
-use crate::phantom::study::Study;
-use crate::phantom::{Faults, Recording};
+use crate::job::{Keys, Made, Maker, OptionFault, Said, Work, read};
+use crate::phantom::request::{LogRequest, PhotosRequest, VideoRequest};
+use crate::phantom::{Faults, Generated};
 use crate::pipeline::{Catalogue, CatalogueFile, CatalogueTask};
 use crate::stages::Stages;
 
 /// Counted up where the same options give other bytes than before.
 const REVISION: u32 = 1;
-/// What a block may hold.
-const BLOCKS: [&str; 4] = ["study", "photos", "video", "log"];
 /// The name of one of several.
 const NAME: &str = "name";
 
-/// A recording and its place.
-struct Placed {
-    name: String,
-    keys: Keys,
-    recording: Recording,
+/// What the block `[phantom]` may ask for, by its name there.
+#[derive(Debug, Clone, Copy)]
+pub struct Block {
+    /// Its name: `video`.
+    pub name: &'static str,
+    /// Whether it may be a list, with a name in each.
+    pub several: bool,
+    /// Reads its options. A fault's key is the option's, empty where it is of all of them.
+    pub read: fn(&Table) -> Result<Asked, OptionFault>,
 }
 
-/// What a block `[phantom]` makes.
+/// What is to be generated.
+pub enum Asked {
+    /// One scene, in the folder of the block's name.
+    Scene(Box<dyn Generated>),
+    /// A whole experiment.
+    Experiment {
+        /// Each in its own folder.
+        recordings: Vec<Placed>,
+        /// The text of the tables of sessions, by path: they are also among the recordings' files.
+        tables: BTreeMap<String, String>,
+    },
+}
+
+/// Something generated, and its place.
+pub struct Placed {
+    /// Its folder, with `/`. None is another's beginning up to a `/`.
+    pub name: String,
+    /// Whose it is.
+    pub keys: Keys,
+    /// What it is.
+    pub recording: Box<dyn Generated>,
+}
+
+/// The scenes of `lunula phantom photos|video|log`.
+#[must_use]
+pub fn scenes() -> &'static [Block] {
+    &[
+        Block { name: "photos", several: false, read: photos },
+        Block { name: "video", several: true, read: video },
+        Block { name: "log", several: true, read: log },
+    ]
+}
+
+fn photos(options: &Table) -> Result<Asked, OptionFault> {
+    Ok(Asked::Scene(Box::new(read::<PhotosRequest>(options, "`lunula phantom photos`")?.options.options())))
+}
+
+fn video(options: &Table) -> Result<Asked, OptionFault> {
+    let request = read::<VideoRequest>(without_files(options)?, "`lunula phantom video`")?.options;
+    Ok(Asked::Scene(Box::new(request.options().map_err(|why| unread(&why))?)))
+}
+
+fn log(options: &Table) -> Result<Asked, OptionFault> {
+    let request = read::<LogRequest>(without_files(options)?, "`lunula phantom log`")?.options;
+    Ok(Asked::Scene(Box::new(request.options().map_err(|why| unread(&why))?)))
+}
+
+/// What a block `[phantom]` makes, which may ask for any of `known`.
 ///
 /// # Errors
 /// [`OptionFault`], the first thing that is wrong; a key within a block is named as `video.seconds`.
-pub fn phantom_catalogue(block: &Table) -> Result<Catalogue, OptionFault> {
+pub fn phantom_catalogue(block: &Table, known: &[Block]) -> Result<Catalogue, OptionFault> {
+    let names = || known.iter().map(|one| one.name).collect::<Vec<_>>().join(", ");
     let mut placed = Vec::new();
     let mut tables = BTreeMap::new();
     if block.is_empty() {
-        let what = format!("[phantom] asks for nothing; write one of {}, as study = {{ seed = 1 }}", BLOCKS.join(", "));
+        let example = known.first().map_or("", |one| one.name);
+        let what = format!("[phantom] asks for nothing; write one of {}, as {example} = {{ seed = 1 }}", names());
         return Err(OptionFault { key: String::new(), what });
     }
     for (key, value) in block {
-        let blocks = blocks(key, value)?;
-        for (name, options) in blocks {
-            let fault = |fault: OptionFault| inner(key, fault);
-            let refused = |faults: Faults| OptionFault { key: key.clone(), what: format!("`{key}`: {faults}") };
-            let one = match key.as_str() {
-                "study" => {
-                    let request = read::<StudyRequest>(&options, "`lunula phantom study`").map_err(fault)?.options;
-                    let study = Study::new(request.options()).map_err(refused)?;
-                    tables.extend(study.tables());
-                    placed.extend(study.recordings().into_iter().map(|one| Placed {
-                        keys: Keys(one.subject.map(|subject| ("subject".to_owned(), subject)).into_iter().collect()),
-                        name: one.name,
-                        recording: one.recording,
-                    }));
+        let Some(asked) = known.iter().find(|one| one.name == key) else {
+            let what = format!("`{key}` is nothing that can be generated; there are {}", names());
+            return Err(OptionFault { key: key.clone(), what });
+        };
+        for (name, options) in blocks(asked, value)? {
+            let recording = match (asked.read)(&options).map_err(|fault| inner(key, fault))? {
+                Asked::Scene(recording) => recording,
+                Asked::Experiment { recordings, tables: own } => {
+                    placed.extend(recordings);
+                    tables.extend(own);
                     continue;
                 }
-                "photos" => {
-                    let request = read::<PhotosRequest>(&options, "`lunula phantom photos`").map_err(fault)?.options;
-                    Recording::Photos(request.options())
-                }
-                "video" => {
-                    let options = without_files(key, &options)?;
-                    let request = read::<VideoRequest>(options, "`lunula phantom video`").map_err(fault)?.options;
-                    Recording::Video(Box::new(request.options().map_err(|why| unread(key, &why))?))
-                }
-                _ => {
-                    let options = without_files(key, &options)?;
-                    let request = read::<LogRequest>(options, "`lunula phantom log`").map_err(fault)?.options;
-                    Recording::Log(Box::new(request.options().map_err(|why| unread(key, &why))?))
-                }
             };
-            one.check().map_err(refused)?;
+            let refused = |faults: Faults| OptionFault { key: key.clone(), what: format!("`{key}`: {faults}") };
+            recording.check().map_err(refused)?;
             let keys = Keys(name.iter().map(|name| ("session".to_owned(), name.clone())).collect());
             let name = name.map_or_else(|| key.clone(), |name| format!("{key}/{name}"));
-            placed.push(Placed { name, keys, recording: one });
+            placed.push(Placed { name, keys, recording });
         }
     }
     if let Some(name) = twice(&placed) {
@@ -106,14 +137,12 @@ fn twice(placed: &[Placed]) -> Option<&str> {
 }
 
 /// The options of one scene, or of several with their names.
-fn blocks(key: &str, value: &Value) -> Result<Vec<(Option<String>, Table)>, OptionFault> {
+fn blocks(asked: &Block, value: &Value) -> Result<Vec<(Option<String>, Table)>, OptionFault> {
+    let key = asked.name;
     let fault = |what: String| OptionFault { key: key.to_owned(), what };
-    if !BLOCKS.contains(&key) {
-        return Err(fault(format!("`{key}` is nothing that can be generated; there are {}", BLOCKS.join(", "))));
-    }
     match value {
         Value::Table(options) => Ok(vec![(None, options.clone())]),
-        Value::Array(several) if matches!(key, "video" | "log") => {
+        Value::Array(several) if asked.several => {
             let named = several.iter().map(|one| {
                 let mut options = one.as_table()?.clone();
                 let name = options.remove(NAME)?.as_str()?.to_owned();
@@ -133,12 +162,12 @@ fn blocks(key: &str, value: &Value) -> Result<Vec<(Option<String>, Table)>, Opti
 }
 
 /// The planner knows no files but inputs: a movement is known by its name here.
-fn without_files<'a>(key: &str, options: &'a Table) -> Result<&'a Table, OptionFault> {
+fn without_files(options: &Table) -> Result<&Table, OptionFault> {
     const NAMES: [&str; 5] = ["eq27", "free", "random", "even", "rest"];
     match options.get("trajectory").and_then(Value::as_str) {
         Some(other) if !NAMES.contains(&other) => {
             let what = format!("`trajectory` is {} in a pipeline, not a file as `{other}`", NAMES.join(", "));
-            Err(OptionFault { key: format!("{key}.trajectory"), what })
+            Err(OptionFault { key: "trajectory".to_owned(), what })
         }
         _ => Ok(options),
     }
@@ -149,8 +178,8 @@ fn inner(key: &str, fault: OptionFault) -> OptionFault {
     OptionFault { key, what: fault.what }
 }
 
-fn unread(key: &str, why: &anyhow::Error) -> OptionFault {
-    OptionFault { key: key.to_owned(), what: format!("{why:#}") }
+fn unread(why: &anyhow::Error) -> OptionFault {
+    OptionFault { key: String::new(), what: format!("{why:#}") }
 }
 
 fn catalogue(placed: Vec<Placed>, tables: BTreeMap<String, String>) -> Catalogue {
@@ -160,10 +189,10 @@ fn catalogue(placed: Vec<Placed>, tables: BTreeMap<String, String>) -> Catalogue
         files.extend(recording.files().into_iter().map(|file| CatalogueFile {
             path: format!("{name}/{file}"),
             task,
-            facts: facts(&recording, &file),
+            facts: recording.facts(&file),
         }));
         let cost = recording.cost();
-        let options = serde_json::json!({ "kind": "phantom", "revision": REVISION, "recording": recording });
+        let options = serde_json::json!({ "kind": "phantom", "revision": REVISION, "recording": recording.options() });
         let job = Arc::new(Generate(recording));
         tasks.push(CatalogueTask { name, keys, options, memory: cost.memory, cost_s: cost.seconds, job });
     }
@@ -171,30 +200,8 @@ fn catalogue(placed: Vec<Placed>, tables: BTreeMap<String, String>) -> Catalogue
     Catalogue { tasks, files, tables }
 }
 
-/// What is known of a file of a recording.
-fn facts(recording: &Recording, file: &str) -> Facts {
-    let none = Facts::default();
-    let is = |name: &str| file == name;
-    match recording {
-        Recording::Photos(options) if Path::new(file).starts_with("photos") => {
-            Facts { grey: Some(options.grey), outlined: Some(options.annotate), ..none }
-        }
-        Recording::Video(video) | Recording::Filmed { video, .. } if is("video.mp4") || is("markers.toml") => {
-            Facts { clock: Some(video.clock.is_some()), distorted: Some(video.lens.is_some()), ..none }
-        }
-        Recording::Log(log) | Recording::Filmed { log, .. } if is("log.csv") => {
-            Facts { led: Some(log.led), forces: Some(true), ..none }
-        }
-        Recording::Filmed { .. } | Recording::Video(_) if is("truth/joints.csv") => {
-            Facts { clock: facts(recording, "video.mp4").clock, ..none }
-        }
-        Recording::Filmed { .. } | Recording::Log(_) if is("truth/angles.csv") => Facts { clock: Some(true), ..none },
-        _ => none,
-    }
-}
-
 /// Makes a recording.
-struct Generate(Recording);
+struct Generate(Box<dyn Generated>);
 
 impl Maker for Generate {
     fn run(&self, work: &Work) -> anyhow::Result<Made> {
@@ -209,9 +216,10 @@ impl Maker for Generate {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::job::Facts;
 
     fn of(text: &str) -> Result<Catalogue, OptionFault> {
-        phantom_catalogue(&text.parse().unwrap())
+        phantom_catalogue(&text.parse().unwrap(), scenes())
     }
 
     fn refused(text: &str) -> (String, String) {
@@ -251,37 +259,11 @@ mod tests {
     }
 
     #[test]
-    fn a_study_is_a_task_a_recording_and_its_tables_are_among_its_files() {
-        let catalogue = of("study = { subjects = 3, sensors = 2, presses = 0 }").unwrap();
-        assert_eq!(catalogue.tasks.len(), 1 + 2 * 6 + 4 + 1);
-        assert!(catalogue.tables.keys().all(|name| catalogue.files.iter().any(|file| file.path == *name)));
-        let task = catalogue.tasks.iter().find(|task| task.name == "s02/bending").unwrap();
-        assert_eq!(task.keys.get("subject"), Some("s02"));
-        let video = facts_of(&catalogue, "s02/bending/video.mp4");
-        assert_eq!((video.clock, video.distorted), (Some(true), Some(false)));
-        assert_eq!(facts_of(&catalogue, "photos/photos/nominal/s01.png").grey, Some(true));
-        let sessions = &catalogue.tables["tables/sessions.csv"];
-        assert!(
-            sessions.contains("\ns02,touch-2,touch,2,,,../s02/touch-2/log.csv,,../s02/touch-2/truth/log.csv\n"),
-            "{sessions}"
-        );
-        assert!(!sessions.contains("s02,normal") && sessions.contains("s01,normal"));
-        // A person is the same whoever else takes part.
-        let more = of("study = { subjects = 16 }").unwrap();
-        let options = |catalogue: &Catalogue| {
-            catalogue.tasks.iter().find(|task| task.name == "s02/bending").map(|task| task.options.clone())
-        };
-        assert_eq!(options(&catalogue), options(&more));
-        assert_ne!(options(&of("study = { seed = 2 }").unwrap()), options(&more));
-    }
-
-    #[test]
     fn what_is_wrong_is_told_of_its_key() {
         for (text, key, words) in [
             ("", "", "asks for nothing"),
-            ("studdy = {}", "studdy", "there are study, photos, video, log"),
-            ("study = 1", "study", "has to be a table"),
-            ("study = { subjects = 0 }", "study", "--subjects 0"),
+            ("videos = {}", "videos", "there are photos, video, log"),
+            ("log = 1", "log", "has to be a table"),
             ("video = { secnds = 1 }", "video.secnds", "did you mean `seconds`"),
             ("video = { seconds = \"long\" }", "video.seconds", "`long`"),
             ("video = { trajectory = \"mine.csv\" }", "video.trajectory", "not a file"),
@@ -289,7 +271,6 @@ mod tests {
             ("video = [{ name = \"../a\" }]", "video", "a name of letters"),
             ("photos = [{ name = \"a\" }]", "photos", "has to be a table"),
             ("video = [{ name = \"a\" }, { name = \"a\" }]", "", "{phantom}/video/a"),
-            ("study = {}\nphotos = {}", "", "{phantom}/photos"),
             ("log = { seconds = -1 }", "log", "--seconds -1"),
         ] {
             let (found, what) = refused(text);

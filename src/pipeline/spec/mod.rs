@@ -35,8 +35,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use crate::input;
+use crate::job::OptionFault;
 use crate::job::{Kind, Part, Prepared};
-use crate::pipeline::items::catalogue::{Catalogue, Catalogues};
+use crate::pipeline::items::catalogue::Catalogue;
 use crate::pipeline::parts::shard::PipelineMark;
 use crate::toml_file::{Fault, place};
 
@@ -191,7 +192,10 @@ impl Spec {
     ///
     /// # Errors
     /// Where its options are wrong.
-    pub fn catalogue(&self, catalogues: Catalogues) -> Result<Option<Catalogue>, PipelineError> {
+    pub fn catalogue(
+        &self,
+        catalogues: impl Fn(&toml::Table) -> Result<Catalogue, OptionFault>,
+    ) -> Result<Option<Catalogue>, PipelineError> {
         let Some(generated) = &self.phantom else { return Ok(None) };
         catalogues(&generated.options).map(Some).map_err(|fault| {
             let outer = fault.key.split('.').next().unwrap_or_default();

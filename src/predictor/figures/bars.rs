@@ -13,7 +13,7 @@ const HEIGHT_PX: u32 = 560;
 
 /// Bars in groups.
 #[derive(Debug, Clone, Default)]
-pub(in crate::predictor) struct Bars {
+pub struct Bars {
     /// Above the axes.
     pub title: String,
     /// Below the groups; empty for nothing.
@@ -28,7 +28,7 @@ pub(in crate::predictor) struct Bars {
 
 /// Bars of one colour.
 #[derive(Debug, Clone, Default)]
-pub(in crate::predictor) struct BarSeries {
+pub struct BarSeries {
     /// For the legend.
     pub name: String,
     /// A value a group; none is not known and has no bar.
@@ -54,7 +54,7 @@ pub(in crate::predictor) struct MagnitudeBin {
 ///
 /// # Errors
 /// A file that can't be written.
-pub(in crate::predictor) fn draw_bars(bars: &Bars, png: &Path, svg: &Path) -> anyhow::Result<()> {
+pub fn draw_bars(bars: &Bars, png: &Path, svg: &Path) -> anyhow::Result<()> {
     let width = TAKEN / bars.series.len().max(1) as f64;
     let last = bars.groups.len().max(1) as f64 - 0.5;
     let mut items = vec![

@@ -13,7 +13,8 @@ mod scatter;
 #[cfg(test)]
 mod tests;
 
-pub(super) use bars::{BarSeries, Bars, MagnitudeBin, draw_bars, draw_error_by_magnitude};
+pub use bars::{BarSeries, Bars, draw_bars};
+pub(super) use bars::{MagnitudeBin, draw_error_by_magnitude};
 pub(super) use curves::{CurvePoint, LearningSeries, Subset, SubsetSeries, draw_best_subsets, draw_learning_curve};
 pub(super) use modes::{Modes, draw_modes};
 pub(super) use over_time::draw_over_time;

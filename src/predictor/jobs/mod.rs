@@ -2,7 +2,6 @@
 
 pub(in crate::predictor) mod analyse;
 pub(in crate::predictor) mod answer;
-pub(in crate::predictor) mod compare;
 pub(in crate::predictor) mod evaluate;
 pub(in crate::predictor) mod kinds;
 pub(in crate::predictor) mod learning;

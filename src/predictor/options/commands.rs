@@ -5,7 +5,6 @@ use lunula_predictor::{Deficient, Gate, GateFault, Kind, Recipe};
 
 use crate::job::{not_negative, one_of};
 use crate::predictor::data::{RowOptions, Wanted};
-use crate::predictor::jobs::compare::CompareOptions;
 use crate::predictor::jobs::evaluate::EvaluateOptions;
 use crate::predictor::jobs::predict::PredictOptions;
 use crate::predictor::jobs::train::TrainOptions;
@@ -44,7 +43,9 @@ pub struct NetworkOptions {
 }
 
 impl NetworkOptions {
-    fn recipe(self, model: ModelChoice) -> Recipe {
+    /// What is trained.
+    #[must_use]
+    pub fn recipe(self, model: ModelChoice) -> Recipe {
         Recipe {
             seed: self.seed,
             restarts: usize::from(self.restarts),
@@ -54,7 +55,8 @@ impl NetworkOptions {
     }
 
     /// About how long training takes for so many rows, seconds: measured at 3e-6 s for each row, hidden node and start.
-    pub(in crate::predictor) fn cost_s(self, rows: f64) -> f64 {
+    #[must_use]
+    pub fn cost_s(self, rows: f64) -> f64 {
         3e-6 * rows * f64::from(self.hidden) * f64::from(self.restarts)
     }
 }
@@ -199,38 +201,5 @@ impl PruneChoices {
     pub fn wanted(&self) -> Wanted {
         let targets = self.target.columns().to_vec();
         Wanted { inputs: self.inputs.clone(), targets, rows: self.rows.clone(), skip_failed: false }
-    }
-}
-
-/// The options of a stage that compares models over people.
-#[derive(Debug, Clone, Args)]
-pub struct CompareChoices {
-    /// The models
-    #[arg(
-        long,
-        value_delimiter = ',',
-        value_parser = one_of::<ModelChoice>(),
-        default_value = "linear,quadratic,network",
-    )]
-    pub models: Vec<ModelChoice>,
-    /// How networks are trained.
-    #[command(flatten)]
-    pub network: NetworkOptions,
-    /// For how long the touch protocol bends before it touches, seconds (5.2.4)
-    #[arg(long = "bending-s", default_value_t = 60.0, value_parser = not_negative)]
-    pub bending_s: f64,
-}
-
-impl CompareChoices {
-    /// As the job takes them.
-    #[must_use]
-    pub fn options(&self) -> CompareOptions {
-        let models = self.models.iter().map(|model| self.network.recipe(*model)).collect();
-        CompareOptions { models, bending_s: self.bending_s }
-    }
-
-    /// Whether a network is among the models.
-    pub(in crate::predictor) fn has_network(&self) -> bool {
-        self.models.iter().any(|model| matches!(model.kind(self.network.hidden), Kind::Network { .. }))
     }
 }

@@ -83,7 +83,7 @@ impl Place {
     /// Every kind's task, and its qualities.
     fn make_all(&self) -> Vec<(String, Vec<String>)> {
         std::fs::create_dir_all(&self.folder).unwrap();
-        for (k, name) in ["1.csv", "2.csv", "3.csv", "4.csv", "5.csv", "6.csv"].iter().enumerate() {
+        for (k, name) in ["1.csv", "2.csv", "3.csv", "4.csv"].iter().enumerate() {
             self.table(name, k as f64);
         }
         self.log("raw", 1);
@@ -112,9 +112,6 @@ impl Place {
         make("predict", "intervals = true", both, "predicted");
         make("analyse", "", data("model", &["force/model.json"]), "analysed");
         make("prune", "", sets(&["3.csv"]), "pruned");
-        let roles = ["set1", "set2", "set3", "random", "bending", "bending_random"];
-        let people = roles.iter().enumerate().map(|(k, role)| self.at(role, &format!("{}.csv", k + 1), &one));
-        make("compare", "models = ['linear', 'quadratic']\nbending_s = 0.4", people.collect(), "compared");
         make("trajectory", "kind = 'force'\nseconds = 20", Vec::new(), "prompted");
         make("static", "static = '0..4000/500'", Vec::new(), "curve");
         let step = "pf1 = 'step:5000@0..1'\nuntil = 2\nevery = 0.02\nrtol = 1e-6\nwith_loads = true";
@@ -221,8 +218,6 @@ fn wrong_keys_are_refused_with_what_to_write() {
         ("predict", "f_min = -1", "", "-1"),
         ("analyse", "out = 'x'", "out", "it has none"),
         ("prune", "target = ''", "target", "empty or there twice"),
-        ("compare", "models = ['cubic']", "models", "linear, quadratic, network"),
-        ("compare", "models = []", "models", "at least one"),
         ("simulate", "pf1 = 'jump:3'", "pf1", "jump:3"),
         ("simulate", "from = 'one'", "from", "`start`"),
         ("simulate", "set = { k = 1 }", "set", "there is no parameter k"),
@@ -277,7 +272,6 @@ fn plans_leave_out_what_a_scene_does_not_need() {
     assert!(!fate("static", "static = 0", &[], &["curve"], "figures").0);
     assert!(!fate("trajectory", "kind = 'posture'", &[], &["trajectory"], "equations 24 to 26").0);
     assert!(!fate("prune", "", &validated, &["subsets"], "quadratic and network models").0);
-    assert!(fate("compare", "", &validated, &["table"], "tables").0);
     assert!(!fate("analyse", "", &[], &["modes"], "figures").0);
 }
 
@@ -293,8 +287,6 @@ fn joints_are_demanded_only_for_what_needs_them() {
     assert_eq!(joints("train", "target = 'Fz_N,J3_deg'", "validate").as_deref(), Some("J3"));
     assert_eq!(joints("evaluate", "", "data"), None);
     assert_eq!(joints("predict", "", "data").as_deref(), Some(""));
-    assert_eq!(joints("compare", "", "bending").as_deref(), Some("J2"));
-    assert_eq!(joints("compare", "", "set1").as_deref(), Some(""));
 }
 
 #[test]
@@ -312,30 +304,6 @@ fn results_depend_on_the_options_and_the_parts_wanted() {
         depends_on("target = 'force'", &["model"]),
         depends_on("target = 'force'", &["model", "learning_curve"])
     );
-}
-
-#[test]
-fn who_lacks_a_recording_is_left_out_of_a_comparison_and_reported() {
-    let dir = tempfile::tempdir().unwrap();
-    let place = Place { folder: dir.path().to_owned(), threads: 1 };
-    let roles = ["set1", "set2", "set3", "random", "bending", "bending_random"];
-    let mut inputs = Vec::new();
-    for (k, role) in roles.into_iter().enumerate() {
-        let name = format!("{k}.csv");
-        place.table(&name, k as f64);
-        inputs.push(place.at(role, &name, &[("subject", "S01")]));
-        if role != "random" {
-            inputs.push(place.at(role, &name, &[("subject", "S02")]));
-        }
-    }
-    let stage = "models = ['linear']\nbending_s = 0.4";
-    let made = place.make("compare", stage, inputs.clone(), "out");
-    assert_eq!(made.failed, ["subject S02: there is no random"]);
-    inputs.push(place.at("set1", "1.csv", &[("subject", "S01")]));
-    let (folder, stop) = (place.path("none"), AtomicBool::new(false));
-    let work = Work { inputs, folder: &folder, before: None, threads: 1, stop: &stop };
-    let why = job("compare", stage).run(&work).unwrap_err().to_string();
-    assert!(why.contains("nobody has all six recordings") && why.contains("set1 is 0.csv as well as 1.csv"), "{why}");
 }
 
 #[test]

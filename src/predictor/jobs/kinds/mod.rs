@@ -2,7 +2,6 @@
 //! they need.
 
 mod analyse;
-mod compare;
 mod evaluate;
 mod predict;
 mod prune;
@@ -18,7 +17,6 @@ use crate::predictor::options::target::Target;
 use crate::predictor::outputs::FolderOutputs;
 
 pub use analyse::AnalyseJob;
-pub use compare::CompareJob;
 pub use evaluate::EvaluateJob;
 pub use predict::PredictJob;
 pub use prune::PruneJob;

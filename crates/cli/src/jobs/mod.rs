@@ -1,0 +1,123 @@
+//! The commands of jobs, one file each, and what they have in common: plan or run, then report in JSON and in words.
+
+pub(crate) mod align;
+pub(crate) mod hemodynamics;
+pub(crate) mod phantom;
+pub(crate) mod photos;
+pub(crate) mod posture;
+pub(crate) mod predictor;
+pub(crate) mod trajectory;
+
+use std::path::PathBuf;
+
+use clap::Args;
+use lunula::job::{Report, Said, Watch};
+use lunula::stages::{Fate, Step};
+use lunula::words::shown_lines;
+use serde::Serialize;
+use serde_json::json;
+
+use super::{Common, Outcome, print_line};
+
+/// What every job takes.
+#[derive(Debug, Args)]
+pub(super) struct JobArgs {
+    /// Show what would be done and what left out, and do nothing
+    #[arg(long)]
+    plan: bool,
+    #[command(flatten)]
+    pub(super) common: Common,
+}
+
+/// What a command would do and leave out.
+pub(super) struct Plan {
+    pub(super) steps: Vec<Step>,
+    /// Inputs that can't be used, known before any work.
+    pub(super) failed: Vec<String>,
+}
+
+impl From<Vec<Step>> for Plan {
+    fn from(steps: Vec<Step>) -> Self {
+        Self { steps, failed: Vec::new() }
+    }
+}
+
+/// A command that runs one job.
+pub(super) trait Command {
+    /// The figures of its report.
+    type Figures: Serialize;
+
+    /// The job's name, as plans give it.
+    const NAME: &'static str;
+
+    /// What is counted while it runs: `frames`.
+    const UNIT: &'static str = "steps";
+
+    fn job(&self) -> &JobArgs;
+
+    /// The options as they were written.
+    fn said(&self) -> &Said;
+
+    fn plan(&self) -> anyhow::Result<Plan>;
+
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<Report<Self::Figures>>;
+
+    /// The figures in words.
+    fn say(&self, common: &Common, report: &Report<Self::Figures>);
+
+    /// Where to look if there is no picture.
+    fn result(&self) -> Option<PathBuf> {
+        None
+    }
+}
+
+/// Plans or runs a job, and prints its report.
+pub(super) fn run<C: Command>(command: &C) -> anyhow::Result<Outcome> {
+    let JobArgs { plan, common } = command.job();
+    let stop = common.start()?;
+    if *plan {
+        return show(common, C::NAME, &command.plan()?);
+    }
+    let bar = common.progress(0, C::UNIT);
+    let tick = |done: u64, all: Option<u64>| {
+        bar.set_length(all.unwrap_or(done));
+        bar.set_position(done);
+    };
+    let report = command.run(&Watch { said: command.said(), stop: &stop, tick: &tick });
+    bar.finish_and_clear();
+    let report = report?;
+    name_failures(&report.failed);
+    common.warn(&report.warnings);
+    common.note(&report.notes);
+    common.print_json(&report)?;
+    command.say(common, &report);
+    if common.verbose {
+        common.say_stages(&report.stages);
+        common.say_left_out(&report.left_out);
+    }
+    let look = report.pictures.first().cloned().or_else(|| command.result());
+    let look = look.map_or(String::new(), |look| format!("; look at {}", look.display()));
+    common.say(&format!("{:.2} s{look}", report.wall_s));
+    Ok(if report.failed.is_empty() { Outcome::Done } else { Outcome::SomeFailed })
+}
+
+/// A plan, as words or, with `--json`, as an object.
+fn show(common: &Common, job: &str, plan: &Plan) -> anyhow::Result<Outcome> {
+    if common.json {
+        common.print_json(&json!({ "job": job, "plan": plan.steps, "failed": plan.failed }))?;
+    } else {
+        for step in &plan.steps {
+            let fate = match step.fate {
+                Fate::Run => "run",
+                Fate::LeftOut => "left out",
+            };
+            print_line(&shown_lines(&format!("{:<34} {fate:<9} {}", step.stage, step.reason)));
+        }
+    }
+    name_failures(&plan.failed);
+    Ok(if plan.failed.is_empty() { Outcome::Done } else { Outcome::SomeFailed })
+}
+
+fn name_failures(failed: &[String]) {
+    failed.iter().for_each(|what| eprintln!("failed: {}", shown_lines(what)));
+}

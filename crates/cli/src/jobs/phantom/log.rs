@@ -1,0 +1,62 @@
+//! `lunula phantom log`: logs of photodiodes and forces.
+
+use std::path::PathBuf;
+
+use anyhow::Context;
+use clap::Args;
+use lunula::phantom::log::{LogScene, write};
+use lunula::phantom::request::LogRequest;
+use lunula::phantom::sensor::CHANNELS;
+
+use crate::jobs::phantom::{Common, Outcome};
+
+/// A log of eight photodiodes and three forces, with exact truth (3.1.2c, 3.3, 5.2.3)
+///
+/// Writes OUT/log.csv, which `lunula align` reads as it is, and OUT/truth/: log.csv, angles.csv, log.json. It
+/// belongs to the video that `lunula phantom video` writes from the same seed, trajectory and --bend-hz; both may be
+/// written to the same OUT. truth/angles.csv has the exact joint angles in the format of `lunula posture`, 30 a second,
+/// clock_s on the log's clock:
+/// `lunula align --joints OUT/truth/angles.csv --log OUT/log.csv --out training.csv --subject 1 --session 1` makes a
+/// posture training set without a video.
+#[derive(Debug, Args)]
+pub(super) struct LogArgs {
+    /// Folder for the log and truth/
+    #[arg(long)]
+    out: PathBuf,
+    #[command(flatten)]
+    request: LogRequest,
+    #[command(flatten)]
+    common: Common,
+}
+
+pub(super) fn run(args: &LogArgs) -> anyhow::Result<Outcome> {
+    let options = args.request.options().context("no synthetic log")?;
+    args.common.start()?;
+    let begin = std::time::Instant::now();
+    let scene = LogScene::new(options).context("no synthetic log")?;
+    let made_s = begin.elapsed().as_secs_f64();
+    let summary = write(&scene, &args.out).context("no synthetic log")?;
+    let mut warnings = Vec::new();
+    if summary.rows == 0 {
+        warnings.push("the log has no rows: all were lost".to_owned());
+    }
+    args.common.warn(&warnings);
+    args.common.print_json(&serde_json::json!({
+        "job": "phantom log",
+        "version": env!("CARGO_PKG_VERSION"),
+        "options": scene.options(),
+        "rows": summary.rows,
+        "lit": summary.lit,
+        "photodiodes": CHANNELS,
+        "stages": { "samples_s": made_s, "write_s": summary.write_s, "total_s": begin.elapsed().as_secs_f64() },
+        "warnings": warnings,
+    }))?;
+    args.common.say(&format!(
+        "{} rows in {}, truth in {}; {:.2} s",
+        summary.rows,
+        args.out.join("log.csv").display(),
+        args.out.join("truth").display(),
+        begin.elapsed().as_secs_f64()
+    ));
+    Ok(Outcome::Done)
+}

@@ -1,0 +1,57 @@
+//! `lunula phantom video`: videos of a finger with coloured markers.
+
+use std::path::PathBuf;
+
+use anyhow::Context;
+use clap::Args;
+use lunula::phantom::request::VideoRequest;
+use lunula::phantom::video::{Scene, write_watched};
+
+use crate::jobs::phantom::{Common, Outcome, watched};
+
+/// A video of a finger with coloured markers, with exact joint angles and marker centres (3.2.3, 3.3.5)
+///
+/// Writes OUT/video.mp4 and OUT/markers.toml, which `lunula posture` reads as they are, and OUT/truth/: joints.csv,
+/// tracks.csv, clock.csv, scene.json. A scene sets all that follows; each option changes one thing of it.
+#[derive(Debug, Args)]
+pub(super) struct VideoArgs {
+    /// Folder for the video, the marker file and truth/
+    #[arg(long)]
+    out: PathBuf,
+    #[command(flatten)]
+    request: VideoRequest,
+    #[command(flatten)]
+    common: Common,
+}
+
+pub(super) fn run(args: &VideoArgs) -> anyhow::Result<Outcome> {
+    let options = args.request.options().context("no synthetic video")?;
+    let wanted = options.distractors;
+    let scene = Scene::new(options).context("no synthetic video")?;
+    let summary =
+        watched(&args.common, "frames", "no synthetic video", |watch| write_watched(&scene, &args.out, watch))?;
+    let mut warnings = Vec::new();
+    if summary.distractors < wanted {
+        warnings
+            .push(format!("only {} of {wanted} distractors found a place apart from the finger", summary.distractors));
+    }
+    args.common.warn(&warnings);
+    args.common.print_json(&serde_json::json!({
+        "job": "phantom video",
+        "version": env!("CARGO_PKG_VERSION"),
+        "options": scene.options(),
+        "frames": summary.frames,
+        "seconds": summary.seconds,
+        "bytes": summary.bytes,
+        "stages": summary.stages,
+        "warnings": warnings,
+    }))?;
+    args.common.say(&format!(
+        "{} frames in {}, truth in {}; {:.2} s",
+        summary.frames,
+        args.out.join("video.mp4").display(),
+        args.out.join("truth").display(),
+        summary.stages.total_s
+    ));
+    Ok(Outcome::Done)
+}

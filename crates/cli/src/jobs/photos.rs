@@ -1,0 +1,183 @@
+//! `lunula photos`: photographs to coloration maps, and `lunula photos merge`.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::Context;
+use clap::{Args, Subcommand};
+use lunula::job::{Given, NoOptions, Said, Watch};
+use lunula::photo::outline::SavedOutlines;
+use lunula::photo::{
+    OutlineHome, Outputs, PhotoSet, PhotosError, PhotosFigures, PhotosOptions, PhotosReport, Results, merge,
+    merge_plan, plan, run,
+};
+
+use crate::jobs::{self, Command, JobArgs, Plan};
+use crate::{Common, Outcome};
+
+/// Turn nail photographs into coloration maps: outlines, normalized pictures, mean and standard deviation over subjects
+///
+/// SET is a folder SET/<pose>/<subject>.<png|jpg|tif|bmp>, a flat folder (one pose), or holds photos.csv with the
+/// columns file,subject,pose and optionally outline. The outline of a nail comes from the first of: that column,
+/// <stem>.json beside the photograph (LabelMe: polygon `nail`, line `axis` from proximal to distal), a mask under
+/// --masks, detection. Results: nails.csv, normalized/, maps/*.npy, figures/, report.html, run.json.
+#[derive(Debug, Args)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+pub(crate) struct PhotosArgs {
+    #[command(subcommand)]
+    merge: Option<PhotosCommand>,
+    /// Folder of photographs
+    #[arg(required = true)]
+    set: Option<PathBuf>,
+    /// Folder for the results
+    #[arg(long, required = true)]
+    out: Option<PathBuf>,
+    /// Masks named as the photographs (MASKS/<pose>/<stem>.* or MASKS/<stem>.*); each connected region is a nail
+    #[arg(long, value_name = "MASKS")]
+    masks: Option<PathBuf>,
+    #[command(flatten)]
+    given: Given<PhotosOptions>,
+    /// Save detected outlines as LabelMe files to correct: beside the photographs, or in FOLDER with a photos.csv
+    #[arg(long, value_name = "FOLDER", num_args = 0..=1, require_equals = true)]
+    write_outlines: Option<Option<PathBuf>>,
+    #[command(flatten)]
+    job: JobArgs,
+}
+
+#[derive(Debug, Subcommand)]
+enum PhotosCommand {
+    /// Join maps that were made in parts: the same bytes as from one run
+    Merge(MergeArgs),
+}
+
+#[derive(Debug, Args)]
+struct MergeArgs {
+    /// Folders that `lunula photos` wrote
+    #[arg(required = true, num_args = 1..)]
+    parts: Vec<PathBuf>,
+    /// Folder for the results
+    #[arg(long)]
+    out: PathBuf,
+    #[command(flatten)]
+    given: Given<NoOptions>,
+    #[command(flatten)]
+    job: JobArgs,
+}
+
+impl PhotosArgs {
+    fn options(&self) -> anyhow::Result<PhotosOptions> {
+        if let Some(masks) = self.masks.as_ref().filter(|m| !m.is_dir()) {
+            anyhow::bail!("--masks {}: is not a folder", masks.display());
+        }
+        let mut options = self.given.options.clone();
+        options.outlines.masks = self.masks.clone();
+        Ok(options)
+    }
+
+    fn outputs(&self) -> anyhow::Result<Outputs> {
+        let outlines = self.write_outlines.as_ref().map(|folder| match folder {
+            Some(folder) => OutlineHome::Folder(folder.clone()),
+            None => OutlineHome::BesidePhotographs,
+        });
+        let folder = self.out.clone().context("--out is needed")?;
+        Ok(Outputs { folder, results: Results::Maps, outlines })
+    }
+
+    fn set(&self) -> anyhow::Result<PhotoSet> {
+        let (set, out) = self.set.as_ref().zip(self.out.as_ref()).context("SET and --out are needed")?;
+        if PhotoSet::would_take_results(set, out) {
+            anyhow::bail!(
+                "--out {}: is among the photographs of {}, where results would be taken for photographs; choose \
+                 another --out",
+                out.display(),
+                set.display()
+            );
+        }
+        let apart: Vec<&Path> = std::iter::once(out.as_path()).chain(self.masks.as_deref()).collect();
+        Ok(PhotoSet::open(set, &apart)?)
+    }
+}
+
+/// `merge`, or the job.
+pub(crate) fn run_or_merge(args: &PhotosArgs) -> anyhow::Result<Outcome> {
+    match &args.merge {
+        Some(PhotosCommand::Merge(args)) => jobs::run(args),
+        None => jobs::run(args),
+    }
+}
+
+fn say_poses(common: &Common, report: &PhotosReport) {
+    for pose in &report.poses {
+        common.say(&format!("{:<28} {:>4} subject(s)", pose.pose, pose.subjects));
+    }
+}
+
+impl Command for PhotosArgs {
+    type Figures = PhotosFigures;
+
+    const UNIT: &'static str = "photographs";
+
+    const NAME: &'static str = "photos";
+
+    fn job(&self) -> &JobArgs {
+        &self.job
+    }
+
+    fn said(&self) -> &Said {
+        &self.given.said
+    }
+
+    fn plan(&self) -> anyhow::Result<Plan> {
+        let (options, set) = (self.options()?, self.set()?);
+        let steps = plan(&set, &options, &self.outputs()?);
+        Ok(Plan { steps, failed: set.faults.iter().map(ToString::to_string).collect() })
+    }
+
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<PhotosReport> {
+        let (options, set) = (self.options()?, self.set()?);
+        let report = run(&set, &options, &self.outputs()?, watch);
+        Ok(report.inspect_err(|why| {
+            if let PhotosError::NothingUsable { outlines, .. } = why {
+                let notes: Vec<String> = outlines.iter().flat_map(SavedOutlines::notes).collect();
+                self.job.common.note(&notes);
+            }
+        })?)
+    }
+
+    fn say(&self, common: &Common, report: &PhotosReport) {
+        say_poses(common, report);
+    }
+
+    fn result(&self) -> Option<PathBuf> {
+        Some(self.out.as_ref()?.join("report.html"))
+    }
+}
+
+impl Command for MergeArgs {
+    type Figures = PhotosFigures;
+
+    const NAME: &'static str = "photos merge";
+
+    fn job(&self) -> &JobArgs {
+        &self.job
+    }
+
+    fn said(&self) -> &Said {
+        &self.given.said
+    }
+
+    fn plan(&self) -> anyhow::Result<Plan> {
+        Ok(merge_plan(&self.parts).into())
+    }
+
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<PhotosReport> {
+        Ok(merge(&self.parts, &self.out, watch)?)
+    }
+
+    fn say(&self, common: &Common, report: &PhotosReport) {
+        say_poses(common, report);
+    }
+
+    fn result(&self) -> Option<PathBuf> {
+        Some(self.out.join("report.html"))
+    }
+}

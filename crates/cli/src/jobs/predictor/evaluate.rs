@@ -1,0 +1,111 @@
+//! `lunula evaluate`: how far off a model is.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use lunula::job::{Given, Said, Watch};
+use lunula::predictor::{
+    DataFile, EvaluateChoices, EvaluateFigures, EvaluateReport, FolderOutputs, evaluate, evaluate_plan,
+};
+
+use crate::Common;
+use crate::jobs::predictor::say_merit;
+use crate::jobs::{Command, JobArgs, Plan};
+
+/// Measure how far off a model is on recordings, and how far off its recipe is on recordings held out
+///
+/// RMSE, bias and R2 of each target (R2 is empty where a target does not change), by recording and by the size of force
+/// or angle, and how many rows the model's prediction intervals hold. With --by, the model's recipe is fitted again
+/// without each trajectory, session or subject in turn and judged on what it has not seen: name all recordings then.
+/// Rows of one trajectory resemble each other, so shuffled rows (--by rows) flatter; by how much is shown beside. --out
+/// draws predicted against measured over time and as scatter (Fig. 94 to 104).
+#[derive(Debug, Args)]
+pub(crate) struct EvaluateArgs {
+    /// A model file of `lunula train`
+    #[arg(value_name = "MODEL.json")]
+    model: PathBuf,
+    /// Recordings with the model's photodiodes and targets
+    #[arg(required = true, value_name = "DATA")]
+    data: Vec<PathBuf>,
+    #[command(flatten)]
+    given: Given<EvaluateChoices>,
+    /// A folder for merit.csv, predicted.csv, pictures and run.json
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    job: JobArgs,
+}
+
+impl Command for EvaluateArgs {
+    type Figures = EvaluateFigures;
+
+    const NAME: &'static str = "evaluate";
+
+    fn job(&self) -> &JobArgs {
+        &self.job
+    }
+
+    fn said(&self) -> &Said {
+        &self.given.said
+    }
+
+    fn plan(&self) -> anyhow::Result<Plan> {
+        let out = self.out.clone().map(FolderOutputs::all);
+        Ok(evaluate_plan(self.data.len(), &self.given.options.options(), None, out.as_ref()).into())
+    }
+
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<EvaluateReport> {
+        let out = self.out.clone().map(FolderOutputs::all);
+        let options = self.given.options.options();
+        Ok(evaluate(&self.model, &DataFile::of(&self.data), &options, out.as_ref(), watch)?)
+    }
+
+    fn say(&self, common: &Common, report: &EvaluateReport) {
+        say_merit(common, "the model", &report.merit);
+        if let Some(plain) = &report.without_friction {
+            say_merit(common, "without the cone of friction", plain);
+        }
+        say_coverage(common, report);
+        if let Some(found) = &report.held_out {
+            say_merit(common, "its recipe, each part held out in turn", &found.pooled);
+            for part in found.parts.iter().filter_map(|part| Some((&part.name, part.fault.as_ref()?))) {
+                common.say(&format!("  {}: not fitted: {}", part.0, part.1));
+            }
+            if let Some(honest) = &found.by_trajectory {
+                say_merit(
+                    common,
+                    "whole trajectories held out instead, which is what a new trajectory will see",
+                    honest,
+                );
+            }
+            for (name, ratio) in found.flattery.iter().flat_map(|by| &by.0) {
+                let text = ratio.map_or("an unknown number of".to_owned(), |ratio| format!("{ratio:.2}"));
+                common.say(&format!("  {name:<8} shuffled rows flatter it {text} times"));
+            }
+            match (&found.coverage, &found.no_coverage) {
+                (Some(found), _) => {
+                    for (k, (name, _)) in report.merit.rmse.0.iter().enumerate() {
+                        let reached =
+                            found.all.reached[k].map_or("-".to_owned(), |share| format!("{:.1}", 100.0 * share));
+                        let wanted = 100.0 * found.level;
+                        common.say(&format!(
+                            "  {name:<8} intervals for {wanted:.0} % of the rows of parts not seen hold {reached} %"
+                        ));
+                    }
+                }
+                (None, Some(why)) => common.say(&format!("  no prediction intervals: {why}")),
+                (None, None) => {}
+            }
+        }
+        if common.verbose {
+            report.data.iter().flat_map(|file| &file.notes).for_each(|note| common.say(note));
+        }
+    }
+}
+
+fn say_coverage(common: &Common, report: &EvaluateReport) {
+    for (name, share) in report.coverage.iter().flat_map(|by| &by.0) {
+        let share = share.map_or("-".to_owned(), |share| format!("{:.1}", 100.0 * share));
+        common.say(&format!("  {name:<8} {share} % of the rows within the model's prediction intervals"));
+    }
+}

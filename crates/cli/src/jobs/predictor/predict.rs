@@ -1,0 +1,95 @@
+//! `lunula predict`: voltages to forces and angle.
+
+use std::io::{BufReader, stdin};
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, ensure};
+use clap::Args;
+use lunula::job::{Given, Said, Watch};
+use lunula::predictor::{PredictChoices, PredictFigures, PredictReport, predict, predict_plan, predict_stream};
+
+use crate::jobs::{self, Command, JobArgs, Plan};
+use crate::out::Stream;
+use crate::{Common, Outcome};
+
+/// Predict forces and angle from photodiodes, with models that `lunula train` wrote
+///
+/// With a model of force and one of posture the two are gated (equations 9, 16): while the finger presses with --f-min
+/// or more (-Fz_N) it touches, and the angle is --theta-touch; else the posture model predicts the angle. A row that
+/// lacks a voltage has no prediction. DATA may be `-`: rows of CSV on standard input, the first names the columns; each
+/// is answered as soon as its line is complete. Of a log with a column `led`, each lit row is answered: less the unlit
+/// light at its time, or, of a stream, less the unlit row before it.
+#[derive(Debug, Args)]
+pub(crate) struct PredictArgs {
+    /// Model files, then the recording: a table, a log, or `-` for a stream of CSV rows
+    #[arg(required = true, num_args = 2.., value_name = "MODEL... DATA")]
+    paths: Vec<PathBuf>,
+    /// time_s, Fx_N, Fy_N, Fz_N and/or J2_deg, contact (.csv or .parquet) [default for a stream: standard output]
+    #[arg(long, value_name = "PREDICTED.csv")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    given: Given<PredictChoices>,
+    #[command(flatten)]
+    job: JobArgs,
+}
+
+/// The stream on standard input, or the job.
+pub(crate) fn run_or_stream(args: &PredictArgs) -> anyhow::Result<Outcome> {
+    let (data, models) = args.parts()?;
+    if data != Path::new("-") {
+        return jobs::run(args);
+    }
+    let common = &args.job.common;
+    ensure!(args.out.is_none(), "a stream is answered on standard output; leave --out away and redirect it");
+    ensure!(!common.json, "a stream is answered on standard output, where --json would print; leave one of them away");
+    let options = args.given.options.options()?;
+    let note = |note: &str| common.note(&[note.to_owned()]);
+    // No row may come for long: whoever interrupts a stream ends it at once, as there is nothing to put in order.
+    predict_stream(models, BufReader::new(stdin().lock()), &options, Stream, note, &Watch::nobody())?;
+    Ok(Outcome::Done)
+}
+
+impl PredictArgs {
+    fn parts(&self) -> anyhow::Result<(&Path, &[PathBuf])> {
+        let (data, models) = self.paths.split_last().context("name a model and a recording")?;
+        Ok((data, models))
+    }
+}
+
+impl Command for PredictArgs {
+    type Figures = PredictFigures;
+
+    const NAME: &'static str = "predict";
+
+    fn job(&self) -> &JobArgs {
+        &self.job
+    }
+
+    fn said(&self) -> &Said {
+        &self.given.said
+    }
+
+    fn plan(&self) -> anyhow::Result<Plan> {
+        Ok(predict_plan(self.parts()?.1.len(), &self.given.options.options()?).into())
+    }
+
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<PredictReport> {
+        let (data, models) = self.parts()?;
+        let out = self.out.as_ref().context("--out is needed: the table of predictions")?;
+        Ok(predict(models, data, &self.given.options.options()?, out, watch)?)
+    }
+
+    fn say(&self, common: &Common, report: &PredictReport) {
+        common.say(&format!(
+            "{} rows, {} of them not known, {} outside of what was trained on",
+            report.rows, report.rows_not_known, report.rows_outside
+        ));
+        if report.touch + report.bending > 0 {
+            common.say(&format!("touch in {} rows, bending in {}", report.touch, report.bending));
+        }
+    }
+
+    fn result(&self) -> Option<PathBuf> {
+        self.out.clone()
+    }
+}

@@ -1,0 +1,140 @@
+//! `lunula train`: recordings to a model file.
+
+use std::path::PathBuf;
+
+use anyhow::Context;
+use clap::Args;
+use lunula::job::{Given, Said, Watch};
+use lunula::predictor::models::Report;
+use lunula::predictor::{
+    DataFile, TrainChoices, TrainFigures, TrainInputs, TrainOutputs, TrainReport, train, train_plan,
+};
+
+use crate::Common;
+use crate::jobs::predictor::{figure, say_merit};
+use crate::jobs::{Command, JobArgs, Plan};
+
+/// Train a model that predicts forces or angles from photodiodes (chapter 5)
+///
+/// A recording is a table with P1.. and Fx_N,Fy_N,Fz_N or J2_deg, as `lunula align` writes it, or a log with forces
+/// (with a column `led`, lit less unlit samples are taken). Each file, session and subject in it is a recording of its
+/// own. Rows with an empty cell that is needed are left out and counted. Models: linear (equation 9), quadratic (16:
+/// all squares and products) and network (17, 18). What --validate names is only reported on, and its errors give the
+/// prediction intervals: name recordings of another session.
+#[derive(Debug, Args)]
+pub(crate) struct TrainArgs {
+    /// Recordings to train on (.csv, .csv.gz where a log, .parquet)
+    #[arg(required = true, value_name = "DATA")]
+    data: Vec<PathBuf>,
+    /// Recordings to report on
+    #[arg(long, value_name = "DATA", num_args = 1..)]
+    validate: Vec<PathBuf>,
+    /// Recordings on which the network's training stops early [default: every fifth of 20 blocks of each training
+    /// recording]
+    #[arg(long, value_name = "DATA", num_args = 1..)]
+    stop_on: Vec<PathBuf>,
+    #[command(flatten)]
+    given: Given<TrainChoices>,
+    /// The model file
+    #[arg(long, value_name = "MODEL.json", required_unless_present = "plan")]
+    out: Option<PathBuf>,
+    /// The error on the recordings to validate on, against how much was trained on: a table, and a picture beside it
+    #[arg(long, value_name = "CURVE.csv", requires = "validate")]
+    learning_curve: Option<PathBuf>,
+    #[command(flatten)]
+    job: JobArgs,
+}
+
+impl TrainArgs {
+    fn inputs(&self) -> TrainInputs {
+        TrainInputs {
+            data: DataFile::of(&self.data),
+            validate: DataFile::of(&self.validate),
+            stop_on: DataFile::of(&self.stop_on),
+        }
+    }
+}
+
+impl Command for TrainArgs {
+    type Figures = TrainFigures;
+
+    const NAME: &'static str = "train";
+
+    fn job(&self) -> &JobArgs {
+        &self.job
+    }
+
+    fn said(&self) -> &Said {
+        &self.given.said
+    }
+
+    fn plan(&self) -> anyhow::Result<Plan> {
+        Ok(train_plan(&self.inputs(), &self.given.options.options().recipe, self.learning_curve.is_some()).into())
+    }
+
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<TrainReport> {
+        let model = self.out.clone().context("--out is needed")?;
+        let outputs = TrainOutputs { model, learning_curve: self.learning_curve.clone(), merit: None };
+        Ok(train(&self.inputs(), &self.given.options.options(), &outputs, watch)?)
+    }
+
+    fn say(&self, common: &Common, report: &TrainReport) {
+        for file in report.data.iter().chain(&report.validate).filter(|file| file.used < file.rows) {
+            common.say(&format!(
+                "{}: {} of {} rows used ({} lack a cell, {} invalid, {} with a fault of the sensor)",
+                file.path.display(),
+                file.used,
+                file.rows,
+                file.empty,
+                file.invalid,
+                file.faults
+            ));
+        }
+        match &report.fit {
+            Report::LeastSquares(fit) => common.say(&format!(
+                "{} terms, {} of them independent; condition {}, {} digits of the coefficients can be trusted",
+                fit.terms.len(),
+                fit.rank.map_or("-".to_owned(), |rank| rank.to_string()),
+                fit.condition.map_or("infinite".to_owned(), |condition| format!("{condition:.1e}")),
+                fit.digits.map_or("-".to_owned(), |digits| format!("{digits:.0}"))
+            )),
+            Report::Network(fit) => {
+                let best = &fit.restarts[fit.best];
+                common.say(&format!(
+                    "{} parameters; best of {} networks after {} epochs; RMSE in SDs: best {:.4}, median {:.4}, \
+                     quartiles \
+                     {:.4} apart",
+                    fit.parameters,
+                    fit.restarts.len(),
+                    best.best_epoch,
+                    best.score,
+                    fit.median_score,
+                    fit.score_iqr
+                ));
+            }
+        }
+        say_merit(common, "trained", &report.training);
+        if let Some(merit) = &report.validation {
+            say_merit(common, "validated", merit);
+        }
+        for one in &report.without {
+            say_merit(common, &format!("validated, without {}", one.without), &one.validation);
+        }
+        if let Some(half_width) = &report.half_width {
+            for (name, half) in &half_width.0 {
+                common.say(&format!(
+                    "  {name:<8} {:.0} % of the validated rows within ± {}",
+                    100.0 * report.level,
+                    figure(*half)
+                ));
+            }
+        }
+        if common.verbose {
+            report.data.iter().chain(&report.validate).flat_map(|file| &file.notes).for_each(|note| common.say(note));
+        }
+    }
+
+    fn result(&self) -> Option<PathBuf> {
+        self.out.clone()
+    }
+}

@@ -1,0 +1,175 @@
+//! `lunula trajectory`: tables of forces or angles for a prompter to play.
+
+use std::path::PathBuf;
+
+use anyhow::Context;
+use clap::{Args, Subcommand};
+use lunula::job::{Given, Said, Watch};
+use lunula::predictor::trajectory::{
+    BendingOptions, ForceFigures, ForceOptions, KindOptions, PostureFigures, RandomOptions, TrajectoryFigures,
+    TrajectoryOutputs, TrajectoryReport, plan, run as run_trajectory,
+};
+
+use crate::jobs::{self, Command, JobArgs, Plan};
+use crate::{Common, Outcome};
+
+/// Write calibration trajectories (5.2.3) as tables that a prompter can play, with how fast they are and how evenly
+/// they cover
+///
+/// Beside the table are <table>.run.json and pictures (Fig. 90-93).
+#[derive(Debug, Args)]
+pub(crate) struct TrajectoryArgs {
+    #[command(subcommand)]
+    kind: KindArg,
+}
+
+#[derive(Debug, Subcommand)]
+enum KindArg {
+    /// The spiral through the cone of friction (equations 21 to 23), with a soft start
+    Force(KindArgs<ForceOptions>),
+    /// Bending: J2 = 35 - 40 cos(2 pi f t) degrees (equation 27), or at random within that range
+    Posture(KindArgs<BendingOptions>),
+    /// Smooth random forces within the cone of friction, for tests (5.2.4, 5.3.1)
+    Random(KindArgs<RandomOptions>),
+}
+
+#[derive(Debug, Args)]
+struct KindArgs<K: KindOptions> {
+    #[command(flatten)]
+    given: Given<K>,
+    /// The table: time_s and Fx_N, Fy_N, Fz_N (of the finger on the surface: pressing is negative Fz_N) or J2_deg (.csv
+    /// or .parquet)
+    #[arg(long, value_name = "TABLE.csv", required_unless_present = "plan")]
+    out: Option<PathBuf>,
+    /// Draw no pictures
+    #[arg(long)]
+    no_figures: bool,
+    #[command(flatten)]
+    job: JobArgs,
+}
+
+pub(crate) fn run(args: &TrajectoryArgs) -> anyhow::Result<Outcome> {
+    match &args.kind {
+        KindArg::Force(args) => jobs::run(args),
+        KindArg::Posture(args) => jobs::run(args),
+        KindArg::Random(args) => jobs::run(args),
+    }
+}
+
+impl<K: KindOptions> KindArgs<K> {
+    fn outputs(&self) -> Option<TrajectoryOutputs> {
+        Some(TrajectoryOutputs { table: self.out.clone()?, figures: !self.no_figures, report: true })
+    }
+}
+
+impl<K: KindOptions> Command for KindArgs<K> {
+    type Figures = TrajectoryFigures;
+
+    const NAME: &'static str = "trajectory";
+
+    fn job(&self) -> &JobArgs {
+        &self.job
+    }
+
+    fn said(&self) -> &Said {
+        &self.given.said
+    }
+
+    fn plan(&self) -> anyhow::Result<Plan> {
+        Ok(plan(&self.given.options.options(), self.outputs().as_ref())?.into())
+    }
+
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<TrajectoryReport> {
+        let outputs = self.outputs().context("--out is needed")?;
+        Ok(run_trajectory(&self.given.options.options(), &outputs, watch)?)
+    }
+
+    fn say(&self, common: &Common, report: &TrajectoryReport) {
+        common.say(&format!(
+            "{} rows from 0 to {:.3} s, every {} s",
+            report.rows, report.span_s, report.trajectory.every_s
+        ));
+        if let Some(force) = &report.force {
+            say_force(common, report, force);
+        }
+        if let Some(PostureFigures { lowest_deg, highest_deg, fastest_deg_per_s, behind_deg }) = report.posture {
+            common.say(&format!(
+                "J2 from {lowest_deg:.1} to {highest_deg:.1} degrees, at most {fastest_deg_per_s:.1} degrees a \
+                 second: a \
+                 sensor that lags by {} s is {behind_deg:.1} degrees behind",
+                report.trajectory.tau_s
+            ));
+        }
+    }
+
+    fn result(&self) -> Option<PathBuf> {
+        self.out.clone()
+    }
+}
+
+fn say_force(common: &Common, report: &TrajectoryReport, force: &ForceFigures) {
+    let options = &report.trajectory;
+    if let Some(rates) = &force.rates {
+        let [x, y, z] = rates.components_n_per_s;
+        common.say(&format!(
+            "at most {x:.2}, {y:.2}, {z:.2} N/s in Fx, Fy, Fz, {:.2} N/s together (at {:.1} s)",
+            rates.vector_n_per_s, rates.vector_at_s
+        ));
+        let relative = rates.relative_per_s.map_or("-".to_owned(), |relative| format!("{relative:.2}"));
+        let always = match rates.kept_from_s {
+            Some(from_s) => format!("; whatever the force, from {from_s:.1} s on"),
+            None => String::new(),
+        };
+        common.say(&format!(
+            "relative rate (eq. 19) at most {relative} a second where the force is {:.2} N or more; {:.0} % at {} s \
+             allow {:.2}: {}",
+            force.floor_n,
+            100.0 * options.error,
+            options.tau_s,
+            force.limit_per_s,
+            match rates.over_share {
+                _ if force.keeps_limit => format!("kept{always}"),
+                Some(share) => format!("not kept in {:.0} % of that time", 100.0 * share),
+                None => "there is no such force".to_owned(),
+            }
+        ));
+    }
+    if let Some(spiral) = &force.spiral {
+        common.say(&format!(
+            "circling (eq. 24) below {:.3} Hz; radial rate at most {:.3} N/s with the soft start, {:.3} without (eq. \
+             25 prints {:.3}); eq. 26 asks for {:.0} s as \
+             printed, {:.0} s with the true rate, {:.0} s with the soft start",
+            spiral.circling_limit_hz,
+            spiral.radial_rate_max_n_per_s,
+            spiral.radial_rate_true_n_per_s,
+            spiral.radial_rate_printed_n_per_s,
+            spiral.shortest_printed_s,
+            spiral.shortest_true_s,
+            spiral.shortest_s
+        ));
+    }
+    let covered = &force.coverage;
+    let known = |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{value:.3}"));
+    for (name, even) in [("cylindrical", &covered.cylindrical), ("Cartesian", &covered.cartesian)] {
+        let [up, out, turn] = even.of_each.map_or([None; 3], |each| each.map(Some)).map(known);
+        common.say(&format!(
+            "coverage, {name}: {:.0} % of {} cells, evenness {} (pressing {up}, shear {out}, direction {turn}; 1 is \
+             even)",
+            100.0 * even.visited,
+            even.cells,
+            known(even.entropy)
+        ));
+    }
+    if let Some(hole) = &covered.hole {
+        let [x, y, z] = hole.middle_n;
+        common.say(&format!("largest hole: {:.2} N about ({x:.2}, {y:.2}, {z:.2}) N", hole.radius_n));
+    }
+    if let Some(correlation) = force.time_pressing_correlation {
+        let drift = if correlation.abs() > 0.9 {
+            ": a drift of the sensor can't be distinguished from the pressing"
+        } else {
+            ""
+        };
+        common.say(&format!("correlation of time and pressing {correlation:.2}{drift}"));
+    }
+}

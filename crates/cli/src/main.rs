@@ -1,0 +1,235 @@
+//! The command line of lunula: one file a command. Arguments in, one job called, tables and pictures out; no thinking here.
+//!
+//! Exit status: 0 all done; 1 done, but some inputs failed, or what was to be said or written after the results could
+//! not be (each is named on standard error); 2 nothing done, nothing changed; 130 interrupted.
+
+mod doctor;
+mod jobs;
+mod out;
+mod runs;
+mod shell;
+mod tradeoff;
+
+use std::io::IsTerminal;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use clap::{Args, Parser, Subcommand};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use lunula::files::results_stand;
+use lunula::input;
+use lunula::job::Interrupted;
+use lunula::stages::Stage;
+use lunula::words::shown_lines;
+use out::print_line;
+
+/// Photographs come and go by the megabyte: this allocator keeps their pages, the system's returns them each time.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
+/// Ground truth for fingernail sensing: nail photographs to coloration maps, videos to joint angles,
+/// angles and photodiode logs to labelled training sets, those to models of force and posture.
+#[derive(Debug, Parser)]
+#[command(
+    name = "lunula",
+    version,
+    about,
+    after_help = AFTER_HELP,
+    max_term_width = 110
+)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+const AFTER_HELP: &str = "lunula COMMAND --help explains each command.
+
+Exit status: 0 all done; 1 done, but some inputs failed (each is named on standard error, the others are done), \
+or results exist and what \
+comes after them, as a report or words on standard output, could not be written; 2 nothing done, nothing changed; 130 \
+interrupted. Results \
+appear whole or not at all; what existed before a failed run is as it was.";
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Photos(jobs::photos::PhotosArgs),
+    Posture(jobs::posture::PostureArgs),
+    Align(Box<jobs::align::AlignArgs>),
+    Train(Box<jobs::predictor::TrainArgs>),
+    Evaluate(jobs::predictor::EvaluateArgs),
+    Predict(jobs::predictor::PredictArgs),
+    Analyse(jobs::predictor::AnalyseArgs),
+    Prune(jobs::predictor::PruneArgs),
+    Simulate(Box<jobs::hemodynamics::SimulateArgs>),
+    Fit(Box<jobs::hemodynamics::FitArgs>),
+    Merge(runs::merge::MergeArgs),
+    Phantom(jobs::phantom::PhantomArgs),
+    Tradeoff(tradeoff::TradeoffArgs),
+    Trajectory(Box<jobs::trajectory::TrajectoryArgs>),
+    Run(runs::run::RunArgs),
+    Init(runs::init::InitArgs),
+    Doctor(doctor::DoctorArgs),
+    Completions(shell::completions::CompletionsArgs),
+    Man(shell::man::ManArgs),
+}
+
+/// What every job takes.
+#[derive(Debug, Clone, Args)]
+struct Common {
+    /// Print one JSON object on standard output: options, figures, warnings, notes, times
+    #[arg(long, global = true)]
+    json: bool,
+    /// Threads to use [default: all cores]; results are the same bytes whatever their number
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Print errors only
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    quiet: bool,
+    /// Print every stage's time and what was left out
+    #[arg(short, long, global = true)]
+    verbose: bool,
+}
+
+/// How a job ended well.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Outcome {
+    Done,
+    SomeFailed,
+}
+
+/// A run of many tasks was stopped from outside.
+#[derive(Debug, thiserror::Error)]
+#[error("interrupted; what was done is kept, and the same command goes on from there")]
+struct Stopped;
+
+/// Parses and runs the command.
+fn main() -> ExitCode {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        // Help and version.
+        Err(shown) if !shown.use_stderr() => {
+            out::note(shown.print());
+            return ended_with(Ok(Outcome::Done));
+        }
+        Err(wrong) => wrong.exit(),
+    };
+    ended_with(match cli.command {
+        Command::Photos(args) => jobs::photos::run_or_merge(&args),
+        Command::Align(args) => jobs::run(&*args),
+        Command::Train(args) => jobs::run(&*args),
+        Command::Evaluate(args) => jobs::run(&args),
+        Command::Predict(args) => jobs::predictor::run_or_stream(&args),
+        Command::Analyse(args) => jobs::run(&args),
+        Command::Prune(args) => jobs::run(&args),
+        Command::Simulate(args) => jobs::hemodynamics::simulate(&args),
+        Command::Fit(args) => jobs::run(&*args),
+        Command::Posture(args) => jobs::posture::run_or_suggest(&args),
+        Command::Merge(args) => runs::merge::run(&args),
+        Command::Phantom(args) => jobs::phantom::run(&args),
+        Command::Tradeoff(args) => tradeoff::run(&args),
+        Command::Trajectory(args) => jobs::trajectory::run(&args),
+        Command::Run(args) => runs::run::run(&args),
+        Command::Init(args) => runs::init::run(&args),
+        Command::Doctor(args) => doctor::run(&args),
+        Command::Completions(args) => shell::completions::run(&args),
+        Command::Man(args) => shell::man::run(&args),
+    })
+}
+
+/// Says what is to be said at the end; the exit status.
+fn ended_with(outcome: anyhow::Result<Outcome>) -> ExitCode {
+    let failed = || if results_stand() { 1 } else { 2 };
+    let status = match outcome {
+        Ok(Outcome::Done) => 0,
+        Ok(Outcome::SomeFailed) => 1,
+        Err(_) if input::was_cut() => {
+            eprintln!("error: {Interrupted}");
+            130
+        }
+        Err(error) => {
+            let stopped = error.chain().find(|one| one.is::<Interrupted>() || one.is::<Stopped>());
+            match stopped {
+                Some(stopped) => eprintln!("error: {stopped}"),
+                None => eprintln!("error: {}", shown_lines(&format!("{error:#}"))),
+            }
+            if stopped.is_some() { 130 } else { failed() }
+        }
+    };
+    match out::finish() {
+        Err(why) => {
+            eprintln!("error: standard output: cannot be written ({why}); make room, or send it elsewhere");
+            ExitCode::from(if status == 130 { 130 } else { failed() })
+        }
+        Ok(()) => ExitCode::from(status),
+    }
+}
+
+impl Common {
+    /// Threads to work with; 0: all cores.
+    fn threads(&self) -> usize {
+        self.threads.map_or(0, usize::from)
+    }
+
+    /// Sets the threads up; a job's first step.
+    fn start(&self) -> anyhow::Result<Arc<AtomicBool>> {
+        rayon::ThreadPoolBuilder::new().num_threads(self.threads()).build_global()?;
+        let stop = Arc::new(AtomicBool::new(false));
+        let flag = Arc::clone(&stop);
+        ctrlc::set_handler(move || {
+            input::interrupt();
+            if flag.swap(true, Ordering::Relaxed) {
+                // Asked twice: what was held back is a hidden folder, nothing of the results is touched.
+                std::process::exit(130);
+            }
+        })?;
+        Ok(stop)
+    }
+
+    /// A bar on standard error, where that is a terminal and somebody looks.
+    fn progress(&self, steps: usize, unit: &str) -> ProgressBar {
+        let seen = std::io::stderr().is_terminal() && !self.quiet;
+        let target = if seen { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
+        let bar = ProgressBar::with_draw_target(Some(steps as u64), target);
+        let style = ProgressStyle::with_template(&format!("{{wide_bar}} {{pos}}/{{len}} {unit}, {{eta}} left"));
+        style.map_or(bar.clone(), |style| bar.with_style(style))
+    }
+
+    /// Plain words on standard output, unless quiet or JSON is wanted.
+    fn say(&self, text: &str) {
+        if !self.json && !self.quiet {
+            print_line(&shown_lines(text));
+        }
+    }
+
+    /// Each stage's time, a line each.
+    fn say_stages(&self, stages: &[Stage]) {
+        stages.iter().for_each(|stage| self.say(&format!("{:<28} {:>9.3} s", stage.stage, stage.thread_s)));
+    }
+
+    fn say_left_out(&self, left_out: &[String]) {
+        left_out.iter().for_each(|what| self.say(&format!("left out: {what}")));
+    }
+
+    fn warn(&self, warnings: &[String]) {
+        if !self.quiet {
+            for warning in warnings {
+                eprintln!("warning: {}", shown_lines(warning));
+            }
+        }
+    }
+
+    /// What was chosen, guessed or counted on the way.
+    fn note(&self, notes: &[String]) {
+        if !self.quiet {
+            notes.iter().for_each(|note| eprintln!("note: {}", shown_lines(note)));
+        }
+    }
+
+    fn print_json(&self, report: &impl serde::Serialize) -> anyhow::Result<()> {
+        if self.json {
+            print_line(&serde_json::to_string(report)?);
+        }
+        Ok(())
+    }
+}

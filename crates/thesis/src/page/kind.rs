@@ -1,0 +1,91 @@
+//! `study` in a pipeline: the page with a counterpart of every data figure of the thesis and every statement of its
+//! text beside what came out.
+
+use super::{PageOptions, Part as StudyPart, PartFolder, study_page};
+use lunula::job::{Demand, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Role, Takes, Work, keys, prepare};
+use lunula::stages::Step;
+
+const fn role(name: &'static str, about: &'static str) -> Role {
+    Role { name, takes: Takes::AnyNumber, about }
+}
+
+/// A stage of a pipeline.
+#[derive(Debug, Clone)]
+pub(crate) struct StudyJob(PageOptions);
+
+impl Job for StudyJob {
+    /// Its roles are named as the study's parts.
+    const KIND: Kind = Kind {
+        name: "study",
+        roles: &[
+            role("normal", "responses to normal force"),
+            role("lateral", "responses to lateral shear"),
+            role("longitudinal", "responses to longitudinal shear"),
+            role("bending", "responses to bending"),
+            role("typical", "one subject's coloration"),
+            role("photos", "maps of photographs"),
+            role("section", "the simulations of section 4.3"),
+            role("presses", "its experiments"),
+            role("touch_training", "the touch model evaluated on what it was trained on"),
+            role("touch_validation", "on the third repetition"),
+            role("touch_test", "on random touching"),
+            role("modes", "the touch model analysed"),
+            role("posture_training", "the posture model evaluated on what it was trained on"),
+            role("posture_validation", "on new data"),
+            role("compare", "models compared over subjects"),
+        ],
+        parts: &[
+            Part { name: "page", file: "study.html", only_if_wanted: false },
+            Part { name: "statements", file: "statements.csv", only_if_wanted: false },
+            Part { name: "numbers", file: "numbers.json", only_if_wanted: false },
+        ],
+        revision: 1,
+        keys: keys::<PageOptions>,
+        prepare: prepare::<Self>,
+    };
+
+    type Options = PageOptions;
+
+    fn new(options: PageOptions) -> Result<Self, OptionFault> {
+        Ok(Self(options))
+    }
+
+    fn demand(&self, role: &str, _own: &Demand) -> Demand {
+        // What the page shows of each, where that is made only if wanted.
+        let parts: &[&'static str] = match role {
+            "photos" => &["maps", "figures"],
+            "touch_training" | "touch_validation" | "touch_test" | "posture_training" | "posture_validation" => {
+                &["predicted", "pictures"]
+            }
+            "modes" | "compare" => &["pictures"],
+            _ => &[],
+        };
+        Demand { parts: parts.iter().copied().collect(), ..Demand::default() }
+    }
+
+    fn steps(&self, inputs: &[Foreseen], _demand: &Demand) -> Result<Vec<Step>, String> {
+        let one = |part: &StudyPart| {
+            let count = inputs.iter().filter(|input| input.role == part.name()).count();
+            let reason = if count == 0 { "no results are named".to_owned() } else { format!("{count} folders") };
+            Step::new(part.name(), count > 0, reason)
+        };
+        Ok(StudyPart::ALL.iter().map(one).collect())
+    }
+
+    fn cost(&self, _inputs: &[Foreseen]) -> (u64, f64) {
+        (128_000_000, 0.5)
+    }
+
+    fn run(&self, order: &Order<'_>, work: &Work<'_>) -> anyhow::Result<Made> {
+        let of = |part: StudyPart| {
+            work.of(part.name()).map(move |at| PartFolder {
+                part,
+                folder: at.path.clone(),
+                subject: at.keys.get("subject").unwrap_or_default().to_owned(),
+            })
+        };
+        let folders: Vec<PartFolder> = StudyPart::ALL.into_iter().flat_map(of).collect();
+        let report = work.run(order.said, |watch| study_page(&folders, &self.0, work.folder, watch))?;
+        Ok(report.made(Vec::new()))
+    }
+}

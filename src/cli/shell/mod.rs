@@ -1,4 +1,0 @@
-//! What a shell wants of the program: completions, manual pages.
-
-pub(in crate::cli) mod completions;
-pub(in crate::cli) mod man;
