@@ -1,17 +1,15 @@
 //! The scenes that train: phantoms, pictures without nails, and photographs of hands.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use anyhow::Context;
 use image::{DynamicImage, GrayImage, Luma, Rgb, RgbImage};
+use lunula::phantom::nail::{Background, Camera, Depth, Light, NailScene, Pose, RenderOptions, Subject, Tone};
+use lunula::photo::outline::training::{Frame, Levels, ends as finger_ends};
+use lunula::photo::outline::{DetectOptions, Outline};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
-
-use super::super::patch::Frame;
-use super::super::picture::Levels;
-use super::super::{DetectOptions, ends as finger_ends};
-use crate::phantom::nail::{Background, Camera, Depth, Light, NailScene, Pose, RenderOptions, Subject, Tone};
-use crate::photo::outline::Outline;
 
 /// A nail of a scene.
 pub(super) struct Truth {
@@ -28,13 +26,13 @@ pub(super) struct Scene {
 }
 
 /// Phantom `k`: any tone, light, pose, turn up to 30 degrees, colour or grey.
-pub(super) fn phantom(seed: u64, k: u32) -> Scene {
+pub(super) fn phantom(seed: u64, k: u32) -> anyhow::Result<Scene> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed ^ (u64::from(k) << 20));
     let subject = Subject::random(seed, k);
     let pose = Pose::ALL[rng.random_range(0..8)];
     let chamber = rng.random_bool(0.25);
     let light = if chamber { Light::random_chamber(&mut rng) } else { Light::random(&mut rng) };
-    let size = *[[320, 240], [480, 360], [240, 320], [640, 480]].get(rng.random_range(0..4)).unwrap();
+    let size = [[320, 240], [480, 360], [240, 320], [640, 480]][rng.random_range(0..4)];
     let filling = rng.random_range(0.3..0.8);
     let mut camera = Camera::close_up(&mut rng, size, subject.nail.aspect, filling, 30.0);
     if !chamber {
@@ -48,12 +46,12 @@ pub(super) fn phantom(seed: u64, k: u32) -> Scene {
         noise_seed: u64::from(k),
     };
     let up = Some(scene.axis().distal());
-    let truth = Truth { outline: scene.outline().unwrap(), up };
-    Scene { image: scene.render(&options).unwrap(), truths: vec![truth], real: false }
+    let truth = Truth { outline: scene.outline()?, up };
+    Ok(Scene { image: scene.render(&options)?, truths: vec![truth], real: false })
 }
 
 /// Pictures without nails.
-pub(super) fn empty(seed: u64, k: u32) -> Scene {
+pub(super) fn empty(seed: u64, k: u32) -> anyhow::Result<Scene> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed ^ 0xE ^ (u64::from(k) << 20));
     let (w, h) = (320u32, 240u32);
     let mut image = RgbImage::new(w, h);
@@ -118,11 +116,11 @@ pub(super) fn empty(seed: u64, k: u32) -> Scene {
     let image = image::imageops::blur(&image, rng.random_range(0.5..1.5));
     let image = DynamicImage::ImageRgb8(image);
     let image = if rng.random_bool(0.4) { image.grayscale() } else { image };
-    Scene { image, truths: vec![], real: false }
+    Ok(Scene { image, truths: vec![], real: false })
 }
 
 /// A finger as on a phantom, photographed behind the nail.
-fn skin_only(seed: u64, k: u32) -> Scene {
+fn skin_only(seed: u64, k: u32) -> anyhow::Result<Scene> {
     let mut rng = ChaCha8Rng::seed_from_u64(seed ^ 0x5 ^ (u64::from(k) << 20));
     let subject = Subject::random(seed ^ 9, k);
     let mut camera = Camera::close_up(&mut rng, [320, 240], subject.nail.aspect, 0.6, 30.0);
@@ -134,7 +132,7 @@ fn skin_only(seed: u64, k: u32) -> Scene {
     let scene = NailScene { subject, pose: Pose::Nominal, light, camera };
     let options =
         RenderOptions { depth: Depth::Eight, grey: rng.random_bool(0.5), noise_sd: 1.5, noise_seed: u64::from(k) };
-    Scene { image: scene.render(&options).unwrap(), truths: vec![], real: false }
+    Ok(Scene { image: scene.render(&options)?, truths: vec![], real: false })
 }
 
 /// A photograph of hands as it is or otherwise.
@@ -167,24 +165,25 @@ impl Look {
     }
 }
 
-/// Annotated photographs of hands, every other one from the first (`odd` 0) or the second (1) on.
-pub(super) fn hands(folder: &Path, odd: usize, look: Look) -> Vec<Scene> {
-    let mut files: Vec<_> = std::fs::read_dir(folder.join("images")).unwrap().map(|e| e.unwrap().path()).collect();
+/// Annotated photographs of hands (`images/` and, of the same names, `masks/`), every other one from the first (`odd`
+/// 0) or the second (1) on.
+pub(super) fn hands(folder: &Path, odd: usize, look: Look) -> anyhow::Result<Vec<Scene>> {
+    let named = |path: &Path| path.display().to_string();
+    let pictures = folder.join("images");
+    let entries = std::fs::read_dir(&pictures).with_context(|| named(&pictures))?;
+    let mut files = entries.map(|entry| Ok(entry?.path())).collect::<anyhow::Result<Vec<_>>>()?;
     files.sort();
-    files
-        .into_iter()
-        .skip(odd)
-        .step_by(2)
-        .map(|file| {
-            let image = look.of(&image::open(&file).unwrap());
-            let mask = image::open(folder.join("masks").join(file.file_name().unwrap())).unwrap().to_luma8();
-            // JPEG leaves values between: the threshold comes before any resampling does more of it.
-            let mask = imageproc::contrast::threshold(&mask, 127, imageproc::contrast::ThresholdType::Binary);
-            let mask = if look == Look::Grey { mask } else { look.of(&mask.into()).to_luma8() };
-            let truths = outlines(&mask).into_iter().map(|outline| Truth { outline, up: None }).collect();
-            Scene { image, truths, real: true }
-        })
-        .collect()
+    let scene = |file: PathBuf| {
+        let open = |file: &Path| image::open(file).with_context(|| named(file));
+        let image = look.of(&open(&file)?);
+        let mask = open(&folder.join("masks").join(file.file_name().unwrap_or_default()))?.to_luma8();
+        // JPEG leaves values between: the threshold comes before any resampling does more of it.
+        let mask = imageproc::contrast::threshold(&mask, 127, imageproc::contrast::ThresholdType::Binary);
+        let mask = if look == Look::Grey { mask } else { look.of(&mask.into()).to_luma8() };
+        let truths = outlines(&mask).into_iter().map(|outline| Truth { outline, up: None }).collect();
+        Ok(Scene { image, truths, real: true })
+    };
+    files.into_iter().skip(odd).step_by(2).map(scene).collect()
 }
 
 /// Outlines of a mask's regions, along the edges of its pixels to a quarter of a pixel.
@@ -209,13 +208,14 @@ pub(super) fn bell(rng: &mut ChaCha8Rng) -> f64 {
 }
 
 /// Phantoms, three quarters as many pictures without nails, and hands where there are any.
-pub(super) fn scenes(count: u32, seed: u64, looks: &[Look]) -> Vec<Scene> {
-    let mut all: Vec<Scene> = (0..count).into_par_iter().map(|k| phantom(seed, k)).collect();
-    all.par_extend((0..count * 3 / 4).into_par_iter().map(|k| empty(seed, k)));
-    if let Ok(folder) = std::env::var("LUNULA_HANDS") {
-        all.extend(looks.iter().flat_map(|look| hands(Path::new(&folder), 0, *look)));
+pub(super) fn scenes(count: u32, seed: u64, folder: Option<&Path>, looks: &[Look]) -> anyhow::Result<Vec<Scene>> {
+    let mut all = (0..count).into_par_iter().map(|k| phantom(seed, k)).collect::<anyhow::Result<Vec<_>>>()?;
+    let empty = (0..count * 3 / 4).into_par_iter().map(|k| empty(seed, k));
+    all.extend(empty.collect::<anyhow::Result<Vec<_>>>()?);
+    for look in looks {
+        all.extend(folder.map(|folder| hands(folder, 0, *look)).transpose()?.unwrap_or_default());
     }
-    all
+    Ok(all)
 }
 
 /// Finger ends of a scene.

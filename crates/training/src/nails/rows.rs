@@ -1,15 +1,15 @@
 //! Rows of the training sets: what a network sees, and what it should answer.
 
+use lunula::photo::outline::Outline;
+use lunula::photo::outline::training::{
+    Band, Extent, FINGER, Frame, NAIL, OutlineShape, Patch, RAYS, SIDE, STEP, anywhere, inputs, on_finger, own_frame,
+    polish, score,
+};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-use super::super::patch::{Extent, Frame, Patch};
-use super::super::search::{FINGER, NAIL};
-use super::super::shape::OutlineShape;
-use super::super::{candidate, evidence, refine, search};
 use super::scenes::{Scene, bell, ends, levels, turn_between};
-use crate::photo::outline::Outline;
 
 /// Rows of a network's training set.
 #[derive(Default)]
@@ -163,13 +163,13 @@ pub(super) fn scorer_rows(scene: &Scene, rng: &mut ChaCha8Rng, rows: &mut Rows) 
                     let s = jitter(&from, [0.15, 0.35, 0.7, 1.2][i % 4], rng);
                     let off = (s.turn - turn).cos();
                     let worth = if off > 0.3 { 1.0 } else { 0.5 };
-                    rows.push(&evidence::inputs(&patch, &s, true), cells.iou(&s) * worth);
+                    rows.push(&inputs(&patch, &s, true), cells.iou(&s) * worth);
                 }
             }
             None => {
                 for i in 0..if real { 12 } else { 8 } {
                     let s = jitter(&mean, [0.5, 1.0][i % 2], rng);
-                    rows.push(&evidence::inputs(&patch, &s, true), 0.0);
+                    rows.push(&inputs(&patch, &s, true), 0.0);
                 }
             }
         }
@@ -199,7 +199,7 @@ pub(super) fn scorer_rows(scene: &Scene, rng: &mut ChaCha8Rng, rows: &mut Rows) 
                     shape.taper = -shape.taper;
                     worth = 0.6;
                 }
-                rows.push(&evidence::inputs(&patch, &shape, false), worth * cells.iou(&shape));
+                rows.push(&inputs(&patch, &shape, false), worth * cells.iou(&shape));
             }
         }
     }
@@ -213,7 +213,7 @@ pub(super) fn scorer_rows(scene: &Scene, rng: &mut ChaCha8Rng, rows: &mut Rows) 
                 unit_px: h * rng.random_range(0.25..0.8),
             })
             .collect();
-        let (patch, found) = search::anywhere(&levels, 6);
+        let (patch, found) = anywhere(&levels, 6);
         places.extend(found.iter().map(|(s, _)| Frame {
             origin: patch.frame.to_source([s.x, s.y]),
             up: {
@@ -227,7 +227,7 @@ pub(super) fn scorer_rows(scene: &Scene, rng: &mut ChaCha8Rng, rows: &mut Rows) 
             for i in 0..6 {
                 let base = OutlineShape { x: 0.0, y: 0.0, length: 1.0, width: 0.85, turn: 0.0, taper: 0.03 };
                 let s = jitter(&base, [0.2, 0.8][i % 2], rng);
-                rows.push(&evidence::inputs(&patch, &s, false), 0.0);
+                rows.push(&inputs(&patch, &s, false), 0.0);
             }
         }
     }
@@ -255,13 +255,13 @@ pub(super) fn found_rows(scene: &Scene, rng: &mut ChaCha8Rng, rows: &mut Rows) {
                 if turn.is_nan() || (shape.turn - turn).cos() > 0.3 { iou } else { 0.5 * iou }
             })
             .fold(0.0, f64::max);
-        rows.push(&evidence::inputs(patch, shape, tip), worth);
+        rows.push(&inputs(patch, shape, tip), worth);
     };
     for (frame, _) in ends(scene, 12) {
         let patch = Patch::cut(&levels, frame, FINGER);
-        let coarse = search::on_finger(&patch, 3);
+        let coarse = on_finger(&patch, 3);
         coarse.iter().for_each(|(s, _)| take(&patch, s, true, rows));
-        for (shape, _) in coarse.into_iter().map(|s| search::polish(&patch, s, true)) {
+        for (shape, _) in coarse.into_iter().map(|s| polish(&patch, s, true)) {
             for k in [0.0, 0.15, 0.3] {
                 take(&patch, &jitter(&shape, k, rng), true, rows);
             }
@@ -270,12 +270,12 @@ pub(super) fn found_rows(scene: &Scene, rng: &mut ChaCha8Rng, rows: &mut Rows) {
     if scene.real {
         return;
     }
-    let (coarse, found) = search::anywhere(&levels, 10);
+    let (coarse, found) = anywhere(&levels, 10);
     for (shape, _) in found {
         take(&coarse, &shape, false, rows);
-        let (nail, template) = candidate::own_frame(coarse.frame, &shape);
+        let (nail, template) = own_frame(coarse.frame, &shape);
         let patch = Patch::cut(&levels, nail, NAIL);
-        let (better, _) = search::polish(&patch, (template, evidence::score(&patch, &template, false)), false);
+        let (better, _) = polish(&patch, (template, score(&patch, &template, false)), false);
         for k in [0.0, 0.15, 0.3] {
             take(&patch, &jitter(&better, k, rng), false, rows);
         }
@@ -308,14 +308,14 @@ pub(super) fn border_rows(scene: &Scene, rng: &mut ChaCha8Rng, rows: &mut Rows) 
         let sd = if scene.real { 2.2 } else { 1.0 };
         for _ in 0..2 {
             let base = jitter(&best, 0.35, rng);
-            let band = refine::Band::around(&levels, &frame, &base);
-            for k in (rng.random_range(0..3)..refine::RAYS).step_by(if scene.real { 2 } else { 4 }) {
+            let band = Band::around(&levels, &frame, &base);
+            for k in (rng.random_range(0..3)..RAYS).step_by(if scene.real { 2 } else { 4 }) {
                 let (p, nrm) = band.rays[k];
                 let at = |m: f64| {
-                    let d = (m - refine::SIDE as f64) * refine::STEP * band.half;
+                    let d = (m - SIDE as f64) * STEP * band.half;
                     within(&own, [p[0] + d * nrm[0], p[1] + d * nrm[1]])
                 };
-                let places = 2 * refine::SIDE;
+                let places = 2 * SIDE;
                 let Some(cross) = (0..places).find(|&m| at(m as f64) && !at(m as f64 + 1.0)) else { continue };
                 let exact = (0..10)
                     .map(|i| cross as f64 + f64::from(i) / 10.0)

@@ -1,22 +1,21 @@
 //! Characters as a camera sees them, with what they are: digits, and what must not be taken for one.
 
+use lunula::clock::{Levels, Patch, Place};
+use lunula::video::Plane;
 use nalgebra::Matrix3;
 use rand::{Rng, RngExt};
 
-use super::super::patch::{Levels, Patch};
-use super::super::place::Place;
 use super::faces::{Face, Faces};
 use super::flaws::{Canvas, bell};
 use super::mask::{Mask, Sheet, tight};
 use super::segments::{Display, is_a_digit};
-use crate::video::Plane;
 
 /// What is no digit.
-pub(super) const OTHER: usize = 10;
+pub const OTHER: usize = 10;
 
 /// How hard the scenes are.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Kind {
+pub enum Kind {
     /// All that training looks at.
     Any,
     /// Whole digits under any conditions.
@@ -28,9 +27,11 @@ pub(super) enum Kind {
 }
 
 /// A patch and what it shows.
-pub(super) struct Sample {
-    pub(super) patch: Patch,
-    pub(super) label: usize,
+pub struct Sample {
+    /// Cut out as the library cuts.
+    pub patch: Patch,
+    /// The digit, or [`OTHER`].
+    pub label: usize,
 }
 
 /// One inked piece: how much, and how far right.
@@ -111,7 +112,7 @@ struct Content<'a> {
 }
 
 /// Draws a character and cuts it out so many times; the same `rng` gives the same ones.
-pub(super) fn samples(faces: &Faces, kind: Kind, cuts: usize, rng: &mut impl Rng) -> Vec<Sample> {
+pub fn samples(faces: &Faces, kind: Kind, cuts: usize, rng: &mut impl Rng) -> Vec<Sample> {
     let style = if faces.families.is_empty() || !faces.displays.is_empty() && rng.random_bool(0.42) {
         let ghost = if rng.random_bool(0.5) { 0.0 } else { rng.random_range(0.0f32..0.1) };
         Style::Display(faces.display(rng), ghost)

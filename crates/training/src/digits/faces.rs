@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use ab_glyph::{Font, FontRef, FontVec, PxScale, ScaleFont};
+use anyhow::Context;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -32,8 +33,9 @@ const DISPLAYS: u32 = 400;
 
 /// One typeface's digits and other characters, and how far each advances, units.
 #[derive(Debug, Clone)]
-pub(super) struct Face {
-    pub(super) family: String,
+pub struct Face {
+    /// Of its file's name, up to the first character that is no letter.
+    pub family: String,
     pub(super) digits: Vec<(Mask, f32)>,
     pub(super) others: Vec<(Mask, f32)>,
     /// The box that holds any digit, units.
@@ -41,39 +43,44 @@ pub(super) struct Face {
 }
 
 /// All of them, by family.
-pub(super) struct Faces {
-    pub(super) families: Vec<Vec<Face>>,
-    pub(super) displays: Vec<Display>,
+pub struct Faces {
+    /// Typefaces by family.
+    pub families: Vec<Vec<Face>>,
+    /// Seven-segment displays.
+    pub displays: Vec<Display>,
 }
 
 impl Faces {
-    /// Those to train with, or those held out. The folder is named by `LUNULA_FONTS`; without it, the typefaces that
-    /// come along.
-    pub(super) fn load(held_out: bool) -> Self {
+    /// Those to train with, or those held out, of a folder of `.ttf` and `.otf` files; without it, the typefaces that
+    /// come along, of which none is held out.
+    ///
+    /// # Errors
+    /// A folder or file that can't be read, with its path.
+    pub fn load(folder: Option<&Path>, held_out: bool) -> anyhow::Result<Self> {
         let mut faces = Vec::new();
         if !held_out {
             for (name, bytes) in
                 [("Hack", epaint_default_fonts::HACK_REGULAR), ("Ubuntu", epaint_default_fonts::UBUNTU_LIGHT)]
             {
-                let font = FontRef::try_from_slice(bytes).unwrap();
+                let font = FontRef::try_from_slice(bytes).context(name)?;
                 faces.extend(Face::of(name, &font));
             }
         }
         let mut files = Vec::new();
-        if let Ok(folder) = std::env::var("LUNULA_FONTS") {
-            list(Path::new(&folder), &mut files);
+        if let Some(folder) = folder {
+            list(folder, &mut files)?;
         }
         // By name, not by path: the same wherever they are.
         files.sort_by_key(|path| path.file_name().map(ToOwned::to_owned));
         for path in files {
-            let name = path.file_name().unwrap().to_string_lossy().into_owned();
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
             if STRANGE.iter().any(|strange| name.starts_with(strange)) {
                 continue;
             }
             if HELD_OUT.iter().any(|held| name.starts_with(held)) != held_out {
                 continue;
             }
-            let Ok(font) = FontVec::try_from_vec(std::fs::read(&path).unwrap()) else { continue };
+            let Ok(font) = FontVec::try_from_vec(read(&path)?) else { continue };
             faces.extend(Face::of(&name, &font));
         }
         let mut families: Vec<Vec<Face>> = Vec::new();
@@ -89,28 +96,35 @@ impl Faces {
         }
         let mut rng = ChaCha8Rng::seed_from_u64(if held_out { 77 } else { 7 });
         let displays = (0..DISPLAYS).map(|_| Display::random(&mut rng)).collect();
-        Self { families, displays }
+        Ok(Self { families, displays })
     }
 
+    /// Any of them, each family as often.
     pub(super) fn face(&self, rng: &mut impl Rng) -> &Face {
         let family = &self.families[rng.random_range(0..self.families.len())];
         &family[rng.random_range(0..family.len())]
     }
 
+    /// Any of the displays.
     pub(super) fn display(&self, rng: &mut impl Rng) -> &Display {
         &self.displays[rng.random_range(0..self.displays.len())]
     }
 }
 
-fn list(folder: &Path, files: &mut Vec<PathBuf>) {
-    for entry in std::fs::read_dir(folder).unwrap().flatten() {
-        let path = entry.path();
+fn read(path: &Path) -> anyhow::Result<Vec<u8>> {
+    std::fs::read(path).with_context(|| path.display().to_string())
+}
+
+fn list(folder: &Path, files: &mut Vec<PathBuf>) -> anyhow::Result<()> {
+    for entry in std::fs::read_dir(folder).with_context(|| folder.display().to_string())? {
+        let path = entry.with_context(|| folder.display().to_string())?.path();
         if path.is_dir() {
-            list(&path, files);
+            list(&path, files)?;
         } else if path.extension().is_some_and(|e| e == "ttf" || e == "otf") {
             files.push(path);
         }
     }
+    Ok(())
 }
 
 impl Face {

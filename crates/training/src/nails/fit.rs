@@ -1,9 +1,9 @@
 //! Fitting a network: Adam on small batches, seeded.
 
+use lunula::photo::outline::training::{Net, softsign};
 use rand::{SeedableRng, seq::SliceRandom};
 use rand_chacha::ChaCha8Rng;
 
-use super::super::net::{Net, softsign};
 use super::rows::Rows;
 use super::scenes::bell;
 

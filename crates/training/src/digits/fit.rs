@@ -1,13 +1,13 @@
 //! Fitting the network: Adam on small batches of fresh samples, the gradient walked back by hand.
 
+use lunula::clock::training::{
+    ANSWERS, COLUMNS_1, COLUMNS_2, FIRST, FLAT, HIDDEN, Net, PARTS, REACH, ROW, ROW_1, ROWS_1, ROWS_2, SECOND, Trace,
+    parts,
+};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
-use super::super::net::{
-    ANSWERS, COLUMNS_1, COLUMNS_2, FIRST, FLAT, HIDDEN, Net, PARTS, REACH, ROW, ROW_1, ROWS_1, ROWS_2, SECOND, Trace,
-    parts,
-};
 use super::flaws::bell;
 use super::scene::Sample;
 
@@ -112,12 +112,13 @@ pub(super) fn walk_back(net: &Net, sample: &Sample, trace: &mut Trace, gradient:
     loss
 }
 
-/// Fits to `steps` batches; `draw` gives the samples of a number, `tell` hears of each thousandth step's mean loss.
+/// Fits to `steps` batches; `draw` gives the samples of a number, `report` gets each thousandth step and the mean loss
+/// since the one before.
 pub(super) fn fit(
     steps: usize,
     seed: u64,
     draw: impl Fn(u64) -> Vec<Sample> + Sync,
-    mut tell: impl FnMut(usize, f32, &Net),
+    mut report: impl FnMut(usize, f32, &Net),
 ) -> Net {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let mut net = Net { weights: start(&mut rng) };
@@ -130,7 +131,7 @@ pub(super) fn fit(
             .into_par_iter()
             .map(|portion| {
                 let mut gradient = vec![0.0f32; count];
-                let mut trace = Trace::new();
+                let mut trace = Trace::default();
                 let each = BATCH / PORTIONS;
                 let (mut loss, mut count) = (0.0, 0);
                 for k in 0..each {
@@ -156,7 +157,7 @@ pub(super) fn fit(
         }
         losses += portions.iter().map(|p| p.1).sum::<f32>() / samples;
         if (step + 1) % 1000 == 0 {
-            tell(step + 1, losses / 1000.0, &net);
+            report(step + 1, losses / 1000.0, &net);
             losses = 0.0;
         }
     }

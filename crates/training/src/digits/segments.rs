@@ -6,7 +6,7 @@ use super::mask::{Mask, tight};
 
 /// One display's segments, a (top), b, c, d (bottom), e, f, g (middle).
 #[derive(Debug, Clone)]
-pub(super) struct Display {
+pub struct Display {
     pub(super) segments: [Mask; 7],
     pub(super) dots: [Mask; 2],
     /// From one digit's left to the next one's, units.
