@@ -6,13 +6,14 @@ FUZZ_SECONDS := 60
 LUNULA := target/release/lunula
 PACKAGES := $(shell sed '/^\#/d' system-packages.txt)
 
-.PHONY: help demo test lint bench fuzz system clean
+.PHONY: help demo test lint bench peers fuzz system clean
 
 help:
 	@echo "make demo   build, run the main jobs on generated scenes, say where the pictures are"
 	@echo "make test   build and run every test"
 	@echo "make lint   formatting, clippy and documentation, all without warnings"
 	@echo "make bench  speed against only decoding, and against Python with OpenCV, scikit-image, pandas, numpy and scikit-learn, against diffsol"
+	@echo "make peers  other programs on the scenes of \`lunula tradeoff\`, for its --peers: bench/runs/DATE-MACHINE/peers.csv"
 	@echo "make fuzz   look for inputs that make a parser panic, abort or hang: FUZZ_SECONDS=60 each, PARSERS=\"csv xdf\" for some"
 
 demo: system
@@ -62,13 +63,16 @@ demo: system
 	@echo "  $(DEMO)/predictor/modes/modes.png         singular values and modes, as Fig. 98"
 	@echo "  $(DEMO)/predictor/prune/without-one.png   each photodiode removed, as Fig. 113"
 
+# Every package but diffsol's and the fuzzer's, which take minutes to compile.
+ALL := --locked --features xdf --workspace --exclude lunula-hemodynamics-peer --exclude lunula-fuzz
+
 test: system
-	cargo test --locked --features xdf
+	cargo test $(ALL)
 
 lint: system
 	cargo fmt --all --check
-	cargo clippy --locked --features xdf --all-targets -- -D warnings
-	RUSTDOCFLAGS="-D warnings" cargo doc --locked --features xdf --no-deps
+	cargo clippy $(ALL) --all-targets -- -D warnings
+	RUSTDOCFLAGS="-D warnings" cargo doc $(ALL) --no-deps
 
 bench: system
 	cargo bench --locked --bench photos
@@ -78,6 +82,10 @@ bench: system
 	cargo bench --locked -p lunula-hemodynamics
 	cargo bench --locked -p lunula-hemodynamics-peer
 	cargo test --locked --release -p lunula-hemodynamics-peer
+
+# The packages of bench/peers/requirements.txt that python3 lacks are named, and what needs them is left out.
+peers: system
+	cargo run --release --locked -p lunula-peers --features diffsol
 
 # Installs cargo-afl below target/ where it is missing.
 fuzz: system

@@ -31,7 +31,7 @@ fn main() {
     let place = |name: &str| folder.path().join(name).display().to_string();
     let (video, markers, out) = (place("video.mp4"), place("markers.toml"), place("joints.csv"));
     let myself = std::env::current_exe().expect("this program's path").display().to_string();
-    let peer = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/peers/posture.py");
+    let peer = concat!(env!("CARGO_MANIFEST_DIR"), "/bench/peers/posture.py");
     let opencv = seconds(&["python3", "-c", "import numpy, cv2, tomllib"]).is_some();
     if !opencv {
         println!("Python, OpenCV: left out, python3 has no cv2");

@@ -3,7 +3,7 @@
 //!
 //! `cargo bench -p lunula-hemodynamics-peer [-- --quick] [--peers] [--out FILE]`
 //!
-//! `--peers` runs `benches/peers/hemodynamics.py` of the repository as well (RADAU5, LSODA, CVODE, SciPy,
+//! `--peers` runs `bench/peers/hemodynamics.py` of the repository as well (RADAU5, LSODA, CVODE, SciPy,
 //! scikit-sundae), right after, and puts its rows into the same table.
 //!
 //! Twenty step responses (P_F1 alone and P_F1 = P_F2, ten loads each, 0 to 2 s) of 4 s with 400 outputs from rest. All
@@ -144,7 +144,7 @@ fn error(solve: &mut Solve<'_>, cases: &[Case], rtol: f64) -> Result<(f64, f64),
 /// The rows of the Python script, which says itself what it leaves out.
 fn python(quick: bool) -> Vec<Row> {
     let python = std::env::var("PYTHON").unwrap_or_else(|_| "python3".to_owned());
-    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../../benches/peers/hemodynamics.py");
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../../bench/peers/hemodynamics.py");
     let answer = Command::new(&python).arg(script).args(quick.then_some("--quick")).output().expect("python3 runs");
     eprint!("{}", String::from_utf8_lossy(&answer.stderr));
     let rows = String::from_utf8_lossy(&answer.stdout).into_owned();
@@ -231,8 +231,8 @@ fn rest() -> State {
 
 fn cases() -> Vec<Case> {
     let tables = [
-        include_str!("../../hemodynamics/tests/reference/proximal.csv"),
-        include_str!("../../hemodynamics/tests/reference/both.csv"),
+        include_str!("../../../crates/hemodynamics/tests/reference/proximal.csv"),
+        include_str!("../../../crates/hemodynamics/tests/reference/both.csv"),
     ];
     let mut cases = Vec::new();
     for (kind, table) in tables.into_iter().enumerate() {

@@ -4,8 +4,6 @@
 //! Solvers are given problems whose exact solution is known: small whole numbers, so that voltages and targets are
 //! exact and rounding is the only error.
 
-mod python;
-
 use std::hint::black_box;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -13,7 +11,6 @@ use std::time::Instant;
 use lunula_predictor::{Dataset, Kind, LeastSquaresOptions, Predictor, Recipe, Solver, fit_linear, linear_f0, score};
 use ndarray::{Array2, ArrayView2};
 
-use super::peers::Python;
 use crate::predictor::{Target, Wanted, read_data};
 use crate::tradeoff::measure::rows::{Measured, Row};
 use crate::tradeoff::measure::timing::{Effort, Run, in_turns};
@@ -23,20 +20,18 @@ use crate::tradeoff::measure::timing::{Effort, Run, in_turns};
 pub struct Settings {
     /// Recordings of forces to train on.
     pub train: Vec<PathBuf>,
-    /// Recordings to tell the error on.
+    /// Recordings that the error is of.
     pub test: Vec<PathBuf>,
     /// How much.
     pub effort: Effort,
-    /// What runs other programs.
-    pub python: Python,
 }
 
-/// Which model, with which size.
-pub(super) const MODEL: (&str, &str) = ("predictor", "model");
+/// Which model, with which size: job and choice.
+pub const MODEL: (&str, &str) = ("predictor", "model");
 /// On how much it is trained.
 pub(super) const ROWS: (&str, &str) = ("predictor", "rows");
-/// How least squares are solved.
-pub(super) const SOLVER: (&str, &str) = ("predictor", "solver");
+/// How least squares are solved: job and choice.
+pub const SOLVER: (&str, &str) = ("predictor", "solver");
 
 /// Models and their hidden nodes.
 const KINDS: [Kind; 7] = [
@@ -50,8 +45,10 @@ const KINDS: [Kind; 7] = [
 ];
 /// Networks are trained from so many starts.
 const RESTARTS: [usize; 2] = [1, 10];
-pub(super) const FIT: &str = "RMSE on random movement, mean of the forces, N; fits";
-const TELL: &str = "RMSE on random movement, mean of the forces, N; predictions of one row";
+/// Against the time of a fit.
+pub const FIT: &str = "RMSE on random movement, mean of the forces, N; fits";
+/// Against the time of a prediction.
+pub const PREDICT: &str = "RMSE on random movement, mean of the forces, N; predictions of one row";
 /// Of linear models of some of the rows.
 pub(super) const ROWS_ERROR: &str = "RMSE on random movement, mean of the forces, N; linear fits of some rows";
 /// What the most ill-conditioned problem's error begins with.
@@ -68,7 +65,8 @@ const SOLVERS: [(&str, Solver, usize); 3] = [
     ("orthogonal", Solver::Orthogonal, 0),
     ("normal equations (11)", Solver::Normal, 0),
 ];
-const PROBLEM_ROWS: usize = 12_000;
+/// Rows of a problem with an exact solution.
+pub const PROBLEM_ROWS: usize = 12_000;
 
 /// What `lunula train` fits.
 pub(super) fn model_default() -> String {
@@ -93,19 +91,17 @@ fn some(one_in: usize) -> String {
     if one_in == 1 { "all rows".to_owned() } else { format!("1 row in {one_in}") }
 }
 
+/// What the error is of a problem of which two photodiodes differ by 2 to the minus this.
 fn problem(close_bits: i32) -> String {
     format!("two photodiodes 2^-{close_bits} apart: relative error of the worst coefficient, fits of 12 000 rows")
 }
 
-/// Measures every setting, and other programs.
+/// Measures every setting.
 ///
 /// # Errors
 /// Recordings that can't be read, with their file; [`Interrupted`](crate::job::Interrupted).
 pub fn measure(settings: &Settings) -> anyhow::Result<Measured> {
-    let target = Target::parse("force").map_err(anyhow::Error::msg)?;
-    let wanted = Wanted { targets: target.columns().to_vec(), ..Wanted::default() };
-    let train = read_data(&settings.train, &wanted)?.data;
-    let test = read_data(&settings.test, &wanted)?.data;
+    let [train, test] = data(settings)?;
     let effort = &settings.effort;
     // One thread, as the times of all jobs here are.
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
@@ -114,36 +110,50 @@ pub fn measure(settings: &Settings) -> anyhow::Result<Measured> {
     let fits = in_turns(&models, effort, |&(kind, restarts), _| one.install(|| fit(kind, restarts, &train)))?;
     let predicted =
         in_turns(&models.iter().copied().zip(&fits).collect::<Vec<_>>(), effort, |(_, fitted), _| match fitted {
-            Ok((_, fitted)) => tell(fitted, &test),
+            Ok((_, fitted)) => predict(fitted, &test),
             Err(why) => anyhow::bail!("{why:#}"),
         })?;
     for ((&(kind, restarts), fitted), errors) in models.iter().zip(&fits).zip(predicted) {
         let setting = name(kind, restarts);
         match (fitted, &errors) {
-            (Ok((fit_time, _)), Ok((tell_time, error))) => {
+            (Ok((fit_time, _)), Ok((predict_time, error))) => {
                 measured.rows.push(Row::own(MODEL, &setting, (*error, FIT), *fit_time, train.rows() as u64));
-                measured.rows.push(Row::own(MODEL, &setting, (*error, TELL), *tell_time, 1));
+                measured.rows.push(Row::own(MODEL, &setting, (*error, PREDICT), *predict_time, 1));
             }
             (Err(why), _) | (_, Err(why)) => measured.refused.push(format!("{setting}: {why:#}")),
         }
     }
     fewer(&train, &test, &one, effort, &mut measured)?;
-    let problems = CLOSE_BITS.map(|bits| (bits, exact(bits)));
-    for (bits, data) in &problems {
+    for (unit, data) in &problems() {
         let found = in_turns(&SOLVERS, effort, |&(_, solver, refinements), _| {
             one.install(|| solve(data, &LeastSquaresOptions { solver, refinements, ..LeastSquaresOptions::default() }))
         })?;
         for ((name, ..), found) in SOLVERS.into_iter().zip(found) {
             match found {
                 Ok((time, error)) => {
-                    measured.rows.push(Row::own(SOLVER, name, (error, &problem(*bits)), time, PROBLEM_ROWS as u64));
+                    measured.rows.push(Row::own(SOLVER, name, (error, unit), time, PROBLEM_ROWS as u64));
                 }
-                Err(why) => measured.refused.push(format!("{name}, 2^-{bits}: {why:#}")),
+                Err(why) => measured.refused.push(format!("{name}, {unit}: {why:#}")),
             }
         }
     }
-    python::measure(&train, &test, &problems, settings, &mut measured)?;
     Ok(measured)
+}
+
+/// The recordings to train on, and those that errors are of.
+///
+/// # Errors
+/// Recordings that can't be read, with their file.
+pub fn data(settings: &Settings) -> anyhow::Result<[Dataset; 2]> {
+    let target = Target::parse("force").map_err(anyhow::Error::msg)?;
+    let wanted = Wanted { targets: target.columns().to_vec(), ..Wanted::default() };
+    Ok([read_data(&settings.train, &wanted)?.data, read_data(&settings.test, &wanted)?.data])
+}
+
+/// The problems with an exact solution, each with the name of its error.
+#[must_use]
+pub fn problems() -> [(String, Dataset); 3] {
+    CLOSE_BITS.map(|bits| (problem(bits), exact(bits)))
 }
 
 /// Models with their starts; in a hurry without the largest.
@@ -201,14 +211,15 @@ fn error(fitted: &Predictor, test: &Dataset) -> anyhow::Result<f64> {
     Ok(mean_rmse(&seen, predicted.view()))
 }
 
-/// Of the targets.
-fn mean_rmse(test: &Dataset, predicted: ArrayView2<'_, f64>) -> f64 {
+/// How wrong predictions are ([`FIT`], [`PREDICT`]): the mean of the targets.
+#[must_use]
+pub fn mean_rmse(test: &Dataset, predicted: ArrayView2<'_, f64>) -> f64 {
     let scores = score(test.y().view(), predicted, test.targets());
     scores.targets.iter().map(|one| one.rmse).sum::<f64>() / scores.targets.len() as f64
 }
 
 /// Row by row: seconds each, and the error.
-fn tell(fitted: &Predictor, test: &Dataset) -> Run<f64> {
+fn predict(fitted: &Predictor, test: &Dataset) -> Run<f64> {
     let (seen, predicted) = fitted.predict(test)?;
     let mut out = vec![0.0; seen.targets().len()];
     let start = Instant::now();
@@ -251,11 +262,13 @@ fn solve(data: &Dataset, options: &LeastSquaresOptions) -> Run<f64> {
     Ok((seconds, Some(worst(model.jacobian().view(), &linear_f0(&model).to_vec()))))
 }
 
-/// Of coefficients, targets x photodiodes, and of offsets, which are 1.
-fn worst(coefficients: ArrayView2<'_, f64>, offsets: &[f64]) -> f64 {
+/// How wrong a problem's solution is: the largest relative error of its coefficients, targets x photodiodes, and
+/// offsets.
+#[must_use]
+pub fn worst(coefficients: ArrayView2<'_, f64>, offsets: &[f64]) -> f64 {
     let of = |((target, k), found): ((usize, usize), &f64)| (found / coefficient(target, k) - 1.0).abs();
     let offsets = offsets.iter().map(|found| (found - 1.0).abs());
-    // A number that is none is worst of all.
+    // What is not a number is worst of all.
     let larger = |most: f64, miss: f64| if miss > most || miss.is_nan() { miss } else { most };
     coefficients.indexed_iter().map(of).chain(offsets).fold(FLOOR, larger)
 }

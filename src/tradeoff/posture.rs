@@ -1,20 +1,14 @@
-//! The posture job over its settings: which planes give the centres, how they are refined, where markers are searched;
-//! and beside them what a user of OpenCV would write.
+//! The posture job over its settings: which planes give the centres, how they are refined, where markers are searched.
 
-pub mod recipe;
-use std::f64::consts::{PI, TAU};
 use std::path::{Path, PathBuf};
 
 use anyhow::ensure;
 
-use super::peers::PeerReport;
 use crate::job::Watch;
-use crate::posture::{Joint, Layout, Marker, Method, Outputs, Planes, PostureOptions, Search, run as run_posture};
+use crate::posture::{Layout, Method, Outputs, Planes, PostureOptions, Search, run as run_posture};
 use crate::table::Table;
 use crate::tradeoff::measure::rows::{Measured, Row};
 use crate::tradeoff::measure::timing::{Effort, Run, Timing, in_turns};
-use crate::video::Video;
-use recipe::{Recipe, Wanted};
 
 /// What is measured, and how often.
 #[derive(Debug, Clone)]
@@ -29,8 +23,8 @@ pub struct Settings {
     pub effort: Effort,
 }
 
-/// How centres are found.
-pub(super) const TRACKING: (&str, &str) = ("posture", "tracking");
+/// How centres are found: job and choice.
+pub const TRACKING: (&str, &str) = ("posture", "tracking");
 /// Of all angles together.
 pub(super) const ALL_JOINTS: &str = "all joints, degrees RMS";
 /// Name, planes, rounds of refinement, search.
@@ -43,9 +37,6 @@ const SETTINGS: [(&str, Planes, usize, Search); 7] = [
     ("two rounds", Planes::All, 2, Search::Near),
     ("whole frames searched", Planes::All, Method::ROUNDS, Search::Whole),
 ];
-
-/// What users of OpenCV write.
-const OPENCV: &str = "OpenCV: BGR, HSV, inRange, contours";
 
 fn method((_, planes, rounds, search): (&str, Planes, usize, Search)) -> Method {
     Method { planes, rounds, search }
@@ -64,19 +55,14 @@ pub(super) fn tracking_default() -> String {
 pub fn measure(settings: &Settings) -> anyhow::Result<Measured> {
     let layout = Layout::read(&settings.markers)?;
     let truth = Angles::read(&settings.truth.join("joints.csv"), &layout)?;
-    let wanted = wanted(&layout, &settings.truth)?;
-    let ways: Vec<Option<Method>> = SETTINGS.map(|setting| Some(method(setting))).into_iter().chain([None]).collect();
-    let found = in_turns(&ways, &settings.effort, |way, first| match way {
-        Some(method) => ours(*method, first, &layout, &truth, settings),
-        None => theirs(first, &wanted, &layout, &truth, settings),
+    let found = in_turns(&SETTINGS, &settings.effort, |setting, first| {
+        run(method(*setting), first, &layout, &truth, settings)
     })?;
     let mut measured = Measured::default();
-    for (found, name) in found.into_iter().zip(SETTINGS.map(|(name, ..)| name).into_iter().chain([OPENCV])) {
+    for (found, (name, ..)) in found.into_iter().zip(SETTINGS) {
         let (time, (errors, work)) = found?;
-        let rows = errors.iter().map(|(unit, error)| row(name, (*error, unit), time, work));
-        measured.rows.extend(rows.map(|row| if name == OPENCV { row.peer() } else { row }));
+        measured.rows.extend(errors.iter().map(|(unit, error)| row(name, (*error, unit), time, work)));
     }
-    measured.peers.push(PeerReport::measured("OpenCV", "its users' recipe, run in this program on the same frames"));
     Ok(measured)
 }
 
@@ -88,7 +74,7 @@ fn row(setting: &str, error: (f64, &str), time: Timing, work: u64) -> Row {
 type Errors = (Vec<(String, f64)>, u64);
 
 /// The job itself.
-fn ours(method: Method, first: bool, layout: &Layout, truth: &Angles, settings: &Settings) -> Run<Errors> {
+fn run(method: Method, first: bool, layout: &Layout, truth: &Angles, settings: &Settings) -> Run<Errors> {
     let options =
         PostureOptions { threads: settings.effort.threads, method, clock_every: 0, ..PostureOptions::default() };
     let folder = tempfile::tempdir()?;
@@ -104,59 +90,33 @@ fn ours(method: Method, first: bool, layout: &Layout, truth: &Angles, settings: 
     Ok((seconds, first.then(errors).transpose()?))
 }
 
-/// The recipe of OpenCV's users on the same frames.
-fn theirs(first: bool, wanted: &[Wanted], layout: &Layout, truth: &Angles, settings: &Settings) -> Run<Errors> {
-    let recipe = recipe::run(&settings.video, settings.effort.threads, wanted)?;
-    let seconds = (recipe.bgr_s + recipe.opencv_s) / recipe.frames.len() as f64;
-    let format = Video::open(&settings.video, settings.effort.threads)?.info().format;
-    // Every sample of every plane is converted.
-    let work = (format.width * format.height) as u64;
-    let errors = || anyhow::Ok((Angles::of(&recipe, layout).errors(truth, layout)?, work));
-    Ok((seconds, first.then(errors).transpose()?))
-}
-
-/// The markers, with where they are at first.
-fn wanted(layout: &Layout, truth: &Path) -> anyhow::Result<Vec<Wanted>> {
-    let table = Table::read(&truth.join("tracks.csv"))?;
-    let names = table.texts("marker")?;
-    let (x_px, y_px) = (table.numbers("x_px")?, table.numbers("y_px")?);
-    let first = |name: &str| {
-        let row = names.iter().position(|other| other.as_deref() == Some(name))?;
-        Some([x_px[row]?, y_px[row]?])
-    };
-    let wanted =
-        |marker: &Marker| Wanted { name: marker.name.clone(), srgb: marker.colour, start_px: first(&marker.name) };
-    Ok(layout.markers.iter().map(wanted).collect())
-}
-
 /// Each joint's angle in each frame, degrees.
-struct Angles(Vec<Vec<Option<f64>>>);
+#[derive(Debug)]
+pub struct Angles(Vec<Vec<Option<f64>>>);
 
 impl Angles {
-    fn read(path: &Path, layout: &Layout) -> anyhow::Result<Self> {
+    /// From a table with a row for each frame, as `lunula posture` and a scene's truth have it.
+    ///
+    /// # Errors
+    /// A table that can't be read, or has not the layout's joints.
+    pub fn read(path: &Path, layout: &Layout) -> anyhow::Result<Self> {
         let table = Table::read(path)?;
         let columns = layout.joints.iter().map(|joint| table.numbers(&format!("{}_deg", joint.name)));
         Ok(Self(columns.collect::<Result<_, _>>()?))
     }
 
-    /// From the recipe's centroids, as somebody would who knows of no lens.
-    fn of(recipe: &Recipe, layout: &Layout) -> Self {
-        let angle = |places: &[Option<[f64; 2]>], joint: &Joint| {
-            let [proximal, distal] = joint.segments.map(|segment| {
-                let [a, b] = layout.segments[segment].markers.map(|marker| places[marker]);
-                let (a, b) = (a?, b?);
-                Some((b[1] - a[1]).atan2(b[0] - a[0]))
-            });
-            let turned = layout.flexion.sign() * (distal? - proximal?) - joint.zero_rad;
-            Some((turned + PI).rem_euclid(TAU).to_degrees() - 180.0)
-        };
-        let column = |joint: &Joint| recipe.frames.iter().map(|frame| angle(&frame.at_px, joint)).collect();
-        Self(layout.joints.iter().map(column).collect())
+    /// From angles of each joint in turn.
+    #[must_use]
+    pub fn new(by_joint: Vec<Vec<Option<f64>>>) -> Self {
+        Self(by_joint)
     }
 
     /// Each joint's error over the frames in which all settings can have its angle: those that have it; with the
-    /// error's name.
-    fn errors(&self, truth: &Self, layout: &Layout) -> anyhow::Result<Vec<(String, f64)>> {
+    /// error's name. At last that of all joints.
+    ///
+    /// # Errors
+    /// Another number of frames than the truth has, or a joint without any angle.
+    pub fn errors(&self, truth: &Self, layout: &Layout) -> anyhow::Result<Vec<(String, f64)>> {
         let (mut errors, mut squares) = (Vec::new(), 0.0);
         for ((joint, found), exact) in layout.joints.iter().zip(&self.0).zip(&truth.0) {
             ensure!(found.len() == exact.len(), "{} frames in the video, {} in its truth", found.len(), exact.len());

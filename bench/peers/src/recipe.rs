@@ -10,11 +10,10 @@ use std::path::Path;
 use std::sync::Once;
 use std::time::Instant;
 
+use lunula::video::{Bgr, Item, Video};
 use opencv::core::{self, Mat, Point, Scalar, Vec3b, Vector};
 use opencv::imgproc;
 use opencv::prelude::*;
-
-use crate::video::{Bgr, Item, Video};
 
 /// Hue either side of the marker's own, of OpenCV's 180.
 const HUE_TOLERANCE: f64 = 8.0;
@@ -29,43 +28,43 @@ const GREATEST: [f64; 3] = [179.0, 255.0, 255.0];
 
 /// A marker to look for.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Wanted {
+pub(crate) struct Wanted {
     /// As the layout calls it.
-    pub name: String,
+    pub(crate) name: String,
     /// Its colour, sRGB.
-    pub srgb: [u8; 3],
+    pub(crate) srgb: [u8; 3],
     /// Where it is in the first frame, in coordinates of the stored picture; markers of one colour without it are taken
     /// from left to right.
-    pub start_px: Option<[f64; 2]>,
+    pub(crate) start_px: Option<[f64; 2]>,
 }
 
 /// A frame's centroids.
 #[derive(Debug, Clone, PartialEq)]
-pub struct RecipeFrame {
+pub(crate) struct RecipeFrame {
     /// Its time from the first frame's.
-    pub time_s: f64,
+    pub(crate) time_s: f64,
     /// For each marker, column and row in the stored picture.
-    pub at_px: Vec<Option<[f64; 2]>>,
+    pub(crate) at_px: Vec<Option<[f64; 2]>>,
 }
 
 /// What the recipe gave.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Recipe {
+pub(crate) struct Recipe {
     /// Every frame; none of a frame that could not be decoded is seen.
-    pub frames: Vec<RecipeFrame>,
+    pub(crate) frames: Vec<RecipeFrame>,
     /// Seconds of decoding.
-    pub decode_s: f64,
+    pub(crate) decode_s: f64,
     /// Seconds of converting to BGR, a part of VideoCapture's work.
-    pub bgr_s: f64,
+    pub(crate) bgr_s: f64,
     /// Seconds of all that is done with OpenCV.
-    pub opencv_s: f64,
+    pub(crate) opencv_s: f64,
 }
 
 /// Runs it, decoding with `threads` threads and the rest with one.
 ///
 /// # Errors
 /// A video that can't be read, or OpenCV's own.
-pub fn run(video: &Path, threads: usize, markers: &[Wanted]) -> anyhow::Result<Recipe> {
+pub(crate) fn run(video: &Path, threads: usize, markers: &[Wanted]) -> anyhow::Result<Recipe> {
     static ONE_THREAD: Once = Once::new();
     let mut set = Ok(());
     ONE_THREAD.call_once(|| set = core::set_num_threads(1));
@@ -204,7 +203,7 @@ fn assign(markers: &[usize], mut blobs: Vec<[f64; 2]>, last: &mut [Option<[f64; 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::video::{Encoder, Encoding, Format, Matrix, Picture};
+    use lunula::video::{Encoder, Encoding, Format, Matrix, Picture};
 
     const SIZE: Format = Format { width: 320, height: 180, subsampling: Some((2, 2)), depth: 8 };
 

@@ -40,7 +40,7 @@ fn main() {
     let to_parquet = bare.iter().map(|&argument| if argument == out { parquet.as_str() } else { argument }).collect();
     let mut runs: Vec<Run<'_>> =
         vec![("lunula align", bare.clone()), ("the same with pictures", drawn), ("the same to Parquet", to_parquet)];
-    let peer = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/peers/align.py");
+    let peer = concat!(env!("CARGO_MANIFEST_DIR"), "/bench/peers/align.py");
     if seconds(&["python3", "-c", "import numpy, pandas"]).is_some() {
         runs.push(("Python, pandas: interp, to_csv", vec!["python3", peer, &joints, &log, &theirs]));
     } else {

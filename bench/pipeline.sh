@@ -2,8 +2,8 @@
 # The figures of pipelines, measured: what one more subject costs, whether a killed run ends as one that was not, whether the
 # bytes are the same for any threads and shards, and what a pipeline costs over the bare commands.
 #
-#   benches/pipeline.sh target/release/lunula                    all of them, in a temporary folder (TMPDIR)
-#   benches/pipeline.sh target/release/lunula added killed       only these: added, detected, killed, same, overhead, again
+#   bench/pipeline.sh target/release/lunula                    all of them, in a temporary folder (TMPDIR)
+#   bench/pipeline.sh target/release/lunula added killed       only these: added, detected, killed, same, overhead, again
 #
 # SUBJECTS=200 subjects of `added`, PHOTOS=DIR takes these photographs (of SUBJECTS + 1, by `lunula phantom photos`) instead of
 # generating them, KILLS=10, THREADS=4, SEED=1 of the moments of killing. Needs bash 5 and diffutils. Ends with 1 where bytes differ or

@@ -29,7 +29,7 @@ fn main() {
     let set = scene.path().join("photos").display().to_string();
     let out = scene.path().join("out").display().to_string();
     let myself = std::env::current_exe().expect("this program's path").display().to_string();
-    let peer = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/peers/photos.py");
+    let peer = concat!(env!("CARGO_MANIFEST_DIR"), "/bench/peers/photos.py");
     let cores = rayon::current_num_threads().to_string();
     let lunula = vec![env!("CARGO_BIN_EXE_lunula"), "photos", &set, "--out", &out, "--quiet"];
     let mut runs = vec![("lunula photos", lunula), ("only decoding", vec![myself.as_str(), DECODE, &set])];
