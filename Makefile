@@ -8,7 +8,7 @@ LUNULA := target/release/lunula
 REAL_DATA := $(or $(LUNULA_REAL_DATA),../shared/data)
 PACKAGES := $(shell sed '/^\#/d' system-packages.txt)
 
-.PHONY: help demo test lint msrv bench fuzz system clean
+.PHONY: help demo test lint msrv bench peers fuzz system clean
 
 help:
 	@echo "make demo   build, run the main jobs on generated scenes, say where the pictures are"
@@ -16,6 +16,7 @@ help:
 	@echo "make lint   formatting, clippy and documentation, all without warnings"
 	@echo "make msrv   compile with the oldest Rust that Cargo.toml promises"
 	@echo "make bench  speed against only decoding, and against Python with OpenCV, scikit-image, pandas, numpy and scikit-learn, against diffsol"
+	@echo "make peers  other programs on the scenes of \`lunula tradeoff\`, for its --peers: bench/runs/DATE-MACHINE/peers.csv"
 	@echo "make fuzz   look for inputs that make a parser panic, abort or hang: FUZZ_SECONDS=60 each, PARSERS=\"csv xdf\" for some"
 
 demo: system
@@ -78,24 +79,27 @@ demo: system
 	@echo "  $(DEMO)/study/page/study.html             the figures, and what the thesis states beside what came out"
 	@echo "  $(DEMO)/study/report.html                 what was done and left out, errors, the time of each stage"
 
+# Every package but diffsol's and the fuzzer's, which take minutes to compile.
+ALL := --locked --features xdf --workspace --exclude lunula-hemodynamics-peer --exclude lunula-fuzz
+
 # Tests that need real recordings are ignored; where the recordings are, they are run by name.
 test: system
-	cargo test --locked --features xdf
+	cargo test $(ALL)
 	@if [ -d "$(REAL_DATA)" ]; then \
-	  set -x; LUNULA_REAL_DATA="$(abspath $(REAL_DATA))" cargo test --locked --features xdf real_data:: -- --ignored; \
+	  set -x; LUNULA_REAL_DATA="$(abspath $(REAL_DATA))" cargo test $(ALL) real_data:: -- --ignored; \
 	else \
-	  left_out=$$(cargo test --quiet --locked --features xdf real_data:: -- --ignored --list | grep -c ': test$$'); \
+	  left_out=$$(cargo test --quiet $(ALL) real_data:: -- --ignored --list | grep -c ': test$$'); \
 	  echo "left out: $$left_out tests of real recordings; LUNULA_REAL_DATA names their folder"; \
 	fi
 
 lint: system
 	cargo fmt --all --check
-	cargo clippy --locked --features xdf --all-targets -- -D warnings
-	RUSTDOCFLAGS="-D warnings" cargo doc --locked --features xdf --no-deps
+	cargo clippy $(ALL) --all-targets -- -D warnings
+	RUSTDOCFLAGS="-D warnings" cargo doc $(ALL) --no-deps
 
 # The oldest Rust that Cargo.toml promises.
 msrv: system
-	rustup run --install $$(sed -n 's/^rust-version = "\(.*\)"/\1.0/p' Cargo.toml) cargo check --locked --features xdf --all-targets
+	rustup run --install $$(sed -n 's/^rust-version = "\(.*\)"/\1.0/p' Cargo.toml) cargo check $(ALL) --all-targets
 
 bench: system
 	cargo bench --locked --bench photos
@@ -105,6 +109,10 @@ bench: system
 	cargo bench --locked -p lunula-hemodynamics
 	cargo bench --locked -p lunula-hemodynamics-peer
 	cargo test --locked --release -p lunula-hemodynamics-peer
+
+# The packages of bench/peers/requirements.txt that python3 lacks are named, and what needs them is left out.
+peers: system
+	cargo run --release --locked -p lunula-peers --features diffsol
 
 # Installs cargo-afl below target/ where it is missing.
 fuzz: system

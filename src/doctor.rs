@@ -26,7 +26,7 @@ const OTHERS: [(&str, &str, &str); 3] = [
     ("snakemake", "runs pipelines in parts on a cluster", "pip install snakemake snakemake-executor-plugin-slurm"),
     ("sbatch", "hands parts of pipelines to Slurm", "apt-get install slurm-wlm, or ask those who run your cluster"),
 ];
-/// Packages of Python that the curves of `lunula tradeoff` are compared with.
+/// Packages of Python of the programs that `make peers` and `make bench` compare with.
 const PEERS: &str = "cv2 numpy pandas scipy skimage sklearn";
 
 /// How well something is.
@@ -251,7 +251,7 @@ fn temporary() -> Check {
 
 fn peers() -> Check {
     let find = "import importlib.util as u, sys; print(*[m for m in sys.argv[1].split() if not u.find_spec(m)])";
-    let install = "only for peers on the curves of `lunula tradeoff` and `make bench`: pip install \
+    let install = "only for `make peers` and `make bench` of the repository: pip install \
                    opencv-python-headless numpy pandas scipy scikit-image scikit-learn";
     match answer(Command::new("python3").args(["-c", find, PEERS])) {
         Ok(missing) if missing.is_empty() => good("Python's peers", PEERS),

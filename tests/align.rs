@@ -305,8 +305,8 @@ fn the_trade_off_measures_the_clock_read_in_fewer_and_fewer_frames() {
     let [few, many] = ["no frame bridged", "gaps of twenty frames"].map(of);
     assert!(few["work"].as_u64().unwrap() < many["work"].as_u64().unwrap(), "{report}");
     assert_eq!(report["curves"][0]["default"]["setting"], "clock in every frame");
-    let pandas = &report["peers"][0];
-    assert!(pandas["measured"] == false && pandas["what"].as_str().unwrap().contains("--peers"), "{report}");
+    let others = &report["peers"][0];
+    assert!(others["measured"] == false && others["what"].as_str().unwrap().contains("--peers"), "{report}");
     for file in ["t/tradeoff.csv", "t/tradeoff.png", "t/tradeoff.svg"] {
         assert!(dir.path(file).is_file(), "{file}");
     }

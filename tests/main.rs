@@ -6,6 +6,7 @@ mod align_bad_input;
 mod cluster;
 mod compare;
 mod detection;
+mod digits;
 mod disks;
 mod doctor;
 #[cfg(all(target_os = "linux", target_arch = "x86_64"))]

@@ -256,11 +256,26 @@ fn the_plan_says_what_runs_and_what_is_left_out() {
     assert!(dir.bytes_of(".").is_empty());
 }
 
+/// What a table of other programs begins with.
+const PEER_COLUMNS: &str =
+    "stage,choice,scene,setting,error,error_unit,run_s,run_low_s,run_high_s,repeats,work,machine,version,date";
+
 #[test]
 fn the_tradeoff_keeps_every_tolerance_and_draws_peers_and_maps() {
     let dir = Dir::new();
-    dir.write("peers.csv", "# made elsewhere\nsolver,rtol,error,microseconds\nOther (C),1e-03,1e-3,100\n");
-    dir.lunula(&["tradeoff", "hemodynamics", "--repeats", "1", "--peers", "peers.csv", "--out", "t"]).expect(0);
+    let row = |scene: &str, setting: &str| {
+        let unit = "\"largest |x - x_ref| / D over 20 step responses, full model\"";
+        format!("hemodynamics,solving,{scene},{setting},1e-3,{unit},1e-4,,,,,a laptop,2.0,2026-11-22\n")
+    };
+    let rows = [row("20 step responses", "\"Other (C), 1e-3\""), row("others", "\"Far (C), 1e-3\"")].concat();
+    dir.write("peers.csv", format!("{PEER_COLUMNS}\n{rows}"));
+    let done = dir
+        .lunula(&["tradeoff", "hemodynamics", "--repeats", "1", "--peers", "peers.csv", "--out", "t", "--json"])
+        .expect(0);
+    let peers = &done.json()["peers"];
+    assert_eq!([&peers[0]["peer"], &peers[1]["peer"]], ["Other (C)", "Far (C)"], "{peers}");
+    assert_eq!([&peers[0]["measured"], &peers[1]["measured"]], [true, false], "{peers}");
+    assert!(peers[1]["what"].as_str().unwrap().contains("another scene (others)"), "{peers}");
     let rows = dir.table("t/tradeoff.csv");
     let mut kept = 0;
     for row in &rows {
@@ -288,29 +303,10 @@ fn the_tradeoff_keeps_every_tolerance_and_draws_peers_and_maps() {
     assert_eq!(default, ["lunula, 1e-8"]);
     assert_eq!(rows.iter().filter(|row| row["knee"] == "true").count(), 1);
     assert!(rows.iter().all(|row| (row["peer"] == "true") == row["setting"].starts_with("Other")));
-    dir.write("bad.csv", "solver,error\nA,1\n");
+    dir.write("bad.csv", format!("{PEER_COLUMNS}\n{}", row("a", "b").replacen("hemodynamics", "hemodynamic", 1)));
     for job in ["hemodynamics", "all"] {
         let answer = dir.lunula(&["tradeoff", job, "--peers", "bad.csv", "--out", "u"]).expect(2);
-        assert!(answer.stderr.contains("bad.csv") && !dir.path("u").exists(), "{}", answer.stderr);
+        let named = answer.stderr.contains("bad.csv:2: column `stage`") && answer.stderr.contains("`hemodynamics`?");
+        assert!(named && !dir.path("u").exists(), "{}", answer.stderr);
     }
-}
-
-#[test]
-fn the_tradeoff_names_missing_programs_and_how_to_get_them() {
-    let dir = Dir::new();
-    let output = std::process::Command::new(env!("CARGO_BIN_EXE_lunula"))
-        .args(["tradeoff", "hemodynamics", "--repeats", "1", "--json", "--out", "t", "--peers"])
-        .current_dir(dir.path("."))
-        // There is no Python there.
-        .env("PATH", dir.path("."))
-        .output()
-        .expect("the binary runs");
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
-    let scipy = report["peers"].as_array().unwrap().iter().find(|peer| peer["peer"] == "SciPy's solvers");
-    let scipy = scipy.unwrap_or_else(|| panic!("{}", report["peers"]));
-    assert_eq!(scipy["measured"], false);
-    let what = scipy["what"].as_str().unwrap();
-    assert!(what.contains("python3 (3.11 or later) is missing") && what.contains("pip install numpy=="), "{what}");
-    assert_eq!(report["curves"][0]["default"]["setting"], "lunula, 1e-8");
 }

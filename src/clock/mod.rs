@@ -18,6 +18,8 @@ mod sequence;
 
 pub use beside::Misfit;
 pub use format::{Cell, ClockFormat, Half, Unit};
+#[doc(hidden)]
+pub use glyph::training;
 pub use glyph::{Levels, Patch, Place, SURE, Scores, read_crop, recognise};
 pub use read::ClockReader;
 pub use reading::{Doubt, ReaderEffort, Reading};

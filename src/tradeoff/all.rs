@@ -1,16 +1,16 @@
 //! A job, or all of them, measured and judged: the one entry of command line and pipelines.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use super::judge::{Tradeoff, judge};
-use super::peers::{Peers, Python};
+use super::peers::{PeerRow, read_peers};
 use super::{align, hemodynamics, photos, posture, predictor};
 use crate::job::Interrupted;
 use crate::phantom::video::Preset;
-use crate::tradeoff::measure::rows::Row;
 use crate::tradeoff::measure::scenes::{self, Wanted};
 use crate::tradeoff::measure::timing::Effort;
+use crate::words::instead;
 
 /// What can be measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,6 +42,16 @@ impl Job {
             Self::Hemodynamics => hemodynamics::SOLVING.0,
         }
     }
+
+    /// The job of a name.
+    ///
+    /// # Errors
+    /// Another name, with the nearest that there is.
+    pub fn named(name: &str) -> Result<Self, String> {
+        let known = Self::ALL.map(Self::name);
+        let found = Self::ALL.into_iter().find(|job| job.name() == name);
+        found.ok_or_else(|| format!("`{name}` is not a stage; {}", instead(name, &known)))
+    }
 }
 
 /// On what and how is measured.
@@ -59,70 +69,122 @@ pub struct Plan {
     pub seconds: f64,
     /// How much.
     pub effort: Effort,
-    /// Other programs.
-    pub peers: Peers,
+    /// Tables of other programs' figures.
+    pub peers: Vec<PathBuf>,
 }
 
 impl Plan {
     /// Synthetic scenes of `seed`; in a hurry small ones.
     #[must_use]
-    pub fn new(seed: u64, effort: Effort, peers: Peers) -> Self {
+    pub fn new(seed: u64, effort: Effort, peers: Vec<PathBuf>) -> Self {
         let (subjects, seconds) = if effort.quick { (4, 20.0) } else { (16, 60.0) };
         Self { seed, input: None, subjects, preset: Preset::Clean, seconds, effort, peers }
     }
 
-    /// Measures and judges one job; `others` are the rows of [`Peers::read`].
+    /// The rows of all tables.
+    ///
+    /// # Errors
+    /// A table that can't be read, or a cell that is wrong, with its place.
+    pub fn others(&self) -> anyhow::Result<Vec<PeerRow>> {
+        let tables = self.peers.iter().map(|path| read_peers(path)).collect::<anyhow::Result<Vec<_>>>()?;
+        Ok(tables.into_iter().flatten().collect())
+    }
+
+    /// On what a job is measured: figures of another scene are not compared.
+    #[must_use]
+    pub fn scene(&self, job: Job) -> String {
+        let seed = self.seed;
+        match (job, &self.input) {
+            (Job::Hemodynamics, _) => hemodynamics::SCENE.to_owned(),
+            (_, Some((input, _))) => input.display().to_string(),
+            (Job::Photos, None) => format!("seed {seed}: {} subjects", self.subjects),
+            (Job::Posture, None) => {
+                format!(
+                    "seed {seed}: {} {} s",
+                    format!("{:?}", self.preset).to_lowercase(),
+                    scenes::seconds(self.preset, &self.effort)
+                )
+            }
+            (Job::Align, None) => format!("seed {seed}: {} s", self.seconds),
+            (Job::Predictor, None) => format!("seed {seed}: two spirals and random movement"),
+        }
+    }
+
+    /// What photographs are measured on; made in `folder` where none are given.
+    ///
+    /// # Errors
+    /// A scene that can't be made.
+    pub fn photos(&self, folder: &Path) -> anyhow::Result<photos::Settings> {
+        match self.given() {
+            Some((set, truth)) => {
+                let (set, truth) = (set.to_owned(), truth.to_owned());
+                Ok(photos::Settings { set, truth, small: None, effort: self.effort.clone() })
+            }
+            None => scenes::photos(&self.wanted(), self.subjects, folder),
+        }
+    }
+
+    /// What tracking is measured on; made in `folder` where no video is given.
+    ///
+    /// # Errors
+    /// A scene that can't be made.
+    pub fn posture(&self, folder: &Path) -> anyhow::Result<posture::Settings> {
+        match self.given() {
+            Some((input, truth)) => Ok(scenes::posture_of(input, truth.to_owned(), &self.wanted())),
+            None => scenes::posture(&self.wanted(), self.preset, folder),
+        }
+    }
+
+    /// What alignment is measured on; made in `folder` where no video and log are given.
+    ///
+    /// # Errors
+    /// A scene that can't be made.
+    pub fn align(&self, folder: &Path) -> anyhow::Result<align::Settings> {
+        match self.given() {
+            Some((input, truth)) => Ok(scenes::align_of(input, truth.to_owned(), &self.wanted())),
+            None => scenes::align(&self.wanted(), self.seconds, folder),
+        }
+    }
+
+    /// What predictors are measured on; made in `folder` where no recordings are given.
+    ///
+    /// # Errors
+    /// A scene that can't be made, a folder without recordings.
+    pub fn predictor(&self, folder: &Path) -> anyhow::Result<predictor::Settings> {
+        match self.given() {
+            Some((train, test)) => scenes::predictor_of(train, test, &self.wanted()),
+            None => scenes::predictor(&self.wanted(), folder),
+        }
+    }
+
+    fn given(&self) -> Option<(&Path, &Path)> {
+        self.input.as_ref().map(|(input, truth)| (input.as_path(), truth.as_path()))
+    }
+
+    fn wanted(&self) -> Wanted {
+        Wanted { seed: self.seed, effort: self.effort.clone() }
+    }
+
+    /// Measures and judges one job; `others` are those of [`Plan::others`].
     ///
     /// # Errors
     /// A scene that can't be made or read, a row of `others` that fits no curve, [`Interrupted`].
-    pub fn run(&self, job: Job, others: &[Row]) -> anyhow::Result<Tradeoff> {
+    pub fn run(&self, job: Job, others: &[PeerRow]) -> anyhow::Result<Tradeoff> {
         let begun = Instant::now();
-        let python = Python::new(self.peers.measured);
-        let wanted = Wanted { seed: self.seed, effort: self.effort.clone(), python };
         let folder = tempfile::tempdir()?;
         let folder = folder.path();
-        let given = self.input.as_ref().map(|(input, truth)| (input.as_path(), truth.clone()));
         let (measured, maps) = match job {
-            Job::Photos => {
-                let settings = match given {
-                    Some((set, truth)) => photos::Settings {
-                        set: set.to_owned(),
-                        truth,
-                        small: None,
-                        effort: wanted.effort,
-                        python: wanted.python,
-                    },
-                    None => scenes::photos(&wanted, self.subjects, folder)?,
-                };
-                (photos::measure(&settings)?, Vec::new())
-            }
-            Job::Posture => {
-                let settings = match given {
-                    Some((input, truth)) => scenes::posture_of(input, truth, &wanted),
-                    None => scenes::posture(&wanted, self.preset, folder)?,
-                };
-                (posture::measure(&settings)?, Vec::new())
-            }
-            Job::Align => {
-                let settings = match given {
-                    Some((input, truth)) => scenes::align_of(input, truth, &wanted),
-                    None => scenes::align(&wanted, self.seconds, folder)?,
-                };
-                (align::measure(&settings)?, Vec::new())
-            }
-            Job::Predictor => {
-                let settings = match given {
-                    Some((train, test)) => scenes::predictor_of(train, &test, &wanted)?,
-                    None => scenes::predictor(&wanted, folder)?,
-                };
-                (predictor::measure(&settings)?, Vec::new())
-            }
+            Job::Photos => (photos::measure(&self.photos(folder)?)?, Vec::new()),
+            Job::Posture => (posture::measure(&self.posture(folder)?)?, Vec::new()),
+            Job::Align => (align::measure(&self.align(folder)?)?, Vec::new()),
+            Job::Predictor => (predictor::measure(&self.predictor(folder)?)?, Vec::new()),
             Job::Hemodynamics => {
-                let settings = hemodynamics::Settings { effort: wanted.effort, python: wanted.python };
+                let settings = hemodynamics::Settings { effort: self.effort.clone() };
                 (hemodynamics::measure(&settings)?, hemodynamics::stability()?)
             }
         };
-        Ok(Tradeoff { maps, ..judge(job.name(), measured, others, begun)? })
+        let others: Vec<&PeerRow> = others.iter().filter(|row| row.stage == job).collect();
+        Ok(Tradeoff { maps, ..judge(job.name(), measured, (&self.scene(job), &others), begun)? })
     }
 }
 
@@ -134,7 +196,7 @@ pub type Outcomes = Vec<(Job, anyhow::Result<Tradeoff>)>;
 /// # Errors
 /// A table of other programs that can't be read; [`Interrupted`].
 pub fn all(plan: &Plan, mut tell: impl FnMut(Job)) -> anyhow::Result<Outcomes> {
-    let others = plan.peers.read()?;
+    let others = plan.others()?;
     let mut done = Vec::new();
     for job in Job::ALL {
         tell(job);

@@ -1,7 +1,8 @@
 //! Error against run time: a job run over its settings on scenes whose truth is known.
 //!
-//! In: a job's `Settings` (a scene with its truth) and an [`Effort`]. Out: [`Measured`], a [`Row`] for each setting,
-//! other programs' among them; [`judge`] finds the knee of each curve and says where the default stands; [`write`]
+//! In: a job's `Settings` (a scene with its truth) and an [`Effort`]. Out: [`Measured`], a [`Row`] for each setting;
+//! other programs' rows come from tables ([`peers`]), whose scenes, made and judged alike, [`Plan`] and the jobs' modules
+//! hand out; [`judge`] finds the knee of each curve and says where the default stands; [`write`]
 //! makes table and picture, [`index`] one page of all jobs. It calls the same entries as the command line, so that a
 //! figure on a curve is the figure a user gets. Times are of one thread and of the stage alone that a setting changes.
 
@@ -22,5 +23,5 @@ pub use choices::{Choice, choices};
 pub use judge::knee::{BEND, Cost, Knee, SAME, Why, front, knee};
 pub use judge::{Figures, Tradeoff, Verdict, judge};
 pub use measure::rows::{Measured, Row};
-pub use measure::timing::Effort;
+pub use measure::timing::{Effort, Timing};
 pub use page::{Setting, index};

@@ -8,7 +8,6 @@ use geo::{Contains, Point};
 use ndarray::Array2;
 use rayon::prelude::*;
 
-use super::peers::{PeerReport, Python, Script};
 use crate::job::Watch;
 use crate::npy;
 use crate::photo::outline::{Axis, DetectOptions, Drawn, Outline, OutlineOptions, Sources, detect, read_annotated};
@@ -18,8 +17,8 @@ use crate::photo::{
 use crate::tradeoff::measure::rows::{Measured, Row};
 use crate::tradeoff::measure::timing::{Effort, Run, Timing, in_turns};
 
-/// How values between pixels are told.
-pub(super) const RESAMPLING: (&str, &str) = ("photos", "resampling");
+/// How values between pixels come about: job and choice.
+pub const RESAMPLING: (&str, &str) = ("photos", "resampling");
 /// How large a picture is searched.
 pub(super) const DETECTION: (&str, &str) = ("photos", "detection");
 /// Root mean square difference inside the nail.
@@ -36,14 +35,6 @@ pub(super) const OUTLINE_ERROR: &str = "detected outline, mean of 1 - IoU (misse
 const RESAMPLE: [Resample; 3] = [Resample::Nearest, Resample::Linear, Resample::Cubic];
 /// Longest sides that detection searches, pixels; the default beside them.
 const WORKING_PX: [u32; 4] = [128, 200, 320, 640];
-/// The script's word, its name, packages as they are imported and as they are called.
-type Peer = (&'static str, &'static str, [(&'static str, &'static str); 2]);
-/// What can resample a photograph in Python.
-const PEERS: [Peer; 2] = [
-    ("opencv", "OpenCV", [("numpy", "numpy"), ("cv2", "opencv-python-headless")]),
-    ("skimage", "scikit-image", [("numpy", "numpy"), ("skimage", "scikit-image")]),
-];
-const SCRIPT: Script = Script { files: &[("photos.py", include_str!("../../benches/peers/photos.py"))] };
 
 /// What is measured.
 #[derive(Debug, Clone)]
@@ -56,8 +47,6 @@ pub struct Settings {
     pub small: Option<(PathBuf, PathBuf)>,
     /// How much.
     pub effort: Effort,
-    /// What runs other programs.
-    pub python: Python,
 }
 
 /// What `lunula photos` resamples with.
@@ -87,6 +76,7 @@ fn detection(working_size_px: u32) -> String {
 }
 
 /// One photograph's truth.
+#[derive(Debug)]
 struct Truth {
     outline: Outline,
     normalized: Array2<f32>,
@@ -94,7 +84,8 @@ struct Truth {
 }
 
 /// A set with its truth in memory.
-struct Scene {
+#[derive(Debug)]
+pub struct Scene {
     set: PhotoSet,
     folder: PathBuf,
     truth: PathBuf,
@@ -109,18 +100,46 @@ impl Scene {
         let truths = set.photos.par_iter().map(|photo| read_truth(photo, truth)).collect::<anyhow::Result<_>>()?;
         Ok(Self { set, folder: folder.to_owned(), truth: truth.to_owned(), truths, small })
     }
+
+    /// The folder of the photographs.
+    #[must_use]
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// How wrong the results of another program are, each error by its unit: `out` holds `normalized/POSE/SUBJECT.png`
+    /// and `maps/`, as `lunula photos` writes them.
+    ///
+    /// # Errors
+    /// A result that is missing or of another size, with its name.
+    pub fn errors(&self, out: &Path) -> anyhow::Result<Vec<(&'static str, f64)>> {
+        let name = |photo: &Photo| format!("normalized/{}/{}.png", photo.pose, photo.subject);
+        errors(self, out, self.set.photos.iter().map(name).enumerate())
+    }
 }
 
-/// Measures every setting, and other programs. Without a pose of two subjects there is no SD to be wrong: its curve is
+/// The sets of `settings` with their truths.
+///
+/// # Errors
+/// A set or truth that can't be read, with its file.
+pub fn scenes(settings: &Settings) -> anyhow::Result<Vec<Scene>> {
+    let small = settings.small.as_ref().map(|(set, truth)| Scene::read(set, truth, true));
+    std::iter::once(Scene::read(&settings.set, &settings.truth, false)).chain(small).collect()
+}
+
+/// The kernels by name, with the samples that a normalized picture takes with each.
+#[must_use]
+pub fn kernels() -> [(&'static str, u64); 3] {
+    RESAMPLE.map(|resample| (kernel(resample), taps(resample)))
+}
+
+/// Measures every setting. Without a pose of two subjects there is no SD to be wrong: its curve is
 /// left out, and [`Measured::refused`] says so.
 ///
 /// # Errors
 /// A set or truth that can't be read, with its file; [`Interrupted`](crate::job::Interrupted).
 pub fn measure(settings: &Settings) -> anyhow::Result<Measured> {
-    let mut scenes = vec![Scene::read(&settings.set, &settings.truth, false)?];
-    if let Some((set, truth)) = &settings.small {
-        scenes.push(Scene::read(set, truth, true)?);
-    }
+    let scenes = scenes(settings)?;
     let effort = &settings.effort;
     let mut measured = Measured::default();
     // One thread, as the times of all jobs here are.
@@ -149,63 +168,22 @@ pub fn measure(settings: &Settings) -> anyhow::Result<Measured> {
         let (time, (error, work)) = found?;
         measured.rows.push(Row::own(DETECTION, &detection(px), (error, OUTLINE_ERROR), time, work));
     }
-    for peer in PEERS {
-        peer_rows(peer, &scenes, settings, &mut measured)?;
-    }
     Ok(measured)
 }
 
 fn resampling_row(setting: &str, resample: Resample, error: (&str, f64), time: Timing) -> Row {
-    let taps: u64 = match resample {
+    Row::own(RESAMPLING, setting, (error.1, error.0), time, taps(resample))
+}
+
+/// Samples of a photograph that a normalized picture takes.
+fn taps(resample: Resample) -> u64 {
+    let each: u64 = match resample {
         Resample::Nearest => 1,
         Resample::Linear => 4,
         Resample::Cubic => 16,
     };
     let size = Normalization::default().size as u64;
-    Row::own(RESAMPLING, setting, (error.1, error.0), time, taps * size * size)
-}
-
-/// Another program on the same photographs.
-fn peer_rows(
-    (word, name, packages): (&str, &str, [(&str, &str); 2]),
-    scenes: &[Scene],
-    settings: &Settings,
-    measured: &mut Measured,
-) -> anyhow::Result<()> {
-    if let Err(missing) = settings.python.has(name, &packages) {
-        measured.peers.push(missing);
-        return Ok(());
-    }
-    let repeats = settings.effort.repeats.to_string();
-    let mut rows = Vec::new();
-    let mut all = || -> anyhow::Result<()> {
-        for scene in scenes {
-            for resample in RESAMPLE {
-                let (folder, out) = (tempfile::tempdir()?, tempfile::tempdir()?);
-                let set = std::path::absolute(&scene.folder)?.display().to_string();
-                let arguments = [word, &set, &out.path().display().to_string(), "1", kernel(resample), &repeats];
-                let answers = settings.python.answers(SCRIPT, folder.path(), &arguments, &settings.effort)?;
-                let time = Timing::of(answers.into_iter().flat_map(|answer| answer.seconds).collect());
-                let named = (0..scene.set.photos.len()).map(|k| {
-                    let photo = &scene.set.photos[k];
-                    (k, format!("normalized/{}/{}.png", photo.pose, photo.subject))
-                });
-                for error in errors(scene, out.path(), named)? {
-                    let setting = format!("{name}, {}", kernel(resample));
-                    rows.push(resampling_row(&setting, resample, error, time).peer());
-                }
-            }
-        }
-        Ok(())
-    };
-    let outcome = all();
-    settings.effort.check()?;
-    measured.peers.push(match outcome {
-        Ok(()) => PeerReport::measured(name, "resampling of the same photographs, three kernels"),
-        Err(why) => PeerReport::missing(name, format!("{why:#}")),
-    });
-    measured.rows.extend(rows);
-    Ok(())
+    each * size * size
 }
 
 fn read_picture(photo: &Photo) -> anyhow::Result<Photograph> {

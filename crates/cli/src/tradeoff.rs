@@ -6,7 +6,6 @@ use std::sync::atomic::AtomicBool;
 
 use clap::{Args, Subcommand};
 use lunula::phantom::video::Preset;
-use lunula::tradeoff::peers::Peers;
 use lunula::tradeoff::{self as curves, Effort, Plan, Row, Setting, Tradeoff, Verdict};
 
 use super::{Common, Outcome};
@@ -31,9 +30,6 @@ enum Job {
     Hemodynamics(HemodynamicsArgs),
 }
 
-/// What `--peers` alone stands for: other programs are run here.
-const HERE: &str = "python3";
-
 /// What every trade-off takes.
 #[derive(Debug, Args)]
 struct Measuring {
@@ -46,10 +42,10 @@ struct Measuring {
     /// Fewer settings on smaller scenes
     #[arg(long)]
     quick: bool,
-    /// Other programs on the same scenes: run here where python3 has their packages; or, with a FILE, figures measured
-    /// elsewhere (a tradeoff.csv; for hemodynamics also a table solver,rtol,error,microseconds[,evaluations]); may be
+    /// Figures of other programs on the same scenes, as `make peers` of the repository measures them: a table
+    /// stage,choice,scene,setting,error,error_unit,run_s,run_low_s,run_high_s,repeats,work,machine,version,date; may be
     /// given again
-    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = HERE)]
+    #[arg(long, value_name = "FILE")]
     peers: Vec<PathBuf>,
     #[command(flatten)]
     common: Common,
@@ -63,8 +59,7 @@ impl Measuring {
             threads: self.common.threads.map_or(0, usize::from),
             stop,
         };
-        let (here, tables): (Vec<_>, Vec<_>) = self.peers.iter().cloned().partition(|path| path.as_os_str() == HERE);
-        Plan::new(seed, effort, Peers { measured: !here.is_empty(), tables })
+        Plan::new(seed, effort, self.peers.clone())
     }
 }
 
@@ -122,8 +117,7 @@ struct PhotosArgs {
     measured: Measured,
 }
 
-/// Joint angles against the exact ones: planes used, rounds of refinement, where markers are searched, and OpenCV's
-/// usual recipe
+/// Joint angles against the exact ones: planes used, rounds of refinement, where markers are searched
 ///
 /// On a synthetic video of its own, or on --input (a folder with video.mp4 and markers.toml) with --truth.
 #[derive(Debug, Args)]
@@ -191,7 +185,7 @@ pub(super) fn run(args: &TradeoffArgs) -> anyhow::Result<Outcome> {
 
 fn one(job: curves::Job, plan: &Plan, measuring: &Measuring) -> anyhow::Result<Outcome> {
     let Measuring { out, common, .. } = measuring;
-    let found = plan.run(job, &plan.peers.read()?)?;
+    let found = plan.run(job, &plan.others()?)?;
     found.write(out)?;
     common.warn(&found.refused);
     common.print_json(&serde_json::json!({
@@ -230,7 +224,7 @@ fn all(args: &AllArgs) -> anyhow::Result<Outcome> {
         "no job could be measured: {}",
         failed.iter().map(|(_, why)| why.as_str()).collect::<Vec<_>>().join("; ")
     );
-    let tables = plan.peers.tables.iter().map(|path| path.display().to_string()).collect();
+    let tables = plan.peers.iter().map(|path| path.display().to_string()).collect();
     curves::index(&done, &failed, &Setting { seed: plan.seed, effort: plan.effort.clone(), tables }, out)?;
     let warnings: Vec<String> = done.iter().flat_map(|job| &job.refused).cloned().collect();
     common.warn(&warnings);

@@ -1,5 +1,5 @@
 //! How long fits, predictions and epochs take for 12 000 rows of 8 photodiodes to 3 forces on one thread, as ratios in
-//! one run with numpy and scikit-learn (`benches/peers/predictor.py`, versions in its `requirements.txt`), in turns.
+//! one run with numpy and scikit-learn (`bench/peers/predictor.py`, versions in its `requirements.txt`), in turns.
 //!
 //! `cargo bench -p lunula-predictor --bench predictor [-- NAME]` (only lines whose name holds NAME); `PYTHON` names the
 //! interpreter (default python3). Where it lacks the packages, or has other versions than those pinned, that is said.
@@ -110,12 +110,12 @@ impl Peers {
         if !there.is_ok_and(|status| status.success()) {
             println!(
                 "peers left out: {python} has no numpy or no scikit-learn (pip install -r \
-                 benches/peers/requirements.txt)"
+                 bench/peers/requirements.txt)"
             );
             return None;
         }
         versions(&python);
-        let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../../benches/peers/predictor.py");
+        let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../../bench/peers/predictor.py");
         let mut process =
             Command::new(&python).arg(script).arg(folder).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().ok()?;
         let (to, from) = (process.stdin.take()?, BufReader::new(process.stdout.take()?));
@@ -133,14 +133,14 @@ impl Peers {
 
 /// Says where the packages are not those of `requirements.txt`.
 fn versions(python: &str) {
-    for pinned in include_str!("../../../benches/peers/requirements.txt").lines() {
+    for pinned in include_str!("../../../bench/peers/requirements.txt").lines() {
         let Some((package, wanted)) = pinned.split_once("==") else { continue };
         let code = format!("from importlib.metadata import version; print(version('{package}'), end='')");
         let found = Command::new(python).args(["-c", &code]).output().map(|output| output.stdout).unwrap_or_default();
         let found = String::from_utf8_lossy(&found);
         if found != wanted {
             println!(
-                "{package} is {found}, not {wanted} as pinned in benches/peers/requirements.txt: ratios are another \
+                "{package} is {found}, not {wanted} as pinned in bench/peers/requirements.txt: ratios are another \
                  version's"
             );
         }

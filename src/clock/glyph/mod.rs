@@ -10,19 +10,14 @@
 //! can't be detected: a covered 8 may show a clean 9.
 //!
 //! The way down, a file each: [`place`] where it is; [`patch`] the picture in the character's own frame; [`net`] the
-//! small network that weighs it; [`scores`] its answers; [`crop`] the ink on a whole picture. `training` makes the
-//! weights from drawn digits alone.
+//! small network that weighs it; [`scores`] its answers; [`crop`] the ink on a whole picture. `crates/training`
+//! makes the weights from drawn digits alone.
 
 mod crop;
 mod net;
 mod patch;
 mod place;
 mod scores;
-
-#[cfg(test)]
-mod training;
-
-use std::sync::LazyLock;
 
 pub use crop::read_crop;
 pub use patch::{Levels, Patch};
@@ -31,11 +26,18 @@ pub use scores::{SURE, Scores};
 
 use net::Net;
 
-static NET: LazyLock<Net> =
-    LazyLock::new(|| Net::parse(include_str!("weights/digits.txt")).expect("the weights that come along are whole"));
+/// The network and what it looks at, for `crates/training`, which fits it: no promise of the library.
+#[doc(hidden)]
+pub mod training {
+    pub use super::net::{
+        ANSWERS, COLUMNS_1, COLUMNS_2, FIRST, FLAT, HIDDEN, Net, PARTS, REACH, ROW, ROW_1, ROWS_1, ROWS_2, SECOND,
+        Trace, parts,
+    };
+    pub use super::patch::{HEIGHT, WIDTH};
+}
 
 /// How probably a patch shows each digit.
 #[must_use]
 pub fn recognise(patch: &Patch) -> Scores {
-    Scores::of(NET.answers(patch))
+    Net::shipped().scores(patch)
 }

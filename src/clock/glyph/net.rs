@@ -3,57 +3,74 @@
 //! In: a [`Patch`]. Out: for 0 to 9 and for anything else the logarithm of its probability, up to a common term. The
 //! first filters look at 5 x 5 cells and step by two, the second at 3 x 3 and step by two; then come all the places'
 //! values and the box's aspect into one hidden layer. Units pass what is above zero. Weights are text, numbers in the
-//! order of [`PARTS`]; `training` makes them.
+//! order of [`PARTS`]; `digits` of `crates/training` makes them.
+
+use std::sync::LazyLock;
 
 use super::patch::{HEIGHT, Patch, WIDTH};
+use super::scores::Scores;
 
-/// Filters of the first and second layer, hidden units, answers.
-pub(super) const FIRST: usize = 12;
-pub(super) const SECOND: usize = 24;
-pub(super) const HIDDEN: usize = 40;
-pub(super) const ANSWERS: usize = 11;
+/// Filters of the first layer.
+pub const FIRST: usize = 12;
+/// Filters of the second layer.
+pub const SECOND: usize = 24;
+/// Hidden units.
+pub const HIDDEN: usize = 40;
+/// The digits and anything else.
+pub const ANSWERS: usize = 11;
 
-/// The first filters' size, and the patch with a border of zeros for them.
-pub(super) const REACH: usize = 5;
-pub(super) const EDGE: usize = 2;
-pub(super) const ROW: usize = WIDTH + 2 * EDGE;
+/// The first filters' side, cells.
+pub const REACH: usize = 5;
+/// The border of zeros that the patch gets for them, cells.
+const EDGE: usize = 2;
+/// Columns of the patch with its border.
+pub const ROW: usize = WIDTH + 2 * EDGE;
 const ROWS: usize = HEIGHT + 2 * EDGE;
-/// Places of the first filters, and their values with a border of one place.
-pub(super) const COLUMNS_1: usize = WIDTH / 2;
-pub(super) const ROWS_1: usize = HEIGHT / 2;
-pub(super) const ROW_1: usize = COLUMNS_1 + 2;
-/// Places of the second filters.
-pub(super) const COLUMNS_2: usize = COLUMNS_1 / 2;
-pub(super) const ROWS_2: usize = ROWS_1 / 2;
+/// Columns of places of the first filters.
+pub const COLUMNS_1: usize = WIDTH / 2;
+/// Rows of places of the first filters.
+pub const ROWS_1: usize = HEIGHT / 2;
+/// Columns of their values with a border of one place.
+pub const ROW_1: usize = COLUMNS_1 + 2;
+/// Columns of places of the second filters.
+pub const COLUMNS_2: usize = COLUMNS_1 / 2;
+/// Rows of places of the second filters.
+pub const ROWS_2: usize = ROWS_1 / 2;
 /// What comes into the hidden layer but for the aspect.
-pub(super) const FLAT: usize = COLUMNS_2 * ROWS_2 * SECOND;
+pub const FLAT: usize = COLUMNS_2 * ROWS_2 * SECOND;
 
 /// How many numbers: the first filters' weights (by cell, then filter) and biases, the second's (by place, first
 /// filter, second filter) and biases, the hidden units' (by input, then unit; the aspect last) and biases, the answers'
 /// (by unit) and biases.
-pub(super) const PARTS: [usize; 8] =
+pub const PARTS: [usize; 8] =
     [REACH * REACH * FIRST, FIRST, 9 * FIRST * SECOND, SECOND, (FLAT + 1) * HIDDEN, HIDDEN, HIDDEN * ANSWERS, ANSWERS];
 
+/// The network.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Net {
-    pub(super) weights: Vec<f32>,
+pub struct Net {
+    /// In the order of [`PARTS`].
+    pub weights: Vec<f32>,
 }
 
 /// Every value on the way, for training to walk back.
 #[derive(Debug, Clone)]
-pub(super) struct Trace {
+pub struct Trace {
     /// The patch with a border.
-    pub(super) input: [f32; ROW * ROWS],
+    pub input: [f32; ROW * ROWS],
     /// The first filters' values with a border, filter by filter in each place.
-    pub(super) first: [f32; ROW_1 * (ROWS_1 + 2) * FIRST],
-    pub(super) second: [f32; FLAT],
-    pub(super) aspect: f32,
-    pub(super) hidden: [f32; HIDDEN],
-    pub(super) answers: [f32; ANSWERS],
+    pub first: [f32; ROW_1 * (ROWS_1 + 2) * FIRST],
+    /// The second filters' values, filter by filter in each place.
+    pub second: [f32; FLAT],
+    /// The patch's.
+    pub aspect: f32,
+    /// The hidden units' values.
+    pub hidden: [f32; HIDDEN],
+    /// The answers.
+    pub answers: [f32; ANSWERS],
 }
 
-impl Trace {
-    pub(super) fn new() -> Self {
+impl Default for Trace {
+    fn default() -> Self {
         Self {
             input: [0.0; ROW * ROWS],
             first: [0.0; ROW_1 * (ROWS_1 + 2) * FIRST],
@@ -78,7 +95,8 @@ fn start<const N: usize>(biases: &[f32]) -> [f32; N] {
 }
 
 /// The weights' parts in turn.
-pub(super) fn parts(weights: &[f32]) -> [&[f32]; 8] {
+#[must_use]
+pub fn parts(weights: &[f32]) -> [&[f32]; 8] {
     let mut rest = weights;
     PARTS.map(|count| {
         let (part, after) = rest.split_at(count);
@@ -87,22 +105,38 @@ pub(super) fn parts(weights: &[f32]) -> [&[f32]; 8] {
     })
 }
 
+static SHIPPED: LazyLock<Net> =
+    LazyLock::new(|| Net::parse(include_str!("weights/digits.txt")).expect("the weights that come along are whole"));
+
 impl Net {
+    /// With the weights that come along.
+    #[must_use]
+    pub fn shipped() -> &'static Self {
+        &SHIPPED
+    }
+
     /// Reads weights; `None` where the text is no such list.
-    pub(super) fn parse(text: &str) -> Option<Self> {
+    #[must_use]
+    pub fn parse(text: &str) -> Option<Self> {
         let weights: Vec<f32> = text.split_ascii_whitespace().map(|w| w.parse().ok()).collect::<Option<_>>()?;
         (weights.len() == PARTS.iter().sum::<usize>()).then_some(Self { weights })
     }
 
+    /// How probably a patch shows each digit.
+    #[must_use]
+    pub fn scores(&self, patch: &Patch) -> Scores {
+        Scores::of(self.answers(patch))
+    }
+
     /// The answers for a patch.
-    pub(super) fn answers(&self, patch: &Patch) -> [f32; ANSWERS] {
-        let mut trace = Trace::new();
+    fn answers(&self, patch: &Patch) -> [f32; ANSWERS] {
+        let mut trace = Trace::default();
         self.follow(patch, &mut trace);
         trace.answers
     }
 
     /// The same with every value on the way. A trace may be used again.
-    pub(super) fn follow(&self, patch: &Patch, trace: &mut Trace) {
+    pub fn follow(&self, patch: &Patch, trace: &mut Trace) {
         let [w1, b1, w2, b2, w3, b3, w4, b4] = parts(&self.weights);
         for (y, row) in patch.ink.chunks_exact(WIDTH).enumerate() {
             let at = (y + EDGE) * ROW + EDGE;

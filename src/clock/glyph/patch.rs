@@ -9,9 +9,9 @@ use super::Place;
 use crate::video::Plane;
 
 /// Columns of a patch.
-pub(super) const WIDTH: usize = 16;
+pub const WIDTH: usize = 16;
 /// Rows of a patch.
-pub(super) const HEIGHT: usize = 24;
+pub const HEIGHT: usize = 24;
 /// Rows that the box fills.
 pub(super) const BODY: usize = 20;
 /// Rows above and below the box.

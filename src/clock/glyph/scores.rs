@@ -1,8 +1,8 @@
 //! How probably a patch shows each digit.
 
 /// A digit that is at least this probable is read. On drawn digits of typefaces and displays that nothing was trained
-/// on, sharp and in good light, 93 % are (4 in a million wrong), and under any conditions 75 %, 1 in 6000 wrong (test
-/// `training::figures`).
+/// on, sharp and in good light, 93 % are (4 in a million wrong), and under any conditions 75 %, 1 in 6000 wrong
+/// (`digits figures` of `crates/training`).
 pub const SURE: f64 = 0.95;
 
 /// How probably a patch shows each digit, or anything else: nothing, a mark, two digits blended, a digit half covered.

@@ -13,6 +13,8 @@ pub use annotated::{
     AXIS, Annotated, AnnotationFault, DOUBTFUL, Drawn, NAIL, ShapeFault, ToDraw, read as read_annotated, to_file,
 };
 pub use axis::{AxisDoubt, AxisUnknown, FoundAxis, LEAST_CONFIDENCE, Side, axis_towards, find_axes, find_axes_towards};
+#[doc(hidden)]
+pub use detect::training;
 pub use detect::{DetectOptions, Detected, Detections, NothingFound, detect};
 pub use keep::SavedOutlines;
 pub(super) use keep::{DetectedOutline, keep_outlines};

@@ -1,11 +1,10 @@
 //! Labels over gaps: markers are lost now and then, and angles interpolated over longer and longer gaps.
 //!
 //! The angles are the job's own, with frames taken out: every [`APART`] frames a gap of as many as [`LOST`] says, in
-//! turn. The error is that of the labels that rows have; how many have one is given as `work`. Beside it a user of
-//! pandas, on the same tables.
+//! turn. The error is that of the labels that rows have; how many have one is given as `work`.
 
 use std::collections::HashMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, ensure};
 
@@ -15,13 +14,12 @@ use crate::job::Watch;
 use crate::posture::Layout;
 use crate::table::Table;
 use crate::tradeoff::measure::rows::{Measured, Row};
-use crate::tradeoff::measure::timing::{Timing, in_turns};
-use crate::tradeoff::peers::{PeerReport, Script};
+use crate::tradeoff::measure::timing::in_turns;
 
-/// How long a gap is labelled over.
-pub(in crate::tradeoff) const BRIDGING: (&str, &str) = ("align", "bridging");
+/// How long a gap is labelled over: job and choice.
+pub const BRIDGING: (&str, &str) = ("align", "bridging");
 /// The error's name and unit.
-pub(in crate::tradeoff) const LABEL_ERROR: &str = "labels of joint angles, markers lost now and then, degrees RMS";
+pub const LABEL_ERROR: &str = "labels of joint angles, markers lost now and then, degrees RMS";
 /// Frames from a gap's beginning to the next one's.
 const APART: usize = 45;
 /// Frames lost in a gap, in turn.
@@ -33,11 +31,6 @@ const INTERVALS: [(&str, Option<f64>); 4] = [
     ("gaps of five frames", Some(5.5)),
     ("gaps of twenty frames", Some(20.5)),
 ];
-const PANDAS: &str = "pandas";
-const PANDAS_SETTING: &str = "pandas, interp";
-const PACKAGES: [(&str, &str); 2] = [("numpy", "numpy"), ("pandas", "pandas")];
-const SCRIPT: Script = Script { files: &[("align.py", include_str!("../../../benches/peers/align.py"))] };
-
 /// What `lunula align` does.
 pub(in crate::tradeoff) fn bridging_default() -> String {
     let default =
@@ -57,11 +50,10 @@ pub(super) fn measure(
         measured.refused.push(format!("labels: {} is missing", truth.display()));
         return Ok(());
     }
-    let truth = Truth::read(&settings.log, &truth, layout)?;
     let folder = tempfile::tempdir()?;
-    let gappy = folder.path().join("joints.csv");
-    lose(joints, &gappy)?;
-    let times_s = column(&gappy, "time_s")?;
+    let labels = Labels::new(layout, joints, settings, folder.path())?;
+    let gappy = &labels.joints;
+    let times_s = column(gappy, "time_s")?;
     let span_s = times_s.last().zip(times_s.first()).map_or(f64::NAN, |(last, first)| last - first);
     let interval_s = span_s / (times_s.len() as f64 - 1.0);
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
@@ -78,7 +70,7 @@ pub(super) fn measure(
             report: false,
         };
         let report = one.install(|| run_align(&inputs, &options, &outputs, &Watch::nobody()))?;
-        Ok((report.wall_s, first.then(|| truth.error(&training)).transpose()?))
+        Ok((report.wall_s, first.then(|| labels.error(&training)).transpose()?))
     })?;
     for ((name, _), found) in INTERVALS.into_iter().zip(found) {
         match found {
@@ -86,32 +78,33 @@ pub(super) fn measure(
             Err(why) => measured.refused.push(format!("{name}: {why:#}")),
         }
     }
-    if let Err(missing) = settings.python.has(PANDAS, &PACKAGES) {
-        measured.peers.push(missing);
-        return Ok(());
-    }
-    let pandas = || -> anyhow::Result<Row> {
-        let log = std::path::absolute(&settings.log)?.display().to_string();
-        let [gappy, training] = [&gappy, &training].map(|path| path.display().to_string());
-        let arguments = [gappy.as_str(), &log, &training, &settings.effort.repeats.to_string()];
-        let answers = settings.python.answers(SCRIPT, folder.path(), &arguments, &settings.effort)?;
-        let time = Timing::of(answers.into_iter().flat_map(|answer| answer.seconds).collect());
-        let (error, rows) = truth.error(Path::new(&training))?;
-        Ok(Row::own(BRIDGING, PANDAS_SETTING, (error, LABEL_ERROR), time, rows).peer())
-    };
-    let outcome = pandas();
-    settings.effort.check()?;
-    measured.peers.push(match outcome {
-        Ok(row) => {
-            measured.rows.push(row);
-            PeerReport::measured(
-                PANDAS,
-                "the same tables by numpy's interp, without standard errors; loading pandas is not counted",
-            )
-        }
-        Err(why) => PeerReport::missing(PANDAS, format!("{why:#}")),
-    });
     Ok(())
+}
+
+/// Angles over gaps, and what labels from them should be.
+#[derive(Debug)]
+pub struct Labels {
+    /// The table of angles with frames taken out.
+    pub joints: PathBuf,
+    truth: Truth,
+}
+
+impl Labels {
+    /// From the angles of all frames; the table is written to `folder`.
+    pub(super) fn new(layout: &Layout, joints: &Path, settings: &Settings, folder: &Path) -> anyhow::Result<Self> {
+        let truth = Truth::read(&settings.log, &settings.truth.join("log.csv"), layout)?;
+        let gappy = folder.join("joints.csv");
+        lose(joints, &gappy)?;
+        Ok(Self { joints: gappy, truth })
+    }
+
+    /// The error of a labelled log ([`LABEL_ERROR`]), and how many rows have all labels.
+    ///
+    /// # Errors
+    /// A table that can't be read, rows that are not the log's, no label at all.
+    pub fn error(&self, training: &Path) -> anyhow::Result<(f64, u64)> {
+        self.truth.error(training)
+    }
 }
 
 /// Takes frames out of a table of angles.
@@ -134,6 +127,7 @@ fn lose(joints: &Path, gappy: &Path) -> anyhow::Result<()> {
 }
 
 /// The exact angles at the log's rows.
+#[derive(Debug)]
 struct Truth {
     joints: Vec<String>,
     /// By the bits of the log's time.
@@ -154,7 +148,6 @@ impl Truth {
         Ok(Self { rows: times_s.iter().enumerate().map(row).collect(), joints })
     }
 
-    /// The error of a labelled set, and how many rows have all labels.
     fn error(&self, training: &Path) -> anyhow::Result<(f64, u64)> {
         let table = Table::read(training)?;
         let times_s = column(training, "time_s")?;

@@ -7,7 +7,6 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, ensure};
 
-use super::peers::Python;
 use crate::align::{AlignInputs, AlignOptions, AlignOutputs, LagSearch, LagTie, Sync, run as run_align};
 use crate::job::Watch;
 use crate::posture::{Layout, Outputs, PostureOptions, PostureReport, run as run_posture};
@@ -15,7 +14,8 @@ use crate::table::Table;
 use crate::tradeoff::measure::rows::{Measured, Row};
 use crate::tradeoff::measure::timing::{Effort, Run, in_turns};
 
-pub(super) use labels::{BRIDGING, LABEL_ERROR, bridging_default};
+pub(super) use labels::bridging_default;
+pub use labels::{BRIDGING, LABEL_ERROR, Labels};
 
 /// What is measured.
 #[derive(Debug, Clone)]
@@ -30,8 +30,6 @@ pub struct Settings {
     pub truth: PathBuf,
     /// How much.
     pub effort: Effort,
-    /// What runs other programs.
-    pub python: Python,
 }
 
 /// How the clocks are tied.
@@ -97,6 +95,17 @@ pub fn measure(settings: &Settings) -> anyhow::Result<Measured> {
     }
     labels::measure(&layout, &joints(EVERY[0]), settings, &mut measured)?;
     Ok(measured)
+}
+
+/// Angles with frames taken out, in `folder`, and the log's exact ones: what another program labels the log from.
+///
+/// # Errors
+/// A video, marker file, log or truth that can't be read, with its file.
+pub fn labels(settings: &Settings, folder: &Path) -> anyhow::Result<Labels> {
+    let layout = Layout::read(&settings.markers)?;
+    let joints = folder.join("all.csv");
+    follow(&layout, EVERY[0], &joints, settings)?;
+    Labels::new(&layout, &joints, settings, folder)
 }
 
 fn follow(layout: &Layout, clock_every: u64, joints: &Path, settings: &Settings) -> anyhow::Result<PostureReport> {

@@ -1,5 +1,6 @@
 //! The step responses that every solver is measured on.
 
+use std::fmt::Write as _;
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -19,28 +20,32 @@ const RATE: u32 = 100;
 const REFERENCE: f64 = 1e-13;
 
 /// A step response to be solved.
-pub(super) struct Case {
+struct Case {
     loads: Loads,
     /// Whether proximal, else distal.
-    pub(super) proximal: bool,
-    pub(super) load_pa: f64,
-    pub(super) reference: Trajectory,
+    proximal: bool,
+    load_pa: f64,
+    reference: Trajectory,
 }
 
 /// The model, its start and the responses.
-pub(super) struct Bench {
+pub struct Bench {
     pub(super) parameters: Parameters,
     pub(super) model: Model,
-    pub(super) start: State,
-    pub(super) times_s: Vec<f64>,
-    pub(super) cases: Vec<Case>,
+    start: State,
+    times_s: Vec<f64>,
+    cases: Vec<Case>,
 }
 
 /// A setting's error, and its work a response.
 pub(super) type ErrorAndWork = (f64, u64);
 
 impl Bench {
-    pub(super) fn new() -> anyhow::Result<Self> {
+    /// Solves the responses for their references.
+    ///
+    /// # Errors
+    /// No reference.
+    pub fn new() -> anyhow::Result<Self> {
         let parameters = Parameters::thesis();
         let model = Model::new(&parameters, Collapse::Error);
         let times_s: Vec<f64> = (1..=SECONDS * RATE).map(|k| f64::from(k) / f64::from(RATE)).collect();
@@ -62,6 +67,25 @@ impl Bench {
             }
         }
         Ok(Self { parameters, model, start, times_s, cases })
+    }
+
+    /// The responses to loads on the vein (`proximal`) or on the capillaries as CSV, a row `load_Pa,time_s,C1,C2,V` for
+    /// each load and time: displacements, as differences from the nominal diameters and over them.
+    #[must_use]
+    pub fn reference(&self, proximal: bool) -> String {
+        let mut text = String::from("load_Pa,time_s,C1,C2,V\n");
+        for case in self.cases.iter().filter(|case| case.proximal == proximal) {
+            let mut row = |time_s: f64, lumens: &[f64]| {
+                let walls: Vec<String> = lumens.iter().map(|lumen| format!("{:e}", lumen - 1.0)).collect();
+                // Writing to a string does not fail.
+                let _ = writeln!(text, "{},{time_s},{}", case.load_pa, walls.join(","));
+            };
+            row(0.0, &self.start.lumens);
+            for (k, time_s) in self.times_s.iter().enumerate() {
+                row(*time_s, case.reference.lumens(k));
+            }
+        }
+        text
     }
 
     /// Seconds a response of what `solve` makes of every case; the first time also error and work, which warms up.

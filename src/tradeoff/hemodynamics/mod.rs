@@ -7,17 +7,17 @@
 mod bench;
 mod maps;
 mod modes;
-mod peers;
-mod python;
 
 pub(super) use bench::AUTO;
+pub use bench::Bench;
 pub(super) use maps::write as write_maps;
 pub use maps::{Map, stability};
 pub(super) use modes::solving_default;
 pub use modes::{Settings, measure};
-pub use peers::read_peers;
 
-/// By which method, how exactly.
-pub(super) const SOLVING: (&str, &str) = ("hemodynamics", "solving");
+/// By which method, how exactly: job and choice.
+pub const SOLVING: (&str, &str) = ("hemodynamics", "solving");
+/// The responses, which are the same for any seed.
+pub(super) const SCENE: &str = "20 step responses";
 /// What the error is.
-pub(super) const ERROR: &str = "largest |x - x_ref| / D over 20 step responses, full model";
+pub const ERROR: &str = "largest |x - x_ref| / D over 20 step responses, full model";

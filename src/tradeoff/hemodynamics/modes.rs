@@ -3,18 +3,15 @@
 use lunula_hemodynamics::{Collapse, Model, Order, SolveOptions, Trajectory};
 
 use super::bench::{AUTO, Bench};
-use super::{ERROR, SOLVING, python};
+use super::{ERROR, SOLVING};
 use crate::tradeoff::measure::rows::{Measured, Row};
 use crate::tradeoff::measure::timing::{Effort, in_turns};
-use crate::tradeoff::peers::Python;
 
 /// What is measured.
 #[derive(Debug, Clone)]
 pub struct Settings {
     /// How much.
     pub effort: Effort,
-    /// What runs other programs.
-    pub python: Python,
 }
 
 /// Tolerances that are asked for.
@@ -35,7 +32,7 @@ enum Way<'a> {
     Live(u32),
 }
 
-/// Measures every setting, and other programs.
+/// Measures every setting.
 ///
 /// # Errors
 /// No reference; [`Interrupted`](crate::job::Interrupted).
@@ -56,7 +53,6 @@ pub fn measure(settings: &Settings) -> anyhow::Result<Measured> {
             Err(why) => measured.refused.push(format!("{setting}: {why:#}")),
         }
     }
-    python::measure(&bench, settings, &mut measured)?;
     Ok(measured)
 }
 

@@ -7,7 +7,7 @@ use anyhow::ensure;
 use serde::Serialize;
 
 use super::choices::{Choice, choices};
-use super::peers::{PeerReport, join};
+use super::peers::{PeerReport, PeerRow, join};
 use crate::tradeoff::measure::rows::{Measured, Row};
 use knee::{Cost, SAME, front, knee};
 
@@ -72,14 +72,19 @@ pub struct Tradeoff {
     pub maps: Vec<super::hemodynamics::Map>,
 }
 
-/// Finds the knees of what `measured` gave for `job`, with `others` of other programs beside it. `begun`: when
-/// measuring began.
+/// Finds the knees of what `measured` gave for `job` on `scene`, with the rows of other programs beside it. `begun`:
+/// when measuring began.
 ///
 /// # Errors
-/// Rows of `others` whose error is none of the curves'.
-pub fn judge(job: &'static str, measured: Measured, others: &[Row], begun: Instant) -> anyhow::Result<Tradeoff> {
-    let Measured { mut rows, refused, peers } = measured;
-    join(&mut rows, others.iter().filter(|row| row.job == job))?;
+/// Rows of other programs that fit no curve.
+pub fn judge(
+    job: &'static str,
+    measured: Measured,
+    (scene, others): (&str, &[&PeerRow]),
+    begun: Instant,
+) -> anyhow::Result<Tradeoff> {
+    let Measured { mut rows, refused } = measured;
+    let peers = join(&mut rows, scene, others)?;
     let mut curves = Vec::new();
     for choice in choices().into_iter().filter(|choice| choice.job == job) {
         let mut units: Vec<String> = Vec::new();
@@ -175,15 +180,20 @@ pub(super) mod tests {
         Row::own(photos::DETECTION, setting, (error, photos::OUTLINE_ERROR), Timing::of(vec![run_s]), 1)
     }
 
-    pub(in crate::tradeoff) fn judged(rows: Vec<Row>, others: &[Row]) -> anyhow::Result<Tradeoff> {
-        judge("photos", Measured { rows, ..Measured::default() }, others, Instant::now())
+    pub(in crate::tradeoff) fn judged(rows: Vec<Row>, others: &[PeerRow]) -> anyhow::Result<Tradeoff> {
+        let others: Vec<&PeerRow> = others.iter().collect();
+        judge("photos", Measured { rows, ..Measured::default() }, ("seed 1", &others), Instant::now())
+    }
+
+    /// A row of another program, as those of a table are.
+    pub(in crate::tradeoff) fn peer(setting: &str, run_s: f64, error: f64) -> Row {
+        Row { peer: true, ..row(setting, run_s, error) }
     }
 
     #[test]
     fn knee_and_default_are_marked_and_reported() {
         let default = photos::detection_default();
-        let rows =
-            vec![row("a", 1.0, 9.0), row("b", 1.5, 0.5), row(&default, 30.0, 0.4), row("other", 0.1, 0.1).peer()];
+        let rows = vec![row("a", 1.0, 9.0), row("b", 1.5, 0.5), row(&default, 30.0, 0.4), peer("other", 0.1, 0.1)];
         let found = judged(rows, &[]).unwrap();
         let marks: Vec<_> = found.rows.iter().map(|row| (row.knee, row.default, row.peer)).collect();
         assert_eq!(marks, [(false, false, false), (true, false, false), (false, true, false), (false, false, true)]);
@@ -216,7 +226,7 @@ pub(super) mod tests {
     #[test]
     fn without_an_answer_there_is_no_curve() {
         let measured = Measured { refused: vec!["a: why".into()], ..Measured::default() };
-        let why = judge("photos", measured, &[], Instant::now()).unwrap_err().to_string();
+        let why = judge("photos", measured, ("seed 1", &[]), Instant::now()).unwrap_err().to_string();
         assert!(why.contains("a: why"), "{why}");
     }
 }

@@ -6,7 +6,6 @@ use anyhow::Context;
 
 use crate::files::Staging;
 use crate::tradeoff::measure::timing::Timing;
-use crate::tradeoff::peers::report::PeerReport;
 
 /// One measured setting: a row of `tradeoff.csv`.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
@@ -64,22 +63,15 @@ impl Row {
             peer: false,
         }
     }
-
-    /// The same of another program.
-    pub(in crate::tradeoff) fn peer(self) -> Self {
-        Self { peer: true, ..self }
-    }
 }
 
-/// What a job's settings and its peers gave.
+/// What a job's settings gave.
 #[derive(Debug, Clone, Default)]
 pub struct Measured {
     /// In the order of the table.
     pub rows: Vec<Row>,
     /// Settings that have no answer, and why.
     pub refused: Vec<String>,
-    /// What became of other programs.
-    pub peers: Vec<PeerReport>,
 }
 
 /// Writes `tradeoff.csv`. What is no number is empty.

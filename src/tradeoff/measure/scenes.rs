@@ -11,7 +11,6 @@ use crate::phantom::screen::Clock;
 use crate::phantom::trajectory::Trajectory;
 use crate::phantom::video::{self, Preset, Scene, VideoOptions};
 use crate::tradeoff::measure::timing::Effort;
-use crate::tradeoff::peers::Python;
 use crate::tradeoff::{align, photos, posture, predictor};
 
 const POSES: [Pose; 4] = [Pose::Nominal, Pose::Normal, Pose::LateralPositive, Pose::Extension];
@@ -23,7 +22,6 @@ const SMALL: (u32, u32) = (64, 48);
 pub(in crate::tradeoff) struct Wanted {
     pub(in crate::tradeoff) seed: u64,
     pub(in crate::tradeoff) effort: Effort,
-    pub(in crate::tradeoff) python: Python,
 }
 
 /// Photographs of `subjects`, and small ones.
@@ -37,8 +35,13 @@ pub(in crate::tradeoff) fn photos(wanted: &Wanted, subjects: u32, folder: &Path)
         truth: folder.join("truth"),
         small: Some((small.join("photos"), small.join("truth"))),
         effort: wanted.effort.clone(),
-        python: wanted.python.clone(),
     })
+}
+
+/// How long the video of `preset` is.
+pub(in crate::tradeoff) fn seconds(preset: Preset, effort: &Effort) -> f64 {
+    let whole = VideoOptions::new(preset).seconds;
+    if effort.quick { 0.2 * whole } else { whole }
 }
 
 /// A video of `preset`.
@@ -47,9 +50,9 @@ pub(in crate::tradeoff) fn posture(
     preset: Preset,
     folder: &Path,
 ) -> anyhow::Result<posture::Settings> {
-    let usual = VideoOptions::new(preset);
-    let seconds = if wanted.effort.quick { 0.2 * usual.seconds } else { usual.seconds };
-    video::write(&Scene::new(VideoOptions { seed: wanted.seed, seconds, ..usual })?, folder)?;
+    let seconds = seconds(preset, &wanted.effort);
+    let options = VideoOptions { seed: wanted.seed, seconds, ..VideoOptions::new(preset) };
+    video::write(&Scene::new(options)?, folder)?;
     Ok(posture_of(folder, folder.join("truth"), wanted))
 }
 
@@ -79,7 +82,7 @@ pub(in crate::tradeoff) fn align(wanted: &Wanted, seconds: f64, folder: &Path) -
 /// A folder with `video.mp4`, `markers.toml` and `log.csv`.
 pub(in crate::tradeoff) fn align_of(folder: &Path, truth: PathBuf, wanted: &Wanted) -> align::Settings {
     let [video, markers, log] = ["video.mp4", "markers.toml", "log.csv"].map(|name| folder.join(name));
-    align::Settings { video, markers, log, truth, effort: wanted.effort.clone(), python: wanted.python.clone() }
+    align::Settings { video, markers, log, truth, effort: wanted.effort.clone() }
 }
 
 /// Two spirals to train on, and random movement to tell the error on.
@@ -99,12 +102,7 @@ pub(in crate::tradeoff) fn predictor_of(
     test: &Path,
     wanted: &Wanted,
 ) -> anyhow::Result<predictor::Settings> {
-    Ok(predictor::Settings {
-        train: recordings(train)?,
-        test: recordings(test)?,
-        effort: wanted.effort.clone(),
-        python: wanted.python.clone(),
-    })
+    Ok(predictor::Settings { train: recordings(train)?, test: recordings(test)?, effort: wanted.effort.clone() })
 }
 
 /// The tables and logs of a folder, and the logs of its folders, by name.

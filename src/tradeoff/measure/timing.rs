@@ -29,20 +29,21 @@ impl Effort {
 
 /// Seconds over the repeats; NaN where there are none.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::tradeoff) struct Timing {
+pub struct Timing {
     /// The middle one.
-    pub(in crate::tradeoff) median_s: f64,
+    pub median_s: f64,
     /// The lower quartile.
-    pub(in crate::tradeoff) low_s: f64,
+    pub low_s: f64,
     /// The upper quartile.
-    pub(in crate::tradeoff) high_s: f64,
+    pub high_s: f64,
     /// How many.
-    pub(in crate::tradeoff) repeats: usize,
+    pub repeats: usize,
 }
 
 impl Timing {
     /// Of several, in any order.
-    pub(in crate::tradeoff) fn of(mut seconds: Vec<f64>) -> Self {
+    #[must_use]
+    pub fn of(mut seconds: Vec<f64>) -> Self {
         seconds.sort_by(f64::total_cmp);
         let [low_s, median_s, high_s] = [0.25, 0.5, 0.75].map(|share| quantile(&seconds, share));
         Self { median_s, low_s, high_s, repeats: seconds.len() }

@@ -3,6 +3,7 @@
 use crate::figure::{Axis, Chart, Item, Mark, MarkShape, Point};
 use crate::tradeoff::judge::{Tradeoff, Verdict};
 use crate::tradeoff::measure::rows::Row;
+use crate::tradeoff::peers::program;
 
 /// Width and height of a panel, pixels.
 pub(in crate::tradeoff) const PANEL_PX: (u32, u32) = (820, 620);
@@ -61,11 +62,6 @@ fn panel(curve: &Verdict, rows: &[Row]) -> Chart {
     chart(format!("{}: {}", curve.job, curve.choice), axes, curve.front.clone(), series, marks(&on))
 }
 
-/// What a peer's setting begins with.
-fn program(setting: &str) -> &str {
-    setting.split([',', ':']).next().unwrap_or(setting)
-}
-
 /// The knee and the default, where they are among `rows`.
 pub(in crate::tradeoff) fn marks(rows: &[&Row]) -> Vec<Mark> {
     let mark = |row: &Row, shape, name: &str| Mark { x: row.run_s, y: row.error, shape, name: name.to_owned() };
@@ -77,21 +73,21 @@ pub(in crate::tradeoff) fn marks(rows: &[&Row]) -> Vec<Mark> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tradeoff::judge::tests::{judged, row};
+    use crate::tradeoff::judge::tests::{judged, peer, row};
     use crate::tradeoff::photos;
 
     #[test]
     fn knee_default_and_peers_are_drawn() {
         let default = photos::detection_default();
         let rows =
-            vec![row("a", 1.0, 9.0), row("b", 1.5, 0.5), row(&default, 30.0, 0.4), row("Other, fast", 0.1, 0.1).peer()];
+            vec![row("a", 1.0, 9.0), row("b", 1.5, 0.5), row(&default, 30.0, 0.4), peer("Other, fast", 0.1, 0.1)];
         let panels = panels(&judged(rows, &[]).unwrap());
-        let [Item::Path(_), Item::Points { hollow: false, name: own, .. }, peer, marks @ ..] = &panels[0].items[..]
+        let [Item::Path(_), Item::Points { hollow: false, name: own, .. }, others, marks @ ..] = &panels[0].items[..]
         else {
             panic!("{:?}", panels[0].items)
         };
         assert_eq!(own, "lunula");
-        let Item::Points { name, points, hollow: true, .. } = peer else { panic!("{peer:?}") };
+        let Item::Points { name, points, hollow: true, .. } = others else { panic!("{others:?}") };
         assert_eq!((name.as_str(), points[0].label.as_str()), ("Other", "fast"));
         let mark = |item: &Item| if let Item::Mark(mark) = item { (mark.x, mark.shape) } else { panic!("{item:?}") };
         let marks: Vec<(f64, MarkShape)> = marks.iter().map(mark).collect();

@@ -218,7 +218,7 @@ mod tests {
     fn the_page_has_every_job_its_knees_and_what_is_missing() {
         let default = crate::tradeoff::photos::detection_default();
         let mut job = judged(vec![row("a", 1.0, 9.0), row("b", 1.5, 0.5), row(&default, 30.0, 0.4)], &[]).unwrap();
-        job.peers.push(PeerReport::missing("Other", "pip install other"));
+        job.peers.push(PeerReport { peer: "Other".into(), measured: false, what: "of another scene".into() });
         job.refused.push("c: no answer".into());
         let folder = tempfile::tempdir().unwrap();
         let setting =
@@ -230,7 +230,7 @@ mod tests {
             "mine.csv",
             "b: 0.500, 1.50 s",
             "beyond the knee: 20.00 times its time",
-            "Not on it: Other: pip install other",
+            "Not on it: Other: of another scene",
             "c: no answer",
             "Not measured: no video",
             "data:image/png;base64,",

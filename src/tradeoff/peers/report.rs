@@ -9,16 +9,11 @@ pub struct PeerReport {
     pub peer: String,
     /// Whether it is on the curves.
     pub measured: bool,
-    /// What was done, or why it is missing and how to get it.
+    /// Its version and where and when it was measured, or why it is missing and how to get it.
     pub what: String,
 }
 
-impl PeerReport {
-    pub(in crate::tradeoff) fn measured(peer: &str, what: impl Into<String>) -> Self {
-        Self { peer: peer.to_owned(), measured: true, what: what.into() }
-    }
-
-    pub(in crate::tradeoff) fn missing(peer: &str, why: impl Into<String>) -> Self {
-        Self { peer: peer.to_owned(), measured: false, what: why.into() }
-    }
+/// The program that a setting of another program begins with.
+pub(in crate::tradeoff) fn program(setting: &str) -> &str {
+    setting.split([',', ':']).next().unwrap_or(setting)
 }

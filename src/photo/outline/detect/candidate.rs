@@ -20,11 +20,11 @@ static JUDGES: LazyLock<[Net; 3]> = LazyLock::new(|| {
 });
 
 /// Number of features of a candidate.
-pub(super) const FEATURES: usize = 31;
+pub const FEATURES: usize = 31;
 
 /// What the confidence of a candidate is made from.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Features {
+pub struct Features {
     /// The scorer's answer for the fitted template.
     score: f32,
     /// How much better that is than upside down.
@@ -66,7 +66,7 @@ pub(super) struct Features {
 
 impl Features {
     /// In the order of the committed weights.
-    pub(super) fn to_array(self) -> [f32; FEATURES] {
+    pub fn to_array(self) -> [f32; FEATURES] {
         let [first, worse, better, third] = self.arc_trust;
         let [skin, nail, far] =
             [self.skin, self.nail_less_skin, self.far_less_skin].map(|c| [c[TONE], c[RED], c[YELLOW]]);
@@ -108,11 +108,13 @@ impl Features {
 
 /// A nail that may be one.
 #[derive(Debug, Clone)]
-pub(super) struct Candidate {
-    pub(super) outline: Outline,
-    pub(super) axis: Axis,
+pub struct Candidate {
+    /// Its outline.
+    pub outline: Outline,
+    /// From its proximal to its distal end.
+    pub axis: Axis,
     /// What the confidence is made from.
-    pub(super) features: Features,
+    pub features: Features,
     nail: Frame,
     fitted: OutlineShape,
     /// Other leads that mean the same.
@@ -154,7 +156,7 @@ const AGAIN: usize = 8;
 
 /// A template in its own nail's frame, before it is followed.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Lead {
+pub struct Lead {
     /// The nail's frame: origin its centre, up its axis, unit its length.
     pub(super) nail: Frame,
     /// The template there.
@@ -182,7 +184,7 @@ impl Lead {
 ///
 /// A lead that meets what was found already adds to its support instead, and one that contradicts what is settled is
 /// not followed.
-pub(super) fn follow_all(levels: &Levels, mut leads: Vec<Lead>, most: usize) -> Vec<Candidate> {
+pub fn follow_all(levels: &Levels, mut leads: Vec<Lead>, most: usize) -> Vec<Candidate> {
     leads.sort_by(|a, b| b.score.total_cmp(&a.score));
     let mut found: Vec<Candidate> = Vec::new();
     for lead in leads {
@@ -280,7 +282,7 @@ fn again(levels: &Levels, nail: &Frame, fit: &OutlineShape, outline: &Outline) -
 }
 
 /// The frame of a nail itself: origin its centre, up its axis, unit its length; and the template there.
-pub(super) fn own_frame(frame: Frame, shape: &OutlineShape) -> (Frame, OutlineShape) {
+pub fn own_frame(frame: Frame, shape: &OutlineShape) -> (Frame, OutlineShape) {
     let (sin, cos) = shape.turn.sin_cos();
     let [ux, uy] = frame.up;
     let up = [ux * cos - uy * sin, ux * sin + uy * cos];

@@ -11,7 +11,7 @@ const POINTS: usize = 32;
 /// Features of a channel.
 const EACH: usize = 27;
 /// Number of inputs of the scorer.
-pub(super) const INPUTS: usize = 3 * EACH + 10;
+pub const INPUTS: usize = 3 * EACH + 10;
 /// Distances from the rim along the normal, in mean half axes, at which the channels are read.
 const REACH: [f32; 6] = [-0.30, -0.15, 0.0, 0.15, 0.30, 0.60];
 /// Ordinary contrasts of tone, ln(R/G), ln(G/B): what a feature of 1 means.
@@ -32,15 +32,15 @@ static SCORER: LazyLock<Net> =
     LazyLock::new(|| Net::parse(include_str!("weights/scorer.txt")).expect("weights are checked by a test"));
 
 /// What is known of the finger's end, when the frame is a finger's: origin at its apex, unit its width.
-pub(super) type HasTip = bool;
+pub type HasTip = bool;
 
 /// How likely it is that `shape` outlines a nail: an estimate of its IoU with one (worth less upside down).
-pub(super) fn score(patch: &Patch, shape: &OutlineShape, tip: HasTip) -> f32 {
+pub fn score(patch: &Patch, shape: &OutlineShape, tip: HasTip) -> f32 {
     SCORER.answer(&inputs(patch, shape, tip))
 }
 
 /// The scorer's inputs.
-pub(super) fn inputs(patch: &Patch, shape: &OutlineShape, tip: HasTip) -> [f32; INPUTS] {
+pub fn inputs(patch: &Patch, shape: &OutlineShape, tip: HasTip) -> [f32; INPUTS] {
     let mut ring = [[[0.0f32; REACH.len()]; POINTS]; 3];
     let [x, y, length, width, taper] = [shape.x, shape.y, shape.length, shape.width, shape.taper].map(|v| v as f32);
     let half = 0.25 * (length + width);

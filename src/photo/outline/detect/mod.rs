@@ -12,7 +12,7 @@
 //! template and [`evidence`] how well it fits there; [`search`] where it fits best, on a finger's end or anywhere on a
 //! close-up; [`refine`] the outline by dynamic programming around the template; [`candidate`] all of it for one place,
 //! with the figures that the confidence is made from. Five small networks ([`net`]: border, scorer, three judges) weigh
-//! the evidence; `training` makes them.
+//! the evidence; `crates/training` makes them.
 //!
 //! What it does not do: nails seen from the side, painted nails with a pattern, and fingers folded onto skin of the
 //! same colour are mostly not found. The outline ends at the hyponychium where the free edge can be distinguished from
@@ -28,9 +28,6 @@ mod refine;
 mod search;
 mod shape;
 
-#[cfg(test)]
-mod training;
-
 use image::DynamicImage;
 use thiserror::Error;
 
@@ -38,6 +35,21 @@ use super::{Axis, Outline, find_axes};
 use candidate::{Candidate, Lead, Origin, follow_all, own_frame};
 use patch::{Frame, Patch};
 use picture::Levels;
+
+/// The steps of detection, for `crates/training`, whose networks have to see what detection sees: no promise of the
+/// library.
+#[doc(hidden)]
+pub mod training {
+    pub use super::candidate::{Candidate, FEATURES, Features, Lead, follow_all, own_frame};
+    pub use super::evidence::{HasTip, INPUTS, inputs, score};
+    pub use super::net::{Net, softsign};
+    pub use super::patch::{Extent, Frame, Patch};
+    pub use super::picture::Levels;
+    pub use super::refine::{Band, RAYS, SIDE, STEP};
+    pub use super::search::{FINGER, NAIL, Scored, anywhere, on_finger, polish};
+    pub use super::shape::OutlineShape;
+    pub use super::{ends, leads};
+}
 
 /// How nails are looked for.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
@@ -179,7 +191,8 @@ fn different(candidates: Vec<Candidate>) -> Vec<Detected> {
 }
 
 /// Finger ends: frames of a finger's width with their fit.
-fn ends(levels: &Levels, most: usize) -> Vec<(Frame, f64)> {
+#[doc(hidden)]
+pub fn ends(levels: &Levels, most: usize) -> Vec<(Frame, f64)> {
     let picture = levels.within(SEARCH_PX);
     let found = hand::silhouettes(picture).iter().flat_map(hand::tips).collect();
     hand::strongest(found, most)
@@ -189,7 +202,8 @@ fn ends(levels: &Levels, most: usize) -> Vec<(Frame, f64)> {
 }
 
 /// Every template worth refining.
-fn leads(levels: &Levels) -> Vec<Lead> {
+#[doc(hidden)]
+pub fn leads(levels: &Levels) -> Vec<Lead> {
     let mut leads = Vec::new();
     for (frame, fit) in ends(levels, ENDS) {
         let patch = Patch::cut(levels, frame, search::FINGER);

@@ -1,31 +1,36 @@
 //! A small network: inputs, one hidden layer of softsign units, one output.
 //!
 //! Weights are text, one number a line: inputs, hidden units, then for each input its mean and scale, for each hidden
-//! unit its weights and bias, then the output's weights and bias. They come from `training`.
+//! unit its weights and bias, then the output's weights and bias. They come from `nails` of `crates/training`.
 
 /// Most inputs of any network.
 const MOST_INPUTS: usize = 96;
 
 /// One hidden layer.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Net {
-    pub(super) inputs: usize,
-    pub(super) hidden: usize,
+pub struct Net {
+    /// How many inputs.
+    pub inputs: usize,
+    /// How many hidden units.
+    pub hidden: usize,
     /// mean, 1/scale of each input.
-    pub(super) norm: Vec<[f32; 2]>,
+    pub norm: Vec<[f32; 2]>,
     /// `inputs` weights and a bias for each hidden unit.
-    pub(super) first: Vec<f32>,
+    pub first: Vec<f32>,
     /// `hidden` weights and a bias.
-    pub(super) second: Vec<f32>,
+    pub second: Vec<f32>,
 }
 
-pub(super) fn softsign(x: f32) -> f32 {
+/// What a hidden unit makes of its sum.
+#[must_use]
+pub fn softsign(x: f32) -> f32 {
     x / (1.0 + x.abs())
 }
 
 impl Net {
     /// Reads weights; `None` where the text is not such a list.
-    pub(super) fn parse(text: &str) -> Option<Self> {
+    #[must_use]
+    pub fn parse(text: &str) -> Option<Self> {
         let mut numbers = text.split_ascii_whitespace().map(|w| w.parse::<f32>());
         let mut next = || numbers.next()?.ok();
         let (inputs, hidden) = (next()? as usize, next()? as usize);
@@ -36,7 +41,8 @@ impl Net {
     }
 
     /// The output for `x`.
-    pub(super) fn answer(&self, x: &[f32]) -> f32 {
+    #[must_use]
+    pub fn answer(&self, x: &[f32]) -> f32 {
         let mut z = [0.0f32; MOST_INPUTS];
         let n = self.inputs;
         for i in 0..n {

@@ -7,25 +7,25 @@ use super::picture::{Cell, Levels, Picture, between};
 
 /// An origin, a direction and a unit on the source picture.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Frame {
+pub struct Frame {
     /// Origin, source pixels.
-    pub(super) origin: [f64; 2],
+    pub origin: [f64; 2],
     /// Unit vector of +y (distal) on the source picture.
-    pub(super) up: [f64; 2],
+    pub up: [f64; 2],
     /// Source pixels a unit.
-    pub(super) unit_px: f64,
+    pub unit_px: f64,
 }
 
 impl Frame {
     /// Frame to source pixels.
-    pub(super) fn to_source(self, p: [f64; 2]) -> [f64; 2] {
+    pub fn to_source(self, p: [f64; 2]) -> [f64; 2] {
         let [ux, uy] = self.up;
         let (x, y) = (p[0] * self.unit_px, p[1] * self.unit_px);
         [self.origin[0] - uy * x + ux * y, self.origin[1] + ux * x + uy * y]
     }
 
     /// Source pixels to frame.
-    pub(super) fn source_to_own(&self, p: [f64; 2]) -> [f64; 2] {
+    pub fn source_to_own(&self, p: [f64; 2]) -> [f64; 2] {
         let [ux, uy] = self.up;
         let (x, y) = (p[0] - self.origin[0], p[1] - self.origin[1]);
         [(-uy * x + ux * y) / self.unit_px, (ux * x + uy * y) / self.unit_px]
@@ -34,38 +34,38 @@ impl Frame {
 
 /// The part of a frame that a patch covers.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Extent {
+pub struct Extent {
     /// Left and right end.
-    pub(super) x: [f64; 2],
+    pub x: [f64; 2],
     /// Lower and upper end.
-    pub(super) y: [f64; 2],
+    pub y: [f64; 2],
     /// Samples a unit.
-    pub(super) per_unit: f64,
+    pub per_unit: f64,
 }
 
 /// Channels sampled on a frame; row 0 is the upper end.
 #[derive(Debug, Clone)]
-pub(super) struct Patch {
+pub struct Patch {
     /// Where it lies.
-    pub(super) frame: Frame,
+    pub frame: Frame,
     /// What it covers.
-    pub(super) extent: Extent,
+    pub extent: Extent,
     /// Columns and rows.
-    pub(super) size: [usize; 2],
+    pub size: [usize; 2],
     /// Row by row.
-    pub(super) cells: Vec<Cell>,
+    pub cells: Vec<Cell>,
     /// Whether there is more than tone.
-    pub(super) colour: bool,
+    pub colour: bool,
 }
 
 impl Patch {
     /// Samples `extent` of `frame` from the level of its resolution.
-    pub(super) fn cut(levels: &Levels, frame: Frame, extent: Extent) -> Self {
+    pub fn cut(levels: &Levels, frame: Frame, extent: Extent) -> Self {
         Self::of(levels.resolving(frame.unit_px / extent.per_unit), frame, extent)
     }
 
     /// Samples `extent` of `frame` from a picture.
-    pub(super) fn of(picture: &Picture, frame: Frame, extent: Extent) -> Self {
+    pub fn of(picture: &Picture, frame: Frame, extent: Extent) -> Self {
         let size = [extent.x, extent.y].map(|e| ((e[1] - e[0]) * extent.per_unit).round() as usize + 1);
         let mut cells = Vec::with_capacity(size[0] * size[1]);
         let start = picture.source_to_own(frame.to_source([extent.x[0], extent.y[1]])).map(|v| v as f32);
@@ -84,7 +84,7 @@ impl Patch {
     }
 
     /// The sample nearest to a point of the frame, held at the border.
-    pub(super) fn at(&self, x: f32, y: f32) -> Cell {
+    pub fn at(&self, x: f32, y: f32) -> Cell {
         let scale = self.extent.per_unit as f32;
         let i = ((x - self.extent.x[0] as f32) * scale + 0.5).max(0.0) as usize;
         let j = ((self.extent.y[1] as f32 - y) * scale + 0.5).max(0.0) as usize;

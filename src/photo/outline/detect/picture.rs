@@ -23,7 +23,7 @@ const GREY: f32 = 0.01;
 
 /// A photograph at reduced size.
 #[derive(Debug, Clone)]
-pub(super) struct Picture {
+pub struct Picture {
     /// Columns and rows.
     pub(super) size: [usize; 2],
     /// Row by row.
@@ -36,7 +36,7 @@ pub(super) struct Picture {
 
 /// A photograph at working size and smaller.
 #[derive(Debug, Clone)]
-pub(super) struct Levels {
+pub struct Levels {
     /// Columns and rows of the photograph.
     pub(super) source_px: [f64; 2],
     /// Largest first, each half of the one before.
@@ -48,7 +48,7 @@ impl Levels {
     const LEAST: usize = 60;
 
     /// All levels of a photograph, the first with its longest side reduced by a whole factor to at most `longest_px`.
-    pub(super) fn of(image: &DynamicImage, longest_px: u32) -> Self {
+    pub fn of(image: &DynamicImage, longest_px: u32) -> Self {
         let longest = image.width().max(image.height());
         let mut pictures = vec![Picture::new(image, longest.div_ceil(longest_px.max(1)).max(1) as usize)];
         while let Some(last) = pictures.last()

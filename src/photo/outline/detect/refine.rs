@@ -14,11 +14,11 @@ use super::picture::{Cell, Levels};
 use super::shape::OutlineShape;
 
 /// Rays around the rim.
-pub(super) const RAYS: usize = 64;
+pub const RAYS: usize = 64;
 /// Places on a ray on either side of the rim.
-pub(super) const SIDE: usize = 22;
+pub const SIDE: usize = 22;
 /// From one place to the next.
-pub(super) const STEP: f64 = 0.016;
+pub const STEP: f64 = 0.016;
 /// Where the profile is read around a place, in places.
 const TAPS: [isize; 9] = [-16, -10, -6, -3, 0, 3, 6, 10, 16];
 /// Samples of a ray on either side of the rim.
@@ -36,11 +36,11 @@ static BORDER: LazyLock<Net> =
     LazyLock::new(|| Net::parse(include_str!("weights/border.txt")).expect("weights are checked by a test"));
 
 /// The rays' channels around a rim.
-pub(super) struct Band {
+pub struct Band {
     /// Rim point and unit normal in the frame, for each ray.
-    pub(super) rays: Vec<([f64; 2], [f64; 2])>,
+    pub rays: Vec<([f64; 2], [f64; 2])>,
     /// Frame units a mean half axis.
-    pub(super) half: f64,
+    pub half: f64,
     /// `[ray * (2 LONG + 1) + place]`
     profiles: Vec<Cell>,
     colour: bool,
@@ -59,7 +59,7 @@ pub(super) struct Path {
 
 impl Band {
     /// The band around a template.
-    pub(super) fn around(levels: &Levels, frame: &Frame, shape: &OutlineShape) -> Self {
+    pub fn around(levels: &Levels, frame: &Frame, shape: &OutlineShape) -> Self {
         let half = 0.25 * (shape.length + shape.width);
         let at = |k: f64| {
             let [u, v] = shape.rim(k / RAYS as f64 * std::f64::consts::TAU);
@@ -101,7 +101,7 @@ impl Band {
     }
 
     /// The network's inputs at place `m` (0 to 2 SIDE) of ray `k`.
-    pub(super) fn inputs(&self, k: usize, m: usize) -> [f32; INPUTS] {
+    pub fn inputs(&self, k: usize, m: usize) -> [f32; INPUTS] {
         let mut out = [0.0f32; INPUTS];
         let count = 2 * LONG + 1;
         let centre = (k * count + m + LONG - SIDE) as isize;

@@ -6,15 +6,15 @@ use super::picture::Levels;
 use super::shape::OutlineShape;
 
 /// What a patch in a finger's frame covers (unit: the finger's width, origin: its apex).
-pub(super) const FINGER: Extent = Extent { x: [-0.8, 0.8], y: [-1.6, 0.35], per_unit: 40.0 };
+pub const FINGER: Extent = Extent { x: [-0.8, 0.8], y: [-1.6, 0.35], per_unit: 40.0 };
 /// What a patch in a nail's frame covers (unit: the nail's length, origin: its centre).
-pub(super) const NAIL: Extent = Extent { x: [-1.1, 1.1], y: [-1.05, 1.05], per_unit: 48.0 };
+pub const NAIL: Extent = Extent { x: [-1.1, 1.1], y: [-1.05, 1.05], per_unit: 48.0 };
 
 /// Longest side of the picture that a close-up is searched on.
 const COARSE_PX: usize = 112;
 
 /// A template and its score.
-pub(super) type Scored = (OutlineShape, f32);
+pub type Scored = (OutlineShape, f32);
 
 /// Templates tried in a finger's frame.
 fn finger_grid() -> impl Iterator<Item = OutlineShape> {
@@ -32,14 +32,14 @@ fn finger_grid() -> impl Iterator<Item = OutlineShape> {
 }
 
 /// The best `most` different templates of a coarse grid in a finger's frame.
-pub(super) fn on_finger(patch: &Patch, most: usize) -> Vec<Scored> {
+pub fn on_finger(patch: &Patch, most: usize) -> Vec<Scored> {
     best_different(finger_grid().map(|s| (s, score(patch, &s, true))).collect(), most, 0.12)
 }
 
 /// Templates anywhere on a small picture of a close-up, upright within some 40 degrees or as much upside down.
 ///
 /// The frame's unit is the picture's height, its origin the picture's middle.
-pub(super) fn anywhere(levels: &Levels, most: usize) -> (Patch, Vec<Scored>) {
+pub fn anywhere(levels: &Levels, most: usize) -> (Patch, Vec<Scored>) {
     let picture = levels.within(COARSE_PX);
     let unit_px = levels.source_px[1];
     let wide = levels.source_px[0] / levels.source_px[1] / 2.0;
@@ -146,7 +146,7 @@ fn best_different_scaled(all: Vec<Scored>, most: usize) -> Vec<Scored> {
 }
 
 /// Climbs the score by ever smaller steps in each number of the shape.
-pub(super) fn polish(patch: &Patch, (mut shape, mut value): Scored, tip: HasTip) -> Scored {
+pub fn polish(patch: &Patch, (mut shape, mut value): Scored, tip: HasTip) -> Scored {
     let size = 0.5 * (shape.length + shape.width);
     let mut step = 0.08;
     for _ in 0..3 {

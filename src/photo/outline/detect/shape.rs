@@ -8,19 +8,19 @@ pub(super) const EXPONENT: f64 = 2.5;
 
 /// A nail in units of its frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct OutlineShape {
+pub struct OutlineShape {
     /// Centre.
-    pub(super) x: f64,
+    pub x: f64,
     /// Centre.
-    pub(super) y: f64,
+    pub y: f64,
     /// Length along the nail's axis.
-    pub(super) length: f64,
+    pub length: f64,
     /// Width across it.
-    pub(super) width: f64,
+    pub width: f64,
     /// Turn of the nail's axis from the frame's +y, clockwise, radians.
-    pub(super) turn: f64,
+    pub turn: f64,
     /// How much narrower the distal end is than the proximal (half the difference).
-    pub(super) taper: f64,
+    pub taper: f64,
 }
 
 impl OutlineShape {
@@ -39,7 +39,7 @@ impl OutlineShape {
     }
 
     /// Whether a point of the frame lies within.
-    pub(super) fn holds(&self, p: [f64; 2]) -> bool {
+    pub fn holds(&self, p: [f64; 2]) -> bool {
         let [u, v] = self.local(p);
         (u / (1.0 - self.taper * v)).abs().powf(EXPONENT) + v.abs().powf(EXPONENT) <= 1.0
     }

@@ -1,0 +1,78 @@
+//! How sure is sure: of the finds of each confidence, how many are right.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use lunula::photo::outline::{DetectOptions, Detected, detect};
+use rayon::prelude::*;
+
+use super::scenes::{Look, Scene, direct, empty, hands, phantom};
+
+/// Confidence, IoU, cosine of the angle between the axes (1 where the truth's is not known).
+type Find = [f64; 3];
+
+/// Of the phantoms and of the pictures without nails: other ones than any network has learned from.
+const SEED: u64 = 3000;
+/// How many of each.
+const COUNT: u32 = 400;
+/// Least confidences of the table.
+const LEAST: [f64; 9] = [0.3, 0.5, 0.6, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95];
+
+fn finds(scenes: &mut [Scene]) -> Vec<Find> {
+    let options = DetectOptions { min_confidence: 0.0, ..DetectOptions::default() };
+    scenes.par_iter_mut().for_each(direct);
+    let of = |scene: &Scene| -> Vec<Find> {
+        let best = |d: &Detected| -> Find {
+            let truth =
+                scene.truths.iter().max_by(|a, b| a.outline.iou(&d.outline).total_cmp(&b.outline.iou(&d.outline)));
+            let up = truth.and_then(|t| t.up).unwrap_or(d.axis.distal());
+            let v = d.axis.distal();
+            [d.confidence, truth.map_or(0.0, |t| t.outline.iou(&d.outline)), v[0] * up[0] + v[1] * up[1]]
+        };
+        detect(&scene.image, &options).nails.iter().map(best).collect()
+    };
+    scenes.par_iter().flat_map_iter(of).collect()
+}
+
+/// Precision and recall by the least confidence, and the calibration by tenths, of detection with the weights that are
+/// compiled in; on photographs of `folder` too, those of odd index only if they are `held_out`.
+///
+/// # Errors
+/// A photograph that can't be read, with its path.
+pub fn table(folder: Option<&Path>, held_out: bool) -> anyhow::Result<String> {
+    let phantoms = (0..COUNT).into_par_iter().map(|k| phantom(SEED, k)).collect::<anyhow::Result<Vec<_>>>()?;
+    let empty = (0..COUNT).into_par_iter().map(|k| empty(SEED, k)).collect::<anyhow::Result<Vec<_>>>()?;
+    let mut sets = vec![("phantoms", phantoms), ("no nails", empty)];
+    if let Some(folder) = folder {
+        sets.push(("hands, seen in training", hands(folder, 0, Look::Plain)?));
+        if held_out {
+            sets.push(("hands, held out", hands(folder, 1, Look::Plain)?));
+        }
+    }
+    let mut text = String::new();
+    for (name, mut scenes) in sets {
+        let nails: usize = scenes.iter().map(|s| s.truths.len()).sum();
+        let finds = finds(&mut scenes);
+        writeln!(text, "{name}: {} pictures, {nails} nails", scenes.len())?;
+        for least in LEAST {
+            let kept: Vec<&Find> = finds.iter().filter(|f| f[0] >= least).collect();
+            let count = |iou: f64| kept.iter().filter(|f| f[1] >= iou).count();
+            let worst = kept.iter().map(|f| f[1]).fold(1.0, f64::min);
+            let turned = kept.iter().filter(|f| f[2] < 0.7).count();
+            writeln!(
+                text,
+                "  >= {least}: {} finds, {} at IoU 0.7, {} at 0.8, {} at 0.95, worst {worst:.2}, {turned} turned",
+                kept.len(),
+                count(0.7),
+                count(0.8),
+                count(0.95)
+            )?;
+        }
+        for tenth in 0..10 {
+            let own: Vec<&Find> = finds.iter().filter(|f| (f[0] * 10.0).min(9.0) as usize == tenth).collect();
+            let right = own.iter().filter(|f| f[1] >= 0.8 && f[2] > 0.7).count();
+            writeln!(text, "  {:.1}: {right} of {}", f64::from(tenth as u32) / 10.0, own.len())?;
+        }
+    }
+    Ok(text)
+}
