@@ -19,7 +19,7 @@ mod typical;
 
 pub use coloration::{REGIONS, coloration_numbers, coloration_sheets};
 pub use numbers::Numbers;
-pub use page::{PageFigures, PageOptions, PageReport, Part, PartFolder, StudyJob, study_page};
+pub use page::{KindFigures, PageFigures, PageOptions, PageReport, Part, PartFolder, StudyJob, study_page};
 pub use predictors::{compare_numbers, evaluation_numbers, modes_numbers};
 pub use presses::{PressFile, read_presses};
 pub use section::{PressesJob, SectionJob};
