@@ -24,7 +24,7 @@ use lunula::job::{Job as _, Kind};
 use lunula::pipeline::Block;
 
 pub use numbers::Numbers;
-pub use page::{PageFigures, PageOptions, PageReport, Part, PartFolder, study_page};
+pub use page::{KindFigures, PageFigures, PageOptions, PageReport, Part, PartFolder, study_page};
 pub use section::section_4_3;
 
 /// The kinds of the study's jobs, by name.

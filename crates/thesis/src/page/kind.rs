@@ -39,7 +39,7 @@ impl Job for StudyJob {
             Part { name: "statements", file: "statements.csv", only_if_wanted: false },
             Part { name: "numbers", file: "numbers.json", only_if_wanted: false },
         ],
-        revision: 1,
+        revision: 2,
         keys: keys::<PageOptions>,
         prepare: prepare::<Self>,
     };

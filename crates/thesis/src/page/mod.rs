@@ -3,8 +3,11 @@
 //!
 //! In: folders of results, each of a [`Part`]; several of a part are of several subjects, and the first is shown. Out,
 //! in a folder: `study.html`, self-contained but for links to `tables/`, copies of the parts' tables; `statements.csv`;
-//! `numbers.json`, all numbers that statements are judged by. What is missing is said in its place. Nothing in these
-//! files depends on where or when they were made.
+//! `numbers.json`, all numbers of the parts, those that statements are judged by among them. What is missing is said in
+//! its place. Nothing in these files depends on where or when they were made.
+//!
+//! Of a phantom, each statement is shown with its [`Kind`], and agreement is counted by it: what was put in is no
+//! evidence. Of people's recordings kinds mean nothing and are left out.
 
 mod figures;
 mod kind;
@@ -20,7 +23,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::Numbers;
-use super::statements::{Judged, Verdict, judge};
+use super::statements::{Judged, Kind, Quantity, Statement, Statements, Verdict};
 use figures::{SECTIONS, Section};
 pub(crate) use kind::StudyJob;
 use lunula::figure::Page;
@@ -71,6 +74,22 @@ pub struct PageFigures {
     pub do_not: usize,
     /// Statements that can't be judged.
     pub cannot_tell: usize,
+    /// Of a phantom: where agreement comes from.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub by_kind: Vec<KindFigures>,
+}
+
+/// How many statements of a kind agree.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct KindFigures {
+    /// The kind.
+    pub kind: Kind,
+    /// Statements that agree.
+    pub agree: usize,
+    /// Statements that do not.
+    pub do_not: usize,
+    /// Statements that can't be judged.
+    pub cannot_tell: usize,
 }
 
 /// Writes the page into `out`.
@@ -98,15 +117,16 @@ pub fn study_page(
             }
         }
     }
-    over_validation(&mut numbers);
-    let judged = judge(&numbers);
+    let statements = Statements::of_the_thesis()?;
+    let judged = statements.judge(&numbers);
+    let by_kind = if options.phantom { by_kind(&judged) } else { Vec::new() };
     let staging = Staging::new(out)?;
     let mut page = Page::new(&options.title);
-    introduce(&mut page, options, &judged);
+    introduce(&mut page, &judged, &by_kind);
     let (mut figures, mut lacking) = (0, Vec::new());
     for section in SECTIONS {
         page.anchored_heading(section.name, section.title);
-        statements_of(&mut page, &own(section, &judged));
+        statements_of(&mut page, &own(section, &judged), options.phantom);
         for figure in section.figures {
             let number = format!("Fig. {}", figure.number);
             let found = shown.iter().find(|one| one.part == figure.part);
@@ -135,19 +155,14 @@ pub fn study_page(
         page.list(&warnings);
     }
     watch.go_on()?;
+    quantities(&mut page, &statements);
     tables(&mut page, &shown, &staging)?;
     staging.write("study.html", page.finish().as_bytes())?;
     staging.write("numbers.json", numbers.to_text().as_bytes())?;
-    statements_table(&judged, &staging, out)?;
+    statements_table(&judged, options.phantom, &staging, out)?;
     staging.commit()?;
-    let count = |word: &str| judged.iter().filter(|one| one.verdict.word() == word).count();
-    let figures = PageFigures {
-        figures,
-        figures_lacking: lacking.clone(),
-        agree: count(Verdict::Agrees.word()),
-        do_not: count(Verdict::DoesNot.word()),
-        cannot_tell: judged.iter().filter(|one| matches!(one.verdict, Verdict::CannotTell(_))).count(),
-    };
+    let [agree, do_not, cannot_tell] = counts(judged.iter());
+    let figures = PageFigures { figures, figures_lacking: lacking.clone(), agree, do_not, cannot_tell, by_kind };
     let report = Report { left_out: lacking, warnings, ..Report::new("study", watch, figures) };
     Ok(report.timed(&Stages::default(), start))
 }
@@ -158,90 +173,109 @@ fn chosen<'a>(folders: &'a [PartFolder], part: Part, subject: &str) -> Option<&'
     own().find(|one| !subject.is_empty() && one.subject == subject).or_else(|| own().min_by_key(|one| &one.subject))
 }
 
-/// How much worse the touch model is at random touching than in validation.
-fn over_validation(numbers: &mut Numbers) {
-    for target in ["Fx_N", "Fy_N", "Fz_N"] {
-        let get = |part: Part| numbers.get(&format!("{}.{target}.rmse", part.name()));
-        let ratio = get(Part::TouchTest).zip(get(Part::TouchValidation)).map(|(test, validation)| test / validation);
-        numbers.set(format!("touch_test.{target}.over_validation"), ratio);
-    }
-}
-
 /// The statements of a section.
-fn own<'a>(section: &Section, judged: &'a [Judged]) -> Vec<&'a Judged> {
-    let within = |one: &&Judged| section.of.iter().any(|beginning| one.statement.section.starts_with(beginning));
+fn own<'a, 'b>(section: &Section, judged: &'a [Judged<'b>]) -> Vec<&'a Judged<'b>> {
+    let within = |one: &&Judged<'_>| section.of.iter().any(|beginning| one.statement.section.starts_with(beginning));
     judged.iter().filter(within).collect()
 }
 
 /// How many agree, do not, can't be judged.
-fn counts(judged: &[&Judged]) -> [usize; 3] {
-    let of = |holds: fn(&Verdict) -> bool| judged.iter().filter(|one| holds(&one.verdict)).count();
-    [
-        of(|verdict| *verdict == Verdict::Agrees),
-        of(|verdict| *verdict == Verdict::DoesNot),
-        of(|verdict| matches!(verdict, Verdict::CannotTell(_))),
-    ]
+fn counts<'a, 'b: 'a>(judged: impl Iterator<Item = &'a Judged<'b>>) -> [usize; 3] {
+    judged.fold([0; 3], |mut counts, one| {
+        counts[match one.verdict {
+            Verdict::Agrees => 0,
+            Verdict::DoesNot => 1,
+            Verdict::CannotTell(_) => 2,
+        }] += 1;
+        counts
+    })
 }
 
-fn introduce(page: &mut Page, options: &PageOptions, judged: &[Judged]) {
-    if options.phantom {
-        page.paragraph(
+fn by_kind(judged: &[Judged<'_>]) -> Vec<KindFigures> {
+    let of = |kind: Kind| {
+        let [agree, do_not, cannot_tell] = counts(judged.iter().filter(|one| one.statement.kind == kind));
+        KindFigures { kind, agree, do_not, cannot_tell }
+    };
+    Kind::ALL.map(of).into()
+}
+
+/// Whose the results are, how many statements agree, by section and of a phantom by kind.
+fn introduce(page: &mut Page, judged: &[Judged<'_>], by_kind: &[KindFigures]) {
+    if !by_kind.is_empty() {
+        let share =
+            |one: &KindFigures| format!("{} {} of {}", one.kind, one.agree, one.agree + one.do_not + one.cannot_tell);
+        let shares: Vec<String> = by_kind.iter().map(share).collect();
+        page.paragraph(&format!(
             "A phantom is no people. Every recording behind this page was generated: photographs, videos and logs of \
-             formulae whose sizes were assumed after the thesis' words. That a statement agrees says that its \
-             explanation is sufficient, or just that the formula was made after it; that it does not says that the \
-             thesis' figure needs something that the phantom lacks, or has in another size. Absolute errors are the \
-             assumptions' and forecast nothing for a sensor on a finger.",
-        );
+             formulae whose sizes were assumed after the thesis' words. What agreement is worth depends on the \
+             statement's kind: \"put in\", the phantom was made after this very sentence, and agreement is no evidence; \
+             \"follows\", it is a consequence of the thesis' model or of how models are trained, whatever sizes were \
+             assumed; \"emerges\", nobody set it and it could have come out otherwise. Agree: {}. That a statement \
+             does not agree says that the thesis' figure needs something that the phantom lacks, or has in another \
+             size. Absolute errors are the assumptions' and forecast nothing for a sensor on a finger.",
+            shares.join(", ")
+        ));
     }
     page.paragraph(
         "Each figure below is the counterpart of the thesis' figure of the same number. Each table sets what the \
-         thesis' text states beside what came out here; what was taken for \"little\", \"about\" or \"comparable\" \
-         stands with it, and nothing but the numbers decides the verdict.",
+         thesis' text states beside the test that decides and what came out here; quantities are explained at the end.",
     );
-    let all: Vec<&Judged> = judged.iter().collect();
-    let mut rows: Vec<Vec<String>> = SECTIONS
-        .iter()
-        .map(|section| (section.title.to_owned(), counts(&own(section, judged))))
-        .map(|(title, counts)| std::iter::once(title).chain(counts.map(|count| count.to_string())).collect())
-        .collect();
-    let sums = counts(&all).map(|count| count.to_string());
-    rows.push(std::iter::once(format!("all {} statements", all.len())).chain(sums).collect());
-    page.table(&["section", "agree", "do not", "can't be judged"], &rows, |_| false);
+    let row = |title: String, counts: [usize; 3]| -> Vec<String> {
+        std::iter::once(title).chain(counts.map(|count| count.to_string())).collect()
+    };
+    let sections =
+        SECTIONS.iter().map(|section| row(section.title.to_owned(), counts(own(section, judged).into_iter())));
+    let all = row(format!("all {} statements", judged.len()), counts(judged.iter()));
+    let kinds =
+        by_kind.iter().map(|one| row(format!("of these: {}", one.kind), [one.agree, one.do_not, one.cannot_tell]));
+    let rows: Vec<Vec<String>> = sections.chain([all]).chain(kinds).collect();
+    page.table(&["statements", "agree", "do not", "can't be judged"], &rows, |_| false);
     let to = |name: &str, words: &str| (format!("#{name}"), words.to_owned());
     let mut links: Vec<(String, String)> = SECTIONS.iter().map(|section| to(section.name, section.title)).collect();
-    links.push(to("tables", "Tables"));
+    links.extend([to("quantities", "Quantities"), to("tables", "Tables")]);
     page.links("", &links);
 }
 
 /// Statements of a section as a table; those that do not agree stand out.
-fn statements_of(page: &mut Page, judged: &[&Judged]) {
-    let rows: Vec<Vec<String>> = judged
-        .iter()
-        .map(|one| {
-            let figure = one.statement.figure;
-            let found = match &one.verdict {
-                Verdict::CannotTell(why) if one.found.is_empty() => why.clone(),
-                Verdict::CannotTell(why) => format!("{} ({why})", one.found),
-                _ => one.found.clone(),
-            };
-            let place = if figure.is_empty() { one.statement.section.to_owned() } else { format!("Fig. {figure}") };
-            vec![
-                place,
-                one.statement.says.to_owned(),
-                one.statement.stated.to_owned(),
-                found,
-                one.verdict.word().to_owned(),
-            ]
-        })
-        .collect();
-    let [agree, do_not, cannot] = counts(judged);
+fn statements_of(page: &mut Page, judged: &[&Judged<'_>], phantom: bool) {
+    let row = |one: &&Judged<'_>| {
+        let statement = one.statement;
+        let found = match &one.verdict {
+            Verdict::CannotTell(why) if one.found.is_empty() => why.clone(),
+            Verdict::CannotTell(why) => format!("{} ({why})", one.found),
+            _ => one.found.clone(),
+        };
+        let place = match statement.figure.as_str() {
+            "" => statement.section.clone(),
+            figure => format!("Fig. {figure}"),
+        };
+        let mut cells = vec![place, statement.sentence.clone(), statement.test.clone(), found];
+        if phantom {
+            cells.extend([statement.kind.to_string(), statement.note.clone()]);
+        }
+        cells.push(one.verdict.word().to_owned());
+        cells
+    };
+    let rows: Vec<Vec<String>> = judged.iter().map(row).collect();
+    let [agree, do_not, cannot] = counts(judged.iter().copied());
     page.paragraph(&format!(
         "Of {} statements {agree} agree, {do_not} do not, {cannot} can't be judged.",
         judged.len()
     ));
-    page.table(&["figure", "the thesis says", "stated", "here", "verdict"], &rows, |row| {
-        judged[row].verdict == Verdict::DoesNot
-    });
+    let mut header = vec!["figure", "the thesis says", "test", "here"];
+    if phantom {
+        header.extend(["kind", "note"]);
+    }
+    header.push("verdict");
+    page.table(&header, &rows, |row| judged[row].verdict == Verdict::DoesNot);
+}
+
+/// What each quantity means.
+fn quantities(page: &mut Page, statements: &Statements) {
+    let row = |one: &Quantity| vec![one.name.clone(), one.unit.clone(), one.means.clone(), one.from.clone()];
+    let rows: Vec<Vec<String>> = statements.quantities.iter().map(row).collect();
+    page.anchored_heading("quantities", "Quantities");
+    page.table(&["quantity", "unit", "what it is", "computed by"], &rows, |_| false);
 }
 
 /// Copies the parts' tables and links to them.
@@ -263,29 +297,23 @@ fn tables(page: &mut Page, shown: &[&PartFolder], staging: &Staging) -> anyhow::
     Ok(())
 }
 
-fn statements_table(judged: &[Judged], staging: &Staging, out: &Path) -> anyhow::Result<()> {
+fn statements_table(judged: &[Judged<'_>], phantom: bool, staging: &Staging, out: &Path) -> anyhow::Result<()> {
     let name = "statements.csv";
-    let columns = ["id", "section", "figure", "says", "stated", "test", "found", "verdict", "why"].map(Column::text);
-    let mut table = TableWriter::create(&staging.place(name)?, &out.join(name), columns.to_vec(), &[])?;
-    for one in judged {
-        let statement = one.statement;
-        let why = match &one.verdict {
-            Verdict::CannotTell(why) => why.as_str(),
-            _ => "",
-        };
-        let test = statement.test.words();
-        let texts = [
-            statement.id,
-            statement.section,
-            statement.figure,
-            statement.says,
-            statement.stated,
-            &test,
-            &one.found,
-            one.verdict.word(),
-            why,
-        ];
-        table.write(&texts.map(Value::Text))?;
+    let mut columns = vec!["id", "section", "figure", "sentence", "test", "found", "verdict", "why"];
+    if phantom {
+        columns.extend(["kind", "note"]);
+    }
+    let columns = columns.into_iter().map(Column::text).collect();
+    let mut table = TableWriter::create(&staging.place(name)?, &out.join(name), columns, &[])?;
+    for Judged { statement, found, verdict } in judged {
+        let why = if let Verdict::CannotTell(why) = verdict { why } else { "" };
+        let Statement { id, section, figure, sentence, test, kind, note, .. } = statement;
+        let kind = kind.to_string();
+        let mut texts = vec![id, section, figure, sentence, test, found, verdict.word(), why];
+        if phantom {
+            texts.extend([kind.as_str(), note]);
+        }
+        table.write(&texts.into_iter().map(Value::Text).collect::<Vec<_>>())?;
     }
     table.finish()?;
     Ok(())

@@ -20,7 +20,7 @@
 //! What is not modelled: people's sex; that a person's nail, photodiodes and pulp belong together.
 
 mod options;
-mod presses;
+pub(crate) mod presses;
 mod recording;
 mod request;
 mod session;

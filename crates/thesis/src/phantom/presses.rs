@@ -40,7 +40,7 @@ pub struct PressOptions {
 
 /// Why presses were not written.
 #[derive(Debug, Error)]
-pub(super) enum Error {
+pub(crate) enum Error {
     /// The model has no answer.
     #[error(transparent)]
     Model(#[from] HemodynamicsError),
@@ -65,7 +65,7 @@ pub(super) enum Error {
 ///
 /// # Errors
 /// [`enum@Error`]; what stood under `out` before is as it was.
-pub(super) fn write(options: &PressOptions, out: &Path) -> Result<(), Error> {
+pub(crate) fn write(options: &PressOptions, out: &Path) -> Result<(), Error> {
     let staging = Staging::new(out)?;
     if let Some(place) = in_the_way(out, &RESULTS, RECORD) {
         return Err(Error::InTheWay(place));

@@ -10,7 +10,7 @@ mod experiments;
 mod groups;
 mod kind;
 pub(crate) mod people;
-mod presses;
+pub(crate) mod presses;
 mod statics;
 mod steps;
 mod tune;

@@ -1,36 +1,90 @@
-//! What the thesis' text says of its data figures, as data, and whether a study's numbers agree.
+//! What the thesis' text says of its data figures, and whether a study's numbers agree.
 //!
-//! Each [`Statement`] is words of the thesis, in short, with the figure or relation that it states, and a [`Test`] on
-//! numbers by name; nothing else decides a [`Verdict`]. Where the thesis says "about", a quarter more or less is taken;
-//! where it says "little", "virtually no" or "comparable", what that is taken for stands in the statement's test and is
-//! told beside it.
+//! The statements are data: `statements.toml`, with each one's place in the thesis, its sentence, the test on
+//! quantities by name that decides its [`Verdict`], and its [`Kind`], what agreement is worth on a phantom. Nothing
+//! else decides. [`Statements::of_the_thesis`] reads them, [`Statements::judge`] compares them with [`Numbers`].
 
-mod coloration;
-mod hemodynamics;
-mod predictors;
-mod responses;
+mod read;
 mod test;
+#[cfg(test)]
+mod tests;
 
-use serde::Serialize;
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
 
 use super::Numbers;
-pub use test::Test;
+pub use read::StatementsError;
+use test::{Condition, rounded};
+
+/// Where agreement comes from when the study is the phantom's.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Kind {
+    /// The phantom was made after this sentence: agreement is no evidence.
+    #[serde(rename = "put in")]
+    PutIn,
+    /// It is a consequence of the thesis' model, or of how models are trained, whatever sizes were assumed.
+    Follows,
+    /// It could have come out otherwise.
+    Emerges,
+}
+
+impl Kind {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::PutIn, Self::Follows, Self::Emerges];
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::PutIn => "put in",
+            Self::Follows => "follows",
+            Self::Emerges => "emerges",
+        })
+    }
+}
+
+/// A computed figure that statements are tested by.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Quantity {
+    /// Its name among the numbers, the part that it is of first.
+    pub name: String,
+    /// Its unit; empty for shares, counts and correlations.
+    pub unit: String,
+    /// What it means.
+    pub means: String,
+    /// The job that computes it.
+    pub from: String,
+}
 
 /// Something that the thesis states.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Statement {
-    /// Its name: unlike any other's.
-    pub id: &'static str,
+    /// Its name, unlike any other's.
+    pub id: String,
     /// The thesis' section.
-    pub section: &'static str,
+    pub section: String,
     /// The thesis' figures, as `105-107`; empty: none.
-    pub figure: &'static str,
-    /// What it says, in short.
-    pub says: &'static str,
-    /// The figure or relation that it states.
-    pub stated: &'static str,
-    /// What decides.
-    pub test: Test,
+    pub figure: String,
+    /// What it says.
+    pub sentence: String,
+    /// What agreement is worth on a phantom.
+    pub kind: Kind,
+    /// What the judgement depends on; mostly empty.
+    pub note: String,
+    /// What is taken for agreeing, in words.
+    pub test: String,
+    conditions: Vec<Condition>,
+}
+
+/// All statements in the order of the thesis, and the quantities that they are tested by.
+#[derive(Debug, Clone)]
+pub struct Statements {
+    /// The statements.
+    pub all: Vec<Statement>,
+    /// The quantities.
+    pub quantities: Vec<Quantity>,
 }
 
 /// Whether what came out agrees.
@@ -59,70 +113,74 @@ impl Verdict {
 
 /// A statement, judged.
 #[derive(Debug, Clone)]
-pub struct Judged {
+pub struct Judged<'a> {
     /// As it is in the thesis.
-    pub statement: &'static Statement,
-    /// What came out, in words.
+    pub statement: &'a Statement,
+    /// What came out, in words: every quantity that is known.
     pub found: String,
     /// Whether it agrees.
     pub verdict: Verdict,
 }
 
-/// All statements in the order of the thesis.
-pub fn statements() -> impl Iterator<Item = &'static Statement> {
-    [responses::ALL, coloration::ALL, hemodynamics::ALL, predictors::ALL].into_iter().flatten()
+impl Statements {
+    /// Judges all statements by numbers.
+    #[must_use]
+    pub fn judge(&self, numbers: &Numbers) -> Vec<Judged<'_>> {
+        let one = |statement| Judged {
+            statement,
+            found: Statement::found(statement, numbers),
+            verdict: Statement::verdict(statement, numbers),
+        };
+        self.all.iter().map(one).collect()
+    }
 }
 
-/// Judges all statements by numbers.
-#[must_use]
-pub fn judge(numbers: &Numbers) -> Vec<Judged> {
-    let one = |statement: &'static Statement| Judged {
-        statement,
-        found: statement.test.found(numbers),
-        verdict: statement.test.verdict(numbers),
-    };
-    statements().map(one).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use std::collections::BTreeSet;
-
-    #[test]
-    fn names_occur_once_and_every_statement_is_complete() {
-        let mut names = BTreeSet::new();
-        for one in statements() {
-            assert!(names.insert(one.id), "{}", one.id);
-            assert!(!one.says.is_empty() && !one.stated.is_empty() && !one.section.is_empty(), "{}", one.id);
-            assert!(!one.test.names().is_empty(), "{}", one.id);
+impl Statement {
+    /// The quantities that it depends on, each once.
+    fn names(&self) -> Vec<&str> {
+        let mut names = Vec::new();
+        for name in self.conditions.iter().flat_map(Condition::names) {
+            if !names.contains(&name) {
+                names.push(name);
+            }
         }
-        assert!(names.len() > 90, "{}", names.len());
+        names
     }
 
-    #[test]
-    fn every_verdict_turns_both_ways_with_its_numbers() {
-        for one in statements() {
-            assert!(matches!(one.test.verdict(&Numbers::default()), Verdict::CannotTell(_)), "{}", one.id);
-            for (holds, expected) in [(true, Verdict::Agrees), (false, Verdict::DoesNot)] {
-                let mut numbers = Numbers::default();
-                one.test.make(holds, &mut numbers);
-                assert_eq!(one.test.verdict(&numbers), expected, "{}: {numbers:?}", one.id);
-            }
+    /// Whether the numbers agree. One condition that fails is enough, whatever is missing of the others.
+    fn verdict(&self, numbers: &Numbers) -> Verdict {
+        let held: Vec<Option<bool>> = self.conditions.iter().map(|one| one.holds(numbers)).collect();
+        if held.contains(&Some(false)) {
+            Verdict::DoesNot
+        } else if held.contains(&None) {
+            Verdict::CannotTell(self.lacking(numbers))
+        } else {
+            Verdict::Agrees
         }
     }
 
-    #[test]
-    fn with_a_number_missing_nothing_is_judged_and_it_is_named() {
-        for one in statements() {
-            let mut numbers = Numbers::default();
-            one.test.make(true, &mut numbers);
-            let lacking = one.test.names()[0];
-            numbers.0.remove(lacking);
-            match one.test.verdict(&numbers) {
-                Verdict::CannotTell(why) => assert!(why.contains(lacking.split('.').next().unwrap()), "{why}"),
-                other => panic!("{}: {other:?}", one.id),
-            }
+    /// Why it can't be judged.
+    fn lacking(&self, numbers: &Numbers) -> String {
+        let lacking: Vec<&str> = self.names().into_iter().filter(|name| numbers.get(name).is_none()).collect();
+        let Some(part) = lacking.first().and_then(|name| name.split('.').next()) else {
+            return "a quotient of zeros".to_owned();
+        };
+        if numbers.0.keys().any(|name| name.split('.').next() == Some(part)) {
+            format!("not found: {}", lacking.join(", "))
+        } else {
+            format!("there are no results of \"{part}\"")
         }
+    }
+
+    /// What came out; names without their part where it is the same for all.
+    fn found(&self, numbers: &Numbers) -> String {
+        let names = self.names();
+        let part = |name: &str| name.split_once('.').map_or(0, |(part, _)| part.len() + 1);
+        let first = names.first().map_or("", |name| &name[..part(name)]);
+        let of_one = names.iter().all(|name| name.starts_with(first));
+        let known = names
+            .iter()
+            .filter_map(|name| Some((if of_one { &name[first.len()..] } else { name }, numbers.get(name)?)));
+        known.map(|(name, value)| format!("{name} {}", rounded(value))).collect::<Vec<_>>().join("; ")
     }
 }

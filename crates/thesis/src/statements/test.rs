@@ -1,171 +1,203 @@
-//! What decides whether numbers agree with words.
+//! What decides whether numbers agree with words: quantities by name, and relations between them.
 
-use super::Verdict;
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+
 use crate::Numbers;
 
-/// A relation of numbers by name.
-#[derive(Debug, Clone, Copy)]
-pub enum Test {
-    /// A number between two ends.
-    Between(&'static str, f64, f64),
-    /// A number, or its size with the sign left off, up to a limit.
-    SizeAtMost(&'static str, f64),
-    /// A number of at least this size, its sign left off.
-    SizeAtLeast(&'static str, f64),
-    /// A number up to a limit.
-    AtMost(&'static str, f64),
-    /// A number from a limit on.
-    AtLeast(&'static str, f64),
-    /// A number below another, or below that times a factor.
-    Below(&'static str, &'static str, f64),
-    /// A number over another is between two ends.
-    Ratio(&'static str, &'static str, f64, f64),
-    /// All of them.
-    All(&'static [Test]),
+/// What a quantity is compared with.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(untagged)]
+pub(super) enum Bound {
+    Number(f64),
+    Quantity(String),
+    All(Vec<String>),
 }
 
-impl Test {
-    /// The numbers that it depends on.
-    #[must_use]
-    pub fn names(&self) -> Vec<&'static str> {
-        match *self {
-            Self::Between(name, ..)
-            | Self::SizeAtMost(name, _)
-            | Self::SizeAtLeast(name, _)
-            | Self::AtMost(name, _)
-            | Self::AtLeast(name, _) => vec![name],
-            Self::Below(name, other, _) | Self::Ratio(name, other, ..) => vec![name, other],
-            Self::All(tests) => {
-                let mut names = Vec::new();
-                tests.iter().flat_map(Self::names).for_each(|name| {
-                    if !names.contains(&name) {
-                        names.push(name);
-                    }
-                });
-                names
-            }
-        }
-    }
+/// A relation and its threshold, as they are written.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Relation {
+    Is(f64),
+    /// A quarter more or less.
+    About(f64),
+    Within([f64; 2]),
+    AtMost(f64),
+    AtLeast(f64),
+    Below(Bound),
+    Above(Bound),
+}
 
-    /// Whether it holds; none where a number is missing.
-    fn holds(&self, numbers: &Numbers) -> Option<bool> {
-        let get = |name: &str| numbers.get(name);
+/// How far off "about" may be, as a share.
+const ABOUT: f64 = 0.25;
+
+impl Relation {
+    fn holds(&self, value: f64, bound: Option<f64>) -> Option<bool> {
         Some(match *self {
-            Self::Between(name, low, high) => (low..=high).contains(&get(name)?),
-            Self::SizeAtMost(name, most) => get(name)?.abs() <= most,
-            Self::SizeAtLeast(name, least) => get(name)?.abs() >= least,
-            Self::AtMost(name, most) => get(name)? <= most,
-            Self::AtLeast(name, least) => get(name)? >= least,
-            Self::Below(name, other, factor) => get(name)? < factor * get(other)?,
-            Self::Ratio(name, other, low, high) => (low..=high).contains(&(get(name)? / get(other)?)),
-            Self::All(tests) => {
-                let held: Vec<Option<bool>> = tests.iter().map(|test| test.holds(numbers)).collect();
-                // One that fails is enough, whatever is missing of the others.
-                if held.contains(&Some(false)) {
-                    return Some(false);
-                }
-                held.into_iter().collect::<Option<Vec<_>>>().map(|_| true)?
-            }
+            Self::Is(x) => value == x,
+            Self::About(x) => (value - x).abs() <= ABOUT * x.abs(),
+            Self::Within([low, high]) => (low..=high).contains(&value),
+            Self::AtMost(x) => value <= x,
+            Self::AtLeast(x) => value >= x,
+            Self::Below(_) => value < bound?,
+            Self::Above(_) => value > bound?,
         })
     }
 
-    /// Whether the numbers agree.
-    #[must_use]
-    pub fn verdict(&self, numbers: &Numbers) -> Verdict {
-        match self.holds(numbers) {
-            Some(true) => Verdict::Agrees,
-            Some(false) => Verdict::DoesNot,
-            None => Verdict::CannotTell(self.lacking(numbers)),
-        }
+    fn bound(&self) -> Option<&Bound> {
+        if let Self::Below(bound) | Self::Above(bound) = self { Some(bound) } else { None }
     }
 
-    /// What is missing, in words.
-    fn lacking(&self, numbers: &Numbers) -> String {
-        let lacking: Vec<&str> = self.names().into_iter().filter(|name| numbers.get(name).is_none()).collect();
-        let stage = |name: &str| name.split('.').next().unwrap_or_default().to_owned();
-        let Some(first) = lacking.first().map(|name| stage(name)) else { return String::new() };
-        let of_stage = format!("{first}.");
-        if numbers.0.keys().any(|name| name.starts_with(&of_stage)) {
-            let named: Vec<String> = lacking.iter().map(|name| name.replacen('.', ": ", 1)).collect();
-            format!("not found: {}", named.join(", "))
-        } else {
-            format!("there are no results of \"{first}\"")
-        }
-    }
-
-    /// What came out, in words: every number that is known.
-    #[must_use]
-    pub fn found(&self, numbers: &Numbers) -> String {
-        let known = self.names().into_iter().filter_map(|name| Some((name, numbers.get(name)?)));
-        let all: Vec<String> = known.map(|(name, value)| format!("{} {}", called(name), rounded(value))).collect();
-        all.join("; ")
-    }
-
-    /// What is taken for agreeing, in words.
-    #[must_use]
-    pub fn words(&self) -> String {
-        match *self {
-            Self::Between(name, low, high) if low == high => format!("{} is {}", called(name), rounded(low)),
-            Self::Between(name, low, high) => format!("{} {} to {}", called(name), rounded(low), rounded(high)),
-            Self::SizeAtMost(name, most) => format!("{} within {} of 0", called(name), rounded(most)),
-            Self::SizeAtLeast(name, least) => format!("{} {} or more from 0", called(name), rounded(least)),
-            Self::AtMost(name, most) => format!("{} up to {}", called(name), rounded(most)),
-            Self::AtLeast(name, least) => format!("{} from {} on", called(name), rounded(least)),
-            Self::Below(name, other, 1.0) => format!("{} below {}", called(name), called(other)),
-            Self::Below(name, other, factor) => {
-                format!("{} below {} x {}", called(name), rounded(factor), called(other))
-            }
-            Self::Ratio(name, other, low, high) => {
-                format!("{} over {} {} to {}", called(name), called(other), rounded(low), rounded(high))
-            }
-            Self::All(tests) => tests.iter().map(Self::words).collect::<Vec<_>>().join("; "),
-        }
-    }
-
-    /// Makes numbers with which it holds, or does not.
-    #[cfg(test)]
-    pub(super) fn make(&self, holds: bool, numbers: &mut Numbers) {
-        let aside = |low: f64, high: f64| if holds { 0.5 * (low + high) } else { high + 1.0 + (high - low) };
-        match *self {
-            Self::Between(name, low, high) => numbers.set(name, aside(low, high)),
-            Self::SizeAtMost(name, most) => numbers.set(name, if holds { -0.5 * most } else { -1.5 * most - 1.0 }),
-            Self::SizeAtLeast(name, least) => numbers.set(name, if holds { -least } else { -0.5 * least }),
-            Self::AtMost(name, most) => numbers.set(name, if holds { most - 1e-6 } else { most + 1.0 }),
-            Self::AtLeast(name, least) => numbers.set(name, if holds { least + 1e-6 } else { least - 1.0 }),
-            Self::Below(name, other, factor) => {
-                let bound = factor * numbers.get(other).unwrap_or(1.0);
-                numbers.set(other, bound / factor);
-                // What another test of the same statement asks of it stands where it suits.
-                if numbers.get(name).is_none_or(|own| (own < bound) != holds) {
-                    numbers.set(name, if holds { bound - 0.5 * bound.abs() } else { bound + 0.5 * bound.abs() });
-                }
-            }
-            Self::Ratio(name, other, low, high) => {
-                let base = numbers.get(other).unwrap_or(1.0);
-                numbers.set(other, base);
-                numbers.set(name, base * aside(low, high));
-            }
-            Self::All(tests) => {
-                // Twice: a later one may have moved what an earlier one stands on.
-                for test in tests.iter().rev().chain(tests.iter().rev()) {
-                    test.make(true, numbers);
-                }
-                if !holds {
-                    tests[0].make(false, numbers);
-                }
-            }
+    /// In words, numbers followed by their unit.
+    pub(super) fn words(&self, unit: &str) -> String {
+        let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+        let bound = |bound: &Bound| match bound {
+            Bound::Number(x) => format!("{}{unit}", rounded(*x)),
+            Bound::Quantity(name) => name.clone(),
+            Bound::All(names) => names.join(" and "),
+        };
+        match self {
+            Self::Is(x) => format!("is {}{unit}", rounded(*x)),
+            Self::About(x) => format!("about {}{unit}", rounded(*x)),
+            Self::Within([low, high]) => format!("{} to {}{unit}", rounded(*low), rounded(*high)),
+            Self::AtMost(x) => format!("at most {}{unit}", rounded(*x)),
+            Self::AtLeast(x) => format!("at least {}{unit}", rounded(*x)),
+            Self::Below(other) => format!("below {}", bound(other)),
+            Self::Above(other) => format!("above {}", bound(other)),
         }
     }
 }
 
-/// A number's name in words: without the stage that it is of.
-fn called(name: &str) -> String {
-    let own = name.split_once('.').map_or(name, |(_, own)| own);
-    own.replace(['.', '_'], " ")
+/// A quantity, its size without the sign, or a quotient of two.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Operand {
+    name: String,
+    over: Option<String>,
+    size: bool,
+}
+
+impl Operand {
+    /// Reads `a`, `|a|`, `a / b` or `|a / b|`.
+    pub(super) fn new(text: &str) -> Self {
+        let inner = text.strip_prefix('|').and_then(|text| text.strip_suffix('|'));
+        let (name, over) = match inner.unwrap_or(text).split_once(" / ") {
+            Some((name, over)) => (name, Some(over.to_owned())),
+            None => (inner.unwrap_or(text), None),
+        };
+        Self { name: name.to_owned(), over, size: inner.is_some() }
+    }
+
+    pub(super) fn names(&self) -> impl Iterator<Item = &str> {
+        std::iter::once(self.name.as_str()).chain(self.over.as_deref())
+    }
+
+    fn value(&self, numbers: &Numbers) -> Option<f64> {
+        let value = match &self.over {
+            None => numbers.get(&self.name)?,
+            Some(over) => numbers.get(&self.name)? / numbers.get(over)?,
+        };
+        Some(if self.size { value.abs() } else { value }).filter(|value| value.is_finite())
+    }
+}
+
+/// One relation that is to hold.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Condition {
+    left: Operand,
+    relation: Relation,
+    /// Where the relation is to another quantity.
+    right: Option<Operand>,
+}
+
+impl Condition {
+    /// The conditions that a written one stands for: of each alternative, and of each quantity it is compared with.
+    ///
+    /// # Errors
+    /// A `{}` that stands for nothing.
+    pub(super) fn all(quantity: &str, relation: &Relation) -> Result<Vec<Self>, String> {
+        let mut all = Vec::new();
+        for (name, chosen) in expanded(quantity)? {
+            let rights = match relation.bound() {
+                None | Some(Bound::Number(_)) => vec![None],
+                Some(Bound::Quantity(other)) => vec![Some(filled(other, &chosen)?)],
+                Some(Bound::All(others)) => {
+                    others.iter().map(|other| filled(other, &chosen).map(Some)).collect::<Result<_, _>>()?
+                }
+            };
+            all.extend(rights.into_iter().map(|right| Self {
+                left: Operand::new(&name),
+                relation: relation.clone(),
+                right: right.as_deref().map(Operand::new),
+            }));
+        }
+        Ok(all)
+    }
+
+    /// The quantities that it depends on.
+    pub(super) fn names(&self) -> impl Iterator<Item = &str> {
+        self.left.names().chain(self.right.iter().flat_map(Operand::names))
+    }
+
+    /// The unit of its threshold: that of its quantity; a quotient has none.
+    pub(super) fn unit<'a>(&self, units: &BTreeMap<&str, &'a str>) -> &'a str {
+        if self.left.over.is_some() { "" } else { units.get(self.left.name.as_str()).copied().unwrap_or_default() }
+    }
+
+    /// Whether it holds; none where a number is missing, or a quotient is none.
+    pub(super) fn holds(&self, numbers: &Numbers) -> Option<bool> {
+        let bound = match (&self.right, self.relation.bound()) {
+            (Some(right), _) => Some(right.value(numbers)?),
+            (None, Some(Bound::Number(x))) => Some(*x),
+            _ => None,
+        };
+        self.relation.holds(self.left.value(numbers)?, bound)
+    }
+}
+
+/// What a pattern stands for, and which alternative was taken of each of its groups: `P{1,2}` is `P1` and `P2`.
+///
+/// # Errors
+/// A `{}` without a group before it, a group that does not end.
+pub(super) fn expanded(pattern: &str) -> Result<Vec<(String, Vec<String>)>, String> {
+    let mut found = vec![(String::new(), Vec::new())];
+    let mut rest = pattern;
+    while let Some((before, group)) = rest.split_once('{') {
+        let Some((group, after)) = group.split_once('}') else { return Err(format!("{pattern}: {{ without }}")) };
+        // "{}" is left for `filled`.
+        let own: Vec<&str> = if group.is_empty() { vec!["{}"] } else { group.split(',').collect() };
+        found = found
+            .iter()
+            .flat_map(|(text, chosen)| own.iter().map(move |own| (format!("{text}{before}{own}"), chosen, *own)))
+            .map(|(text, chosen, own)| {
+                let more = (own != "{}").then(|| own.to_owned());
+                (text, chosen.iter().cloned().chain(more).collect())
+            })
+            .collect();
+        rest = after;
+    }
+    let whole = |(text, chosen): (String, Vec<String>)| Ok((filled(&format!("{text}{rest}"), &chosen)?, chosen));
+    found.into_iter().map(whole).collect()
+}
+
+/// With what was chosen in place of each `{}`, in turn; the last one for all that follow.
+fn filled(text: &str, chosen: &[String]) -> Result<String, String> {
+    let (mut all, mut at) = (String::new(), 0);
+    for (k, part) in text.split("{}").enumerate() {
+        if k > 0 {
+            let Some(own) = chosen.get(at).or(chosen.last()) else {
+                return Err(format!("{text}: {{}} stands for nothing; the quantity has no alternatives"));
+            };
+            all.push_str(own);
+            at += 1;
+        }
+        all.push_str(part);
+    }
+    Ok(all)
 }
 
 /// Three digits.
-fn rounded(value: f64) -> String {
+pub(super) fn rounded(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");
     }
@@ -178,22 +210,57 @@ fn rounded(value: f64) -> String {
 mod tests {
     use super::*;
 
+    fn holds(quantity: &str, relation: &Relation, values: &[(&str, f64)]) -> Vec<Option<bool>> {
+        let mut numbers = Numbers::default();
+        values.iter().for_each(|(name, value)| numbers.set(*name, *value));
+        Condition::all(quantity, relation).unwrap().iter().map(|one| one.holds(&numbers)).collect()
+    }
+
+    #[test]
+    fn relations_hold_up_to_their_ends() {
+        let of = |relation: &Relation, value: f64| holds("a", relation, &[("a", value)])[0];
+        for (relation, yes, no) in [
+            (Relation::Is(5.0), [5.0, 5.0], [5.1, 4.9]),
+            (Relation::About(-4.0), [-5.0, -3.0], [-5.1, -2.9]),
+            (Relation::Within([1.0, 2.0]), [1.0, 2.0], [0.9, 2.1]),
+            (Relation::AtMost(1.0), [1.0, -9.0], [1.1, 9.0]),
+            (Relation::AtLeast(1.0), [1.0, 9.0], [0.9, -9.0]),
+            (Relation::Below(Bound::Number(0.0)), [-0.1, -9.0], [0.0, 0.1]),
+            (Relation::Above(Bound::Number(0.0)), [0.1, 9.0], [0.0, -0.1]),
+        ] {
+            assert_eq!(yes.map(|value| of(&relation, value)), [Some(true); 2], "{relation:?}");
+            assert_eq!(no.map(|value| of(&relation, value)), [Some(false); 2], "{relation:?}");
+        }
+    }
+
+    #[test]
+    fn sizes_and_quotients_are_taken_and_what_is_no_number_is_not_judged() {
+        let values = [("a", -2.0), ("b", 4.0), ("zero", 0.0)];
+        assert_eq!(holds("|a|", &Relation::Is(2.0), &values), [Some(true)]);
+        assert_eq!(holds("a / b", &Relation::Is(-0.5), &values), [Some(true)]);
+        assert_eq!(holds("|a / b|", &Relation::Is(0.5), &values), [Some(true)]);
+        assert_eq!(holds("a / zero", &Relation::AtMost(9.0), &values), [None]);
+        assert_eq!(holds("c", &Relation::AtMost(9.0), &values), [None]);
+        let below = |other: &str| Relation::Below(Bound::Quantity(other.to_owned()));
+        assert_eq!(holds("a", &below("b / a"), &values), [Some(false)]);
+        assert_eq!(holds("a", &below("c"), &values), [None]);
+    }
+
+    #[test]
+    fn groups_stand_for_each_of_their_alternatives() {
+        let below = Relation::Below(Bound::All(vec!["y.{}.{}".to_owned(), "z.{}".to_owned()]));
+        let all = Condition::all("x.{1,2}.{a,b} / w.{}", &below).unwrap();
+        let names: Vec<Vec<&str>> = all.iter().map(|one| one.names().collect()).collect();
+        assert_eq!(names.len(), 8);
+        assert_eq!((&names[0], &names[1]), (&vec!["x.1.a", "w.1", "y.1.a"], &vec!["x.1.a", "w.1", "z.1"]));
+        assert_eq!(names[6], ["x.2.b", "w.2", "y.2.b"]);
+        assert!(Condition::all("x", &below).unwrap_err().contains("y.{}.{}"));
+        assert!(expanded("x.{1,2").is_err() && expanded("{}").is_err());
+    }
+
     #[test]
     fn numbers_have_three_digits() {
         let texts = [0.0, 0.01234, -1.5, 12.345, 1234.5, 0.999_96, -0.25].map(rounded);
         assert_eq!(texts, ["0", "0.0123", "-1.5", "12.3", "1234", "1", "-0.25"].map(str::to_owned));
-    }
-
-    #[test]
-    fn what_fails_fails_whatever_is_missing_of_the_rest() {
-        const BOTH: Test = Test::All(&[Test::AtMost("a.x", 1.0), Test::AtMost("b.y", 1.0)]);
-        let mut numbers = Numbers::default();
-        numbers.set("a.x", 2.0);
-        assert_eq!(BOTH.verdict(&numbers), Verdict::DoesNot);
-        numbers.set("a.x", 1.0);
-        assert_eq!(BOTH.verdict(&numbers), Verdict::CannotTell("there are no results of \"b\"".to_owned()));
-        numbers.set("b.z", 1.0);
-        assert_eq!(BOTH.verdict(&numbers), Verdict::CannotTell("not found: b: y".to_owned()));
-        assert_eq!(BOTH.found(&numbers), "x 1");
     }
 }
