@@ -84,13 +84,11 @@ impl Job for FitJob {
             params: of_foreseen(PARAMS.name, inputs),
         };
         let outputs = outputs(Path::new(""), demand);
-        let mut steps = if existing(inputs) {
-            plan(&files, &self.0, Some(&outputs)).map_err(|why| why.to_string())?
-        } else {
-            steps(&files, &self.0, Some(&outputs), None)
-        };
-        steps.insert(0, ambient_step(inputs, &[RECORDINGS], &self.0.columns.log));
-        Ok(steps)
+        if existing(inputs) {
+            return plan(&files, &self.0, Some(&outputs)).map_err(|why| why.to_string());
+        }
+        let ambient = ambient_step(inputs, &[RECORDINGS], &self.0.columns.log);
+        Ok(steps(&files, &self.0, Some(&outputs), ambient, None))
     }
 
     fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {

@@ -44,9 +44,8 @@ impl Job for EvaluateJob {
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         let files = inputs.iter().filter(|input| input.role == "data").count();
-        let mut steps = evaluate_plan(files, &self.0.options(), None, Some(&outputs(Path::new(""), demand)));
-        steps.insert(1, ambient_step(inputs, &["data"], &self.0.rows.log));
-        Ok(steps)
+        let ambient = ambient_step(inputs, &["data"], &self.0.rows.log);
+        Ok(evaluate_plan(files, ambient, &self.0.options(), None, Some(&outputs(Path::new(""), demand))))
     }
 
     fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {

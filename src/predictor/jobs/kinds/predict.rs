@@ -45,9 +45,7 @@ impl Job for PredictJob {
 
     fn steps(&self, inputs: &[Foreseen], _demand: &Demand) -> Result<Vec<Step>, String> {
         let models = inputs.iter().filter(|input| input.role == "model").count();
-        let mut steps = predict_plan(models, &self.0);
-        steps.insert(1, ambient_step(inputs, &["data"], &self.0.rows.log));
-        Ok(steps)
+        Ok(predict_plan(models, ambient_step(inputs, &["data"], &self.0.rows.log), &self.0))
     }
 
     fn facts(&self, _inputs: &[Foreseen], _demand: &Demand) -> Facts {

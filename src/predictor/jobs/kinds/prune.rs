@@ -43,9 +43,8 @@ impl Job for PruneJob {
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         let count = |role: &str| inputs.iter().filter(|input| input.role == role).count();
-        let mut steps = prune_plan([count("data"), count("validate")], Some(&outputs(Path::new(""), demand)));
-        steps.insert(1, ambient_step(inputs, &["data", "validate"], &self.0.rows.log));
-        Ok(steps)
+        let ambient = ambient_step(inputs, &["data", "validate"], &self.0.rows.log);
+        Ok(prune_plan([count("data"), count("validate")], ambient, Some(&outputs(Path::new(""), demand))))
     }
 
     fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {

@@ -51,9 +51,8 @@ impl Job for TrainJob {
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         let of = |role: &str| foreseen(inputs, role);
         let files = TrainInputs { data: of("data"), validate: of("validate"), stop_on: of("stop_on") };
-        let mut steps = train_plan(&files, &self.0.options().recipe, demand.wants(CURVE));
-        steps.insert(1, ambient_step(inputs, &["data", "validate", "stop_on"], &self.0.rows.log));
-        Ok(steps)
+        let ambient = ambient_step(inputs, &["data", "validate", "stop_on"], &self.0.rows.log);
+        Ok(train_plan(&files, ambient, &self.0.options().recipe, demand.wants(CURVE)))
     }
 
     fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {
