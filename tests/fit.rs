@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::util::{Answer, Dir};
+use crate::util::{Answer, Dir, Json};
 
 fn run(dir: &Dir, command: &str, options: &str) -> Answer {
     let mut arguments = vec![command];
@@ -59,8 +59,8 @@ fn what_made_a_recording_is_found_again() {
         let found = parameter(&dir, "f.toml", name);
         assert!((found / truth - 1.0).abs() <= NEAR, "{name}: {found} {truth}");
     }
-    assert!(report["r2"].as_f64().unwrap() > 0.999_999);
-    assert!(report["correlations"].as_array().unwrap().len() == 6);
+    assert!(report["r2"].number() > 0.999_999);
+    assert!(report["correlations"].list().len() == 6);
     // The fitted parameters are a file for simulate.
     run(&dir, "simulate", "--loads ramps.csv --params f.toml --every 0.02 --out again.csv --no-figures").expect(0);
     let (measured, again) = (dir.table("r.csv"), dir.table("again.csv"));
@@ -115,7 +115,7 @@ fn every_subject_has_photodiodes_of_its_own() {
             .expect(0);
     }
     let report = run(&dir, "fit", "a.csv b.csv --subject anna,ben --free k_V --out f.json --json").expect(0).json();
-    assert_eq!(report["photodiodes"].as_array().unwrap().len(), 4);
+    assert_eq!(report["photodiodes"].list().len(), 4);
     for (file, scaling) in [("f-anna.toml", 2.0), ("f-ben.toml", 5.0)] {
         assert!((parameter(&dir, file, "V1_1_V") / scaling - 1.0).abs() <= NEAR, "{file}");
         assert!((parameter(&dir, file, "k_V_N_per_m") / 1e3 - 1.0).abs() <= NEAR, "{file}");
@@ -159,7 +159,7 @@ fn what_recordings_do_not_determine_is_said() {
     let report = run(&dir, "fit", "constant.csv --free b_C --out f.json --json").expect(0).json();
     assert_eq!(report["free"][0]["identifiable"], false);
     assert!(report["free"][0]["standard_errors"].is_null());
-    assert!(!report["not_identifiable"].as_array().unwrap().is_empty());
+    assert!(!report["not_identifiable"].list().is_empty());
     assert!(report["warnings"].to_string().contains("b_C1_N_s_per_m"), "{}", report["warnings"]);
     run(&dir, "simulate", &format!("{STEPS} --set k_V_N_per_m=3000 --out r.csv")).expect(0);
     let report =
@@ -183,8 +183,8 @@ fn photodiodes_that_see_nothing_change_are_said_to_tell_nothing() {
     assert!(report["free"][0]["standard_errors"].is_null() && report["r2"].is_null());
     for (k, level) in [0.9, 0.8].into_iter().enumerate() {
         let diode = &report["photodiodes"][k];
-        assert!((diode["offset_v"].as_f64().unwrap() - level).abs() <= 1e-6, "{diode}");
-        assert!(diode["scaling_v"].as_f64().unwrap().abs() <= 1e-6, "{diode}");
+        assert!((diode["offset_v"].number() - level).abs() <= 1e-6, "{diode}");
+        assert!(diode["scaling_v"].number().abs() <= 1e-6, "{diode}");
     }
 }
 
@@ -321,17 +321,17 @@ fn noisier_photodiodes_count_less() {
     let options = "noisy.csv --free k_V --between held --unloaded-before --no-figures --json";
     let report = run(&dir, "fit", &format!("{options} --out f.json")).expect(0).json();
     for (k, sd) in [1e-5, 1e-3].into_iter().enumerate() {
-        let noise_v = report["recordings"][0]["noise_v"][k].as_f64().unwrap();
+        let noise_v = report["recordings"][0]["noise_v"][k].number();
         assert!((noise_v / sd - 1.0).abs() <= NEAR, "{noise_v} {sd}");
     }
     // With the same noises given it is the same fit; with others it is another.
     let found = |options: &str| {
         let report = run(&dir, "fit", options).expect(0).json();
-        (report["free"][0]["values"][0].as_f64().unwrap(), report["free"][0]["standard_errors"][0].as_f64().unwrap())
+        (report["free"][0]["values"][0].number(), report["free"][0]["standard_errors"][0].number())
     };
     let (written, sure) = found(&format!("{options} --noise VP1=1e-5,VP2=1e-3 --out g.json"));
     let (_, unsure) = found(&format!("{options} --noise VP1=1,VP2=1 --out h.json"));
-    let value = report["free"][0]["values"][0].as_f64().unwrap();
+    let value = report["free"][0]["values"][0].number();
     assert!((written - value).abs() <= sure, "{written} {value} {sure}");
     assert!(sure < 0.5 * unsure, "{sure} {unsure}");
     run(&dir, "fit", &format!("{options} --noise VP1=0 --out i.json")).expect(2).says("VP1=5e-5");
@@ -400,9 +400,9 @@ fn a_log_with_an_led_is_fitted_to_the_leds_own_light() {
     let options = "--free k_V --photodiode P1=1 --photodiode P2=2 --no-figures --json";
     let answer = run(&dir, "fit", &format!("log.csv {options} --out f.json")).expect(0);
     let report = answer.json();
-    assert!(report["r2"].as_f64().unwrap() > R2, "{}", report["r2"]);
+    assert!(report["r2"].number() > R2, "{}", report["r2"]);
     // The loads turn at unlit rows: with lit rows' loads alone it is 1797.
-    let stiffness = |report: &serde_json::Value| report["free"][0]["values"][0].as_f64().unwrap();
+    let stiffness = |report: &serde_json::Value| report["free"][0]["values"][0].number();
     assert!((stiffness(&report) / 1500.0 - 1.0).abs() <= STIFFNESS, "{}", stiffness(&report));
     answer.says("interpolated between the unlit samples");
     // The first and the last lit row have no unlit one on one side.
@@ -447,7 +447,7 @@ fn steps_that_jump_at_unlit_rows_are_found() {
         let options =
             "--free k_V --photodiode P1=1 --photodiode P2=2 --between held --unloaded-before --no-figures --json";
         let report = run(&dir, "fit", &format!("log.csv {options} --out f.json")).expect(0).json();
-        let stiffness = report["free"][0]["values"][0].as_f64().unwrap();
+        let stiffness = report["free"][0]["values"][0].number();
         assert!((stiffness / 1500.0 - 1.0).abs() <= STIFFNESS, "{lit_from} {stiffness}");
     }
 }
@@ -477,7 +477,7 @@ fn rows_with_a_fault_of_the_sensor_have_no_voltage() {
     }
     dir.write("set.csv", set);
     let report = run(&dir, "fit", "set.csv --free k_V --out f.json --no-figures --json").expect(0).json();
-    assert!(report["r2"].as_f64().unwrap() > 0.999_999, "{}", report["r2"]);
+    assert!(report["r2"].number() > 0.999_999, "{}", report["r2"]);
     assert_eq!((&report["recordings"][0]["faults"], &report["recordings"][0]["missing"]), (&20.into(), &0.into()));
 }
 

@@ -1,7 +1,7 @@
 //! `lunula analyse` and `lunula prune` from end to end, against values that are known.
 
-use crate::util::Dir;
 use crate::util::sensor::{Recording, near, numbers, offset, slope, volt};
+use crate::util::{Dir, Json};
 use serde_json::Value;
 
 /// Of a few operations on exact coefficients (measured: 3e-16).
@@ -26,7 +26,7 @@ fn model_of(dir: &Dir, rows: &[&[f64]]) {
 }
 
 fn by_name(value: &Value, names: &[&str]) -> Vec<f64> {
-    names.iter().map(|name| value[*name].as_f64().unwrap_or_else(|| panic!("{name} of {value}"))).collect()
+    names.iter().map(|name| value[*name].number()).collect()
 }
 
 #[test]
@@ -35,7 +35,7 @@ fn modes_are_those_of_the_jacobian_with_signs_fixed() {
     // Orthogonal rows: their lengths are the singular values, the targets are the modes.
     model_of(&dir, &[&[0.0, 0.5, -0.5, 0.0], &[2.0, 0.0, 0.0, 0.0], &[0.0, 3.0, 3.0, 0.0]]);
     let report = dir.lunula(&["analyse", "m.json", "--json"]).expect(0).json();
-    let modes = report["modes"].as_array().expect("an array");
+    let modes = report["modes"].list();
     let (half, targets, inputs) = (0.5_f64.sqrt(), ["Fx_N", "Fy_N", "Fz_N"], ["P1", "P2", "P3", "P4"]);
     let wanted = [
         (18f64.sqrt(), [0.0, 0.0, 1.0], [0.0, half, half, 0.0]),
@@ -71,7 +71,7 @@ fn the_model_is_printed_as_in_the_thesis() {
         near(&numbers(&printed["jacobian"][target]), &(0..8).map(|k| slope(t, k)).collect::<Vec<_>>(), EXACT);
         near(&by_name(&printed["offset"], &[target]), &[offset(t)], 1e-13);
     }
-    assert_eq!(printed["terms"].as_array().expect("an array").len(), 8);
+    assert_eq!(printed["terms"].list().len(), 8);
 }
 
 #[test]
@@ -94,10 +94,7 @@ fn a_nonlinear_model_is_reported_at_the_middle() {
     let few = ["--model", "network", "--hidden", "2", "--restarts", "1", "--epochs", "30", "-q"];
     dir.train("a.csv", "Fz_N", "n.json", &few).expect(0);
     let network = dir.lunula(&["analyse", "n.json", "--json", "-q"]).expect(0).json();
-    assert!(
-        network["printed"].is_null() && network["modes"][0]["singular_value"].as_f64().expect("a number") > 0.0,
-        "{network}"
-    );
+    assert!(network["printed"].is_null() && network["modes"][0]["singular_value"].number() > 0.0, "{network}");
     // A lag is an input as any other.
     dir.train("a.csv", "Fz_N", "l.json", &["--lags", "0.04", "-q"]).expect(0);
     let lagged = dir.lunula(&["analyse", "l.json", "--json"]).expect(0).json();
@@ -130,13 +127,7 @@ fn graded(dir: &Dir) {
 }
 
 fn names_of(row: &Value) -> String {
-    row["inputs"]
-        .as_array()
-        .expect("an array")
-        .iter()
-        .map(|name| name.as_str().expect("text"))
-        .collect::<Vec<_>>()
-        .join(" ")
+    row["inputs"].list().iter().map(|name| name.words()).collect::<Vec<_>>().join(" ")
 }
 
 #[test]
@@ -146,13 +137,13 @@ fn every_subset_is_compared_and_the_best_of_each_size_reported() {
     let prune = ["prune", "a.csv", "--validate", "b.csv", "--target", "Fz_N"];
     let report = dir.lunula(&[&prune[..], &["--json", "--out", "pr"]].concat()).expect(0).json();
     assert_eq!((&report["job"], &report["subsets"]), (&"prune".into(), &15.into()));
-    let best: Vec<String> = report["best_of_size"].as_array().expect("an array").iter().map(names_of).collect();
+    let best: Vec<String> = report["best_of_size"].list().iter().map(names_of).collect();
     assert_eq!(&best[..3], ["P1", "P1 P2", "P1 P2 P3"]);
-    let rmse = |row: &Value| row["validate_rmse"]["Fz_N"].as_f64().expect("a number");
-    let errors: Vec<f64> = report["best_of_size"].as_array().expect("an array").iter().map(rmse).collect();
+    let rmse = |row: &Value| row["validate_rmse"]["Fz_N"].number();
+    let errors: Vec<f64> = report["best_of_size"].list().iter().map(rmse).collect();
     assert!(errors[0] > errors[1] && errors[1] > errors[2] && errors[2] <= EXACT, "{errors:?}");
     let without: Vec<(String, f64)> =
-        report["without_one"].as_array().expect("an array").iter().map(|row| (names_of(row), rmse(row))).collect();
+        report["without_one"].list().iter().map(|row| (names_of(row), rmse(row))).collect();
     let names: Vec<&str> = without.iter().map(|(names, _)| names.as_str()).collect();
     assert_eq!(names, ["P1 P2 P3 P4", "P2 P3 P4", "P1 P3 P4", "P1 P2 P4", "P1 P2 P3"]);
     assert!(without[1].1 > without[2].1 && without[2].1 > without[3].1 && without[4].1 <= EXACT, "{without:?}");
@@ -180,7 +171,7 @@ fn every_subset_is_compared_and_the_best_of_each_size_reported() {
             .expect(0)
             .json();
         for (column, part) in [("Fz_N_train_rmse", "training"), ("Fz_N_validate_rmse", "validation")] {
-            near(&[row[column].parse().unwrap()], &[model[part]["rmse"]["Fz_N"].as_f64().expect("a number")], 1e-12);
+            near(&[row[column].parse().unwrap()], &[model[part]["rmse"]["Fz_N"].number()], 1e-12);
         }
     }
     let found = dir.bytes_of("pr");
@@ -222,7 +213,7 @@ fn photodiodes_that_depend_on_each_other_make_no_model_and_the_others_do() {
         assert_eq!(row["Fz_N_validate_rmse"].is_empty(), double || dead, "{names:?}");
         assert_eq!(row["score"].is_empty(), double || dead, "{names:?}");
     }
-    let best: Vec<String> = report["best_of_size"].as_array().expect("an array").iter().map(names_of).collect();
+    let best: Vec<String> = report["best_of_size"].list().iter().map(names_of).collect();
     // Of equals the first; of three and four there is no model.
     assert_eq!(best, ["P1", "P1 P2"]);
     assert!(report["without_one"][0]["validate_rmse"].is_null());
@@ -248,7 +239,7 @@ fn of_seventeen_photodiodes_the_one_missed_least_is_removed_again_and_again() {
         .expect(0)
         .json();
     assert_eq!((&report["subsets"], &report["inputs"]), (&17.into(), &serde_json::json!(names)));
-    for (k, row) in report["best_of_size"].as_array().expect("an array").iter().enumerate() {
+    for (k, row) in report["best_of_size"].list().iter().enumerate() {
         assert_eq!(names_of(row), names[..=k].join(" "), "the strongest {} are left", k + 1);
     }
     assert!(report["left_out"].to_string().contains("2^17"), "{}", report["left_out"]);

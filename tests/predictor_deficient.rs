@@ -1,8 +1,8 @@
 //! `lunula train` on rows that do not determine the model: which photodiodes are at fault is reported, and what was
 //! asked for is done.
 
-use crate::util::Dir;
 use crate::util::sensor::{Recording, TARGETS, near, numbers, slope, volt};
+use crate::util::{Dir, Json};
 use serde_json::Value;
 
 /// Of a fit to exact numbers (measured: 1e-16 to 5e-16).
@@ -57,7 +57,7 @@ fn a_dead_photodiode_is_named_and_gets_nothing() {
             assert_eq!(fit["rank"], 7);
             let dropped = if how == "drop" { serde_json::json!(["P3"]) } else { serde_json::json!([]) };
             assert_eq!(fit["dropped"], dropped, "{how}");
-            assert!(fit["warnings"][0].as_str().expect("text").contains("7 of 8 terms"), "{fit}");
+            assert!(fit["warnings"][0].words().contains("7 of 8 terms"), "{fit}");
         }
         let note = format!("a.csv: P3 is {value} V in all 120 rows: dead or not connected");
         dir.train("a.csv", "force", "m.json", &["--deficient", "drop"]).expect(0).says(&note);
@@ -74,7 +74,7 @@ fn a_dead_photodiode_is_named_and_gets_nothing() {
             .expect(0)
             .says("P7 is 1.0 in all training rows: its weights are 0");
         let model = dir.parsed("m.json");
-        for node in model["model"]["hidden_weights"].as_array().expect("an array") {
+        for node in model["model"]["hidden_weights"].list() {
             assert_eq!((numbers(node)[2], numbers(node)[6]), (0.0, 0.0));
         }
     }
@@ -94,7 +94,7 @@ fn a_duplicated_photodiode_is_named_and_shares_or_is_dropped() {
         near(&[row[0], row[7]], &[slope(t, 0), slope(t, 7)], EXACT);
     }
     let (dropped, fit) = fitted(&dir, "drop");
-    let gone = fit["dropped"][0].as_str().expect("text").to_owned();
+    let gone = fit["dropped"][0].words().to_owned();
     assert!(gone == "P2" || gone == "P5", "{gone}");
     for (t, row) in dropped.iter().enumerate() {
         let (kept, left) = if gone == "P5" { (row[1], row[4]) } else { (row[4], row[1]) };
@@ -124,10 +124,7 @@ fn a_nearly_collinear_photodiode_is_fitted_with_a_warning() {
     answer.says("warning: P2 and P5 hardly differ");
     let fit = &report["fit"]["least_squares"];
     assert_eq!(fit["rank"], 8);
-    assert!(
-        fit["digits"].as_f64().expect("a number") < 8.0 && fit["condition"].as_f64().expect("a number") > 1e8,
-        "{fit}"
-    );
+    assert!(fit["digits"].number() < 8.0 && fit["condition"].number() > 1e8, "{fit}");
     for t in 0..3 {
         let row = numbers(&dir.parsed("m.json")["model"]["jacobian"][t]);
         // At least 5 digits where the numbers of the table allow 7.
@@ -146,7 +143,7 @@ fn fewer_rows_than_terms_exactly_as_many_and_one() {
             let (_, fit) = fitted(&dir, how);
             assert_eq!((&fit["rank"], &fit["residual_sd"][0]), (&(rows - 1).into(), &Value::Null), "{how}");
             let said = dir.lunula(&["evaluate", "m.json", "a.csv", "--json"]).expect(0).json();
-            assert!(said["rmse"]["Fz_N"].as_f64().expect("a number") <= EXACT, "{said}");
+            assert!(said["rmse"]["Fz_N"].number() <= EXACT, "{said}");
         }
         fitted(&dir, "ridge=1e-6");
     }
@@ -224,10 +221,7 @@ fn a_constant_target_has_no_r2() {
         let more = ["--model", kind, "--restarts", "1", "--epochs", "5", "--json"];
         let report = dir.train("a.csv", "force", "m.json", &more).expect(0).json();
         assert!(report["training"]["r2"]["Fx_N"].is_null() && report["training"]["r2"]["Fz_N"].is_number(), "{kind}");
-        assert!(
-            report["training"]["rmse"]["Fx_N"].as_f64().expect("a number") <= 1e-15,
-            "{kind}: the constant is reported"
-        );
+        assert!(report["training"]["rmse"]["Fx_N"].number() <= 1e-15, "{kind}: the constant is reported");
         let said = dir.lunula(&["evaluate", "m.json", "a.csv"]).expect(0).stdout;
         assert!(said.lines().any(|line| line.contains("Fx_N") && line.trim_end().ends_with("R2        -")), "{said}");
     }

@@ -1,7 +1,7 @@
 //! `lunula evaluate` from end to end, with errors that are known because the tests put them there.
 
-use crate::util::Dir;
 use crate::util::sensor::{Recording, near};
+use crate::util::{Dir, Json};
 use serde_json::Value;
 
 /// The model is exact to rounding (measured: 1e-16).
@@ -62,11 +62,9 @@ fn each_recording_has_its_own_errors() {
         );
     }
     let report = evaluate(&dir, "a.csv b.csv", &[]);
-    let recordings = report["recordings"].as_array().expect("an array");
-    let named: Vec<_> = recordings
-        .iter()
-        .map(|one| ["recording", "session", "subject"].map(|key| one[key].as_str().expect("text")))
-        .collect();
+    let recordings = report["recordings"].list();
+    let named: Vec<_> =
+        recordings.iter().map(|one| ["recording", "session", "subject"].map(|key| one[key].words())).collect();
     assert_eq!(named, [["a.csv", "a", "a.csv"], ["b.csv", "b", "b.csv"]]);
     near(&[of(&recordings[0], "bias")[2], of(&recordings[1], "bias")[2]], &[-0.5, 0.25], EXACT);
     assert_eq!(
@@ -84,8 +82,8 @@ fn errors_are_reported_by_pressing_force() {
     dir.recording("r.csv", &base.map("Fy_N", |row, v| if pressing[row] >= 0.5 { v + 0.5 } else { v }));
     let found = &evaluate(&dir, "r.csv", &[])["by_magnitude"];
     assert_eq!(found["of"], "-Fz_N");
-    let bins = found["bins"].as_array().expect("an array");
-    let edge = |bin: &Value, key: &str| bin[key].as_f64().expect("a number");
+    let bins = found["bins"].list();
+    let edge = |bin: &Value, key: &str| bin[key].number();
     assert!(bins.iter().any(|bin| edge(bin, "from") == 0.5) && bins.len() >= 3, "{found}");
     let mut rows = 0;
     for bin in bins {
@@ -103,16 +101,14 @@ fn errors_are_reported_by_pressing_force() {
 fn rows_of_the_training_set_are_reported() {
     let dir = trained();
     let again = dir.lunula(&["evaluate", "m.json", "train.csv", "noisy.csv", "--json"]).expect(0);
-    assert!(
-        again.json()["warnings"][0].as_str().expect("text").starts_with("train.csv: the model was trained on this")
-    );
+    assert!(again.json()["warnings"][0].words().starts_with("train.csv: the model was trained on this"));
     again.says("its errors flatter");
     // Another name or order of columns does not hide it.
     let all = Recording::of(0..200);
     let mut names: Vec<&str> = all.names.iter().map(String::as_str).collect();
     names.reverse();
     dir.recording("copy.csv", &all.only(&names));
-    assert!(evaluate(&dir, "copy.csv", &[])["warnings"][0].as_str().expect("text").starts_with("copy.csv: the model"));
+    assert!(evaluate(&dir, "copy.csv", &[])["warnings"][0].words().starts_with("copy.csv: the model"));
     assert_eq!(evaluate(&dir, "noisy.csv", &[])["warnings"], serde_json::json!([]));
     assert_eq!(dir.lunula(&["evaluate", "m.json", "train.csv", "-q"]).expect(0).stderr, "");
 }
@@ -123,7 +119,7 @@ fn intervals_hold_the_rows_that_they_promise() {
     // Of 100 different sizes the ceil(101 x 0.9) = 91st is the half width.
     let report = evaluate(&dir, "noisy.csv", &[]);
     near(&of(&report, "coverage")[2..], &[0.91], 1e-12);
-    let half = dir.parsed("m.json")["intervals"]["half_width"][2].as_f64().expect("a number");
+    let half = dir.parsed("m.json")["intervals"]["half_width"][2].number();
     dir.recording(
         "r.csv",
         &Recording::of(300..400).map("Fz_N", |row, v| if row < 25 { v + half * 1.01 } else { v + half * 0.99 }),
@@ -160,12 +156,7 @@ fn trajectories_sessions_and_subjects_are_held_out() {
     let dir = trained();
     let data = sessions(&dir);
     let names = |report: &Value| -> Vec<String> {
-        report["held_out"]["parts"]
-            .as_array()
-            .unwrap()
-            .iter()
-            .map(|part| part["name"].as_str().expect("text").to_owned())
-            .collect()
+        report["held_out"]["parts"].list().iter().map(|part| part["name"].words().to_owned()).collect()
     };
     let held = |by: &str| {
         let report = evaluate(&dir, data, &["--by", by]);
@@ -183,11 +174,11 @@ fn trajectories_sessions_and_subjects_are_held_out() {
     // The model itself is the same whatever is held out.
     assert_eq!(trajectory["rmse"], session["rmse"]);
     let coverage = &trajectory["held_out"]["coverage"];
-    let reached = coverage["all"]["reached"][2].as_f64().expect("a number");
+    let reached = coverage["all"]["reached"][2].number();
     assert!((0.5..=1.0).contains(&reached) && coverage["level"] == 0.9, "{coverage}");
-    assert!(subject["held_out"]["no_coverage"].as_str().expect("text").contains("2 groups; at least three"));
+    assert!(subject["held_out"]["no_coverage"].words().contains("2 groups; at least three"));
     let half = evaluate(&dir, data, &["--by", "trajectory", "--level", "0.5"]);
-    let wider = half["held_out"]["coverage"]["all"]["reached"][2].as_f64().expect("a number");
+    let wider = half["held_out"]["coverage"]["all"]["reached"][2].number();
     assert!(wider < reached, "{wider} of rows at 0.5, {reached} at 0.9");
 
     for by in ["trajectory", "session", "subject"] {
@@ -201,9 +192,9 @@ fn shuffled_rows_flatter_and_the_report_says_how_much() {
     let data = sessions(&dir);
     let rows = evaluate(&dir, data, &["--by", "rows", "--folds", "5", "--seed", "3"]);
     let found = &rows["held_out"];
-    assert_eq!((found["parts"].as_array().expect("an array").len(), &found["by"]["rows"]["folds"]), (5, &5.into()));
+    assert_eq!((found["parts"].list().len(), &found["by"]["rows"]["folds"]), (5, &5.into()));
     let (shuffled, whole) = (of(&found["pooled"], "rmse")[2], of(&found["by_trajectory"], "rmse")[2]);
-    let ratio = found["flattery"]["Fz_N"].as_f64().expect("a number");
+    let ratio = found["flattery"]["Fz_N"].number();
     assert!(whole > shuffled && (ratio - whole / shuffled).abs() <= 1e-12, "{found}");
     let honest = evaluate(&dir, data, &["--by", "trajectory"]);
     assert_eq!(honest["held_out"]["pooled"], found["by_trajectory"]);
@@ -212,7 +203,7 @@ fn shuffled_rows_flatter_and_the_report_says_how_much() {
         evaluate(&dir, data, &["--by", "rows", "--folds", "5", "--seed", "4"])["held_out"]["pooled"],
         found["pooled"]
     );
-    assert!(found["no_coverage"].as_str().expect("text").contains("promise too much"));
+    assert!(found["no_coverage"].words().contains("promise too much"));
     let list: Vec<&str> = data.split(' ').collect();
     let plain = dir.lunula(&[&["evaluate", "m.json"], &list[..], &["--by", "rows"]].concat()).expect(0).stdout;
     assert!(
@@ -233,8 +224,8 @@ fn a_part_that_cannot_be_fitted_says_so_and_the_others_go_on() {
     dir.recording("large.csv", &Recording::of(300..400));
     dir.recording("small.csv", &Recording::of(400..405));
     let found = &evaluate(&dir, "large.csv small.csv", &["--by", "trajectory"])["held_out"];
-    let parts = found["parts"].as_array().expect("an array");
-    assert!(parts[0]["fault"].as_str().expect("text").contains("8 terms need at least 9 rows; there are 5"), "{found}");
+    let parts = found["parts"].list();
+    assert!(parts[0]["fault"].words().contains("8 terms need at least 9 rows; there are 5"), "{found}");
     assert!(parts[0]["merit"].is_null() && parts[1]["fault"].is_null() && parts[1]["merit"]["rows"] == 5, "{found}");
     assert_eq!(found["pooled"]["rows"], 5);
     dir.recording("small2.csv", &Recording::of(405..410));
@@ -291,11 +282,7 @@ fn posture_is_binned_by_its_own_size() {
     dir.train("train.csv", "posture", "m.json", &["-q"]).expect(0);
     dir.recording("r.csv", &Recording::of(300..360).map("J2_deg", |_, v| v - 2.0));
     let report = evaluate(&dir, "r.csv", &["--out", "ev"]);
-    near(
-        &[report["rmse"]["J2_deg"].as_f64().expect("a number"), report["bias"]["J2_deg"].as_f64().expect("a number")],
-        &[2.0, 2.0],
-        1e-12,
-    );
+    near(&[report["rmse"]["J2_deg"].number(), report["bias"]["J2_deg"].number()], &[2.0, 2.0], 1e-12);
     assert_eq!(report["by_magnitude"]["of"], "J2_deg");
     assert!(dir.path("ev/by-magnitude.png").is_file());
 }

@@ -1,7 +1,7 @@
 //! `lunula train` from end to end, on a sensor whose coefficients are known.
 
-use crate::util::Dir;
 use crate::util::sensor::{Recording, near, numbers, offset, slope};
+use crate::util::{Dir, Json};
 
 /// The sensor's tables hold exact numbers; the fit is centred and refined (measured: exact, or 1e-32 for a coefficient
 /// of 0).
@@ -32,8 +32,8 @@ fn the_coefficients_come_back_exactly() {
             near(&numbers(&model["model"]["jacobian"][t]), &wanted, EXACT);
         }
         let reported = dir.lunula(&["analyse", "m.json", "--json"]).expect(0).json();
-        for (t, name) in model["targets"].as_array().expect("an array").iter().enumerate() {
-            let f0 = reported["printed"]["offset"][name["name"].as_str().expect("text")].as_f64().expect("a number");
+        for (t, name) in model["targets"].list().iter().enumerate() {
+            let f0 = reported["printed"]["offset"][name["name"].words()].number();
             near(&[f0], &[offset(first + t)], EXACT_OFFSET);
         }
     }
@@ -82,22 +82,16 @@ fn the_report_has_the_fit_the_rows_and_the_errors() {
     };
     assert_eq!((&report["data"][0], &report["validate"][0]), (&of("train.csv", 200), &of("held.csv", 100)));
     let fit = &report["fit"]["least_squares"];
-    assert_eq!(
-        (&fit["rank"], &fit["rows"], fit["dropped"].as_array().expect("an array").len()),
-        (&8.into(), &200.into(), 0)
-    );
-    assert!(
-        fit["condition"].as_f64().expect("a number") < 2.0 && fit["digits"].as_f64().expect("a number") > 14.0,
-        "{fit}"
-    );
+    assert_eq!((&fit["rank"], &fit["rows"], fit["dropped"].list().len()), (&8.into(), &200.into(), 0));
+    assert!(fit["condition"].number() < 2.0 && fit["digits"].number() > 14.0, "{fit}");
     for part in ["training", "validation"] {
         for target in ["Fx_N", "Fy_N", "Fz_N"] {
-            let merit = |what: &str| report[part][what][target].as_f64().expect("a number");
+            let merit = |what: &str| report[part][what][target].number();
             assert!(merit("rmse") <= EXACT && merit("bias").abs() <= EXACT && merit("r2") == 1.0, "{part} {target}");
         }
     }
     assert!(numbers(&serde_json::json!([report["half_width"]["Fz_N"]]))[0] <= EXACT);
-    assert!(report["stages"].as_array().expect("an array").iter().any(|stage| stage["stage"] == "fit"));
+    assert!(report["stages"].list().iter().any(|stage| stage["stage"] == "fit"));
     assert!(report["left_out"].to_string().contains("learning curve"), "{}", report["left_out"]);
 
     let plain = dir.train("train.csv", "force", "m.json", &["--validate", "held.csv"]).expect(0);
@@ -121,7 +115,7 @@ fn the_model_file_holds_names_units_ranges_hashes_and_a_version() {
     let channel = |list: &str, k: usize| &model[list][k];
     for (list, columns, unit) in [("inputs", &["P1", "P2", "P8"][..], "V"), ("targets", &["Fx_N", "Fz_N"], "N")] {
         for name in columns {
-            let k = model[list].as_array().expect("an array").iter().position(|one| one["name"] == *name).unwrap();
+            let k = model[list].list().iter().position(|one| one["name"] == *name).unwrap();
             let values = [a.numbers(name), b.numbers(name)].concat();
             let low = values.iter().copied().fold(f64::INFINITY, f64::min);
             let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -131,10 +125,10 @@ fn the_model_file_holds_names_units_ranges_hashes_and_a_version() {
     }
     let training = &model["training"];
     assert_eq!(training["rows"], 260);
-    let recordings = training["recordings"].as_array().expect("an array");
-    let reported = |k: usize| ["name", "session", "subject"].map(|key| recordings[k][key].as_str().expect("text"));
+    let recordings = training["recordings"].list();
+    let reported = |k: usize| ["name", "session", "subject"].map(|key| recordings[k][key].words());
     assert_eq!((reported(0), reported(1)), (["train.csv"; 3], ["b.csv", "2", "anna"]));
-    let hash = |value: &serde_json::Value| value.as_str().expect("text").to_owned();
+    let hash = |value: &serde_json::Value| value.words().to_owned();
     let hashes = [&training["sha256"], &recordings[0]["sha256"], &recordings[1]["sha256"], &model["sha256"]].map(hash);
     assert!(hashes.iter().all(|hash| hash.len() == 64 && hash.bytes().all(|b| b.is_ascii_hexdigit())), "{hashes:?}");
     assert_eq!(training["recipe"]["kind"], "linear");
@@ -209,18 +203,10 @@ fn a_network_fits_a_nonlinear_sensor_and_reports_its_restarts() {
     let fit = &own["fit"]["network"];
     // A fifth of the rows is set aside to stop on.
     assert_eq!((&fit["rows"], &fit["stop_rows"]), (&320.into(), &80.into()));
-    let scores: Vec<f64> = fit["restarts"]
-        .as_array()
-        .expect("an array")
-        .iter()
-        .map(|one| one["score"].as_f64().expect("a number"))
-        .collect();
+    let scores: Vec<f64> = fit["restarts"].list().iter().map(|one| one["score"].number()).collect();
     let best = fit["best"].as_u64().unwrap() as usize;
     assert!(scores.len() == 4 && scores.iter().all(|score| *score >= scores[best]), "{fit}");
-    assert!(
-        fit["median_score"].as_f64().expect("a number") >= scores[best]
-            && fit["score_iqr"].as_f64().expect("a number") >= 0.0
-    );
+    assert!(fit["median_score"].number() >= scores[best] && fit["score_iqr"].number() >= 0.0);
 
     let stopped = ["--stop-on", "stop.csv", "--validate", "held.csv"];
     let given = dir.train("train.csv", "posture", "given.json", &[&few[..], &stopped].concat()).expect(0).json();
@@ -230,7 +216,7 @@ fn a_network_fits_a_nonlinear_sensor_and_reports_its_restarts() {
 
     // Made by a network of one bend and a line: two nodes tell it far better than a linear model.
     let linear = dir.train("train.csv", "posture", "line.json", &["--validate", "held.csv", "--json"]).expect(0).json();
-    let rmse = |report: &serde_json::Value| report["validation"]["rmse"]["J2_deg"].as_f64().expect("a number");
+    let rmse = |report: &serde_json::Value| report["validation"]["rmse"]["J2_deg"].number();
     assert!(rmse(&given) * 10.0 <= rmse(&linear), "{} against {}", rmse(&given), rmse(&linear));
 }
 
@@ -246,13 +232,13 @@ fn the_quadratic_model_has_44_terms_and_finds_them() {
         dir.train("train.csv", "Fz_N", "m.json", &["--model", "quadratic", "--validate", "held.csv", "--json"]);
     let report = report.expect(0).json();
     let fit = &report["fit"]["least_squares"];
-    assert_eq!((fit["terms"].as_array().expect("an array").len(), &fit["rank"]), (44, &44.into()));
-    assert!(report["validation"]["rmse"]["Fz_N"].as_f64().expect("a number") <= 1e-14, "{report}");
+    assert_eq!((fit["terms"].list().len(), &fit["rank"]), (44, &44.into()));
+    assert!(report["validation"]["rmse"]["Fz_N"].number() <= 1e-14, "{report}");
     let printed = &dir.lunula(&["analyse", "m.json", "--json"]).expect(0).json()["printed"];
-    let terms = printed["terms"].as_array().expect("an array");
+    let terms = printed["terms"].list();
     let value = |term: &str| {
         let place = terms.iter().position(|t| *t == term).unwrap_or_else(|| panic!("{term}: {terms:?}"));
-        printed["jacobian"]["Fz_N"][place].as_f64().expect("a number")
+        printed["jacobian"]["Fz_N"][place].number()
     };
     // Volts as they are: products cancel some digits (measured: 2e-14).
     near(&[value("P1 P2"), value("P1^2"), value("P3^2"), value("P4")], &[-0.5, 0.25, 0.0, slope(2, 3)], 1e-11);
@@ -274,10 +260,10 @@ fn lags_are_further_inputs_and_both_ways_are_reported() {
     assert_eq!(report["fit"]["least_squares"]["terms"], serde_json::json!(["P1", "P2", "P1@-0.1s", "P2@-0.1s"]));
     // The first row of each recording has no history.
     assert_eq!((&report["training"]["rows"], &report["validation"]["rows"]), (&119.into(), &59.into()));
-    let with = report["validation"]["rmse"]["Fz_N"].as_f64().expect("a number");
+    let with = report["validation"]["rmse"]["Fz_N"].number();
     let without = &report["without"][0];
     assert_eq!(without["without"], "lags");
-    let plain = without["validation"]["rmse"]["Fz_N"].as_f64().expect("a number");
+    let plain = without["validation"]["rmse"]["Fz_N"].number();
     assert!(with <= 1e-14 && plain > 0.1, "{with} with, {plain} without");
     near(&numbers(&dir.parsed("m.json")["model"]["jacobian"][0]), &[0.0, 0.0, 1.0, 0.0], 1e-14);
     dir.train("train.csv", "Fz_N", "n.json", &["--lags", "20"]).expect(2).says("take shorter lags");
@@ -296,8 +282,8 @@ fn friction_brings_forces_into_the_cone_and_both_ways_are_reported() {
     let without = &report["without"][0];
     assert_eq!(without["without"], "the cone of friction");
     // The sensor's forces lie in no cone: exact without, not exact with.
-    assert!(without["validation"]["rmse"]["Fx_N"].as_f64().expect("a number") <= EXACT);
-    assert!(report["validation"]["rmse"]["Fx_N"].as_f64().expect("a number") > 0.01);
+    assert!(without["validation"]["rmse"]["Fx_N"].number() <= EXACT);
+    assert!(report["validation"]["rmse"]["Fx_N"].number() > 0.01);
     let again = dir.lunula(&["evaluate", "m.json", "held.csv", "--json"]).expect(0).json();
     assert_eq!(again["rmse"], report["validation"]["rmse"]);
     assert_eq!(again["without_friction"]["rmse"], without["validation"]["rmse"]);
@@ -328,12 +314,8 @@ fn chosen_photodiodes_and_targets() {
         (&report["inputs"], &report["targets"]),
         (&serde_json::json!(["P8", "P1"]), &serde_json::json!(["Fz_N", "J2_deg"]))
     );
-    let units: Vec<String> = dir.parsed("m.json")["targets"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|one| one["unit"].as_str().expect("text").to_owned())
-        .collect();
+    let units: Vec<String> =
+        dir.parsed("m.json")["targets"].list().iter().map(|one| one["unit"].words().to_owned()).collect();
     assert_eq!(units, ["N", "deg"]);
     dir.train("train.csv", "Fz_N", "m.json", &["--inputs", "P1,P1"]).expect(2).says("P1");
     dir.train("train.csv", "Fz_N", "m.json", &["--inputs", "P1,Fz_N"]).expect(2).says("Fz_N");
@@ -354,9 +336,7 @@ fn validation_only_reports_and_says_what_was_trained_on() {
         one["sha256"].take();
     }
     assert_eq!(alone, with, "the fit has not seen what it is validated on");
-    let reported = |what: &str| {
-        ["Fx_N", "Fy_N", "Fz_N"].map(|target| report["validation"][what][target].as_f64().expect("a number"))
-    };
+    let reported = |what: &str| ["Fx_N", "Fy_N", "Fz_N"].map(|target| report["validation"][what][target].number());
     near(&reported("rmse"), &[0.25, 0.5, 0.0], EXACT);
     near(&reported("bias"), &[0.0, -0.5, 0.0], EXACT);
     near(&numbers(&intervals["half_width"]), &[0.25, 0.5, 0.0], EXACT);
@@ -394,7 +374,7 @@ fn the_learning_curve_goes_down_the_recordings() {
     let share = rows.iter().filter(|row| row["share"] != "1").count();
     assert_eq!(share, 9, "tenths of each recording");
     let last = rows.last().unwrap();
-    let reported = report["validation"]["rmse"]["Fz_N"].as_f64().expect("a number");
+    let reported = report["validation"]["rmse"]["Fz_N"].number();
     near(&[last["Fz_N_validate_rmse"].parse().unwrap()], &[reported], 1e-12);
     let first: f64 = rows.iter().find(|row| row["share"] == "1").unwrap()["Fz_N_validate_rmse"].parse().unwrap();
     assert!(reported < first, "three recordings are better than one: {reported} against {first}");
@@ -424,9 +404,7 @@ fn a_plan_does_nothing() {
     assert!(line("validation").contains("left out") && line("lags").contains("none asked for"), "{}", plan.stdout);
     let more = ["--plan", "--json", "--validate", "held.csv", "--friction", "0.5"];
     let plan = dir.train("train.csv", "force", "m.json", &more).expect(0).json();
-    let fate = |stage: &str| {
-        plan["plan"].as_array().expect("an array").iter().find(|one| one["stage"] == stage).unwrap()["fate"].clone()
-    };
+    let fate = |stage: &str| plan["plan"].list().iter().find(|one| one["stage"] == stage).unwrap()["fate"].clone();
     assert_eq!(
         (fate("validation"), fate("early stopping"), fate("cone of friction")),
         ("run".into(), "left_out".into(), "run".into())
@@ -459,7 +437,7 @@ fn a_raw_log_of_the_phantom_is_trained_on_as_it_stands() {
     assert_eq!(report["data"][0]["rows"], lit);
     // Another spiral of the same finger: most of the force is predicted, and not all (noise, and a sensor that is not
     // linear).
-    let r2 = report["validation"]["r2"]["Fz_N"].as_f64().expect("a number");
+    let r2 = report["validation"]["r2"]["Fz_N"].number();
     assert!((0.7..0.9999).contains(&r2), "{r2}");
     dir.train("1/log.csv", "posture", "n.json", &[]).expect(2).says("run `lunula align` first");
 }

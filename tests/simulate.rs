@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::util::{Answer, Dir};
+use crate::util::{Answer, Dir, Json};
 
 fn run(dir: &Dir, options: &str) -> Answer {
     let mut arguments = vec!["simulate"];
@@ -201,8 +201,8 @@ fn several_equilibria_at_a_load_are_rows_of_their_own() {
     let set = "--set k_C1_N_per_m=5e4 --set k_C2_N_per_m=5e4";
     let report = run(&dir, &format!("--static 0..10000/100 --load distal {set} --out s.csv --json")).expect(0).json();
     let several = report["with_several"].as_u64().unwrap();
-    assert!(several > 0 && !report["bistable_pa"].as_array().unwrap().is_empty(), "{report}");
-    let folds = report["folds"].as_array().unwrap().iter().filter(|fold| fold["what"] == "fold").count();
+    assert!(several > 0 && !report["bistable_pa"].list().is_empty(), "{report}");
+    let folds = report["folds"].list().iter().filter(|fold| fold["what"] == "fold").count();
     assert_eq!(folds, 2);
     let rows = dir.table("s.csv");
     assert!(rows.iter().any(|row| row["stable"] == "0"), "an unstable one between them");

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-use crate::util::{Answer, Dir};
+use crate::util::{Answer, Dir, Json};
 
 /// Half a step of a force's sixth decimal, and of an angle's fifth.
 const FORCE_N: f64 = 0.51e-6;
@@ -47,14 +47,14 @@ fn the_spiral_is_the_thesis_equations_after_its_soft_start() {
     }
     assert_eq!(compared, 4451);
     let spiral = &report["force"]["spiral"];
-    let reported = |name: &str| spiral[name].as_f64().unwrap();
+    let reported = |name: &str| spiral[name].number();
     assert!((reported("radial_rate_printed_n_per_s") - 0.117_81).abs() <= 1e-5);
     assert!((reported("radial_rate_true_n_per_s") - 0.235_62).abs() <= 1e-5);
     assert!(
         (reported("shortest_printed_s") - 141.37).abs() <= 0.01 && (reported("shortest_true_s") - 282.74).abs() <= 0.01
     );
     assert_eq!(report["force"]["keeps_limit"], true);
-    assert_eq!(report["warnings"].as_array().unwrap().len(), 0);
+    assert_eq!(report["warnings"].list().len(), 0);
     let files: Vec<String> = dir.bytes_of(".").into_keys().collect();
     assert_eq!(files, ["t-force.png", "t-force.svg", "t-path.png", "t-path.svg", "t.csv", "t.run.json"]);
 }
@@ -71,7 +71,7 @@ fn the_reported_rates_are_those_of_the_rows() {
         for k in 0..3 {
             let rate = rows.windows(2).map(|pair| (forces(&pair[1])[k] - forces(&pair[0])[k]).abs() / 0.025);
             let largest = rate.fold(0.0, f64::max);
-            let reported = reported[k].as_f64().unwrap();
+            let reported = reported[k].number();
             assert!((largest / reported - 1.0).abs() <= NEAR, "{name} {k}: {largest} {reported}");
         }
     }
@@ -116,7 +116,7 @@ fn bending_is_equation_27_and_random_bending_stays_in_its_range() {
     let csv = dir.table("p.csv");
     assert!(numbers.len() == 631 && numbers.iter().zip(&csv).all(|(a, row)| *a == Some(number(row, "J2_deg"))));
     let posture = &report["posture"];
-    assert!((posture["fastest_deg_per_s"].as_f64().unwrap() - 25.13).abs() <= 0.01);
+    assert!((posture["fastest_deg_per_s"].number() - 25.13).abs() <= 0.01);
     assert!(dir.path("p-posture.png").is_file());
     run(&dir, "posture --random --seed 4 --seconds 300 --out r.csv --no-figures").expect(0);
     let rows = dir.table("r.csv");
@@ -174,7 +174,7 @@ fn extremes_are_played_and_warned_of() {
     let dir = Dir::new();
     let warned = |options: &str| {
         let report = run(&dir, &format!("{options} --out t.csv --json -q")).expect(0).json();
-        report["warnings"].as_array().unwrap().iter().map(|text| text.as_str().unwrap().to_owned()).collect::<String>()
+        report["warnings"].list().iter().map(|text| text.words().to_owned()).collect::<String>()
     };
     // As short as can be: the soft start is all of it.
     let hasty = warned("force --seconds 2");
@@ -201,7 +201,7 @@ fn extremes_are_played_and_warned_of() {
 fn a_plan_says_what_is_left_out_and_does_nothing() {
     let dir = Dir::new();
     let plan = run(&dir, "posture --plan --no-figures --out t.csv --json").expect(0).json();
-    let fates: Vec<_> = plan["plan"].as_array().unwrap().iter().map(|step| step["fate"].as_str().unwrap()).collect();
+    let fates: Vec<_> = plan["plan"].list().iter().map(|step| step["fate"].words()).collect();
     assert_eq!(fates, ["run", "run", "left_out", "left_out", "left_out"]);
     assert!(run(&dir, "force --plan").expect(0).stdout.contains("4501 rows of time_s, Fx_N, Fy_N, Fz_N"));
     run(&dir, "force --plan --every 0").expect(2).says("--every 0");

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::work::{Made, Work};
-use super::{Given, Keys, OptionFault, Said, read};
+use super::{Given, Keys, OptionFault, Said, keys, read};
 use crate::stages::Step;
 
 /// How many files a role takes.
@@ -56,10 +56,18 @@ pub struct Kind {
     pub parts: &'static [Part],
     /// Counted up where the same inputs and options give other bytes than before.
     pub revision: u32,
-    /// Its keys in pipeline files besides the roles, `job`, `each` and `where`: [`super::keys`] of its options.
+    /// Its keys in pipeline files besides the roles, `job`, `each` and `where`.
     pub keys: fn() -> Vec<String>,
-    /// Checks a stage's keys (without roles, `job`, `each`, `where`): [`prepare`] of the job.
+    /// Checks a stage's keys (without roles, `job`, `each`, `where`).
     pub prepare: fn(&toml::Table) -> Result<Arc<dyn Prepared>, OptionFault>,
+}
+
+impl Kind {
+    /// That of a job, in its first revision.
+    #[must_use]
+    pub const fn of<J: Job>(name: &'static str, roles: &'static [Role], parts: &'static [Part]) -> Self {
+        Self { name, roles, parts, revision: 1, keys: keys::<J::Options>, prepare: prepare::<J> }
+    }
 }
 
 /// What later stages and the wanted results need of a task.

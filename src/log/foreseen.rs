@@ -1,5 +1,7 @@
 //! Logs and tables that a pipeline foresees: whether their ambient light will be subtracted, and what reading costs.
 
+use std::path::Path;
+
 use super::LogReading;
 use crate::job::Foreseen;
 use crate::stages::Step;
@@ -18,7 +20,16 @@ const BYTES_A_ROW: f64 = 110.0;
 /// Whether ambient light will be subtracted: only from raw logs whose LED goes on and off.
 pub fn ambient_step(inputs: &[Foreseen], roles: &[&str], log: &LogReading) -> Step {
     let of_roles = inputs.iter().filter(|input| roles.contains(&input.role));
-    let led: Vec<Option<bool>> = of_roles.map(|input| has_led(input, log)).collect();
+    step(of_roles.map(|input| has_led(input, log)).collect())
+}
+
+/// The same of files that exist.
+pub fn ambient_step_of<'a>(files: impl IntoIterator<Item = &'a Path>, log: &LogReading) -> Step {
+    step(files.into_iter().map(|file| log.led_of(file)).collect())
+}
+
+/// By whether each file's LED goes on and off.
+fn step(led: Vec<Option<bool>>) -> Step {
     let count = |value: Option<bool>| led.iter().filter(|one| **one == value).count();
     let (lit, not, all) = (count(Some(true)), count(Some(false)), led.len());
     let reason = match (lit, all - lit - not) {

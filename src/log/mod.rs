@@ -32,7 +32,7 @@ use std::path::{Path, PathBuf};
 
 pub use ambient::{AmbientError, AmbientOptions, Samples, samples};
 pub(crate) use ambient::{Preceding, piles};
-pub use foreseen::{ReadingCost, ambient_step, foreseen_bytes};
+pub use foreseen::{ReadingCost, ambient_step, ambient_step_of, foreseen_bytes};
 pub(crate) use lines::cell::led as led_state;
 pub use lines::stamps::TimeUnit;
 pub(crate) use lines::status::{Statuses, Verdict};

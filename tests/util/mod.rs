@@ -41,6 +41,30 @@ impl Answer {
     }
 }
 
+/// What a value of JSON has to be.
+pub trait Json {
+    fn number(&self) -> f64;
+    fn words(&self) -> &str;
+    fn list(&self) -> &[serde_json::Value];
+}
+
+impl Json for serde_json::Value {
+    #[track_caller]
+    fn number(&self) -> f64 {
+        self.as_f64().unwrap_or_else(|| panic!("a number, not {self}"))
+    }
+
+    #[track_caller]
+    fn words(&self) -> &str {
+        self.as_str().unwrap_or_else(|| panic!("a text, not {self}"))
+    }
+
+    #[track_caller]
+    fn list(&self) -> &[serde_json::Value] {
+        self.as_array().unwrap_or_else(|| panic!("a list, not {self}"))
+    }
+}
+
 /// A folder that goes away with the test.
 pub struct Dir(tempfile::TempDir);
 

@@ -4,7 +4,7 @@
 //! Volts are multiples of 2^-10, coefficients of 2^-4: every cell of the table is exact, so that coefficients, RMSE,
 //! bias and R2 of what is fitted to it are known.
 
-use super::Dir;
+use super::{Dir, Json};
 
 /// The sensor's description, in order.
 pub const TARGETS: [&str; 4] = ["Fx_N", "Fy_N", "Fz_N", "J2_deg"];
@@ -134,8 +134,7 @@ impl Dir {
 /// Numbers of JSON.
 #[track_caller]
 pub fn numbers(json: &serde_json::Value) -> Vec<f64> {
-    let list = json.as_array().unwrap_or_else(|| panic!("a list, not {json}"));
-    list.iter().map(|value| value.as_f64().unwrap_or_else(|| panic!("a number, not {value}"))).collect()
+    json.list().iter().map(Json::number).collect()
 }
 
 /// That no number is farther off than `most`; NaN is.

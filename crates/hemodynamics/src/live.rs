@@ -58,37 +58,20 @@ pub struct LiveStatistics {
 
 /// Why a sample, or the beginning, failed.
 #[derive(Debug, thiserror::Error, Clone, PartialEq)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum LiveFault {
-    /// The state to start from.
     #[error("the start can't be used: {0}")]
     Start(#[from] StateFault),
-    /// The time between samples.
     #[error("the time between samples is {0} s; it has to be finite and longer than 0")]
     Sample(f64),
-    /// An input that is not a number.
     #[error("the load {load} of the sample is {value}; it has to be a finite pressure")]
-    Input {
-        /// `P_H`, `P_L`, `P_F1` or `P_F2`.
-        load: &'static str,
-        /// Its value.
-        value: f64,
-    },
-    /// A vessel closed.
+    Input { load: &'static str, value: f64 },
     #[error("{site} closes {after_s} s after the last sample; the state is still that of the last sample")]
-    Collapsed {
-        /// Which.
-        site: Site,
-        /// When, s after the last sample.
-        after_s: f64,
-    },
-    /// No step came through, or too many were needed.
+    Collapsed { site: Site, after_s: f64 },
     #[error(
         "the equations can't be solved {after_s} s after the last sample; the state is still that of the last sample"
     )]
-    Stuck {
-        /// Where, s after the last sample.
-        after_s: f64,
-    },
+    Stuck { after_s: f64 },
 }
 
 impl Live {

@@ -50,23 +50,12 @@ enum Curve {
 
 /// Why photodiodes can't be had.
 #[derive(Debug, thiserror::Error, Clone, PartialEq)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum OpticsFault {
-    /// A working point of another length.
     #[error("the optics' working point has {got} lumens; it needs one for each of {units} capillary units")]
-    Length {
-        /// Units of the model.
-        units: usize,
-        /// Lumens given.
-        got: usize,
-    },
-    /// A working point that is not an open lumen.
+    Length { units: usize, got: usize },
     #[error("the optics' working point of {site} is {lumen}; it has to be a finite lumen (d / D) greater than 0")]
-    Lumen {
-        /// Which capillary.
-        site: Site,
-        /// Its lumen.
-        lumen: f64,
-    },
+    Lumen { site: Site, lumen: f64 },
 }
 
 impl Photodiodes {

@@ -14,34 +14,17 @@ pub struct State {
 
 /// Why a state can't be used.
 #[derive(Debug, thiserror::Error, Clone, PartialEq)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum StateFault {
-    /// Not a value for every wall.
     #[error("the state has {got} values for {walls} walls; it needs a displacement and a velocity for each")]
-    Length {
-        /// Walls of the model.
-        walls: usize,
-        /// Values given.
-        got: usize,
-    },
-    /// No finite number.
+    Length { walls: usize, got: usize },
     #[error("the state of {site} is {value}; it has to be a finite number")]
-    NotFinite {
-        /// Which vessel.
-        site: Site,
-        /// The value.
-        value: f64,
-    },
-    /// A vessel is closed.
+    NotFinite { site: Site, value: f64 },
     #[error(
         "{site} is closed in this state (its lumen is {lumen} times its nominal diameter); the model knows open \
          vessels only"
     )]
-    Closed {
-        /// Which vessel.
-        site: Site,
-        /// Its lumen over its nominal diameter.
-        lumen: f64,
-    },
+    Closed { site: Site, lumen: f64 },
 }
 
 impl State {

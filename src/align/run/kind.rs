@@ -16,7 +16,7 @@ use crate::align::run::plan::{Foreknown, steps};
 use crate::align::run::report::AlignReport;
 use crate::job::{
     Demand, Facts, Foreseen, Job, Keys, Kind, Made, OptionFault, Order, Part, Quality, Report, Role, Tables, Takes,
-    Work, against, keys, prepare,
+    Work, against,
 };
 use crate::log::LogHeader;
 use crate::stages::{Stages, Step};
@@ -72,9 +72,9 @@ impl AlignJob {
 }
 
 impl Job for AlignJob {
-    const KIND: Kind = Kind {
-        name: "align",
-        roles: &[
+    const KIND: Kind = Kind::of::<Self>(
+        "align",
+        &[
             Role { name: "joints", takes: Takes::One, about: "the table of angles of `posture`" },
             Role { name: "log", takes: Takes::One, about: "the log of photodiodes, and forces where it has them" },
             Role {
@@ -88,7 +88,7 @@ impl Job for AlignJob {
                 about: "the true angles of the log's rows: log_s, <joint>_deg",
             },
         ],
-        parts: &[
+        &[
             Part { name: "training", file: "training.csv", only_if_wanted: false },
             Part { name: "certificate", file: "training.sync.json", only_if_wanted: false },
             Part { name: MOT, file: "angles.mot", only_if_wanted: true },
@@ -96,10 +96,7 @@ impl Job for AlignJob {
             Part { name: DLC, file: "markers.csv", only_if_wanted: true },
             Part { name: PICTURES, file: "training-labels.png", only_if_wanted: true },
         ],
-        revision: 1,
-        keys: keys::<AlignKeys>,
-        prepare: prepare::<Self>,
-    };
+    );
 
     type Options = AlignKeys;
 
@@ -212,14 +209,11 @@ struct JoinFigures {
 }
 
 impl Job for JoinJob {
-    const KIND: Kind = Kind {
-        name: "join",
-        roles: &[Role { name: "sets", takes: Takes::Many, about: "what `align` made" }],
-        parts: &[Part { name: "training", file: "training.csv", only_if_wanted: false }],
-        revision: 1,
-        keys: keys::<Tables>,
-        prepare: prepare::<Self>,
-    };
+    const KIND: Kind = Kind::of::<Self>(
+        "join",
+        &[Role { name: "sets", takes: Takes::Many, about: "what `align` made" }],
+        &[Part { name: "training", file: "training.csv", only_if_wanted: false }],
+    );
 
     type Options = Tables;
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::job::{curve, plan, steps};
 use super::{CurveOptions, CurveOutputs};
 use crate::hemodynamics::given::{PARAMS, existing, of_foreseen, of_task};
-use crate::job::{Demand, Facts, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Work, keys, prepare};
+use crate::job::{Demand, Facts, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Work};
 use crate::stages::Step;
 
 const PICTURES: &str = "pictures";
@@ -20,17 +20,14 @@ fn outputs(folder: &Path, demand: &Demand) -> CurveOutputs {
 }
 
 impl Job for CurveJob {
-    const KIND: Kind = Kind {
-        name: "static",
-        roles: &[PARAMS],
-        parts: &[
+    const KIND: Kind = Kind::of::<Self>(
+        "static",
+        &[PARAMS],
+        &[
             Part { name: "curve", file: TABLE, only_if_wanted: false },
             Part { name: PICTURES, file: "", only_if_wanted: true },
         ],
-        revision: 1,
-        keys: keys::<CurveOptions>,
-        prepare: prepare::<Self>,
-    };
+    );
 
     type Options = CurveOptions;
 

@@ -15,6 +15,7 @@ use super::{FitInputs, FitOptions, FitOutputs, estimates, figure, fitted, noise}
 use crate::files::{Places, beside, pictures_beside};
 use crate::hemodynamics::{HemodynamicsError, named};
 use crate::job::{Report, Watch};
+use crate::log::ambient_step_of;
 use crate::stages::{Stages, Step, left_out};
 use crate::table::{Column, TableWriter, Value};
 
@@ -44,7 +45,7 @@ pub fn plan(
     if let Some(outputs) = outputs {
         places(inputs, options, outputs)?;
     }
-    Ok(steps(inputs, options, outputs, Some(ready.samples())))
+    Ok(steps(inputs, options, outputs, ambient(inputs, options), Some(ready.samples())))
 }
 
 fn ready(inputs: &FitInputs, options: &FitOptions) -> Result<Ready, HemodynamicsError> {
@@ -68,11 +69,17 @@ fn ready(inputs: &FitInputs, options: &FitOptions) -> Result<Ready, Hemodynamics
     Ok(Ready { start, free, recordings })
 }
 
-/// The one table of steps; `samples` are known once the recordings are read.
+fn ambient(inputs: &FitInputs, options: &FitOptions) -> Step {
+    ambient_step_of(inputs.recordings.iter().map(PathBuf::as_path), &options.columns.log)
+}
+
+/// The one table of steps; `ambient`: whether ambient light is taken away; `samples` are known once the recordings are
+/// read.
 pub(super) fn steps(
     inputs: &FitInputs,
     options: &FitOptions,
     outputs: Option<&FitOutputs>,
+    ambient: Step,
     samples: Option<usize>,
 ) -> Vec<Step> {
     let pictures = outputs.is_none_or(|outputs| outputs.figures);
@@ -80,6 +87,7 @@ pub(super) fn steps(
     let (free, recordings) = (options.free().len(), inputs.recordings.len());
     let held = options.calibrate == Calibration::Fixed;
     vec![
+        ambient,
         Step::new("fit", true, format!("{free} free groups, {recordings} recordings{samples}")),
         Step::new(
             "offset and scaling",
@@ -195,7 +203,7 @@ pub fn fit(
         parameter_files,
         table,
     };
-    let left_out = left_out(steps(inputs, options, Some(outputs), Some(ready.samples())));
+    let left_out = left_out(steps(inputs, options, Some(outputs), ambient(inputs, options), Some(ready.samples())));
     let warnings = warnings(&result, &ready.recordings);
     let notes = notes(&ready.recordings, outputs.figures);
     let report = Report { left_out, warnings, notes, pictures, ..Report::new("fit", watch, figures) };

@@ -9,8 +9,7 @@ use super::{FitInputs, FitOptions, FitOutputs, FitReport};
 use crate::hemodynamics::given::{PARAMS, existing, of_foreseen, of_task, read_parameters};
 use crate::hemodynamics::model::Parameters;
 use crate::job::{
-    Demand, Foreseen, Given, Job, Keys, Kind, Made, OptionFault, Order, Part, Quality, Role, Said, Takes, Work, keys,
-    prepare, read,
+    Demand, Foreseen, Given, Job, Keys, Kind, Made, OptionFault, Order, Part, Quality, Role, Said, Takes, Work, read,
 };
 use crate::log::{ambient_step, foreseen_bytes};
 use crate::stages::Step;
@@ -33,9 +32,9 @@ fn subjects<'a>(keys: impl Iterator<Item = &'a Keys>) -> Vec<String> {
 }
 
 impl Job for FitJob {
-    const KIND: Kind = Kind {
-        name: "fit",
-        roles: &[
+    const KIND: Kind = Kind::of::<Self>(
+        "fit",
+        &[
             Role {
                 name: RECORDINGS,
                 takes: Takes::Many,
@@ -44,16 +43,13 @@ impl Job for FitJob {
             PARAMS,
             Role { name: TRUTH, takes: Takes::Optional, about: "the true parameters, where they are known" },
         ],
-        parts: &[
+        &[
             Part { name: "params", file: "fit.toml", only_if_wanted: false },
             Part { name: "estimates", file: "fit-estimates.csv", only_if_wanted: false },
             Part { name: "fitted", file: "fit-fitted.csv", only_if_wanted: false },
             Part { name: PICTURES, file: "", only_if_wanted: true },
         ],
-        revision: 1,
-        keys: keys::<FitOptions>,
-        prepare: prepare::<Self>,
-    };
+    );
 
     type Options = FitOptions;
 
@@ -84,13 +80,11 @@ impl Job for FitJob {
             params: of_foreseen(PARAMS.name, inputs),
         };
         let outputs = outputs(Path::new(""), demand);
-        let mut steps = if existing(inputs) {
-            plan(&files, &self.0, Some(&outputs)).map_err(|why| why.to_string())?
-        } else {
-            steps(&files, &self.0, Some(&outputs), None)
-        };
-        steps.insert(0, ambient_step(inputs, &[RECORDINGS], &self.0.columns.log));
-        Ok(steps)
+        if existing(inputs) {
+            return plan(&files, &self.0, Some(&outputs)).map_err(|why| why.to_string());
+        }
+        let ambient = ambient_step(inputs, &[RECORDINGS], &self.0.columns.log);
+        Ok(steps(&files, &self.0, Some(&outputs), ambient, None))
     }
 
     fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {

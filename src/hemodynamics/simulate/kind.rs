@@ -5,9 +5,7 @@ use std::path::{Path, PathBuf};
 use super::job::{plan, simulate, steps};
 use super::{SimulateInputs, SimulateOptions, SimulateOutputs};
 use crate::hemodynamics::given::{PARAMS, Start, existing, of_foreseen, of_task};
-use crate::job::{
-    Demand, Facts, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Quality, Role, Takes, Work, keys, prepare,
-};
+use crate::job::{Demand, Facts, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Quality, Role, Takes, Work};
 use crate::stages::Step;
 
 const PICTURES: &str = "pictures";
@@ -41,19 +39,23 @@ impl SimulateJob {
 
 impl Job for SimulateJob {
     const KIND: Kind = Kind {
-        name: "simulate",
-        roles: &[
-            PARAMS,
-            Role { name: LOADS, takes: Takes::Optional, about: "a table time_s,pf1_Pa,pf2_Pa instead of pf1 and pf2" },
-            Role { name: START, takes: Takes::Optional, about: "a trajectory whose last row it starts from" },
-        ],
-        parts: &[
-            Part { name: "trajectory", file: TABLE, only_if_wanted: false },
-            Part { name: PICTURES, file: "", only_if_wanted: true },
-        ],
         revision: 2,
-        keys: keys::<SimulateOptions>,
-        prepare: prepare::<Self>,
+        ..Kind::of::<Self>(
+            "simulate",
+            &[
+                PARAMS,
+                Role {
+                    name: LOADS,
+                    takes: Takes::Optional,
+                    about: "a table time_s,pf1_Pa,pf2_Pa instead of pf1 and pf2",
+                },
+                Role { name: START, takes: Takes::Optional, about: "a trajectory whose last row it starts from" },
+            ],
+            &[
+                Part { name: "trajectory", file: TABLE, only_if_wanted: false },
+                Part { name: PICTURES, file: "", only_if_wanted: true },
+            ],
+        )
     };
 
     type Options = SimulateOptions;

@@ -10,8 +10,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::job::{
-    At, Demand, Foreseen, Job, Keys, Kind, Made, NoOptions, OptionFault, Order, Part, Quality, Role, Takes, Work, keys,
-    prepare,
+    At, Demand, Foreseen, Job, Keys, Kind, Made, NoOptions, OptionFault, Order, Part, Quality, Role, Takes, Work,
 };
 use crate::photo::options::{Outputs, PhotosOptions, Results};
 use crate::photo::outline::{OutlinePlace, Sources};
@@ -53,24 +52,24 @@ fn outline_of<'a>(keys: &Keys, outlines: impl Iterator<Item = (&'a Keys, &'a Pat
 
 impl Job for NormalizeJob {
     const KIND: Kind = Kind {
-        name: "normalize",
-        roles: &[
-            Role { name: "photo", takes: Takes::Many, about: "photographs; their keys are `subject` and `pose`" },
-            Role {
-                name: OUTLINES,
-                takes: Takes::AnyNumber,
-                about: "LabelMe files or masks of the same subject and pose; where there is none, <photo>.json, else \
-                        detection",
-            },
-        ],
-        parts: &[
-            Part { name: "sums", file: "", only_if_wanted: false },
-            Part { name: "nails", file: "nails.csv", only_if_wanted: false },
-            Part { name: PICTURES, file: "normalized", only_if_wanted: true },
-        ],
         revision: 2,
-        keys: keys::<PhotosOptions>,
-        prepare: prepare::<Self>,
+        ..Kind::of::<Self>(
+            "normalize",
+            &[
+                Role { name: "photo", takes: Takes::Many, about: "photographs; their keys are `subject` and `pose`" },
+                Role {
+                    name: OUTLINES,
+                    takes: Takes::AnyNumber,
+                    about: "LabelMe files or masks of the same subject and pose; where there is none, <photo>.json, else \
+                        detection",
+                },
+            ],
+            &[
+                Part { name: "sums", file: "", only_if_wanted: false },
+                Part { name: "nails", file: "nails.csv", only_if_wanted: false },
+                Part { name: PICTURES, file: "normalized", only_if_wanted: true },
+            ],
+        )
     };
 
     type Options = PhotosOptions;
@@ -161,9 +160,9 @@ fn labelme_beside(photo: &Path) -> PathBuf {
 pub struct MapsJob;
 
 impl Job for MapsJob {
-    const KIND: Kind = Kind {
-        name: "maps",
-        roles: &[
+    const KIND: Kind = Kind::of::<Self>(
+        "maps",
+        &[
             Role { name: "sums", takes: Takes::Many, about: "what `normalize` made" },
             Role {
                 name: "truth",
@@ -171,15 +170,12 @@ impl Job for MapsJob {
                 about: "a folder of exact maps, <pose>-mean.npy and <pose>-sd.npy",
             },
         ],
-        parts: &[
+        &[
             Part { name: "maps", file: "", only_if_wanted: false },
             Part { name: "nails", file: "nails.csv", only_if_wanted: false },
             Part { name: FIGURES, file: "figures", only_if_wanted: true },
         ],
-        revision: 1,
-        keys: keys::<NoOptions>,
-        prepare: prepare::<Self>,
-    };
+    );
 
     type Options = NoOptions;
 

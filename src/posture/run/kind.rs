@@ -12,7 +12,7 @@ use serde_json::json;
 
 use crate::job::{
     Demand, Facts, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Quality, Role, Said, Tables, Takes, Work,
-    against, keys, prepare,
+    against,
 };
 use crate::posture::layout::{Layout, LayoutError};
 use crate::posture::options::{Outputs, PostureOptions};
@@ -80,9 +80,9 @@ impl PostureJob {
 }
 
 impl Job for PostureJob {
-    const KIND: Kind = Kind {
-        name: "posture",
-        roles: &[
+    const KIND: Kind = Kind::of::<Self>(
+        "posture",
+        &[
             Role { name: "video", takes: Takes::One, about: "the video" },
             Role {
                 name: "markers",
@@ -91,16 +91,13 @@ impl Job for PostureJob {
             },
             Role { name: "truth", takes: Takes::Optional, about: "the true angles: frame, <joint>_deg" },
         ],
-        parts: &[
+        &[
             Part { name: "joints", file: "joints.csv", only_if_wanted: false },
             Part { name: TRACKS, file: "tracks.csv", only_if_wanted: true },
             Part { name: OVERLAY, file: "overlay.mp4", only_if_wanted: true },
             Part { name: PICTURES, file: "joints-angles.png", only_if_wanted: true },
         ],
-        revision: 1,
-        keys: keys::<PostureKeys>,
-        prepare: prepare::<Self>,
-    };
+    );
 
     type Options = PostureKeys;
 

@@ -2,6 +2,10 @@
 
 use std::path::PathBuf;
 
+use super::RowOptions;
+use crate::log::ambient_step_of;
+use crate::stages::Step;
+
 /// A table or log, what it is called and whose it is where it does not say so itself.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct DataFile {
@@ -27,5 +31,11 @@ impl DataFile {
     #[must_use]
     pub fn of(paths: &[PathBuf]) -> Vec<Self> {
         paths.iter().cloned().map(Self::from).collect()
+    }
+
+    /// The step of plans that says whether their ambient light is taken away.
+    #[must_use]
+    pub fn ambient_step<'a>(files: impl IntoIterator<Item = &'a Self>, rows: &RowOptions) -> Step {
+        ambient_step_of(files.into_iter().map(|file| file.path.as_path()), &rows.log)
     }
 }

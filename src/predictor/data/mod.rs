@@ -124,44 +124,22 @@ pub struct Inputs {
 
 /// Why there are no rows.
 #[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum DataError {
-    /// A table can't be read.
     #[error(transparent)]
     Table(#[from] TableError),
-    /// A raw log can't be read.
     #[error(transparent)]
     Log(#[from] LogError),
-    /// A file lacks a column, or has other photodiodes than the others.
     #[error("{}: {what}", path.display())]
-    Columns {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong and what to do.
-        what: String,
-    },
-    /// One place of a stream is wrong.
+    Columns { path: PathBuf, what: String },
     #[error("{place}: {what}")]
-    Cell {
-        /// File, line, column.
-        place: String,
-        /// What is wrong and what to do.
-        what: String,
-    },
-    /// A stream can't be read on.
+    Cell { place: String, what: String },
     #[error("{name}: cannot be read ({why})")]
-    Stream {
-        /// The stream's name.
-        name: String,
-        /// The system's words.
-        why: std::io::Error,
-    },
-    /// No row is left.
+    Stream { name: String, why: std::io::Error },
     #[error("no row can be used: {0}")]
     NoRows(String),
-    /// The request is no request.
     #[error("{0}")]
     Request(String),
-    /// The rows are no dataset.
     #[error(transparent)]
     Dataset(#[from] DatasetFault),
 }

@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use crate::files::Places;
 use crate::job::{Report, Watch};
+use crate::log::ambient_step_of;
 use crate::predictor::data::{Inputs, RowOptions, RowStream, read_inputs};
 use crate::predictor::error::PredictorError;
 use crate::predictor::jobs::answer::{Answering, contact_word};
@@ -123,20 +124,22 @@ pub fn predict(
     })?;
     places.commit()?;
     warnings.extend(extrapolated(&answering, counts));
-    let left_out = left_out(predict_plan(models.len(), options));
+    let ambient = ambient_step_of([data], &options.rows.log);
+    let left_out = left_out(predict_plan(models.len(), ambient, options));
     let figures = figures(data, Some(out), &answering, counts);
     let report = Report { left_out, warnings, notes: read.notes, ..Report::new("predict", watch, figures) };
     Ok(report.timed(&stages, start))
 }
 
-/// What would be done and what not, with so many models.
+/// What would be done and what not, with so many models; `ambient`: the step of the recording's ambient light.
 #[must_use]
-pub fn predict_plan(models: usize, options: &PredictOptions) -> Vec<Step> {
+pub fn predict_plan(models: usize, ambient: Step, options: &PredictOptions) -> Vec<Step> {
     let gated = models > 1;
     let why = if gated { "where one model predicts forces and one posture" } else { "one model" };
     let intervals = if options.intervals { "of each prediction" } else { "without --intervals" };
     vec![
         Step::new("read", true, "a recording".to_owned()),
+        ambient,
         Step::new("predict", true, format!("{models} models")),
         Step::new("gate", gated, why.to_owned()),
         Step::new("intervals", options.intervals, intervals.to_owned()),

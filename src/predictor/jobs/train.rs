@@ -14,7 +14,7 @@ use serde::Serialize;
 
 use crate::files::{Places, WriteError};
 use crate::job::{Report, Watch};
-use crate::predictor::data::{DataFile, FileRows, Wanted, read_files};
+use crate::predictor::data::{DataFile, FileRows, RowOptions, Wanted, read_files};
 use crate::predictor::error::PredictorError;
 use crate::predictor::jobs::learning;
 use crate::predictor::merit::figures::{ByTarget, Merit, merit_without_cone};
@@ -30,6 +30,18 @@ pub struct TrainInputs {
     pub validate: Vec<DataFile>,
     /// Recordings on which a network stops early; none: a part of those to train on.
     pub stop_on: Vec<DataFile>,
+}
+
+impl TrainInputs {
+    fn all(&self) -> impl Iterator<Item = &DataFile> {
+        self.data.iter().chain(&self.validate).chain(&self.stop_on)
+    }
+
+    /// The step of plans that says whether their ambient light is taken away.
+    #[must_use]
+    pub fn ambient_step(&self, rows: &RowOptions) -> Step {
+        DataFile::ambient_step(self.all(), rows)
+    }
 }
 
 /// How it is made.
@@ -111,8 +123,7 @@ pub fn train(
         let what = "a learning curve shows errors on recordings that are not trained on; name some with --validate";
         return Err(PredictorError::Request(what.to_owned()));
     }
-    let given = [&inputs.data, &inputs.validate, &inputs.stop_on].into_iter().flatten().map(|file| &file.path);
-    let mut places = Places::not_over(given);
+    let mut places = Places::not_over(inputs.all().map(|file| &file.path));
     let out = &outputs.model;
     places.check(std::iter::once(out).chain(&outputs.learning_curve).chain(&outputs.merit))?;
     let read = stages.time("read", || read_files(&inputs.data, &options.wanted))?;
@@ -193,7 +204,8 @@ pub fn train(
         half_width,
         level: options.level,
     };
-    let left_out = left_out(train_plan(inputs, recipe, outputs.learning_curve.is_some()));
+    let ambient = inputs.ambient_step(&options.wanted.rows);
+    let left_out = left_out(train_plan(inputs, ambient, recipe, outputs.learning_curve.is_some()));
     let report = Report { left_out, warnings, failed, pictures, ..Report::new("train", watch, figures) };
     Ok(report.timed(&stages, start))
 }
@@ -258,9 +270,10 @@ fn fit_warnings(report: &FitReport) -> &[String] {
     }
 }
 
-/// What would be done and what not, from the request alone; `curve`: whether a learning curve is asked for.
+/// What would be done and what not, from the request alone; `ambient`: the step of [`TrainInputs::ambient_step`];
+/// `curve`: whether a learning curve is asked for.
 #[must_use]
-pub fn train_plan(inputs: &TrainInputs, recipe: &Recipe, curve: bool) -> Vec<Step> {
+pub fn train_plan(inputs: &TrainInputs, ambient: Step, recipe: &Recipe, curve: bool) -> Vec<Step> {
     let network = matches!(recipe.kind, Kind::Network { .. });
     let validated = !inputs.validate.is_empty();
     let stop = match (network, inputs.stop_on.is_empty()) {
@@ -271,7 +284,8 @@ pub fn train_plan(inputs: &TrainInputs, recipe: &Recipe, curve: bool) -> Vec<Ste
     let reason = |yes: bool, why: &'static str, why_not: &'static str| (if yes { why } else { why_not }).to_owned();
     let reported = |yes| reason(yes, "on the recordings to validate on", "no recordings to validate on");
     vec![
-        Step::new("read", true, format!("{} files", inputs.data.len() + inputs.validate.len() + inputs.stop_on.len())),
+        Step::new("read", true, format!("{} files", inputs.all().count())),
+        ambient,
         Step::new("lags", !recipe.lags_s.is_empty(), reason(!recipe.lags_s.is_empty(), "asked for", "none asked for")),
         Step::new("fit", true, format!("{:?}", recipe.kind)),
         Step::new("early stopping", network, stop.to_owned()),

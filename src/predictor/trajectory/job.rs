@@ -23,20 +23,16 @@ const AT_ONCE: usize = 1 << 20;
 
 /// Why there is no trajectory.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum TrajectoryError {
-    /// All that is wrong with the options.
     #[error("{}", .0.join("; "))]
     Options(Vec<String>),
-    /// There is no cone of forces.
     #[error(transparent)]
     Space(#[from] ForceSpaceFault),
-    /// The table can't be written.
     #[error(transparent)]
     Table(#[from] TableError),
-    /// A result can't be written.
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// Stopped from outside.
     #[error("stopped")]
     Interrupted(#[from] Interrupted),
 }

@@ -6,9 +6,7 @@ use std::path::Path;
 
 use super::job::{plan, run};
 use super::{BendingOptions, ForceOptions, KindOptions, RandomOptions, TrajectoryOptions, TrajectoryOutputs};
-use crate::job::{
-    Demand, Facts, Foreseen, Given, Job, Kind, Made, OptionFault, Order, Part, Said, Work, keys, prepare, read,
-};
+use crate::job::{Demand, Facts, Foreseen, Given, Job, Kind, Made, OptionFault, Order, Part, Said, Work, keys, read};
 use crate::stages::Step;
 
 const PICTURES: &str = "pictures";
@@ -46,15 +44,15 @@ fn read_kind<K: KindOptions>(word: &str, table: &toml::Table) -> Result<(Traject
 
 impl Job for TrajectoryJob {
     const KIND: Kind = Kind {
-        name: "trajectory",
-        roles: &[],
-        parts: &[
-            Part { name: "trajectory", file: TABLE, only_if_wanted: false },
-            Part { name: PICTURES, file: "", only_if_wanted: true },
-        ],
-        revision: 1,
         keys: all_keys,
-        prepare: prepare::<Self>,
+        ..Kind::of::<Self>(
+            "trajectory",
+            &[],
+            &[
+                Part { name: "trajectory", file: TABLE, only_if_wanted: false },
+                Part { name: PICTURES, file: "", only_if_wanted: true },
+            ],
+        )
     };
 
     type Options = ForceOptions;

@@ -35,25 +35,12 @@ pub struct MapRow {
 
 /// Why a map could not be made.
 #[derive(Debug, thiserror::Error, Clone, PartialEq)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum MapFault {
-    /// A varied parameter that can't be used.
     #[error("at factor {factor}: {why}")]
-    Parameters {
-        /// The factor.
-        factor: f64,
-        /// Why.
-        why: ParameterFault,
-    },
-    /// The equilibria of a cell are not known.
+    Parameters { factor: f64, why: ParameterFault },
     #[error("at factor {factor}, load {load_pa} Pa: {why}")]
-    Equilibria {
-        /// The factor.
-        factor: f64,
-        /// The load, Pa.
-        load_pa: f64,
-        /// Why.
-        why: EquilibriumFault,
-    },
+    Equilibria { factor: f64, load_pa: f64, why: EquilibriumFault },
 }
 
 /// What is varied over a map, and what is not.

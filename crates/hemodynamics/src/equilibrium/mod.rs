@@ -57,68 +57,41 @@ pub struct Equilibrium {
 
 /// Why equilibria could not be found.
 #[derive(Debug, thiserror::Error, Clone, PartialEq)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum EquilibriumFault {
-    /// An input that is not a finite number.
     #[error("{what} is {value}; an equilibrium needs finite pressures")]
-    NotFinite {
-        /// Which input.
-        what: &'static str,
-        /// Its value, Pa.
-        value: f64,
-    },
-    /// Too many branches of too many units.
+    NotFinite { what: &'static str, value: f64 },
     #[error(
         "the search for all equilibria of {units} units was given up after {choices} choices of open and narrow \
          vessels; use fewer units, or units that are the same"
     )]
-    Choices {
-        /// Capillary units.
-        units: usize,
-        /// Choices of branches looked at.
-        choices: usize,
-    },
-    /// Too many equilibria.
+    Choices { units: usize, choices: usize },
     #[error(
         "{units} units have more than {most} equilibria, one for each choice of who is open and who is not; use fewer \
          units"
     )]
-    Equilibria {
-        /// Capillary units.
-        units: usize,
-        /// The most that are listed.
-        most: usize,
-    },
-    /// Parameters or pressures whose products leave the range of numbers.
+    Equilibria { units: usize, most: usize },
     #[error(
         "the parameters or pressures are out of all proportion: k D / A has to be from 1e-6 to 1e30 Pa, N pi D^4 / \
          (128 L mu) from 1e-60 to 1e20 m3/(s Pa), R_Vi at most 1e40 Pa s/m3, pressures at most 1e15 Pa"
     )]
     Range,
-    /// The eigenvalues did not settle.
     #[error(
         "masses, dampings and stiffnesses are so far apart that the eigenvalues about an equilibrium can't be computed"
     )]
     Eigenvalues,
-    /// Loads of a curve that don't grow.
     #[error("the loads of a curve have to grow: {load_pa} Pa (row {row}) comes after {before_pa} Pa")]
     Order {
         /// The row of the later load, from 1.
         row: usize,
-        /// The load that is not greater, Pa.
         load_pa: f64,
-        /// The load before it, Pa.
         before_pa: f64,
     },
-    /// A branch could not be followed.
     #[error(
         "the branch of equilibria could not be followed beyond a load of {load_pa} Pa; ask for loads that lie closer \
          together"
     )]
-    Curve {
-        /// Where, Pa.
-        load_pa: f64,
-    },
-    /// There is no stable equilibrium.
+    Curve { load_pa: f64 },
     #[error(
         "there is no stable equilibrium with open vessels at P_F1 = {} Pa, P_F2 = {} Pa{}; press less, or let walls \
          touch (contact)",
@@ -126,24 +99,13 @@ pub enum EquilibriumFault {
         inputs.distal_pa,
         if *unstable > 0 { format!(" ({unstable} are not stable)") } else { String::new() }
     )]
-    None {
-        /// The inputs.
-        inputs: Inputs,
-        /// Equilibria that are not stable.
-        unstable: usize,
-    },
-    /// There are several stable equilibria.
+    None { inputs: Inputs, unstable: usize },
     #[error(
         "there are {stable} stable equilibria at P_F1 = {} Pa, P_F2 = {} Pa; which one is reached depends on the \
          path: give the state to start from",
         inputs.proximal_pa, inputs.distal_pa
     )]
-    Several {
-        /// The inputs.
-        inputs: Inputs,
-        /// How many are stable.
-        stable: usize,
-    },
+    Several { inputs: Inputs, stable: usize },
 }
 
 /// All equilibria with open vessels (every lumen at least 1e-9 of its nominal diameter) under constant inputs, in the

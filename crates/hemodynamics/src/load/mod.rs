@@ -41,34 +41,19 @@ enum Kind {
 
 /// What is wrong with a load.
 #[derive(Debug, thiserror::Error, Clone, PartialEq)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum LoadFault {
-    /// A value or time that is not a finite number.
     #[error("{what} of the load is {value}; it has to be a finite number")]
-    NotFinite {
-        /// Which number.
-        what: String,
-        /// Its value.
-        value: f64,
-    },
-    /// Times that don't grow.
+    NotFinite { what: String, value: f64 },
     #[error("the load's times have to grow: {time} s (row {row}) comes after {before} s")]
     Order {
         /// The row of the later time, from 1.
         row: usize,
-        /// The time that is not later.
         time: f64,
-        /// The time before it.
         before: f64,
     },
-    /// A table without rows, or of unequal lengths.
     #[error("the load's table has {times} times and {values} values; it needs a value for each of at least one time")]
-    Rows {
-        /// Times.
-        times: usize,
-        /// Values.
-        values: usize,
-    },
-    /// A text that is not a load.
+    Rows { times: usize, values: usize },
     #[error(
         "{0:?} is not a load: write 0, step:5000@0..2, ramp:0..10000@0..5 or sine:5000+1000@0.05 (pascals, seconds, \
          hertz)"

@@ -41,15 +41,12 @@ pub struct Matrices {
 
 /// Why there is no printed form.
 #[derive(Debug, thiserror::Error, Clone, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum PrintedFault {
-    /// Not two units.
     #[error(
         "the thesis prints its equations for 2 capillary units, these parameters have {units}; use the model's own form"
     )]
-    Units {
-        /// Units of the parameters.
-        units: usize,
-    },
+    Units { units: usize },
 }
 
 impl Printed {

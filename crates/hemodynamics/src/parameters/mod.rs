@@ -63,11 +63,10 @@ pub struct Parameters {
 
 /// What is wrong with parameters; every fault in a line of its own.
 #[derive(Debug, thiserror::Error, Clone, PartialEq, Eq)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum ParameterFault {
-    /// Values that the model has no meaning for.
     #[error("the parameters can't be used:\n{}", .0.join("\n"))]
     Values(Vec<String>),
-    /// The file is no TOML.
     #[error("the parameters are no TOML: {0}")]
     Syntax(String),
 }

@@ -24,8 +24,8 @@ pub struct FrictionCone {
 
 /// Why there is no cone.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum FrictionFault {
-    /// Not a coefficient.
     #[error("a coefficient of friction of {0}; it must be a finite number, 0 or above")]
     Mu(f64),
 }

@@ -40,24 +40,17 @@ pub enum Contact {
 
 /// Why numbers make no gate.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum GateFault {
-    /// The F_min that was given, newtons.
     #[error("a threshold F_min of {0} N; it must be above 0, as a finger that does not touch has a normal force of 0")]
     Threshold(f64),
-    /// The theta_touch that was given, degrees.
     #[error("theta_touch is {0} degrees; it must be a finite angle")]
     Angle(f64),
-    /// It is below 0, or not below F_min.
     #[error(
         "a hysteresis of {hysteresis_n} N; it must be from 0 to below the threshold of {f_min_n} N, or touch would \
          not end"
     )]
-    Hysteresis {
-        /// Asked for.
-        hysteresis_n: f64,
-        /// The F_min that it belongs to, newtons.
-        f_min_n: f64,
-    },
+    Hysteresis { hysteresis_n: f64, f_min_n: f64 },
 }
 
 impl Gate {

@@ -33,29 +33,18 @@ pub struct Dataset {
 
 /// Why rows are no [`Dataset`].
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum DatasetFault {
-    /// Sizes do not agree.
     #[error("{what}: {found} where {wanted} are needed")]
-    Shape {
-        /// Of what.
-        what: &'static str,
-        /// How many there are.
-        found: usize,
-        /// How many there should be.
-        wanted: usize,
-    },
-    /// A value is NaN or infinite.
+    Shape { what: &'static str, found: usize, wanted: usize },
     #[error("{name} of row {row} is not finite; leave the row out")]
     NotFinite {
-        /// Of a photodiode or a target.
         name: String,
         /// The row, from 0.
         row: usize,
     },
-    /// Two columns of one name.
     #[error("two columns are named {0}")]
     Twice(String),
-    /// Recordings do not cover the rows one after the other.
     #[error("recording {0} does not begin where the one before ends")]
     Order(String),
 }

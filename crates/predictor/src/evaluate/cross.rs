@@ -81,20 +81,12 @@ pub struct CrossValidation {
 
 /// Why there is no cross-validation.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum CrossFault {
-    /// Nothing can be held out.
     #[error(transparent)]
     Split(#[from] SplitFault),
-    /// No fold could be fitted.
     #[error("none of {folds} folds could be fitted; without {name}: {why}")]
-    AllFailed {
-        /// How many.
-        folds: usize,
-        /// What the first held out.
-        name: String,
-        /// Why it failed.
-        why: String,
-    },
+    AllFailed { folds: usize, name: String, why: String },
 }
 
 impl CrossValidation {

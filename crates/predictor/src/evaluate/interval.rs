@@ -31,38 +31,22 @@ pub struct Intervals {
 
 /// Why there are no intervals.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum IntervalFault {
-    /// Not a share.
     #[error("a level of {0}; it must be from 0 to 1")]
     Level(f64),
-    /// The quantile would be beyond the greatest residual.
     #[error("{rows} held-out rows can't tell how wide {level} of all is: {}", needs(*.level))]
-    TooFew {
-        /// Rows there are.
-        rows: usize,
-        /// What was asked for.
-        level: f64,
-    },
-    /// Shuffled rows.
+    TooFew { rows: usize, level: f64 },
     #[error("intervals from shuffled rows promise too much; hold out trajectories, sessions or subjects")]
     Shuffled,
-    /// Too few groups to leave one out for each purpose.
     #[error("{0} groups; at least three are needed: to train on, to calibrate on and to test on")]
     Groups(usize),
-    /// Nothing can be held out.
     #[error(transparent)]
     Split(#[from] SplitFault),
-    /// No fit succeeded.
     #[error(transparent)]
     Cross(#[from] CrossFault),
-    /// No group gives a coverage.
     #[error("no group gives a coverage; without {name}: {why}")]
-    AllFailed {
-        /// The first group.
-        name: String,
-        /// Why.
-        why: String,
-    },
+    AllFailed { name: String, why: String },
 }
 
 fn needs(level: f64) -> String {

@@ -37,14 +37,12 @@ pub struct LearningPoint {
 
 /// Why there is no learning curve.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum LearningFault {
-    /// Sets of other columns.
     #[error("the rows held out have other photodiodes or targets than those to train on")]
     Columns,
-    /// No rows.
     #[error("no rows are {0}")]
     Empty(&'static str),
-    /// Not a share.
     #[error("a share of {0} of the training time; it must be above 0 and at most 1")]
     Share(f64),
 }

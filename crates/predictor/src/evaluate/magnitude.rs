@@ -35,11 +35,10 @@ pub struct ByMagnitude {
 
 /// Why rows are not sorted into bins.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum MagnitudeFault {
-    /// Edges that bound no bins.
     #[error("the edges of bins must be at least two finite numbers that ascend")]
     Edges,
-    /// No column to sort by.
     #[error("there is neither a target Fz_N nor only one target to sort rows by")]
     Target,
 }

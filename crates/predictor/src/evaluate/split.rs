@@ -45,24 +45,12 @@ pub struct Fold {
 
 /// Why nothing can be held out.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum SplitFault {
-    /// Fewer than two parts.
     #[error("there is only one {what} with rows; to hold one out, give at least two: {instead}")]
-    One {
-        /// Part of what kind.
-        what: &'static str,
-        /// What else can be done.
-        instead: &'static str,
-    },
-    /// Fewer rows than parts, or fewer than two parts.
+    One { what: &'static str, instead: &'static str },
     #[error("{rows} rows can't be split into {folds} parts; ask for 2 to {rows}")]
-    Folds {
-        /// Rows there are.
-        rows: usize,
-        /// Parts asked for.
-        folds: usize,
-    },
-    /// No row at all.
+    Folds { rows: usize, folds: usize },
     #[error("there are no rows to split")]
     Empty,
 }

@@ -6,40 +6,24 @@ use crate::{Dependent, LeastSquaresFault, ModelFault};
 
 /// Why there is no model.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum FitFault {
-    /// Nothing to fit to.
     #[error("there are no rows to fit to")]
     NoRows,
-    /// Fewer rows than unknowns.
     #[error("{terms} terms need at least {} rows; there are {rows} (record more, or ask for minimum norm, dropping or \
              ridge)", .terms + 1)]
-    TooFewRows {
-        /// How many there are.
-        rows: usize,
-        /// Terms of the model, without the offset.
-        terms: usize,
-    },
-    /// Photodiodes, or terms of them, that depend on each other.
+    TooFewRows { rows: usize, terms: usize },
     #[error("{} (leave out what is at fault, or ask for minimum norm, dropping or ridge)", .0.join("; "))]
     Deficient(Vec<String>),
-    /// A coefficient beyond a number.
     #[error(
         "what {target} has of {term} is beyond what a number can hold (1e-308 to 1e308): {term} is too small or too \
          large beside {target}; write them in volts and newtons"
     )]
-    Range {
-        /// A voltage or a product of two.
-        term: String,
-        /// Its column, such as `Fz_N`.
-        target: String,
-    },
-    /// Voltages too near to 0 or too large for squares.
+    Range { term: String, target: String },
     #[error("{0} spreads over so little (or so much) that its squares can't be computed; scale it to volts")]
     Scale(String),
-    /// The solver's own.
     #[error(transparent)]
     Solver(LeastSquaresFault),
-    /// The numbers are no model.
     #[error(transparent)]
     Model(#[from] ModelFault),
 }

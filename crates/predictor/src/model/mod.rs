@@ -132,18 +132,10 @@ use predicting;
 
 /// Why numbers are no model.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum ModelFault {
-    /// Sizes do not agree.
     #[error("{what}: {found} where {wanted} are needed")]
-    Shape {
-        /// Of what.
-        what: &'static str,
-        /// How many there are.
-        found: usize,
-        /// How many there should be.
-        wanted: usize,
-    },
-    /// A number is NaN or infinite, or a scale not positive.
+    Shape { what: &'static str, found: usize, wanted: usize },
     #[error("{0} holds a number that can't be")]
     Number(&'static str),
 }

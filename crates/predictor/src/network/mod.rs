@@ -109,30 +109,16 @@ pub struct TrainReport {
 
 /// Why no network was trained.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum TrainFault {
-    /// No rows, or no targets.
     #[error("there are no {what} {of}: nothing can be trained")]
-    Nothing {
-        /// Rows or targets.
-        what: &'static str,
-        /// Of which set.
-        of: &'static str,
-    },
-    /// No nodes or no restarts.
+    Nothing { what: &'static str, of: &'static str },
     #[error("{0} is 0, it must be at least 1")]
     Option(&'static str),
-    /// The sets hold different columns.
     #[error("the stop rows hold {found}, the training rows {wanted}: give both the same columns in the same order")]
-    Columns {
-        /// Those of the stop rows.
-        found: String,
-        /// Those of the training rows.
-        wanted: String,
-    },
-    /// A column spans more than numbers can.
+    Columns { found: String, wanted: String },
     #[error("{0} spans more than 1.8e308, the largest number there is; give it another unit")]
     Range(String),
-    /// The errors on the stop rows are beyond what numbers can hold.
     #[error("the stop rows are beyond all comparison with the training rows; check their units")]
     Stop,
 }

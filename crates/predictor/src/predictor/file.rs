@@ -23,26 +23,19 @@ const VERSION: u64 = 1;
 
 /// Why a text is no model.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum FileFault {
-    /// No JSON, a key missing, unknown or of another kind.
     #[error("is not a model file: {0}; train the model again")]
     Json(#[from] serde_json::Error),
-    /// JSON of something else.
     #[error("is no model of lunula (its \"format\" is {0}); name a file that `lunula train` wrote")]
     Format(String),
-    /// Of another version.
     #[error(
         "is a model file of version {found}, and this program reads version {VERSION}; train the model again or use \
          the program that wrote it"
     )]
-    Version {
-        /// The file's.
-        found: String,
-    },
-    /// Numbers that are no model.
+    Version { found: String },
     #[error("does not fit together: {0}; it was edited or damaged: train the model again")]
     Model(#[from] ModelFault),
-    /// Something else that does not fit.
     #[error("does not fit together: {0}; it was edited or damaged: train the model again")]
     Other(String),
 }

@@ -73,20 +73,16 @@ pub enum Report {
 
 /// Why nothing was fitted.
 #[derive(Debug, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum RecipeFault {
-    /// The rows do not determine the model.
     #[error(transparent)]
     Fit(#[from] FitFault),
-    /// The network can't be trained.
     #[error(transparent)]
     Train(#[from] TrainFault),
-    /// Lags that can't be.
     #[error(transparent)]
     Lags(#[from] LagFault),
-    /// The cone of friction needs three forces.
     #[error("a cone of friction needs the targets Fx_N, Fy_N, Fz_N; the targets are {0}")]
     NoForces(String),
-    /// A coefficient of friction that can't be.
     #[error(transparent)]
     Friction(#[from] FrictionFault),
 }

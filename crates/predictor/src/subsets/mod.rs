@@ -83,24 +83,17 @@ pub struct Subsets {
 
 /// Why subsets are not looked at.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum SubsetFault {
-    /// Sets of other columns.
     #[error("the validation rows have other photodiodes or targets than the training rows")]
     Columns,
-    /// Nothing there.
     #[error("there are no {0}")]
     Empty(&'static str),
-    /// Too many subsets.
     #[error(
         "{inputs} photodiodes have too many subsets to look at each; choose at most {most} of them, or remove one \
          after the other"
     )]
-    TooMany {
-        /// How many.
-        inputs: usize,
-        /// How many there may be.
-        most: usize,
-    },
+    TooMany { inputs: usize, most: usize },
 }
 
 /// Looks at every non-empty subset of at most [`MOST_INPUTS`] photodiodes. The result does not depend on the number of

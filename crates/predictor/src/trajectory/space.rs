@@ -27,11 +27,10 @@ pub struct ForceSpace {
 
 /// Why there is no cone.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum ForceSpaceFault {
-    /// The largest pressing.
     #[error("a largest pressing of {0} N: it has to be positive and finite")]
     Pressing(f64),
-    /// The coefficient of friction.
     #[error("a coefficient of friction of {0}: it has to be positive and finite, and so the largest shear")]
     Friction(f64),
 }

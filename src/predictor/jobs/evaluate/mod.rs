@@ -106,7 +106,8 @@ pub fn evaluate(
         merit,
         held_out,
     };
-    let left_out = left_out(evaluate_plan(data.len(), options, Some(intervals.is_some()), out));
+    let ambient = DataFile::ambient_step(data, &options.rows);
+    let left_out = left_out(evaluate_plan(data.len(), ambient, options, Some(intervals.is_some()), out));
     let report = Report { left_out, warnings, ..Report::new("evaluate", watch, figures) };
     end(report, out, |report, out| results::write(report, &shown, out, &stages), &stages, start)
 }
@@ -218,11 +219,12 @@ fn hold_out(
     })
 }
 
-/// What would be done and what not; `files`: recordings; `intervals`: whether the model has prediction intervals, none
-/// where it is not known yet.
+/// What would be done and what not; `files`: recordings; `ambient`: their step of [`DataFile::ambient_step`];
+/// `intervals`: whether the model has prediction intervals, none where it is not known yet.
 #[must_use]
 pub fn evaluate_plan(
     files: usize,
+    ambient: Step,
     options: &EvaluateOptions,
     intervals: Option<bool>,
     out: Option<&FolderOutputs>,
@@ -247,6 +249,7 @@ pub fn evaluate_plan(
     };
     vec![
         Step::new("read", true, format!("{files} files")),
+        ambient,
         Step::new("errors", true, "on all rows, by recording and by size".to_owned()),
         Step::new("coverage of prediction intervals", intervals != Some(false), covered.to_owned()),
         Step::new("fits with parts held out", options.by.is_some(), held_out),

@@ -2,9 +2,7 @@
 
 use std::path::Path;
 
-use crate::job::{
-    Demand, Foreseen, Job, Kind, Made, NoOptions, OptionFault, Order, Part, Role, Takes, Work, keys, prepare,
-};
+use crate::job::{Demand, Foreseen, Job, Kind, Made, NoOptions, OptionFault, Order, Part, Role, Takes, Work};
 use crate::predictor::jobs::analyse::{analyse, analyse_plan};
 use crate::predictor::jobs::kinds::{PICTURES, outputs};
 use crate::stages::Step;
@@ -14,17 +12,14 @@ use crate::stages::Step;
 pub struct AnalyseJob;
 
 impl Job for AnalyseJob {
-    const KIND: Kind = Kind {
-        name: "analyse",
-        roles: &[Role { name: "model", takes: Takes::One, about: "a model of train" }],
-        parts: &[
+    const KIND: Kind = Kind::of::<Self>(
+        "analyse",
+        &[Role { name: "model", takes: Takes::One, about: "a model of train" }],
+        &[
             Part { name: "modes", file: "modes.csv", only_if_wanted: false },
             Part { name: PICTURES, file: "", only_if_wanted: true },
         ],
-        revision: 1,
-        keys: keys::<NoOptions>,
-        prepare: prepare::<Self>,
-    };
+    );
 
     type Options = NoOptions;
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::job::{Demand, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Role, Takes, Work, keys, prepare};
+use crate::job::{Demand, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Role, Takes, Work};
 use crate::log::{ReadingCost, ambient_step};
 use crate::predictor::jobs::evaluate::{EvaluateOptions, evaluate, evaluate_plan};
 use crate::predictor::jobs::kinds::{PICTURES, ROWS, data_files, measured, outputs};
@@ -15,21 +15,18 @@ use crate::stages::Step;
 pub struct EvaluateJob(EvaluateChoices);
 
 impl Job for EvaluateJob {
-    const KIND: Kind = Kind {
-        name: "evaluate",
-        roles: &[
+    const KIND: Kind = Kind::of::<Self>(
+        "evaluate",
+        &[
             Role { name: "model", takes: Takes::One, about: "a model of train" },
             Role { name: "data", takes: Takes::Many, about: "recordings with the model's photodiodes and targets" },
         ],
-        parts: &[
+        &[
             Part { name: "merit", file: "merit.csv", only_if_wanted: false },
             Part { name: ROWS, file: "predicted.csv", only_if_wanted: true },
             Part { name: PICTURES, file: "", only_if_wanted: true },
         ],
-        revision: 1,
-        keys: keys::<EvaluateChoices>,
-        prepare: prepare::<Self>,
-    };
+    );
 
     type Options = EvaluateChoices;
 
@@ -44,9 +41,8 @@ impl Job for EvaluateJob {
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         let files = inputs.iter().filter(|input| input.role == "data").count();
-        let mut steps = evaluate_plan(files, &self.0.options(), None, Some(&outputs(Path::new(""), demand)));
-        steps.insert(1, ambient_step(inputs, &["data"], &self.0.rows.log));
-        Ok(steps)
+        let ambient = ambient_step(inputs, &["data"], &self.0.rows.log);
+        Ok(evaluate_plan(files, ambient, &self.0.options(), None, Some(&outputs(Path::new(""), demand))))
     }
 
     fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {

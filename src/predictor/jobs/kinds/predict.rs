@@ -2,9 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::job::{
-    Demand, Facts, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Role, Takes, Work, keys, prepare,
-};
+use crate::job::{Demand, Facts, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Role, Takes, Work};
 use crate::log::{ReadingCost, ambient_step};
 use crate::predictor::jobs::kinds::only_joints;
 use crate::predictor::jobs::predict::{PredictOptions, predict, predict_plan};
@@ -16,9 +14,9 @@ use crate::stages::Step;
 pub struct PredictJob(PredictOptions);
 
 impl Job for PredictJob {
-    const KIND: Kind = Kind {
-        name: "predict",
-        roles: &[
+    const KIND: Kind = Kind::of::<Self>(
+        "predict",
+        &[
             Role { name: "data", takes: Takes::One, about: "a recording" },
             Role {
                 name: "model",
@@ -26,11 +24,8 @@ impl Job for PredictJob {
                 about: "a model of force, of posture, or both: then they are gated",
             },
         ],
-        parts: &[Part { name: "predicted", file: "predicted.csv", only_if_wanted: false }],
-        revision: 1,
-        keys: keys::<PredictChoices>,
-        prepare: prepare::<Self>,
-    };
+        &[Part { name: "predicted", file: "predicted.csv", only_if_wanted: false }],
+    );
 
     type Options = PredictChoices;
 
@@ -45,9 +40,7 @@ impl Job for PredictJob {
 
     fn steps(&self, inputs: &[Foreseen], _demand: &Demand) -> Result<Vec<Step>, String> {
         let models = inputs.iter().filter(|input| input.role == "model").count();
-        let mut steps = predict_plan(models, &self.0);
-        steps.insert(1, ambient_step(inputs, &["data"], &self.0.rows.log));
-        Ok(steps)
+        Ok(predict_plan(models, ambient_step(inputs, &["data"], &self.0.rows.log), &self.0))
     }
 
     fn facts(&self, _inputs: &[Foreseen], _demand: &Demand) -> Facts {

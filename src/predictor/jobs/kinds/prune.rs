@@ -2,9 +2,7 @@
 
 use std::path::Path;
 
-use crate::job::{
-    Demand, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Quality, Role, Takes, Work, keys, prepare,
-};
+use crate::job::{Demand, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Quality, Role, Takes, Work};
 use crate::log::{ReadingCost, ambient_step};
 use crate::predictor::jobs::kinds::{PICTURES, data_files, joints, only_joints, outputs};
 use crate::predictor::jobs::prune::{PruneRow, prune, prune_plan};
@@ -16,20 +14,17 @@ use crate::stages::Step;
 pub struct PruneJob(PruneChoices);
 
 impl Job for PruneJob {
-    const KIND: Kind = Kind {
-        name: "prune",
-        roles: &[
+    const KIND: Kind = Kind::of::<Self>(
+        "prune",
+        &[
             Role { name: "data", takes: Takes::Many, about: "recordings to train on" },
             Role { name: "validate", takes: Takes::Many, about: "others to compare on" },
         ],
-        parts: &[
+        &[
             Part { name: "subsets", file: "subsets.csv", only_if_wanted: false },
             Part { name: PICTURES, file: "", only_if_wanted: true },
         ],
-        revision: 1,
-        keys: keys::<PruneChoices>,
-        prepare: prepare::<Self>,
-    };
+    );
 
     type Options = PruneChoices;
 
@@ -43,9 +38,8 @@ impl Job for PruneJob {
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         let count = |role: &str| inputs.iter().filter(|input| input.role == role).count();
-        let mut steps = prune_plan([count("data"), count("validate")], Some(&outputs(Path::new(""), demand)));
-        steps.insert(1, ambient_step(inputs, &["data", "validate"], &self.0.rows.log));
-        Ok(steps)
+        let ambient = ambient_step(inputs, &["data", "validate"], &self.0.rows.log);
+        Ok(prune_plan([count("data"), count("validate")], ambient, Some(&outputs(Path::new(""), demand))))
     }
 
     fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::job::{Demand, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Role, Takes, Work, keys, prepare};
+use crate::job::{Demand, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Role, Takes, Work};
 use crate::log::{ReadingCost, ambient_step};
 use crate::predictor::jobs::kinds::{data_files, foreseen, joints, measured, only_joints};
 use crate::predictor::jobs::train::{TrainInputs, TrainOutputs, train, train_plan};
@@ -17,9 +17,9 @@ const CURVE: &str = "learning_curve";
 pub struct TrainJob(TrainChoices);
 
 impl Job for TrainJob {
-    const KIND: Kind = Kind {
-        name: "train",
-        roles: &[
+    const KIND: Kind = Kind::of::<Self>(
+        "train",
+        &[
             Role { name: "data", takes: Takes::Many, about: "recordings to train on" },
             Role { name: "validate", takes: Takes::AnyNumber, about: "recordings to report on" },
             Role {
@@ -28,15 +28,12 @@ impl Job for TrainJob {
                 about: "recordings on which a network's training stops early",
             },
         ],
-        parts: &[
+        &[
             Part { name: "model", file: "model.json", only_if_wanted: false },
             Part { name: "merit", file: "merit.csv", only_if_wanted: false },
             Part { name: CURVE, file: "learning-curve.csv", only_if_wanted: true },
         ],
-        revision: 1,
-        keys: keys::<TrainChoices>,
-        prepare: prepare::<Self>,
-    };
+    );
 
     type Options = TrainChoices;
 
@@ -51,9 +48,8 @@ impl Job for TrainJob {
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         let of = |role: &str| foreseen(inputs, role);
         let files = TrainInputs { data: of("data"), validate: of("validate"), stop_on: of("stop_on") };
-        let mut steps = train_plan(&files, &self.0.options().recipe, demand.wants(CURVE));
-        steps.insert(1, ambient_step(inputs, &["data", "validate", "stop_on"], &self.0.rows.log));
-        Ok(steps)
+        let ambient = ambient_step(inputs, &["data", "validate", "stop_on"], &self.0.rows.log);
+        Ok(train_plan(&files, ambient, &self.0.options().recipe, demand.wants(CURVE)))
     }
 
     fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {

@@ -59,7 +59,8 @@ pub fn prune(
         without_one: Vec::new(),
         all: Vec::new(),
     };
-    let mut left_out = left_out(prune_plan([data.len(), validate.len()], out));
+    let ambient = DataFile::ambient_step(data.iter().chain(validate), &wanted.rows);
+    let mut left_out = left_out(prune_plan([data.len(), validate.len()], ambient, out));
     if inputs.len() > MOST_INPUTS {
         let path = stages.time("subsets", || backward_elimination(&train.data, &compared.data))?;
         figures.all = path.iter().map(row).collect();
@@ -85,11 +86,13 @@ pub fn prune(
     end(report, out, |report, out| results::write(report, out, &stages), &stages, start)
 }
 
-/// What would be done and what not; `files`: how many to train and to validate on.
+/// What would be done and what not; `files`: how many to train and to validate on; `ambient`: their step of
+/// [`DataFile::ambient_step`].
 #[must_use]
-pub fn prune_plan(files: [usize; 2], out: Option<&FolderOutputs>) -> Vec<Step> {
+pub fn prune_plan(files: [usize; 2], ambient: Step, out: Option<&FolderOutputs>) -> Vec<Step> {
     vec![
         Step::new("read", true, format!("{} files to train on, {} to compare on", files[0], files[1])),
+        ambient,
         Step::new("subsets", true, "the linear model of each".to_owned()),
         Step::new("quadratic and network models", false, "a fit of each subset would take hours".to_owned()),
         FolderOutputs::table_step(out, "subsets"),

@@ -51,7 +51,9 @@ impl Command for EvaluateArgs {
 
     fn plan(&self) -> anyhow::Result<Plan> {
         let out = self.out.clone().map(FolderOutputs::all);
-        Ok(evaluate_plan(self.data.len(), &self.given.options.options(), None, out.as_ref()).into())
+        let options = self.given.options.options();
+        let ambient = DataFile::ambient_step(&DataFile::of(&self.data), &options.rows);
+        Ok(evaluate_plan(self.data.len(), ambient, &options, None, out.as_ref()).into())
     }
 
     fn run(&self, watch: &Watch<'_>) -> anyhow::Result<EvaluateReport> {

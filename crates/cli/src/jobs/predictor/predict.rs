@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, ensure};
 use clap::Args;
 use lunula::job::{Given, Said, Watch};
-use lunula::predictor::{PredictChoices, PredictFigures, PredictReport, predict, predict_plan, predict_stream};
+use lunula::predictor::{
+    DataFile, PredictChoices, PredictFigures, PredictReport, predict, predict_plan, predict_stream,
+};
 
 use crate::jobs::{self, Command, JobArgs, Plan};
 use crate::out::Stream;
@@ -70,7 +72,9 @@ impl Command for PredictArgs {
     }
 
     fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(predict_plan(self.parts()?.1.len(), &self.given.options.options()?).into())
+        let ((data, models), options) = (self.parts()?, self.given.options.options()?);
+        let ambient = DataFile::ambient_step([&DataFile::from(data.to_owned())], &options.rows);
+        Ok(predict_plan(models.len(), ambient, &options).into())
     }
 
     fn run(&self, watch: &Watch<'_>) -> anyhow::Result<PredictReport> {

@@ -49,7 +49,9 @@ impl Command for PruneArgs {
 
     fn plan(&self) -> anyhow::Result<Plan> {
         let out = self.out.clone().map(FolderOutputs::all);
-        Ok(prune_plan([self.data.len(), self.validate.len()], out.as_ref()).into())
+        let files = [&self.data[..], &self.validate].concat();
+        let ambient = DataFile::ambient_step(&DataFile::of(&files), &self.given.options.rows);
+        Ok(prune_plan([self.data.len(), self.validate.len()], ambient, out.as_ref()).into())
     }
 
     fn run(&self, watch: &Watch<'_>) -> anyhow::Result<PruneReport> {

@@ -69,7 +69,9 @@ impl Command for TrainArgs {
     }
 
     fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(train_plan(&self.inputs(), &self.given.options.options().recipe, self.learning_curve.is_some()).into())
+        let (inputs, options) = (self.inputs(), self.given.options.options());
+        let ambient = inputs.ambient_step(&options.wanted.rows);
+        Ok(train_plan(&inputs, ambient, &options.recipe, self.learning_curve.is_some()).into())
     }
 
     fn run(&self, watch: &Watch<'_>) -> anyhow::Result<TrainReport> {

@@ -57,39 +57,23 @@ pub struct Lagged {
 
 /// Why there are no lags.
 #[derive(Debug, Clone, PartialEq, Error)]
+#[allow(missing_docs, reason = "the messages say it")]
 pub enum LagFault {
-    /// Not a lag.
     #[error("a lag of {0} s; lags must be finite, above 0 and different from each other")]
     Lag(f64),
-    /// No lag at all.
     #[error("no lags are given")]
     None,
-    /// Not a gap.
     #[error("a longest gap of {0} s; it must be finite and above 0")]
     Gap(f64),
-    /// Nothing to take the step from.
     #[error(
         "no two rows of a recording follow each other in time, so their step is not known; rows need a time_s that \
          ascends"
     )]
     Step,
-    /// No row has a time.
     #[error("no row has a time, and lags of {longest_s} s need one; give the rows a column time_s in seconds")]
-    NoTime {
-        /// The longest lag, seconds.
-        longest_s: f64,
-    },
-    /// No row left.
+    NoTime { longest_s: f64 },
     #[error("none of {rows} rows has a history of {longest_s} s without a gap above {gap_s} s; take shorter lags")]
-    History {
-        /// Rows there are.
-        rows: usize,
-        /// The longest lag, seconds.
-        longest_s: f64,
-        /// The longest gap, seconds.
-        gap_s: f64,
-    },
-    /// No set comes of it.
+    History { rows: usize, longest_s: f64, gap_s: f64 },
     #[error(transparent)]
     Dataset(#[from] DatasetFault),
 }
