@@ -47,40 +47,59 @@ fn the_fixtures_are_made_again_byte_for_byte() {
     assert!(committed.len() == 16 && committed.values().map(Vec::len).sum::<usize>() < 2_000_000);
 }
 
-/// The `lunula` commands within a page's blocks of `sh`, lines ended by a backslash joined.
+/// The `lunula` commands within a page's blocks of `sh` and `console`, lines ended by a backslash joined.
 fn commands(page: &str) -> Vec<String> {
     let mut found = Vec::new();
-    for block in page.split("```sh\n").skip(1) {
-        let block = block.split("```").next().unwrap_or_default().replace("\\\n", " ");
-        found.extend(block.lines().filter(|line| line.starts_with("lunula ")).map(str::to_owned));
+    for block in page.split("```").skip(1).step_by(2) {
+        let Some((language, text)) = block.split_once('\n') else { continue };
+        let lines = text.replace("\\\n", " ");
+        let own = lines.lines().filter_map(|line| match language {
+            "sh" => Some(line),
+            "console" => line.strip_prefix("$ "),
+            _ => None,
+        });
+        found.extend(own.filter(|line| line.starts_with("lunula ")).map(str::to_owned));
     }
     found
+}
+
+fn pages(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            pages(&path, found);
+        } else if path.extension().is_some_and(|ending| ending == "md") {
+            found.push(path);
+        }
+    }
 }
 
 /// Each page's commands that use fixtures, or what such a command of the same page made, in the page's order.
 #[test]
 fn the_commands_of_readme_and_book_that_use_fixtures_work() {
-    let mut pages = vec![repository().join("README.md")];
-    let book = repository().join("docs/src");
-    pages.extend(std::fs::read_dir(book).expect("the book").map(|entry| entry.expect("a page").path()));
-    pages.sort();
+    let mut all = vec![repository().join("README.md")];
+    pages(&repository().join("docs"), &mut all);
+    all.sort();
+    let program = Path::new(env!("CARGO_BIN_EXE_lunula")).parent().expect("its folder");
+    let path = format!("{}:{}", program.display(), std::env::var("PATH").unwrap_or_default());
     let mut done = 0;
-    for page in pages.iter().filter(|page| page.extension().is_some_and(|ending| ending == "md")) {
-        let dir = Dir::new();
-        let text = std::fs::read_to_string(page).expect("a page");
+    for page in all {
+        let text = std::fs::read_to_string(&page).expect("a page");
         let commands = commands(&text);
         if !commands.iter().any(|command| command.contains("fixtures/")) {
             continue;
         }
+        let dir = Dir::new();
         std::os::unix::fs::symlink(fixtures(), dir.path("fixtures")).expect("a link");
         for command in commands {
-            let words: Vec<&str> = command.split(" #").next().unwrap_or_default().split_whitespace().skip(1).collect();
-            let from_here = |word: &&str| word.starts_with("fixtures/") || dir.path(word).exists();
-            if !words.iter().any(from_here) {
+            let from_here = |word: &str| word.starts_with("fixtures/") || dir.path(word).exists();
+            if !command.split_whitespace().skip(1).any(from_here) {
                 continue;
             }
-            let answer = dir.lunula(&words);
-            assert_eq!(answer.code, 0, "{}: {command}\n{}", page.display(), answer.stderr);
+            let shell = Command::new("sh").args(["-c", &command]).env("PATH", &path).current_dir(dir.path("")).output();
+            let output = shell.expect("a shell");
+            let said = String::from_utf8_lossy(&output.stderr).into_owned();
+            assert!(output.status.success(), "{}: {command}\n{said}", page.display());
             done += 1;
         }
     }
