@@ -15,7 +15,7 @@ use crate::table::{Column, ColumnKind, Table, TableError, TableWriter, Value};
 
 /// Why sets were not joined.
 #[derive(Debug, Error)]
-pub enum JoinError {
+pub(super) enum JoinError {
     /// A table can't be read or written.
     #[error(transparent)]
     Table(#[from] TableError),
@@ -77,7 +77,7 @@ impl Cells {
 ///
 /// # Errors
 /// [`JoinError`].
-pub fn join(sets: &[PathBuf], at: &Path, path: &Path) -> Result<usize, JoinError> {
+pub(super) fn join(sets: &[PathBuf], at: &Path, path: &Path) -> Result<usize, JoinError> {
     let sets = sets.iter().map(|set| Set::read(set)).collect::<Result<Vec<_>, _>>()?;
     let mut sets: Vec<Set> = sets.into_iter().flatten().collect();
     sets.sort_by(|a, b| a.of.cmp(&b.of).then(a.from_s.total_cmp(&b.from_s)));

@@ -22,19 +22,17 @@ mod suggest;
 mod survey;
 mod track;
 
-pub use angle::joints::{Angle, AngleRow, Angles};
-pub use angle::lens::{Lens, Undistorted};
-pub use angle::smooth::{SmoothModel, Smoothed, smooth};
-pub use angle::view::{Spot, View};
+pub(crate) use angle::joints::Angle;
+pub use angle::lens::Lens;
 pub use draw::figures::{AngleFigures, CouplingLine};
 pub use error::PostureError;
 pub use layout::{Camera, Joint, Layout, LayoutError, LayoutFault, Marker, MarkerShape, Segment};
-pub use marker::method::{Method, Planes, Search};
-pub use marker::sight::{Centre, Loss, Sight};
+pub(crate) use marker::method::{Method, Planes, Search};
+pub(crate) use marker::sight::{Centre, Sight};
 pub use options::{Outputs, PostureOptions};
 pub use run::filmed_clock::{ClockReport, ClockTieReport};
 pub use run::job::{run, suggest};
-pub use run::kind::PostureJob;
+pub(crate) use run::kind::PostureJob;
 pub use run::plan::plan;
 pub use run::report::{
     CouplingReport, FrameCounts, JointReport, MarkerReport, PostureFigures, PostureReport, SearchReport, VideoReport,

@@ -1,4 +1,5 @@
-//! The command line of lunula: one file a command. Arguments in, one job called, tables and pictures out; no thinking here.
+//! The command line of lunula: one file a command. Arguments in, one job called, tables and pictures out; no thinking
+//! here.
 //!
 //! Exit status: 0 all done; 1 done, but some inputs failed, or what was to be said or written after the results could
 //! not be (each is named on standard error); 2 nothing done, nothing changed; 130 interrupted.

@@ -18,7 +18,7 @@ use crate::input;
 
 /// The names that BIDS files of a recording are made of, checked.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct BidsNames {
+pub(crate) struct BidsNames {
     subject: String,
     session: Option<String>,
     task: String,
@@ -30,7 +30,12 @@ impl BidsNames {
     ///
     /// # Errors
     /// [`ExportError::Label`].
-    pub fn new(subject: Option<&str>, session: Option<&str>, task: &str, tracksys: &str) -> Result<Self, ExportError> {
+    pub(crate) fn new(
+        subject: Option<&str>,
+        session: Option<&str>,
+        task: &str,
+        tracksys: &str,
+    ) -> Result<Self, ExportError> {
         let checked = |entity, label: Option<&str>| match label {
             Some(label) if !label.is_empty() && label.bytes().all(|b| b.is_ascii_alphanumeric()) => {
                 Ok(label.to_owned())
@@ -66,7 +71,7 @@ impl BidsNames {
 /// # Errors
 /// Fewer than two frames, which have no sampling frequency; a `participants.tsv` without `participant_id`; a file that
 /// can't be written.
-pub fn bids(
+pub(crate) fn bids(
     places: &mut Places,
     root: &Path,
     names: &BidsNames,

@@ -35,7 +35,7 @@ struct Sight {
 /// # Errors
 /// A table that can't be read, or without the columns `frame`, `marker`, `x_px`, `y_px`; a row without a frame or
 /// a marker; a marker twice in a frame; a file that can't be written.
-pub fn dlc(at: &Path, path: &Path, tracks: &Path) -> Result<(), ExportError> {
+pub(crate) fn dlc(at: &Path, path: &Path, tracks: &Path) -> Result<(), ExportError> {
     let (markers, frames) = read(tracks)?;
     let mut text = String::new();
     for (first, cells) in [("scorer", None), ("bodyparts", None), ("coords", Some(["x", "y", "likelihood"]))] {

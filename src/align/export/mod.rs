@@ -14,9 +14,9 @@ use thiserror::Error;
 use crate::files::WriteError;
 use crate::table::TableError;
 
-pub use bids::{BidsNames, bids};
-pub use dlc::dlc;
-pub use mot::mot;
+pub(super) use bids::{BidsNames, bids};
+pub(super) use dlc::dlc;
+pub(super) use mot::mot;
 
 /// Why there is no export.
 #[derive(Debug, Error)]

@@ -14,7 +14,7 @@ use crate::align::{Posture, Tie};
 ///
 /// # Errors
 /// Two joints of one name once their spaces are gone, no frame with all angles, or a file that can't be written.
-pub fn mot(at: &Path, path: &Path, posture: &Posture, tie: &Tie) -> Result<usize, ExportError> {
+pub(crate) fn mot(at: &Path, path: &Path, posture: &Posture, tie: &Tie) -> Result<usize, ExportError> {
     let labels: Vec<String> =
         posture.joints.iter().map(|j| j.split_whitespace().collect::<Vec<_>>().join("_")).collect();
     if let Some((k, label)) = labels.iter().enumerate().find(|(k, label)| labels[..*k].contains(label)) {

@@ -5,8 +5,9 @@
 use std::path::Path;
 
 use super::tie::resolution_s;
-use super::{Channel, Labels, Posture, Samples, Tie, TieMethod};
+use super::{Labels, Posture, Tie, TieMethod};
 use crate::figure::{Axis, Chart, Item, MOST_BINS, Thinned, draw_charts};
+use crate::log::{Channel, Samples};
 
 const WIDTH: u32 = 1400;
 /// Of the tie's picture, pixels.
@@ -23,7 +24,7 @@ const LONG_S: f64 = 1e5;
 ///
 /// # Errors
 /// A file that can't be written.
-pub fn draw_tie(tie: &Tie, posture: &Posture, png: &Path, svg: &Path) -> anyhow::Result<bool> {
+pub(super) fn draw_tie(tie: &Tie, posture: &Posture, png: &Path, svg: &Path) -> anyhow::Result<bool> {
     let mut residuals: Vec<[f64; 2]> =
         tie.residuals_s.iter().copied().filter(|r| r[0].is_finite() && r[1].is_finite()).collect();
     residuals.sort_by(|a, b| a[0].total_cmp(&b[0]));
@@ -115,7 +116,7 @@ fn with_error(value: f64, sd: f64, decimals: usize) -> String {
 ///
 /// # Errors
 /// A file that can't be written.
-pub fn draw_labels(samples: &Samples, labels: &Labels, png: &Path, svg: &Path) -> anyhow::Result<()> {
+pub(super) fn draw_labels(samples: &Samples, labels: &Labels, png: &Path, svg: &Path) -> anyhow::Result<()> {
     let first_s = samples.time_s.first().copied().unwrap_or(0.0);
     let base_s = if first_s.abs() > LONG_S { first_s.floor() } else { 0.0 };
     let time = Axis {

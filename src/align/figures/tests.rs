@@ -2,7 +2,9 @@ use std::f64::consts::TAU;
 use std::path::PathBuf;
 
 use super::*;
-use crate::align::{ClockColumns, Unlabelled, by_clock, label};
+use crate::align::label::{Unlabelled, label};
+use crate::align::posture::ClockColumns;
+use crate::align::tie::by_clock;
 use crate::timebase::Timebase;
 
 struct Drawn {

@@ -14,7 +14,8 @@ mod curve;
 
 use std::borrow::Cow;
 
-use super::{Posture, Samples, Tie};
+use super::{Posture, Tie};
+use crate::log::Samples;
 use curve::{Curve, SAME_TIME_S};
 
 /// Frame intervals that a gap may have where the user does not say. A gap has as many as its length rounds to, so that
@@ -24,7 +25,7 @@ const MOST_INTERVALS: f64 = 2.5;
 /// Why a row has no label, or not all of them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Unlabelled {
+pub(super) enum Unlabelled {
     /// The video had not begun.
     BeforeTheVideo,
     /// The video was over.
@@ -63,7 +64,7 @@ pub struct LabelCounts {
 
 /// Labels for the rows of a log.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Labels {
+pub(super) struct Labels {
     /// The joints' names.
     pub joints: Vec<String>,
     /// For each joint, its angle at each row's time, degrees; NaN where there is no label.
@@ -80,7 +81,7 @@ pub struct Labels {
 
 /// Labels each row. `max_gap_s`: seen frames further apart are not interpolated between; none: two frame intervals.
 #[must_use]
-pub fn label(posture: &Posture, samples: &Samples, tie: &Tie, max_gap_s: Option<f64>) -> Labels {
+pub(super) fn label(posture: &Posture, samples: &Samples, tie: &Tie, max_gap_s: Option<f64>) -> Labels {
     let max_gap_s = max_gap_s.unwrap_or_else(|| MOST_INTERVALS * median_interval_s(&posture.time_s));
     // A video without frames never begins.
     let ends_s = [posture.time_s.first(), posture.time_s.last()].map(|t| t.copied().unwrap_or(f64::INFINITY));
@@ -121,7 +122,7 @@ pub fn label(posture: &Posture, samples: &Samples, tie: &Tie, max_gap_s: Option<
 impl Labels {
     /// What a row's `label_status` is: `ok`, `before the video`, `after the video`, or `gap:` and the joints.
     #[must_use]
-    pub fn status(&self, row: usize) -> Cow<'static, str> {
+    pub(super) fn status(&self, row: usize) -> Cow<'static, str> {
         match self.unlabelled[row] {
             None => "ok".into(),
             Some(Unlabelled::BeforeTheVideo) => "before the video".into(),
@@ -135,7 +136,7 @@ impl Labels {
 
     /// How many rows have labels, and why others have not.
     #[must_use]
-    pub fn counts(&self) -> LabelCounts {
+    pub(super) fn counts(&self) -> LabelCounts {
         let count = |why: Option<Unlabelled>| self.unlabelled.iter().filter(|&&reason| reason == why).count() as u64;
         let rows_labelled = count(None);
         LabelCounts {

@@ -30,7 +30,7 @@ const PICTURES: &str = "pictures";
 
 /// The options of a stage.
 #[derive(Debug, Clone, Args)]
-pub struct AlignKeys {
+pub(crate) struct AlignKeys {
     #[command(flatten)]
     options: AlignOptions,
     #[command(flatten)]
@@ -39,7 +39,7 @@ pub struct AlignKeys {
 
 /// A stage of a pipeline.
 #[derive(Debug, Clone)]
-pub struct AlignJob(AlignKeys);
+pub(crate) struct AlignJob(AlignKeys);
 
 impl AlignJob {
     fn needs_clock(&self) -> bool {
@@ -200,7 +200,7 @@ fn stated(report: &AlignReport) -> Vec<Quality> {
 
 /// A stage that joins sets; one set alone is passed on as it is.
 #[derive(Debug, Clone, Copy)]
-pub struct JoinJob(Tables);
+pub(crate) struct JoinJob(Tables);
 
 #[derive(Debug, Serialize)]
 struct JoinFigures {

@@ -20,7 +20,7 @@ const ROUNDED_S: f64 = 1e-6;
 /// # Errors
 /// No clock in the table, one that ties nothing, or that may be tied to none or several hours or days of the log: in
 /// words, with what to do.
-pub fn by_clock(
+pub(crate) fn by_clock(
     posture: &Posture,
     log_time_s: &[f64],
     midnight_s: Option<f64>,

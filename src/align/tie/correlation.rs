@@ -4,9 +4,10 @@ use clap::Args;
 
 use super::correlate::{LagSearch, Recording, correlate};
 use super::{Tie, TieMethod};
-use crate::align::{Posture, Samples};
+use crate::align::Posture;
 use crate::clock::USUAL_DRIFT;
 use crate::job::number;
+use crate::log::Samples;
 use crate::timebase::Timebase;
 
 /// How far the sensor's lag differs with the motion, seconds: hysteresis lasts longer the slower the finger moves.
@@ -30,7 +31,7 @@ pub struct LagTie {
 ///
 /// # Errors
 /// No angles, no photodiodes, or no lag that is sure: in words, with what to do.
-pub fn by_correlation(posture: &Posture, samples: &Samples, options: LagTie) -> Result<Tie, String> {
+pub(crate) fn by_correlation(posture: &Posture, samples: &Samples, options: LagTie) -> Result<Tie, String> {
     if let Some(lag_s) = options.sensor_lag_s.filter(|lag_s| !lag_s.is_finite()) {
         return Err(format!("the sensor's lag is {lag_s} s; it must be a number of seconds"));
     }
@@ -104,7 +105,7 @@ mod tests {
     use rand_chacha::ChaCha8Rng;
 
     use super::*;
-    use crate::align::Channel;
+    use crate::log::Channel;
     use crate::phantom::force::ForceTrajectory;
     use crate::phantom::log::{LogOptions, LogScene};
     use crate::phantom::trajectory::Trajectory;

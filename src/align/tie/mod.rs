@@ -7,11 +7,11 @@ mod correlation;
 mod offset;
 mod zero;
 
-pub use clock::by_clock;
-pub(super) use clock::resolution_s;
-pub use correlate::{Correlated, LagPeak, LagSearch, Recording, correlate};
-pub use correlation::{LagTie, by_correlation};
-pub use offset::by_offset;
+pub(super) use clock::{by_clock, resolution_s};
+pub use correlate::{LagPeak, LagSearch, Recording};
+pub use correlation::LagTie;
+pub(super) use correlation::by_correlation;
+pub(super) use offset::by_offset;
 
 use crate::timebase::Timebase;
 

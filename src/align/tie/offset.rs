@@ -8,7 +8,7 @@ use crate::timebase::Timebase;
 ///
 /// # Errors
 /// Numbers that can't be.
-pub fn by_offset(offset_s: f64, offset_sd_s: Option<f64>) -> Result<Tie, String> {
+pub(crate) fn by_offset(offset_s: f64, offset_sd_s: Option<f64>) -> Result<Tie, String> {
     if !offset_s.is_finite() {
         return Err(format!("the offset is {offset_s} s; it must be a number of seconds: log time less video time"));
     }

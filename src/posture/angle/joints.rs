@@ -29,7 +29,7 @@ pub struct Angle {
 
 /// The joints of one frame.
 #[derive(Debug, Clone, PartialEq)]
-pub struct AngleRow {
+pub(crate) struct AngleRow {
     /// One for each of the layout's joints; none where it is not known.
     pub angles: Vec<Option<Angle>>,
     /// The needed markers that are not seen, or coincide with their partner; in the layout's order.
@@ -39,7 +39,7 @@ pub struct AngleRow {
 impl AngleRow {
     /// `ok`, or `lost:` and the markers.
     #[must_use]
-    pub fn status(&self, layout: &Layout) -> String {
+    pub(crate) fn status(&self, layout: &Layout) -> String {
         if self.lost.is_empty() {
             return "ok".to_owned();
         }
@@ -49,7 +49,7 @@ impl AngleRow {
 
 /// Follows the joints through a video.
 #[derive(Debug, Clone)]
-pub struct Angles {
+pub(crate) struct Angles {
     layout: Layout,
     view: View,
     needed: Vec<bool>,
@@ -65,7 +65,7 @@ const APART_PX: f64 = 1e-6;
 impl Angles {
     /// For the frames of one video, in order.
     #[must_use]
-    pub fn new(layout: &Layout, info: &Info) -> Self {
+    pub(crate) fn new(layout: &Layout, info: &Info) -> Self {
         Self::seen_by(layout, View::new(layout, info))
     }
 
@@ -74,7 +74,7 @@ impl Angles {
     }
 
     /// The angles of the next frame, one sight a marker of the layout.
-    pub fn step(&mut self, sights: &[Sight]) -> AngleRow {
+    pub(crate) fn step(&mut self, sights: &[Sight]) -> AngleRow {
         let spots: Vec<Option<Spot>> = sights
             .iter()
             .zip(&self.needed)

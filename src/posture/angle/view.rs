@@ -11,7 +11,7 @@ use crate::posture::layout::Layout;
 
 /// A point with the covariance of its error: variance of x, covariance, variance of y.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Spot {
+pub(crate) struct Spot {
     /// Column and row.
     pub at_px: [f64; 2],
     /// Variance of x, covariance, variance of y.
@@ -33,7 +33,7 @@ impl Spot {
 
 /// How a video's stored picture is seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct View {
+pub(crate) struct View {
     turn: Turn,
     stored_size: (usize, usize),
     /// Width of the shown picture's pixels over their height.
@@ -44,7 +44,7 @@ pub struct View {
 impl View {
     /// The view of a video, through the layout's camera where it names one.
     #[must_use]
-    pub fn new(layout: &Layout, info: &Info) -> Self {
+    pub(crate) fn new(layout: &Layout, info: &Info) -> Self {
         let size = (info.format.width, info.format.height);
         Self::of(layout.camera.as_ref(), size, info.turn, info.pixel_aspect)
     }
@@ -65,7 +65,7 @@ impl View {
 
     /// The centre on the shown picture.
     #[must_use]
-    pub fn shown(&self, centre: &Centre) -> Spot {
+    pub(crate) fn shown(&self, centre: &Centre) -> Spot {
         let stored = Spot { at_px: centre.at_px, covariance_px2: centre.covariance_px2 };
         let at_px = self.turn.shown_from_stored(centre.at_px, self.stored_size);
         let jacobian = match self.turn {
@@ -79,7 +79,7 @@ impl View {
 
     /// The centre on square pixels without distortion; none where the lens' model shows no such point.
     #[must_use]
-    pub fn flat(&self, centre: &Centre) -> Option<Spot> {
+    pub(crate) fn flat(&self, centre: &Centre) -> Option<Spot> {
         let shown = self.shown(centre);
         match &self.lens {
             Some(lens) => {

@@ -2,7 +2,7 @@
 
 /// A marker's centre.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Centre {
+pub(crate) struct Centre {
     /// Column and row in the stored picture.
     pub at_px: [f64; 2],
     /// Variance of x, covariance, variance of y.
@@ -16,14 +16,14 @@ pub struct Centre {
 impl Centre {
     /// The standard error of a coordinate: the root of the mean of both variances.
     #[must_use]
-    pub fn sd_px(&self) -> f64 {
+    pub(crate) fn sd_px(&self) -> f64 {
         (0.5 * (self.covariance_px2[0] + self.covariance_px2[2])).sqrt()
     }
 }
 
 /// Why a marker has no centre.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Loss {
+pub(crate) enum Loss {
     /// Nothing of its colour where it can be.
     NotFound,
     /// Seen in part only, or changed in shape or size.
@@ -38,7 +38,7 @@ pub enum Loss {
 
 /// A marker in a frame: seen or not.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Sight {
+pub(crate) enum Sight {
     /// Where it is.
     Seen(Centre),
     /// Why it is not seen.

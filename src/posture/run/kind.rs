@@ -28,7 +28,7 @@ const PICTURES: &str = "pictures";
 
 /// The options of a stage.
 #[derive(Debug, Clone, Args)]
-pub struct PostureKeys {
+pub(crate) struct PostureKeys {
     #[command(flatten)]
     options: PostureOptions,
     #[command(flatten)]
@@ -37,7 +37,7 @@ pub struct PostureKeys {
 
 /// A stage of a pipeline.
 #[derive(Debug, Clone)]
-pub struct PostureJob(PostureKeys);
+pub(crate) struct PostureJob(PostureKeys);
 
 impl PostureJob {
     /// The joints that are measured; empty: all of the marker file. Markers and overlay show what the stage itself

@@ -67,7 +67,7 @@ pub struct LagPeak {
 
 /// The lag that was found.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Correlated {
+pub(super) struct Correlated {
     /// Log time less video time, seconds.
     pub offset_s: f64,
     /// Its standard error, from blocks of time, seconds.
@@ -135,7 +135,7 @@ struct Candidate {
 ///
 /// # Errors
 /// Too little to compare, chance would explain as much, or several lags do: in words, with what to do.
-pub fn correlate(video: Recording<'_>, log: Recording<'_>, search: LagSearch) -> Result<Correlated, String> {
+pub(super) fn correlate(video: Recording<'_>, log: Recording<'_>, search: LagSearch) -> Result<Correlated, String> {
     let video = Series::new(video.time_s, video.columns, "the angles")?;
     let log = Series::new(log.time_s, log.columns, "the photodiodes")?;
     let shorter_s = video.span_s().min(log.span_s());

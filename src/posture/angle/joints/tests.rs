@@ -6,7 +6,8 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 use super::*;
-use crate::posture::{Centre, Loss};
+use crate::posture::Centre;
+use crate::posture::marker::sight::Loss;
 use crate::video::Turn;
 
 const WIDTH: usize = 1280;

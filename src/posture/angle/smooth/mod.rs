@@ -23,7 +23,7 @@ const FEWEST: usize = 8;
 
 /// A smoothed series and what was found of it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Smoothed {
+pub(crate) struct Smoothed {
     /// Known exactly where the given angle is.
     pub angles: Vec<Option<Angle>>,
     /// What the smoother took the series for; none where it was left as it is.
@@ -47,7 +47,7 @@ pub struct SmoothModel {
 
 /// Smooths one joint's angles at `times_s` (not decreasing).
 #[must_use]
-pub fn smooth(times_s: &[f64], angles: &[Option<Angle>]) -> Smoothed {
+pub(crate) fn smooth(times_s: &[f64], angles: &[Option<Angle>]) -> Smoothed {
     let known: Vec<(usize, f64, Angle)> = times_s
         .iter()
         .zip(angles)

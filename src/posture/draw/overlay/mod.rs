@@ -191,7 +191,7 @@ fn boxed([x, y]: [f64; 2], (width, height): (f64, f64)) -> labels::Box4 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::posture::Loss;
+    use crate::posture::marker::sight::Loss;
     use crate::video::{Format, Item, Video};
 
     pub(in crate::posture) fn info(format: Format, turn: Turn) -> Info {
