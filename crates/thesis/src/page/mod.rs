@@ -208,11 +208,11 @@ fn introduce(page: &mut Page, judged: &[Judged<'_>], by_kind: &[KindFigures]) {
         page.paragraph(&format!(
             "A phantom is no people. Every recording behind this page was generated: photographs, videos and logs of \
              formulae whose sizes were assumed after the thesis' words. What agreement is worth depends on the \
-             statement's kind: \"put in\", the phantom was made after this very sentence, and agreement is no evidence; \
-             \"follows\", it is a consequence of the thesis' model or of how models are trained, whatever sizes were \
-             assumed; \"emerges\", nobody set it and it could have come out otherwise. Agree: {}. That a statement \
-             does not agree says that the thesis' figure needs something that the phantom lacks, or has in another \
-             size. Absolute errors are the assumptions' and forecast nothing for a sensor on a finger.",
+             statement's kind: \"put in\", the phantom was made after this very sentence, and agreement is no \
+             evidence; \"follows\", it is a consequence of the thesis' model or of how models are trained, whatever \
+             sizes were assumed; \"emerges\", nobody set it and it could have come out otherwise. Agree: {}. That a \
+             statement does not agree says that the thesis' figure needs something that the phantom lacks, or has in \
+             another size. Absolute errors are the assumptions' and forecast nothing for a sensor on a finger.",
             shares.join(", ")
         ));
     }

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Numbers;
 pub use read::StatementsError;
-use test::{Condition, rounded};
+use test::Condition;
 
 /// Where agreement comes from when the study is the phantom's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -175,12 +175,15 @@ impl Statement {
     /// What came out; names without their part where it is the same for all.
     fn found(&self, numbers: &Numbers) -> String {
         let names = self.names();
-        let part = |name: &str| name.split_once('.').map_or(0, |(part, _)| part.len() + 1);
-        let first = names.first().map_or("", |name| &name[..part(name)]);
-        let of_one = names.iter().all(|name| name.starts_with(first));
-        let known = names
-            .iter()
-            .filter_map(|name| Some((if of_one { &name[first.len()..] } else { name }, numbers.get(name)?)));
-        known.map(|(name, value)| format!("{name} {}", rounded(value))).collect::<Vec<_>>().join("; ")
+        let first = names.first().and_then(|name| Some(name.split_once('.')?.0)).unwrap_or_default();
+        let part = format!("{first}.");
+        let part = if names.iter().all(|name| name.starts_with(&part)) { part.as_str() } else { "" };
+        let mut found = Vec::new();
+        for text in self.conditions.iter().flat_map(|one| one.found(numbers, part)) {
+            if !found.contains(&text) {
+                found.push(text);
+            }
+        }
+        found.join("; ")
     }
 }

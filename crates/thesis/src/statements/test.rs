@@ -99,6 +99,20 @@ impl Operand {
         };
         Some(if self.size { value.abs() } else { value }).filter(|value| value.is_finite())
     }
+
+    /// What is known of it, in words; of a quotient both quantities, too. Names are without the `part` before them.
+    fn found(&self, numbers: &Numbers, part: &str) -> Option<String> {
+        let known = |name: &str| {
+            let value = rounded(numbers.get(name)?);
+            Some(format!("{} {value}", name.strip_prefix(part).unwrap_or(name)))
+        };
+        let Some(over) = &self.over else { return known(&self.name) };
+        match (known(&self.name), known(over), self.value(numbers)) {
+            (Some(a), Some(b), Some(value)) => Some(format!("{a} / {b} = {}", rounded(value))),
+            (Some(a), Some(b), None) => Some(format!("{a} / {b}")),
+            (a, b, _) => a.or(b),
+        }
+    }
 }
 
 /// One relation that is to hold.
@@ -137,6 +151,11 @@ impl Condition {
     /// The quantities that it depends on.
     pub(super) fn names(&self) -> impl Iterator<Item = &str> {
         self.left.names().chain(self.right.iter().flat_map(Operand::names))
+    }
+
+    /// What is known of both sides, in words.
+    pub(super) fn found(&self, numbers: &Numbers, part: &str) -> Vec<String> {
+        std::iter::once(&self.left).chain(&self.right).filter_map(|one| one.found(numbers, part)).collect()
     }
 
     /// The unit of its threshold: that of its quantity; a quotient has none.
@@ -197,7 +216,7 @@ fn filled(text: &str, chosen: &[String]) -> Result<String, String> {
 }
 
 /// Three digits.
-pub(super) fn rounded(value: f64) -> String {
+fn rounded(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");
     }
@@ -244,6 +263,12 @@ mod tests {
         let below = |other: &str| Relation::Below(Bound::Quantity(other.to_owned()));
         assert_eq!(holds("a", &below("b / a"), &values), [Some(false)]);
         assert_eq!(holds("a", &below("c"), &values), [None]);
+        let mut numbers = Numbers::default();
+        values.iter().for_each(|(name, value)| numbers.set(format!("p.{name}"), *value));
+        let found = |text: &str, part: &str| Operand::new(text).found(&numbers, part);
+        assert_eq!(found("|p.a / p.b|", "p."), Some("a -2 / b 4 = 0.5".to_owned()));
+        assert_eq!(found("p.a / p.zero", ""), Some("p.a -2 / p.zero 0".to_owned()));
+        assert_eq!((found("p.c / p.b", ""), found("p.c", "")), (Some("p.b 4".to_owned()), None));
     }
 
     #[test]

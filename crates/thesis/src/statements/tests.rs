@@ -30,8 +30,8 @@ fn the_thesis_statements_are_read_and_each_can_fail() {
 #[test]
 fn what_fails_fails_whatever_is_missing_of_the_rest() {
     let statements = Statements::read(
-        "source = [{ from = 'here', quantities = [['a.x', 'V', 'one'], ['b.y', '', 'other']] }]\n[[statement]]\nid = 'both'\n\
-         section = '1'\nsentence = 'both'\nkind = 'emerges'\n\
+        "source = [{ from = 'here', quantities = [['a.x', 'V', 'one'], ['b.y', '', 'other']] }]\n[[statement]]\n\
+         id = 'both'\nsection = '1'\nsentence = 'both'\nkind = 'emerges'\n\
          test = [{ quantity = 'a.x', at_most = 1 }, { quantity = '|b.y|', below = 0.5 }]",
     )
     .unwrap();
