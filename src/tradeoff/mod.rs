@@ -18,8 +18,8 @@ pub mod photos;
 pub mod posture;
 pub mod predictor;
 
-pub use all::{Job, Outcomes, Plan, all};
-pub use choices::{Choice, choices};
+pub use all::{Outcomes, Plan, all};
+pub use choices::{Choice, Job, choices};
 pub use judge::knee::{BEND, Cost, Knee, SAME, Why, front, knee};
 pub use judge::{Figures, Tradeoff, Verdict, judge};
 pub use measure::rows::{Measured, Row};
