@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use super::choices::Job;
 use super::judge::{Tradeoff, judge};
 use super::peers::{PeerRow, read_peers};
 use super::{align, hemodynamics, photos, posture, predictor};
@@ -10,49 +11,6 @@ use crate::job::Interrupted;
 use crate::phantom::video::Preset;
 use crate::tradeoff::measure::scenes::{self, Wanted};
 use crate::tradeoff::measure::timing::Effort;
-use crate::words::instead;
-
-/// What can be measured.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Job {
-    /// Photographs to maps.
-    Photos,
-    /// Video to joint angles.
-    Posture,
-    /// Angles onto logs.
-    Align,
-    /// Photodiodes to force.
-    Predictor,
-    /// Pressure to blood flow.
-    Hemodynamics,
-}
-
-impl Job {
-    /// In the order of the page.
-    pub const ALL: [Self; 5] = [Self::Photos, Self::Posture, Self::Align, Self::Predictor, Self::Hemodynamics];
-
-    /// As on the command line.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Photos => photos::RESAMPLING.0,
-            Self::Posture => posture::TRACKING.0,
-            Self::Align => align::TYING.0,
-            Self::Predictor => predictor::MODEL.0,
-            Self::Hemodynamics => hemodynamics::SOLVING.0,
-        }
-    }
-
-    /// The job of a name.
-    ///
-    /// # Errors
-    /// Another name, with the nearest that there is.
-    pub fn named(name: &str) -> Result<Self, String> {
-        let known = Self::ALL.map(Self::name);
-        let found = Self::ALL.into_iter().find(|job| job.name() == name);
-        found.ok_or_else(|| format!("`{name}` is not a stage; {}", instead(name, &known)))
-    }
-}
 
 /// On what and how is measured.
 #[derive(Debug, Clone)]

@@ -1,7 +1,50 @@
-//! What can be chosen in each job, what is chosen unless the user says otherwise, and why: the one place of it. The
-//! page states it, the README repeats it, and a test compares the two.
+//! The jobs; what can be chosen in each, what is chosen unless the user says otherwise, and why: the one place of it.
+//! The page states it, the README repeats it, and a test compares the two.
 
 use super::{align, hemodynamics, photos, posture, predictor};
+use crate::words::instead;
+
+/// What can be measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Job {
+    /// Photographs to maps.
+    Photos,
+    /// Video to joint angles.
+    Posture,
+    /// Angles onto logs.
+    Align,
+    /// Photodiodes to force.
+    Predictor,
+    /// Pressure to blood flow.
+    Hemodynamics,
+}
+
+impl Job {
+    /// In the order of the page.
+    pub const ALL: [Self; 5] = [Self::Photos, Self::Posture, Self::Align, Self::Predictor, Self::Hemodynamics];
+
+    /// As on the command line.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Photos => photos::RESAMPLING.0,
+            Self::Posture => posture::TRACKING.0,
+            Self::Align => align::TYING.0,
+            Self::Predictor => predictor::MODEL.0,
+            Self::Hemodynamics => hemodynamics::SOLVING.0,
+        }
+    }
+
+    /// The job of a name.
+    ///
+    /// # Errors
+    /// Another name, with the nearest that there is.
+    pub fn named(name: &str) -> Result<Self, String> {
+        let known = Self::ALL.map(Self::name);
+        let found = Self::ALL.into_iter().find(|job| job.name() == name);
+        found.ok_or_else(|| format!("`{name}` is not a stage; {}", instead(name, &known)))
+    }
+}
 
 /// Settings of which one is chosen.
 #[derive(Debug, Clone, PartialEq, Eq)]

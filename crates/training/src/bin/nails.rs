@@ -9,10 +9,10 @@ use lunula_training::nails::{self, Part};
 /// Make or judge the weights that find nails on photographs
 ///
 /// The weights that lunula comes with (src/photo/outline/detect/weights/*.txt) are those of, in this order,
-/// `nails train first border`, `nails train scorer` and `nails train judge` with 450 phantoms and, in --hands, annotated
-/// photographs of hands. Detection with the weights that are compiled in makes part of what the next ones learn from:
-/// write each step's into that folder and build again before the next. The same scenes, weights before and kind of
-/// processor give the same weights.
+/// `nails train first border`, `nails train scorer` and `nails train judge` with 450 phantoms and, in --hands,
+/// annotated photographs of hands. Detection with the weights that are compiled in makes part of what the next ones
+/// learn from: write each step's into that folder and build again before the next. The same scenes, weights before and
+/// kind of processor give the same weights.
 #[derive(Debug, Parser)]
 #[command(version, max_term_width = 100)]
 struct Arguments {
