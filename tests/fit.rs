@@ -1,18 +1,12 @@
 //! `lunula fit`: parameters that made a recording are found again from it, with what it does not tell said; bad
 //! requests are refused whole.
 
-use std::collections::BTreeMap;
-
-use crate::util::{Answer, Dir, Json};
+use crate::util::{Answer, Dir, Json, number};
 
 fn run(dir: &Dir, command: &str, options: &str) -> Answer {
     let mut arguments = vec![command];
     arguments.extend(options.split_whitespace());
     dir.lunula(&arguments)
-}
-
-fn number(row: &BTreeMap<String, String>, column: &str) -> f64 {
-    row[column].parse().unwrap_or_else(|_| panic!("`{}` in `{column}`", row[column]))
 }
 
 /// A parameter of a parameter file.

@@ -1,17 +1,11 @@
 //! `lunula simulate`: the table is the model's response, collapse ends it with a word, bad requests are refused whole.
 
-use std::collections::BTreeMap;
-
-use crate::util::{Answer, Dir, Json};
+use crate::util::{Answer, Dir, Json, number};
 
 fn run(dir: &Dir, options: &str) -> Answer {
     let mut arguments = vec!["simulate"];
     arguments.extend(options.split_whitespace());
     dir.lunula(&arguments)
-}
-
-fn number(row: &BTreeMap<String, String>, column: &str) -> f64 {
-    row[column].parse().unwrap_or_else(|_| panic!("`{}` in `{column}`", row[column]))
 }
 
 /// Displacements of the walls at rest, m, with ten digits (facts: unloaded, they stand further out than x = 0).

@@ -1,18 +1,12 @@
 //! `lunula simulate` far from the thesis' figures: pulses, other optics, undamped and heavy walls, loads that close
 //! every vessel, long files.
 
-use std::collections::BTreeMap;
-
-use crate::util::{Answer, Dir};
+use crate::util::{Answer, Dir, number};
 
 fn run(dir: &Dir, options: &str) -> Answer {
     let mut arguments = vec!["simulate"];
     arguments.extend(options.split_whitespace());
     dir.lunula(&arguments)
-}
-
-fn number(row: &BTreeMap<String, String>, column: &str) -> f64 {
-    row[column].parse().unwrap_or_else(|_| panic!("`{}` in `{column}`", row[column]))
 }
 
 fn column(dir: &Dir, table: &str, name: &str) -> Vec<f64> {

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-use crate::util::{Answer, Dir, Json};
+use crate::util::{Answer, Dir, Json, number};
 
 /// Half a step of a force's sixth decimal, and of an angle's fifth.
 const FORCE_N: f64 = 0.51e-6;
@@ -14,10 +14,6 @@ fn run(dir: &Dir, options: &str) -> Answer {
     let mut arguments = vec!["trajectory"];
     arguments.extend(options.split_whitespace());
     dir.lunula(&arguments)
-}
-
-fn number(row: &BTreeMap<String, String>, column: &str) -> f64 {
-    row[column].parse().unwrap_or_else(|_| panic!("`{}` in `{column}`", row[column]))
 }
 
 fn forces(row: &BTreeMap<String, String>) -> [f64; 3] {

@@ -45,7 +45,6 @@ pub use options::commands::{EvaluateChoices, NetworkOptions, PredictChoices, Pru
 pub use options::target::{POSTURE, Target};
 pub use outputs::{FolderOutputs, end, picture};
 
-/// Model files, read.
 struct OpenedModels {
     predictors: Vec<Predictor>,
     warnings: Vec<String>,
@@ -58,7 +57,6 @@ impl OpenedModels {
     }
 }
 
-/// Reads model files.
 fn open_models(paths: &[PathBuf]) -> Result<OpenedModels, PredictorError> {
     let mut opened = OpenedModels { predictors: Vec::new(), warnings: Vec::new() };
     for path in paths {

@@ -145,6 +145,12 @@ impl Dir {
     }
 }
 
+/// A cell of a table.
+#[track_caller]
+pub fn number(row: &std::collections::BTreeMap<String, String>, column: &str) -> f64 {
+    row[column].parse().unwrap_or_else(|_| panic!("`{}` in `{column}`", row[column]))
+}
+
 /// A nail drawn without noise: light skin, a rounded nail of 60 x 80 px, distal end up, its middle at (80, 70).
 pub fn drawn_nail() -> RgbImage {
     RgbImage::from_fn(160, 140, |x, y| {
