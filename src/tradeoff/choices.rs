@@ -121,7 +121,7 @@ pub fn choices() -> Vec<Choice> {
             predictor::model_default(),
             predictor::FIT,
             "On random movement no model is better by more than some hundredths of a newton, and which one depends on \
-             the person (docs/section-5-4.md).",
+             the person (docs/src/thesis/section-5-4.md).",
         ),
         choice(
             predictor::ROWS,
@@ -155,20 +155,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_reason_and_default_stands_in_the_readme() {
+    fn every_reason_and_default_is_in_the_book() {
         let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
-        let readme = words(include_str!("../../README.md"));
+        let page = words(include_str!("../../docs/src/accuracy/defaults.md"));
         for choice in choices() {
             assert!(
-                readme.contains(&words(choice.why)),
-                "README.md does not say of {}, {}: {}",
+                page.contains(&words(choice.why)),
+                "the book does not say of {}, {}: {}",
                 choice.job,
                 choice.name,
                 choice.why
             );
             assert!(
-                readme.contains(&choice.default),
-                "README.md does not name the default of {}: {}",
+                page.contains(&choice.default),
+                "the book does not name the default of {}: {}",
                 choice.name,
                 choice.default
             );

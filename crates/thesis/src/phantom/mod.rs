@@ -48,7 +48,7 @@ use presses::PressOptions;
 /// The tables' folder, and which of its files says what was asked for.
 const TABLES: &str = "tables";
 const RECORD: &str = "study.json";
-/// Seed of the first of the thesis' eight people who press, as docs/section-4-3.md has them.
+/// Seed of the first of the thesis' eight people who press, as docs/src/thesis/section-4-3.md has them.
 const FIRST_PRESS: u64 = 430;
 
 /// What a recording is of.

@@ -66,7 +66,7 @@ impl Person {
     /// The force's area, m2: a newton is 1 N/cm2.
     pub(crate) const AREA_M2: f64 = 1e-4;
     /// What `k_C`, `b_C`, `k_V` and `b_V` of the thesis' table are multiplied by to have its measured time constants,
-    /// see docs/section-4-3.md.
+    /// see docs/src/thesis/section-4-3.md.
     const TUNED: [f64; 4] =
         [0.733_905_503_853_136_7, 1.176_448_318_448_69, 10.000_000_000_000_002, 0.099_999_999_999_999_98];
 
@@ -83,7 +83,7 @@ impl Person {
         Some(Self { name: name.to_owned(), parameters: own, seed })
     }
 
-    /// The thesis' eight about these parameters; for the tuned ones see docs/section-4-3.md.
+    /// The thesis' eight about these parameters; for the tuned ones see docs/src/thesis/section-4-3.md.
     #[must_use]
     pub(crate) fn of_section_4_3(middle: &Parameters) -> Option<Vec<Self>> {
         (0..Self::COUNT).map(|k| Self::about(middle, &(k + 1).to_string(), FIRST_SEED + k as u64)).collect()

@@ -100,7 +100,7 @@ mod tests {
 
     #[test]
     fn people_are_about_values_with_the_time_constants_that_were_tuned_to() {
-        // As docs/section-4-3.md has them, of the tuned values under steps of 1 N/cm2.
+        // As docs/src/thesis/section-4-3.md has them, of the tuned values under steps of 1 N/cm2.
         let told_s = [0.136, 0.144, 0.175, 0.362];
         let middle = crate::section::people::Person::middle().unwrap();
         let found_s = constants_s(&middle, crate::section::TUNED_AT_PA).unwrap();
