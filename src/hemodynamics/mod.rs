@@ -28,8 +28,8 @@ pub use curve::{
 };
 pub use error::HemodynamicsError;
 pub use fit::{
-    Between, FitFigures, FitInputs, FitJob, FitOptions, FitOutputs, FitReport, FittedCombination, FittedGroup,
-    FittedPhotodiode, FittedRival, PhotodiodeColumn, RecordingColumns, RecordingReport, fit, fit_plan,
+    Between, FitFigures, FitInputs, FitJob, FitOptions, FitOutputs, FitReport, FittedGroup, FittedPhotodiode,
+    PhotodiodeColumn, RecordingColumns, RecordingReport, fit, fit_plan,
 };
 pub use given::{BloodOptions, LoadOptions, ModelOptions, Start};
 pub use response::Response;

@@ -49,7 +49,6 @@ pub use options::commands::{
 pub use options::target::{POSTURE, Target};
 pub use outputs::FolderOutputs;
 
-/// Model files, read.
 struct OpenedModels {
     predictors: Vec<Predictor>,
     warnings: Vec<String>,
@@ -62,7 +61,6 @@ impl OpenedModels {
     }
 }
 
-/// Reads model files.
 fn open_models(paths: &[PathBuf]) -> Result<OpenedModels, PredictorError> {
     let mut opened = OpenedModels { predictors: Vec::new(), warnings: Vec::new() };
     for path in paths {

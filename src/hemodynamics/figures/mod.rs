@@ -6,9 +6,7 @@ pub(super) use over_time::{Curve, Panel, draw_over_time, draw_response, over_tim
 
 use crate::figure::{Axis, Chart, Item};
 
-/// Width of a picture.
 pub(super) const WIDTH: u32 = 1100;
-/// Height of a panel.
 pub(super) const HEIGHT: u32 = 340;
 /// A newton on a square centimetre, Pa.
 pub(super) const N_PER_CM2: f64 = 1e4;

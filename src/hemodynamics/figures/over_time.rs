@@ -8,7 +8,6 @@ use super::{WIDTH, chart};
 use crate::figure::{Item, Thinned, draw_charts};
 use crate::hemodynamics::Response;
 
-/// A curve over time.
 #[derive(Debug, Clone)]
 pub(in crate::hemodynamics) struct Curve {
     /// For the legend; none: it is not in it.
@@ -17,7 +16,6 @@ pub(in crate::hemodynamics) struct Curve {
     pub(in crate::hemodynamics) times_s: Vec<f64>,
     /// In the panel's unit; a break where a value is not finite.
     pub(in crate::hemodynamics) values: Vec<f64>,
-    /// Which colour.
     pub(in crate::hemodynamics) colour: usize,
     /// How wide, pixels.
     pub(in crate::hemodynamics) width: u32,

@@ -8,7 +8,6 @@ use lunula_hemodynamics::{
 use crate::hemodynamics::HemodynamicsError;
 use crate::hemodynamics::solve::{RunSettings, respond, rest, state_before};
 
-/// Tolerance of the curves.
 const RTOL: f64 = 1e-8;
 
 /// The parameters of a recording: its photodiodes' own offset and scaling among them.

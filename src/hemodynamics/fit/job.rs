@@ -8,8 +8,7 @@ use lunula_hemodynamics::{Calibration, FitOptions as Settings, FitResult, Free, 
 use super::parameter_files::{parameter_files, parameter_paths};
 use super::recording::{ReadRecording, read};
 use super::report::{
-    FitFigures, FitReport, FittedCombination, FittedPhotodiode, FittedRival, RecordingReport, correlations, groups,
-    result_text, stopped,
+    FitFigures, FitReport, FittedPhotodiode, RecordingReport, correlations, groups, result_text, stopped,
 };
 use super::{FitInputs, FitOptions, FitOutputs, estimates, figure, fitted, noise};
 use crate::files::{Places, beside, pictures_beside};
@@ -191,12 +190,8 @@ pub fn fit(
         r2: result.r2,
         values: result.values,
         freedom: result.freedom,
-        not_identifiable: result
-            .undetermined
-            .iter()
-            .map(|one| FittedCombination { weights: one.weights.clone(), sd: one.sd })
-            .collect(),
-        rivals: result.rivals.iter().map(|one| FittedRival { values: one.values.clone(), rise: one.rise }).collect(),
+        not_identifiable: result.undetermined.clone(),
+        rivals: result.rivals.clone(),
         points: result.statistics.points,
         points_refused: result.statistics.refused,
         parameters: named(&result.parameters),

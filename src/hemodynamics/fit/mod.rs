@@ -18,6 +18,4 @@ pub use job::{fit, plan as fit_plan};
 pub use kind::FitJob;
 pub use options::{FitInputs, FitOptions, FitOutputs};
 pub use recording::{Between, PhotodiodeColumn, RecordingColumns};
-pub use report::{
-    FitFigures, FitReport, FittedCombination, FittedGroup, FittedPhotodiode, FittedRival, RecordingReport,
-};
+pub use report::{FitFigures, FitReport, FittedGroup, FittedPhotodiode, RecordingReport};

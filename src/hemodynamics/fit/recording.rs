@@ -102,7 +102,6 @@ impl RecordingColumns {
     }
 }
 
-/// A recording, read.
 #[derive(Debug, Clone)]
 pub(super) struct ReadRecording {
     pub(super) path: PathBuf,

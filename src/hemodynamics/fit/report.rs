@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use lunula_hemodynamics::{Bound, FitResult, Stop};
+use lunula_hemodynamics::{Bound, Combination, FitResult, Rival, Stop};
 use serde::Serialize;
 
 use crate::job::Report;
@@ -46,24 +46,6 @@ pub struct FittedPhotodiode {
     pub scaling_standard_error_v: Option<f64>,
     /// RMS of its residuals, V.
     pub residual_rms_v: f64,
-}
-
-/// Parameters that can change together with next to no change of the voltages.
-#[derive(Debug, Clone, Serialize)]
-pub struct FittedCombination {
-    /// Names and weights.
-    pub weights: Vec<(String, f64)>,
-    /// SD of the change along it; none where the voltages don't change at all.
-    pub sd: Option<f64>,
-}
-
-/// Another minimum that the recordings can't distinguish from the best one.
-#[derive(Debug, Clone, Serialize)]
-pub struct FittedRival {
-    /// The values of each free group there.
-    pub values: Vec<Vec<f64>>,
-    /// By how much the sum of squares is larger, over the variance of the residuals.
-    pub rise: f64,
 }
 
 /// A recording as it was read.
@@ -122,9 +104,9 @@ pub struct FitFigures {
     /// Voltages less unknowns that they determine.
     pub freedom: usize,
     /// What the recordings don't determine.
-    pub not_identifiable: Vec<FittedCombination>,
+    pub not_identifiable: Vec<Combination>,
     /// Other minima, found from other starts, that the recordings can't distinguish from this one.
-    pub rivals: Vec<FittedRival>,
+    pub rivals: Vec<Rival>,
     /// Points in the space of parameters that were tried.
     pub points: u64,
     /// Those of them at which the model has no response.

@@ -6,7 +6,6 @@ use crate::hemodynamics::HemodynamicsError;
 use crate::log::{Channel, LitRows, LogReading, Statuses, Verdict};
 use crate::table::{Cell, Table};
 
-/// Seconds.
 pub(in crate::hemodynamics) const TIME: &str = "time_s";
 /// `P_F1` and `P_F2`.
 pub(in crate::hemodynamics) const PRESSED: [&str; 2] = ["pf1_Pa", "pf2_Pa"];
@@ -19,7 +18,6 @@ const MOST_FAULTS: usize = 10;
 /// Named columns of a table, whole.
 #[derive(Debug, Clone)]
 pub(in crate::hemodynamics) struct Columns {
-    /// The table.
     pub(in crate::hemodynamics) path: PathBuf,
     names: Vec<String>,
     values: Vec<Vec<f64>>,
@@ -50,9 +48,7 @@ enum Source {
 /// A load at growing times.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(in crate::hemodynamics) struct Knots {
-    /// Seconds.
     pub(in crate::hemodynamics) times_s: Vec<f64>,
-    /// The column's values.
     pub(in crate::hemodynamics) values: Vec<f64>,
 }
 
@@ -89,7 +85,6 @@ impl Rows {
         Ok(Self { path: path.to_owned(), names: table.names().to_vec(), from: Source::Table(table) })
     }
 
-    /// The columns.
     pub(in crate::hemodynamics) fn names(&self) -> &[String] {
         &self.names
     }

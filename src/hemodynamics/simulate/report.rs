@@ -37,7 +37,6 @@ pub struct Collapsed {
 }
 
 impl Collapsed {
-    /// In words.
     pub(in crate::hemodynamics) fn words(&self) -> String {
         format!("{} closes at {:.9} s", self.vessel, self.time_s)
     }

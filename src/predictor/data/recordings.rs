@@ -26,7 +26,6 @@ impl<'a> Splitter<'a> {
         Self { source, called, taken: before, group: None, last_s: f64::NAN, starts: Vec::new(), resets: Vec::new() }
     }
 
-    /// Takes a row.
     pub(super) fn take(&mut self, row: usize) {
         let groups = &self.source.groups;
         let mut group = self.group.or((!groups.is_empty()).then_some(0));

@@ -42,12 +42,10 @@ impl Source {
         if wanted.rows.log.is_log(path)? { Self::of_log(path, wanted) } else { Self::of_table(path, wanted) }
     }
 
-    /// How many rows.
     pub(super) fn rows(&self) -> usize {
         self.time_s.len()
     }
 
-    /// Photodiodes and targets.
     pub(super) fn columns(&self) -> impl Iterator<Item = &Vec<f64>> {
         self.x.iter().chain(&self.y)
     }
@@ -189,7 +187,6 @@ fn chosen(path: &Path, wanted: &Wanted, names: &[String]) -> Result<Vec<String>,
     Ok(inputs)
 }
 
-/// A column of numbers.
 struct NumberColumn {
     /// NaN where missing or invalid.
     values: Vec<f64>,

@@ -365,35 +365,6 @@ fn a_streams_faults_are_told_with_their_line_or_dropped() {
     assert!(streamed("P1,P2\n", false).unwrap().is_empty());
 }
 
-/// How long it takes to read a table as the size of the task has it; `LUNULA_TIME=1` prints it.
-#[test]
-fn a_table_of_twelve_thousand_rows_is_read() {
-    let mut text =
-        "time_s,P1,P2,P3,P4,P5,P6,P7,P8,Fx_N,Fy_N,Fz_N,label_status,subject,session,sensor_status\n".to_owned();
-    for k in 0..12_000 {
-        write!(text, "{}", k as f64 * 0.01).unwrap();
-        for p in 0..8 {
-            write!(text, ",{:.6}", 2.0 + (k as f64 * 0.001 * (p + 1) as f64).sin()).unwrap();
-        }
-        let f = k as f64 * 0.0007;
-        writeln!(text, ",{:.4},{:.4},{:.4},ok,anna,s1,ok", f.sin(), f.cos(), -f).unwrap();
-    }
-    let folder = Folder::new();
-    let paths = [folder.file("a.csv", text)];
-    let rounds = if std::env::var_os("LUNULA_TIME").is_some() { 50 } else { 1 };
-    let time = |work: &dyn Fn()| {
-        let one = |_| {
-            let start = std::time::Instant::now();
-            work();
-            start.elapsed().as_secs_f64() * 1e3
-        };
-        (0..rounds).map(one).fold(f64::INFINITY, f64::min)
-    };
-    let read_ms = time(&|| assert_eq!(read_data(&paths, &forces()).unwrap().data.rows(), 12_000));
-    let table_ms = time(&|| assert_eq!(crate::table::Table::read(&paths[0]).unwrap().rows(), 12_000));
-    println!("read_data {read_ms:.2} ms, of that the table {table_ms:.2} ms");
-}
-
 #[test]
 fn a_line_without_an_end_and_other_ends_are_refused() {
     let endless = "P1,P2\n".to_owned() + &"1".repeat(1 << 21);

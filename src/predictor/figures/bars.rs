@@ -11,7 +11,6 @@ const TAKEN: f64 = 0.8;
 /// Height of the picture, pixels.
 const HEIGHT_PX: u32 = 560;
 
-/// Bars in groups.
 #[derive(Debug, Clone, Default)]
 pub(in crate::predictor) struct Bars {
     /// Above the axes.
@@ -26,7 +25,6 @@ pub(in crate::predictor) struct Bars {
     pub series: Vec<BarSeries>,
 }
 
-/// Bars of one colour.
 #[derive(Debug, Clone, Default)]
 pub(in crate::predictor) struct BarSeries {
     /// For the legend.

@@ -8,7 +8,6 @@ use crate::figure::{Axis, Chart, Item, draw_panels};
 
 /// Width and height of a panel, pixels: the axes are square within it.
 const PANEL_PX: (u32, u32) = (536, 534);
-/// Panels side by side.
 const COLUMNS: usize = 3;
 /// Points are drawn once in each of so many times so many places of a panel.
 const PLACES: f64 = 150.0;

@@ -14,7 +14,6 @@ use crate::predictor::error::PredictorError;
 use crate::predictor::figures::{CurvePoint, LearningSeries, draw_learning_curve};
 use crate::table::{Column, TableWriter, Value};
 
-/// Of each recording's time.
 const SHARES: [f64; 9] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
 
 /// Errors over amounts of training data.

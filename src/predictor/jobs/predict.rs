@@ -52,7 +52,6 @@ pub struct PredictFigures {
     pub bending: u64,
 }
 
-/// Rows that were answered.
 #[derive(Debug, Clone, Copy, Default)]
 struct Counts {
     rows: u64,

@@ -12,7 +12,6 @@ use crate::table::{Column, TableError, TableWriter, Value};
 /// Its name in a folder.
 pub(in crate::predictor) const MERIT: &str = "merit.csv";
 
-/// Rows of one merit.
 #[derive(Debug)]
 pub(in crate::predictor) struct MeritRows<'a> {
     pub(in crate::predictor) of: &'static str,

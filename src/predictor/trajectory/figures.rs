@@ -12,7 +12,6 @@ const HEIGHT: u32 = 380;
 const PATH: (u32, u32) = (760, 804);
 /// Points of a path that are nearer than this share of the picture are one.
 const NEAR: f64 = 0.003;
-/// Points of a curve.
 const POINTS: u32 = 12_000;
 /// How the colours of a chart are called.
 const COLOURS: [&str; 3] = ["blue", "orange", "green"];
@@ -123,7 +122,6 @@ fn title(options: &TrajectoryOptions, spiral: Option<&Spiral>) -> String {
     }
 }
 
-/// J2 over time.
 pub(super) fn draw_posture(
     options: &TrajectoryOptions,
     path: &Path,

@@ -11,17 +11,14 @@ pub(super) enum Motion {
     Posture { path: Path, lead_s: f64, seconds: f64 },
 }
 
-/// Forces over time.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ForceMotion {
     pub(super) space: ForceSpace,
-    /// Where it is one.
     pub(super) spiral: Option<Spiral>,
     random: RandomForce,
     lead_s: f64,
 }
 
-/// How J2 goes.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Path {
     Bending(Bending),

@@ -14,7 +14,6 @@
 use crate::load::Inputs;
 use crate::model::{Collapse, Model, contact, contact_slope};
 
-/// A vessel at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Vessel {
     /// `e = k D / A`, Pa.
@@ -35,7 +34,6 @@ const STIFFNESSES: [f64; 2] = [1e-6, 1e30];
 /// Conductances, m3/(s Pa), that can be computed with.
 const CONDUCTANCES: [f64; 2] = [1e-60, 1e20];
 
-/// All vessels at rest.
 #[derive(Clone, Debug)]
 pub(super) struct Network {
     pub(super) units: Vec<Vessel>,

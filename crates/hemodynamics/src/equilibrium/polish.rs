@@ -12,7 +12,6 @@
 
 use super::network::{Network, Vessel};
 
-/// Steps before giving up.
 const MOST_STEPS: usize = 50;
 /// A step is small where no lumen moves by more than this part of itself, or of [`FINE`] where it is smaller.
 const SMALL: f64 = 1e-11;

@@ -6,7 +6,6 @@ pub(super) const LEAST_LUMEN: f64 = 1e-9;
 /// Equilibria with all orders of equal units before the search gives up.
 pub(super) const MOST_EQUILIBRIA: usize = 10_000;
 
-/// Lumens at an equilibrium.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Root {
     pub(super) vein: f64,

@@ -68,7 +68,6 @@ impl Free {
 #[derive(Clone, Debug)]
 pub(super) struct Coordinate {
     pub(super) symbols: Vec<Symbol>,
-    /// The values at 0.
     start: Vec<f64>,
     /// `None`: by a factor. Otherwise the change that counts as 1.
     scale: Option<f64>,
@@ -168,5 +167,4 @@ impl Coordinate {
     }
 }
 
-/// ln 10.
 pub(super) const TENFOLD: f64 = std::f64::consts::LN_10;

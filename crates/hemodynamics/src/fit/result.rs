@@ -105,7 +105,7 @@ pub struct Estimate {
 }
 
 /// Parameters that can change together with (next to) no change of the voltages.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Combination {
     /// Names and weights: changes of logarithms; of an offset or scaling, over the scaling; of what else moves by
     /// addition, over its scale.
@@ -115,7 +115,7 @@ pub struct Combination {
 }
 
 /// Another minimum.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Rival {
     /// The values of each group's parameters there.
     pub values: Vec<Vec<f64>>,

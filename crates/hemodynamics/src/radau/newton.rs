@@ -91,7 +91,6 @@ impl<const S: usize> Stepper<S> {
         self.stage_lumens.iter().position(|lumens| lumens.iter().any(|&lumen| lumen <= 0.0))
     }
 
-    /// The simplified Newton iteration.
     pub(super) fn iterate(
         &mut self,
         model: &Model,

@@ -16,7 +16,6 @@ pub(crate) struct Bounds {
     pub(crate) probed: f64,
     /// On what Newton's method may leave.
     pub(crate) newton: f64,
-    /// On its iterations.
     pub(crate) iterations: u32,
     /// On the height of a layer that may be stepped over.
     pub(crate) layer: f64,
@@ -128,7 +127,6 @@ impl<const S: usize> Stepper<S> {
         self.forget();
     }
 
-    /// Writes the state.
     pub(crate) fn write_to(&self, lumens: &mut [f64], rates: &mut [f64]) {
         for j in 0..self.lumens.len() {
             (lumens[j], rates[j]) = (self.lumens[j][0], self.rates[j][0]);

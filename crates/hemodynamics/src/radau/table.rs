@@ -13,7 +13,6 @@ pub(crate) struct Table<const S: usize> {
     pub(crate) weights_by_column: [[f64; S]; S],
     /// Eigenvalues of `A^-1`.
     pub(crate) eigenvalues: [f64; S],
-    /// Their reciprocals.
     pub(crate) reciprocals: [f64; S],
     /// From values at the stages to coordinates along the eigenvectors.
     pub(crate) to_eigen: [[f64; S]; S],

@@ -63,7 +63,6 @@ impl Lu {
         true
     }
 
-    /// Solves in place.
     pub(crate) fn solve(&self, b: &mut [f64]) {
         let n = self.n;
         for (value, scale) in b.iter_mut().zip(&self.scales) {

@@ -22,7 +22,6 @@ pub(crate) struct Variation<'a> {
     out: Vec<f64>,
     /// Whether every step's system could be solved.
     pub(crate) sound: bool,
-    /// Steps heard of.
     pub(crate) steps: u64,
     memory: Memory,
 }

@@ -10,7 +10,6 @@ const MOST_GROWTH: f64 = 3.0;
 const MOST_SHRINKING: f64 = 0.05;
 /// Of the step that would just hold the tolerance.
 const SAFETY: f64 = 0.9;
-/// After Newton's method failed.
 const AFTER_FAILURE: f64 = 0.25;
 /// Of the time that a closing vessel has left at its present rate.
 const TOWARDS_CLOSURE: f64 = 0.9;
@@ -101,7 +100,6 @@ impl Pace {
         self.next_s = step * growth.clamp(MOST_SHRINKING, MOST_GROWTH);
     }
 
-    /// After a rejected one.
     fn rejected(&mut self, next: f64) {
         self.rejected += 1;
         self.next_s = next;

@@ -34,16 +34,10 @@ pub enum SolveFault {
         /// rate. A vessel that exactly balances its load (`P_F1 = P_H + k D / A_s` of the vein) thins out for ever, and
         /// the time is that of its rounding.
         time_s: f64,
-        /// The run before.
         before: Box<Trajectory>,
     },
     #[error("{evaluations} evaluations were spent by {time_s} s; allow more of them, or a larger tolerance")]
-    Work {
-        evaluations: u64,
-        time_s: f64,
-        /// The run before.
-        before: Box<Trajectory>,
-    },
+    Work { evaluations: u64, time_s: f64, before: Box<Trajectory> },
     #[error(
         "no step from {time_s} s on came through, down to {step_s:e} s: {}",
         .site.map_or_else(|| "the equations can't be solved there".to_owned(), |site| format!("{site} closes in it"))
@@ -53,7 +47,6 @@ pub enum SolveFault {
         step_s: f64,
         /// The vessel that closed in it, if it was that.
         site: Option<Site>,
-        /// The run before.
         before: Box<Trajectory>,
     },
 }

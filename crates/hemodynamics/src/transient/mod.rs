@@ -196,7 +196,6 @@ pub(crate) fn bounds<const S: usize>(rtol: f64) -> Bounds {
     }
 }
 
-/// One run.
 struct Run<'a> {
     loads: &'a Loads,
     start: &'a State,

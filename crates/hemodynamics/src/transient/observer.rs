@@ -20,7 +20,6 @@ pub(crate) struct AcceptedStep<'a, const S: usize> {
 
 /// Receives the accepted steps. `()` ignores them.
 pub(crate) trait StepObserver {
-    /// A step was accepted.
     fn accepted<const S: usize>(&mut self, step: &AcceptedStep<'_, S>);
 
     /// Whether the time of a collapse is to be found to its last digits, which takes another run.

@@ -28,7 +28,6 @@ pub(crate) fn product_error<const FUSED: bool>(a: f64, b: f64, product: f64) -> 
     }
 }
 
-/// [`two_sum`] of vectors.
 #[inline(always)]
 pub(crate) fn two_sums<S: Simd>(simd: S, a: S::f64s, b: S::f64s) -> (S::f64s, S::f64s) {
     let sum = simd.add_f64s(a, b);

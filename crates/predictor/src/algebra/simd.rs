@@ -7,7 +7,6 @@
 /// What is to be done: a type rather than a closure, as its `call` must be `#[inline(always)]`, and all that it calls,
 /// to be compiled for those vectors.
 pub(crate) use pulp::NullaryFnOnce as Work;
-/// A machine's vectors.
 pub(crate) use pulp::Simd;
 /// The same where vectors are named, as the compiler does not find them.
 pub(crate) use pulp::WithSimd as Wide;

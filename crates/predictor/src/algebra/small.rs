@@ -1,7 +1,6 @@
 //! Householder's factorization of small matrices kept column by column, with and without pivoting, and what is solved
 //! with it.
 
-/// A column.
 pub(crate) type Column = Vec<f64>;
 
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {

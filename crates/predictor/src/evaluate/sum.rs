@@ -11,7 +11,6 @@ pub(crate) struct Sum {
 }
 
 impl Sum {
-    /// Adds a number.
     pub(crate) fn add(&mut self, value: f64) {
         let sum = self.high + value;
         let taken = sum - self.high;
@@ -19,7 +18,6 @@ impl Sum {
         self.high = sum;
     }
 
-    /// What was added.
     pub(crate) fn value(self) -> f64 {
         self.high + self.low
     }

@@ -21,7 +21,6 @@ pub(super) struct Centred {
     /// Ones' part of each column, and of ones themselves.
     pub(super) ones: Vec<f64>,
     pub(super) first: f64,
-    /// The centred columns.
     pub(super) columns: Vec<Column>,
 }
 

@@ -112,7 +112,7 @@ pub struct LeastSquares {
     pub target_centre: Vec<f64>,
     /// J: targets x columns, a target's unit a column's.
     pub coefficients: Array2<f64>,
-    /// y_c - J m, worked out before rounding; only for print, as it cancels digits when used.
+    /// y_c - J m (equations 13 and 15's F_0), worked out before rounding; only for print, as it cancels digits when used.
     pub intercept: Vec<f64>,
     /// Rows used.
     pub rows: usize,
@@ -146,12 +146,6 @@ impl LeastSquares {
         let digits = -(self.solved_condition * f64::EPSILON / 2.0).log10().clamp(-16.0, 0.0);
         // Machines differ in a logarithm's last bit.
         (digits * 10.0).round() / 10.0
-    }
-
-    /// y_c - J m: equations 13 and 15's F_0, for print.
-    #[must_use]
-    pub fn intercept(&self) -> &[f64] {
-        &self.intercept
     }
 }
 

@@ -75,7 +75,6 @@ pub(super) fn predict_into(kernel: &impl Kernel, x: ArrayView2<'_, f64>, out: Ar
     }
 }
 
-/// A row.
 struct Row<'a, K> {
     kernel: &'a K,
     x: &'a [f64],
@@ -94,7 +93,6 @@ impl<K: Kernel> Wide for Row<'_, K> {
     }
 }
 
-/// All rows.
 struct Batch<'a, K> {
     kernel: &'a K,
     x: ArrayView2<'a, f64>,

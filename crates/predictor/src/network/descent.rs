@@ -41,7 +41,6 @@ pub enum Stopped {
     Perfect,
 }
 
-/// Where a descent led.
 #[derive(Debug, Clone)]
 pub(super) struct Descent {
     /// Those of the best epoch.

@@ -295,7 +295,6 @@ impl Normal {
     }
 }
 
-/// All rows' products.
 struct Sums<'a> {
     normal: &'a mut Normal,
     weights: &'a [f64],

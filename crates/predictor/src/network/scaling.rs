@@ -14,7 +14,6 @@ pub(super) struct Scaling {
     pub(super) centre: f64,
     /// Its standard deviation (n), or 1 where it is constant.
     pub(super) scale: f64,
-    /// It does not change.
     pub(super) constant: bool,
 }
 

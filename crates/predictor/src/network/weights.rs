@@ -24,7 +24,6 @@ impl Shape {
         self.hidden * (1 + self.inputs)
     }
 
-    /// All weights.
     pub(super) fn parameters(self) -> usize {
         self.first() + self.targets * (1 + self.hidden)
     }
@@ -51,7 +50,6 @@ impl Forward {
         Self { shape, hidden: vec![[0.0; BLOCK]; shape.hidden], errors: vec![[0.0; BLOCK]; shape.targets] }
     }
 
-    /// Works out a block.
     #[inline(always)]
     pub(super) fn block(&mut self, weights: &[f64], inputs: &[Column], targets: &[Column]) {
         let nodes = weights.chunks_exact(1 + self.shape.inputs);

@@ -23,9 +23,7 @@ pub(super) struct Compressed {
     pub(super) limits: Vec<f64>,
     /// What a target's numbers are to be multiplied with, in two factors whose product may not be a double.
     pub(super) unit: Vec<[f64; 2]>,
-    /// Training rows.
     pub(super) train_rows: usize,
-    /// Validation rows.
     pub(super) validate_rows: usize,
 }
 

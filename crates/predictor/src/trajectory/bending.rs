@@ -4,7 +4,6 @@ use std::f64::consts::TAU;
 
 use super::{Wave, normal, smooth};
 
-/// Streams of random numbers.
 const STREAM: u64 = 27 << 32;
 
 /// Equation 27: theta = J2 = 35 - 40 cos(2 pi f_b t) degrees, from -5 to 75.

@@ -4,7 +4,6 @@ use std::f64::consts::FRAC_1_SQRT_2;
 
 use super::{ForceSpace, RELEASE_S, Wave, normal, smooth};
 
-/// Streams of random numbers.
 const STREAM: u64 = 21 << 32;
 
 /// Smooth and band-limited, within the cone of friction; made of three [`Wave`]s w of rates of 0.4 to 4 times `hz`.

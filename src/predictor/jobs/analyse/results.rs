@@ -37,7 +37,6 @@ pub(super) fn write(
     Ok(staging)
 }
 
-/// Fig. 98.
 fn modes_picture(staging: &Staging, folder: &Path, report: &AnalyseReport) -> Result<PathBuf, PredictorError> {
     let modes = &report.modes.modes;
     let of = |by: fn(&ModelMode) -> &[(String, f64)], rows: usize| {

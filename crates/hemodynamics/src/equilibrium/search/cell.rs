@@ -41,11 +41,8 @@ pub(super) type Choice = Vec<(usize, usize)>;
 /// What is known of a choice over a cell.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Verdict {
-    /// It has no equilibrium.
     Empty,
-    /// It has exactly one.
     One,
-    /// It may have several.
     Open,
 }
 
@@ -62,7 +59,6 @@ struct Part {
     by_venous: [f64; 2],
 }
 
-/// What a cell bounds.
 pub(super) struct Bounds<'a> {
     cell: &'a Cell,
     /// By branch; `None` where it does not reach over the cell.

@@ -3,7 +3,6 @@
 /// The part of the magnitudes in a sum by which rounding may move it: 18 roundings.
 pub(super) const ROUNDING: f64 = 4e-15;
 
-/// A sum of ranges.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Sum {
     least: f64,

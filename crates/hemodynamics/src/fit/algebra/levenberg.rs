@@ -53,7 +53,6 @@ pub(in crate::fit) struct Search<'a> {
     pub(in crate::fit) most_points: usize,
 }
 
-/// Where a search ended.
 pub(in crate::fit) struct Minimum<P> {
     pub(in crate::fit) point: P,
     pub(in crate::fit) stop: Stop,

@@ -15,7 +15,6 @@ use crate::fit::{bounds, settings, squares};
 const ERRORS: f64 = 2.0;
 /// How closely it is met.
 const CLOSE: f64 = 0.02;
-/// Tries for an end.
 const TRIES: usize = 12;
 /// The others are fitted again to this part of their standard errors.
 const TOLERANCE: f64 = 0.03;
