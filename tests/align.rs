@@ -47,7 +47,7 @@ fn truth(dir: &Dir, joint: &str) -> BTreeMap<String, f64> {
         .collect()
 }
 
-/// Labels of a small scene err by no more, degrees RMS; the README has the figures of large ones.
+/// Labels of a small scene err by no more, degrees RMS; the book has the figures of large ones.
 const LABEL_RMS_DEG: [(&str, f64); 3] = [("J1", 0.15), ("J2", 0.3), ("J3", 0.5)];
 
 #[track_caller]

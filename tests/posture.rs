@@ -46,7 +46,7 @@ fn rms(found: &Rows, truth: &Rows, joint: &str) -> (f64, usize) {
     ((errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt(), errors.len())
 }
 
-/// The largest RMS error that a small clean scene may have, degrees; the README has the figures of the large
+/// The largest RMS error that a small clean scene may have, degrees; the book has the figures of the large
 /// ones.
 const CLEAN_RMS_DEG: [(&str, f64); 3] = [("J1", 0.15), ("J2", 0.25), ("J3", 0.5)];
 

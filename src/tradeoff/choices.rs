@@ -1,5 +1,5 @@
 //! The jobs; what can be chosen in each, what is chosen unless the user says otherwise, and why: the one place of it.
-//! The page states it, the README repeats it, and a test compares the two.
+//! The page states it, the book repeats it, and a test compares the two.
 
 use super::{align, hemodynamics, photos, posture, predictor};
 use crate::words::instead;

@@ -1,7 +1,7 @@
 //! Figures 76 to 82 of the thesis: its simulations, and its experiments on eight generated people.
 //!
-//! `cargo run --release --example section_4_3 -- OUT` prints the numbers of the book's section-4-3.md as Markdown and
-//! draws the pictures into OUT; the same bytes each time.
+//! `cargo run --release -p lunula-thesis --example section_4_3 -- OUT` prints the numbers of the book's
+//! section-4-3.md as Markdown and draws the pictures into OUT; the same bytes each time.
 
 use std::path::PathBuf;
 

@@ -1,7 +1,7 @@
 //! The tables of section 5.4 of the thesis on generated logs of seven people.
 //!
-//! `cargo run --release --example section_5_4 -- OUT [NAME=VALUE ..]` prints Markdown and writes logs, a table and
-//! pictures into OUT; the same bytes each time. What the phantom assumes may be changed, by the names of
+//! `cargo run --release -p lunula-thesis --example section_5_4 -- OUT [NAME=VALUE ..]` prints Markdown and writes logs,
+//! a table and pictures into OUT; the same bytes each time. What the phantom assumes may be changed, by the names of
 //! `lunula phantom log`: `posture-shift` (by up to how many degrees of J2 the finger is off straight in each
 //! repetition, 3), `follow` (its error, a share, 0.06), `wander` (drift, 0.01 V), `noise` (0.0005 V), `lag` and
 //! `hysteresis` (shares of the usual, 1).

@@ -86,6 +86,18 @@ fn a_table_of_sessions_is_taken_before_names() {
 }
 
 #[test]
+fn logs_of_which_none_is_the_videos_by_name_are_not_labelled() {
+    let (text, tasks) = proposed(&[
+        ("finger/video.mp4", ""),
+        ("finger/markers.toml", &MARKERS.replace("[joints]", "[clock]\n[joints]")),
+        ("finger/log.csv", LOG),
+        ("touch/log.csv", LOG),
+    ]);
+    assert!(text.contains("which log belongs to which video"), "{text}");
+    assert_eq!(tasks, ["angles", "force"]);
+}
+
+#[test]
 fn what_cannot_be_used_is_told() {
     let (text, tasks) = proposed(&[("v.mp4", ""), ("log.csv", LOG)]);
     assert!(text.contains("--suggest"), "{text}");

@@ -113,7 +113,7 @@ impl Draft<'_> {
         self.files("markers", "marker files", &found.markers, &["session", "subject"])
     }
 
-    fn angles(&mut self, video: Option<Input>, markers: Option<Input>, joints: Option<Input>) -> Option<String> {
+    fn angles(&mut self, video: Option<Input>, markers: Option<Input>, joints: Option<Input>) -> Option<Input> {
         match (video, markers) {
             (Some(video), Some(markers)) => {
                 let _ = write!(
@@ -124,7 +124,7 @@ impl Draft<'_> {
                     quoted(&markers.reference)
                 );
                 self.wanted.push("angles");
-                Some("angles".to_owned())
+                Some(Input { reference: "angles".to_owned(), names: video.names })
             }
             (Some(_), None) => {
                 self.notes.push(
@@ -132,15 +132,25 @@ impl Draft<'_> {
                                  --suggest`, then run `lunula init` again"
                         .to_owned(),
                 );
-                joints.map(|joints| joints.reference)
+                joints
             }
-            (None, _) => joints.map(|joints| joints.reference),
+            (None, _) => joints,
         }
     }
 
-    fn sets(&mut self, found: &Inventory, angles: Option<String>, log: Option<&Input>) {
+    fn sets(&mut self, found: &Inventory, angles: Option<Input>, log: Option<&Input>) {
         let (Some(angles), Some(log)) = (angles, log) else { return };
-        let of_video = angles == "angles";
+        // Each would be labelled with the same angles, and no step could tell that they are another recording's.
+        if log.names.iter().any(|name| !angles.names.contains(name)) {
+            self.notes.push(
+                "which log belongs to which video does not follow from their names, so no labelled sets are planned: list \
+                 them in a table, a row per recording with columns subject, session, video, log, and run `lunula init` \
+                 again"
+                    .to_owned(),
+            );
+            return;
+        }
+        let of_video = angles.reference == "angles";
         let clock = if of_video { found.clock } else { found.joints_clock };
         let sync = if clock {
             "# The clock in the picture ties video and log.\n".to_owned()
@@ -152,7 +162,7 @@ impl Draft<'_> {
         let _ = write!(
             self.stages,
             "\n# Angles on the rows of the logs.\n{sync}[stage.sets]\njob = \"align\"\njoints = {}\nlog = {}\n{line}",
-            quoted(&angles),
+            quoted(&angles.reference),
             quoted(&log.reference)
         );
         self.wanted.push("sets");
