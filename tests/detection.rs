@@ -255,7 +255,7 @@ mod real_data {
     #[test]
     #[ignore = "needs real recordings: LUNULA_REAL_DATA"]
     fn hands_are_found_with_precision() {
-        /// At IoU 0.7, of the nails found with confidence; on the photographs that trained the detector and on the others.
+        /// At IoU 0.7, of the nails found with confidence; on the photographs that trained the detector and on others.
         const PRECISION: f64 = 0.9;
         let folder = real_data("nail/vpapenko_cc0");
         let files = std::fs::read_dir(folder.join("images")).unwrap();

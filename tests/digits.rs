@@ -29,8 +29,8 @@ mod real_data {
         crops
     }
 
-    /// No weights are trained on them. The rules of `read_crop` were made looking at all of them, the weight of *other* was
-    /// set on those of even number: 95 of 100 digits are read of these, 98 of 100 of the others.
+    /// No weights are trained on them. The rules of `read_crop` were made looking at all of them, the weight of *other*
+    /// was set on those of even number: 95 of 100 digits are read of these, 98 of 100 of the others.
     #[test]
     #[ignore = "needs real recordings: LUNULA_REAL_DATA"]
     fn digits_of_real_displays_are_read_or_left_out() {

@@ -47,18 +47,25 @@ fn the_fixtures_are_made_again_byte_for_byte() {
     assert!(committed.len() == 16 && committed.values().map(Vec::len).sum::<usize>() < 2_000_000);
 }
 
-/// The `lunula` commands within a page's blocks of `sh` and `console`, lines ended by a backslash joined.
-fn commands(page: &str) -> Vec<String> {
+/// A page's `lunula` commands within blocks of `sh` and `console`, lines ended by a backslash joined, and the error
+/// that the page shows for one.
+fn commands(page: &str) -> Vec<(String, Option<String>)> {
     let mut found = Vec::new();
     for block in page.split("```").skip(1).step_by(2) {
         let Some((language, text)) = block.split_once('\n') else { continue };
-        let lines = text.replace("\\\n", " ");
-        let own = lines.lines().filter_map(|line| match language {
-            "sh" => Some(line),
-            "console" => line.strip_prefix("$ "),
-            _ => None,
-        });
-        found.extend(own.filter(|line| line.starts_with("lunula ")).map(str::to_owned));
+        let text = text.replace("\\\n", " ");
+        let lines: Vec<&str> = text.lines().collect();
+        for (at, line) in lines.iter().enumerate() {
+            let own = match language {
+                "sh" => Some(*line),
+                "console" => line.strip_prefix("$ "),
+                _ => None,
+            };
+            if let Some(command) = own.filter(|line| line.starts_with("lunula ")) {
+                let error = lines.get(at + 1).filter(|next| next.starts_with("error: "));
+                found.push((command.to_owned(), error.map(|error| (*error).to_owned())));
+            }
+        }
     }
     found
 }
@@ -86,12 +93,13 @@ fn the_commands_of_readme_and_book_that_use_fixtures_work() {
     for page in all {
         let text = std::fs::read_to_string(&page).expect("a page");
         let commands = commands(&text);
-        if !commands.iter().any(|command| command.contains("fixtures/")) {
+        if !commands.iter().any(|(command, _)| command.contains("fixtures/")) {
             continue;
         }
         let dir = Dir::new();
-        std::os::unix::fs::symlink(fixtures(), dir.path("fixtures")).expect("a link");
-        for command in commands {
+        let copied = Command::new("cp").arg("-r").args([fixtures(), dir.path("fixtures")]).status();
+        assert!(copied.expect("cp").success());
+        for (command, error) in commands {
             let from_here = |word: &str| word.starts_with("fixtures/") || dir.path(word).exists();
             if !command.split_whitespace().skip(1).any(from_here) {
                 continue;
@@ -99,7 +107,8 @@ fn the_commands_of_readme_and_book_that_use_fixtures_work() {
             let shell = Command::new("sh").args(["-c", &command]).env("PATH", &path).current_dir(dir.path("")).output();
             let output = shell.expect("a shell");
             let said = String::from_utf8_lossy(&output.stderr).into_owned();
-            assert!(output.status.success(), "{}: {command}\n{said}", page.display());
+            let as_shown = error.as_ref().map_or(output.status.success(), |error| said.contains(error));
+            assert!(as_shown, "{}: {command}\n{said}", page.display());
             done += 1;
         }
     }

@@ -1,8 +1,8 @@
 //! The axes found on real photographs of hands, against directions read off by eye.
 //!
-//! `tests/data/real_nail_axes.csv` holds, for every nail of the CC0 photographs of the real recordings in `nail/vpapenko_cc0`,
-//! the centre of its mask region and the direction of its distal end, clockwise from up, as a person sees it (to about
-//! 5 degrees where the nail faces the camera, 15 where it is seen from its side).
+//! `tests/data/real_nail_axes.csv` holds, for every nail of the CC0 photographs of the real recordings in
+//! `nail/vpapenko_cc0`, the centre of its mask region and the direction of its distal end, clockwise from up, as a
+//! person sees it (to about 5 degrees where the nail faces the camera, 15 where it is seen from its side).
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 

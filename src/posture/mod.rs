@@ -3,8 +3,8 @@
 //! A video of a finger with coloured markers and a marker file go in; the angle of each joint in each frame, with its
 //! standard error, comes out. [`Layout`] is the marker file, checked; a survey of the first frames finds the markers
 //! and gives them their names; a tracker follows them, each centre by a fit of a blurred disc to luma and chroma about
-//! where it is expected; [`View`] brings centres to the shown, undistorted picture; [`Angles`] makes angles of them;
-//! [`smooth`](fn@smooth) smooths them where asked; [`AngleFigures`] draws them. [`run`] is the one entry.
+//! where it is expected; `angle::view` brings centres to the shown, undistorted picture; `angle::joints` makes angles
+//! of them; `angle::smooth` smooths them where asked; `draw` draws them. [`run`] is the one entry.
 //!
 //! Inside, coordinates are those of the *stored* picture ([`crate::video`]): the centre of its top-left luma sample is
 //! (0, 0), x to the right, y down. Angles are in radians, positive in flexion.

@@ -46,8 +46,8 @@ pub struct VideoRequest {
     /// How flexion turns a segment on the picture
     #[arg(long, value_enum, default_value = "clockwise")]
     flexion: Flexion,
-    /// Where the markers are; blots of paint (paint, thumb, row, mark) come as in a real recording: 24 frames a second, a
-    /// second hand
+    /// Where the markers are; blots of paint (paint, thumb, row, mark) come as in a real recording: 24 frames a second,
+    /// a second hand
     #[arg(long, value_enum, default_value = "pairs")]
     layout: MarkerLayout,
     /// The markers' colours [default: pairs; with paint: dark]

@@ -60,8 +60,8 @@ impl Job for NormalizeJob {
                 Role {
                     name: OUTLINES,
                     takes: Takes::AnyNumber,
-                    about: "LabelMe files or masks of the same subject and pose; where there is none, <photo>.json, else \
-                        detection",
+                    about: "LabelMe files or masks of the same subject and pose; where there is none, \
+                        <photo>.json, else detection",
                 },
             ],
             &[

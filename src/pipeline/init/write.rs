@@ -143,9 +143,9 @@ impl Draft<'_> {
         // Each would be labelled with the same angles, and no step could tell that they are another recording's.
         if log.names.iter().any(|name| !angles.names.contains(name)) {
             self.notes.push(
-                "which log belongs to which video does not follow from their names, so no labelled sets are planned: list \
-                 them in a table, a row per recording with columns subject, session, video, log, and run `lunula init` \
-                 again"
+                "which log belongs to which video does not follow from their names, so no labelled sets are planned: \
+                 list them in a table, a row per recording with columns subject, session, video, log, and run \
+                 `lunula init` again"
                     .to_owned(),
             );
             return;

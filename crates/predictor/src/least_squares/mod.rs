@@ -112,7 +112,7 @@ pub struct LeastSquares {
     pub target_centre: Vec<f64>,
     /// J: targets x columns, a target's unit a column's.
     pub coefficients: Array2<f64>,
-    /// y_c - J m (equations 13 and 15's F_0), worked out before rounding; only for print, as it cancels digits when used.
+    /// y_c - J m (equations 13 and 15's F_0), worked out before rounding; only for print: in use it cancels digits.
     pub intercept: Vec<f64>,
     /// Rows used.
     pub rows: usize,
