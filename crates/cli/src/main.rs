@@ -25,6 +25,10 @@ use lunula::stages::Stage;
 use lunula::words::shown_lines;
 use out::print_line;
 
+/// Photographs come and go by the megabyte: this allocator keeps their pages, the system's returns them each time.
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 /// Ground truth for fingernail sensing: nail photographs to coloration maps, videos to joint angles,
 /// angles and photodiode logs to labelled training sets, those to models of force and posture.
 #[derive(Debug, Parser)]
