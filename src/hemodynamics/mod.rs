@@ -26,9 +26,8 @@ pub use curve::{
 };
 pub use error::HemodynamicsError;
 pub use fit::{
-    Between, FitFigures, FitInputs, FitJob, FitOptions, FitOutputs, FitReport, FittedCombination, FittedGroup,
-    FittedPhotodiode, FittedRival, PhotodiodeColumn, RecordingColumns, RecordingReport, fit, fit_plan, own_parameters,
-    voltages,
+    Between, FitFigures, FitInputs, FitJob, FitOptions, FitOutputs, FitReport, FittedGroup, FittedPhotodiode,
+    PhotodiodeColumn, RecordingColumns, RecordingReport, fit, fit_plan, own_parameters, voltages,
 };
 pub use given::{BloodOptions, LoadOptions, ModelOptions, Start};
 pub use response::Response;

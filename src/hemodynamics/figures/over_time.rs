@@ -8,6 +8,7 @@ use super::{WIDTH, chart};
 use crate::figure::{Item, Thinned, draw_charts};
 use crate::hemodynamics::Response;
 
+/// One line of a chart over time.
 #[derive(Debug, Clone)]
 pub struct Curve {
     /// For the legend; none: it is not in it.

@@ -11,6 +11,7 @@ const TAKEN: f64 = 0.8;
 /// Height of the picture, pixels.
 const HEIGHT_PX: u32 = 560;
 
+/// A chart of bars in groups.
 #[derive(Debug, Clone, Default)]
 pub struct Bars {
     /// Above the axes.
@@ -25,6 +26,7 @@ pub struct Bars {
     pub series: Vec<BarSeries>,
 }
 
+/// The bars of one colour, one per group.
 #[derive(Debug, Clone, Default)]
 pub struct BarSeries {
     /// For the legend.

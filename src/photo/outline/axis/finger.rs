@@ -45,17 +45,15 @@ pub(super) fn evidence(patch: &Surroundings, clockwise_rad: f64) -> f64 {
 /// The [`evidence`] where it is above `floor`; `None`, mostly in less time, where it can't be.
 pub(super) fn evidence_above(patch: &Surroundings, clockwise_rad: f64, floor: f64) -> Option<f64> {
     let (sin, cos) = (clockwise_rad as f32).sin_cos();
-    let count = patch.nail.len() as f32;
-    let centre = patch.nail.iter().fold([0.0, 0.0], |sum, p| [sum[0] + p[0] / count, sum[1] + p[1] / count]);
     let mut frame = Frame {
         patch,
-        centre,
+        centre: patch.centre,
         distal: [sin, -cos],
         right: [cos, sin],
         across: [f32::MAX, f32::MIN],
         along: [f32::MAX, f32::MIN],
     };
-    for p in &patch.nail {
+    for p in &patch.rim {
         let [u, v] = frame.inverse(*p);
         // Half a cell to the nail's edge.
         frame.across = [frame.across[0].min(u - 0.5), frame.across[1].max(u + 0.5)];

@@ -46,6 +46,10 @@ pub(super) struct Surroundings {
     block: Vec<bool>,
     /// Cells of the nail, relative to the centroid.
     pub(super) nail: Vec<[f32; 2]>,
+    /// Of these, the ends of each row: none lies further out in any direction.
+    pub(super) rim: Vec<[f32; 2]>,
+    /// Their mean.
+    pub(super) centre: [f32; 2],
     mask: GrayImage,
     /// Square of the gradient that the stronger edges here reach.
     typical_edge2: f32,
@@ -109,15 +113,22 @@ impl Surroundings {
             cell[3] /= cell[3] + typical_unlike;
         }
         let half = HALF as f32;
-        let nail = (0..SIDE * SIDE)
-            .filter(|&i| at_nail(i))
-            .map(|i| [(i % SIDE) as f32 - half, (i / SIDE) as f32 - half])
-            .collect();
+        let place = |i: usize| [(i % SIDE) as f32 - half, (i / SIDE) as f32 - half];
+        let ends_a_row = |i: usize| {
+            let (x, y) = (i % SIDE, i / SIDE);
+            let beside = |x: usize| x < SIDE && at_nail(y * SIDE + x);
+            x == 0 || !beside(x - 1) || !beside(x + 1)
+        };
+        let on_nail = || (0..SIDE * SIDE).filter(|&i| at_nail(i));
+        let nail: Vec<[f32; 2]> = on_nail().map(place).collect();
+        let rim = on_nail().filter(|&i| ends_a_row(i)).map(place).collect();
+        let count = nail.len() as f32;
+        let centre = nail.iter().fold([0.0, 0.0], |sum, p| [sum[0] + p[0] / count, sum[1] + p[1] / count]);
         let block =
             (0..SIDE * SIDE).map(|i| [i, i + 1, i + SIDE, i + SIDE + 1].iter().all(|j| whole.get(*j) == Some(&true)));
         let block = block.collect();
         let featureless = strongest < EDGE_FLOOR;
-        Some(Self { cells, block, nail, mask, typical_edge2: edge.max(EDGE_FLOOR).powi(2), featureless })
+        Some(Self { cells, block, nail, rim, centre, mask, typical_edge2: edge.max(EDGE_FLOOR).powi(2), featureless })
     }
 
     /// How much of an edge crosses the unit vector `normal` at `at`, 0 to 1 (0.5: as strong as the stronger ones here);
