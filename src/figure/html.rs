@@ -15,8 +15,8 @@ const LONG: usize = 60;
 /// A page in the making: headings, paragraphs, tables, pictures, in the order they are added.
 #[derive(Debug, Clone)]
 pub struct Page {
-    title: String,
-    body: String,
+    /// The page so far, from its first byte on: pictures make it many megabytes, which are not copied again.
+    html: String,
 }
 
 const STYLE: &str = "\
@@ -32,47 +32,49 @@ figcaption{font-size:15px;color:#444;max-width:60rem}.scroll{max-height:36rem;ov
 impl Page {
     /// An empty page.
     pub fn new(title: &str) -> Self {
-        Self { title: title.to_owned(), body: format!("<h1>{}</h1>\n", escape(title)) }
+        let title = escape(title);
+        let html = format!(
+            "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta \
+             charset=\"utf-8\">\n<title>{title}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n<h1>{title}</h1>\n"
+        );
+        Self { html }
     }
 
     /// A section's heading.
     pub fn heading(&mut self, text: &str) {
-        let _ = writeln!(self.body, "<h2>{}</h2>", escape(text));
+        let _ = writeln!(self.html, "<h2>{}</h2>", escape(text));
     }
 
     /// A section's heading, and a name that links go to.
     pub fn anchored_heading(&mut self, name: &str, text: &str) {
-        let _ = writeln!(self.body, "<h2 id=\"{}\">{}</h2>", escape(name), escape(text));
+        let _ = writeln!(self.html, "<h2 id=\"{}\">{}</h2>", escape(name), escape(text));
     }
 
     /// Links, each a place and words, one after the other.
     pub fn links(&mut self, before: &str, links: &[(String, String)]) {
         let link = |(to, words): &(String, String)| format!("<a href=\"{}\">{}</a>", escape(to), escape(words));
         let all: Vec<String> = links.iter().map(link).collect();
-        let _ = writeln!(self.body, "<p>{} {}</p>", escape(before), all.join(" \u{b7} "));
+        let _ = writeln!(self.html, "<p>{} {}</p>", escape(before), all.join(" \u{b7} "));
     }
 
     /// A PNG file's bytes as a picture with its number and words below.
     pub fn figure(&mut self, png: &[u8], number: &str, caption: &str) {
-        let data = base64::engine::general_purpose::STANDARD.encode(png);
         let (number, caption) = (escape(number), escape(caption));
-        let _ = writeln!(
-            self.body,
-            "<figure><img alt=\"{number}\" src=\"data:image/png;base64,{data}\"><figcaption><b>{number}.</b> \
-             {caption}</figcaption></figure>"
-        );
+        self.html.push_str("<figure>");
+        self.image(png, &number);
+        let _ = writeln!(self.html, "<figcaption><b>{number}.</b> {caption}</figcaption></figure>");
     }
 
     /// Plain words.
     pub fn paragraph(&mut self, text: &str) {
-        let _ = writeln!(self.body, "<p>{}</p>", escape(text));
+        let _ = writeln!(self.html, "<p>{}</p>", escape(text));
     }
 
     /// Plain words, a point each; nothing where there are none.
     pub fn list(&mut self, items: &[String]) {
         if !items.is_empty() {
             let items: String = items.iter().map(|i| format!("<li>{}</li>\n", escape(i))).collect();
-            let _ = writeln!(self.body, "<ul>\n{items}</ul>");
+            let _ = writeln!(self.html, "<ul>\n{items}</ul>");
         }
     }
 
@@ -82,32 +84,36 @@ impl Page {
             row.map(|c| format!("<{tag}>{}</{tag}>", escape(c))).collect()
         };
         let _ = writeln!(
-            self.body,
+            self.html,
             "<div{}><table>\n<thead><tr>{}</tr></thead>\n<tbody>",
             if rows.len() > LONG { " class=\"scroll\"" } else { "" },
             cells("th", &mut header.iter().copied())
         );
         for (at, row) in rows.iter().enumerate() {
             let class = if marked(at) { " class=\"out\"" } else { "" };
-            let _ = writeln!(self.body, "<tr{class}>{}</tr>", cells("td", &mut row.iter().map(String::as_str)));
+            let _ = writeln!(self.html, "<tr{class}>{}</tr>", cells("td", &mut row.iter().map(String::as_str)));
         }
-        let _ = writeln!(self.body, "</tbody></table></div>");
+        let _ = writeln!(self.html, "</tbody></table></div>");
     }
 
     /// A PNG file's bytes as a picture.
     pub fn png(&mut self, png: &[u8], alt: &str) {
-        let data = base64::engine::general_purpose::STANDARD.encode(png);
-        let _ = writeln!(self.body, "<p><img alt=\"{}\" src=\"data:image/png;base64,{data}\"></p>", escape(alt));
+        self.html.push_str("<p>");
+        self.image(png, &escape(alt));
+        self.html.push_str("</p>\n");
+    }
+
+    /// A PNG file's bytes, in place; `alt` is escaped.
+    fn image(&mut self, png: &[u8], alt: &str) {
+        let _ = write!(self.html, "<img alt=\"{alt}\" src=\"data:image/png;base64,");
+        base64::engine::general_purpose::STANDARD.encode_string(png, &mut self.html);
+        self.html.push_str("\">");
     }
 
     /// The whole page.
-    pub fn finish(self) -> String {
-        format!(
-            "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta \
-             charset=\"utf-8\">\n<title>{}</title>\n<style>{STYLE}</style>\n</head>\n<body>\n{}</body>\n</html>\n",
-            escape(&self.title),
-            self.body
-        )
+    pub fn finish(mut self) -> String {
+        self.html.push_str("</body>\n</html>\n");
+        self.html
     }
 }
 

@@ -24,7 +24,7 @@ use crate::photo::results::{self, NailRow, NailTable, Scratch};
 use crate::photo::run::plan::{Foreknown, left_out};
 use crate::photo::run::report::{Findings, PhotosReport, of_photos};
 use crate::photo::set::{Photo, PhotoSet, SetFault};
-use crate::photo::sums::{Partials, Sums};
+use crate::photo::sums::{Batch, Partials};
 use crate::stages::Stages;
 
 /// Share of the nail's box outside of the photograph above which it is left out (assumed): of a nail of which less than
@@ -52,7 +52,7 @@ pub fn run(
         outputs,
         staging: &staging,
         stages: Stages::default(),
-        sums: set.poses().into_iter().map(|pose| (pose, Mutex::new(Sums::new(options.normalization.size)))).collect(),
+        sums: set.poses().into_iter().map(|pose| (pose, Mutex::new(Batch::new(options.normalization.size)))).collect(),
         memory: Mutex::default(),
     };
     let finished = AtomicU64::new(0);
@@ -89,7 +89,7 @@ pub fn run(
 
     let all = sums
         .into_iter()
-        .map(|(pose, sums)| (pose.to_owned(), sums.into_inner().unwrap_or_else(PoisonError::into_inner)));
+        .map(|(pose, sums)| (pose.to_owned(), sums.into_inner().unwrap_or_else(PoisonError::into_inner).finish()));
     let (poses, empty): (BTreeMap<_, _>, BTreeMap<_, _>) = all.partition(|(_, sums)| sums.subjects().len() > 0);
     findings.poses_without_maps(empty.into_keys());
     let partials = Partials { normalization: options.normalization, poses };
@@ -155,7 +155,7 @@ struct Work<'a> {
     outputs: &'a Outputs,
     staging: &'a Staging,
     stages: Stages,
-    sums: BTreeMap<&'a str, Mutex<Sums>>,
+    sums: BTreeMap<&'a str, Mutex<Batch>>,
     /// As many as there are threads at work at most; those that none uses.
     memory: Mutex<Vec<Memory>>,
 }

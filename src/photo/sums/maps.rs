@@ -16,6 +16,8 @@ use crate::photo::normalize::{self, Normalized};
 
 /// Full scale of the quantized values.
 const FULL_SCALE: f64 = normalize::FULL_SCALE as f64;
+/// Pixels whose sums stay in a core's first cache (16 KB of its 32 or more).
+const BLOCK: usize = 1024;
 
 /// Sums over subjects, one per pixel, `size` x `size`, row by row from the top (distal).
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -54,24 +56,39 @@ impl Sums {
     /// Where a nail's size is not that of the sums.
     pub fn add(&mut self, subject: &str, nails: &[Normalized]) -> Result<(), DuplicateSubject> {
         assert!(nails.iter().all(|n| n.size == self.size), "pictures of one size");
-        if !self.subjects.insert(subject.to_owned()) {
-            return Err(DuplicateSubject(subject.to_owned()));
-        }
+        self.enter(subject)?;
         match nails {
-            [Normalized { levels, seen: None, .. }] => self.add_whole(levels),
+            [whole @ Normalized { seen: None, .. }] => self.add_whole(std::slice::from_ref(whole)),
             several => self.add_seen((0..self.size * self.size).map(|at| mean_of_nails(several, at))),
         }
         Ok(())
     }
 
-    fn add_whole(&mut self, levels: &[u16]) {
-        for ((sum, sum_sq), &level) in self.sum.iter_mut().zip(&mut self.sum_sq).zip(levels) {
-            let level = u32::from(level);
-            *sum += u64::from(level);
-            *sum_sq += u64::from(level * level);
+    /// Names a subject, whose picture is added next.
+    pub(super) fn enter(&mut self, subject: &str) -> Result<(), DuplicateSubject> {
+        if self.subjects.insert(subject.to_owned()) { Ok(()) } else { Err(DuplicateSubject(subject.to_owned())) }
+    }
+
+    /// Adds pictures that show every pixel, block by block, so that each sum is read and written once.
+    ///
+    /// # Panics
+    /// Where a picture's size is not that of the sums.
+    pub(super) fn add_whole(&mut self, pictures: &[Normalized]) {
+        assert!(pictures.iter().all(|picture| picture.size == self.size), "pictures of one size");
+        for (at, sums) in self.sum.chunks_mut(BLOCK).enumerate() {
+            let squares = &mut self.sum_sq[at * BLOCK..][..sums.len()];
+            for picture in pictures {
+                let levels = &picture.levels[at * BLOCK..][..sums.len()];
+                for ((sum, sum_sq), &level) in sums.iter_mut().zip(&mut *squares).zip(levels) {
+                    let level = u32::from(level);
+                    *sum += u64::from(level);
+                    *sum_sq += u64::from(level * level);
+                }
+            }
         }
+        let more = u32::try_from(pictures.len()).expect("a batch");
         for count in &mut self.count {
-            *count += 1;
+            *count += more;
         }
     }
 

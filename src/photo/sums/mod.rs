@@ -1,6 +1,7 @@
 //! Sums over subjects: maps from them, files of them, and how those made in parts are joined.
 
 mod accuracy;
+mod batch;
 mod gather;
 mod maps;
 mod members;
@@ -9,6 +10,7 @@ mod npz;
 mod partial;
 
 pub use accuracy::Accuracy;
+pub(super) use batch::Batch;
 pub use gather::{GatherFigures, GatherReport, Gathering, gather};
 pub use maps::{DuplicateSubject, Maps, Sums};
 pub(super) use members::{Member, Members};

@@ -14,6 +14,7 @@ use image::{DynamicImage, GrayImage, ImageBuffer, Luma, Pixel, Primitive};
 use imageproc::distance_transform::{Norm, distance_transform};
 use imageproc::drawing::draw_polygon_mut;
 use imageproc::point::Point;
+use wide::f32x4;
 
 use crate::photo::outline::{Moments, Outline};
 
@@ -146,7 +147,7 @@ impl Surroundings {
     }
 
     /// The cell at `at`, interpolated; `None` outside the photograph.
-    #[inline]
+    #[inline(always)]
     fn cell(&self, at: [f32; 2]) -> Option<Cell> {
         let (x, y) = (at[0] + HALF as f32, at[1] + HALF as f32);
         let last = (SIDE - 1) as f32;
@@ -159,12 +160,12 @@ impl Surroundings {
         if !self.block[i] {
             return None;
         }
-        let (upper, lower) = (&self.cells[i..i + 2], &self.cells[i + SIDE..i + SIDE + 2]);
-        Some(std::array::from_fn(|k| {
-            let above = upper[0][k] + fx * (upper[1][k] - upper[0][k]);
-            let below = lower[0][k] + fx * (lower[1][k] - lower[0][k]);
-            above + fy * (below - above)
-        }))
+        let row = |i: usize| {
+            let [left, right] = [i, i + 1].map(|i| f32x4::new(self.cells[i]));
+            left + f32x4::splat(fx) * (right - left)
+        };
+        let (above, below) = (row(i), row(i + SIDE));
+        Some((above + f32x4::splat(fy) * (below - above)).to_array())
     }
 
     /// Whether the cell nearest to `at` belongs to the nail.
@@ -255,12 +256,8 @@ where
     for row in &rows {
         for column in &columns {
             inside.push(column.inside && row.inside);
-            let mut sum = [0.0_f32; 3];
-            let mut add = |colour: [f32; 3], weight: f32| {
-                for (total, value) in sum.iter_mut().zip(colour) {
-                    *total += weight * value;
-                }
-            };
+            let mut sum = f32x4::ZERO;
+            let mut add = |[r, g, b]: [f32; 3], weight: f32| sum += f32x4::splat(weight) * f32x4::new([r, g, b, 0.0]);
             if reads == 1 {
                 // Enlarged: between the four pixels around.
                 let ([left, right, _], [top, below, _]) = (column.pixels, row.pixels);
@@ -277,7 +274,7 @@ where
                     }
                 }
             }
-            let [r, g, b] = sum.map(|value| value * unit);
+            let [r, g, b, _] = (sum * f32x4::splat(unit)).to_array();
             colours.push([0.25 * r + 0.5 * g + 0.25 * b, COLOUR_WEIGHT * (r - g), COLOUR_WEIGHT * (g - b)]);
         }
     }
