@@ -39,4 +39,5 @@ pub mod timebase;
 mod toml_file;
 pub mod tradeoff;
 pub mod video;
+pub mod vision;
 pub mod words;

@@ -5,7 +5,7 @@
 use image::{DynamicImage, GrayImage, Luma, Rgb, RgbImage};
 use imageproc::contours::{BorderType, find_contours};
 use lunula::phantom::nail::{Background, Camera, Depth, Light, NailScene, Pose, RenderOptions, Subject, Tone};
-use lunula::photo::outline::{DetectOptions, Detected, NothingFound, Outline, detect};
+use lunula::photo::outline::{self, DetectOptions, Detected, Detections, NothingFound, Outline};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -28,6 +28,10 @@ fn close_up(k: u32, size: [u32; 2]) -> (NailScene, RenderOptions) {
         noise_seed: u64::from(k),
     };
     (NailScene { subject, pose: Pose::ALL[k as usize % 8], light, camera }, options)
+}
+
+fn detect(image: &DynamicImage, options: &DetectOptions) -> Detections {
+    outline::detect(image, options).unwrap()
 }
 
 /// Extent of an outline along and across a direction.

@@ -300,7 +300,7 @@ fn detected(pictures: &[Photograph], truths: &[Truth], working_size_px: u32) -> 
         let shrunk = (f64::from(working_size_px) / width.max(height)).min(1.0);
         work += (width * height * shrunk * shrunk) as u64;
         let start = Instant::now();
-        let found = detect(&picture.image, &options);
+        let found = detect(&picture.image, &options)?;
         seconds += start.elapsed().as_secs_f64();
         errors += 1.0 - found.nails.iter().map(|n| n.outline.iou(&truth.outline)).fold(0.0, f64::max);
     }

@@ -294,6 +294,13 @@ fn outline_of(polygon: &Polygon<f64>) -> Result<Outline, OutlineFault> {
     Outline::new(&points)
 }
 
+/// The largest of these rings, its corners moved by `place`; `None` where it is no outline.
+pub(super) fn largest_outline(rings: Vec<Polygon<f64>>, place: impl Fn([f64; 2]) -> [f64; 2]) -> Option<Outline> {
+    let largest = rings.into_iter().max_by(|a, b| a.unsigned_area().total_cmp(&b.unsigned_area()))?;
+    let points: Vec<[f64; 2]> = largest.exterior().coords().map(|c| place([c.x, c.y])).collect();
+    Outline::new(&points).ok()
+}
+
 /// Nails and specks.
 fn sorted_out(polygons: Vec<Polygon<f64>>) -> MaskOutlines {
     let most = polygons.iter().map(Area::unsigned_area).fold(0.0, f64::max);
@@ -320,15 +327,15 @@ fn sorted_out(polygons: Vec<Polygon<f64>>) -> MaskOutlines {
 
 /// The pixels of a region: `x0..=x1`, `y0..=y1`, and the mask's size.
 #[derive(Debug, Clone, Copy)]
-struct Region {
-    x: [u32; 2],
-    y: [u32; 2],
-    size: [u32; 2],
+pub(super) struct Region {
+    pub(super) x: [u32; 2],
+    pub(super) y: [u32; 2],
+    pub(super) size: [u32; 2],
 }
 
 impl Region {
     /// Outer level lines at half of `value` around the region, in pixels of the mask.
-    fn rings(&self, value: impl Fn(u32, u32) -> f64) -> Vec<Polygon<f64>> {
+    pub(super) fn rings(&self, value: impl Fn(u32, u32) -> f64) -> Vec<Polygon<f64>> {
         // Two cells of margin: one for the edge's grey levels, one beyond the mask's border, where there is nothing.
         let (left, top) = (i64::from(self.x[0]) - 2, i64::from(self.y[0]) - 2);
         let width = (self.x[1] - self.x[0]) as usize + 5;

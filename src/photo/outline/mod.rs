@@ -15,7 +15,7 @@ pub use annotated::{
 pub use axis::{AxisDoubt, AxisUnknown, FoundAxis, LEAST_CONFIDENCE, Side, axis_towards, find_axes, find_axes_towards};
 #[doc(hidden)]
 pub use detect::training;
-pub use detect::{DetectOptions, Detected, Detections, NothingFound, detect};
+pub use detect::{DetectOptions, Detected, Detections, Detector, NothingFound, detect};
 pub use keep::SavedOutlines;
 pub(super) use keep::{DetectedOutline, keep_outlines};
 pub use mask::{DroppedRegion, MaskFault, MaskOutlines, MaskValues, TooLarge, outlines_from_mask, outlines_of_values};

@@ -17,6 +17,7 @@ use super::{
 };
 use crate::photo::read::{MOST_MEGAPIXELS, Photograph, ReadFault};
 use crate::photo::set::{PICTURES, Photo, is_picture};
+use crate::vision::VisionError;
 
 /// Which sources may be asked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum, serde::Serialize)]
@@ -128,6 +129,9 @@ pub enum SourceFault {
         /// Whether masks were looked for.
         masks: bool,
     },
+    /// Detection failed.
+    #[error(transparent)]
+    Vision(#[from] VisionError),
     /// Detection found nothing.
     #[error("{0}; draw its outline in LabelMe, label it `nail` and save it beside the photograph")]
     NotFound(NothingFound),
@@ -248,7 +252,7 @@ impl OutlineOptions {
     }
 
     fn detected_nails(&self, picture: &Photograph) -> Result<Vec<Nail>, SourceFault> {
-        let found = detect(&picture.image, &self.detect);
+        let found = detect(&picture.image, &self.detect)?;
         if found.nails.is_empty() && found.doubtful.is_empty() {
             return Err(SourceFault::NotFound(found.note.unwrap_or(NothingFound::NoPlace)));
         }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use lunula::photo::outline::{DetectOptions, Detected, detect};
+use lunula::photo::outline::{DetectOptions, Detected, Detector, detect};
 use rayon::prelude::*;
 
 use super::scenes::{Look, Scene, direct, empty, hands, phantom};
@@ -19,7 +19,8 @@ const COUNT: u32 = 400;
 const LEAST: [f64; 9] = [0.3, 0.5, 0.6, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95];
 
 fn finds(scenes: &mut [Scene]) -> Vec<Find> {
-    let options = DetectOptions { min_confidence: 0.0, ..DetectOptions::default() };
+    let detector = Some(Detector::CloseUp);
+    let options = DetectOptions { detector, min_confidence: 0.0, ..DetectOptions::default() };
     scenes.par_iter_mut().for_each(direct);
     let of = |scene: &Scene| -> Vec<Find> {
         let best = |d: &Detected| -> Find {
@@ -29,7 +30,7 @@ fn finds(scenes: &mut [Scene]) -> Vec<Find> {
             let v = d.axis.distal();
             [d.confidence, truth.map_or(0.0, |t| t.outline.iou(&d.outline)), v[0] * up[0] + v[1] * up[1]]
         };
-        detect(&scene.image, &options).nails.iter().map(best).collect()
+        detect(&scene.image, &options).expect("templates need no OpenCV").nails.iter().map(best).collect()
     };
     scenes.par_iter().flat_map_iter(of).collect()
 }

@@ -10,7 +10,7 @@ use super::patch::{Frame, Patch};
 use super::picture::{Levels, RED, TONE, YELLOW};
 use super::refine::{Band, Path, RAYS, SIDE, fitted};
 use super::search::NAIL;
-use super::shape::OutlineShape;
+use super::shape::{OutlineShape, TAPER};
 use crate::photo::outline::{Axis, Outline};
 
 /// Three judges, each trained without a third of the scenes.
@@ -349,7 +349,7 @@ fn box_of(points: &[[f64; 2]], mut turn: f64) -> (f64, OutlineShape) {
         length: high - low,
         width: right - left,
         turn,
-        taper: 0.03,
+        taper: TAPER,
     };
     (turn, shape)
 }

@@ -26,15 +26,20 @@ mod patch;
 mod picture;
 mod refine;
 mod search;
+mod segment;
 mod shape;
 
 use image::DynamicImage;
 use thiserror::Error;
 
-use super::{Axis, Outline, find_axes};
+use super::{Axis, AxisUnknown, FoundAxis, Outline, find_axes};
+use crate::photo::read::is_grey;
+use crate::vision::VisionError;
 use candidate::{Candidate, Lead, Origin, follow_all, own_frame};
 use patch::{Frame, Patch};
 use picture::Levels;
+use segment::{NailNet, Segment};
+use shape::{OutlineShape, TAPER};
 
 /// The steps of detection, for `crates/training`, whose networks have to see what detection sees: no promise of the
 /// library.
@@ -51,9 +56,29 @@ pub mod training {
     pub use super::{ends, leads};
 }
 
+/// Who looks for nails.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Detector {
+    /// A small network: any number of nails, in any direction
+    Net,
+    /// Templates: one finger, seen from above, about upright
+    CloseUp,
+}
+
+impl Detector {
+    /// The one that was measured better for this kind of photograph.
+    fn for_picture(image: &DynamicImage) -> Self {
+        if is_grey(image) { Self::CloseUp } else { Self::Net }
+    }
+}
+
 /// How nails are looked for.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 pub struct DetectOptions {
+    /// Who looks for nails [default: net in colour, close-up in grey]
+    #[arg(long, value_enum)]
+    pub detector: Option<Detector>,
     /// Longest side, in pixels, of the picture that detection searches
     #[arg(
         long = "detect-size",
@@ -75,7 +100,7 @@ pub struct DetectOptions {
 
 impl Default for DetectOptions {
     fn default() -> Self {
-        Self { working_size_px: 1100, min_confidence: 0.8, min_doubtful: 0.1, most_places: 16 }
+        Self { detector: None, working_size_px: 1100, min_confidence: 0.8, min_doubtful: 0.1, most_places: 16 }
     }
 }
 
@@ -135,13 +160,23 @@ const PLACES: usize = 5;
 const SHARED: f64 = 0.25;
 
 /// Finds the nails on an upright photograph. The same photograph and options give the same result, always.
-pub fn detect(image: &DynamicImage, options: &DetectOptions) -> Detections {
+///
+/// # Errors
+/// [`VisionError`] where OpenCV fails.
+pub fn detect(image: &DynamicImage, options: &DetectOptions) -> Result<Detections, VisionError> {
     if image.width().min(image.height()) < LEAST_PX {
-        return Detections { nails: vec![], doubtful: vec![], note: Some(NothingFound::TooSmall) };
+        return Ok(Detections { nails: vec![], doubtful: vec![], note: Some(NothingFound::TooSmall) });
     }
-    let levels = Levels::of(image, options.working_size_px.max(4 * LEAST_PX));
-    let mut found = different(follow_all(&levels, leads(&levels), options.most_places));
-    second_opinion(image, &mut found, options.min_confidence);
+    let found = match options.detector.unwrap_or_else(|| Detector::for_picture(image)) {
+        Detector::Net => by_net(NailNet::committed()?, image, options)?,
+        Detector::CloseUp => by_template(image, options),
+    };
+    Ok(sorted_out(found, options))
+}
+
+/// What was found, confident or doubtful.
+fn sorted_out(mut found: Vec<Detected>, options: &DetectOptions) -> Detections {
+    found.sort_by(|a, b| b.confidence.total_cmp(&a.confidence));
     let best = found.first().map(|d| d.confidence);
     let (nails, mut doubtful): (Vec<_>, Vec<_>) =
         found.into_iter().partition(|d| d.confidence >= options.min_confidence);
@@ -151,6 +186,83 @@ pub fn detect(image: &DynamicImage, options: &DetectOptions) -> Detections {
         _ => NothingFound::NoPlace,
     });
     Detections { nails, doubtful, note }
+}
+
+/// By templates of a single finger seen from above.
+fn by_template(image: &DynamicImage, options: &DetectOptions) -> Vec<Detected> {
+    let levels = Levels::of(image, options.working_size_px.max(4 * LEAST_PX));
+    let mut found = different(follow_all(&levels, leads(&levels), options.most_places));
+    second_opinion(image, &mut found, options.min_confidence);
+    found
+}
+
+/// Overlap of the network's outline with the one refined from it below which the find is doubtful.
+const REFINED_AGREES: f64 = 0.6;
+/// What is left of a confidence where something speaks against the find.
+const HALVED: f64 = 0.5;
+/// The part of the photograph around a nail that its outline is refined on, nail lengths on each side.
+const AROUND: f64 = 1.3;
+
+/// By the network; each outline is refined at full resolution in the nail's own frame.
+///
+/// # Errors
+/// [`VisionError`].
+fn by_net(net: &NailNet, image: &DynamicImage, options: &DetectOptions) -> Result<Vec<Detected>, VisionError> {
+    let mut segments = net.segments(image)?;
+    segments.retain(|segment| segment.confidence >= options.min_doubtful);
+    let outlines: Vec<Outline> = segments.iter().map(|segment| segment.outline.clone()).collect();
+    let axes = find_axes(image, &outlines);
+    let one = |(segment, axis): (Segment, Result<FoundAxis, AxisUnknown>)| {
+        let Segment { outline, mut confidence } = segment;
+        let axis = match axis {
+            Ok(found) => found.axis,
+            Err(unknown) => {
+                confidence *= HALVED;
+                unknown.best_guess?.axis
+            }
+        };
+        let outline = match refined(image, &outline, axis, options) {
+            Some(better) if better.iou(&outline) >= REFINED_AGREES => better,
+            _ => {
+                confidence *= HALVED;
+                outline
+            }
+        };
+        Some(Detected { outline, axis, confidence })
+    };
+    Ok(segments.into_iter().zip(axes).filter_map(one).collect())
+}
+
+/// The outline of a nail whose place, size and axis are known.
+fn refined(image: &DynamicImage, rough: &Outline, axis: Axis, options: &DetectOptions) -> Option<Outline> {
+    let points = rough.points();
+    let ends = |way: [f64; 2]| {
+        let along = points.iter().map(|p| p[0] * way[0] + p[1] * way[1]);
+        along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
+    };
+    let (up, right) = (axis.distal(), axis.right());
+    let (along, across) = (ends(up), ends(right));
+    let (length, width) = (along[1] - along[0], across[1] - across[0]);
+    let middle = |[low, high]: [f64; 2]| 0.5 * (low + high);
+    let centre = [0, 1].map(|k| middle(along) * up[k] + middle(across) * right[k]);
+
+    let reach = (0.5 + AROUND) * length.max(width);
+    let size = [f64::from(image.width()), f64::from(image.height())];
+    let low = [0, 1].map(|k| (centre[k] - reach).floor().clamp(0.0, size[k] - 1.0));
+    let high = [0, 1].map(|k| (centre[k] + reach).ceil().clamp(low[k] + 1.0, size[k]));
+    let part = image.crop_imm(low[0] as u32, low[1] as u32, (high[0] - low[0]) as u32, (high[1] - low[1]) as u32);
+    let levels = Levels::of(&part, options.working_size_px.max(4 * LEAST_PX));
+
+    let nail = Frame { origin: [0, 1].map(|k| centre[k] - low[k]), up, unit_px: length };
+    let template = OutlineShape { x: 0.0, y: 0.0, length: 1.0, width: width / length, turn: 0.0, taper: TAPER };
+    let patch = Patch::cut(&levels, nail, search::NAIL);
+    let first = evidence::score(&patch, &template, false);
+    let (shape, score) = search::polish(&patch, (template, first), false);
+    let (nail, template) = own_frame(nail, &shape);
+    let lead = Lead { nail, template, origin: Origin::Anywhere, score };
+    let found = follow_all(&levels, vec![lead], 1).pop()?;
+    let moved: Vec<[f64; 2]> = found.outline.points().iter().map(|p| [p[0] + low[0], p[1] + low[1]]).collect();
+    Outline::new(&moved).ok()
 }
 
 /// Axes that differ by less than this agree, degrees; the template's own is kept.

@@ -3,7 +3,7 @@
 use super::evidence::{HasTip, score};
 use super::patch::{Extent, Frame, Patch};
 use super::picture::Levels;
-use super::shape::OutlineShape;
+use super::shape::{OutlineShape, TAPER};
 
 /// What a patch in a finger's frame covers (unit: the finger's width, origin: its apex).
 pub const FINGER: Extent = Extent { x: [-0.8, 0.8], y: [-1.6, 0.35], per_unit: 40.0 };
@@ -59,7 +59,7 @@ pub fn anywhere(levels: &Levels, most: usize) -> (Patch, Vec<Scored>) {
                     let mut x = -wide + 0.42 * width;
                     while x <= wide - 0.42 * width {
                         let value = closed_edge(&patch, [x as f32, y as f32], &rim);
-                        all.push((OutlineShape { x, y, length, width, turn, taper: 0.03 }, value));
+                        all.push((OutlineShape { x, y, length, width, turn, taper: TAPER }, value));
                         x += stride;
                     }
                     y += stride;

@@ -23,6 +23,9 @@ pub struct OutlineShape {
     pub taper: f64,
 }
 
+/// The taper of a nail of which nothing else is known.
+pub(super) const TAPER: f64 = 0.03;
+
 impl OutlineShape {
     /// Point of the frame at (u, v).
     pub(super) fn point(&self, u: f64, v: f64) -> [f64; 2] {

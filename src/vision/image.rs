@@ -1,0 +1,71 @@
+//! Work on whole pictures: reduced by area, labelled.
+
+use opencv::core::{Size, Vec3b};
+use opencv::imgproc;
+
+use super::{VisionError, pixels, pixels_mut, size};
+
+/// A picture of red, green, blue samples at another size: shrunk by the mean over each pixel's area, enlarged linearly.
+///
+/// `rgb` has 3 x width x height samples of `from`; the answer as many of `to`.
+///
+/// # Errors
+/// [`VisionError`].
+pub(crate) fn resized(rgb: &[u8], from: [usize; 2], to: [usize; 2]) -> Result<Vec<u8>, VisionError> {
+    let mut out = vec![0; 3 * to[0] * to[1]];
+    let source = pixels::<Vec3b>(from[1], from[0], rgb)?;
+    let how = if to[0] < from[0] { imgproc::INTER_AREA } else { imgproc::INTER_LINEAR };
+    let wanted = Size::new(size(to[0])?, size(to[1])?);
+    let mut target = pixels_mut::<Vec3b>(to[1], to[0], &mut out)?;
+    imgproc::resize(&source, &mut target, wanted, 0.0, 0.0, how).map_err(VisionError::of("resize"))?;
+    drop(target);
+    Ok(out)
+}
+
+/// The number of each cell's component, from 1 on, 0 where `set` is 0; neighbours share a side.
+///
+/// # Errors
+/// [`VisionError`].
+pub(crate) fn components(set: &[u8], [width, height]: [usize; 2]) -> Result<Vec<u32>, VisionError> {
+    let source = pixels::<u8>(height, width, set)?;
+    let mut labels = vec![0_i32; width * height];
+    let mut target = opencv::core::Mat::new_rows_cols_with_data_mut(size(height)?, size(width)?, &mut labels)
+        .map_err(VisionError::of("Mat"))?;
+    imgproc::connected_components(&source, &mut target, 4, opencv::core::CV_32S)
+        .map_err(VisionError::of("connectedComponents"))?;
+    drop(target);
+    Ok(labels.into_iter().map(i32::cast_unsigned).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_reduced_picture_is_the_mean_over_areas() {
+        let rgb: Vec<u8> = (0..6 * 4).flat_map(|k| [k as u8 * 4, 255 - k as u8 * 3, 7]).collect();
+        let small = resized(&rgb, [6, 4], [3, 2]).expect("a picture");
+        for (at, pixel) in small.as_chunks::<3>().0.iter().enumerate() {
+            let (x, y) = (at % 3, at / 3);
+            let mean = |c: usize| {
+                let sum: u32 = [0, 1, 6, 7].iter().map(|d| u32::from(rgb[3 * (12 * y + 2 * x + d) + c])).sum();
+                f64::from(sum) / 4.0
+            };
+            assert!((0..3).all(|c| (f64::from(pixel[c]) - mean(c)).abs() <= 0.5), "{at}: {pixel:?}");
+        }
+        assert_eq!(resized(&rgb, [6, 4], [6, 4]).expect("a picture"), rgb);
+        assert!(resized(&rgb, [6, 5], [3, 2]).is_err());
+    }
+
+    #[test]
+    fn components_share_sides() {
+        let set = [1, 1, 0, 0, 0, 1, 1, 0, 0];
+        let labels = components(&set, [3, 3]).expect("labels");
+        assert_eq!(labels[0], labels[1]);
+        assert_eq!(labels[5], 2);
+        // Corners do not join.
+        assert_ne!(labels[5], labels[1]);
+        assert_eq!(labels[2], 0);
+        assert!(components(&set, [3, 4]).is_err());
+    }
+}
