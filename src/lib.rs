@@ -13,6 +13,7 @@
 //! (`length_px`, `run_s`); what is not known is missing (`None`, NaN, an empty cell), never zero.
 
 pub mod align;
+pub mod camera;
 pub mod clock;
 pub mod doctor;
 pub mod figure;
@@ -27,6 +28,7 @@ pub mod nail;
 pub mod npy;
 pub mod phantom;
 pub mod photo;
+mod photograph;
 pub mod pipeline;
 pub mod posture;
 pub mod predictor;

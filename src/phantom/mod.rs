@@ -4,6 +4,7 @@
 //! pixel centres, with noise and rounding; the truth is the same function where the job's result should hold it. A
 //! sensor's log is likewise the volts of a continuous movement at the samples' times.
 
+pub mod board;
 pub mod log;
 mod motion;
 pub mod nail;

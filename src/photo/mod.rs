@@ -10,7 +10,6 @@ mod error;
 mod normalize;
 mod options;
 pub mod outline;
-mod read;
 mod results;
 mod run;
 mod set;
@@ -20,12 +19,12 @@ pub use crate::photo::run::job::run;
 pub use crate::photo::run::kind::{MapsJob, NormalizeJob};
 pub use crate::photo::run::plan::plan;
 pub use crate::photo::run::report::{PhotosFigures, PhotosReport, PoseCount};
+pub use crate::photograph::{Depth, MOST_MEGAPIXELS, Photograph, ReadFault};
 pub use error::{MergeError, PhotosError};
 pub use normalize::{
     Channel, FULL_SCALE, FrameFault, NailFrame, Normalization, Normalized, Resample, SMALLEST_EXTENT_PX, normalize,
 };
 pub use options::{OutlineHome, Outputs, PhotosOptions, Results};
-pub use read::{Depth, MOST_MEGAPIXELS, Photograph, ReadFault};
 pub use results::NailRow;
 pub use set::{Photo, PhotoSet, SetError, SetFault};
 pub use sums::{

@@ -11,10 +11,9 @@ use std::path::{Component, Path, PathBuf};
 use thiserror::Error;
 
 use crate::input;
+use crate::photograph::{extension, is_picture};
 use crate::words::shown;
 
-/// Names of the files that are taken as photographs.
-pub(crate) const PICTURES: [&str; 6] = ["png", "jpg", "jpeg", "tif", "tiff", "bmp"];
 /// Photographs in formats that lunula does not read: said, not passed over.
 const OTHER_PICTURES: [&str; 14] =
     ["heic", "heif", "webp", "gif", "avif", "jxl", "jp2", "cr2", "cr3", "nef", "arw", "dng", "raf", "orf"];
@@ -359,13 +358,4 @@ fn list(folder: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>), SetError> {
 
 fn name_of(path: &Path) -> String {
     path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned())
-}
-
-fn extension(path: &Path) -> Option<String> {
-    path.extension().map(|e| e.to_string_lossy().to_lowercase())
-}
-
-/// Whether a file's name is that of a picture that lunula reads.
-pub(crate) fn is_picture(path: &Path) -> bool {
-    extension(path).is_some_and(|e| PICTURES.contains(&e.as_str()))
 }

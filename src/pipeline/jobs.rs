@@ -1,6 +1,7 @@
 //! The jobs of the library, which every pipeline knows.
 
 use crate::align::{AlignJob, JoinJob};
+use crate::camera::CameraJob;
 use crate::hemodynamics::{CurveJob, FitJob, SimulateJob};
 use crate::job::{Job, Kind};
 use crate::photo::{MapsJob, NormalizeJob};
@@ -18,6 +19,7 @@ pub fn kinds() -> &'static [&'static Kind] {
 static KINDS: &[&Kind] = &[
     &AlignJob::KIND,
     &AnalyseJob::KIND,
+    &CameraJob::KIND,
     &EvaluateJob::KIND,
     &FitJob::KIND,
     &JoinJob::KIND,

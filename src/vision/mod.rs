@@ -1,13 +1,15 @@
 //! What lunula uses of OpenCV, behind safe functions on our own buffers.
 //!
-//! In: slices that the caller owns; OpenCV sees them as views ([`view`]), nothing is copied. Out: plain
+//! In: slices that the caller owns; OpenCV sees them as views ([`view`], [`Grey`]), nothing is copied. Out: plain
 //! numbers. An empty "success" of OpenCV is an error here ([`VisionError`]). OpenCV's own threads are off
 //! ([`ready`]): the jobs share the machine's cores themselves, and their results don't depend on how many there are.
 //! No type of OpenCV leaves this room.
 //!
 //! Everywhere: the centre of a picture's top-left pixel is (0, 0), x to the right, y down, as OpenCV has it too.
 
+mod board;
 mod image;
+mod lens;
 mod net;
 
 use std::sync::Once;
@@ -18,7 +20,11 @@ use opencv::prelude::*;
 use thiserror::Error;
 
 pub(crate) use board::{Corners, find_board, shows_another};
-pub(crate) use lens::{Calibration, Intrinsics, Pose, Projected, calibrate, project};
+pub(crate) use image::{components, resized};
+#[cfg(test)]
+pub(crate) use lens::opencvs_sd;
+pub(crate) use lens::{Calibration, Intrinsics, PARAMETERS, Pose, calibrate, project};
+pub(crate) use net::{Network, Planes};
 
 /// A call of OpenCV that gave nothing.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -37,8 +43,23 @@ impl VisionError {
     }
 
     /// Of an answer that lacks something.
-    fn lacking(call: &'static str, why: impl Into<String>) -> Self {
+    pub(crate) fn lacking(call: &'static str, why: impl Into<String>) -> Self {
         Self { call, why: why.into() }
+    }
+}
+
+/// A grey picture of 8 bits, rows without gaps.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Grey<'a> {
+    pub(crate) width: usize,
+    pub(crate) height: usize,
+    pub(crate) data: &'a [u8],
+}
+
+impl Grey<'_> {
+    /// The picture as OpenCV takes it.
+    fn mat(&self) -> Result<BoxedRef<'_, Mat>, VisionError> {
+        view(self.height, self.width, self.data)
     }
 }
 

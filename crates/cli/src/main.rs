@@ -56,6 +56,7 @@ appear whole or not at all; what existed before a failed run is as it was.";
 enum Command {
     Photos(jobs::photos::PhotosArgs),
     Posture(jobs::posture::PostureArgs),
+    Camera(jobs::camera::CameraArgs),
     Align(Box<jobs::align::AlignArgs>),
     Train(Box<jobs::predictor::TrainArgs>),
     Evaluate(jobs::predictor::EvaluateArgs),
@@ -118,6 +119,7 @@ fn main() -> ExitCode {
     ended_with(match cli.command {
         Command::Photos(args) => jobs::photos::run_or_merge(&args),
         Command::Align(args) => jobs::run(&*args),
+        Command::Camera(args) => jobs::run(&args),
         Command::Train(args) => jobs::run(&*args),
         Command::Evaluate(args) => jobs::run(&args),
         Command::Predict(args) => jobs::predictor::run_or_stream(&args),

@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::phantom::motion::trajectory::Trajectory;
 use crate::phantom::screen::Jump;
 use crate::phantom::sensor::CHANNELS;
-use crate::phantom::video::{Hide, Leave};
+use crate::phantom::video::{Hide, Leave, Oblique};
 use anyhow::Context;
 use clap::ValueEnum;
 
@@ -120,6 +120,16 @@ pub(super) fn parse_roi(text: &str) -> Result<[usize; 4], String> {
     sides
         .and_then(|sides| sides.try_into().ok())
         .ok_or_else(|| format!("`{text}` is not X,Y,WIDTH,HEIGHT, as 900,40,300,70"))
+}
+
+/// A plane's tilt and the direction in which it recedes, degrees.
+pub(in crate::phantom) fn parse_plane(text: &str) -> Result<Oblique, String> {
+    let (tilt, towards) = text.split_once(',').unwrap_or((text, "0"));
+    let parts = (tilt.trim().parse(), towards.trim().parse());
+    let (Ok(tilt_deg), Ok(towards_deg)) = parts else {
+        return Err(format!("`{text}` is not TILT or TILT,TOWARDS in degrees, as 30 or 30,90"));
+    };
+    Ok(Oblique { tilt_deg, towards_deg })
 }
 
 /// Columns and rows of a picture, `640x480`, as an option takes them.

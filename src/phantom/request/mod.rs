@@ -6,6 +6,7 @@ mod log;
 mod photos;
 mod video;
 
+pub(in crate::phantom) use choices::parse_plane;
 pub use choices::parse_size;
 pub use log::LogRequest;
 pub use photos::PhotosRequest;

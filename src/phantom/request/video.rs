@@ -2,12 +2,14 @@
 
 use clap::Args;
 
-use super::choices::{FormatArg, MatrixArg, RotateArg, parse_colour, parse_hide, parse_leave, parse_size, trajectory};
+use super::choices::{
+    FormatArg, MatrixArg, RotateArg, parse_colour, parse_hide, parse_leave, parse_plane, parse_size, trajectory,
+};
 use super::clock::ClockArgs;
 use crate::flexion::Flexion;
 use crate::phantom::motion::finger::{Finger, MarkerLayout};
 use crate::phantom::motion::trajectory::Trajectory;
-use crate::phantom::video::{Chroma, Colours, Hide, Leave, Lens, Preset, Siting, VideoOptions};
+use crate::phantom::video::{Chroma, Colours, Hide, Leave, Lens, Oblique, Preset, Siting, VideoOptions};
 use crate::video::{Matrix, Turn};
 
 /// What `lunula phantom video` takes.
@@ -107,6 +109,11 @@ pub struct VideoRequest {
     /// The lens' focal length [default: 1200 where the picture is 1280 wide]
     #[arg(long, value_name = "PX", requires = "distortion")]
     fx: Option<f64>,
+    /// The camera looks obliquely at the plane in which the finger moves: so many degrees off straight, and the
+    /// direction on the picture in which that plane recedes, clockwise from the right, as 30 or 30,90; the marker file
+    /// gets its [camera.plane]
+    #[arg(long, value_name = "TILT[,TOWARDS]", value_parser = parse_plane, allow_hyphen_values = true)]
+    plane: Option<Oblique>,
 
     #[command(flatten)]
     clock: ClockArgs,
@@ -179,6 +186,7 @@ impl VideoRequest {
         options.desk = self.desk.unwrap_or(options.desk);
         options.lens =
             (!self.distortion.is_empty()).then(|| Lens { fx_px: self.fx, distortion: self.distortion.clone() });
+        options.plane = self.plane;
         self.clock.settle(&mut options);
         options.matrix = match self.matrix {
             MatrixArg::Bt601 => Matrix::BT601,

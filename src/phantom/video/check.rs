@@ -1,8 +1,8 @@
 //! Whether a video can be made as requested; all faults are reported together, by the command line's names.
 
-use super::lens::Mapping;
-use super::{Faults, VideoOptions};
+use super::{Faults, Oblique, VideoOptions};
 use crate::phantom::motion::finger::Finger;
+use crate::phantom::scene::lens::{MOST_TILT_DEG, Mapping};
 
 impl VideoOptions {
     /// Can this video be made?
@@ -117,6 +117,13 @@ impl VideoOptions {
             let corners = [[0, 0], [sides[0], 0], [0, sides[1]], sides].map(|c| c.map(|v| v as f64));
             need(corners.into_iter().all(|corner| mapping.straight(corner).is_some()), &|| {
                 format!("--distortion {:?}: so strong that the picture folds over; choose less", lens.distortion)
+            });
+        }
+        if let Some(plane) = self.plane {
+            let known = (0.0..=MOST_TILT_DEG).contains(&plane.tilt_deg) && plane.towards_deg.abs() <= 360.0;
+            need(known, &|| {
+                let Oblique { tilt_deg, towards_deg } = plane;
+                format!("--plane {tilt_deg},{towards_deg}: choose a tilt of 0 to {MOST_TILT_DEG}, towards -360 to 360")
             });
         }
         if faults.0.is_empty() { Ok(()) } else { Err(faults) }

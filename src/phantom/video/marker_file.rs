@@ -42,8 +42,12 @@ impl Scene {
             // TOML knows infinity: a screen that changes at once.
             text += &format!("refresh_hz = {:?}\n", clock.refresh_hz.unwrap_or(f64::INFINITY));
         }
-        if let (Some(lens), Some(mapping)) = (&options.lens, &self.mapping) {
-            text += &format!("\n[camera]\nfx = {:?}\ndistortion = {:?}\n", mapping.fx_px, lens.distortion);
+        if let Some(mapping) = &self.mapping {
+            let distortion = options.lens.as_ref().map_or(&[][..], |lens| &lens.distortion);
+            text += &format!("\n[camera]\nfx = {:?}\ndistortion = {distortion:?}\n", mapping.fx_px());
+        }
+        if let Some(plane) = options.plane {
+            text += &format!("\n[camera.plane]\nnormal = {:?}\n", plane.normal());
         }
         text
     }

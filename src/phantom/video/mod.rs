@@ -31,7 +31,6 @@
 
 mod check;
 mod draw;
-mod lens;
 mod marker_file;
 mod options;
 mod scene;
@@ -40,8 +39,8 @@ mod truth;
 mod write;
 
 pub use crate::phantom::scene::faults::Faults;
+pub use crate::phantom::scene::lens::{Lens, Oblique};
 pub use draw::sensor::Siting;
-pub use lens::Lens;
 pub use options::{Chroma, Colours, Hide, Leave, Preset, ScreenEvents, VideoOptions};
 pub use scene::{FrameTruth, MarkerStatus, MarkerTruth, Scene, SceneMarker};
 pub use write::{Error, Stages, Summary, write, write_watched};

@@ -2,10 +2,11 @@
 
 use serde::{Serialize, Serializer};
 
-use super::{Lens, Siting};
+use super::{Lens, Oblique, Siting};
 use crate::flexion::Flexion;
 use crate::phantom::motion::finger::{Finger, JOINTS, MarkerLayout};
 use crate::phantom::motion::trajectory::Trajectory;
+use crate::phantom::scene::lens::Mapping;
 use crate::phantom::screen::Clock;
 use crate::video::{Format, Matrix, Turn};
 
@@ -159,6 +160,9 @@ pub struct VideoOptions {
     pub noise_sd: f64,
     /// The lens; none: no distortion.
     pub lens: Option<Lens>,
+    /// The plane in which the finger moves, where the camera does not look at it straight.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub plane: Option<Oblique>,
     /// A clock on a screen.
     pub clock: Option<Clock>,
     /// What happens to its screen.
@@ -259,6 +263,7 @@ impl VideoOptions {
             focus_px: 0.55,
             noise_sd: 2.0,
             lens: None,
+            plane: None,
             clock: None,
             screen: ScreenEvents::default(),
             clock_roi_auto: false,
@@ -299,6 +304,13 @@ impl VideoOptions {
     #[must_use]
     pub fn frames(&self) -> usize {
         (self.fps * self.seconds).round() as usize
+    }
+
+    /// The camera before the scene; none where it only looks at it straight.
+    pub(super) fn mapping(&self) -> Option<Mapping> {
+        let needed = self.lens.is_some() || self.plane.is_some();
+        let lens = self.lens.clone().unwrap_or_default();
+        needed.then(|| Mapping::new(&lens, self.width, self.height).before(self.plane))
     }
 
     /// How the stored pictures' samples are laid out.

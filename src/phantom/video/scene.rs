@@ -6,8 +6,8 @@ use std::f64::consts::TAU;
 use serde::Serialize;
 
 use super::VideoOptions;
-use super::lens::Mapping;
 use crate::phantom::motion::finger::Skin;
+use crate::phantom::scene::lens::Mapping;
 use crate::phantom::video::draw::blot::Blot;
 use crate::phantom::video::draw::limb::Limb;
 use crate::phantom::video::draw::objects::{Distractor, Stick};

@@ -5,11 +5,11 @@ use std::f64::consts::TAU;
 
 use rand::RngExt;
 
-use super::lens::{Mapping, row_moves};
 use super::scene::{Scene, SceneMarker, TICKS_PER_S};
 use super::{Faults, Hide, VideoOptions};
 use crate::flexion::Flexion;
 use crate::phantom::nail::numbers;
+use crate::phantom::scene::lens::row_moves;
 use crate::phantom::screen::{Clock, Jump};
 use crate::phantom::video::draw::blot::Blot;
 use crate::phantom::video::draw::limb::Limb;
@@ -48,7 +48,7 @@ impl Scene {
         let colours = options.colours.of(options.finger.layout);
         let names = options.finger.layout.names();
         let markers = names.into_iter().zip(colours).map(|(name, colour)| SceneMarker { name, colour }).collect();
-        let mapping = options.lens.as_ref().map(|lens| Mapping::new(lens, options.width, options.height));
+        let mapping = options.mapping();
         let mut scene = Self {
             ticks: ticks(&options),
             markers,

@@ -12,7 +12,7 @@ use thiserror::Error;
 
 use super::{Axis, Outline, OutlineFault};
 use crate::labelme::{LabelMe, Shape, from_labelme, to_labelme};
-use crate::photo::read::{Photograph, upright_from_stored};
+use crate::photograph::{Photograph, upright_from_stored};
 
 /// What a nail's polygon is labelled.
 pub const NAIL: &str = "nail";

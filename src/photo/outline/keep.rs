@@ -11,8 +11,8 @@ use std::path::{Path, PathBuf};
 use super::annotated::{ToDraw, to_file};
 use super::source::{Nail, Source};
 use crate::files::{Places, WriteError};
-use crate::photo::read::Photograph;
 use crate::photo::set::{Photo, PhotoSet};
+use crate::photograph::Photograph;
 
 /// The detected outlines of a photograph.
 #[derive(Debug, Clone)]

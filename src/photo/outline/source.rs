@@ -15,8 +15,8 @@ use super::{
     Axis, DetectOptions, MaskFault, MaskValues, NothingFound, Outline, Side, detect, find_axes, find_axes_towards,
     outlines_from_mask, outlines_of_values,
 };
-use crate::photo::read::{MOST_MEGAPIXELS, Photograph, ReadFault};
-use crate::photo::set::{PICTURES, Photo, is_picture};
+use crate::photo::set::Photo;
+use crate::photograph::{MOST_MEGAPIXELS, PICTURES, Photograph, ReadFault, is_picture};
 use crate::vision::VisionError;
 
 /// Which sources may be asked.

@@ -8,8 +8,8 @@ use rayon::prelude::*;
 use crate::figure::{self, Scale, Sheet, Stretch, Tile, grey_map};
 use crate::files::{Staging, WriteError};
 use crate::photo::normalize::Normalized;
-use crate::photo::read::Depth;
 use crate::photo::sums::Maps;
+use crate::photograph::Depth;
 
 /// One kind of figure: its file name, how it is stretched, what its scale says.
 struct Kind {

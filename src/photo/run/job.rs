@@ -19,12 +19,12 @@ use crate::photo::error::PhotosError;
 use crate::photo::normalize::{NailFrame, Normalized, Normalizer};
 use crate::photo::options::{OutlineHome, Outputs, PhotosOptions, Results};
 use crate::photo::outline::{DetectedOutline, Nail, OutlinePlace, SavedOutlines, keep_outlines};
-use crate::photo::read::{MOST_MEGAPIXELS, PhotoBuffer, Photograph};
 use crate::photo::results::{self, NailRow, NailTable, Scratch};
 use crate::photo::run::plan::{Foreknown, left_out};
 use crate::photo::run::report::{Findings, PhotosReport, of_photos};
 use crate::photo::set::{Photo, PhotoSet, SetFault};
 use crate::photo::sums::{Batch, Partials};
+use crate::photograph::{MOST_MEGAPIXELS, PhotoBuffer, Photograph};
 use crate::stages::Stages;
 
 /// Share of the nail's box outside of the photograph above which it is left out (assumed): of a nail of which less than

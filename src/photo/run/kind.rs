@@ -16,8 +16,9 @@ use crate::photo::options::{Outputs, PhotosOptions, Results};
 use crate::photo::outline::{OutlinePlace, Sources};
 use crate::photo::run::job::run;
 use crate::photo::run::plan::{Foreknown, plan_foreknown};
-use crate::photo::set::{Photo, PhotoSet, is_picture};
+use crate::photo::set::{Photo, PhotoSet};
 use crate::photo::sums::{Accuracy, Gathering, gather};
+use crate::photograph::is_picture;
 use crate::stages::Step;
 
 const OUTLINES: &str = "outlines";

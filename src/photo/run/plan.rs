@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 
 use crate::photo::options::{Outputs, PhotosOptions, Results};
 use crate::photo::outline::OutlinePlace;
-use crate::photo::read::header_is_grey;
 use crate::photo::set::{Photo, PhotoSet};
+use crate::photograph::header_is_grey;
 use crate::stages::{self, Step};
 
 /// What is known of a photograph: before it is opened, or after it was worked on.

@@ -5,10 +5,11 @@
 //! photos = { seed = 1, grey = true }                  # {phantom}/photos/photos/<pose>/<subject>.png, truth/
 //! video = { scene = "hard", seconds = 20 }            # {phantom}/video/video.mp4, markers.toml, truth/
 //! log = { protocol = "touch" }                        # {phantom}/log/log.csv, truth/
+//! board = { views = 12 }                              # {phantom}/board/views/01.png .., truth/
 //! video = [{ name = "a", .. }, { name = "b", .. }]    # or several of a kind: {phantom}/video/a, {phantom}/video/b
 //! ```
 //!
-//! The options are those of `lunula phantom photos|video|log`, with `_` for `-`. Each recording is a task of its own.
+//! The options are those of `lunula phantom photos|video|log|board`, with `_` for `-`. Each recording is a task of its own.
 //! What may be asked for is a list ([`Block`]): others bring experiments of many recordings.
 
 use std::collections::BTreeMap;
@@ -17,6 +18,7 @@ use std::sync::Arc;
 use toml::{Table, Value};
 
 use crate::job::{Keys, Made, Maker, OptionFault, Said, Work, read};
+use crate::phantom::board::BoardOptions;
 use crate::phantom::request::{LogRequest, PhotosRequest, VideoRequest};
 use crate::phantom::{Faults, Generated};
 use crate::pipeline::{Catalogue, CatalogueFile, CatalogueTask};
@@ -61,13 +63,14 @@ pub struct Placed {
     pub recording: Box<dyn Generated>,
 }
 
-/// The scenes of `lunula phantom photos|video|log`.
+/// The scenes of `lunula phantom photos|video|log|board`.
 #[must_use]
 pub fn scenes() -> &'static [Block] {
     &[
         Block { name: "photos", several: false, read: photos },
         Block { name: "video", several: true, read: video },
         Block { name: "log", several: true, read: log },
+        Block { name: "board", several: true, read: board },
     ]
 }
 
@@ -83,6 +86,10 @@ fn video(options: &Table) -> Result<Asked, OptionFault> {
 fn log(options: &Table) -> Result<Asked, OptionFault> {
     let request = read::<LogRequest>(without_files(options)?, "`lunula phantom log`")?.options;
     Ok(Asked::Scene(Box::new(request.options().map_err(|why| unread(&why))?)))
+}
+
+fn board(options: &Table) -> Result<Asked, OptionFault> {
+    Ok(Asked::Scene(Box::new(read::<BoardOptions>(options, "`lunula phantom board`")?.options)))
 }
 
 /// What a block `[phantom]` makes, which may ask for any of `known`.
@@ -262,7 +269,7 @@ mod tests {
     fn what_is_wrong_is_told_of_its_key() {
         for (text, key, words) in [
             ("", "", "asks for nothing"),
-            ("videos = {}", "videos", "there are photos, video, log"),
+            ("videos = {}", "videos", "there are photos, video, log, board"),
             ("log = 1", "log", "has to be a table"),
             ("video = { secnds = 1 }", "video.secnds", "did you mean `seconds`"),
             ("video = { seconds = \"long\" }", "video.seconds", "`long`"),

@@ -50,6 +50,11 @@ impl Lens {
         }
     }
 
+    /// Focal length and the axis' place on the picture without distortion, pixels.
+    pub(super) fn frame(&self) -> (f64, [f64; 2]) {
+        (self.focal_px[0], self.centre_px)
+    }
+
     /// Where the picture shows a point that a camera without distortion would show at `at_px` (square pixels).
     #[must_use]
     pub fn distort(&self, at_px: [f64; 2]) -> [f64; 2] {
@@ -141,8 +146,14 @@ mod tests {
     fn lens(distortion: &[f64]) -> Lens {
         let mut all = [0.0; 12];
         all[..distortion.len()].copy_from_slice(distortion);
-        let camera =
-            Camera { fx_px: 1200.0, fy_px: Some(1180.0), cx_px: Some(640.5), cy_px: Some(355.25), distortion: all };
+        let camera = Camera {
+            fx_px: 1200.0,
+            fy_px: Some(1180.0),
+            cx_px: Some(640.5),
+            cy_px: Some(355.25),
+            distortion: all,
+            plane: None,
+        };
         Lens::new(&camera, (1280, 720), 1.0)
     }
 
@@ -245,7 +256,7 @@ mod tests {
 
     #[test]
     fn no_distortion_changes_nothing() {
-        let camera = Camera { fx_px: 900.0, fy_px: None, cx_px: None, cy_px: None, distortion: [0.0; 12] };
+        let camera = Camera { fx_px: 900.0, fy_px: None, cx_px: None, cy_px: None, distortion: [0.0; 12], plane: None };
         let plain = Lens::new(&camera, (641, 481), 1.0).undistort([12.5, 470.0]).unwrap();
         assert!((plain.at_px[0] - 12.5).abs() <= 1e-12 && (plain.at_px[1] - 470.0).abs() <= 1e-12);
         assert_eq!(plain.jacobian, [[1.0, 0.0], [0.0, 1.0]]);

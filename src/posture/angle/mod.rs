@@ -2,6 +2,7 @@
 
 pub(super) mod joints;
 pub(super) mod lens;
+mod plane;
 pub(super) mod plausible;
 pub(super) mod smooth;
 pub(super) mod view;

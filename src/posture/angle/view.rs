@@ -1,9 +1,11 @@
 //! From the stored picture to the shown one, and on to the plane on which angles are measured.
 //!
 //! In: a marker's centre on the stored picture with its covariance; out: the same on the shown (upright) picture, or on
-//! a picture of square pixels without the lens' distortion. All three: pixels, x right, y down.
+//! a picture of square pixels without the lens' distortion and, where the camera looks obliquely at the plane in which
+//! the finger moves, with that plane seen straight. All: pixels, x right, y down.
 
 use super::lens::Lens;
+use super::plane::Plane;
 use crate::posture::{Camera, Centre};
 use crate::video::{Info, Turn};
 
@@ -39,6 +41,7 @@ pub(crate) struct View {
     /// Width of the shown picture's pixels over their height.
     aspect: f64,
     lens: Option<Lens>,
+    plane: Option<Plane>,
 }
 
 impl View {
@@ -60,7 +63,11 @@ impl View {
         let (size, aspect) =
             if aside { ((stored_size.1, stored_size.0), pixel_aspect.recip()) } else { (stored_size, pixel_aspect) };
         let lens = camera.map(|camera| Lens::new(camera, size, aspect));
-        Self { turn, stored_size, aspect, lens }
+        let plane = camera.zip(lens).and_then(|(camera, lens)| {
+            let (focal_px, centre_px) = lens.frame();
+            camera.plane.map(|normal| Plane::new(normal, focal_px, centre_px))
+        });
+        Self { turn, stored_size, aspect, lens, plane }
     }
 
     /// The centre on the shown picture.
@@ -77,14 +84,18 @@ impl View {
         stored.carried(at_px, jacobian)
     }
 
-    /// The centre on square pixels without distortion; none where the lens' model shows no such point.
+    /// The centre on square pixels without distortion, the finger's plane seen straight; none where the lens' model
+    /// shows no such point.
     #[must_use]
     pub(crate) fn flat(&self, centre: &Centre) -> Option<Spot> {
         let shown = self.shown(centre);
         match &self.lens {
             Some(lens) => {
                 let there = lens.undistort(shown.at_px)?;
-                Some(shown.carried(there.at_px, there.jacobian))
+                let flat = shown.carried(there.at_px, there.jacobian);
+                let Some(plane) = &self.plane else { return Some(flat) };
+                let straight = plane.straight(flat.at_px)?;
+                Some(flat.carried(straight.at_px, straight.jacobian))
             }
             None => {
                 let [x, y] = shown.at_px;

@@ -298,7 +298,7 @@ fn roi(findings: &mut Findings<'_>, entry: Entry<'_>) -> Option<ClockRoi> {
 fn camera(findings: &mut Findings<'_>, top: &[Entry<'_>]) -> Option<Camera> {
     let table = findings.table(top, "camera")?;
     let at = top.iter().find(|e| e.key == "camera").map_or(0, |e| e.key_at);
-    findings.unknown_keys(&table, &["fx", "fy", "cx", "cy", "distortion"], "key of [camera]");
+    findings.unknown_keys(&table, &["fx", "fy", "cx", "cy", "distortion", "plane"], "key of [camera]");
     let mut lengths = ["fx", "fy", "cx", "cy"].map(|key| {
         let entry = *table.iter().find(|e| e.key == key)?;
         let number = findings.number(entry)?;
@@ -328,5 +328,36 @@ fn camera(findings: &mut Findings<'_>, top: &[Entry<'_>]) -> Option<Camera> {
             findings.fault(entry.at, what);
         }
     }
-    Some(Camera { fx_px: lengths[0].take()?, fy_px: lengths[1], cx_px: lengths[2], cy_px: lengths[3], distortion })
+    let plane = plane(findings, &table);
+    let [fx_px, fy_px, cx_px, cy_px] = lengths.each_mut().map(Option::take);
+    Some(Camera { fx_px: fx_px?, fy_px, cx_px, cy_px, distortion, plane })
+}
+
+/// A plane that is turned further from the picture is hardly seen: the least of its normal along the optical axis
+/// (assumed; 80 degrees).
+const LEAST_FACING: f64 = 0.17;
+
+/// The normal of `[camera.plane]`, of length 1.
+fn plane(findings: &mut Findings<'_>, camera: &[Entry<'_>]) -> Option<[f64; 3]> {
+    const SHAPE: &str = "normal = [right, down, forwards], towards the camera, as [0.0, -0.5, -0.87]";
+    let table = findings.table(camera, "plane")?;
+    let at = camera.iter().find(|e| e.key == "plane").map_or(0, |e| e.key_at);
+    findings.unknown_keys(&table, &["normal"], "key of [camera.plane]");
+    let Some(&entry) = table.iter().find(|e| e.key == "normal") else {
+        findings
+            .fault(at, format!("[camera.plane] lacks `normal`; write {SHAPE}, or have lunula camera --plane do it"));
+        return None;
+    };
+    let numbers = findings.numbers(entry, SHAPE)?;
+    let normal: Option<[f64; 3]> = numbers.as_slice().try_into().ok();
+    let unit = normal.and_then(|normal| {
+        let length = normal.iter().map(|part| part * part).sum::<f64>().sqrt();
+        let unit = normal.map(|part| part / length);
+        (length.is_finite() && -unit[2] >= LEAST_FACING).then_some(unit)
+    });
+    if unit.is_none() {
+        let what = format!("`normal` is no direction towards the camera (its third number below 0); write {SHAPE}");
+        findings.fault(entry.at, what);
+    }
+    unit
 }

@@ -78,6 +78,9 @@ pub struct Camera {
     pub cy_px: Option<f64>,
     /// k1, k2, p1, p2, k3, k4, k5, k6, s1, s2, s3, s4; zero where they are not given.
     pub distortion: [f64; 12],
+    /// The normal of the plane in which the finger moves, of length 1, towards the camera (right, down, forwards); the
+    /// camera looks at it straight where it is not given.
+    pub plane: Option<[f64; 3]>,
 }
 
 /// A marker file, checked.

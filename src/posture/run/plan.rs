@@ -65,6 +65,11 @@ pub(in crate::posture) fn steps(known: &Known<'_>, options: &PostureOptions, out
             known.distorted != Some(false),
             said(known.distorted, "[camera], of the centres", "no [camera]"),
         ),
+        Step::new(
+            "oblique plane",
+            known.layout.is_none_or(has_plane) && known.distorted != Some(false),
+            said(known.layout.map(has_plane), "[camera.plane], of the centres", "no [camera.plane]"),
+        ),
         Step::new("clock", options.reads_clock() && known.clock != Some(false), clock(known, options)),
         asked("smoothing", options.smooth, "--smooth"),
         asked("table of markers", outputs.is_some_and(|o| o.tracks.is_some()), "--tracks"),
@@ -72,6 +77,10 @@ pub(in crate::posture) fn steps(known: &Known<'_>, options: &PostureOptions, out
         asked("figures", figures && known.layout.is_none_or(|layout| !layout.joints.is_empty()), "of the angles"),
     ]);
     steps
+}
+
+fn has_plane(layout: &Layout) -> bool {
+    layout.camera.as_ref().is_some_and(|camera| camera.plane.is_some())
 }
 
 fn decoding(info: &Info) -> String {

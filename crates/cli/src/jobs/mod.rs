@@ -1,6 +1,7 @@
 //! The commands of jobs, one file each, and what they have in common: plan or run, then report in JSON and in words.
 
 pub(crate) mod align;
+pub(crate) mod camera;
 pub(crate) mod hemodynamics;
 pub(crate) mod phantom;
 pub(crate) mod photos;

@@ -33,7 +33,7 @@ use image::DynamicImage;
 use thiserror::Error;
 
 use super::{Axis, AxisUnknown, FoundAxis, Outline, find_axes};
-use crate::photo::read::is_grey;
+use crate::photograph::is_grey;
 use crate::vision::VisionError;
 use candidate::{Candidate, Lead, Origin, follow_all, own_frame};
 use patch::{Frame, Patch};
@@ -52,8 +52,9 @@ pub mod training {
     pub use super::picture::Levels;
     pub use super::refine::{Band, RAYS, SIDE, STEP};
     pub use super::search::{FINGER, NAIL, Scored, anywhere, on_finger, polish};
+    pub use super::segment::{NailNet, Segment};
     pub use super::shape::OutlineShape;
-    pub use super::{ends, leads};
+    pub use super::{by_net, ends, leads};
 }
 
 /// Who looks for nails.
@@ -207,7 +208,8 @@ const AROUND: f64 = 1.3;
 ///
 /// # Errors
 /// [`VisionError`].
-fn by_net(net: &NailNet, image: &DynamicImage, options: &DetectOptions) -> Result<Vec<Detected>, VisionError> {
+#[doc(hidden)]
+pub fn by_net(net: &NailNet, image: &DynamicImage, options: &DetectOptions) -> Result<Vec<Detected>, VisionError> {
     let mut segments = net.segments(image)?;
     segments.retain(|segment| segment.confidence >= options.min_doubtful);
     let outlines: Vec<Outline> = segments.iter().map(|segment| segment.outline.clone()).collect();

@@ -14,8 +14,8 @@ use std::sync::LazyLock;
 use image::{DynamicImage, RgbImage};
 
 use super::candidate::shared;
-use crate::photo::outline::mask::{Region, largest_outline};
 use crate::photo::outline::Outline;
+use crate::photo::outline::mask::{Region, largest_outline};
 use crate::vision::{Network, Planes, VisionError, components, resized};
 
 /// Long sides that a photograph is looked at in, pixels.
@@ -108,7 +108,7 @@ impl NailNet {
             first = resized(rgb, size, first_size)?;
             (&first[..], first_size)
         } else {
-            (&rgb[..], size)
+            (&rgb.as_raw()[..], size)
         };
         let mut all = Vec::new();
         for side in SIDES {
@@ -189,14 +189,16 @@ fn found(answer: &Planes, side: usize, small: [usize; 2], size: [usize; 2]) -> R
             let all = cells.iter().map(|&at| of(at, columns) as u32);
             all.fold([u32::MAX, 0], |[low, high], v| [low.min(v), high.max(v)])
         };
-        let region = Region { x: ends(|at, columns| at % columns), y: ends(|at, columns| at / columns), size: [columns as u32, rows as u32] };
+        let region = Region {
+            x: ends(|at, columns| at % columns),
+            y: ends(|at, columns| at / columns),
+            size: [columns as u32, rows as u32],
+        };
         let value = |x: u32, y: u32| {
             let at = y as usize * columns + x as usize;
             if labels[at] == label || (labels[at] == 0 && nail[at] <= THRESHOLD) { f64::from(nail[at]) } else { 0.0 }
         };
-        let place = |k: usize, cell: f64| {
-            ((cell + 0.5) * CELL as f64) * size[k] as f64 / small[k] as f64 - 0.5
-        };
+        let place = |k: usize, cell: f64| ((cell + 0.5) * CELL as f64) * size[k] as f64 / small[k] as f64 - 0.5;
         let outline = largest_outline(region.rings(value), |[x, y]| [place(0, x), place(1, y)])?;
         let core = cells.iter().filter(|at| cores[**at] == label).map(|at| core[*at]);
         let features = features(&cells, columns, nail, &core.collect::<Vec<f32>>());

@@ -1,5 +1,6 @@
 //! `lunula phantom`: synthetic scenes with exact truth.
 
+mod board;
 mod log;
 mod photos;
 mod study;
@@ -20,6 +21,7 @@ pub(crate) struct PhantomArgs {
 
 #[derive(Debug, Subcommand)]
 enum Kind {
+    Board(Box<board::BoardArgs>),
     Log(Box<log::LogArgs>),
     Photos(Box<photos::PhotosArgs>),
     Study(Box<study::StudyArgs>),
@@ -28,6 +30,7 @@ enum Kind {
 
 pub(crate) fn run(args: &PhantomArgs) -> anyhow::Result<Outcome> {
     match &args.kind {
+        Kind::Board(args) => board::run(args),
         Kind::Log(args) => log::run(args),
         Kind::Photos(args) => photos::run(args),
         Kind::Video(args) => video::run(args),

@@ -12,6 +12,19 @@ use image::metadata::Orientation;
 use image::{ColorType, DynamicImage, ImageBuffer, ImageDecoder, ImageFormat, ImageReader, Limits, Pixel};
 use thiserror::Error;
 
+/// Endings of the files that are taken as photographs.
+pub(crate) const PICTURES: [&str; 6] = ["png", "jpg", "jpeg", "tif", "tiff", "bmp"];
+
+/// Whether a file's name is that of a picture that lunula reads.
+pub(crate) fn is_picture(path: &Path) -> bool {
+    extension(path).is_some_and(|ending| PICTURES.contains(&ending.as_str()))
+}
+
+/// A file's ending in small letters.
+pub(crate) fn extension(path: &Path) -> Option<String> {
+    path.extension().map(|ending| ending.to_string_lossy().to_lowercase())
+}
+
 /// Why a file is not a photograph. `Display` says what to do; the caller adds which file.
 #[derive(Debug, Error)]
 pub enum ReadFault {
@@ -88,7 +101,7 @@ pub struct Photograph {
 /// Memory that goes from photograph to photograph, so that it is not taken from the system, and cleared by it, each
 /// time.
 #[derive(Debug, Default)]
-pub(super) struct PhotoBuffer {
+pub(crate) struct PhotoBuffer {
     file: Vec<u8>,
     /// Of 8 bits.
     samples: Vec<u8>,
@@ -96,7 +109,7 @@ pub(super) struct PhotoBuffer {
 
 impl PhotoBuffer {
     /// Takes back the memory of a photograph that is done with.
-    pub(super) fn take_back(&mut self, photograph: Photograph) {
+    pub(crate) fn take_back(&mut self, photograph: Photograph) {
         self.samples = match photograph.image {
             DynamicImage::ImageLuma8(p) => p.into_raw(),
             DynamicImage::ImageLumaA8(p) => p.into_raw(),
@@ -144,7 +157,7 @@ impl Photograph {
     }
 
     /// As [`Photograph::read_up_to`], in memory that a photograph before this one left.
-    pub(super) fn read_into(path: &Path, megapixels: u32, buffer: &mut PhotoBuffer) -> Result<Self, ReadFault> {
+    pub(crate) fn read_into(path: &Path, megapixels: u32, buffer: &mut PhotoBuffer) -> Result<Self, ReadFault> {
         let PhotoBuffer { file: bytes, samples } = buffer;
         read_bytes(path, megapixels, bytes)?;
         let (mut decoder, format) = decoder_for(bytes)?;
@@ -237,7 +250,7 @@ impl Photograph {
 }
 
 /// See [`Photograph::is_grey`].
-pub(super) fn is_grey(image: &DynamicImage) -> bool {
+pub(crate) fn is_grey(image: &DynamicImage) -> bool {
     match image {
         DynamicImage::ImageRgb8(p) => p.pixels().all(|p| p.0[0] == p.0[1] && p.0[1] == p.0[2]),
         DynamicImage::ImageRgba8(p) => p.pixels().all(|p| p.0[0] == p.0[1] && p.0[1] == p.0[2]),
@@ -251,7 +264,7 @@ pub(super) fn is_grey(image: &DynamicImage) -> bool {
 ///
 /// # Errors
 /// As [`Photograph::read`], but only what the header shows.
-pub(super) fn header_is_grey(path: &Path) -> Result<bool, ReadFault> {
+pub(crate) fn header_is_grey(path: &Path) -> Result<bool, ReadFault> {
     let file = std::io::BufReader::new(std::fs::File::open(path)?);
     let reader = ImageReader::new(file).with_guessed_format()?;
     match reader.format() {

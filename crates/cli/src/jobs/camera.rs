@@ -1,0 +1,111 @@
+//! `lunula camera`: views of a chessboard to a lens.
+
+use std::path::PathBuf;
+
+use anyhow::Context;
+use clap::Args;
+use lunula::camera::{CameraFigures, CameraOptions, CameraReport, Inputs, Outputs, plan, run};
+use lunula::job::{Given, Said, Watch};
+
+use crate::Common;
+use crate::jobs::{Command, JobArgs, Plan};
+
+/// Measure a camera's lens from views of a chessboard, for the [camera] of a marker file
+///
+/// Print a chessboard, glue it to something flat, and take 10 to 20 photographs of it with the camera, zoom and focus of
+/// the videos: all of the board in each, tilted by 20 to 40 degrees to all sides, near the picture's corners as well as
+/// in its middle. Results: the table [camera], which goes into the marker file as it is, and beside it <camera>.run.json
+/// and a picture of where the corners were seen. Views that do not determine the lens are refused.
+#[derive(Debug, Args)]
+pub(crate) struct CameraArgs {
+    /// A folder of photographs (png, jpg, tif, bmp), single photographs, or videos
+    #[arg(required = true)]
+    views: Vec<PathBuf>,
+    #[command(flatten)]
+    given: Given<CameraOptions>,
+    /// A photograph or video of the board lying in the plane in which the finger moves, filmed as the videos are: the
+    /// plane goes into [camera.plane], and angles seen obliquely are measured right
+    #[arg(long, value_name = "FILE")]
+    plane: Option<PathBuf>,
+    /// The lens, as a marker file has it
+    #[arg(long, value_name = "CAMERA.toml", required_unless_present = "plan")]
+    out: Option<PathBuf>,
+    /// Draw no picture
+    #[arg(long)]
+    no_figures: bool,
+    #[command(flatten)]
+    job: JobArgs,
+}
+
+impl CameraArgs {
+    fn inputs(&self) -> Inputs {
+        Inputs { views: self.views.clone(), plane: self.plane.clone() }
+    }
+
+    fn options(&self) -> CameraOptions {
+        CameraOptions { threads: self.job.common.threads(), ..self.given.options.clone() }
+    }
+
+    fn outputs(&self) -> Option<Outputs> {
+        Some(Outputs { camera: self.out.clone()?, figures: !self.no_figures, report: true })
+    }
+}
+
+impl Command for CameraArgs {
+    type Figures = CameraFigures;
+
+    const NAME: &'static str = "camera";
+
+    const UNIT: &'static str = "files";
+
+    fn job(&self) -> &JobArgs {
+        &self.job
+    }
+
+    fn said(&self) -> &Said {
+        &self.given.said
+    }
+
+    fn plan(&self) -> anyhow::Result<Plan> {
+        Ok(plan(&self.inputs(), &self.options(), self.outputs().as_ref())?.into())
+    }
+
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<CameraReport> {
+        let outputs = self.outputs().context("--out is needed")?;
+        Ok(run(&self.inputs(), &self.options(), &outputs, watch)?)
+    }
+
+    fn say(&self, common: &Common, report: &CameraReport) {
+        let (lens, sd) = (report.lens, report.lens_sd);
+        for (name, value, sd) in [
+            ("fx", lens.fx_px, sd.fx_px),
+            ("fy", lens.fy_px, sd.fy_px),
+            ("cx", lens.cx_px, sd.cx_px),
+            ("cy", lens.cy_px, sd.cy_px),
+        ] {
+            common.say(&format!("{name}  {value:>9.2} ± {sd:.2} px"));
+        }
+        for ((name, value), sd) in ["k1", "k2", "p1", "p2", "k3"].iter().zip(lens.distortion).zip(sd.distortion) {
+            common.say(&format!("{name}  {value:>9.5} ± {sd:.5}"));
+        }
+        common.say(&format!(
+            "{} of {} views used; residuals {:.3} px RMS; points are undistorted to ± {:.3} px; corners cover {:.0} % of \
+             the picture",
+            report.views.len(),
+            report.looked_at + usize::from(self.plane.is_some()),
+            report.rms_px,
+            report.undistorted_sd_px,
+            100.0 * report.covered
+        ));
+        if let Some(plane) = report.plane {
+            common.say(&format!(
+                "plane of the finger: {:.2} ± {:.2} degrees off straight",
+                plane.tilt_deg, plane.normal_sd_deg
+            ));
+        }
+    }
+
+    fn result(&self) -> Option<PathBuf> {
+        self.out.clone()
+    }
+}

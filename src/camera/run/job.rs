@@ -1,0 +1,148 @@
+//! The camera job: views and options in, a lens with its report and pictures out; the one entry that command line and
+//! pipelines call.
+
+use std::path::Path;
+use std::time::Instant;
+
+use crate::camera::draw::draw;
+use crate::camera::error::CameraError;
+use crate::camera::fit::{Fit, fit};
+use crate::camera::judge::{FEWEST_VIEWS, Sorted, View, covered, refuse, sort, warnings, words};
+use crate::camera::options::{CameraOptions, Inputs, Outputs};
+use crate::camera::report::{About, CameraReport, figures};
+use crate::camera::run::plan::steps;
+use crate::camera::views::{Look, files, look};
+use crate::files::{Places, beside};
+use crate::job::{Report, Watch};
+use crate::photograph::is_picture;
+use crate::stages::{Stages, left_out};
+
+/// The picture's name, after the table's.
+const PICTURE: &str = "corners";
+/// More views than this are thinned out evenly: the lens gains little, and the work grows with their square.
+const MOST_VIEWS: usize = 100;
+
+/// Runs the job; every result is in its place when it returns.
+///
+/// # Errors
+/// [`CameraError`] where there is no lens: nothing is written.
+pub fn run(
+    inputs: &Inputs,
+    options: &CameraOptions,
+    outputs: &Outputs,
+    watch: &Watch<'_>,
+) -> Result<CameraReport, CameraError> {
+    let start = Instant::now();
+    let stages = Stages::default();
+    let files = files(&inputs.views)?;
+    let report_at = outputs.report.then(|| beside(&outputs.camera, ".run.json"));
+    let mut places = Places::not_over(files.iter().chain(&inputs.plane));
+    places.check([Some(&outputs.camera), report_at.as_ref()].into_iter().flatten())?;
+    let looks = look(&files, options, &stages, watch)?;
+    let looked_at = looks.len();
+    let mut sorted = sort(looks)?;
+    let mut notes = thin(&mut sorted.views);
+    if let Some(plane) = &inputs.plane {
+        let view = of_plane(plane, &sorted, options, &stages, watch)?;
+        sorted.views.push(view);
+    }
+    watch.go_on()?;
+    let Sorted { kind, views, failed } = sorted;
+    let fitted = stages.time("lens", || of_views(&views, kind.size, options, &failed))?;
+    let covered = covered(&views, kind.size);
+    let about = About {
+        camera: outputs.camera.clone(),
+        board: options.board,
+        square_mm: options.square_mm,
+        size: kind.size,
+        looked_at,
+        has_plane: inputs.plane.is_some(),
+    };
+    let figures = figures(&fitted, &views, covered, about)?;
+    notes.extend(weak_k3(&fitted, options));
+    places.write(&outputs.camera, &figures.toml())?;
+    let mut pictures = Vec::new();
+    if outputs.figures {
+        pictures.push(places.draw(&outputs.camera, PICTURE, |png, svg| {
+            stages.time("figures", || draw(&fitted, &views, kind.size, png, svg))
+        })?);
+    }
+    watch.go_on()?;
+    let videos = files.iter().filter(|file| !is_picture(file)).count();
+    let counts = Some([files.len() - videos, videos]);
+    let report = Report {
+        left_out: left_out(steps(counts, inputs.plane.is_some(), options, Some(outputs))),
+        warnings: warnings(&fitted, &views, covered),
+        notes,
+        failed,
+        pictures,
+        ..Report::new("camera", watch, figures)
+    };
+    Ok(report.timed(&stages, start).commit(places, report_at.as_deref())?)
+}
+
+/// The lens that views determine.
+fn of_views(
+    views: &[View],
+    size: (usize, usize),
+    options: &CameraOptions,
+    failed: &[String],
+) -> Result<Fit, CameraError> {
+    if views.len() < FEWEST_VIEWS {
+        let why = format!(
+            "{} view(s) show the board, and {FEWEST_VIEWS} are the fewest that can determine a lens; 10 to 20 with the \
+             board tilted to all sides do it well",
+            views.len()
+        );
+        return Err(CameraError::Undetermined { why, failed: failed.to_vec() });
+    }
+    let corners: Vec<_> = views.iter().map(|view| view.corners.clone()).collect();
+    let points = options.board.points_mm(options.square_mm);
+    refuse(fit(&points, &corners, size, options.coefficients)?, views, failed)
+}
+
+/// Keeps at most [`MOST_VIEWS`], evenly.
+fn thin(views: &mut Vec<View>) -> Vec<String> {
+    let all = views.len();
+    if all <= MOST_VIEWS {
+        return Vec::new();
+    }
+    let mut at = 0;
+    views.retain(|_| {
+        at += 1;
+        at * MOST_VIEWS / all > (at - 1) * MOST_VIEWS / all
+    });
+    vec![format!("of {all} views with the board {} are used, evenly spaced", views.len())]
+}
+
+/// The view of the board in the finger's plane.
+fn of_plane(
+    path: &Path,
+    sorted: &Sorted,
+    options: &CameraOptions,
+    stages: &Stages,
+    watch: &Watch<'_>,
+) -> Result<View, CameraError> {
+    let refused = |why: String| CameraError::Input { path: path.to_owned(), why };
+    if path.is_dir() || !path.exists() {
+        return Err(refused("--plane takes one photograph or video of the board in the finger's plane".to_owned()));
+    }
+    let looks = look(&[path.to_owned()], options, stages, watch)?;
+    let first = looks.iter().find(|one| one.board.is_ok()).or(looks.first());
+    let Some(Look { name, kind, board }) = first.cloned() else {
+        return Err(refused("has no frames".to_owned()));
+    };
+    let corners = board.map_err(refused)?;
+    if kind != sorted.kind {
+        let why = format!("is {}, the views are {}; take it as the video is filmed", words(kind), words(sorted.kind));
+        return Err(refused(why));
+    }
+    Ok(View { name, corners })
+}
+
+/// A coefficient that could as well be nothing.
+fn weak_k3(fit: &Fit, options: &CameraOptions) -> Option<String> {
+    let (k3, sd) = (fit.lens.distortion[4], fit.sd()[8]);
+    let weak = options.coefficients == 5 && k3.abs() < 2.0 * sd;
+    weak.then(|| format!("k3 is {k3:.3} with a standard error of {sd:.3}: --coefficients 4 leaves it out"))
+}

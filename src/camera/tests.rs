@@ -1,0 +1,163 @@
+//! Lenses from corners with known errors: how far off, and whether the standard errors say so.
+
+use nalgebra::Vector3;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+
+use super::board::BoardSize;
+use super::fit::{Fit, OF_LENS, fit};
+use crate::phantom::board::{BoardOptions, Scene};
+use crate::vision::{Corners, Intrinsics};
+
+const BOARD: BoardSize = BoardSize { columns: 9, rows: 6 };
+const SIZE: (usize, usize) = (1280, 720);
+/// The errors of corners, a coordinate's standard deviation.
+const NOISE_PX: f64 = 0.1;
+const TRUTH: [f64; OF_LENS] = [1210.0, 1195.0, 645.0, 352.0, -0.2, 0.05, 0.001, -0.0005, 0.01];
+
+fn options(seed: u64, views: usize) -> BoardOptions {
+    let [fx, fy, cx, cy, distortion @ ..] = TRUTH;
+    BoardOptions {
+        seed,
+        views,
+        fx: Some(fx),
+        fy: Some(fy),
+        centre: Some([cx, cy]),
+        distortion: distortion.to_vec(),
+        ..BoardOptions::default()
+    }
+}
+
+/// The corners of a scene's views, with errors.
+fn corners(options: &BoardOptions, noise_px: f64) -> Vec<Corners> {
+    let scene = Scene::new(options.clone()).unwrap();
+    let mut random = ChaCha8Rng::seed_from_u64(options.seed + 1000);
+    let mut off = |at: f64| -> f32 {
+        let noise: f64 = StandardNormal.sample(&mut random);
+        (at + noise_px * noise) as f32
+    };
+    scene.views().iter().map(|view| scene.corners_px(view).into_iter().map(|at| at.map(&mut off)).collect()).collect()
+}
+
+fn fitted(options: &BoardOptions, noise_px: f64) -> Fit {
+    fit(&BOARD.points_mm(20.0), &corners(options, noise_px), SIZE, 5).unwrap().expect("a lens")
+}
+
+fn parameters(lens: &Intrinsics) -> [f64; OF_LENS] {
+    let ([fx, fy], [cx, cy], [k1, k2, p1, p2, k3]) = (lens.focal_px, lens.centre_px, lens.distortion);
+    [fx, fy, cx, cy, k1, k2, p1, p2, k3]
+}
+
+/// Root mean square distance over the picture between points as both lenses undistort them, pixels.
+fn undistorted_gap_px(fit: &Fit) -> f64 {
+    let layout = |lens: &Intrinsics| {
+        let [fx, fy, cx, cy, distortion @ ..] = parameters(lens);
+        let mut all = [0.0; 12];
+        all[..5].copy_from_slice(&distortion);
+        let camera = crate::posture::Camera {
+            fx_px: fx,
+            fy_px: Some(fy),
+            cx_px: Some(cx),
+            cy_px: Some(cy),
+            distortion: all,
+            plane: None,
+        };
+        crate::posture::Lens::new(&camera, SIZE, 1.0)
+    };
+    let [fx, fy, cx, cy, distortion @ ..] = TRUTH;
+    let truth = Intrinsics { focal_px: [fx, fy], centre_px: [cx, cy], distortion };
+    let (found, truth) = (layout(&fit.lens), layout(&truth));
+    let mut squares = 0.0;
+    for k in 0..32 * 18 {
+        let at = [(k % 32) as f64 * 1279.0 / 31.0, (k / 32) as f64 * 719.0 / 17.0];
+        let [one, other] = [&found, &truth].map(|lens| lens.undistort(at).expect("a point").at_px);
+        squares += (one[0] - other[0]).powi(2) + (one[1] - other[1]).powi(2);
+    }
+    (squares / (32.0 * 18.0)).sqrt()
+}
+
+#[test]
+fn without_errors_the_lens_is_exact() {
+    let fit = fitted(&options(1, 8), 0.0);
+    let errors: Vec<f64> =
+        parameters(&fit.lens).iter().zip(TRUTH).map(|(found, truth)| (found - truth).abs()).collect();
+    // Corners are rounded to 32 bits, 6e-5 px; measured 0.01 px and 2e-4.
+    assert!(
+        errors[..4].iter().all(|error| *error <= 0.02) && errors[4..].iter().all(|error| *error <= 2e-3),
+        "{errors:?}"
+    );
+    assert!(fit.rms_px <= 1e-4, "{}", fit.rms_px);
+}
+
+const SEEDS: u64 = 50;
+
+/// Twelve views, 0.1 px: focal lengths to 0.2 %, undistorted points to 0.1 px RMS; standard errors that hold the truth.
+#[test]
+fn twelve_views_give_the_lens_and_its_standard_errors() {
+    let (mut within_one, mut within_95) = ([0_u32; OF_LENS], [0_u32; OF_LENS]);
+    let (mut focal, mut gaps, mut scatter, mut claimed) = (Vec::new(), Vec::new(), 0.0, 0.0);
+    for seed in 0..SEEDS {
+        let fit = fitted(&options(seed, 12), NOISE_PX);
+        let (found, sd) = (parameters(&fit.lens), fit.sd());
+        for k in 0..OF_LENS {
+            let off = (found[k] - TRUTH[k]).abs() / sd[k];
+            within_one[k] += u32::from(off <= 1.0);
+            within_95[k] += u32::from(off <= 1.96);
+        }
+        focal.push(((found[0] / TRUTH[0] - 1.0).abs()).max((found[1] / TRUTH[1] - 1.0).abs()));
+        let gap_px = undistorted_gap_px(&fit);
+        scatter += gap_px * gap_px;
+        claimed += fit.undistorted_sd_px(SIZE).unwrap().powi(2);
+        gaps.push(gap_px);
+    }
+    focal.sort_unstable_by(f64::total_cmp);
+    gaps.sort_unstable_by(f64::total_cmp);
+    println!("focal: median {:.5}, 90 % {:.5}, worst {:.5}", focal[25], focal[45], focal[49]);
+    println!(
+        "undistorted: median {:.4}, 90 % {:.4}, worst {:.4} px; ratio of RMS to its standard error {:.3}",
+        gaps[25],
+        gaps[45],
+        gaps[49],
+        (scatter / claimed).sqrt()
+    );
+    println!("within one {within_one:?}, within 1.96 {within_95:?} of {SEEDS}");
+    assert!(focal[45] <= 0.002, "focal length: {focal:?}");
+    assert!(gaps[45] <= 0.1, "undistorted: {gaps:?}");
+    assert!(within_95.iter().all(|held| *held >= 45), "{within_95:?}");
+    let share = f64::from(within_one.iter().sum::<u32>()) / (OF_LENS as f64 * SEEDS as f64);
+    assert!((0.58..=0.78).contains(&share), "one standard error holds the truth in {share}");
+}
+
+#[test]
+fn the_planes_standard_error_holds_the_truth() {
+    let mut held = 0;
+    for seed in 0..SEEDS {
+        let options = options(seed, 12);
+        let fit = fitted(&options, NOISE_PX);
+        let truth = *Scene::new(options).unwrap().views().last().unwrap();
+        let truth = -(truth.rotation * Vector3::z());
+        let view = fit.views.last().unwrap();
+        let off = view.normal() - truth;
+        let worst = view.normal_covariance().symmetric_eigenvalues().max().sqrt();
+        // Chi-square of two degrees of freedom, at most the worst direction's: 95 % within 2.45.
+        held += u32::from(off.norm() <= 2.45 * worst);
+    }
+    println!("plane held in {held} of {SEEDS}");
+    assert!(held >= 45, "{held} of {SEEDS}");
+}
+
+/// The slow twin: what OpenCV says of itself, but for its divisor.
+#[test]
+fn standard_errors_are_opencvs_with_twice_the_points() {
+    let views = corners(&options(3, 12), NOISE_PX);
+    let fit = fit(&BOARD.points_mm(20.0), &views, SIZE, 5).unwrap().expect("a lens");
+    let opencv = crate::vision::opencvs_sd(&BOARD.points_mm(20.0), &views, SIZE).unwrap();
+    let (points, free) = (12.0 * 54.0, 12.0 * 6.0 + 9.0);
+    let divisor: f64 = (2.0 * points - free) / (points - free);
+    for (k, (own, theirs)) in fit.sd().iter().zip(opencv).enumerate() {
+        let ratio = theirs / own;
+        println!("{k}: {ratio}, expected {}", divisor.sqrt());
+        assert!((ratio / divisor.sqrt() - 1.0).abs() <= 1e-3, "{k}: {ratio}");
+    }
+}

@@ -1,0 +1,187 @@
+//! Photographs and frames to boards' corners.
+//!
+//! In: photographs, folders of them, videos. Out: for each picture that was looked at its size, how it was turned to be
+//! upright, and the corners of its board or why there are none. Corners are in pixels of the upright picture, which is
+//! what `lunula posture` and `lunula photos` measure in. Photographs are looked at side by side; the order of what
+//! comes out is that of the names.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use rayon::prelude::*;
+
+use super::board::BoardSize;
+use super::error::CameraError;
+use super::options::CameraOptions;
+use crate::job::Watch;
+use crate::photograph::{Photograph, is_picture};
+use crate::stages::Stages;
+use crate::video::{Frame, Item, Plane, Turn, Video};
+use crate::vision::{Corners, Grey, VisionError, find_board, shows_another};
+
+/// A picture that was looked at.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Look {
+    /// The file, and of a video the frame.
+    pub(super) name: String,
+    /// Width and height, upright, and how it was turned.
+    pub(super) kind: Kind,
+    /// The corners, row after row; or why there are none.
+    pub(super) board: Result<Corners, String>,
+}
+
+/// What all views have to have in common.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Kind {
+    /// Width and height, upright.
+    pub(super) size: (usize, usize),
+    /// How the stored picture was turned: 0 not at all, else one number for each way.
+    pub(super) turned: u8,
+}
+
+/// The files to look at, folders unfolded, in the order of their names.
+pub(super) fn files(sources: &[PathBuf]) -> Result<Vec<PathBuf>, CameraError> {
+    let mut files = Vec::new();
+    for source in sources {
+        let refused = |why: String| CameraError::Input { path: source.clone(), why };
+        if !source.is_dir() {
+            if !source.exists() {
+                return Err(refused("does not exist; name a folder of photographs or a video".to_owned()));
+            }
+            files.push(source.clone());
+            continue;
+        }
+        let entries = std::fs::read_dir(source).and_then(Iterator::collect::<Result<Vec<_>, _>>);
+        let entries = entries.map_err(|why| refused(format!("cannot be listed: {why}")))?;
+        let mut own: Vec<PathBuf> = entries.into_iter().map(|entry| entry.path()).collect();
+        own.retain(|path| path.is_file() && is_picture(path));
+        if own.is_empty() {
+            return Err(refused("holds no photographs (png, jpg, tif, bmp); name the folder of the views".to_owned()));
+        }
+        own.sort();
+        files.extend(own);
+    }
+    Ok(files)
+}
+
+/// Looks at all files.
+pub(super) fn look(
+    files: &[PathBuf],
+    options: &CameraOptions,
+    stages: &Stages,
+    watch: &Watch<'_>,
+) -> Result<Vec<Look>, CameraError> {
+    let done = AtomicU64::new(0);
+    let one = |path: &PathBuf| -> Result<Vec<Look>, CameraError> {
+        watch.go_on()?;
+        let looks = if is_picture(path) {
+            vec![photograph(path, options, stages)?]
+        } else {
+            of_video(path, options, stages, watch)?
+        };
+        (watch.tick)(done.fetch_add(1, Ordering::Relaxed) + 1, Some(files.len() as u64));
+        Ok(looks)
+    };
+    let looks: Vec<Vec<Look>> = files.par_iter().with_max_len(1).map(one).collect::<Result<_, _>>()?;
+    Ok(looks.concat())
+}
+
+fn photograph(path: &Path, options: &CameraOptions, stages: &Stages) -> Result<Look, CameraError> {
+    let name = path.display().to_string();
+    let photograph = match stages.time("read", || Photograph::read(path)) {
+        Ok(photograph) => photograph,
+        Err(why) => return Ok(Look { name, kind: Kind::default(), board: Err(why.to_string()) }),
+    };
+    let turned = photograph.orientation.to_exif() - 1;
+    let picture = photograph.image.into_luma8();
+    let size = (picture.width() as usize, picture.height() as usize);
+    let grey = Grey { width: size.0, height: size.1, data: picture.as_raw() };
+    Ok(Look { name, kind: Kind { size, turned }, board: stages.time("corners", || board(grey, options.board))? })
+}
+
+/// The corners of the only board.
+fn board(picture: Grey<'_>, size: BoardSize) -> Result<Result<Corners, String>, VisionError> {
+    let Some(corners) = find_board(picture, size.columns, size.rows)? else {
+        return Ok(Err(format!(
+            "no board of {size} inner corners is seen whole; all of it has to be in the picture, lit evenly, with a \
+             white margin (--board counts inner corners, not squares)"
+        )));
+    };
+    if shows_another(picture, &corners, size.columns, size.rows)? {
+        return Ok(Err("shows two boards; cover one of them".to_owned()));
+    }
+    Ok(Ok(corners))
+}
+
+/// A frame's luma as it is stored, 8 bits.
+struct Still {
+    index: u64,
+    size: (usize, usize),
+    data: Vec<u8>,
+}
+
+fn of_video(
+    path: &Path,
+    options: &CameraOptions,
+    stages: &Stages,
+    watch: &Watch<'_>,
+) -> Result<Vec<Look>, CameraError> {
+    let refused = |why: crate::video::VideoError| {
+        let why = format!("{why}; name a folder of photographs or a video");
+        CameraError::Input { path: path.to_owned(), why }
+    };
+    let mut video = Video::open(path, options.threads).map_err(refused)?;
+    let turn = video.info().turn;
+    let (mut looks, mut stills, mut next_s) = (Vec::new(), Vec::new(), f64::NEG_INFINITY);
+    let name = |index: u64| format!("{}: frame {index}", path.display());
+    let mut see = |stills: &mut Vec<Still>| -> Result<(), CameraError> {
+        let all = stills.par_iter().with_max_len(1).map(|still| {
+            let grey = Grey { width: still.size.0, height: still.size.1, data: &still.data };
+            let board = stages.time("corners", || board(grey, options.board))?;
+            let shown = board.map(|corners| corners.into_iter().map(|at| upright(at, turn, still.size)).collect());
+            Ok(Look { name: name(still.index), kind: kind(turn, still.size), board: shown })
+        });
+        looks.extend(all.collect::<Result<Vec<Look>, VisionError>>()?);
+        stills.clear();
+        Ok(())
+    };
+    while let Some(item) = stages.time("decode", || video.next_item()).map_err(refused)? {
+        watch.go_on()?;
+        let Item::Frame(frame) = item else { continue };
+        if frame.time_s < next_s {
+            continue;
+        }
+        next_s = frame.time_s + options.every;
+        stills.push(still(&frame));
+        if stills.len() >= rayon::current_num_threads() {
+            see(&mut stills)?;
+        }
+    }
+    see(&mut stills)?;
+    Ok(looks)
+}
+
+fn still(frame: &Frame<'_>) -> Still {
+    let Plane { width, height, .. } = frame.luma;
+    let mut row = vec![0.0_f32; width];
+    let mut data = Vec::with_capacity(width * height);
+    for y in 0..height {
+        frame.luma.copy_row(y, 0, &mut row);
+        data.extend(row.iter().map(|value| value.round() as u8));
+    }
+    Still { index: frame.index, size: (width, height), data }
+}
+
+fn kind(turn: Turn, (width, height): (usize, usize)) -> Kind {
+    let (size, turned) = match turn {
+        Turn::None => ((width, height), 0),
+        Turn::Quarter => ((height, width), 1),
+        Turn::Half => ((width, height), 2),
+        Turn::ThreeQuarters => ((height, width), 3),
+    };
+    Kind { size, turned }
+}
+
+fn upright([x, y]: [f32; 2], turn: Turn, size: (usize, usize)) -> [f32; 2] {
+    turn.shown_from_stored([f64::from(x), f64::from(y)], size).map(|at| at as f32)
+}

@@ -1,0 +1,143 @@
+//! A scene to files: views are drawn one after the other, each by all threads, and put in their places at the end.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use image::ExtendedColorType;
+use serde::Serialize;
+use thiserror::Error;
+
+use super::place::rodrigues;
+use super::{BoardOptions, Picture, Scene, View};
+use crate::figure::encode_png;
+use crate::files::{Staging, WriteError};
+use crate::job::{Interrupted, Watch};
+use crate::phantom::scene::place::{Unwritten, in_the_way, refused};
+use crate::table::{Column, TableError, TableWriter, Value};
+
+/// The file that says that a folder was written here.
+const RECORD: &str = "truth/board.json";
+const PLANE: &str = "plane.png";
+const CAMERA: &str = "truth/camera.toml";
+const CORNERS: &str = "truth/corners.csv";
+const VIEWS: &str = "truth/views.csv";
+/// The record first: where it exists, what is of one run and what of another is made again.
+const RESULTS: [&str; 6] = [RECORD, "views", PLANE, CAMERA, CORNERS, VIEWS];
+
+/// Why views were not written.
+#[derive(Debug, Error)]
+pub enum Error {
+    /// Something that this job did not write is in the way.
+    #[error("{} exists already and is no synthetic board's; choose another --out", .0.display())]
+    InTheWay(PathBuf),
+    /// A file or folder could not be written.
+    #[error(transparent)]
+    Write(#[from] Unwritten),
+    /// The results could not be put in their places.
+    #[error(transparent)]
+    Place(#[from] WriteError),
+    /// A table could not be written.
+    #[error(transparent)]
+    Table(#[from] TableError),
+    /// Stopped from outside; nothing was left behind.
+    #[error("stopped")]
+    Interrupted(#[from] Interrupted),
+}
+
+/// Views that were written.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Summary {
+    /// How many, the plane's included.
+    pub views: usize,
+    /// Seconds from beginning to end.
+    pub total_s: f64,
+}
+
+impl BoardOptions {
+    /// The files of the views, relative to their folder.
+    pub(in crate::phantom) fn files(&self) -> Vec<String> {
+        let mut files: Vec<String> = (0..self.views).map(view_name).collect();
+        files.extend([RECORD, CAMERA, CORNERS, VIEWS].map(str::to_owned));
+        files.extend(self.plane.map(|_| PLANE.to_owned()));
+        files
+    }
+}
+
+fn view_name(index: usize) -> String {
+    format!("views/{:02}.png", index + 1)
+}
+
+/// Writes `scene` under `out`, watched: the ticks count views. A synthetic board written there before is replaced.
+///
+/// # Errors
+/// [`enum@Error`]; what was under `out` before is as it was.
+pub fn write_watched(scene: &Scene, out: &Path, watch: &Watch<'_>) -> Result<Summary, Error> {
+    let begin = Instant::now();
+    let staging = Staging::new(out)?;
+    if let Some(place) = in_the_way(out, &RESULTS, RECORD) {
+        return Err(Error::InTheWay(place));
+    }
+    let stage = staging.path();
+    for folder in ["views", "truth"].map(|folder| stage.join(folder)) {
+        fs::create_dir_all(&folder).map_err(refused(&folder))?;
+    }
+    let named = scene.views.iter().enumerate().map(|(index, view)| (view_name(index), view));
+    let named: Vec<(String, &View)> = named.chain(scene.plane.iter().map(|view| (PLANE.to_owned(), view))).collect();
+    for (index, (name, view)) in named.iter().enumerate() {
+        write_picture(&scene.picture(std::slice::from_ref(*view), index as u32), &stage.join(name))?;
+        (watch.tick)(index as u64 + 1, Some(named.len() as u64));
+        watch.go_on()?;
+    }
+    write_truth(scene, &named, stage)?;
+    staging.commit_exactly(&RESULTS)?;
+    Ok(Summary { views: named.len(), total_s: begin.elapsed().as_secs_f64() })
+}
+
+fn write_picture(picture: &Picture, path: &Path) -> Result<(), Unwritten> {
+    let mut png = Vec::new();
+    encode_png(&picture.data, [picture.width, picture.height], ExtendedColorType::L8, &mut png)
+        .map_err(|why| refused(path)(io::Error::other(why)))?;
+    fs::write(path, png).map_err(refused(path))
+}
+
+fn write_truth(scene: &Scene, named: &[(String, &View)], stage: &Path) -> Result<(), Error> {
+    let start = |name: &str, columns: Vec<Column>| {
+        let path = stage.join(name);
+        TableWriter::create(&path, &path, columns, &[])
+    };
+    let numbers = |names: &[&str]| names.iter().map(|name| Column::number(*name)).collect::<Vec<_>>();
+    let corner = vec![Column::text("view"), Column::integer("corner")];
+    let mut corners = start(CORNERS, [corner, numbers(&["x_px", "y_px"])].concat())?;
+    let pose = ["tilt_deg", "rx_rad", "ry_rad", "rz_rad", "tx_mm", "ty_mm", "tz_mm"];
+    let mut views = start(VIEWS, [vec![Column::text("view")], numbers(&pose)].concat())?;
+    for (name, view) in named {
+        for (k, [x, y]) in scene.corners_px(view).into_iter().enumerate() {
+            corners.write(&[name[..].into(), Value::Integer(k as i64), Value::Number(x), Value::Number(y)])?;
+        }
+        let (turned, moved) = (rodrigues(&view.rotation), view.translation_mm);
+        let pose = [view.tilt_deg(), turned[0], turned[1], turned[2], moved.x, moved.y, moved.z];
+        let row: Vec<Value<'_>> = std::iter::once(name[..].into()).chain(pose.map(Value::Number)).collect();
+        views.write(&row)?;
+    }
+    corners.finish()?;
+    views.finish()?;
+    let (camera, record) = (stage.join(CAMERA), stage.join(RECORD));
+    fs::write(&camera, camera_toml(&scene.options)).map_err(refused(&camera))?;
+    let text = serde_json::to_vec_pretty(&scene.options).map_err(|why| refused(&record)(why.into()))?;
+    Ok(fs::write(&record, text).map_err(refused(&record))?)
+}
+
+/// The true lens, as marker files have it.
+fn camera_toml(options: &BoardOptions) -> String {
+    let ([fx, fy], [cx, cy]) = (options.focal_px(), options.centre_px());
+    let mut distortion = [0.0; 5];
+    distortion.iter_mut().zip(&options.distortion).for_each(|(into, &from)| *into = from);
+    let mut text =
+        format!("[camera]\nfx = {fx:?}\nfy = {fy:?}\ncx = {cx:?}\ncy = {cy:?}\ndistortion = {distortion:?}\n");
+    if let Some(plane) = options.plane {
+        text += &format!("\n[camera.plane]\nnormal = {:?}\n", plane.normal());
+    }
+    text
+}
