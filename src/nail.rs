@@ -4,7 +4,7 @@
 //! pixel is (0, 0), x to the right, y down. An [`Axis`] is a direction on that picture, from the eponychium (proximal)
 //! to the hyponychium (distal).
 
-use geo::{Area, BooleanOps, Coord, Intersects, Line, LineString, Polygon};
+use geo::{Area, BooleanOps, BoundingRect, Coord, Intersects, Line, LineString, Polygon, Rect};
 use thiserror::Error;
 
 /// Why a list of points is no outline of a nail.
@@ -100,6 +100,10 @@ impl Outline {
 
     /// Intersection over union with `other`, 0 to 1 (exact, by polygon clipping).
     pub fn iou(&self, other: &Self) -> f64 {
+        let apart = |a: Option<Rect<f64>>, b: Option<Rect<f64>>| a.zip(b).is_some_and(|(a, b)| !a.intersects(&b));
+        if apart(self.polygon.bounding_rect(), other.polygon.bounding_rect()) {
+            return 0.0;
+        }
         let both = self.polygon.intersection(&other.polygon).unsigned_area();
         both / (self.area_px2() + other.area_px2() - both)
     }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::{Context, ensure};
 use clap::{Parser, Subcommand};
-use lunula_training::nails::{self, Part};
+use lunula_training::nails::{self, Part, folds};
 
 /// Make or judge the weights that find nails on photographs
 ///
@@ -47,6 +47,12 @@ enum Job {
         #[arg(long, requires = "hands")]
         held_out: bool,
     },
+    /// Print recall and precision of the network on photographs of --hands that it has not seen; takes minutes
+    #[command(
+        long_about = "Print recall and precision of the network on photographs of --hands that it has not seen\n\n\
+        What crates/training/nail-net trains without a fold is judged on that fold, by the whole of detection."
+    )]
+    Folds(folds::Folds),
 }
 
 fn main() -> anyhow::Result<()> {
@@ -66,6 +72,10 @@ fn main() -> anyhow::Result<()> {
         }
         Job::Table { held_out } => {
             print!("{}", nails::table(hands.as_deref(), held_out)?);
+            Ok(())
+        }
+        Job::Folds(with) => {
+            print!("{}", folds::table(&hands.context("--hands is missing")?, &with)?);
             Ok(())
         }
     }

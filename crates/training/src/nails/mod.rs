@@ -5,6 +5,7 @@
 //! each as text ([`train`]), and how detection with the weights that are compiled in does ([`table`]).
 
 mod fit;
+pub mod folds;
 mod rows;
 mod scenes;
 mod table;

@@ -1,0 +1,276 @@
+//! Where a small network sees nails: any number, any direction, on any photograph.
+//!
+//! In: a photograph. Out: its nails' outlines as the network draws them, each with a calibrated probability. The
+//! network (EfficientNet-Lite0 to stride 16 and a small decoder, by OpenCV's `dnn`) gives each 2 x 2 pixels the
+//! probabilities of *nail* and of *a nail's core*, which neighbours don't share; cores are the components that grow
+//! into the nail around them.
+//!
+//! - *First look*: the whole photograph in several sizes; of components that overlap, the best one stays.
+//! - *Second look*: a window around each, in which it is 40 pixels long. Both together give the probability.
+//!
+//! `crates/training/nail-net` makes weights and calibration, and its `find.py` is this file's twin. Not determined:
+//! which end is distal.
+
+mod component;
+
+use std::sync::LazyLock;
+
+use image::{DynamicImage, RgbImage, imageops};
+
+use super::candidate::shared;
+use crate::photo::outline::Outline;
+use crate::vision::{Network, VisionError, resized};
+use component::{Component, View};
+
+/// Long sides that a photograph is looked at in, pixels.
+const SIDES: [usize; 3] = [128, 256, 512];
+/// Another one, where nothing sure and long enough is seen in the largest of them.
+const FAR_SIDE: usize = 1024;
+/// Long side from which a photograph may show nails too small for the usual ones; ..
+const FAR_FROM: usize = 600;
+/// .. the length of a nail that is not, pixels of the largest look, ..
+const FAR_LENGTH: f64 = 20.0;
+/// .. and the log odds from which it is sure: 0.8.
+const SURE: f64 = 1.386_294_361_119_890_6;
+/// A larger photograph is reduced to this before it is reduced further, once for all.
+const FIRST_SIDE: usize = 1024;
+/// Part of the smaller of two components from which they are of one nail.
+const SAME: f64 = 0.3;
+/// The middle of the lengths that training shows, pixels.
+const BEST_LENGTH: f64 = 28.0;
+/// Side of the second look's window and the nail's length there, pixels.
+const WINDOW: f64 = 160.0;
+const SECOND_LENGTH: f64 = 40.0;
+/// Second looks at most: a group's photograph has fewer nails, a texture may have thousands of spots.
+const MOST: usize = 64;
+/// Components of all looks that are compared, the best ones.
+const MOST_COMPARED: usize = 400;
+const FEATURES: usize = 9;
+
+/// The network that finds nails, and how probable its finds are.
+pub struct NailNet {
+    network: Network,
+    /// Coefficients of the features, the constant first.
+    calibration: [f64; FEATURES + 1],
+    /// The probability from which finds were right in 95 of 100.
+    confident: f64,
+}
+
+/// What was found.
+#[derive(Debug, Clone)]
+pub struct Segment {
+    /// As the network draws it, photograph pixels.
+    pub outline: Outline,
+    /// About the probability that a nail lies there whose IoU with the outline is at least 0.5.
+    pub confidence: f64,
+}
+
+/// A component of the first look.
+struct Candidate {
+    side: usize,
+    component: Component,
+    /// Best IoU with a component of another size.
+    agreement: f64,
+}
+
+impl Candidate {
+    /// Which of two looks at one nail is the better one.
+    fn quality(&self) -> f64 {
+        let Component { nail, core, length, .. } = &self.component;
+        nail + core - 2.0 * (length / BEST_LENGTH).ln().abs()
+    }
+}
+
+impl NailNet {
+    /// The committed one; it is read when it is first needed.
+    ///
+    /// # Errors
+    /// [`VisionError`] where OpenCV can't read it.
+    pub fn committed() -> Result<&'static Self, VisionError> {
+        static NET: LazyLock<Result<NailNet, VisionError>> = LazyLock::new(|| {
+            NailNet::parse(
+                include_bytes!("../weights/nail-net.f16"),
+                include_str!("../weights/nail-net-calibration.txt"),
+            )
+        });
+        NET.as_ref().map_err(Clone::clone)
+    }
+
+    /// From a file of packed weights and one of lines `name value`: the constant, the features, `confident`.
+    ///
+    /// # Errors
+    /// [`VisionError`] where either is none.
+    pub fn parse(weights: &[u8], calibration: &str) -> Result<Self, VisionError> {
+        let values: Option<Vec<f64>> =
+            calibration.lines().map(|line| line.split_once(' ').and_then(|(_, value)| value.parse().ok())).collect();
+        match values.as_deref() {
+            Some([coefficients @ .., confident]) if coefficients.len() == FEATURES + 1 => {
+                let calibration = std::array::from_fn(|k| coefficients[k]);
+                Ok(Self { network: Network::of_packed(weights)?, calibration, confident: *confident })
+            }
+            _ => Err(VisionError::lacking("calibration", format!("not {} lines `name value`", FEATURES + 2))),
+        }
+    }
+
+    /// The confidence from which finds were right in 95 of 100 photographs that chose nothing.
+    pub fn confident(&self) -> f64 {
+        self.confident
+    }
+
+    /// The nails of an upright photograph, none over another, the most probable first.
+    ///
+    /// # Errors
+    /// [`VisionError`].
+    pub fn segments(&self, image: &DynamicImage) -> Result<Vec<Segment>, VisionError> {
+        let converted: RgbImage;
+        let rgb = match image {
+            DynamicImage::ImageRgb8(rgb) => rgb,
+            other => {
+                converted = other.to_rgb8();
+                &converted
+            }
+        };
+        let mut found = Vec::new();
+        for candidate in self.candidates(rgb)? {
+            found.extend(self.look_again(rgb, &candidate)?);
+        }
+        Ok(one_each(found, |segment| segment.confidence, |segment| &segment.outline))
+    }
+
+    /// The first look.
+    fn candidates(&self, rgb: &RgbImage) -> Result<Vec<Candidate>, VisionError> {
+        let part = [rgb.width() as usize, rgb.height() as usize];
+        let longest = part[0].max(part[1]);
+        let reduced = sides(part, FIRST_SIDE);
+        let first = if longest > FIRST_SIDE { Some(resized(rgb, part, reduced)?) } else { None };
+        let (samples, samples_size) = first.as_deref().map_or((rgb.as_raw().as_slice(), part), |s| (s, reduced));
+        let look = |side: usize| -> Result<Vec<Candidate>, VisionError> {
+            let size = sides(part, side);
+            let view = View { rgb: resized(samples, samples_size, size)?, size, corner: [0, 0], part };
+            let found = view.components(&self.network.answer(&view.planes())?)?;
+            Ok(found.into_iter().map(|component| Candidate { side, component, agreement: 0.0 }).collect())
+        };
+        let mut all = Vec::new();
+        for side in SIDES {
+            all.extend(look(side)?);
+        }
+        let near = |Candidate { side, component: c, .. }: &Candidate| {
+            *side == SIDES[SIDES.len() - 1] && c.nail > SURE && c.core > SURE && c.length >= FAR_LENGTH
+        };
+        if longest >= FAR_FROM && !all.iter().any(near) {
+            all.extend(look(FAR_SIDE)?);
+        }
+        all.sort_by(|a, b| b.quality().total_cmp(&a.quality()));
+        all.truncate(MOST_COMPARED);
+        for k in 0..all.len() {
+            let others = all.iter().filter(|other| other.side != all[k].side);
+            let overlap = others.map(|other| all[k].component.outline.iou(&other.component.outline));
+            all[k].agreement = overlap.fold(0.0, f64::max);
+        }
+        let mut best = one_each(all, Candidate::quality, |candidate| &candidate.component.outline);
+        best.truncate(MOST);
+        Ok(best)
+    }
+
+    /// The second look; `None` where the nail isn't seen again.
+    fn look_again(&self, rgb: &RgbImage, first: &Candidate) -> Result<Option<Segment>, VisionError> {
+        let one = &first.component;
+        let scale = SECOND_LENGTH * one.scale / one.length;
+        let half = 0.5 * WINDOW / scale;
+        let [low, high] = [-half, half].map(|reach| one.centre.map(|c| (c + reach).round_ties_even().max(0.0) as u32));
+        let end = [rgb.width(), rgb.height()];
+        let high = [0, 1].map(|k| high[k].max(low[k] + 1).min(end[k]));
+        let part = [0, 1].map(|k| high[k].saturating_sub(low[k]));
+        if part.contains(&0) {
+            return Ok(None);
+        }
+        let window = imageops::crop_imm(rgb, low[0], low[1], part[0], part[1]).to_image();
+        let part = part.map(|n| n as usize);
+        let size = part.map(|n| ((n as f64 * scale).round_ties_even() as usize).max(1));
+        let corner = low.map(|n| n as usize);
+        let view = View { rgb: resized(&window, part, size)?, size, corner, part };
+        let seen = view.components(&self.network.answer(&view.planes())?)?;
+        let stayed = seen.into_iter().map(|second| (one.outline.iou(&second.outline), second));
+        let best = stayed.filter(|(iou, _)| *iou > 0.0).max_by(|a, b| a.0.total_cmp(&b.0));
+        Ok(best
+            .map(|(iou, second)| Segment { confidence: self.confidence(first, &second, iou), outline: second.outline }))
+    }
+
+    fn confidence(&self, first: &Candidate, second: &Component, stayed: f64) -> f64 {
+        let one = &first.component;
+        let features: [f64; FEATURES] = [
+            one.nail - 2.0,
+            one.core - 2.0,
+            first.agreement,
+            (one.length / BEST_LENGTH).ln(),
+            second.nail - 2.0,
+            second.core - 2.0,
+            stayed,
+            (second.length / SECOND_LENGTH).ln(),
+            second.solid.min(1.2) - 0.95,
+        ];
+        let [constant, weights @ ..] = &self.calibration;
+        let sum: f64 = weights.iter().zip(features).map(|(weight, feature)| weight * feature).sum();
+        1.0 / (1.0 + (-(constant + sum)).exp())
+    }
+}
+
+/// Of those that overlap, the best one; the best first.
+fn one_each<T>(mut all: Vec<T>, quality: impl Fn(&T) -> f64, outline: impl Fn(&T) -> &Outline) -> Vec<T> {
+    all.sort_by(|a, b| quality(b).total_cmp(&quality(a)));
+    let mut kept: Vec<T> = Vec::new();
+    for one in all {
+        if kept.iter().all(|other| shared(outline(other), outline(&one)) <= SAME) {
+            kept.push(one);
+        }
+    }
+    kept
+}
+
+/// Width and height of a picture brought to this long side.
+fn sides([width, height]: [usize; 2], side: usize) -> [usize; 2] {
+    let scale = side as f64 / width.max(height) as f64;
+    [width, height].map(|n| ((n as f64 * scale).round_ties_even() as usize).max(1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::vision::Planes;
+
+    /// The network's answer to a formula is the one that another runtime gave.
+    #[test]
+    fn the_network_answers_as_onnxruntime_does() {
+        let net = NailNet::committed().expect("the committed network");
+        let (rows, columns) = (64, 96);
+        let at = |k: usize| {
+            let (c, y, x) = (k / (rows * columns), k / columns % rows, k % columns);
+            ((7 * x + 13 * y + 29 * c) % 256) as f32 / 255.0
+        };
+        let planes = Planes { size: [3, rows, columns], values: (0..3 * rows * columns).map(at).collect() };
+        let answer = net.network.answer(&planes).expect("an answer");
+        assert_eq!(answer.size, [2, rows / 2, columns / 2]);
+        let golden = include_str!("../weights/nail-net-golden.txt").lines().filter(|line| !line.starts_with('#'));
+        let mut compared = 0;
+        for line in golden {
+            let numbers: Vec<f64> = line.split(' ').map(|n| n.parse().expect("a number")).collect();
+            let [channel, y, x, expected] = numbers[..] else { panic!("{line}") };
+            let plane = &answer.values[channel as usize * rows * columns / 4..][..rows * columns / 4];
+            let own = if y < 0.0 {
+                plane.iter().map(|&p| f64::from(p)).sum::<f64>() / plane.len() as f64
+            } else {
+                f64::from(plane[y as usize * columns / 2 + x as usize])
+            };
+            assert!((own - expected).abs() <= 1e-5, "{line}: {own}");
+            compared += 1;
+        }
+        assert!(compared >= 40, "{compared} places");
+    }
+
+    #[test]
+    fn a_calibration_of_other_features_is_refused() {
+        let weights = include_bytes!("../weights/nail-net.f16");
+        assert!(NailNet::parse(weights, "constant 1\nnail 2\n").is_err());
+        assert!(NailNet::parse(&weights[..1000], include_str!("../weights/nail-net-calibration.txt")).is_err());
+    }
+}
