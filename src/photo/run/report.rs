@@ -236,7 +236,7 @@ impl PhotosReport {
             page.png(&sheet.png, &sheet.title);
         }
         if !nail_sheets.is_empty() {
-            page.heading("Every nail, distal end up");
+            page.heading("What was found, and every nail, distal end up");
         }
         for sheet in nail_sheets {
             page.png(&sheet.png, &sheet.title);
