@@ -8,7 +8,7 @@ use rand_distr::{Distribution, StandardNormal};
 use super::board::BoardSize;
 use super::fit::{Fit, OF_LENS, fit};
 use crate::phantom::board::{BoardOptions, Scene};
-use crate::vision::{Corners, Intrinsics};
+use crate::vision::{Corners, Intrinsics, undistorted};
 
 const BOARD: BoardSize = BoardSize { columns: 9, rows: 6 };
 const SIZE: (usize, usize) = (1280, 720);
@@ -49,32 +49,16 @@ fn parameters(lens: &Intrinsics) -> [f64; OF_LENS] {
     [fx, fy, cx, cy, k1, k2, p1, p2, k3]
 }
 
-/// Root mean square distance over the picture between points as both lenses undistort them, pixels.
+/// Root mean square distance over the picture between points as both lenses undistort them, each to pixels of its own
+/// focal lengths and axis (as OpenCV's `undistortPoints` with P = K).
 fn undistorted_gap_px(fit: &Fit) -> f64 {
-    let layout = |lens: &Intrinsics| {
-        let [fx, fy, cx, cy, distortion @ ..] = parameters(lens);
-        let mut all = [0.0; 12];
-        all[..5].copy_from_slice(&distortion);
-        let camera = crate::posture::Camera {
-            fx_px: fx,
-            fy_px: Some(fy),
-            cx_px: Some(cx),
-            cy_px: Some(cy),
-            distortion: all,
-            plane: None,
-        };
-        crate::posture::Lens::new(&camera, SIZE, 1.0)
-    };
+    let grid: Vec<[f64; 2]> =
+        (0..32 * 18).map(|k| [(k % 32) as f64 * 1279.0 / 31.0, (k / 32) as f64 * 719.0 / 17.0]).collect();
     let [fx, fy, cx, cy, distortion @ ..] = TRUTH;
     let truth = Intrinsics { focal_px: [fx, fy], centre_px: [cx, cy], distortion };
-    let (found, truth) = (layout(&fit.lens), layout(&truth));
-    let mut squares = 0.0;
-    for k in 0..32 * 18 {
-        let at = [(k % 32) as f64 * 1279.0 / 31.0, (k / 32) as f64 * 719.0 / 17.0];
-        let [one, other] = [&found, &truth].map(|lens| lens.undistort(at).expect("a point").at_px);
-        squares += (one[0] - other[0]).powi(2) + (one[1] - other[1]).powi(2);
-    }
-    (squares / (32.0 * 18.0)).sqrt()
+    let [one, other] = [&fit.lens, &truth].map(|lens| undistorted(&grid, lens).unwrap());
+    let squares = one.iter().zip(&other).map(|(a, b)| (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2));
+    (squares.sum::<f64>() / grid.len() as f64).sqrt()
 }
 
 #[test]

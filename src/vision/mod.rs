@@ -18,9 +18,9 @@ use opencv::prelude::*;
 use thiserror::Error;
 
 pub(crate) use board::{Corners, find_board, shows_another};
+pub(crate) use lens::{Calibration, Intrinsics, PARAMETERS, Pose, calibrate, project, undistorted};
 #[cfg(test)]
-pub(crate) use lens::opencvs_sd;
-pub(crate) use lens::{Calibration, Intrinsics, PARAMETERS, Pose, calibrate, project};
+pub(crate) use lens::{opencvs_sd, undistorted_by_default};
 
 /// A call of OpenCV that gave nothing.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
