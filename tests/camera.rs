@@ -181,6 +181,7 @@ fn what_shows_no_board_or_two_is_named_and_the_rest_is_done() {
     for (name, view) in &all {
         let own = corners.iter().filter(|row| row["view"] == format!("views/{name}"));
         let right = own.map(|row| number(row, "x_px")).fold(f64::NEG_INFINITY, f64::max);
+        // Its outermost corner is enough.
         let mut cut = view.clone();
         let from = right as u32 - 20;
         cut.enumerate_pixels_mut().filter(|(x, ..)| *x >= from).for_each(|(.., value)| value.0 = [115]);

@@ -82,7 +82,10 @@ pub(super) fn refuse(fit: Option<Fit>, views: &[View], failed: &[String]) -> Res
     let advice = "take 10 to 20 views with the board tilted by 20 to 40 degrees to all sides, as near to the picture's \
                   corners as to its middle";
     let Some(fit) = fit else {
-        return refused(format!("{} views leave the lens undetermined, as those that are alike do; {advice}", views.len()));
+        return refused(format!(
+            "{} views leave the lens undetermined, as those that are alike do; {advice}",
+            views.len()
+        ));
     };
     let spread = spread_deg(&fit);
     if spread < LEAST_SPREAD_DEG {

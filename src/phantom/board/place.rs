@@ -44,7 +44,7 @@ impl View {
             let room = 1.0 - f64::from(tried) / f64::from(TRIES);
             let aim = [0, 1].map(|k| (0.5 + room * goal[k]) * (size[k] - 1.0));
             let ray = mapping.ray(aim)?;
-            let depth = options.focal_px()[0] * 2.0 * middle.x / (share * (0.7 + 0.3 * room) * size[0]);
+            let depth = options.focal_px()[0] * 2.0 * middle.x / (share * (0.4 + 0.6 * room) * size[0]);
             let there = depth * Vector3::new(ray[0], ray[1], 1.0);
             let view = Self { rotation, translation_mm: there - rotation * middle };
             view.is_in(options, mapping).then_some(view)
