@@ -112,7 +112,7 @@ fn many(coefficients: usize, noise_px: f64) -> Many {
     many.focal.sort_unstable_by(f64::total_cmp);
     many.gaps_px.sort_unstable_by(f64::total_cmp);
     let (f, g) = (&many.focal, &many.gaps_px);
-    println!(
+    eprintln!(
         "{coefficients} coefficients, {noise_px} px: focal {:.5}, {:.5}, {:.5}; undistorted {:.3}, {:.3}, {:.3} px \
               (median, 90 %, worst), {:.2} of its standard error; within {:?}",
         f[25], f[44], f[49], g[25], g[44], g[49], many.ratio, many.within
@@ -151,7 +151,7 @@ fn the_planes_standard_error_holds_the_truth() {
         // Chi-square of two degrees of freedom, at most the worst direction's: 95 % within 2.45.
         held += u32::from(off.norm() <= 2.45 * worst);
     }
-    println!("plane held in {held} of {SEEDS}");
+    eprintln!("plane held in {held} of {SEEDS}");
     assert!(held >= 45, "{held} of {SEEDS}");
 }
 
@@ -165,7 +165,7 @@ fn standard_errors_are_opencvs_with_twice_the_points() {
     let divisor: f64 = (2.0 * points - free) / (points - free);
     for (k, (own, theirs)) in fit.sd().iter().zip(opencv).enumerate() {
         let ratio = theirs / own;
-        println!("{k}: {ratio}, expected {}", divisor.sqrt());
+        eprintln!("{k}: {ratio}, expected {}", divisor.sqrt());
         assert!((ratio / divisor.sqrt() - 1.0).abs() <= 1e-3, "{k}: {ratio}");
     }
 }

@@ -297,7 +297,7 @@ mod tests {
             timed(&|eight| assert_eq!(undistorted_by_default(eight, &of_opencv).unwrap().len(), eight.len())),
             timed(&|eight| eight.iter().for_each(|&at| assert!(std::hint::black_box(lens.undistort(at)).is_some()))),
         ];
-        println!("OpenCV and ours: {worst:?} px, {times:?} microseconds for eight points");
+        eprintln!("OpenCV and ours: {worst:?} px, {times:?} microseconds for eight points");
         assert!(worst[0] > 1e-3 && worst[1] <= 1e-9, "{worst:?}");
     }
 }
