@@ -21,6 +21,9 @@ pub(super) const OF_LENS: usize = PARAMETERS - OF_POSE;
 type PoseMatrix = SMatrix<f64, OF_POSE, OF_POSE>;
 type LensMatrix = SMatrix<f64, OF_LENS, OF_LENS>;
 
+/// Of one view: the inverse of its pose's own normal equations, those it shares with the lens, its residuals.
+type Part = (PoseMatrix, DMatrix<f64>, Vec<[f64; 2]>);
+
 /// What was fitted.
 #[derive(Debug, Clone)]
 pub(super) struct Fit {
@@ -116,7 +119,7 @@ pub(super) fn fit(
     let freedom = (2 * count) as f64 - (free + OF_POSE * views.len()) as f64;
     let Some(inverse) = inverse(&normal_equations).filter(|_| freedom > 0.0) else { return Ok(None) };
     let variance = squares / freedom;
-    let of_view = |(pose, (own, shared, residuals_px)): (Pose, (PoseMatrix, DMatrix<f64>, Vec<[f64; 2]>))| {
+    let of_view = |(pose, (own, shared, residuals_px)): (Pose, Part)| {
         let spread = own * &shared;
         let by_lens = &spread * &inverse * spread.transpose();
         let by_lens = PoseMatrix::from_iterator(by_lens.iter().copied());
