@@ -11,10 +11,10 @@ use crate::util::repository;
 /// The library's rooms, from the ground up: a room knows those of lower floors, and none of its own beside it.
 const FLOORS: [&[&str]; 8] = [
     &["flexion", "input", "nail", "stages", "timebase", "words"],
-    &["files", "labelme", "npy", "table", "toml_file", "video"],
+    &["files", "labelme", "npy", "photograph", "table", "toml_file", "video", "vision"],
     &["job"],
     &["clock", "figure", "log"],
-    &["align", "hemodynamics", "photo", "posture", "predictor"],
+    &["align", "camera", "hemodynamics", "photo", "posture", "predictor"],
     &["phantom"],
     &["doctor", "tradeoff"],
     &["pipeline"],

@@ -37,6 +37,7 @@ const REQUESTS: &[&str] = &[
     "analyse m.json",
     "prune lg/log.csv --validate lg/log.csv --target force --json",
     "simulate --print-params",
+    "camera b/views --board 5x4 --square-mm 20 --plan",
     "simulate --plan",
     "simulate --until 0.1 --out s.csv --json",
     "fit pressed.csv --free b_C --plan",
@@ -59,6 +60,7 @@ fn bench() -> Dir {
     dir.write("p.toml", PIPELINE);
     for request in [
         "phantom video --seed 1 --seconds 0.2 --size 320x240 --out v -q",
+        "phantom board --board 5x4 --views 1 --size 160x120 --out b -q",
         "phantom log --seed 1 --out lg -q",
         "phantom photos --seed 1 --subjects 2 --poses extension --size 320x240 --out ph -q",
         "train lg/log.csv --target force --out m.json -q",

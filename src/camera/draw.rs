@@ -10,7 +10,7 @@ const WIDTH_PX: u32 = 1000;
 /// Room for the title and the axes beside the picture's frame, pixels.
 const BESIDE_PX: (f64, f64) = (106.0, 100.0);
 /// How many times too long residuals are drawn.
-const TIMES: f64 = 50.0;
+const TIMES: f64 = 200.0;
 
 /// Draws both, one below the other.
 pub(super) fn draw(

@@ -11,7 +11,7 @@
 use nalgebra::{DMatrix, SMatrix, SVector, Vector3};
 
 use super::error::CameraError;
-use crate::vision::{Calibration, Corners, Intrinsics, PARAMETERS, Pose, calibrate, project};
+use crate::vision::{Calibration, Corners, Intrinsics, PARAMETERS, Pose, calibrate, project, undistorted};
 
 /// Parameters of a pose: rotation, then translation.
 const OF_POSE: usize = 6;
@@ -20,6 +20,9 @@ pub(super) const OF_LENS: usize = PARAMETERS - OF_POSE;
 
 type PoseMatrix = SMatrix<f64, OF_POSE, OF_POSE>;
 type LensMatrix = SMatrix<f64, OF_LENS, OF_LENS>;
+
+/// Of one view: the inverse of its pose's own normal equations, those it shares with the lens, its residuals.
+type Part = (PoseMatrix, DMatrix<f64>, Vec<[f64; 2]>);
 
 /// What was fitted.
 #[derive(Debug, Clone)]
@@ -116,7 +119,7 @@ pub(super) fn fit(
     let freedom = (2 * count) as f64 - (free + OF_POSE * views.len()) as f64;
     let Some(inverse) = inverse(&normal_equations).filter(|_| freedom > 0.0) else { return Ok(None) };
     let variance = squares / freedom;
-    let of_view = |(pose, (own, shared, residuals_px)): (Pose, (PoseMatrix, DMatrix<f64>, Vec<[f64; 2]>))| {
+    let of_view = |(pose, (own, shared, residuals_px)): (Pose, Part)| {
         let spread = own * &shared;
         let by_lens = &spread * &inverse * spread.transpose();
         let by_lens = PoseMatrix::from_iterator(by_lens.iter().copied());
@@ -153,29 +156,32 @@ impl Fit {
         std::array::from_fn(|k| self.covariance[(k, k)].max(0.0).sqrt())
     }
 
-    /// The standard error of where the lens' distortion shows a point, root mean square over the picture, pixels: how
-    /// well points can be undistorted.
+    /// The standard error of a point without distortion, on a picture of the same focal lengths and axis, root mean
+    /// square over the picture, pixels.
     pub(super) fn undistorted_sd_px(&self, (width, height): (usize, usize)) -> Result<f64, CameraError> {
         const STEPS: usize = 12;
         let (focal, centre) = (self.lens.focal_px, self.lens.centre_px);
-        let at = |k: usize, side: usize, axis: usize| {
-            ((k as f64 + 0.5) / STEPS as f64 * side as f64 - 0.5 - centre[axis]) / focal[axis]
-        };
-        let rays = (0..STEPS * STEPS).map(|k| [at(k % STEPS, width, 0), at(k / STEPS, height, 1), 1.0]);
-        let rays: Vec<[f64; 3]> = rays.collect();
+        let at = |k: usize, side: usize| (k as f64 + 0.5) / STEPS as f64 * side as f64 - 0.5;
+        let shown: Vec<[f64; 2]> = (0..STEPS * STEPS).map(|k| [at(k % STEPS, width), at(k / STEPS, height)]).collect();
+        let straight = undistorted(&shown, &self.lens)?;
+        let ray = |at: &[f64; 2]| [(at[0] - centre[0]) / focal[0], (at[1] - centre[1]) / focal[1], 1.0];
+        let rays: Vec<[f64; 3]> = straight.iter().map(ray).collect();
         let here = Pose { rotation_rad: [0.0; 3], translation: [0.0; 3] };
-        let shown = project(&rays, &here, &self.lens)?;
+        let rows = project(&rays, &here, &self.lens)?.derivatives;
         let mut sum = 0.0;
-        for (k, row) in shown.derivatives.iter().enumerate() {
-            let mut slope = SVector::<f64, OF_LENS>::from_column_slice(&row[OF_POSE..]);
-            // The point stays where a lens without distortion shows it: its ray changes with focal length and axis.
-            let ray = rays[k / 2];
+        for (ray, rows) in rays.iter().zip(rows.chunks_exact(2)) {
+            let mut by_lens = SMatrix::<f64, 2, OF_LENS>::from_fn(|row, k| rows[row][OF_POSE + k]);
+            // Where the picture shows a point by where it would without distortion: a step of the ray, of length 1.
+            let by_place = SMatrix::<f64, 2, 2>::from_fn(|row, axis| rows[row][3 + axis] / focal[axis]);
+            // That place held, the ray changes with focal length and axis.
             for axis in [0, 1] {
-                let by_ray = row[3 + axis];
-                slope[axis] -= by_ray * ray[axis] / focal[axis];
-                slope[2 + axis] -= by_ray / focal[axis];
+                let by_ray = by_place.column(axis).into_owned();
+                by_lens.column_mut(axis).axpy(-ray[axis], &by_ray, 1.0);
+                by_lens.column_mut(2 + axis).axpy(-1.0, &by_ray, 1.0);
             }
-            sum += (slope.transpose() * self.covariance * slope)[0];
+            let Some(back) = by_place.try_inverse() else { return Ok(f64::NAN) };
+            let moved = back * by_lens;
+            sum += (moved * self.covariance * moved.transpose()).trace();
         }
         Ok((sum / rays.len() as f64).max(0.0).sqrt())
     }

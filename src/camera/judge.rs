@@ -9,8 +9,7 @@ use crate::vision::Corners;
 pub(super) const FEWEST_VIEWS: usize = 3;
 /// Fewer are warned of (assumed, after OpenCV's advice of 10).
 const FEW_VIEWS: usize = 8;
-/// Boards whose normals are all within so much of each other are alike, degrees (measured on phantoms of 12 views and
-/// 0.1 px: a spread of 6 degrees leaves the focal length to 2 %).
+/// Boards whose normals are all within so much of each other are alike, degrees (assumed).
 const LEAST_SPREAD_DEG: f64 = 6.0;
 /// A standard error of the focal lengths above which they are not determined, and one that is warned of, as a share
 /// (assumed; angles are wrong by half of it at most).
@@ -83,7 +82,10 @@ pub(super) fn refuse(fit: Option<Fit>, views: &[View], failed: &[String]) -> Res
     let advice = "take 10 to 20 views with the board tilted by 20 to 40 degrees to all sides, as near to the picture's \
                   corners as to its middle";
     let Some(fit) = fit else {
-        return refused(format!("{} views leave the lens undetermined; {advice}", views.len()));
+        return refused(format!(
+            "{} views leave the lens undetermined, as those that are alike do; {advice}",
+            views.len()
+        ));
     };
     let spread = spread_deg(&fit);
     if spread < LEAST_SPREAD_DEG {

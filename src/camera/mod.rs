@@ -23,6 +23,7 @@ mod run;
 mod tests;
 mod views;
 
+pub use crate::vision::VisionError;
 pub use board::{BoardSize, square_mm};
 pub use error::CameraError;
 pub use options::{CameraOptions, Inputs, Outputs};

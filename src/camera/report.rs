@@ -148,8 +148,8 @@ impl CameraFigures {
     pub fn toml(&self) -> String {
         let Self { lens, lens_sd: sd, picture_px: [width, height], .. } = self;
         let mut text = format!(
-            "# From {} views of a board of {} inner corners; residuals {:.3} px RMS. For pictures of {width} x {height} \
-             px.\n# Standard errors: fx {:.2}, fy {:.2}, cx {:.2}, cy {:.2} px.\n[camera]\n",
+            "# From {} views of a board of {} inner corners; residuals {:.3} px RMS. For pictures of {width} x \
+             {height} px.\n# Standard errors: fx {:.2}, fy {:.2}, cx {:.2}, cy {:.2} px.\n[camera]\n",
             self.views.len(),
             self.board,
             self.rms_px,

@@ -151,6 +151,21 @@ pub(crate) fn project(points: &[[f64; 3]], pose: &Pose, lens: &Intrinsics) -> Re
     Ok(Projected { at_px: shown, derivatives: (0..jacobian.rows()).map(row).collect::<Result<_, _>>()? })
 }
 
+/// Where a camera of the same focal lengths and axis, without distortion, would show points (`undistortPoints`, with as
+/// many steps as it takes).
+pub(crate) fn undistorted(points: &[[f64; 2]], lens: &Intrinsics) -> Result<Vec<[f64; 2]>, VisionError> {
+    const CALL: &str = "undistortPoints";
+    let (matrix, mut there) = (lens.matrix(), Mat::default());
+    let end = TermCriteria_Type::COUNT as i32 | TermCriteria_Type::EPS as i32;
+    let end = TermCriteria::new(end, 5000, 1e-15).map_err(VisionError::of(CALL))?;
+    let (matrix, none) = (view(3, 3, &matrix)?, opencv::core::no_array());
+    let seen = view(points.len(), 2, points.as_flattened())?;
+    calib3d::undistort_points_iter(&seen, &mut there, &matrix, &view(1, 5, &lens.distortion)?, &none, &matrix, end)
+        .map_err(VisionError::of(CALL))?;
+    let there = there.data_typed::<opencv::core::Point2d>().map_err(VisionError::of(CALL))?;
+    Ok(there.iter().map(|at| [at.x, at.y]).collect())
+}
+
 /// The numbers of a matrix of doubles.
 fn numbers<const N: usize>(call: &'static str, mat: &Mat) -> Result<[f64; N], VisionError> {
     let all = mat.data_typed::<f64>().map_err(VisionError::of(call))?;
@@ -189,4 +204,17 @@ pub(crate) fn opencvs_sd(
     )
     .map_err(VisionError::of("calibrateCameraExtended"))?;
     numbers("calibrateCameraExtended", lens_sd)
+}
+
+/// The same as users of OpenCV call it: with five steps.
+#[cfg(test)]
+pub(crate) fn undistorted_by_default(points: &[[f64; 2]], lens: &Intrinsics) -> Result<Vec<[f64; 2]>, VisionError> {
+    const CALL: &str = "undistortPoints";
+    let (matrix, mut there) = (lens.matrix(), Mat::default());
+    let (matrix, none) = (view(3, 3, &matrix)?, opencv::core::no_array());
+    let seen = view(points.len(), 2, points.as_flattened())?;
+    calib3d::undistort_points(&seen, &mut there, &matrix, &view(1, 5, &lens.distortion)?, &none, &matrix)
+        .map_err(VisionError::of(CALL))?;
+    let there = there.data_typed::<opencv::core::Point2d>().map_err(VisionError::of(CALL))?;
+    Ok(there.iter().map(|at| [at.x, at.y]).collect())
 }

@@ -21,9 +21,9 @@ use thiserror::Error;
 
 pub(crate) use board::{Corners, find_board, shows_another};
 pub(crate) use image::{closed_line, components, resized};
+pub(crate) use lens::{Calibration, Intrinsics, PARAMETERS, Pose, calibrate, project, undistorted};
 #[cfg(test)]
-pub(crate) use lens::opencvs_sd;
-pub(crate) use lens::{Calibration, Intrinsics, PARAMETERS, Pose, calibrate, project};
+pub(crate) use lens::{opencvs_sd, undistorted_by_default};
 pub(crate) use net::{Network, Planes};
 
 /// A call of OpenCV that gave nothing.

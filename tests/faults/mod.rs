@@ -53,6 +53,11 @@ const JOBS: &[Job] = &[
         "posture in/video/video.mp4 --markers in/video/markers.toml --out out/j.csv --no-clock --smooth \
          --tracks out/tracks.csv --overlay out/overlay.mp4",
     ),
+    slow(
+        "camera",
+        "camera in/board/views --board 5x4 --square-mm 20 --coefficients 0 --out out/camera.toml",
+        "camera in/board/views --board 5x4 --square-mm 20 --coefficients 4 --out out/camera.toml",
+    ),
     fast(
         "align",
         "align --joints in/video/truth/joints.csv --log in/bend/log.csv --sync offset=59.5 --out out/set.csv",
@@ -116,6 +121,11 @@ const JOBS: &[Job] = &[
         "phantom photos --seed 2 --subjects 1 --poses normal --size 120x90 --no-normalized --out out/scene",
     ),
     slow(
+        "phantom board",
+        "phantom board --board 5x4 --seed 1 --views 2 --size 160x120 --out out/scene",
+        "phantom board --board 5x4 --seed 2 --views 2 --size 160x120 --out out/scene",
+    ),
+    slow(
         "phantom video",
         "phantom video --seed 1 --seconds 0.3 --size 320x240 --fps 15 --no-hide --out out/scene",
         "phantom video --seed 2 --seconds 0.3 --size 320x240 --fps 15 --no-hide --out out/scene",
@@ -175,6 +185,7 @@ fn inputs(dir: &Dir) {
         "photos in/s01 --size 16 --out in/maps1",
         "photos in/s02 --size 16 --out in/maps2",
         "phantom video --seconds 0.4 --size 320x240 --fps 15 --no-hide --start --out in/video",
+        "phantom board --board 5x4 --views 4 --size 320x240 --out in/board",
         "phantom log --seconds 3 --rate 50 --protocol bending --out in/bend",
         "train in/a.csv --target force --validate in/b.csv --out in/force.json",
         "train in/b.csv --target force --validate in/a.csv --out in/force2.json",

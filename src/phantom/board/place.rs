@@ -12,6 +12,8 @@ use crate::phantom::scene::lens::{Mapping, Oblique};
 const KIND_PLACES: u32 = 31;
 /// Tries for a place in which all of the board is in the picture; each is nearer to the middle, and smaller.
 const TRIES: u32 = 400;
+/// The picture's corners from its middle, as shares of its sides.
+const CORNERS: [[f64; 2]; 4] = [[-0.5, -0.5], [0.5, 0.5], [0.5, -0.5], [-0.5, 0.5]];
 
 /// A board before the camera: x of the camera = rotation x of the board + translation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,25 +25,26 @@ pub struct View {
 }
 
 impl View {
-    /// A place at random, in which all of the board's squares are in the picture; none where there is none.
+    /// A place at random, in which all of the board's squares are in the picture; none where there is none. Views go to
+    /// the picture's corners in turn, every fifth anywhere.
     pub(super) fn random(options: &BoardOptions, mapping: &Mapping, index: usize) -> Option<Self> {
         let mut rng = numbers(options.seed, KIND_PLACES, index as u32);
+        let mut within = |low: f64, high: f64| if low < high { rng.random_range(low..high) } else { low };
         let middle = middle_mm(options);
-        let [least, most] = options.tilt;
-        let (width, height) = (f64::from(options.size.0), f64::from(options.size.1));
+        let size = [f64::from(options.size.0), f64::from(options.size.1)];
+        let tilt = within(options.tilt[0], options.tilt[1]).to_radians();
+        let towards = within(0.0, TAU);
+        let roll = within(-0.3, 0.3);
+        let share = within(0.4, 0.58);
+        let axis = nalgebra::Unit::new_normalize(Vector3::new(towards.cos(), towards.sin(), 0.0));
+        let rotation = Rotation3::from_axis_angle(&axis, tilt) * Rotation3::from_axis_angle(&Vector3::z_axis(), roll);
+        let anywhere = [within(-0.5, 0.5), within(-0.5, 0.5)];
+        let goal = CORNERS.get(index % 5).copied().unwrap_or(anywhere);
         (0..TRIES).find_map(|tried| {
             let room = 1.0 - f64::from(tried) / f64::from(TRIES);
-            let mut within = |low: f64, high: f64| if low < high { rng.random_range(low..high) } else { low };
-            let tilt = within(least, most).to_radians();
-            let towards = within(0.0, TAU);
-            let roll = within(-0.3, 0.3);
-            let axis = nalgebra::Unit::new_normalize(Vector3::new(towards.cos(), towards.sin(), 0.0));
-            let rotation =
-                Rotation3::from_axis_angle(&axis, tilt) * Rotation3::from_axis_angle(&Vector3::z_axis(), roll);
-            let share = within(0.3, 0.45 + 0.4 * room) * (0.6 + 0.4 * room);
-            let aim = [within(0.5 - 0.4 * room, 0.5 + 0.4 * room), within(0.5 - 0.4 * room, 0.5 + 0.4 * room)];
-            let ray = mapping.ray([aim[0] * (width - 1.0), aim[1] * (height - 1.0)])?;
-            let depth = options.focal_px()[0] * 2.0 * middle.x / (share * width);
+            let aim = [0, 1].map(|k| (0.5 + room * goal[k]) * (size[k] - 1.0));
+            let ray = mapping.ray(aim)?;
+            let depth = options.focal_px()[0] * 2.0 * middle.x / (share * (0.4 + 0.6 * room) * size[0]);
             let there = depth * Vector3::new(ray[0], ray[1], 1.0);
             let view = Self { rotation, translation_mm: there - rotation * middle };
             view.is_in(options, mapping).then_some(view)

@@ -1,5 +1,7 @@
 //! A view of boards, pixel by pixel.
 
+use std::sync::OnceLock;
+
 use rand_distr::{Distribution, Normal};
 use rayon::prelude::*;
 
@@ -40,8 +42,8 @@ pub struct Scene {
     pub(super) views: Vec<View>,
     /// The board in the finger's plane.
     pub(super) plane: Option<View>,
-    /// Each pixel's ray on the plane z = 1.
-    rays: Vec<[f64; 2]>,
+    /// Each pixel's ray on the plane z = 1; there is none until a picture is drawn.
+    rays: OnceLock<Vec<[f64; 2]>>,
     /// Standard deviation of the Gaussian and a pixel's area together.
     spread_px: f64,
 }
@@ -62,11 +64,18 @@ impl Scene {
             None => None,
             Some(plane) => Some(View::in_plane(&options, &mapping, plane).ok_or_else(|| none("--plane"))?),
         };
-        let (width, height) = (options.size.0 as usize, options.size.1 as usize);
-        let ray = |k: usize| mapping.ray([(k % width) as f64, (k / width) as f64]).unwrap_or([f64::NAN; 2]);
-        let rays = (0..width * height).into_par_iter().map(ray).collect();
         let spread_px = (options.focus.powi(2) + PIXEL_PX2).sqrt();
-        Ok(Self { options, mapping, views, plane, rays, spread_px })
+        Ok(Self { options, mapping, views, plane, rays: OnceLock::new(), spread_px })
+    }
+
+    fn rays(&self) -> &[[f64; 2]] {
+        self.rays.get_or_init(|| {
+            let (width, height) = (self.options.size.0 as usize, self.options.size.1 as usize);
+            let at = |k: usize| [(k % width) as f64, (k / width) as f64];
+            // The check of the options has seen that the corners can be undone.
+            let ray = |k: usize| self.mapping.ray(at(k)).unwrap_or([f64::NAN; 2]);
+            (0..width * height).into_par_iter().map(ray).collect()
+        })
     }
 
     /// The views, in order.
@@ -92,7 +101,7 @@ impl Scene {
     pub fn picture(&self, views: &[View], index: u32) -> Picture {
         let (width, height) = self.options.size;
         let boards: Vec<Grid> = views.iter().map(|view| Grid::new(view, &self.options)).collect();
-        let mut values = vec![0.0_f64; self.rays.len()];
+        let mut values = vec![0.0_f64; self.rays().len()];
         let row = |(y, row): (usize, &mut [f64])| {
             row.iter_mut().enumerate().for_each(|(x, value)| *value = self.value(&boards, x, y));
         };
@@ -110,7 +119,7 @@ impl Scene {
     /// The share of full scale at a pixel.
     fn value(&self, boards: &[Grid], x: usize, y: usize) -> f64 {
         let (width, height) = (self.options.size.0 as usize, self.options.size.1 as usize);
-        let here = self.rays[y * width + x];
+        let here = self.rays()[y * width + x];
         let (across, down) = (self.slope(x, width, y * width, 1), self.slope(y, height, x, width));
         let reach = REACH_SD * self.spread_px;
         let ray = |[dx, dy]: [f64; 2]| [0, 1].map(|k| here[k] + dx * across[k] + dy * down[k]);
@@ -139,7 +148,7 @@ impl Scene {
     /// How the rays change from pixel to pixel.
     fn slope(&self, at: usize, count: usize, start: usize, stride: usize) -> [f64; 2] {
         let (before, after) = (at.saturating_sub(1), (at + 1).min(count - 1));
-        let [a, b] = [before, after].map(|k| self.rays[start + k * stride]);
+        let [a, b] = [before, after].map(|k| self.rays()[start + k * stride]);
         [0, 1].map(|k| (b[k] - a[k]) / (after - before) as f64)
     }
 }

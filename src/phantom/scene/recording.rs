@@ -50,8 +50,8 @@ pub struct Cost {
     pub seconds: f64,
 }
 
-/// Seconds on one thread a pixel of a photograph, of a frame and of a board's view, and a millisecond of a log; measured with a release
-/// build on a Xeon of 2.1 GHz.
+/// Seconds on one thread a pixel of a photograph, of a frame and of a board's view (assumed), and a millisecond of a
+/// log; measured with a release build on a Xeon of 2.1 GHz.
 const PHOTO_S_PER_PX: f64 = 4e-7;
 const FRAME_S_PER_PX: f64 = 3.5e-8;
 const VIEW_S_PER_PX: f64 = 4e-7;

@@ -9,8 +9,8 @@
 //! video = [{ name = "a", .. }, { name = "b", .. }]    # or several of a kind: {phantom}/video/a, {phantom}/video/b
 //! ```
 //!
-//! The options are those of `lunula phantom photos|video|log|board`, with `_` for `-`. Each recording is a task of its own.
-//! What may be asked for is a list ([`Block`]): others bring experiments of many recordings.
+//! The options are those of `lunula phantom photos|video|log|board`, with `_` for `-`. Each recording is a task of its
+//! own. What may be asked for is a list ([`Block`]): others bring experiments of many recordings.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -12,10 +12,10 @@ use crate::jobs::{Command, JobArgs, Plan};
 
 /// Measure a camera's lens from views of a chessboard, for the [camera] of a marker file
 ///
-/// Print a chessboard, glue it to something flat, and take 10 to 20 photographs of it with the camera, zoom and focus of
-/// the videos: all of the board in each, tilted by 20 to 40 degrees to all sides, near the picture's corners as well as
-/// in its middle. Results: the table [camera], which goes into the marker file as it is, and beside it <camera>.run.json
-/// and a picture of where the corners were seen. Views that do not determine the lens are refused.
+/// Print a chessboard, glue it to something flat, and take 10 to 20 photographs of it with the camera, zoom and focus
+/// of the videos: all of the board in each, tilted by 20 to 40 degrees to all sides, near the picture's corners as well
+/// as in its middle. Results: the table [camera], which goes into the marker file as it is, and beside it
+/// <camera>.run.json and a picture of where the corners were seen. Views that do not determine the lens are refused.
 #[derive(Debug, Args)]
 pub(crate) struct CameraArgs {
     /// A folder of photographs (png, jpg, tif, bmp), single photographs, or videos
@@ -89,8 +89,8 @@ impl Command for CameraArgs {
             common.say(&format!("{name}  {value:>9.5} ± {sd:.5}"));
         }
         common.say(&format!(
-            "{} of {} views used; residuals {:.3} px RMS; points are undistorted to ± {:.3} px; corners cover {:.0} % of \
-             the picture",
+            "{} of {} views used; residuals {:.3} px RMS; points are undistorted to ± {:.3} px; corners cover {:.0} % \
+             of the picture",
             report.views.len(),
             report.looked_at + usize::from(self.plane.is_some()),
             report.rms_px,

@@ -27,9 +27,12 @@ pub(super) struct VideoArgs {
 pub(super) fn run(args: &VideoArgs) -> anyhow::Result<Outcome> {
     let options = args.request.options().context("no synthetic video")?;
     let wanted = options.distractors;
-    let scene = Scene::new(options).context("no synthetic video")?;
-    let summary =
-        watched(&args.common, "frames", "no synthetic video", |watch| write_watched(&scene, &args.out, watch))?;
+    // A lens is worked out side by side: threads are counted first.
+    let (scene, summary) = watched(&args.common, "frames", "no synthetic video", |watch| -> anyhow::Result<_> {
+        let scene = Scene::new(options)?;
+        let summary = write_watched(&scene, &args.out, watch)?;
+        Ok((scene, summary))
+    })?;
     let mut warnings = Vec::new();
     if summary.distractors < wanted {
         warnings
