@@ -259,28 +259,53 @@ mod real_data {
     #[test]
     #[ignore = "needs real recordings: LUNULA_REAL_DATA"]
     fn hands_are_found_with_precision() {
-        /// At IoU 0.7, of the nails found with confidence; on the photographs that trained the detector and on others.
-        const PRECISION: f64 = 0.9;
+        /// Of the confident finds, at IoU 0.5. These photographs trained the network: figures of photographs that it
+        /// has not seen are those of `nails folds`.
+        const PRECISION: f64 = 0.95;
+        /// Of the nails, by confident finds at IoU 0.5 and 0.7.
+        const RECALL: [f64; 2] = [0.85, 0.7];
         let folder = real_data("nail/vpapenko_cc0");
-        let files = std::fs::read_dir(folder.join("images")).unwrap();
-        let mut files: Vec<_> = files.map(|f| f.unwrap().path()).collect();
-        files.sort();
-        for (name, first) in [("seen in training", 0), ("held out", 1)] {
-            let (mut found, mut right, mut nails) = (0, 0, 0);
-            for file in files.iter().skip(first).step_by(2) {
-                let truth =
-                    annotated(&image::open(folder.join("masks").join(file.file_name().unwrap())).unwrap().to_luma8());
-                nails += truth.len();
-                for nail in detect(&image::open(file).unwrap(), &DetectOptions::default()).nails {
-                    found += 1;
-                    right += usize::from(truth.iter().any(|t| t.iou(&nail.outline) >= 0.7));
-                }
+        let (mut found, mut right, mut nails) = (0, [0, 0], 0);
+        for file in std::fs::read_dir(folder.join("images")).unwrap().map(|f| f.unwrap().path()) {
+            let mask = image::open(folder.join("masks").join(file.file_name().unwrap())).unwrap();
+            let truth = annotated(&mask.to_luma8());
+            nails += truth.len();
+            for nail in detect(&image::open(file).unwrap(), &DetectOptions::default()).nails {
+                let iou = truth.iter().map(|t| t.iou(&nail.outline)).fold(0.0, f64::max);
+                found += 1;
+                right = [right[0] + usize::from(iou >= 0.5), right[1] + usize::from(iou >= 0.7)];
             }
-            let (precision, recall) = (right as f64 / found as f64, right as f64 / nails as f64);
-            eprintln!(
-                "{name}: {nails} nails, {found} found, {right} at IoU 0.7: precision {precision:.3}, recall {recall:.3}"
-            );
-            assert!(precision >= PRECISION, "{name}: {right} of {found}");
         }
+        eprintln!("{nails} nails, {found} found, {right:?} at IoU 0.5 and 0.7");
+        assert!(right[0] as f64 >= PRECISION * f64::from(found), "{} of {found}", right[0]);
+        assert!((0..2).all(|k| right[k] as f64 >= RECALL[k] * nails as f64), "{right:?} of {nails}");
+    }
+
+    /// Rooms and gardens, their hands cut off.
+    #[test]
+    #[ignore = "needs real recordings: LUNULA_REAL_DATA"]
+    fn rooms_and_gardens_have_no_nails() {
+        let folder = real_data("nail/ti1k");
+        let (mut pictures, mut wrong) = (0, Vec::new());
+        for line in std::fs::read_to_string(folder.join("labels.txt")).unwrap().lines() {
+            let cells: Vec<&str> =
+                line.split(|c: char| c == ',' || c.is_whitespace()).filter(|c| !c.is_empty()).collect();
+            let Ok(picture) = image::open(folder.join(cells[0])) else { continue };
+            let (width, height) = (f64::from(picture.width()), f64::from(picture.height()));
+            let [left, right] = [cells[1], cells[3]].map(|x| x.parse::<f64>().unwrap() * width);
+            // The larger side beside the hand's box, a little away from it.
+            let (x, wide) =
+                if left > width - right { (0.0, left - 10.0) } else { (right + 10.0, width - right - 10.0) };
+            if wide < 160.0 {
+                continue;
+            }
+            pictures += 1;
+            let part = picture.crop_imm(x as u32, 0, wide as u32, height as u32);
+            if !detect(&part, &DetectOptions::default()).nails.is_empty() {
+                wrong.push(cells[0].to_owned());
+            }
+        }
+        eprintln!("{pictures} pictures, finds on {wrong:?}");
+        assert!(pictures >= 10 && wrong.len() * 20 <= pictures, "{wrong:?} of {pictures}");
     }
 }

@@ -1,22 +1,24 @@
 //! Finds the outlines of nails in photographs that nobody has annotated.
 //!
-//! In: a photograph (upright). Out: outlines with their axis and a confidence, roughly the probability that the outline
-//! overlaps the true one by an IoU of 0.8. Below [`DetectOptions::min_confidence`] a find is *doubtful*: a person may
-//! correct it, no result uses it. Made for close-ups of one finger as in the thesis' chamber (section 4.2.2, Fig.
-//! 49-52:
-//! colour or green-filtered grey, any skin, nail up to some 30 degrees off upright); on photographs of whole hands it
-//! finds nails at the ends of fingers that stand out from what is behind them.
+//! In: a photograph (upright). Out: outlines with their axis and a confidence. What is not confident is *doubtful*: a
+//! person may correct it, no result uses it. There are two detectors.
 //!
-//! The way down, a file each: [`picture`] channels that do not depend on the light's brightness; [`hand`] masks
-//! that may be fingers and their ends; [`patch`] the picture in a finger's or nail's own frame; [`shape`] the
-//! template and [`evidence`] how well it fits there; [`search`] where it fits best, on a finger's end or anywhere on a
-//! close-up; [`refine`] the outline by dynamic programming around the template; [`candidate`] all of it for one place,
-//! with the figures that the confidence is made from. Five small networks ([`net`]: border, scorer, three judges) weigh
-//! the evidence; `crates/training` makes them.
+//! - [`Detector::Net`], for any photograph: a small segmentation network by OpenCV's `dnn` ([`segment`]) finds nails,
+//!   [`find_axes`] their distal ends, and the outline is refined in the nail's own frame. The refined one is taken
+//!   where the judges below believe it. The confidence is about the probability that a nail lies there with an IoU of at
+//!   least 0.5. On 26 real photographs, each seen by a network trained without its session (`nails folds`, docs), 86 %
+//!   of 127 nails are found with confidence, none wrongly.
+//! - [`Detector::CloseUp`], for one finger seen from above: templates. The confidence is about the probability of an
+//!   IoU of at least 0.8. The way down, a file each: [`picture`] channels that do not depend on the light's brightness;
+//!   [`hand`] masks that may be fingers and their ends; [`patch`] the picture in a finger's or nail's own frame;
+//!   [`shape`] the template and [`evidence`] how well it fits there; [`search`] where it fits best, on a finger's end
+//!   or anywhere on a close-up; [`refine`] the outline by dynamic programming around the template; [`candidate`] all of
+//!   it for one place, with the figures that the confidence is made from. Five small networks ([`net`]: border, scorer,
+//!   three judges) weigh the evidence.
 //!
-//! What it does not do: nails seen from the side, painted nails with a pattern, and fingers folded onto skin of the
-//! same colour are mostly not found. The outline ends at the hyponychium where the free edge can be distinguished from
-//! the bed.
+//! `crates/training` makes all weights. What neither does: nails that are seen as a sliver from the side, and painted
+//! nails with a pattern, are mostly not found. The outline ends at the hyponychium where the free edge can be
+//! distinguished from the bed.
 
 mod candidate;
 mod evidence;
@@ -85,9 +87,9 @@ pub struct DetectOptions {
     /// finds were right.
     #[arg(skip)]
     pub min_confidence: Option<f64>,
-    /// Least confidence, 0 to 1, of a doubtful one that is shown to a person.
-    #[arg(skip = Self::default().min_doubtful)]
-    pub min_doubtful: f64,
+    /// Least confidence, 0 to 1, of a doubtful one that is shown to a person; none: the detector's own.
+    #[arg(skip)]
+    pub min_doubtful: Option<f64>,
     /// Most places whose outline is refined.
     #[arg(skip = Self::default().most_places)]
     pub most_places: usize,
@@ -99,7 +101,7 @@ impl Default for DetectOptions {
             detector: Detector::default(),
             working_size_px: 1100,
             min_confidence: None,
-            min_doubtful: 0.1,
+            min_doubtful: None,
             most_places: 16,
         }
     }
@@ -149,8 +151,11 @@ pub struct Detections {
     pub note: Option<NothingFound>,
 }
 
-/// Confidence from which a close-up's nails are used.
+/// Confidence from which a close-up's nails are used, and from which they are shown.
 const CLOSE_UP_NEEDS: f64 = 0.8;
+const CLOSE_UP_SHOWS: f64 = 0.1;
+/// Confidence from which the network's finds are shown: it missed fewer of real nails than a person likes to draw.
+const NET_SHOWS: f64 = 0.03;
 /// Smallest side of a picture that is looked at.
 const LEAST_PX: u32 = 24;
 /// Longest side of the picture that silhouettes are looked for on.
@@ -177,7 +182,8 @@ pub fn detect(image: &DynamicImage, options: &DetectOptions) -> Result<Detection
         Detector::Net => detect_by(NailNet::committed()?, image, options),
         Detector::CloseUp => {
             let needed = options.min_confidence.unwrap_or(CLOSE_UP_NEEDS);
-            Ok(sorted_out(by_template(image, needed, options), needed, options))
+            let shown = options.min_doubtful.unwrap_or(CLOSE_UP_SHOWS);
+            Ok(sorted_out(by_template(image, needed, options), [needed, shown]))
         }
     }
 }
@@ -189,15 +195,16 @@ pub fn detect(image: &DynamicImage, options: &DetectOptions) -> Result<Detection
 #[doc(hidden)]
 pub fn detect_by(net: &NailNet, image: &DynamicImage, options: &DetectOptions) -> Result<Detections, VisionError> {
     let needed = options.min_confidence.unwrap_or(net.confident().max(HALVED));
-    Ok(sorted_out(by_net(net, image, options)?, needed, options))
+    let shown = options.min_doubtful.unwrap_or(NET_SHOWS);
+    Ok(sorted_out(by_net(net, image, shown, options)?, [needed, shown]))
 }
 
 /// What was found, confident or doubtful.
-fn sorted_out(mut found: Vec<Detected>, needed: f64, options: &DetectOptions) -> Detections {
+fn sorted_out(mut found: Vec<Detected>, [needed, shown]: [f64; 2]) -> Detections {
     found.sort_by(|a, b| b.confidence.total_cmp(&a.confidence));
     let best = found.first().map(|d| d.confidence);
     let (nails, mut doubtful): (Vec<_>, Vec<_>) = found.into_iter().partition(|d| d.confidence >= needed);
-    doubtful.retain(|d| d.confidence >= options.min_doubtful);
+    doubtful.retain(|d| d.confidence >= shown);
     let note = nails.is_empty().then_some(match best {
         Some(best) if !doubtful.is_empty() => NothingFound::Doubtful { best, needed },
         _ => NothingFound::NoPlace,
@@ -232,9 +239,14 @@ const AROUND: f64 = 1.3;
 ///
 /// # Errors
 /// [`VisionError`].
-fn by_net(net: &NailNet, image: &DynamicImage, options: &DetectOptions) -> Result<Vec<Detected>, VisionError> {
+fn by_net(
+    net: &NailNet,
+    image: &DynamicImage,
+    shown: f64,
+    options: &DetectOptions,
+) -> Result<Vec<Detected>, VisionError> {
     let mut segments = net.segments(image)?;
-    segments.retain(|segment| segment.confidence >= options.min_doubtful);
+    segments.retain(|segment| segment.confidence >= shown);
     let outlines: Vec<Outline> = segments.iter().map(|segment| segment.outline.clone()).collect();
     let axes = find_axes(image, &outlines);
     Ok(segments.into_iter().zip(axes).map(|(segment, axis)| judged(image, segment, axis, options)).collect())
