@@ -40,6 +40,8 @@ class Picture:
         while min(level.shape[:2]) > 24:
             self.levels.append(level)
             level = cv2.resize(level, None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA)
+        whole = self.levels[0]  # views of it: a third less memory
+        self.rgb, self.nail, self.core, self.hand = whole[:, :, :3], whole[:, :, 3], whole[:, :, 4], whole[:, :, 5]
 
 
 def read_rgb(path):
