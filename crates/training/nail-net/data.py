@@ -18,7 +18,8 @@ import drawn
 DARKEST = np.array([0.55, 0.40, 0.28], np.float32)  # gain of R, G, B from light skin to dark brown, assumed
 SMALLEST_NAIL = 100  # a mask's component under so many pixels is a crumb of the JPEG, not a nail
 CORE = 0.35  # the core is where the distance to the mask's edge exceeds this part of the largest
-HELD_OUT_SCENES = range(30, 40)  # of ti1k's sorted files: a room with a cupboard, a garden with flowers
+TRAINED_SCENES = range(30)  # of ti1k's sorted files: gardens and a lecture room
+HELD_OUT_SCENES = (range(30, 36), range(36, 40))  # a room with a cupboard; a garden with flowers
 
 
 @dataclass
@@ -123,23 +124,21 @@ def phantoms(folder):
     return pictures
 
 
-def hand_free(root):
-    """Parts of ti1k's photographs beside the hand: (for training, held out), lists of RGB."""
-    train, held = [], []
-    boxes = {}
+def hand_free(root, scenes=TRAINED_SCENES):
+    """Parts of these photographs of ti1k beside the hand, RGB."""
+    answer, boxes = [], {}
     for line in (root / "nail/ti1k/labels.txt").read_text().splitlines():
         name, *numbers = line.split()
         boxes[name] = [float(n) for n in numbers[:4]]
-    for i, name in enumerate(sorted(boxes)):
+    for name in [sorted(boxes)[i] for i in scenes]:
         rgb = read_rgb(root / "nail/ti1k" / name)
         height, width = rgb.shape[:2]
         left, top, right, bottom = boxes[name]
         x0, y0 = max(0, int((left - 0.06) * width)), max(0, int((top - 0.06) * height))
         x1 = min(width, int((right + 0.06) * width))
         parts = [rgb[:, :x0], rgb[:y0], rgb[:, x1:]]
-        parts = [p for p in parts if min(p.shape[:2]) >= 64]
-        (held if i in HELD_OUT_SCENES else train).extend(parts)
-    return train, held
+        answer += [p for p in parts if min(p.shape[:2]) >= 64]
+    return answer
 
 
 def hashes(root):

@@ -91,7 +91,8 @@ def faces(rng, height, width):
         cv2.ellipse(image, (x, y), (int(r * 0.8), int(r)), 0, 0, 360, skin.tolist(), -1, cv2.LINE_AA)
         for side in (-1, 1):
             eye = (int(x + side * r * 0.35), int(y - r * 0.25))
-            cv2.ellipse(image, eye, (int(r * 0.16) + 1, int(r * 0.1) + 1), 0, 0, 360, (0.95, 0.95, 0.95), -1, cv2.LINE_AA)
+            axes = (int(r * 0.16) + 1, int(r * 0.1) + 1)
+            cv2.ellipse(image, eye, axes, 0, 0, 360, (0.95, 0.95, 0.95), -1, cv2.LINE_AA)
             cv2.circle(image, eye, int(r * 0.07) + 1, colour(rng).tolist(), -1, cv2.LINE_AA)
             cheek = (int(x + side * r * 0.45), int(y + r * 0.2))
             pink = np.clip(skin * [1.15, 0.9, 0.95], 0, 1).tolist()

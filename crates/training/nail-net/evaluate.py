@@ -4,7 +4,7 @@
     python evaluate.py figures --runs RUNS --out DIR
 
 `gather` runs a net over its held-out photographs (for `all` there are none), phantoms of another seed and hand-free
-pictures, and keeps every component of every size. `figures` fits the confidence by logistic regression and writes
+pictures, and keeps every find. `figures` fits the confidence by logistic regression and writes
 `finds.csv`, `calibration.txt` and `figures.md`: figures of a fold use coefficients fitted on the other folds.
 """
 
@@ -25,7 +25,8 @@ from net import NailNet
 
 VARIANTS = ["colour", "dark", "dark-even", "grey", "green", "far"]
 FITTED = ["colour", "dark", "dark-even", "grey", "green"]  # variants that the confidence is fitted on
-SIDES = [(256, 512), find.SIDES, (*find.SIDES, find.FAR_SIDE)]  # sizes looked at, compared
+WAYS = {"usual": dict(), "without 1024": dict(far=False), "always 1024": dict(sides=(*find.SIDES, 1024), far=False),
+        "256, 512": dict(sides=(256, 512), far=False)}  # ways to look, compared
 NEGATIVE_SEED = 9000
 FAR = 0.35  # of its size is a photograph shrunk to, in the variant "far"
 
@@ -66,34 +67,42 @@ def with_truth(finds, nail):
     count, labels, stats, _ = cv2.connectedComponentsWithStats(nail)
     answer = []
     for f in finds:
-        x, y = f.box
-        under = labels[y:y + f.mask.shape[0], x:x + f.mask.shape[1]][f.mask]
+        (x, y), mask = f.second.box, f.second.mask
+        under = labels[y:y + mask.shape[0], x:x + mask.shape[1]][mask]
         shared = np.bincount(under, minlength=count)
-        iou = shared / (f.mask.sum() + stats[:, 4] - shared)
+        iou = shared / (mask.sum() + stats[:, 4] - shared)
         iou[0] = 0
         best = int(iou.argmax())
         answer.append((best - 1, float(iou[best])))
     return answer, count - 1
 
 
-def record(forward, rgb, nail, sides, **about):
+def record(forward, rgb, nail, way="usual", **about):
     """One picture's finds, for `pickle`."""
-    finds = find.all_finds(forward, rgb, sides)
+    finds = find.finds(forward, rgb, **WAYS[way])
     matches, nails = with_truth(finds, nail)
-    return dict(about, sides=sides, shape=rgb.shape[:2], nails=nails, finds=finds, matches=matches)
+    return dict(about, way=way, nails=nails, finds=finds, matches=matches)
 
 
 def negatives(root):
-    """A hundred hand-free pictures (family, u8 RGB): 40 of held-out scenes, 60 drawn."""
-    parts = data.hand_free(root)[1]
-    for part in list(parts)[:17]:
-        middle = max(part.shape[:2]) // 2
-        parts.append(part[:, middle:] if part.shape[1] > part.shape[0] else part[middle:])
-    pictures = [("scene", p) for p in parts[:40]]
+    """A hundred hand-free pictures (family, half, u8 RGB): 40 of two held-out scenes, 60 drawn.
+
+    Halves (a scene each, and every other drawing) calibrate for one another.
+    """
+    pictures = []
+    for half, scene in enumerate(data.HELD_OUT_SCENES):
+        parts = data.hand_free(root, scene)
+        for part in parts:  # grows while it is walked: halves of parts, then of halves
+            if len(parts) == 20:
+                break
+            middle = max(part.shape[:2]) // 2
+            parts.append(part[:, middle:] if part.shape[1] > part.shape[0] else part[middle:])
+        pictures += [("scene", half, p) for p in parts]
     for i in range(60):
-        family = list(drawn.FAMILIES)[i % len(drawn.FAMILIES)]
-        pictures.append((family, drawn.picture(np.random.default_rng(NEGATIVE_SEED + i), 320, 416, family)))
-    return [(family, (p * 255 + 0.5).astype(np.uint8)) for family, p in pictures]
+        family = list(drawn.FAMILIES)[i // 2 % len(drawn.FAMILIES)]
+        picture = drawn.picture(np.random.default_rng(NEGATIVE_SEED + i), 480, 640, family)
+        pictures.append((family, i % 2, picture))
+    return [(family, half, (p * 255 + 0.5).astype(np.uint8)) for family, half, p in pictures]
 
 
 def gather(args):
@@ -105,22 +114,22 @@ def gather(args):
     for picture in data.photographs(root):
         for variant in VARIANTS if picture.fold == fold else []:
             rgb, nail = varied(picture, variant)
-            for sides in SIDES:
-                records.append(record(forward, rgb, nail, sides, name=picture.name, variant=variant))
+            for way in WAYS:
+                records.append(record(forward, rgb, nail, way, name=picture.name, variant=variant))
     for folder in sorted(pathlib.Path(args.phantoms).iterdir()):
         for ghost in data.phantoms(folder):
             rgb, nail = varied(ghost, "colour")
             variant = f"phantom-{folder.name}"
-            records.append(record(forward, rgb, nail, find.SIDES, name=ghost.name, variant=variant))
-    for i, (family, rgb) in enumerate(negatives(root)):
+            records.append(record(forward, rgb, nail, name=ghost.name, variant=variant))
+    for i, (family, half, rgb) in enumerate(negatives(root)):
         blank = np.zeros(rgb.shape[:2], np.uint8)
-        records.append(record(forward, rgb, blank, find.SIDES, name=f"{family}-{i}", variant="negative"))
+        records.append(record(forward, rgb, blank, name=f"{family}-{i}", variant="negative", half=half))
     with open(runs / f"{args.name}.finds", "wb") as file:
         pickle.dump(records, file)
 
 
 def fitted(records):
-    """Logistic coefficients (constant first) for IoU >= 0.5 of every component, with a small ridge."""
+    """Logistic coefficients (constant first) for IoU >= 0.5 of every find, with a small ridge."""
     pairs = [(find.features(f), m[1] >= 0.5) for r in records for f, m in zip(r["finds"], r["matches"])]
     assert pairs, "no other fold was gathered"
     x = np.array([np.r_[1, p[0]] for p in pairs])
@@ -162,23 +171,37 @@ def load(runs):
     return {p.stem: pickle.load(open(p, "rb")) for p in sorted(pathlib.Path(runs).glob("*.finds"))}
 
 
-def trained_on(gathered, but=None):
-    """Photograph records (at `find.SIDES`) of all folds but one."""
-    return [r for name, rs in gathered.items() if name.startswith("fold") and name != but
-            for r in rs if r["variant"] in FITTED and r["sides"] == find.SIDES]
+def trained_on(gathered, but=None, half=None):
+    """What the confidence is fitted on: photographs (the usual way) of all folds but one and hand-free pictures.
+
+    Of the hand-free pictures, those of one half where `half` is given.
+    """
+    chosen = []
+    for name, records in gathered.items():
+        for r in records if name.startswith("fold") else []:
+            if r["variant"] == "negative" and half in (None, r["half"]):
+                chosen.append(r)
+            elif r["variant"] in FITTED and r["way"] == "usual" and name != but:
+                chosen.append(r)
+    return chosen
 
 
-def confident_threshold(gathered, coefficients):
-    """The lowest confidence (in steps of 0.01) with precision >= 0.95 on the FITTED variants."""
+def held_out(gathered, by_fold, by_half):
+    """Merged finds of held-out photographs and hand-free pictures, judged by what was fitted without them."""
     rows = []
     for name, records in gathered.items():
         for r in records if name.startswith("fold") else []:
-            if r["variant"] in FITTED and r["sides"] == find.SIDES:
-                rows += judged(r, coefficients[name])
-    for threshold in np.arange(0.3, 0.995, 0.01):
-        if counts(rows, 1, threshold)[2] >= 0.95:
-            return float(threshold), rows
-    return 0.99, rows
+            if r["variant"] == "negative":
+                rows += judged(r, by_half[r["half"]])
+            elif r["variant"] in FITTED and r["way"] == "usual":
+                rows += judged(r, by_fold[name])
+    return rows
+
+
+def confident_threshold(rows):
+    """The lowest confidence (in steps of 0.01) with precision >= 0.95 on `held_out`'s finds."""
+    steps = np.arange(0.3, 0.995, 0.01)
+    return next((float(t) for t in steps if counts(rows, 1, t)[2] >= 0.95), 0.99)
 
 
 def reliability(rows):
@@ -195,42 +218,41 @@ def reliability(rows):
 
 def table(gathered, coefficients, threshold):
     """Figures of each net and variant."""
-    lines = ["| net | pictures | sizes | nails | recall 0.5 / 0.7, precision, finds >= 0.3 | the same, confident |",
+    lines = ["| net | pictures | way | nails | recall 0.5 / 0.7, precision, finds >= 0.3 | the same, confident |",
              "|---|---|---|---|---|---|"]
-    keys = sorted({(r["variant"], r["sides"]) for rs in gathered.values() for r in rs if r["variant"] != "negative"})
-    for variant, sides in keys:
+    keys = sorted({(r["variant"], r["way"]) for rs in gathered.values() for r in rs if r["variant"] != "negative"})
+    for variant, way in keys:
         together, everything = 0, []
         for name, records in gathered.items():
-            chosen = [r for r in records if (r["variant"], r["sides"]) == (variant, sides)]
+            chosen = [r for r in records if (r["variant"], r["way"]) == (variant, way)]
             if not chosen:
                 continue
             rows = [row for r in chosen for row in judged(r, coefficients[name])]
             nails = sum(r["nails"] for r in chosen)
-            lines.append(line(name, variant, sides, nails, rows, threshold))
+            lines.append(line(name, variant, way, nails, rows, threshold))
             if name != "all":
                 together, everything = together + nails, everything + rows
         if together:
-            lines.append(line("**folds**", variant, sides, together, everything, threshold))
+            lines.append(line("**folds**", variant, way, together, everything, threshold))
     return lines
 
 
-def line(name, variant, sides, nails, rows, threshold):
+def line(name, variant, way, nails, rows, threshold):
     """One line of `table`."""
     parts = []
     for t in (0.3, threshold):
         a, b, p, n = counts(rows, nails, t)
         parts.append(f"{a:.3f} / {b:.3f}, {p:.3f}, {n}")
-    sizes = ", ".join(map(str, sides))
-    return f"| {name} | {variant} | {sizes} | {nails} | {parts[0]} | {parts[1]} |"
+    return f"| {name} | {variant} | {way} | {nails} | {parts[0]} | {parts[1]} |"
 
 
-def negative_table(gathered, coefficients, threshold):
+def negative_table(gathered, by_half, threshold):
     """Hand-free pictures without a find, by family."""
     lines = ["| net | family | pictures | with a confident find | with a find >= 0.3 |", "|---|---|---|---|---|"]
     for name, records in gathered.items():
         chosen = [r for r in records if r["variant"] == "negative"]
         for family in [*dict.fromkeys(r["name"].split("-")[0] for r in chosen), ""]:
-            tops = [max([row[0].confidence for row in judged(r, coefficients[name])], default=0.0)
+            tops = [max([row[0].confidence for row in judged(r, by_half[r["half"]])], default=0.0)
                     for r in chosen if r["name"].startswith(family)]
             bad = [sum(t >= limit for t in tops) for limit in (threshold, 0.3)]
             lines.append(f"| {name} | {family or '**all**'} | {len(tops)} | {bad[0]} | {bad[1]} |")
@@ -238,20 +260,22 @@ def negative_table(gathered, coefficients, threshold):
 
 
 def write_finds(path, gathered, coefficients):
-    """Every component of the held-out photographs, before merging, as CSV."""
-    fields = ["fold", "photograph", "variant", "side", "area_px", "length_at_side_px", "mean_nail", "mean_core",
-              *find.FEATURES[4:], "iou", "true_nail", "confidence", "kept"]
+    """Every find of the held-out photographs, before merging, as CSV."""
+    fields = ["fold", "photograph", "variant", "side", "area_px", "length_1_px", "mean_nail_1", "mean_core_1",
+              "agreement", "mean_nail_2", "mean_core_2", "stayed", "length_2_px", "solid_2", "iou", "true_nail",
+              "confidence", "kept"]
     with open(path, "w", newline="") as file:
         out = csv.writer(file)
         out.writerow(fields)
         for name, records in gathered.items():
             for r in records if name.startswith("fold") else []:
-                if r["variant"] not in FITTED or r["sides"] != find.SIDES:
+                if r["variant"] not in FITTED or r["way"] != "usual":
                     continue
                 kept = {id(f) for f, _, _ in judged(r, coefficients[name])}
                 for f, (nail, iou) in zip(r["finds"], r["matches"]):
-                    numbers = [f.nail, f.core, *find.features(f)[4:], iou]
-                    out.writerow([name[5:], r["name"], r["variant"], f.side, int(f.mask.sum()), f"{f.length:.1f}",
+                    a, b = f.first, f.second
+                    numbers = [a.length, a.nail, a.core, a.agreement, b.nail, b.core, f.stayed, b.length, b.solid, iou]
+                    out.writerow([name[5:], r["name"], r["variant"], a.side, int(b.mask.sum()),
                                   *(f"{v:.3f}" for v in numbers), nail if iou > 0 else "",
                                   f"{f.confidence:.3f}", int(id(f) in kept)])
 
@@ -259,16 +283,19 @@ def write_finds(path, gathered, coefficients):
 def figures(args):
     """Writes the three files."""
     gathered, out = load(args.runs), pathlib.Path(args.out)
-    coefficients = {name: fitted(trained_on(gathered, name)) for name in gathered}
+    by_fold = {name: fitted(trained_on(gathered, name)) for name in gathered}
+    by_half = [fitted(trained_on(gathered, half=1 - half)) for half in range(2)]
     final = fitted(trained_on(gathered))
-    threshold, rows = confident_threshold(gathered, coefficients)
-    lines = ["# Figures", "", f"Confident: from {threshold:.2f}.", "", *table(gathered, coefficients, threshold), "",
-             "Hand-free pictures:", "", *negative_table(gathered, coefficients, threshold), "",
-             "Reliability on held-out photographs, coefficients of the other folds:", "", *reliability(rows)]
+    rows = held_out(gathered, by_fold, by_half)
+    threshold = confident_threshold(rows)
+    lines = ["# Figures", "", f"Confident: from {threshold:.2f}.", "", *table(gathered, by_fold, threshold), "",
+             "Hand-free pictures:", "", *negative_table(gathered, by_half, threshold), "",
+             "Reliability on held-out photographs and hand-free pictures, coefficients fitted without them:", "",
+             *reliability(rows)]
     (out / "figures.md").write_text("\n".join(lines) + "\n")
     named = zip(["constant", *find.FEATURES], final)
     (out / "calibration.txt").write_text("".join(f"{k} {v:.5f}\n" for k, v in named) + f"confident {threshold:.2f}\n")
-    write_finds(out / "finds.csv", gathered, coefficients)
+    write_finds(out / "finds.csv", gathered, by_fold)
     print("\n".join(lines))
 
 

@@ -101,7 +101,8 @@ def golden(model):
     session = onnxruntime.InferenceSession(model.SerializeToString(), providers=["CPUExecutionProvider"])
     answer = session.run(None, {"rgb": golden_input(*GOLDEN_SIZE)})[0][0]
     lines = [
-        "# onnxruntime's answer to 1 x 3 x {} x {}: ((7 x + 13 y + 29 c) mod 256) / 255, c = 0 red".format(*GOLDEN_SIZE),
+        f"# onnxruntime's answer to 1 x 3 x {GOLDEN_SIZE[0]} x {GOLDEN_SIZE[1]}: ((7 x + 13 y + 29 c) mod 256) / 255,",
+        "# c = 0 for red, 1 for green, 2 for blue",
         "# channel (0 nail, 1 core), y, x, probability; then the mean of each channel as y = x = -1",
     ]
     for channel in range(2):
