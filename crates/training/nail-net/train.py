@@ -51,14 +51,22 @@ def freeze(net, count):
     return [{"params": trunk, "lr": TRUNK_RATE}, {"params": net.decoder(), "lr": DECODER_RATE}]
 
 
-def train(samples, steps, frozen, device, path):
-    """Trains a net, writes the running mean of its weights to `path` now and then and at the end."""
+def begun(start):
+    """A net with ImageNet's trunk, or one that was trained already."""
     torch.manual_seed(1)
     net = NailNet()
-    read_imagenet(net, imagenet_path())
+    if start:
+        net.load_state_dict(torch.load(start, map_location="cpu", weights_only=True))
+    else:
+        read_imagenet(net, imagenet_path())
+    return net
+
+
+def train(net, samples, steps, frozen, gain, device, path):
+    """Trains a net, writes the running mean of its weights to `path` now and then and at the end."""
     net.to(device, memory_format=torch.channels_last)
     optimizer = torch.optim.AdamW(freeze(net, frozen), weight_decay=1e-4)
-    peaks = [g["lr"] for g in optimizer.param_groups]
+    peaks = [gain * g["lr"] for g in optimizer.param_groups]
     mean = {k: v.detach().clone() for k, v in net.state_dict().items()}
     started, total, log = time.time(), 0.0, open(path.with_suffix(".log"), "w")
     for step in range(steps):
@@ -83,7 +91,6 @@ def train(samples, steps, frozen, device, path):
             total = 0.0
         if step % 100 == 99 or step == steps - 1:
             torch.save({k: v.cpu().contiguous() for k, v in mean.items()}, path)
-    return net
 
 
 def main():
@@ -95,6 +102,8 @@ def main():
     parser.add_argument("--all", action="store_true", help="train on every photograph")
     parser.add_argument("--steps", type=int, default=12000, help="steps of 16 samples")
     parser.add_argument("--frozen", type=int, default=0, help="blocks held at their ImageNet weights, the stem too")
+    parser.add_argument("--start", help="checkpoint to go on from instead of ImageNet's weights")
+    parser.add_argument("--gain", type=float, default=1.0, help="of the learning rates")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--device", default="cpu")
     parser.add_argument("--threads", type=int, default=1)
@@ -109,7 +118,8 @@ def main():
     ghosts = [g for folder in sorted(pathlib.Path(args.phantoms).iterdir()) for g in data.phantoms(folder)]
     samples = data.Samples(photos, ghosts, data.hand_free(root), SIZE, args.seed)
     name = "all" if args.all else f"fold-{args.fold}"
-    train(samples, args.steps, args.frozen, torch.device(args.device), runs / f"{name}.pt")
+    device, path = torch.device(args.device), runs / f"{name}.pt"
+    train(begun(args.start), samples, args.steps, args.frozen, args.gain, device, path)
 
 
 if __name__ == "__main__":
