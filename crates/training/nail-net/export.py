@@ -5,7 +5,8 @@
 `nail-net.f16`: an ONNX file (opset 10: Clip with its limits as attributes; RGB in 0..1, probabilities out) with its f32
 weights packed as f16, since OpenCV 4.6 reads no f16 weights; `packed` says how. The graph declares 64x96 pixels, but
 OpenCV runs it on any multiple of 32.
-`nail-net-golden.txt`: onnxruntime's answer, on the same weights, to a picture that a formula makes.
+`nail-net-golden.txt`, `nail-net-golden-finger.txt`: onnxruntime's answers, on the same weights, to pictures that
+formulas make: stripes (nothing to find) and a finger.
 """
 
 import argparse
@@ -90,19 +91,30 @@ def unpacked(data):
     return b"".join(out)
 
 
-def golden_input(height, width):
+def stripes(height, width):
     """`1 x 3 x height x width`: ((7 x + 13 y + 29 c) mod 256) / 255 with c = 0 for red."""
     c, y, x = np.mgrid[0:3, 0:height, 0:width]
     return (((7 * x + 13 * y + 29 * c) % 256) / 255).astype(np.float32)[None]
 
 
-def golden(model):
-    """Lines `channel y x probability` of onnxruntime's answer to `golden_input`."""
+def finger(height, width):
+    """A finger that points up, shaded, with a nail, before slate (FINGER has the formula)."""
+    y, x = np.mgrid[0:height, 0:width].astype(np.float64)
+    d = (x - 48) ** 2 + np.minimum(y - 28, 0) ** 2
+    skin, nail = d < 400, ((x - 48) / 14) ** 2 + ((y - 27.5) / 17.5) ** 2 < 1
+    rgb = np.empty((3, height, width))
+    for c, (ground, flesh, plate) in enumerate(zip((51, 64, 77), (204, 153, 128), (230, 170, 165))):
+        rgb[c] = np.where(nail, plate * (1 - ((x - 48) / 28) ** 2), np.where(skin, flesh * (1 - d / 800), ground))
+    return (rgb[None] / 255).astype(np.float32)
+
+
+def golden(model, picture, words):
+    """Lines `channel y x probability` of onnxruntime's answer to a picture."""
     session = onnxruntime.InferenceSession(model.SerializeToString(), providers=["CPUExecutionProvider"])
-    answer = session.run(None, {"rgb": golden_input(*GOLDEN_SIZE)})[0][0]
+    answer = session.run(None, {"rgb": picture(*GOLDEN_SIZE)})[0][0]
     lines = [
-        f"# onnxruntime's answer to 1 x 3 x {GOLDEN_SIZE[0]} x {GOLDEN_SIZE[1]}: ((7 x + 13 y + 29 c) mod 256) / 255,",
-        "# c = 0 for red, 1 for green, 2 for blue",
+        f"# onnxruntime's answer to 1 x 3 x {GOLDEN_SIZE[0]} x {GOLDEN_SIZE[1]}, channels red, green, blue:",
+        *(f"# {line}" for line in words),
         "# channel (0 nail, 1 core), y, x, probability; then the mean of each channel as y = x = -1",
     ]
     for channel in range(2):
@@ -113,8 +125,16 @@ def golden(model):
     return "\n".join(lines) + "\n"
 
 
+STRIPES = ["((7 x + 13 y + 29 c) mod 256) / 255, c = 0 for red, 1 for green, 2 for blue"]
+FINGER = [
+    "(230, 170, 165) / 255 * (1 - ((x - 48) / 28)^2) where ((x - 48) / 14)^2 + ((y - 27.5) / 17.5)^2 < 1,",
+    "else (204, 153, 128) / 255 * (1 - d / 800) where d = (x - 48)^2 + min(y - 28, 0)^2 < 400,",
+    "else (51, 64, 77) / 255",
+]
+
+
 def write(net, folder):
-    """Both files into `folder`."""
+    """The three files into `folder`."""
     folder = pathlib.Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     model = rounded(graph(net))
@@ -122,7 +142,8 @@ def write(net, folder):
     if unpacked(data) != model.SerializeToString():
         raise ValueError("the packed net does not unpack to the same bytes")
     (folder / "nail-net.f16").write_bytes(data)
-    (folder / "nail-net-golden.txt").write_text(golden(model))
+    (folder / "nail-net-golden.txt").write_text(golden(model, stripes, STRIPES))
+    (folder / "nail-net-golden-finger.txt").write_text(golden(model, finger, FINGER))
 
 
 def main():
