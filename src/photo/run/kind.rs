@@ -53,7 +53,8 @@ fn outline_of<'a>(keys: &Keys, outlines: impl Iterator<Item = (&'a Keys, &'a Pat
 
 impl Job for NormalizeJob {
     const KIND: Kind = Kind {
-        revision: 2,
+        // 3: poses are listed in the thesis' order (nails.csv).
+        revision: 3,
         ..Kind::of::<Self>(
             "normalize",
             &[
@@ -76,6 +77,11 @@ impl Job for NormalizeJob {
     type Options = PhotosOptions;
 
     fn new(mut options: PhotosOptions) -> Result<Self, OptionFault> {
+        if options.channels {
+            let what = "channels are compared over all subjects at once; remove it here and run `lunula photos \
+                        --channels` on the set";
+            return Err(OptionFault { key: "channels".into(), what: what.into() });
+        }
         // What the task's results depend on is among its inputs.
         options.outlines.listed_only = true;
         Ok(Self(options))
@@ -88,7 +94,7 @@ impl Job for NormalizeJob {
             let outline = outline_of(&input.keys, outlines.iter().map(|o| (&o.keys, o.path.as_path())));
             if input.exists {
                 let file = String::new();
-                let photo = Photo { pose, subject, file, path: input.path.clone(), outline };
+                let photo = Photo { pose, subject, file, path: input.path.clone(), outline, tone: None };
                 return Foreknown::of(&photo, &self.0);
             }
             let drawn = outline.or_else(|| (input.facts.outlined == Some(true)).then(|| labelme_beside(&input.path)));
@@ -135,7 +141,7 @@ impl Job for NormalizeJob {
         let photo = |at: &At| {
             let (subject, pose) = subject_and_pose(&at.keys, &at.path);
             let outline = outline_of(&at.keys, work.of(OUTLINES).map(|o| (&o.keys, o.path.as_path())));
-            Photo { pose, subject, file: at.name.clone(), path: at.path.clone(), outline }
+            Photo { pose, subject, file: at.name.clone(), path: at.path.clone(), outline, tone: None }
         };
         let set = PhotoSet::of(work.of("photo").map(photo).collect());
         let outputs = outputs(work.folder, order.demand);
@@ -161,22 +167,26 @@ fn labelme_beside(photo: &Path) -> PathBuf {
 pub struct MapsJob;
 
 impl Job for MapsJob {
-    const KIND: Kind = Kind::of::<Self>(
-        "maps",
-        &[
-            Role { name: "sums", takes: Takes::Many, about: "what `normalize` made" },
-            Role {
-                name: "truth",
-                takes: Takes::Optional,
-                about: "a folder of exact maps, <pose>-mean.npy and <pose>-sd.npy",
-            },
-        ],
-        &[
-            Part { name: "maps", file: "", only_if_wanted: false },
-            Part { name: "nails", file: "nails.csv", only_if_wanted: false },
-            Part { name: FIGURES, file: "figures", only_if_wanted: true },
-        ],
-    );
+    const KIND: Kind = Kind {
+        // 2: poses are listed in the thesis' order (sheets, nails.csv).
+        revision: 2,
+        ..Kind::of::<Self>(
+            "maps",
+            &[
+                Role { name: "sums", takes: Takes::Many, about: "what `normalize` made" },
+                Role {
+                    name: "truth",
+                    takes: Takes::Optional,
+                    about: "a folder of exact maps, <pose>-mean.npy and <pose>-sd.npy",
+                },
+            ],
+            &[
+                Part { name: "maps", file: "", only_if_wanted: false },
+                Part { name: "nails", file: "nails.csv", only_if_wanted: false },
+                Part { name: FIGURES, file: "figures", only_if_wanted: true },
+            ],
+        )
+    };
 
     type Options = NoOptions;
 
