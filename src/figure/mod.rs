@@ -18,7 +18,7 @@ pub use chart::{
 };
 pub use grey::{Stretch, grey_map};
 pub use html::{Page, escape};
-pub use sheet::{Scale, Sheet, Tile};
+pub use sheet::{Scale, Sheet, Tile, TilePicture};
 pub use thin::{Bin, MOST_BINS, Sample, Summary, Thinned};
 
 /// How much of each pixel a text covers (0 to 255), `height_px` high: to draw on pictures that are not RGB.

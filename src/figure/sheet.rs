@@ -14,10 +14,55 @@ use super::text::{INK, centred, left};
 pub struct Tile {
     /// Below the picture.
     pub caption: String,
-    /// Transparent where nothing is known.
-    pub picture: GrayAlphaImage,
+    /// What it shows.
+    pub picture: TilePicture,
     /// The same as a PNG file, where there is one already.
     pub png: Option<Vec<u8>>,
+}
+
+/// A tile's picture.
+#[derive(Debug, Clone)]
+pub enum TilePicture {
+    /// Transparent where nothing is known.
+    Grey(GrayAlphaImage),
+    /// In colour.
+    Colour(RgbImage),
+}
+
+impl TilePicture {
+    fn size(&self) -> [u32; 2] {
+        match self {
+            Self::Grey(picture) => picture.dimensions().into(),
+            Self::Colour(picture) => picture.dimensions().into(),
+        }
+    }
+
+    /// Row `y` as colours on a sheet.
+    fn draw_row(&self, y: u32, to: &mut [[u8; 3]]) {
+        match self {
+            Self::Grey(picture) => {
+                let width = picture.width() as usize;
+                let row = &picture.as_raw()[2 * width * y as usize..];
+                for (to, from) in to.iter_mut().zip(row.chunks_exact(2)).take(width) {
+                    *to = if from[1] == 0 { UNKNOWN.0 } else { [from[0]; 3] };
+                }
+            }
+            Self::Colour(picture) => {
+                let width = picture.width() as usize;
+                let row = &picture.as_raw()[3 * width * y as usize..];
+                to[..width].copy_from_slice(&row.as_chunks::<3>().0[..width]);
+            }
+        }
+    }
+}
+
+impl From<&TilePicture> for DynamicImage {
+    fn from(picture: &TilePicture) -> Self {
+        match picture {
+            TilePicture::Grey(picture) => picture.clone().into(),
+            TilePicture::Colour(picture) => picture.clone().into(),
+        }
+    }
 }
 
 /// What the grey levels mean.
@@ -67,7 +112,8 @@ impl Layout {
 
 impl Sheet {
     fn layout(&self) -> Layout {
-        let tile = self.tiles.iter().fold([1, 1], |[w, h], t| [w.max(t.picture.width()), h.max(t.picture.height())]);
+        let sizes = self.tiles.iter().map(|t| t.picture.size());
+        let tile = sizes.fold([1, 1], |[w, h], size| [w.max(size[0]), h.max(size[1])]);
         let columns = self.columns.clamp(1, self.tiles.len().max(1)) as u32;
         let rows = (self.tiles.len() as u32).div_ceil(columns);
         let scale = if self.scale.is_some() { SCALE } else { 0 };
@@ -82,12 +128,10 @@ impl Sheet {
         left(&mut sheet, &self.title, GAP as i32, 14, 22.0);
         for (at, tile) in self.tiles.iter().enumerate() {
             let [x0, y0] = layout.corner(at);
-            for (y, row) in (y0..).zip(tile.picture.chunks_exact(2 * tile.picture.width() as usize)) {
-                let start = 3 * (y * layout.size[0] + x0) as usize;
+            for y in 0..tile.picture.size()[1] {
+                let start = 3 * ((y0 + y) * layout.size[0] + x0) as usize;
                 let samples: &mut [u8] = &mut sheet;
-                for (to, from) in samples[start..].chunks_exact_mut(3).zip(row.chunks_exact(2)) {
-                    to.copy_from_slice(&if from[1] == 0 { UNKNOWN.0 } else { [from[0]; 3] });
-                }
+                tile.picture.draw_row(y, samples[start..].as_chunks_mut::<3>().0);
             }
             let middle = (x0 + layout.tile[0] / 2) as i32;
             centred(&mut sheet, &tile.caption, middle, (y0 + layout.tile[1] + 4) as i32, 17.0, layout.tile[0]);
@@ -144,15 +188,14 @@ impl Sheet {
             let [tile_width, tile_height] = layout.tile;
             let encoded = match &tile.png {
                 Some(_) => None,
-                None => Some(super::png(&tile.picture.clone().into())?),
+                None => Some(super::png(&DynamicImage::from(&tile.picture))?),
             };
+            let [picture_width, picture_height] = tile.picture.size();
             let png = tile.png.as_ref().or(encoded.as_ref()).map_or(&[][..], Vec::as_slice);
             svg += &format!(
                 "<rect x=\"{x}\" y=\"{y}\" width=\"{tile_width}\" height=\"{tile_height}\" fill=\"#cdd8f0\"/>\n\
-                 <image x=\"{x}\" y=\"{y}\" width=\"{}\" height=\"{}\" href=\"data:image/png;base64,{}\"/>\n\
+                 <image x=\"{x}\" y=\"{y}\" width=\"{picture_width}\" height=\"{picture_height}\" href=\"data:image/png;base64,{}\"/>\n\
                  <text x=\"{}\" y=\"{}\" font-size=\"15\" text-anchor=\"middle\">{}</text>\n",
-                tile.picture.width(),
-                tile.picture.height(),
                 base64::engine::general_purpose::STANDARD.encode(png),
                 x + tile_width / 2,
                 y + tile_height + 18,

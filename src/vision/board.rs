@@ -157,7 +157,8 @@ mod tests {
     fn the_slow_search_finds_the_same_corners() {
         let scene = Scene::new(BoardOptions { size: (1280, 720), views: 1, ..BoardOptions::default() }).unwrap();
         let picture = scene.picture(scene.views(), 0);
-        let mat = grey(&picture).mat().unwrap();
+        let picture = grey(&picture);
+        let mat = picture.mat().unwrap();
         let mut corners = slow(&mat, Size::new(9, 6)).unwrap().expect("a board");
         refine(&mat, &mut corners, 9).unwrap();
         let found: Corners = corners.iter().map(|corner| [corner.x, corner.y]).collect();

@@ -20,7 +20,7 @@ use opencv::prelude::*;
 use thiserror::Error;
 
 pub(crate) use board::{Corners, find_board, shows_another};
-pub(crate) use image::{components, resized};
+pub(crate) use image::{closed_line, components, resized};
 #[cfg(test)]
 pub(crate) use lens::opencvs_sd;
 pub(crate) use lens::{Calibration, Intrinsics, PARAMETERS, Pose, calibrate, project};

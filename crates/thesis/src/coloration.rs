@@ -15,7 +15,7 @@ use image::GrayAlphaImage;
 use ndarray::Array2;
 
 use super::Numbers;
-use lunula::figure::{Scale, Sheet, Stretch, Tile, grey_map};
+use lunula::figure::{Scale, Sheet, Stretch, Tile, TilePicture, grey_map};
 use lunula::files::Staging;
 use lunula::npy;
 use lunula::phantom::nail::Pose;
@@ -213,7 +213,7 @@ pub(crate) fn coloration_sheets(pictures: &Path, subject: Option<&str>, out: &Pa
         let drawn: Vec<GrayAlphaImage> = maps.iter().map(|map| grey_map(map, stretch)).collect();
         let tiles = poses.iter().zip(drawn).map(|(pose, picture)| Tile {
             caption: pose.name().replace('_', " "),
-            picture,
+            picture: TilePicture::Grey(picture),
             png: None,
         });
         let sheet = Sheet {

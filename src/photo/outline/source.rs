@@ -258,7 +258,7 @@ impl OutlineOptions {
         }
         let used = found.nails.into_iter().map(|n| (n, String::new()));
         let doubtful = found.doubtful.into_iter().map(|n| {
-            let limit = self.detect.min_confidence;
+            let limit = found.needed;
             let reason = format!(
                 "the outline found is not trusted (confidence {:.2}, {limit} is needed); correct it in LabelMe \
                  (--write-outlines)",

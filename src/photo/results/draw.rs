@@ -5,7 +5,7 @@
 use image::{GrayAlphaImage, imageops};
 use rayon::prelude::*;
 
-use crate::figure::{self, Scale, Sheet, Stretch, Tile, grey_map};
+use crate::figure::{self, Scale, Sheet, Stretch, Tile, TilePicture, grey_map};
 use crate::files::{Staging, WriteError};
 use crate::photo::normalize::Normalized;
 use crate::photo::sums::Maps;
@@ -138,6 +138,7 @@ pub(super) fn draw_pose(
         let name = format!("figures/{pose}-{}.png", kind.name);
         let png = figure::png_of_grey(&picture).map_err(|why| staging.refused(&name, why))?;
         staging.write(&name, &png)?;
+        let picture = TilePicture::Grey(picture);
         Ok(Tile { caption: format!("{pose} (n = {subjects})"), picture, png: Some(png) })
     };
     Ok([tile(&KINDS[0])?, tile(&KINDS[1])?, tile(&KINDS[2])?, tile(&KINDS[3])?])
@@ -145,11 +146,11 @@ pub(super) fn draw_pose(
 
 /// Draws the sheets over all poses and writes them.
 pub(super) fn draw_sheets(poses: Vec<[Tile; KINDS.len()]>, staging: &Staging) -> Result<Vec<DrawnSheet>, WriteError> {
-    let small = poses.len() > LARGE_TILES;
+    let many = poses.len() > LARGE_TILES;
     let mut tiles: [Vec<Tile>; KINDS.len()] = Default::default();
     for pose in poses {
         for (tiles, tile) in tiles.iter_mut().zip(pose) {
-            tiles.push(if small { tile.small() } else { tile });
+            tiles.push(if many { small(tile) } else { tile });
         }
     }
     let draw = |(kind, tiles): (&Kind, Vec<Tile>)| {
@@ -168,9 +169,9 @@ pub(super) fn draw_sheets(poses: Vec<[Tile; KINDS.len()]>, staging: &Staging) ->
 const LARGE_TILES: usize = 16;
 const SMALL_TILE_PX: u32 = 160;
 
-impl Tile {
-    fn small(&self) -> Self {
-        let [width, height] = [self.picture.width(), self.picture.height()].map(|side| side.min(SMALL_TILE_PX));
-        Self { caption: self.caption.clone(), picture: imageops::thumbnail(&self.picture, width, height), png: None }
-    }
+fn small(tile: Tile) -> Tile {
+    let TilePicture::Grey(picture) = &tile.picture else { return tile };
+    let [width, height] = [picture.width(), picture.height()].map(|side| side.min(SMALL_TILE_PX));
+    let picture = TilePicture::Grey(imageops::thumbnail(picture, width, height));
+    Tile { caption: tile.caption, picture, png: None }
 }

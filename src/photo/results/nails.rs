@@ -6,7 +6,7 @@ use image::GrayAlphaImage;
 use rayon::prelude::*;
 
 use super::draw::DrawnSheet;
-use crate::figure::{Sheet, Tile};
+use crate::figure::{Sheet, Tile, TilePicture};
 use crate::files::{Staging, WriteError};
 use crate::input;
 use crate::photo::error::MergeError;
@@ -118,7 +118,7 @@ impl NailTable {
             }
             let caption = format!("{}: {}", row.number, set.photos[row.photo].subject);
             if let Some(sheet) = sheets.last_mut() {
-                sheet.tiles.push(Tile { caption, picture, png: None });
+                sheet.tiles.push(Tile { caption, picture: TilePicture::Grey(picture), png: None });
             }
         }
         Self { rows: rows.iter().map(|row| cells(row, set).to_vec()).collect(), sheets }

@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-use image::GrayAlphaImage;
+use image::{GrayAlphaImage, RgbImage};
 use rayon::prelude::*;
 
 use crate::files::{Places, Staging, WriteError};
@@ -68,7 +68,7 @@ pub fn run(
     let Work { stages, sums, .. } = work;
 
     let mut findings = Findings::new(set, options, outputs);
-    let (mut detected, mut thumbnails, mut foreknown) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut detected, mut thumbnails, mut foreknown, mut drawn) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let mut samples = Vec::new();
     for (photo, one) in set.photos.iter().zip(done) {
         findings.add(photo, one.grey, one.largest);
@@ -79,6 +79,7 @@ pub fn run(
         }
         detected.extend(one.detected);
         samples.extend(one.cells.map(|cells| Sample { photo, cells }));
+        drawn.extend(one.drawn.map(|picture| (photo.file.clone(), picture)));
         findings.failed.extend(one.fault);
     }
     findings.failed.sort();
@@ -102,7 +103,13 @@ pub fn run(
         Results::Maps => {
             let (maps, of_nails) = rayon::join(
                 || results::write_maps(&partials, true, &staging, &stages),
-                || stages.time("sheets", || nails.draw_sheets(&staging)),
+                || {
+                    stages.time("sheets", || {
+                        let mut sheets = results::draw_outlines(drawn, &staging)?;
+                        sheets.extend(nails.draw_sheets(&staging)?);
+                        Ok::<_, WriteError>(sheets)
+                    })
+                },
             );
             Some((maps?, of_nails?))
         }
@@ -158,6 +165,8 @@ fn save_outlines(
 struct Done {
     nails: Vec<(NailRow, Option<GrayAlphaImage>)>,
     detected: Option<DetectedOutline>,
+    /// With what was detected, for the report.
+    drawn: Option<RgbImage>,
     outlines: OutlinePlace,
     grey: Option<bool>,
     /// The largest sample as stored, of 16 bits.
@@ -200,6 +209,7 @@ impl Work<'_> {
         let mut done = Done {
             nails: Vec::new(),
             detected: None,
+            drawn: None,
             outlines: self.options.outlines.locate(photo),
             grey: None,
             largest: None,
@@ -217,7 +227,13 @@ impl Work<'_> {
         if let Some(Err(why)) = self.options.normalization.white.map(|white| picture.stretch_to(white)) {
             return Ok(Done { fault: fault(why.to_string()), ..done });
         }
-        let nails = match self.stages.time("outline", || self.options.outlines.nails(&done.outlines, &picture)) {
+        let nails = self.stages.time("outline", || self.options.outlines.nails(&done.outlines, &picture));
+        let is_drawn = done.outlines == OutlinePlace::Detection && index < results::MOST_DRAWN;
+        if is_drawn && self.outputs.results == Results::Maps {
+            let found = nails.as_deref().unwrap_or_default();
+            done.drawn = self.stages.time("outlines drawn", || results::drawn_outlines(&picture, found)).ok();
+        }
+        let nails = match nails {
             Ok(nails) => nails,
             Err(why) => return Ok(Done { fault: fault(why.to_string()), ..done }),
         };

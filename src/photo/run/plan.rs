@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use crate::photo::options::{Outputs, PhotosOptions, Results};
-use crate::photo::outline::OutlinePlace;
+use crate::photo::outline::{Detector, OutlinePlace};
 use crate::photo::set::{Photo, PhotoSet};
 use crate::photograph::header_is_grey;
 use crate::stages::{self, Step};
@@ -109,7 +109,7 @@ pub(in crate::photo) fn plan_foreknown(photos: &[Foreknown], options: &PhotosOpt
         Step::new("read", true, format!("{} photograph(s) of {} pose(s)", photos.len(), poses.len())),
         Step::new("outlines from LabelMe", labelme > 0, said(labelme, none_drawn)),
         Step::new("outlines from masks", masks > 0, said(masks, none_drawn)),
-        Step::new("detection", detected > 0, said(detected, "every outline is known, or detection is turned off")),
+        Step::new("detection", detected > 0, detection(detected, options)),
         Step::new(
             "axis from the picture",
             (labelme > 0 || masks > 0) && options.outlines.distal.is_none(),
@@ -161,6 +161,17 @@ pub(in crate::photo) fn plan_foreknown(photos: &[Foreknown], options: &PhotosOpt
     steps.extend((outputs.results == Results::Maps).then_some(labelme));
     steps
 }
+
+/// How many photographs are searched, and who searches them.
+fn detection(count: usize, options: &PhotosOptions) -> String {
+    let by = match options.outlines.detect.detector {
+        Detector::Net => "a network, whose outlines are refined where templates of close-ups fit them",
+        Detector::CloseUp => "templates of one finger; --detector net finds any number, in any direction",
+    };
+    if count > 0 { format!("{count} photograph(s), by {by}") } else { said(0, NO_DETECTION) }
+}
+
+const NO_DETECTION: &str = "every outline is known, or detection is turned off; no network is loaded";
 
 fn said(count: usize, otherwise: &str) -> String {
     if count > 0 { format!("{count} photograph(s)") } else { otherwise.to_owned() }

@@ -249,7 +249,7 @@ impl PhotosReport {
             add_section(&mut page, channels);
         }
         if !nail_sheets.is_empty() {
-            page.heading("Every nail, distal end up");
+            page.heading("What was found, and every nail, distal end up");
         }
         for sheet in nail_sheets {
             page.png(&sheet.png, &sheet.title);

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::{Context, ensure};
 use clap::{Parser, Subcommand};
+use lunula::photo::outline::Detector;
 use lunula_training::nails::{self, Part, folds};
 
 /// Make or judge the weights that find nails on photographs
@@ -46,6 +47,9 @@ enum Job {
         /// On photographs of odd index too: each look at them makes them less of a test
         #[arg(long, requires = "hands")]
         held_out: bool,
+        /// Who finds nails
+        #[arg(long, value_enum, default_value_t)]
+        detector: Detector,
     },
     /// Print recall and precision of the network on photographs of --hands that it has not seen; takes minutes
     #[command(
@@ -70,8 +74,8 @@ fn main() -> anyhow::Result<()> {
             }
             Ok(())
         }
-        Job::Table { held_out } => {
-            print!("{}", nails::table(hands.as_deref(), held_out)?);
+        Job::Table { held_out, detector } => {
+            print!("{}", nails::table(hands.as_deref(), held_out, detector)?);
             Ok(())
         }
         Job::Folds(with) => {

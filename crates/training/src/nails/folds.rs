@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use anyhow::Context;
 use image::{DynamicImage, Rgb, RgbImage};
 use imageproc::drawing::draw_line_segment_mut;
-use lunula::photo::outline::training::{NailNet, by_net};
+use lunula::photo::outline::training::{NailNet, detect_by};
 use lunula::photo::outline::{Axis, DetectOptions, Detected, Outline, outlines_from_mask};
 use rayon::prelude::*;
 
@@ -37,14 +37,15 @@ struct Seen {
     fold: String,
     look: Look,
     nails: usize,
-    /// Confidence, IoU of the network's own outline and of the refined one, degrees that the axis is off.
     finds: Vec<Find>,
 }
 
 struct Find {
-    confidence: f64,
+    is_confident: bool,
+    /// With the best true outline: of the outline found, and of the network's own.
     iou: f64,
     unrefined: f64,
+    /// How far its axis is off, degrees.
     off_deg: f64,
 }
 
@@ -52,6 +53,8 @@ struct Find {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Look {
     Colour,
+    /// Dark skin: what has the colour of skin is darkened, the nails on it less.
+    Dark,
     /// As a green filter and a camera without colour show it.
     Green,
 }
@@ -81,13 +84,13 @@ pub fn table(hands: &Path, with: &Folds) -> anyhow::Result<String> {
         let files: Vec<(&String, &Vec<[f64; 3]>)> =
             axes.iter().filter(|(file, _)| names.iter().any(|name| file.starts_with(name.as_str()))).collect();
         let seen = files.par_iter().flat_map_iter(|(file, truth)| {
-            [Look::Colour, Look::Green].map(|look| look.seen(&net, fold, hands, file, truth, with.sheets.as_deref()))
+            Look::ALL.map(|look| look.seen(&net, fold, hands, file, truth, with.sheets.as_deref()))
         });
         all.extend(seen.collect::<anyhow::Result<Vec<_>>>()?);
     }
     let mut text = String::from("| fold | look | nails | confident: recall 0.5, 0.7, precision | with doubtful | IoU");
     text += " in median (unrefined) | distal end wrong |\n|---|---|---|---|---|---|---|\n";
-    for look in [Look::Colour, Look::Green] {
+    for look in Look::ALL {
         for fold in folds.keys().map(String::as_str).chain(["all"]) {
             let own: Vec<&Seen> = all.iter().filter(|s| s.look == look && (fold == "all" || s.fold == fold)).collect();
             if !own.is_empty() {
@@ -99,39 +102,52 @@ pub fn table(hands: &Path, with: &Folds) -> anyhow::Result<String> {
 }
 
 fn line(fold: &str, look: Look, seen: &[&Seen]) -> String {
-    let options = DetectOptions::default();
     let nails = seen.iter().map(|s| s.nails).sum::<usize>() as f64;
     let finds: Vec<&Find> = seen.iter().flat_map(|s| &s.finds).collect();
-    let least = |confidence: f64| finds.iter().copied().filter(move |f| f.confidence >= confidence);
-    let right = |confidence: f64, iou: f64| least(confidence).filter(|f| f.iou >= iou).count() as f64;
+    let sure: Vec<&Find> = finds.iter().copied().filter(|f| f.is_confident).collect();
+    let right = |finds: &[&Find], iou: f64| finds.iter().filter(|f| f.iou >= iou).count() as f64;
     let median = |value: fn(&Find) -> f64| {
-        let mut values: Vec<f64> = least(options.min_confidence).map(value).collect();
+        let mut values: Vec<f64> = sure.iter().map(|f| value(f)).collect();
         values.sort_by(f64::total_cmp);
         values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
     };
-    let sure = options.min_confidence;
-    let confident = least(sure).count();
-    let turned = least(sure).filter(|f| f.iou >= 0.5 && f.off_deg > 45.0).count();
+    let turned = sure.iter().filter(|f| f.iou >= 0.5 && f.off_deg > 45.0).count();
     format!(
-        "| {fold} | {look:?} | {nails} | {:.3}, {:.3}, {:.3} of {confident} | {:.3} of {} | {:.3} ({:.3}) | {turned} |",
-        right(sure, 0.5) / nails,
-        right(sure, 0.7) / nails,
-        right(sure, 0.5) / confident.max(1) as f64,
-        right(options.min_doubtful, 0.5) / nails,
-        least(options.min_doubtful).count(),
+        "| {fold} | {look:?} | {nails} | {:.3}, {:.3}, {:.3} of {} | {:.3} of {} | {:.3} ({:.3}) | {turned} |",
+        right(&sure, 0.5) / nails,
+        right(&sure, 0.7) / nails,
+        right(&sure, 0.5) / sure.len().max(1) as f64,
+        sure.len(),
+        right(&finds, 0.5) / nails,
+        finds.len(),
         median(|f| f.iou),
         median(|f| f.unrefined),
     )
 }
 
 impl Look {
-    fn of(self, image: DynamicImage) -> DynamicImage {
-        if self == Self::Colour {
-            return image;
+    const ALL: [Self; 3] = [Self::Colour, Self::Dark, Self::Green];
+
+    fn of(self, image: DynamicImage, mask: &DynamicImage) -> DynamicImage {
+        let mut rgb = image.to_rgb8();
+        match self {
+            Self::Colour => image,
+            Self::Dark => {
+                for (pixel, mask) in rgb.pixels_mut().zip(mask.to_luma8().pixels()) {
+                    let [r, g, b] = pixel.0.map(f64::from);
+                    let is_skin = r > 60.0 && r > 1.08 * g && g > 0.8 * b;
+                    // Of the gains that make light skin dark: the share that reaches a nail's bed.
+                    let share = if mask.0[0] > 127 { 0.6 } else { f64::from(u8::from(is_skin)) };
+                    let gain = [0.55, 0.40, 0.28].map(|gain: f64| gain.powf(share));
+                    pixel.0 = [r * gain[0], g * gain[1], b * gain[2]].map(|v| v.round() as u8);
+                }
+                rgb.into()
+            }
+            Self::Green => {
+                let green = rgb.pixels().map(|p| p.0[1]).collect();
+                image::GrayImage::from_raw(rgb.width(), rgb.height(), green).expect("a value a pixel").into()
+            }
         }
-        let rgb = image.to_rgb8();
-        let green = rgb.pixels().map(|p| p.0[1]).collect();
-        image::GrayImage::from_raw(rgb.width(), rgb.height(), green).expect("a value a pixel").into()
     }
 
     fn seen(
@@ -147,15 +163,16 @@ impl Look {
             let path = hands.join(folder).join(file);
             image::open(&path).with_context(|| path.display().to_string())
         };
-        let image = self.of(open("images")?);
-        let truths = outlines_from_mask(&open("masks")?)?.nails;
+        let mask = open("masks")?;
+        let image = self.of(open("images")?, &mask);
+        let truths = outlines_from_mask(&mask)?.nails;
         let unrefined = net.segments(&image)?;
-        let found = by_net(net, &image, &DetectOptions::default())?;
-        let one = |found: &Detected| {
+        let found = detect_by(net, &image, &DetectOptions::default())?;
+        let one = |(found, is_confident): (&Detected, bool)| {
             let best = truths.iter().max_by(|a, b| a.iou(&found.outline).total_cmp(&b.iou(&found.outline)));
             let iou = |outline: &Outline| best.map_or(0.0, |truth| truth.iou(outline));
             Find {
-                confidence: found.confidence,
+                is_confident,
                 iou: iou(&found.outline),
                 unrefined: unrefined.iter().map(|s| iou(&s.outline)).fold(0.0, f64::max),
                 off_deg: best.and_then(|truth| off_deg(truth, found.axis, axes)).unwrap_or(0.0),
@@ -163,9 +180,11 @@ impl Look {
         };
         if let Some(folder) = sheets {
             std::fs::create_dir_all(folder)?;
-            sheet(&image, &truths, &found).save(folder.join(format!("{fold}-{self:?}-{file}.png")))?;
+            sheet(&image, &truths, &found.nails, &found.doubtful)
+                .save(folder.join(format!("{fold}-{self:?}-{file}.png")))?;
         }
-        Ok(Seen { fold: fold.to_owned(), look: self, nails: truths.len(), finds: found.iter().map(one).collect() })
+        let all = found.nails.iter().map(|nail| (nail, true)).chain(found.doubtful.iter().map(|nail| (nail, false)));
+        Ok(Seen { fold: fold.to_owned(), look: self, nails: truths.len(), finds: all.map(one).collect() })
     }
 }
 
@@ -177,7 +196,7 @@ fn off_deg(truth: &Outline, axis: Axis, axes: &[[f64; 3]]) -> Option<f64> {
 }
 
 /// The photograph, true outlines white, confident finds green, doubtful ones yellow, with a line to the distal end.
-fn sheet(image: &DynamicImage, truths: &[Outline], found: &[Detected]) -> RgbImage {
+fn sheet(image: &DynamicImage, truths: &[Outline], sure: &[Detected], doubtful: &[Detected]) -> RgbImage {
     let mut picture = image.to_rgb8();
     let mut draw = |points: &[[f64; 2]], colour: [u8; 3]| {
         for (a, b) in points.iter().zip(points.iter().cycle().skip(1)) {
@@ -188,9 +207,8 @@ fn sheet(image: &DynamicImage, truths: &[Outline], found: &[Detected]) -> RgbIma
     for truth in truths {
         draw(&truth.points(), [255; 3]);
     }
-    for one in found {
-        let sure = one.confidence >= DetectOptions::default().min_confidence;
-        let colour = if sure { [0, 220, 60] } else { [255, 220, 0] };
+    let found = sure.iter().map(|one| (one, [0, 220, 60])).chain(doubtful.iter().map(|one| (one, [255, 220, 0])));
+    for (one, colour) in found {
         draw(&one.outline.points(), colour);
         let [x, y] = lunula::photo::outline::Moments::of(&one.outline).centroid_px;
         let reach = 0.5 * one.outline.area_px2().sqrt();

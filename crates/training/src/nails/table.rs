@@ -18,9 +18,8 @@ const COUNT: u32 = 400;
 /// Least confidences of the table.
 const LEAST: [f64; 9] = [0.3, 0.5, 0.6, 0.7, 0.75, 0.8, 0.85, 0.9, 0.95];
 
-fn finds(scenes: &mut [Scene]) -> Vec<Find> {
-    let detector = Some(Detector::CloseUp);
-    let options = DetectOptions { detector, min_confidence: 0.0, ..DetectOptions::default() };
+fn finds(scenes: &mut [Scene], detector: Detector) -> Vec<Find> {
+    let options = DetectOptions { detector, min_confidence: Some(0.0), ..DetectOptions::default() };
     scenes.par_iter_mut().for_each(direct);
     let of = |scene: &Scene| -> Vec<Find> {
         let best = |d: &Detected| -> Find {
@@ -30,7 +29,7 @@ fn finds(scenes: &mut [Scene]) -> Vec<Find> {
             let v = d.axis.distal();
             [d.confidence, truth.map_or(0.0, |t| t.outline.iou(&d.outline)), v[0] * up[0] + v[1] * up[1]]
         };
-        detect(&scene.image, &options).expect("templates need no OpenCV").nails.iter().map(best).collect()
+        detect(&scene.image, &options).expect("OpenCV works").nails.iter().map(best).collect()
     };
     scenes.par_iter().flat_map_iter(of).collect()
 }
@@ -40,7 +39,7 @@ fn finds(scenes: &mut [Scene]) -> Vec<Find> {
 ///
 /// # Errors
 /// A photograph that can't be read, with its path.
-pub fn table(folder: Option<&Path>, held_out: bool) -> anyhow::Result<String> {
+pub fn table(folder: Option<&Path>, held_out: bool, detector: Detector) -> anyhow::Result<String> {
     let phantoms = (0..COUNT).into_par_iter().map(|k| phantom(SEED, k)).collect::<anyhow::Result<Vec<_>>>()?;
     let empty = (0..COUNT).into_par_iter().map(|k| empty(SEED, k)).collect::<anyhow::Result<Vec<_>>>()?;
     let mut sets = vec![("phantoms", phantoms), ("no nails", empty)];
@@ -53,7 +52,7 @@ pub fn table(folder: Option<&Path>, held_out: bool) -> anyhow::Result<String> {
     let mut text = String::new();
     for (name, mut scenes) in sets {
         let nails: usize = scenes.iter().map(|s| s.truths.len()).sum();
-        let finds = finds(&mut scenes);
+        let finds = finds(&mut scenes, detector);
         writeln!(text, "{name}: {} pictures, {nails} nails", scenes.len())?;
         for least in LEAST {
             let kept: Vec<&Find> = finds.iter().filter(|f| f[0] >= least).collect();
