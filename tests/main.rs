@@ -3,6 +3,7 @@
 
 mod align;
 mod align_bad_input;
+mod channels;
 mod cluster;
 mod compare;
 mod detection;
