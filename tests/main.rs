@@ -4,6 +4,7 @@
 mod align;
 mod align_bad_input;
 mod camera;
+mod channels;
 mod cluster;
 mod compare;
 mod detection;

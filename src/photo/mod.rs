@@ -6,10 +6,12 @@
 //! joins results made in parts, [`gather`](fn@gather) those of a pipeline, adding to the sums of an earlier run.
 //! Each writes all of its results in one commit and returns its report.
 
+mod channels;
 mod error;
 mod normalize;
 mod options;
 pub mod outline;
+mod pose;
 mod results;
 mod run;
 mod set;
@@ -20,11 +22,13 @@ pub use crate::photo::run::kind::{MapsJob, NormalizeJob};
 pub use crate::photo::run::plan::plan;
 pub use crate::photo::run::report::{PhotosFigures, PhotosReport, PoseCount};
 pub use crate::photograph::{Depth, MOST_MEGAPIXELS, Photograph, ReadFault};
+pub use channels::{ChannelDifference, ChannelFigures, ChannelRow, Estimate, ZonesOf};
 pub use error::{MergeError, PhotosError};
 pub use normalize::{
     Channel, FULL_SCALE, FrameFault, NailFrame, Normalization, Normalized, Resample, SMALLEST_EXTENT_PX, normalize,
 };
 pub use options::{OutlineHome, Outputs, PhotosOptions, Results};
+pub use pose::THESIS_POSES;
 pub use results::NailRow;
 pub use set::{Photo, PhotoSet, SetError, SetFault};
 pub use sums::{

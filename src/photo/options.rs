@@ -17,6 +17,10 @@ pub struct PhotosOptions {
     /// Refuse photographs of more megapixels, before memory is taken for them [default: 250]
     #[arg(long, value_name = "MP", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub max_megapixels: Option<u32>,
+    /// Compare the channels as well: how much white and red zones differ in red, green and blue, for each pose and, where
+    /// photos.csv has a column `tone`, each skin tone; needs colour photographs
+    #[arg(long)]
+    pub channels: bool,
 }
 
 /// Where results go, and which are written.
@@ -34,6 +38,11 @@ impl Outputs {
     /// Maps, figures and report in `folder`, and no outlines saved.
     pub fn maps(folder: impl Into<PathBuf>) -> Self {
         Self { folder: folder.into(), results: Results::Maps, outlines: None }
+    }
+
+    /// Whether channels are compared: by whoever has all subjects at once.
+    pub(super) fn compares_channels(&self, options: &PhotosOptions) -> bool {
+        options.channels && self.results == Results::Maps
     }
 
     /// Whether the normalized pictures are written.

@@ -1,8 +1,8 @@
 //! Which photographs: a folder of poses, or a manifest, to a sorted list.
 //!
 //! In: `SET/<pose>/<subject>.<png|jpg|tif|bmp>`, or a flat folder (one pose, named after it), or a folder with
-//! `photos.csv` (`file,subject,pose` and optionally `outline`, paths relative to it). Out: a [`PhotoSet`], its
-//! photographs sorted by pose, subject and file, and the [`SetFault`]s: entries that cannot be used, each with its
+//! `photos.csv` (`file,subject,pose` and optionally `outline` and `tone`, paths relative to it). Out: a [`PhotoSet`], its
+//! photographs sorted by pose ([`THESIS_POSES`](super::pose::THESIS_POSES) first), subject and file, and the [`SetFault`]s: entries that cannot be used, each with its
 //! place; the others go on. A subject counts once per pose, so subjects that a pose has twice are all left out.
 
 use std::collections::BTreeMap;
@@ -11,6 +11,7 @@ use std::path::{Component, Path, PathBuf};
 use thiserror::Error;
 
 use crate::input;
+use crate::photo::pose::sort_by_pose;
 use crate::photograph::{extension, is_picture};
 use crate::words::shown;
 
@@ -31,6 +32,8 @@ pub struct Photo {
     pub path: PathBuf,
     /// The manifest's outline: a LabelMe file or a mask.
     pub outline: Option<PathBuf>,
+    /// The manifest's skin tone, in the words of whoever wrote it.
+    pub tone: Option<String>,
 }
 
 /// An entry that cannot be used.
@@ -89,7 +92,7 @@ pub enum SetError {
 /// use lunula::photo::{Outputs, PhotoSet, PhotosOptions, run};
 ///
 /// let set = PhotoSet::open(Path::new("fixtures/photos"), &[])?;
-/// assert_eq!((set.poses(), set.photos.len()), (vec!["extension", "normal"], 4));
+/// assert_eq!((set.poses(), set.photos.len()), (vec!["normal", "extension"], 4));
 /// let out = tempfile::tempdir()?;
 /// let report = run(&set, &PhotosOptions::default(), &Outputs::maps(out.path()), &Watch::nobody())?;
 /// assert!(report.failed.is_empty() && report.figures.poses[0].subjects == 2);
@@ -100,7 +103,7 @@ pub enum SetError {
 pub struct PhotoSet {
     /// The set's folder.
     pub folder: PathBuf,
-    /// Sorted by pose, subject, file.
+    /// Sorted by pose (as [`PhotoSet::poses`]), subject, file.
     pub photos: Vec<Photo>,
     /// Entries left out, sorted.
     pub faults: Vec<SetFault>,
@@ -159,10 +162,12 @@ impl PhotoSet {
         self.photos.sort();
         self.leave_out_doubles();
         self.leave_out_clashing_names();
+        self.photos.sort();
+        sort_by_pose(&mut self.photos, |photo| &photo.pose);
         self.faults.sort();
     }
 
-    /// The poses, sorted.
+    /// The poses, the thesis' first and in its order, then by name.
     pub fn poses(&self) -> Vec<&str> {
         let mut poses: Vec<&str> = self.photos.iter().map(|p| p.pose.as_str()).collect();
         poses.dedup();
@@ -204,7 +209,14 @@ impl PhotoSet {
                 self.fault(file, what);
                 return;
             }
-            self.photos.push(Photo { pose: pose.to_owned(), subject, file, path: path.to_owned(), outline: None });
+            self.photos.push(Photo {
+                pose: pose.to_owned(),
+                subject,
+                file,
+                path: path.to_owned(),
+                outline: None,
+                tone: None,
+            });
         } else if let Some(kind) = extension(path).filter(|e| OTHER_PICTURES.contains(&e.as_str())) {
             self.fault(file, format!(".{kind} is not read; export it as PNG, TIFF, BMP or JPEG"));
         }
@@ -229,11 +241,11 @@ impl PhotoSet {
         let (Some(file), Some(subject), Some(pose)) = (column("file"), column("subject"), column("pose")) else {
             let found = header.iter().collect::<Vec<_>>().join(",");
             return Err(wrong(format!(
-                "line 1: the columns are `{found}`; it needs file,subject,pose and may have outline, separated by \
-                 commas or semicolons"
+                "line 1: the columns are `{found}`; it needs file,subject,pose and may have outline and tone, \
+                 separated by commas or semicolons"
             )));
         };
-        let outline = column("outline");
+        let (outline, tone) = (column("outline"), column("tone"));
         for record in reader.records() {
             let record = record.map_err(|e| wrong(e.to_string()))?;
             let place = format!("photos.csv, line {}", record.position().map_or(0, csv::Position::line));
@@ -248,7 +260,8 @@ impl PhotoSet {
                 self.fault(place, format!("the outline {} does not exist", missing.display()));
                 continue;
             }
-            self.photos.push(Photo { pose, subject, path: self.folder.join(&file), file, outline });
+            let tone = tone.map(cell).filter(|tone| !tone.is_empty());
+            self.photos.push(Photo { pose, subject, path: self.folder.join(&file), file, outline, tone });
         }
         Ok(())
     }

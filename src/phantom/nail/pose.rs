@@ -4,7 +4,9 @@ use std::{fmt, str::FromStr};
 
 use thiserror::Error;
 
-/// One of the thesis' eight force and posture poses.
+use crate::photo::THESIS_POSES;
+
+/// One of the thesis' eight force and posture poses, in the order of [`THESIS_POSES`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Pose {
     /// No force, the finger held straight out.
@@ -40,16 +42,7 @@ impl Pose {
 
     /// The name in folders and tables.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Nominal => "nominal",
-            Self::Normal => "normal",
-            Self::LateralNegative => "lateral_negative",
-            Self::LateralPositive => "lateral_positive",
-            Self::LongitudinalNegative => "longitudinal_negative",
-            Self::LongitudinalPositive => "longitudinal_positive",
-            Self::Extension => "extension",
-            Self::Flexion => "flexion",
-        }
+        THESIS_POSES[self as usize]
     }
 }
 

@@ -17,6 +17,18 @@ pub enum Channel {
     Blue,
 }
 
+impl Channel {
+    /// Its name in tables.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Red => "red",
+            Self::Green => "green",
+            Self::Blue => "blue",
+        }
+    }
+}
+
 /// A rectangle of one channel. `values[(y - y0) * width + (x - x0)]` belongs to the photograph's pixel (x, y).
 #[derive(Debug, Clone)]
 pub(crate) struct Plane {

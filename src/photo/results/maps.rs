@@ -32,7 +32,7 @@ pub(in crate::photo) fn write_maps(
     staging: &Staging,
     stages: &Stages,
 ) -> Result<Vec<DrawnSheet>, WriteError> {
-    let poses: Vec<(&String, &Sums)> = partials.poses.iter().collect();
+    let poses: Vec<(&String, &Sums)> = partials.in_order();
     let write = |(pose, sums): &(&String, &Sums)| {
         let maps = stages.time("maps", || sums.maps());
         stages.time("write maps", || {

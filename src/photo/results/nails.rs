@@ -12,6 +12,7 @@ use crate::input;
 use crate::photo::error::MergeError;
 use crate::photo::normalize::NailFrame;
 use crate::photo::outline::{Axis, Nail, Source};
+use crate::photo::pose::rank;
 use crate::photo::set::PhotoSet;
 
 /// One nail of the result: a row of `nails.csv`.
@@ -133,7 +134,8 @@ impl NailTable {
             rows.extend(read(&part.join(NAME))?);
         }
         rows.sort_by_cached_key(|row: &Vec<String>| {
-            (row[3].clone(), row[2].clone(), row[0].clone(), row[1].parse::<u32>().unwrap_or(0))
+            let (place, pose) = rank(&row[3]);
+            (place, pose.to_owned(), row[2].clone(), row[0].clone(), row[1].parse::<u32>().unwrap_or(0))
         });
         Ok(Self { rows, sheets: Vec::new() })
     }

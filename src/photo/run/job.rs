@@ -15,6 +15,7 @@ use rayon::prelude::*;
 
 use crate::files::{Places, Staging, WriteError};
 use crate::job::Watch;
+use crate::photo::channels::{self, Cells, Compared, Sample};
 use crate::photo::error::PhotosError;
 use crate::photo::normalize::{NailFrame, Normalized, Normalizer};
 use crate::photo::options::{OutlineHome, Outputs, PhotosOptions, Results};
@@ -68,6 +69,7 @@ pub fn run(
 
     let mut findings = Findings::new(set, options, outputs);
     let (mut detected, mut thumbnails, mut foreknown, mut drawn) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let mut samples = Vec::new();
     for (photo, one) in set.photos.iter().zip(done) {
         findings.add(photo, one.grey, one.largest);
         foreknown.push(Foreknown { pose: photo.pose.clone(), grey: one.grey, outlines: one.outlines });
@@ -76,6 +78,7 @@ pub fn run(
             thumbnails.push(thumbnail);
         }
         detected.extend(one.detected);
+        samples.extend(one.cells.map(|cells| Sample { photo, cells }));
         drawn.extend(one.drawn.map(|picture| (photo.file.clone(), picture)));
         findings.failed.extend(one.fault);
     }
@@ -112,13 +115,35 @@ pub fn run(
         }
     };
     nails.write(&staging)?;
+    let compared = compare_channels(&samples, &staging, &stages)?;
     watch.go_on()?;
     let mut report = of_photos(findings, &partials, watch).timed(&stages, start);
+    if let Some(compared) = compared {
+        report.notes.extend(compared.notes);
+        report.warnings.extend(compared.warnings);
+        report.channels = Some(compared.figures);
+    }
     if let Some((maps, of_nails)) = sheets {
         report.write(&nails, &maps, &of_nails, &staging)?;
     }
     staging.commit_with(places)?;
     Ok(report)
+}
+
+/// Compares the channels of colour photographs, where that was requested and there are some.
+fn compare_channels(
+    samples: &[Sample<'_>],
+    staging: &Staging,
+    stages: &Stages,
+) -> Result<Option<Compared>, WriteError> {
+    if samples.is_empty() {
+        return Ok(None);
+    }
+    stages.time("compare channels", || {
+        let mut compared = channels::compare(samples);
+        channels::write(&mut compared.figures, staging)?;
+        Ok(Some(compared))
+    })
 }
 
 /// Saves detected outlines where they are to be saved, as far as `places`.
@@ -146,6 +171,8 @@ struct Done {
     grey: Option<bool>,
     /// The largest sample as stored, of 16 bits.
     largest: Option<u16>,
+    /// Its nails in red, green and blue, where channels are compared and it has some.
+    cells: Option<Cells>,
     fault: Option<SetFault>,
 }
 
@@ -186,6 +213,7 @@ impl Work<'_> {
             outlines: self.options.outlines.locate(photo),
             grey: None,
             largest: None,
+            cells: None,
             fault: None,
         };
         let fault = |what: String| Some(SetFault { place: photo.file.clone(), what });
@@ -248,6 +276,12 @@ impl Work<'_> {
         }
         pictures.drain(..).for_each(|picture| normalizer.take_back(picture));
         (done.grey, done.largest) = (Some(picture.is_grey()), largest);
+        if self.outputs.compares_channels(self.options) && done.grey == Some(false) && done.fault.is_none() {
+            let used = done.nails.iter().filter(|(row, _)| row.normalized.is_some());
+            let frames: Vec<NailFrame> = used.filter_map(|(row, _)| row.frame).collect();
+            let with = &self.options.normalization;
+            done.cells = Some(self.stages.time("channels", || Cells::of(&picture.image, &frames, with, normalizer)));
+        }
         buffer.take_back(picture);
         Ok(done)
     }

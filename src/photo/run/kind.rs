@@ -13,7 +13,7 @@ use crate::job::{
     At, Demand, Foreseen, Job, Keys, Kind, Made, NoOptions, OptionFault, Order, Part, Quality, Role, Takes, Work,
 };
 use crate::photo::options::{Outputs, PhotosOptions, Results};
-use crate::photo::outline::{OutlinePlace, Sources};
+use crate::photo::outline::{Detector, OutlinePlace, Sources};
 use crate::photo::run::job::run;
 use crate::photo::run::plan::{Foreknown, plan_foreknown};
 use crate::photo::set::{Photo, PhotoSet};
@@ -53,7 +53,8 @@ fn outline_of<'a>(keys: &Keys, outlines: impl Iterator<Item = (&'a Keys, &'a Pat
 
 impl Job for NormalizeJob {
     const KIND: Kind = Kind {
-        revision: 2,
+        // 3: poses are listed in the thesis' order (nails.csv); nails are found by a network.
+        revision: 3,
         ..Kind::of::<Self>(
             "normalize",
             &[
@@ -76,6 +77,11 @@ impl Job for NormalizeJob {
     type Options = PhotosOptions;
 
     fn new(mut options: PhotosOptions) -> Result<Self, OptionFault> {
+        if options.channels {
+            let what = "channels are compared over all subjects at once; remove it here and run `lunula photos \
+                        --channels` on the set";
+            return Err(OptionFault { key: "channels".into(), what: what.into() });
+        }
         // What the task's results depend on is among its inputs.
         options.outlines.listed_only = true;
         Ok(Self(options))
@@ -88,7 +94,7 @@ impl Job for NormalizeJob {
             let outline = outline_of(&input.keys, outlines.iter().map(|o| (&o.keys, o.path.as_path())));
             if input.exists {
                 let file = String::new();
-                let photo = Photo { pose, subject, file, path: input.path.clone(), outline };
+                let photo = Photo { pose, subject, file, path: input.path.clone(), outline, tone: None };
                 return Foreknown::of(&photo, &self.0);
             }
             let drawn = outline.or_else(|| (input.facts.outlined == Some(true)).then(|| labelme_beside(&input.path)));
@@ -117,7 +123,9 @@ impl Job for NormalizeJob {
         let pixels = f64::from(size_px.0) * f64::from(size_px.1);
         let at_once = photos.min(std::thread::available_parallelism().map_or(1, usize::from)) as u64;
         let sums = 20 * (self.0.normalization.size * self.0.normalization.size) as u64 * photos as u64;
-        let memory = at_once * (BYTES_A_PIXEL * pixels) as u64 + sums + BYTES_AT_LEAST;
+        let with_net = detected > 0 && self.0.outlines.detect.detector == Detector::Net;
+        let net = if with_net { NET_BYTES + at_once * NET_BYTES_A_THREAD } else { 0 };
+        let memory = at_once * (BYTES_A_PIXEL * pixels) as u64 + sums + BYTES_AT_LEAST + net;
         let seconds = photos as f64 * (NORMALIZE_S + READ_S_A_PIXEL * pixels) + detected as f64 * DETECT_S;
         (memory, seconds)
     }
@@ -135,7 +143,7 @@ impl Job for NormalizeJob {
         let photo = |at: &At| {
             let (subject, pose) = subject_and_pose(&at.keys, &at.path);
             let outline = outline_of(&at.keys, work.of(OUTLINES).map(|o| (&o.keys, o.path.as_path())));
-            Photo { pose, subject, file: at.name.clone(), path: at.path.clone(), outline }
+            Photo { pose, subject, file: at.name.clone(), path: at.path.clone(), outline, tone: None }
         };
         let set = PhotoSet::of(work.of("photo").map(photo).collect());
         let outputs = outputs(work.folder, order.demand);
@@ -147,6 +155,9 @@ impl Job for NormalizeJob {
 /// Memory while one photograph is worked on, with detection; measured with 640 x 480 to 24 million pixels.
 const BYTES_A_PIXEL: f64 = 24.0;
 const BYTES_AT_LEAST: u64 = 16 << 20;
+/// Of the network that finds nails, and of each thread's copy at work.
+const NET_BYTES: u64 = 96 << 20;
+const NET_BYTES_A_THREAD: u64 = 96 << 20;
 /// Time of one photograph, measured on one core of 2.5 GHz.
 const READ_S_A_PIXEL: f64 = 2.4e-8;
 const NORMALIZE_S: f64 = 0.007;
@@ -161,22 +172,26 @@ fn labelme_beside(photo: &Path) -> PathBuf {
 pub struct MapsJob;
 
 impl Job for MapsJob {
-    const KIND: Kind = Kind::of::<Self>(
-        "maps",
-        &[
-            Role { name: "sums", takes: Takes::Many, about: "what `normalize` made" },
-            Role {
-                name: "truth",
-                takes: Takes::Optional,
-                about: "a folder of exact maps, <pose>-mean.npy and <pose>-sd.npy",
-            },
-        ],
-        &[
-            Part { name: "maps", file: "", only_if_wanted: false },
-            Part { name: "nails", file: "nails.csv", only_if_wanted: false },
-            Part { name: FIGURES, file: "figures", only_if_wanted: true },
-        ],
-    );
+    const KIND: Kind = Kind {
+        // 2: poses are listed in the thesis' order (sheets, nails.csv).
+        revision: 2,
+        ..Kind::of::<Self>(
+            "maps",
+            &[
+                Role { name: "sums", takes: Takes::Many, about: "what `normalize` made" },
+                Role {
+                    name: "truth",
+                    takes: Takes::Optional,
+                    about: "a folder of exact maps, <pose>-mean.npy and <pose>-sd.npy",
+                },
+            ],
+            &[
+                Part { name: "maps", file: "", only_if_wanted: false },
+                Part { name: "nails", file: "nails.csv", only_if_wanted: false },
+                Part { name: FIGURES, file: "figures", only_if_wanted: true },
+            ],
+        )
+    };
 
     type Options = NoOptions;
 

@@ -9,6 +9,9 @@ use crate::photo::set::{Photo, PhotoSet};
 use crate::photograph::header_is_grey;
 use crate::stages::{self, Step};
 
+/// The step that compares red, green and blue.
+const COMPARED: &str = "channels compared";
+
 /// What is known of a photograph: before it is opened, or after it was worked on.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(in crate::photo) struct Foreknown {
@@ -41,6 +44,9 @@ pub(in crate::photo) fn left_out(photos: &[Foreknown], options: &PhotosOptions, 
     let mut left_out = Vec::new();
     if counts.grey > 0 {
         left_out.push(format!("channel: not taken from {} grey photograph(s)", counts.grey));
+    }
+    if counts.grey > 0 && counts.grey < photos.len() && outputs.compares_channels(options) {
+        left_out.push(format!("{COMPARED}: {} grey photograph(s) have none", counts.grey));
     }
     let drawn = counts.labelme + counts.masks;
     if drawn > 0 {
@@ -140,6 +146,14 @@ pub(in crate::photo) fn plan_foreknown(photos: &[Foreknown], options: &PhotosOpt
             if pictures { "the normalized ones".into() } else { "not requested".into() },
         ),
     ];
+    steps.extend(outputs.compares_channels(options).then(|| {
+        let what = match (colour, grey) {
+            (0, _) => "every photograph is grey and has none".into(),
+            (_, 0) => format!("{colour} colour photograph(s)"),
+            _ => format!("{colour} colour photograph(s); {grey} grey one(s) have none and are left out"),
+        };
+        Step::new(COMPARED, colour > 0, what)
+    }));
     // Sums are a pipeline's, which has no such option.
     let saved = outputs.outlines.is_some();
     let why = if saved { "--write-outlines" } else { "not requested" };

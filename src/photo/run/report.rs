@@ -11,9 +11,11 @@ use serde_json::{Value, json};
 use crate::figure::Page;
 use crate::files::{Staging, WriteError};
 use crate::job::{Report, Watch};
+use crate::photo::channels::{ChannelFigures, add_section};
 use crate::photo::normalize::Normalization;
 use crate::photo::options::{Outputs, PhotosOptions, Results};
 use crate::photo::outline::SavedOutlines;
+use crate::photo::pose::sort_by_pose;
 use crate::photo::results::{DrawnSheet, NAIL_COLUMNS, NailRow, NailTable};
 use crate::photo::set::{Photo, PhotoSet, SetFault};
 use crate::photo::sums::{Partials, Sums};
@@ -38,6 +40,9 @@ pub struct PhotosFigures {
     pub counts: Value,
     /// Subjects by pose.
     pub poses: Vec<PoseCount>,
+    /// The channels compared, where that was requested and there are colour photographs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub channels: Option<ChannelFigures>,
     /// Threads that worked.
     pub threads: usize,
     /// Every nail, used or not, in the set's order; of merged parts none.
@@ -57,7 +62,7 @@ pub struct PoseCount {
 /// How many subjects each pose's maps hold.
 pub(in crate::photo) fn pose_counts(partials: &Partials) -> Vec<PoseCount> {
     let count = |(pose, sums): (&String, &Sums)| PoseCount { pose: pose.clone(), subjects: sums.subjects().len() };
-    partials.poses.iter().map(count).collect()
+    partials.in_order().into_iter().map(count).collect()
 }
 
 /// The poses whose maps have no standard deviation, as one note.
@@ -121,6 +126,7 @@ impl<'a> Findings<'a> {
 
     pub(in crate::photo) fn poses_without_maps(&mut self, poses: impl Iterator<Item = String>) {
         self.without_maps.extend(poses);
+        sort_by_pose(&mut self.without_maps, |pose| pose);
     }
 
     fn warnings(&self) -> Vec<String> {
@@ -132,7 +138,9 @@ impl<'a> Findings<'a> {
     /// Grey values are comparable with a colour photograph's green channel only if a green filter was used.
     fn mixed_poses(&self) -> impl Iterator<Item = String> {
         let mixed = self.colours.iter().filter(|(_, [colour, grey])| *colour > 0 && *grey > 0);
-        mixed.map(|(pose, [colour, grey])| {
+        let mut mixed: Vec<_> = mixed.collect();
+        sort_by_pose(&mut mixed, |(pose, _)| pose);
+        mixed.into_iter().map(|(pose, [colour, grey])| {
             format!(
                 "pose `{pose}` mixes {colour} colour and {grey} grey photograph(s): grey values equal the green \
                  channel only where a green filter was used; else make maps of each kind apart"
@@ -178,6 +186,7 @@ pub(in crate::photo) fn of_photos(found: Findings<'_>, partials: &Partials, watc
             "nails_used": used().count(),
         }),
         poses,
+        channels: None,
         threads: rayon::current_num_threads(),
         nails: rows,
     };
@@ -194,6 +203,7 @@ pub(in crate::photo) fn of_merge(parts: &[PathBuf], partials: &Partials, watch: 
         normalization: partials.normalization,
         counts: json!({ "parts": parts.len() }),
         poses,
+        channels: None,
         threads: rayon::current_num_threads(),
         nails: Vec::new(),
     };
@@ -234,6 +244,9 @@ impl PhotosReport {
         for sheet in sheets {
             page.heading(&sheet.title);
             page.png(&sheet.png, &sheet.title);
+        }
+        if let Some(channels) = &self.channels {
+            add_section(&mut page, channels);
         }
         if !nail_sheets.is_empty() {
             page.heading("What was found, and every nail, distal end up");

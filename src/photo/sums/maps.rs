@@ -166,7 +166,7 @@ fn shaped<T>(shape: (usize, usize), values: Vec<T>) -> Array2<T> {
 pub struct DuplicateSubject(pub String);
 
 /// The rounded mean over the nails that show the pixel.
-fn mean_of_nails(nails: &[Normalized], at: usize) -> Option<u64> {
+pub(in crate::photo) fn mean_of_nails(nails: &[Normalized], at: usize) -> Option<u64> {
     let seen = nails.iter().filter_map(|nail| nail.level(at));
     let (sum, count) = seen.fold((0, 0), |(sum, count), level| (sum + u64::from(level), count + 1));
     (count > 0).then(|| (2 * sum + count) / (2 * count))

@@ -12,6 +12,7 @@ mod partial;
 pub use accuracy::Accuracy;
 pub(super) use batch::Batch;
 pub use gather::{GatherFigures, GatherReport, Gathering, gather};
+pub(super) use maps::mean_of_nails;
 pub use maps::{DuplicateSubject, Maps, Sums};
 pub(super) use members::{Member, Members};
 pub use merge::{merge, merge_plan};

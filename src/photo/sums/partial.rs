@@ -21,6 +21,7 @@ use super::members::Members;
 use super::npz::Npz;
 use crate::input;
 use crate::photo::normalize::{Normalization, Normalized};
+use crate::photo::pose::sort_by_pose;
 
 /// Of sums.
 const FORMAT: u32 = 1;
@@ -111,6 +112,15 @@ pub struct Partials {
     pub normalization: Normalization,
     /// By pose.
     pub poses: BTreeMap<String, Sums>,
+}
+
+impl Partials {
+    /// Poses and their sums, in the order in which poses are listed.
+    pub(in crate::photo) fn in_order(&self) -> Vec<(&String, &Sums)> {
+        let mut poses: Vec<(&String, &Sums)> = self.poses.iter().collect();
+        sort_by_pose(&mut poses, |(pose, _)| pose);
+        poses
+    }
 }
 
 /// Writes one pose's sums.

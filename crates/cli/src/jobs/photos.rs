@@ -17,7 +17,8 @@ use crate::{Common, Outcome};
 /// Turn nail photographs into coloration maps: outlines, normalized pictures, mean and standard deviation over subjects
 ///
 /// SET is a folder SET/<pose>/<subject>.<png|jpg|tif|bmp>, a flat folder (one pose), or holds photos.csv with the
-/// columns file,subject,pose and optionally outline. The outline of a nail comes from the first of: that column,
+/// columns file,subject,pose and optionally outline and tone (skin tone). The outline of a nail comes from the first of:
+/// the outline column,
 /// <stem>.json beside the photograph (LabelMe: polygon `nail`, line `axis` from proximal to distal), a mask under
 /// --masks, detection. Results: nails.csv, normalized/, maps/*.npy, figures/, report.html, run.json.
 #[derive(Debug, Args)]
@@ -108,6 +109,12 @@ pub(crate) fn run_or_merge(args: &PhotosArgs) -> anyhow::Result<Outcome> {
 fn say_poses(common: &Common, report: &PhotosReport) {
     for pose in &report.poses {
         common.say(&format!("{:<28} {:>4} subject(s)", pose.pose, pose.subjects));
+    }
+    for rows in report.channels.iter().flat_map(|channels| channels.rows.chunk_by(|a, b| a.pose == b.pose)) {
+        let of_all = rows.iter().filter(|row| row.tone.is_none());
+        let said = of_all.filter_map(|row| Some((row.channel.name(), row.contrast?.mean)));
+        let said: Vec<String> = said.map(|(name, mean)| format!("{name} {:.1} %", 100.0 * mean)).collect();
+        common.say(&format!("{:<28} white less red zones: {}", rows[0].pose, said.join(", ")));
     }
 }
 

@@ -1,0 +1,105 @@
+//! The comparison's files: `channels.csv` and the chart.
+
+use super::compare::{ChannelFigures, ChannelRow, ZonesOf};
+use crate::figure::{Axis, Bar, Chart, Item, draw_charts};
+use crate::files::{Staging, WriteError};
+use crate::photo::normalize::Channel;
+
+const TABLE: &str = "channels.csv";
+const PNG: &str = "figures/channels.png";
+const SVG: &str = "figures/channels.svg";
+/// The header of `channels.csv`.
+const COLUMNS: [&str; 11] =
+    ["pose", "tone", "channel", "subjects", "zones", "white", "red", "contrast", "low", "high", "at_full_scale"];
+/// Tones with a chart of their own; the table has them all.
+const MOST_CHARTS: usize = 8;
+
+/// Writes table and chart, and keeps the chart for the report.
+///
+/// # Errors
+/// [`WriteError`].
+pub(in crate::photo) fn write(figures: &mut ChannelFigures, staging: &Staging) -> Result<(), WriteError> {
+    let refused = |why: csv::Error| staging.refused(TABLE, why);
+    let mut table = csv::Writer::from_writer(Vec::new());
+    table.write_record(COLUMNS).map_err(refused)?;
+    for row in &figures.rows {
+        table.write_record(cells(row)).map_err(refused)?;
+    }
+    staging.write(TABLE, &table.into_inner().map_err(|why| staging.refused(TABLE, why))?)?;
+    let poses = figures.rows.iter().filter(|row| row.tone.is_none()).count() / 3;
+    let (png, svg) = (staging.place(PNG)?, staging.place(SVG)?);
+    draw_charts(&charts(figures), width(poses), &png, &svg).map_err(|why| staging.refused(PNG, why))?;
+    figures.chart = staging.read(PNG)?;
+    Ok(())
+}
+
+fn cells(row: &ChannelRow) -> [String; COLUMNS.len()] {
+    let number = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.6}"));
+    let zones = match row.zones {
+        ZonesOf::Others => "others",
+        ZonesOf::Own => "own",
+    };
+    [
+        row.pose.clone(),
+        row.tone.clone().unwrap_or_default(),
+        row.channel.name().to_owned(),
+        row.subjects.to_string(),
+        zones.to_owned(),
+        number(row.white),
+        number(row.red),
+        number(row.contrast.map(|contrast| contrast.mean)),
+        number(row.contrast.and_then(|contrast| contrast.low)),
+        number(row.contrast.and_then(|contrast| contrast.high)),
+        number(row.at_full_scale),
+    ]
+}
+
+/// Pixels of a chart over so many poses.
+fn width(poses: usize) -> u32 {
+    (220 + 120 * poses as u32).clamp(640, 6000)
+}
+
+/// One chart of all subjects, then one for each tone.
+fn charts(figures: &ChannelFigures) -> Vec<Chart> {
+    let mut tones: Vec<Option<&str>> = figures.rows.iter().map(|row| row.tone.as_deref()).collect();
+    tones.sort_unstable();
+    tones.dedup();
+    let mut poses: Vec<&str> = figures.rows.iter().map(|row| row.pose.as_str()).collect();
+    poses.dedup();
+    let chart = |tone: Option<&str>| {
+        let rows: Vec<&ChannelRow> = figures.rows.iter().filter(|row| row.tone.as_deref() == tone).collect();
+        let names = poses.iter().enumerate().map(|(at, pose)| (at as f64, pose.replace('_', "\n"))).collect();
+        let mut items: Vec<Item> = [Channel::Red, Channel::Green, Channel::Blue]
+            .into_iter()
+            .map(|channel| bars(channel, rows.iter().copied().filter(|row| row.channel == channel), &poses))
+            .collect();
+        items.push(Item::Names(names));
+        let whose = tone.map_or_else(|| "all subjects".to_owned(), |tone| format!("skin tone {tone}"));
+        Chart {
+            title: format!("White less red zones: {whose}"),
+            x: Axis { label: String::new() },
+            y: Axis { label: "contrast, % of full scale".into() },
+            from_zero: true,
+            items,
+            height: 420,
+        }
+    };
+    tones.into_iter().take(1 + MOST_CHARTS).map(chart).collect()
+}
+
+/// A channel's bars, beside the other channels' at each pose, in the colour that is nearest to its own.
+fn bars<'a>(channel: Channel, rows: impl Iterator<Item = &'a ChannelRow>, poses: &[&str]) -> Item {
+    const WIDTH: f64 = 0.26;
+    let (offset, colour) = match channel {
+        Channel::Red => (-WIDTH, 1),
+        Channel::Green => (0.0, 2),
+        Channel::Blue => (WIDTH, 0),
+    };
+    let bar = |row: &ChannelRow| {
+        let at = poses.iter().position(|pose| *pose == row.pose)? as f64 + offset;
+        let contrast = row.contrast?;
+        let ends = contrast.low.zip(contrast.high).map(|(low, high)| [100.0 * low, 100.0 * high]);
+        Some(Bar { at, width: WIDTH, value: 100.0 * contrast.mean, error: ends })
+    };
+    Item::Bars { name: Some(channel.name().to_owned()), bars: rows.filter_map(bar).collect(), colour }
+}

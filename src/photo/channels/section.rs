@@ -1,0 +1,128 @@
+//! The report's section: it argues as section 4.2.2 does, from what was measured.
+
+use super::compare::{ChannelDifference, ChannelFigures, ChannelRow};
+use super::interval::Estimate;
+use crate::figure::Page;
+use crate::photo::normalize::Channel;
+
+const CLAIM: &str = "The thesis isolates the green component because \u{201c}the red and white areas of the \
+    fingernail differ mainly in their green component, while the red and blue components are almost identical\u{201d} \
+    (section 4.2.2). Here that is measured: the contrast is the mean of the white zones less that of the red ones, on \
+    the same places of the nail in all three channels. White is the lightest quarter of the nail's bed, red the \
+    darkest. For each subject they are chosen on the mean picture of the other subjects, in which every channel has \
+    one vote; so neither a subject's noise nor one channel can make its own contrast. Intervals are 95 % confidence \
+    intervals of the mean over subjects (Student's t), each for itself.";
+
+/// What the paired differences say of a pose.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Verdict {
+    /// Green's contrast is beyond both others'.
+    Green,
+    /// Another channel's contrast is beyond green's.
+    Other,
+    /// An interval holds zero.
+    Open,
+    /// There is no interval.
+    Unknown,
+}
+
+/// Adds the section to the page.
+pub(in crate::photo) fn add_section(page: &mut Page, figures: &ChannelFigures) {
+    page.heading("Why the green channel? (Section 4.2.2)");
+    page.paragraph(CLAIM);
+    page.list(&findings(figures));
+    page.png(&figures.chart, "Contrast between white and red zones by pose and channel");
+    let header = ["pose", "tone", "channel", "subjects", "white, %", "red, %", "contrast, %", "95 % interval, %"];
+    let rows: Vec<Vec<String>> = figures.rows.iter().map(cells).collect();
+    page.table(&header, &rows, |_| false);
+    page.paragraph("Values are in % of full scale; all tones together where none is named. Subject by subject:");
+    let rows: Vec<Vec<String>> = figures.differences.iter().map(cells_of_difference).collect();
+    page.table(&["pose", "tone", "contrast of", "less that of", "difference, %", "95 % interval, %"], &rows, |_| false);
+}
+
+fn cells(row: &ChannelRow) -> Vec<String> {
+    vec![
+        row.pose.clone(),
+        row.tone.clone().unwrap_or_default(),
+        row.channel.name().to_owned(),
+        row.subjects.to_string(),
+        percent(row.white),
+        percent(row.red),
+        percent(row.contrast.map(|contrast| contrast.mean)),
+        interval(row.contrast),
+    ]
+}
+
+fn cells_of_difference(row: &ChannelDifference) -> Vec<String> {
+    vec![
+        row.pose.clone(),
+        row.tone.clone().unwrap_or_default(),
+        row.of.name().to_owned(),
+        row.less.name().to_owned(),
+        percent(row.difference.map(|difference| difference.mean)),
+        interval(row.difference),
+    ]
+}
+
+fn percent(value: Option<f64>) -> String {
+    value.map_or_else(String::new, |value| format!("{:.2}", 100.0 * value))
+}
+
+fn interval(of: Option<Estimate>) -> String {
+    let ends = of.and_then(|of| of.low.zip(of.high));
+    ends.map_or_else(String::new, |(low, high)| format!("{:.2} to {:.2}", 100.0 * low, 100.0 * high))
+}
+
+/// What was found, over all subjects.
+fn findings(figures: &ChannelFigures) -> Vec<String> {
+    let of_all: Vec<&ChannelDifference> = figures.differences.iter().filter(|d| d.tone.is_none()).collect();
+    let verdicts: Vec<(&str, Verdict)> =
+        of_all.chunk_by(|a, b| a.pose == b.pose).map(|of_pose| (of_pose[0].pose.as_str(), verdict(of_pose))).collect();
+    let named = |wanted: Verdict| -> Vec<&str> {
+        verdicts.iter().filter(|(_, verdict)| *verdict == wanted).map(|(pose, _)| *pose).collect()
+    };
+    let say = |wanted: Verdict, what: &str| {
+        let poses = named(wanted);
+        let of =
+            |poses: &[&str]| format!("{} of {} pose(s) {what}: {}.", poses.len(), verdicts.len(), poses.join(", "));
+        (!poses.is_empty()).then(|| of(&poses))
+    };
+    let said = [
+        say(Verdict::Green, "bear the thesis out, white and red zones differing more in green than in red or blue"),
+        say(Verdict::Other, "contradict it, another channel having more contrast than green"),
+        say(Verdict::Open, "leave it open, an interval of a difference between channels holding zero"),
+        say(Verdict::Unknown, "can't be judged, having fewer than two subjects in colour"),
+    ];
+    said.into_iter().flatten().chain(shares(figures)).collect()
+}
+
+/// Judges by green less red and green less blue.
+fn verdict(of_pose: &[&ChannelDifference]) -> Verdict {
+    let of_green = of_pose.iter().filter(|row| row.of == Channel::Green);
+    let ends: Option<Vec<(f64, f64)>> =
+        of_green.map(|row| row.difference.and_then(|difference| difference.low.zip(difference.high))).collect();
+    match ends {
+        None => Verdict::Unknown,
+        Some(ends) if ends.iter().all(|(low, _)| *low > 0.0) => Verdict::Green,
+        Some(ends) if ends.iter().any(|(_, high)| *high < 0.0) => Verdict::Other,
+        Some(_) => Verdict::Open,
+    }
+}
+
+/// How nearly identical red and blue zones are: their contrasts as shares of green's, over all poses.
+fn shares(figures: &ChannelFigures) -> Option<String> {
+    let total = |channel: Channel| -> f64 {
+        let rows = figures.rows.iter().filter(|row| row.tone.is_none() && row.channel == channel);
+        rows.filter_map(|row| row.contrast).map(|contrast| contrast.mean).sum()
+    };
+    let [red, green, blue] = [Channel::Red, Channel::Green, Channel::Blue].map(total);
+    (green > 0.0).then(|| {
+        let share = |of: f64| format!("{:.0} %", 100.0 * of / green);
+        format!(
+            "Of the contrast in green, summed over the poses, red shows {} and blue {}: the nearer to 0 %, the more \
+             nearly identical white and red zones are there.",
+            share(red),
+            share(blue)
+        )
+    })
+}
