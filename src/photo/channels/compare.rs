@@ -57,6 +57,9 @@ pub struct ChannelRow {
     pub red: Option<f64>,
     /// White less red, over subjects, fraction of full scale.
     pub contrast: Option<Estimate>,
+    /// The contrast divided by the mean of both zones, over subjects; the same in all channels where a zone is darker
+    /// by shade alone.
+    pub relative: Option<Estimate>,
     /// Share of the zones' cells that are at full scale: contrast is lost there.
     pub at_full_scale: Option<f64>,
 }
@@ -176,6 +179,12 @@ impl Measured {
     fn contrast(&self, channel: usize) -> f64 {
         self.white[channel] - self.red[channel]
     }
+
+    /// None where the channel is black.
+    fn relative(&self, channel: usize) -> Option<f64> {
+        let sum = self.white[channel] + self.red[channel];
+        (sum > 0.0).then(|| 2.0 * self.contrast(channel) / sum)
+    }
 }
 
 fn add_rows(figures: &mut ChannelFigures, (pose, tone, zones): (&str, Option<&str>, ZonesOf), of: &[Measured]) {
@@ -192,6 +201,7 @@ fn add_rows(figures: &mut ChannelFigures, (pose, tone, zones): (&str, Option<&st
             white: mean(&|m| m.white[k]),
             red: mean(&|m| m.red[k]),
             contrast: over(&|m| m.contrast(k)),
+            relative: Estimate::of(&of.iter().filter_map(|m| m.relative(k)).collect::<Vec<f64>>()),
             at_full_scale: mean(&|m| m.at_full_scale[k]),
         });
     }

@@ -9,8 +9,22 @@ const TABLE: &str = "channels.csv";
 const PNG: &str = "figures/channels.png";
 const SVG: &str = "figures/channels.svg";
 /// The header of `channels.csv`.
-const COLUMNS: [&str; 11] =
-    ["pose", "tone", "channel", "subjects", "zones", "white", "red", "contrast", "low", "high", "at_full_scale"];
+const COLUMNS: [&str; 14] = [
+    "pose",
+    "tone",
+    "channel",
+    "subjects",
+    "zones",
+    "white",
+    "red",
+    "contrast",
+    "low",
+    "high",
+    "relative",
+    "relative_low",
+    "relative_high",
+    "at_full_scale",
+];
 /// Tones with a chart of their own; the table has them all.
 const MOST_CHARTS: usize = 8;
 
@@ -39,6 +53,11 @@ fn cells(row: &ChannelRow) -> [String; COLUMNS.len()] {
         ZonesOf::Others => "others",
         ZonesOf::Own => "own",
     };
+    let [contrast, relative] = [row.contrast, row.relative].map(|of| {
+        let ends = of.map(|of| [of.low, of.high]).unwrap_or_default();
+        [of.map(|of| of.mean), ends[0], ends[1]].map(number)
+    });
+    let [[contrast, low, high], [relative, relative_low, relative_high]] = [contrast, relative];
     [
         row.pose.clone(),
         row.tone.clone().unwrap_or_default(),
@@ -47,9 +66,12 @@ fn cells(row: &ChannelRow) -> [String; COLUMNS.len()] {
         zones.to_owned(),
         number(row.white),
         number(row.red),
-        number(row.contrast.map(|contrast| contrast.mean)),
-        number(row.contrast.and_then(|contrast| contrast.low)),
-        number(row.contrast.and_then(|contrast| contrast.high)),
+        contrast,
+        low,
+        high,
+        relative,
+        relative_low,
+        relative_high,
         number(row.at_full_scale),
     ]
 }
@@ -66,6 +88,9 @@ fn charts(figures: &ChannelFigures) -> Vec<Chart> {
     tones.dedup();
     let mut poses: Vec<&str> = figures.rows.iter().map(|row| row.pose.as_str()).collect();
     poses.dedup();
+    // All charts have the same scale.
+    let reach = |row: &ChannelRow| row.contrast.map(|of| [of.low.unwrap_or(of.mean), of.high.unwrap_or(of.mean)]);
+    let room: Vec<[f64; 2]> = figures.rows.iter().filter_map(reach).flatten().map(|end| [0.0, 100.0 * end]).collect();
     let chart = |tone: Option<&str>| {
         let rows: Vec<&ChannelRow> = figures.rows.iter().filter(|row| row.tone.as_deref() == tone).collect();
         let names = poses.iter().enumerate().map(|(at, pose)| (at as f64, pose.replace('_', "\n"))).collect();
@@ -73,7 +98,7 @@ fn charts(figures: &ChannelFigures) -> Vec<Chart> {
             .into_iter()
             .map(|channel| bars(channel, rows.iter().copied().filter(|row| row.channel == channel), &poses))
             .collect();
-        items.push(Item::Names(names));
+        items.extend([Item::Names(names), Item::Room(room.clone())]);
         let whose = tone.map_or_else(|| "all subjects".to_owned(), |tone| format!("skin tone {tone}"));
         Chart {
             title: format!("White less red zones: {whose}"),

@@ -11,7 +11,22 @@ const CLAIM: &str = "The thesis isolates the green component because \u{201c}the
     the same places of the nail in all three channels. White is the lightest quarter of the nail's bed, red the \
     darkest. For each subject they are chosen on the mean picture of the other subjects, in which every channel has \
     one vote; so neither a subject's noise nor one channel can make its own contrast. Intervals are 95 % confidence \
-    intervals of the mean over subjects (Student's t), each for itself.";
+    intervals of the mean over subjects (Student's t), each for itself. Relative contrast is \
+    contrast divided by the mean of both zones. Shade and lunula are light and dark in every channel: where relative \
+    contrast is the same in all three, that is all the zones show.";
+
+const HEADER: [&str; 10] = [
+    "pose",
+    "tone",
+    "channel",
+    "subjects",
+    "white, %",
+    "red, %",
+    "contrast, %",
+    "95 % interval, %",
+    "relative contrast, %",
+    "95 % interval, %",
+];
 
 /// What the paired differences say of a pose.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -32,10 +47,9 @@ pub(in crate::photo) fn add_section(page: &mut Page, figures: &ChannelFigures) {
     page.paragraph(CLAIM);
     page.list(&findings(figures));
     page.png(&figures.chart, "Contrast between white and red zones by pose and channel");
-    let header = ["pose", "tone", "channel", "subjects", "white, %", "red, %", "contrast, %", "95 % interval, %"];
     let rows: Vec<Vec<String>> = figures.rows.iter().map(cells).collect();
-    page.table(&header, &rows, |_| false);
-    page.paragraph("Values are in % of full scale; all tones together where none is named. Subject by subject:");
+    page.table(&HEADER, &rows, |_| false);
+    page.paragraph("All but relative contrast is in % of full scale; all subjects where no tone is named. Differences, subject by subject:");
     let rows: Vec<Vec<String>> = figures.differences.iter().map(cells_of_difference).collect();
     page.table(&["pose", "tone", "contrast of", "less that of", "difference, %", "95 % interval, %"], &rows, |_| false);
 }
@@ -50,6 +64,8 @@ fn cells(row: &ChannelRow) -> Vec<String> {
         percent(row.red),
         percent(row.contrast.map(|contrast| contrast.mean)),
         interval(row.contrast),
+        percent(row.relative.map(|relative| relative.mean)),
+        interval(row.relative),
     ]
 }
 
@@ -84,14 +100,14 @@ fn findings(figures: &ChannelFigures) -> Vec<String> {
     let say = |wanted: Verdict, what: &str| {
         let poses = named(wanted);
         let of =
-            |poses: &[&str]| format!("{} of {} pose(s) {what}: {}.", poses.len(), verdicts.len(), poses.join(", "));
+            |poses: &[&str]| format!("In {} of {} pose(s) {what}: {}.", poses.len(), verdicts.len(), poses.join(", "));
         (!poses.is_empty()).then(|| of(&poses))
     };
     let said = [
-        say(Verdict::Green, "bear the thesis out, white and red zones differing more in green than in red or blue"),
-        say(Verdict::Other, "contradict it, another channel having more contrast than green"),
-        say(Verdict::Open, "leave it open, an interval of a difference between channels holding zero"),
-        say(Verdict::Unknown, "can't be judged, having fewer than two subjects in colour"),
+        say(Verdict::Green, "green has more contrast than red and than blue, as the thesis finds"),
+        say(Verdict::Other, "another channel has more contrast than green"),
+        say(Verdict::Open, "green is not clearly ahead of both others (an interval of its lead holds zero)"),
+        say(Verdict::Unknown, "nothing can be said, as there are fewer than two subjects in colour"),
     ];
     said.into_iter().flatten().chain(shares(figures)).collect()
 }

@@ -207,7 +207,11 @@ pub(in crate::photo) fn of_merge(parts: &[PathBuf], partials: &Partials, watch: 
         threads: rayon::current_num_threads(),
         nails: Vec::new(),
     };
-    let left_out = vec!["photographs: not read again, their sums are joined".into()];
+    let mut left_out = vec!["photographs: not read again, their sums are joined".into()];
+    if parts.iter().any(|part| part.join("channels.csv").exists()) {
+        left_out
+            .push("channels compared: over all subjects, so photographs are needed: `lunula photos --channels`".into());
+    }
     Report { left_out, notes, ..Report::new("photos merge", watch, figures) }
 }
 
