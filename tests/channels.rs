@@ -91,8 +91,8 @@ fn contrasts_of_phantoms_are_those_of_their_spectra() {
             assert!(relative > 0.9 * made / number(row, "white") && relative < 1.1 * made / number(row, "red"));
             assert!(number(row, "low") < made && made < number(row, "high"));
         }
-        // The phantom's zones change green by 1, blue by 0.35, red by 0.10.
-        assert!(exact[1] > 2.0 * exact[2] && exact[2] > exact[0], "{exact:?}");
+        // The phantom's zones change green by 1, blue by 0.35, red by 0.10; shade and lunula change all.
+        assert!(exact[1] > 1.5 * exact[2] && exact[2] > exact[0], "{exact:?}");
     }
     let differences = report["channels"]["differences"].list();
     assert_eq!(differences.len(), 9);
