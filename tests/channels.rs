@@ -66,7 +66,7 @@ fn rows_of<'a>(
     rows.iter().filter(move |row| row["pose"] == pose && row["tone"] == tone)
 }
 
-/// Of full scale; measured: 0.0006 (0.15 of 255).
+/// Of full scale, 0.3 of 255: what maps are held to.
 const CONTRAST_ERROR: f64 = 0.0012;
 
 #[test]
@@ -91,8 +91,8 @@ fn contrasts_of_phantoms_are_those_of_their_spectra() {
             assert!(relative > 0.9 * made / number(row, "white") && relative < 1.1 * made / number(row, "red"));
             assert!(number(row, "low") < made && made < number(row, "high"));
         }
-        // The phantom's zones change green by 1, blue by 0.35, red by 0.10.
-        assert!(exact[1] > 2.0 * exact[2] && exact[2] > exact[0], "{exact:?}");
+        // The phantom's zones change green by 1, blue by 0.35, red by 0.10; shade and lunula change all.
+        assert!(exact[1] > 1.5 * exact[2] && exact[2] > exact[0], "{exact:?}");
     }
     let differences = report["channels"]["differences"].list();
     assert_eq!(differences.len(), 9);

@@ -17,8 +17,8 @@ pub struct PhotosOptions {
     /// Refuse photographs of more megapixels, before memory is taken for them [default: 250]
     #[arg(long, value_name = "MP", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     pub max_megapixels: Option<u32>,
-    /// Compare the channels as well: how much white and red zones differ in red, green and blue, for each pose and, where
-    /// photos.csv has a column `tone`, each skin tone; needs colour photographs
+    /// Compare the channels as well: how much white and red zones differ in red, green and blue, for each pose and,
+    /// where photos.csv has a column `tone`, each skin tone; needs colour photographs
     #[arg(long)]
     pub channels: bool,
 }

@@ -1,9 +1,10 @@
 //! Which photographs: a folder of poses, or a manifest, to a sorted list.
 //!
 //! In: `SET/<pose>/<subject>.<png|jpg|tif|bmp>`, or a flat folder (one pose, named after it), or a folder with
-//! `photos.csv` (`file,subject,pose` and optionally `outline` and `tone`, paths relative to it). Out: a [`PhotoSet`], its
-//! photographs sorted by pose ([`THESIS_POSES`](super::pose::THESIS_POSES) first), subject and file, and the [`SetFault`]s: entries that cannot be used, each with its
-//! place; the others go on. A subject counts once per pose, so subjects that a pose has twice are all left out.
+//! `photos.csv` (`file,subject,pose` and optionally `outline` and `tone`, paths relative to it). Out: a [`PhotoSet`],
+//! its photographs sorted by pose ([`THESIS_POSES`](super::pose::THESIS_POSES) first), subject and file, and the
+//! [`SetFault`]s: entries that cannot be used, each with its place; the others go on. A subject counts once per pose,
+//! so subjects that a pose has twice are all left out.
 
 use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};

@@ -18,8 +18,9 @@
 //! Photographs are worked on at a grid of 40 x 40 cells over the nail's box, means over a cell's area; they are kept
 //! until all are there, 11 kB each whatever their size. Grey photographs have no channels and no part in this.
 //!
-//! Intervals take subjects for independent. They are not quite, as they choose each other's zones: where nothing but noise
-//! does, the mean's variance is twice what it seems, and 89 % of the intervals hold the truth (measured, see the tests).
+//! Intervals take subjects to be independent. They are not quite, as they choose each other's zones: where nothing but
+//! noise does, the mean's variance is twice what it seems, and 89 % of the intervals hold the truth (measured, see the
+//! tests).
 //!
 //! Not determined: what of the contrast is blood. Shading and the lunula are light and dark in every channel.
 

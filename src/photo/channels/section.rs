@@ -49,7 +49,10 @@ pub(in crate::photo) fn add_section(page: &mut Page, figures: &ChannelFigures) {
     page.png(&figures.chart, "Contrast between white and red zones by pose and channel");
     let rows: Vec<Vec<String>> = figures.rows.iter().map(cells).collect();
     page.table(&HEADER, &rows, |_| false);
-    page.paragraph("All but relative contrast is in % of full scale; all subjects where no tone is named. Differences, subject by subject:");
+    page.paragraph(
+        "All but relative contrast is in % of full scale; rows without a tone are of all subjects. Differences, \
+         subject by subject:",
+    );
     let rows: Vec<Vec<String>> = figures.differences.iter().map(cells_of_difference).collect();
     page.table(&["pose", "tone", "contrast of", "less that of", "difference, %", "95 % interval, %"], &rows, |_| false);
 }

@@ -17,10 +17,10 @@ use crate::{Common, Outcome};
 /// Turn nail photographs into coloration maps: outlines, normalized pictures, mean and standard deviation over subjects
 ///
 /// SET is a folder SET/<pose>/<subject>.<png|jpg|tif|bmp>, a flat folder (one pose), or holds photos.csv with the
-/// columns file,subject,pose and optionally outline and tone (skin tone). The outline of a nail comes from the first of:
-/// the outline column,
-/// <stem>.json beside the photograph (LabelMe: polygon `nail`, line `axis` from proximal to distal), a mask under
-/// --masks, detection. Results: nails.csv, normalized/, maps/*.npy, figures/, report.html, run.json.
+/// columns file,subject,pose and optionally outline and tone (skin tone). The outline of a nail comes from the first
+/// of: the column outline, <stem>.json beside the photograph (LabelMe: polygon `nail`, line `axis` from proximal to
+/// distal), a mask under --masks, detection. Results: nails.csv, normalized/, maps/*.npy, figures/, report.html,
+/// run.json.
 #[derive(Debug, Args)]
 #[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 pub(crate) struct PhotosArgs {
