@@ -389,7 +389,8 @@ fn detected_outlines_are_kept_corrected_and_used() {
     let again = dir.table("again/nails.csv");
     assert!(again.len() == 4 && again.iter().all(|r| r["outline"] == "annotated" && r["used"] == "true"));
     let (apart, again) = (dir.bytes_of("apart"), dir.bytes_of("again"));
-    assert!(apart.keys().all(|name| again.contains_key(name)), "the same results");
+    let of_detection = |name: &str| name.starts_with("figures/outlines-");
+    assert!(apart.keys().all(|name| of_detection(name) || again.contains_key(name)), "the same results");
 }
 
 #[test]

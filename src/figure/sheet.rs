@@ -194,7 +194,8 @@ impl Sheet {
             let png = tile.png.as_ref().or(encoded.as_ref()).map_or(&[][..], Vec::as_slice);
             svg += &format!(
                 "<rect x=\"{x}\" y=\"{y}\" width=\"{tile_width}\" height=\"{tile_height}\" fill=\"#cdd8f0\"/>\n\
-                 <image x=\"{x}\" y=\"{y}\" width=\"{picture_width}\" height=\"{picture_height}\" href=\"data:image/png;base64,{}\"/>\n\
+                 <image x=\"{x}\" y=\"{y}\" width=\"{picture_width}\" height=\"{picture_height}\" \
+                 href=\"data:image/png;base64,{}\"/>\n\
                  <text x=\"{}\" y=\"{}\" font-size=\"15\" text-anchor=\"middle\">{}</text>\n",
                 base64::engine::general_purpose::STANDARD.encode(png),
                 x + tile_width / 2,

@@ -114,7 +114,7 @@ mod tests {
         onnx.extend((-3.0_f32).to_le_bytes());
         assert_eq!(unpacked(&packed), Some(onnx));
         for cut in 1..packed.len() {
-            assert_eq!(unpacked(&packed[..cut]).is_some(), false, "cut at {cut}");
+            assert!(unpacked(&packed[..cut]).is_none(), "cut at {cut}");
         }
         assert!(Network::of_packed(&packed).is_err());
         assert!(Network::of_packed(&[]).is_err());
