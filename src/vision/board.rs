@@ -7,8 +7,8 @@
 //! The board is found by OpenCV's `findChessboardCorners` or, where it finds none, by `findChessboardCornersSB` (Duda
 //! and Frese 2018, "Accurate detection and localization of checkerboard corners for calibration", BMVC) on a smaller
 //! picture; `cornerSubPix` (Förstner and Gülch 1987) then places the corners. Measured on phantoms of 1280 x 720 px
-//! and noise of 2 of 255: 0.027 px RMS in 0.003 s, `findChessboardCornersSB` alone 0.045 to 0.066 px in 0.8 s; at noise of
-//! 8: 0.065 to 0.078 and 0.051 to 0.080 px.
+//! and noise of 2 of 255: 0.027 px RMS in 0.003 s, `findChessboardCornersSB` alone 0.045 to 0.066 px in 0.8 s; at noise
+//! of 8: 0.065 to 0.078 and 0.051 to 0.080 px.
 
 use opencv::calib3d::{
     self, CALIB_CB_ADAPTIVE_THRESH, CALIB_CB_EXHAUSTIVE, CALIB_CB_FAST_CHECK, CALIB_CB_NORMALIZE_IMAGE,
