@@ -85,8 +85,7 @@ mod tests {
         closed_line(&mut rgb, [20, 20], &[[4.0, 4.0], [15.0, 4.0], [15.0, 15.0], [4.0, 15.0]], [200, 100, 0], 1)
             .expect("a line");
         let at = |x: usize, y: usize| &rgb[3 * (20 * y + x)..][..3];
-        assert_eq!(at(10, 4), [200, 100, 0]);
-        assert_eq!(at(4, 10), [200, 100, 0]);
+        assert!([at(10, 4), at(4, 10)].iter().all(|p| p[0] > 150 && p[1] > 70 && p[2] == 0));
         assert_eq!(at(10, 10), [0; 3]);
         assert!(closed_line(&mut rgb, [20, 21], &[[4.0, 4.0], [15.0, 4.0]], [1; 3], 1).is_err());
     }

@@ -230,6 +230,8 @@ const BELIEVED: f64 = 0.5;
 /// .. and of another's for it to take the place of the network's own. On 26 real photographs the network's outlines
 /// have an IoU of 0.87 in median, refined ones of 0.81, those so believed of 0.91; on phantoms 0.91 and 0.99.
 const BELIEVED_ANYWHERE: f64 = 0.8;
+/// Axes this far apart are of fingers that point elsewhere, degrees.
+const ELSEWHERE_DEG: f64 = 45.0;
 /// Overlap with the network's outline below which a refined one is another thing's.
 const REFINED_AGREES: f64 = 0.6;
 /// The part of the photograph around a nail that its outline is refined on, nail lengths on each side.
@@ -259,30 +261,40 @@ fn judged(
     axis: Result<FoundAxis, AxisUnknown>,
     options: &DetectOptions,
 ) -> Detected {
-    let major = Moments::of(&outline).major.clockwise_rad();
-    let quarters = [0.0, 1.0, 2.0, 3.0].map(|k| Axis::from_clockwise_rad(major + k * std::f64::consts::FRAC_PI_2));
-    let (known, tried) = match &axis {
-        Ok(found) => (Some(found.axis), vec![found.axis]),
-        Err(unknown) => (None, unknown.best_guess.iter().map(|guess| guess.axis).chain(quarters).collect()),
-    };
+    let known = axis.as_ref().ok().map(|found| found.axis);
+    let guess = known.or_else(|| axis.as_ref().err()?.best_guess.map(|guess| guess.axis));
+    let is_close_up = outline.area_px2().sqrt() >= CLOSE_UP * f64::from(image.width().max(image.height()));
+    let mut tried = Vec::from_iter(guess);
+    if is_close_up || known.is_none() {
+        let major = Moments::of(&outline).major.clockwise_rad();
+        tried.extend([0.0, 1.0, 2.0, 3.0].map(|k| Axis::from_clockwise_rad(major + k * std::f64::consts::FRAC_PI_2)));
+    }
     let likeliest = tried[0];
-    let best = tried
+    let better: Vec<Detected> = tried
         .into_iter()
         .filter_map(|axis| refined(image, &outline, axis, options))
         .filter(|better| better.outline.iou(&outline) >= REFINED_AGREES)
-        .max_by(|a, b| a.confidence.total_cmp(&b.confidence));
-    let is_close_up = outline.area_px2().sqrt() >= CLOSE_UP * f64::from(image.width().max(image.height()));
-    let needed = if is_close_up { BELIEVED } else { BELIEVED_ANYWHERE };
-    match best {
-        Some(better) if better.confidence >= needed => {
-            let apart = |axis: &Axis| {
-                Axis::from_clockwise_rad(axis.clockwise_rad() - better.axis.clockwise_rad()).clockwise_deg().abs()
-            };
-            let axis = known.filter(|axis| apart(axis) > AGREE_DEG).unwrap_or(better.axis);
-            Detected { axis, confidence, ..better }
+        .collect();
+    let best = better.iter().max_by(|a, b| a.confidence.total_cmp(&b.confidence));
+    let apart_deg = |one: Axis, other: Axis| {
+        Axis::from_clockwise_rad(one.clockwise_rad() - other.clockwise_rad()).clockwise_deg().abs()
+    };
+    // Believed, and nothing says that the finger points elsewhere.
+    let believed = best.filter(|best| {
+        let needed = if is_close_up && known.is_some() { BELIEVED } else { BELIEVED_ANYWHERE };
+        let elsewhere = |axis: Axis| apart_deg(axis, best.axis) > ELSEWHERE_DEG;
+        let rival = better.iter().any(|other| other.confidence >= BELIEVED && elsewhere(other.axis));
+        best.confidence >= needed && !known.is_some_and(elsewhere) && (known.is_some() || !rival)
+    });
+    match believed {
+        Some(best) => {
+            let axis = known.filter(|axis| apart_deg(*axis, best.axis) > AGREE_DEG).unwrap_or(best.axis);
+            Detected { axis, confidence, outline: best.outline.clone() }
         }
-        _ if is_close_up || known.is_none() => Detected { outline, axis: likeliest, confidence: HALVED * confidence },
-        _ => Detected { outline, axis: likeliest, confidence },
+        None if is_close_up || known.is_none() => {
+            Detected { outline, axis: likeliest, confidence: HALVED * confidence }
+        }
+        None => Detected { outline, axis: likeliest, confidence },
     }
 }
 
