@@ -1,8 +1,8 @@
 //! What lunula uses of OpenCV, behind safe functions on our own buffers.
 //!
-//! In: slices that the caller owns; OpenCV sees them as views ([`view`], [`Grey`]), nothing is copied. Out: plain
+//! In: slices that the caller owns; OpenCV sees them as views (`view`, `Grey`), nothing is copied. Out: plain
 //! numbers. An empty "success" of OpenCV is an error here ([`VisionError`]). OpenCV's own threads are off
-//! ([`ready`]): the jobs share the machine's cores themselves, and their results don't depend on how many there are.
+//! (`ready`): the jobs share the machine's cores themselves, and their results don't depend on how many there are.
 //! No type of OpenCV leaves this room.
 //!
 //! Everywhere: the centre of a picture's top-left pixel is (0, 0), x to the right, y down, as OpenCV has it too.
