@@ -8,8 +8,10 @@
 //! Everywhere: the centre of a picture's top-left pixel is (0, 0), x to the right, y down, as OpenCV has it too.
 
 mod board;
+mod cells;
 mod image;
 mod lens;
+mod masks;
 mod net;
 
 use std::sync::Once;
@@ -20,10 +22,12 @@ use opencv::prelude::*;
 use thiserror::Error;
 
 pub(crate) use board::{Corners, find_board, shows_another};
+pub(crate) use cells::{Cell, halved, smoothed};
 pub(crate) use image::{closed_line, components, resized};
 pub(crate) use lens::{Calibration, Intrinsics, PARAMETERS, Pose, calibrate, project, undistorted};
 #[cfg(test)]
 pub(crate) use lens::{opencvs_sd, undistorted_by_default};
+pub(crate) use masks::{borders, filled, opened, otsu_level, steps_to};
 pub(crate) use net::{Network, Planes};
 
 /// A call of OpenCV that gave nothing.

@@ -10,13 +10,11 @@
 
 use std::sync::LazyLock;
 
-use image::{DynamicImage, GrayImage, ImageBuffer, Luma, Pixel, Primitive};
-use imageproc::distance_transform::{Norm, distance_transform};
-use imageproc::drawing::draw_polygon_mut;
-use imageproc::point::Point;
+use image::{DynamicImage, ImageBuffer, Pixel, Primitive};
 use wide::f32x4;
 
 use crate::photo::outline::{Moments, Outline};
+use crate::vision::{filled, smoothed, steps_to};
 
 /// Cells along the outline's long axis.
 pub(super) const NAIL_CELLS: f64 = 16.0;
@@ -27,6 +25,8 @@ const SIDE: usize = 2 * HALF + 1;
 const READS: u32 = 3;
 /// Smoothing before derivatives, cells: below it lie the pixels' noise and hairs.
 const BLUR: f32 = 0.7;
+/// Why OpenCV can't fail on the window.
+const SIZED: &str = "the window has its size";
 /// Cells within this distance of the nail show its own edge.
 const CLEAR_OF_NAIL: f64 = 2.0;
 /// Derivatives below this, relative to the nail's luma a cell, are noise (1 % is 1.5 levels of an 8-bit nail at 150).
@@ -51,7 +51,8 @@ pub(super) struct Surroundings {
     pub(super) rim: Vec<[f32; 2]>,
     /// Their mean.
     pub(super) centre: [f32; 2],
-    mask: GrayImage,
+    /// 1 on the nail.
+    mask: Vec<u8>,
     /// Square of the gradient that the stronger edges here reach.
     typical_edge2: f32,
     /// Whether anything around the nail stands out from noise.
@@ -64,10 +65,10 @@ impl Surroundings {
         let px_per_cell = moments.major_px / NAIL_CELLS;
         let mask = nail_mask(outline, moments.centroid_px, px_per_cell);
         let (mut colours, inside) = gather(image, moments.centroid_px, px_per_cell);
-        let at_nail = |i: usize| mask.as_raw()[i] > 0;
+        let at_nail = |i: usize| mask[i] > 0;
 
-        let distance = distance_transform(&mask, Norm::L1);
-        let away = |i: usize| f64::from(distance.as_raw()[i]);
+        let steps = steps_to(&mask, [SIDE; 2]).expect(SIZED);
+        let away = |i: usize| f64::from(steps[i]);
         let ring = |i: usize| inside[i] && away(i) > 1.0 && away(i) <= 3.0;
         let median = |values: &mut dyn Iterator<Item = f32>| quantile(&mut values.collect::<Vec<f32>>(), 0.5);
         let on_nail = (0..SIDE * SIDE).filter(|&i| at_nail(i) && inside[i]);
@@ -78,7 +79,7 @@ impl Surroundings {
         for colour in &mut colours {
             *colour = colour.map(|c| (c * scale).clamp(-3.0, 3.0));
         }
-        let colours = blurred(&colours);
+        let colours = smoothed(&colours, [SIDE; 2], *KERNEL).expect(SIZED);
 
         let mut skin = [0.0; 3];
         for (c, value) in skin.iter_mut().enumerate() {
@@ -173,7 +174,7 @@ impl Surroundings {
         // Half a cell more: rounded when cut.
         let (x, y) = (at[0] + HALF as f32 + 0.5, at[1] + HALF as f32 + 0.5);
         let within = x >= 0.0 && y >= 0.0 && x < SIDE as f32 && y < SIDE as f32;
-        within && self.mask.as_raw()[y as usize * SIDE + x as usize] > 0
+        within && self.mask[y as usize * SIDE + x as usize] > 0
     }
 }
 
@@ -183,37 +184,20 @@ fn quantile(values: &mut [f32], q: f64) -> Option<f32> {
     (!values.is_empty()).then(|| *values.select_nth_unstable_by(rank, f32::total_cmp).1)
 }
 
-/// Cells of which at least half lies in the outline: 255, others 0.
-fn nail_mask(outline: &Outline, centre: [f64; 2], px_per_cell: f64) -> GrayImage {
+/// Cells of which at least half lies in the outline: 1, others 0.
+fn nail_mask(outline: &Outline, centre: [f64; 2], px_per_cell: f64) -> Vec<u8> {
     const FINE: usize = 4;
     // Corner of the window at cell -0.5; in fine cells' centres.
     let to_fine =
         |p: f64, c: f64| (((p - c) / px_per_cell + HALF as f64 + 0.5) * FINE as f64 - 0.5).round().clamp(-1e6, 1e6);
-    let mut corners: Vec<Point<i32>> = Vec::new();
-    for [x, y] in outline.points() {
-        let corner = Point::new(to_fine(x, centre[0]) as i32, to_fine(y, centre[1]) as i32);
-        if corners.last() != Some(&corner) {
-            corners.push(corner);
-        }
-    }
-    while corners.len() > 1 && corners.first() == corners.last() {
-        corners.pop();
-    }
-    let mut fine = GrayImage::new((SIDE * FINE) as u32, (SIDE * FINE) as u32);
-    draw_polygon_mut(&mut fine, &corners, Luma([1]));
-    let mut mask = GrayImage::new(SIDE as u32, SIDE as u32);
-    for (cells, lines) in mask.chunks_exact_mut(SIDE).zip(fine.chunks_exact(SIDE * FINE * FINE)) {
-        let mut covered = [0; SIDE];
-        for line in lines.chunks_exact(SIDE * FINE) {
-            for (covered, fine) in covered.iter_mut().zip(line.chunks_exact(FINE)) {
-                *covered += fine.iter().map(|&fine| usize::from(fine)).sum::<usize>();
-            }
-        }
-        for (cell, covered) in cells.iter_mut().zip(covered) {
-            *cell = if 2 * covered >= FINE * FINE { 255 } else { 0 };
-        }
-    }
-    mask
+    let corners: Vec<[i32; 2]> =
+        outline.points().iter().map(|p| [0, 1].map(|k| to_fine(p[k], centre[k]) as i32)).collect();
+    let fine = filled(&corners, [SIDE * FINE; 2]).expect(SIZED);
+    let covered = |cell: usize| -> usize {
+        let first = cell / SIDE * FINE * SIDE * FINE + cell % SIDE * FINE;
+        (0..FINE).flat_map(|row| &fine[first + row * SIDE * FINE..][..FINE]).map(|&is| usize::from(is)).sum()
+    };
+    (0..SIDE * SIDE).map(|cell| u8::from(2 * covered(cell) >= FINE * FINE)).collect()
 }
 
 /// Colours (luma, red less green, green less blue, as fractions of full scale) of the window's cells, and which cells
@@ -307,65 +291,8 @@ fn places(centre: f64, px_per_cell: f64, reads: u32, extent: f64) -> Vec<Place> 
     (0..SIDE).map(place).collect()
 }
 
-/// Colours smoothed by [`BLUR`]: the sums of imageproc's `gaussian_blur_f32` in its order, without its calls for each
-/// pixel and channel.
-fn blurred(colours: &[[f32; 3]]) -> Vec<[f32; 3]> {
-    static KERNEL: LazyLock<[f32; TAPS]> = LazyLock::new(|| {
-        let value = |at: usize| {
-            let x = at.abs_diff(TAPS / 2) as f32;
-            (BLUR * (2.0 * std::f32::consts::PI).sqrt()).recip() * (-x.powi(2) / (2.0 * BLUR.powi(2))).exp()
-        };
-        let values: [f32; TAPS] = std::array::from_fn(value);
-        let sum: f32 = values.iter().sum();
-        values.map(|value| value / sum)
-    });
-    const TAPS: usize = 5;
-    let kernel = *KERNEL;
-    let mut across = vec![[0.0_f32; 3]; SIDE * SIDE];
-    for (out, line) in across.chunks_exact_mut(SIDE).zip(colours.chunks_exact(SIDE)) {
-        let mut padded = [[0.0; 3]; SIDE + TAPS - 1];
-        padded[..TAPS / 2].fill(line[0]);
-        padded[TAPS / 2..][..SIDE].copy_from_slice(line);
-        padded[SIDE + TAPS / 2..].fill(line[SIDE - 1]);
-        for (tap, weight) in kernel.into_iter().enumerate() {
-            add_weighted(out, &padded[tap..tap + SIDE], weight);
-        }
-    }
-    let mut both = vec![[0.0_f32; 3]; SIDE * SIDE];
-    for (row, out) in both.chunks_exact_mut(SIDE).enumerate() {
-        for (tap, weight) in kernel.into_iter().enumerate() {
-            let from = (row + tap).saturating_sub(TAPS / 2).min(SIDE - 1);
-            add_weighted(out, &across[from * SIDE..][..SIDE], weight);
-        }
-    }
-    both
-}
-
-fn add_weighted(sums: &mut [[f32; 3]], line: &[[f32; 3]], weight: f32) {
-    for (sum, value) in sums.as_flattened_mut().iter_mut().zip(line.as_flattened()) {
-        *sum += value * weight;
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use imageproc::filter::gaussian_blur_f32;
-    use rand::{RngExt, SeedableRng};
-
-    use super::*;
-
-    #[test]
-    fn blurring_gives_the_values_of_its_plain_twin() {
-        let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(1);
-        let colours: Vec<[f32; 3]> =
-            (0..SIDE * SIDE).map(|_| std::array::from_fn(|_| random.random_range(-3.0..3.0))).collect();
-        let blurred = blurred(&colours);
-        for c in 0..3 {
-            let raw = colours.iter().map(|colour| colour[c]).collect();
-            let plane: ImageBuffer<Luma<f32>, Vec<f32>> =
-                ImageBuffer::from_raw(SIDE as u32, SIDE as u32, raw).expect("one value per cell");
-            let twin = gaussian_blur_f32(&plane, BLUR).into_raw();
-            assert!(twin.iter().zip(&blurred).all(|(twin, one)| twin.to_bits() == one[c].to_bits()), "channel {c}");
-        }
-    }
-}
+/// The taps of [`BLUR`].
+static KERNEL: LazyLock<[f32; 5]> = LazyLock::new(|| {
+    let taps = [2.0_f32, 1.0, 0.0, 1.0, 2.0].map(|x| (-x.powi(2) / (2.0 * BLUR.powi(2))).exp());
+    taps.map(|tap| tap / taps.iter().sum::<f32>())
+});

@@ -3,7 +3,8 @@
 //! In a [`Frame`] x runs to the right and y *up*, towards the distal end, in units of the frame (a finger's width, a
 //! nail's half length, ...); a [`Patch`] holds the channels sampled on that frame, blurred to its own resolution.
 
-use super::picture::{Cell, Levels, Picture, between};
+use super::picture::{Levels, Picture, between};
+use crate::vision::{Cell, smoothed};
 
 /// An origin, a direction and a unit on the source picture.
 #[derive(Debug, Clone, Copy)]
@@ -79,7 +80,7 @@ impl Patch {
                 cells.push(between(&picture.cells, picture.size, at));
             }
         }
-        smooth(&mut cells, size);
+        let cells = smoothed(&cells, size, KERNEL).expect("one value a sample");
         Self { frame, extent, size, cells, colour: picture.colour }
     }
 
@@ -92,28 +93,8 @@ impl Patch {
     }
 }
 
-/// Binomial blur (1 4 6 4 1)/16 both ways: SD of one sample.
-fn smooth(cells: &mut [Cell], size: [usize; 2]) {
-    let [w, h] = size;
-    let kernel = |r: [Cell; 5]| -> Cell {
-        [0, 1, 2].map(|c| (r[0][c] + r[4][c] + 4.0 * (r[1][c] + r[3][c]) + 6.0 * r[2][c]) / 16.0)
-    };
-    let place = |i: usize, n: usize| [-2isize, -1, 0, 1, 2].map(|k| (i as isize + k).clamp(0, n as isize - 1) as usize);
-    let mut line = vec![[0.0f32; 3]; w];
-    for row in cells.chunks_exact_mut(w) {
-        for (i, out) in line.iter_mut().enumerate() {
-            *out = kernel(place(i, w).map(|k| row[k]));
-        }
-        row.copy_from_slice(&line);
-    }
-    let copy = cells.to_vec();
-    for (j, row) in cells.chunks_exact_mut(w).enumerate() {
-        let rows = place(j, h).map(|k| &copy[k * w..(k + 1) * w]);
-        for (i, out) in row.iter_mut().enumerate() {
-            *out = kernel(rows.map(|r| r[i]));
-        }
-    }
-}
+/// Binomial: SD of one sample.
+const KERNEL: [f32; 5] = [0.0625, 0.25, 0.375, 0.25, 0.0625];
 
 #[cfg(test)]
 mod tests {

@@ -6,15 +6,14 @@
 
 use image::DynamicImage;
 
+use crate::vision::{Cell, halved};
+
 /// ln(green + floor).
 pub(super) const TONE: usize = 0;
 /// ln(red / green); 0 on a grey photograph.
 pub(super) const RED: usize = 1;
 /// ln(green / blue); 0 on a grey photograph.
 pub(super) const YELLOW: usize = 2;
-
-/// The channels of one pixel.
-pub(super) type Cell = [f32; 3];
 
 /// Darkest value that counts, as a fraction of full scale: keeps logarithms finite and noise in the dark small.
 const FLOOR: f32 = 0.02;
@@ -125,20 +124,8 @@ impl Picture {
     }
 
     fn halved(&self) -> Self {
-        let size = self.size.map(|s| s / 2);
-        let mut cells = Vec::with_capacity(size[0] * size[1]);
-        for y in 0..size[1] {
-            let upper = &self.cells[2 * y * self.size[0]..];
-            let lower = &self.cells[(2 * y + 1) * self.size[0]..];
-            for x in 0..size[0] {
-                cells.push(
-                    [0, 1, 2].map(|c| {
-                        0.25 * (upper[2 * x][c] + upper[2 * x + 1][c] + lower[2 * x][c] + lower[2 * x + 1][c])
-                    }),
-                );
-            }
-        }
-        Self { size, cells, colour: self.colour, step: 2.0 * self.step }
+        let cells = halved(&self.cells, self.size).expect("one value a pixel");
+        Self { size: self.size.map(|s| s / 2), cells, colour: self.colour, step: 2.0 * self.step }
     }
 
     /// Working to source pixels.

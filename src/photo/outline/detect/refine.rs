@@ -10,8 +10,9 @@ use nalgebra::{Matrix6, Vector6};
 
 use super::net::Net;
 use super::patch::Frame;
-use super::picture::{Cell, Levels};
+use super::picture::Levels;
 use super::shape::OutlineShape;
+use crate::vision::Cell;
 
 /// Rays around the rim.
 pub const RAYS: usize = 64;

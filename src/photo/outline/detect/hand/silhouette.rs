@@ -5,11 +5,9 @@
 //! edges, which parts fingers that lie on skin.
 
 use image::GrayImage;
-use imageproc::contrast::otsu_level;
-use imageproc::distance_transform::Norm;
-use imageproc::morphology::open;
 
 use super::super::picture::{self, Picture, TONE, YELLOW};
+use crate::vision::{Cell, opened, otsu_level};
 
 /// ln(R/G) of skin in any common light.
 const RED: std::ops::Range<f32> = 0.08..1.1;
@@ -30,8 +28,7 @@ pub(in super::super) fn silhouettes(picture: &Picture) -> Vec<GrayImage> {
     let mut masks = Vec::new();
     let mut add = |inside: &dyn Fn(usize) -> bool| masks.push(mask(picture.size, inside));
     if picture.colour {
-        let is_skin =
-            |c: &picture::Cell| RED.contains(&c[picture::RED]) && YELLOWS.contains(&c[YELLOW]) && c[TONE] > DARK;
+        let is_skin = |c: &Cell| RED.contains(&c[picture::RED]) && YELLOWS.contains(&c[YELLOW]) && c[TONE] > DARK;
         let skin: Vec<bool> = cells.iter().map(is_skin).collect();
         add(&|i| skin[i]);
         if let Some(median) = median(cells.iter().filter(|c| is_skin(c)).map(|c| c[TONE]).collect()) {
@@ -55,9 +52,9 @@ pub(in super::super) fn silhouettes(picture: &Picture) -> Vec<GrayImage> {
 }
 
 fn mask(size: [usize; 2], inside: &dyn Fn(usize) -> bool) -> GrayImage {
-    let raw = (0..size[0] * size[1]).map(|i| if inside(i) { 255 } else { 0 }).collect();
-    let mask = GrayImage::from_raw(size[0] as u32, size[1] as u32, raw).expect("one value a pixel");
-    open(&mask, Norm::L1, 1)
+    let mask: Vec<u8> = (0..size[0] * size[1]).map(|i| if inside(i) { 255 } else { 0 }).collect();
+    let mask = opened(&mask, size).expect("one value a pixel");
+    GrayImage::from_raw(size[0] as u32, size[1] as u32, mask).expect("one value a pixel")
 }
 
 fn median(mut values: Vec<f32>) -> Option<f32> {
@@ -73,7 +70,7 @@ fn otsu(values: &[f32]) -> Option<f32> {
         return None;
     }
     let bytes: Vec<u8> = values.iter().map(|v| ((v - low) / range * 255.0) as u8).collect();
-    let level = otsu_level(&GrayImage::from_raw(bytes.len() as u32, 1, bytes)?);
+    let level = otsu_level(&bytes).expect("a row of bytes");
     Some(low + range * f32::from(level) / 255.0)
 }
 

@@ -5,7 +5,8 @@
 //! tried at every point; the best that do not overlap are kept.
 
 use image::GrayImage;
-use imageproc::contours::find_contours;
+
+use crate::vision::borders;
 
 /// The end of a finger in pixels of the working picture.
 #[derive(Debug, Clone, Copy)]
@@ -31,8 +32,9 @@ const WORST: f64 = 0.25;
 pub(in super::super) fn tips(mask: &GrayImage) -> Vec<Tip> {
     let widest = 0.6 * f64::from(mask.width().max(mask.height()));
     let mut found = Vec::new();
-    for contour in find_contours::<i32>(mask) {
-        let points: Vec<[f64; 2]> = contour.points.iter().map(|p| [f64::from(p.x), f64::from(p.y)]).collect();
+    let size = [mask.width(), mask.height()].map(|n| n as usize);
+    for border in borders(mask.as_raw(), size).expect("one value a pixel") {
+        let points: Vec<[f64; 2]> = border.iter().map(|p| p.map(f64::from)).collect();
         if (points.len() as f64) < 3.0 * NARROWEST {
             continue;
         }
