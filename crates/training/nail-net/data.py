@@ -20,8 +20,6 @@ SMALLEST_NAIL = 100  # a mask's component under so many pixels is a crumb of the
 CORE = 0.35  # the core is where the distance to the mask's edge exceeds this part of the largest
 TRAINED_SCENES = range(30)  # of ti1k's sorted files: gardens and a lecture room
 HELD_OUT_SCENES = (range(30, 36), range(36, 40))  # a room with a cupboard; a garden with flowers
-OTHERS = ("astronaut.png", "brick.png", "chelsea.png", "coffee.png", "coins.png", "grass.png", "gravel.png",
-          "retina.jpg", "rocket.jpg", "china.jpg", "flower.jpg")  # of scikit-image and scikit-learn: no nail on them
 
 
 @dataclass
@@ -143,11 +141,6 @@ def hand_free(root, scenes=TRAINED_SCENES):
     return answer
 
 
-def others(folder):
-    """Pictures without nails that come with Python packages (OTHERS), RGB."""
-    return [read_rgb(folder / name) for name in OTHERS]
-
-
 def hashes(root):
     """SHA-256 over the names and bytes of each data folder that training reads."""
     answer = {}
@@ -182,7 +175,7 @@ class Samples:
     """Endless training samples: squares of `size` pixels from photographs, phantoms and hand-free pictures."""
 
     def __init__(self, photos, ghosts, backgrounds, size, seed):
-        self.photos, self.ghosts, self.backgrounds = photos, ghosts, backgrounds  # the last a list of lists
+        self.photos, self.ghosts, self.backgrounds = photos, ghosts, backgrounds
         self.size, self.rng = size, np.random.default_rng(seed)
         weight = np.array([np.sqrt(len(p.nails)) for p in photos])
         self.weight = weight / weight.sum()
@@ -218,7 +211,7 @@ class Samples:
         level = int(np.clip(np.floor(-np.log2(scale) + 0.3), 0, len(picture.levels) - 1))
         angle = rng.uniform(-np.pi, np.pi) if picture.fold >= 0 or rng.random() < 0.5 else rng.normal(0, 0.4)
         turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-        stretch = np.exp(rng.uniform(-0.12, 0.12) if rng.random() < 0.7 else rng.uniform(-0.35, 0.35))
+        stretch = np.exp(rng.uniform(-0.12, 0.12))
         matrix = turn @ np.diag([stretch, 1 / stretch]) * scale
         if rng.random() < 0.5:
             matrix = matrix @ np.diag([-1, 1])
@@ -238,7 +231,7 @@ class Samples:
         rgb, nail, hand = layers[:, :, :3], layers[:, :, 3], layers[:, :, 5]
         hand = np.maximum(hand, nail)
         if rng.random() < 0.5:
-            rgb = darkened(rgb, hand, nail, rng.uniform(0.1, 1.1), rng.uniform(0.35, 1.0))
+            rgb = darkened(rgb, hand, nail, rng.uniform(0.1, 1.1), rng.uniform(0.35, 0.85))
         if rng.random() < 1 / 3:
             rgb = rgb * hand[:, :, None] + self.background() * (1 - hand[:, :, None])
         layers[:, :, :3] = rgb
@@ -249,8 +242,7 @@ class Samples:
         rng, size = self.rng, self.size
         if rng.random() < 0.5:
             return drawn.picture(rng, size, size)
-        family = self.backgrounds[rng.integers(len(self.backgrounds))]
-        part = family[rng.integers(len(family))]
+        part = self.backgrounds[rng.integers(len(self.backgrounds))]
         side = int(min(part.shape[:2]) * rng.uniform(0.4, 1))
         y, x = (int(rng.integers(0, n - side + 1)) for n in part.shape[:2])
         square = np.rot90(part[y:y + side, x:x + side], rng.integers(4))
@@ -263,7 +255,7 @@ class Samples:
             rgb = rgb * self.shade()[:, :, None]
         if rng.random() < 0.25:
             rgb = self.glare(rgb, nail)
-        rgb = rgb * np.exp(rng.normal(0, 0.12, 3) * [1, 0.5, 1] + rng.normal(-0.1, 0.32)).astype(np.float32)
+        rgb = rgb * np.exp(rng.normal(0, 0.12, 3) * [1, 0.5, 1] + rng.normal(-0.05, 0.22)).astype(np.float32)
         rgb = np.clip(rgb, 1e-4, 1) ** np.float32(np.exp(rng.normal(0, 0.25)))
         if rng.random() < 0.3:
             rgb = grey(rgb) + (rgb - grey(rgb)) * np.float32(rng.uniform(0.3, 1.5))

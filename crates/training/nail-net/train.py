@@ -97,7 +97,6 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--data", default=os.environ.get("LUNULA_REAL_DATA"), help="folder of nail/vpapenko_cc0, ti1k")
     parser.add_argument("--phantoms", required=True, help="folder of folders that `lunula phantom photos` wrote")
-    parser.add_argument("--others", required=True, help="folder of the pictures `data.OTHERS`")
     parser.add_argument("--runs", required=True, help="where checkpoints and logs go")
     parser.add_argument("--fold", type=int, help="leave these photographs out")
     parser.add_argument("--all", action="store_true", help="train on every photograph")
@@ -117,7 +116,7 @@ def main():
     runs.mkdir(parents=True, exist_ok=True)
     photos = [p for p in data.photographs(root) if p.fold != args.fold]
     ghosts = [g for folder in sorted(pathlib.Path(args.phantoms).iterdir()) for g in data.phantoms(folder)]
-    samples = data.Samples(photos, ghosts, [data.hand_free(root), data.others(pathlib.Path(args.others))], SIZE, args.seed)
+    samples = data.Samples(photos, ghosts, data.hand_free(root), SIZE, args.seed)
     name = "all" if args.all else f"fold-{args.fold}"
     device, path = torch.device(args.device), runs / f"{name}.pt"
     train(begun(args.start), samples, args.steps, args.frozen, args.gain, device, path)
