@@ -5,57 +5,103 @@ use opencv::core::{BORDER_REPLICATE, Mat, Point, Rect, Size};
 use opencv::imgproc;
 use opencv::prelude::*;
 
-use super::{VisionError, size, view};
+use super::{VisionError, answered, size, view, view_mut};
 
 /// Three channels of one pixel.
 pub(crate) type Cell = [f32; 3];
 
 /// Both ways by a symmetric kernel of five, beyond the border the border's.
-///
-/// # Errors
-/// [`VisionError`].
-pub(crate) fn smoothed(
-    cells: &[Cell],
-    [columns, rows]: [usize; 2],
-    kernel: [f32; 5],
-) -> Result<Vec<Cell>, VisionError> {
-    let mut out = vec![Cell::default(); cells.len()];
-    into(cells, [columns, rows], &mut out, [columns, rows], |from, to| {
+pub(crate) fn smoothed(cells: &[Cell], size: [usize; 2], kernel: [f32; 5]) -> Vec<Cell> {
+    let filtered = |from: &BoxedRef<'_, Mat>, to: &mut BoxedRefMut<'_, Mat>| {
         let kernel = view(1, kernel.len(), &kernel)?;
         imgproc::sep_filter_2d(from, to, -1, &kernel, &kernel, Point::new(-1, -1), 0.0, BORDER_REPLICATE)
             .map_err(VisionError::of("sepFilter2D"))
-    })?;
-    Ok(out)
+    };
+    answered(made(cells, size, size, filtered))
 }
 
 /// At half the size: means of four; a last odd column or row is left out.
-///
-/// # Errors
-/// [`VisionError`].
-pub(crate) fn halved(cells: &[Cell], [columns, rows]: [usize; 2]) -> Result<Vec<Cell>, VisionError> {
-    let half = [columns / 2, rows / 2];
-    let mut out = vec![Cell::default(); half[0] * half[1]];
-    let wanted = Size::new(size(half[0])?, size(half[1])?);
-    let even = Rect::new(0, 0, 2 * wanted.width, 2 * wanted.height);
-    into(cells, [columns, rows], &mut out, half, |from, to| {
+pub(crate) fn halved(cells: &[Cell], size: [usize; 2]) -> Vec<Cell> {
+    let mean = |from: &BoxedRef<'_, Mat>, to: &mut BoxedRefMut<'_, Mat>| {
+        let half = Size::new(from.cols() / 2, from.rows() / 2);
+        let even = Rect::new(0, 0, 2 * half.width, 2 * half.height);
         let from = Mat::roi(from, even).map_err(VisionError::of("Mat"))?;
-        imgproc::resize(&from, to, wanted, 0.0, 0.0, imgproc::INTER_AREA).map_err(VisionError::of("resize"))
-    })?;
+        imgproc::resize(&from, to, half, 0.0, 0.0, imgproc::INTER_AREA).map_err(VisionError::of("resize"))
+    };
+    answered(made(cells, size, size.map(|n| n / 2), mean))
+}
+
+/// What OpenCV's `call` makes of `cells`, at another size or the same.
+fn made(
+    cells: &[Cell],
+    [columns, rows]: [usize; 2],
+    [to_columns, to_rows]: [usize; 2],
+    call: impl FnOnce(&BoxedRef<'_, Mat>, &mut BoxedRefMut<'_, Mat>) -> Result<(), VisionError>,
+) -> Result<Vec<Cell>, VisionError> {
+    let mut out = vec![Cell::default(); to_columns * to_rows];
+    let from = view(rows, 3 * columns, cells.as_flattened())?;
+    let from = from.reshape(3, size(rows)?).map_err(VisionError::of("reshape"))?;
+    let mut to = view_mut(to_rows, 3 * to_columns, out.as_flattened_mut())?;
+    call(&from, &mut to.reshape_mut(3, size(to_rows)?).map_err(VisionError::of("reshape"))?)?;
+    drop(to);
     Ok(out)
 }
 
-/// Calls OpenCV with `from` and `to` as pictures of these columns and rows.
-fn into(
-    from: &[Cell],
-    [columns, rows]: [usize; 2],
-    to: &mut [Cell],
-    [out_columns, out_rows]: [usize; 2],
-    call: impl FnOnce(&BoxedRef<'_, Mat>, &mut BoxedRefMut<'_, Mat>) -> Result<(), VisionError>,
-) -> Result<(), VisionError> {
-    let flat = view(rows, 3 * columns, from.as_flattened())?;
-    let from = flat.reshape(3, size(rows)?).map_err(VisionError::of("reshape"))?;
-    let mut flat = Mat::new_rows_cols_with_data_mut(size(out_rows)?, size(3 * out_columns)?, to.as_flattened_mut())
-        .map_err(VisionError::of("Mat"))?;
-    let mut to = flat.reshape_mut(3, size(out_rows)?).map_err(VisionError::of("reshape"))?;
-    call(&from, &mut to)
+#[cfg(test)]
+mod tests {
+    use std::hint::black_box;
+    use std::time::Instant;
+
+    use rand::{RngExt, SeedableRng};
+
+    use super::*;
+
+    fn random(size: [usize; 2]) -> Vec<Cell> {
+        let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(1);
+        (0..size[0] * size[1]).map(|_| std::array::from_fn(|_| random.random_range(-3.0..3.0))).collect()
+    }
+
+    /// The same a pixel at a time.
+    fn plainly_smoothed(cells: &[Cell], [columns, rows]: [usize; 2], kernel: [f32; 5]) -> Vec<Cell> {
+        let held = |at: usize, tap: usize, end: usize| (at + tap).saturating_sub(2).min(end - 1);
+        let sum = |value: &dyn Fn(usize) -> Cell| -> Cell {
+            std::array::from_fn(|c| kernel.iter().enumerate().map(|(tap, weight)| weight * value(tap)[c]).sum())
+        };
+        let places = || (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y)));
+        let across: Vec<Cell> = places().map(|(x, y)| sum(&|tap| cells[y * columns + held(x, tap, columns)])).collect();
+        places().map(|(x, y)| sum(&|tap| across[held(y, tap, rows) * columns + x])).collect()
+    }
+
+    fn plainly_halved(cells: &[Cell], [columns, rows]: [usize; 2]) -> Vec<Cell> {
+        let places = (0..rows / 2).flat_map(|y| (0..columns / 2).map(move |x| 2 * y * columns + 2 * x));
+        let mean = |at: usize| {
+            std::array::from_fn(|c| [0, 1, columns, columns + 1].iter().map(|d| cells[at + d][c]).sum::<f32>() / 4.0)
+        };
+        places.map(mean).collect()
+    }
+
+    /// Prints what OpenCV and plain loops take.
+    #[test]
+    fn plain_loops_give_the_same() {
+        let kernel = [0.0625, 0.25, 0.375, 0.25, 0.0625];
+        let time = |work: &dyn Fn() -> Vec<Cell>| {
+            let start = Instant::now();
+            (0..50).for_each(|_| drop(black_box(work())));
+            start.elapsed() / 50
+        };
+        for size in [[69, 69], [61, 47], [5, 2]] {
+            let cells = random(size);
+            type Work<'a> = &'a dyn Fn() -> Vec<Cell>;
+            let pairs: [(&str, Work<'_>, Work<'_>); 2] = [
+                ("smoothed", &|| plainly_smoothed(&cells, size, kernel), &|| smoothed(&cells, size, kernel)),
+                ("halved", &|| plainly_halved(&cells, size), &|| halved(&cells, size)),
+            ];
+            for (name, plain, opencv) in pairs {
+                let both = plain().into_iter().flatten().zip(opencv().into_iter().flatten());
+                let apart = both.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+                assert!(apart <= 1e-6, "{name} {size:?}: {apart}");
+                println!("{name} {size:?}: loops {:?}, OpenCV {:?}, apart {apart:.0e}", time(plain), time(opencv));
+            }
+        }
+    }
 }

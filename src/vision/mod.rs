@@ -13,6 +13,7 @@ mod image;
 mod lens;
 mod masks;
 mod net;
+mod parts;
 
 use std::sync::Once;
 
@@ -27,8 +28,9 @@ pub(crate) use image::{closed_line, components, resized};
 pub(crate) use lens::{Calibration, Intrinsics, PARAMETERS, Pose, calibrate, project, undistorted};
 #[cfg(test)]
 pub(crate) use lens::{opencvs_sd, undistorted_by_default};
-pub(crate) use masks::{borders, filled, opened, otsu_level, steps_to};
+pub(crate) use masks::{borders, filled, opened, otsu_level};
 pub(crate) use net::{Network, Planes};
+pub(crate) use parts::{Neighbours, Part, parts, steps_out};
 
 /// A call of OpenCV that gave nothing.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -52,6 +54,14 @@ impl VisionError {
     }
 }
 
+/// The answer of a call that fails only as an allocation does, or where a slice is not of the size that comes with it.
+///
+/// # Panics
+/// Then, as an allocation or an index does.
+fn answered<T>(answer: Result<T, VisionError>) -> T {
+    answer.unwrap_or_else(|error| panic!("{error}"))
+}
+
 /// A grey picture of 8 bits, rows without gaps.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Grey<'a> {
@@ -71,6 +81,12 @@ impl Grey<'_> {
 fn view<T: DataType>(rows: usize, columns: usize, data: &[T]) -> Result<BoxedRef<'_, Mat>, VisionError> {
     ready()?;
     Mat::new_rows_cols_with_data(size(rows)?, size(columns)?, data).map_err(VisionError::of("Mat"))
+}
+
+/// As [`view`], to be written.
+fn view_mut<T: DataType>(rows: usize, columns: usize, data: &mut [T]) -> Result<BoxedRefMut<'_, Mat>, VisionError> {
+    ready()?;
+    Mat::new_rows_cols_with_data_mut(size(rows)?, size(columns)?, data).map_err(VisionError::of("Mat"))
 }
 
 /// Bytes of pixels `P` as OpenCV's matrix.

@@ -17,11 +17,11 @@
 
 use contour::contour_rings;
 use geo::{Area, BoundingRect, LineString, Polygon, Simplify};
-use image::{DynamicImage, GrayImage, ImageBuffer, Luma, Pixel, Primitive};
-use imageproc::region_labelling::{Connectivity, connected_components};
+use image::{DynamicImage, ImageBuffer, Luma, Pixel, Primitive};
 use thiserror::Error;
 
 use super::{Moments, Outline, OutlineFault};
+use crate::vision::{Neighbours, Part, parts};
 
 /// The largest value of a mask that is still read as instance numbers.
 const LARGEST_ID: f32 = 32.0;
@@ -207,19 +207,19 @@ fn outlines_of((values, full): (ImageBuffer<Luma<f32>, Vec<f32>>, f32)) -> Resul
     if grey > MOST_GREY {
         return Err(MaskFault::Grey { grey });
     }
-    // Grey levels of one kind, or a kind for each number.
-    let kind = |value: &f32| if white { u8::from(2.0 * value >= full) } else { *value as u8 };
-    let kinds = GrayImage::from_raw(values.width(), values.height(), values.iter().map(kind).collect())
-        .expect("a kind a pixel");
-    let labels = labelled(&kinds);
-    let regions = boxes(&labels);
+    let size = [values.width(), values.height()];
+    let (regions, labels) = if white {
+        labelled(size, values.iter().map(|value| u8::from(2.0 * value >= full)).collect(), 1)
+    } else {
+        labelled(size, values.iter().map(|value| *value as u8).collect(), largest as u8)
+    };
     if !white && regions.len() > MOST_ID_REGIONS {
         return Err(MaskFault::Noise { regions: regions.len() });
     }
 
     let mut polygons: Vec<Polygon<f64>> = Vec::new();
     for (label, region) in (1_u32..).zip(&regions) {
-        polygons.extend(region.rings(|x, y| match labels.get_pixel(x, y).0[0] {
+        polygons.extend(region.rings(|x, y| match labels[(y * size[0] + x) as usize] {
             own if own == label => {
                 if white {
                     f64::from(values.get_pixel(x, y).0[0] / full)
@@ -234,17 +234,21 @@ fn outlines_of((values, full): (ImageBuffer<Luma<f32>, Vec<f32>>, f32)) -> Resul
     Ok(sorted_out(polygons))
 }
 
-/// The number of each pixel's component, from 1 on; 0 in the background.
-fn labelled(kinds: &GrayImage) -> ImageBuffer<Luma<u32>, Vec<u32>> {
-    let components = |kinds: &GrayImage| connected_components(kinds, Connectivity::Eight, Luma([0]));
-    if kinds.contains(&0) {
-        return components(kinds);
+/// The regions of pixels of one kind, from 1 to `last`, and for each pixel 0 or the number of its region, from 1 on.
+fn labelled(size: [u32; 2], kinds: Vec<u8>, last: u8) -> (Vec<Region>, Vec<u32>) {
+    let (mut regions, mut labels) = (Vec::new(), vec![0; kinds.len()]);
+    for kind in 1..=last {
+        let own: Vec<u8> = kinds.iter().map(|&other| u8::from(other == kind)).collect();
+        let found = parts(&own, size.map(|n| n as usize), Neighbours::Eight);
+        let before = regions.len() as u32;
+        for (label, own) in labels.iter_mut().zip(found.labels).filter(|(_, own)| *own > 0) {
+            *label = before + own.cast_unsigned();
+        }
+        let ends = |from: usize, to: usize| [from as u32, to as u32];
+        let region = |part: &Part| Region { x: ends(part.left, part.right), y: ends(part.top, part.bottom), size };
+        regions.extend(found.all.iter().map(region));
     }
-    // imageproc 0.27 panics where there are as many components as pixels: with a row of background there are fewer.
-    let (width, height) = kinds.dimensions();
-    let padded =
-        GrayImage::from_fn(width, height + 1, |x, y| if y < height { *kinds.get_pixel(x, y) } else { Luma([0]) });
-    image::imageops::crop_imm(&components(&padded), 0, 0, width, height).to_image()
+    (regions, labels)
 }
 
 /// Pixels neither black nor white and not on an edge, for each white one.
@@ -383,22 +387,6 @@ impl Region {
 
 /// Sign of the signed area of an outer ring as the contour crate winds it.
 const OUTER: f64 = -1.0;
-
-/// The boxes of labels 1, 2, ..
-fn boxes(labels: &ImageBuffer<Luma<u32>, Vec<u32>>) -> Vec<Region> {
-    let size = [labels.width(), labels.height()];
-    let mut regions: Vec<Region> = Vec::new();
-    for (x, y, label) in labels.enumerate_pixels() {
-        let Some(index) = (label.0[0] as usize).checked_sub(1) else { continue };
-        if regions.len() <= index {
-            regions.resize(index + 1, Region { x: [u32::MAX, 0], y: [u32::MAX, 0], size });
-        }
-        let region = &mut regions[index];
-        region.x = [region.x[0].min(x), region.x[1].max(x)];
-        region.y = [region.y[0].min(y), region.y[1].max(y)];
-    }
-    regions
-}
 
 /// The mask's values as they are stored, and full scale.
 fn levels(mask: &DynamicImage) -> (ImageBuffer<Luma<f32>, Vec<f32>>, f32) {

@@ -50,6 +50,9 @@ enum Job {
         /// Who finds nails
         #[arg(long, value_enum, default_value_t)]
         detector: Detector,
+        /// Of the phantoms and of the pictures without nails; no network has learned from 3000 or 7000
+        #[arg(long, default_value_t = 3000)]
+        seed: u64,
     },
     /// Print recall and precision of the network on photographs of --hands that it has not seen; takes minutes
     #[command(
@@ -74,8 +77,8 @@ fn main() -> anyhow::Result<()> {
             }
             Ok(())
         }
-        Job::Table { held_out, detector } => {
-            print!("{}", nails::table(hands.as_deref(), held_out, detector)?);
+        Job::Table { held_out, detector, seed } => {
+            print!("{}", nails::table(hands.as_deref(), held_out, detector, seed)?);
             Ok(())
         }
         Job::Folds(with) => {

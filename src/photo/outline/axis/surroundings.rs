@@ -14,7 +14,7 @@ use image::{DynamicImage, ImageBuffer, Pixel, Primitive};
 use wide::f32x4;
 
 use crate::photo::outline::{Moments, Outline};
-use crate::vision::{filled, smoothed, steps_to};
+use crate::vision::{filled, smoothed, steps_out};
 
 /// Cells along the outline's long axis.
 pub(super) const NAIL_CELLS: f64 = 16.0;
@@ -25,8 +25,6 @@ const SIDE: usize = 2 * HALF + 1;
 const READS: u32 = 3;
 /// Smoothing before derivatives, cells: below it lie the pixels' noise and hairs.
 const BLUR: f32 = 0.7;
-/// Why OpenCV can't fail on the window.
-const SIZED: &str = "the window has its size";
 /// Cells within this distance of the nail show its own edge.
 const CLEAR_OF_NAIL: f64 = 2.0;
 /// Derivatives below this, relative to the nail's luma a cell, are noise (1 % is 1.5 levels of an 8-bit nail at 150).
@@ -67,7 +65,8 @@ impl Surroundings {
         let (mut colours, inside) = gather(image, moments.centroid_px, px_per_cell);
         let at_nail = |i: usize| mask[i] > 0;
 
-        let steps = steps_to(&mask, [SIDE; 2]).expect(SIZED);
+        let around: Vec<u8> = mask.iter().map(|&nail| 1 - nail).collect();
+        let steps = steps_out(&around, [SIDE; 2]);
         let away = |i: usize| f64::from(steps[i]);
         let ring = |i: usize| inside[i] && away(i) > 1.0 && away(i) <= 3.0;
         let median = |values: &mut dyn Iterator<Item = f32>| quantile(&mut values.collect::<Vec<f32>>(), 0.5);
@@ -79,7 +78,7 @@ impl Surroundings {
         for colour in &mut colours {
             *colour = colour.map(|c| (c * scale).clamp(-3.0, 3.0));
         }
-        let colours = smoothed(&colours, [SIDE; 2], *KERNEL).expect(SIZED);
+        let colours = smoothed(&colours, [SIDE; 2], *KERNEL);
 
         let mut skin = [0.0; 3];
         for (c, value) in skin.iter_mut().enumerate() {
@@ -192,7 +191,7 @@ fn nail_mask(outline: &Outline, centre: [f64; 2], px_per_cell: f64) -> Vec<u8> {
         |p: f64, c: f64| (((p - c) / px_per_cell + HALF as f64 + 0.5) * FINE as f64 - 0.5).round().clamp(-1e6, 1e6);
     let corners: Vec<[i32; 2]> =
         outline.points().iter().map(|p| [0, 1].map(|k| to_fine(p[k], centre[k]) as i32)).collect();
-    let fine = filled(&corners, [SIDE * FINE; 2]).expect(SIZED);
+    let fine = filled(&corners, [SIDE * FINE; 2]);
     let covered = |cell: usize| -> usize {
         let first = cell / SIDE * FINE * SIDE * FINE + cell % SIDE * FINE;
         (0..FINE).flat_map(|row| &fine[first + row * SIDE * FINE..][..FINE]).map(|&is| usize::from(is)).sum()

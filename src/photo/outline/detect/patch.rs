@@ -80,7 +80,7 @@ impl Patch {
                 cells.push(between(&picture.cells, picture.size, at));
             }
         }
-        let cells = smoothed(&cells, size, KERNEL).expect("one value a sample");
+        let cells = smoothed(&cells, size, KERNEL);
         Self { frame, extent, size, cells, colour: picture.colour }
     }
 

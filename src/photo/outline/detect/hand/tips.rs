@@ -33,7 +33,7 @@ pub(in super::super) fn tips(mask: &GrayImage) -> Vec<Tip> {
     let widest = 0.6 * f64::from(mask.width().max(mask.height()));
     let mut found = Vec::new();
     let size = [mask.width(), mask.height()].map(|n| n as usize);
-    for border in borders(mask.as_raw(), size).expect("one value a pixel") {
+    for border in borders(mask.as_raw(), size) {
         let points: Vec<[f64; 2]> = border.iter().map(|p| p.map(f64::from)).collect();
         if (points.len() as f64) < 3.0 * NARROWEST {
             continue;
