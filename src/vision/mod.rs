@@ -8,9 +8,13 @@
 //! Everywhere: the centre of a picture's top-left pixel is (0, 0), x to the right, y down, as OpenCV has it too.
 
 mod board;
+mod extreme;
 mod image;
 mod lens;
 mod net;
+mod parts;
+mod plane;
+mod strokes;
 
 use std::sync::Once;
 
@@ -20,11 +24,15 @@ use opencv::prelude::*;
 use thiserror::Error;
 
 pub(crate) use board::{Corners, find_board, shows_another};
+pub(crate) use extreme::{Extreme, extreme};
 pub(crate) use image::{closed_line, components, resized};
 pub(crate) use lens::{Calibration, Intrinsics, PARAMETERS, Pose, calibrate, project, undistorted};
 #[cfg(test)]
 pub(crate) use lens::{opencvs_sd, undistorted_by_default};
 pub(crate) use net::{Network, Planes};
+pub(crate) use parts::{Neighbours, Part, Parts, parts, steps_out};
+pub(crate) use plane::Samples;
+pub(crate) use strokes::Stroke;
 
 /// A call of OpenCV that gave nothing.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -48,6 +56,14 @@ impl VisionError {
     }
 }
 
+/// The answer of a call that fails only as an allocation does, or where a slice is not of the size that comes with it.
+///
+/// # Panics
+/// Then, as an allocation or an index does.
+fn answered<T>(answer: Result<T, VisionError>) -> T {
+    answer.unwrap_or_else(|error| panic!("{error}"))
+}
+
 /// A grey picture of 8 bits, rows without gaps.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Grey<'a> {
@@ -67,6 +83,12 @@ impl Grey<'_> {
 fn view<T: DataType>(rows: usize, columns: usize, data: &[T]) -> Result<BoxedRef<'_, Mat>, VisionError> {
     ready()?;
     Mat::new_rows_cols_with_data(size(rows)?, size(columns)?, data).map_err(VisionError::of("Mat"))
+}
+
+/// As [`view`], to be written.
+fn view_mut<T: DataType>(rows: usize, columns: usize, data: &mut [T]) -> Result<BoxedRefMut<'_, Mat>, VisionError> {
+    ready()?;
+    Mat::new_rows_cols_with_data_mut(size(rows)?, size(columns)?, data).map_err(VisionError::of("Mat"))
 }
 
 /// Bytes of pixels `P` as OpenCV's matrix.
