@@ -11,7 +11,7 @@ pub struct Plane<'a> {
     pub stride: usize,
     /// Bits of a sample; over 8, a sample takes two bytes, the low one first.
     pub depth: u32,
-    /// The bytes, row after row.
+    /// The bytes, row after row: `height` x `stride`.
     pub data: &'a [u8],
 }
 

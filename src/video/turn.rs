@@ -15,6 +15,16 @@ pub enum Turn {
 }
 
 impl Turn {
+    /// How many times 90 degrees.
+    pub(crate) fn quarters(self) -> usize {
+        match self {
+            Self::None => 0,
+            Self::Quarter => 1,
+            Self::Half => 2,
+            Self::ThreeQuarters => 3,
+        }
+    }
+
     /// The point of the shown picture of a point of the stored one, `size` the stored width and height.
     #[must_use]
     pub fn shown_from_stored(self, [x, y]: [f64; 2], (width, height): (usize, usize)) -> [f64; 2] {

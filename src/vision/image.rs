@@ -1,4 +1,4 @@
-//! Work on whole pictures: reduced by area, labelled.
+//! Work on whole pictures: reduced by area, lines drawn on them.
 
 use opencv::core::{Point, Scalar, Size, Vec3b, Vector};
 use opencv::imgproc;
@@ -20,21 +20,6 @@ pub(crate) fn resized(rgb: &[u8], from: [usize; 2], to: [usize; 2]) -> Result<Ve
     imgproc::resize(&source, &mut target, wanted, 0.0, 0.0, how).map_err(VisionError::of("resize"))?;
     drop(target);
     Ok(out)
-}
-
-/// The number of each cell's component, from 1 on, 0 where `set` is 0; neighbours share a side.
-///
-/// # Errors
-/// [`VisionError`].
-pub(crate) fn components(set: &[u8], [width, height]: [usize; 2]) -> Result<Vec<u32>, VisionError> {
-    let source = pixels::<u8>(height, width, set)?;
-    let mut labels = vec![0_i32; width * height];
-    let mut target = opencv::core::Mat::new_rows_cols_with_data_mut(size(height)?, size(width)?, &mut labels)
-        .map_err(VisionError::of("Mat"))?;
-    imgproc::connected_components(&source, &mut target, 4, opencv::core::CV_32S)
-        .map_err(VisionError::of("connectedComponents"))?;
-    drop(target);
-    Ok(labels.into_iter().map(i32::cast_unsigned).collect())
 }
 
 /// Draws a closed line, smooth, `thickness` pixels wide, on red, green, blue samples; corners to an eighth of a pixel.
@@ -88,17 +73,5 @@ mod tests {
         assert!([at(10, 4), at(4, 10)].iter().all(|p| p[0] > 150 && p[1] > 70 && p[2] == 0));
         assert_eq!(at(10, 10), [0; 3]);
         assert!(closed_line(&mut rgb, [20, 21], &[[4.0, 4.0], [15.0, 4.0]], [1; 3], 1).is_err());
-    }
-
-    #[test]
-    fn components_share_sides() {
-        let set = [1, 1, 0, 0, 0, 1, 1, 0, 0];
-        let labels = components(&set, [3, 3]).expect("labels");
-        assert_eq!(labels[0], labels[1]);
-        assert_eq!(labels[5], 2);
-        // Corners do not join.
-        assert_ne!(labels[5], labels[1]);
-        assert_eq!(labels[2], 0);
-        assert!(components(&set, [3, 4]).is_err());
     }
 }

@@ -9,11 +9,14 @@
 
 mod board;
 mod cells;
+mod extreme;
 mod image;
 mod lens;
 mod masks;
 mod net;
 mod parts;
+mod plane;
+mod strokes;
 
 use std::sync::Once;
 
@@ -24,13 +27,16 @@ use thiserror::Error;
 
 pub(crate) use board::{Corners, find_board, shows_another};
 pub(crate) use cells::{Cell, halved, smoothed};
-pub(crate) use image::{closed_line, components, resized};
+pub(crate) use extreme::{Extreme, extreme};
+pub(crate) use image::{closed_line, resized};
 pub(crate) use lens::{Calibration, Intrinsics, PARAMETERS, Pose, calibrate, project, undistorted};
 #[cfg(test)]
 pub(crate) use lens::{opencvs_sd, undistorted_by_default};
 pub(crate) use masks::{borders, filled, opened, otsu_level};
 pub(crate) use net::{Network, Planes};
-pub(crate) use parts::{Neighbours, Part, parts, steps_out};
+pub(crate) use parts::{Neighbours, Part, Parts, parts, steps_out};
+pub(crate) use plane::Samples;
+pub(crate) use strokes::Stroke;
 
 /// A call of OpenCV that gave nothing.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]

@@ -4,6 +4,7 @@
 //! the scale of 8 bits, averaged over blocks where it holds more pixels than digits need.
 
 use crate::video::{Info, Plane, Turn};
+use crate::vision::Samples;
 
 /// A rectangle of whole pixels of the shown picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -54,34 +55,9 @@ impl Eye {
     /// The means over blocks of `step` x `step` pixels of `rect`; pixels that fill no block are left out.
     pub(in crate::clock) fn cut(&self, luma: &Plane<'_>, rect: Rect, step: usize) -> Gray {
         let (width, height) = (rect.width / step, rect.height / step);
-        let mut gray = Gray { width, height, values: vec![0.0; width * height] };
-        let mut row = vec![0.0; width * step];
-        let share = 1.0 / (step * step) as f32;
-        for y in 0..height {
-            let into = &mut gray.values[y * width..(y + 1) * width];
-            for sub in 0..step {
-                self.shown_row(luma, rect.x, rect.y + y * step + sub, &mut row);
-                if step == 1 {
-                    into.copy_from_slice(&row);
-                } else {
-                    for (sum, block) in into.iter_mut().zip(row.chunks_exact(step)) {
-                        *sum += share * block.iter().sum::<f32>();
-                    }
-                }
-            }
-        }
-        gray
-    }
-
-    /// Pixels of the shown row `y` from column `x` on.
-    fn shown_row(&self, luma: &Plane<'_>, x: usize, y: usize, into: &mut [f32]) {
-        let (right, bottom) = (self.stored.0 - 1, self.stored.1 - 1);
-        match self.turn {
-            Turn::None => luma.copy_row(y, x, into),
-            Turn::Quarter => (x..).zip(into).for_each(|(x, value)| *value = luma.sample(y, bottom - x)),
-            Turn::Half => (x..).zip(into).for_each(|(x, value)| *value = luma.sample(right - x, bottom - y)),
-            Turn::ThreeQuarters => (x..).zip(into).for_each(|(x, value)| *value = luma.sample(right - y, x)),
-        }
+        let &Plane { width: across, height: down, stride, depth, data } = luma;
+        let samples = Samples { width: across, height: down, stride, depth, data, quarters: self.turn.quarters() };
+        Gray { width, height, values: samples.means([rect.x, rect.y], [width, height], step) }
     }
 }
 

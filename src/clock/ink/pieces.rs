@@ -5,6 +5,7 @@
 //! the desk) or stand around others are no characters and are left out.
 
 use super::crop::Gray;
+use crate::vision::{Neighbours, Part, parts};
 
 /// The threshold between two kinds of grey and the mean of each.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -80,38 +81,9 @@ pub(in crate::clock) fn pieces(gray: &Gray, threshold: f32, light: bool) -> Vec<
 
 /// All pieces of what is lighter (or darker) than the threshold.
 pub(in crate::clock) fn all_pieces(gray: &Gray, threshold: f32, light: bool) -> Vec<Piece> {
-    let (width, height) = (gray.width, gray.height);
-    let mut open: Vec<bool> = gray.values.iter().map(|&value| (value > threshold) == light).collect();
-    let mut found = Vec::new();
-    let mut stack = Vec::new();
-    for start in 0..open.len() {
-        if !open[start] {
-            continue;
-        }
-        open[start] = false;
-        stack.push(start);
-        let (x, y) = (start % width, start / width);
-        let mut piece = Piece { left: x, top: y, right: x, bottom: y, area: 0 };
-        while let Some(at) = stack.pop() {
-            let (x, y) = (at % width, at / width);
-            piece.left = piece.left.min(x);
-            piece.right = piece.right.max(x);
-            piece.top = piece.top.min(y);
-            piece.bottom = piece.bottom.max(y);
-            piece.area += 1;
-            for ny in y.saturating_sub(1)..(y + 2).min(height) {
-                for nx in x.saturating_sub(1)..(x + 2).min(width) {
-                    let next = ny * width + nx;
-                    if open[next] {
-                        open[next] = false;
-                        stack.push(next);
-                    }
-                }
-            }
-        }
-        found.push(piece);
-    }
-    found
+    let ink: Vec<u8> = gray.values.iter().map(|&value| u8::from((value > threshold) == light)).collect();
+    let found = parts(&ink, [gray.width, gray.height], Neighbours::Eight).all;
+    found.iter().map(|&Part { left, top, right, bottom, area, .. }| Piece { left, top, right, bottom, area }).collect()
 }
 
 #[cfg(test)]

@@ -14,6 +14,7 @@ use crate::clock::format::ClockFormat;
 use crate::clock::ink::crop::{Eye, Gray, Rect};
 use crate::clock::{Doubt, ReaderEffort, Reading};
 use crate::video::Frame;
+use crate::vision::{Neighbours, Part, Parts, parts};
 
 /// A picture, averaged down.
 #[derive(Debug)]
@@ -220,37 +221,21 @@ fn edge_change(before: &[u8], after: &[u8], x: usize) -> u32 {
 
 /// Blocks with a count that are at most one block apart: the sum of their counts, and the rectangle around them.
 fn connected(counts: &[u16], columns: usize) -> Vec<(u64, Rect)> {
-    let rows = counts.len() / columns.max(1);
-    let mut open: Vec<bool> = counts.iter().map(|&count| count > 0).collect();
-    let mut found = Vec::new();
-    for start in 0..open.len() {
-        if !open[start] {
-            continue;
-        }
-        open[start] = false;
-        let mut stack = vec![start];
-        let (mut low, mut high, mut sum) = ([usize::MAX; 2], [0; 2], 0);
-        while let Some(at) = stack.pop() {
-            let here = [at % columns, at / columns];
-            for axis in 0..2 {
-                low[axis] = low[axis].min(here[axis]);
-                high[axis] = high[axis].max(here[axis]);
-            }
-            sum += u64::from(counts[at]);
-            for y in here[1].saturating_sub(2)..(here[1] + 3).min(rows) {
-                for x in here[0].saturating_sub(2)..(here[0] + 3).min(columns) {
-                    let next = y * columns + x;
-                    if open[next] {
-                        open[next] = false;
-                        stack.push(next);
-                    }
-                }
-            }
-        }
-        let rect = Rect { x: low[0], y: low[1], width: high[0] - low[0] + 1, height: high[1] - low[1] + 1 };
-        found.push((sum, rect));
+    // Where every block is twice as wide and as high, those a block apart touch.
+    let (wide, rows) = (columns + 1, counts.len() / columns.max(1));
+    let mut set = vec![0; wide * (rows + 1)];
+    for (k, _) in counts.iter().enumerate().filter(|(_, count)| **count > 0) {
+        let at = k / columns * wide + k % columns;
+        [at, at + 1, at + wide, at + wide + 1].into_iter().for_each(|at| set[at] = 1);
     }
-    found
+    let Parts { all, labels } = parts(&set, [wide, rows + 1], Neighbours::Eight);
+    let mut sums = vec![0; all.len()];
+    for (k, &count) in counts.iter().enumerate().filter(|(_, count)| **count > 0) {
+        sums[labels[k / columns * wide + k % columns] as usize - 1] += u64::from(count);
+    }
+    let rect =
+        |part: &Part| Rect { x: part.left, y: part.top, width: part.right - part.left, height: part.bottom - part.top };
+    sums.into_iter().zip(all.iter().map(rect)).collect()
 }
 
 /// Whether readings are those of a clock that runs.

@@ -14,6 +14,7 @@ use nalgebra::{Matrix3, Vector3};
 use super::sight::Loss;
 use crate::posture::marker::looks::siting::Siting;
 use crate::video::Frame;
+use crate::vision::{Neighbours, Part, Parts, parts, steps_out};
 
 /// Share from which a sample is within the outline.
 const EDGE: f32 = 0.5;
@@ -34,6 +35,8 @@ const BEND: f64 = 0.018;
 /// so many radii times the rest (a segment cut off a disc: 0.8 to 1 times its share of the area).
 const AREA_FREE: f64 = 0.08;
 const CUT_RADII: f64 = 1.0;
+/// Smaller things are no marks, samples.
+const LEAST_AREA_PX: usize = 9;
 /// Rounds of levels and outline.
 const ROUNDS: usize = 3;
 /// A plane's standard deviation within mark or surround is taken as at least this, on the scale of 8 bits.
@@ -343,7 +346,7 @@ impl Window {
             };
             let cut = |picture: bool| {
                 (0..4).any(|side| {
-                    self.borders[side] == picture && inside.iter().enumerate().any(|(k, &is)| is && at(side, k))
+                    self.borders[side] == picture && inside.iter().enumerate().any(|(k, &is)| is > 0 && at(side, k))
                 })
             };
             let one = Drawn { is_cut: cut(false), at_the_border: cut(true), depth, share };
@@ -389,93 +392,39 @@ impl Window {
         Some(plane)
     }
 
-    /// The connected samples of a share above the edge's that are nearest for their size, holes filled.
-    fn component(&self, share: &[f32], near_px: [f64; 2], radius_px: f64) -> Option<Vec<bool>> {
-        let mut label = vec![0u16; share.len()];
-        let mut best: Option<(f64, u16)> = None;
-        let mut next = 0;
-        let mut stack = Vec::new();
-        for start in 0..share.len() {
-            if label[start] != 0 || share[start] < EDGE || next == u16::MAX {
-                continue;
-            }
-            next += 1;
-            label[start] = next;
-            stack.push(start);
-            let (mut area, mut sum) = (0.0, [0.0; 2]);
-            while let Some(k) = stack.pop() {
-                let [x, y] = self.place(k);
-                area += 1.0;
-                (sum[0], sum[1]) = (sum[0] + x, sum[1] + y);
-                for other in self.neighbours(k) {
-                    if label[other] == 0 && share[other] >= EDGE {
-                        label[other] = next;
-                        stack.push(other);
-                    }
-                }
-            }
-            let off = (sum[0] / area - near_px[0]).hypot(sum[1] / area - near_px[1]) / radius_px;
-            let score = area.min(std::f64::consts::PI * radius_px * radius_px) / (1.0 + off * off);
-            if area >= 9.0 && best.is_none_or(|(most, _)| score > most) {
-                best = Some((score, next));
+    /// The connected samples of a share above the edge's that are nearest for their size, holes filled; 1 for each.
+    fn component(&self, share: &[f32], near_px: [f64; 2], radius_px: f64) -> Option<Vec<u8>> {
+        let size = [self.width, self.height];
+        let set: Vec<u8> = share.iter().map(|&share| u8::from(share >= EDGE)).collect();
+        let Parts { all, labels } = parts(&set, size, Neighbours::Four);
+        let mut best: Option<(f64, i32)> = None;
+        for (part, label) in all.iter().zip(1..).filter(|(part, _)| part.area >= LEAST_AREA_PX) {
+            let [x, y] = part.centroid;
+            let off = [self.left as f64 + x - near_px[0], self.top as f64 + y - near_px[1]];
+            let off = off[0].hypot(off[1]) / radius_px;
+            let score = (part.area as f64).min(std::f64::consts::PI * radius_px * radius_px) / (1.0 + off * off);
+            if best.is_none_or(|(most, _)| score > most) {
+                best = Some((score, label));
             }
         }
         let chosen = best?.1;
-        // Holes: what can't be reached from the border.
-        let mut outside = vec![false; share.len()];
-        let on_border = |k: usize| {
-            k < self.width
-                || k >= self.width * (self.height - 1)
-                || k.is_multiple_of(self.width)
-                || (k + 1).is_multiple_of(self.width)
-        };
-        stack.extend((0..share.len()).filter(|&k| on_border(k) && label[k] != chosen));
-        stack.iter().for_each(|&k| outside[k] = true);
-        while let Some(k) = stack.pop() {
-            for other in self.neighbours(k) {
-                if !outside[other] && label[other] != chosen {
-                    outside[other] = true;
-                    stack.push(other);
-                }
-            }
-        }
-        Some(outside.into_iter().map(|is| !is).collect())
-    }
-
-    fn neighbours(&self, k: usize) -> impl Iterator<Item = usize> {
-        let (x, y, width, height) = (k % self.width, k / self.width, self.width, self.height);
-        let four = [
-            (x > 0).then(|| k - 1),
-            (x + 1 < width).then(|| k + 1),
-            (y > 0).then(|| k - width),
-            (y + 1 < height).then(|| k + width),
-        ];
-        four.into_iter().flatten()
+        // Holes: what else does not reach the border.
+        let rest: Vec<u8> = labels.iter().map(|&label| u8::from(label != chosen)).collect();
+        let Parts { all, labels } = parts(&rest, size, Neighbours::Four);
+        let is_hole =
+            |part: &Part| part.left > 0 && part.top > 0 && part.right + 1 < self.width && part.bottom + 1 < self.height;
+        // What is chosen has no label there.
+        let is_inside: Vec<bool> = std::iter::once(true).chain(all.iter().map(is_hole)).collect();
+        Some(labels.iter().map(|&label| u8::from(is_inside[label as usize])).collect())
     }
 
     /// Steps from the edge of what is `inside`: 1, 2, .. within, 0, -1, .. without.
-    fn depth(&self, inside: &[bool]) -> Vec<i8> {
-        const FAR: i8 = 100;
-        let mut depth: Vec<i8> = inside.iter().map(|&is| if is { FAR } else { -FAR }).collect();
-        let mut front: Vec<usize> =
-            (0..inside.len()).filter(|&k| self.neighbours(k).any(|other| inside[other] != inside[k])).collect();
-        front.iter().for_each(|&k| depth[k] = i8::from(inside[k]));
-        let mut step = 0;
-        while !front.is_empty() && step < FAR - 2 {
-            step += 1;
-            let mut then = Vec::new();
-            for k in front {
-                for other in self.neighbours(k) {
-                    let new = if inside[other] { 1 + step } else { -step };
-                    if inside[other] == inside[k] && depth[other].abs() == FAR {
-                        depth[other] = new;
-                        then.push(other);
-                    }
-                }
-            }
-            front = then;
-        }
-        depth
+    fn depth(&self, inside: &[u8]) -> Vec<i8> {
+        let size = [self.width, self.height];
+        let outside: Vec<u8> = inside.iter().map(|is| 1 - is).collect();
+        let at_most = |step: u8| step.min(i8::MAX as u8) as i8;
+        let steps = steps_out(inside, size).into_iter().zip(steps_out(&outside, size));
+        steps.map(|(within, without)| if within > 0 { at_most(within) } else { 1 - at_most(without) }).collect()
     }
 
     /// Area and centroid of what is drawn with the edge at `edge`.

@@ -1,6 +1,7 @@
 //! Boxes on a picture of ink that may hold its one digit.
 
 use super::grey::{FULL, Grey};
+use crate::vision::{Neighbours, Part, Parts, parts};
 
 /// Shares of the full contrast from which a sample is ink.
 const THRESHOLDS: [f32; 3] = [0.5, 0.38, 0.62];
@@ -28,8 +29,9 @@ const LEFT_OUT: f32 = 0.06;
 /// One connected piece of ink: left, top, right, bottom (samples, inclusive).
 struct Piece {
     extent: [usize; 4],
-    /// Its samples.
-    samples: Vec<usize>,
+    /// How many samples it has, and the label that they have.
+    area: usize,
+    label: i32,
 }
 
 /// The box around two boxes.
@@ -42,18 +44,21 @@ impl Grey {
     /// long as next to no ink is left outside.
     pub(super) fn boxes(&self) -> Vec<[usize; 4]> {
         let mut found: Vec<[usize; 4]> = Vec::new();
-        let faint: Vec<Piece> =
-            self.pieces(FAINT * FULL).into_iter().filter(|p| !self.is_frame(p) && !self.is_sliver(p)).collect();
+        let (mut faint, labels) = self.pieces(FAINT * FULL);
+        faint.retain(|piece| !self.is_frame(piece) && !self.is_sliver(piece));
+        let is_faint = |label: i32| faint.iter().any(|piece| piece.label == label);
+        let ink = labels.iter().zip(&self.values).map(|(&label, &value)| if is_faint(label) { value } else { 0.0 });
+        let ink: Vec<f32> = ink.collect();
         for threshold in THRESHOLDS {
-            let pieces: Vec<Piece> =
-                self.pieces(threshold * FULL).into_iter().filter(|piece| !self.is_frame(piece)).collect();
+            let (mut pieces, _) = self.pieces(threshold * FULL);
+            pieces.retain(|piece| !self.is_frame(piece));
             let all = || pieces.iter().map(|piece| piece.extent);
             let clear = pieces.iter().filter(|piece| !self.is_sliver(piece)).map(|piece| piece.extent);
             for extent in [all().reduce(around), clear.reduce(around), self.cluster(&pieces)].into_iter().flatten() {
                 let [x0, y0, x1, y1] = extent;
                 let (wide, tall) = ((x1 - x0 + 1) as f32, (y1 - y0 + 1) as f32);
                 let fits = tall >= TALL * self.height as f32 && wide >= NARROW * tall && !self.is_strip(extent);
-                if fits && !found.contains(&extent) && self.left_out(&faint, extent) <= LEFT_OUT {
+                if fits && !found.contains(&extent) && self.left_out(&ink, extent) <= LEFT_OUT {
                     found.push(extent);
                 }
             }
@@ -61,22 +66,19 @@ impl Grey {
         found
     }
 
-    /// The share of the pieces' ink that lies outside of a box, a sample's breadth around it aside.
-    fn left_out(&self, pieces: &[Piece], [x0, y0, x1, y1]: [usize; 4]) -> f32 {
-        let (mut outside, mut all) = (0.0, 0.0);
-        for &k in pieces.iter().flat_map(|piece| &piece.samples) {
+    /// The share of ink that lies outside of a box, a sample's breadth around it aside.
+    fn left_out(&self, ink: &[f32], [x0, y0, x1, y1]: [usize; 4]) -> f32 {
+        let is_outside = |k: usize| {
             let (x, y) = (k % self.width, k / self.width);
-            all += self.values[k];
-            if x + 1 < x0 || x > x1 + 1 || y + 1 < y0 || y > y1 + 1 {
-                outside += self.values[k];
-            }
-        }
-        outside / f32::max(all, 1.0)
+            x + 1 < x0 || x > x1 + 1 || y + 1 < y0 || y > y1 + 1
+        };
+        let outside: f32 = ink.iter().enumerate().filter(|(k, _)| is_outside(*k)).map(|(_, value)| value).sum();
+        outside / ink.iter().sum::<f32>().max(1.0)
     }
 
     /// The box around the largest piece and all that are near it, or near those.
     fn cluster(&self, pieces: &[Piece]) -> Option<[usize; 4]> {
-        let mut extent = pieces.iter().max_by_key(|piece| piece.samples.len())?.extent;
+        let mut extent = pieces.iter().max_by_key(|piece| piece.area)?.extent;
         let gap = (GAP * self.width.min(self.height) as f32) as usize;
         loop {
             let near = |e: &[usize; 4]| {
@@ -104,7 +106,7 @@ impl Grey {
         let (w, h) = ((x1 - x0 + 1) as f32, (y1 - y0 + 1) as f32);
         let (wide, tall) = (w / self.width as f32, h / self.height as f32);
         let [left, top, right, bottom] = self.sides(piece);
-        let fill = piece.samples.len() as f32 / (w * h);
+        let fill = piece.area as f32 / (w * h);
         let along = (left || right) && tall >= LONG && wide <= THIN || (top || bottom) && wide >= LONG && tall <= THIN;
         let corner = (left || right) && (top || bottom) && fill <= 0.2;
         let through = left && right && tall <= 0.3 || top && bottom && (left || right);
@@ -131,34 +133,15 @@ impl Grey {
         thin && self.sides(piece).contains(&true)
     }
 
-    /// Connected pieces of ink over a threshold, without dirt.
-    fn pieces(&self, threshold: f32) -> Vec<Piece> {
-        let (width, height) = (self.width, self.height);
-        let mut open: Vec<bool> = self.values.iter().map(|v| *v >= threshold).collect();
-        let mut pieces = Vec::new();
-        for start in 0..open.len() {
-            if !std::mem::take(&mut open[start]) {
-                continue;
-            }
-            let mut piece = Piece { extent: [usize::MAX, usize::MAX, 0, 0], samples: Vec::new() };
-            let mut stack = vec![start];
-            while let Some(k) = stack.pop() {
-                let (x, y) = (k % width, k / width);
-                let [x0, y0, x1, y1] = piece.extent;
-                piece.extent = [x0.min(x), y0.min(y), x1.max(x), y1.max(y)];
-                piece.samples.push(k);
-                for v in y.saturating_sub(1)..=(y + 1).min(height - 1) {
-                    for u in x.saturating_sub(1)..=(x + 1).min(width - 1) {
-                        if std::mem::take(&mut open[v * width + u]) {
-                            stack.push(v * width + u);
-                        }
-                    }
-                }
-            }
-            if piece.samples.len() as f32 >= DIRT * (width * height) as f32 {
-                pieces.push(piece);
-            }
-        }
-        pieces
+    /// Connected pieces of ink over a threshold, without dirt, and the label of each sample.
+    fn pieces(&self, threshold: f32) -> (Vec<Piece>, Vec<i32>) {
+        let ink: Vec<u8> = self.values.iter().map(|&value| u8::from(value >= threshold)).collect();
+        let Parts { all, labels } = parts(&ink, [self.width, self.height], Neighbours::Eight);
+        let least = DIRT * (self.width * self.height) as f32;
+        let piece = |(part, label): (&Part, i32)| {
+            let extent = [part.left, part.top, part.right, part.bottom];
+            (part.area as f32 >= least).then_some(Piece { extent, area: part.area, label })
+        };
+        (all.iter().zip(1..).filter_map(piece).collect(), labels)
     }
 }

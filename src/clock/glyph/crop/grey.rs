@@ -1,6 +1,7 @@
 //! A picture of ink alone: the ground taken away, and with it slow changes of light and what lies along the border.
 
 use crate::video::Plane;
+use crate::vision::{Extreme, Samples, extreme};
 
 /// Pictures are reduced to about this many samples a side.
 const WORKING: usize = 96;
@@ -32,50 +33,19 @@ impl Grey {
             return None;
         }
         let step = (least / WORKING).max(1);
-        let (width, height) = (plane.width / step, plane.height / step);
-        let mean = |k: usize| {
-            let (x, y) = (k % width * step, k / width * step);
-            let sum: f32 = (0..step * step).map(|i| plane.sample(x + i % step, y + i / step)).sum();
-            sum / (step * step) as f32
-        };
-        Some(Self { width, height, values: (0..width * height).map(mean).collect() })
-    }
-
-    /// The largest value (smallest, if not `largest`) so far along rows and columns. Windows that are `whole` are moved
-    /// inwards at the border instead of cut off, so that a stroke at the border is filled too.
-    fn extreme(&self, reach: [usize; 2], largest: bool, whole: bool) -> Self {
-        let pick = |values: &mut dyn Iterator<Item = f32>| {
-            if largest { values.fold(f32::NEG_INFINITY, f32::max) } else { values.fold(f32::INFINITY, f32::min) }
-        };
-        let (width, height) = (self.width, self.height);
-        let window = |at: usize, reach: usize, count: usize| {
-            let last = count - 1;
-            let (before, after) =
-                if whole { (reach.saturating_sub(last - at), reach.saturating_sub(at)) } else { (0, 0) };
-            (at.saturating_sub(reach + before), (at + reach + after).min(last))
-        };
-        let rows: Vec<f32> = (0..width * height)
-            .map(|k| {
-                let (x, row) = (k % width, k - k % width);
-                let (from, to) = window(x, reach[0], width);
-                pick(&mut self.values[row + from..=row + to].iter().copied())
-            })
-            .collect();
-        let values = (0..width * height)
-            .map(|k| {
-                let (x, y) = (k % width, k / width);
-                let (from, to) = window(y, reach[1], height);
-                pick(&mut (from..=to).map(|y| rows[y * width + x]))
-            })
-            .collect();
-        Self { width, height, values }
+        let &Plane { width, height, stride, depth, data } = plane;
+        let samples = Samples { width, height, stride, depth, data, quarters: 0 };
+        let (width, height) = (width / step, height / step);
+        Some(Self { width, height, values: samples.means([0, 0], [width, height], step) })
     }
 
     /// The picture without what is darker (lighter, if not `dark`) than its surroundings and narrower than a share of
-    /// the picture.
-    fn filled(&self, narrower: f32, dark: bool) -> Self {
+    /// the picture. Windows are moved inwards at the border at first, so that a stroke there is filled too.
+    fn filled(&self, narrower: f32, dark: bool) -> Vec<f32> {
+        let size = [self.width, self.height];
         let reach = (narrower * self.width.min(self.height) as f32 / 2.0).round().max(1.0) as usize;
-        self.extreme([reach; 2], dark, true).extreme([reach; 2], !dark, false)
+        let wide = extreme(&self.values, size, Extreme { reach, largest: dark, whole: true });
+        extreme(&wide, size, Extreme { reach, largest: !dark, whole: false })
     }
 
     /// Whether ink is darker than the background: of dark and light, ink is what is narrow.
@@ -84,8 +54,7 @@ impl Grey {
         let narrow = |dark: bool| {
             let ground = self.filled(FINE, dark);
             let inner = (below..self.height - below).flat_map(|y| (aside..self.width - aside).map(move |x| (x, y)));
-            let apart =
-                |(x, y): (usize, usize)| (self.values[y * self.width + x] - ground.values[y * self.width + x]).abs();
+            let apart = |(x, y): (usize, usize)| (self.values[y * self.width + x] - ground[y * self.width + x]).abs();
             inner.map(apart).sum::<f32>()
         };
         narrow(true) >= narrow(false)
@@ -95,13 +64,13 @@ impl Grey {
     pub(super) fn flattened(&self, dark: bool) -> Option<Self> {
         let mut ground = self.filled(STROKE, dark);
         // What is dark along a whole row is ground, too: a shadow across the picture.
-        let rows = self.extreme([self.width, 0], dark, false);
-        for (value, other) in ground.values.iter_mut().zip(&rows.values) {
-            *value = if dark { value.min(*other) } else { value.max(*other) };
+        for (ground, row) in ground.chunks_exact_mut(self.width).zip(self.values.chunks_exact(self.width)) {
+            let most = row.iter().copied().reduce(if dark { f32::max } else { f32::min }).unwrap_or_default();
+            ground.iter_mut().for_each(|value| *value = if dark { value.min(most) } else { value.max(most) });
         }
         let sign = if dark { 1.0 } else { -1.0 };
         let differences: Vec<f32> =
-            self.values.iter().zip(&ground.values).map(|(value, ground)| sign * (ground - value)).collect();
+            self.values.iter().zip(&ground).map(|(value, ground)| sign * (ground - value)).collect();
         let mut sorted = differences.clone();
         sorted.sort_by(f32::total_cmp);
         // At the least a fiftieth is ink, and its darkest half tells how dark it is.

@@ -2,26 +2,27 @@
 //! wherever they lie.
 
 use crate::figure::text_coverage;
-use crate::video::Picture;
+use crate::video::{Format, Picture};
+use crate::vision::Stroke;
 
 /// An 8-bit 4:2:0 picture to draw on.
 pub(super) struct Canvas<'a> {
     pub(super) picture: &'a mut Picture,
     /// Luma of white and of black.
-    pub(super) white: f32,
-    pub(super) black: f32,
+    pub(super) white: u8,
+    pub(super) black: u8,
     /// Thickness of lines, pixels.
-    pub(super) line_px: f64,
+    pub(super) line_px: u8,
 }
 
 impl Canvas<'_> {
     /// Takes a pixel towards a grey: by its `cover` of it, from 0 to 1.
-    fn blend(&mut self, x: usize, y: usize, cover: f32, grey: f32) {
+    fn blend(&mut self, x: usize, y: usize, cover: f32, grey: u8) {
         let towards = |value: &mut u8, aim: f32, cover: f32| {
             *value = (f32::from(*value) + (aim - f32::from(*value)) * cover).round() as u8;
         };
         let width = self.picture.format.width;
-        towards(&mut self.picture.planes[0][y * width + x], grey, cover);
+        towards(&mut self.picture.planes[0][y * width + x], f32::from(grey), cover);
         let at = y / 2 * (width / 2) + x / 2;
         // Four pixels share a chroma sample.
         for plane in &mut self.picture.planes[1..] {
@@ -29,50 +30,44 @@ impl Canvas<'_> {
         }
     }
 
-    /// Draws what lies within half a line's thickness of zero `distance`, in the box around `(x, y)` pairs.
-    fn stroke(&mut self, [left, top, right, bottom]: [f64; 4], distance: impl Fn(f64, f64) -> f64) {
-        let (width, height) = (self.picture.format.width, self.picture.format.height);
-        let reach = self.line_px + 2.0;
-        let from = |low: f64| (low - reach).floor().max(0.0) as usize;
-        let to = |high: f64, end: usize| ((high + reach).ceil().max(-1.0) + 1.0).min(end as f64) as usize;
-        for y in from(top)..to(bottom, height) {
-            for x in from(left)..to(right, width) {
-                let away = distance(x as f64, y as f64).abs();
-                let cover = |half: f64| (half + 0.5 - away).clamp(0.0, 1.0) as f32;
-                let rim = cover(0.5 * self.line_px + 1.0);
-                if rim > 0.0 {
-                    self.blend(x, y, 0.6 * rim, self.black);
-                    self.blend(x, y, cover(0.5 * self.line_px), self.white);
-                }
+    /// Draws strokes as one: their rim, then themselves.
+    fn strokes(&mut self, strokes: &[Stroke]) {
+        let Format { width, height, .. } = self.picture.format;
+        let all = strokes.iter().map(Stroke::bounds);
+        let all = all.reduce(|a, b| [a[0].min(b[0]), a[1].min(b[1]), a[2].max(b[2]), a[3].max(b[3])]);
+        let [left, top, right, bottom] = all.unwrap_or_default();
+        let reach = f64::from(self.line_px) + 4.0;
+        let from = |low: f64| (low - reach).max(0.0) as usize;
+        let to = |high: f64, end: usize| ((high + reach).max(-1.0) + 1.0).min(end as f64) as usize;
+        let (left, right, top, bottom) = (from(left), to(right, width), from(top), to(bottom, height));
+        let size = [right.saturating_sub(left), bottom.saturating_sub(top)];
+        for (wide, share, grey) in [(self.line_px + 2, 0.6, self.black), (self.line_px, 1.0, self.white)] {
+            let mut cover = vec![0; size[0] * size[1]];
+            let moved = strokes.iter().map(|stroke| stroke.moved([-(left as f64), -(top as f64)]));
+            moved.for_each(|stroke| stroke.draw(&mut cover, size, u8::MAX, wide));
+            for (k, &cover) in cover.iter().enumerate().filter(|(_, cover)| **cover > 0) {
+                self.blend(left + k % size[0], top + k / size[0], share * f32::from(cover) / 255.0, grey);
             }
         }
     }
 
-    pub(super) fn circle(&mut self, [x, y]: [f64; 2], radius: f64) {
-        let around = [x - radius, y - radius, x + radius, y + radius];
-        self.stroke(around, |at_x, at_y| (at_x - x).hypot(at_y - y) - radius);
+    pub(super) fn circle(&mut self, at: [f64; 2], radius: f64) {
+        self.strokes(&[Stroke::Circle { at, radius }]);
     }
 
-    pub(super) fn line(&mut self, [x0, y0]: [f64; 2], [x1, y1]: [f64; 2]) {
-        let around = [x0.min(x1), y0.min(y1), x0.max(x1), y0.max(y1)];
-        let (dx, dy) = (x1 - x0, y1 - y0);
-        let length2 = (dx * dx + dy * dy).max(f64::MIN_POSITIVE);
-        self.stroke(around, |x, y| {
-            let along = (((x - x0) * dx + (y - y0) * dy) / length2).clamp(0.0, 1.0);
-            (x - x0 - along * dx).hypot(y - y0 - along * dy)
-        });
+    pub(super) fn line(&mut self, from: [f64; 2], to: [f64; 2]) {
+        self.strokes(&[Stroke::Line([from, to])]);
     }
 
     /// An upright cross of arms `arm` long.
     pub(super) fn plus(&mut self, [x, y]: [f64; 2], arm: f64) {
-        self.line([x - arm, y], [x + arm, y]);
-        self.line([x, y - arm], [x, y + arm]);
+        self.strokes(&[Stroke::Line([[x - arm, y], [x + arm, y]]), Stroke::Line([[x, y - arm], [x, y + arm]])]);
     }
 
     /// A slanted cross of arms `arm` long.
     pub(super) fn cross(&mut self, [x, y]: [f64; 2], arm: f64) {
-        self.line([x - arm, y - arm], [x + arm, y + arm]);
-        self.line([x - arm, y + arm], [x + arm, y - arm]);
+        let arms = [[[x - arm, y - arm], [x + arm, y + arm]], [[x - arm, y + arm], [x + arm, y - arm]]];
+        self.strokes(&arms.map(Stroke::Line));
     }
 
     /// Text on a darkened box with its top left corner at a place.

@@ -131,9 +131,9 @@ impl Overlay {
         let shown = |at: [f64; 2]| turn.shown_from_stored(at, size);
         let matrix = &self.info.matrix;
         let mut canvas = Canvas {
-            white: matrix.from_rgb([1.0; 3])[0] as f32,
-            black: matrix.from_rgb([0.0; 3])[0] as f32,
-            line_px: (height as f64 / 720.0).max(1.0),
+            white: matrix.from_rgb([1.0; 3])[0] as u8,
+            black: matrix.from_rgb([0.0; 3])[0] as u8,
+            line_px: (height as f64 / 720.0).round().clamp(1.0, 200.0) as u8,
             picture: &mut self.picture,
         };
         let text_px = (TEXT_HEIGHT * height as f64).max(LEAST_TEXT_PX);

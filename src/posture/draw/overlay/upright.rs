@@ -1,6 +1,7 @@
 //! A frame as it is shown: turned upright, 8-bit 4:2:0 with even sides, whatever it was; to be drawn on and encoded.
 
 use crate::video::{Format, Frame, Info, Picture, Plane, Turn};
+use crate::vision::Samples;
 
 /// Width and height of the shown picture.
 pub(super) fn shown_size(info: &Info) -> (usize, usize) {
@@ -20,60 +21,21 @@ pub(super) fn shown_format(info: &Info) -> Format {
 
 /// Copies a frame upright into a picture of [`shown_format`]; the last column and row stand twice where a side was odd.
 pub(super) fn copy(frame: &Frame<'_>, info: &Info, into: &mut Picture) {
-    let (width, height) = shown_size(info);
-    let size = (info.format.width, info.format.height);
-    let stored = |x: usize, y: usize| {
-        let [x, y] = info.turn.stored_from_shown([x.min(width - 1) as f64, y.min(height - 1) as f64], size);
-        (x as usize, y as usize)
+    let Format { width, height, .. } = into.format;
+    let copy = |plane: Plane<'_>, block: [usize; 2], into: &mut [u8], size: [usize; 2]| {
+        let Plane { width, height, stride, depth, data } = plane;
+        Samples { width, height, stride, depth, data, quarters: info.turn.quarters() }.shown(block, into, size);
     };
-    let columns = into.format.width;
-    let [luma, cb, cr] = &mut into.planes[..] else { unreachable!("4:2:0 has three planes") };
-    for (y, row) in luma.chunks_exact_mut(columns).enumerate() {
-        fill(row, frame.luma, |x| stored(x, y));
-    }
-    let Some(chroma) = frame.chroma else {
-        cb.fill(128);
-        cr.fill(128);
-        return;
-    };
-    let (across, down) = frame.subsampling();
-    if (across, down) == (2, 2) {
-        for (plane, into) in chroma.into_iter().zip([cb, cr]) {
-            for (y, row) in into.chunks_exact_mut(columns / 2).enumerate() {
-                fill(row, plane, |x| {
-                    let (x, y) = stored(2 * x, 2 * y);
-                    (x / 2, y / 2)
-                });
-            }
-        }
-        return;
-    }
+    let [luma, chroma @ ..] = &mut into.planes[..] else { return };
+    copy(frame.luma, [1, 1], luma, [width, height]);
+    let Some(planes) = frame.chroma else { return chroma.iter_mut().for_each(|plane| plane.fill(128)) };
     // Finer chroma: the mean of the block.
-    for (plane, into) in chroma.into_iter().zip([cb, cr]) {
-        for (y, row) in into.chunks_exact_mut(columns / 2).enumerate() {
-            for (x, value) in row.iter_mut().enumerate() {
-                let block = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(dx, dy)| {
-                    let (x, y) = stored(2 * x + dx, 2 * y + dy);
-                    plane.sample(x / across, y / down)
-                });
-                *value = (block.iter().sum::<f32>() / 4.0).round() as u8;
-            }
-        }
-    }
-}
-
-/// Fills a row with samples from places that lie on a straight line.
-fn fill(row: &mut [u8], plane: Plane<'_>, place: impl Fn(usize) -> (usize, usize)) {
-    let last = row.len() - 1;
-    let ((x0, y0), (x1, y1)) = (place(0), place(last));
-    if y0 == y1 && x1 == x0 + last && plane.depth == 8 {
-        row.copy_from_slice(&plane.data[y0 * plane.stride + x0..][..=last]);
-        return;
-    }
-    for (x, value) in row.iter_mut().enumerate() {
-        let (x, y) = place(x);
-        *value = plane.sample(x, y).round() as u8;
-    }
+    let (across, down) = frame.subsampling();
+    let block = match info.turn {
+        Turn::None | Turn::Half => [2 / across, 2 / down],
+        Turn::Quarter | Turn::ThreeQuarters => [2 / down, 2 / across],
+    };
+    planes.into_iter().zip(chroma).for_each(|(plane, into)| copy(plane, block, into, [width / 2, height / 2]));
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use crate::photo::outline::Outline;
 use crate::photo::outline::mask::{Region, largest_outline};
-use crate::vision::{Planes, VisionError, components};
+use crate::vision::{Neighbours, Planes, VisionError, parts};
 
 /// The network's planes are whole numbers of these, pixels; beyond the picture they are black.
 const WHOLE: usize = 32;
@@ -78,7 +78,8 @@ impl View {
         }
         let (nail, core) = answer.values.split_at(rows * columns);
         let seeds: Vec<u8> = nail.iter().zip(core).map(|(n, c)| u8::from(*n > THRESHOLD && *c > THRESHOLD)).collect();
-        let cores = components(&seeds, [columns, rows])?;
+        let cores: Vec<u32> =
+            parts(&seeds, [columns, rows], Neighbours::Four).labels.into_iter().map(i32::cast_unsigned).collect();
         let labels = grown(cores.clone(), nail, columns);
         let mut members = vec![Vec::new(); cores.iter().copied().max().unwrap_or(0) as usize];
         for (at, &label) in labels.iter().enumerate().filter(|(_, label)| **label > 0) {
