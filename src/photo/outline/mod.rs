@@ -22,4 +22,5 @@ pub(super) use keep::{DetectedOutline, keep_outlines};
 pub use mask::{DroppedRegion, MaskFault, MaskOutlines, MaskValues, TooLarge, outlines_from_mask, outlines_of_values};
 pub use moments::Moments;
 pub use refused::{Refusal, Refused};
+pub(super) use source::hundredths;
 pub use source::{Listed, Nail, OutlineOptions, OutlinePlace, Source, SourceFault, Sources};

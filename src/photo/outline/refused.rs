@@ -22,18 +22,21 @@ pub enum Refusal {
     NotSeenAgain(f64),
 }
 
-/// Least confidence and probability of refused places that are shown (assumed). On 66 real photographs these are 1, 4
+/// What refused places have at least to be shown (assumed): a confidence of this part of a doubtful find's least, or of
+/// all of it under another find; a probability on the one look. By the network on 66 real photographs these are 5, 0
 /// and 49 places; of any probability the last would be 181.
-const UNSURE_SHOWS: f64 = 0.005;
+const UNSURE_SHOWS: f64 = 1.0 / 6.0;
 const NOT_SEEN_AGAIN_SHOWS: f64 = 0.8;
 /// Overlap with a surer find from which it is the same one, seen twice.
 const SAME_FIND: f64 = 0.5;
 
 impl Refused {
-    /// Whether it helps a person to see it beside the finds that were kept.
-    pub(super) fn is_shown<'a>(&self, mut kept: impl Iterator<Item = &'a Outline>) -> bool {
+    /// Whether it helps a person to see it beside the finds that were `kept`, the least confidence of which is
+    /// `doubtful`.
+    pub(super) fn is_shown<'a>(&self, doubtful: f64, mut kept: impl Iterator<Item = &'a Outline>) -> bool {
         let sure = match self.why {
-            Refusal::Unsure(confidence) | Refusal::Overlapped(confidence) => confidence >= UNSURE_SHOWS,
+            Refusal::Unsure(confidence) => confidence >= UNSURE_SHOWS * doubtful,
+            Refusal::Overlapped(confidence) => confidence >= doubtful,
             Refusal::NotSeenAgain(probability) => probability >= NOT_SEEN_AGAIN_SHOWS,
         };
         sure && !kept.any(|other| other.iou(&self.outline) >= SAME_FIND)

@@ -278,11 +278,11 @@ impl OutlineOptions {
         }
         let used = found.nails.into_iter().map(|n| (n, String::new()));
         let doubtful = found.doubtful.into_iter().map(|n| {
-            let limit = found.needed;
             let reason = format!(
-                "the outline found is not trusted (confidence {:.2}, {limit} is needed); correct it in LabelMe \
+                "the outline found is not trusted (confidence {}, {} is needed); correct it in LabelMe \
                  (--write-outlines)",
-                n.confidence
+                hundredths(n.confidence),
+                found.needed
             );
             (n, reason)
         });
@@ -375,6 +375,11 @@ impl OutlineOptions {
             nails[k].confidence = None;
         }
     }
+}
+
+/// A confidence in words, cut off rather than rounded: 0.499 is less than 0.5.
+pub(in crate::photo) fn hundredths(confidence: f64) -> String {
+    format!("{:.2}", (100.0 * confidence).floor() / 100.0)
 }
 
 fn left_out(source: Source, outline: Option<Outline>, reason: String) -> Nail {

@@ -1,14 +1,14 @@
 //! What was found, drawn over the photographs: used, doubtful and refused in three colours, for a person to see in one
 //! look what happened.
 
-use image::RgbImage;
+use image::{DynamicImage, RgbImage};
 use rayon::prelude::*;
 
 use super::draw::DrawnSheet;
 use crate::figure::{Sheet, Tile, TilePicture, text_coverage};
 use crate::files::{Staging, WriteError};
 use crate::nail::{Axis, Outline};
-use crate::photo::outline::{Nail, Refusal, Refused};
+use crate::photo::outline::{Nail, Refusal, Refused, hundredths};
 use crate::photograph::Photograph;
 use crate::vision::{VisionError, closed_line, resized};
 
@@ -86,7 +86,7 @@ impl<'a> Mark<'a> {
         let fate = Fate::of(nail);
         let word = match nail.confidence {
             _ if fate == Fate::Used => String::new(),
-            Some(confidence) => format!("{confidence:.2}"),
+            Some(confidence) => hundredths(confidence),
             None => format!("nail {number}"),
         };
         Some(Self { outline: nail.outline.as_ref()?, axis: nail.axis, fate, word })
@@ -102,11 +102,18 @@ pub(in crate::photo) fn drawn_outlines(
     nails: &[Nail],
     refused: &[Refused],
 ) -> Result<DrawnPhotograph, VisionError> {
-    let rgb = picture.image.to_rgb8();
+    let converted: RgbImage;
+    let rgb = match &picture.image {
+        DynamicImage::ImageRgb8(rgb) => rgb,
+        other => {
+            converted = other.to_rgb8();
+            &converted
+        }
+    };
     let from = [rgb.width() as usize, rgb.height() as usize];
     let scale = (LONGEST_PX as f64 / from[0].max(from[1]) as f64).min(1.0);
     let size = from.map(|n| ((n as f64 * scale).round() as usize).max(1));
-    let mut small = resized(&rgb, from, size)?;
+    let mut small = resized(rgb, from, size)?;
     let place = |p: [f64; 2]| [0, 1].map(|k| (p[k] + 0.5) * size[k] as f64 / from[k] as f64 - 0.5);
     let corners = |mark: &Mark<'_>| -> Vec<[f64; 2]> { mark.outline.points().into_iter().map(place).collect() };
     let nails = (1..).zip(nails).filter_map(|(number, nail)| Mark::of_nail(number, nail));

@@ -88,14 +88,15 @@ pub fn run(
     findings.left_out = left_out(&foreknown, options, outputs);
     let mut places = Places::default();
     findings.outlines = save_outlines(&detected, set, outputs, &mut places)?;
+    // A person needs to see what detection saw, then most of all; a request that is wrong changes nothing.
+    let is_shown = !drawn.is_empty() && foreknown.iter().any(|photo| photo.outlines == OutlinePlace::Detection);
     let nothing = findings.rows.iter().all(|row| row.normalized.is_none()).then(|| PhotosError::NothingUsable {
-        report: (!drawn.is_empty()).then(|| outputs.folder.join(HTML)),
+        report: is_shown.then(|| outputs.folder.join(HTML)),
         failed: findings.failed.clone(),
         outlines: findings.outlines.clone(),
     });
-    // Without anything to see there is no report.
     let nothing = match nothing {
-        Some(nothing) if drawn.is_empty() => {
+        Some(nothing) if !is_shown => {
             places.commit()?;
             return Err(nothing);
         }

@@ -208,7 +208,7 @@ fn sorted_out((mut found, mut refused): (Vec<Detected>, Vec<Refused>), [needed, 
     let (nails, doubtful): (Vec<_>, Vec<_>) = found.into_iter().partition(|d| d.confidence >= needed);
     let (doubtful, unsure): (Vec<_>, Vec<_>) = doubtful.into_iter().partition(|d| d.confidence >= shown);
     refused.extend(unsure.into_iter().map(|d| Refused { outline: d.outline, why: Refusal::Unsure(d.confidence) }));
-    refused.retain(|one| one.is_shown(nails.iter().chain(&doubtful).map(|kept| &kept.outline)));
+    refused.retain(|one| one.is_shown(shown, nails.iter().chain(&doubtful).map(|kept| &kept.outline)));
     let note = nails.is_empty().then_some(match best {
         Some(best) if !doubtful.is_empty() => NothingFound::Doubtful { best, needed },
         _ => NothingFound::NoPlace,
