@@ -73,9 +73,18 @@ pub enum ReadFault {
         /// What white is.
         white: u16,
     },
+    /// A kind of TIFF or the like that the decoder does not know: CIELab, YCbCr, floating point.
+    #[error("cannot be decoded ({0}); export it with 8 or 16 bits, in grey or RGB, as PNG, TIFF, BMP or JPEG")]
+    Unsupported(image::ImageError),
     /// The decoder's own complaint.
     #[error("cannot be decoded ({0}); it may be damaged: copy or export it again")]
-    Decode(#[from] image::ImageError),
+    Decode(image::ImageError),
+}
+
+impl From<image::ImageError> for ReadFault {
+    fn from(why: image::ImageError) -> Self {
+        if matches!(why, image::ImageError::Unsupported(_)) { Self::Unsupported(why) } else { Self::Decode(why) }
+    }
 }
 
 /// An upright photograph and what is known of its file.

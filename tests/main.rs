@@ -29,6 +29,7 @@ mod phantom_video;
 mod photos;
 mod photos_bad_input;
 mod photos_doubtful;
+mod photos_extremes;
 mod pipeline;
 mod pipeline_models;
 mod pipeline_pictures;

@@ -227,7 +227,7 @@ fn doubted(hand: &Hand, folder: &Path, drawn: impl Fn(&Outline, Axis) -> (Vec<[f
     let name = || "hand".to_owned();
     let photo = Photo { pose: name(), subject: name(), file: name(), path: picture.clone(), outline: None, tone: None };
     let options = OutlineOptions::default();
-    let nails = options.nails(&options.locate(&photo), &Photograph::read(&picture).unwrap()).unwrap();
+    let nails = options.nails(&options.locate(&photo), &Photograph::read(&picture).unwrap()).unwrap().nails;
     nails.iter().filter(|nail| !nail.reason.is_empty()).count()
 }
 

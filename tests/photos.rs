@@ -384,7 +384,12 @@ fn detected_outlines_are_kept_corrected_and_used() {
             std::fs::remove_file(dir.path(&format!("set/photos/{pose}/{subject}.json"))).expect("removed");
         }
     }
+    let tones = "file,subject,pose,tone\nnominal/s01.png,s01,nominal,II\nnominal/s02.png,s02,nominal,\n\
+                 normal/s01.png,s01,normal,II\nnormal/s02.png,s02,normal,\n";
+    dir.write("set/photos/photos.csv", tones);
     dir.lunula(&["photos", "set/photos", "--out", "apart", "--write-outlines=drawn"]).expect(0);
+    let tone_of = |name: &str| dir.table(name).into_iter().map(|row| row["tone"].clone()).collect::<Vec<_>>();
+    assert_eq!(tone_of("drawn/photos.csv"), ["II", "", "II", ""]);
     dir.lunula(&["photos", "drawn", "--out", "again"]).expect(0);
     let again = dir.table("again/nails.csv");
     assert!(again.len() == 4 && again.iter().all(|r| r["outline"] == "annotated" && r["used"] == "true"));

@@ -290,13 +290,21 @@ fn what_is_found_but_not_trusted_is_kept_for_a_person_even_where_nothing_else_is
         let _ = std::fs::remove_dir_all(dir.path("out"));
         let answer = dir.lunula(&["photos", "set/photos", "--out", "out", "--write-outlines"]);
         let drawn = dir.path("set/photos/nominal/s01.json");
-        // The outlines were saved: 2 would say that nothing was changed.
+        // The outlines were saved, and there is a report: 2 would say that nothing was changed.
         answer.code == 1 && answer.stderr.contains("is not trusted") && drawn.exists()
     });
     assert!(doubted.is_some(), "no doubted nail in forty scenes");
     let drawn = lunula::labelme::LabelMe::read(&dir.path("set/photos/nominal/s01.json")).expect("LabelMe");
     assert!(drawn.shapes.iter().any(|s| s.label == "nail?") && drawn.shapes.iter().all(|s| s.label != "nail"));
-    assert!(!dir.path("out").exists());
+    // The report shows it; there are no maps.
+    assert_eq!(
+        dir.bytes_of("out").into_keys().collect::<Vec<_>>(),
+        ["figures/outlines-1.png", "nails.csv", "report.html", "run.json"]
+    );
+    let report = dir.parsed("out/run.json");
+    assert_eq!((&report["counts"]["nails_used"], report["failed"].as_array().map(Vec::len)), (&0.into(), Some(1)));
+    let html = std::fs::read_to_string(dir.path("out/report.html")).expect("a report");
+    assert!(html.contains("Not one nail could be used") && html.contains("is not trusted"));
 }
 
 /// Ctrl-C while a photograph is being read: a named pipe holds the job there.

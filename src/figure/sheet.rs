@@ -128,8 +128,10 @@ impl Sheet {
         left(&mut sheet, &self.title, GAP as i32, 14, 22.0);
         for (at, tile) in self.tiles.iter().enumerate() {
             let [x0, y0] = layout.corner(at);
-            for y in 0..tile.picture.size()[1] {
-                let start = 3 * ((y0 + y) * layout.size[0] + x0) as usize;
+            let [width, height] = tile.picture.size();
+            let left = x0 + (layout.tile[0] - width) / 2;
+            for y in 0..height {
+                let start = 3 * ((y0 + y) * layout.size[0] + left) as usize;
                 let samples: &mut [u8] = &mut sheet;
                 tile.picture.draw_row(y, samples[start..].as_chunks_mut::<3>().0);
             }
@@ -194,9 +196,10 @@ impl Sheet {
             let png = tile.png.as_ref().or(encoded.as_ref()).map_or(&[][..], Vec::as_slice);
             svg += &format!(
                 "<rect x=\"{x}\" y=\"{y}\" width=\"{tile_width}\" height=\"{tile_height}\" fill=\"#cdd8f0\"/>\n\
-                 <image x=\"{x}\" y=\"{y}\" width=\"{picture_width}\" height=\"{picture_height}\" \
+                 <image x=\"{}\" y=\"{y}\" width=\"{picture_width}\" height=\"{picture_height}\" \
                  href=\"data:image/png;base64,{}\"/>\n\
                  <text x=\"{}\" y=\"{}\" font-size=\"15\" text-anchor=\"middle\">{}</text>\n",
+                x + (tile_width - picture_width) / 2,
                 base64::engine::general_purpose::STANDARD.encode(png),
                 x + tile_width / 2,
                 y + tile_height + 18,

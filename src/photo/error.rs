@@ -18,8 +18,10 @@ pub enum PhotosError {
     #[error(transparent)]
     Write(#[from] WriteError),
     /// Not one usable nail.
-    #[error("not one nail could be used, so there are no results:{}", list(.failed))]
+    #[error("not one nail could be used, so there are no maps{}:{}", look_at(.report), list(.failed))]
     NothingUsable {
+        /// The report of what was found and why it is not used, where there is something to see.
+        report: Option<PathBuf>,
         /// Why, by photograph.
         failed: Vec<SetFault>,
         /// What was detected but not trusted and was saved, where that was requested: a person may correct it.
@@ -28,6 +30,10 @@ pub enum PhotosError {
     /// Stopped from outside.
     #[error("stopped")]
     Interrupted(#[from] Interrupted),
+}
+
+fn look_at(report: &Option<PathBuf>) -> String {
+    report.as_ref().map_or_else(String::new, |report| format!("; {} shows what was found", report.display()))
 }
 
 fn list(failed: &[SetFault]) -> String {

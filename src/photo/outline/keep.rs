@@ -128,7 +128,9 @@ fn write_manifest(
     let refused = |why: String| WriteError::File { path: path.clone(), why };
     let at = places.place(&path)?;
     let mut table = csv::Writer::from_writer(Vec::new());
-    table.write_record(["file", "subject", "pose", "outline"]).map_err(|e| refused(e.to_string()))?;
+    let with_tone = set.photos.iter().any(|photo| photo.tone.is_some());
+    let header = ["file", "subject", "pose", "outline"].into_iter().chain(with_tone.then_some("tone"));
+    table.write_record(header).map_err(|e| refused(e.to_string()))?;
     for photo in &set.photos {
         let outline =
             [Some(place(photo, Some(folder))), photo.outline.clone(), Some(photo.path.with_extension("json"))]
@@ -137,7 +139,9 @@ fn write_manifest(
                 .find(|path| path.is_file() || new.contains(path));
         let outline = outline.map_or_else(String::new, |path| relative(&path, Some(folder)));
         let file = relative(&photo.path, Some(folder));
-        table.write_record([&file, &photo.subject, &photo.pose, &outline]).map_err(|e| refused(e.to_string()))?;
+        let tone = with_tone.then(|| photo.tone.as_deref().unwrap_or_default());
+        let cells = [&*file, &*photo.subject, &*photo.pose, &*outline].into_iter().chain(tone);
+        table.write_record(cells).map_err(|e| refused(e.to_string()))?;
     }
     let text = table.into_inner().map_err(|e| refused(e.to_string()))?;
     std::fs::write(at, text).map_err(|e| refused(e.to_string()))

@@ -6,6 +6,7 @@ mod detect;
 mod keep;
 mod mask;
 mod moments;
+mod refused;
 mod source;
 
 pub use crate::nail::{Axis, Outline, OutlineFault};
@@ -20,4 +21,6 @@ pub use keep::SavedOutlines;
 pub(super) use keep::{DetectedOutline, keep_outlines};
 pub use mask::{DroppedRegion, MaskFault, MaskOutlines, MaskValues, TooLarge, outlines_from_mask, outlines_of_values};
 pub use moments::Moments;
-pub use source::{Nail, OutlineOptions, OutlinePlace, Source, SourceFault, Sources};
+pub use refused::{Refusal, Refused};
+pub(super) use source::hundredths;
+pub use source::{Listed, Nail, OutlineOptions, OutlinePlace, Source, SourceFault, Sources};

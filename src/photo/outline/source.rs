@@ -12,8 +12,8 @@ use thiserror::Error;
 use super::annotated::{self, AnnotationFault, Drawn};
 use super::axis::{Verdict, agree, turned_since, verdict};
 use super::{
-    Axis, DetectOptions, MaskFault, MaskValues, NothingFound, Outline, Side, detect, find_axes, find_axes_towards,
-    outlines_from_mask, outlines_of_values,
+    Axis, DetectOptions, Detected, MaskFault, MaskValues, NothingFound, Outline, Refused, Side, detect, find_axes,
+    find_axes_towards, outlines_from_mask, outlines_of_values,
 };
 use crate::photo::set::Photo;
 use crate::photograph::{MOST_MEGAPIXELS, PICTURES, Photograph, ReadFault, is_picture};
@@ -97,6 +97,21 @@ pub struct Nail {
     pub reason: String,
 }
 
+/// What a photograph gave.
+#[derive(Debug, Clone)]
+pub struct Listed {
+    /// Its nails in the source's order; at least one, used or not.
+    pub nails: Vec<Nail>,
+    /// Places that detection refused.
+    pub refused: Vec<Refused>,
+}
+
+impl From<Vec<Nail>> for Listed {
+    fn from(nails: Vec<Nail>) -> Self {
+        Self { nails, refused: Vec::new() }
+    }
+}
+
 /// Why a photograph has no nails to list.
 #[derive(Debug, Error)]
 pub enum SourceFault {
@@ -133,8 +148,13 @@ pub enum SourceFault {
     #[error(transparent)]
     Vision(#[from] VisionError),
     /// Detection found nothing.
-    #[error("{0}; draw its outline in LabelMe, label it `nail` and save it beside the photograph")]
-    NotFound(NothingFound),
+    #[error("{why}; draw its outline in LabelMe, label it `nail` and save it beside the photograph")]
+    NotFound {
+        /// Why nothing was found.
+        why: NothingFound,
+        /// Places that detection refused.
+        refused: Vec<Refused>,
+    },
 }
 
 /// Where a photograph's outlines will come from, known without opening it.
@@ -173,15 +193,14 @@ impl OutlineOptions {
         if self.sources == Sources::Annotated { OutlinePlace::Nowhere } else { OutlinePlace::Detection }
     }
 
-    /// The nails of an opened photograph whose outlines come from `place`, in the source's order; at least one, used or
-    /// not.
+    /// The nails of an opened photograph whose outlines come from `place`.
     ///
     /// # Errors
     /// [`SourceFault`] where there is nothing to list.
-    pub fn nails(&self, place: &OutlinePlace, picture: &Photograph) -> Result<Vec<Nail>, SourceFault> {
+    pub fn nails(&self, place: &OutlinePlace, picture: &Photograph) -> Result<Listed, SourceFault> {
         match place {
-            OutlinePlace::LabelMe(file) => self.annotated_nails(file, picture),
-            OutlinePlace::Mask(file) => self.mask_nails(file, picture),
+            OutlinePlace::LabelMe(file) => self.annotated_nails(file, picture).map(Listed::from),
+            OutlinePlace::Mask(file) => self.mask_nails(file, picture).map(Listed::from),
             OutlinePlace::Detection => self.detected_nails(picture),
             OutlinePlace::Nowhere => Err(SourceFault::NotAnnotated { masks: self.masks.is_some() }),
         }
@@ -251,31 +270,30 @@ impl OutlineOptions {
         Ok(nails)
     }
 
-    fn detected_nails(&self, picture: &Photograph) -> Result<Vec<Nail>, SourceFault> {
+    fn detected_nails(&self, picture: &Photograph) -> Result<Listed, SourceFault> {
         let found = detect(&picture.image, &self.detect)?;
+        let refused = found.refused;
         if found.nails.is_empty() && found.doubtful.is_empty() {
-            return Err(SourceFault::NotFound(found.note.unwrap_or(NothingFound::NoPlace)));
+            return Err(SourceFault::NotFound { why: found.note.unwrap_or(NothingFound::NoPlace), refused });
         }
         let used = found.nails.into_iter().map(|n| (n, String::new()));
         let doubtful = found.doubtful.into_iter().map(|n| {
-            let limit = found.needed;
             let reason = format!(
-                "the outline found is not trusted (confidence {:.2}, {limit} is needed); correct it in LabelMe \
+                "the outline found is not trusted (confidence {}, {} is needed); correct it in LabelMe \
                  (--write-outlines)",
-                n.confidence
+                hundredths(n.confidence),
+                found.needed
             );
             (n, reason)
         });
-        Ok(used
-            .chain(doubtful)
-            .map(|(n, reason)| Nail {
-                source: Source::Detected,
-                outline: Some(n.outline),
-                axis: Some(n.axis),
-                confidence: Some(n.confidence),
-                reason,
-            })
-            .collect())
+        let nail = |(n, reason): (Detected, String)| Nail {
+            source: Source::Detected,
+            outline: Some(n.outline),
+            axis: Some(n.axis),
+            confidence: Some(n.confidence),
+            reason,
+        };
+        Ok(Listed { nails: used.chain(doubtful).map(nail).collect(), refused })
     }
 
     /// Looks for the axes that nobody drew, and doubts those that the picture surely contradicts.
@@ -357,6 +375,11 @@ impl OutlineOptions {
             nails[k].confidence = None;
         }
     }
+}
+
+/// A confidence in words, cut off rather than rounded: 0.499 is less than 0.5.
+pub(in crate::photo) fn hundredths(confidence: f64) -> String {
+    format!("{:.2}", (100.0 * confidence).floor() / 100.0)
 }
 
 fn left_out(source: Source, outline: Option<Outline>, reason: String) -> Nail {

@@ -10,4 +10,4 @@ pub(super) use draw::{DrawnSheet, Scratch, thumbnail, write_normalized};
 pub(super) use maps::{write_maps, write_sums};
 pub use nails::NailRow;
 pub(super) use nails::{NAIL_COLUMNS, NailTable};
-pub(super) use outlines::{MOST_DRAWN, draw_outlines, drawn_outlines};
+pub(super) use outlines::{DrawnPhotograph, MOST_DRAWN, draw_outlines, drawn_outlines};

@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-use image::{GrayAlphaImage, RgbImage};
+use image::GrayAlphaImage;
 use rayon::prelude::*;
 
 use crate::files::{Places, Staging, WriteError};
@@ -19,10 +19,12 @@ use crate::photo::channels::{self, Cells, Compared, Sample};
 use crate::photo::error::PhotosError;
 use crate::photo::normalize::{NailFrame, Normalized, Normalizer};
 use crate::photo::options::{OutlineHome, Outputs, PhotosOptions, Results};
-use crate::photo::outline::{DetectedOutline, Nail, OutlinePlace, SavedOutlines, keep_outlines};
-use crate::photo::results::{self, NailRow, NailTable, Scratch};
+use crate::photo::outline::{
+    DetectedOutline, Listed, Nail, OutlinePlace, Refused, SavedOutlines, SourceFault, keep_outlines,
+};
+use crate::photo::results::{self, DrawnPhotograph, NailRow, NailTable, Scratch};
 use crate::photo::run::plan::{Foreknown, left_out};
-use crate::photo::run::report::{Findings, PhotosReport, of_photos};
+use crate::photo::run::report::{Findings, HTML, PhotosReport, of_photos};
 use crate::photo::set::{Photo, PhotoSet, SetFault};
 use crate::photo::sums::{Batch, Partials};
 use crate::photograph::{MOST_MEGAPIXELS, PhotoBuffer, Photograph};
@@ -38,8 +40,8 @@ const THUMBNAIL_PX: usize = 100;
 /// Runs the job and puts all its results in their places.
 ///
 /// # Errors
-/// [`PhotosError`] where there is no result. What was detected but is not trusted is saved all the same, where outlines
-/// are to be: it is what a person most needs to see.
+/// [`PhotosError`] where there are no maps. What was found but is not used is reported all the same, and saved where
+/// outlines are to be: it is what a person most needs to see.
 pub fn run(
     set: &PhotoSet,
     options: &PhotosOptions,
@@ -86,10 +88,20 @@ pub fn run(
     findings.left_out = left_out(&foreknown, options, outputs);
     let mut places = Places::default();
     findings.outlines = save_outlines(&detected, set, outputs, &mut places)?;
-    if findings.rows.iter().all(|row| row.normalized.is_none()) {
-        places.commit()?;
-        return Err(PhotosError::NothingUsable { failed: findings.failed, outlines: findings.outlines });
-    }
+    // A person needs to see what detection saw, then most of all; a request that is wrong changes nothing.
+    let is_shown = !drawn.is_empty() && foreknown.iter().any(|photo| photo.outlines == OutlinePlace::Detection);
+    let nothing = findings.rows.iter().all(|row| row.normalized.is_none()).then(|| PhotosError::NothingUsable {
+        report: is_shown.then(|| outputs.folder.join(HTML)),
+        failed: findings.failed.clone(),
+        outlines: findings.outlines.clone(),
+    });
+    let nothing = match nothing {
+        Some(nothing) if !is_shown => {
+            places.commit()?;
+            return Err(nothing);
+        }
+        other => other,
+    };
 
     let all = sums
         .into_iter()
@@ -102,10 +114,10 @@ pub fn run(
         Results::Sums { .. } => results::write_sums(&partials, &staging, &stages).map(|()| None)?,
         Results::Maps => {
             let (maps, of_nails) = rayon::join(
-                || results::write_maps(&partials, true, &staging, &stages),
+                || if nothing.is_some() { Ok(vec![]) } else { results::write_maps(&partials, true, &staging, &stages) },
                 || {
                     stages.time("sheets", || {
-                        let mut sheets = results::draw_outlines(drawn, &staging)?;
+                        let mut sheets = results::draw_outlines(&drawn, &staging)?;
                         sheets.extend(nails.draw_sheets(&staging)?);
                         Ok::<_, WriteError>(sheets)
                     })
@@ -127,7 +139,7 @@ pub fn run(
         report.write(&nails, &maps, &of_nails, &staging)?;
     }
     staging.commit_with(places)?;
-    Ok(report)
+    nothing.map_or(Ok(report), Err)
 }
 
 /// Compares the channels of colour photographs, where that was requested and there are some.
@@ -165,8 +177,8 @@ fn save_outlines(
 struct Done {
     nails: Vec<(NailRow, Option<GrayAlphaImage>)>,
     detected: Option<DetectedOutline>,
-    /// With what was detected, for the report.
-    drawn: Option<RgbImage>,
+    /// With what was found, for the report.
+    drawn: Option<DrawnPhotograph>,
     outlines: OutlinePlace,
     grey: Option<bool>,
     /// The largest sample as stored, of 16 bits.
@@ -228,15 +240,19 @@ impl Work<'_> {
             return Ok(Done { fault: fault(why.to_string()), ..done });
         }
         let nails = self.stages.time("outline", || self.options.outlines.nails(&done.outlines, &picture));
-        let is_drawn = done.outlines == OutlinePlace::Detection && index < results::MOST_DRAWN;
-        if is_drawn && self.outputs.results == Results::Maps {
-            let found = nails.as_deref().unwrap_or_default();
-            done.drawn = self.stages.time("outlines drawn", || results::drawn_outlines(&picture, found)).ok();
-        }
-        let nails = match nails {
-            Ok(nails) => nails,
-            Err(why) => return Ok(Done { fault: fault(why.to_string()), ..done }),
+        let may_draw = self.outputs.results == Results::Maps && index < results::MOST_DRAWN;
+        let draw = |nails: &[Nail], refused: &[Refused]| {
+            self.stages.time("outlines drawn", || results::drawn_outlines(&picture, nails, refused)).ok()
         };
+        let Listed { nails, refused } = match nails {
+            Ok(listed) => listed,
+            Err(why) => {
+                let refused = if let SourceFault::NotFound { refused, .. } = &why { Some(refused) } else { None };
+                let drawn = refused.filter(|_| may_draw).and_then(|refused| draw(&[], refused));
+                return Ok(Done { fault: fault(why.to_string()), drawn, ..done });
+            }
+        };
+        let mut found = if may_draw { nails.clone() } else { Vec::new() };
         done.detected = self.outputs.outlines.as_ref().and_then(|_| DetectedOutline::of(index, &picture, &nails));
         let several = nails.len() > 1;
         let Memory { normalizer, pictures, scratch, .. } = memory;
@@ -261,7 +277,16 @@ impl Work<'_> {
                 }
                 Err(reason) => row.reason = reason,
             }
+            if let Some(found) = found.get_mut(number - 1).filter(|_| row.normalized.is_none()) {
+                // What detection trusted and the job does not is refused, not doubtful.
+                found.confidence = found.confidence.filter(|_| !found.reason.is_empty());
+                found.reason.clone_from(&row.reason);
+            }
             done.nails.push((row, thumbnail));
+        }
+        // Also of outlines that a person drew, where one of them is left out.
+        if may_draw && (done.outlines == OutlinePlace::Detection || found.iter().any(|nail| !nail.reason.is_empty())) {
+            done.drawn = draw(&found, &refused);
         }
         if pictures.is_empty() {
             done.fault = fault(match &done.nails[..] {

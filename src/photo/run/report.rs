@@ -23,7 +23,7 @@ use crate::stages::Stage;
 
 /// Where the report goes among the results.
 const JSON: &str = "run.json";
-const HTML: &str = "report.html";
+pub(in crate::photo) const HTML: &str = "report.html";
 
 /// One run of `photos` or `photos merge`, as `run.json` and `--json` show it. Times differ from run to run; all else is
 /// the same for the same input and options.
@@ -242,7 +242,10 @@ impl PhotosReport {
         let mut page = Page::new("Fingernail coloration");
         let poses: Vec<String> = self.poses.iter().map(|p| format!("{} (n = {})", p.pose, p.subjects)).collect();
         page.paragraph(&format!("lunula {} {}, {}", self.version, self.job, list_paths(&self.inputs)));
-        page.paragraph(&format!("Poses and subjects: {}.", poses.join(", ")));
+        page.paragraph(&match &poses[..] {
+            [] => "Not one nail could be used, so there are no maps.".to_owned(),
+            poses => format!("Poses and subjects: {}.", poses.join(", ")),
+        });
         page.list(&self.warnings);
         page.list(&self.notes);
         for sheet in sheets {

@@ -166,7 +166,7 @@ impl Look {
         let mask = open("masks")?;
         let image = self.of(open("images")?, &mask);
         let truths = outlines_from_mask(&mask)?.nails;
-        let unrefined = net.segments(&image)?;
+        let (unrefined, _) = net.segments(&image)?;
         let found = detect_by(net, &image, &DetectOptions::default())?;
         let one = |(found, is_confident): (&Detected, bool)| {
             let best = truths.iter().max_by(|a, b| a.iou(&found.outline).total_cmp(&b.iou(&found.outline)));

@@ -34,12 +34,12 @@ mod shape;
 use image::DynamicImage;
 use thiserror::Error;
 
-use super::{Axis, AxisUnknown, FoundAxis, Moments, Outline, find_axes};
+use super::{Axis, AxisUnknown, FoundAxis, Moments, Outline, Refusal, Refused, find_axes};
 use crate::vision::VisionError;
-use candidate::{Candidate, Lead, Origin, follow_all, own_frame};
+use candidate::{Lead, Origin, follow_all, own_frame};
 use patch::{Frame, Patch};
 use picture::Levels;
-use segment::{NailNet, Segment};
+use segment::{NailNet, Segment, one_each};
 use shape::{OutlineShape, TAPER};
 
 /// The steps of detection, for `crates/training`, whose networks have to see what detection sees: no promise of the
@@ -145,6 +145,8 @@ pub struct Detections {
     pub nails: Vec<Detected>,
     /// Finds too unsure for results, for a person to correct.
     pub doubtful: Vec<Detected>,
+    /// Places that were looked at and refused, where a person may like to see them.
+    pub refused: Vec<Refused>,
     /// The least confidence of `nails`.
     pub needed: f64,
     /// Why `nails` is empty, where it is.
@@ -176,7 +178,7 @@ const SHARED: f64 = 0.25;
 pub fn detect(image: &DynamicImage, options: &DetectOptions) -> Result<Detections, VisionError> {
     if image.width().min(image.height()) < LEAST_PX {
         let note = Some(NothingFound::TooSmall);
-        return Ok(Detections { nails: vec![], doubtful: vec![], needed: CLOSE_UP_NEEDS, note });
+        return Ok(Detections { nails: vec![], doubtful: vec![], refused: vec![], needed: CLOSE_UP_NEEDS, note });
     }
     match options.detector {
         Detector::Net => detect_by(NailNet::committed()?, image, options),
@@ -200,24 +202,29 @@ pub fn detect_by(net: &NailNet, image: &DynamicImage, options: &DetectOptions) -
 }
 
 /// What was found, confident or doubtful.
-fn sorted_out(mut found: Vec<Detected>, [needed, shown]: [f64; 2]) -> Detections {
+fn sorted_out((mut found, mut refused): (Vec<Detected>, Vec<Refused>), [needed, shown]: [f64; 2]) -> Detections {
     found.sort_by(|a, b| b.confidence.total_cmp(&a.confidence));
     let best = found.first().map(|d| d.confidence);
-    let (nails, mut doubtful): (Vec<_>, Vec<_>) = found.into_iter().partition(|d| d.confidence >= needed);
-    doubtful.retain(|d| d.confidence >= shown);
+    let (nails, doubtful): (Vec<_>, Vec<_>) = found.into_iter().partition(|d| d.confidence >= needed);
+    let (doubtful, unsure): (Vec<_>, Vec<_>) = doubtful.into_iter().partition(|d| d.confidence >= shown);
+    refused.extend(unsure.into_iter().map(|d| Refused { outline: d.outline, why: Refusal::Unsure(d.confidence) }));
+    refused.retain(|one| one.is_shown(shown, nails.iter().chain(&doubtful).map(|kept| &kept.outline)));
     let note = nails.is_empty().then_some(match best {
         Some(best) if !doubtful.is_empty() => NothingFound::Doubtful { best, needed },
         _ => NothingFound::NoPlace,
     });
-    Detections { nails, doubtful, needed, note }
+    Detections { nails, doubtful, refused, needed, note }
 }
 
 /// By templates of a single finger seen from above.
-fn by_template(image: &DynamicImage, needed: f64, options: &DetectOptions) -> Vec<Detected> {
+fn by_template(image: &DynamicImage, needed: f64, options: &DetectOptions) -> (Vec<Detected>, Vec<Refused>) {
     let levels = Levels::of(image, options.working_size_px.max(4 * LEAST_PX));
-    let mut found = different(follow_all(&levels, leads(&levels), options.most_places));
+    let all = follow_all(&levels, leads(&levels), options.most_places).into_iter();
+    let all = all.map(|c| Detected { confidence: c.confidence(), outline: c.outline, axis: c.axis }).collect();
+    let (mut found, overlapped) = one_each(all, SHARED, |d: &Detected| d.confidence, |d| &d.outline);
     second_opinion(image, &mut found, needed);
-    found
+    let refused = |d: Detected| Refused { outline: d.outline, why: Refusal::Overlapped(d.confidence) };
+    (found, overlapped.into_iter().map(refused).collect())
 }
 
 /// What is left of a confidence where something speaks against the find; what is left is never confident.
@@ -254,12 +261,14 @@ fn by_net(
     image: &DynamicImage,
     shown: f64,
     options: &DetectOptions,
-) -> Result<Vec<Detected>, VisionError> {
-    let mut segments = net.segments(image)?;
-    segments.retain(|segment| segment.confidence >= shown);
+) -> Result<(Vec<Detected>, Vec<Refused>), VisionError> {
+    let (segments, mut refused) = net.segments(image)?;
+    let (segments, unsure): (Vec<_>, Vec<_>) = segments.into_iter().partition(|s| s.confidence >= shown);
+    refused.extend(unsure.into_iter().map(|s| Refused { outline: s.outline, why: Refusal::Unsure(s.confidence) }));
     let outlines: Vec<Outline> = segments.iter().map(|segment| segment.outline.clone()).collect();
     let axes = find_axes(image, &outlines);
-    Ok(segments.into_iter().zip(axes).map(|(segment, axis)| judged(image, segment, axis, options)).collect())
+    let found = segments.into_iter().zip(axes).map(|(segment, axis)| judged(image, segment, axis, options));
+    Ok((found.collect(), refused))
 }
 
 /// What the network found, with its axis and the better of two outlines.
@@ -374,22 +383,6 @@ fn second_opinion(image: &DynamicImage, found: &mut [Detected], min_confidence: 
         }
     }
     found.sort_by(|a, b| b.confidence.total_cmp(&a.confidence));
-}
-
-/// The surest candidates that do not contradict a surer one.
-fn different(candidates: Vec<Candidate>) -> Vec<Detected> {
-    let mut all: Vec<Detected> = candidates
-        .into_iter()
-        .map(|c| Detected { confidence: c.confidence(), outline: c.outline, axis: c.axis })
-        .collect();
-    all.sort_by(|a, b| b.confidence.total_cmp(&a.confidence));
-    let mut kept: Vec<Detected> = Vec::new();
-    for d in all {
-        if kept.iter().all(|k| candidate::shared(&k.outline, &d.outline) <= SHARED) {
-            kept.push(d);
-        }
-    }
-    kept
 }
 
 /// Finger ends: frames of a finger's width with their fit.

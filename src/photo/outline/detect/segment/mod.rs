@@ -18,7 +18,7 @@ use std::sync::LazyLock;
 use image::{DynamicImage, RgbImage, imageops};
 
 use super::candidate::shared;
-use crate::photo::outline::Outline;
+use crate::photo::outline::{Outline, Refusal, Refused};
 use crate::vision::{Network, VisionError, resized};
 use component::{Component, View};
 
@@ -117,11 +117,11 @@ impl NailNet {
         self.confident
     }
 
-    /// The nails of an upright photograph, none over another, the most probable first.
+    /// The nails of an upright photograph, none over another, the most probable first; and what isn't one after all.
     ///
     /// # Errors
     /// [`VisionError`].
-    pub fn segments(&self, image: &DynamicImage) -> Result<Vec<Segment>, VisionError> {
+    pub fn segments(&self, image: &DynamicImage) -> Result<(Vec<Segment>, Vec<Refused>), VisionError> {
         let converted: RgbImage;
         let rgb = match image {
             DynamicImage::ImageRgb8(rgb) => rgb,
@@ -130,11 +130,20 @@ impl NailNet {
                 &converted
             }
         };
-        let mut found = Vec::new();
-        for candidate in self.candidates(rgb)? {
-            found.extend(self.look_again(rgb, &candidate)?);
+        let (mut found, mut refused) = (Vec::new(), Vec::new());
+        for first in self.candidates(rgb)? {
+            match self.look_again(rgb, &first)? {
+                Some(segment) => found.push(segment),
+                None => {
+                    let why = Refusal::NotSeenAgain(probability(first.component.nail.min(first.component.core)));
+                    refused.push(Refused { outline: first.component.outline, why });
+                }
+            }
         }
-        Ok(one_each(found, |segment| segment.confidence, |segment| &segment.outline))
+        let (found, overlapped) = one_each(found, SAME, |segment| segment.confidence, |segment| &segment.outline);
+        let overlapped = overlapped.into_iter();
+        refused.extend(overlapped.map(|s| Refused { outline: s.outline, why: Refusal::Overlapped(s.confidence) }));
+        Ok((found, refused))
     }
 
     /// The first look.
@@ -167,7 +176,7 @@ impl NailNet {
             let overlap = others.map(|other| all[k].component.outline.iou(&other.component.outline));
             all[k].agreement = overlap.fold(0.0, f64::max);
         }
-        let mut best = one_each(all, Candidate::quality, |candidate| &candidate.component.outline);
+        let (mut best, _) = one_each(all, SAME, Candidate::quality, |candidate| &candidate.component.outline);
         best.truncate(MOST);
         Ok(best)
     }
@@ -211,20 +220,28 @@ impl NailNet {
         ];
         let [constant, weights @ ..] = &self.calibration;
         let sum: f64 = weights.iter().zip(features).map(|(weight, feature)| weight * feature).sum();
-        1.0 / (1.0 + (-(constant + sum)).exp())
+        probability(constant + sum)
     }
 }
 
-/// Of those that overlap, the best one; the best first.
-fn one_each<T>(mut all: Vec<T>, quality: impl Fn(&T) -> f64, outline: impl Fn(&T) -> &Outline) -> Vec<T> {
+fn probability(log_odds: f64) -> f64 {
+    1.0 / (1.0 + (-log_odds).exp())
+}
+
+/// Of those that share more than `most_shared` of the smaller one, the best one; the best first. And the others.
+pub(super) fn one_each<T>(
+    mut all: Vec<T>,
+    most_shared: f64,
+    quality: impl Fn(&T) -> f64,
+    outline: impl Fn(&T) -> &Outline,
+) -> (Vec<T>, Vec<T>) {
     all.sort_by(|a, b| quality(b).total_cmp(&quality(a)));
-    let mut kept: Vec<T> = Vec::new();
+    let (mut kept, mut others): (Vec<T>, Vec<T>) = (Vec::new(), Vec::new());
     for one in all {
-        if kept.iter().all(|other| shared(outline(other), outline(&one)) <= SAME) {
-            kept.push(one);
-        }
+        let stays = kept.iter().all(|other| shared(outline(other), outline(&one)) <= most_shared);
+        if stays { &mut kept } else { &mut others }.push(one);
     }
-    kept
+    (kept, others)
 }
 
 /// Width and height of a picture brought to this long side.
