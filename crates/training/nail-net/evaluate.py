@@ -199,8 +199,8 @@ def held_out(gathered, by_fold, by_half):
 
 
 def confident_threshold(rows):
-    """The lowest confidence from 0.50 (in steps of 0.01) with precision >= 0.95 on `held_out`'s finds."""
-    steps = np.arange(0.5, 0.995, 0.01)
+    """The lowest confidence from 0.40 (in steps of 0.01) with precision >= 0.95 on `held_out`'s finds."""
+    steps = np.arange(0.4, 0.995, 0.01)
     return next((float(t) for t in steps if counts(rows, 1, t)[2] >= 0.95), 0.99)
 
 
