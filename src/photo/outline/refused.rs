@@ -23,8 +23,8 @@ pub enum Refusal {
 }
 
 /// What refused places have at least to be shown (assumed): a confidence of this part of a doubtful find's least, or of
-/// all of it under another find; a probability on the one look. By the network on 66 real photographs these are 5, 0
-/// and 49 places; of any probability the last would be 181.
+/// all of it under another find; a probability on the one look. By the network on 66 real photographs these are 62
+/// places; seen once with any probability are 181.
 const UNSURE_SHOWS: f64 = 1.0 / 6.0;
 const NOT_SEEN_AGAIN_SHOWS: f64 = 0.8;
 /// Overlap with a surer find from which it is the same one, seen twice.
