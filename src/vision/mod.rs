@@ -13,7 +13,10 @@ mod image;
 mod lens;
 mod net;
 mod parts;
+#[cfg(test)]
+pub(crate) mod peers;
 mod plane;
+mod smooth;
 mod strokes;
 
 use std::sync::Once;
@@ -32,6 +35,7 @@ pub(crate) use lens::{opencvs_sd, undistorted_by_default};
 pub(crate) use net::{Network, Planes};
 pub(crate) use parts::{Neighbours, Part, Parts, parts, steps_out};
 pub(crate) use plane::Samples;
+pub(crate) use smooth::smoothed;
 pub(crate) use strokes::Stroke;
 
 /// A call of OpenCV that gave nothing.
