@@ -4,8 +4,8 @@
 //! less their own mean. Two looks are compared up to a gain, so that neither a light that flickers nor one that drifts
 //! is seen.
 //!
-//! OpenCV's `resize` takes whole samples: at the nearest ones its look is 0.44 from ours at the box itself, in 1.7
-//! against 2.9 µs (`cargo test --lib opencv_looks -- --nocapture`).
+//! OpenCV's `resize` takes whole samples: at the nearest ones its look is 0.44 from ours at the box itself, in 2 to
+//! 6 against 3 µs (`cargo test --lib opencv_looks -- --nocapture`).
 
 use crate::clock::ink::crop::Gray;
 
