@@ -1,4 +1,4 @@
-//! Work on small pictures of three channels of f32: [`Cell`]s, row by row.
+//! Work on small pictures of f32, row by row.
 
 use opencv::boxed_ref::{BoxedRef, BoxedRefMut};
 use opencv::core::{BORDER_REPLICATE, Mat, Point, Rect, Size};
@@ -10,8 +10,15 @@ use super::{VisionError, answered, size, view, view_mut};
 /// Three channels of one pixel.
 pub(crate) type Cell = [f32; 3];
 
-/// Both ways by a symmetric kernel of five, beyond the border the border's.
-pub(crate) fn smoothed(cells: &[Cell], size: [usize; 2], kernel: [f32; 5]) -> Vec<Cell> {
+/// Both ways by a symmetric kernel, beyond the border the border's.
+pub(crate) fn smoothed<const CHANNELS: usize, const TAPS: usize>(
+    cells: &[[f32; CHANNELS]],
+    size: [usize; 2],
+    kernel: [f32; TAPS],
+) -> Vec<[f32; CHANNELS]> {
+    if cells.is_empty() {
+        return Vec::new();
+    }
     let filtered = |from: &BoxedRef<'_, Mat>, to: &mut BoxedRefMut<'_, Mat>| {
         let kernel = view(1, kernel.len(), &kernel)?;
         imgproc::sep_filter_2d(from, to, -1, &kernel, &kernel, Point::new(-1, -1), 0.0, BORDER_REPLICATE)
@@ -32,17 +39,18 @@ pub(crate) fn halved(cells: &[Cell], size: [usize; 2]) -> Vec<Cell> {
 }
 
 /// What OpenCV's `call` makes of `cells`, at another size or the same.
-fn made(
-    cells: &[Cell],
+fn made<const CHANNELS: usize>(
+    cells: &[[f32; CHANNELS]],
     [columns, rows]: [usize; 2],
     [to_columns, to_rows]: [usize; 2],
     call: impl FnOnce(&BoxedRef<'_, Mat>, &mut BoxedRefMut<'_, Mat>) -> Result<(), VisionError>,
-) -> Result<Vec<Cell>, VisionError> {
-    let mut out = vec![Cell::default(); to_columns * to_rows];
-    let from = view(rows, 3 * columns, cells.as_flattened())?;
-    let from = from.reshape(3, size(rows)?).map_err(VisionError::of("reshape"))?;
-    let mut to = view_mut(to_rows, 3 * to_columns, out.as_flattened_mut())?;
-    call(&from, &mut to.reshape_mut(3, size(to_rows)?).map_err(VisionError::of("reshape"))?)?;
+) -> Result<Vec<[f32; CHANNELS]>, VisionError> {
+    let mut out = vec![[0.0; CHANNELS]; to_columns * to_rows];
+    let channels = size(CHANNELS)?;
+    let from = view(rows, CHANNELS * columns, cells.as_flattened())?;
+    let from = from.reshape(channels, size(rows)?).map_err(VisionError::of("reshape"))?;
+    let mut to = view_mut(to_rows, CHANNELS * to_columns, out.as_flattened_mut())?;
+    call(&from, &mut to.reshape_mut(channels, size(to_rows)?).map_err(VisionError::of("reshape"))?)?;
     drop(to);
     Ok(out)
 }

@@ -15,6 +15,8 @@ mod lens;
 mod masks;
 mod net;
 mod parts;
+#[cfg(test)]
+pub(crate) mod peers;
 mod plane;
 mod strokes;
 

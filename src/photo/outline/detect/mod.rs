@@ -310,7 +310,9 @@ fn judged(
             }
         }
     });
-    let confirmed = |better: &Detected| known.is_some_and(|axis| apart_deg(axis, better.axis) <= NEAR_DEG);
+    let confirmed = |better: &Detected| {
+        better.outline.iou(&outline) >= CONFIRMS && known.is_some_and(|axis| apart_deg(axis, better.axis) <= NEAR_DEG)
+    };
     match believed {
         Some(best) => {
             let axis = known.filter(|axis| apart_deg(*axis, best.axis) > AGREE_DEG).unwrap_or(best.axis);

@@ -2,6 +2,7 @@
 
 use crate::posture::survey::find::Blob;
 use crate::video::{Frame, Plane};
+use crate::vision::smoothed;
 
 /// A grid has at most this many samples; larger planes are averaged over blocks.
 const MOST_SAMPLES: usize = 600_000;
@@ -58,7 +59,6 @@ pub(super) struct Grid {
     /// The sides of the grid (left, top, right, bottom) that are the picture's.
     borders: [bool; 4],
     row: Vec<f32>,
-    smooth: Vec<f32>,
 }
 
 impl Grid {
@@ -88,8 +88,8 @@ impl Grid {
             let from = (x.0, y.0);
             average(&cb, from, (self.width, self.height), [self.block; 2], 128.0, &mut self.row, &mut self.cb);
             average(&cr, from, (self.width, self.height), [self.block; 2], 128.0, &mut self.row, &mut self.cr);
-            smooth(&mut self.cb, self.width, &mut self.smooth);
-            smooth(&mut self.cr, self.width, &mut self.smooth);
+            let size = [self.width, self.height];
+            (self.cb, self.cr) = (smooth(&self.cb, size), smooth(&self.cr, size));
         }
     }
 
@@ -104,7 +104,7 @@ impl Grid {
             );
             let size = (self.width, self.height);
             average(&frame.luma, from, size, self.pitch, 0.0, &mut self.row, &mut self.luma);
-            smooth(&mut self.luma, self.width, &mut self.smooth);
+            self.luma = smooth(&self.luma, [self.width, self.height]);
         }
     }
 
@@ -187,26 +187,6 @@ fn average(
     }
 }
 
-/// Binomial smoothing (1 2 1)/4 across and down; the border keeps its values across it.
-fn smooth(plane: &mut [f32], width: usize, scratch: &mut Vec<f32>) {
-    let height = plane.len() / width.max(1);
-    if width < 3 || height < 3 {
-        return;
-    }
-    scratch.clear();
-    scratch.extend_from_slice(plane);
-    for (into, from) in scratch.chunks_exact_mut(width).zip(plane.chunks_exact(width)) {
-        for (value, three) in into[1..width - 1].iter_mut().zip(from.windows(3)) {
-            *value = 0.25 * (three[0] + three[2]) + 0.5 * three[1];
-        }
-    }
-    plane.copy_from_slice(scratch);
-    for y in 1..height - 1 {
-        let (above, rest) = scratch[(y - 1) * width..].split_at(width);
-        let (here, below) = rest.split_at(width);
-        let into = &mut plane[y * width..(y + 1) * width];
-        for (((value, &above), &here), &below) in into.iter_mut().zip(above).zip(here).zip(below) {
-            *value = 0.25 * (above + below) + 0.5 * here;
-        }
-    }
+fn smooth(values: &[f32], size: [usize; 2]) -> Vec<f32> {
+    smoothed(values.as_chunks::<1>().0, size, [0.25, 0.5, 0.25]).into_flattened()
 }

@@ -1,4 +1,7 @@
 //! The component tree of a grid of levels, and the spots in it.
+//!
+//! OpenCV has such a tree within `MSER` alone, which gives the regions whose area changes least from level to level,
+//! not the levels of a spot's core and ground that are compared here; it was not measured.
 
 use crate::posture::survey::find::grid::{Grid, Spot};
 
