@@ -54,7 +54,7 @@ fn outline_of<'a>(keys: &Keys, outlines: impl Iterator<Item = (&'a Keys, &'a Pat
 impl Job for NormalizeJob {
     const KIND: Kind = Kind {
         // 3: poses are listed in the thesis' order (nails.csv); nails are found by a network.
-        revision: 3,
+        revision: 4,
         ..Kind::of::<Self>(
             "normalize",
             &[

@@ -6,8 +6,8 @@
 //! - [`Detector::Net`], for any photograph: a small segmentation network by OpenCV's `dnn` ([`segment`]) finds nails,
 //!   [`find_axes`] their distal ends, and the outline is refined in the nail's own frame. The refined one is taken
 //!   where the judges below believe it. The confidence is about the probability that a nail lies there whose IoU is
-//!   at least 0.5. On 26 real photographs, each seen by a network trained without its session (`nails folds`), 83 % of
-//!   127 nails are found with confidence, and 1 of 106 finds is wrong.
+//!   at least 0.5. On 26 real photographs, each seen by a network trained without its session (`nails folds`), 85 % of
+//!   127 nails are found with confidence, and 1 of 109 finds is wrong.
 //! - [`Detector::CloseUp`], for one finger seen from above: templates. The confidence is about the probability of an
 //!   IoU of at least 0.8. The way down, a file each: [`picture`] channels that do not depend on the light's brightness;
 //!   [`hand`] masks that may be fingers and their ends; [`patch`] the picture in a finger's or nail's own frame;
