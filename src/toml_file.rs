@@ -56,6 +56,9 @@ pub(crate) fn place(text: &str, at: usize) -> (usize, usize) {
 /// Faults that are named of one file; who corrects so many looks again (assumed).
 const MOST: usize = 100;
 
+/// Lines that are named of a file that is no TOML: after a few, it is another kind of file.
+const MOST_BROKEN: usize = 3;
+
 /// Faults as they are found, the first [`MOST`] of them.
 #[derive(Debug)]
 pub(crate) struct Findings<'a> {
@@ -96,10 +99,10 @@ impl<'a> Findings<'a> {
     /// is reported along with the rest.
     pub(crate) fn parse(&mut self) -> Option<Spanned<DeTable<'a>>> {
         let (table, errors) = DeTable::parse_recoverable(self.text);
-        let mut sound = true;
+        let (mut sound, mut broken) = (true, 0);
         for error in &errors {
             let Range { start, end } = error.span().unwrap_or(self.text.len()..self.text.len());
-            if self.is_full() {
+            if self.is_full() || broken == MOST_BROKEN {
                 // Whatever it says: there is a fault.
                 sound = false;
                 self.more += 1;
@@ -107,6 +110,7 @@ impl<'a> Findings<'a> {
             }
             let doubled = error.message().starts_with("duplicate key");
             sound &= doubled;
+            broken += usize::from(!doubled);
             let what = if doubled {
                 let name = self.text.get(start..end).unwrap_or_default();
                 format!("`{name}` stands here a second time; give each its own name")

@@ -28,6 +28,16 @@ pub trait Words: Copy + PartialEq + Send + Sync + 'static {
     }
 }
 
+/// A number with so many decimals; what rounds to zero has no sign.
+#[must_use]
+pub fn fixed(value: f64, places: usize) -> String {
+    let text = format!("{value:.places$}");
+    match text.strip_prefix('-') {
+        Some(rest) if rest.bytes().all(|b| b == b'0' || b == b'.') => rest.to_owned(),
+        _ => text,
+    }
+}
+
 /// The known name from which `name` differs by a slip of the finger: a letter, or one in three.
 #[must_use]
 pub fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
@@ -91,6 +101,12 @@ mod tests {
         assert_eq!(shown("a\u{1b}[2Jb\n\u{9b}é 指"), "a\\u{1b}[2Jb\\n\\u{9b}é 指");
         assert_eq!(shown_lines("one\n  two\r"), "one\n  two\\r");
         assert!(matches!(shown("plain"), Cow::Borrowed("plain")));
+    }
+
+    #[test]
+    fn what_rounds_to_zero_has_no_sign() {
+        assert_eq!([-0.0, -4e-5, -6e-5].map(|value| fixed(value, 4)), ["0.0000", "0.0000", "-0.0001"]);
+        assert_eq!((fixed(-0.4, 0), fixed(f64::NEG_INFINITY, 1)), ("0".to_owned(), "-inf".to_owned()));
     }
 
     #[test]

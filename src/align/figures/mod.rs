@@ -8,6 +8,7 @@ use super::tie::resolution_s;
 use super::{Labels, Posture, Tie, TieMethod};
 use crate::figure::{Axis, Chart, Item, MOST_BINS, Thinned, draw_charts};
 use crate::log::{Channel, Samples};
+use crate::words::fixed;
 
 const WIDTH: u32 = 1400;
 /// Of the tie's picture, pixels.
@@ -108,7 +109,7 @@ fn decimals(sd: f64, [least, most]: [usize; 2]) -> usize {
 /// A value with its standard error, if it is known.
 fn with_error(value: f64, sd: f64, decimals: usize) -> String {
     let sd = if sd.is_finite() { format!(" \u{b1} {sd:.decimals$}") } else { String::new() };
-    format!("{value:.decimals$}{sd}")
+    format!("{}{sd}", fixed(value, decimals))
 }
 
 /// Draws the photodiodes, each in a lane of its own from its lowest to its highest value, and below them the labels

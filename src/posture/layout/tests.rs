@@ -172,6 +172,13 @@ fn broken_toml_is_told_with_its_line() {
 }
 
 #[test]
+fn of_another_kind_of_file_a_few_lines_are_named() {
+    let messages = faults(&"name,x_px,y_px\n".repeat(120));
+    assert_eq!(messages.len(), 4, "{messages:?}");
+    assert!(messages[3].contains("117 more faults are not named"), "{messages:?}");
+}
+
+#[test]
 fn a_doubled_name_is_told_along_with_the_rest() {
     let messages = faults("[markers]\na = '#fff'\na = '#000'\nb = 'red'\n");
     assert_eq!(messages.len(), 2, "{messages:?}");

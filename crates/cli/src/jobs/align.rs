@@ -6,6 +6,7 @@ use anyhow::{Context, ensure};
 use clap::Args;
 use lunula::align::{AlignFigures, AlignInputs, AlignOptions, AlignOutputs, AlignReport, plan, run};
 use lunula::job::{Given, Said, Watch};
+use lunula::words::fixed;
 
 use crate::Common;
 use crate::jobs::{Command, JobArgs, Plan};
@@ -98,10 +99,10 @@ impl Command for AlignArgs {
         let (tie, rows) = (&report.certificate, &report.certificate.rows);
         let plus_minus = |sd: Option<f64>, digits: usize| sd.map_or(String::new(), |sd| format!(" ± {sd:.digits$}"));
         common.say(&format!(
-            "offset {:.4}{} s, drift {:.1}{} ppm ({:?}); {} frames read, {} not",
-            tie.offset_s,
+            "offset {}{} s, drift {}{} ppm ({:?}); {} frames read, {} not",
+            fixed(tie.offset_s, 4),
             plus_minus(tie.offset_sd_s, 4),
-            tie.drift_ppm,
+            fixed(tie.drift_ppm, 1),
             plus_minus(tie.drift_sd_ppm, 1),
             tie.method,
             tie.frames_read,

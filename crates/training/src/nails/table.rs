@@ -63,7 +63,8 @@ pub fn table(folder: Option<&Path>, held_out: bool, detector: Detector, seed: u6
             let turned = kept.iter().filter(|f| f[2] < 0.7).count();
             writeln!(
                 text,
-                "  >= {least}: {} finds, {} at IoU 0.7, {} at 0.8, {} at 0.95, median {median:.3}, worst {worst:.2}, {turned} turned",
+                "  >= {least}: {} finds, {} at IoU 0.7, {} at 0.8, {} at 0.95, median {median:.3}, worst {worst:.2}, \
+                 {turned} turned",
                 kept.len(),
                 count(0.7),
                 count(0.8),

@@ -238,14 +238,14 @@ const BELIEVED: f64 = 0.5;
 const BELIEVED_ANYWHERE: f64 = 0.8;
 /// Axes this far apart are of fingers that point elsewhere, degrees.
 const ELSEWHERE_DEG: f64 = 45.0;
-/// Overlap with the network's outline below which a refined one is another thing's; on close-ups, where the network errs
-/// less, all of 5 refined ones below the second of these were wrong (`nails table`, seeds 3000 and 7000).
+/// Overlap with the network's outline below which a refined one is another thing's; on close-ups, where the network
+/// errs less, all of 5 refined ones below the second of these were wrong (`nails table`, seeds 3000 and 7000).
 const REFINED_AGREES: [f64; 2] = [0.6, 0.8];
 /// A rival's odds times this are less than those of an outline that is believed although the axis is a guess.
 const CLEARLY: f64 = 5.0;
-/// A close-up that the judges don't believe, most of them in grey, is confident where the network is this sure, the axis
-/// is known, and an outline refined along it, within so many degrees, overlaps the network's so far: of 160 phantoms in
-/// grey this takes 30, all right, and of 400 pictures without nails none (`nails table`).
+/// A close-up that the judges don't believe, most of them in grey, is confident where the network is this sure, the
+/// axis is known, and an outline refined along it, within so many degrees, overlaps the network's so far: of 160
+/// phantoms in grey this takes 30, all right, and of 400 pictures without nails none (`nails table`).
 const SURE: f64 = 0.97;
 const NEAR_DEG: f64 = 20.0;
 const CONFIRMS: f64 = 0.85;

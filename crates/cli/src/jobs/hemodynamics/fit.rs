@@ -6,6 +6,7 @@ use anyhow::Context;
 use clap::Args;
 use lunula::hemodynamics::{FitFigures, FitInputs, FitOptions, FitOutputs, FitReport, fit, fit_plan};
 use lunula::job::{Given, Said, Watch};
+use lunula::words::fixed;
 
 use crate::Common;
 use crate::jobs::{Command, JobArgs, Plan};
@@ -137,10 +138,10 @@ impl Command for FitArgs {
             let plus =
                 |error: Option<f64>| error.map_or("not determined".to_owned(), |error| format!("+- {error:.4} V"));
             common.say(&format!(
-                "  unit {}{}: offset {:.5} V {}, scaling {:.5} V {}; {}",
+                "  unit {}{}: offset {} V {}, scaling {:.5} V {}; {}",
                 one.unit,
                 if one.subjects.is_empty() { String::new() } else { format!(" of {}", one.subjects.join(", ")) },
-                one.offset_v,
+                fixed(one.offset_v, 5),
                 plus(one.offset_standard_error_v),
                 one.scaling_v,
                 plus(one.scaling_standard_error_v),
