@@ -42,7 +42,12 @@ const FINER: usize = 4;
 pub(super) fn agree(seen: &[Seen], room_s: f64, most_drift: f64, wrap_s: Option<f64>) -> Agreed {
     let count = seen.len().min(LOOK);
     let look: Vec<Point> = (0..count)
-        .map(|k| &seen[k * (seen.len() - 1) / (count - 1).max(1)])
+        .map(|k| {
+            // One of each part, not the same of each: at an even step all might show one phase of the last digit.
+            let [from, to] = [k, k + 1].map(|k| k * seen.len() / count);
+            let last = k + 1 == count;
+            &seen[if last { seen.len() - 1 } else { from + k * 618 % 1000 * (to - from) / 1000 }]
+        })
         .map(|seen| [seen.time_s, seen.shown_s - seen.time_s])
         .collect();
     let half_s = seen.iter().map(|seen| seen.time_s.abs()).fold(0.0, f64::max);
@@ -73,6 +78,12 @@ pub(super) fn agree(seen: &[Seen], room_s: f64, most_drift: f64, wrap_s: Option<
         }
     }
     let slack_s = 0.5 * step * half_s + if count < seen.len() { room_s / 16.0 } else { 1e-9 };
+    if count < seen.len() {
+        // The band of all readings, not only of those looked at.
+        let mut heights: Vec<f64> = seen.iter().map(|seen| seen.shown_s - (1.0 + best.drift) * seen.time_s).collect();
+        let (count, [from_s, to_s]) = fullest(&mut heights, room_s + 0.5 * step * half_s, wrap_s);
+        best = Band { count, drift: best.drift, from_s, to_s };
+    }
     keep(seen, &best, slack_s, wrap_s)
 }
 
@@ -169,6 +180,24 @@ fn forward_only(shown_s: &mut [Option<f64>]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn all_readings_of_a_long_video_agree() {
+        // Tenths of a second at 30 frames a second: every third frame shows the same part of a tenth.
+        for frames in [900_usize, 1200, 1600, 2397, 2400, 5000, 54_000] {
+            for (drift, wrap_s) in [(0.0, None), (3e-4, Some(3600.0)), (-1.5e-3, None)] {
+                let middle_s = (frames - 1) as f64 / 60.0;
+                let seen = |index: usize| {
+                    let time_s = index as f64 / 30.0;
+                    let shown_s = ((10.0 * (1.0 + drift) * time_s + 0.01).floor() / 10.0).max(0.0);
+                    Seen { index, time_s: time_s - middle_s, shown_s }
+                };
+                let seen: Vec<Seen> = (0..frames).map(seen).collect();
+                let agreed = agree(&seen, 0.1 + 1.0 / 60.0, 2e-3, wrap_s);
+                assert_eq!(agreed.count, frames, "{frames} frames, drift {drift}");
+            }
+        }
+    }
 
     #[test]
     fn time_only_goes_forward() {
