@@ -3,8 +3,7 @@
 //! Numbers have a decimal point or, where cells are not separated by commas, a decimal comma; not both in one file, and
 //! no marks between thousands.
 
-/// The words that say that a number is missing, without regard to case.
-const MISSING: [&str; 4] = ["nan", "na", "n/a", "null"];
+use lunula_live::wire::{self, is_missing};
 
 /// Reads cells as numbers.
 #[derive(Debug, Clone, Default)]
@@ -69,33 +68,12 @@ impl Numbers {
     }
 }
 
-/// Whether a cell is empty or says that nothing is known.
-pub(in crate::log) fn is_missing(cell: &[u8]) -> bool {
-    cell.is_empty() || MISSING.iter().any(|word| cell.eq_ignore_ascii_case(word.as_bytes()))
-}
-
 /// Whether the LED was on; none where it is missing.
 ///
 /// # Errors
 /// What is wrong and what to do.
 pub(crate) fn led(cell: &[u8]) -> Result<Option<bool>, String> {
-    const ON: [&[u8]; 4] = [b"1", b"1.0", b"true", b"on"];
-    const OFF: [&[u8]; 4] = [b"0", b"0.0", b"false", b"off"];
-    if ON.iter().any(|word| cell.eq_ignore_ascii_case(word)) {
-        return Ok(Some(true));
-    }
-    if OFF.iter().any(|word| cell.eq_ignore_ascii_case(word)) {
-        return Ok(Some(false));
-    }
-    if is_missing(cell) {
-        return Ok(None);
-    }
-    // `1.000` of programs that write all columns alike.
-    match std::str::from_utf8(cell).ok().and_then(|text| text.replace(',', ".").parse::<f64>().ok()) {
-        Some(1.0) => Ok(Some(true)),
-        Some(0.0) => Ok(Some(false)),
-        _ => Err(format!("`{}` is neither 1 (on) nor 0 (off); correct it", shown(cell))),
-    }
+    wire::led(cell).map_err(|why| format!("`{}` is {why}; correct it", shown(cell)))
 }
 
 /// The text of a cell for a message, not too long.
@@ -155,17 +133,6 @@ mod tests {
         assert!(numbers.read(b"1.234,5").is_err() && numbers.read(b"1,2,3").is_err());
         assert!(numbers.read(b"1.5").unwrap_err().contains("decimal points here"));
         assert!(numbers.read(&[b','; 100]).is_err());
-    }
-
-    #[test]
-    fn the_led_is_on_or_off() {
-        for (text, on) in [("1", true), ("0", false), ("True", true), ("OFF", false), ("1.000", true), ("0,0", false)] {
-            assert_eq!(led(text.as_bytes()).unwrap(), Some(on), "{text}");
-        }
-        assert_eq!(led(b"").unwrap(), None);
-        for text in ["2", "0.5", "-1", "yes", "x"] {
-            assert!(led(text.as_bytes()).unwrap_err().contains("neither 1 (on) nor 0 (off)"), "{text}");
-        }
     }
 
     #[test]

@@ -14,6 +14,8 @@ use jiff::civil::{Date, Time};
 use jiff::fmt::temporal::Pieces;
 use jiff::tz::Offset;
 
+use lunula_live::wire::is_missing;
+
 use crate::log::lines::cell::{self, Numbers};
 
 /// The seconds of a day.
@@ -98,7 +100,7 @@ impl Stamps {
     /// # Errors
     /// What is wrong and what to do.
     pub(in crate::log) fn push(&mut self, cell: &[u8], numbers: &mut Numbers) -> Result<(), String> {
-        if cell::is_missing(cell) {
+        if is_missing(cell) {
             self.time.push(f64::NAN);
             return Ok(());
         }

@@ -1,0 +1,55 @@
+//! Cells that are no plain numbers: missing ones, and whether an LED was on.
+
+/// The words that say that a number is missing, without regard to case.
+const MISSING: [&str; 4] = ["nan", "na", "n/a", "null"];
+
+/// Whether a cell is empty or says that nothing is known.
+#[must_use]
+pub fn is_missing(cell: &[u8]) -> bool {
+    cell.is_empty() || MISSING.iter().any(|word| cell.eq_ignore_ascii_case(word.as_bytes()))
+}
+
+/// Whether the LED was on; none where it is missing.
+///
+/// # Errors
+/// The cell is neither on nor off.
+pub fn led(cell: &[u8]) -> Result<Option<bool>, NeitherOnNorOff> {
+    const ON: [&[u8]; 4] = [b"1", b"1.0", b"true", b"on"];
+    const OFF: [&[u8]; 4] = [b"0", b"0.0", b"false", b"off"];
+    if ON.iter().any(|word| cell.eq_ignore_ascii_case(word)) {
+        return Ok(Some(true));
+    }
+    if OFF.iter().any(|word| cell.eq_ignore_ascii_case(word)) {
+        return Ok(Some(false));
+    }
+    if is_missing(cell) {
+        return Ok(None);
+    }
+    // `1.000` of programs that write all columns alike.
+    match std::str::from_utf8(cell).ok().and_then(|text| text.replace(',', ".").parse::<f64>().ok()) {
+        Some(1.0) => Ok(Some(true)),
+        Some(0.0) => Ok(Some(false)),
+        _ => Err(NeitherOnNorOff),
+    }
+}
+
+/// A cell of `led` that is neither 1 (on) nor 0 (off).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("neither 1 (on) nor 0 (off)")]
+pub struct NeitherOnNorOff;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_led_is_on_or_off() {
+        for (text, on) in [("1", true), ("0", false), ("True", true), ("OFF", false), ("1.000", true), ("0,0", false)] {
+            assert_eq!(led(text.as_bytes()), Ok(Some(on)), "{text}");
+        }
+        assert_eq!(led(b""), Ok(None));
+        for text in ["2", "0.5", "-1", "yes", "x"] {
+            assert_eq!(led(text.as_bytes()), Err(NeitherOnNorOff), "{text}");
+        }
+    }
+}

@@ -1,0 +1,10 @@
+//! Bytes of a stream to rows.
+//!
+//! In: bytes in pieces of any size. Out: a [`Row`] for each line or frame that is whole, as soon as it is; the same rows
+//! however the bytes were cut. A row that is spoilt costs itself.
+
+mod cell;
+mod row;
+
+pub use cell::{is_missing, led};
+pub use row::{Meaning, Row, Use};
