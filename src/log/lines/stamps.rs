@@ -13,7 +13,6 @@
 use jiff::civil::{Date, Time};
 use jiff::fmt::temporal::Pieces;
 use jiff::tz::Offset;
-
 use lunula_live::wire::is_missing;
 
 use crate::log::lines::cell::{self, Numbers};
