@@ -56,7 +56,7 @@ impl LogReading {
     /// # Errors
     /// A table that is missing or damaged.
     pub fn is_log(&self, path: &Path) -> Result<bool, TableError> {
-        if *self != Self::default() {
+        if self.says_log() {
             return Ok(true);
         }
         match column_names(path) {
@@ -64,6 +64,12 @@ impl LogReading {
             Err(TableError::Extension(_)) => Ok(true),
             Err(why) => Err(why),
         }
+    }
+
+    /// Whether something is said that only logs have; which unlit light is taken away is said of those that are logs.
+    pub(crate) fn says_log(&self) -> bool {
+        let rule = self.ambient.rule;
+        *self != Self { ambient: AmbientOptions { rule, ..AmbientOptions::default() }, ..Self::default() }
     }
 
     /// Whether one of these columns says when the LED was on.
