@@ -8,4 +8,5 @@
 //! flexion. What is not known is NaN or `None`, never zero. What is done for every sample allocates nothing.
 
 pub mod switch;
+pub mod time;
 pub mod wire;

@@ -127,7 +127,8 @@ impl<'a, R: BufRead> RowStream<'a, R> {
         }
         let is_log = rows.log.says_log() || rows.log.has_led(&names);
         if is_log {
-            (names, stream.a_second, stream.notes) = rows.log.renamed(&names).map_err(&refused)?;
+            let renamed = rows.log.renamed(&names).map_err(&refused)?;
+            (names, stream.a_second, stream.notes) = (renamed.names, renamed.per_second, renamed.notes);
         }
         let mut seen = HashSet::new();
         if let Some(double) = names.iter().find(|name| !seen.insert(name.as_str())) {

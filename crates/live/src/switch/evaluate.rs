@@ -102,11 +102,39 @@ pub(super) struct Tally {
     pub(super) delays_off_s: Vec<f64>,
 }
 
-/// A press, and its release where that came.
-#[derive(Debug, Clone, Copy)]
-struct Press {
-    on_s: f64,
-    off_s: Option<f64>,
+/// What became of a press, or of a contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Fate {
+    /// The press belongs to a contact.
+    True,
+    /// It belongs to none.
+    False,
+    /// Its contact has a press already.
+    Repeated,
+    /// The contact has no press.
+    Missed,
+}
+
+/// A press, its release and its contact, or a contact without a press.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Match {
+    /// When the switch pressed, seconds; NaN where it did not.
+    pub press_s: f64,
+    /// When it released; NaN where it did not.
+    pub release_s: f64,
+    /// The contact.
+    pub contact: Option<Contact>,
+    /// Whether they agree.
+    pub fate: Fate,
+}
+
+/// A switch's presses over a recording and the contacts that it missed, in the order of time.
+#[must_use]
+pub fn matches(config: &SwitchConfig, trace: &Trace) -> Vec<Match> {
+    let mut let_go = 0;
+    let presses = presses(config, trace, &mut let_go);
+    compare(&presses, trace.contacts.contacts())
 }
 
 impl Evaluation {
@@ -122,55 +150,27 @@ impl Evaluation {
 impl Tally {
     pub(super) fn of(config: &SwitchConfig, trace: &Trace) -> Self {
         let mut tally = Self { seconds: trace.contacts.seconds(), ..Self::default() };
-        let mut presses: Vec<Press> = Vec::new();
-        let mut switch = Switch::new(config.clone());
-        let mut begins = trace.begins.iter().peekable();
-        for (row, (&t_s, &value)) in trace.time_s.iter().zip(&trace.value).enumerate() {
-            let lost = begins.next_if(|&&begin| begin == row).and_then(|_| switch.lose(t_s, Reason::Lost));
-            let event = lost.or(switch.sample(t_s, Reading { value, outside: trace.outside[row] }));
-            let Some(event) = event else { continue };
-            match event.turn {
-                Turn::Press => presses.push(Press { on_s: event.t_s, off_s: None }),
-                Turn::Release => {
-                    tally.let_go += u64::from(!matches!(event.reason, Reason::Value | Reason::Outside));
-                    if let Some(press) = presses.last_mut() {
-                        press.off_s = Some(event.t_s);
-                    }
+        let presses = presses(config, trace, &mut tally.let_go);
+        let contacts = trace.contacts.contacts();
+        tally.presses = contacts.iter().filter(|one| one.start_known && one.end_known).count();
+        tally.decisions = presses.len();
+        for Match { press_s, release_s, contact, fate } in compare(&presses, contacts) {
+            match fate {
+                Fate::True => {
+                    let start_s = contact.filter(|one| one.start_known).map(|one| one.start_s);
+                    let end_s = contact.filter(|one| one.end_known && release_s.is_finite()).map(|one| one.end_s);
+                    tally.delays_on_s.extend(start_s.map(|start_s| press_s - start_s));
+                    tally.delays_off_s.extend(end_s.map(|end_s| release_s - end_s));
                 }
+                Fate::False => tally.false_switches += 1,
+                Fate::Repeated => {
+                    tally.false_switches += 1;
+                    tally.repeated += 1;
+                }
+                Fate::Missed => tally.missed += 1,
             }
         }
-        tally.compare(&presses, trace.contacts.contacts());
         tally
-    }
-
-    fn compare(&mut self, presses: &[Press], contacts: &[Contact]) {
-        self.decisions = presses.len();
-        let mut taken = vec![false; contacts.len()];
-        for press in presses {
-            // Contacts of recordings whose clocks overlap are looked through from the last.
-            let own = contacts.iter().rposition(|one| (one.start_s..=one.end_s + LATE_S).contains(&press.on_s));
-            let Some(own) = own else {
-                self.false_switches += 1;
-                continue;
-            };
-            if std::mem::replace(&mut taken[own], true) {
-                self.false_switches += 1;
-                self.repeated += 1;
-                continue;
-            }
-            let contact = contacts[own];
-            if contact.start_known {
-                self.delays_on_s.push(press.on_s - contact.start_s);
-            }
-            if let Some(off_s) = press.off_s.filter(|_| contact.end_known) {
-                self.delays_off_s.push(off_s - contact.end_s);
-            }
-        }
-        for (contact, taken) in contacts.iter().zip(taken) {
-            let whole = contact.start_known && contact.end_known;
-            self.presses += usize::from(whole);
-            self.missed += usize::from(whole && !taken);
-        }
     }
 
     pub(super) fn add(&mut self, other: &Self) {
@@ -203,6 +203,61 @@ impl Tally {
             let_go: self.let_go,
         }
     }
+}
+
+/// When the switch presses and releases, seconds (NaN where it does not release); counts the releases by faults.
+fn presses(config: &SwitchConfig, trace: &Trace, let_go: &mut u64) -> Vec<[f64; 2]> {
+    let mut presses: Vec<[f64; 2]> = Vec::new();
+    let mut switch = Switch::new(config.clone());
+    let mut begins = trace.begins.iter().peekable();
+    for (row, (&t_s, &value)) in trace.time_s.iter().zip(&trace.value).enumerate() {
+        let lost = begins.next_if(|&&begin| begin == row).and_then(|_| switch.lose(t_s, Reason::Lost));
+        let event = lost.or(switch.sample(t_s, Reading { value, outside: trace.outside[row] }));
+        let Some(event) = event else { continue };
+        match event.turn {
+            Turn::Press => presses.push([event.t_s, f64::NAN]),
+            Turn::Release => {
+                *let_go += u64::from(!matches!(event.reason, Reason::Value | Reason::Outside));
+                if let Some(press) = presses.last_mut() {
+                    press[1] = event.t_s;
+                }
+            }
+        }
+    }
+    presses
+}
+
+/// Gives each press its contact.
+fn compare(presses: &[[f64; 2]], contacts: &[Contact]) -> Vec<Match> {
+    let mut taken = vec![false; contacts.len()];
+    let mut found: Vec<Match> = Vec::with_capacity(presses.len());
+    // In the order of time: the contact that began last before the press.
+    let mut after = 0;
+    for &[press_s, release_s] in presses {
+        // A clock that was set back begins again.
+        if after > 0 && contacts[after - 1].start_s > press_s {
+            after = 0;
+        }
+        while contacts.get(after).is_some_and(|one| one.start_s <= press_s) {
+            after += 1;
+        }
+        let own = after.checked_sub(1).filter(|&own| press_s <= contacts[own].end_s + LATE_S);
+        let fate = match own {
+            None => Fate::False,
+            Some(own) if std::mem::replace(&mut taken[own], true) => Fate::Repeated,
+            Some(_) => Fate::True,
+        };
+        found.push(Match { press_s, release_s, contact: own.map(|own| contacts[own]), fate });
+    }
+    let missed = contacts.iter().zip(taken).filter(|(one, taken)| one.start_known && one.end_known && !taken);
+    let missed = missed.map(|(one, _)| Match {
+        press_s: f64::NAN,
+        release_s: f64::NAN,
+        contact: Some(*one),
+        fate: Fate::Missed,
+    });
+    found.extend(missed);
+    found
 }
 
 impl Quartiles {

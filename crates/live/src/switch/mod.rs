@@ -21,7 +21,7 @@ mod tune;
 
 pub use config::{ConfigFault, Outside, Place, SwitchConfig};
 pub use contact::{Contact, Contacts};
-pub use evaluate::{Evaluation, Quartiles, Trace};
+pub use evaluate::{Evaluation, FalseRate, Fate, Match, Quartiles, Trace, matches};
 pub use event::{Reason, SwitchEvent, Turn};
 pub use machine::{Reading, Switch};
 pub use poisson::{Rate, rate_per_hour};
