@@ -14,6 +14,9 @@ use serde::Serialize;
 const BUCKETS: usize = 512;
 const BUCKET_S: f64 = 0.25;
 
+/// Fewer say little.
+const LEAST: usize = 8;
+
 /// The fastest row of a bucket: the device's time, arrival less it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Fastest {
@@ -28,6 +31,8 @@ pub struct Envelope {
     bucket_s: f64,
     /// Where the last bucket ends.
     until_s: f64,
+    /// Room for a hull.
+    hull: Vec<Fastest>,
 }
 
 /// How a device's clock runs.
@@ -47,7 +52,8 @@ pub struct ClockFit {
 
 impl Default for Envelope {
     fn default() -> Self {
-        Self { buckets: Vec::with_capacity(BUCKETS), bucket_s: BUCKET_S, until_s: f64::NEG_INFINITY }
+        let room = || Vec::with_capacity(BUCKETS);
+        Self { buckets: room(), bucket_s: BUCKET_S, until_s: f64::NEG_INFINITY, hull: room() }
     }
 }
 
@@ -90,13 +96,24 @@ impl Envelope {
         self.bucket_s *= 2.0;
     }
 
+    /// The line without its errors, and without allocating: the host's time less the device's at a device's time 0, and
+    /// how much it grows a second.
+    pub fn line(&mut self) -> Option<[f64; 2]> {
+        if self.buckets.len() < LEAST {
+            return None;
+        }
+        let line = below(&self.buckets, &mut self.hull)?;
+        Some([line.at(0.0), line.slope])
+    }
+
     /// The line; none of fewer than 8 buckets (2 s).
     #[must_use]
     pub fn fit(&self) -> Option<ClockFit> {
-        if self.buckets.len() < 8 {
+        if self.buckets.len() < LEAST {
             return None;
         }
-        let whole = below(&self.buckets)?;
+        let mut hull = Vec::new();
+        let whole = below(&self.buckets, &mut hull)?;
         let (first, last) = (self.buckets.first()?.device_s, self.buckets.last()?.device_s);
         let at_s = 0.5 * (first + last);
         // Blocks left out in turn: the jackknife.
@@ -105,7 +122,7 @@ impl Envelope {
         for block in 0..BLOCKS {
             let kept = self.buckets.iter().enumerate().filter(|(k, _)| k * BLOCKS / self.buckets.len() != block);
             let kept: Vec<Fastest> = kept.map(|(_, one)| *one).collect();
-            let line = below(&kept)?;
+            let line = below(&kept, &mut hull)?;
             without.push([line.at(at_s), line.slope]);
         }
         let error = |which: usize, value: f64| {
@@ -138,8 +155,8 @@ impl Line {
 }
 
 /// The edge of the lower hull above the middle of the points' times.
-fn below(points: &[Fastest]) -> Option<Line> {
-    let mut hull: Vec<Fastest> = Vec::new();
+fn below(points: &[Fastest], hull: &mut Vec<Fastest>) -> Option<Line> {
+    hull.clear();
     for &point in points {
         while let [.., a, b] = hull[..] {
             let turn = (b.device_s - a.device_s) * (point.ahead_s - a.ahead_s)

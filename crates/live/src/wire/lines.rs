@@ -119,6 +119,12 @@ impl Lines {
         self.meaning.as_ref()
     }
 
+    /// The numbers of the last row.
+    #[must_use]
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
     /// What was spoilt so far.
     #[must_use]
     pub fn spoilt(&self) -> &Spoilt {
