@@ -53,8 +53,10 @@ impl StreamColumns {
                         return Err(format!("two columns are named `{name}`; rename one"));
                     }
                     columns.values.push(name.clone());
+                    let at = columns.meaning.values;
                     columns.meaning.values += 1;
-                    Use::Value(columns.meaning.values - 1)
+                    // Counts are those of a converter: photodiodes.
+                    if of_log && is_photodiode(name) { Use::Counts(at) } else { Use::Value(at) }
                 }
                 _ => {
                     passed_over.push(name.as_str());
@@ -68,8 +70,32 @@ impl StreamColumns {
         Ok(columns)
     }
 
+    /// Where the photodiodes are in a row.
+    pub(crate) fn photodiodes(&self) -> impl Iterator<Item = usize> {
+        (0..self.values.len()).filter(|&k| is_photodiode(&self.values[k]))
+    }
+
+    /// Whether these photodiodes are there.
+    ///
+    /// # Errors
+    /// The first that is not, in words.
+    pub(crate) fn check(&self, needs: &[String]) -> Result<(), String> {
+        let Some(lacking) = needs.iter().find(|name| self.place(name).is_none()) else { return Ok(()) };
+        let has = if self.values.is_empty() { "none".to_owned() } else { self.values.join(", ") };
+        Err(format!(
+            "the model reads {lacking}, which the stream does not send (numbers that it sends: {has}); say what it is \
+             called, as in --columns {lacking}=ch_1"
+        ))
+    }
+
     /// Where a value is in a row.
     pub(crate) fn place(&self, name: &str) -> Option<usize> {
         self.values.iter().position(|value| value == name)
     }
+}
+
+/// Whether a name is a photodiode's: `P1`, `VP1`.
+fn is_photodiode(name: &str) -> bool {
+    let number = name.strip_prefix("VP").or_else(|| name.strip_prefix('P'));
+    number.is_some_and(|number| !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit()))
 }

@@ -14,6 +14,7 @@ use lunula_predictor::Contact;
 use super::columns::StreamColumns;
 use super::pipe::Pipe;
 use super::recording::Recording;
+use super::report::SwitchCounts;
 use super::sensor::Sensor;
 use crate::live::error::LiveError;
 use crate::table::push_number;
@@ -25,7 +26,6 @@ pub(crate) struct Decide {
     pub(crate) answers: Option<Answers>,
     line: String,
     pub(crate) rows: u64,
-    pub(crate) lost: u64,
     /// The time of the first row and of the last, seconds.
     pub(crate) span_s: Option<[f64; 2]>,
 }
@@ -52,9 +52,9 @@ pub(crate) struct SwitchOutput {
     place: Option<[usize; 2]>,
     /// The switch under the press.
     name: Option<String>,
-    pub(crate) presses: u64,
-    pub(crate) releases: u64,
-    pub(crate) let_go: u64,
+    presses: u64,
+    releases: u64,
+    let_go: u64,
 }
 
 impl Decide {
@@ -66,7 +66,7 @@ impl Decide {
         if let Some(recording) = &mut recording {
             recording.name(names);
         }
-        Self { columns, recording, answers, line: String::with_capacity(512), rows: 0, lost: 0, span_s: None }
+        Self { columns, recording, answers, line: String::with_capacity(512), rows: 0, span_s: None }
     }
 
     /// A row has come.
@@ -75,7 +75,6 @@ impl Decide {
     /// A recording or events that can't be written.
     pub(crate) fn row(&mut self, row: &Row<'_>) -> Result<(), LiveError> {
         self.rows += 1;
-        self.lost += row.lost;
         if row.time_s.is_finite() {
             self.span_s = Some([self.span_s.map_or(row.time_s, |span| span[0]), row.time_s]);
         }
@@ -100,6 +99,16 @@ impl Decide {
             Some(answers) => answers.row(row),
             None => Ok(()),
         }
+    }
+
+    /// Whether the photodiodes of a row are whole numbers, one of them beyond `volts`.
+    pub(crate) fn looks_like_counts(&self, row: &Row<'_>, volts: f64) -> bool {
+        let mut values = self.columns.photodiodes().map(|k| row.values[k]).filter(|value| !value.is_nan());
+        let mut high = false;
+        values.all(|value| {
+            high |= value.abs() > volts;
+            value.fract() == 0.0
+        }) && high
     }
 
     /// Time has passed without a row.
@@ -222,6 +231,11 @@ impl SwitchOutput {
             return Err("the switch has places, and the stream has no x_m and y_m of a tracker".to_owned());
         }
         Ok(Self { switch, column, sign, events, place, name: None, presses: 0, releases: 0, let_go: 0 })
+    }
+
+    /// What it did.
+    pub(crate) fn counts(&self) -> SwitchCounts {
+        SwitchCounts { presses: self.presses, releases: self.releases, let_go: self.let_go }
     }
 
     /// Which switch is under the finger: while nothing is pressed it changes, so that the place where a press begins

@@ -15,6 +15,7 @@ mod recording;
 mod report;
 mod run;
 mod sensor;
+mod table_rows;
 
 pub(crate) use columns::StreamColumns;
 pub use report::{Latency, SessionFigures, SessionReport};

@@ -98,8 +98,8 @@ fn ready(fd: BorrowedFd<'_>) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use std::io::Read;
     use std::fs::File;
+    use std::io::Read;
 
     use rustix::pipe::pipe;
 

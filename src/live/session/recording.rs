@@ -31,7 +31,6 @@ pub(crate) struct Recording {
     replace: bool,
     shared: Arc<Shared>,
     writer: Option<JoinHandle<io::Result<()>>>,
-    rows: u64,
     lost: u64,
 }
 
@@ -70,7 +69,6 @@ impl Recording {
             replace,
             shared: Arc::default(),
             writer: None,
-            rows: 0,
             lost: 0,
         })
     }
@@ -80,12 +78,7 @@ impl Recording {
         self.columns = columns;
     }
 
-    /// Rows so far, and those that were left out as the disk was too slow.
-    pub(crate) fn rows(&self) -> u64 {
-        self.rows
-    }
-
-    /// See [`rows`](Self::rows).
+    /// Rows that were left out as the disk was too slow.
     pub(crate) fn lost(&self) -> u64 {
         self.lost
     }
@@ -107,7 +100,6 @@ impl Recording {
             self.lost += 1;
         } else {
             pending.bytes.extend_from_slice(row.as_bytes());
-            self.rows += 1;
         }
         Ok(())
     }
@@ -115,7 +107,11 @@ impl Recording {
     fn begin(&mut self) -> Result<(), LiveError> {
         let mut options = OpenOptions::new();
         options.write(true);
-        if self.replace { options.create(true).truncate(true) } else { options.create_new(true) };
+        if self.replace {
+            options.create(true).truncate(true)
+        } else {
+            options.create_new(true)
+        };
         let mut file = options.open(&self.grows).map_err(|why| self.refused(why))?;
         let header = self.columns.join(",") + "\n";
         file.write_all(header.as_bytes()).map_err(|why| self.refused(why))?;

@@ -54,8 +54,8 @@ impl Sensor {
         keep_faults: bool,
     ) -> Result<Self, String> {
         let inputs = answering.inputs().to_vec();
-        let place = |name: &String| columns.place(name).ok_or_else(|| lacking(name, columns));
-        let places: Vec<usize> = inputs.iter().map(place).collect::<Result<_, _>>()?;
+        columns.check(&inputs)?;
+        let places = inputs.iter().filter_map(|name| columns.place(name)).collect();
         if answering.needs_time() && !columns.time {
             let what = "has no time_s, and a model reads voltages of the past (it was trained with --lags); give it the \
                         time in seconds";
@@ -126,13 +126,4 @@ impl Sensor {
         self.not_known += u64::from(!self.answer.iter().all(|value| value.is_finite()));
         Some(Answer { contact, outside: self.answering.outside() > before })
     }
-}
-
-/// What to say where a model reads what the stream does not send.
-fn lacking(name: &str, columns: &StreamColumns) -> String {
-    let has = if columns.values.is_empty() { "none".to_owned() } else { columns.values.join(", ") };
-    format!(
-        "the model reads {name}, which the stream does not send (numbers that it sends: {has}); say what it is called, as \
-         in --columns {name}=ch_1"
-    )
 }

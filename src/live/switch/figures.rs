@@ -56,7 +56,8 @@ pub(super) fn draw_delays(found: &[Vec<Match>], png: &Path, svg: &Path) -> anyho
         let all = delays.len() as f64;
         delays.iter().enumerate().map(|(k, delay)| [1e3 * delay, 100.0 * (k + 1) as f64 / all]).collect::<Vec<_>>()
     };
-    let lines = [("press, after true contact began", curve(on.collect())), ("release, after it ended", curve(off.collect()))];
+    let lines =
+        [("press, after true contact began", curve(on.collect())), ("release, after it ended", curve(off.collect()))];
     let mut items = vec![Item::Room(vec![[0.0, 0.0], [0.0, 100.0]])];
     items.extend(lines.into_iter().enumerate().map(|(colour, (name, points))| Item::Line {
         name: Some(name.to_owned()),

@@ -6,7 +6,6 @@ use lunula_live::switch::Outside;
 use super::truth::TrueContact;
 use crate::job::{not_negative, number, one_of};
 use crate::log::LogReading;
-use crate::predictor::share;
 use crate::words::Words;
 
 /// How recordings are read, and what of them is true.
@@ -30,7 +29,7 @@ pub struct TuneOptions {
     #[arg(long, value_name = "RATE", default_value_t = 1.0, value_parser = above_zero)]
     pub false_per_hour: f64,
     /// The share of presses that may be missed
-    #[arg(long, value_name = "SHARE", default_value_t = 0.01, value_parser = share)]
+    #[arg(long, value_name = "SHARE", default_value_t = 0.01, value_parser = part)]
     pub missed: f64,
     /// Without a valid sample for so long the switch lets go; 0: never
     #[arg(long, value_name = "SECONDS", default_value_t = 0.5, value_parser = not_negative)]
@@ -73,6 +72,10 @@ impl From<OutsideChoice> for Option<Outside> {
             OutsideChoice::Count => None,
         }
     }
+}
+
+fn part(text: &str) -> Result<f64, String> {
+    number(text).ok().filter(|share| (0.0..1.0).contains(share)).ok_or_else(|| "write a share, as 0.01".to_owned())
 }
 
 fn above_zero(text: &str) -> Result<f64, String> {

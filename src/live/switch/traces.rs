@@ -1,5 +1,6 @@
 //! Recordings to traces: what a live session would have compared at each row, and what was true.
 
+use std::cell::RefCell;
 use std::path::PathBuf;
 
 use lunula_live::switch::Trace;
@@ -78,7 +79,7 @@ fn read_trace(
     })?;
     let truth = &options.contact;
     let mut answering = Some(answering);
-    let mut sensor: Option<(Sensor, usize)> = None;
+    let sensor: RefCell<Option<(Sensor, usize)>> = RefCell::new(None);
     let mut trace = Trace::default();
     let extra = [truth.column.clone()];
     // Of a recording that begins with an unlit row, the first lit one.
@@ -92,11 +93,12 @@ fn read_trace(
                 format!("has no column `{}`; its numbers are {}", truth.column, columns.values.join(", "))
             })?;
             let answering = answering.take().ok_or("names its columns twice")?;
-            sensor = Some((Sensor::new(answering, columns, &options.log, options.keep_faults)?, place));
+            sensor.replace(Some((Sensor::new(answering, columns, &options.log, options.keep_faults)?, place)));
             Ok(())
         },
         |row| {
-            let Some((sensor, place)) = &mut sensor else { return Ok(()) };
+            let mut sensor = sensor.borrow_mut();
+            let Some((sensor, place)) = &mut *sensor else { return Ok(()) };
             let touches = truth.of(row.values[*place]).map_err(|value| {
                 format!("column `{}` is {value} at {} s; contact is 0 or 1, or say Fz_N<-0.2", truth.column, row.time_s)
             })?;
