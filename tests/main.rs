@@ -16,6 +16,7 @@ mod faults;
 mod fit;
 mod fixtures;
 mod house;
+mod live;
 mod mask_outlines;
 mod merge;
 mod nail_axes;

@@ -39,8 +39,7 @@ const SPOILT_SHARE: f64 = 0.01;
 const SPOILT_NS: u64 = 10_000_000_000;
 /// The report beside a recording.
 const REPORT: &str = ".stream.json";
-/// So many rows of counts where volts should be make sure that they are.
-const COUNT_ROWS: u32 = 20;
+/// Whole numbers beyond this are no volts (assumed: no photodiode's amplifier reaches it).
 const COUNT_V: f64 = 30.0;
 
 /// Who hears rows and messages.
@@ -229,7 +228,6 @@ struct Core<'a> {
     work: Latencies,
     wake_up: Latencies,
     spoilt: SpoiltShare,
-    counts: u32,
     fault: Option<LiveError>,
     ends: bool,
 }
@@ -276,7 +274,6 @@ impl<'a> Session<'a> {
             work: Latencies::default(),
             wake_up: Latencies::default(),
             spoilt: SpoiltShare::default(),
-            counts: 0,
             fault: None,
             ends: false,
         };
@@ -353,7 +350,7 @@ impl<'a> Session<'a> {
 
     /// What is looked at now and then.
     fn tick(&mut self, now_ns: u64, alarmed: &mut bool) {
-        if !*alarmed && self.stream.rows() == 0 && now_ns > SILENCE_NS && !self.core.waits {
+        if !*alarmed && self.stream.rows() == 0 && now_ns > SILENCE_NS && !self.stream.can_wait() {
             *alarmed = true;
             let what =
                 format!("alarm: no sample within a second from {}: {}", self.options.source, self.stream.nothing());
@@ -490,17 +487,16 @@ impl Core<'_> {
     fn row(&mut self, row: &Row<'_>) {
         self.spoilt.rows += 1;
         let Some(decide) = &mut self.decide else { return };
+        let counts = decide.rows == 0 && decide.answers.is_some() && decide.looks_like_counts(row, COUNT_V);
+        if counts {
+            let what = "the photodiodes are whole numbers beyond 30: they look like a converter's counts, and models read \
+                        volts; say what a step is, as --volts-per-count 10/65536";
+            self.fault = Some(LiveError::Request(what.to_owned()));
+            return;
+        }
         if let Err(why) = decide.row(row) {
             self.fault = Some(why);
             return;
-        }
-        if self.counts < COUNT_ROWS && decide.answers.is_some() {
-            self.counts = if decide.looks_like_counts(row, COUNT_V) { self.counts + 1 } else { u32::MAX };
-            if self.counts == COUNT_ROWS {
-                let what = "the photodiodes are whole numbers beyond 30: they look like a converter's counts, and models \
-                            read volts; say what a step is, as --volts-per-count 10/65536";
-                self.fault = Some(LiveError::Request(what.to_owned()));
-            }
         }
         if let (Some(seconds), Some([from_s, to_s])) = (self.seconds, decide.span_s) {
             self.ends |= to_s - from_s >= seconds;

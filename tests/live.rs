@@ -1,0 +1,434 @@
+//! `lunula live`, `record` and `switch` from end to end: files, pipes, TCP, a device that goes away, a clock that stops.
+
+use std::fmt::Write as _;
+use std::io::{BufRead, BufReader, Write};
+use std::net::TcpListener;
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc::{Receiver, channel};
+use std::time::{Duration, Instant};
+
+use crate::util::Dir;
+
+/// What does not come within this never comes.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// A row: P1 is 1 V and half a volt per newton of pressing.
+fn row(t_s: f64, pressing_n: f64) -> String {
+    format!("{t_s:.3},{:.4},{:.4}\n", 1.0 + 0.5 * pressing_n, -pressing_n)
+}
+
+/// Presses of 0.4 s every 2 s, rising within 0.1 s, 100 rows a second.
+fn pressing(t_s: f64) -> f64 {
+    let phase = t_s % 2.0 - 1.0;
+    if (0.0..0.4).contains(&phase) { (phase / 0.1).min(1.0) } else { 0.0 }
+}
+
+fn recording(seconds: f64) -> String {
+    let mut text = "time_s,P1,Fz_N\n".to_owned();
+    for k in 0..(100.0 * seconds) as usize {
+        let t_s = 0.01 * k as f64;
+        // Light that wavers by a hundredth of a newton.
+        let waver = 0.01 * (7.3 * t_s).sin() * (3.1 * t_s).cos();
+        let _ = write!(text, "{t_s:.3},{:.5},{:.4}\n", 1.0 + 0.5 * (pressing(t_s) + waver), -pressing(t_s));
+    }
+    text
+}
+
+/// `m.json` of forces from P1, `sw.toml`.
+fn desk() -> Dir {
+    let dir = Dir::new();
+    let mut text = "time_s,P1,Fz_N\n".to_owned();
+    (0..200).for_each(|k| text.push_str(&row(0.01 * f64::from(k), 0.02 * f64::from(k) - 1.0)));
+    dir.write("train.csv", text);
+    dir.train("train.csv", "Fz_N", "m.json", &["-q"]).expect(0);
+    dir.write("sw.toml", "on_N = 0.5\noff_N = 0.3\nwatchdog_s = 0.3\nname = \"x+\"\nfinger = \"index\"\n");
+    dir
+}
+
+struct Running {
+    child: Child,
+    lines: Receiver<String>,
+    said: Receiver<String>,
+}
+
+fn start(dir: &Dir, arguments: &[&str]) -> Running {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_lunula"))
+        .args(arguments)
+        .current_dir(dir.path(""))
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the binary runs");
+    let (out, lines) = channel();
+    let stdout = BufReader::new(child.stdout.take().expect("a pipe"));
+    std::thread::spawn(move || stdout.lines().map_while(Result::ok).all(|line| out.send(line).is_ok()));
+    let (err, said) = channel();
+    let stderr = BufReader::new(child.stderr.take().expect("a pipe"));
+    std::thread::spawn(move || stderr.lines().map_while(Result::ok).all(|line| err.send(line).is_ok()));
+    Running { child, lines, said }
+}
+
+impl Running {
+    fn write(&mut self, text: &str) {
+        let to = self.child.stdin.as_mut().expect("open");
+        to.write_all(text.as_bytes()).and_then(|()| to.flush()).expect("the program reads");
+    }
+
+    /// Waits for a line on standard error that holds these words.
+    #[track_caller]
+    fn hears(&self, words: &str) -> String {
+        let start = Instant::now();
+        while let Ok(line) = self.said.recv_timeout(PATIENCE.saturating_sub(start.elapsed())) {
+            if line.contains(words) {
+                return line;
+            }
+        }
+        panic!("never said `{words}`");
+    }
+
+    fn end(mut self) -> (i32, Vec<String>, String) {
+        drop(self.child.stdin.take());
+        let start = Instant::now();
+        let code = loop {
+            if let Some(status) = self.child.try_wait().expect("a child") {
+                break status.code().unwrap_or(-1);
+            }
+            assert!(start.elapsed() < PATIENCE, "the program does not end");
+            std::thread::sleep(Duration::from_millis(5));
+        };
+        (code, self.lines.iter().collect(), self.said.iter().collect::<Vec<_>>().join("\n"))
+    }
+}
+
+fn json(dir: &Dir, name: &str) -> serde_json::Value {
+    serde_json::from_str(&dir.text(name)).expect("JSON")
+}
+
+#[test]
+fn live_and_batch_and_every_speed_give_the_same_bytes() {
+    let dir = desk();
+    dir.write("r.csv", recording(20.0));
+    dir.lunula(&["predict", "m.json", "r.csv", "--out", "p.csv", "-q"]).expect(0);
+    let live = |rate: &str, events: &str| {
+        let source = format!("r.csv?rate={rate}");
+        let all = ["live", "--source", &source, "--model", "m.json", "--switch", "sw.toml", "--events", events, "-q"];
+        dir.lunula(&all).expect(0).stdout
+    };
+    let (fast, slow) = (live("max", "a.jsonl"), live("40", "b.jsonl"));
+    assert_eq!(fast, slow);
+    assert_eq!(dir.text("a.jsonl"), dir.text("b.jsonl"));
+    let without: String = fast.lines().map(|line| line.rsplit_once(',').unwrap().0.to_owned() + "\n").collect();
+    assert_eq!(without, dir.text("p.csv"));
+    // Ten presses and releases, a half newton after each begins.
+    let events: Vec<serde_json::Value> =
+        dir.text("a.jsonl").lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert_eq!(events.len(), 20);
+    for (k, pair) in events.chunks(2).enumerate() {
+        let at = |event: &serde_json::Value| event["t"].as_f64().unwrap() - 2.0 * k as f64 - 1.0;
+        assert!(pair[0]["event"] == "press" && (at(&pair[0]) - 0.05).abs() <= 0.011, "{}", pair[0]);
+        assert!(pair[1]["event"] == "release" && (at(&pair[1]) - 0.40).abs() <= 0.011, "{}", pair[1]);
+        assert!(pair[0]["switch"] == "x+" && pair[0]["finger"] == "index" && pair[0]["reason"] == "value");
+    }
+    // A Parquet table is the same stream.
+    dir.lunula(&["record", "--source", "r.csv", "--out", "r.parquet", "-q"]).expect(0);
+    let table = dir.lunula(&["live", "--source", "r.parquet", "--model", "m.json", "-q"]).expect(0).stdout;
+    assert_eq!(table, without);
+}
+
+#[test]
+fn a_modulated_log_is_answered_as_the_batch_answers_it_under_the_same_rule() {
+    let dir = desk();
+    let mut text = "t_ms,LED,P1\n".to_owned();
+    for k in 0..400 {
+        let (t_s, lit) = (0.02 * f64::from(k), k % 2);
+        let ambient = 0.3 + 0.05 * (1.7 * t_s).sin();
+        let volts = ambient + f64::from(lit) * (1.0 + 0.5 * pressing(t_s));
+        let _ = write!(text, "{},{lit},{volts:.4}\n", 1000.0 * t_s);
+    }
+    dir.write("log.csv", &text);
+    dir.lunula(&["predict", "m.json", "log.csv", "--ambient", "preceding", "--out", "p.csv", "-q"]).expect(0);
+    let live = dir.lunula(&["live", "--source", "log.csv", "--model", "m.json"]).expect(0);
+    let live = live.says("the unlit row before it is taken away");
+    assert_eq!(live.stdout, dir.text("p.csv"));
+    assert_eq!(live.stdout.lines().count(), 201);
+    // However the bytes are cut.
+    let mut running = start(&dir, &["live", "--source", "-", "--model", "m.json", "-q"]);
+    let mut left = text.as_str();
+    let mut step = 1;
+    while !left.is_empty() {
+        step = (step * 7 + 3) % 41 + 1;
+        let (piece, rest) = left.split_at(step.min(left.len()));
+        running.write(piece);
+        left = rest;
+    }
+    let (code, lines, _) = running.end();
+    assert_eq!((code, lines.join("\n") + "\n"), (0, live.stdout));
+}
+
+#[test]
+fn a_recording_is_what_align_and_train_read_and_is_not_lost() {
+    let dir = desk();
+    dir.write("r.csv", recording(5.0));
+    let all = ["record", "--source", "r.csv", "--out", "copy.csv"];
+    dir.lunula(&all).expect(0).says("500 rows at 100.0 Hz");
+    dir.lunula(&all).expect(2).says("copy.csv: exists already").says("--replace");
+    dir.lunula(&[&all[..], &["--replace", "-q"]].concat()).expect(0);
+    dir.lunula(&["train", "copy.csv", "--target", "Fz_N", "--out", "again.json", "-q"]).expect(0);
+    let report = json(&dir, "copy.stream.json");
+    assert_eq!(
+        (&report["rows"], &report["stream"]["lost"], &report["stream"]["spoilt"]),
+        (&500.into(), &0.into(), &0.into())
+    );
+    // Over an input, nothing is written.
+    let text = dir.text("r.csv");
+    dir.lunula(&["record", "--source", "r.csv", "--out", "r.csv", "--replace"]).expect(2).says("is an input itself");
+    assert_eq!(dir.text("r.csv"), text);
+    // Without a sample there is no file.
+    dir.write("none.csv", "time_s,P1\n");
+    dir.lunula(&["record", "--source", "none.csv", "--out", "n.csv"]).expect(2).says("no row came");
+    assert!(!dir.path("n.csv").exists() && !dir.path("n.stream.json").exists());
+}
+
+#[test]
+fn killed_at_any_moment_a_recording_lacks_a_second_at_most() {
+    let dir = desk();
+    let mut running = start(&dir, &["record", "--source", "-", "--out", "r.csv"]);
+    running.write("time_s,P1\n");
+    let begin = Instant::now();
+    let mut sent = Vec::new();
+    for k in 0..250 {
+        running.write(&format!("{k},{k}.5\n"));
+        sent.push(begin.elapsed());
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    running.child.kill().expect("our own child");
+    let killed = begin.elapsed();
+    running.child.wait().expect("a child");
+    let text = dir.text("r.csv");
+    let lines: Vec<&str> = text.lines().skip(1).collect();
+    assert!(text.starts_with("time_s,P1\n"), "{text}");
+    assert!(lines.iter().enumerate().all(|(k, line)| *line == format!("{k},{k}.5")), "whole rows, in order");
+    let due = sent.iter().filter(|at| killed - **at > Duration::from_secs(1)).count();
+    assert!(lines.len() >= due && due > 50, "{} of {due} rows", lines.len());
+}
+
+#[test]
+fn spoilt_rows_cost_themselves_and_are_counted() {
+    let dir = desk();
+    let text = "time_s,P1\n0,1\n0.01,x\n0.02,1.5,7\n\u{1}\u{2}\n0.03,1.5\n# note\n\n0.04,2";
+    dir.write("bad.csv", text);
+    let live = dir.lunula(&["live", "--source", "bad.csv", "--model", "m.json", "--out", "r.csv"]).expect(1);
+    let live = live
+        .says("2 rows with a cell that is no finite number, first in line 3: `0.01,x`")
+        .says("too many or too few cells");
+    assert_eq!(live.stdout.lines().count(), 4, "{}", live.stdout);
+    let report = json(&dir, "r.stream.json");
+    assert_eq!(report["stream"]["spoilt"], 3);
+    assert_eq!(dir.text("r.csv"), "time_s,P1\n0,1\n0.03,1.5\n0.04,2\n");
+    assert_eq!(dir.text("r.predicted.csv"), live.stdout);
+}
+
+#[test]
+fn silence_lets_go_in_time_and_what_still_presses_does_not_press() {
+    let dir = desk();
+    let mut running =
+        start(&dir, &["live", "--source", "-", "--model", "m.json", "--switch", "sw.toml", "--events", "e.jsonl"]);
+    running.write("time_s,P1,Fz_N\n");
+    for k in 0..20 {
+        running.write(&row(0.01 * f64::from(k), if k < 10 { 0.0 } else { 1.0 }));
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    let silent = Instant::now();
+    running.hears("state: stalled");
+    let event = loop {
+        let text = std::fs::read_to_string(dir.path("e.jsonl")).unwrap_or_default();
+        if let Some(line) = text.lines().find(|line| line.contains("release")) {
+            break line.to_owned();
+        }
+        assert!(silent.elapsed() < PATIENCE, "never let go: {text}");
+        std::thread::sleep(Duration::from_millis(5));
+    };
+    assert!(event.contains("\"reason\":\"watchdog\"") && event.contains("\"t\":0.49"), "{event}");
+    // Still pressing.
+    (100..150).for_each(|k| running.write(&row(0.01 * f64::from(k), 1.0)));
+    let (code, lines, _) = running.end();
+    assert_eq!((code, lines.len()), (0, 71));
+    assert!(lines[15].ends_with(",1") && lines[30..].iter().all(|line| line.ends_with(",0")));
+    assert_eq!(dir.text("e.jsonl").lines().count(), 2);
+}
+
+#[test]
+fn a_device_that_goes_away_is_waited_for() {
+    let dir = desk();
+    let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
+    let source = format!("tcp:{}", listener.local_addr().expect("an address"));
+    let device = std::thread::spawn(move || {
+        let mut gone = Instant::now();
+        for visit in 0..2 {
+            let (mut stream, _) = listener.accept().expect("the program comes");
+            if visit == 1 {
+                assert!(gone.elapsed() < Duration::from_secs(1), "back after {:?}", gone.elapsed());
+            }
+            let mut text = "time_s,P1,Fz_N\n".to_owned();
+            (0..30).for_each(|k| text.push_str(&row(10.0 * f64::from(visit) + 0.01 * f64::from(k), f64::from(k / 15))));
+            // Half a row before it goes.
+            text.push_str("1.5,");
+            stream.write_all(text.as_bytes()).expect("the program reads");
+            std::thread::sleep(Duration::from_millis(300));
+            gone = Instant::now();
+        }
+    });
+    let mut running = start(
+        &dir,
+        &[
+            "live",
+            "--source",
+            &source,
+            "--model",
+            "m.json",
+            "--switch",
+            "sw.toml",
+            "--events",
+            "e.jsonl",
+            "--out",
+            "r.csv",
+            "--seconds",
+            "10.2",
+        ],
+    );
+    running.hears("state: lost");
+    running.hears("state: reconnecting");
+    running.hears("state: ok");
+    device.join().expect("the device");
+    let (code, lines, said) = {
+        drop(running.child.stdin.take());
+        running.end()
+    };
+    assert_eq!(code, 0, "{said}");
+    assert_eq!(dir.text("r.predicted.csv"), lines.join("\n") + "\n");
+    let events = dir.text("e.jsonl");
+    assert!(events.lines().nth(1).unwrap().contains("\"reason\":\"lost\""), "{events}");
+    let report = json(&dir, "r.stream.json");
+    assert_eq!(report["stream"]["begins"], 2);
+    assert!(dir.text("r.csv").lines().count() > 45, "one file");
+}
+
+#[test]
+fn rows_are_handed_out_over_tcp_too() {
+    let dir = desk();
+    let mut running = start(&dir, &["live", "--source", "-", "--model", "m.json", "--tcp", "127.0.0.1:0"]);
+    let said = running.hears("rows are at tcp:");
+    let reader = std::net::TcpStream::connect(said.rsplit_once("tcp:").unwrap().1).expect("it listens");
+    running.write("time_s,P1,Fz_N\n");
+    running.write(&row(0.0, 0.5));
+    running.hears("a reader came");
+    (1..20).for_each(|k| running.write(&row(0.01 * f64::from(k), 0.5)));
+    let (code, lines, _) = running.end();
+    let read: Vec<String> = BufReader::new(reader).lines().map_while(Result::ok).collect();
+    assert_eq!((code, lines.len()), (0, 21));
+    assert!(read[0] == lines[0] && read.len() >= 20 && read[read.len() - 19..] == lines[2..], "{read:?}");
+}
+
+#[test]
+fn bad_sources_are_said_with_what_to_do() {
+    let dir = desk();
+    let live = |source: &str, words: &[&str]| {
+        let answer = dir.lunula(&["live", "--source", source, "--model", "m.json"]).expect(2);
+        words.iter().fold(answer, |answer, words| answer.says(words));
+    };
+    live("serial:/dev/ttyNowhere?baud=9600", &["serial:/dev/ttyNowhere?baud=9600: does not exist"]);
+    live("nowhere.csv", &["nowhere.csv: can't be read"]);
+    live("tcp:127.0.0.1:1", &["tcp:127.0.0.1:1: can't connect", "is the device on"]);
+    for (source, words) in [
+        ("serial:/dev/ttyX?bd=3", "no setting `bd`; is it `baud`?"),
+        ("serial:/dev/ttyX?baud=x", "write bits a second"),
+        ("tcp:host", "no address with a port"),
+        ("r.csv?rate=0", "write max, or how many times"),
+        ("lsl:name=x", "not read live yet"),
+        ("", "names no source"),
+    ] {
+        dir.lunula(&["live", "--source", source, "--model", "m.json"]).expect(2).says(words);
+    }
+    // Counts where volts are needed; a wrong baud rate; other columns than the model's.
+    let counts: String = (0..40).map(|k| format!("{k},{}\n", 6553 + k)).collect();
+    dir.write("counts.csv", format!("time_s,P1\n{counts}"));
+    live("counts.csv", &["look like a converter's counts", "--volts-per-count 10/65536"]);
+    let scaled = ["live", "--source", "counts.csv", "--model", "m.json", "--volts-per-count", "10/65536", "-q"];
+    dir.lunula(&scaled).expect(0);
+    let mut garbage = start(&dir, &["live", "--source", "-", "--model", "m.json"]);
+    let noise: Vec<u8> = (0..9000u32).map(|k| (k.wrapping_mul(2_654_435_761) >> 24) as u8 | 0x80).collect();
+    let to = garbage.child.stdin.as_mut().expect("open");
+    let _ = to.write_all(&noise);
+    let (code, _, said) = garbage.end();
+    assert!(code == 2 && said.contains("wrong baud rate"), "{said}");
+    dir.write("other.csv", "time_s,P2\n0,1\n");
+    live("other.csv", &["no column `P1`", "--columns P1=ch_1"]);
+    dir.write("numbers.csv", "0,1\n1,1\n");
+    live("numbers.csv", &["names of the columns", "--names"]);
+    dir.lunula(&["live", "--source", "numbers.csv", "--names", "time_s,P1", "--model", "m.json", "-q"]).expect(0);
+}
+
+#[test]
+fn a_stream_without_samples_is_an_alarm_within_a_second() {
+    let dir = desk();
+    let running = start(&dir, &["record", "--source", "-", "--out", "r.csv"]);
+    let begin = Instant::now();
+    running.hears("alarm: no sample within a second");
+    // A busy machine is given the rest.
+    assert!(begin.elapsed() < PATIENCE);
+    let (code, ..) = running.end();
+    assert!(code == 2 && !dir.path("r.csv").exists());
+}
+
+#[test]
+fn thresholds_are_chosen_and_judged_on_recordings() {
+    let dir = desk();
+    for name in ["a.csv", "b.csv", "c.csv"] {
+        dir.write(name, recording(120.0));
+    }
+    let tune = ["switch", "tune", "a.csv", "b.csv", "--model", "m.json", "--contact", "Fz_N<-0.01"];
+    let report = dir.lunula(&[&tune[..], &["--false-per-hour", "60", "--out", "s.toml", "--json"]].concat()).expect(0);
+    let report = report.json();
+    assert_eq!((&report["chosen"]["false_switches"], &report["chosen"]["missed"]), (&0.into(), &0.into()));
+    assert!(report["held_out"]["presses"] == 119 + 1 && report["tried"].as_u64().unwrap() > 1000);
+    assert!(dir.path("s-curve.png").exists() && dir.path("s-curve.svg").exists());
+    let evaluate = ["switch", "evaluate", "s.toml", "c.csv", "--model", "m.json", "--contact", "Fz_N<-0.01"];
+    let said = dir.lunula(&[&evaluate[..], &["--out", "ev"]].concat()).expect(0).stdout;
+    assert!(said.contains("0 of 60 presses missed"), "{said}");
+    let judged = json(&dir, "ev/switch.json");
+    assert_eq!(
+        (&judged["presses"], &judged["missed"], &judged["false_per_hour"]),
+        (&60.into(), &0.into(), &0.0.into())
+    );
+    let high = judged["false_per_hour_high"].as_f64().unwrap();
+    // Nothing in two minutes: up to 90 an hour.
+    assert!((high - 3600.0 * 2.9957 / 119.99).abs() <= 0.1, "{high}");
+    assert!(judged["delay_on_s"]["median"].as_f64().unwrap() <= 0.05);
+    assert_eq!(dir.table("ev/presses.csv").len(), 60);
+    // Live does what was judged.
+    let live = ["live", "--source", "c.csv", "--model", "m.json", "--switch", "s.toml", "--events", "e.jsonl", "-q"];
+    dir.lunula(&live).expect(0);
+    let presses: Vec<String> = dir.table("ev/presses.csv").iter().map(|row| row["press_s"].clone()).collect();
+    let events: Vec<String> = dir
+        .text("e.jsonl")
+        .lines()
+        .map(|line| serde_json::from_str::<serde_json::Value>(line).unwrap())
+        .filter(|event| event["event"] == "press")
+        .map(|event| event["t"].to_string())
+        .collect();
+    assert_eq!(events, presses);
+    // What can't be.
+    dir.lunula(&[&tune[..], &["--false-per-hour", "0", "--out", "t.toml"]].concat()).expect(2).says("above 0");
+    let nothing = ["switch", "tune", "a.csv", "--model", "m.json", "--contact", "Fz_N<-9", "--out", "t.toml"];
+    dir.lunula(&nothing).expect(2).says("no recording has a contact");
+    let column = ["switch", "tune", "a.csv", "--model", "m.json", "--contact", "touch", "--out", "t.toml"];
+    dir.lunula(&column).expect(2).says("has no column `touch`");
+    dir.write("bad.toml", "on_N = 0.2\noff_N = 0.5\nhold = 1\n");
+    let bad = ["switch", "evaluate", "bad.toml", "a.csv", "--model", "m.json", "--contact", "Fz_N<-0.1", "--out", "x"];
+    dir.lunula(&bad).expect(2).says("bad.toml").says("hold");
+    assert!(!dir.path("x").exists() && !dir.path("t.toml").exists());
+    // One recording of two that can't be read costs itself.
+    let both = ["switch", "evaluate", "s.toml", "c.csv", "lost.csv", "--model", "m.json", "--contact", "Fz_N<-0.01"];
+    dir.lunula(&[&both[..], &["--out", "ev2", "-q"]].concat()).expect(1).says("lost.csv");
+}
