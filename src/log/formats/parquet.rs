@@ -47,7 +47,7 @@ pub(in crate::log) fn read(path: &Path, columns: &Columns) -> Result<Raw, LogErr
                 });
                 raw.led = Some(led.collect::<Result<_, _>>()?);
             }
-            Role::Photodiode(_) | Role::Output(_) | Role::Force(_) | Role::Pressure(_) => {
+            Role::Photodiode(_) | Role::Output(_) | Role::Force(_) | Role::Pressure(_) | Role::Contact => {
                 let values = numbers_of(path, &table, name)?;
                 if let Some(channel) = raw.channel(role) {
                     *channel = values;

@@ -88,7 +88,7 @@ impl Rows<'_> {
                 match role {
                     Role::Time => stamps.push(cell, &mut numbers),
                     Role::Led => cell::led(cell).map(|on| raw.led.get_or_insert_default().push(on)),
-                    Role::Photodiode(_) | Role::Output(_) | Role::Force(_) | Role::Pressure(_) => {
+                    Role::Photodiode(_) | Role::Output(_) | Role::Force(_) | Role::Pressure(_) | Role::Contact => {
                         numbers.read(cell).map(|number| values.push(number))
                     }
                 }

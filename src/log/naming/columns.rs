@@ -108,7 +108,7 @@ impl Columns {
         let mapped: HashSet<Role> = columns.iter().map(|(role, _)| *role).collect();
         let mut known = Known::of(&columns);
         for (k, name) in names.iter().enumerate() {
-            let Some(role) = Role::of(name) else { continue };
+            let Some(role) = Role::of(name).filter(|role| *role != Role::Contact) else { continue };
             if known.places.contains(&k) || mapped.contains(&role) {
                 continue;
             }

@@ -15,6 +15,9 @@ pub(in crate::log) enum Role {
     Force(u8),
     /// `pf1_Pa`, `pf2_Pa`, `ph_Pa`, `pl_Pa`, counted from 0.
     Pressure(u8),
+    /// `contact`: whether the finger truly touches, 1 or 0. Only where the user says so, as logs have columns of this
+    /// name that hold words.
+    Contact,
 }
 
 /// The hemodynamic model's pressures.
@@ -30,6 +33,7 @@ impl Role {
             Self::Output(number) => format!("VP{number}"),
             Self::Force(axis) => format!("F{}_N", ["x", "y", "z"][usize::from(axis.min(2))]),
             Self::Pressure(which) => PRESSURES[usize::from(which.min(3))].to_owned(),
+            Self::Contact => "contact".to_owned(),
         }
     }
 
@@ -40,7 +44,7 @@ impl Role {
 
     /// Whether it is a load, which the LED does not change.
     pub(in crate::log) fn is_load(self) -> bool {
-        matches!(self, Self::Force(_) | Self::Pressure(_))
+        matches!(self, Self::Force(_) | Self::Pressure(_) | Self::Contact)
     }
 
     /// The role of one of the contract's names.
@@ -51,6 +55,7 @@ impl Role {
             "Fx_N" => Some(Self::Force(0)),
             "Fy_N" => Some(Self::Force(1)),
             "Fz_N" => Some(Self::Force(2)),
+            "contact" => Some(Self::Contact),
             _ => {
                 let number = |prefix: &str| -> Option<u32> {
                     let digits = name.strip_prefix(prefix)?;

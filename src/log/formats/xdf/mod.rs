@@ -52,7 +52,7 @@ pub(in crate::log) fn read(path: &Path, columns: &Columns) -> Result<Raw, LogErr
                     .map(|(row, value)| cell::led(value.to_string().as_bytes()).map_err(|what| error(row, what)));
                 raw.led = Some(states.collect::<Result<_, _>>()?);
             }
-            Role::Photodiode(_) | Role::Output(_) | Role::Force(_) | Role::Pressure(_) => {
+            Role::Photodiode(_) | Role::Output(_) | Role::Force(_) | Role::Pressure(_) | Role::Contact => {
                 if let Some(channel) = raw.channel(role) {
                     channel.clone_from(values);
                 }
