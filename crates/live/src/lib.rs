@@ -8,6 +8,7 @@
 //! flexion. What is not known is NaN or `None`, never zero. What is done for every sample allocates nothing.
 
 pub mod latency;
+pub mod pointer;
 pub mod source;
 pub mod switch;
 pub mod time;

@@ -1,0 +1,339 @@
+//! The pointer itself: one sample at a time, and the time that passes without one.
+//!
+//! Rules, each tested at every phase of a press:
+//! - it begins disarmed: the finger has to be seen lifted (pressing below `touch_release_n`) before anything happens;
+//! - it moves only while the finger touches and neither clicks nor settles ([`click`]);
+//! - motion is counted between two valid samples only: a sample that is not valid moves nothing, and nothing is held
+//!   over it;
+//! - without a valid sample for more than `watchdog_s`, with a clock that goes back or leaps by more than that, or a
+//!   source that is lost, the button goes up at once and the pointer is disarmed.
+//!
+//! Time is the stream's own, so that a recording played back at any speed gives the same events at the same times; who
+//! reads a live source calls [`Pointer::advance`] as time passes.
+
+mod click;
+mod counts;
+mod filter;
+mod gain;
+mod scroll;
+mod zero;
+
+pub(super) use gain::shear_for_n;
+
+use super::config::{Config, Mode};
+use super::event::{Button, Event, Reason};
+use click::{Clicks, Turn};
+use counts::Counts;
+use filter::OneEuro;
+use scroll::Scroll;
+use zero::Zero;
+
+/// A force of more than this is not a finger's, N (assumed; the thesis' transducer ends at 17 N).
+const MOST_N: f64 = 1000.0;
+/// Samples closer than this are one moment, s: rates would overflow (assumed; sensors sample at up to 20 kHz).
+const SHORTEST_S: f64 = 1e-6;
+/// So many samples without a time are passed over; after one more the clock is lost (assumed).
+const MOST_UNTIMED: u32 = 10;
+/// Sums of decimal sampling periods miss the watchdog by rounding, s.
+const SLACK_S: f64 = 1e-9;
+
+/// A pointer and what it remembers.
+#[derive(Debug, Clone)]
+pub struct Pointer {
+    config: Config,
+    armed: bool,
+    touches: bool,
+    /// The last sample of any kind; NaN before the first.
+    last_s: f64,
+    /// Whether it was valid.
+    last_valid: bool,
+    /// The last valid sample; NaN before the first.
+    valid_s: f64,
+    /// The greatest time that was said to have passed.
+    now_s: f64,
+    filter: OneEuro,
+    zero: Zero,
+    clicks: Clicks,
+    scroll: Scroll,
+    counts: Counts,
+    /// Samples without a time since the last with one.
+    untimed: u32,
+    /// Motion before the onset of what may become a click, px.
+    onset_px: Option<[f64; 2]>,
+    /// The shear from which a drag counts, N.
+    drag_n: [f64; 2],
+    /// Position: the last place of the curve, px, and the way to it that the cap has left.
+    place_px: Option<[f64; 2]>,
+    behind_px: [f64; 2],
+}
+
+impl Pointer {
+    /// A pointer that is disarmed. What `config` says is not checked here ([`Config::check`]).
+    #[must_use]
+    pub fn new(config: Config) -> Self {
+        Self {
+            config,
+            armed: false,
+            touches: false,
+            last_s: f64::NAN,
+            last_valid: false,
+            valid_s: f64::NAN,
+            now_s: f64::NAN,
+            filter: OneEuro::new(config.min_cutoff_hz, config.beta),
+            zero: Zero::new(),
+            clicks: Clicks::new(),
+            scroll: Scroll::new(),
+            counts: Counts::new(config.take_back_s),
+            untimed: 0,
+            onset_px: None,
+            drag_n: [0.0; 2],
+            place_px: None,
+            behind_px: [0.0; 2],
+        }
+    }
+
+    /// Its keys.
+    #[must_use]
+    pub fn config(&self) -> &Config {
+        &self.config
+    }
+
+    /// Whether the button is down.
+    #[must_use]
+    pub fn is_down(&self) -> bool {
+        self.clicks.is_down()
+    }
+
+    /// Whether the finger touches, as far as is known.
+    #[must_use]
+    pub fn touches(&self) -> bool {
+        self.touches
+    }
+
+    /// Where the pointer is, px from where it began: the integral of all motion less what was taken back. The sum of
+    /// all moves is never a whole count away from it.
+    #[must_use]
+    pub fn place_px(&self) -> [f64; 2] {
+        self.counts.place_px()
+    }
+
+    /// When the watchdog lets go if no valid sample comes; none where it has nothing to do.
+    #[must_use]
+    pub fn due_s(&self) -> Option<f64> {
+        Some(self.valid_s + self.config.watchdog_s).filter(|due_s| due_s.is_finite())
+    }
+
+    /// Time has passed without a sample. A clock that is set back by more than the watchdog lets go as well.
+    pub fn advance(&mut self, now_s: f64, out: &mut impl FnMut(Event)) {
+        if !now_s.is_finite() {
+            return;
+        }
+        if now_s < self.now_s - self.config.watchdog_s - SLACK_S {
+            return self.lose(now_s, Reason::Clock, out);
+        }
+        self.now_s = self.now_s.max(now_s);
+        if let Some(due_s) = self.due_s().filter(|due_s| now_s > due_s + SLACK_S) {
+            self.let_go(due_s, Reason::Watchdog, out);
+        }
+    }
+
+    /// The source is lost, or another recording begins: the button goes up, and what was known is not any more, but for
+    /// the zero.
+    pub fn lose(&mut self, t_s: f64, reason: Reason, out: &mut impl FnMut(Event)) {
+        let t_s = if t_s.is_finite() { t_s } else { self.last_s };
+        self.let_go(t_s, reason, out);
+        (self.last_s, self.last_valid, self.now_s) = (f64::NAN, false, f64::NAN);
+    }
+
+    /// As new, after the button went up.
+    pub fn reset(&mut self, out: &mut impl FnMut(Event)) {
+        self.lose(self.last_s, Reason::End, out);
+        *self = Self::new(self.config);
+    }
+
+    /// A sample at `t_s`: the force of the finger on the surface, newtons (pressing is a negative `fz_n`), the bending
+    /// of its joint, degrees, where there is a posture, and whether all that is to be believed. A force that is not
+    /// finite is not valid, a sample without a time neither.
+    #[allow(clippy::too_many_arguments, reason = "the columns of a row")]
+    pub fn sample(
+        &mut self,
+        t_s: f64,
+        fx_n: f64,
+        fy_n: f64,
+        fz_n: f64,
+        bend_deg: Option<f64>,
+        valid: bool,
+        out: &mut impl FnMut(Event),
+    ) {
+        if !t_s.is_finite() {
+            self.last_valid = false;
+            self.untimed += 1;
+            if self.untimed > MOST_UNTIMED {
+                self.let_go(self.last_s, Reason::Clock, out);
+            }
+            return;
+        }
+        self.untimed = 0;
+        if t_s < self.last_s {
+            self.lose(t_s, Reason::Clock, out);
+        }
+        // A leap of the clock, or silence: which of them can't be known.
+        self.advance(t_s, out);
+        let dt_s = t_s - self.last_s;
+        if dt_s < SHORTEST_S {
+            return;
+        }
+        let follows = self.last_valid && valid && self.valid_s.is_finite();
+        let valid = valid && [fx_n, fy_n, fz_n].iter().all(|force_n| force_n.abs() <= MOST_N);
+        (self.last_s, self.last_valid) = (t_s, valid);
+        if !valid {
+            self.scroll.stop();
+            self.zero.stop();
+            return;
+        }
+        self.valid_s = t_s;
+        let dt_s = if follows { dt_s } else { 0.0 };
+        self.step(t_s, dt_s, [fx_n, fy_n], -fz_n, bend_deg, out);
+    }
+}
+
+impl Pointer {
+    /// A valid sample, `dt_s` after another; 0 where the one before was not valid.
+    fn step(
+        &mut self,
+        t_s: f64,
+        dt_s: f64,
+        shear_n: [f64; 2],
+        pressing_n: f64,
+        bend_deg: Option<f64>,
+        out: &mut impl FnMut(Event),
+    ) {
+        let config = self.config;
+        if !self.armed {
+            if pressing_n >= config.touch_release_n {
+                return;
+            }
+            self.armed = true;
+            out(Event::Ready { t_s });
+        }
+        if dt_s == 0.0 {
+            self.filter.reset();
+        }
+        let filtered_n = self.filter.step(shear_n, dt_s);
+        let from_n = if self.touches { config.touch_release_n } else { config.touch_n };
+        self.touches = pressing_n >= from_n;
+        if self.touches {
+            self.scroll.stop();
+            self.zero.stop();
+        } else {
+            self.in_the_air(t_s, dt_s, shear_n, pressing_n, bend_deg, out);
+        }
+        let zero_n = self.zero.at_n();
+        let from_zero_n = [filtered_n[0] - zero_n[0], filtered_n[1] - zero_n[1]];
+        let now_n = gain::on_screen(&config, from_zero_n);
+        let turn = self.clicks.step(&config, t_s, dt_s, pressing_n, self.touches);
+        self.turn(t_s, turn, now_n, from_zero_n, out);
+        if self.touches && self.clicks.lets_move() {
+            self.go(t_s, dt_s, [now_n[0] - self.drag_n[0], now_n[1] - self.drag_n[1]]);
+        } else {
+            (self.place_px, self.behind_px) = (None, [0.0; 2]);
+        }
+        self.say_moves(t_s, out);
+    }
+
+    fn in_the_air(
+        &mut self,
+        t_s: f64,
+        dt_s: f64,
+        shear_n: [f64; 2],
+        pressing_n: f64,
+        bend_deg: Option<f64>,
+        out: &mut impl FnMut(Event),
+    ) {
+        let lines = self.scroll.step(&self.config, t_s, dt_s, bend_deg);
+        if lines != 0 {
+            out(Event::Scroll { t_s, lines });
+        }
+        let bends = |bend_deg: f64| scroll::beyond_rest_deg(&self.config, bend_deg) != 0.0;
+        if self.config.scroll && bend_deg.is_some_and(bends) {
+            self.zero.stop();
+        } else if let Some([fx_n, fy_n]) = self.zero.step(&self.config, t_s, shear_n, pressing_n) {
+            out(Event::Zero { t_s, fx_n, fy_n });
+        }
+    }
+
+    /// What the button does; `now_n` on the screen's axes, `shear_n` on the sensor's.
+    fn turn(&mut self, t_s: f64, turn: Turn, now_n: [f64; 2], shear_n: [f64; 2], out: &mut impl FnMut(Event)) {
+        let button = Button::Left;
+        match turn {
+            Turn::None => {}
+            Turn::Onset => self.onset_px = Some(self.counts.recent_px(t_s)),
+            Turn::FalseOnset => self.onset_px = None,
+            Turn::Down | Turn::Up => {
+                let down = turn == Turn::Down;
+                self.take_back(t_s, out);
+                self.drag_n = [0.0; 2];
+                out(Event::Button { t_s, button, down });
+            }
+            Turn::Tap => {
+                out(Event::Button { t_s, button, down: true });
+                out(Event::Button { t_s, button, down: false });
+            }
+            Turn::Drag | Turn::DownAndDrag => {
+                if turn == Turn::DownAndDrag {
+                    out(Event::Button { t_s, button, down: true });
+                }
+                self.drag_n = now_n;
+                out(Event::Drag { t_s, fx_n: shear_n[0], fy_n: shear_n[1] });
+            }
+        }
+    }
+
+    /// Takes back the motion before the onset; of a press without an onset, which came at once, that before it.
+    fn take_back(&mut self, t_s: f64, out: &mut impl FnMut(Event)) {
+        let moved_px = self.onset_px.take().unwrap_or_else(|| self.counts.recent_px(t_s));
+        self.counts.take_back(moved_px);
+        self.say_moves(t_s, out);
+    }
+
+    /// Motion of a finger that touches, by the shear on the screen's axes.
+    fn go(&mut self, t_s: f64, dt_s: f64, shear_n: [f64; 2]) {
+        let step_px = match self.config.mode {
+            Mode::Velocity => gain::velocity_px_per_s(&self.config, shear_n).map(|speed| speed * dt_s),
+            Mode::Position => {
+                let place_px = gain::place_px(&self.config, shear_n);
+                let before_px = self.place_px.replace(place_px).filter(|_| dt_s > 0.0).unwrap_or(place_px);
+                let behind: [f64; 2] =
+                    std::array::from_fn(|axis| self.behind_px[axis] + place_px[axis] - before_px[axis]);
+                let step_px = gain::capped_px(&self.config, behind, dt_s);
+                self.behind_px = std::array::from_fn(|axis| behind[axis] - step_px[axis]);
+                step_px
+            }
+        };
+        self.counts.push(t_s, step_px);
+    }
+
+    fn say_moves(&mut self, t_s: f64, out: &mut impl FnMut(Event)) {
+        if let Some([dx, dy]) = self.counts.whole() {
+            out(Event::Move { t_s, dx, dy });
+        }
+    }
+
+    /// The button goes up, and nothing happens until the finger is seen lifted.
+    fn let_go(&mut self, t_s: f64, reason: Reason, out: &mut impl FnMut(Event)) {
+        if self.clicks.is_down() {
+            out(Event::Button { t_s, button: Button::Left, down: false });
+        }
+        if self.armed {
+            out(Event::Lost { t_s, reason });
+        }
+        (self.armed, self.touches, self.valid_s) = (false, false, f64::NAN);
+        self.filter.reset();
+        self.zero.stop();
+        self.clicks = Clicks::new();
+        self.scroll.stop();
+        self.counts.forget_recent();
+        (self.onset_px, self.drag_n) = (None, [0.0; 2]);
+        (self.place_px, self.behind_px) = (None, [0.0; 2]);
+    }
+}
