@@ -14,8 +14,8 @@ pub use lunula_live as streams;
 pub use lunula_live::switch::Evaluation;
 
 pub use error::LiveError;
-pub use options::{AnswerOptions, LiveOptions, SessionFiles, StreamOptions};
-pub use session::{Latency, Readers, SessionFigures, SessionReport, live, record};
+pub use options::{AnswerOptions, LiveOptions, MouseFiles, MouseOptions, SessionFiles, StreamOptions};
+pub use session::{Latency, PointerCounts, Readers, SessionFigures, SessionReport, live, record};
 pub use switch::{
     ContactOptions, CurvePoint, EvaluateSwitchFigures, EvaluateSwitchReport, OutsideChoice, TrueContact, TuneFigures,
     TuneOptions, TuneReport, evaluate_plan, evaluate_switch, read_switch, tune_plan, tune_switch,

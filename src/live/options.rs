@@ -63,6 +63,17 @@ pub struct LiveOptions {
     pub tcp: Option<SocketAddr>,
 }
 
+/// The options of `lunula mouse`.
+#[derive(Debug, Clone, Args)]
+pub struct MouseOptions {
+    /// The stream.
+    #[command(flatten)]
+    pub stream: StreamOptions,
+    /// What is made of it.
+    #[command(flatten)]
+    pub answer: AnswerOptions,
+}
+
 /// Files of a session.
 #[derive(Debug, Clone, Default)]
 pub struct SessionFiles {
@@ -76,6 +87,19 @@ pub struct SessionFiles {
     pub switch: Option<PathBuf>,
     /// The switch's events.
     pub events: Option<PathBuf>,
+    /// The mouse.
+    pub mouse: Option<MouseFiles>,
+}
+
+/// Files of a mouse.
+#[derive(Debug, Clone, Default)]
+pub struct MouseFiles {
+    /// Its `mouse.toml`; none: defaults.
+    pub config: Option<PathBuf>,
+    /// Its events.
+    pub events: Option<PathBuf>,
+    /// Whether it moves the pointer of this computer.
+    pub uinput: bool,
 }
 
 fn volts(text: &str) -> Result<f64, String> {

@@ -7,12 +7,14 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::PathBuf;
 
+use lunula_live::pointer;
 use lunula_live::switch::{Reading, Reason, Switch, SwitchEvent, Turn};
 use lunula_live::wire::Row;
 use lunula_predictor::Contact;
 
 use super::columns::StreamColumns;
 use super::pipe::Pipe;
+use super::pointer::PointerOutput;
 use super::recording::Recording;
 use super::report::SwitchCounts;
 use super::sensor::Sensor;
@@ -34,6 +36,7 @@ pub(crate) struct Decide {
 pub(crate) struct Answers {
     pub(crate) sensor: Sensor,
     pub(crate) switch: Option<SwitchOutput>,
+    pub(crate) pointer: Option<PointerOutput>,
     pub(crate) recording: Option<Recording>,
     pub(crate) readers: Vec<Pipe>,
     pub(crate) touch: u64,
@@ -116,33 +119,29 @@ impl Decide {
     /// # Errors
     /// Events that can't be written.
     pub(crate) fn advance(&mut self, now_s: f64) -> Result<(), LiveError> {
-        match self.answers.as_mut().and_then(|answers| answers.switch.as_mut()) {
-            Some(output) => {
-                let event = output.switch.advance(now_s);
-                output.hear(event)
-            }
-            None => Ok(()),
+        let Some(answers) = &mut self.answers else { return Ok(()) };
+        if let Some(output) = &mut answers.switch {
+            let event = output.switch.advance(now_s);
+            output.hear(event)?;
         }
+        answers.pointer.as_mut().map_or(Ok(()), |output| output.advance(now_s))
     }
 
     /// The source is lost, or the session ends.
     ///
     /// # Errors
     /// Events that can't be written.
-    pub(crate) fn lose(&mut self, reason: Reason) -> Result<(), LiveError> {
+    pub(crate) fn lose(&mut self, ends: bool) -> Result<(), LiveError> {
         let last_s = self.span_s.map_or(f64::NAN, |span| span[1]);
-        match self.answers.as_mut().and_then(|answers| answers.switch.as_mut()) {
-            Some(output) => {
-                let event = output.switch.lose(last_s, reason);
-                output.hear(event)
-            }
-            None => Ok(()),
-        }
+        self.answers.as_mut().map_or(Ok(()), |answers| answers.lose(last_s, ends))
     }
 
     /// When a watchdog lets go, of the stream's clock.
     pub(crate) fn due_s(&self) -> Option<f64> {
-        self.answers.as_ref()?.switch.as_ref()?.switch.due_s()
+        let answers = self.answers.as_ref()?;
+        let switch = answers.switch.as_ref().and_then(|output| output.switch.due_s());
+        let pointer = answers.pointer.as_ref().and_then(PointerOutput::due_s);
+        [switch, pointer].into_iter().flatten().reduce(f64::min)
     }
 }
 
@@ -158,6 +157,7 @@ impl Answers {
     pub(crate) fn new(
         sensor: Sensor,
         switch: Option<SwitchOutput>,
+        pointer: Option<PointerOutput>,
         mut recording: Option<Recording>,
         mut readers: Vec<Pipe>,
     ) -> Self {
@@ -167,7 +167,7 @@ impl Answers {
         if let Some(recording) = &mut recording {
             recording.name(header);
         }
-        Self { sensor, switch, recording, readers, touch: 0, bending: 0, line: String::with_capacity(512) }
+        Self { sensor, switch, pointer, recording, readers, touch: 0, bending: 0, line: String::with_capacity(512) }
     }
 
     /// Another reader: it hears the names first.
@@ -176,12 +176,18 @@ impl Answers {
         self.readers.push(reader);
     }
 
-    fn row(&mut self, row: &Row<'_>) -> Result<(), LiveError> {
-        if let Some(output) = &mut self.switch
-            && row.begins
-        {
-            let event = output.switch.lose(row.time_s, Reason::Lost);
+    fn lose(&mut self, t_s: f64, ends: bool) -> Result<(), LiveError> {
+        if let Some(output) = &mut self.switch {
+            let event = output.switch.lose(t_s, if ends { Reason::End } else { Reason::Lost });
             output.hear(event)?;
+        }
+        let reason = if ends { pointer::Reason::End } else { pointer::Reason::Lost };
+        self.pointer.as_mut().map_or(Ok(()), |output| output.lose(t_s, reason))
+    }
+
+    fn row(&mut self, row: &Row<'_>) -> Result<(), LiveError> {
+        if row.begins {
+            self.lose(row.time_s, false)?;
         }
         let Some(answer) = self.sensor.row(row) else { return Ok(()) };
         self.touch += u64::from(answer.contact == Some(Contact::Touch));
@@ -191,6 +197,9 @@ impl Answers {
             output.find_place(row);
             let event = output.switch.sample(row.time_s, Reading { value, outside: answer.outside });
             output.hear(event)?;
+        }
+        if let Some(output) = &mut self.pointer {
+            output.sample(row.time_s, self.sensor.answer(), answer.contact)?;
         }
         self.line.clear();
         self.sensor.answering().push_row(&mut self.line, row.time_s, self.sensor.answer(), answer.contact);

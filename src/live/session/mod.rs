@@ -11,6 +11,7 @@
 mod columns;
 mod decide;
 mod pipe;
+mod pointer;
 mod recording;
 mod report;
 mod run;
@@ -18,6 +19,7 @@ mod sensor;
 mod table_rows;
 
 pub(crate) use columns::StreamColumns;
+pub use pointer::PointerCounts;
 pub use report::{Latency, SessionFigures, SessionReport};
 pub(crate) use run::each_row;
 pub use run::{Readers, live, record};

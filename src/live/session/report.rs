@@ -6,6 +6,7 @@ use lunula_live::latency::Percentiles;
 use lunula_live::source::StreamCertificate;
 use serde::Serialize;
 
+use super::pointer::PointerCounts;
 use crate::job::Report;
 
 /// How a session went.
@@ -34,6 +35,8 @@ pub struct SessionFigures {
     pub bending: u64,
     /// What the switch did.
     pub switch: Option<SwitchCounts>,
+    /// What the mouse did.
+    pub pointer: Option<PointerCounts>,
     /// How long rows took.
     pub latency: Latency,
     /// Rows that readers lost, as they were too slow.

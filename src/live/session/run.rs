@@ -10,13 +10,15 @@ use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 use lunula_live::latency::Latencies;
+use lunula_live::pointer::Config;
 use lunula_live::source::{Event, HostClock, Place, Source, Stream, StreamState};
-use lunula_live::switch::{Reason, Switch};
+use lunula_live::switch::Switch;
 use lunula_live::wire::{Meaning, Row};
 
 use super::columns::StreamColumns;
 use super::decide::{Answers, Decide, SwitchOutput};
 use super::pipe::Pipe;
+use super::pointer::{PointerOutput, read_mouse};
 use super::recording::Recording;
 use super::report::{Latency, SessionFigures, SessionReport};
 use super::sensor::Sensor;
@@ -68,6 +70,12 @@ pub fn live(
     let gate = options.answer.gate().map_err(|why| LiveError::Request(why.to_string()))?;
     let answering = Answering::new(opened.predictors, gate, options.answer.intervals)?;
     let switch = files.switch.as_deref().map(read_switch).transpose()?;
+    let mouse = files.mouse.as_ref().map(|mouse| -> Result<Mouse, LiveError> {
+        let config = mouse.config.as_deref().map(read_mouse).transpose()?.unwrap_or_default();
+        Ok(Mouse { config, events: mouse.events.clone(), uinput: mouse.uinput })
+    });
+    let mouse = mouse.transpose()?;
+    let job = if mouse.is_some() { "mouse" } else { "live" };
     if files.events.is_some() && switch.is_none() {
         return Err(LiveError::Request("--events are a switch's: name one with --switch".to_owned()));
     }
@@ -102,11 +110,12 @@ pub fn live(
         answering,
         switch: switch.map(Switch::new),
         events,
+        mouse,
         predicted,
         rows: readers.rows,
         keep_faults: options.answer.keep_faults,
     });
-    session.run("live", watch)
+    session.run(job, watch)
 }
 
 /// Records samples as they come.
@@ -196,9 +205,17 @@ struct Asked {
     answering: Answering,
     switch: Option<Switch>,
     events: Option<(PathBuf, BufWriter<File>)>,
+    mouse: Option<Mouse>,
     predicted: Option<Recording>,
     rows: Option<OwnedFd>,
     keep_faults: bool,
+}
+
+/// What is asked of a pointer.
+struct Mouse {
+    config: Config,
+    events: Option<PathBuf>,
+    uinput: bool,
 }
 
 /// A session as it goes.
@@ -249,12 +266,14 @@ impl<'a> Session<'a> {
     ) -> Result<Self, LiveError> {
         watch.go_on()?;
         let mut inputs: Vec<PathBuf> = files.models.iter().chain(&files.switch).cloned().collect();
+        inputs.extend(files.mouse.iter().filter_map(|mouse| mouse.config.clone()));
         if let Place::File { path, .. } = &options.source.place {
             inputs.push(path.clone());
         }
         let out = files.out.iter();
         let results = out.flat_map(|out| [out.clone(), predicted_beside(out), beside(out, REPORT)]);
-        Places::not_over(inputs).check(results.chain(files.events.clone()))?;
+        let moves = files.mouse.iter().filter_map(|mouse| mouse.events.clone());
+        Places::not_over(inputs).check(results.chain(files.events.clone()).chain(moves))?;
         let recording = files.out.as_ref().map(|out| Recording::new(out, files.replace)).transpose()?;
         let clock = HostClock::start();
         let stream = open_stream(options, clock)?;
@@ -395,6 +414,7 @@ impl<'a> Session<'a> {
             touch: 0,
             bending: 0,
             switch: None,
+            pointer: None,
             latency: Latency { arrival_us, work_us: work.percentiles(), wake_up_us: late.or(wake_up.percentiles()) },
             lost_by_readers: 0,
             lost_by_disk,
@@ -410,6 +430,7 @@ impl<'a> Session<'a> {
             (figures.touch, figures.bending) = (answers.touch, answers.bending);
             figures.lost_by_readers = answers.readers.iter().map(Pipe::lost).sum();
             figures.switch = answers.switch.as_ref().map(SwitchOutput::counts);
+            figures.pointer = answers.pointer.as_ref().map(PointerOutput::counts);
             if sensor.unknown > 0 {
                 notes.push(format!("{} rows do not say whether the LED was on and are left out", sensor.unknown));
             }
@@ -476,7 +497,7 @@ impl Core<'_> {
                 if state == StreamState::Lost
                     && let Some(decide) = &mut self.decide
                 {
-                    self.fault = decide.lose(Reason::Lost).err();
+                    self.fault = decide.lose(false).err();
                 }
             }
             Event::Names { .. } => {}
@@ -527,7 +548,8 @@ impl Core<'_> {
 
     /// Whether every reader has gone, and nothing else comes of the session.
     fn nobody_hears(&mut self, listens: bool) -> bool {
-        let others = listens || self.files.out.is_some() || self.files.events.is_some();
+        let files = self.files;
+        let others = listens || files.out.is_some() || files.events.is_some() || files.mouse.is_some();
         let readers = self.readers();
         !others && !readers.is_empty() && readers.iter().all(Pipe::is_gone)
     }
@@ -563,7 +585,7 @@ impl Core<'_> {
     /// The session ends: what is pressed lets go.
     fn end(&mut self) {
         if let Some(decide) = &mut self.decide
-            && let Err(why) = decide.lose(Reason::End)
+            && let Err(why) = decide.lose(true)
         {
             self.fault.get_or_insert(why);
         }
@@ -573,13 +595,19 @@ impl Core<'_> {
 /// What the models are to do, now that the columns are known.
 fn answers(asked: Asked, columns: &StreamColumns, log: &LogReading, waits: bool) -> Result<Answers, LiveError> {
     let refused = LiveError::Request;
-    let Asked { answering, switch, events, predicted, rows, keep_faults } = asked;
+    let Asked { answering, switch, events, mouse, predicted, rows, keep_faults } = asked;
     let predicts = answering.columns().to_vec();
     let sensor = Sensor::new(answering, columns, log, keep_faults).map_err(refused)?;
     let switch =
         switch.map(|switch| SwitchOutput::new(switch, &predicts, columns, events)).transpose().map_err(refused)?;
+    let pointer = match mouse {
+        None => None,
+        Some(Mouse { config, events, uinput }) => {
+            Some(PointerOutput::new(config, &predicts, events.as_deref(), uinput)?)
+        }
+    };
     let readers = rows.into_iter().map(|rows| Pipe::new(rows, waits)).collect();
-    Ok(Answers::new(sensor, switch, predicted, readers))
+    Ok(Answers::new(sensor, switch, pointer, predicted, readers))
 }
 
 /// What has to be known of a session before its rows are used.

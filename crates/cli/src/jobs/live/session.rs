@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 use lunula::job::{Given, Report, Watch};
 use lunula::live::{
-    AnswerOptions, LiveOptions, Readers, SessionFigures, SessionFiles, SessionReport, StreamOptions, live, record,
+    AnswerOptions, LiveOptions, MouseFiles, MouseOptions, Readers, SessionFigures, SessionFiles, SessionReport,
+    StreamOptions, live, record,
 };
 use lunula::predictor::PredictChoices;
 use lunula::stages::Step;
@@ -56,6 +57,33 @@ pub(crate) struct RecordArgs {
     job: JobArgs,
 }
 
+/// Move and click with a sensor: shear to motion, pressing harder to clicks, bending to scrolling (6.2)
+///
+/// With --uinput it is a mouse of this computer; --events has a line of JSON for each move, button and line scrolled.
+/// Needs a model of all three forces; with one of posture, bending the finger in the air scrolls. It begins once the
+/// finger was seen lifted.
+#[derive(Debug, Args)]
+pub(crate) struct MouseArgs {
+    /// Models that `lunula train` wrote: of force, and of posture for scrolling
+    #[arg(long = "model", required = true, value_name = "MODEL.json", num_args = 1..)]
+    models: Vec<PathBuf>,
+    #[command(flatten)]
+    given: Given<MouseOptions>,
+    /// Dead zone, gains, thresholds, times [default: the defaults of each key]
+    #[arg(long, value_name = "MOUSE.toml")]
+    config: Option<PathBuf>,
+    /// Moves, buttons and scrolling, a line of JSON each
+    #[arg(long, value_name = "EVENTS.jsonl", required_unless_present_any = ["uinput", "plan"])]
+    events: Option<PathBuf>,
+    /// Move the pointer of this computer (Linux' uinput; `lunula doctor` says what it lacks)
+    #[arg(long)]
+    uinput: bool,
+    #[command(flatten)]
+    out: OutArgs,
+    #[command(flatten)]
+    job: JobArgs,
+}
+
 #[derive(Debug, Args)]
 struct OutArgs {
     /// The recording (.csv or .parquet)
@@ -75,6 +103,7 @@ pub(crate) fn run_live(args: &LiveArgs) -> anyhow::Result<Outcome> {
         models: args.models.clone(),
         switch: args.switch.clone(),
         events: args.events.clone(),
+        mouse: None,
     };
     if args.job.plan {
         return show(common, "live", &Plan::from(live_steps(options, &files)));
@@ -86,6 +115,35 @@ pub(crate) fn run_live(args: &LiveArgs) -> anyhow::Result<Outcome> {
     if common.json {
         // Standard output has the rows.
         eprintln!("{}", serde_json::to_string(&report)?);
+    }
+    Ok(ended(common, &report))
+}
+
+pub(crate) fn run_mouse(args: &MouseArgs) -> anyhow::Result<Outcome> {
+    let common = &args.job.common;
+    let MouseOptions { stream, answer } = args.given.options.clone();
+    let options = LiveOptions { stream, answer, tcp: None };
+    let stop = common.start()?;
+    let mouse = MouseFiles { config: args.config.clone(), events: args.events.clone(), uinput: args.uinput };
+    let files = SessionFiles {
+        out: args.out.out.clone(),
+        replace: args.out.replace,
+        models: args.models.clone(),
+        mouse: Some(mouse),
+        ..SessionFiles::default()
+    };
+    if args.job.plan {
+        let mut steps = live_steps(&options, &files);
+        let how = if args.uinput { "a mouse of this computer" } else { "events only" };
+        steps.insert(3, Step::new("pointer", true, how.to_owned()));
+        return show(common, "mouse", &Plan::from(steps));
+    }
+    let tell = |what: &str| tell(common, what);
+    let watch = Watch { said: &args.given.said, stop: &stop, tick: &|_, _| {} };
+    let report = live(&options, &files, Readers { rows: None, tell: &tell }, &watch)?;
+    common.print_json(&report)?;
+    if let Some(counts) = report.pointer {
+        common.say(&format!("{} moves, {} clicks, {} lines scrolled", counts.moves, counts.clicks, counts.scrolled));
     }
     Ok(ended(common, &report))
 }

@@ -1,0 +1,162 @@
+//! The pointer of a session: predicted forces and posture to moves and clicks, for a file and a mouse of the kernel's.
+
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::{Path, PathBuf};
+
+use lunula_live::pointer::{Config, Event, JsonLines, Pointer, Reason, Uinput};
+use lunula_predictor::{Contact, FORCES};
+use serde::Serialize;
+
+use crate::live::error::LiveError;
+use crate::predictor::POSTURE;
+
+/// A pointer and where its events go.
+pub(crate) struct PointerOutput {
+    pointer: Pointer,
+    /// Where the forces are in an answer, and the angle.
+    forces: [usize; 3],
+    bend: Option<usize>,
+    events: Option<(PathBuf, JsonLines<BufWriter<File>>)>,
+    uinput: Option<Uinput>,
+    counts: PointerCounts,
+}
+
+/// What a pointer did in a session.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub struct PointerCounts {
+    /// Moves.
+    pub moves: u64,
+    /// How far it is from where it began, counts right and down.
+    pub x_counts: i64,
+    /// See `x_counts`.
+    pub y_counts: i64,
+    /// Buttons that went down.
+    pub clicks: u64,
+    /// Lines scrolled, up and down alike.
+    pub scrolled: u64,
+    /// How often everything was let go: no valid sample, a clock set back, a lost source, the end.
+    pub let_go: u64,
+}
+
+/// Reads a `mouse.toml`.
+///
+/// # Errors
+/// A file that can't be read, or keys that are wrong.
+pub(super) fn read_mouse(path: &Path) -> Result<Config, LiveError> {
+    let refused = |what: String| LiveError::Config { path: path.to_owned(), what };
+    let text = crate::input::read_text(path).map_err(|why| refused(why.to_string()))?;
+    Config::from_toml(&text).map_err(|why| refused(why.to_string()))
+}
+
+impl PointerOutput {
+    /// A pointer of these answers.
+    ///
+    /// # Errors
+    /// Forces that the models do not predict, a file that can't be made, no uinput.
+    pub(crate) fn new(
+        config: Config,
+        predicted: &[String],
+        events: Option<&Path>,
+        uinput: bool,
+    ) -> Result<Self, LiveError> {
+        let place = |name: &str| {
+            predicted.iter().position(|one| one == name).ok_or_else(|| {
+                LiveError::Request(format!(
+                    "the mouse needs {name}, and the models predict {}; name a model of all three forces",
+                    predicted.join(", ")
+                ))
+            })
+        };
+        let forces = [place(FORCES[0])?, place(FORCES[1])?, place(FORCES[2])?];
+        let events = match events {
+            None => None,
+            Some(path) => {
+                let file = File::create(path).map_err(|why| LiveError::Write { path: path.to_owned(), why })?;
+                Some((path.to_owned(), JsonLines::new(BufWriter::new(file))))
+            }
+        };
+        let uinput = uinput.then(Uinput::open).transpose().map_err(|why| LiveError::Request(why.to_string()))?;
+        let bend = predicted.iter().position(|one| one == POSTURE);
+        Ok(Self { pointer: Pointer::new(config), forces, bend, events, uinput, counts: PointerCounts::default() })
+    }
+
+    /// What it did.
+    pub(crate) fn counts(&self) -> PointerCounts {
+        self.counts
+    }
+
+    /// When its watchdog lets go.
+    pub(crate) fn due_s(&self) -> Option<f64> {
+        self.pointer.due_s()
+    }
+
+    /// An answer.
+    ///
+    /// # Errors
+    /// Events that can't be written.
+    pub(crate) fn sample(&mut self, t_s: f64, answer: &[f64], contact: Option<Contact>) -> Result<(), LiveError> {
+        let [fx, fy, fz] = self.forces.map(|k| answer[k]);
+        // Under a gate the angle of a touching finger is no prediction.
+        let bend = self.bend.map(|k| answer[k]).filter(|deg| deg.is_finite() && contact != Some(Contact::Touch));
+        let valid = [fx, fy, fz].iter().all(|force| force.is_finite());
+        self.with(|pointer, out| pointer.sample(t_s, fx, fy, fz, bend, valid, out))
+    }
+
+    /// Time has passed without one.
+    ///
+    /// # Errors
+    /// Events that can't be written.
+    pub(crate) fn advance(&mut self, now_s: f64) -> Result<(), LiveError> {
+        self.with(|pointer, out| pointer.advance(now_s, out))
+    }
+
+    /// The source is lost, or the session ends.
+    ///
+    /// # Errors
+    /// Events that can't be written.
+    pub(crate) fn lose(&mut self, t_s: f64, reason: Reason) -> Result<(), LiveError> {
+        self.with(|pointer, out| pointer.lose(t_s, reason, out))?;
+        match &mut self.events {
+            Some((path, to)) => to.flush().map_err(|why| LiveError::Write { path: path.clone(), why }),
+            None => Ok(()),
+        }
+    }
+
+    fn with(&mut self, does: impl FnOnce(&mut Pointer, &mut &mut dyn FnMut(Event))) -> Result<(), LiveError> {
+        let Self { pointer, events, uinput, counts, .. } = self;
+        let mut fault = None;
+        let mut hears = |event: Event| {
+            counts.count(&event);
+            if let Some((path, to)) = events
+                && let Err(why) = to.write(&event)
+            {
+                fault = Some(LiveError::Write { path: path.clone(), why });
+            }
+            if let Some(mouse) = uinput
+                && let Err(why) = mouse.write(&event)
+            {
+                fault = Some(LiveError::Request(why.to_string()));
+            }
+        };
+        let mut hears: &mut dyn FnMut(Event) = &mut hears;
+        does(pointer, &mut hears);
+        fault.map_or(Ok(()), Err)
+    }
+}
+
+impl PointerCounts {
+    fn count(&mut self, event: &Event) {
+        match *event {
+            Event::Move { dx, dy, .. } => {
+                self.moves += 1;
+                self.x_counts += i64::from(dx);
+                self.y_counts += i64::from(dy);
+            }
+            Event::Button { down, .. } => self.clicks += u64::from(down),
+            Event::Scroll { lines, .. } => self.scrolled += u64::from(lines.unsigned_abs()),
+            Event::Lost { .. } => self.let_go += 1,
+            Event::Zero { .. } | Event::Drag { .. } | Event::Ready { .. } => {}
+        }
+    }
+}
