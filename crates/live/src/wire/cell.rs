@@ -26,11 +26,27 @@ pub fn led(cell: &[u8]) -> Result<Option<bool>, NeitherOnNorOff> {
         return Ok(None);
     }
     // `1.000` of programs that write all columns alike.
-    match std::str::from_utf8(cell).ok().and_then(|text| text.replace(',', ".").parse::<f64>().ok()) {
+    match plain(cell).or_else(|| with_decimal_comma(cell)) {
         Some(1.0) => Ok(Some(true)),
         Some(0.0) => Ok(Some(false)),
         _ => Err(NeitherOnNorOff),
     }
+}
+
+/// The number that Rust reads in a cell.
+pub(in crate::wire) fn plain(cell: &[u8]) -> Option<f64> {
+    std::str::from_utf8(cell).ok()?.parse().ok()
+}
+
+/// The finite number in a cell with a decimal comma.
+pub(in crate::wire) fn with_decimal_comma(cell: &[u8]) -> Option<f64> {
+    // Longer than any number that a program writes.
+    let mut text = [0; 64];
+    let text = text.get_mut(..cell.len())?;
+    text.copy_from_slice(cell);
+    let comma = text.iter().position(|&b| b == b',')?;
+    text[comma] = b'.';
+    plain(text).filter(|number| number.is_finite())
 }
 
 /// A cell of `led` that is neither 1 (on) nor 0 (off).

@@ -1,5 +1,7 @@
 //! What a row of a stream is, and what its columns mean.
 
+use crate::wire::spoilt::Spoil;
+
 /// What a column is for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Use {
@@ -12,8 +14,13 @@ pub enum Use {
     Counter,
     /// Whether the LED was on.
     Led,
-    /// A number that is read, and its place among [`Row::values`].
-    Value(usize),
+    /// A number that is read.
+    Value {
+        /// Its place among [`Row::values`].
+        at: usize,
+        /// Whether it is in counts where the source says how many volts a count is.
+        scaled: bool,
+    },
     /// Passed over unread.
     None,
 }
@@ -25,6 +32,34 @@ pub struct Meaning {
     pub uses: Vec<Use>,
     /// How many values a row has.
     pub values: usize,
+}
+
+/// Gives the columns of these names a meaning, or says why it can't.
+pub type Naming = Box<dyn FnMut(&[String]) -> Result<Meaning, String> + Send>;
+
+/// What a decoder found next; the numbers are its `values()`, the names its `names()`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step {
+    /// The columns' names.
+    Columns {
+        /// They came before: the device begins again.
+        again: bool,
+    },
+    /// A row.
+    Sample(Sample),
+    /// A row that is spoilt, or a message between rows.
+    Spoilt(Spoil),
+}
+
+/// A row as its device numbers it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// The device's time in its own unit, as it was written; NaN where the row has none.
+    pub time: f64,
+    /// The device's counter, as it was written.
+    pub counter: Option<u64>,
+    /// Whether the LED was on; none where the row does not say.
+    pub lit: Option<bool>,
 }
 
 /// A row of a stream.

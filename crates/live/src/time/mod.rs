@@ -1,0 +1,16 @@
+//! A device's clock unwrapped, its rows counted, and its clock tied to the host's.
+//!
+//! In: rows as their device numbers them, and when they came. Out: seconds that ascend, what was lost, came twice or
+//! late, and where a recording begins; the line between both clocks with its drift.
+
+mod counter;
+mod envelope;
+mod period;
+mod sequence;
+mod unwrap;
+
+pub use counter::{Count, Counter};
+pub use envelope::{ClockFit, Envelope};
+pub use period::Period;
+pub use sequence::{RowCounts, Sequence, Verdict};
+pub use unwrap::{Reading, Unwrap};
