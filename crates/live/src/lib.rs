@@ -8,5 +8,6 @@
 //! flexion. What is not known is NaN or `None`, never zero. What is done for every sample allocates nothing.
 
 pub mod latency;
+pub mod source;
 pub mod time;
 pub mod wire;

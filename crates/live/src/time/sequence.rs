@@ -166,13 +166,12 @@ impl Sequence {
         });
         let away = std::mem::take(&mut self.away);
         let elsewhere = |step_s: f64, host_s: f64| (step_s - host_s).abs() > AWAY_S + AWAY_PART * host_s;
-        let restarted = away
-            && match (device_s, step_s, host_s) {
-                (Device::At(_), Some(step_s), Some(host_s)) => elsewhere(step_s, host_s),
-                (Device::Back { .. }, ..) => true,
-                _ => false,
-            };
-        if restarted || self.is_set_back(device_s) {
+        let restarted = match (device_s, step_s, host_s) {
+            (Device::At(_), Some(step_s), Some(host_s)) => away && elsewhere(step_s, host_s),
+            (Device::Back { .. }, ..) => self.begins,
+            _ => false,
+        };
+        if restarted || self.is_set_back(device_s, sample.counter.is_some()) {
             return self.set_back(sample, host_ns, host_s);
         }
         let lost = match self.count(sample, device_s, step_s.or(host_s)) {
@@ -192,9 +191,14 @@ impl Sequence {
     }
 
     /// Whether the clock fell back by more than a row that is late explains.
-    fn is_set_back(&self, device_s: Device) -> bool {
+    fn is_set_back(&self, device_s: Device, counted: bool) -> bool {
         let Device::Back { by_s } = device_s else { return false };
-        let most_s = self.period_s().map_or(0.0, |period_s| period_s * f64::from(LATE_ROWS));
+        let most_s = match self.period_s() {
+            Some(period_s) => period_s * f64::from(LATE_ROWS),
+            // The counter knows.
+            None if counted => f64::INFINITY,
+            None => 0.0,
+        };
         by_s > most_s || self.late_run >= LATE_ROWS
     }
 
@@ -210,6 +214,7 @@ impl Sequence {
         let still = back || self.clock.is_some() && step_s.is_some_and(|step_s| step_s <= 0.0);
         match self.counter.read(count, if back { Some(0.0) } else { rows }, still) {
             Count::Next { .. } if back => Err(Count::SetBack),
+            Count::Again | Count::Late if self.begins => Err(Count::SetBack),
             Count::Next { lost } => Ok(lost),
             other => Err(other),
         }
@@ -285,7 +290,9 @@ enum Device {
     /// By the device's clock, seconds.
     At(f64),
     /// Before the latest.
-    Back { by_s: f64 },
+    Back {
+        by_s: f64,
+    },
     Unknown,
 }
 

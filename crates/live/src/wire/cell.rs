@@ -26,9 +26,21 @@ pub fn led(cell: &[u8]) -> Result<Option<bool>, NeitherOnNorOff> {
         return Ok(None);
     }
     // `1.000` of programs that write all columns alike.
-    match plain(cell).or_else(|| with_decimal_comma(cell)) {
-        Some(1.0) => Ok(Some(true)),
-        Some(0.0) => Ok(Some(false)),
+    plain(cell)
+        .or_else(|| with_decimal_comma(cell))
+        .filter(|number| !number.is_nan())
+        .map_or(Err(NeitherOnNorOff), led_of)
+}
+
+/// Whether the LED was on by a number; none where it is NaN.
+///
+/// # Errors
+/// The number is neither 1 nor 0.
+pub fn led_of(number: f64) -> Result<Option<bool>, NeitherOnNorOff> {
+    match number {
+        1.0 => Ok(Some(true)),
+        0.0 => Ok(Some(false)),
+        number if number.is_nan() => Ok(None),
         _ => Err(NeitherOnNorOff),
     }
 }

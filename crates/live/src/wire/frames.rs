@@ -122,6 +122,7 @@ impl Frames {
     pub fn next(&mut self, bytes: &mut &[u8]) -> Result<Option<Step>, WireFault> {
         if let Some(mut naming) = self.naming.take() {
             self.meaning = naming(&self.names)
+                .and_then(|meaning| meaning.fitting(&self.names))
                 .map_err(|why| WireFault::Naming { line: 0, names: self.names.join(","), why })?;
             self.values = vec![f64::NAN; self.meaning.values];
             return Ok(Some(Step::Columns { again: false }));

@@ -11,7 +11,7 @@ mod lines;
 mod row;
 mod spoilt;
 
-pub use cell::{is_missing, led};
+pub use cell::{is_missing, led, led_of};
 pub use checksum::{Checksum, crc16, xor8};
 pub use fault::WireFault;
 pub use frames::{FRAME_NAMES, Frame, Frames, WIRE_BYTES};

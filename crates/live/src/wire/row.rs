@@ -34,6 +34,20 @@ pub struct Meaning {
     pub values: usize,
 }
 
+impl Meaning {
+    /// This meaning, if it is one of columns of these names.
+    ///
+    /// # Errors
+    /// It has another number of columns, or values without a place.
+    pub(crate) fn fitting(self, names: &[String]) -> Result<Self, String> {
+        let placed = |one: &Use| !matches!(one, Use::Value { at, .. } if *at >= self.values);
+        if self.uses.len() == names.len() && self.uses.iter().all(placed) {
+            return Ok(self);
+        }
+        Err(format!("{} columns were given {} uses", names.len(), self.uses.len()))
+    }
+}
+
 /// Gives the columns of these names a meaning, or says why it can't.
 pub type Naming = Box<dyn FnMut(&[String]) -> Result<Meaning, String> + Send>;
 

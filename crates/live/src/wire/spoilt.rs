@@ -27,15 +27,8 @@ pub enum Spoil {
 
 impl Spoil {
     /// Every kind.
-    pub const ALL: [Self; 7] = [
-        Self::BeforeNames,
-        Self::Cells,
-        Self::Unreadable,
-        Self::Checksum,
-        Self::Unchecked,
-        Self::TooLong,
-        Self::Frame,
-    ];
+    pub const ALL: [Self; 7] =
+        [Self::BeforeNames, Self::Cells, Self::Unreadable, Self::Checksum, Self::Unchecked, Self::TooLong, Self::Frame];
 
     /// What is wrong, in words that follow "line 7".
     #[must_use]
@@ -91,7 +84,7 @@ impl Tally {
     }
 
     /// Counts a row; its text is made only for the first of its kind.
-    pub(in crate::wire) fn add(&mut self, kind: Spoil, line: u64, text: impl FnOnce() -> String) {
+    pub(crate) fn add(&mut self, kind: Spoil, line: u64, text: impl FnOnce() -> String) {
         match self.kinds.iter_mut().find(|rows| rows.kind == kind) {
             Some(rows) => rows.count += 1,
             None => self.kinds.push(SpoiltRows { kind, count: 1, line, text: text() }),

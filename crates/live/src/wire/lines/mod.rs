@@ -152,10 +152,10 @@ impl Lines {
         }
     }
 
-    /// Why there are no names yet though nothing more comes; none where there are.
+    /// Whether what came so far is no text, rather than messages before the names.
     #[must_use]
-    pub fn nameless(&mut self) -> Option<WireFault> {
-        self.opening.as_mut().map(Opening::fault)
+    pub fn garbled(&self) -> Option<WireFault> {
+        self.opening.as_ref().and_then(Opening::garbled)
     }
 
     /// Forgets half a line: what comes next comes from another connection, `within` a line where its beginning may be

@@ -87,9 +87,10 @@ impl Opening {
         self.first.extend_from_slice(&bytes[..kept]);
         self.bytes += bytes.len() as u64;
         let control = |b: u8| b == 0x7f || b < 0x20 && !matches!(b, b'\t' | b'\n' | b'\r' | 0x1b);
-        let odd: usize = bytes.utf8_chunks().map(|chunk| {
-            chunk.invalid().len() + chunk.valid().bytes().filter(|&b| control(b)).count()
-        }).sum();
+        let odd: usize = bytes
+            .utf8_chunks()
+            .map(|chunk| chunk.invalid().len() + chunk.valid().bytes().filter(|&b| control(b)).count())
+            .sum();
         self.garbled += odd as u64;
         if self.is_garbled(GARBLED_BYTES) { Err(self.garbled_fault()) } else { Ok(()) }
     }
@@ -102,10 +103,15 @@ impl Opening {
         WireFault::Garbled { text: shown(&self.first) }
     }
 
-    /// Why there are no names yet, where the stream ended or went silent.
+    /// That what came is no text, where nothing more comes.
+    pub(super) fn garbled(&self) -> Option<WireFault> {
+        self.is_garbled(GARBLED_BYTES_AT_END).then(|| self.garbled_fault())
+    }
+
+    /// Why there are no names at the end of the stream.
     pub(super) fn fault(&mut self) -> WireFault {
-        if self.is_garbled(GARBLED_BYTES_AT_END) {
-            return self.garbled_fault();
+        if let Some(fault) = self.garbled() {
+            return fault;
         }
         if let Some(refused) = self.refused.take() {
             return refused.fault;
@@ -162,6 +168,7 @@ impl Opening {
         };
         let is_row = !Cells::new(line, separator).all(|cell| is_name(&String::from_utf8_lossy(cell)));
         let meaning = (self.naming)(&names)
+            .and_then(|meaning| meaning.fitting(&names))
             .map_err(|why| WireFault::Naming { line: 0, names: names.join(","), why })?;
         Ok(Some(Header { names, separator, meaning, is_row }))
     }
@@ -173,7 +180,7 @@ impl Opening {
         number: u64,
         is_row: bool,
     ) -> Result<Option<Header>, WireFault> {
-        match (self.naming)(&names) {
+        match (self.naming)(&names).and_then(|meaning| meaning.fitting(&names)) {
             Ok(meaning) => Ok(Some(Header { names, separator, meaning, is_row })),
             Err(why) => {
                 let fault = WireFault::Naming { line: number, names: names.join(","), why };
@@ -216,7 +223,11 @@ impl Opening {
                 return Err(WireFault::NoNames { line: number, text: self.sample.1.clone() });
             }
         } else if self.strict {
-            return Err(if self.is_garbled(1) { self.garbled_fault() } else { WireFault::NoNames { line: number, text: shown(line) } });
+            return Err(if self.is_garbled(1) {
+                self.garbled_fault()
+            } else {
+                WireFault::NoNames { line: number, text: shown(line) }
+            });
         }
         Ok(None)
     }

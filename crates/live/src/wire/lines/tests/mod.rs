@@ -80,7 +80,8 @@ fn lines_say_what_their_columns_are() {
 fn names_may_be_given_beforehand() {
     let columns = Some(["time_s", "P1"].map(str::to_owned).into());
     for (text, again) in [("1,2\n3,4", 0), ("time,light\n1,2\n3,4\n", 0), ("1\t2\na\tb\n3\t4\n", 1)] {
-        let found = steps(&mut lines(LineOptions { columns: columns.clone(), ..Default::default() }), text.as_bytes(), &[]);
+        let found =
+            steps(&mut lines(LineOptions { columns: columns.clone(), ..Default::default() }), text.as_bytes(), &[]);
         let mut found = found.unwrap();
         assert_eq!(found.iter().filter(|step| step.starts_with("again")).count(), again);
         found.retain(|step| !step.starts_with("again"));
