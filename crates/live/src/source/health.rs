@@ -9,7 +9,7 @@ const SILENCE_NS: u64 = 50_000_000;
 /// So many periods without a row are a stall where they are longer.
 const SILENT_PERIODS: f64 = 3.0;
 
-/// A stream without any row is stalled after this, nanoseconds.
+/// A stream without any row, or whose period is not known yet, is stalled after this, nanoseconds.
 pub(in crate::source) const FIRST_ROW_NS: u64 = 1_000_000_000;
 
 /// Rows are counted over so long, nanoseconds.
@@ -130,11 +130,10 @@ impl Health {
     }
 
     fn silence_ns(&self, period_s: Option<f64>) -> u64 {
-        if !self.any {
-            return FIRST_ROW_NS;
+        match period_s.filter(|_| self.any) {
+            Some(period_s) => SILENCE_NS.max((SILENT_PERIODS * period_s * 1e9) as u64),
+            None => FIRST_ROW_NS,
         }
-        let periods_ns = period_s.map_or(0.0, |period_s| SILENT_PERIODS * period_s * 1e9);
-        SILENCE_NS.max(periods_ns as u64)
     }
 
     /// What silence or a lack of rows has changed; `clocked` where the period is the device's own.

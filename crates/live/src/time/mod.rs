@@ -7,10 +7,12 @@ mod counter;
 mod envelope;
 mod period;
 mod sequence;
+#[cfg(test)]
+mod tests;
 mod unwrap;
 
 pub use counter::{Count, Counter};
 pub use envelope::{ClockFit, Envelope};
 pub use period::Period;
-pub use sequence::{RowCounts, Sequence, Verdict};
+pub use sequence::{Link, RowCounts, Sequence, Verdict};
 pub use unwrap::{Reading, Unwrap};

@@ -20,8 +20,7 @@ impl Default for Period {
 impl Period {
     /// Adds a step, seconds; one that is not positive says nothing.
     pub fn push(&mut self, step_s: f64) {
-        // Not `<=`: NaN says nothing either.
-        if !(step_s > 0.0) {
+        if step_s.is_nan() || step_s <= 0.0 {
             return;
         }
         self.steps_s[self.filled] = step_s;

@@ -1,7 +1,11 @@
 //! Rows as their device numbers them to rows of one stream.
 //!
-//! In: samples and when they came. Out: seconds that never descend, lost rows, and where a recording begins. A row that
-//! comes twice or late is dropped and counted: what was decided already is not decided again. Nothing is interpolated.
+//! In: samples and when they came. Out: seconds that never descend, lost rows, and where a recording begins. A row
+//! that comes twice or late is dropped and counted: what was decided already is not decided again. Nothing is
+//! interpolated.
+//!
+//! A clock that leaps, on a link that may damage rows, is believed when a second row agrees with it; the first is
+//! dropped as doubtful.
 
 use crate::time::counter::{Count, Counter};
 use crate::time::period::Period;
@@ -19,6 +23,10 @@ const LOST_PERIODS: f64 = 1.5;
 /// seconds and as a part of the time that passed (*assumed*: quartz is a hundred times better).
 const AWAY_S: f64 = 10.0;
 const AWAY_PART: f64 = 0.01;
+
+/// A device's clock that goes on by this and twice what the host saw pass, or more, leaps, seconds (*assumed*: more
+/// than a machine holds rows back).
+const LEAP_S: f64 = 10.0;
 
 /// Rows without a clock come in heaps; only over so many seconds their arrival says how many there should be.
 const HEAP_S: f64 = 1.0;
@@ -39,6 +47,19 @@ pub enum Verdict {
     Duplicate,
     /// Rows after it came already.
     Late,
+    /// Its time does not fit to the rows before it, and may be damaged.
+    Doubtful,
+}
+
+/// Where rows come from, and what is therefore known of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Link {
+    /// A recording, whose rows come when they are asked for.
+    Recording,
+    /// A program on this machine: rows come live, and whole.
+    Pipe,
+    /// A device: rows come live, and may be damaged.
+    Device,
 }
 
 /// Rows counted.
@@ -54,6 +75,8 @@ pub struct RowCounts {
     pub duplicates: u64,
     /// Rows that came behind later ones and were dropped.
     pub disorder: u64,
+    /// Rows that were dropped since their time did not fit to those before.
+    pub doubtful: u64,
     /// How often the device's clock or counter began again.
     pub set_back: u64,
     /// How often its clock reached its last value and went on.
@@ -67,7 +90,9 @@ pub struct Sequence {
     clock: Option<(Unwrap, f64)>,
     counter: Counter,
     counted: bool,
-    live: bool,
+    link: Link,
+    /// A stamp that was not believed, and when it came.
+    doubt: Option<(f64, u64)>,
     period: Period,
     /// What is added to the device's seconds since its clock was set.
     shift_s: f64,
@@ -88,10 +113,9 @@ struct Last {
 }
 
 impl Sequence {
-    /// Rows whose columns have a meaning; `live` where the host's clock says when they came, and `counter_bits` where
-    /// the counter's width is known.
+    /// Rows whose columns have a meaning, and `counter_bits` where the counter's width is known.
     #[must_use]
-    pub fn new(meaning: &Meaning, live: bool, counter_bits: Option<u32>) -> Self {
+    pub fn new(meaning: &Meaning, link: Link, counter_bits: Option<u32>) -> Self {
         let clock = meaning.uses.iter().find_map(|one| match one {
             Use::Time { per_second } => Some((Unwrap::new(*per_second), *per_second)),
             _ => None,
@@ -100,7 +124,8 @@ impl Sequence {
             clock,
             counter: Counter::of_bits(counter_bits),
             counted: meaning.uses.contains(&Use::Counter),
-            live,
+            link,
+            doubt: None,
             period: Period::default(),
             shift_s: 0.0,
             last: None,
@@ -143,14 +168,19 @@ impl Sequence {
     /// The stream's time now: the latest row's, and of live streams what the host saw pass since; NaN before any.
     #[must_use]
     pub fn now_s(&self, now_ns: u64) -> f64 {
-        let since_s = |last: &Last| if self.live { seconds(now_ns.saturating_sub(last.host_ns)) } else { 0.0 };
+        let since_s = |last: &Last| if self.is_live() { seconds(now_ns.saturating_sub(last.host_ns)) } else { 0.0 };
         self.last.as_ref().map_or(f64::NAN, |last| last.time_s + since_s(last))
+    }
+
+    fn is_live(&self) -> bool {
+        self.link != Link::Recording
     }
 
     /// Takes a sample that came at `host_ns`.
     pub fn take(&mut self, sample: &Sample, host_ns: u64) -> Verdict {
-        let host_s = self.last.filter(|_| self.live).map(|last| seconds(host_ns.saturating_sub(last.host_ns)));
+        let host_s = self.last.filter(|_| self.is_live()).map(|last| seconds(host_ns.saturating_sub(last.host_ns)));
         let expected = Expected { host_s, period_s: self.period_s() };
+        let before = self.clock.clone();
         let device_s = match &mut self.clock {
             None => Device::Host(seconds(host_ns)),
             Some(_) if sample.time.is_nan() => Device::Unknown,
@@ -167,11 +197,18 @@ impl Sequence {
         let away = std::mem::take(&mut self.away);
         let elsewhere = |step_s: f64, host_s: f64| (step_s - host_s).abs() > AWAY_S + AWAY_PART * host_s;
         let restarted = match (device_s, step_s, host_s) {
-            (Device::At(_), Some(step_s), Some(host_s)) => away && elsewhere(step_s, host_s),
+            (Device::At(_), Some(step_s), Some(host_s)) => {
+                let leaps = self.link == Link::Device && self.clock.is_some() && step_s > LEAP_S + 2.0 * host_s;
+                leaps || away && elsewhere(step_s, host_s)
+            }
             (Device::Back { .. }, ..) => self.begins,
             _ => false,
         };
         if restarted || self.is_set_back(device_s, sample.counter.is_some()) {
+            if self.is_doubtful(sample.time, host_ns) {
+                self.clock = before;
+                return Verdict::Doubtful;
+            }
             return self.set_back(sample, host_ns, host_s);
         }
         let lost = match self.count(sample, device_s, step_s.or(host_s)) {
@@ -188,6 +225,25 @@ impl Sequence {
             }
         };
         self.on(device_s, step_s, lost, host_ns)
+    }
+
+    /// Whether a stamp that does not fit to those before it is not believed yet; it is where a recording begins, and
+    /// where the one before it fitted as little and both fit to each other.
+    fn is_doubtful(&mut self, stamp: f64, host_ns: u64) -> bool {
+        if self.link != Link::Device || self.begins {
+            return false;
+        }
+        let Some((_, per_second)) = &self.clock else { return false };
+        let step = |(before, before_ns): (f64, u64)| {
+            let host_s = seconds(host_ns.saturating_sub(before_ns));
+            ((stamp - before) / per_second, 2.0 * host_s + f64::from(LATE_ROWS) * self.period_s().unwrap_or(0.0))
+        };
+        if self.doubt.map(step).is_some_and(|(step_s, most_s)| step_s > 0.0 && step_s <= most_s) {
+            return false;
+        }
+        self.doubt = Some((stamp, host_ns));
+        self.counts.doubtful += 1;
+        true
     }
 
     /// Whether the clock fell back by more than a row that is late explains.
@@ -244,6 +300,7 @@ impl Sequence {
     fn on(&mut self, device_s: Device, step_s: Option<f64>, lost: u64, host_ns: u64) -> Verdict {
         let begins = std::mem::take(&mut self.begins);
         self.late_run = 0;
+        self.doubt = None;
         self.counts.rows += 1;
         self.counts.lost += lost;
         let time_s = match device_s {

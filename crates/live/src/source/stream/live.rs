@@ -11,7 +11,7 @@ use crate::source::health::{Condition, FIRST_ROW_NS};
 use crate::source::port::{
     Connector, Port, Received, accept, bind_udp, connect_tcp, listen, open_serial, the_only_port,
 };
-use crate::time::Verdict;
+use crate::time::{Link, Verdict};
 use crate::wire::Row;
 
 /// The most bytes that are read at a time, and the longest datagram.
@@ -81,6 +81,10 @@ impl Live {
 
     pub(super) fn is_open(&self) -> bool {
         self.port.is_some()
+    }
+
+    pub(super) fn link(&self) -> Link {
+        if matches!(self.port, Some(Port::Stdin)) { Link::Pipe } else { Link::Device }
     }
 
     pub(super) fn fd(&self) -> Option<BorrowedFd<'_>> {

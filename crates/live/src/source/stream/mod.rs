@@ -16,7 +16,7 @@ use crate::source::decoder::{Decoder, Rows, Table};
 use crate::source::fault::SourceFault;
 use crate::source::health::{Condition, Health, State};
 use crate::source::play::{Bytes, Play};
-use crate::time::{ClockFit, Envelope, Sequence};
+use crate::time::{ClockFit, Envelope, Link, Sequence};
 use crate::wire::{Frames, LineOptions, Lines, Meaning, Naming, Row, Sample, Spoil, SpoiltRows, Step, WireFault};
 use live::Live;
 
@@ -284,10 +284,13 @@ impl Stream {
             sequence.begin();
             return Ok(());
         }
-        let live = self.is_live();
+        let link = match &self.feed {
+            Feed::Play(_) => Link::Recording,
+            Feed::Live(live) => live.link(),
+        };
         let bits = (self.form == Some(Form::Frames)).then_some(FRAME_COUNTER_BITS);
-        let sequence = Sequence::new(self.decoder.meaning(), live, bits);
-        if !live && !sequence.has_clock() {
+        let sequence = Sequence::new(self.decoder.meaning(), link, bits);
+        if link == Link::Recording && !sequence.has_clock() {
             let what = "has no column of time, by which it is played; name one time_s".to_owned();
             return Err(SourceFault::Open { source_name: self.name.clone(), what });
         }

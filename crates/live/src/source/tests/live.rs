@@ -164,7 +164,7 @@ fn frames_come_over_a_serial_port() {
         photodiodes: [n, 0, 1000, 4, 5, 6, 7, 65_535],
         time_us: u32::from(n) * 1000,
         counter: 65_530_u16.wrapping_add(n),
-        lit: n % 2 == 0,
+        lit: n.is_multiple_of(2),
     };
     // We come in the middle of one.
     send(&plugged, &frame(0).encoded()[9..]);

@@ -1,5 +1,6 @@
 //! Streams opened, played, lost and found again.
 
+mod firmware;
 mod live;
 mod played;
 

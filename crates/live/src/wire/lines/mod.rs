@@ -1,9 +1,9 @@
 //! Lines of text to rows.
 //!
 //! In: bytes in pieces of any size. Out: the names of the columns, then a row for each line. Cells are separated by
-//! tabs, `;`, `,` or space, found from the first line, and may be in double quotes; lines end in LF or CR LF; empty ones
-//! and those that begin with `#` are passed over. Only columns in use are read. Once a line had a [`Checksum`], each row
-//! has to have one. Nothing is allocated for a row.
+//! tabs, `;`, `,` or space, found from the first line, and may be in double quotes; lines end in LF or CR LF; empty
+//! ones and those that begin with `#` are passed over. Only columns in use are read. Once a line had a [`Checksum`],
+//! each row has to have one. Nothing is allocated for a row.
 
 mod cells;
 mod opening;

@@ -1,5 +1,7 @@
 //! Lines decoded: names, cells, checksums, what is spoilt.
 
+mod damage;
+
 use super::*;
 use crate::wire::checksum::{crc16, xor8};
 
@@ -64,7 +66,7 @@ fn lines_say_what_their_columns_are() {
     let rows = ["time_s|n|led|P1|P2|note", "0.5 Some(3) Some(true) [1.25, NaN]", "1 None None [-0.0, 2.0]"];
     for text in [
         "time_s,n,led,P1,P2,note\n0.5,3,1,1.25,,x\n1,,,-0,2,\n",
-        "\u{feff}# made by hand\r\n\r\n\"time_s\", n,led,P1,P2,note\r\n0.5,3,on,\"1.25\",nan,\"a,b\"\r\n#\r\n1,,NA,-0,2.0,",
+        "\u{feff}# by hand\r\n\r\n\"time_s\", n,led,P1,P2,note\r\n0.5,3,on,\"1.25\",nan,\"a,b\"\r\n#\r\n1,,NA,-0,2.0,",
         "time_s\tn\tled\tP1\tP2\tnote\n0.5\t3\ttrue\t1.25\t\t\n1\t\t\t-0\t2\t\n",
         "sep=;\ntime_s;n;led;P1;P2;note\n0,5;3;1,0;1,25;;\n1;;;-0;2;\n",
         "time_s n  led P1 P2 note\n0.5 3.0 1 1.25 NA x\n  1 NA NA -0 2 x  \n",

@@ -1,8 +1,8 @@
 //! Frames: rows of eight photodiodes in 27 bytes.
 //!
 //! A frame holds 25 bytes, little end first: eight photodiodes in counts (u16), the device's time in microseconds
-//! (u32), a counter (u16), flags (u8, bit 0: the LED is on), and the [`crc16`] of these 23 bytes (u16). They are sent in
-//! COBS (Cheshire and Baker 1999, doi:10.1109/90.769765) and ended by a zero, so that a receiver that comes late or
+//! (u32), a counter (u16), flags (u8, bit 0: the LED is on), and the [`crc16`] of these 23 bytes (u16). They are sent
+//! in COBS (Cheshire and Baker 1999, doi:10.1109/90.769765) and ended by a zero, so that a receiver that comes late or
 //! loses bytes is in step again after the next zero.
 
 use crate::wire::checksum::crc16;
@@ -232,3 +232,6 @@ impl Frames {
         &self.tally
     }
 }
+
+#[cfg(test)]
+mod tests;
