@@ -1,6 +1,6 @@
-//! Listens to a source and says what comes: `cargo run --release -p lunula-live --example listen -- serial:auto`. What is
-//! known of the stream follows on standard error. Columns named `time_us`, `time_ms`, `time_s`, `n` and `led` are read
-//! as such, all others as numbers.
+//! Listens to a source and says what comes: `cargo run --release -p lunula-live --example listen -- serial:auto`. What
+//! is known of the stream follows on standard error. Columns named `time_us`, `time_ms`, `time_s`, `n` and `led` are
+//! read as such, all others as numbers.
 
 use std::error::Error;
 use std::io::Write;

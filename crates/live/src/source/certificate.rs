@@ -16,8 +16,8 @@ pub struct StreamCertificate {
     pub form: Option<Form>,
     /// Its columns.
     pub columns: Vec<String>,
-    /// Whose clock the rows' times are of.
-    pub times: StreamTimes,
+    /// Whose clock the rows' times are of; none where the columns never became known.
+    pub times: Option<StreamTimes>,
     /// When the host's clock was zero, seconds since 1970, as the caller gave it.
     pub host_start_unix_s: Option<f64>,
     /// Rows that came, and rows that did not.

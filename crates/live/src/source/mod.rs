@@ -21,5 +21,7 @@ pub use certificate::{StreamCertificate, StreamGap, StreamTimes};
 pub use decoder::Rows;
 pub use fault::SourceFault;
 pub use health::{Condition, State};
+#[cfg(feature = "lsl")]
+pub use port::lsl::LslOutlet;
 pub use stream::{Event, Stream, StreamOptions};
 pub use wait::{HostClock, MOST_WAITED, Ready, wait};

@@ -76,7 +76,7 @@ pub fn wait(
         }
         return Ok(ready_by_time(streams, clock.now_ns()));
     };
-    let mut fds = [const { None }; MOST_WAITED].map(|_: Option<()>| PollFd::from_borrowed_fd(first, PollFlags::IN));
+    let mut fds: [PollFd<'_>; MOST_WAITED] = std::array::from_fn(|_| PollFd::from_borrowed_fd(first, PollFlags::IN));
     places[0] = first_place;
     let mut count = 1;
     for (place, fd) in waited {
@@ -91,8 +91,10 @@ pub fn wait(
         Err(why) => return Err(why.into()),
     }
     let mut ready = ready_by_time(streams, clock.now_ns());
-    for (fd, &place) in fds[..count].iter().zip(&places).filter(|(fd, _)| !fd.revents().is_empty()) {
-        let _ = fd;
+    for (fd, place) in fds[..count].iter().zip(places) {
+        if fd.revents().is_empty() {
+            continue;
+        }
         match place.checked_sub(streams.len()) {
             None => ready.streams |= 1 << place,
             Some(other) => ready.others |= 1 << other,
@@ -105,4 +107,30 @@ fn ready_by_time(streams: &[&Stream], now_ns: u64) -> Ready {
     let due = |stream: &Stream| stream.due_ns().is_some_and(|due_ns| due_ns <= now_ns);
     let bits = streams.iter().enumerate().filter(|(_, stream)| due(stream)).map(|(at, _)| 1 << at);
     Ready { streams: bits.sum(), others: 0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+    use std::os::fd::AsFd;
+    use std::os::unix::net::UnixStream;
+
+    use super::*;
+
+    #[test]
+    fn others_wake_it_and_so_does_the_clock() {
+        let clock = HostClock::start();
+        let (ours, mut theirs) = UnixStream::pair().unwrap();
+        let (silent, _open) = UnixStream::pair().unwrap();
+        let others = [silent.as_fd(), ours.as_fd()];
+        let until_ns = clock.now_ns() + 5_000_000;
+        assert_eq!(wait(&[], &others, Some(until_ns), &clock).unwrap(), Ready::default());
+        assert!(clock.now_ns() >= until_ns);
+        theirs.write_all(b"x").unwrap();
+        let ready = wait(&[], &others, None, &clock).unwrap();
+        assert!(ready.other(1) && !ready.other(0) && !ready.stream(0) && !ready.other(99));
+        let many = [ours.as_fd(); MOST_WAITED + 1];
+        assert!(wait(&[], &many, None, &clock).is_err());
+        assert!(wait(&[], &many[1..], None, &clock).unwrap().other(MOST_WAITED - 1));
+    }
 }

@@ -185,7 +185,20 @@ fn instead(word: &str, known: &[&str]) -> String {
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
+
+    proptest! {
+        #[test]
+        fn what_is_read_is_written_so_that_it_is_read_again(
+            text in "(serial|tcp|udp|lsl|phantom|a|-)[:?&=a-z0-9./ -]{0,24}",
+        ) {
+            if let Ok(address) = text.parse::<Address>() {
+                prop_assert_eq!(address.to_string().parse::<Address>().ok(), Some(address));
+            }
+        }
+    }
 
     #[test]
     fn addresses_are_read_and_written_alike() {

@@ -1,6 +1,8 @@
 //! Ports that bytes come from as they are sent.
 
 mod connector;
+#[cfg(feature = "lsl")]
+pub(in crate::source) mod lsl;
 mod serial;
 mod socket;
 
@@ -20,6 +22,8 @@ pub(in crate::source) enum Port {
     Serial(OwnedFd),
     Tcp(TcpStream),
     Udp(UdpSocket),
+    #[cfg(feature = "lsl")]
+    Lsl(std::os::unix::net::UnixStream),
 }
 
 /// What there was to read.
@@ -38,6 +42,8 @@ impl Port {
             Self::Serial(fd) => fd.as_fd(),
             Self::Tcp(stream) => stream.as_fd(),
             Self::Udp(socket) => socket.as_fd(),
+            #[cfg(feature = "lsl")]
+            Self::Lsl(socket) => socket.as_fd(),
         }
     }
 

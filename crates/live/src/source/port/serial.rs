@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use rustix::fs::{FlockOperation, Mode, OFlags, flock, open};
 use rustix::io::Errno;
-use rustix::termios::{ControlModes, OptionalActions, isatty, tcgetattr, tcsetattr};
+use rustix::termios::{ControlModes, OptionalActions, ioctl_tiocexcl, isatty, tcgetattr, tcsetattr};
 
 use super::Port;
 
@@ -18,7 +18,9 @@ pub(in crate::source) fn open_serial(path: &Path, baud: u32) -> Result<Port, Str
     if !isatty(&fd) {
         return Err("is no serial port; play a file back by its name alone".to_owned());
     }
-    flock(&fd, FlockOperation::NonBlockingLockExclusive).map_err(|why| words(why, Path::new("/dev")))?;
+    // Two readers would each get a part of the bytes.
+    let own = flock(&fd, FlockOperation::NonBlockingLockExclusive).and_then(|()| ioctl_tiocexcl(&fd));
+    own.map_err(|why| words(why, Path::new("/dev")))?;
     let set = || {
         let mut settings = tcgetattr(&fd)?;
         settings.make_raw();
@@ -37,17 +39,14 @@ pub(in crate::source) fn open_serial(path: &Path, baud: u32) -> Result<Port, Str
 }
 
 fn words(why: Errno, dev: &Path) -> String {
+    const FORBIDDEN: &str = "is not permitted; add yourself to the group that owns it (`ls -l` shows it, often \
+                             dialout: `sudo usermod -aG dialout $USER`, then log in again), or let a udev rule do \
+                             it (TAG+=\"uaccess\")";
+    const BUSY: &str = "is busy: another program reads it, such as a serial monitor; close that";
     match why {
-        Errno::NOENT | Errno::NXIO | Errno::NODEV => {
-            format!("does not exist; {}", there_are(&ports(dev)))
-        }
-        Errno::ACCESS | Errno::PERM => "is not permitted; add yourself to the group that owns it (`ls -l` shows it, \
-                                        often dialout: `sudo usermod -aG dialout $USER`, then log in again), or let a \
-                                        udev rule do it (TAG+=\"uaccess\")"
-            .to_owned(),
-        Errno::BUSY | Errno::AGAIN => {
-            "is busy: another program reads it, such as a serial monitor; close that".to_owned()
-        }
+        Errno::NOENT | Errno::NXIO | Errno::NODEV => format!("does not exist; {}", there_are(&ports(dev))),
+        Errno::ACCESS | Errno::PERM => FORBIDDEN.to_owned(),
+        Errno::BUSY | Errno::AGAIN => BUSY.to_owned(),
         why => format!("cannot be opened ({why})"),
     }
 }

@@ -24,11 +24,13 @@ const DATAGRAMS: u32 = 64;
 pub(super) struct Live {
     port: Option<Port>,
     again: Again,
+    /// The columns' names, where the place knows them.
+    pub(super) names: Option<Vec<String>>,
     buffer: Vec<u8>,
     /// When the port was opened, nanoseconds.
     opened_ns: u64,
     /// What comes first may be the end of a row.
-    within: bool,
+    pub(super) within: bool,
 }
 
 enum Again {
@@ -67,16 +69,24 @@ impl Live {
             }
             Place::TcpListen { at, once } => (None, Again::Listen { listener: listen(at)?, once: *once }),
             Place::Udp { at } => (Some(bind_udp(at)?), Again::Never),
+            #[cfg(feature = "lsl")]
+            Place::Lsl(query) => {
+                let (port, names) = crate::source::port::lsl::open(query)?;
+                return Ok(Self { names: Some(names), ..Self::of(Some(port), Again::Never, now_ns) });
+            }
+            #[cfg(not(feature = "lsl"))]
             Place::Lsl(_) => {
-                return Err(
-                    "streams of the Lab Streaming Layer are not built in; pipe it into `-`, as with pylsl, or \
-                            build with the feature `lsl`"
-                        .to_owned(),
-                );
+                let what = "streams of the Lab Streaming Layer are not built in; pipe it into `-`, or build with the \
+                            feature `lsl`";
+                return Err(what.to_owned());
             }
             Place::File { .. } | Place::Phantom { .. } => return Err("is no port".to_owned()),
         };
-        Ok(Self { port, again, buffer: vec![0; PIECE], opened_ns: now_ns, within })
+        Ok(Self { within, ..Self::of(port, again, now_ns) })
+    }
+
+    fn of(port: Option<Port>, again: Again, now_ns: u64) -> Self {
+        Self { port, again, names: None, buffer: vec![0; PIECE], opened_ns: now_ns, within: false }
     }
 
     pub(super) fn is_open(&self) -> bool {
@@ -84,7 +94,12 @@ impl Live {
     }
 
     pub(super) fn link(&self) -> Link {
-        if matches!(self.port, Some(Port::Stdin)) { Link::Pipe } else { Link::Device }
+        match self.port {
+            Some(Port::Stdin) => Link::Pipe,
+            #[cfg(feature = "lsl")]
+            Some(Port::Lsl(_)) => Link::Pipe,
+            _ => Link::Device,
+        }
     }
 
     pub(super) fn fd(&self) -> Option<BorrowedFd<'_>> {

@@ -93,17 +93,21 @@ impl Stream {
                 Feed::Live(live.map_err(|what| SourceFault::Open { source_name: name.clone(), what })?)
             }
         };
-        let decoder = match address.form {
+        let mut decoder = match address.form {
             Form::Frames => Decoder::Frames(Box::new(Frames::new(naming, address.volts_per_count))),
             Form::Lines => {
+                let names = if let Feed::Live(live) = &feed { live.names.clone() } else { None };
                 let options = LineOptions {
-                    columns: options.columns,
+                    columns: options.columns.or(names),
                     names_first: matches!(feed, Feed::Play(_)),
                     volts_per_count: address.volts_per_count,
                 };
                 Decoder::Lines(Box::new(Lines::new(naming, options)))
             }
         };
+        if matches!(&feed, Feed::Live(live) if live.within) {
+            decoder.cut(true);
+        }
         Ok(Self::of(name, Some(address.form), options.host_start_unix_s, feed, decoder, now_ns))
     }
 
@@ -261,10 +265,10 @@ impl Stream {
             source: self.name.clone(),
             form: self.form,
             columns: self.decoder.names().to_vec(),
-            times: match sequence {
-                Some(sequence) if !sequence.has_clock() => StreamTimes::Arrival,
-                _ => StreamTimes::Device,
-            },
+            times: sequence.map(|sequence| match sequence.has_clock() {
+                true => StreamTimes::Device,
+                false => StreamTimes::Arrival,
+            }),
             host_start_unix_s: self.host_start_unix_s,
             counts: sequence.map(Sequence::counts).unwrap_or_default(),
             rate_hz: self.period_s().map(f64::recip),

@@ -153,6 +153,22 @@ fn a_serial_port_is_unplugged_and_plugged_in_again() {
 }
 
 #[test]
+fn half_a_row_that_we_come_into_is_no_row() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("port");
+    let plugged = device(&path);
+    let clock = HostClock::start();
+    let address: Address = format!("serial:{}", path.display()).parse().unwrap();
+    let columns = Some(["time_us", "P1"].map(str::to_owned).into());
+    let options = StreamOptions { columns, ..StreamOptions::default() };
+    let mut stream = Stream::open(&address, options, naming(), clock.now_ns()).unwrap();
+    let mut log = Log::default();
+    send(&plugged, b"00,1\r\n2000,2\r\n3000,3\r\n");
+    rows(&mut stream, &clock, &mut log, 2);
+    assert_eq!((log.rows[0].time_s, log.rows[0].begins), (0.002, true));
+}
+
+#[test]
 fn frames_come_over_a_serial_port() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("port");

@@ -2,6 +2,8 @@
 
 mod firmware;
 mod live;
+#[cfg(feature = "lsl")]
+mod lsl;
 mod played;
 
 use std::time::Duration;

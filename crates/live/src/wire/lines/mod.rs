@@ -272,7 +272,7 @@ impl Lines {
             self.line -= 1;
             return Ok(Found::NamesBefore);
         }
-        self.checksum = checksum;
+        (self.checksum, self.seam) = (checksum, false);
         Ok(Found::Step(Step::Columns { again: false }))
     }
 
