@@ -4,7 +4,7 @@ use std::net::SocketAddr;
 use std::path::PathBuf;
 
 use clap::Args;
-use lunula_live::source::Source;
+use lunula_live::source::Address;
 use lunula_predictor::GateFault;
 
 use crate::job::number;
@@ -16,8 +16,8 @@ use crate::predictor::GateChoices;
 pub struct StreamOptions {
     /// Where samples come from: serial:/dev/ttyACM0?baud=921600, serial:auto, tcp:HOST:PORT, tcp-listen:ADDRESS:PORT,
     /// udp:PORT, - (standard input), FILE?rate=1|max, phantom:contacts?seed=1
-    #[arg(long, value_name = "SOURCE", value_parser = str::parse::<Source>)]
-    pub source: Source,
+    #[arg(long, value_name = "SOURCE", value_parser = str::parse::<Address>)]
+    pub source: Address,
     /// What a step of the converter is, where the device sends counts: 10/65536 of 16 bits over 10 V
     #[arg(long, value_name = "VOLTS", value_parser = volts)]
     pub volts_per_count: Option<f64>,

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use lunula::align::Posture;
 use lunula::job::{Keys, Made, Maker, Work};
-use lunula::live::streams::wire::{Line, LineOptions, Lines, Meaning, Use};
+use lunula::live::streams::wire::{LineOptions, Lines, Meaning, Naming, Step, Use};
 use lunula::log::{AmbientOptions, Columns, Log, samples};
 use lunula::photo::outline::{self, Axis, Drawn, find_axes, outlines_from_mask};
 use lunula::photo::{NailFrame, Normalization, Photograph, Resample, join, normalize};
@@ -215,17 +215,21 @@ fn answer(predictor: Predictor, bytes: &[u8]) {
         let Ok(mut answering) = Answering::new(vec![predictor.clone()], gate, intervals) else { continue };
         let inputs = answering.inputs().to_vec();
         let mut out = vec![f64::NAN; answering.columns().len()];
-        let mut naming = |names: &[String]| {
-            let place = |name: &String| inputs.iter().position(|input| input == name).map_or(Use::None, Use::Value);
-            let uses =
-                names.iter().map(|name| if name == "time_s" { Use::Time { per_second: 1.0 } } else { place(name) });
-            Ok(Meaning { uses: uses.collect(), values: inputs.len(), texts: 0 })
-        };
-        let mut lines = Lines::new(LineOptions::default());
+        let known = inputs.clone();
+        let naming: Naming = Box::new(move |names| {
+            let place = |name: &String| known.iter().position(|input| input == name);
+            let uses = names.iter().map(|name| match place(name) {
+                Some(at) => Use::Value { at, scaled: false },
+                None if name == "time_s" => Use::Time { per_second: 1.0 },
+                None => Use::None,
+            });
+            Ok(Meaning { uses: uses.collect(), values: known.len(), texts: 0 })
+        });
+        let mut lines = Lines::new(naming, LineOptions::default());
         let mut bytes = bytes;
-        while let Ok(Some(line)) = lines.next(&mut bytes, &mut naming) {
-            if let Line::Cells(cells) = line {
-                answering.answer(cells.time, false, cells.values, &mut out);
+        while let Ok(Some(step)) = lines.next(&mut bytes, 0) {
+            if let Step::Sample(sample) = step {
+                answering.answer(sample.time, false, lines.values(), &mut out);
             }
         }
     }

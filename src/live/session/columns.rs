@@ -71,7 +71,7 @@ impl StreamColumns {
                     let at = columns.meaning.values;
                     columns.meaning.values += 1;
                     // Counts are those of a converter: photodiodes.
-                    if of_log && is_photodiode(name) { Use::Counts(at) } else { Use::Value(at) }
+                    Use::Value { at, scaled: of_log && is_photodiode(name) }
                 }
                 _ => {
                     columns.passed_over.push(name.clone());

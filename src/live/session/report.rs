@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use lunula_live::latency::Percentiles;
+use lunula_live::latency::LatencySummary;
 use lunula_live::source::StreamCertificate;
 use serde::Serialize;
 
@@ -56,13 +56,13 @@ pub struct SwitchCounts {
     pub let_go: u64,
 }
 
-/// How long a row took on its way, microseconds; none where it can't be known.
+/// How long a row took on its way; none where it can't be known.
 #[derive(Debug, Clone, Serialize)]
 pub struct Latency {
-    /// From the device's time, by the earliest that rows ever came, to the host: what the link adds at times.
-    pub arrival_us: Option<Percentiles>,
+    /// Later than the fastest rows came, by the device's clock: what the link adds at times.
+    pub arrival: Option<LatencySummary>,
     /// From the row's last byte in our hands to the end of what follows from it.
-    pub work_us: Option<Percentiles>,
-    /// How late the host wakes this program up: what the machine adds.
-    pub wake_up_us: Option<Percentiles>,
+    pub work: Option<LatencySummary>,
+    /// How late the host wakes this program up; of recordings, how late rows were played.
+    pub wake_up: Option<LatencySummary>,
 }

@@ -1,19 +1,20 @@
 //! The loop of a session, and its entries: `live`, `record`, and recordings read row by row.
 
-use std::cell::RefCell;
 use std::fs::File;
 use std::io::BufWriter;
 use std::net::TcpListener;
-use std::os::fd::{BorrowedFd, OwnedFd};
+use std::os::fd::OwnedFd;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
-use lunula_live::latency::Latencies;
+use lunula_live::latency::Latency as Times;
 use lunula_live::pointer::Config;
-use lunula_live::source::{Event, HostClock, Place, Source, Stream, StreamState};
+use lunula_live::source::{Address, Condition, Event, Form, HostClock, Pace, Place, SourceFault, Stream, wait};
 use lunula_live::switch::Switch;
-use lunula_live::wire::{Meaning, Row};
+use lunula_live::time::ClockFit;
+use lunula_live::wire::{Naming, Row, Spoil, SpoiltRows};
 
 use super::columns::StreamColumns;
 use super::decide::{Answers, Decide, SwitchOutput};
@@ -34,6 +35,8 @@ use crate::stages::Stages;
 
 /// The loop looks up at least so often, nanoseconds: to be stopped, to find a lost source, to let readers in.
 const TICK_NS: u64 = 100_000_000;
+/// A reader that is behind is tried again after so long, nanoseconds.
+const BEHIND_NS: u64 = 2_000_000;
 /// A stream without a sample for so long after it was opened is an alarm.
 const SILENCE_NS: u64 = 1_000_000_000;
 /// More spoilt rows than this share in so long are an alarm.
@@ -63,12 +66,12 @@ pub fn live(
     readers: Readers<'_>,
     watch: &Watch<'_>,
 ) -> Result<SessionReport, LiveError> {
-    let mut session = Session::new(&options.stream, files, readers.tell, watch)?;
     let opened = open_models(&files.models)?;
     opened.warnings.iter().for_each(|warning| (readers.tell)(&format!("warning: {warning}")));
-    session.core.warnings.extend(opened.warnings);
     let gate = options.answer.gate().map_err(|why| LiveError::Request(why.to_string()))?;
     let answering = Answering::new(opened.predictors, gate, options.answer.intervals)?;
+    let mut session = Session::new(&options.stream, files, answering.inputs().to_vec(), readers.tell, watch)?;
+    session.core.warnings.extend(opened.warnings);
     let switch = files.switch.as_deref().map(read_switch).transpose()?;
     let mouse = files.mouse.as_ref().map(|mouse| -> Result<Mouse, LiveError> {
         let config = mouse.config.as_deref().map(read_mouse).transpose()?.unwrap_or_default();
@@ -105,7 +108,6 @@ pub fn live(
         Some(out) => Some(Recording::new(&predicted_beside(out), files.replace)?),
         None => None,
     };
-    session.needs = answering.inputs().to_vec();
     session.core.asked = Some(Asked {
         answering,
         switch: switch.map(Switch::new),
@@ -131,7 +133,7 @@ pub fn record(
     if files.out.is_none() {
         return Err(LiveError::Request("--out is needed: the recording".to_owned()));
     }
-    Session::new(options, files, tell, watch)?.run("record", watch)
+    Session::new(options, files, Vec::new(), tell, watch)?.run("record", watch)
 }
 
 /// Reads a recording row by row as a session would, as fast as possible: `columns` hears what it holds, `row` each row.
@@ -149,49 +151,100 @@ pub(crate) fn each_row(
 ) -> Result<Vec<String>, LiveError> {
     let place = path.display().to_string();
     let refused = |what: String| LiveError::Source { place: place.clone(), what };
-    let source: Source = format!("{place}?rate=max").parse().map_err(refused)?;
     let options = StreamOptions {
-        source,
+        source: Address {
+            place: Place::File { path: path.to_owned(), pace: Pace::Max, looped: false },
+            form: Form::Lines,
+            volts_per_count: None,
+        },
         volts_per_count: None,
         names: None,
         keep: extra.to_vec(),
         seconds: None,
         log: log.clone(),
     };
-    let mut stream = open_stream(&options, HostClock::start())?;
-    let mut found = StreamColumns::default();
-    let mut fault = None;
-    let mut ends = false;
-    while !ends && fault.is_none() {
+    let clock = HostClock::start();
+    let found = Found::default();
+    let mut stream = open_stream(&options, found.naming(log, extra, &[]), clock.now_ns())?;
+    let mut known = StreamColumns::default();
+    let (mut fault, mut rows) = (None, 0u64);
+    while !stream.ended() && fault.is_none() {
         watch.go_on()?;
-        let mut naming = |names: &[String]| -> Result<Meaning, String> {
-            found = StreamColumns::of(names, log, extra)?;
-            columns(&found)?;
-            Ok(found.meaning.clone())
-        };
-        let mut take = |event: Event<'_>| {
-            match event {
-                Event::Row(one) => fault = row(&one).err(),
-                Event::End => ends = true,
-                _ => {}
+        let mut on = |event: Event<'_>| match event {
+            Event::Columns(_) => {
+                known = found.take().unwrap_or_default();
+                fault = columns(&known).err();
             }
-            fault.is_none()
+            Event::Row(one) if fault.is_none() => {
+                rows += 1;
+                fault = row(one).err();
+            }
+            _ => {}
         };
-        stream.poll(&mut naming, &mut take).map_err(|why| refused(why.what))?;
+        stream.poll(clock.now_ns(), &mut on).map_err(|why| source_fault(&options.source, why))?;
     }
     if let Some(what) = fault {
         return Err(refused(what));
     }
-    let mut notes = found.notes;
-    notes.extend(found.led.then(|| PRECEDING_RULE.to_owned()));
-    let certificate = stream.certificate();
-    if certificate.rows == 0 {
-        return Err(refused(stream.nothing()));
+    if rows == 0 {
+        return Err(refused("no row came".to_owned()));
     }
-    for kind in certificate.spoilt_kinds {
-        notes.push(format!("{} rows with {} are left out, first line {}", kind.rows, kind.what, kind.first_line));
-    }
+    let mut notes = known.notes;
+    notes.extend(known.led.then(|| PRECEDING_RULE.to_owned()));
+    let spoilt = stream.certificate().spoilt;
+    notes.extend(spoilt.iter().map(|rows| format!("left out: {}", spoilt_words(rows))));
     Ok(notes)
+}
+
+/// The columns of a stream, from whoever names them to whoever works with them.
+#[derive(Clone, Default)]
+struct Found(Arc<Mutex<Option<StreamColumns>>>);
+
+impl Found {
+    fn naming(&self, log: &LogReading, keep: &[String], needs: &[String]) -> Naming {
+        let (found, log, keep, needs) = (self.clone(), log.clone(), keep.to_vec(), needs.to_vec());
+        Box::new(move |names| {
+            let columns = StreamColumns::of(names, &log, &keep)?;
+            if columns.values.is_empty() {
+                return Err(format!("no column is a photodiode or a force; its columns are {}", names.join(", ")));
+            }
+            columns.check(&needs)?;
+            let meaning = columns.meaning.clone();
+            found.0.lock().unwrap_or_else(PoisonError::into_inner).replace(columns);
+            Ok(meaning)
+        })
+    }
+
+    fn take(&self) -> Option<StreamColumns> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
+    }
+}
+
+/// How a source is named in messages.
+fn named(source: &Address) -> String {
+    match &source.place {
+        Place::Stdin => "standard input".to_owned(),
+        Place::File { path, .. } => path.display().to_string(),
+        _ => source.to_string(),
+    }
+}
+
+/// Why a source gives nothing.
+pub(super) fn source_fault(source: &Address, why: SourceFault) -> LiveError {
+    let what = match why {
+        SourceFault::Open { what, .. } => what,
+        SourceFault::Wire { fault, .. } => fault.to_string(),
+        SourceFault::Read { why, .. } => format!("can't be read ({why})"),
+        SourceFault::Address { what, .. } => what,
+    };
+    LiveError::Source { place: named(source), what }
+}
+
+/// Spoilt rows of one kind, in words.
+fn spoilt_words(rows: &SpoiltRows) -> String {
+    let SpoiltRows { kind, count, line, text } = rows;
+    let others = if *count > 1 { format!(", and {} more", count - 1) } else { String::new() };
+    format!("line {line} {} (`{text}`){others}", kind.words())
 }
 
 /// Where the rows of answers are, beside the recording of samples.
@@ -223,8 +276,7 @@ struct Session<'a> {
     stream: Stream,
     clock: HostClock,
     options: &'a StreamOptions,
-    /// The photodiodes that models read.
-    needs: Vec<String>,
+    found: Found,
     listener: Option<TcpListener>,
     core: Core<'a>,
 }
@@ -242,8 +294,12 @@ struct Core<'a> {
     decide: Option<Decide>,
     warnings: Vec<String>,
     notes: Vec<String>,
-    work: Latencies,
-    wake_up: Latencies,
+    work: Times,
+    arrival: Times,
+    wake_up: Times,
+    /// The line of the fastest rows, and whether any row came.
+    clock_fit: Option<ClockFit>,
+    any: bool,
     spoilt: SpoiltShare,
     fault: Option<LiveError>,
     ends: bool,
@@ -261,6 +317,7 @@ impl<'a> Session<'a> {
     fn new(
         options: &'a StreamOptions,
         files: &'a SessionFiles,
+        needs: Vec<String>,
         tell: &'a dyn Fn(&str),
         watch: &Watch<'_>,
     ) -> Result<Self, LiveError> {
@@ -276,7 +333,9 @@ impl<'a> Session<'a> {
         Places::not_over(inputs).check(results.chain(files.events.clone()).chain(moves))?;
         let recording = files.out.as_ref().map(|out| Recording::new(out, files.replace)).transpose()?;
         let clock = HostClock::start();
-        let stream = open_stream(options, clock)?;
+        let found = Found::default();
+        let naming = found.naming(&options.log, &options.keep, &needs);
+        let stream = open_stream(options, naming, clock.now_ns())?;
         let core = Core {
             clock,
             tell,
@@ -284,19 +343,22 @@ impl<'a> Session<'a> {
             log: &options.log,
             seconds: options.seconds,
             // What comes down a pipe can wait in it.
-            waits: stream.can_wait() || options.source.place == Place::Stdin,
+            waits: !stream.is_live() || options.source.place == Place::Stdin,
             asked: None,
             recording,
             decide: None,
             warnings: Vec::new(),
             notes: Vec::new(),
-            work: Latencies::default(),
-            wake_up: Latencies::default(),
+            work: Times::default(),
+            arrival: Times::default(),
+            clock_fit: None,
+            any: false,
+            wake_up: Times::default(),
             spoilt: SpoiltShare::default(),
             fault: None,
             ends: false,
         };
-        Ok(Self { stream, clock, options, needs: Vec::new(), listener: None, core })
+        Ok(Self { stream, clock, options, found, listener: None, core })
     }
 
     fn run(mut self, job: &'static str, watch: &Watch<'_>) -> Result<SessionReport, LiveError> {
@@ -309,8 +371,8 @@ impl<'a> Session<'a> {
                 self.core.fault = polled.err();
             }
             let now_ns = self.clock.now_ns();
-            if let Some(now_s) = self.stream.now_s(now_ns) {
-                self.core.advance(now_s);
+            if self.stream.is_live() {
+                self.core.advance(self.stream.stream_now_s(now_ns));
             }
             if now_ns >= tick_ns {
                 tick_ns = now_ns + TICK_NS;
@@ -320,61 +382,48 @@ impl<'a> Session<'a> {
             if self.core.ends || self.core.fault.is_some() || self.core.nobody_hears(self.listener.is_some()) {
                 break;
             }
-            self.wait(tick_ns);
+            self.wait(tick_ns)?;
         }
         self.finish(job, start, watch)
     }
 
     /// Takes what has come.
     fn poll(&mut self) -> Result<(), LiveError> {
-        let Self { stream, options, needs, core, .. } = self;
-        let found = RefCell::new(None);
-        let mut naming = |names: &[String]| -> Result<Meaning, String> {
-            let columns = StreamColumns::of(names, &options.log, &options.keep)?;
-            if columns.values.is_empty() {
-                return Err(format!("no column is a photodiode or a force; its columns are {}", names.join(", ")));
-            }
-            columns.check(needs)?;
-            let meaning = columns.meaning.clone();
-            found.replace(Some(columns));
-            Ok(meaning)
+        let Self { stream, options, found, core, clock, .. } = self;
+        let mut on = |event: Event<'_>| match event {
+            Event::Columns(_) => core.begin(found.take().unwrap_or_default()),
+            event if core.fault.is_none() && !core.ends => core.take(event),
+            _ => {}
         };
-        let mut take = |event: Event<'_>| {
-            if matches!(event, Event::Names { again: false })
-                && let Some(columns) = found.take()
-            {
-                core.begin(columns);
-            } else {
-                core.take(event);
-            }
-            core.fault.is_none() && !core.ends
-        };
-        stream.poll(&mut naming, &mut take).map_err(|why| LiveError::Source { place: why.place, what: why.what })
+        stream.poll(clock.now_ns(), &mut on).map_err(|why| source_fault(&options.source, why))
     }
 
-    /// Waits for bytes, a deadline, or a reader.
-    fn wait(&mut self, tick_ns: u64) {
-        let watchdog_ns = self.core.due_s().and_then(|due_s| self.stream.moment_ns(due_s));
-        let until_ns = watchdog_ns.map_or(tick_ns, |due_ns| due_ns.min(tick_ns));
-        {
-            let writers = self.core.waiting();
-            self.stream.wait(until_ns, &writers);
-        }
+    /// Waits for bytes or a deadline.
+    fn wait(&mut self, tick_ns: u64) -> Result<(), LiveError> {
+        let now_ns = self.clock.now_ns();
+        let live = self.stream.is_live();
+        // A reader that is behind is looked at again soon.
+        let soon_ns = if self.core.is_behind() { now_ns + BEHIND_NS } else { tick_ns };
+        let left_s = self.core.due_s().filter(|_| live).map(|due_s| due_s - self.stream.stream_now_s(now_ns));
+        let watchdog_ns = left_s.map_or(tick_ns, |left_s| now_ns + 1 + (1e9 * left_s.clamp(0.0, 1.0)) as u64);
+        let until_ns = tick_ns.min(soon_ns).min(watchdog_ns);
+        let waited = wait(&[&self.stream], &[], Some(until_ns), &self.clock);
+        waited.map_err(|why| LiveError::Request(format!("can't wait for the stream ({why})")))?;
         // Woken by the clock: how late is the machine's own part.
         let now_ns = self.clock.now_ns();
-        if now_ns >= until_ns {
-            self.core.wake_up.record(now_ns - until_ns);
+        if live && now_ns >= until_ns {
+            self.core.wake_up.record_ns(now_ns - until_ns);
         }
+        Ok(())
     }
 
     /// What is looked at now and then.
     fn tick(&mut self, now_ns: u64, alarmed: &mut bool) {
-        if !*alarmed && self.stream.rows() == 0 && now_ns > SILENCE_NS && !self.stream.can_wait() {
+        if !*alarmed && !self.core.any && now_ns > SILENCE_NS && self.stream.is_live() {
             *alarmed = true;
-            let what =
-                format!("alarm: no sample within a second from {}: {}", self.options.source, self.stream.nothing());
-            (self.core.tell)(&what);
+            (self.core.tell)(&format!("alarm: no sample within a second from {}", named(&self.options.source)));
         }
+        self.core.clock_fit = self.stream.clock();
         self.core.look_at_spoilt(now_ns);
         let Some(listener) = &self.listener else { return };
         while let Ok((reader, from)) = listener.accept() {
@@ -388,18 +437,18 @@ impl<'a> Session<'a> {
 
     fn finish(self, job: &'static str, start: Instant, watch: &Watch<'_>) -> Result<SessionReport, LiveError> {
         let certificate = self.stream.certificate();
-        let nothing = self.stream.nothing();
-        let (arrival_us, late) = (self.stream.arrival(), self.stream.lateness());
+        let late = self.stream.lateness().and_then(Times::summary);
         let mut core = self.core;
         core.end();
-        let Core { decide, warnings, mut notes, work, wake_up, fault, files, .. } = core;
+        let Core { decide, warnings, mut notes, work, arrival, wake_up, fault, files, .. } = core;
         let Some(decide) = decide else {
-            let place = self.options.source.named();
-            return Err(fault.unwrap_or(LiveError::Source { place, what: nothing }));
+            let place = named(&self.options.source);
+            let what = "no row came, and no names of columns".to_owned();
+            return Err(fault.unwrap_or(LiveError::Source { place, what }));
         };
         let Decide { recording, answers, rows, .. } = decide;
         if rows == 0 {
-            let place = self.options.source.named();
+            let place = named(&self.options.source);
             return Err(fault.unwrap_or(LiveError::Source { place, what: "no row came".to_owned() }));
         }
         let lost_by_disk = recording.as_ref().map_or(0, Recording::lost);
@@ -415,7 +464,7 @@ impl<'a> Session<'a> {
             bending: 0,
             switch: None,
             pointer: None,
-            latency: Latency { arrival_us, work_us: work.percentiles(), wake_up_us: late.or(wake_up.percentiles()) },
+            latency: Latency { arrival: arrival.summary(), work: work.summary(), wake_up: late.or(wake_up.summary()) },
             lost_by_readers: 0,
             lost_by_disk,
             stream: certificate,
@@ -441,12 +490,15 @@ impl<'a> Session<'a> {
         if let Some(recording) = recording {
             failed.extend(recording.finish().err().map(|why| why.to_string()));
         }
-        for kind in &figures.stream.spoilt_kinds {
-            failed.push(format!(
-                "{}: {} rows with {}, first in line {}: `{}`",
-                figures.stream.source, kind.rows, kind.what, kind.first_line, kind.first
-            ));
-        }
+        let source = named(&self.options.source);
+        failed.extend(
+            figures
+                .stream
+                .spoilt
+                .iter()
+                .filter(|rows| rows.kind != Spoil::BeforeNames)
+                .map(|rows| format!("{source}: {}", spoilt_words(rows))),
+        );
         let mut report = Report { warnings, notes, failed, ..Report::new(job, watch, figures) };
         report.warnings.extend(losses(&report));
         let report = report.timed(&Stages::default(), start);
@@ -490,23 +542,28 @@ impl Core<'_> {
 
     fn take(&mut self, event: Event<'_>) {
         match event {
-            Event::Row(row) => self.row(&row),
-            Event::Spoilt(_) => self.spoilt.spoilt += 1,
+            Event::Row(row) => self.row(row),
+            Event::Spoilt { .. } => self.spoilt.spoilt += 1,
             Event::State(state) => {
-                (self.tell)(&format!("state: {}", state.word()));
-                if state == StreamState::Lost
+                (self.tell)(&format!("state: {}", state.condition.word()));
+                if matches!(state.condition, Condition::Lost | Condition::Reconnecting)
                     && let Some(decide) = &mut self.decide
                 {
                     self.fault = decide.lose(false).err();
                 }
             }
-            Event::Names { .. } => {}
+            Event::Columns(_) => {}
             Event::End => self.ends = true,
         }
     }
 
     fn row(&mut self, row: &Row<'_>) {
         self.spoilt.rows += 1;
+        self.any = true;
+        if let Some(fit) = &self.clock_fit {
+            let late_s = 1e-9 * row.host_ns as f64 - fit.host_s(row.time_s);
+            self.arrival.record_ns((1e9 * late_s.max(0.0)) as u64);
+        }
         let Some(decide) = &mut self.decide else { return };
         let counts = decide.rows == 0 && decide.answers.is_some() && decide.looks_like_counts(row, COUNT_V);
         if counts {
@@ -522,7 +579,7 @@ impl Core<'_> {
         if let (Some(seconds), Some([from_s, to_s])) = (self.seconds, decide.span_s) {
             self.ends |= to_s - from_s >= seconds;
         }
-        self.work.record(self.clock.now_ns().saturating_sub(row.host_ns));
+        self.work.record_ns(self.clock.now_ns().saturating_sub(row.host_ns));
     }
 
     fn advance(&mut self, now_s: f64) {
@@ -554,9 +611,8 @@ impl Core<'_> {
         !others && !readers.is_empty() && readers.iter().all(Pipe::is_gone)
     }
 
-    fn waiting(&self) -> Vec<BorrowedFd<'_>> {
-        let answers = self.decide.as_ref().and_then(|decide| decide.answers.as_ref());
-        answers.map_or_else(Vec::new, |answers| answers.readers.iter().filter_map(Pipe::waiting).collect())
+    fn is_behind(&mut self) -> bool {
+        self.readers().iter().any(Pipe::is_behind)
     }
 
     fn join(&mut self, reader: Pipe) {
@@ -613,14 +669,11 @@ fn answers(asked: Asked, columns: &StreamColumns, log: &LogReading, waits: bool)
 /// What has to be known of a session before its rows are used.
 fn losses(report: &SessionReport) -> Vec<String> {
     let mut warnings = Vec::new();
-    let losses = &report.stream.losses;
-    if losses.lost > 0 {
-        let how = if losses.counted { "by their counter" } else { "estimated from gaps in time" };
-        warnings.push(format!(
-            "{} rows never came ({how}, in {} places); lines of 70 bytes fill 115200 bits a second at 160 rows a second: \
-             raise the baud rate, or send frames",
-            losses.lost, losses.gaps
-        ));
+    let counts = &report.stream.counts;
+    for (lost, how) in [(counts.lost, "by their counter"), (counts.lost_by_time, "estimated from gaps in time")] {
+        if lost > 0 {
+            warnings.push(format!("{lost} rows never came ({how})"));
+        }
     }
     if report.lost_by_disk > 0 {
         warnings.push(format!("{} rows are not recorded: the disk was too slow", report.lost_by_disk));

@@ -1,35 +1,40 @@
 //! Opening what is no bytes: Parquet tables and XDF recordings as rows of a stream, generated fingers.
 
 use std::path::Path;
+use std::time::{SystemTime, UNIX_EPOCH};
 
-use lunula_live::source::{HostClock, Place, Rows, Stream, StreamOptions as WireOptions};
-use lunula_live::wire::{Meaning, Use};
+use lunula_live::source::{Place, Rows, Stream, StreamOptions as WireOptions};
+use lunula_live::wire::{Meaning, Naming, Use};
 
 use crate::live::error::LiveError;
 use crate::live::options::StreamOptions;
+use crate::live::session::run::source_fault;
 use crate::predictor::GROUPS;
 use crate::table::Table;
 
-/// Opens a session's source.
+/// Opens a session's source at `now_ns` of its clock.
 ///
 /// # Errors
 /// A source that can't be opened.
-pub(super) fn open_stream(options: &StreamOptions, clock: HostClock) -> Result<Stream, LiveError> {
-    let source = &options.source;
-    let refused = |what: String| LiveError::Source { place: source.to_string(), what };
-    let wire = WireOptions { names: options.names.clone(), volts_per_count: options.volts_per_count };
+pub(super) fn open_stream(options: &StreamOptions, naming: Naming, now_ns: u64) -> Result<Stream, LiveError> {
+    let mut source = options.source.clone();
+    source.volts_per_count = options.volts_per_count.or(source.volts_per_count);
+    let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH).ok();
+    let wire = WireOptions {
+        columns: options.names.clone(),
+        host_start_unix_s: since_1970.map(|since| since.as_secs_f64() - 1e-9 * now_ns as f64),
+    };
     match &source.place {
-        Place::File { path, .. } if is_parquet(path) => {
-            let rows = TableRows::read(path)?;
-            Ok(Stream::of_rows(source, wire, clock, Box::new(rows)))
+        Place::File { path, pace, looped } if is_parquet(path) => {
+            let rows = Box::new(TableRows::read(path)?);
+            let name = source.to_string();
+            Ok(Stream::of_rows(name, rows, (*pace, *looped), source.volts_per_count, &wire, naming))
         }
-        Place::File { path, .. } if is_xdf(path) => Err(refused(
-            "XDF recordings are not played back yet; `lunula align` and `lunula train` read them".to_owned(),
-        )),
-        _ => {
-            let opened = Stream::open(source, wire, clock);
-            opened.map_err(|why| LiveError::Source { place: why.place, what: why.what })
-        }
+        Place::File { path, .. } if is_xdf(path) => Err(LiveError::Source {
+            place: source.to_string(),
+            what: "XDF recordings are not played back yet; `lunula align` and `lunula train` read them".to_owned(),
+        }),
+        _ => Stream::open(&source, wire, naming, now_ns).map_err(|why| source_fault(&source, why)),
     }
 }
 
@@ -105,5 +110,10 @@ impl Rows for TableRows {
         }
         self.row += 1;
         Ok(true)
+    }
+
+    fn rewind(&mut self) -> Result<(), String> {
+        self.row = 0;
+        Ok(())
     }
 }

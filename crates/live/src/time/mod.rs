@@ -1,7 +1,18 @@
-//! A device's clock: unwrapped, its losses counted, tied to the host's.
+//! A device's clock unwrapped, its rows counted, and its clock tied to the host's.
+//!
+//! In: rows as their device numbers them, and when they came. Out: seconds that ascend, what was lost, came twice or
+//! late, and where a recording begins; the line between both clocks with its drift.
 
+mod counter;
 mod envelope;
-mod timeline;
+mod period;
+mod sequence;
+#[cfg(test)]
+mod tests;
+mod unwrap;
 
+pub use counter::{Count, Counter};
 pub use envelope::{ClockFit, Envelope};
-pub use timeline::{Placed, Timeline, TimelineCounts};
+pub use period::Period;
+pub use sequence::{Link, RowCounts, Sequence, Verdict};
+pub use unwrap::{Reading, Unwrap};

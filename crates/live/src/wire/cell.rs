@@ -26,11 +26,39 @@ pub fn led(cell: &[u8]) -> Result<Option<bool>, NeitherOnNorOff> {
         return Ok(None);
     }
     // `1.000` of programs that write all columns alike.
-    match std::str::from_utf8(cell).ok().and_then(|text| text.replace(',', ".").parse::<f64>().ok()) {
-        Some(1.0) => Ok(Some(true)),
-        Some(0.0) => Ok(Some(false)),
+    plain(cell)
+        .or_else(|| with_decimal_comma(cell))
+        .filter(|number| !number.is_nan())
+        .map_or(Err(NeitherOnNorOff), led_of)
+}
+
+/// Whether the LED was on by a number; none where it is NaN.
+///
+/// # Errors
+/// The number is neither 1 nor 0.
+pub fn led_of(number: f64) -> Result<Option<bool>, NeitherOnNorOff> {
+    match number {
+        1.0 => Ok(Some(true)),
+        0.0 => Ok(Some(false)),
+        number if number.is_nan() => Ok(None),
         _ => Err(NeitherOnNorOff),
     }
+}
+
+/// The number that Rust reads in a cell.
+pub(in crate::wire) fn plain(cell: &[u8]) -> Option<f64> {
+    std::str::from_utf8(cell).ok()?.parse().ok()
+}
+
+/// The finite number in a cell with a decimal comma.
+pub(in crate::wire) fn with_decimal_comma(cell: &[u8]) -> Option<f64> {
+    // Longer than any number that a program writes.
+    let mut text = [0; 64];
+    let text = text.get_mut(..cell.len())?;
+    text.copy_from_slice(cell);
+    let comma = text.iter().position(|&b| b == b',')?;
+    text[comma] = b'.';
+    plain(text).filter(|number| number.is_finite())
 }
 
 /// A cell of `led` that is neither 1 (on) nor 0 (off).

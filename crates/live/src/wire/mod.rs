@@ -1,16 +1,20 @@
 //! Bytes of a stream to rows.
 //!
-//! In: bytes in pieces of any size. Out: a [`Row`] for each line or frame that is whole, as soon as it is; the same rows
-//! however the bytes were cut. A row that is spoilt costs itself.
+//! In: bytes in pieces of any size. Out: a [`Step`] for each line or frame that is whole, as soon as it is; the same
+//! steps however the bytes were cut. A row that is spoilt costs itself.
 
 mod cell;
+mod checksum;
+mod fault;
 mod frames;
 mod lines;
 mod row;
 mod spoilt;
 
-pub use cell::{is_missing, led};
-pub use frames::{Frame, Frames};
-pub use lines::{Cells, Line, LineOptions, Lines, Naming, WireFault};
-pub use row::{Meaning, Row, Use};
-pub use spoilt::{Spoilt, SpoiltKind, SpoiltRows};
+pub use cell::{is_missing, led, led_of};
+pub use checksum::{Checksum, crc16, xor8};
+pub use fault::WireFault;
+pub use frames::{FRAME_NAMES, Frame, Frames, WIRE_BYTES};
+pub use lines::{LineOptions, Lines};
+pub use row::{Meaning, Naming, Row, Sample, Step, Use};
+pub use spoilt::{Spoil, SpoiltRows, Tally};

@@ -1,5 +1,7 @@
 //! What a row of a stream is, and what its columns mean.
 
+use crate::wire::spoilt::Spoil;
+
 /// What a column is for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Use {
@@ -12,10 +14,13 @@ pub enum Use {
     Counter,
     /// Whether the LED was on.
     Led,
-    /// A number that is read, and its place among [`Row::values`].
-    Value(usize),
-    /// The same, of a photodiode: volts, or counts where the device sends them.
-    Counts(usize),
+    /// A number that is read.
+    Value {
+        /// Its place among [`Row::values`].
+        at: usize,
+        /// Whether it is in counts where the source says how many volts a count is.
+        scaled: bool,
+    },
     /// Text that is kept as it is, and its place among [`Row::texts`].
     Text(usize),
     /// Passed over unread.
@@ -31,6 +36,52 @@ pub struct Meaning {
     pub values: usize,
     /// How many texts.
     pub texts: usize,
+}
+
+impl Meaning {
+    /// This meaning, if it is one of columns of these names.
+    ///
+    /// # Errors
+    /// It has another number of columns, or values without a place.
+    pub(crate) fn fitting(self, names: &[String]) -> Result<Self, String> {
+        let placed = |one: &Use| match *one {
+            Use::Value { at, .. } => at < self.values,
+            Use::Text(at) => at < self.texts,
+            _ => true,
+        };
+        if self.uses.len() == names.len() && self.uses.iter().all(placed) {
+            return Ok(self);
+        }
+        Err(format!("{} columns were given {} uses", names.len(), self.uses.len()))
+    }
+}
+
+/// Gives the columns of these names a meaning, or says why it can't.
+pub type Naming = Box<dyn FnMut(&[String]) -> Result<Meaning, String> + Send>;
+
+/// What a decoder found next; the numbers are its `values()`, the names its `names()`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Step {
+    /// The columns' names.
+    Columns {
+        /// They came before: the device begins again.
+        again: bool,
+    },
+    /// A row.
+    Sample(Sample),
+    /// A row that is spoilt, or a message between rows.
+    Spoilt(Spoil),
+}
+
+/// A row as its device numbers it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// The device's time in its own unit, as it was written; NaN where the row has none.
+    pub time: f64,
+    /// The device's counter, as it was written.
+    pub counter: Option<u64>,
+    /// Whether the LED was on; none where the row does not say.
+    pub lit: Option<bool>,
 }
 
 /// A row of a stream.

@@ -1,102 +1,114 @@
-//! What was wrong with rows: how many of each kind, and the first of each.
+//! Rows that are spoilt: counted by kind, the first of each kind kept.
 
 use serde::Serialize;
 
+/// The most characters of a spoilt row that are kept.
+const MOST_CHARS: usize = 40;
+
 /// What is wrong with a row.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum SpoiltKind {
-    /// Too many cells, or too few.
+pub enum Spoil {
+    /// It came before the names of the columns.
+    BeforeNames,
+    /// It has more or fewer cells than there are columns.
     Cells,
-    /// A cell that is no finite number.
-    Number,
-    /// A cell of `led` that is neither on nor off.
-    Led,
-    /// The checksum is wrong, or missing where others have one.
+    /// A cell of a column in use is no finite number.
+    Unreadable,
+    /// It does not fit its checksum.
     Checksum,
-    /// A line without an end.
+    /// It has no checksum, and rows before it had one.
+    Unchecked,
+    /// It is longer than a mebibyte.
     TooLong,
-    /// Bytes that are no text.
-    NotText,
-    /// A line of text before the columns are named.
-    Message,
-    /// A frame of another length.
+    /// It is no frame: bytes between two zeros that cannot be decoded, or are too many or too few.
     Frame,
 }
 
-impl SpoiltKind {
-    const ALL: [Self; 8] = [
-        Self::Cells,
-        Self::Number,
-        Self::Led,
-        Self::Checksum,
-        Self::TooLong,
-        Self::NotText,
-        Self::Message,
-        Self::Frame,
-    ];
+impl Spoil {
+    /// Every kind.
+    pub const ALL: [Self; 7] =
+        [Self::BeforeNames, Self::Cells, Self::Unreadable, Self::Checksum, Self::Unchecked, Self::TooLong, Self::Frame];
 
-    /// In words.
+    /// What is wrong, in words that follow "line 7".
     #[must_use]
     pub fn words(self) -> &'static str {
         match self {
-            Self::Cells => "too many or too few cells",
-            Self::Number => "a cell that is no finite number",
-            Self::Led => "an LED that is neither on (1) nor off (0)",
-            Self::Checksum => "a wrong or missing checksum",
-            Self::TooLong => "a line longer than a MiB",
-            Self::NotText => "bytes that are no text",
-            Self::Message => "text before the names of the columns",
-            Self::Frame => "a frame of another length",
+            Self::BeforeNames => "comes before the names of the columns",
+            Self::Cells => "has more or fewer cells than there are columns",
+            Self::Unreadable => "has a cell that is no finite number",
+            Self::Checksum => "does not fit its checksum",
+            Self::Unchecked => "has no checksum, and rows before it had one",
+            Self::TooLong => "is longer than a mebibyte",
+            Self::Frame => "is no frame of 25 bytes",
         }
     }
 }
 
-/// Spoilt rows by kind.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Spoilt {
-    counts: [u64; 8],
-    first: [Option<(u64, String)>; 8],
-}
-
-/// One kind's, as reported.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+/// Spoilt rows of one kind.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct SpoiltRows {
-    /// What is wrong.
-    pub what: &'static str,
-    /// How many rows.
-    pub rows: u64,
-    /// The first's line (or frame), from 1.
-    pub first_line: u64,
-    /// How it begins.
-    pub first: String,
+    /// What is wrong with them.
+    pub kind: Spoil,
+    /// How many there are.
+    pub count: u64,
+    /// The line (of frames: the frame) of the first, counted from 1 since the source was opened.
+    pub line: u64,
+    /// How the first begins; bytes of frames in hexadecimal.
+    pub text: String,
 }
 
-impl Spoilt {
-    /// Counts a row; keeps the first of its kind.
-    pub fn count(&mut self, kind: SpoiltKind, line: u64, text: &[u8]) {
-        let at = kind as usize;
-        self.counts[at] += 1;
-        if self.first[at].is_none() {
-            let text = String::from_utf8_lossy(&text[..text.len().min(160)]);
-            let text = text.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).take(40).collect();
-            self.first[at] = Some((line, text));
+/// Spoilt rows by kind, in the order in which the kinds first came.
+#[derive(Debug, Clone, Default)]
+pub struct Tally {
+    kinds: Vec<SpoiltRows>,
+}
+
+impl Tally {
+    /// Spoilt rows of each kind that came.
+    #[must_use]
+    pub fn kinds(&self) -> &[SpoiltRows] {
+        &self.kinds
+    }
+
+    /// Rows of one kind.
+    #[must_use]
+    pub fn count(&self, kind: Spoil) -> u64 {
+        self.kinds.iter().find(|rows| rows.kind == kind).map_or(0, |rows| rows.count)
+    }
+
+    /// Rows of all kinds that should have been rows: without what came before the names.
+    #[must_use]
+    pub fn spoilt(&self) -> u64 {
+        self.kinds.iter().filter(|rows| rows.kind != Spoil::BeforeNames).map(|rows| rows.count).sum()
+    }
+
+    /// Counts a row; its text is made only for the first of its kind.
+    pub(crate) fn add(&mut self, kind: Spoil, line: u64, text: impl FnOnce() -> String) {
+        match self.kinds.iter_mut().find(|rows| rows.kind == kind) {
+            Some(rows) => rows.count += 1,
+            None => self.kinds.push(SpoiltRows { kind, count: 1, line, text: text() }),
         }
     }
+}
 
-    /// How many rows were spoilt; text before the names is no row.
-    #[must_use]
-    pub fn rows(&self) -> u64 {
-        self.counts.iter().sum::<u64>() - self.counts[SpoiltKind::Message as usize]
+/// How a line begins, without control characters.
+pub(in crate::wire) fn shown(line: &[u8]) -> String {
+    // A character has at most four bytes.
+    let head = String::from_utf8_lossy(&line[..line.len().min(4 * MOST_CHARS + 4)]).into_owned();
+    let plain = |c: char| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c };
+    let mut text: String = head.chars().take(MOST_CHARS).map(plain).collect();
+    if head.chars().count() > MOST_CHARS {
+        text.push_str("..");
     }
+    text
+}
 
-    /// By kind, those that came.
-    #[must_use]
-    pub fn kinds(&self) -> Vec<SpoiltRows> {
-        let one = |kind: SpoiltKind| {
-            let (first_line, first) = self.first[kind as usize].clone()?;
-            Some(SpoiltRows { what: kind.words(), rows: self.counts[kind as usize], first_line, first })
-        };
-        SpoiltKind::ALL.into_iter().filter_map(one).collect()
+/// How a frame begins.
+pub(in crate::wire) fn shown_bytes(frame: &[u8]) -> String {
+    let mut text = String::new();
+    for byte in frame.iter().take(MOST_CHARS / 2) {
+        text.push_str(&format!("{byte:02x}"));
     }
+    text
 }

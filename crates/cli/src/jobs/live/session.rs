@@ -158,7 +158,7 @@ pub(crate) fn run_stream(
     let stop = common.start()?;
     let options = LiveOptions {
         stream: StreamOptions {
-            source: "-".parse().map_err(anyhow::Error::msg)?,
+            source: "-".parse()?,
             volts_per_count: None,
             names: None,
             keep: Vec::new(),
@@ -240,8 +240,8 @@ fn ended(common: &Common, report: &SessionReport) -> Outcome {
 fn words(report: &Report<SessionFigures>) -> String {
     let SessionFigures { rows, answered, latency, .. } = &report.figures;
     let rate = report.stream.rate_hz.map_or(String::new(), |rate| format!(" at {rate:.1} Hz"));
-    let work = latency.work_us.map_or(String::new(), |work| {
-        format!("; work per row {:.0} us in median, 99 in 100 within {:.0} us", work.p50, work.p99)
+    let work = latency.work.map_or(String::new(), |work| {
+        format!("; work per row {:.0} us in median, 99 in 100 within {:.0} us", work.p50_us, work.p99_us)
     });
     format!("{rows} rows{rate}, {answered} answered{work}")
 }

@@ -18,8 +18,6 @@ mod gain;
 mod scroll;
 mod zero;
 
-pub(super) use gain::shear_for_n;
-
 use super::config::{Config, Mode};
 use super::event::{Button, Event, Reason};
 use click::{Clicks, Turn};

@@ -1,0 +1,272 @@
+//! Streams that come live: read when bytes are there, lost and found again.
+
+use std::net::TcpListener;
+use std::os::fd::{AsFd, BorrowedFd};
+use std::path::Path;
+
+use super::{Event, Feed, Form, Sample, Sequence, Sink, Step, Stream};
+use crate::source::address::Place;
+use crate::source::fault::SourceFault;
+use crate::source::health::{Condition, FIRST_ROW_NS};
+use crate::source::port::{
+    Connector, Port, Received, accept, bind_udp, connect_tcp, listen, open_serial, the_only_port,
+};
+use crate::time::{Link, Verdict};
+use crate::wire::Row;
+
+/// The most bytes that are read at a time, and the longest datagram.
+const PIECE: usize = 1 << 16;
+
+/// The most datagrams that are read at a time.
+const DATAGRAMS: u32 = 64;
+
+/// A port, and how it is opened again.
+pub(super) struct Live {
+    port: Option<Port>,
+    again: Again,
+    /// The columns' names, where the place knows them.
+    pub(super) names: Option<Vec<String>>,
+    buffer: Vec<u8>,
+    /// When the port was opened, nanoseconds.
+    opened_ns: u64,
+    /// What comes first may be the end of a row.
+    pub(super) within: bool,
+}
+
+enum Again {
+    /// The stream ends with the port.
+    Never,
+    Connect(Connector),
+    Listen {
+        listener: TcpListener,
+        once: bool,
+    },
+}
+
+impl Live {
+    /// Opens a place; it waits as long as a server takes to answer.
+    ///
+    /// # Errors
+    /// What is wrong, and what to do.
+    pub(super) fn open(place: &Place, now_ns: u64) -> Result<Self, String> {
+        let no_thread = |why: std::io::Error| format!("cannot be watched ({why})");
+        let mut within = false;
+        let (port, again) = match place {
+            Place::Stdin => (Some(Port::Stdin), Again::Never),
+            Place::Serial { path, baud } => {
+                let path = path.clone().map_or_else(|| the_only_port(Path::new("/dev")), Ok)?;
+                let port = open_serial(&path, *baud)?;
+                let baud = *baud;
+                within = true;
+                let connector = Connector::start(move || open_serial(&path, baud)).map_err(no_thread)?;
+                (Some(port), Again::Connect(connector))
+            }
+            Place::Tcp { to, once: true } => (Some(connect_tcp(to)?), Again::Never),
+            Place::Tcp { to, once: false } => {
+                let port = connect_tcp(to)?;
+                let to = to.clone();
+                (Some(port), Again::Connect(Connector::start(move || connect_tcp(&to)).map_err(no_thread)?))
+            }
+            Place::TcpListen { at, once } => (None, Again::Listen { listener: listen(at)?, once: *once }),
+            Place::Udp { at } => (Some(bind_udp(at)?), Again::Never),
+            #[cfg(feature = "lsl")]
+            Place::Lsl(query) => {
+                let (port, names) = crate::source::port::lsl::open(query)?;
+                return Ok(Self { names: Some(names), ..Self::of(Some(port), Again::Never, now_ns) });
+            }
+            #[cfg(not(feature = "lsl"))]
+            Place::Lsl(_) => {
+                let what = "streams of the Lab Streaming Layer are not built in; pipe it into `-`, or build with the \
+                            feature `lsl`";
+                return Err(what.to_owned());
+            }
+            Place::File { .. } | Place::Phantom { .. } => return Err("is no port".to_owned()),
+        };
+        Ok(Self { within, ..Self::of(port, again, now_ns) })
+    }
+
+    fn of(port: Option<Port>, again: Again, now_ns: u64) -> Self {
+        Self { port, again, names: None, buffer: vec![0; PIECE], opened_ns: now_ns, within: false }
+    }
+
+    pub(super) fn is_open(&self) -> bool {
+        self.port.is_some()
+    }
+
+    pub(super) fn link(&self) -> Link {
+        match self.port {
+            Some(Port::Stdin) => Link::Pipe,
+            #[cfg(feature = "lsl")]
+            Some(Port::Lsl(_)) => Link::Pipe,
+            _ => Link::Device,
+        }
+    }
+
+    pub(super) fn fd(&self) -> Option<BorrowedFd<'_>> {
+        match (&self.port, &self.again) {
+            (Some(port), _) => Some(port.fd()),
+            (None, Again::Connect(connector)) => Some(connector.fd()),
+            (None, Again::Listen { listener, .. }) => Some(listener.as_fd()),
+            (None, Again::Never) => None,
+        }
+    }
+
+    /// Whether a port is open, or was found just now: `Some(true)`.
+    fn find(&mut self) -> Option<bool> {
+        if self.port.is_some() {
+            return Some(false);
+        }
+        self.port = match &mut self.again {
+            Again::Never => None,
+            Again::Connect(connector) => connector.port(),
+            Again::Listen { listener, .. } => accept(listener),
+        };
+        self.port.is_some().then_some(true)
+    }
+
+    /// Closes the port; whether it is opened again.
+    fn lose(&mut self) -> bool {
+        self.port = None;
+        match &self.again {
+            Again::Never => false,
+            Again::Connect(connector) => {
+                connector.ask();
+                true
+            }
+            Again::Listen { once, .. } => !once,
+        }
+    }
+}
+
+impl Stream {
+    pub(super) fn poll_live(&mut self, now_ns: u64, on: &mut Sink<'_>) -> Result<(), SourceFault> {
+        let Feed::Live(live) = &mut self.feed else { return Ok(()) };
+        let Some(found) = live.find() else { return Ok(()) };
+        if found {
+            live.opened_ns = now_ns;
+            if live.within {
+                self.decoder.cut(true);
+            }
+            // Open, and silent until a row comes.
+            let condition = if self.health.any() { Condition::Stalled } else { Condition::Ok };
+            if let Some(state) = self.health.set(condition, now_ns) {
+                on(Event::State(state));
+            }
+            self.health.opened(now_ns);
+        }
+        for _ in 0..DATAGRAMS {
+            let Feed::Live(live) = &mut self.feed else { return Ok(()) };
+            let Some(port) = &mut live.port else { return Ok(()) };
+            let datagrams = matches!(port, Port::Udp(_));
+            match port.read(&mut live.buffer) {
+                Received::Nothing => break,
+                Received::Gone => return self.gone(now_ns, on),
+                Received::Bytes(count) => {
+                    let buffer = std::mem::take(&mut live.buffer);
+                    let decoded = self.decode(&buffer[..count], datagrams, now_ns, on);
+                    if let Feed::Live(live) = &mut self.feed {
+                        live.buffer = buffer;
+                    }
+                    decoded?;
+                }
+            }
+            if !datagrams {
+                break;
+            }
+        }
+        self.look(now_ns, on)
+    }
+
+    fn decode(&mut self, mut bytes: &[u8], datagram: bool, now_ns: u64, on: &mut Sink<'_>) -> Result<(), SourceFault> {
+        let end = if self.form == Some(Form::Frames) { 0 } else { b'\n' };
+        let ended = bytes.last() == Some(&end);
+        self.decode_all(&mut bytes, now_ns, on)?;
+        // The end of a datagram is that of a row.
+        if datagram && !ended { self.decode_all(&mut &[end][..], now_ns, on) } else { Ok(()) }
+    }
+
+    fn decode_all(&mut self, bytes: &mut &[u8], now_ns: u64, on: &mut Sink<'_>) -> Result<(), SourceFault> {
+        while let Some(step) = self.decoder.next(bytes, now_ns).map_err(|fault| self.wire(fault))? {
+            self.live_step(step, now_ns, on)?;
+        }
+        Ok(())
+    }
+
+    fn live_step(&mut self, step: Step, now_ns: u64, on: &mut Sink<'_>) -> Result<(), SourceFault> {
+        match step {
+            Step::Columns { again } => self.columns(again, on),
+            Step::Spoilt(kind) => {
+                self.spoilt(kind, on);
+                Ok(())
+            }
+            Step::Sample(sample) => {
+                self.live_row(&sample, now_ns, on);
+                Ok(())
+            }
+        }
+    }
+
+    fn live_row(&mut self, sample: &Sample, now_ns: u64, on: &mut Sink<'_>) {
+        let Some(sequence) = &mut self.sequence else { return };
+        let set_back = sequence.counts().set_back;
+        let Verdict::Row { time_s, lost, begins } = sequence.take(sample, now_ns) else { return };
+        if sequence.counts().set_back != set_back {
+            self.envelope.clear();
+        }
+        if sequence.has_clock() {
+            self.envelope.push(time_s, now_ns as f64 / 1e9);
+        }
+        self.gaps.row(time_s, begins, sequence.period_s());
+        if let Some(state) = self.health.row(now_ns) {
+            on(Event::State(state));
+        }
+        let (values, texts) = (self.decoder.values(), self.decoder.texts());
+        on(Event::Row(&Row { host_ns: now_ns, time_s, lit: sample.lit, lost, begins, values, texts }));
+    }
+
+    /// The port was unplugged, or standard input has ended.
+    fn gone(&mut self, now_ns: u64, on: &mut Sink<'_>) -> Result<(), SourceFault> {
+        let Feed::Live(live) = &mut self.feed else { return Ok(()) };
+        let within = live.within;
+        if live.lose() {
+            self.decoder.cut(within);
+            if let Some(sequence) = &mut self.sequence {
+                sequence.come_back();
+            }
+            for condition in [Condition::Lost, Condition::Reconnecting] {
+                if let Some(state) = self.health.set(condition, now_ns) {
+                    on(Event::State(state));
+                }
+            }
+            return Ok(());
+        }
+        while let Some(step) = self.decoder.finish(now_ns).map_err(|fault| self.wire(fault))? {
+            self.live_step(step, now_ns, on)?;
+        }
+        self.end(on);
+        Ok(())
+    }
+
+    /// Looks whether rows come as they should.
+    fn look(&mut self, now_ns: u64, on: &mut Sink<'_>) -> Result<(), SourceFault> {
+        let clocked = self.sequence.as_ref().is_some_and(Sequence::has_clock);
+        let period_s = self.period_s();
+        if let Some(state) = self.health.look(now_ns, period_s, clocked) {
+            on(Event::State(state));
+        }
+        if self.garbled_for_ns().is_some_and(|since_ns| now_ns >= since_ns)
+            && let Some(fault) = self.decoder.garbled()
+        {
+            return Err(self.wire(fault));
+        }
+        Ok(())
+    }
+
+    /// When what came so far, and is no text, is not a message of a device's start any more; none where it is text.
+    pub(super) fn garbled_for_ns(&self) -> Option<u64> {
+        // A loader speaks in the first second, and the device soon after (*assumed*).
+        const LOADER: u64 = 3;
+        let Feed::Live(live) = &self.feed else { return None };
+        self.decoder.garbled().map(|_| live.opened_ns + LOADER * FIRST_ROW_NS)
+    }
+}

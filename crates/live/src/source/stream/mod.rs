@@ -1,0 +1,336 @@
+//! A stream of rows, read without waiting.
+//!
+//! In: an address, or rows that a program makes, and what the columns mean. Out: [`Event`]s, from [`Stream::poll`]. No
+//! call waits, and none allocates for a row.
+
+mod live;
+mod played;
+
+use std::os::fd::BorrowedFd;
+use std::path::Path;
+
+use crate::latency::Latency;
+use crate::source::address::{Address, Form, Pace, Place};
+use crate::source::certificate::{Gaps, StreamCertificate, StreamTimes};
+use crate::source::decoder::{Decoder, Rows, Table};
+use crate::source::fault::SourceFault;
+use crate::source::health::{Condition, Health, State};
+use crate::source::play::{Bytes, Play};
+use crate::time::{ClockFit, Envelope, Link, Sequence};
+use crate::wire::{Frames, LineOptions, Lines, Meaning, Naming, Row, Sample, Spoil, SpoiltRows, Step, WireFault};
+use live::Live;
+
+/// The bits of a frame's counter.
+const FRAME_COUNTER_BITS: u32 = 16;
+
+/// What the caller knows of a stream beforehand.
+#[derive(Debug, Clone, Default)]
+pub struct StreamOptions {
+    /// The columns' names, where the stream does not say them.
+    pub columns: Option<Vec<String>>,
+    /// When the host's clock was zero, seconds since 1970, for the certificate.
+    pub host_start_unix_s: Option<f64>,
+}
+
+/// What happens on a stream.
+#[derive(Debug)]
+pub enum Event<'a> {
+    /// The columns are known now, by these names; once, before the first row.
+    Columns(&'a [String]),
+    /// A row.
+    Row(&'a Row<'a>),
+    /// A row that is spoilt.
+    Spoilt {
+        /// What is wrong with it.
+        kind: Spoil,
+        /// The row, where it is the first of its kind.
+        first: Option<&'a SpoiltRows>,
+    },
+    /// The stream is in another condition.
+    State(State),
+    /// Nothing more comes.
+    End,
+}
+
+/// Who is told what happens.
+type Sink<'s> = dyn FnMut(Event<'_>) + 's;
+
+/// A stream of rows.
+pub struct Stream {
+    name: String,
+    form: Option<Form>,
+    host_start_unix_s: Option<f64>,
+    feed: Feed,
+    decoder: Decoder,
+    /// Of rows, once the columns are known.
+    sequence: Option<Sequence>,
+    envelope: Envelope,
+    health: Health,
+    gaps: Gaps,
+    ended: bool,
+}
+
+enum Feed {
+    Live(Live),
+    Play(Play),
+}
+
+impl Stream {
+    /// Opens a source at `now_ns`; its columns mean what `naming` says. A phantom, a Parquet file and an XDF file are
+    /// given as rows ([`of_rows`](Self::of_rows)).
+    ///
+    /// # Errors
+    /// The source cannot be opened: what is wrong, and what to do.
+    pub fn open(address: &Address, options: StreamOptions, naming: Naming, now_ns: u64) -> Result<Self, SourceFault> {
+        let name = address.to_string();
+        let feed = match &address.place {
+            Place::File { path, pace, looped } => {
+                let bytes = Bytes::open(path, address.form == Form::Lines)?;
+                Feed::Play(Play::new(Some(bytes), *pace, *looped))
+            }
+            place => {
+                let live = Live::open(place, now_ns);
+                Feed::Live(live.map_err(|what| SourceFault::Open { source_name: name.clone(), what })?)
+            }
+        };
+        let mut decoder = match address.form {
+            Form::Frames => Decoder::Frames(Box::new(Frames::new(naming, address.volts_per_count))),
+            Form::Lines => {
+                let names = if let Feed::Live(live) = &feed { live.names.clone() } else { None };
+                let options = LineOptions {
+                    columns: options.columns.or(names),
+                    names_first: matches!(feed, Feed::Play(_)),
+                    volts_per_count: address.volts_per_count,
+                };
+                Decoder::Lines(Box::new(Lines::new(naming, options)))
+            }
+        };
+        if matches!(&feed, Feed::Live(live) if live.within) {
+            decoder.cut(true);
+        }
+        Ok(Self::of(name, Some(address.form), options.host_start_unix_s, feed, decoder, now_ns))
+    }
+
+    /// Rows that a program makes, under a name for messages, played at a pace.
+    #[must_use]
+    pub fn of_rows(
+        name: String,
+        rows: Box<dyn Rows>,
+        (pace, looped): (Pace, bool),
+        volts_per_count: Option<f64>,
+        options: &StreamOptions,
+        naming: Naming,
+    ) -> Self {
+        let decoder = Decoder::Table(Table::new(rows, naming, volts_per_count));
+        Self::of(name, None, options.host_start_unix_s, Feed::Play(Play::new(None, pace, looped)), decoder, 0)
+    }
+
+    fn of(
+        name: String,
+        form: Option<Form>,
+        host_start_unix_s: Option<f64>,
+        feed: Feed,
+        decoder: Decoder,
+        now_ns: u64,
+    ) -> Self {
+        let open = match &feed {
+            Feed::Live(live) => live.is_open(),
+            Feed::Play(_) => true,
+        };
+        let condition = if open { Condition::Ok } else { Condition::Reconnecting };
+        Self {
+            name,
+            form,
+            host_start_unix_s,
+            feed,
+            decoder,
+            sequence: None,
+            envelope: Envelope::default(),
+            health: Health::new(condition, now_ns),
+            gaps: Gaps::default(),
+            ended: false,
+        }
+    }
+
+    /// Reads what is there, up to a piece of it, and hands out what happened. `now_ns` is the host's clock.
+    ///
+    /// # Errors
+    /// The stream cannot go on; it has ended then.
+    pub fn poll(&mut self, now_ns: u64, on: &mut Sink<'_>) -> Result<(), SourceFault> {
+        if self.ended {
+            return Ok(());
+        }
+        let polled = match self.feed {
+            Feed::Live(_) => self.poll_live(now_ns, on),
+            Feed::Play(_) => self.poll_played(now_ns, on),
+        };
+        self.ended |= polled.is_err();
+        polled
+    }
+
+    /// What is readable when there is something to do; none where only time says so.
+    #[must_use]
+    pub fn fd(&self) -> Option<BorrowedFd<'_>> {
+        match &self.feed {
+            Feed::Live(live) if !self.ended => live.fd(),
+            _ => None,
+        }
+    }
+
+    /// When [`poll`](Self::poll) has something to do without anything to read; none where it never has.
+    #[must_use]
+    pub fn due_ns(&self) -> Option<u64> {
+        if self.ended {
+            return None;
+        }
+        match &self.feed {
+            Feed::Live(_) => self.health.due_ns(self.period_s(), self.garbled_for_ns()),
+            Feed::Play(play) => Some(play.waiting.map_or(0, |waiting| waiting.due_ns)),
+        }
+    }
+
+    /// Whether nothing more comes.
+    #[must_use]
+    pub fn ended(&self) -> bool {
+        self.ended
+    }
+
+    /// The stream's time, seconds: of a live one that of its latest row and what the host saw pass since; of a
+    /// recording that of its latest row, so that it says the same at every pace. NaN before the first row.
+    #[must_use]
+    pub fn stream_now_s(&self, now_ns: u64) -> f64 {
+        match &self.feed {
+            Feed::Play(play) => play.played_s,
+            Feed::Live(_) => self.sequence.as_ref().map_or(f64::NAN, |sequence| sequence.now_s(now_ns)),
+        }
+    }
+
+    /// The source, for messages.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The columns' names; empty until they are known.
+    #[must_use]
+    pub fn names(&self) -> &[String] {
+        self.decoder.names()
+    }
+
+    /// What the columns mean; nothing until it is known.
+    #[must_use]
+    pub fn meaning(&self) -> &Meaning {
+        self.decoder.meaning()
+    }
+
+    /// How the stream is.
+    #[must_use]
+    pub fn state(&self) -> State {
+        self.health.state()
+    }
+
+    /// Whether rows come live, so that their arrival says something.
+    #[must_use]
+    pub fn is_live(&self) -> bool {
+        matches!(self.feed, Feed::Live(_))
+    }
+
+    /// The time from row to row, seconds; none before it is known.
+    #[must_use]
+    pub fn period_s(&self) -> Option<f64> {
+        self.sequence.as_ref().and_then(Sequence::period_s)
+    }
+
+    /// The line between the device's clock and the host's; none where it has none, or rows do not come live.
+    #[must_use]
+    pub fn clock(&self) -> Option<ClockFit> {
+        self.envelope.fit()
+    }
+
+    /// How late rows were played; none of a live stream.
+    #[must_use]
+    pub fn lateness(&self) -> Option<&Latency> {
+        match &self.feed {
+            Feed::Play(play) => Some(&play.lateness),
+            Feed::Live(_) => None,
+        }
+    }
+
+    /// What is known of the stream so far.
+    #[must_use]
+    pub fn certificate(&self) -> StreamCertificate {
+        let (states, states_left_out) = self.health.history();
+        let sequence = self.sequence.as_ref();
+        StreamCertificate {
+            source: self.name.clone(),
+            form: self.form,
+            columns: self.decoder.names().to_vec(),
+            times: sequence.map(|sequence| match sequence.has_clock() {
+                true => StreamTimes::Device,
+                false => StreamTimes::Arrival,
+            }),
+            host_start_unix_s: self.host_start_unix_s,
+            counts: sequence.map(Sequence::counts).unwrap_or_default(),
+            rate_hz: self.period_s().map(f64::recip),
+            spoilt: self.decoder.tally().kinds().to_vec(),
+            gaps: self.gaps.first.clone(),
+            gaps_count: self.gaps.count,
+            longest_gap_s: self.gaps.longest_s,
+            states: states.to_vec(),
+            states_left_out,
+            clock: self.clock(),
+        }
+    }
+
+    /// The columns are known.
+    fn columns(&mut self, again: bool, on: &mut Sink<'_>) -> Result<(), SourceFault> {
+        if again && let Some(sequence) = &mut self.sequence {
+            sequence.begin();
+            return Ok(());
+        }
+        let link = match &self.feed {
+            Feed::Play(_) => Link::Recording,
+            Feed::Live(live) => live.link(),
+        };
+        let bits = (self.form == Some(Form::Frames)).then_some(FRAME_COUNTER_BITS);
+        let sequence = Sequence::new(self.decoder.meaning(), link, bits);
+        if link == Link::Recording && !sequence.has_clock() {
+            let what = "has no column of time, by which it is played; name one time_s".to_owned();
+            return Err(SourceFault::Open { source_name: self.name.clone(), what });
+        }
+        self.sequence = Some(sequence);
+        on(Event::Columns(self.decoder.names()));
+        Ok(())
+    }
+
+    fn spoilt(&self, kind: Spoil, on: &mut Sink<'_>) {
+        let first = self.decoder.tally().kinds().iter().find(|rows| rows.kind == kind && rows.count == 1);
+        on(Event::Spoilt { kind, first });
+    }
+
+    fn wire(&self, fault: WireFault) -> SourceFault {
+        SourceFault::Wire { source_name: self.name.clone(), fault }
+    }
+
+    fn end(&mut self, on: &mut Sink<'_>) {
+        self.ended = true;
+        on(Event::End);
+    }
+}
+
+/// What only reads a path's ending: whether [`Stream::open`] plays it as bytes.
+impl Address {
+    /// Whether rows of this source are made by a program, and given to [`Stream::of_rows`]: a phantom, or a file whose
+    /// name ends in `.parquet` or `.xdf`.
+    #[must_use]
+    pub fn needs_rows(&self) -> bool {
+        let table = |path: &Path| {
+            path.extension().is_some_and(|end| end.eq_ignore_ascii_case("parquet") || end.eq_ignore_ascii_case("xdf"))
+        };
+        match &self.place {
+            Place::Phantom { .. } => true,
+            Place::File { path, .. } => table(path),
+            _ => false,
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! Recordings played back.
+
+use std::io::Write;
+
+use super::*;
+use crate::source::{Pace, Rows};
+
+fn file(text: &[u8]) -> tempfile::NamedTempFile {
+    let mut file = tempfile::NamedTempFile::new().unwrap();
+    file.write_all(text).unwrap();
+    file
+}
+
+fn csv(rows: usize) -> String {
+    let mut text = "time_s,n,P1\n".to_owned();
+    for row in 0..rows {
+        text.push_str(&format!("{},{row},{}\n", 100.0 + row as f64 * 0.001, row * 2));
+    }
+    text
+}
+
+fn played(address: &str) -> (Stream, Log) {
+    let clock = HostClock::start();
+    let mut stream = open(address, &clock).unwrap();
+    let mut log = Log::default();
+    run(&mut stream, &clock, &mut log, |_| false).unwrap();
+    assert!(log.ended && log.columns == 1);
+    (stream, log)
+}
+
+#[test]
+fn every_pace_gives_the_same_rows() {
+    let file = file(csv(300).as_bytes());
+    let path = file.path().display();
+    let (stream, fast) = played(&path.to_string());
+    assert_eq!(fast.rows.len(), 300);
+    assert_eq!((fast.rows[0].time_s, fast.rows[0].begins, fast.rows[1].begins), (100.0, true, false));
+    assert_eq!(stream.stream_now_s(u64::MAX), fast.rows[299].time_s);
+    assert_eq!(stream.lateness().unwrap().summary(), None);
+    for (rate, seconds) in [("1", 0.299), ("3", 0.0997)] {
+        let (stream, slow) = played(&format!("{path}?rate={rate}"));
+        let time = |log: &Log| -> Vec<Seen> { log.rows.iter().map(|row| Seen { host_ns: 0, ..row.clone() }).collect() };
+        assert_eq!(time(&slow), time(&fast));
+        // No row is early.
+        let first_ns = slow.rows[0].host_ns;
+        for row in &slow.rows {
+            let due_ns = (row.time_s - 100.0) / rate.parse::<f64>().unwrap() * 1e9;
+            assert!((row.host_ns - first_ns) as f64 + 1.0 >= due_ns, "{row:?}");
+        }
+        assert!((slow.rows[299].host_ns - first_ns) as f64 >= seconds * 1e9);
+        assert_eq!(stream.lateness().unwrap().summary().unwrap().count, 300);
+    }
+}
+
+#[test]
+fn a_file_begins_again_where_it_is_looped() {
+    let file = file(csv(50).as_bytes());
+    let clock = HostClock::start();
+    let mut stream = open(&format!("{}?loop", file.path().display()), &clock).unwrap();
+    let mut log = Log::default();
+    run(&mut stream, &clock, &mut log, |log| log.rows.len() >= 175).unwrap();
+    let begins: Vec<usize> = (0..175).filter(|&row| log.rows[row].begins).collect();
+    assert_eq!(begins, [0, 50, 100, 150]);
+    for pair in log.rows.windows(2) {
+        // A file that begins again goes on after one period.
+        assert!((pair[1].time_s - pair[0].time_s - 0.001).abs() <= 1e-9, "{pair:?}");
+    }
+    assert_eq!((log.columns, log.spoilt), (1, 0));
+    assert!(log.rows.iter().all(|row| row.lost == 0));
+}
+
+#[test]
+fn what_is_wrong_with_a_file_is_said() {
+    let clock = HostClock::start();
+    let said = |text: &[u8], query: &str| {
+        let file = file(text);
+        let address = format!("{}{query}", file.path().display());
+        let mut log = Log::default();
+        let done = open(&address, &clock).and_then(|mut stream| run(&mut stream, &clock, &mut log, |_| false));
+        done.unwrap_err().to_string()
+    };
+    for (text, query, words) in [
+        (&b"\x1f\x8b\x08"[..], "", "gunzip"),
+        (b"PAR1", "", ".parquet"),
+        (b"a\0b", "", "form=frames"),
+        (b"", "", "ends before a line of names"),
+        (b"1,2\n3,4\n", "", "line 1 holds numbers"),
+        (b"P1,P2\n3,4\n", "?loop", "no column of time"),
+        (&[7; 5000], "?form=frames", "no whole frame"),
+    ] {
+        let said = said(text, query);
+        assert!(said.contains(words), "{said}");
+    }
+    let said = open("no/such.csv", &clock).err().unwrap().to_string();
+    assert!(said.contains("no/such.csv: does not exist"), "{said}");
+}
+
+struct Made {
+    names: Vec<String>,
+    row: u32,
+}
+
+impl Rows for Made {
+    fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    fn next(&mut self, cells: &mut [f64], _: &mut [Vec<u8>]) -> Result<bool, String> {
+        self.row += 1;
+        cells.copy_from_slice(&[f64::from(self.row) * 0.5, 1.0, f64::from(self.row)]);
+        Ok(self.row <= 10)
+    }
+
+    fn rewind(&mut self) -> Result<(), String> {
+        self.row = 0;
+        Ok(())
+    }
+}
+
+#[test]
+fn rows_that_a_program_makes_are_played_like_a_file() {
+    for (looped, rows) in [(false, 10), (true, 25)] {
+        let made = Made { names: ["time_s", "led", "P1"].map(str::to_owned).into(), row: 0 };
+        let options = StreamOptions::default();
+        let pace = (Pace::Max, looped);
+        let mut stream = Stream::of_rows("phantom:x".to_owned(), Box::new(made), pace, Some(0.5), &options, naming());
+        let (clock, mut log) = (HostClock::start(), Log::default());
+        // A call hands out a piece.
+        run(&mut stream, &clock, &mut log, |log| log.rows.len() >= rows).unwrap();
+        log.rows.truncate(rows);
+        let last = &log.rows[rows - 1];
+        assert_eq!((log.rows.len(), last.time_s), (rows, rows as f64 * 0.5));
+        assert_eq!(log.rows[3].values, [2.0]);
+        assert_eq!(log.rows.iter().filter(|row| row.begins).count(), rows.div_ceil(10));
+    }
+}
+
+#[test]
+fn a_played_row_allocates_nothing() {
+    let file = file(csv(100_000).as_bytes());
+    let clock = HostClock::start();
+    let mut stream = open(&file.path().display().to_string(), &clock).unwrap();
+    let mut rows = 0_u64;
+    let mut poll = |stream: &mut Stream| {
+        stream.poll(0, &mut |event| rows += u64::from(matches!(event, Event::Row(_)))).unwrap();
+        rows
+    };
+    poll(&mut stream);
+    let counted = allocation_counter::measure(|| while !stream.ended() && poll(&mut stream) < 90_000 {});
+    assert_eq!(counted.count_total, 0);
+    assert!(rows >= 90_000);
+}

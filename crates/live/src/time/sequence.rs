@@ -1,0 +1,358 @@
+//! Rows as their device numbers them to rows of one stream.
+//!
+//! In: samples and when they came. Out: seconds that never descend, lost rows, and where a recording begins. A row
+//! that comes twice or late is dropped and counted: what was decided already is not decided again. Nothing is
+//! interpolated.
+//!
+//! A clock that leaps, on a link that may damage rows, is believed when a second row agrees with it; the first is
+//! dropped as doubtful.
+
+use crate::time::counter::{Count, Counter};
+use crate::time::period::Period;
+use crate::time::unwrap::{Expected, Reading, Unwrap};
+use crate::wire::{Meaning, Sample, Use};
+
+/// Rows that are at most so many periods behind are late, and as many in a row at most: otherwise the clock was set
+/// back. As where logs are sorted.
+const LATE_ROWS: u32 = 16;
+
+/// A step of more than so many periods holds lost rows.
+const LOST_PERIODS: f64 = 1.5;
+
+/// A device that comes back with a clock that differs from the host's by more than this started again meanwhile,
+/// seconds and as a part of the time that passed (*assumed*: quartz is a hundred times better).
+const AWAY_S: f64 = 10.0;
+const AWAY_PART: f64 = 0.01;
+
+/// A device's clock that goes on by this and twice what the host saw pass, or more, leaps, seconds (*assumed*: more
+/// than a machine holds rows back).
+const LEAP_S: f64 = 10.0;
+
+/// Rows without a clock come in heaps; only over so many seconds their arrival says how many there should be.
+const HEAP_S: f64 = 1.0;
+
+/// What becomes of a sample.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Verdict {
+    /// It is a row.
+    Row {
+        /// The stream's time, seconds; NaN where the row has none.
+        time_s: f64,
+        /// Rows lost just before it, by the counter.
+        lost: u64,
+        /// Whether a recording begins with it.
+        begins: bool,
+    },
+    /// It came before.
+    Duplicate,
+    /// Rows after it came already.
+    Late,
+    /// Its time does not fit to the rows before it, and may be damaged.
+    Doubtful,
+}
+
+/// Where rows come from, and what is therefore known of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Link {
+    /// A recording, whose rows come when they are asked for.
+    Recording,
+    /// A program on this machine: rows come live, and whole.
+    Pipe,
+    /// A device: rows come live, and may be damaged.
+    Device,
+}
+
+/// Rows counted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize)]
+pub struct RowCounts {
+    /// Rows that were handed out.
+    pub rows: u64,
+    /// Rows that never came or came late, by the counter.
+    pub lost: u64,
+    /// Rows that probably never came, by gaps in time of more than 1.5 periods; of streams without a counter.
+    pub lost_by_time: u64,
+    /// Rows that came twice and were dropped.
+    pub duplicates: u64,
+    /// Rows that came behind later ones and were dropped.
+    pub disorder: u64,
+    /// Rows that were dropped since their time did not fit to those before.
+    pub doubtful: u64,
+    /// How often the device's clock or counter began again.
+    pub set_back: u64,
+    /// How often its clock reached its last value and went on.
+    pub wraps: u64,
+}
+
+/// Puts samples in sequence.
+#[derive(Debug, Clone)]
+pub struct Sequence {
+    /// None where rows have no time of their own.
+    clock: Option<(Unwrap, f64)>,
+    counter: Counter,
+    counted: bool,
+    link: Link,
+    /// A stamp that was not believed, and when it came.
+    doubt: Option<(f64, u64)>,
+    period: Period,
+    /// What is added to the device's seconds since its clock was set.
+    shift_s: f64,
+    last: Option<Last>,
+    begins: bool,
+    away: bool,
+    late_run: u32,
+    /// Rows and host time since the last step of a stream without a clock.
+    block: (u32, u64),
+    counts: RowCounts,
+}
+
+/// The latest row with a time.
+#[derive(Debug, Clone, Copy)]
+struct Last {
+    time_s: f64,
+    host_ns: u64,
+}
+
+impl Sequence {
+    /// Rows whose columns have a meaning, and `counter_bits` where the counter's width is known.
+    #[must_use]
+    pub fn new(meaning: &Meaning, link: Link, counter_bits: Option<u32>) -> Self {
+        let clock = meaning.uses.iter().find_map(|one| match one {
+            Use::Time { per_second } => Some((Unwrap::new(*per_second), *per_second)),
+            _ => None,
+        });
+        Self {
+            clock,
+            counter: Counter::of_bits(counter_bits),
+            counted: meaning.uses.contains(&Use::Counter),
+            link,
+            doubt: None,
+            period: Period::default(),
+            shift_s: 0.0,
+            last: None,
+            begins: true,
+            away: false,
+            late_run: 0,
+            block: (0, 0),
+            counts: RowCounts::default(),
+        }
+    }
+
+    /// What comes next begins a recording: the device started again.
+    pub fn begin(&mut self) {
+        self.begins = true;
+    }
+
+    /// What comes next begins a recording: the source was away, and the device may have started again meanwhile.
+    pub fn come_back(&mut self) {
+        (self.begins, self.away) = (true, true);
+    }
+
+    /// The time from row to row, seconds; none before it is known.
+    #[must_use]
+    pub fn period_s(&self) -> Option<f64> {
+        self.period.median_s()
+    }
+
+    /// Whether rows have a time of their own.
+    #[must_use]
+    pub fn has_clock(&self) -> bool {
+        self.clock.is_some()
+    }
+
+    /// Rows counted so far.
+    #[must_use]
+    pub fn counts(&self) -> RowCounts {
+        RowCounts { wraps: self.clock.as_ref().map_or(0, |(unwrap, _)| unwrap.wraps()), ..self.counts }
+    }
+
+    /// The stream's time now: the latest row's, and of live streams what the host saw pass since; NaN before any.
+    #[must_use]
+    pub fn now_s(&self, now_ns: u64) -> f64 {
+        let since_s = |last: &Last| if self.is_live() { seconds(now_ns.saturating_sub(last.host_ns)) } else { 0.0 };
+        self.last.as_ref().map_or(f64::NAN, |last| last.time_s + since_s(last))
+    }
+
+    fn is_live(&self) -> bool {
+        self.link != Link::Recording
+    }
+
+    /// Takes a sample that came at `host_ns`.
+    pub fn take(&mut self, sample: &Sample, host_ns: u64) -> Verdict {
+        let host_s = self.last.filter(|_| self.is_live()).map(|last| seconds(host_ns.saturating_sub(last.host_ns)));
+        let expected = Expected { host_s, period_s: self.period_s() };
+        let before = self.clock.clone();
+        let device_s = match &mut self.clock {
+            None => Device::Host(seconds(host_ns)),
+            Some(_) if sample.time.is_nan() => Device::Unknown,
+            Some((unwrap, per_second)) => match unwrap.read(sample.time, expected) {
+                Reading::On(time) => Device::At(time / *per_second),
+                Reading::Back(by) => Device::Back { by_s: by / *per_second },
+            },
+        };
+        let step_s = self.last.and_then(|last| match device_s {
+            Device::Host(time_s) => Some(time_s - last.time_s),
+            Device::At(time_s) => Some(time_s + self.shift_s - last.time_s),
+            Device::Back { .. } | Device::Unknown => None,
+        });
+        let away = std::mem::take(&mut self.away);
+        let elsewhere = |step_s: f64, host_s: f64| (step_s - host_s).abs() > AWAY_S + AWAY_PART * host_s;
+        let restarted = match (device_s, step_s, host_s) {
+            (Device::At(_), Some(step_s), Some(host_s)) => {
+                let leaps = self.link == Link::Device && self.clock.is_some() && step_s > LEAP_S + 2.0 * host_s;
+                leaps || away && elsewhere(step_s, host_s)
+            }
+            (Device::Back { .. }, ..) => self.begins,
+            _ => false,
+        };
+        if restarted || self.is_set_back(device_s, sample.counter.is_some()) {
+            if self.is_doubtful(sample.time, host_ns) {
+                self.clock = before;
+                return Verdict::Doubtful;
+            }
+            return self.set_back(sample, host_ns, host_s);
+        }
+        let lost = match self.count(sample, device_s, step_s.or(host_s)) {
+            Ok(lost) => lost,
+            Err(Count::SetBack) => return self.set_back(sample, host_ns, host_s),
+            Err(Count::Again) => {
+                self.counts.duplicates += 1;
+                return Verdict::Duplicate;
+            }
+            Err(_) => {
+                self.counts.disorder += 1;
+                self.late_run += 1;
+                return Verdict::Late;
+            }
+        };
+        self.on(device_s, step_s, lost, host_ns)
+    }
+
+    /// Whether a stamp that does not fit to those before it is not believed yet; it is where a recording begins, and
+    /// where the one before it fitted as little and both fit to each other.
+    fn is_doubtful(&mut self, stamp: f64, host_ns: u64) -> bool {
+        if self.link != Link::Device || self.begins {
+            return false;
+        }
+        let Some((_, per_second)) = &self.clock else { return false };
+        let step = |(before, before_ns): (f64, u64)| {
+            let host_s = seconds(host_ns.saturating_sub(before_ns));
+            ((stamp - before) / per_second, 2.0 * host_s + f64::from(LATE_ROWS) * self.period_s().unwrap_or(0.0))
+        };
+        if self.doubt.map(step).is_some_and(|(step_s, most_s)| step_s > 0.0 && step_s <= most_s) {
+            return false;
+        }
+        self.doubt = Some((stamp, host_ns));
+        self.counts.doubtful += 1;
+        true
+    }
+
+    /// Whether the clock fell back by more than a row that is late explains.
+    fn is_set_back(&self, device_s: Device, counted: bool) -> bool {
+        let Device::Back { by_s } = device_s else { return false };
+        let most_s = match self.period_s() {
+            Some(period_s) => period_s * f64::from(LATE_ROWS),
+            // The counter knows.
+            None if counted => f64::INFINITY,
+            None => 0.0,
+        };
+        by_s > most_s || self.late_run >= LATE_ROWS
+    }
+
+    /// Rows lost before a sample, by its counter; without one, whether it is late by its time.
+    fn count(&mut self, sample: &Sample, device_s: Device, step_s: Option<f64>) -> Result<u64, Count> {
+        let Some(count) = sample.counter else {
+            return if matches!(device_s, Device::Back { .. }) { Err(Count::Late) } else { Ok(0) };
+        };
+        let back = matches!(device_s, Device::Back { .. });
+        let rows = step_s.filter(|_| !back).zip(self.period_s()).map(|(step_s, period_s)| step_s / period_s);
+        // By arrival alone rows come in heaps.
+        let rows = rows.filter(|_| self.clock.is_some() || step_s.is_some_and(|step_s| step_s > HEAP_S));
+        let still = back || self.clock.is_some() && step_s.is_some_and(|step_s| step_s <= 0.0);
+        match self.counter.read(count, if back { Some(0.0) } else { rows }, still) {
+            Count::Next { .. } if back => Err(Count::SetBack),
+            Count::Again | Count::Late if self.begins => Err(Count::SetBack),
+            Count::Next { lost } => Ok(lost),
+            other => Err(other),
+        }
+    }
+
+    /// The device's clock or counter began again: the stream's time goes on by what the host saw pass, or a period.
+    fn set_back(&mut self, sample: &Sample, host_ns: u64, host_s: Option<f64>) -> Verdict {
+        self.counts.set_back += 1;
+        self.begins = true;
+        if let Some(count) = sample.counter {
+            self.counter.set(count);
+        }
+        let passed_s = host_s.or(self.period_s()).unwrap_or(0.0);
+        let (mut device_s, mut step_s) = (Device::Host(seconds(host_ns)), None);
+        if let Some((unwrap, per_second)) = &mut self.clock {
+            device_s = Device::Unknown;
+            if !sample.time.is_nan() {
+                unwrap.set(sample.time);
+                let at_s = sample.time / *per_second;
+                self.shift_s = self.last.map_or(0.0, |last| last.time_s + passed_s - at_s);
+                (device_s, step_s) = (Device::At(at_s), Some(passed_s));
+            }
+        }
+        self.on(device_s, step_s, 0, host_ns)
+    }
+
+    fn on(&mut self, device_s: Device, step_s: Option<f64>, lost: u64, host_ns: u64) -> Verdict {
+        let begins = std::mem::take(&mut self.begins);
+        self.late_run = 0;
+        self.doubt = None;
+        self.counts.rows += 1;
+        self.counts.lost += lost;
+        let time_s = match device_s {
+            Device::Host(time_s) => time_s,
+            Device::At(time_s) => time_s + self.shift_s,
+            Device::Back { .. } | Device::Unknown => return Verdict::Row { time_s: f64::NAN, lost, begins },
+        };
+        if let (Some(step_s), false) = (step_s, begins) {
+            self.step(step_s, lost, host_ns);
+        }
+        self.last = Some(Last { time_s, host_ns });
+        Verdict::Row { time_s, lost, begins }
+    }
+
+    /// Learns the period, and counts what a gap hides.
+    fn step(&mut self, step_s: f64, lost: u64, host_ns: u64) {
+        if self.clock.is_none() {
+            // Rows come in heaps: their period shows over many.
+            const BLOCK: u32 = 8;
+            if self.block.0 == 0 {
+                self.block.1 = host_ns;
+            }
+            self.block.0 += 1;
+            if self.block.0 > BLOCK {
+                self.period.push(seconds(host_ns.saturating_sub(self.block.1)) / f64::from(BLOCK));
+                self.block = (1, host_ns);
+            }
+            return;
+        }
+        if let (false, Some(period_s)) = (self.counted, self.period_s())
+            && step_s > LOST_PERIODS * period_s
+        {
+            self.counts.lost_by_time += ((step_s / period_s).round() as u64).saturating_sub(1);
+        }
+        self.period.push(step_s / (lost + 1) as f64);
+    }
+}
+
+/// When a sample was taken.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Device {
+    /// By its arrival.
+    Host(f64),
+    /// By the device's clock, seconds.
+    At(f64),
+    /// Before the latest.
+    Back {
+        by_s: f64,
+    },
+    Unknown,
+}
+
+fn seconds(ns: u64) -> f64 {
+    ns as f64 / 1e9
+}

@@ -1,0 +1,142 @@
+//! Samples in sequence: lost, late, repeated, and clocks that were set.
+
+use super::*;
+use crate::wire::{Meaning, Sample, Use};
+
+const MS: u64 = 1_000_000;
+
+fn sequence(uses: &[Use], link: Link) -> Sequence {
+    Sequence::new(&Meaning { uses: uses.to_vec(), values: 0, texts: 0 }, link, None)
+}
+
+fn clocked(counted: bool, link: Link) -> Sequence {
+    sequence(
+        if counted { &[Use::Time { per_second: 1e3 }, Use::Counter] } else { &[Use::Time { per_second: 1e3 }] },
+        link,
+    )
+}
+
+fn sample(time: f64, counter: Option<u64>) -> Sample {
+    Sample { time, counter, lit: None }
+}
+
+/// Time, lost rows and whether a recording begins, of a row.
+fn row(verdict: Verdict) -> (f64, u64, bool) {
+    match verdict {
+        Verdict::Row { time_s, lost, begins } => (time_s, lost, begins),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn rows_without_a_clock_have_the_time_of_their_arrival() {
+    let mut rows = sequence(&[Use::Counter], Link::Device);
+    for n in 0..100_u64 {
+        // Ten rows in a heap each.
+        let host_ns = 1000 * MS + n / 10 * 10 * MS;
+        let expected = (host_ns as f64 / 1e9, u64::from(n == 50) * 3, n == 0);
+        assert_eq!(row(rows.take(&sample(f64::NAN, Some(n + u64::from(n >= 50) * 3)), host_ns)), expected);
+    }
+    assert!((rows.period_s().unwrap() - 1e-3).abs() <= 3e-4, "{:?}", rows.period_s());
+    assert_eq!(rows.now_s(1_100 * MS), 1.1);
+}
+
+#[test]
+fn gaps_without_a_counter_are_an_estimate() {
+    let mut rows = clocked(false, Link::Recording);
+    let mut sent = 0;
+    for n in (0..1000).filter(|n| n % 100 < 90) {
+        sent += 1;
+        assert_eq!(row(rows.take(&sample(f64::from(n), None), 0)).1, 0);
+    }
+    let counts = rows.counts();
+    // Those behind the last row are not known.
+    assert_eq!((counts.rows, counts.lost, counts.lost_by_time), (sent, 0, 90));
+    assert!((rows.period_s().unwrap() - 1e-3).abs() <= 1e-9);
+    assert_eq!(rows.now_s(u64::MAX), 0.989, "the recording's own time");
+}
+
+#[test]
+fn rows_without_a_time_do_not_move_the_clock() {
+    let mut rows = clocked(true, Link::Recording);
+    assert_eq!(row(rows.take(&sample(5.0, Some(0)), 0)), (0.005, 0, true));
+    assert!(row(rows.take(&sample(f64::NAN, Some(1)), 0)).0.is_nan());
+    assert_eq!(row(rows.take(&sample(7.0, Some(2)), 0)), (0.007, 0, false));
+}
+
+#[test]
+fn late_rows_are_dropped_and_seventeen_are_a_clock_that_was_set() {
+    let mut rows = clocked(false, Link::Recording);
+    for n in 0..100 {
+        row(rows.take(&sample(f64::from(n), None), 0));
+    }
+    assert_eq!(rows.take(&sample(97.5, None), 0), Verdict::Late);
+    assert_eq!(row(rows.take(&sample(100.0, None), 0)), (0.1, 0, false));
+    let verdicts: Vec<Verdict> = (0..17).map(|n| rows.take(&sample(90.0 + f64::from(n) / 2.0, None), 0)).collect();
+    assert!(verdicts[..16].iter().all(|verdict| *verdict == Verdict::Late));
+    let (time_s, _, begins) = row(verdicts[16]);
+    assert!(begins && (time_s - 0.101).abs() <= 1e-9, "{time_s}");
+    let counts = rows.counts();
+    assert_eq!((counts.disorder, counts.set_back), (17, 1));
+}
+
+#[test]
+fn a_clock_that_leaps_is_believed_when_a_second_row_agrees() {
+    for leap_ms in [-80.0, -4000.0, 5e6] {
+        let mut rows = clocked(true, Link::Device);
+        let mut host_ns = 0;
+        let mut take = |time: f64, n: u64| {
+            host_ns += MS;
+            rows.take(&sample(time, Some(n)), host_ns)
+        };
+        for n in 0..5000 {
+            row(take(n as f64, n));
+        }
+        // One row is damaged.
+        assert_eq!(take(5000.0 + leap_ms, 5000), Verdict::Doubtful, "{leap_ms}");
+        assert_eq!(row(take(5001.0, 5001)), (5.001, 1, false));
+        // The clock is set.
+        assert_eq!(take(5002.0 + leap_ms, 5002), Verdict::Doubtful);
+        let (time_s, lost, begins) = row(take(5003.0 + leap_ms, 5003));
+        assert!(begins && lost == 0 && (time_s - 5.003).abs() <= 1e-9, "{leap_ms}: {time_s}");
+        let (time_s, lost, begins) = row(take(5004.0 + leap_ms, 5004));
+        assert!(!begins && lost == 0 && (time_s - 5.004).abs() <= 1e-9, "{leap_ms}: {time_s}");
+        let counts = rows.counts();
+        assert_eq!((counts.doubtful, counts.set_back, counts.lost), (2, 1, 1));
+    }
+}
+
+#[test]
+fn a_source_that_was_away_goes_on_or_begins_again() {
+    // The device ran on, or started again meanwhile: time goes on by what the host saw pass.
+    for (back_ms, back_n, lost) in [(3002.0, 3002, 1001), (20_000.0, 1, 0), (40.0, 2, 0)] {
+        let mut rows = clocked(true, Link::Device);
+        for n in 0..2001 {
+            row(rows.take(&sample(n as f64, Some(n)), n * MS));
+        }
+        rows.come_back();
+        let (time_s, now_lost, begins) = row(rows.take(&sample(back_ms, Some(back_n)), 3002 * MS));
+        assert_eq!((now_lost, begins), (lost, true), "{back_ms}");
+        assert!((time_s - 3.002).abs() <= 1e-9, "{back_ms}: {time_s}");
+        assert!(!row(rows.take(&sample(back_ms + 1.0, Some(back_n + 1)), 3003 * MS)).2);
+    }
+}
+
+#[test]
+fn a_device_that_starts_again_at_once_is_no_repetition() {
+    let mut rows = clocked(true, Link::Device);
+    for n in 0..3 {
+        row(rows.take(&sample(n as f64, Some(n)), n * MS));
+    }
+    // Its names came again.
+    rows.begin();
+    assert_eq!(row(rows.take(&sample(0.0, Some(0)), 3 * MS)), (0.003, 0, true));
+    assert!(!row(rows.take(&sample(1.0, Some(1)), 4 * MS)).2);
+    let mut counted = sequence(&[Use::Counter], Link::Device);
+    for n in 0..3 {
+        row(counted.take(&sample(f64::NAN, Some(n)), n * MS));
+    }
+    counted.begin();
+    assert_eq!(row(counted.take(&sample(f64::NAN, Some(0)), 3 * MS)), (0.003, 0, true));
+    assert_eq!(counted.counts().duplicates, 0);
+}

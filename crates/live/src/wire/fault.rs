@@ -1,0 +1,50 @@
+//! Why a stream cannot be decoded at all.
+
+/// Why a stream cannot be decoded at all.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum WireFault {
+    /// The columns have names that nobody has a use for.
+    #[error("line {line} names the columns {names}: {why}")]
+    Naming {
+        /// The line of names; 0 where they were given beforehand.
+        line: u64,
+        /// The names.
+        names: String,
+        /// What is wrong, and what to do.
+        why: String,
+    },
+    /// Rows come, and nothing says what their columns are.
+    #[error(
+        "line {line} holds numbers (`{text}`) and no line of names came before it: begin with a line such as \
+         time_us,n,led,P1,P2 (reset the device if it writes one when it starts), or give the names with --columns"
+    )]
+    NoNames {
+        /// A line of numbers.
+        line: u64,
+        /// How it begins.
+        text: String,
+    },
+    /// What comes is no text.
+    #[error(
+        "what comes is no text (it begins with `{text}`): this looks like a wrong baud rate; write the device's own, \
+         as in `?baud=115200`, or `form=frames` if it sends frames"
+    )]
+    Garbled {
+        /// How it begins.
+        text: String,
+    },
+    /// Bytes come and no frame is among them.
+    #[error(
+        "{bytes} bytes came and no whole frame (such as {text}): this looks like a wrong baud rate; write the \
+         device's own, as in `?baud=460800`, or `form=lines` if it sends lines"
+    )]
+    NoFrames {
+        /// How many bytes came.
+        bytes: u64,
+        /// Some of them, in hexadecimal.
+        text: String,
+    },
+    /// The stream ended before the names of its columns.
+    #[error("ends before a line of names; begin with a line such as time_s,P1,P2")]
+    Empty,
+}
