@@ -194,6 +194,27 @@ fn frames_come_over_a_serial_port() {
 }
 
 #[test]
+fn a_port_that_is_too_slow_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("port");
+    let plugged = device(&path);
+    let clock = HostClock::start();
+    let mut stream = open(&format!("serial:{}", path.display()), &clock).unwrap();
+    let mut log = Log::default();
+    send(&plugged, b"time_us,n,P1\n");
+    // A kilohertz, of which every sixth row comes, as 60 bytes at 115 200 baud would.
+    for n in (0..240_u32).filter(|n| n % 6 == 0 || *n < 20) {
+        send(&plugged, format!("{},{n},{:040}\n", n * 1000, n).as_bytes());
+    }
+    rows(&mut stream, &clock, &mut log, 56);
+    let notes = stream.certificate().notes;
+    assert!(
+        notes.len() == 1 && notes[0].contains("115200 baud carry") && notes[0].contains("device has 1000"),
+        "{notes:?}"
+    );
+}
+
+#[test]
 fn another_baud_rate_is_recognized() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("port");
