@@ -172,6 +172,13 @@ impl Sequence {
         self.last.as_ref().map_or(f64::NAN, |last| last.time_s + since_s(last))
     }
 
+    /// Rows that a program hands on came from a device.
+    pub fn doubt(&mut self) {
+        if self.link == Link::Pipe {
+            self.link = Link::Device;
+        }
+    }
+
     fn is_live(&self) -> bool {
         self.link != Link::Recording
     }

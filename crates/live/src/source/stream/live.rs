@@ -239,6 +239,9 @@ impl Stream {
 
     fn live_row(&mut self, sample: &Sample, now_ns: u64, on: &mut Sink<'_>) {
         let Some(sequence) = &mut self.sequence else { return };
+        if self.decoder.is_sealed() {
+            sequence.doubt();
+        }
         let set_back = sequence.counts().set_back;
         let Verdict::Row { time_s, lost, begins } = sequence.take(sample, now_ns) else { return };
         if sequence.counts().set_back != set_back {

@@ -229,6 +229,30 @@ fn another_baud_rate_is_recognized() {
 }
 
 #[test]
+fn rows_that_an_xor_misses_do_not_move_the_clock() {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let clock = HostClock::start();
+    let mut stream = open(&format!("tcp:{}", listener.local_addr().unwrap()), &clock).unwrap();
+    let (mut peer, _) = listener.accept().unwrap();
+    writeln!(peer, "time_us,n,P1").unwrap();
+    for n in 110_000..110_300 {
+        let body = format!("{},{n},{}", n * 1000, n % 7);
+        let line = format!("{body}*{:02X}\n", crate::wire::xor8(body.as_bytes()));
+        // Two equal digits more or less have the same XOR.
+        match n {
+            110_100 => write!(peer, "11{line}").unwrap(),
+            110_200 => write!(peer, "{}", &line[2..]).unwrap(),
+            _ => write!(peer, "{line}").unwrap(),
+        }
+    }
+    let mut log = Log::default();
+    rows(&mut stream, &clock, &mut log, 298);
+    let counts = stream.certificate().counts;
+    assert_eq!((counts.doubtful, counts.lost, counts.set_back), (2, 2, 0));
+    assert!(log.rows.windows(2).all(|pair| pair[1].time_s - pair[0].time_s <= 0.0021));
+}
+
+#[test]
 fn ports_that_are_not_there_are_named() {
     let said = open("serial:/dev/ttyNOWHERE", &HostClock::start()).err().unwrap().to_string();
     assert!(said.contains("serial:/dev/ttyNOWHERE: does not exist; there "), "{said}");
