@@ -136,7 +136,8 @@ fn a_serial_port_is_unplugged_and_plugged_in_again() {
     drop(plugged);
     let gone = Instant::now();
     until(&mut stream, &clock, &mut log, Condition::Reconnecting);
-    assert!(gone.elapsed() < Duration::from_millis(100), "{:?}", gone.elapsed());
+    // Seen at once: this allows for a machine that sleeps.
+    assert!(gone.elapsed() < Duration::from_secs(1), "{:?}", gone.elapsed());
     // It comes back within a row, and starts again.
     let plugged = device(&path);
     let back = Instant::now();
