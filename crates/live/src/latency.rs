@@ -3,7 +3,7 @@
 use hdrhistogram::Histogram;
 use serde::Serialize;
 
-/// The longest time that is told from longer ones, nanoseconds: a minute.
+/// The longest time that is known from longer ones, nanoseconds: a minute.
 const MOST_NS: u64 = 60_000_000_000;
 
 /// A histogram of times, to three digits.

@@ -72,6 +72,7 @@ void setup() {
   Serial.begin(BAUD);
   pinMode(LED_PIN, OUTPUT);
   delay(200);
+  Serial.write("\r\n", 2);  // ends what the chip's own loader sent
   sendNames();
   due_us = micros() + PERIOD_US;
 }

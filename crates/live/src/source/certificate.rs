@@ -39,6 +39,8 @@ pub struct StreamCertificate {
     pub states_left_out: u64,
     /// The line between the device's clock and the host's; none where it has none, or rows do not come live.
     pub clock: Option<ClockFit>,
+    /// What is unusual, and what to do about it.
+    pub notes: Vec<String>,
 }
 
 /// Whose clock the rows' times are of.

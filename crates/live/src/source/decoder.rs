@@ -152,6 +152,15 @@ impl Decoder {
         if let Self::Lines(lines) = self { lines.garbled() } else { None }
     }
 
+    /// Whether rows carry checksums: a device makes them, for a link that may damage rows.
+    pub(in crate::source) fn is_sealed(&self) -> bool {
+        match self {
+            Self::Lines(lines) => lines.checksum().is_some(),
+            Self::Frames(_) => true,
+            Self::Table(_) => false,
+        }
+    }
+
     pub(in crate::source) fn names(&self) -> &[String] {
         match self {
             Self::Lines(lines) => lines.names(),

@@ -68,7 +68,7 @@ impl Counter {
         };
         match ahead {
             Some(0) if still || rows.is_none() => Count::Again,
-            // A counter that stands.
+            // A counter that does not count.
             Some(0) => Count::Next { lost: 0 },
             Some(ahead) if fits(ahead, rows) || back > LATE_ROWS || back == 0 => self.on(count, ahead),
             _ if (1..=LATE_ROWS).contains(&back) => {

@@ -24,7 +24,8 @@ const CORNERS: usize = 1024;
 const PIECES: usize = 32;
 
 /// Standard errors in units of the pieces' mean height above the line over their number (of the drift: and over the
-/// window's length): *measured*, over 2000 windows of exponential and uniform delays each.
+/// window's length): *measured*, over 200 windows of exponential and of uniform delays, whose errors are 0.9 to 1.04
+/// times these.
 const OFFSET_ERROR: f64 = 2.5;
 const DRIFT_ERROR: f64 = 8.0;
 
@@ -270,14 +271,17 @@ mod tests {
     #[test]
     fn the_interval_holds_the_truth_and_the_drift_is_known() {
         for (name, delay_s) in DELAYS {
+            let (mut worst_ppm, mut widest_s) = (0.0_f64, 0.0_f64);
             for seed in 0..50 {
                 let drift_ppm = seed as f64 * 4.0 - 100.0;
                 let (fit, offset_s) = fitted(seed, 60.0, drift_ppm, delay_s);
                 assert!(fit.offset_low_s <= offset_s && offset_s <= fit.offset_s + 1e-9, "{name} {seed}: {fit:?}");
-                // Measured: at most 0.05 ppm and 8 us.
-                assert!((fit.drift_ppm - drift_ppm).abs() <= 0.2, "{name} {seed}: {fit:?} for {drift_ppm}");
-                assert!(fit.offset_s - fit.offset_low_s <= 3e-5, "{name} {seed}: {fit:?}");
+                worst_ppm = worst_ppm.max((fit.drift_ppm - drift_ppm).abs());
+                widest_s = widest_s.max(fit.offset_s - fit.offset_low_s);
             }
+            // Measured: 0.038 ppm and 3.9 us, for both.
+            println!("{name}: drift within {worst_ppm:.3} ppm, offset within {:.1} us", widest_s * 1e6);
+            assert!(worst_ppm <= 0.2 && widest_s <= 3e-5, "{name}: {worst_ppm} ppm, {widest_s} s");
         }
     }
 

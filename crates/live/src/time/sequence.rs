@@ -172,6 +172,13 @@ impl Sequence {
         self.last.as_ref().map_or(f64::NAN, |last| last.time_s + since_s(last))
     }
 
+    /// Rows that a program hands on came from a device.
+    pub fn doubt(&mut self) {
+        if self.link == Link::Pipe {
+            self.link = Link::Device;
+        }
+    }
+
     fn is_live(&self) -> bool {
         self.link != Link::Recording
     }
@@ -213,6 +220,9 @@ impl Sequence {
         }
         let lost = match self.count(sample, device_s, step_s.or(host_s)) {
             Ok(lost) => lost,
+            Err(Count::SetBack) if matches!(device_s, Device::At(_)) => {
+                return self.count_set_back(sample, (device_s, step_s), host_ns, before);
+            }
             Err(Count::SetBack) => return self.set_back(sample, host_ns, host_s),
             Err(Count::Again) => {
                 self.counts.duplicates += 1;
@@ -274,6 +284,27 @@ impl Sequence {
             Count::Next { lost } => Ok(lost),
             other => Err(other),
         }
+    }
+
+    /// The counter began again and the clock went on; or one count is damaged, where the link may damage it.
+    fn count_set_back(
+        &mut self,
+        sample: &Sample,
+        (device_s, step_s): (Device, Option<f64>),
+        host_ns: u64,
+        before: Option<(Unwrap, f64)>,
+    ) -> Verdict {
+        if self.link == Link::Device && !self.begins && self.doubt.is_none() {
+            (self.clock, self.doubt) = (before, Some((sample.time, host_ns)));
+            self.counts.doubtful += 1;
+            return Verdict::Doubtful;
+        }
+        self.counts.set_back += 1;
+        self.begins = true;
+        if let Some(count) = sample.counter {
+            self.counter.set(count);
+        }
+        self.on(device_s, step_s, 0, host_ns)
     }
 
     /// The device's clock or counter began again: the stream's time goes on by what the host saw pass, or a period.

@@ -107,6 +107,30 @@ fn a_clock_that_leaps_is_believed_when_a_second_row_agrees() {
 }
 
 #[test]
+fn a_damaged_count_costs_its_row_and_leaves_the_clock() {
+    for (link, doubtful) in [(Link::Device, 1), (Link::Recording, 0)] {
+        let mut rows = clocked(true, link);
+        for n in 0..5000 {
+            let count = if n == 3000 { 7 } else { n };
+            let verdict = rows.take(&sample(n as f64, Some(count)), n * MS);
+            if n == 3000 && link == Link::Device {
+                assert_eq!(verdict, Verdict::Doubtful);
+            } else {
+                assert_eq!(row(verdict).0, n as f64 / 1e3);
+            }
+        }
+        // A recording's counter begins again and comes back.
+        let counts = rows.counts();
+        assert_eq!((counts.doubtful, counts.set_back), (doubtful, 1 - doubtful), "{link:?}");
+    }
+    let mut rows = clocked(true, Link::Device);
+    let verdicts: Vec<Verdict> = (0..2000).map(|n| rows.take(&sample(n as f64, Some(n % 1000)), n * MS)).collect();
+    assert_eq!(verdicts[1000], Verdict::Doubtful);
+    assert_eq!(row(verdicts[1001]), (1.001, 0, true));
+    assert_eq!(row(verdicts[1999]), (1.999, 0, false));
+}
+
+#[test]
 fn a_source_that_was_away_goes_on_or_begins_again() {
     // The device ran on, or started again meanwhile: time goes on by what the host saw pass.
     for (back_ms, back_n, lost) in [(3002.0, 3002, 1001), (20_000.0, 1, 0), (40.0, 2, 0)] {

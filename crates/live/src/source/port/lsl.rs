@@ -32,8 +32,8 @@ pub(in crate::source) fn open(query: &LslQuery) -> Result<(Port, Vec<String>), S
         query.kind.as_deref().map(Query::stream_type),
         query.source_id.as_deref().map(Query::source_id),
     ];
-    let wanted = parts.into_iter().flatten().reduce(Query::and).unwrap_or_else(Query::all);
-    let found = resolve_all(&wanted, ANSWER).map_err(failed)?;
+    let query = parts.into_iter().flatten().reduce(Query::and).unwrap_or_else(Query::all);
+    let found = resolve_all(&query, ANSWER).map_err(failed)?;
     let info = match &found[..] {
         [one] => one,
         [] => {

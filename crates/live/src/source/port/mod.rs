@@ -13,7 +13,7 @@ use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::Errno;
 
 pub(in crate::source) use connector::Connector;
-pub(in crate::source) use serial::{open_serial, the_only_port};
+pub(in crate::source) use serial::{hurry, open_serial, the_only_port};
 pub(in crate::source) use socket::{accept, bind_udp, connect_tcp, listen};
 
 /// An open port; reading it never waits.

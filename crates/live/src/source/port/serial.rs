@@ -38,6 +38,21 @@ pub(in crate::source) fn open_serial(path: &Path, baud: u32) -> Result<Port, Str
     }
 }
 
+/// Asks the USB bridge of a port to hand on bytes at once rather than after 16 ms, as FTDI's do; what to do where it
+/// may not be asked.
+pub(in crate::source) fn hurry(path: &Path, tty: &Path) -> Option<String> {
+    let name = path.canonicalize().ok()?.file_name()?.to_owned();
+    let timer = tty.join(name).join("device/latency_timer");
+    let holds_ms: u32 = std::fs::read_to_string(&timer).ok()?.trim().parse().ok()?;
+    if holds_ms <= 1 || std::fs::write(&timer, "1").is_ok() {
+        return None;
+    }
+    Some(format!(
+        "the port's USB bridge holds bytes for up to {holds_ms} ms and may not be asked to hurry; as root: echo 1 > {}",
+        timer.display()
+    ))
+}
+
 fn words(why: Errno, dev: &Path) -> String {
     const FORBIDDEN: &str = "is not permitted; add yourself to the group that owns it (`ls -l` shows it, often \
                              dialout: `sudo usermod -aG dialout $USER`, then log in again), or let a udev rule do \
@@ -107,6 +122,19 @@ mod tests {
         std::fs::create_dir_all(dev.path().join("serial/by-id")).unwrap();
         std::fs::write(dev.path().join("serial/by-id/usb-nail"), "").unwrap();
         assert_eq!(the_only_port(dev.path()).unwrap(), dev.path().join("serial/by-id/usb-nail"));
+    }
+
+    #[test]
+    fn bridges_are_asked_to_hurry() {
+        let folder = tempfile::tempdir().unwrap();
+        let (port, tty) = (folder.path().join("ttyUSB0"), folder.path().join("tty"));
+        std::fs::write(&port, "").unwrap();
+        assert_eq!(hurry(&port, &tty), None, "no such bridge");
+        let device = tty.join("ttyUSB0/device");
+        std::fs::create_dir_all(&device).unwrap();
+        std::fs::write(device.join("latency_timer"), "16\n").unwrap();
+        assert_eq!(hurry(&port, &tty), None);
+        assert_eq!(std::fs::read_to_string(device.join("latency_timer")).unwrap(), "1");
     }
 
     #[test]

@@ -9,7 +9,7 @@ use crate::source::address::Place;
 use crate::source::fault::SourceFault;
 use crate::source::health::{Condition, FIRST_ROW_NS};
 use crate::source::port::{
-    Connector, Port, Received, accept, bind_udp, connect_tcp, listen, open_serial, the_only_port,
+    Connector, Port, Received, accept, bind_udp, connect_tcp, hurry, listen, open_serial, the_only_port,
 };
 use crate::time::{Link, Verdict};
 use crate::wire::Row;
@@ -29,6 +29,10 @@ pub(super) struct Live {
     buffer: Vec<u8>,
     /// When the port was opened, nanoseconds.
     opened_ns: u64,
+    /// What is unusual about the port.
+    pub(super) notes: Vec<String>,
+    baud: Option<u32>,
+    bytes: u64,
     /// What comes first may be the end of a row.
     pub(super) within: bool,
 }
@@ -50,16 +54,16 @@ impl Live {
     /// What is wrong, and what to do.
     pub(super) fn open(place: &Place, now_ns: u64) -> Result<Self, String> {
         let no_thread = |why: std::io::Error| format!("cannot be watched ({why})");
-        let mut within = false;
         let (port, again) = match place {
             Place::Stdin => (Some(Port::Stdin), Again::Never),
             Place::Serial { path, baud } => {
                 let path = path.clone().map_or_else(|| the_only_port(Path::new("/dev")), Ok)?;
                 let port = open_serial(&path, *baud)?;
+                let notes = hurry(&path, Path::new("/sys/class/tty")).into_iter().collect();
                 let baud = *baud;
-                within = true;
                 let connector = Connector::start(move || open_serial(&path, baud)).map_err(no_thread)?;
-                (Some(port), Again::Connect(connector))
+                let live = Self::of(Some(port), Again::Connect(connector), now_ns);
+                return Ok(Self { notes, baud: Some(baud), within: true, ..live });
             }
             Place::Tcp { to, once: true } => (Some(connect_tcp(to)?), Again::Never),
             Place::Tcp { to, once: false } => {
@@ -82,15 +86,41 @@ impl Live {
             }
             Place::File { .. } | Place::Phantom { .. } => return Err("is no port".to_owned()),
         };
-        Ok(Self { within, ..Self::of(port, again, now_ns) })
+        Ok(Self::of(port, again, now_ns))
     }
 
     fn of(port: Option<Port>, again: Again, now_ns: u64) -> Self {
-        Self { port, again, names: None, buffer: vec![0; PIECE], opened_ns: now_ns, within: false }
+        Self {
+            port,
+            again,
+            names: None,
+            buffer: vec![0; PIECE],
+            opened_ns: now_ns,
+            notes: Vec::new(),
+            baud: None,
+            bytes: 0,
+            within: false,
+        }
     }
 
     pub(super) fn is_open(&self) -> bool {
         self.port.is_some()
+    }
+
+    /// That a serial port is too slow for its rows, where some were lost.
+    pub(super) fn overload(&self, rows: u64, lost: u64, period_s: Option<f64>) -> Option<String> {
+        // A byte takes ten bits; bridges and devices pause between some.
+        const BITS: f64 = 10.0;
+        const NEAR: f64 = 0.9;
+        let (baud, period_s) = (f64::from(self.baud?), period_s?);
+        let bytes_a_row = self.bytes as f64 / rows.max(1) as f64;
+        let (carried, sent) = (baud / (BITS * bytes_a_row), 1.0 / period_s);
+        (lost > 0 && carried < sent / NEAR).then(|| {
+            format!(
+                "{lost} rows were lost: {baud} baud carry {carried:.0} rows of {bytes_a_row:.0} bytes a second, and \
+                 the device has {sent:.0}; raise the baud rate on both sides, or send frames (`form=frames`)"
+            )
+        })
     }
 
     pub(super) fn link(&self) -> Link {
@@ -162,6 +192,7 @@ impl Stream {
                 Received::Nothing => break,
                 Received::Gone => return self.gone(now_ns, on),
                 Received::Bytes(count) => {
+                    live.bytes += count as u64;
                     let buffer = std::mem::take(&mut live.buffer);
                     let decoded = self.decode(&buffer[..count], datagrams, now_ns, on);
                     if let Feed::Live(live) = &mut self.feed {
@@ -208,6 +239,9 @@ impl Stream {
 
     fn live_row(&mut self, sample: &Sample, now_ns: u64, on: &mut Sink<'_>) {
         let Some(sequence) = &mut self.sequence else { return };
+        if self.decoder.is_sealed() {
+            sequence.doubt();
+        }
         let set_back = sequence.counts().set_back;
         let Verdict::Row { time_s, lost, begins } = sequence.take(sample, now_ns) else { return };
         if sequence.counts().set_back != set_back {

@@ -52,7 +52,7 @@ pub enum Event<'a> {
     End,
 }
 
-/// Who is told what happens.
+/// What is called with what happens.
 type Sink<'s> = dyn FnMut(Event<'_>) + 's;
 
 /// A stream of rows.
@@ -279,7 +279,17 @@ impl Stream {
             states: states.to_vec(),
             states_left_out,
             clock: self.clock(),
+            notes: self.notes(),
         }
+    }
+
+    /// What is unusual about the stream, and what to do about it.
+    #[must_use]
+    pub fn notes(&self) -> Vec<String> {
+        let Feed::Live(live) = &self.feed else { return Vec::new() };
+        let counts = self.sequence.as_ref().map(Sequence::counts).unwrap_or_default();
+        let load = live.overload(counts.rows, counts.lost + counts.lost_by_time, self.period_s());
+        live.notes.iter().cloned().chain(load).collect()
     }
 
     /// The columns are known.

@@ -136,7 +136,8 @@ fn a_serial_port_is_unplugged_and_plugged_in_again() {
     drop(plugged);
     let gone = Instant::now();
     until(&mut stream, &clock, &mut log, Condition::Reconnecting);
-    assert!(gone.elapsed() < Duration::from_millis(100), "{:?}", gone.elapsed());
+    // Seen at once: this allows for a machine that sleeps.
+    assert!(gone.elapsed() < Duration::from_secs(1), "{:?}", gone.elapsed());
     // It comes back within a row, and starts again.
     let plugged = device(&path);
     let back = Instant::now();
@@ -194,6 +195,27 @@ fn frames_come_over_a_serial_port() {
 }
 
 #[test]
+fn a_port_that_is_too_slow_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("port");
+    let plugged = device(&path);
+    let clock = HostClock::start();
+    let mut stream = open(&format!("serial:{}", path.display()), &clock).unwrap();
+    let mut log = Log::default();
+    send(&plugged, b"time_us,n,P1\n");
+    // A kilohertz, of which every sixth row comes, as 60 bytes at 115 200 baud would.
+    for n in (0..240_u32).filter(|n| n % 6 == 0 || *n < 20) {
+        send(&plugged, format!("{},{n},{:040}\n", n * 1000, n).as_bytes());
+    }
+    rows(&mut stream, &clock, &mut log, 56);
+    let notes = stream.certificate().notes;
+    assert!(
+        notes.len() == 1 && notes[0].contains("115200 baud carry") && notes[0].contains("device has 1000"),
+        "{notes:?}"
+    );
+}
+
+#[test]
 fn another_baud_rate_is_recognized() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("port");
@@ -205,6 +227,30 @@ fn another_baud_rate_is_recognized() {
     let said = run(&mut stream, &clock, &mut Log::default(), |_| false).unwrap_err().to_string();
     assert!(said.contains("wrong baud rate") && said.contains("?baud="), "{said}");
     assert!(stream.ended());
+}
+
+#[test]
+fn rows_that_an_xor_misses_do_not_move_the_clock() {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let clock = HostClock::start();
+    let mut stream = open(&format!("tcp:{}", listener.local_addr().unwrap()), &clock).unwrap();
+    let (mut peer, _) = listener.accept().unwrap();
+    writeln!(peer, "time_us,n,P1").unwrap();
+    for n in 110_000..110_300 {
+        let body = format!("{},{n},{}", n * 1000, n % 7);
+        let line = format!("{body}*{:02X}\n", crate::wire::xor8(body.as_bytes()));
+        // Two equal digits more or less have the same XOR.
+        match n {
+            110_100 => write!(peer, "11{line}").unwrap(),
+            110_200 => write!(peer, "{}", &line[2..]).unwrap(),
+            _ => write!(peer, "{line}").unwrap(),
+        }
+    }
+    let mut log = Log::default();
+    rows(&mut stream, &clock, &mut log, 298);
+    let counts = stream.certificate().counts;
+    assert_eq!((counts.doubtful, counts.lost, counts.set_back), (2, 2, 0));
+    assert!(log.rows.windows(2).all(|pair| pair[1].time_s - pair[0].time_s <= 0.0021));
 }
 
 #[test]
