@@ -246,10 +246,8 @@ fn standard_errors(points: &[Point], gradient: impl Fn(f64) -> [f64; 3], varianc
     let determinant = (0..3).map(|k| normal[0][k] * minor(&normal, k)).sum::<f64>();
     let scale = (0..3).map(|k| normal[k][k]).product::<f64>();
     // Columns that are one to twelve digits determine nothing.
-    if !(determinant > 1e-12 * scale) {
-        return None;
-    }
-    Some([0, 1, 2].map(|i| (variance * cofactor(i) / determinant).max(0.0).sqrt()))
+    let determined = determinant > 1e-12 * scale;
+    determined.then(|| [0, 1, 2].map(|i| (variance * cofactor(i) / determinant).max(0.0).sqrt()))
 }
 
 /// The cofactor of the first row's cell `k`.
