@@ -24,6 +24,7 @@ pub mod hemodynamics;
 pub mod input;
 pub mod job;
 pub mod labelme;
+pub mod live;
 pub mod log;
 pub mod nail;
 pub mod npy;

@@ -9,13 +9,14 @@ use regex::Regex;
 use crate::util::repository;
 
 /// The library's rooms, from the ground up: a room knows those of lower floors, and none of its own beside it.
-const FLOORS: [&[&str]; 8] = [
+const FLOORS: [&[&str]; 9] = [
     &["flexion", "input", "nail", "stages", "timebase", "words"],
     &["files", "labelme", "npy", "photograph", "table", "toml_file", "video", "vision"],
     &["job"],
     &["clock", "figure", "log"],
     &["align", "camera", "hemodynamics", "photo", "posture", "predictor"],
     &["phantom"],
+    &["live"],
     &["doctor", "tradeoff"],
     &["pipeline"],
 ];

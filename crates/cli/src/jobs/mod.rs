@@ -3,6 +3,7 @@
 pub(crate) mod align;
 pub(crate) mod camera;
 pub(crate) mod hemodynamics;
+pub(crate) mod live;
 pub(crate) mod phantom;
 pub(crate) mod photos;
 pub(crate) mod posture;

@@ -96,6 +96,15 @@ pub enum NoCurve {
 }
 
 impl Law {
+    /// The law as it is written.
+    #[must_use]
+    pub fn formula(self) -> &'static str {
+        match self {
+            Self::Exponential => "a + b exp(-(n - 1) / c)",
+            Self::Power => "a + b n^-c",
+        }
+    }
+
     /// The share of the rise that is left at trial `n`, 1 at the first.
     fn left(self, n: f64, c: f64) -> f64 {
         match self {

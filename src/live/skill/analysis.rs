@@ -1,0 +1,94 @@
+//! One trial's figures.
+
+use lunula_live::skill::{Contact, Figures, Force, MOST_POINTS, Thresholds, distance, ranks, resampled};
+
+use super::SkillOptions;
+use super::read::Trial;
+use super::report::{FingerFigures, PostureFigures, TrialFigures};
+
+/// The trial that others are compared with.
+#[derive(Debug, Clone)]
+pub(super) struct Reference {
+    /// What results call it.
+    pub(super) name: String,
+    trial: Trial,
+    /// From the first contact of any finger to the last, seconds; none without contact.
+    span_s: Option<[f64; 2]>,
+}
+
+impl Reference {
+    pub(super) fn of(name: String, trial: Trial, thresholds: &Thresholds) -> Self {
+        let touched: Vec<Vec<Contact>> =
+            trial.fingers.iter().map(|finger| Figures::of(&finger.force, thresholds).1).collect();
+        Self { name, span_s: span_s(&touched), trial }
+    }
+
+    /// Whether it touches at all.
+    pub(super) fn touches(&self) -> bool {
+        self.span_s.is_some()
+    }
+
+    /// How far a finger's force is from the same finger's here.
+    fn distance(&self, finger: &str, force: &Force, span_s: Option<[f64; 2]>, band: f64) -> Option<f64> {
+        let own = &self.trial.fingers.iter().find(|own| own.name == finger)?.force;
+        let (spans, forces) = ([self.span_s?, span_s?], [own, force]);
+        let longest_s = spans.iter().map(|[from_s, to_s]| to_s - from_s).fold(0.0, f64::max);
+        let period_s = own.period_s()?.max(force.period_s()?).max(longest_s / (MOST_POINTS - 1) as f64);
+        let course = |k: usize| resampled(forces[k], spans[k][0], spans[k][1], period_s);
+        distance(&course(0)?, &course(1)?, band)
+    }
+}
+
+/// From the first contact of any finger to the last.
+fn span_s(touched: &[Vec<Contact>]) -> Option<[f64; 2]> {
+    let all = || touched.iter().flatten();
+    let from_s = all().map(|contact| contact.from_s).reduce(f64::min)?;
+    Some([from_s, all().map(|contact| contact.to_s).reduce(f64::max)?])
+}
+
+/// The figures of a trial, and each finger's contacts.
+pub(super) fn figures(
+    recording: &str,
+    trial: &Trial,
+    reference: Option<&Reference>,
+    options: &SkillOptions,
+) -> (TrialFigures, Vec<Vec<Contact>>) {
+    let thresholds = options.thresholds();
+    let (figures, touched): (Vec<Figures>, Vec<Vec<Contact>>) =
+        trial.fingers.iter().map(|finger| Figures::of(&finger.force, &thresholds)).unzip();
+    let times_s = trial.fingers.first().map_or(&[][..], |finger| &finger.force.time_s);
+    let [from_s, to_s] = [times_s.first(), times_s.last()].map(|time_s| time_s.copied().unwrap_or(f64::NAN));
+    let both: Vec<(&Figures, &[Contact])> = figures.iter().zip(&touched).map(|(a, b)| (a, b.as_slice())).collect();
+    let ranks = ranks(&both);
+    let span_s = span_s(&touched);
+    let band = 0.01 * options.band_percent;
+    let fingers = trial.fingers.iter().zip(figures).zip(&ranks).map(|((finger, figures), rank)| FingerFigures {
+        finger: finger.name.clone(),
+        onset_s: figures.first_s.map(|first_s| first_s - from_s),
+        rank: *rank,
+        distance_n: reference.and_then(|one| one.distance(&finger.name, &finger.force, span_s, band)),
+        figures,
+    });
+    let fingers: Vec<FingerFigures> = fingers.collect();
+    let first: Vec<&str> = fingers.iter().filter(|one| one.rank == Some(1)).map(|one| one.finger.as_str()).collect();
+    let posture = trial.fingers.iter().flat_map(|finger| {
+        finger.angles.iter().map(|(angle, over_rows, [lowest, highest])| PostureFigures {
+            finger: finger.name.clone(),
+            angle: angle.clone(),
+            over_rows: *over_rows,
+            lowest: *lowest,
+            highest: *highest,
+        })
+    });
+    let figures = TrialFigures {
+        recording: recording.to_owned(),
+        subject: trial.subject.clone(),
+        trial: trial.trial.clone(),
+        from_s,
+        seconds: to_s - from_s,
+        first: (!first.is_empty()).then(|| first.join("+")),
+        posture: posture.collect(),
+        fingers,
+    };
+    (figures, touched)
+}
