@@ -1,7 +1,7 @@
 //! Means of people or trials, how they differ, and what that says of the mean.
 //!
-//! In: independent values, one per person or trial. Out: their mean, standard deviation (n - 1) and the 95 % interval of
-//! the mean by Student's t. Values that are not finite are not known, and not counted.
+//! In: independent values, one per person or trial. Out: their mean, standard deviation (n - 1) and the 95 % interval
+//! of the mean by Student's t. Values that are not finite are not known, and not counted.
 
 use serde::Serialize;
 

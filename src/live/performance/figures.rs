@@ -1,5 +1,6 @@
 //! Pictures: each operator's trials (Fig. 123), and the means with their standard deviation and curve (Fig. 124).
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use super::read::Trials;
@@ -15,19 +16,28 @@ const PANEL: (u32, u32) = (620, 340);
 pub(super) const MOST_PANELS: usize = 12;
 /// Points of a curve from one trial to the next.
 const FINE: u32 = 20;
+/// More numbers of trials do not fit below a panel.
+const MOST_NUMBERED: usize = 20;
 /// Methods lie so far beside each other, trials.
 const ASIDE: f64 = 0.08;
 
 const TRIAL: &str = "trial";
 const TIME: &str = "time per decision, s";
 
-fn chart(title: String, items: Vec<Item>, height: u32) -> Chart {
+/// A chart over these trials; whole numbers are below its axis, while there is room for them.
+fn chart(title: String, trials: &BTreeSet<u32>, mut items: Vec<Item>, height: u32) -> Chart {
     let axis = |label: &str| Axis { label: label.to_owned() };
+    if let (Some(&first), Some(&last)) = (trials.first(), trials.last())
+        && ((last - first) as usize) < MOST_NUMBERED
+    {
+        items.push(Item::Names((first..=last).map(|trial| (f64::from(trial), trial.to_string())).collect()));
+    }
     Chart { title, x: axis(TRIAL), y: axis(TIME), from_zero: true, items, height }
 }
 
 /// One panel per operator, a line per method.
 pub(super) fn draw_operators(trials: &Trials, png: &Path, svg: &Path) -> anyhow::Result<()> {
+    let numbers: BTreeSet<u32> = trials.rows.iter().map(|row| row.trial).collect();
     // All panels have the same axes.
     let room: Vec<[f64; 2]> = trials.rows.iter().map(|row| [f64::from(row.trial), row.decision_s]).collect();
     let panel = |(operator, name): (usize, &String)| {
@@ -41,7 +51,7 @@ pub(super) fn draw_operators(trials: &Trials, png: &Path, svg: &Path) -> anyhow:
             items.push(Item::Line { name: Some(word.clone()), runs, colour: method, width: 2 });
             items.push(Item::Dots { name: None, points, colour: method });
         }
-        chart(format!("Operator {name}"), items, PANEL.1)
+        chart(format!("Operator {name}"), &numbers, items, PANEL.1)
     };
     let panels: Vec<Chart> = trials.operators.iter().enumerate().take(MOST_PANELS).map(panel).collect();
     draw_panels(&panels, COLUMNS, PANEL.0, png, svg)
@@ -56,7 +66,8 @@ pub(super) fn draw_methods(figures: &PerformanceFigures, png: &Path, svg: &Path)
         1 => "One operator".to_owned(),
         operators => format!("Mean of {operators} operators, with standard deviation"),
     };
-    draw_charts(&[chart(title, items.collect(), HEIGHT)], WIDTH, png, svg)
+    let numbers = figures.methods.iter().flat_map(|method| method.trials.iter().map(|of| of.trial)).collect();
+    draw_charts(&[chart(title, &numbers, items.collect(), HEIGHT)], WIDTH, png, svg)
 }
 
 fn method_items(method: &MethodFigures, colour: usize, aside: f64) -> Vec<Item> {

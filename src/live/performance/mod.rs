@@ -1,8 +1,8 @@
 //! `lunula performance`: time per decision and how it is learned (thesis, appendix C, Fig. 123 and 124).
 //!
 //! In: a table `operator,method,trial,time_s` and the course ([`PerformanceOptions`]). Out, in a folder:
-//! `performance.json`, the [`PerformanceFigures`]; `table.csv`, the means of each method and trial; `rows.csv`, the time
-//! per decision of each row; pictures; `run.json`, the [`PerformanceReport`] with places and times.
+//! `performance.json`, the [`PerformanceFigures`]; `table.csv`, the means of each method and trial; `rows.csv`, the
+//! time per decision of each row; pictures; `run.json`, the [`PerformanceReport`] with places and times.
 //!
 //! Time per decision is (time - path / speed) / decisions. No figures of the thesis' experiment are published: what can
 //! be repeated is its analysis, and its two statements are checked as figures on any data. (Fig. 123 shows four

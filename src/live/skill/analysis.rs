@@ -14,18 +14,25 @@ pub(super) struct Reference {
     trial: Trial,
     /// From the first contact of any finger to the last, seconds; none without contact.
     span_s: Option<[f64; 2]>,
+    /// Whether it is one of the recordings' trials, which is not compared with itself.
+    is_own: bool,
 }
 
 impl Reference {
-    pub(super) fn of(name: String, trial: Trial, thresholds: &Thresholds) -> Self {
+    pub(super) fn of(name: String, trial: Trial, is_own: bool, thresholds: &Thresholds) -> Self {
         let touched: Vec<Vec<Contact>> =
             trial.fingers.iter().map(|finger| Figures::of(&finger.force, thresholds).1).collect();
-        Self { name, span_s: span_s(&touched), trial }
+        Self { name, span_s: span_s(&touched), trial, is_own }
     }
 
     /// Whether it touches at all.
     pub(super) fn touches(&self) -> bool {
         self.span_s.is_some()
+    }
+
+    /// Whether it is this very trial.
+    fn is(&self, trial: &Trial) -> bool {
+        self.is_own && self.trial.subject == trial.subject && self.trial.trial == trial.trial
     }
 
     /// How far a finger's force is from the same finger's here.
@@ -62,6 +69,7 @@ pub(super) fn figures(
     let ranks = ranks(&both);
     let span_s = span_s(&touched);
     let band = 0.01 * options.band_percent;
+    let reference = reference.filter(|one| !one.is(trial));
     let fingers = trial.fingers.iter().zip(figures).zip(&ranks).map(|((finger, figures), rank)| FingerFigures {
         finger: finger.name.clone(),
         onset_s: figures.first_s.map(|first_s| first_s - from_s),

@@ -17,6 +17,8 @@ const PANEL_PX: u32 = 220;
 /// Of the summary's panels.
 const COLUMNS: usize = 2;
 const SUMMARY: (u32, u32) = (640, 320);
+/// More numbers of trials do not fit below a panel.
+const MOST_NUMBERED: usize = 20;
 
 /// The curves of a trial, thinned.
 #[derive(Debug, Clone)]
@@ -43,7 +45,7 @@ impl Drawn {
         };
         let whose = trial.subject.as_ref().map_or(String::new(), |subject| format!("{subject}, "));
         Self {
-            title: format!("{whose}trial {}", trial.trial),
+            title: format!("{whose}trial {}: pressing force", trial.trial),
             fingers: trial.fingers.iter().zip(touched).map(finger).collect(),
         }
     }
@@ -97,9 +99,16 @@ pub(super) fn draw_summary(trials: &[TrialFigures], png: &Path, svg: &Path) -> a
     draw_panels(&charts, COLUMNS, SUMMARY.0, png, svg)
 }
 
+/// Whole numbers below the axis, while there is room for them.
+fn numbers_of_trials(trials: &[TrialFigures], people: &[Option<String>]) -> Option<Item> {
+    let of = |subject: &Option<String>| trials.iter().filter(|trial| trial.subject == *subject).count();
+    let most = people.iter().map(of).max().unwrap_or(0);
+    (most <= MOST_NUMBERED).then(|| Item::Names((1..=most).map(|k| (k as f64, k.to_string())).collect()))
+}
+
 fn chart(trials: &[TrialFigures], measure: &Measure) -> Chart {
     let people = summary::people(trials);
-    let mut items = Vec::new();
+    let mut items: Vec<Item> = numbers_of_trials(trials, &people).into_iter().collect();
     for (colour, finger) in summary::fingers(trials).into_iter().enumerate() {
         let mut points = Vec::new();
         for subject in &people {

@@ -183,7 +183,9 @@ fn reference(inputs: &SkillInputs, options: &SkillOptions) -> Result<Option<Refe
             }
         }
     }
-    Ok(matching.pop().map(|(name, trial)| Reference::of(name, trial, &options.thresholds())))
+    Ok(matching
+        .pop()
+        .map(|(name, trial)| Reference::of(name, trial, inputs.reference.is_none(), &options.thresholds())))
 }
 
 /// Reads a recording and looks at its trials.
@@ -245,8 +247,8 @@ fn said(done: &[(&SkillRecording, Done)], reference: Option<&Reference>) -> (Vec
     let mut warnings: Vec<String> = done.iter().flat_map(|(_, one)| one.warnings.iter().cloned()).collect();
     if done.iter().any(|(_, one)| one.gated) {
         notes.push(
-            "column `contact`: forces are those of rows in touch, angles those of rows in bending; they are never known \
-             at once (5.1.2)"
+            "column `contact`: forces are those of rows in touch, angles those of rows in bending; they are never \
+             known at once (5.1.2)"
                 .to_owned(),
         );
     }
@@ -268,9 +270,8 @@ fn said(done: &[(&SkillRecording, Done)], reference: Option<&Reference>) -> (Vec
     }
     let cut: usize = trials().flat_map(|trial| &trial.fingers).map(|one| one.figures.cut).sum();
     if cut > 0 {
-        notes.push(format!(
-            "{cut} contacts begin or end in a gap, or before or after their trial: one without a beginning is no press"
-        ));
+        let contacts = if cut == 1 { "1 contact begins or ends" } else { &format!("{cut} contacts begin or end") };
+        notes.push(format!("{contacts} in a gap, or before or after the trial: one without a beginning is no press"));
     }
     if let Some(reference) = reference.filter(|reference| !reference.touches()) {
         warnings.push(format!("{}: is the reference and has no contact: nothing is compared with it", reference.name));

@@ -61,8 +61,8 @@ pub struct FingerFigures {
     pub onset_s: Option<f64>,
     /// Its place in the order of fingers, from 1 on; none where it did not touch, or that is not known.
     pub rank: Option<usize>,
-    /// Mean distance from the reference along the warped time, newtons; none without a reference, or where one of both
-    /// has no contact, not this finger, or too much that is not known.
+    /// Mean distance from the reference along the warped time, newtons; none without a reference, of the reference
+    /// itself, or where one of both has no contact, not this finger, or too much that is not known.
     pub distance_n: Option<f64>,
 }
 

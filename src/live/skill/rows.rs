@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use super::SkillError;
-use crate::log::{Columns, Log};
+use crate::log::{Columns, Log, LogError};
 use crate::table::{Table, TableError, column_names};
 
 const TIME: &str = "time_s";
@@ -73,7 +73,14 @@ fn finger_of<'a>(name: &'a str, column: &str) -> Option<&'a str> {
 }
 
 fn of_log(path: &Path, finger: &str) -> Result<Rows, SkillError> {
-    let log = Log::read(path, &Columns::default())?;
+    let log = Log::read(path, &Columns::default()).map_err(|why| match why {
+        LogError::Columns { .. } => {
+            let what = "is neither a table with time_s and Fz_N (or FINGER.Fz_N for each of several fingers) nor a log \
+                        of photodiodes; name its columns so";
+            SkillError::recording(path, what)
+        }
+        why => why.into(),
+    })?;
     let Some(force) = log.forces.into_iter().find(|force| force.name == FORCE) else {
         let what = "has no normal force; name its column Fz_N, or FINGER.Fz_N for each of several fingers (pressing is \
                     negative)";

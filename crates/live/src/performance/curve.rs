@@ -1,7 +1,7 @@
 //! Learning curves: exponential and power law, by least squares.
 //!
-//! In: the mean of each trial, with the number of operators that it is of. Out: a [`Curve`] with standard errors, or why
-//! there is none. An asymptote a, a rise b and a pace c:
+//! In: the mean of each trial, with the number of operators that it is of. Out: a [`Curve`] with standard errors, or
+//! why there is none. An asymptote a, a rise b and a pace c:
 //!
 //! - exponential: y(n) = a + b exp(-(n - 1) / c), c in trials;
 //! - power law: y(n) = a + b n^-c (Newell and Rosenbloom 1981, "Mechanisms of skill acquisition and the law of

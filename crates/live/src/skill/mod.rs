@@ -4,8 +4,8 @@
 //! ([`Figures`]), which finger came first ([`ranks`]), and how far a trial is from another ([`distance`]).
 //!
 //! Conventions: a pressing force is positive here (it is `-Fz_N` of a recording), newtons; NaN is a force that is not
-//! known. Where it is not known, or time leaps, a contact ends and another may begin: neither end was seen, and the time
-//! between belongs to nobody. Forces are straight lines between rows.
+//! known. Where it is not known, or time leaps, a contact ends and another may begin: neither end was seen, and the
+//! time between is not counted. Forces are straight lines between rows.
 
 mod contact;
 mod figures;

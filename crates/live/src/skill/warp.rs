@@ -1,9 +1,9 @@
 //! How far two courses of a force are apart, whatever their pace: dynamic time warping.
 //!
 //! In: two courses at even times of one period. Out: the mean distance along the path that brings them together best,
-//! newtons. The path takes a step of one or both at a time, begins and ends with both, and stays within a band about the
-//! straight way (Sakoe and Chiba 1978, DOI 10.1109/TASSP.1978.1163055: their band; all steps weigh one here, and the
-//! sum is divided by the number of steps). Memory is two rows of the band.
+//! newtons. The path takes a step of one or both at a time, begins and ends with both, and stays within a band about
+//! the straight way (Sakoe and Chiba 1978, DOI 10.1109/TASSP.1978.1163055: their band; all steps weigh one here, and
+//! the sum is divided by the number of steps). Memory is two rows of the band.
 
 use super::force::{Force, Row};
 

@@ -19,8 +19,9 @@ Trials of one person, a recording each, the first of them the reference:
 Two people, whose recordings hold several trials each (column trial):
   lunula skill anna.csv ben.csv --subject anna,ben --reference expert.csv --out results
 
-A recording has time_s and, for each finger, index.Fz_N, middle.Fz_N, .. on one clock; a plain Fz_N is that of --finger. \
-lunula predict writes such tables, and any log with a normal force is read too. Pressing is a negative Fz_N.";
+A recording has time_s and, for each finger, index.Fz_N, middle.Fz_N, .. on one clock; a plain Fz_N is that of \
+--finger. lunula predict writes such tables, and logs of photodiodes with a normal force are read too. Pressing is a \
+negative Fz_N.";
 
 /// Measure what fingers do in trials: contacts, forces, smoothness, order, distance from a reference (thesis 6.3)
 ///
