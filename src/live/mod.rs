@@ -1,5 +1,24 @@
-//! What the sensor is for (thesis 6, appendix C): skill, and how well methods of control are learned. The mathematics
-//! are the crate `lunula-live`'s.
+//! A sensor at work (3.1.2, 6.1-6.3, appendix C): samples as they come to answers, decisions and recordings; what is made
+//! of those recordings.
+//!
+//! The streams, the switch and the figures are the crate `lunula-live`'s; here they meet the models, the logs' columns
+//! and the files.
 
+mod error;
+mod options;
 pub mod performance;
+mod session;
 pub mod skill;
+mod switch;
+
+/// The crate that does the streams and the decisions.
+pub use lunula_live as streams;
+pub use lunula_live::switch::Evaluation;
+
+pub use error::LiveError;
+pub use options::{AnswerOptions, LiveOptions, SessionFiles, StreamOptions};
+pub use session::{Latency, Readers, SessionFigures, SessionReport, live, record};
+pub use switch::{
+    ContactOptions, CurvePoint, EvaluateSwitchFigures, EvaluateSwitchReport, OutsideChoice, TrueContact, TuneFigures,
+    TuneOptions, TuneReport, evaluate_plan, evaluate_switch, read_switch, tune_plan, tune_switch,
+};

@@ -30,8 +30,8 @@ mod tests;
 
 use std::path::{Path, PathBuf};
 
-pub use ambient::{AmbientError, AmbientOptions, Samples, samples};
-pub(crate) use ambient::{Preceding, piles};
+pub use ambient::{AmbientError, AmbientOptions, AmbientRule, Samples, samples};
+pub(crate) use ambient::{PRECEDING_RULE, Preceding, piles};
 pub use foreseen::{ReadingCost, ambient_step, ambient_step_of, foreseen_bytes};
 pub(crate) use lines::cell::led as led_state;
 pub use lines::stamps::TimeUnit;

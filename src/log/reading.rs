@@ -30,6 +30,19 @@ pub struct LitRows {
     pub notes: Vec<String>,
 }
 
+/// The columns of a stream of rows.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Renamed {
+    /// Their names, the contract's where they are a log's.
+    pub(crate) names: Vec<String>,
+    /// Whether they are a log's.
+    pub(crate) known: Vec<bool>,
+    /// How many units of the time make a second.
+    pub(crate) per_second: f64,
+    /// What was guessed.
+    pub(crate) notes: Vec<String>,
+}
+
 /// The loads of a log's unlit rows: forces and pressures do not depend on the LED.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct UnlitLoads {
@@ -56,7 +69,7 @@ impl LogReading {
     /// # Errors
     /// A table that is missing or damaged.
     pub fn is_log(&self, path: &Path) -> Result<bool, TableError> {
-        if *self != Self::default() {
+        if self.says_log() {
             return Ok(true);
         }
         match column_names(path) {
@@ -66,23 +79,31 @@ impl LogReading {
         }
     }
 
+    /// Whether something is said that only logs have; which unlit light is taken away is said of those that are logs.
+    pub(crate) fn says_log(&self) -> bool {
+        let rule = self.ambient.rule;
+        *self != Self { ambient: AmbientOptions { rule, ..AmbientOptions::default() }, ..Self::default() }
+    }
+
     /// Whether one of these columns says when the LED was on.
     pub(crate) fn has_led(&self, names: &[String]) -> bool {
         names.iter().any(|name| is_led(name))
     }
 
-    /// The columns of a stream of rows under the contract's names, how many of its time units make a second, and what
-    /// was guessed.
+    /// The columns of a stream of rows under the contract's names.
     ///
     /// # Errors
     /// A column that is named and not there, or could be several, in words.
-    pub(crate) fn renamed(&self, names: &[String]) -> Result<(Vec<String>, f64, Vec<String>), String> {
+    pub(crate) fn renamed(&self, names: &[String]) -> Result<Renamed, String> {
         let choice = self.columns.found(names, &[])?;
-        let mut renamed = names.to_vec();
+        let per_second = choice.time_unit.map_or(1.0, TimeUnit::a_second);
+        let mut renamed =
+            Renamed { names: names.to_vec(), known: vec![false; names.len()], per_second, notes: choice.notes };
         for &(role, at) in &choice.columns {
-            renamed[at] = role.name();
+            renamed.names[at] = role.name();
+            renamed.known[at] = true;
         }
-        Ok((renamed, choice.time_unit.map_or(1.0, TimeUnit::a_second), choice.notes))
+        Ok(renamed)
     }
 
     /// Whether a file's LED goes on and off; `None` where that is not known.

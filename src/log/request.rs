@@ -4,7 +4,8 @@ use std::num::NonZeroUsize;
 
 use clap::{ArgMatches, Args, Command, FromArgMatches};
 
-use super::{AmbientOptions, Columns, LogReading, TimeUnit};
+use super::{AmbientOptions, AmbientRule, Columns, LogReading, TimeUnit};
+use crate::job::one_of;
 
 #[derive(Debug, Clone, Args)]
 struct LogOptions {
@@ -25,6 +26,10 @@ struct LogOptions {
         allow_hyphen_values = true
     )]
     full_scale: Option<[f64; 2]>,
+    /// Which unlit light is taken away from a lit row: interpolated (at its own time, between the unlit rows around) or
+    /// preceding (the unlit row before it, as `lunula live` does) [default: interpolated]
+    #[arg(long, help_heading = "Logs", value_name = "RULE", value_parser = one_of::<AmbientRule>())]
+    ambient: Option<AmbientRule>,
     /// Of a log whose clock was reset, which stretch to take, from 1
     #[arg(long, help_heading = "Logs", value_name = "N")]
     piece: Option<NonZeroUsize>,
@@ -39,7 +44,10 @@ impl From<LogOptions> for LogReading {
         columns.time_unit = said.time_unit;
         columns.piece = said.piece;
         columns.stream = said.stream;
-        Self { columns, ambient: AmbientOptions { full_scale_v: said.full_scale } }
+        Self {
+            columns,
+            ambient: AmbientOptions { full_scale_v: said.full_scale, rule: said.ambient.unwrap_or_default() },
+        }
     }
 }
 

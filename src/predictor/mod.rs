@@ -41,13 +41,13 @@ pub use jobs::prune::{PruneFigures, PruneReport, PruneRow, prune, prune_plan};
 pub use jobs::train::{TrainFigures, TrainInputs, TrainOptions, TrainOutputs, TrainReport, Without, train, train_plan};
 pub use merit::figures::{ByTarget, Merit};
 pub use options::choices::{ByChoice, F_MIN_N, FOLDS, HIDDEN, LEVEL, ModelChoice, share};
-pub use options::commands::{EvaluateChoices, NetworkOptions, PredictChoices, PruneChoices, TrainChoices};
+pub use options::commands::{EvaluateChoices, GateChoices, NetworkOptions, PredictChoices, PruneChoices, TrainChoices};
 pub use options::target::{POSTURE, Target};
 pub use outputs::{FolderOutputs, end, picture};
 
-struct OpenedModels {
-    predictors: Vec<Predictor>,
-    warnings: Vec<String>,
+pub(crate) struct OpenedModels {
+    pub(crate) predictors: Vec<Predictor>,
+    pub(crate) warnings: Vec<String>,
 }
 
 impl OpenedModels {
@@ -57,7 +57,7 @@ impl OpenedModels {
     }
 }
 
-fn open_models(paths: &[PathBuf]) -> Result<OpenedModels, PredictorError> {
+pub(crate) fn open_models(paths: &[PathBuf]) -> Result<OpenedModels, PredictorError> {
     let mut opened = OpenedModels { predictors: Vec::new(), warnings: Vec::new() };
     for path in paths {
         let text = crate::input::read_text(path).map_err(|why| PredictorError::Open { path: path.clone(), why })?;

@@ -301,19 +301,31 @@ fn number_text(number: f64, decimals: Option<usize>) -> Option<String> {
     if !number.is_finite() {
         return None;
     }
-    let mut text = match decimals {
-        Some(decimals) => format!("{number:.decimals$}"),
-        // `{:?}` is the shortest text that reads as the same number; it has an exponent where that is shorter.
-        None => format!("{number:?}"),
+    let Some(decimals) = decimals else {
+        let mut text = String::new();
+        push_number(&mut text, number);
+        return Some(text);
     };
-    if decimals.is_none() && text.ends_with(".0") {
-        text.truncate(text.len() - 2);
-    }
+    let mut text = format!("{number:.decimals$}");
     // A negative number that rounds to nothing has no sign.
     if text.starts_with('-') && text.bytes().skip(1).all(|b| b == b'0' || b == b'.') {
         text.remove(0);
     }
     Some(text)
+}
+
+/// Writes a number of a column of free decimals at the end of a line; nothing where it is missing.
+pub(crate) fn push_number(line: &mut String, number: f64) {
+    use std::fmt::Write;
+    if !number.is_finite() {
+        return;
+    }
+    let before = line.len();
+    // The shortest text that reads as the same number; it has an exponent where that is shorter. Zero has no sign.
+    let _ = write!(line, "{:?}", number + 0.0);
+    if line[before..].ends_with(".0") {
+        line.truncate(line.len() - 2);
+    }
 }
 
 /// The number that [`number_text`] writes.

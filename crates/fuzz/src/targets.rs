@@ -166,7 +166,7 @@ fn each_column(table: &Table) {
 
 fn log(path: &Path) {
     if let Ok(log) = Log::read(path, &Columns::default()) {
-        let _ = samples(&log, &AmbientOptions { full_scale_v: None });
+        let _ = samples(&log, &AmbientOptions::default());
     }
 }
 

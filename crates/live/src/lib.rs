@@ -7,7 +7,11 @@
 //! clock); forces are newtons of the finger on the surface (pressing is a negative `Fz_N`), angles degrees, positive in
 //! flexion. What is not known is NaN or `None`, never zero. What is done for every sample allocates nothing.
 
+pub mod latency;
 pub mod performance;
 pub mod skill;
+pub mod source;
 pub mod spread;
+pub mod switch;
+pub mod time;
 pub mod wire;

@@ -4,6 +4,7 @@
 //! of the mean by Student's t. Values that are not finite are not known, and not counted.
 
 use serde::Serialize;
+use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Probability that an interval holds the mean.
 pub const CONFIDENCE: f64 = 0.95;
@@ -43,44 +44,10 @@ impl Spread {
 
 /// How many standard errors a two-sided 95 % interval reaches to either side, for `freedom` degrees of freedom; none
 /// for 0.
-///
-/// By bisection of the probability as a finite series in the angle atan(t / sqrt(freedom)): Abramowitz and Stegun
-/// 26.7.3 and 26.7.4.
 #[must_use]
 pub fn t_quantile(freedom: usize) -> Option<f64> {
-    if freedom == 0 {
-        return None;
-    }
-    let (mut low, mut high) = (0.0, std::f64::consts::FRAC_PI_2);
-    // Bisected to the last bit of the angle.
-    for _ in 0..64 {
-        let middle = 0.5 * (low + high);
-        if probability_within(middle, freedom) < CONFIDENCE {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    Some((freedom as f64).sqrt() * low.tan())
-}
-
-/// Probability that |t| is at most sqrt(`freedom`) tan(`angle`).
-fn probability_within(angle: f64, freedom: usize) -> f64 {
-    let (sin, cos) = angle.sin_cos();
-    let odd = freedom % 2 == 1;
-    let mut term = if odd { cos } else { 1.0 };
-    let mut sum = term;
-    let mut k = if odd { 2 } else { 1 };
-    while k + 3 <= freedom {
-        term *= cos * cos * k as f64 / (k + 1) as f64;
-        sum += term;
-        k += 2;
-    }
-    match (odd, freedom) {
-        (true, 1) => std::f64::consts::FRAC_2_PI * angle,
-        (true, _) => std::f64::consts::FRAC_2_PI * (angle + sin * sum),
-        (false, _) => sin * sum,
-    }
+    let t = StudentsT::new(0.0, 1.0, freedom as f64).ok()?;
+    Some(t.inverse_cdf(0.5 * (1.0 + CONFIDENCE)))
 }
 
 #[cfg(test)]

@@ -20,7 +20,8 @@ mod tests;
 mod unlit;
 
 use super::{Channel, Log};
-pub(crate) use preceding::Preceding;
+use crate::words::Words;
+pub(crate) use preceding::{Preceding, RULE as PRECEDING_RULE};
 pub(crate) use rails::piles;
 
 use rails::Rails;
@@ -49,6 +50,19 @@ pub struct Samples {
 pub struct AmbientOptions {
     /// The lowest and the highest voltage that can be recorded; none: found where samples pile up at an extreme.
     pub full_scale_v: Option<[f64; 2]>,
+    /// Which unlit samples are taken away.
+    pub rule: AmbientRule,
+}
+
+/// Which unlit light is taken away from a lit sample.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum AmbientRule {
+    /// At the lit sample's own time, interpolated between the unlit ones around it.
+    #[default]
+    Interpolated,
+    /// The unlit sample before it, as in the thesis: what `lunula live` does. Saturation is then seen only where the
+    /// range that can be recorded is given.
+    Preceding,
 }
 
 impl AmbientOptions {
@@ -61,6 +75,13 @@ impl AmbientOptions {
             text.split_once(',').and_then(|(low, high)| Some([low.trim().parse().ok()?, high.trim().parse().ok()?]));
         ends.ok_or_else(|| "write the lowest voltage, a comma, the highest, as 0,10".to_owned())
     }
+}
+
+impl Words for AmbientRule {
+    const WORDS: &'static [(Self, &'static str, &'static str)] = &[
+        (Self::Interpolated, "interpolated", "at its own time, between the unlit rows around"),
+        (Self::Preceding, "preceding", "the unlit row before it, as live"),
+    ];
 }
 
 /// Why a log gives no samples.
@@ -108,12 +129,20 @@ pub fn samples(log: &Log, options: &AmbientOptions) -> Result<Samples, AmbientEr
     if log.led.is_some() && dark.is_empty() {
         found.warnings.push("the LED was never off: the photodiodes hold the ambient light too".to_owned());
     }
-    let unlit = (!dark.is_empty()).then(|| Unlit::new(&log.time_s, &lit, &dark));
+    let preceding = options.rule == AmbientRule::Preceding;
+    let unlit = (!dark.is_empty() && !preceding).then(|| Unlit::new(&log.time_s, &lit, &dark));
+    if preceding && !dark.is_empty() {
+        found.notes.push(PRECEDING_RULE.to_owned());
+    }
     let mut shares = Vec::new();
     let photodiodes = log.photodiodes.iter().map(|channel| {
         let taken = |rows: &[usize]| -> Vec<f64> { rows.iter().map(|&row| channel.values[row]).collect() };
         let (raw, raw_dark) = (taken(&lit), taken(&dark));
         dead::warn(&channel.name, &time_s, &raw, &mut found.warnings);
+        if preceding && !dark.is_empty() {
+            let values = found.less_preceding(channel, log, options.full_scale_v);
+            return Channel { name: channel.name.clone(), values };
+        }
         let rails = Rails::of(&raw, &raw_dark, options.full_scale_v);
         let saturation = if rails.is_much_of(raw.len()) { &mut found.warnings } else { &mut found.notes };
         saturation.extend(rails.note(&channel.name));
@@ -212,6 +241,29 @@ impl Subtraction {
         let led = (sum_lit - sum_ambient).abs() / known;
         shares.push(Share { ambient: sum_ambient / sum_lit, rough: unlit::roughness(raw_dark) / led });
         less
+    }
+
+    /// A channel's lit samples less the unlit ones before them.
+    fn less_preceding(&mut self, channel: &Channel, log: &Log, full_scale_v: Option<[f64; 2]>) -> Vec<f64> {
+        let mut preceding = Preceding::of(full_scale_v.map(Rails::given), 1);
+        let mut values = Vec::new();
+        for (row, (&at, &value)) in log.time_s.iter().zip(&channel.values).enumerate() {
+            if log.led.as_ref().is_some_and(|led| !led[row]) {
+                preceding.unlit(at, &[value]);
+                continue;
+            }
+            let mut less = [value];
+            let saturated = preceding.lit(at, &mut less);
+            let faults = &mut self.faults[values.len()];
+            if saturated {
+                faults.saturated.push(channel.name.clone());
+            }
+            if less[0].is_nan() && !value.is_nan() {
+                faults.no_ambient.push(channel.name.clone());
+            }
+            values.push(less[0]);
+        }
+        values
     }
 
     fn mark_saturated(&mut self, name: &str, reached: impl Fn(usize) -> bool) {

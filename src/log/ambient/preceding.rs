@@ -16,6 +16,10 @@ use super::unlit::GAP_PERIODS;
 /// nine.
 const STEPS: usize = 9;
 
+/// What is said of it.
+pub(crate) const RULE: &str = "from each lit row the unlit row before it is taken away (otherwise the unlit light of a \
+                               file is interpolated at the row's own time)";
+
 /// What is remembered of the rows before.
 #[derive(Debug, Clone)]
 pub(crate) struct Preceding {
@@ -34,8 +38,12 @@ impl Preceding {
         if let Some([low, high]) = full_scale_v {
             super::check_full_scale([low, high])?;
         }
-        let rails = full_scale_v.map(Rails::given);
-        Ok(Self { at: f64::NAN, dark: vec![f64::NAN; channels], steps: [0.0; STEPS], count: 0, rails })
+        Ok(Self::of(full_scale_v.map(Rails::given), channels))
+    }
+
+    /// The same of a range that is one.
+    pub(super) fn of(rails: Option<Rails>, channels: usize) -> Self {
+        Self { at: f64::NAN, dark: vec![f64::NAN; channels], steps: [0.0; STEPS], count: 0, rails }
     }
 
     /// Forgets all: another recording begins.

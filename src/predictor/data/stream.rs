@@ -16,14 +16,10 @@ use std::io::{BufRead, Read};
 use super::RowOptions;
 use super::columns::{listed, missing};
 use super::{DataError, source::GROUPS};
-use crate::log::{LogError, LogReading, Preceding, Statuses, Verdict, led_state};
+use crate::log::{LogError, PRECEDING_RULE, Preceding, Statuses, Verdict, led_state};
 
 /// No line of a sensor is longer, bytes; without an end to it, a stream of something else would fill the memory.
 const LONGEST: u64 = 1 << 20;
-
-/// How a stream's ambient light is taken away.
-const RULE: &str = "from each lit row the unlit row before it is taken away (of a file, the unlit light is \
-                    interpolated at the row's own time)";
 
 /// What a column of the stream is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -129,9 +125,10 @@ impl<'a, R: BufRead> RowStream<'a, R> {
             let what = "--piece and --stream choose a part of a file, and this is a stream of rows; leave them out";
             return Err(DataError::Request(what.to_owned()));
         }
-        let is_log = rows.log != LogReading::default() || rows.log.has_led(&names);
+        let is_log = rows.log.says_log() || rows.log.has_led(&names);
         if is_log {
-            (names, stream.a_second, stream.notes) = rows.log.renamed(&names).map_err(&refused)?;
+            let renamed = rows.log.renamed(&names).map_err(&refused)?;
+            (names, stream.a_second, stream.notes) = (renamed.names, renamed.per_second, renamed.notes);
         }
         let mut seen = HashSet::new();
         if let Some(double) = names.iter().find(|name| !seen.insert(name.as_str())) {
@@ -168,7 +165,7 @@ impl<'a, R: BufRead> RowStream<'a, R> {
             let led = stream.uses.contains(&Use::Led);
             stream.dark = led.then_some(Dark { preceding, begins: false, rows: 0.0, unknown: 0 });
             if led {
-                stream.notes.push(RULE.to_owned());
+                stream.notes.push(PRECEDING_RULE.to_owned());
             }
         }
         stream.names = names;

@@ -3,12 +3,17 @@
 //! With a model of force and one of posture the two are gated as in equations 9 and 16: while the finger presses (N =
 //! -Fz at F_min or more) the angle is theta_touch, else the posture model gives it. A row that lacks a voltage that a
 //! model reads has no prediction of that model; without an Fz there is no telling touch from bending, and no angle.
-//! Where a recording begins, what was remembered of the one before (lags, the gate's state) is forgotten.
+//! Where a recording begins, what was remembered of the one before (lags, the gate's state) is forgotten; the gate forgets
+//! over a gap as well.
 
 use lunula_predictor::{Contact, FORCES, Gate, GateState, LagStream, Predictor};
 
 use crate::predictor::error::PredictorError;
 use crate::predictor::options::target::POSTURE;
+use crate::table::push_number;
+
+/// After a gap of more than this the gate no longer knows whether the finger touches, seconds: assumed.
+const FORGOTTEN_S: f64 = 1.0;
 
 /// How predictions are made from models.
 #[derive(Debug, Clone)]
@@ -18,6 +23,10 @@ pub struct Answering {
     columns: Vec<String>,
     gate: Option<Gated>,
     intervals: bool,
+    /// Half the width of each column's interval.
+    half_widths: Vec<f64>,
+    /// The time of the row before.
+    last_s: f64,
     /// Rows outside of what a model was trained on.
     outside: u64,
 }
@@ -91,7 +100,9 @@ impl Answering {
             fz,
             angle,
         });
-        Ok(Self { voices, inputs, columns, gate, intervals, outside: 0 })
+        let of = |voice: &Voice| voice.predictor.intervals().map_or_else(Vec::new, |found| found.half_width.clone());
+        let half_widths = voices.iter().flat_map(of).collect();
+        Ok(Self { voices, inputs, columns, gate, intervals, half_widths, outside: 0, last_s: f64::NAN })
     }
 
     /// The photodiodes that a row holds, in order.
@@ -127,8 +138,51 @@ impl Answering {
     /// Half the width of each column's interval, where intervals are asked for.
     #[must_use]
     pub fn half_widths(&self) -> Option<Vec<f64>> {
-        let of = |voice: &Voice| voice.predictor.intervals().map_or_else(Vec::new, |found| found.half_width.clone());
-        self.intervals.then(|| self.voices.iter().flat_map(of).collect())
+        self.intervals.then(|| self.half_widths.clone())
+    }
+
+    /// The columns after the time: each prediction, then each interval's ends.
+    #[must_use]
+    pub fn output_columns(&self) -> Vec<String> {
+        let mut names = self.columns.clone();
+        if self.intervals {
+            names.extend(self.columns.iter().flat_map(|name| [format!("{name}_low"), format!("{name}_high")]));
+        }
+        names
+    }
+
+    /// The columns of a row as [`push_row`](Self::push_row) writes it.
+    #[must_use]
+    pub fn header(&self) -> Vec<String> {
+        let mut names = vec!["time_s".to_owned()];
+        names.extend(self.output_columns());
+        names.extend(self.is_gated().then(|| "contact".to_owned()));
+        names
+    }
+
+    /// Writes a row of CSV, without its end: the time, an answer, its intervals, what the gate says. The same text as a
+    /// table's; nothing is allocated that `line` has room for.
+    pub fn push_row(&self, line: &mut String, time_s: f64, answer: &[f64], contact: Option<Contact>) {
+        push_number(line, time_s);
+        for value in answer.iter().copied() {
+            line.push(',');
+            push_number(line, value);
+        }
+        let half_widths = self.intervals.then_some(&self.half_widths[..]);
+        for value in interval_cells(answer, half_widths, self.ruled(contact)) {
+            line.push(',');
+            push_number(line, value);
+        }
+        if let Some(contact) = contact {
+            line.push(',');
+            line.push_str(contact_word(contact));
+        }
+    }
+
+    /// The angle that theta_touch stands for: the posture model's errors say nothing of it.
+    #[must_use]
+    pub fn ruled(&self, contact: Option<Contact>) -> Option<usize> {
+        self.gated_angle().filter(|_| contact == Some(Contact::Touch))
     }
 
     /// How many rows lay outside of what a model was trained on.
@@ -143,10 +197,11 @@ impl Answering {
     pub fn answer(&mut self, time_s: f64, begins: bool, row: &[f64], out: &mut [f64]) -> Option<Contact> {
         if begins {
             self.voices.iter_mut().filter_map(|voice| voice.buffer.as_mut()).for_each(LagStream::reset);
-            if let Some(gated) = &mut self.gate {
-                gated.state = GateState::default();
-            }
         }
+        if let Some(gated) = self.gate.as_mut().filter(|_| begins || time_s - self.last_s > FORGOTTEN_S) {
+            gated.state = GateState::default();
+        }
+        self.last_s = time_s;
         // Of models whose word counts, and of a posture model whose word counts only where the finger does not touch.
         let (mut outside, mut outside_bending) = (false, false);
         for voice in &mut self.voices {
@@ -183,6 +238,16 @@ impl Answering {
         };
         Some(contact)
     }
+}
+
+/// Both ends of each prediction's interval; none of an angle that the gate rules.
+pub(in crate::predictor) fn interval_cells<'a>(
+    answer: &'a [f64],
+    half_widths: Option<&'a [f64]>,
+    ruled: Option<usize>,
+) -> impl Iterator<Item = f64> + 'a {
+    let all = answer.iter().zip(half_widths.unwrap_or_default()).enumerate();
+    all.flat_map(move |(k, (value, half))| if Some(k) == ruled { [f64::NAN; 2] } else { [value - half, value + half] })
 }
 
 /// What a table says of a contact.

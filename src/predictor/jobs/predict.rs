@@ -12,7 +12,7 @@ use crate::job::{Report, Watch};
 use crate::log::ambient_step_of;
 use crate::predictor::data::{Inputs, RowOptions, RowStream, read_inputs};
 use crate::predictor::error::PredictorError;
-use crate::predictor::jobs::answer::{Answering, contact_word};
+use crate::predictor::jobs::answer::{Answering, contact_word, interval_cells};
 use crate::predictor::open_models;
 use crate::stages::{Stages, Step, left_out};
 use crate::table::{Column, TableFormat, TableWriter, Value};
@@ -101,7 +101,7 @@ pub fn predict(
     let at = places.place(out)?;
     stages.time("write", || {
         let mut columns = vec![Column::number("time_s")];
-        columns.extend(output_columns(&answering).into_iter().map(Column::number));
+        columns.extend(answering.output_columns().into_iter().map(Column::number));
         if answering.is_gated() {
             columns.push(Column::text("contact"));
         }
@@ -112,7 +112,7 @@ pub fn predict(
             let answer = &answers[row * width..(row + 1) * width];
             let mut cells = vec![Value::Number(read.time_s[row])];
             cells.extend(answer.iter().map(|value| Value::Number(*value)));
-            let ruled = ruled(&answering, contacts.get(row).copied());
+            let ruled = answering.ruled(contacts.get(row).copied());
             cells.extend(interval_cells(answer, half_widths.as_deref(), ruled).map(Value::Number));
             if let Some(contact) = contacts.get(row) {
                 cells.push(Value::Text(contact_word(*contact)));
@@ -201,14 +201,8 @@ pub fn predict_stream(
     if answering.needs_time() && !rows.has_time() {
         return Err(no_time("standard input"));
     }
-    let half_widths = answering.half_widths();
-    let mut header = vec!["time_s".to_owned()];
-    header.extend(output_columns(&answering));
-    if answering.is_gated() {
-        header.push("contact".to_owned());
-    }
     let mut counts = Counts::default();
-    let mut line = header.join(",") + "\n";
+    let mut line = answering.header().join(",") + "\n";
     let (mut volts, mut answer) = (vec![f64::NAN; inputs.len()], vec![f64::NAN; answering.columns().len()]);
     let mut gone = to.write_all(line.as_bytes()).and_then(|()| to.flush()).is_err();
     while !gone && watch.go_on().is_ok() {
@@ -219,19 +213,7 @@ pub fn predict_stream(
         let contact = answering.answer(row.time_s, row.begins, &volts, &mut answer);
         counts.count(contact, &answer);
         line.clear();
-        push_number(&mut line, row.time_s);
-        for value in answer.iter().copied() {
-            line.push(',');
-            push_number(&mut line, value);
-        }
-        for value in interval_cells(&answer, half_widths.as_deref(), ruled(&answering, contact)) {
-            line.push(',');
-            push_number(&mut line, value);
-        }
-        if let Some(contact) = contact {
-            line.push(',');
-            line.push_str(contact_word(contact));
-        }
+        answering.push_row(&mut line, row.time_s, &answer, contact);
         line.push('\n');
         // A reader that has gone away is no error of ours.
         gone = to.write_all(line.as_bytes()).and_then(|()| to.flush()).is_err();
@@ -247,42 +229,6 @@ pub fn predict_stream(
     Ok(Report { warnings, notes, ..Report::new("predict", watch, figures) }.timed(&Stages::default(), start))
 }
 
-/// As tables write a number; nothing where it is not known.
-fn push_number(line: &mut String, value: f64) {
-    use std::fmt::Write;
-    if value.is_finite() {
-        let before = line.len();
-        let _ = write!(line, "{:?}", value + 0.0);
-        if line[before..].ends_with(".0") {
-            line.truncate(line.len() - 2);
-        }
-    }
-}
-
-/// The columns after the time: each prediction, then each interval's ends.
-fn output_columns(answering: &Answering) -> Vec<String> {
-    let mut names = answering.columns().to_vec();
-    if answering.half_widths().is_some() {
-        names.extend(answering.columns().iter().flat_map(|name| [format!("{name}_low"), format!("{name}_high")]));
-    }
-    names
-}
-
-/// Both ends of each prediction's interval; none of an angle that the gate rules.
-fn interval_cells<'a>(
-    answer: &'a [f64],
-    half_widths: Option<&'a [f64]>,
-    ruled: Option<usize>,
-) -> impl Iterator<Item = f64> + 'a {
-    let all = answer.iter().zip(half_widths.unwrap_or_default()).enumerate();
-    all.flat_map(move |(k, (value, half))| if Some(k) == ruled { [f64::NAN; 2] } else { [value - half, value + half] })
-}
-
-/// The angle that theta_touch stands for: the posture model's errors tell nothing of it.
-fn ruled(answering: &Answering, contact: Option<Contact>) -> Option<usize> {
-    answering.gated_angle().filter(|_| contact == Some(Contact::Touch))
-}
-
 fn no_time(whose: &str) -> PredictorError {
     let what = "has no time_s, and a model reads voltages of the past (it was trained with --lags); give it the time \
                 in seconds";
@@ -293,7 +239,7 @@ fn figures(data: &Path, out: Option<&Path>, answering: &Answering, counts: Count
     PredictFigures {
         data: data.to_owned(),
         out: out.map(Path::to_owned),
-        columns: output_columns(answering),
+        columns: answering.output_columns(),
         rows: counts.rows,
         rows_not_known: counts.not_known,
         rows_outside: answering.outside(),

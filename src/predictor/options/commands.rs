@@ -149,9 +149,9 @@ impl EvaluateChoices {
     }
 }
 
-/// The options of `lunula predict`.
-#[derive(Debug, Clone, Args)]
-pub struct PredictChoices {
+/// When the finger touches, and what its angle is then.
+#[derive(Debug, Clone, Copy, Args)]
+pub struct GateChoices {
     /// The pressing at or above which the finger touches
     #[arg(long, value_name = "NEWTONS", default_value_t = F_MIN_N)]
     pub f_min: f64,
@@ -161,6 +161,24 @@ pub struct PredictChoices {
     /// How far below --f-min the pressing has to fall before the finger no longer touches
     #[arg(long, value_name = "NEWTONS", default_value_t = 0.0, value_parser = not_negative)]
     pub hysteresis: f64,
+}
+
+impl GateChoices {
+    /// The gate.
+    ///
+    /// # Errors
+    /// Thresholds that can't be.
+    pub fn gate(self) -> Result<Gate, GateFault> {
+        Gate::new(self.f_min, self.theta_touch, self.hysteresis)
+    }
+}
+
+/// The options of `lunula predict`.
+#[derive(Debug, Clone, Args)]
+pub struct PredictChoices {
+    /// Equation 9's threshold and angle while touching.
+    #[command(flatten)]
+    pub gate: GateChoices,
     /// Each prediction's interval as well, as TARGET_low, TARGET_high (the models need to be trained with
     /// --validate)
     #[arg(long)]
@@ -176,8 +194,7 @@ impl PredictChoices {
     /// # Errors
     /// Thresholds that can't be.
     pub fn options(&self) -> Result<PredictOptions, GateFault> {
-        let gate = Gate::new(self.f_min, self.theta_touch, self.hysteresis)?;
-        Ok(PredictOptions { gate, intervals: self.intervals, rows: self.rows.clone() })
+        Ok(PredictOptions { gate: self.gate.gate()?, intervals: self.intervals, rows: self.rows.clone() })
     }
 }
 

@@ -4,7 +4,13 @@
 //! however the bytes were cut. A row that is spoilt costs itself.
 
 mod cell;
+mod frames;
+mod lines;
 mod row;
+mod spoilt;
 
 pub use cell::{is_missing, led};
+pub use frames::{Frame, Frames};
+pub use lines::{Cells, Line, LineOptions, Lines, Naming, WireFault};
 pub use row::{Meaning, Row, Use};
+pub use spoilt::{Spoilt, SpoiltKind, SpoiltRows};

@@ -14,6 +14,8 @@ pub enum Use {
     Led,
     /// A number that is read, and its place among [`Row::values`].
     Value(usize),
+    /// The same, of a photodiode: volts, or counts where the device sends them.
+    Counts(usize),
     /// Passed over unread.
     None,
 }

@@ -1,7 +1,7 @@
-//! The commands of what the sensor is for, a file each.
+//! The commands of a sensor at work, and of what is made of its recordings: `lunula live`, `record`, `switch`, `skill`,
+//! `performance`.
 
-mod performance;
-mod skill;
-
-pub(crate) use performance::PerformanceArgs;
-pub(crate) use skill::SkillArgs;
+pub(crate) mod performance;
+pub(crate) mod session;
+pub(crate) mod skill;
+pub(crate) mod switch;

@@ -1,0 +1,184 @@
+//! `lunula switch tune` and `lunula switch evaluate`: predicted pressing to a switch that can be trusted.
+
+use std::path::PathBuf;
+
+use anyhow::Context;
+use clap::{Args, Subcommand};
+use lunula::job::{Given, Said, Watch};
+use lunula::live::{
+    ContactOptions, EvaluateSwitchFigures, EvaluateSwitchReport, Evaluation, TuneFigures, TuneOptions, TuneReport,
+    evaluate_plan, evaluate_switch, tune_plan, tune_switch,
+};
+
+use crate::jobs::{self, Command, JobArgs, Plan};
+use crate::{Common, Outcome};
+
+/// Choose and judge the thresholds of the virtual switch (6.1), for `lunula live --switch`
+#[derive(Debug, Args)]
+pub(crate) struct SwitchArgs {
+    #[command(subcommand)]
+    what: What,
+}
+
+#[derive(Debug, Subcommand)]
+enum What {
+    Tune(Box<TuneArgs>),
+    Evaluate(Box<EvaluateArgs>),
+}
+
+/// Choose thresholds and holds from held-out recordings, for a rate of false switches
+///
+/// Every combination runs over all recordings; of those with at most --false-per-hour and --missed the fastest is
+/// taken. Name recordings that the models were not trained on, with hours of rest and of other work among them: what
+/// was not recorded is not known. Results: switch.toml, beside it <switch>.run.json and the curve of delay against
+/// false switches.
+#[derive(Debug, Args)]
+struct TuneArgs {
+    /// Recordings: tables or logs with photodiodes and what is true of contact
+    #[arg(required = true, value_name = "RECORDING")]
+    recordings: Vec<PathBuf>,
+    /// Models that `lunula train` wrote
+    #[arg(long = "model", required = true, value_name = "MODEL.json", num_args = 1..)]
+    models: Vec<PathBuf>,
+    #[command(flatten)]
+    given: Given<TuneOptions>,
+    /// The switch
+    #[arg(long, value_name = "SWITCH.toml", required_unless_present = "plan")]
+    out: Option<PathBuf>,
+    /// Draw no picture
+    #[arg(long)]
+    no_figures: bool,
+    #[command(flatten)]
+    job: JobArgs,
+}
+
+/// Judge a switch on recordings: false switches an hour with their interval, misses, delays
+///
+/// Results: switch.json, presses.csv (every press and every contact that was missed), delays.png and .svg.
+#[derive(Debug, Args)]
+struct EvaluateArgs {
+    /// The switch
+    #[arg(value_name = "SWITCH.toml")]
+    switch: PathBuf,
+    /// Recordings: tables or logs with photodiodes and what is true of contact
+    #[arg(required = true, value_name = "RECORDING")]
+    recordings: Vec<PathBuf>,
+    /// Models that `lunula train` wrote
+    #[arg(long = "model", required = true, value_name = "MODEL.json", num_args = 1..)]
+    models: Vec<PathBuf>,
+    #[command(flatten)]
+    given: Given<ContactOptions>,
+    /// The folder of results
+    #[arg(long, value_name = "FOLDER", required_unless_present = "plan")]
+    out: Option<PathBuf>,
+    /// Draw no picture
+    #[arg(long)]
+    no_figures: bool,
+    #[command(flatten)]
+    job: JobArgs,
+}
+
+pub(crate) fn run(args: &SwitchArgs) -> anyhow::Result<Outcome> {
+    match &args.what {
+        What::Tune(args) => jobs::run(&**args),
+        What::Evaluate(args) => jobs::run(&**args),
+    }
+}
+
+impl Command for TuneArgs {
+    type Figures = TuneFigures;
+
+    const NAME: &'static str = "switch tune";
+
+    const UNIT: &'static str = "recordings";
+
+    fn job(&self) -> &JobArgs {
+        &self.job
+    }
+
+    fn said(&self) -> &Said {
+        &self.given.said
+    }
+
+    fn plan(&self) -> anyhow::Result<Plan> {
+        Ok(tune_plan(self.recordings.len(), !self.no_figures).into())
+    }
+
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<TuneReport> {
+        let out = self.out.as_ref().context("--out is needed: the switch")?;
+        Ok(tune_switch(&self.recordings, &self.models, &self.given.options, out, !self.no_figures, watch)?)
+    }
+
+    fn say(&self, common: &Common, report: &TuneReport) {
+        let switch = &report.switch;
+        common.say(&format!(
+            "on from {} N, off below {} N, held {} s and {} s; the fastest of {} combinations",
+            switch.on_n, switch.off_n, switch.hold_on_s, switch.hold_off_s, report.tried
+        ));
+        say_evaluation(common, "where it was chosen", &report.chosen);
+        if let Some(held_out) = &report.held_out {
+            say_evaluation(common, "held out", held_out);
+        }
+    }
+
+    fn result(&self) -> Option<PathBuf> {
+        self.out.clone()
+    }
+}
+
+impl Command for EvaluateArgs {
+    type Figures = EvaluateSwitchFigures;
+
+    const NAME: &'static str = "switch evaluate";
+
+    const UNIT: &'static str = "recordings";
+
+    fn job(&self) -> &JobArgs {
+        &self.job
+    }
+
+    fn said(&self) -> &Said {
+        &self.given.said
+    }
+
+    fn plan(&self) -> anyhow::Result<Plan> {
+        Ok(evaluate_plan(self.recordings.len(), !self.no_figures).into())
+    }
+
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<EvaluateSwitchReport> {
+        let out = self.out.as_ref().context("--out is needed: the folder of results")?;
+        let (recordings, models) = (&self.recordings, &self.models);
+        let figures = !self.no_figures;
+        Ok(evaluate_switch(&self.switch, recordings, models, &self.given.options, out, figures, watch)?)
+    }
+
+    fn say(&self, common: &Common, report: &EvaluateSwitchReport) {
+        say_evaluation(common, "on these recordings", &report.all);
+    }
+
+    fn result(&self) -> Option<PathBuf> {
+        self.out.clone()
+    }
+}
+
+fn say_evaluation(common: &Common, wherever: &str, found: &Evaluation) {
+    let rate = found.rate.map_or("an unknown number".to_owned(), |rate| {
+        format!(
+            "{:.2} an hour (95 %: {:.2} to {:.2})",
+            rate.false_per_hour, rate.false_per_hour_low, rate.false_per_hour_high
+        )
+    });
+    common.say(&format!(
+        "{wherever}: {} false switches in {:.2} h, {rate}; {} of {} presses missed",
+        found.false_switches, found.hours, found.missed, found.presses
+    ));
+    let delays = [("on", found.delay_on_s), ("off", found.delay_off_s)];
+    for (what, delay) in delays.into_iter().filter_map(|(what, delay)| Some((what, delay?))) {
+        common.say(&format!(
+            "{wherever}: delay {what} {:.0} ms in median, half of them {:.0} to {:.0} ms",
+            1e3 * delay.median,
+            1e3 * delay.low,
+            1e3 * delay.high
+        ));
+    }
+}

@@ -1,0 +1,84 @@
+//! When the finger truly touched: what a switch's presses are held against.
+//!
+//! In: rows with a time and whether the finger touches, of a contact switch or of a measured force below a threshold.
+//! Out: the contacts, with the time that was looked at. Two contacts closer than [`MERGED_S`] are one: a force that
+//! hovers at its threshold is no second touch. Rows further apart than [`LONGEST_GAP_S`] have a gap between them, in
+//! which nothing is known: a contact that reaches one has no known end there.
+
+use serde::Serialize;
+
+/// Contacts closer than this are one, seconds: assumed, less than a finger takes to let go and touch again.
+const MERGED_S: f64 = 0.1;
+/// Rows further apart have a gap between them, seconds: assumed.
+const LONGEST_GAP_S: f64 = 0.5;
+
+/// A touch of the finger.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Contact {
+    /// Its first row's time.
+    pub start_s: f64,
+    /// The time of the first row after it.
+    pub end_s: f64,
+    /// Whether a row without contact is known before it.
+    pub start_known: bool,
+    /// Whether one is known after it.
+    pub end_known: bool,
+}
+
+/// The contacts of a recording.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Contacts {
+    contacts: Vec<Contact>,
+    seconds: f64,
+    last: Option<(f64, Option<bool>)>,
+}
+
+impl Contacts {
+    /// The next row; `touches` is none where it is not known, `begins` where a recording begins.
+    pub fn push(&mut self, time_s: f64, touches: Option<bool>, begins: bool) {
+        if !time_s.is_finite() {
+            return;
+        }
+        let before = self.last.filter(|(last_s, _)| !begins && (0.0..=LONGEST_GAP_S).contains(&(time_s - last_s)));
+        let known_before = before.and_then(|(_, touched)| touched);
+        if let Some((last_s, _)) = before
+            && touches.is_some()
+            && known_before.is_some()
+        {
+            self.seconds += time_s - last_s;
+        }
+        match (known_before, touches) {
+            (Some(true), Some(_)) => {
+                if let Some(contact) = self.contacts.last_mut() {
+                    contact.end_s = time_s;
+                    contact.end_known = touches == Some(false);
+                }
+            }
+            (_, Some(true)) => match self.contacts.last_mut() {
+                Some(contact) if known_before.is_some() && contact.end_known && time_s - contact.end_s < MERGED_S => {
+                    (contact.end_s, contact.end_known) = (time_s, false);
+                }
+                _ => self.contacts.push(Contact {
+                    start_s: time_s,
+                    end_s: time_s,
+                    start_known: known_before == Some(false),
+                    end_known: false,
+                }),
+            },
+            _ => {}
+        }
+        self.last = Some((time_s, touches));
+    }
+
+    /// The contacts, in the order of time within each recording.
+    #[must_use]
+    pub fn contacts(&self) -> &[Contact] {
+        &self.contacts
+    }
+
+    /// The time between rows of which contact is known, seconds.
+    #[must_use]
+    pub fn seconds(&self) -> f64 {
+        self.seconds
+    }
+}

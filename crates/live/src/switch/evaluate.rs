@@ -1,0 +1,277 @@
+//! A switch over recordings whose contacts are known: false switches an hour, misses, delays.
+//!
+//! Definitions, ours, as the thesis has none. A press belongs to the contact that began last before it, if that is not
+//! over for more than [`LATE_S`], and if no other press belongs to it already; else it is **false**, *repeated* where
+//! its contact has one already. A contact without a press is **missed**. **Delays** are from the contact's first row to
+//! the press and from the first row after it to the release, so they hold half a row's period of bias at most. The rate
+//! is that of false presses in all the time of which contact is known, touching or not.
+
+use serde::Serialize;
+
+use super::config::SwitchConfig;
+use super::contact::{Contact, Contacts};
+use super::event::{Reason, Turn};
+use super::machine::{Reading, Switch};
+use super::poisson::{Rate, rate_per_hour};
+
+/// How long after a contact's end a press may still be its own, seconds: assumed; blood follows within 0.4 s (4.3).
+const LATE_S: f64 = 0.5;
+
+/// What a model said of a recording, and what was true.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Trace {
+    /// The stream's time of each row, seconds.
+    pub time_s: Vec<f64>,
+    /// What the switch compares, N; NaN where not known.
+    pub value: Vec<f64>,
+    /// Whether the voltages lie beyond the trained ones.
+    pub outside: Vec<bool>,
+    /// Rows at which a recording begins.
+    pub begins: Vec<usize>,
+    /// What was true.
+    pub contacts: Contacts,
+}
+
+/// The middle and the quarters of some numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Quartiles {
+    /// How many.
+    pub count: usize,
+    /// A quarter is at this or below.
+    pub low: f64,
+    /// Half is.
+    pub median: f64,
+    /// Three quarters are.
+    pub high: f64,
+}
+
+/// How a switch did.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Evaluation {
+    /// Time of which contact is known.
+    pub hours: f64,
+    /// True presses: contacts whose beginning and end are known.
+    pub presses: usize,
+    /// Times that the switch pressed.
+    pub decisions: usize,
+    /// Presses that belong to no contact, or to one that has a press already.
+    pub false_switches: u64,
+    /// Of these, those whose contact has a press already.
+    pub repeated: u64,
+    /// An hour; none without time.
+    #[serde(flatten)]
+    pub rate: Option<FalseRate>,
+    /// Contacts without a press.
+    pub missed: usize,
+    /// From true contact to the press, seconds; none without any.
+    pub delay_on_s: Option<Quartiles>,
+    /// From the true end to the release, seconds; less than 0 where it let go too early.
+    pub delay_off_s: Option<Quartiles>,
+    /// Releases by the watchdog, by a clock set back or a lost source.
+    pub let_go: u64,
+}
+
+/// False switches an hour.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct FalseRate {
+    /// As counted.
+    pub false_per_hour: f64,
+    /// The least that agrees with the count (95 %).
+    pub false_per_hour_low: f64,
+    /// The most that agrees with it.
+    pub false_per_hour_high: f64,
+}
+
+impl From<Rate> for FalseRate {
+    fn from(rate: Rate) -> Self {
+        Self { false_per_hour: rate.per_hour, false_per_hour_low: rate.low, false_per_hour_high: rate.high }
+    }
+}
+
+/// What is counted over one trace or several.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Tally {
+    pub(super) seconds: f64,
+    pub(super) presses: usize,
+    pub(super) decisions: usize,
+    pub(super) false_switches: u64,
+    pub(super) repeated: u64,
+    pub(super) missed: usize,
+    pub(super) let_go: u64,
+    pub(super) delays_on_s: Vec<f64>,
+    pub(super) delays_off_s: Vec<f64>,
+}
+
+/// What became of a press, or of a contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Fate {
+    /// The press belongs to a contact.
+    True,
+    /// It belongs to none.
+    False,
+    /// Its contact has a press already.
+    Repeated,
+    /// The contact has no press.
+    Missed,
+}
+
+/// A press, its release and its contact, or a contact without a press.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Match {
+    /// When the switch pressed, seconds; NaN where it did not.
+    pub press_s: f64,
+    /// When it released; NaN where it did not.
+    pub release_s: f64,
+    /// The contact.
+    pub contact: Option<Contact>,
+    /// Whether they agree.
+    pub fate: Fate,
+}
+
+/// A switch's presses over a recording and the contacts that it missed, in the order of time.
+#[must_use]
+pub fn matches(config: &SwitchConfig, trace: &Trace) -> Vec<Match> {
+    let mut let_go = 0;
+    let presses = presses(config, trace, &mut let_go);
+    compare(&presses, trace.contacts.contacts())
+}
+
+impl Evaluation {
+    /// A switch over recordings.
+    #[must_use]
+    pub fn of(config: &SwitchConfig, traces: &[Trace]) -> Self {
+        let mut all = Tally::default();
+        traces.iter().for_each(|trace| all.add(&Tally::of(config, trace)));
+        all.evaluation()
+    }
+}
+
+impl Tally {
+    pub(super) fn of(config: &SwitchConfig, trace: &Trace) -> Self {
+        let mut tally = Self { seconds: trace.contacts.seconds(), ..Self::default() };
+        let presses = presses(config, trace, &mut tally.let_go);
+        let contacts = trace.contacts.contacts();
+        tally.presses = contacts.iter().filter(|one| one.start_known && one.end_known).count();
+        tally.decisions = presses.len();
+        for Match { press_s, release_s, contact, fate } in compare(&presses, contacts) {
+            match fate {
+                Fate::True => {
+                    let start_s = contact.filter(|one| one.start_known).map(|one| one.start_s);
+                    let end_s = contact.filter(|one| one.end_known && release_s.is_finite()).map(|one| one.end_s);
+                    tally.delays_on_s.extend(start_s.map(|start_s| press_s - start_s));
+                    tally.delays_off_s.extend(end_s.map(|end_s| release_s - end_s));
+                }
+                Fate::False => tally.false_switches += 1,
+                Fate::Repeated => {
+                    tally.false_switches += 1;
+                    tally.repeated += 1;
+                }
+                Fate::Missed => tally.missed += 1,
+            }
+        }
+        tally
+    }
+
+    pub(super) fn add(&mut self, other: &Self) {
+        self.seconds += other.seconds;
+        self.presses += other.presses;
+        self.decisions += other.decisions;
+        self.false_switches += other.false_switches;
+        self.repeated += other.repeated;
+        self.missed += other.missed;
+        self.let_go += other.let_go;
+        self.delays_on_s.extend(&other.delays_on_s);
+        self.delays_off_s.extend(&other.delays_off_s);
+    }
+
+    pub(super) fn hours(&self) -> f64 {
+        self.seconds / 3600.0
+    }
+
+    pub(super) fn evaluation(&self) -> Evaluation {
+        Evaluation {
+            hours: self.hours(),
+            presses: self.presses,
+            decisions: self.decisions,
+            false_switches: self.false_switches,
+            repeated: self.repeated,
+            rate: rate_per_hour(self.false_switches, self.hours()).map(FalseRate::from),
+            missed: self.missed,
+            delay_on_s: Quartiles::of(&self.delays_on_s),
+            delay_off_s: Quartiles::of(&self.delays_off_s),
+            let_go: self.let_go,
+        }
+    }
+}
+
+/// When the switch presses and releases, seconds (NaN where it does not release); counts the releases by faults.
+fn presses(config: &SwitchConfig, trace: &Trace, let_go: &mut u64) -> Vec<[f64; 2]> {
+    let mut presses: Vec<[f64; 2]> = Vec::new();
+    let mut switch = Switch::new(config.clone());
+    let mut begins = trace.begins.iter().peekable();
+    for (row, (&t_s, &value)) in trace.time_s.iter().zip(&trace.value).enumerate() {
+        let lost = begins.next_if(|&&begin| begin == row).and_then(|_| switch.lose(t_s, Reason::Lost));
+        let event = lost.or(switch.sample(t_s, Reading { value, outside: trace.outside[row] }));
+        let Some(event) = event else { continue };
+        match event.turn {
+            Turn::Press => presses.push([event.t_s, f64::NAN]),
+            Turn::Release => {
+                *let_go += u64::from(!matches!(event.reason, Reason::Value | Reason::Outside));
+                if let Some(press) = presses.last_mut() {
+                    press[1] = event.t_s;
+                }
+            }
+        }
+    }
+    presses
+}
+
+/// Gives each press its contact.
+fn compare(presses: &[[f64; 2]], contacts: &[Contact]) -> Vec<Match> {
+    let mut taken = vec![false; contacts.len()];
+    let mut found: Vec<Match> = Vec::with_capacity(presses.len());
+    // In the order of time: the contact that began last before the press.
+    let mut after = 0;
+    for &[press_s, release_s] in presses {
+        // A clock that was set back begins again.
+        if after > 0 && contacts[after - 1].start_s > press_s {
+            after = 0;
+        }
+        while contacts.get(after).is_some_and(|one| one.start_s <= press_s) {
+            after += 1;
+        }
+        let own = after.checked_sub(1).filter(|&own| press_s <= contacts[own].end_s + LATE_S);
+        let fate = match own {
+            None => Fate::False,
+            Some(own) if std::mem::replace(&mut taken[own], true) => Fate::Repeated,
+            Some(_) => Fate::True,
+        };
+        found.push(Match { press_s, release_s, contact: own.map(|own| contacts[own]), fate });
+    }
+    let missed = contacts.iter().zip(taken).filter(|(one, taken)| one.start_known && one.end_known && !taken);
+    let missed = missed.map(|(one, _)| Match {
+        press_s: f64::NAN,
+        release_s: f64::NAN,
+        contact: Some(*one),
+        fate: Fate::Missed,
+    });
+    found.extend(missed);
+    found
+}
+
+impl Quartiles {
+    /// Of numbers, those between two neighbours by a straight line; none of none.
+    #[must_use]
+    pub fn of(values: &[f64]) -> Option<Self> {
+        let mut sorted = values.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        let last = sorted.len().checked_sub(1)?;
+        let at = |share: f64| {
+            let place = share * last as f64;
+            let (below, part) = (place.floor() as usize, place.fract());
+            sorted[below] + part * (sorted[(below + 1).min(last)] - sorted[below])
+        };
+        Some(Self { count: sorted.len(), low: at(0.25), median: at(0.5), high: at(0.75) })
+    }
+}

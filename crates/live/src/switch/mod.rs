@@ -1,0 +1,29 @@
+//! The virtual switch (thesis 6.1): predicted pressing to press and release, and how far that can be trusted.
+//!
+//! In: a [`SwitchConfig`] (`switch.toml`) and one [`Reading`] per sample. Out: [`SwitchEvent`]s, and, where the true
+//! contact is known as well, false switches an hour with their exact interval, misses and delays ([`Evaluation`]).
+//!
+//! The thesis names no threshold, no hold, no latency and no error rate; what is here is ours, but for the robot's rule
+//! of appendix C, whose switch *moves while pressed*: whoever does not hear of the sensor any more has to let go.
+//!
+//! Conventions: seconds of the stream's clock; pressing in newtons is positive here (-`Fz_N`).
+
+mod config;
+mod contact;
+mod evaluate;
+mod event;
+mod machine;
+mod poisson;
+mod rice;
+#[cfg(test)]
+mod tests;
+mod tune;
+
+pub use config::{ConfigFault, Outside, Place, SwitchConfig};
+pub use contact::{Contact, Contacts};
+pub use evaluate::{Evaluation, FalseRate, Fate, Match, Quartiles, Trace, matches};
+pub use event::{Reason, SwitchEvent, Turn};
+pub use machine::{Reading, Switch};
+pub use poisson::{Rate, rate_per_hour};
+pub use rice::{NoiseRate, crossings_per_hour};
+pub use tune::{Candidate, Goal, TuneFault, Tuned, tune};

@@ -1,0 +1,102 @@
+//! What a session with a sensor is to do: the options of `lunula live` and `lunula record`.
+
+use std::net::SocketAddr;
+use std::path::PathBuf;
+
+use clap::Args;
+use lunula_live::source::Source;
+use lunula_predictor::GateFault;
+
+use crate::job::number;
+use crate::log::LogReading;
+use crate::predictor::GateChoices;
+
+/// Where samples come from, and how they are read.
+#[derive(Debug, Clone, Args)]
+pub struct StreamOptions {
+    /// Where samples come from: serial:/dev/ttyACM0?baud=921600, serial:auto, tcp:HOST:PORT, tcp-listen:ADDRESS:PORT,
+    /// udp:PORT, - (standard input), FILE?rate=1|max, phantom:contacts?seed=1
+    #[arg(long, value_name = "SOURCE", value_parser = str::parse::<Source>)]
+    pub source: Source,
+    /// What a step of the converter is, where the device sends counts: 10/65536 of 16 bits over 10 V
+    #[arg(long, value_name = "VOLTS", value_parser = volts)]
+    pub volts_per_count: Option<f64>,
+    /// The names of the columns, where the stream does not begin with them, as time_us,n,led,P1,P2
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub names: Option<Vec<String>>,
+    /// Further columns of numbers that are kept, by name
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub keep: Vec<String>,
+    /// Ends after so many seconds of the stream's time [default: at the stream's end, or when interrupted]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub seconds: Option<f64>,
+    /// How the columns are read.
+    #[command(flatten)]
+    pub log: LogReading,
+}
+
+/// What is made of the samples.
+#[derive(Debug, Clone, Args)]
+pub struct AnswerOptions {
+    /// Equation 9's threshold and angle while touching.
+    #[command(flatten)]
+    pub gate: GateChoices,
+    /// Each prediction's interval as well, as TARGET_low, TARGET_high (the models need to be trained with --validate)
+    #[arg(long)]
+    pub intervals: bool,
+    /// Rows with a saturated photodiode count too
+    #[arg(long)]
+    pub keep_faults: bool,
+}
+
+/// The options of `lunula live`.
+#[derive(Debug, Clone, Args)]
+pub struct LiveOptions {
+    /// The stream.
+    #[command(flatten)]
+    pub stream: StreamOptions,
+    /// What is made of it.
+    #[command(flatten)]
+    pub answer: AnswerOptions,
+    /// Hands the rows out to whoever connects to this address too, as 127.0.0.1:7777
+    #[arg(long, value_name = "ADDRESS:PORT")]
+    pub tcp: Option<SocketAddr>,
+}
+
+/// Files of a session.
+#[derive(Debug, Clone, Default)]
+pub struct SessionFiles {
+    /// The recording.
+    pub out: Option<PathBuf>,
+    /// Whether a recording that exists is replaced.
+    pub replace: bool,
+    /// The models.
+    pub models: Vec<PathBuf>,
+    /// The switch.
+    pub switch: Option<PathBuf>,
+    /// The switch's events.
+    pub events: Option<PathBuf>,
+}
+
+fn volts(text: &str) -> Result<f64, String> {
+    let value = match text.split_once('/') {
+        Some((volts, steps)) => number(volts)? / number(steps)?,
+        None => number(text)?,
+    };
+    let good = value.is_finite() && value > 0.0;
+    if good { Ok(value) } else { Err("write volts above 0, as 0.00015 or 10/65536".to_owned()) }
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    number(text).ok().filter(|s| *s > 0.0).ok_or_else(|| "write seconds above 0".to_owned())
+}
+
+impl AnswerOptions {
+    /// The gate.
+    ///
+    /// # Errors
+    /// Thresholds that can't be.
+    pub fn gate(&self) -> Result<lunula_predictor::Gate, GateFault> {
+        self.gate.gate()
+    }
+}

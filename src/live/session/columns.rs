@@ -1,0 +1,101 @@
+//! What the columns of a stream are for: a log's own rules, for names that come down a wire.
+//!
+//! In: the names. Out: which column is the time, the counter, the LED, and which numbers are kept, under the contract's
+//! names: photodiodes, forces, pressures, a tracker's `x_m`, `y_m`, `z_m`, and what is asked for by name.
+
+use lunula_live::wire::{Meaning, Use};
+
+use crate::log::LogReading;
+
+/// Names of counters.
+const COUNTERS: [&str; 4] = ["n", "counter", "seq", "sequence"];
+/// A tracker's, beside the columns of logs.
+const TRACKER: [&str; 3] = ["x_m", "y_m", "z_m"];
+
+/// The columns of a stream.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct StreamColumns {
+    /// What the wire is to do with each.
+    pub(crate) meaning: Meaning,
+    /// The names of a row's values.
+    pub(crate) values: Vec<String>,
+    /// Whether there is a time, and an LED.
+    pub(crate) time: bool,
+    pub(crate) led: bool,
+    /// What was guessed, what is not kept.
+    pub(crate) notes: Vec<String>,
+}
+
+impl StreamColumns {
+    /// Of these names; `extra` are kept by name.
+    ///
+    /// # Errors
+    /// Columns that could be several, or of one name, in words.
+    pub(crate) fn of(names: &[String], log: &LogReading, extra: &[String]) -> Result<Self, String> {
+        let found = log.renamed(names)?;
+        let mut columns = Self { notes: found.notes, ..Self::default() };
+        let mut passed_over = Vec::new();
+        for (k, name) in found.names.iter().enumerate() {
+            let of_log = found.known[k];
+            let kept = extra.contains(name) || TRACKER.contains(&name.as_str());
+            columns.meaning.uses.push(match name.as_str() {
+                "time_s" => {
+                    columns.time = true;
+                    Use::Time { per_second: found.per_second }
+                }
+                "led" if of_log => {
+                    columns.led = true;
+                    Use::Led
+                }
+                name if COUNTERS.contains(&name) && !kept => Use::Counter,
+                _ if of_log || kept => {
+                    if columns.values.contains(name) {
+                        return Err(format!("two columns are named `{name}`; rename one"));
+                    }
+                    columns.values.push(name.clone());
+                    let at = columns.meaning.values;
+                    columns.meaning.values += 1;
+                    // Counts are those of a converter: photodiodes.
+                    if of_log && is_photodiode(name) { Use::Counts(at) } else { Use::Value(at) }
+                }
+                _ => {
+                    passed_over.push(name.as_str());
+                    Use::None
+                }
+            });
+        }
+        if !passed_over.is_empty() {
+            columns.notes.push(format!("columns that are not kept: {}", passed_over.join(", ")));
+        }
+        Ok(columns)
+    }
+
+    /// Where the photodiodes are in a row.
+    pub(crate) fn photodiodes(&self) -> impl Iterator<Item = usize> {
+        (0..self.values.len()).filter(|&k| is_photodiode(&self.values[k]))
+    }
+
+    /// Whether these photodiodes are there.
+    ///
+    /// # Errors
+    /// The first that is not, in words.
+    pub(crate) fn check(&self, needs: &[String]) -> Result<(), String> {
+        let Some(lacking) = needs.iter().find(|name| self.place(name).is_none()) else { return Ok(()) };
+        let has = if self.values.is_empty() { "none".to_owned() } else { self.values.join(", ") };
+        Err(format!(
+            "the model reads {lacking}, which the stream does not send (numbers that it sends: {has}); say what it is \
+             called, as in --columns {lacking}=ch_1"
+        ))
+    }
+
+    /// Where a value is in a row.
+    pub(crate) fn place(&self, name: &str) -> Option<usize> {
+        self.values.iter().position(|value| value == name)
+    }
+}
+
+/// Whether a name is a photodiode's: `P1`, `VP1`.
+fn is_photodiode(name: &str) -> bool {
+    let number = name.strip_prefix("VP").or_else(|| name.strip_prefix('P'));
+    number.is_some_and(|number| !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit()))
+}

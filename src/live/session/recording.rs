@@ -1,0 +1,200 @@
+//! A recording that is on disk while it grows: killed at any moment, it lacks a second at most.
+//!
+//! In: rows of text. Out: a CSV file as `align`, `train` and `fit` read it; where a Parquet table is asked for, it is
+//! made of that file at the end. A thread of its own writes four times a second and makes the disk keep it twice, so
+//! that a slow disk never holds a sample up. Nothing is written before the first row, and nothing that exists is
+//! replaced unless that is asked for.
+
+use std::fs::{File, OpenOptions};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use crate::live::error::LiveError;
+use crate::table::{Column, TableFormat, TableWriter, Value};
+
+/// How often rows are written, and the disk is made to keep them.
+const WRITE: Duration = Duration::from_millis(250);
+const SYNC: Duration = Duration::from_millis(500);
+/// What may wait for a disk: about ten minutes of eight photodiodes at 1 kHz.
+const MOST_BYTES: usize = 64 << 20;
+
+/// A file that grows.
+#[derive(Debug)]
+pub(crate) struct Recording {
+    out: PathBuf,
+    /// The file that grows: `out`, or beside it where that is to be Parquet.
+    grows: PathBuf,
+    columns: Vec<String>,
+    replace: bool,
+    shared: Arc<Shared>,
+    writer: Option<JoinHandle<io::Result<()>>>,
+    lost: u64,
+}
+
+#[derive(Debug, Default)]
+struct Shared {
+    pending: Mutex<Pending>,
+    wake: Condvar,
+}
+
+#[derive(Debug, Default)]
+struct Pending {
+    bytes: Vec<u8>,
+    ends: bool,
+    failed: bool,
+}
+
+impl Recording {
+    /// A recording with these columns, not begun yet.
+    ///
+    /// # Errors
+    /// A name that is no table's, or a file that exists and is not to be replaced.
+    pub(crate) fn new(out: &Path, replace: bool) -> Result<Self, LiveError> {
+        let grows = match TableFormat::of(out)? {
+            TableFormat::Csv => out.to_owned(),
+            TableFormat::Parquet => PathBuf::from(format!("{}.csv", out.display())),
+        };
+        for path in [out, &grows] {
+            if !replace && path.exists() {
+                return Err(LiveError::Exists(path.to_owned()));
+            }
+        }
+        Ok(Self {
+            out: out.to_owned(),
+            grows,
+            columns: Vec::new(),
+            replace,
+            shared: Arc::default(),
+            writer: None,
+            lost: 0,
+        })
+    }
+
+    /// Names the columns; before the first row.
+    pub(crate) fn name(&mut self, columns: Vec<String>) {
+        self.columns = columns;
+    }
+
+    /// Rows that were left out as the disk was too slow.
+    pub(crate) fn lost(&self) -> u64 {
+        self.lost
+    }
+
+    /// Adds a row with its end.
+    ///
+    /// # Errors
+    /// The file can't be made, or could not be written.
+    pub(crate) fn push(&mut self, row: &str) -> Result<(), LiveError> {
+        if self.writer.is_none() {
+            self.begin()?;
+        }
+        let mut pending = self.shared.pending.lock().unwrap_or_else(PoisonError::into_inner);
+        if pending.failed {
+            drop(pending);
+            return Err(self.close().err().unwrap_or_else(|| self.refused(io::ErrorKind::Other.into())));
+        }
+        if pending.bytes.len() + row.len() > MOST_BYTES {
+            self.lost += 1;
+        } else {
+            pending.bytes.extend_from_slice(row.as_bytes());
+        }
+        Ok(())
+    }
+
+    fn begin(&mut self) -> Result<(), LiveError> {
+        let mut options = OpenOptions::new();
+        options.write(true);
+        if self.replace {
+            options.create(true).truncate(true)
+        } else {
+            options.create_new(true)
+        };
+        let mut file = options.open(&self.grows).map_err(|why| self.refused(why))?;
+        let header = self.columns.join(",") + "\n";
+        file.write_all(header.as_bytes()).map_err(|why| self.refused(why))?;
+        let shared = Arc::clone(&self.shared);
+        self.writer = Some(std::thread::spawn(move || {
+            let written = write_rows(&mut file, &shared);
+            shared.pending.lock().unwrap_or_else(PoisonError::into_inner).failed = written.is_err();
+            written
+        }));
+        Ok(())
+    }
+
+    fn refused(&self, why: io::Error) -> LiveError {
+        LiveError::Write { path: self.grows.clone(), why }
+    }
+
+    fn close(&mut self) -> Result<(), LiveError> {
+        self.shared.pending.lock().unwrap_or_else(PoisonError::into_inner).ends = true;
+        self.shared.wake.notify_all();
+        let Some(writer) = self.writer.take() else { return Ok(()) };
+        let written = writer.join().unwrap_or_else(|_| Err(io::ErrorKind::Other.into()));
+        written.map_err(|why| self.refused(why))
+    }
+
+    /// Ends it: all rows are on disk, in the format asked for. Whether there is a recording.
+    ///
+    /// # Errors
+    /// What could not be written; what was written before stays.
+    pub(crate) fn finish(mut self) -> Result<bool, LiveError> {
+        if self.writer.is_none() {
+            return Ok(false);
+        }
+        self.close()?;
+        if self.grows != self.out {
+            self.to_parquet()?;
+            std::fs::remove_file(&self.grows).map_err(|why| self.refused(why))?;
+        }
+        Ok(true)
+    }
+
+    /// The rows as a Parquet table.
+    fn to_parquet(&self) -> Result<(), LiveError> {
+        let columns = self.columns.iter().map(Column::number).collect();
+        let mut table = TableWriter::create(&self.out, &self.out, columns, &[])?;
+        let refused = |why: csv::Error| self.refused(why.into());
+        let mut rows = csv::Reader::from_path(&self.grows).map_err(refused)?;
+        let mut row = csv::StringRecord::new();
+        while rows.read_record(&mut row).map_err(refused)? {
+            let cells: Vec<Value<'_>> =
+                row.iter().map(|cell| Value::Number(cell.parse().unwrap_or(f64::NAN))).collect();
+            table.write(&cells)?;
+        }
+        Ok(table.finish()?)
+    }
+}
+
+impl Drop for Recording {
+    fn drop(&mut self) {
+        let _ = self.close();
+    }
+}
+
+/// Writes what comes until it ends.
+fn write_rows(file: &mut File, shared: &Shared) -> io::Result<()> {
+    let mut bytes = Vec::new();
+    let mut synced = Instant::now();
+    loop {
+        let ends = {
+            let pending = shared.pending.lock().unwrap_or_else(PoisonError::into_inner);
+            let waited = shared.wake.wait_timeout_while(pending, WRITE, |pending| !pending.ends);
+            let mut pending = waited.unwrap_or_else(PoisonError::into_inner).0;
+            // What was written is room for what comes.
+            bytes.clear();
+            std::mem::swap(&mut bytes, &mut pending.bytes);
+            pending.ends
+        };
+        file.write_all(&bytes)?;
+        if ends || synced.elapsed() >= SYNC {
+            file.sync_data()?;
+            synced = Instant::now();
+        }
+        if ends {
+            return Ok(());
+        }
+    }
+}

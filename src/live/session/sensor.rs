@@ -1,0 +1,129 @@
+//! One sensor's way from a row of the wire to an answer: ambient light, lags, models, gate.
+//!
+//! The same code that answers a recording answers here, row by row, so that a recording's answers are a stream's to the
+//! bit: of a log with an LED, under the rule `preceding` ([`AmbientRule`](crate::log::AmbientRule)). Nothing is
+//! allocated for a row.
+
+use lunula_live::wire::Row;
+use lunula_predictor::Contact;
+
+use super::columns::StreamColumns;
+use crate::log::{AmbientError, LogReading, Preceding};
+use crate::predictor::Answering;
+
+/// A sensor and its models.
+#[derive(Debug)]
+pub(crate) struct Sensor {
+    answering: Answering,
+    preceding: Option<Preceding>,
+    /// Where each photodiode is in a row.
+    places: Vec<usize>,
+    /// Rows so far: their time where the stream has none.
+    rows: f64,
+    timed: bool,
+    /// A recording has begun, and no lit row of it has come yet.
+    begins: bool,
+    keep_faults: bool,
+    volts: Vec<f64>,
+    answer: Vec<f64>,
+    /// Lit rows, unlit ones, and those that do not say.
+    pub(crate) lit: u64,
+    pub(crate) unlit: u64,
+    pub(crate) unknown: u64,
+    pub(crate) not_known: u64,
+}
+
+/// What was made of a lit row.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Answer {
+    /// What the gate says, where there is one.
+    pub(crate) contact: Option<Contact>,
+    /// Whether the voltages lie beyond those that a model was trained on.
+    pub(crate) outside: bool,
+}
+
+impl Sensor {
+    /// Of a stream's columns.
+    ///
+    /// # Errors
+    /// A photodiode that a model reads and the stream lacks, a time that lags need; a range that is none.
+    pub(crate) fn new(
+        answering: Answering,
+        columns: &StreamColumns,
+        log: &LogReading,
+        keep_faults: bool,
+    ) -> Result<Self, String> {
+        let inputs = answering.inputs().to_vec();
+        columns.check(&inputs)?;
+        let places = inputs.iter().filter_map(|name| columns.place(name)).collect();
+        if answering.needs_time() && !columns.time {
+            let what = "has no time_s, and a model reads voltages of the past (it was trained with --lags); give it the \
+                        time in seconds";
+            return Err(what.to_owned());
+        }
+        let preceding = columns.led.then(|| Preceding::new(inputs.len(), log.ambient.full_scale_v)).transpose();
+        let preceding = preceding.map_err(|why: AmbientError| why.to_string())?;
+        Ok(Self {
+            volts: vec![f64::NAN; inputs.len()],
+            answer: vec![f64::NAN; answering.columns().len()],
+            answering,
+            preceding,
+            places,
+            rows: 0.0,
+            timed: columns.time,
+            begins: true,
+            keep_faults,
+            lit: 0,
+            unlit: 0,
+            unknown: 0,
+            not_known: 0,
+        })
+    }
+
+    /// Its models.
+    pub(crate) fn answering(&self) -> &Answering {
+        &self.answering
+    }
+
+    /// The last answer, as [`Answering::columns`]; NaN where not known.
+    pub(crate) fn answer(&self) -> &[f64] {
+        &self.answer
+    }
+
+    /// What its models make of a row; nothing of an unlit one.
+    pub(crate) fn row(&mut self, row: &Row<'_>) -> Option<Answer> {
+        self.begins |= row.begins;
+        for (volts, &place) in self.volts.iter_mut().zip(&self.places) {
+            *volts = row.values[place];
+        }
+        let mut faulty = false;
+        if let Some(preceding) = &mut self.preceding {
+            if row.begins {
+                preceding.forget();
+            }
+            self.rows += 1.0;
+            let at = if self.timed { row.time_s } else { self.rows };
+            match row.lit {
+                Some(true) => faulty = preceding.lit(at, &mut self.volts),
+                Some(false) => {
+                    preceding.unlit(at, &self.volts);
+                    self.unlit += 1;
+                    return None;
+                }
+                None => {
+                    self.unknown += 1;
+                    return None;
+                }
+            }
+        }
+        if faulty && !self.keep_faults {
+            self.volts.fill(f64::NAN);
+        }
+        let before = self.answering.outside();
+        let begins = std::mem::take(&mut self.begins);
+        let contact = self.answering.answer(row.time_s, begins, &self.volts, &mut self.answer);
+        self.lit += 1;
+        self.not_known += u64::from(!self.answer.iter().all(|value| value.is_finite()));
+        Some(Answer { contact, outside: self.answering.outside() > before })
+    }
+}

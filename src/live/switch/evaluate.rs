@@ -1,0 +1,142 @@
+//! `lunula switch evaluate`: false switches an hour, misses and delays of a switch on recordings.
+//!
+//! In: `switch.toml`, recordings with what is true of contact, the models. Out, in a folder: `switch.json`
+//! ([`EvaluateSwitchReport`]), `presses.csv` (a row per press and per missed contact, to look at the false ones), and
+//! the delays drawn.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use lunula_live::switch::{Evaluation, Fate, Match, SwitchConfig, matches};
+use serde::Serialize;
+
+use super::figures::draw_delays;
+use super::options::ContactOptions;
+use super::traces::{Traces, read_traces};
+use crate::files::Staging;
+use crate::job::{Report, Watch};
+use crate::live::error::LiveError;
+use crate::stages::{Stages, Step, left_out};
+use crate::table::{Column, TableWriter, Value};
+
+/// How a switch did.
+pub type EvaluateSwitchReport = Report<EvaluateSwitchFigures>;
+
+/// The figures of an evaluation.
+#[derive(Debug, Clone, Serialize)]
+pub struct EvaluateSwitchFigures {
+    /// The recordings.
+    pub recordings: Vec<PathBuf>,
+    /// What is true contact.
+    pub contact: String,
+    /// The switch.
+    pub switch: SwitchConfig,
+    /// Over all recordings.
+    #[serde(flatten)]
+    pub all: Evaluation,
+}
+
+/// Judges a switch.
+///
+/// # Errors
+/// [`LiveError`] where there is nothing to judge it on: nothing is written.
+pub fn evaluate_switch(
+    switch: &Path,
+    recordings: &[PathBuf],
+    models: &[PathBuf],
+    options: &ContactOptions,
+    out: &Path,
+    figures: bool,
+    watch: &Watch<'_>,
+) -> Result<EvaluateSwitchReport, LiveError> {
+    let start = Instant::now();
+    let stages = Stages::default();
+    let config = read_switch(switch)?;
+    let staging = Staging::new(out)?;
+    let Traces { recordings: read, traces, warnings, notes, failed } =
+        stages.time("predict", || read_traces(recordings, models, config.column.as_deref(), options, watch))?;
+    let all = stages.time("switch", || Evaluation::of(&config, &traces));
+    if all.hours == 0.0 {
+        let what = format!("no row says whether the finger touches (`{}`); name another column", options.contact);
+        return Err(LiveError::Request(what));
+    }
+    watch.go_on()?;
+    let mut report = Report {
+        warnings,
+        notes,
+        failed,
+        left_out: left_out(evaluate_plan(recordings.len(), figures)),
+        ..Report::new(
+            "switch evaluate",
+            watch,
+            EvaluateSwitchFigures {
+                recordings: read.clone(),
+                contact: options.contact.to_string(),
+                switch: config.clone(),
+                all,
+            },
+        )
+    };
+    let found: Vec<Vec<Match>> = traces.iter().map(|trace| matches(&config, trace)).collect();
+    let at = staging.place("presses.csv")?;
+    let columns = vec![
+        Column::text("recording"),
+        Column::text("kind"),
+        Column::number("press_s"),
+        Column::number("release_s"),
+        Column::number("contact_start_s"),
+        Column::number("contact_end_s"),
+    ];
+    let mut table = TableWriter::create(&at, &out.join("presses.csv"), columns, &[])?;
+    for (recording, matches) in read.iter().zip(&found) {
+        let name = recording.display().to_string();
+        for one in matches {
+            let kind = match one.fate {
+                Fate::True => "true",
+                Fate::False => "false",
+                Fate::Repeated => "repeated",
+                Fate::Missed => "missed",
+            };
+            let contact = one.contact.map_or([f64::NAN; 2], |contact| [contact.start_s, contact.end_s]);
+            table.write(&[
+                Value::Text(&name),
+                Value::Text(kind),
+                Value::Number(one.press_s),
+                Value::Number(one.release_s),
+                Value::Number(contact[0]),
+                Value::Number(contact[1]),
+            ])?;
+        }
+    }
+    table.finish()?;
+    if figures {
+        let (png, svg) = (staging.place("delays.png")?, staging.place("delays.svg")?);
+        let drawn = stages.time("figures", || draw_delays(&found, &png, &svg));
+        drawn.map_err(|why| staging.refused("delays.png", format!("{why:#}")))?;
+        report.pictures.push(out.join("delays.png"));
+    }
+    let report = report.timed(&stages, start);
+    staging.write("switch.json", report.text().as_bytes())?;
+    staging.commit()?;
+    Ok(report)
+}
+
+/// What would be done and what not.
+#[must_use]
+pub fn evaluate_plan(recordings: usize, figures: bool) -> Vec<Step> {
+    vec![
+        Step::new("predict", true, format!("{recordings} recordings, row by row as live")),
+        Step::new("switch", true, "against true contact".to_owned()),
+        Step::new("figures", figures, if figures { "delays" } else { "--no-figures" }.to_owned()),
+    ]
+}
+
+/// Reads a switch.
+///
+/// # Errors
+/// A file that can't be read, or is no switch, with the keys that are wrong.
+pub fn read_switch(path: &Path) -> Result<SwitchConfig, LiveError> {
+    let refused = |what: String| LiveError::Config { path: path.to_owned(), what };
+    let text = crate::input::read_text(path).map_err(|why| refused(why.to_string()))?;
+    SwitchConfig::from_toml(&text).map_err(|why| refused(why.to_string()))
+}

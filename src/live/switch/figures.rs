@@ -1,0 +1,77 @@
+//! The pictures of switches: delay against false switches, and how delays are spread.
+
+use std::path::Path;
+
+use lunula_live::switch::{Fate, Match};
+
+use super::tune::TuneReport;
+use crate::figure::{Axis, Chart, Item, draw_charts};
+
+const WIDTH: u32 = 900;
+const HEIGHT: u32 = 520;
+
+/// Draws the curve of median delay against false switches an hour, the goal and the choice.
+pub(super) fn draw_curve(title: &str, report: &TuneReport, goal: f64, png: &Path, svg: &Path) -> anyhow::Result<()> {
+    // Beyond some multiples of the goal nobody looks.
+    let most = (20.0 * goal).max(1.0);
+    let points: Vec<[f64; 2]> = report
+        .curve
+        .iter()
+        .filter(|point| point.false_per_hour <= most)
+        .map(|point| [point.false_per_hour, 1e3 * point.delay_on_s])
+        .collect();
+    let chosen = report.chosen.rate.zip(report.chosen.delay_on_s).map(|(rate, delay)| (rate.false_per_hour, delay));
+    let highest = points.iter().map(|point| point[1]).fold(1.0, f64::max);
+    let mut items = vec![
+        Item::Spans { name: Some("more than the goal".to_owned()), spans: vec![[goal, most]] },
+        Item::Room(vec![[0.0, 0.0], [0.0, highest]]),
+        Item::Line { name: None, runs: vec![points.clone()], colour: 0, width: 2 },
+        Item::Dots { name: Some("fastest thresholds and holds".to_owned()), points, colour: 0 },
+    ];
+    if let Some((rate, delay)) = chosen {
+        let at = [rate, 1e3 * delay.median];
+        items.push(Item::Dots { name: Some("chosen".to_owned()), points: vec![at], colour: 1 });
+        let text = format!("on {} N, off {} N", report.switch.on_n, report.switch.off_n);
+        items.push(Item::Label { at, text, colour: 1, above: true });
+    }
+    let chart = Chart {
+        title: title.to_owned(),
+        x: Axis { label: format!("false switches per hour (counted in {:.2} h)", report.chosen.hours) },
+        y: Axis { label: "median delay of presses, ms".to_owned() },
+        from_zero: true,
+        items,
+        height: HEIGHT,
+    };
+    draw_charts(&[chart], WIDTH, png, svg)
+}
+
+/// Draws the share of presses and of releases that came within a delay.
+pub(super) fn draw_delays(found: &[Vec<Match>], png: &Path, svg: &Path) -> anyhow::Result<()> {
+    let known = || found.iter().flatten().filter(|one| one.fate == Fate::True);
+    let on = known().filter_map(|one| Some(one.press_s - one.contact.filter(|contact| contact.start_known)?.start_s));
+    let off = known().filter_map(|one| Some(one.release_s - one.contact.filter(|contact| contact.end_known)?.end_s));
+    let curve = |delays: Vec<f64>| {
+        let mut delays: Vec<f64> = delays.into_iter().filter(|delay| delay.is_finite()).collect();
+        delays.sort_by(f64::total_cmp);
+        let all = delays.len() as f64;
+        delays.iter().enumerate().map(|(k, delay)| [1e3 * delay, 100.0 * (k + 1) as f64 / all]).collect::<Vec<_>>()
+    };
+    let lines =
+        [("press, after true contact began", curve(on.collect())), ("release, after it ended", curve(off.collect()))];
+    let mut items = vec![Item::Room(vec![[0.0, 0.0], [0.0, 100.0]])];
+    items.extend(lines.into_iter().enumerate().map(|(colour, (name, points))| Item::Line {
+        name: Some(name.to_owned()),
+        runs: vec![points],
+        colour,
+        width: 2,
+    }));
+    let chart = Chart {
+        title: "Delays of the switch".to_owned(),
+        x: Axis { label: "delay, ms".to_owned() },
+        y: Axis { label: "share within it, %".to_owned() },
+        from_zero: true,
+        items,
+        height: HEIGHT,
+    };
+    draw_charts(&[chart], WIDTH, png, svg)
+}

@@ -1,0 +1,13 @@
+//! The virtual switch (6.1): its thresholds from recordings, and how it does.
+
+mod evaluate;
+mod figures;
+mod options;
+mod traces;
+mod truth;
+mod tune;
+
+pub use evaluate::{EvaluateSwitchFigures, EvaluateSwitchReport, evaluate_plan, evaluate_switch, read_switch};
+pub use options::{ContactOptions, OutsideChoice, TuneOptions};
+pub use truth::TrueContact;
+pub use tune::{CurvePoint, TuneFigures, TuneReport, tune_plan, tune_switch};

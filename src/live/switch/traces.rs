@@ -1,0 +1,126 @@
+//! Recordings to traces: what a live session would have compared at each row, and what was true.
+
+use std::cell::RefCell;
+use std::path::PathBuf;
+
+use lunula_live::switch::Trace;
+use lunula_predictor::{Gate, Predictor};
+
+use super::options::ContactOptions;
+use crate::job::Watch;
+use crate::live::error::LiveError;
+use crate::live::session::{Sensor, StreamColumns, each_row};
+use crate::predictor::{Answering, open_models};
+
+/// Rows of a recording, at most: 30 h at 1 kHz.
+const MOST_ROWS: usize = 100_000_000;
+
+/// What recordings hold.
+#[derive(Debug, Default)]
+pub(super) struct Traces {
+    /// Those that could be read.
+    pub(super) recordings: Vec<PathBuf>,
+    /// One of each of them.
+    pub(super) traces: Vec<Trace>,
+    pub(super) warnings: Vec<String>,
+    pub(super) notes: Vec<String>,
+    /// Recordings that could not be read, each with why.
+    pub(super) failed: Vec<String>,
+}
+
+/// Reads recordings; `column` is the predicted one that the switch compares, pressing where none is named.
+///
+/// # Errors
+/// Models that can't be used, or not one recording that can be.
+pub(super) fn read_traces(
+    recordings: &[PathBuf],
+    models: &[PathBuf],
+    column: Option<&str>,
+    options: &ContactOptions,
+    watch: &Watch<'_>,
+) -> Result<Traces, LiveError> {
+    let opened = open_models(models)?;
+    let mut all = Traces { warnings: opened.warnings, ..Traces::default() };
+    for (k, recording) in recordings.iter().enumerate() {
+        watch.go_on()?;
+        (watch.tick)(k as u64, Some(recordings.len() as u64));
+        let mut notes = Vec::new();
+        match read_trace(recording, &opened.predictors, column, options, watch, &mut notes) {
+            Ok(trace) => {
+                all.traces.push(trace);
+                all.recordings.push(recording.clone());
+            }
+            Err(LiveError::Interrupted(why)) => return Err(why.into()),
+            Err(why) => all.failed.push(why.to_string()),
+        }
+        all.notes.extend(notes.into_iter().map(|note| format!("{}: {note}", recording.display())));
+    }
+    if all.traces.is_empty() {
+        return Err(LiveError::Request(all.failed.join("; ")));
+    }
+    Ok(all)
+}
+
+fn read_trace(
+    recording: &PathBuf,
+    models: &[Predictor],
+    column: Option<&str>,
+    options: &ContactOptions,
+    watch: &Watch<'_>,
+    notes: &mut Vec<String>,
+) -> Result<Trace, LiveError> {
+    let refused = |what: String| LiveError::Source { place: recording.display().to_string(), what };
+    // The gate only says what is touching, which is not asked for here.
+    let gate = Gate::new(1.0, 0.0, 0.0).map_err(|why| refused(why.to_string()))?;
+    let answering = Answering::new(models.to_vec(), gate, false)?;
+    let (name, sign) = column.map_or(("Fz_N", -1.0), |name| (name, 1.0));
+    let at = answering.columns().iter().position(|one| one == name).ok_or_else(|| {
+        refused(format!("the models predict {}, not {name}; name a model of it", answering.columns().join(", ")))
+    })?;
+    let truth = &options.contact;
+    let mut answering = Some(answering);
+    let sensor: RefCell<Option<(Sensor, usize)>> = RefCell::new(None);
+    let mut trace = Trace::default();
+    let extra = [truth.column.clone()];
+    // Of a recording that begins with an unlit row, the first lit one.
+    let mut begins = false;
+    let said = each_row(
+        recording,
+        &options.log,
+        &extra,
+        |columns: &StreamColumns| {
+            let place = columns.place(&truth.column).ok_or_else(|| {
+                format!("has no column `{}`; its numbers are {}", truth.column, columns.values.join(", "))
+            })?;
+            let answering = answering.take().ok_or("names its columns twice")?;
+            sensor.replace(Some((Sensor::new(answering, columns, &options.log, options.keep_faults)?, place)));
+            Ok(())
+        },
+        |row| {
+            let mut sensor = sensor.borrow_mut();
+            let Some((sensor, place)) = &mut *sensor else { return Ok(()) };
+            let touches = truth.of(row.values[*place]).map_err(|value| {
+                format!("column `{}` is {value} at {} s; contact is 0 or 1, or say Fz_N<-0.2", truth.column, row.time_s)
+            })?;
+            trace.contacts.push(row.time_s, touches, row.begins);
+            begins |= row.begins;
+            let Some(answer) = sensor.row(row) else { return Ok(()) };
+            if std::mem::take(&mut begins) {
+                trace.begins.push(trace.time_s.len());
+            }
+            if trace.time_s.len() >= MOST_ROWS {
+                return Err(format!("has more than {MOST_ROWS} rows; cut it into parts"));
+            }
+            trace.time_s.push(row.time_s);
+            trace.value.push(sign * sensor.answer()[at]);
+            trace.outside.push(answer.outside);
+            Ok(())
+        },
+        watch,
+    )?;
+    notes.extend(said);
+    if trace.time_s.is_empty() {
+        return Err(refused("has no rows with the LED on".to_owned()));
+    }
+    Ok(trace)
+}

@@ -1,0 +1,172 @@
+//! `lunula switch tune`: thresholds and holds from held-out recordings, for a rate of false switches.
+//!
+//! In: recordings that the models were not trained on, with what is true of contact. Out: `switch.toml`, beside it
+//! `<switch>.run.json` ([`TuneReport`]) and the curve of delay against false switches. Predictions are made row by row
+//! as `lunula live` makes them.
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use lunula_live::switch::{Candidate, Evaluation, Goal, NoiseRate, SwitchConfig, crossings_per_hour, tune};
+use serde::Serialize;
+
+use super::figures::draw_curve;
+use super::options::TuneOptions;
+use super::traces::{Traces, read_traces};
+use crate::files::{Places, beside};
+use crate::job::{Report, Watch};
+use crate::live::error::LiveError;
+use crate::stages::{Stages, Step, left_out};
+
+/// The picture's name, after the table's.
+const PICTURE: &str = "curve";
+
+/// What was chosen, and how it does.
+pub type TuneReport = Report<TuneFigures>;
+
+/// The figures of a choice.
+#[derive(Debug, Clone, Serialize)]
+pub struct TuneFigures {
+    /// The recordings.
+    pub recordings: Vec<PathBuf>,
+    /// What is true contact.
+    pub contact: String,
+    /// The choice.
+    pub switch: SwitchConfig,
+    /// How it does on the recordings that chose it: it flatters.
+    pub chosen: Evaluation,
+    /// Each recording judged by what the others choose.
+    pub held_out: Option<Evaluation>,
+    /// What nothing but noise would do at `on_N`, an hour, if the value were Gaussian while nothing touches (Rice).
+    pub rice_per_hour: Option<f64>,
+    /// The value while nothing touches.
+    pub noise: Option<NoiseRate>,
+    /// The fastest for each number of false switches.
+    pub curve: Vec<CurvePoint>,
+    /// Combinations that were tried.
+    pub tried: usize,
+}
+
+/// A point of the curve of delay against false switches.
+#[derive(Debug, Clone, Serialize)]
+pub struct CurvePoint {
+    /// False switches an hour.
+    pub false_per_hour: f64,
+    /// Median delay of presses, seconds.
+    pub delay_on_s: f64,
+    /// The share of presses that are missed.
+    pub missed_share: f64,
+    /// What does it.
+    #[serde(flatten)]
+    pub switch: SwitchConfig,
+}
+
+/// Chooses a switch's thresholds; every result is in its place when it returns.
+///
+/// # Errors
+/// [`LiveError`] where there is no choice: nothing is written.
+pub fn tune_switch(
+    recordings: &[PathBuf],
+    models: &[PathBuf],
+    options: &TuneOptions,
+    out: &Path,
+    figures: bool,
+    watch: &Watch<'_>,
+) -> Result<TuneReport, LiveError> {
+    let start = Instant::now();
+    let stages = Stages::default();
+    let report_at = beside(out, ".run.json");
+    let mut places = Places::not_over(recordings.iter().chain(models));
+    places.check([out, &report_at])?;
+    let Traces { recordings: read, traces, warnings, notes, failed } =
+        stages.time("predict", || read_traces(recordings, models, options.column.as_deref(), &options.truth, watch))?;
+    let goal = Goal {
+        false_per_hour: options.false_per_hour,
+        missed_share: options.missed,
+        watchdog_s: options.watchdog,
+        outside: options.outside.into(),
+    };
+    let tuned = stages.time("choose", || tune(&traces, &goal)).map_err(|why| LiveError::Request(why.to_string()))?;
+    watch.go_on()?;
+    let switch = SwitchConfig { column: options.column.clone(), ..tuned.chosen.config.clone() };
+    let mut report = Report {
+        warnings,
+        notes,
+        failed,
+        left_out: left_out(tune_plan(recordings.len(), figures)),
+        ..Report::new(
+            "switch tune",
+            watch,
+            TuneFigures {
+                recordings: read,
+                contact: options.truth.contact.to_string(),
+                rice_per_hour: tuned.noise.map(|noise| crossings_per_hour(noise, switch.on_n)),
+                switch,
+                chosen: tuned.chosen.evaluation,
+                held_out: tuned.held_out,
+                noise: tuned.noise,
+                curve: tuned.curve.into_iter().filter_map(CurvePoint::of).collect(),
+                tried: tuned.tried,
+            },
+        )
+    };
+    let weak = weak(&report, options);
+    report.warnings.extend(weak);
+    let text = toml::to_string(&report.switch).map_err(|why| LiveError::Request(why.to_string()))?;
+    places.write(out, &text)?;
+    if figures {
+        let title = "Median delay of presses against false switches";
+        let drawn = places.draw(out, PICTURE, |png, svg| {
+            stages.time("figures", || draw_curve(title, &report, options.false_per_hour, png, svg))
+        })?;
+        report.pictures.push(drawn);
+    }
+    Ok(report.timed(&stages, start).commit(places, Some(&report_at))?)
+}
+
+/// What would be done and what not.
+#[must_use]
+pub fn tune_plan(recordings: usize, figures: bool) -> Vec<Step> {
+    vec![
+        Step::new("predict", true, format!("{recordings} recordings, row by row as live")),
+        Step::new("choose", true, "thresholds and holds".to_owned()),
+        Step::new("held out", recordings > 1, "each recording judged by what the others choose".to_owned()),
+        Step::new("figures", figures, if figures { "delay against false switches" } else { "--no-figures" }.to_owned()),
+    ]
+}
+
+impl CurvePoint {
+    fn of(candidate: Candidate) -> Option<Self> {
+        let Candidate { config, evaluation } = candidate;
+        Some(Self {
+            false_per_hour: evaluation.rate?.false_per_hour,
+            delay_on_s: evaluation.delay_on_s?.median,
+            missed_share: evaluation.missed as f64 / evaluation.presses.max(1) as f64,
+            switch: config,
+        })
+    }
+}
+
+/// What has to be known of a choice before it is trusted.
+fn weak(report: &TuneReport, options: &TuneOptions) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let judged = report.held_out.as_ref().unwrap_or(&report.chosen);
+    if report.held_out.is_none() {
+        let what = "there is no other recording to judge the choice on: it was judged on what chose it, which flatters; \
+                    name several recordings, or hold one back for `lunula switch evaluate`";
+        warnings.push(what.to_owned());
+    }
+    if let Some(rate) = judged.rate.filter(|rate| rate.false_per_hour_high > options.false_per_hour) {
+        warnings.push(format!(
+            "{:.2} h of recordings show {} false switches: up to {:.3} an hour agree with that, and {} are allowed; \
+             record at least {:.1} h of rest and work to know it",
+            judged.hours,
+            judged.false_switches,
+            rate.false_per_hour_high,
+            options.false_per_hour,
+            // Nothing counted in so long means at most the goal.
+            3.0 / options.false_per_hour
+        ));
+    }
+    warnings
+}
