@@ -1,10 +1,13 @@
-//! One trial's figures.
+//! One trial's figures, and the trial that others are compared with.
 
 use lunula_live::skill::{Contact, Figures, Force, MOST_POINTS, Thresholds, distance, ranks, resampled};
 
-use super::SkillOptions;
-use super::read::Trial;
+use super::read::{Recording, Trial, read};
 use super::report::{FingerFigures, PostureFigures, TrialFigures};
+use super::{SkillError, SkillInputs, SkillOptions, SkillRecording};
+
+/// So many trials are named in a message.
+const MOST_NAMED: usize = 10;
 
 /// The trial that others are compared with.
 #[derive(Debug, Clone)]
@@ -19,7 +22,61 @@ pub(super) struct Reference {
 }
 
 impl Reference {
-    pub(super) fn of(name: String, trial: Trial, is_own: bool, thresholds: &Thresholds) -> Self {
+    /// The trial that others are compared with, if one is to be.
+    ///
+    /// # Errors
+    /// A recording that can't be read or holds several trials, or a name that none or several have.
+    pub(super) fn find(inputs: &SkillInputs, options: &SkillOptions) -> Result<Option<Self>, SkillError> {
+        match (&inputs.reference, &options.reference_trial) {
+            (Some(recording), _) => Self::recorded(recording, options).map(Some),
+            (None, Some(name)) => Self::named(name, &inputs.recordings, options),
+            (None, None) => Ok(None),
+        }
+    }
+
+    fn recorded(recording: &SkillRecording, options: &SkillOptions) -> Result<Self, SkillError> {
+        let mut trials = read(recording, &options.finger)?.trials;
+        match (trials.len(), trials.pop()) {
+            (1, Some(trial)) => Ok(Self::of(recording.name.clone(), trial, false, &options.thresholds())),
+            _ => Err(SkillError::Recordings(vec![format!(
+                "{}: holds several trials; a reference is one: give a recording of it, or name it as \
+                 --reference-trial",
+                recording.name
+            )])),
+        }
+    }
+
+    fn named(wanted: &str, recordings: &[SkillRecording], options: &SkillOptions) -> Result<Option<Self>, SkillError> {
+        let refused = |what: String| Err(SkillError::Recordings(vec![format!("--reference-trial {wanted}: {what}")]));
+        let (mut first, mut matching, mut others) = (None, Vec::new(), Vec::new());
+        for recording in recordings {
+            // What can't be read is reported as such later.
+            let Ok(Recording { trials, .. }) = read(recording, &options.finger) else { continue };
+            for trial in trials {
+                let name = match &trial.subject {
+                    Some(subject) => format!("{subject}/{}", trial.trial),
+                    None => trial.trial.clone(),
+                };
+                if wanted == trial.trial || wanted == name {
+                    first.get_or_insert((name.clone(), trial));
+                    matching.push(name);
+                } else if others.len() < MOST_NAMED {
+                    others.push(name);
+                }
+            }
+        }
+        match (first, matching.len()) {
+            (None, _) if others.is_empty() => Ok(None),
+            (None, _) => refused(format!("there is no such trial; there are {}", others.join(", "))),
+            (Some((name, trial)), 1) => Ok(Some(Self::of(name, trial, true, &options.thresholds()))),
+            (_, many) => {
+                matching.truncate(MOST_NAMED);
+                refused(format!("there are {many} of this name ({}); write SUBJECT/TRIAL", matching.join(", ")))
+            }
+        }
+    }
+
+    fn of(name: String, trial: Trial, is_own: bool, thresholds: &Thresholds) -> Self {
         let touched: Vec<Vec<Contact>> =
             trial.fingers.iter().map(|finger| Figures::of(&finger.force, thresholds).1).collect();
         Self { name, span_s: span_s(&touched), trial, is_own }

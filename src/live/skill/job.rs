@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::analysis::{self, Reference};
 use super::figures::{self, Drawn, MOST_DRAWN};
 use super::options::{SkillInputs, SkillOptions, SkillRecording};
-use super::read::{Recording, read};
+use super::read::read;
 use super::report::{SkillFigures, SkillReport, TrialFigures};
 use super::table::{self, TABLE};
 use super::{SkillError, summary};
@@ -79,7 +79,7 @@ pub fn run(
     let files = inputs.recordings.iter().chain(&inputs.reference).map(|one| &one.path);
     let mut places = Places::not_over(files);
     places.check([FIGURES, TABLE, REPORT].map(|name| folder.join(name)))?;
-    let reference = stages.time("reference", || reference(inputs, options))?;
+    let reference = stages.time("reference", || Reference::find(inputs, options))?;
     watch.go_on()?;
     let count = AtomicU64::new(0);
     let one = |recording: &SkillRecording| {
@@ -134,58 +134,6 @@ pub fn run(
     let left_out = left_out(steps);
     let report = Report { left_out, notes, warnings, failed, pictures, ..Report::new("skill", watch, figures) };
     Ok(report.timed(&stages, start).commit(places, outputs.report.then(|| folder.join(REPORT)).as_deref())?)
-}
-
-/// The trial that others are compared with, if one is to be.
-fn reference(inputs: &SkillInputs, options: &SkillOptions) -> Result<Option<Reference>, SkillError> {
-    let refused = |what: String| Err(SkillError::Recordings(vec![what]));
-    let named = |trial: &super::read::Trial| match &trial.subject {
-        Some(subject) => format!("{subject}/{}", trial.trial),
-        None => trial.trial.clone(),
-    };
-    let mut matching = Vec::new();
-    if let Some(recording) = &inputs.reference {
-        let mut trials = read(recording, &options.finger)?.trials;
-        if let (1, Some(trial)) = (trials.len(), trials.pop()) {
-            matching.push((recording.name.clone(), trial));
-        } else {
-            return refused(format!(
-                "{}: holds several trials; a reference is one: give a recording of it, or name it as --reference-trial",
-                recording.name
-            ));
-        }
-    }
-    if let Some(wanted) = &options.reference_trial {
-        let mut known = Vec::new();
-        for recording in &inputs.recordings {
-            // What can't be read is reported as such later.
-            let Ok(Recording { trials, .. }) = read(recording, &options.finger) else { continue };
-            for trial in trials {
-                if *wanted == trial.trial || *wanted == named(&trial) {
-                    matching.push((named(&trial), trial));
-                } else if known.len() < 10 {
-                    known.push(named(&trial));
-                }
-            }
-        }
-        match matching.len() {
-            0 => {
-                let known = known.join(", ");
-                return refused(format!("--reference-trial {wanted}: there is no such trial; there are {known}"));
-            }
-            1 => {}
-            many => {
-                let names: Vec<&str> = matching.iter().take(10).map(|(name, _)| name.as_str()).collect();
-                return refused(format!(
-                    "--reference-trial {wanted}: there are {many} of this name ({}); write SUBJECT/TRIAL",
-                    names.join(", ")
-                ));
-            }
-        }
-    }
-    Ok(matching
-        .pop()
-        .map(|(name, trial)| Reference::of(name, trial, inputs.reference.is_none(), &options.thresholds())))
 }
 
 /// Reads a recording and looks at its trials.
