@@ -382,14 +382,15 @@ fn what_is_beyond_a_number_is_not_known() {
 fn a_stream_of_names_alone_and_an_empty_one() {
     let dir = models();
     let names = Recording::of(0..0).csv();
-    assert_eq!(streamed(&dir, &["force.json", "-"], &names).expect(0).stdout, "time_s,Fx_N,Fy_N,Fz_N\n");
+    let none = streamed(&dir, &["force.json", "-"], &names).expect(2).says("standard input: no row came");
+    assert_eq!(none.stdout, "time_s,Fx_N,Fy_N,Fz_N\n");
     dir.write("names.csv", &names);
     predict(&dir, &["force.json", "names.csv"], &[]);
     assert_eq!(dir.text("p.csv"), "time_s,Fx_N,Fy_N,Fz_N\n");
     let empty = streamed(&dir, &["force.json", "-"], "").expect(2).says("standard input: is empty");
     assert_eq!(empty.stdout, "");
-    let lacking = Recording::of(0..2).renamed("P3", "p3").csv();
-    streamed(&dir, &["force.json", "-"], &lacking).expect(2).says("no column `P3`; is it `p3`?");
+    let lacking = Recording::of(0..2).renamed("P3", "x3").csv();
+    streamed(&dir, &["force.json", "-"], &lacking).expect(2).says("no column `P3`").says("--columns P3=ch_1");
     let log = Recording::of(0..2).with("led", |_, _| "1".to_owned()).csv();
     // Without an unlit row before it a lit row has no value.
     let dark = streamed(&dir, &["force.json", "-"], &log).expect(0).says("the unlit row before it is taken away");
@@ -401,20 +402,21 @@ fn a_stream_of_names_alone_and_an_empty_one() {
 }
 
 #[test]
-fn a_wrong_cell_ends_a_stream_after_the_rows_before_it() {
+fn a_wrong_cell_costs_its_row() {
     let dir = models();
     let good = Recording::of(300..305);
-    for (text, words) in
-        [("NaN", "standard input:5: column `P2`: `NaN`"), ("2 V", "column `P2`: `2 V`"), ("1,2", "14 cells for 13")]
-    {
+    for (text, words) in [
+        ("2 V", "standard input: 1 rows with a cell that is no finite number, first in line 5"),
+        ("1,2", "1 rows with too many or too few cells, first in line 5"),
+    ] {
         let bad = good.clone().cell(3, "P2", text);
-        let answer = streamed(&dir, &["force.json", "-"], &bad.csv()).expect(2).says(words);
-        // The names and three rows.
-        assert_eq!(answer.stdout.lines().count(), 4, "{}", answer.stdout);
-        let dropped = streamed(&dir, &["force.json", "-", "--drop-invalid"], &bad.csv()).expect(0);
-        let lines: Vec<&str> = dropped.stdout.lines().collect();
-        assert!(lines.len() == 6 && lines[4].ends_with(",,,") && !lines[5].ends_with(','), "{}", dropped.stdout);
+        let answer = streamed(&dir, &["force.json", "-"], &bad.csv()).expect(1).says(words);
+        // The names and four rows.
+        assert_eq!(answer.stdout.lines().count(), 5, "{}", answer.stdout);
     }
+    let missing = streamed(&dir, &["force.json", "-"], &good.clone().cell(3, "P2", "NaN").csv()).expect(0);
+    let lines: Vec<&str> = missing.stdout.lines().collect();
+    assert!(lines.len() == 6 && lines[4].ends_with(",,,") && !lines[5].ends_with(','), "{}", missing.stdout);
     // A last line without its end is a row.
     let whole = good.csv();
     let cut = streamed(&dir, &["force.json", "-"], whole.trim_end()).expect(0);

@@ -33,7 +33,6 @@ use std::path::{Path, PathBuf};
 pub use ambient::{AmbientError, AmbientOptions, AmbientRule, Samples, samples};
 pub(crate) use ambient::{PRECEDING_RULE, Preceding, piles};
 pub use foreseen::{ReadingCost, ambient_step, ambient_step_of, foreseen_bytes};
-pub(crate) use lines::cell::led as led_state;
 pub use lines::stamps::TimeUnit;
 pub(crate) use lines::status::{Statuses, Verdict};
 pub use naming::columns::Columns;

@@ -3,7 +3,7 @@
 //!
 //! The models and their mathematics are the crate `lunula-predictor`'s; here are the files and the jobs of the command
 //! line, an entry each:
-//! [`train()`], [`evaluate()`], [`predict()`] (and [`predict_stream`]), [`analyse()`], [`prune()`],
+//! [`train()`], [`evaluate()`], [`predict()`], [`analyse()`], [`prune()`],
 //! [`trajectory::run`].
 
 mod data;
@@ -24,9 +24,9 @@ pub use lunula_predictor as models;
 use lunula_predictor::{Dataset, Predictor, recording_hashes};
 
 pub use data::{
-    DataError, DataFile, FailedFile, FileRows, Inputs, Read, Row, RowOptions, RowStream, Wanted, read_data, read_files,
-    read_inputs,
+    DataError, DataFile, FailedFile, FileRows, Inputs, Read, RowOptions, Wanted, read_data, read_files, read_inputs,
 };
+pub(crate) use data::{GROUPS, missing};
 pub use error::PredictorError;
 pub use figures::{BarSeries, Bars, draw_bars};
 pub use jobs::analyse::{AnalyseFigures, AnalyseReport, ModelMode, ModelModes, Printed, analyse, analyse_plan};
@@ -36,7 +36,7 @@ pub use jobs::evaluate::{
     evaluate_plan,
 };
 pub use jobs::kinds::{AnalyseJob, EvaluateJob, PredictJob, PruneJob, TrainJob};
-pub use jobs::predict::{PredictFigures, PredictOptions, PredictReport, predict, predict_plan, predict_stream};
+pub use jobs::predict::{PredictFigures, PredictOptions, PredictReport, predict, predict_plan};
 pub use jobs::prune::{PruneFigures, PruneReport, PruneRow, prune, prune_plan};
 pub use jobs::train::{TrainFigures, TrainInputs, TrainOptions, TrainOutputs, TrainReport, Without, train, train_plan};
 pub use merit::figures::{ByTarget, Merit};

@@ -108,10 +108,6 @@ fn lags_without_times_are_refused() {
         .unwrap_err()
         .to_string();
     assert!(said.contains("b.csv: has no time_s"), "{said}");
-    let text = std::fs::read(&b).unwrap();
-    let said =
-        predict_stream(&[model], &text[..], &options(), Vec::new(), |_| (), &Watch::nobody()).unwrap_err().to_string();
-    assert!(said.contains("standard input: has no time_s"), "{said}");
 }
 
 #[test]
@@ -120,9 +116,8 @@ fn an_angle_that_the_gate_rules_has_no_interval() {
     let (a, b) = (folder.file("a.csv", 0.0, 1.0, true), folder.file("b.csv", 0.5, 1.0, true));
     let models =
         ["force", "posture"].map(|target| folder.train(&inputs(&[&a], &[&b], &[]), target, linear()).unwrap().0);
-    let mut out = Vec::new();
-    predict_stream(&models, &std::fs::read(&b).unwrap()[..], &options(), &mut out, |_| (), &Watch::nobody()).unwrap();
-    let text = String::from_utf8(out).unwrap();
+    predict(&models, &b, &options(), &folder.path("p.csv"), &Watch::nobody()).unwrap();
+    let text = std::fs::read_to_string(folder.path("p.csv")).unwrap();
     let rows: Vec<Vec<&str>> = text.lines().skip(1).map(|line| line.split(',').collect()).collect();
     let mut seen = [0, 0];
     for row in &rows {
@@ -132,6 +127,4 @@ fn an_angle_that_the_gate_rules_has_no_interval() {
         seen[usize::from(touches)] += 1;
     }
     assert!(seen[0] > 5 && seen[1] > 5, "{seen:?}");
-    predict(&models, &b, &options(), &folder.path("p.csv"), &Watch::nobody()).unwrap();
-    assert_eq!(std::fs::read_to_string(folder.path("p.csv")).unwrap(), text);
 }

@@ -42,28 +42,3 @@ pub(super) fn finish() -> io::Result<()> {
         _ => Ok(()),
     }
 }
-
-/// Standard output for whoever writes by himself.
-pub(super) struct Stream;
-
-impl Write for Stream {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let written = io::stdout().write(bytes);
-        self.noted(written)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        let flushed = io::stdout().flush();
-        self.noted(flushed)
-    }
-}
-
-impl Stream {
-    fn noted<T>(&self, result: io::Result<T>) -> io::Result<T> {
-        result.inspect_err(|why| {
-            if why.kind() != ErrorKind::Interrupted {
-                note(Err(why.raw_os_error().map_or_else(|| why.kind().into(), io::Error::from_raw_os_error)));
-            }
-        })
-    }
-}

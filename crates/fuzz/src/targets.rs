@@ -9,13 +9,14 @@ use std::sync::Arc;
 
 use lunula::align::Posture;
 use lunula::job::{Keys, Made, Maker, Work};
+use lunula::live::streams::wire::{Line, LineOptions, Lines, Meaning, Use};
 use lunula::log::{AmbientOptions, Columns, Log, samples};
 use lunula::photo::outline::{self, Axis, Drawn, find_axes, outlines_from_mask};
 use lunula::photo::{NailFrame, Normalization, Photograph, Resample, join, normalize};
 use lunula::pipeline::{Parts, PipelineMark, Share, Spec, Task};
 use lunula::pipeline::{kinds, phantom_catalogue, scenes, survey};
 use lunula::posture::{Layout, Lens};
-use lunula::predictor::{Answering, RowOptions, RowStream};
+use lunula::predictor::Answering;
 use lunula::table::Table;
 use lunula_hemodynamics::{Collapse, Model, Parameters};
 use lunula_predictor::{Gate, Predictor};
@@ -213,14 +214,19 @@ fn answer(predictor: Predictor, bytes: &[u8]) {
     for intervals in [false, true] {
         let Ok(mut answering) = Answering::new(vec![predictor.clone()], gate, intervals) else { continue };
         let inputs = answering.inputs().to_vec();
-        let (mut volts, mut out) = (vec![f64::NAN; inputs.len()], vec![f64::NAN; answering.columns().len()]);
-        let Ok(mut rows) =
-            RowStream::new(bytes, "fuzz", &inputs, &RowOptions { drop_invalid: intervals, ..RowOptions::default() })
-        else {
-            continue;
+        let mut out = vec![f64::NAN; answering.columns().len()];
+        let mut naming = |names: &[String]| {
+            let place = |name: &String| inputs.iter().position(|input| input == name).map_or(Use::None, Use::Value);
+            let uses =
+                names.iter().map(|name| if name == "time_s" { Use::Time { per_second: 1.0 } } else { place(name) });
+            Ok(Meaning { uses: uses.collect(), values: inputs.len(), texts: 0 })
         };
-        while let Ok(Some(row)) = rows.next_row(&mut volts) {
-            answering.answer(row.time_s, row.begins, &volts, &mut out);
+        let mut lines = Lines::new(LineOptions::default());
+        let mut bytes = bytes;
+        while let Ok(Some(line)) = lines.next(&mut bytes, &mut naming) {
+            if let Line::Cells(cells) = line {
+                answering.answer(cells.time, false, cells.values, &mut out);
+            }
         }
     }
 }

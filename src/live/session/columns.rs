@@ -6,6 +6,7 @@
 use lunula_live::wire::{Meaning, Use};
 
 use crate::log::LogReading;
+use crate::predictor::{GROUPS, missing};
 
 /// Names of counters.
 const COUNTERS: [&str; 4] = ["n", "counter", "seq", "sequence"];
@@ -22,8 +23,15 @@ pub(crate) struct StreamColumns {
     /// Whether there is a time, and an LED.
     pub(crate) time: bool,
     pub(crate) led: bool,
-    /// What was guessed, what is not kept.
+    /// Where `sensor_status` is among a row's texts, and where the columns are that say which recording it is.
+    pub(crate) status: Option<usize>,
+    pub(crate) groups: Vec<usize>,
+    /// What was guessed.
     pub(crate) notes: Vec<String>,
+    /// Columns that are not kept.
+    pub(crate) passed_over: Vec<String>,
+    /// All, as the device calls them.
+    names: Vec<String>,
 }
 
 impl StreamColumns {
@@ -33,12 +41,11 @@ impl StreamColumns {
     /// Columns that could be several, or of one name, in words.
     pub(crate) fn of(names: &[String], log: &LogReading, extra: &[String]) -> Result<Self, String> {
         let found = log.renamed(names)?;
-        let mut columns = Self { notes: found.notes, ..Self::default() };
-        let mut passed_over = Vec::new();
+        let mut columns = Self { notes: found.notes, names: names.to_vec(), ..Self::default() };
         for (k, name) in found.names.iter().enumerate() {
             let of_log = found.known[k];
             let kept = extra.contains(name) || TRACKER.contains(&name.as_str());
-            columns.meaning.uses.push(match name.as_str() {
+            let what = match name.as_str() {
                 "time_s" => {
                     columns.time = true;
                     Use::Time { per_second: found.per_second }
@@ -46,6 +53,14 @@ impl StreamColumns {
                 "led" if of_log => {
                     columns.led = true;
                     Use::Led
+                }
+                "sensor_status" => {
+                    columns.status = Some(columns.meaning.texts);
+                    columns.text()
+                }
+                name if GROUPS.contains(&name) => {
+                    columns.groups.push(columns.meaning.texts);
+                    columns.text()
                 }
                 name if COUNTERS.contains(&name) && !kept => Use::Counter,
                 _ if of_log || kept => {
@@ -59,13 +74,11 @@ impl StreamColumns {
                     if of_log && is_photodiode(name) { Use::Counts(at) } else { Use::Value(at) }
                 }
                 _ => {
-                    passed_over.push(name.as_str());
+                    columns.passed_over.push(name.clone());
                     Use::None
                 }
-            });
-        }
-        if !passed_over.is_empty() {
-            columns.notes.push(format!("columns that are not kept: {}", passed_over.join(", ")));
+            };
+            columns.meaning.uses.push(what);
         }
         Ok(columns)
     }
@@ -75,17 +88,18 @@ impl StreamColumns {
         (0..self.values.len()).filter(|&k| is_photodiode(&self.values[k]))
     }
 
+    fn text(&mut self) -> Use {
+        self.meaning.texts += 1;
+        Use::Text(self.meaning.texts - 1)
+    }
+
     /// Whether these photodiodes are there.
     ///
     /// # Errors
     /// The first that is not, in words.
     pub(crate) fn check(&self, needs: &[String]) -> Result<(), String> {
         let Some(lacking) = needs.iter().find(|name| self.place(name).is_none()) else { return Ok(()) };
-        let has = if self.values.is_empty() { "none".to_owned() } else { self.values.join(", ") };
-        Err(format!(
-            "the model reads {lacking}, which the stream does not send (numbers that it sends: {has}); say what it is \
-             called, as in --columns {lacking}=ch_1"
-        ))
+        Err(format!("{}; say what it is called, as in --columns {lacking}=ch_1", missing(lacking, &self.names)))
     }
 
     /// Where a value is in a row.

@@ -24,13 +24,15 @@ pub(crate) struct Pipe {
     pending: VecDeque<u8>,
     waits: bool,
     gone: bool,
+    /// Why it can't be written, where it is not that the reader has gone away.
+    failed: Option<Errno>,
     lost: u64,
 }
 
 impl Pipe {
     /// To a reader; `waits` where nothing is lost by waiting for it.
     pub(crate) fn new(fd: OwnedFd, waits: bool) -> Self {
-        Self { fd, pending: VecDeque::with_capacity(2 * TOGETHER), waits, gone: false, lost: 0 }
+        Self { fd, pending: VecDeque::with_capacity(2 * TOGETHER), waits, gone: false, failed: None, lost: 0 }
     }
 
     /// Adds a row with its end.
@@ -63,7 +65,10 @@ impl Pipe {
                 Err(Errno::AGAIN) => {
                     let _ = poll(&mut [PollFd::new(&self.fd, PollFlags::OUT)], None);
                 }
-                Err(_) => self.gone = true,
+                Err(why) => {
+                    self.gone = true;
+                    self.failed = (!matches!(why, Errno::PIPE | Errno::CONNRESET)).then_some(why);
+                }
             }
         }
     }
@@ -82,6 +87,11 @@ impl Pipe {
     /// Whether the reader has gone away.
     pub(crate) fn is_gone(&self) -> bool {
         self.gone
+    }
+
+    /// Why rows could not be written; a reader that has gone away is no fault.
+    pub(crate) fn failed(&self) -> Option<String> {
+        Some(format!("rows can't be written ({}); make room, or send them elsewhere", self.failed?))
     }
 
     /// Rows that were left out as the reader was too slow.

@@ -266,7 +266,8 @@ impl<'a> Session<'a> {
             files,
             log: &options.log,
             seconds: options.seconds,
-            waits: stream.can_wait(),
+            // What comes down a pipe can wait in it.
+            waits: stream.can_wait() || options.source.place == Place::Stdin,
             asked: None,
             recording,
             decide: None,
@@ -377,12 +378,12 @@ impl<'a> Session<'a> {
         core.end();
         let Core { decide, warnings, mut notes, work, wake_up, fault, files, .. } = core;
         let Some(decide) = decide else {
-            let place = self.options.source.to_string();
+            let place = self.options.source.named();
             return Err(fault.unwrap_or(LiveError::Source { place, what: nothing }));
         };
         let Decide { recording, answers, rows, .. } = decide;
         if rows == 0 {
-            let place = self.options.source.to_string();
+            let place = self.options.source.named();
             return Err(fault.unwrap_or(LiveError::Source { place, what: "no row came".to_owned() }));
         }
         let lost_by_disk = recording.as_ref().map_or(0, Recording::lost);
@@ -404,6 +405,7 @@ impl<'a> Session<'a> {
         };
         if let Some(mut answers) = answers {
             answers.readers.iter_mut().for_each(Pipe::finish);
+            failed.extend(answers.readers.iter().filter_map(Pipe::failed));
             let sensor = &answers.sensor;
             figures.columns = Answers::header(sensor, answers.switch.is_some());
             (figures.answered, figures.rows_not_known) = (sensor.lit, sensor.not_known);
@@ -442,7 +444,13 @@ impl<'a> Session<'a> {
 impl Core<'_> {
     /// The columns are known.
     fn begin(&mut self, columns: StreamColumns) {
-        let notes = columns.notes.clone();
+        let mut notes = columns.notes.clone();
+        if self.recording.is_some() && !columns.passed_over.is_empty() {
+            notes.push(format!(
+                "columns that are not recorded: {}; --keep NAME keeps one of numbers",
+                columns.passed_over.join(", ")
+            ));
+        }
         self.note(notes);
         let answers = match self.asked.take() {
             None => None,

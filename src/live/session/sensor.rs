@@ -8,7 +8,7 @@ use lunula_live::wire::Row;
 use lunula_predictor::Contact;
 
 use super::columns::StreamColumns;
-use crate::log::{AmbientError, LogReading, Preceding};
+use crate::log::{AmbientError, LogReading, Preceding, Statuses, Verdict};
 use crate::predictor::Answering;
 
 /// A sensor and its models.
@@ -18,6 +18,11 @@ pub(crate) struct Sensor {
     preceding: Option<Preceding>,
     /// Where each photodiode is in a row.
     places: Vec<usize>,
+    /// What `sensor_status` says, and where it is.
+    statuses: Option<(usize, Statuses)>,
+    /// Where the texts are that say which recording it is, and the last row's.
+    groups: Vec<(usize, Vec<u8>)>,
+    last_s: f64,
     /// Rows so far: their time where the stream has none.
     rows: f64,
     timed: bool,
@@ -69,6 +74,9 @@ impl Sensor {
             answering,
             preceding,
             places,
+            statuses: columns.status.map(|at| (at, Statuses::new(&inputs))),
+            groups: columns.groups.iter().map(|&at| (at, Vec::new())).collect(),
+            last_s: f64::NAN,
             rows: 0.0,
             timed: columns.time,
             begins: true,
@@ -92,19 +100,31 @@ impl Sensor {
 
     /// What its models make of a row; nothing of an unlit one.
     pub(crate) fn row(&mut self, row: &Row<'_>) -> Option<Answer> {
-        self.begins |= row.begins;
+        let mut begins = row.begins || row.time_s < self.last_s;
+        // As in a table, a new recording knows nothing of the times before.
+        if !row.time_s.is_nan() || begins {
+            self.last_s = row.time_s;
+        }
+        for (at, last) in &mut self.groups {
+            if row.texts[*at] != *last {
+                last.clone_from(&row.texts[*at]);
+                begins = true;
+            }
+        }
+        self.begins |= begins;
         for (volts, &place) in self.volts.iter_mut().zip(&self.places) {
             *volts = row.values[place];
         }
-        let mut faulty = false;
+        let status = self.statuses.as_mut().map(|(at, statuses)| statuses.read_bytes(&row.texts[*at]));
+        let mut faulty = status == Some(Verdict::Fault);
         if let Some(preceding) = &mut self.preceding {
-            if row.begins {
+            if begins {
                 preceding.forget();
             }
             self.rows += 1.0;
             let at = if self.timed { row.time_s } else { self.rows };
             match row.lit {
-                Some(true) => faulty = preceding.lit(at, &mut self.volts),
+                Some(true) => faulty |= preceding.lit(at, &mut self.volts),
                 Some(false) => {
                     preceding.unlit(at, &self.volts);
                     self.unlit += 1;

@@ -3,9 +3,11 @@
 use std::path::Path;
 
 use lunula_live::source::{HostClock, Place, Rows, Stream, StreamOptions as WireOptions};
+use lunula_live::wire::{Meaning, Use};
 
 use crate::live::error::LiveError;
 use crate::live::options::StreamOptions;
+use crate::predictor::GROUPS;
 use crate::table::Table;
 
 /// Opens a session's source.
@@ -43,23 +45,37 @@ fn is_xdf(path: &Path) -> bool {
     ends_with(path, ".xdf") || ends_with(path, ".xdfz")
 }
 
-/// A table's columns of numbers.
+/// A table's columns: numbers, and texts of those that say what a row is.
 struct TableRows {
     names: Vec<String>,
-    columns: Vec<Vec<f64>>,
+    numbers: Vec<Vec<f64>>,
+    texts: Vec<Vec<String>>,
+    /// Which texts a row gives.
+    kept: Vec<usize>,
     row: usize,
+    rows: usize,
 }
 
 impl TableRows {
     fn read(path: &Path) -> Result<Self, LiveError> {
         let table = Table::read(path)?;
-        let mut rows = Self { names: Vec::new(), columns: Vec::new(), row: 0 };
+        let mut rows = Self {
+            names: table.names().to_vec(),
+            numbers: Vec::new(),
+            texts: Vec::new(),
+            kept: Vec::new(),
+            row: 0,
+            rows: table.rows(),
+        };
         for name in table.names() {
-            // Columns of text hold nothing that a stream reads.
-            if let Ok(values) = table.numbers_or_nan(name) {
-                rows.names.push(name.clone());
-                rows.columns.push(values.into_iter().map(|value| value.unwrap_or(f64::NAN)).collect());
+            let (mut numbers, mut texts) = (Vec::new(), Vec::new());
+            if name == "sensor_status" || GROUPS.contains(&name.as_str()) {
+                table.each_text(name, |_, text| texts.push(text.to_owned()))?;
+            } else if let Ok(values) = table.numbers_or_nan(name) {
+                numbers = values.into_iter().map(|value| value.unwrap_or(f64::NAN)).collect();
             }
+            rows.numbers.push(numbers);
+            rows.texts.push(texts);
         }
         Ok(rows)
     }
@@ -70,14 +86,24 @@ impl Rows for TableRows {
         &self.names
     }
 
-    fn next(&mut self, cells: &mut [f64]) -> Result<bool, String> {
-        let known = self.columns.first().is_some_and(|column| self.row < column.len());
-        if known {
-            for (cell, column) in cells.iter_mut().zip(&self.columns) {
-                *cell = column[self.row];
-            }
-            self.row += 1;
+    fn keep(&mut self, meaning: &Meaning) {
+        let texts = meaning.uses.iter().enumerate().filter(|(_, what)| matches!(what, Use::Text(_)));
+        self.kept = texts.map(|(k, _)| k).collect();
+    }
+
+    fn next(&mut self, cells: &mut [f64], texts: &mut [Vec<u8>]) -> Result<bool, String> {
+        if self.row == self.rows {
+            return Ok(false);
         }
-        Ok(known)
+        for (cell, column) in cells.iter_mut().zip(&self.numbers) {
+            // A column of text that a number is asked of has none.
+            *cell = column.get(self.row).copied().unwrap_or(f64::NAN);
+        }
+        for (text, &column) in texts.iter_mut().zip(&self.kept) {
+            text.clear();
+            text.extend(self.texts[column].get(self.row).into_iter().flat_map(|text| text.bytes()));
+        }
+        self.row += 1;
+        Ok(true)
     }
 }

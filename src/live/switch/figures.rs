@@ -10,10 +10,11 @@ use crate::figure::{Axis, Chart, Item, draw_charts};
 const WIDTH: u32 = 900;
 const HEIGHT: u32 = 520;
 
-/// Draws the curve of median delay against false switches an hour, the goal and the choice.
+/// Draws the curve of mean delay against false switches an hour, the goal and the choice.
 pub(super) fn draw_curve(title: &str, report: &TuneReport, goal: f64, png: &Path, svg: &Path) -> anyhow::Result<()> {
     // Beyond some multiples of the goal nobody looks.
-    let most = (20.0 * goal).max(1.0);
+    let farthest = report.curve.iter().map(|point| point.false_per_hour).fold(0.0, f64::max);
+    let most = farthest.clamp(1.5 * goal, 20.0 * goal);
     let points: Vec<[f64; 2]> = report
         .curve
         .iter()
@@ -29,7 +30,7 @@ pub(super) fn draw_curve(title: &str, report: &TuneReport, goal: f64, png: &Path
         Item::Dots { name: Some("fastest thresholds and holds".to_owned()), points, colour: 0 },
     ];
     if let Some((rate, delay)) = chosen {
-        let at = [rate, 1e3 * delay.median];
+        let at = [rate, 1e3 * delay.mean];
         items.push(Item::Dots { name: Some("chosen".to_owned()), points: vec![at], colour: 1 });
         let text = format!("on {} N, off {} N", report.switch.on_n, report.switch.off_n);
         items.push(Item::Label { at, text, colour: 1, above: true });
@@ -37,7 +38,7 @@ pub(super) fn draw_curve(title: &str, report: &TuneReport, goal: f64, png: &Path
     let chart = Chart {
         title: title.to_owned(),
         x: Axis { label: format!("false switches per hour (counted in {:.2} h)", report.chosen.hours) },
-        y: Axis { label: "median delay of presses, ms".to_owned() },
+        y: Axis { label: "mean delay of presses, ms".to_owned() },
         from_zero: true,
         items,
         height: HEIGHT,

@@ -52,7 +52,7 @@ pub struct TuneFigures {
 pub struct CurvePoint {
     /// False switches an hour.
     pub false_per_hour: f64,
-    /// Median delay of presses, seconds.
+    /// Mean delay of presses, seconds.
     pub delay_on_s: f64,
     /// The share of presses that are missed.
     pub missed_share: f64,
@@ -115,7 +115,7 @@ pub fn tune_switch(
     let text = toml::to_string(&report.switch).map_err(|why| LiveError::Request(why.to_string()))?;
     places.write(out, &text)?;
     if figures {
-        let title = "Median delay of presses against false switches";
+        let title = "Mean delay of presses against false switches";
         let drawn = places.draw(out, PICTURE, |png, svg| {
             stages.time("figures", || draw_curve(title, &report, options.false_per_hour, png, svg))
         })?;
@@ -140,7 +140,7 @@ impl CurvePoint {
         let Candidate { config, evaluation } = candidate;
         Some(Self {
             false_per_hour: evaluation.rate?.false_per_hour,
-            delay_on_s: evaluation.delay_on_s?.median,
+            delay_on_s: evaluation.delay_on_s?.mean,
             missed_share: evaluation.missed as f64 / evaluation.presses.max(1) as f64,
             switch: config,
         })
@@ -157,15 +157,15 @@ fn weak(report: &TuneReport, options: &TuneOptions) -> Vec<String> {
         warnings.push(what.to_owned());
     }
     if let Some(rate) = judged.rate.filter(|rate| rate.false_per_hour_high > options.false_per_hour) {
-        warnings.push(format!(
-            "{:.2} h of recordings show {} false switches: up to {:.3} an hour agree with that, and {} are allowed; \
-             record at least {:.1} h of rest and work to know it",
-            judged.hours,
-            judged.false_switches,
-            rate.false_per_hour_high,
-            options.false_per_hour,
+        let more = if judged.false_switches == 0 {
             // Nothing counted in so long means at most the goal.
-            3.0 / options.false_per_hour
+            format!("{:.1} h without any would show it", 3.0 / options.false_per_hour)
+        } else {
+            "more recordings would show it".to_owned()
+        };
+        warnings.push(format!(
+            "{} false switches in {:.2} h agree with up to {:.1} an hour, and {} are allowed: {more}",
+            judged.false_switches, judged.hours, rate.false_per_hour_high, options.false_per_hour
         ));
     }
     warnings

@@ -93,7 +93,7 @@ fn an_led_that_never_changes_is_told() {
     let error = super::samples(&steady, &AmbientOptions::default()).unwrap_err().to_string();
     assert!(error.contains("log.csv: the LED is never on") && error.contains("8 rows"), "{error}");
     for bad in [[5.0, 0.0], [1.0, 1.0], [f64::NAN, 1.0]] {
-        let options = AmbientOptions { full_scale_v: Some(bad) };
+        let options = AmbientOptions { full_scale_v: Some(bad), ..AmbientOptions::default() };
         assert!(matches!(super::samples(&steady, &options), Err(AmbientError::FullScale { .. })));
     }
 }
@@ -214,7 +214,9 @@ fn samples_at_the_rails_are_flagged() {
     down.photodiodes.iter_mut().flat_map(|c| &mut c.values).for_each(|v| *v = -*v);
     assert_eq!(all(&down).faults, samples.faults);
     // A range that is given is the range.
-    let given = |range| super::samples(&log, &AmbientOptions { full_scale_v: Some(range) }).unwrap();
+    let given = |range| {
+        super::samples(&log, &AmbientOptions { full_scale_v: Some(range), ..AmbientOptions::default() }).unwrap()
+    };
     assert!(given([0.0, 5.0]).faults.iter().all(String::is_empty));
     assert!(given([0.0, 5.0]).warnings.is_empty());
     let both = given([0.0, 2.8]);
@@ -225,7 +227,9 @@ fn samples_at_the_rails_are_flagged() {
 fn saturation_of_the_light_around_a_row_is_flagged_with_it() {
     let mut bright = alternating(200, |_| 0.5);
     bright.photodiodes[0].values[100] = 5.0;
-    let samples = super::samples(&bright, &AmbientOptions { full_scale_v: Some([0.0, 5.0]) }).unwrap();
+    let samples =
+        super::samples(&bright, &AmbientOptions { full_scale_v: Some([0.0, 5.0]), ..AmbientOptions::default() })
+            .unwrap();
     let flagged: Vec<usize> = (0..100).filter(|&k| samples.faults[k] == "saturated: P1").collect();
     // The unlit row 100 goes into the lit rows 97, 99, 101 and 103.
     assert_eq!(flagged, [48, 49, 50, 51]);

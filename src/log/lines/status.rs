@@ -16,23 +16,28 @@ pub(crate) enum Verdict {
 
 /// Reads statuses; neighbouring rows mostly have the same one, which is read once.
 #[derive(Debug)]
-pub(crate) struct Statuses<'a> {
-    inputs: HashSet<&'a str>,
+pub(crate) struct Statuses {
+    inputs: HashSet<String>,
     last: (Vec<u8>, Verdict),
 }
 
-impl<'a> Statuses<'a> {
+impl Statuses {
     /// For the photodiodes in use.
-    pub(crate) fn new(inputs: &'a [String]) -> Self {
-        Self { inputs: inputs.iter().map(String::as_str).collect(), last: (Vec::new(), Verdict::Sound) }
+    pub(crate) fn new(inputs: &[String]) -> Self {
+        Self { inputs: inputs.iter().cloned().collect(), last: (Vec::new(), Verdict::Sound) }
     }
 
     /// What a status means.
     pub(crate) fn read(&mut self, status: &str) -> Verdict {
-        if self.last.0 != status.as_bytes() {
+        self.read_bytes(status.as_bytes())
+    }
+
+    /// The same of text as it came.
+    pub(crate) fn read_bytes(&mut self, status: &[u8]) -> Verdict {
+        if self.last.0 != status {
             self.last.0.clear();
-            self.last.0.extend_from_slice(status.as_bytes());
-            self.last.1 = self.verdict(status);
+            self.last.0.extend_from_slice(status);
+            self.last.1 = self.verdict(&String::from_utf8_lossy(status));
         }
         self.last.1
     }

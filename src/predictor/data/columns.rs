@@ -17,7 +17,7 @@ pub(super) fn photodiodes(names: &[String]) -> Vec<String> {
 }
 
 /// That a column is not there, the nearest name and those that are.
-pub(super) fn missing(name: &str, names: &[String]) -> String {
+pub(crate) fn missing(name: &str, names: &[String]) -> String {
     const MOST: usize = 40;
     if names.iter().all(|name| name.parse::<f64>().is_ok()) {
         return format!("holds numbers where the names of the columns should be. {}", listed(names, 8));

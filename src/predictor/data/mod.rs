@@ -3,7 +3,7 @@
 //! In: CSV or Parquet tables with `P1`.. in volts and the targets, as `lunula align` and anybody else writes them, or
 //! raw logs with a column `led` (section 3.1.2c), which are brought to the LED's own light by the same code as in align
 //! ([`LogReading`]). Out: a [`Dataset`] with what was left out and why ([`read_data`], [`read_files`]); voltages alone
-//! ([`read_inputs`]); rows of a stream, one at a time ([`RowStream`]).
+//! ([`read_inputs`]). Rows of a stream are `live`'s.
 //!
 //! Conventions. A file is a recording; it is several where `session`, `subject` or `trajectory` change or `time_s` goes
 //! back. Where `session` or `subject` is given neither by the file nor with it, the file stands for it. A row with an
@@ -17,7 +17,6 @@ mod file;
 mod health;
 mod recordings;
 mod source;
-mod stream;
 #[cfg(test)]
 mod tests;
 
@@ -34,8 +33,9 @@ use crate::table::TableError;
 use recordings::Splitter;
 use source::{Source, agree};
 
+pub(crate) use columns::missing;
 pub use file::DataFile;
-pub use stream::{Row, RowStream};
+pub(crate) use source::GROUPS;
 
 /// Which rows of recordings count.
 #[derive(Debug, Clone, PartialEq, Default, Args)]

@@ -11,7 +11,7 @@ use crate::log::{Channel, LitRows, Statuses, Verdict};
 use crate::table::{Cell, Table, TableError};
 
 /// Columns that say where one recording ends and the next begins.
-pub(super) const GROUPS: [&str; 3] = ["session", "subject", "trajectory"];
+pub(crate) const GROUPS: [&str; 3] = ["session", "subject", "trajectory"];
 
 /// The rows of a file, all of them.
 #[derive(Debug)]

@@ -305,81 +305,6 @@ fn voltages_alone_keep_every_row() {
     assert!(read_inputs(&path, &[], &plain()).is_err());
 }
 
-fn streamed(text: &str, drop_invalid: bool) -> Result<Vec<(Row, Vec<f64>)>, String> {
-    streamed_as(text, &RowOptions { drop_invalid, ..plain() })
-}
-
-fn streamed_as(text: &str, rows: &RowOptions) -> Result<Vec<(Row, Vec<f64>)>, String> {
-    let inputs = ["P1", "P2"].map(str::to_owned);
-    let mut stream = RowStream::new(text.as_bytes(), "-", &inputs, rows).map_err(|why| why.to_string())?;
-    let mut rows = Vec::new();
-    let mut x = vec![0.0; 2];
-    while let Some(row) = stream.next_row(&mut x).map_err(|why| why.to_string())? {
-        rows.push((row, x.clone()));
-    }
-    Ok(rows)
-}
-
-#[test]
-fn a_stream_gives_what_the_table_gives() {
-    let text = "\u{feff}note,P2,time_s,P1,sensor_status\r\n\"a, b\",2,0,1,ok\r\n\r\n,,0.04,1.5,\"saturated: P1, \
-                P2\"\r\nx,\"3\",0.02,-1e-3,saturated: P7";
-    let rows = streamed(text, false).unwrap();
-    let folder = Folder::new();
-    let table = read_inputs(&folder.file("a.csv", text), &["P1", "P2"].map(str::to_owned), &plain()).unwrap();
-    assert_eq!(rows.len(), 3);
-    for (k, (row, x)) in rows.iter().enumerate() {
-        assert_eq!(row.time_s, table.time_s[k]);
-        assert!(x.iter().zip(table.x.row(k)).all(|(a, b)| a == b || a.is_nan() && b.is_nan()), "{x:?}");
-        assert_eq!(row.faulty, table.faulty[k]);
-        assert_eq!(row.begins, table.recordings.iter().any(|r| r.rows.start == k));
-    }
-    assert_eq!(rows.iter().map(|(row, _)| row.line).collect::<Vec<_>>(), [2, 4, 5]);
-}
-
-#[test]
-fn a_streams_faults_are_told_with_their_line_or_dropped() {
-    for (bad, words) in [
-        ("nan,1", "-:3: column `P1`: `nan` is no finite number"),
-        ("1,inf", "-:3: column `P2`: `inf`"),
-        ("1,1 V", "-:3: column `P2`: `1 V`"),
-        ("1", "-:3: 1 cells for 2 columns"),
-        ("1,2,3", "-:3: 3 cells for 2 columns"),
-    ] {
-        let text = format!("P1,P2\n1,2\n{bad}\n3,4\n");
-        let said = streamed(&text, false).unwrap_err();
-        assert!(said.contains(words), "{said}");
-        let rows = streamed(&text, true).unwrap();
-        assert!(rows.len() == 3 && rows[1].0.invalid && rows[1].1.iter().any(|v| v.is_nan()), "{rows:?}");
-        assert_eq!(rows[2].1, [3.0, 4.0]);
-    }
-    for (header, words) in [
-        ("", "is empty"),
-        ("P1,p2\n", "no column `P2`; is it `p2`?"),
-        ("P1,P2,P1\n", "two columns are named `P1`"),
-        ("0.1,0.2\n", "line 1 holds numbers"),
-    ] {
-        let said = streamed(header, true).unwrap_err();
-        assert!(said.contains(words), "{said}");
-    }
-    assert!(streamed("P1,P2\n", false).unwrap().is_empty());
-}
-
-#[test]
-fn a_line_without_an_end_and_other_ends_are_refused() {
-    let endless = "P1,P2\n".to_owned() + &"1".repeat(1 << 21);
-    let said = streamed(&endless, true).unwrap_err();
-    assert!(said.contains("-:2: the line is longer than 1048576 bytes"), "{said}");
-    let said = streamed("P1,P2\r1,2\r", true).unwrap_err();
-    assert!(said.contains("carriage returns"), "{said}");
-}
-
-#[test]
-fn a_new_recording_of_a_stream_forgets_the_times_before() {
-    let rows = streamed("time_s,P1,P2,session\n10,1,2,a\n,1,2,b\n5,1,2,b\n6,1,2,b\n", false).unwrap();
-    assert_eq!(rows.iter().map(|(row, _)| row.begins).collect::<Vec<_>>(), [true, true, false, false]);
-}
-
 #[test]
 fn columns_named_twice_are_told_with_where() {
     let twice = Wanted { inputs: Some(vec!["P1".into(), "P1".into()]), ..angle() };
@@ -423,42 +348,6 @@ fn a_log_is_one_whatever_its_led_and_columns_are_called() {
 }
 
 #[test]
-fn a_streams_lit_rows_are_less_the_unlit_rows_before_them() {
-    let rows = "0,0,1,2,0.5\n0.04,1,3,5,0.5\n0.08,0,1.5,,0.5\n0.12,1,4,5,0.5\n0.16,,9,9,0.5\n0.2,1,4,5,0.5\n";
-    let text = format!("time_s,led,P1,P2,x\n{rows}");
-    let read = streamed(&text, false).unwrap();
-    let volts: Vec<f64> = read.iter().flat_map(|(_, x)| x.clone()).collect();
-    assert_eq!(format!("{volts:?}"), "[2.0, 3.0, 2.5, NaN, 2.5, NaN]");
-    assert_eq!(read.iter().map(|(row, _)| row.time_s).collect::<Vec<_>>(), [0.04, 0.12, 0.2]);
-    assert_eq!(read.iter().map(|(row, _)| row.begins).collect::<Vec<_>>(), [true, false, false]);
-    // Without a time rows are counted; under other names it is the same.
-    let untimed = streamed("led,P1,P2\n0,1,2\n1,3,5\n", false).unwrap();
-    assert_eq!(untimed[0].1, [2.0, 3.0]);
-    let log = called("time_s=t,led=lamp,P1=b,P2=a");
-    let named = streamed_as("t,lamp,a,b\n0,0,2,1\n40,1,5,3\n", &RowOptions { log: log.clone(), ..plain() }).unwrap();
-    assert_eq!((named[0].1.clone(), named[0].0.time_s), (vec![2.0, 3.0], 40.0));
-    let said = streamed("time_s,led,P1,P2\n0,2,1,1\n", false).unwrap_err();
-    assert!(said.contains("-:2: column `led`: `2` is neither 1 (on) nor 0 (off)"), "{said}");
-    // Another session knows nothing of the light before.
-    let other = streamed("time_s,led,P1,P2,session\n0,0,1,1,a\n0.04,1,2,2,b\n", false).unwrap();
-    assert!(other[0].1.iter().all(|v| v.is_nan()) && other[0].0.begins, "{other:?}");
-    // The range is known only where it is given.
-    let mut log = called("");
-    log.ambient.full_scale_v = Some([0.0, 4.0]);
-    let full = streamed_as(&text, &RowOptions { log: log.clone(), ..plain() }).unwrap();
-    assert_eq!(full.iter().map(|(row, _)| row.faulty).collect::<Vec<_>>(), [true, true, true]);
-    let notes = {
-        let inputs = ["P1".to_owned()];
-        let mut stream = RowStream::new(text.as_bytes(), "-", &inputs, &plain()).unwrap();
-        let first = stream.notes();
-        let mut x = [0.0];
-        while stream.next_row(&mut x).unwrap().is_some() {}
-        [first, stream.notes()].concat()
-    };
-    assert!(notes[0].contains("the unlit row before it is taken away") && notes[1].contains("1 rows do not say"));
-}
-
-#[test]
 fn a_file_that_cant_be_read_costs_itself_where_that_is_asked_for() {
     let folder = Folder::new();
     let good = folder.file("good.csv", "P1,J2_deg\n1,2\n2,3\n");
@@ -491,7 +380,4 @@ fn a_hundred_thousand_columns_are_read_in_time_that_grows_with_them() {
         ..Wanted::default()
     };
     assert!(read_data(&[log], &wanted).unwrap_err().to_string().contains("no row can be used"));
-    let text = format!("{header}\n{row}\n");
-    let mut stream = RowStream::new(text.as_bytes(), "-", &names, &dropping()).unwrap();
-    assert!(stream.next_row(&mut vec![0.0; COLUMNS]).unwrap().is_some());
 }

@@ -1,6 +1,5 @@
-//! `lunula predict`: voltages to forces and angle, from a table or row by row from a stream.
+//! `lunula predict`: voltages to forces and angle, of a recording; of a stream, `live` does it.
 
-use std::io::{BufRead, Write};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -10,7 +9,7 @@ use serde::Serialize;
 use crate::files::Places;
 use crate::job::{Report, Watch};
 use crate::log::ambient_step_of;
-use crate::predictor::data::{Inputs, RowOptions, RowStream, read_inputs};
+use crate::predictor::data::{Inputs, RowOptions, read_inputs};
 use crate::predictor::error::PredictorError;
 use crate::predictor::jobs::answer::{Answering, contact_word, interval_cells};
 use crate::predictor::open_models;
@@ -36,7 +35,7 @@ pub type PredictReport = Report<PredictFigures>;
 pub struct PredictFigures {
     /// The recording.
     pub data: PathBuf,
-    /// The table of predictions; none for a stream.
+    /// The table of predictions.
     pub out: Option<PathBuf>,
     /// What is predicted.
     pub columns: Vec<String>,
@@ -173,60 +172,6 @@ fn all_rows(answering: &mut Answering, read: &Inputs, keep_faults: bool) -> (Vec
         }
     }
     (answers, contacts, counts)
-}
-
-/// Answers a stream of CSV rows, each as soon as its line is complete, on `to`; `tell` hears what is worth saying as
-/// soon as it is known, as the end of a stream may be far.
-///
-/// # Errors
-/// A stream that begins without the columns needed, or a row that is wrong (with its line): rows before it are
-/// answered.
-pub fn predict_stream(
-    models: &[PathBuf],
-    from: impl BufRead,
-    options: &PredictOptions,
-    mut to: impl Write,
-    tell: impl Fn(&str),
-    watch: &Watch<'_>,
-) -> Result<PredictReport, PredictorError> {
-    let start = Instant::now();
-    let opened = open_models(models)?;
-    let mut warnings = opened.warnings;
-    warnings.iter().for_each(|warning| tell(warning));
-    let mut answering = Answering::new(opened.predictors, options.gate, options.intervals)?;
-    let inputs = answering.inputs().to_vec();
-    let mut rows = RowStream::new(from, "standard input", &inputs, &options.rows)?;
-    let mut notes = rows.notes();
-    notes.iter().for_each(|note| tell(note));
-    if answering.needs_time() && !rows.has_time() {
-        return Err(no_time("standard input"));
-    }
-    let mut counts = Counts::default();
-    let mut line = answering.header().join(",") + "\n";
-    let (mut volts, mut answer) = (vec![f64::NAN; inputs.len()], vec![f64::NAN; answering.columns().len()]);
-    let mut gone = to.write_all(line.as_bytes()).and_then(|()| to.flush()).is_err();
-    while !gone && watch.go_on().is_ok() {
-        let Some(row) = rows.next_row(&mut volts)? else { break };
-        if row.faulty && !options.rows.keep_faults {
-            volts.fill(f64::NAN);
-        }
-        let contact = answering.answer(row.time_s, row.begins, &volts, &mut answer);
-        counts.count(contact, &answer);
-        line.clear();
-        answering.push_row(&mut line, row.time_s, &answer, contact);
-        line.push('\n');
-        // A reader that has gone away is no error of ours.
-        gone = to.write_all(line.as_bytes()).and_then(|()| to.flush()).is_err();
-    }
-    let after = rows.notes();
-    after.iter().for_each(|note| tell(note));
-    notes.extend(after);
-    if let Some(warning) = extrapolated(&answering, counts) {
-        tell(&warning);
-        warnings.push(warning);
-    }
-    let figures = figures(Path::new("-"), None, &answering, counts);
-    Ok(Report { warnings, notes, ..Report::new("predict", watch, figures) }.timed(&Stages::default(), start))
 }
 
 fn no_time(whose: &str) -> PredictorError {

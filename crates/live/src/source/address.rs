@@ -102,6 +102,18 @@ impl fmt::Display for Source {
     }
 }
 
+impl Source {
+    /// As messages name it.
+    #[must_use]
+    pub fn named(&self) -> String {
+        match &self.place {
+            Place::Stdin => "standard input".to_owned(),
+            Place::File { path, .. } => path.display().to_string(),
+            _ => self.text.clone(),
+        }
+    }
+}
+
 impl FromStr for Source {
     type Err = String;
 

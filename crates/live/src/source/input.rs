@@ -11,6 +11,7 @@ use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
 use super::address::{Place, Source};
+use crate::wire::Meaning;
 
 /// How long a connection may take, and how often a lost source is tried again.
 const CONNECT: Duration = Duration::from_secs(3);
@@ -31,11 +32,17 @@ pub trait Rows {
     /// The columns' names.
     fn names(&self) -> &[String];
 
-    /// The next row into `cells`, one number for each name, NaN where missing; `led` as 0 or 1. Whether there is one.
+    /// What the columns mean, once that is known: which are texts.
+    fn keep(&mut self, meaning: &Meaning) {
+        let _ = meaning;
+    }
+
+    /// The next row into `cells`, one number for each name, NaN where missing, `led` as 0 or 1; and its `texts`.
+    /// Whether there is one.
     ///
     /// # Errors
     /// What is wrong, and where.
-    fn next(&mut self, cells: &mut [f64]) -> Result<bool, String>;
+    fn next(&mut self, cells: &mut [f64], texts: &mut [Vec<u8>]) -> Result<bool, String>;
 }
 
 /// What bytes or rows come out of.
@@ -100,7 +107,7 @@ impl Input {
 
 /// Opens a source.
 pub(super) fn open(source: &Source) -> Result<Input, SourceFault> {
-    open_place(&source.place).map_err(|what| SourceFault { place: source.to_string(), what })
+    open_place(&source.place).map_err(|what| SourceFault { place: source.named(), what })
 }
 
 fn open_place(place: &Place) -> Result<Input, String> {

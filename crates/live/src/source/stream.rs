@@ -64,6 +64,7 @@ enum Decoder {
         meaning: Option<Meaning>,
         cells: Vec<f64>,
         values: Vec<f64>,
+        texts: Vec<Vec<u8>>,
     },
 }
 
@@ -115,7 +116,7 @@ impl Stream {
     /// [`SourceFault`]: it does not exist, is held by somebody else, or may not be opened.
     pub fn open(source: &Source, options: StreamOptions, clock: HostClock) -> Result<Self, SourceFault> {
         let file = matches!(source.place, Place::File { .. });
-        let fault = |what: &str| SourceFault { place: source.to_string(), what: what.to_owned() };
+        let fault = |what: &str| SourceFault { place: source.named(), what: what.to_owned() };
         let decoder = match source.form {
             Form::Lines => Decoder::Lines(Lines::new(LineOptions {
                 names: options.names.clone(),
@@ -140,7 +141,12 @@ impl Stream {
             Place::File { rate, .. } | Place::Phantom { rate, .. } => rate,
             _ => Rate::Max,
         };
-        let decoder = Decoder::Cells { meaning: None, cells: vec![f64::NAN; rows.names().len()], values: Vec::new() };
+        let decoder = Decoder::Cells {
+            meaning: None,
+            cells: vec![f64::NAN; rows.names().len()],
+            values: Vec::new(),
+            texts: Vec::new(),
+        };
         Self::new(source.clone(), options, clock, Input::Rows(rows), decoder, Some(rate))
     }
 
@@ -265,14 +271,14 @@ impl Stream {
             return Ok(());
         }
         let read = self.read();
-        let place = || self.source.to_string();
+        let place = || self.source.named();
         let read = read.map_err(|what| SourceFault { place: place(), what })?;
         let goes_on = if matches!(self.decoder, Decoder::Cells { .. }) {
             self.take_rows(naming, take)
         } else {
             self.take_bytes(read == Read::End, naming, take)
         };
-        let goes_on = goes_on.map_err(|what| SourceFault { place: self.source.to_string(), what })?;
+        let goes_on = goes_on.map_err(|what| SourceFault { place: self.source.named(), what })?;
         if goes_on && self.at >= self.buffer.len() && self.held.is_none() {
             match read {
                 Read::Bytes | Read::Nothing => {}
@@ -458,7 +464,8 @@ impl Stream {
             }
         }
         for _ in 0..AT_ONCE {
-            let (Input::Rows(rows), Decoder::Cells { meaning, cells, values }) = (&mut self.input, &mut self.decoder)
+            let (Input::Rows(rows), Decoder::Cells { meaning, cells, values, texts }) =
+                (&mut self.input, &mut self.decoder)
             else {
                 return Ok(true);
             };
@@ -466,7 +473,9 @@ impl Stream {
                 Some(known) => known,
                 None => {
                     let known = naming(rows.names())?;
+                    rows.keep(&known);
                     *values = vec![f64::NAN; known.values];
+                    *texts = vec![Vec::new(); known.texts];
                     self.timeline = Some(Timeline::new(per_second(&known)));
                     *meaning = Some(known);
                     if !take(Event::Names { again: false }) {
@@ -475,7 +484,7 @@ impl Stream {
                     continue;
                 }
             };
-            if !rows.next(cells)? {
+            if !rows.next(cells, texts)? {
                 self.input = Input::Ended;
                 self.ended = true;
                 take(Event::End);
@@ -489,7 +498,8 @@ impl Stream {
                     Use::Led => lit = (!cell.is_nan()).then_some(cell != 0.0),
                     Use::Value(at) => values[at] = cell,
                     Use::Counts(at) => values[at] = cell * self.options.volts_per_count.unwrap_or(1.0),
-                    Use::None => {}
+                    // Texts are written by whoever has the rows.
+                    Use::Text(_) | Use::None => {}
                 }
             }
             if !self.row(time, counter, lit, take) {
@@ -561,13 +571,13 @@ impl Stream {
         if !matches!(self.state, StreamState::Ok | StreamState::Slow) {
             self.turn(StreamState::Ok, take);
         }
-        let values = match &self.decoder {
-            Decoder::Lines(lines) => lines.values(),
-            Decoder::Frames(frames) => frames.values(),
-            Decoder::Cells { values, .. } => values,
+        let (values, texts): (&[f64], &[Vec<u8>]) = match &self.decoder {
+            Decoder::Lines(lines) => (lines.values(), lines.texts()),
+            Decoder::Frames(frames) => (frames.values(), &[]),
+            Decoder::Cells { values, texts, .. } => (values, texts),
         };
         let Placed { time_s, lost, begins } = placed;
-        take(Event::Row(Row { host_ns, time_s, lit, lost, begins, values }))
+        take(Event::Row(Row { host_ns, time_s, lit, lost, begins, values, texts }))
     }
 
     fn meaning(&self) -> Option<&Meaning> {

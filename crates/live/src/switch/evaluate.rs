@@ -43,6 +43,8 @@ pub struct Quartiles {
     pub median: f64,
     /// Three quarters are.
     pub high: f64,
+    /// Their mean.
+    pub mean: f64,
 }
 
 /// How a switch did.
@@ -272,6 +274,7 @@ impl Quartiles {
             let (below, part) = (place.floor() as usize, place.fract());
             sorted[below] + part * (sorted[(below + 1).min(last)] - sorted[below])
         };
-        Some(Self { count: sorted.len(), low: at(0.25), median: at(0.5), high: at(0.75) })
+        let mean = sorted.iter().sum::<f64>() / sorted.len() as f64;
+        Some(Self { count: sorted.len(), low: at(0.25), median: at(0.5), high: at(0.75), mean })
     }
 }

@@ -82,6 +82,7 @@ impl SwitchEvent {
         if self.value.is_finite() {
             write!(to, ",\"force_N\":{}", self.value)?;
         }
-        writeln!(to, ",\"delay_s\":{}}}", self.delay_s)
+        // Without the rounding of a difference of times.
+        writeln!(to, ",\"delay_s\":{}}}", (self.delay_s * 1e9).round() / 1e9)
     }
 }

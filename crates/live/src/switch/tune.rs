@@ -6,7 +6,8 @@
 //!
 //! Every combination of thresholds, holds and ratios of `off_N` to `on_N` runs over all traces. Of those with at most
 //! the goal's rate and misses, *also at the next lower threshold* (a choice at the edge of the noise does not last), the
-//! one with the least median delay is taken; of equals the one with the lowest rate, then the highest threshold.
+//! one with the least mean delay of presses is taken (a median has the steps of the sampling period); of equals the one that releases soonest, then the one with the
+//! fewest false switches, then the highest threshold.
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -115,14 +116,16 @@ pub fn tune(traces: &[Trace], goal: &Goal) -> Result<Tuned, TuneFault> {
 /// A combination over some recordings.
 struct Scored {
     tally: Tally,
+    /// Mean delays of presses and of releases, seconds.
     delay_s: f64,
+    off_s: f64,
 }
 
 impl Scored {
     fn of(each: &[Tally], of: &[usize]) -> Self {
         let mut tally = Tally::default();
         of.iter().for_each(|&k| tally.add(&each[k]));
-        Self { delay_s: median(&tally.delays_on_s), tally }
+        Self { delay_s: mean(&tally.delays_on_s), off_s: mean(&tally.delays_off_s), tally }
     }
 
     fn keeps_rate(&self, goal: &Goal) -> bool {
@@ -224,18 +227,22 @@ fn rounded_s(seconds: f64) -> f64 {
 /// How many combinations a threshold has.
 const EACH: usize = RATIOS.len() * HOLDS_ON.len() * HOLDS_OFF.len();
 
-fn median(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len() / 2).copied().unwrap_or(f64::INFINITY)
+/// The mean; infinite of none.
+fn mean(values: &[f64]) -> f64 {
+    if values.is_empty() { f64::INFINITY } else { values.iter().sum::<f64>() / values.len() as f64 }
+}
+
+/// A delay in tenths of a millisecond: what is less is no difference.
+fn nearly(delay_s: f64) -> i64 {
+    (delay_s * 1e4).round() as i64
 }
 
 fn choose(all: &[Scored], goal: &Goal) -> Option<usize> {
     let good = (EACH..all.len()).filter(|&k| all[k].keeps(goal) && all[k - EACH].keeps_rate(goal));
     good.min_by(|&a, &b| {
         let (one, other) = (&all[a], &all[b]);
-        let rates = one.tally.false_switches.cmp(&other.tally.false_switches);
-        one.delay_s.total_cmp(&other.delay_s).then(rates).then(b.cmp(&a))
+        let delays = nearly(one.delay_s).cmp(&nearly(other.delay_s)).then(nearly(one.off_s).cmp(&nearly(other.off_s)));
+        delays.then(one.tally.false_switches.cmp(&other.tally.false_switches)).then(b.cmp(&a))
     })
 }
 

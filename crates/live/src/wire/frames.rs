@@ -185,6 +185,7 @@ impl Frames {
             counter: Some(u64::from(frame.counter)),
             lit: Some(frame.lit),
             values: &self.values,
+            texts: &[],
         })
     }
 }

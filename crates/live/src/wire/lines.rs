@@ -47,6 +47,8 @@ pub struct Cells<'a> {
     pub lit: Option<bool>,
     /// The numbers that are read.
     pub values: &'a [f64],
+    /// The texts that are kept.
+    pub texts: &'a [Vec<u8>],
 }
 
 /// Why a stream can't be read at all.
@@ -79,6 +81,7 @@ pub struct Lines {
     delimiter: u8,
     meaning: Option<Meaning>,
     values: Vec<f64>,
+    texts: Vec<Vec<u8>>,
     checked: bool,
     /// Lines before the names that are no text.
     garbage: u64,
@@ -100,6 +103,7 @@ impl Lines {
             delimiter: b',',
             meaning: None,
             values: Vec::new(),
+            texts: Vec::new(),
             checked: false,
             garbage: 0,
             refused: None,
@@ -123,6 +127,12 @@ impl Lines {
     #[must_use]
     pub fn values(&self) -> &[f64] {
         &self.values
+    }
+
+    /// The texts of the last row.
+    #[must_use]
+    pub fn texts(&self) -> &[Vec<u8>] {
+        &self.texts
     }
 
     /// What was spoilt so far.
@@ -165,7 +175,13 @@ impl Lines {
                 Said::Names { again } => return Ok(Some(Line::Names { again })),
                 Said::Spoilt(kind) => return Ok(Some(Line::Spoilt(kind))),
                 Said::Row { time, counter, lit } => {
-                    return Ok(Some(Line::Cells(Cells { time, counter, lit, values: &self.values })));
+                    return Ok(Some(Line::Cells(Cells {
+                        time,
+                        counter,
+                        lit,
+                        values: &self.values,
+                        texts: &self.texts,
+                    })));
                 }
             }
         }
@@ -242,6 +258,12 @@ impl Lines {
         })
     }
 
+    fn know(&mut self, meaning: Meaning) {
+        self.values = vec![f64::NAN; meaning.values];
+        self.texts = vec![Vec::new(); meaning.texts];
+        self.meaning = Some(meaning);
+    }
+
     fn spoil(&mut self, kind: SpoiltKind, line: &[u8]) -> Said {
         self.spoilt.count(kind, self.line, line);
         Said::Spoilt(kind)
@@ -265,8 +287,7 @@ impl Lines {
         if self.options.names.is_some() {
             self.delimiter = delimiter;
             let meaning = naming(&self.names).map_err(WireFault)?;
-            self.values = vec![f64::NAN; meaning.values];
-            self.meaning = Some(meaning);
+            self.know(meaning);
             // The names may come all the same.
             let same = split(line, delimiter).eq(self.names.iter().map(|name| name.as_bytes()));
             if same {
@@ -294,8 +315,7 @@ impl Lines {
         };
         match refused {
             Ok(meaning) => {
-                self.values = vec![f64::NAN; meaning.values];
-                self.meaning = Some(meaning);
+                self.know(meaning);
                 self.header = line.to_vec();
                 (self.delimiter, self.names) = (delimiter, names);
                 Ok(Said::Names { again: false })
@@ -311,7 +331,9 @@ impl Lines {
 
     /// A row's cells.
     fn cells(&mut self, line: &[u8]) -> Result<Said, SpoiltKind> {
-        let Self { meaning: Some(meaning), values, delimiter, options, .. } = self else { return Ok(Said::Nothing) };
+        let Self { meaning: Some(meaning), values, texts, delimiter, options, .. } = self else {
+            return Ok(Said::Nothing);
+        };
         let (mut time, mut counter, mut lit) = (f64::NAN, None, None);
         values.fill(f64::NAN);
         let mut count = 0;
@@ -326,6 +348,10 @@ impl Lines {
             count += 1;
             match *what {
                 Use::None => {}
+                Use::Text(at) => {
+                    texts[at].clear();
+                    texts[at].extend_from_slice(cell);
+                }
                 Use::Time { .. } => time = number(cell, *delimiter)?,
                 Use::Counter => {
                     let value = number(cell, *delimiter)?;

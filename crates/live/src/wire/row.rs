@@ -16,6 +16,8 @@ pub enum Use {
     Value(usize),
     /// The same, of a photodiode: volts, or counts where the device sends them.
     Counts(usize),
+    /// Text that is kept as it is, and its place among [`Row::texts`].
+    Text(usize),
     /// Passed over unread.
     None,
 }
@@ -27,6 +29,8 @@ pub struct Meaning {
     pub uses: Vec<Use>,
     /// How many values a row has.
     pub values: usize,
+    /// How many texts.
+    pub texts: usize,
 }
 
 /// A row of a stream.
@@ -44,4 +48,6 @@ pub struct Row<'a> {
     pub begins: bool,
     /// The numbers that are read, NaN where missing.
     pub values: &'a [f64],
+    /// The texts that are kept, without space and quotes around them.
+    pub texts: &'a [Vec<u8>],
 }

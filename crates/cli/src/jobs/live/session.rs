@@ -4,7 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 use lunula::job::{Given, Report, Watch};
-use lunula::live::{LiveOptions, Readers, SessionFigures, SessionFiles, SessionReport, StreamOptions, live, record};
+use lunula::live::{
+    AnswerOptions, LiveOptions, Readers, SessionFigures, SessionFiles, SessionReport, StreamOptions, live, record,
+};
+use lunula::predictor::PredictChoices;
 use lunula::stages::Step;
 use lunula::words::shown_lines;
 use serde_json::json;
@@ -87,6 +90,36 @@ pub(crate) fn run_live(args: &LiveArgs) -> anyhow::Result<Outcome> {
     Ok(ended(common, &report))
 }
 
+/// `lunula predict MODEL.. -`: a stream on standard input.
+pub(crate) fn run_stream(
+    common: &Common,
+    given: &Given<PredictChoices>,
+    models: &[PathBuf],
+) -> anyhow::Result<Outcome> {
+    let PredictChoices { gate, intervals, rows } = given.options.clone();
+    let stop = common.start()?;
+    let options = LiveOptions {
+        stream: StreamOptions {
+            source: "-".parse().map_err(anyhow::Error::msg)?,
+            volts_per_count: None,
+            names: None,
+            keep: Vec::new(),
+            seconds: None,
+            log: rows.log,
+        },
+        answer: AnswerOptions { gate, intervals, keep_faults: rows.keep_faults },
+        tcp: None,
+    };
+    let files = SessionFiles { models: models.to_vec(), ..SessionFiles::default() };
+    let tell = |what: &str| tell(common, what);
+    let rows = std::os::fd::AsFd::as_fd(&std::io::stdout()).try_clone_to_owned()?;
+    let watch = Watch { said: &given.said, stop: &stop, tick: &|_, _| {} };
+    let report = live(&options, &files, Readers { rows: Some(rows), tell: &tell }, &watch)?;
+    report.failed.iter().for_each(|what| eprintln!("failed: {}", shown_lines(what)));
+    common.warn(&report.warnings);
+    Ok(if report.failed.is_empty() { Outcome::Done } else { Outcome::SomeFailed })
+}
+
 pub(crate) fn run_record(args: &RecordArgs) -> anyhow::Result<Outcome> {
     let (common, options) = (&args.job.common, &args.given.options);
     let stop = common.start()?;
@@ -139,8 +172,7 @@ fn tell(common: &Common, what: &str) {
 
 fn ended(common: &Common, report: &SessionReport) -> Outcome {
     report.failed.iter().for_each(|what| eprintln!("failed: {}", shown_lines(what)));
-    let warnings: Vec<String> = report.warnings.clone();
-    common.warn(&warnings);
+    common.warn(&report.warnings);
     if !common.quiet && !common.json {
         eprintln!("{}", shown_lines(&words(report)));
     }

@@ -1,17 +1,13 @@
 //! `lunula predict`: voltages to forces and angle.
 
-use std::io::{BufReader, stdin};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, ensure};
 use clap::Args;
 use lunula::job::{Given, Said, Watch};
-use lunula::predictor::{
-    DataFile, PredictChoices, PredictFigures, PredictReport, predict, predict_plan, predict_stream,
-};
+use lunula::predictor::{DataFile, PredictChoices, PredictFigures, PredictReport, predict, predict_plan};
 
 use crate::jobs::{self, Command, JobArgs, Plan};
-use crate::out::Stream;
 use crate::{Common, Outcome};
 
 /// Predict forces and angle from photodiodes, with models that `lunula train` wrote
@@ -19,7 +15,7 @@ use crate::{Common, Outcome};
 /// With a model of force and one of posture the two are gated (equations 9, 16): while the finger presses with --f-min
 /// or more (-Fz_N) it touches, and the angle is --theta-touch; else the posture model predicts the angle. A row that
 /// lacks a voltage has no prediction. DATA may be `-`: rows of CSV on standard input, the first names the columns; each
-/// is answered as soon as its line is complete. Of a log with a column `led`, each lit row is answered: less the unlit
+/// is answered as soon as its line is complete, as `lunula live --source -` does. Of a log with a column `led`, each lit row is answered: less the unlit
 /// light at its time, or, of a stream, less the unlit row before it.
 #[derive(Debug, Args)]
 pub(crate) struct PredictArgs {
@@ -44,11 +40,8 @@ pub(crate) fn run_or_stream(args: &PredictArgs) -> anyhow::Result<Outcome> {
     let common = &args.job.common;
     ensure!(args.out.is_none(), "a stream is answered on standard output; leave --out away and redirect it");
     ensure!(!common.json, "a stream is answered on standard output, where --json would print; leave one of them away");
-    let options = args.given.options.options()?;
-    let note = |note: &str| common.note(&[note.to_owned()]);
-    // No row may come for long: whoever interrupts a stream ends it at once, as there is nothing to put in order.
-    predict_stream(models, BufReader::new(stdin().lock()), &options, Stream, note, &Watch::nobody())?;
-    Ok(Outcome::Done)
+    ensure!(!args.job.plan, "a stream has no plan; `lunula live --plan` shows that of a session");
+    jobs::live::session::run_stream(common, &args.given, models)
 }
 
 impl PredictArgs {
