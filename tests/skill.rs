@@ -65,7 +65,7 @@ fn csv(names: &str, rows: &[Vec<f64>]) -> String {
     let mut text = format!("{names}\n");
     for row in rows {
         let cell = |value: &f64| if value.is_nan() { String::new() } else { format!("{value:?}") };
-        writeln!(text, "{}", row.iter().map(cell).collect::<Vec<_>>().join(",")).unwrap();
+        let _ = writeln!(text, "{}", row.iter().map(cell).collect::<Vec<_>>().join(","));
     }
     text
 }
@@ -124,7 +124,7 @@ fn session(trials: &[u32], peak_n: f64) -> String {
     for &trial in trials {
         let presses: Vec<Press> = (0..trial).map(|k| press(0.5 + f64::from(k), 0.4, peak_n)).collect();
         for row in rows(100.0 * f64::from(trial), 4.0, &[&presses]) {
-            writeln!(text, "{:?},{trial},{:?}", row[0], row[1]).unwrap();
+            let _ = writeln!(text, "{:?},{trial},{:?}", row[0], row[1]);
         }
     }
     text

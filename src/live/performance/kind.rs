@@ -11,8 +11,8 @@ use crate::stages::Step;
 
 const PICTURES: &str = "pictures";
 const ROWS_PART: &str = "rows";
-/// A table of trials is small; what is drawn takes the time (measured: 0.25 s for two pictures).
-const COST: (u64, f64) = (64 << 20, 0.3);
+/// A table of trials is small; what is drawn takes the time (measured: 0.04 s for two pictures of 99 trials).
+const COST: (u64, f64) = (64 << 20, 0.1);
 
 /// A stage of a pipeline.
 #[derive(Debug, Clone)]

@@ -125,9 +125,13 @@ fn chart(trials: &[TrialFigures], measure: &Measure) -> Chart {
         items.push(Item::Line { name: Some(finger), runs, colour, width: 2 });
         items.push(Item::Dots { name: None, points, colour });
     }
+    let label = match people.len() {
+        1 => "trial, in the order given",
+        _ => "trial, in the order given (dots: people, line: their mean)",
+    };
     Chart {
         title: String::new(),
-        x: Axis { label: "trial, in the order given".to_owned() },
+        x: Axis { label: label.to_owned() },
         y: Axis { label: measure.axis.to_owned() },
         // A smoothness is negative.
         from_zero: measure.name != "smoothness",

@@ -9,6 +9,9 @@ use super::{SkillError, SkillRecording};
 /// More trials of a recording are something else: a column was mistaken.
 const MOST_TRIALS: usize = 10_000;
 
+/// The person, if known, and the trial.
+type Whose = (Option<String>, String);
+
 /// One trial.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Trial {
@@ -50,7 +53,7 @@ pub(super) fn read(recording: &SkillRecording, finger: &str) -> Result<Recording
         .clone()
         .unwrap_or_else(|| path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned()));
     // Rows of each trial, in the order in which trials first appear.
-    let mut trials: Vec<((Option<String>, String), Vec<usize>)> = Vec::new();
+    let mut trials: Vec<(Whose, Vec<usize>)> = Vec::new();
     let mut places = std::collections::BTreeMap::new();
     let (mut without_time, mut without_trial) = (0, 0);
     for row in 0..rows.time_s.len() {
@@ -82,7 +85,7 @@ pub(super) fn read(recording: &SkillRecording, finger: &str) -> Result<Recording
     if trials.is_empty() {
         return Err(SkillError::recording(path, "has no row with a time and a trial; record it again"));
     }
-    let one = |((subject, trial), own): ((Option<String>, String), Vec<usize>)| {
+    let one = |((subject, trial), own): (Whose, Vec<usize>)| {
         in_order(&rows, &own, recording)?;
         let fingers = rows.fingers.iter().map(|finger| of_finger(&rows, finger, &own)).collect();
         Ok(Trial { subject, trial, fingers })

@@ -121,7 +121,7 @@ pub(super) const MEASURES: [Measure; 9] = [
     Measure { name: "mean_N", axis: "mean force in contact, N", of: |one| one.figures.mean_n },
     Measure { name: "impulse_Ns", axis: "impulse, N s", of: |one| one.figures.impulse_ns },
     Measure { name: "peak_rise_N_per_s", axis: "fastest rise, N/s", of: |one| one.figures.peak_rise_n_per_s },
-    Measure { name: "smoothness", axis: "smoothness", of: |one| one.figures.smoothness },
+    Measure { name: "smoothness", axis: "spectral arc length", of: |one| one.figures.smoothness },
     Measure { name: "onset_s", axis: "first touch, s", of: |one| one.onset_s },
     Measure { name: "distance_N", axis: "distance from reference, N", of: |one| one.distance_n },
 ];
