@@ -108,7 +108,7 @@ impl Command for SkillArgs {
     fn say(&self, common: &Common, report: &SkillReport) {
         for person in &report.people {
             let whose = person.subject.as_ref().map_or(String::new(), |subject| format!("{subject}: "));
-            common.say(&format!("{whose}{} trials, mean ± SD over trials", person.trials));
+            common.say(&format!("{whose}{}, mean ± SD over trials", trials(person.trials)));
             person.fingers.iter().for_each(|finger| say_finger(common, finger));
             let first = person.first.iter().map(|(finger, trials)| format!("{finger} in {trials}"));
             let first: Vec<String> = first.collect();
@@ -125,6 +125,10 @@ impl Command for SkillArgs {
     fn result(&self) -> Option<PathBuf> {
         self.out.clone()
     }
+}
+
+fn trials(count: usize) -> String {
+    if count == 1 { "1 trial".to_owned() } else { format!("{count} trials") }
 }
 
 fn say_finger(common: &Common, finger: &FingerSpread) {
