@@ -41,6 +41,8 @@ const REQUESTS: &[&str] = &[
     "simulate --plan",
     "simulate --until 0.1 --out s.csv --json",
     "fit pressed.csv --free b_C --plan",
+    "performance trials.csv --path-m 1.42 --speed-mps 0.025 --decisions 27 --out performed --json",
+    "skill lg/log.csv --out skilled",
     "merge part --out both",
     "phantom log --seed 1 --out log",
     "phantom photos --help",
@@ -58,6 +60,7 @@ const REQUESTS: &[&str] = &[
 fn bench() -> Dir {
     let dir = Dir::new();
     dir.write("p.toml", PIPELINE);
+    dir.write("trials.csv", "operator,method,trial,time_s\nA,pendant,1,200\nA,virtual,1,100\n");
     for request in [
         "phantom video --seed 1 --seconds 0.2 --size 320x240 --out v -q",
         "phantom board --board 5x4 --views 1 --size 160x120 --out b -q",

@@ -6,7 +6,9 @@
 
 mod error;
 mod options;
+pub mod performance;
 mod session;
+pub mod skill;
 mod switch;
 
 /// The crate that does the streams and the decisions.

@@ -4,6 +4,8 @@ use crate::align::{AlignJob, JoinJob};
 use crate::camera::CameraJob;
 use crate::hemodynamics::{CurveJob, FitJob, SimulateJob};
 use crate::job::{Job, Kind};
+use crate::live::performance::PerformanceJob;
+use crate::live::skill::SkillJob;
 use crate::photo::{MapsJob, NormalizeJob};
 use crate::posture::PostureJob;
 use crate::predictor::trajectory::TrajectoryJob;
@@ -25,10 +27,12 @@ static KINDS: &[&Kind] = &[
     &JoinJob::KIND,
     &MapsJob::KIND,
     &NormalizeJob::KIND,
+    &PerformanceJob::KIND,
     &PostureJob::KIND,
     &PredictJob::KIND,
     &PruneJob::KIND,
     &SimulateJob::KIND,
+    &SkillJob::KIND,
     &CurveJob::KIND,
     &TrainJob::KIND,
     &TrajectoryJob::KIND,

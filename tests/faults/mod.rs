@@ -116,6 +116,12 @@ const JOBS: &[Job] = &[
     ),
     fast("fit", "fit in/press.csv --free b_V --out out/fit.json", "fit in/press.csv --free k_V --out out/fit.json"),
     fast(
+        "performance",
+        "performance in/trials.csv --path-m 1.42 --speed-mps 0.025 --decisions 27 --out out/learned",
+        "performance in/trials.csv --path-m 1.42 --speed-mps 0.05 --decisions 27 --out out/learned",
+    ),
+    fast("skill", "skill in/a.csv --out out/skill", "skill in/b.csv --out out/skill"),
+    fast(
         "phantom photos",
         "phantom photos --seed 1 --subjects 1 --poses normal --size 120x90 --no-normalized --out out/scene",
         "phantom photos --seed 2 --subjects 1 --poses normal --size 120x90 --no-normalized --out out/scene",
@@ -159,6 +165,7 @@ fn inputs(dir: &Dir) {
         }
         dir.write(&format!("in/{name}.csv"), text);
     }
+    dir.write("in/trials.csv", "operator,method,trial,time_s\nA,pendant,1,200\nA,virtual,1,100\n");
     let photos = |more: &str, out: &str| {
         let line = format!("phantom photos --subjects 1 --poses normal --size 160x120 --no-normalized --out {out}");
         dir.run(&format!("{line} {more}"));

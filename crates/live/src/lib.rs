@@ -8,8 +8,11 @@
 //! flexion. What is not known is NaN or `None`, never zero. What is done for every sample allocates nothing.
 
 pub mod latency;
+pub mod performance;
 pub mod pointer;
+pub mod skill;
 pub mod source;
+pub mod spread;
 pub mod switch;
 pub mod time;
 pub mod wire;

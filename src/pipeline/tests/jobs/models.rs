@@ -120,6 +120,13 @@ impl Place {
         let fit = "free = ['k_C']\nset = { k_C1_N_per_m = 8e4, k_C2_N_per_m = 8e4 }\nstarts = 1\nunloaded_before = \
                    true\nbetween = 'held'";
         make("fit", fit, recording, "fitted");
+        let trials =
+            "operator,method,trial,time_s\nA,pendant,1,200\nA,virtual,1,100\nB,pendant,1,260\nB,virtual,1,90\n";
+        std::fs::write(self.path("trials.csv"), trials).unwrap();
+        let course = "path_m = 1.42\nspeed_mps = 0.025\ndecisions = 27";
+        make("performance", course, data("trials", &["trials.csv"]), "learned");
+        let days = ["1.csv", "2.csv"].map(|name| self.at("recordings", name, &[("subject", "S01"), ("trial", name)]));
+        make("skill", "reference_trial = '1.csv'", days.to_vec(), "skilled");
         make("simulate", "pf1 = 5000\nuntil = 0.2", data("params", &["fitted/fit.toml"]), "again");
         made
     }
@@ -199,6 +206,10 @@ fn what_is_not_wanted_is_not_made() {
     assert_eq!(bare("analyse", "", vec![data("model", "m/model.json")], "a"), ["modes.csv"]);
     assert_eq!(bare("prune", "", sets, "p"), ["subsets.csv"]);
     assert_eq!(bare("simulate", "until = 0.1", Vec::new(), "s"), ["trajectory.csv"]);
+    std::fs::write(place.path("t.csv"), "operator,method,trial,time_s\nA,pendant,1,200\n").unwrap();
+    let course = "path_m = 1.42\nspeed_mps = 0.025\ndecisions = 27";
+    assert_eq!(bare("performance", course, vec![data("trials", "t.csv")], "l"), ["performance.json", "table.csv"]);
+    assert_eq!(bare("skill", "", vec![data("recordings", "1.csv")], "k"), ["skill.csv", "skill.json"]);
     assert_eq!(bare("static", "static = '0..1000/500'", Vec::new(), "c"), ["static.csv"]);
     assert_eq!(bare("trajectory", "kind = 'random'\nseconds = 10", Vec::new(), "t"), ["trajectory.csv"]);
 }
@@ -229,6 +240,9 @@ fn wrong_keys_are_refused_with_what_to_write() {
         ("fit", "free = ['k_C']\nbounds = { k_C = '1..2x' }", "bounds", "LOW..HIGH"),
         ("fit", "free = []\nnoise = { VP1 = 0 }", "noise", "VP1"),
         ("fit", "free = []\nphotodiode = { P1 = 0 }", "photodiode", "counted from 1"),
+        ("performance", "path_m = 1\nspeed_mps = 1", "decisions", "is needed"),
+        ("performance", "path_m = 0\nspeed_mps = 1\ndecisions = 1", "path_m", "a number above 0"),
+        ("skill", "touch = 0.1\nrelease = 0.3", "", "--release 0.3: is above --touch 0.1"),
         ("trajectory", "", "kind", "is needed"),
         ("trajectory", "kind = 'posture'\nmu = 1", "mu", "not an option of a posture trajectory"),
         ("trajectory", "kind = 'posture'\nseed = 1", "random", "is needed"),
@@ -269,6 +283,10 @@ fn plans_leave_out_what_a_scene_does_not_need() {
     assert!(!fate("predict", "", &[flat, coming("model", None)], &["predicted"], "gate").0);
     let recordings = [coming("recordings", None)];
     assert!(!fate("fit", "free = ['k_C']\ncalibrate = 'held'", &recordings, &["params"], "offset and scaling").0);
+    assert!(!fate("skill", "", &recordings, &["skill"], "distance from a reference").0);
+    assert!(fate("skill", "reference_trial = '1'", &recordings, &["skill"], "distance from a reference").0);
+    let (runs, why) = fate("performance", "path_m = 1\nspeed_mps = 1\ndecisions = 1", &[], &["means"], "figures");
+    assert!(!runs && why == "not asked for", "{why}");
     assert!(!fate("static", "static = 0", &[], &["curve"], "figures").0);
     assert!(!fate("trajectory", "kind = 'posture'", &[], &["trajectory"], "equations 24 to 26").0);
     assert!(!fate("prune", "", &validated, &["subsets"], "quadratic and network models").0);

@@ -1,0 +1,158 @@
+//! `lunula performance`: time per decision and how it is learned.
+
+use std::path::PathBuf;
+
+use anyhow::Context;
+use clap::Args;
+use lunula::job::{Given, Said, Watch};
+use lunula::live::performance::{
+    Comparison, MethodFigures, PerformanceFigures, PerformanceOptions, PerformanceReport, Statement, plan, run,
+};
+use lunula::predictor::FolderOutputs;
+
+use crate::Common;
+use crate::jobs::{Command, JobArgs, Plan};
+
+const EXAMPLES: &str = "Examples:
+The thesis' course (appendix C): 1.42 m at 25 mm/s, 27 moves:
+  lunula performance trials.csv --path-m 1.42 --speed-mps 0.025 --decisions 27 --out results
+
+The table has one row per operator, method and trial:
+  operator,method,trial,time_s
+  A,pendant,1,312.4
+  A,virtual,1,151.0
+
+A row without a time is a trial that was not done. A time that is shorter than path / speed can't be: it is named and \
+kept out. Learning curves of at least 6 trials are fitted to the means: a + b exp(-(n - 1) / c) and a + b n^-c.";
+
+/// Compare methods of control by the time per decision, and how it is learned (thesis, appendix C)
+///
+/// Time per decision is (time - path / speed) / decisions. Results: performance.json, with means and SD over operators,
+/// learning curves with standard errors, the trial at which each method levels off, and paired differences with 95 %
+/// intervals; the means as table.csv, each row's time per decision as rows.csv, pictures (Fig. 123 and 124), and
+/// run.json.
+#[derive(Debug, Args)]
+#[command(after_help = EXAMPLES)]
+pub(crate) struct PerformanceArgs {
+    /// The trials: operator,method,trial,time_s (.csv or .parquet)
+    #[arg(value_name = "TRIALS.csv")]
+    trials: PathBuf,
+    #[command(flatten)]
+    given: Given<PerformanceOptions>,
+    /// A folder for the results
+    #[arg(long, value_name = "DIR", required_unless_present = "plan")]
+    out: Option<PathBuf>,
+    /// Draw no pictures
+    #[arg(long)]
+    no_figures: bool,
+    #[command(flatten)]
+    job: JobArgs,
+}
+
+impl PerformanceArgs {
+    fn outputs(&self) -> Option<FolderOutputs> {
+        Some(FolderOutputs { figures: !self.no_figures, ..FolderOutputs::all(self.out.clone()?) })
+    }
+}
+
+impl Command for PerformanceArgs {
+    type Figures = PerformanceFigures;
+
+    const NAME: &'static str = "performance";
+
+    fn job(&self) -> &JobArgs {
+        &self.job
+    }
+
+    fn said(&self) -> &Said {
+        &self.given.said
+    }
+
+    fn plan(&self) -> anyhow::Result<Plan> {
+        Ok(plan(self.outputs().as_ref()).into())
+    }
+
+    fn run(&self, watch: &Watch<'_>) -> anyhow::Result<PerformanceReport> {
+        let outputs = self.outputs().context("--out is needed")?;
+        Ok(run(&self.trials, &self.trials.display().to_string(), &self.given.options, &outputs, watch)?)
+    }
+
+    fn say(&self, common: &Common, report: &PerformanceReport) {
+        common.say(&format!(
+            "{} trials of {} operators; driving alone takes {:.1} s",
+            report.rows,
+            report.operators.len(),
+            report.shortest_s
+        ));
+        report.methods.iter().for_each(|method| say_method(common, method));
+        report.comparisons.iter().for_each(|one| say_comparison(common, one));
+        common.say(&report.level);
+    }
+
+    fn result(&self) -> Option<PathBuf> {
+        self.out.clone()
+    }
+}
+
+fn say_method(common: &Common, method: &MethodFigures) {
+    let (Some(first), Some(last)) = (method.trials.first(), method.trials.last()) else { return };
+    let time = |of: &lunula::live::performance::TrialMean| {
+        let sd = of.over_operators.sd.map_or(String::new(), |sd| format!(" ± {sd:.2}"));
+        format!("{:.2}{sd} s in trial {} (n {})", of.over_operators.mean, of.trial, of.over_operators.n)
+    };
+    let level = match &method.levels_off {
+        Some(level) => format!(
+            "; levels off at trial {:.1} ± {:.1}{}",
+            level.trial.value,
+            level.trial.se,
+            if level.was_reached { "" } else { ", which was not reached" }
+        ),
+        None => String::new(),
+    };
+    common.say(&format!("{}: {}, {}{level}", method.method, time(first), time(last)));
+    if let Some(curve) = method.fitted.better_curve() {
+        let law = method.fitted.better.map_or("", |law| law.formula());
+        common.say(&format!(
+            "  {law}: a {:.2} ± {:.2} s, b {:.2} ± {:.2} s, c {:.2} ± {:.2}{}",
+            curve.a.value,
+            curve.a.se,
+            curve.b.value,
+            curve.b.se,
+            curve.c.value,
+            curve.c.se,
+            match method.fitted.aicc_difference {
+                Some(difference) => format!("; AICc better by {:.1}", difference.abs()),
+                None => String::new(),
+            }
+        ));
+    }
+}
+
+fn say_comparison(common: &Common, one: &Comparison) {
+    if let Some(paired) = &one.overall {
+        let between = |ends: Option<[f64; 2]>| {
+            ends.map_or("no interval of one operator".to_owned(), |[low, high]| format!("95 % {low:.2} to {high:.2}"))
+        };
+        let ratio = match paired.ratio {
+            Some(ratio) => format!("; {ratio:.2} times as long ({})", between(paired.ratio_interval)),
+            None => String::new(),
+        };
+        common.say(&format!(
+            "{} less {}: {:.2} s per decision ({}; n {}){ratio}",
+            one.method,
+            one.baseline,
+            paired.difference,
+            between(paired.difference_interval),
+            paired.n
+        ));
+    }
+    let answer = |statement: &Statement| match (statement.ratio, statement.holds) {
+        (Some(ratio), Some(holds)) => {
+            let se = statement.ratio_se.map_or(String::new(), |se| format!(" ± {se:.2}"));
+            format!("{ratio:.2}{se}, so {}", if holds { "yes" } else { "no" })
+        }
+        _ => "not known".to_owned(),
+    };
+    common.say(&format!("  less than half the time per decision initially? {}", answer(&one.initially)));
+    common.say(&format!("  at most half the trials to level off? {}", answer(&one.to_level_off)));
+}

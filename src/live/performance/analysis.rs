@@ -1,0 +1,141 @@
+//! From trials to figures.
+
+use std::collections::BTreeMap;
+
+use lunula_live::performance::{Course, Curve, LEVEL, Law, Paired, Point};
+use lunula_live::spread::Spread;
+
+use super::read::{Row, Trials};
+use super::report::{
+    Comparison, Fit, Fitted, Level, MethodFigures, PerformanceFigures, Statement, TrialMean, TrialPair,
+};
+
+/// The limit of both statements of the thesis.
+const HALF: f64 = 0.5;
+
+/// The operators' times of one method: by trial, then by operator.
+type Times = BTreeMap<u32, BTreeMap<usize, f64>>;
+
+/// All figures; `baseline` is one of the methods.
+pub(super) fn figures(data: &str, trials: &Trials, course: Course, baseline: usize) -> PerformanceFigures {
+    let mut times = vec![Times::new(); trials.methods.len()];
+    for &Row { operator, method, trial, decision_s, .. } in &trials.rows {
+        times[method].entry(trial).or_default().insert(operator, decision_s);
+    }
+    let methods: Vec<MethodFigures> =
+        trials.methods.iter().zip(&times).map(|(name, times)| method(name, times)).collect();
+    let others = (0..methods.len()).filter(|&other| other != baseline);
+    PerformanceFigures {
+        data: data.to_owned(),
+        folder: std::path::PathBuf::new(),
+        shortest_s: course.shortest_s(),
+        course,
+        rows: trials.rows.len(),
+        rows_without_time: trials.missing,
+        operators: trials.operators.clone(),
+        level: format!(
+            "a method levels off at the first trial at which its better curve has less than {:.0} % of its rise from \
+             trial 1 to the asymptote left",
+            100.0 * LEVEL
+        ),
+        comparisons: others
+            .map(|other| compare([&methods[baseline], &methods[other]], [&times[baseline], &times[other]]))
+            .collect(),
+        methods,
+    }
+}
+
+fn method(name: &str, times: &Times) -> MethodFigures {
+    let mean = |(&trial, of): (&u32, &BTreeMap<usize, f64>)| {
+        Some(TrialMean { trial, over_operators: Spread::of(of.values().copied())? })
+    };
+    let trials: Vec<TrialMean> = times.iter().filter_map(mean).collect();
+    let fitted = fit(&trials);
+    let last = trials.last().map_or(0.0, |last| f64::from(last.trial));
+    let level = fitted.better_curve().and_then(|curve| curve.level_at).map(|trial| {
+        // What the search leaves does not make it the next trial.
+        let first_trial = (trial.value - 1e-6).ceil().max(1.0);
+        Level { trial, first_trial, was_reached: first_trial <= last }
+    });
+    let operators = times.values().flat_map(BTreeMap::keys).collect::<std::collections::BTreeSet<_>>().len();
+    MethodFigures { method: name.to_owned(), operators, trials, fitted, levels_off: level }
+}
+
+fn fit(trials: &[TrialMean]) -> Fitted {
+    let point = |of: &TrialMean| Point {
+        trial: f64::from(of.trial),
+        mean: of.over_operators.mean,
+        weight: of.over_operators.n as f64,
+    };
+    let points: Vec<Point> = trials.iter().map(point).collect();
+    let [exponential, power] = [Law::Exponential, Law::Power].map(|law| match Curve::fit(law, &points) {
+        Ok(curve) => Fit { curve: Some(curve), not_fitted: None },
+        Err(why) => Fit { curve: None, not_fitted: Some(why.to_string()) },
+    });
+    let better = match (&exponential.curve, &power.curve) {
+        // Both have three parameters: AICc and residuals name the same.
+        (Some(one), Some(other)) if other.residual_sd < one.residual_sd => Some(Law::Power),
+        (Some(_), _) => Some(Law::Exponential),
+        (None, other) => other.map(|_| Law::Power),
+    };
+    let criterion = |fit: &Fit| fit.curve.and_then(|curve| curve.aicc);
+    let aicc_difference = criterion(&power).zip(criterion(&exponential)).map(|(power, other)| power - other);
+    Fitted { exponential, power, better, aicc_difference }
+}
+
+impl Fitted {
+    /// The curve with the smaller AICc, or the only one.
+    #[must_use]
+    pub fn better_curve(&self) -> Option<Curve> {
+        match self.better? {
+            Law::Exponential => self.exponential.curve,
+            Law::Power => self.power.curve,
+        }
+    }
+}
+
+/// `[baseline, method]`.
+fn compare(methods: [&MethodFigures; 2], [baseline, other]: [&Times; 2]) -> Comparison {
+    let both = baseline.iter().filter_map(|(trial, times)| Some((*trial, times, other.get(trial)?)));
+    let mut trials = Vec::new();
+    let mut sums: BTreeMap<usize, ([f64; 2], f64)> = BTreeMap::new();
+    for (trial, baseline, other) in both {
+        let pairs = baseline.iter().filter_map(|(operator, time)| Some((*operator, [*time, *other.get(operator)?])));
+        let pairs: Vec<(usize, [f64; 2])> = pairs.collect();
+        for (operator, [one, other]) in &pairs {
+            let (sum, count) = sums.entry(*operator).or_default();
+            *sum = [sum[0] + one, sum[1] + other];
+            *count += 1.0;
+        }
+        let paired = Paired::of(&pairs.iter().map(|(_, pair)| *pair).collect::<Vec<_>>());
+        trials.extend(paired.map(|paired| TrialPair { trial, paired }));
+    }
+    let means: Vec<[f64; 2]> = sums.values().map(|(sum, count)| sum.map(|sum| sum / count)).collect();
+    let initial = trials.first().and_then(|first| first.paired.ratio_of_means);
+    let levels = methods.map(|method| method.levels_off.map(|level| level.trial));
+    let level = match levels {
+        [Some(from), Some(to)] => {
+            let ratio = to.value / from.value;
+            Some((ratio, ratio * (to.se / to.value).hypot(from.se / from.value)))
+        }
+        _ => None,
+    };
+    Comparison {
+        method: methods[1].method.clone(),
+        baseline: methods[0].method.clone(),
+        overall: Paired::of(&means),
+        initially: Statement {
+            ratio: initial,
+            ratio_se: None,
+            at_most: HALF,
+            holds: initial.map(|ratio| ratio < HALF),
+        },
+        to_level_off: Statement {
+            ratio: level.map(|level| level.0),
+            ratio_se: level.map(|level| level.1),
+            at_most: HALF,
+            holds: level.map(|(ratio, _)| ratio <= HALF),
+        },
+        trials,
+    }
+}

@@ -1,0 +1,130 @@
+//! The performance job: a table of trials in, figures, tables and pictures out.
+
+use std::path::Path;
+use std::time::Instant;
+
+use super::options::PerformanceOptions;
+use super::read::{Trials, read};
+use super::report::{PerformanceFigures, PerformanceReport};
+use super::tables::{MEANS, ROWS, write_means, write_rows};
+use super::{PerformanceError, analysis, figures};
+use crate::files::Places;
+use crate::job::{Report, Watch};
+use crate::predictor::FolderOutputs;
+use crate::stages::{Stages, Step, left_out};
+use crate::words::instead;
+
+/// The figures.
+pub(super) const FIGURES: &str = "performance.json";
+/// The report, with places and times.
+const REPORT: &str = "run.json";
+
+/// What would be done and what not.
+#[must_use]
+pub fn plan(outputs: Option<&FolderOutputs>) -> Vec<Step> {
+    let rows = outputs.is_none_or(|outputs| outputs.rows);
+    let why = if rows { "of each row" } else { "not asked for" };
+    vec![
+        Step::new("read", true, "a table of trials".to_owned()),
+        Step::new("means", true, "over operators, by method and trial".to_owned()),
+        Step::new("learning curves", true, "exponential and power law".to_owned()),
+        Step::new("comparison", true, "of each method with the baseline".to_owned()),
+        Step::new("time per decision", rows, why.to_owned()),
+        FolderOutputs::figures_step(outputs, "by operator, and means with curves"),
+    ]
+}
+
+/// Runs the job on a table that results call `name`; every result is in its place when it returns.
+///
+/// # Errors
+/// [`PerformanceError`] where there are no results.
+pub fn run(
+    data: &Path,
+    name: &str,
+    options: &PerformanceOptions,
+    outputs: &FolderOutputs,
+    watch: &Watch<'_>,
+) -> Result<PerformanceReport, PerformanceError> {
+    let start = Instant::now();
+    let stages = Stages::default();
+    let folder = &outputs.folder;
+    let mut places = Places::not_over([data]);
+    places.check([FIGURES, MEANS, ROWS, REPORT].map(|name| folder.join(name)))?;
+    let course = options.course();
+    let trials = stages.time("read", || read(data, name, &course))?;
+    let baseline = baseline(options, &trials, name)?;
+    watch.go_on()?;
+    let figures = stages.time("figures of merit", || analysis::figures(name, &trials, course, baseline));
+    let figures = PerformanceFigures { folder: folder.clone(), ..figures };
+    let json = serde_json::to_string_pretty(&figures).expect("plain data with names as keys") + "\n";
+    places.write(&folder.join(FIGURES), &json)?;
+    stages.time("tables", || {
+        write_means(&figures, folder, &mut places)?;
+        if outputs.rows { write_rows(&trials, folder, &mut places) } else { Ok(()) }
+    })?;
+    watch.go_on()?;
+    let mut pictures = Vec::new();
+    if outputs.figures {
+        let beside = folder.join(FIGURES);
+        stages.time("figures", || {
+            let mut draw = |kind: &str, draw: &dyn Fn(&Path, &Path) -> anyhow::Result<()>| {
+                places.draw(&beside, kind, draw).map(|picture| pictures.push(picture))
+            };
+            draw("methods", &|png, svg| figures::draw_methods(&figures, png, svg))?;
+            draw("operators", &|png, svg| figures::draw_operators(&trials, png, svg))
+        })?;
+    }
+    let left_out = left_out(plan(Some(outputs)));
+    let notes = notes(&figures, outputs);
+    let report =
+        Report { left_out, notes, pictures, failed: trials.impossible, ..Report::new("performance", watch, figures) };
+    Ok(report.timed(&stages, start).commit(places, outputs.report.then(|| folder.join(REPORT)).as_deref())?)
+}
+
+/// Which method the others are compared with.
+fn baseline(options: &PerformanceOptions, trials: &Trials, name: &str) -> Result<usize, PerformanceError> {
+    let Some(baseline) = &options.baseline else { return Ok(0) };
+    trials.methods.iter().position(|method| method == baseline).ok_or_else(|| {
+        let known: Vec<&str> = trials.methods.iter().map(String::as_str).collect();
+        PerformanceError::Rows(vec![format!(
+            "{name}: has no method `{baseline}` of --baseline; {}",
+            instead(baseline, &known)
+        )])
+    })
+}
+
+/// What was chosen or could not be known.
+fn notes(figures: &PerformanceFigures, outputs: &FolderOutputs) -> Vec<String> {
+    let mut notes = Vec::new();
+    match figures.rows_without_time {
+        0 => {}
+        1 => notes.push("1 row has no time and is not counted".to_owned()),
+        rows => notes.push(format!("{rows} rows have no time and are not counted")),
+    }
+    for method in &figures.methods {
+        let fitted = &method.fitted;
+        for (law, fit) in [("exponential", &fitted.exponential), ("power law", &fitted.power)] {
+            if let Some(why) = &fit.not_fitted {
+                notes.push(format!("{}: {law} not fitted: {why}", method.method));
+            }
+        }
+        if method.levels_off.is_none() && fitted.better.is_some() {
+            notes.push(format!(
+                "{}: the change from trial to trial is within two standard errors of none: where it levels off is not \
+                 known",
+                method.method
+            ));
+        }
+    }
+    for one in figures.comparisons.iter().filter(|one| one.overall.is_none()) {
+        notes.push(format!(
+            "{} and {}: no operator did the same trial with both: they are not compared",
+            one.method, one.baseline
+        ));
+    }
+    let operators = figures.operators.len();
+    if outputs.figures && operators > figures::MOST_PANELS {
+        notes.push(format!("the first {} of {operators} operators are drawn", figures::MOST_PANELS));
+    }
+    notes
+}

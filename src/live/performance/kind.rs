@@ -1,0 +1,58 @@
+//! `performance` in a pipeline: time per decision and how it is learned (appendix C).
+
+use std::path::Path;
+
+use super::job::{FIGURES, plan, run};
+use super::options::PerformanceOptions;
+use super::tables::{MEANS, ROWS};
+use crate::job::{Demand, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Role, Takes, Work};
+use crate::predictor::FolderOutputs;
+use crate::stages::Step;
+
+const PICTURES: &str = "pictures";
+const ROWS_PART: &str = "rows";
+/// A table of trials is small; what is drawn takes the time (measured: 0.04 s for two pictures of 99 trials).
+const COST: (u64, f64) = (64 << 20, 0.1);
+
+/// A stage of a pipeline.
+#[derive(Debug, Clone)]
+pub struct PerformanceJob(PerformanceOptions);
+
+fn outputs(folder: &Path, demand: &Demand) -> FolderOutputs {
+    let folder = folder.to_owned();
+    FolderOutputs { folder, rows: demand.wants(ROWS_PART), figures: demand.wants(PICTURES), report: false }
+}
+
+impl Job for PerformanceJob {
+    const KIND: Kind = Kind::of::<Self>(
+        "performance",
+        &[Role { name: "trials", takes: Takes::One, about: "a table operator,method,trial,time_s" }],
+        &[
+            Part { name: "performance", file: FIGURES, only_if_wanted: false },
+            Part { name: "means", file: MEANS, only_if_wanted: false },
+            Part { name: ROWS_PART, file: ROWS, only_if_wanted: true },
+            Part { name: PICTURES, file: "", only_if_wanted: true },
+        ],
+    );
+
+    type Options = PerformanceOptions;
+
+    fn new(options: PerformanceOptions) -> Result<Self, OptionFault> {
+        Ok(Self(options))
+    }
+
+    fn steps(&self, _inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
+        Ok(plan(Some(&outputs(Path::new(""), demand))))
+    }
+
+    fn cost(&self, _inputs: &[Foreseen]) -> (u64, f64) {
+        COST
+    }
+
+    fn run(&self, order: &Order<'_>, work: &Work<'_>) -> anyhow::Result<Made> {
+        let trials = work.needed("trials")?;
+        let outputs = outputs(work.folder, order.demand);
+        let report = work.run(order.said, |watch| run(&trials.path, &trials.name, &self.0, &outputs, watch))?;
+        Ok(report.made(Vec::new()))
+    }
+}

@@ -1,0 +1,228 @@
+//! The skill job: recordings in, figures, a table and pictures out.
+
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
+
+use rayon::prelude::*;
+
+use super::analysis::{self, Reference};
+use super::figures::{self, Drawn, MOST_DRAWN};
+use super::options::{SkillInputs, SkillOptions, SkillRecording};
+use super::read::read;
+use super::report::{SkillFigures, SkillReport, TrialFigures};
+use super::table::{self, TABLE};
+use super::{SkillError, summary};
+use crate::files::Places;
+use crate::job::{Report, Watch};
+use crate::predictor::FolderOutputs;
+use crate::stages::{Stages, Step, left_out};
+
+/// The figures.
+pub(super) const FIGURES: &str = "skill.json";
+/// The report, with places and times.
+const REPORT: &str = "run.json";
+
+/// What would be done and what not, of so many recordings; `reference`: whether a recording is compared with.
+///
+/// # Errors
+/// [`SkillError::Options`].
+pub fn plan(
+    recordings: usize,
+    reference: bool,
+    options: &SkillOptions,
+    outputs: Option<&FolderOutputs>,
+) -> Result<Vec<Step>, SkillError> {
+    let mut faults = options.faults();
+    if reference && options.reference_trial.is_some() {
+        faults.push("--reference-trial: there is a --reference recording as well; choose one of them".to_owned());
+    }
+    if !faults.is_empty() {
+        return Err(SkillError::Options(faults));
+    }
+    let compared = reference || options.reference_trial.is_some();
+    let why = if compared { "by time warping" } else { "neither --reference nor --reference-trial" };
+    Ok(vec![
+        Step::new("read", true, format!("{recordings} recordings")),
+        Step::new("contacts", true, format!("from {} N on, to {} N", options.touch_n, options.release_n)),
+        Step::new("distance from a reference", compared, why.to_owned()),
+        Step::new("means", true, "over trials, and over people".to_owned()),
+        FolderOutputs::figures_step(outputs, "forces by trial, figures over trials"),
+    ])
+}
+
+/// What a recording gave.
+struct Done {
+    trials: Vec<TrialFigures>,
+    drawn: Vec<Drawn>,
+    notes: Vec<String>,
+    warnings: Vec<String>,
+    /// What was said for all of them together.
+    gated: bool,
+    angles_without_gate: bool,
+}
+
+/// Runs the job; every result is in its place when it returns.
+///
+/// # Errors
+/// [`SkillError`] where there are no results.
+pub fn run(
+    inputs: &SkillInputs,
+    options: &SkillOptions,
+    outputs: &FolderOutputs,
+    watch: &Watch<'_>,
+) -> Result<SkillReport, SkillError> {
+    let start = Instant::now();
+    let stages = Stages::default();
+    let steps = plan(inputs.recordings.len(), inputs.reference.is_some(), options, Some(outputs))?;
+    let folder = &outputs.folder;
+    let files = inputs.recordings.iter().chain(&inputs.reference).map(|one| &one.path);
+    let mut places = Places::not_over(files);
+    places.check([FIGURES, TABLE, REPORT].map(|name| folder.join(name)))?;
+    let reference = stages.time("reference", || Reference::find(inputs, options))?;
+    watch.go_on()?;
+    let count = AtomicU64::new(0);
+    let one = |recording: &SkillRecording| {
+        watch.go_on()?;
+        let done = stages.time("contacts", || analysed(recording, reference.as_ref(), options, outputs.figures));
+        (watch.tick)(count.fetch_add(1, Ordering::Relaxed) + 1, Some(inputs.recordings.len() as u64));
+        Ok(done)
+    };
+    let all: Vec<Result<Done, SkillError>> =
+        inputs.recordings.par_iter().map(one).collect::<Result<_, SkillError>>()?;
+    let (mut done, mut failed) = (Vec::new(), Vec::new());
+    for (recording, one) in inputs.recordings.iter().zip(all) {
+        match one {
+            Ok(one) => done.push((recording, one)),
+            Err(why) => failed.push(why.to_string()),
+        }
+    }
+    if done.is_empty() {
+        return Err(SkillError::Recordings(failed));
+    }
+    distinct(&done)?;
+    let (mut notes, warnings) = said(&done, reference.as_ref());
+    let drawn: Vec<Drawn> = done.iter_mut().flat_map(|(_, one)| std::mem::take(&mut one.drawn)).collect();
+    let trials: Vec<TrialFigures> = done.into_iter().flat_map(|(_, one)| one.trials).collect();
+    let people: Vec<_> = summary::people(&trials).iter().map(|subject| summary::person(subject, &trials)).collect();
+    let figures = SkillFigures {
+        folder: folder.clone(),
+        reference: reference.map(|reference| reference.name),
+        over_people: summary::over_people(&people),
+        people,
+        trials,
+    };
+    let json = serde_json::to_string_pretty(&figures).expect("plain data with names as keys") + "\n";
+    places.write(&folder.join(FIGURES), &json)?;
+    stages.time("table", || table::write(&figures, folder, &mut places))?;
+    let mut pictures = Vec::new();
+    if outputs.figures {
+        let beside = folder.join(FIGURES);
+        pictures.push(places.draw(&beside, "summary", |png, svg| {
+            stages.time("figures", || figures::draw_summary(&figures.trials, png, svg))
+        })?);
+        for (k, trial) in drawn.iter().take(MOST_DRAWN).enumerate() {
+            watch.go_on()?;
+            pictures.push(places.draw(&beside, &format!("trial-{:02}", k + 1), |png, svg| {
+                stages.time("figures", || figures::draw_trial(trial, png, svg))
+            })?);
+        }
+        if figures.trials.len() > MOST_DRAWN {
+            notes.push(format!("the first {MOST_DRAWN} of {} trials are drawn", figures.trials.len()));
+        }
+    }
+    let left_out = left_out(steps);
+    let report = Report { left_out, notes, warnings, failed, pictures, ..Report::new("skill", watch, figures) };
+    Ok(report.timed(&stages, start).commit(places, outputs.report.then(|| folder.join(REPORT)).as_deref())?)
+}
+
+/// Reads a recording and looks at its trials.
+fn analysed(
+    recording: &SkillRecording,
+    reference: Option<&Reference>,
+    options: &SkillOptions,
+    draw: bool,
+) -> Result<Done, SkillError> {
+    let read = read(recording, &options.finger)?;
+    let name = &recording.name;
+    let (mut trials, mut drawn, mut warnings) = (Vec::new(), Vec::new(), Vec::new());
+    for trial in &read.trials {
+        let (figures, touched) = analysis::figures(name, trial, reference, options);
+        for (finger, contacts) in trial.fingers.iter().zip(&touched) {
+            if contacts.is_empty() && finger.pull_n >= options.touch_n {
+                warnings.push(format!(
+                    "{name}: trial {}: {} never presses, and pulls with up to {:.3} N: pressing has to be a negative \
+                     Fz_N",
+                    trial.trial, finger.name, finger.pull_n
+                ));
+            }
+        }
+        if draw && drawn.len() < MOST_DRAWN {
+            drawn.push(Drawn::of(trial, &touched));
+        }
+        trials.push(figures);
+    }
+    let mut notes: Vec<String> = read.notes.iter().map(|note| format!("{name}: {note}")).collect();
+    for (rows, what) in [(read.without_time, "time"), (read.without_trial, "trial")] {
+        if rows > 0 {
+            notes.push(format!("{name}: {rows} rows have no {what} and are not counted"));
+        }
+    }
+    Ok(Done { trials, drawn, notes, warnings, gated: read.gated, angles_without_gate: read.angles_without_gate })
+}
+
+/// A person has each trial once.
+fn distinct(done: &[(&SkillRecording, Done)]) -> Result<(), SkillError> {
+    let mut seen: BTreeMap<(&Option<String>, &str), &SkillRecording> = BTreeMap::new();
+    let mut twice = Vec::new();
+    for (recording, one) in done {
+        for trial in &one.trials {
+            let Some(first) = seen.insert((&trial.subject, &trial.trial), recording) else { continue };
+            let whose = trial.subject.as_ref().map_or(String::new(), |subject| format!(" of {subject}"));
+            twice.push(format!(
+                "{} and {}: both are trial {}{whose}; say whose each recording is with --subject, or number the trials \
+                 in a column `trial`",
+                first.name, recording.name, trial.trial
+            ));
+        }
+    }
+    if twice.is_empty() { Ok(()) } else { Err(SkillError::Recordings(twice)) }
+}
+
+/// Notes and warnings on all recordings.
+fn said(done: &[(&SkillRecording, Done)], reference: Option<&Reference>) -> (Vec<String>, Vec<String>) {
+    let mut notes: Vec<String> = done.iter().flat_map(|(_, one)| one.notes.iter().cloned()).collect();
+    let mut warnings: Vec<String> = done.iter().flat_map(|(_, one)| one.warnings.iter().cloned()).collect();
+    if done.iter().any(|(_, one)| one.gated) {
+        notes.push(
+            "column `contact`: forces are those of rows in touch, angles those of rows in bending; they are never \
+             known at once (5.1.2)"
+                .to_owned(),
+        );
+    }
+    if done.iter().any(|(_, one)| one.angles_without_gate) {
+        notes.push(
+            "angles are left out: without a column `contact` it is not known in which rows they hold (5.1.2)"
+                .to_owned(),
+        );
+    }
+    let trials = || done.iter().flat_map(|(_, one)| &one.trials);
+    let lost = |trial: &&TrialFigures| trial.fingers.iter().any(|one| one.figures.unknown_s > 0.0);
+    let with_gaps = trials().filter(lost).count();
+    if with_gaps > 0 {
+        notes.push(format!(
+            "{with_gaps} of {} trials have gaps or unknown forces (unknown_s): that time is not counted, and a contact \
+             ends there",
+            trials().count()
+        ));
+    }
+    let cut: usize = trials().flat_map(|trial| &trial.fingers).map(|one| one.figures.cut).sum();
+    if cut > 0 {
+        let contacts = if cut == 1 { "1 contact begins or ends" } else { &format!("{cut} contacts begin or end") };
+        notes.push(format!("{contacts} in a gap, or before or after the trial: one without a beginning is no press"));
+    }
+    if let Some(reference) = reference.filter(|reference| !reference.touches()) {
+        warnings.push(format!("{}: is the reference and has no contact: nothing is compared with it", reference.name));
+    }
+    (notes, warnings)
+}

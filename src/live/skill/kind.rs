@@ -1,0 +1,78 @@
+//! `skill` in a pipeline: what fingers did in trials (6.3).
+
+use std::path::Path;
+
+use super::job::{FIGURES, plan, run};
+use super::options::{SkillInputs, SkillOptions, SkillRecording};
+use super::table::TABLE;
+use crate::job::{At, Demand, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Role, Takes, Work};
+use crate::log::ReadingCost;
+use crate::predictor::FolderOutputs;
+use crate::stages::Step;
+
+const PICTURES: &str = "pictures";
+
+/// A stage of a pipeline.
+#[derive(Debug, Clone)]
+pub struct SkillJob(SkillOptions);
+
+fn outputs(folder: &Path, demand: &Demand) -> FolderOutputs {
+    FolderOutputs { folder: folder.to_owned(), rows: true, figures: demand.wants(PICTURES), report: false }
+}
+
+fn recording(input: &At) -> SkillRecording {
+    let of = |key: &str| input.keys.get(key).map(str::to_owned);
+    SkillRecording {
+        path: input.path.clone(),
+        name: input.name.clone(),
+        subject: of("subject"),
+        trial: of("trial").or_else(|| of("session")),
+    }
+}
+
+impl Job for SkillJob {
+    const KIND: Kind = Kind::of::<Self>(
+        "skill",
+        &[
+            Role { name: "recordings", takes: Takes::Many, about: "tables or logs with time_s and FINGER.Fz_N" },
+            Role { name: "reference", takes: Takes::Optional, about: "a trial that the others are compared with" },
+        ],
+        &[
+            Part { name: "skill", file: FIGURES, only_if_wanted: false },
+            Part { name: "table", file: TABLE, only_if_wanted: false },
+            Part { name: PICTURES, file: "", only_if_wanted: true },
+        ],
+    );
+
+    type Options = SkillOptions;
+
+    fn new(options: SkillOptions) -> Result<Self, OptionFault> {
+        let faults = options.faults();
+        if faults.is_empty() {
+            return Ok(Self(options));
+        }
+        Err(OptionFault { key: String::new(), what: faults.join("; ") })
+    }
+
+    fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
+        let recordings = inputs.iter().filter(|input| input.role == "recordings").count();
+        let reference = Foreseen::of(inputs, "reference").is_some();
+        plan(recordings, reference, &self.0, Some(&outputs(Path::new(""), demand))).map_err(|why| why.to_string())
+    }
+
+    fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {
+        let ReadingCost { memory, seconds, rows } = ReadingCost::of(inputs);
+        // Measured: 0.015 s for a picture, 1 us for a row, with warping.
+        (memory + (16 << 20), seconds + 0.1 + 1e-6 * rows + 0.015 * inputs.len() as f64)
+    }
+
+    fn run(&self, order: &Order<'_>, work: &Work<'_>) -> anyhow::Result<Made> {
+        let inputs = SkillInputs {
+            recordings: work.of("recordings").map(recording).collect(),
+            reference: work.one("reference").map(recording),
+        };
+        let outputs = outputs(work.folder, order.demand);
+        let report = work.run(order.said, |watch| run(&inputs, &self.0, &outputs, watch))?;
+        Ok(report.made(Vec::new()))
+    }
+}

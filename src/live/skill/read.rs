@@ -1,0 +1,140 @@
+//! A recording's trials: whose they are, and each finger's force within them.
+
+use lunula_live::skill::Force;
+use lunula_live::spread::Spread;
+
+use super::rows::{self, Finger, Gate, Rows};
+use super::{SkillError, SkillRecording};
+
+/// More trials of a recording are something else: a column was mistaken.
+const MOST_TRIALS: usize = 10_000;
+
+/// The person, if known, and the trial.
+type Whose = (Option<String>, String);
+
+/// One trial.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Trial {
+    pub(super) subject: Option<String>,
+    pub(super) trial: String,
+    pub(super) fingers: Vec<FingerTrial>,
+}
+
+/// A finger in a trial.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct FingerTrial {
+    pub(super) name: String,
+    pub(super) force: Force,
+    /// The strongest pull, newtons: a positive Fz_N.
+    pub(super) pull_n: f64,
+    /// Each angle in rows in bending: name, mean and SD over rows, and its ends.
+    pub(super) angles: Vec<(String, Spread, [f64; 2])>,
+}
+
+/// What a recording holds.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Recording {
+    pub(super) trials: Vec<Trial>,
+    pub(super) gated: bool,
+    pub(super) angles_without_gate: bool,
+    /// Rows without a time.
+    pub(super) without_time: usize,
+    /// Rows of no trial.
+    pub(super) without_trial: usize,
+    pub(super) notes: Vec<String>,
+}
+
+/// Reads a recording; `finger` is the name of a plain `Fz_N`.
+pub(super) fn read(recording: &SkillRecording, finger: &str) -> Result<Recording, SkillError> {
+    let path = &recording.path;
+    let rows = rows::read(path, finger)?;
+    let own_trial = recording
+        .trial
+        .clone()
+        .unwrap_or_else(|| path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned()));
+    // Rows of each trial, in the order in which trials first appear.
+    let mut trials: Vec<(Whose, Vec<usize>)> = Vec::new();
+    let mut places = std::collections::BTreeMap::new();
+    let (mut without_time, mut without_trial) = (0, 0);
+    for row in 0..rows.time_s.len() {
+        let cell = |column: &Option<Vec<Option<String>>>| column.as_ref().map(|cells| cells[row].clone());
+        let trial = match cell(&rows.trial) {
+            None => own_trial.clone(),
+            Some(Some(trial)) => trial,
+            Some(None) => {
+                without_trial += 1;
+                continue;
+            }
+        };
+        if !rows.time_s[row].is_finite() {
+            without_time += 1;
+            continue;
+        }
+        let subject = cell(&rows.subject).flatten().or_else(|| recording.subject.clone());
+        let key = (subject, trial);
+        let place = *places.entry(key.clone()).or_insert(trials.len());
+        if place == trials.len() {
+            if place == MOST_TRIALS {
+                let what = format!("column `trial`: has more than {MOST_TRIALS} trials; is it the number of the row?");
+                return Err(SkillError::recording(path, &what));
+            }
+            trials.push((key, Vec::new()));
+        }
+        trials[place].1.push(row);
+    }
+    if trials.is_empty() {
+        return Err(SkillError::recording(path, "has no row with a time and a trial; record it again"));
+    }
+    let one = |((subject, trial), own): (Whose, Vec<usize>)| {
+        in_order(&rows, &own, recording)?;
+        let fingers = rows.fingers.iter().map(|finger| of_finger(&rows, finger, &own)).collect();
+        Ok(Trial { subject, trial, fingers })
+    };
+    Ok(Recording {
+        trials: trials.into_iter().map(one).collect::<Result<_, SkillError>>()?,
+        gated: rows.fingers.iter().any(|finger| !finger.gate.is_empty()),
+        angles_without_gate: rows.angles_without_gate,
+        without_time,
+        without_trial,
+        notes: rows.notes,
+    })
+}
+
+/// Time has to go forward within a trial.
+fn in_order(rows: &Rows, own: &[usize], recording: &SkillRecording) -> Result<(), SkillError> {
+    let back = own.windows(2).find(|pair| rows.time_s[pair[1]] < rows.time_s[pair[0]]);
+    let Some((pair, table)) = back.zip(rows.table.as_ref()) else { return Ok(()) };
+    let what = format!(
+        "{}: time_s falls from {} to {} within a trial; sort the rows, or number the trials in a column `trial`",
+        table.row_place(pair[1]),
+        rows.time_s[pair[0]],
+        rows.time_s[pair[1]]
+    );
+    Err(SkillError::recording(&recording.path, &what))
+}
+
+fn of_finger(rows: &Rows, finger: &Finger, own: &[usize]) -> FingerTrial {
+    let gate = |row: usize| finger.gate.get(row).copied();
+    let pressing = |row: &usize| match gate(*row) {
+        None | Some(Gate::Touch) => -finger.fz_n[*row],
+        Some(_) => f64::NAN,
+    };
+    let lifted = if finger.gate.is_empty() {
+        Vec::new()
+    } else {
+        own.iter().map(|row| gate(*row) == Some(Gate::Bending)).collect()
+    };
+    let force_n: Vec<f64> = own.iter().map(pressing).collect();
+    let angle = |(name, values): &(String, Vec<f64>)| {
+        let bent = || own.iter().filter(|row| gate(**row) == Some(Gate::Bending)).map(|row| values[*row]);
+        let known = bent().filter(|value| value.is_finite());
+        let ends = known.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], one| [low.min(one), high.max(one)]);
+        Some((name.clone(), Spread::of(bent())?, ends))
+    };
+    FingerTrial {
+        name: finger.name.clone(),
+        pull_n: force_n.iter().filter(|force_n| force_n.is_finite()).map(|force_n| -force_n).fold(0.0, f64::max),
+        angles: finger.angles.iter().filter_map(angle).collect(),
+        force: Force { time_s: own.iter().map(|row| rows.time_s[*row]).collect(), force_n, lifted },
+    }
+}

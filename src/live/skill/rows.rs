@@ -1,0 +1,165 @@
+//! The rows of a recording: time, and for each finger its force and what a gate says of it.
+//!
+//! In: a table with `time_s` and forces by the contract's names, or any lab's log. Out: [`Rows`].
+
+use std::path::Path;
+
+use super::SkillError;
+use crate::log::{Columns, Log, LogError};
+use crate::table::{Table, TableError, column_names};
+
+const TIME: &str = "time_s";
+const FORCE: &str = "Fz_N";
+const CONTACT: &str = "contact";
+/// More fingers are something else.
+const MOST_FINGERS: usize = 20;
+
+/// What a gate says of a row.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Gate {
+    Touch,
+    Bending,
+    Unknown,
+}
+
+/// What is recorded of one finger.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Finger {
+    pub(super) name: String,
+    /// The force of the finger on the surface, newtons, pressing negative; NaN where it is not known.
+    pub(super) fz_n: Vec<f64>,
+    /// Empty where there is no gate.
+    pub(super) gate: Vec<Gate>,
+    /// Angles by their columns, degrees; NaN where not known. None are read without a gate.
+    pub(super) angles: Vec<(String, Vec<f64>)>,
+}
+
+/// A recording.
+#[derive(Debug, Clone)]
+pub(super) struct Rows {
+    /// NaN where a row has no time.
+    pub(super) time_s: Vec<f64>,
+    pub(super) fingers: Vec<Finger>,
+    /// The columns `trial` and `subject`, where they exist.
+    pub(super) trial: Option<Vec<Option<String>>>,
+    pub(super) subject: Option<Vec<Option<String>>>,
+    /// Where rows are in the file; none of a log, whose time is checked.
+    pub(super) table: Option<Table>,
+    /// Whether there are angles that no gate says anything of.
+    pub(super) angles_without_gate: bool,
+    /// What is worth saying on the file.
+    pub(super) notes: Vec<String>,
+}
+
+/// Reads a recording; `finger` is the name of a plain `Fz_N`.
+pub(super) fn read(path: &Path, finger: &str) -> Result<Rows, SkillError> {
+    match column_names(path) {
+        Ok(names) if names.iter().any(|name| name == TIME) && names.iter().any(|name| is_force(name)) => {
+            of_table(path, finger)
+        }
+        Ok(_) | Err(TableError::Extension(_)) => of_log(path, finger),
+        Err(why) => Err(why.into()),
+    }
+}
+
+/// Whether a column is a finger's normal force.
+fn is_force(name: &str) -> bool {
+    name == FORCE || finger_of(name, FORCE).is_some()
+}
+
+/// The finger of `FINGER.column`.
+fn finger_of<'a>(name: &'a str, column: &str) -> Option<&'a str> {
+    name.strip_suffix(column)?.strip_suffix('.').filter(|finger| !finger.is_empty())
+}
+
+fn of_log(path: &Path, finger: &str) -> Result<Rows, SkillError> {
+    let log = Log::read(path, &Columns::default()).map_err(|why| match why {
+        LogError::Columns { .. } => {
+            let what = "is neither a table with time_s and Fz_N (or FINGER.Fz_N for each of several fingers) nor a log \
+                        of photodiodes; name its columns so";
+            SkillError::recording(path, what)
+        }
+        why => why.into(),
+    })?;
+    let Some(force) = log.forces.into_iter().find(|force| force.name == FORCE) else {
+        let what = "has no normal force; name its column Fz_N, or FINGER.Fz_N for each of several fingers (pressing is \
+                    negative)";
+        return Err(SkillError::recording(path, what));
+    };
+    let one = Finger { name: finger.to_owned(), fz_n: force.values, gate: Vec::new(), angles: Vec::new() };
+    Ok(Rows {
+        time_s: log.time_s,
+        fingers: vec![one],
+        trial: None,
+        subject: None,
+        table: None,
+        angles_without_gate: false,
+        notes: log.notes,
+    })
+}
+
+fn of_table(path: &Path, plain: &str) -> Result<Rows, SkillError> {
+    let table = Table::read(path)?;
+    let numbers = |name: &str| -> Result<Vec<f64>, TableError> {
+        Ok(table.numbers_or_nan(name)?.into_iter().map(|cell| cell.unwrap_or(f64::NAN)).collect())
+    };
+    let mut fingers: Vec<Finger> = Vec::new();
+    let mut angles_without_gate = false;
+    for column in table.names().iter().filter(|name| is_force(name)) {
+        let own = finger_of(column, FORCE);
+        let name = own.unwrap_or(plain).to_owned();
+        if fingers.iter().any(|other| other.name == name) {
+            let what = format!("two columns are the force of `{name}`; choose another --finger for {FORCE}");
+            return Err(SkillError::recording(path, &what));
+        }
+        let dotted = |column: &str| own.map_or(column.to_owned(), |own| format!("{own}.{column}"));
+        let gate = [dotted(CONTACT), CONTACT.to_owned()].into_iter().find(|name| table.has(name));
+        let gate = gate.map(|gate| gates(&table, &gate)).transpose()?;
+        let angles = table.names().iter().filter(|name| is_angle(name, own));
+        let angles = match gate {
+            Some(_) => angles.map(|name| Ok((name.clone(), numbers(name)?))).collect::<Result<_, TableError>>()?,
+            None => {
+                angles_without_gate |= angles.count() > 0;
+                Vec::new()
+            }
+        };
+        fingers.push(Finger { name, fz_n: numbers(column)?, gate: gate.unwrap_or_default(), angles });
+    }
+    if fingers.len() > MOST_FINGERS {
+        let what = format!("has forces of {} fingers; {MOST_FINGERS} are the most", fingers.len());
+        return Err(SkillError::recording(path, &what));
+    }
+    let texts = |name: &str| table.has(name).then(|| table.texts(name)).transpose();
+    Ok(Rows {
+        time_s: numbers(TIME)?,
+        trial: texts("trial")?,
+        subject: texts("subject")?,
+        fingers,
+        angles_without_gate,
+        table: Some(table),
+        notes: Vec::new(),
+    })
+}
+
+/// Whether a column is an angle of this finger.
+fn is_angle(name: &str, finger: Option<&str>) -> bool {
+    let own = match finger {
+        Some(finger) => name.strip_prefix(finger).and_then(|rest| rest.strip_prefix('.')),
+        None => Some(name).filter(|name| !name.contains('.')),
+    };
+    own.is_some_and(|own| own.ends_with("_deg") && !own.ends_with("_sd_deg"))
+}
+
+fn gates(table: &Table, column: &str) -> Result<Vec<Gate>, TableError> {
+    let cells = table.texts(column)?;
+    let gate = |(row, cell): (usize, Option<String>)| match cell.as_deref() {
+        Some("touch") => Ok(Gate::Touch),
+        Some("bending") => Ok(Gate::Bending),
+        Some("invalid") | None => Ok(Gate::Unknown),
+        Some(other) => {
+            let what = format!("`{other}` is no contact; write touch, bending or invalid, or leave it empty");
+            Err(table.cell(row, column, what))
+        }
+    };
+    cells.into_iter().enumerate().map(gate).collect()
+}

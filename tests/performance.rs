@@ -1,0 +1,248 @@
+//! `lunula performance`: the arithmetic of appendix C by hand, curves recovered, impossible and doubled rows refused.
+
+use std::fmt::Write as _;
+
+use lunula::table::{Column, TableWriter, Value};
+
+use crate::util::{Answer, Dir, Json, number};
+
+const COURSE: &str = "--path-m 1.42 --speed-mps 0.025 --decisions 27";
+/// Driving alone takes 1.42 / 0.025 s.
+const SHORTEST_S: f64 = 56.8;
+
+fn run(dir: &Dir, options: &str) -> Answer {
+    let mut arguments = vec!["performance"];
+    arguments.extend(options.split_whitespace());
+    dir.lunula(&arguments)
+}
+
+/// The time of a trial whose decisions take so long each.
+fn time_s(decision_s: f64) -> f64 {
+    SHORTEST_S + 27.0 * decision_s
+}
+
+fn table(rows: &[(&str, &str, u32, f64)]) -> String {
+    let mut text = "operator,method,trial,time_s\n".to_owned();
+    for (operator, method, trial, decision_s) in rows {
+        let _ = writeln!(text, "{operator},{method},{trial},{:?}", time_s(*decision_s));
+    }
+    text
+}
+
+/// Two operators, the pendant and virtual switches, two trials.
+fn by_hand() -> String {
+    table(&[
+        ("A", "pendant", 1, 8.0),
+        ("A", "virtual", 1, 3.0),
+        ("B", "pendant", 1, 12.0),
+        ("B", "virtual", 1, 5.0),
+        ("A", "pendant", 2, 4.0),
+        ("A", "virtual", 2, 2.0),
+        // B did not do the second trial with virtual switches.
+        ("B", "pendant", 2, 6.0),
+    ])
+}
+
+fn near(value: &serde_json::Value, expected: f64) -> bool {
+    (value.number() - expected).abs() <= 1e-9
+}
+
+#[test]
+fn means_and_paired_differences_are_those_made_by_hand() {
+    let dir = Dir::new();
+    dir.write("trials.csv", by_hand());
+    let report = run(&dir, &format!("trials.csv {COURSE} --out o --json")).expect(0).json();
+    assert!(near(&report["shortest_s"], SHORTEST_S));
+    let [pendant, virtuals] = [0, 1].map(|k| &report["methods"][k]);
+    assert_eq!((pendant["method"].words(), virtuals["method"].words()), ("pendant", "virtual"));
+    let first = &pendant["trials"][0];
+    // 8 and 12: mean 10, SD sqrt(8).
+    assert!(near(&first["mean"], 10.0) && near(&first["sd"], 8.0_f64.sqrt()) && first["n"] == 2);
+    let last = &virtuals["trials"][1];
+    assert!(near(&last["mean"], 2.0) && last["sd"].is_null() && last["n"] == 1);
+    let compared = &report["comparisons"][0];
+    assert_eq!((compared["method"].words(), compared["baseline"].words()), ("virtual", "pendant"));
+    // Differences -5 and -7: mean -6, SD sqrt(2), standard error 1, t of one degree of freedom 12.7062.
+    let pair = &compared["trials"][0];
+    assert!(near(&pair["difference"], -6.0) && near(&pair["difference_sd"], 2.0_f64.sqrt()));
+    let t = (0.475 * std::f64::consts::PI).tan();
+    assert!(near(&pair["difference_interval"][0], -6.0 - t) && near(&pair["difference_interval"][1], -6.0 + t));
+    assert!(near(&pair["ratio_of_means"], 0.4) && near(&pair["ratio"], (0.375_f64 * 5.0 / 12.0).sqrt()));
+    // One operator did the second trial with both.
+    let pair = &compared["trials"][1];
+    assert!(pair["n"] == 1 && near(&pair["difference"], -2.0) && pair["difference_interval"].is_null());
+    // A: 2.5 against 6 over both trials; B: 5 against 12 in the one that he did with both.
+    let overall = &compared["overall"];
+    assert!(overall["n"] == 2 && near(&overall["difference"], -5.25));
+    assert!(near(&overall["ratio_of_means"], 7.5 / 18.0));
+    assert!(near(&compared["initially"]["ratio"], 0.4) && compared["initially"]["holds"] == true);
+    assert!(compared["to_level_off"]["ratio"].is_null() && compared["to_level_off"]["holds"].is_null());
+    let notes = report["notes"].list();
+    let why = "pendant: exponential not fitted: there are fewer than 6 different trials";
+    assert!(notes.iter().any(|note| note.words() == why), "{notes:?}");
+    let rows = dir.table("o/rows.csv");
+    assert_eq!(rows.len(), 7);
+    assert!((number(&rows[2], "decision_s") - 12.0).abs() <= 1e-9);
+    let means = dir.table("o/table.csv");
+    assert_eq!(means.len(), 4);
+    assert!((number(&means[2], "difference_s") + 6.0).abs() <= 1e-9 && means[0]["difference_s"].is_empty());
+    let files: Vec<String> = dir.bytes_of("o").into_keys().collect();
+    assert_eq!(
+        files,
+        [
+            "performance-methods.png",
+            "performance-methods.svg",
+            "performance-operators.png",
+            "performance-operators.svg",
+            "performance.json",
+            "rows.csv",
+            "run.json",
+            "table.csv"
+        ]
+    );
+    // The other way round.
+    let report = run(&dir, &format!("trials.csv {COURSE} --baseline virtual --out v --json")).expect(0).json();
+    assert!(near(&report["comparisons"][0]["trials"][0]["difference"], 6.0));
+    assert_eq!(report["comparisons"][0]["initially"]["holds"], false);
+}
+
+/// Curves without noise: 2 + 6 exp(-(n - 1) / 2.5) and 1.5 + 2 n^-2.
+fn curves() -> String {
+    let mut rows = Vec::new();
+    for trial in 1..=12u32 {
+        let n = f64::from(trial);
+        for (operator, off) in [("A", -0.25), ("B", 0.25)] {
+            rows.push((operator, "pendant", trial, 2.0 + off + 6.0 * (-(n - 1.0) / 2.5).exp()));
+            rows.push((operator, "virtual", trial, 1.5 + off + 2.0 * n.powi(-2)));
+        }
+    }
+    table(&rows)
+}
+
+#[test]
+fn learning_curves_are_recovered_and_say_where_they_level_off() {
+    let dir = Dir::new();
+    dir.write("trials.csv", curves());
+    let report = run(&dir, &format!("trials.csv {COURSE} --out o --json")).expect(0).json();
+    let fitted = |k: usize| &report["methods"][k]["fitted"];
+    assert_eq!((&fitted(0)["better"], &fitted(1)["better"]), (&"exponential".into(), &"power".into()));
+    for (k, law, exact) in [(0, "exponential", [2.0, 6.0, 2.5]), (1, "power", [1.5, 2.0, 2.0])] {
+        for (name, exact) in ["a", "b", "c"].iter().zip(exact) {
+            let found = fitted(k)[law]["curve"][name]["value"].number();
+            // The times are read back from their decimals; measured: 2e-13.
+            assert!((found - exact).abs() <= 1e-9, "{law} {name}: {found}");
+        }
+    }
+    // 1 + 2.5 ln 20 = 8.49, and 20^(1/2) = 4.47: the first trials beyond are 9 and 5.
+    let level = |k: usize| &report["methods"][k]["levels_off"];
+    assert!((level(0)["trial"]["value"].number() - (1.0 + 2.5 * 20.0_f64.ln())).abs() <= 1e-6);
+    assert!(level(0)["first_trial"] == 9.0 && level(1)["first_trial"] == 5.0 && level(0)["was_reached"] == true);
+    let statement = &report["comparisons"][0]["to_level_off"];
+    let ratio = 20.0_f64.sqrt() / (1.0 + 2.5 * 20.0_f64.ln());
+    assert!((statement["ratio"].number() - ratio).abs() <= 1e-6 && statement["holds"] == false);
+    assert!(report["level"].words().contains("less than 5 % of its rise"));
+}
+
+#[test]
+fn a_time_that_cannot_be_is_named_and_kept_out() {
+    let dir = Dir::new();
+    let text = by_hand() + "C,pendant,1,56.7\nC,virtual,1,-3\nC,virtual,2,\nC,pendant,2,NaN\n";
+    dir.write("trials.csv", &text);
+    let answer = run(&dir, &format!("trials.csv {COURSE} --out o --json")).expect(1);
+    let report = answer.json();
+    let answer = answer.says("trials.csv: line 9: 56.7 s are less than the 56.800000 s of driving alone");
+    answer.says("trials.csv: line 10: -3 s are less").says("note: 2 rows have no time and are not counted");
+    assert!(report["rows"] == 7 && report["rows_without_time"] == 2 && report["failed"].list().len() == 2);
+    let first = &report["methods"][0]["trials"][0];
+    assert!(first["n"] == 2 && near(&first["mean"], 10.0));
+}
+
+#[test]
+fn wrong_tables_are_refused_and_nothing_is_written() {
+    let dir = Dir::new();
+    let head = "operator,method,trial,time_s\n";
+    let refused = |text: &str, options: &str| {
+        dir.write("t.csv", text);
+        let answer = run(&dir, &format!("t.csv {COURSE} {options} --out o")).expect(2);
+        assert!(!dir.path("o").exists());
+        answer
+    };
+    let twice = format!("{head}A,pendant,1,200\nA,virtual,1,100\nA, pendant,1,190\n");
+    refused(&twice, "").says("t.csv: line 2 and line 4: both are operator A, method pendant, trial 1; keep one");
+    refused(&format!("{head}A,pendant,0,200\n"), "").says("t.csv:2: column `trial`: write the number of the trial");
+    refused(&format!("{head}A,pendant,1.5,200\n"), "").says("t.csv:2: column `trial`: `1.5` is no whole number");
+    refused(&format!("{head},pendant,1,200\n"), "").says("t.csv:2: column `operator`: is empty");
+    refused(&format!("{head}A,pendant,1,fast\n"), "").says("t.csv:2: column `time_s`: `fast` is no finite number");
+    refused("operator,method,trial\nA,pendant,1\n", "").says("has no column `time_s`");
+    refused(head, "").says("t.csv: has no trial to use");
+    refused(&format!("{head}A,pendant,1,2\n"), "").says("2 s are less than the 56.800000 s of driving alone");
+    refused(&by_hand(), "--baseline virtal").says("has no method `virtal` of --baseline; did you mean `virtual`?");
+    let mut many = head.to_owned();
+    (0..30).for_each(|k| writeln!(many, "A,method {k},1,200").unwrap());
+    refused(&many, "").says("column `method`: has 30 different names, more than 20");
+    dir.write("t.csv", by_hand());
+    let bad = |course: &str| run(&dir, &format!("t.csv {course} --out o")).expect(2);
+    bad("--path-m 0 --speed-mps 1 --decisions 1").says("a number above 0");
+    bad("--path-m 1 --speed-mps -1 --decisions 1").says("a number above 0");
+    bad("--path-m 1 --speed-mps nan --decisions 1").says("a number above 0");
+    bad("--path-m 1 --speed-mps 1 --decisions 0").says("--decisions");
+    bad("--path-m 1 --speed-mps 1").says("--decisions");
+    run(&dir, &format!("none.csv {COURSE} --out o")).expect(2).says("none.csv");
+    // A result is never written over the input.
+    dir.write("o/rows.csv", by_hand());
+    run(&dir, &format!("o/rows.csv {COURSE} --out o")).expect(2).says("is an input itself");
+    assert_eq!(dir.bytes_of("o").len(), 1);
+}
+
+#[test]
+fn one_operator_and_one_method_are_enough() {
+    let dir = Dir::new();
+    dir.write("trials.csv", table(&[("A", "pendant", 3, 2.0)]));
+    let report = run(&dir, &format!("trials.csv {COURSE} --out o --json")).expect(0).json();
+    let only = &report["methods"][0];
+    assert!(near(&only["trials"][0]["mean"], 2.0) && only["trials"][0]["sd"].is_null());
+    assert!(only["levels_off"].is_null() && report["comparisons"].list().is_empty());
+    // Nobody did the same trial with both.
+    dir.write("trials.csv", table(&[("A", "pendant", 1, 2.0), ("B", "virtual", 1, 1.0), ("A", "virtual", 2, 1.0)]));
+    let answer = run(&dir, &format!("trials.csv {COURSE} --out p --json")).expect(0);
+    assert!(answer.json()["comparisons"][0]["overall"].is_null());
+    answer.says("virtual and pendant: no operator did the same trial with both");
+}
+
+#[test]
+fn results_are_the_same_bytes_on_any_threads_and_from_either_format() {
+    let dir = Dir::new();
+    dir.write("trials.csv", curves());
+    let columns =
+        vec![Column::text("operator"), Column::text("method"), Column::integer("trial"), Column::number("time_s")];
+    let path = dir.path("trials.parquet");
+    let mut parquet = TableWriter::create(&path, &path, columns, &[]).unwrap();
+    for row in dir.table("trials.csv") {
+        let trial = Value::Integer(row["trial"].parse().unwrap());
+        let time_s = Value::Number(number(&row, "time_s"));
+        parquet.write(&[Value::Text(&row["operator"]), Value::Text(&row["method"]), trial, time_s]).unwrap();
+    }
+    parquet.finish().unwrap();
+    for (from, out) in [
+        ("trials.csv --threads 1", "one"),
+        ("trials.csv --threads 4", "four"),
+        ("trials.parquet --threads 4", "parquet"),
+    ] {
+        run(&dir, &format!("{from} {COURSE} --out {out}")).expect(0);
+    }
+    let [one, four, mut parquet] = ["one", "four", "parquet"].map(|out| dir.results_of(out));
+    assert!(one.len() == 7 && one == four);
+    let figures = String::from_utf8(parquet["performance.json"].clone()).unwrap();
+    parquet.insert("performance.json".to_owned(), figures.replace("trials.parquet", "trials.csv").into_bytes());
+    assert!(one == parquet);
+}
+
+#[test]
+fn a_plan_writes_nothing() {
+    let dir = Dir::new();
+    dir.write("trials.csv", by_hand());
+    let plan = run(&dir, &format!("trials.csv {COURSE} --plan")).expect(0).stdout;
+    assert!(plan.contains("learning curves") && plan.contains("no --out"), "{plan}");
+    run(&dir, &format!("trials.csv {COURSE} --no-figures --out o")).expect(0);
+    assert!(!dir.path("o/performance-methods.png").exists() && dir.path("o/performance.json").is_file());
+}
