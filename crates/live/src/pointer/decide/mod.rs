@@ -18,7 +18,7 @@ mod gain;
 mod scroll;
 mod zero;
 
-pub(super) use gain::shear_for_n;
+pub(super) use gain::{off_screen, shear_for_n};
 
 use super::config::{Config, Mode};
 use super::event::{Button, Event, Reason};
