@@ -1,8 +1,8 @@
 //! `mouse.toml`: what moves, what clicks, what scrolls, and what happens where nothing is known.
 //!
-//! Every key may be left out. Forces are newtons, pressing (-`Fz_N`) positive here; distances are counts of the pointer,
-//! pixels where the desktop does not accelerate them. Defaults are *assumed* for a force error of 0.05 N SD unless a
-//! key says otherwise.
+//! Every key may be left out. Forces are newtons, pressing (-`Fz_N`) positive here; distances are counts of the
+//! pointer, pixels where the desktop does not accelerate them. Defaults are *assumed*, for a force error of 0.05 N SD,
+//! unless a key says otherwise.
 
 mod check;
 mod file;

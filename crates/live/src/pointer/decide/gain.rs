@@ -45,7 +45,7 @@ pub(super) fn on_screen(config: &Config, [fx_n, fy_n]: [f64; 2]) -> [f64; 2] {
     [cos * fx_n - sin * fy_n, -(sin * fx_n + cos * fy_n)]
 }
 
-/// The sensor's axes of a shear that a person wants on the screen's: the inverse of [`on_screen`].
+/// The sensor's axes of a shear that a person intends on the screen's: the inverse of [`on_screen`].
 pub(in super::super) fn off_screen(config: &Config, [x_n, y_n]: [f64; 2]) -> [f64; 2] {
     let (sin, cos) = config.turn_deg.to_radians().sin_cos();
     let fx_n = cos * x_n - sin * y_n;

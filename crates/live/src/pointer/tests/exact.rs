@@ -60,20 +60,20 @@ proptest! {
         for (dt_s, fx, fy, pressing) in steps {
             samples.push((samples[samples.len() - 1].0 + dt_s, [fx, fy, pressing]));
         }
-        let (mut pointer, mut said) = (Pointer::new(config), [0.0; 2]);
+        let (mut pointer, mut reported) = (Pointer::new(config), [0.0; 2]);
         for (index, &(t_s, [fx, fy, pressing])) in samples.iter().enumerate() {
             pointer.sample(t_s, fx, fy, -pressing, None, true, &mut |event| if let Event::Move { dx, dy, .. } = event {
-                said = [said[0] + f64::from(dx), said[1] + f64::from(dy)];
+                reported = [reported[0] + f64::from(dx), reported[1] + f64::from(dy)];
             });
             let exact = integral_px(&config, &samples[..=index]);
             for axis in 0..2 {
-                prop_assert!((said[axis] - exact[axis]).abs() <= 1.0 + NEAR, "{said:?} {exact:?}");
+                prop_assert!((reported[axis] - exact[axis]).abs() <= 1.0 + NEAR, "{reported:?} {exact:?}");
                 prop_assert!((pointer.place_px()[axis] - exact[axis]).abs() <= NEAR);
             }
         }
     }
 
-    /// Clicks, drags, taps, faults and all: what was said and where the pointer is stay within a count, nothing panics,
+    /// Clicks, drags, taps, faults and all: what was reported and where the pointer is stay within a count, nothing panics,
     /// times never go back but with the clock, and the button is pressed and let go in turn.
     #[test]
     fn whatever_comes_moves_and_place_agree(
@@ -85,7 +85,7 @@ proptest! {
         cap_px_per_s in 1.0..1e6_f64,
     ) {
         let config = Config { mode, click, take_back_s, cap_px_per_s, scroll: true, ..Config::default() };
-        let (mut pointer, mut said, mut down) = (Pointer::new(config), [0.0; 2], false);
+        let (mut pointer, mut reported, mut down) = (Pointer::new(config), [0.0; 2], false);
         let (mut t_s, mut wrong) = (0.0, 0);
         for (dt_s, fx, fy, pressing, kind, times) in steps {
             for _ in 0..times {
@@ -93,7 +93,7 @@ proptest! {
                 let mut out = |event: Event| {
                     wrong += u32::from(!event.t_s().is_finite());
                     match event {
-                        Event::Move { dx, dy, .. } => said = [said[0] + f64::from(dx), said[1] + f64::from(dy)],
+                        Event::Move { dx, dy, .. } => reported = [reported[0] + f64::from(dx), reported[1] + f64::from(dy)],
                         Event::Button { down: now, .. } => {
                             wrong += u32::from(now == down);
                             down = now;
@@ -118,9 +118,8 @@ proptest! {
                     _ => {}
                 }
                 prop_assert_eq!(pointer.is_down(), down);
-                for axis in 0..2 {
-                    let apart = (said[axis] - pointer.place_px()[axis]).abs();
-                    prop_assert!(apart <= 1.0, "{apart}");
+                for (reported, place_px) in reported.iter().zip(pointer.place_px()) {
+                    prop_assert!((reported - place_px).abs() <= 1.0, "{reported} {place_px}");
                 }
             }
         }

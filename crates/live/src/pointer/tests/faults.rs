@@ -1,5 +1,5 @@
-//! Stalls, spoilt samples and clocks that jump, at every phase of a click and of a drag: the button goes up in time, and
-//! a finger that still presses when the stream returns presses nothing.
+//! Stalls, spoilt samples and clocks that jump, at every phase of a click and of a drag: the button goes up in time,
+//! and a finger that still presses when the stream returns presses nothing.
 
 use super::super::{Click, Reason};
 use super::*;
@@ -7,7 +7,7 @@ use super::*;
 /// What goes wrong.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Fault {
-    /// No samples; the time is said to pass.
+    /// No samples; `advance` passes the time.
     Stall,
     /// No samples, and nobody says that time passes: the next sample finds out.
     Silence,

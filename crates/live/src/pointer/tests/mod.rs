@@ -9,7 +9,7 @@ use super::{Config, Event, Pointer};
 /// Samples a second.
 const RATE_HZ: f64 = 100.0;
 
-/// A pointer, its clock and what it said.
+/// A pointer, its clock and its events.
 struct Bench {
     pointer: Pointer,
     events: Vec<Event>,

@@ -108,28 +108,28 @@ impl Hand {
     pub(super) fn aim(&mut self, t_s: f64, pointer_px: [f64; 2], target: Option<Target>) -> [f64; 3] {
         self.seen.push_back(Sight { pointer_px, target, foreseen_px_per_s: self.foreseen_px_per_s });
         let late = (self.person.delay_s * RATE_HZ).round() as usize;
-        let wanted_px_per_s = if self.seen.len() > late { self.judge(t_s) } else { [0.0; 2] };
+        let intended_px_per_s = if self.seen.len() > late { self.judge(t_s) } else { [0.0; 2] };
         let lag_s = self.person.muscle_s + self.person.foreseen_lag_s;
         let share = 1.0 / (1.0 + lag_s * RATE_HZ);
-        for (foreseen, wanted) in self.foreseen_px_per_s.iter_mut().zip(wanted_px_per_s) {
-            *foreseen += share * (wanted - *foreseen);
+        for (foreseen, intended) in self.foreseen_px_per_s.iter_mut().zip(intended_px_per_s) {
+            *foreseen += share * (intended - *foreseen);
         }
-        let speed = wanted_px_per_s[0].hypot(wanted_px_per_s[1]);
+        let speed = intended_px_per_s[0].hypot(intended_px_per_s[1]);
         let size_n = if speed > 0.0 { self.config.dead_zone_n + shear_for_n(&self.config, speed) } else { 0.0 };
-        let wanted_n = wanted_px_per_s.map(|part| if speed > 0.0 { part / speed * size_n } else { 0.0 });
-        self.force_n(t_s, off_screen(&self.config, wanted_n))
+        let intended_n = intended_px_per_s.map(|part| if speed > 0.0 { part / speed * size_n } else { 0.0 });
+        self.force_n(t_s, off_screen(&self.config, intended_n))
     }
 
     /// The force of a push, on the sensor's axes: with muscles, noise and friction.
-    pub(super) fn force_n(&mut self, t_s: f64, wanted_n: [f64; 2]) -> [f64; 3] {
+    pub(super) fn force_n(&mut self, t_s: f64, intended_n: [f64; 2]) -> [f64; 3] {
         let dt_s = RATE_HZ.recip();
         let most_n = CAREFUL * self.person.mu * self.person.hold_n;
-        let size_n = wanted_n[0].hypot(wanted_n[1]);
+        let size_n = intended_n[0].hypot(intended_n[1]);
         let less = if size_n > most_n { most_n / size_n } else { 1.0 };
         let (noise, tremor_n) = (self.noise.step(dt_s), self.tremor.step(dt_s));
         let share = 1.0 / (1.0 + self.person.muscle_s * RATE_HZ);
-        for (shear_n, wanted_n) in self.shear_n.iter_mut().zip(wanted_n) {
-            *shear_n += share * (less * wanted_n - *shear_n);
+        for (shear_n, intended_n) in self.shear_n.iter_mut().zip(intended_n) {
+            *shear_n += share * (less * intended_n - *shear_n);
         }
         let (added_n, slip) = self.pressing(t_s);
         let pressing_n = (self.person.hold_n + self.hold.step(dt_s)[0] + added_n).max(0.0);

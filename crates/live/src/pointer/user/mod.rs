@@ -1,10 +1,10 @@
 //! What a simulated person achieves with the pointer: throughput, drift at rest, displacement by a click, clicks that
 //! nobody meant.
 //!
-//! In: a [`Config`], a [`Person`], seeds, and a sensor: a function from the time and the true force to the predicted
-//! one, `|_, force| force` for an ideal sensor, a [`SensorModel`], or a whole phantom. Out: figures, the same for the
-//! same seeds. They are of a simulation: they compare settings and sensors with each other, and promise nothing of
-//! people.
+//! In: a [`Config`](super::Config), a [`Person`], seeds, and a sensor: a function from the time and the true force to
+//! the predicted one, `|_, force| force` for an ideal sensor, a [`SensorModel`], or a whole phantom. Out: figures, the
+//! same for the same seeds. They are of a simulation: they compare settings and sensors with each other, and promise
+//! nothing of people.
 //!
 //! Conventions: `[Fx, Fy, Fz]` newtons of the finger on the surface, pressing is a negative `Fz`; seconds; px.
 

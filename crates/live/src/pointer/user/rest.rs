@@ -11,9 +11,10 @@ use crate::switch::{Rate, rate_per_hour};
 const LIFTED_S: f64 = 3.0;
 /// Then the force comes, and this passes before counting begins, s.
 const SETTLES_S: f64 = 1.0;
-/// SD of the shear by which the simulated person moves about, N of each axis, and its time constant, s (assumed): mostly
-/// beyond the dead zone, often at what friction holds.
+/// SD of the shear by which the simulated person moves about, N of each axis (assumed): mostly beyond the dead zone,
+/// often at what friction holds.
 const SWAY_N: f64 = 0.35;
+/// Its time constant, s (assumed).
 const SWAY_S: f64 = 0.5;
 
 /// Motion at rest.

@@ -7,7 +7,7 @@ use super::hand::Target;
 /// Distances and widths of the targets; every pair of them is a condition.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Task {
-    /// Targets of a ring.
+    /// Targets of a ring: an odd number, 3 at least.
     pub targets: usize,
     /// Diameters of the ring, px.
     pub distances_px: Vec<f64>,
@@ -25,6 +25,11 @@ impl Default for Task {
 }
 
 impl Task {
+    /// Whether each target is across from the one before and all are visited.
+    pub(super) fn can_be_walked(&self) -> bool {
+        self.targets >= 3 && self.targets % 2 == 1
+    }
+
     /// The centres in the order in which they are to be hit, px from the ring's centre; the first comes again at the
     /// end. Half way round and one more each time, which visits all of an odd number.
     pub(super) fn targets(&self, distance_px: f64, width_px: f64) -> impl Iterator<Item = Target> + use<> {

@@ -8,7 +8,7 @@ use super::RATE_HZ;
 use super::hand::{Hand, Target};
 use super::person::Person;
 use super::task::Task;
-use crate::pointer::{Config, Event, Mode, Pointer};
+use crate::pointer::{Click, Config, Event, Mode, Pointer};
 
 /// W_e of an SD: 96 % of normal end points are within (the source's).
 const WIDTH_OF_SD: f64 = 4.133;
@@ -60,7 +60,7 @@ where
     S: FnMut(f64, [f64; 3]) -> [f64; 3],
 {
     let mut all = Throughput { bits_per_s: None, standard_error: None, given_up: 0, conditions: Vec::new() };
-    if config.mode != Mode::Velocity || config.click != crate::pointer::Click::Press || task.targets < 3 {
+    if config.mode != Mode::Velocity || config.click != Click::Press || !task.can_be_walked() {
         return all;
     }
     let mut persons = Vec::new();
@@ -133,7 +133,8 @@ impl<S: FnMut(f64, [f64; 3]) -> [f64; 3]> Desk<S> {
 
     /// One ring; none where a target was given up.
     fn ring(&mut self, task: &Task, distance_px: f64, width_px: f64) -> Option<Condition> {
-        let (mut ends, mut before): (Vec<End>, Option<(Target, [f64; 2], f64)>) = (Vec::new(), None);
+        let mut ends = Vec::new();
+        let mut before: Option<(Target, [f64; 2], f64)> = None;
         for target in task.targets(distance_px, width_px) {
             let shown_s = self.t_s();
             let at_px = loop {
