@@ -23,6 +23,17 @@ fn a_finger_that_touches_and_pushes_moves_the_pointer_and_no_other_does() {
 }
 
 #[test]
+fn a_touch_settles_before_it_moves() {
+    for settle_s in [0.0, 0.1, 0.5] {
+        let mut bench = Bench::new(Config { settle_s, ..Config::default() });
+        bench.hold(0.5, AIR).hold(1.5, [2.0, 0.0, 0.9]);
+        let first_s = bench.events.iter().find(|event| event.word() == "move").unwrap().t_s();
+        // The second sample of the touch is the first that is steady; then the shear passes its filter.
+        assert!((0.0..=0.05).contains(&(first_s - 0.51 - settle_s)), "{settle_s}: {first_s}");
+    }
+}
+
+#[test]
 fn the_speed_is_that_of_the_curve() {
     let mut bench = Bench::new(Config::default());
     bench.hold(0.5, AIR).hold(1.0, REST).hold(2.0, [0.55, 0.0, 0.9]);
@@ -88,15 +99,15 @@ fn a_rise_that_is_no_click_freezes_for_a_while_only() {
 #[test]
 fn a_button_that_is_held_drags_from_where_the_shear_was_and_drops_in_place() {
     let mut bench = Bench::new(Config::default());
-    let pressed = [0.6, 0.0, 2.5];
+    let pressed = [1.2, 0.0, 2.5];
     bench.hold(0.5, AIR).hold(1.0, REST).hold(1.0, pressed);
     assert_eq!((bench.downs(), bench.at(), bench.count("drag")), (vec![true], [0, 0], 1));
-    bench.hold(1.0, [1.1, 0.0, 2.5]);
+    bench.hold(1.0, [1.7, 0.0, 2.5]);
     let dragged = bench.at()[0];
     assert!(dragged > 50, "{dragged}");
     bench.hold(0.5, pressed);
     let before = bench.at();
-    bench.ramp(0.15, pressed, REST).hold(1.0, REST);
+    bench.ramp(0.4, pressed, REST).hold(1.0, REST);
     assert_eq!((bench.downs(), bench.at()), (vec![true, false], before));
     // The drag's own origin is forgotten.
     bench.hold(1.0, [0.6, 0.0, 0.9]);

@@ -18,11 +18,13 @@ enum Fault {
     Huge,
     NoTime,
     ClockBack,
+    /// By less than the watchdog.
+    ClockBackABit,
     ClockLeap,
     Lost,
 }
 
-const FAULTS: [Fault; 11] = [
+const FAULTS: [Fault; 12] = [
     Fault::Stall,
     Fault::Silence,
     Fault::NotValid,
@@ -32,6 +34,7 @@ const FAULTS: [Fault; 11] = [
     Fault::Huge,
     Fault::NoTime,
     Fault::ClockBack,
+    Fault::ClockBackABit,
     Fault::ClockLeap,
     Fault::Lost,
 ];
@@ -96,6 +99,7 @@ fn happen(bench: &mut Bench, fault: Fault) {
             bench.shift_s = shift_s;
         }
         Fault::ClockBack => bench.shift_s -= 100.0,
+        Fault::ClockBackABit => bench.shift_s -= 0.05,
         Fault::ClockLeap => bench.shift_s += 100.0,
         Fault::Lost => {
             let (t_s, events) = (bench.t_s(), &mut bench.events);
@@ -119,7 +123,8 @@ fn every_fault_at_every_phase_lets_go_in_time_and_nothing_presses_on_return() {
                 let before = bench.turns().len();
                 let place_px = bench.pointer.place_px();
                 happen(&mut bench, fault);
-                if fault == Fault::Silence || fault == Fault::ClockBack || fault == Fault::ClockLeap {
+                let jump = matches!(fault, Fault::ClockBack | Fault::ClockBackABit | Fault::ClockLeap);
+                if jump || fault == Fault::Silence {
                     bench.one(CLICK, None, true);
                 }
                 assert!(!bench.pointer.is_down(), "{case}");
@@ -129,7 +134,6 @@ fn every_fault_at_every_phase_lets_go_in_time_and_nothing_presses_on_return() {
                     held += 1;
                     let (up_s, _) = turns[turns.len() - 1];
                     let late_s = up_s - last_valid_s - bench.shift_s;
-                    let jump = fault == Fault::ClockBack || fault == Fault::ClockLeap;
                     assert!(jump || late_s <= config.watchdog_s + 1.0 / RATE_HZ, "{case}: {late_s}");
                 }
                 // Taking back at a release is the only motion that a fault may bring; here not even that.
@@ -148,6 +152,16 @@ fn every_fault_at_every_phase_lets_go_in_time_and_nothing_presses_on_return() {
         }
     }
     assert!(cases >= 4000 && held >= 1000, "{cases} {held}");
+}
+
+#[test]
+fn a_drag_that_is_lost_is_forgotten() {
+    let mut bench = Bench::new(Config::default());
+    bench.hold(0.1, AIR).hold(0.5, REST).hold(1.0, [0.8, 0.0, 2.5]);
+    assert_eq!(bench.count("drag"), 1);
+    happen(&mut bench, Fault::Stall);
+    bench.hold(0.1, AIR).hold(2.0, REST);
+    assert_eq!((bench.at(), bench.downs()), ([0, 0], vec![true, false]));
 }
 
 #[test]
