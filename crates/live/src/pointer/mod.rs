@@ -11,8 +11,9 @@
 //! which is when the zero of the shear is set, and only then.
 //!
 //! Conventions: seconds of the stream's clock; newtons of the finger on the surface, `Fx_N` to the right, `Fy_N` away
-//! from the person (*assumed*, where the sensor's axes are the desk's; `turn_deg` and `mirror_x` say otherwise); pressing
-//! is -`Fz_N`; counts to the right and *down*, as screens count; lines of scrolling *up*, as the kernel counts.
+//! from the person (*assumed*, where the sensor's axes are the desk's; `turn_deg` and `mirror_x` say otherwise);
+//! pressing is -`Fz_N`; counts to the right and *down*, as screens count; lines of scrolling *up*, as the kernel
+//! counts.
 
 mod config;
 mod decide;

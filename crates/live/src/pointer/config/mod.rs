@@ -1,8 +1,8 @@
 //! `mouse.toml`: what moves, what clicks, what scrolls, and what happens where nothing is known.
 //!
-//! Every key may be left out. Forces are newtons, pressing (-`Fz_N`) positive here; distances are counts of the pointer,
-//! pixels where the desktop does not accelerate them. Defaults are *assumed* for a force error of 0.05 N SD unless a
-//! key says otherwise.
+//! Every key may be left out. Forces are newtons, pressing (-`Fz_N`) positive here; distances are counts of the
+//! pointer, pixels where the desktop does not accelerate them. Defaults are *assumed*, for a force error of 0.05 N SD,
+//! unless a key says otherwise.
 
 mod check;
 mod file;
@@ -50,7 +50,7 @@ pub struct Config {
     pub touch_n: f64,
     /// The touch ends below this pressing, N.
     pub touch_release_n: f64,
-    /// Shear up to this does nothing, N; it counts from there. 4 SD of the noise.
+    /// Shear up to this does nothing, N; it counts from there. 5 SD of the noise.
     pub dead_zone_n: f64,
     /// Velocity: the gain from the dead zone to the knee, px/s per N.
     pub gain_low_px_per_s_per_n: f64,
@@ -120,7 +120,7 @@ impl Default for Config {
             mirror_x: false,
             touch_n: 0.3,
             touch_release_n: 0.2,
-            dead_zone_n: 0.2,
+            dead_zone_n: 0.25,
             gain_low_px_per_s_per_n: 400.0,
             gain_high_px_per_s_per_n: 2400.0,
             knee_n: 0.15,

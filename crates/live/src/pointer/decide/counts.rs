@@ -1,18 +1,18 @@
 //! Motion to whole counts, exactly: what is less than a count is carried over, and the last of it can be taken back.
 //!
-//! In: steps, px. Out: counts whose sum is never a whole count away from the sum of the steps, less what was taken back.
-//! What is left over is cut, not rounded: noise about a half then does not make the pointer tremble.
+//! In: steps, px. Out: counts whose sum is never a whole count away from the sum of the steps less what was taken
+//! back. What is left over is cut, not rounded: noise about a half then does not make the pointer tremble.
 
 /// Moments that the motion to be taken back is kept in: motion of so long is one sum.
 const MOMENTS: usize = 64;
 
-/// What was moved and what of it was said.
+/// The way, and how much of it was reported.
 #[derive(Debug, Clone)]
 pub(super) struct Counts {
-    /// Steps that were not yet said, px.
+    /// Steps that were not yet reported, px.
     left_px: [f64; 2],
     /// Counts that were.
-    said: [i64; 2],
+    reported: [i64; 2],
     /// How long one moment is, s; 0 where nothing is ever taken back.
     moment_s: f64,
     /// The motion of each of the last moments, px, with the moment's number.
@@ -23,7 +23,7 @@ impl Counts {
     /// `take_back_s`: how much of the motion can be taken back, s, to a 64th of it.
     pub(super) fn new(take_back_s: f64) -> Self {
         let moment_s = take_back_s / MOMENTS as f64;
-        Self { left_px: [0.0; 2], said: [0; 2], moment_s, recent: [(i64::MIN, [0.0; 2]); MOMENTS] }
+        Self { left_px: [0.0; 2], reported: [0; 2], moment_s, recent: [(i64::MIN, [0.0; 2]); MOMENTS] }
     }
 
     /// A step at `t_s`.
@@ -61,7 +61,7 @@ impl Counts {
         self.recent = [(i64::MIN, [0.0; 2]); MOMENTS];
     }
 
-    /// Whole counts to say; none where there are none.
+    /// Whole counts to report; none where there are none.
     pub(super) fn whole(&mut self) -> Option<[i32; 2]> {
         let counts = self.left_px.map(|part| part as i32);
         if counts == [0, 0] {
@@ -69,14 +69,14 @@ impl Counts {
         }
         for (axis, &count) in counts.iter().enumerate() {
             self.left_px[axis] -= f64::from(count);
-            self.said[axis] += i64::from(count);
+            self.reported[axis] += i64::from(count);
         }
         Some(counts)
     }
 
     /// Where the pointer is, px from where it began.
     pub(super) fn place_px(&self) -> [f64; 2] {
-        std::array::from_fn(|axis| self.said[axis] as f64 + self.left_px[axis])
+        std::array::from_fn(|axis| self.reported[axis] as f64 + self.left_px[axis])
     }
 
     fn moment(&self, t_s: f64) -> i64 {
@@ -107,7 +107,7 @@ mod tests {
             take_back_s in 0.0..0.2_f64,
         ) {
             let mut counts = Counts::new(take_back_s);
-            let (mut t_s, mut said, mut taken) = (1000.0, [0i64; 2], [0.0; 2]);
+            let (mut t_s, mut reported, mut taken) = (1000.0, [0i64; 2], [0.0; 2]);
             let mut all: Vec<(f64, [f64; 2], bool)> = Vec::new();
             for (dt_s, dx, dy, turn) in steps {
                 t_s += dt_s;
@@ -128,11 +128,11 @@ mod tests {
                     all.iter_mut().for_each(|step| step.2 = false);
                 }
                 if let Some(whole) = counts.whole() {
-                    said = [said[0] + i64::from(whole[0]), said[1] + i64::from(whole[1])];
+                    reported = [reported[0] + i64::from(whole[0]), reported[1] + i64::from(whole[1])];
                 }
                 for axis in 0..2 {
                     let exact: f64 = all.iter().map(|step| step.1[axis]).sum::<f64>() - taken[axis];
-                    prop_assert!((exact - said[axis] as f64).abs() < 1.0 + NEAR, "{exact} {}", said[axis]);
+                    prop_assert!((exact - reported[axis] as f64).abs() < 1.0 + NEAR, "{exact} {}", reported[axis]);
                     prop_assert!((exact - counts.place_px()[axis]).abs() <= NEAR);
                 }
             }
@@ -142,12 +142,12 @@ mod tests {
     #[test]
     fn slow_motion_is_not_lost_and_noise_about_a_half_does_not_tremble() {
         let mut counts = Counts::new(0.06);
-        let mut said = 0;
+        let mut reported = 0;
         for k in 0..1000 {
             counts.push(f64::from(k) * 0.001, [0.0101, 0.0]);
-            said += counts.whole().map_or(0, |whole| whole[0]);
+            reported += counts.whole().map_or(0, |whole| whole[0]);
         }
-        assert_eq!(said, 10);
+        assert_eq!(reported, 10);
         let mut turns = 0;
         for k in 0..1000 {
             counts.push(2.0 + f64::from(k) * 0.001, [if k % 2 == 0 { 0.6 } else { -0.6 }, 0.0]);

@@ -62,12 +62,12 @@ mod tests {
     fn without_beta_it_is_the_first_order_low_pass() {
         let mut filter = OneEuro::new(1.5, 0.0);
         filter.step([0.0, 1.0], 0.01);
-        let mut naive = [0.0, 1.0];
+        let (mut naive, to) = ([0.0, 1.0], [1.0, -1.0]);
         for _ in 0..200 {
-            let got = filter.step([1.0, -1.0], 0.01);
+            let got = filter.step(to, 0.01);
             let tau = 1.0 / (2.0 * std::f64::consts::PI * 1.5);
             let a = 1.0 / (1.0 + tau / 0.01);
-            naive = [a * 1.0 + (1.0 - a) * naive[0], a * -1.0 + (1.0 - a) * naive[1]];
+            naive = [a * to[0] + (1.0 - a) * naive[0], a * to[1] + (1.0 - a) * naive[1]];
             assert!((0..2).all(|k| (got[k] - naive[k]).abs() <= NEAR), "{got:?} {naive:?}");
         }
     }

@@ -45,6 +45,13 @@ pub(super) fn on_screen(config: &Config, [fx_n, fy_n]: [f64; 2]) -> [f64; 2] {
     [cos * fx_n - sin * fy_n, -(sin * fx_n + cos * fy_n)]
 }
 
+/// The sensor's axes of a shear that a person intends on the screen's: the inverse of [`on_screen`].
+pub(in super::super) fn off_screen(config: &Config, [x_n, y_n]: [f64; 2]) -> [f64; 2] {
+    let (sin, cos) = config.turn_deg.to_radians().sin_cos();
+    let fx_n = cos * x_n - sin * y_n;
+    [if config.mirror_x { -fx_n } else { fx_n }, -(sin * x_n + cos * y_n)]
+}
+
 /// A step of at most the cap in `dt_s`, px.
 pub(super) fn capped_px(config: &Config, step_px: [f64; 2], dt_s: f64) -> [f64; 2] {
     debug_assert!(config.mode == Mode::Position);
@@ -89,6 +96,11 @@ mod tests {
         assert_eq!(on_screen(&Config { mirror_x: true, ..config }, [1.0, 2.0]), [-1.0, -2.0]);
         let turned = on_screen(&Config { turn_deg: 90.0, ..config }, [1.0, 0.0]);
         assert!(turned[0].abs() <= 1e-15 && (turned[1] + 1.0).abs() <= 1e-15, "{turned:?}");
+        for (turn_deg, mirror_x) in [(0.0, false), (30.0, true), (-120.0, false)] {
+            let config = Config { turn_deg, mirror_x, ..config };
+            let back = off_screen(&config, on_screen(&config, [0.3, -0.7]));
+            assert!((back[0] - 0.3).abs() <= 1e-15 && (back[1] + 0.7).abs() <= 1e-15, "{back:?}");
+        }
     }
 
     #[test]

@@ -15,14 +15,17 @@ mod click;
 mod counts;
 mod filter;
 mod gain;
+mod motion;
 mod scroll;
 mod zero;
 
-use super::config::{Config, Mode};
+pub(super) use gain::{off_screen, shear_for_n};
+
+use super::config::Config;
 use super::event::{Button, Event, Reason};
 use click::{Clicks, Turn};
-use counts::Counts;
 use filter::OneEuro;
+use motion::Motion;
 use scroll::Scroll;
 use zero::Zero;
 
@@ -47,22 +50,15 @@ pub struct Pointer {
     last_valid: bool,
     /// The last valid sample; NaN before the first.
     valid_s: f64,
-    /// The greatest time that was said to have passed.
+    /// The greatest time that is known to have passed.
     now_s: f64,
     filter: OneEuro,
     zero: Zero,
     clicks: Clicks,
     scroll: Scroll,
-    counts: Counts,
+    motion: Motion,
     /// Samples without a time since the last with one.
     untimed: u32,
-    /// Motion before the onset of what may become a click, px.
-    onset_px: Option<[f64; 2]>,
-    /// The shear from which a drag counts, N.
-    drag_n: [f64; 2],
-    /// Position: the last place of the curve, px, and the way to it that the cap has left.
-    place_px: Option<[f64; 2]>,
-    behind_px: [f64; 2],
 }
 
 impl Pointer {
@@ -81,12 +77,8 @@ impl Pointer {
             zero: Zero::new(),
             clicks: Clicks::new(),
             scroll: Scroll::new(),
-            counts: Counts::new(config.take_back_s),
+            motion: Motion::new(config.take_back_s),
             untimed: 0,
-            onset_px: None,
-            drag_n: [0.0; 2],
-            place_px: None,
-            behind_px: [0.0; 2],
         }
     }
 
@@ -112,7 +104,7 @@ impl Pointer {
     /// all moves is never a whole count away from it.
     #[must_use]
     pub fn place_px(&self) -> [f64; 2] {
-        self.counts.place_px()
+        self.motion.place_px()
     }
 
     /// When the watchdog lets go if no valid sample comes; none where it has nothing to do.
@@ -228,15 +220,15 @@ impl Pointer {
         }
         let zero_n = self.zero.at_n();
         let from_zero_n = [filtered_n[0] - zero_n[0], filtered_n[1] - zero_n[1]];
-        let now_n = gain::on_screen(&config, from_zero_n);
+        let on_screen_n = gain::on_screen(&config, from_zero_n);
         let turn = self.clicks.step(&config, t_s, dt_s, pressing_n, self.touches);
-        self.turn(t_s, turn, now_n, from_zero_n, out);
+        self.turn(t_s, turn, from_zero_n, on_screen_n, out);
         if self.touches && self.clicks.lets_move() {
-            self.go(t_s, dt_s, [now_n[0] - self.drag_n[0], now_n[1] - self.drag_n[1]]);
+            self.motion.go(&config, t_s, dt_s, on_screen_n);
         } else {
-            (self.place_px, self.behind_px) = (None, [0.0; 2]);
+            self.motion.stay();
         }
-        self.say_moves(t_s, out);
+        self.report_moves(t_s, out);
     }
 
     fn in_the_air(
@@ -260,18 +252,24 @@ impl Pointer {
         }
     }
 
-    /// What the button does; `now_n` on the screen's axes, `shear_n` on the sensor's.
-    fn turn(&mut self, t_s: f64, turn: Turn, now_n: [f64; 2], shear_n: [f64; 2], out: &mut impl FnMut(Event)) {
+    /// What the button does, with this shear on the sensor's axes and on the screen's.
+    fn turn(
+        &mut self,
+        t_s: f64,
+        turn: Turn,
+        [fx_n, fy_n]: [f64; 2],
+        on_screen_n: [f64; 2],
+        out: &mut impl FnMut(Event),
+    ) {
         let button = Button::Left;
         match turn {
             Turn::None => {}
-            Turn::Onset => self.onset_px = Some(self.counts.recent_px(t_s)),
-            Turn::FalseOnset => self.onset_px = None,
+            Turn::Onset => self.motion.onset(Some(t_s)),
+            Turn::FalseOnset => self.motion.onset(None),
             Turn::Down | Turn::Up => {
-                let down = turn == Turn::Down;
-                self.take_back(t_s, out);
-                self.drag_n = [0.0; 2];
-                out(Event::Button { t_s, button, down });
+                self.motion.take_back(t_s);
+                self.report_moves(t_s, out);
+                out(Event::Button { t_s, button, down: turn == Turn::Down });
             }
             Turn::Tap => {
                 out(Event::Button { t_s, button, down: true });
@@ -281,38 +279,14 @@ impl Pointer {
                 if turn == Turn::DownAndDrag {
                     out(Event::Button { t_s, button, down: true });
                 }
-                self.drag_n = now_n;
-                out(Event::Drag { t_s, fx_n: shear_n[0], fy_n: shear_n[1] });
+                self.motion.drag(on_screen_n);
+                out(Event::Drag { t_s, fx_n, fy_n });
             }
         }
     }
 
-    /// Takes back the motion before the onset; of a press without an onset, which came at once, that before it.
-    fn take_back(&mut self, t_s: f64, out: &mut impl FnMut(Event)) {
-        let moved_px = self.onset_px.take().unwrap_or_else(|| self.counts.recent_px(t_s));
-        self.counts.take_back(moved_px);
-        self.say_moves(t_s, out);
-    }
-
-    /// Motion of a finger that touches, by the shear on the screen's axes.
-    fn go(&mut self, t_s: f64, dt_s: f64, shear_n: [f64; 2]) {
-        let step_px = match self.config.mode {
-            Mode::Velocity => gain::velocity_px_per_s(&self.config, shear_n).map(|speed| speed * dt_s),
-            Mode::Position => {
-                let place_px = gain::place_px(&self.config, shear_n);
-                let before_px = self.place_px.replace(place_px).filter(|_| dt_s > 0.0).unwrap_or(place_px);
-                let behind: [f64; 2] =
-                    std::array::from_fn(|axis| self.behind_px[axis] + place_px[axis] - before_px[axis]);
-                let step_px = gain::capped_px(&self.config, behind, dt_s);
-                self.behind_px = std::array::from_fn(|axis| behind[axis] - step_px[axis]);
-                step_px
-            }
-        };
-        self.counts.push(t_s, step_px);
-    }
-
-    fn say_moves(&mut self, t_s: f64, out: &mut impl FnMut(Event)) {
-        if let Some([dx, dy]) = self.counts.whole() {
+    fn report_moves(&mut self, t_s: f64, out: &mut impl FnMut(Event)) {
+        if let Some([dx, dy]) = self.motion.whole() {
             out(Event::Move { t_s, dx, dy });
         }
     }
@@ -330,8 +304,6 @@ impl Pointer {
         self.zero.stop();
         self.clicks = Clicks::new();
         self.scroll.stop();
-        self.counts.forget_recent();
-        (self.onset_px, self.drag_n) = (None, [0.0; 2]);
-        (self.place_px, self.behind_px) = (None, [0.0; 2]);
+        self.motion.forget();
     }
 }

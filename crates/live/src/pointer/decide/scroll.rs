@@ -5,7 +5,7 @@
 
 use super::super::config::Config;
 
-/// Lines that were not yet said, and since when the finger is in the air.
+/// Lines that were not yet reported, and since when the finger is in the air.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Scroll {
     left: f64,

@@ -1,7 +1,7 @@
 //! The zero of the shear: what is predicted of a finger that touches nothing.
 //!
 //! A finger in the air has no shear, whatever is predicted (|F_r| <= mu N, and N is 0); while it touches, shear is
-//! wanted motion and must not be taken for a zero. So the zero is set only while the finger does not touch: each
+//! intended motion and must not be taken for a zero. So the zero is set only while the finger does not touch: each
 //! `zero_window_s` of that makes a mean, and the zero follows the means with the time constant `zero_time_s`. A finger
 //! that bends to scroll is left out, and so is a window in which it pressed, on average, half of what ends a touch: it
 //! may rest too lightly to count as touching, and have shear.

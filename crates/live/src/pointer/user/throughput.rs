@@ -1,0 +1,217 @@
+//! Throughput of ISO 9241-411 as Soukoreff and MacKenzie (2004, DOI 10.1016/j.ijhcs.2004.09.001) define it.
+//!
+//! Of each condition and person: ID_e = log2(D_e / W_e + 1), W_e = 4.133 SD of the end points along the way from target
+//! to target, D_e the mean way, MT the mean time from click to click; throughput is the mean of ID_e / MT over the
+//! conditions, then over persons (their equation 10), with its standard error between persons.
+
+use super::RATE_HZ;
+use super::hand::{Hand, Target};
+use super::person::Person;
+use super::task::Task;
+use crate::pointer::{Click, Config, Event, Mode, Pointer};
+
+/// W_e of an SD: 96 % of normal end points are within (the source's).
+const WIDTH_OF_SD: f64 = 4.133;
+/// The finger is in the air for so long at the beginning, s: the zero is set.
+const LIFTED_S: f64 = 3.0;
+
+/// What persons achieve.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Throughput {
+    /// The mean, bits/s; none where a target was given up, or nothing can be made of it.
+    pub bits_per_s: Option<f64>,
+    /// Its standard error between persons, bits/s; none of fewer than two.
+    pub standard_error: Option<f64>,
+    /// Targets that were given up.
+    pub given_up: usize,
+    /// The conditions, means over persons.
+    pub conditions: Vec<Condition>,
+}
+
+/// A condition's means.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Condition {
+    /// Diameter of the ring, px.
+    pub distance_px: f64,
+    /// Diameter of a target, px.
+    pub width_px: f64,
+    /// W_e, px.
+    pub effective_width_px: f64,
+    /// D_e, px.
+    pub effective_distance_px: f64,
+    /// MT, s.
+    pub movement_s: f64,
+    /// The share of clicks beside the target.
+    pub missed: f64,
+    /// ID_e / MT, bits/s.
+    pub bits_per_s: f64,
+}
+
+/// The throughput of one person for each seed; `sensor` makes each person's. Only of the mode `velocity`, whose curve
+/// the simulated person has learned: none of another, and none without clicks by pressing.
+pub fn throughput<S>(
+    config: &Config,
+    person: &Person,
+    task: &Task,
+    seeds: &[u64],
+    mut sensor: impl FnMut(u64) -> S,
+) -> Throughput
+where
+    S: FnMut(f64, [f64; 3]) -> [f64; 3],
+{
+    let mut all = Throughput { bits_per_s: None, standard_error: None, given_up: 0, conditions: Vec::new() };
+    if config.mode != Mode::Velocity || config.click != Click::Press || !task.can_be_walked() {
+        return all;
+    }
+    let mut persons = Vec::new();
+    for &seed in seeds {
+        let mut desk = Desk::new(*config, *person, seed, sensor(seed));
+        let mut of_person = Vec::new();
+        for &distance_px in &task.distances_px {
+            for &width_px in &task.widths_px {
+                match desk.ring(task, distance_px, width_px) {
+                    Some(condition) => of_person.push(condition),
+                    None => all.given_up += 1,
+                }
+            }
+        }
+        persons.push(of_person);
+    }
+    let conditions = task.distances_px.len() * task.widths_px.len();
+    if all.given_up > 0 || conditions == 0 || persons.is_empty() {
+        return all;
+    }
+    let each: Vec<f64> = persons.iter().map(|of| mean(of.iter().map(|condition| condition.bits_per_s))).collect();
+    all.bits_per_s = Some(mean(each.iter().copied()));
+    all.standard_error = (each.len() > 1).then(|| sd(&each) / (each.len() as f64).sqrt());
+    all.conditions = (0..conditions).map(|index| mean_condition(&persons, index)).collect();
+    all
+}
+
+/// A person at a desk with a pointer.
+struct Desk<S> {
+    pointer: Pointer,
+    hand: Hand,
+    sensor: S,
+    samples: u64,
+    /// Where the pointer is: the sum of its moves, counts.
+    at: [i64; 2],
+}
+
+impl<S: FnMut(f64, [f64; 3]) -> [f64; 3]> Desk<S> {
+    fn new(config: Config, person: Person, seed: u64, sensor: S) -> Self {
+        let mut desk = Self {
+            pointer: Pointer::new(config),
+            hand: Hand::new(person, config, seed),
+            sensor,
+            samples: 0,
+            at: [0; 2],
+        };
+        while desk.t_s() < LIFTED_S {
+            desk.feel([0.0; 3]);
+        }
+        desk
+    }
+
+    fn t_s(&self) -> f64 {
+        self.samples as f64 / RATE_HZ
+    }
+
+    /// One sample; whether it clicked, and where.
+    fn feel(&mut self, force_n: [f64; 3]) -> Option<[f64; 2]> {
+        let t_s = self.t_s();
+        self.samples += 1;
+        let [fx_n, fy_n, fz_n] = (self.sensor)(t_s, force_n);
+        let (at, mut click) = (&mut self.at, None);
+        self.pointer.sample(t_s, fx_n, fy_n, fz_n, None, true, &mut |event| match event {
+            Event::Move { dx, dy, .. } => *at = [at[0] + i64::from(dx), at[1] + i64::from(dy)],
+            Event::Button { down: true, .. } => click = Some(at.map(|count| count as f64)),
+            _ => {}
+        });
+        click
+    }
+
+    /// One ring; none where a target was given up.
+    fn ring(&mut self, task: &Task, distance_px: f64, width_px: f64) -> Option<Condition> {
+        let mut ends = Vec::new();
+        let mut before: Option<(Target, [f64; 2], f64)> = None;
+        for target in task.targets(distance_px, width_px) {
+            let shown_s = self.t_s();
+            let at_px = loop {
+                let force_n = self.hand.aim(self.t_s(), self.at.map(|count| count as f64), Some(target));
+                if let Some(at_px) = self.feel(force_n) {
+                    break at_px;
+                }
+                if self.t_s() - shown_s > task.patience_s {
+                    return None;
+                }
+            };
+            if let Some((from, from_px, from_s)) = before {
+                ends.push(End::new(from, from_px, target, at_px, self.t_s() - from_s));
+            }
+            before = Some((target, at_px, self.t_s()));
+        }
+        let along: Vec<f64> = ends.iter().map(|end| end.beyond_px).collect();
+        let (effective_width_px, movement_s) = (WIDTH_OF_SD * sd(&along), mean(ends.iter().map(|end| end.took_s)));
+        let effective_distance_px = mean(ends.iter().map(|end| end.way_px));
+        let bits = (effective_distance_px / effective_width_px + 1.0).log2();
+        Some(Condition {
+            distance_px,
+            width_px,
+            effective_width_px,
+            effective_distance_px,
+            movement_s,
+            missed: mean(ends.iter().map(|end| f64::from(u8::from(end.missed)))),
+            bits_per_s: bits / movement_s,
+        })
+    }
+}
+
+/// A click, seen from the one before.
+struct End {
+    /// How far beyond the target's centre, along the line from target to target, px.
+    beyond_px: f64,
+    /// How far from where it began, along that line, px.
+    way_px: f64,
+    took_s: f64,
+    missed: bool,
+}
+
+impl End {
+    fn new(from: Target, from_px: [f64; 2], to: Target, at_px: [f64; 2], took_s: f64) -> Self {
+        let line: [f64; 2] = std::array::from_fn(|axis| to.centre_px[axis] - from.centre_px[axis]);
+        let length = line[0].hypot(line[1]);
+        let along = |a: [f64; 2], b: [f64; 2]| ((b[0] - a[0]) * line[0] + (b[1] - a[1]) * line[1]) / length;
+        let off = (at_px[0] - to.centre_px[0]).hypot(at_px[1] - to.centre_px[1]);
+        Self {
+            beyond_px: along(to.centre_px, at_px),
+            way_px: along(from_px, at_px),
+            took_s,
+            missed: off > to.radius_px,
+        }
+    }
+}
+
+fn mean_condition(persons: &[Vec<Condition>], index: usize) -> Condition {
+    let of = |figure: fn(&Condition) -> f64| mean(persons.iter().map(|conditions| figure(&conditions[index])));
+    Condition {
+        distance_px: of(|condition| condition.distance_px),
+        width_px: of(|condition| condition.width_px),
+        effective_width_px: of(|condition| condition.effective_width_px),
+        effective_distance_px: of(|condition| condition.effective_distance_px),
+        movement_s: of(|condition| condition.movement_s),
+        missed: of(|condition| condition.missed),
+        bits_per_s: of(|condition| condition.bits_per_s),
+    }
+}
+
+fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = values.len() as f64;
+    values.sum::<f64>() / count
+}
+
+/// The SD with n - 1.
+fn sd(values: &[f64]) -> f64 {
+    let middle = mean(values.iter().copied());
+    (values.iter().map(|value| (value - middle).powi(2)).sum::<f64>() / (values.len() as f64 - 1.0)).sqrt()
+}
