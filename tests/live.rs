@@ -1,4 +1,5 @@
-//! `lunula live`, `record` and `switch` from end to end: files, pipes, TCP, a device that goes away, a clock that stops.
+//! `lunula live`, `record` and `switch` from end to end: files, pipes, TCP, a device that goes away, a clock that
+//! stops.
 
 use std::fmt::Write as _;
 use std::io::{BufRead, BufReader, Write};

@@ -15,7 +15,10 @@ use crate::table::TableError;
 pub enum LiveError {
     #[error("{0}")]
     Request(String),
-    #[error("{}: exists already, and a recording can't be made again; choose another name, or say --replace", .0.display())]
+    #[error(
+        "{}: exists already, and a recording can't be made again; choose another name, or say --replace",
+        .0.display()
+    )]
     Exists(PathBuf),
     #[error("{}: can't be written ({why}); what was recorded until then is kept", path.display())]
     Write { path: PathBuf, why: io::Error },

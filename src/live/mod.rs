@@ -1,5 +1,5 @@
-//! A sensor at work (3.1.2, 6.1-6.3, appendix C): samples as they come to answers, decisions and recordings; what is made
-//! of those recordings.
+//! A sensor at work (3.1.2, 6.1-6.3, appendix C): samples as they come to answers, decisions and recordings; what is
+//! made of those recordings.
 //!
 //! The streams, the switch and the figures are the crate `lunula-live`'s; here they meet the models, the logs' columns
 //! and the files.

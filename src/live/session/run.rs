@@ -567,8 +567,8 @@ impl Core<'_> {
         let Some(decide) = &mut self.decide else { return };
         let counts = decide.rows == 0 && decide.answers.is_some() && decide.looks_like_counts(row, COUNT_V);
         if counts {
-            let what = "the photodiodes are whole numbers beyond 30: they look like a converter's counts, and models read \
-                        volts; say what a step is, as --volts-per-count 10/65536";
+            let what = "the photodiodes are whole numbers beyond 30: they look like a converter's counts, and models \
+                        read volts; say what a step is, as --volts-per-count 10/65536";
             self.fault = Some(LiveError::Request(what.to_owned()));
             return;
         }
@@ -683,7 +683,8 @@ fn losses(report: &SessionReport) -> Vec<String> {
     }
     if report.rows_outside * 20 > report.answered {
         warnings.push(format!(
-            "{} of {} rows lie outside of the voltages that the model was trained on; their predictions are extrapolated",
+            "{} of {} rows lie outside of the voltages that the model was trained on; their predictions are \
+             extrapolated",
             report.rows_outside, report.answered
         ));
     }

@@ -62,8 +62,8 @@ impl Sensor {
         columns.check(&inputs)?;
         let places = inputs.iter().filter_map(|name| columns.place(name)).collect();
         if answering.needs_time() && !columns.time {
-            let what = "has no time_s, and a model reads voltages of the past (it was trained with --lags); give it the \
-                        time in seconds";
+            let what = "has no time_s, and a model reads voltages of the past (it was trained with --lags); give it \
+                        the time in seconds";
             return Err(what.to_owned());
         }
         let preceding = columns.led.then(|| Preceding::new(inputs.len(), log.ambient.full_scale_v)).transpose();

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use lunula_live::switch::{Fate, Match};
 
-use super::tune::TuneReport;
+use super::report::TuneReport;
 use crate::figure::{Axis, Chart, Item, draw_charts};
 
 const WIDTH: u32 = 900;

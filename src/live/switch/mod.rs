@@ -3,11 +3,13 @@
 mod evaluate;
 mod figures;
 mod options;
+mod report;
 mod traces;
 mod truth;
 mod tune;
 
 pub use evaluate::{EvaluateSwitchFigures, EvaluateSwitchReport, evaluate_plan, evaluate_switch, read_switch};
 pub use options::{ContactOptions, OutsideChoice, TuneOptions};
+pub use report::{CurvePoint, TuneFigures, TuneReport};
 pub use truth::TrueContact;
-pub use tune::{CurvePoint, TuneFigures, TuneReport, tune_plan, tune_switch};
+pub use tune::{tune_plan, tune_switch};

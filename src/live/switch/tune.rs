@@ -7,11 +7,11 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use lunula_live::switch::{Candidate, Evaluation, Goal, NoiseRate, SwitchConfig, crossings_per_hour, tune};
-use serde::Serialize;
+use lunula_live::switch::{Goal, SwitchConfig, crossings_per_hour, tune};
 
 use super::figures::draw_curve;
 use super::options::TuneOptions;
+use super::report::{CurvePoint, TuneFigures, TuneReport};
 use super::traces::{Traces, read_traces};
 use crate::files::{Places, beside};
 use crate::job::{Report, Watch};
@@ -20,46 +20,6 @@ use crate::stages::{Stages, Step, left_out};
 
 /// The picture's name, after the table's.
 const PICTURE: &str = "curve";
-
-/// What was chosen, and how it does.
-pub type TuneReport = Report<TuneFigures>;
-
-/// The figures of a choice.
-#[derive(Debug, Clone, Serialize)]
-pub struct TuneFigures {
-    /// The recordings.
-    pub recordings: Vec<PathBuf>,
-    /// What is true contact.
-    pub contact: String,
-    /// The choice.
-    pub switch: SwitchConfig,
-    /// How it does on the recordings that chose it: it flatters.
-    pub chosen: Evaluation,
-    /// Each recording judged by what the others choose.
-    pub held_out: Option<Evaluation>,
-    /// What nothing but noise would do at `on_N`, an hour, if the value were Gaussian while nothing touches (Rice).
-    pub rice_per_hour: Option<f64>,
-    /// The value while nothing touches.
-    pub noise: Option<NoiseRate>,
-    /// The fastest for each number of false switches.
-    pub curve: Vec<CurvePoint>,
-    /// Combinations that were tried.
-    pub tried: usize,
-}
-
-/// A point of the curve of delay against false switches.
-#[derive(Debug, Clone, Serialize)]
-pub struct CurvePoint {
-    /// False switches an hour.
-    pub false_per_hour: f64,
-    /// Mean delay of presses, seconds.
-    pub delay_on_s: f64,
-    /// The share of presses that are missed.
-    pub missed_share: f64,
-    /// What does it.
-    #[serde(flatten)]
-    pub switch: SwitchConfig,
-}
 
 /// Chooses a switch's thresholds; every result is in its place when it returns.
 ///
@@ -135,25 +95,13 @@ pub fn tune_plan(recordings: usize, figures: bool) -> Vec<Step> {
     ]
 }
 
-impl CurvePoint {
-    fn of(candidate: Candidate) -> Option<Self> {
-        let Candidate { config, evaluation } = candidate;
-        Some(Self {
-            false_per_hour: evaluation.rate?.false_per_hour,
-            delay_on_s: evaluation.delay_on_s?.mean,
-            missed_share: evaluation.missed as f64 / evaluation.presses.max(1) as f64,
-            switch: config,
-        })
-    }
-}
-
 /// What has to be known of a choice before it is trusted.
 fn weak(report: &TuneReport, options: &TuneOptions) -> Vec<String> {
     let mut warnings = Vec::new();
     let judged = report.held_out.as_ref().unwrap_or(&report.chosen);
     if report.held_out.is_none() {
-        let what = "there is no other recording to judge the choice on: it was judged on what chose it, which flatters; \
-                    name several recordings, or hold one back for `lunula switch evaluate`";
+        let what = "there is no other recording to judge the choice on: it was judged on what chose it, which \
+                    flatters; name several recordings, or hold one back for `lunula switch evaluate`";
         warnings.push(what.to_owned());
     }
     if let Some(rate) = judged.rate.filter(|rate| rate.false_per_hour_high > options.false_per_hour) {

@@ -3,8 +3,8 @@
 //! With a model of force and one of posture the two are gated as in equations 9 and 16: while the finger presses (N =
 //! -Fz at F_min or more) the angle is theta_touch, else the posture model gives it. A row that lacks a voltage that a
 //! model reads has no prediction of that model; without an Fz there is no telling touch from bending, and no angle.
-//! Where a recording begins, what was remembered of the one before (lags, the gate's state) is forgotten; the gate forgets
-//! over a gap as well.
+//! Where a recording begins, what was remembered of the one before (lags, the gate's state) is forgotten; the gate
+//! forgets over a gap as well.
 
 use lunula_predictor::{Contact, FORCES, Gate, GateState, LagStream, Predictor};
 

@@ -32,7 +32,7 @@ pub trait Rows: Send {
 pub(in crate::source) enum Decoder {
     Lines(Box<Lines>),
     Frames(Box<Frames>),
-    Table(Table),
+    Table(Box<Table>),
 }
 
 /// Rows of numbers.

@@ -2,7 +2,8 @@
 //!
 //! Rules, each tested at every phase of a press:
 //! - it begins disarmed: a value below `off_N` has to be seen before anything presses;
-//! - it presses once the value has been at `on_N` or above for `hold_on_s`, readings that say nothing breaking the hold;
+//! - it presses once the value has been at `on_N` or above for `hold_on_s`, readings that say nothing breaking the
+//!   hold;
 //! - it releases once the value has been below `off_N` for `hold_off_s`, and does not press again for `lockout_s`;
 //! - without a valid reading for more than `watchdog_s`, with a clock that is set back, or a source that is lost, it
 //!   releases at once and is disarmed.

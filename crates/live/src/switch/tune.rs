@@ -1,13 +1,13 @@
 //! Thresholds and holds from recordings: the fastest switch within a rate of false ones.
 //!
-//! In: traces of held-out recordings (of none of which the model was trained), and a [`Goal`]. Out: a configuration, how
-//! it did, how it does on recordings that did not choose it (each is evaluated by what the others choose), and the
+//! In: traces of held-out recordings (of none of which the model was trained), and a [`Goal`]. Out: a configuration,
+//! how it did, how it does on recordings that did not choose it (each is evaluated by what the others choose), and the
 //! curve of delay against false rate.
 //!
 //! Every combination of thresholds, holds and ratios of `off_N` to `on_N` runs over all traces. Of those with at most
-//! the goal's rate and misses, *also at the next lower threshold* (a choice at the edge of the noise does not last), the
-//! one with the least mean delay of presses is taken (a median has the steps of the sampling period); of equals the one that releases soonest, then the one with the
-//! fewest false switches, then the highest threshold.
+//! the goal's rate and misses, *also at the next lower threshold* (a choice at the edge of the noise does not last),
+//! the one with the least mean delay of presses is taken (a median has the steps of the sampling period); of equals the
+//! one that releases soonest, then the one with the fewest false switches, then the highest threshold.
 
 use rayon::prelude::*;
 use serde::Serialize;

@@ -18,11 +18,12 @@ use crate::{Common, Outcome};
 
 /// Answer a sensor's samples as they come: forces, angle, switch (6.1)
 ///
-/// Rows of CSV on standard output, the names of the columns first, one for each sample with the LED on, as soon as it is
-/// there: time_s and what `lunula predict` writes for these models, to the byte (of a log with an LED under its --ambient
-/// preceding). Messages, states (ok, slow, stalled, lost, reconnecting) and alarms are on standard error. A row that is
-/// spoilt costs itself and is counted; an unplugged device is waited for. With --out the samples are recorded, the rows
-/// in <out>.predicted.csv, the report with the stream's certificate and latencies in <out>.stream.json.
+/// Rows of CSV on standard output, the names of the columns first, one for each sample with the LED on, as soon as it
+/// is there: time_s and what `lunula predict` writes for these models, to the byte (of a log with an LED under its
+/// --ambient preceding). Messages, states (ok, slow, stalled, lost, reconnecting) and alarms are on standard error. A
+/// row that is spoilt costs itself and is counted; an unplugged device is waited for. With --out the samples are
+/// recorded, the rows in <out>.predicted.csv, the report with the stream's certificate and latencies in
+/// <out>.stream.json.
 #[derive(Debug, Args)]
 pub(crate) struct LiveArgs {
     /// Models that `lunula train` wrote: of force, of posture, or both
@@ -45,8 +46,8 @@ pub(crate) struct LiveArgs {
 /// Record a sensor's samples for `lunula align`, `train`, `fit` and `switch`
 ///
 /// The recording is on disk while it grows: killed at any moment it lacks a second at most. Beside it is
-/// <out>.stream.json: what was lost or spoilt, and how the device's clock runs against this computer's. A stream without
-/// samples is an alarm within a second, and leaves no file.
+/// <out>.stream.json: what was lost or spoilt, and how the device's clock runs against this computer's. A stream
+/// without samples is an alarm within a second, and leaves no file.
 #[derive(Debug, Args)]
 pub(crate) struct RecordArgs {
     #[command(flatten)]

@@ -15,8 +15,8 @@ use crate::{Common, Outcome};
 /// With a model of force and one of posture the two are gated (equations 9, 16): while the finger presses with --f-min
 /// or more (-Fz_N) it touches, and the angle is --theta-touch; else the posture model predicts the angle. A row that
 /// lacks a voltage has no prediction. DATA may be `-`: rows of CSV on standard input, the first names the columns; each
-/// is answered as soon as its line is complete, as `lunula live --source -` does. Of a log with a column `led`, each lit row is answered: less the unlit
-/// light at its time, or, of a stream, less the unlit row before it.
+/// is answered as soon as its line is complete, as `lunula live --source -` does. Of a log with a column `led`, each
+/// lit row is answered: less the unlit light at its time, or, of a stream, less the unlit row before it.
 #[derive(Debug, Args)]
 pub(crate) struct PredictArgs {
     /// Model files, then the recording: a table, a log, or `-` for a stream of CSV rows

@@ -73,8 +73,8 @@ proptest! {
         }
     }
 
-    /// Clicks, drags, taps, faults and all: what was reported and where the pointer is stay within a count, nothing panics,
-    /// times never go back but with the clock, and the button is pressed and let go in turn.
+    /// Clicks, drags, taps, faults and all: what was reported and where the pointer is stay within a count, nothing
+    /// panics, times never go back but with the clock, and the button is pressed and let go in turn.
     #[test]
     fn whatever_comes_moves_and_place_agree(
         steps in proptest::collection::vec(

@@ -121,7 +121,7 @@ impl Stream {
         options: &StreamOptions,
         naming: Naming,
     ) -> Self {
-        let decoder = Decoder::Table(Table::new(rows, naming, volts_per_count));
+        let decoder = Decoder::Table(Box::new(Table::new(rows, naming, volts_per_count)));
         Self::of(name, None, options.host_start_unix_s, Feed::Play(Play::new(None, pace, looped)), decoder, 0)
     }
 
