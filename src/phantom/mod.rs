@@ -15,7 +15,7 @@ pub mod screen;
 pub mod sensor;
 pub mod video;
 
-pub use motion::{finger, force, trajectory};
+pub use motion::{contacts, finger, force, trajectory};
 pub use scene::faults::Faults;
 pub use scene::place::{Unwritten, in_the_way, refused};
 pub use scene::recording::{Cost, Generated};

@@ -35,7 +35,7 @@ impl<W: Write> CsvWriter<W> {
 
     pub(super) fn write(&mut self, cells: &[Value<'_>], columns: &[Column]) -> Result<(), String> {
         for (cell, column) in cells.iter().zip(columns) {
-            let decimals = if let ColumnKind::Number { decimals } = column.kind { decimals } else { None };
+            let decimals = column.decimals();
             let written = match (cell, column.kind) {
                 (Value::Missing, _) => self.rows.write_field(""),
                 (Value::Text(text), _) => self.rows.write_field(text),

@@ -124,6 +124,11 @@ impl Column {
         Self { name: name.into(), kind: ColumnKind::Number { decimals: Some(decimals) } }
     }
 
+    /// The fixed count of its decimals.
+    pub(crate) fn decimals(&self) -> Option<usize> {
+        if let ColumnKind::Number { decimals } = self.kind { decimals } else { None }
+    }
+
     /// A column of text.
     #[must_use]
     pub fn text(name: impl Into<String>) -> Self {
@@ -297,7 +302,7 @@ impl TableWriter {
 }
 
 /// The text of a number in a column of fixed or free decimals; none where it is missing.
-fn number_text(number: f64, decimals: Option<usize>) -> Option<String> {
+pub(crate) fn number_text(number: f64, decimals: Option<usize>) -> Option<String> {
     if !number.is_finite() {
         return None;
     }

@@ -25,11 +25,11 @@ pub(super) fn write_angles(scene: &LogScene, path: &Path) -> Result<(), TableErr
     columns.push(Column::text("status"));
     columns.extend(["read", "sd", "low", "high"].map(|what| Column::number(format!("clock_{what}_s"))));
     let mut table = TableWriter::create(path, path, columns, &[])?;
-    let doing = Doing::new(options);
+    let mut doing = Doing::new(options);
     let frames = ((options.seconds * FPS).round() as usize).max(1);
     for frame in 0..frames {
         let time_s = frame as f64 / FPS;
-        let clock_s = options.clock_offset_s + (1.0 + 1e-6 * options.clock_drift_ppm) * time_s;
+        let clock_s = options.log_s(time_s);
         let mut cells = vec![Value::Integer(frame as i64), Value::Number(time_s), Value::Number(clock_s)];
         let angles_deg = doing.touch(time_s).angles_rad.map(f64::to_degrees);
         cells.extend(angles_deg.into_iter().flat_map(|angle| [Value::Number(angle), Value::Number(0.0)]));

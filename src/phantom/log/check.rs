@@ -5,6 +5,7 @@ use super::{Faults, LogOptions};
 use crate::phantom::motion::force::ForceTrajectory;
 use crate::phantom::motion::trajectory::Trajectory;
 use crate::phantom::sensor::CHANNELS;
+use crate::words::Words;
 
 /// More rows than anybody reads.
 const MOST_ROWS: f64 = 2e7;
@@ -39,6 +40,12 @@ impl LogOptions {
         ranged("--ambient-swing", 100.0 * self.ambient_swing, 0.0, 100.0, " %");
         ranged("--hum", self.hum_hz, 0.0, 1e5, " Hz");
         ranged("--wander", self.wander_v, 0.0, 10.0, " V");
+        let worn = self.disturbances;
+        ranged("--pulse", worn.pulse_v, 0.0, 1.0, " V");
+        ranged("--bumps", worn.bump_v, 0.0, 10.0, " V");
+        ranged("--bumps-per-hour", worn.bumps_per_hour, 0.0, 1800.0, ", a bump takes up to a second");
+        ranged("--elevation", worn.elevation_v, 0.0, 1.0, " V");
+        ranged("--drift", worn.drift_v, 0.0, 1.0, " V");
         ranged("--lag", self.dynamics.lag, 0.0, 100.0, " of the usual");
         ranged("--hysteresis", self.dynamics.hysteresis, 0.0, 10.0, " of the usual");
         ranged("--follow", self.follow, 0.0, 0.4, ", the standard deviation as a share");
@@ -58,6 +65,18 @@ impl LogOptions {
                 need(self.trajectory == Trajectory::Rest || self.touch_from_s.is_some(), &|| {
                     "--force spiral: the finger rests while it spirals; leave --trajectory out or choose rest, or say \
                      --touch-from"
+                        .to_owned()
+                });
+            }
+            ForceTrajectory::Contacts(contacts) => {
+                let pause_s = contacts.pause_s;
+                need((0.1..=3600.0).contains(&pause_s), &|| format!("--pause {pause_s}: choose 0.1 to 3600 s"));
+                let twice = (1..contacts.kinds.len()).find(|&k| contacts.kinds[..k].contains(&contacts.kinds[k]));
+                let twice = twice.map(|k| contacts.kinds[k].word());
+                need(twice.is_none(), &|| format!("--kinds: {} is named twice; name it once", twice.unwrap_or("")));
+                need(self.follow == 0.0 && self.touch_from_s.is_none(), &|| {
+                    "--follow, --touch-from: a finger that makes contacts of its own accord follows no prompt; leave \
+                     them out"
                         .to_owned()
                 });
             }

@@ -8,10 +8,14 @@
 //! **Posture** ([`LogOptions::posture_shift_rad`], assumed): 5.4.1 takes "the finger having a slightly different
 //! posture on the force measurement platform" for what changes between repetitions. While it touches, or rests, J2 is
 //! off straight by a share of it from -1 to 1 that is the seed's, and J3 by two thirds of that.
+//!
+//! **Contacts** ([`ForceTrajectory::Contacts`](crate::phantom::motion::force::ForceTrajectory::Contacts)): a finger that
+//! makes them of its own accord bends for them as well.
 
 use rand::RngExt;
 
 use super::LogOptions;
+use crate::phantom::motion::contacts::{Contact, Sequence};
 use crate::phantom::motion::follow::{Follow, KIND_FOLLOW};
 use crate::phantom::motion::force::{Press, Spiral};
 use crate::phantom::motion::trajectory::{J3_PER_J2, Movement, Trajectory};
@@ -22,9 +26,11 @@ use crate::phantom::sensor::Touch;
 const STRAIGHTEN_S: f64 = 1.0;
 
 /// All that a finger does, ready to be asked often.
-pub(super) struct Doing<'a> {
-    movement: Movement<'a>,
+#[derive(Debug, Clone)]
+pub(super) struct Doing {
+    movement: Movement,
     press: Press,
+    contacts: Option<Sequence>,
     touch_from_s: Option<f64>,
     rests: bool,
     mu: f64,
@@ -32,23 +38,30 @@ pub(super) struct Doing<'a> {
     follow: Option<Follow>,
 }
 
-impl<'a> Doing<'a> {
-    pub(super) fn new(options: &'a LogOptions) -> Self {
+impl Doing {
+    /// Contacts that would go on after `until_s` are left out, infinity: there are always more.
+    pub(super) fn until(options: &LogOptions, until_s: f64) -> Self {
         let usual = Spiral::default();
         let press = options.force.press();
         Self {
             movement: options.trajectory.movement(),
             press: if options.touch_from_s.is_some() { press.out_of_rest(usual.soft_s) } else { press },
+            contacts: options.contacts().map(|contacts| Sequence::new(contacts, until_s)),
             touch_from_s: options.touch_from_s,
-            rests: options.trajectory == Trajectory::Rest,
+            rests: matches!(options.trajectory, Trajectory::Rest | Trajectory::Sway { .. }),
             mu: usual.mu,
             shift_rad: shift_rad(options),
             follow: Follow::new(options.follow, options.seed),
         }
     }
 
+    /// Of a log that ends.
+    pub(super) fn new(options: &LogOptions) -> Self {
+        Self::until(options, options.seconds)
+    }
+
     /// What it does at `t_s`.
-    pub(super) fn touch(&self, t_s: f64) -> Touch {
+    pub(super) fn touch(&mut self, t_s: f64) -> Touch {
         let late_s = self.follow.as_ref().map_or(0.0, |follow| follow.late_s(t_s));
         let (mut touch, straight) = self.prompted(t_s - late_s);
         if let Some(follow) = &self.follow {
@@ -58,7 +71,17 @@ impl<'a> Doing<'a> {
         for (angle, shift) in touch.angles_rad.iter_mut().zip(self.shift_rad) {
             *angle += straight * shift;
         }
+        if let Some(contact) = self.contact(t_s) {
+            let bend_rad = contact.bend_rad(t_s);
+            touch.forces_n = contact.forces_n(t_s);
+            (0..3).for_each(|joint| touch.angles_rad[joint] += bend_rad[joint]);
+        }
         touch
+    }
+
+    /// Its own contact or near miss that is under way at `t_s`.
+    pub(super) fn contact(&mut self, t_s: f64) -> Option<&Contact> {
+        self.contacts.as_mut()?.at(t_s)
     }
 
     /// What it is prompted to do, and how far it is straight for touching, from 0 to 1.
@@ -100,7 +123,7 @@ mod tests {
     #[test]
     fn the_touch_protocol_bends_for_a_minute_and_then_spirals_straight() {
         let options = exact(Protocol::Touch);
-        let (doing, spiral) = (Doing::new(&options), Spiral::default());
+        let (mut doing, spiral) = (Doing::new(&options), Spiral::default());
         assert_eq!(options.seconds, 240.0);
         for k in 0..2400 {
             let t_s = 0.1 * f64::from(k);
@@ -122,9 +145,9 @@ mod tests {
     #[test]
     fn random_touching_begins_at_rest_after_the_bending() {
         let options = exact(Protocol::TouchRandom);
-        let doing = Doing::new(&options);
+        let mut doing = Doing::new(&options);
         assert_eq!((options.seconds, options.touch_from_s), (120.0, Some(20.0)));
-        let pressing = |t_s: f64| -doing.touch(t_s).forces_n[2];
+        let mut pressing = |t_s: f64| -doing.touch(t_s).forces_n[2];
         assert!((0..200).all(|k| pressing(0.1 * f64::from(k)) == 0.0) && pressing(20.01) < 1e-3);
         let random = options.force.press();
         assert_eq!(doing.touch(50.0).forces_n, random.forces_n(30.0));
@@ -134,7 +157,7 @@ mod tests {
     fn a_finger_follows_late_and_a_few_per_cent_off_and_never_leaves_the_cone() {
         let prompted = exact(Protocol::Touch);
         let followed = LogOptions { follow: 0.06, ..prompted.clone() };
-        let (prompted, followed) = (Doing::new(&prompted), Doing::new(&followed));
+        let (mut prompted, mut followed) = (Doing::new(&prompted), Doing::new(&followed));
         let (mut square, mut worst_late) = (0.0, 0.0f64);
         let times = (0..5000).map(|k| 80.0 + 0.03 * f64::from(k));
         for t_s in times.clone() {
@@ -152,7 +175,7 @@ mod tests {
             square.sqrt()
         );
         // The lag that makes bending fit best is the one that was put in.
-        let misfit = |late_s: f64| -> f64 {
+        let mut misfit = |late_s: f64| -> f64 {
             (0..1000)
                 .map(|k| 5.0 + 0.05 * f64::from(k))
                 .map(|t_s| (followed.touch(t_s).angles_rad[1] - prompted.touch(t_s - late_s).angles_rad[1]).powi(2))
@@ -166,7 +189,7 @@ mod tests {
     fn a_postures_shift_is_the_seeds_and_only_while_touching() {
         let shifted = |seed: u64| {
             let options = LogOptions { follow: 0.0, ..LogOptions::of(Protocol::Touch, seed) };
-            let doing = Doing::new(&options);
+            let mut doing = Doing::new(&options);
             let bending = doing.touch(10.0).angles_rad;
             assert_eq!(bending, Doing::new(&exact(Protocol::Touch)).touch(10.0).angles_rad);
             doing.touch(100.0).angles_rad

@@ -2,10 +2,11 @@
 
 use serde::Serialize;
 
+use crate::phantom::motion::contacts::Contacts;
 use crate::phantom::motion::force::ForceTrajectory;
 use crate::phantom::motion::trajectory::Trajectory;
 use crate::phantom::screen::{Clock, Jump};
-use crate::phantom::sensor::Dynamics;
+use crate::phantom::sensor::{DisturbanceSizes, Dynamics};
 
 /// How rows say their time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -81,6 +82,15 @@ pub struct LogOptions {
     pub wander_v: f64,
     /// Lags and hysteresis as shares of the sensor's.
     pub dynamics: Dynamics,
+    /// What a day's wear adds.
+    #[serde(skip_serializing_if = "DisturbanceSizes::is_none")]
+    pub disturbances: DisturbanceSizes,
+    /// The log has the columns of the force transducer.
+    #[serde(skip_serializing_if = "is_true")]
+    pub forces: bool,
+    /// The log has a column `contact`, as of an ideal switch under the finger.
+    #[serde(skip_serializing_if = "is_false")]
+    pub contact: bool,
     /// P2 and P3 are amplified so much that a fifth of what they should read is over 10 V.
     pub saturate: bool,
     /// Photodiodes that read nothing, 1 for P1.
@@ -92,11 +102,33 @@ fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }
 
+fn is_true(value: &bool) -> bool {
+    *value
+}
+
+fn is_false(value: &bool) -> bool {
+    !*value
+}
+
 impl LogOptions {
     /// The date of stamps: year, month, day.
     pub const DATE: (i16, i8, i8) = (2026, 3, 14);
     /// Seconds from 1970's beginning to that day's midnight (UTC).
     pub const MIDNIGHT_S: i64 = 20_526 * 86_400;
+
+    /// What the log's clock says at the scene's time `scene_s`, without jumps, seconds.
+    #[must_use]
+    pub fn log_s(&self, scene_s: f64) -> f64 {
+        self.clock_offset_s + (1.0 + 1e-6 * self.clock_drift_ppm) * scene_s
+    }
+
+    /// The contacts that the finger makes of its own accord, if it does.
+    pub(super) fn contacts(&self) -> Option<&Contacts> {
+        match &self.force {
+            ForceTrajectory::Contacts(contacts) => Some(contacts),
+            _ => None,
+        }
+    }
 }
 
 impl Default for LogOptions {
@@ -130,6 +162,9 @@ impl Default for LogOptions {
             hum_hz: 100.0,
             wander_v: 0.01,
             dynamics: Dynamics::default(),
+            disturbances: DisturbanceSizes::NONE,
+            forces: true,
+            contact: false,
             saturate: false,
             dead: Vec::new(),
         }

@@ -8,22 +8,18 @@ use serde::Serialize;
 use thiserror::Error;
 
 use super::angles::write_angles;
-use super::{LogOptions, LogScene, Row, Stamps};
+use super::lines::{cells, columns};
+use super::truth::{TruthWriter, write_contacts};
+use super::{LogOptions, LogScene};
 use crate::files::{Staging, WriteError};
-use crate::phantom::motion::finger::JOINTS;
 use crate::phantom::scene::place::{Unwritten, in_the_way, refused};
-use crate::phantom::sensor::CHANNELS;
-use crate::table::{Column, TableError, TableWriter, Value};
+use crate::table::{TableError, TableWriter};
 
 /// The file that says that a log was written here.
 const RECORD: &str = "truth/log.json";
-/// The record first: where it stands, what is of one run and what of another is made again.
-const RESULTS: [&str; 4] = [RECORD, "log.csv", "truth/log.csv", "truth/angles.csv"];
-const FORCES: [&str; 3] = ["Fx_N", "Fy_N", "Fz_N"];
-/// Decimals of stamps, of readings (a step of the converter is 0.00015 V) and of forces (steps of 0.0008 N).
-const STAMP_DECIMALS: usize = 6;
-const READING_DECIMALS: usize = 6;
-const FORCE_DECIMALS: usize = 4;
+/// The record first: where it stands, what is of one run and what of another is made again. Contacts are of few.
+const RESULTS: [&str; 5] = [RECORD, "log.csv", "truth/log.csv", "truth/angles.csv", CONTACTS];
+const CONTACTS: &str = "truth/contacts.csv";
 
 /// Why a log was not written.
 #[derive(Debug, Error)]
@@ -49,13 +45,14 @@ pub struct Summary {
     pub rows: usize,
     /// Rows with the LED on.
     pub lit: usize,
-    /// Seconds spent on writing.
+    /// Seconds spent on taking the samples and writing them.
     pub write_s: f64,
 }
 
 /// The files of a log, relative to its folder.
-pub(in crate::phantom) fn files() -> Vec<String> {
-    RESULTS.map(str::to_owned).to_vec()
+pub(in crate::phantom) fn files(options: &LogOptions) -> Vec<String> {
+    let made = |name: &&str| *name != CONTACTS || options.contacts().is_some();
+    RESULTS.into_iter().filter(made).map(str::to_owned).collect()
 }
 
 /// Writes `scene` under `out`; a synthetic log written there before is replaced, a video stays.
@@ -68,90 +65,45 @@ pub fn write(scene: &LogScene, out: &Path) -> Result<Summary, Error> {
     if let Some(place) = in_the_way(out, &RESULTS, RECORD) {
         return Err(Error::InTheWay(place));
     }
-    write_staged(scene, staging)?;
-    let lit = scene.rows().iter().filter(|row| row.lit).count();
-    Ok(Summary { rows: scene.rows().len(), lit, write_s: begin.elapsed().as_secs_f64() })
+    let [rows, lit] = write_staged(scene, staging)?;
+    Ok(Summary { rows, lit, write_s: begin.elapsed().as_secs_f64() })
 }
 
-fn write_staged(scene: &LogScene, staging: Staging) -> Result<(), Error> {
+/// Rows, and how many are lit.
+fn write_staged(scene: &LogScene, staging: Staging) -> Result<[usize; 2], Error> {
     let truth = staging.path().join("truth");
     fs::create_dir(&truth).map_err(refused(&truth))?;
-    let [record, log, true_log, angles] = RESULTS.map(|name| staging.path().join(name));
-    write_log(scene, &log)?;
-    write_truth(scene, &true_log)?;
+    let [record, log, true_log, angles, contacts] = RESULTS.map(|name| staging.path().join(name));
+    let counts = write_rows(scene, &log, &true_log)?;
     write_angles(scene, &angles)?;
-    write_record(scene, &record)?;
-    Ok(staging.commit_exactly(&RESULTS)?)
+    write_contacts(scene.options(), &contacts)?;
+    write_record(scene, counts[0], &record)?;
+    staging.commit_exactly(&RESULTS)?;
+    Ok(counts)
 }
 
-fn photodiodes(suffix: &str) -> impl Iterator<Item = String> {
-    (1..=CHANNELS).map(move |k| format!("P{k}{suffix}"))
-}
-
-fn write_log(scene: &LogScene, path: &Path) -> Result<(), Error> {
+/// Writes each row and its truth as it is taken.
+fn write_rows(scene: &LogScene, log: &Path, true_log: &Path) -> Result<[usize; 2], Error> {
     let options = scene.options();
-    let mut columns = vec![match options.stamps {
-        Stamps::Seconds | Stamps::Epoch => Column::rounded("time_s", STAMP_DECIMALS),
-        Stamps::Datetime => Column::text("time"),
-    }];
-    if options.led {
-        columns.push(Column::integer("led"));
+    let mut table = TableWriter::create(log, log, columns(options), &[])?;
+    let mut truth = TruthWriter::create(options, true_log)?;
+    let mut date = String::new();
+    let [mut rows, mut lit] = [0, 0];
+    for row in scene.samples() {
+        table.write(&cells(options, &row, &mut date))?;
+        truth.write(&row)?;
+        rows += 1;
+        lit += usize::from(row.lit);
     }
-    columns.extend(photodiodes("").map(|name| Column::rounded(name, READING_DECIMALS)));
-    columns.extend(FORCES.map(|name| Column::rounded(name, FORCE_DECIMALS)));
-    let mut table = TableWriter::create(path, path, columns, &[])?;
-    for row in scene.rows() {
-        let date;
-        let mut cells = vec![match options.stamps {
-            Stamps::Seconds => Value::Number(row.stamp_s),
-            Stamps::Epoch => Value::Number(LogOptions::MIDNIGHT_S as f64 + row.stamp_s),
-            Stamps::Datetime => {
-                date = date_and_time(row.stamp_s);
-                Value::Text(&date)
-            }
-        }];
-        if options.led {
-            cells.push(Value::Integer(row.lit.into()));
-        }
-        cells.extend(row.read_v.iter().chain(&row.forces_read_n).map(|&value| Value::Number(value)));
-        table.write(&cells)?;
-    }
-    Ok(table.finish()?)
+    table.finish()?;
+    truth.finish()?;
+    Ok([rows, lit])
 }
 
-/// The date and time of day that a clock shows at `clock_s` seconds from the midnight of [`LogOptions::DATE`] on.
-fn date_and_time(clock_s: f64) -> String {
-    let (year, month, day) = LogOptions::DATE;
-    let since = jiff::SignedDuration::from_micros((clock_s * 1e6).round() as i64);
-    let shown = jiff::civil::date(year, month, day).at(0, 0, 0, 0).saturating_add(since);
-    format!("{shown:.6}")
-}
-
-fn write_truth(scene: &LogScene, path: &Path) -> Result<(), Error> {
-    let mut columns = vec![Column::integer("sample"), Column::number("time_s"), Column::number("log_s")];
-    columns.push(Column::integer("led"));
-    columns.extend(JOINTS.map(|joint| Column::number(format!("{joint}_deg"))));
-    columns.extend(FORCES.map(Column::number));
-    columns.extend(["", "_static", "_unlit"].into_iter().flat_map(photodiodes).map(Column::number));
-    let mut table = TableWriter::create(path, path, columns, &[])?;
-    let cells = |row: &Row| {
-        let mut cells = vec![Value::Integer(row.sample as i64), Value::Number(row.scene_s), Value::Number(row.log_s)];
-        cells.push(Value::Integer(row.lit.into()));
-        cells.extend(row.touch.angles_rad.map(|angle| Value::Number(angle.to_degrees())));
-        cells.extend(row.touch.forces_n.map(Value::Number));
-        cells.extend([row.led_v, row.static_v, row.unlit_v].into_iter().flatten().map(Value::Number));
-        cells
-    };
-    for row in scene.rows() {
-        table.write(&cells(row))?;
-    }
-    Ok(table.finish()?)
-}
-
-fn write_record(scene: &LogScene, path: &Path) -> Result<(), Error> {
+fn write_record(scene: &LogScene, rows: usize, path: &Path) -> Result<(), Error> {
     let mut record = serde_json::json!({
         "options": scene.options(),
-        "rows": scene.rows().len(),
+        "rows": rows,
         "photodiodes": scene.sensor(),
         "ambient": scene.ambient(),
         "wander": scene.wander(),
@@ -160,21 +112,9 @@ fn write_record(scene: &LogScene, path: &Path) -> Result<(), Error> {
         // Beside what was allowed, what it was.
         record["posture_shift_deg"] = scene.posture_shift_rad().map(f64::to_degrees).into_iter().collect();
     }
+    if !scene.options().disturbances.is_none() {
+        record["disturbances"] = serde_json::json!(scene.disturbances());
+    }
     let text = serde_json::to_vec_pretty(&record).map_err(|error| refused(path)(error.into()))?;
     Ok(fs::write(path, text).map_err(refused(path))?)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_day_is_followed_by_the_next() {
-        assert_eq!(date_and_time(0.0), "2026-03-14T00:00:00.000000");
-        assert_eq!(date_and_time(86_399.999_999_6), "2026-03-15T00:00:00.000000");
-        assert_eq!(date_and_time(-0.25), "2026-03-13T23:59:59.750000");
-        assert_eq!(date_and_time(34_013.589_793), "2026-03-14T09:26:53.589793");
-        assert_eq!(date_and_time(86_400.0 * (365.0 + 365.0 - 14.0)), "2028-02-28T00:00:00.000000");
-        assert_eq!(date_and_time(86_400.0 * (365.0 + 365.0 - 13.0)), "2028-02-29T00:00:00.000000");
-    }
 }

@@ -10,6 +10,8 @@ use lunula_predictor::{ForceSpace, RandomForce};
 pub use lunula_predictor::{RELEASE_S, Spiral};
 use serde::Serialize;
 
+use crate::phantom::motion::contacts::Contacts;
+
 /// Which force is cycled slowly, and which is held.
 ///
 /// Before time 0 it is as at time 0: a shear's experiment begins while the pressing is held already.
@@ -82,6 +84,8 @@ pub enum ForceTrajectory {
         /// Where the random numbers come from.
         seed: u64,
     },
+    /// Contacts and near misses of the finger's own, which bend it as well.
+    Contacts(Contacts),
 }
 
 /// A [`ForceTrajectory`] that is ready to be asked often.
@@ -96,7 +100,8 @@ pub(in crate::phantom) enum Press {
 impl ForceTrajectory {
     pub(in crate::phantom) fn press(&self) -> Press {
         match self {
-            Self::None => Press::None,
+            // A contact's force goes with its bending: whoever asks for one asks the contacts themselves.
+            Self::None | Self::Contacts(_) => Press::None,
             Self::Spiral(spiral) => Press::Spiral(*spiral),
             Self::Cycles { which, hz } => Press::Cycles(*which, *hz),
             Self::Random { hz, seed } => Press::Random(Box::new(RandomForce::new(ForceSpace::default(), *hz, *seed))),

@@ -1,5 +1,6 @@
 //! How fingers move and press: trajectories, forces, random waves.
 
+pub mod contacts;
 pub mod finger;
 pub(in crate::phantom) mod follow;
 pub mod force;

@@ -2,10 +2,11 @@
 //!
 //! In: the time. Out: J1, J2, J3, radians, positive in flexion. Equation 27 gives J2. Figure 33 gives J3 over J2 as a
 //! drawing only, "roughly linear": [`J3_PER_J2`] is assumed here, with a small wander about the line.
-//! [`Trajectory::Free`] are the six cycles of 3.3.5.
+//! [`Trajectory::Free`] are the six cycles of 3.3.5, [`Trajectory::Sway`] is a finger that rests as people do.
 
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
+use std::sync::Arc;
 
 use lunula_predictor::{Bending, RandomBending};
 use serde::Serialize;
@@ -18,12 +19,18 @@ use crate::table::{Table, TableError};
 pub const J3_PER_J2: f64 = 2.0 / 3.0;
 
 const KIND_TRAJECTORY: u32 = 11;
+const KIND_SWAY: u32 = 30;
 /// The wander of J3 about its line, radians and hertz.
 const J3_WANDER: (f64, f64) = (2.0 * PI / 180.0, 0.23);
 /// J2 of free bending, fully flexed and fully extended, and the J1 that is held, degrees (3.3.5; Fig. 34 goes from -10
 /// on; the rest assumed).
 const FREE_DEG: [f64; 2] = [75.0, -10.0];
 const J1_HELD_DEG: f64 = 15.0;
+/// How far a resting finger sways, degrees: J1, J2 within seconds, J2 within minutes (assumed), and the rates of both,
+/// hertz.
+const SWAY_DEG: [f64; 3] = [3.0, 1.5, 2.0];
+const SWAY_HZ: f64 = 0.05;
+const SETTLE_HZ: f64 = 0.003;
 /// Middle, half range and rate over the bending's of the slow J1.
 const J1_SLOW: (f64, f64, f64) = (15.0 * PI / 180.0, 6.0 * PI / 180.0, 0.47);
 
@@ -68,6 +75,12 @@ pub enum Trajectory {
     },
     /// Straight and still: all angles 0, as while touching (5.2.4).
     Rest,
+    /// Straight but for what people do: J1 sways by up to 3 degrees and J2 by up to 1.5 at 0.02 to 0.2 Hz, J2 by up to 2
+    /// more at 0.0012 to 0.012 Hz, J3 by two thirds of J2 (assumed).
+    Sway {
+        /// Where the random numbers come from.
+        seed: u64,
+    },
     /// Given at times, a straight line in between.
     Given {
         /// Time in seconds, then J1, J2, J3 in degrees; times ascending.
@@ -105,7 +118,10 @@ impl Trajectory {
     /// J1, J2, J3 at `t_s`, radians; a given trajectory stays at its ends outside of its times.
     #[must_use]
     pub fn angles_rad(&self, t_s: f64) -> [f64; 3] {
-        self.movement().angles_rad(t_s)
+        match self {
+            Self::Given { rows } => given_rad(rows, t_s),
+            other => other.movement().angles_rad(t_s),
+        }
     }
 
     /// What is wrong with it, with the command line's word for it, if anything.
@@ -118,7 +134,7 @@ impl Trajectory {
                 let holds = (0.0..=0.4).contains(share);
                 (!holds).then(|| format!("--follow {share}: choose 0 to 0.4, the standard deviation as a share"))
             }),
-            Self::Rest => None,
+            Self::Rest | Self::Sway { .. } => None,
             Self::Given { rows } => {
                 let finite = rows.iter().flatten().all(|value| value.is_finite());
                 let ascend = rows.windows(2).all(|pair| pair[1][0] > pair[0][0]);
@@ -129,7 +145,7 @@ impl Trajectory {
     }
 
     /// Ready to be asked often.
-    pub(in crate::phantom) fn movement(&self) -> Movement<'_> {
+    pub(in crate::phantom) fn movement(&self) -> Movement {
         match self {
             Self::Eq27 { hz } => Movement::Eq27 { hz: *hz },
             Self::Free { hz } => Movement::Free { hz: *hz },
@@ -142,14 +158,18 @@ impl Trajectory {
             }
             Self::Even { hz, seed } => Movement::Even { hz: *hz, bending: RandomBending::new(*hz, 0.0, *seed) },
             Self::Rest => Movement::Rest,
-            Self::Given { rows } => Movement::Given { rows },
+            Self::Sway { seed } => {
+                let wave = |hz: f64, index: u32| random_wave(hz, 0.4..4.0, *seed, KIND_SWAY, index);
+                Movement::Sway([wave(SWAY_HZ, 0), wave(SWAY_HZ, 1), wave(SETTLE_HZ, 2)])
+            }
+            Self::Given { rows } => Movement::Given { rows: rows.as_slice().into() },
         }
     }
 }
 
 /// A [`Trajectory`] that is ready to be asked often.
 #[derive(Debug, Clone)]
-pub(in crate::phantom) enum Movement<'a> {
+pub(in crate::phantom) enum Movement {
     Eq27 {
         hz: f64,
     },
@@ -157,7 +177,7 @@ pub(in crate::phantom) enum Movement<'a> {
         hz: f64,
     },
     Followed {
-        prompted: Box<Movement<'a>>,
+        prompted: Box<Movement>,
         follow: Follow,
     },
     /// Of J1, J2, and J3 about its line.
@@ -167,12 +187,14 @@ pub(in crate::phantom) enum Movement<'a> {
         bending: RandomBending,
     },
     Rest,
+    /// Of J1 and J2 within seconds, of J2 within minutes.
+    Sway([Wave; 3]),
     Given {
-        rows: &'a [[f64; 4]],
+        rows: Arc<[[f64; 4]]>,
     },
 }
 
-impl Movement<'_> {
+impl Movement {
     /// J1, J2, J3 at `t_s`, radians.
     pub(in crate::phantom) fn angles_rad(&self, t_s: f64) -> [f64; 3] {
         match self {
@@ -192,22 +214,29 @@ impl Movement<'_> {
                 [j1, j2, J3_PER_J2 * j2 + 5f64.to_radians() * third.at(t_s)]
             }
             Self::Rest => [0.0; 3],
-            Self::Given { rows } => {
-                let after = rows.partition_point(|row| row[0] <= t_s);
-                let at = |k: usize| [rows[k][1], rows[k][2], rows[k][3]];
-                let degrees = match after {
-                    0 => at(0),
-                    k if k == rows.len() => at(k - 1),
-                    k => {
-                        let share = (t_s - rows[k - 1][0]) / (rows[k][0] - rows[k - 1][0]);
-                        let (before, next) = (at(k - 1), at(k));
-                        std::array::from_fn(|j| before[j] + share * (next[j] - before[j]))
-                    }
-                };
-                degrees.map(f64::to_radians)
+            Self::Sway([first, second, slow]) => {
+                let j2 = SWAY_DEG[1] * second.at(t_s) + SWAY_DEG[2] * slow.at(t_s);
+                [SWAY_DEG[0] * first.at(t_s), j2, J3_PER_J2 * j2].map(f64::to_radians)
             }
+            Self::Given { rows } => given_rad(rows, t_s),
         }
     }
+}
+
+/// J1, J2, J3 of a given trajectory, degrees in `rows` after the time.
+fn given_rad(rows: &[[f64; 4]], t_s: f64) -> [f64; 3] {
+    let after = rows.partition_point(|row| row[0] <= t_s);
+    let at = |k: usize| [rows[k][1], rows[k][2], rows[k][3]];
+    let degrees = match after {
+        0 => at(0),
+        k if k == rows.len() => at(k - 1),
+        k => {
+            let share = (t_s - rows[k - 1][0]) / (rows[k][0] - rows[k - 1][0]);
+            let (before, next) = (at(k - 1), at(k));
+            std::array::from_fn(|j| before[j] + share * (next[j] - before[j]))
+        }
+    };
+    degrees.map(f64::to_radians)
 }
 
 /// J1, J2, J3 of bending whose J2 is given: J3 about its line, J1 slow of its own.

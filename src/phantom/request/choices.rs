@@ -50,9 +50,10 @@ pub(super) fn trajectory(text: &str, hz: f64, seed: u64) -> anyhow::Result<(Traj
         "random" => (Trajectory::Random { hz, seed }, None),
         "even" => (Trajectory::Even { hz, seed }, None),
         "rest" => (Trajectory::Rest, None),
+        "sway" => (Trajectory::Sway { seed }, None),
         file => {
             let given = Trajectory::read(Path::new(file));
-            let (given, span_s) = given.context("--trajectory is eq27, free, random, even, rest or a table")?;
+            let (given, span_s) = given.context("--trajectory is eq27, free, random, even, rest, sway or a table")?;
             (given, Some(span_s))
         }
     })

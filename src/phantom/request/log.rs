@@ -3,6 +3,7 @@
 use clap::{Args, ValueEnum};
 
 use super::choices::{parse_gap, parse_photodiode, parse_set_clock, trajectory};
+use super::worn::WornRequest;
 use crate::phantom::log::{LogOptions, Protocol, Stamps};
 use crate::phantom::motion::force::{Cycles, ForceTrajectory, Spiral};
 use crate::phantom::motion::trajectory::Trajectory;
@@ -25,6 +26,8 @@ enum ForceArg {
     Lateral,
     /// Fy from 2 N to -2 N and back while Fz is held at -3 N
     Longitudinal,
+    /// Presses, holds, slides, taps and near misses of the finger's own, with pauses
+    Contacts,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -45,6 +48,10 @@ enum ProtocolArg {
     Longitudinal,
     /// 60 s: six cycles from fully flexed to fully extended and back (Fig. 32)
     FreeBending,
+    /// 600 s of a worn sensor: presses, holds, slides, taps and near misses, with pulse, bumps, raised hands and drift
+    Contacts,
+    /// An hour of a worn sensor: the finger sways, bends about once a minute and touches nothing; the same disturbances
+    Rest,
 }
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
@@ -87,11 +94,11 @@ pub struct LogRequest {
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     touch_from: Option<f64>,
     /// Joint angles over time: eq27, free (fully flexed to fully extended and back), random, even (random, all over
-    /// equation 27's range), rest (straight and still), or a table (CSV or Parquet) with time_s, J1_deg, J2_deg, J3_deg
+    /// equation 27's range), rest (straight and still), sway (straight, as people rest), or a table (CSV or Parquet) with time_s, J1_deg, J2_deg, J3_deg
     /// [default:
-    /// eq27; with --force spiral, normal, lateral or longitudinal rest, with --force random or even random, but eq27
-    /// with --touch-from]
-    #[arg(long, value_name = "eq27|free|random|even|rest|FILE")]
+    /// eq27; with --force spiral, normal, lateral or longitudinal rest, with contacts sway, with --force random or even
+    /// random, but eq27 with --touch-from]
+    #[arg(long, value_name = "eq27|free|random|even|rest|sway|FILE")]
     trajectory: Option<String>,
     /// Bending rate f of equation 27; random movement has rates of 0.4 to 4 times it
     #[arg(long, value_name = "HZ", default_value_t = 0.1)]
@@ -168,6 +175,8 @@ pub struct LogRequest {
     /// Hysteresis as a share of the usual; 0: none
     #[arg(long, value_name = "SHARE", default_value_t = 1.0)]
     hysteresis: f64,
+    #[command(flatten)]
+    worn: WornRequest,
     /// P2 and P3 are amplified so much that a fifth of their lit readings is cut at 10 V
     #[arg(long)]
     saturate: bool,
@@ -191,6 +200,8 @@ impl LogRequest {
             ProtocolArg::Lateral => Protocol::Lateral,
             ProtocolArg::Longitudinal => Protocol::Longitudinal,
             ProtocolArg::FreeBending => Protocol::FreeBending,
+            ProtocolArg::Contacts => Protocol::Contacts,
+            ProtocolArg::Rest => Protocol::Rest,
         });
         let kind = self.force.unwrap_or(match protocol {
             Some(Protocol::Touch) => ForceArg::Spiral,
@@ -198,6 +209,7 @@ impl LogRequest {
             Some(Protocol::Normal) => ForceArg::Normal,
             Some(Protocol::Lateral) => ForceArg::Lateral,
             Some(Protocol::Longitudinal) => ForceArg::Longitudinal,
+            Some(Protocol::Contacts | Protocol::Rest) => ForceArg::Contacts,
             _ => ForceArg::None,
         });
         let random_hz = self.force_hz.unwrap_or(0.1);
@@ -212,12 +224,20 @@ impl LogRequest {
             ForceArg::Normal => cycles(Cycles::Normal),
             ForceArg::Lateral => cycles(Cycles::Lateral),
             ForceArg::Longitudinal => cycles(Cycles::Longitudinal),
+            ForceArg::Contacts => {
+                let usual = protocol.and_then(|protocol| protocol.contacts(self.seed));
+                ForceTrajectory::Contacts(self.worn.contacts(usual, self.seed))
+            }
         };
+        if kind != ForceArg::Contacts && self.worn.says_contacts() {
+            anyhow::bail!("--kinds, --pause: the finger makes no contacts of its own; choose --force contacts");
+        }
         let usual = protocol.map_or_else(LogOptions::default, |protocol| LogOptions::of(protocol, self.seed));
         let touch_from_s = self.touch_from.or(usual.touch_from_s.filter(|_| kind != ForceArg::None));
         let movement = match (kind, protocol) {
             (_, Some(Protocol::BendingRandom)) => "even",
             (_, Some(Protocol::FreeBending)) => "free",
+            (_, Some(Protocol::Contacts | Protocol::Rest)) | (ForceArg::Contacts, None) => "sway",
             (_, Some(Protocol::Normal | Protocol::Lateral | Protocol::Longitudinal)) => "rest",
             (ForceArg::Spiral | ForceArg::Normal | ForceArg::Lateral | ForceArg::Longitudinal, None)
                 if touch_from_s.is_none() =>
@@ -238,7 +258,7 @@ impl LogRequest {
                 Some(f64::from(Cycles::COUNT) / self.force_hz.unwrap_or(Cycles::HZ))
                     .filter(|seconds| seconds.is_finite())
             }
-            ForceArg::None => None,
+            ForceArg::None | ForceArg::Contacts => None,
         };
         let after_s = touching_s.map(|seconds| touch_from_s.unwrap_or(0.0) + seconds);
         Ok(LogOptions {
@@ -278,6 +298,9 @@ impl LogRequest {
             hum_hz: self.hum,
             wander_v: self.wander,
             dynamics: Dynamics { lag: self.lag, hysteresis: self.hysteresis },
+            disturbances: self.worn.disturbances(usual.disturbances),
+            forces: !self.worn.no_forces,
+            contact: self.worn.contact,
             saturate: self.saturate,
             dead: self.dead.clone(),
         })

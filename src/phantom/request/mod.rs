@@ -5,6 +5,7 @@ mod clock;
 mod log;
 mod photos;
 mod video;
+mod worn;
 
 pub(in crate::phantom) use choices::parse_plane;
 pub use choices::parse_size;

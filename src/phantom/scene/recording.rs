@@ -56,10 +56,11 @@ const PHOTO_S_PER_PX: f64 = 4e-7;
 const FRAME_S_PER_PX: f64 = 3.5e-8;
 const VIEW_S_PER_PX: f64 = 4e-7;
 const LOG_S_PER_MS: f64 = 8e-7;
-/// Bytes that everything takes, and a pixel of the photographs and frames under way, and a row.
+/// Bytes that everything takes, and a pixel of the photographs and frames under way, and a row where the whole log is
+/// looked at before it is written.
 const LEAST: f64 = 3e7;
 const BYTES_PER_PX: f64 = 250.0;
-const BYTES_PER_ROW: f64 = 1000.0;
+const BYTES_PER_ROW: f64 = 32.0;
 
 impl Cost {
     /// Of so much memory beyond what everything takes, bytes, and of so many seconds.
@@ -181,12 +182,12 @@ impl Generated for LogOptions {
     }
 
     fn files(&self) -> Vec<String> {
-        sorted(log::files())
+        sorted(log::files(self))
     }
 
     fn facts(&self, file: &str) -> Facts {
         match file {
-            "log.csv" => Facts { led: Some(self.led), forces: Some(true), ..Facts::default() },
+            "log.csv" => Facts { led: Some(self.led), forces: Some(self.forces), ..Facts::default() },
             "truth/angles.csv" => Facts { clock: Some(true), ..Facts::default() },
             _ => Facts::default(),
         }
@@ -194,7 +195,8 @@ impl Generated for LogOptions {
 
     fn cost(&self) -> Cost {
         let span_s = self.lead_s + self.seconds + self.trail_s;
-        Cost::of(BYTES_PER_ROW * span_s * self.rate_hz, LOG_S_PER_MS * 1e3 * (span_s + 10.0))
+        let kept = if self.saturate { BYTES_PER_ROW * span_s * self.rate_hz } else { 0.0 };
+        Cost::of(kept, LOG_S_PER_MS * 1e3 * (span_s + 10.0))
     }
 
     fn write(&self, folder: &Path, _watch: &Watch<'_>) -> anyhow::Result<()> {

@@ -20,14 +20,16 @@
 //! assumed.
 //!
 //! [`Response`] adds what is not static: hysteresis, evident for forces and little for bending, and the blood's lag, of
-//! first order.
+//! first order. [`Wander`] and [`Disturbances`] add what the finger does not do.
 
 mod ambient;
+mod disturbances;
 mod photodiode;
 mod response;
 mod wander;
 
 pub use ambient::Ambient;
+pub use disturbances::{DisturbanceSizes, Disturbances, Elevation, Pulse};
 pub use photodiode::{CHANNELS, Photodiode, Sensor};
 pub use response::{Dynamics, Response};
 pub use wander::Wander;

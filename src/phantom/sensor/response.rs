@@ -53,11 +53,11 @@ struct State {
     blood_v: [[f64; 2]; CHANNELS],
 }
 
-/// A sensor that follows a movement.
-pub struct Response<'a> {
-    sensor: &'a Sensor,
+/// A sensor that follows a movement: what the finger does at a time.
+pub struct Response<M> {
+    sensor: Sensor,
     dynamics: Dynamics,
-    movement: &'a dyn Fn(f64) -> Touch,
+    movement: M,
     start_s: f64,
     steps: u64,
     state: State,
@@ -65,16 +65,16 @@ pub struct Response<'a> {
     decays: [[f64; 3]; CHANNELS],
 }
 
-impl<'a> Response<'a> {
+impl<M: FnMut(f64) -> Touch> Response<M> {
     /// Begins in equilibrium at `start_s`.
     #[must_use]
-    pub fn new(sensor: &'a Sensor, dynamics: Dynamics, movement: &'a dyn Fn(f64) -> Touch, start_s: f64) -> Self {
+    pub fn new(sensor: &Sensor, dynamics: Dynamics, mut movement: M, start_s: f64) -> Self {
         let touch = movement(start_s);
         let plays = inputs(&touch);
         let drive_v = drive(sensor, plays);
         let state = State { plays, pressing_n: plays[0], drive_v, blood_v: drive_v };
         let decays = decays(sensor, dynamics, STEP_S);
-        Self { sensor, dynamics, movement, start_s, steps: 0, state, decays }
+        Self { sensor: *sensor, dynamics, movement, start_s, steps: 0, state, decays }
     }
 
     /// What each photodiode adds at `t_s` when the LED is on, volts. Times are asked for in ascending order, none
@@ -89,7 +89,7 @@ impl<'a> Response<'a> {
         let part_s = t_s - (self.start_s + self.steps as f64 * STEP_S);
         let state = if part_s > 0.0 {
             let touch = (self.movement)(t_s);
-            self.after(&touch, part_s, &decays(self.sensor, self.dynamics, part_s))
+            self.after(&touch, part_s, &decays(&self.sensor, self.dynamics, part_s))
         } else {
             self.state
         };
@@ -107,7 +107,7 @@ impl<'a> Response<'a> {
         let half = [play_n, play_n, play_n, PLAY_RAD].map(|half| self.dynamics.hysteresis * half);
         let plays: [f64; 4] = std::array::from_fn(|k| old.plays[k].clamp(is[k] - half[k], is[k] + half[k]));
         let felt = std::array::from_fn(|k| is[k] + PLAY_SHARE * (plays[k] - is[k]));
-        let drive_v = drive(self.sensor, felt);
+        let drive_v = drive(&self.sensor, felt);
         let loading = is[0] > old.pressing_n;
         let blood_v = std::array::from_fn(|k| {
             let one = &self.sensor.photodiodes[k];

@@ -170,7 +170,7 @@ fn blocks(asked: &Block, value: &Value) -> Result<Vec<(Option<String>, Table)>, 
 
 /// The planner knows no files but inputs: a movement is known by its name here.
 fn without_files(options: &Table) -> Result<&Table, OptionFault> {
-    const NAMES: [&str; 5] = ["eq27", "free", "random", "even", "rest"];
+    const NAMES: [&str; 6] = ["eq27", "free", "random", "even", "rest", "sway"];
     match options.get("trajectory").and_then(Value::as_str) {
         Some(other) if !NAMES.contains(&other) => {
             let what = format!("`trajectory` is {} in a pipeline, not a file as `{other}`", NAMES.join(", "));

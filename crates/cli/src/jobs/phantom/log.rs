@@ -12,8 +12,8 @@ use crate::jobs::phantom::{Common, Outcome};
 
 /// A log of eight photodiodes and three forces, with exact truth (3.1.2c, 3.3, 5.2.3)
 ///
-/// Writes OUT/log.csv, which `lunula align` reads as it is, and OUT/truth/: log.csv, angles.csv, log.json. It
-/// belongs to the video that `lunula phantom video` writes from the same seed, trajectory and --bend-hz; both may be
+/// Writes OUT/log.csv, which `lunula align` reads as it is, and OUT/truth/: log.csv, angles.csv, log.json, and of
+/// --force contacts contacts.csv (--protocol contacts or rest: hours of a worn sensor, for switches). It belongs to the video that `lunula phantom video` writes from the same seed, trajectory and --bend-hz; both may be
 /// written to the same OUT. truth/angles.csv has the exact joint angles in the format of `lunula posture`, 30 a second,
 /// clock_s on the log's clock:
 /// `lunula align --joints OUT/truth/angles.csv --log OUT/log.csv --out training.csv --subject 1 --session 1` makes a
@@ -34,7 +34,6 @@ pub(super) fn run(args: &LogArgs) -> anyhow::Result<Outcome> {
     args.common.start()?;
     let begin = std::time::Instant::now();
     let scene = LogScene::new(options).context("no synthetic log")?;
-    let made_s = begin.elapsed().as_secs_f64();
     let summary = write(&scene, &args.out).context("no synthetic log")?;
     let mut warnings = Vec::new();
     if summary.rows == 0 {
@@ -48,7 +47,7 @@ pub(super) fn run(args: &LogArgs) -> anyhow::Result<Outcome> {
         "rows": summary.rows,
         "lit": summary.lit,
         "photodiodes": CHANNELS,
-        "stages": { "samples_s": made_s, "write_s": summary.write_s, "total_s": begin.elapsed().as_secs_f64() },
+        "stages": { "write_s": summary.write_s, "total_s": begin.elapsed().as_secs_f64() },
         "warnings": warnings,
     }))?;
     args.common.say(&format!(

@@ -1,0 +1,296 @@
+//! What a finger does of its own accord: it presses, holds, slides, taps, nearly presses, and rests in between.
+//!
+//! In: [`Contacts`], a seed and the kinds. Out: one [`Contact`] after the other, each with its exact times and force; the
+//! same at every time whatever is asked for before, without end.
+//!
+//! Time from 0 on goes in blocks of forty mean pauses and a minute. Within a block a pause is followed by a contact until
+//! the next would pass the block's end; a pause lasts between 1/3 and 5/3 of its mean. All of this is *assumed*: the
+//! thesis describes no use of a switch. Of [`WEIGHTS`], the shares of the kinds that are chosen:
+//!
+//! | kind | weight | at the surface | pressing | J2 bends by |
+//! |---|---|---|---|---|
+//! | press | 8 | rises in 0.08 to 0.25 s, holds 0.15 to 1.5 s, lets go in 0.06 to 0.2 s | 0.5 to 3 N | 2 to 6 degrees |
+//! | hold | 2 | the same, holds 2 to 6 s, swinging down by up to 0.3 of it at 0.2 to 1 Hz | 0.5 to 3 N | 2 to 6 |
+//! | slide | 2 | the same, holds 0.4 to 2.5 s; the shear grows to 0.5 to 0.9 of what friction holds and turns | 0.5 to 3 N | 2 to 6 |
+//! | tap | 4 | 0.08 to 0.2 s | 0.5 to 1.5 N | 2 to 6 |
+//! | hover | 3 | near miss: 0.1 to 1 s above it | none | 3 to 12 |
+//! | brush | 1 | near miss: 0.1 to 0.5 s | 0.01 to 0.05 N | 2 to 6 |
+//! | bend | 1 | far from it: 0.5 to 2 s | none | 15 to 60 |
+//!
+//! The finger bends before it touches and straightens after it has let go, in 0.15 to 0.4 s (bend: 0.5 to 1.5 s); J1
+//! bends 2.5 times as far as J2 (bend: half as far), J3 by two thirds. A press, hold, tap or brush has a shear of up to a
+//! fifth of what friction holds, in one direction.
+
+use std::f64::consts::TAU;
+
+use lunula_predictor::Spiral;
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+use serde::Serialize;
+
+use crate::phantom::motion::trajectory::J3_PER_J2;
+use crate::phantom::nail::numbers;
+use crate::words::Words;
+
+const KIND_CONTACTS: u32 = 29;
+/// A block: so many mean pauses, and so many seconds, longer than any contact.
+const PAUSES: f64 = 40.0;
+const LEAST_BLOCK_S: f64 = 60.0;
+/// A pause as a share of its mean.
+const PAUSE: [f64; 2] = [1.0 / 3.0, 5.0 / 3.0];
+/// How often each kind comes beside the others, in their order.
+const WEIGHTS: [u32; 7] = [8, 2, 2, 4, 3, 1, 1];
+/// The shear of a slide is reached so long after the pressing, seconds.
+const SHEARED_S: f64 = 0.2;
+/// A light touch below which nobody speaks of pressing, newtons.
+const BRUSH_N: [f64; 2] = [0.01, 0.05];
+
+/// What a finger does at the surface, or near it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ContactKind {
+    /// Presses and lets go.
+    Press,
+    /// Presses for seconds, with slow changes.
+    Hold,
+    /// Presses and shears, the shear turning.
+    Slide,
+    /// Touches for a moment.
+    Tap,
+    /// Near miss: bends as if to press.
+    Hover,
+    /// Near miss: touches with less than 0.05 N.
+    Brush,
+    /// Bends far and comes back; touches nothing.
+    Bend,
+}
+
+impl Words for ContactKind {
+    const WORDS: &'static [(Self, &'static str, &'static str)] = &[
+        (Self::Press, "press", ""),
+        (Self::Hold, "hold", ""),
+        (Self::Slide, "slide", ""),
+        (Self::Tap, "tap", ""),
+        (Self::Hover, "hover", ""),
+        (Self::Brush, "brush", ""),
+        (Self::Bend, "bend", ""),
+    ];
+}
+
+impl ContactKind {
+    /// All of them.
+    pub const ALL: [Self; 7] = [Self::Press, Self::Hold, Self::Slide, Self::Tap, Self::Hover, Self::Brush, Self::Bend];
+
+    /// Whether a switch should see it: a near miss is none.
+    #[must_use]
+    pub fn presses(self) -> bool {
+        matches!(self, Self::Press | Self::Hold | Self::Slide | Self::Tap)
+    }
+
+    /// Whether there is a force.
+    #[must_use]
+    pub fn touches(self) -> bool {
+        self.presses() || self == Self::Brush
+    }
+}
+
+/// A sequence of contacts.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Contacts {
+    /// Which kinds there are; none: the finger rests.
+    pub kinds: Vec<ContactKind>,
+    /// The mean pause between two, seconds.
+    pub pause_s: f64,
+    /// Where the random numbers come from.
+    pub seed: u64,
+}
+
+/// One contact or near miss. Times are the scene's, seconds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Contact {
+    /// What it is.
+    pub kind: ContactKind,
+    /// The finger begins to bend.
+    pub begin_s: f64,
+    /// It is at the surface, or as near as it comes.
+    pub reached_s: f64,
+    /// It leaves the surface.
+    pub left_s: f64,
+    /// It is back.
+    pub over_s: f64,
+    /// The greatest pressing, newtons.
+    pub peak_n: f64,
+    rise_s: f64,
+    fall_s: f64,
+    /// How far the pressing swings down as a share, and how often a second.
+    swing: [f64; 2],
+    /// The shear at first and later, as shares of what friction holds.
+    shear: [f64; 2],
+    /// The shear's direction at first, radians, and how it turns, radians a second.
+    turn: [f64; 2],
+    /// How far J1, J2, J3 bend, radians.
+    bend_rad: [f64; 3],
+}
+
+/// From 0 at 0 to 1 at 1 with slopes of 0.
+fn smooth(x: f64) -> f64 {
+    let x = x.clamp(0.0, 1.0);
+    x * x * (3.0 - 2.0 * x)
+}
+
+impl Contact {
+    /// Draws one whose finger begins to bend at `begin_s`.
+    fn draw(kind: ContactKind, begin_s: f64, rng: &mut ChaCha8Rng) -> Self {
+        let mut within = |[low, high]: [f64; 2]| rng.random_range(low..=high);
+        let far = kind == ContactKind::Bend;
+        let [there_s, back_s] = [0, 1].map(|_| within(if far { [0.5, 1.5] } else { [0.15, 0.4] }));
+        let (rise_s, fall_s) = (within([0.08, 0.25]), within([0.06, 0.2]));
+        let held_s = within(match kind {
+            ContactKind::Press => [0.15, 1.5],
+            ContactKind::Hold => [2.0, 6.0],
+            ContactKind::Slide => [0.4, 2.5],
+            ContactKind::Tap => [0.08, 0.2],
+            ContactKind::Hover => [0.1, 1.0],
+            ContactKind::Brush => [0.1, 0.5],
+            ContactKind::Bend => [0.5, 2.0],
+        });
+        let peak_n = within(match kind {
+            ContactKind::Press | ContactKind::Hold | ContactKind::Slide => [0.5, 3.0],
+            ContactKind::Tap => [0.5, 1.5],
+            ContactKind::Brush => BRUSH_N,
+            ContactKind::Hover | ContactKind::Bend => [0.0, 0.0],
+        });
+        let swing = match kind {
+            ContactKind::Hold => [within([0.05, 0.3]), within([0.2, 1.0])],
+            _ => [0.0, 0.0],
+        };
+        let first = within([0.0, 0.2]);
+        let shear = [first, if kind == ContactKind::Slide { within([0.5, 0.9]) } else { first }];
+        let turn = [within([0.0, TAU]), if kind == ContactKind::Slide { within([-3.0, 3.0]) } else { 0.0 }];
+        let j2_deg = within(match kind {
+            ContactKind::Hover => [3.0, 12.0],
+            ContactKind::Bend => [15.0, 60.0],
+            _ => [2.0, 6.0],
+        });
+        let j1_deg = if far { 0.5 * j2_deg } else { 2.5 * j2_deg };
+        // The shortest ones have no time to hold.
+        let (rise_s, fall_s, at_s) = match kind {
+            ContactKind::Tap | ContactKind::Brush => (0.5 * held_s, 0.5 * held_s, held_s),
+            ContactKind::Hover | ContactKind::Bend => (rise_s, fall_s, held_s),
+            _ => (rise_s, fall_s, rise_s + held_s + fall_s),
+        };
+        let reached_s = begin_s + there_s;
+        let left_s = reached_s + at_s;
+        let bend_rad = [j1_deg, j2_deg, J3_PER_J2 * j2_deg].map(f64::to_radians);
+        let over_s = left_s + back_s;
+        Self { kind, begin_s, reached_s, left_s, over_s, peak_n, rise_s, fall_s, swing, shear, turn, bend_rad }
+    }
+
+    /// When it is said to be, seconds: while there is a force; of near misses without one from the bending's beginning to
+    /// its end.
+    #[must_use]
+    pub fn span_s(&self) -> [f64; 2] {
+        if self.kind.touches() { [self.reached_s, self.left_s] } else { [self.begin_s, self.over_s] }
+    }
+
+    /// `[Fx, Fy, Fz]` at `t_s`, newtons.
+    #[must_use]
+    pub fn forces_n(&self, t_s: f64) -> [f64; 3] {
+        if !self.kind.touches() || t_s <= self.reached_s || t_s >= self.left_s {
+            return [0.0; 3];
+        }
+        let risen = smooth((t_s - self.reached_s) / self.rise_s);
+        let fallen = smooth((self.left_s - t_s) / self.fall_s);
+        let held_s = (t_s - self.reached_s - self.rise_s).max(0.0);
+        let [depth, hz] = self.swing;
+        let pressing_n = self.peak_n * risen * fallen * (1.0 - 0.5 * depth * (1.0 - (TAU * hz * held_s).cos()));
+        let share = self.shear[0] + (self.shear[1] - self.shear[0]) * smooth(held_s / SHEARED_S);
+        let shear_n = share * Spiral::default().mu * pressing_n;
+        let direction = self.turn[0] + self.turn[1] * held_s;
+        [shear_n * direction.cos(), shear_n * direction.sin(), -pressing_n]
+    }
+
+    /// How far J1, J2, J3 bend at `t_s` for it, radians.
+    #[must_use]
+    pub fn bend_rad(&self, t_s: f64) -> [f64; 3] {
+        let bent = smooth((t_s - self.begin_s) / (self.reached_s - self.begin_s));
+        let left = smooth((self.over_s - t_s) / (self.over_s - self.left_s));
+        self.bend_rad.map(|angle| bent * left * angle)
+    }
+}
+
+impl Contacts {
+    /// The usual mean pause, seconds.
+    pub const PAUSE_S: f64 = 3.0;
+
+    /// The contacts of time `block`.
+    fn block(&self, block: u32) -> Vec<Contact> {
+        let mut rng = numbers(self.seed, KIND_CONTACTS, block);
+        let length_s = self.block_s();
+        let mut at_s = f64::from(block) * length_s;
+        let end_s = at_s + length_s;
+        let weights = self.kinds.iter().map(|kind| WEIGHTS[*kind as usize]);
+        let sum: u32 = weights.clone().sum();
+        let mut all = Vec::new();
+        while sum > 0 {
+            at_s += self.pause_s * rng.random_range(PAUSE[0]..=PAUSE[1]);
+            let mut left = rng.random_range(0..sum);
+            let kind = self.kinds.iter().zip(weights.clone()).find(|(_, weight)| match left.checked_sub(*weight) {
+                Some(rest) => {
+                    left = rest;
+                    false
+                }
+                None => true,
+            });
+            let Some((kind, _)) = kind else { break };
+            let contact = Contact::draw(*kind, at_s, &mut rng);
+            if contact.over_s > end_s {
+                break;
+            }
+            at_s = contact.over_s;
+            all.push(contact);
+        }
+        all
+    }
+
+    fn block_s(&self) -> f64 {
+        PAUSES * self.pause_s + LEAST_BLOCK_S
+    }
+
+    /// All that are over by `until_s`, in the order of time.
+    pub fn until(&self, until_s: f64) -> impl Iterator<Item = Contact> {
+        let blocks = (until_s / self.block_s()).ceil().max(0.0) as u32;
+        (0..blocks).flat_map(|block| self.block(block)).filter(move |contact| contact.over_s <= until_s)
+    }
+}
+
+/// A sequence that is ready to be asked often.
+#[derive(Debug, Clone)]
+pub(in crate::phantom) struct Sequence {
+    contacts: Contacts,
+    /// None goes on longer, seconds.
+    until_s: f64,
+    /// The block that was asked for last, and its contacts.
+    block: u32,
+    within: Vec<Contact>,
+}
+
+impl Sequence {
+    /// Of the contacts that are over by `until_s`.
+    pub(in crate::phantom) fn new(contacts: &Contacts, until_s: f64) -> Self {
+        Self { contacts: contacts.clone(), until_s, block: 0, within: contacts.block(0) }
+    }
+
+    /// The contact under way at `t_s`.
+    pub(in crate::phantom) fn at(&mut self, t_s: f64) -> Option<&Contact> {
+        if t_s < 0.0 {
+            return None;
+        }
+        let block = (t_s / self.contacts.block_s()) as u32;
+        if block != self.block {
+            (self.block, self.within) = (block, self.contacts.block(block));
+        }
+        let next = self.within.partition_point(|contact| contact.over_s <= t_s);
+        self.within.get(next).filter(|contact| contact.begin_s < t_s && contact.over_s <= self.until_s)
+    }
+}
