@@ -179,7 +179,7 @@ fn a_recording_is_what_align_and_train_read_and_is_not_lost() {
     let report = json(&dir, "copy.stream.json");
     assert_eq!(
         (&report["rows"], &report["stream"]["lost"], &report["stream"]["spoilt"]),
-        (&500.into(), &0.into(), &0.into())
+        (&500.into(), &0.into(), &serde_json::json!([]))
     );
     // Over an input, nothing is written.
     let text = dir.text("r.csv");
@@ -221,11 +221,13 @@ fn spoilt_rows_cost_themselves_and_are_counted() {
     dir.write("bad.csv", text);
     let live = dir.lunula(&["live", "--source", "bad.csv", "--model", "m.json", "--out", "r.csv"]).expect(1);
     let live = live
-        .says("2 rows with a cell that is no finite number, first in line 3: `0.01,x`")
-        .says("too many or too few cells");
+        .says("line 3 has a cell that is no finite number (`0.01,x`)")
+        .says("line 4 has more or fewer cells than there are columns");
     assert_eq!(live.stdout.lines().count(), 4, "{}", live.stdout);
     let report = json(&dir, "r.stream.json");
-    assert_eq!(report["stream"]["spoilt"], 3);
+    let spoilt: u64 =
+        report["stream"]["spoilt"].as_array().unwrap().iter().map(|one| one["count"].as_u64().unwrap()).sum();
+    assert_eq!(spoilt, 3);
     assert_eq!(dir.text("r.csv"), "time_s,P1\n0,1\n0.03,1.5\n0.04,2\n");
     assert_eq!(dir.text("r.predicted.csv"), live.stdout);
 }
@@ -276,7 +278,7 @@ fn a_device_that_goes_away_is_waited_for() {
             // Half a row before it goes.
             text.push_str("1.5,");
             stream.write_all(text.as_bytes()).expect("the program reads");
-            std::thread::sleep(Duration::from_millis(300));
+            std::thread::sleep(Duration::from_millis(100));
             gone = Instant::now();
         }
     });
@@ -311,7 +313,7 @@ fn a_device_that_goes_away_is_waited_for() {
     let events = dir.text("e.jsonl");
     assert!(events.lines().nth(1).unwrap().contains("\"reason\":\"lost\""), "{events}");
     let report = json(&dir, "r.stream.json");
-    assert_eq!(report["stream"]["begins"], 2);
+    assert_eq!(report["rows"], dir.text("r.csv").lines().count() - 1);
     assert!(dir.text("r.csv").lines().count() > 45, "one file");
 }
 
@@ -339,15 +341,15 @@ fn bad_sources_are_said_with_what_to_do() {
         words.iter().fold(answer, |answer, words| answer.says(words));
     };
     live("serial:/dev/ttyNowhere?baud=9600", &["serial:/dev/ttyNowhere?baud=9600: does not exist"]);
-    live("nowhere.csv", &["nowhere.csv: can't be read"]);
-    live("tcp:127.0.0.1:1", &["tcp:127.0.0.1:1: can't connect", "is the device on"]);
+    live("nowhere.csv", &["nowhere.csv: does not exist"]);
+    live("tcp:127.0.0.1:1", &["tcp:127.0.0.1:1: refuses", "start the device"]);
     for (source, words) in [
-        ("serial:/dev/ttyX?bd=3", "no setting `bd`; is it `baud`?"),
-        ("serial:/dev/ttyX?baud=x", "write bits a second"),
-        ("tcp:host", "no address with a port"),
-        ("r.csv?rate=0", "write max, or how many times"),
-        ("lsl:name=x", "not read live yet"),
-        ("", "names no source"),
+        ("serial:/dev/ttyX?bd=3", "there is no `bd` here"),
+        ("serial:/dev/ttyX?baud=x", "no number of bits in a second"),
+        ("tcp:host", "is no HOST:PORT"),
+        ("r.csv?rate=0", "write `max` or a number such as 1"),
+        ("lsl:name=x", "lsl"),
+        ("", "it names nothing"),
     ] {
         dir.lunula(&["live", "--source", source, "--model", "m.json"]).expect(2).says(words);
     }
@@ -366,7 +368,7 @@ fn bad_sources_are_said_with_what_to_do() {
     dir.write("other.csv", "time_s,P2\n0,1\n");
     live("other.csv", &["no column `P1`", "--columns P1=ch_1"]);
     dir.write("numbers.csv", "0,1\n1,1\n");
-    live("numbers.csv", &["names of the columns", "--names"]);
+    live("numbers.csv", &["no line of names came before it", "--names"]);
     dir.lunula(&["live", "--source", "numbers.csv", "--names", "time_s,P1", "--model", "m.json", "-q"]).expect(0);
 }
 

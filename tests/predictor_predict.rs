@@ -387,7 +387,7 @@ fn a_stream_of_names_alone_and_an_empty_one() {
     dir.write("names.csv", &names);
     predict(&dir, &["force.json", "names.csv"], &[]);
     assert_eq!(dir.text("p.csv"), "time_s,Fx_N,Fy_N,Fz_N\n");
-    let empty = streamed(&dir, &["force.json", "-"], "").expect(2).says("standard input: is empty");
+    let empty = streamed(&dir, &["force.json", "-"], "").expect(2).says("standard input: ends before a line of names");
     assert_eq!(empty.stdout, "");
     let lacking = Recording::of(0..2).renamed("P3", "x3").csv();
     streamed(&dir, &["force.json", "-"], &lacking).expect(2).says("no column `P3`").says("--columns P3=ch_1");
@@ -406,8 +406,8 @@ fn a_wrong_cell_costs_its_row() {
     let dir = models();
     let good = Recording::of(300..305);
     for (text, words) in [
-        ("2 V", "standard input: 1 rows with a cell that is no finite number, first in line 5"),
-        ("1,2", "1 rows with too many or too few cells, first in line 5"),
+        ("2 V", "standard input: line 5 has a cell that is no finite number"),
+        ("1,2", "standard input: line 5 has more or fewer cells than there are columns"),
     ] {
         let bad = good.clone().cell(3, "P2", text);
         let answer = streamed(&dir, &["force.json", "-"], &bad.csv()).expect(1).says(words);

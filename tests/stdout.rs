@@ -34,6 +34,11 @@ const REQUESTS: &[&str] = &[
     "evaluate m.json lg/log.csv --json",
     "predict m.json -",
     "predict m.json lg/log.csv --out predicted.csv",
+    "live --source lg/log.csv --model m.json",
+    "live --source lg/log.csv --model m.json --plan",
+    "record --source lg/log.csv --out recorded.csv --replace",
+    "mouse --source lg/log.csv --model m.json --plan",
+    "switch evaluate sw.toml lg/log.csv --model m.json --contact Fz_N<-0.2 --out judged --json",
     "analyse m.json",
     "prune lg/log.csv --validate lg/log.csv --target force --json",
     "simulate --print-params",
@@ -60,6 +65,7 @@ const REQUESTS: &[&str] = &[
 fn bench() -> Dir {
     let dir = Dir::new();
     dir.write("p.toml", PIPELINE);
+    dir.write("sw.toml", "on_N = 0.5\noff_N = 0.3\n");
     dir.write("trials.csv", "operator,method,trial,time_s\nA,pendant,1,200\nA,virtual,1,100\n");
     for request in [
         "phantom video --seed 1 --seconds 0.2 --size 320x240 --out v -q",

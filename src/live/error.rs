@@ -22,6 +22,8 @@ pub enum LiveError {
     Exists(PathBuf),
     #[error("{}: can't be written ({why}); what was recorded until then is kept", path.display())]
     Write { path: PathBuf, why: io::Error },
+    #[error("standard output: cannot be written ({0}); make room, or send it elsewhere")]
+    Rows(io::Error),
     #[error("{place}: {what}")]
     Source { place: String, what: String },
     #[error("{}: {what}", path.display())]

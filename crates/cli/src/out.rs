@@ -4,6 +4,7 @@
 //! kept, what follows is not written any more, and [`finish`] hands it out.
 
 use std::io::{self, ErrorKind, Write};
+use std::os::fd::{AsFd, OwnedFd};
 use std::sync::{Mutex, PoisonError};
 
 static FAILED: Mutex<Option<io::Error>> = Mutex::new(None);
@@ -41,4 +42,9 @@ pub(super) fn finish() -> io::Result<()> {
         Some(why) if why.kind() != ErrorKind::BrokenPipe => Err(why),
         _ => Ok(()),
     }
+}
+
+/// Standard output for a session that writes rows as its reader takes them.
+pub(super) fn descriptor() -> io::Result<OwnedFd> {
+    io::stdout().as_fd().try_clone_to_owned()
 }

@@ -10,13 +10,13 @@
 
 mod columns;
 mod decide;
+mod open;
 mod pipe;
 mod pointer;
 mod recording;
 mod report;
 mod run;
 mod sensor;
-mod table_rows;
 
 pub(crate) use columns::StreamColumns;
 pub use pointer::PointerCounts;

@@ -5,6 +5,7 @@
 //! can wait (a file played back as fast as possible, a pipe), so does the session, and nothing is left out.
 
 use std::collections::VecDeque;
+use std::io;
 use std::os::fd::{AsFd, BorrowedFd, OwnedFd};
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
@@ -90,8 +91,8 @@ impl Pipe {
     }
 
     /// Why rows could not be written; a reader that has gone away is no fault.
-    pub(crate) fn failed(&self) -> Option<String> {
-        Some(format!("rows can't be written ({}); make room, or send them elsewhere", self.failed?))
+    pub(crate) fn failed(&self) -> Option<io::Error> {
+        self.failed.map(io::Error::from)
     }
 
     /// Rows that were left out as the reader was too slow.

@@ -11,19 +11,19 @@ use std::time::Instant;
 
 use lunula_live::latency::Latency as Times;
 use lunula_live::pointer::Config;
-use lunula_live::source::{Address, Condition, Event, Form, HostClock, Pace, Place, SourceFault, Stream, wait};
+use lunula_live::source::{Address, Condition, Event, Form, HostClock, Pace, Place, Stream, wait};
 use lunula_live::switch::Switch;
 use lunula_live::time::ClockFit;
 use lunula_live::wire::{Naming, Row, Spoil, SpoiltRows};
 
 use super::columns::StreamColumns;
 use super::decide::{Answers, Decide, SwitchOutput};
+use super::open::{named, open_stream, source_fault};
 use super::pipe::Pipe;
 use super::pointer::{PointerOutput, read_mouse};
 use super::recording::Recording;
 use super::report::{Latency, SessionFigures, SessionReport};
 use super::sensor::Sensor;
-use super::table_rows::open_stream;
 use crate::files::{Places, beside};
 use crate::job::{Report, Watch};
 use crate::live::error::LiveError;
@@ -220,26 +220,6 @@ impl Found {
     }
 }
 
-/// How a source is named in messages.
-fn named(source: &Address) -> String {
-    match &source.place {
-        Place::Stdin => "standard input".to_owned(),
-        Place::File { path, .. } => path.display().to_string(),
-        _ => source.to_string(),
-    }
-}
-
-/// Why a source gives nothing.
-pub(super) fn source_fault(source: &Address, why: SourceFault) -> LiveError {
-    let what = match why {
-        SourceFault::Open { what, .. } => what,
-        SourceFault::Wire { fault, .. } => fault.to_string(),
-        SourceFault::Read { why, .. } => format!("can't be read ({why})"),
-        SourceFault::Address { what, .. } => what,
-    };
-    LiveError::Source { place: named(source), what }
-}
-
 /// Spoilt rows of one kind, in words.
 fn spoilt_words(rows: &SpoiltRows) -> String {
     let SpoiltRows { kind, count, line, text } = rows;
@@ -289,6 +269,7 @@ struct Core<'a> {
     log: &'a LogReading,
     seconds: Option<f64>,
     waits: bool,
+    is_live: bool,
     asked: Option<Asked>,
     recording: Option<Recording>,
     decide: Option<Decide>,
@@ -343,6 +324,7 @@ impl<'a> Session<'a> {
             log: &options.log,
             seconds: options.seconds,
             // What comes down a pipe can wait in it.
+            is_live: stream.is_live(),
             waits: !stream.is_live() || options.source.place == Place::Stdin,
             asked: None,
             recording,
@@ -471,7 +453,12 @@ impl<'a> Session<'a> {
         };
         if let Some(mut answers) = answers {
             answers.readers.iter_mut().for_each(Pipe::finish);
-            failed.extend(answers.readers.iter().filter_map(Pipe::failed));
+            let unwritten = answers.readers.iter().find_map(Pipe::failed).map(LiveError::Rows);
+            // Where rows are all that a session gives there is nothing then.
+            match unwritten {
+                Some(why) if files.out.is_none() => return Err(why),
+                why => failed.extend(why.map(|why| why.to_string())),
+            }
             let sensor = &answers.sensor;
             figures.columns = Answers::header(sensor, answers.switch.is_some());
             (figures.answered, figures.rows_not_known) = (sensor.lit, sensor.not_known);
@@ -558,6 +545,8 @@ impl Core<'_> {
     }
 
     fn row(&mut self, row: &Row<'_>) {
+        // Of a recording many rows are handed out at one time.
+        let begin_ns = if self.is_live { row.host_ns } else { self.clock.now_ns() };
         self.spoilt.rows += 1;
         self.any = true;
         if let Some(fit) = &self.clock_fit {
@@ -579,7 +568,7 @@ impl Core<'_> {
         if let (Some(seconds), Some([from_s, to_s])) = (self.seconds, decide.span_s) {
             self.ends |= to_s - from_s >= seconds;
         }
-        self.work.record_ns(self.clock.now_ns().saturating_sub(row.host_ns));
+        self.work.record_ns(self.clock.now_ns().saturating_sub(begin_ns));
     }
 
     fn advance(&mut self, now_s: f64) {

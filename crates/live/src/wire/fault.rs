@@ -16,7 +16,7 @@ pub enum WireFault {
     /// Rows come, and nothing says what their columns are.
     #[error(
         "line {line} holds numbers (`{text}`) and no line of names came before it: begin with a line such as \
-         time_us,n,led,P1,P2 (reset the device if it writes one when it starts), or give the names with --columns"
+         time_us,n,led,P1,P2 (reset the device if it writes one when it starts), or give the names with --names"
     )]
     NoNames {
         /// A line of numbers.

@@ -14,7 +14,7 @@ use lunula::words::shown_lines;
 use serde_json::json;
 
 use crate::jobs::{JobArgs, Plan, show};
-use crate::{Common, Outcome};
+use crate::{Common, Outcome, out};
 
 /// Answer a sensor's samples as they come: forces, angle, switch (6.1)
 ///
@@ -110,7 +110,7 @@ pub(crate) fn run_live(args: &LiveArgs) -> anyhow::Result<Outcome> {
         return show(common, "live", &Plan::from(live_steps(options, &files)));
     }
     let tell = |what: &str| tell(common, what);
-    let rows = std::os::fd::AsFd::as_fd(&std::io::stdout()).try_clone_to_owned()?;
+    let rows = out::descriptor()?;
     let watch = Watch { said: &args.given.said, stop: &stop, tick: &|_, _| {} };
     let report = live(options, &files, Readers { rows: Some(rows), tell: &tell }, &watch)?;
     if common.json {
@@ -171,7 +171,7 @@ pub(crate) fn run_stream(
     };
     let files = SessionFiles { models: models.to_vec(), ..SessionFiles::default() };
     let tell = |what: &str| tell(common, what);
-    let rows = std::os::fd::AsFd::as_fd(&std::io::stdout()).try_clone_to_owned()?;
+    let rows = out::descriptor()?;
     let watch = Watch { said: &given.said, stop: &stop, tick: &|_, _| {} };
     let report = live(&options, &files, Readers { rows: Some(rows), tell: &tell }, &watch)?;
     report.failed.iter().for_each(|what| eprintln!("failed: {}", shown_lines(what)));

@@ -1,16 +1,19 @@
-//! Opening what is no bytes: Parquet tables and XDF recordings as rows of a stream, generated fingers.
+//! Opening a session's source; what is no bytes, Parquet tables and generated fingers, as rows.
 
 use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use lunula_live::source::{Place, Rows, Stream, StreamOptions as WireOptions};
+use lunula_live::source::{Address, Place, Rows, SourceFault, Stream, StreamOptions as WireOptions};
 use lunula_live::wire::{Meaning, Naming, Use};
+use toml::Table;
 
+use crate::job::read;
 use crate::live::error::LiveError;
 use crate::live::options::StreamOptions;
-use crate::live::session::run::source_fault;
+use crate::phantom::log::LiveLog;
+use crate::phantom::request::LogRequest;
 use crate::predictor::GROUPS;
-use crate::table::Table;
+use crate::table;
 
 /// Opens a session's source at `now_ns` of its clock.
 ///
@@ -29,6 +32,11 @@ pub(super) fn open_stream(options: &StreamOptions, naming: Naming, now_ns: u64) 
             let rows = Box::new(TableRows::read(path)?);
             let name = source.to_string();
             Ok(Stream::of_rows(name, rows, (*pace, *looped), source.volts_per_count, &wire, naming))
+        }
+        Place::Phantom { kind, settings, pace } => {
+            let named = |what: String| LiveError::Source { place: source.to_string(), what };
+            let rows = Box::new(PhantomRows::new(kind, settings).map_err(named)?);
+            Ok(Stream::of_rows(source.to_string(), rows, (*pace, false), source.volts_per_count, &wire, naming))
         }
         Place::File { path, .. } if is_xdf(path) => Err(LiveError::Source {
             place: source.to_string(),
@@ -63,7 +71,7 @@ struct TableRows {
 
 impl TableRows {
     fn read(path: &Path) -> Result<Self, LiveError> {
-        let table = Table::read(path)?;
+        let table = table::Table::read(path)?;
         let mut rows = Self {
             names: table.names().to_vec(),
             numbers: Vec::new(),
@@ -115,5 +123,69 @@ impl Rows for TableRows {
     fn rewind(&mut self) -> Result<(), String> {
         self.row = 0;
         Ok(())
+    }
+}
+
+/// How a source is named in messages.
+pub(super) fn named(source: &Address) -> String {
+    match &source.place {
+        Place::Stdin => "standard input".to_owned(),
+        Place::File { path, .. } => path.display().to_string(),
+        _ => source.to_string(),
+    }
+}
+
+/// Why a source gives nothing.
+pub(super) fn source_fault(source: &Address, why: SourceFault) -> LiveError {
+    let what = match why {
+        SourceFault::Open { what, .. } => what,
+        SourceFault::Wire { fault, .. } => fault.to_string(),
+        SourceFault::Read { why, .. } => format!("can't be read ({why})"),
+        SourceFault::Address { what, .. } => what,
+    };
+    LiveError::Source { place: named(source), what }
+}
+
+/// The setting of a phantom's samples a second; `rate` is how fast it is played.
+const HZ: &str = "hz";
+
+/// A generated finger, without end unless its length is given.
+struct PhantomRows {
+    names: Vec<String>,
+    log: LiveLog,
+}
+
+impl PhantomRows {
+    /// `kind` is a protocol of `lunula phantom log`, the settings its options.
+    fn new(kind: &str, settings: &[(String, String)]) -> Result<Self, String> {
+        let mut table = Table::new();
+        table.insert("protocol".to_owned(), kind.into());
+        for (key, text) in settings {
+            let key = if key == HZ { "rate" } else { key };
+            let value = match text.parse::<f64>() {
+                _ if text.is_empty() => true.into(),
+                Ok(number) if number.fract() == 0.0 && number.abs() < 1e15 => (number as i64).into(),
+                Ok(number) => number.into(),
+                Err(_) => text.as_str().into(),
+            };
+            table.insert(key.replace('-', "_"), value);
+        }
+        let request = read::<LogRequest>(&table, "a phantom").map_err(|why| why.to_string())?.options;
+        let options = request.options().map_err(|why| format!("{why:#}"))?;
+        let endless = !table.contains_key("seconds");
+        let log = LiveLog::new(&options, endless).map_err(|why| why.to_string())?;
+        Ok(Self { names: log.names().into_iter().map(str::to_owned).collect(), log })
+    }
+}
+
+impl Rows for PhantomRows {
+    fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    fn next(&mut self, cells: &mut [f64], _: &mut [Vec<u8>]) -> Result<bool, String> {
+        let Some(row) = self.log.next() else { return Ok(false) };
+        cells.copy_from_slice(&row.values);
+        Ok(true)
     }
 }
