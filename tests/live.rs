@@ -347,7 +347,7 @@ fn bad_sources_are_said_with_what_to_do() {
         ("serial:/dev/ttyX?bd=3", "there is no `bd` here"),
         ("serial:/dev/ttyX?baud=x", "no number of bits in a second"),
         ("tcp:host", "is no HOST:PORT"),
-        ("r.csv?rate=0", "write `max` or a number such as 1"),
+        ("r.csv?rate=0", "`rate=0`: write a number above zero"),
         ("lsl:name=x", "lsl"),
         ("", "it names nothing"),
     ] {

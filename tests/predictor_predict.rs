@@ -396,7 +396,7 @@ fn a_stream_of_names_alone_and_an_empty_one() {
     let dark = streamed(&dir, &["force.json", "-"], &log).expect(0).says("the unlit row before it is taken away");
     assert_eq!(dark.stdout, "time_s,Fx_N,Fy_N,Fz_N\n0,,,\n0.04,,,\n");
     let numbers = "1,2,3,4,5,6,7,8,9,10,11,12,13\n";
-    streamed(&dir, &["force.json", "-"], numbers).expect(2).says("names of the columns");
+    streamed(&dir, &["force.json", "-"], numbers).expect(2).says("no line of names came before it");
     streamed(&dir, &["force.json", "-", "--out", "p.csv"], "").expect(2).says("leave --out away");
     streamed(&dir, &["nowhere.json", "-"], "").expect(2).says("nowhere.json");
 }

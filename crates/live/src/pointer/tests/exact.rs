@@ -93,7 +93,9 @@ proptest! {
                 let mut out = |event: Event| {
                     wrong += u32::from(!event.t_s().is_finite());
                     match event {
-                        Event::Move { dx, dy, .. } => reported = [reported[0] + f64::from(dx), reported[1] + f64::from(dy)],
+                        Event::Move { dx, dy, .. } => {
+                            reported = [reported[0] + f64::from(dx), reported[1] + f64::from(dy)];
+                        }
                         Event::Button { down: now, .. } => {
                             wrong += u32::from(now == down);
                             down = now;
