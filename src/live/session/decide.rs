@@ -269,7 +269,8 @@ impl SwitchOutput {
         let Some((path, to)) = &mut self.events else { return Ok(()) };
         let config = self.switch.config();
         let name = self.name.as_deref().or(config.name.as_deref());
-        let written = event.write_json(to, config.finger.as_deref(), name).and_then(|()| to.flush());
+        let key = if config.column.is_some() { "value" } else { "force_N" };
+        let written = event.write_json(to, key, config.finger.as_deref(), name).and_then(|()| to.flush());
         written.map_err(|why| LiveError::Write { path: path.clone(), why })
     }
 }

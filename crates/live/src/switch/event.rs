@@ -63,11 +63,17 @@ pub struct SwitchEvent {
 
 impl SwitchEvent {
     /// A line of JSON: `{"t":12.08,"event":"press","reason":"value","finger":"index","switch":"x+","force_N":0.61,
-    /// "delay_s":0.04}`; what is not known is left out. Nothing is allocated.
+    /// "delay_s":0.04}`; what is not known is left out, `value` is the key of the value. Nothing is allocated.
     ///
     /// # Errors
     /// The writer's.
-    pub fn write_json(&self, to: &mut impl Write, finger: Option<&str>, switch: Option<&str>) -> io::Result<()> {
+    pub fn write_json(
+        &self,
+        to: &mut impl Write,
+        value: &str,
+        finger: Option<&str>,
+        switch: Option<&str>,
+    ) -> io::Result<()> {
         let turn = match self.turn {
             Turn::Press => "press",
             Turn::Release => "release",
@@ -80,7 +86,7 @@ impl SwitchEvent {
             }
         }
         if self.value.is_finite() {
-            write!(to, ",\"force_N\":{}", self.value)?;
+            write!(to, ",\"{value}\":{}", self.value)?;
         }
         // Without the rounding of a difference of times.
         writeln!(to, ",\"delay_s\":{}}}", (self.delay_s * 1e9).round() / 1e9)

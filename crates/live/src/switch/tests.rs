@@ -352,7 +352,7 @@ fn a_file_is_read_checked_and_written_back() {
 fn events_are_lines_of_json() {
     let event = SwitchEvent { t_s: 12.08, turn: Turn::Press, reason: Reason::Value, value: 0.61, delay_s: 0.04 };
     let mut line = Vec::new();
-    event.write_json(&mut line, Some("index"), Some("x+ \"fast\"")).unwrap();
+    event.write_json(&mut line, "force_N", Some("index"), Some("x+ \"fast\"")).unwrap();
     let line: serde_json::Value = serde_json::from_slice(&line).unwrap();
     let expected = serde_json::json!({"t": 12.08, "event": "press", "reason": "value", "finger": "index",
         "switch": "x+ \"fast\"", "force_N": 0.61, "delay_s": 0.04});
