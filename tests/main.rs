@@ -21,6 +21,7 @@ mod merge;
 mod nail_axes;
 mod nail_axes_drawn;
 mod parsers;
+mod phantom_contacts;
 mod phantom_log;
 mod phantom_nail;
 mod phantom_photos;
