@@ -23,6 +23,7 @@ mod nail_axes;
 mod nail_axes_drawn;
 mod parsers;
 mod performance;
+mod phantom_contacts;
 mod phantom_log;
 mod phantom_nail;
 mod phantom_photos;

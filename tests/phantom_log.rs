@@ -151,12 +151,12 @@ fn lost_rows_change_nothing_of_the_others() {
     let whole = LogScene::new(LogOptions { seconds: 20.0, ..LogOptions::default() }).unwrap();
     let holey = LogOptions { dropped: 0.1, gaps_s: vec![[4.0, 1.5], [9.0, 0.2]], ..whole.options().clone() };
     let holey = LogScene::new(holey).unwrap();
-    let lost = whole.rows().len() - holey.rows().len();
+    let (all_rows, left) = (whole.rows(), holey.rows());
+    let lost = all_rows.len() - left.len();
     // 42 in the gaps, and of the other 508 a tenth: 51 with a standard deviation of 7.
     assert!((70..=120).contains(&lost), "{lost}");
-    let whole = whole.rows();
-    for row in holey.rows() {
-        assert_eq!(row, whole[row.sample]);
+    for row in &left {
+        assert_eq!(row, &all_rows[row.sample]);
         assert!(!(4.0..5.5).contains(&row.scene_s) && !(9.0..9.2).contains(&row.scene_s));
     }
     let all = LogScene::new(LogOptions { dropped: 1.0, ..LogOptions::default() }).unwrap();
@@ -168,13 +168,13 @@ fn lost_rows_change_nothing_of_the_others() {
 
 #[test]
 fn stamps_err_repeat_and_jump_as_asked() {
-    let usual = LogScene::new(LogOptions::default()).unwrap();
+    let usual = LogScene::new(LogOptions::default()).unwrap().rows();
     let stamps = |change: &dyn Fn(&mut LogOptions)| -> Vec<[f64; 2]> {
         let mut options = LogOptions::default();
         change(&mut options);
         let scene = LogScene::new(options).unwrap();
-        assert!(scene.rows().iter().zip(usual.rows()).all(|(a, b)| a.log_s == b.log_s && a.read_v == b.read_v));
-        scene.rows().iter().map(|row| [row.stamp_s - row.log_s, row.scene_s]).collect()
+        assert!(scene.samples().zip(&usual).all(|(a, b)| a.log_s == b.log_s && a.read_v == b.read_v));
+        scene.samples().map(|row| [row.stamp_s - row.log_s, row.scene_s]).collect()
     };
     let jittered = stamps(&|options| options.jitter_s = 0.03);
     assert!(jittered.iter().all(|[late, _]| late.abs() <= 0.03) && jittered.iter().any(|[late, _]| *late > 0.02));
@@ -228,8 +228,7 @@ fn the_ambient_light_swings_by_what_is_asked_for() {
         let options = LogOptions { seconds: 120.0, rate_hz: 101.0, ambient_swing: swing, ..LogOptions::default() };
         let scene = LogScene::new(options).unwrap();
         let share = scene.sensor().photodiodes[0].ambient * 0.5;
-        let rows = scene.rows();
-        let light = rows.iter().map(|row| (row.unlit_v[0] - scene.sensor().photodiodes[0].dark_v) / share - 1.0);
+        let light = scene.samples().map(|row| (row.unlit_v[0] - scene.sensor().photodiodes[0].dark_v) / share - 1.0);
         let greatest = light.fold(0.0, |greatest: f64, part| greatest.max(part.abs()));
         assert!(greatest <= swing + 1e-12 && greatest >= 0.7 * swing, "{greatest}");
     }
@@ -297,7 +296,7 @@ fn bad_options_are_refused_all_at_once() {
     refused("--gap now").says("`now` is not FROM+LENGTH");
     refused("--clock-jump 5").says("`5` is not TIME+SECONDS");
     refused("--trajectory nowhere.csv")
-        .says("--trajectory is eq27, free, random, even, rest or a table")
+        .says("--trajectory is eq27, free, random, even, rest, sway or a table")
         .says("nowhere.csv");
     assert!(!dir.path("out").exists());
     refused("--protocol touch --follow 0.5 --posture-shift -1")

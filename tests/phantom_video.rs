@@ -607,7 +607,7 @@ fn bad_options_are_refused_all_at_once() {
     run(&["--depth", "12"]).says("--depth 12: choose 8 or 10");
     run(&["--joints", "J4"]).says("--joints J4: there are J1, J2, J3");
     run(&["--hide", "middle_dist"]).says("is not NAME@FRAME+N");
-    run(&["--trajectory", "nowhere.csv"]).says("--trajectory is eq27, free, random, even, rest or a table");
+    run(&["--trajectory", "nowhere.csv"]).says("--trajectory is eq27, free, random, even, rest, sway or a table");
     run(&["--blur", "nan"]).says("--blur NaN: choose 0 to 1");
     assert!(!dir.path("out").exists());
 }

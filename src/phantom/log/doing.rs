@@ -9,8 +9,8 @@
 //! posture on the force measurement platform" for what changes between repetitions. While it touches, or rests, J2 is
 //! off straight by a share of it from -1 to 1 that is the seed's, and J3 by two thirds of that.
 //!
-//! **Contacts** ([`ForceTrajectory::Contacts`](crate::phantom::motion::force::ForceTrajectory::Contacts)): a finger that
-//! makes them of its own accord bends for them as well.
+//! **Contacts** ([`ForceTrajectory::Contacts`](crate::phantom::motion::force::ForceTrajectory::Contacts)): a finger
+//! that makes them of its own accord bends for them as well.
 
 use rand::RngExt;
 

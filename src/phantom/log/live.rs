@@ -6,8 +6,8 @@ use super::{Faults, LogOptions, Row, Stamps};
 use crate::phantom::sensor::CHANNELS;
 use crate::table::{Column, Value, number_text};
 
-/// A log that is being taken. Its rows are those of [`LogScene`](super::LogScene) with the same options, its lines those
-/// of `log.csv`.
+/// A log that is being taken. Its rows are those of [`LogScene`](super::LogScene) with the same options, its lines
+/// those of `log.csv`.
 ///
 /// ```
 /// use lunula::phantom::log::{LiveLog, LogOptions, Protocol};

@@ -11,11 +11,11 @@
 //!   reading in the log;
 //! - `truth/angles.csv`: the exact angles as a table of `lunula posture`, 30 frames a second of the video's time,
 //!   `clock_s` the log's clock: `lunula align` labels the log with them where no video was made;
-//! - `truth/contacts.csv`, where the finger makes contacts of its own accord ([`contacts`](crate::phantom::contacts)): one
-//!   row for each contact or near miss: `kind`, `start_s,end_s` (the video's time), `log_start_s,log_end_s` (the log's
-//!   clock, without jumps), all exact, `peak_N`; a near miss that touches nothing is there from when the finger begins to
-//!   bend until it is back. There, `truth/log.csv` has a column `contact`: 1 where the exact pressing is above 0 in a
-//!   contact that is no near miss;
+//! - `truth/contacts.csv`, where the finger makes contacts of its own accord ([`contacts`](crate::phantom::contacts)):
+//!   one row for each contact or near miss: `kind`, `start_s,end_s` (the video's time), `log_start_s,log_end_s` (the
+//!   log's clock, without jumps), all exact, `peak_N`; a near miss that touches nothing is there from when the finger
+//!   begins to bend until it is back. There, `truth/log.csv` has a column `contact`: 1 where the exact pressing is
+//!   above 0 in a contact other than a near miss;
 //! - `truth/log.json`: every parameter.
 //!
 //! The computer's clock decides when samples are taken: evenly on it, so that its drift is theirs. log time = offset +

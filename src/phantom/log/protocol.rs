@@ -1,5 +1,5 @@
-//! The thesis' protocols (3.3, 5.2.4, 5.3): what a finger is prompted to do, one after the other; and what it does of its
-//! own accord while a sensor is worn for hours: contacts, and none.
+//! The thesis' protocols (3.3, 5.2.4, 5.3): what a finger is prompted to do, one after the other; and what it does of
+//! its own accord while a sensor is worn for hours: contacts, and none.
 
 use lunula_predictor::Bending;
 use serde::Serialize;

@@ -1,4 +1,4 @@
-//! A log that is settled: its sensor, its light, and its rows with their truth.
+//! A log that is settled: its sensor, its light, and the rows that are taken of it.
 
 use super::doing::shift_rad;
 use super::samples::{FULL_V, Row, Samples};

@@ -1,25 +1,25 @@
 //! What a finger does of its own accord: it presses, holds, slides, taps, nearly presses, and rests in between.
 //!
-//! In: [`Contacts`], a seed and the kinds. Out: one [`Contact`] after the other, each with its exact times and force; the
-//! same at every time whatever is asked for before, without end.
+//! In: [`Contacts`], a seed and the kinds. Out: one [`Contact`] after the other, each with its exact times and force;
+//! the same at every time whatever is asked for before, without end.
 //!
-//! Time from 0 on goes in blocks of forty mean pauses and a minute. Within a block a pause is followed by a contact until
-//! the next would pass the block's end; a pause lasts between 1/3 and 5/3 of its mean. All of this is *assumed*: the
-//! thesis describes no use of a switch. Of [`WEIGHTS`], the shares of the kinds that are chosen:
+//! Time from 0 on goes in blocks of forty mean pauses and a minute. Within a block a pause is followed by a contact
+//! until the next would pass the block's end; a pause lasts between 1/3 and 5/3 of its mean. All of this is *assumed*:
+//! the thesis describes no use of a switch. Of [`WEIGHTS`], the shares of the kinds that are chosen:
 //!
 //! | kind | weight | at the surface | pressing | J2 bends by |
 //! |---|---|---|---|---|
 //! | press | 8 | rises in 0.08 to 0.25 s, holds 0.15 to 1.5 s, lets go in 0.06 to 0.2 s | 0.5 to 3 N | 2 to 6 degrees |
 //! | hold | 2 | the same, holds 2 to 6 s, swinging down by up to 0.3 of it at 0.2 to 1 Hz | 0.5 to 3 N | 2 to 6 |
-//! | slide | 2 | the same, holds 0.4 to 2.5 s; the shear grows to 0.5 to 0.9 of what friction holds and turns | 0.5 to 3 N | 2 to 6 |
-//! | tap | 4 | 0.08 to 0.2 s | 0.5 to 1.5 N | 2 to 6 |
+//! | slide | 2 | the same, holds 0.4 to 2.5 s, its shear 0.5 to 0.9 of friction's most | 0.5 to 3 N | 2 to 6 |
+//! | tap | 4 | 0.08 to 0.2 s | 1 to 3 N | 2 to 6 |
 //! | hover | 3 | near miss: 0.1 to 1 s above it | none | 3 to 12 |
 //! | brush | 1 | near miss: 0.1 to 0.5 s | 0.01 to 0.05 N | 2 to 6 |
 //! | bend | 1 | far from it: 0.5 to 2 s | none | 15 to 60 |
 //!
 //! The finger bends before it touches and straightens after it has let go, in 0.15 to 0.4 s (bend: 0.5 to 1.5 s); J1
-//! bends 2.5 times as far as J2 (bend: half as far), J3 by two thirds. A press, hold, tap or brush has a shear of up to a
-//! fifth of what friction holds, in one direction.
+//! bends 2.5 times as far as J2 (bend: half as far), J3 by two thirds. A press, hold, tap or brush has a shear of up to
+//! a fifth of what friction holds, in one direction.
 
 use std::f64::consts::TAU;
 
@@ -81,7 +81,7 @@ impl ContactKind {
     /// All of them.
     pub const ALL: [Self; 7] = [Self::Press, Self::Hold, Self::Slide, Self::Tap, Self::Hover, Self::Brush, Self::Bend];
 
-    /// Whether a switch should see it: a near miss is none.
+    /// Whether a switch should see it, which it should not of a near miss.
     #[must_use]
     pub fn presses(self) -> bool {
         matches!(self, Self::Press | Self::Hold | Self::Slide | Self::Tap)
@@ -99,7 +99,7 @@ impl ContactKind {
 pub struct Contacts {
     /// Which kinds there are; none: the finger rests.
     pub kinds: Vec<ContactKind>,
-    /// The mean pause between two, seconds.
+    /// The mean pause between two, seconds, more than 0.
     pub pause_s: f64,
     /// Where the random numbers come from.
     pub seed: u64,
@@ -156,7 +156,7 @@ impl Contact {
         });
         let peak_n = within(match kind {
             ContactKind::Press | ContactKind::Hold | ContactKind::Slide => [0.5, 3.0],
-            ContactKind::Tap => [0.5, 1.5],
+            ContactKind::Tap => [1.0, 3.0],
             ContactKind::Brush => BRUSH_N,
             ContactKind::Hover | ContactKind::Bend => [0.0, 0.0],
         });
@@ -186,8 +186,8 @@ impl Contact {
         Self { kind, begin_s, reached_s, left_s, over_s, peak_n, rise_s, fall_s, swing, shear, turn, bend_rad }
     }
 
-    /// When it is said to be, seconds: while there is a force; of near misses without one from the bending's beginning to
-    /// its end.
+    /// When it is said to be, seconds: while there is a force; of near misses without one from the bending's beginning
+    /// to its end.
     #[must_use]
     pub fn span_s(&self) -> [f64; 2] {
         if self.kind.touches() { [self.reached_s, self.left_s] } else { [self.begin_s, self.over_s] }
@@ -220,37 +220,41 @@ impl Contact {
 }
 
 impl Contacts {
-    /// The usual mean pause, seconds.
+    /// The default mean pause, seconds.
     pub const PAUSE_S: f64 = 3.0;
 
-    /// The contacts of time `block`.
+    /// The contacts of the block of time `block`.
     fn block(&self, block: u32) -> Vec<Contact> {
+        if self.pause_s <= 0.0 || !self.pause_s.is_finite() {
+            return Vec::new();
+        }
         let mut rng = numbers(self.seed, KIND_CONTACTS, block);
         let length_s = self.block_s();
         let mut at_s = f64::from(block) * length_s;
         let end_s = at_s + length_s;
-        let weights = self.kinds.iter().map(|kind| WEIGHTS[*kind as usize]);
-        let sum: u32 = weights.clone().sum();
         let mut all = Vec::new();
-        while sum > 0 {
+        loop {
             at_s += self.pause_s * rng.random_range(PAUSE[0]..=PAUSE[1]);
-            let mut left = rng.random_range(0..sum);
-            let kind = self.kinds.iter().zip(weights.clone()).find(|(_, weight)| match left.checked_sub(*weight) {
-                Some(rest) => {
-                    left = rest;
-                    false
-                }
-                None => true,
-            });
-            let Some((kind, _)) = kind else { break };
-            let contact = Contact::draw(*kind, at_s, &mut rng);
+            let Some(kind) = self.draw_kind(&mut rng) else { return all };
+            let contact = Contact::draw(kind, at_s, &mut rng);
             if contact.over_s > end_s {
-                break;
+                return all;
             }
             at_s = contact.over_s;
             all.push(contact);
         }
-        all
+    }
+
+    /// One of the kinds by its weight; none where there are none.
+    fn draw_kind(&self, rng: &mut ChaCha8Rng) -> Option<ContactKind> {
+        let weight = |kind: ContactKind| WEIGHTS[kind as usize];
+        let sum: u32 = self.kinds.iter().map(|kind| weight(*kind)).sum();
+        let drawn = (sum > 0).then(|| rng.random_range(0..sum))?;
+        let mut passed = 0;
+        self.kinds.iter().copied().find(|kind| {
+            passed += weight(*kind);
+            drawn < passed
+        })
     }
 
     fn block_s(&self) -> f64 {
@@ -292,5 +296,104 @@ impl Sequence {
         }
         let next = self.within.partition_point(|contact| contact.over_s <= t_s);
         self.within.get(next).filter(|contact| contact.begin_s < t_s && contact.over_s <= self.until_s)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn all(seed: u64) -> Contacts {
+        Contacts { kinds: ContactKind::ALL.to_vec(), pause_s: Contacts::PAUSE_S, seed }
+    }
+
+    #[test]
+    fn each_contact_is_as_its_kind_says_and_its_force_is_where_it_says() {
+        let mut counts = [0; 7];
+        for contact in all(1).until(20_000.0) {
+            counts[contact.kind as usize] += 1;
+            let Contact { kind, begin_s, reached_s, left_s, over_s, peak_n, .. } = contact;
+            let within = |[low, high]: [f64; 2], value: f64| {
+                assert!((low - 1e-9..=high + 1e-9).contains(&value), "{kind:?} {value}");
+            };
+            let (at_s, peaks_n) = match kind {
+                ContactKind::Press => ([0.29, 1.95], [0.5, 3.0]),
+                ContactKind::Hold => ([2.14, 6.45], [0.5, 3.0]),
+                ContactKind::Slide => ([0.54, 2.95], [0.5, 3.0]),
+                ContactKind::Tap => ([0.08, 0.2], [1.0, 3.0]),
+                ContactKind::Hover => ([0.1, 1.0], [0.0, 0.0]),
+                ContactKind::Brush => ([0.1, 0.5], [0.01, 0.05]),
+                ContactKind::Bend => ([0.5, 2.0], [0.0, 0.0]),
+            };
+            within(at_s, left_s - reached_s);
+            within(peaks_n, peak_n);
+            let (mut greatest, mut sheared, mut turned) = (0.0f64, 0.0f64, 0.0f64);
+            for k in 0..=10_000 {
+                let t_s = begin_s + f64::from(k) / 10_000.0 * (over_s - begin_s);
+                let [fx, fy, fz] = contact.forces_n(t_s);
+                let touches = kind.touches() && t_s > reached_s && t_s < left_s;
+                // Next to its ends a force is there, if too small to be worth a number.
+                assert!(if touches { fz < 0.0 || (t_s - reached_s).min(left_s - t_s) < 1e-6 } else { fz == 0.0 });
+                let mu = Spiral::default().mu;
+                assert!(fx.hypot(fy) <= -mu * fz + 1e-12, "within the cone");
+                greatest = greatest.max(-fz);
+                sheared = sheared.max(fx.hypot(fy) / (mu * peak_n));
+                turned = turned.max(contact.bend_rad(t_s)[1].to_degrees());
+            }
+            // Between two of the moments the greatest differs by the square of their distance.
+            assert!((greatest - peak_n).abs() <= 1e-4 * peak_n, "{kind:?} {greatest} {peak_n}");
+            let bends = match kind {
+                ContactKind::Hover => [3.0, 12.0],
+                ContactKind::Bend => [15.0, 60.0],
+                _ => [2.0, 6.0],
+            };
+            within(bends, turned);
+            if kind == ContactKind::Slide {
+                within([0.45, 0.9], sheared);
+            } else if kind.touches() {
+                within([0.0, 0.2], sheared);
+            }
+            assert_eq!((contact.bend_rad(begin_s), contact.bend_rad(over_s)), ([0.0; 3], [0.0; 3]));
+        }
+        // The shares of 21, within four standard deviations.
+        let sum = counts.iter().sum::<u32>();
+        assert!(sum > 3000, "{sum}");
+        for (count, weight) in counts.into_iter().zip(WEIGHTS) {
+            let share = f64::from(weight) / 21.0;
+            let sd = (f64::from(sum) * share * (1.0 - share)).sqrt();
+            assert!((f64::from(count) - share * f64::from(sum)).abs() <= 4.0 * sd, "{counts:?}");
+        }
+    }
+
+    #[test]
+    fn pauses_have_their_mean_and_no_two_contacts_meet() {
+        let contacts: Vec<Contact> = all(2).until(20_000.0).collect();
+        let pauses: Vec<f64> = contacts.windows(2).map(|pair| pair[1].begin_s - pair[0].over_s).collect();
+        assert!(pauses.iter().all(|pause| *pause >= 1.0 - 1e-9));
+        // Where two blocks meet, it is longer.
+        assert!(pauses.iter().filter(|pause| **pause > 5.0 + 1e-9).count() <= 20_000 / 180);
+        let mean = pauses.iter().sum::<f64>() / pauses.len() as f64;
+        assert!((mean / Contacts::PAUSE_S - 1.0).abs() <= 0.08, "{mean}");
+        assert!(all(2).until(20_000.0).eq(contacts.iter().copied()) && !all(3).until(20_000.0).eq(contacts.clone()));
+        // A shorter log has the first of them.
+        let fewer: Vec<Contact> = all(2).until(777.0).collect();
+        assert!(fewer.len() > 100 && fewer == contacts[..fewer.len()] && contacts[fewer.len()].over_s > 777.0);
+    }
+
+    #[test]
+    fn what_is_under_way_does_not_depend_on_what_was_asked_before() {
+        let contacts = all(4);
+        let mut sequence = Sequence::new(&contacts, 1000.0);
+        let listed: Vec<Contact> = contacts.until(1000.0).collect();
+        for k in (0..9000).chain((0..9000).rev().step_by(7)) {
+            let t_s = 0.123_4 * f64::from(k) - 5.0;
+            let expected = listed.iter().find(|contact| contact.begin_s < t_s && t_s < contact.over_s);
+            assert_eq!(sequence.at(t_s), expected, "{t_s}");
+        }
+        let none = Contacts { kinds: Vec::new(), ..contacts.clone() };
+        assert_eq!(none.until(1e4).count(), 0);
+        for pause_s in [0.0, -3.0, f64::NAN, f64::INFINITY] {
+            assert_eq!(Contacts { pause_s, ..contacts.clone() }.until(1e4).count(), 0, "{pause_s}");
+        }
     }
 }

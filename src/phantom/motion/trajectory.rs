@@ -75,8 +75,8 @@ pub enum Trajectory {
     },
     /// Straight and still: all angles 0, as while touching (5.2.4).
     Rest,
-    /// Straight but for what people do: J1 sways by up to 3 degrees and J2 by up to 1.5 at 0.02 to 0.2 Hz, J2 by up to 2
-    /// more at 0.0012 to 0.012 Hz, J3 by two thirds of J2 (assumed).
+    /// Straight but for what people do: J1 sways by up to 3 degrees and J2 by up to 1.5 at 0.02 to 0.2 Hz, J2 by up to
+    /// 2 more at 0.0012 to 0.012 Hz, J3 by two thirds of J2 (assumed).
     Sway {
         /// Where the random numbers come from.
         seed: u64,

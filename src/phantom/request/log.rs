@@ -82,7 +82,7 @@ pub struct LogRequest {
     #[arg(long, value_enum)]
     protocol: Option<ProtocolArg>,
     /// How well the finger follows: the standard deviation of its error as a share, about 0.3 s late (assumed; 5.2.2a
-    /// quotes 6 %); 0: exactly [default: 0; with a protocol 0.06]
+    /// quotes 6 %); 0: exactly [default: 0; with a protocol of the thesis 0.06]
     #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
     follow: Option<f64>,
     /// The finger touches or rests by up to so many degrees of J2 off straight, the same all along a log and another
@@ -94,10 +94,9 @@ pub struct LogRequest {
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     touch_from: Option<f64>,
     /// Joint angles over time: eq27, free (fully flexed to fully extended and back), random, even (random, all over
-    /// equation 27's range), rest (straight and still), sway (straight, as people rest), or a table (CSV or Parquet) with time_s, J1_deg, J2_deg, J3_deg
-    /// [default:
-    /// eq27; with --force spiral, normal, lateral or longitudinal rest, with contacts sway, with --force random or even
-    /// random, but eq27 with --touch-from]
+    /// equation 27's range), rest (straight and still), sway (straight, as people rest), or a table (CSV or Parquet)
+    /// with time_s, J1_deg, J2_deg, J3_deg [default: eq27; with --force spiral, normal, lateral or longitudinal rest,
+    /// with contacts sway, with --force random or even random, but eq27 with --touch-from]
     #[arg(long, value_name = "eq27|free|random|even|rest|sway|FILE")]
     trajectory: Option<String>,
     /// Bending rate f of equation 27; random movement has rates of 0.4 to 4 times it

@@ -35,8 +35,9 @@ pub struct VideoRequest {
     vfr: Option<f64>,
 
     /// Joint angles over time: eq27, free (fully flexed to fully extended and back), random, even (random, all over
-    /// equation 27's range), rest (straight and still), or a table (CSV or Parquet) with time_s, J1_deg, J2_deg, J3_deg
-    #[arg(long, value_name = "eq27|free|random|even|rest|FILE")]
+    /// equation 27's range), rest (straight and still), sway (straight, as people rest), or a table (CSV or Parquet)
+    /// with time_s, J1_deg, J2_deg, J3_deg
+    #[arg(long, value_name = "eq27|free|random|even|rest|sway|FILE")]
     trajectory: Option<String>,
     /// Bending rate f of equation 27; random movement has rates of 0.4 to 4 times it
     #[arg(long, value_name = "HZ")]

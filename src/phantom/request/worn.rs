@@ -6,6 +6,8 @@ use crate::phantom::motion::contacts::{ContactKind, Contacts};
 use crate::phantom::sensor::DisturbanceSizes;
 use crate::words::Words;
 
+const PER_HOUR: f64 = DisturbanceSizes::WORN.bumps_per_hour;
+
 /// What a worn sensor's log takes.
 #[derive(Debug, Clone, Args)]
 pub(super) struct WornRequest {
@@ -25,7 +27,7 @@ pub(super) struct WornRequest {
     #[arg(long, value_name = "VOLTS", allow_negative_numbers = true)]
     bumps: Option<f64>,
     /// So many bumps an hour (assumed)
-    #[arg(long, value_name = "N", default_value_t = DisturbanceSizes::WORN.bumps_per_hour, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value_t = PER_HOUR, allow_negative_numbers = true)]
     bumps_per_hour: f64,
     /// The hand is raised or lowered every five minutes, which changes the light by up to so much either way (assumed)
     /// [default: 0; with --protocol contacts or rest 0.005]

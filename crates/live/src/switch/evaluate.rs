@@ -4,7 +4,8 @@
 //! over for more than [`LATE_S`], and if no other press belongs to it already; else it is **false**, *repeated* where
 //! its contact has one already. A contact without a press is **missed**. **Delays** are from the contact's first row to
 //! the press and from the first row after it to the release, so they hold half a row's period of bias at most. The rate
-//! is that of false presses in all the time of which contact is known, touching or not.
+//! is that of false presses in all the time of which contact is known, touching or not; its interval is Garwood's, wider
+//! where recordings differ more than by chance ([`rate_of`]).
 
 use serde::Serialize;
 
@@ -12,7 +13,7 @@ use super::config::SwitchConfig;
 use super::contact::{Contact, Contacts};
 use super::event::{Reason, Turn};
 use super::machine::{Reading, Switch};
-use super::poisson::{Rate, rate_per_hour};
+use super::poisson::{Rate, dispersion, rate_of};
 
 /// How long after a contact's end a press may still be its own, seconds: assumed; blood follows within 0.4 s (4.3).
 const LATE_S: f64 = 0.5;
@@ -63,6 +64,8 @@ pub struct Evaluation {
     /// An hour; none without time.
     #[serde(flatten)]
     pub rate: Option<FalseRate>,
+    /// How much more recordings differ in it than chance alone makes them; 1: not more.
+    pub dispersion: f64,
     /// Contacts without a press.
     pub missed: usize,
     /// From true contact to the press, seconds; none without any.
@@ -94,6 +97,8 @@ impl From<Rate> for FalseRate {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Tally {
     pub(super) seconds: f64,
+    /// False switches and hours of each recording.
+    pub(super) recordings: Vec<(u64, f64)>,
     pub(super) presses: usize,
     pub(super) decisions: usize,
     pub(super) false_switches: u64,
@@ -172,11 +177,13 @@ impl Tally {
                 Fate::Missed => tally.missed += 1,
             }
         }
+        tally.recordings = vec![(tally.false_switches, tally.hours())];
         tally
     }
 
     pub(super) fn add(&mut self, other: &Self) {
         self.seconds += other.seconds;
+        self.recordings.extend(&other.recordings);
         self.presses += other.presses;
         self.decisions += other.decisions;
         self.false_switches += other.false_switches;
@@ -198,7 +205,8 @@ impl Tally {
             decisions: self.decisions,
             false_switches: self.false_switches,
             repeated: self.repeated,
-            rate: rate_per_hour(self.false_switches, self.hours()).map(FalseRate::from),
+            rate: rate_of(&self.recordings).map(FalseRate::from),
+            dispersion: dispersion(&self.recordings),
             missed: self.missed,
             delay_on_s: Quartiles::of(&self.delays_on_s),
             delay_off_s: Quartiles::of(&self.delays_off_s),

@@ -24,6 +24,6 @@ pub use contact::{Contact, Contacts};
 pub use evaluate::{Evaluation, FalseRate, Fate, Match, Quartiles, Trace, matches};
 pub use event::{Reason, SwitchEvent, Turn};
 pub use machine::{Reading, Switch};
-pub use poisson::{Rate, rate_per_hour};
+pub use poisson::{Rate, dispersion, rate_of, rate_per_hour};
 pub use rice::{NoiseRate, crossings_per_hour};
 pub use tune::{Candidate, Goal, TuneFault, Tuned, tune};

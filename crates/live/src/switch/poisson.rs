@@ -34,6 +34,38 @@ pub fn rate_per_hour(count: u64, hours: f64) -> Option<Rate> {
     Some(Rate { per_hour: k / hours, low: low / hours, high: high / hours })
 }
 
+/// How much more counts of recordings differ than chance alone makes them: chi-squared over its degrees of freedom, no
+/// less than 1; 1 of fewer than three recordings, or without any count. Each is a count and its hours.
+#[must_use]
+pub fn dispersion(recordings: &[(u64, f64)]) -> f64 {
+    let known = || recordings.iter().filter(|(_, hours)| *hours > 0.0);
+    let (count, hours) = known().fold((0.0, 0.0), |(count, hours), one| (count + one.0 as f64, hours + one.1));
+    let others = known().count() as f64 - 1.0;
+    if others < 2.0 || count == 0.0 {
+        return 1.0;
+    }
+    let squares = known().map(|one| {
+        let expected = count / hours * one.1;
+        (one.0 as f64 - expected).powi(2) / expected
+    });
+    (squares.sum::<f64>() / others).max(1.0)
+}
+
+/// The rate of several recordings: false switches come in heaps where one day's sensor sits worse than another's, and
+/// then the interval is as much wider as they differ more than by chance (quasi-Poisson: McCullagh, Nelder 1989, 6.2).
+#[must_use]
+pub fn rate_of(recordings: &[(u64, f64)]) -> Option<Rate> {
+    let (count, hours) = recordings.iter().fold((0, 0.0), |(count, hours), one| (count + one.0, hours + one.1));
+    let wider = dispersion(recordings);
+    let exact = rate_per_hour(count, hours)?;
+    if wider <= 1.0 || count == 0 {
+        return Some(exact);
+    }
+    let (k, tail) = (count as f64 / wider, 0.5 * (1.0 - LEVEL));
+    let end = |shape: f64, share: f64| wider * mean_below(shape, share) / hours;
+    Some(Rate { low: end(k, tail), high: end(k + 1.0, 1.0 - tail), ..exact })
+}
+
 /// The x with P(shape, x) = share, P the regularized lower incomplete gamma function: by halving, as it grows with x.
 fn mean_below(shape: f64, share: f64) -> f64 {
     let (mut low, mut high) = (0.0, shape + 10.0 * shape.sqrt() + 10.0);
@@ -61,6 +93,22 @@ mod tests {
         assert!(none.per_hour == 0.0 && none.low == 0.0 && (none.high - 14.979).abs() <= 1e-3, "{none:?}");
         assert_eq!(rate_per_hour(3, 0.0), None);
         assert_eq!(rate_per_hour(3, f64::NAN), None);
+    }
+
+    #[test]
+    fn heaps_widen_the_interval_and_chance_does_not() {
+        let even = [(4, 1.0), (5, 1.0), (3, 1.0), (4, 1.0)];
+        assert_eq!((dispersion(&even), rate_of(&even)), (1.0, rate_per_hour(16, 4.0)));
+        let heap = [(16, 1.0), (0, 1.0), (0, 1.0), (0, 1.0)];
+        // (12^2 + 3 x 4^2) / 4 / 3.
+        assert!((dispersion(&heap) - 16.0).abs() <= 1e-12);
+        let (wide, exact) = (rate_of(&heap).unwrap(), rate_per_hour(16, 4.0).unwrap());
+        // One event of 16: 0.025 to 5.57 of them.
+        assert!((wide.low - 4.0 * 0.0253).abs() <= 1e-3 && (wide.high - 4.0 * 5.572).abs() <= 1e-2, "{wide:?}");
+        assert!(wide.per_hour == exact.per_hour && wide.low < exact.low && wide.high > exact.high);
+        // Of two recordings nothing is known of how they differ.
+        assert_eq!(rate_of(&heap[..2]), rate_per_hour(16, 2.0));
+        assert_eq!(rate_of(&[(0, 1.0); 5]), rate_per_hour(0, 5.0));
     }
 
     #[test]

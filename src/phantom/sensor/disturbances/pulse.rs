@@ -1,8 +1,8 @@
 //! The heart's pulse in the light that comes back: less when the vessels fill.
 //!
-//! height = -(1 + 0.2 sin b) (sin h + 0.4 sin (2 h + 1)) / 1.376, h the heart's phase and b that of breathing. The heart
-//! beats at a mean rate from 0.8 to 1.3 Hz, which breathing and slower waves of 0.04 to 0.15 Hz move by some hundredths;
-//! breathing takes 0.2 to 0.3 Hz. All *assumed*, after the textbook's pulse of a resting person.
+//! height = -(1 + 0.2 sin b) (sin h + 0.4 sin (2 h + 1)) / 1.376, h the heart's phase and b that of breathing. The
+//! heart beats at a mean rate from 0.8 to 1.3 Hz, which breathing and slower waves of 0.04 to 0.15 Hz move by some
+//! hundredths; breathing takes 0.2 to 0.3 Hz. All *assumed*, after the textbook's pulse of a resting person.
 
 use std::f64::consts::TAU;
 

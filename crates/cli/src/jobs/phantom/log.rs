@@ -13,9 +13,10 @@ use crate::jobs::phantom::{Common, Outcome};
 /// A log of eight photodiodes and three forces, with exact truth (3.1.2c, 3.3, 5.2.3)
 ///
 /// Writes OUT/log.csv, which `lunula align` reads as it is, and OUT/truth/: log.csv, angles.csv, log.json, and of
-/// --force contacts contacts.csv (--protocol contacts or rest: hours of a worn sensor, for switches). It belongs to the video that `lunula phantom video` writes from the same seed, trajectory and --bend-hz; both may be
-/// written to the same OUT. truth/angles.csv has the exact joint angles in the format of `lunula posture`, 30 a second,
-/// clock_s on the log's clock:
+/// --force contacts contacts.csv (--protocol contacts or rest: hours of a worn sensor, for switches). It belongs to the
+/// video that `lunula phantom video` writes from the same seed, trajectory and --bend-hz; both may be written to the
+/// same OUT. truth/angles.csv has the exact joint angles in the format of `lunula posture`, 30 a second, clock_s on the
+/// log's clock:
 /// `lunula align --joints OUT/truth/angles.csv --log OUT/log.csv --out training.csv --subject 1 --session 1` makes a
 /// posture training set without a video.
 #[derive(Debug, Args)]
