@@ -4,8 +4,8 @@
 //! over for more than [`LATE_S`], and if no other press belongs to it already; else it is **false**, *repeated* where
 //! its contact has one already. A contact without a press is **missed**. **Delays** are from the contact's first row to
 //! the press and from the first row after it to the release, so they hold half a row's period of bias at most. The rate
-//! is that of false presses in all the time of which contact is known, touching or not; its interval is Garwood's, wider
-//! where recordings differ more than by chance ([`rate_of`]).
+//! is that of false presses in all the time of which contact is known, touching or not; its interval is Garwood's,
+//! wider where recordings differ more than by chance ([`rate_of`]).
 
 use serde::Serialize;
 

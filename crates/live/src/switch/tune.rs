@@ -8,8 +8,8 @@
 //! most the goal's rate and misses, also at the next lower threshold. A choice at the edge of the noise does not last:
 //! another day's sensor drifts further. So of those that are at most a quarter slower than the fastest (in the mean: a
 //! median has the steps of the sampling period) and miss half of what they may, the one with the highest threshold is
-//! taken; of equals the fastest, then the one that releases soonest. *Measured* on 20 splits of twelve phantom recordings:
-//! the fastest alone made up to 19 false switches an hour on the other half (`docs/src/jobs/live.md`).
+//! taken; of equals the fastest, then the one that releases soonest. *Measured* on 20 splits of twelve phantom
+//! recordings: the fastest alone made up to 19 false switches an hour on the other half (`docs/src/jobs/live.md`).
 
 use rayon::prelude::*;
 use serde::Serialize;
