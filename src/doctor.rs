@@ -4,6 +4,7 @@
 //! with what was found and what to do about it. Nothing on the machine is changed: what is written to try a folder is
 //! removed again.
 
+use lunula_live::pointer::{UinputState, uinput_state};
 use std::fs::{self, File, TryLockError};
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
@@ -69,7 +70,7 @@ pub fn examine(out: &Path) -> Vec<Group> {
     let group = |about: &str, checks: Vec<Check>| Group { about: about.to_owned(), checks };
     vec![
         group("this program", program()),
-        group("this machine", vec![threads(), memory(free_memory())]),
+        group("this machine", vec![threads(), memory(free_memory()), mouse()]),
         group("places to write to", [folder(out), vec![temporary()]].concat()),
         group("programs beside lunula", [vec![peers()], OTHERS.map(other).to_vec()].concat()),
     ]
@@ -138,6 +139,17 @@ fn threads() -> Check {
     match std::thread::available_parallelism() {
         Ok(threads) => good("threads", format!("{threads}; --threads N takes fewer")),
         Err(why) => note("threads", format!("not known ({why})"), "give their number with --threads"),
+    }
+}
+
+/// Whether a sensor can move this computer's pointer.
+fn mouse() -> Check {
+    let state = uinput_state();
+    match state {
+        UinputState::Ready => good("uinput", state.found()),
+        _ => {
+            note("uinput", format!("{}: `lunula mouse --uinput` can't move the pointer", state.found()), state.remedy())
+        }
     }
 }
 

@@ -435,3 +435,52 @@ fn thresholds_are_chosen_and_judged_on_recordings() {
     let both = ["switch", "evaluate", "s.toml", "c.csv", "lost.csv", "--model", "m.json", "--contact", "Fz_N<-0.01"];
     dir.lunula(&[&both[..], &["--out", "ev2", "-q"]].concat()).expect(1).says("lost.csv");
 }
+
+#[test]
+fn a_press_harder_clicks_and_every_move_is_a_line() {
+    let dir = Dir::new();
+    // Each force has a photodiode of its own.
+    let mut train = "time_s,P1,P2,P3,Fx_N,Fy_N,Fz_N\n".to_owned();
+    for k in 0..300 {
+        let [x, y, z] = [11, 7, 5].map(|n| f64::from(k * n % 41) / 10.0 - 2.0);
+        let _ = write!(train, "{},{},{},{},{x},{y},{z}\n", 0.01 * f64::from(k), 5.0 + x, 5.0 + y, 5.0 + z);
+    }
+    dir.write("train.csv", train);
+    dir.train("train.csv", "force", "f.json", &["-q"]).expect(0);
+    // Lifted, then a light touch with shear to the right, a hard press, light again, lifted.
+    let mut text = "time_s,P1,P2,P3\n".to_owned();
+    for k in 0..600 {
+        let pressing = match k {
+            0..100 | 500.. => 0.0,
+            300..340 => 2.0,
+            _ => 0.8,
+        };
+        let shear = if (150..280).contains(&k) { 0.4 } else { 0.0 };
+        let _ = write!(text, "{},{},5,{}\n", 0.01 * f64::from(k), 5.0 + shear, 5.0 - pressing);
+    }
+    dir.write("r.csv", text);
+    let mouse = |more: &[&str]| {
+        let all = ["mouse", "--source", "r.csv", "--model", "f.json", "--events", "e.jsonl"];
+        dir.lunula(&[&all[..], more].concat())
+    };
+    let report = mouse(&["--json"]).expect(0).json();
+    assert_eq!((&report["pointer"]["clicks"], &report["pointer"]["y_counts"]), (&1.into(), &0.into()), "{report}");
+    let moved = report["pointer"]["x_counts"].as_i64().unwrap();
+    let events: Vec<serde_json::Value> =
+        dir.text("e.jsonl").lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let sum: i64 = events.iter().filter(|one| one["event"] == "move").map(|one| one["dx"].as_i64().unwrap()).sum();
+    assert!(moved > 50 && sum == moved, "{moved}, {sum}");
+    let buttons: Vec<bool> =
+        events.iter().filter(|one| one["event"] == "button").map(|one| one["down"].as_bool().unwrap()).collect();
+    assert_eq!(buttons, [true, false]);
+    // The same at any speed.
+    let fast = dir.text("e.jsonl");
+    let slow = ["mouse", "--source", "r.csv?rate=20", "--model", "f.json", "--events", "s.jsonl", "-q"];
+    dir.lunula(&slow).expect(0);
+    assert_eq!(dir.text("s.jsonl"), fast);
+    dir.write("m.toml", "dead_zone_n = 0.1\nclick_m = 3\n");
+    mouse(&["--config", "m.toml"]).expect(2).says("m.toml").says("click_m");
+    dir.train("train.csv", "Fz_N", "z.json", &["-q"]).expect(0);
+    let one = ["mouse", "--source", "r.csv", "--model", "z.json", "--events", "e.jsonl"];
+    dir.lunula(&one).expect(2).says("the mouse needs Fx_N");
+}
