@@ -1,7 +1,7 @@
 //! Recordings to traces: what a live session would have compared at each row, and what was true.
 
 use std::cell::RefCell;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use lunula_live::switch::Trace;
 use lunula_predictor::{Gate, Predictor};
@@ -62,7 +62,7 @@ pub(super) fn read_traces(
 }
 
 fn read_trace(
-    recording: &PathBuf,
+    recording: &Path,
     models: &[Predictor],
     column: Option<&str>,
     options: &ContactOptions,
