@@ -1,5 +1,5 @@
-//! A worn sensor's logs: contacts and rest have exact truth, the pulse is there, a stream sends what the file holds, and
-//! what was generated before is so still.
+//! A worn sensor's logs: contacts and rest have exact truth, the pulse is there, a stream sends what the file holds,
+//! and what was generated before has the same bytes.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -17,7 +17,7 @@ fn run(dir: &Dir, options: &str) -> Answer {
 }
 
 fn text(dir: &Dir, name: &str) -> String {
-    std::fs::read_to_string(dir.path(name)).unwrap()
+    std::fs::read_to_string(dir.path(name)).expect("a file that was written")
 }
 
 /// FNV-1a, 64 bits.

@@ -40,6 +40,7 @@ pub use crate::phantom::scene::faults::Faults;
 pub use live::{LiveLog, LiveRow};
 pub use options::{LogOptions, Stamps};
 pub use protocol::Protocol;
-pub use record::{LogScene, Row};
+pub use record::LogScene;
+pub use samples::Row;
 pub(super) use write::files;
 pub use write::{Error, Summary, write};

@@ -1,42 +1,13 @@
-//! A log that is settled: its sensor, its light, and its rows with their truth.
+//! A log that is settled: its sensor, its light, and the rows that are taken of it.
 
 use super::doing::shift_rad;
-use super::samples::{FULL_V, Samples};
+use super::samples::{FULL_V, Row, Samples};
 use super::{Faults, LogOptions};
-use crate::phantom::sensor::{Ambient, CHANNELS, Disturbances, Sensor, Touch, Wander};
+use crate::phantom::sensor::{Ambient, CHANNELS, Disturbances, Sensor, Wander};
 
 /// With saturation: the photodiodes, and the share of what they should read that is below full scale.
 const SATURATED: [usize; 2] = [1, 2];
 const BELOW_FULL: f64 = 0.8;
-
-/// A row of a log, with its truth.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Row {
-    /// Which sample it is, from 0; lost ones are counted.
-    pub sample: usize,
-    /// The video's time.
-    pub scene_s: f64,
-    /// The log's clock, without jitter, coarse stamps and jumps.
-    pub log_s: f64,
-    /// What the row says of its time, on the log's clock.
-    pub stamp_s: f64,
-    /// Whether the LED is on.
-    pub lit: bool,
-    /// What the finger does.
-    pub touch: Touch,
-    /// Whether it presses: the exact pressing is above 0, and the finger is not about a near miss.
-    pub contact: bool,
-    /// What the force transducer reads.
-    pub forces_read_n: [f64; 3],
-    /// What the photodiodes read.
-    pub read_v: [f64; CHANNELS],
-    /// What the LED adds when it is on, with hysteresis, lag and drift.
-    pub led_v: [f64; CHANNELS],
-    /// What the LED adds by the static map alone.
-    pub static_v: [f64; CHANNELS],
-    /// Ambient light and darkness.
-    pub unlit_v: [f64; CHANNELS],
-}
 
 /// A log, settled.
 #[derive(Debug)]

@@ -6,7 +6,6 @@ use rand_distr::{Distribution, StandardNormal};
 
 use super::LogOptions;
 use super::doing::Doing;
-use super::record::Row;
 use crate::phantom::nail::numbers;
 use crate::phantom::sensor::{Ambient, CHANNELS, Disturbances, Response, Sensor, Touch, Wander};
 
@@ -20,6 +19,35 @@ const FORCE_STEP_N: [f64; 3] = [0.8e-3, 0.8e-3, 1.6e-3];
 const FORCE_SD_N: f64 = 1e-3;
 /// How long before the first sample the sensor has followed the movement, seconds.
 const BEFORE_S: f64 = 10.0;
+
+/// A row of a log, with its truth.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// Which sample it is, from 0; lost ones are counted.
+    pub sample: usize,
+    /// The video's time.
+    pub scene_s: f64,
+    /// The log's clock, without jitter, coarse stamps and jumps.
+    pub log_s: f64,
+    /// What the row says of its time, on the log's clock.
+    pub stamp_s: f64,
+    /// Whether the LED is on.
+    pub lit: bool,
+    /// What the finger does.
+    pub touch: Touch,
+    /// Whether it presses: the exact pressing is above 0, and the finger is not about a near miss.
+    pub contact: bool,
+    /// What the force transducer reads.
+    pub forces_read_n: [f64; 3],
+    /// What the photodiodes read.
+    pub read_v: [f64; CHANNELS],
+    /// What the LED adds when it is on, with hysteresis, lag and drift.
+    pub led_v: [f64; CHANNELS],
+    /// What the LED adds by the static map alone.
+    pub static_v: [f64; CHANNELS],
+    /// Ambient light and darkness.
+    pub unlit_v: [f64; CHANNELS],
+}
 
 /// What a sensor sees, as light of the LED.
 type Seen = Response<Box<dyn FnMut(f64) -> Touch + Send>>;

@@ -5,13 +5,13 @@
 //!
 //! Time from 0 on goes in blocks of forty mean pauses and a minute. Within a block a pause is followed by a contact
 //! until the next would pass the block's end; a pause lasts between 1/3 and 5/3 of its mean. All of this is *assumed*:
-//! the thesis describes no use of a switch. Of [`WEIGHTS`], the shares of the kinds that are chosen:
+//! the thesis describes no use of a switch. The weights are shares among the kinds that are chosen:
 //!
 //! | kind | weight | at the surface | pressing | J2 bends by |
 //! |---|---|---|---|---|
 //! | press | 8 | rises in 0.08 to 0.25 s, holds 0.15 to 1.5 s, lets go in 0.06 to 0.2 s | 0.5 to 3 N | 2 to 6 degrees |
 //! | hold | 2 | the same, holds 2 to 6 s, swinging down by up to 0.3 of it at 0.2 to 1 Hz | 0.5 to 3 N | 2 to 6 |
-//! | slide | 2 | the same, holds 0.4 to 2.5 s; its shear turns, 0.5 to 0.9 of what friction holds | 0.5 to 3 N | 2 to 6 |
+//! | slide | 2 | the same, holds 0.4 to 2.5 s, its shear 0.5 to 0.9 of friction's most | 0.5 to 3 N | 2 to 6 |
 //! | tap | 4 | 0.08 to 0.2 s | 1 to 3 N | 2 to 6 |
 //! | hover | 3 | near miss: 0.1 to 1 s above it | none | 3 to 12 |
 //! | brush | 1 | near miss: 0.1 to 0.5 s | 0.01 to 0.05 N | 2 to 6 |
@@ -99,7 +99,7 @@ impl ContactKind {
 pub struct Contacts {
     /// Which kinds there are; none: the finger rests.
     pub kinds: Vec<ContactKind>,
-    /// The mean pause between two, seconds.
+    /// The mean pause between two, seconds, more than 0.
     pub pause_s: f64,
     /// Where the random numbers come from.
     pub seed: u64,
@@ -223,34 +223,38 @@ impl Contacts {
     /// The default mean pause, seconds.
     pub const PAUSE_S: f64 = 3.0;
 
-    /// The contacts of time `block`.
+    /// The contacts of the block of time `block`.
     fn block(&self, block: u32) -> Vec<Contact> {
+        if self.pause_s <= 0.0 || !self.pause_s.is_finite() {
+            return Vec::new();
+        }
         let mut rng = numbers(self.seed, KIND_CONTACTS, block);
         let length_s = self.block_s();
         let mut at_s = f64::from(block) * length_s;
         let end_s = at_s + length_s;
-        let weights = self.kinds.iter().map(|kind| WEIGHTS[*kind as usize]);
-        let sum: u32 = weights.clone().sum();
         let mut all = Vec::new();
-        while sum > 0 {
+        loop {
             at_s += self.pause_s * rng.random_range(PAUSE[0]..=PAUSE[1]);
-            let mut left = rng.random_range(0..sum);
-            let kind = self.kinds.iter().zip(weights.clone()).find(|(_, weight)| match left.checked_sub(*weight) {
-                Some(rest) => {
-                    left = rest;
-                    false
-                }
-                None => true,
-            });
-            let Some((kind, _)) = kind else { break };
-            let contact = Contact::draw(*kind, at_s, &mut rng);
+            let Some(kind) = self.draw_kind(&mut rng) else { return all };
+            let contact = Contact::draw(kind, at_s, &mut rng);
             if contact.over_s > end_s {
-                break;
+                return all;
             }
             at_s = contact.over_s;
             all.push(contact);
         }
-        all
+    }
+
+    /// One of the kinds by its weight; none where there are none.
+    fn draw_kind(&self, rng: &mut ChaCha8Rng) -> Option<ContactKind> {
+        let weight = |kind: ContactKind| WEIGHTS[kind as usize];
+        let sum: u32 = self.kinds.iter().map(|kind| weight(*kind)).sum();
+        let drawn = (sum > 0).then(|| rng.random_range(0..sum))?;
+        let mut passed = 0;
+        self.kinds.iter().copied().find(|kind| {
+            passed += weight(*kind);
+            drawn < passed
+        })
     }
 
     fn block_s(&self) -> f64 {
@@ -386,7 +390,10 @@ mod tests {
             let expected = listed.iter().find(|contact| contact.begin_s < t_s && t_s < contact.over_s);
             assert_eq!(sequence.at(t_s), expected, "{t_s}");
         }
-        let none = Contacts { kinds: Vec::new(), ..contacts };
+        let none = Contacts { kinds: Vec::new(), ..contacts.clone() };
         assert_eq!(none.until(1e4).count(), 0);
+        for pause_s in [0.0, -3.0, f64::NAN, f64::INFINITY] {
+            assert_eq!(Contacts { pause_s, ..contacts.clone() }.until(1e4).count(), 0, "{pause_s}");
+        }
     }
 }
