@@ -5,7 +5,7 @@
 //!
 //! Time from 0 on goes in blocks of forty mean pauses and a minute. Within a block a pause is followed by a contact
 //! until the next would pass the block's end; a pause lasts between 1/3 and 5/3 of its mean. All of this is *assumed*:
-//! the thesis describes no use of a switch. Of [`WEIGHTS`], the shares of the kinds that are chosen:
+//! the thesis describes no use of a switch. The weights are shares among the kinds that are chosen:
 //!
 //! | kind | weight | at the surface | pressing | J2 bends by |
 //! |---|---|---|---|---|

@@ -266,6 +266,19 @@ mod tests {
     }
 
     #[test]
+    fn contacts_are_listed_with_their_options() {
+        let log = |more: &str| of(&format!("log = {{ protocol = \"contacts\"{more} }}")).unwrap();
+        let plain = log("");
+        let other = log(", kinds = [\"press\", \"tap\"], no_forces = true, pulse = 0.01");
+        assert_eq!(facts_of(&plain, "log/truth/contacts.csv"), Facts::default());
+        assert_eq!(facts_of(&other, "log/log.csv").forces, Some(false));
+        let text = other.tasks[0].options.to_string();
+        assert!(text.contains("\"kinds\":[\"press\",\"tap\"]") && text.contains("\"pulse_v\":0.01"), "{text}");
+        assert!(!of("log = {}").unwrap().files.iter().any(|file| file.path.ends_with("contacts.csv")));
+        assert_eq!(refused("log = { protocol = \"contacts\", kinds = [\"kick\"] }").0, "log.kinds");
+    }
+
+    #[test]
     fn what_is_wrong_is_told_of_its_key() {
         for (text, key, words) in [
             ("", "", "asks for nothing"),

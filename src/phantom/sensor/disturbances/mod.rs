@@ -3,12 +3,12 @@
 //! In: [`DisturbanceSizes`] and a seed. Out: volts at each photodiode over time. The thesis names hand elevation,
 //! temperature and the sensor's position as what a design can't take away, and gives no sizes; it says that the pulse
 //! is "damped in the capillaries" (Fig. 40) and that the constant part is what counts. Sizes, rates and shapes are
-//! *assumed*. A finger's pulse at rest is 0.02 to 20 % of the light that comes back (the range of a pulse oximeter's
-//! perfusion index; median 1.4 %: Lima, Beelen, Bakker 2002, doi:10.1097/00003246-200206000-00006); the default of 5 mV
-//! is 0.2 % of the 2.7 V of a photodiode at rest.
+//! *assumed*. In a pulse oximeter's light through the finger the pulse is 1.4 % of the constant part (median of healthy
+//! people: Lima, Beelen, Bakker, Crit Care Med 30(6), 2002); under the nail it is taken for an eighth of that: 5 mV of
+//! the 2.7 V of a photodiode at rest.
 //!
-//! Each photodiode has its own share of each disturbance, from 0.5 to 1.5. The pulse does not depend on how hard the
-//! finger presses, which a real one does.
+//! Each photodiode has its own share of each disturbance but drift, from 0.5 to 1.5. The pulse does not depend on how
+//! hard the finger presses, which a real one does.
 
 mod bumps;
 mod elevation;
