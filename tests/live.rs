@@ -30,7 +30,7 @@ fn recording(seconds: f64) -> String {
         let t_s = 0.01 * k as f64;
         // Light that wavers by a hundredth of a newton.
         let waver = 0.01 * (7.3 * t_s).sin() * (3.1 * t_s).cos();
-        let _ = write!(text, "{t_s:.3},{:.5},{:.4}\n", 1.0 + 0.5 * (pressing(t_s) + waver), -pressing(t_s));
+        let _ = writeln!(text, "{t_s:.3},{:.5},{:.4}", 1.0 + 0.5 * (pressing(t_s) + waver), -pressing(t_s));
     }
     text
 }
@@ -145,7 +145,7 @@ fn a_modulated_log_is_answered_as_the_batch_answers_it_under_the_same_rule() {
         let (t_s, lit) = (0.02 * f64::from(k), k % 2);
         let ambient = 0.3 + 0.05 * (1.7 * t_s).sin();
         let volts = ambient + f64::from(lit) * (1.0 + 0.5 * pressing(t_s));
-        let _ = write!(text, "{},{lit},{volts:.4}\n", 1000.0 * t_s);
+        let _ = writeln!(text, "{},{lit},{volts:.4}", 1000.0 * t_s);
     }
     dir.write("log.csv", &text);
     dir.lunula(&["predict", "m.json", "log.csv", "--ambient", "preceding", "--out", "p.csv", "-q"]).expect(0);
@@ -443,7 +443,7 @@ fn a_press_harder_clicks_and_every_move_is_a_line() {
     let mut train = "time_s,P1,P2,P3,Fx_N,Fy_N,Fz_N\n".to_owned();
     for k in 0..300 {
         let [x, y, z] = [11, 7, 5].map(|n| f64::from(k * n % 41) / 10.0 - 2.0);
-        let _ = write!(train, "{},{},{},{},{x},{y},{z}\n", 0.01 * f64::from(k), 5.0 + x, 5.0 + y, 5.0 + z);
+        let _ = writeln!(train, "{},{},{},{},{x},{y},{z}", 0.01 * f64::from(k), 5.0 + x, 5.0 + y, 5.0 + z);
     }
     dir.write("train.csv", train);
     dir.train("train.csv", "force", "f.json", &["-q"]).expect(0);
@@ -456,7 +456,7 @@ fn a_press_harder_clicks_and_every_move_is_a_line() {
             _ => 0.8,
         };
         let shear = if (150..280).contains(&k) { 0.4 } else { 0.0 };
-        let _ = write!(text, "{},{},5,{}\n", 0.01 * f64::from(k), 5.0 + shear, 5.0 - pressing);
+        let _ = writeln!(text, "{},{},5,{}", 0.01 * f64::from(k), 5.0 + shear, 5.0 - pressing);
     }
     dir.write("r.csv", text);
     let mouse = |more: &[&str]| {
