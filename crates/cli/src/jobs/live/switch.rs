@@ -28,8 +28,8 @@ enum What {
 
 /// Choose thresholds and holds from held-out recordings, for a rate of false switches
 ///
-/// Every combination runs over all recordings; of those with at most --false-per-hour and --missed the fastest is
-/// taken. Name recordings that the models were not trained on, with hours of rest and of other work among them: what
+/// Every combination runs over all recordings; of those with at most --false-per-hour and --missed the one
+/// with the highest threshold is taken that is at most a quarter slower than the fastest. Name recordings that the models were not trained on, with hours of rest and of other work among them: what
 /// was not recorded is not known. Results: switch.toml, beside it <switch>.run.json and the curve of delay against
 /// false switches.
 #[derive(Debug, Args)]
@@ -112,7 +112,7 @@ impl Command for TuneArgs {
     fn say(&self, common: &Common, report: &TuneReport) {
         let switch = &report.switch;
         common.say(&format!(
-            "on from {} N, off below {} N, held {} s and {} s; the fastest of {} combinations",
+            "on from {} N, off below {} N, held {} s and {} s; of {} combinations",
             switch.on_n, switch.off_n, switch.hold_on_s, switch.hold_off_s, report.tried
         ));
         say_evaluation(common, "where it was chosen", &report.chosen);
