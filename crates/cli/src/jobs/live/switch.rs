@@ -28,10 +28,10 @@ enum What {
 
 /// Choose thresholds and holds from held-out recordings, for a rate of false switches
 ///
-/// Every combination runs over all recordings; of those with at most --false-per-hour and --missed the one
-/// with the highest threshold is taken that is at most a quarter slower than the fastest. Name recordings that the models were not trained on, with hours of rest and of other work among them: what
-/// was not recorded is not known. Results: switch.toml, beside it <switch>.run.json and the curve of delay against
-/// false switches.
+/// Every combination runs over all recordings; of those with at most --false-per-hour and --missed the one with the
+/// highest threshold is taken that is at most a quarter slower than the fastest. Name recordings that the models were
+/// not trained on, with hours of rest and of other work among them: what was not recorded is not known. Results:
+/// switch.toml, beside it <switch>.run.json and the curve of delay against false switches.
 #[derive(Debug, Args)]
 struct TuneArgs {
     /// Recordings: tables or logs with photodiodes and what is true of contact
