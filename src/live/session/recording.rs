@@ -18,8 +18,9 @@ use crate::table::{Column, TableFormat, TableWriter, Value};
 /// How often rows are written, and the disk is made to keep them.
 const WRITE: Duration = Duration::from_millis(250);
 const SYNC: Duration = Duration::from_millis(500);
-/// What may wait for a disk: about ten minutes of eight photodiodes at 1 kHz.
+/// What may wait for a disk: about ten minutes of eight photodiodes at 1 kHz; and what is written before its time.
 const MOST_BYTES: usize = 64 << 20;
+const MUCH_BYTES: usize = 4 << 20;
 
 /// A file that grows.
 #[derive(Debug)]
@@ -29,6 +30,8 @@ pub(crate) struct Recording {
     grows: PathBuf,
     columns: Vec<String>,
     replace: bool,
+    /// Whether the source can wait for the disk: then nothing is lost.
+    waits: bool,
     shared: Arc<Shared>,
     writer: Option<JoinHandle<io::Result<()>>>,
     lost: u64,
@@ -48,11 +51,11 @@ struct Pending {
 }
 
 impl Recording {
-    /// A recording with these columns, not begun yet.
+    /// A recording, not begun yet; `waits` where the source can wait for the disk.
     ///
     /// # Errors
     /// A name that is no table's, or a file that exists and is not to be replaced.
-    pub(crate) fn new(out: &Path, replace: bool) -> Result<Self, LiveError> {
+    pub(crate) fn new(out: &Path, replace: bool, waits: bool) -> Result<Self, LiveError> {
         let grows = match TableFormat::of(out)? {
             TableFormat::Csv => out.to_owned(),
             TableFormat::Parquet => PathBuf::from(format!("{}.csv", out.display())),
@@ -67,6 +70,7 @@ impl Recording {
             grows,
             columns: Vec::new(),
             replace,
+            waits,
             shared: Arc::default(),
             writer: None,
             lost: 0,
@@ -96,6 +100,13 @@ impl Recording {
             drop(pending);
             return Err(self.close().err().unwrap_or_else(|| self.refused(io::ErrorKind::Other.into())));
         }
+        if pending.bytes.len() + row.len() > MUCH_BYTES {
+            self.shared.wake.notify_all();
+        }
+        while self.waits && !pending.failed && pending.bytes.len() + row.len() > MOST_BYTES {
+            // The writer says when it has taken what there was.
+            pending = self.shared.wake.wait(pending).unwrap_or_else(PoisonError::into_inner);
+        }
         if pending.bytes.len() + row.len() > MOST_BYTES {
             self.lost += 1;
         } else {
@@ -119,6 +130,7 @@ impl Recording {
         self.writer = Some(std::thread::spawn(move || {
             let written = write_rows(&mut file, &shared);
             shared.pending.lock().unwrap_or_else(PoisonError::into_inner).failed = written.is_err();
+            shared.wake.notify_all();
             written
         }));
         Ok(())
@@ -181,11 +193,13 @@ fn write_rows(file: &mut File, shared: &Shared) -> io::Result<()> {
     loop {
         let ends = {
             let pending = shared.pending.lock().unwrap_or_else(PoisonError::into_inner);
-            let waited = shared.wake.wait_timeout_while(pending, WRITE, |pending| !pending.ends);
+            let waits = |pending: &mut Pending| !pending.ends && pending.bytes.len() < MUCH_BYTES;
+            let waited = shared.wake.wait_timeout_while(pending, WRITE, waits);
             let mut pending = waited.unwrap_or_else(PoisonError::into_inner).0;
             // What was written is room for what comes.
             bytes.clear();
             std::mem::swap(&mut bytes, &mut pending.bytes);
+            shared.wake.notify_all();
             pending.ends
         };
         file.write_all(&bytes)?;

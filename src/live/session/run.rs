@@ -105,7 +105,7 @@ pub fn live(
     };
     session.listener = listener;
     let predicted = match &files.out {
-        Some(out) => Some(Recording::new(&predicted_beside(out), files.replace)?),
+        Some(out) => Some(Recording::new(&predicted_beside(out), files.replace, session.core.waits)?),
         None => None,
     };
     session.core.asked = Some(Asked {
@@ -312,20 +312,21 @@ impl<'a> Session<'a> {
         let results = out.flat_map(|out| [out.clone(), predicted_beside(out), beside(out, REPORT)]);
         let moves = files.mouse.iter().filter_map(|mouse| mouse.events.clone());
         Places::not_over(inputs).check(results.chain(files.events.clone()).chain(moves))?;
-        let recording = files.out.as_ref().map(|out| Recording::new(out, files.replace)).transpose()?;
         let clock = HostClock::start();
         let found = Found::default();
         let naming = found.naming(&options.log, &options.keep, &needs);
         let stream = open_stream(options, naming, clock.now_ns())?;
+        // What comes down a pipe can wait in it.
+        let waits = !stream.is_live() || options.source.place == Place::Stdin;
+        let recording = files.out.as_ref().map(|out| Recording::new(out, files.replace, waits)).transpose()?;
         let core = Core {
             clock,
             tell,
             files,
             log: &options.log,
             seconds: options.seconds,
-            // What comes down a pipe can wait in it.
             is_live: stream.is_live(),
-            waits: !stream.is_live() || options.source.place == Place::Stdin,
+            waits,
             asked: None,
             recording,
             decide: None,
