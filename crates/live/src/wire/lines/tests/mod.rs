@@ -144,7 +144,7 @@ fn faults_say_what_to_do() {
         found.unwrap_err().to_string()
     };
     for (text, words) in [
-        (&b"0.1,2\n0.2,3\n"[..], "--columns"),
+        (&b"0.1,2\n0.2,3\n"[..], "--names"),
         (b"time_s,light\n0,1\n", "line 1 names the columns time_s,light: there is no photodiode"),
         (b"", "ends before a line of names"),
         (b"\xf3\x02\xe0\x1c\x00\x9f\xfe\xe0\x80\n\xf3\x02\xe0\x1c", "looks like a wrong baud rate"),
