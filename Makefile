@@ -8,7 +8,7 @@ LUNULA := target/release/lunula
 REAL_DATA := $(or $(LUNULA_REAL_DATA),../shared/data)
 PACKAGES := $(shell sed '/^\#/d' system-packages.txt)
 
-.PHONY: help demo test lint msrv bench peers fuzz system clean
+.PHONY: help demo test lint msrv bench peers fuzz system browser clean
 
 help:
 	@echo "make demo   build, run the main jobs on generated scenes, say where the pictures are"
@@ -91,11 +91,17 @@ test: system
 	  left_out=$$(cargo test --quiet $(ALL) real_data:: -- --ignored --list | grep -c ': test$$'); \
 	  echo "left out: $$left_out tests of real recordings; LUNULA_REAL_DATA names their folder"; \
 	fi
+	@if command -v chromium >/dev/null; then \
+	  set -x; cargo test $(ALL) in_browser -- --ignored; \
+	else \
+	  left_out=$$(cargo test --quiet $(ALL) in_browser -- --ignored --list | grep -c ': test$$'); \
+	  echo "left out: $$left_out tests of pages; they need chromium (make browser)"; \
+	fi
 
 lint: system
 	cargo fmt --all --check
-	cargo clippy $(ALL) --all-targets -- -D warnings
-	RUSTDOCFLAGS="-D warnings" cargo doc $(ALL) --no-deps
+	cargo clippy $(ALL) --features lsl --all-targets -- -D warnings
+	RUSTDOCFLAGS="-D warnings" cargo doc $(ALL) --features lsl --no-deps
 
 # The oldest Rust that Cargo.toml promises.
 msrv: system
@@ -105,6 +111,7 @@ bench: system
 	cargo bench --locked --bench photos
 	cargo bench --locked --bench posture
 	cargo bench --locked --bench align
+	cargo bench --locked -p lunula-cli --bench live
 	cargo bench --locked -p lunula-predictor
 	cargo bench --locked -p lunula-hemodynamics
 	cargo bench --locked -p lunula-hemodynamics-peer
@@ -117,6 +124,10 @@ peers: system
 # Installs cargo-afl below target/ where it is missing.
 fuzz: system
 	FUZZ_SECONDS=$(FUZZ_SECONDS) crates/fuzz/fuzz.sh $(PARSERS)
+
+# A browser for the tests of pages, which are left out where there is none.
+browser: PACKAGES := $(shell sed '/^\#/d' browser-packages.txt)
+browser: system
 
 # Installs the packages of system-packages.txt that are missing; does nothing where all are there.
 system:

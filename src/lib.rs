@@ -3,9 +3,10 @@
 //! Photographs of nails become average coloration maps with a standard deviation per pixel ([`photo`]), as in section
 //! 4.2.2 of S. Mascaro's thesis on fingernail sensors; videos of a finger with coloured markers become joint angles
 //! ([`posture`]), as in 3.2.3 and 3.3.5, with the time of a [`clock`] in the picture; [`camera`] measures the lens that
-//! they are filmed through; [`align`] brings the angles onto the rows of photodiode and force logs; [`predictor`] makes
-//! of those models of force and posture, as in chapter 5. [`hemodynamics`] is the blood under the nail that the
-//! photodiodes see, as in 4.3. [`phantom`] makes such photographs, videos and logs with exact truth; [`tradeoff`]
+//! they are filmed through; [`nailvideo`] reads virtual photodiodes off a video of a nail; [`align`] brings the angles
+//! onto the rows of photodiode and force logs; [`predictor`] makes of those models of force and posture, as in chapter
+//! 5. [`hemodynamics`] is the blood under the nail that the photodiodes see, as in 4.3. [`layout`] says where
+//! photodiodes would serve best. [`phantom`] makes such photographs, videos and logs with exact truth; [`tradeoff`]
 //! measures error against run time; [`doctor`] looks at what is installed. [`video`], [`table`], [`figure`], [`files`],
 //! [`flexion`], [`input`], [`labelme`], [`log`], [`stages`], [`timebase`] and [`words`] are the ground floor that these
 //! stand on.
@@ -24,9 +25,11 @@ pub mod hemodynamics;
 pub mod input;
 pub mod job;
 pub mod labelme;
+pub mod layout;
 pub mod live;
 pub mod log;
 pub mod nail;
+pub mod nailvideo;
 pub mod npy;
 pub mod phantom;
 pub mod photo;

@@ -178,7 +178,7 @@ fn a_recording_is_what_align_and_train_read_and_is_not_lost() {
     dir.lunula(&["train", "copy.csv", "--target", "Fz_N", "--out", "again.json", "-q"]).expect(0);
     let report = json(&dir, "copy.stream.json");
     assert_eq!(
-        (&report["rows"], &report["stream"]["lost"], &report["stream"]["spoilt"]),
+        (&report["rows"], &report["sources"][0]["lost"], &report["sources"][0]["spoilt"]),
         (&500.into(), &0.into(), &serde_json::json!([]))
     );
     // Over an input, nothing is written.
@@ -226,7 +226,7 @@ fn spoilt_rows_cost_themselves_and_are_counted() {
     assert_eq!(live.stdout.lines().count(), 4, "{}", live.stdout);
     let report = json(&dir, "r.stream.json");
     let spoilt: u64 =
-        report["stream"]["spoilt"].as_array().unwrap().iter().map(|one| one["count"].as_u64().unwrap()).sum();
+        report["sources"][0]["spoilt"].as_array().unwrap().iter().map(|one| one["count"].as_u64().unwrap()).sum();
     assert_eq!(spoilt, 3);
     assert_eq!(dir.text("r.csv"), "time_s,P1\n0,1\n0.03,1.5\n0.04,2\n");
     assert_eq!(dir.text("r.predicted.csv"), live.stdout);

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 use crate::files::WriteError;
+use crate::log::LogError;
 use crate::predictor::PredictorError;
 use crate::table::TableError;
 
@@ -32,6 +33,8 @@ pub enum LiveError {
     Models(#[from] PredictorError),
     #[error(transparent)]
     Table(#[from] TableError),
+    #[error(transparent)]
+    Log(#[from] LogError),
     #[error(transparent)]
     Results(#[from] WriteError),
     #[error("stopped")]

@@ -9,6 +9,7 @@ mod options;
 pub mod performance;
 mod session;
 pub mod skill;
+mod steps;
 mod switch;
 
 /// The crate that does the streams and the decisions.
@@ -17,7 +18,11 @@ pub use lunula_live::switch::Evaluation;
 
 pub use error::LiveError;
 pub use options::{AnswerOptions, LiveOptions, MouseFiles, MouseOptions, SessionFiles, StreamOptions};
-pub use session::{Latency, PointerCounts, Readers, SessionFigures, SessionReport, live, record};
+pub use session::{
+    Latency, PointerCounts, Readers, SessionFigures, SessionReport, SourceFigures, SourceRole, SwitchCounts, live,
+    record,
+};
+pub use steps::{live_steps, record_steps};
 pub use switch::{
     ContactOptions, CurvePoint, EvaluateSwitchFigures, EvaluateSwitchReport, OutsideChoice, TrueContact, TuneFigures,
     TuneOptions, TuneReport, evaluate_plan, evaluate_switch, read_switch, tune_plan, tune_switch,

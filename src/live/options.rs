@@ -4,7 +4,7 @@ use std::net::SocketAddr;
 use std::path::PathBuf;
 
 use clap::Args;
-use lunula_live::source::Address;
+use lunula_live::source::{Address, OfFinger};
 use lunula_predictor::GateFault;
 
 use crate::job::number;
@@ -15,9 +15,13 @@ use crate::predictor::GateChoices;
 #[derive(Debug, Clone, Args)]
 pub struct StreamOptions {
     /// Where samples come from: serial:/dev/ttyACM0?baud=921600, serial:auto, tcp:HOST:PORT, tcp-listen:ADDRESS:PORT,
-    /// udp:PORT, - (standard input), FILE?rate=1|max, phantom:contacts?seed=1
-    #[arg(long, value_name = "SOURCE", value_parser = str::parse::<Address>)]
-    pub source: Address,
+    /// udp:PORT, lsl:name=NAME, - (standard input), FILE?rate=1|max, phantom:contacts?seed=1; once for each finger, as
+    /// index=SOURCE
+    #[arg(long, required = true, value_name = "[FINGER=]SOURCE", value_parser = str::parse::<OfFinger<Address>>)]
+    pub source: Vec<OfFinger<Address>>,
+    /// A force transducer that is a device of its own: its columns are recorded at the times of the sensor's samples
+    #[arg(long, value_name = "[FINGER=]SOURCE", value_parser = str::parse::<OfFinger<Address>>)]
+    pub force: Vec<OfFinger<Address>>,
     /// What a step of the converter is, where the device sends counts: 10/65536 of 16 bits over 10 V
     #[arg(long, value_name = "VOLTS", value_parser = volts)]
     pub volts_per_count: Option<f64>,
@@ -61,6 +65,9 @@ pub struct LiveOptions {
     /// Hands the rows out to whoever connects to this address too, as 127.0.0.1:7777
     #[arg(long, value_name = "ADDRESS:PORT")]
     pub tcp: Option<SocketAddr>,
+    /// Sends the rows as a stream of the Lab Streaming Layer of this name too
+    #[arg(long, value_name = "NAME")]
+    pub lsl: Option<String>,
 }
 
 /// The options of `lunula mouse`.
@@ -81,11 +88,11 @@ pub struct SessionFiles {
     pub out: Option<PathBuf>,
     /// Whether a recording that exists is replaced.
     pub replace: bool,
-    /// The models.
-    pub models: Vec<PathBuf>,
-    /// The switch.
-    pub switch: Option<PathBuf>,
-    /// The switch's events.
+    /// The models, of a finger or of all.
+    pub models: Vec<OfFinger<PathBuf>>,
+    /// The switches, of a finger or of all.
+    pub switches: Vec<OfFinger<PathBuf>>,
+    /// The switches' events.
     pub events: Option<PathBuf>,
     /// The mouse.
     pub mouse: Option<MouseFiles>,

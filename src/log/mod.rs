@@ -144,14 +144,34 @@ impl Log {
             #[cfg(feature = "xdf")]
             Format::Xdf => formats::xdf::read(path, columns)?,
             #[cfg(not(feature = "xdf"))]
-            Format::Xdf => {
-                let what = "is a recording of the Lab Streaming Layer, which this lunula was built without; build it \
-                            with `cargo build --release --features xdf`";
-                return Err(LogError::File { path: path.to_owned(), what: what.to_owned() });
-            }
+            Format::Xdf => return Err(without_xdf(path)),
         };
         lines::order::settle(raw, columns.piece)
     }
+}
+
+/// The columns of a recording of the Lab Streaming Layer as they are, in the order of their names; nothing is read
+/// into them.
+///
+/// # Errors
+/// As [`Log::read`].
+#[cfg_attr(not(feature = "xdf"), allow(unused_variables))]
+pub(crate) fn recorded_stream(path: &Path, columns: &Columns) -> Result<(Vec<String>, Vec<Vec<f64>>), LogError> {
+    #[cfg(feature = "xdf")]
+    {
+        let (stream, names, _) = formats::xdf::stream(path, columns)?;
+        let values = std::iter::once(stream.time_s).chain(stream.channels).collect();
+        Ok((names, values))
+    }
+    #[cfg(not(feature = "xdf"))]
+    Err(without_xdf(path))
+}
+
+#[cfg(not(feature = "xdf"))]
+fn without_xdf(path: &Path) -> LogError {
+    let what = "is a recording of the Lab Streaming Layer, which this lunula was built without; build it with `cargo \
+                build --release --features xdf`";
+    LogError::File { path: path.to_owned(), what: what.to_owned() }
 }
 
 impl Format {

@@ -8,6 +8,7 @@ pub mod board;
 pub mod log;
 mod motion;
 pub mod nail;
+pub mod nailvideo;
 pub mod photos;
 pub mod request;
 mod scene;
@@ -15,7 +16,7 @@ pub mod screen;
 pub mod sensor;
 pub mod video;
 
-pub use motion::{contacts, finger, force, trajectory};
+pub use motion::{contacts, finger, force, presses, trajectory};
 pub use scene::faults::Faults;
 pub use scene::place::{Unwritten, in_the_way, refused};
 pub use scene::recording::{Cost, Generated};

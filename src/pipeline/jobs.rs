@@ -4,8 +4,10 @@ use crate::align::{AlignJob, JoinJob};
 use crate::camera::CameraJob;
 use crate::hemodynamics::{CurveJob, FitJob, SimulateJob};
 use crate::job::{Job, Kind};
+use crate::layout::LayoutJob;
 use crate::live::performance::PerformanceJob;
 use crate::live::skill::SkillJob;
+use crate::nailvideo::NailVideoJob;
 use crate::photo::{MapsJob, NormalizeJob};
 use crate::posture::PostureJob;
 use crate::predictor::trajectory::TrajectoryJob;
@@ -25,7 +27,9 @@ static KINDS: &[&Kind] = &[
     &EvaluateJob::KIND,
     &FitJob::KIND,
     &JoinJob::KIND,
+    &LayoutJob::KIND,
     &MapsJob::KIND,
+    &NailVideoJob::KIND,
     &NormalizeJob::KIND,
     &PerformanceJob::KIND,
     &PostureJob::KIND,

@@ -32,15 +32,15 @@ pub use figures::{BarSeries, Bars, draw_bars};
 pub use jobs::analyse::{AnalyseFigures, AnalyseReport, ModelMode, ModelModes, Printed, analyse, analyse_plan};
 pub use jobs::answer::Answering;
 pub use jobs::evaluate::{
-    BinMerit, EvaluateFigures, EvaluateOptions, EvaluateReport, HeldOut, Magnitudes, Part, RecordingMerit, evaluate,
-    evaluate_plan,
+    BinMerit, EvaluateFigures, EvaluateOptions, EvaluateReport, HeldOut, Magnitudes, Part, RecordingMerit, Splits,
+    evaluate, evaluate_plan, way,
 };
 pub use jobs::kinds::{AnalyseJob, EvaluateJob, PredictJob, PruneJob, TrainJob};
 pub use jobs::predict::{PredictFigures, PredictOptions, PredictReport, predict, predict_plan};
 pub use jobs::prune::{PruneFigures, PruneReport, PruneRow, prune, prune_plan};
 pub use jobs::train::{TrainFigures, TrainInputs, TrainOptions, TrainOutputs, TrainReport, Without, train, train_plan};
 pub use merit::figures::{ByTarget, Merit};
-pub use options::choices::{ByChoice, F_MIN_N, FOLDS, HIDDEN, LEVEL, ModelChoice, share};
+pub use options::choices::{ByChoice, F_MIN_N, FOLDS, HIDDEN, LEVEL, ModelChoice, RegressionChoice, share};
 pub use options::commands::{EvaluateChoices, GateChoices, NetworkOptions, PredictChoices, PruneChoices, TrainChoices};
 pub use options::target::{POSTURE, Target};
 pub use outputs::{FolderOutputs, end, picture};
@@ -51,6 +51,21 @@ pub(crate) struct OpenedModels {
 }
 
 impl OpenedModels {
+    /// Models of samples, which come one by one.
+    ///
+    /// # Errors
+    /// One that reads pictures.
+    pub(crate) fn of_samples(self) -> Result<Self, PredictorError> {
+        match self.predictors.iter().find(|one| one.eigennails().is_some()) {
+            None => Ok(self),
+            Some(one) => Err(PredictorError::Request(format!(
+                "the model of {} reads cells of a nail's picture, and samples of a sensor have none; use `lunula \
+                 predict` on a table of cells",
+                one.target_names().join(", ")
+            ))),
+        }
+    }
+
     /// The only one.
     fn one(mut self) -> (Predictor, Vec<String>) {
         (self.predictors.remove(0), self.warnings)

@@ -195,6 +195,7 @@ fn name(kind: Kind, restarts: usize) -> String {
         Kind::Quadratic => "quadratic".to_owned(),
         Kind::Network { hidden } if restarts == 1 => format!("network of {hidden}"),
         Kind::Network { hidden } => format!("network of {hidden}, {restarts} starts"),
+        Kind::Eigennails { .. } => "eigennails".to_owned(),
     }
 }
 

@@ -38,6 +38,31 @@ pub(crate) fn halved(cells: &[Cell], size: [usize; 2]) -> Vec<Cell> {
     answered(made(cells, size, size.map(|n| n / 2), mean))
 }
 
+/// How well `patch` fits at each place of a picture at which all of it lies within: correlation, -1 to 1, row by row of
+/// (columns less the patch's, plus one). Nothing where the patch is the larger.
+pub(crate) fn matched(picture: &[f32], size: [usize; 2], patch: &[f32], patch_size: [usize; 2]) -> Vec<f32> {
+    answered(try_matched(picture, size, patch, patch_size))
+}
+
+fn try_matched(
+    picture: &[f32],
+    [columns, rows]: [usize; 2],
+    patch: &[f32],
+    [across, down]: [usize; 2],
+) -> Result<Vec<f32>, VisionError> {
+    if across > columns || down > rows || patch.is_empty() {
+        return Ok(Vec::new());
+    }
+    let (wide, high) = (columns - across + 1, rows - down + 1);
+    let mut fits = vec![0.0; wide * high];
+    let (picture, patch) = (view(rows, columns, picture)?, view(down, across, patch)?);
+    let mut to = view_mut(high, wide, &mut fits)?;
+    imgproc::match_template(&picture, &patch, &mut to, imgproc::TM_CCOEFF_NORMED, &Mat::default())
+        .map_err(VisionError::of("matchTemplate"))?;
+    drop(to);
+    Ok(fits)
+}
+
 /// What OpenCV's `call` makes of `cells`, at another size or the same.
 fn made<const CHANNELS: usize>(
     cells: &[[f32; CHANNELS]],
@@ -78,6 +103,19 @@ mod tests {
         let places = || (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y)));
         let across: Vec<Cell> = places().map(|(x, y)| sum(&|tap| cells[y * columns + held(x, tap, columns)])).collect();
         places().map(|(x, y)| sum(&|tap| across[held(y, tap, rows) * columns + x])).collect()
+    }
+
+    #[test]
+    fn a_patch_fits_best_where_it_was_cut_out() {
+        let (size, patch_size) = ([40, 30], [9, 7]);
+        let picture: Vec<f32> = random(size).iter().map(|cell| cell[0]).collect();
+        let patch: Vec<f32> = (0..63).map(|k| 3.0 * picture[(11 + k / 9) * 40 + 21 + k % 9] - 1.0).collect();
+        let fits = matched(&picture, size, &patch, patch_size);
+        let best = (0..fits.len()).max_by(|&a, &b| fits[a].total_cmp(&fits[b])).unwrap();
+        assert_eq!((best % 32, best / 32), (21, 11));
+        // A gain and an offset change nothing; measured 1e-6.
+        assert!((fits[best] - 1.0).abs() <= 1e-4, "{}", fits[best]);
+        assert!(matched(&patch, patch_size, &picture, size).is_empty());
     }
 
     fn plainly_halved(cells: &[Cell], [columns, rows]: [usize; 2]) -> Vec<Cell> {

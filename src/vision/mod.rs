@@ -28,7 +28,7 @@ use opencv::prelude::*;
 use thiserror::Error;
 
 pub(crate) use board::{Corners, find_board, shows_another};
-pub(crate) use cells::{Cell, halved, smoothed};
+pub(crate) use cells::{Cell, halved, matched, smoothed};
 pub(crate) use extreme::{Extreme, extreme};
 pub(crate) use image::{closed_line, resized};
 pub(crate) use lens::{Calibration, Intrinsics, PARAMETERS, Pose, calibrate, project, undistorted};

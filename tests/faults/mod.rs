@@ -99,6 +99,7 @@ const JOBS: &[Job] = &[
         "prune in/a.csv --validate in/b.csv --out out/prune",
         "prune in/a.csv --validate in/c.csv --out out/prune",
     ),
+    fast("layout", "layout in/a.csv --k 1..2 --out out/layout", "layout in/b.csv --k 1..2 --out out/layout"),
     slow(
         "trajectory",
         "trajectory force --seconds 20 --out out/path.csv",
@@ -119,6 +120,18 @@ const JOBS: &[Job] = &[
         "performance",
         "performance in/trials.csv --path-m 1.42 --speed-mps 0.025 --decisions 27 --out out/learned",
         "performance in/trials.csv --path-m 1.42 --speed-mps 0.05 --decisions 27 --out out/learned",
+    ),
+    fast(
+        "switch tune",
+        "switch tune in/touch/log.csv --model in/touch.json --contact Fz_N<-0.3 --missed 0.9 --outside count \
+         --out out/s.toml",
+        "switch tune in/touch/log.csv --model in/touch.json --contact Fz_N<-0.2 --missed 0.9 --outside count \
+         --out out/s.toml",
+    ),
+    fast(
+        "switch evaluate",
+        "switch evaluate in/s.toml in/touch/log.csv --model in/touch.json --contact Fz_N<-0.3 --out out/judged",
+        "switch evaluate in/s.toml in/touch/log.csv --model in/touch.json --contact Fz_N<-0.2 --out out/judged",
     ),
     fast("skill", "skill in/a.csv --out out/skill", "skill in/b.csv --out out/skill"),
     fast(
@@ -165,6 +178,7 @@ fn inputs(dir: &Dir) {
         }
         dir.write(&format!("in/{name}.csv"), text);
     }
+    dir.write("in/s.toml", "on_N = 0.5\noff_N = 0.3\n");
     dir.write("in/trials.csv", "operator,method,trial,time_s\nA,pendant,1,200\nA,virtual,1,100\n");
     let photos = |more: &str, out: &str| {
         let line = format!("phantom photos --subjects 1 --poses normal --size 160x120 --no-normalized --out {out}");
@@ -194,6 +208,8 @@ fn inputs(dir: &Dir) {
         "phantom video --seconds 0.4 --size 320x240 --fps 15 --no-hide --start --out in/video",
         "phantom board --board 5x4 --views 4 --size 320x240 --out in/board",
         "phantom log --seconds 3 --rate 50 --protocol bending --out in/bend",
+        "phantom log --seconds 30 --rate 25 --protocol contacts --seed 4 --out in/touch",
+        "train in/touch/log.csv --target force --out in/touch.json",
         "train in/a.csv --target force --validate in/b.csv --out in/force.json",
         "train in/b.csv --target force --validate in/a.csv --out in/force2.json",
         "train in/a.csv --target posture --validate in/b.csv --out in/posture.json",

@@ -10,6 +10,7 @@ mod out;
 mod runs;
 mod shell;
 mod tradeoff;
+mod ui;
 
 use std::io::IsTerminal;
 use std::process::ExitCode;
@@ -56,6 +57,7 @@ appear whole or not at all; what existed before a failed run is as it was.";
 enum Command {
     Photos(jobs::photos::PhotosArgs),
     Posture(jobs::posture::PostureArgs),
+    Nailvideo(Box<jobs::nailvideo::NailVideoArgs>),
     Camera(jobs::camera::CameraArgs),
     Align(Box<jobs::align::AlignArgs>),
     Train(Box<jobs::predictor::TrainArgs>),
@@ -63,6 +65,7 @@ enum Command {
     Predict(jobs::predictor::PredictArgs),
     Analyse(jobs::predictor::AnalyseArgs),
     Prune(jobs::predictor::PruneArgs),
+    Layout(Box<jobs::layout::LayoutArgs>),
     Live(Box<jobs::live::session::LiveArgs>),
     Record(Box<jobs::live::session::RecordArgs>),
     Switch(jobs::live::switch::SwitchArgs),
@@ -77,6 +80,7 @@ enum Command {
     Trajectory(Box<jobs::trajectory::TrajectoryArgs>),
     Run(runs::run::RunArgs),
     Init(runs::init::InitArgs),
+    Ui(ui::UiArgs),
     Doctor(doctor::DoctorArgs),
     Completions(shell::completions::CompletionsArgs),
     Man(shell::man::ManArgs),
@@ -126,11 +130,13 @@ fn main() -> ExitCode {
         Command::Photos(args) => jobs::photos::run_or_merge(&args),
         Command::Align(args) => jobs::run(&*args),
         Command::Camera(args) => jobs::run(&args),
+        Command::Nailvideo(args) => jobs::run(&*args),
         Command::Train(args) => jobs::run(&*args),
         Command::Evaluate(args) => jobs::run(&args),
         Command::Predict(args) => jobs::predictor::run_or_stream(&args),
         Command::Analyse(args) => jobs::run(&args),
         Command::Prune(args) => jobs::run(&args),
+        Command::Layout(args) => jobs::run(&*args),
         Command::Live(args) => jobs::live::session::run_live(&args),
         Command::Record(args) => jobs::live::session::run_record(&args),
         Command::Mouse(args) => jobs::live::session::run_mouse(&args),
@@ -146,6 +152,7 @@ fn main() -> ExitCode {
         Command::Trajectory(args) => jobs::trajectory::run(&args),
         Command::Run(args) => runs::run::run(&args),
         Command::Init(args) => runs::init::run(&args),
+        Command::Ui(args) => ui::run(&args),
         Command::Doctor(args) => doctor::run(&args),
         Command::Completions(args) => shell::completions::run(&args),
         Command::Man(args) => shell::man::run(&args),

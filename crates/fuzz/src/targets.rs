@@ -9,8 +9,12 @@ use std::sync::Arc;
 
 use lunula::align::Posture;
 use lunula::job::{Keys, Made, Maker, Work};
+use lunula::live::streams::pointer;
+use lunula::live::streams::source::{Address, OfFinger};
+use lunula::live::streams::switch::SwitchConfig;
 use lunula::live::streams::wire::{LineOptions, Lines, Meaning, Naming, Step, Use};
 use lunula::log::{AmbientOptions, Columns, Log, samples};
+use lunula::nail::Positions;
 use lunula::photo::outline::{self, Axis, Drawn, find_axes, outlines_from_mask};
 use lunula::photo::{NailFrame, Normalization, Photograph, Resample, join, normalize};
 use lunula::pipeline::{Parts, PipelineMark, Share, Spec, Task};
@@ -44,6 +48,10 @@ pub(crate) const TARGETS: &[Target] = &[
     Target { name: "records", run: records },
     Target { name: "stream", run: stream },
     Target { name: "xdf", run: xdf },
+    Target { name: "source", run: source },
+    Target { name: "switch", run: switch },
+    Target { name: "mouse", run: mouse },
+    Target { name: "positions", run: positions },
 ];
 
 /// What a parser is given besides an input.
@@ -269,4 +277,29 @@ fn stream(desk: &Desk, bytes: &[u8]) {
 /// A recording, or a packed one.
 fn xdf(desk: &Desk, bytes: &[u8]) {
     log(&desk.file("log.xdf", bytes));
+}
+
+/// The name of a source; what it is written as is read again.
+fn source(_: &Desk, bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    if let Ok(source) = text.trim_end().parse::<OfFinger<Address>>() {
+        assert_eq!(source.to_string().parse::<OfFinger<Address>>().as_ref(), Ok(&source));
+    }
+}
+
+fn switch(_: &Desk, bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    if let Ok(switch) = SwitchConfig::from_toml(text) {
+        let _ = switch.at(0.01, 0.02);
+    }
+}
+
+fn mouse(_: &Desk, bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    let _ = pointer::Config::from_toml(text);
+}
+
+fn positions(_: &Desk, bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    let _ = (Positions::from_toml(text), Positions::from_json(text));
 }

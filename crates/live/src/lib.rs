@@ -7,6 +7,7 @@
 //! clock); forces are newtons of the finger on the surface (pressing is a negative `Fz_N`), angles degrees, positive in
 //! flexion. What is not known is NaN or `None`, never zero. What is done for every sample allocates nothing.
 
+pub mod companion;
 pub mod latency;
 pub mod performance;
 pub mod pointer;

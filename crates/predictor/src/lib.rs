@@ -1,7 +1,7 @@
 //! Touch force and finger posture from the photodiodes of a fingernail sensor: chapter 5 of S. Mascaro's thesis.
 //!
-//! In: a [`Dataset`], voltages of photodiodes with the forces or the joint angle measured at the same time. Out: a
-//! [`Model`] that estimates forces or angle from voltages, with its known accuracy.
+//! In: a [`Dataset`], voltages of photodiodes (or cells of the nail's picture) with the forces or the joint angle
+//! measured at the same time. Out: a [`Model`] that estimates forces or angle from voltages, with its known accuracy.
 //!
 //! Conventions: a row is a moment; arrays are rows x inputs or rows x targets. Voltages are volts, forces newtons and
 //! those of the finger on the surface (pressing is a negative `Fz_N`), angles degrees, positive in flexion. What is not
@@ -26,21 +26,33 @@ pub use contact::friction::{FrictionCone, FrictionFault};
 pub use contact::gate::{Contact, Gate, GateFault, GateState};
 pub use data::dataset::{Dataset, DatasetFault, Recording};
 pub use data::lags::{LagFault, LagStream, Lagged, Lags};
+pub use data::path::{paths, repeated_paths};
 pub use evaluate::{
-    Bin, By, ByMagnitude, Coverage, CrossCoverage, CrossFault, CrossValidation, Flattery, Fold, FoldResult, FoldSpread,
-    IntervalFault, Intervals, LearningFault, LearningPoint, MagnitudeFault, Scores, SplitFault, TargetScore,
-    by_magnitude, calibrate, coverage, cross_coverage, cross_validate, folds, learn_by_recordings, learn_by_share,
-    magnitude_edges, nested_coverage, recording_hashes, row_hashes, score, shared_rows,
+    Bin, By, ByMagnitude, Coverage, CrossCoverage, CrossFault, CrossValidation, Fit, Flattery, Fold, FoldResult,
+    FoldSpread, IntervalFault, Intervals, Leak, LearningFault, LearningPoint, MagnitudeFault, Method, MethodScore,
+    Predict, Scores, Split, SplitFault, SplitTarget, TargetScore, by_magnitude, calibrate, compare_splits, coverage,
+    cross_coverage, cross_validate, flatteries, folds, leaks, learn_by_recordings, learn_by_share, magnitude_edges,
+    nested_coverage, recording_hashes, row_hashes, score, shared_rows,
 };
-pub use fit::{FitFault, FitReport, Printed, fit_linear, fit_quadratic, linear_f0, quadratic_printed};
+pub use fit::{
+    Directions, EigennailsReport, FitFault, FitReport, OnScores, Printed, fit_eigennails, fit_linear, fit_quadratic,
+    linear_f0, quadratic_printed,
+};
 pub use least_squares::{
     Deficient, Dependent, LeastSquares, LeastSquaresFault, LeastSquaresOptions, Solver, least_squares,
 };
-pub use model::{Linear, Model, ModelFault, Network, Quadratic, quadratic_terms};
+pub use model::{
+    Basis, Covariance, Eigennails, Linear, Model, ModelFault, Network, Process, Projection, Quadratic, Regression,
+    Ridge, quadratic_terms,
+};
 pub use network::{Restart, Stopped, TrainFault, TrainOptions, TrainReport, train_network};
 pub use predictor::file::{FileFault, Opened};
 pub use predictor::recipe::{FORCES, Fitted, Kind, Recipe, RecipeFault, Report, predict, stopping_rows, with_lags};
 pub use predictor::{Channel, Predictor, TrainedOn, Training, unit_of};
+pub use subsets::{
+    Candidate, Choice, Criterion, LayoutFault, LayoutProblem, MOST_CANDIDATES, Moments, Proof, Rules, Starts,
+    determinant, pivoted, prove, search,
+};
 pub use subsets::{
     MOST_INPUTS, Subset, SubsetErrors, SubsetFault, Subsets, WithoutOne, backward_elimination, every_subset,
 };

@@ -19,6 +19,14 @@ where
     let failed = |e: DrawingAreaErrorKind<B::ErrorType>| anyhow!("{e}");
     match item {
         Item::Spans { .. } | Item::Names(_) | Item::Room(_) => {}
+        Item::Shades(boxes) => {
+            let shade = |(ends, level): &([f64; 4], f64)| {
+                let [left, low, right, high] = *ends;
+                let grey = (level.clamp(0.0, 1.0) * 255.0).round() as u8;
+                Rectangle::new([near(left, low), near(right, high)], RGBColor(grey, grey, grey).filled())
+            };
+            chart.draw_series(boxes.iter().map(shade)).map_err(failed)?;
+        }
         Item::Band { runs, colour: k } => {
             let fill = colour(*k).mix(0.3).filled();
             let outline = |run: &Vec<[f64; 3]>| -> Vec<(f64, f64)> {

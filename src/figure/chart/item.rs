@@ -97,6 +97,8 @@ pub enum Item {
         /// Whether it is above.
         above: bool,
     },
+    /// Grey boxes, as a picture under the rest: left, low, right and high end, and a level from 0 (black) to 1 (white).
+    Shades(Vec<([f64; 4], f64)>),
     /// Nothing, but the axes reach to these points.
     Room(Vec<[f64; 2]>),
 }
@@ -173,6 +175,10 @@ impl Item {
                 reach.take([x, low]);
                 reach.y.take(high);
             }),
+            Self::Shades(boxes) => boxes.iter().for_each(|([left, low, right, high], _)| {
+                reach.take([*left, *low]);
+                reach.take([*right, *high]);
+            }),
             Self::Text { at, .. } | Self::Label { at, .. } => reach.take(*at),
             Self::Diagonal { .. } | Self::Names(_) => {}
         }
@@ -193,6 +199,7 @@ impl Item {
             | Self::Text { .. }
             | Self::Label { .. }
             | Self::Names(_)
+            | Self::Shades(_)
             | Self::Room(_) => None,
         }
     }

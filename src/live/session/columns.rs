@@ -3,7 +3,9 @@
 //! In: the names. Out: which column is the time, the counter, the LED, and which numbers are kept, under the contract's
 //! names: photodiodes, forces, pressures, a tracker's `x_m`, `y_m`, `z_m`, and what is asked for by name.
 
-use lunula_live::wire::{Meaning, Use};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use lunula_live::wire::{Meaning, Naming, Use};
 
 use crate::log::LogReading;
 use crate::predictor::{GROUPS, missing};
@@ -105,6 +107,32 @@ impl StreamColumns {
     /// Where a value is in a row.
     pub(crate) fn place(&self, name: &str) -> Option<usize> {
         self.values.iter().position(|value| value == name)
+    }
+}
+
+/// Recognizes the columns of a stream when it names them, and hands them to whoever works with them.
+#[derive(Clone, Default)]
+pub(super) struct Recognizer(Arc<Mutex<Option<StreamColumns>>>);
+
+impl Recognizer {
+    /// What a stream asks for the meaning of its columns; `needs` have to be among them.
+    pub(super) fn naming(&self, log: &LogReading, keep: &[String], needs: &[String]) -> Naming {
+        let (recognizer, log, keep, needs) = (self.clone(), log.clone(), keep.to_vec(), needs.to_vec());
+        Box::new(move |names| {
+            let columns = StreamColumns::of(names, &log, &keep)?;
+            if columns.values.is_empty() {
+                return Err(format!("no column is a photodiode or a force; its columns are {}", names.join(", ")));
+            }
+            columns.check(&needs)?;
+            let meaning = columns.meaning.clone();
+            recognizer.0.lock().unwrap_or_else(PoisonError::into_inner).replace(columns);
+            Ok(meaning)
+        })
+    }
+
+    /// The columns, once.
+    pub(super) fn take(&self) -> StreamColumns {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).take().unwrap_or_default()
     }
 }
 

@@ -10,17 +10,23 @@ use toml::Table;
 use crate::job::read;
 use crate::live::error::LiveError;
 use crate::live::options::StreamOptions;
+use crate::log::{LogReading, recorded_stream};
 use crate::phantom::log::LiveLog;
 use crate::phantom::request::LogRequest;
 use crate::predictor::GROUPS;
 use crate::table;
 
-/// Opens a session's source at `now_ns` of its clock.
+/// Opens one of a session's sources at `now_ns` of its clock.
 ///
 /// # Errors
 /// A source that can't be opened.
-pub(super) fn open_stream(options: &StreamOptions, naming: Naming, now_ns: u64) -> Result<Stream, LiveError> {
-    let mut source = options.source.clone();
+pub(super) fn open_stream(
+    source: &Address,
+    options: &StreamOptions,
+    naming: Naming,
+    now_ns: u64,
+) -> Result<Stream, LiveError> {
+    let mut source = source.clone();
     source.volts_per_count = options.volts_per_count.or(source.volts_per_count);
     let since_1970 = SystemTime::now().duration_since(UNIX_EPOCH).ok();
     let wire = WireOptions {
@@ -28,8 +34,9 @@ pub(super) fn open_stream(options: &StreamOptions, naming: Naming, now_ns: u64) 
         host_start_unix_s: since_1970.map(|since| since.as_secs_f64() - 1e-9 * now_ns as f64),
     };
     match &source.place {
-        Place::File { path, pace, looped } if is_parquet(path) => {
-            let rows = Box::new(TableRows::read(path)?);
+        Place::File { path, pace, looped } if is_parquet(path) || is_xdf(path) => {
+            let rows = if is_xdf(path) { TableRows::of_xdf(path, &options.log)? } else { TableRows::read(path)? };
+            let rows = Box::new(rows);
             let name = source.to_string();
             Ok(Stream::of_rows(name, rows, (*pace, *looped), source.volts_per_count, &wire, naming))
         }
@@ -38,10 +45,6 @@ pub(super) fn open_stream(options: &StreamOptions, naming: Naming, now_ns: u64) 
             let rows = Box::new(PhantomRows::new(kind, settings).map_err(named)?);
             Ok(Stream::of_rows(source.to_string(), rows, (*pace, false), source.volts_per_count, &wire, naming))
         }
-        Place::File { path, .. } if is_xdf(path) => Err(LiveError::Source {
-            place: source.to_string(),
-            what: "XDF recordings are not played back yet; `lunula align` and `lunula train` read them".to_owned(),
-        }),
         _ => Stream::open(&source, wire, naming, now_ns).map_err(|why| source_fault(&source, why)),
     }
 }
@@ -91,6 +94,16 @@ impl TableRows {
             rows.texts.push(texts);
         }
         Ok(rows)
+    }
+}
+
+impl TableRows {
+    /// A recording of the Lab Streaming Layer.
+    fn of_xdf(path: &Path, log: &LogReading) -> Result<Self, LiveError> {
+        let (names, numbers) = recorded_stream(path, &log.columns)?;
+        let rows = numbers.first().map_or(0, Vec::len);
+        let texts = vec![Vec::new(); names.len()];
+        Ok(Self { names, numbers, texts, kept: Vec::new(), row: 0, rows })
     }
 }
 

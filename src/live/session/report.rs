@@ -1,13 +1,25 @@
-//! What a session reports.
+//! What a session reports, and how it ends.
 
 use std::path::PathBuf;
+use std::time::Instant;
 
-use lunula_live::latency::LatencySummary;
+use lunula_live::latency::{Latency as Times, LatencySummary};
 use lunula_live::source::StreamCertificate;
 use serde::Serialize;
 
-use super::pointer::PointerCounts;
-use crate::job::Report;
+use super::decide::Decide;
+use super::feed::Feed;
+use super::lane::{Lane, Shared};
+use super::outputs::pointer::{PointerCounts, PointerOutput};
+use super::outputs::switch::{SwitchCounts, SwitchOutput};
+use crate::files::{Places, beside};
+use crate::job::{Report, Watch};
+use crate::live::error::LiveError;
+use crate::live::options::SessionFiles;
+use crate::stages::Stages;
+
+/// The report beside a recording.
+pub(super) const REPORT: &str = ".stream.json";
 
 /// How a session went.
 pub type SessionReport = Report<SessionFigures>;
@@ -15,13 +27,13 @@ pub type SessionReport = Report<SessionFigures>;
 /// The figures of a session.
 #[derive(Debug, Clone, Serialize)]
 pub struct SessionFigures {
-    /// The recording.
+    /// The recording; of several fingers the name that theirs are made of.
     pub out: Option<PathBuf>,
-    /// What came, what was lost, how its clock ran.
-    pub stream: StreamCertificate,
+    /// Each source: what came, what was lost, how its clock ran.
+    pub sources: Vec<SourceFigures>,
     /// The columns of the rows of answers.
     pub columns: Vec<String>,
-    /// Rows that came.
+    /// Rows that came of all fingers.
     pub rows: u64,
     /// Rows that were answered: those with the LED on.
     pub answered: u64,
@@ -33,7 +45,9 @@ pub struct SessionFigures {
     pub touch: u64,
     /// See `touch`.
     pub bending: u64,
-    /// What the switch did.
+    /// Rows that were recorded without a force; none where no force transducer is a device of its own.
+    pub rows_without_force: Option<u64>,
+    /// What the switches did.
     pub switch: Option<SwitchCounts>,
     /// What the mouse did.
     pub pointer: Option<PointerCounts>,
@@ -45,15 +59,26 @@ pub struct SessionFigures {
     pub lost_by_disk: u64,
 }
 
-/// What a switch did in a session.
+/// One source.
+#[derive(Debug, Clone, Serialize)]
+pub struct SourceFigures {
+    /// Whose it is, where the sources have names.
+    pub finger: Option<String>,
+    /// What it gives.
+    pub gives: SourceRole,
+    /// What came, what was lost, how its clock ran.
+    #[serde(flatten)]
+    pub stream: StreamCertificate,
+}
+
+/// What a source gives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub struct SwitchCounts {
-    /// Presses.
-    pub presses: u64,
-    /// Releases.
-    pub releases: u64,
-    /// Of these, those by the watchdog, a clock set back, a lost source or the session's end.
-    pub let_go: u64,
+#[serde(rename_all = "snake_case")]
+pub enum SourceRole {
+    /// The samples of a sensor.
+    Samples,
+    /// Forces at the times of these samples.
+    Forces,
 }
 
 /// How long a row took on its way; none where it can't be known.
@@ -65,4 +90,168 @@ pub struct Latency {
     pub work: Option<LatencySummary>,
     /// How late the host wakes this program up; of recordings, how late rows were played.
     pub wake_up: Option<LatencySummary>,
+}
+
+/// A session that has ended.
+pub(super) struct Ended<'a> {
+    pub(super) job: &'static str,
+    pub(super) start: Instant,
+    pub(super) files: &'a SessionFiles,
+    pub(super) lanes: Vec<Lane<'a>>,
+    pub(super) shared: Shared<'a>,
+    pub(super) warnings: Vec<String>,
+    pub(super) left_out: Vec<String>,
+    pub(super) wake_up: Times,
+    pub(super) fault: Option<LiveError>,
+}
+
+/// Lets go of what is pressed, ends all files and reports.
+///
+/// # Errors
+/// Nothing came, or nobody could be given the rows.
+pub(super) fn report(ended: Ended<'_>, watch: &Watch<'_>) -> Result<SessionReport, LiveError> {
+    let Ended { job, start, files, mut lanes, mut shared, warnings, left_out, wake_up, mut fault } = ended;
+    for lane in &mut lanes {
+        if let Err(why) = lane.work.lose(true, &mut shared) {
+            fault.get_or_insert(why);
+        }
+    }
+    let late = lanes[0].feed.stream.lateness().and_then(Times::summary);
+    let latency =
+        Latency { arrival: shared.arrival.summary(), work: shared.work.summary(), wake_up: late.or(wake_up.summary()) };
+    let mut figures = SessionFigures::new(files.out.clone(), latency);
+    let (mut failed, mut silent) = (Vec::new(), Vec::new());
+    for lane in lanes {
+        let finger = lane.finger();
+        for (feed, gives) in lane.feeds().zip([SourceRole::Samples, SourceRole::Forces]) {
+            let (name, stream) = (feed.name(), feed.stream.certificate());
+            failed.extend(Feed::spoilt(&stream.spoilt).map(|rows| format!("{name}: {rows}")));
+            if feed.health.rows == 0 {
+                let known = !feed.stream.names().is_empty();
+                let what = if known { "no row came" } else { "no row came, and no names of columns" };
+                silent.push(LiveError::Source { place: name, what: what.to_owned() });
+            }
+            figures.sources.push(SourceFigures { finger: finger.clone(), gives, stream });
+        }
+        if let Some(decide) = lane.work.decide {
+            figures.add(decide, &mut shared.notes, &mut failed);
+        }
+    }
+    if figures.rows == 0 {
+        return Err(fault
+            .or(silent.into_iter().next())
+            .unwrap_or_else(|| LiveError::Request("no row came".to_owned())));
+    }
+    failed.splice(0..0, fault.iter().chain(&silent).map(ToString::to_string));
+    let Shared { mut outputs, notes, tell, .. } = shared;
+    // Where rows are all that a session gives there is nothing then.
+    match outputs.finish() {
+        Some(why) if files.out.is_none() => return Err(why),
+        why => failed.extend(why.map(|why| why.to_string())),
+    }
+    figures.lost_by_readers = outputs.lost();
+    figures.columns = outputs.header;
+    if let Some(predicted) = outputs.predicted {
+        figures.lost_by_disk += predicted.lost();
+        failed.extend(predicted.finish().err().map(|why| why.to_string()));
+    }
+    let mut report = Report { left_out, warnings, notes, failed, ..Report::new(job, watch, figures) };
+    let losses = losses(&report);
+    losses.iter().for_each(|warning| tell(&format!("warning: {warning}")));
+    report.warnings.extend(losses);
+    let report = report.timed(&Stages::default(), start);
+    if let Some(out) = &files.out {
+        let mut places = Places::not_over(files.models.iter().map(|model| &model.what));
+        places.write(&beside(out, REPORT), &report.text())?;
+        places.commit()?;
+    }
+    Ok(report)
+}
+
+impl SessionFigures {
+    fn new(out: Option<PathBuf>, latency: Latency) -> Self {
+        Self {
+            out,
+            sources: Vec::new(),
+            columns: Vec::new(),
+            rows: 0,
+            answered: 0,
+            rows_not_known: 0,
+            rows_outside: 0,
+            touch: 0,
+            bending: 0,
+            rows_without_force: None,
+            switch: None,
+            pointer: None,
+            latency,
+            lost_by_readers: 0,
+            lost_by_disk: 0,
+        }
+    }
+
+    /// Adds what was made of a finger's rows, and ends its recording.
+    fn add(&mut self, decide: Decide, notes: &mut Vec<String>, failed: &mut Vec<String>) {
+        let Decide { samples, answers, rows, .. } = decide;
+        self.rows += rows;
+        if let Some(answers) = answers {
+            let sensor = &answers.sensor;
+            self.answered += sensor.lit;
+            self.rows_not_known += sensor.not_known;
+            self.rows_outside += sensor.answering().outside();
+            self.touch += answers.touch;
+            self.bending += answers.bending;
+            if let Some(counts) = answers.switch.as_ref().map(SwitchOutput::counts) {
+                let all = self.switch.get_or_insert_default();
+                all.presses += counts.presses;
+                all.releases += counts.releases;
+                all.let_go += counts.let_go;
+            }
+            self.pointer = answers.pointer.as_ref().map(PointerOutput::counts);
+            if sensor.unknown > 0 {
+                notes.push(format!("{} rows do not say whether the LED was on and are left out", sensor.unknown));
+            }
+        }
+        let Some(mut samples) = samples else { return };
+        failed.extend(samples.end_forces().err().map(|why| why.to_string()));
+        if let Some(without) = samples.without_force() {
+            *self.rows_without_force.get_or_insert(0) += without;
+        }
+        self.lost_by_disk += samples.lost();
+        failed.extend(samples.finish().err().map(|why| why.to_string()));
+    }
+}
+
+/// What has to be known of a session before its rows are used.
+fn losses(report: &SessionReport) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for SourceFigures { finger, gives, stream } in &report.sources {
+        let whose = finger.as_ref().map_or(String::new(), |finger| format!("{finger}: "));
+        let what = if *gives == SourceRole::Forces { "rows of forces" } else { "rows" };
+        let counts = &stream.counts;
+        for (lost, how) in [(counts.lost, "by their counter"), (counts.lost_by_time, "estimated from gaps in time")] {
+            if lost > 0 {
+                warnings.push(format!("{whose}{lost} {what} never came ({how})"));
+            }
+        }
+    }
+    if let Some(without) = report.rows_without_force.filter(|without| *without > 0) {
+        warnings.push(format!(
+            "{without} of {} rows have no force: the source of --force had none around their time",
+            report.rows
+        ));
+    }
+    if report.lost_by_disk > 0 {
+        warnings.push(format!("{} rows are not recorded: the disk was too slow", report.lost_by_disk));
+    }
+    if report.lost_by_readers > 0 {
+        warnings.push(format!("readers lost {} rows: they were too slow", report.lost_by_readers));
+    }
+    if report.rows_outside * 20 > report.answered {
+        warnings.push(format!(
+            "{} of {} rows lie outside of the voltages that the model was trained on; their predictions are \
+             extrapolated",
+            report.rows_outside, report.answered
+        ));
+    }
+    warnings
 }

@@ -1,51 +1,37 @@
-//! The loop of a session, and its entries: `live`, `record`, and recordings read row by row.
+//! The loop of a session, and its entries: `live` and `record`.
 
-use std::fs::File;
-use std::io::BufWriter;
-use std::net::TcpListener;
 use std::os::fd::OwnedFd;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::Ordering;
-use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
 use lunula_live::latency::Latency as Times;
-use lunula_live::pointer::Config;
-use lunula_live::source::{Address, Condition, Event, Form, HostClock, Pace, Place, Stream, wait};
+use lunula_live::source::{Address, HostClock, MOST_WAITED, Place, Ready, wait};
 use lunula_live::switch::Switch;
-use lunula_live::time::ClockFit;
-use lunula_live::wire::{Naming, Row, Spoil, SpoiltRows};
 
-use super::columns::StreamColumns;
-use super::decide::{Answers, Decide, SwitchOutput};
-use super::open::{named, open_stream, source_fault};
-use super::pipe::Pipe;
-use super::pointer::{PointerOutput, read_mouse};
-use super::recording::Recording;
-use super::report::{Latency, SessionFigures, SessionReport};
-use super::sensor::Sensor;
+use super::decide::Plan;
+use super::feed::Feed;
+use super::fingers::{Finger, fingers, of_finger, predicted_beside};
+use super::lane::{Lane, Shared};
+use super::outputs::Outputs;
+use super::outputs::pointer::{Mouse, read_mouse};
+use super::outputs::recording::Recording;
+use super::report::{Ended, REPORT, SessionReport, report};
 use crate::files::{Places, beside};
-use crate::job::{Report, Watch};
+use crate::job::Watch;
 use crate::live::error::LiveError;
 use crate::live::options::{LiveOptions, SessionFiles, StreamOptions};
+use crate::live::steps::{live_steps, record_steps};
 use crate::live::switch::read_switch;
-use crate::log::{LogReading, PRECEDING_RULE};
 use crate::predictor::{Answering, open_models};
-use crate::stages::Stages;
+use crate::stages::left_out;
 
 /// The loop looks up at least so often, nanoseconds: to be stopped, to find a lost source, to let readers in.
 const TICK_NS: u64 = 100_000_000;
 /// A reader that is behind is tried again after so long, nanoseconds.
 const BEHIND_NS: u64 = 2_000_000;
-/// A stream without a sample for so long after it was opened is an alarm.
-const SILENCE_NS: u64 = 1_000_000_000;
-/// More spoilt rows than this share in so long are an alarm.
-const SPOILT_SHARE: f64 = 0.01;
-const SPOILT_NS: u64 = 10_000_000_000;
-/// The report beside a recording.
-const REPORT: &str = ".stream.json";
-/// Whole numbers beyond this are no volts (assumed: no photodiode's amplifier reaches it).
-const COUNT_V: f64 = 30.0;
+/// Rows of several recordings that are handed out before anything else is looked at.
+const TURNS: u32 = 4096;
 
 /// Who hears rows and messages.
 pub struct Readers<'a> {
@@ -66,58 +52,56 @@ pub fn live(
     readers: Readers<'_>,
     watch: &Watch<'_>,
 ) -> Result<SessionReport, LiveError> {
-    let opened = open_models(&files.models)?;
-    opened.warnings.iter().for_each(|warning| (readers.tell)(&format!("warning: {warning}")));
+    let all = fingers(&options.stream, files)?;
     let gate = options.answer.gate().map_err(|why| LiveError::Request(why.to_string()))?;
-    let answering = Answering::new(opened.predictors, gate, options.answer.intervals)?;
-    let mut session = Session::new(&options.stream, files, answering.inputs().to_vec(), readers.tell, watch)?;
-    session.core.warnings.extend(opened.warnings);
-    let switch = files.switch.as_deref().map(read_switch).transpose()?;
-    let mouse = files.mouse.as_ref().map(|mouse| -> Result<Mouse, LiveError> {
+    let (mut plans, mut warnings) = (Vec::new(), Vec::new());
+    let mut header: Option<Vec<String>> = None;
+    for finger in &all {
+        let opened = open_models(&finger.models)?.of_samples()?;
+        for warning in opened.warnings {
+            if !warnings.contains(&warning) {
+                (readers.tell)(&format!("warning: {warning}"));
+                warnings.push(warning);
+            }
+        }
+        let answering = Answering::new(opened.predictors, gate, options.answer.intervals)?;
+        let own = answering.header();
+        if let Some(other) = header.replace(own.clone()).filter(|other| *other != own) {
+            let what = format!(
+                "the models of one finger give {}, those of another {}; name models of the same columns for each",
+                other.join(","),
+                own.join(",")
+            );
+            return Err(LiveError::Request(what));
+        }
+        let switch = finger.switch.as_deref().map(read_switch).transpose()?.map(Switch::new);
+        plans.push(Plan { answering: Some(answering), switch, ..finger.plan(options.answer.keep_faults) });
+    }
+    if let (Some(mouse), Some(plan)) = (&files.mouse, plans.first_mut()) {
+        if all.len() > 1 {
+            return Err(LiveError::Request("a mouse has one finger; name one --source".to_owned()));
+        }
         let config = mouse.config.as_deref().map(read_mouse).transpose()?.unwrap_or_default();
-        Ok(Mouse { config, events: mouse.events.clone(), uinput: mouse.uinput })
-    });
-    let mouse = mouse.transpose()?;
-    let job = if mouse.is_some() { "mouse" } else { "live" };
-    if files.events.is_some() && switch.is_none() {
+        plan.mouse = Some(Mouse { config, events: mouse.events.clone(), uinput: mouse.uinput });
+    }
+    let has_switch = plans.iter().any(|plan| plan.switch.is_some());
+    if files.events.is_some() && !has_switch {
         return Err(LiveError::Request("--events are a switch's: name one with --switch".to_owned()));
     }
-    let events = match &files.events {
-        None => None,
-        Some(path) => {
-            let file = File::create(path).map_err(|why| LiveError::Write { path: path.clone(), why })?;
-            Some((path.clone(), BufWriter::new(file)))
-        }
-    };
-    let listener = match options.tcp {
-        None => None,
-        Some(address) => {
-            let bound = TcpListener::bind(address).and_then(|one| one.set_nonblocking(true).map(|()| one));
-            let refused = |why: std::io::Error| {
-                LiveError::Request(format!("--tcp {address}: can't listen there ({why}); choose another port"))
-            };
-            let bound = bound.map_err(refused)?;
-            if let Ok(at) = bound.local_addr() {
-                (readers.tell)(&format!("rows are at tcp:{at}"));
-            }
-            Some(bound)
-        }
-    };
-    session.listener = listener;
-    let predicted = match &files.out {
-        Some(out) => Some(Recording::new(&predicted_beside(out), files.replace, session.core.waits)?),
-        None => None,
-    };
-    session.core.asked = Some(Asked {
-        answering,
-        switch: switch.map(Switch::new),
-        events,
-        mouse,
-        predicted,
-        rows: readers.rows,
-        keep_faults: options.answer.keep_faults,
-    });
-    session.run(job, watch)
+    check_places(&all, files)?;
+    let waits = all.iter().all(Finger::waits);
+    let mut outputs = Outputs::new(readers.rows, waits, options.tcp, files.events.clone(), readers.tell)?;
+    if let Some(out) = &files.out {
+        outputs.predicted = Some(Recording::new(&predicted_beside(out), files.replace, waits)?);
+    }
+    let labels = plans.first().and_then(|plan| plan.answering.as_ref()).map_or(&[][..], Answering::columns);
+    let named = all.iter().any(|finger| finger.name.is_some());
+    outputs.name(header.unwrap_or_default(), labels, named, has_switch, options.lsl.as_deref())?;
+    let mut session = Session::new(&options.stream, files, all, plans, outputs, readers.tell, watch)?;
+    session.warnings = warnings;
+    let job = if files.mouse.is_some() { "mouse" } else { "live" };
+    let left_out = left_out(live_steps(options, files));
+    session.run(job, left_out, watch)
 }
 
 /// Records samples as they come.
@@ -133,550 +117,312 @@ pub fn record(
     if files.out.is_none() {
         return Err(LiveError::Request("--out is needed: the recording".to_owned()));
     }
-    Session::new(options, files, Vec::new(), tell, watch)?.run("record", watch)
+    let all = fingers(options, files)?;
+    check_places(&all, files)?;
+    let plans = all.iter().map(|finger| finger.plan(false)).collect();
+    let session = Session::new(options, files, all, plans, Outputs::default(), tell, watch)?;
+    session.run("record", left_out(record_steps(options, files)), watch)
 }
 
-/// Reads a recording row by row as a session would, as fast as possible: `columns` hears what it holds, `row` each row.
-/// Returns what is worth saying.
-///
-/// # Errors
-/// A file that can't be read, or what `columns` or `row` refuse.
-pub(crate) fn each_row(
-    path: &Path,
-    log: &LogReading,
-    extra: &[String],
-    mut columns: impl FnMut(&StreamColumns) -> Result<(), String>,
-    mut row: impl FnMut(&Row<'_>) -> Result<(), String>,
-    watch: &Watch<'_>,
-) -> Result<Vec<String>, LiveError> {
-    let place = path.display().to_string();
-    let refused = |what: String| LiveError::Source { place: place.clone(), what };
-    let options = StreamOptions {
-        source: Address {
-            place: Place::File { path: path.to_owned(), pace: Pace::Max, looped: false },
-            form: Form::Lines,
-            volts_per_count: None,
-        },
-        volts_per_count: None,
-        names: None,
-        keep: extra.to_vec(),
-        seconds: None,
-        log: log.clone(),
-    };
-    let clock = HostClock::start();
-    let found = Found::default();
-    let mut stream = open_stream(&options, found.naming(log, extra, &[]), clock.now_ns())?;
-    let mut known = StreamColumns::default();
-    let (mut fault, mut rows) = (None, 0u64);
-    while !stream.ended() && fault.is_none() {
-        watch.go_on()?;
-        let mut on = |event: Event<'_>| match event {
-            Event::Columns(_) => {
-                known = found.take().unwrap_or_default();
-                fault = columns(&known).err();
-            }
-            Event::Row(one) if fault.is_none() => {
-                rows += 1;
-                fault = row(one).err();
-            }
-            _ => {}
-        };
-        stream.poll(clock.now_ns(), &mut on).map_err(|why| source_fault(&options.source, why))?;
+/// No result goes over an input.
+fn check_places(all: &[Finger<'_>], files: &SessionFiles) -> Result<(), LiveError> {
+    let mut inputs: Vec<PathBuf> = files.models.iter().chain(&files.switches).map(|of| of.what.clone()).collect();
+    inputs.extend(files.mouse.iter().filter_map(|mouse| mouse.config.clone()));
+    for source in all.iter().flat_map(|finger| std::iter::once(finger.source).chain(finger.force)) {
+        if let Place::File { path, .. } = &source.place {
+            inputs.push(path.clone());
+        }
     }
-    if let Some(what) = fault {
-        return Err(refused(what));
+    let mut results: Vec<PathBuf> = files.events.iter().cloned().collect();
+    results.extend(files.mouse.iter().filter_map(|mouse| mouse.events.clone()));
+    if let Some(out) = &files.out {
+        results.extend([predicted_beside(out), beside(out, REPORT)]);
+        results.extend(all.iter().map(|finger| of_finger(out, finger.name.as_deref())));
     }
-    if rows == 0 {
-        return Err(refused("no row came".to_owned()));
-    }
-    let mut notes = known.notes;
-    notes.extend(known.led.then(|| PRECEDING_RULE.to_owned()));
-    let spoilt = stream.certificate().spoilt;
-    notes.extend(spoilt.iter().map(|rows| format!("left out: {}", spoilt_words(rows))));
-    Ok(notes)
-}
-
-/// The columns of a stream, from whoever names them to whoever works with them.
-#[derive(Clone, Default)]
-struct Found(Arc<Mutex<Option<StreamColumns>>>);
-
-impl Found {
-    fn naming(&self, log: &LogReading, keep: &[String], needs: &[String]) -> Naming {
-        let (found, log, keep, needs) = (self.clone(), log.clone(), keep.to_vec(), needs.to_vec());
-        Box::new(move |names| {
-            let columns = StreamColumns::of(names, &log, &keep)?;
-            if columns.values.is_empty() {
-                return Err(format!("no column is a photodiode or a force; its columns are {}", names.join(", ")));
-            }
-            columns.check(&needs)?;
-            let meaning = columns.meaning.clone();
-            found.0.lock().unwrap_or_else(PoisonError::into_inner).replace(columns);
-            Ok(meaning)
-        })
-    }
-
-    fn take(&self) -> Option<StreamColumns> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).take()
-    }
-}
-
-/// Spoilt rows of one kind, in words.
-fn spoilt_words(rows: &SpoiltRows) -> String {
-    let SpoiltRows { kind, count, line, text } = rows;
-    let others = if *count > 1 { format!(", and {} more", count - 1) } else { String::new() };
-    format!("line {line} {} (`{text}`){others}", kind.words())
-}
-
-/// Where the rows of answers are, beside the recording of samples.
-fn predicted_beside(out: &Path) -> PathBuf {
-    let ending = out.extension().map_or(String::new(), |ending| format!(".{}", ending.to_string_lossy()));
-    beside(out, &format!(".predicted{ending}"))
-}
-
-/// What is asked of the models before the columns are known.
-struct Asked {
-    answering: Answering,
-    switch: Option<Switch>,
-    events: Option<(PathBuf, BufWriter<File>)>,
-    mouse: Option<Mouse>,
-    predicted: Option<Recording>,
-    rows: Option<OwnedFd>,
-    keep_faults: bool,
-}
-
-/// What is asked of a pointer.
-struct Mouse {
-    config: Config,
-    events: Option<PathBuf>,
-    uinput: bool,
+    Ok(Places::not_over(inputs).check(results)?)
 }
 
 /// A session as it goes.
 struct Session<'a> {
-    stream: Stream,
-    clock: HostClock,
-    options: &'a StreamOptions,
-    found: Found,
-    listener: Option<TcpListener>,
-    core: Core<'a>,
-}
-
-/// What rows go through.
-struct Core<'a> {
-    clock: HostClock,
-    tell: &'a dyn Fn(&str),
     files: &'a SessionFiles,
-    log: &'a LogReading,
-    seconds: Option<f64>,
-    waits: bool,
-    is_live: bool,
-    asked: Option<Asked>,
-    recording: Option<Recording>,
-    decide: Option<Decide>,
+    lanes: Vec<Lane<'a>>,
+    shared: Shared<'a>,
     warnings: Vec<String>,
-    notes: Vec<String>,
-    work: Times,
-    arrival: Times,
     wake_up: Times,
-    /// The line of the fastest rows, and whether any row came.
-    clock_fit: Option<ClockFit>,
-    any: bool,
-    spoilt: SpoiltShare,
-    fault: Option<LiveError>,
-    ends: bool,
-}
-
-/// Rows and spoilt ones since a moment.
-#[derive(Debug, Default)]
-struct SpoiltShare {
-    since_ns: u64,
-    rows: u64,
-    spoilt: u64,
+    /// Whether its sources are several recordings, played in the order of their rows, and whether they have begun.
+    in_order: bool,
+    begun: bool,
 }
 
 impl<'a> Session<'a> {
     fn new(
         options: &'a StreamOptions,
         files: &'a SessionFiles,
-        needs: Vec<String>,
+        all: Vec<Finger<'a>>,
+        plans: Vec<Plan>,
+        outputs: Outputs,
         tell: &'a dyn Fn(&str),
         watch: &Watch<'_>,
     ) -> Result<Self, LiveError> {
         watch.go_on()?;
-        let mut inputs: Vec<PathBuf> = files.models.iter().chain(&files.switch).cloned().collect();
-        inputs.extend(files.mouse.iter().filter_map(|mouse| mouse.config.clone()));
-        if let Place::File { path, .. } = &options.source.place {
-            inputs.push(path.clone());
-        }
-        let out = files.out.iter();
-        let results = out.flat_map(|out| [out.clone(), predicted_beside(out), beside(out, REPORT)]);
-        let moves = files.mouse.iter().filter_map(|mouse| mouse.events.clone());
-        Places::not_over(inputs).check(results.chain(files.events.clone()).chain(moves))?;
         let clock = HostClock::start();
-        let found = Found::default();
-        let naming = found.naming(&options.log, &options.keep, &needs);
-        let stream = open_stream(options, naming, clock.now_ns())?;
-        // What comes down a pipe can wait in it.
-        let waits = !stream.is_live() || options.source.place == Place::Stdin;
-        let recording = files.out.as_ref().map(|out| Recording::new(out, files.replace, waits)).transpose()?;
-        let core = Core {
+        let waits = all.iter().all(Finger::waits);
+        let mut lanes = Vec::new();
+        for (finger, mut plan) in all.iter().zip(plans) {
+            if let Some(out) = &files.out {
+                let out = of_finger(out, finger.name.as_deref());
+                plan.recording = Some(Recording::new(&out, files.replace, waits)?);
+            }
+            let open = |source: &'a Address, needs: &[String]| Feed::open(source, options, needs, &clock);
+            let needs = plan.answering.as_ref().map_or(&[][..], Answering::inputs);
+            let feed = open(finger.source, needs)?;
+            let force = finger.force.map(|source| open(source, &[])).transpose()?;
+            lanes.push(Lane::new(feed, force, plan));
+        }
+        let feeds = || lanes.iter().flat_map(Lane::feeds);
+        let live = feeds().filter(|feed| feed.stream.is_live()).count();
+        let several = feeds().count() > 1;
+        if live > 0 && live < feeds().count() {
+            let what = "recordings have clocks of their own; name either live sources or recordings, not both";
+            return Err(LiveError::Request(what.to_owned()));
+        }
+        let shared = Shared {
             clock,
             tell,
-            files,
             log: &options.log,
-            seconds: options.seconds,
-            is_live: stream.is_live(),
-            waits,
-            asked: None,
-            recording,
-            decide: None,
-            warnings: Vec::new(),
+            outputs,
             notes: Vec::new(),
             work: Times::default(),
             arrival: Times::default(),
-            clock_fit: None,
-            any: false,
-            wake_up: Times::default(),
-            spoilt: SpoiltShare::default(),
-            fault: None,
+            seconds: options.seconds,
             ends: false,
         };
-        Ok(Self { stream, clock, options, found, listener: None, core })
+        let in_order = several && live == 0;
+        Ok(Self { files, lanes, shared, warnings: Vec::new(), wake_up: Times::default(), in_order, begun: false })
     }
 
-    fn run(mut self, job: &'static str, watch: &Watch<'_>) -> Result<SessionReport, LiveError> {
+    fn run(mut self, job: &'static str, left_out: Vec<String>, watch: &Watch<'_>) -> Result<SessionReport, LiveError> {
         let start = Instant::now();
-        let mut tick_ns = self.clock.now_ns() + TICK_NS;
-        let mut alarmed = false;
-        while !watch.stop.load(Ordering::Relaxed) {
-            let polled = self.poll();
-            if self.core.fault.is_none() {
-                self.core.fault = polled.err();
-            }
-            let now_ns = self.clock.now_ns();
-            if self.stream.is_live() {
-                self.core.advance(self.stream.stream_now_s(now_ns));
-            }
-            if now_ns >= tick_ns {
-                tick_ns = now_ns + TICK_NS;
-                self.tick(now_ns, &mut alarmed);
-            }
-            self.core.flush();
-            if self.core.ends || self.core.fault.is_some() || self.core.nobody_hears(self.listener.is_some()) {
+        let mut tick_ns = self.shared.clock.now_ns() + TICK_NS;
+        let (mut ready, mut fault) = (None, None);
+        while fault.is_none() && !watch.stop.load(Ordering::Relaxed) {
+            fault = self.turn(ready, &mut tick_ns).err();
+            self.shared.outputs.flush();
+            if fault.is_some() || self.is_over() {
                 break;
             }
-            self.wait(tick_ns)?;
+            ready = Some(self.wait(tick_ns)?);
         }
-        self.finish(job, start, watch)
+        let Self { files, lanes, shared, warnings, wake_up, .. } = self;
+        report(Ended { job, start, files, lanes, shared, warnings, left_out, wake_up, fault }, watch)
     }
 
-    /// Takes what has come.
-    fn poll(&mut self) -> Result<(), LiveError> {
-        let Self { stream, options, found, core, clock, .. } = self;
-        let mut on = |event: Event<'_>| match event {
-            Event::Columns(_) => core.begin(found.take().unwrap_or_default()),
-            event if core.fault.is_none() && !core.ends => core.take(event),
-            _ => {}
-        };
-        stream.poll(clock.now_ns(), &mut on).map_err(|why| source_fault(&options.source, why))
-    }
-
-    /// Waits for bytes or a deadline.
-    fn wait(&mut self, tick_ns: u64) -> Result<(), LiveError> {
-        let now_ns = self.clock.now_ns();
-        let live = self.stream.is_live();
-        // A reader that is behind is looked at again soon.
-        let soon_ns = if self.core.is_behind() { now_ns + BEHIND_NS } else { tick_ns };
-        let left_s = self.core.due_s().filter(|_| live).map(|due_s| due_s - self.stream.stream_now_s(now_ns));
-        let watchdog_ns = left_s.map_or(tick_ns, |left_s| now_ns + 1 + (1e9 * left_s.clamp(0.0, 1.0)) as u64);
-        let until_ns = tick_ns.min(soon_ns).min(watchdog_ns);
-        let waited = wait(&[&self.stream], &[], Some(until_ns), &self.clock);
-        waited.map_err(|why| LiveError::Request(format!("can't wait for the stream ({why})")))?;
-        // Woken by the clock: how late is the machine's own part.
-        let now_ns = self.clock.now_ns();
-        if live && now_ns >= until_ns {
-            self.core.wake_up.record_ns(now_ns - until_ns);
+    /// Takes what has come, and what follows from time that has passed.
+    fn turn(&mut self, ready: Option<Ready>, tick_ns: &mut u64) -> Result<(), LiveError> {
+        if self.in_order {
+            self.play_in_order()?;
+        } else {
+            self.poll(ready)?;
+        }
+        let now_ns = self.shared.clock.now_ns();
+        for lane in &mut self.lanes {
+            lane.advance(now_ns, &mut self.shared)?;
+        }
+        if now_ns >= *tick_ns {
+            *tick_ns = now_ns + TICK_NS;
+            let tell = self.shared.tell;
+            self.lanes.iter_mut().flat_map(Lane::feeds_mut).for_each(|feed| feed.tick(now_ns, tell));
+            self.shared.outputs.let_in(tell);
         }
         Ok(())
     }
 
-    /// What is looked at now and then.
-    fn tick(&mut self, now_ns: u64, alarmed: &mut bool) {
-        if !*alarmed && !self.core.any && now_ns > SILENCE_NS && self.stream.is_live() {
-            *alarmed = true;
-            (self.core.tell)(&format!("alarm: no sample within a second from {}", named(&self.options.source)));
-        }
-        self.core.clock_fit = self.stream.clock();
-        self.core.look_at_spoilt(now_ns);
-        let Some(listener) = &self.listener else { return };
-        while let Ok((reader, from)) = listener.accept() {
-            let ready = reader.set_nonblocking(true).and_then(|()| reader.set_nodelay(true));
-            if ready.is_ok() {
-                (self.core.tell)(&format!("a reader came: {from}"));
-                self.core.join(Pipe::new(reader.into(), false));
-            }
-        }
-    }
-
-    fn finish(self, job: &'static str, start: Instant, watch: &Watch<'_>) -> Result<SessionReport, LiveError> {
-        let certificate = self.stream.certificate();
-        let late = self.stream.lateness().and_then(Times::summary);
-        let mut core = self.core;
-        core.end();
-        let Core { decide, warnings, mut notes, work, arrival, wake_up, fault, files, .. } = core;
-        let Some(decide) = decide else {
-            let place = named(&self.options.source);
-            let what = "no row came, and no names of columns".to_owned();
-            return Err(fault.unwrap_or(LiveError::Source { place, what }));
+    /// Looks at sources that are ready; at all of them where that is not known.
+    fn poll(&mut self, ready: Option<Ready>) -> Result<(), LiveError> {
+        let mut place = 0;
+        let mut is_ready = || {
+            place += 1;
+            ready.is_none_or(|ready| ready.stream(place - 1))
         };
-        let Decide { recording, answers, rows, .. } = decide;
-        if rows == 0 {
-            let place = named(&self.options.source);
-            return Err(fault.unwrap_or(LiveError::Source { place, what: "no row came".to_owned() }));
-        }
-        let lost_by_disk = recording.as_ref().map_or(0, Recording::lost);
-        let mut failed: Vec<String> = fault.iter().map(ToString::to_string).collect();
-        let mut figures = SessionFigures {
-            out: files.out.clone(),
-            columns: Vec::new(),
-            rows,
-            answered: 0,
-            rows_not_known: 0,
-            rows_outside: 0,
-            touch: 0,
-            bending: 0,
-            switch: None,
-            pointer: None,
-            latency: Latency { arrival: arrival.summary(), work: work.summary(), wake_up: late.or(wake_up.summary()) },
-            lost_by_readers: 0,
-            lost_by_disk,
-            stream: certificate,
-        };
-        if let Some(mut answers) = answers {
-            answers.readers.iter_mut().for_each(Pipe::finish);
-            let unwritten = answers.readers.iter().find_map(Pipe::failed).map(LiveError::Rows);
-            // Where rows are all that a session gives there is nothing then.
-            match unwritten {
-                Some(why) if files.out.is_none() => return Err(why),
-                why => failed.extend(why.map(|why| why.to_string())),
+        for lane in &mut self.lanes {
+            if is_ready() {
+                lane.poll(&mut self.shared)?;
             }
-            let sensor = &answers.sensor;
-            figures.columns = Answers::header(sensor, answers.switch.is_some());
-            (figures.answered, figures.rows_not_known) = (sensor.lit, sensor.not_known);
-            figures.rows_outside = sensor.answering().outside();
-            (figures.touch, figures.bending) = (answers.touch, answers.bending);
-            figures.lost_by_readers = answers.readers.iter().map(Pipe::lost).sum();
-            figures.switch = answers.switch.as_ref().map(SwitchOutput::counts);
-            figures.pointer = answers.pointer.as_ref().map(PointerOutput::counts);
-            if sensor.unknown > 0 {
-                notes.push(format!("{} rows do not say whether the LED was on and are left out", sensor.unknown));
-            }
-            if let Some(recording) = answers.recording {
-                failed.extend(recording.finish().err().map(|why| why.to_string()));
+            if lane.force.is_some() && is_ready() {
+                lane.poll_force(&mut self.shared)?;
             }
         }
-        if let Some(recording) = recording {
-            failed.extend(recording.finish().err().map(|why| why.to_string()));
-        }
-        let source = named(&self.options.source);
-        failed.extend(
-            figures
-                .stream
-                .spoilt
-                .iter()
-                .filter(|rows| rows.kind != Spoil::BeforeNames)
-                .map(|rows| format!("{source}: {}", spoilt_words(rows))),
-        );
-        let mut report = Report { warnings, notes, failed, ..Report::new(job, watch, figures) };
-        report.warnings.extend(losses(&report));
-        let report = report.timed(&Stages::default(), start);
-        if let Some(out) = &files.out {
-            let mut places = Places::not_over(&files.models);
-            places.write(&beside(out, REPORT), &report.text())?;
-            places.commit()?;
-        }
-        Ok(report)
+        Ok(())
     }
-}
 
-impl Core<'_> {
-    /// The columns are known.
-    fn begin(&mut self, columns: StreamColumns) {
-        let mut notes = columns.notes.clone();
-        if self.recording.is_some() && !columns.passed_over.is_empty() {
-            notes.push(format!(
-                "columns that are not recorded: {}; --keep NAME keeps one of numbers",
-                columns.passed_over.join(", ")
-            ));
-        }
-        self.note(notes);
-        let answers = match self.asked.take() {
-            None => None,
-            Some(asked) => {
-                if columns.led {
-                    self.note(vec![PRECEDING_RULE.to_owned()]);
-                }
-                match answers(asked, &columns, self.log, self.waits) {
-                    Ok(answers) => Some(answers),
-                    Err(why) => {
-                        self.fault = Some(why);
-                        return;
-                    }
-                }
+    /// Plays rows of several recordings, always the earliest; of rows at the same time the first source's.
+    fn play_in_order(&mut self) -> Result<(), LiveError> {
+        for _ in 0..TURNS {
+            // What a recording holds next; before that is read, it is looked at first.
+            let next_s = |feed: &Feed<'_>| match feed.stream.next_s() {
+                _ if feed.stream.ended() => f64::INFINITY,
+                Some(next_s) if !next_s.is_nan() => next_s,
+                _ => f64::NEG_INFINITY,
+            };
+            let feeds = || self.lanes.iter().flat_map(Lane::feeds).enumerate();
+            let earliest = feeds().map(|(place, feed)| (next_s(feed), place)).min_by(|a, b| a.0.total_cmp(&b.0));
+            let Some((first_s, place)) = earliest.filter(|(first_s, _)| *first_s < f64::INFINITY) else { break };
+            let others = feeds().filter(|(other, _)| *other != place);
+            let until_s = others.map(|(_, feed)| next_s(feed)).fold(f64::INFINITY, f64::min);
+            let now_ns = self.shared.clock.now_ns();
+            if first_s > f64::NEG_INFINITY && !std::mem::replace(&mut self.begun, true) {
+                self.lanes.iter_mut().flat_map(Lane::feeds_mut).for_each(|feed| feed.stream.play_from(first_s, now_ns));
             }
-        };
-        self.decide = Some(Decide::new(columns, self.recording.take(), answers));
-    }
-
-    fn take(&mut self, event: Event<'_>) {
-        match event {
-            Event::Row(row) => self.row(row),
-            Event::Spoilt { .. } => self.spoilt.spoilt += 1,
-            Event::State(state) => {
-                (self.tell)(&format!("state: {}", state.condition.word()));
-                if matches!(state.condition, Condition::Lost | Condition::Reconnecting)
-                    && let Some(decide) = &mut self.decide
-                {
-                    self.fault = decide.lose(false).err();
-                }
+            for (other, feed) in self.lanes.iter_mut().flat_map(Lane::feeds_mut).enumerate() {
+                feed.stream.play_until(if other == place { until_s } else { f64::NEG_INFINITY });
             }
-            Event::Columns(_) => {}
-            Event::End => self.ends = true,
+            let (lane, is_force) = self.lane_at(place);
+            let lane = &mut self.lanes[lane];
+            let feed = if is_force { lane.force.as_ref() } else { Some(&lane.feed) };
+            if feed.and_then(|feed| feed.stream.due_ns()).is_some_and(|due_ns| due_ns > now_ns) {
+                break;
+            }
+            if is_force {
+                lane.poll_force(&mut self.shared)?;
+            } else {
+                lane.poll(&mut self.shared)?;
+            }
+            if self.shared.ends {
+                break;
+            }
         }
+        Ok(())
     }
 
-    fn row(&mut self, row: &Row<'_>) {
-        // Of a recording many rows are handed out at one time.
-        let begin_ns = if self.is_live { row.host_ns } else { self.clock.now_ns() };
-        self.spoilt.rows += 1;
-        self.any = true;
-        if let Some(fit) = &self.clock_fit {
-            let late_s = 1e-9 * row.host_ns as f64 - fit.host_s(row.time_s);
-            self.arrival.record_ns((1e9 * late_s.max(0.0)) as u64);
+    /// Which finger a source is of, counted as [`Lane::feeds`], and whether it is the force transducer's.
+    fn lane_at(&self, place: usize) -> (usize, bool) {
+        let mut left = place;
+        for (at, lane) in self.lanes.iter().enumerate() {
+            let feeds = lane.feeds().count();
+            if left < feeds {
+                return (at, left == 1);
+            }
+            left -= feeds;
         }
-        let Some(decide) = &mut self.decide else { return };
-        let counts = decide.rows == 0 && decide.answers.is_some() && decide.looks_like_counts(row, COUNT_V);
-        if counts {
-            let what = "the photodiodes are whole numbers beyond 30: they look like a converter's counts, and models \
-                        read volts; say what a step is, as --volts-per-count 10/65536";
-            self.fault = Some(LiveError::Request(what.to_owned()));
-            return;
-        }
-        if let Err(why) = decide.row(row) {
-            self.fault = Some(why);
-            return;
-        }
-        if let (Some(seconds), Some([from_s, to_s])) = (self.seconds, decide.span_s) {
-            self.ends |= to_s - from_s >= seconds;
-        }
-        self.work.record_ns(self.clock.now_ns().saturating_sub(begin_ns));
+        (0, false)
     }
 
-    fn advance(&mut self, now_s: f64) {
-        if let Some(decide) = &mut self.decide
-            && let Err(why) = decide.advance(now_s)
-        {
-            self.fault = Some(why);
-        }
-    }
-
-    fn due_s(&self) -> Option<f64> {
-        self.decide.as_ref()?.due_s()
-    }
-
-    fn readers(&mut self) -> &mut [Pipe] {
-        let answers = self.decide.as_mut().and_then(|decide| decide.answers.as_mut());
-        answers.map_or(&mut [], |answers| &mut answers.readers)
-    }
-
-    fn flush(&mut self) {
-        self.readers().iter_mut().for_each(Pipe::flush);
-    }
-
-    /// Whether every reader has gone, and nothing else comes of the session.
-    fn nobody_hears(&mut self, listens: bool) -> bool {
+    /// Whether nothing more comes, or nobody hears it.
+    fn is_over(&self) -> bool {
         let files = self.files;
-        let others = listens || files.out.is_some() || files.events.is_some() || files.mouse.is_some();
-        let readers = self.readers();
-        !others && !readers.is_empty() && readers.iter().all(Pipe::is_gone)
+        let others = files.out.is_some() || files.events.is_some() || files.mouse.is_some();
+        self.shared.ends || self.lanes.iter().all(Lane::is_over) || !others && self.shared.outputs.nobody_reads()
     }
 
-    fn is_behind(&mut self) -> bool {
-        self.readers().iter().any(Pipe::is_behind)
-    }
-
-    fn join(&mut self, reader: Pipe) {
-        if let Some(answers) = self.decide.as_mut().and_then(|decide| decide.answers.as_mut()) {
-            answers.join(reader);
+    /// Waits for bytes or a deadline.
+    fn wait(&mut self, tick_ns: u64) -> Result<Ready, LiveError> {
+        let clock = self.shared.clock;
+        let now_ns = clock.now_ns();
+        // A reader that is behind is looked at again soon.
+        let soon_ns = if self.shared.outputs.is_behind() { now_ns + BEHIND_NS } else { tick_ns };
+        let mut until_ns = tick_ns.min(soon_ns);
+        let mut streams = [&self.lanes[0].feed.stream; MOST_WAITED];
+        let mut count = 0;
+        for lane in &self.lanes {
+            until_ns = until_ns.min(lane.due_ns(now_ns).unwrap_or(until_ns));
+            for feed in lane.feeds() {
+                streams[count] = &feed.stream;
+                count += 1;
+            }
         }
-    }
-
-    /// An alarm where too many rows are spoilt.
-    fn look_at_spoilt(&mut self, now_ns: u64) {
-        let SpoiltShare { since_ns, rows, spoilt } = self.spoilt;
-        if now_ns - since_ns < SPOILT_NS {
-            return;
+        let ready = wait(&streams[..count], &[], Some(until_ns), &clock);
+        let ready = ready.map_err(|why| LiveError::Request(format!("can't wait for the stream ({why})")))?;
+        // Woken by the clock: how late is the machine's own part.
+        let now_ns = clock.now_ns();
+        if streams[0].is_live() && now_ns >= until_ns {
+            self.wake_up.record_ns(now_ns - until_ns);
         }
-        if spoilt as f64 > SPOILT_SHARE * (rows + spoilt) as f64 {
-            (self.tell)(&format!("alarm: {spoilt} of {} rows were spoilt in the last 10 s", rows + spoilt));
-        }
-        self.spoilt = SpoiltShare { since_ns: now_ns, rows: 0, spoilt: 0 };
-    }
-
-    fn note(&mut self, notes: Vec<String>) {
-        notes.iter().for_each(|note| (self.tell)(&format!("note: {note}")));
-        self.notes.extend(notes);
-    }
-
-    /// The session ends: what is pressed lets go.
-    fn end(&mut self) {
-        if let Some(decide) = &mut self.decide
-            && let Err(why) = decide.lose(true)
-        {
-            self.fault.get_or_insert(why);
-        }
+        Ok(ready)
     }
 }
 
-/// What the models are to do, now that the columns are known.
-fn answers(asked: Asked, columns: &StreamColumns, log: &LogReading, waits: bool) -> Result<Answers, LiveError> {
-    let refused = LiveError::Request;
-    let Asked { answering, switch, events, mouse, predicted, rows, keep_faults } = asked;
-    let predicts = answering.columns().to_vec();
-    let sensor = Sensor::new(answering, columns, log, keep_faults).map_err(refused)?;
-    let switch =
-        switch.map(|switch| SwitchOutput::new(switch, &predicts, columns, events)).transpose().map_err(refused)?;
-    let pointer = match mouse {
-        None => None,
-        Some(Mouse { config, events, uinput }) => {
-            Some(PointerOutput::new(config, &predicts, events.as_deref(), uinput)?)
-        }
-    };
-    let readers = rows.into_iter().map(|rows| Pipe::new(rows, waits)).collect();
-    Ok(Answers::new(sensor, switch, pointer, predicted, readers))
-}
+#[cfg(test)]
+mod tests {
+    use std::fmt::Write as _;
+    use std::path::Path;
 
-/// What has to be known of a session before its rows are used.
-fn losses(report: &SessionReport) -> Vec<String> {
-    let mut warnings = Vec::new();
-    let counts = &report.stream.counts;
-    for (lost, how) in [(counts.lost, "by their counter"), (counts.lost_by_time, "estimated from gaps in time")] {
-        if lost > 0 {
-            warnings.push(format!("{lost} rows never came ({how})"));
+    use lunula_live::source::OfFinger;
+    use lunula_predictor::{Kind, Recipe};
+
+    use super::*;
+    use crate::live::options::AnswerOptions;
+    use crate::predictor::{DataFile, GateChoices, TrainInputs, TrainOptions, TrainOutputs, Wanted, train};
+
+    /// Eight photodiodes that a force, or an angle, is a sum of.
+    fn log(path: &Path, rows: u32) {
+        let mut text = "time_s,P1,P2,P3,P4,P5,P6,P7,P8,Fx_N,Fy_N,Fz_N,J2_deg\n".to_owned();
+        for k in 0..rows {
+            let t_s = 0.001 * f64::from(k);
+            let volts: [f64; 8] = std::array::from_fn(|p| 3.0 + ((1.0 + p as f64) * 1.7 * t_s).sin());
+            let _ = write!(text, "{t_s:.3}");
+            let others = [volts[0] - volts[1], volts[2] - volts[3], -volts[4], 10.0 * volts[5]];
+            for one in volts.iter().chain(&others) {
+                let _ = write!(text, ",{one:.5}");
+            }
+            text.push('\n');
         }
+        std::fs::write(path, text).unwrap();
     }
-    if report.lost_by_disk > 0 {
-        warnings.push(format!("{} rows are not recorded: the disk was too slow", report.lost_by_disk));
+
+    fn model(dir: &Path, targets: &[&str]) -> OfFinger<PathBuf> {
+        let model = dir.join(format!("{}.json", targets[0]));
+        let inputs = TrainInputs {
+            data: vec![DataFile::from(dir.join("train.csv"))],
+            validate: Vec::new(),
+            stop_on: Vec::new(),
+        };
+        let wanted = Wanted { targets: targets.iter().map(|one| (*one).to_owned()).collect(), ..Wanted::default() };
+        let options = TrainOptions { wanted, recipe: Recipe::new(Kind::Linear), level: 0.9 };
+        let outputs = TrainOutputs { model: model.clone(), learning_curve: None, merit: None };
+        train(&inputs, &options, &outputs, &Watch::nobody()).unwrap();
+        OfFinger::any(model)
     }
-    if report.lost_by_readers > 0 {
-        warnings.push(format!("readers lost {} rows: they were too slow", report.lost_by_readers));
+
+    /// Allocations of a whole session over so many rows: models, gate, switch, recording, rows to a reader.
+    fn allocations(dir: &Path, rows: u32, models: &[OfFinger<PathBuf>]) -> u64 {
+        let name = format!("{rows}.csv");
+        log(&dir.join(&name), rows);
+        let stream = StreamOptions {
+            source: vec![OfFinger::any(dir.join(&name).to_str().unwrap().parse().unwrap())],
+            force: Vec::new(),
+            volts_per_count: None,
+            names: None,
+            keep: Vec::new(),
+            seconds: None,
+            log: crate::log::LogReading::default(),
+        };
+        let gate = GateChoices { f_min: 0.1, theta_touch: 0.0, hysteresis: 0.0 };
+        let answer = AnswerOptions { gate, intervals: false, keep_faults: false };
+        let options = LiveOptions { stream, answer, tcp: None, lsl: None };
+        let files = SessionFiles {
+            out: Some(dir.join(format!("out-{rows}.csv"))),
+            models: models.to_vec(),
+            switches: vec![OfFinger::any(dir.join("s.toml"))],
+            ..SessionFiles::default()
+        };
+        let reader = std::fs::File::create(dir.join("rows.csv")).unwrap();
+        let counted = allocation_counter::measure(|| {
+            let readers = Readers { rows: Some(reader.into()), tell: &|_| {} };
+            let report = live(&options, &files, readers, &Watch::nobody()).unwrap();
+            assert_eq!((report.rows, report.answered), (u64::from(rows), u64::from(rows)));
+        });
+        counted.count_total
     }
-    if report.rows_outside * 20 > report.answered {
-        warnings.push(format!(
-            "{} of {} rows lie outside of the voltages that the model was trained on; their predictions are \
-             extrapolated",
-            report.rows_outside, report.answered
-        ));
+
+    #[test]
+    fn nothing_is_allocated_for_a_sample_from_its_bytes_to_its_answer() {
+        let dir = tempfile::tempdir().unwrap();
+        log(&dir.path().join("train.csv"), 2_000);
+        std::fs::write(dir.path().join("s.toml"), "on_N = 3.2\noff_N = 3.0\nwatchdog_s = 0.5\n").unwrap();
+        let models = [model(dir.path(), &["Fx_N", "Fy_N", "Fz_N"]), model(dir.path(), &["J2_deg"])];
+        allocations(dir.path(), 1_000, &models);
+        let (few, many) = (allocations(dir.path(), 20_000, &models), allocations(dir.path(), 200_000, &models));
+        // Buffers grow to their size and the recording's thread takes them: some hundred, whatever the rows.
+        assert!(many <= few + 100, "{few} for 20 000 rows, {many} for 200 000");
     }
-    warnings
 }

@@ -120,8 +120,10 @@ pub(super) fn figures(
     let thresholds = options.thresholds();
     let (figures, touched): (Vec<Figures>, Vec<Vec<Contact>>) =
         trial.fingers.iter().map(|finger| Figures::of(&finger.force, &thresholds)).unzip();
-    let times_s = trial.fingers.first().map_or(&[][..], |finger| &finger.force.time_s);
-    let [from_s, to_s] = [times_s.first(), times_s.last()].map(|time_s| time_s.copied().unwrap_or(f64::NAN));
+    // Fingers that are recorded row by row begin and end within a step of each other.
+    let times_s = || trial.fingers.iter().map(|finger| &finger.force.time_s);
+    let from_s = times_s().filter_map(|times_s| times_s.first()).copied().fold(f64::NAN, f64::min);
+    let to_s = times_s().filter_map(|times_s| times_s.last()).copied().fold(f64::NAN, f64::max);
     let both: Vec<(&Figures, &[Contact])> = figures.iter().zip(&touched).map(|(a, b)| (a, b.as_slice())).collect();
     let ranks = ranks(&both);
     let span_s = span_s(&touched);

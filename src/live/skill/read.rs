@@ -86,9 +86,13 @@ pub(super) fn read(recording: &SkillRecording, finger: &str) -> Result<Recording
         return Err(SkillError::recording(path, "has no row with a time and a trial; record it again"));
     }
     let one = |((subject, trial), own): (Whose, Vec<usize>)| {
-        in_order(&rows, &own, recording)?;
-        let fingers = rows.fingers.iter().map(|finger| of_finger(&rows, finger, &own)).collect();
-        Ok(Trial { subject, trial, fingers })
+        let fingers = rows.fingers.iter().map(|finger| {
+            let is_own = |row: &&usize| finger.own.as_ref().is_none_or(|own| own[**row]);
+            let own: Vec<usize> = own.iter().filter(is_own).copied().collect();
+            in_order(&rows, &own, recording)?;
+            Ok(of_finger(&rows, finger, &own))
+        });
+        Ok(Trial { subject, trial, fingers: fingers.collect::<Result<_, SkillError>>()? })
     };
     Ok(Recording {
         trials: trials.into_iter().map(one).collect::<Result<_, SkillError>>()?,
@@ -100,7 +104,7 @@ pub(super) fn read(recording: &SkillRecording, finger: &str) -> Result<Recording
     })
 }
 
-/// Time has to go forward within a trial.
+/// A finger's time has to go forward within a trial.
 fn in_order(rows: &Rows, own: &[usize], recording: &SkillRecording) -> Result<(), SkillError> {
     let back = own.windows(2).find(|pair| rows.time_s[pair[1]] < rows.time_s[pair[0]]);
     let Some((pair, table)) = back.zip(rows.table.as_ref()) else { return Ok(()) };

@@ -11,6 +11,8 @@ use crate::table::{Table, TableError, column_names};
 const TIME: &str = "time_s";
 const FORCE: &str = "Fz_N";
 const CONTACT: &str = "contact";
+/// Of a session of several fingers: whose a row is.
+const FINGER: &str = "finger";
 /// More fingers are something else.
 const MOST_FINGERS: usize = 20;
 
@@ -32,6 +34,8 @@ pub(super) struct Finger {
     pub(super) gate: Vec<Gate>,
     /// Angles by their columns, degrees; NaN where not known. None are read without a gate.
     pub(super) angles: Vec<(String, Vec<f64>)>,
+    /// Which rows are this finger's; all where a row has every finger's force.
+    pub(super) own: Option<Vec<bool>>,
 }
 
 /// A recording.
@@ -86,7 +90,7 @@ fn of_log(path: &Path, finger: &str) -> Result<Rows, SkillError> {
                     negative)";
         return Err(SkillError::recording(path, what));
     };
-    let one = Finger { name: finger.to_owned(), fz_n: force.values, gate: Vec::new(), angles: Vec::new() };
+    let one = Finger { name: finger.to_owned(), fz_n: force.values, gate: Vec::new(), angles: Vec::new(), own: None };
     Ok(Rows {
         time_s: log.time_s,
         fingers: vec![one],
@@ -123,7 +127,11 @@ fn of_table(path: &Path, plain: &str) -> Result<Rows, SkillError> {
                 Vec::new()
             }
         };
-        fingers.push(Finger { name, fz_n: numbers(column)?, gate: gate.unwrap_or_default(), angles });
+        let fz_n = numbers(column)?;
+        fingers.push(Finger { name, fz_n, gate: gate.unwrap_or_default(), angles, own: None });
+    }
+    if table.has(FINGER) {
+        fingers = by_row(path, fingers, &table.texts(FINGER)?)?;
     }
     if fingers.len() > MOST_FINGERS {
         let what = format!("has forces of {} fingers; {MOST_FINGERS} are the most", fingers.len());
@@ -139,6 +147,29 @@ fn of_table(path: &Path, plain: &str) -> Result<Rows, SkillError> {
         table: Some(table),
         notes: Vec::new(),
     })
+}
+
+/// The fingers of a table whose rows say whose they are, in the order in which they first appear.
+fn by_row(path: &Path, fingers: Vec<Finger>, whose: &[Option<String>]) -> Result<Vec<Finger>, SkillError> {
+    let Ok([plain]) = <[Finger; 1]>::try_from(fingers) else {
+        let what = "says whose each row is (column `finger`) and has a force for each of several fingers; keep either";
+        return Err(SkillError::recording(path, what));
+    };
+    let mut names: Vec<&String> = Vec::new();
+    for name in whose.iter().flatten() {
+        if !names.contains(&name) {
+            if names.len() == MOST_FINGERS {
+                let what = format!("column `finger`: names more than {MOST_FINGERS} fingers");
+                return Err(SkillError::recording(path, &what));
+            }
+            names.push(name);
+        }
+    }
+    let one = |name: &&String| {
+        let own = whose.iter().map(|cell| cell.as_ref() == Some(*name)).collect();
+        Finger { name: (*name).clone(), own: Some(own), ..plain.clone() }
+    };
+    Ok(names.iter().map(one).collect())
 }
 
 /// Whether a column is an angle of this finger.

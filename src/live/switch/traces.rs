@@ -39,7 +39,7 @@ pub(super) fn read_traces(
     options: &ContactOptions,
     watch: &Watch<'_>,
 ) -> Result<Traces, LiveError> {
-    let opened = open_models(models)?;
+    let opened = open_models(models)?.of_samples()?;
     let mut all = Traces { warnings: opened.warnings, ..Traces::default() };
     for (k, recording) in recordings.iter().enumerate() {
         watch.go_on()?;

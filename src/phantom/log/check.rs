@@ -1,7 +1,7 @@
 //! Whether a log can be made as requested; all faults are reported together, by the command line's names.
 
 use super::angles::FPS;
-use super::{Faults, LogOptions};
+use super::{Faults, LogOptions, SensorModel};
 use crate::phantom::motion::force::ForceTrajectory;
 use crate::phantom::motion::trajectory::Trajectory;
 use crate::phantom::sensor::CHANNELS;
@@ -58,6 +58,13 @@ impl LogOptions {
         }
         match &self.force {
             ForceTrajectory::None => {}
+            ForceTrajectory::Presses(presses) => {
+                let holds = presses.held_s >= 0.2 && presses.pause_s >= 0.1 && presses.peak_n >= 0.0;
+                let finite = presses.held_s + presses.pause_s + presses.peak_n + presses.first_s;
+                need(holds && finite.is_finite(), &|| {
+                    "presses: hold at least 0.2 s, pause at least 0.1 s, press with 0 N or more".to_owned()
+                });
+            }
             ForceTrajectory::Spiral(spiral) => {
                 let seconds = spiral.duration_s;
                 let holds = seconds.is_finite() && seconds > 0.0;
@@ -100,8 +107,24 @@ impl LogOptions {
             need(holds, &|| format!("--gap {from_s}+{length_s}: choose a beginning and a length of more than 0 s"));
         }
         for photodiode in &self.dead {
-            let holds = (1..=CHANNELS).contains(photodiode);
-            need(holds, &|| format!("--dead P{photodiode}: there are P1 to P{CHANNELS}"));
+            let holds = (1..=self.channels()).contains(photodiode);
+            need(holds, &|| format!("--dead P{photodiode}: there are P1 to P{}", self.channels()));
+        }
+        if let Some(positions) = &self.positions {
+            let count = positions.photodiodes.len();
+            need(self.sensor == SensorModel::Nail, &|| {
+                "--positions: formulae have places of their own; choose --sensor nail".to_owned()
+            });
+            need(count <= CHANNELS, &|| {
+                format!("--positions: {count} photodiodes; a log has at most {CHANNELS}, leave some out")
+            });
+            let taken = |name: &str| ["time_s", "time", "led", "contact", "Fx_N", "Fy_N", "Fz_N"].contains(&name);
+            for place in positions.photodiodes.iter().filter(|place| taken(&place.name)) {
+                need(false, &|| format!("--positions: {} is another column of a log; choose another name", place.name));
+            }
+            need(count >= 3 || !self.saturate, &|| {
+                "--saturate: amplifies the second and third photodiode, and there are fewer".to_owned()
+            });
         }
         let span_s = self.lead_s + self.seconds + self.trail_s;
         need(span_s > 0.0, &|| format!("--lead {}: the log ends before it begins", self.lead_s));

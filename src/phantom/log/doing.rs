@@ -27,7 +27,7 @@ const STRAIGHTEN_S: f64 = 1.0;
 
 /// All that a finger does, ready to be asked often.
 #[derive(Debug, Clone)]
-pub(super) struct Doing {
+pub(in crate::phantom) struct Doing {
     movement: Movement,
     press: Press,
     contacts: Option<Sequence>,
@@ -40,7 +40,7 @@ pub(super) struct Doing {
 
 impl Doing {
     /// Contacts that would go on after `until_s` are left out, infinity: there are always more.
-    pub(super) fn until(options: &LogOptions, until_s: f64) -> Self {
+    pub(in crate::phantom) fn until(options: &LogOptions, until_s: f64) -> Self {
         let usual = Spiral::default();
         let press = options.force.press();
         Self {
@@ -56,12 +56,12 @@ impl Doing {
     }
 
     /// Of a log that ends.
-    pub(super) fn new(options: &LogOptions) -> Self {
+    pub(in crate::phantom) fn new(options: &LogOptions) -> Self {
         Self::until(options, options.seconds)
     }
 
     /// What it does at `t_s`.
-    pub(super) fn touch(&mut self, t_s: f64) -> Touch {
+    pub(in crate::phantom) fn touch(&mut self, t_s: f64) -> Touch {
         let late_s = self.follow.as_ref().map_or(0.0, |follow| follow.late_s(t_s));
         let (mut touch, straight) = self.prompted(t_s - late_s);
         if let Some(follow) = &self.follow {

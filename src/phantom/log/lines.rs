@@ -1,7 +1,6 @@
 //! The rows of `log.csv`: its columns, and what a row says in them.
 
 use super::{LogOptions, Row, Stamps};
-use crate::phantom::sensor::CHANNELS;
 use crate::table::{Column, Value};
 
 /// The transducer's columns.
@@ -13,9 +12,9 @@ const STAMP_DECIMALS: usize = 6;
 const READING_DECIMALS: usize = 6;
 const FORCE_DECIMALS: usize = 4;
 
-/// `P1` to `P8`, each with `suffix` behind it.
-pub(super) fn photodiodes(suffix: &str) -> impl Iterator<Item = String> {
-    (1..=CHANNELS).map(move |k| format!("P{k}{suffix}"))
+/// The photodiodes' columns, each with `suffix` behind its name.
+pub(super) fn photodiodes(options: &LogOptions, suffix: &str) -> Vec<String> {
+    options.names().into_iter().map(|name| name + suffix).collect()
 }
 
 /// The columns of a log.
@@ -27,7 +26,7 @@ pub(super) fn columns(options: &LogOptions) -> Vec<Column> {
     if options.led {
         columns.push(Column::integer("led"));
     }
-    columns.extend(photodiodes("").map(|name| Column::rounded(name, READING_DECIMALS)));
+    columns.extend(photodiodes(options, "").into_iter().map(|name| Column::rounded(name, READING_DECIMALS)));
     if options.forces {
         columns.extend(FORCES.map(|name| Column::rounded(name, FORCE_DECIMALS)));
     }
@@ -50,7 +49,7 @@ pub(super) fn cells<'a>(options: &LogOptions, row: &Row, date: &'a mut String) -
     if options.led {
         cells.push(Value::Integer(row.lit.into()));
     }
-    cells.extend(row.read_v.map(Value::Number));
+    cells.extend(row.read_v[..options.channels()].iter().copied().map(Value::Number));
     if options.forces {
         cells.extend(row.forces_read_n.map(Value::Number));
     }

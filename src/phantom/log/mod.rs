@@ -18,6 +18,9 @@
 //!   above 0 in a contact other than a near miss;
 //! - `truth/log.json`: every parameter.
 //!
+//! With [`SensorModel::Nail`] the volts are those of the nail's own colour, as its pictures and videos show it, at
+//! places that a file gives; the columns then have the places' names.
+//!
 //! The computer's clock decides when samples are taken: evenly on it, so that its drift is theirs. log time = offset +
 //! (1 + drift) * video time. The finger moves as in the video of the same seed; person and session are the same
 //! whatever the seed. Forces are those of the finger on the surface: pressing is a negative `Fz_N`. A [`Protocol`] is
@@ -37,10 +40,12 @@ mod truth;
 mod write;
 
 pub use crate::phantom::scene::faults::Faults;
+pub(in crate::phantom) use doing::Doing;
 pub use live::{LiveLog, LiveRow};
-pub use options::{LogOptions, Stamps};
+pub use options::{LogOptions, SensorModel, Stamps};
 pub use protocol::Protocol;
 pub use record::LogScene;
+pub(in crate::phantom) use samples::BEFORE_S;
 pub use samples::Row;
-pub(super) use write::files;
 pub use write::{Error, Summary, write};
+pub(super) use write::{files, write_rows};

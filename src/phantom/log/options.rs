@@ -2,11 +2,12 @@
 
 use serde::Serialize;
 
+use crate::nail::Positions;
 use crate::phantom::motion::contacts::Contacts;
 use crate::phantom::motion::force::ForceTrajectory;
 use crate::phantom::motion::trajectory::Trajectory;
 use crate::phantom::screen::{Clock, Jump};
-use crate::phantom::sensor::{DisturbanceSizes, Dynamics};
+use crate::phantom::sensor::{CHANNELS, DisturbanceSizes, Dynamics};
 
 /// How rows say their time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -20,6 +21,16 @@ pub enum Stamps {
     Datetime,
 }
 
+/// What a photodiode's volts come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, clap::ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum SensorModel {
+    /// Formulae of each photodiode's own, after the words of section 3.3
+    Formulae,
+    /// The colour of the nail's zones below it, as photographs and videos of the nail show them (4.2)
+    Nail,
+}
+
 /// A log to be made.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LogOptions {
@@ -29,6 +40,12 @@ pub struct LogOptions {
     pub subject: u32,
     /// How the sensor sits that day.
     pub session: u32,
+    /// What the volts come from.
+    #[serde(skip_serializing_if = "is_formulae")]
+    pub sensor: SensorModel,
+    /// Where the photodiodes are, of [`SensorModel::Nail`]; none: [`Positions::thesis`].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub positions: Option<Positions>,
     /// How the joints move.
     pub trajectory: Trajectory,
     /// How the fingertip presses.
@@ -102,6 +119,10 @@ fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }
 
+fn is_formulae(value: &SensorModel) -> bool {
+    *value == SensorModel::Formulae
+}
+
 fn is_true(value: &bool) -> bool {
     *value
 }
@@ -122,6 +143,27 @@ impl LogOptions {
         self.clock_offset_s + (1.0 + 1e-6 * self.clock_drift_ppm) * scene_s
     }
 
+    /// Where the photodiodes are, of [`SensorModel::Nail`].
+    #[must_use]
+    pub fn places(&self) -> Positions {
+        self.positions.clone().unwrap_or_else(Positions::thesis)
+    }
+
+    /// The photodiodes' names, in the order of their columns.
+    #[must_use]
+    pub fn names(&self) -> Vec<String> {
+        match &self.positions {
+            Some(positions) => positions.photodiodes.iter().map(|place| place.name.clone()).collect(),
+            None => (1..=CHANNELS).map(|k| format!("P{k}")).collect(),
+        }
+    }
+
+    /// How many photodiodes there are, at most [`CHANNELS`].
+    #[must_use]
+    pub fn channels(&self) -> usize {
+        self.positions.as_ref().map_or(CHANNELS, |positions| positions.photodiodes.len().min(CHANNELS))
+    }
+
     /// The contacts that the finger makes of its own accord, if it does.
     pub(super) fn contacts(&self) -> Option<&Contacts> {
         match &self.force {
@@ -138,6 +180,8 @@ impl Default for LogOptions {
             seed: 1,
             subject: 1,
             session: 1,
+            sensor: SensorModel::Formulae,
+            positions: None,
             trajectory: Trajectory::Eq27 { hz: 0.1 },
             force: ForceTrajectory::None,
             touch_from_s: None,

@@ -4,10 +4,10 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use super::LogOptions;
 use super::doing::Doing;
+use super::{LogOptions, SensorModel};
 use crate::phantom::nail::numbers;
-use crate::phantom::sensor::{Ambient, CHANNELS, Disturbances, Response, Sensor, Touch, Wander};
+use crate::phantom::sensor::{Ambient, CHANNELS, Disturbances, Response, Sensor, Touch, Wander, WornSensor};
 
 const KIND_ROWS: u32 = 26;
 /// The converter: 16 bits over 0 to 10 V (3.2.3).
@@ -18,7 +18,7 @@ const CODES: f64 = 65_536.0;
 const FORCE_STEP_N: [f64; 3] = [0.8e-3, 0.8e-3, 1.6e-3];
 const FORCE_SD_N: f64 = 1e-3;
 /// How long before the first sample the sensor has followed the movement, seconds.
-const BEFORE_S: f64 = 10.0;
+pub(in crate::phantom) const BEFORE_S: f64 = 10.0;
 
 /// A row of a log, with its truth.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,8 +49,45 @@ pub struct Row {
     pub unlit_v: [f64; CHANNELS],
 }
 
+/// Volts at a time, of times that ascend; volts of what the finger does.
+type Followed = Box<dyn FnMut(f64) -> [f64; CHANNELS] + Send>;
+type Still = Box<dyn Fn(&Touch) -> [f64; CHANNELS] + Send>;
+
 /// What a sensor sees, as light of the LED.
-type Seen = Response<Box<dyn FnMut(f64) -> Touch + Send>>;
+struct Seen {
+    /// As blood follows, at a time.
+    followed: Followed,
+    /// By the static map alone.
+    still: Still,
+}
+
+impl Seen {
+    fn new(options: &LogOptions, sensor: &Sensor, doing: &Doing) -> Self {
+        let mut followed = doing.clone();
+        let movement = move |t_s| followed.touch(t_s);
+        // The whole log, lost rows or not: what is lost changes nothing of the rest.
+        let start_s = -options.lead_s - BEFORE_S;
+        match options.sensor {
+            SensorModel::Formulae => {
+                let sensor = *sensor;
+                let mut response = Response::new(&sensor, options.dynamics, movement, start_s);
+                Self {
+                    followed: Box::new(move |t_s| response.at(t_s)),
+                    still: Box::new(move |touch| sensor.static_v(touch)),
+                }
+            }
+            SensorModel::Nail => {
+                let worn = WornSensor::new(options.subject, options.session, &options.places());
+                let mut colour = worn.followed(options.dynamics, movement, start_s);
+                let still = worn.clone();
+                Self {
+                    followed: Box::new(move |t_s| worn.volts(&colour.at(t_s))),
+                    still: Box::new(move |touch| still.static_v(touch)),
+                }
+            }
+        }
+    }
+}
 
 /// Takes a log's samples, in memory that does not grow with their number.
 pub(super) struct Samples {
@@ -63,7 +100,7 @@ pub(super) struct Samples {
     gains: [f64; CHANNELS],
     rng: ChaCha8Rng,
     doing: Doing,
-    response: Seen,
+    seen: Seen,
     /// The log's clock at the first sample, seconds.
     first_s: f64,
     next: usize,
@@ -82,10 +119,7 @@ impl Samples {
         let count = if endless { usize::MAX } else { ((end_s - first_s) * options.rate_hz).ceil().max(0.0) as usize };
         let sensor = Sensor::new(options.subject, options.session);
         let doing = Doing::until(options, if endless { f64::INFINITY } else { options.seconds });
-        let mut followed = doing.clone();
-        let movement: Box<dyn FnMut(f64) -> Touch + Send> = Box::new(move |t_s| followed.touch(t_s));
-        // The whole log, lost rows or not: what is lost changes nothing of the rest.
-        let response = Response::new(&sensor, options.dynamics, movement, -options.lead_s - BEFORE_S);
+        let seen = Seen::new(options, &sensor, &doing);
         let disturbances = Disturbances::new(options.seed, options.disturbances);
         Self {
             options: options.clone(),
@@ -96,7 +130,7 @@ impl Samples {
             gains,
             rng,
             doing,
-            response,
+            seen,
             first_s,
             next: 0,
             count,
@@ -138,10 +172,10 @@ impl Samples {
         row.touch = self.doing.touch(row.scene_s);
         let near_miss = self.doing.contact(row.scene_s).is_some_and(|contact| !contact.kind.presses());
         row.contact = row.touch.forces_n[2] < 0.0 && !near_miss;
-        let (followed, drift) = (self.response.at(row.scene_s), self.wander.at(row.scene_s));
+        let (followed, drift) = ((self.seen.followed)(row.scene_s), self.wander.at(row.scene_s));
         let disturbed = self.disturbances.map_or([0.0; CHANNELS], |disturbances| disturbances.at(row.scene_s));
         let light = self.ambient.at(row.scene_s);
-        let still = self.sensor.static_v(&row.touch);
+        let still = (self.seen.still)(&row.touch);
         for (k, one) in self.sensor.photodiodes.iter().enumerate() {
             row.led_v[k] = (followed[k] + drift[k] + disturbed[k]) * self.gains[k];
             row.static_v[k] = still[k] * self.gains[k];

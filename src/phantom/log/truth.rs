@@ -12,6 +12,7 @@ use crate::words::Words;
 pub(super) struct TruthWriter {
     table: TableWriter,
     contact: bool,
+    channels: usize,
 }
 
 impl TruthWriter {
@@ -22,8 +23,10 @@ impl TruthWriter {
         columns.extend(contact.then(|| Column::integer(CONTACT)));
         columns.extend(JOINTS.map(|joint| Column::number(format!("{joint}_deg"))));
         columns.extend(FORCES.map(Column::number));
-        columns.extend(["", "_static", "_unlit"].into_iter().flat_map(photodiodes).map(Column::number));
-        Ok(Self { table: TableWriter::create(path, path, columns, &[])?, contact })
+        columns.extend(
+            ["", "_static", "_unlit"].into_iter().flat_map(|suffix| photodiodes(options, suffix)).map(Column::number),
+        );
+        Ok(Self { table: TableWriter::create(path, path, columns, &[])?, contact, channels: options.channels() })
     }
 
     pub(super) fn write(&mut self, row: &Row) -> Result<(), TableError> {
@@ -32,7 +35,9 @@ impl TruthWriter {
         cells.extend(self.contact.then(|| Value::Integer(row.contact.into())));
         cells.extend(row.touch.angles_rad.map(|angle| Value::Number(angle.to_degrees())));
         cells.extend(row.touch.forces_n.map(Value::Number));
-        cells.extend([row.led_v, row.static_v, row.unlit_v].into_iter().flatten().map(Value::Number));
+        for volts in [row.led_v, row.static_v, row.unlit_v] {
+            cells.extend(volts[..self.channels].iter().copied().map(Value::Number));
+        }
         self.table.write(&cells)
     }
 

@@ -10,7 +10,7 @@ use thiserror::Error;
 use super::angles::write_angles;
 use super::lines::{cells, columns};
 use super::truth::{TruthWriter, write_contacts};
-use super::{LogOptions, LogScene};
+use super::{LogOptions, LogScene, SensorModel};
 use crate::files::{Staging, WriteError};
 use crate::phantom::scene::place::{Unwritten, in_the_way, refused};
 use crate::table::{TableError, TableWriter};
@@ -83,7 +83,7 @@ fn write_staged(scene: &LogScene, staging: Staging) -> Result<[usize; 2], Error>
 }
 
 /// Writes each row and its truth as it is taken.
-fn write_rows(scene: &LogScene, log: &Path, true_log: &Path) -> Result<[usize; 2], Error> {
+pub(in crate::phantom) fn write_rows(scene: &LogScene, log: &Path, true_log: &Path) -> Result<[usize; 2], Error> {
     let options = scene.options();
     let mut table = TableWriter::create(log, log, columns(options), &[])?;
     let mut truth = TruthWriter::create(options, true_log)?;
@@ -104,10 +104,13 @@ fn write_record(scene: &LogScene, rows: usize, path: &Path) -> Result<(), Error>
     let mut record = serde_json::json!({
         "options": scene.options(),
         "rows": rows,
-        "photodiodes": scene.sensor(),
         "ambient": scene.ambient(),
         "wander": scene.wander(),
     });
+    match scene.options().sensor {
+        SensorModel::Formulae => record["photodiodes"] = serde_json::json!(scene.sensor()),
+        SensorModel::Nail => record["positions"] = serde_json::json!(scene.options().places()),
+    }
     if scene.options().posture_shift_rad != 0.0 {
         // Beside what was allowed, what it was.
         record["posture_shift_deg"] = scene.posture_shift_rad().map(f64::to_degrees).into_iter().collect();

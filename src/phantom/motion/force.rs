@@ -11,6 +11,7 @@ pub use lunula_predictor::{RELEASE_S, Spiral};
 use serde::Serialize;
 
 use crate::phantom::motion::contacts::Contacts;
+use crate::phantom::motion::presses::Presses;
 
 /// Which force is cycled slowly, and which is held.
 ///
@@ -84,6 +85,8 @@ pub enum ForceTrajectory {
         /// Where the random numbers come from.
         seed: u64,
     },
+    /// Presses and releases at exact times, without shear.
+    Presses(Presses),
     /// Contacts and near misses of the finger's own, which bend it as well.
     Contacts(Contacts),
 }
@@ -95,6 +98,7 @@ pub(in crate::phantom) enum Press {
     Spiral(Spiral),
     Cycles(Cycles, f64),
     Random(Box<RandomForce>),
+    Presses(Presses),
 }
 
 impl ForceTrajectory {
@@ -103,6 +107,7 @@ impl ForceTrajectory {
             // A contact's force goes with its bending: whoever asks for one asks the contacts themselves.
             Self::None | Self::Contacts(_) => Press::None,
             Self::Spiral(spiral) => Press::Spiral(*spiral),
+            Self::Presses(presses) => Press::Presses(*presses),
             Self::Cycles { which, hz } => Press::Cycles(*which, *hz),
             Self::Random { hz, seed } => Press::Random(Box::new(RandomForce::new(ForceSpace::default(), *hz, *seed))),
             Self::Even { hz, seed } => Press::Random(Box::new(RandomForce::even(ForceSpace::default(), *hz, *seed))),
@@ -126,6 +131,7 @@ impl Press {
             Self::Spiral(spiral) => spiral.forces_n(t_s),
             Self::Cycles(which, hz) => which.forces_n(*hz, t_s),
             Self::Random(random) => random.forces_n(t_s),
+            Self::Presses(presses) => presses.forces_n(t_s),
         }
     }
 }

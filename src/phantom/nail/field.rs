@@ -4,8 +4,8 @@
 //! as the optics and the anatomy together, so the photograph is this function at the pixel centres.
 
 use super::{
-    NailScene,
-    coloration::zones,
+    NailScene, Pose,
+    coloration::{ColourWeights, DEPTH, PATTERNS, distal_share, patterns, whitening, zones},
     finger::FingerPlace,
     shape::NailPlace,
     smooth::{Edge, Line, bell, noise1, noise2, resolved, step},
@@ -31,7 +31,29 @@ pub struct Field<'a> {
     /// What the camera resolves of texture with the spacings of [`SPACING`].
     seen: [f64; 5],
     exposure: [f64; 3],
+    zones: Zones,
+    specks: Vec<SeenSpeck>,
 }
+
+/// A speck through the optics.
+#[derive(Debug, Clone)]
+struct SeenSpeck {
+    at: [f64; 2],
+    height: f64,
+    per_variance: f64,
+}
+
+/// Where the bed whitens and reddens.
+#[derive(Debug, Clone, Copy)]
+enum Zones {
+    Pose(Pose),
+    Moment(ColourWeights),
+    /// All over the same.
+    Even(f64),
+}
+
+/// Change of red, green and blue with a photograph's zones: white and red differ mainly in green (4.2.2).
+const PHOTOGRAPHED: [f64; 3] = [0.10, 1.0, 0.35];
 
 /// Borders between parts, in half nail widths.
 #[derive(Debug, Clone)]
@@ -100,6 +122,55 @@ impl<'a> Field<'a> {
             bed: bed.map(|c| c * subject.bed),
             seen: SPACING.map(|s| resolved(s * half_px)),
             exposure: scene.light.tint.map(|c| c * scene.light.brightness * CHAMBER),
+            zones: Zones::Pose(scene.pose),
+            specks: subject
+                .specks
+                .iter()
+                .map(|speck| {
+                    let own = speck.size * speck.size;
+                    let variance = own + blur * blur;
+                    SeenSpeck { at: speck.at, height: speck.contrast * own / variance, per_variance: 1.0 / variance }
+                })
+                .collect(),
+        }
+    }
+
+    /// The same nail with the colour of a moment in place of its pose's.
+    #[must_use]
+    pub fn at_moment(self, weights: &ColourWeights) -> Self {
+        Self { zones: Zones::Moment(*weights), ..self }
+    }
+
+    /// The same nail with a bed that is whitened all over alike, as a moment's zones whiten it.
+    #[must_use]
+    pub(in crate::phantom) fn whitened(self, whitening: f64) -> Self {
+        Self { zones: Zones::Even(whitening), ..self }
+    }
+
+    /// Each zone's whitening at (`x_px`, `y_px`), and the share of the distal blood there: with
+    /// [`whitened`](Self::whitened), a moment's colour is the colour of 0 and the sum of weighted zones times what 1
+    /// adds, as long as nothing comes near full scale.
+    #[must_use]
+    pub(in crate::phantom) fn patterns(&self, x_px: f64, y_px: f64) -> ([f64; PATTERNS], f64) {
+        let [across, along] = self.finger_from_picture(x_px, y_px);
+        let v = along / self.scene.subject.nail.aspect;
+        (patterns(&self.scene.subject.habit, across, v), distal_share(v))
+    }
+
+    /// How much the bed's red, green and blue change at (`u`, `v`), encoded, in full light.
+    fn zone(&self, u: f64, v: f64) -> [f64; 3] {
+        let habit = &self.scene.subject.habit;
+        let unit = habit.amplitude / CHAMBER;
+        match &self.zones {
+            Zones::Pose(pose) => {
+                let zone = unit * zones(*pose, habit, u, v);
+                PHOTOGRAPHED.map(|share| share * zone)
+            }
+            Zones::Moment(weights) => {
+                let zone = unit * whitening(weights, habit, u, v);
+                DEPTH.map(|share| share * zone)
+            }
+            Zones::Even(whitening) => DEPTH.map(|share| share * unit * whitening),
         }
     }
 
@@ -233,9 +304,8 @@ impl<'a> Field<'a> {
         let distal = step(0.2, 0.8, nail.y);
         let lateral = u * u;
 
-        let zone = subject.habit.amplitude / CHAMBER * zones(self.scene.pose, &subject.habit, u, v);
-        // White and red differ mainly in green (4.2.2).
-        let mut colour = [self.bed[0] + 0.10 * zone, self.bed[1] + zone, self.bed[2] + 0.35 * zone];
+        let zone = self.zone(u, v);
+        let mut colour = std::array::from_fn(|c| self.bed[c] + zone[c]);
 
         // Lunula, yellow line and onychodermal band.
         if subject.lunula > 0.0 {
@@ -258,6 +328,10 @@ impl<'a> Field<'a> {
         shade *= 1.0 + subject.gloss * bell(((u - 0.3 * self.scene.light.side) * (1.0 / 0.30)).powi(2));
         shade *= 1.0 - 0.05 * step(0.2, 1.2, v) + 0.01 * noise2(seed ^ 8, u * 2.5, v * 2.0);
         let fold = 1.0 - 0.85 * distal;
+        for speck in &self.specks {
+            let [across, along] = [u - speck.at[0], (v - speck.at[1]) * subject.nail.aspect];
+            shade *= 1.0 + speck.height * bell((across * across + along * along) * speck.per_variance);
+        }
         shade *= 1.0 - 0.30 * subject.crease * fold * self.lines.fold.at(nail.outline);
         colour.map(|c| c * shade)
     }

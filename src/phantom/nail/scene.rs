@@ -144,7 +144,11 @@ impl NailScene {
     /// A pixel that covers no more than one of the camera's in a direction has the value at its centre; one that covers
     /// more has the mean over its area, from samples two thirds of a camera pixel apart.
     pub fn normalized(&self, size: usize, margin: f64) -> Array2<f32> {
-        let field = self.field();
+        self.normalized_of(&self.field(), size, margin)
+    }
+
+    /// The same of a field of this scene, as of [`Field::at_moment`].
+    pub fn normalized_of(&self, field: &Field<'_>, size: usize, margin: f64) -> Array2<f32> {
         let samples = [self.length_px(), self.width_px()].map(|side| {
             let covers = side * margin / size as f64;
             if covers <= 1.0 { 1 } else { (1.5 * covers).ceil() as usize }

@@ -42,8 +42,21 @@ pub struct Subject {
     pub texture: f64,
     /// Relative contrast of the wrinkles over the joint.
     pub wrinkle: f64,
+    /// Pale and dark marks in the plate; none in photographs.
+    pub specks: Vec<Speck>,
     pub(super) habit: Habit,
     pub(super) seed: u32,
+}
+
+/// A mark in the plate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Speck {
+    /// Where it is, `u` and `v`.
+    pub at: [f64; 2],
+    /// Its standard deviation in half nail widths.
+    pub size: f64,
+    /// How much lighter it is in its middle, relative; negative: darker.
+    pub contrast: f64,
 }
 
 /// The random numbers of one thing (`kind`) of the set `seed`, independent of all others.
@@ -54,6 +67,9 @@ pub fn numbers(seed: u64, kind: u32, index: u32) -> ChaCha8Rng {
 }
 
 const KIND_SUBJECT: u32 = 1;
+const KIND_SPECKS: u32 = 46;
+/// How many specks a nail has (assumed: what a plain close-up shows of white spots, pits and dirt).
+const SPECKS: usize = 14;
 
 impl Subject {
     /// Subject `index` of the set `seed`. Sixteen that follow each other from a multiple of 16 hold one of each
@@ -102,6 +118,21 @@ impl Subject {
                 size: within(0.92, 1.08),
             },
             seed: rng.random(),
+            specks: Vec::new(),
         }
+    }
+
+    /// The same fingertip with marks in its plate, as plates have them and a camera that comes close sees them.
+    #[must_use]
+    pub fn with_specks(mut self) -> Self {
+        let mut rng = numbers(u64::from(self.seed), KIND_SPECKS, 0);
+        let mut within = |low: f64, high: f64| rng.random_range(low..=high);
+        let speck = |_| Speck {
+            at: [within(-0.85, 0.85), within(-0.85, 0.85)],
+            size: within(0.015, 0.05),
+            contrast: within(0.03, 0.09) * within(-1.0, 1.0).signum(),
+        };
+        self.specks = (0..SPECKS).map(speck).collect();
+        self
     }
 }

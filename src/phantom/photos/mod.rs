@@ -22,3 +22,4 @@ mod write;
 
 pub use options::{FileFormat, LightKind, OptionFault, PhotoOptions};
 pub use write::{Error, PhotoTruth, Stages, Summary, write, write_watched};
+pub(in crate::phantom) use write::{annotation, write_npy};

@@ -249,7 +249,7 @@ fn draw_one(options: &PhotoOptions, stage: &Path, subject: u32, pose: Pose) -> R
 }
 
 /// The LabelMe file of a scene: polygon `nail`, line `axis` from proximal to distal.
-fn annotation(scene: &NailScene, picture: &str) -> Result<LabelMe, Error> {
+pub(in crate::phantom) fn annotation(scene: &NailScene, picture: &str) -> Result<LabelMe, SceneFault> {
     let nail = scene.outline()?.points().into_iter().map(to_labelme).collect();
     let axis = scene.axis_ends_px().map(to_labelme).to_vec();
     let shapes = vec![Shape::new("nail", "polygon", nail), Shape::new("axis", "line", axis)];
@@ -274,7 +274,7 @@ fn encode(picture: &DynamicImage, format: FileFormat, path: &Path) -> Result<(),
     Ok(fs::write(path, bytes).map_err(refused(path))?)
 }
 
-fn write_npy<T: WritableElement>(path: &Path, array: &Array2<T>) -> Result<(), Error> {
+pub(in crate::phantom) fn write_npy<T: WritableElement>(path: &Path, array: &Array2<T>) -> Result<(), Error> {
     let mut bytes = Vec::new();
     array.write_npy(&mut bytes).map_err(|e| refused(path)(io::Error::other(e)))?;
     Ok(fs::write(path, bytes).map_err(refused(path))?)

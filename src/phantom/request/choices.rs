@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use crate::input;
+use crate::nail::Positions;
 use crate::phantom::motion::trajectory::Trajectory;
 use crate::phantom::screen::Jump;
 use crate::phantom::sensor::CHANNELS;
@@ -59,6 +61,17 @@ pub(super) fn trajectory(text: &str, hz: f64, seed: u64) -> anyhow::Result<(Traj
     })
 }
 
+/// Photodiodes' places from a file: TOML, or JSON where it ends in `.json`.
+///
+/// # Errors
+/// A file that can't be read or is no list of places.
+pub(in crate::phantom) fn positions(path: &Path) -> anyhow::Result<Positions> {
+    let text = input::read_text(path)?;
+    let json = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
+    let read = if json { Positions::from_json(&text) } else { Positions::from_toml(&text) };
+    read.with_context(|| path.display().to_string())
+}
+
 fn parse_span(text: &str) -> Option<(usize, usize)> {
     let (frame, frames) = text.split_once('+')?;
     Some((frame.parse().ok()?, frames.parse().ok()?))
@@ -76,7 +89,7 @@ pub(super) fn parse_leave(text: &str) -> Result<Leave, String> {
     Ok(Leave { frame, frames })
 }
 
-pub(super) fn parse_span_of_frames(text: &str) -> Result<[usize; 2], String> {
+pub(in crate::phantom) fn parse_span_of_frames(text: &str) -> Result<[usize; 2], String> {
     parse_span(text).map(|(frame, frames)| [frame, frames]).ok_or_else(|| format!("`{text}` is not FRAME+N, as 60+20"))
 }
 

@@ -1,10 +1,12 @@
 //! Logs of photodiodes and forces, in words.
 
+use std::path::PathBuf;
+
 use clap::{Args, ValueEnum};
 
-use super::choices::{parse_gap, parse_photodiode, parse_set_clock, trajectory};
+use super::choices::{parse_gap, parse_photodiode, parse_set_clock, positions, trajectory};
 use super::worn::WornRequest;
-use crate::phantom::log::{LogOptions, Protocol, Stamps};
+use crate::phantom::log::{LogOptions, Protocol, SensorModel, Stamps};
 use crate::phantom::motion::force::{Cycles, ForceTrajectory, Spiral};
 use crate::phantom::motion::trajectory::Trajectory;
 use crate::phantom::screen::Jump;
@@ -76,6 +78,14 @@ pub struct LogRequest {
     /// Which day: the sensor is put on again, its gains and offsets change by a few per cent
     #[arg(long, value_name = "K", default_value_t = 1)]
     session: u32,
+    /// What the volts come from: formulae after the words of 3.3, or the colour of the nail below each photodiode, that
+    /// of `lunula phantom nailvideo` of the same --subject
+    #[arg(long, value_enum, default_value = "formulae")]
+    sensor: SensorModel,
+    /// Where the photodiodes are on the nail, of --sensor nail: a positions.toml or layout.json of up to 8 [default:
+    /// the thesis' eight, read off its words]
+    #[arg(long, value_name = "FILE")]
+    positions: Option<PathBuf>,
 
     /// An experiment of 3.3, 5.2.4 and 5.3, prompted to a finger that follows as people do; the options below change
     /// it. Repetitions have the same --subject and --session and other seeds
@@ -264,6 +274,8 @@ impl LogRequest {
             seed: self.seed,
             subject: self.subject,
             session: self.session,
+            sensor: self.sensor,
+            positions: self.positions.as_deref().map(positions).transpose()?,
             trajectory,
             force,
             touch_from_s,

@@ -7,8 +7,8 @@ mod photos;
 mod video;
 mod worn;
 
-pub(in crate::phantom) use choices::parse_plane;
 pub use choices::parse_size;
+pub(in crate::phantom) use choices::{parse_plane, parse_span_of_frames, positions};
 pub use log::LogRequest;
 pub use photos::PhotosRequest;
 pub use video::VideoRequest;

@@ -11,6 +11,7 @@ use crate::job::{Facts, Watch};
 use crate::phantom::Faults;
 use crate::phantom::board::{self, BoardOptions};
 use crate::phantom::log::{self, LogOptions, LogScene};
+use crate::phantom::nailvideo::{self, NailVideoOptions};
 use crate::phantom::photos::{self, PhotoOptions};
 use crate::phantom::video::{self, Scene, VideoOptions};
 
@@ -54,6 +55,8 @@ pub struct Cost {
 /// log; measured with a release build on a Xeon of 2.1 GHz.
 const PHOTO_S_PER_PX: f64 = 4e-7;
 const FRAME_S_PER_PX: f64 = 3.5e-8;
+/// Of a nail's frame; measured with a development build, 12 s of 640x480.
+const NAIL_FRAME_S_PER_PX: f64 = 1.2e-7;
 const VIEW_S_PER_PX: f64 = 4e-7;
 const LOG_S_PER_MS: f64 = 8e-7;
 /// Bytes that everything takes, and a pixel of the photographs and frames under way, and a row where the whole log is
@@ -140,6 +143,39 @@ impl Generated for VideoOptions {
 
     fn write(&self, folder: &Path, watch: &Watch<'_>) -> anyhow::Result<()> {
         video::write_watched(&Scene::new(self.clone())?, folder, watch)?;
+        Ok(())
+    }
+}
+
+impl Generated for NailVideoOptions {
+    fn check(&self) -> Result<(), Faults> {
+        self.check()
+    }
+
+    fn options(&self) -> Value {
+        json!({ "nailvideo": self })
+    }
+
+    fn files(&self) -> Vec<String> {
+        sorted(self.files())
+    }
+
+    fn facts(&self, file: &str) -> Facts {
+        if file == "log.csv" {
+            Facts { led: Some(false), forces: Some(true), ..Facts::default() }
+        } else {
+            Facts::default()
+        }
+    }
+
+    fn cost(&self) -> Cost {
+        let pixels = f64::from(self.size.0) * f64::from(self.size.1);
+        let log_s = LOG_S_PER_MS * 1e3 * (self.seconds() + 10.0);
+        Cost::of(BYTES_PER_PX * pixels, NAIL_FRAME_S_PER_PX * pixels * self.frames() as f64 + log_s)
+    }
+
+    fn write(&self, folder: &Path, watch: &Watch<'_>) -> anyhow::Result<()> {
+        nailvideo::write_watched(&nailvideo::Scene::new(self.clone())?, folder, watch)?;
         Ok(())
     }
 }

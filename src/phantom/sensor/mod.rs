@@ -19,20 +19,29 @@
 //! Where the thesis is silent (P6 and P8, taken for the nearer neighbours of P5 and P7; all sizes) the figures are
 //! assumed.
 //!
+//! A [`WornSensor`] sees the nail's own colour instead, that of the phantom's pictures, at places that a file gives.
+//!
 //! [`Response`] adds what is not static: hysteresis, evident for forces and little for bending, and the blood's lag, of
 //! first order. [`Wander`] and [`Disturbances`] add what the finger does not do.
 
 mod ambient;
+mod colour;
+mod discs;
 mod disturbances;
 mod photodiode;
 mod response;
 mod wander;
+mod worn;
 
 pub use ambient::Ambient;
+pub use colour::FollowedColour;
+pub use discs::Discs;
+pub(in crate::phantom) use discs::disc_samples;
 pub use disturbances::{DisturbanceSizes, Disturbances, Elevation, Pulse};
 pub use photodiode::{CHANNELS, Photodiode, Sensor};
-pub use response::{Dynamics, Response};
+pub use response::{Dynamics, Following, Response};
 pub use wander::Wander;
+pub use worn::{WornSensor, person};
 
 /// What a fingertip does at a moment.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -10,9 +10,9 @@ use crate::phantom::nail::numbers;
 pub const CHANNELS: usize = 8;
 
 /// People and sessions are the same whatever the scene's seed.
-const PEOPLE: u64 = 0;
+pub(super) const PEOPLE: u64 = 0;
 const KIND_PERSON: u32 = 22;
-const KIND_SESSION: u32 = 23;
+pub(super) const KIND_SESSION: u32 = 23;
 
 /// A photodiode on a nail, with the blood below it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -73,16 +73,16 @@ const USUAL: [[f64; 9]; CHANNELS] = [
 ];
 /// Loading and unloading, seconds, as measured in 4.3: over distal blood (P1, P2, P5, P7) and over proximal (the
 /// others).
-const DISTAL_S: (f64, f64) = (0.18, 0.36);
-const PROXIMAL_S: (f64, f64) = (0.16, 0.12);
+pub(super) const DISTAL_S: (f64, f64) = (0.18, 0.36);
+pub(super) const PROXIMAL_S: (f64, f64) = (0.16, 0.12);
 const DISTAL: [bool; CHANNELS] = [true, true, false, false, true, false, true, false];
 /// Of bending; assumed, so short since hardly any hysteresis is seen at 0.1 Hz (Figure 34).
-const BENDING_S: f64 = 0.04;
+pub(super) const BENDING_S: f64 = 0.04;
 
 /// How far people differ: of the logarithm of each effect, of the rest's and the lags' size.
 const PERSON: (f64, f64, f64) = (0.20, 0.10, 0.15);
 /// How far sessions differ: of the gain's size, of the rest's, of a person's effects.
-const SESSION: (f64, f64, f64) = (0.04, 0.03, 0.02);
+pub(super) const SESSION: (f64, f64, f64) = (0.04, 0.03, 0.02);
 
 impl Sensor {
     /// The sensor on the nail of person `subject` as it sits in `session`.

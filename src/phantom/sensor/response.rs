@@ -4,9 +4,9 @@
 //! the static map gets the middle of x and p. It does not depend on speed. Of forces h = 0.5 N / (N + 2): it vanishes
 //! when the finger lets go. Of J2 it is half a degree.
 //!
-//! Then the forces' part and bending's part of each photodiode follow the static map with a lag of first order, tau y'
-//! = s - y. For forces tau is one while the pressing grows and another while it falls or stays (4.3: blood leaves and
-//! comes back at different speeds).
+//! Then what the static map gives, of a [`Sensor`] the forces' part and bending's part of each photodiode, of the
+//! nail's own colour the zones' weights, follows with a lag of first order, tau y' = s - y. For forces tau is one while
+//! the pressing grows and another while it falls or stays (4.3: blood leaves and comes back at different speeds).
 //!
 //! Time goes in steps of a millisecond that start at a given time. Within a step the static map is taken for a straight
 //! line, along which the lag is exact; a moment between two steps is reached by a part of one, so that what is asked
@@ -41,45 +41,81 @@ impl Default for Dynamics {
     }
 }
 
+/// What follows a movement: `N` values that a static map gives, each with lags of its own.
+pub trait Following<const N: usize> {
+    /// The static map of what is felt: N = -Fz, Fx, Fy newtons, J2 radians.
+    fn drive(&self, felt: [f64; 4]) -> [f64; N];
+    /// How slowly each follows while the pressing grows, and while it does not, seconds.
+    fn lags_s(&self) -> [[f64; 2]; N];
+}
+
+/// Of each photodiode the forces' part and bending's part, volts before the gain.
+const PARTS: usize = 2 * CHANNELS;
+
+impl Following<PARTS> for Sensor {
+    fn drive(&self, [pressing_n, fx_n, fy_n, j2_rad]: [f64; 4]) -> [f64; PARTS] {
+        let parts = self.photodiodes.map(|one| [one.touch_v([fx_n, fy_n, -pressing_n]), one.bend_v(j2_rad)]);
+        std::array::from_fn(|k| parts[k / 2][k % 2])
+    }
+
+    fn lags_s(&self) -> [[f64; 2]; PARTS] {
+        let lags = self.photodiodes.map(|one| [[one.loading_s, one.unloading_s], [one.bending_s; 2]]);
+        std::array::from_fn(|k| lags[k / 2][k % 2])
+    }
+}
+
 /// State of the plays and of the lags at a time.
 #[derive(Debug, Clone, Copy)]
-struct State {
+struct State<const N: usize> {
     /// N, Fx, Fy, J2.
     plays: [f64; 4],
     pressing_n: f64,
-    /// The static map behind the plays: forces' part, bending's part, volts before the gain.
-    drive_v: [[f64; 2]; CHANNELS],
+    /// The static map behind the plays.
+    drive: [f64; N],
     /// What has followed.
-    blood_v: [[f64; 2]; CHANNELS],
+    followed: [f64; N],
 }
 
-/// A sensor that follows a movement: what the finger does at a time.
-pub struct Response<M> {
-    sensor: Sensor,
+/// A sensor, or a nail's colour, that follows a movement: what the finger does at a time.
+pub struct Response<S, M, const N: usize> {
+    map: S,
     dynamics: Dynamics,
     movement: M,
     start_s: f64,
     steps: u64,
-    state: State,
-    /// For each photodiode exp(-step / tau): loading, unloading, bending.
-    decays: [[f64; 3]; CHANNELS],
+    state: State<N>,
+    lags_s: [[f64; 2]; N],
+    /// For each value exp(-step / tau): loading, unloading.
+    decays: [[f64; 2]; N],
 }
 
-impl<M: FnMut(f64) -> Touch> Response<M> {
-    /// Begins in equilibrium at `start_s`.
-    #[must_use]
-    pub fn new(sensor: &Sensor, dynamics: Dynamics, mut movement: M, start_s: f64) -> Self {
-        let touch = movement(start_s);
-        let plays = inputs(&touch);
-        let drive_v = drive(sensor, plays);
-        let state = State { plays, pressing_n: plays[0], drive_v, blood_v: drive_v };
-        let decays = decays(sensor, dynamics, STEP_S);
-        Self { sensor: *sensor, dynamics, movement, start_s, steps: 0, state, decays }
-    }
-
+impl<M: FnMut(f64) -> Touch> Response<Sensor, M, PARTS> {
     /// What each photodiode adds at `t_s` when the LED is on, volts. Times are asked for in ascending order, none
     /// before the start.
     pub fn at(&mut self, t_s: f64) -> [f64; CHANNELS] {
+        let followed = self.followed(t_s);
+        std::array::from_fn(|k| {
+            let one = &self.map.photodiodes[k];
+            one.rest_v + one.gain * (followed[2 * k] + followed[2 * k + 1])
+        })
+    }
+}
+
+impl<S: Following<N> + Clone, M: FnMut(f64) -> Touch, const N: usize> Response<S, M, N> {
+    /// Begins in equilibrium at `start_s`.
+    #[must_use]
+    pub fn new(map: &S, dynamics: Dynamics, mut movement: M, start_s: f64) -> Self {
+        let touch = movement(start_s);
+        let plays = inputs(&touch);
+        let drive = map.drive(plays);
+        let state = State { plays, pressing_n: plays[0], drive, followed: drive };
+        let lags_s = map.lags_s();
+        let decays = decays(&lags_s, dynamics, STEP_S);
+        Self { map: map.clone(), dynamics, movement, start_s, steps: 0, state, lags_s, decays }
+    }
+
+    /// What has followed at `t_s`. Times are asked for in ascending order, none before the start.
+    pub fn followed(&mut self, t_s: f64) -> [f64; N] {
         let whole = ((t_s - self.start_s) / STEP_S).floor().max(0.0) as u64;
         while self.steps < whole {
             self.steps += 1;
@@ -87,41 +123,31 @@ impl<M: FnMut(f64) -> Touch> Response<M> {
             self.state = self.after(&touch, STEP_S, &self.decays);
         }
         let part_s = t_s - (self.start_s + self.steps as f64 * STEP_S);
-        let state = if part_s > 0.0 {
+        if part_s > 0.0 {
             let touch = (self.movement)(t_s);
-            self.after(&touch, part_s, &decays(&self.sensor, self.dynamics, part_s))
+            self.after(&touch, part_s, &decays(&self.lags_s, self.dynamics, part_s)).followed
         } else {
-            self.state
-        };
-        std::array::from_fn(|k| {
-            let one = &self.sensor.photodiodes[k];
-            one.rest_v + one.gain * (state.blood_v[k][0] + state.blood_v[k][1])
-        })
+            self.state.followed
+        }
     }
 
     /// The state `step_s` later, where the finger does `touch`.
-    fn after(&self, touch: &Touch, step_s: f64, decays: &[[f64; 3]; CHANNELS]) -> State {
+    fn after(&self, touch: &Touch, step_s: f64, decays: &[[f64; 2]; N]) -> State<N> {
         let old = &self.state;
         let is = inputs(touch);
         let play_n = PLAY_N * is[0].max(0.0) / (is[0].max(0.0) + PLAY_HALF_N);
         let half = [play_n, play_n, play_n, PLAY_RAD].map(|half| self.dynamics.hysteresis * half);
         let plays: [f64; 4] = std::array::from_fn(|k| old.plays[k].clamp(is[k] - half[k], is[k] + half[k]));
         let felt = std::array::from_fn(|k| is[k] + PLAY_SHARE * (plays[k] - is[k]));
-        let drive_v = drive(&self.sensor, felt);
-        let loading = is[0] > old.pressing_n;
-        let blood_v = std::array::from_fn(|k| {
-            let one = &self.sensor.photodiodes[k];
-            let (touching_s, touching) =
-                if loading { (one.loading_s, decays[k][0]) } else { (one.unloading_s, decays[k][1]) };
-            let follow = |part: usize, tau_s: f64, decay: f64| {
-                let (from, to) = (old.drive_v[k][part], drive_v[k][part]);
-                // Along a straight line the lag settles at tau times its slope.
-                let behind = self.dynamics.lag * tau_s * (to - from) / step_s;
-                to - behind + (old.blood_v[k][part] - from + behind) * decay
-            };
-            [follow(0, touching_s, touching), follow(1, one.bending_s, decays[k][2])]
+        let drive = self.map.drive(felt);
+        let way = usize::from(is[0] <= old.pressing_n);
+        let followed = std::array::from_fn(|k| {
+            let (from, to) = (old.drive[k], drive[k]);
+            // Along a straight line the lag settles at tau times its slope.
+            let behind = self.dynamics.lag * self.lags_s[k][way] * (to - from) / step_s;
+            to - behind + (old.followed[k] - from + behind) * decays[k][way]
         });
-        State { plays, pressing_n: is[0], drive_v, blood_v }
+        State { plays, pressing_n: is[0], drive, followed }
     }
 }
 
@@ -131,15 +157,9 @@ fn inputs(touch: &Touch) -> [f64; 4] {
     [-fz_n, fx_n, fy_n, touch.angles_rad[1]]
 }
 
-fn drive(sensor: &Sensor, [pressing_n, fx_n, fy_n, j2_rad]: [f64; 4]) -> [[f64; 2]; CHANNELS] {
-    sensor.photodiodes.map(|one| [one.touch_v([fx_n, fy_n, -pressing_n]), one.bend_v(j2_rad)])
-}
-
-fn decays(sensor: &Sensor, dynamics: Dynamics, step_s: f64) -> [[f64; 3]; CHANNELS] {
-    sensor.photodiodes.map(|one| {
-        // Without any lag, nothing is left of what was: exp(-infinity).
-        [one.loading_s, one.unloading_s, one.bending_s].map(|tau_s| (-step_s / (dynamics.lag * tau_s)).exp())
-    })
+fn decays<const N: usize>(lags_s: &[[f64; 2]; N], dynamics: Dynamics, step_s: f64) -> [[f64; 2]; N] {
+    // Without any lag, nothing is left of what was: exp(-infinity).
+    lags_s.map(|lags_s| lags_s.map(|tau_s| (-step_s / (dynamics.lag * tau_s)).exp()))
 }
 
 #[cfg(test)]

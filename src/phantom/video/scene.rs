@@ -13,7 +13,7 @@ use crate::phantom::video::draw::limb::Limb;
 use crate::phantom::video::draw::objects::{Distractor, Stick};
 
 /// Ticks a second of the frames' times.
-pub(super) const TICKS_PER_S: i32 = 90_000;
+pub(in crate::phantom) const TICKS_PER_S: i32 = 90_000;
 
 /// The sway's rates, hertz.
 const SWAY_HZ: [f64; 2] = [0.13, 0.19];

@@ -6,11 +6,12 @@
 //! video = { scene = "hard", seconds = 20 }            # {phantom}/video/video.mp4, markers.toml, truth/
 //! log = { protocol = "touch" }                        # {phantom}/log/log.csv, truth/
 //! board = { views = 12 }                              # {phantom}/board/views/01.png .., truth/
+//! nailvideo = { protocol = "touch" }                  # {phantom}/nailvideo/video.mp4, outline.json, log.csv, truth/
 //! video = [{ name = "a", .. }, { name = "b", .. }]    # or several of a kind: {phantom}/video/a, {phantom}/video/b
 //! ```
 //!
-//! The options are those of `lunula phantom photos|video|log|board`, with `_` for `-`. Each recording is a task of its
-//! own. What may be asked for is a list ([`Block`]): others bring experiments of many recordings.
+//! The options are those of `lunula phantom photos|video|log|board|nailvideo`, with `_` for `-`. Each recording is a
+//! task of its own. What may be asked for is a list ([`Block`]): others bring experiments of many recordings.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -19,6 +20,7 @@ use toml::{Table, Value};
 
 use crate::job::{Keys, Made, Maker, OptionFault, Said, Work, read};
 use crate::phantom::board::BoardOptions;
+use crate::phantom::nailvideo::NailVideoRequest;
 use crate::phantom::request::{LogRequest, PhotosRequest, VideoRequest};
 use crate::phantom::{Faults, Generated};
 use crate::pipeline::{Catalogue, CatalogueFile, CatalogueTask};
@@ -63,7 +65,7 @@ pub struct Placed {
     pub recording: Box<dyn Generated>,
 }
 
-/// The scenes of `lunula phantom photos|video|log|board`.
+/// The scenes of `lunula phantom photos|video|log|board|nailvideo`.
 #[must_use]
 pub fn scenes() -> &'static [Block] {
     &[
@@ -71,6 +73,7 @@ pub fn scenes() -> &'static [Block] {
         Block { name: "video", several: true, read: video },
         Block { name: "log", several: true, read: log },
         Block { name: "board", several: true, read: board },
+        Block { name: "nailvideo", several: true, read: nailvideo },
     ]
 }
 
@@ -90,6 +93,11 @@ fn log(options: &Table) -> Result<Asked, OptionFault> {
 
 fn board(options: &Table) -> Result<Asked, OptionFault> {
     Ok(Asked::Scene(Box::new(read::<BoardOptions>(options, "`lunula phantom board`")?.options)))
+}
+
+fn nailvideo(options: &Table) -> Result<Asked, OptionFault> {
+    let request = read::<NailVideoRequest>(without_files(options)?, "`lunula phantom nailvideo`")?.options;
+    Ok(Asked::Scene(Box::new(request.options().map_err(|why| unread(&why))?)))
 }
 
 /// What a block `[phantom]` makes, which may ask for any of `known`.
@@ -171,6 +179,10 @@ fn blocks(asked: &Block, value: &Value) -> Result<Vec<(Option<String>, Table)>, 
 /// The planner knows no files but inputs: a movement is known by its name here.
 fn without_files(options: &Table) -> Result<&Table, OptionFault> {
     const NAMES: [&str; 6] = ["eq27", "free", "random", "even", "rest", "sway"];
+    if options.contains_key("positions") {
+        let what = "`positions` names a file; a pipeline has the thesis' places".to_owned();
+        return Err(OptionFault { key: "positions".to_owned(), what });
+    }
     match options.get("trajectory").and_then(Value::as_str) {
         Some(other) if !NAMES.contains(&other) => {
             let what = format!("`trajectory` is {} in a pipeline, not a file as `{other}`", NAMES.join(", "));
@@ -282,7 +294,7 @@ mod tests {
     fn what_is_wrong_is_told_of_its_key() {
         for (text, key, words) in [
             ("", "", "asks for nothing"),
-            ("videos = {}", "videos", "there are photos, video, log, board"),
+            ("videos = {}", "videos", "there are photos, video, log, board, nailvideo"),
             ("log = 1", "log", "has to be a table"),
             ("video = { secnds = 1 }", "video.secnds", "did you mean `seconds`"),
             ("video = { seconds = \"long\" }", "video.seconds", "`long`"),

@@ -1,4 +1,4 @@
-//! Which columns of a table are photodiodes, and what to say of one that is not there.
+//! Which columns of a table are photodiodes or cells, and what to say of one that is not there.
 
 use lunula_predictor::FORCES;
 
@@ -12,6 +12,23 @@ fn number(name: &str) -> Option<u32> {
 /// All photodiodes, in the order of their numbers.
 pub(super) fn photodiodes(names: &[String]) -> Vec<String> {
     let mut found: Vec<(u32, &String)> = names.iter().filter_map(|name| Some((number(name)?, name))).collect();
+    found.sort();
+    found.into_iter().map(|(_, name)| name.clone()).collect()
+}
+
+/// Row and column of a cell of a nail's picture, from 0: `C_03_11`.
+pub(crate) fn cell(name: &str) -> Option<[usize; 2]> {
+    let (row, column) = name.strip_prefix("C_")?.split_once('_')?;
+    let place = |digits: &str| {
+        let plain = digits.len() >= 2 && digits.bytes().all(|b| b.is_ascii_digit());
+        digits.parse::<u16>().ok().filter(|_| plain).map(usize::from)
+    };
+    Some([place(row)?, place(column)?])
+}
+
+/// All cells, row by row.
+pub(super) fn cells(names: &[String]) -> Vec<String> {
+    let mut found: Vec<([usize; 2], &String)> = names.iter().filter_map(|name| Some((cell(name)?, name))).collect();
     found.sort();
     found.into_iter().map(|(_, name)| name.clone()).collect()
 }

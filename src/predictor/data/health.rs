@@ -1,5 +1,6 @@
 //! Photodiodes that show nothing, or are cut off at the end of the recorded range.
 
+use super::columns::cell;
 use super::source::Source;
 use crate::log::piles;
 
@@ -8,7 +9,8 @@ use crate::log::piles;
 pub(super) fn warnings(source: &Source, keep_faults: bool) -> Vec<String> {
     let file = source.path.display();
     let mut warnings = Vec::new();
-    for (name, values) in source.inputs.iter().zip(&source.x) {
+    let photodiodes = source.inputs.iter().zip(&source.x).filter(|(name, _)| cell(name).is_none());
+    for (name, values) in photodiodes {
         let seen: Vec<f64> = values
             .iter()
             .zip(&source.faulty)

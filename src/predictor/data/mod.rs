@@ -1,6 +1,7 @@
 //! Tables and logs of the user into rows for the models (5.2).
 //!
 //! In: CSV or Parquet tables with `P1`.. in volts and the targets, as `lunula align` and anybody else writes them, or
+//! cells of a nail's picture (`C_00_00`.., row and column, of which a row may lack some), or
 //! raw logs with a column `led` (section 3.1.2c), which are brought to the LED's own light by the same code as in align
 //! ([`LogReading`]). Out: a [`Dataset`] with what was left out and why ([`read_data`], [`read_files`]); voltages alone
 //! ([`read_inputs`]). Rows of a stream are `live`'s.
@@ -33,7 +34,7 @@ use crate::table::TableError;
 use recordings::Splitter;
 use source::{Source, agree};
 
-pub(crate) use columns::missing;
+pub(crate) use columns::{cell, missing};
 pub use file::DataFile;
 pub(crate) use source::GROUPS;
 
@@ -62,6 +63,11 @@ pub struct Wanted {
     pub rows: RowOptions,
     /// Whether a file that can't be read costs only itself, rather than being an error; where none can be, it is one.
     pub skip_failed: bool,
+    /// Whether the inputs are cells of a nail's picture: where none are named, all columns `C_<row>_<column>`. A row
+    /// may lack some.
+    pub cells: bool,
+    /// Whether photodiodes are read as well, after the cells, where all files have the same.
+    pub photodiodes_too: bool,
 }
 
 /// What was read.
@@ -194,6 +200,9 @@ pub fn read_files(data: &[DataFile], wanted: &Wanted) -> Result<Read, DataError>
         return Err(faults.swap_remove(0));
     }
     let data = &data_read[..];
+    if wanted.photodiodes_too {
+        source::without_other_photodiodes(&mut sources);
+    }
     agree(&sources)?;
     let mut warnings = twice(data);
     let inputs = sources[0].inputs.clone();
@@ -210,7 +219,7 @@ pub fn read_files(data: &[DataFile], wanted: &Wanted) -> Result<Read, DataError>
                 file.faults += 1;
             } else if source.invalid[row] {
                 file.invalid += 1;
-            } else if source.columns().any(|column| column[row].is_nan()) {
+            } else if source.lacks(row, wanted.cells) {
                 file.empty += 1;
             } else {
                 file.used += 1;
@@ -232,7 +241,8 @@ pub fn read_files(data: &[DataFile], wanted: &Wanted) -> Result<Read, DataError>
         let columns = values.len() / rows;
         Array2::from_shape_vec((rows, columns), values).expect("every row gives as many values")
     };
-    let data = Dataset::new(inputs, wanted.targets.clone(), time_s, shaped(x), shaped(y), recordings)?;
+    let make = if wanted.cells { Dataset::with_hidden } else { Dataset::new };
+    let data = make(inputs, wanted.targets.clone(), time_s, shaped(x), shaped(y), recordings)?;
     Ok(Read { data, files, failed, warnings })
 }
 

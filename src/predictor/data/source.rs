@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use super::columns::{listed, missing, photodiodes};
+use super::columns::{cell, cells, listed, missing, photodiodes};
 use super::{DataError, Wanted};
 use crate::log::{Channel, LitRows, Statuses, Verdict};
 use crate::table::{Cell, Table, TableError};
@@ -46,8 +46,11 @@ impl Source {
         self.time_s.len()
     }
 
-    pub(super) fn columns(&self) -> impl Iterator<Item = &Vec<f64>> {
-        self.x.iter().chain(&self.y)
+    /// Whether a row lacks what is needed of it: any input (of `cells` all) or a target.
+    pub(super) fn lacks(&self, row: usize, cells: bool) -> bool {
+        let lacking = |column: &Vec<f64>| column[row].is_nan();
+        let inputs = if cells { self.x.iter().all(lacking) } else { self.x.iter().any(lacking) };
+        inputs || self.y.iter().any(lacking)
     }
 
     fn of_table(path: &Path, wanted: &Wanted) -> Result<Self, DataError> {
@@ -177,9 +180,21 @@ impl Source {
     }
 }
 
-/// The photodiodes to read: as wanted, else all.
+/// The photodiodes or cells to read: as wanted, else all.
 fn chosen(path: &Path, wanted: &Wanted, names: &[String]) -> Result<Vec<String>, DataError> {
-    let inputs = wanted.inputs.clone().unwrap_or_else(|| photodiodes(names));
+    let all = |names| if wanted.cells { cells(names) } else { photodiodes(names) };
+    let mut inputs = wanted.inputs.clone().unwrap_or_else(|| all(names));
+    if wanted.photodiodes_too {
+        let others = photodiodes(names).into_iter().filter(|name| !inputs.contains(name)).collect::<Vec<_>>();
+        inputs.extend(others);
+    }
+    if inputs.is_empty() && wanted.cells {
+        let what = format!(
+            "has no cell `C_00_00`, `C_00_01`, ... of a nail's picture: `lunula nailvideo --cells` makes them. {}",
+            listed(names, 40)
+        );
+        return Err(DataError::Columns { path: path.to_owned(), what });
+    }
     if inputs.is_empty() {
         let what = format!("has no photodiode `P1`, `P2`, ... {}", listed(names, 40));
         return Err(DataError::Columns { path: path.to_owned(), what });
@@ -264,6 +279,20 @@ fn merged(before: &[(usize, [String; 3])], k: usize, own: Vec<(usize, String)>) 
         joined.push((row, group.clone()));
     }
     joined
+}
+
+/// Leaves only the cells where files have other photodiodes than each other.
+pub(super) fn without_other_photodiodes(sources: &mut [Source]) {
+    if sources.windows(2).all(|pair| pair[0].inputs == pair[1].inputs) {
+        return;
+    }
+    for source in sources {
+        let kept: Vec<bool> = source.inputs.iter().map(|name| cell(name).is_some()).collect();
+        let mut is_kept = kept.iter();
+        source.inputs.retain(|_| is_kept.next().is_some_and(|kept| *kept));
+        let mut is_kept = kept.iter();
+        source.x.retain(|_| is_kept.next().is_some_and(|kept| *kept));
+    }
 }
 
 /// Whether all files have the same photodiodes.

@@ -55,6 +55,19 @@ pub(in crate::predictor) struct MagnitudeBin {
 /// # Errors
 /// A file that can't be written.
 pub fn draw_bars(bars: &Bars, png: &Path, svg: &Path) -> anyhow::Result<()> {
+    draw_charts(&[chart(bars)], WIDTH, png, svg)
+}
+
+/// Draws several charts of bars, one below the other.
+///
+/// # Errors
+/// A file that can't be written.
+pub(in crate::predictor) fn draw_bar_charts(all: &[Bars], png: &Path, svg: &Path) -> anyhow::Result<()> {
+    let charts: Vec<Chart> = all.iter().map(chart).collect();
+    draw_charts(&charts, WIDTH, png, svg)
+}
+
+fn chart(bars: &Bars) -> Chart {
     let width = TAKEN / bars.series.len().max(1) as f64;
     let last = bars.groups.len().max(1) as f64 - 0.5;
     let mut items = vec![
@@ -72,15 +85,14 @@ pub fn draw_bars(bars: &Bars, png: &Path, svg: &Path) -> anyhow::Result<()> {
         let known = series.values.iter().take(bars.groups.len()).enumerate().filter_map(bar).collect();
         items.push(Item::Bars { name: Some(series.name.clone()), bars: known, colour });
     }
-    let chart = Chart {
+    Chart {
         title: bars.title.clone(),
         x: Axis { label: bars.x_label.clone() },
         y: Axis { label: bars.y_label.clone() },
         from_zero: true,
         items,
         height: HEIGHT_PX,
-    };
-    draw_charts(&[chart], WIDTH, png, svg)
+    }
 }
 
 /// Draws the RMSE of each target by the size of the force, in `unit` (`N`).

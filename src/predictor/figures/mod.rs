@@ -1,5 +1,6 @@
 //! Pictures of the predictors: predicted against measured (Fig. 94-97, 99-104), modes of the linear model (Fig. 98),
-//! bars that compare models and sets (Fig. 105-113), errors over the number of photodiodes and of training rows.
+//! eigennails, bars that compare models and sets (Fig. 105-113), errors over the number of photodiodes and of training
+//! rows.
 //!
 //! In: plain numbers with their names; NaN is not known and leaves a gap. Out: a PNG and an SVG. The same numbers give
 //! the same bytes. Many rows are thinned, files do not grow with them.
@@ -7,6 +8,7 @@
 mod bars;
 mod curves;
 mod modes;
+mod nails;
 mod over_time;
 mod predicted;
 mod scatter;
@@ -14,9 +16,10 @@ mod scatter;
 mod tests;
 
 pub use bars::{BarSeries, Bars, draw_bars};
-pub(super) use bars::{MagnitudeBin, draw_error_by_magnitude};
+pub(super) use bars::{MagnitudeBin, draw_bar_charts, draw_error_by_magnitude};
 pub(super) use curves::{CurvePoint, LearningSeries, Subset, SubsetSeries, draw_best_subsets, draw_learning_curve};
 pub(super) use modes::{Modes, draw_modes};
+pub(super) use nails::draw_nails;
 pub(super) use over_time::draw_over_time;
 pub(super) use predicted::Predicted;
 pub(super) use scatter::draw_scatter;

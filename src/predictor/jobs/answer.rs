@@ -29,6 +29,8 @@ pub struct Answering {
     last_s: f64,
     /// Rows outside of what a model was trained on.
     outside: u64,
+    /// The SD that models give of their own, a column each; NaN of those that give none.
+    sds: Vec<f64>,
 }
 
 #[derive(Debug, Clone)]
@@ -102,7 +104,8 @@ impl Answering {
         });
         let of = |voice: &Voice| voice.predictor.intervals().map_or_else(Vec::new, |found| found.half_width.clone());
         let half_widths = voices.iter().flat_map(of).collect();
-        Ok(Self { voices, inputs, columns, gate, intervals, half_widths, outside: 0, last_s: f64::NAN })
+        let sds = vec![f64::NAN; columns.len()];
+        Ok(Self { voices, inputs, columns, gate, intervals, half_widths, outside: 0, last_s: f64::NAN, sds })
     }
 
     /// The photodiodes that a row holds, in order.
@@ -139,6 +142,19 @@ impl Answering {
     #[must_use]
     pub fn half_widths(&self) -> Option<Vec<f64>> {
         self.intervals.then(|| self.half_widths.clone())
+    }
+
+    /// Columns of which the models give an SD of their own, by their places.
+    #[must_use]
+    pub fn with_sd(&self) -> Vec<usize> {
+        let own = self.voices.iter().filter(|voice| voice.predictor.eigennails().is_some());
+        own.flat_map(|voice| voice.first..voice.first + voice.predictor.targets().len()).collect()
+    }
+
+    /// The SD of what would be measured about each column of the last answer, in its unit; NaN where not known.
+    #[must_use]
+    pub fn sds(&self) -> &[f64] {
+        &self.sds
     }
 
     /// The columns after the time: each prediction, then each interval's ends.
@@ -214,11 +230,15 @@ impl Answering {
                 Some(buffer) => buffer.push(time_s, own, seen),
                 None => {
                     seen.copy_from_slice(own);
-                    seen.iter().all(|value| value.is_finite())
+                    // A picture with too few cells is answered by NaN.
+                    predictor.reads_hidden() || seen.iter().all(|value| value.is_finite())
                 }
             };
             if known {
                 predictor.predict_row(seen, out);
+                if let Some(model) = predictor.eigennails() {
+                    model.sd_row(seen, &mut self.sds[*first..*first + out.len()]);
+                }
                 let posture_only = predictor.targets().len() == 1 && predictor.targets()[0].name == POSTURE;
                 *(if posture_only { &mut outside_bending } else { &mut outside }) |= predictor.is_outside(own);
             } else {
@@ -231,6 +251,10 @@ impl Answering {
         };
         let contact = gated.gate.step(&mut gated.state, out[gated.fz]);
         self.outside += u64::from(outside || (outside_bending && contact == Contact::Bending));
+        // The SD is that of the posture model, whose word counts only in bending.
+        if contact != Contact::Bending {
+            self.sds[gated.angle] = f64::NAN;
+        }
         out[gated.angle] = match contact {
             Contact::Bending => out[gated.angle],
             Contact::Touch => gated.gate.theta_touch_deg(),

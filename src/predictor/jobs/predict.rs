@@ -94,13 +94,15 @@ pub fn predict(
     if answering.needs_time() && !read.time_s.is_empty() && read.time_s.iter().all(|time| time.is_nan()) {
         return Err(no_time(&data.display().to_string()));
     }
-    let (answers, contacts, counts) =
+    let (answers, sds, contacts, counts) =
         stages.time("predict", || all_rows(&mut answering, &read, options.rows.keep_faults));
     watch.go_on()?;
     let at = places.place(out)?;
     stages.time("write", || {
         let mut columns = vec![Column::number("time_s")];
         columns.extend(answering.output_columns().into_iter().map(Column::number));
+        let with_sd = answering.with_sd();
+        columns.extend(with_sd.iter().map(|&at| Column::number(format!("{}_sd", answering.columns()[at]))));
         if answering.is_gated() {
             columns.push(Column::text("contact"));
         }
@@ -113,6 +115,7 @@ pub fn predict(
             cells.extend(answer.iter().map(|value| Value::Number(*value)));
             let ruled = answering.ruled(contacts.get(row).copied());
             cells.extend(interval_cells(answer, half_widths.as_deref(), ruled).map(Value::Number));
+            cells.extend(with_sd.iter().map(|&at| Value::Number(sds[row * width + at])));
             if let Some(contact) = contacts.get(row) {
                 cells.push(Value::Text(contact_word(*contact)));
             }
@@ -155,9 +158,12 @@ fn extrapolated(answering: &Answering, counts: Counts) -> Option<String> {
     })
 }
 
-fn all_rows(answering: &mut Answering, read: &Inputs, keep_faults: bool) -> (Vec<f64>, Vec<Contact>, Counts) {
+/// Answers, their SDs (empty where no model gives any), contacts.
+fn all_rows(answering: &mut Answering, read: &Inputs, keep_faults: bool) -> (Vec<f64>, Vec<f64>, Vec<Contact>, Counts) {
     let width = answering.columns().len();
     let mut answers = vec![f64::NAN; read.time_s.len() * width];
+    let mut sds = Vec::new();
+    let own_sds = !answering.with_sd().is_empty();
     let mut contacts = Vec::new();
     let mut counts = Counts::default();
     let unknown = vec![f64::NAN; read.x.ncols()];
@@ -168,10 +174,13 @@ fn all_rows(answering: &mut Answering, read: &Inputs, keep_faults: bool) -> (Vec
             let out = &mut answers[row * width..(row + 1) * width];
             let contact = answering.answer(read.time_s[row], row == recording.rows.start, volts, out);
             counts.count(contact, out);
+            if own_sds {
+                sds.extend_from_slice(answering.sds());
+            }
             contacts.extend(contact);
         }
     }
-    (answers, contacts, counts)
+    (answers, sds, contacts, counts)
 }
 
 fn no_time(whose: &str) -> PredictorError {

@@ -8,13 +8,14 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use lunula_predictor::{
-    Dataset, Intervals, Kind, Predictor, Recipe, Report as FitReport, calibrate, recording_hashes, score, with_lags,
+    Dataset, Intervals, Kind, Predictor, Recipe, Report as FitReport, calibrate, recording_hashes, repeated_paths,
+    score, with_lags,
 };
 use serde::Serialize;
 
 use crate::files::{Places, WriteError};
 use crate::job::{Report, Watch};
-use crate::predictor::data::{DataFile, FileRows, RowOptions, Wanted, read_files};
+use crate::predictor::data::{DataFile, FileRows, Read, RowOptions, Wanted, read_files};
 use crate::predictor::error::PredictorError;
 use crate::predictor::jobs::learning;
 use crate::predictor::merit::figures::{ByTarget, Merit, merit_without_cone};
@@ -126,7 +127,11 @@ pub fn train(
     let mut places = Places::not_over(inputs.all().map(|file| &file.path));
     let out = &outputs.model;
     places.check(std::iter::once(out).chain(&outputs.learning_curve).chain(&outputs.merit))?;
-    let read = stages.time("read", || read_files(&inputs.data, &options.wanted))?;
+    let mut read = stages.time("read", || read_files(&inputs.data, &options.wanted))?;
+    let mut notes = Vec::new();
+    if options.wanted.cells {
+        notes.extend(leave_out_unseen(&mut read)?);
+    }
     let same_inputs = Wanted { inputs: Some(read.data.inputs().to_vec()), ..options.wanted.clone() };
     let others = |files: &[DataFile]| (!files.is_empty()).then(|| read_files(files, &same_inputs)).transpose();
     let validate = stages.time("read", || others(&inputs.validate))?;
@@ -162,6 +167,9 @@ pub fn train(
     }
     let validation =
         validate.as_ref().map(|read| stages.time("score", || merit(&predictor, &read.data))).transpose()?;
+    if let Some(held) = validate.as_ref().filter(|_| options.wanted.cells) {
+        warnings.extend(repeated(&read.data, &held.data));
+    }
     warnings.extend(validation.iter().chain([&training]).filter_map(Merit::warning));
     let without = match &validate {
         Some(held) => stages.time("fit without options", || without(&predictor, &read.data, early, &held.data))?,
@@ -206,8 +214,49 @@ pub fn train(
     };
     let ambient = inputs.ambient_step(&options.wanted.rows);
     let left_out = left_out(train_plan(inputs, ambient, recipe, outputs.learning_curve.is_some()));
-    let report = Report { left_out, warnings, failed, pictures, ..Report::new("train", watch, figures) };
+    let report = Report { left_out, warnings, notes, failed, pictures, ..Report::new("train", watch, figures) };
     Ok(report.timed(&stages, start))
+}
+
+/// Leaves out the cells that a recording never has: those outside of its nail. Returns what to say of it.
+fn leave_out_unseen(read: &mut Read) -> Result<Option<String>, PredictorError> {
+    let data = &read.data;
+    let seen = |cell: &usize| {
+        let column = data.x().column(*cell);
+        data.recordings().iter().all(|one| one.rows.clone().any(|row| !column[row].is_nan()))
+    };
+    let all = data.inputs().len();
+    let kept: Vec<usize> = (0..all).filter(seen).collect();
+    if kept.is_empty() {
+        let what = "no cell is known in all recordings; name recordings of nails in one frame, of as many cells";
+        return Err(PredictorError::Request(what.to_owned()));
+    }
+    let note = (kept.len() < all).then(|| {
+        format!(
+            "{} of {all} cells are used; of the others some recording has no value (outside of the nail)",
+            kept.len()
+        )
+    });
+    read.data = read.data.only_inputs(&kept);
+    Ok(note)
+}
+
+/// Recordings validated on that repeat a path trained on.
+fn repeated(train: &Dataset, held: &Dataset) -> Option<String> {
+    let all = repeated_paths(train, held);
+    let pairs: Vec<String> = all
+        .iter()
+        .map(|&(test, train_at)| {
+            format!("{} that of {}", held.recordings()[test].name, train.recordings()[train_at].name)
+        })
+        .collect();
+    (!pairs.is_empty()).then(|| {
+        format!(
+            "recordings to validate on follow a path that was trained on ({}): their errors are nearly those of \
+             shuffled rows. Validate on another path",
+            pairs.join(", ")
+        )
+    })
 }
 
 /// How far off a predictor is on recordings.
@@ -267,6 +316,7 @@ fn fit_warnings(report: &FitReport) -> &[String] {
     match report {
         FitReport::LeastSquares(report) => &report.warnings,
         FitReport::Network(report) => &report.warnings,
+        FitReport::Eigennails(report) => &report.warnings,
     }
 }
 
@@ -277,6 +327,7 @@ pub fn train_plan(inputs: &TrainInputs, ambient: Step, recipe: &Recipe, curve: b
     let network = matches!(recipe.kind, Kind::Network { .. });
     let validated = !inputs.validate.is_empty();
     let stop = match (network, inputs.stop_on.is_empty()) {
+        (false, _) if matches!(recipe.kind, Kind::Eigennails { .. }) => "eigennails need none",
         (false, _) => "a least-squares fit needs none",
         (true, true) => "on a fifth of the rows of each recording, which is set aside",
         (true, false) => "on the recordings given",

@@ -1,6 +1,6 @@
 //! What a job is asked for, by a word, and what it does where it is not asked.
 
-use lunula_predictor::{By, Kind};
+use lunula_predictor::{By, Kind, OnScores};
 
 use crate::words::Words;
 
@@ -23,6 +23,8 @@ pub enum ModelChoice {
     Quadratic,
     /// Equations 17 and 18.
     Network,
+    /// Modes of the nail's picture.
+    Eigennails,
 }
 
 impl ModelChoice {
@@ -33,6 +35,7 @@ impl ModelChoice {
             Self::Linear => Kind::Linear,
             Self::Quadratic => Kind::Quadratic,
             Self::Network => Kind::Network { hidden: usize::from(hidden) },
+            Self::Eigennails => Kind::Eigennails { on_scores: OnScores::Ridge, modes: None },
         }
     }
 }
@@ -42,7 +45,34 @@ impl Words for ModelChoice {
         (Self::Linear, "linear", "Equation 9"),
         (Self::Quadratic, "quadratic", "Equation 16"),
         (Self::Network, "network", "Equations 17 and 18"),
+        (Self::Eigennails, "eigennails", "Modes of the nail's picture, of cells C_00_00, C_00_01, .."),
     ];
+}
+
+/// What is fitted to the scores of eigennails.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum RegressionChoice {
+    /// Linear, shrunk.
+    #[default]
+    Ridge,
+    /// A Gaussian process.
+    Process,
+}
+
+impl RegressionChoice {
+    /// As models have it.
+    #[must_use]
+    pub fn on_scores(self) -> OnScores {
+        match self {
+            Self::Ridge => OnScores::Ridge,
+            Self::Process => OnScores::Process,
+        }
+    }
+}
+
+impl Words for RegressionChoice {
+    const WORDS: &'static [(Self, &'static str, &'static str)] =
+        &[(Self::Ridge, "ridge", "Linear, shrunk"), (Self::Process, "process", "A Gaussian process, with its own SD")];
 }
 
 /// What is held out in turn.
@@ -50,6 +80,8 @@ impl Words for ModelChoice {
 pub enum ByChoice {
     /// Each recording.
     Trajectory,
+    /// All recordings that follow one prompted path.
+    Path,
     /// All recordings of a subject's session.
     Session,
     /// All recordings of a subject.
@@ -64,6 +96,7 @@ impl ByChoice {
     pub fn by(self, folds: u16, seed: u64) -> By {
         match self {
             Self::Trajectory => By::Trajectory,
+            Self::Path => By::Path,
             Self::Session => By::Session,
             Self::Subject => By::Subject,
             Self::Rows => By::Rows { folds: usize::from(folds), seed },
@@ -74,6 +107,7 @@ impl ByChoice {
 impl Words for ByChoice {
     const WORDS: &'static [(Self, &'static str, &'static str)] = &[
         (Self::Trajectory, "trajectory", "Each recording"),
+        (Self::Path, "path", "All recordings that follow one prompted path"),
         (Self::Session, "session", "All recordings of a subject's session"),
         (Self::Subject, "subject", "All recordings of a subject"),
         (Self::Rows, "rows", "Shuffled rows, which flatters"),

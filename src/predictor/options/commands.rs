@@ -1,14 +1,16 @@
 //! The options of the predictors' commands and of pipelines' stages, and what the jobs make of them.
 
 use clap::Args;
-use lunula_predictor::{Deficient, Gate, GateFault, Kind, Recipe};
+use lunula_predictor::{By, Deficient, Gate, GateFault, Kind, Recipe};
 
 use crate::job::{not_negative, one_of};
 use crate::predictor::data::{RowOptions, Wanted};
 use crate::predictor::jobs::evaluate::EvaluateOptions;
 use crate::predictor::jobs::predict::PredictOptions;
 use crate::predictor::jobs::train::TrainOptions;
-use crate::predictor::options::choices::{ByChoice, F_MIN_N, FOLDS, HIDDEN, LEVEL, ModelChoice, share};
+use crate::predictor::options::choices::{
+    ByChoice, F_MIN_N, FOLDS, HIDDEN, LEVEL, ModelChoice, RegressionChoice, share,
+};
 use crate::predictor::options::target::Target;
 
 fn level(text: &str) -> Result<f64, String> {
@@ -73,7 +75,13 @@ pub struct TrainChoices {
     /// How a network is trained.
     #[command(flatten)]
     pub network: NetworkOptions,
-    /// The photodiodes to read, as P1,P3,P4 [default: all columns P1, P2, ..]
+    /// What eigennails fit to the scores
+    #[arg(long, value_parser = one_of::<RegressionChoice>(), default_value = "ridge")]
+    pub regression: RegressionChoice,
+    /// Modes of eigennails [default: as many as do best on paths left out]
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(1..=1000))]
+    pub modes: Option<u16>,
+    /// The photodiodes to read, as P1,P3,P4 [default: all columns P1, P2, ..; of eigennails C_00_00, C_00_01, ..]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub inputs: Option<Vec<String>>,
     /// Voltages so many seconds ago are inputs as well, as 0.1,0.2
@@ -102,18 +110,28 @@ impl TrainChoices {
     /// As the job takes them.
     #[must_use]
     pub fn options(&self) -> TrainOptions {
+        let plain = self.network.recipe(self.model);
+        let kind = match plain.kind {
+            Kind::Eigennails { .. } => {
+                Kind::Eigennails { on_scores: self.regression.on_scores(), modes: self.modes.map(usize::from) }
+            }
+            other => other,
+        };
         TrainOptions {
             wanted: Wanted {
                 inputs: self.inputs.clone(),
                 targets: self.target.columns().to_vec(),
                 rows: self.rows.clone(),
                 skip_failed: self.skip_failed,
+                cells: matches!(kind, Kind::Eigennails { .. }),
+                ..Wanted::default()
             },
             recipe: Recipe {
+                kind,
                 deficient: self.deficient,
                 lags_s: self.lags.clone(),
                 friction_mu: self.friction,
-                ..self.network.recipe(self.model)
+                ..plain
             },
             level: self.level,
         }
@@ -126,6 +144,10 @@ pub struct EvaluateChoices {
     /// What is held out in turn
     #[arg(long, value_parser = one_of::<ByChoice>())]
     pub by: Option<ByChoice>,
+    /// Hold out by rows, trajectory, path, session and subject, beside the mean, the nearest row and (of a model of a
+    /// nail's cells) a linear model of photodiodes: what shuffled rows and repeated paths flatter is named
+    #[arg(long)]
+    pub splits: bool,
     /// Parts of shuffled rows
     #[arg(long, value_name = "N", default_value_t = FOLDS, value_parser = clap::value_parser!(u16).range(2..=1000))]
     pub folds: u16,
@@ -145,7 +167,9 @@ impl EvaluateChoices {
     #[must_use]
     pub fn options(&self) -> EvaluateOptions {
         let by = self.by.map(|by| by.by(self.folds, self.seed));
-        EvaluateOptions { rows: self.rows.clone(), by, level: self.level, title: None }
+        let rows = By::Rows { folds: usize::from(self.folds), seed: self.seed };
+        let splits = self.splits.then_some([rows, By::Trajectory, By::Path, By::Session, By::Subject]);
+        EvaluateOptions { rows: self.rows.clone(), by, splits, level: self.level, title: None }
     }
 }
 
@@ -217,6 +241,6 @@ impl PruneChoices {
     #[must_use]
     pub fn wanted(&self) -> Wanted {
         let targets = self.target.columns().to_vec();
-        Wanted { inputs: self.inputs.clone(), targets, rows: self.rows.clone(), skip_failed: false }
+        Wanted { inputs: self.inputs.clone(), targets, rows: self.rows.clone(), ..Wanted::default() }
     }
 }

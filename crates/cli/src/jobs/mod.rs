@@ -3,7 +3,9 @@
 pub(crate) mod align;
 pub(crate) mod camera;
 pub(crate) mod hemodynamics;
+pub(crate) mod layout;
 pub(crate) mod live;
+pub(crate) mod nailvideo;
 pub(crate) mod phantom;
 pub(crate) mod photos;
 pub(crate) mod posture;

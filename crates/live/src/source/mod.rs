@@ -16,7 +16,7 @@ mod stream;
 mod tests;
 mod wait;
 
-pub use address::{Address, Form, LslQuery, Pace, Place};
+pub use address::{Address, Form, LslQuery, OfFinger, Pace, Place};
 pub use certificate::{StreamCertificate, StreamGap, StreamTimes};
 pub use decoder::Rows;
 pub use fault::SourceFault;

@@ -33,6 +33,8 @@ pub(in crate::source) struct Play {
     pub(in crate::source) rows: u64,
     /// The time of the latest row that was handed out, seconds.
     pub(in crate::source) played_s: f64,
+    /// Rows after this time of the recording are held back, seconds.
+    pub(in crate::source) until_s: f64,
     pub(in crate::source) file: Option<Bytes>,
     pace: Pace,
     /// The stream's time of the first row and when it was played.
@@ -47,6 +49,7 @@ impl Play {
             lateness: Latency::default(),
             rows: 0,
             played_s: f64::NAN,
+            until_s: f64::INFINITY,
             file,
             pace,
             first: None,
@@ -61,6 +64,20 @@ impl Play {
         }
         let (first_s, began_ns) = *self.first.get_or_insert((time_s, now_ns));
         began_ns.saturating_add(((time_s - first_s) / rate * 1e9).max(0.0) as u64)
+    }
+
+    /// What it holds of `first_s` is due at `now_ns`.
+    pub(in crate::source) fn from(&mut self, first_s: f64, now_ns: u64) {
+        self.first = Some((first_s, now_ns));
+        if let Some(mut row) = self.waiting {
+            row.due_ns = self.due_ns(row.time_s, now_ns);
+            self.waiting = Some(row);
+        }
+    }
+
+    /// Whether a row is held back, whose time has come or not; rows without a time never are.
+    pub(in crate::source) fn holds(&self, row: &Waiting) -> bool {
+        row.time_s > self.until_s
     }
 
     /// How late a row is.

@@ -1,5 +1,7 @@
-//! Numerical ground: exact sums and products, scaling, small triangular systems, singular values, SIMD.
+//! Numerical ground: exact sums and products, scaling, small triangular systems, Cholesky's factorization, singular
+//! values, SIMD.
 
+pub(crate) mod cholesky;
 pub(crate) mod exact;
 pub(crate) mod scale;
 pub(crate) mod simd;

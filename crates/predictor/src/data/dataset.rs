@@ -20,7 +20,8 @@ pub struct Recording {
     pub rows: Range<usize>,
 }
 
-/// Voltages and targets. Every value is finite, every row belongs to one recording, recordings follow each other.
+/// Voltages and targets. Every value is finite (but for cells that are hidden, [`Dataset::with_hidden`]), every row
+/// belongs to one recording, recordings follow each other.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Dataset {
     inputs: Vec<String>,
@@ -63,6 +64,27 @@ impl Dataset {
         y: Array2<f64>,
         recordings: Vec<Recording>,
     ) -> Result<Self, DatasetFault> {
+        if let Some(((row, column), _)) =
+            x.indexed_iter().find(|(_, v)| v.is_nan()).filter(|_| x.ncols() == inputs.len())
+        {
+            return Err(DatasetFault::NotFinite { name: inputs[column].clone(), row });
+        }
+        Self::with_hidden(inputs, targets, time_s, x, y, recordings)
+    }
+
+    /// The same of rows some of whose inputs are not known: NaN, cells of a nail that are hidden. Only
+    /// [`Kind::Eigennails`](crate::Kind::Eigennails) is fitted to such rows.
+    ///
+    /// # Errors
+    /// [`DatasetFault`].
+    pub fn with_hidden(
+        inputs: Vec<String>,
+        targets: Vec<String>,
+        time_s: Vec<f64>,
+        x: Array2<f64>,
+        y: Array2<f64>,
+        recordings: Vec<Recording>,
+    ) -> Result<Self, DatasetFault> {
         let n = x.nrows();
         let shape = |what, found, wanted| {
             if found == wanted { Ok(()) } else { Err(DatasetFault::Shape { what, found, wanted }) }
@@ -75,8 +97,9 @@ impl Dataset {
         if let Some(name) = inputs.iter().chain(&targets).find(|name| !names.insert(name.as_str())) {
             return Err(DatasetFault::Twice(name.clone()));
         }
-        for (values, names) in [(&x, &inputs), (&y, &targets)] {
-            if let Some(((row, column), _)) = values.indexed_iter().find(|(_, v)| !v.is_finite()) {
+        for (values, names, hidden) in [(&x, &inputs, true), (&y, &targets, false)] {
+            let wrong = |v: &f64| !(v.is_finite() || hidden && v.is_nan());
+            if let Some(((row, column), _)) = values.indexed_iter().find(|(_, v)| wrong(v)) {
                 return Err(DatasetFault::NotFinite { name: names[column].clone(), row });
             }
         }

@@ -144,7 +144,8 @@ pub(super) fn fit_and_predict<P, E: Display>(
     Ok((model, predicted))
 }
 
-fn hold_out<P, E: Display>(
+/// As [`cross_validate`], of shuffled rows without whole trajectories beside.
+pub(super) fn hold_out<P, E: Display>(
     data: &Dataset,
     by: By,
     fit: &(impl Fn(&Dataset) -> Result<P, E> + Sync),

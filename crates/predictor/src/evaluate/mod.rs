@@ -3,7 +3,8 @@
 //! In: predictions and measurements, or a set with how to fit and how to predict (two closures: any model will do).
 //! Out: figures with their units, all of which can be written as JSON. Up to down: [`split`] what is held out,
 //! [`cross`] what comes of it, [`score`] how far off, [`magnitude`] where, [`interval`] and [`coverage`] how sure,
-//! [`learning`] with how much data, [`rows`] whether rows were seen after all.
+//! [`learning`] with how much data, [`splits`] what shuffled rows and repeated
+//! paths flatter, [`rows`] whether rows were seen after all.
 
 mod coverage;
 mod cross;
@@ -15,6 +16,7 @@ mod magnitude;
 mod rows;
 mod score;
 mod split;
+mod splits;
 pub(crate) mod sum;
 
 pub use coverage::{Coverage, CrossCoverage, coverage, cross_coverage, nested_coverage};
@@ -26,3 +28,4 @@ pub(crate) use rows::hex;
 pub use rows::{recording_hashes, row_hashes, shared_rows};
 pub use score::{Scores, TargetScore, score};
 pub use split::{By, Fold, SplitFault, folds};
+pub use splits::{Fit, Leak, Method, MethodScore, Predict, Split, SplitTarget, compare_splits, flatteries, leaks};

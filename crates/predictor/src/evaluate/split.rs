@@ -11,6 +11,7 @@ use rand_chacha::ChaCha8Rng;
 use serde::Serialize;
 use thiserror::Error;
 
+use crate::data::path::paths;
 use crate::{Dataset, Recording};
 
 /// What is held out at a time.
@@ -19,6 +20,8 @@ use crate::{Dataset, Recording};
 pub enum By {
     /// A recording.
     Trajectory,
+    /// All recordings that follow one prompted path ([`paths`](crate::paths)).
+    Path,
     /// All recordings of one session of one subject; a recording without a session is one of its own.
     Session,
     /// All recordings of one subject; a recording without a subject is one of its own.
@@ -70,6 +73,7 @@ pub fn folds(data: &Dataset, by: By) -> Result<Vec<Fold>, SplitFault> {
     if parts.len() < 2 {
         let (what, instead) = match by {
             By::Session => ("session", "name more sessions, or hold out trajectories"),
+            By::Path => ("path", "record another, such as random movement, or hold out trajectories"),
             By::Subject => ("subject", "add other subjects' recordings, or hold out sessions or trajectories"),
             _ => ("trajectory", "cut the recording into parts, or give another for validation"),
         };
@@ -88,12 +92,14 @@ pub fn folds(data: &Dataset, by: By) -> Result<Vec<Fold>, SplitFault> {
 fn groups(data: &Dataset, by: By) -> Vec<(String, Vec<usize>)> {
     let recordings = data.recordings();
     let several_subjects = recordings.windows(2).any(|pair| pair[0].subject != pair[1].subject);
+    let path = if by == By::Path { paths(data) } else { Vec::new() };
     let mut place = BTreeMap::new();
     let mut all: Vec<(String, Vec<usize>)> = Vec::new();
     for (k, one) in recordings.iter().enumerate().filter(|(_, one)| !one.rows.is_empty()) {
         let key = match by {
             By::Session if !one.session.is_empty() => Ok((&one.subject, Some(&one.session))),
             By::Subject if !one.subject.is_empty() => Ok((&one.subject, None)),
+            By::Path => Err(path[k]),
             _ => Err(k),
         };
         let at = *place.entry(key).or_insert_with(|| {
@@ -161,7 +167,7 @@ mod tests {
         assert_eq!(named(By::Trajectory), pairs(&[("s1", 1), ("s2", 400), ("s3", 3), ("s1 (2)", 5), ("s5", 2)]));
         assert_eq!(named(By::Session), pairs(&[("a/1", 401), ("a/2", 3), ("b/1", 5), ("s5", 2)]));
         assert_eq!(named(By::Subject), pairs(&[("a", 404), ("b", 5), ("s5", 2)]));
-        for by in [By::Trajectory, By::Session, By::Subject, By::Rows { folds: 7, seed: 3 }] {
+        for by in [By::Trajectory, By::Path, By::Session, By::Subject, By::Rows { folds: 7, seed: 3 }] {
             let folds = folds(&data, by).unwrap();
             let mut tested: Vec<usize> = folds.iter().flat_map(|fold| fold.test.clone()).collect();
             tested.sort_unstable();

@@ -22,6 +22,12 @@ pub enum FitFault {
     Range { term: String, target: String },
     #[error("{0} spreads over so little (or so much) that its squares can't be computed; scale it to volts")]
     Scale(String),
+    #[error(
+        "no cell changes over the rows: there is nothing to learn from; name recordings in which the finger presses"
+    )]
+    Unchanging,
+    #[error("{whole} of {rows} rows have all cells, and at least {needed} are needed{cell}")]
+    TooFewWhole { whole: usize, rows: usize, cell: String, needed: usize },
     #[error(transparent)]
     Solver(LeastSquaresFault),
     #[error(transparent)]

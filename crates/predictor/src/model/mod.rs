@@ -1,9 +1,12 @@
-//! Targets from voltages: the linear (equation 9), quadratic (16) and network (17, 18) models.
+//! Targets from voltages: the linear (equation 9), quadratic (16) and network (17, 18) models; from the cells of a
+//! nail's picture: eigennails.
 //!
 //! All answer a row or many, into the caller's memory and without allocating. A row and a batch give the same bits, on
 //! every processor. A NaN among a row's voltages gives NaN for all its targets; an infinite one never gives a number.
+//! Only eigennails take a NaN for a cell that is hidden, and allocate.
 
 mod block;
+mod eigennails;
 mod linear;
 mod network;
 mod quadratic;
@@ -14,6 +17,8 @@ mod tests;
 use ndarray::{Array2, ArrayView2, ArrayViewMut2};
 use thiserror::Error;
 
+pub use eigennails::{Basis, Covariance, Eigennails, Process, Projection, Regression, Ridge};
+pub(crate) use eigennails::{kernel, squared_distances};
 pub use linear::Linear;
 pub use network::Network;
 pub use quadratic::{Quadratic, quadratic_terms};
@@ -28,6 +33,8 @@ pub enum Model {
     Quadratic(Quadratic),
     /// Equations 17 and 18.
     Network(Network),
+    /// Modes of a nail's picture.
+    Eigennails(Eigennails),
 }
 
 macro_rules! each {
@@ -36,12 +43,13 @@ macro_rules! each {
             Model::Linear($one) => $answer,
             Model::Quadratic($one) => $answer,
             Model::Network($one) => $answer,
+            Model::Eigennails($one) => $answer,
         }
     };
 }
 
 impl Model {
-    /// How many photodiodes it reads.
+    /// How many photodiodes or cells it reads.
     #[must_use]
     pub fn inputs(&self) -> usize {
         each!(self, one => one.inputs())

@@ -78,6 +78,7 @@ fn naive(model: &Model, x: &[f64]) -> Vec<(f64, f64)> {
             };
             (0..one.targets()).map(target).collect()
         }
+        Model::Eigennails(_) => unreachable!("not among these"),
     }
 }
 

@@ -1,6 +1,6 @@
 //! A damped step: (A + mu I) p = -g by Cholesky's factorization.
 
-use crate::algebra::simd::{Work, widest};
+use crate::algebra::cholesky::{back, factorize, forward};
 
 /// Factor and step, kept from one solution to the next.
 #[derive(Debug, Clone)]
@@ -20,64 +20,15 @@ impl Damped {
     pub(super) fn solve(&mut self, matrix: &[f64], gradient: &[f64], mu: f64) -> bool {
         self.factor.copy_from_slice(matrix);
         let size = gradient.len();
-        let positive = widest(Factorize { matrix: &mut self.factor, size, mu });
-        if !positive {
+        if !factorize(&mut self.factor, size, mu) {
             return false;
         }
         for (step, gradient) in self.step.iter_mut().zip(gradient) {
             *step = -gradient;
         }
-        for (k, row) in self.factor.chunks_exact(size).enumerate() {
-            let value = self.step[k] / row[k];
-            self.step[k] = value;
-            for (step, factor) in self.step[k + 1..].iter_mut().zip(&row[k + 1..]) {
-                *step -= factor * value;
-            }
-        }
-        for (k, row) in self.factor.chunks_exact(size).enumerate().rev() {
-            let known: f64 = row[k + 1..].iter().zip(&self.step[k + 1..]).map(|(factor, step)| factor * step).sum();
-            self.step[k] = (self.step[k] - known) / row[k];
-        }
+        forward(&self.factor, &mut self.step);
+        back(&self.factor, &mut self.step);
         self.step.iter().all(|step| step.is_finite())
-    }
-}
-
-/// R of R^T R = A + mu I in A's place. False where there is none.
-struct Factorize<'a> {
-    matrix: &'a mut [f64],
-    size: usize,
-    mu: f64,
-}
-
-impl Work for Factorize<'_> {
-    type Output = bool;
-
-    #[inline(always)]
-    fn call(self) -> bool {
-        let Self { matrix, size, mu } = self;
-        for k in 0..size {
-            matrix[k * size + k] += mu;
-        }
-        for k in 0..size {
-            let (above, below) = matrix.split_at_mut((k + 1) * size);
-            let row = &mut above[k * size..];
-            let pivot = row[k];
-            if !(pivot.is_finite() && pivot > 0.0) {
-                return false;
-            }
-            let root = pivot.sqrt();
-            row[k] = root;
-            for value in &mut row[k + 1..] {
-                *value /= root;
-            }
-            for (under, i) in below.chunks_exact_mut(size).zip(k + 1..) {
-                let factor = row[i];
-                for (value, other) in under[i..].iter_mut().zip(&row[i..]) {
-                    *value -= factor * other;
-                }
-            }
-        }
-        true
     }
 }
 

@@ -14,12 +14,16 @@ use super::recipe::Kind;
 use super::{Channel, Predictor, Training, fits};
 use crate::data::lags::Lags;
 use crate::evaluate::{Intervals, hex};
-use crate::{Linear, Model, ModelFault, Network, Quadratic};
+use crate::{
+    Basis, Covariance, Eigennails, Linear, Model, ModelFault, Network, OnScores, Process, Quadratic, Regression, Ridge,
+};
 
 /// What a model file calls itself.
 const FORMAT: &str = "lunula predictor";
 /// The version that is written and read.
 const VERSION: u64 = 1;
+/// The most rows that a process of a file keeps: reading it takes the square of them in memory, the cube in time.
+const MOST_KEPT: usize = 2000;
 
 /// Why a text is no model.
 #[derive(Debug, Error)]
@@ -90,6 +94,22 @@ enum Numbers {
         target_centre: Vec<f64>,
         target_scale: Vec<f64>,
     },
+    Eigennails {
+        mean: Vec<f64>,
+        modes: Vec<Vec<f64>>,
+        spread: Vec<f64>,
+        noise: f64,
+        ranges: Vec<[f64; 2]>,
+        on_scores: Scored,
+    },
+}
+
+/// What eigennails have on their scores.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase", deny_unknown_fields)]
+enum Scored {
+    Ridge { coefficients: Vec<Vec<f64>>, offset: Vec<f64>, lambda: Vec<f64>, residual_sd: Vec<f64>, rows: usize },
+    Process { rows: Vec<Vec<f64>>, targets: Vec<Vec<f64>>, covariances: Vec<Covariance> },
 }
 
 impl Predictor {
@@ -175,6 +195,13 @@ fn check(model: &Model, file: &File) -> Result<(), FileFault> {
         (Kind::Linear, Model::Linear(_))
             | (Kind::Quadratic, Model::Quadratic(_))
             | (Kind::Network { .. }, Model::Network(_))
+    ) || matches!(
+        (training.recipe.kind, model),
+        (Kind::Eigennails { on_scores, .. }, Model::Eigennails(model))
+            if matches!(
+                (on_scores, model.regression()),
+                (OnScores::Ridge, Regression::Ridge(_)) | (OnScores::Process, Regression::Process(_))
+            )
     );
     if !same {
         return other("the recipe is of another kind than the model".to_owned());
@@ -221,6 +248,14 @@ impl Numbers {
                 target_centre: model.target_centre().to_vec(),
                 target_scale: model.target_scale().to_vec(),
             },
+            Model::Eigennails(model) => Self::Eigennails {
+                mean: model.basis().mean().to_vec(),
+                modes: rows(model.basis().modes()),
+                spread: model.basis().spread().to_vec(),
+                noise: model.basis().noise(),
+                ranges: model.ranges().to_vec(),
+                on_scores: Scored::of(model.regression()),
+            },
         }
     }
 
@@ -257,6 +292,46 @@ impl Numbers {
                     target_centre,
                     target_scale,
                 )?)
+            }
+            Self::Eigennails { mean, modes, spread, noise, ranges, on_scores } => {
+                let modes = matrix("modes", &modes, mean.len())?;
+                let on_scores = on_scores.regression(&spread)?;
+                Model::Eigennails(Eigennails::new(Basis::new(mean, modes, spread, noise)?, on_scores, ranges)?)
+            }
+        })
+    }
+}
+
+impl Scored {
+    fn of(regression: &Regression) -> Self {
+        match regression {
+            Regression::Ridge(ridge) => Self::Ridge {
+                coefficients: rows(ridge.coefficients()),
+                offset: ridge.offset().to_vec(),
+                lambda: ridge.lambda().to_vec(),
+                residual_sd: ridge.residual_sd().to_vec(),
+                rows: ridge.rows(),
+            },
+            Regression::Process(process) => Self::Process {
+                rows: rows(process.rows()),
+                targets: rows(process.targets()),
+                covariances: process.covariances().to_vec(),
+            },
+        }
+    }
+
+    fn regression(self, spread: &[f64]) -> Result<Regression, ModelFault> {
+        Ok(match self {
+            Self::Ridge { coefficients, offset, lambda, residual_sd, rows } => {
+                let coefficients = matrix("coefficients", &coefficients, spread.len())?;
+                Regression::Ridge(Ridge::new(coefficients, offset, lambda, residual_sd, rows, spread)?)
+            }
+            Self::Process { rows, targets, covariances } => {
+                if rows.len() > MOST_KEPT {
+                    return Err(ModelFault::Shape { what: "rows of a process", found: rows.len(), wanted: MOST_KEPT });
+                }
+                let targets = matrix("targets", &targets, covariances.len())?;
+                Regression::Process(Process::new(matrix("rows", &rows, spread.len())?, targets, covariances, spread)?)
             }
         })
     }

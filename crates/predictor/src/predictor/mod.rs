@@ -14,7 +14,7 @@ use crate::contact::friction::FrictionCone;
 use crate::data::lags::Lags;
 use crate::evaluate::{Intervals, hex, recording_hashes};
 use crate::model::sizes;
-use crate::{Dataset, Model, ModelFault};
+use crate::{Dataset, Eigennails, Model, ModelFault};
 use recipe::{Recipe, RecipeFault, Report, predict, with_lags};
 
 /// An input or target column of a model.
@@ -212,10 +212,26 @@ impl Predictor {
         }
     }
 
+    /// Whether a row may lack inputs: cells that are hidden.
+    #[must_use]
+    pub fn reads_hidden(&self) -> bool {
+        matches!(self.model, Model::Eigennails(_))
+    }
+
+    /// Its eigennails, if that is what it is.
+    #[must_use]
+    pub fn eigennails(&self) -> Option<&Eigennails> {
+        if let Model::Eigennails(model) = &self.model { Some(model) } else { None }
+    }
+
     /// Whether a row of voltages (before lags) lies outside of what was trained on.
     #[must_use]
     pub fn is_outside(&self, x: &[f64]) -> bool {
-        self.inputs.iter().zip(x).any(|(channel, x)| *x < channel.low || *x > channel.high)
+        match &self.model {
+            // Noise takes some cell of nearly every picture out of its range.
+            Model::Eigennails(model) => model.is_outside(x),
+            _ => self.inputs.iter().zip(x).any(|(channel, x)| *x < channel.low || *x > channel.high),
+        }
     }
 }
 

@@ -12,12 +12,12 @@ use thiserror::Error;
 
 use crate::contact::friction::{FrictionCone, FrictionFault};
 use crate::data::lags::{LagFault, Lags};
-use crate::fit::{FitFault, FitReport, fit_linear, fit_quadratic};
+use crate::fit::{EigennailsReport, FitFault, FitReport, OnScores, fit_eigennails, fit_linear, fit_quadratic};
 use crate::least_squares::{Deficient, LeastSquaresOptions};
 use crate::network::{TrainFault, TrainOptions, TrainReport, train_network};
 use crate::{Dataset, Model};
 
-/// Which model (5.1.3 to 5.1.5).
+/// Which model (5.1.3 to 5.1.5, and from pictures).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
@@ -30,13 +30,20 @@ pub enum Kind {
         /// N.
         hidden: usize,
     },
+    /// Modes of the cells of a nail's picture.
+    Eigennails {
+        /// What is fitted to the scores.
+        on_scores: OnScores,
+        /// How many modes; none: as many as do best on rows left out.
+        modes: Option<usize>,
+    },
 }
 
 /// What to fit and how.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Recipe {
-    /// Linear, quadratic or a network.
+    /// Linear, quadratic, a network or eigennails.
     pub kind: Kind,
     /// What to do where rows do not determine the linear or quadratic model.
     pub deficient: Deficient,
@@ -69,6 +76,8 @@ pub enum Report {
     LeastSquares(FitReport),
     /// Of the network.
     Network(TrainReport),
+    /// Of eigennails.
+    Eigennails(EigennailsReport),
 }
 
 /// Why nothing was fitted.
@@ -83,6 +92,8 @@ pub enum RecipeFault {
     Lags(#[from] LagFault),
     #[error("a cone of friction needs the targets Fx_N, Fy_N, Fz_N; the targets are {0}")]
     NoForces(String),
+    #[error("eigennails read one picture at a time: leave out the lags")]
+    NoLags,
     #[error(transparent)]
     Friction(#[from] FrictionFault),
 }
@@ -111,6 +122,9 @@ impl Recipe {
     /// # Errors
     /// Lags that can't be, or rows without times.
     pub fn lags(&self, data: &Dataset) -> Result<Option<Lags>, RecipeFault> {
+        if matches!(self.kind, Kind::Eigennails { .. }) && !self.lags_s.is_empty() {
+            return Err(RecipeFault::NoLags);
+        }
         Ok((!self.lags_s.is_empty()).then(|| Lags::of(self.lags_s.clone(), data)).transpose()?)
     }
 
@@ -157,6 +171,10 @@ impl Recipe {
                     (None, None) => train_network(data, None, &training)?,
                 };
                 Fitted { model: Model::Network(model), report: Report::Network(report) }
+            }
+            Kind::Eigennails { on_scores, modes } => {
+                let (model, report) = fit_eigennails(data, on_scores, modes)?;
+                Fitted { model: Model::Eigennails(model), report: Report::Eigennails(report) }
             }
         })
     }

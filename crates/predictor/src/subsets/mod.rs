@@ -18,11 +18,17 @@
 //! have made, as in [`least_squares`](crate::least_squares()).
 
 mod compress;
+mod layout;
 mod solve;
 
 use rayon::prelude::*;
 use serde::Serialize;
 use thiserror::Error;
+
+pub use self::layout::{
+    Candidate, Choice, Criterion, LayoutFault, LayoutProblem, MOST_CANDIDATES, Moments, Proof, Rules, Starts,
+    determinant, pivoted, prove, search,
+};
 
 use self::compress::Compressed;
 use self::solve::{norm, solve};

@@ -113,6 +113,7 @@ pub(super) fn name_of(kind: Kind) -> String {
         Kind::Linear => "linear".to_owned(),
         Kind::Quadratic => "quadratic".to_owned(),
         Kind::Network { hidden } => format!("network of {hidden}"),
+        Kind::Eigennails { .. } => "eigennails".to_owned(),
     }
 }
 
@@ -121,7 +122,8 @@ pub(super) fn figure_of(kind: Kind) -> &'static str {
     match kind {
         Kind::Linear => "105",
         Kind::Quadratic => "106",
-        Kind::Network { .. } => "107",
+        // Eigennails are none of the thesis' models, and no option of this job.
+        Kind::Network { .. } | Kind::Eigennails { .. } => "107",
     }
 }
 

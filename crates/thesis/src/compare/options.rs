@@ -3,9 +3,18 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use clap::builder::TypedValueParser;
 use lunula::job::{not_negative, one_of};
 use lunula::predictor::{ModelChoice, NetworkOptions};
 use lunula_predictor::{Kind, Recipe};
+
+/// Models of photodiodes, which these recordings hold.
+fn of_photodiodes(model: ModelChoice) -> Result<ModelChoice, String> {
+    match model {
+        ModelChoice::Eigennails => Err("reads a nail's picture; choose linear, quadratic or network".to_owned()),
+        other => Ok(other),
+    }
+}
 
 /// One person's recordings: tables with photodiodes and targets, or raw logs where forces are predicted.
 #[derive(Debug, Clone)]
@@ -38,7 +47,7 @@ pub struct CompareChoices {
     #[arg(
         long,
         value_delimiter = ',',
-        value_parser = one_of::<ModelChoice>(),
+        value_parser = one_of::<ModelChoice>().try_map(of_photodiodes),
         default_value = "linear,quadratic,network",
     )]
     pub models: Vec<ModelChoice>,

@@ -11,7 +11,7 @@ use roxmltree::{Document, Node};
 
 /// A stream as it was recorded.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Stream {
+pub(in crate::log) struct Stream {
     pub(super) name: String,
     /// As the header says: `float32`, `string`, ..
     pub(super) format: String,
@@ -24,9 +24,9 @@ pub(super) struct Stream {
     /// The channels' names.
     pub(super) labels: Vec<String>,
     /// The stamps, on the source's clock, seconds.
-    pub(super) time_s: Vec<f64>,
+    pub(in crate::log) time_s: Vec<f64>,
     /// For each channel a value a sample; none of a stream of text.
-    pub(super) channels: Vec<Vec<f64>>,
+    pub(in crate::log) channels: Vec<Vec<f64>>,
     /// Measurements of the clocks: the source's time, and what has to be added to it, seconds.
     pub(super) offsets_s: Vec<[f64; 2]>,
 }

@@ -20,8 +20,9 @@ use crate::log::naming::columns::Columns;
 use crate::log::naming::role::Role;
 use chunks::Stream;
 
-/// Reads a recording.
-pub(in crate::log) fn read(path: &Path, columns: &Columns) -> Result<Raw, LogError> {
+/// The one stream that is asked for, on the recorder's clock, the names of its columns (the time's first), and what is
+/// worth saying.
+pub(in crate::log) fn stream(path: &Path, columns: &Columns) -> Result<(Stream, Vec<String>, Vec<String>), LogError> {
     let failed = |what: String| LogError::File { path: path.to_owned(), what };
     let wrong = |what: String| LogError::Columns { path: path.to_owned(), what };
     let bytes = text::unpacked(path)?;
@@ -29,7 +30,14 @@ pub(in crate::log) fn read(path: &Path, columns: &Columns) -> Result<Raw, LogErr
     let mut stream = chosen(streams, columns.stream.as_deref()).map_err(wrong)?;
     sync::to_recorder(&mut stream, &mut notes);
     sync::smooth(&mut stream, &mut notes);
-    let names: Vec<String> = std::iter::once("time_s".to_owned()).chain(stream.labels.iter().cloned()).collect();
+    let names = std::iter::once("time_s".to_owned()).chain(stream.labels.iter().cloned()).collect();
+    Ok((stream, names, notes))
+}
+
+/// Reads a recording.
+pub(in crate::log) fn read(path: &Path, columns: &Columns) -> Result<Raw, LogError> {
+    let wrong = |what: String| LogError::Columns { path: path.to_owned(), what };
+    let (stream, names, notes) = stream(path, columns)?;
     let choice = columns.choose(&names, &[]).map_err(wrong)?;
     let mut raw = Raw::new(path.to_owned(), RowWord::Sample, &choice);
     raw.notes.splice(0..0, notes);

@@ -112,6 +112,7 @@ impl Place {
         make("predict", "intervals = true", both, "predicted");
         make("analyse", "", data("model", &["force/model.json"]), "analysed");
         make("prune", "", sets(&["3.csv"]), "pruned");
+        make("layout", "k = '1..2'\napart = 0", data("data", &["1.csv", "2.csv"]), "laid-out");
         make("trajectory", "kind = 'force'\nseconds = 20", Vec::new(), "prompted");
         make("static", "static = '0..4000/500'", Vec::new(), "curve");
         let step = "pf1 = 'step:5000@0..1'\nuntil = 2\nevery = 0.02\nrtol = 1e-6\nwith_loads = true";
@@ -224,7 +225,7 @@ fn wrong_keys_are_refused_with_what_to_write() {
         ("train", "target = 'force'\nhidden = 0", "hidden", "1..=1000"),
         ("train", "target = 'force'\ndeficient = 'ridge=-1'", "deficient", "ridge=LAMBDA"),
         ("train", "target = 'force'\nlevel = 1.0", "level", "between 0 and 1"),
-        ("evaluate", "by = 'day'", "by", "trajectory, session, subject, rows"),
+        ("evaluate", "by = 'day'", "by", "trajectory, path, session, subject, rows"),
         ("evaluate", "folds = 1", "folds", "2..=1000"),
         ("predict", "f_min = -1", "", "-1"),
         ("analyse", "out = 'x'", "out", "it has none"),

@@ -28,6 +28,10 @@ pub fn analyse(model: &Path, out: Option<&FolderOutputs>, watch: &Watch<'_>) -> 
     let stages = Stages::default();
     let mut notes = Vec::new();
     let (predictor, mut warnings) = open_models(&[model.to_owned()])?.one();
+    if predictor.eigennails().is_some() {
+        let what = "its modes are pictures: `lunula evaluate --out` draws them";
+        return Err(PredictorError::Request(format!("{}: {what}", model.display())));
+    }
     let inputs = predictor.seen_names();
     let targets = predictor.target_names();
     let at = predictor.model().centre();
@@ -104,7 +108,7 @@ fn printed(model: &Model, inputs: &[String], targets: &[String]) -> Option<Print
             let printed = quadratic_printed(model);
             (quadratic_terms(inputs.len()), printed.coefficients, printed.f0)
         }
-        Model::Network(_) => return None,
+        Model::Network(_) | Model::Eigennails(_) => return None,
     };
     let product = |(i, j): (usize, usize)| {
         if i == j { format!("{}^2", inputs[i]) } else { format!("{} {}", inputs[i], inputs[j]) }

@@ -8,6 +8,7 @@
 
 mod report;
 mod results;
+mod splits;
 
 use std::path::Path;
 use std::time::Instant;
@@ -27,7 +28,8 @@ use crate::predictor::outputs::{FolderOutputs, end};
 use crate::predictor::{open_models, seen_in_training};
 use crate::stages::{Stages, Step, left_out};
 use report::Predicted;
-pub use report::{BinMerit, EvaluateFigures, EvaluateReport, HeldOut, Magnitudes, Part, RecordingMerit};
+pub use report::{BinMerit, EvaluateFigures, EvaluateReport, HeldOut, Magnitudes, Part, RecordingMerit, Splits};
+pub use splits::way;
 
 /// Up to this many parts, each part's coverage is of intervals that have not seen it; it takes fits as many as parts,
 /// squared.
@@ -43,6 +45,8 @@ pub struct EvaluateOptions {
     pub rows: RowOptions,
     /// What is held out in turn; none: only the model itself is evaluated.
     pub by: Option<By>,
+    /// Ways to hold out that are set beside each other.
+    pub splits: Option<[By; 5]>,
     /// The share of rows that intervals of held-out parts are to hold.
     pub level: f64,
     /// What pictures call the model; none: its file, as its path is written.
@@ -51,7 +55,7 @@ pub struct EvaluateOptions {
 
 impl Default for EvaluateOptions {
     fn default() -> Self {
-        Self { rows: RowOptions::default(), by: None, level: LEVEL, title: None }
+        Self { rows: RowOptions::default(), by: None, splits: None, level: LEVEL, title: None }
     }
 }
 
@@ -73,10 +77,16 @@ pub fn evaluate(
         inputs: Some(predictor.input_names()),
         targets: predictor.target_names(),
         rows: options.rows.clone(),
-        skip_failed: false,
+        cells: predictor.reads_hidden(),
+        photodiodes_too: predictor.reads_hidden() && options.splits.is_some(),
+        ..Wanted::default()
     };
-    let read = stages.time("read", || read_files(data, &wanted))?;
+    let mut read = stages.time("read", || read_files(data, &wanted))?;
     watch.go_on()?;
+    // Photodiodes beside the model's own inputs are for the splits alone.
+    let with_photodiodes = read.data.clone();
+    let own: Vec<usize> = (0..predictor.inputs().len()).collect();
+    read.data = read.data.only_inputs(&own);
     warnings.extend(read.warnings.iter().cloned());
     warnings.extend(seen_in_training(&predictor, &read.data));
     let (seen, values) = stages.time("predict", || predictor.predict(&read.data))?;
@@ -92,6 +102,17 @@ pub fn evaluate(
     // Once stopped, what could not be held out is no fault of the request.
     watch.go_on()?;
     let held_out = held_out.transpose()?;
+    let mut notes = Vec::new();
+    let splits = match options.splits {
+        None => None,
+        Some(ways) => Some(stages.time("splits", || {
+            splits::splits(&predictor, &with_photodiodes, &ways, watch, [&mut warnings, &mut notes])
+        })?),
+    };
+    watch.go_on()?;
+    if predictor.reads_hidden() && (options.by.is_some_and(|by| by != By::Path) || splits.is_some()) {
+        warnings.extend(splits::same_path(&read.data));
+    }
     let intervals = predictor.intervals();
     let figures = EvaluateFigures {
         model: model.to_owned(),
@@ -102,14 +123,17 @@ pub fn evaluate(
             let found = coverage((&shown.values - shown.data.y()).view(), intervals, "all");
             ByTarget::new(shown.data.targets(), found.reached)
         }),
+        within_own: predictor.eigennails().map(|model| splits::within_own(model, &shown)),
         without_friction: predictor.cone().map(|_| merit_without_cone(&predictor, &shown.data)),
         merit,
         held_out,
+        splits,
     };
     let ambient = DataFile::ambient_step(data, &options.rows);
     let left_out = left_out(evaluate_plan(data.len(), ambient, options, Some(intervals.is_some()), out));
-    let report = Report { left_out, warnings, ..Report::new("evaluate", watch, figures) };
-    end(report, out, |report, out| results::write(report, &shown, out, &stages), &stages, start)
+    let report = Report { left_out, warnings, notes, ..Report::new("evaluate", watch, figures) };
+    let eigennails = predictor.eigennails();
+    end(report, out, |report, out| results::write(report, &shown, eigennails, out, &stages), &stages, start)
 }
 
 /// What to say of predictions that are no finite numbers, which no figure of merit counts.
@@ -237,6 +261,7 @@ pub fn evaluate_plan(
     let held_out = match options.by {
         None => "no --by".to_owned(),
         Some(By::Trajectory) => "a trajectory at a time".to_owned(),
+        Some(By::Path) => "a path at a time".to_owned(),
         Some(By::Session) => "a session at a time".to_owned(),
         Some(By::Subject) => "a subject at a time".to_owned(),
         Some(By::Rows { folds, .. }) => format!("{folds} parts of shuffled rows"),
@@ -253,6 +278,12 @@ pub fn evaluate_plan(
         Step::new("errors", true, "on all rows, by recording and by size".to_owned()),
         Step::new("coverage of prediction intervals", intervals != Some(false), covered.to_owned()),
         Step::new("fits with parts held out", options.by.is_some(), held_out),
+        Step::new(
+            "splits",
+            options.splits.is_some(),
+            if options.splits.is_some() { "by rows, trajectory, path, session, subject" } else { "no --splits" }
+                .to_owned(),
+        ),
         FolderOutputs::table_step(out, "errors"),
         Step::new("predicted rows", rows, why.to_owned()),
         FolderOutputs::figures_step(out, "predicted and measured over time, as scatter, errors by size"),

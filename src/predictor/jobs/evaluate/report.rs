@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use lunula_predictor::{By, CrossCoverage, Dataset};
+use lunula_predictor::{By, CrossCoverage, Dataset, Leak, Split};
 use ndarray::Array2;
 use serde::Serialize;
 
@@ -94,10 +94,25 @@ pub struct EvaluateFigures {
     pub by_magnitude: Option<Magnitudes>,
     /// The share of rows within the model's prediction intervals.
     pub coverage: Option<ByTarget<Option<f64>>>,
+    /// The share of rows within 1.96 of the model's own SDs, which are to hold 95 %; of eigennails.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub within_own: Option<ByTarget<Option<f64>>>,
     /// The same model without its cone of friction.
     pub without_friction: Option<Merit>,
     /// Its recipe with parts held out.
     pub held_out: Option<HeldOut>,
+    /// Its recipe by several ways to hold out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub splits: Option<Splits>,
+}
+
+/// A recipe by several ways to hold out, beside what it has to beat.
+#[derive(Debug, Clone, Serialize)]
+pub struct Splits {
+    /// Way by way.
+    pub ways: Vec<Split>,
+    /// What shuffled rows make look good, and is no better than the mean with whole paths held out.
+    pub leaks: Vec<Leak>,
 }
 
 /// Rows with what was measured and predicted, for tables and pictures.

@@ -2,14 +2,17 @@
 
 use std::path::{Path, PathBuf};
 
+use lunula_predictor::Eigennails;
 use ndarray::Array2;
 
 use crate::files::Staging;
 use crate::predictor::error::PredictorError;
 use crate::predictor::figures::{
-    self, BarSeries, Bars, MagnitudeBin, draw_bars, draw_error_by_magnitude, draw_over_time, draw_scatter,
+    self, BarSeries, Bars, MagnitudeBin, draw_bar_charts, draw_bars, draw_error_by_magnitude, draw_nails,
+    draw_over_time, draw_scatter,
 };
-use crate::predictor::jobs::evaluate::report::{EvaluateReport, Magnitudes, Predicted};
+use crate::predictor::jobs::evaluate::report::{EvaluateReport, Magnitudes, Predicted, Splits};
+use crate::predictor::jobs::evaluate::splits::way;
 use crate::predictor::merit::table::{MERIT, MeritRows, merit_table};
 use crate::predictor::outputs::{FolderOutputs, picture};
 use crate::stages::Stages;
@@ -19,6 +22,7 @@ use crate::table::{Column, TableWriter, Value};
 pub(super) fn write(
     report: &mut EvaluateReport,
     shown: &Predicted,
+    eigennails: Option<&Eigennails>,
     out: &FolderOutputs,
     stages: &Stages,
 ) -> Result<Staging, PredictorError> {
@@ -29,8 +33,16 @@ pub(super) fn write(
     if out.rows {
         stages.time("write", || predicted_table(&staging, folder, shown))?;
     }
+    if let Some(found) = &report.splits {
+        stages.time("write", || splits_table(&staging, folder, found))?;
+    }
     if out.figures {
-        report.pictures = stages.time("figures", || evaluation_pictures(&staging, folder, report, shown))?;
+        let mut pictures = stages.time("figures", || evaluation_pictures(&staging, folder, report, shown))?;
+        if let Some(model) = eigennails {
+            let names: Vec<String> = shown.data.inputs().to_vec();
+            pictures.push(picture(&staging, folder, "eigennails", |png, svg| draw_nails(model, &names, png, svg))?);
+        }
+        report.pictures = pictures;
     }
     Ok(staging)
 }
@@ -87,7 +99,65 @@ fn evaluation_pictures(
         };
         pictures.push(picture(staging, folder, "held-out", |png, svg| draw_bars(&bars, png, svg))?);
     }
+    if let Some(found) = &report.splits {
+        let charts: Vec<Bars> = shown.data.targets().iter().map(|target| split_bars(found, target)).collect();
+        pictures.push(picture(staging, folder, "splits", |png, svg| draw_bar_charts(&charts, png, svg))?);
+    }
     Ok(pictures)
+}
+
+/// A target's errors by each way that holds something out, with half the width of their intervals.
+fn split_bars(found: &Splits, target: &str) -> Bars {
+    let there: Vec<_> = found.ways.iter().filter(|split| split.parts > 0 && split.same_as.is_none()).collect();
+    let methods = there.first().map_or(&[][..], |split| &split.methods[..]);
+    let of = |split: &&lunula_predictor::Split, method: usize| {
+        split.methods[method].targets.iter().find(|one| one.name == target).cloned()
+    };
+    let series = |(method, one): (usize, &lunula_predictor::MethodScore)| BarSeries {
+        name: one.method.clone(),
+        values: there.iter().map(|split| Some(of(split, method)?.rmse).filter(|rmse| rmse.is_finite())).collect(),
+        errors: there.iter().map(|split| of(split, method)?.interval.map(|[low, high]| 0.5 * (high - low))).collect(),
+    };
+    Bars {
+        title: format!("{target}: what is held out decides what looks good (marks: as wide as the 95 % intervals)"),
+        x_label: "held out".to_owned(),
+        y_label: format!("RMSE {}", lunula_predictor::unit_of(target)),
+        groups: there.iter().map(|split| format!("{}\n{} parts", way(split.by), split.parts)).collect(),
+        series: methods.iter().enumerate().map(series).collect(),
+    }
+}
+
+/// `splits.csv`: a row for each way, method and target.
+fn splits_table(staging: &Staging, folder: &Path, found: &Splits) -> Result<(), PredictorError> {
+    let name = "splits.csv";
+    let mut columns =
+        vec![Column::text("by"), Column::integer("parts"), Column::text("method"), Column::text("target")];
+    columns.push(Column::integer("rows"));
+    columns.extend(["rmse", "rmse_low", "rmse_high"].map(Column::number));
+    columns.extend(["beats_mean", "fault"].map(Column::text));
+    let mut table = TableWriter::create(&staging.place(name)?, &folder.join(name), columns, &[])?;
+    for split in &found.ways {
+        let (by, parts) = (Value::Text(way(split.by)), Value::Integer(split.parts as i64));
+        let none = Value::Number(f64::NAN);
+        if let Some(fault) = &split.fault {
+            let empty = Value::Text("");
+            table.write(&[by, parts, empty, empty, Value::Integer(0), none, none, none, empty, Value::Text(fault)])?;
+        }
+        for one in &split.methods {
+            let fault = Value::Text(one.fault.as_deref().unwrap_or_default());
+            let (method, rows) = (Value::Text(&one.method), Value::Integer(one.rows as i64));
+            if one.targets.is_empty() {
+                table.write(&[by, parts, method, Value::Text(""), rows, none, none, none, Value::Text(""), fault])?;
+            }
+            for target in &one.targets {
+                let ends = target.interval.unwrap_or([f64::NAN; 2]).map(Value::Number);
+                let beats = target.beats_mean.map_or("", |beats| if beats { "yes" } else { "no" });
+                let (name, rmse) = (Value::Text(&target.name), Value::Number(target.rmse));
+                table.write(&[by, parts, method, name, rows, rmse, ends[0], ends[1], Value::Text(beats), fault])?;
+            }
+        }
+    }
+    Ok(table.finish()?)
 }
 
 fn predicted_table(staging: &Staging, folder: &Path, shown: &Predicted) -> Result<(), PredictorError> {

@@ -1,19 +1,20 @@
 //! `lunula live` and `lunula record`: a sensor at work.
 
 use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
 
 use clap::Args;
-use lunula::job::{Given, Report, Watch};
+use lunula::job::{Given, Report, Said, Watch};
+use lunula::live::streams::source::OfFinger;
 use lunula::live::{
     AnswerOptions, LiveOptions, MouseFiles, MouseOptions, Readers, SessionFigures, SessionFiles, SessionReport,
-    StreamOptions, live, record,
+    StreamOptions, live, live_steps, record, record_steps,
 };
 use lunula::predictor::PredictChoices;
-use lunula::stages::Step;
 use lunula::words::shown_lines;
 use serde_json::json;
 
-use crate::jobs::{JobArgs, Plan, show};
+use crate::jobs::{JobArgs, Plan, name_failures, show};
 use crate::{Common, Outcome, out};
 
 /// Answer a sensor's samples as they come: forces, angle, switch (6.1)
@@ -22,19 +23,21 @@ use crate::{Common, Outcome, out};
 /// is there: time_s and what `lunula predict` writes for these models, to the byte (of a log with an LED under its
 /// --ambient preceding). Messages, states (ok, slow, stalled, lost, reconnecting) and alarms are on standard error. A
 /// row that is spoilt costs itself and is counted; an unplugged device is waited for. With --out the samples are
-/// recorded, the rows in <out>.predicted.csv, the report with the stream's certificate and latencies in
-/// <out>.stream.json.
+/// recorded, the rows in <out>.predicted.csv, the report with the streams' certificates and latencies in
+/// <out>.stream.json. Of several fingers each row says whose it is (`finger`), all on one clock; samples are recorded
+/// in <out>.FINGER.csv.
 #[derive(Debug, Args)]
 pub(crate) struct LiveArgs {
-    /// Models that `lunula train` wrote: of force, of posture, or both
-    #[arg(long = "model", required = true, value_name = "MODEL.json", num_args = 1..)]
-    models: Vec<PathBuf>,
+    /// Models that `lunula train` wrote: of force, of posture, or both; index=MODEL.json is one finger's
+    #[arg(long = "model", required = true, value_name = "[FINGER=]MODEL.json", num_args = 1..)]
+    models: Vec<OfFinger<PathBuf>>,
     #[command(flatten)]
     given: Given<LiveOptions>,
-    /// A virtual switch, as `lunula switch tune` writes it: a column `switch`, 1 while it is pressed
-    #[arg(long, value_name = "SWITCH.toml")]
-    switch: Option<PathBuf>,
-    /// The switch's presses and releases, a line of JSON each
+    /// A virtual switch, as `lunula switch tune` writes it: a column `switch`, 1 while it is pressed; once for each
+    /// finger, which index=SWITCH.toml or the file's `finger` names
+    #[arg(long, value_name = "[FINGER=]SWITCH.toml")]
+    switch: Vec<OfFinger<PathBuf>>,
+    /// The switches' presses and releases, a line of JSON each
     #[arg(long, value_name = "EVENTS.jsonl", requires = "switch")]
     events: Option<PathBuf>,
     #[command(flatten)]
@@ -45,9 +48,10 @@ pub(crate) struct LiveArgs {
 
 /// Record a sensor's samples for `lunula align`, `train`, `fit` and `switch`
 ///
-/// The recording is on disk while it grows: killed at any moment it lacks a second at most. Beside it is
-/// <out>.stream.json: what was lost or spoilt, and how the device's clock runs against this computer's. A stream
-/// without samples is an alarm within a second, and leaves no file.
+/// The recording is on disk while it grows: killed at any moment it lacks a second at most. Several fingers have
+/// one each (<out>.index.csv) on one clock; a force transducer that is a device of its own is recorded with --force.
+/// Beside it is <out>.stream.json: what was lost or spoilt, and how the device's clock runs against this computer's. A
+/// stream without samples is an alarm within a second, and leaves no file.
 #[derive(Debug, Args)]
 pub(crate) struct RecordArgs {
     #[command(flatten)]
@@ -102,17 +106,14 @@ pub(crate) fn run_live(args: &LiveArgs) -> anyhow::Result<Outcome> {
         out: args.out.out.clone(),
         replace: args.out.replace,
         models: args.models.clone(),
-        switch: args.switch.clone(),
+        switches: args.switch.clone(),
         events: args.events.clone(),
         mouse: None,
     };
     if args.job.plan {
         return show(common, "live", &Plan::from(live_steps(options, &files)));
     }
-    let tell = |what: &str| tell(common, what);
-    let rows = out::descriptor()?;
-    let watch = Watch { said: &args.given.said, stop: &stop, tick: &|_, _| {} };
-    let report = live(options, &files, Readers { rows: Some(rows), tell: &tell }, &watch)?;
+    let report = session(common, &args.given.said, &stop, options, &files)?;
     if common.json {
         // Standard output has the rows.
         eprintln!("{}", serde_json::to_string(&report)?);
@@ -123,25 +124,20 @@ pub(crate) fn run_live(args: &LiveArgs) -> anyhow::Result<Outcome> {
 pub(crate) fn run_mouse(args: &MouseArgs) -> anyhow::Result<Outcome> {
     let common = &args.job.common;
     let MouseOptions { stream, answer } = args.given.options.clone();
-    let options = LiveOptions { stream, answer, tcp: None };
+    let options = LiveOptions { stream, answer, tcp: None, lsl: None };
     let stop = common.start()?;
     let mouse = MouseFiles { config: args.config.clone(), events: args.events.clone(), uinput: args.uinput };
     let files = SessionFiles {
         out: args.out.out.clone(),
         replace: args.out.replace,
-        models: args.models.clone(),
+        models: all(&args.models),
         mouse: Some(mouse),
         ..SessionFiles::default()
     };
     if args.job.plan {
-        let mut steps = live_steps(&options, &files);
-        let how = if args.uinput { "a mouse of this computer" } else { "events only" };
-        steps.insert(3, Step::new("pointer", true, how.to_owned()));
-        return show(common, "mouse", &Plan::from(steps));
+        return show(common, "mouse", &Plan::from(live_steps(&options, &files)));
     }
-    let tell = |what: &str| tell(common, what);
-    let watch = Watch { said: &args.given.said, stop: &stop, tick: &|_, _| {} };
-    let report = live(&options, &files, Readers { rows: None, tell: &tell }, &watch)?;
+    let report = session(common, &args.given.said, &stop, &options, &files)?;
     common.print_json(&report)?;
     if let Some(counts) = report.pointer {
         common.say(&format!("{} moves, {} clicks, {} lines scrolled", counts.moves, counts.clicks, counts.scrolled));
@@ -159,7 +155,8 @@ pub(crate) fn run_stream(
     let stop = common.start()?;
     let options = LiveOptions {
         stream: StreamOptions {
-            source: "-".parse()?,
+            source: vec![OfFinger::any("-".parse()?)],
+            force: Vec::new(),
             volts_per_count: None,
             names: None,
             keep: Vec::new(),
@@ -168,15 +165,24 @@ pub(crate) fn run_stream(
         },
         answer: AnswerOptions { gate, intervals, keep_faults: rows.keep_faults },
         tcp: None,
+        lsl: None,
     };
-    let files = SessionFiles { models: models.to_vec(), ..SessionFiles::default() };
-    let tell = |what: &str| tell(common, what);
-    let rows = out::descriptor()?;
-    let watch = Watch { said: &given.said, stop: &stop, tick: &|_, _| {} };
-    let report = live(&options, &files, Readers { rows: Some(rows), tell: &tell }, &watch)?;
-    report.failed.iter().for_each(|what| eprintln!("failed: {}", shown_lines(what)));
-    common.warn(&report.warnings);
-    Ok(if report.failed.is_empty() { Outcome::Done } else { Outcome::SomeFailed })
+    let files = SessionFiles { models: all(models), ..SessionFiles::default() };
+    let report = session(common, &given.said, &stop, &options, &files)?;
+    Ok(outcome(&report))
+}
+
+/// A session with models; its rows go to standard output, but for a mouse's.
+fn session(
+    common: &Common,
+    said: &Said,
+    stop: &AtomicBool,
+    options: &LiveOptions,
+    files: &SessionFiles,
+) -> anyhow::Result<SessionReport> {
+    let rows = if files.mouse.is_none() { Some(out::descriptor()?) } else { None };
+    let readers = Readers { rows, tell: &|what: &str| tell(common, what) };
+    Ok(live(options, files, readers, &Watch { said, stop, tick: &|_, _| {} })?)
 }
 
 pub(crate) fn run_record(args: &RecordArgs) -> anyhow::Result<Outcome> {
@@ -196,28 +202,9 @@ pub(crate) fn run_record(args: &RecordArgs) -> anyhow::Result<Outcome> {
     Ok(ended(common, &report))
 }
 
-fn record_steps(options: &StreamOptions, files: &SessionFiles) -> Vec<Step> {
-    let out = files.out.as_ref().map_or("no --out".to_owned(), |out| out.display().to_string());
-    vec![
-        Step::new("read", true, options.source.to_string()),
-        Step::new("record", files.out.is_some(), out),
-        Step::new("predict", false, "`lunula live` does".to_owned()),
-    ]
-}
-
-fn live_steps(options: &LiveOptions, files: &SessionFiles) -> Vec<Step> {
-    let [read, record, _] =
-        <[Step; 3]>::try_from(record_steps(&options.stream, files)).unwrap_or_else(|_| unreachable!());
-    let switch = files.switch.as_ref().map_or("no --switch".to_owned(), |switch| switch.display().to_string());
-    let tcp = options.tcp.map_or("no --tcp".to_owned(), |address| address.to_string());
-    vec![
-        read,
-        Step::new("predict", true, format!("{} models", files.models.len())),
-        Step::new("gate", files.models.len() > 1, "where one model predicts forces and one posture".to_owned()),
-        Step::new("switch", files.switch.is_some(), switch),
-        record,
-        Step::new("serve", options.tcp.is_some(), tcp),
-    ]
+/// Models of whatever finger there is.
+fn all(models: &[PathBuf]) -> Vec<OfFinger<PathBuf>> {
+    models.iter().cloned().map(OfFinger::any).collect()
 }
 
 /// A message as soon as it is known: in words, or a line of JSON.
@@ -230,19 +217,26 @@ fn tell(common: &Common, what: &str) {
 }
 
 fn ended(common: &Common, report: &SessionReport) -> Outcome {
-    report.failed.iter().for_each(|what| eprintln!("failed: {}", shown_lines(what)));
-    common.warn(&report.warnings);
     if !common.quiet && !common.json {
         eprintln!("{}", shown_lines(&words(report)));
     }
+    outcome(report)
+}
+
+/// Names what failed; warnings were said when they were known.
+fn outcome(report: &SessionReport) -> Outcome {
+    name_failures(&report.failed);
     if report.failed.is_empty() { Outcome::Done } else { Outcome::SomeFailed }
 }
 
 fn words(report: &Report<SessionFigures>) -> String {
     let SessionFigures { rows, answered, latency, .. } = &report.figures;
-    let rate = report.stream.rate_hz.map_or(String::new(), |rate| format!(" at {rate:.1} Hz"));
+    let rates: Vec<String> =
+        report.sources.iter().filter_map(|source| source.stream.rate_hz).map(|rate| format!("{rate:.1}")).collect();
+    let rate = if rates.is_empty() { String::new() } else { format!(" at {} Hz", rates.join(", ")) };
     let work = latency.work.map_or(String::new(), |work| {
         format!("; work per row {:.0} us in median, 99 in 100 within {:.0} us", work.p50_us, work.p99_us)
     });
-    format!("{rows} rows{rate}, {answered} answered{work}")
+    let answered = if report.columns.is_empty() { String::new() } else { format!(", {answered} answered") };
+    format!("{rows} rows{rate}{answered}{work}")
 }

@@ -2,6 +2,7 @@
 
 mod board;
 mod log;
+mod nailvideo;
 mod photos;
 mod study;
 mod video;
@@ -23,6 +24,8 @@ pub(crate) struct PhantomArgs {
 enum Kind {
     Board(Box<board::BoardArgs>),
     Log(Box<log::LogArgs>),
+    #[command(name = "nailvideo")]
+    NailVideo(Box<nailvideo::NailVideoArgs>),
     Photos(Box<photos::PhotosArgs>),
     Study(Box<study::StudyArgs>),
     Video(Box<video::VideoArgs>),
@@ -32,6 +35,7 @@ pub(crate) fn run(args: &PhantomArgs) -> anyhow::Result<Outcome> {
     match &args.kind {
         Kind::Board(args) => board::run(args),
         Kind::Log(args) => log::run(args),
+        Kind::NailVideo(args) => nailvideo::run(args),
         Kind::Photos(args) => photos::run(args),
         Kind::Video(args) => video::run(args),
         Kind::Study(args) => study::run(args),

@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use clap::Args;
 use lunula::job::{Given, Said, Watch};
 use lunula::predictor::{
-    DataFile, EvaluateChoices, EvaluateFigures, EvaluateReport, FolderOutputs, evaluate, evaluate_plan,
+    DataFile, EvaluateChoices, EvaluateFigures, EvaluateReport, FolderOutputs, Splits, evaluate, evaluate_plan, way,
 };
 
 use crate::Common;
-use crate::jobs::predictor::say_merit;
+use crate::jobs::predictor::{figure, say_merit};
 use crate::jobs::{Command, JobArgs, Plan};
 
 /// Measure how far off a model is on recordings, and how far off its recipe is on recordings held out
@@ -17,7 +17,8 @@ use crate::jobs::{Command, JobArgs, Plan};
 /// RMSE, bias and R2 of each target (R2 is empty where a target does not change), by recording and by the size of force
 /// or angle, and how many rows the model's prediction intervals hold. With --by, the model's recipe is fitted again
 /// without each trajectory, session or subject in turn and judged on what it has not seen: name all recordings then.
-/// Rows of one trajectory resemble each other, so shuffled rows (--by rows) flatter; by how much is shown beside. --out
+/// Rows of one trajectory resemble each other, so shuffled rows (--by rows) flatter; by how much is shown beside, and
+/// --splits sets all ways beside each other. --out
 /// draws predicted against measured over time and as scatter (Fig. 94 to 104).
 #[derive(Debug, Args)]
 pub(crate) struct EvaluateArgs {
@@ -99,13 +100,51 @@ impl Command for EvaluateArgs {
                 (None, None) => {}
             }
         }
+        if let Some(found) = &report.splits {
+            say_splits(common, found);
+        }
         if common.verbose {
             report.data.iter().flat_map(|file| &file.notes).for_each(|note| common.say(note));
         }
     }
 }
 
+fn say_splits(common: &Common, found: &Splits) {
+    for split in &found.ways {
+        if let Some(why) = &split.fault {
+            common.say(&format!("by {}: {why}", way(split.by)));
+            continue;
+        }
+        if let Some(other) = split.same_as {
+            common.say(&format!("by {}: the same parts as by {}", way(split.by), way(other)));
+            continue;
+        }
+        common.say(&format!("by {} ({} parts)", way(split.by), split.parts));
+        for one in &split.methods {
+            if let Some(why) = one.fault.as_ref().filter(|_| one.targets.is_empty()) {
+                common.say(&format!("  {}: {why}", one.method));
+            }
+            for target in &one.targets {
+                let interval = target
+                    .interval
+                    .map_or(String::new(), |ends| format!(" ({} to {})", figure(ends[0]), figure(ends[1])));
+                let verdict = if target.beats_mean == Some(false) { ", no better than the mean" } else { "" };
+                common.say(&format!(
+                    "  {:<8} RMSE {:>8}{interval} {}{verdict}",
+                    target.name,
+                    figure(target.rmse),
+                    one.method
+                ));
+            }
+        }
+    }
+}
+
 fn say_coverage(common: &Common, report: &EvaluateReport) {
+    for (name, share) in report.within_own.iter().flat_map(|by| &by.0) {
+        let share = share.map_or("-".to_owned(), |share| format!("{:.1}", 100.0 * share));
+        common.say(&format!("  {name:<8} {share} % of the rows within the 95 % intervals of the model's own SD"));
+    }
     for (name, share) in report.coverage.iter().flat_map(|by| &by.0) {
         let share = share.map_or("-".to_owned(), |share| format!("{:.1}", 100.0 * share));
         common.say(&format!("  {name:<8} {share} % of the rows within the model's prediction intervals"));

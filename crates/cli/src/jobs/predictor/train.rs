@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::Context;
 use clap::Args;
 use lunula::job::{Given, Said, Watch};
-use lunula::predictor::models::Report;
+use lunula::predictor::models::{EigennailsReport, Report};
 use lunula::predictor::{
     DataFile, TrainChoices, TrainFigures, TrainInputs, TrainOutputs, TrainReport, train, train_plan,
 };
@@ -19,8 +19,9 @@ use crate::jobs::{Command, JobArgs, Plan};
 /// A recording is a table with P1.. and Fx_N,Fy_N,Fz_N or J2_deg, as `lunula align` writes it, or a log with forces
 /// (with a column `led`, lit less unlit samples are taken). Each file, session and subject in it is a recording of its
 /// own. Rows with an empty cell that is needed are left out and counted. Models: linear (equation 9), quadratic (16:
-/// all squares and products) and network (17, 18). What --validate names is only reported on, and its errors give the
-/// prediction intervals: name recordings of another session.
+/// all squares and products) and network (17, 18); eigennails read cells C_00_00, C_00_01, .. of the nail's picture, as
+/// `lunula nailvideo --cells` makes them, in place of photodiodes. What --validate names is only reported on, and its
+/// errors give the prediction intervals: name recordings of another session.
 #[derive(Debug, Args)]
 pub(crate) struct TrainArgs {
     /// Recordings to train on (.csv, .csv.gz where a log, .parquet)
@@ -114,6 +115,7 @@ impl Command for TrainArgs {
                     fit.score_iqr
                 ));
             }
+            Report::Eigennails(fit) => say_eigennails(common, fit, &report.targets),
         }
         say_merit(common, "trained", &report.training);
         if let Some(merit) = &report.validation {
@@ -138,5 +140,30 @@ impl Command for TrainArgs {
 
     fn result(&self) -> Option<PathBuf> {
         self.out.clone()
+    }
+}
+
+fn say_eigennails(common: &Common, fit: &EigennailsReport, targets: &[String]) {
+    let explained: f64 = fit.explained.iter().sum();
+    common.say(&format!(
+        "{} eigennails explain {:.1} % of what {} rows of cells do; chosen by leaving out {}",
+        fit.modes,
+        100.0 * explained,
+        fit.rows,
+        fit.left_out
+    ));
+    for (name, rmse) in targets.iter().zip(&fit.left_out_rmse) {
+        common.say(&format!("  {name:<8} RMSE {:>8} on {} left out (ridge)", figure(*rmse), fit.left_out));
+    }
+    match (&fit.directions, &fit.no_directions) {
+        (Some(found), _) => common.say(&format!(
+            "  directions ({}): {:.1} % of {} rows recognized; {:.1} % are of the most frequent",
+            found.classes.join(", "),
+            100.0 * found.accuracy,
+            found.rows.iter().sum::<usize>(),
+            100.0 * found.guess
+        )),
+        (None, Some(why)) => common.say(&format!("  no directions: {why}")),
+        (None, None) => {}
     }
 }

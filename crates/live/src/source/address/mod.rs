@@ -11,10 +11,13 @@
 //!
 //! and for all of them `form=lines|frames` and `volts-per-count=0.0049`.
 
+mod finger;
 mod parse;
 
 use std::fmt;
 use std::path::PathBuf;
+
+pub use finger::OfFinger;
 
 /// The baud rate of a serial port where none is given: what Arduino's examples use.
 const BAUD: u32 = 115_200;

@@ -185,7 +185,35 @@ impl Stream {
         }
         match &self.feed {
             Feed::Live(_) => self.health.due_ns(self.period_s(), self.garbled_for_ns()),
-            Feed::Play(play) => Some(play.waiting.map_or(0, |waiting| waiting.due_ns)),
+            Feed::Play(play) => match play.waiting {
+                Some(row) if play.holds(&row) => None,
+                row => Some(row.map_or(0, |row| row.due_ns)),
+            },
+        }
+    }
+
+    /// Of a recording, holds back rows after `until_s` of its time, so that several are played in the order of their
+    /// rows; a live stream knows no such thing.
+    pub fn play_until(&mut self, until_s: f64) {
+        if let Feed::Play(play) = &mut self.feed {
+            play.until_s = until_s;
+        }
+    }
+
+    /// Of a recording that is played at a rate: what it holds of `first_s` is due at `now_ns`, so that several keep the
+    /// distance of their rows.
+    pub fn play_from(&mut self, first_s: f64, now_ns: u64) {
+        if let Feed::Play(play) = &mut self.feed {
+            play.from(first_s, now_ns);
+        }
+    }
+
+    /// The time of the row that a recording hands out next, seconds; none before it is read, or where rows are live.
+    #[must_use]
+    pub fn next_s(&self) -> Option<f64> {
+        match &self.feed {
+            Feed::Play(play) => play.waiting.map(|row| row.time_s),
+            Feed::Live(_) => None,
         }
     }
 

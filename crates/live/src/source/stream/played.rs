@@ -15,7 +15,7 @@ impl Stream {
         for _ in 0..ROWS {
             let Feed::Play(play) = &mut self.feed else { return Ok(()) };
             if let Some(row) = play.waiting {
-                if row.due_ns > now_ns {
+                if row.due_ns > now_ns || play.holds(&row) {
                     return Ok(());
                 }
                 play.waiting = None;

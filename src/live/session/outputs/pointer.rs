@@ -8,6 +8,7 @@ use lunula_live::pointer::{Config, Event, JsonLines, Pointer, Reason, Uinput};
 use lunula_predictor::{Contact, FORCES};
 use serde::Serialize;
 
+use super::events::EventsFile;
 use crate::live::error::LiveError;
 use crate::predictor::POSTURE;
 
@@ -17,9 +18,16 @@ pub(crate) struct PointerOutput {
     /// Where the forces are in an answer, and the angle.
     forces: [usize; 3],
     bend: Option<usize>,
-    events: Option<(PathBuf, JsonLines<BufWriter<File>>)>,
+    events: Option<EventsFile<JsonLines<BufWriter<File>>>>,
     uinput: Option<Uinput>,
     counts: PointerCounts,
+}
+
+/// What is asked of a pointer.
+pub(crate) struct Mouse {
+    pub(crate) config: Config,
+    pub(crate) events: Option<PathBuf>,
+    pub(crate) uinput: bool,
 }
 
 /// What a pointer did in a session.
@@ -43,7 +51,7 @@ pub struct PointerCounts {
 ///
 /// # Errors
 /// A file that can't be read, or keys that are wrong.
-pub(super) fn read_mouse(path: &Path) -> Result<Config, LiveError> {
+pub(crate) fn read_mouse(path: &Path) -> Result<Config, LiveError> {
     let refused = |what: String| LiveError::Config { path: path.to_owned(), what };
     let text = crate::input::read_text(path).map_err(|why| refused(why.to_string()))?;
     Config::from_toml(&text).map_err(|why| refused(why.to_string()))
@@ -54,12 +62,8 @@ impl PointerOutput {
     ///
     /// # Errors
     /// Forces that the models do not predict, a file that can't be made, no uinput.
-    pub(crate) fn new(
-        config: Config,
-        predicted: &[String],
-        events: Option<&Path>,
-        uinput: bool,
-    ) -> Result<Self, LiveError> {
+    pub(crate) fn new(mouse: Mouse, predicted: &[String]) -> Result<Self, LiveError> {
+        let Mouse { config, events, uinput } = mouse;
         let place = |name: &str| {
             predicted.iter().position(|one| one == name).ok_or_else(|| {
                 LiveError::Request(format!(
@@ -69,13 +73,7 @@ impl PointerOutput {
             })
         };
         let forces = [place(FORCES[0])?, place(FORCES[1])?, place(FORCES[2])?];
-        let events = match events {
-            None => None,
-            Some(path) => {
-                let file = File::create(path).map_err(|why| LiveError::Write { path: path.to_owned(), why })?;
-                Some((path.to_owned(), JsonLines::new(BufWriter::new(file))))
-            }
-        };
+        let events = EventsFile::create(events.as_deref())?.map(|file| file.through(JsonLines::new));
         let uinput = uinput.then(Uinput::open).transpose().map_err(|why| LiveError::Request(why.to_string()))?;
         let bend = predicted.iter().position(|one| one == POSTURE);
         Ok(Self { pointer: Pointer::new(config), forces, bend, events, uinput, counts: PointerCounts::default() })
@@ -116,11 +114,7 @@ impl PointerOutput {
     /// # Errors
     /// Events that can't be written.
     pub(crate) fn lose(&mut self, t_s: f64, reason: Reason) -> Result<(), LiveError> {
-        self.with(|pointer, out| pointer.lose(t_s, reason, out))?;
-        match &mut self.events {
-            Some((path, to)) => to.flush().map_err(|why| LiveError::Write { path: path.clone(), why }),
-            None => Ok(()),
-        }
+        self.with(|pointer, out| pointer.lose(t_s, reason, out))
     }
 
     fn with(&mut self, does: impl FnOnce(&mut Pointer, &mut &mut dyn FnMut(Event))) -> Result<(), LiveError> {
@@ -128,10 +122,9 @@ impl PointerOutput {
         let mut fault = None;
         let mut hears = |event: Event| {
             counts.count(&event);
-            if let Some((path, to)) = events
-                && let Err(why) = to.write(&event)
-            {
-                fault = Some(LiveError::Write { path: path.clone(), why });
+            if let Some(events) = events {
+                let written = events.with(|to| to.write(&event).and_then(|()| to.flush()));
+                fault = written.err().or(fault.take());
             }
             if let Some(mouse) = uinput
                 && let Err(why) = mouse.write(&event)

@@ -1,10 +1,12 @@
 //! What the jobs refuse or warn of, on small recordings.
 
+mod eigennails;
+
 use crate::job::Watch;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-use lunula_predictor::{By, Gate, Kind, Recipe};
+use lunula_predictor::{By, Gate, Kind, OnScores, Recipe};
 
 use super::*;
 

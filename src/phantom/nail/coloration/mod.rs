@@ -1,23 +1,36 @@
-//! Which zones of the nail bed redden and which whiten in each pose (sections 4.2.3 to 4.2.6, Fig. 57-68).
+//! Which zones of the nail bed redden and which whiten in each pose (sections 4.2.3 to 4.2.6, Fig. 57-68), and
+//! ([`moment`]) while the finger presses, shears and bends.
 //!
 //! Red and white zones differ mainly in their green component (4.2.2). In: a place (`u`, `v`) on the nail; out: by how
 //! much the bed is lighter (white, positive) or darker (red, negative) there, about -1 to 1. The pattern is fixed to
 //! the nail; the thesis shows pictures, not numbers, so places and sizes are read off its descriptions.
 
-use super::{
+mod moment;
+
+pub use moment::{Blood, ColourWeights, PATTERNS};
+pub(in crate::phantom::nail) use moment::{DEPTH, distal_share, patterns, whitening};
+
+use crate::phantom::nail::{
     Pose,
     smooth::{bell, step},
 };
 
 /// How one subject's nail bed shows the patterns.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Habit {
+pub(in crate::phantom::nail) struct Habit {
     /// Change of the encoded green of full light at full whitening or reddening.
-    pub(super) amplitude: f64,
+    pub(in crate::phantom::nail) amplitude: f64,
     /// Where the pattern's middle lies on the nail, (`u`, `v`).
-    pub(super) shift: [f64; 2],
+    pub(in crate::phantom::nail) shift: [f64; 2],
     /// Size of the pattern relative to the common one.
-    pub(super) size: f64,
+    pub(in crate::phantom::nail) size: f64,
+}
+
+impl Habit {
+    /// The place of the common pattern that this subject has at (`u`, `v`).
+    fn at(&self, u: f64, v: f64) -> [f64; 2] {
+        [(u - self.shift[0]) / self.size, (v - self.shift[1]) / self.size]
+    }
 }
 
 /// A blob about (`u`, `v`) with standard deviations (`su`, `sv`).
@@ -45,12 +58,20 @@ fn lateral(at: [f64; 2]) -> f64 {
     far + over_near - red_near - red_over
 }
 
+/// The red zone over the bone while the finger presses.
+fn over(at: [f64; 2]) -> f64 {
+    0.95 * blob(at, [0.0, -0.38], [0.46, 0.40])
+}
+
 /// Whitening (positive) or reddening (negative) at (`u`, `v`), about -1 to 1.
-pub(super) fn zones(pose: Pose, habit: &Habit, u: f64, v: f64) -> f64 {
-    let at = [(u - habit.shift[0]) / habit.size, (v - habit.shift[1]) / habit.size];
+pub(in crate::phantom::nail) fn zones(pose: Pose, habit: &Habit, u: f64, v: f64) -> f64 {
+    of_pose(pose, habit.at(u, v))
+}
+
+fn of_pose(pose: Pose, at: [f64; 2]) -> f64 {
     match pose {
         Pose::Nominal => 0.55 * blob(at, [0.0, 0.02], [0.36, 0.42]) - 0.05,
-        Pose::Normal => around(at, 1.0) - 0.95 * blob(at, [0.0, -0.38], [0.46, 0.40]),
+        Pose::Normal => around(at, 1.0) - over(at),
         Pose::LongitudinalNegative => 1.08 * around(at, 0.90) - 0.95 * blob(at, [0.0, -0.45], [0.42, 0.36]),
         Pose::Extension => {
             let white = 0.75 * blob(at, [0.0, -0.35], [0.36, 0.42]) + 0.70 * blob(at, [0.0, 0.16], [0.40, 0.17]);

@@ -4,6 +4,10 @@
 //! pixel is (0, 0), x to the right, y down. An [`Axis`] is a direction on that picture, from the eponychium (proximal)
 //! to the hyponychium (distal).
 
+mod positions;
+
+pub use positions::{Position, Positions, PositionsFault};
+
 use geo::{Area, BooleanOps, BoundingRect, Coord, Intersects, Line, LineString, Polygon, Rect};
 use thiserror::Error;
 

@@ -1,0 +1,212 @@
+//! The same models judged by several ways to hold rows out, so that what a split flatters is seen.
+//!
+//! In: a [`Dataset`], ways to hold out, methods. Out: of each split and method the RMSE of each target on the rows held
+//! out, its 95 % interval and whether it surely beats the mean; [`leaks`]: what looks good by shuffled rows and is no
+//! better than the mean with whole paths held out. The mean and the nearest row are always among the methods.
+
+mod baseline;
+mod bootstrap;
+#[cfg(test)]
+mod tests;
+
+use ndarray::Array2;
+use serde::Serialize;
+
+use super::cross::{CrossValidation, hold_out};
+use super::split::{By, folds};
+use crate::Dataset;
+use bootstrap::Blocks;
+
+/// Predicts rows: rows x targets; NaN is not known.
+pub type Predict<'a> = Box<dyn Fn(&Dataset) -> Array2<f64> + 'a>;
+
+/// Of rows to train on what predicts others, or why nothing does.
+pub type Fit<'a> = Box<dyn Fn(&Dataset) -> Result<Predict<'a>, String> + Sync + 'a>;
+
+/// A way to predict.
+pub struct Method<'a> {
+    /// What tables call it.
+    pub name: String,
+    /// How it learns.
+    pub fit: Fit<'a>,
+}
+
+/// A target with rows held out.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SplitTarget {
+    /// Its column.
+    pub name: String,
+    /// Its unit; NaN of no rows.
+    pub rmse: f64,
+    /// The 95 % interval of that, from blocks of time drawn again; none of too few.
+    pub interval: Option<[f64; 2]>,
+    /// Whether it is surely below the mean's error on the same rows; none where that is not known.
+    pub beats_mean: Option<bool>,
+}
+
+/// A method with rows held out.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MethodScore {
+    /// Which.
+    pub method: String,
+    /// Rows predicted.
+    pub rows: usize,
+    /// Target by target; empty where nothing was predicted.
+    pub targets: Vec<SplitTarget>,
+    /// Why not, or why not all.
+    pub fault: Option<String>,
+}
+
+/// A way to hold rows out.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Split {
+    /// What is held out.
+    pub by: By,
+    /// In how many parts; 0 where nothing can be.
+    pub parts: usize,
+    /// A way before it that holds out the very same parts.
+    pub same_as: Option<By>,
+    /// Method by method: the mean, the nearest row, then those given.
+    pub methods: Vec<MethodScore>,
+    /// Why nothing can be held out.
+    pub fault: Option<String>,
+}
+
+/// What a split by shuffled rows makes look good.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Leak {
+    /// The target.
+    pub target: String,
+    /// The method that looks best by rows.
+    pub method: String,
+    /// Its RMSE by rows, the target's unit.
+    pub by_rows: f64,
+    /// Its RMSE with whole paths held out (recordings, where there is one path only).
+    pub by_paths: f64,
+    /// The mean's RMSE there.
+    pub mean: f64,
+}
+
+/// What the first method is called, and the second.
+const MEAN: &str = "mean";
+const NEAREST: &str = "nearest row";
+
+/// Judges methods by each way to hold out; `inputs`: columns by which the nearest row is found. A split whose parts are
+/// another's before it is not worked out again.
+#[must_use]
+pub fn compare_splits<'a>(data: &Dataset, inputs: &'a [usize], ways: &[By], methods: Vec<Method<'a>>) -> Vec<Split> {
+    let own = |name: &str, predict: fn(&Dataset, &Dataset) -> Array2<f64>| Method {
+        name: name.to_owned(),
+        fit: Box::new(move |train| {
+            let train = train.only_inputs(inputs);
+            Ok(Box::new(move |test: &Dataset| predict(&train, &test.only_inputs(inputs))))
+        }),
+    };
+    let mut all = vec![own(MEAN, baseline::mean), own(NEAREST, baseline::nearest)];
+    all.extend(methods);
+    let mut done: Vec<(Vec<Vec<usize>>, Split)> = Vec::new();
+    for &by in ways {
+        let (parts, split) = match folds(data, by) {
+            Err(why) => {
+                (Vec::new(), Split { by, parts: 0, same_as: None, methods: Vec::new(), fault: Some(why.to_string()) })
+            }
+            Ok(folds) => {
+                let parts: Vec<Vec<usize>> = folds.into_iter().map(|fold| fold.test).collect();
+                let same = done.iter().find(|(others, _)| *others == parts).map(|(_, split)| split);
+                let same_as = same.map(|split| split.by);
+                let same = same.map(|split| split.methods.clone());
+                let methods = same.unwrap_or_else(|| judged(data, by, &all));
+                (parts.clone(), Split { by, parts: parts.len(), same_as, methods, fault: None })
+            }
+        };
+        done.push((parts, split));
+    }
+    done.into_iter().map(|(_, split)| split).collect()
+}
+
+fn judged(data: &Dataset, by: By, methods: &[Method<'_>]) -> Vec<MethodScore> {
+    let mut mean: Option<Array2<f64>> = None;
+    let mut scores = Vec::new();
+    for method in methods {
+        scores.push(match hold_out(data, by, &|train| (method.fit)(train), &|model, test| model(test)) {
+            Ok(found) => {
+                let errors = found.residuals(data);
+                let baseline = mean.get_or_insert_with(|| errors.clone());
+                score(data, method, &found, &errors, baseline)
+            }
+            Err(why) => {
+                MethodScore { method: method.name.clone(), rows: 0, targets: Vec::new(), fault: Some(why.to_string()) }
+            }
+        });
+    }
+    scores
+}
+
+fn score(
+    data: &Dataset,
+    method: &Method<'_>,
+    found: &CrossValidation,
+    errors: &Array2<f64>,
+    mean: &Array2<f64>,
+) -> MethodScore {
+    let target = |(k, one): (usize, &super::TargetScore)| {
+        let interval = Blocks::of(data, &errors.column(k).to_vec(), &mean.column(k).to_vec()).interval();
+        SplitTarget {
+            name: one.name.clone(),
+            rmse: one.rmse,
+            interval: interval.map(|(ends, _)| ends),
+            beats_mean: interval.filter(|_| method.name != MEAN).map(|(_, below)| below),
+        }
+    };
+    MethodScore {
+        method: method.name.clone(),
+        rows: found.pooled.rows,
+        targets: found.pooled.targets.iter().enumerate().map(target).collect(),
+        fault: found.folds.iter().find_map(|fold| fold.fault.clone()),
+    }
+}
+
+/// By how much shuffled rows flatter each method: its RMSE with whole paths held out (recordings, where there is one
+/// path only) over that by rows; target, method, ratio.
+#[must_use]
+pub fn flatteries(splits: &[Split]) -> Vec<(String, String, f64)> {
+    let Some([rows, paths]) = rows_and_paths(splits) else { return Vec::new() };
+    let pairs = rows.methods.iter().zip(&paths.methods).filter(|(rows, _)| rows.method != MEAN);
+    let of = |(rows, paths): (&MethodScore, &MethodScore)| {
+        let both = rows.targets.iter().zip(&paths.targets);
+        both.map(|(a, b)| (a.name.clone(), rows.method.clone(), b.rmse / a.rmse)).collect::<Vec<_>>()
+    };
+    pairs.flat_map(of).filter(|(_, _, ratio)| ratio.is_finite()).collect()
+}
+
+fn rows_and_paths(splits: &[Split]) -> Option<[&Split; 2]> {
+    let with = |is: fn(By) -> bool| splits.iter().find(|split| split.parts > 0 && is(split.by));
+    let paths = with(|by| by == By::Path).or_else(|| with(|by| by == By::Trajectory))?;
+    Some([with(|by| matches!(by, By::Rows { .. }))?, paths])
+}
+
+/// Targets that no method knows better than the mean where whole paths are held out (recordings, where there is one
+/// path only), though one does by shuffled rows.
+#[must_use]
+pub fn leaks(splits: &[Split]) -> Vec<Leak> {
+    let Some([rows, paths]) = rows_and_paths(splits) else { return Vec::new() };
+    let Some(mean) = paths.methods.iter().find(|one| one.method == MEAN) else { return Vec::new() };
+    let one = |(k, at): (usize, &SplitTarget)| {
+        let of = |one: &MethodScore| one.targets.get(k).cloned();
+        if paths.methods.iter().filter_map(of).any(|target| target.beats_mean == Some(true)) {
+            return None;
+        }
+        let better = rows.methods.iter().filter_map(|one| Some((one, of(one)?)));
+        let better = better.filter(|(_, target)| target.beats_mean == Some(true));
+        let (method, best) = better.min_by(|a, b| a.1.rmse.total_cmp(&b.1.rmse))?;
+        let held = paths.methods.iter().find(|one| one.method == method.method).and_then(of)?;
+        Some(Leak {
+            target: at.name.clone(),
+            method: method.method.clone(),
+            by_rows: best.rmse,
+            by_paths: held.rmse,
+            mean: at.rmse,
+        })
+    };
+    mean.targets.iter().enumerate().filter_map(one).collect()
+}

@@ -1,0 +1,289 @@
+//! Folders of results: which runs are below them, and their files by number.
+//!
+//! A run is the JSON that a job leaves beside its results: `run.json`, `NAME.run.json` or `NAME.stream.json`. Its
+//! pictures are those of its folder and the folder's `figures` (of `NAME.run.json` those that begin with `NAME`), its
+//! report the folder's `report.html`. Links are not followed, so nothing outside of the folders is ever read.
+
+use std::collections::HashMap;
+use std::fs::{self, File};
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::time::UNIX_EPOCH;
+
+use serde::Serialize;
+use serde_json::Value;
+
+/// Folders in folders; a study has four (*assumed* enough for years of studies in one folder).
+const MOST_DEEP: usize = 8;
+/// Files and folders that are looked at, and runs that are listed.
+const MOST_LOOKED_AT: usize = 100_000;
+const MOST_RUNS: usize = 2_000;
+const MOST_PICTURES: usize = 60;
+/// Lines of a list, and bytes of a run's JSON and of any file.
+const MOST_LINES: usize = 50;
+const MOST_JSON: u64 = 16 << 20;
+const MOST_FILE: u64 = 64 << 20;
+
+/// What is below the folders.
+#[derive(Debug, Default, Serialize)]
+pub(crate) struct Results {
+    runs: Vec<Run>,
+    /// What was not looked at, in words.
+    left_out: Option<String>,
+}
+
+/// A run of a job.
+#[derive(Debug, Serialize)]
+struct Run {
+    /// The number of its JSON.
+    id: usize,
+    /// Where it is, from the folder that was named.
+    name: String,
+    job: String,
+    version: String,
+    made_unix_s: f64,
+    wall_s: Option<f64>,
+    warnings: Vec<String>,
+    failed: Vec<String>,
+    left_out: Vec<String>,
+    report: Option<usize>,
+    pictures: Vec<Picture>,
+}
+
+#[derive(Debug, Serialize)]
+struct Picture {
+    id: usize,
+    name: String,
+}
+
+/// A file that may be read.
+#[derive(Debug, PartialEq)]
+pub(crate) struct ResultFile {
+    pub(crate) kind: &'static str,
+    pub(crate) bytes: Vec<u8>,
+}
+
+/// The folders, and the files that were listed.
+#[derive(Debug)]
+pub(crate) struct Folders {
+    roots: Vec<PathBuf>,
+    listed: Vec<PathBuf>,
+    numbers: HashMap<PathBuf, usize>,
+}
+
+impl Folders {
+    /// Of these folders, with links resolved.
+    pub(crate) fn new(roots: Vec<PathBuf>) -> Self {
+        Self { roots, listed: Vec::new(), numbers: HashMap::new() }
+    }
+
+    /// Looks for runs.
+    pub(crate) fn look(&mut self) -> Results {
+        let mut results = Results::default();
+        let mut looked_at = 0;
+        for root in self.roots.clone() {
+            let mut folders = vec![(root.clone(), 0)];
+            while let Some((folder, depth)) = folders.pop() {
+                let Ok(entries) = fs::read_dir(&folder) else { continue };
+                let mut files = Vec::new();
+                for entry in entries.flatten() {
+                    looked_at += 1;
+                    // A link is neither.
+                    match entry.file_type() {
+                        Ok(kind) if kind.is_file() => files.push(entry.path()),
+                        Ok(kind) if kind.is_dir() && depth < MOST_DEEP => folders.push((entry.path(), depth + 1)),
+                        _ => {}
+                    }
+                }
+                files.sort();
+                for file in files.iter().filter(|file| stem_of_run(file).is_some()) {
+                    if results.runs.len() < MOST_RUNS
+                        && let Some(run) = self.run(&root, file, &files)
+                    {
+                        results.runs.push(run);
+                    }
+                }
+                if looked_at > MOST_LOOKED_AT || results.runs.len() >= MOST_RUNS {
+                    let what = format!("not all was looked at ({MOST_RUNS} results or {MOST_LOOKED_AT} files at most)");
+                    results.left_out = Some(what);
+                    folders.clear();
+                }
+            }
+        }
+        // The newest first, then by name.
+        results.runs.sort_by(|a, b| b.made_unix_s.total_cmp(&a.made_unix_s).then_with(|| a.name.cmp(&b.name)));
+        results
+    }
+
+    /// A file that was listed; its folder may have changed since.
+    pub(crate) fn read(&self, number: usize) -> Option<ResultFile> {
+        let path = self.listed.get(number)?;
+        let kind = kind_of(path)?;
+        let real = path.canonicalize().ok().filter(|real| real == path)?;
+        if !self.roots.iter().any(|root| real.starts_with(root)) {
+            return None;
+        }
+        Some(ResultFile { kind, bytes: read_file(&real, MOST_FILE)? })
+    }
+
+    fn run(&mut self, root: &Path, json: &Path, beside: &[PathBuf]) -> Option<Run> {
+        let stem = stem_of_run(json)?;
+        let value: Value = serde_json::from_slice(&read_file(json, MOST_JSON)?).ok()?;
+        let text = |key: &str| value.get(key).and_then(Value::as_str).map(str::to_owned);
+        let job = text("job").or_else(|| text("pipeline"))?;
+        let lines = |key: &str| {
+            let all = value.get(key).and_then(Value::as_array).into_iter().flatten().filter_map(Value::as_str);
+            all.take(MOST_LINES).map(str::to_owned).collect()
+        };
+        let folder = json.parent()?;
+        let mut pictures: Vec<PathBuf> = beside.to_vec();
+        if stem.is_empty() {
+            let figures = fs::read_dir(folder.join("figures")).into_iter().flatten().flatten();
+            pictures
+                .extend(figures.filter(|one| one.file_type().is_ok_and(|kind| kind.is_file())).map(|one| one.path()));
+            pictures.sort();
+        }
+        let is_own = |path: &&PathBuf| {
+            let name = path.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
+            name.starts_with(stem) && name.ends_with(".png")
+        };
+        let pictures: Vec<&PathBuf> = pictures.iter().filter(is_own).take(MOST_PICTURES).collect();
+        let report = folder.join("report.html");
+        let made = fs::metadata(json).and_then(|one| one.modified()).ok()?;
+        Some(Run {
+            id: self.number(json),
+            name: shown(root, json),
+            job,
+            version: text("version").unwrap_or_default(),
+            made_unix_s: made.duration_since(UNIX_EPOCH).map_or(0.0, |since| since.as_secs_f64()),
+            wall_s: value.get("wall_s").and_then(Value::as_f64),
+            warnings: lines("warnings"),
+            failed: lines("failed"),
+            left_out: lines("left_out"),
+            report: (stem.is_empty() && beside.contains(&report)).then(|| self.number(&report)),
+            pictures: pictures
+                .into_iter()
+                .map(|path| Picture { id: self.number(path), name: shown(folder, path) })
+                .collect(),
+        })
+    }
+
+    fn number(&mut self, path: &Path) -> usize {
+        if let Some(number) = self.numbers.get(path) {
+            return *number;
+        }
+        let number = self.listed.len();
+        self.listed.push(path.to_owned());
+        self.numbers.insert(path.to_owned(), number);
+        number
+    }
+}
+
+/// What the names of a run's files begin with, where a file is a run's JSON.
+fn stem_of_run(path: &Path) -> Option<&str> {
+    let name = path.file_name()?.to_str()?;
+    if name == "run.json" {
+        return Some("");
+    }
+    let stem = name.strip_suffix(".run.json").or_else(|| name.strip_suffix(".stream.json"))?;
+    (!stem.is_empty()).then_some(stem)
+}
+
+/// A path below the folder that was named, that folder's own name first.
+fn shown(root: &Path, path: &Path) -> String {
+    let below = path.strip_prefix(root).unwrap_or(path);
+    let root = root.file_name().map(PathBuf::from).unwrap_or_default();
+    root.join(below).display().to_string()
+}
+
+fn kind_of(path: &Path) -> Option<&'static str> {
+    match path.extension()?.to_str()? {
+        "html" => Some("text/html; charset=utf-8"),
+        "png" => Some("image/png"),
+        "json" => Some("application/json"),
+        _ => None,
+    }
+}
+
+/// A file's bytes, where it has no more than so many.
+fn read_file(path: &Path, most: u64) -> Option<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let read = File::open(path).ok()?.take(most + 1).read_to_end(&mut bytes).ok()?;
+    (read as u64 <= most).then_some(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn write(path: PathBuf, text: &str) {
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+    }
+
+    fn desk() -> (tempfile::TempDir, PathBuf) {
+        let dir = tempfile::tempdir().unwrap();
+        let root = dir.path().canonicalize().unwrap().join("lab");
+        let run =
+            |job: &str| format!("{{\"job\":\"{job}\",\"version\":\"0.1.0\",\"warnings\":[\"w\"],\"wall_s\":1.5}}");
+        write(root.join("photos/run.json"), &run("photos"));
+        write(root.join("photos/report.html"), "<p>x</p>");
+        write(root.join("photos/figures/mean.png"), "png");
+        write(root.join("posture/joints.run.json"), &run("posture"));
+        write(root.join("posture/joints-angles.png"), "png");
+        write(root.join("posture/other.png"), "png");
+        write(root.join("posture/broken.run.json"), "{\"job\":");
+        (dir, root)
+    }
+
+    #[test]
+    fn runs_are_found_with_their_pictures_and_reports() {
+        let (_dir, root) = desk();
+        let mut folders = Folders::new(vec![root]);
+        let mut runs = folders.look().runs;
+        runs.sort_by(|a, b| a.name.cmp(&b.name));
+        let names: Vec<&str> = runs.iter().map(|run| run.name.as_str()).collect();
+        assert_eq!(names, ["lab/photos/run.json", "lab/posture/joints.run.json"]);
+        let pictures = |run: &Run| run.pictures.iter().map(|one| one.name.clone()).collect::<Vec<_>>();
+        assert_eq!(pictures(&runs[0]), ["photos/figures/mean.png"]);
+        assert_eq!(pictures(&runs[1]), ["posture/joints-angles.png"]);
+        assert_eq!((runs[1].report, runs[1].wall_s, runs[1].warnings.len()), (None, Some(1.5), 1));
+        let report = folders.read(runs[0].report.unwrap()).unwrap();
+        assert_eq!(report, ResultFile { kind: "text/html; charset=utf-8", bytes: b"<p>x</p>".to_vec() });
+        assert_eq!(folders.read(10_000), None);
+        // The same numbers when it looks again.
+        let again = folders.look().runs;
+        assert!(again.iter().all(|run| runs.iter().any(|old| old.id == run.id && old.name == run.name)));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_lead_nowhere_even_when_made_later() {
+        use std::os::unix::fs::symlink;
+
+        let (dir, root) = desk();
+        let secret = dir.path().join("secret");
+        write(secret.join("run.json"), "{\"job\":\"secret\"}");
+        write(secret.join("key.png"), "key");
+        symlink(&secret, root.join("link")).unwrap();
+        symlink(secret.join("run.json"), root.join("posture/run.json")).unwrap();
+        let mut folders = Folders::new(vec![root.clone()]);
+        let runs = folders.look().runs;
+        assert!(runs.len() == 2 && runs.iter().all(|run| run.job != "secret"));
+        let picture = runs.iter().flat_map(|run| &run.pictures).find(|one| one.name.ends_with("mean.png")).unwrap().id;
+        assert!(folders.read(picture).is_some());
+        fs::remove_file(root.join("photos/figures/mean.png")).unwrap();
+        symlink(secret.join("key.png"), root.join("photos/figures/mean.png")).unwrap();
+        assert_eq!(folders.read(picture), None);
+    }
+
+    #[test]
+    fn a_file_that_is_too_large_is_not_read() {
+        let (_dir, root) = desk();
+        let path = root.join("photos/report.html");
+        File::options().write(true).open(&path).unwrap().set_len(MOST_FILE + 1).unwrap();
+        let mut folders = Folders::new(vec![root]);
+        let report = folders.look().runs.iter().find_map(|run| run.report).unwrap();
+        assert_eq!(folders.read(report), None);
+    }
+}

@@ -1,0 +1,146 @@
+//! The server from outside, over its socket: what strangers get, what the page gets.
+
+#![allow(clippy::unwrap_used, reason = "tests, and what they share")]
+
+mod util;
+
+use std::io::{Read, Write};
+use std::net::TcpStream;
+use std::path::Path;
+use std::time::Duration;
+
+use lunula_ui::{Server, Settings, UiError};
+use util::{Running, run};
+
+/// An answer: its status, its head, its body.
+struct Answer {
+    status: u16,
+    head: String,
+    body: String,
+}
+
+trait Asks {
+    fn sends(&self, text: &str) -> Answer;
+    fn asks(&self, method: &str, path: &str, headers: &str, body: &str) -> Answer;
+    fn cookie(&self) -> String;
+}
+
+impl Asks for Running {
+    fn sends(&self, text: &str) -> Answer {
+        let mut stream = TcpStream::connect(&self.at).unwrap();
+        stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
+        // Whoever is not listened to may find the connection reset: an answer without a status.
+        let _ = stream.write_all(text.as_bytes());
+        let mut answer = Vec::new();
+        let _ = stream.read_to_end(&mut answer);
+        let answer = String::from_utf8_lossy(&answer).into_owned();
+        let (head, body) = answer.split_once("\r\n\r\n").unwrap_or((&answer, ""));
+        let status = head.split(' ').nth(1).and_then(|status| status.parse().ok()).unwrap_or(0);
+        Answer { status, head: head.to_lowercase(), body: body.to_owned() }
+    }
+
+    fn asks(&self, method: &str, path: &str, headers: &str, body: &str) -> Answer {
+        self.sends(&format!(
+            "{method} {path} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\nContent-Length: {}\r\n{headers}\r\n{body}",
+            self.at,
+            body.len()
+        ))
+    }
+
+    /// As the page does: the token for a cookie.
+    fn cookie(&self) -> String {
+        let origin = format!("Origin: http://{}\r\n", self.at);
+        let answer = self.asks("POST", "/api/session", &origin, &self.token);
+        assert_eq!(answer.status, 204, "{}", answer.head);
+        let line = answer.head.lines().find_map(|line| line.strip_prefix("set-cookie: ")).unwrap();
+        assert!(line.contains("httponly") && line.contains("samesite=strict"), "{line}");
+        format!("Cookie: {}\r\n", line.split(';').next().unwrap())
+    }
+}
+
+fn one_run(dir: &Path) {
+    std::fs::create_dir(dir.join("<img src=x onerror=alert(1)>")).unwrap();
+    let at = dir.join("<img src=x onerror=alert(1)>");
+    std::fs::write(at.join("run.json"), "{\"job\":\"photos\",\"version\":\"0.1.0\",\"warnings\":[]}").unwrap();
+    std::fs::write(at.join("report.html"), "<script>alert(1)</script>").unwrap();
+}
+
+#[test]
+fn the_page_gets_its_results_and_a_report_in_a_sandbox() {
+    let server = run(one_run);
+    let page = server.asks("GET", "/", "", "");
+    assert!(page.status == 200 && page.body.contains("app.js") && !page.body.contains(&server.token));
+    for header in ["content-security-policy: default-src 'none'", "nosniff", "no-referrer", "no-store"] {
+        assert!(page.head.contains(header), "{header}: {}", page.head);
+    }
+    let cookie = server.cookie();
+    let results = server.asks("GET", "/api/results", &cookie, "");
+    assert_eq!(results.status, 200);
+    let results: serde_json::Value = serde_json::from_str(&results.body).unwrap();
+    assert!(results["runs"][0]["name"].as_str().unwrap().ends_with("<img src=x onerror=alert(1)>/run.json"));
+    let report = server.asks("GET", &format!("/api/file/{}", results["runs"][0]["report"]), &cookie, "");
+    assert_eq!((report.status, report.body.as_str()), (200, "<script>alert(1)</script>"));
+    let policy = report.head.lines().find(|line| line.starts_with("content-security-policy")).unwrap();
+    assert!(policy.contains("sandbox;") && !policy.contains("allow-scripts") && !policy.contains("script-src"));
+    let bearer = format!("Authorization: Bearer {}\r\n", server.token);
+    assert_eq!(server.asks("GET", "/api/results", &bearer, "").status, 200);
+}
+
+#[test]
+fn strangers_are_refused_and_hear_nothing() {
+    let server = run(one_run);
+    let cookie = server.cookie();
+    let own = format!("Origin: http://{}\r\n", server.at);
+    let refused = |answer: Answer| {
+        assert_eq!((answer.status, answer.body.as_str()), (403, ""), "{}", answer.head);
+        assert!(!answer.head.contains("set-cookie") && !answer.head.contains("access-control"), "{}", answer.head);
+    };
+    // Another name for this address, as after a rebinding of it.
+    refused(server.sends("GET / HTTP/1.1\r\nHost: evil.example\r\nConnection: close\r\n\r\n"));
+    refused(server.sends(&format!("GET / HTTP/1.1\r\nHost: evil.example:80\r\nConnection: close\r\n{cookie}\r\n")));
+    refused(server.sends("GET / HTTP/1.0\r\n\r\n"));
+    // Another page, with the cookie that the browser adds.
+    refused(server.asks("GET", "/api/results", &format!("{cookie}Origin: http://evil.example\r\n"), ""));
+    refused(server.asks("GET", "/api/results", &format!("{cookie}Sec-Fetch-Site: cross-site\r\n"), ""));
+    refused(server.asks("POST", "/api/session", "", &server.token));
+    refused(server.asks("POST", "/api/session", "Origin: null\r\n", &server.token));
+    refused(server.asks("OPTIONS", "/api/results", "", ""));
+    // Nobody, and somebody who guesses.
+    refused(server.asks("GET", "/api/results", "", ""));
+    refused(server.asks("GET", "/api/file/0", "", ""));
+    refused(server.asks("GET", "/api/results", "Authorization: Bearer 0\r\n", ""));
+    refused(server.asks("POST", "/api/session", &own, &"0".repeat(48)));
+    // Paths are numbers.
+    for path in ["/api/file/..%2f..%2fetc%2fpasswd", "/api/file/../../etc/passwd", "/api/file/99", "/../secret", "/x"] {
+        let answer = server.asks("GET", path, &cookie, "");
+        assert!(matches!(answer.status, 400 | 404), "{path}: {}", answer.status);
+    }
+}
+
+#[test]
+fn half_open_connections_and_large_bodies_hold_nobody_up() {
+    let server = run(one_run);
+    // Three hundred that never ask, and stay.
+    let _held: Vec<TcpStream> = (0..300).map(|_| TcpStream::connect(&server.at).unwrap()).collect();
+    let cookie = server.cookie();
+    let own = format!("Origin: http://{}\r\n", server.at);
+    // Ten gigabytes are announced, and not waited for.
+    let announced = format!(
+        "POST /api/session HTTP/1.1\r\nHost: {}\r\nConnection: close\r\nContent-Length: 10000000000\r\n{own}\r\n",
+        server.at
+    );
+    assert_eq!(server.sends(&announced).status, 413);
+    let long = format!("X: {}\r\n", "x".repeat(100_000));
+    assert!(matches!(server.asks("GET", "/", &long, "").status, 0 | 400 | 431));
+    assert_eq!(server.asks("GET", "/api/results", &cookie, "").status, 200);
+}
+
+#[test]
+fn a_folder_that_does_not_exist_and_a_port_that_is_taken_are_said() {
+    let none = Settings { folders: vec!["/does/not/exist".into()], ..Settings::default() };
+    assert!(matches!(Server::bind(none), Err(UiError::Folder { .. })));
+    let server = run(one_run);
+    let port = server.at.rsplit_once(':').unwrap().1.parse().unwrap();
+    let taken = Server::bind(Settings { port, ..Settings::default() }).err().unwrap();
+    assert!(taken.to_string().contains("choose another --port"), "{taken}");
+}

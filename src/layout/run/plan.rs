@@ -1,0 +1,40 @@
+//! What a run would do and leave out.
+
+use crate::layout::options::{LayoutInputs, LayoutOptions, LayoutOutputs};
+use crate::layout::read::is_maps;
+use crate::stages::Step;
+
+/// Plans a run; `outputs` may be open yet.
+#[must_use]
+pub fn plan(inputs: &LayoutInputs, options: &LayoutOptions, outputs: Option<&LayoutOutputs>) -> Vec<Step> {
+    let maps = matches!(&inputs.data[..], [one] if is_maps(&one.path));
+    steps(inputs.data.len(), maps, options, outputs)
+}
+
+/// The one table of steps: the plan shows them, a run's report lists those that are left out.
+pub(in crate::layout) fn steps(
+    files: usize,
+    maps: bool,
+    options: &LayoutOptions,
+    outputs: Option<&LayoutOutputs>,
+) -> Vec<Step> {
+    let what = if maps { "maps and normalized pictures".to_owned() } else { format!("{files} tables or logs") };
+    let figures = outputs.is_none_or(|outputs| outputs.figures);
+    let proof = options.proof > 0.0;
+    let budget = format!("branch and bound, at most {} billion multiply-adds for each number", options.proof);
+    vec![
+        Step::new("read", true, what),
+        Step::new(
+            "search",
+            true,
+            format!("{} photodiodes: greedy and exchange from {} starts", options.k, options.starts),
+        ),
+        Step::new("proof", proof, if proof { budget } else { "--proof 0".to_owned() }),
+        Step::new("left out", true, "chosen again without each person".to_owned()),
+        Step::new(
+            "figures",
+            figures,
+            if figures { "places, error against number" } else { "not asked for" }.to_owned(),
+        ),
+    ]
+}

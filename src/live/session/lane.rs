@@ -1,0 +1,233 @@
+//! One finger of a session: its sensor's source, a force transducer's where that is a device of its own, and what is
+//! done with its rows.
+
+use lunula_live::latency::Latency as Times;
+use lunula_live::source::{Event, HostClock, State};
+use lunula_live::wire::Row;
+
+use super::columns::StreamColumns;
+use super::decide::{Decide, Plan};
+use super::feed::{Feed, is_away};
+use super::open::source_fault;
+use super::outputs::Outputs;
+use super::outputs::samples::Samples;
+use crate::live::error::LiveError;
+use crate::log::LogReading;
+
+/// A finger.
+pub(super) struct Lane<'a> {
+    pub(super) feed: Feed<'a>,
+    pub(super) force: Option<Feed<'a>>,
+    pub(super) work: Work,
+}
+
+/// What is done with a finger's rows, once the columns are known.
+pub(super) struct Work {
+    pub(super) plan: Option<Plan>,
+    pub(super) decide: Option<Decide>,
+    /// Columns of forces that were named before the sensor's.
+    forces: Option<Vec<String>>,
+    forces_ended: bool,
+    /// Its name in front of messages, where there are several.
+    label: String,
+    finger: Option<String>,
+}
+
+/// What all fingers of a session share.
+pub(super) struct Shared<'a> {
+    pub(super) clock: HostClock,
+    pub(super) tell: &'a dyn Fn(&str),
+    pub(super) log: &'a LogReading,
+    pub(super) outputs: Outputs,
+    pub(super) notes: Vec<String>,
+    pub(super) work: Times,
+    pub(super) arrival: Times,
+    pub(super) seconds: Option<f64>,
+    pub(super) ends: bool,
+}
+
+impl Shared<'_> {
+    fn note(&mut self, label: &str, notes: Vec<String>) {
+        for note in notes {
+            let note = format!("{label}{note}");
+            (self.tell)(&format!("note: {note}"));
+            self.notes.push(note);
+        }
+    }
+
+    fn state(&self, label: &str, state: State) {
+        (self.tell)(&format!("state: {label}{}", state.condition.word()));
+    }
+}
+
+impl<'a> Lane<'a> {
+    pub(super) fn new(feed: Feed<'a>, force: Option<Feed<'a>>, plan: Plan) -> Self {
+        let finger = plan.finger.as_ref().map(|(finger, _)| finger.clone());
+        let label = finger.as_ref().map_or(String::new(), |finger| format!("{finger}: "));
+        let work = Work { plan: Some(plan), decide: None, forces: None, forces_ended: false, label, finger };
+        Self { feed, force, work }
+    }
+
+    /// Whose it is, where there are several.
+    pub(super) fn finger(&self) -> Option<String> {
+        self.work.finger.clone()
+    }
+
+    /// Its sources: the sensor's first.
+    pub(super) fn feeds(&self) -> impl Iterator<Item = &Feed<'a>> {
+        std::iter::once(&self.feed).chain(&self.force)
+    }
+
+    /// See [`feeds`](Self::feeds).
+    pub(super) fn feeds_mut(&mut self) -> impl Iterator<Item = &mut Feed<'a>> {
+        std::iter::once(&mut self.feed).chain(&mut self.force)
+    }
+
+    /// Takes what has come from the sensor.
+    ///
+    /// # Errors
+    /// A source that can't go on, columns that lack, results that can't be written.
+    pub(super) fn poll(&mut self, shared: &mut Shared<'_>) -> Result<(), LiveError> {
+        let Self { feed, work, .. } = self;
+        let Feed { source, stream, recognizer, health } = feed;
+        let is_live = stream.is_live();
+        let mut fault = None;
+        let now_ns = shared.clock.now_ns();
+        let mut on = |event: Event<'_>| {
+            if fault.is_some() || shared.ends {
+                return;
+            }
+            let done = match event {
+                Event::Columns(_) => work.begin(recognizer.take(), shared),
+                Event::Row(row) => {
+                    // Of a recording many rows are handed out at one time.
+                    let begin_ns = if is_live { row.host_ns } else { shared.clock.now_ns() };
+                    health.row(row, &mut shared.arrival);
+                    let common_s = health.common_s(row);
+                    let done = work.row(row, common_s, shared);
+                    shared.work.record_ns(shared.clock.now_ns().saturating_sub(begin_ns));
+                    done
+                }
+                Event::Spoilt { .. } => {
+                    health.spoilt();
+                    Ok(())
+                }
+                Event::State(state) => {
+                    shared.state(&work.label, state);
+                    if is_away(state.condition) { work.lose(false, shared) } else { Ok(()) }
+                }
+                Event::End => work.lose(true, shared),
+            };
+            fault = done.err();
+        };
+        stream.poll(now_ns, &mut on).map_err(|why| source_fault(source, why))?;
+        fault.map_or(Ok(()), Err)
+    }
+
+    /// Takes what has come from the force transducer.
+    ///
+    /// # Errors
+    /// As [`poll`](Self::poll).
+    pub(super) fn poll_force(&mut self, shared: &mut Shared<'_>) -> Result<(), LiveError> {
+        let Self { force: Some(feed), work, .. } = self else { return Ok(()) };
+        let Feed { source, stream, recognizer, health } = feed;
+        let mut fault = None;
+        let now_ns = shared.clock.now_ns();
+        let mut on = |event: Event<'_>| {
+            if fault.is_some() {
+                return;
+            }
+            let done = match event {
+                Event::Columns(_) => work.join(recognizer.take().values),
+                Event::Row(row) => {
+                    health.row(row, &mut shared.arrival);
+                    let common_s = health.common_s(row);
+                    let samples = work.decide.as_mut().and_then(|decide| decide.samples.as_mut());
+                    samples.map_or(Ok(()), |samples| samples.force(common_s, row.values, row.begins))
+                }
+                Event::Spoilt { .. } => {
+                    health.spoilt();
+                    Ok(())
+                }
+                Event::State(state) => {
+                    shared.state(&format!("{}force: ", work.label), state);
+                    Ok(())
+                }
+                Event::End => work.end_forces(),
+            };
+            fault = done.err();
+        };
+        stream.poll(now_ns, &mut on).map_err(|why| source_fault(source, why))?;
+        fault.map_or(Ok(()), Err)
+    }
+
+    /// When a watchdog lets go, nanoseconds of the host's clock; within a second.
+    pub(super) fn due_ns(&self, now_ns: u64) -> Option<u64> {
+        let due_s = self.work.decide.as_ref().and_then(Decide::due_s).filter(|_| self.feed.stream.is_live())?;
+        let left_s = due_s - self.feed.stream.stream_now_s(now_ns);
+        Some(now_ns + 1 + (1e9 * left_s.clamp(0.0, 1.0)) as u64)
+    }
+
+    /// Whether nothing more comes of it: no rows, and no force that a row waits for.
+    pub(super) fn is_over(&self) -> bool {
+        let samples = self.work.decide.as_ref().and_then(|decide| decide.samples.as_ref());
+        self.feed.stream.ended() && !samples.is_some_and(Samples::is_waiting)
+    }
+
+    /// Time has passed.
+    ///
+    /// # Errors
+    /// Results that can't be written.
+    pub(super) fn advance(&mut self, now_ns: u64, shared: &mut Shared<'_>) -> Result<(), LiveError> {
+        let Some(decide) = self.work.decide.as_mut().filter(|_| self.feed.stream.is_live()) else { return Ok(()) };
+        decide.advance(self.feed.stream.stream_now_s(now_ns), &mut shared.outputs)?;
+        decide.samples.as_mut().map_or(Ok(()), |samples| samples.settle(1e-9 * now_ns as f64))
+    }
+}
+
+impl Work {
+    /// The sensor's columns are known.
+    fn begin(&mut self, columns: StreamColumns, shared: &mut Shared<'_>) -> Result<(), LiveError> {
+        let Some(plan) = self.plan.take() else { return Ok(()) };
+        let mut notes = Vec::new();
+        let decide = Decide::new(plan, columns, shared.log, &mut notes);
+        shared.note(&self.label, notes);
+        self.decide = Some(decide?);
+        shared.outputs.begin()?;
+        if let Some(names) = self.forces.take() {
+            self.join(names)?;
+        }
+        if self.forces_ended { self.end_forces() } else { Ok(()) }
+    }
+
+    /// The force transducer's columns are known.
+    fn join(&mut self, names: Vec<String>) -> Result<(), LiveError> {
+        match self.decide.as_mut().and_then(|decide| decide.samples.as_mut()) {
+            Some(samples) => samples.join(&names).map_err(LiveError::Request),
+            None => {
+                self.forces = Some(names);
+                Ok(())
+            }
+        }
+    }
+
+    fn end_forces(&mut self) -> Result<(), LiveError> {
+        self.forces_ended = true;
+        let samples = self.decide.as_mut().and_then(|decide| decide.samples.as_mut());
+        samples.map_or(Ok(()), |samples| samples.end_forces())
+    }
+
+    fn row(&mut self, row: &Row<'_>, common_s: f64, shared: &mut Shared<'_>) -> Result<(), LiveError> {
+        let Some(decide) = &mut self.decide else { return Ok(()) };
+        decide.row(row, common_s, &mut shared.outputs)?;
+        if let (Some(seconds), Some([from_s, to_s])) = (shared.seconds, decide.span_s) {
+            shared.ends |= to_s - from_s >= seconds;
+        }
+        Ok(())
+    }
+
+    /// The source is lost, or ends.
+    pub(super) fn lose(&mut self, ends: bool, shared: &mut Shared<'_>) -> Result<(), LiveError> {
+        self.decide.as_mut().map_or(Ok(()), |decide| decide.lose(ends, &mut shared.outputs))
+    }
+}

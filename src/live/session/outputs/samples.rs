@@ -1,0 +1,176 @@
+//! A finger's samples as they are recorded: its own columns, and the forces of a second device at each sample's time.
+//!
+//! In: rows of the wire, and forces on the common clock. Out: rows of a [`Recording`]. With a second device a row waits
+//! until the force behind it is known, a second at most; where it is not known its cells are empty.
+
+use std::collections::VecDeque;
+
+use lunula_live::companion::{Companion, Known};
+use lunula_live::wire::Row;
+
+use super::recording::Recording;
+use crate::live::error::LiveError;
+use crate::live::session::columns::StreamColumns;
+use crate::table::push_number;
+
+/// A row waits so long for the force behind it, seconds (*assumed*: chunks of a slow bridge or network are shorter),
+/// and so long for a device that has not named its columns yet.
+const PATIENCE_S: f64 = 1.0;
+const NAMES_S: f64 = 10.0;
+
+/// The samples of a finger.
+pub(crate) struct Samples {
+    recording: Recording,
+    led: bool,
+    names: Vec<String>,
+    line: String,
+    forces: Option<Forces>,
+}
+
+/// The forces of a second device.
+#[derive(Default)]
+struct Forces {
+    /// None until the device has named its columns.
+    companion: Option<Companion>,
+    values: Vec<f64>,
+    /// Rows that wait, and lines whose memory is used again.
+    waiting: VecDeque<(f64, String)>,
+    spare: Vec<String>,
+    without: u64,
+}
+
+impl Samples {
+    /// Of these columns; `joins_forces` where a second device gives some too.
+    pub(crate) fn new(mut recording: Recording, columns: &StreamColumns, joins_forces: bool) -> Self {
+        let mut names = vec!["time_s".to_owned()];
+        names.extend(columns.led.then(|| "led".to_owned()));
+        names.extend(columns.values.iter().cloned());
+        recording.name(names.clone());
+        let forces = joins_forces.then(Forces::default);
+        Self { recording, led: columns.led, names, line: String::with_capacity(512), forces }
+    }
+
+    /// The second device gives these columns.
+    ///
+    /// # Errors
+    /// A column that the sensor gives itself, in words.
+    pub(crate) fn join(&mut self, names: &[String]) -> Result<(), String> {
+        if let Some(twice) = names.iter().find(|name| self.names.contains(name)) {
+            return Err(format!("column `{twice}` comes from the sensor too; leave out --force, or rename one"));
+        }
+        self.recording.name(self.names.iter().chain(names).cloned().collect());
+        if let Some(forces) = &mut self.forces {
+            forces.companion = Some(Companion::new(names.len()));
+            forces.values = vec![f64::NAN; names.len()];
+        }
+        Ok(())
+    }
+
+    /// A row, recorded at `time_s`; at `common_s` of the clock that both devices are on.
+    ///
+    /// # Errors
+    /// A recording that can't be written.
+    pub(crate) fn row(&mut self, row: &Row<'_>, time_s: f64, common_s: f64) -> Result<(), LiveError> {
+        self.line.clear();
+        push_number(&mut self.line, time_s);
+        if self.led {
+            self.line.push_str(match row.lit {
+                Some(true) => ",1",
+                Some(false) => ",0",
+                None => ",",
+            });
+        }
+        for value in row.values {
+            self.line.push(',');
+            push_number(&mut self.line, *value);
+        }
+        let Some(forces) = &mut self.forces else {
+            self.line.push('\n');
+            return self.recording.push(&self.line);
+        };
+        let mut line = forces.spare.pop().unwrap_or_default();
+        std::mem::swap(&mut line, &mut self.line);
+        forces.waiting.push_back((common_s, line));
+        self.settle(common_s)
+    }
+
+    /// A sample of the second device, at `common_s`.
+    ///
+    /// # Errors
+    /// A recording that can't be written.
+    pub(crate) fn force(&mut self, common_s: f64, values: &[f64], begins: bool) -> Result<(), LiveError> {
+        let Some(forces) = &mut self.forces else { return Ok(()) };
+        if let Some(companion) = &mut forces.companion {
+            companion.push(common_s, values, begins);
+        }
+        self.settle(f64::NAN)
+    }
+
+    /// Records what waits and is known, or has waited long enough at `now_s` of the common clock.
+    ///
+    /// # Errors
+    /// A recording that can't be written.
+    pub(crate) fn settle(&mut self, now_s: f64) -> Result<(), LiveError> {
+        let Some(forces) = &mut self.forces else { return Ok(()) };
+        while let Some((common_s, line)) = forces.waiting.front_mut() {
+            let waited_s = now_s - *common_s;
+            let Some(companion) = &mut forces.companion else {
+                let what = "the source of --force has not named its columns for 10 s; look whether it sends";
+                let late = waited_s > NAMES_S;
+                return if late { Err(LiveError::Request(what.to_owned())) } else { Ok(()) };
+            };
+            let known = companion.at(*common_s, &mut forces.values);
+            if known == Known::NotYet && (waited_s.is_nan() || waited_s <= PATIENCE_S) {
+                return Ok(());
+            }
+            forces.without += u64::from(forces.values.iter().any(|value| value.is_nan()));
+            for value in &forces.values {
+                line.push(',');
+                push_number(line, *value);
+            }
+            line.push('\n');
+            self.recording.push(line)?;
+            if let Some((_, mut line)) = forces.waiting.pop_front() {
+                line.clear();
+                forces.spare.push(line);
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a row waits for a force.
+    pub(crate) fn is_waiting(&self) -> bool {
+        self.forces.as_ref().is_some_and(|forces| !forces.waiting.is_empty())
+    }
+
+    /// The second device gives nothing more.
+    ///
+    /// # Errors
+    /// A recording that can't be written.
+    pub(crate) fn end_forces(&mut self) -> Result<(), LiveError> {
+        if let Some(forces) = &mut self.forces {
+            // A device that never named columns gives none.
+            forces.companion.get_or_insert_with(|| Companion::new(0)).end();
+        }
+        self.settle(f64::NAN)
+    }
+
+    /// Rows of which a force is not known; none without a second device.
+    pub(crate) fn without_force(&self) -> Option<u64> {
+        self.forces.as_ref().map(|forces| forces.without)
+    }
+
+    /// Rows that were left out as the disk was too slow.
+    pub(crate) fn lost(&self) -> u64 {
+        self.recording.lost()
+    }
+
+    /// Ends it: all rows are on disk.
+    ///
+    /// # Errors
+    /// What could not be written; what was written before stays.
+    pub(crate) fn finish(mut self) -> Result<bool, LiveError> {
+        self.end_forces()?;
+        self.recording.finish()
+    }
+}

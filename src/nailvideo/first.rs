@@ -1,0 +1,133 @@
+//! The first good frame: the nail's outline on it, drawn, from a mask or detected, by `photo`'s own means.
+
+use std::path::{Path, PathBuf};
+
+use image::metadata::Orientation;
+use image::{DynamicImage, RgbImage};
+
+use super::affine::Affine;
+use super::grid::{Part, samples, shown_size};
+use super::options::NailVideoOptions;
+use super::sample::Colours;
+use crate::nail::{Axis, Outline};
+use crate::photo::outline::{Nail, OutlineOptions, OutlinePlace, Source, ToDraw, to_file};
+use crate::photo::{NailFrame, Photograph};
+use crate::photograph::{PICTURES, is_picture};
+use crate::video::{Frame, Info};
+
+/// A nail narrower than this is refused: a photodiode's disc has under 5 pixels (assumed; nails of 40 px are followed
+/// to 0.25 px).
+pub(in crate::nailvideo) const LEAST_WIDTH_PX: f64 = 30.0;
+/// Detection looks at one of so many frames, and so often.
+const EVERY: u64 = 10;
+const TRIES: u64 = 15;
+
+/// The nail in the first good frame.
+#[derive(Debug, Clone)]
+pub(in crate::nailvideo) struct FirstNail {
+    pub(in crate::nailvideo) outline: Outline,
+    pub(in crate::nailvideo) frame: NailFrame,
+    pub(in crate::nailvideo) source: Source,
+    pub(in crate::nailvideo) confidence: Option<f64>,
+}
+
+impl FirstNail {
+    /// From half widths and half lengths (distal positive) to the shown picture's pixels.
+    pub(in crate::nailvideo) fn frame_from_nail(&self) -> Affine {
+        let NailFrame { center_px: [x, y], length_px, width_px, axis } = self.frame;
+        let (right, distal) = (axis.right().map(|r| 0.5 * width_px * r), axis.distal().map(|d| 0.5 * length_px * d));
+        Affine([right[0], distal[0], x, right[1], distal[1], y])
+    }
+
+    /// The same as a LabelMe file of a picture beside it, for a person to correct.
+    pub(in crate::nailvideo) fn labelme(&self, picture: &str, size: [u32; 2]) -> serde_json::Result<String> {
+        let confidence = self.confidence.unwrap_or(1.0);
+        let nail = ToDraw { outline: self.outline.clone(), axis: self.frame.axis, confidence, trusted: true };
+        serde_json::to_string_pretty(&to_file(picture, size, &[nail])).map(|text| text + "\n")
+    }
+}
+
+/// Where the outline comes from.
+#[derive(Debug, Clone)]
+pub(in crate::nailvideo) struct Finder {
+    place: OutlinePlace,
+    options: OutlineOptions,
+}
+
+impl Finder {
+    pub(in crate::nailvideo) fn new(outline: Option<&Path>, options: &NailVideoOptions) -> Self {
+        let place = match outline {
+            Some(file) if is_picture(file) => OutlinePlace::Mask(file.to_owned()),
+            Some(file) => OutlinePlace::LabelMe(file.to_owned()),
+            None => OutlinePlace::Detection,
+        };
+        Self { place, options: OutlineOptions { distal: options.distal, ..OutlineOptions::default() } }
+    }
+
+    /// Whether a frame is looked at: the first for what was drawn, some of the first for detection.
+    pub(in crate::nailvideo) fn looks_at(&self, index: u64) -> bool {
+        match self.place {
+            OutlinePlace::Detection => index.is_multiple_of(EVERY) && index < EVERY * TRIES,
+            _ => true,
+        }
+    }
+
+    /// Whether later frames may show the nail.
+    pub(in crate::nailvideo) fn may_look_on(&self, index: u64) -> bool {
+        self.place == OutlinePlace::Detection && index < EVERY * (TRIES - 1)
+    }
+
+    /// The nail on an upright frame; the error is words for the user.
+    pub(in crate::nailvideo) fn find(&self, picture: RgbImage) -> Result<FirstNail, String> {
+        let image = DynamicImage::ImageRgb8(picture);
+        let photograph = Photograph { image, orientation: Orientation::NoTransforms };
+        let listed = self.options.nails(&self.place, &photograph).map_err(|why| match self.place {
+            OutlinePlace::Detection => "no nail was found".to_owned(),
+            _ => why.to_string(),
+        })?;
+        let (used, refused): (Vec<Nail>, Vec<Nail>) = listed.nails.into_iter().partition(|nail| nail.reason.is_empty());
+        let mut whole =
+            used.into_iter().filter_map(|nail| Some((nail.outline?, nail.axis?, nail.source, nail.confidence)));
+        let (Some((outline, axis, source, confidence)), others) = (whole.next(), whole.count()) else {
+            let doubtful = |nail: Nail| match nail.source {
+                Source::Detected => "a nail was found without enough confidence".to_owned(),
+                _ => nail.reason,
+            };
+            return Err(refused.into_iter().next().map_or_else(|| "no nail was found".to_owned(), doubtful));
+        };
+        if others > 0 {
+            return Err(format!("{} nails are seen, and one is followed: draw that one alone", others + 1));
+        }
+        let frame = framed(&outline, axis)?;
+        Ok(FirstNail { outline, frame, source, confidence })
+    }
+}
+
+fn framed(outline: &Outline, axis: Axis) -> Result<NailFrame, String> {
+    let frame = NailFrame::new(outline, axis).map_err(|why| why.to_string())?;
+    if frame.width_px < LEAST_WIDTH_PX {
+        return Err(format!(
+            "the nail is {:.0} px wide; {LEAST_WIDTH_PX} are the fewest: film it nearer or with more pixels",
+            frame.width_px
+        ));
+    }
+    Ok(frame)
+}
+
+/// A frame as it is shown, in red, green and blue.
+pub(in crate::nailvideo) fn upright(frame: &Frame<'_>, info: &Info) -> RgbImage {
+    let quarters = info.turn.quarters();
+    let [width, height] = shown_size(&samples(frame.luma, quarters));
+    let part = Part { from: [0; 2], size: [width, height] };
+    let colours = Colours::of_part(frame, quarters, info.matrix, part);
+    RgbImage::from_fn(width as u32, height as u32, |x, y| {
+        image::Rgb(colours.at([f64::from(x), f64::from(y)]).map(|part| (255.0 * part).round().clamp(0.0, 255.0) as u8))
+    })
+}
+
+/// The mask named as the video in a folder.
+#[must_use]
+pub fn mask_of(folder: &Path, video: &Path) -> Option<PathBuf> {
+    let stem = video.file_stem()?.to_string_lossy();
+    PICTURES.iter().map(|ending| folder.join(format!("{stem}.{ending}"))).find(|path| path.is_file())
+}

@@ -1,0 +1,235 @@
+//! The nail followed through a video: where it is in each frame, or why that is not known.
+//!
+//! In: frames in order, and the nail in the first good one. Out: for each a [`Place`]: the affine motion of the shown
+//! picture's pixels from the first good frame, with its standard error, or [`Lost`]. A frame is fitted from where the
+//! motion of the two before leads (`register`); where that fails, coarser first; what is doubtful is lost (`judge`). A
+//! lost nail is looked for over the whole picture (`search`) and counts again once three frames running confirm it.
+
+mod judge;
+mod register;
+mod search;
+mod sight;
+mod template;
+#[cfg(test)]
+mod tests;
+
+pub(in crate::nailvideo) use judge::{Lost, Place};
+
+use judge::{Usual, judge};
+use register::{Fit, Scratch, register};
+use search::Search;
+use sight::{Sight, blur_px};
+use template::{BOX, Template};
+
+use super::affine::Affine;
+use super::grid::{Part, samples, shown_size};
+use crate::video::Frame;
+
+/// Frames that have to confirm a nail that was found again, itself among them.
+const TRIAL: usize = 3;
+/// Coarser steps before the fine one, where the fine one alone fails.
+const COARSER: [usize; 2] = [4, 2];
+/// A correlation this far below the video's own is looked at again from coarser pictures.
+const DOUBT_NCC_SHARE: f64 = 0.9;
+
+/// Follows one nail.
+#[derive(Debug)]
+pub(in crate::nailvideo) struct Follower {
+    frame_from_nail: Affine,
+    quarters: usize,
+    width_px: f64,
+    /// Pixels of a block of the fine template: 1, or more of a nail so large that blocks are as fine.
+    step: usize,
+    fine: Template,
+    coarse: Vec<(usize, Template)>,
+    search: Search,
+    usual: Usual,
+    scratch: Scratch,
+    state: State,
+    /// The last motion that was accepted.
+    last: Affine,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct At {
+    time_s: f64,
+    motion: Affine,
+}
+
+#[derive(Debug, Clone)]
+enum State {
+    /// The last frame, and the one before where that is known.
+    Followed(At, Option<At>),
+    Lost,
+    /// Found again, and confirmed so many times.
+    Trial(At, usize),
+}
+
+impl Follower {
+    /// Of a nail in a frame: `frame_from_nail` leads from half widths and half lengths about its middle to the shown
+    /// picture's pixels; `quarters` is how the frame is turned to be shown.
+    pub(in crate::nailvideo) fn new(frame: &Frame<'_>, quarters: usize, frame_from_nail: Affine) -> Self {
+        let samples = samples(frame.luma, quarters);
+        let [a, b, _, d, e, _] = frame_from_nail.0;
+        let extent_px = [2.0 * a.hypot(d), 2.0 * b.hypot(e)];
+        let blur_px = blur_px(extent_px[0]);
+        let step = ((extent_px[0] / LARGEST_FINE_PX) as usize).max(1);
+        let whole = Part { from: [0; 2], size: shown_size(&samples) };
+        let template = |step: usize| Template::new(&Sight::new(&samples, whole, step, blur_px), &frame_from_nail, step);
+        let coarse = COARSER.iter().map(|by| by * step).filter(|by| extent_px[0] / *by as f64 >= LEAST_COARSE_PX);
+        let coarse = coarse.map(|step| (step, template(step))).collect();
+        let fine = template(step);
+        let search = Search::new(&samples, fine.middle, extent_px, blur_px);
+        let first = At { time_s: frame.time_s, motion: Affine::IDENTITY };
+        Self {
+            frame_from_nail,
+            quarters,
+            width_px: extent_px[0],
+            step,
+            fine,
+            coarse,
+            search,
+            usual: Usual::default(),
+            scratch: Scratch::default(),
+            state: State::Followed(first, None),
+            last: Affine::IDENTITY,
+        }
+    }
+
+    /// The next frame could not be decoded.
+    pub(in crate::nailvideo) fn skip(&mut self) -> Lost {
+        Lost::Undecoded
+    }
+
+    /// Where the nail is in the next frame.
+    ///
+    /// # Errors
+    /// [`Lost`] where that is not known.
+    pub(in crate::nailvideo) fn step(&mut self, frame: &Frame<'_>) -> Result<Place, Lost> {
+        let time_s = frame.time_s;
+        match self.state.clone() {
+            State::Followed(at, before) => {
+                let expected = predicted(&at, before.as_ref(), time_s);
+                let found = self.near(frame, &expected, &at.motion);
+                match found {
+                    Ok((place, fit)) => {
+                        self.usual.learn(&fit);
+                        self.last = place.motion;
+                        self.state = State::Followed(At { time_s, motion: place.motion }, Some(at));
+                        Ok(place)
+                    }
+                    Err(lost) => {
+                        self.state = State::Lost;
+                        self.again(frame).map_or(Err(lost), |_| Err(lost))
+                    }
+                }
+            }
+            State::Trial(at, count) => {
+                // Nothing is known of its speed: it is expected where it was.
+                match self.near(frame, &at.motion, &at.motion) {
+                    Ok((place, _)) => {
+                        let here = At { time_s, motion: place.motion };
+                        if count + 1 < TRIAL {
+                            self.state = State::Trial(here, count + 1);
+                            return Err(Lost::Trial);
+                        }
+                        self.last = place.motion;
+                        self.state = State::Followed(here, Some(at));
+                        Ok(place)
+                    }
+                    Err(lost) => {
+                        self.state = State::Lost;
+                        self.again(frame).map_or(Err(lost), |_| Err(lost))
+                    }
+                }
+            }
+            State::Lost => self.again(frame).map_or_else(Err, |()| Err(Lost::Trial)),
+        }
+    }
+
+    /// Near where it is expected, by the fine template alone where that does.
+    fn near(&mut self, frame: &Frame<'_>, expected: &Affine, last: &Affine) -> Result<(Place, Fit), Lost> {
+        let fits = |found: &Result<(Place, Fit), Lost>, usual: &Usual| {
+            let least = usual.ncc().unwrap_or(0.0) * DOUBT_NCC_SHARE;
+            found.as_ref().is_ok_and(|(place, _)| place.ncc >= least)
+        };
+        let mut best = self.fine(frame, *expected, Some(expected));
+        if fits(&best, &self.usual) {
+            return best;
+        }
+        for start in [expected, last] {
+            let Some(start) = self.coarse(frame, *start) else { continue };
+            let other = self.fine(frame, start, Some(expected));
+            best = match (best, other) {
+                (Ok(a), Ok(b)) => Ok(if b.0.ncc > a.0.ncc { b } else { a }),
+                (a @ Ok(_), _) => a,
+                (Err(_), b @ Ok(_)) => b,
+                (a, _) => a,
+            };
+            if fits(&best, &self.usual) {
+                break;
+            }
+        }
+        best
+    }
+
+    /// Looks for a lost nail everywhere; what is found is on trial.
+    fn again(&mut self, frame: &Frame<'_>) -> Result<(), Lost> {
+        let samples = samples(frame.luma, self.quarters);
+        let mut why = Lost::Unlike;
+        let places = self.search.places(&samples, &self.last);
+        for start in std::iter::once(self.last).chain(places) {
+            let Some(start) = self.coarse(frame, start) else { continue };
+            match self.fine(frame, start, None) {
+                Ok((place, _)) => {
+                    self.state = State::Trial(At { time_s: frame.time_s, motion: place.motion }, 1);
+                    return Ok(());
+                }
+                Err(lost) => why = lost,
+            }
+        }
+        Err(why)
+    }
+
+    fn fine(&mut self, frame: &Frame<'_>, start: Affine, expected: Option<&Affine>) -> Result<(Place, Fit), Lost> {
+        let sight = self.sight(frame, &start, self.step).ok_or(Lost::Outside)?;
+        let fit = register(&self.fine, &sight, start, &mut self.scratch).ok_or(Lost::Unlike)?;
+        judge(&fit, &self.fine, &self.usual, expected, self.width_px).map(|place| (place, fit))
+    }
+
+    /// A better start, from coarser pictures.
+    fn coarse(&mut self, frame: &Frame<'_>, mut start: Affine) -> Option<Affine> {
+        for k in 0..self.coarse.len() {
+            let sight = self.sight(frame, &start, self.coarse[k].0)?;
+            start = register(&self.coarse[k].1, &sight, start, &mut self.scratch)?.motion;
+        }
+        Some(start)
+    }
+
+    /// The part of a frame in which the nail is looked for.
+    fn sight(&self, frame: &Frame<'_>, motion: &Affine, step: usize) -> Option<Sight> {
+        let samples = samples(frame.luma, self.quarters);
+        let corners = [[-BOX, -BOX], [BOX, -BOX], [BOX, BOX], [-BOX, BOX]];
+        let corners = corners.map(|corner| motion.of(self.frame_from_nail.of(corner)));
+        let blur_px = blur_px(self.width_px);
+        let reach = 2.0 * blur_px + 0.06 * self.width_px + 2.0 * step as f64;
+        let part = Part::about(&corners, reach, shown_size(&samples))?;
+        Some(Sight::new(&samples, part, step, blur_px))
+    }
+}
+
+/// A nail wider than this is looked at in blocks: as fine, of its width, as one of 200 to 400 pixels.
+const LARGEST_FINE_PX: f64 = 400.0;
+/// Coarse templates of nails narrower than this hold nothing (assumed).
+const LEAST_COARSE_PX: f64 = 16.0;
+
+/// Where the motion of the last two frames leads.
+fn predicted(at: &At, before: Option<&At>, time_s: f64) -> Affine {
+    let Some(before) = before else { return at.motion };
+    let ratio = (time_s - at.time_s) / (at.time_s - before.time_s);
+    // Over a gap the motion need not go on.
+    if !(0.0..=2.5).contains(&ratio) {
+        return at.motion;
+    }
+    Affine(std::array::from_fn(|k| at.motion.0[k] + ratio * (at.motion.0[k] - before.motion.0[k])))
+}

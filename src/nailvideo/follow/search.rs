@@ -1,0 +1,72 @@
+//! Where the nail may be after it was lost: its locally normalized luma, reduced to some 24 pixels across, turned and
+//! scaled, is looked for over the whole picture. What is found is a start for the fit, no more.
+
+use super::sight::Sight;
+use crate::nailvideo::affine::Affine;
+use crate::nailvideo::grid::{Part, shown_size};
+use crate::vision::{Samples, matched};
+
+/// The nail's width in blocks (assumed: an eighth of a nail of 190 px).
+const WIDTH_BLOCKS: f64 = 24.0;
+/// Turns and scales that are tried, from the last that are known (section 2.4 of the design: assumed).
+const TURNS_DEG: [f64; 5] = [0.0, -7.5, 7.5, -15.0, 15.0];
+const SCALES: [f64; 3] = [1.0, 0.87, 1.15];
+/// Places handed on, and the correlation below which none is (assumed: a fit judges them).
+const MOST_PLACES: usize = 3;
+const LEAST_FIT: f32 = 0.35;
+
+/// What is looked for.
+#[derive(Debug)]
+pub(super) struct Search {
+    template: Sight,
+    middle: [f64; 2],
+    /// Half of the square that is compared, pixels.
+    reach: f64,
+    step: usize,
+    blur_px: f64,
+}
+
+fn whole(samples: &Samples<'_>) -> Part {
+    Part { from: [0; 2], size: shown_size(samples) }
+}
+
+impl Search {
+    /// For the nail of a frame; `extent_px` are its width and length.
+    pub(super) fn new(samples: &Samples<'_>, middle: [f64; 2], extent_px: [f64; 2], blur_px: f64) -> Self {
+        let step = ((extent_px[0] / WIDTH_BLOCKS) as usize).max(1);
+        let template = Sight::new(samples, whole(samples), step, blur_px);
+        Self { template, middle, reach: 0.55 * extent_px[0].min(extent_px[1]), step, blur_px }
+    }
+
+    /// Motions that may be the nail's in a frame, the likeliest first; `last` is the last that was known.
+    pub(super) fn places(&self, samples: &Samples<'_>, last: &Affine) -> Vec<Affine> {
+        let sight = Sight::new(samples, whole(samples), self.step, self.blur_px);
+        let (picture, size) = sight.all();
+        let (turn, scale) = (last.0[3].atan2(last.0[0]), last.determinant().abs().sqrt());
+        let mut found: Vec<(f32, Affine)> = Vec::new();
+        for (turn_deg, by) in TURNS_DEG.iter().flat_map(|turn| SCALES.map(|scale| (*turn, scale))) {
+            let way = Affine::similarity(self.middle, [0.0; 2], turn + turn_deg.to_radians(), scale * by);
+            let Some(back) = way.inverse() else { continue };
+            // Blocks from the middle to each side.
+            let side = (self.reach * scale * by / self.step as f64).floor() as usize;
+            let across = 2 * side + 1;
+            let from_middle = |k: usize| (k as f64 - side as f64) * self.step as f64;
+            let patch = (0..across * across).map(|k| {
+                let [x, y] = back.of([from_middle(k % across), from_middle(k / across)]);
+                Some(self.template.at(x as f32, y as f32)).filter(|v| v.is_finite()).unwrap_or(0.0)
+            });
+            let patch: Vec<f32> = patch.collect();
+            let fits = matched(&picture, size, &patch, [across; 2]);
+            let columns = (size[0] + 1).saturating_sub(across);
+            let best = (0..fits.len()).max_by(|&a, &b| fits[a].total_cmp(&fits[b]));
+            let Some(best) = best.filter(|&best| fits[best] >= LEAST_FIT) else { continue };
+            let corner = [best % columns, best / columns].map(|k| (k + side) as f64);
+            let [x, y] = sight.middle(corner);
+            let mut motion = way.0;
+            (motion[2], motion[5]) = (motion[2] + x, motion[5] + y);
+            found.push((fits[best], Affine(motion)));
+        }
+        found.sort_by(|a, b| b.0.total_cmp(&a.0));
+        found.into_iter().take(MOST_PLACES).map(|(_, motion)| motion).collect()
+    }
+}

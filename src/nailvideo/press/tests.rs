@@ -1,0 +1,114 @@
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+
+use super::*;
+
+const RATE_HZ: f64 = 30.0;
+
+/// A press at 3 s and a release at 6 s, or none, in noise with first-order correlation `rho`.
+fn trace(step: f64, taus: [f64; 2], release_s: f64, rho: f64, until_s: f64, seed: u64) -> (Vec<f64>, Vec<f64>) {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let onset = 3.0 + (seed % 97) as f64 / 97.0 / RATE_HZ;
+    let mut carried = 0.0;
+    let time_s: Vec<f64> = (0..(until_s * RATE_HZ) as usize).map(|k| k as f64 / RATE_HZ).collect();
+    let values = time_s.iter().map(|&t| {
+        let fresh: f64 = StandardNormal.sample(&mut random);
+        carried = rho * carried + (1.0 - rho * rho).sqrt() * fresh;
+        let rise = |at: f64, tau: f64| if t > at { 1.0 - (-(t - at) / tau).exp() } else { 0.0 };
+        let reached = rise(onset, taus[0]).min(1.0);
+        let level = if t > release_s { rise(onset, taus[0]) * (1.0 - rise(release_s, taus[1])) } else { reached };
+        step * level + carried
+    });
+    (time_s.clone(), values.collect())
+}
+
+fn rows_of(time_s: &[f64], values: Vec<f64>) -> Vec<Row> {
+    let skin = Trace { name: "skin".to_owned(), values: vec![0.0; values.len()] };
+    let traces = [Trace { name: "P2".to_owned(), values }];
+    rows(&Recording { time_s, traces: &traces, ends: &[], skin: &skin, whole: 100.0 })
+}
+
+#[test]
+fn onsets_and_times_are_covered_by_their_intervals() {
+    for (tau, rho) in [(0.1, 0.0), (0.3, 0.3), (0.6, 0.0), (1.5, 0.3)] {
+        let (mut onset, mut t90, mut count) = (0.0, 0.0, 0.0);
+        let (mut onset_errors, mut t90_errors) = (Vec::new(), Vec::new());
+        for seed in 0..200 {
+            let release_s = 8.0 + (seed % 89) as f64 / 89.0 / RATE_HZ;
+            let (time_s, values) = trace(25.0, [0.2, tau], release_s, rho, 20.0, seed);
+            let rows = rows_of(&time_s, values);
+            let row = rows.iter().find(|row| row.event == Event::Release).expect("a release");
+            let Ok(course) = &row.course else { continue };
+            count += 1.0;
+            let holds = |one: fit::Interval, truth: f64| f64::from(u8::from(one.low <= truth && truth <= one.high));
+            onset += holds(course.onset_s, release_s);
+            t90 += holds(course.t90_s, tau * 10.0_f64.ln());
+            onset_errors.push((course.onset_s.value - release_s).abs());
+            t90_errors.push((course.t90_s.value / (tau * 10.0_f64.ln()) - 1.0).abs());
+        }
+        let median = |all: &mut Vec<f64>| {
+            all.sort_by(f64::total_cmp);
+            all[all.len() / 2]
+        };
+        let (onset_error, t90_error) = (median(&mut onset_errors), median(&mut t90_errors));
+        println!(
+            "tau {tau}, rho {rho}: {count} of 200, onset {:.3} s median, held {:.3}; t90 {:.1} %, held {:.3}",
+            onset_error,
+            onset / count,
+            100.0 * t90_error,
+            t90 / count
+        );
+        assert!(count >= 190.0 && onset_error <= 1.0 / RATE_HZ && t90_error <= 0.08);
+        assert!(onset / count >= 0.90 && t90 / count >= 0.90);
+    }
+}
+
+#[test]
+fn a_video_without_a_press_gives_no_figures() {
+    for seed in 0..300 {
+        let (time_s, mut values) = trace(0.0, [0.2, 0.2], 8.0, 0.5, 20.0, seed);
+        assert!(rows_of(&time_s, values.clone()).iter().all(Row::is_refused), "{seed}");
+        // Vasomotion of 0.1 Hz and a gap.
+        for (value, t) in values.iter_mut().zip(&time_s) {
+            *value += 1.5 * (0.6 * t).sin();
+        }
+        values[200..260].fill(f64::NAN);
+        assert!(rows_of(&time_s, values).iter().all(Row::is_refused), "{seed}");
+    }
+}
+
+#[test]
+fn what_does_not_end_or_is_not_seen_is_refused() {
+    // Never let go.
+    let (time_s, values) = trace(20.0, [0.2, 0.3], f64::INFINITY, 0.0, 12.0, 1);
+    let rows = rows_of(&time_s, values);
+    assert!(rows.len() == 1 && rows[0].event == Event::Press && rows[0].course.is_ok(), "{rows:?}");
+    assert_eq!(rows[0].pressed_s, None);
+    // The video ends before the blood is back.
+    let (time_s, values) = trace(20.0, [0.2, 3.0], 8.0, 0.0, 11.0, 2);
+    let rows = rows_of(&time_s, values);
+    assert!(rows[1].status().contains("not seen"), "{}", rows[1].status());
+    assert_eq!(rows[1].times_s(), [None; 4]);
+    // A tenth of the samples, and a fifth.
+    let (time_s, values) = trace(20.0, [0.2, 0.3], 8.0, 0.0, 12.0, 3);
+    let mut lost = values.clone();
+    (0..lost.len()).filter(|k| k % 5 == 0).for_each(|k| lost[k] = f64::NAN);
+    let rows = rows_of(&time_s, lost);
+    assert!(rows.iter().all(|row| row.status().contains("missing")), "{:?}", rows[0].status());
+    // The skin changes as the nail does: a lamp was switched.
+    let skin = Trace { name: "skin".to_owned(), values: values.clone() };
+    let traces = [Trace { name: "P2".to_owned(), values }];
+    let rows = super::rows(&Recording { time_s: &time_s, traces: &traces, ends: &[], skin: &skin, whole: 100.0 });
+    assert!(rows.iter().all(|row| row.status().contains("light")), "{:?}", rows[0].status());
+}
+
+#[test]
+fn a_press_in_a_trace_of_two_has_its_length() {
+    let (time_s, values) = trace(15.0, [0.2, 0.3], 8.0, 0.0, 14.0, 5);
+    let rows = rows_of(&time_s, values);
+    let onset = 3.0 + 5.0 / 97.0 / RATE_HZ;
+    assert_eq!(rows.len(), 2);
+    assert!((rows[0].pressed_s.unwrap() - (8.0 - onset)).abs() <= 0.05, "{:?}", rows[0].pressed_s);
+    assert!((rows[1].depth().unwrap() + 15.0).abs() <= 0.5);
+}

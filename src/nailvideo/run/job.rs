@@ -1,0 +1,396 @@
+//! The job: a video and options in, tables, maps and pictures out; the one entry that command line and pipelines call.
+//!
+//! A frame is decoded, the nail found in it by the motion since the first good frame, its photodiodes read, and the
+//! frame forgotten. Of each frame a row of numbers is kept (some 24 bytes for each photodiode) until all are read: the
+//! noise, and with it the standard errors, is known then.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::time::Instant;
+
+use ndarray_npy::WriteNpyExt;
+
+use super::draw::{Thumbnails, draw};
+use super::plan::{light_of, steps};
+use super::report::{FrameCounts, MapFigures, NailFigures, NailVideoFigures, NailVideoReport, PhotodiodeFigures};
+use super::results::{CellTable, Kept, MotionTable, Reading, photodiodes, presses};
+use crate::figure::{encode_png, png};
+use crate::files::Staging;
+use crate::job::{Report, Watch};
+use crate::nail::Positions;
+use crate::nailvideo::error::NailVideoError;
+use crate::nailvideo::first::{Finder, FirstNail, upright};
+use crate::nailvideo::follow::{Follower, Lost};
+use crate::nailvideo::normal::{SIDE, WindowSums, green};
+use crate::nailvideo::options::{Inputs, Light, NailVideoOptions, Outputs};
+use crate::nailvideo::press::{Recording, Trace, USE, noise_sd, rows};
+use crate::nailvideo::sample::{Colours, Region, Sampled, Sampler, cells, discs};
+use crate::stages::{Stages, left_out};
+use crate::video::{End, Frame, Info, Item, Video};
+
+/// The first good frame, for LabelMe.
+const PICTURE: &str = "nail.png";
+
+/// Reads where the photodiodes are; without a file the thesis' eight.
+///
+/// # Errors
+/// A file that can't be read, or is none.
+pub(in crate::nailvideo) fn positions(path: Option<&Path>) -> Result<Positions, NailVideoError> {
+    let Some(path) = path else { return Ok(Positions::thesis()) };
+    let refused = |why: String| NailVideoError::Positions { path: path.to_owned(), why };
+    let text = crate::input::read(path).map_err(|why| refused(format!("cannot be read ({why})")))?;
+    let text = String::from_utf8(text).map_err(|_| refused("is no UTF-8 text; write positions as TOML".to_owned()))?;
+    let json = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
+    let read = if json { Positions::from_json(&text) } else { Positions::from_toml(&text) };
+    read.map_err(|why| refused(why.to_string()))
+}
+
+/// Runs the job; every result is in its place when it returns.
+///
+/// # Errors
+/// [`NailVideoError`] where there are no results.
+pub fn run(
+    inputs: &Inputs,
+    options: &NailVideoOptions,
+    outputs: &Outputs,
+    watch: &Watch<'_>,
+) -> Result<NailVideoReport, NailVideoError> {
+    let start = Instant::now();
+    let stages = Stages::default();
+    let positions = positions(inputs.positions.as_deref())?;
+    let mut video = Video::open(&inputs.video, options.threads)?;
+    let info = video.info().clone();
+    let light = light_of(info.grey, options);
+    if info.grey && light != Light::None {
+        let why = "is grey: only --light none can be had of it".to_owned();
+        return Err(NailVideoError::Option { path: inputs.video.clone(), why });
+    }
+    let staging = Staging::new(&outputs.folder)?;
+    let finder = Finder::new(inputs.outline.as_deref(), options);
+    let job = Job { inputs, options, outputs, info: &info, light, staging: &staging, stages: &stages };
+    let mut counts = FrameCounts::default();
+    let mut kept: Vec<Kept> = Vec::new();
+    let mut at_work: Option<AtWork> = None;
+    let mut why_not = "no frame could be decoded".to_owned();
+    loop {
+        watch.go_on()?;
+        let Some(item) = stages.time("decode", || video.next_item())? else { break };
+        let (index, time_s, frame) = match &item {
+            Item::Frame(frame) => (frame.index, frame.time_s, Some(frame)),
+            Item::Missing { index, time_s } => (*index, *time_s, None),
+        };
+        counts.all += 1;
+        let place = match (&mut at_work, frame) {
+            (Some(work), frame) => job.step(work, index, time_s, frame)?,
+            (None, None) => Kept { index, time_s, place: Err(Lost::Undecoded), readings: Vec::new(), skin: f64::NAN },
+            (None, Some(frame)) => {
+                if finder.looks_at(index) {
+                    match stages.time("find the nail", || finder.find(upright(frame, &info))) {
+                        Ok(nail) => {
+                            counts.first = index;
+                            at_work = Some(job.begin(nail, frame, &positions, &kept)?);
+                        }
+                        Err(why) => why_not = why,
+                    }
+                }
+                match &mut at_work {
+                    Some(work) => job.step(work, index, time_s, Some(frame))?,
+                    None if !finder.may_look_on(index) => break,
+                    None => Kept { index, time_s, place: Err(Lost::NotYet), readings: Vec::new(), skin: f64::NAN },
+                }
+            }
+        };
+        match &place.place {
+            Ok(_) => counts.followed += 1,
+            Err(lost) => *counts.lost.entry(lost.name().to_owned()).or_default() += 1,
+        }
+        kept.push(place);
+        (watch.tick)(counts.all, info.declared_frames);
+    }
+    let Some(work) = at_work else {
+        let path = inputs.outline.clone().unwrap_or_else(|| inputs.video.clone());
+        let remedy = if inputs.outline.is_some() {
+            ""
+        } else {
+            "; draw the nail of the first frame in LabelMe, label it `nail`, and give the file as --outline"
+        };
+        return Err(NailVideoError::Nail { path, why: format!("{why_not}{remedy}") });
+    };
+    let mut report = job.finish(work, counts, &kept, &positions, watch)?;
+    if let End::Early(why) = video.end() {
+        report.warnings.push(format!("{}: {why}", inputs.video.display()));
+    }
+    report.warnings.extend(info.warnings.iter().map(|why| format!("{}: {why}", inputs.video.display())));
+    let mut report = report.timed(&stages, start);
+    let decoding: f64 = report.stages.iter().filter(|s| s.stage == "decode").map(|s| s.thread_s).sum();
+    report.decoding_share = decoding / report.wall_s;
+    if outputs.report {
+        staging.write("run.json", report.text().as_bytes())?;
+    }
+    staging.commit()?;
+    Ok(report)
+}
+
+/// What does not change over the video.
+struct Job<'a> {
+    inputs: &'a Inputs,
+    options: &'a NailVideoOptions,
+    outputs: &'a Outputs,
+    info: &'a Info,
+    light: Light,
+    staging: &'a Staging,
+    stages: &'a Stages,
+}
+
+/// A nail that is followed.
+struct AtWork {
+    nail: FirstNail,
+    follower: Follower,
+    sampler: Sampler,
+    /// The first of the sampler's regions are the photodiodes.
+    photodiodes: usize,
+    readings: Vec<Reading>,
+    motion: MotionTable,
+    cells: Option<CellTable>,
+    windows: Vec<WindowSums>,
+    thumbnails: Option<Thumbnails>,
+    se_px: Vec<f64>,
+    ncc: Vec<f64>,
+}
+
+impl Job<'_> {
+    /// Begins with the nail of the first good frame; `kept` are the frames before it.
+    fn begin(
+        &self,
+        nail: FirstNail,
+        frame: &Frame<'_>,
+        positions: &Positions,
+        kept: &[Kept],
+    ) -> Result<AtWork, NailVideoError> {
+        let quarters = self.info.turn.quarters();
+        let frame_from_nail = nail.frame_from_nail();
+        let off = || NailVideoError::Nail {
+            path: self.inputs.video.clone(),
+            why: "the nail lies beyond the picture; draw its outline on the video's first frame".to_owned(),
+        };
+        let first = Colours::new(frame, quarters, self.info.matrix, &frame_from_nail).ok_or_else(off)?;
+        let mut regions: Vec<Region> = discs(positions, [nail.frame.width_px, nail.frame.length_px]);
+        let photodiodes = regions.len();
+        let side = self.options.cells.map(usize::from);
+        let mut read = Vec::new();
+        for cell in side.map_or_else(Vec::new, |side| cells(side, &nail.outline, &frame_from_nail)) {
+            read.push(cell.is_some().then(|| regions.len() - photodiodes));
+            regions.extend(cell);
+        }
+        let sampler = Sampler::new(regions, self.light, self.info.grey, &first, &frame_from_nail);
+        let mut motion = MotionTable::create(self.staging, self.outputs, nail.frame)?;
+        let cells = side.map(|side| CellTable::create(self.staging, self.outputs, side, read, self.light));
+        let mut cells = cells.transpose()?;
+        for row in kept {
+            motion.add(row.index, row.time_s, &Err(row.place.err().unwrap_or(Lost::NotYet)))?;
+            if let Some(cells) = &mut cells {
+                cells.add(row.time_s, &[])?;
+            }
+        }
+        let picture = upright(frame, self.info);
+        let size = [picture.width(), picture.height()];
+        let refused = |why: &dyn std::fmt::Display| self.staging.refused(PICTURE, why);
+        self.staging.write(PICTURE, &png(&picture.into()).map_err(|why| refused(&why))?)?;
+        self.staging.write("nail.json", nail.labelme(PICTURE, size).map_err(|why| refused(&why))?.as_bytes())?;
+        Ok(AtWork {
+            follower: Follower::new(frame, quarters, frame_from_nail),
+            sampler,
+            photodiodes,
+            readings: Vec::new(),
+            motion,
+            cells,
+            windows: self.options.maps.iter().copied().map(WindowSums::new).collect(),
+            thumbnails: self.outputs.figures.then(Thumbnails::default),
+            se_px: Vec::new(),
+            ncc: Vec::new(),
+            nail,
+        })
+    }
+
+    /// A frame.
+    fn step(
+        &self,
+        work: &mut AtWork,
+        index: u64,
+        time_s: f64,
+        frame: Option<&Frame<'_>>,
+    ) -> Result<Kept, NailVideoError> {
+        let place = match frame {
+            Some(frame) => self.stages.time("follow", || work.follower.step(frame)),
+            None => Err(work.follower.skip()),
+        };
+        work.motion.add(index, time_s, &place)?;
+        let mut lost = Kept { index, time_s, place: Err(Lost::Outside), readings: Vec::new(), skin: f64::NAN };
+        let quarters = self.info.turn.quarters();
+        let seen = frame.zip(place.as_ref().ok()).and_then(|(frame, place)| {
+            let frame_from_nail = place.motion.after(&work.nail.frame_from_nail());
+            Some((Colours::new(frame, quarters, self.info.matrix, &frame_from_nail)?, frame_from_nail, place))
+        });
+        let Some((colours, frame_from_nail, place)) = seen else {
+            lost.place = Err(place.err().unwrap_or(Lost::Outside));
+            if let Some(cells) = &mut work.cells {
+                cells.add(time_s, &[])?;
+            }
+            return Ok(lost);
+        };
+        self.stages.time("photodiodes", || work.sampler.sample(&colours, &frame_from_nail, &mut work.readings));
+        if let Some(cells) = &mut work.cells {
+            self.stages.time("cells", || cells.add(time_s, &work.readings[work.photodiodes..]))?;
+        }
+        self.stages.time("maps", || {
+            work.windows.iter_mut().for_each(|window| window.add(time_s, &colours, &frame_from_nail));
+        });
+        if self.outputs.frames {
+            self.stages.time("normalized frames", || {
+                let name = format!("frames/{index:06}.png");
+                let (picture, mut bytes) = (green(&colours, &frame_from_nail), Vec::new());
+                encode_png(&picture, [SIDE as u32; 2], image::ExtendedColorType::L8, &mut bytes)
+                    .map_err(|why| self.staging.refused(&name, why))?;
+                self.staging.write(&name, &bytes)
+            })?;
+        }
+        if let Some(thumbnails) = &mut work.thumbnails {
+            self.stages.time("figures", || thumbnails.offer(time_s, &colours, &frame_from_nail));
+        }
+        work.se_px.push(place.se_px);
+        work.ncc.push(place.ncc);
+        Ok(Kept {
+            place: Ok(place.se_px as f32),
+            readings: work.readings[..work.photodiodes].to_vec(),
+            skin: work.sampler.skin(&colours, &frame_from_nail),
+            ..lost
+        })
+    }
+
+    /// Writes what needs the whole video.
+    fn finish(
+        &self,
+        work: AtWork,
+        counts: FrameCounts,
+        kept: &[Kept],
+        positions: &Positions,
+        watch: &Watch<'_>,
+    ) -> Result<NailVideoReport, NailVideoError> {
+        let AtWork { nail, motion, cells, windows, thumbnails, se_px, ncc, .. } = work;
+        motion.finish()?;
+        if let Some(cells) = cells {
+            cells.finish()?;
+        }
+        let names: Vec<String> = positions.photodiodes.iter().map(|one| one.name.clone()).collect();
+        let time_s: Vec<f64> = kept.iter().map(|row| row.time_s).collect();
+        let value =
+            |row: &Kept, k: usize| row.readings.get(k).and_then(|one| one.ok()).map_or(f64::NAN, |one| one.value);
+        let trace = |k: usize| Trace { name: names[k].clone(), values: kept.iter().map(|row| value(row, k)).collect() };
+        let traces: Vec<Trace> = (0..names.len()).map(trace).collect();
+        let noise: Vec<Option<f64>> = traces.iter().map(|trace| noise_sd(&trace.values)).collect();
+        let sd = |k: usize, one: &Sampled, se_px: f32| {
+            // The place's error has two axes, the slope is along the steeper.
+            let moved = one.slope_per_px * f64::from(se_px) / 2.0_f64.sqrt();
+            noise[k].map(|noise| noise.hypot(moved).hypot(one.chroma_sd))
+        };
+        self.stages.time("write", || photodiodes(self.staging, self.outputs, &names, self.light, kept, sd))?;
+        let skin = Trace { name: "skin".to_owned(), values: kept.iter().map(|row| row.skin).collect() };
+        let ends = ends(positions, &traces);
+        let whole = if self.light == Light::None {
+            middle(traces.iter().flat_map(|t| t.values.iter().copied()))
+        } else {
+            Some(100.0)
+        };
+        let recording =
+            Recording { time_s: &time_s, traces: &traces, ends: &ends, skin: &skin, whole: whole.unwrap_or(1.0) };
+        let pressed = self.stages.time("presses", || rows(&recording));
+        presses(self.staging, self.outputs, self.light, &pressed)?;
+        for sums in &windows {
+            let [mean, sd] = sums.maps();
+            for (map, what) in [(mean, "mean"), (sd, "sd")] {
+                let name = format!("maps/{}-{}-{what}.npy", sums.window.from_s, sums.window.to_s);
+                let mut bytes = Vec::new();
+                map.write_npy(&mut bytes).map_err(|why| self.staging.refused(&name, why))?;
+                self.staging.write(&name, &bytes)?;
+            }
+        }
+        let mut courses = BTreeMap::new();
+        pressed.iter().for_each(|row| *courses.entry(row.status()).or_default() += 1);
+        let figures = NailVideoFigures {
+            nail: NailFigures {
+                outline: nail.source.name(),
+                width_px: nail.frame.width_px,
+                length_px: nail.frame.length_px,
+                axis_deg: nail.frame.axis.clockwise_deg(),
+            },
+            light: self.light,
+            unit: self.light.unit(),
+            positions: positions.name.clone(),
+            photodiodes: (0..names.len()).map(|k| photodiode(&names[k], k, kept, noise[k])).collect(),
+            se_px: middle(se_px.iter().copied()),
+            correlation: middle(ncc.iter().copied()),
+            presses: pressed.iter().map(|row| row.press).max().unwrap_or(0),
+            courses,
+            presses_are_for: USE,
+            maps: windows.iter().map(|sums| MapFigures { window: sums.window, frames: sums.frames }).collect(),
+            frames: counts,
+            decoding_share: 0.0,
+        };
+        let mut report = Report {
+            left_out: left_out(steps(Some(self.info), self.inputs.outline.is_some(), self.options, Some(self.outputs))),
+            ..Report::new("nailvideo", watch, figures)
+        };
+        report.notes.push(format!("presses.csv: {USE}"));
+        if self.info.grey && self.options.light.is_none() {
+            report.warnings.push("the video is grey: light is not taken off (--light none)".to_owned());
+        }
+        if report.frames.first > 0 {
+            let first = report.frames.first;
+            report.notes.push(format!("no nail was found before frame {first}; the nail is followed from there on"));
+        }
+        let lost = report.frames.all - report.frames.followed;
+        if lost * 4 > report.frames.all {
+            let (all, reasons) = (report.frames.all, &report.frames.lost);
+            let reasons: Vec<String> = reasons.iter().map(|(why, count)| format!("{count} {why}")).collect();
+            let text = format!("the nail is followed in {} of {all} frames only ({})", all - lost, reasons.join(", "));
+            report.warnings.push(text);
+        }
+        for sums in windows.iter().filter(|sums| sums.frames == 0) {
+            report.warnings.push(format!("--maps {}: the nail is followed in none of its frames", sums.window));
+        }
+        if let Some(thumbnails) = thumbnails {
+            self.stages.time("figures", || draw(self.staging, &mut report, &recording, &pressed, &thumbnails))?;
+        }
+        Ok(report)
+    }
+}
+
+/// Means of the photodiodes toward each end of the nail, where all of them have a value.
+fn ends(positions: &Positions, traces: &[Trace]) -> Vec<Trace> {
+    let end = |name: &str, is_there: &dyn Fn(f64) -> bool| {
+        let members: Vec<&Trace> =
+            positions.photodiodes.iter().zip(traces).filter(|(one, _)| is_there(one.v)).map(|(_, t)| t).collect();
+        let mean = |row: usize| members.iter().map(|t| t.values[row]).sum::<f64>() / members.len() as f64;
+        let rows = members.first().map_or(0, |t| t.values.len());
+        (members.len() > 1).then(|| Trace { name: name.to_owned(), values: (0..rows).map(mean).collect() })
+    };
+    [end("distal", &|v| v > 0.0), end("proximal", &|v| v < 0.0)].into_iter().flatten().collect()
+}
+
+fn middle(all: impl Iterator<Item = f64>) -> Option<f64> {
+    let mut all: Vec<f64> = all.filter(|value| value.is_finite()).collect();
+    let at = all.len() / 2;
+    (!all.is_empty()).then(|| *all.select_nth_unstable_by(at, f64::total_cmp).1)
+}
+
+fn photodiode(name: &str, k: usize, kept: &[Kept], noise_sd: Option<f64>) -> PhotodiodeFigures {
+    let mut absent: BTreeMap<String, u64> = BTreeMap::new();
+    let mut frames = 0;
+    for reading in kept.iter().filter_map(|row| row.readings.get(k)) {
+        match reading {
+            Ok(_) => frames += 1,
+            Err(why) => *absent.entry(why.name().to_owned()).or_default() += 1,
+        }
+    }
+    PhotodiodeFigures { name: name.to_owned(), frames, absent, noise_sd }
+}

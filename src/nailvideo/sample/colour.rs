@@ -1,0 +1,78 @@
+//! Colours of a frame about the nail, read through its motion.
+
+use super::region::Group;
+use crate::nailvideo::affine::Affine;
+use crate::nailvideo::grid::{Grid, Part, samples, shown_size};
+use crate::video::{Frame, Matrix};
+
+/// Luma and chroma about the nail.
+#[derive(Debug)]
+pub(in crate::nailvideo) struct Colours {
+    luma: Grid,
+    chroma: Option<[Grid; 2]>,
+    matrix: Matrix,
+}
+
+impl Colours {
+    /// Of the part of a frame in which the nail's box, and a quarter more, lies; `None` where that is off the picture.
+    pub(in crate::nailvideo) fn new(
+        frame: &Frame<'_>,
+        quarters: usize,
+        matrix: Matrix,
+        frame_from_nail: &Affine,
+    ) -> Option<Self> {
+        let luma = samples(frame.luma, quarters);
+        let corners = [[-1.3, -1.3], [1.3, -1.3], [1.3, 1.3], [-1.3, 1.3]].map(|corner| frame_from_nail.of(corner));
+        let part = Part::about(&corners, 2.0, shown_size(&luma))?;
+        // Chroma blocks begin on even pixels.
+        let from = part.from.map(|at| at & !3);
+        let size = std::array::from_fn(|k| part.size[k] + part.from[k] - from[k]);
+        Some(Self::of_part(frame, quarters, matrix, Part { from, size }))
+    }
+
+    /// Of a part of a frame.
+    pub(in crate::nailvideo) fn of_part(frame: &Frame<'_>, quarters: usize, matrix: Matrix, part: Part) -> Self {
+        let luma = Grid::of_luma(&samples(frame.luma, quarters), part, 1);
+        Self { luma, chroma: Grid::of_chroma(frame, quarters, part), matrix }
+    }
+
+    /// Red, green and blue of a point, fraction of full scale; all luma in a grey video; NaN off the picture.
+    pub(in crate::nailvideo) fn at(&self, [x, y]: [f64; 2]) -> [f64; 3] {
+        self.rgb(self.samples([x as f32, y as f32]).map(f64::from))
+    }
+
+    /// By how much a level of 255 of Cb and of Cr changes red, green and blue; nothing in a grey video.
+    pub(in crate::nailvideo) fn of_chroma_levels(&self) -> [[f64; 3]; 2] {
+        let none = self.rgb([128.0; 3]);
+        [[128.0, 129.0, 128.0], [128.0, 128.0, 129.0]].map(|samples| {
+            let rgb = self.rgb(samples);
+            std::array::from_fn(|c| if self.chroma.is_some() { rgb[c] - none[c] } else { 0.0 })
+        })
+    }
+
+    /// The mean over a group's points.
+    pub(in crate::nailvideo) fn mean(&self, group: &Group, frame_from_nail: &Affine) -> [f64; 3] {
+        let [a, b, c, d, e, f] = frame_from_nail.0.map(|part| part as f32);
+        let mut sum = [0.0_f32; 3];
+        for &[u, v] in &group.points {
+            let (u, v) = (u as f32, v as f32);
+            let one = self.samples([a * u + b * v + c, d * u + e * v + f]);
+            sum.iter_mut().zip(one).for_each(|(sum, part)| *sum += part);
+        }
+        self.rgb(sum.map(|sum| f64::from(sum) / group.points.len() as f64))
+    }
+
+    #[inline]
+    fn samples(&self, [x, y]: [f32; 2]) -> [f32; 3] {
+        let luma = self.luma.at(x, y);
+        match &self.chroma {
+            Some([cb, cr]) => [luma, cb.at(x, y), cr.at(x, y)],
+            None => [luma, 128.0, 128.0],
+        }
+    }
+
+    /// Linear in the samples: the mean's colour is the colours' mean.
+    fn rgb(&self, samples: [f64; 3]) -> [f64; 3] {
+        self.matrix.to_rgb(samples)
+    }
+}

@@ -1,0 +1,82 @@
+//! A frame's picture: the moved canvas, in the frame's light, with what covers it and the camera's noise.
+
+use rayon::prelude::*;
+
+use super::Scene;
+use super::track::Affine;
+use crate::phantom::video::{Converter, Siting, add_noise};
+use crate::video::{Matrix, Picture};
+
+/// The most pixels between two exposures, and the most exposures.
+const APART_PX: f64 = 0.7;
+const MOST_EXPOSURES: f64 = 48.0;
+
+impl Scene {
+    /// A frame's picture, as the encoder gets it.
+    #[must_use]
+    pub fn picture(&self, frame: usize) -> Picture {
+        let format = self.options.format();
+        let converter = Converter::new(format, &Matrix::BT709, Siting::Left);
+        let noise_sd = (self.options.noise / 255.0) as f32;
+        let exposures = self.exposures(frame);
+        let painted = match &self.other {
+            Some((canvas, weights)) if self.is_cut(frame) => canvas.painted(weights),
+            _ => self.canvas.painted(&self.moments[frame].weights),
+        };
+        let time_s = self.time_s(frame);
+        let light = self.light.at(time_s, &self.track.at(time_s));
+        let rods: Vec<_> = self.rods.iter().filter_map(|rod| rod.at(time_s)).collect();
+        let share = 1.0 / exposures.len() as f32;
+        let row = |y: usize, rgb: &mut [Vec<f32>; 3]| {
+            let [red, green, blue] = &mut *rgb;
+            for (x, ((red, green), blue)) in red.iter_mut().zip(green).zip(blue).enumerate() {
+                let at = [x as f64, y as f64];
+                let mut colour = [0.0f32; 3];
+                for back in &exposures {
+                    let one = painted.colour(back.apply(at));
+                    (0..3).for_each(|c| colour[c] += share * one[c]);
+                }
+                for (covered, own) in rods.iter().map(|rod| rod.over(at)).filter(|(covered, _)| *covered > 0.0) {
+                    (0..3).for_each(|c| colour[c] += covered as f32 * (own[c] as f32 - colour[c]));
+                }
+                let (factor, mirrored) = (light.over(at), light.mirrored(at) as f32);
+                let lit = |c: usize| {
+                    let lit = colour[c] * factor[c] as f32;
+                    lit + (1.0 - lit).max(0.0) * mirrored
+                };
+                (*red, *green, *blue) = (lit(0), lit(1), lit(2));
+            }
+            add_noise(rgb, noise_sd, self.options.seed, frame, y);
+        };
+        let mut picture = Picture::new(format);
+        let (luma, chroma) = picture.planes.split_at_mut(1);
+        let [cb, cr] = chroma else { return picture };
+        let half = format.width / 2;
+        let groups = luma[0].par_chunks_mut(2 * format.width).zip(cb.par_chunks_mut(half)).zip(cr.par_chunks_mut(half));
+        let fresh = || [0, 1].map(|_| [0, 1, 2].map(|_| vec![0.0f32; format.width]));
+        groups.enumerate().for_each_init(fresh, |rows, (group, ((luma, cb), cr))| {
+            for ((k, rgb), luma) in rows.iter_mut().enumerate().zip(luma.chunks_exact_mut(format.width)) {
+                row(2 * group + k, rgb);
+                converter.luma(rgb, luma);
+            }
+            let rows: Vec<_> = rows.iter().collect();
+            converter.chroma(1, &rows, cb);
+            converter.chroma(2, &rows, cr);
+        });
+        picture
+    }
+
+    /// This frame's pixels to frame 0's plane, one for each exposure.
+    fn exposures(&self, frame: usize) -> Vec<Affine> {
+        let time_s = self.time_s(frame);
+        let open_s = self.options.blur / self.options.fps;
+        let at = |share: f64| self.track.at(time_s + share * open_s);
+        let [width, height] = [self.options.size.0, self.options.size.1].map(f64::from);
+        let moved = [[0.0, 0.0], [width, 0.0], [0.0, height], [width, height]].map(|corner| {
+            let [from, to] = [-0.5, 0.5].map(|share| at(share).apply(corner));
+            (from[0] - to[0]).hypot(from[1] - to[1])
+        });
+        let count = (moved.into_iter().fold(0.0, f64::max) / APART_PX).ceil().clamp(1.0, MOST_EXPOSURES) as usize;
+        (0..count).map(|k| at((k as f64 + 0.5) / count as f64 - 0.5).inverse()).collect()
+    }
+}

@@ -1,0 +1,114 @@
+//! The light on each frame: its level, its colour, its gradient over the picture and its glare on the nail, which all
+//! change with time.
+//!
+//! In: the options and a time. Out: by what each channel of each pixel is multiplied, as encoded, and how much of full
+//! white is mirrored. A gradient turns once in 40 s; level, colour and glare drift with rates of 0.02 to 0.2 Hz
+//! (assumed). Glare is a streak along the nail, a twentieth of the nail wide.
+
+use std::f64::consts::TAU;
+
+use rand::RngExt;
+
+use super::{Affine, NailVideoOptions};
+use crate::phantom::motion::wave::{Wave, random_wave};
+use crate::phantom::nail::{NailScene, numbers};
+
+const KIND_LIGHT: u32 = 43;
+const DRIFT_HZ: f64 = 0.05;
+const TURN_S: f64 = 40.0;
+
+/// The light of a scene.
+#[derive(Debug, Clone)]
+pub(super) struct DriftingLight {
+    level: f64,
+    colour: f64,
+    gradient: f64,
+    flicker: f64,
+    flicker_hz: f64,
+    phase: f64,
+    glare: f64,
+    waves: [Wave; 4],
+    nail: NailScene,
+    half_px: [f64; 2],
+}
+
+/// Standard deviations of the glare across and along, of the nail's half width and length, and how far its middle goes
+/// from the nail's.
+const GLARE: [f64; 2] = [0.05, 0.22];
+const GLARE_REACH: [f64; 2] = [0.5, 0.3];
+
+/// The light of a frame.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct FrameLight {
+    /// In the picture's middle: red, green, blue.
+    channels: [f64; 3],
+    /// Change from the middle to the right border and to the lower one.
+    gradient: [f64; 2],
+    half_px: [f64; 2],
+    /// How strong glare is, its middle, the nail's direction to the right and the glare's size, pixels.
+    glare: f64,
+    glare_px: [f64; 2],
+    right: [f64; 2],
+    size_px: [f64; 2],
+}
+
+impl DriftingLight {
+    pub(super) fn new(options: &NailVideoOptions, scene: &NailScene) -> Self {
+        let wave = |index: u32| random_wave(DRIFT_HZ, 0.4..4.0, options.seed, KIND_LIGHT, index);
+        Self {
+            level: 0.01 * options.light_drift_percent,
+            colour: 0.01 * options.colour_drift_percent,
+            gradient: 0.01 * options.gradient_percent,
+            flicker: 0.01 * options.flicker_percent,
+            flicker_hz: options.flicker_hz,
+            phase: numbers(options.seed, KIND_LIGHT, 2).random_range(0.0..TAU),
+            glare: 0.01 * options.glare_percent,
+            waves: [wave(0), wave(1), wave(3), wave(4)],
+            nail: scene.clone(),
+            half_px: [0.5 * f64::from(options.size.0), 0.5 * f64::from(options.size.1)],
+        }
+    }
+
+    /// At `t_s`, when the hand has come so far as `motion` says. Level and colour are those of the first frame but for
+    /// what has changed since.
+    pub(super) fn at(&self, t_s: f64, motion: &Affine) -> FrameLight {
+        let [level, colour, ..] = self.waves.map(|wave| 0.5 * (wave.at(t_s) - wave.at(0.0)));
+        let flicker = 1.0 + self.flicker * (TAU * self.flicker_hz * t_s + self.phase).sin();
+        let level = flicker * (1.0 + self.level * level);
+        let colour = self.colour * colour;
+        let (sin, cos) = (self.phase + TAU * t_s / TURN_S).sin_cos();
+        FrameLight {
+            channels: [level * (1.0 + colour), level, level * (1.0 - colour)],
+            gradient: [self.gradient * cos, self.gradient * sin],
+            half_px: self.half_px,
+            glare: self.glare,
+            glare_px: {
+                let [u, v] = [0, 1].map(|axis| GLARE_REACH[axis] * self.waves[2 + axis].at(t_s));
+                motion.apply(self.nail.picture_from_nail(u, v))
+            },
+            right: self.nail.axis().right(),
+            size_px: [0.5 * GLARE[0] * self.nail.width_px(), 0.5 * GLARE[1] * self.nail.length_px()],
+        }
+    }
+}
+
+impl FrameLight {
+    /// How much of full white is mirrored at a pixel.
+    pub(super) fn mirrored(&self, [x, y]: [f64; 2]) -> f64 {
+        if self.glare == 0.0 {
+            return 0.0;
+        }
+        let [rx, ry] = self.right;
+        let d = [x - self.glare_px[0], y - self.glare_px[1]];
+        let across = (d[0] * rx + d[1] * ry) / self.size_px[0];
+        let along = (d[0] * ry - d[1] * rx) / self.size_px[1];
+        self.glare * (-0.5 * (across * across + along * along)).exp()
+    }
+
+    /// What red, green and blue are multiplied by at a pixel.
+    pub(super) fn over(&self, [x, y]: [f64; 2]) -> [f64; 3] {
+        let [right, down] = [(x + 0.5) / self.half_px[0] - 1.0, (y + 0.5) / self.half_px[1] - 1.0];
+        let here = (1.0 + self.gradient[0] * right + self.gradient[1] * down).max(0.0);
+        self.channels.map(|channel| channel * here)
+    }
+}

@@ -1,0 +1,57 @@
+//! `lunula layout` from the command line: maps of `lunula photos` to places that other commands read.
+
+use lunula::nail::Positions;
+
+use crate::util::{Dir, Json};
+
+#[test]
+fn photographs_to_maps_to_a_layout() {
+    let dir = Dir::new();
+    let scene = ["phantom", "photos", "--seed", "1", "--subjects", "6", "--size", "160x120", "--out", "scene", "-q"];
+    dir.lunula(&scene).expect(0);
+    dir.lunula(&["photos", "scene/photos", "--out", "set", "--size", "96", "-q"]).expect(0);
+    let answer = dir.lunula(&["layout", "set", "--k", "1..4", "--proof", "0.01", "--out", "laid", "--json"]).expect(0);
+    let report = answer.json();
+    assert_eq!(report["persons"].list().len(), 6);
+    let k = report["chosen"]["k"].number() as usize;
+    let positions = Positions::from_json(&std::fs::read_to_string(dir.path("laid/layout.json")).unwrap()).unwrap();
+    assert_eq!(positions.photodiodes.len(), k);
+    let rows = dir.table("laid/layout.csv");
+    let error = |k: &str, method: &str| {
+        let row = rows.iter().find(|row| row["k"] == k && row["method"] == method).expect("a row");
+        row["error"].parse::<f64>().expect("a number")
+    };
+    // Poses of a phantom are separated; each further place helps, and choosing by the poses beats not knowing them.
+    assert!(error("4", "best") < error("1", "best") && error("4", "best") < error("4", "qr"));
+    assert!(error("4", "best") <= error("4", "greedy") && error("1", "best") <= 0.5);
+    for picture in ["layout.png", "layout.svg", "error-against-k.png", "error-against-k.svg", "run.json"] {
+        assert!(dir.path("laid").join(picture).exists(), "{picture}");
+    }
+    let again = dir.lunula(&["layout", "set", "--k", "1..4", "--proof", "0.01", "--out", "again", "-q"]).expect(0);
+    assert!(again.stdout.is_empty());
+    for name in ["layout.csv", "layout.json", "layout.svg", "layout.png"] {
+        assert_eq!(dir.bytes_of("laid")[name], dir.bytes_of("again")[name], "{name}");
+    }
+    let plan = dir.lunula(&["layout", "set", "--plan"]).expect(0).stdout;
+    assert!(plan.contains("branch and bound"), "{plan}");
+    dir.lunula(&["layout", "scene", "--out", "none"]).expect(2).says("a folder without maps");
+    assert!(!dir.path("none").exists());
+}
+
+#[test]
+fn photodiodes_of_a_log_are_laid_out_as_they_are() {
+    let dir = Dir::new();
+    dir.lunula(&["phantom", "log", "--seed", "1", "--out", "log", "-q"]).expect(0);
+    let answer = dir.lunula(&["layout", "log/log.csv", "--k", "1..8", "--out", "laid", "--json"]).expect(0);
+    let report = answer.json();
+    assert_eq!((report["candidates"].number(), report["persons"].list().len()), (8.0, 1));
+    // All eight are the thesis' eight, and all there are.
+    let error = |method: &str, k: f64| {
+        let methods = report["methods"].list();
+        let own = methods.iter().find(|one| one["method"] == method && one["k"].number() == k).expect("a method");
+        own["error"].number()
+    };
+    assert!((error("best", 8.0) - error("thesis", 8.0)).abs() <= 1e-12);
+    assert!((error("best", 8.0) - error("all", 8.0)).abs() <= 1e-12);
+    answer.says("no intervals");
+}
