@@ -7,6 +7,7 @@ use crate::job::{Job, Kind};
 use crate::layout::LayoutJob;
 use crate::live::performance::PerformanceJob;
 use crate::live::skill::SkillJob;
+use crate::live::{EvaluateSwitchJob, TuneSwitchJob};
 use crate::nailvideo::NailVideoJob;
 use crate::photo::{MapsJob, NormalizeJob};
 use crate::posture::PostureJob;
@@ -38,6 +39,8 @@ static KINDS: &[&Kind] = &[
     &SimulateJob::KIND,
     &SkillJob::KIND,
     &CurveJob::KIND,
+    &EvaluateSwitchJob::KIND,
+    &TuneSwitchJob::KIND,
     &TrainJob::KIND,
     &TrajectoryJob::KIND,
 ];

@@ -6,7 +6,7 @@ use std::time::Instant;
 use super::choices::Job;
 use super::judge::{Tradeoff, judge};
 use super::peers::{PeerRow, read_peers};
-use super::{align, hemodynamics, photos, posture, predictor};
+use super::{align, hemodynamics, photos, posture, predictor, switch};
 use crate::job::Interrupted;
 use crate::phantom::video::Preset;
 use crate::tradeoff::measure::scenes::{self, Wanted};
@@ -65,6 +65,7 @@ impl Plan {
             }
             (Job::Align, None) => format!("seed {seed}: {} s", self.seconds),
             (Job::Predictor, None) => format!("seed {seed}: two spirals and random movement"),
+            (Job::Switch, None) => format!("seed {seed}: presses and rest"),
         }
     }
 
@@ -115,6 +116,17 @@ impl Plan {
         }
     }
 
+    /// What the switch is measured on; made in `folder` where no recordings are given.
+    ///
+    /// # Errors
+    /// A scene that can't be made, a folder without recordings.
+    pub fn switch(&self, folder: &Path) -> anyhow::Result<switch::Settings> {
+        match self.given() {
+            Some((train, test)) => scenes::switch_of(train, test, &self.wanted()),
+            None => scenes::switch(&self.wanted(), folder),
+        }
+    }
+
     fn given(&self) -> Option<(&Path, &Path)> {
         self.input.as_ref().map(|(input, truth)| (input.as_path(), truth.as_path()))
     }
@@ -136,6 +148,7 @@ impl Plan {
             Job::Posture => (posture::measure(&self.posture(folder)?)?, Vec::new()),
             Job::Align => (align::measure(&self.align(folder)?)?, Vec::new()),
             Job::Predictor => (predictor::measure(&self.predictor(folder)?)?, Vec::new()),
+            Job::Switch => (switch::measure(&self.switch(folder)?)?, Vec::new()),
             Job::Hemodynamics => {
                 let settings = hemodynamics::Settings { effort: self.effort.clone() };
                 (hemodynamics::measure(&settings)?, hemodynamics::stability()?)

@@ -1,7 +1,7 @@
 //! The jobs; what can be chosen in each, what is chosen unless the user says otherwise, and why: the one place of it.
 //! The page states it, the book repeats it, and a test compares the two.
 
-use super::{align, hemodynamics, photos, posture, predictor};
+use super::{align, hemodynamics, photos, posture, predictor, switch};
 use crate::words::instead;
 
 /// What can be measured.
@@ -17,11 +17,14 @@ pub enum Job {
     Predictor,
     /// Pressure to blood flow.
     Hemodynamics,
+    /// Photodiodes to a decision.
+    Switch,
 }
 
 impl Job {
     /// In the order of the page.
-    pub const ALL: [Self; 5] = [Self::Photos, Self::Posture, Self::Align, Self::Predictor, Self::Hemodynamics];
+    pub const ALL: [Self; 6] =
+        [Self::Photos, Self::Posture, Self::Align, Self::Predictor, Self::Hemodynamics, Self::Switch];
 
     /// As on the command line.
     #[must_use]
@@ -32,6 +35,7 @@ impl Job {
             Self::Align => align::TYING.0,
             Self::Predictor => predictor::MODEL.0,
             Self::Hemodynamics => hemodynamics::SOLVING.0,
+            Self::Switch => switch::MODEL.0,
         }
     }
 
@@ -146,6 +150,22 @@ pub fn choices() -> Vec<Choice> {
             hemodynamics::ERROR,
             "It is before the knee because each further digit costs about a fifth more time, and eight are more \
              than any recording has; --rtol 1e-12 is there for whoever compares solvers.",
+        ),
+        choice(
+            switch::MODEL,
+            "--model, --column",
+            switch::model_default(),
+            switch::LOST,
+            "A model of contact itself with lags loses least, presses and lets go soonest, and takes no longer to answer; \
+             only a model that saw rest as well as presses keeps false switches away.",
+        ),
+        choice(
+            switch::RATE,
+            "--false-per-hour",
+            switch::rate_default(),
+            switch::FALSE,
+            "It is beyond the knee because a false switch costs its user more than 40 ms do; in hours without any the \
+             error is what their length can show.",
         ),
     ]
 }

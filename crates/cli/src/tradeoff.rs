@@ -28,6 +28,7 @@ enum Job {
     Align(AlignArgs),
     Predictor(PredictorArgs),
     Hemodynamics(HemodynamicsArgs),
+    Switch(SwitchArgs),
 }
 
 /// What every trade-off takes.
@@ -154,6 +155,18 @@ struct PredictorArgs {
     measured: Measured,
 }
 
+/// What a press of the virtual switch loses by delay and misses for several models, and its delay against the rate of
+/// false switches
+///
+/// On synthetic recordings of its own (presses and hours of rest), or on --input (a folder of recordings to train on,
+/// with forces and a column `contact` of 0 and 1) with --truth (a folder of others: the first half by name chooses
+/// thresholds, the second is judged).
+#[derive(Debug, Args)]
+struct SwitchArgs {
+    #[command(flatten)]
+    measured: Measured,
+}
+
 /// Step responses of the hemodynamic model for every tolerance, order and mode, with stability maps (stability.csv,
 /// .png, .svg)
 ///
@@ -171,6 +184,7 @@ pub(super) fn run(args: &TradeoffArgs) -> anyhow::Result<Outcome> {
             plan.subjects = args.subjects.unwrap_or(plan.subjects);
         }),
         Job::Predictor(args) => args.measured.run(curves::Job::Predictor, |_| {}),
+        Job::Switch(args) => args.measured.run(curves::Job::Switch, |_| {}),
         Job::Hemodynamics(HemodynamicsArgs { measuring }) => {
             let stop = measuring.common.start()?;
             one(curves::Job::Hemodynamics, &measuring.plan(SHORT_REPEATS, 1, stop), measuring)

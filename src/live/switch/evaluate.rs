@@ -4,7 +4,7 @@
 //! ([`EvaluateSwitchReport`]), `presses.csv` (a row per press and per missed contact, to look at the false ones), and
 //! the delays drawn.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 use lunula_live::switch::{Evaluation, Fate, Match, SwitchConfig, matches};
@@ -12,10 +12,11 @@ use serde::Serialize;
 
 use super::figures::draw_delays;
 use super::options::ContactOptions;
-use super::traces::{Traces, read_traces};
+use super::traces::{SwitchInputs, Traces, read_traces};
 use crate::files::Staging;
 use crate::job::{Report, Watch};
 use crate::live::error::LiveError;
+use crate::predictor::FolderOutputs;
 use crate::stages::{Stages, Step, left_out};
 use crate::table::{Column, TableWriter, Value};
 
@@ -26,7 +27,7 @@ pub type EvaluateSwitchReport = Report<EvaluateSwitchFigures>;
 #[derive(Debug, Clone, Serialize)]
 pub struct EvaluateSwitchFigures {
     /// The recordings.
-    pub recordings: Vec<PathBuf>,
+    pub recordings: Vec<String>,
     /// What is true contact.
     pub contact: String,
     /// The switch.
@@ -42,19 +43,18 @@ pub struct EvaluateSwitchFigures {
 /// [`LiveError`] where there is nothing to judge it on: nothing is written.
 pub fn evaluate_switch(
     switch: &Path,
-    recordings: &[PathBuf],
-    models: &[PathBuf],
+    inputs: &SwitchInputs,
     options: &ContactOptions,
-    out: &Path,
-    figures: bool,
+    outputs: &FolderOutputs,
     watch: &Watch<'_>,
 ) -> Result<EvaluateSwitchReport, LiveError> {
     let start = Instant::now();
     let stages = Stages::default();
     let config = read_switch(switch)?;
+    let FolderOutputs { folder: out, rows, figures, report: with_report } = outputs;
     let staging = Staging::new(out)?;
     let Traces { recordings: read, traces, warnings, notes, failed } =
-        stages.time("predict", || read_traces(recordings, models, config.column.as_deref(), options, watch))?;
+        stages.time("predict", || read_traces(inputs, config.column.as_deref(), options, watch))?;
     let all = stages.time("switch", || Evaluation::of(&config, &traces));
     if all.hours == 0.0 {
         let what = format!("no row says whether the finger touches (`{}`); name another column", options.contact);
@@ -65,7 +65,7 @@ pub fn evaluate_switch(
         warnings,
         notes,
         failed,
-        left_out: left_out(evaluate_plan(recordings.len(), figures)),
+        left_out: left_out(evaluate_plan(inputs.recordings.len(), *rows, *figures)),
         ..Report::new(
             "switch evaluate",
             watch,
@@ -78,7 +78,26 @@ pub fn evaluate_switch(
         )
     };
     let found: Vec<Vec<Match>> = traces.iter().map(|trace| matches(&config, trace)).collect();
-    let at = staging.place("presses.csv")?;
+    if *rows {
+        let at = staging.place("presses.csv")?;
+        write_presses(&at, &out.join("presses.csv"), &read, &found)?;
+    }
+    if *figures {
+        let (png, svg) = (staging.place("delays.png")?, staging.place("delays.svg")?);
+        let drawn = stages.time("figures", || draw_delays(&found, &png, &svg));
+        drawn.map_err(|why| staging.refused("delays.png", format!("{why:#}")))?;
+        report.pictures.push(out.join("delays.png"));
+    }
+    let report = report.timed(&stages, start);
+    if *with_report {
+        staging.write("switch.json", report.text().as_bytes())?;
+    }
+    staging.commit()?;
+    Ok(report)
+}
+
+/// A row for each press and each missed contact.
+fn write_presses(at: &Path, shown: &Path, recordings: &[String], found: &[Vec<Match>]) -> Result<(), LiveError> {
     let columns = vec![
         Column::text("recording"),
         Column::text("kind"),
@@ -87,10 +106,9 @@ pub fn evaluate_switch(
         Column::number("contact_start_s"),
         Column::number("contact_end_s"),
     ];
-    let mut table = TableWriter::create(&at, &out.join("presses.csv"), columns, &[])?;
-    for (recording, matches) in read.iter().zip(&found) {
-        let name = recording.display().to_string();
-        for one in matches {
+    let mut table = TableWriter::create(at, shown, columns, &[])?;
+    for (recording, matches) in recordings.iter().zip(found) {
+                for one in matches {
             let kind = match one.fate {
                 Fate::True => "true",
                 Fate::False => "false",
@@ -99,7 +117,7 @@ pub fn evaluate_switch(
             };
             let contact = one.contact.map_or([f64::NAN; 2], |contact| [contact.start_s, contact.end_s]);
             table.write(&[
-                Value::Text(&name),
+                Value::Text(recording),
                 Value::Text(kind),
                 Value::Number(one.press_s),
                 Value::Number(one.release_s),
@@ -108,26 +126,17 @@ pub fn evaluate_switch(
             ])?;
         }
     }
-    table.finish()?;
-    if figures {
-        let (png, svg) = (staging.place("delays.png")?, staging.place("delays.svg")?);
-        let drawn = stages.time("figures", || draw_delays(&found, &png, &svg));
-        drawn.map_err(|why| staging.refused("delays.png", format!("{why:#}")))?;
-        report.pictures.push(out.join("delays.png"));
-    }
-    let report = report.timed(&stages, start);
-    staging.write("switch.json", report.text().as_bytes())?;
-    staging.commit()?;
-    Ok(report)
+    Ok(table.finish()?)
 }
 
 /// What would be done and what not.
 #[must_use]
-pub fn evaluate_plan(recordings: usize, figures: bool) -> Vec<Step> {
+pub fn evaluate_plan(recordings: usize, rows: bool, figures: bool) -> Vec<Step> {
     vec![
         Step::new("predict", true, format!("{recordings} recordings, row by row as live")),
         Step::new("switch", true, "against true contact".to_owned()),
-        Step::new("figures", figures, if figures { "delays" } else { "--no-figures" }.to_owned()),
+        Step::new("presses", rows, if rows { "one row each" } else { "not asked for" }.to_owned()),
+        Step::new("figures", figures, if figures { "delays" } else { "not asked for" }.to_owned()),
     ]
 }
 

@@ -2,6 +2,7 @@
 
 mod evaluate;
 mod figures;
+mod kind;
 mod options;
 mod report;
 mod traces;
@@ -9,7 +10,11 @@ mod truth;
 mod tune;
 
 pub use evaluate::{EvaluateSwitchFigures, EvaluateSwitchReport, evaluate_plan, evaluate_switch, read_switch};
+pub use kind::{EvaluateSwitchJob, TuneSwitchJob};
+pub(crate) use options::FALSE_PER_HOUR;
 pub use options::{ContactOptions, OutsideChoice, TuneOptions};
 pub use report::{CurvePoint, TuneFigures, TuneReport};
 pub use truth::TrueContact;
-pub use tune::{tune_plan, tune_switch};
+pub use traces::SwitchInputs;
+pub(crate) use traces::{Traces, read_traces};
+pub use tune::{TuneOutputs, tune_plan, tune_switch};

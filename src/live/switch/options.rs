@@ -8,6 +8,9 @@ use crate::job::{not_negative, number, one_of};
 use crate::log::LogReading;
 use crate::words::Words;
 
+/// False switches an hour that are allowed where nobody says.
+pub(crate) const FALSE_PER_HOUR: f64 = 1.0;
+
 /// How recordings are read, and what of them is true.
 #[derive(Debug, Clone, Args)]
 pub struct ContactOptions {
@@ -26,7 +29,7 @@ pub struct ContactOptions {
 #[derive(Debug, Clone, Args)]
 pub struct TuneOptions {
     /// How many false switches an hour are allowed
-    #[arg(long, value_name = "RATE", default_value_t = 1.0, value_parser = above_zero)]
+    #[arg(long, value_name = "RATE", default_value_t = FALSE_PER_HOUR, value_parser = above_zero)]
     pub false_per_hour: f64,
     /// The share of presses that may be missed
     #[arg(long, value_name = "SHARE", default_value_t = 0.01, value_parser = part)]

@@ -1,7 +1,5 @@
 //! What the choice of a switch reports.
 
-use std::path::PathBuf;
-
 use lunula_live::switch::{Candidate, Evaluation, NoiseRate, SwitchConfig};
 use serde::Serialize;
 
@@ -14,7 +12,7 @@ pub type TuneReport = Report<TuneFigures>;
 #[derive(Debug, Clone, Serialize)]
 pub struct TuneFigures {
     /// The recordings.
-    pub recordings: Vec<PathBuf>,
+    pub recordings: Vec<String>,
     /// What is true contact.
     pub contact: String,
     /// The choice.

@@ -1,7 +1,7 @@
 //! Recordings to traces: what a live session would have compared at each row, and what was true.
 
 use std::cell::RefCell;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use lunula_live::switch::Trace;
 use lunula_predictor::{Gate, Predictor};
@@ -10,35 +10,44 @@ use super::options::ContactOptions;
 use crate::job::Watch;
 use crate::live::error::LiveError;
 use crate::live::session::{Sensor, StreamColumns, each_row};
-use crate::predictor::{Answering, open_models};
+use crate::predictor::{Answering, DataFile, open_models};
 
 /// Rows of a recording, at most: 30 h at 1 kHz.
 const MOST_ROWS: usize = 100_000_000;
 
-/// What recordings hold.
-#[derive(Debug, Default)]
-pub(super) struct Traces {
-    /// Those that could be read.
-    pub(super) recordings: Vec<PathBuf>,
-    /// One of each of them.
-    pub(super) traces: Vec<Trace>,
-    pub(super) warnings: Vec<String>,
-    pub(super) notes: Vec<String>,
-    /// Recordings that could not be read, each with why.
-    pub(super) failed: Vec<String>,
+/// What a switch is chosen or judged on.
+#[derive(Debug, Clone)]
+pub struct SwitchInputs {
+    /// Recordings that the models were not trained on.
+    pub recordings: Vec<DataFile>,
+    /// The models' files.
+    pub models: Vec<PathBuf>,
 }
 
-/// Reads recordings; `column` is the predicted one that the switch compares, pressing where none is named.
+/// What recordings hold.
+#[derive(Debug, Default)]
+pub(crate) struct Traces {
+    /// What those that could be read are called.
+    pub(crate) recordings: Vec<String>,
+    /// One of each of them.
+    pub(crate) traces: Vec<Trace>,
+    pub(crate) warnings: Vec<String>,
+    pub(crate) notes: Vec<String>,
+    /// Recordings that could not be read, each with why.
+    pub(crate) failed: Vec<String>,
+}
+
+/// Reads the recordings; `column` is the predicted one that the switch compares, pressing where none is named.
 ///
 /// # Errors
 /// Models that can't be used, or not one recording that can be.
-pub(super) fn read_traces(
-    recordings: &[PathBuf],
-    models: &[PathBuf],
+pub(crate) fn read_traces(
+    inputs: &SwitchInputs,
     column: Option<&str>,
     options: &ContactOptions,
     watch: &Watch<'_>,
 ) -> Result<Traces, LiveError> {
+    let SwitchInputs { recordings, models } = inputs;
     let opened = open_models(models)?.of_samples()?;
     let mut all = Traces { warnings: opened.warnings, ..Traces::default() };
     for (k, recording) in recordings.iter().enumerate() {
@@ -48,12 +57,12 @@ pub(super) fn read_traces(
         match read_trace(recording, &opened.predictors, column, options, watch, &mut notes) {
             Ok(trace) => {
                 all.traces.push(trace);
-                all.recordings.push(recording.clone());
+                all.recordings.push(recording.name.clone());
             }
             Err(LiveError::Interrupted(why)) => return Err(why.into()),
             Err(why) => all.failed.push(why.to_string()),
         }
-        all.notes.extend(notes.into_iter().map(|note| format!("{}: {note}", recording.display())));
+        all.notes.extend(notes.into_iter().map(|note| format!("{}: {note}", recording.name)));
     }
     if all.traces.is_empty() {
         return Err(LiveError::Request(all.failed.join("; ")));
@@ -62,14 +71,14 @@ pub(super) fn read_traces(
 }
 
 fn read_trace(
-    recording: &Path,
+    recording: &DataFile,
     models: &[Predictor],
     column: Option<&str>,
     options: &ContactOptions,
     watch: &Watch<'_>,
     notes: &mut Vec<String>,
 ) -> Result<Trace, LiveError> {
-    let refused = |what: String| LiveError::Source { place: recording.display().to_string(), what };
+    let refused = |what: String| LiveError::Source { place: recording.name.clone(), what };
     // The gate only says what is touching, which is not asked for here.
     let gate = Gate::new(1.0, 0.0, 0.0).map_err(|why| refused(why.to_string()))?;
     let answering = Answering::new(models.to_vec(), gate, false)?;
@@ -85,7 +94,7 @@ fn read_trace(
     // Of a recording that begins with an unlit row, the first lit one.
     let mut begins = false;
     let said = each_row(
-        recording,
+        &recording.path,
         &options.log,
         &extra,
         |columns: &StreamColumns| {

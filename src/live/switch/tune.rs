@@ -4,7 +4,7 @@
 //! `<switch>.run.json` ([`TuneReport`]) and the curve of delay against false switches. Predictions are made row by row
 //! as `lunula live` makes them.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 use lunula_live::switch::{Goal, SwitchConfig, crossings_per_hour, tune};
@@ -12,7 +12,7 @@ use lunula_live::switch::{Goal, SwitchConfig, crossings_per_hour, tune};
 use super::figures::draw_curve;
 use super::options::TuneOptions;
 use super::report::{CurvePoint, TuneFigures, TuneReport};
-use super::traces::{Traces, read_traces};
+use super::traces::{SwitchInputs, Traces, read_traces};
 use crate::files::{Places, beside};
 use crate::job::{Report, Watch};
 use crate::live::error::LiveError;
@@ -21,25 +21,35 @@ use crate::stages::{Stages, Step, left_out};
 /// The picture's name, after the table's.
 const PICTURE: &str = "curve";
 
+/// Where the choice goes.
+#[derive(Debug, Clone)]
+pub struct TuneOutputs {
+    /// The switch; report and picture go beside it.
+    pub switch: PathBuf,
+    /// Whether the curve is drawn.
+    pub figures: bool,
+    /// Whether the report is written, with its times and the files' places.
+    pub report: bool,
+}
+
 /// Chooses a switch's thresholds; every result is in its place when it returns.
 ///
 /// # Errors
 /// [`LiveError`] where there is no choice: nothing is written.
 pub fn tune_switch(
-    recordings: &[PathBuf],
-    models: &[PathBuf],
+    inputs: &SwitchInputs,
     options: &TuneOptions,
-    out: &Path,
-    figures: bool,
+    outputs: &TuneOutputs,
     watch: &Watch<'_>,
 ) -> Result<TuneReport, LiveError> {
     let start = Instant::now();
     let stages = Stages::default();
-    let report_at = beside(out, ".run.json");
-    let mut places = Places::not_over(recordings.iter().chain(models));
-    places.check([out, &report_at])?;
+    let TuneOutputs { switch: out, figures, report } = outputs;
+    let report_at = report.then(|| beside(out, ".run.json"));
+    let mut places = Places::not_over(inputs.recordings.iter().map(|file| &file.path).chain(&inputs.models));
+    places.check(std::iter::once(out).chain(&report_at))?;
     let Traces { recordings: read, traces, warnings, notes, failed } =
-        stages.time("predict", || read_traces(recordings, models, options.column.as_deref(), &options.truth, watch))?;
+        stages.time("predict", || read_traces(inputs, options.column.as_deref(), &options.truth, watch))?;
     let goal = Goal {
         false_per_hour: options.false_per_hour,
         missed_share: options.missed,
@@ -53,7 +63,7 @@ pub fn tune_switch(
         warnings,
         notes,
         failed,
-        left_out: left_out(tune_plan(recordings.len(), figures)),
+        left_out: left_out(tune_plan(inputs.recordings.len(), *figures)),
         ..Report::new(
             "switch tune",
             watch,
@@ -74,14 +84,14 @@ pub fn tune_switch(
     report.warnings.extend(weak);
     let text = toml::to_string(&report.switch).map_err(|why| LiveError::Request(why.to_string()))?;
     places.write(out, &text)?;
-    if figures {
+    if *figures {
         let title = "Mean delay of presses against false switches";
         let drawn = places.draw(out, PICTURE, |png, svg| {
             stages.time("figures", || draw_curve(title, &report, options.false_per_hour, png, svg))
         })?;
         report.pictures.push(drawn);
     }
-    Ok(report.timed(&stages, start).commit(places, Some(&report_at))?)
+    Ok(report.timed(&stages, start).commit(places, report_at.as_deref())?)
 }
 
 /// What would be done and what not.

@@ -18,7 +18,8 @@ pub struct Row {
     pub error: f64,
     /// What the error is, and its unit.
     pub error_unit: String,
-    /// Seconds on one thread per input, of the stage that the setting changes; the median over repeats.
+    /// Seconds on one thread per input, of the stage that the setting changes; the median over repeats. Of a switch's
+    /// rates the delay of a press, the median over presses.
     pub run_s: f64,
     /// What was done per input, a count that no clock disturbs.
     pub work: u64,

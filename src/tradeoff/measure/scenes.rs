@@ -11,7 +11,7 @@ use crate::phantom::screen::Clock;
 use crate::phantom::trajectory::Trajectory;
 use crate::phantom::video::{self, Preset, Scene, VideoOptions};
 use crate::tradeoff::measure::timing::Effort;
-use crate::tradeoff::{align, photos, posture, predictor};
+use crate::tradeoff::{align, photos, posture, predictor, switch};
 
 const POSES: [Pose; 4] = [Pose::Nominal, Pose::Normal, Pose::LateralPositive, Pose::Extension];
 /// Width and height of photographs of nails of 20 to 30 px.
@@ -103,6 +103,30 @@ pub(in crate::tradeoff) fn predictor_of(
     wanted: &Wanted,
 ) -> anyhow::Result<predictor::Settings> {
     Ok(predictor::Settings { train: recordings(train)?, test: recordings(test)?, effort: wanted.effort.clone() })
+}
+
+/// Presses and rest of one sensor: a recording of each to train on, four of each to choose thresholds by and to judge.
+pub(in crate::tradeoff) fn switch(wanted: &Wanted, folder: &Path) -> anyhow::Result<switch::Settings> {
+    let share = if wanted.effort.quick { 0.25 } else { 1.0 };
+    let mut seed = wanted.seed.wrapping_mul(10);
+    for (name, pairs) in [("train", 1), ("test", 4)] {
+        for pair in 1..=pairs {
+            for (protocol, kind, seconds) in [(Protocol::Contacts, "press", 600.0), (Protocol::Rest, "rest", 3600.0)] {
+                seed = seed.wrapping_add(1);
+                let options = LogOptions { seconds: share * seconds, contact: true, ..LogOptions::of(protocol, seed) };
+                log::write(&LogScene::new(options)?, &folder.join(format!("{name}/{pair}-{kind}")))?;
+            }
+        }
+    }
+    switch_of(&folder.join("train"), &folder.join("test"), wanted)
+}
+
+/// Folders of recordings; of those to be judged on, the first half by name chooses thresholds.
+pub(in crate::tradeoff) fn switch_of(train: &Path, test: &Path, wanted: &Wanted) -> anyhow::Result<switch::Settings> {
+    let mut choose = recordings(test)?;
+    anyhow::ensure!(choose.len() > 1, "{}: one recording can't choose thresholds and judge them", test.display());
+    let judge = choose.split_off(choose.len() / 2);
+    Ok(switch::Settings { train: recordings(train)?, choose, judge, effort: wanted.effort.clone() })
 }
 
 /// The tables and logs of a folder, and the logs of its folders, by name.

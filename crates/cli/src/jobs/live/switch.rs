@@ -6,9 +6,10 @@ use anyhow::Context;
 use clap::{Args, Subcommand};
 use lunula::job::{Given, Said, Watch};
 use lunula::live::{
-    ContactOptions, EvaluateSwitchFigures, EvaluateSwitchReport, Evaluation, TuneFigures, TuneOptions, TuneReport,
-    evaluate_plan, evaluate_switch, tune_plan, tune_switch,
+    ContactOptions, EvaluateSwitchFigures, EvaluateSwitchReport, Evaluation, SwitchInputs, TuneFigures, TuneOptions,
+    TuneOutputs, TuneReport, evaluate_plan, evaluate_switch, tune_plan, tune_switch,
 };
+use lunula::predictor::{DataFile, FolderOutputs};
 
 use crate::jobs::{self, Command, JobArgs, Plan};
 use crate::{Common, Outcome};
@@ -106,7 +107,8 @@ impl Command for TuneArgs {
 
     fn run(&self, watch: &Watch<'_>) -> anyhow::Result<TuneReport> {
         let out = self.out.as_ref().context("--out is needed: the switch")?;
-        Ok(tune_switch(&self.recordings, &self.models, &self.given.options, out, !self.no_figures, watch)?)
+        let outputs = TuneOutputs { switch: out.clone(), figures: !self.no_figures, report: true };
+        Ok(tune_switch(&inputs(&self.recordings, &self.models), &self.given.options, &outputs, watch)?)
     }
 
     fn say(&self, common: &Common, report: &TuneReport) {
@@ -142,14 +144,14 @@ impl Command for EvaluateArgs {
     }
 
     fn plan(&self) -> anyhow::Result<Plan> {
-        Ok(evaluate_plan(self.recordings.len(), !self.no_figures).into())
+        Ok(evaluate_plan(self.recordings.len(), true, !self.no_figures).into())
     }
 
     fn run(&self, watch: &Watch<'_>) -> anyhow::Result<EvaluateSwitchReport> {
         let out = self.out.as_ref().context("--out is needed: the folder of results")?;
-        let (recordings, models) = (&self.recordings, &self.models);
-        let figures = !self.no_figures;
-        Ok(evaluate_switch(&self.switch, recordings, models, &self.given.options, out, figures, watch)?)
+        let outputs = FolderOutputs { figures: !self.no_figures, ..FolderOutputs::all(out.clone()) };
+        let inputs = inputs(&self.recordings, &self.models);
+        Ok(evaluate_switch(&self.switch, &inputs, &self.given.options, &outputs, watch)?)
     }
 
     fn say(&self, common: &Common, report: &EvaluateSwitchReport) {
@@ -159,6 +161,10 @@ impl Command for EvaluateArgs {
     fn result(&self) -> Option<PathBuf> {
         self.out.clone()
     }
+}
+
+fn inputs(recordings: &[PathBuf], models: &[PathBuf]) -> SwitchInputs {
+    SwitchInputs { recordings: DataFile::of(recordings), models: models.to_vec() }
 }
 
 fn say_evaluation(common: &Common, wherever: &str, found: &Evaluation) {
