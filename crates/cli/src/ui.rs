@@ -3,10 +3,11 @@
 use std::net::{IpAddr, Ipv4Addr};
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
+use std::sync::atomic::AtomicBool;
 
 use anyhow::Context;
 use clap::Args;
-use lunula_ui::{Server, Settings};
+use lunula_ui::{Server, Settings, Site, UiError};
 use serde_json::json;
 
 use crate::{Common, Outcome, out};
@@ -21,6 +22,15 @@ pub(super) struct UiArgs {
     /// Folders of results
     #[arg(required = true, value_name = "DIR")]
     folders: Vec<PathBuf>,
+    #[command(flatten)]
+    listening: Listening,
+    #[command(flatten)]
+    common: Common,
+}
+
+/// Where a page is.
+#[derive(Debug, Args)]
+pub(crate) struct Listening {
     /// The port [default: a free one]
     #[arg(long, default_value_t = 0, hide_default_value = true, value_name = "N")]
     port: u16,
@@ -33,34 +43,42 @@ pub(super) struct UiArgs {
     /// What browsers call this machine there: a name or an address
     #[arg(long, value_name = "NAME", requires = "listen")]
     allow_host: Vec<String>,
-    #[command(flatten)]
-    common: Common,
 }
 
 pub(super) fn run(args: &UiArgs) -> anyhow::Result<Outcome> {
-    let common = &args.common;
-    let stop = common.start()?;
-    let settings = Settings {
-        folders: args.folders.clone(),
-        address: args.listen.unwrap_or(Ipv4Addr::LOCALHOST.into()),
-        port: args.port,
-        names: args.allow_host.clone(),
-    };
-    let server = Server::bind(settings)?;
-    if let Some(listen) = args.listen.filter(|listen| !listen.is_loopback()) {
-        eprintln!("warning: others can reach {listen}, and nothing is encrypted; `ssh -L` is safer");
-    }
-    let url = server.url();
-    out::print_line(&if common.json { json!({ "url": url }).to_string() } else { url });
-    out::finish().context("standard output: cannot be written; make room, or send it elsewhere")?;
-    // It is there while the page is open.
-    let page = args.open.then(|| server.page_to_open()).transpose().context("no file can be made for the browser")?;
-    if let Some(page) = &page {
-        let opened = Command::new("xdg-open").arg(page.path()).stdout(Stdio::null()).stderr(Stdio::null()).spawn();
-        if let Err(why) = opened {
-            eprintln!("warning: xdg-open, which opens the browser, can't be run ({why}); open the address yourself");
-        }
-    }
-    server.run(&stop)?;
+    let stop = args.common.start()?;
+    let server = args.listening.bind(lunula_ui::results(&args.folders)?)?;
+    args.listening.serve(server, &args.common, &stop)?;
     Ok(Outcome::Done)
+}
+
+impl Listening {
+    /// A server that listens, with what `site` has to show.
+    pub(crate) fn bind(&self, site: Site) -> Result<Server, UiError> {
+        let address = self.listen.unwrap_or(Ipv4Addr::LOCALHOST.into());
+        let server = Server::bind(&Settings { address, port: self.port, names: self.allow_host.clone() }, site)?;
+        if !address.is_loopback() {
+            eprintln!("warning: others can reach {address}, and nothing is encrypted; `ssh -L` is safer");
+        }
+        Ok(server)
+    }
+
+    /// Prints the address, opens it where that is wanted, and serves until `stop`.
+    pub(crate) fn serve(&self, server: Server, common: &Common, stop: &AtomicBool) -> anyhow::Result<()> {
+        let url = server.url();
+        out::print_line(&if common.json { json!({ "url": url }).to_string() } else { url });
+        out::finish().context("standard output: cannot be written; make room, or send it elsewhere")?;
+        // It is there while the page is open.
+        let page =
+            self.open.then(|| server.page_to_open()).transpose().context("no file can be made for the browser")?;
+        if let Some(page) = &page {
+            let opened = Command::new("xdg-open").arg(page.path()).stdout(Stdio::null()).stderr(Stdio::null()).spawn();
+            if let Err(why) = opened {
+                eprintln!(
+                    "warning: xdg-open, which opens the browser, can't be run ({why}); open the address yourself"
+                );
+            }
+        }
+        Ok(server.run(stop)?)
+    }
 }

@@ -8,6 +8,7 @@ use std::time::Duration;
 
 use axum::Router;
 use axum::body::Body;
+use axum::http::header::CONTENT_TYPE;
 use axum::http::{Request, StatusCode};
 use hyper::body::Incoming;
 use hyper::server::conn::http1;
@@ -16,11 +17,14 @@ use tokio::net::{TcpListener, TcpStream};
 use tokio::task::AbortHandle;
 use tower::ServiceExt;
 
+use crate::events::EVENTS;
+
 /// Connections at once; a browser opens six.
 const MOST: usize = 16;
 /// A connection that asks nothing for so long is closed.
 const IDLE: Duration = Duration::from_secs(10);
-/// One that lives so long is as well: a reader that does not read.
+/// One that lives so long is as well: a reader that does not read. One that is told events may live on, and gives its
+/// place up to the next page.
 const LIFE: Duration = Duration::from_secs(120);
 /// Bytes of a request's head.
 const HEAD: usize = 16 << 10;
@@ -30,21 +34,31 @@ const HEAD: usize = 16 << 10;
 struct Open(VecDeque<Connection>);
 
 struct Connection {
-    /// Whether a request of it was let in.
-    known: Arc<AtomicBool>,
+    seen: Arc<Seen>,
     task: AbortHandle,
 }
 
+/// What a connection has shown of itself.
+#[derive(Default)]
+struct Seen {
+    /// Whether a request of it was let in.
+    known: AtomicBool,
+    /// Whether it is told events.
+    listens: AtomicBool,
+}
+
 impl Open {
-    /// Whether there is room for one more: where all places are taken, the oldest that nobody knows gives up its own.
+    /// Whether there is room for one more: where all places are taken, the oldest that nobody knows gives up its own,
+    /// or else the oldest that only listens.
     fn has_room(&mut self) -> bool {
         self.0.retain(|connection| !connection.task.is_finished());
         if self.0.len() < MOST {
             return true;
         }
-        let stranger = self.0.iter().position(|connection| !connection.known.load(Ordering::Relaxed));
-        let Some(stranger) = stranger.and_then(|at| self.0.remove(at)) else { return false };
-        stranger.task.abort();
+        let stranger = self.0.iter().position(|connection| !connection.seen.known.load(Ordering::Relaxed));
+        let listener = || self.0.iter().position(|connection| connection.seen.listens.load(Ordering::Relaxed));
+        let Some(ends) = stranger.or_else(listener).and_then(|at| self.0.remove(at)) else { return false };
+        ends.task.abort();
         true
     }
 }
@@ -69,20 +83,28 @@ pub(crate) async fn accept(listener: TcpListener, pages: Router) -> Infallible {
         if !open.has_room() {
             continue;
         }
-        let known = Arc::new(AtomicBool::new(false));
-        // Whoever goes away or takes too long gets no answer.
-        let answering = tokio::time::timeout(LIFE, answer(stream, pages.clone(), Arc::clone(&known)));
-        open.0.push_back(Connection { known, task: tokio::spawn(answering).abort_handle() });
+        let seen = Arc::new(Seen::default());
+        let answering = answer_for_long(stream, pages.clone(), Arc::clone(&seen));
+        open.0.push_back(Connection { seen, task: tokio::spawn(answering).abort_handle() });
     }
 }
 
-async fn answer(stream: TcpStream, pages: Router, known: Arc<AtomicBool>) -> hyper::Result<()> {
+/// Whoever goes away or takes too long gets no answer.
+async fn answer_for_long(stream: TcpStream, pages: Router, seen: Arc<Seen>) {
+    let mut answering = std::pin::pin!(answer(stream, pages, Arc::clone(&seen)));
+    while tokio::time::timeout(LIFE, &mut answering).await.is_err() && seen.listens.load(Ordering::Relaxed) {}
+}
+
+async fn answer(stream: TcpStream, pages: Router, seen: Arc<Seen>) -> hyper::Result<()> {
     let service = hyper::service::service_fn(move |request: Request<Incoming>| {
-        let (pages, known) = (pages.clone(), Arc::clone(&known));
+        let (pages, seen) = (pages.clone(), Arc::clone(&seen));
         async move {
             let answer = pages.oneshot(request.map(Body::new)).await;
-            let let_in = answer.as_ref().is_ok_and(|answer| answer.status() != StatusCode::FORBIDDEN);
-            known.fetch_or(let_in, Ordering::Relaxed);
+            if let Ok(answer) = &answer {
+                seen.known.fetch_or(answer.status() != StatusCode::FORBIDDEN, Ordering::Relaxed);
+                let listens = answer.headers().get(CONTENT_TYPE).is_some_and(|kind| kind == EVENTS);
+                seen.listens.fetch_or(listens, Ordering::Relaxed);
+            }
             answer
         }
     });

@@ -11,10 +11,15 @@
 //! were named, and is asked for by number, never by path.
 
 mod connection;
+mod events;
 mod guard;
 mod pages;
 mod results;
 mod server;
+mod site;
 mod token;
 
+pub use events::Latest;
+pub use results::results;
 pub use server::{Server, Settings, UiError};
+pub use site::Site;

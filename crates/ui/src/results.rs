@@ -8,10 +8,25 @@ use std::collections::HashMap;
 use std::fs::{self, File};
 use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::UNIX_EPOCH;
 
+use axum::extract::{Path as At, State};
+use axum::http::header::{CONTENT_SECURITY_POLICY, CONTENT_TYPE, HeaderValue};
+use axum::http::{HeaderMap, StatusCode};
+use axum::response::{IntoResponse, Response};
+use axum::routing::get;
+use axum::{Json, Router};
 use serde::Serialize;
 use serde_json::Value;
+
+use crate::pages::RESULTS;
+use crate::server::UiError;
+use crate::site::{SMALL_BODY, Site};
+
+/// What a report may do: be looked at. It may hold names and texts of anybody's files.
+const SANDBOX: &str = "sandbox; default-src 'none'; style-src 'unsafe-inline'; img-src data:; font-src data:; base-uri \
+                       'none'; form-action 'none'; frame-ancestors 'self'";
 
 /// Folders in folders; a study has four (*assumed* enough for years of studies in one folder).
 const MOST_DEEP: usize = 8;
@@ -23,6 +38,40 @@ const MOST_PICTURES: usize = 60;
 const MOST_LINES: usize = 50;
 const MOST_JSON: u64 = 16 << 20;
 const MOST_FILE: u64 = 64 << 20;
+
+/// A site that shows the results below these folders.
+///
+/// # Errors
+/// A folder that can't be read.
+pub fn results(folders: &[PathBuf]) -> Result<Site, UiError> {
+    let mut roots = Vec::new();
+    for path in folders {
+        let root = path.canonicalize().and_then(|root| fs::read_dir(&root).map(|_| root));
+        roots.push(root.map_err(|why| UiError::Folder { path: path.clone(), why })?);
+    }
+    let routes = Router::new()
+        .route("/api/results", get(list))
+        .route("/api/file/{number}", get(file))
+        .with_state(Arc::new(Mutex::new(Folders::new(roots))));
+    let [page, script] = &RESULTS;
+    Ok(Site { page: *page, assets: std::slice::from_ref(script), routes, most_body: SMALL_BODY })
+}
+
+async fn list(State(folders): State<Arc<Mutex<Folders>>>) -> Response {
+    let look = move || folders.lock().unwrap_or_else(PoisonError::into_inner).look();
+    let looked = tokio::task::spawn_blocking(look).await;
+    looked.map_or_else(|_| StatusCode::INTERNAL_SERVER_ERROR.into_response(), |found| Json(found).into_response())
+}
+
+async fn file(State(folders): State<Arc<Mutex<Folders>>>, At(number): At<usize>) -> Response {
+    let read = move || folders.lock().unwrap_or_else(PoisonError::into_inner).read(number);
+    let Ok(Some(file)) = tokio::task::spawn_blocking(read).await else { return StatusCode::NOT_FOUND.into_response() };
+    let mut headers = HeaderMap::new();
+    headers.insert(CONTENT_TYPE, HeaderValue::from_static(file.kind));
+    // Of whoever made it, not ours.
+    headers.insert(CONTENT_SECURITY_POLICY, HeaderValue::from_static(SANDBOX));
+    (headers, file.bytes).into_response()
+}
 
 /// What is below the folders.
 #[derive(Debug, Default, Serialize)]

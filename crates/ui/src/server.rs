@@ -2,48 +2,40 @@
 
 use std::io::Write;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener};
-use std::path::PathBuf;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use axum::extract::{DefaultBodyLimit, Path, Request, State};
+use axum::Router;
+use axum::extract::{DefaultBodyLimit, Request, State};
+use axum::http::StatusCode;
 use axum::http::header::{
     CACHE_CONTROL, CONTENT_LENGTH, CONTENT_SECURITY_POLICY, CONTENT_TYPE, HeaderName, HeaderValue, REFERRER_POLICY,
     SET_COOKIE, X_CONTENT_TYPE_OPTIONS,
 };
-use axum::http::{HeaderMap, StatusCode};
 use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
-use axum::routing::{get, post};
-use axum::{Json, Router};
+use axum::routing::{MethodRouter, get, post};
 use tempfile::NamedTempFile;
 use thiserror::Error;
 
 use crate::connection::accept;
 use crate::guard::{Guard, SESSION};
-use crate::pages::ASSETS;
-use crate::results::Folders;
+use crate::pages::{Asset, COMMON};
+use crate::site::Site;
 
-/// Bytes of a request's body: a token.
-const MOST_BODY: usize = 1 << 10;
 /// How often it looks whether it is to stop.
 const TICK: Duration = Duration::from_millis(100);
 
 /// What pages may do: what this server gives, and nothing else.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src \
                       'self'; frame-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
-/// What a report may do: be looked at. It may hold names and texts of anybody's files.
-const SANDBOX: &str = "sandbox; default-src 'none'; style-src 'unsafe-inline'; img-src data:; font-src data:; base-uri \
-                       'none'; form-action 'none'; frame-ancestors 'self'";
 const OPENER: HeaderName = HeaderName::from_static("cross-origin-opener-policy");
 const RESOURCE: HeaderName = HeaderName::from_static("cross-origin-resource-policy");
 
-/// What a server shows, and where.
+/// Where a server listens.
 #[derive(Debug, Clone)]
 pub struct Settings {
-    /// Folders of results.
-    pub folders: Vec<PathBuf>,
     /// The address; another one than loopback is reached by others, and nothing is encrypted.
     pub address: IpAddr,
     /// The port; 0 for a free one.
@@ -54,7 +46,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { folders: Vec::new(), address: Ipv4Addr::LOCALHOST.into(), port: 0, names: Vec::new() }
+        Self { address: Ipv4Addr::LOCALHOST.into(), port: 0, names: Vec::new() }
     }
 }
 
@@ -63,7 +55,7 @@ impl Default for Settings {
 #[allow(missing_docs, reason = "the messages say it")]
 pub enum UiError {
     #[error("{}: {why}; name a folder of results", path.display())]
-    Folder { path: PathBuf, why: std::io::Error },
+    Folder { path: std::path::PathBuf, why: std::io::Error },
     #[error("{0}: can't listen there ({1}); choose another --port")]
     Listen(SocketAddr, std::io::Error),
     #[error("the system gives no random numbers ({0})")]
@@ -76,25 +68,16 @@ pub enum UiError {
 pub struct Server {
     listener: TcpListener,
     at: SocketAddr,
-    shared: Arc<Shared>,
-}
-
-struct Shared {
-    guard: Guard,
-    folders: Mutex<Folders>,
+    guard: Arc<Guard>,
+    site: Site,
 }
 
 impl Server {
-    /// Listens.
+    /// Listens, with what `site` has to show.
     ///
     /// # Errors
-    /// [`UiError`]: a folder that can't be read, a port that is taken.
-    pub fn bind(settings: Settings) -> Result<Self, UiError> {
-        let mut roots = Vec::new();
-        for path in settings.folders {
-            let root = path.canonicalize().and_then(|root| std::fs::read_dir(&root).map(|_| root));
-            roots.push(root.map_err(|why| UiError::Folder { path, why })?);
-        }
+    /// [`UiError`]: a port that is taken.
+    pub fn bind(settings: &Settings, site: Site) -> Result<Self, UiError> {
         let at = SocketAddr::new(settings.address, settings.port);
         let listen = || {
             let listener = TcpListener::bind(at)?;
@@ -104,14 +87,14 @@ impl Server {
         };
         let (listener, at) = listen().map_err(|why| UiError::Listen(at, why))?;
         let guard = Guard::new(at.port(), &settings.names).map_err(UiError::Random)?;
-        Ok(Self { listener, at, shared: Arc::new(Shared { guard, folders: Mutex::new(Folders::new(roots)) }) })
+        Ok(Self { listener, at, guard: Arc::new(guard), site })
     }
 
     /// The address of the page, with the token: whoever has it sees the results.
     #[must_use]
     pub fn url(&self) -> String {
         let host = if self.at.ip().is_unspecified() { IpAddr::V4(Ipv4Addr::LOCALHOST) } else { self.at.ip() };
-        format!("http://{}/#{}", SocketAddr::new(host, self.at.port()), self.shared.guard.token.reveal())
+        format!("http://{}/#{}", SocketAddr::new(host, self.at.port()), self.guard.token.reveal())
     }
 
     /// A page for the browser to open, which only this person can read: on a command line others would see the token.
@@ -132,11 +115,11 @@ impl Server {
     /// # Errors
     /// The system refuses to.
     pub fn run(self, stop: &AtomicBool) -> Result<(), UiError> {
-        let Self { listener, shared, .. } = self;
+        let Self { listener, guard, site, .. } = self;
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(UiError::Serve)?;
         runtime.block_on(async move {
             let listener = tokio::net::TcpListener::from_std(listener).map_err(UiError::Serve)?;
-            let serving = tokio::spawn(accept(listener, pages(shared)));
+            let serving = tokio::spawn(accept(listener, pages(guard, site)));
             while !stop.load(Ordering::Relaxed) && !serving.is_finished() {
                 tokio::time::sleep(TICK).await;
             }
@@ -147,27 +130,28 @@ impl Server {
 }
 
 /// All that is answered.
-fn pages(shared: Arc<Shared>) -> Router {
-    let mut pages = Router::new()
-        .route(SESSION, post(enter))
-        .route("/api/results", get(results))
-        .route("/api/file/{number}", get(file));
-    for asset in &ASSETS {
-        pages = pages.route(asset.path, get(|| async { ([(CONTENT_TYPE, asset.kind)], asset.bytes) }));
+fn pages(guard: Arc<Guard>, site: Site) -> Router {
+    let Site { page, assets, routes, most_body } = site;
+    let mut pages =
+        Router::new().route(SESSION, post(enter)).with_state(Arc::clone(&guard)).merge(routes).route("/", given(page));
+    for asset in assets.iter().chain(&COMMON) {
+        pages = pages.route(asset.path, given(*asset));
     }
-    pages
-        .layer(DefaultBodyLimit::max(MOST_BODY))
-        .layer(from_fn_with_state(Arc::clone(&shared), guarded))
-        .with_state(shared)
+    pages.layer(DefaultBodyLimit::max(most_body)).layer(from_fn_with_state((guard, most_body), guarded))
+}
+
+/// A file of the pages, as it is.
+fn given(asset: Asset) -> MethodRouter {
+    get(move || async move { ([(CONTENT_TYPE, asset.kind)], asset.bytes) })
 }
 
 /// Nothing of a request is used before it was let in; whoever was not hears nothing more.
-async fn guarded(State(shared): State<Arc<Shared>>, request: Request, next: Next) -> Response {
+async fn guarded(State((guard, most_body)): State<(Arc<Guard>, usize)>, request: Request, next: Next) -> Response {
     let (parts, body) = request.into_parts();
     let length = parts.headers.get(CONTENT_LENGTH).and_then(|length| length.to_str().ok()?.parse().ok());
-    let mut response = if !shared.guard.lets_in(&parts) {
+    let mut response = if !guard.lets_in(&parts) {
         StatusCode::FORBIDDEN.into_response()
-    } else if length.unwrap_or(0) > MOST_BODY {
+    } else if length.unwrap_or(0) > most_body {
         // What is announced is not waited for.
         StatusCode::PAYLOAD_TOO_LARGE.into_response()
     } else {
@@ -188,30 +172,9 @@ async fn guarded(State(shared): State<Arc<Shared>>, request: Request, next: Next
 }
 
 /// The token for a cookie.
-async fn enter(State(shared): State<Arc<Shared>>, token: String) -> Response {
-    if !shared.guard.token.is(&token) {
+async fn enter(State(guard): State<Arc<Guard>>, token: String) -> Response {
+    if !guard.token.is(&token) {
         return StatusCode::FORBIDDEN.into_response();
     }
-    (StatusCode::NO_CONTENT, [(SET_COOKIE, shared.guard.set_cookie())]).into_response()
-}
-
-async fn results(State(shared): State<Arc<Shared>>) -> Response {
-    let looked = tokio::task::spawn_blocking(move || {
-        let mut folders = shared.folders.lock().unwrap_or_else(PoisonError::into_inner);
-        folders.look()
-    });
-    looked.await.map_or_else(|_| StatusCode::INTERNAL_SERVER_ERROR.into_response(), |found| Json(found).into_response())
-}
-
-async fn file(State(shared): State<Arc<Shared>>, Path(number): Path<usize>) -> Response {
-    let read = tokio::task::spawn_blocking(move || {
-        let folders = shared.folders.lock().unwrap_or_else(PoisonError::into_inner);
-        folders.read(number)
-    });
-    let Ok(Some(file)) = read.await else { return StatusCode::NOT_FOUND.into_response() };
-    let mut headers = HeaderMap::new();
-    headers.insert(CONTENT_TYPE, HeaderValue::from_static(file.kind));
-    // Of whoever made it, not ours.
-    headers.insert(CONTENT_SECURITY_POLICY, HeaderValue::from_static(SANDBOX));
-    (headers, file.bytes).into_response()
+    (StatusCode::NO_CONTENT, [(SET_COOKIE, guard.set_cookie())]).into_response()
 }

@@ -9,7 +9,7 @@ use std::net::TcpStream;
 use std::path::Path;
 use std::time::Duration;
 
-use lunula_ui::{Server, Settings, UiError};
+use lunula_ui::{Server, Settings, UiError, results};
 use util::{Running, run};
 
 /// An answer: its status, its head, its body.
@@ -69,7 +69,7 @@ fn one_run(dir: &Path) {
 fn the_page_gets_its_results_and_a_report_in_a_sandbox() {
     let server = run(one_run);
     let page = server.asks("GET", "/", "", "");
-    assert!(page.status == 200 && page.body.contains("app.js") && !page.body.contains(&server.token));
+    assert!(page.status == 200 && page.body.contains("results.js") && !page.body.contains(&server.token));
     for header in ["content-security-policy: default-src 'none'", "nosniff", "no-referrer", "no-store"] {
         assert!(page.head.contains(header), "{header}: {}", page.head);
     }
@@ -137,10 +137,9 @@ fn half_open_connections_and_large_bodies_hold_nobody_up() {
 
 #[test]
 fn a_folder_that_does_not_exist_and_a_port_that_is_taken_are_said() {
-    let none = Settings { folders: vec!["/does/not/exist".into()], ..Settings::default() };
-    assert!(matches!(Server::bind(none), Err(UiError::Folder { .. })));
+    assert!(matches!(results(&["/does/not/exist".into()]), Err(UiError::Folder { .. })));
     let server = run(one_run);
     let port = server.at.rsplit_once(':').unwrap().1.parse().unwrap();
-    let taken = Server::bind(Settings { port, ..Settings::default() }).err().unwrap();
+    let taken = Server::bind(&Settings { port, ..Settings::default() }, results(&[]).unwrap()).err().unwrap();
     assert!(taken.to_string().contains("choose another --port"), "{taken}");
 }

@@ -1,17 +1,26 @@
 //! The pages, as they are in this folder: built into the program, nothing of them from elsewhere.
 
 /// A file of the pages.
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Asset {
     pub(crate) path: &'static str,
     pub(crate) kind: &'static str,
     pub(crate) bytes: &'static [u8],
 }
 
-/// All of them.
-pub(crate) const ASSETS: [Asset; 3] = [
-    Asset { path: "/", kind: "text/html; charset=utf-8", bytes: include_bytes!("index.html") },
-    Asset { path: "/app.js", kind: "text/javascript; charset=utf-8", bytes: include_bytes!("app.js") },
-    Asset { path: "/style.css", kind: "text/css; charset=utf-8", bytes: include_bytes!("style.css") },
+const HTML: &str = "text/html; charset=utf-8";
+const SCRIPT: &str = "text/javascript; charset=utf-8";
+const STYLE: &str = "text/css; charset=utf-8";
+
+/// Files that every page has.
+pub(crate) const COMMON: [Asset; 2] = [
+    Asset { path: "/common.js", kind: SCRIPT, bytes: include_bytes!("common.js") },
+    Asset { path: "/style.css", kind: STYLE, bytes: include_bytes!("style.css") },
+];
+/// The list of results.
+pub(crate) const RESULTS: [Asset; 2] = [
+    Asset { path: "/", kind: HTML, bytes: include_bytes!("results.html") },
+    Asset { path: "/results.js", kind: SCRIPT, bytes: include_bytes!("results.js") },
 ];
 
 #[cfg(test)]
@@ -23,8 +32,9 @@ mod tests {
 
     #[test]
     fn the_pages_are_small_and_ask_for_nothing_elsewhere() {
-        assert!(ASSETS.iter().map(|asset| asset.bytes.len()).sum::<usize>() <= MOST);
-        for asset in &ASSETS {
+        let all = || COMMON.iter().chain(&RESULTS);
+        assert!(all().map(|asset| asset.bytes.len()).sum::<usize>() <= MOST);
+        for asset in all() {
             let text = std::str::from_utf8(asset.bytes).unwrap();
             assert!(
                 !text.contains("://") && !text.contains("innerHTML") && !text.contains("<script>"),

@@ -20,8 +20,8 @@ pub struct Running {
 pub fn run(fill: impl FnOnce(&Path)) -> Running {
     let dir = tempfile::tempdir().unwrap();
     fill(dir.path());
-    let settings = Settings { folders: vec![dir.path().to_owned()], ..Settings::default() };
-    let server = Server::bind(settings).unwrap();
+    let site = lunula_ui::results(&[dir.path().to_owned()]).unwrap();
+    let server = Server::bind(&Settings::default(), site).unwrap();
     let url = server.url();
     let (at, token) = url.strip_prefix("http://").unwrap().split_once("/#").unwrap();
     let (at, token) = (at.to_owned(), token.to_owned());

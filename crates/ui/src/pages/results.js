@@ -6,35 +6,13 @@
 /** @typedef {{id: number, name: string, job: string, version: string, made_unix_s: number, wall_s: number | null,
  *   warnings: string[], failed: string[], left_out: string[], report: number | null, pictures: Picture[]}} Run */
 
-/** @param {string} id */
-const at = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
+import { at, enter, made, say, tell } from "./common.js";
+
 const filter = /** @type {HTMLInputElement} */ (at("filter"));
 /** @type {Run[]} */
 let runs = [];
 /** @type {string | null} */
 let shown = null;
-
-/** @param {string} tag @param {string} text @param {string} [kind] */
-function made(tag, text, kind) {
-  const one = document.createElement(tag);
-  one.textContent = text;
-  if (kind) one.className = kind;
-  return one;
-}
-
-/** @param {string} text */
-function say(text) {
-  at("state").textContent = text;
-}
-
-/** The token of the address for a cookie; it leaves the address then. */
-async function enter() {
-  const token = location.hash.slice(1);
-  if (!token) return;
-  history.replaceState(null, "", location.pathname);
-  const answer = await fetch("api/session", { method: "POST", body: token });
-  if (!answer.ok) throw new Error("the address is not this server's; copy the one that it printed");
-}
 
 /** @param {Run} run */
 function summary(run) {
@@ -111,15 +89,6 @@ async function load() {
   if (known) show(known);
   else list();
   if (results.left_out) say(`${runs.length} results; ${results.left_out}`);
-}
-
-/** @param {() => Promise<void>} work */
-async function tell(work) {
-  try {
-    await work();
-  } catch (why) {
-    say(`Not loaded: ${why instanceof Error ? why.message : why}.`);
-  }
 }
 
 filter.addEventListener("input", list);
