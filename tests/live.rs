@@ -437,6 +437,39 @@ fn thresholds_are_chosen_and_judged_on_recordings() {
 }
 
 #[test]
+fn the_switches_of_every_model_and_rate_are_on_one_curve() {
+    let dir = desk();
+    for (folder, names) in [("train", &["1.csv"][..]), ("test", &["1.csv", "2.csv", "3.csv"])] {
+        for name in names {
+            let text = recording(120.0);
+            let lines: Vec<&str> = text.lines().collect();
+            let mut rows = format!("{},contact\n", lines[0]);
+            // The finger touches 30 ms before its nail shows it.
+            for pair in lines[1..].windows(4) {
+                let force: f64 = pair[3].rsplit(',').next().unwrap().parse().unwrap();
+                let _ = writeln!(rows, "{},{}", pair[0], u8::from(force < 0.0));
+            }
+            dir.write(&format!("{folder}/{name}"), rows);
+        }
+    }
+    let all = ["tradeoff", "switch", "--input", "train", "--truth", "test", "--repeats", "1"];
+    let said = dir.lunula(&[&all[..], &["--out", "t", "--json"]].concat()).expect(0).json();
+    let choices = said["curves"].as_array().map_or(0, Vec::len);
+    let rows = dir.table("t/tradeoff.csv");
+    let of = |choice: &str| rows.iter().filter(|row| row["choice"] == choice).collect::<Vec<_>>();
+    assert!(choices >= 2 && of("model").len() >= 6 && !of("--false-per-hour").is_empty(), "{said}");
+    for row in rows {
+        let (error, time) = (row["error"].parse::<f64>().unwrap(), row["run_s"].parse::<f64>().unwrap());
+        // A press of this finger lasts a second.
+        assert!(error >= 0.0 && (row["choice"] != "model" || row["error_unit"].contains("false") || error < 0.3));
+        assert!(time > 0.0);
+    }
+    dir.write("few/1.csv", recording(10.0));
+    let few = ["tradeoff", "switch", "--input", "train", "--truth", "few", "--out", "u"];
+    dir.lunula(&few).expect(2).says("one recording can't choose thresholds and judge them");
+}
+
+#[test]
 fn a_press_harder_clicks_and_every_move_is_a_line() {
     let dir = Dir::new();
     // Each force has a photodiode of its own.

@@ -1,7 +1,8 @@
 //! The jobs; what can be chosen in each, what is chosen unless the user says otherwise, and why: the one place of it.
 //! The page states it, the book repeats it, and a test compares the two.
 
-use super::{align, hemodynamics, photos, posture, predictor, switch};
+use super::predictor::switch;
+use super::{align, hemodynamics, photos, posture, predictor};
 use crate::words::instead;
 
 /// What can be measured.
@@ -156,8 +157,8 @@ pub fn choices() -> Vec<Choice> {
             "--model, --column",
             switch::model_default(),
             switch::LOST,
-            "A model of contact itself with lags loses least, presses and lets go soonest, and takes no longer to answer; \
-             only a model that saw rest as well as presses keeps false switches away.",
+            "A model of contact itself with lags loses least, presses and lets go soonest, and takes no longer to \
+             answer; only a model that saw rest as well as presses keeps false switches away.",
         ),
         choice(
             switch::RATE,

@@ -19,7 +19,6 @@ pub mod peers;
 pub mod photos;
 pub mod posture;
 pub mod predictor;
-pub mod switch;
 
 pub use all::{Outcomes, Plan, all};
 pub use choices::{Choice, Job, choices};

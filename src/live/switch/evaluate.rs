@@ -108,7 +108,7 @@ fn write_presses(at: &Path, shown: &Path, recordings: &[String], found: &[Vec<Ma
     ];
     let mut table = TableWriter::create(at, shown, columns, &[])?;
     for (recording, matches) in recordings.iter().zip(found) {
-                for one in matches {
+        for one in matches {
             let kind = match one.fate {
                 Fate::True => "true",
                 Fate::False => "false",
@@ -146,6 +146,7 @@ pub fn evaluate_plan(recordings: usize, rows: bool, figures: bool) -> Vec<Step> 
 /// A file that can't be read, or is no switch, with the keys that are wrong.
 pub fn read_switch(path: &Path) -> Result<SwitchConfig, LiveError> {
     let refused = |what: String| LiveError::Config { path: path.to_owned(), what };
-    let text = crate::input::read_text(path).map_err(|why| refused(why.to_string()))?;
+    let text = crate::input::read_text(path)
+        .map_err(|why| refused(format!("{why}; `lunula switch tune` writes one from recordings")))?;
     SwitchConfig::from_toml(&text).map_err(|why| refused(why.to_string()))
 }

@@ -83,7 +83,7 @@ pub fn judge(
     (scene, others): (&str, &[&PeerRow]),
     begun: Instant,
 ) -> anyhow::Result<Tradeoff> {
-    let Measured { mut rows, refused } = measured;
+    let Measured { mut rows, mut refused } = measured;
     let peers = join(&mut rows, scene, others)?;
     let mut curves = Vec::new();
     for choice in choices().into_iter().filter(|choice| choice.job == job) {
@@ -96,7 +96,21 @@ pub fn judge(
         curves.extend(units.into_iter().map(|unit| curve(&choice, unit, &mut rows)));
     }
     ensure!(!curves.is_empty(), "{job}: no setting has an answer: {}", refused.join("; "));
+    let bare = |curve: &&Verdict| !rows.iter().any(|row| is_on(row, curve) && row.has_place());
+    let not_drawn: Vec<String> = curves.iter().filter(bare).map(not_drawn).collect();
+    ensure!(not_drawn.len() < curves.len(), "{}", not_drawn.join("; "));
+    refused.extend(not_drawn);
     Ok(Tradeoff { job, rows, curves, refused, peers, wall_s: begun.elapsed().as_secs_f64(), maps: Vec::new() })
+}
+
+/// Whether a row is on a curve.
+pub(in crate::tradeoff) fn is_on(row: &Row, curve: &Verdict) -> bool {
+    row.choice == curve.choice && row.error_unit == curve.error_unit
+}
+
+fn not_drawn(curve: &Verdict) -> String {
+    let Verdict { job, choice, error_unit, .. } = curve;
+    format!("{job}, {choice} ({error_unit}): no setting has both an error and a time above 0, so there is no picture")
 }
 
 fn figures(row: &Row) -> Figures {

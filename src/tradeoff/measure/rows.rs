@@ -40,6 +40,11 @@ pub struct Row {
 }
 
 impl Row {
+    /// Whether it has a place on logarithmic axes.
+    pub(in crate::tradeoff) fn has_place(&self) -> bool {
+        [self.error, self.run_s].iter().all(|value| value.is_finite() && *value > 0.0)
+    }
+
     /// A setting of lunula's.
     pub(in crate::tradeoff) fn own(
         choice: (&'static str, &'static str),

@@ -11,7 +11,8 @@ use crate::phantom::screen::Clock;
 use crate::phantom::trajectory::Trajectory;
 use crate::phantom::video::{self, Preset, Scene, VideoOptions};
 use crate::tradeoff::measure::timing::Effort;
-use crate::tradeoff::{align, photos, posture, predictor, switch};
+use crate::tradeoff::predictor::switch;
+use crate::tradeoff::{align, photos, posture, predictor};
 
 const POSES: [Pose; 4] = [Pose::Nominal, Pose::Normal, Pose::LateralPositive, Pose::Extension];
 /// Width and height of photographs of nails of 20 to 30 px.

@@ -1,7 +1,7 @@
 //! A job's curves as panels: settings, other programs, the front, knee and default.
 
 use crate::figure::{Axis, Chart, Item, Mark, MarkShape, Point};
-use crate::tradeoff::judge::{Tradeoff, Verdict};
+use crate::tradeoff::judge::{Tradeoff, Verdict, is_on};
 use crate::tradeoff::measure::rows::Row;
 use crate::tradeoff::peers::program;
 
@@ -38,14 +38,16 @@ pub(in crate::tradeoff) fn chart(
     }
 }
 
-/// A panel for each curve.
+/// A panel for each curve that has a point on logarithmic axes.
 pub(in crate::tradeoff) fn panels(tradeoff: &Tradeoff) -> Vec<Chart> {
-    tradeoff.curves.iter().map(|curve| panel(curve, &tradeoff.rows)).collect()
+    tradeoff.curves.iter().filter_map(|curve| panel(curve, &tradeoff.rows)).collect()
 }
 
-fn panel(curve: &Verdict, rows: &[Row]) -> Chart {
-    let on: Vec<&Row> =
-        rows.iter().filter(|row| row.choice == curve.choice && row.error_unit == curve.error_unit).collect();
+fn panel(curve: &Verdict, rows: &[Row]) -> Option<Chart> {
+    let on: Vec<&Row> = rows.iter().filter(|row| is_on(row, curve)).collect();
+    if !on.iter().any(|row| row.has_place()) {
+        return None;
+    }
     let mut series: Vec<Series> = Vec::new();
     for &row in &on {
         let name = if row.peer { program(&row.setting) } else { "lunula" };
@@ -59,7 +61,7 @@ fn panel(curve: &Verdict, rows: &[Row]) -> Chart {
         }
     }
     let axes = ["seconds an input, one thread, of the stage alone".to_owned(), curve.error_unit.clone()];
-    chart(format!("{}: {}", curve.job, curve.choice), axes, curve.front.clone(), series, marks(&on))
+    Some(chart(format!("{}: {}", curve.job, curve.choice), axes, curve.front.clone(), series, marks(&on)))
 }
 
 /// The knee and the default, where they are among `rows`.

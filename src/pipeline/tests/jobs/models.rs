@@ -128,6 +128,13 @@ impl Place {
         make("performance", course, data("trials", &["trials.csv"]), "learned");
         let days = ["1.csv", "2.csv"].map(|name| self.at("recordings", name, &[("subject", "S01"), ("trial", name)]));
         make("skill", "reference_trial = '1.csv'", days.to_vec(), "skilled");
+        make("train", "target = 'Fz_N'", sets(&["3.csv"]), "normal");
+        let touches = |names: &[&str]| names.iter().map(|name| self.at("recordings", name, &one)).collect::<Vec<_>>();
+        let model = || data("model", &["normal/model.json"]);
+        let tune = "contact = 'Fz_N<-1'\nfalse_per_hour = 5000\nmissed = 0.9\noutside = 'count'";
+        make("switch-tune", tune, [touches(&["3.csv", "4.csv"]), model()].concat(), "switch");
+        let switch = data("switch", &["switch/switch.toml"]);
+        make("switch-evaluate", "contact = 'Fz_N<-1'", [touches(&["4.csv"]), model(), switch].concat(), "switched");
         make("simulate", "pf1 = 5000\nuntil = 0.2", data("params", &["fitted/fit.toml"]), "again");
         made
     }
@@ -176,6 +183,10 @@ fn results_are_the_same_bytes_in_any_folder_at_any_time_on_any_threads() {
         quality("fitted")[1..],
         ["k_C1_N_per_m of its value, standard error", "k_C2_N_per_m of its value, standard error"]
     );
+    assert_eq!(
+        quality("switched"),
+        ["false switches per hour", "missed presses of all", "delay of presses seconds, median"]
+    );
     let model = String::from_utf8(first[Path::new("force/model.json")].clone()).unwrap();
     assert!(model.contains("\"name\": \"1.csv\"") && model.contains("\"subject\": \"S01\""), "{model}");
     let merit = String::from_utf8(first[Path::new("evaluated/merit.csv")].clone()).unwrap();
@@ -205,9 +216,15 @@ fn what_is_not_wanted_is_not_made() {
     let inputs = vec![data("model", "m/model.json"), data("data", "3.csv")];
     assert_eq!(bare("evaluate", "", inputs, "e"), ["merit.csv"]);
     assert_eq!(bare("analyse", "", vec![data("model", "m/model.json")], "a"), ["modes.csv"]);
-    assert_eq!(bare("prune", "", sets, "p"), ["subsets.csv"]);
+    assert_eq!(bare("prune", "", sets.clone(), "p"), ["subsets.csv"]);
     assert_eq!(bare("simulate", "until = 0.1", Vec::new(), "s"), ["trajectory.csv"]);
     std::fs::write(place.path("t.csv"), "operator,method,trial,time_s\nA,pendant,1,200\n").unwrap();
+    assert_eq!(bare("train", "target = 'Fz_N'", sets, "n"), ["merit.csv", "model.json"]);
+    let (recorded, model) = (data("recordings", "3.csv"), data("model", "n/model.json"));
+    let tune = "contact = 'Fz_N<-1'\nfalse_per_hour = 5000\nmissed = 0.9\noutside = 'count'";
+    assert_eq!(bare("switch-tune", tune, vec![recorded.clone(), model.clone()], "w"), ["switch.toml"]);
+    let judged = vec![recorded, model, data("switch", "w/switch.toml")];
+    assert_eq!(bare("switch-evaluate", "contact = 'Fz_N<-1'", judged, "j"), ["presses.csv"]);
     let course = "path_m = 1.42\nspeed_mps = 0.025\ndecisions = 27";
     assert_eq!(bare("performance", course, vec![data("trials", "t.csv")], "l"), ["performance.json", "table.csv"]);
     assert_eq!(bare("skill", "", vec![data("recordings", "1.csv")], "k"), ["skill.csv", "skill.json"]);
@@ -244,6 +261,10 @@ fn wrong_keys_are_refused_with_what_to_write() {
         ("performance", "path_m = 1\nspeed_mps = 1", "decisions", "is needed"),
         ("performance", "path_m = 0\nspeed_mps = 1\ndecisions = 1", "path_m", "a number above 0"),
         ("skill", "touch = 0.1\nrelease = 0.3", "", "--release 0.3: is above --touch 0.1"),
+        ("switch-tune", "", "contact", "is needed"),
+        ("switch-tune", "contact = 'Fz_N<-1'\nmissed = 1", "missed", "write a share"),
+        ("switch-tune", "contact = 'Fz_N<'", "contact", "a force with its threshold"),
+        ("switch-evaluate", "contact = 'c'\nmissed = 0.1", "missed", "is not an option"),
         ("trajectory", "", "kind", "is needed"),
         ("trajectory", "kind = 'posture'\nmu = 1", "mu", "not an option of a posture trajectory"),
         ("trajectory", "kind = 'posture'\nseed = 1", "random", "is needed"),
@@ -286,6 +307,7 @@ fn plans_leave_out_what_a_scene_does_not_need() {
     assert!(!fate("fit", "free = ['k_C']\ncalibrate = 'held'", &recordings, &["params"], "offset and scaling").0);
     assert!(!fate("skill", "", &recordings, &["skill"], "distance from a reference").0);
     assert!(fate("skill", "reference_trial = '1'", &recordings, &["skill"], "distance from a reference").0);
+    assert!(!fate("switch-tune", "contact = 'c'", &recordings, &["switch"], "figures").0);
     let (runs, why) = fate("performance", "path_m = 1\nspeed_mps = 1\ndecisions = 1", &[], &["means"], "figures");
     assert!(!runs && why == "not asked for", "{why}");
     assert!(!fate("static", "static = 0", &[], &["curve"], "figures").0);

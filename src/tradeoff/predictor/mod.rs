@@ -4,6 +4,8 @@
 //! Solvers are given problems whose exact solution is known: small whole numbers, so that voltages and targets are
 //! exact and rounding is the only error.
 
+pub mod switch;
+
 use std::hint::black_box;
 use std::path::PathBuf;
 use std::time::Instant;

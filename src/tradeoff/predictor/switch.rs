@@ -31,15 +31,16 @@ pub struct Settings {
 }
 
 /// What the switch compares: job and choice.
-pub(super) const MODEL: (&str, &str) = ("switch", "model");
+pub(in crate::tradeoff) const MODEL: (&str, &str) = ("switch", "model");
 /// How many false switches are allowed: job and choice.
-pub(super) const RATE: (&str, &str) = ("switch", "--false-per-hour");
+pub(in crate::tradeoff) const RATE: (&str, &str) = ("switch", "--false-per-hour");
 /// What a press loses; decides between models.
-pub(super) const LOST: &str = "lost by a press, mean, s (its delay; of a missed one all of it); answers of one row";
+pub(in crate::tradeoff) const LOST: &str =
+    "lost by a press, mean, s (its delay; of a missed one all of it); answers of one row";
 /// Its false switches.
 const FALSE_OF_MODEL: &str = "false switches per hour, at most (95 %); answers of one row";
 /// What a rate stands for.
-pub(super) const FALSE: &str = "false switches per hour, at most (95 %); delay of a press";
+pub(in crate::tradeoff) const FALSE: &str = "false switches per hour, at most (95 %); delay of a press";
 
 const CONTACT: &str = "contact";
 /// Rates of false switches per hour.
@@ -97,12 +98,12 @@ impl Model {
 }
 
 /// What the book's session trains.
-pub(super) fn model_default() -> String {
+pub(in crate::tradeoff) fn model_default() -> String {
     DISCRIMINATOR.name()
 }
 
 /// What `lunula switch tune` allows.
-pub(super) fn rate_default() -> String {
+pub(in crate::tradeoff) fn rate_default() -> String {
     rate(FALSE_PER_HOUR)
 }
 
