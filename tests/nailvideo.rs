@@ -1,8 +1,14 @@
 //! `lunula nailvideo` on generated videos: motion, photodiodes and presses against exact truth, and what is refused.
 
+use std::collections::BTreeMap;
 use std::fs;
+use std::path::Path;
+
+use lunula::video::{Encoder, Encoding, Format, Item, Picture, Plane, Turn, Video};
 
 use crate::util::{Answer, Dir};
+
+type Row = BTreeMap<String, String>;
 
 /// A nail that is pressed once, small and fast.
 const SCENE: &str = "phantom nailvideo --size 320x240 --nail-px 90 --seconds 6 --drift 5 --x264 ultrafast --out s";
@@ -94,4 +100,109 @@ fn what_can_not_be_followed_is_refused_with_its_remedy() {
     words(&dir, "nailvideo nowhere.mp4 --out out").expect(2).says("nowhere.mp4");
     words(&dir, "nailvideo tiny/video.mp4 --masks tiny --out out").expect(2).says("name the mask as the video");
     assert!(!dir.path("out").exists());
+}
+
+/// The pictures of a video, in order.
+fn pictures(path: &Path) -> Vec<Picture> {
+    let mut video = Video::open(path, 2).unwrap();
+    let format = video.info().format;
+    let mut all = Vec::new();
+    while let Some(item) = video.next_item().unwrap() {
+        let Item::Frame(frame) = item else { panic!("a frame is missing") };
+        let planes = std::iter::once(frame.luma).chain(frame.chroma.into_iter().flatten());
+        all.push(Picture { format, planes: planes.map(samples).collect() });
+    }
+    all
+}
+
+fn samples(plane: Plane<'_>) -> Vec<u8> {
+    plane.data.chunks(plane.stride).take(plane.height).flat_map(|row| &row[..plane.width]).copied().collect()
+}
+
+/// The picture as it is stored where the file says to turn it by 90 degrees, clockwise.
+fn turned_back(picture: &Picture) -> Picture {
+    let format = picture.format;
+    let sizes = [Some((format.width, format.height)), format.chroma_size(), format.chroma_size()];
+    let planes = picture.planes.iter().zip(sizes.into_iter().flatten()).map(|(plane, (width, height))| {
+        (0..width).rev().flat_map(|x| (0..height).map(move |y| plane[y * width + x])).collect()
+    });
+    Picture { format: Format { width: format.height, height: format.width, ..format }, planes: planes.collect() }
+}
+
+fn ten_bits(picture: &Picture) -> Picture {
+    let deep = |plane: &Vec<u8>| plane.iter().flat_map(|&level| (u16::from(level) << 2).to_le_bytes()).collect();
+    Picture { format: Format { depth: 10, ..picture.format }, planes: picture.planes.iter().map(deep).collect() }
+}
+
+fn grey(picture: &Picture) -> Picture {
+    Picture { format: Format { subsampling: None, ..picture.format }, planes: vec![picture.planes[0].clone()] }
+}
+
+/// Writes pictures at these times in milliseconds, without loss where they have 8 bits.
+fn write(path: &Path, turn: Turn, pictures: impl Iterator<Item = (Picture, i64)>) {
+    let mut pictures = pictures.peekable();
+    let format = pictures.peek().unwrap().0.format;
+    // Between the four: it stays there when they are turned.
+    let encoding =
+        Encoding { crf: 0, turn, chroma_site: Some((0.5, 0.5)), preset: "ultrafast", ..Encoding::new(format) };
+    let mut encoder = Encoder::create(path, &encoding).unwrap();
+    pictures.for_each(|(picture, ticks)| encoder.push(&picture, ticks).unwrap());
+    encoder.finish().unwrap();
+}
+
+#[test]
+fn turned_deep_grey_and_uneven_videos_show_the_same_nail() {
+    let dir = Dir::new();
+    words(&dir, &SCENE.replace("--seconds 6", "--seconds 4")).expect(0);
+    let all = pictures(&dir.path("s/video.mp4"));
+    let even = |k: usize| 1000 * k as i64 / 30;
+    // Every seventh is lost, the others come late or early.
+    let uneven = |k: usize| even(k) + [0, 9, -8, 3][k % 4];
+    let kept = |k: &usize| k % 7 != 5;
+    let of = |change: fn(&Picture) -> Picture| all.iter().enumerate().map(move |(k, one)| (change(one), even(k)));
+    write(&dir.path("plain.mp4"), Turn::None, of(Picture::clone));
+    write(&dir.path("turned.mp4"), Turn::Quarter, of(turned_back));
+    write(&dir.path("deep.mp4"), Turn::None, of(ten_bits));
+    write(&dir.path("grey.mp4"), Turn::None, of(grey));
+    let some = (0..all.len()).filter(kept).map(|k| (all[k].clone(), uneven(k)));
+    write(&dir.path("uneven.mp4"), Turn::None, some);
+    let follow = |name: &str, light: &str| {
+        let out = format!("o-{name}{}", light.replace(' ', "-"));
+        let job = format!("nailvideo {name}.mp4 --outline s/outline.json --no-figures --out {out} {light}");
+        let answer = words(&dir, job.trim_end()).expect(0);
+        (dir.table(&format!("{out}/photodiodes.csv")), answer)
+    };
+    let (plain, _) = follow("plain", "");
+    assert_eq!(follow("turned", "").0, plain);
+    // In log units of 100; a standard error is 0.3.
+    let furthest = |one: &[Row], other: &[Row]| {
+        assert_eq!(one.len(), other.len());
+        let pairs = one.iter().zip(other).flat_map(|(one, other)| (1..=8).map(move |k| (one, other, format!("P{k}"))));
+        pairs.fold(0.0, |most, (one, other, name)| {
+            let [a, b] = [one, other].map(|row| number(&row[&name]).unwrap());
+            f64::max(most, (a - b).abs())
+        })
+    };
+    // x264 is not lossless with 10 bits.
+    let deep = furthest(&plain, &follow("deep", "").0);
+    let (some, _) = follow("uneven", "");
+    let kept_rows: Vec<Row> = plain.iter().enumerate().filter(|(k, _)| kept(k)).map(|(_, row)| row.clone()).collect();
+    let uneven_is_off = furthest(&kept_rows, &some);
+    println!("10 bits: {deep}; uneven: {uneven_is_off}");
+    assert!(deep <= 0.3 && uneven_is_off <= 0.1, "{deep} {uneven_is_off}");
+    for (row, k) in some.iter().zip((0..all.len()).filter(kept)) {
+        let time_s = number(&row["time_s"]).unwrap();
+        assert!((time_s - 1e-3 * uneven(k) as f64).abs() < 1e-6, "{time_s}");
+    }
+    let (of_grey, answer) = follow("grey", "");
+    answer.says("light is not taken off");
+    // Luma rises with green.
+    let (green, _) = follow("plain", "--light none");
+    let traces = [&green, &of_grey].map(|rows| rows.iter().map(|row| number(&row["P2"]).unwrap()).collect::<Vec<_>>());
+    let range =
+        |trace: &[f64]| trace.iter().fold(f64::MIN, |a, &b| a.max(b)) - trace.iter().fold(f64::MAX, |a, &b| a.min(b));
+    let [full, luma] = [range(&traces[0]), range(&traces[1])];
+    println!("P2 over the press: green {full}, luma {luma}");
+    assert!(luma > 0.4 * full && luma < full, "{luma} {full}");
+    words(&dir, "nailvideo grey.mp4 --outline s/outline.json --light red --out x").expect(2).says("only --light none");
 }
