@@ -5,6 +5,7 @@
 //! and the files.
 
 mod error;
+mod onlooker;
 mod options;
 pub mod performance;
 mod session;
@@ -17,14 +18,17 @@ pub use lunula_live as streams;
 pub use lunula_live::switch::Evaluation;
 
 pub use error::LiveError;
+pub(crate) use onlooker::{Attended, Onlooker};
 pub use options::{AnswerOptions, LiveOptions, MouseFiles, MouseOptions, SessionFiles, StreamOptions};
+pub(crate) use session::{FORCES, Growing, PhantomRows, StreamColumns, attend};
 pub use session::{
     Latency, PointerCounts, Readers, SessionFigures, SessionReport, SourceFigures, SourceRole, SwitchCounts, live,
     record,
 };
 pub use steps::{live_steps, record_steps};
-pub(crate) use switch::{FALSE_PER_HOUR, Traces, read_traces};
 pub use switch::{
     ContactOptions, CurvePoint, EvaluateSwitchFigures, EvaluateSwitchJob, EvaluateSwitchReport, OutsideChoice,
-    SwitchInputs, TrueContact, TuneFigures, TuneOptions, TuneOutputs, TuneReport, TuneSwitchJob, evaluate_plan, evaluate_switch, read_switch, tune_plan, tune_switch,
+    SwitchInputs, TrueContact, TuneFigures, TuneOptions, TuneOutputs, TuneReport, TuneSwitchJob, evaluate_plan,
+    evaluate_switch, read_switch, tune_plan, tune_switch,
 };
+pub(crate) use switch::{FALSE_PER_HOUR, Traces, read_traces};

@@ -108,7 +108,7 @@ fn write_presses(at: &Path, shown: &Path, recordings: &[String], found: &[Vec<Ma
     ];
     let mut table = TableWriter::create(at, shown, columns, &[])?;
     for (recording, matches) in recordings.iter().zip(found) {
-                for one in matches {
+        for one in matches {
             let kind = match one.fate {
                 Fate::True => "true",
                 Fate::False => "false",

@@ -29,8 +29,7 @@ pub struct TuneSwitchJob(TuneOptions);
 pub struct EvaluateSwitchJob(ContactOptions);
 
 fn inputs(work: &Work<'_>) -> SwitchInputs {
-    let recording =
-        |at: &At| DataFile { path: at.path.clone(), name: at.name.clone(), session: None, subject: None };
+    let recording = |at: &At| DataFile { path: at.path.clone(), name: at.name.clone(), session: None, subject: None };
     SwitchInputs {
         recordings: work.of(RECORDINGS.name).map(recording).collect(),
         models: work.of(MODEL.name).map(|at| at.path.clone()).collect(),

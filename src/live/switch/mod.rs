@@ -14,7 +14,7 @@ pub use kind::{EvaluateSwitchJob, TuneSwitchJob};
 pub(crate) use options::FALSE_PER_HOUR;
 pub use options::{ContactOptions, OutsideChoice, TuneOptions};
 pub use report::{CurvePoint, TuneFigures, TuneReport};
-pub use truth::TrueContact;
 pub use traces::SwitchInputs;
 pub(crate) use traces::{Traces, read_traces};
+pub use truth::TrueContact;
 pub use tune::{TuneOutputs, tune_plan, tune_switch};
