@@ -37,6 +37,7 @@ mod photograph;
 pub mod pipeline;
 pub mod posture;
 pub mod predictor;
+pub mod prompt;
 #[cfg(test)]
 #[path = "../tests/util/real_data.rs"]
 mod real_data;

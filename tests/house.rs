@@ -17,7 +17,7 @@ const FLOORS: [&[&str]; 9] = [
     &["align", "camera", "hemodynamics", "layout", "photo", "posture", "predictor"],
     &["nailvideo", "phantom"],
     &["live"],
-    &["doctor", "tradeoff"],
+    &["doctor", "prompt", "tradeoff"],
     &["pipeline"],
 ];
 

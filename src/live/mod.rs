@@ -5,6 +5,7 @@
 //! and the files.
 
 mod error;
+mod onlooker;
 mod options;
 pub mod performance;
 mod session;
@@ -17,7 +18,9 @@ pub use lunula_live as streams;
 pub use lunula_live::switch::Evaluation;
 
 pub use error::LiveError;
+pub(crate) use onlooker::{Attended, Onlooker};
 pub use options::{AnswerOptions, LiveOptions, MouseFiles, MouseOptions, SessionFiles, StreamOptions};
+pub(crate) use session::{FORCES, Growing, PhantomRows, StreamColumns, attend};
 pub use session::{
     Latency, PointerCounts, Readers, SessionFigures, SessionReport, SourceFigures, SourceRole, SwitchCounts, live,
     record,

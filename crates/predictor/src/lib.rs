@@ -58,7 +58,8 @@ pub use subsets::{
 };
 pub use trajectory::{
     Bending, CONE_CELLS, ConeCoverage, Density, Evenness, ForceSpace, ForceSpaceFault, Hole, RELEASE_S, RandomBending,
-    RandomForce, RateLimits, Spiral, Wave, circling_limit_hz, cone_coverage, rate_limit_per_s, rate_limits,
+    RandomForce, RateLimits, Spiral, Wave, cell_middle_n, circling_limit_hz, cone_cell, cone_coverage,
+    rate_limit_per_s, rate_limits,
 };
 
 /// The example of the README, run as a test.

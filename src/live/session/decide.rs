@@ -48,6 +48,17 @@ pub(super) struct Decide {
     ahead_s: f64,
 }
 
+/// Whether a row is recorded.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Kept<'a> {
+    /// Where there is a recording.
+    Usual,
+    /// At a time, with further cells.
+    At(f64, &'a str),
+    /// It is not.
+    Not,
+}
+
 /// What is made of lit rows.
 pub(super) struct Answers {
     pub(super) sensor: Sensor,
@@ -95,7 +106,13 @@ impl Decide {
     ///
     /// # Errors
     /// Photodiodes that are counts; a recording or events that can't be written.
-    pub(super) fn row(&mut self, row: &Row<'_>, common_s: f64, outputs: &mut Outputs) -> Result<(), LiveError> {
+    pub(super) fn row(
+        &mut self,
+        row: &Row<'_>,
+        common_s: f64,
+        kept: Kept<'_>,
+        outputs: &mut Outputs,
+    ) -> Result<(), LiveError> {
         if self.rows == 0 && self.answers.is_some() && self.looks_like_counts(row) {
             let what = "the photodiodes are whole numbers beyond 30: they look like a converter's counts, and models \
                         read volts; say what a step is, as --volts-per-count 10/65536";
@@ -111,13 +128,22 @@ impl Decide {
             self.ahead_s = time_s - row.time_s;
         }
         if let Some(samples) = &mut self.samples {
-            samples.row(row, time_s, common_s)?;
+            match kept {
+                Kept::Usual => samples.row(row, time_s, common_s, "")?,
+                Kept::At(time_s, cells) => samples.row(row, time_s, common_s, cells)?,
+                Kept::Not => {}
+            }
         }
         let finger = self.finger.as_ref().map(|(name, place)| (name.as_str(), *place));
         match &mut self.answers {
             Some(answers) => answers.row(row, time_s, self.ahead_s, finger, outputs),
             None => Ok(()),
         }
+    }
+
+    /// The stream's columns.
+    pub(super) fn columns(&self) -> &StreamColumns {
+        &self.columns
     }
 
     /// Whether the photodiodes of a row are whole numbers, one of them beyond what volts are.

@@ -5,7 +5,7 @@
 //! delay that every row of a link has can't be seen, so two devices are tied up to the difference of theirs.
 
 use lunula_live::latency::Latency as Times;
-use lunula_live::source::{Address, Condition, HostClock, Stream};
+use lunula_live::source::{Address, Condition, HostClock, Pace, Place, Rows, Stream, StreamOptions as WireOptions};
 use lunula_live::time::ClockFit;
 use lunula_live::wire::{Row, Spoil, SpoiltRows};
 
@@ -57,8 +57,25 @@ impl<'a> Feed<'a> {
         let recognizer = Recognizer::default();
         let naming = recognizer.naming(&options.log, &options.keep, needs);
         let stream = open_stream(source, options, naming, clock.now_ns())?;
+        Ok(Self::of(source, stream, recognizer))
+    }
+
+    /// Rows that a program makes, in place of the source, at the source's pace.
+    pub(super) fn of_rows(source: &'a Address, rows: Box<dyn Rows>, options: &StreamOptions) -> Self {
+        let recognizer = Recognizer::default();
+        let naming = recognizer.naming(&options.log, &options.keep, &[]);
+        let pace = match source.place {
+            Place::Phantom { pace, .. } => pace,
+            _ => Pace::Max,
+        };
+        let wire = WireOptions::default();
+        let stream = Stream::of_rows(source.to_string(), rows, (pace, false), None, &wire, naming);
+        Self::of(source, stream, recognizer)
+    }
+
+    fn of(source: &'a Address, stream: Stream, recognizer: Recognizer) -> Self {
         let health = FeedHealth { is_live: stream.is_live(), latest_s: f64::NAN, ..FeedHealth::default() };
-        Ok(Self { source, stream, recognizer, health })
+        Self { source, stream, recognizer, health }
     }
 
     /// The source in messages, behind a finger's name where there are several.

@@ -6,12 +6,13 @@ use lunula_live::source::{Event, HostClock, State};
 use lunula_live::wire::Row;
 
 use super::columns::StreamColumns;
-use super::decide::{Decide, Plan};
+use super::decide::{Decide, Kept, Plan};
 use super::feed::{Feed, is_away};
 use super::open::source_fault;
 use super::outputs::Outputs;
 use super::outputs::samples::Samples;
 use crate::live::error::LiveError;
+use crate::live::onlooker::Onlooker;
 use crate::log::LogReading;
 
 /// A finger.
@@ -44,6 +45,9 @@ pub(super) struct Shared<'a> {
     pub(super) arrival: Times,
     pub(super) seconds: Option<f64>,
     pub(super) ends: bool,
+    /// Who looks on, and the columns and cells that it adds to what is recorded.
+    pub(super) onlooker: Option<(&'a mut dyn Onlooker, &'a [&'a str])>,
+    pub(super) cells: String,
 }
 
 impl Shared<'_> {
@@ -55,8 +59,19 @@ impl Shared<'_> {
         }
     }
 
-    fn state(&self, label: &str, state: State) {
-        (self.tell)(&format!("state: {label}{}", state.condition.word()));
+    fn state(&mut self, label: &str, is_force: bool, state: State) {
+        let of = if is_force { "force: " } else { "" };
+        (self.tell)(&format!("state: {label}{of}{}", state.condition.word()));
+        if let Some((onlooker, _)) = &mut self.onlooker {
+            onlooker.state(is_force, state.condition);
+        }
+    }
+
+    /// Somebody who looks on hears what was recorded.
+    fn heard(&mut self, decide: &mut Decide) {
+        if let (Some((onlooker, _)), Some(samples)) = (&mut self.onlooker, &mut decide.samples) {
+            samples.heard().for_each(|force_n| onlooker.recorded(force_n));
+        }
     }
 }
 
@@ -113,7 +128,7 @@ impl<'a> Lane<'a> {
                     Ok(())
                 }
                 Event::State(state) => {
-                    shared.state(&work.label, state);
+                    shared.state(&work.label, false, state);
                     if is_away(state.condition) { work.lose(false, shared) } else { Ok(()) }
                 }
                 Event::End => work.lose(true, shared),
@@ -138,22 +153,21 @@ impl<'a> Lane<'a> {
                 return;
             }
             let done = match event {
-                Event::Columns(_) => work.join(recognizer.take().values),
+                Event::Columns(_) => work.join(recognizer.take().values, shared),
                 Event::Row(row) => {
                     health.row(row, &mut shared.arrival);
                     let common_s = health.common_s(row);
-                    let samples = work.decide.as_mut().and_then(|decide| decide.samples.as_mut());
-                    samples.map_or(Ok(()), |samples| samples.force(common_s, row.values, row.begins))
+                    work.force(row, common_s, shared)
                 }
                 Event::Spoilt { .. } => {
                     health.spoilt();
                     Ok(())
                 }
                 Event::State(state) => {
-                    shared.state(&format!("{}force: ", work.label), state);
+                    shared.state(&work.label, true, state);
                     Ok(())
                 }
-                Event::End => work.end_forces(),
+                Event::End => work.end_forces(shared),
             };
             fault = done.err();
         };
@@ -181,7 +195,9 @@ impl<'a> Lane<'a> {
     pub(super) fn advance(&mut self, now_ns: u64, shared: &mut Shared<'_>) -> Result<(), LiveError> {
         let Some(decide) = self.work.decide.as_mut().filter(|_| self.feed.stream.is_live()) else { return Ok(()) };
         decide.advance(self.feed.stream.stream_now_s(now_ns), &mut shared.outputs)?;
-        decide.samples.as_mut().map_or(Ok(()), |samples| samples.settle(1e-9 * now_ns as f64))
+        let settled = decide.samples.as_mut().map_or(Ok(()), |samples| samples.settle(1e-9 * now_ns as f64));
+        shared.heard(decide);
+        settled
     }
 }
 
@@ -192,18 +208,29 @@ impl Work {
         let mut notes = Vec::new();
         let decide = Decide::new(plan, columns, shared.log, &mut notes);
         shared.note(&self.label, notes);
-        self.decide = Some(decide?);
+        let mut decide = decide?;
+        if let Some((onlooker, more)) = &mut shared.onlooker {
+            let joins = decide.samples.as_ref().is_some_and(Samples::joins_forces);
+            onlooker.begin(decide.columns(), joins)?;
+            decide.samples.as_mut().into_iter().for_each(|samples| samples.attended(more));
+        }
+        self.decide = Some(decide);
         shared.outputs.begin()?;
         if let Some(names) = self.forces.take() {
-            self.join(names)?;
+            self.join(names, shared)?;
         }
-        if self.forces_ended { self.end_forces() } else { Ok(()) }
+        if self.forces_ended { self.end_forces(shared) } else { Ok(()) }
     }
 
     /// The force transducer's columns are known.
-    fn join(&mut self, names: Vec<String>) -> Result<(), LiveError> {
+    fn join(&mut self, names: Vec<String>, shared: &mut Shared<'_>) -> Result<(), LiveError> {
         match self.decide.as_mut().and_then(|decide| decide.samples.as_mut()) {
-            Some(samples) => samples.join(&names).map_err(LiveError::Request),
+            Some(samples) => {
+                if let Some((onlooker, _)) = &mut shared.onlooker {
+                    onlooker.join(&names)?;
+                }
+                samples.join(&names).map_err(LiveError::Request)
+            }
             None => {
                 self.forces = Some(names);
                 Ok(())
@@ -211,15 +238,39 @@ impl Work {
         }
     }
 
-    fn end_forces(&mut self) -> Result<(), LiveError> {
+    fn end_forces(&mut self, shared: &mut Shared<'_>) -> Result<(), LiveError> {
         self.forces_ended = true;
-        let samples = self.decide.as_mut().and_then(|decide| decide.samples.as_mut());
-        samples.map_or(Ok(()), |samples| samples.end_forces())
+        let Some(decide) = &mut self.decide else { return Ok(()) };
+        let ended = decide.samples.as_mut().map_or(Ok(()), Samples::end_forces);
+        shared.heard(decide);
+        ended
+    }
+
+    /// A sample of the force transducer.
+    fn force(&mut self, row: &Row<'_>, common_s: f64, shared: &mut Shared<'_>) -> Result<(), LiveError> {
+        if let Some((onlooker, _)) = &mut shared.onlooker {
+            onlooker.force(row, common_s);
+        }
+        let Some(decide) = &mut self.decide else { return Ok(()) };
+        let forces = decide.samples.as_mut();
+        let known = forces.map_or(Ok(()), |samples| samples.force(common_s, row.values, row.begins));
+        shared.heard(decide);
+        known
     }
 
     fn row(&mut self, row: &Row<'_>, common_s: f64, shared: &mut Shared<'_>) -> Result<(), LiveError> {
         let Some(decide) = &mut self.decide else { return Ok(()) };
-        decide.row(row, common_s, &mut shared.outputs)?;
+        let kept = match &mut shared.onlooker {
+            None => Kept::Usual,
+            Some((onlooker, _)) => {
+                shared.cells.clear();
+                let kept = onlooker.sample(row, common_s, &mut shared.cells);
+                shared.ends |= onlooker.is_over();
+                kept.map_or(Kept::Not, |time_s| Kept::At(time_s, &shared.cells))
+            }
+        };
+        decide.row(row, common_s, kept, &mut shared.outputs)?;
+        shared.heard(decide);
         if let (Some(seconds), Some([from_s, to_s])) = (shared.seconds, decide.span_s) {
             shared.ends |= to_s - from_s >= seconds;
         }

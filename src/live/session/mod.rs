@@ -22,9 +22,13 @@ mod run;
 mod sensor;
 
 pub(crate) use columns::StreamColumns;
+pub(crate) use open::PhantomRows;
 pub use outputs::pointer::PointerCounts;
+pub(crate) use outputs::recording::Recording as Growing;
+pub(crate) use outputs::samples::FORCES;
 pub use outputs::switch::SwitchCounts;
 pub(crate) use replay::each_row;
 pub use report::{Latency, SessionFigures, SessionReport, SourceFigures, SourceRole};
+pub(crate) use run::attend;
 pub use run::{Readers, live, record};
 pub(crate) use sensor::Sensor;

@@ -11,7 +11,7 @@ use crate::job::read;
 use crate::live::error::LiveError;
 use crate::live::options::StreamOptions;
 use crate::log::{LogReading, recorded_stream};
-use crate::phantom::log::LiveLog;
+use crate::phantom::log::{LiveLog, LogOptions, Prompting, Protocol};
 use crate::phantom::request::LogRequest;
 use crate::predictor::GROUPS;
 use crate::table;
@@ -163,7 +163,7 @@ pub(super) fn source_fault(source: &Address, why: SourceFault) -> LiveError {
 const HZ: &str = "hz";
 
 /// A generated finger, without end unless its length is given.
-struct PhantomRows {
+pub(crate) struct PhantomRows {
     names: Vec<String>,
     log: LiveLog,
 }
@@ -171,24 +171,49 @@ struct PhantomRows {
 impl PhantomRows {
     /// `kind` is a protocol of `lunula phantom log`, the settings its options.
     fn new(kind: &str, settings: &[(String, String)]) -> Result<Self, String> {
-        let mut table = Table::new();
-        table.insert("protocol".to_owned(), kind.into());
-        for (key, text) in settings {
-            let key = if key == HZ { "rate" } else { key };
-            let value = match text.parse::<f64>() {
-                _ if text.is_empty() => true.into(),
-                Ok(number) if number.fract() == 0.0 && number.abs() < 1e15 => (number as i64).into(),
-                Ok(number) => number.into(),
-                Err(_) => text.as_str().into(),
-            };
-            table.insert(key.replace('-', "_"), value);
-        }
-        let request = read::<LogRequest>(&table, "a phantom").map_err(|why| why.to_string())?.options;
-        let options = request.options().map_err(|why| format!("{why:#}"))?;
+        let (options, table) = log_options(Some(kind), settings)?;
         let endless = !table.contains_key("seconds");
         let log = LiveLog::new(&options, endless).map_err(|why| why.to_string())?;
-        Ok(Self { names: log.names().into_iter().map(str::to_owned).collect(), log })
+        Ok(Self::of(log))
     }
+
+    /// A finger that follows whoever prompts it, as people do unless `follow` is among the settings; its clock is the
+    /// prompter's, and it has no end.
+    ///
+    /// # Errors
+    /// Settings that a log does not have, in words.
+    pub(crate) fn prompted_by(settings: &[(String, String)], prompting: Prompting) -> Result<Self, String> {
+        let (mut options, table) = log_options(None, settings)?;
+        if !table.contains_key("follow") {
+            options.follow = LogOptions::of(Protocol::Touch, options.seed).follow;
+        }
+        (options.lead_s, options.clock_offset_s, options.clock_drift_ppm) = (0.0, 0.0, 0.0);
+        let log = LiveLog::prompted_by(&options, prompting).map_err(|why| why.to_string())?;
+        Ok(Self::of(log))
+    }
+
+    fn of(log: LiveLog) -> Self {
+        Self { names: log.names().into_iter().map(str::to_owned).collect(), log }
+    }
+}
+
+/// The options of a generated log, and the settings as a table.
+fn log_options(protocol: Option<&str>, settings: &[(String, String)]) -> Result<(LogOptions, Table), String> {
+    let mut table = Table::new();
+    table.extend(protocol.map(|kind| ("protocol".to_owned(), kind.into())));
+    for (key, text) in settings {
+        let key = if key == HZ { "rate" } else { key };
+        let value = match text.parse::<f64>() {
+            _ if text.is_empty() => true.into(),
+            Ok(number) if number.fract() == 0.0 && number.abs() < 1e15 => (number as i64).into(),
+            Ok(number) => number.into(),
+            Err(_) => text.as_str().into(),
+        };
+        table.insert(key.replace('-', "_"), value);
+    }
+    let request = read::<LogRequest>(&table, "a phantom").map_err(|why| why.to_string())?.options;
+    let options = request.options().map_err(|why| format!("{why:#}"))?;
+    Ok((options, table))
 }
 
 impl Rows for PhantomRows {

@@ -20,6 +20,7 @@ use super::report::{Ended, REPORT, SessionReport, report};
 use crate::files::{Places, beside};
 use crate::job::Watch;
 use crate::live::error::LiveError;
+use crate::live::onlooker::Attended;
 use crate::live::options::{LiveOptions, SessionFiles, StreamOptions};
 use crate::live::steps::{live_steps, record_steps};
 use crate::live::switch::read_switch;
@@ -97,7 +98,7 @@ pub fn live(
     let labels = plans.first().and_then(|plan| plan.answering.as_ref()).map_or(&[][..], Answering::columns);
     let named = all.iter().any(|finger| finger.name.is_some());
     outputs.name(header.unwrap_or_default(), labels, named, has_switch, options.lsl.as_deref())?;
-    let mut session = Session::new(&options.stream, files, all, plans, outputs, readers.tell, watch)?;
+    let mut session = Session::new(&options.stream, files, all, plans, outputs, readers.tell, None, watch)?;
     session.warnings = warnings;
     let job = if files.mouse.is_some() { "mouse" } else { "live" };
     let left_out = left_out(live_steps(options, files));
@@ -120,8 +121,30 @@ pub fn record(
     let all = fingers(options, files)?;
     check_places(&all, files)?;
     let plans = all.iter().map(|finger| finger.plan(false)).collect();
-    let session = Session::new(options, files, all, plans, Outputs::default(), tell, watch)?;
+    let session = Session::new(options, files, all, plans, Outputs::default(), tell, None, watch)?;
     session.run("record", left_out(record_steps(options, files)), watch)
+}
+
+/// Records what somebody who looks on wants recorded, of one finger.
+///
+/// # Errors
+/// As [`live`]; several fingers.
+pub(crate) fn attend<'a>(
+    options: &'a StreamOptions,
+    files: &'a SessionFiles,
+    attended: Attended<'a>,
+    tell: &'a dyn Fn(&str),
+    watch: &Watch<'_>,
+) -> Result<SessionReport, LiveError> {
+    let all = fingers(options, files)?;
+    if all.len() > 1 {
+        return Err(LiveError::Request("one finger at a time; name one --source".to_owned()));
+    }
+    check_places(&all, files)?;
+    let job = attended.job;
+    let plans = all.iter().map(|finger| finger.plan(false)).collect();
+    let session = Session::new(options, files, all, plans, Outputs::default(), tell, Some(attended), watch)?;
+    session.run(job, left_out(record_steps(options, files)), watch)
 }
 
 /// No result goes over an input.
@@ -155,6 +178,7 @@ struct Session<'a> {
 }
 
 impl<'a> Session<'a> {
+    #[allow(clippy::too_many_arguments, reason = "all that a session is made of, once")]
     fn new(
         options: &'a StreamOptions,
         files: &'a SessionFiles,
@@ -162,10 +186,14 @@ impl<'a> Session<'a> {
         plans: Vec<Plan>,
         outputs: Outputs,
         tell: &'a dyn Fn(&str),
+        attended: Option<Attended<'a>>,
         watch: &Watch<'_>,
     ) -> Result<Self, LiveError> {
         watch.go_on()?;
-        let clock = HostClock::start();
+        let (clock, mut rows, onlooker) = match attended {
+            None => (HostClock::start(), None, None),
+            Some(Attended { onlooker, columns, clock, rows, .. }) => (clock, rows, Some((onlooker, columns))),
+        };
         let waits = all.iter().all(Finger::waits);
         let mut lanes = Vec::new();
         for (finger, mut plan) in all.iter().zip(plans) {
@@ -175,7 +203,10 @@ impl<'a> Session<'a> {
             }
             let open = |source: &'a Address, needs: &[String]| Feed::open(source, options, needs, &clock);
             let needs = plan.answering.as_ref().map_or(&[][..], Answering::inputs);
-            let feed = open(finger.source, needs)?;
+            let feed = match rows.take() {
+                None => open(finger.source, needs)?,
+                Some(rows) => Feed::of_rows(finger.source, rows, options),
+            };
             let force = finger.force.map(|source| open(source, &[])).transpose()?;
             lanes.push(Lane::new(feed, force, plan));
         }
@@ -196,6 +227,8 @@ impl<'a> Session<'a> {
             arrival: Times::default(),
             seconds: options.seconds,
             ends: false,
+            onlooker,
+            cells: String::new(),
         };
         let in_order = several && live == 0;
         Ok(Self { files, lanes, shared, warnings: Vec::new(), wake_up: Times::default(), in_order, begun: false })
@@ -227,6 +260,10 @@ impl<'a> Session<'a> {
         let now_ns = self.shared.clock.now_ns();
         for lane in &mut self.lanes {
             lane.advance(now_ns, &mut self.shared)?;
+        }
+        if let Some((onlooker, _)) = &mut self.shared.onlooker {
+            onlooker.tick(now_ns)?;
+            self.shared.ends |= onlooker.is_over();
         }
         if now_ns >= *tick_ns {
             *tick_ns = now_ns + TICK_NS;

@@ -12,6 +12,9 @@
 //! **Contacts** ([`ForceTrajectory::Contacts`](crate::phantom::motion::force::ForceTrajectory::Contacts)): a finger
 //! that makes them of its own accord bends for them as well.
 
+use std::fmt;
+use std::sync::Arc;
+
 use rand::RngExt;
 
 use super::LogOptions;
@@ -25,6 +28,16 @@ use crate::phantom::sensor::Touch;
 /// How long a finger takes to straighten, seconds.
 const STRAIGHTEN_S: f64 = 1.0;
 
+/// Whoever prompts a finger: what it is to do at a time of the log's clock, seconds.
+#[derive(Clone)]
+pub struct Prompting(pub Arc<dyn Fn(f64) -> Touch + Send + Sync>);
+
+impl fmt::Debug for Prompting {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str("Prompting")
+    }
+}
+
 /// All that a finger does, ready to be asked often.
 #[derive(Debug, Clone)]
 pub(in crate::phantom) struct Doing {
@@ -36,6 +49,7 @@ pub(in crate::phantom) struct Doing {
     mu: f64,
     shift_rad: [f64; 3],
     follow: Option<Follow>,
+    prompting: Option<Prompting>,
 }
 
 impl Doing {
@@ -52,7 +66,13 @@ impl Doing {
             mu: usual.mu,
             shift_rad: shift_rad(options),
             follow: Follow::new(options.follow, options.seed),
+            prompting: None,
         }
+    }
+
+    /// Of a finger that somebody prompts, in place of what the options say of its movement.
+    pub(super) fn prompted_by(self, prompting: Option<Prompting>) -> Self {
+        Self { prompting, ..self }
     }
 
     /// Of a log that ends.
@@ -86,6 +106,11 @@ impl Doing {
 
     /// What it is prompted to do, and how far it is straight for touching, from 0 to 1.
     fn prompted(&self, t_s: f64) -> (Touch, f64) {
+        if let Some(Prompting(prompt)) = &self.prompting {
+            let touch = prompt(t_s);
+            let straight = if touch.angles_rad == [0.0; 3] { 1.0 } else { 0.0 };
+            return (touch, straight);
+        }
         let Some(from_s) = self.touch_from_s else {
             let touch = Touch { forces_n: self.press.forces_n(t_s), angles_rad: self.movement.angles_rad(t_s) };
             return (touch, if self.rests { 1.0 } else { 0.0 });

@@ -1,5 +1,6 @@
 //! A log's rows one after the other, as a device would send them: for a stream that may go on without end.
 
+use super::doing::Prompting;
 use super::lines::{cells, columns};
 use super::samples::Samples;
 use super::{Faults, LogOptions, Row, Stamps};
@@ -42,6 +43,20 @@ impl LiveLog {
     /// # Errors
     /// [`Faults`]: all that is wrong with the options, and what needs the whole log or is no number.
     pub fn new(options: &LogOptions, endless: bool) -> Result<Self, Faults> {
+        Self::of(options, endless, None)
+    }
+
+    /// Begins the log, without end, of a finger that somebody prompts, in place of what the options say of its
+    /// movement; it follows as [`LogOptions::follow`] says. What it is prompted to is asked for some milliseconds apart
+    /// and once a row ahead.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn prompted_by(options: &LogOptions, prompting: Prompting) -> Result<Self, Faults> {
+        Self::of(options, true, Some(prompting))
+    }
+
+    fn of(options: &LogOptions, endless: bool, prompting: Option<Prompting>) -> Result<Self, Faults> {
         let mut faults = options.check().err().unwrap_or(Faults(Vec::new()));
         if options.saturate {
             faults.0.push("--saturate: needs the whole log before its first row; leave it out".to_owned());
@@ -52,7 +67,7 @@ impl LiveLog {
         if !faults.0.is_empty() {
             return Err(faults);
         }
-        let samples = Samples::new(options, [1.0; CHANNELS], endless);
+        let samples = Samples::prompted_by(options, [1.0; CHANNELS], endless, prompting);
         Ok(Self { options: options.clone(), columns: columns(options), samples })
     }
 

@@ -41,6 +41,7 @@ mod write;
 
 pub use crate::phantom::scene::faults::Faults;
 pub(in crate::phantom) use doing::Doing;
+pub use doing::Prompting;
 pub use live::{LiveLog, LiveRow};
 pub use options::{LogOptions, SensorModel, Stamps};
 pub use protocol::Protocol;

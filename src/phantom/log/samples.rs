@@ -4,7 +4,7 @@ use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-use super::doing::Doing;
+use super::doing::{Doing, Prompting};
 use super::{LogOptions, SensorModel};
 use crate::phantom::nail::numbers;
 use crate::phantom::sensor::{Ambient, CHANNELS, Disturbances, Response, Sensor, Touch, Wander, WornSensor};
@@ -111,6 +111,16 @@ pub(super) struct Samples {
 impl Samples {
     /// Of a log that has passed its check; without end, it goes on after its seconds.
     pub(super) fn new(options: &LogOptions, gains: [f64; CHANNELS], endless: bool) -> Self {
+        Self::prompted_by(options, gains, endless, None)
+    }
+
+    /// The same, of a finger that somebody prompts.
+    pub(super) fn prompted_by(
+        options: &LogOptions,
+        gains: [f64; CHANNELS],
+        endless: bool,
+        prompting: Option<Prompting>,
+    ) -> Self {
         let rate = clock_rate(options);
         let mut rng = numbers(options.seed, KIND_ROWS, 0);
         let phase: f64 = rng.random_range(0.0..1.0);
@@ -118,7 +128,7 @@ impl Samples {
         let end_s = options.clock_offset_s + rate * (options.seconds + options.trail_s);
         let count = if endless { usize::MAX } else { ((end_s - first_s) * options.rate_hz).ceil().max(0.0) as usize };
         let sensor = Sensor::new(options.subject, options.session);
-        let doing = Doing::until(options, if endless { f64::INFINITY } else { options.seconds });
+        let doing = Doing::until(options, if endless { f64::INFINITY } else { options.seconds }).prompted_by(prompting);
         let seen = Seen::new(options, &sensor, &doing);
         let disturbances = Disturbances::new(options.seed, options.disturbances);
         Self {

@@ -95,6 +95,26 @@ pub fn cone_coverage(forces: impl IntoIterator<Item = [f64; 3]>, space: &ForceSp
     ConeCoverage { rows, at_rest, outside, not_finite, cylindrical, cartesian, hole }
 }
 
+/// The cell of a force of the cone, of [`CONE_CELLS`] in cylindrical density, counted as directions, then shear, then
+/// pressing; `None` outside of the cone.
+#[must_use]
+pub fn cone_cell(space: &ForceSpace, force_n: [f64; 3]) -> Option<usize> {
+    space.place(Density::Cylindrical, force_n).map(|place| cell(CONE_CELLS, place))
+}
+
+/// The force, newtons, in the middle of a cell of [`cone_cell`].
+#[must_use]
+pub fn cell_middle_n(space: &ForceSpace, cell: usize) -> [f64; 3] {
+    let [ups, outs, turns] = CONE_CELLS;
+    let at = [cell / (outs * turns), cell / turns % outs, cell % turns];
+    space.force(Density::Cylindrical, std::array::from_fn(|k| (at[k] as f64 + 0.5) / [ups, outs, turns][k] as f64))
+}
+
+fn cell(cells: [usize; 3], place: [f64; 3]) -> usize {
+    let at: [usize; 3] = std::array::from_fn(|k| ((place[k] * cells[k] as f64) as usize).min(cells[k] - 1));
+    (at[0] * cells[1] + at[1]) * cells[2] + at[2]
+}
+
 /// Rows in each cell.
 struct Counts {
     cells: [usize; 3],
@@ -107,9 +127,7 @@ impl Counts {
     }
 
     fn add(&mut self, place: [f64; 3]) {
-        let at: [usize; 3] =
-            std::array::from_fn(|k| ((place[k] * self.cells[k] as f64) as usize).min(self.cells[k] - 1));
-        self.all[(at[0] * self.cells[1] + at[1]) * self.cells[2] + at[2]] += 1;
+        self.all[cell(self.cells, place)] += 1;
     }
 
     fn evenness(&self) -> Evenness {
@@ -311,6 +329,15 @@ mod tests {
         let random = RandomForce::new(SPACE(), 0.1, 1);
         let uneven = cone_coverage((0..=4500).map(|k| random.forces_n(at(k))), &SPACE(), 1e-6);
         assert!(uneven.cylindrical.entropy.unwrap() < even.cylindrical.entropy.unwrap(), "{uneven:?} {even:?}");
+    }
+
+    #[test]
+    fn the_middle_of_a_cell_is_in_it() {
+        let space = ForceSpace::new(2.0, 0.5).unwrap();
+        for cell in 0..CONE_CELLS.iter().product() {
+            assert_eq!(cone_cell(&space, cell_middle_n(&space, cell)), Some(cell));
+        }
+        assert_eq!(cone_cell(&space, [0.0, 0.0, 1.0]), None);
     }
 
     #[test]

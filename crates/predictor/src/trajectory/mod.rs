@@ -26,7 +26,7 @@ mod spiral;
 mod wave;
 
 pub use bending::{Bending, RandomBending};
-pub use coverage::{CONE_CELLS, ConeCoverage, Evenness, Hole, cone_coverage};
+pub use coverage::{CONE_CELLS, ConeCoverage, Evenness, Hole, cell_middle_n, cone_cell, cone_coverage};
 pub use random::RandomForce;
 pub use space::{Density, ForceSpace, ForceSpaceFault};
 pub use speed::{RateLimits, circling_limit_hz, rate_limit_per_s, rate_limits};

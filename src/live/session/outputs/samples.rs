@@ -18,13 +18,39 @@ use crate::table::push_number;
 const PATIENCE_S: f64 = 1.0;
 const NAMES_S: f64 = 10.0;
 
+/// The three forces.
+pub(crate) const FORCES: [&str; 3] = ["Fx_N", "Fy_N", "Fz_N"];
+
 /// The samples of a finger.
 pub(crate) struct Samples {
     recording: Recording,
     led: bool,
     names: Vec<String>,
     line: String,
+    /// Columns of further cells, behind all others.
+    more: Vec<String>,
     forces: Option<Forces>,
+    heard: Option<Heard>,
+}
+
+/// The forces of rows that were recorded, for whoever looks on.
+#[derive(Default)]
+struct Heard {
+    /// Where Fx, Fy, Fz are among the values that have them.
+    places: Option<[usize; 3]>,
+    rows: Vec<[f64; 3]>,
+}
+
+impl Heard {
+    fn look(&mut self, names: &[String]) {
+        let [x, y, z] = FORCES.map(|force| names.iter().position(|name| name == force));
+        self.places = x.zip(y).zip(z).map(|((x, y), z)| [x, y, z]);
+    }
+
+    fn push(&mut self, values: &[f64]) {
+        let force = |place: usize| values.get(place).copied().unwrap_or(f64::NAN);
+        self.rows.push(self.places.map_or([f64::NAN; 3], |places| places.map(force)));
+    }
 }
 
 /// The forces of a second device.
@@ -34,9 +60,17 @@ struct Forces {
     companion: Option<Companion>,
     values: Vec<f64>,
     /// Rows that wait, and lines whose memory is used again.
-    waiting: VecDeque<(f64, String)>,
+    waiting: VecDeque<Waiting>,
     spare: Vec<String>,
     without: u64,
+}
+
+/// A row that waits for its force.
+struct Waiting {
+    common_s: f64,
+    line: String,
+    /// Further cells.
+    cells: String,
 }
 
 impl Samples {
@@ -47,7 +81,32 @@ impl Samples {
         names.extend(columns.values.iter().cloned());
         recording.name(names.clone());
         let forces = joins_forces.then(Forces::default);
-        Self { recording, led: columns.led, names, line: String::with_capacity(512), forces }
+        let line = String::with_capacity(512);
+        Self { recording, led: columns.led, names, line, more: Vec::new(), forces, heard: None }
+    }
+
+    /// Columns of further cells, and somebody who hears the forces of recorded rows.
+    pub(crate) fn attended(&mut self, columns: &[&str]) {
+        self.more = columns.iter().map(|column| (*column).to_owned()).collect();
+        let mut heard = Heard::default();
+        // The first columns are no values.
+        heard.look(&self.names[1 + usize::from(self.led)..]);
+        self.heard = Some(heard);
+        self.name(&[]);
+    }
+
+    fn name(&mut self, forces: &[String]) {
+        self.recording.name(self.names.iter().chain(forces).chain(&self.more).cloned().collect());
+    }
+
+    /// Whether a second device gives forces.
+    pub(crate) fn joins_forces(&self) -> bool {
+        self.forces.is_some()
+    }
+
+    /// The forces of rows that were recorded since it was asked last.
+    pub(crate) fn heard(&mut self) -> std::vec::Drain<'_, [f64; 3]> {
+        self.heard.get_or_insert_default().rows.drain(..)
     }
 
     /// The second device gives these columns.
@@ -58,7 +117,10 @@ impl Samples {
         if let Some(twice) = names.iter().find(|name| self.names.contains(name)) {
             return Err(format!("column `{twice}` comes from the sensor too; leave out --force, or rename one"));
         }
-        self.recording.name(self.names.iter().chain(names).cloned().collect());
+        self.name(names);
+        if let Some(heard) = &mut self.heard {
+            heard.look(names);
+        }
         if let Some(forces) = &mut self.forces {
             forces.companion = Some(Companion::new(names.len()));
             forces.values = vec![f64::NAN; names.len()];
@@ -66,11 +128,12 @@ impl Samples {
         Ok(())
     }
 
-    /// A row, recorded at `time_s`; at `common_s` of the clock that both devices are on.
+    /// A row, recorded at `time_s`; at `common_s` of the clock that both devices are on. Further cells are each behind a
+    /// comma.
     ///
     /// # Errors
     /// A recording that can't be written.
-    pub(crate) fn row(&mut self, row: &Row<'_>, time_s: f64, common_s: f64) -> Result<(), LiveError> {
+    pub(crate) fn row(&mut self, row: &Row<'_>, time_s: f64, common_s: f64, cells: &str) -> Result<(), LiveError> {
         self.line.clear();
         push_number(&mut self.line, time_s);
         if self.led {
@@ -85,12 +148,16 @@ impl Samples {
             push_number(&mut self.line, *value);
         }
         let Some(forces) = &mut self.forces else {
+            self.line.push_str(cells);
             self.line.push('\n');
+            if let Some(heard) = &mut self.heard {
+                heard.push(row.values);
+            }
             return self.recording.push(&self.line);
         };
         let mut line = forces.spare.pop().unwrap_or_default();
         std::mem::swap(&mut line, &mut self.line);
-        forces.waiting.push_back((common_s, line));
+        forces.waiting.push_back(Waiting { common_s, line, cells: cells.to_owned() });
         self.settle(common_s)
     }
 
@@ -112,7 +179,7 @@ impl Samples {
     /// A recording that can't be written.
     pub(crate) fn settle(&mut self, now_s: f64) -> Result<(), LiveError> {
         let Some(forces) = &mut self.forces else { return Ok(()) };
-        while let Some((common_s, line)) = forces.waiting.front_mut() {
+        while let Some(Waiting { common_s, line, cells }) = forces.waiting.front_mut() {
             let waited_s = now_s - *common_s;
             let Some(companion) = &mut forces.companion else {
                 let what = "the source of --force has not named its columns for 10 s; look whether it sends";
@@ -128,9 +195,13 @@ impl Samples {
                 line.push(',');
                 push_number(line, *value);
             }
+            line.push_str(cells);
             line.push('\n');
+            if let Some(heard) = &mut self.heard {
+                heard.push(&forces.values);
+            }
             self.recording.push(line)?;
-            if let Some((_, mut line)) = forces.waiting.pop_front() {
+            if let Some(Waiting { mut line, .. }) = forces.waiting.pop_front() {
                 line.clear();
                 forces.spare.push(line);
             }

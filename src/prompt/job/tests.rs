@@ -1,0 +1,97 @@
+use super::*;
+use crate::job::Watch;
+use crate::live::streams::source::OfFinger;
+use crate::log::LogReading;
+use crate::prompt::Nobody;
+use crate::table::Table;
+use lunula_predictor::{ForceSpace, cone_coverage};
+
+pub(super) fn options(source: &str) -> StreamOptions {
+    StreamOptions {
+        source: vec![OfFinger::any(source.parse().unwrap())],
+        force: Vec::new(),
+        volts_per_count: None,
+        names: None,
+        keep: Vec::new(),
+        seconds: None,
+        log: LogReading::default(),
+    }
+}
+
+const SHORT: &str = "[[step]]\nkind = \"ask\"\n[[step]]\nkind = \"check\"\nchecks = [\"photodiodes\", \"tare\", \
+                     \"sign\"]\n[[step]]\nkind = \"spiral\"\nname = \"force\"\nseconds = 40\n[[step]]\nkind = \
+                     \"bending\"\nname = \"bend\"\nseconds = 20\nchecks = [\"adhesion\"]\n";
+
+fn run(dir: &Path, source: &str, protocol: &str) -> Result<PromptReport, PromptError> {
+    let path = dir.join("p.toml");
+    std::fs::write(&path, protocol).unwrap();
+    let files = PromptFiles { protocol: Some(path), out: dir.join("r.csv"), replace: false };
+    Prompter::new(&options(source), &files, Arc::new(Nobody))?.run(&|_| {}, &Watch::nobody())
+}
+
+fn column(table: &Table, name: &str) -> Vec<f64> {
+    table.numbers(name).unwrap().into_iter().map(|cell| cell.unwrap_or(f64::NAN)).collect()
+}
+
+#[test]
+fn a_simulated_person_goes_through_a_protocol_and_the_file_has_what_was_shown() {
+    let dir = tempfile::tempdir().unwrap();
+    let report = run(dir.path(), "phantom:subject?seed=3&rate=max", SHORT).unwrap();
+    assert!(report.completed && report.failed.is_empty(), "{:?} {:?}", report.failed, report.turns);
+    let table = Table::read(&dir.path().join("r.csv")).unwrap();
+    let [x, y, z] = ["Fx_N", "Fy_N", "Fz_N"].map(|name| column(&table, name));
+    let forces: Vec<[f64; 3]> = (0..table.rows()).map(|k| [x[k], y[k], z[k]]).collect();
+    assert_eq!(report.rows, table.rows());
+    assert_eq!(report.coverage, cone_coverage(forces, &ForceSpace::default(), REST_N));
+    // 42 and 20 s at 25 Hz.
+    assert!((1540..=1560).contains(&table.rows()), "{}", table.rows());
+    let (times, prompts) = (column(&table, "time_s"), column(&table, "prompt_Fz_N"));
+    assert!(times.windows(2).all(|pair| pair[1] > pair[0]));
+    // The finger follows 0.21 to 0.39 s late: of a slow rise that is little.
+    let worst = z.iter().zip(&prompts).filter(|(_, prompt)| !prompt.is_nan()).map(|(z, prompt)| (z - prompt).abs());
+    assert!(worst.fold(0.0, f64::max) <= 0.9, "the release is faster");
+    let followed = report.followed.iter().find(|step| step.step == "force").unwrap();
+    assert!(followed.rms_n.unwrap() > 0.05 && followed.rms_n.unwrap() <= 0.7, "{followed:?}");
+    // Bending has no prompted force, and none is made up.
+    let bends = column(&table, "prompt_J2_deg");
+    assert!(bends.iter().zip(&prompts).all(|(bend, prompt)| bend.is_nan() != prompt.is_nan()));
+    assert!(bends.iter().copied().fold(f64::MIN, f64::max) > 74.0);
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bytes_and_another_does_not() {
+    let text = |seed: u32| {
+        let dir = tempfile::tempdir().unwrap();
+        let protocol = "[[step]]\nkind = \"spiral\"\nseconds = 10\n";
+        run(dir.path(), &format!("phantom:subject?seed={seed}&rate=max"), protocol).unwrap();
+        std::fs::read(dir.path().join("r.csv")).unwrap()
+    };
+    let one = text(1);
+    assert!(one.len() > 10_000 && one == text(1) && one != text(2));
+}
+
+#[test]
+fn a_dead_photodiode_holds_a_simulated_session_up_and_is_named() {
+    let dir = tempfile::tempdir().unwrap();
+    let report = run(dir.path(), "phantom:subject?dead=P3&rate=max", SHORT).unwrap();
+    assert!(!report.completed && report.rows == 0);
+    assert!(report.failed.iter().any(|what| what.contains("P3 is 0 V all the time")), "{:?}", report.failed);
+    assert!(!dir.path().join("r.csv").exists());
+}
+
+#[test]
+fn what_can_not_be_prompted_is_refused() {
+    let dir = tempfile::tempdir().unwrap();
+    let refused = |source: &str| run(dir.path(), source, SHORT).map(|_| ()).unwrap_err().to_string();
+    assert!(refused("phantom:touch").contains("phantom:subject does"));
+    assert!(refused("phantom:subject?rate=3").contains("rate=1 or rate=max"));
+    assert!(refused("other.csv").contains("a recording follows no prompt"));
+    assert!(refused("phantom:subject?rate=max&sed=1").contains("seed"));
+    std::fs::write(dir.path().join("r.csv"), "kept").unwrap();
+    assert!(refused("phantom:subject?rate=max").contains("exists already"));
+    let parquet = PromptFiles { out: dir.path().join("r.parquet"), ..PromptFiles::default() };
+    let why = Prompter::new(&options("tcp:127.0.0.1:1"), &parquet, Arc::new(Nobody)).map(|_| ()).unwrap_err();
+    assert!(why.to_string().contains(".csv"), "{why}");
+    assert!(subject().is_ok() && is_alone(&options("phantom:subject?rate=max")));
+    assert!(!is_alone(&options("phantom:subject")));
+}
