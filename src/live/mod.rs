@@ -12,6 +12,7 @@ mod session;
 pub mod skill;
 mod steps;
 mod switch;
+mod view;
 
 /// The crate that does the streams and the decisions.
 pub use lunula_live as streams;
@@ -32,3 +33,4 @@ pub use switch::{
     evaluate_switch, read_switch, tune_plan, tune_switch,
 };
 pub(crate) use switch::{FALSE_PER_HOUR, Traces, read_traces};
+pub use view::{View, Window};

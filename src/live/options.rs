@@ -68,6 +68,9 @@ pub struct LiveOptions {
     /// Sends the rows as a stream of the Lab Streaming Layer of this name too
     #[arg(long, value_name = "NAME")]
     pub lsl: Option<String>,
+    /// Shows the session on a page of this machine's browser: traces as on the nail, forces, switch, losses, latency
+    #[arg(long)]
+    pub serve: bool,
 }
 
 /// The options of `lunula mouse`.

@@ -35,6 +35,8 @@ pub fn live_steps(options: &LiveOptions, files: &SessionFiles) -> Vec<Step> {
     steps.push(Step::new("serve", options.tcp.is_some(), tcp));
     let lsl = options.lsl.clone().unwrap_or("no --lsl".to_owned());
     steps.push(Step::new("lsl", options.lsl.is_some(), lsl));
+    let page = if options.serve { "the last seconds, ten pictures a second" } else { "no --serve" };
+    steps.push(Step::new("page", options.serve, page.to_owned()));
     steps
 }
 

@@ -31,6 +31,7 @@ pub use error::PredictorError;
 pub use figures::{BarSeries, Bars, draw_bars};
 pub use jobs::analyse::{AnalyseFigures, AnalyseReport, ModelMode, ModelModes, Printed, analyse, analyse_plan};
 pub use jobs::answer::Answering;
+pub(crate) use jobs::answer::contact_word;
 pub use jobs::evaluate::{
     BinMerit, EvaluateFigures, EvaluateOptions, EvaluateReport, HeldOut, Magnitudes, Part, RecordingMerit, Splits,
     evaluate, evaluate_plan, way,

@@ -68,9 +68,14 @@ impl Listening {
         let url = server.url();
         out::print_line(&if common.json { json!({ "url": url }).to_string() } else { url });
         out::finish().context("standard output: cannot be written; make room, or send it elsewhere")?;
-        // It is there while the page is open.
-        let page =
-            self.open.then(|| server.page_to_open()).transpose().context("no file can be made for the browser")?;
+        let _page = self.open(&server)?;
+        Ok(server.run(stop)?)
+    }
+
+    /// Opens the page where that is wanted; what comes back is to be kept while the page is open.
+    pub(crate) fn open(&self, server: &Server) -> anyhow::Result<impl Sized + use<>> {
+        let page = self.open.then(|| server.page_to_open()).transpose();
+        let page = page.context("no file can be made for the browser")?;
         if let Some(page) = &page {
             let opened = Command::new("xdg-open").arg(page.path()).stdout(Stdio::null()).stderr(Stdio::null()).spawn();
             if let Err(why) = opened {
@@ -79,6 +84,13 @@ impl Listening {
                 );
             }
         }
-        Ok(server.run(stop)?)
+        Ok(page)
+    }
+
+    /// Refuses where what serves a page was not asked for.
+    pub(crate) fn only_with(&self, what: &str, served: bool) -> anyhow::Result<()> {
+        let Self { port, open, listen, .. } = self;
+        anyhow::ensure!(served || (*port == 0 && !open && listen.is_none()), "--port, --open and --listen need {what}");
+        Ok(())
     }
 }

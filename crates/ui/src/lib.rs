@@ -13,6 +13,7 @@
 mod connection;
 mod events;
 mod guard;
+mod live;
 mod pages;
 mod results;
 mod server;
@@ -20,6 +21,7 @@ mod site;
 mod token;
 
 pub use events::Latest;
+pub use live::live;
 pub use results::results;
 pub use server::{Server, Settings, UiError};
 pub use site::Site;

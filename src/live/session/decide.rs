@@ -16,6 +16,7 @@ use super::outputs::switch::SwitchOutput;
 use super::outputs::{AnswerRow, Outputs};
 use super::sensor::Sensor;
 use crate::live::error::LiveError;
+use crate::live::view::View;
 use crate::log::{LogReading, PRECEDING_RULE};
 use crate::predictor::Answering;
 
@@ -141,6 +142,14 @@ impl Decide {
         }
     }
 
+    /// Tells a page what there is to show.
+    pub(super) fn show(&self, view: &mut View) {
+        let Some(answers) = &self.answers else { return };
+        let (name, place) = self.finger.as_ref().map_or((None, 0), |(name, place)| (Some(name.as_str()), *place));
+        let answering = answers.sensor.answering();
+        view.finger(place, name, [answering.inputs(), answering.columns()], answers.switch.is_some());
+    }
+
     /// The stream's columns.
     pub(super) fn columns(&self) -> &StreamColumns {
         &self.columns
@@ -221,6 +230,14 @@ impl Answers {
         self.text.clear();
         self.sensor.answering().push_row(&mut self.text, time_s, values, answer.contact);
         let pressed = self.switch.as_ref().map(SwitchOutput::is_pressed);
-        outputs.row(&AnswerRow { text: &self.text, values, finger, pressed })
+        outputs.row(&AnswerRow {
+            text: &self.text,
+            values,
+            finger,
+            pressed,
+            time_s,
+            volts: self.sensor.volts(),
+            contact: answer.contact,
+        })
     }
 }

@@ -32,6 +32,8 @@ pub(super) struct Work {
     /// Its name in front of messages, where there are several.
     label: String,
     finger: Option<String>,
+    /// Its place among the fingers.
+    place: usize,
 }
 
 /// What all fingers of a session share.
@@ -59,11 +61,14 @@ impl Shared<'_> {
         }
     }
 
-    fn state(&mut self, label: &str, is_force: bool, state: State) {
+    fn state(&mut self, (label, place): (&str, usize), is_force: bool, state: State) {
         let of = if is_force { "force: " } else { "" };
         (self.tell)(&format!("state: {label}{of}{}", state.condition.word()));
         if let Some((onlooker, _)) = &mut self.onlooker {
             onlooker.state(is_force, state.condition);
+        }
+        if let Some(view) = self.outputs.view.as_mut().filter(|_| !is_force) {
+            view.state(place, state.condition.word());
         }
     }
 
@@ -79,7 +84,8 @@ impl<'a> Lane<'a> {
     pub(super) fn new(feed: Feed<'a>, force: Option<Feed<'a>>, plan: Plan) -> Self {
         let finger = plan.finger.as_ref().map(|(finger, _)| finger.clone());
         let label = finger.as_ref().map_or(String::new(), |finger| format!("{finger}: "));
-        let work = Work { plan: Some(plan), decide: None, forces: None, forces_ended: false, label, finger };
+        let place = plan.finger.as_ref().map_or(0, |(_, place)| *place);
+        let work = Work { plan: Some(plan), decide: None, forces: None, forces_ended: false, label, finger, place };
         Self { feed, force, work }
     }
 
@@ -128,7 +134,7 @@ impl<'a> Lane<'a> {
                     Ok(())
                 }
                 Event::State(state) => {
-                    shared.state(&work.label, false, state);
+                    shared.state((&work.label, work.place), false, state);
                     if is_away(state.condition) { work.lose(false, shared) } else { Ok(()) }
                 }
                 Event::End => work.lose(true, shared),
@@ -164,7 +170,7 @@ impl<'a> Lane<'a> {
                     Ok(())
                 }
                 Event::State(state) => {
-                    shared.state(&work.label, true, state);
+                    shared.state((&work.label, work.place), true, state);
                     Ok(())
                 }
                 Event::End => work.end_forces(shared),
@@ -213,6 +219,9 @@ impl Work {
             let joins = decide.samples.as_ref().is_some_and(Samples::joins_forces);
             onlooker.begin(decide.columns(), joins)?;
             decide.samples.as_mut().into_iter().for_each(|samples| samples.attended(more));
+        }
+        if let Some(view) = &mut shared.outputs.view {
+            decide.show(view);
         }
         self.decide = Some(decide);
         shared.outputs.begin()?;

@@ -24,6 +24,7 @@ use crate::live::onlooker::Attended;
 use crate::live::options::{LiveOptions, SessionFiles, StreamOptions};
 use crate::live::steps::{live_steps, record_steps};
 use crate::live::switch::read_switch;
+use crate::live::view::{Counts, Health, View};
 use crate::predictor::{Answering, open_models};
 use crate::stages::left_out;
 
@@ -40,6 +41,8 @@ pub struct Readers<'a> {
     pub rows: Option<OwnedFd>,
     /// Whoever looks after the session: states, alarms, notes.
     pub tell: &'a dyn Fn(&str),
+    /// A page that shows it.
+    pub view: Option<View>,
 }
 
 /// Answers samples as they come.
@@ -92,6 +95,7 @@ pub fn live(
     check_places(&all, files)?;
     let waits = all.iter().all(Finger::waits);
     let mut outputs = Outputs::new(readers.rows, waits, options.tcp, files.events.clone(), readers.tell)?;
+    outputs.view = readers.view;
     if let Some(out) = &files.out {
         outputs.predicted = Some(Recording::new(&predicted_beside(out), files.replace, waits)?);
     }
@@ -270,8 +274,19 @@ impl<'a> Session<'a> {
             let tell = self.shared.tell;
             self.lanes.iter_mut().flat_map(Lane::feeds_mut).for_each(|feed| feed.tick(now_ns, tell));
             self.shared.outputs.let_in(tell);
+            self.show_health(now_ns);
         }
         Ok(())
+    }
+
+    /// Tells a page how the session does, now and then.
+    fn show_health(&mut self, now_ns: u64) {
+        let Some(view) = &mut self.shared.outputs.view else { return };
+        if !view.wants_health(now_ns) {
+            return;
+        }
+        let counts = self.lanes.iter().map(|lane| Counts::of(&lane.feed.stream.certificate())).collect();
+        view.health(Health { work: self.shared.work.summary(), arrival: self.shared.arrival.summary(), counts });
     }
 
     /// Looks at sources that are ready; at all of them where that is not known.
@@ -435,7 +450,7 @@ mod tests {
         };
         let gate = GateChoices { f_min: 0.1, theta_touch: 0.0, hysteresis: 0.0 };
         let answer = AnswerOptions { gate, intervals: false, keep_faults: false };
-        let options = LiveOptions { stream, answer, tcp: None, lsl: None };
+        let options = LiveOptions { stream, answer, tcp: None, lsl: None, serve: false };
         let files = SessionFiles {
             out: Some(dir.join(format!("out-{rows}.csv"))),
             models: models.to_vec(),
@@ -444,7 +459,7 @@ mod tests {
         };
         let reader = std::fs::File::create(dir.join("rows.csv")).unwrap();
         let counted = allocation_counter::measure(|| {
-            let readers = Readers { rows: Some(reader.into()), tell: &|_| {} };
+            let readers = Readers { rows: Some(reader.into()), tell: &|_| {}, view: None };
             let report = live(&options, &files, readers, &Watch::nobody()).unwrap();
             assert_eq!((report.rows, report.answered), (u64::from(rows), u64::from(rows)));
         });

@@ -93,6 +93,11 @@ impl Sensor {
         &self.answering
     }
 
+    /// The voltages that were answered last, as [`Answering::inputs`]; NaN where not known.
+    pub(crate) fn volts(&self) -> &[f64] {
+        &self.volts
+    }
+
     /// The last answer, as [`Answering::columns`]; NaN where not known.
     pub(crate) fn answer(&self) -> &[f64] {
         &self.answer

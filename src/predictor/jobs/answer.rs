@@ -276,7 +276,7 @@ pub(in crate::predictor) fn interval_cells<'a>(
 
 /// What a table says of a contact.
 #[must_use]
-pub(in crate::predictor) fn contact_word(contact: Contact) -> &'static str {
+pub(crate) fn contact_word(contact: Contact) -> &'static str {
     match contact {
         Contact::Touch => "touch",
         Contact::Bending => "bending",

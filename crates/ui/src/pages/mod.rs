@@ -17,6 +17,11 @@ pub(crate) const COMMON: [Asset; 2] = [
     Asset { path: "/common.js", kind: SCRIPT, bytes: include_bytes!("common.js") },
     Asset { path: "/style.css", kind: STYLE, bytes: include_bytes!("style.css") },
 ];
+/// A session of the sensor.
+pub(crate) const LIVE: [Asset; 2] = [
+    Asset { path: "/", kind: HTML, bytes: include_bytes!("live.html") },
+    Asset { path: "/live.js", kind: SCRIPT, bytes: include_bytes!("live.js") },
+];
 /// The list of results.
 pub(crate) const RESULTS: [Asset; 2] = [
     Asset { path: "/", kind: HTML, bytes: include_bytes!("results.html") },
@@ -32,7 +37,7 @@ mod tests {
 
     #[test]
     fn the_pages_are_small_and_ask_for_nothing_elsewhere() {
-        let all = || COMMON.iter().chain(&RESULTS);
+        let all = || COMMON.iter().chain(&RESULTS).chain(&LIVE);
         assert!(all().map(|asset| asset.bytes.len()).sum::<usize>() <= MOST);
         for asset in all() {
             let text = std::str::from_utf8(asset.bytes).unwrap();

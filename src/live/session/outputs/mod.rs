@@ -16,10 +16,12 @@ use std::path::PathBuf;
 use events::EventsFile;
 #[cfg(feature = "lsl")]
 use lunula_live::source::LslOutlet;
+use lunula_predictor::Contact;
 use pipe::Pipe;
 use recording::Recording;
 
 use crate::live::error::LiveError;
+use crate::live::view::{Seen, View};
 use crate::table::push_number;
 
 /// The column that says whose a row is.
@@ -36,6 +38,8 @@ pub(super) struct Outputs {
     events_path: Option<PathBuf>,
     pub(super) events: Option<EventsFile>,
     outlet: Outlet,
+    /// A page that shows the session.
+    pub(super) view: Option<View>,
     pub(super) header: Vec<String>,
     has_switch: bool,
     begun: bool,
@@ -47,12 +51,15 @@ pub(super) struct AnswerRow<'a> {
     /// `time_s` and what is predicted, as text without an end.
     pub(super) text: &'a str,
     /// The same as numbers, without the time.
-    #[cfg_attr(not(feature = "lsl"), expect(dead_code, reason = "only a stream of numbers takes them"))]
     pub(super) values: &'a [f64],
     /// Whose it is, and its place among the fingers; none where there is one only.
     pub(super) finger: Option<(&'a str, usize)>,
     /// Whether its switch is pressed; none without one.
     pub(super) pressed: Option<bool>,
+    /// The time and the voltages that were answered, and what the gate said.
+    pub(super) time_s: f64,
+    pub(super) volts: &'a [f64],
+    pub(super) contact: Option<Contact>,
 }
 
 impl Outputs {
@@ -126,6 +133,11 @@ impl Outputs {
     /// # Errors
     /// A recording or a stream that can't be written.
     pub(super) fn row(&mut self, row: &AnswerRow<'_>) -> Result<(), LiveError> {
+        if let Some(view) = &mut self.view {
+            let AnswerRow { time_s, volts, values: answers, contact, pressed, .. } = *row;
+            let finger = row.finger.map_or(0, |(_, place)| place);
+            view.sample(finger, &Seen { time_s, volts, answers, contact, pressed });
+        }
         let line = &mut self.line;
         line.clear();
         match row.finger {

@@ -1,20 +1,22 @@
 //! `lunula live` and `lunula record`: a sensor at work.
 
 use std::path::PathBuf;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Args;
 use lunula::job::{Given, Report, Said, Watch};
 use lunula::live::streams::source::OfFinger;
 use lunula::live::{
     AnswerOptions, LiveOptions, MouseFiles, MouseOptions, Readers, SessionFigures, SessionFiles, SessionReport,
-    StreamOptions, live, live_steps, record, record_steps,
+    StreamOptions, View, live, live_steps, record, record_steps,
 };
 use lunula::predictor::PredictChoices;
 use lunula::words::shown_lines;
+use lunula_ui::Latest;
 use serde_json::json;
 
 use crate::jobs::{JobArgs, Plan, name_failures, show};
+use crate::ui::Listening;
 use crate::{Common, Outcome, out};
 
 /// Answer a sensor's samples as they come: forces, angle, switch (6.1)
@@ -42,6 +44,8 @@ pub(crate) struct LiveArgs {
     events: Option<PathBuf>,
     #[command(flatten)]
     out: OutArgs,
+    #[command(flatten)]
+    listening: Listening,
     #[command(flatten)]
     job: JobArgs,
 }
@@ -113,7 +117,9 @@ pub(crate) fn run_live(args: &LiveArgs) -> anyhow::Result<Outcome> {
     if args.job.plan {
         return show(common, "live", &Plan::from(live_steps(options, &files)));
     }
-    let report = session(common, &args.given.said, &stop, options, &files)?;
+    args.listening.only_with("--serve", options.serve)?;
+    let session = |view| session(common, &args.given.said, &stop, options, &files, view);
+    let report = if options.serve { served(&args.listening, common, session)? } else { session(None)? };
     if common.json {
         // Standard output has the rows.
         eprintln!("{}", serde_json::to_string(&report)?);
@@ -124,7 +130,7 @@ pub(crate) fn run_live(args: &LiveArgs) -> anyhow::Result<Outcome> {
 pub(crate) fn run_mouse(args: &MouseArgs) -> anyhow::Result<Outcome> {
     let common = &args.job.common;
     let MouseOptions { stream, answer } = args.given.options.clone();
-    let options = LiveOptions { stream, answer, tcp: None, lsl: None };
+    let options = LiveOptions { stream, answer, tcp: None, lsl: None, serve: false };
     let stop = common.start()?;
     let mouse = MouseFiles { config: args.config.clone(), events: args.events.clone(), uinput: args.uinput };
     let files = SessionFiles {
@@ -137,7 +143,7 @@ pub(crate) fn run_mouse(args: &MouseArgs) -> anyhow::Result<Outcome> {
     if args.job.plan {
         return show(common, "mouse", &Plan::from(live_steps(&options, &files)));
     }
-    let report = session(common, &args.given.said, &stop, &options, &files)?;
+    let report = session(common, &args.given.said, &stop, &options, &files, None)?;
     common.print_json(&report)?;
     if let Some(counts) = report.pointer {
         common.say(&format!("{} moves, {} clicks, {} lines scrolled", counts.moves, counts.clicks, counts.scrolled));
@@ -166,9 +172,10 @@ pub(crate) fn run_stream(
         answer: AnswerOptions { gate, intervals, keep_faults: rows.keep_faults },
         tcp: None,
         lsl: None,
+        serve: false,
     };
     let files = SessionFiles { models: all(models), ..SessionFiles::default() };
-    let report = session(common, &given.said, &stop, &options, &files)?;
+    let report = session(common, &given.said, &stop, &options, &files, None)?;
     Ok(outcome(&report))
 }
 
@@ -179,10 +186,36 @@ fn session(
     stop: &AtomicBool,
     options: &LiveOptions,
     files: &SessionFiles,
+    view: Option<View>,
 ) -> anyhow::Result<SessionReport> {
     let rows = if files.mouse.is_none() { Some(out::descriptor()?) } else { None };
-    let readers = Readers { rows, tell: &|what: &str| tell(common, what) };
+    let readers = Readers { rows, tell: &|what: &str| tell(common, what), view };
     Ok(live(options, files, readers, &Watch { said, stop, tick: &|_, _| {} })?)
+}
+
+/// A session that a page shows; the page ends with it.
+fn served(
+    listening: &Listening,
+    common: &Common,
+    session: impl FnOnce(Option<View>) -> anyhow::Result<SessionReport>,
+) -> anyhow::Result<SessionReport> {
+    let pictures = Latest::new("{}");
+    let server = listening.bind(lunula_ui::live(&pictures))?;
+    // Standard output has the rows.
+    tell(common, &format!("page: {}", server.url()));
+    let _page = listening.open(&server)?;
+    let (view, window) = View::new();
+    let is_over = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        scope.spawn(|| window.run(|picture| pictures.leave(picture)));
+        let serving = scope.spawn(|| server.run(&is_over));
+        let report = session(Some(view));
+        is_over.store(true, Ordering::Relaxed);
+        if let Ok(Err(why)) = serving.join() {
+            eprintln!("warning: the page: {why}");
+        }
+        report
+    })
 }
 
 pub(crate) fn run_record(args: &RecordArgs) -> anyhow::Result<Outcome> {
