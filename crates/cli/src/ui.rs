@@ -65,10 +65,15 @@ impl Listening {
 
     /// Prints the address, opens it where that is wanted, and serves until `stop`.
     pub(crate) fn serve(&self, server: Server, common: &Common, stop: &AtomicBool) -> anyhow::Result<()> {
+        let _opened = self.announce(&server, common)?;
+        Ok(server.run(stop)?)
+    }
+
+    /// Prints the address, and opens it where that is wanted: by a file, which is there while it is not dropped.
+    pub(crate) fn announce(&self, server: &Server, common: &Common) -> anyhow::Result<Option<impl Sized + use<>>> {
         let url = server.url();
         out::print_line(&if common.json { json!({ "url": url }).to_string() } else { url });
         out::finish().context("standard output: cannot be written; make room, or send it elsewhere")?;
-        // It is there while the page is open.
         let page =
             self.open.then(|| server.page_to_open()).transpose().context("no file can be made for the browser")?;
         if let Some(page) = &page {
@@ -79,6 +84,6 @@ impl Listening {
                 );
             }
         }
-        Ok(server.run(stop)?)
+        Ok(page)
     }
 }

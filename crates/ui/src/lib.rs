@@ -14,12 +14,14 @@ mod connection;
 mod events;
 mod guard;
 mod pages;
+mod prompt;
 mod results;
 mod server;
 mod site;
 mod token;
 
 pub use events::Latest;
+pub use prompt::{Prompting, prompt};
 pub use results::results;
 pub use server::{Server, Settings, UiError};
 pub use site::Site;

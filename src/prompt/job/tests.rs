@@ -2,7 +2,7 @@ use super::*;
 use crate::job::Watch;
 use crate::live::streams::source::OfFinger;
 use crate::log::LogReading;
-use crate::prompt::Nobody;
+use crate::prompt::{Nobody, REST_N};
 use crate::table::Table;
 use lunula_predictor::{ForceSpace, cone_coverage};
 

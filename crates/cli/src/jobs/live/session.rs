@@ -208,7 +208,7 @@ fn all(models: &[PathBuf]) -> Vec<OfFinger<PathBuf>> {
 }
 
 /// A message as soon as it is known: in words, or a line of JSON.
-fn tell(common: &Common, what: &str) {
+pub(super) fn tell(common: &Common, what: &str) {
     if common.json {
         eprintln!("{}", json!({ "message": what }));
     } else if !common.quiet || what.starts_with("alarm") {
