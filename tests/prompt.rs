@@ -32,7 +32,8 @@ fn a_simulated_person_goes_through_the_protocol_and_the_file_trains() {
     };
     let covered = cone_coverage(rows.iter().map(force), &ForceSpace::default(), REST_N);
     assert_eq!(report["coverage"], serde_json::to_value(&covered).unwrap());
-    let sets: Vec<(&str, &str)> = rows.iter().map(|row| (row["session"].as_str(), row["trajectory"].as_str())).collect();
+    let sets: Vec<(&str, &str)> =
+        rows.iter().map(|row| (row["session"].as_str(), row["trajectory"].as_str())).collect();
     let mut order = sets.clone();
     order.dedup();
     assert_eq!(order, [("1", "force"), ("1", "bending"), ("2", "force"), ("2", "bending"), ("3", "random")]);
@@ -134,7 +135,8 @@ impl Session {
         let mut stream = TcpStream::connect(at).expect("it listens");
         let head = format!("Host: {at}\r\nOrigin: http://{at}\r\nAuthorization: Bearer {token}\r\nConnection: close");
         let length = body.len();
-        write!(stream, "POST /api/prompt/{path} HTTP/1.1\r\n{head}\r\nContent-Length: {length}\r\n\r\n{body}").expect("it reads");
+        write!(stream, "POST /api/prompt/{path} HTTP/1.1\r\n{head}\r\nContent-Length: {length}\r\n\r\n{body}")
+            .expect("it reads");
         let mut answer = String::new();
         let _ = std::io::Read::read_to_string(&mut stream, &mut answer);
         answer
@@ -143,7 +145,8 @@ impl Session {
     /// Time by the server's clock.
     fn now_s(&self) -> f64 {
         let answer = self.posts("clock", "");
-        let body: serde_json::Value = serde_json::from_str(answer.rsplit("\r\n\r\n").next().unwrap_or("")).expect("JSON");
+        let body: serde_json::Value =
+            serde_json::from_str(answer.rsplit("\r\n\r\n").next().unwrap_or("")).expect("JSON");
         body["time_s"].number()
     }
 

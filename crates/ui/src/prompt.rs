@@ -47,7 +47,10 @@ pub fn prompt(prompting: Arc<dyn Prompting>, state: &Latest, force: &Latest) -> 
         .route("/api/prompt/force", get(async |State(desk): State<Desk>| desk.force.told()))
         .route("/api/prompt/clock", post(clock))
         .route("/api/prompt/key", post(async |State(desk): State<Desk>, body: Bytes| is(desk.prompting.key(&body))))
-        .route("/api/prompt/frames", post(async |State(desk): State<Desk>, body: Bytes| is(desk.prompting.frames(&body))))
+        .route(
+            "/api/prompt/frames",
+            post(async |State(desk): State<Desk>, body: Bytes| is(desk.prompting.frames(&body))),
+        )
         .with_state(desk);
     let [page, assets @ ..] = &PROMPT;
     Site { page: *page, assets, routes, most_body: MOST_BODY }
