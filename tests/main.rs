@@ -48,6 +48,7 @@ mod predictor_deficient;
 mod predictor_evaluate;
 mod predictor_predict;
 mod predictor_train;
+mod prompt;
 mod simulate;
 mod simulate_extremes;
 mod skill;

@@ -37,6 +37,7 @@ const REQUESTS: &[&str] = &[
     "live --source lg/log.csv --model m.json",
     "live --source lg/log.csv --model m.json --plan",
     "record --source lg/log.csv --out recorded.csv --replace",
+    "prompt --simulate --out prompted.csv --plan",
     "mouse --source lg/log.csv --model m.json --plan",
     "switch evaluate sw.toml lg/log.csv --model m.json --contact Fz_N<-0.2 --out judged --json",
     "analyse m.json",

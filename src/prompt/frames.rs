@@ -327,7 +327,7 @@ pub(crate) mod tests {
         let mut frames = Frames::new(None);
         assert_eq!(frames.figures(), None);
         frames.force(0.95, [0.1, 0.0, -1.0]);
-        for n in 0..100 {
+        for n in 0..100u32 {
             let time_s = 1.0 + f64::from(n) / 60.0;
             let shown = Frame { force_s: Some(0.95), dropped: u32::from(n == 50), ..frame(n.into(), time_s, [0.0; 3]) };
             let off_n = if n == 99 { 0.02 } else { 0.0 };

@@ -65,15 +65,20 @@ impl Listening {
 
     /// Prints the address, opens it where that is wanted, and serves until `stop`.
     pub(crate) fn serve(&self, server: Server, common: &Common, stop: &AtomicBool) -> anyhow::Result<()> {
-        let url = server.url();
-        out::print_line(&if common.json { json!({ "url": url }).to_string() } else { url });
-        out::finish().context("standard output: cannot be written; make room, or send it elsewhere")?;
-        let _page = self.open(&server)?;
+        let _opened = self.announce(&server, common)?;
         Ok(server.run(stop)?)
     }
 
-    /// Opens the page where that is wanted; what comes back is to be kept while the page is open.
-    pub(crate) fn open(&self, server: &Server) -> anyhow::Result<impl Sized + use<>> {
+    /// Prints the address, and opens it where that is wanted: by a file, which is there while it is not dropped.
+    pub(crate) fn announce(&self, server: &Server, common: &Common) -> anyhow::Result<Option<impl Sized + use<>>> {
+        let url = server.url();
+        out::print_line(&if common.json { json!({ "url": url }).to_string() } else { url });
+        out::finish().context("standard output: cannot be written; make room, or send it elsewhere")?;
+        self.opened(server)
+    }
+
+    /// Opens the page where that is wanted: by a file, which is there while it is not dropped.
+    pub(crate) fn opened(&self, server: &Server) -> anyhow::Result<Option<impl Sized + use<>>> {
         let page = self.open.then(|| server.page_to_open()).transpose();
         let page = page.context("no file can be made for the browser")?;
         if let Some(page) = &page {
@@ -85,12 +90,5 @@ impl Listening {
             }
         }
         Ok(page)
-    }
-
-    /// Refuses where what serves a page was not asked for.
-    pub(crate) fn only_with(&self, what: &str, served: bool) -> anyhow::Result<()> {
-        let Self { port, open, listen, .. } = self;
-        anyhow::ensure!(served || (*port == 0 && !open && listen.is_none()), "--port, --open and --listen need {what}");
-        Ok(())
     }
 }

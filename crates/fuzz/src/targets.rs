@@ -21,6 +21,7 @@ use lunula::pipeline::{Parts, PipelineMark, Share, Spec, Task};
 use lunula::pipeline::{kinds, phantom_catalogue, scenes, survey};
 use lunula::posture::{Layout, Lens};
 use lunula::predictor::Answering;
+use lunula::prompt::protocol::{Prompted, Protocol, Step};
 use lunula::table::Table;
 use lunula_hemodynamics::{Collapse, Model, Parameters};
 use lunula_predictor::{Gate, Predictor};
@@ -52,6 +53,7 @@ pub(crate) const TARGETS: &[Target] = &[
     Target { name: "switch", run: switch },
     Target { name: "mouse", run: mouse },
     Target { name: "positions", run: positions },
+    Target { name: "protocol", run: protocol },
 ];
 
 /// What a parser is given besides an input.
@@ -297,6 +299,20 @@ fn switch(_: &Desk, bytes: &[u8]) {
 fn mouse(_: &Desk, bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
     let _ = pointer::Config::from_toml(text);
+}
+
+/// As it is gone through: what it prompts at any time is a number.
+fn protocol(_: &Desk, bytes: &[u8]) {
+    let Ok(text) = std::str::from_utf8(bytes) else { return };
+    let Ok(protocol) = Protocol::parse(text, Path::new("p.toml")) else { return };
+    for motion in protocol.steps.iter().filter_map(Step::motion) {
+        for share in [-1.0, 0.0, 0.3, 1.0, 2.0] {
+            match motion.at(share * motion.whole_s()) {
+                Prompted::Force(force) => assert!(force.iter().all(|force| force.is_finite())),
+                Prompted::Bend(j2_deg) => assert!(j2_deg.is_finite()),
+            }
+        }
+    }
 }
 
 fn positions(_: &Desk, bytes: &[u8]) {

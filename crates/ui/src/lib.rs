@@ -15,6 +15,7 @@ mod events;
 mod guard;
 mod live;
 mod pages;
+mod prompt;
 mod results;
 mod server;
 mod site;
@@ -22,6 +23,7 @@ mod token;
 
 pub use events::Latest;
 pub use live::live;
+pub use prompt::{Prompting, prompt};
 pub use results::results;
 pub use server::{Server, Settings, UiError};
 pub use site::Site;

@@ -4,59 +4,11 @@
 
 mod util;
 
-use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::path::Path;
-use std::time::Duration;
 
 use lunula_ui::{Server, Settings, UiError, results};
-use util::{Running, run};
-
-/// An answer: its status, its head, its body.
-struct Answer {
-    status: u16,
-    head: String,
-    body: String,
-}
-
-trait Asks {
-    fn sends(&self, text: &str) -> Answer;
-    fn asks(&self, method: &str, path: &str, headers: &str, body: &str) -> Answer;
-    fn cookie(&self) -> String;
-}
-
-impl Asks for Running {
-    fn sends(&self, text: &str) -> Answer {
-        let mut stream = TcpStream::connect(&self.at).unwrap();
-        stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
-        // Whoever is not listened to may find the connection reset: an answer without a status.
-        let _ = stream.write_all(text.as_bytes());
-        let mut answer = Vec::new();
-        let _ = stream.read_to_end(&mut answer);
-        let answer = String::from_utf8_lossy(&answer).into_owned();
-        let (head, body) = answer.split_once("\r\n\r\n").unwrap_or((&answer, ""));
-        let status = head.split(' ').nth(1).and_then(|status| status.parse().ok()).unwrap_or(0);
-        Answer { status, head: head.to_lowercase(), body: body.to_owned() }
-    }
-
-    fn asks(&self, method: &str, path: &str, headers: &str, body: &str) -> Answer {
-        self.sends(&format!(
-            "{method} {path} HTTP/1.1\r\nHost: {}\r\nConnection: close\r\nContent-Length: {}\r\n{headers}\r\n{body}",
-            self.at,
-            body.len()
-        ))
-    }
-
-    /// As the page does: the token for a cookie.
-    fn cookie(&self) -> String {
-        let origin = format!("Origin: http://{}\r\n", self.at);
-        let answer = self.asks("POST", "/api/session", &origin, &self.token);
-        assert_eq!(answer.status, 204, "{}", answer.head);
-        let line = answer.head.lines().find_map(|line| line.strip_prefix("set-cookie: ")).unwrap();
-        assert!(line.contains("httponly") && line.contains("samesite=strict"), "{line}");
-        format!("Cookie: {}\r\n", line.split(';').next().unwrap())
-    }
-}
+use util::{Answer, Asks, run};
 
 fn one_run(dir: &Path) {
     std::fs::create_dir(dir.join("<img src=x onerror=alert(1)>")).unwrap();

@@ -176,7 +176,6 @@ impl Run {
             }
             (Key::Stop, Phase::Done) => self.enter(Phase::Over, String::new()),
             (Key::Stop, Phase::Waiting | Phase::Running | Phase::Paused | Phase::Stalled) => {
-                self.course.stop(now_s);
                 self.course.push(now_s + LEAD_S, 0.0, What::Nothing, false);
                 self.note(now_s, "stopped", "by hand".to_owned(), None);
                 self.enter(Phase::Done, "stopped; what was recorded is kept".to_owned());
@@ -240,6 +239,10 @@ impl Run {
 
     fn advance_movement(&mut self, now_s: f64) {
         let (stretch, at_s) = self.at(now_s);
+        if stretch.what != What::Step(self.step) {
+            // It is about to begin.
+            return;
+        }
         let whole_s = self.current().and_then(Step::motion).map_or(0.0, |motion| motion.whole_s());
         if stretch.moves && at_s >= whole_s {
             let end_s = stretch.from_s + (whole_s - stretch.at_s);

@@ -229,11 +229,13 @@ fn reset_begins_the_step_again_and_stop_keeps_and_then_ends() {
     bench.key(Key::Go);
     bench.pass(5.0);
     bench.key(Key::Reset);
+    bench.pass(0.2);
     assert!(bench.phase() == Phase::Waiting && bench.at_s() == 0.0 && bench.run.place().0 == 0);
     bench.key(Key::Go);
     bench.pass(1.0);
     assert!(near(bench.at_s(), 1.0 - LEAD_S));
     bench.key(Key::Stop);
+    bench.pass(0.2);
     assert!(bench.phase() == Phase::Done && bench.run.collecting(bench.now_s).is_none());
     bench.key(Key::Go);
     assert_eq!(bench.phase(), Phase::Done);

@@ -19,13 +19,21 @@ pub(crate) const COMMON: [Asset; 2] = [
 ];
 /// A session of the sensor.
 pub(crate) const LIVE: [Asset; 2] = [
-    Asset { path: "/", kind: HTML, bytes: include_bytes!("live.html") },
-    Asset { path: "/live.js", kind: SCRIPT, bytes: include_bytes!("live.js") },
+    Asset { path: "/", kind: HTML, bytes: include_bytes!("live/page.html") },
+    Asset { path: "/live.js", kind: SCRIPT, bytes: include_bytes!("live/live.js") },
 ];
 /// The list of results.
 pub(crate) const RESULTS: [Asset; 2] = [
     Asset { path: "/", kind: HTML, bytes: include_bytes!("results.html") },
     Asset { path: "/results.js", kind: SCRIPT, bytes: include_bytes!("results.js") },
+];
+/// The prompter.
+pub(crate) const PROMPT: [Asset; 5] = [
+    Asset { path: "/", kind: HTML, bytes: include_bytes!("prompt/page.html") },
+    Asset { path: "/prompt.js", kind: SCRIPT, bytes: include_bytes!("prompt/prompt.js") },
+    Asset { path: "/draw.js", kind: SCRIPT, bytes: include_bytes!("prompt/draw.js") },
+    Asset { path: "/clock.js", kind: SCRIPT, bytes: include_bytes!("prompt/clock.js") },
+    Asset { path: "/prompt.css", kind: STYLE, bytes: include_bytes!("prompt/prompt.css") },
 ];
 
 #[cfg(test)]
@@ -37,7 +45,7 @@ mod tests {
 
     #[test]
     fn the_pages_are_small_and_ask_for_nothing_elsewhere() {
-        let all = || COMMON.iter().chain(&RESULTS).chain(&LIVE);
+        let all = || COMMON.iter().chain(&RESULTS).chain(&LIVE).chain(&PROMPT);
         assert!(all().map(|asset| asset.bytes.len()).sum::<usize>() <= MOST);
         for asset in all() {
             let text = std::str::from_utf8(asset.bytes).unwrap();

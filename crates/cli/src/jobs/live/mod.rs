@@ -2,6 +2,7 @@
 //! `performance`.
 
 pub(crate) mod performance;
+pub(crate) mod prompt;
 pub(crate) mod session;
 pub(crate) mod skill;
 pub(crate) mod switch;

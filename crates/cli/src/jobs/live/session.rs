@@ -29,6 +29,8 @@ use crate::{Common, Outcome, out};
 /// <out>.stream.json. Of several fingers each row says whose it is (`finger`), all on one clock; samples are recorded
 /// in <out>.FINGER.csv.
 #[derive(Debug, Args)]
+#[command(mut_arg("port", |one| one.requires("serve")), mut_arg("open", |one| one.requires("serve")))]
+#[command(mut_arg("listen", |one| one.requires("serve")))]
 pub(crate) struct LiveArgs {
     /// Models that `lunula train` wrote: of force, of posture, or both; index=MODEL.json is one finger's
     #[arg(long = "model", required = true, value_name = "[FINGER=]MODEL.json", num_args = 1..)]
@@ -117,7 +119,6 @@ pub(crate) fn run_live(args: &LiveArgs) -> anyhow::Result<Outcome> {
     if args.job.plan {
         return show(common, "live", &Plan::from(live_steps(options, &files)));
     }
-    args.listening.only_with("--serve", options.serve)?;
     let session = |view| session(common, &args.given.said, &stop, options, &files, view);
     let report = if options.serve { served(&args.listening, common, session)? } else { session(None)? };
     if common.json {
@@ -203,7 +204,7 @@ fn served(
     let server = listening.bind(lunula_ui::live(&pictures))?;
     // Standard output has the rows.
     tell(common, &format!("page: {}", server.url()));
-    let _page = listening.open(&server)?;
+    let _opened = listening.opened(&server)?;
     let (view, window) = View::new();
     let is_over = AtomicBool::new(false);
     std::thread::scope(|scope| {
@@ -241,7 +242,7 @@ fn all(models: &[PathBuf]) -> Vec<OfFinger<PathBuf>> {
 }
 
 /// A message as soon as it is known: in words, or a line of JSON.
-fn tell(common: &Common, what: &str) {
+pub(super) fn tell(common: &Common, what: &str) {
     if common.json {
         eprintln!("{}", json!({ "message": what }));
     } else if !common.quiet || what.starts_with("alarm") {

@@ -13,7 +13,7 @@ import { at, enter, made, say, tell } from "./common.js";
  *   cone: {fz_max_n: number, mu: number}, health: {work: Latency | null, arrival: Latency | null, counts: Counts[]}}} Picture */
 
 /** Width and height of the nail's drawing and of one trace on it, CSS pixels. */
-const NAIL = [560, 420];
+const NAIL = [560, 440];
 const TRACE = [150, 74];
 const CONE = 240;
 /** @type {Map<string, {section: HTMLElement, nail: HTMLCanvasElement, cone: HTMLCanvasElement, words: HTMLElement,
@@ -77,7 +77,7 @@ function corner(finger, k) {
   const place = finger.places[k];
   if (place) {
     const [u, v] = place;
-    return [(NAIL[0] - TRACE[0]) / 2 + u * 330, (NAIL[1] - TRACE[1]) / 2 - v * 235];
+    return [(NAIL[0] - TRACE[0]) / 2 + u * 330, (NAIL[1] - TRACE[1]) / 2 + 10 - v * 225];
   }
   return [(k % 3) * (TRACE[0] + 30) + 20, Math.floor(k / 3) * (TRACE[1] + 10) + 10];
 }

@@ -1,0 +1,243 @@
+//! `lunula prompt` from outside: a simulated person goes through a protocol, the file trains, streams fall silent, kills
+//! lose a second.
+
+use std::io::{BufRead, BufReader, Write};
+use std::net::{TcpListener, TcpStream};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use lunula::prompt::REST_N;
+use lunula_predictor::{ForceSpace, cone_coverage};
+
+use crate::util::{Dir, Json};
+
+const PROTOCOL: &str = "[[step]]\nkind = \"ask\"\ntext = \"Affix the sensor.\"\n[[step]]\nkind = \"check\"\nchecks = \
+                        [\"photodiodes\", \"tare\", \"sign\"]\n[[step]]\nkind = \"spiral\"\nname = \"force\"\nseconds = \
+                        60\n[[step]]\nkind = \"bending\"\nseconds = 20\nchecks = [\"adhesion\"]\n";
+
+#[test]
+fn a_simulated_person_goes_through_the_protocol_and_the_file_trains() {
+    let dir = Dir::new();
+    dir.lunula(&["prompt", "--write-protocol", "thesis.toml"]).expect(0);
+    dir.lunula(&["prompt", "--write-protocol", "thesis.toml"]).expect(2).says("exists already");
+    let answer = dir.lunula(&["prompt", "thesis.toml", "--simulate", "--out", "a.csv", "--json"]).expect(0);
+    let report = answer.json();
+    assert!(report["completed"] == true && report["failed"].list().is_empty(), "{report}");
+    // Two sets of 182 and 60 s, 102 s at random, at 25 Hz.
+    let rows = dir.table("a.csv");
+    assert!((14_600..=14_700).contains(&rows.len()), "{}", rows.len());
+    assert_eq!(report["rows"], rows.len());
+    let force = |row: &std::collections::BTreeMap<String, String>| {
+        ["Fx_N", "Fy_N", "Fz_N"].map(|name| row[name].parse().unwrap_or(f64::NAN))
+    };
+    let covered = cone_coverage(rows.iter().map(force), &ForceSpace::default(), REST_N);
+    assert_eq!(report["coverage"], serde_json::to_value(&covered).unwrap());
+    let sets: Vec<(&str, &str)> =
+        rows.iter().map(|row| (row["session"].as_str(), row["trajectory"].as_str())).collect();
+    let mut order = sets.clone();
+    order.dedup();
+    assert_eq!(order, [("1", "force"), ("1", "bending"), ("2", "force"), ("2", "bending"), ("3", "random")]);
+    // What was prompted is never what was measured.
+    assert!(rows.iter().any(|row| row["prompt_Fz_N"].is_empty() && !row["prompt_J2_deg"].is_empty()));
+    dir.train("a.csv", "force", "m.json", &["-q"]).expect(0);
+    let merit = dir.lunula(&["evaluate", "m.json", "a.csv", "--json"]).expect(0).json();
+    for target in ["Fx_N", "Fy_N", "Fz_N"] {
+        // Measured 0.07 to 0.16.
+        assert!(merit["rmse"][target].number() <= 0.25, "{}", merit["rmse"]);
+    }
+    // The extra trajectory is a protocol, and fills what it says.
+    let before = report["extra"]["before"].number();
+    dir.lunula(&["prompt", "a.extra.toml", "--simulate", "--out", "e.csv", "-q"]).expect(0);
+    let both = rows.iter().map(force).chain(dir.table("e.csv").iter().map(force).collect::<Vec<_>>());
+    let after = cone_coverage(both, &ForceSpace::default(), REST_N).cylindrical.visited;
+    assert!(after > before && before == covered.cylindrical.visited, "{before} {after}");
+    // Nothing is replaced unasked.
+    dir.lunula(&["prompt", "--simulate", "--out", "a.csv"]).expect(2).says("--replace");
+}
+
+#[test]
+fn what_is_wrong_with_a_request_is_said_before_anything_is_written() {
+    let dir = Dir::new();
+    dir.write("bad.toml", "[[step]]\nkind = \"spirall\"\n");
+    dir.write("r.csv", "time_s,P1\n0,1\n");
+    let prompt = |arguments: &[&str]| dir.lunula(&[&["prompt"], arguments].concat()).expect(2);
+    prompt(&["bad.toml", "--simulate", "--out", "o.csv"]).says("bad.toml:2: unknown kind of step `spirall`");
+    prompt(&["none.toml", "--simulate", "--out", "o.csv"]).says("--write-protocol");
+    prompt(&["--source", "r.csv", "--out", "o.csv"]).says("a recording follows no prompt");
+    prompt(&["--source", "phantom:touch", "--out", "o.csv"]).says("phantom:subject does");
+    prompt(&["--out", "o.csv"]).says("--source is needed");
+    prompt(&["--simulate", "--out", "o.parquet"]).says("let its name end in .csv");
+    prompt(&["bad.toml", "--simulate", "--source", "-", "--out", "o.csv"]).says("cannot be used with");
+    prompt(&["--simulate"]).says("--out");
+    // A check that can't pass: nothing is collected, and why is said.
+    dir.write("p.toml", PROTOCOL);
+    let dead = ["prompt", "p.toml", "--source", "phantom:subject?dead=P3&rate=max", "--out", "d.csv"];
+    dir.lunula(&dead).expect(1).says("P3 is 0 V all the time");
+    assert!(!dir.path("o.csv").exists() && !dir.path("d.csv").exists());
+}
+
+/// A sensor and a transducer over TCP, each sending 50 rows a second until told otherwise.
+struct Devices {
+    sensor: TcpStream,
+    force: TcpStream,
+    start: Instant,
+    rows: u32,
+}
+
+impl Devices {
+    /// Rows of both until `seconds` have passed; of the force only where it works.
+    fn send(&mut self, seconds: f64, force: bool) {
+        let until = Instant::now() + Duration::from_secs_f64(seconds);
+        while Instant::now() < until {
+            self.rows += 1;
+            let t_s = self.start.elapsed().as_secs_f64();
+            let volts = 2.0 + 0.01 * f64::from(self.rows % 7);
+            let _ = write!(self.sensor, "{t_s:.4},{volts:.3},{:.3}\n", volts + 0.2);
+            if force {
+                let _ = write!(self.force, "{t_s:.4},0.01,0.02,-1.03\n");
+            }
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    }
+}
+
+struct Session {
+    child: Child,
+    url: String,
+    devices: Devices,
+}
+
+/// `lunula prompt` with a page that nobody looks at, and both devices.
+fn session(dir: &Dir) -> Session {
+    let listeners = [(); 2].map(|()| TcpListener::bind("127.0.0.1:0").expect("a port"));
+    let [sensor, force] = listeners.each_ref().map(|one| format!("tcp:{}", one.local_addr().expect("bound")));
+    dir.write("p.toml", "[[step]]\nkind = \"rest\"\nname = \"air\"\nseconds = 600\n");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_lunula"))
+        .args(["prompt", "p.toml", "--source", &sensor, "--force", &force, "--out", "r.csv"])
+        .current_dir(dir.path(""))
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("the binary runs");
+    let mut url = String::new();
+    BufReader::new(child.stdout.take().expect("a pipe")).read_line(&mut url).expect("an address");
+    let [mut sensor, mut force] = listeners.map(|one| one.accept().expect("it connects").0);
+    sensor.write_all(b"time_s,P1,P2\n").expect("it reads");
+    force.write_all(b"time_s,Fx_N,Fy_N,Fz_N\n").expect("it reads");
+    let devices = Devices { sensor, force, start: Instant::now(), rows: 0 };
+    Session { child, url: url.trim().to_owned(), devices }
+}
+
+impl Session {
+    /// As the page does, with the token.
+    fn posts(&self, path: &str, body: &str) -> String {
+        let (at, token) = self.url.strip_prefix("http://").and_then(|url| url.split_once("/#")).expect("an address");
+        let mut stream = TcpStream::connect(at).expect("it listens");
+        let head = format!("Host: {at}\r\nOrigin: http://{at}\r\nAuthorization: Bearer {token}\r\nConnection: close");
+        let length = body.len();
+        write!(stream, "POST /api/prompt/{path} HTTP/1.1\r\n{head}\r\nContent-Length: {length}\r\n\r\n{body}")
+            .expect("it reads");
+        let mut answer = String::new();
+        let _ = std::io::Read::read_to_string(&mut stream, &mut answer);
+        answer
+    }
+
+    /// Time by the server's clock.
+    fn now_s(&self) -> f64 {
+        let answer = self.posts("clock", "");
+        let body: serde_json::Value =
+            serde_json::from_str(answer.rsplit("\r\n\r\n").next().unwrap_or("")).expect("JSON");
+        body["time_s"].number()
+    }
+
+    /// A page that is looked at shows frames while the devices send.
+    fn look(&mut self, seconds: f64, force: bool) {
+        for n in 0..(seconds / 0.5) as u32 {
+            let now_s = self.now_s();
+            let frame = serde_json::json!({
+                "n": n, "time_s": now_s, "uncertainty_s": 0.001, "dropped": 0, "centre_px": [400, 300], "px_per_n": 100,
+                "bar_px": [550, 150], "prompt_n": [0, 0, 0], "ring_px": [400, 300], "triangle_px": 550, "bend_deg": null,
+                "finger_px": 200, "force_s": null, "disc_px": null, "line_px": null,
+            });
+            let answer = self.posts("frames", &serde_json::json!({ "frames": [frame] }).to_string());
+            assert!(answer.starts_with("HTTP/1.1 204"), "{answer}");
+            self.devices.send(0.5, force);
+        }
+    }
+
+    fn key(&self, key: &str) {
+        let body = format!("{{\"key\":\"{key}\",\"time_s\":{}}}", self.now_s());
+        let answer = self.posts("key", &body);
+        assert!(answer.starts_with("HTTP/1.1 204"), "{answer}");
+    }
+
+    fn end(mut self) -> i32 {
+        let start = Instant::now();
+        loop {
+            if let Some(status) = self.child.try_wait().expect("a child") {
+                return status.code().unwrap_or(-1);
+            }
+            assert!(start.elapsed() < Duration::from_secs(20), "the program does not end");
+            std::thread::sleep(Duration::from_millis(10));
+        }
+    }
+}
+
+#[test]
+fn a_force_that_stops_stops_the_ring_and_nothing_is_recorded_as_zero() {
+    let dir = Dir::new();
+    let mut session = session(&dir);
+    session.devices.send(1.0, true);
+    session.key("go");
+    session.look(3.0, true);
+    session.look(2.0, false);
+    session.look(2.0, true);
+    session.key("hidden");
+    session.look(1.0, true);
+    assert!(session.posts("frames", "{\"frames\":[{}]}").starts_with("HTTP/1.1 400"));
+    assert!(session.posts("key", "{\"key\":\"dance\",\"time_s\":1}").starts_with("HTTP/1.1 400"));
+    session.key("stop");
+    session.key("stop");
+    assert_eq!(session.end(), 1);
+    let report: serde_json::Value = serde_json::from_str(&dir.text("r.run.json")).expect("JSON");
+    let events: Vec<&str> = report["turns"].list().iter().map(|turn| turn["event"].words()).collect();
+    assert_eq!(events[..4], ["begins", "stalled", "goes on", "paused"], "{events:?}");
+    let stood_s = report["turns"][2]["stood_s"].number();
+    assert!((1.0..=3.0).contains(&stood_s), "{stood_s}");
+    let rows = dir.table("r.csv");
+    let (mut known, mut unknown) = (0, 0);
+    for row in &rows {
+        let forces = ["Fx_N", "Fy_N", "Fz_N"].map(|name| row[name].as_str());
+        // Lines between equal forces are these forces.
+        match forces.map(str::parse::<f64>) {
+            [Ok(x), Ok(y), Ok(z)] => {
+                assert!((x - 0.01).abs() <= 1e-9 && (y - 0.02).abs() <= 1e-9 && (z + 1.03).abs() <= 1e-9);
+                known += 1;
+            }
+            _ => {
+                assert_eq!(forces, [""; 3]);
+                unknown += 1;
+            }
+        }
+    }
+    assert!(known >= 50 && unknown >= 5 && unknown <= 60, "{known} known, {unknown} not");
+    let clock = dir.text("r.clock.toml");
+    assert!(clock.contains("[clock]") && clock.contains("mm:ss.t"));
+    assert!(dir.table("r.frames.csv").len() >= 10);
+}
+
+#[test]
+fn what_is_killed_has_all_but_its_last_second() {
+    let dir = Dir::new();
+    let mut session = session(&dir);
+    session.devices.send(1.0, true);
+    session.key("go");
+    session.look(4.0, true);
+    let killed_s = session.now_s();
+    session.child.kill().expect("it runs");
+    session.child.wait().expect("it ran");
+    let last = |name: &str| dir.table(name).last().map_or(0.0, |row| row["time_s"].parse::<f64>().expect("a time"));
+    // A row waits for the force behind it as well.
+    let [samples, frames] = [last("r.csv"), last("r.frames.csv")];
+    assert!(killed_s - samples <= 1.2 && killed_s - frames <= 1.5, "{killed_s}: {samples}, {frames}");
+}
