@@ -1,5 +1,5 @@
 //! How fast `lunula live` is as a whole process: from a row that is written to it to the row that it answers, beside a
-//! thread that hands the same bytes back (the control: what the machine itself takes); how much of a core several
+//! thread that hands the same bytes back (the control: what the machine itself takes), and with a page that is pestered; how much of a core several
 //! fingers or a fast one take; how its memory grows.
 //!
 //! `cargo bench -p lunula-cli --bench live -- [SECONDS] [ROWS]`: seconds of each latency (5), rows for memory (2
@@ -41,7 +41,8 @@ fn main() {
         let busy = busy(load);
         for (link, pair) in [("pipe", [control_pipe as fn(&Path) -> Link, live_pipe]), ("tcp", [control_tcp, live_tcp])]
         {
-            for (who, open) in [("control", pair[0]), ("lunula", pair[1])] {
+            let page = (link == "tcp").then_some(("page", live_page as fn(&Path) -> Link));
+            for (who, open) in [("control", pair[0]), ("lunula", pair[1])].into_iter().chain(page) {
                 let [p50, p99, p999, max] = latency(open(dir.path()), seconds);
                 println!("{load:<10} {link:<6} {who:<8} {p50:>8.0} {p99:>8.0} {p999:>8.0} {max:>8.0}");
             }
@@ -64,10 +65,14 @@ fn prepare(dir: &Path) {
 }
 
 fn live(dir: &Path, source: &str) -> Child {
+    live_with(dir, source, &[], Stdio::null())
+}
+
+fn live_with(dir: &Path, source: &str, more: &[&str], said: Stdio) -> Child {
     let fixed = ["--model", "force.json", "--switch", "s.toml", "-q"];
     let mut command = Command::new(LUNULA);
-    command.args(["live", "--source", source]).args(fixed).current_dir(dir);
-    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().expect("the binary runs")
+    command.args(["live", "--source", source]).args(fixed).args(more).current_dir(dir);
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(said).spawn().expect("the binary runs")
 }
 
 fn live_pipe(dir: &Path) -> Link {
@@ -83,6 +88,29 @@ fn live_tcp(dir: &Path) -> Link {
     to.set_nodelay(true).expect("a socket");
     let from = child.stdout.take().expect("a pipe");
     Link { to: Box::new(to), from: Box::new(from), child: Some(child), thread: None }
+}
+
+/// As [`live_tcp`], with its page, which three hundred connections that never ask and one that does not read look at.
+fn live_page(dir: &Path) -> Link {
+    let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
+    let source = format!("tcp:{}?once", listener.local_addr().expect("an address"));
+    let mut child = live_with(dir, &source, &["--serve"], Stdio::piped());
+    let mut said = BufReader::new(child.stderr.take().expect("a pipe")).lines();
+    let page = said.find_map(|line| line.ok()?.strip_prefix("page: http://").map(str::to_owned)).expect("an address");
+    let (at, token) = page.split_once("/#").expect("an address");
+    let mut watchers: Vec<TcpStream> = (0..300).filter_map(|_| TcpStream::connect(at).ok()).collect();
+    let mut asleep = TcpStream::connect(at).expect("it listens");
+    write!(asleep, "GET /api/live HTTP/1.1\r\nHost: {at}\r\nAuthorization: Bearer {token}\r\n\r\n").expect("it reads");
+    watchers.push(asleep);
+    let (to, _) = listener.accept().expect("it connects");
+    to.set_nodelay(true).expect("a socket");
+    let from = child.stdout.take().expect("a pipe");
+    // They stay until the program is gone.
+    let thread = std::thread::spawn(move || {
+        said.for_each(drop);
+        drop(watchers);
+    });
+    Link { to: Box::new(to), from: Box::new(from), child: Some(child), thread: Some(thread) }
 }
 
 /// Hands back what comes, and hears nothing of what it is.

@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 use std::io::{BufRead, BufReader, Write};
-use std::net::TcpListener;
+use std::net::{TcpListener, TcpStream};
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
@@ -467,6 +467,38 @@ fn the_switches_of_every_model_and_rate_are_on_one_curve() {
     dir.write("few/1.csv", recording(10.0));
     let few = ["tradeoff", "switch", "--input", "train", "--truth", "few", "--out", "u"];
     dir.lunula(&few).expect(2).says("one recording can't choose thresholds and judge them");
+}
+
+#[test]
+fn a_page_shows_the_session_to_whoever_has_the_address() {
+    let dir = desk();
+    let mut running = start(&dir, &["live", "--source", "-", "--model", "m.json", "--switch", "sw.toml", "--serve"]);
+    let url = running.hears("page: http://");
+    let (at, token) = url.trim_start_matches("page: http://").split_once("/#").expect("an address");
+    let asks = |authorization: &str| {
+        let mut to = TcpStream::connect(at).unwrap();
+        to.set_read_timeout(Some(PATIENCE)).unwrap();
+        write!(to, "GET /api/live HTTP/1.1\r\nHost: {at}\r\n{authorization}\r\n").unwrap();
+        BufReader::new(to)
+    };
+    running.write(&recording(3.0));
+    let mut refused = String::new();
+    asks("").read_line(&mut refused).unwrap();
+    assert!(refused.contains("403"), "{refused}");
+    let mut pictures = asks(&format!("Authorization: Bearer {token}\r\n")).lines().map_while(Result::ok);
+    let picture = pictures.find_map(|line| {
+        let picture: serde_json::Value = serde_json::from_str(line.strip_prefix("data: ")?).ok()?;
+        (picture["fingers"][0]["time_s"].as_f64()? > 2.8).then_some(picture)
+    });
+    let finger = &picture.expect("a picture")["fingers"][0];
+    assert!(finger["photodiodes"][0] == "P1" && finger["answers"][0] == "Fz_N" && finger["has_switch"] == true);
+    let low = finger["low"][0].as_array().unwrap();
+    assert!(low.len() >= 55 && low.iter().all(|volts| volts.as_f64().is_some_and(|volts| volts > 0.9)), "{low:?}");
+    // Whoever does not read holds nobody up, and the page ends with the session.
+    let _asleep = asks(&format!("Authorization: Bearer {token}\r\n"));
+    let (code, rows, _) = running.end();
+    assert!(code == 0 && rows.len() == 301, "{code} {}", rows.len());
+    dir.lunula(&["live", "--source", "-", "--model", "m.json", "--port", "80"]).expect(2).says("--serve");
 }
 
 #[test]

@@ -203,7 +203,8 @@ fn served(
     let pictures = Latest::new("{}");
     let server = listening.bind(lunula_ui::live(&pictures))?;
     // Standard output has the rows.
-    tell(common, &format!("page: {}", server.url()));
+    let url = server.url();
+    eprintln!("{}", if common.json { json!({ "url": url }).to_string() } else { format!("page: {url}") });
     let _opened = listening.opened(&server)?;
     let (view, window) = View::new();
     let is_over = AtomicBool::new(false);
