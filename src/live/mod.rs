@@ -12,6 +12,7 @@ mod session;
 pub mod skill;
 mod steps;
 mod switch;
+mod view;
 
 /// The crate that does the streams and the decisions.
 pub use lunula_live as streams;

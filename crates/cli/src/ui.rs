@@ -69,11 +69,16 @@ impl Listening {
         Ok(server.run(stop)?)
     }
 
-    /// Prints the address, and opens it where that is wanted: by a file, which is there while it is not dropped.
+    /// Prints the address, and opens it as [`opened`](Self::opened) does.
     pub(crate) fn announce(&self, server: &Server, common: &Common) -> anyhow::Result<Option<impl Sized + use<>>> {
         let url = server.url();
         out::print_line(&if common.json { json!({ "url": url }).to_string() } else { url });
         out::finish().context("standard output: cannot be written; make room, or send it elsewhere")?;
+        self.opened(server)
+    }
+
+    /// Opens the address where that is wanted: by a file, which is there while it is not dropped.
+    pub(crate) fn opened(&self, server: &Server) -> anyhow::Result<Option<impl Sized + use<>>> {
         let page =
             self.open.then(|| server.page_to_open()).transpose().context("no file can be made for the browser")?;
         if let Some(page) = &page {

@@ -13,6 +13,7 @@
 mod connection;
 mod events;
 mod guard;
+mod live;
 mod pages;
 mod prompt;
 mod results;
@@ -21,6 +22,7 @@ mod site;
 mod token;
 
 pub use events::Latest;
+pub use live::live;
 pub use prompt::{Prompting, prompt};
 pub use results::results;
 pub use server::{Server, Settings, UiError};

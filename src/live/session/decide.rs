@@ -16,6 +16,7 @@ use super::outputs::switch::SwitchOutput;
 use super::outputs::{AnswerRow, Outputs};
 use super::sensor::Sensor;
 use crate::live::error::LiveError;
+use crate::live::view::Made;
 use crate::log::{LogReading, PRECEDING_RULE};
 use crate::predictor::Answering;
 
@@ -66,6 +67,7 @@ pub(super) struct Answers {
     pub(super) pointer: Option<PointerOutput>,
     pub(super) touch: u64,
     pub(super) bending: u64,
+    contact: Option<Contact>,
     text: String,
 }
 
@@ -95,7 +97,15 @@ impl Decide {
                 let name = finger.as_ref().map(|(name, _)| name.clone());
                 let switch = switch.map(|switch| SwitchOutput::new(switch, name, &predicts, &columns)).transpose()?;
                 let pointer = mouse.map(|mouse| PointerOutput::new(mouse, &predicts)).transpose()?;
-                Some(Answers { sensor, switch, pointer, touch: 0, bending: 0, text: String::with_capacity(512) })
+                Some(Answers {
+                    sensor,
+                    switch,
+                    pointer,
+                    touch: 0,
+                    bending: 0,
+                    contact: None,
+                    text: String::with_capacity(512),
+                })
             }
         };
         let samples = recording.map(|recording| Samples::new(recording, &columns, joins_forces));
@@ -139,6 +149,20 @@ impl Decide {
             Some(answers) => answers.row(row, time_s, self.ahead_s, finger, outputs),
             None => Ok(()),
         }
+    }
+
+    /// What was made of the latest lit row, where there are models.
+    pub(super) fn made(&self) -> Option<Made<'_>> {
+        self.answers.as_ref().map(|answers| Made {
+            values: answers.sensor.answer(),
+            contact: answers.contact,
+            pressed: answers.switch.as_ref().map(SwitchOutput::is_pressed),
+        })
+    }
+
+    /// The columns of the answers.
+    pub(super) fn answered(&self) -> &[String] {
+        self.answers.as_ref().map_or(&[], |answers| answers.sensor.answering().columns())
     }
 
     /// The stream's columns.
@@ -209,6 +233,7 @@ impl Answers {
             self.lose(row.time_s, false, ahead_s, outputs)?;
         }
         let Some(answer) = self.sensor.row(row) else { return Ok(()) };
+        self.contact = answer.contact;
         self.touch += u64::from(answer.contact == Some(Contact::Touch));
         self.bending += u64::from(answer.contact == Some(Contact::Bending));
         let values = self.sensor.answer();

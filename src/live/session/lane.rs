@@ -13,6 +13,7 @@ use super::outputs::Outputs;
 use super::outputs::samples::Samples;
 use crate::live::error::LiveError;
 use crate::live::onlooker::Onlooker;
+use crate::live::view::View;
 use crate::log::LogReading;
 
 /// A finger.
@@ -32,6 +33,8 @@ pub(super) struct Work {
     /// Its name in front of messages, where there are several.
     label: String,
     finger: Option<String>,
+    /// Its place among the fingers.
+    place: usize,
 }
 
 /// What all fingers of a session share.
@@ -48,6 +51,7 @@ pub(super) struct Shared<'a> {
     /// Who looks on, and the columns and cells that it adds to what is recorded.
     pub(super) onlooker: Option<(&'a mut dyn Onlooker, &'a [&'a str])>,
     pub(super) cells: String,
+    pub(super) view: Option<View<'a>>,
 }
 
 impl Shared<'_> {
@@ -59,11 +63,14 @@ impl Shared<'_> {
         }
     }
 
-    fn state(&mut self, label: &str, is_force: bool, state: State) {
+    fn state(&mut self, (label, place): (&str, usize), is_force: bool, state: State) {
         let of = if is_force { "force: " } else { "" };
         (self.tell)(&format!("state: {label}{of}{}", state.condition.word()));
         if let Some((onlooker, _)) = &mut self.onlooker {
             onlooker.state(is_force, state.condition);
+        }
+        if let Some(view) = &mut self.view {
+            view.state(place, is_force, state.condition);
         }
     }
 
@@ -79,7 +86,8 @@ impl<'a> Lane<'a> {
     pub(super) fn new(feed: Feed<'a>, force: Option<Feed<'a>>, plan: Plan) -> Self {
         let finger = plan.finger.as_ref().map(|(finger, _)| finger.clone());
         let label = finger.as_ref().map_or(String::new(), |finger| format!("{finger}: "));
-        let work = Work { plan: Some(plan), decide: None, forces: None, forces_ended: false, label, finger };
+        let place = plan.finger.as_ref().map_or(0, |(_, place)| *place);
+        let work = Work { plan: Some(plan), decide: None, forces: None, forces_ended: false, label, finger, place };
         Self { feed, force, work }
     }
 
@@ -128,7 +136,7 @@ impl<'a> Lane<'a> {
                     Ok(())
                 }
                 Event::State(state) => {
-                    shared.state(&work.label, false, state);
+                    shared.state((&work.label, work.place), false, state);
                     if is_away(state.condition) { work.lose(false, shared) } else { Ok(()) }
                 }
                 Event::End => work.lose(true, shared),
@@ -164,7 +172,7 @@ impl<'a> Lane<'a> {
                     Ok(())
                 }
                 Event::State(state) => {
-                    shared.state(&work.label, true, state);
+                    shared.state((&work.label, work.place), true, state);
                     Ok(())
                 }
                 Event::End => work.end_forces(shared),
@@ -213,6 +221,11 @@ impl Work {
             let joins = decide.samples.as_ref().is_some_and(Samples::joins_forces);
             onlooker.begin(decide.columns(), joins)?;
             decide.samples.as_mut().into_iter().for_each(|samples| samples.attended(more));
+        }
+        if let Some(view) = &mut shared.view {
+            let columns = decide.columns();
+            let photodiodes = columns.photodiodes().map(|place| (place, columns.values[place].clone()));
+            view.begin(self.place, photodiodes, decide.answered());
         }
         self.decide = Some(decide);
         shared.outputs.begin()?;
@@ -270,6 +283,9 @@ impl Work {
             }
         };
         decide.row(row, common_s, kept, &mut shared.outputs)?;
+        if let Some(view) = shared.view.as_mut().filter(|_| row.lit != Some(false)) {
+            view.row(self.place, common_s, row.values, decide.made());
+        }
         shared.heard(decide);
         if let (Some(seconds), Some([from_s, to_s])) = (shared.seconds, decide.span_s) {
             shared.ends |= to_s - from_s >= seconds;

@@ -24,6 +24,7 @@ use crate::live::onlooker::Attended;
 use crate::live::options::{LiveOptions, SessionFiles, StreamOptions};
 use crate::live::steps::{live_steps, record_steps};
 use crate::live::switch::read_switch;
+use crate::live::view::View;
 use crate::predictor::{Answering, open_models};
 use crate::stages::left_out;
 
@@ -40,6 +41,8 @@ pub struct Readers<'a> {
     pub rows: Option<OwnedFd>,
     /// Whoever looks after the session: states, alarms, notes.
     pub tell: &'a dyn Fn(&str),
+    /// Where the latest goes for pages, as JSON; it may not wait.
+    pub view: Option<&'a dyn Fn(&str)>,
 }
 
 /// Answers samples as they come.
@@ -47,10 +50,10 @@ pub struct Readers<'a> {
 /// # Errors
 /// [`LiveError`]: models, switch or source that can't be used, a stream that nothing came of, a file that can't be
 /// written. What was recorded until then is kept.
-pub fn live(
-    options: &LiveOptions,
-    files: &SessionFiles,
-    readers: Readers<'_>,
+pub fn live<'a>(
+    options: &'a LiveOptions,
+    files: &'a SessionFiles,
+    readers: Readers<'a>,
     watch: &Watch<'_>,
 ) -> Result<SessionReport, LiveError> {
     let all = fingers(&options.stream, files)?;
@@ -100,6 +103,7 @@ pub fn live(
     outputs.name(header.unwrap_or_default(), labels, named, has_switch, options.lsl.as_deref())?;
     let mut session = Session::new(&options.stream, files, all, plans, outputs, readers.tell, None, watch)?;
     session.warnings = warnings;
+    session.look(readers.view);
     let job = if files.mouse.is_some() { "mouse" } else { "live" };
     let left_out = left_out(live_steps(options, files));
     session.run(job, left_out, watch)
@@ -229,9 +233,25 @@ impl<'a> Session<'a> {
             ends: false,
             onlooker,
             cells: String::new(),
+            view: None,
         };
         let in_order = several && live == 0;
         Ok(Self { files, lanes, shared, warnings: Vec::new(), wake_up: Times::default(), in_order, begun: false })
+    }
+
+    /// Somebody shows it.
+    fn look(&mut self, show: Option<&'a dyn Fn(&str)>) {
+        let fingers = self.lanes.iter().map(|lane| (lane.finger(), lane.force.is_some()));
+        self.shared.view = show.map(|show| View::new(show, fingers));
+    }
+
+    /// What is shown now and then.
+    fn show(&mut self, now_ns: u64) {
+        let Some(view) = &mut self.shared.view else { return };
+        if view.counts_are_due(now_ns, &self.shared.work) {
+            self.lanes.iter().enumerate().for_each(|(place, lane)| view.counts(place, &lane.feed.stream));
+        }
+        view.tick(now_ns);
     }
 
     fn run(mut self, job: &'static str, left_out: Vec<String>, watch: &Watch<'_>) -> Result<SessionReport, LiveError> {
@@ -265,6 +285,7 @@ impl<'a> Session<'a> {
             onlooker.tick(now_ns)?;
             self.shared.ends |= onlooker.is_over();
         }
+        self.show(now_ns);
         if now_ns >= *tick_ns {
             *tick_ns = now_ns + TICK_NS;
             let tell = self.shared.tell;
@@ -444,7 +465,7 @@ mod tests {
         };
         let reader = std::fs::File::create(dir.join("rows.csv")).unwrap();
         let counted = allocation_counter::measure(|| {
-            let readers = Readers { rows: Some(reader.into()), tell: &|_| {} };
+            let readers = Readers { rows: Some(reader.into()), tell: &|_| {}, view: None };
             let report = live(&options, &files, readers, &Watch::nobody()).unwrap();
             assert_eq!((report.rows, report.answered), (u64::from(rows), u64::from(rows)));
         });

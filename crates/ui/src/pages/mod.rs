@@ -30,6 +30,13 @@ pub(crate) const PROMPT: [Asset; 5] = [
     Asset { path: "/clock.js", kind: SCRIPT, bytes: include_bytes!("prompt/clock.js") },
     Asset { path: "/prompt.css", kind: STYLE, bytes: include_bytes!("prompt/prompt.css") },
 ];
+/// A sensor at work; it draws as the prompter does.
+pub(crate) const LIVE: [Asset; 4] = [
+    Asset { path: "/", kind: HTML, bytes: include_bytes!("live/page.html") },
+    Asset { path: "/live.js", kind: SCRIPT, bytes: include_bytes!("live/live.js") },
+    PROMPT[2],
+    Asset { path: "/live.css", kind: STYLE, bytes: include_bytes!("live/live.css") },
+];
 
 #[cfg(test)]
 mod tests {
@@ -40,7 +47,7 @@ mod tests {
 
     #[test]
     fn the_pages_are_small_and_ask_for_nothing_elsewhere() {
-        let all = || COMMON.iter().chain(&RESULTS).chain(&PROMPT);
+        let all = || COMMON.iter().chain(&RESULTS).chain(&PROMPT).chain(&LIVE);
         assert!(all().map(|asset| asset.bytes.len()).sum::<usize>() <= MOST);
         for asset in all() {
             let text = std::str::from_utf8(asset.bytes).unwrap();

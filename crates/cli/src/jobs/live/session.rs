@@ -1,7 +1,7 @@
 //! `lunula live` and `lunula record`: a sensor at work.
 
 use std::path::PathBuf;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Args;
 use lunula::job::{Given, Report, Said, Watch};
@@ -12,9 +12,11 @@ use lunula::live::{
 };
 use lunula::predictor::PredictChoices;
 use lunula::words::shown_lines;
+use lunula_ui::Latest;
 use serde_json::json;
 
 use crate::jobs::{JobArgs, Plan, name_failures, show};
+use crate::ui::Listening;
 use crate::{Common, Outcome, out};
 
 /// Answer a sensor's samples as they come: forces, angle, switch (6.1)
@@ -27,6 +29,8 @@ use crate::{Common, Outcome, out};
 /// <out>.stream.json. Of several fingers each row says whose it is (`finger`), all on one clock; samples are recorded
 /// in <out>.FINGER.csv.
 #[derive(Debug, Args)]
+#[command(mut_arg("port", |one| one.requires("serve")), mut_arg("open", |one| one.requires("serve")))]
+#[command(mut_arg("listen", |one| one.requires("serve")))]
 pub(crate) struct LiveArgs {
     /// Models that `lunula train` wrote: of force, of posture, or both; index=MODEL.json is one finger's
     #[arg(long = "model", required = true, value_name = "[FINGER=]MODEL.json", num_args = 1..)]
@@ -40,6 +44,12 @@ pub(crate) struct LiveArgs {
     /// The switches' presses and releases, a line of JSON each
     #[arg(long, value_name = "EVENTS.jsonl", requires = "switch")]
     events: Option<PathBuf>,
+    /// Shows it on a page of this machine too, whose address is said on standard error: traces, forces, contact,
+    /// switch, states, losses
+    #[arg(long)]
+    serve: bool,
+    #[command(flatten)]
+    listening: Listening,
     #[command(flatten)]
     out: OutArgs,
     #[command(flatten)]
@@ -113,12 +123,43 @@ pub(crate) fn run_live(args: &LiveArgs) -> anyhow::Result<Outcome> {
     if args.job.plan {
         return show(common, "live", &Plan::from(live_steps(options, &files)));
     }
-    let report = session(common, &args.given.said, &stop, options, &files)?;
+    let report = if args.serve {
+        with_page(args, &stop, options, &files)?
+    } else {
+        session(common, &args.given.said, &stop, options, &files, None)?
+    };
     if common.json {
         // Standard output has the rows.
         eprintln!("{}", serde_json::to_string(&report)?);
     }
     Ok(ended(common, &report))
+}
+
+/// The session in this thread, its page in another.
+fn with_page(
+    args: &LiveArgs,
+    stop: &AtomicBool,
+    options: &LiveOptions,
+    files: &SessionFiles,
+) -> anyhow::Result<SessionReport> {
+    let common = &args.job.common;
+    let latest = Latest::new("null");
+    let server = args.listening.bind(lunula_ui::live(&latest))?;
+    // Standard output has the rows.
+    let url = server.url();
+    eprintln!("{}", if common.json { json!({ "url": url }).to_string() } else { format!("page: {url}") });
+    let _opened = args.listening.opened(&server)?;
+    let over = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        let serving = scope.spawn(|| server.run(&over));
+        let view = |json: &str| latest.leave(json);
+        let report = session(common, &args.given.said, stop, options, files, Some(&view));
+        over.store(true, Ordering::Relaxed);
+        if let Ok(Err(why)) = serving.join() {
+            eprintln!("warning: the page was not served to the end: {why}");
+        }
+        report
+    })
 }
 
 pub(crate) fn run_mouse(args: &MouseArgs) -> anyhow::Result<Outcome> {
@@ -137,7 +178,7 @@ pub(crate) fn run_mouse(args: &MouseArgs) -> anyhow::Result<Outcome> {
     if args.job.plan {
         return show(common, "mouse", &Plan::from(live_steps(&options, &files)));
     }
-    let report = session(common, &args.given.said, &stop, &options, &files)?;
+    let report = session(common, &args.given.said, &stop, &options, &files, None)?;
     common.print_json(&report)?;
     if let Some(counts) = report.pointer {
         common.say(&format!("{} moves, {} clicks, {} lines scrolled", counts.moves, counts.clicks, counts.scrolled));
@@ -168,7 +209,7 @@ pub(crate) fn run_stream(
         lsl: None,
     };
     let files = SessionFiles { models: all(models), ..SessionFiles::default() };
-    let report = session(common, &given.said, &stop, &options, &files)?;
+    let report = session(common, &given.said, &stop, &options, &files, None)?;
     Ok(outcome(&report))
 }
 
@@ -179,9 +220,10 @@ fn session(
     stop: &AtomicBool,
     options: &LiveOptions,
     files: &SessionFiles,
+    view: Option<&dyn Fn(&str)>,
 ) -> anyhow::Result<SessionReport> {
     let rows = if files.mouse.is_none() { Some(out::descriptor()?) } else { None };
-    let readers = Readers { rows, tell: &|what: &str| tell(common, what) };
+    let readers = Readers { rows, tell: &|what: &str| tell(common, what), view };
     Ok(live(options, files, readers, &Watch { said, stop, tick: &|_, _| {} })?)
 }
 
