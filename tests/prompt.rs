@@ -1,6 +1,7 @@
-//! `lunula prompt` from outside: a simulated person goes through a protocol, the file trains, streams fall silent, kills
-//! lose a second.
+//! `lunula prompt` from outside: a simulated person goes through a protocol, the file trains, streams fall silent,
+//! kills lose a second.
 
+use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Write};
 use std::net::{TcpListener, TcpStream};
 use std::process::{Child, Command, Stdio};
@@ -11,9 +12,30 @@ use lunula_predictor::{ForceSpace, cone_coverage};
 
 use crate::util::{Dir, Json};
 
-const PROTOCOL: &str = "[[step]]\nkind = \"ask\"\ntext = \"Affix the sensor.\"\n[[step]]\nkind = \"check\"\nchecks = \
-                        [\"photodiodes\", \"tare\", \"sign\"]\n[[step]]\nkind = \"spiral\"\nname = \"force\"\nseconds = \
-                        60\n[[step]]\nkind = \"bending\"\nseconds = 20\nchecks = [\"adhesion\"]\n";
+const PROTOCOL: &str = r#"
+[[step]]
+kind = "ask"
+text = "Affix the sensor."
+
+[[step]]
+kind = "check"
+checks = ["photodiodes", "tare", "sign"]
+
+[[step]]
+kind = "spiral"
+name = "force"
+seconds = 60
+
+[[step]]
+kind = "bending"
+seconds = 20
+checks = ["adhesion"]
+"#;
+
+/// The measured force of a row; what is not known is NaN.
+fn force(row: &BTreeMap<String, String>) -> [f64; 3] {
+    ["Fx_N", "Fy_N", "Fz_N"].map(|name| row[name].parse().unwrap_or(f64::NAN))
+}
 
 #[test]
 fn a_simulated_person_goes_through_the_protocol_and_the_file_trains() {
@@ -27,9 +49,6 @@ fn a_simulated_person_goes_through_the_protocol_and_the_file_trains() {
     let rows = dir.table("a.csv");
     assert!((14_600..=14_700).contains(&rows.len()), "{}", rows.len());
     assert_eq!(report["rows"], rows.len());
-    let force = |row: &std::collections::BTreeMap<String, String>| {
-        ["Fx_N", "Fy_N", "Fz_N"].map(|name| row[name].parse().unwrap_or(f64::NAN))
-    };
     let covered = cone_coverage(rows.iter().map(force), &ForceSpace::default(), REST_N);
     assert_eq!(report["coverage"], serde_json::to_value(&covered).unwrap());
     let sets: Vec<(&str, &str)> =
@@ -45,14 +64,21 @@ fn a_simulated_person_goes_through_the_protocol_and_the_file_trains() {
         // Measured 0.07 to 0.16.
         assert!(merit["rmse"][target].number() <= 0.25, "{}", merit["rmse"]);
     }
-    // The extra trajectory is a protocol, and fills what it says.
-    let before = report["extra"]["before"].number();
-    dir.lunula(&["prompt", "a.extra.toml", "--simulate", "--out", "e.csv", "-q"]).expect(0);
-    let both = rows.iter().map(force).chain(dir.table("e.csv").iter().map(force).collect::<Vec<_>>());
-    let after = cone_coverage(both, &ForceSpace::default(), REST_N).cylindrical.visited;
-    assert!(after > before && before == covered.cylindrical.visited, "{before} {after}");
     // Nothing is replaced unasked.
     dir.lunula(&["prompt", "--simulate", "--out", "a.csv"]).expect(2).says("--replace");
+}
+
+#[test]
+fn the_extra_trajectory_is_a_protocol_that_fills_holes() {
+    let dir = Dir::new();
+    dir.write("p.toml", PROTOCOL);
+    let report = dir.lunula(&["prompt", "p.toml", "--simulate", "--out", "a.csv", "--json"]).expect(0).json();
+    let (before, promised) = (report["extra"]["before"].number(), report["extra"]["after"].number());
+    dir.lunula(&["prompt", "a.extra.toml", "--simulate", "--out", "e.csv", "-q"]).expect(0);
+    let rows = [dir.table("a.csv"), dir.table("e.csv")].concat();
+    let after = cone_coverage(rows.iter().map(force), &ForceSpace::default(), REST_N).cylindrical.visited;
+    // Who follows exactly reaches what was promised; a person most of it. Measured 0.79, 0.95 of 1.
+    assert!(before < 0.9 && after > before + 0.5 * (promised - before), "{before} {after} {promised}");
 }
 
 #[test]
@@ -156,8 +182,8 @@ impl Session {
             let now_s = self.now_s();
             let frame = serde_json::json!({
                 "n": n, "time_s": now_s, "uncertainty_s": 0.001, "dropped": 0, "centre_px": [400, 300], "px_per_n": 100,
-                "bar_px": [550, 150], "prompt_n": [0, 0, 0], "ring_px": [400, 300], "triangle_px": 550, "bend_deg": null,
-                "finger_px": 200, "force_s": null, "disc_px": null, "line_px": null,
+                "bar_px": [550, 150], "prompt_n": [0, 0, 0], "ring_px": [400, 300], "triangle_px": 550,
+                "bend_deg": null, "finger_px": 200, "force_s": null, "disc_px": null, "line_px": null,
             });
             let answer = self.posts("frames", &serde_json::json!({ "frames": [frame] }).to_string());
             assert!(answer.starts_with("HTTP/1.1 204"), "{answer}");

@@ -6,6 +6,7 @@ use lunula_live::wire::Row;
 use super::desk::{Desk, Pace, Shared};
 use super::protocol::{Prompted, StepKind};
 use super::run::{Key, Phase, Turn};
+use super::show::short;
 use crate::live::{FORCES, LiveError, Onlooker, StreamColumns};
 use crate::table::push_number;
 
@@ -111,7 +112,7 @@ impl Onlooker for Attendant {
         let (prompted, _) = shared.run.prompted(time_s);
         let mut cell = |value: f64| {
             cells.push(',');
-            push_number(cells, value);
+            push_number(cells, short(value));
         };
         match prompted {
             Some(Prompted::Force(force)) => force.into_iter().chain([f64::NAN]).for_each(&mut cell),

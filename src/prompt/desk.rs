@@ -13,7 +13,7 @@ use super::cover::Cover;
 use super::frames::{Frame, Frames};
 use super::protocol::{Prompted, Step};
 use super::run::{Key, Phase, Run};
-use super::show::{force_json, state_json};
+use super::show::{force_json, short, state_json};
 use crate::live::LiveError;
 
 /// A page that listens hears the state so often at least, seconds.
@@ -174,7 +174,7 @@ impl Desk {
     /// The page hears a force.
     pub(super) fn tell_force(&self, shared: &mut Shared, time_s: f64, force_n: [f64; 3]) {
         // As a page has it, so that it can be found again.
-        shared.frames.force((1e6 * time_s).round() * 1e-6, force_n);
+        shared.frames.force(short(time_s), force_n);
         self.show.force(&force_json(time_s, force_n));
     }
 }

@@ -25,12 +25,7 @@ use crate::stages::{Stages, Step};
 const SUBJECT: &str = "subject";
 
 /// The clock of the page, for a marker file.
-pub const CLOCK: &str = "# The clock of the prompter's page, filmed beside the finger: for the marker file of `lunula posture`. It shows the\n\
-# seconds of the recording's time_s, so that `lunula align` ties the two by themselves.\n\
-[clock]\n\
-roi = \"auto\"                         # or [x, y, width, height] of its panel on the picture\n\
-format = \"mm:ss.t\"\n\
-refresh_hz = 60.0                    # of the screen\n";
+pub const CLOCK: &str = include_str!("protocol/clock.toml");
 
 /// Files of a prompted session.
 #[derive(Debug, Clone, Default)]

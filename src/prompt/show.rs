@@ -73,8 +73,8 @@ struct CoverState {
 }
 
 /// Six digits behind the point: what a page needs.
-fn short(value: f64) -> f64 {
-    (1e6 * value).round() * 1e-6
+pub(super) fn short(value: f64) -> f64 {
+    (1e6 * value).round() / 1e6
 }
 
 pub(super) fn state_json(shared: &mut Shared, now_s: f64) -> String {
