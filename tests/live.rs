@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 use std::io::{BufRead, BufReader, Write};
-use std::net::TcpListener;
+use std::net::{TcpListener, TcpStream};
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::{Duration, Instant};
@@ -104,6 +104,36 @@ impl Running {
 
 fn json(dir: &Dir, name: &str) -> serde_json::Value {
     serde_json::from_str(&dir.text(name)).expect("JSON")
+}
+
+#[test]
+fn a_page_hears_the_session_and_nobody_else_does() {
+    let dir = desk();
+    let mut live = start(&dir, &["live", "--source", "-", "--model", "m.json", "--switch", "sw.toml", "--serve"]);
+    let url = live.hears("page: http://");
+    let (at, token) = url.trim_start_matches("page: http://").split_once("/#").expect("an address");
+    live.write("time_s,P1\n");
+    for k in 0..50 {
+        live.write(&format!("{:.3},1.{k:02}\n", 0.01 * f64::from(k)));
+    }
+    let asks = |secret: &str| {
+        let mut stream = TcpStream::connect(at).expect("it listens");
+        stream.set_read_timeout(Some(PATIENCE)).expect("a socket");
+        write!(stream, "GET /api/live/state HTTP/1.1\r\nHost: {at}\r\n{secret}\r\n").expect("it reads");
+        BufReader::new(stream).lines().map_while(Result::ok)
+    };
+    assert!(asks("").next().expect("an answer").contains("403"));
+    let mut heard = asks(&format!("Authorization: Bearer {token}\r\n"));
+    let state = heard.find(|line| line.starts_with("data: {") && line.contains("\"rows\":50")).expect("a state");
+    let state: serde_json::Value = serde_json::from_str(&state["data: ".len()..]).expect("JSON");
+    let finger = &state["fingers"][0];
+    assert_eq!((&finger["columns"][0], &finger["pressed"]), (&"Fz_N".into(), &false.into()));
+    assert_eq!(finger["photodiodes"][0]["name"], "P1");
+    assert!(!finger["photodiodes"][0]["trace"].as_array().expect("bins").is_empty());
+    let (code, lines, _) = live.end();
+    assert!(code == 0 && lines.len() == 51, "{code} {}", lines.len());
+    // What belongs to a page is refused without one.
+    dir.lunula(&["live", "--source", "-", "--model", "m.json", "--port", "8000"]).expect(2).says("--serve");
 }
 
 #[test]

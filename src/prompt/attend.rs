@@ -3,10 +3,9 @@
 use lunula_live::source::Condition;
 use lunula_live::wire::Row;
 
-use super::desk::{Desk, Pace, Shared};
+use super::desk::{Desk, Pace, Shared, short};
 use super::protocol::{Prompted, StepKind};
 use super::run::{Key, Phase, Turn};
-use super::show::short;
 use crate::live::{FORCES, LiveError, Onlooker, StreamColumns};
 use crate::table::push_number;
 
