@@ -108,7 +108,7 @@ impl Prompter {
         }
         let pace = match (&source.what.place, pace_of(options)) {
             (_, Some(PlayPace::Max)) => Pace::Clock(0.0),
-            (_, Some(PlayPace::Rate(rate))) if rate == 1.0 => Pace::Played(None),
+            (_, Some(PlayPace::Rate(1.0))) => Pace::Played(None),
             (_, Some(PlayPace::Rate(_))) => return refused("phantom:subject is played at rate=1 or rate=max"),
             (Place::Phantom { kind, .. }, None) => {
                 let what = format!("phantom:{kind} follows no prompt; phantom:subject does");
