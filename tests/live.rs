@@ -127,7 +127,7 @@ fn a_page_hears_the_session_and_nobody_else_does() {
     let state = heard.find(|line| line.starts_with("data: {") && line.contains("\"rows\":50")).expect("a state");
     let state: serde_json::Value = serde_json::from_str(&state["data: ".len()..]).expect("JSON");
     let finger = &state["fingers"][0];
-    assert_eq!((&finger["columns"][0], &finger["pressed"]), (&"Fz_N".into(), &false.into()));
+    assert_eq!((&finger["columns"][0], &finger["pressed"]), (&"Fz_N".into(), &true.into()));
     assert_eq!(finger["photodiodes"][0]["name"], "P1");
     assert!(!finger["photodiodes"][0]["trace"].as_array().expect("bins").is_empty());
     let (code, lines, _) = live.end();

@@ -118,9 +118,9 @@ impl Devices {
             self.rows += 1;
             let t_s = self.start.elapsed().as_secs_f64();
             let volts = 2.0 + 0.01 * f64::from(self.rows % 7);
-            let _ = write!(self.sensor, "{t_s:.4},{volts:.3},{:.3}\n", volts + 0.2);
+            let _ = writeln!(self.sensor, "{t_s:.4},{volts:.3},{:.3}", volts + 0.2);
             if force {
-                let _ = write!(self.force, "{t_s:.4},0.01,0.02,-1.03\n");
+                let _ = writeln!(self.force, "{t_s:.4},0.01,0.02,-1.03");
             }
             std::thread::sleep(Duration::from_millis(20));
         }
@@ -246,7 +246,7 @@ fn a_force_that_stops_stops_the_ring_and_nothing_is_recorded_as_zero() {
             }
         }
     }
-    assert!(known >= 50 && unknown >= 5 && unknown <= 60, "{known} known, {unknown} not");
+    assert!(known >= 50 && (5..=60).contains(&unknown), "{known} known, {unknown} not");
     let clock = dir.text("r.clock.toml");
     assert!(clock.contains("[clock]") && clock.contains("mm:ss.t"));
     assert!(dir.table("r.frames.csv").len() >= 10);
