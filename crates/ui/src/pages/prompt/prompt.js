@@ -167,7 +167,7 @@ function hear(now) {
     waiting: step && step.kind === "ask" ? "Read, then Space." : "Space begins.",
     running: step && step.kind === "check" ? "Checking." : step && step.collects ? "Collecting." : "Practising.",
     paused: "Paused; Space goes on.",
-    stalled: "Stopped",
+    stalled: "Stopped:",
     done: "Done: Esc closes.",
     over: "Over; this page can be closed.",
   }[now.phase];
