@@ -1,6 +1,6 @@
 //! How fast `lunula live` is as a whole process: from a row that is written to it to the row that it answers, beside a
-//! thread that hands the same bytes back (the control: what the machine itself takes), and with a page that is pestered; how much of a core several
-//! fingers or a fast one take; how its memory grows.
+//! thread that hands the same bytes back (the control: what the machine itself takes), and with a page that is
+//! pestered; how much of a core several fingers or a fast one take; how its memory grows.
 //!
 //! `cargo bench -p lunula-cli --bench live -- [SECONDS] [ROWS]`: seconds of each latency (5), rows for memory (2
 //! million). Linux only: it reads `/proc`.

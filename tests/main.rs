@@ -49,6 +49,7 @@ mod predictor_evaluate;
 mod predictor_predict;
 mod predictor_train;
 mod prompt;
+mod prompt_clock;
 mod simulate;
 mod simulate_extremes;
 mod skill;

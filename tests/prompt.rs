@@ -1,6 +1,7 @@
-//! `lunula prompt` from outside: a simulated person goes through a protocol, the file trains, streams fall silent, kills
-//! lose a second.
+//! `lunula prompt` from outside: a simulated person goes through a protocol, the file trains, streams fall silent,
+//! kills lose a second.
 
+use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Write};
 use std::net::{TcpListener, TcpStream};
 use std::process::{Child, Command, Stdio};
@@ -11,9 +12,30 @@ use lunula_predictor::{ForceSpace, cone_coverage};
 
 use crate::util::{Dir, Json};
 
-const PROTOCOL: &str = "[[step]]\nkind = \"ask\"\ntext = \"Affix the sensor.\"\n[[step]]\nkind = \"check\"\nchecks = \
-                        [\"photodiodes\", \"tare\", \"sign\"]\n[[step]]\nkind = \"spiral\"\nname = \"force\"\nseconds = \
-                        60\n[[step]]\nkind = \"bending\"\nseconds = 20\nchecks = [\"adhesion\"]\n";
+const PROTOCOL: &str = r#"
+[[step]]
+kind = "ask"
+text = "Affix the sensor."
+
+[[step]]
+kind = "check"
+checks = ["photodiodes", "tare", "sign"]
+
+[[step]]
+kind = "spiral"
+name = "force"
+seconds = 60
+
+[[step]]
+kind = "bending"
+seconds = 20
+checks = ["adhesion"]
+"#;
+
+/// The measured force of a row; what is not known is NaN.
+fn force(row: &BTreeMap<String, String>) -> [f64; 3] {
+    ["Fx_N", "Fy_N", "Fz_N"].map(|name| row[name].parse().unwrap_or(f64::NAN))
+}
 
 #[test]
 fn a_simulated_person_goes_through_the_protocol_and_the_file_trains() {
@@ -27,9 +49,6 @@ fn a_simulated_person_goes_through_the_protocol_and_the_file_trains() {
     let rows = dir.table("a.csv");
     assert!((14_600..=14_700).contains(&rows.len()), "{}", rows.len());
     assert_eq!(report["rows"], rows.len());
-    let force = |row: &std::collections::BTreeMap<String, String>| {
-        ["Fx_N", "Fy_N", "Fz_N"].map(|name| row[name].parse().unwrap_or(f64::NAN))
-    };
     let covered = cone_coverage(rows.iter().map(force), &ForceSpace::default(), REST_N);
     assert_eq!(report["coverage"], serde_json::to_value(&covered).unwrap());
     let sets: Vec<(&str, &str)> =
@@ -45,14 +64,21 @@ fn a_simulated_person_goes_through_the_protocol_and_the_file_trains() {
         // Measured 0.07 to 0.16.
         assert!(merit["rmse"][target].number() <= 0.25, "{}", merit["rmse"]);
     }
-    // The extra trajectory is a protocol, and fills what it says.
-    let before = report["extra"]["before"].number();
-    dir.lunula(&["prompt", "a.extra.toml", "--simulate", "--out", "e.csv", "-q"]).expect(0);
-    let both = rows.iter().map(force).chain(dir.table("e.csv").iter().map(force).collect::<Vec<_>>());
-    let after = cone_coverage(both, &ForceSpace::default(), REST_N).cylindrical.visited;
-    assert!(after > before && before == covered.cylindrical.visited, "{before} {after}");
     // Nothing is replaced unasked.
     dir.lunula(&["prompt", "--simulate", "--out", "a.csv"]).expect(2).says("--replace");
+}
+
+#[test]
+fn the_extra_trajectory_is_a_protocol_that_fills_holes() {
+    let dir = Dir::new();
+    dir.write("p.toml", PROTOCOL);
+    let report = dir.lunula(&["prompt", "p.toml", "--simulate", "--out", "a.csv", "--json"]).expect(0).json();
+    let (before, promised) = (report["extra"]["before"].number(), report["extra"]["after"].number());
+    dir.lunula(&["prompt", "a.extra.toml", "--simulate", "--out", "e.csv", "-q"]).expect(0);
+    let rows = [dir.table("a.csv"), dir.table("e.csv")].concat();
+    let after = cone_coverage(rows.iter().map(force), &ForceSpace::default(), REST_N).cylindrical.visited;
+    // Who follows exactly reaches what was promised; a person most of it. Measured 0.79, 0.95 of 1.
+    assert!(before < 0.9 && after > before + 0.5 * (promised - before), "{before} {after} {promised}");
 }
 
 #[test]
@@ -92,9 +118,9 @@ impl Devices {
             self.rows += 1;
             let t_s = self.start.elapsed().as_secs_f64();
             let volts = 2.0 + 0.01 * f64::from(self.rows % 7);
-            let _ = write!(self.sensor, "{t_s:.4},{volts:.3},{:.3}\n", volts + 0.2);
+            let _ = writeln!(self.sensor, "{t_s:.4},{volts:.3},{:.3}", volts + 0.2);
             if force {
-                let _ = write!(self.force, "{t_s:.4},0.01,0.02,-1.03\n");
+                let _ = writeln!(self.force, "{t_s:.4},0.01,0.02,-1.03");
             }
             std::thread::sleep(Duration::from_millis(20));
         }
@@ -103,7 +129,7 @@ impl Devices {
 
 struct Session {
     child: Child,
-    url: String,
+    page: Page,
     devices: Devices,
 }
 
@@ -112,8 +138,22 @@ fn session(dir: &Dir) -> Session {
     let listeners = [(); 2].map(|()| TcpListener::bind("127.0.0.1:0").expect("a port"));
     let [sensor, force] = listeners.each_ref().map(|one| format!("tcp:{}", one.local_addr().expect("bound")));
     dir.write("p.toml", "[[step]]\nkind = \"rest\"\nname = \"air\"\nseconds = 600\n");
+    let (child, page) = prompts(dir, &["p.toml", "--source", &sensor, "--force", &force, "--out", "r.csv"]);
+    let [mut sensor, mut force] = listeners.map(|one| one.accept().expect("it connects").0);
+    sensor.write_all(b"time_s,P1,P2\n").expect("it reads");
+    force.write_all(b"time_s,Fx_N,Fy_N,Fz_N\n").expect("it reads");
+    let devices = Devices { sensor, force, start: Instant::now(), rows: 0 };
+    Session { child, page, devices }
+}
+
+/// The page's address, with its secret.
+struct Page(String);
+
+/// `lunula prompt` with these arguments, and its page.
+fn prompts(dir: &Dir, arguments: &[&str]) -> (Child, Page) {
     let mut child = Command::new(env!("CARGO_BIN_EXE_lunula"))
-        .args(["prompt", "p.toml", "--source", &sensor, "--force", &force, "--out", "r.csv"])
+        .arg("prompt")
+        .args(arguments)
         .current_dir(dir.path(""))
         .stdout(Stdio::piped())
         .stderr(Stdio::null())
@@ -121,17 +161,13 @@ fn session(dir: &Dir) -> Session {
         .expect("the binary runs");
     let mut url = String::new();
     BufReader::new(child.stdout.take().expect("a pipe")).read_line(&mut url).expect("an address");
-    let [mut sensor, mut force] = listeners.map(|one| one.accept().expect("it connects").0);
-    sensor.write_all(b"time_s,P1,P2\n").expect("it reads");
-    force.write_all(b"time_s,Fx_N,Fy_N,Fz_N\n").expect("it reads");
-    let devices = Devices { sensor, force, start: Instant::now(), rows: 0 };
-    Session { child, url: url.trim().to_owned(), devices }
+    (child, Page(url.trim().to_owned()))
 }
 
-impl Session {
+impl Page {
     /// As the page does, with the token.
     fn posts(&self, path: &str, body: &str) -> String {
-        let (at, token) = self.url.strip_prefix("http://").and_then(|url| url.split_once("/#")).expect("an address");
+        let (at, token) = self.0.strip_prefix("http://").and_then(|url| url.split_once("/#")).expect("an address");
         let mut stream = TcpStream::connect(at).expect("it listens");
         let head = format!("Host: {at}\r\nOrigin: http://{at}\r\nAuthorization: Bearer {token}\r\nConnection: close");
         let length = body.len();
@@ -150,36 +186,39 @@ impl Session {
         body["time_s"].number()
     }
 
-    /// A page that is looked at shows frames while the devices send.
-    fn look(&mut self, seconds: f64, force: bool) {
-        for n in 0..(seconds / 0.5) as u32 {
-            let now_s = self.now_s();
-            let frame = serde_json::json!({
-                "n": n, "time_s": now_s, "uncertainty_s": 0.001, "dropped": 0, "centre_px": [400, 300], "px_per_n": 100,
-                "bar_px": [550, 150], "prompt_n": [0, 0, 0], "ring_px": [400, 300], "triangle_px": 550, "bend_deg": null,
-                "finger_px": 200, "force_s": null, "disc_px": null, "line_px": null,
-            });
-            let answer = self.posts("frames", &serde_json::json!({ "frames": [frame] }).to_string());
-            assert!(answer.starts_with("HTTP/1.1 204"), "{answer}");
-            self.devices.send(0.5, force);
-        }
-    }
-
     fn key(&self, key: &str) {
         let body = format!("{{\"key\":\"{key}\",\"time_s\":{}}}", self.now_s());
         let answer = self.posts("key", &body);
         assert!(answer.starts_with("HTTP/1.1 204"), "{answer}");
     }
+}
 
-    fn end(mut self) -> i32 {
-        let start = Instant::now();
-        loop {
-            if let Some(status) = self.child.try_wait().expect("a child") {
-                return status.code().unwrap_or(-1);
-            }
-            assert!(start.elapsed() < Duration::from_secs(20), "the program does not end");
-            std::thread::sleep(Duration::from_millis(10));
+impl Session {
+    /// A page that is looked at shows frames while the devices send.
+    fn look(&mut self, seconds: f64, force: bool) {
+        for n in 0..(seconds / 0.5) as u32 {
+            let now_s = self.page.now_s();
+            let frame = serde_json::json!({
+                "n": n, "time_s": now_s, "uncertainty_s": 0.001, "dropped": 0, "centre_px": [400, 300], "px_per_n": 100,
+                "bar_px": [550, 150], "prompt_n": [0, 0, 0], "ring_px": [400, 300], "triangle_px": 550,
+                "bend_deg": null, "finger_px": 200, "force_s": null, "disc_px": null, "line_px": null,
+            });
+            let answer = self.page.posts("frames", &serde_json::json!({ "frames": [frame] }).to_string());
+            assert!(answer.starts_with("HTTP/1.1 204"), "{answer}");
+            self.devices.send(0.5, force);
         }
+    }
+}
+
+/// How it ends.
+fn ends(mut child: Child) -> i32 {
+    let start = Instant::now();
+    loop {
+        if let Some(status) = child.try_wait().expect("a child") {
+            return status.code().unwrap_or(-1);
+        }
+        assert!(start.elapsed() < Duration::from_secs(20), "the program does not end");
+        std::thread::sleep(Duration::from_millis(10));
     }
 }
 
@@ -188,17 +227,17 @@ fn a_force_that_stops_stops_the_ring_and_nothing_is_recorded_as_zero() {
     let dir = Dir::new();
     let mut session = session(&dir);
     session.devices.send(1.0, true);
-    session.key("go");
+    session.page.key("go");
     session.look(3.0, true);
     session.look(2.0, false);
     session.look(2.0, true);
-    session.key("hidden");
+    session.page.key("hidden");
     session.look(1.0, true);
-    assert!(session.posts("frames", "{\"frames\":[{}]}").starts_with("HTTP/1.1 400"));
-    assert!(session.posts("key", "{\"key\":\"dance\",\"time_s\":1}").starts_with("HTTP/1.1 400"));
-    session.key("stop");
-    session.key("stop");
-    assert_eq!(session.end(), 1);
+    assert!(session.page.posts("frames", "{\"frames\":[{}]}").starts_with("HTTP/1.1 400"));
+    assert!(session.page.posts("key", "{\"key\":\"dance\",\"time_s\":1}").starts_with("HTTP/1.1 400"));
+    session.page.key("stop");
+    session.page.key("stop");
+    assert_eq!(ends(session.child), 1);
     let report: serde_json::Value = serde_json::from_str(&dir.text("r.run.json")).expect("JSON");
     let events: Vec<&str> = report["turns"].list().iter().map(|turn| turn["event"].words()).collect();
     assert_eq!(events[..4], ["begins", "stalled", "goes on", "paused"], "{events:?}");
@@ -220,7 +259,7 @@ fn a_force_that_stops_stops_the_ring_and_nothing_is_recorded_as_zero() {
             }
         }
     }
-    assert!(known >= 50 && unknown >= 5 && unknown <= 60, "{known} known, {unknown} not");
+    assert!(known >= 50 && (5..=60).contains(&unknown), "{known} known, {unknown} not");
     let clock = dir.text("r.clock.toml");
     assert!(clock.contains("[clock]") && clock.contains("mm:ss.t"));
     assert!(dir.table("r.frames.csv").len() >= 10);
@@ -231,13 +270,52 @@ fn what_is_killed_has_all_but_its_last_second() {
     let dir = Dir::new();
     let mut session = session(&dir);
     session.devices.send(1.0, true);
-    session.key("go");
+    session.page.key("go");
     session.look(4.0, true);
-    let killed_s = session.now_s();
+    let killed_s = session.page.now_s();
     session.child.kill().expect("it runs");
     session.child.wait().expect("it ran");
     let last = |name: &str| dir.table(name).last().map_or(0.0, |row| row["time_s"].parse::<f64>().expect("a time"));
     // A row waits for the force behind it as well.
     let [samples, frames] = [last("r.csv"), last("r.frames.csv")];
     assert!(killed_s - samples <= 1.2 && killed_s - frames <= 1.5, "{killed_s}: {samples}, {frames}");
+}
+
+#[test]
+#[ignore = "needs Chromium: `make test` runs it where that is installed"]
+fn in_browser_a_session_shows_every_frame_where_the_trajectory_is() {
+    let dir = Dir::new();
+    let steps =
+        "[[step]]\nkind = \"spiral\"\nseconds = 8\n[[step]]\nkind = \"bending\"\nseconds = 3\nstarts = \"at once\"";
+    dir.write("p.toml", steps);
+    let (child, page) = prompts(&dir, &["p.toml", "--source", "phantom:subject", "--out", "r.csv"]);
+    let mut looks = Command::new("chromium")
+        .args(["--headless", "--no-sandbox", "--disable-gpu", "--remote-debugging-port=0", "--window-size=1200,800"])
+        .arg(format!("--user-data-dir={}", dir.path("profile").display()))
+        .arg(&page.0)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .expect("chromium is installed");
+    let start = Instant::now();
+    while !dir.path("r.frames.csv").exists() && start.elapsed() < Duration::from_secs(30) {
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    page.key("go");
+    std::thread::sleep(Duration::from_secs(15));
+    page.key("stop");
+    let code = ends(child);
+    let _ = (looks.kill(), looks.wait());
+    assert_eq!(code, 0);
+    let report: serde_json::Value = serde_json::from_str(&dir.text("r.run.json")).expect("JSON");
+    let frames = &report["frames"];
+    // Measured 0.02 px.
+    assert!(frames["off_px_max"].number() <= 1.0 && frames["mistaken"] == 0, "{frames}");
+    assert!(frames["shown"].number() >= 100.0 && frames["uncertainty_max_s"].number() <= 0.5, "{frames}");
+    let shown = dir.table("r.frames.csv");
+    assert_eq!(shown.len(), frames["shown"].number() as usize);
+    assert!(
+        shown.iter().any(|row| !row["prompt_J2_deg"].is_empty())
+            && shown.iter().any(|row| !row["disc_x_px"].is_empty())
+    );
 }

@@ -3,7 +3,7 @@
 use lunula_live::source::Condition;
 use lunula_live::wire::Row;
 
-use super::desk::{Desk, Pace, Shared};
+use super::desk::{Desk, Pace, Shared, short};
 use super::protocol::{Prompted, StepKind};
 use super::run::{Key, Phase, Turn};
 use crate::live::{FORCES, LiveError, Onlooker, StreamColumns};
@@ -111,7 +111,7 @@ impl Onlooker for Attendant {
         let (prompted, _) = shared.run.prompted(time_s);
         let mut cell = |value: f64| {
             cells.push(',');
-            push_number(cells, value);
+            push_number(cells, short(value));
         };
         match prompted {
             Some(Prompted::Force(force)) => force.into_iter().chain([f64::NAN]).for_each(&mut cell),

@@ -1,11 +1,11 @@
 //! What a page has shown: every frame, with its time and what was drawn in it.
 //!
-//! In: frames as a page sends them ([`Frame`]), and what was prompted at their times. Out: a table that grows beside the
-//! recording, one row per frame, and figures ([`FrameFigures`]).
+//! In: frames as a page sends them ([`Frame`]), and what was prompted at their times. Out: a table that grows beside
+//! the recording, one row per frame, and figures ([`FrameFigures`]).
 //!
-//! The place of a force on the page is `centre_px + px_per_N [Fx, -Fy]`, of a pressing on the bar `bar_px[0] - bar_px[1]
-//! (-Fz)`: pixels of the page, y down. How far a frame is off is the distance between what was drawn and where it
-//! should have been at the frame's own time, of ring, triangle, disc and line the farthest.
+//! The place of a force on the page is `centre_px + px_per_n [Fx, -Fy]`, of a pressing on the bar `bar_px[0] +
+//! bar_px[1] Fz`: pixels of the page, y down. How far a frame is off is the distance between what was drawn and where
+//! it should have been at the frame's own time, of ring, triangle, disc and line the farthest.
 
 use std::collections::VecDeque;
 use std::fmt::Write as _;

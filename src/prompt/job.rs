@@ -25,12 +25,7 @@ use crate::stages::{Stages, Step};
 const SUBJECT: &str = "subject";
 
 /// The clock of the page, for a marker file.
-pub const CLOCK: &str = "# The clock of the prompter's page, filmed beside the finger: for the marker file of `lunula posture`. It shows the\n\
-# seconds of the recording's time_s, so that `lunula align` ties the two by themselves.\n\
-[clock]\n\
-roi = \"auto\"                         # or [x, y, width, height] of its panel on the picture\n\
-format = \"mm:ss.t\"\n\
-refresh_hz = 60.0                    # of the screen\n";
+pub const CLOCK: &str = include_str!("protocol/clock.toml");
 
 /// Files of a prompted session.
 #[derive(Debug, Clone, Default)]
@@ -113,7 +108,7 @@ impl Prompter {
         }
         let pace = match (&source.what.place, pace_of(options)) {
             (_, Some(PlayPace::Max)) => Pace::Clock(0.0),
-            (_, Some(PlayPace::Rate(rate))) if rate == 1.0 => Pace::Played(None),
+            (_, Some(PlayPace::Rate(1.0))) => Pace::Played(None),
             (_, Some(PlayPace::Rate(_))) => return refused("phantom:subject is played at rate=1 or rate=max"),
             (Place::Phantom { kind, .. }, None) => {
                 let what = format!("phantom:{kind} follows no prompt; phantom:subject does");

@@ -18,7 +18,6 @@ mod job;
 pub mod protocol;
 mod report;
 mod run;
-mod show;
 
 pub use cover::{Extra, REST_N};
 pub use desk::{Nobody, Show};

@@ -21,7 +21,7 @@ use lunula::pipeline::{Parts, PipelineMark, Share, Spec, Task};
 use lunula::pipeline::{kinds, phantom_catalogue, scenes, survey};
 use lunula::posture::{Layout, Lens};
 use lunula::predictor::Answering;
-use lunula::prompt::protocol::{Prompted, Protocol, Step as PromptStep};
+use lunula::prompt::protocol::{Prompted, Protocol};
 use lunula::table::Table;
 use lunula_hemodynamics::{Collapse, Model, Parameters};
 use lunula_predictor::{Gate, Predictor};
@@ -305,7 +305,7 @@ fn mouse(_: &Desk, bytes: &[u8]) {
 fn protocol(_: &Desk, bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
     let Ok(protocol) = Protocol::parse(text, Path::new("p.toml")) else { return };
-    for motion in protocol.steps.iter().filter_map(PromptStep::motion) {
+    for motion in protocol.steps.iter().filter_map(|step| step.motion()) {
         for share in [-1.0, 0.0, 0.3, 1.0, 2.0] {
             match motion.at(share * motion.whole_s()) {
                 Prompted::Force(force) => assert!(force.iter().all(|force| force.is_finite())),

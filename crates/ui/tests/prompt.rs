@@ -59,7 +59,8 @@ impl Bench {
             "checks": [],
             "ahead": [{"from_s": from_s, "to_s": to_s, "rows": rows}],
             "scale_n": 3.0, "fz_max_n": 3.0, "mu": 0.75,
-            "cover": {"rows": 10, "visited": 0.5, "cells": "10".repeat(96), "hole_n": 0.7, "hole_at_n": [0.5, 0.0, -2.0]},
+            "cover": {"rows": 10, "visited": 0.5, "cells": "10".repeat(96), "hole_n": 0.7,
+                      "hole_at_n": [0.5, 0.0, -2.0]},
             "extra": null, "frames": [0, 0],
         });
         self.state.leave(&state.to_string());

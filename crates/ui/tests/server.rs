@@ -4,11 +4,12 @@
 
 mod util;
 
+use std::io::{Read, Write};
 use std::net::TcpStream;
 use std::path::Path;
 
-use lunula_ui::{Server, Settings, UiError, results};
-use util::{Answer, Asks, run};
+use lunula_ui::{Latest, Server, Settings, UiError, live, results};
+use util::{Answer, Asks, run, serve};
 
 fn one_run(dir: &Path) {
     std::fs::create_dir(dir.join("<img src=x onerror=alert(1)>")).unwrap();
@@ -94,4 +95,28 @@ fn a_folder_that_does_not_exist_and_a_port_that_is_taken_are_said() {
     let port = server.at.rsplit_once(':').unwrap().1.parse().unwrap();
     let taken = Server::bind(&Settings { port, ..Settings::default() }, results(&[]).unwrap()).err().unwrap();
     assert!(taken.to_string().contains("choose another --port"), "{taken}");
+}
+
+#[test]
+fn the_live_page_hears_the_latest_and_says_nothing() {
+    let latest = Latest::new("null");
+    let server = serve(live(&latest));
+    latest.leave("{\"fingers\":[]}");
+    assert_eq!(server.asks("GET", "/api/live", "", "").status, 403);
+    let page = server.asks("GET", "/", "", "");
+    assert!(page.status == 200 && page.body.contains("live.js"));
+    for asset in ["live.js", "common.js", "style.css"] {
+        assert_eq!(server.asks("GET", &format!("/{asset}"), "", "").status, 200, "{asset}");
+    }
+    let mut stream = TcpStream::connect(&server.at).unwrap();
+    let request = format!("GET /api/live HTTP/1.1\r\nHost: {}\r\n{}\r\n", server.at, server.cookie());
+    stream.write_all(request.as_bytes()).unwrap();
+    let mut heard = String::new();
+    let mut piece = [0; 4096];
+    while !heard.contains("data: {\"fingers\":[]}") {
+        let read = stream.read(&mut piece).unwrap();
+        assert!(read > 0, "{heard}");
+        heard.push_str(&String::from_utf8_lossy(&piece[..read]));
+    }
+    assert!(heard.contains("text/event-stream"));
 }

@@ -1,8 +1,9 @@
 //! What a page shows of a session while it goes: traces, answers, contact, switch, how the source is.
 //!
-//! The session's thread only keeps the least and the largest of each photodiode over [`BIN_S`], and hands such a bin on;
-//! a full queue loses the bin, never the sample. Another thread ([`Window`]) keeps the last seconds and makes a picture of
-//! them ten times a second, whoever looks. Pages are told the latest.
+//! The session's thread only keeps the least and the largest of each photodiode over [`BIN_S`], and hands such a bin
+//! on; a full queue loses the bin, never the sample. Another thread ([`Window`]) keeps the last seconds and makes a
+//! picture of them ten times a second, whoever looks: to make one of ten fingers takes as long as hundreds of samples.
+//! Pages are told the latest.
 
 mod window;
 

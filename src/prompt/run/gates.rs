@@ -226,7 +226,7 @@ impl Tare {
         }
         let steady = (0..3).all(|k| self.high[k] - self.low[k] <= STEADY_N);
         let means = self.sum.map(|sum| sum / f64::from(self.count));
-        let off = ["Fx", "Fy", "Fz"].into_iter().zip(means).find(|(_, mean)| !(mean.abs() <= TARE_N));
+        let off = ["Fx", "Fy", "Fz"].into_iter().zip(means).find(|(_, mean)| mean.is_nan() || mean.abs() > TARE_N);
         self.verdict = match off {
             _ if !steady => Verdict { passed: false, says: "the force moves; lift the finger and wait".to_owned() },
             Some((name, mean)) => Verdict {
@@ -247,8 +247,7 @@ impl Sign {
             (Some(now), _) => Some((time_s, now)),
             (None, _) => None,
         };
-        let Some((since_s, is_right)) = self.since.filter(|(since_s, _)| time_s - since_s >= PRESS_S) else { return };
-        let _ = since_s;
+        let Some((_, is_right)) = self.since.filter(|(since_s, _)| time_s - since_s >= PRESS_S) else { return };
         self.verdict = if is_right {
             Verdict { passed: true, says: "pressing is negative".to_owned() }
         } else {

@@ -128,8 +128,8 @@ impl Samples {
         Ok(())
     }
 
-    /// A row, recorded at `time_s`; at `common_s` of the clock that both devices are on. Further cells are each behind a
-    /// comma.
+    /// A row, recorded at `time_s`; at `common_s` of the clock that both devices are on. Further cells are each behind
+    /// a comma.
     ///
     /// # Errors
     /// A recording that can't be written.

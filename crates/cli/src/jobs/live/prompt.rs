@@ -22,9 +22,9 @@ use crate::{Common, Outcome};
 ///
 /// Prints one line, the address of the page with a secret; the page shows the ring to follow, the disc of the measured
 /// force, the bar, the finger that bends, and how the cone of forces fills. The recording has the measured forces, and
-/// what was prompted in columns of its own. Beside it: <out>.frames.csv with every frame that was shown, <out>.run.json,
-/// <out>.stream.json, <out>.clock.toml for a marker file, and <out>.extra.toml, a short protocol through what is
-/// missing. The page's keys are Space, R, N, E, Esc and ?.
+/// what was prompted in columns of its own. Beside it: <out>.frames.csv with every frame that was shown,
+/// <out>.run.json, <out>.stream.json, <out>.clock.toml for a marker file, and <out>.extra.toml, a short protocol
+/// through what is missing. The page's keys are Space, R, N, E, Esc and ?.
 #[derive(Debug, Args)]
 #[command(mut_arg("source", |source| source.required(false)))]
 pub(crate) struct PromptArgs {

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 use clap::Args;
 use lunula::job::{Given, Report, Said, Watch};
@@ -194,6 +195,9 @@ fn session(
     Ok(live(options, files, readers, &Watch { said, stop, tick: &|_, _| {} })?)
 }
 
+/// What a page takes to hear the last picture.
+const LAST_WORD: Duration = Duration::from_millis(200);
+
 /// A session that a page shows; the page ends with it.
 fn served(
     listening: &Listening,
@@ -209,9 +213,12 @@ fn served(
     let (view, window) = View::new();
     let is_over = AtomicBool::new(false);
     std::thread::scope(|scope| {
-        scope.spawn(|| window.run(|picture| pictures.leave(picture)));
+        let drawing = scope.spawn(|| window.run(|picture| pictures.leave(picture)));
         let serving = scope.spawn(|| server.run(&is_over));
         let report = session(Some(view));
+        // Pages hear that it is over.
+        drop(drawing.join());
+        std::thread::sleep(LAST_WORD);
         is_over.store(true, Ordering::Relaxed);
         if let Ok(Err(why)) = serving.join() {
             eprintln!("warning: the page: {why}");

@@ -160,24 +160,28 @@ function hear(now) {
   state = now;
   state_ms = performance.now();
   if (frozen && (now.phase !== "running" || frozen.sent)) frozen = null;
-  const { step, cover } = now;
+  const ends = now.phase === "done" || now.phase === "over";
+  const step = ends ? null : now.step;
+  const { cover } = now;
   const words = {
     waiting: step && step.kind === "ask" ? "Read, then Space." : "Space begins.",
     running: step && step.kind === "check" ? "Checking." : step && step.collects ? "Collecting." : "Practising.",
     paused: "Paused; Space goes on.",
-    stalled: "Stopped",
-    done: "Done.",
+    stalled: "Stopped:",
+    done: "Done: Esc closes.",
     over: "Over; this page can be closed.",
   }[now.phase];
   const why = now.why ? ` ${now.why}.` : "";
-  if (!before || before.phase !== now.phase || before.why !== now.why || before.step?.place !== step?.place) say(`${words}${why}`);
-  at("step").textContent = step ? `${step.place + 1} of ${step.count}: ${step.name}` : "All steps are done";
+  if (!before || before.phase !== now.phase || before.why !== now.why || before.step?.place !== now.step?.place) say(`${words}${why}`);
+  at("step").textContent = step ? `${step.place + 1} of ${step.count}: ${step.name}` : "Done";
   at("text").textContent = step ? step.text : now.extra ? `${now.extra}: E begins it.` : "";
   const lines = now.checks.map((one) => made("li", `${one.check}: ${one.says}`, one.passed ? "passed" : ""));
   at("checks").replaceChildren(...lines);
   const moves = now.phase === "running" && step && (step.kind === "force" || step.kind === "bend");
   at("go").firstChild.textContent = moves ? "Pause " : now.phase === "paused" ? "Go on " : "Start ";
   at("extra").hidden = !now.extra;
+  for (const id of ["go", "reset", "skip"]) at(id).hidden = ends;
+  at("stop").firstChild.textContent = ends ? "Close " : "Stop and keep ";
   at("cover").textContent = `${Math.floor(100 * cover.visited)} % of the cone, ${cover.rows} rows` +
     (cover.hole_n === null ? "" : `; largest hole ${cover.hole_n.toFixed(2)} N`);
   const left = step && step.seconds ? `${Math.max(0, step.seconds - step.at_s).toFixed(0)} s left` : "";

@@ -4,17 +4,20 @@
 //! simulated subject that is played as it goes, they are brought to it once; of one that is played as fast as it can
 //! be, the samples' time *is* the clock.
 
+mod show;
+
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use lunula_live::source::HostClock;
 use serde::Deserialize;
+pub(in crate::prompt) use show::short;
+use show::{force_json, state_json};
 
-use super::cover::Cover;
-use super::frames::{Frame, Frames};
-use super::protocol::{Prompted, Step};
-use super::run::{Key, Phase, Run};
-use super::show::{force_json, state_json};
 use crate::live::LiveError;
+use crate::prompt::cover::Cover;
+use crate::prompt::frames::{Frame, Frames};
+use crate::prompt::protocol::{Prompted, Step};
+use crate::prompt::run::{Key, Phase, Run};
 
 /// A page that listens hears the state so often at least, seconds.
 const STATE_S: f64 = 0.25;
@@ -41,7 +44,7 @@ impl Show for Nobody {
 
 /// How the samples' time becomes the server's.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Pace {
+pub(in crate::prompt) enum Pace {
     /// It is the server's.
     Live,
     /// It is played as it goes; ahead by so much, once that is known, seconds.
@@ -52,21 +55,21 @@ pub(super) enum Pace {
 
 /// What both share.
 #[derive(Clone)]
-pub(super) struct Desk {
+pub(in crate::prompt) struct Desk {
     shared: Arc<Mutex<Shared>>,
-    pub(super) clock: HostClock,
+    pub(in crate::prompt) clock: HostClock,
     show: Arc<dyn Show>,
 }
 
-pub(super) struct Shared {
-    pub(super) run: Run,
-    pub(super) cover: Cover,
-    pub(super) frames: Frames,
-    pub(super) pace: Pace,
+pub(in crate::prompt) struct Shared {
+    pub(in crate::prompt) run: Run,
+    pub(in crate::prompt) cover: Cover,
+    pub(in crate::prompt) frames: Frames,
+    pub(in crate::prompt) pace: Pace,
     /// How well each step was followed.
-    pub(super) followed: Vec<Followed>,
+    pub(in crate::prompt) followed: Vec<Followed>,
     /// Further messages to a person.
-    pub(super) extra_asked: bool,
+    pub(in crate::prompt) extra_asked: bool,
     fault: Option<LiveError>,
     shown_s: f64,
     shown_version: u64,
@@ -74,10 +77,10 @@ pub(super) struct Shared {
 
 /// How well a step was followed.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Followed {
+pub(in crate::prompt) struct Followed {
     /// Forces, and the sum of their squared distances from what was prompted, square newtons.
-    pub(super) forces: u64,
-    pub(super) squares: f64,
+    pub(in crate::prompt) forces: u64,
+    pub(in crate::prompt) squares: f64,
 }
 
 #[derive(Deserialize)]
@@ -94,7 +97,7 @@ struct Seen {
 }
 
 impl Desk {
-    pub(super) fn new(run: Run, frames: Frames, pace: Pace, show: Arc<dyn Show>) -> Self {
+    pub(in crate::prompt) fn new(run: Run, frames: Frames, pace: Pace, show: Arc<dyn Show>) -> Self {
         let cover = Cover::new(run.protocol().space);
         let shared = Shared {
             run,
@@ -110,16 +113,16 @@ impl Desk {
         Self { shared: Arc::new(Mutex::new(shared)), clock: HostClock::start(), show }
     }
 
-    pub(super) fn lock(&self) -> MutexGuard<'_, Shared> {
+    pub(in crate::prompt) fn lock(&self) -> MutexGuard<'_, Shared> {
         self.shared.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The server's clock now, seconds.
-    pub(super) fn now_s(&self) -> f64 {
+    pub(in crate::prompt) fn now_s(&self) -> f64 {
         self.of_host(&self.lock(), self.clock.now_ns())
     }
 
-    pub(super) fn of_host(&self, shared: &Shared, now_ns: u64) -> f64 {
+    pub(in crate::prompt) fn of_host(&self, shared: &Shared, now_ns: u64) -> f64 {
         match shared.pace {
             Pace::Live | Pace::Played(_) => 1e-9 * now_ns as f64,
             Pace::Clock(now_s) => now_s,
@@ -127,13 +130,13 @@ impl Desk {
     }
 
     /// What is prompted at a time: for the simulated subject.
-    pub(super) fn prompted(&self, sample_s: f64) -> Option<Prompted> {
+    pub(in crate::prompt) fn prompted(&self, sample_s: f64) -> Option<Prompted> {
         let shared = self.lock();
         shared.run.prompted(sample_s + shared.ahead_s()).0
     }
 
     /// A key, as a page sends it; whether it is one.
-    pub(super) fn key(&self, json: &[u8]) -> bool {
+    pub(in crate::prompt) fn key(&self, json: &[u8]) -> bool {
         let Ok(Pressed { key, time_s }) = serde_json::from_slice(json) else { return false };
         let mut shared = self.lock();
         let now_s = self.of_host(&shared, self.clock.now_ns());
@@ -143,7 +146,7 @@ impl Desk {
     }
 
     /// Frames, as a page sends them; whether they are some.
-    pub(super) fn frames(&self, json: &[u8]) -> bool {
+    pub(in crate::prompt) fn frames(&self, json: &[u8]) -> bool {
         let Ok(Seen { frames }) = serde_json::from_slice(json) else { return false };
         let mut shared = self.lock();
         let now_s = self.of_host(&shared, self.clock.now_ns());
@@ -164,7 +167,7 @@ impl Desk {
     }
 
     /// The page hears the state where it changed, or is due.
-    pub(super) fn tell(&self, shared: &mut Shared, now_s: f64) {
+    pub(in crate::prompt) fn tell(&self, shared: &mut Shared, now_s: f64) {
         if shared.shown_version != shared.run.version() || now_s - shared.shown_s >= STATE_S {
             (shared.shown_s, shared.shown_version) = (now_s, shared.run.version());
             self.show.state(&state_json(shared, now_s));
@@ -172,23 +175,23 @@ impl Desk {
     }
 
     /// The page hears a force.
-    pub(super) fn tell_force(&self, shared: &mut Shared, time_s: f64, force_n: [f64; 3]) {
+    pub(in crate::prompt) fn tell_force(&self, shared: &mut Shared, time_s: f64, force_n: [f64; 3]) {
         // As a page has it, so that it can be found again.
-        shared.frames.force((1e6 * time_s).round() * 1e-6, force_n);
+        shared.frames.force(short(time_s), force_n);
         self.show.force(&force_json(time_s, force_n));
     }
 }
 
 impl Shared {
     /// The server's clock less the samples', seconds.
-    pub(super) fn ahead_s(&self) -> f64 {
+    pub(in crate::prompt) fn ahead_s(&self) -> f64 {
         match self.pace {
             Pace::Played(ahead_s) => ahead_s.unwrap_or(0.0),
             Pace::Live | Pace::Clock(_) => 0.0,
         }
     }
 
-    pub(super) fn key(&mut self, key: Key, key_s: f64, now_s: f64) {
+    pub(in crate::prompt) fn key(&mut self, key: Key, key_s: f64, now_s: f64) {
         if key == Key::Extra && *self.run.phase().0 == Phase::Done {
             if let Some(extra) = self.cover.extra() {
                 let session = self.run.protocol().steps.iter().map(|step| step.session).max().unwrap_or(1);
@@ -201,7 +204,7 @@ impl Shared {
     }
 
     /// How far a measured force is from what is prompted.
-    pub(super) fn follow(&mut self, time_s: f64, force_n: [f64; 3]) {
+    pub(in crate::prompt) fn follow(&mut self, time_s: f64, force_n: [f64; 3]) {
         if self.run.collecting(time_s).is_none() {
             return;
         }
@@ -219,18 +222,18 @@ impl Shared {
     }
 
     /// The RMS distance in the step that it is at, newtons.
-    pub(super) fn followed_n(&self, place: usize) -> Option<f64> {
+    pub(in crate::prompt) fn followed_n(&self, place: usize) -> Option<f64> {
         let followed = self.followed.get(place).filter(|followed| followed.forces > 0)?;
         Some((followed.squares / followed.forces as f64).sqrt())
     }
 
     /// What could not be written, once.
-    pub(super) fn fault(&mut self) -> Option<LiveError> {
+    pub(in crate::prompt) fn fault(&mut self) -> Option<LiveError> {
         self.fault.take()
     }
 
     /// The step that it is at.
-    pub(super) fn step(&self) -> Option<&Step> {
+    pub(in crate::prompt) fn step(&self) -> Option<&Step> {
         self.run.current()
     }
 }

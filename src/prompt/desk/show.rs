@@ -7,8 +7,8 @@
 use lunula_predictor::ConeCoverage;
 use serde::Serialize;
 
-use super::desk::Shared;
-use super::protocol::{Prompted, StepKind};
+use super::Shared;
+use crate::prompt::protocol::{Prompted, StepKind};
 
 /// How far back and ahead, and how often, seconds.
 const BACK_S: f64 = 0.25;
@@ -48,7 +48,7 @@ struct StepState<'a> {
 
 #[derive(Serialize)]
 struct CheckState {
-    check: super::protocol::Check,
+    check: crate::prompt::protocol::Check,
     passed: bool,
     says: String,
 }
@@ -73,8 +73,8 @@ struct CoverState {
 }
 
 /// Six digits behind the point: what a page needs.
-fn short(value: f64) -> f64 {
-    (1e6 * value).round() * 1e-6
+pub(in crate::prompt) fn short(value: f64) -> f64 {
+    (1e6 * value).round() / 1e6
 }
 
 pub(super) fn state_json(shared: &mut Shared, now_s: f64) -> String {
