@@ -26,6 +26,7 @@ impl Job for StudyJob {
             role("photos", "maps of photographs"),
             role("section", "the simulations of section 4.3"),
             role("presses", "its experiments"),
+            role("calibration", "the trajectory that the person was prompted by"),
             role("touch_training", "the touch model evaluated on what it was trained on"),
             role("touch_validation", "on the third repetition"),
             role("touch_test", "on random touching"),
@@ -39,7 +40,7 @@ impl Job for StudyJob {
             Part { name: "statements", file: "statements.csv", only_if_wanted: false },
             Part { name: "numbers", file: "numbers.json", only_if_wanted: false },
         ],
-        revision: 2,
+        revision: 3,
         keys: keys::<PageOptions>,
         prepare: prepare::<Self>,
     };
@@ -57,7 +58,7 @@ impl Job for StudyJob {
             "touch_training" | "touch_validation" | "touch_test" | "posture_training" | "posture_validation" => {
                 &["predicted", "pictures"]
             }
-            "modes" | "compare" => &["pictures"],
+            "modes" | "compare" | "calibration" => &["pictures"],
             _ => &[],
         };
         Demand { parts: parts.iter().copied().collect(), ..Demand::default() }

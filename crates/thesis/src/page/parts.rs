@@ -27,6 +27,8 @@ pub enum Part {
     Section,
     /// Slow and quick presses (4.3.4).
     Presses,
+    /// The calibration trajectory (5.2).
+    Calibration,
     /// The touch model on what it was trained on (5.3.1).
     TouchTraining,
     /// The touch model on the third repetition.
@@ -45,7 +47,7 @@ pub enum Part {
 
 impl Part {
     /// All, in the thesis' order.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::Normal,
         Self::Lateral,
         Self::Longitudinal,
@@ -54,6 +56,7 @@ impl Part {
         Self::Photos,
         Self::Section,
         Self::Presses,
+        Self::Calibration,
         Self::TouchTraining,
         Self::TouchValidation,
         Self::TouchTest,
@@ -75,6 +78,7 @@ impl Part {
             Self::Photos => "photos",
             Self::Section => "section",
             Self::Presses => "presses",
+            Self::Calibration => "calibration",
             Self::TouchTraining => "touch_training",
             Self::TouchValidation => "touch_validation",
             Self::TouchTest => "touch_test",
@@ -100,6 +104,7 @@ impl Part {
             | Self::PostureValidation => &["merit.csv"],
             Self::Modes => &["modes.csv"],
             Self::Compare => &["comparisons.csv"],
+            Self::Calibration => &["trajectory.csv"],
             Self::Typical => &[],
         }
     }
@@ -110,7 +115,7 @@ impl Part {
     /// A file that can't be read.
     pub fn numbers(self, folder: &Path) -> anyhow::Result<Numbers> {
         match self {
-            Self::Typical => Ok(Numbers::default()),
+            Self::Typical | Self::Calibration => Ok(Numbers::default()),
             Self::Photos => coloration_numbers(folder),
             Self::Modes => Ok(modes_numbers(folder)?),
             Self::Compare => Ok(compare_numbers(folder)?),

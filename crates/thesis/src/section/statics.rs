@@ -28,17 +28,31 @@ pub(super) fn figure_78(text: &mut SectionText, sets: &[Named], staging: &Stagin
     writeln!(text, "| | {} | open up to, N/cm2 | several stable states, N/cm2 |", parts.join(" | "))?;
     writeln!(text, "|---|{}---|---|", "---|".repeat(PARTS.len()))?;
     let mut charts = Vec::new();
-    for (unit, pressed) in [Pressed::Proximal, Pressed::Distal].into_iter().enumerate() {
-        let mut items = Vec::new();
-        for (k, set) in sets.iter().enumerate() {
+    for pressed in [Pressed::Proximal, Pressed::Distal, Pressed::Both] {
+        let mut curves = Vec::new();
+        for set in sets {
             let blood_pa = [set.parameters.upstream_pa(), set.parameters.downstream_pa()];
             let found = along(&set.parameters, Collapse::Error, &Optics::BeerLambert, pressed, &loads_pa, blood_pa)?;
-            tell(text, set.name, &found, unit)?;
-            items.extend(shown(set.name, &found, unit, k));
+            curves.push((set.name, found));
         }
-        let title = if unit == 0 { "Steady state: light less that of rest; unstable parts thin" } else { "" };
-        let (x, y) = (["PF1, N/cm2", "PF2, N/cm2"][unit], format!("change of VP{}, mV", unit + 1));
-        charts.push(chart(title, x, &y, items));
+        // As its caption: both places are pressed, and both photodiodes looked at.
+        let (units, x): (&[usize], &str) = match pressed {
+            Pressed::Proximal => (&[0], "PF1, N/cm2"),
+            Pressed::Distal => (&[1], "PF2, N/cm2"),
+            Pressed::Both => (&[0, 1], "PF1 and PF2, N/cm2"),
+        };
+        for &unit in units {
+            let mut items = Vec::new();
+            for (k, (name, found)) in curves.iter().enumerate() {
+                if pressed != Pressed::Both {
+                    tell(text, name, found, unit)?;
+                }
+                items.extend(shown(name, found, unit, k));
+            }
+            let title =
+                if charts.is_empty() { "Steady state: light less that of rest; unstable parts thin" } else { "" };
+            charts.push(chart(title, x, &format!("change of VP{}, mV", unit + 1), items));
+        }
     }
     writeln!(text)?;
     draw_charts(&charts, WIDTH, &staging.place("fig-78.png")?, &staging.place("fig-78.svg")?)
