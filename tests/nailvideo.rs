@@ -104,10 +104,10 @@ fn what_can_not_be_followed_is_refused_with_its_remedy() {
 
 /// The pictures of a video, in order.
 fn pictures(path: &Path) -> Vec<Picture> {
-    let mut video = Video::open(path, 2).unwrap();
+    let mut video = Video::open(path, 2).expect("a video");
     let format = video.info().format;
     let mut all = Vec::new();
-    while let Some(item) = video.next_item().unwrap() {
+    while let Some(item) = video.next_item().expect("an item") {
         let Item::Frame(frame) = item else { panic!("a frame is missing") };
         let planes = std::iter::once(frame.luma).chain(frame.chroma.into_iter().flatten());
         all.push(Picture { format, planes: planes.map(samples).collect() });
@@ -141,13 +141,13 @@ fn grey(picture: &Picture) -> Picture {
 /// Writes pictures at these times in milliseconds, without loss where they have 8 bits.
 fn write(path: &Path, turn: Turn, pictures: impl Iterator<Item = (Picture, i64)>) {
     let mut pictures = pictures.peekable();
-    let format = pictures.peek().unwrap().0.format;
+    let format = pictures.peek().expect("a picture").0.format;
     // Between the four: it stays there when they are turned.
     let encoding =
         Encoding { crf: 0, turn, chroma_site: Some((0.5, 0.5)), preset: "ultrafast", ..Encoding::new(format) };
-    let mut encoder = Encoder::create(path, &encoding).unwrap();
-    pictures.for_each(|(picture, ticks)| encoder.push(&picture, ticks).unwrap());
-    encoder.finish().unwrap();
+    let mut encoder = Encoder::create(path, &encoding).expect("a file");
+    pictures.for_each(|(picture, ticks)| encoder.push(&picture, ticks).expect("encoded"));
+    encoder.finish().expect("written");
 }
 
 #[test]

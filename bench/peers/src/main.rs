@@ -84,6 +84,7 @@ fn main() -> anyhow::Result<()> {
             Job::Posture => posture::measure(&bench, folder.path(), &mut found)?,
             Job::Align => align::measure(&bench, folder.path(), &mut found)?,
             Job::Predictor => predictor::measure(&bench, folder.path(), &mut found)?,
+            Job::Switch => found.left_out.push("switch: no other program says how often a switch is false".to_owned()),
             Job::Hemodynamics => hemodynamics::measure(&bench, folder.path(), &mut found)?,
         }
         let scene = bench.plan.scene(stage);

@@ -117,9 +117,9 @@ pub(super) const SECTIONS: &[Section] = &[
         ],
     },
     Section {
-        name: "calibration",
-        title: "5.2 The calibration trajectory",
-        of: &["5.2"],
+        name: "predictors",
+        title: "5.2 and 5.3 Calibration, and predictors of touch and posture of one subject",
+        of: &["5.3"],
         figures: &[
             figure(
                 "90",
@@ -133,13 +133,6 @@ pub(super) const SECTIONS: &[Section] = &[
                 "trajectory-force",
                 "The forces over time, their shear over time, and over pressing.",
             ),
-        ],
-    },
-    Section {
-        name: "predictors",
-        title: "5.3 Predictors of touch and posture of one subject",
-        of: &["5.3"],
-        figures: &[
             figure("94", Part::TouchTraining, "over-time", "Touch: training data and the linear model's predictions."),
             figure("95", Part::TouchTraining, "scatter", "Touch: predicted over measured, training data."),
             figure("96", Part::TouchValidation, "over-time", "Touch: the third spiral, which validates."),
