@@ -122,13 +122,13 @@ pub(super) const SECTIONS: &[Section] = &[
         of: &["5.3"],
         figures: &[
             figure(
-                "90",
+                "90 and 93",
                 Part::Calibration,
                 "trajectory-path",
                 "Shear of the calibration trajectory, by thirds of the force.",
             ),
             figure(
-                "91-93",
+                "91 and 92",
                 Part::Calibration,
                 "trajectory-force",
                 "The forces over time, their shear over time, and over pressing.",
