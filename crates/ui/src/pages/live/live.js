@@ -178,7 +178,7 @@ function show({ fingers, health, pixels, cone }, k) {
   light(one.pressed, finger.has_switch ? (finger.pressed ? "switch pressed" : "switch released") : "", !!finger.pressed);
   const rate = counts?.rate_hz ? ` at ${counts.rate_hz.toPrecision(4)} Hz` : "";
   const rows = counts ? `${counts.rows} rows${rate}, ${counts.lost} lost, ${counts.spoilt} spoilt` : "";
-  one.counts.textContent = [`source ${finger.state || "begins"}`, rows].filter(Boolean).join("; ");
+  one.counts.textContent = [finger.state && `source ${finger.state}`, rows].filter(Boolean).join("; ");
   one.section.classList.toggle("bad", !["", "ok"].includes(finger.state));
 }
 
