@@ -215,7 +215,7 @@ mod tests {
         assert_eq!((&finger["low"][0], &finger["high"][0]), (&serde_json::json!([1.0]), &serde_json::json!([3.0])));
         assert!(finger["pressed"] == true && finger["contact"] == "touch" && finger["state"] == "ok");
         assert_eq!(finger["values"], serde_json::json!([-1.5]));
-        view.sample(0, &seen(0.3, &[4.0], false));
+        view.sample(0, &seen(0.31, &[4.0], false));
         let shown = picture(&mut window);
         // Without samples there is no trace.
         assert_eq!(shown["fingers"][0]["low"][0], serde_json::json!([1.0, 5.0]));
