@@ -12,6 +12,7 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::channel;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
@@ -144,12 +145,16 @@ fn control_tcp(_: &Path) -> Link {
 fn latency(link: Link, seconds: f64) -> [f64; 4] {
     let Link { mut to, from, child, thread } = link;
     let rows = (1000.0 * seconds) as usize;
+    let (begins, begun) = channel();
     let reader = std::thread::spawn(move || {
         let mut lines = BufReader::new(from).lines();
         lines.next();
+        begins.send(()).expect("somebody waits");
         lines.take(rows).map(|_| Instant::now()).collect::<Vec<_>>()
     });
     to.write_all(NAMES.as_bytes()).expect("it reads");
+    // A process takes its time to begin, on a busy machine most of all.
+    begun.recv().expect("an answer to the names");
     std::thread::sleep(Duration::from_millis(300));
     let begin = Instant::now();
     let mut written = Vec::with_capacity(rows);
