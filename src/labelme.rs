@@ -165,18 +165,40 @@ impl LabelMe {
         }
     }
 
+    /// Width and height of the picture that it was drawn on, pixels, where the file says so.
+    #[must_use]
+    pub fn size(&self) -> Option<[u32; 2]> {
+        self.image_width.zip(self.image_height).map(|(width, height)| [width, height])
+    }
+
     /// Reads one file.
     ///
     /// # Errors
     /// [`Error::Read`], [`Error::TooLong`] and [`Error::Parse`].
     pub fn read(path: &Path) -> Result<Self, Error> {
+        Self::parse(path, &Self::bytes(path)?)
+    }
+
+    /// The bytes of one file.
+    ///
+    /// # Errors
+    /// [`Error::Read`] and [`Error::TooLong`].
+    pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, Error> {
         let refused = |source: io::Error| Error::Read { path: path.to_owned(), source };
         let mut bytes = Vec::new();
         crate::input::open(path).map_err(refused)?.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(refused)?;
         if bytes.len() as u64 > MOST_BYTES {
             return Err(Error::TooLong { path: path.to_owned() });
         }
-        let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
+        Ok(bytes)
+    }
+
+    /// What the bytes of the file at `path` say.
+    ///
+    /// # Errors
+    /// [`Error::Parse`].
+    pub(crate) fn parse(path: &Path, bytes: &[u8]) -> Result<Self, Error> {
+        let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
         serde_json::from_slice(text).map_err(|source| Error::Parse { path: path.to_owned(), source })
     }
 

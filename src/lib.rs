@@ -31,6 +31,7 @@ pub mod log;
 pub mod nail;
 pub mod nailvideo;
 pub mod npy;
+pub mod outlines;
 pub mod phantom;
 pub mod photo;
 mod photograph;

@@ -380,6 +380,18 @@ pub(crate) fn upright_from_stored(orientation: Orientation, stored_size: [u32; 2
     }
 }
 
+/// A point of the upright picture on the stored one: the inverse of [`upright_from_stored`].
+pub(crate) fn stored_from_upright(orientation: Orientation, stored_size: [u32; 2], point: [f64; 2]) -> [f64; 2] {
+    let [width, height] = stored_size;
+    let upright_size = if swaps_sides(orientation) { [height, width] } else { stored_size };
+    let back = match orientation {
+        Orientation::Rotate90 => Orientation::Rotate270,
+        Orientation::Rotate270 => Orientation::Rotate90,
+        itself => itself,
+    };
+    upright_from_stored(back, upright_size, point)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -405,6 +417,7 @@ mod tests {
             for (x, y, value) in stored.enumerate_pixels() {
                 let centre = [f64::from(x) + 0.5, f64::from(y) + 0.5];
                 let [ux, uy] = upright_from_stored(orientation, [5, 3], centre);
+                assert_eq!(stored_from_upright(orientation, [5, 3], [ux, uy]), centre, "{orientation:?}");
                 let there = upright.get_pixel((ux - 0.5) as u32, (uy - 0.5) as u32);
                 assert_eq!(there.0[0], value.0[0], "{orientation:?} ({x}, {y})");
             }

@@ -15,7 +15,7 @@ const FLOORS: [&[&str]; 9] = [
     &["job"],
     &["clock", "figure", "log"],
     &["align", "camera", "hemodynamics", "layout", "photo", "posture", "predictor"],
-    &["nailvideo", "phantom"],
+    &["nailvideo", "outlines", "phantom"],
     &["live"],
     &["doctor", "prompt", "tradeoff"],
     &["pipeline"],

@@ -27,9 +27,11 @@ pub use error::{MergeError, PhotosError};
 pub use normalize::{
     Channel, FULL_SCALE, FrameFault, NailFrame, Normalization, Normalized, Resample, SMALLEST_EXTENT_PX, normalize,
 };
+pub(crate) use normalize::{Normalizer, normalized_or_why};
 pub use options::{OutlineHome, Outputs, PhotosOptions, Results};
 pub use pose::THESIS_POSES;
 pub use results::NailRow;
+pub(crate) use results::Scratch;
 pub use set::{Photo, PhotoSet, SetError, SetFault};
 pub use sums::{
     Accuracy, DuplicateSubject, GatherFigures, GatherReport, Gathering, Maps, PartialFault, Partials, Sums, gather,

@@ -56,6 +56,7 @@ appear whole or not at all; what existed before a failed run is as it was.";
 #[derive(Debug, Subcommand)]
 enum Command {
     Photos(jobs::photos::PhotosArgs),
+    Edit(Box<jobs::photos::edit::EditArgs>),
     Posture(jobs::posture::PostureArgs),
     Nailvideo(Box<jobs::nailvideo::NailVideoArgs>),
     Camera(jobs::camera::CameraArgs),
@@ -129,6 +130,7 @@ fn main() -> ExitCode {
     };
     ended_with(match cli.command {
         Command::Photos(args) => jobs::photos::run_or_merge(&args),
+        Command::Edit(args) => jobs::photos::edit::run(&args),
         Command::Align(args) => jobs::run(&*args),
         Command::Camera(args) => jobs::run(&args),
         Command::Nailvideo(args) => jobs::run(&*args),

@@ -11,6 +11,7 @@
 //! were named, and is asked for by number, never by path.
 
 mod connection;
+mod edit;
 mod events;
 mod guard;
 mod live;
@@ -21,6 +22,7 @@ mod server;
 mod site;
 mod token;
 
+pub use edit::{Editing, Heard, edit};
 pub use events::Latest;
 pub use live::live;
 pub use prompt::{Prompting, prompt};

@@ -47,10 +47,20 @@ impl NailFrame {
     /// # Errors
     /// [`FrameFault::TooSmall`] under [`SMALLEST_EXTENT_PX`] either way.
     pub fn new(outline: &Outline, axis: Axis) -> Result<Self, FrameFault> {
+        let frame = Self::around(&outline.points(), axis);
+        let Self { length_px, width_px, .. } = frame;
+        if width_px < SMALLEST_EXTENT_PX || length_px < SMALLEST_EXTENT_PX {
+            return Err(FrameFault::TooSmall { length_px, width_px });
+        }
+        Ok(frame)
+    }
+
+    /// The box of `points` along and across `axis`, however small it is; NaN and infinite where there is no point.
+    pub(crate) fn around(points: &[[f64; 2]], axis: Axis) -> Self {
         let (right, distal) = (axis.right(), axis.distal());
         let mut low = [f64::INFINITY; 2];
         let mut high = [f64::NEG_INFINITY; 2];
-        for [x, y] in outline.points() {
+        for [x, y] in points {
             let across_along = [x * right[0] + y * right[1], x * distal[0] + y * distal[1]];
             for k in 0..2 {
                 low[k] = low[k].min(across_along[k]);
@@ -58,12 +68,9 @@ impl NailFrame {
             }
         }
         let (width_px, length_px) = (high[0] - low[0], high[1] - low[1]);
-        if width_px < SMALLEST_EXTENT_PX || length_px < SMALLEST_EXTENT_PX {
-            return Err(FrameFault::TooSmall { length_px, width_px });
-        }
         let middle = [(low[0] + high[0]) / 2.0, (low[1] + high[1]) / 2.0];
         let center_px = [middle[0] * right[0] + middle[1] * distal[0], middle[0] * right[1] + middle[1] * distal[1]];
-        Ok(Self { center_px, length_px, width_px, axis })
+        Self { center_px, length_px, width_px, axis }
     }
 
     /// What share of the box lies outside of a photograph of `width` x `height` pixels, 0 to 1.

@@ -77,9 +77,40 @@ pub fn normalize(image: &DynamicImage, frame: &NailFrame, with: &Normalization) 
     Normalizer::default().normalize(image, frame, with)
 }
 
+/// Share of the nail's box outside of the photograph above which it is left out (assumed): of a nail of which less than
+/// half is seen, length and width are guessed, and the outline is rather another picture's. Below, what is not seen is
+/// missing.
+const MOST_OUTSIDE: f64 = 0.5;
+
+/// Brings a nail into its frame as a run does, or says why a run leaves it out.
+pub(crate) fn normalized_or_why(
+    image: &DynamicImage,
+    frame: &NailFrame,
+    with: &Normalization,
+    normalizer: &mut Normalizer,
+) -> Result<Normalized, String> {
+    let size = [image.width(), image.height()];
+    let outside = frame.share_outside(size);
+    if outside > MOST_OUTSIDE {
+        return Err(format!(
+            "{:.0} % of its box lies outside of the photograph ({} x {} px), more than {:.0} %; is the outline \
+             another picture's?",
+            100.0 * outside,
+            size[0],
+            size[1],
+            100.0 * MOST_OUTSIDE
+        ));
+    }
+    let normalized = normalizer.normalize(image, frame, with);
+    if normalized.count_seen() == 0 {
+        return Err("the photograph shows nothing of it (transparent or outside)".into());
+    }
+    Ok(normalized)
+}
+
 /// Brings nails into their frames, one after the other, in the same memory.
 #[derive(Default)]
-pub(super) struct Normalizer {
+pub(crate) struct Normalizer {
     buffers: resample::Buffers,
     levels: Vec<Vec<u16>>,
 }

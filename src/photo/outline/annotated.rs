@@ -153,59 +153,84 @@ impl Drawn {
 pub fn read(path: &Path, photo: &Photograph, drawn: Drawn) -> Result<Vec<Annotated>, AnnotationFault> {
     let file = LabelMe::read(path)?;
     let name = path.display().to_string();
-    let size = file.image_width.zip(file.image_height).map(|(w, h)| [w, h]);
-    let stored = drawn.is_stored(size, photo, &name)?;
+    let stored = drawn.is_stored(file.size(), photo, &name)?;
+    let nails: Vec<Annotated> = labelled(&file, photo, stored, &[NAIL]).into_iter().map(|one| one.nail).collect();
+    if nails.is_empty() { Err(AnnotationFault::NoNail(name)) } else { Ok(nails) }
+}
+
+/// A nail of an annotation, and where it is among the shapes.
+#[derive(Debug, Clone)]
+pub(crate) struct Labelled {
+    /// The polygon's place.
+    pub(crate) polygon: usize,
+    /// The axis line's.
+    pub(crate) line: Option<usize>,
+    /// The polygon's corners, whatever they are.
+    pub(crate) points: Vec<[f64; 2]>,
+    pub(crate) nail: Annotated,
+}
+
+/// The shapes with one of `labels`, in the file's order, onto the upright `photo`; whether they were drawn on the
+/// `stored` one, [`Drawn::is_stored`] knows.
+pub(crate) fn labelled(file: &LabelMe, photo: &Photograph, stored: bool, labels: &[&str]) -> Vec<Labelled> {
     let upright = |point: &[f64; 2]| {
         let point = if stored { upright_from_stored(photo.orientation, photo.stored_size(), *point) } else { *point };
         from_labelme(point)
     };
-    let axes: Vec<(&Shape, [[f64; 2]; 2])> = file
-        .shapes
-        .iter()
-        .filter(|s| s.label.trim().eq_ignore_ascii_case(AXIS))
-        .filter_map(|s| {
-            <[[f64; 2]; 2]>::try_from(s.points.iter().map(upright).collect::<Vec<_>>()).ok().map(|p| (s, p))
+    let line = |(place, shape): (usize, &'_ Shape)| {
+        let ends = shape.points.iter().map(upright).collect::<Vec<_>>();
+        Some(Line { place, group: shape.group_id, ends: <[[f64; 2]; 2]>::try_from(ends).ok()? })
+    };
+    let shapes = || file.shapes.iter().enumerate();
+    let is = |shape: &Shape, label: &str| shape.label.trim().eq_ignore_ascii_case(label);
+    let lines: Vec<Line> = shapes().filter(|(_, s)| is(s, AXIS)).filter_map(line).collect();
+    let nails = shapes().filter(|(_, s)| labels.iter().any(|label| is(s, label)));
+    nails
+        .map(|(polygon, shape)| {
+            let points: Vec<[f64; 2]> = shape.points.iter().map(upright).collect();
+            let outline = outline_of(polygon + 1, shape, &points, [photo.image.width(), photo.image.height()]);
+            let found = outline.as_ref().ok().and_then(|outline| axis_of(shape, outline, &lines));
+            let (line, axis) = found.unzip();
+            Labelled { polygon, line, points, nail: Annotated { outline, axis } }
         })
-        .collect();
-    let nails: Vec<Annotated> = (1..)
-        .zip(&file.shapes)
-        .filter(|(_, s)| s.label.trim().eq_ignore_ascii_case(NAIL))
-        .map(|(number, shape)| {
-            let outline = outline_of(number, shape, upright, [photo.image.width(), photo.image.height()]);
-            let axis = outline.as_ref().ok().and_then(|outline| axis_of(shape, outline, &axes));
-            Annotated { outline, axis }
-        })
-        .collect();
-    if nails.is_empty() { Err(AnnotationFault::NoNail(name)) } else { Ok(nails) }
+        .collect()
+}
+
+/// A line labelled `axis`.
+struct Line {
+    place: usize,
+    group: Option<i64>,
+    ends: [[f64; 2]; 2],
 }
 
 fn outline_of(
     number: usize,
     shape: &Shape,
-    upright: impl Fn(&[f64; 2]) -> [f64; 2],
+    points: &[[f64; 2]],
     [width, height]: [u32; 2],
 ) -> Result<Outline, ShapeFault> {
     if shape.shape_type != "polygon" {
         return Err(ShapeFault::NotAPolygon { number, kind: shape.shape_type.clone() });
     }
-    let points: Vec<[f64; 2]> = shape.points.iter().map(upright).collect();
     let near = |at: f64, side: u32| (-FARTHEST..=1.0 + FARTHEST).contains(&(at / f64::from(side)));
     if let Some(&[x, y]) = points.iter().find(|[x, y]| !(near(*x, width) && near(*y, height))) {
         return Err(ShapeFault::FarOff { number, x, y, width, height });
     }
-    Outline::new(&points).map_err(|fault| ShapeFault::Outline { number, fault })
+    Outline::new(points).map_err(|fault| ShapeFault::Outline { number, fault })
 }
 
-fn axis_of(nail: &Shape, outline: &Outline, axes: &[(&Shape, [[f64; 2]; 2])]) -> Option<Axis> {
-    let grouped = axes.iter().find(|(line, _)| nail.group_id.is_some() && line.group_id == nail.group_id);
+/// The line of a nail, by its place, and its direction.
+fn axis_of(nail: &Shape, outline: &Outline, lines: &[Line]) -> Option<(usize, Axis)> {
+    let grouped = lines.iter().find(|line| nail.group_id.is_some() && line.group == nail.group_id);
     let within = || {
-        axes.iter().find(|(line, [from, to])| {
+        lines.iter().find(|line| {
+            let [from, to] = line.ends;
             let middle = Point::new((from[0] + to[0]) / 2.0, (from[1] + to[1]) / 2.0);
-            (line.group_id.is_none() || nail.group_id.is_none()) && outline.polygon().contains(&middle)
+            (line.group.is_none() || nail.group_id.is_none()) && outline.polygon().contains(&middle)
         })
     };
-    let (_, [proximal, distal]) = grouped.or_else(within)?;
-    Axis::through(*proximal, *distal)
+    let Line { place, ends: [proximal, distal], .. } = grouped.or_else(within)?;
+    Some((*place, Axis::through(*proximal, *distal)?))
 }
 
 /// One nail to be written for a person to look at.

@@ -148,7 +148,7 @@ fn write_manifest(
 }
 
 /// `path` as seen from `folder`, both made absolute first; as it is where that can't be known.
-fn relative(path: &Path, folder: Option<&Path>) -> String {
+pub(crate) fn relative(path: &Path, folder: Option<&Path>) -> String {
     // A file that is on its way has its folder already.
     let real = |path: &Path| {
         path.canonicalize().ok().or_else(|| Some(path.parent()?.canonicalize().ok()?.join(path.file_name()?)))

@@ -13,14 +13,16 @@ pub use crate::nail::{Axis, Outline, OutlineFault};
 pub use annotated::{
     AXIS, Annotated, AnnotationFault, DOUBTFUL, Drawn, NAIL, ShapeFault, ToDraw, read as read_annotated, to_file,
 };
+pub(crate) use annotated::{Labelled, labelled};
 pub use axis::{AxisDoubt, AxisUnknown, FoundAxis, LEAST_CONFIDENCE, Side, axis_towards, find_axes, find_axes_towards};
 #[doc(hidden)]
 pub use detect::training;
-pub use detect::{DetectOptions, Detected, Detections, Detector, NothingFound, detect};
+pub use detect::{DetectOptions, Detected, Detections, Detector, NothingFound, detect, snap, template};
 pub use keep::SavedOutlines;
+pub(crate) use keep::relative;
 pub(super) use keep::{DetectedOutline, keep_outlines};
 pub use mask::{DroppedRegion, MaskFault, MaskOutlines, MaskValues, TooLarge, outlines_from_mask, outlines_of_values};
 pub use moments::Moments;
 pub use refused::{Refusal, Refused};
-pub(super) use source::hundredths;
+pub(crate) use source::hundredths;
 pub use source::{Listed, Nail, OutlineOptions, OutlinePlace, Source, SourceFault, Sources};

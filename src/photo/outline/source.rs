@@ -279,8 +279,8 @@ impl OutlineOptions {
         let used = found.nails.into_iter().map(|n| (n, String::new()));
         let doubtful = found.doubtful.into_iter().map(|n| {
             let reason = format!(
-                "the outline found is not trusted (confidence {}, {} is needed); correct it in LabelMe \
-                 (--write-outlines)",
+                "the outline found is not trusted (confidence {}, {} is needed); correct it with `lunula edit`, or in \
+                 LabelMe (--write-outlines)",
                 hundredths(n.confidence),
                 found.needed
             );
@@ -297,7 +297,7 @@ impl OutlineOptions {
     }
 
     /// Looks for the axes that nobody drew, and doubts those that the picture surely contradicts.
-    fn complete_axes(&self, picture: &Photograph, nails: &mut [Nail]) {
+    pub(crate) fn complete_axes(&self, picture: &Photograph, nails: &mut [Nail]) {
         self.doubt_drawn(picture, nails);
         let open: Vec<usize> =
             (0..nails.len()).filter(|&k| nails[k].outline.is_some() && nails[k].axis.is_none()).collect();
@@ -378,7 +378,7 @@ impl OutlineOptions {
 }
 
 /// A confidence in words, cut off rather than rounded: 0.499 is less than 0.5.
-pub(in crate::photo) fn hundredths(confidence: f64) -> String {
+pub(crate) fn hundredths(confidence: f64) -> String {
     format!("{:.2}", (100.0 * confidence).floor() / 100.0)
 }
 

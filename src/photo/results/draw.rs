@@ -61,13 +61,47 @@ pub(in crate::photo) struct DrawnSheet {
 
 /// Memory for the pictures of a thread, kept from one photograph to the next.
 #[derive(Default)]
-pub(in crate::photo) struct Scratch {
+pub(crate) struct Scratch {
     samples: Vec<u8>,
     png: Vec<u8>,
 }
 
-/// As deep as its source; with an alpha channel, 0 where the photograph does not show the place, only if there is such
-/// a place.
+impl Scratch {
+    /// A normalized picture as a PNG, as deep as its source; with an alpha channel, 0 where the photograph does not
+    /// show the place, only if there is such a place.
+    ///
+    /// # Errors
+    /// The encoder's.
+    pub(crate) fn png_of(&mut self, picture: &Normalized, depth: Depth) -> Result<&[u8], image::ImageError> {
+        let eight = |level: u16| ((u32::from(level) * 255 + 32767) / 65535) as u8;
+        let Self { samples, png } = self;
+        samples.clear();
+        let levels = picture.levels.iter().copied();
+        match (depth, &picture.seen) {
+            (Depth::Eight, None) => samples.extend(levels.map(eight)),
+            (Depth::Sixteen, None) => samples.extend(levels.flat_map(u16::to_ne_bytes)),
+            (Depth::Eight, Some(seen)) => {
+                samples.extend(levels.zip(seen).flat_map(|(level, &seen)| [eight(level), if seen { 255 } else { 0 }]));
+            }
+            (Depth::Sixteen, Some(seen)) => samples.extend(levels.zip(seen).flat_map(|(level, &seen)| {
+                let ([a, b], opacity) = (level.to_ne_bytes(), if seen { 255 } else { 0 });
+                [a, b, opacity, opacity]
+            })),
+        }
+        let colour = match (depth, &picture.seen) {
+            (Depth::Eight, None) => image::ExtendedColorType::L8,
+            (Depth::Sixteen, None) => image::ExtendedColorType::L16,
+            (Depth::Eight, Some(_)) => image::ExtendedColorType::La8,
+            (Depth::Sixteen, Some(_)) => image::ExtendedColorType::La16,
+        };
+        png.clear();
+        let size = picture.size as u32;
+        figure::encode_png(samples, [size, size], colour, png)?;
+        Ok(png)
+    }
+}
+
+/// Writes a normalized picture.
 pub(in crate::photo) fn write_normalized(
     picture: &Normalized,
     depth: Depth,
@@ -75,31 +109,7 @@ pub(in crate::photo) fn write_normalized(
     staging: &Staging,
     name: &str,
 ) -> Result<(), WriteError> {
-    let eight = |level: u16| ((u32::from(level) * 255 + 32767) / 65535) as u8;
-    let Scratch { samples, png } = scratch;
-    samples.clear();
-    let levels = picture.levels.iter().copied();
-    match (depth, &picture.seen) {
-        (Depth::Eight, None) => samples.extend(levels.map(eight)),
-        (Depth::Sixteen, None) => samples.extend(levels.flat_map(u16::to_ne_bytes)),
-        (Depth::Eight, Some(seen)) => {
-            samples.extend(levels.zip(seen).flat_map(|(level, &seen)| [eight(level), if seen { 255 } else { 0 }]));
-        }
-        (Depth::Sixteen, Some(seen)) => samples.extend(levels.zip(seen).flat_map(|(level, &seen)| {
-            let ([a, b], opacity) = (level.to_ne_bytes(), if seen { 255 } else { 0 });
-            [a, b, opacity, opacity]
-        })),
-    }
-    let colour = match (depth, &picture.seen) {
-        (Depth::Eight, None) => image::ExtendedColorType::L8,
-        (Depth::Sixteen, None) => image::ExtendedColorType::L16,
-        (Depth::Eight, Some(_)) => image::ExtendedColorType::La8,
-        (Depth::Sixteen, Some(_)) => image::ExtendedColorType::La16,
-    };
-    png.clear();
-    let size = picture.size as u32;
-    figure::encode_png(samples, [size, size], colour, png).map_err(|why| staging.refused(name, why))?;
-    staging.write(name, png)
+    staging.write(name, scratch.png_of(picture, depth).map_err(|why| staging.refused(name, why))?)
 }
 
 /// A small version for a sheet of all nails: means of whole blocks, at most `longest` pixels a side.

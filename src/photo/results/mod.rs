@@ -6,7 +6,8 @@ mod maps;
 mod nails;
 mod outlines;
 
-pub(super) use draw::{DrawnSheet, Scratch, thumbnail, write_normalized};
+pub(crate) use draw::Scratch;
+pub(super) use draw::{DrawnSheet, thumbnail, write_normalized};
 pub(super) use maps::{write_maps, write_sums};
 pub use nails::NailRow;
 pub(super) use nails::{NAIL_COLUMNS, NailTable};

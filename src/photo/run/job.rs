@@ -17,7 +17,7 @@ use crate::files::{Places, Staging, WriteError};
 use crate::job::Watch;
 use crate::photo::channels::{self, Cells, Compared, Sample};
 use crate::photo::error::PhotosError;
-use crate::photo::normalize::{NailFrame, Normalized, Normalizer};
+use crate::photo::normalize::{NailFrame, Normalized, Normalizer, normalized_or_why};
 use crate::photo::options::{OutlineHome, Outputs, PhotosOptions, Results};
 use crate::photo::outline::{
     DetectedOutline, Listed, Nail, OutlinePlace, Refused, SavedOutlines, SourceFault, keep_outlines,
@@ -30,10 +30,6 @@ use crate::photo::sums::{Batch, Partials};
 use crate::photograph::{MOST_MEGAPIXELS, PhotoBuffer, Photograph};
 use crate::stages::Stages;
 
-/// Share of the nail's box outside of the photograph above which it is left out (assumed): of a nail of which less than
-/// half is seen, length and width are guessed, and the outline is rather another picture's. Below, what is not seen is
-/// missing.
-const MOST_OUTSIDE: f64 = 0.5;
 /// Longest side of a thumbnail, pixels.
 const THUMBNAIL_PX: usize = 100;
 
@@ -327,24 +323,8 @@ impl Work<'_> {
         };
         let frame = NailFrame::new(&outline, axis).map_err(|fault| fault.to_string())?;
         row.frame = Some(frame);
-        let size = [picture.image.width(), picture.image.height()];
-        let outside = frame.share_outside(size);
-        if outside > MOST_OUTSIDE {
-            return Err(format!(
-                "{:.0} % of its box lies outside of the photograph ({} x {} px), more than {:.0} %; is the outline \
-                 another picture's?",
-                100.0 * outside,
-                size[0],
-                size[1],
-                100.0 * MOST_OUTSIDE
-            ));
-        }
         let with = &self.options.normalization;
-        let normalized = self.stages.time("normalize", || normalizer.normalize(&picture.image, &frame, with));
-        if normalized.count_seen() == 0 {
-            return Err("the photograph shows nothing of it (transparent or outside)".into());
-        }
-        Ok(normalized)
+        self.stages.time("normalize", || normalized_or_why(&picture.image, &frame, with, normalizer))
     }
 }
 

@@ -17,6 +17,13 @@ pub(crate) const COMMON: [Asset; 2] = [
     Asset { path: "/common.js", kind: SCRIPT, bytes: include_bytes!("common.js") },
     Asset { path: "/style.css", kind: STYLE, bytes: include_bytes!("style.css") },
 ];
+/// The outlines of a set.
+pub(crate) const EDIT: [Asset; 4] = [
+    Asset { path: "/", kind: HTML, bytes: include_bytes!("edit/page.html") },
+    Asset { path: "/edit.js", kind: SCRIPT, bytes: include_bytes!("edit/edit.js") },
+    Asset { path: "/keys.js", kind: SCRIPT, bytes: include_bytes!("edit/keys.js") },
+    Asset { path: "/edit.css", kind: STYLE, bytes: include_bytes!("edit/edit.css") },
+];
 /// A session of the sensor.
 pub(crate) const LIVE: [Asset; 2] = [
     Asset { path: "/", kind: HTML, bytes: include_bytes!("live/page.html") },
@@ -45,7 +52,7 @@ mod tests {
 
     #[test]
     fn the_pages_are_small_and_ask_for_nothing_elsewhere() {
-        let all = || COMMON.iter().chain(&RESULTS).chain(&LIVE).chain(&PROMPT);
+        let all = || COMMON.iter().chain(&RESULTS).chain(&LIVE).chain(&PROMPT).chain(&EDIT);
         assert!(all().map(|asset| asset.bytes.len()).sum::<usize>() <= MOST);
         for asset in all() {
             let text = std::str::from_utf8(asset.bytes).unwrap();

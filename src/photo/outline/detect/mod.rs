@@ -332,6 +332,24 @@ fn odds(probability: f64) -> f64 {
     probability / (1.0 - probability).max(1e-9)
 }
 
+/// Corners of a nail of which nothing else is known: a template in a person's place, to be moved and snapped.
+#[must_use]
+pub fn template(centre_px: [f64; 2], axis: Axis, [length, width]: [f64; 2]) -> Vec<[f64; 2]> {
+    let frame = Frame { origin: centre_px, up: axis.distal(), unit_px: 1.0 };
+    let shape = OutlineShape { x: 0.0, y: 0.0, length, width, turn: 0.0, taper: TAPER };
+    let rim = (0..refine::RAYS).map(|k| shape.rim(k as f64 / refine::RAYS as f64 * std::f64::consts::TAU));
+    rim.map(|[u, v]| frame.to_source(shape.point(u, v))).collect()
+}
+
+/// The outline of the nail that lies about where `rough` does, along about `axis`: its border is looked for from there.
+/// `None` where there is none.
+#[must_use]
+pub fn snap(image: &DynamicImage, rough: &Outline, axis: Axis) -> Option<Detected> {
+    (image.width().min(image.height()) >= LEAST_PX)
+        .then(|| refined(image, rough, axis, &DetectOptions::default()))
+        .flatten()
+}
+
 /// The outline of a nail whose place, size and axis are about known, and what the judges of close-ups think of it.
 fn refined(image: &DynamicImage, rough: &Outline, axis: Axis, options: &DetectOptions) -> Option<Detected> {
     let points = rough.points();

@@ -1,5 +1,7 @@
 //! `lunula photos`: photographs to coloration maps, and `lunula photos merge`.
 
+pub(crate) mod edit;
+
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;

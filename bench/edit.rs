@@ -1,0 +1,273 @@
+//! How many keys `lunula edit` takes to correct an outline, and how long a key takes to be seen.
+//!
+//! `cargo bench -p lunula-cli --bench edit -- [PHOTOGRAPHS MASKS]`. A simulated person knows each nail's exact outline
+//! and presses, time after time, the key that gains most per key pressed, until the two overlap to an IoU of 0.97; a
+//! person sees what is wrong in about the same way, but neither knows the numbers nor never errs. Nails that detection
+//! has found are corrected, whether trusted or not; what is no nail takes one key. Without arguments the nails are
+//! phantoms; with them those of PHOTOGRAPHS (a folder of pictures) whose outlines MASKS has (a mask of the same name
+//! each).
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+use lunula::nail::Outline;
+use lunula::outlines::{EditOptions, Editor, Pressed};
+use lunula::phantom::photos::{LightKind, PhotoOptions, write};
+use lunula::photo::outline::{Drawn, outlines_from_mask, read_annotated};
+use lunula::photo::{PhotoSet, Photograph};
+use serde_json::{Value, json};
+
+/// When an outline is right.
+const RIGHT: f64 = 0.97;
+/// Less is another thing.
+const SAME: f64 = 0.2;
+/// More keys are given up.
+const MOST_KEYS: usize = 80;
+/// Tabs to a corner that are still worth a thought.
+const MOST_TABS: usize = 5;
+
+type Truth = BTreeMap<String, Vec<Outline>>;
+
+fn main() {
+    let folders: Vec<PathBuf> = std::env::args().skip(1).filter(|a| !a.starts_with("--")).map(PathBuf::from).collect();
+    let (home, truth) = match &folders[..] {
+        [photographs, masks] => real(photographs, masks),
+        _ => phantoms(LightKind::Varied, [640, 480], 16),
+    };
+    keys(home.path(), &truth);
+    let (home, _) = phantoms(LightKind::Chamber, [4000, 3000], 2);
+    times(home.path());
+}
+
+/// Phantoms without their outlines, and the outlines.
+fn phantoms(light: LightKind, [width, height]: [u32; 2], subjects: u32) -> (tempfile::TempDir, Truth) {
+    let home = tempfile::tempdir().expect("a temporary folder");
+    let options = PhotoOptions { light, subjects, width, height, truth_normalized: false, ..PhotoOptions::default() };
+    write(&options, home.path()).expect("synthetic photographs");
+    let set = PhotoSet::open(&home.path().join("photos"), &[]).expect("photographs");
+    let mut truth = Truth::new();
+    for photo in &set.photos {
+        let (file, picture) = (photo.path.with_extension("json"), Photograph::read(&photo.path).expect("a picture"));
+        let drawn = read_annotated(&file, &picture, Drawn::Auto).expect("its outline");
+        truth.insert(photo.file.clone(), drawn.into_iter().filter_map(|nail| nail.outline.ok()).collect());
+        std::fs::remove_file(file).expect("it can be removed");
+    }
+    (home, truth)
+}
+
+/// Copies of photographs, and the outlines of their masks.
+fn real(photographs: &Path, masks: &Path) -> (tempfile::TempDir, Truth) {
+    let home = tempfile::tempdir().expect("a temporary folder");
+    let folder = home.path().join("photos");
+    std::fs::create_dir(&folder).expect("a folder");
+    let mut truth = Truth::new();
+    for entry in std::fs::read_dir(photographs).expect("a folder of photographs") {
+        let path = entry.expect("an entry").path();
+        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+        let Ok(mask) = Photograph::read(&masks.join(&name)) else { continue };
+        let outlines = outlines_from_mask(&mask.image).expect("a mask");
+        truth.insert(name.clone(), outlines.nails);
+        std::fs::copy(&path, folder.join(name)).expect("a copy");
+    }
+    (home, truth)
+}
+
+/// Who presses keys, and sees what there is.
+struct Person {
+    editor: Editor,
+    seen: Arc<Mutex<String>>,
+}
+
+impl Person {
+    fn at(photos: &Path) -> Self {
+        let seen = Arc::new(Mutex::new(String::new()));
+        let news = Arc::clone(&seen);
+        let show = Box::new(move |json: &str| json.clone_into(&mut news.lock().expect("no panic")));
+        let set = PhotoSet::open(photos, &[]).expect("photographs");
+        let editor = Editor::new(set, &EditOptions::default(), show).expect("options of a default");
+        editor.survey(&AtomicBool::new(false));
+        Self { editor, seen }
+    }
+
+    fn sees(&self) -> Value {
+        serde_json::from_str(&self.seen.lock().expect("no panic")).expect("a state")
+    }
+
+    fn press(&self, key: &Value) {
+        assert_eq!(self.editor.key(key.to_string().as_bytes()), Pressed::Done, "{key}");
+    }
+
+    /// What is shown, as an outline.
+    fn outline(&self) -> Option<Outline> {
+        let points: Vec<[f64; 2]> = serde_json::from_value(self.sees()["nail"]["points"].clone()).ok()?;
+        Outline::new(&points).ok()
+    }
+
+    fn overlap(&self, truth: &Outline) -> f64 {
+        self.outline().map_or(0.0, |outline| outline.iou(truth))
+    }
+
+    /// The keys that were pressed until the outline was right; `Err` where it never was: with the best overlap.
+    fn corrects(&self, truth: &Outline) -> Result<usize, f64> {
+        let mut pressed = 0;
+        let mut overlap = self.overlap(truth);
+        while overlap < RIGHT {
+            let mut best: Option<(f64, f64, Vec<Value>)> = None;
+            for keys in candidates() {
+                keys.iter().for_each(|key| self.press(key));
+                let after = self.overlap(truth);
+                // Corners are not part of what is undone.
+                let undone = keys.iter().filter(|key| key["key"] != "corner" && key["key"] != "choose").count();
+                let is_changed = self.sees()["nail"]["can_undo"] == true;
+                (0..undone).filter(|_| is_changed).for_each(|_| self.press(&json!({"key": "undo"})));
+                self.press(&json!({"key": "choose", "corner": null}));
+                // An end that is reached needs no more keys.
+                let gain = (after.min(RIGHT) - overlap) / keys.len() as f64;
+                if gain > 0.0 && best.as_ref().is_none_or(|(most, ..)| gain > *most) {
+                    best = Some((gain, after, keys));
+                }
+            }
+            let Some((_, after, keys)) = best else { return Err(overlap) };
+            pressed += keys.len();
+            if pressed > MOST_KEYS {
+                return Err(overlap);
+            }
+            keys.iter().for_each(|key| self.press(key));
+            self.press(&json!({"key": "choose", "corner": null}));
+            overlap = after;
+        }
+        Ok(pressed)
+    }
+}
+
+/// What a person thinks of: any key, and going to a corner and moving it.
+fn candidates() -> Vec<Vec<Value>> {
+    let strides = ["fine", "usual", "coarse"];
+    let signs = [-1.0, 1.0];
+    let mut all = vec![vec![json!({"key": "snap"})], vec![json!({"key": "flip"})]];
+    let moves = |stride: &str| -> Vec<Value> {
+        let ways = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
+        ways.iter().map(|by| json!({"key": "move", "by": by, "stride": stride})).collect()
+    };
+    for stride in strides {
+        all.extend(moves(stride).into_iter().map(|key| vec![key]));
+        for sign in signs {
+            for [length, width] in [[1.0, 1.0], [1.0, 0.0], [0.0, 1.0]] {
+                let by = [sign * length, sign * width];
+                all.push(vec![json!({"key": "grow", "by": by, "stride": stride})]);
+            }
+            all.push(vec![json!({"key": "turn", "by": sign, "stride": stride})]);
+        }
+    }
+    for tabs in 1..=MOST_TABS {
+        for forwards in [true, false] {
+            let to = vec![json!({"key": "corner", "forwards": forwards}); tabs];
+            for stride in ["usual", "coarse"] {
+                all.extend(moves(stride).into_iter().map(|key| [&to[..], &[key]].concat()));
+            }
+        }
+    }
+    all
+}
+
+fn keys(home: &Path, truth: &Truth) {
+    let person = Person::at(&home.join("photos"));
+    let (mut counts, mut given_up, mut right, mut none) = (Vec::new(), Vec::new(), 0, 0);
+    let mut before = Vec::new();
+    loop {
+        let state = person.sees();
+        let nail = &state["nail"];
+        if nail.is_null() {
+            break;
+        }
+        let file = nail["photo"].as_str().expect("a name");
+        let known = truth.get(file).or_else(|| truth.get(file.rsplit('/').next().unwrap_or(file)));
+        let nearest = known.into_iter().flatten().max_by(|a, b| person.overlap(a).total_cmp(&person.overlap(b)));
+        match nearest.filter(|outline| person.overlap(outline) >= SAME) {
+            None => {
+                none += 1;
+                person.press(&json!({"key": "reject"}));
+            }
+            Some(outline) => {
+                before.push(person.overlap(outline));
+                match person.corrects(outline) {
+                    Ok(0) => right += 1,
+                    // And Enter.
+                    Ok(count) => counts.push(count + 1),
+                    Err(overlap) => given_up.push(overlap),
+                }
+                person.press(&json!({"key": "accept"}));
+            }
+        }
+    }
+    before.sort_by(f64::total_cmp);
+    let all = before.len();
+    println!(
+        "{all} outlines found, IoU {:.3} in median before; {right} right as they were; {none} no nails",
+        middle(&before)
+    );
+    let mut all: Vec<f64> = counts.iter().map(|count| *count as f64).collect();
+    all.extend(given_up.iter().map(|_| f64::INFINITY));
+    all.sort_by(f64::total_cmp);
+    println!(
+        "{} corrected to an IoU of {RIGHT}: {} keys in median, {} at the 90th percentile, Enter included; {} given up \
+         at IoU {:.3?}",
+        counts.len(),
+        middle(&all),
+        at(&all, 0.9),
+        given_up.len(),
+        given_up
+    );
+}
+
+/// From a key to the pictures of what it did, and from Enter to those of the next photograph, of 12 megapixels.
+fn times(home: &Path) {
+    let person = Person::at(&home.join("photos"));
+    let seen = |start: Instant| {
+        person.editor.normalized().expect("a nail");
+        start.elapsed()
+    };
+    let (mut keys, mut next) = (Vec::new(), Vec::new());
+    while person.sees()["nail"].is_object() {
+        for key in
+            candidates().into_iter().flatten().filter(|key| key["key"] == "move" || key["key"] == "grow").take(20)
+        {
+            let start = Instant::now();
+            person.press(&key);
+            keys.push(seen(start));
+        }
+        (0..20).for_each(|_| person.press(&json!({"key": "undo"})));
+        // A person looks before the next.
+        std::thread::sleep(Duration::from_millis(1500));
+        let start = Instant::now();
+        person.press(&json!({"key": "next"}));
+        if person.sees()["nail"].is_object() {
+            person.editor.photo().expect("a part of the photograph");
+            next.push(seen(start));
+        }
+    }
+    let ms = |mut all: Vec<Duration>| {
+        all.sort();
+        let all: Vec<f64> = all.into_iter().map(|time| 1e3 * time.as_secs_f64()).collect();
+        (middle(&all), at(&all, 0.95), all.len())
+    };
+    let ((key, key_95, keys), (photo, photo_95, photos)) = (ms(keys), ms(next));
+    println!(
+        "12 megapixels: key to normalized picture {key:.1} ms in median, {key_95:.1} at the 95th percentile of {keys}"
+    );
+    println!(
+        "Next photograph to both pictures {photo:.1} ms in median, {photo_95:.1} at the 95th percentile of {photos}"
+    );
+}
+
+fn middle(sorted: &[f64]) -> f64 {
+    at(sorted, 0.5)
+}
+
+fn at(sorted: &[f64], share: f64) -> f64 {
+    let last = sorted.len().saturating_sub(1);
+    sorted.get((share * last as f64).round() as usize).copied().unwrap_or(f64::NAN)
+}
