@@ -7,7 +7,7 @@ use std::time::Instant;
 use super::annotation::{Annotation, Saved, Says, Shapes};
 use super::key::{Key, Press};
 use super::options::EditOptions;
-use super::picture::{Pictures, View, jpeg_of, normalized_png};
+use super::picture::{Parts, Pictures, Png, View, normalized_png};
 use super::report::{EditFigures, EditReport};
 use super::shape::NailShape;
 use super::state::{Decision, Item, State, reshape};
@@ -37,6 +37,7 @@ pub struct Editor {
     pub(super) set: PhotoSet,
     options: EditOptions,
     pictures: Arc<Pictures>,
+    parts: Arc<Parts>,
     state: Mutex<State>,
     show: Box<Show>,
     stages: Stages,
@@ -61,7 +62,7 @@ impl Editor {
         let pictures = Arc::new(Pictures::new(options.max_megapixels, options.normalization.white));
         let options = options.clone();
         let (state, stages, start) = (Mutex::new(state), Stages::default(), Instant::now());
-        let editor = Self { set, options, pictures, state, show, stages, start };
+        let editor = Self { set, options, pictures, parts: Arc::default(), state, show, stages, start };
         editor.tell(&mut editor.lock());
         Ok(editor)
     }
@@ -172,10 +173,7 @@ impl Editor {
 
     /// Only what a run would take.
     fn accept(&self, state: &mut State, at: usize) {
-        let picture = self.picture_of(state, at);
-        let png =
-            picture.and_then(|picture| normalized_png(&picture, &state.items[at].shape, &self.options.normalization));
-        match png {
+        match self.normalized_of(state, at, true) {
             Ok(_) => self.decide(state, at, Decision::Accepted),
             Err(why) => state.fault(format!("not saved: {why}")),
         }
@@ -299,13 +297,16 @@ impl Editor {
         if let Err(why) = self.picture_of(state, at) {
             state.fault(why);
         }
-        let next = state.trail.get(state.at + 1).copied().or_else(|| state.ahead());
-        let next = next.map(|next| state.items[next].photo).filter(|&photo| photo != state.items[at].photo);
-        if let Some(photo) = next {
-            let (pictures, path) = (Arc::clone(&self.pictures), self.set.photos[photo].path.clone());
+        let Some(next) = state.trail.get(state.at + 1).copied().or_else(|| state.ahead()) else { return };
+        let (photo, shape) = (state.items[next].photo, state.items[next].shape.clone());
+        let (pictures, parts) = (Arc::clone(&self.pictures), Arc::clone(&self.parts));
+        let path = self.set.photos[photo].path.clone();
+        std::thread::spawn(move || {
             // What can't be read is said when it is shown.
-            std::thread::spawn(move || drop(pictures.get(photo, &path)));
-        }
+            let picture = pictures.get(photo, &path)?;
+            let size = [picture.image.width(), picture.image.height()];
+            parts.get(photo, &picture, View::around(&shape, size)).map(drop)
+        });
     }
 
     fn picture_of(&self, state: &State, at: usize) -> Result<Arc<Photograph>, String> {
@@ -342,21 +343,36 @@ impl Editor {
             (item.photo, item.view?)
         };
         let picture = self.picture(photo).ok()?;
-        self.stages.time("draw", || jpeg_of(&picture, view)).ok()
+        self.stages.time("draw", || Some(self.parts.get(photo, &picture, view).ok()?.jpeg.clone()))
     }
 
-    /// The nail that is shown, as it would come out, as a PNG; `Err` is why it would be left out.
+    /// The nail that is shown, as it would come out, as a PNG; `rough`, for a look between two keys, or as the results
+    /// will have it.
     ///
     /// # Errors
-    /// Why there is none, in words.
-    pub fn normalized(&self) -> Result<Vec<u8>, String> {
-        let (photo, shape) = {
+    /// Why it would be left out, in words.
+    pub fn normalized(&self, rough: bool) -> Result<Vec<u8>, String> {
+        let (photo, shape, view) = {
             let state = self.lock();
             let item = &state.items[state.current().ok_or("no nail is shown")?];
-            (item.photo, item.shape.clone())
+            (item.photo, item.shape.clone(), item.view)
         };
+        self.normalized_as(photo, &shape, view.filter(|_| rough))
+    }
+
+    fn normalized_of(&self, state: &State, at: usize, rough: bool) -> Png {
+        let item = &state.items[at];
+        self.normalized_as(item.photo, &item.shape, item.view.filter(|_| rough))
+    }
+
+    fn normalized_as(&self, photo: usize, shape: &NailShape, roughly_on: Option<View>) -> Png {
         let picture = self.picture(photo)?;
-        self.stages.time("normalize", || normalized_png(&picture, &shape, &self.options.normalization))
+        let with = &self.options.normalization;
+        self.stages.time("normalize", || {
+            let part = roughly_on.map(|view| self.parts.get(photo, &picture, view)).transpose()?;
+            let rough = part.and_then(|part| part.normalized(&picture, shape, with));
+            rough.unwrap_or_else(|| normalized_png(&picture, shape, with))
+        })
     }
 
     /// What was done.

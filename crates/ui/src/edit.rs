@@ -34,11 +34,11 @@ pub trait Editing: Send + Sync + 'static {
     /// The part of the photograph that is shown, as a JPEG.
     fn photo(&self) -> Option<Vec<u8>>;
 
-    /// The nail as it would come out, as a PNG.
+    /// The nail as it would come out, as a PNG; `rough`, in little time, or as it would.
     ///
     /// # Errors
     /// Why it would not, for a person.
-    fn normalized(&self) -> Result<Vec<u8>, String>;
+    fn normalized(&self, rough: bool) -> Result<Vec<u8>, String>;
 }
 
 #[derive(Clone)]
@@ -54,7 +54,8 @@ pub fn edit(editing: Arc<dyn Editing>, state: &Latest) -> Site {
         .route("/api/edit/state", get(async |State(desk): State<Desk>| desk.state.told()))
         .route("/api/edit/key", post(key))
         .route("/api/edit/photo", get(photo))
-        .route("/api/edit/normalized", get(normalized))
+        .route("/api/edit/normalized", get(async |State(desk): State<Desk>| normalized(desk, false).await))
+        .route("/api/edit/rough", get(async |State(desk): State<Desk>| normalized(desk, true).await))
         .with_state(desk);
     let [page, assets @ ..] = &EDIT;
     Site { page: *page, assets, routes, most_body: SMALL_BODY }
@@ -77,8 +78,8 @@ async fn photo(State(desk): State<Desk>) -> Response {
     }
 }
 
-async fn normalized(State(desk): State<Desk>) -> Response {
-    match spawn_blocking(move || desk.editing.normalized()).await {
+async fn normalized(desk: Desk, rough: bool) -> Response {
+    match spawn_blocking(move || desk.editing.normalized(rough)).await {
         Ok(Ok(png)) => ([(CONTENT_TYPE, "image/png")], png).into_response(),
         Ok(Err(why)) => (StatusCode::UNPROCESSABLE_ENTITY, why).into_response(),
         Err(_) => StatusCode::INTERNAL_SERVER_ERROR.into_response(),

@@ -90,7 +90,7 @@ impl Editing for Page {
         self.0.photo()
     }
 
-    fn normalized(&self) -> Result<Vec<u8>, String> {
-        self.0.normalized()
+    fn normalized(&self, rough: bool) -> Result<Vec<u8>, String> {
+        self.0.normalized(rough)
     }
 }

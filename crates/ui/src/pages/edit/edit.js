@@ -14,6 +14,8 @@ import { KEYS, named, pressed } from "./keys.js";
 
 /** A pointer this near to a corner takes it, CSS pixels. */
 const NEAR_PX = 14;
+/** After so long without a key it is worth to make the picture exactly, milliseconds. */
+const REST_MS = 150;
 /** Less than this is a click, not a drag. */
 const CLICK_PX = 4;
 
@@ -110,13 +112,19 @@ async function fetchPhoto() {
   draw();
 }
 
-/** The nail as it would come out, as often as the server can; the latest is never left out. */
+/** The nail as it would come out: quickly while keys are pressed, then as it would; the latest is never left out. */
 async function fetchNormalized() {
   if (fetching) return;
   fetching = true;
-  while (state && state.nail && normalizedAt !== state.revision) {
+  let quick = true;
+  while (state && state.nail && (normalizedAt !== state.revision || quick)) {
+    quick = normalizedAt !== state.revision;
     normalizedAt = state.revision;
-    const answer = await fetch("api/edit/normalized");
+    if (!quick) {
+      await new Promise((over) => setTimeout(over, REST_MS));
+      if (normalizedAt !== state.revision) continue;
+    }
+    const answer = await fetch(quick ? "api/edit/rough" : "api/edit/normalized");
     const old = normalized.src;
     at("not").textContent = answer.ok ? "" : `Would be left out: ${await answer.text()}`;
     normalized.hidden = !answer.ok;
