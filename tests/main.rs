@@ -11,6 +11,7 @@ mod detection;
 mod digits;
 mod disks;
 mod doctor;
+mod edit;
 #[cfg(all(target_os = "linux", target_arch = "x86_64"))]
 mod faults;
 mod fit;
@@ -24,6 +25,7 @@ mod merge;
 mod nail_axes;
 mod nail_axes_drawn;
 mod nailvideo;
+mod pages;
 mod parsers;
 mod performance;
 mod phantom_contacts;

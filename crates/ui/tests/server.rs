@@ -93,7 +93,7 @@ fn a_folder_that_does_not_exist_and_a_port_that_is_taken_are_said() {
     assert!(matches!(results(&["/does/not/exist".into()]), Err(UiError::Folder { .. })));
     let server = run(one_run);
     let port = server.at.rsplit_once(':').unwrap().1.parse().unwrap();
-    let taken = Server::bind(&Settings { port, ..Settings::default() }, results(&[]).unwrap()).err().unwrap();
+    let taken = Server::bind(&Settings { port, ..Settings::default() }, vec![results(&[]).unwrap()]).err().unwrap();
     assert!(taken.to_string().contains("choose another --port"), "{taken}");
 }
 
