@@ -73,8 +73,8 @@ fn strangers_are_refused_and_hear_nothing() {
 #[test]
 fn half_open_connections_and_large_bodies_hold_nobody_up() {
     let server = run(one_run);
-    // Three hundred that never ask, and stay.
-    let _held: Vec<TcpStream> = (0..300).map(|_| TcpStream::connect(&server.at).unwrap()).collect();
+    // A thousand that never ask, and stay.
+    let _held: Vec<TcpStream> = (0..1000).map(|_| TcpStream::connect(&server.at).unwrap()).collect();
     let cookie = server.cookie();
     let own = format!("Origin: http://{}\r\n", server.at);
     // Ten gigabytes are announced, and not waited for.

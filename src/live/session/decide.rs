@@ -141,7 +141,8 @@ impl Decide {
         match &mut self.answers {
             Some(answers) => answers.row(row, time_s, self.ahead_s, finger, outputs),
             None => {
-                if let Some(view) = &mut outputs.view {
+                // Lit and unlit ones in turn would be no trace.
+                if let Some(view) = outputs.view.as_mut().filter(|_| row.lit != Some(false)) {
                     self.volts.clear();
                     self.volts.extend(self.columns.photodiodes().map(|k| row.values[k]));
                     let seen = Seen { time_s, volts: &self.volts, answers: &[], contact: None, pressed: None };
