@@ -11,6 +11,7 @@
 
 mod coloration;
 pub mod compare;
+mod film;
 mod numbers;
 mod page;
 pub mod phantom;
@@ -32,8 +33,11 @@ pub use section::section_4_3;
 pub fn kinds() -> &'static [&'static Kind] {
     static KINDS: &[&Kind] = &[
         &compare::CompareJob::KIND,
+        &film::FilmJob::KIND,
+        &compare::HalvesJob::KIND,
         &section::PressesJob::KIND,
         &responses::ResponsesJob::KIND,
+        &film::RisingJob::KIND,
         &section::SectionJob::KIND,
         &page::StudyJob::KIND,
         &typical::TypicalJob::KIND,

@@ -6,6 +6,7 @@
 //! The mathematics are the predictor crate's.
 
 mod check;
+mod cone;
 mod figures;
 mod job;
 mod kind;

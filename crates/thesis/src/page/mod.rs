@@ -9,6 +9,7 @@
 //! Of a phantom, each statement is shown with its [`Kind`], and agreement is counted by it: what was put in is no
 //! evidence. Of people's recordings kinds mean nothing and are left out.
 
+mod colours;
 mod figures;
 mod kind;
 mod parts;
@@ -24,6 +25,7 @@ use serde::Serialize;
 
 use super::Numbers;
 use super::statements::{Judged, Kind, Quantity, Statement, Statements, Verdict};
+use colours::colour_numbers;
 use figures::{SECTIONS, Section};
 pub(crate) use kind::StudyJob;
 use lunula::figure::Page;
@@ -117,6 +119,8 @@ pub fn study_page(
             }
         }
     }
+    let colours = colour_numbers(&numbers);
+    numbers.take("colours", &colours);
     let statements = Statements::of_the_thesis()?;
     let judged = statements.judge(&numbers);
     let by_kind = if options.phantom { by_kind(&judged) } else { Vec::new() };
