@@ -17,12 +17,11 @@ const NAMES: [&str; 2] = ["sensor", "camera"];
 /// A panel for each photodiode.
 pub(super) fn traces(traces: &Traces, staging: &Staging) -> anyhow::Result<()> {
     let last = traces.all.len().saturating_sub(COLUMNS);
-    let panels: Vec<Chart> =
-        traces.all.iter().enumerate().map(|(k, trace)| panel(traces, trace, k, k >= last)).collect();
+    let panels: Vec<Chart> = traces.all.iter().enumerate().map(|(k, trace)| panel(trace, k, k >= last)).collect();
     draw_panels(&panels, COLUMNS, PANEL.0, &staging.place("traces.png")?, &staging.place("traces.svg")?)
 }
 
-fn panel(traces: &Traces, trace: &Trace, k: usize, is_last: bool) -> Chart {
+fn panel(trace: &Trace, k: usize, is_last: bool) -> Chart {
     let axis = |label: &str| Axis { label: label.to_owned() };
     let end_s = trace.camera.first().map_or(0.0, |first| first[0]) + SHOWN_S;
     let line = |points: &[[f64; 2]], colour: usize| Item::Line {
@@ -36,10 +35,9 @@ fn panel(traces: &Traces, trace: &Trace, k: usize, is_last: bool) -> Chart {
         colour: COLOURS[colour],
         width: 2 - colour as u32,
     };
-    let whose = if k == 0 { format!("{}: ", traces.name) } else { String::new() };
     let title = match trace.correlation {
-        Some(correlation) => format!("{whose}{}, correlation {correlation:.3}", trace.name),
-        None => format!("{whose}{}", trace.name),
+        Some(correlation) => format!("{}, correlation {correlation:.3}", trace.name),
+        None => trace.name.clone(),
     };
     Chart {
         title,

@@ -69,7 +69,7 @@ fn pairs(work: &Work<'_>, sensor: &str, camera: &str) -> anyhow::Result<Vec<Pair
     let of = |log: &lunula::job::At| {
         let mut own = work.of(camera).filter(|at| at.keys == log.keys);
         match (own.next(), own.next()) {
-            (Some(at), None) => Ok(Pair { name: at.name.clone(), log: log.path.clone(), camera: at.path.clone() }),
+            (Some(at), None) => Ok(Pair { log: log.path.clone(), camera: at.path.clone() }),
             (first, _) => {
                 let found = if first.is_some() { "several" } else { "none" };
                 anyhow::bail!("{}: of `{camera}`, {found} has its keys; name one video for each log", log.name)

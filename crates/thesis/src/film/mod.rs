@@ -15,7 +15,7 @@ mod kind;
 mod pair;
 mod rising;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 use std::path::{Path, PathBuf};
 
@@ -30,6 +30,8 @@ use lunula::files::Staging;
 use lunula::predictor::{Wanted, read_data};
 use lunula::table::{Column, TableWriter, Value};
 use pair::{Pair, Traces};
+#[cfg(test)]
+pub(crate) use rising::rising;
 
 /// The errors of one force.
 #[derive(Debug, Clone, PartialEq, Serialize)]

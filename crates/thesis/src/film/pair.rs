@@ -10,8 +10,6 @@ use lunula::table::{Column, Table, TableWriter, Value};
 /// A recording.
 #[derive(Debug, Clone)]
 pub(crate) struct Pair {
-    /// Its name in results.
-    pub(crate) name: String,
     /// `time_s`, photodiodes in volts, forces.
     pub(crate) log: PathBuf,
     /// `photodiodes.csv` of `lunula nailvideo`.
@@ -96,7 +94,6 @@ pub(super) struct Trace {
 
 /// Both sensors of a recording.
 pub(super) struct Traces {
-    pub(super) name: String,
     pub(super) all: Vec<Trace>,
 }
 
@@ -119,7 +116,7 @@ impl Traces {
             });
         }
         ensure!(!all.is_empty(), "{} and {}: no photodiode is in both", pair.log.display(), pair.camera.display());
-        Ok(Self { name: pair.name.clone(), all })
+        Ok(Self { all })
     }
 
     pub(super) fn correlations(&self) -> Vec<(String, Option<f64>)> {

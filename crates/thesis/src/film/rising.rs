@@ -30,7 +30,7 @@ const SHARES: [f64; 2] = [0.01, 0.99];
 ///
 /// # Errors
 /// A file that can't be read, no frame near any force, a folder that can't be written to.
-pub(super) fn rising(frames: &Path, photodiodes: &Path, log: &Path, out: &Path) -> anyhow::Result<Vec<f64>> {
+pub(crate) fn rising(frames: &Path, photodiodes: &Path, log: &Path, out: &Path) -> anyhow::Result<Vec<f64>> {
     let table = Table::read(photodiodes)?;
     let index = table.integers("frame")?;
     let times_s: Vec<f64> = table.numbers("time_s")?.into_iter().map(|time| time.unwrap_or(f64::NAN)).collect();

@@ -20,7 +20,7 @@ fn seen(time_s: f64, noise: f64) -> [f64; 3] {
 }
 
 /// A log of 50 rows a second, and the camera's frames of 15: its values are the volts by another straight line.
-fn pair(folder: &Path, name: &str, from_s: f64, camera_noise: f64) -> Pair {
+pub(crate) fn pair(folder: &Path, name: &str, from_s: f64, camera_noise: f64) -> Pair {
     let mut log = "time_s,P1,P2,P3,Fx_N,Fy_N,Fz_N\n".to_owned();
     for time_s in (0..1000).map(|k| from_s + 0.02 * f64::from(k)) {
         let cells: Vec<String> = seen(time_s, 1e-3).iter().chain(&forces(time_s)).map(f64::to_string).collect();
@@ -37,7 +37,7 @@ fn pair(folder: &Path, name: &str, from_s: f64, camera_noise: f64) -> Pair {
     let at = |what: &str| folder.join(format!("{name}-{what}.csv"));
     std::fs::write(at("log"), log).unwrap();
     std::fs::write(at("camera"), camera).unwrap();
-    Pair { name: name.to_owned(), log: at("log"), camera: at("camera") }
+    Pair { log: at("log"), camera: at("camera") }
 }
 
 #[test]
@@ -86,28 +86,34 @@ fn a_log_without_forces_is_refused() {
     assert!(format!("{why:#}").contains("a-log.csv: has not all of Fx_N, Fy_N, Fz_N"), "{why:#}");
 }
 
+/// Frames of a press to `most` tenths of a newton and back, whose level is their force on the way up, and black on the
+/// way down: frames, photodiodes' table, log.
+pub(crate) fn pressed(folder: &Path, most: u8) -> [PathBuf; 3] {
+    let at = ["frames", "photodiodes.csv", "log.csv"].map(|name| folder.join(name));
+    std::fs::create_dir(&at[0]).unwrap();
+    let (mut table, mut log) = ("frame,time_s\n".to_owned(), "time_s,Fz_N\n".to_owned());
+    for k in 0..2 * most {
+        let [force_n, level] = if k <= most { [k, 5 * k] } else { [2 * most - k, 0] };
+        writeln!(table, "{k},{k}").unwrap();
+        writeln!(log, "{k},{}", -0.1 * f64::from(force_n)).unwrap();
+        let picture = image::GrayImage::from_pixel(40, 40, image::Luma([level]));
+        picture.save(at[0].join(format!("{k:06}.png"))).unwrap();
+    }
+    std::fs::write(&at[1], table).unwrap();
+    std::fs::write(&at[2], log).unwrap();
+    at
+}
+
 #[test]
 fn frames_on_the_way_to_the_greatest_force_are_shown_by_their_force() {
     let folder = tempfile::tempdir().unwrap();
-    let at = |name: &str| folder.path().join(name);
-    std::fs::create_dir(at("frames")).unwrap();
-    // To 2 N in 20 frames and back; the level of a frame is its force on the way up and black on the way down.
-    let (mut table, mut log) = ("frame,time_s\n".to_owned(), "time_s,Fz_N\n".to_owned());
-    for k in 0..40_u8 {
-        let force_n = if k <= 20 { 0.1 * f64::from(k) } else { 0.1 * f64::from(40 - k) };
-        writeln!(table, "{k},{k}").unwrap();
-        writeln!(log, "{k},{}", -force_n).unwrap();
-        let level = if k <= 20 { 10 * k } else { 0 };
-        let picture = image::GrayImage::from_pixel(40, 40, image::Luma([level]));
-        picture.save(at("frames").join(format!("{k:06}.png"))).unwrap();
-    }
-    std::fs::write(at("photodiodes.csv"), table).unwrap();
-    std::fs::write(at("log.csv"), log).unwrap();
-    let out = at("out");
-    let shown = rising(&at("frames"), &at("photodiodes.csv"), &at("log.csv"), &out).unwrap();
+    let [frames, photodiodes, log] = pressed(folder.path(), 20);
+    let out = folder.path().join("out");
+    let shown = rising(&frames, &photodiodes, &log, &out).unwrap();
     assert_eq!(shown, [0.0, 0.25, 0.5, 1.0, 1.5, 2.0]);
     let numbers = Numbers::read(&out.join("numbers.json")).unwrap();
     let tip = numbers.get("tip_to_1N").unwrap();
-    assert!((tip - 100.0 / 255.0).abs() < 1e-6, "{tip}");
+    assert!((tip - 50.0 / 255.0).abs() < 1e-6, "{tip}");
     assert_eq!(numbers.get("tip_beyond_1N"), None);
+    assert!(out.join("rising.png").is_file());
 }

@@ -2,10 +2,11 @@
 //! the changes of the maps at the photodiodes' places.
 //!
 //! In: the numbers of the responses (`normal.P1.change_V`, ..) and of the maps (`photos.normal.P1`, ..). Out, for each
-//! of normal force, lateral and longitudinal shear and bending: `<experiment>.rank`, Spearman's rank correlation over
-//! the photodiodes, where there are two directions over both; and `<experiment>.chance`, the share of all orders of the
-//! photodiodes over the places that reach it (an exact permutation test: 1/40320 at best). Shear is photographed while
-//! the finger presses with 3 N, as it is cycled: its colours change against those of normal force.
+//! of normal force, lateral and longitudinal shear and bending, and for all of them together: `<experiment>.rank`,
+//! Spearman's rank correlation over the photodiodes, where there are two directions over both; and
+//! `<experiment>.chance`, the share of all orders of the photodiodes over the places that reach it (an exact permutation
+//! test: 1/40320 at best). Shear is photographed while the finger presses with 3 N, as it is cycled: its colours change
+//! against those of normal force.
 //!
 //! Ranks need no scale: photographs have shares of full scale, photodiodes volts. What is not determined: whether the
 //! photodiodes are where the thesis' words put them; a sensor that sits elsewhere is compared with the wrong places.
@@ -44,6 +45,7 @@ const SAME: f64 = 1e-9;
 pub(super) fn colour_numbers(numbers: &Numbers) -> Numbers {
     let mut found = Numbers::default();
     let names: Vec<String> = Positions::thesis().photodiodes.into_iter().map(|one| one.name).collect();
+    let mut all: Vec<Vec<[f64; 2]>> = vec![Vec::new(); names.len()];
     for (experiment, directions) in EXPERIMENTS {
         let volts = |name: &str, of: &str| match of {
             // The curve of normal force begins at -4 N.
@@ -58,13 +60,21 @@ pub(super) fn colour_numbers(numbers: &Numbers) -> Numbers {
             let pair = |(of, poses): &Direction| Some([volts(name, of)?, colour(name, *poses)?]);
             directions.iter().map(pair).collect::<Option<Vec<_>>>()
         };
-        let known: Vec<Vec<[f64; 2]>> = names.iter().filter_map(of).collect();
-        if let Some([rank, chance]) = alike(&known) {
-            found.set(format!("{experiment}.rank"), rank);
-            found.set(format!("{experiment}.chance"), chance);
-        }
+        let known: Vec<Option<Vec<[f64; 2]>>> = names.iter().map(of).collect();
+        all.iter_mut().zip(&known).for_each(|(all, own)| all.extend(own.iter().flatten()));
+        set(&mut found, experiment, known.into_iter().flatten().collect());
     }
+    // Of photodiodes that were in all experiments.
+    let every = EXPERIMENTS.iter().map(|(_, directions)| directions.len()).sum::<usize>();
+    set(&mut found, "all", all.into_iter().filter(|own| own.len() == every).collect());
     found
+}
+
+fn set(numbers: &mut Numbers, experiment: &str, known: Vec<Vec<[f64; 2]>>) {
+    if let Some([rank, chance]) = alike(&known) {
+        numbers.set(format!("{experiment}.rank"), rank);
+        numbers.set(format!("{experiment}.chance"), chance);
+    }
 }
 
 /// Rank correlation of pairs, some of each photodiode, and the share of the photodiodes' orders that reach it.

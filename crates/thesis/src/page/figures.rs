@@ -60,7 +60,7 @@ pub(super) const SECTIONS: &[Section] = &[
     Section {
         name: "responses",
         title: "3.3 Responses of the sensor to force and bending",
-        of: &["3.3"],
+        of: &["3.3", "7.1"],
         figures: &[
             figure("23", Part::Normal, "moves", "Normal force is cycled, shear held at zero."),
             figure("24", Part::Normal, "outputs", "Outputs over time as normal force is cycled."),

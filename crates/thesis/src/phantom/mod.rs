@@ -27,7 +27,7 @@ mod session;
 mod tables;
 #[cfg(test)]
 mod tests;
-mod trials;
+pub(crate) mod trials;
 mod write;
 
 use std::collections::BTreeMap;

@@ -27,7 +27,7 @@ const OPERATOR: f64 = 0.2;
 const TRIAL: f64 = 0.06;
 
 /// The table's text.
-pub(super) fn trials(seed: u64) -> String {
+pub(crate) fn trials(seed: u64) -> String {
     let mut text = "operator,method,trial,time_s\n".to_owned();
     let mut rng = numbers(seed, KIND_TRIALS, 0);
     for operator in OPERATORS {
