@@ -2,8 +2,8 @@
 //!
 //! In: the folder `frames` and `photodiodes.csv` of `lunula nailvideo`, and the log with `Fz_N` on the video's clock.
 //! Out: `rising.png`, `.svg`; `numbers.json`, how the regions over the bone and at the tip change up to 1 N and from
-//! there to 4 N, shares of full scale. Only frames before the greatest pressing are used; a force that was not reached, or that
-//! no frame is near to, has no picture.
+//! there to 4 N, shares of full scale. Only frames before the greatest pressing are used; a force that was not reached,
+//! or that no frame is near to, has no picture.
 
 use std::path::Path;
 

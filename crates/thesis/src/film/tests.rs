@@ -82,7 +82,7 @@ fn a_log_without_forces_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let pair = pair(folder.path(), "a", 0.0, 0.0);
     std::fs::write(&pair.log, "time_s,P1,Fx_N\n0,1,2\n1,1,2\n").unwrap();
-    let why = film(&[pair.clone()], &[pair], &folder.path().join("out")).unwrap_err();
+    let why = film(std::slice::from_ref(&pair), std::slice::from_ref(&pair), &folder.path().join("out")).unwrap_err();
     assert!(format!("{why:#}").contains("a-log.csv: has not all of Fx_N, Fy_N, Fz_N"), "{why:#}");
 }
 

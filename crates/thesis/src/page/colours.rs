@@ -1,12 +1,12 @@
-//! Whether the sensor's responses are consistent with the colour patterns (3.3.2 to 3.3.5): photodiodes' changes against
-//! the changes of the maps at the photodiodes' places.
+//! Whether the sensor's responses are consistent with the colour patterns (3.3.2 to 3.3.5): photodiodes' changes
+//! against the changes of the maps at the photodiodes' places.
 //!
 //! In: the numbers of the responses (`normal.P1.change_V`, ..) and of the maps (`photos.normal.P1`, ..). Out, for each
 //! of normal force, lateral and longitudinal shear and bending, and for all of them together: `<experiment>.rank`,
 //! Spearman's rank correlation over the photodiodes, where there are two directions over both; and
-//! `<experiment>.chance`, the share of all orders of the photodiodes over the places that reach it (an exact permutation
-//! test: 1/40320 at best). Shear is photographed while the finger presses with 3 N, as it is cycled: its colours change
-//! against those of normal force.
+//! `<experiment>.chance`, the share of all orders of the photodiodes over the places that reach it (an exact
+//! permutation test: 1/40320 at best). Shear is photographed while the finger presses with 3 N, as it is cycled: its
+//! colours change against those of normal force.
 //!
 //! Ranks need no scale: photographs have shares of full scale, photodiodes volts. What is not determined: whether the
 //! photodiodes are where the thesis' words put them; a sensor that sits elsewhere is compared with the wrong places.
@@ -153,8 +153,7 @@ mod tests {
     #[test]
     fn directions_of_a_photodiode_stay_together() {
         // Both directions of a photodiode go with it: 4! orders, not 8!.
-        let pairs: Vec<Vec<[f64; 2]>> =
-            (0..4).map(|k| f64::from(k)).map(|x| vec![[x, x], [-x - 1.0, -x - 1.0]]).collect();
+        let pairs: Vec<Vec<[f64; 2]>> = (0..4).map(f64::from).map(|x| vec![[x, x], [-x - 1.0, -x - 1.0]]).collect();
         assert_eq!(alike(&pairs), Some([1.0, 1.0 / 24.0]));
     }
 

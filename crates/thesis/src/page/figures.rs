@@ -40,8 +40,8 @@ pub(super) const SECTIONS: &[Section] = &[
                 "8 (sensor and camera)",
                 Part::FilmGreen,
                 "traces",
-                "What photodiodes on the nail and a camera over it see at the same places, the camera's green brought to \
-                 the sensor's volts by a straight line; random touching, held out.",
+                "What photodiodes on the nail and a camera over it see at the same places, the camera's green brought \
+                 to the sensor's volts by a straight line; random touching, held out.",
             ),
             figure(
                 "8 (errors)",
@@ -215,8 +215,8 @@ pub(super) const SECTIONS: &[Section] = &[
                 "123",
                 Part::Performance,
                 "performance-operators",
-                "Time per decision, each operator's trials. The thesis shows four operators here, and says that Fig. 124 \
-                 averages five.",
+                "Time per decision, each operator's trials. The thesis shows four operators here, and says that \
+                 Fig. 124 averages five.",
             ),
             figure(
                 "124",

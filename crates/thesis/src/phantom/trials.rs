@@ -1,11 +1,11 @@
 //! Trials of two methods of control, as appendix C has them: how long each operator took to drive the course, trial by
 //! trial (Fig. 123, 124).
 //!
-//! In: the study's seed. Out: the table of `lunula performance`, `operator,method,trial,time_s`. A time is the driving's
-//! and a time per decision, which falls exponentially from the first trial to a level; each operator has a factor of
-//! their own, and each trial one. All sizes are assumed after appendix C's words: at first less than half the time per
-//! decision with virtual switches, level in at most half the trials. Fig. 123 shows four operators and Fig. 124 is said
-//! to average five: here are five.
+//! In: the study's seed. Out: the table of `lunula performance`, `operator,method,trial,time_s`. A time is the
+//! driving's and a time per decision, which falls exponentially from the first trial to a level; each operator has a
+//! factor of their own, and each trial one. All sizes are assumed after appendix C's words: at first less than half the
+//! time per decision with virtual switches, level in at most half the trials. Fig. 123 shows four operators and Fig. 124
+//! is said to average five: here are five.
 
 use std::fmt::Write;
 

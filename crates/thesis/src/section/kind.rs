@@ -1,5 +1,5 @@
-//! `section` in a pipeline: the simulations of section 4.3 with the thesis' values (Fig. 76 to 78, 88); and `presses`: its
-//! experiments on recorded people (Fig. 79 to 82).
+//! `section` in a pipeline: the simulations of section 4.3 with the thesis' values (Fig. 76 to 78, 88); and `presses`:
+//! its experiments on recorded people (Fig. 79 to 82).
 
 use std::time::Instant;
 

@@ -1,8 +1,8 @@
 //! The dynamic lag of Fig. 88: a photodiode under a force that grows steadily, and what it would show without dynamics.
 //!
 //! In: the parameters. Out: `fig-88`, both over time; the lag, in seconds: how much later than the output without
-//! dynamics the output reaches its values, the mean over the second half of the ramp; and the time constant of a step to
-//! the same load, the slowest that the output has (5.2.2, equation 19).
+//! dynamics the output reaches its values, the mean over the second half of the ramp; and the time constant of a step
+//! to the same load, the slowest that the output has (5.2.2, equation 19).
 //!
 //! The output without dynamics is that of the same ramp, [`SLOWER`] times as slow, at the same load.
 
