@@ -9,7 +9,7 @@ use std::path::Path;
 
 use anyhow::{Context, ensure};
 use image::GrayAlphaImage;
-use ndarray::Array2;
+use ndarray::{Array2, Axis, Slice};
 
 use super::pair::pressing_n;
 use crate::Numbers;
@@ -31,22 +31,7 @@ const SHARES: [f64; 2] = [0.01, 0.99];
 /// # Errors
 /// A file that can't be read, no frame near any force, a folder that can't be written to.
 pub(crate) fn rising(frames: &Path, photodiodes: &Path, log: &Path, out: &Path) -> anyhow::Result<Vec<f64>> {
-    let table = Table::read(photodiodes)?;
-    let index = table.integers("frame")?;
-    let times_s: Vec<f64> = table.numbers("time_s")?.into_iter().map(|time| time.unwrap_or(f64::NAN)).collect();
-    let pressing_n = pressing_n(log, &times_s)?;
-    let most = (0..pressing_n.len()).filter(|&row| pressing_n[row].is_finite());
-    let last = most.max_by(|&a, &b| pressing_n[a].total_cmp(&pressing_n[b])).context("no frame has a force")?;
-    let mut shown = Vec::new();
-    for force_n in FORCES_N {
-        let near = (0..=last).filter(|&row| (pressing_n[row] - force_n).abs() <= NEAR_N);
-        let paths = near.filter_map(|row| Some(frames.join(format!("{:06}.png", index[row]?))));
-        let pictures: Vec<Array2<f32>> =
-            paths.filter(|path| path.is_file()).map(|path| grey_picture(&path)).collect::<Result<_, _>>()?;
-        let count = pictures.len() as f32;
-        let sum = pictures.into_iter().reduce(|sum, one| sum + one);
-        shown.extend(sum.map(|sum| (force_n, sum / count)));
-    }
+    let shown = near_forces(frames, photodiodes, log)?;
     ensure!(!shown.is_empty(), "{}: no frame is within {NEAR_N} N of a force shown", frames.display());
     let staging = Staging::new(out)?;
     staging.write("numbers.json", numbers(&shown).to_text().as_bytes())?;
@@ -55,6 +40,27 @@ pub(crate) fn rising(frames: &Path, photodiodes: &Path, log: &Path, out: &Path) 
     staging.write("rising.svg", sheet.svg()?.as_bytes())?;
     staging.commit()?;
     Ok(shown.into_iter().map(|(force_n, _)| force_n).collect())
+}
+
+/// The forces that frames are near to, each with their mean.
+fn near_forces(frames: &Path, photodiodes: &Path, log: &Path) -> anyhow::Result<Vec<(f64, Array2<f32>)>> {
+    let table = Table::read(photodiodes)?;
+    let index = table.integers("frame")?;
+    let times_s: Vec<f64> = table.numbers("time_s")?.into_iter().map(|time| time.unwrap_or(f64::NAN)).collect();
+    let pressing_n = pressing_n(log, &times_s)?;
+    let known = (0..pressing_n.len()).filter(|&row| pressing_n[row].is_finite());
+    let last = known.max_by(|&a, &b| pressing_n[a].total_cmp(&pressing_n[b])).context("no frame has a force")?;
+    let mut shown = Vec::new();
+    for force_n in FORCES_N {
+        let near = (0..=last).filter(|&row| (pressing_n[row] - force_n).abs() <= NEAR_N);
+        let paths = near.filter_map(|row| Some(frames.join(format!("{:06}.png", index[row]?))));
+        let pictures = paths.filter(|path| path.is_file()).map(|path| grey_picture(&path));
+        let pictures: Vec<Array2<f32>> = pictures.collect::<Result<_, _>>()?;
+        let count = pictures.len() as f32;
+        let sum = pictures.into_iter().reduce(|sum, one| sum + one);
+        shown.extend(sum.map(|sum| (force_n, sum / count)));
+    }
+    Ok(shown)
 }
 
 /// Changes of regions from one force to another.
@@ -71,22 +77,23 @@ fn numbers(shown: &[(f64, Array2<f32>)]) -> Numbers {
     numbers
 }
 
-fn sheet(shown: &[(f64, Array2<f32>)]) -> Sheet {
-    let mut middle: Vec<f32> = shown
-        .iter()
-        .flat_map(|(_, map)| {
-            let (rows, columns) = map.dim();
-            let inner = move |(row, column)| {
-                (rows / 4..3 * rows / 4).contains(&row) && (columns / 4..3 * columns / 4).contains(&column)
-            };
-            map.indexed_iter().filter(move |(at, value)| inner(*at) && value.is_finite()).map(|(_, value)| *value)
-        })
-        .collect();
+/// From nearly the darkest to nearly the lightest value within the middle halves of all pictures.
+fn stretch(shown: &[(f64, Array2<f32>)]) -> Stretch {
+    let half = |size: usize| Slice::from(size / 4..3 * size / 4);
+    let inner = |(_, map): &(f64, Array2<f32>)| {
+        let rows = map.slice_axis(Axis(0), half(map.nrows()));
+        let middle = rows.slice_axis(Axis(1), half(map.ncols()));
+        middle.iter().copied().filter(|value| value.is_finite()).collect()
+    };
+    let mut middle: Vec<f32> = shown.iter().flat_map::<Vec<f32>, _>(inner).collect();
     middle.sort_by(f32::total_cmp);
-    let [low, high] = SHARES.map(|share| {
-        middle.get((share * (middle.len().saturating_sub(1)) as f64) as usize).copied().unwrap_or(f32::NAN)
-    });
-    let stretch = Stretch::Linear { low, high };
+    let at = |share: f64| middle.get((share * middle.len().saturating_sub(1) as f64) as usize).copied();
+    let [low, high] = SHARES.map(|share| at(share).unwrap_or(f32::NAN));
+    Stretch::Linear { low, high }
+}
+
+fn sheet(shown: &[(f64, Array2<f32>)]) -> Sheet {
+    let stretch = stretch(shown);
     let tile = |(force_n, map): &(f64, Array2<f32>)| {
         let picture: GrayAlphaImage = grey_map(map, stretch);
         Tile { caption: format!("{force_n} N"), picture: TilePicture::Grey(picture), png: None }

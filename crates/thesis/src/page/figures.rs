@@ -2,9 +2,10 @@
 
 use super::Part;
 
-/// A figure of the thesis.
+/// A figure of the thesis, or one that the thesis has not.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Figure {
+    /// In the thesis; a name where the thesis has none.
     pub(super) number: &'static str,
     /// The part that has its counterpart.
     pub(super) part: Part,
@@ -24,6 +25,14 @@ pub(super) struct Section {
     pub(super) figures: &'static [Figure],
 }
 
+impl Figure {
+    /// What the page calls it.
+    pub(super) fn label(&self) -> String {
+        let is_numbered = self.number.starts_with(|first: char| first.is_ascii_digit());
+        if is_numbered { format!("Fig. {}", self.number) } else { self.number.to_owned() }
+    }
+}
+
 const fn figure(number: &'static str, part: Part, picture: &'static str, caption: &'static str) -> Figure {
     Figure { number, part, picture, caption }
 }
@@ -37,20 +46,20 @@ pub(super) const SECTIONS: &[Section] = &[
         figures: &[
             figure("5", Part::Rising, "rising", "One nail under rising normal force, filmed; contrast stretched."),
             figure(
-                "8 (sensor and camera)",
+                "Sensor and camera",
                 Part::FilmGreen,
                 "traces",
                 "What photodiodes on the nail and a camera over it see at the same places, the camera's green brought \
                  to the sensor's volts by a straight line; random touching, held out.",
             ),
             figure(
-                "8 (errors)",
+                "Errors of both",
                 Part::FilmGreen,
                 "rmse",
                 "Linear touch models of the sensor and of the camera's green, on the path held out.",
             ),
             figure(
-                "8 (errors, green over red)",
+                "Errors, green over red",
                 Part::FilmRatio,
                 "rmse",
                 "The same with the light taken off by the red of the same place.",

@@ -4,8 +4,8 @@
 //! In: the study's seed. Out: the table of `lunula performance`, `operator,method,trial,time_s`. A time is the
 //! driving's and a time per decision, which falls exponentially from the first trial to a level; each operator has a
 //! factor of their own, and each trial one. All sizes are assumed after appendix C's words: at first less than half the
-//! time per decision with virtual switches, level in at most half the trials. Fig. 123 shows four operators and Fig. 124
-//! is said to average five: here are five.
+//! time per decision with virtual switches, level in at most half the trials. Fig. 123 shows four operators, and Fig.
+//! 124 is said to average five: here are five.
 
 use std::fmt::Write;
 
