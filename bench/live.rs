@@ -91,8 +91,8 @@ fn live_tcp(dir: &Path) -> Link {
     Link { to: Box::new(to), from: Box::new(from), child: Some(child), thread: None }
 }
 
-/// As [`live_tcp`], with its page: a thousand connections that never ask, one that does not read, and one that sends ten
-/// gigabytes again and again.
+/// As [`live_tcp`], with its page: a thousand connections that never ask, one that does not read, and one that sends
+/// ten gigabytes again and again.
 fn live_page(dir: &Path) -> Link {
     let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
     let source = format!("tcp:{}?once", listener.local_addr().expect("an address"));

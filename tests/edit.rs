@@ -12,6 +12,8 @@ use lunula::outlines::{EditOptions, Editor, NOT_A_NAIL, Pressed};
 use lunula::photo::PhotoSet;
 use lunula::photo::Photograph;
 use lunula::photo::outline::{Drawn, read_annotated};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
 use serde_json::{Value, json};
 
 use crate::photos_extremes::save_turned;
@@ -381,4 +383,40 @@ fn results_are_on_the_same_port_where_they_are_asked_for() {
     let runs: Value = serde_json::from_str(&page.reads("results")).expect("JSON");
     assert_eq!(runs["runs"][0]["job"], "photos");
     let _ = (child.kill(), child.wait());
+}
+
+#[test]
+fn whatever_keys_are_pressed_undo_goes_back_to_the_beginning() {
+    let dir = Dir::new();
+    doubtful(&dir, "set/a");
+    let file = std::fs::read(dir.path("set/a.json")).expect("a file");
+    let desk = Desk::at(&dir.path("set"));
+    let (first, axis) = (desk.points(), desk.sees()["nail"]["axis"].clone());
+    let mut rng = ChaCha8Rng::seed_from_u64(5);
+    let plain = ["flip", "insert", "remove", "reset", "zoom", "snap", "undo"];
+    for round in 0..40 {
+        let pressed = rng.random_range(1..30);
+        for _ in 0..pressed {
+            let by = [rng.random_range(-3..=3), rng.random_range(-3..=3)];
+            let stride = ["fine", "usual", "coarse"][rng.random_range(0..3)];
+            let keys = [
+                json!({"key": "move", "by": by, "stride": stride}),
+                json!({"key": "grow", "by": by, "stride": stride}),
+                json!({"key": "turn", "by": by[0], "stride": stride}),
+                json!({"key": "turn_axis", "by": by[1]}),
+                json!({"key": "corner", "forwards": by[0] > 0}),
+                json!({"key": "choose", "corner": if by[0] > 0 { json!(by[0]) } else { Value::Null }}),
+                json!({"key": "drag", "gesture": rng.random_range(0..4), "corner": null, "by_px": by}),
+                json!({"key": "place", "to_px": [80 + by[0], 70 + by[1]]}),
+                json!({"key": plain[rng.random_range(0..plain.len())]}),
+            ];
+            desk.press(keys[rng.random_range(0..keys.len())].clone());
+            assert!(desk.points().iter().flatten().all(|v| v.is_finite()), "{}", desk.sees());
+        }
+        desk.keys(&vec!["undo"; pressed + 1]);
+        assert!(desk.points() == first && desk.sees()["nail"]["axis"] == axis, "{round}: {}", desk.sees());
+    }
+    // Nothing was accepted, so nothing was written.
+    assert!(desk.sees()["nail"]["can_undo"] == false);
+    assert_eq!(std::fs::read(dir.path("set/a.json")).expect("a file"), file);
 }

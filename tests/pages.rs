@@ -104,12 +104,14 @@ fn in_browser_a_pointer_and_a_second_page_do_the_same() {
 /// What is wrong with a page in a window of this size, in words.
 fn faults(browser: &Browser) -> Vec<String> {
     let script = format!(
-        "const all = [...document.querySelectorAll('button, summary, a, select, input')].filter((e) => e.checkVisibility());
+        "const all = [...document.querySelectorAll('button, summary, a, select, input')]
+           .filter((e) => e.checkVisibility());
          const small = all.filter((e) => {{
            const b = (e.closest('label') || e).getBoundingClientRect();
            return b.height < {LEAST_PX} || b.width < {LEAST_PX};
          }}).map((e) => `small: ${{e.outerHTML}}`);
-         const wide = document.documentElement.scrollWidth > innerWidth + 1 ? [`${{document.documentElement.scrollWidth}} px wide`] : [];
+         const across = document.documentElement.scrollWidth;
+         const wide = across > innerWidth + 1 ? [`${{across}} px wide`] : [];
          const moving = document.getAnimations().map(() => 'moves by itself');
          return [...small, ...wide, ...moving];"
     );

@@ -249,7 +249,7 @@ fn what_is_killed_has_all_but_its_last_second() {
     let last = |name: &str| dir.table(name).last().map_or(0.0, |row| row["time_s"].parse::<f64>().expect("a time"));
     // A row waits for the force behind it as well.
     let [samples, frames] = [last("r.csv"), last("r.frames.csv")];
-    assert!(killed_s - samples <= 1.2 && killed_s - frames <= 1.5, "{killed_s}: {samples}, {frames}");
+    assert!(killed_s - samples <= 1.0 && killed_s - frames <= 1.0, "{killed_s}: {samples}, {frames}");
 }
 
 #[test]

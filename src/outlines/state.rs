@@ -154,10 +154,8 @@ pub(super) fn reshape(item: &mut Item, key: Key) {
             item.gesture = Some(gesture);
         }
         Key::Insert => item.corner = corner.and_then(|corner| shape.insert(corner)),
-        Key::Remove => {
-            if corner.is_some_and(|corner| shape.remove(corner)) {
-                item.corner = corner.map(|corner| corner.min(item.shape.points.len() - 1));
-            }
+        Key::Remove if corner.is_some_and(|corner| shape.remove(corner)) => {
+            item.corner = corner.map(|corner| corner.min(item.shape.points.len() - 1));
         }
         Key::Reset => (item.shape, item.corner) = (item.begun.clone(), None),
         _ => {}

@@ -265,8 +265,8 @@ pub struct ToDraw {
 
 /// A LabelMe file of detected nails: polygons, each with its axis line through the box, tied by `group_id`.
 ///
-/// `image_path` is the photograph's, relative to the file that will be written; its size, pixels, is that of the upright
-/// one.
+/// `image_path` is the photograph's, relative to the file that will be written; `size` is that of the upright one,
+/// pixels.
 pub fn to_file(image_path: &str, size: [u32; 2], nails: &[ToDraw]) -> LabelMe {
     let mut shapes = Vec::new();
     for (group, nail) in (1..).zip(nails) {
