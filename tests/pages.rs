@@ -50,7 +50,9 @@ fn in_browser_outlines_are_corrected_by_keyboard_alone() {
     until("the next", || browser.text("nail").starts_with("b <img src=x onerror=alert(1)>.png"));
     assert_eq!(browser.runs("return document.querySelectorAll('img[onerror]').length"), 0);
     assert_eq!(browser.text("left"), "0 accepted, 1 no nails, 1 doubtful and 0 others left");
-    browser.presses(&["p", "u"]);
+    browser.presses(&["p"]);
+    until("the first again", || browser.text("nail") == "a.png, nail 1 of 1, not a nail");
+    browser.presses(&["u"]);
     until("nothing decided", || page.hears("edit/state")["rejected"] == 0);
     browser.runs("document.getElementById('field').focus()");
     browser.presses(&[ENTER]);

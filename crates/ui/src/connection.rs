@@ -26,6 +26,8 @@ const IDLE: Duration = Duration::from_secs(10);
 /// One that lives so long is as well: a reader that does not read. One that is told events may live on, and gives its
 /// place up to the next page.
 const LIFE: Duration = Duration::from_secs(120);
+/// Between connections that are accepted: whoever comes back again and again takes little of the machine from a session.
+const BETWEEN: Duration = Duration::from_millis(2);
 /// Bytes of a request's head.
 const HEAD: usize = 16 << 10;
 
@@ -81,11 +83,13 @@ pub(crate) async fn accept(listener: TcpListener, pages: Router) -> Infallible {
             continue;
         };
         if !open.has_room() {
+            tokio::time::sleep(BETWEEN).await;
             continue;
         }
         let seen = Arc::new(Seen::default());
         let answering = answer_for_long(stream, pages.clone(), Arc::clone(&seen));
         open.0.push_back(Connection { seen, task: tokio::spawn(answering).abort_handle() });
+        tokio::time::sleep(BETWEEN).await;
     }
 }
 
