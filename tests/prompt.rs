@@ -236,6 +236,42 @@ fn a_force_that_stops_stops_the_ring_and_nothing_is_recorded_as_zero() {
     assert!(dir.table("r.frames.csv").len() >= 10);
 }
 
+/// A process that stands still, as on a machine that sleeps, and goes on.
+fn signal(child: &Child, name: &str) {
+    let sent = Command::new("kill").args([name, &child.id().to_string()]).status().expect("kill");
+    assert!(sent.success());
+}
+
+#[test]
+fn a_machine_that_sleeps_stops_the_ring() {
+    let dir = Dir::new();
+    let mut session = session(&dir);
+    session.devices.send(1.0, true);
+    session.page.key("go");
+    session.look(3.0, true);
+    let slept_s = session.page.now_s();
+    signal(&session.child, "-STOP");
+    // Devices and page sleep as well.
+    std::thread::sleep(Duration::from_secs(4));
+    signal(&session.child, "-CONT");
+    let woke_s = session.page.now_s();
+    assert!(woke_s - slept_s >= 3.5, "{slept_s} {woke_s}");
+    session.devices.send(1.0, true);
+    session.page.key("stop");
+    session.page.key("stop");
+    assert_eq!(ends(session.child), 1);
+    let report: serde_json::Value = serde_json::from_str(&dir.text("r.run.json")).expect("JSON");
+    let stood_s: f64 = report["turns"].list().iter().filter_map(|turn| turn["stood_s"].as_f64()).sum();
+    let events: Vec<&str> = report["turns"].list().iter().map(|turn| turn["event"].words()).collect();
+    assert!(events.iter().any(|event| ["stalled", "paused"].contains(event)), "{events:?}");
+    // While nobody could look nothing was recorded; what was is what was measured.
+    let rows = dir.table("r.csv");
+    let time_s = |row: &BTreeMap<String, String>| row["time_s"].parse::<f64>().expect("a time");
+    let asleep = rows.iter().filter(|row| (slept_s + 1.0..woke_s - 0.1).contains(&time_s(row))).count();
+    assert_eq!(asleep, 0, "stood {stood_s} s, {events:?}");
+    assert!(rows.iter().all(|row| row["Fz_N"].is_empty() || (force(row)[2] + 1.03).abs() <= 1e-9));
+}
+
 #[test]
 fn what_is_killed_has_all_but_its_last_second() {
     let dir = Dir::new();

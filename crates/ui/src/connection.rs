@@ -26,7 +26,7 @@ const IDLE: Duration = Duration::from_secs(10);
 /// One that lives so long is as well: a reader that does not read. One that is told events may live on, and gives its
 /// place up to the next page.
 const LIFE: Duration = Duration::from_secs(120);
-/// Between connections that are accepted: whoever comes back again and again takes little of the machine from a session.
+/// Between connections that are accepted: whoever comes back again and again takes little of the machine.
 const BETWEEN: Duration = Duration::from_millis(2);
 /// Bytes of a request's head.
 const HEAD: usize = 16 << 10;
