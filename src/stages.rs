@@ -27,13 +27,17 @@ impl Stages {
     pub fn time<T>(&self, stage: &'static str, work: impl FnOnce() -> T) -> T {
         let start = Instant::now();
         let result = work();
-        let took = start.elapsed();
+        self.add(stage, start.elapsed(), 1);
+        result
+    }
+
+    /// What was spent on `stage` elsewhere, in so many runs.
+    pub fn add(&self, stage: &'static str, took: Duration, runs: u64) {
         let mut spent = self.spent.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         let rank = spent.len();
         let entry = spent.entry(stage).or_insert((rank, Duration::ZERO, 0));
         entry.1 += took;
-        entry.2 += 1;
-        result
+        entry.2 += runs;
     }
 
     /// What was spent so far.

@@ -58,10 +58,16 @@ pub struct Seen {
     pub level: Option<f32>,
 }
 
-/// All that a file gives.
+/// All that a file gives: the same where another thread decodes ahead.
 pub fn read(path: &Path, threads: usize) -> Vec<Seen> {
     let mut video = Video::open(path, threads).unwrap();
-    read_on(&mut video)
+    let all = read_on(&mut video);
+    let mut ahead = Video::open(path, threads).unwrap();
+    ahead.decode_ahead();
+    assert_eq!(read_on(&mut ahead), all, "{}", path.display());
+    // Also when it is asked again.
+    assert!(ahead.next_item().unwrap().is_none() && ahead.end() == video.end());
+    all
 }
 
 pub fn read_on(video: &mut Video) -> Vec<Seen> {

@@ -60,6 +60,9 @@ pub fn run(
     let positions = positions(inputs.positions.as_deref())?;
     let mut video = Video::open(&inputs.video, options.threads)?;
     let info = video.info().clone();
+    if options.threads != 1 {
+        video.decode_ahead();
+    }
     let light = light_of(info.grey, options);
     if info.grey && light != Light::None {
         let why = "is grey: only --light none can be had of it".to_owned();
@@ -74,7 +77,7 @@ pub fn run(
     let mut why_not = "no frame could be decoded".to_owned();
     loop {
         watch.go_on()?;
-        let Some(item) = stages.time("decode", || video.next_item())? else { break };
+        let Some(item) = video.next_item()? else { break };
         let (index, time_s, frame) = match &item {
             Item::Frame(frame) => (frame.index, frame.time_s, Some(frame)),
             Item::Missing { index, time_s } => (*index, *time_s, None),
@@ -107,6 +110,7 @@ pub fn run(
         kept.push(place);
         (watch.tick)(counts.all, info.declared_frames);
     }
+    stages.add("decode", video.decoding(), counts.all);
     let Some(work) = at_work else {
         let path = inputs.outline.clone().unwrap_or_else(|| inputs.video.clone());
         let remedy = if inputs.outline.is_some() {

@@ -13,12 +13,14 @@
 
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use ffmpeg::frame;
 use ffmpeg_next as ffmpeg;
 
 use crate::video::colour::convert;
 use crate::video::info::info;
+use crate::video::read::ahead::{Events, Told};
 use crate::video::read::reader::{Alarm, Event, Reader};
 use crate::video::read::source::Care;
 use crate::video::{Format, Frame, Info, Plane, VideoError};
@@ -68,7 +70,11 @@ pub enum End {
 pub struct Video {
     pub(in crate::video) path: PathBuf,
     threads: usize,
-    reader: Reader,
+    /// None while it is handed over.
+    events: Option<Events>,
+    /// Whether another thread decodes, and how long decoding took.
+    is_ahead: bool,
+    decoding: Duration,
     /// Events read ahead, to know the first frame.
     ahead: VecDeque<Event>,
     /// Events to pass over, after a second start.
@@ -121,7 +127,9 @@ impl Video {
         Ok(Self {
             path: path.to_owned(),
             threads,
-            reader,
+            events: Some(Events::of(Box::new(reader), false)),
+            is_ahead: false,
+            decoding: Duration::ZERO,
             ahead,
             known: 0,
             first_ticks: None,
@@ -131,6 +139,20 @@ impl Video {
             info,
             end: End::NotReached,
         })
+    }
+
+    /// From here on a thread of its own decodes some frames ahead; what comes out is the same.
+    pub fn decode_ahead(&mut self) {
+        if let Some(Events::Here(reader)) = self.events.take_if(|events| matches!(events, Events::Here(_))) {
+            self.is_ahead = true;
+            self.events = Some(Events::of(reader, true));
+        }
+    }
+
+    /// How long decoding took so far, whoever decoded.
+    #[must_use]
+    pub fn decoding(&self) -> Duration {
+        self.decoding
     }
 
     /// What is known of the video.
@@ -175,19 +197,22 @@ impl Video {
 
     fn next_event(&mut self) -> Result<Option<Event>, VideoError> {
         loop {
-            let event = match self.ahead.pop_front() {
-                Some(event) => Ok(Some(event)),
-                None => self.reader.next_event(),
+            let told = match (self.ahead.pop_front(), &mut self.events) {
+                (Some(event), _) => Told { event: Ok(Some(event)), cut: None, took: Duration::ZERO },
+                (None, Some(events)) => events.next(),
+                (None, None) => return Ok(None),
             };
-            match event {
+            self.decoding += told.took;
+            match told.event {
                 Ok(Some(_)) if self.known > 0 => self.known -= 1,
                 Ok(Some(event)) => return Ok(Some(event)),
                 Ok(None) => {
-                    self.end = self.reader.cut.clone().map_or(End::Whole, End::Early);
+                    self.end = told.cut.map_or(End::Whole, End::Early);
                     return Ok(None);
                 }
                 Err(Alarm) => {
-                    self.reader = Reader::open(&self.path, self.threads, Care::Exact)?;
+                    let reader = Reader::open(&self.path, self.threads, Care::Exact)?;
+                    self.events = Some(Events::of(Box::new(reader), self.is_ahead));
                     self.known = self.next_index;
                 }
             }
