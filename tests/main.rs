@@ -24,6 +24,8 @@ mod merge;
 mod nail_axes;
 mod nail_axes_drawn;
 mod nailvideo;
+mod nailvideo_extremes;
+mod nailvideo_figures;
 mod parsers;
 mod performance;
 mod phantom_contacts;

@@ -8,16 +8,17 @@ use lunula::video::{Encoder, Encoding, Format, Item, Picture, Plane, Turn, Video
 
 use crate::util::{Answer, Dir};
 
-type Row = BTreeMap<String, String>;
+pub(crate) type Row = BTreeMap<String, String>;
 
 /// A nail that is pressed once, small and fast.
-const SCENE: &str = "phantom nailvideo --size 320x240 --nail-px 90 --seconds 6 --drift 5 --x264 ultrafast --out s";
+pub(crate) const SCENE: &str =
+    "phantom nailvideo --size 320x240 --nail-px 90 --seconds 6 --drift 5 --x264 ultrafast --out s";
 
-fn words(dir: &Dir, text: &str) -> Answer {
+pub(crate) fn words(dir: &Dir, text: &str) -> Answer {
     dir.lunula(&text.split_whitespace().collect::<Vec<_>>())
 }
 
-fn number(text: &str) -> Option<f64> {
+pub(crate) fn number(text: &str) -> Option<f64> {
     (!text.is_empty()).then(|| text.parse().unwrap_or_else(|_| panic!("`{text}`")))
 }
 
@@ -103,7 +104,7 @@ fn what_can_not_be_followed_is_refused_with_its_remedy() {
 }
 
 /// The pictures of a video, in order.
-fn pictures(path: &Path) -> Vec<Picture> {
+pub(crate) fn pictures(path: &Path) -> Vec<Picture> {
     let mut video = Video::open(path, 2).expect("a video");
     let format = video.info().format;
     let mut all = Vec::new();
@@ -139,7 +140,7 @@ fn grey(picture: &Picture) -> Picture {
 }
 
 /// Writes pictures at these times in milliseconds, without loss where they have 8 bits.
-fn write(path: &Path, turn: Turn, pictures: impl Iterator<Item = (Picture, i64)>) {
+pub(crate) fn write(path: &Path, turn: Turn, pictures: impl Iterator<Item = (Picture, i64)>) {
     let mut pictures = pictures.peekable();
     let format = pictures.peek().expect("a picture").0.format;
     // Between the four: it stays there when they are turned.
