@@ -91,11 +91,11 @@ test: system
 	  left_out=$$(cargo test --quiet $(ALL) real_data:: -- --ignored --list | grep -c ': test$$'); \
 	  echo "left out: $$left_out tests of real recordings; LUNULA_REAL_DATA names their folder"; \
 	fi
-	@if command -v chromium >/dev/null; then \
+	@if command -v chromedriver >/dev/null; then \
 	  set -x; cargo test $(ALL) in_browser -- --ignored; \
 	else \
 	  left_out=$$(cargo test --quiet $(ALL) in_browser -- --ignored --list | grep -c ': test$$'); \
-	  echo "left out: $$left_out tests of pages; they need chromium (make browser)"; \
+	  echo "left out: $$left_out tests of pages; they need chromium and its driver (make browser)"; \
 	fi
 
 lint: system

@@ -91,7 +91,8 @@ fn live_tcp(dir: &Path) -> Link {
     Link { to: Box::new(to), from: Box::new(from), child: Some(child), thread: None }
 }
 
-/// As [`live_tcp`], with its page, which three hundred connections that never ask and one that does not read look at.
+/// As [`live_tcp`], with its page: a thousand connections that never ask, one that does not read, and one that sends
+/// ten gigabytes again and again.
 fn live_page(dir: &Path) -> Link {
     let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
     let source = format!("tcp:{}?once", listener.local_addr().expect("an address"));
@@ -99,10 +100,20 @@ fn live_page(dir: &Path) -> Link {
     let mut said = BufReader::new(child.stderr.take().expect("a pipe")).lines();
     let page = said.find_map(|line| line.ok()?.strip_prefix("page: http://").map(str::to_owned)).expect("an address");
     let (at, token) = page.split_once("/#").expect("an address");
-    let mut watchers: Vec<TcpStream> = (0..300).filter_map(|_| TcpStream::connect(at).ok()).collect();
+    let mut watchers: Vec<TcpStream> = (0..1000).filter_map(|_| TcpStream::connect(at).ok()).collect();
     let mut asleep = TcpStream::connect(at).expect("it listens");
     write!(asleep, "GET /api/live HTTP/1.1\r\nHost: {at}\r\nAuthorization: Bearer {token}\r\n\r\n").expect("it reads");
     watchers.push(asleep);
+    let (at, head) = (at.to_owned(), format!("POST /api/session HTTP/1.1\r\nHost: {at}\r\nOrigin: http://{at}\r\n"));
+    std::thread::spawn(move || {
+        while let Ok(mut large) = TcpStream::connect(&at) {
+            let mut sent = write!(large, "{head}Content-Length: 10000000000\r\n\r\n");
+            while sent.is_ok() {
+                sent = large.write_all(&[0; 1 << 16]);
+                std::thread::sleep(Duration::from_millis(1));
+            }
+        }
+    });
     let (to, _) = listener.accept().expect("it connects");
     to.set_nodelay(true).expect("a socket");
     let from = child.stdout.take().expect("a pipe");

@@ -45,7 +45,8 @@ same() {
 
 # A study of few people and short videos; every stage of pipelines/study.toml has work in it.
 small_study() {
-    sed 's/^study = .*/study = { seed = 1, subjects = 3, sensors = 2, presses = 2, seconds = 16 }/' \
+    sed -e 's/^study = .*/study = { seed = 1, subjects = 3, sensors = 2, presses = 2, seconds = 16 }/' \
+        -e '/name = "rising"/!s/ fps = 15,/ fps = 15, seconds = 8,/' \
         "$here/../pipelines/study.toml" >study.toml
 }
 
@@ -123,6 +124,12 @@ killed() {
     small_study
     # Generated beforehand: its long tasks would be killed again and again, and hide the others.
     "$lunula" phantom study --seed 1 --subjects 3 --sensors 2 --presses 2 --seconds 16 --out data -q
+    local film name protocol seed
+    for film in spiral:touch:1 random:touch-random:2 held-out:touch-random:3 rising:normal:4; do
+        IFS=: read -r name protocol seed <<<"$film"
+        "$lunula" phantom nailvideo --protocol "$protocol" --seed "$seed" --fps 15 --seconds 8 --size 480x360 \
+            --nail-px 142 --out "data/nailvideo/$name" -q
+    done
     sed -i '/^\[phantom\]/,/^$/d; s/{phantom}/data/' study.toml
     sleep 3
     timed "$lunula" run study.toml --out once --threads "$threads" -q

@@ -11,6 +11,7 @@ mod detection;
 mod digits;
 mod disks;
 mod doctor;
+mod edit;
 #[cfg(all(target_os = "linux", target_arch = "x86_64"))]
 mod faults;
 mod fit;
@@ -26,6 +27,7 @@ mod nail_axes_drawn;
 mod nailvideo;
 mod nailvideo_extremes;
 mod nailvideo_figures;
+mod pages;
 mod parsers;
 mod performance;
 mod phantom_contacts;

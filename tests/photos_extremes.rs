@@ -75,7 +75,7 @@ fn pictures_without_a_nail_give_none_and_the_others_go_on() {
 }
 
 /// As PNG with EXIF that says how it is to be turned.
-fn save_turned(picture: &RgbImage, orientation: u8, place: std::path::PathBuf) {
+pub(crate) fn save_turned(picture: &RgbImage, orientation: u8, place: std::path::PathBuf) {
     let mut tiff = *b"II*\0\x08\0\0\0\x01\0\x12\x01\x03\0\x01\0\0\0\x00\0\0\0\0\0\0\0";
     tiff[18] = orientation;
     let mut encoder = image::codecs::png::PngEncoder::new(std::fs::File::create(place).expect("a file"));

@@ -5,6 +5,7 @@ use lunula_live::wire::Row;
 
 use super::error::LiveError;
 use super::session::StreamColumns;
+use super::view::View;
 
 /// Hears all that happens; called in the session's own thread, so that no call may wait.
 pub(crate) trait Onlooker {
@@ -54,4 +55,6 @@ pub(crate) struct Attended<'a> {
     pub(crate) rows: Option<Box<dyn Rows>>,
     /// What is done, for the report.
     pub(crate) job: &'static str,
+    /// Where the session leaves what a page shows of the sensor.
+    pub(crate) view: Option<View>,
 }

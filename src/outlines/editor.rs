@@ -322,14 +322,14 @@ impl Editor {
     /// Says what is to be seen now.
     fn tell(&self, state: &mut State) {
         state.revision += 1;
-        if let Some(at) = state.current() {
-            if let Ok(picture) = self.picture_of(state, at) {
-                let size = [picture.image.width(), picture.image.height()];
-                let item = &state.items[at];
-                let view = item.view.filter(|view| state.whole || view.serves(&item.shape, size));
-                let fresh = || if state.whole { View::whole(size) } else { View::around(&item.shape, size) };
-                state.items[at].view = Some(view.unwrap_or_else(fresh));
-            }
+        if let Some(at) = state.current()
+            && let Ok(picture) = self.picture_of(state, at)
+        {
+            let size = [picture.image.width(), picture.image.height()];
+            let item = &state.items[at];
+            let view = item.view.filter(|view| state.whole || view.serves(&item.shape, size));
+            let fresh = || if state.whole { View::whole(size) } else { View::around(&item.shape, size) };
+            state.items[at].view = Some(view.unwrap_or_else(fresh));
         }
         let now: Now<'_> = now(&self.set, state);
         (self.show)(&serde_json::to_string(&now).unwrap_or_else(|_| "null".to_owned()));
@@ -392,9 +392,9 @@ impl Editor {
         };
         let mut report = Report::new("edit", watch, figures);
         report.failed.clone_from(&state.failed);
-        report.warnings = state.kept.iter().map(|kept| {
-            format!("{}: was changed by another program meanwhile, and stays as it is; its outlines from here are beside it", kept.display())
-        }).collect();
+        let beside =
+            "was changed by another program meanwhile and stays as it is; its outlines from here are beside it";
+        report.warnings = state.kept.iter().map(|kept| format!("{}: {beside}", kept.display())).collect();
         report.timed(&self.stages, self.start)
     }
 }

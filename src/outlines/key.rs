@@ -34,7 +34,7 @@ pub(super) enum Key {
         #[serde(default)]
         stride: Stride,
     },
-    /// Steps longer and wider.
+    /// Steps longer and wider; of the corner that was chosen, outwards.
     Grow {
         by: [f64; 2],
         #[serde(default)]

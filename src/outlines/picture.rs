@@ -21,6 +21,9 @@ const SHOWN_PX: u32 = 1000;
 /// Half the part around a nail, in its longer sides.
 const AROUND: f64 = 1.1;
 const QUALITY: u8 = 92;
+/// Nails that are shorter or narrower on the part that is shown are normalized from the photograph itself: there they
+/// would be blurred, or less than a nail (assumed).
+const ROUGH_PX: f64 = 100.0;
 
 /// A part of a photograph, whole pixels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize)]
@@ -161,14 +164,16 @@ impl Shown {
         [at(x, self.view.x, across), at(y, self.view.y, down)]
     }
 
-    /// About what [`normalized_png`] makes, in a tenth of the time where the nail is large: for a look between two keys.
-    /// `None` where the whole photograph is as quick, or shows more.
+    /// About what [`normalized_png`] makes, in a tenth of the time where the nail is large: for a look between two
+    /// keys. `None` where the whole photograph is as quick, or shows more.
     pub(super) fn normalized(&self, photo: &Photograph, shape: &NailShape, with: &Normalization) -> Option<Png> {
         let scale = [
             f64::from(self.small.width()) / f64::from(self.view.width),
             f64::from(self.small.height()) / f64::from(self.view.height),
         ];
-        if scale[0] == 1.0 || photo.image.color().has_alpha() {
+        let NailFrame { length_px, width_px, .. } = shape.frame();
+        let is_small = length_px.min(width_px) * scale[0] < ROUGH_PX;
+        if scale[0] == 1.0 || is_small || photo.image.color().has_alpha() {
             return None;
         }
         let points = shape.points.iter().map(|point| self.place(*point, scale)).collect();

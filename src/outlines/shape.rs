@@ -83,6 +83,25 @@ impl NailShape {
         }
     }
 
+    /// One corner and what goes with it, outwards across the rim, in steps; inwards where they are negative.
+    pub(super) fn bulge(&mut self, corner: usize, steps: f64, stride: Stride) {
+        let count = self.points.len();
+        if corner >= count {
+            return;
+        }
+        let [a, b] = [self.points[(corner + count - 1) % count], self.points[(corner + 1) % count]];
+        let along = [b[0] - a[0], b[1] - a[1]];
+        let length = along[0].hypot(along[1]).max(1e-9);
+        let step_px = MOVE * stride.factor() * self.size_px() * steps * self.turns_right() / length;
+        self.pull(Some(corner), [along[1] * step_px, -along[0] * step_px]);
+    }
+
+    /// 1 where the corners go clockwise as the photograph is seen, else -1.
+    fn turns_right(&self) -> f64 {
+        let next = self.points.iter().cycle().skip(1);
+        self.points.iter().zip(next).map(|(a, b)| a[0] * b[1] - b[0] * a[1]).sum::<f64>().signum()
+    }
+
     /// How far each corner goes with one of them.
     fn shares(&self, corner: usize) -> Vec<f64> {
         let count = self.points.len();
@@ -243,6 +262,21 @@ mod tests {
         let mut square = NailShape { points: points.clone(), axis: Axis::from_clockwise_rad(0.0) };
         square.pull(Some(2), [1.0, 1.0]);
         assert_eq!(square.points, [points[0], points[1], [10.0, 10.0], points[3]]);
+    }
+
+    #[test]
+    fn a_corner_goes_outwards_whichever_way_the_corners_go() {
+        let mut other_way = nail();
+        other_way.points.reverse();
+        for mut shape in [nail(), other_way] {
+            let (tip, before) = (shape.beside(None, true).expect("corners"), shape.frame().length_px);
+            shape.bulge(tip, 1.0, Stride::Usual);
+            let longer = shape.frame().length_px - before;
+            assert!((longer / (MOVE * nail().size_px()) - 1.0).abs() <= 0.05, "{longer}");
+            shape.bulge(tip, -2.0, Stride::Usual);
+            assert!(shape.frame().length_px < before);
+            shape.bulge(10_000, 1.0, Stride::Usual);
+        }
     }
 
     #[test]

@@ -141,7 +141,10 @@ pub(super) fn reshape(item: &mut Item, key: Key) {
     let shape = &mut item.shape;
     match key {
         Key::Move { by, stride } => shape.step(corner, by, stride),
-        Key::Grow { by, stride } => shape.grow(by, stride),
+        Key::Grow { by, stride } => match corner {
+            Some(corner) => shape.bulge(corner, if by[0] == 0.0 { by[1] } else { by[0] }, stride),
+            None => shape.grow(by, stride),
+        },
         Key::Turn { by, stride } => shape.turn(by, stride),
         Key::TurnAxis { by } => shape.turn_axis(by),
         Key::Flip => shape.flip(),
@@ -151,10 +154,8 @@ pub(super) fn reshape(item: &mut Item, key: Key) {
             item.gesture = Some(gesture);
         }
         Key::Insert => item.corner = corner.and_then(|corner| shape.insert(corner)),
-        Key::Remove => {
-            if corner.is_some_and(|corner| shape.remove(corner)) {
-                item.corner = corner.map(|corner| corner.min(item.shape.points.len() - 1));
-            }
+        Key::Remove if corner.is_some_and(|corner| shape.remove(corner)) => {
+            item.corner = corner.map(|corner| corner.min(item.shape.points.len() - 1));
         }
         Key::Reset => (item.shape, item.corner) = (item.begun.clone(), None),
         _ => {}

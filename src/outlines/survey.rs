@@ -12,7 +12,7 @@ use crate::labelme::LabelMe;
 use crate::nail::{Axis, Outline};
 use crate::photo::outline::{
     DOUBTFUL, Labelled, Listed, Moments, NAIL, Nail, OutlinePlace, Source, SourceFault, Sources, ToDraw, hundredths,
-    labelled, relative, template, to_file,
+    labelled, mark_upright, relative, template, to_file,
 };
 use crate::photo::{NailFrame, Photo, PhotoSet, Photograph};
 use crate::stages::Step;
@@ -99,7 +99,8 @@ fn of_file(home: &Path, picture: &Photograph, options: &EditOptions) -> Result<(
     let bytes = LabelMe::bytes(home).map_err(why)?;
     let file = LabelMe::parse(home, &bytes).map_err(why)?;
     let name = home.display().to_string();
-    let stored = options.outlines.drawn.is_stored(file.size(), picture, &name).map_err(|why| why.to_string())?;
+    let stored =
+        options.outlines.drawn.or_of(&file).is_stored(file.size(), picture, &name).map_err(|why| why.to_string())?;
     let found = labelled(&file, picture, stored, &[NAIL, DOUBTFUL]);
     let mut nails: Vec<Nail> = found.iter().map(|one| nail_of(&one.nail)).collect();
     options.outlines.complete_axes(picture, &mut nails);
@@ -171,7 +172,8 @@ fn of_search(
     });
     let drawn: Vec<ToDraw> = drawn.collect();
     let size = [picture.image.width(), picture.image.height()];
-    let file = to_file(&relative(&photo.path, home.parent()), size, &drawn);
+    let mut file = to_file(&relative(&photo.path, home.parent()), size, &drawn);
+    mark_upright(&mut file, picture);
     // Each polygon is one of them, in their order.
     let finds = labelled(&file, picture, false, &[NAIL, DOUBTFUL]).into_iter().zip(drawn);
     let finds = finds.map(|(one, nail)| {

@@ -15,7 +15,7 @@ use super::report::{PromptReport, figures};
 use super::run::Run;
 use crate::files::{Places, beside};
 use crate::job::{Report, Watch};
-use crate::live::{Attended, Growing, PhantomRows, SessionFiles, StreamOptions, attend};
+use crate::live::{Attended, Growing, PhantomRows, SessionFiles, StreamOptions, View, attend};
 use crate::phantom::log::Prompting;
 use crate::phantom::sensor::Touch;
 use crate::phantom::trajectory::J3_PER_J2;
@@ -157,11 +157,12 @@ impl Prompter {
         self.desk.frames(json)
     }
 
-    /// Goes through the protocol until it is done and nobody wants more, or it is interrupted.
+    /// Goes through the protocol until it is done and nobody wants more, or it is interrupted; a page of the sensor
+    /// shows what is left in `view`.
     ///
     /// # Errors
     /// A source that gives nothing, files that can't be written. What was recorded until then is kept.
-    pub fn run(&self, tell: &dyn Fn(&str), watch: &Watch<'_>) -> Result<PromptReport, PromptError> {
+    pub fn run(&self, view: Option<View>, tell: &dyn Fn(&str), watch: &Watch<'_>) -> Result<PromptReport, PromptError> {
         let start = Instant::now();
         let rows = self.subject_rows()?;
         let session =
@@ -169,7 +170,7 @@ impl Prompter {
         let full_scale_v = self.options.log.ambient.full_scale_v;
         let mut attendant = Attendant::new(self.desk.clone(), full_scale_v, self.alone);
         let attended =
-            Attended { onlooker: &mut attendant, columns: &COLUMNS, clock: self.desk.clock, rows, job: "prompt" };
+            Attended { onlooker: &mut attendant, columns: &COLUMNS, clock: self.desk.clock, rows, job: "prompt", view };
         let of_session = attend(&self.options, &session, attended, tell, watch)?;
         let mut shared = self.desk.lock();
         let mut report = Report::new("prompt", watch, figures(&shared, self.files.out.clone()));

@@ -45,18 +45,37 @@ pub(crate) struct Listening {
     allow_host: Vec<String>,
 }
 
+/// Where the page of a job at work is, and what else is there.
+#[derive(Debug, Args)]
+pub(crate) struct PageArgs {
+    /// Also show the results below this folder, as `lunula ui` does, on the same port
+    #[arg(long, value_name = "DIR", num_args = 1..)]
+    results: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) listening: Listening,
+}
+
+impl PageArgs {
+    /// A server that listens, with what `sites` have to show, the first of them first.
+    pub(crate) fn bind(&self, mut sites: Vec<Site>) -> Result<Server, UiError> {
+        if !self.results.is_empty() {
+            sites.push(lunula_ui::results(&self.results)?);
+        }
+        self.listening.bind(sites)
+    }
+}
+
 pub(super) fn run(args: &UiArgs) -> anyhow::Result<Outcome> {
     let stop = args.common.start()?;
-    let server = args.listening.bind(lunula_ui::results(&args.folders)?)?;
+    let server = args.listening.bind(vec![lunula_ui::results(&args.folders)?])?;
     args.listening.serve(server, &args.common, &stop)?;
     Ok(Outcome::Done)
 }
 
 impl Listening {
-    /// A server that listens, with what `site` has to show.
-    pub(crate) fn bind(&self, site: Site) -> Result<Server, UiError> {
+    fn bind(&self, sites: Vec<Site>) -> Result<Server, UiError> {
         let address = self.listen.unwrap_or(Ipv4Addr::LOCALHOST.into());
-        let server = Server::bind(&Settings { address, port: self.port, names: self.allow_host.clone() }, site)?;
+        let server = Server::bind(&Settings { address, port: self.port, names: self.allow_host.clone() }, sites)?;
         if !address.is_loopback() {
             eprintln!("warning: others can reach {address}, and nothing is encrypted; `ssh -L` is safer");
         }

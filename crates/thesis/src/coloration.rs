@@ -6,7 +6,8 @@
 //!
 //! Places on the nail: `u` across, from -1 at the left edge of its box to 1 at the right, `v` along, from -1 proximal
 //! to 1 distal; the thesis shows pictures and no numbers, so the regions are read off its words ([`REGIONS`]). A change
-//! is a region's mean less that of the nominal pose. Values are shares of full scale.
+//! is a region's mean less that of the nominal pose. `<pose>.P1` and on are means over the photodiodes' discs, at the
+//! thesis' places. Values are shares of full scale.
 
 use std::path::Path;
 
@@ -17,6 +18,7 @@ use ndarray::Array2;
 use super::Numbers;
 use lunula::figure::{Scale, Sheet, Stretch, Tile, TilePicture, grey_map};
 use lunula::files::Staging;
+use lunula::nail::{Position, Positions};
 use lunula::npy;
 use lunula::phantom::nail::Pose;
 
@@ -52,7 +54,7 @@ impl Map {
     }
 
     /// Known values of a region.
-    fn of(&self, within: Within) -> Vec<f64> {
+    fn of(&self, within: impl Fn(f64, f64) -> bool) -> Vec<f64> {
         let size = self.0.nrows() as f64;
         let half = 0.5 * BOX * size;
         let inside = self.0.indexed_iter().filter(|((row, column), value)| {
@@ -62,7 +64,7 @@ impl Map {
         inside.map(|(_, value)| f64::from(*value)).collect()
     }
 
-    fn mean(&self, within: Within) -> Option<f64> {
+    fn mean(&self, within: impl Fn(f64, f64) -> bool) -> Option<f64> {
         mean(&self.of(within))
     }
 
@@ -97,6 +99,11 @@ fn region(name: &str) -> Within {
     REGIONS.iter().find(|(own, _)| *own == name).map_or(|_, _| false, |(_, within)| *within)
 }
 
+/// The mean of a region of a normalized picture.
+pub(crate) fn region_mean(picture: &Array2<f32>, name: &str) -> Option<f64> {
+    Map(picture.clone()).mean(region(name))
+}
+
 /// Numbers of the average maps in a folder of `lunula photos`; what is missing is not reported.
 ///
 /// # Errors
@@ -128,12 +135,17 @@ pub(crate) fn coloration_numbers(photos: &Path) -> anyhow::Result<Numbers> {
     let of = |pose: Pose| means.iter().find(|(own, _)| *own == pose).map(|(_, map)| map);
     let bed = region("bed");
     let nominal = of(Pose::Nominal);
+    let sensor = Positions::thesis();
     for (pose, map) in &means {
         for (name, within) in REGIONS {
             let value = map.mean(within);
             numbers.set(format!("{pose}.{name}"), value);
             let rest = nominal.and_then(|nominal| nominal.mean(within));
             numbers.set(format!("{pose}.{name}_change"), value.zip(rest).map(|(value, rest)| value - rest));
+        }
+        for Position { name, u, v } in &sensor.photodiodes {
+            let disc = |x: f64, y: f64| (x - u).hypot(y - v) <= 2.0 * sensor.radius_widths();
+            numbers.set(format!("{pose}.{name}"), map.mean(disc));
         }
         let values = map.of(bed);
         let white = values.iter().filter(|value| **value > f64::from(THRESHOLD)).count() as f64;
@@ -174,6 +186,14 @@ fn alike(numbers: &mut Numbers, means: &[(Pose, Map)]) {
     numbers.set("least_difference", apart.reduce(f64::min));
 }
 
+/// A normalized picture; NaN where it is transparent.
+pub(crate) fn grey_picture(path: &Path) -> anyhow::Result<Array2<f32>> {
+    let picture = image::open(path).with_context(|| path.display().to_string())?.to_luma_alpha16();
+    let size = (picture.height() as usize, picture.width() as usize);
+    let level = |pixel: &image::LumaA<u16>| if pixel.0[1] == 0 { f32::NAN } else { f32::from(pixel.0[0]) / 65535.0 };
+    Ok(Array2::from_shape_vec(size, picture.pixels().map(level).collect())?)
+}
+
 /// One subject's normalized pictures, `<pose>/<subject>.png` in a folder: as they are (Fig. 51) and with 30 to 50 %
 /// stretched (Fig. 52). Tells which subject's.
 ///
@@ -195,15 +215,7 @@ pub(crate) fn coloration_sheets(pictures: &Path, subject: Option<&str>, out: &Pa
         None => subjects.iter().find(|subject| whole(subject)),
     };
     let Some(subject) = chosen else { bail!("no subject has a picture of every pose; choose one with `subject`") };
-    let read = |pose: Pose| -> anyhow::Result<Array2<f32>> {
-        let path = place(pose, subject);
-        let picture = image::open(&path).with_context(|| path.display().to_string())?.to_luma_alpha16();
-        let size = (picture.height() as usize, picture.width() as usize);
-        let level =
-            |pixel: &image::LumaA<u16>| if pixel.0[1] == 0 { f32::NAN } else { f32::from(pixel.0[0]) / 65535.0 };
-        Ok(Array2::from_shape_vec(size, picture.pixels().map(level).collect())?)
-    };
-    let maps = poses.iter().map(|pose| read(*pose)).collect::<anyhow::Result<Vec<_>>>()?;
+    let maps = poses.iter().map(|pose| grey_picture(&place(*pose, subject))).collect::<anyhow::Result<Vec<_>>>()?;
     let staging = Staging::new(out)?;
     let [low, high] = CONTRAST;
     for (name, title, stretch) in [

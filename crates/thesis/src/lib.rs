@@ -2,15 +2,17 @@
 //! study's results, and a page that sets what the thesis says beside what came out.
 //!
 //! In: results of the library's jobs, of a phantom ([`phantom`]) or of one's own recordings. Out: pictures, tables, and
-//! numbers by name ([`Numbers`]) for each part: the sensor's responses of 3.3, the coloration of 4.2, the simulations
-//! of 4.3 and presses of people ([`section_4_3`]), the predictors of chapter 5 ([`compare`]); and what the thesis
-//! states of them, judged ([`statements`]) and set on a page with all figures ([`study_page`]).
+//! numbers by name ([`Numbers`]) for each part: the nail's colour as a sensor and a camera see it (2.3, 2.4), the
+//! sensor's responses of 3.3, the coloration of 4.2, the simulations of 4.3 and presses of people ([`section_4_3`]),
+//! the predictors of chapter 5 ([`compare`]), trials of appendix C; and what the thesis states of them, judged
+//! ([`statements`]) and set on a page with all figures ([`study_page`]).
 //!
 //! Its jobs are stages of pipelines ([`kinds`]), its phantom a block of `[phantom]` ([`experiments`]): whoever runs
 //! pipelines hands both to the engine, beside the library's own.
 
 mod coloration;
 pub mod compare;
+mod film;
 mod numbers;
 mod page;
 pub mod phantom;
@@ -32,8 +34,11 @@ pub use section::section_4_3;
 pub fn kinds() -> &'static [&'static Kind] {
     static KINDS: &[&Kind] = &[
         &compare::CompareJob::KIND,
+        &film::FilmJob::KIND,
+        &compare::HalvesJob::KIND,
         &section::PressesJob::KIND,
         &responses::ResponsesJob::KIND,
+        &film::RisingJob::KIND,
         &section::SectionJob::KIND,
         &page::StudyJob::KIND,
         &typical::TypicalJob::KIND,

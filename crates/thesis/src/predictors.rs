@@ -1,11 +1,14 @@
-//! Numbers of the predictors: of one subject's evaluations and modes (Fig. 94 to 104), and of the comparison over
-//! subjects (Fig. 105 to 113).
+//! Numbers of the predictors: of one subject's evaluations and modes (Fig. 94 to 104), of the comparison over subjects
+//! (Fig. 105 to 113); and of trials (Fig. 123, 124).
 //!
 //! In: the tables `merit.csv`, `predicted.csv`, `modes.csv`, `comparisons.csv` that evaluate, analyse and compare
-//! write. Out: [`Numbers`]; what a table lacks is not reported.
+//! write, and performance's `performance.json`. Out: [`Numbers`]; what a table lacks is not reported.
 
 use std::collections::BTreeMap;
 use std::path::Path;
+
+use anyhow::Context;
+use serde_json::Value;
 
 use super::Numbers;
 use lunula::table::{Table, TableError};
@@ -158,6 +161,25 @@ pub(crate) fn compare_numbers(folder: &Path) -> Result<Numbers, TableError> {
             numbers.set(format!("113.greatest_loss_{target}"), loss);
         }
     }
+    Ok(numbers)
+}
+
+/// Of a performance's folder: `operators`; `first_over`, the time per decision of the first trial over the baseline's;
+/// `level_over`, the trials to level off over the baseline's; `mean_over`, over all trials; of the first method that is
+/// compared.
+///
+/// # Errors
+/// A file that can't be read or has another form.
+pub(crate) fn performance_numbers(folder: &Path) -> anyhow::Result<Numbers> {
+    let mut numbers = Numbers::default();
+    let path = folder.join("performance.json");
+    let text = std::fs::read_to_string(&path).with_context(|| path.display().to_string())?;
+    let found: Value = serde_json::from_str(&text).with_context(|| path.display().to_string())?;
+    let compared = &found["comparisons"][0];
+    numbers.set("operators", found["operators"].as_array().map(|all| all.len() as f64));
+    numbers.set("first_over", compared["initially"]["ratio"].as_f64());
+    numbers.set("level_over", compared["to_level_off"]["ratio"].as_f64());
+    numbers.set("mean_over", compared["overall"]["ratio_of_means"].as_f64());
     Ok(numbers)
 }
 

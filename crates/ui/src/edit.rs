@@ -58,7 +58,7 @@ pub fn edit(editing: Arc<dyn Editing>, state: &Latest) -> Site {
         .route("/api/edit/rough", get(async |State(desk): State<Desk>| normalized(desk, true).await))
         .with_state(desk);
     let [page, assets @ ..] = &EDIT;
-    Site { page: *page, assets, routes, most_body: SMALL_BODY }
+    Site { name: "edit", title: "Outlines", page: *page, assets, routes, most_body: SMALL_BODY }
 }
 
 async fn key(State(desk): State<Desk>, body: Bytes) -> StatusCode {

@@ -17,5 +17,5 @@ pub fn live(pictures: &Latest) -> Site {
     let pictures = pictures.clone();
     let routes = Router::new().route("/api/live", get(async move || pictures.told()));
     let [page, assets @ ..] = &LIVE;
-    Site { page: *page, assets, routes, most_body: SMALL_BODY }
+    Site { name: "live", title: "Sensor", page: *page, assets, routes, most_body: SMALL_BODY }
 }

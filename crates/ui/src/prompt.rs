@@ -53,7 +53,7 @@ pub fn prompt(prompting: Arc<dyn Prompting>, state: &Latest, force: &Latest) -> 
         )
         .with_state(desk);
     let [page, assets @ ..] = &PROMPT;
-    Site { page: *page, assets, routes, most_body: MOST_BODY }
+    Site { name: "prompt", title: "Prompter", page: *page, assets, routes, most_body: MOST_BODY }
 }
 
 async fn clock(State(desk): State<Desk>) -> Response {

@@ -54,7 +54,14 @@ pub fn results(folders: &[PathBuf]) -> Result<Site, UiError> {
         .route("/api/file/{number}", get(file))
         .with_state(Arc::new(Mutex::new(Folders::new(roots))));
     let [page, script] = &RESULTS;
-    Ok(Site { page: *page, assets: std::slice::from_ref(script), routes, most_body: SMALL_BODY })
+    Ok(Site {
+        name: "results",
+        title: "Results",
+        page: *page,
+        assets: std::slice::from_ref(script),
+        routes,
+        most_body: SMALL_BODY,
+    })
 }
 
 async fn list(State(folders): State<Arc<Mutex<Folders>>>) -> Response {

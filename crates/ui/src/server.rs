@@ -6,7 +6,6 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use axum::Router;
 use axum::extract::{DefaultBodyLimit, Request, State};
 use axum::http::StatusCode;
 use axum::http::header::{
@@ -16,11 +15,13 @@ use axum::http::header::{
 use axum::middleware::{Next, from_fn_with_state};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{MethodRouter, get, post};
+use axum::{Json, Router};
+use serde_json::{Value, json};
 use tempfile::NamedTempFile;
 use thiserror::Error;
 
 use crate::connection::accept;
-use crate::guard::{Guard, SESSION};
+use crate::guard::{Guard, PAGES, SESSION};
 use crate::pages::{Asset, COMMON};
 use crate::site::Site;
 
@@ -69,15 +70,15 @@ pub struct Server {
     listener: TcpListener,
     at: SocketAddr,
     guard: Arc<Guard>,
-    site: Site,
+    sites: Vec<Site>,
 }
 
 impl Server {
-    /// Listens, with what `site` has to show.
+    /// Listens, with what `sites` have to show: the first is the page at `/`, each is at `/NAME`.
     ///
     /// # Errors
     /// [`UiError`]: a port that is taken.
-    pub fn bind(settings: &Settings, site: Site) -> Result<Self, UiError> {
+    pub fn bind(settings: &Settings, sites: Vec<Site>) -> Result<Self, UiError> {
         let at = SocketAddr::new(settings.address, settings.port);
         let listen = || {
             let listener = TcpListener::bind(at)?;
@@ -87,7 +88,7 @@ impl Server {
         };
         let (listener, at) = listen().map_err(|why| UiError::Listen(at, why))?;
         let guard = Guard::new(at.port(), &settings.names).map_err(UiError::Random)?;
-        Ok(Self { listener, at, guard: Arc::new(guard), site })
+        Ok(Self { listener, at, guard: Arc::new(guard), sites })
     }
 
     /// The address of the page, with the token: whoever has it sees the results.
@@ -115,11 +116,11 @@ impl Server {
     /// # Errors
     /// The system refuses to.
     pub fn run(self, stop: &AtomicBool) -> Result<(), UiError> {
-        let Self { listener, guard, site, .. } = self;
+        let Self { listener, guard, sites, .. } = self;
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(UiError::Serve)?;
         runtime.block_on(async move {
             let listener = tokio::net::TcpListener::from_std(listener).map_err(UiError::Serve)?;
-            let serving = tokio::spawn(accept(listener, pages(guard, site)));
+            let serving = tokio::spawn(accept(listener, pages(guard, sites)));
             while !stop.load(Ordering::Relaxed) && !serving.is_finished() {
                 tokio::time::sleep(TICK).await;
             }
@@ -130,12 +131,24 @@ impl Server {
 }
 
 /// All that is answered.
-fn pages(guard: Arc<Guard>, site: Site) -> Router {
-    let Site { page, assets, routes, most_body } = site;
-    let mut pages =
-        Router::new().route(SESSION, post(enter)).with_state(Arc::clone(&guard)).merge(routes).route("/", given(page));
-    for asset in assets.iter().chain(&COMMON) {
+fn pages(guard: Arc<Guard>, sites: Vec<Site>) -> Router {
+    let most_body = sites.iter().map(|site| site.most_body).max().unwrap_or_default();
+    let links: Vec<Value> = sites.iter().map(|site| json!({ "name": site.name, "title": site.title })).collect();
+    let mut pages = Router::new()
+        .route(SESSION, post(enter))
+        .with_state(Arc::clone(&guard))
+        .route(PAGES, get(async move || Json(links)));
+    if let Some(first) = sites.first() {
+        pages = pages.route("/", given(first.page));
+    }
+    for asset in &COMMON {
         pages = pages.route(asset.path, given(*asset));
+    }
+    for Site { name, page, assets, routes, .. } in sites {
+        pages = pages.merge(routes).route(&format!("/{name}"), given(page));
+        for asset in assets {
+            pages = pages.route(asset.path, given(*asset));
+        }
     }
     pages.layer(DefaultBodyLimit::max(most_body)).layer(from_fn_with_state((guard, most_body), guarded))
 }

@@ -73,8 +73,8 @@ fn strangers_are_refused_and_hear_nothing() {
 #[test]
 fn half_open_connections_and_large_bodies_hold_nobody_up() {
     let server = run(one_run);
-    // Three hundred that never ask, and stay.
-    let _held: Vec<TcpStream> = (0..300).map(|_| TcpStream::connect(&server.at).unwrap()).collect();
+    // A thousand that never ask, and stay.
+    let _held: Vec<TcpStream> = (0..1000).map(|_| TcpStream::connect(&server.at).unwrap()).collect();
     let cookie = server.cookie();
     let own = format!("Origin: http://{}\r\n", server.at);
     // Ten gigabytes are announced, and not waited for.
@@ -93,7 +93,7 @@ fn a_folder_that_does_not_exist_and_a_port_that_is_taken_are_said() {
     assert!(matches!(results(&["/does/not/exist".into()]), Err(UiError::Folder { .. })));
     let server = run(one_run);
     let port = server.at.rsplit_once(':').unwrap().1.parse().unwrap();
-    let taken = Server::bind(&Settings { port, ..Settings::default() }, results(&[]).unwrap()).err().unwrap();
+    let taken = Server::bind(&Settings { port, ..Settings::default() }, vec![results(&[]).unwrap()]).err().unwrap();
     assert!(taken.to_string().contains("choose another --port"), "{taken}");
 }
 

@@ -16,7 +16,7 @@ use super::outputs::switch::SwitchOutput;
 use super::outputs::{AnswerRow, Outputs};
 use super::sensor::Sensor;
 use crate::live::error::LiveError;
-use crate::live::view::View;
+use crate::live::view::{Seen, View};
 use crate::log::{LogReading, PRECEDING_RULE};
 use crate::predictor::Answering;
 
@@ -47,6 +47,8 @@ pub(super) struct Decide {
     pub(super) span_s: Option<[f64; 2]>,
     /// The recorded clock less the stream's, seconds.
     ahead_s: f64,
+    /// Photodiodes of the row that a page sees, where no model asks for them.
+    volts: Vec<f64>,
 }
 
 /// Whether a row is recorded.
@@ -100,7 +102,7 @@ impl Decide {
             }
         };
         let samples = recording.map(|recording| Samples::new(recording, &columns, joins_forces));
-        Ok(Self { finger, columns, samples, answers, rows: 0, span_s: None, ahead_s: 0.0 })
+        Ok(Self { finger, columns, samples, answers, rows: 0, span_s: None, ahead_s: 0.0, volts: Vec::new() })
     }
 
     /// A row has come, at `common_s` of the clock that all sources are on.
@@ -138,14 +140,31 @@ impl Decide {
         let finger = self.finger.as_ref().map(|(name, place)| (name.as_str(), *place));
         match &mut self.answers {
             Some(answers) => answers.row(row, time_s, self.ahead_s, finger, outputs),
-            None => Ok(()),
+            None => {
+                // Lit and unlit ones in turn would be no trace.
+                if let Some(view) = outputs.view.as_mut().filter(|_| row.lit != Some(false)) {
+                    self.volts.clear();
+                    self.volts.extend(self.columns.photodiodes().map(|k| row.values[k]));
+                    let seen = Seen { time_s, volts: &self.volts, answers: &[], contact: None, pressed: None };
+                    view.sample(self.place().1, &seen);
+                }
+                Ok(())
+            }
         }
+    }
+
+    /// The finger's name, and which it is.
+    fn place(&self) -> (Option<&str>, usize) {
+        self.finger.as_ref().map_or((None, 0), |(name, place)| (Some(name.as_str()), *place))
     }
 
     /// Tells a page what there is to show.
     pub(super) fn show(&self, view: &mut View) {
-        let Some(answers) = &self.answers else { return };
-        let (name, place) = self.finger.as_ref().map_or((None, 0), |(name, place)| (Some(name.as_str()), *place));
+        let (name, place) = self.place();
+        let Some(answers) = &self.answers else {
+            let names: Vec<String> = self.columns.photodiodes().map(|k| self.columns.values[k].clone()).collect();
+            return view.finger(place, name, [&names, &[]], false);
+        };
         let answering = answers.sensor.answering();
         view.finger(place, name, [answering.inputs(), answering.columns()], answers.switch.is_some());
     }

@@ -136,7 +136,7 @@ pub fn record(
 pub(crate) fn attend<'a>(
     options: &'a StreamOptions,
     files: &'a SessionFiles,
-    attended: Attended<'a>,
+    mut attended: Attended<'a>,
     tell: &'a dyn Fn(&str),
     watch: &Watch<'_>,
 ) -> Result<SessionReport, LiveError> {
@@ -147,7 +147,9 @@ pub(crate) fn attend<'a>(
     check_places(&all, files)?;
     let job = attended.job;
     let plans = all.iter().map(|finger| finger.plan(false)).collect();
-    let session = Session::new(options, files, all, plans, Outputs::default(), tell, Some(attended), watch)?;
+    let mut outputs = Outputs::default();
+    outputs.view = attended.view.take();
+    let session = Session::new(options, files, all, plans, outputs, tell, Some(attended), watch)?;
     session.run(job, left_out(record_steps(options, files)), watch)
 }
 

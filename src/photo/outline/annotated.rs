@@ -114,7 +114,24 @@ pub enum ShapeFault {
     },
 }
 
+/// A key of files that are written here, where their size can't say that they were drawn on the upright picture.
+const DRAWN_ON: &str = "lunulaDrawnOn";
+const UPRIGHT: &str = "upright";
+
+/// Says in a file that it was drawn on the upright photograph, where nothing else in it does.
+pub(crate) fn mark_upright(file: &mut LabelMe, photo: &Photograph) {
+    if Drawn::Auto.is_stored(file.size(), photo, "").is_err() {
+        file.other.insert(DRAWN_ON.to_owned(), UPRIGHT.into());
+    }
+}
+
 impl Drawn {
+    /// As a file that was written here says, unless a person says something else.
+    pub(crate) fn or_of(self, file: &LabelMe) -> Self {
+        let is_upright = file.other.get(DRAWN_ON).is_some_and(|on| on == UPRIGHT);
+        if self == Self::Auto && is_upright { Self::Upright } else { self }
+    }
+
     /// Whether something drawn at `size` on `photo` was drawn on the stored picture (and has to be turned with it).
     ///
     /// # Errors
@@ -153,7 +170,7 @@ impl Drawn {
 pub fn read(path: &Path, photo: &Photograph, drawn: Drawn) -> Result<Vec<Annotated>, AnnotationFault> {
     let file = LabelMe::read(path)?;
     let name = path.display().to_string();
-    let stored = drawn.is_stored(file.size(), photo, &name)?;
+    let stored = drawn.or_of(&file).is_stored(file.size(), photo, &name)?;
     let nails: Vec<Annotated> = labelled(&file, photo, stored, &[NAIL]).into_iter().map(|one| one.nail).collect();
     if nails.is_empty() { Err(AnnotationFault::NoNail(name)) } else { Ok(nails) }
 }
@@ -248,7 +265,8 @@ pub struct ToDraw {
 
 /// A LabelMe file of detected nails: polygons, each with its axis line through the box, tied by `group_id`.
 ///
-/// `image_path` is the photograph's, relative to the file that will be written.
+/// `image_path` is the photograph's, relative to the file that will be written; `size` is that of the upright one,
+/// pixels.
 pub fn to_file(image_path: &str, size: [u32; 2], nails: &[ToDraw]) -> LabelMe {
     let mut shapes = Vec::new();
     for (group, nail) in (1..).zip(nails) {

@@ -8,9 +8,10 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use super::annotated::{ToDraw, to_file};
+use super::annotated::{ToDraw, mark_upright, to_file};
 use super::source::{Nail, Source};
 use crate::files::{Places, WriteError};
+use crate::labelme::LabelMe;
 use crate::photo::set::{Photo, PhotoSet};
 use crate::photograph::Photograph;
 
@@ -19,10 +20,8 @@ use crate::photograph::Photograph;
 pub(in crate::photo) struct DetectedOutline {
     /// Index of its photograph in the set.
     photo: usize,
-    /// Width and height of the upright photograph, pixels.
-    size: [u32; 2],
-    /// Trusted and doubtful ones.
-    nails: Vec<ToDraw>,
+    /// Trusted and doubtful ones, as a file without its photograph's path.
+    file: LabelMe,
 }
 
 impl DetectedOutline {
@@ -37,7 +36,9 @@ impl DetectedOutline {
             })
             .collect();
         let size = [picture.image.width(), picture.image.height()];
-        (!found.is_empty()).then_some(Self { photo, size, nails: found })
+        let mut file = to_file("", size, &found);
+        mark_upright(&mut file, picture);
+        (!found.is_empty()).then_some(Self { photo, file })
     }
 }
 
@@ -98,7 +99,7 @@ pub(in crate::photo) fn keep_outlines(
         }
         // Its folder is there from here on, and paths relative to it can be written.
         let at = places.place(&path)?;
-        let file = to_file(&relative(&photo.path, path.parent()), detected.size, &detected.nails);
+        let file = LabelMe { image_path: relative(&photo.path, path.parent()), ..detected.file.clone() };
         let refused = |why: String| WriteError::File { path: path.clone(), why };
         let text = file.to_text().map_err(|why| refused(why.to_string()))?;
         std::fs::write(at, text).map_err(|why| refused(why.to_string()))?;

@@ -13,7 +13,7 @@ pub use crate::nail::{Axis, Outline, OutlineFault};
 pub use annotated::{
     AXIS, Annotated, AnnotationFault, DOUBTFUL, Drawn, NAIL, ShapeFault, ToDraw, read as read_annotated, to_file,
 };
-pub(crate) use annotated::{Labelled, labelled};
+pub(crate) use annotated::{Labelled, labelled, mark_upright};
 pub use axis::{AxisDoubt, AxisUnknown, FoundAxis, LEAST_CONFIDENCE, Side, axis_towards, find_axes, find_axes_towards};
 #[doc(hidden)]
 pub use detect::training;

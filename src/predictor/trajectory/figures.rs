@@ -16,22 +16,22 @@ const POINTS: u32 = 12_000;
 /// How the colours of a chart are called.
 const COLOURS: [&str; 3] = ["blue", "orange", "green"];
 
-fn moments(options: &TrajectoryOptions) -> impl Iterator<Item = f64> {
+pub(super) fn moments(options: &TrajectoryOptions) -> impl Iterator<Item = f64> {
     let step_s = options.whole_s() / f64::from(POINTS);
     (0..=POINTS).map(move |k| f64::from(k) * step_s)
 }
 
-fn line(name: Option<&str>, points: Vec<[f64; 2]>, colour: usize, width: u32) -> Item {
+pub(super) fn line(name: Option<&str>, points: Vec<[f64; 2]>, colour: usize, width: u32) -> Item {
     Item::Line { name: name.map(str::to_owned), runs: vec![points], colour, width }
 }
 
-fn chart(title: &str, x: &str, y: &str, items: Vec<Item>, height: u32) -> Chart {
+pub(super) fn chart(title: &str, x: &str, y: &str, items: Vec<Item>, height: u32) -> Chart {
     let axis = |label: &str| Axis { label: label.to_owned() };
     Chart { title: title.to_owned(), x: axis(x), y: axis(y), from_zero: false, items, height }
 }
 
 /// Whether two points fall together on a chart of this size.
-fn is_near(a: [f64; 2], b: [f64; 2], size: [f64; 2]) -> bool {
+pub(super) fn is_near(a: [f64; 2], b: [f64; 2], size: [f64; 2]) -> bool {
     (0..2).all(|k| (a[k] - b[k]).abs() < NEAR * size[k])
 }
 

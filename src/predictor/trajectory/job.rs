@@ -7,6 +7,7 @@ use lunula_predictor::ForceSpaceFault;
 use thiserror::Error;
 
 use super::check::faults;
+use super::cone::draw_cone;
 use super::motion::Motion;
 use super::report::{ForceFigures, PostureFigures, TrajectoryFigures, TrajectoryReport};
 use super::{Kind, TrajectoryOptions, TrajectoryOutputs, figures};
@@ -60,7 +61,11 @@ pub fn plan(options: &TrajectoryOptions, outputs: Option<&TrajectoryOutputs>) ->
             spiral,
             if spiral { "as printed and with the true maximum" } else { "only of the spiral" }.to_owned(),
         ),
-        Step::new("figures", pictures, if pictures { "of its path and over time" } else { "--no-figures" }.to_owned()),
+        Step::new(
+            "figures",
+            pictures,
+            if pictures { "of its path, in its cone and over time" } else { "--no-figures" }.to_owned(),
+        ),
     ])
 }
 
@@ -165,13 +170,14 @@ fn draw(
     places: &mut Places,
 ) -> Result<Vec<PathBuf>, TrajectoryError> {
     let kinds: &[&str] = match motion {
-        Motion::Force(_) => &["force", "path"],
+        Motion::Force(_) => &["force", "path", "cone"],
         Motion::Posture { .. } => &["posture"],
     };
     let mut pictures = Vec::new();
     for kind in kinds {
         pictures.push(places.draw(table, kind, |png, svg| match motion {
             Motion::Force(motion) if *kind == "path" => figures::draw_path(options, motion, png, svg),
+            Motion::Force(motion) if *kind == "cone" => draw_cone(options, motion, png, svg),
             Motion::Force(motion) => figures::draw_forces(options, motion, png, svg),
             Motion::Posture { path, .. } => figures::draw_posture(options, path, png, svg),
         })?);

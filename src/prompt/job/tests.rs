@@ -26,7 +26,7 @@ fn run(dir: &Path, source: &str, protocol: &str) -> Result<PromptReport, PromptE
     let path = dir.join("p.toml");
     std::fs::write(&path, protocol).unwrap();
     let files = PromptFiles { protocol: Some(path), out: dir.join("r.csv"), replace: false };
-    Prompter::new(&options(source), &files, Arc::new(Nobody))?.run(&|_| {}, &Watch::nobody())
+    Prompter::new(&options(source), &files, Arc::new(Nobody))?.run(None, &|_| {}, &Watch::nobody())
 }
 
 fn column(table: &Table, name: &str) -> Vec<f64> {

@@ -39,7 +39,7 @@ impl Fits<'_> {
 }
 
 /// The RMSE of each target on rows.
-fn rmse(predictor: Option<&Predictor>, data: &Dataset) -> Result<Vec<Option<f64>>, PredictorError> {
+pub(crate) fn rmse(predictor: Option<&Predictor>, data: &Dataset) -> Result<Vec<Option<f64>>, PredictorError> {
     let Some(predictor) = predictor else { return Ok(vec![None; data.targets().len()]) };
     let (seen, predicted) = predictor.predict(data)?;
     let scores = score(seen.y().view(), predicted.view(), seen.targets());

@@ -8,6 +8,7 @@
 //! spiral 3 and stops on it too).
 
 mod comparison;
+mod halves;
 mod kind;
 mod measure;
 mod options;
@@ -20,10 +21,12 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
+pub(crate) use halves::HalvesJob;
 use lunula::job::{Report, Watch};
 use lunula::predictor::{FolderOutputs, PredictorError, end};
 use lunula::stages::{Stages, Step, left_out};
 use measure::measure;
+pub(crate) use measure::rmse;
 
 pub use comparison::{Comparison, Spread};
 pub use kind::CompareJob;

@@ -2,9 +2,10 @@
 
 use super::Part;
 
-/// A figure of the thesis.
+/// A figure of the thesis, or one that the thesis has not.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Figure {
+    /// In the thesis; a name where the thesis has none.
     pub(super) number: &'static str,
     /// The part that has its counterpart.
     pub(super) part: Part,
@@ -24,6 +25,14 @@ pub(super) struct Section {
     pub(super) figures: &'static [Figure],
 }
 
+impl Figure {
+    /// What the page calls it.
+    pub(super) fn label(&self) -> String {
+        let is_numbered = self.number.starts_with(|first: char| first.is_ascii_digit());
+        if is_numbered { format!("Fig. {}", self.number) } else { self.number.to_owned() }
+    }
+}
+
 const fn figure(number: &'static str, part: Part, picture: &'static str, caption: &'static str) -> Figure {
     Figure { number, part, picture, caption }
 }
@@ -31,9 +40,36 @@ const fn figure(number: &'static str, part: Part, picture: &'static str, caption
 /// All data figures, in the thesis' order.
 pub(super) const SECTIONS: &[Section] = &[
     Section {
+        name: "colours",
+        title: "2.3 and 2.4 The nail's colour, and what sensors see of it",
+        of: &["2.3", "2.4"],
+        figures: &[
+            figure("5", Part::Rising, "rising", "One nail under rising normal force, filmed; contrast stretched."),
+            figure(
+                "Sensor and camera",
+                Part::FilmGreen,
+                "traces",
+                "What photodiodes on the nail and a camera over it see at the same places, the camera's green brought \
+                 to the sensor's volts by a straight line; random touching, held out.",
+            ),
+            figure(
+                "Errors of both",
+                Part::FilmGreen,
+                "rmse",
+                "Linear touch models of the sensor and of the camera's green, on the path held out.",
+            ),
+            figure(
+                "Errors, green over red",
+                Part::FilmRatio,
+                "rmse",
+                "The same with the light taken off by the red of the same place.",
+            ),
+        ],
+    },
+    Section {
         name: "responses",
         title: "3.3 Responses of the sensor to force and bending",
-        of: &["3.3"],
+        of: &["3.3", "7.1"],
         figures: &[
             figure("23", Part::Normal, "moves", "Normal force is cycled, shear held at zero."),
             figure("24", Part::Normal, "outputs", "Outputs over time as normal force is cycled."),
@@ -119,8 +155,20 @@ pub(super) const SECTIONS: &[Section] = &[
     Section {
         name: "predictors",
         title: "5.2 and 5.3 Calibration, and predictors of touch and posture of one subject",
-        of: &["5.3"],
+        of: &["5.2", "5.3"],
         figures: &[
+            figure(
+                "88",
+                Part::Section,
+                "fig-88",
+                "A photodiode under a steadily growing force, with and without dynamics.",
+            ),
+            figure(
+                "89",
+                Part::Calibration,
+                "trajectory-cone",
+                "The cone of forces that friction allows, and the trajectory within.",
+            ),
             figure(
                 "90 and 93",
                 Part::Calibration,
@@ -140,15 +188,10 @@ pub(super) const SECTIONS: &[Section] = &[
             figure("98", Part::Modes, "modes", "Singular values and modes of the linear touch model."),
             figure("99", Part::TouchTest, "over-time", "Touch: random touching."),
             figure("100", Part::TouchTest, "scatter", "Touch: predicted over measured, random touching."),
-            figure(
-                "101",
-                Part::PostureTraining,
-                "over-time",
-                "Posture: training data and the linear model's predictions.",
-            ),
-            figure("102", Part::PostureTraining, "scatter", "Posture: predicted over measured, training data."),
-            figure("103", Part::PostureValidation, "over-time", "Posture: new data."),
-            figure("104", Part::PostureValidation, "scatter", "Posture: predicted over measured, new data."),
+            figure("101", Part::PostureTraining, "over-time", "Posture: the half that is trained on, and predictions."),
+            figure("102", Part::PostureTraining, "scatter", "Posture: predicted over measured, the half trained on."),
+            figure("103", Part::PostureValidation, "over-time", "Posture: the second half, which validates."),
+            figure("104", Part::PostureValidation, "scatter", "Posture: predicted over measured, the second half."),
         ],
     },
     Section {
@@ -170,6 +213,26 @@ pub(super) const SECTIONS: &[Section] = &[
             figure("111", Part::Compare, "fig-111", "Linear touch model with bending in its training and without."),
             figure("112", Part::Compare, "fig-112", "Posture models."),
             figure("113", Part::Compare, "fig-113", "Linear touch model, a photodiode removed."),
+        ],
+    },
+    Section {
+        name: "switches",
+        title: "Appendix C Virtual switches and a teaching pendant",
+        of: &["C"],
+        figures: &[
+            figure(
+                "123",
+                Part::Performance,
+                "performance-operators",
+                "Time per decision, each operator's trials. The thesis shows four operators here, and says that \
+                 Fig. 124 averages five.",
+            ),
+            figure(
+                "124",
+                Part::Performance,
+                "performance-methods",
+                "Time per decision, mean and SD over operators, with the learning curves.",
+            ),
         ],
     },
 ];

@@ -18,6 +18,9 @@ impl Job for StudyJob {
     const KIND: Kind = Kind {
         name: "study",
         roles: &[
+            role("rising", "one nail under rising force"),
+            role("film_green", "a sensor and a camera on one nail, the camera's green"),
+            role("film_ratio", "the same, the camera's green over red"),
             role("normal", "responses to normal force"),
             role("lateral", "responses to lateral shear"),
             role("longitudinal", "responses to longitudinal shear"),
@@ -31,16 +34,17 @@ impl Job for StudyJob {
             role("touch_validation", "on the third repetition"),
             role("touch_test", "on random touching"),
             role("modes", "the touch model analysed"),
-            role("posture_training", "the posture model evaluated on what it was trained on"),
-            role("posture_validation", "on new data"),
+            role("posture_training", "the posture model evaluated on the half that it was trained on"),
+            role("posture_validation", "on the second half"),
             role("compare", "models compared over subjects"),
+            role("performance", "trials of two methods of control"),
         ],
         parts: &[
             Part { name: "page", file: "study.html", only_if_wanted: false },
             Part { name: "statements", file: "statements.csv", only_if_wanted: false },
             Part { name: "numbers", file: "numbers.json", only_if_wanted: false },
         ],
-        revision: 3,
+        revision: 4,
         keys: keys::<PageOptions>,
         prepare: prepare::<Self>,
     };
@@ -58,7 +62,7 @@ impl Job for StudyJob {
             "touch_training" | "touch_validation" | "touch_test" | "posture_training" | "posture_validation" => {
                 &["predicted", "pictures"]
             }
-            "modes" | "compare" | "calibration" => &["pictures"],
+            "modes" | "compare" | "calibration" | "performance" => &["pictures"],
             _ => &[],
         };
         Demand { parts: parts.iter().copied().collect(), ..Demand::default() }

@@ -9,6 +9,7 @@
 //! Of a phantom, each statement is shown with its [`Kind`], and agreement is counted by it: what was put in is no
 //! evidence. Of people's recordings kinds mean nothing and are left out.
 
+mod colours;
 mod figures;
 mod kind;
 mod parts;
@@ -24,6 +25,7 @@ use serde::Serialize;
 
 use super::Numbers;
 use super::statements::{Judged, Kind, Quantity, Statement, Statements, Verdict};
+use colours::colour_numbers;
 use figures::{SECTIONS, Section};
 pub(crate) use kind::StudyJob;
 use lunula::figure::Page;
@@ -117,6 +119,8 @@ pub fn study_page(
             }
         }
     }
+    let colours = colour_numbers(&numbers);
+    numbers.take("colours", &colours);
     let statements = Statements::of_the_thesis()?;
     let judged = statements.judge(&numbers);
     let by_kind = if options.phantom { by_kind(&judged) } else { Vec::new() };
@@ -128,7 +132,7 @@ pub fn study_page(
         page.anchored_heading(section.name, section.title);
         statements_of(&mut page, &own(section, &judged), options.phantom);
         for figure in section.figures {
-            let number = format!("Fig. {}", figure.number);
+            let number = figure.label();
             let found = shown.iter().find(|one| one.part == figure.part);
             let Some(found) = found else {
                 lacking.push(format!("{number}: there are no results of \"{}\"", figure.part.name()));
@@ -217,8 +221,9 @@ fn introduce(page: &mut Page, judged: &[Judged<'_>], by_kind: &[KindFigures]) {
         ));
     }
     page.paragraph(
-        "Each figure below is the counterpart of the thesis' figure of the same number. Each table sets what the \
-         thesis' text states beside the test that decides and what came out here; quantities are explained at the end.",
+        "Each figure below is the counterpart of the thesis' figure of the same number; those without a number are not \
+         in the thesis. Each table sets what its text states beside the test that decides and what came out here; \
+         quantities are explained at the end.",
     );
     let row = |title: String, counts: [usize; 3]| -> Vec<String> {
         std::iter::once(title).chain(counts.map(|count| count.to_string())).collect()

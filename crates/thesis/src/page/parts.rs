@@ -6,11 +6,17 @@ use anyhow::anyhow;
 
 use crate::coloration::coloration_numbers;
 use crate::numbers::Numbers;
-use crate::predictors::{compare_numbers, evaluation_numbers, modes_numbers};
+use crate::predictors::{compare_numbers, evaluation_numbers, modes_numbers, performance_numbers};
 
 /// A part of a study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Part {
+    /// One nail under rising force (Fig. 5).
+    Rising,
+    /// A sensor and a camera on one nail, the camera's green.
+    FilmGreen,
+    /// The same, the camera's green over red.
+    FilmRatio,
     /// Responses to normal force (3.3.2).
     Normal,
     /// Responses to lateral shear (3.3.3).
@@ -37,17 +43,22 @@ pub enum Part {
     TouchTest,
     /// The touch model's modes (Fig. 98).
     Modes,
-    /// The posture model on what it was trained on (5.3.2).
+    /// The posture model on the half that it was trained on (5.3.2).
     PostureTraining,
-    /// The posture model on new data.
+    /// The posture model on the second half.
     PostureValidation,
     /// Models compared over subjects (5.4, 5.5).
     Compare,
+    /// Trials of two methods of control (appendix C).
+    Performance,
 }
 
 impl Part {
     /// All, in the thesis' order.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 20] = [
+        Self::Rising,
+        Self::FilmGreen,
+        Self::FilmRatio,
         Self::Normal,
         Self::Lateral,
         Self::Longitudinal,
@@ -64,12 +75,16 @@ impl Part {
         Self::PostureTraining,
         Self::PostureValidation,
         Self::Compare,
+        Self::Performance,
     ];
 
     /// Its name in pipeline files, and before its numbers' names.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
+            Self::Rising => "rising",
+            Self::FilmGreen => "film_green",
+            Self::FilmRatio => "film_ratio",
             Self::Normal => "normal",
             Self::Lateral => "lateral",
             Self::Longitudinal => "longitudinal",
@@ -86,6 +101,7 @@ impl Part {
             Self::PostureTraining => "posture_training",
             Self::PostureValidation => "posture_validation",
             Self::Compare => "compare",
+            Self::Performance => "performance",
         }
     }
 
@@ -105,7 +121,9 @@ impl Part {
             Self::Modes => &["modes.csv"],
             Self::Compare => &["comparisons.csv"],
             Self::Calibration => &["trajectory.csv"],
-            Self::Typical => &[],
+            Self::FilmGreen | Self::FilmRatio => &["film.csv"],
+            Self::Performance => &["table.csv"],
+            Self::Typical | Self::Rising => &[],
         }
     }
 
@@ -119,6 +137,7 @@ impl Part {
             Self::Photos => coloration_numbers(folder),
             Self::Modes => Ok(modes_numbers(folder)?),
             Self::Compare => Ok(compare_numbers(folder)?),
+            Self::Performance => performance_numbers(folder),
             Self::TouchValidation | Self::TouchTraining | Self::TouchTest => Ok(evaluation_numbers(folder)?),
             Self::PostureTraining | Self::PostureValidation => Ok(evaluation_numbers(folder)?),
             _ => Numbers::read(&folder.join("numbers.json")).map_err(|why| anyhow!(why)),

@@ -7,13 +7,18 @@ use ndarray::Array2;
 use ndarray_npy::WriteNpyExt;
 
 use super::*;
+use crate::film::tests::{pair, pressed};
+use crate::film::{film, rising};
 use crate::phantom::presses::{self, PressOptions};
+use crate::phantom::trials::trials;
 use crate::responses::{NamedFile, ResponsesOptions, responses};
 use crate::section::presses::{PressFile, read_presses};
 use crate::section::{section_presses, section_simulations};
 use lunula::hemodynamics::Pressed;
-use lunula::job::defaults;
+use lunula::job::{defaults, read};
+use lunula::live::performance::{self, PerformanceOptions};
 use lunula::phantom::nail::Pose;
+use lunula::predictor::FolderOutputs;
 
 fn part(at: &Path, part: Part, subject: &str, files: &[(&str, &[u8])]) -> PartFolder {
     let folder = at.join(part.name()).join(subject);
@@ -177,6 +182,20 @@ fn every_quantity_of_the_statements_is_computed() {
                     }
                     Array2::from_elem((40, 40), 16_u32).write_npy(open(format!("{pose}-count.npy"))).unwrap();
                 }
+            }
+            Part::Rising => {
+                let [frames, photodiodes, log] = pressed(at, 40);
+                rising(&frames, &photodiodes, &log, folder).unwrap();
+            }
+            Part::FilmGreen | Part::FilmRatio => {
+                film(&[pair(at, "a", 0.0, 1e-3)], &[pair(at, "b", 30.0, 1e-3)], folder).unwrap();
+            }
+            Part::Performance => {
+                fs::write(at.join("trials.csv"), trials(1)).unwrap();
+                let course = "path_m = 1.42\nspeed_mps = 0.025\ndecisions = 27".parse().unwrap();
+                let options = read::<PerformanceOptions>(&course, "").unwrap().options;
+                let outputs = FolderOutputs { folder: folder.clone(), rows: false, figures: false, report: false };
+                performance::run(&at.join("trials.csv"), "trials.csv", &options, &outputs, &Watch::nobody()).unwrap();
             }
             Part::Section => write(section_simulations(folder).unwrap().numbers),
             Part::Presses => {

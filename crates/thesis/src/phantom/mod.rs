@@ -9,8 +9,8 @@
 //!   `bending-random`; the first one, the typical subject, also has the preliminary experiments `normal`, `lateral`,
 //!   `longitudinal` and `free-bending` (Fig. 23 to 34);
 //! - `presses/<subject>-<site>/`: `slow.csv` and `quick.csv` (Fig. 79 to 82);
-//! - `tables/`: `sessions.csv`, `presses.csv`, `subjects.csv`, whose files are named relative to the tables, and
-//!   `study.json`;
+//! - `tables/`: `sessions.csv`, `presses.csv`, `subjects.csv`, whose files are named relative to the tables,
+//!   `trials.csv` (appendix C), and `study.json`;
 //! - in each of the former `truth/`.
 //!
 //! Everything is known before anything is made ([`Study::recordings`], [`Study::tables`]), and each recording is made
@@ -27,6 +27,7 @@ mod session;
 mod tables;
 #[cfg(test)]
 mod tests;
+pub(crate) mod trials;
 mod write;
 
 use std::collections::BTreeMap;

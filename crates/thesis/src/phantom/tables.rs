@@ -1,4 +1,4 @@
-//! The tables of a study: sessions, presses, people, and what was asked for.
+//! The tables of a study: sessions, presses, people, trials of appendix C, and what was asked for.
 //!
 //! Files are named relative to the tables' folder; a cell is empty where there is no such file. `truth` of a session
 //! are the exact angles at the video's frames, `truth_log` the exact angles, forces and volts of the log's rows;
@@ -7,6 +7,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use super::trials::trials;
 use super::{Entry, RECORD, Study, TABLES};
 use lunula::phantom::Generated as _;
 use lunula::phantom::nail::Subject;
@@ -55,6 +56,7 @@ pub(super) fn tables(study: &Study) -> BTreeMap<String, String> {
         ("sessions.csv", sessions),
         ("presses.csv", presses),
         ("subjects.csv", subjects),
+        ("trials.csv", trials(options.seed)),
         (RECORD, format!("{record:#}\n")),
     ]
     .map(|(name, text)| (name.to_owned(), text))

@@ -1,5 +1,5 @@
-//! `section` in a pipeline: the simulations of section 4.3 with the thesis' values (Fig. 76 to 78); and `presses`: its
-//! experiments on recorded people (Fig. 79 to 82).
+//! `section` in a pipeline: the simulations of section 4.3 with the thesis' values (Fig. 76 to 78, 88); and `presses`:
+//! its experiments on recorded people (Fig. 79 to 82).
 
 use std::time::Instant;
 
@@ -47,7 +47,7 @@ impl Job for SectionJob {
         name: "section",
         roles: &[],
         parts: &[Part { name: "section", file: "", only_if_wanted: false }],
-        revision: 1,
+        revision: 2,
         keys: keys::<NoOptions>,
         prepare: prepare::<Self>,
     };
@@ -63,6 +63,7 @@ impl Job for SectionJob {
             Step::new("tune", true, "stiffness and damping to the measured time constants".to_owned()),
             Step::new("steps", true, "of ten loads, two sets of values, two places".to_owned()),
             Step::new("steady states", true, "along the load".to_owned()),
+            Step::new("lag", true, "under a load that grows".to_owned()),
         ])
     }
 

@@ -1,4 +1,5 @@
-//! Figures 76 to 82 of section 4.3 made again: the thesis' simulations, and its experiments on eight generated people.
+//! Figures 76 to 82 of section 4.3 made again: the thesis' simulations, and its experiments on eight generated people;
+//! and of the simulations Fig. 88, the lag of 5.2.2.
 //!
 //! In: a folder. Out: the pictures in it, and Markdown with every number of theirs ([`section_4_3`]); the
 //! same bytes each time. The simulations alone are [`section_simulations`]; the experiments on recorded people instead
@@ -9,6 +10,7 @@
 mod experiments;
 mod groups;
 mod kind;
+mod lag;
 pub(crate) mod people;
 pub(crate) mod presses;
 mod statics;
@@ -140,6 +142,7 @@ fn simulations(text: &mut SectionText, staging: &Staging) -> anyhow::Result<Para
         figure_77(text, set, staging)?;
     }
     statics::figure_78(text, &sets, staging)?;
+    lag::figure_88(text, &literal, staging)?;
     Ok(tuned)
 }
 

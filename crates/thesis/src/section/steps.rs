@@ -1,4 +1,5 @@
-//! Step responses as in Fig. 76 and 77: a load at t = 0, released at t = 2 s, and how long what follows takes.
+//! Step responses as in Fig. 76 and 77: a load at t = 0, released at t = 2 s, and how long what follows takes; and
+//! responses to any load.
 
 use std::path::Path;
 
@@ -40,21 +41,31 @@ pub(super) fn steps(
 ) -> Result<Vec<Stepped>, HemodynamicsError> {
     let rows = (END_S * f64::from(RATE)) as u32;
     let times_s: Vec<f64> = (0..=rows).map(|k| f64::from(k) / f64::from(RATE)).collect();
-    let collapse = Collapse::Error;
-    let settings = RunSettings { collapse, rtol, optics: Optics::BeerLambert, from_s: 0.0 };
     let one = |&load_pa: &f64| {
         let step =
             |height: f64| Load::step(height, 0.0, RELEASED_S).map_err(|why| HemodynamicsError::Model(why.to_string()));
         let [proximal, distal] = pressed.of(load_pa);
         let loads = Loads::on(parameters, step(proximal)?, step(distal)?);
-        let start = state_before(0.0, parameters, &loads, collapse)?;
-        let run = respond(parameters, &loads, &start, &times_s, &settings)?;
-        match run.collapsed {
-            Some(collapsed) => Err(HemodynamicsError::Model(collapsed.words())),
-            None => Ok(Stepped { load_pa, response: run.response }),
-        }
+        Ok(Stepped { load_pa, response: answer(parameters, &loads, &times_s, rtol)? })
     };
     loads_pa.iter().map(one).collect()
+}
+
+/// The answer to loads from t = 0 on, from the equilibrium before.
+pub(super) fn answer(
+    parameters: &Parameters,
+    loads: &Loads,
+    times_s: &[f64],
+    rtol: f64,
+) -> Result<Response, HemodynamicsError> {
+    let collapse = Collapse::Error;
+    let settings = RunSettings { collapse, rtol, optics: Optics::BeerLambert, from_s: 0.0 };
+    let start = state_before(0.0, parameters, loads, collapse)?;
+    let run = respond(parameters, loads, &start, times_s, &settings)?;
+    match run.collapsed {
+        Some(collapsed) => Err(HemodynamicsError::Model(collapsed.words())),
+        None => Ok(run.response),
+    }
 }
 
 /// What a signal of a step response does.

@@ -31,7 +31,7 @@ pub fn run(fill: impl FnOnce(&Path)) -> Running {
 
 /// A server of a site, until it is dropped.
 pub fn serve(site: Site) -> Running {
-    let server = Server::bind(&Settings::default(), site).unwrap();
+    let server = Server::bind(&Settings::default(), vec![site]).unwrap();
     let url = server.url();
     let (at, token) = url.strip_prefix("http://").unwrap().split_once("/#").unwrap();
     let (at, token) = (at.to_owned(), token.to_owned());

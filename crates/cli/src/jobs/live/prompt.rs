@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use anyhow::Context;
 use clap::Args;
 use lunula::job::{Given, Watch};
-use lunula::live::StreamOptions;
+use lunula::live::{StreamOptions, View};
 use lunula::prompt::{
     Nobody, PromptFiles, PromptReport, Prompter, Show, is_alone, prompt_steps, subject, write_protocol,
 };
@@ -15,7 +15,7 @@ use lunula_ui::{Latest, Prompting};
 
 use crate::jobs::live::session::tell;
 use crate::jobs::{JobArgs, Plan, name_failures, show};
-use crate::ui::Listening;
+use crate::ui::PageArgs;
 use crate::{Common, Outcome};
 
 /// Prompt a person through a protocol of forces and bending, and record it for `lunula train` (5.2, Fig. 87)
@@ -47,7 +47,7 @@ pub(crate) struct PromptArgs {
     #[arg(long, value_name = "PROTOCOL.toml", conflicts_with_all = ["source", "out", "simulate", "protocol"])]
     write_protocol: Option<PathBuf>,
     #[command(flatten)]
-    listening: Listening,
+    page: PageArgs,
     #[command(flatten)]
     job: JobArgs,
 }
@@ -72,7 +72,7 @@ pub(crate) fn run(args: &PromptArgs) -> anyhow::Result<Outcome> {
     let said = |what: &str| tell(common, what);
     let watch = Watch { said: &args.given.said, stop: &stop, tick: &|_, _| {} };
     let report = if is_alone(&options) {
-        Prompter::new(&options, &files, Arc::new(Nobody))?.run(&said, &watch)?
+        Prompter::new(&options, &files, Arc::new(Nobody))?.run(None, &said, &watch)?
     } else {
         with_page(args, &options, &files, &said, &watch)?
     };
@@ -91,12 +91,16 @@ fn with_page(
     let news = Arc::new(News { state: Latest::new("null"), force: Latest::new("[]") });
     let prompter = Arc::new(Prompter::new(options, files, Arc::clone(&news) as Arc<dyn Show>)?);
     let page = Page(Arc::clone(&prompter));
-    let server = args.listening.bind(lunula_ui::prompt(Arc::new(page), &news.state, &news.force))?;
-    let opened = args.listening.announce(&server, &args.job.common)?;
+    let pictures = Latest::new("{}");
+    let sites = vec![lunula_ui::prompt(Arc::new(page), &news.state, &news.force), lunula_ui::live(&pictures)];
+    let server = args.page.bind(sites)?;
+    let opened = args.page.listening.announce(&server, &args.job.common)?;
+    let (view, window) = View::new();
     let over = AtomicBool::new(false);
     let report = std::thread::scope(|scope| {
+        scope.spawn(|| window.run(|picture| pictures.leave(picture)));
         let serving = scope.spawn(|| server.run(&over));
-        let report = prompter.run(said, watch);
+        let report = prompter.run(Some(view), said, watch);
         over.store(true, Ordering::Relaxed);
         let served = serving.join().unwrap_or(Ok(()));
         served.map(|()| report)

@@ -17,7 +17,7 @@ use lunula_ui::Latest;
 use serde_json::json;
 
 use crate::jobs::{JobArgs, Plan, name_failures, show};
-use crate::ui::Listening;
+use crate::ui::PageArgs;
 use crate::{Common, Outcome, out};
 
 /// Answer a sensor's samples as they come: forces, angle, switch (6.1)
@@ -31,7 +31,7 @@ use crate::{Common, Outcome, out};
 /// in <out>.FINGER.csv.
 #[derive(Debug, Args)]
 #[command(mut_arg("port", |one| one.requires("serve")), mut_arg("open", |one| one.requires("serve")))]
-#[command(mut_arg("listen", |one| one.requires("serve")))]
+#[command(mut_arg("listen", |one| one.requires("serve")), mut_arg("results", |one| one.requires("serve")))]
 pub(crate) struct LiveArgs {
     /// Models that `lunula train` wrote: of force, of posture, or both; index=MODEL.json is one finger's
     #[arg(long = "model", required = true, value_name = "[FINGER=]MODEL.json", num_args = 1..)]
@@ -48,7 +48,7 @@ pub(crate) struct LiveArgs {
     #[command(flatten)]
     out: OutArgs,
     #[command(flatten)]
-    listening: Listening,
+    page: PageArgs,
     #[command(flatten)]
     job: JobArgs,
 }
@@ -121,7 +121,7 @@ pub(crate) fn run_live(args: &LiveArgs) -> anyhow::Result<Outcome> {
         return show(common, "live", &Plan::from(live_steps(options, &files)));
     }
     let session = |view| session(common, &args.given.said, &stop, options, &files, view);
-    let report = if options.serve { served(&args.listening, common, session)? } else { session(None)? };
+    let report = if options.serve { served(&args.page, common, session)? } else { session(None)? };
     if common.json {
         // Standard output has the rows.
         eprintln!("{}", serde_json::to_string(&report)?);
@@ -200,16 +200,16 @@ const LAST_WORD: Duration = Duration::from_millis(200);
 
 /// A session that a page shows; the page ends with it.
 fn served(
-    listening: &Listening,
+    page: &PageArgs,
     common: &Common,
     session: impl FnOnce(Option<View>) -> anyhow::Result<SessionReport>,
 ) -> anyhow::Result<SessionReport> {
     let pictures = Latest::new("{}");
-    let server = listening.bind(lunula_ui::live(&pictures))?;
+    let server = page.bind(vec![lunula_ui::live(&pictures)])?;
     // Standard output has the rows.
     let url = server.url();
     eprintln!("{}", if common.json { json!({ "url": url }).to_string() } else { format!("page: {url}") });
-    let _opened = listening.opened(&server)?;
+    let _opened = page.listening.opened(&server)?;
     let (view, window) = View::new();
     let is_over = AtomicBool::new(false);
     std::thread::scope(|scope| {

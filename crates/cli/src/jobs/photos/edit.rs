@@ -11,7 +11,7 @@ use lunula::photo::PhotoSet;
 use lunula_ui::{Editing, Heard, Latest};
 
 use crate::jobs::{JobArgs, Plan, name_failures, show};
-use crate::ui::Listening;
+use crate::ui::PageArgs;
 use crate::{Common, Outcome};
 
 /// Correct the outlines of photographs in the browser of this machine: doubtful nails first, by a few keys each
@@ -28,7 +28,7 @@ pub(crate) struct EditArgs {
     #[command(flatten)]
     given: Given<EditOptions>,
     #[command(flatten)]
-    listening: Listening,
+    page: PageArgs,
     #[command(flatten)]
     job: JobArgs,
 }
@@ -47,11 +47,11 @@ pub(crate) fn run(args: &EditArgs) -> anyhow::Result<Outcome> {
     let editor = Editor::new(set, options, Box::new(move |json: &str| news.leave(json)));
     let editor = Arc::new(editor.map_err(anyhow::Error::msg)?);
     let page = Page(Arc::clone(&editor));
-    let server = args.listening.bind(lunula_ui::edit(Arc::new(page), &state))?;
+    let server = args.page.bind(vec![lunula_ui::edit(Arc::new(page), &state)])?;
     let over = AtomicBool::new(false);
     let served = std::thread::scope(|scope| {
         scope.spawn(|| editor.survey(&over));
-        let served = args.listening.serve(server, common, &stop);
+        let served = args.page.listening.serve(server, common, &stop);
         over.store(true, Ordering::Relaxed);
         served
     });

@@ -20,10 +20,10 @@ export const KEYS = [
   key(["ArrowRight"], "Right", "→", { key: "move", by: [1, 0] }, true),
   key(["ArrowUp"], "Up", "↑", { key: "move", by: [0, -1] }, true),
   key(["ArrowDown"], "Down", "↓", { key: "move", by: [0, 1] }, true),
-  key(["+", "="], "Larger", "+", { key: "grow", by: [1, 1] }),
-  key(["-"], "Smaller", "-", { key: "grow", by: [-1, -1] }),
-  key(["*"], "Much larger", "*", { key: "grow", by: [1, 1], stride: "coarse" }),
-  key(["/", "_"], "Much smaller", "/", { key: "grow", by: [-1, -1], stride: "coarse" }),
+  key(["+", "="], "Larger, corner out", "+", { key: "grow", by: [1, 1], stride: "usual" }, true),
+  key(["-"], "Smaller, corner in", "-", { key: "grow", by: [-1, -1], stride: "usual" }, true),
+  key(["*"], "Much larger", "*", { key: "grow", by: [1, 1], stride: "coarse" }, true),
+  key(["/", "_"], "Much smaller", "/", { key: "grow", by: [-1, -1], stride: "coarse" }, true),
   key([".", ">"], "Longer", ".", { key: "grow", by: [1, 0] }, true),
   key([",", "<"], "Shorter", ",", { key: "grow", by: [-1, 0] }, true),
   key(["'", '"'], "Wider", "'", { key: "grow", by: [0, 1] }, true),
@@ -47,7 +47,9 @@ export function pressed(event) {
     KEYS.find((one) => name.length === 1 && one.keys.includes(name.toLowerCase()));
   if (!found) return null;
   if (!found.strides) return found.press;
-  return { ...found.press, stride: event.altKey ? "fine" : event.shiftKey ? "coarse" : "usual" };
+  // Of a sign that some keyboards have behind Shift, Shift is no part.
+  const stride = found.press.stride || (event.shiftKey ? "coarse" : "usual");
+  return { ...found.press, stride: event.altKey ? "fine" : stride };
 }
 
 /** Of a button. @param {string} name @returns {Press} */
