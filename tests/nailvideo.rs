@@ -71,8 +71,10 @@ fn a_press_has_its_onset_and_its_release() {
         errors.sort_by(f64::total_cmp);
         println!("{event}: {errors:.3?}");
         let half = errors.len() / 2;
-        let median = if errors.len() % 2 == 0 { 0.5 * (errors[half - 1] + errors[half]) } else { errors[half] };
-        // A frame is 0.033 s; measured 0.033 s.
+        let median =
+            if errors.len().is_multiple_of(2) { 0.5 * (errors[half - 1] + errors[half]) } else { errors[half] };
+        // The bar is a frame, 0.03333 s; measured 0.033 s (press) and 0.03335 s (release): met only to a tenth of a
+        // millisecond, which the bound leaves free. The upper of the middle two releases is 0.0343.
         assert!(errors.len() >= 4 && median <= 0.034, "{event}: {errors:?}");
     }
     // The same bytes whatever the threads.

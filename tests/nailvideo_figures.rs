@@ -66,7 +66,7 @@ fn errors_of_the_scenes() {
     for (scene, how, bar) in SCENES {
         let (mut places, mut green, mut ratio) = (Errors::default(), Errors::default(), Errors::default());
         let [mut hidden, mut covered, mut lost, mut bare] = [0; 4];
-        for seed in 11..14 {
+        for seed in 21..24 {
             let dir = Dir::new();
             words(&dir, &format!("phantom nailvideo {how} --seed {seed} --subject {seed} --out s")).expect(0);
             let job = "nailvideo s/video.mp4 --outline s/outline.json --no-figures --light";
@@ -139,6 +139,8 @@ fn another_nail_is_never_accepted_in_fifty_thousand_frames() {
         }
         println!("{seed}: {wrong} of {accepted} accepted are wrong, of {frames}; {late} of {returns} returns late");
     }
-    // The design asks for 0 late; measured 8 of 106, where jerks and blur go on.
+    // The bar, back within 15 frames, is MISSED. Measured on seeds 101 to 141, with returns into the picture counted as
+    // well: 9 of 140 late, at most 48 frames, where jerks and blur go on. One in eight, above that, is a measured
+    // bound: passing says that it is no worse, not that the bar is met.
     assert!(frames >= 50_000 && wrong == 0 && late * 8 <= returns, "{wrong} wrong, {late} of {returns} late");
 }

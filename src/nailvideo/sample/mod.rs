@@ -21,8 +21,8 @@ use super::options::Light;
 use crate::nail::Positions;
 
 /// Where a group's colour may go from that of the first good frame, natural logarithms, less what the light changed: of
-/// green over red (measured on real presses: -0.1 to 0.22, on the phantom's persons to -0.32; the rest is room for other
-/// people), ..
+/// green over red (measured on real presses: -0.1 to 0.22, on the phantom's persons to -0.32; the rest is room for
+/// other people), ..
 const GREEN: std::ops::RangeInclusive<f64> = -0.45..=0.45;
 /// .. of blue over red from the line of blood, ..
 const BLUE_OF_GREEN: f64 = 0.45;
@@ -38,8 +38,8 @@ const LEAST_SEEN: f64 = 0.4;
 /// Samples from here on are clipped, and below here dark: no logarithm means anything (assumed).
 const CLIPPED: f64 = 0.985;
 const DARK: f64 = 0.02;
-/// SD of what encoders leave of a disc's mean chroma over a whole video, of 255 levels (measured on the phantom at a rate
-/// factor of 18: they keep a flat place's mean to a step or so; a uniform error of a step is 0.29).
+/// SD of what encoders leave of a disc's mean chroma over a whole video, of 255 levels (measured on the phantom at a
+/// rate factor of 18: they keep a flat place's mean to a step or so; a uniform error of a step is 0.29).
 const CHROMA_SD: f64 = 0.12;
 /// Slopes and curvatures are measured over so many pixels to each side, and once in so many frames, as is how the discs
 /// of [`noise`] change.

@@ -11,8 +11,8 @@ use nalgebra::{DMatrix, DVector};
 
 /// Fewer frames determine nothing (assumed).
 const FEWEST: f64 = 20.0;
-/// The first eigenvalue whose square root is not so far above the next one's is noise (measured on the phantom: those of
-/// noise fall by 1.0 to 1.3 from one to the next, at times by 1.7; those of random forces, 9 of them, by 1.4 to 2).
+/// The first eigenvalue whose square root is not so far above the next one's is noise (measured on the phantom: those
+/// of noise fall by 1.0 to 1.3 from one to the next, at times by 1.7; those of random forces, 9 of them, by 1.4 to 2).
 const DROP: f64 = 1.3;
 
 /// Sums over frames.
@@ -61,6 +61,9 @@ mod tests {
 
     use super::*;
 
+    /// Of an SD of 1; measured 0.996 to 1.029 (0.996 without, 1.011 to 1.029 with common waves).
+    const LARGEST_ERROR: f64 = 0.05;
+
     /// The SD of noise 1, correlated over frames by `rho`, in discs that `common` waves move together.
     fn sd(common: usize, rho: f64, frames: usize) -> Option<f64> {
         const DISCS: usize = 60;
@@ -83,8 +86,7 @@ mod tests {
         for (common, rho) in [(0, 0.0), (3, 0.0), (3, 0.8), (5, 0.8)] {
             let sd = sd(common, rho, 400).expect("known");
             println!("{common} {rho}: {sd}");
-            // Measured 0.97 to 1.1.
-            assert!((sd - 1.0).abs() <= 0.15, "{common} {rho}: {sd}");
+            assert!((sd - 1.0).abs() <= LARGEST_ERROR, "{common} {rho}: {sd}");
         }
         assert_eq!(sd(1, 0.0, 10), None);
     }
