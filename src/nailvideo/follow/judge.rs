@@ -9,7 +9,8 @@ use crate::nailvideo::affine::Affine;
 const LEAST_NCC: f64 = 0.6;
 pub(super) const LEAST_NCC_SHARE: f64 = 0.8;
 /// The same share where the nail was lost and may be another (measured on the phantom: the nail itself pressed, under a
-/// rod, in uneven light or of 40 px 0.95 and more; another person's, of 70 px, 0.92).
+/// rod, in uneven light or of 40 px 0.95 and more; another person's, of 70 px, 0.92). Blurred by jerks the nail itself
+/// has less on some persons and stays lost for long: the accuracy page counts how often.
 pub(super) const LEAST_NCC_SHARE_AGAIN: f64 = 0.94;
 /// Correlation of the texture within blocks, as a share of what the first frames had (measured on the phantom: the nail
 /// itself pressed, under a rod, blurred or of 40 px 0.75 and more; another person's nail in the same place 0.59).
