@@ -25,6 +25,8 @@ mod merge;
 mod nail_axes;
 mod nail_axes_drawn;
 mod nailvideo;
+mod nailvideo_extremes;
+mod nailvideo_figures;
 mod pages;
 mod parsers;
 mod performance;

@@ -8,7 +8,7 @@ use image::{DynamicImage, RgbImage};
 use super::affine::Affine;
 use super::grid::{Part, samples, shown_size};
 use super::options::NailVideoOptions;
-use super::sample::Colours;
+use super::sample::{Colours, Planes};
 use crate::nail::{Axis, Outline};
 use crate::photo::outline::{Nail, OutlineOptions, OutlinePlace, Source, ToDraw, to_file};
 use crate::photo::{NailFrame, Photograph};
@@ -116,10 +116,9 @@ fn framed(outline: &Outline, axis: Axis) -> Result<NailFrame, String> {
 
 /// A frame as it is shown, in red, green and blue.
 pub(in crate::nailvideo) fn upright(frame: &Frame<'_>, info: &Info) -> RgbImage {
-    let quarters = info.turn.quarters();
-    let [width, height] = shown_size(&samples(frame.luma, quarters));
+    let [width, height] = shown_size(&samples(frame.luma, info.turn.quarters()));
     let part = Part { from: [0; 2], size: [width, height] };
-    let colours = Colours::of_part(frame, quarters, info.matrix, part);
+    let colours = Colours::of_part(frame, Planes::of(info), part);
     RgbImage::from_fn(width as u32, height as u32, |x, y| {
         image::Rgb(colours.at([f64::from(x), f64::from(y)]).map(|part| (255.0 * part).round().clamp(0.0, 255.0) as u8))
     })

@@ -1,6 +1,6 @@
 //! Samples of a plane as the shown picture has them, to be read between pixels.
 
-use crate::video::{Frame, Plane};
+use crate::video::{Frame, Plane, Turn};
 use crate::vision::Samples;
 
 /// Values at the middles of equal blocks of pixels.
@@ -63,17 +63,25 @@ impl Grid {
         Self { values, size, origin: part.from.map(|at| at as f32 + middle), per_px: [1.0 / step as f32; 2] }
     }
 
-    /// Cb and Cr about a part of the picture, each sample in the middle of the pixels that it is for.
-    pub(in crate::nailvideo) fn of_chroma(frame: &Frame<'_>, quarters: usize, part: Part) -> Option<[Self; 2]> {
+    /// Cb and Cr about a part of the picture; `site` is where samples lie in the blocks of pixels that they are for, as
+    /// they are stored.
+    pub(in crate::nailvideo) fn of_chroma(
+        frame: &Frame<'_>,
+        turn: Turn,
+        site: (f64, f64),
+        part: Part,
+    ) -> Option<[Self; 2]> {
+        let quarters = turn.quarters();
         let (across, down) = frame.subsampling();
         let block = if quarters.is_multiple_of(2) { [across, down] } else { [down, across] };
+        let site = turn.shown_from_stored([site.0, site.1], (across, down));
         let grid = |plane: Plane<'_>| {
             let samples = samples(plane, quarters);
             let whole = shown_size(&samples);
             let from: [usize; 2] = std::array::from_fn(|k| (part.from[k] / block[k]).min(whole[k] - 1));
             let size: [usize; 2] =
                 std::array::from_fn(|k| part.size[k].div_ceil(block[k]).max(1).min(whole[k] - from[k]));
-            let origin = std::array::from_fn(|k| (from[k] * block[k]) as f32 + 0.5 * (block[k] as f32 - 1.0));
+            let origin = std::array::from_fn(|k| (from[k] * block[k]) as f32 + site[k] as f32);
             Self { values: samples.means(from, size, 1), size, origin, per_px: block.map(|n| 1.0 / n as f32) }
         };
         frame.chroma.map(|planes| planes.map(grid))
@@ -112,17 +120,17 @@ mod tests {
         picture.planes[0].iter_mut().enumerate().for_each(|(k, v)| *v = (3 * (k % 16) + 9 * (k / 16)) as u8);
         picture.planes[1].iter_mut().enumerate().for_each(|(k, v)| *v = (6 * (k % 8) + 18 * (k / 8)) as u8);
         let frame = picture.frame(0, 0.0);
-        for (turn, quarters) in [(crate::video::Turn::None, 0), (crate::video::Turn::Quarter, 1)] {
-            let luma = samples(frame.luma, quarters);
+        let sites = [(0.5, 0.5), (0.0, 0.5)];
+        for (turn, site) in [Turn::None, Turn::Quarter].into_iter().flat_map(|turn| sites.map(|site| (turn, site))) {
+            let luma = samples(frame.luma, turn.quarters());
             let part = Part { from: [0; 2], size: shown_size(&luma) };
-            let (grid, chroma) = (Grid::of_luma(&luma, part, 1), Grid::of_chroma(&frame, quarters, part).unwrap());
+            let (grid, chroma) = (Grid::of_luma(&luma, part, 1), Grid::of_chroma(&frame, turn, site, part).unwrap());
             for stored in [[5.25, 6.5], [8.0, 3.0]] {
                 let [x, y] = turn.shown_from_stored(stored, (16, 12)).map(|v| v as f32);
                 let expected = (3.0 * stored[0] + 9.0 * stored[1]) as f32;
-                assert!((grid.at(x, y) - expected).abs() <= 1e-3, "{quarters} {stored:?}: {}", grid.at(x, y));
-                // A chroma sample lies in the middle of its four pixels.
-                let expected = (3.0 * (stored[0] - 0.5) + 9.0 * (stored[1] - 0.5)) as f32;
-                assert!((chroma[0].at(x, y) - expected).abs() <= 1e-3, "{quarters} {stored:?}");
+                assert!((grid.at(x, y) - expected).abs() <= 1e-3, "{turn:?} {stored:?}: {}", grid.at(x, y));
+                let expected = (3.0 * (stored[0] - site.0) + 9.0 * (stored[1] - site.1)) as f32;
+                assert!((chroma[0].at(x, y) - expected).abs() <= 1e-3, "{turn:?} {site:?} {stored:?}");
             }
             assert!(grid.at(-1.5, 3.0).is_nan() && grid.at(3.0, 40.0).is_nan());
         }

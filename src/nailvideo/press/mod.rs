@@ -27,7 +27,8 @@ const LEAST_SEEN: f64 = 0.95;
 /// The residuals against the step and the noise: above both it is not a first-order response (12 % as pyCRT refuses).
 const MOST_RESIDUAL: f64 = 0.12;
 const MOST_RESIDUAL_SDS: f64 = 3.0;
-/// A change of the skin's own colour, of the step, from which on the light is not neutral (assumed).
+/// A change of the skin's own colour, or of the place's red beyond the light's, of the step, from which on it is light
+/// or glare (assumed; blood moves red by at most a quarter of what it moves green over red).
 const MOST_OF_LIGHT: f64 = 0.5;
 /// Fewer samples determine no course.
 const FEWEST: usize = 12;
@@ -38,6 +39,8 @@ pub(in crate::nailvideo) struct Trace {
     /// `P1`, or the end of the nail.
     pub(in crate::nailvideo) name: String,
     pub(in crate::nailvideo) values: Vec<f64>,
+    /// Red at the same place, less the light's, in the values' unit; NaN in a grey video.
+    pub(in crate::nailvideo) red: Vec<f64>,
 }
 
 /// A press or a release.
@@ -125,7 +128,7 @@ pub(in crate::nailvideo) struct Recording<'a> {
     /// Means over the photodiodes of each end.
     pub(in crate::nailvideo) ends: &'a [Trace],
     /// The skin's own colour about the nail, in the traces' unit.
-    pub(in crate::nailvideo) skin: &'a Trace,
+    pub(in crate::nailvideo) skin: &'a [f64],
     /// What a change of all light is in the traces' unit: 100 of percent.
     pub(in crate::nailvideo) whole: f64,
 }
@@ -221,16 +224,18 @@ fn course(of: &Recording<'_>, trace: &Trace, window: Window, rest: Option<f64>) 
     if course.sd > MOST_RESIDUAL * course.depth.abs() && course.sd > MOST_RESIDUAL_SDS * noise {
         return refused("its course is not exponential", depth);
     }
-    let skin = |from_s: f64, to_s: f64| {
-        let at = |k: &&usize| of.time_s[**k] - at_s >= from_s && of.time_s[**k] - at_s < to_s;
-        let mut all: Vec<f64> = known.iter().filter(at).map(|&k| of.skin.values[k]).filter(|v| v.is_finite()).collect();
-        all.sort_by(f64::total_cmp);
-        all.get(all.len() / 2).copied()
+    let after_s = course.onset_s.value + course.t50_s.value;
+    let change = |of_light: &[f64]| {
+        let middle = |from_s: f64, to_s: f64| {
+            let at = |k: &&usize| of.time_s[**k] - at_s >= from_s && of.time_s[**k] - at_s < to_s;
+            let mut all: Vec<f64> = known.iter().filter(at).map(|&k| of_light[k]).filter(|v| v.is_finite()).collect();
+            all.sort_by(f64::total_cmp);
+            all.get(all.len() / 2).copied()
+        };
+        Some((middle(after_s, after_s + BEFORE_S)? - middle(-BEFORE_S, course.onset_s.value)?).abs())
     };
-    let after = course.onset_s.value + course.t50_s.value;
-    if let (Some(before), Some(after)) = (skin(-BEFORE_S, course.onset_s.value), skin(after, after + BEFORE_S))
-        && (after - before).abs() > MOST_OF_LIGHT * course.depth.abs()
-    {
+    let is_light = |of_light: &[f64]| change(of_light).is_some_and(|by| by > MOST_OF_LIGHT * course.depth.abs());
+    if is_light(of.skin) || is_light(&trace.red) {
         return refused("the light changed with it", depth);
     }
     for end in [&mut course.onset_s.value, &mut course.onset_s.low, &mut course.onset_s.high] {

@@ -24,9 +24,13 @@ fn trace(step: f64, taus: [f64; 2], release_s: f64, rho: f64, until_s: f64, seed
 }
 
 fn rows_of(time_s: &[f64], values: Vec<f64>) -> Vec<Row> {
-    let skin = Trace { name: "skin".to_owned(), values: vec![0.0; values.len()] };
-    let traces = [Trace { name: "P2".to_owned(), values }];
-    rows(&Recording { time_s, traces: &traces, ends: &[], skin: &skin, whole: 100.0 })
+    let still = vec![0.0; values.len()];
+    rows_in_light(time_s, values, &still, &still)
+}
+
+fn rows_in_light(time_s: &[f64], values: Vec<f64>, skin: &[f64], red: &[f64]) -> Vec<Row> {
+    let traces = [Trace { name: "P2".to_owned(), values, red: red.to_vec() }];
+    rows(&Recording { time_s, traces: &traces, ends: &[], skin, whole: 100.0 })
 }
 
 #[test]
@@ -96,11 +100,12 @@ fn what_does_not_end_or_is_not_seen_is_refused() {
     (0..lost.len()).filter(|k| k % 5 == 0).for_each(|k| lost[k] = f64::NAN);
     let rows = rows_of(&time_s, lost);
     assert!(rows.iter().all(|row| row.status().contains("missing")), "{:?}", rows[0].status());
-    // The skin changes as the nail does: a lamp was switched.
-    let skin = Trace { name: "skin".to_owned(), values: values.clone() };
-    let traces = [Trace { name: "P2".to_owned(), values }];
-    let rows = super::rows(&Recording { time_s: &time_s, traces: &traces, ends: &[], skin: &skin, whole: 100.0 });
-    assert!(rows.iter().all(|row| row.status().contains("light")), "{:?}", rows[0].status());
+    // The skin changes as the nail does: a lamp was switched; or red at the place more than green over red: glare.
+    let still = vec![0.0; values.len()];
+    for (skin, red) in [(&values, &still), (&still, &values)] {
+        let rows = rows_in_light(&time_s, values.clone(), skin, red);
+        assert!(rows.iter().all(|row| row.status().contains("light")), "{:?}", rows[0].status());
+    }
 }
 
 #[test]

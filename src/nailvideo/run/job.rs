@@ -14,6 +14,7 @@ use super::draw::{Thumbnails, draw};
 use super::plan::{light_of, steps};
 use super::report::{FrameCounts, MapFigures, NailFigures, NailVideoFigures, NailVideoReport, PhotodiodeFigures};
 use super::results::{CellTable, Kept, MotionTable, Reading, photodiodes, presses};
+use super::traces::{ends, middle, traces};
 use crate::figure::{encode_png, png};
 use crate::files::Staging;
 use crate::job::{Report, Watch};
@@ -23,8 +24,8 @@ use crate::nailvideo::first::{Finder, FirstNail, upright};
 use crate::nailvideo::follow::{Follower, Lost};
 use crate::nailvideo::normal::{SIDE, WindowSums, green};
 use crate::nailvideo::options::{Inputs, Light, NailVideoOptions, Outputs};
-use crate::nailvideo::press::{Recording, Trace, USE, noise_sd, rows};
-use crate::nailvideo::sample::{Colours, Region, Sampled, Sampler, cells, discs};
+use crate::nailvideo::press::{Recording, USE, noise_sd, rows};
+use crate::nailvideo::sample::{Colours, Planes, Region, Sampled, Sampler, cells, discs};
 use crate::stages::{Stages, left_out};
 use crate::video::{End, Frame, Info, Item, Video};
 
@@ -171,13 +172,12 @@ impl Job<'_> {
         positions: &Positions,
         kept: &[Kept],
     ) -> Result<AtWork, NailVideoError> {
-        let quarters = self.info.turn.quarters();
         let frame_from_nail = nail.frame_from_nail();
         let off = || NailVideoError::Nail {
             path: self.inputs.video.clone(),
             why: "the nail lies beyond the picture; draw its outline on the video's first frame".to_owned(),
         };
-        let first = Colours::new(frame, quarters, self.info.matrix, &frame_from_nail).ok_or_else(off)?;
+        let first = Colours::new(frame, Planes::of(self.info), &frame_from_nail).ok_or_else(off)?;
         let mut regions: Vec<Region> = discs(positions, [nail.frame.width_px, nail.frame.length_px]);
         let photodiodes = regions.len();
         let side = self.options.cells.map(usize::from);
@@ -186,7 +186,8 @@ impl Job<'_> {
             read.push(cell.is_some().then(|| regions.len() - photodiodes));
             regions.extend(cell);
         }
-        let sampler = Sampler::new(regions, self.light, self.info.grey, &first, &frame_from_nail);
+        let extent_px = [nail.frame.width_px, nail.frame.length_px];
+        let sampler = Sampler::new(regions, positions, extent_px, self.light, self.info.grey, &first, &frame_from_nail);
         let mut motion = MotionTable::create(self.staging, self.outputs, nail.frame)?;
         let cells = side.map(|side| CellTable::create(self.staging, self.outputs, side, read, self.light));
         let mut cells = cells.transpose()?;
@@ -202,7 +203,7 @@ impl Job<'_> {
         self.staging.write(PICTURE, &png(&picture.into()).map_err(|why| refused(&why))?)?;
         self.staging.write("nail.json", nail.labelme(PICTURE, size).map_err(|why| refused(&why))?.as_bytes())?;
         Ok(AtWork {
-            follower: Follower::new(frame, quarters, frame_from_nail),
+            follower: Follower::new(frame, self.info.turn.quarters(), frame_from_nail),
             sampler,
             photodiodes,
             readings: Vec::new(),
@@ -230,10 +231,9 @@ impl Job<'_> {
         };
         work.motion.add(index, time_s, &place)?;
         let mut lost = Kept { index, time_s, place: Err(Lost::Outside), readings: Vec::new(), skin: f64::NAN };
-        let quarters = self.info.turn.quarters();
         let seen = frame.zip(place.as_ref().ok()).and_then(|(frame, place)| {
             let frame_from_nail = place.motion.after(&work.nail.frame_from_nail());
-            Some((Colours::new(frame, quarters, self.info.matrix, &frame_from_nail)?, frame_from_nail, place))
+            Some((Colours::new(frame, Planes::of(self.info), &frame_from_nail)?, frame_from_nail, place))
         });
         let Some((colours, frame_from_nail, place)) = seen else {
             lost.place = Err(place.err().unwrap_or(Lost::Outside));
@@ -280,33 +280,25 @@ impl Job<'_> {
         positions: &Positions,
         watch: &Watch<'_>,
     ) -> Result<NailVideoReport, NailVideoError> {
-        let AtWork { nail, motion, cells, windows, thumbnails, se_px, ncc, .. } = work;
+        let AtWork { nail, motion, cells, windows, thumbnails, se_px, ncc, sampler, .. } = work;
         motion.finish()?;
         if let Some(cells) = cells {
             cells.finish()?;
         }
         let names: Vec<String> = positions.photodiodes.iter().map(|one| one.name.clone()).collect();
         let time_s: Vec<f64> = kept.iter().map(|row| row.time_s).collect();
-        let value =
-            |row: &Kept, k: usize| row.readings.get(k).and_then(|one| one.ok()).map_or(f64::NAN, |one| one.value);
-        let trace = |k: usize| Trace { name: names[k].clone(), values: kept.iter().map(|row| value(row, k)).collect() };
-        let traces: Vec<Trace> = (0..names.len()).map(trace).collect();
+        let (traces, whole) = traces(&names, kept, self.light);
         let noise: Vec<Option<f64>> = traces.iter().map(|trace| noise_sd(&trace.values)).collect();
+        let lasting = sampler.noise_sd().unwrap_or(0.0);
         let sd = |k: usize, one: &Sampled, se_px: f32| {
             // The place's error has two axes, the slope is along the steeper.
-            let moved = one.slope_per_px * f64::from(se_px) / 2.0_f64.sqrt();
-            noise[k].map(|noise| noise.hypot(moved).hypot(one.chroma_sd))
+            let moved = f64::from(one.slope_per_px * se_px) / 2.0_f64.sqrt();
+            noise[k].map(|noise| noise.max(lasting).hypot(one.steady_sd.into()).hypot(moved))
         };
         self.stages.time("write", || photodiodes(self.staging, self.outputs, &names, self.light, kept, sd))?;
-        let skin = Trace { name: "skin".to_owned(), values: kept.iter().map(|row| row.skin).collect() };
+        let skin: Vec<f64> = kept.iter().map(|row| row.skin).collect();
         let ends = ends(positions, &traces);
-        let whole = if self.light == Light::None {
-            middle(traces.iter().flat_map(|t| t.values.iter().copied()))
-        } else {
-            Some(100.0)
-        };
-        let recording =
-            Recording { time_s: &time_s, traces: &traces, ends: &ends, skin: &skin, whole: whole.unwrap_or(1.0) };
+        let recording = Recording { time_s: &time_s, traces: &traces, ends: &ends, skin: &skin, whole };
         let pressed = self.stages.time("presses", || rows(&recording));
         presses(self.staging, self.outputs, self.light, &pressed)?;
         for sums in &windows {
@@ -367,24 +359,6 @@ impl Job<'_> {
         }
         Ok(report)
     }
-}
-
-/// Means of the photodiodes toward each end of the nail, where all of them have a value.
-fn ends(positions: &Positions, traces: &[Trace]) -> Vec<Trace> {
-    let end = |name: &str, is_there: &dyn Fn(f64) -> bool| {
-        let members: Vec<&Trace> =
-            positions.photodiodes.iter().zip(traces).filter(|(one, _)| is_there(one.v)).map(|(_, t)| t).collect();
-        let mean = |row: usize| members.iter().map(|t| t.values[row]).sum::<f64>() / members.len() as f64;
-        let rows = members.first().map_or(0, |t| t.values.len());
-        (members.len() > 1).then(|| Trace { name: name.to_owned(), values: (0..rows).map(mean).collect() })
-    };
-    [end("distal", &|v| v > 0.0), end("proximal", &|v| v < 0.0)].into_iter().flatten().collect()
-}
-
-fn middle(all: impl Iterator<Item = f64>) -> Option<f64> {
-    let mut all: Vec<f64> = all.filter(|value| value.is_finite()).collect();
-    let at = all.len() / 2;
-    (!all.is_empty()).then(|| *all.select_nth_unstable_by(at, f64::total_cmp).1)
 }
 
 fn photodiode(name: &str, k: usize, kept: &[Kept], noise_sd: Option<f64>) -> PhotodiodeFigures {

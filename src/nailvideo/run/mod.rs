@@ -6,5 +6,4 @@ pub(in crate::nailvideo) mod kind;
 pub(in crate::nailvideo) mod plan;
 pub(in crate::nailvideo) mod report;
 mod results;
-#[cfg(test)]
-mod tests;
+mod traces;

@@ -3,7 +3,25 @@
 use super::region::Group;
 use crate::nailvideo::affine::Affine;
 use crate::nailvideo::grid::{Grid, Part, samples, shown_size};
-use crate::video::{Frame, Matrix};
+use crate::video::{Frame, Info, Matrix, Turn};
+
+/// Where a file that does not say so has its chroma samples: on the left, as H.264 and HEVC say.
+const SITE: (f64, f64) = (0.0, 0.5);
+
+/// How a video's samples are to be read.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::nailvideo) struct Planes {
+    pub(in crate::nailvideo) turn: Turn,
+    pub(in crate::nailvideo) matrix: Matrix,
+    /// Where chroma samples lie, in luma samples right of and below the block's first.
+    pub(in crate::nailvideo) site: (f64, f64),
+}
+
+impl Planes {
+    pub(in crate::nailvideo) fn of(info: &Info) -> Self {
+        Self { turn: info.turn, matrix: info.matrix, site: info.chroma_site.unwrap_or(SITE) }
+    }
+}
 
 /// Luma and chroma about the nail.
 #[derive(Debug)]
@@ -15,25 +33,21 @@ pub(in crate::nailvideo) struct Colours {
 
 impl Colours {
     /// Of the part of a frame in which the nail's box, and a quarter more, lies; `None` where that is off the picture.
-    pub(in crate::nailvideo) fn new(
-        frame: &Frame<'_>,
-        quarters: usize,
-        matrix: Matrix,
-        frame_from_nail: &Affine,
-    ) -> Option<Self> {
-        let luma = samples(frame.luma, quarters);
+    pub(in crate::nailvideo) fn new(frame: &Frame<'_>, planes: Planes, frame_from_nail: &Affine) -> Option<Self> {
+        let luma = samples(frame.luma, planes.turn.quarters());
         let corners = [[-1.3, -1.3], [1.3, -1.3], [1.3, 1.3], [-1.3, 1.3]].map(|corner| frame_from_nail.of(corner));
         let part = Part::about(&corners, 2.0, shown_size(&luma))?;
         // Chroma blocks begin on even pixels.
         let from = part.from.map(|at| at & !3);
         let size = std::array::from_fn(|k| part.size[k] + part.from[k] - from[k]);
-        Some(Self::of_part(frame, quarters, matrix, Part { from, size }))
+        Some(Self::of_part(frame, planes, Part { from, size }))
     }
 
     /// Of a part of a frame.
-    pub(in crate::nailvideo) fn of_part(frame: &Frame<'_>, quarters: usize, matrix: Matrix, part: Part) -> Self {
-        let luma = Grid::of_luma(&samples(frame.luma, quarters), part, 1);
-        Self { luma, chroma: Grid::of_chroma(frame, quarters, part), matrix }
+    pub(in crate::nailvideo) fn of_part(frame: &Frame<'_>, planes: Planes, part: Part) -> Self {
+        let Planes { turn, matrix, site } = planes;
+        let luma = Grid::of_luma(&samples(frame.luma, turn.quarters()), part, 1);
+        Self { luma, chroma: Grid::of_chroma(frame, turn, site, part), matrix }
     }
 
     /// Red, green and blue of a point, fraction of full scale; all luma in a grey video; NaN off the picture.

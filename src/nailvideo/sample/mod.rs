@@ -5,21 +5,25 @@
 //! (ln green/red, ln blue/red) and leaves red nearly alone; a rod, another finger or glare does not.
 
 mod colour;
+mod noise;
 mod region;
 #[cfg(test)]
 mod tests;
 
-pub(in crate::nailvideo) use colour::Colours;
+pub(in crate::nailvideo) use colour::{Colours, Planes};
 pub(in crate::nailvideo) use region::{Group, MARGIN, Region, cell_name, cells, discs};
 
-use region::{light_cells, skin};
+use noise::Noise;
+use region::{light_cells, skin, spread_discs};
 
 use super::affine::Affine;
 use super::options::Light;
+use crate::nail::Positions;
 
 /// Where a group's colour may go from that of the first good frame, natural logarithms, less what the light changed: of
-/// green over red (measured on real presses: -0.1 to 0.22; the rest is room for other people), ..
-const GREEN: std::ops::RangeInclusive<f64> = -0.30..=0.45;
+/// green over red (measured on real presses: -0.1 to 0.22, on the phantom's persons to -0.32; the rest is room for
+/// other people), ..
+const GREEN: std::ops::RangeInclusive<f64> = -0.45..=0.45;
 /// .. of blue over red from the line of blood, ..
 const BLUE_OF_GREEN: f64 = 0.45;
 const MOST_BLUE: f64 = 0.20;
@@ -34,11 +38,15 @@ const LEAST_SEEN: f64 = 0.4;
 /// Samples from here on are clipped, and below here dark: no logarithm means anything (assumed).
 const CLIPPED: f64 = 0.985;
 const DARK: f64 = 0.02;
-/// SD of a disc's mean chroma as decoded, of 255 levels (measured on the phantom at a rate factor of 18: encoders keep
-/// a flat place's mean to a step or so; a uniform error of a step is 0.29).
-const CHROMA_SD: f64 = 0.2;
-/// A slope is measured over so many pixels to each side.
+/// SD of what encoders leave of a disc's mean chroma over a whole video, of 255 levels (measured on the phantom at a
+/// rate factor of 18: they keep a flat place's mean to a step or so; a uniform error of a step is 0.29).
+const CHROMA_SD: f64 = 0.12;
+/// Slopes and curvatures are measured over so many pixels to each side, and once in so many frames, as is how the discs
+/// of [`noise`] change.
 const SLOPE_PX: f64 = 1.5;
+const EVERY: usize = 4;
+/// Variance of what chroma is blurred by, pixels squared: a block's mean 0.25, interpolation between blocks 0.67.
+const BLUR_PX2: f64 = 0.92;
 
 /// Why a region has no value in a frame in which the nail is followed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -73,10 +81,13 @@ impl Absent {
 pub(in crate::nailvideo) struct Sampled {
     /// In the unit of the light.
     pub(in crate::nailvideo) value: f64,
+    /// The logarithm of red, less what the light changed; NaN in a grey video.
+    pub(in crate::nailvideo) red: f32,
     /// How much it changes when the region is off by a pixel, across and down the picture.
-    pub(in crate::nailvideo) slope_per_px: f64,
-    /// Its error by the encoder's steps of chroma, SD: they last over frames, so that these do not show it.
-    pub(in crate::nailvideo) chroma_sd: f64,
+    pub(in crate::nailvideo) slope_per_px: f32,
+    /// Its error by the encoder's steps of chroma and by the blur between samples, SD: they last, so that no difference
+    /// between frames shows them.
+    pub(in crate::nailvideo) steady_sd: f32,
 }
 
 /// What is measured of each frame.
@@ -88,6 +99,11 @@ pub(in crate::nailvideo) struct Sampler {
     cells: Vec<Option<[f64; 3]>>,
     groups: Vec<Group>,
     skin: Group,
+    /// Discs as large as photodiodes, all over the nail.
+    spread: Vec<Watched>,
+    noise: Noise,
+    /// Frames that were sampled.
+    frames: usize,
     /// For medians.
     sorted: Vec<f64>,
 }
@@ -97,8 +113,17 @@ pub(in crate::nailvideo) struct Sampler {
 struct Watched {
     region: Region,
     first: Vec<[f64; 3]>,
-    slope_per_px: f64,
     chroma_sd: f64,
+    shape: Shape,
+}
+
+/// How a region's value changes with its place.
+#[derive(Debug, Clone, Copy)]
+struct Shape {
+    /// For a pixel, along the steepest way.
+    slope_per_px: f64,
+    /// What the blur between samples changes.
+    blurred: f64,
 }
 
 /// Logarithms of a colour: of red, of green over red, of blue over red; `None` where a part is not positive.
@@ -108,9 +133,11 @@ fn logs([red, green, blue]: [f64; 3]) -> Option<[f64; 3]> {
 }
 
 impl Sampler {
-    /// Of regions on the nail of the first good frame.
+    /// Of regions on the nail of the first good frame; `extent_px` are its width and length.
     pub(in crate::nailvideo) fn new(
         regions: Vec<Region>,
+        positions: &Positions,
+        extent_px: [f64; 2],
         light: Light,
         grey: bool,
         first: &Colours,
@@ -120,30 +147,22 @@ impl Sampler {
         let cells = groups.iter().map(|group| logs(first.mean(group, frame_from_nail))).collect();
         let skin = skin();
         let skin_green = first.mean(&skin, frame_from_nail)[1];
-        let slope = |region: &Region| {
-            let at = |dx: f64, dy: f64| {
-                let [a, b, c, d, e, f] = frame_from_nail.0;
-                let moved = Affine([a, b, c + dx, d, e, f + dy]);
-                let rgb = mean_of(region.groups.iter().map(|group| (group, first.mean(group, &moved))));
-                value_of(light, rgb, skin_green)
-            };
-            let along = |x: f64, y: f64| (at(SLOPE_PX * x, SLOPE_PX * y) - at(-SLOPE_PX * x, -SLOPE_PX * y)).abs();
-            along(1.0, 0.0).hypot(along(0.0, 1.0)) / (2.0 * SLOPE_PX)
-        };
         let levels = first.of_chroma_levels();
         let chroma = |region: &Region| {
-            let rgb = mean_of(region.groups.iter().map(|group| (group, first.mean(group, frame_from_nail))));
+            let rgb = region_mean(region, first, frame_from_nail);
             let value = value_of(light, rgb, skin_green);
             let by = levels.map(|level| value_of(light, [0, 1, 2].map(|c| rgb[c] + level[c]), skin_green) - value);
             CHROMA_SD * by[0].hypot(by[1])
         };
         let watched = |region: Region| {
-            let (slope_per_px, chroma_sd) = (slope(&region), chroma(&region));
+            let (shape, chroma_sd) = (shape(light, &region, first, frame_from_nail, skin_green), chroma(&region));
             let first = region.groups.iter().map(|group| first.mean(group, frame_from_nail)).collect();
-            Watched { region, first, slope_per_px, chroma_sd }
+            Watched { region, first, chroma_sd, shape }
         };
         let regions = regions.into_iter().map(watched).collect();
-        Self { light, grey, regions, cells, groups, skin, sorted: Vec::new() }
+        let spread: Vec<Watched> = spread_discs(positions, extent_px).into_iter().map(watched).collect();
+        let noise = Noise::new(spread.len());
+        Self { light, grey, regions, cells, groups, skin, spread, noise, frames: 0, sorted: Vec::new() }
     }
 
     /// The values of all regions where the nail is at `frame_from_nail`.
@@ -158,10 +177,25 @@ impl Sampler {
             Light::Skin => colours.mean(&self.skin, frame_from_nail)[1],
             _ => f64::NAN,
         };
+        if self.frames.is_multiple_of(EVERY) {
+            for watched in &mut self.regions {
+                watched.shape = shape(self.light, &watched.region, colours, frame_from_nail, skin);
+            }
+            let one = |watched| Some(self.one(watched, colours, frame_from_nail, light, skin).ok()?.value);
+            let values: Option<Vec<f64>> = self.spread.iter().map(one).collect();
+            values.iter().for_each(|values| self.noise.add(values));
+        }
+        self.frames += 1;
         into.clear();
         for watched in &self.regions {
             into.push(self.one(watched, colours, frame_from_nail, light, skin));
         }
+    }
+
+    /// SD of the noise of a photodiode, that which lasts over frames with it, as it is on average over nail and frames;
+    /// `None` where too few frames show the whole nail.
+    pub(in crate::nailvideo) fn noise_sd(&self) -> Option<f64> {
+        self.noise.sd()
     }
 
     /// The skin's own colour about the nail, in the unit of the values: what of a change is the light's.
@@ -201,8 +235,15 @@ impl Sampler {
             return Err(Absent::Dark);
         }
         let value = value_of(self.light, rgb, skin);
-        let &Watched { slope_per_px, chroma_sd, .. } = watched;
-        if value.is_finite() { Ok(Sampled { value, slope_per_px, chroma_sd }) } else { Err(Absent::NoSkin) }
+        let Shape { slope_per_px, blurred } = watched.shape;
+        let of_light = light.filter(|_| !self.grey).map_or(f64::NAN, |light| light[0]);
+        let sampled = Sampled {
+            value,
+            red: (rgb[0].ln() - of_light) as f32,
+            slope_per_px: slope_per_px as f32,
+            steady_sd: watched.chroma_sd.hypot(blurred) as f32,
+        };
+        if value.is_finite() { Ok(sampled) } else { Err(Absent::NoSkin) }
     }
 
     /// Whether a colour can't be that of the same place with other blood in other light.
@@ -235,6 +276,25 @@ impl Sampler {
             let middle = self.sorted.len() / 2;
             *self.sorted.select_nth_unstable_by(middle, f64::total_cmp).1
         }))
+    }
+}
+
+/// The mean colour over a region.
+fn region_mean(region: &Region, colours: &Colours, frame_from_nail: &Affine) -> [f64; 3] {
+    mean_of(region.groups.iter().map(|group| (group, colours.mean(group, frame_from_nail))))
+}
+
+/// The shape of a region's value about where it is.
+fn shape(light: Light, region: &Region, colours: &Colours, frame_from_nail: &Affine, skin: f64) -> Shape {
+    let at = |[dx, dy]: [f64; 2]| {
+        let [a, b, c, d, e, f] = frame_from_nail.0;
+        value_of(light, region_mean(region, colours, &Affine([a, b, c + dx, d, e, f + dy])), skin)
+    };
+    let [left, right, above, below] = [[-SLOPE_PX, 0.0], [SLOPE_PX, 0.0], [0.0, -SLOPE_PX], [0.0, SLOPE_PX]].map(at);
+    let curvature = (left + right + above + below - 4.0 * at([0.0; 2])) / (SLOPE_PX * SLOPE_PX);
+    Shape {
+        slope_per_px: (right - left).hypot(below - above) / (2.0 * SLOPE_PX),
+        blurred: 0.5 * BLUR_PX2 * curvature.abs(),
     }
 }
 

@@ -27,7 +27,19 @@ pub(in crate::nailvideo) struct Region {
 }
 
 /// The photodiodes' discs; `extent_px` are the nail's width and length.
-pub(in crate::nailvideo) fn discs(positions: &Positions, [width, length]: [f64; 2]) -> Vec<Region> {
+pub(in crate::nailvideo) fn discs(positions: &Positions, extent_px: [f64; 2]) -> Vec<Region> {
+    discs_at(positions, extent_px, positions.photodiodes.iter().map(|one| [one.u, one.v]))
+}
+
+/// The same discs at places that are spread evenly over the nail, its edge left out.
+pub(in crate::nailvideo) fn spread_discs(positions: &Positions, extent_px: [f64; 2]) -> Vec<Region> {
+    const SIDE: usize = 9;
+    let place = |k: usize| [k % SIDE, k / SIDE].map(|n| 0.2 * (n as f64 - 4.0));
+    let is_inside = |[u, v]: &[f64; 2]| u.abs().powi(3) + v.abs().powi(3) <= 0.65;
+    discs_at(positions, extent_px, (0..SIDE * SIDE).map(place).filter(is_inside))
+}
+
+fn discs_at(positions: &Positions, [width, length]: [f64; 2], places: impl Iterator<Item = [f64; 2]>) -> Vec<Region> {
     let radius = positions.radius_widths();
     // In half widths across, half lengths along.
     let [ru, rv] = [2.0 * radius, 2.0 * radius * width / length];
@@ -45,8 +57,7 @@ pub(in crate::nailvideo) fn discs(positions: &Positions, [width, length]: [f64; 
         groups.retain(|group| !group.points.is_empty());
         groups
     };
-    let of = |one: &crate::nail::Position| Region { groups: disc([one.u, one.v]) };
-    positions.photodiodes.iter().map(of).collect()
+    places.map(|at| Region { groups: disc(at) }).collect()
 }
 
 /// N x N cells of the normalized nail, row by row from its distal end, those whose middle lies in the outline; the

@@ -1,18 +1,22 @@
 use super::*;
 use crate::nail::Positions;
 use crate::nailvideo::scenes::{Scene, Shot};
-use crate::video::Matrix;
+use crate::video::{Matrix, Turn};
+
+/// As [`Scene::picture`] lays chroma.
+const PLANES: Planes = Planes { turn: Turn::None, matrix: Matrix::BT709, site: (0.5, 0.5) };
 
 fn values(scene: &Scene, light: Light, shot: &Shot, motion: &Affine) -> Vec<Result<Sampled, Absent>> {
     let extent = [192.0, 230.4];
     let first = scene.picture(&Shot::REST, 1);
     let grey = scene.format.subsampling.is_none();
     let nail = scene.frame_from_nail;
-    let colours = Colours::new(&first.frame(0, 0.0), 0, Matrix::BT709, &nail).unwrap();
-    let mut sampler = Sampler::new(discs(&Positions::thesis(), extent), light, grey, &colours, &nail);
+    let colours = Colours::new(&first.frame(0, 0.0), PLANES, &nail).unwrap();
+    let positions = Positions::thesis();
+    let mut sampler = Sampler::new(discs(&positions, extent), &positions, extent, light, grey, &colours, &nail);
     let picture = scene.picture(shot, 7);
     let nail = motion.after(&nail);
-    let colours = Colours::new(&picture.frame(1, 0.1), 0, Matrix::BT709, &nail).unwrap();
+    let colours = Colours::new(&picture.frame(1, 0.1), PLANES, &nail).unwrap();
     let mut out = Vec::new();
     sampler.sample(&colours, &nail, &mut out);
     out
