@@ -16,7 +16,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde_json::{Value, json};
 
-use crate::photos_extremes::save_turned;
+use crate::photos_extremes::{save_turned, stored};
 use crate::util::page::{ends, interrupts, until};
 use crate::util::{Dir, Json, drawn_axis, drawn_nail, drawn_outline, labelme};
 
@@ -184,20 +184,7 @@ fn keys_at_another_nail_or_of_no_meaning_do_nothing() {
 
 #[test]
 fn an_outline_is_where_it_was_drawn_however_the_picture_is_stored() {
-    let upright = drawn_nail();
-    let (turned, turned_back) = (imageops::rotate90(&upright), imageops::rotate270(&upright));
-    // What the camera stored, so that each orientation's turn makes it upright again.
-    let stored = [
-        upright.clone(),
-        imageops::flip_horizontal(&upright),
-        imageops::rotate180(&upright),
-        imageops::flip_vertical(&upright),
-        imageops::flip_horizontal(&turned),
-        turned_back.clone(),
-        imageops::flip_horizontal(&turned_back),
-        turned,
-    ];
-    for (orientation, picture) in (1..).zip(&stored) {
+    for (orientation, picture) in (1..).zip(&stored(&drawn_nail())) {
         let dir = Dir::new();
         save_turned(picture, orientation, dir.place("set/a.png"));
         let photo = Photograph::read(&dir.path("set/a.png")).expect("a picture");
@@ -207,7 +194,7 @@ fn an_outline_is_where_it_was_drawn_however_the_picture_is_stored() {
         desk.press(json!({"key": "place", "to_px": [80.0, 70.0]}));
         let shown = desk.points();
         desk.keys(&["accept"]);
-        let saved = |_: ()| {
+        let saved = || {
             let nails = read_annotated(&dir.path("set/a.json"), &photo, Drawn::Auto).expect("what was saved");
             nails[0].outline.clone().expect("an outline").points()
         };
@@ -216,13 +203,13 @@ fn an_outline_is_where_it_was_drawn_however_the_picture_is_stored() {
             1.0 - one.iou(&other)
         };
         // Corners to hundredths of pixels.
-        assert!(off(&shown, &saved(())) <= 1e-3, "{orientation}");
+        assert!(off(&shown, &saved()) <= 1e-3, "{orientation}");
         // The same again from the file.
         let desk = Desk::at(&dir.path("set"));
         desk.press(json!({"key": "move", "by": [2, 1]}));
         let shown = desk.points();
         desk.keys(&["accept"]);
-        assert!(off(&shown, &saved(())) <= 1e-3, "{orientation}");
+        assert!(off(&shown, &saved()) <= 1e-3, "{orientation}");
     }
 }
 
@@ -231,15 +218,15 @@ fn an_annotation_of_the_stored_picture_stays_one() {
     let dir = Dir::new();
     // Stored lying on its side.
     save_turned(&imageops::rotate270(&drawn_nail()), 6, dir.place("set/a.png"));
-    let stored: Vec<[f64; 2]> = drawn_outline().iter().map(|&[x, y]| [y, 160.0 - x]).collect();
-    dir.write("set/a.json", labelme([140, 160], &[("nail?", "polygon", stored.clone())]));
+    let drawn: Vec<[f64; 2]> = drawn_outline().iter().map(|&[x, y]| [y, 160.0 - x]).collect();
+    dir.write("set/a.json", labelme([140, 160], &[("nail?", "polygon", drawn.clone())]));
     let desk = Desk::at(&dir.path("set"));
     let upright = drawn_outline();
     let shown = desk.points();
     assert!(upright.iter().zip(&shown).all(|(a, b)| (0..2).all(|k| (a[k] - 0.5 - b[k]).abs() <= HUNDREDTH_PX)));
     desk.keys(&["accept"]);
     let file = LabelMe::read(&dir.path("set/a.json")).expect("LabelMe");
-    assert_eq!((file.size(), &file.shapes[0].points), (Some([140, 160]), &stored));
+    assert_eq!((file.size(), &file.shapes[0].points), (Some([140, 160]), &drawn));
 }
 
 #[test]

@@ -85,24 +85,27 @@ pub(crate) fn save_turned(picture: &RgbImage, orientation: u8, place: std::path:
     image::ImageEncoder::write_image(encoder, picture, width, height, colour).expect("a picture");
 }
 
+/// What a camera stores with orientations 1 to 8, so that each one's turn makes the picture upright again.
+pub(crate) fn stored(upright: &RgbImage) -> [RgbImage; 8] {
+    let (turned, turned_back) = (imageops::rotate90(upright), imageops::rotate270(upright));
+    [
+        upright.clone(),
+        imageops::flip_horizontal(upright),
+        imageops::rotate180(upright),
+        imageops::flip_vertical(upright),
+        imageops::flip_horizontal(&turned),
+        turned_back.clone(),
+        imageops::flip_horizontal(&turned_back),
+        turned,
+    ]
+}
+
 #[test]
 fn however_a_picture_is_stored_the_same_nail_is_found() {
     let dir = Dir::new();
     phantoms(&dir, 1, [480, 360], 1);
     let upright = phantom(&dir, 1);
-    let (turned, turned_back) = (imageops::rotate90(&upright), imageops::rotate270(&upright));
-    // What the camera stored, so that each orientation's turn makes it upright again.
-    let stored = [
-        upright.clone(),
-        imageops::flip_horizontal(&upright),
-        imageops::rotate180(&upright),
-        imageops::flip_vertical(&upright),
-        imageops::flip_horizontal(&turned),
-        turned_back.clone(),
-        imageops::flip_horizontal(&turned_back),
-        turned.clone(),
-    ];
-    for (orientation, picture) in (1..).zip(&stored) {
+    for (orientation, picture) in (1..).zip(&stored(&upright)) {
         save_turned(picture, orientation, dir.place(&format!("set/colour/exif{orientation}.png")));
     }
     let colour = DynamicImage::from(upright);
