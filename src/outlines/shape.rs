@@ -7,12 +7,10 @@
 use crate::nail::{Axis, Outline, OutlineFault};
 use crate::photo::NailFrame;
 
-/// Of the size; of length and width; radians.
+/// Of the root of length times width; of length and width; radians.
 const MOVE: f64 = 0.02;
 const GROW: f64 = 0.03;
 const TURN_RAD: f64 = 3.0 * std::f64::consts::PI / 180.0;
-/// A nail's area, of its box's (that of the template).
-const FILLED: f64 = 0.85;
 /// An axis alone is turned so far.
 const AXIS_RAD: f64 = 5.0 * std::f64::consts::PI / 180.0;
 /// Parts of the rim on either side of a corner that go with it, of the perimeter (assumed).
@@ -63,10 +61,9 @@ impl NailShape {
         NailFrame::around(&self.points, self.axis)
     }
 
-    /// About the root of length times width. By the area, which a pulled corner changes least: a step and its opposite
-    /// are of nearly one length.
     fn size_px(&self) -> f64 {
-        (0.5 * self.doubled_area().abs() / FILLED).sqrt().max(1.0)
+        let NailFrame { length_px, width_px, .. } = self.frame();
+        (length_px * width_px).sqrt().max(1.0)
     }
 
     /// Right and down as the photograph is seen, in steps; of one corner and what goes with it, or of all.
@@ -95,14 +92,14 @@ impl NailShape {
         let [a, b] = [self.points[(corner + count - 1) % count], self.points[(corner + 1) % count]];
         let along = [b[0] - a[0], b[1] - a[1]];
         let length = along[0].hypot(along[1]).max(1e-9);
-        let step_px = MOVE * stride.factor() * self.size_px() * steps * self.doubled_area().signum() / length;
+        let step_px = MOVE * stride.factor() * self.size_px() * steps * self.turns_right() / length;
         self.pull(Some(corner), [along[1] * step_px, -along[0] * step_px]);
     }
 
-    /// Positive where the corners go clockwise as the photograph is seen.
-    fn doubled_area(&self) -> f64 {
+    /// 1 where the corners go clockwise as the photograph is seen, else -1.
+    fn turns_right(&self) -> f64 {
         let next = self.points.iter().cycle().skip(1);
-        self.points.iter().zip(next).map(|(a, b)| a[0] * b[1] - b[0] * a[1]).sum()
+        self.points.iter().zip(next).map(|(a, b)| a[0] * b[1] - b[0] * a[1]).sum::<f64>().signum()
     }
 
     /// How far each corner goes with one of them.
@@ -216,9 +213,7 @@ mod tests {
         let (before, mut shape) = (nail().frame(), nail());
         shape.step(None, [1.0, -2.0], Stride::Coarse);
         let after = shape.frame();
-        let size_px = nail().size_px();
-        assert!((size_px / (120.0_f64 * before.width_px).sqrt() - 1.0).abs() <= 0.05, "{size_px}");
-        let step = 5.0 * MOVE * size_px;
+        let step = 5.0 * MOVE * (120.0_f64 * before.width_px).sqrt();
         assert!(close(after.center_px[0] - before.center_px[0], step), "{after:?}");
         assert!(close(after.center_px[1] - before.center_px[1], -2.0 * step));
         shape.grow([1.0, -1.0], Stride::Usual);
