@@ -59,6 +59,7 @@ const REQUESTS: &[&str] = &[
     "run p.toml --out run",
     "init . --out new.toml",
     "ui --help",
+    "edit ph/photos --plan",
     "nailvideo --help",
     "doctor",
     "doctor --json",
