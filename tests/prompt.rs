@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use lunula::prompt::REST_N;
 use lunula_predictor::{ForceSpace, cone_coverage};
 
-use crate::util::page::{Page, ends};
+use crate::util::page::{Page, ends, signal};
 use crate::util::{Dir, Json};
 
 const PROTOCOL: &str = r#"
@@ -236,12 +236,6 @@ fn a_force_that_stops_stops_the_ring_and_nothing_is_recorded_as_zero() {
     assert!(dir.table("r.frames.csv").len() >= 10);
 }
 
-/// A process that stands still, as on a machine that sleeps, and goes on.
-fn signal(child: &Child, name: &str) {
-    let sent = Command::new("kill").args([name, &child.id().to_string()]).status().expect("kill");
-    assert!(sent.success());
-}
-
 #[test]
 fn a_machine_that_sleeps_stops_the_ring() {
     let dir = Dir::new();
@@ -250,6 +244,7 @@ fn a_machine_that_sleeps_stops_the_ring() {
     session.page.key("go");
     session.look(3.0, true);
     let slept_s = session.page.now_s();
+    // The process stands still, as on a machine that sleeps, and goes on.
     signal(&session.child, "-STOP");
     // Devices and page sleep as well.
     std::thread::sleep(Duration::from_secs(4));

@@ -173,7 +173,8 @@ impl Editor {
 
     /// Only what a run would take.
     fn accept(&self, state: &mut State, at: usize) {
-        match self.normalized_of(state, at, true) {
+        let item = &state.items[at];
+        match self.normalized_as(item.photo, &item.shape, item.view) {
             Ok(_) => self.decide(state, at, Decision::Accepted),
             Err(why) => state.fault(format!("not saved: {why}")),
         }
@@ -358,11 +359,6 @@ impl Editor {
             (item.photo, item.shape.clone(), item.view)
         };
         self.normalized_as(photo, &shape, view.filter(|_| rough))
-    }
-
-    fn normalized_of(&self, state: &State, at: usize, rough: bool) -> Png {
-        let item = &state.items[at];
-        self.normalized_as(item.photo, &item.shape, item.view.filter(|_| rough))
     }
 
     fn normalized_as(&self, photo: usize, shape: &NailShape, roughly_on: Option<View>) -> Png {

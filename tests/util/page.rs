@@ -96,6 +96,11 @@ pub fn ends(mut child: Child) -> i32 {
 
 /// As Ctrl-C does.
 pub fn interrupts(child: &Child) {
-    let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill");
+    signal(child, "-INT");
+}
+
+/// Sends a signal, named as `kill` names it.
+pub fn signal(child: &Child, name: &str) {
+    let sent = Command::new("kill").args([name, &child.id().to_string()]).status().expect("kill");
     assert!(sent.success());
 }
