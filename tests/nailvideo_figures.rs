@@ -149,7 +149,7 @@ fn another_nail_is_never_accepted_in_fifty_thousand_frames() {
         }
         println!("{seed}: {wrong} of {accepted} accepted are wrong, of {frames}; {late} of {returns} returns late");
     }
-    // The bar, back within 15 frames, is MISSED. Measured on 64 of these persons: 19 of 120 late, 4 of them never back.
-    // One in five, above that, is a measured bound: passing says that it is no worse, not that the bar is met.
-    assert!(frames >= 50_000 && wrong == 0 && late * 5 <= returns, "{wrong} wrong, {late} of {returns} late");
+    // The bar, back within 15 frames, is MISSED. Measured: 5 of 157 late. One in twenty, above that, is a measured
+    // bound: passing says that it is no worse, not that the bar is met.
+    assert!(frames >= 50_000 && wrong == 0 && late * 20 <= returns, "{wrong} wrong, {late} of {returns} late");
 }

@@ -1,5 +1,7 @@
 //! Samples of a plane as the shown picture has them, to be read between pixels.
 
+use wide::f32x4;
+
 use crate::video::{Frame, Plane, Turn};
 use crate::vision::Samples;
 
@@ -106,6 +108,40 @@ impl Grid {
         let below = self.values[at + down] + p * (self.values[at + down + across] - self.values[at + down]);
         above + q * (below - above)
     }
+
+    /// Whether [`Self::four`] may be asked for all points between these corners.
+    pub(in crate::nailvideo) fn holds(&self, corners: &[[f32; 2]; 4]) -> bool {
+        corners.iter().all(|at| {
+            [0, 1].into_iter().all(|axis| {
+                let block = (at[axis] - self.origin[axis]) * self.per_px[axis];
+                // Rounding moves a point within by less than that.
+                let last = self.size[axis] as f32 - 1.0;
+                block >= 0.01 && block <= last - 0.01
+            })
+        })
+    }
+
+    /// [`Self::at`] of four points that lie within the middles of the outermost blocks.
+    #[inline]
+    pub(in crate::nailvideo) fn four(&self, x: f32x4, y: f32x4) -> f32x4 {
+        let [across, down] = self.per_px.map(f32x4::splat);
+        let (u, v) = ((x - f32x4::splat(self.origin[0])) * across, (y - f32x4::splat(self.origin[1])) * down);
+        let (left, top) = (u.fast_trunc_int(), v.fast_trunc_int());
+        let (p, q) = (u - f32x4::from_i32x4(left), v - f32x4::from_i32x4(top));
+        let (left, top) = (left.to_array(), top.to_array());
+        let columns = self.size[0];
+        let mut corners = [[0.0; 4]; 4];
+        for k in 0..4 {
+            let at = top[k] as usize * columns + left[k] as usize;
+            let [above, below] = [&self.values[at..at + 2], &self.values[at + columns..at + columns + 2]];
+            [corners[0][k], corners[1][k]] = [above[0], above[1]];
+            [corners[2][k], corners[3][k]] = [below[0], below[1]];
+        }
+        let [above, above_right, below, below_right] = corners.map(f32x4::new);
+        let above = above + p * (above_right - above);
+        let below = below + p * (below_right - below);
+        above + q * (below - above)
+    }
 }
 
 #[cfg(test)]
@@ -132,6 +168,10 @@ mod tests {
                 let expected = (3.0 * (stored[0] - site.0) + 9.0 * (stored[1] - site.1)) as f32;
                 assert!((chroma[0].at(x, y) - expected).abs() <= 1e-3, "{turn:?} {site:?} {stored:?}");
             }
+            let four = grid.four(f32x4::new([2.0, 3.25, 5.5, 9.75]), f32x4::new([1.5, 8.0, 2.25, 6.0]));
+            let each = [[2.0, 1.5], [3.25, 8.0], [5.5, 2.25], [9.75, 6.0]].map(|[x, y]| grid.at(x, y));
+            assert_eq!(four.to_array(), each);
+            assert!(grid.holds(&[[2.0, 2.0]; 4]) && !grid.holds(&[[2.0, 2.0], [2.0, 40.0], [2.0; 2], [2.0; 2]]));
             assert!(grid.at(-1.5, 3.0).is_nan() && grid.at(3.0, 40.0).is_nan());
         }
         assert_eq!(Part::about(&[[-50.0, 3.0]], 10.0, [16, 12]), None);

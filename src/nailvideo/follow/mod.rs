@@ -15,7 +15,7 @@ mod tests;
 
 pub(in crate::nailvideo) use judge::{Lost, Place};
 
-use judge::{LEAST_NCC_SHARE, LEAST_NCC_SHARE_AGAIN, Usual, judge};
+use judge::{After, Usual, judge};
 use register::{Fit, Scratch, register};
 use search::Search;
 use sight::{Sight, blur_px};
@@ -110,7 +110,7 @@ impl Follower {
         match self.state.clone() {
             State::Followed(at, before) => {
                 let expected = predicted(&at, before.as_ref(), time_s);
-                let found = self.near(frame, &expected, &at.motion, LEAST_NCC_SHARE);
+                let found = self.near(frame, After::Frame(&expected), &expected, &at.motion);
                 match found {
                     Ok((place, fit)) => {
                         self.usual.learn(&fit);
@@ -126,7 +126,7 @@ impl Follower {
             }
             State::Trial(at, count) => {
                 // Nothing is known of its speed: it is expected where it was.
-                match self.near(frame, &at.motion, &at.motion, LEAST_NCC_SHARE_AGAIN) {
+                match self.near(frame, After::Loss(Some(&at.motion)), &at.motion, &at.motion) {
                     Ok((place, _)) => {
                         let here = At { time_s, motion: place.motion };
                         if count + 1 < TRIAL {
@@ -151,21 +151,21 @@ impl Follower {
     fn near(
         &mut self,
         frame: &Frame<'_>,
+        after: After<'_>,
         expected: &Affine,
         last: &Affine,
-        least_share: f64,
     ) -> Result<(Place, Fit), Lost> {
         let fits = |found: &Result<(Place, Fit), Lost>, usual: &Usual| {
             let least = usual.ncc().unwrap_or(0.0) * DOUBT_NCC_SHARE;
             found.as_ref().is_ok_and(|(place, _)| place.ncc >= least)
         };
-        let mut best = self.fine(frame, *expected, Some(expected), least_share);
+        let mut best = self.fine(frame, *expected, &after);
         if fits(&best, &self.usual) {
             return best;
         }
         for start in [expected, last] {
             let Some(start) = self.coarse(frame, *start) else { continue };
-            let other = self.fine(frame, start, Some(expected), least_share);
+            let other = self.fine(frame, start, &after);
             best = match (best, other) {
                 (Ok(a), Ok(b)) => Ok(if b.0.ncc > a.0.ncc { b } else { a }),
                 (a @ Ok(_), _) => a,
@@ -186,7 +186,7 @@ impl Follower {
         let places = self.search.places(&samples, &self.last);
         for start in std::iter::once(self.last).chain(places) {
             let Some(start) = self.coarse(frame, start) else { continue };
-            match self.fine(frame, start, None, LEAST_NCC_SHARE_AGAIN) {
+            match self.fine(frame, start, &After::Loss(None)) {
                 Ok((place, _)) => {
                     self.state = State::Trial(At { time_s: frame.time_s, motion: place.motion }, 1);
                     return Ok(());
@@ -197,16 +197,10 @@ impl Follower {
         Err(why)
     }
 
-    fn fine(
-        &mut self,
-        frame: &Frame<'_>,
-        start: Affine,
-        expected: Option<&Affine>,
-        least_share: f64,
-    ) -> Result<(Place, Fit), Lost> {
+    fn fine(&mut self, frame: &Frame<'_>, start: Affine, after: &After<'_>) -> Result<(Place, Fit), Lost> {
         let sight = self.sight(frame, &start, self.step).ok_or(Lost::Outside)?;
         let fit = register(&self.fine, &sight, start, &mut self.scratch).ok_or(Lost::Unlike)?;
-        judge(&fit, &self.fine, &self.usual, expected, least_share, self.width_px).map(|place| (place, fit))
+        judge(&fit, &self.fine, &self.usual, after, self.width_px).map(|place| (place, fit))
     }
 
     /// A better start, from coarser pictures.

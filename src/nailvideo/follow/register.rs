@@ -8,6 +8,7 @@
 //! With `findTransformECC` on the locally normalized luma a rod over the nail costs 0.6.
 
 use nalgebra::{SMatrix, SVector};
+use wide::f32x4;
 
 use super::sight::Sight;
 use super::template::{BLOCKS, MOTION, Template};
@@ -28,6 +29,9 @@ const LEAST_SD: f64 = 0.004;
 /// In the first steps the weights reach farther: what a start that is off makes of edges is no outlier yet (without it
 /// starts 4 px off stayed there).
 const WIDER: [f64; 2] = [4.0, 2.0];
+/// These steps look at one of so many pixels, of a template that has enough of them: the last ones decide.
+const SPARSE: usize = 4;
+const FEWEST_SPARSE: usize = 3000;
 /// Fewer pixels that are seen determine nothing (assumed).
 const FEWEST_PIXELS: usize = 60;
 
@@ -36,7 +40,7 @@ const FEWEST_PIXELS: usize = 60;
 pub(super) struct Fit {
     /// From the template's pixels to the frame's.
     pub(super) motion: Affine,
-    /// Of the parameters in the template's coordinates, before it is known how far the residuals go together.
+    /// Of the parameters in the template's coordinates.
     pub(super) covariance: SMatrix<f64, MOTION, MOTION>,
     /// Correlation of the evenly spread pixels that have a weight.
     pub(super) ncc: f64,
@@ -65,27 +69,29 @@ pub(super) struct Scratch {
 /// Fits the template's motion to a frame, from `start` on; `None` where it leads nowhere.
 pub(super) fn register(template: &Template, sight: &Sight, start: Affine, scratch: &mut Scratch) -> Option<Fit> {
     let (mut motion, mut gain, mut offset) = (start, 1.0_f64, 0.0_f64);
-    let mut last_step_px = f64::INFINITY;
-    for k in 0..MOST_STEPS {
-        let wider = WIDER.get(k).copied().unwrap_or(1.0);
-        let sd = wider * look(template, sight, &motion, [gain, offset], scratch)?;
-        let (normal, right) = equations(template, scratch, sd);
-        let step = normal.cholesky()?.solve(&right);
+    let mut k = 0;
+    // Until the step after a look is so small that there is no need for another.
+    let (sd, covariance, last_step_px) = loop {
+        let wider = WIDER.get(k).copied();
+        let every = if wider.is_some() && template.pixels.len() >= FEWEST_SPARSE { SPARSE } else { 1 };
+        let sd = look(template, sight, &motion, [gain, offset], every, scratch)? * wider.unwrap_or(1.0);
+        let (normal, right) = equations(template, scratch, every, sd);
+        let normal = normal.cholesky()?;
+        let step = normal.solve(&right);
         // The step moves the template; the frame's motion is that of the frame without it.
         let by: [f64; MOTION] = std::array::from_fn(|k| -step[k] / gain.max(0.2));
         motion = motion.after(&template.motion(&by).inverse()?);
         (gain, offset) = (gain - step[MOTION], offset - step[MOTION + 1]);
-        last_step_px = farthest(&by);
-        if !last_step_px.is_finite() || !(0.05..20.0).contains(&gain) {
+        let step_px = farthest(&by);
+        if !step_px.is_finite() || !(0.05..20.0).contains(&gain) {
             return None;
         }
-        if last_step_px < LAST_STEP_PX && wider == 1.0 {
-            break;
+        k += 1;
+        if wider.is_none() && (step_px < LAST_STEP_PX || k >= MOST_STEPS) {
+            let inverse = normal.inverse();
+            break (sd, inverse * pulls(template, scratch, sd)? * inverse / (gain * gain), step_px);
         }
-    }
-    let sd = look(template, sight, &motion, [gain, offset], scratch)?;
-    let (normal, _) = equations(template, scratch, sd);
-    let covariance = normal.cholesky()?.inverse() * (sd * sd / (gain * gain));
+    };
     let covariance = covariance.fixed_view::<MOTION, MOTION>(0, 0).into_owned();
     let (ncc, inliers, outside) = agreement(template, scratch, sd);
     let texture = texture(template, scratch);
@@ -98,24 +104,35 @@ fn farthest(by: &[f64; MOTION]) -> f64 {
     one(0).hypot(one(3))
 }
 
-/// Residuals (template less frame) into the scratch; their SD.
+/// Residuals (template less frame) of one of `every` pixels into the scratch; their SD.
 fn look(
     template: &Template,
     sight: &Sight,
     motion: &Affine,
     [gain, offset]: [f64; 2],
+    every: usize,
     scratch: &mut Scratch,
 ) -> Option<f64> {
     let [a, b, c, d, e, f] = motion.0.map(|part| part as f32);
     let (gain, offset) = (gain as f32, offset as f32);
-    scratch.residuals.clear();
     scratch.values.clear();
-    for pixel in &template.pixels {
-        let [x, y] = pixel.at;
-        let value = sight.at(a * x + b * y + c, d * x + e * y + f);
-        scratch.values.push(value);
-        scratch.residuals.push(gain * pixel.value + offset - value);
+    let at = |[x, y]: [f32; 2]| [a * x + b * y + c, d * x + e * y + f];
+    let mut places = template.pixels.iter().step_by(every).map(|pixel| at(pixel.at));
+    if sight.holds(&template.corners.map(at)) {
+        while let Some(first) = places.next() {
+            // The last four may be fewer: the others are there twice.
+            let four: [[f32; 2]; 4] =
+                std::array::from_fn(|k| if k == 0 { first } else { places.next().unwrap_or(first) });
+            let [x, y] = [0, 1].map(|axis| f32x4::new(four.map(|at| at[axis])));
+            scratch.values.extend(sight.four(x, y).to_array());
+        }
+        scratch.values.truncate(template.pixels.len().div_ceil(every));
+    } else {
+        scratch.values.extend(places.map(|[x, y]| sight.at(x, y)));
     }
+    scratch.residuals.clear();
+    let pixels = template.pixels.iter().step_by(every).zip(&scratch.values);
+    scratch.residuals.extend(pixels.map(|(pixel, value)| gain * pixel.value() + offset - value));
     scratch.sorted.clear();
     scratch.sorted.extend(scratch.residuals.iter().map(|r| r.abs()).filter(|r| r.is_finite()));
     let count = scratch.sorted.len();
@@ -134,41 +151,84 @@ fn weight(residual: f32, per_limit: f32) -> f32 {
     rest * rest
 }
 
-/// Weighted normal equations of a step.
+/// Weighted normal equations of a step, of one of `every` pixels.
 fn equations(
     template: &Template,
     scratch: &Scratch,
+    every: usize,
     sd: f64,
 ) -> (SMatrix<f64, UNKNOWNS, UNKNOWNS>, SVector<f64, UNKNOWNS>) {
-    // The upper triangle of J'WJ in eight columns, and J'Wr as a ninth: single precision within a run of pixels.
+    // J'WJ's upper triangle in fours of columns, and J'Wr: single precision within a run of pixels.
     const RUN: usize = 64;
     let per_limit = (1.0 / (TUKEY_SDS * sd)) as f32;
-    let mut sums = [[0.0_f64; UNKNOWNS + 1]; UNKNOWNS];
-    for (pixels, residuals) in template.pixels.chunks(RUN).zip(scratch.residuals.chunks(RUN)) {
-        let mut run = [[0.0_f32; UNKNOWNS + 1]; UNKNOWNS];
-        for (pixel, &residual) in pixels.iter().zip(residuals) {
+    let mut sums = [[0.0_f64; UNKNOWNS]; UNKNOWNS + 1];
+    let mut pixels = template.pixels.iter().step_by(every);
+    for residuals in scratch.residuals.chunks(RUN) {
+        let (mut left, mut right) = ([f32x4::ZERO; 5], [f32x4::ZERO; UNKNOWNS + 1]);
+        for (&residual, pixel) in residuals.iter().zip(pixels.by_ref()) {
             let weight = weight(residual, per_limit);
             if weight == 0.0 {
                 continue;
             }
-            let s = &pixel.slopes;
-            let row = [s[0], s[1], s[2], s[3], s[4], s[5], pixel.value, 1.0, residual];
-            for (sums, &left) in run.iter_mut().zip(&row) {
-                let left = weight * left;
-                for (sum, &right) in sums.iter_mut().zip(&row) {
-                    *sum += left * right;
-                }
+            let [a, b, c, d, e, f, g, h] = pixel.row;
+            let (low, high) = (f32x4::new([a, b, c, d]), f32x4::new([e, f, g, h]));
+            let times = |part: f32| f32x4::splat(weight * part);
+            for (k, part) in [a, b, c, d, residual].into_iter().enumerate() {
+                left[k] += times(part) * low;
+            }
+            for (k, part) in [a, b, c, d, e, f, g, h, residual].into_iter().enumerate() {
+                right[k] += times(part) * high;
             }
         }
-        for (sums, run) in sums.iter_mut().zip(&run) {
-            sums.iter_mut().zip(run).for_each(|(sum, &part)| *sum += f64::from(part));
+        for (k, sums) in sums.iter_mut().enumerate() {
+            let low = if k < 4 {
+                left[k]
+            } else if k == UNKNOWNS {
+                left[4]
+            } else {
+                f32x4::ZERO
+            };
+            let parts = low.to_array().into_iter().chain(right[k].to_array());
+            sums.iter_mut().zip(parts).for_each(|(sum, part)| *sum += f64::from(part));
         }
     }
-    let normal: SMatrix<f64, UNKNOWNS, UNKNOWNS> = SMatrix::from_fn(|row, column| sums[row][column]);
-    let right = SVector::from_fn(|row, _| sums[row][UNKNOWNS]);
+    let normal: SMatrix<f64, UNKNOWNS, UNKNOWNS> =
+        SMatrix::from_fn(|row, column| sums[row.min(column)][row.max(column)]);
+    let right = SVector::from_row_slice(&sums[UNKNOWNS]);
     // Nothing moves along what nothing determines.
     let least = 1e-9 * normal.trace() / UNKNOWNS as f64;
     (normal + SMatrix::identity() * least, right)
+}
+
+/// What blocks of the box pull at the parameters, squares and products summed over the blocks: residuals within a block
+/// go together, as an encoder moves and keeps whole blocks of its own, so that blocks are counted and not pixels
+/// (K.-Y. Liang and S. L. Zeger, Biometrika 73 (1986) 13, doi:10.1093/biomet/73.1.13). `None` of too few blocks.
+fn pulls(template: &Template, scratch: &Scratch, sd: f64) -> Option<SMatrix<f64, UNKNOWNS, UNKNOWNS>> {
+    let per_limit = (1.0 / (TUKEY_SDS * sd)) as f32;
+    let mut blocks = [[f32x4::ZERO; 2]; BLOCKS * BLOCKS];
+    for (pixel, &residual) in template.pixels.iter().zip(&scratch.residuals) {
+        let weight = weight(residual, per_limit);
+        if weight == 0.0 {
+            continue;
+        }
+        let [a, b, c, d, e, f, g, h] = pixel.row;
+        let pull = f32x4::splat(weight * residual);
+        let block = &mut blocks[usize::from(pixel.block)];
+        block[0] += pull * f32x4::new([a, b, c, d]);
+        block[1] += pull * f32x4::new([e, f, g, h]);
+    }
+    let (mut sums, mut count) = (SMatrix::zeros(), 0.0);
+    for [left, right] in blocks {
+        let mut parts = left.to_array().into_iter().chain(right.to_array());
+        let pull: SVector<f64, UNKNOWNS> = SVector::from_fn(|_, _| parts.next().map_or(0.0, f64::from));
+        if pull.iter().any(|part| *part != 0.0) {
+            sums += pull * pull.transpose();
+            count += 1.0;
+        }
+    }
+    // As many are left over as the parameters have not taken.
+    let left = count - UNKNOWNS as f64;
+    (left >= UNKNOWNS as f64).then(|| sums * (count / left))
 }
 
 /// Correlation and share of the evenly spread pixels that have a weight, and the share outside of the picture.
@@ -184,7 +244,7 @@ fn agreement(template: &Template, scratch: &Scratch, sd: f64) -> (f64, f64, f64)
         if residual.is_nan() {
             out += 1.0;
         } else if f64::from(residual).abs() < limit {
-            let (p, q) = (f64::from(pixel.value), f64::from(value));
+            let (p, q) = (f64::from(pixel.value()), f64::from(value));
             (n, x, y) = (n + 1.0, x + p, y + q);
             (xx, xy, yy) = (xx + p * p, xy + p * q, yy + q * q);
         }
@@ -200,7 +260,7 @@ fn texture(template: &Template, scratch: &Scratch) -> f64 {
     let mut sums = [[0.0_f64; 6]; BLOCKS * BLOCKS];
     for (pixel, &value) in template.pixels.iter().zip(&scratch.values).filter(|(pixel, v)| pixel.even && v.is_finite())
     {
-        let (p, q) = (f64::from(pixel.value), f64::from(value));
+        let (p, q) = (f64::from(pixel.value()), f64::from(value));
         let of = &mut sums[usize::from(pixel.block)];
         of.iter_mut().zip([1.0, p, q, p * p, p * q, q * q]).for_each(|(sum, part)| *sum += part);
     }

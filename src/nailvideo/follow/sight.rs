@@ -5,6 +5,8 @@
 //! (`follow::tests`). G is made of block means, blurred: as smooth as it is, nothing
 //! is lost between them, and it costs a sixteenth.
 
+use wide::f32x4;
+
 use crate::nailvideo::grid::{Grid, Part};
 use crate::vision::{Samples, smoothed};
 
@@ -48,6 +50,18 @@ impl Sight {
     pub(super) fn at(&self, x: f32, y: f32) -> f32 {
         let low = self.low.at(x, y);
         (self.luma.at(x, y) - low) / (low + DARK)
+    }
+
+    /// Whether [`Self::four`] may be asked for all points between these corners.
+    pub(super) fn holds(&self, corners: &[[f32; 2]; 4]) -> bool {
+        self.luma.holds(corners) && self.low.holds(corners)
+    }
+
+    /// [`Self::at`] of four points of which [`Self::holds`] is true.
+    #[inline]
+    pub(super) fn four(&self, x: f32x4, y: f32x4) -> f32x4 {
+        let low = self.low.four(x, y);
+        (self.luma.four(x, y) - low) / (low + f32x4::splat(DARK))
     }
 
     /// The same at every block, row by row, with columns and rows.

@@ -21,9 +21,8 @@ pub(super) const MOTION: usize = 6;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Pixel {
     pub(super) at: [f32; 2],
-    pub(super) value: f32,
-    /// How the value changes with the motion's parameters.
-    pub(super) slopes: [f32; MOTION],
+    /// How the value changes with the motion's parameters; the value; 1: a row of the least squares.
+    pub(super) row: [f32; MOTION + 2],
     /// One of those that are spread evenly.
     pub(super) even: bool,
     /// The block of the nail's box that it lies in, of [`BLOCKS`] across and down.
@@ -34,10 +33,19 @@ pub(super) struct Pixel {
 #[derive(Debug)]
 pub(super) struct Template {
     pub(super) pixels: Vec<Pixel>,
+    /// Of the box that all pixels lie in.
+    pub(super) corners: [[f32; 2]; 4],
     /// The nail's middle, pixels.
     pub(super) middle: [f64; 2],
     /// Half of the nail's larger extent, pixels: where the parameters are displacements.
     pub(super) radius: f64,
+}
+
+impl Pixel {
+    #[inline]
+    pub(super) fn value(&self) -> f32 {
+        self.row[MOTION]
+    }
 }
 
 impl Template {
@@ -63,7 +71,13 @@ impl Template {
                 all.push(Pixel { block: (u.min(BLOCKS - 1) + BLOCKS * v.min(BLOCKS - 1)) as u8, ..pixel });
             }
         }
-        Self { pixels: chosen(all), middle, radius }
+        let side = |axis: usize| {
+            let all = all.iter().map(move |pixel: &Pixel| pixel.at[axis]);
+            [all.clone().fold(f32::INFINITY, f32::min), all.fold(f32::NEG_INFINITY, f32::max)]
+        };
+        let ([left, right], [top, bottom]) = (side(0), side(1));
+        let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
+        Self { pixels: chosen(all), corners, middle, radius }
     }
 
     /// The motion that its parameters stand for, about the nail's middle.
@@ -77,7 +91,7 @@ impl Template {
 
 /// The square of the slope along x and y.
 fn slope2(pixel: &Pixel) -> f64 {
-    f64::from(pixel.slopes[2]).powi(2) + f64::from(pixel.slopes[5]).powi(2)
+    f64::from(pixel.row[2]).powi(2) + f64::from(pixel.row[5]).powi(2)
 }
 
 fn pixel(sight: &Sight, at: [f64; 2], step: usize, middle: [f64; 2], radius: f64) -> Option<Pixel> {
@@ -87,8 +101,8 @@ fn pixel(sight: &Sight, at: [f64; 2], step: usize, middle: [f64; 2], radius: f64
     let dx = 0.5 * (sight.at(x + h, y) - sight.at(x - h, y)) / h;
     let dy = 0.5 * (sight.at(x, y + h) - sight.at(x, y - h)) / h;
     let local = [0, 1].map(|axis| ((at[axis] - middle[axis]) / radius) as f32);
-    let slopes = [dx * local[0], dx * local[1], dx, dy * local[0], dy * local[1], dy];
-    (value + dx + dy).is_finite().then_some(Pixel { at: [x, y], value, slopes, even: false, block: 0 })
+    let row = [dx * local[0], dx * local[1], dx, dy * local[0], dy * local[1], dy, value, 1.0];
+    (value + dx + dy).is_finite().then_some(Pixel { at: [x, y], row, even: false, block: 0 })
 }
 
 /// Half spread evenly, half the steepest of the others.

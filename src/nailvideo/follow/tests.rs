@@ -109,3 +109,33 @@ fn a_hand_that_leaves_is_lost() {
         assert!(place.is_err(), "{k}: {place:?}");
     }
 }
+
+#[test]
+fn a_nail_that_was_seen_to_change_is_found_again() {
+    let first = Scene::new(192.0, 1);
+    let noisy = |noise: f64| {
+        let mut scene = first.clone();
+        scene.noise = noise;
+        scene
+    };
+    let picture = first.picture(&Shot::REST, 1);
+    let mut follower = Follower::new(&picture.frame(0, 0.0), 0, first.frame_from_nail);
+    let mut step =
+        |k: u64, scene: &Scene, shot: &Shot| follower.step(&scene.picture(shot, 100 + k).frame(k, k as f64 / 30.0));
+    // Noise takes off the correlation what a press, a turn or an encoder would.
+    let (mut noise, mut ncc) = (1.0, Vec::new());
+    for k in 1..80 {
+        ncc.push(step(k, &noisy(noise), &Shot::REST).expect("followed").ncc);
+        if k > 15 && ncc[ncc.len() - 1] > 0.92 * ncc[0] {
+            noise += 0.2;
+        }
+    }
+    println!("noise {noise:.1}: correlation {:.3}, then {:.3}", ncc[0], ncc[78]);
+    assert!(ncc[78] < 0.93 * ncc[0], "no change");
+    for k in 80..84 {
+        assert!(step(k, &noisy(noise), &Shot { nail: false, ..Shot::REST }).is_err());
+    }
+    let back = (84..94).find(|&k| step(k, &noisy(noise), &Shot::REST).is_ok());
+    // Three frames confirm it.
+    assert!(back.is_some_and(|k| k <= 88), "{back:?}");
+}

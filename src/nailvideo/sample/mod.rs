@@ -41,6 +41,11 @@ const DARK: f64 = 0.02;
 /// SD of what encoders leave of a disc's mean chroma over a whole video, of 255 levels (measured on the phantom at a
 /// rate factor of 18: they keep a flat place's mean to a step or so; a uniform error of a step is 0.29).
 const CHROMA_SD: f64 = 0.12;
+/// A change at a place is off by this many pixels over the place's diameter, SD, as chroma is coarser than luma and
+/// encoders leave out what is small (measured on the phantom: green over red changes by 1 to 2 % too little at 16 px, by
+/// 3 to 20 % at 3.3 px; green, which is luma for the most part, by half as much).
+const RATIO_CHANGE_PX: f64 = 0.3;
+const GREEN_CHANGE_PX: f64 = 0.2;
 /// Slopes and curvatures are measured over so many pixels to each side, and once in so many frames, as is how the discs
 /// of [`noise`] change.
 const SLOPE_PX: f64 = 1.5;
@@ -85,8 +90,8 @@ pub(in crate::nailvideo) struct Sampled {
     pub(in crate::nailvideo) red: f32,
     /// How much it changes when the region is off by a pixel, across and down the picture.
     pub(in crate::nailvideo) slope_per_px: f32,
-    /// Its error by the encoder's steps of chroma and by the blur between samples, SD: they last, so that no difference
-    /// between frames shows them.
+    /// Its error by the encoder's steps of chroma, by the blur between samples and by what both take off a change, SD:
+    /// they last, so that no difference between frames shows them.
     pub(in crate::nailvideo) steady_sd: f32,
 }
 
@@ -113,7 +118,11 @@ pub(in crate::nailvideo) struct Sampler {
 struct Watched {
     region: Region,
     first: Vec<[f64; 3]>,
+    /// Its value there.
+    first_value: f64,
     chroma_sd: f64,
+    /// SD of a change, of the change.
+    change_sd: f64,
     shape: Shape,
 }
 
@@ -156,8 +165,11 @@ impl Sampler {
         };
         let watched = |region: Region| {
             let (shape, chroma_sd) = (shape(light, &region, first, frame_from_nail, skin_green), chroma(&region));
+            let first_value = value_of(light, region_mean(&region, first, frame_from_nail), skin_green);
+            let change_px = if light == Light::None { GREEN_CHANGE_PX } else { RATIO_CHANGE_PX };
+            let change_sd = change_px / (0.5 * extent_px[0] * region.width());
             let first = region.groups.iter().map(|group| first.mean(group, frame_from_nail)).collect();
-            Watched { region, first, chroma_sd, shape }
+            Watched { region, first, first_value, chroma_sd, change_sd, shape }
         };
         let regions = regions.into_iter().map(watched).collect();
         let spread: Vec<Watched> = spread_discs(positions, extent_px).into_iter().map(watched).collect();
@@ -241,7 +253,7 @@ impl Sampler {
             value,
             red: (rgb[0].ln() - of_light) as f32,
             slope_per_px: slope_per_px as f32,
-            steady_sd: watched.chroma_sd.hypot(blurred) as f32,
+            steady_sd: watched.chroma_sd.hypot(blurred).hypot(watched.change_sd * (value - watched.first_value)) as f32,
         };
         if value.is_finite() { Ok(sampled) } else { Err(Absent::NoSkin) }
     }

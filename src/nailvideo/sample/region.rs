@@ -26,6 +26,14 @@ pub(in crate::nailvideo) struct Region {
     pub(in crate::nailvideo) groups: Vec<Group>,
 }
 
+impl Region {
+    /// From its first point to its last, in half widths.
+    pub(in crate::nailvideo) fn width(&self) -> f64 {
+        let across = self.groups.iter().flat_map(|group| &group.points).map(|[u, _]| *u);
+        across.clone().fold(f64::NEG_INFINITY, f64::max) - across.fold(f64::INFINITY, f64::min)
+    }
+}
+
 /// The photodiodes' discs; `extent_px` are the nail's width and length.
 pub(in crate::nailvideo) fn discs(positions: &Positions, extent_px: [f64; 2]) -> Vec<Region> {
     discs_at(positions, extent_px, positions.photodiodes.iter().map(|one| [one.u, one.v]))
