@@ -9,6 +9,8 @@ mod fit;
 #[cfg(test)]
 mod tests;
 
+use rayon::prelude::*;
+
 pub(in crate::nailvideo) use find::noise_sd;
 use find::presses;
 use fit::{Course, fit};
@@ -136,6 +138,8 @@ pub(in crate::nailvideo) struct Recording<'a> {
 /// The rows of all presses.
 pub(in crate::nailvideo) fn rows(of: &Recording<'_>) -> Vec<Row> {
     let found = presses(of.time_s, of.traces, of.whole);
+    let traces = of.traces.iter().chain(of.ends).map(|trace| (trace, noise_sd(&trace.values)));
+    let traces: Vec<(&Trace, Option<f64>)> = traces.collect();
     let mut rows = Vec::new();
     for (k, press) in found.iter().enumerate() {
         let next_s = found.get(k + 1).map_or(f64::INFINITY, |next| next.press_s);
@@ -145,22 +149,24 @@ pub(in crate::nailvideo) fn rows(of: &Recording<'_>) -> Vec<Row> {
             Some((Event::Press, press.press_s, before_s, end_s.min(next_s))),
             press.release_s.map(|at| (Event::Release, at, press.press_s, next_s)),
         ];
-        for trace in of.traces.iter().chain(of.ends) {
-            for (event, at_s, from_s, to_s) in events.into_iter().flatten() {
+        // By trace, then by event, as each is fitted by itself.
+        let of_trace = |(trace, noise_sd): &(&Trace, Option<f64>)| {
+            let row = |(event, at_s, from_s, to_s)| {
                 // The level of the rest before the press, which a release may return to.
                 let rest = (event == Event::Release).then(|| level(of.time_s, &trace.values, press.press_s)).flatten();
-                let window = Window { at_s, from_s, to_s };
-                rows.push(Row {
+                Row {
                     press: k + 1,
                     event,
                     place: trace.name.clone(),
                     found_s: (press.press_s, press.release_s),
                     pressed_s: press.release_s.map(|end| end - press.press_s),
-                    noise_sd: noise_sd(&trace.values),
-                    course: course(of, trace, window, rest),
-                });
-            }
-        }
+                    noise_sd: *noise_sd,
+                    course: course(of, trace, *noise_sd, Window { at_s, from_s, to_s }, rest),
+                }
+            };
+            events.into_iter().flatten().map(row).collect::<Vec<Row>>()
+        };
+        rows.par_extend(traces.par_iter().flat_map_iter(of_trace));
         // How long it lasted is known to the frame where the courses are.
         let onset = |event: Event, rows: &[Row]| {
             let of = |row: &&Row| row.press == k + 1 && row.event == event;
@@ -186,12 +192,18 @@ struct Window {
 
 /// The level in the two seconds before a press.
 fn level(time_s: &[f64], values: &[f64], at_s: f64) -> Option<f64> {
-    let of = |(&t, &v): (&f64, &f64)| (v.is_finite() && t >= at_s - BEFORE_S && t < at_s - 0.3).then_some(v);
-    let known: Vec<f64> = time_s.iter().zip(values).filter_map(of).collect();
+    let [from, to] = [at_s - BEFORE_S, at_s - 0.3].map(|end_s| time_s.partition_point(|&t| t < end_s));
+    let known: Vec<f64> = values[from..to].iter().copied().filter(|v| v.is_finite()).collect();
     (known.len() >= 6).then(|| known.iter().sum::<f64>() / known.len() as f64)
 }
 
-fn course(of: &Recording<'_>, trace: &Trace, window: Window, rest: Option<f64>) -> Result<Course, Refused> {
+fn course(
+    of: &Recording<'_>,
+    trace: &Trace,
+    noise_sd: Option<f64>,
+    window: Window,
+    rest: Option<f64>,
+) -> Result<Course, Refused> {
     let refused = |why: &'static str, depth: Option<f64>| Err(Refused { why, depth });
     let Window { at_s, from_s, to_s } = window;
     // The course after the event before this one has ended by half of the way, or is refused by its residuals.
@@ -210,7 +222,7 @@ fn course(of: &Recording<'_>, trace: &Trace, window: Window, rest: Option<f64>) 
     }
     let time_s: Vec<f64> = known.iter().map(|&k| of.time_s[k] - at_s).collect();
     let values: Vec<f64> = known.iter().map(|&k| trace.values[k]).collect();
-    let Some(noise) = noise_sd(&trace.values) else { return refused("too few samples to know the noise", None) };
+    let Some(noise) = noise_sd else { return refused("too few samples to know the noise", None) };
     let Some(mut course) = fit(&time_s, &values, 0.0, rest) else { return refused("no exponential course fits", None) };
     let depth = Some(course.depth);
     let is_deep = course.depth.abs() >= LEAST_SDS * noise.max(1e-9);

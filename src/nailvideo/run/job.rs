@@ -299,7 +299,10 @@ impl Job<'_> {
         let skin: Vec<f64> = kept.iter().map(|row| row.skin).collect();
         let ends = ends(positions, &traces);
         let recording = Recording { time_s: &time_s, traces: &traces, ends: &ends, skin: &skin, whole };
-        let pressed = self.stages.time("presses", || rows(&recording));
+        // Without threads of its own, by those that there are: the same rows.
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(self.options.threads).build();
+        let pressed =
+            self.stages.time("presses", || pool.map_or_else(|_| rows(&recording), |p| p.install(|| rows(&recording))));
         presses(self.staging, self.outputs, self.light, &pressed)?;
         for sums in &windows {
             let [mean, sd] = sums.maps();
