@@ -43,7 +43,7 @@ pub enum Protocol {
     Longitudinal,
     /// 60 s: six cycles from fully flexed to fully extended and back, the knuckle held (3.3.5, Fig. 32 to 34).
     FreeBending,
-    /// 600 s of presses, holds, slides, taps and near misses with pauses, of a sensor that is worn, with pulse, bumps, raised
+    /// 600 s of presses, holds, slides, taps and near misses with pauses, of a worn sensor, with pulse, bumps, raised
     /// hands and drift.
     Contacts,
     /// An hour of rest: the finger sways, bends about once a minute, and touches nothing; the same disturbances.
