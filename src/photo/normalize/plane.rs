@@ -143,20 +143,9 @@ trait Sample: Copy {
     fn is_zero(self) -> bool;
 }
 
-/// Every byte over 255: a division for each pixel takes longer.
-static FRACTIONS: [f32; 256] = {
-    let mut fractions = [0.0; 256];
-    let mut level = 0;
-    while level < 256 {
-        fractions[level] = level as f32 / 255.0;
-        level += 1;
-    }
-    fractions
-};
-
 impl Sample for u8 {
     fn fraction(self) -> f32 {
-        FRACTIONS[usize::from(self)]
+        f32::from(self) / 255.0
     }
     fn is_zero(self) -> bool {
         self == 0
