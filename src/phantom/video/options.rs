@@ -112,7 +112,7 @@ pub enum Chroma {
     #[serde(rename = "444")]
     #[value(name = "444")]
     Full,
-    /// None.
+    /// No chroma.
     #[serde(rename = "grey")]
     #[value(name = "grey")]
     None,
