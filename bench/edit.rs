@@ -9,15 +9,17 @@
 //! pictures) of which MASKS has a mask of the same name; a hand drew those, and five numbers come no nearer to them
 //! than an IoU of 0.93 in median, so IOU says when one is right.
 
+#[path = "../tests/util/desk.rs"]
+mod desk;
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::AtomicBool;
-use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
+use desk::Desk;
 use lunula::labelme::{LabelMe, Shape, to_labelme};
 use lunula::nail::Outline;
-use lunula::outlines::{EditOptions, Editor, Pressed};
+use lunula::outlines::Pressed;
 use lunula::phantom::photos::{LightKind, PhotoOptions, write};
 use lunula::photo::outline::{Drawn, outlines_from_mask, read_annotated};
 use lunula::photo::{PhotoSet, Photograph};
@@ -117,27 +119,7 @@ fn real(photographs: &Path, masks: &Path) -> (tempfile::TempDir, Truth) {
     (home, truth)
 }
 
-/// Who presses keys, and sees what there is.
-struct Person {
-    editor: Editor,
-    seen: Arc<Mutex<String>>,
-}
-
-impl Person {
-    fn at(photos: &Path) -> Self {
-        let seen = Arc::new(Mutex::new(String::new()));
-        let news = Arc::clone(&seen);
-        let show = Box::new(move |json: &str| json.clone_into(&mut news.lock().expect("no panic")));
-        let set = PhotoSet::open(photos, &[]).expect("photographs");
-        let editor = Editor::new(set, &EditOptions::default(), show).expect("options of a default");
-        editor.survey(&AtomicBool::new(false));
-        Self { editor, seen }
-    }
-
-    fn sees(&self) -> Value {
-        serde_json::from_str(&self.seen.lock().expect("no panic")).expect("a state")
-    }
-
+impl Desk {
     fn press(&self, key: &Value) {
         assert_eq!(self.editor.key(key.to_string().as_bytes()), Pressed::Done, "{key}");
     }
@@ -225,7 +207,7 @@ fn of_corner() -> Vec<Value> {
 }
 
 fn keys(what: &str, home: &Path, truth: &Truth, iou: f64) {
-    let person = Person::at(&home.join("photos"));
+    let person = Desk::at(&home.join("photos"));
     let (mut counts, mut given_up, mut right, mut none) = (Vec::new(), Vec::new(), 0, 0);
     let mut before = Vec::new();
     loop {
@@ -278,7 +260,7 @@ fn keys(what: &str, home: &Path, truth: &Truth, iou: f64) {
 
 /// From a key to the pictures of what it did, and from Enter to those of the next photograph, of 12 megapixels.
 fn times(home: &Path) {
-    let person = Person::at(&home.join("photos"));
+    let person = Desk::at(&home.join("photos"));
     let seen = |start: Instant| {
         person.editor.normalized(true).expect("a nail");
         start.elapsed()

@@ -121,18 +121,14 @@ fn program() -> Vec<Check> {
 }
 
 fn codecs(no_decoder: &[&str], encoder: bool) -> Check {
-    let mut found = Vec::new();
-    if !no_decoder.is_empty() {
-        found.push(format!("no decoder of {}", no_decoder.join(", ")));
-    }
-    if !encoder {
-        found.push(format!("no {ENCODER}: no overlay and no generated video can be written"));
-    }
-    if found.is_empty() {
+    let decoders = (!no_decoder.is_empty()).then(|| format!("no decoder of {}", no_decoder.join(", ")));
+    let encoder = (!encoder).then(|| format!("no {ENCODER}: no overlay and no generated video can be written"));
+    let missing: Vec<String> = decoders.into_iter().chain(encoder).collect();
+    if missing.is_empty() {
         return good("codecs", "all that cameras commonly write");
     }
     let remedy = "install Debian's own libavcodec, and see that no other precedes it on LD_LIBRARY_PATH";
-    note("codecs", found.join("; "), remedy)
+    note("codecs", missing.join("; "), remedy)
 }
 
 fn threads() -> Check {
@@ -171,13 +167,13 @@ fn least(meminfo: &str, most: &str, used: &str) -> Option<u64> {
 fn memory(bytes: Option<u64>) -> Check {
     match bytes {
         None => note("memory", "not known", "limit what `lunula run` may use with --memory"),
-        Some(bytes) if bytes < LITTLE => note("memory", gib(bytes), "end other programs, or use fewer --threads"),
-        Some(bytes) => good("memory", gib(bytes)),
+        Some(bytes) => free("memory", bytes, "end other programs, or use fewer --threads"),
     }
 }
 
-fn gib(bytes: u64) -> String {
-    format!("{:.1} GiB free", bytes as f64 / (1u64 << 30) as f64)
+fn free(what: &str, bytes: u64, remedy: &str) -> Check {
+    let found = format!("{:.1} GiB free", bytes as f64 / (1u64 << 30) as f64);
+    if bytes < LITTLE { note(what, found, remedy) } else { good(what, found) }
 }
 
 /// The folder for results, or the one that it would be made in: files written, renamed over others and locked; its room
@@ -206,8 +202,7 @@ fn folder(out: &Path) -> Vec<Check> {
     let make_room = "make room, or choose another --out";
     let room = match rustix::fs::statvfs(&at).map(|disk| disk.f_bavail.saturating_mul(disk.f_frsize)) {
         Err(why) => note("room", format!("not known ({why})"), make_room),
-        Ok(bytes) if bytes < LITTLE => note("room", gib(bytes), make_room),
-        Ok(bytes) => good("room", gib(bytes)),
+        Ok(bytes) => free("room", bytes, make_room),
     };
     vec![good("results", format!("{shown} can be written to")), locks, room, clock(written, SystemTime::now())]
 }

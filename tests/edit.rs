@@ -1,15 +1,11 @@
 //! `lunula edit`: outlines corrected key by key, and what is in the files then.
 
 use std::io::Read;
-use std::path::Path;
-use std::sync::atomic::AtomicBool;
-use std::sync::{Arc, Mutex};
 
 use image::{DynamicImage, Rgb, RgbImage, imageops};
 use lunula::labelme::LabelMe;
 use lunula::nail::Outline;
-use lunula::outlines::{EditOptions, Editor, NOT_A_NAIL, Pressed};
-use lunula::photo::PhotoSet;
+use lunula::outlines::{NOT_A_NAIL, Pressed};
 use lunula::photo::Photograph;
 use lunula::photo::outline::{Drawn, read_annotated};
 use rand::{RngExt, SeedableRng};
@@ -17,33 +13,14 @@ use rand_chacha::ChaCha8Rng;
 use serde_json::{Value, json};
 
 use crate::photos_extremes::{save_turned, stored};
+use crate::util::desk::Desk;
 use crate::util::page::{ends, interrupts, until};
 use crate::util::{Dir, Json, drawn_axis, drawn_nail, drawn_outline, labelme};
 
 /// Files have hundredths of pixels.
 const HUNDREDTH_PX: f64 = 0.0051;
 
-/// A person at the page of a set.
-struct Desk {
-    editor: Editor,
-    seen: Arc<Mutex<String>>,
-}
-
 impl Desk {
-    fn at(set: &Path) -> Self {
-        let seen = Arc::new(Mutex::new(String::new()));
-        let news = Arc::clone(&seen);
-        let show = Box::new(move |json: &str| json.clone_into(&mut news.lock().expect("no panic")));
-        let set = PhotoSet::open(set, &[]).expect("photographs");
-        let editor = Editor::new(set, &EditOptions::default(), show).expect("options of a default");
-        editor.survey(&AtomicBool::new(false));
-        Self { editor, seen }
-    }
-
-    fn sees(&self) -> Value {
-        serde_json::from_str(&self.seen.lock().expect("no panic")).expect("a state")
-    }
-
     #[track_caller]
     fn press(&self, key: Value) {
         assert_eq!(self.editor.key(key.to_string().as_bytes()), Pressed::Done, "{key}");

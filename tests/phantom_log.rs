@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 
 use crate::util::Dir;
+use lunula::phantom::Error;
 use lunula::phantom::force::{ForceTrajectory, Spiral};
-use lunula::phantom::log::{Error, LogOptions, LogScene, write};
+use lunula::phantom::log::{LogOptions, LogScene, write};
 use lunula::phantom::sensor::CHANNELS;
 use lunula::phantom::trajectory::Trajectory;
 
@@ -138,10 +139,13 @@ fn what_a_folder_holds_of_others_is_left_alone() {
     let dir = Dir::new();
     let scene = LogScene::new(LogOptions { seconds: 1.0, ..LogOptions::default() }).unwrap();
     dir.write("out/log.csv", "mine");
-    assert!(matches!(write(&scene, &dir.path("out")), Err(Error::InTheWay(path)) if path.ends_with("log.csv")));
+    assert!(
+        matches!(write(&scene, &dir.path("out")), Err(Error::InTheWay { place, .. }) if place.ends_with("log.csv"))
+    );
     assert_eq!(dir.bytes_of("out").len(), 1);
     dir.write("photos/truth/phantom.json", "{}");
-    assert!(matches!(write(&scene, &dir.path("photos")), Err(Error::InTheWay(path)) if path.ends_with("phantom.json")));
+    let photos = write(&scene, &dir.path("photos"));
+    assert!(matches!(photos, Err(Error::InTheWay { place, .. }) if place.ends_with("phantom.json")));
     dir.write("file", "mine");
     assert!(matches!(write(&scene, &dir.path("file/out")), Err(Error::Place(_))));
 }

@@ -11,8 +11,9 @@ use lunula::{
     job::Watch,
     labelme::{LabelMe, from_labelme},
     phantom::{
+        Error,
         nail::Pose,
-        photos::{Error, FileFormat, OptionFault, PhotoOptions, write, write_watched},
+        photos::{FileFormat, OptionFault, PhotoOptions, write, write_watched},
     },
 };
 use ndarray::Array2;
@@ -213,6 +214,6 @@ fn a_set_is_replaced_whole_and_nothing_else_is_touched() {
     let own = tempfile::tempdir().unwrap();
     fs::create_dir(own.path().join("photos")).unwrap();
     fs::write(own.path().join("photos/mine.png"), "x").unwrap();
-    assert!(matches!(write(&options, own.path()), Err(Error::InTheWay(_))));
+    assert!(matches!(write(&options, own.path()), Err(Error::InTheWay { .. })));
     assert_eq!(files(own.path()).len(), 1);
 }

@@ -6,7 +6,7 @@ use lunula::phantom::finger::MarkerLayout;
 use lunula::phantom::screen::Clock;
 use lunula::phantom::trajectory::Trajectory;
 use lunula::phantom::video::{
-    Chroma, Colours, Error, Hide, Leave, Lens, MarkerStatus, Preset, Scene, Siting, VideoOptions, write,
+    Chroma, Colours, Hide, Leave, Lens, MarkerStatus, Preset, Scene, Siting, VideoOptions, write,
 };
 use lunula::video::{Item, Picture, Turn, Video};
 
@@ -523,7 +523,7 @@ fn what_is_not_ours_is_left_alone() {
     let dir = Dir::new();
     let scene = Scene::new(VideoOptions { seconds: 0.1, ..small() }).unwrap();
     dir.write("out/video.mp4", "mine");
-    assert!(matches!(write(&scene, &dir.path("out")), Err(Error::InTheWay(_))));
+    assert!(matches!(write(&scene, &dir.path("out")), Err(lunula::phantom::Error::InTheWay { .. })));
     assert_eq!(dir.bytes_of("out").len(), 1);
     write(&scene, &dir.path("again")).unwrap();
     let first = dir.bytes_of("again");

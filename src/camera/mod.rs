@@ -29,5 +29,4 @@ pub use error::CameraError;
 pub use options::{CameraOptions, Inputs, Outputs};
 pub use report::{CameraFigures, CameraReport, LensFigures, PlaneFigures, ViewFigures};
 pub use run::job::run;
-pub use run::kind::CameraJob;
 pub use run::plan::plan;

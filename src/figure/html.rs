@@ -40,6 +40,11 @@ impl Page {
         Self { html }
     }
 
+    /// Makes room for pictures of so many bytes: the page is not copied as it grows.
+    pub fn reserve(&mut self, png_bytes: usize) {
+        self.html.reserve(png_bytes.div_ceil(3) * 4);
+    }
+
     /// A section's heading.
     pub fn heading(&mut self, text: &str) {
         let _ = writeln!(self.html, "<h2>{}</h2>", escape(text));

@@ -1,13 +1,13 @@
 //! Sheets: many small pictures in a grid, each with its caption, a title above and a scale below. PNG and SVG.
 
 use base64::Engine;
-use image::{DynamicImage, GrayAlphaImage, GrayImage, Rgb, RgbImage};
+use image::{DynamicImage, GrayAlphaImage, ImageBuffer, Luma, Pixel, Rgb, RgbImage};
 use imageproc::drawing::draw_hollow_rect_mut;
 use imageproc::rect::Rect;
 
 use super::Stretch;
 use super::html::escape;
-use super::text::{INK, centred, left};
+use super::text::{centred, left};
 
 /// One picture of a sheet.
 #[derive(Debug, Clone)]
@@ -37,22 +37,49 @@ impl TilePicture {
         }
     }
 
-    /// Row `y` as colours on a sheet.
-    fn draw_row(&self, y: u32, to: &mut [[u8; 3]]) {
+    /// Row `y` as samples of a sheet.
+    fn draw_row<P: Tone>(&self, y: u32, to: &mut [u8]) {
+        let width = self.size()[0] as usize;
+        let to = to.chunks_exact_mut(P::CHANNEL_COUNT.into()).take(width);
         match self {
             Self::Grey(picture) => {
-                let width = picture.width() as usize;
-                let row = &picture.as_raw()[2 * width * y as usize..];
-                for (to, from) in to.iter_mut().zip(row.chunks_exact(2)).take(width) {
-                    *to = if from[1] == 0 { UNKNOWN.0 } else { [from[0]; 3] };
+                let row = picture.as_raw()[2 * width * y as usize..].chunks_exact(2);
+                for (to, from) in to.zip(row) {
+                    let colour = if from[1] == 0 { UNKNOWN } else { [from[0]; 3] };
+                    to.copy_from_slice(P::of(colour).channels());
                 }
             }
             Self::Colour(picture) => {
-                let width = picture.width() as usize;
-                let row = &picture.as_raw()[3 * width * y as usize..];
-                to[..width].copy_from_slice(&row.as_chunks::<3>().0[..width]);
+                for (to, from) in to.zip(picture.as_raw()[3 * width * y as usize..].as_chunks().0) {
+                    to.copy_from_slice(P::of(*from).channels());
+                }
             }
         }
+    }
+
+    /// Whether every pixel of it is known, and is a grey level.
+    fn is_grey(&self) -> bool {
+        match self {
+            Self::Grey(picture) => picture.pixels().all(|pixel| pixel.0[1] > 0),
+            Self::Colour(picture) => picture.pixels().all(|pixel| pixel.0 == [pixel.0[0]; 3]),
+        }
+    }
+}
+
+/// A pixel of a sheet, in colour or, where all of it is grey, of one channel.
+trait Tone: Pixel<Subpixel = u8> {
+    fn of(colour: [u8; 3]) -> Self;
+}
+
+impl Tone for Rgb<u8> {
+    fn of(colour: [u8; 3]) -> Self {
+        Self(colour)
+    }
+}
+
+impl Tone for Luma<u8> {
+    fn of([level, ..]: [u8; 3]) -> Self {
+        Self([level])
     }
 }
 
@@ -92,9 +119,11 @@ const TITLE: u32 = 40;
 const CAPTION: u32 = 24;
 const SCALE: u32 = 64;
 const BAR: [u32; 2] = [320, 18];
-const PAPER: Rgb<u8> = Rgb([255, 255, 255]);
+const PAPER: [u8; 3] = [255; 3];
+/// Captions.
+const INK: [u8; 3] = [34; 3];
 /// Behind unknown pixels: a colour, so that it can't be taken for a grey level.
-const UNKNOWN: Rgb<u8> = Rgb([205, 216, 240]);
+const UNKNOWN: [u8; 3] = [205, 216, 240];
 
 /// Where everything stands, pixels.
 struct Layout {
@@ -121,36 +150,36 @@ impl Sheet {
         Layout { tile, columns, size: [width, TITLE + GAP + rows * (tile[1] + CAPTION + GAP) + scale] }
     }
 
-    /// Draws the sheet.
-    pub fn draw(&self) -> RgbImage {
+    fn draw<P: Tone>(&self) -> ImageBuffer<P, Vec<u8>> {
         let layout = self.layout();
-        let mut sheet = RgbImage::from_pixel(layout.size[0], layout.size[1], PAPER);
-        left(&mut sheet, &self.title, GAP as i32, 14, 22.0);
+        let ink = P::of(INK);
+        let mut sheet = ImageBuffer::from_pixel(layout.size[0], layout.size[1], P::of(PAPER));
+        left(&mut sheet, ink, &self.title, [GAP as i32, 14], 22.0);
         for (at, tile) in self.tiles.iter().enumerate() {
             let [x0, y0] = layout.corner(at);
             let [width, height] = tile.picture.size();
             let left = x0 + (layout.tile[0] - width) / 2;
             for y in 0..height {
-                let start = 3 * ((y0 + y) * layout.size[0] + left) as usize;
+                let start = usize::from(P::CHANNEL_COUNT) * ((y0 + y) * layout.size[0] + left) as usize;
                 let samples: &mut [u8] = &mut sheet;
-                tile.picture.draw_row(y, samples[start..].as_chunks_mut::<3>().0);
+                tile.picture.draw_row::<P>(y, &mut samples[start..]);
             }
-            let middle = (x0 + layout.tile[0] / 2) as i32;
-            centred(&mut sheet, &tile.caption, middle, (y0 + layout.tile[1] + 4) as i32, 17.0, layout.tile[0]);
+            let top = [x0 + layout.tile[0] / 2, y0 + layout.tile[1] + 4].map(|at| at as i32);
+            centred(&mut sheet, ink, &tile.caption, top, 17.0, layout.tile[0]);
         }
         if let Some(scale) = &self.scale {
             let y = layout.size[1] - SCALE + 6;
             let frame = Rect::at(GAP as i32 + 9, y as i32 - 1).of_size(BAR[0] + 2, BAR[1] + 2);
-            draw_hollow_rect_mut(&mut sheet, frame, INK);
+            draw_hollow_rect_mut(&mut sheet, frame, ink);
             for (x, level) in scale.levels().enumerate() {
                 for dy in 0..BAR[1] {
-                    sheet.put_pixel(GAP + 10 + x as u32, y + dy, Rgb([level; 3]));
+                    sheet.put_pixel(GAP + 10 + x as u32, y + dy, P::of([level; 3]));
                 }
             }
             for (position, text) in scale.ticks() {
-                centred(&mut sheet, &text, (GAP + 10 + position) as i32, (y + BAR[1] + 4) as i32, 15.0, 60);
+                centred(&mut sheet, ink, &text, [GAP + 10 + position, y + BAR[1] + 4].map(|at| at as i32), 15.0, 60);
             }
-            left(&mut sheet, &scale.label, (GAP + BAR[0] + 34) as i32, y as i32, 17.0);
+            left(&mut sheet, ink, &scale.label, [(GAP + BAR[0] + 34) as i32, y as i32], 17.0);
         }
         sheet
     }
@@ -160,15 +189,8 @@ impl Sheet {
     /// # Errors
     /// Where it can't be encoded.
     pub fn png(&self) -> Result<Vec<u8>, image::ImageError> {
-        let drawn = self.draw();
-        let grey = drawn.pixels().all(|p| p.0[0] == p.0[1] && p.0[1] == p.0[2]);
-        let levels = || drawn.chunks_exact(3).map(|p| p[0]).collect();
-        let flat = if grey {
-            GrayImage::from_raw(drawn.width(), drawn.height(), levels()).map(DynamicImage::from)
-        } else {
-            None
-        };
-        super::png(&flat.unwrap_or_else(|| drawn.into()))
+        let is_grey = self.tiles.iter().all(|tile| tile.picture.is_grey());
+        super::png(&if is_grey { self.draw::<Luma<u8>>().into() } else { self.draw::<Rgb<u8>>().into() })
     }
 
     /// The sheet as SVG: pictures embedded, words as words.
@@ -264,5 +286,30 @@ impl Scale {
             Stretch::Above(limit) => vec![0.0, limit, 1.0],
         };
         values.into_iter().map(|v| (at(v), format!("{} %", (f64::from(v) * 1000.0).round() / 10.0))).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sheet(tile: GrayAlphaImage) -> Sheet {
+        let tile = Tile { caption: "pressed".to_owned(), picture: TilePicture::Grey(tile), png: None };
+        let scale = Scale { stretch: Stretch::Linear { low: 0.0, high: 1.0 }, label: "mean, %".to_owned() };
+        Sheet { title: "Average".to_owned(), tiles: vec![tile], columns: 1, scale: Some(scale) }
+    }
+
+    #[test]
+    fn a_sheet_of_one_channel_is_that_in_colour_unless_something_is_unknown() {
+        let mut tile = GrayAlphaImage::from_fn(40, 30, |x, y| image::LumaA([(5 * x + y) as u8, 255]));
+        let grey = sheet(tile.clone());
+        let flat: Vec<u8> = grey.draw::<Rgb<u8>>().pixels().flat_map(|pixel| pixel.0).collect();
+        let levels = grey.draw::<Luma<u8>>().into_raw();
+        assert_eq!(flat, levels.into_iter().flat_map(|level| [level; 3]).collect::<Vec<_>>());
+        let read = |sheet: &Sheet| image::load_from_memory(&sheet.png().unwrap()).unwrap();
+        assert_eq!(read(&grey).color(), image::ColorType::L8);
+        tile.put_pixel(3, 4, image::LumaA([0, 0]));
+        let read = read(&sheet(tile)).into_rgb8();
+        assert!(read.pixels().any(|pixel| pixel.0 == UNKNOWN));
     }
 }

@@ -3,29 +3,35 @@
 use std::sync::LazyLock;
 
 use ab_glyph::{FontRef, PxScale};
-use image::{GrayImage, RgbImage};
+use image::{GrayImage, ImageBuffer, Pixel};
 use imageproc::drawing::{draw_text_mut, text_size};
 
 /// The typeface of every figure (Ubuntu Light, Ubuntu font licence).
 pub(super) const TYPEFACE: &[u8] = epaint_default_fonts::UBUNTU_LIGHT;
-/// Colour of captions.
-pub(super) const INK: image::Rgb<u8> = image::Rgb([34, 34, 34]);
 
 /// The typeface, to draw with.
 pub(super) static FONT: LazyLock<FontRef<'static>> =
     LazyLock::new(|| FontRef::try_from_slice(TYPEFACE).expect("the typeface that is compiled in is a typeface"));
 
-/// Draws `text` with its middle at `x` and its top at `y`, shortened with an ellipsis to fit `width` pixels.
-pub(super) fn centred(picture: &mut RgbImage, text: &str, x: i32, y: i32, height: f32, width: u32) {
+/// Draws `text` with the middle of its top at `x` and `y`, shortened with an ellipsis to fit `width` pixels.
+pub(super) fn centred<P>(picture: &mut Pixels<P>, ink: P, text: &str, [x, y]: [i32; 2], height: f32, width: u32)
+where
+    P: Pixel<Subpixel = u8>,
+{
     let text = shortened(text, height, width);
     let (drawn, _) = text_size(PxScale::from(height), &*FONT, &text);
-    draw_text_mut(picture, INK, x - drawn as i32 / 2, y, PxScale::from(height), &*FONT, &text);
+    left(picture, ink, &text, [x - drawn as i32 / 2, y], height);
 }
 
 /// Draws `text` from (`x`, `y`), its top left corner.
-pub(super) fn left(picture: &mut RgbImage, text: &str, x: i32, y: i32, height: f32) {
-    draw_text_mut(picture, INK, x, y, PxScale::from(height), &*FONT, text);
+pub(super) fn left<P>(picture: &mut Pixels<P>, ink: P, text: &str, [x, y]: [i32; 2], height: f32)
+where
+    P: Pixel<Subpixel = u8>,
+{
+    draw_text_mut(picture, ink, x, y, PxScale::from(height), &*FONT, text);
 }
+
+type Pixels<P> = ImageBuffer<P, Vec<u8>>;
 
 /// How much of each pixel `text` covers (0 to 255), `height` pixels high.
 pub(super) fn coverage(text: &str, height: f32) -> GrayImage {

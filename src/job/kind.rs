@@ -6,6 +6,8 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use clap::Args;
+
 use super::work::{Made, Work};
 use super::{Given, Keys, OptionFault, Said, keys, read};
 use crate::stages::Step;
@@ -34,6 +36,14 @@ pub struct Role {
     pub about: &'static str,
 }
 
+impl Role {
+    /// A role by its key, how many files it takes, and what it is.
+    #[must_use]
+    pub const fn new(name: &'static str, takes: Takes, about: &'static str) -> Self {
+        Self { name, takes, about }
+    }
+}
+
 /// Something that a job makes and others may name.
 #[derive(Debug, Clone, Copy)]
 pub struct Part {
@@ -44,6 +54,20 @@ pub struct Part {
     pub file: &'static str,
     /// Made only where it is wanted or another stage works on it.
     pub only_if_wanted: bool,
+}
+
+impl Part {
+    /// A part that is always made, by name and file.
+    #[must_use]
+    pub const fn new(name: &'static str, file: &'static str) -> Self {
+        Self { name, file, only_if_wanted: false }
+    }
+
+    /// One that is made only where it is wanted.
+    #[must_use]
+    pub const fn if_wanted(name: &'static str, file: &'static str) -> Self {
+        Self { name, file, only_if_wanted: true }
+    }
 }
 
 /// A kind of job.
@@ -65,8 +89,15 @@ pub struct Kind {
 impl Kind {
     /// That of a job, in its first revision.
     #[must_use]
-    pub const fn of<J: Job>(name: &'static str, roles: &'static [Role], parts: &'static [Part]) -> Self {
-        Self { name, roles, parts, revision: 1, keys: keys::<J::Options>, prepare: prepare::<J> }
+    pub const fn of<J: Job + Args>(name: &'static str, roles: &'static [Role], parts: &'static [Part]) -> Self {
+        Self { name, roles, parts, revision: 1, keys: keys::<J>, prepare: prepare::<J> }
+    }
+
+    /// The same in a later revision.
+    #[must_use]
+    pub const fn revision(mut self, revision: u32) -> Self {
+        self.revision = revision;
+        self
     }
 }
 
@@ -146,27 +177,18 @@ pub struct Order<'a> {
     pub said: &'a Said,
 }
 
-/// A job as pipelines know it: the options of one stage, checked.
+/// A job as pipelines know it: the options of one stage, checked. They are the command's options too (`clap::Args`); a
+/// job without options is a struct without fields.
 pub trait Job: Send + Sync + Sized + 'static {
     /// What the planner has to know of it.
     const KIND: Kind;
 
-    /// Its options: the command's, and a stage's keys.
-    type Options: clap::Args;
-
-    /// Checks the options of a stage.
+    /// Checks the options of a stage, each of which is valid by itself.
     ///
     /// # Errors
     /// [`OptionFault`], the first thing that is wrong.
-    fn new(options: Self::Options) -> Result<Self, OptionFault>;
-
-    /// Reads the keys of a stage.
-    ///
-    /// # Errors
-    /// [`OptionFault`], the first thing that is wrong.
-    fn read(table: &toml::Table) -> Result<(Self, Said), OptionFault> {
-        let Given { options, said } = read::<Self::Options>(table, &format!("the job {}", Self::KIND.name))?;
-        Ok((Self::new(options)?, said))
+    fn checked(self) -> Result<Self, OptionFault> {
+        Ok(self)
     }
 
     /// What it needs of whoever makes the input of `role`, where `own` is needed of it.
@@ -254,13 +276,21 @@ pub trait Maker: Send + Sync {
     fn run(&self, work: &Work<'_>) -> anyhow::Result<Made>;
 }
 
-/// Checks a stage's keys for a job.
+/// Reads a stage's keys and checks them.
 ///
 /// # Errors
 /// [`OptionFault`], the first thing that is wrong.
-pub fn prepare<J: Job>(table: &toml::Table) -> Result<Arc<dyn Prepared>, OptionFault> {
-    let (job, said) = J::read(table)?;
-    Ok(Arc::new(Stage { job, said }))
+pub fn prepare<J: Job + Args>(table: &toml::Table) -> Result<Arc<dyn Prepared>, OptionFault> {
+    let Given { options, said } = read::<J>(table, &format!("the job {}", J::KIND.name))?;
+    prepared(options, said)
+}
+
+/// Checks a stage's options; `said` as the file writes them.
+///
+/// # Errors
+/// [`OptionFault`], the first thing that is wrong.
+pub fn prepared<J: Job>(options: J, said: Said) -> Result<Arc<dyn Prepared>, OptionFault> {
+    Ok(Arc::new(Stage { job: options.checked()?, said }))
 }
 
 struct Stage<J> {

@@ -12,8 +12,8 @@ mod watch;
 mod work;
 
 pub use keys::Keys;
-pub use kind::{Demand, Facts, Foreseen, Job, Kind, Maker, Order, Part, Prepared, Role, Takes, prepare};
-pub use options::{Given, NoOptions, OptionFault, Said, Tables, defaults, keys, not_negative, number, one_of, read};
+pub use kind::{Demand, Facts, Foreseen, Job, Kind, Maker, Order, Part, Prepared, Role, Takes, prepare, prepared};
+pub use options::{Given, OptionFault, Said, Tables, defaults, keys, not_negative, number, one_of, read};
 pub use report::Report;
 pub use truth::against;
 pub use watch::{Interrupted, Watch};

@@ -23,6 +23,13 @@ pub struct OptionFault {
     pub what: String,
 }
 
+impl OptionFault {
+    /// That of a table as a whole.
+    pub fn whole(what: impl ToString) -> Self {
+        Self { key: String::new(), what: what.to_string() }
+    }
+}
+
 /// The keys of a request, in the order of its fields.
 #[must_use]
 pub fn keys<R: Args>() -> Vec<String> {
@@ -120,10 +127,6 @@ impl<R: Args> Args for Given<R> {
         R::augment_args_for_update(command)
     }
 }
-
-/// A job without options.
-#[derive(Debug, Clone, Copy, Args)]
-pub struct NoOptions {}
 
 /// How a stage's tables are written; on the command line the name of a table's file says it.
 #[derive(Debug, Clone, Copy, Args)]

@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
+use std::time::Instant;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Keys, Said, Watch};
-use crate::stages::Stage;
+use super::{Job, Keys, Report, Said, Watch};
+use crate::stages::{Stage, Stages};
 
 /// An input where it exists.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -74,6 +75,23 @@ impl Work<'_> {
         }
         let pool = rayon::ThreadPoolBuilder::new().num_threads(self.threads.max(1)).build()?;
         pool.install(|| work(&watch)).map_err(Into::into)
+    }
+
+    /// Reports the figures of a job whose work is one stage.
+    ///
+    /// # Errors
+    /// As [`Work::run`].
+    pub fn report<J: Job, F: Serialize + Send>(
+        &self,
+        said: &Said,
+        stage: &'static str,
+        figures: impl FnOnce() -> anyhow::Result<F> + Send,
+    ) -> anyhow::Result<Report<F>> {
+        let (start, stages) = (Instant::now(), Stages::default());
+        self.run(said, |watch| -> anyhow::Result<_> {
+            let figures = stages.time(stage, figures)?;
+            Ok(Report::new(J::KIND.name, watch, figures).timed(&stages, start))
+        })
     }
 }
 

@@ -25,7 +25,6 @@ pub use error::LayoutError;
 pub use options::{LayoutInput, LayoutInputs, LayoutOptions, LayoutOutputs, Numbers};
 pub use read::{LeftOutCandidates, PersonFigures};
 pub use run::job::run;
-pub use run::kind::LayoutJob;
 pub use run::plan::plan;
 pub use run::report::{ChosenFigures, LayoutFigures, LayoutReport, MethodFigures};
 pub use solve::{LeftOut, Method};

@@ -18,7 +18,7 @@ mod set;
 mod sums;
 
 pub use crate::photo::run::job::run;
-pub use crate::photo::run::kind::{MapsJob, NormalizeJob};
+pub use crate::photo::run::kind::MapsJob;
 pub use crate::photo::run::plan::plan;
 pub use crate::photo::run::report::{PhotosFigures, PhotosReport, PoseCount};
 pub use crate::photograph::{Depth, MOST_MEGAPIXELS, Photograph, ReadFault};

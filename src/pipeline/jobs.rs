@@ -1,18 +1,18 @@
 //! The jobs of the library, which every pipeline knows.
 
 use crate::align::{AlignJob, JoinJob};
-use crate::camera::CameraJob;
-use crate::hemodynamics::{CurveJob, FitJob, SimulateJob};
+use crate::camera::CameraOptions;
+use crate::hemodynamics::{CurveOptions, FitOptions, SimulateOptions};
 use crate::job::{Job, Kind};
-use crate::layout::LayoutJob;
-use crate::live::performance::PerformanceJob;
-use crate::live::skill::SkillJob;
-use crate::live::{EvaluateSwitchJob, TuneSwitchJob};
+use crate::layout::LayoutOptions;
+use crate::live::performance::PerformanceOptions;
+use crate::live::skill::SkillOptions;
+use crate::live::{ContactOptions, TuneOptions};
 use crate::nailvideo::NailVideoJob;
-use crate::photo::{MapsJob, NormalizeJob};
+use crate::photo::{MapsJob, PhotosOptions};
 use crate::posture::PostureJob;
-use crate::predictor::trajectory::TrajectoryJob;
-use crate::predictor::{AnalyseJob, EvaluateJob, PredictJob, PruneJob, TrainJob};
+use crate::predictor::trajectory::TrajectoryOptions;
+use crate::predictor::{AnalyseJob, EvaluateChoices, PredictChoices, PruneChoices, TrainChoices};
 
 /// Their kinds, by name.
 #[must_use]
@@ -24,23 +24,23 @@ pub fn kinds() -> &'static [&'static Kind] {
 static KINDS: &[&Kind] = &[
     &AlignJob::KIND,
     &AnalyseJob::KIND,
-    &CameraJob::KIND,
-    &EvaluateJob::KIND,
-    &FitJob::KIND,
+    &CameraOptions::KIND,
+    &EvaluateChoices::KIND,
+    &FitOptions::KIND,
     &JoinJob::KIND,
-    &LayoutJob::KIND,
+    &LayoutOptions::KIND,
     &MapsJob::KIND,
     &NailVideoJob::KIND,
-    &NormalizeJob::KIND,
-    &PerformanceJob::KIND,
+    &PhotosOptions::KIND,
+    &PerformanceOptions::KIND,
     &PostureJob::KIND,
-    &PredictJob::KIND,
-    &PruneJob::KIND,
-    &SimulateJob::KIND,
-    &SkillJob::KIND,
-    &CurveJob::KIND,
-    &EvaluateSwitchJob::KIND,
-    &TuneSwitchJob::KIND,
-    &TrainJob::KIND,
-    &TrajectoryJob::KIND,
+    &PredictChoices::KIND,
+    &PruneChoices::KIND,
+    &SimulateOptions::KIND,
+    &SkillOptions::KIND,
+    &CurveOptions::KIND,
+    &ContactOptions::KIND,
+    &TuneOptions::KIND,
+    &TrainChoices::KIND,
+    &TrajectoryOptions::KIND,
 ];

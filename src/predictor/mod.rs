@@ -36,7 +36,7 @@ pub use jobs::evaluate::{
     BinMerit, EvaluateFigures, EvaluateOptions, EvaluateReport, HeldOut, Magnitudes, Part, RecordingMerit, Splits,
     evaluate, evaluate_plan, way,
 };
-pub use jobs::kinds::{AnalyseJob, EvaluateJob, PredictJob, PruneJob, TrainJob};
+pub use jobs::kinds::AnalyseJob;
 pub use jobs::predict::{PredictFigures, PredictOptions, PredictReport, predict, predict_plan};
 pub use jobs::prune::{PruneFigures, PruneReport, PruneRow, prune, prune_plan};
 pub use jobs::train::{TrainFigures, TrainInputs, TrainOptions, TrainOutputs, TrainReport, Without, train, train_plan};

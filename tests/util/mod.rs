@@ -3,6 +3,7 @@
 #![allow(dead_code, unreachable_pub, reason = "every test file uses a part of it")]
 
 pub mod browser;
+pub mod desk;
 pub mod page;
 pub(crate) mod real_data;
 pub mod sensor;

@@ -239,7 +239,7 @@ fn answer(predictor: Predictor, bytes: &[u8]) {
         let mut bytes = bytes;
         while let Ok(Some(step)) = lines.next(&mut bytes, 0) {
             if let Step::Sample(sample) = step {
-                answering.answer(sample.time, false, lines.values(), &mut out);
+                answering.answer(sample.time, false, &lines.decoded().values, &mut out);
             }
         }
     }

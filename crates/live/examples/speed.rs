@@ -44,14 +44,14 @@ fn main() {
             let mut sequence = None;
             let mut names = &b"time_s,P1,P2,P3,P4,P5,P6,P7,P8\n"[..];
             while let Ok(Some(_)) = lines.next(&mut names, 0) {
-                sequence = Some(Sequence::new(lines.meaning(), Link::Recording, None));
+                sequence = Some(Sequence::new(&lines.decoded().meaning, Link::Recording, None));
             }
             for piece in text.as_bytes().chunks(4096) {
                 let mut piece = piece;
                 while let Ok(Some(step)) = lines.next(&mut piece, 0) {
                     if let (Step::Sample(sample), Some(sequence)) = (step, &mut sequence) {
                         black_box(sequence.take(&sample, 0));
-                        black_box(lines.values());
+                        black_box(&lines.decoded().values);
                     }
                 }
             }
@@ -71,7 +71,7 @@ fn main() {
             let mut piece = piece;
             while let Ok(Some(step)) = frames.next(&mut piece) {
                 black_box(step);
-                black_box(frames.values());
+                black_box(&frames.decoded().values);
             }
         }
     });

@@ -33,14 +33,14 @@ pub use section::section_4_3;
 #[must_use]
 pub fn kinds() -> &'static [&'static Kind] {
     static KINDS: &[&Kind] = &[
-        &compare::CompareJob::KIND,
+        &compare::CompareChoices::KIND,
         &film::FilmJob::KIND,
         &compare::HalvesJob::KIND,
         &section::PressesJob::KIND,
-        &responses::ResponsesJob::KIND,
+        &responses::ResponsesOptions::KIND,
         &film::RisingJob::KIND,
         &section::SectionJob::KIND,
-        &page::StudyJob::KIND,
+        &page::PageOptions::KIND,
         &typical::TypicalJob::KIND,
     ];
     KINDS

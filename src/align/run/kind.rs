@@ -15,8 +15,7 @@ use crate::align::run::job::run;
 use crate::align::run::plan::{Foreknown, steps};
 use crate::align::run::report::AlignReport;
 use crate::job::{
-    Demand, Facts, Foreseen, Job, Keys, Kind, Made, OptionFault, Order, Part, Quality, Report, Role, Tables, Takes,
-    Work, against,
+    Demand, Facts, Foreseen, Job, Keys, Kind, Made, Order, Part, Quality, Report, Role, Tables, Takes, Work, against,
 };
 use crate::log::LogHeader;
 use crate::stages::{Stages, Step};
@@ -28,26 +27,22 @@ const BIDS: &str = "bids";
 const DLC: &str = "dlc";
 const PICTURES: &str = "pictures";
 
-/// The options of a stage.
+/// A stage of a pipeline.
 #[derive(Debug, Clone, Args)]
-pub(crate) struct AlignKeys {
+pub(crate) struct AlignJob {
     #[command(flatten)]
     options: AlignOptions,
     #[command(flatten)]
     tables: Tables,
 }
 
-/// A stage of a pipeline.
-#[derive(Debug, Clone)]
-pub(crate) struct AlignJob(AlignKeys);
-
 impl AlignJob {
     fn needs_clock(&self) -> bool {
-        matches!(self.0.options.sync, None | Some(Sync::Clock))
+        matches!(self.options.sync, None | Some(Sync::Clock))
     }
 
     fn options_for(&self, keys: &Keys) -> AlignOptions {
-        let own = &self.0.options;
+        let own = &self.options;
         let or_key = |said: &Option<String>, name: &str| said.clone().or_else(|| keys.get(name).map(str::to_owned));
         let (subject, session) = (or_key(&own.subject, "subject"), or_key(&own.session, "session"));
         AlignOptions { subject, session, ..own.clone() }
@@ -56,7 +51,7 @@ impl AlignJob {
     fn outputs(&self, demand: &Demand, folder: &Path) -> AlignOutputs {
         let place = |part: &str, name: &str| demand.wants(part).then(|| folder.join(name));
         AlignOutputs {
-            training: folder.join(self.0.tables.named("training.csv", "training.parquet")),
+            training: folder.join(self.tables.named("training.csv", "training.parquet")),
             mot: place(MOT, "angles.mot"),
             bids: place(BIDS, "bids"),
             dlc: place(DLC, "markers.csv"),
@@ -67,7 +62,7 @@ impl AlignJob {
 
     fn header(&self, log: Option<&Foreseen>) -> Option<Result<LogHeader, String>> {
         let log = log.filter(|log| log.exists)?;
-        Some(LogHeader::read(&log.path, &self.0.options.log.columns).map_err(|why| why.to_string()))
+        Some(LogHeader::read(&log.path, &self.options.log.columns).map_err(|why| why.to_string()))
     }
 }
 
@@ -75,41 +70,27 @@ impl Job for AlignJob {
     const KIND: Kind = Kind::of::<Self>(
         "align",
         &[
-            Role { name: "joints", takes: Takes::One, about: "the table of angles of `posture`" },
-            Role { name: "log", takes: Takes::One, about: "the log of photodiodes, and forces where it has them" },
-            Role {
-                name: TRACKS,
-                takes: Takes::Optional,
-                about: "the table of markers of `posture`, for the part `dlc`",
-            },
-            Role {
-                name: "truth",
-                takes: Takes::Optional,
-                about: "the true angles of the log's rows: log_s, <joint>_deg",
-            },
+            Role::new("joints", Takes::One, "the table of angles of `posture`"),
+            Role::new("log", Takes::One, "the log of photodiodes, and forces where it has them"),
+            Role::new(TRACKS, Takes::Optional, "the table of markers of `posture`, for the part `dlc`"),
+            Role::new("truth", Takes::Optional, "the true angles of the log's rows: log_s, <joint>_deg"),
         ],
         &[
-            Part { name: "training", file: "training.csv", only_if_wanted: false },
-            Part { name: "certificate", file: "training.sync.json", only_if_wanted: false },
-            Part { name: MOT, file: "angles.mot", only_if_wanted: true },
-            Part { name: BIDS, file: "bids", only_if_wanted: true },
-            Part { name: DLC, file: "markers.csv", only_if_wanted: true },
-            Part { name: PICTURES, file: "training-labels.png", only_if_wanted: true },
+            Part::new("training", "training.csv"),
+            Part::new("certificate", "training.sync.json"),
+            Part::if_wanted(MOT, "angles.mot"),
+            Part::if_wanted(BIDS, "bids"),
+            Part::if_wanted(DLC, "markers.csv"),
+            Part::if_wanted(PICTURES, "training-labels.png"),
         ],
     );
-
-    type Options = AlignKeys;
-
-    fn new(options: AlignKeys) -> Result<Self, OptionFault> {
-        Ok(Self(options))
-    }
 
     fn demand(&self, role: &str, own: &Demand) -> Demand {
         match role {
             "joints" => Demand {
                 parts: ["joints"].into(),
                 // All angles together find the lag: which others are wanted must not change it.
-                joints: own.joints.clone().filter(|_| self.0.options.sync != Some(Sync::Correlate)),
+                joints: own.joints.clone().filter(|_| self.options.sync != Some(Sync::Correlate)),
                 clock: self.needs_clock(),
             },
             TRACKS if own.wants(DLC) => Demand { parts: [TRACKS].into(), ..Demand::default() },
@@ -138,7 +119,7 @@ impl Job for AlignJob {
             photodiodes: header.map(|header| header.photodiodes),
             ..Foreknown::default()
         };
-        Ok(steps(&known, &self.0.options, Some(&self.outputs(demand, Path::new("")))))
+        Ok(steps(&known, &self.options, Some(&self.outputs(demand, Path::new("")))))
     }
 
     fn facts(&self, inputs: &[Foreseen], _demand: &Demand) -> Facts {
@@ -156,7 +137,7 @@ impl Job for AlignJob {
     }
 
     fn file(&self, part: &Part) -> &'static str {
-        if part.name == "training" { self.0.tables.named(part.file, "training.parquet") } else { part.file }
+        if part.name == "training" { self.tables.named(part.file, "training.parquet") } else { part.file }
     }
 
     fn run(&self, order: &Order<'_>, work: &Work<'_>) -> anyhow::Result<Made> {
@@ -199,8 +180,11 @@ fn stated(report: &AlignReport) -> Vec<Quality> {
 }
 
 /// A stage that joins sets; one set alone is passed on as it is.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct JoinJob(Tables);
+#[derive(Debug, Clone, Copy, Args)]
+pub(crate) struct JoinJob {
+    #[command(flatten)]
+    tables: Tables,
+}
 
 #[derive(Debug, Serialize)]
 struct JoinFigures {
@@ -211,15 +195,9 @@ struct JoinFigures {
 impl Job for JoinJob {
     const KIND: Kind = Kind::of::<Self>(
         "join",
-        &[Role { name: "sets", takes: Takes::Many, about: "what `align` made" }],
-        &[Part { name: "training", file: "training.csv", only_if_wanted: false }],
+        &[Role::new("sets", Takes::Many, "what `align` made")],
+        &[Part::new("training", "training.csv")],
     );
-
-    type Options = Tables;
-
-    fn new(options: Tables) -> Result<Self, OptionFault> {
-        Ok(Self(options))
-    }
 
     fn demand(&self, _role: &str, own: &Demand) -> Demand {
         Demand { parts: ["training"].into(), joints: own.joints.clone(), clock: own.clock }
@@ -241,14 +219,14 @@ impl Job for JoinJob {
     }
 
     fn file(&self, part: &Part) -> &'static str {
-        self.0.named(part.file, "training.parquet")
+        self.tables.named(part.file, "training.parquet")
     }
 
     fn run(&self, order: &Order<'_>, work: &Work<'_>) -> anyhow::Result<Made> {
         let (start, stages) = (Instant::now(), Stages::default());
         let sets: Vec<PathBuf> = work.of("sets").map(|at| at.path.clone()).collect();
-        let to = work.folder.join(self.0.named("training.csv", "training.parquet"));
-        let is_of_format = |set: &PathBuf| TableFormat::of(set).is_ok_and(|format| format == self.0.format());
+        let to = work.folder.join(self.tables.named("training.csv", "training.parquet"));
+        let is_of_format = |set: &PathBuf| TableFormat::of(set).is_ok_and(|format| format == self.tables.format());
         let report = work.run(order.said, |watch| -> anyhow::Result<_> {
             let mut report = Report::new("join", watch, JoinFigures { sets: sets.len(), rows: None });
             match &sets[..] {

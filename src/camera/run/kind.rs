@@ -5,47 +5,34 @@ use std::path::{Path, PathBuf};
 use crate::camera::options::{CameraOptions, Inputs, Outputs};
 use crate::camera::run::job::run;
 use crate::camera::run::plan::{plan, steps};
-use crate::job::{Demand, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Quality, Role, Takes, Work};
+use crate::job::{Demand, Foreseen, Job, Kind, Made, Order, Part, Quality, Role, Takes, Work};
 use crate::stages::Step;
 
 const CAMERA: &str = "camera.toml";
 const PICTURES: &str = "pictures";
 
-/// A stage of a pipeline.
-#[derive(Debug, Clone)]
-pub struct CameraJob(CameraOptions);
-
 fn outputs(folder: &Path, demand: &Demand) -> Outputs {
     Outputs { camera: folder.join(CAMERA), figures: demand.wants(PICTURES), report: false }
 }
 
-impl Job for CameraJob {
+impl Job for CameraOptions {
     const KIND: Kind = Kind::of::<Self>(
         "camera",
         &[
-            Role { name: "views", takes: Takes::Many, about: "photographs or videos of a chessboard" },
-            Role { name: "plane", takes: Takes::Optional, about: "the board in the finger's plane" },
+            Role::new("views", Takes::Many, "photographs or videos of a chessboard"),
+            Role::new("plane", Takes::Optional, "the board in the finger's plane"),
         ],
-        &[
-            Part { name: "camera", file: CAMERA, only_if_wanted: false },
-            Part { name: PICTURES, file: "camera-corners.png", only_if_wanted: true },
-        ],
+        &[Part::new("camera", CAMERA), Part::if_wanted(PICTURES, "camera-corners.png")],
     );
-
-    type Options = CameraOptions;
-
-    fn new(options: CameraOptions) -> Result<Self, OptionFault> {
-        Ok(Self(options))
-    }
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         let outputs = outputs(Path::new(""), demand);
         let plane = Foreseen::of(inputs, "plane").map(|input| input.path.clone());
         if inputs.iter().any(|input| !input.exists) {
-            return Ok(steps(None, plane.is_some(), &self.0, Some(&outputs)));
+            return Ok(steps(None, plane.is_some(), self, Some(&outputs)));
         }
         let views = inputs.iter().filter(|input| input.role == "views").map(|input| input.path.clone()).collect();
-        plan(&Inputs { views, plane }, &self.0, Some(&outputs)).map_err(|why| why.to_string())
+        plan(&Inputs { views, plane }, self, Some(&outputs)).map_err(|why| why.to_string())
     }
 
     fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {
@@ -56,7 +43,7 @@ impl Job for CameraJob {
         let mut views: Vec<PathBuf> = work.of("views").map(|input| input.path.clone()).collect();
         views.sort();
         let inputs = Inputs { views, plane: work.one("plane").map(|input| input.path.clone()) };
-        let options = CameraOptions { threads: work.threads, ..self.0.clone() };
+        let options = CameraOptions { threads: work.threads, ..self.clone() };
         let outputs = outputs(work.folder, order.demand);
         let report = work.run(order.said, |watch| run(&inputs, &options, &outputs, watch))?;
         let share = 100.0 * report.lens_sd.fx_px / report.lens.fx_px;

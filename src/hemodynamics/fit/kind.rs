@@ -3,13 +3,14 @@
 //! Recordings of one subject are those whose key `subject` is the same; where not all have it, all are one's.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use super::job::{fit, plan, steps};
 use super::{FitInputs, FitOptions, FitOutputs, FitReport};
 use crate::hemodynamics::given::{PARAMS, existing, of_foreseen, of_task, read_parameters};
 use crate::hemodynamics::model::Parameters;
 use crate::job::{
-    Demand, Foreseen, Given, Job, Keys, Kind, Made, OptionFault, Order, Part, Quality, Role, Said, Takes, Work, read,
+    Demand, Foreseen, Job, Keys, Kind, Made, OptionFault, Order, Part, Prepared, Quality, Role, Takes, Work, prepare,
 };
 use crate::log::{ambient_step, foreseen_bytes};
 use crate::stages::Step;
@@ -17,10 +18,6 @@ use crate::stages::Step;
 const PICTURES: &str = "pictures";
 const RECORDINGS: &str = "recordings";
 const TRUTH: &str = "truth";
-
-/// A stage of a pipeline.
-#[derive(Debug, Clone)]
-pub struct FitJob(FitOptions);
 
 fn outputs(folder: &Path, demand: &Demand) -> FitOutputs {
     FitOutputs { result: folder.join("fit.json"), figures: demand.wants(PICTURES), report: false }
@@ -31,41 +28,33 @@ fn subjects<'a>(keys: impl Iterator<Item = &'a Keys>) -> Vec<String> {
     keys.map(|keys| keys.get("subject").map(str::to_owned)).collect::<Option<Vec<_>>>().unwrap_or_default()
 }
 
-impl Job for FitJob {
-    const KIND: Kind = Kind::of::<Self>(
-        "fit",
-        &[
-            Role {
-                name: RECORDINGS,
-                takes: Takes::Many,
-                about: "recorded responses: loads and photodiodes; a log or align's set",
-            },
-            PARAMS,
-            Role { name: TRUTH, takes: Takes::Optional, about: "the true parameters, where they are known" },
-        ],
-        &[
-            Part { name: "params", file: "fit.toml", only_if_wanted: false },
-            Part { name: "estimates", file: "fit-estimates.csv", only_if_wanted: false },
-            Part { name: "fitted", file: "fit-fitted.csv", only_if_wanted: false },
-            Part { name: PICTURES, file: "", only_if_wanted: true },
-        ],
-    );
-
-    type Options = FitOptions;
-
-    fn new(options: FitOptions) -> Result<Self, OptionFault> {
-        Ok(Self(options))
+/// Reads a stage's keys; an empty list says what the command's word does.
+fn prepare_fit(table: &toml::Table) -> Result<Arc<dyn Prepared>, OptionFault> {
+    let mut table = table.clone();
+    if table.get("free").and_then(toml::Value::as_array).is_some_and(Vec::is_empty) {
+        table.insert("free".to_owned(), "none".into());
     }
+    prepare::<FitOptions>(&table)
+}
 
-    fn read(table: &toml::Table) -> Result<(Self, Said), OptionFault> {
-        let mut table = table.clone();
-        // An empty list says what the command's word does.
-        if table.get("free").and_then(toml::Value::as_array).is_some_and(Vec::is_empty) {
-            table.insert("free".to_owned(), "none".into());
-        }
-        let Given { options, said } = read(&table, "the job fit")?;
-        Ok((Self::new(options)?, said))
-    }
+impl Job for FitOptions {
+    const KIND: Kind = Kind {
+        prepare: prepare_fit,
+        ..Kind::of::<Self>(
+            "fit",
+            &[
+                Role::new(RECORDINGS, Takes::Many, "recorded responses: loads and photodiodes; a log or align's set"),
+                PARAMS,
+                Role::new(TRUTH, Takes::Optional, "the true parameters, where they are known"),
+            ],
+            &[
+                Part::new("params", "fit.toml"),
+                Part::new("estimates", "fit-estimates.csv"),
+                Part::new("fitted", "fit-fitted.csv"),
+                Part::if_wanted(PICTURES, ""),
+            ],
+        )
+    };
 
     fn demand(&self, _role: &str, own: &Demand) -> Demand {
         Demand { joints: Some(Default::default()), clock: own.clock, ..Demand::default() }
@@ -81,15 +70,15 @@ impl Job for FitJob {
         };
         let outputs = outputs(Path::new(""), demand);
         if existing(inputs) {
-            return plan(&files, &self.0, Some(&outputs)).map_err(|why| why.to_string());
+            return plan(&files, self, Some(&outputs)).map_err(|why| why.to_string());
         }
-        let ambient = ambient_step(inputs, &[RECORDINGS], &self.0.columns.log);
-        Ok(steps(&files, &self.0, Some(&outputs), ambient, None))
+        let ambient = ambient_step(inputs, &[RECORDINGS], &self.columns.log);
+        Ok(steps(&files, self, Some(&outputs), ambient, None))
     }
 
     fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {
         let bytes = foreseen_bytes(inputs.iter().filter(|input| input.role == RECORDINGS));
-        let fits = f64::from(self.0.starts) * (1.0 + self.0.free().len() as f64);
+        let fits = f64::from(self.starts) * (1.0 + self.free().len() as f64);
         (32_000_000 + 10 * bytes, 0.1 + fits * (0.05 + 2e-7 * bytes as f64))
     }
 
@@ -101,7 +90,7 @@ impl Job for FitJob {
             params: of_task(PARAMS.name, work),
         };
         let outputs = outputs(work.folder, order.demand);
-        let report = work.run(order.said, |watch| fit(&inputs, &self.0, &outputs, watch))?;
+        let report = work.run(order.said, |watch| fit(&inputs, self, &outputs, watch))?;
         let mut quality = stated(&report);
         if let Some(at) = work.one(TRUTH) {
             quality.extend(against(&report, &read_parameters(&at.path)?));

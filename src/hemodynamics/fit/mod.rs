@@ -15,7 +15,6 @@ mod report;
 
 pub use fitted::{own_parameters, voltages};
 pub use job::{fit, plan as fit_plan};
-pub use kind::FitJob;
 pub use options::{FitInputs, FitOptions, FitOutputs};
 pub use recording::{Between, PhotodiodeColumn, RecordingColumns};
 pub use report::{FitFigures, FitReport, FittedGroup, FittedPhotodiode, RecordingReport};

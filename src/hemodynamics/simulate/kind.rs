@@ -13,62 +13,45 @@ const TABLE: &str = "trajectory.csv";
 const LOADS: &str = "loads";
 const START: &str = "start";
 
-/// A stage of a pipeline.
-#[derive(Debug, Clone)]
-pub struct SimulateJob(SimulateOptions);
-
 fn outputs(folder: &Path, demand: &Demand) -> SimulateOutputs {
     SimulateOutputs { table: folder.join(TABLE), figures: demand.wants(PICTURES), report: false }
 }
 
-impl SimulateJob {
+impl SimulateOptions {
     /// The stage's files and options; the error says what is given twice.
     fn with(&self, of: impl Fn(&str) -> Option<PathBuf>) -> Result<(SimulateInputs, SimulateOptions), &'static str> {
         let inputs = SimulateInputs { params: of(PARAMS.name), loads: of(LOADS) };
-        let own = &self.0;
-        if inputs.loads.is_some() && (own.loads.pf1.is_some() || own.loads.pf2.is_some()) {
+        if inputs.loads.is_some() && (self.loads.pf1.is_some() || self.loads.pf2.is_some()) {
             return Err("`loads` replaces `pf1` and `pf2`: leave one or the other out");
         }
-        let start = match (own.start.clone(), of(START)) {
+        let start = match (self.start.clone(), of(START)) {
             (Some(_), Some(_)) => return Err("`start` and `from` both say where it starts: leave one out"),
             (own, path) => path.map(Start::File).or(own),
         };
-        Ok((inputs, SimulateOptions { start, ..own.clone() }))
+        Ok((inputs, SimulateOptions { start, ..self.clone() }))
     }
 }
 
-impl Job for SimulateJob {
-    const KIND: Kind = Kind {
-        revision: 2,
-        ..Kind::of::<Self>(
-            "simulate",
-            &[
-                PARAMS,
-                Role {
-                    name: LOADS,
-                    takes: Takes::Optional,
-                    about: "a table time_s,pf1_Pa,pf2_Pa instead of pf1 and pf2",
-                },
-                Role { name: START, takes: Takes::Optional, about: "a trajectory whose last row it starts from" },
-            ],
-            &[
-                Part { name: "trajectory", file: TABLE, only_if_wanted: false },
-                Part { name: PICTURES, file: "", only_if_wanted: true },
-            ],
-        )
-    };
+impl Job for SimulateOptions {
+    const KIND: Kind = Kind::of::<Self>(
+        "simulate",
+        &[
+            PARAMS,
+            Role::new(LOADS, Takes::Optional, "a table time_s,pf1_Pa,pf2_Pa instead of pf1 and pf2"),
+            Role::new(START, Takes::Optional, "a trajectory whose last row it starts from"),
+        ],
+        &[Part::new("trajectory", TABLE), Part::if_wanted(PICTURES, "")],
+    )
+    .revision(2);
 
-    type Options = SimulateOptions;
-
-    fn new(options: SimulateOptions) -> Result<Self, OptionFault> {
-        let fault = |key: &str, what: String| OptionFault { key: key.to_owned(), what };
-        if let Some(Start::File(path)) = &options.start {
+    fn checked(self) -> Result<Self, OptionFault> {
+        if let Some(Start::File(path)) = &self.start {
             let what = format!("`{}`: write zero; the trajectory to start from is the input `{START}`", path.display());
-            return Err(fault("from", what));
+            return Err(OptionFault { key: "from".to_owned(), what });
         }
         // The numbers are checked with the parameters, which may be a file's: a fault with the thesis' is one with any.
-        plan(&SimulateInputs::default(), &options, None).map_err(|why| fault("", why.to_string()))?;
-        Ok(Self(options))
+        plan(&SimulateInputs::default(), &self, None).map_err(OptionFault::whole)?;
+        Ok(self)
     }
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
@@ -86,9 +69,9 @@ impl Job for SimulateJob {
     }
 
     fn cost(&self, _inputs: &[Foreseen]) -> (u64, f64) {
-        let walls = f64::from(self.0.model.units.unwrap_or(2)) + 1.0;
-        let values = self.0.rows() * (3.0 * walls + 4.0);
-        (32_000_000 + (40.0 * values) as u64, 0.02 + 1e-7 * values + 2e-3 * self.0.until_s * walls)
+        let walls = f64::from(self.model.units.unwrap_or(2)) + 1.0;
+        let values = self.rows() * (3.0 * walls + 4.0);
+        (32_000_000 + (40.0 * values) as u64, 0.02 + 1e-7 * values + 2e-3 * self.until_s * walls)
     }
 
     fn run(&self, order: &Order<'_>, work: &Work<'_>) -> anyhow::Result<Made> {

@@ -7,6 +7,5 @@ mod report;
 mod table;
 
 pub use job::{plan as simulate_plan, simulate};
-pub use kind::SimulateJob;
 pub use options::{SimulateInputs, SimulateOptions, SimulateOutputs};
 pub use report::{Collapsed, SimulateFigures, SimulateReport, Work};

@@ -6,7 +6,7 @@ use super::job::run;
 use super::plan::steps;
 use super::report::LayoutFigures;
 use super::results::{POSITIONS, TABLE};
-use crate::job::{At, Demand, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Quality, Role, Takes, Work};
+use crate::job::{At, Demand, Foreseen, Job, Kind, Made, Order, Part, Quality, Role, Takes, Work};
 use crate::layout::options::{LayoutInput, LayoutInputs, LayoutOptions, LayoutOutputs};
 use crate::layout::read::is_maps;
 use crate::layout::solve::Method;
@@ -14,10 +14,6 @@ use crate::log::ReadingCost;
 use crate::stages::Step;
 
 const PICTURES: &str = "pictures";
-
-/// A stage of a pipeline.
-#[derive(Debug, Clone)]
-pub struct LayoutJob(LayoutOptions);
 
 fn outputs(folder: &Path, demand: &Demand) -> LayoutOutputs {
     LayoutOutputs { folder: folder.to_owned(), figures: demand.wants(PICTURES), report: false }
@@ -27,36 +23,26 @@ fn input(at: &At) -> LayoutInput {
     LayoutInput { path: at.path.clone(), name: at.name.clone(), subject: at.keys.get("subject").map(str::to_owned) }
 }
 
-impl Job for LayoutJob {
+impl Job for LayoutOptions {
     const KIND: Kind = Kind::of::<Self>(
         "layout",
         &[
-            Role { name: "data", takes: Takes::Many, about: "tables of cells or photodiodes with targets, or maps" },
-            Role { name: "positions", takes: Takes::Optional, about: "where the photodiodes are" },
+            Role::new("data", Takes::Many, "tables of cells or photodiodes with targets, or maps"),
+            Role::new("positions", Takes::Optional, "where the photodiodes are"),
         ],
-        &[
-            Part { name: "layout", file: POSITIONS, only_if_wanted: false },
-            Part { name: "table", file: TABLE, only_if_wanted: false },
-            Part { name: PICTURES, file: "", only_if_wanted: true },
-        ],
+        &[Part::new("layout", POSITIONS), Part::new("table", TABLE), Part::if_wanted(PICTURES, "")],
     );
-
-    type Options = LayoutOptions;
-
-    fn new(options: LayoutOptions) -> Result<Self, OptionFault> {
-        Ok(Self(options))
-    }
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         let data: Vec<&Foreseen> = inputs.iter().filter(|input| input.role == "data").collect();
         let maps = matches!(&data[..], [one] if is_maps(&one.path));
-        Ok(steps(data.len(), maps, &self.0, Some(&outputs(Path::new(""), demand))))
+        Ok(steps(data.len(), maps, self, Some(&outputs(Path::new(""), demand))))
     }
 
     fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {
         let ReadingCost { memory, seconds, .. } = ReadingCost::of(inputs);
         // A billion multiply-adds a second, and as much again for persons left out (assumed).
-        (memory + (64 << 20), seconds + 2.0 * self.0.proof * self.0.k.0.len() as f64)
+        (memory + (64 << 20), seconds + 2.0 * self.proof * self.k.0.len() as f64)
     }
 
     fn run(&self, order: &Order<'_>, work: &Work<'_>) -> anyhow::Result<Made> {
@@ -65,7 +51,7 @@ impl Job for LayoutJob {
             positions: work.one("positions").map(|input| input.path.clone()),
         };
         let outputs = outputs(work.folder, order.demand);
-        let report = work.run(order.said, |watch| run(&inputs, &self.0, &outputs, watch))?;
+        let report = work.run(order.said, |watch| run(&inputs, self, &outputs, watch))?;
         let quality = quality(&report);
         Ok(report.made(quality))
     }

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::job::{FIGURES, plan, run};
 use super::options::PerformanceOptions;
 use super::tables::{MEANS, ROWS};
-use crate::job::{Demand, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Role, Takes, Work};
+use crate::job::{Demand, Foreseen, Job, Kind, Made, Order, Part, Role, Takes, Work};
 use crate::predictor::FolderOutputs;
 use crate::stages::Step;
 
@@ -14,32 +14,22 @@ const ROWS_PART: &str = "rows";
 /// A table of trials is small; what is drawn takes the time (measured: 0.04 s for two pictures of 99 trials).
 const COST: (u64, f64) = (64 << 20, 0.1);
 
-/// A stage of a pipeline.
-#[derive(Debug, Clone)]
-pub struct PerformanceJob(PerformanceOptions);
-
 fn outputs(folder: &Path, demand: &Demand) -> FolderOutputs {
     let folder = folder.to_owned();
     FolderOutputs { folder, rows: demand.wants(ROWS_PART), figures: demand.wants(PICTURES), report: false }
 }
 
-impl Job for PerformanceJob {
+impl Job for PerformanceOptions {
     const KIND: Kind = Kind::of::<Self>(
         "performance",
-        &[Role { name: "trials", takes: Takes::One, about: "a table operator,method,trial,time_s" }],
+        &[Role::new("trials", Takes::One, "a table operator,method,trial,time_s")],
         &[
-            Part { name: "performance", file: FIGURES, only_if_wanted: false },
-            Part { name: "means", file: MEANS, only_if_wanted: false },
-            Part { name: ROWS_PART, file: ROWS, only_if_wanted: true },
-            Part { name: PICTURES, file: "", only_if_wanted: true },
+            Part::new("performance", FIGURES),
+            Part::new("means", MEANS),
+            Part::if_wanted(ROWS_PART, ROWS),
+            Part::if_wanted(PICTURES, ""),
         ],
     );
-
-    type Options = PerformanceOptions;
-
-    fn new(options: PerformanceOptions) -> Result<Self, OptionFault> {
-        Ok(Self(options))
-    }
 
     fn steps(&self, _inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         Ok(plan(Some(&outputs(Path::new(""), demand))))
@@ -52,7 +42,7 @@ impl Job for PerformanceJob {
     fn run(&self, order: &Order<'_>, work: &Work<'_>) -> anyhow::Result<Made> {
         let trials = work.needed("trials")?;
         let outputs = outputs(work.folder, order.demand);
-        let report = work.run(order.said, |watch| run(&trials.path, &trials.name, &self.0, &outputs, watch))?;
+        let report = work.run(order.said, |watch| run(&trials.path, &trials.name, self, &outputs, watch))?;
         Ok(report.made(Vec::new()))
     }
 }

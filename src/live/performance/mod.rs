@@ -20,7 +20,6 @@ mod tables;
 
 pub use error::PerformanceError;
 pub use job::{plan, run};
-pub use kind::PerformanceJob;
 pub use options::PerformanceOptions;
 pub use report::{
     Comparison, Fit, Fitted, Level, MethodFigures, PerformanceFigures, PerformanceReport, Statement, TrialMean,

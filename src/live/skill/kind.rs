@@ -12,10 +12,6 @@ use crate::stages::Step;
 
 const PICTURES: &str = "pictures";
 
-/// A stage of a pipeline.
-#[derive(Debug, Clone)]
-pub struct SkillJob(SkillOptions);
-
 fn outputs(folder: &Path, demand: &Demand) -> FolderOutputs {
     FolderOutputs { folder: folder.to_owned(), rows: true, figures: demand.wants(PICTURES), report: false }
 }
@@ -30,34 +26,25 @@ fn recording(input: &At) -> SkillRecording {
     }
 }
 
-impl Job for SkillJob {
+impl Job for SkillOptions {
     const KIND: Kind = Kind::of::<Self>(
         "skill",
         &[
-            Role { name: "recordings", takes: Takes::Many, about: "tables or logs with time_s and FINGER.Fz_N" },
-            Role { name: "reference", takes: Takes::Optional, about: "a trial that the others are compared with" },
+            Role::new("recordings", Takes::Many, "tables or logs with time_s and FINGER.Fz_N"),
+            Role::new("reference", Takes::Optional, "a trial that the others are compared with"),
         ],
-        &[
-            Part { name: "skill", file: FIGURES, only_if_wanted: false },
-            Part { name: "table", file: TABLE, only_if_wanted: false },
-            Part { name: PICTURES, file: "", only_if_wanted: true },
-        ],
+        &[Part::new("skill", FIGURES), Part::new("table", TABLE), Part::if_wanted(PICTURES, "")],
     );
 
-    type Options = SkillOptions;
-
-    fn new(options: SkillOptions) -> Result<Self, OptionFault> {
-        let faults = options.faults();
-        if faults.is_empty() {
-            return Ok(Self(options));
-        }
-        Err(OptionFault { key: String::new(), what: faults.join("; ") })
+    fn checked(self) -> Result<Self, OptionFault> {
+        let faults = self.faults();
+        if faults.is_empty() { Ok(self) } else { Err(OptionFault::whole(faults.join("; "))) }
     }
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         let recordings = inputs.iter().filter(|input| input.role == "recordings").count();
         let reference = Foreseen::of(inputs, "reference").is_some();
-        plan(recordings, reference, &self.0, Some(&outputs(Path::new(""), demand))).map_err(|why| why.to_string())
+        plan(recordings, reference, self, Some(&outputs(Path::new(""), demand))).map_err(|why| why.to_string())
     }
 
     fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {
@@ -72,7 +59,7 @@ impl Job for SkillJob {
             reference: work.one("reference").map(recording),
         };
         let outputs = outputs(work.folder, order.demand);
-        let report = work.run(order.said, |watch| run(&inputs, &self.0, &outputs, watch))?;
+        let report = work.run(order.said, |watch| run(&inputs, self, &outputs, watch))?;
         Ok(report.made(Vec::new()))
     }
 }

@@ -22,6 +22,5 @@ mod table;
 
 pub use error::SkillError;
 pub use job::{plan, run};
-pub use kind::SkillJob;
 pub use options::{SkillInputs, SkillOptions, SkillRecording};
 pub use report::{FingerFigures, FingerSpread, PersonFigures, PostureFigures, SkillFigures, SkillReport, TrialFigures};

@@ -6,27 +6,16 @@ use super::evaluate::{evaluate_plan, evaluate_switch};
 use super::options::{ContactOptions, TuneOptions};
 use super::traces::SwitchInputs;
 use super::tune::{TuneOutputs, tune_plan, tune_switch};
-use crate::job::{At, Demand, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Quality, Role, Takes, Work};
+use crate::job::{At, Demand, Foreseen, Job, Kind, Made, Order, Part, Quality, Role, Takes, Work};
 use crate::log::ReadingCost;
 use crate::predictor::{DataFile, FolderOutputs};
 use crate::stages::Step;
 
 const SWITCH: &str = "switch.toml";
 const PICTURES: &str = "pictures";
-const RECORDINGS: Role = Role {
-    name: "recordings",
-    takes: Takes::Many,
-    about: "tables or logs with photodiodes and what is true of contact",
-};
-const MODEL: Role = Role { name: "model", takes: Takes::Many, about: "trained models" };
-
-/// A choice of thresholds, as a stage of a pipeline.
-#[derive(Debug, Clone)]
-pub struct TuneSwitchJob(TuneOptions);
-
-/// A judgement of them, as a stage of a pipeline.
-#[derive(Debug, Clone)]
-pub struct EvaluateSwitchJob(ContactOptions);
+const RECORDINGS: Role =
+    Role::new("recordings", Takes::Many, "tables or logs with photodiodes and what is true of contact");
+const MODEL: Role = Role::new("model", Takes::Many, "trained models");
 
 fn inputs(work: &Work<'_>) -> SwitchInputs {
     let recording = |at: &At| DataFile { path: at.path.clone(), name: at.name.clone(), session: None, subject: None };
@@ -61,21 +50,12 @@ fn cost(inputs: &[Foreseen], row_s: f64) -> (u64, f64) {
     (memory + (16 << 20), seconds + 0.1 + row_s * rows)
 }
 
-impl Job for TuneSwitchJob {
+impl Job for TuneOptions {
     const KIND: Kind = Kind::of::<Self>(
         "switch-tune",
         &[RECORDINGS, MODEL],
-        &[
-            Part { name: "switch", file: SWITCH, only_if_wanted: false },
-            Part { name: PICTURES, file: "", only_if_wanted: true },
-        ],
+        &[Part::new("switch", SWITCH), Part::if_wanted(PICTURES, "")],
     );
-
-    type Options = TuneOptions;
-
-    fn new(options: TuneOptions) -> Result<Self, OptionFault> {
-        Ok(Self(options))
-    }
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         Ok(tune_plan(recordings(inputs), demand.wants(PICTURES)))
@@ -89,27 +69,18 @@ impl Job for TuneSwitchJob {
     fn run(&self, order: &Order<'_>, work: &Work<'_>) -> anyhow::Result<Made> {
         let (switch, figures) = (work.folder.join(SWITCH), order.demand.wants(PICTURES));
         let outputs = TuneOutputs { switch, figures, report: false };
-        let report = work.run(order.said, |watch| tune_switch(&inputs(work), &self.0, &outputs, watch))?;
+        let report = work.run(order.said, |watch| tune_switch(&inputs(work), self, &outputs, watch))?;
         let quality = report.held_out.as_ref().map(quality).unwrap_or_default();
         Ok(report.made(quality))
     }
 }
 
-impl Job for EvaluateSwitchJob {
+impl Job for ContactOptions {
     const KIND: Kind = Kind::of::<Self>(
         "switch-evaluate",
-        &[RECORDINGS, MODEL, Role { name: "switch", takes: Takes::One, about: "a switch: switch.toml" }],
-        &[
-            Part { name: "presses", file: "presses.csv", only_if_wanted: false },
-            Part { name: PICTURES, file: "", only_if_wanted: true },
-        ],
+        &[RECORDINGS, MODEL, Role::new("switch", Takes::One, "a switch: switch.toml")],
+        &[Part::new("presses", "presses.csv"), Part::if_wanted(PICTURES, "")],
     );
-
-    type Options = ContactOptions;
-
-    fn new(options: ContactOptions) -> Result<Self, OptionFault> {
-        Ok(Self(options))
-    }
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         Ok(evaluate_plan(recordings(inputs), true, demand.wants(PICTURES)))
@@ -123,7 +94,7 @@ impl Job for EvaluateSwitchJob {
         let switch = &work.needed("switch")?.path;
         let figures = order.demand.wants(PICTURES);
         let outputs = FolderOutputs { folder: work.folder.to_owned(), rows: true, figures, report: false };
-        let report = work.run(order.said, |watch| evaluate_switch(switch, &inputs(work), &self.0, &outputs, watch))?;
+        let report = work.run(order.said, |watch| evaluate_switch(switch, &inputs(work), self, &outputs, watch))?;
         let quality = quality(&report.all);
         Ok(report.made(quality))
     }

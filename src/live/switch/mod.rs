@@ -10,7 +10,6 @@ mod truth;
 mod tune;
 
 pub use evaluate::{EvaluateSwitchFigures, EvaluateSwitchReport, evaluate_plan, evaluate_switch, read_switch};
-pub use kind::{EvaluateSwitchJob, TuneSwitchJob};
 pub(crate) use options::FALSE_PER_HOUR;
 pub use options::{ContactOptions, OutsideChoice, TuneOptions};
 pub use report::{CurvePoint, TuneFigures, TuneReport};

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use clap::Args;
 
-use crate::job::{Demand, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Quality, Role, Tables, Takes, Work};
+use crate::job::{Demand, Foreseen, Job, Kind, Made, Order, Part, Quality, Role, Tables, Takes, Work};
 use crate::nailvideo::options::{Inputs, NailVideoOptions, Outputs};
 use crate::nailvideo::run::job::run;
 use crate::nailvideo::run::plan::{plan, steps};
@@ -15,18 +15,14 @@ use crate::video::Header;
 const FRAMES: &str = "frames";
 const REPORT: &str = "report";
 
-/// The options of a stage.
+/// A stage of a pipeline.
 #[derive(Debug, Clone, Args)]
-pub struct NailVideoKeys {
+pub struct NailVideoJob {
     #[command(flatten)]
     options: NailVideoOptions,
     #[command(flatten)]
     tables: Tables,
 }
-
-/// A stage of a pipeline.
-#[derive(Debug, Clone)]
-pub struct NailVideoJob(NailVideoKeys);
 
 impl NailVideoJob {
     fn outputs(&self, folder: &Path, demand: &Demand) -> Outputs {
@@ -35,7 +31,7 @@ impl NailVideoJob {
             frames: demand.wants(FRAMES),
             figures: demand.wants(REPORT),
             report: false,
-            ending: ending(self.0.tables.format()),
+            ending: ending(self.tables.format()),
         }
     }
 }
@@ -51,40 +47,30 @@ impl Job for NailVideoJob {
     const KIND: Kind = Kind::of::<Self>(
         "nailvideo",
         &[
-            Role { name: "video", takes: Takes::One, about: "the video of a nail" },
-            Role {
-                name: "outline",
-                takes: Takes::Optional,
-                about: "the nail in its first frame: LabelMe file or mask",
-            },
-            Role { name: "positions", takes: Takes::Optional, about: "where the photodiodes are (positions.toml)" },
+            Role::new("video", Takes::One, "the video of a nail"),
+            Role::new("outline", Takes::Optional, "the nail in its first frame: LabelMe file or mask"),
+            Role::new("positions", Takes::Optional, "where the photodiodes are (positions.toml)"),
         ],
         &[
-            Part { name: "photodiodes", file: "photodiodes.csv", only_if_wanted: false },
-            Part { name: "motion", file: "motion.csv", only_if_wanted: false },
-            Part { name: "presses", file: "presses.csv", only_if_wanted: false },
-            Part { name: "cells", file: "cells.csv", only_if_wanted: false },
-            Part { name: "maps", file: "maps", only_if_wanted: false },
-            Part { name: FRAMES, file: "frames", only_if_wanted: true },
-            Part { name: REPORT, file: "report.html", only_if_wanted: true },
+            Part::new("photodiodes", "photodiodes.csv"),
+            Part::new("motion", "motion.csv"),
+            Part::new("presses", "presses.csv"),
+            Part::new("cells", "cells.csv"),
+            Part::new("maps", "maps"),
+            Part::if_wanted(FRAMES, "frames"),
+            Part::if_wanted(REPORT, "report.html"),
         ],
     );
-
-    type Options = NailVideoKeys;
-
-    fn new(options: NailVideoKeys) -> Result<Self, OptionFault> {
-        Ok(Self(options))
-    }
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         let outputs = self.outputs(Path::new(""), demand);
         let at = |role: &str| Foreseen::of(inputs, role).map(|input| input.path.clone());
         let video = Foreseen::of(inputs, "video").filter(|video| video.exists);
         let Some(video) = video else {
-            return Ok(steps(None, at("outline").is_some(), &self.0.options, Some(&outputs)));
+            return Ok(steps(None, at("outline").is_some(), &self.options, Some(&outputs)));
         };
         let inputs = Inputs { video: video.path.clone(), outline: at("outline"), positions: at("positions") };
-        plan(&inputs, &self.0.options, Some(&outputs)).map_err(|why| why.to_string())
+        plan(&inputs, &self.options, Some(&outputs)).map_err(|why| why.to_string())
     }
 
     fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {
@@ -98,7 +84,7 @@ impl Job for NailVideoJob {
     }
 
     fn file(&self, part: &Part) -> &'static str {
-        let named = |csv: &'static str, parquet: &'static str| self.0.tables.named(csv, parquet);
+        let named = |csv: &'static str, parquet: &'static str| self.tables.named(csv, parquet);
         match part.name {
             "photodiodes" => named("photodiodes.csv", "photodiodes.parquet"),
             "motion" => named("motion.csv", "motion.parquet"),
@@ -114,7 +100,7 @@ impl Job for NailVideoJob {
             outline: work.one("outline").map(|input| input.path.clone()),
             positions: work.one("positions").map(|input| input.path.clone()),
         };
-        let options = NailVideoOptions { threads: work.threads, ..self.0.options.clone() };
+        let options = NailVideoOptions { threads: work.threads, ..self.options.clone() };
         let outputs = self.outputs(work.folder, order.demand);
         let report = work.run(order.said, |watch| run(&inputs, &options, &outputs, watch))?;
         let share = report.frames.followed as f64 / report.frames.all.max(1) as f64;

@@ -22,4 +22,4 @@ mod write;
 pub use options::BoardOptions;
 pub use place::View;
 pub use render::{Picture, Scene};
-pub use write::{Error, Summary, write_watched};
+pub use write::{Summary, write_watched};

@@ -2,20 +2,18 @@
 
 use std::fs;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 use image::ExtendedColorType;
 use serde::Serialize;
-use thiserror::Error;
 
 use super::place::rodrigues;
 use super::{BoardOptions, Picture, Scene, View};
 use crate::figure::encode_png;
-use crate::files::{Staging, WriteError};
-use crate::job::{Interrupted, Watch};
-use crate::phantom::scene::place::{Unwritten, in_the_way, refused};
-use crate::table::{Column, TableError, TableWriter, Value};
+use crate::job::Watch;
+use crate::phantom::scene::place::{Error, Unwritten, refused, staged};
+use crate::table::{Column, TableWriter, Value};
 
 /// The file that says that a folder was written here.
 const RECORD: &str = "truth/board.json";
@@ -25,26 +23,6 @@ const CORNERS: &str = "truth/corners.csv";
 const VIEWS: &str = "truth/views.csv";
 /// The record first: where it exists, what is of one run and what of another is made again.
 const RESULTS: [&str; 6] = [RECORD, "views", PLANE, CAMERA, CORNERS, VIEWS];
-
-/// Why views were not written.
-#[derive(Debug, Error)]
-pub enum Error {
-    /// Something that this job did not write is in the way.
-    #[error("{} exists already and is no synthetic board's; choose another --out", .0.display())]
-    InTheWay(PathBuf),
-    /// A file or folder could not be written.
-    #[error(transparent)]
-    Write(#[from] Unwritten),
-    /// The results could not be put in their places.
-    #[error(transparent)]
-    Place(#[from] WriteError),
-    /// A table could not be written.
-    #[error(transparent)]
-    Table(#[from] TableError),
-    /// Stopped from outside; nothing was left behind.
-    #[error("stopped")]
-    Interrupted(#[from] Interrupted),
-}
 
 /// Views that were written.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -72,13 +50,10 @@ fn view_name(index: usize) -> String {
 /// Writes `scene` under `out`, watched: the ticks count views. A synthetic board written there before is replaced.
 ///
 /// # Errors
-/// [`enum@Error`]; what was under `out` before is as it was.
+/// [`Error`]; what was under `out` before is as it was.
 pub fn write_watched(scene: &Scene, out: &Path, watch: &Watch<'_>) -> Result<Summary, Error> {
     let begin = Instant::now();
-    let staging = Staging::new(out)?;
-    if let Some(place) = in_the_way(out, &RESULTS, RECORD) {
-        return Err(Error::InTheWay(place));
-    }
+    let staging = staged(out, &RESULTS, RECORD, "a synthetic board's")?;
     let stage = staging.path();
     for folder in ["views", "truth"].map(|folder| stage.join(folder)) {
         fs::create_dir_all(&folder).map_err(refused(&folder))?;

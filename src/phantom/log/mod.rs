@@ -48,5 +48,5 @@ pub use protocol::Protocol;
 pub use record::LogScene;
 pub(in crate::phantom) use samples::BEFORE_S;
 pub use samples::Row;
-pub use write::{Error, Summary, write};
+pub use write::{Summary, write};
 pub(super) use write::{files, write_rows};

@@ -10,12 +10,12 @@ use crate::phantom::screen::{Clock, Jump};
 use crate::phantom::sensor::{CHANNELS, DisturbanceSizes, Dynamics};
 
 /// How rows say their time.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum Stamps {
     /// `time_s`: the log's clock, seconds.
     Seconds,
-    /// `time_s`: seconds since 1970 began; the log's clock is the time of day of [`LogOptions::DATE`].
+    /// `time_s`: seconds since 1970 began; the log's clock is the time of day.
     Epoch,
     /// `time`: dates with times of day, as 2026-03-14T09:26:53.589793.
     Datetime,

@@ -24,7 +24,7 @@ const POSTURE_SHIFT_DEG: f64 = 3.0;
 const RANDOM_HZ: f64 = 0.1;
 
 /// An experiment with a sensor.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, clap::ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum Protocol {
     /// 60 s of equation 27, then the spiral's 180 s with the finger straight (Fig. 94).
@@ -43,9 +43,10 @@ pub enum Protocol {
     Longitudinal,
     /// 60 s: six cycles from fully flexed to fully extended and back, the knuckle held (3.3.5, Fig. 32 to 34).
     FreeBending,
-    /// 600 s of presses, holds, slides, taps and near misses with pauses, of a sensor that is worn (6.1; [`Contacts`]).
+    /// 600 s of presses, holds, slides, taps and near misses with pauses, of a worn sensor, with pulse, bumps, raised
+    /// hands and drift.
     Contacts,
-    /// An hour of rest: the finger sways, bends about once a minute, and touches nothing.
+    /// An hour of rest: the finger sways, bends about once a minute, and touches nothing; the same disturbances.
     Rest,
 }
 

@@ -1,42 +1,24 @@
 //! A log and its truth to files; everything is put in its place at the end.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 use serde::Serialize;
-use thiserror::Error;
 
 use super::angles::write_angles;
 use super::lines::{cells, columns};
 use super::truth::{TruthWriter, write_contacts};
 use super::{LogOptions, LogScene, SensorModel};
-use crate::files::{Staging, WriteError};
-use crate::phantom::scene::place::{Unwritten, in_the_way, refused};
-use crate::table::{TableError, TableWriter};
+use crate::files::Staging;
+use crate::phantom::scene::place::{Error, refused, staged};
+use crate::table::TableWriter;
 
 /// The file that says that a log was written here.
 const RECORD: &str = "truth/log.json";
 /// The record first: where it stands, what is of one run and what of another is made again. Contacts are of few.
 const RESULTS: [&str; 5] = [RECORD, "log.csv", "truth/log.csv", "truth/angles.csv", CONTACTS];
 const CONTACTS: &str = "truth/contacts.csv";
-
-/// Why a log was not written.
-#[derive(Debug, Error)]
-pub enum Error {
-    /// Something that this job did not write stands in the way.
-    #[error("{} stands already and is no synthetic log's; choose another --out", .0.display())]
-    InTheWay(PathBuf),
-    /// A file or folder could not be written.
-    #[error(transparent)]
-    Write(#[from] Unwritten),
-    /// The results could not be put in their places.
-    #[error(transparent)]
-    Place(#[from] WriteError),
-    /// A table could not be written.
-    #[error(transparent)]
-    Table(#[from] TableError),
-}
 
 /// A log that was written.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -58,13 +40,10 @@ pub(in crate::phantom) fn files(options: &LogOptions) -> Vec<String> {
 /// Writes `scene` under `out`; a synthetic log written there before is replaced, a video stays.
 ///
 /// # Errors
-/// [`enum@Error`]; what stood under `out` before is as it was.
+/// [`Error`]; what stood under `out` before is as it was.
 pub fn write(scene: &LogScene, out: &Path) -> Result<Summary, Error> {
     let begin = Instant::now();
-    let staging = Staging::new(out)?;
-    if let Some(place) = in_the_way(out, &RESULTS, RECORD) {
-        return Err(Error::InTheWay(place));
-    }
+    let staging = staged(out, &RESULTS, RECORD, "a synthetic log's")?;
     let [rows, lit] = write_staged(scene, staging)?;
     Ok(Summary { rows, lit, write_s: begin.elapsed().as_secs_f64() })
 }

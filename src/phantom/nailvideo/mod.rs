@@ -46,4 +46,4 @@ pub use crate::phantom::scene::faults::Faults;
 pub use options::{NailProtocol, NailVideoOptions, NailVideoRequest};
 pub use scene::{FrameTruth, Scene};
 pub use track::Affine;
-pub use write::{Error, Summary, write, write_watched};
+pub use write::{Summary, write, write_watched};

@@ -1,23 +1,21 @@
 //! A scene to files: frames are drawn in parallel and encoded in order, and everything is put in its place at the end.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 use rayon::prelude::*;
 use serde::Serialize;
-use thiserror::Error;
 
 use super::{FrameTruth, NailVideoOptions, Scene};
-use crate::files::{Staging, WriteError};
-use crate::job::{Interrupted, Watch};
+use crate::job::Watch;
 use crate::phantom::log::write_rows;
 use crate::phantom::photos::{annotation, write_npy};
-use crate::phantom::scene::place::{Unwritten, in_the_way, refused};
+use crate::phantom::scene::place::{Error, refused, staged};
 use crate::phantom::sensor::disc_samples;
 use crate::phantom::video::{Siting, TICKS_PER_S, VideoOptions};
-use crate::table::{Column, TableError, TableWriter, Value};
-use crate::video::{Encoder, Encoding, Matrix, VideoError};
+use crate::table::{Column, TableWriter, Value};
+use crate::video::{Encoder, Encoding, Matrix};
 
 /// The file that says that a folder was written here.
 const RECORD: &str = "truth/nailvideo.json";
@@ -36,35 +34,6 @@ const RESULTS: [&str; 9] = [
     "truth/presses.csv",
     NORMALIZED,
 ];
-
-/// Why a video was not written.
-#[derive(Debug, Error)]
-pub enum Error {
-    /// Something that this job did not write is in the way.
-    #[error("{} exists and is not a synthetic nail video's; choose another --out", .0.display())]
-    InTheWay(PathBuf),
-    /// A file or folder could not be written.
-    #[error(transparent)]
-    Write(#[from] Unwritten),
-    /// The results could not be put in their places.
-    #[error(transparent)]
-    Place(#[from] WriteError),
-    /// A table could not be written.
-    #[error(transparent)]
-    Table(#[from] TableError),
-    /// The log could not be written.
-    #[error(transparent)]
-    Log(#[from] crate::phantom::log::Error),
-    /// The outline or a normalized picture could not be written.
-    #[error(transparent)]
-    Photos(#[from] crate::phantom::photos::Error),
-    /// The video could not be encoded.
-    #[error(transparent)]
-    Video(#[from] VideoError),
-    /// Stopped from outside; nothing was left behind.
-    #[error("stopped")]
-    Interrupted(#[from] Interrupted),
-}
 
 /// A video that was written.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -100,7 +69,7 @@ impl NailVideoOptions {
 /// Writes `scene` under `out`; a synthetic nail video written there before is replaced.
 ///
 /// # Errors
-/// [`enum@Error`]; what was under `out` before is as it was.
+/// [`Error`]; what was under `out` before is as it was.
 pub fn write(scene: &Scene, out: &Path) -> Result<Summary, Error> {
     write_watched(scene, out, &Watch::nobody())
 }
@@ -108,22 +77,16 @@ pub fn write(scene: &Scene, out: &Path) -> Result<Summary, Error> {
 /// As [`write()`], watched: the ticks count frames.
 ///
 /// # Errors
-/// [`enum@Error`]; what was under `out` before is as it was.
+/// [`Error`]; what was under `out` before is as it was.
 pub fn write_watched(scene: &Scene, out: &Path, watch: &Watch<'_>) -> Result<Summary, Error> {
     let begin = Instant::now();
-    let staging = Staging::new(out)?;
-    if let Some(place) = in_the_way(out, &RESULTS, RECORD) {
-        return Err(Error::InTheWay(place));
-    }
+    let staging = staged(out, &RESULTS, RECORD, "a synthetic nail video's")?;
     let truth = staging.path().join("truth");
     fs::create_dir(&truth).map_err(refused(&truth))?;
     let [record, video, outline, positions, log, true_log, frames, presses, normalized] =
         RESULTS.map(|name| staging.path().join(name));
     encode(scene, &video, watch)?;
-    annotation(&scene.nail, "video.mp4")
-        .map_err(crate::phantom::photos::Error::from)?
-        .write(&outline)
-        .map_err(crate::phantom::photos::Error::from)?;
+    annotation(&scene.nail, "video.mp4")?.write(&outline)?;
     let text = toml::to_string(&scene.positions).map_err(|error| refused(&positions)(std::io::Error::other(error)))?;
     fs::write(&positions, text).map_err(refused(&positions))?;
     let [log_rows, _] = write_rows(&scene.log, &log, &true_log)?;
@@ -221,7 +184,7 @@ fn write_normalized(scene: &Scene, folder: &Path) -> Result<(), Error> {
     let (side, margin) = NORMALIZED_SIDE;
     frames.into_par_iter().try_for_each(|frame| {
         let field = scene.nail.field().at_moment(scene.weights(frame));
-        Ok(write_npy(&folder.join(format!("{frame:06}.npy")), &scene.nail.normalized_of(&field, side, margin))?)
+        write_npy(&folder.join(format!("{frame:06}.npy")), &scene.nail.normalized_of(&field, side, margin))
     })
 }
 

@@ -21,5 +21,5 @@ mod options;
 mod write;
 
 pub use options::{FileFormat, LightKind, OptionFault, PhotoOptions};
-pub use write::{Error, PhotoTruth, Stages, Summary, write, write_watched};
+pub use write::{PhotoTruth, Stages, Summary, write, write_watched};
 pub(in crate::phantom) use write::{annotation, write_npy};

@@ -9,7 +9,7 @@ use crate::phantom::nail::{
 };
 
 /// The photographs' file format.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum FileFormat {
     /// PNG, 8 or 16 bit.
@@ -35,7 +35,7 @@ impl FileFormat {
 }
 
 /// Under which lights the set is photographed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum LightKind {
     /// The thesis' chamber: even, dark behind the finger, no glare, the nail filling most of the picture within 6

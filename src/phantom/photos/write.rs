@@ -12,55 +12,19 @@ use ndarray::Array2;
 use ndarray_npy::{WritableElement, WriteNpyExt};
 use rayon::prelude::*;
 use serde::Serialize;
-use thiserror::Error;
 
-use super::{FileFormat, OptionFault, PhotoOptions, maps::ExactMaps};
-use crate::job::{Interrupted, Watch};
+use super::{FileFormat, PhotoOptions, maps::ExactMaps};
+use crate::job::Watch;
 use crate::{
-    files::{Staging, WriteError},
-    labelme::{self, LabelMe, Shape, to_labelme},
+    labelme::{LabelMe, Shape, to_labelme},
     phantom::{
         nail::{NailScene, Pose, SceneFault},
-        scene::place::{PHOTOS_RECORD as RECORD, Unwritten, in_the_way, refused},
+        scene::place::{Error, PHOTOS_RECORD as RECORD, refused, staged},
     },
 };
 
 /// The record's folder first: where it stands, what is of one run and what of another is made again.
 const RESULTS: [&str; 2] = ["truth", "photos"];
-
-/// Why a set was not written.
-#[derive(Debug, Error)]
-pub enum Error {
-    /// The options can't be met.
-    #[error(transparent)]
-    Options(#[from] OptionFault),
-    /// A scene can't be drawn.
-    #[error(transparent)]
-    Scene(#[from] SceneFault),
-    /// Something that this job did not write stands in the way.
-    #[error("{} stands already and is no synthetic set; choose another --out", .0.display())]
-    InTheWay(PathBuf),
-    /// A file or folder could not be written.
-    #[error(transparent)]
-    Write(#[from] Unwritten),
-    /// The results could not be put in their places.
-    #[error(transparent)]
-    Place(#[from] WriteError),
-    /// A photograph could not be encoded.
-    #[error("{}: cannot be encoded: {source}", path.display())]
-    Encode {
-        /// The photograph.
-        path: PathBuf,
-        /// What is wrong.
-        source: image::ImageError,
-    },
-    /// An annotation could not be written.
-    #[error(transparent)]
-    Annotation(#[from] labelme::Error),
-    /// Stopped from outside; nothing was left behind.
-    #[error("stopped")]
-    Interrupted(#[from] Interrupted),
-}
 
 /// What is true of one photograph; a row of `truth/nails.csv`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -136,7 +100,7 @@ fn folder(path: PathBuf) -> Result<PathBuf, Error> {
 /// Writes the set that `options` ask for under `out`; a set written there before is replaced.
 ///
 /// # Errors
-/// [`enum@Error`]; what stood under `out` before is as it was.
+/// [`Error`]; what stood under `out` before is as it was.
 pub fn write(options: &PhotoOptions, out: &Path) -> Result<Summary, Error> {
     write_watched(options, out, &Watch::nobody())
 }
@@ -144,14 +108,11 @@ pub fn write(options: &PhotoOptions, out: &Path) -> Result<Summary, Error> {
 /// As [`write()`], watched: the ticks count photographs.
 ///
 /// # Errors
-/// [`enum@Error`]; what stood under `out` before is as it was.
+/// [`Error`]; what stood under `out` before is as it was.
 pub fn write_watched(options: &PhotoOptions, out: &Path, watch: &Watch<'_>) -> Result<Summary, Error> {
     let begin = Instant::now();
     options.check()?;
-    let staging = Staging::new(out)?;
-    if let Some(place) = in_the_way(out, &RESULTS, RECORD) {
-        return Err(Error::InTheWay(place));
-    }
+    let staging = staged(out, &RESULTS, RECORD, "of a synthetic set")?;
     let mut summary = draw_all(options, staging.path(), watch)?;
     staging.commit_exactly(&RESULTS)?;
     summary.stages.total_s = begin.elapsed().as_secs_f64();

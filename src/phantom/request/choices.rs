@@ -33,17 +33,6 @@ pub(super) enum RotateArg {
     ThreeQuarters,
 }
 
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub(super) enum FormatArg {
-    #[value(name = "420")]
-    Quarter,
-    #[value(name = "422")]
-    Half,
-    #[value(name = "444")]
-    Full,
-    Grey,
-}
-
 /// A movement by its name or from a table, and how long a table goes on, seconds.
 pub(super) fn trajectory(text: &str, hz: f64, seed: u64) -> anyhow::Result<(Trajectory, Option<f64>)> {
     Ok(match text {

@@ -2,17 +2,9 @@
 
 use crate::phantom::screen::{Clock, ClockFont};
 use crate::phantom::video::{ScreenEvents, VideoOptions};
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 use super::choices::{parse_jump, parse_roi, parse_span_of_frames};
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-pub(super) enum FontArg {
-    Mono,
-    Proportional,
-    Serif,
-    Segments,
-}
 
 #[derive(Debug, Clone, Args)]
 pub(super) struct ClockArgs {
@@ -31,7 +23,7 @@ pub(super) struct ClockArgs {
     clock_refresh: Option<f64>,
     /// The clock's digits
     #[arg(long, value_enum, requires = "clock")]
-    clock_font: Option<FontArg>,
+    clock_font: Option<ClockFont>,
     /// Dark digits on a light panel
     #[arg(long, requires = "clock")]
     clock_dark: bool,
@@ -61,12 +53,7 @@ impl ClockArgs {
             offset_s: self.clock_offset.unwrap_or(usual.offset_s),
             drift_ppm: self.clock_drift_ppm.unwrap_or(usual.drift_ppm),
             refresh_hz: self.clock_refresh,
-            font: match self.clock_font {
-                Some(FontArg::Proportional) => ClockFont::Proportional,
-                Some(FontArg::Serif) => ClockFont::Serif,
-                Some(FontArg::Segments) => ClockFont::Segments,
-                Some(FontArg::Mono) | None => ClockFont::Mono,
-            },
+            font: self.clock_font.unwrap_or(ClockFont::Mono),
             light_digits: !self.clock_dark,
             roi_px: self.clock_roi,
             ..usual

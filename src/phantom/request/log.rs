@@ -32,40 +32,6 @@ enum ForceArg {
     Contacts,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum ProtocolArg {
-    /// 60 s of bending, then 180 s of the spiral with the finger straight (Fig. 94)
-    Touch,
-    /// 20 s of bending, then 100 s of random forces (Fig. 99)
-    TouchRandom,
-    /// 60 s of bending, six cycles (Fig. 101)
-    Bending,
-    /// 60 s of random bending
-    BendingRandom,
-    /// 100 s: five cycles of normal force, the finger straight (Fig. 23)
-    Normal,
-    /// 100 s: five cycles of lateral shear at 3 N (Fig. 26)
-    Lateral,
-    /// 100 s: five cycles of longitudinal shear at 3 N (Fig. 29)
-    Longitudinal,
-    /// 60 s: six cycles from fully flexed to fully extended and back (Fig. 32)
-    FreeBending,
-    /// 600 s of a worn sensor: presses, holds, slides, taps and near misses, with pulse, bumps, raised hands and drift
-    Contacts,
-    /// An hour of a worn sensor: the finger sways, bends about once a minute and touches nothing; the same disturbances
-    Rest,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum StampsArg {
-    /// time_s: seconds of the log's clock
-    Seconds,
-    /// time_s: seconds since 1970 began
-    Epoch,
-    /// time: as 2026-03-14T09:26:53.589793
-    Datetime,
-}
-
 /// What `lunula phantom log` takes.
 #[derive(Debug, Clone, Args)]
 pub struct LogRequest {
@@ -90,7 +56,7 @@ pub struct LogRequest {
     /// An experiment of 3.3, 5.2.4 and 5.3, prompted to a finger that follows as people do; the options below change
     /// it. Repetitions have the same --subject and --session and other seeds
     #[arg(long, value_enum)]
-    protocol: Option<ProtocolArg>,
+    protocol: Option<Protocol>,
     /// How well the finger follows: the standard deviation of its error as a share, about 0.3 s late (assumed; 5.2.2a
     /// quotes 6 %); 0: exactly [default: 0; with a protocol of the thesis 0.06]
     #[arg(long, value_name = "SHARE", allow_negative_numbers = true)]
@@ -146,7 +112,7 @@ pub struct LogRequest {
     clock_jump: Option<Jump>,
     /// How rows say their time; for dates, the log's clock is the time of day
     #[arg(long, value_enum, default_value = "seconds")]
-    stamps: StampsArg,
+    stamps: Stamps,
     /// Stamps err by up to so much either way
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0)]
     jitter: f64,
@@ -200,18 +166,7 @@ impl LogRequest {
     /// # Errors
     /// A trajectory's table that can't be read.
     pub fn options(&self) -> anyhow::Result<LogOptions> {
-        let protocol = self.protocol.map(|protocol| match protocol {
-            ProtocolArg::Touch => Protocol::Touch,
-            ProtocolArg::TouchRandom => Protocol::TouchRandom,
-            ProtocolArg::Bending => Protocol::Bending,
-            ProtocolArg::BendingRandom => Protocol::BendingRandom,
-            ProtocolArg::Normal => Protocol::Normal,
-            ProtocolArg::Lateral => Protocol::Lateral,
-            ProtocolArg::Longitudinal => Protocol::Longitudinal,
-            ProtocolArg::FreeBending => Protocol::FreeBending,
-            ProtocolArg::Contacts => Protocol::Contacts,
-            ProtocolArg::Rest => Protocol::Rest,
-        });
+        let protocol = self.protocol;
         let kind = self.force.unwrap_or(match protocol {
             Some(Protocol::Touch) => ForceArg::Spiral,
             Some(Protocol::TouchRandom) => ForceArg::Even,
@@ -293,11 +248,7 @@ impl LogRequest {
             clock_offset_s: self.clock_offset,
             clock_drift_ppm: self.clock_drift_ppm,
             clock_jump: self.clock_jump,
-            stamps: match self.stamps {
-                StampsArg::Seconds => Stamps::Seconds,
-                StampsArg::Epoch => Stamps::Epoch,
-                StampsArg::Datetime => Stamps::Datetime,
-            },
+            stamps: self.stamps,
             jitter_s: self.jitter,
             stamp_step_s: self.stamp_step,
             dropped: self.drop,

@@ -3,7 +3,7 @@
 use super::choices::parse_size;
 use crate::phantom::nail::Pose;
 use crate::phantom::photos::{FileFormat, LightKind, PhotoOptions};
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 /// What `lunula phantom photos` takes.
 #[derive(Debug, Clone, Args)]
@@ -31,30 +31,16 @@ pub struct PhotosRequest {
     noise: f64,
     /// File format of the photographs
     #[arg(long, value_enum, default_value = "png")]
-    format: FormatArg,
+    format: FileFormat,
     /// The thesis' chamber, or dim to bright, tinted, with glare, nails of many sizes up to 30 degrees off upright
     #[arg(long, value_enum, default_value = "varied")]
-    light: LightArg,
+    light: LightKind,
     /// Draw no outlines beside the photographs
     #[arg(long)]
     no_annotations: bool,
     /// Leave out truth/normalized (0.6 MB a photograph)
     #[arg(long)]
     no_normalized: bool,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum FormatArg {
-    Png,
-    Jpg,
-    Tif,
-    Bmp,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
-enum LightArg {
-    Chamber,
-    Varied,
 }
 
 impl PhotosRequest {
@@ -71,16 +57,8 @@ impl PhotosRequest {
             depth: self.depth,
             grey: self.grey,
             noise_sd: self.noise,
-            format: match self.format {
-                FormatArg::Png => FileFormat::Png,
-                FormatArg::Jpg => FileFormat::Jpg,
-                FormatArg::Tif => FileFormat::Tif,
-                FormatArg::Bmp => FileFormat::Bmp,
-            },
-            light: match self.light {
-                LightArg::Chamber => LightKind::Chamber,
-                LightArg::Varied => LightKind::Varied,
-            },
+            format: self.format,
+            light: self.light,
             annotate: !self.no_annotations,
             truth_normalized: !self.no_normalized,
             ..defaults

@@ -3,7 +3,7 @@
 use clap::Args;
 
 use super::choices::{
-    FormatArg, MatrixArg, RotateArg, parse_colour, parse_hide, parse_leave, parse_plane, parse_size, trajectory,
+    MatrixArg, RotateArg, parse_colour, parse_hide, parse_leave, parse_plane, parse_size, trajectory,
 };
 use super::clock::ClockArgs;
 use crate::flexion::Flexion;
@@ -136,7 +136,7 @@ pub struct VideoRequest {
     rotate: RotateArg,
     /// Chroma of the video: 4:2:0, 4:2:2, 4:4:4, none
     #[arg(long, value_enum, default_value = "420")]
-    format: FormatArg,
+    format: Chroma,
     /// Bits a sample: 8 or 10
     #[arg(long, default_value_t = 8)]
     depth: u32,
@@ -203,12 +203,7 @@ impl VideoRequest {
             RotateArg::Half => Turn::Half,
             RotateArg::ThreeQuarters => Turn::ThreeQuarters,
         };
-        options.chroma = match self.format {
-            FormatArg::Quarter => Chroma::Quarter,
-            FormatArg::Half => Chroma::Half,
-            FormatArg::Full => Chroma::Full,
-            FormatArg::Grey => Chroma::None,
-        };
+        options.chroma = self.format;
         options.depth = self.depth;
         options.crf = self.crf.unwrap_or(options.crf);
         options.preset =

@@ -1,12 +1,65 @@
-//! What others wrote into a folder stays.
+//! Where a scene is written: what others wrote into a folder stays.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
+use crate::files::{Staging, WriteError};
+use crate::job::Interrupted;
+use crate::labelme;
+use crate::phantom::nail::SceneFault;
+use crate::phantom::photos::OptionFault;
+use crate::table::TableError;
+use crate::video::VideoError;
+
 /// Synthetic photographs, whose `truth` is a folder of theirs alone.
 pub(in crate::phantom) const PHOTOS_RECORD: &str = "truth/phantom.json";
+
+/// Why a scene was not written.
+#[derive(Debug, Error)]
+pub enum Error {
+    /// The options of photographs can't be met.
+    #[error(transparent)]
+    Options(#[from] OptionFault),
+    /// A nail can't be drawn.
+    #[error(transparent)]
+    Scene(#[from] SceneFault),
+    /// Something that this job did not write is in the way.
+    #[error("{} stands already and is not {whose}; choose another --out", place.display())]
+    InTheWay {
+        /// The file or folder.
+        place: PathBuf,
+        /// Whose it would have to be.
+        whose: &'static str,
+    },
+    /// A file or folder could not be written.
+    #[error(transparent)]
+    Write(#[from] Unwritten),
+    /// The results could not be put in their places.
+    #[error(transparent)]
+    Place(#[from] WriteError),
+    /// A table could not be written.
+    #[error(transparent)]
+    Table(#[from] TableError),
+    /// A photograph could not be encoded.
+    #[error("{}: cannot be encoded: {source}", path.display())]
+    Encode {
+        /// The photograph.
+        path: PathBuf,
+        /// What is wrong.
+        source: image::ImageError,
+    },
+    /// An annotation could not be written.
+    #[error(transparent)]
+    Annotation(#[from] labelme::Error),
+    /// A video could not be encoded.
+    #[error(transparent)]
+    Video(#[from] VideoError),
+    /// Stopped from outside; nothing was left behind.
+    #[error("stopped")]
+    Interrupted(#[from] Interrupted),
+}
 
 /// A file or folder that could not be written.
 #[derive(Debug, Error)]
@@ -20,6 +73,15 @@ pub struct Unwritten {
 pub fn refused(path: &Path) -> impl FnOnce(io::Error) -> Unwritten {
     let path = path.to_owned();
     move |source| Unwritten { path, source }
+}
+
+/// A hidden folder beside `out` for `names`, unless some of them are there and not `whose`: as [`in_the_way`].
+///
+/// # Errors
+/// [`Error::InTheWay`], or the folder can't be made.
+pub fn staged(out: &Path, names: &[&str], record: &str, whose: &'static str) -> Result<Staging, Error> {
+    let staging = Staging::new(out)?;
+    in_the_way(out, names, record).map_or(Ok(staging), |place| Err(Error::InTheWay { place, whose }))
 }
 
 /// What stands under `out`, is one of `names`, and was not written by whoever writes `record`; or belongs to

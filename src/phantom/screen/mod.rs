@@ -14,7 +14,7 @@ mod digits;
 use serde::Serialize;
 
 /// The clock's digits.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, clap::ValueEnum)]
 #[serde(rename_all = "lowercase")]
 pub enum ClockFont {
     /// Hack: all letters equally wide.

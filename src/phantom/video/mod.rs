@@ -45,4 +45,4 @@ pub(in crate::phantom) use draw::sensor::{Converter, add_noise};
 pub use options::{Chroma, Colours, Hide, Leave, Preset, ScreenEvents, VideoOptions};
 pub(in crate::phantom) use scene::TICKS_PER_S;
 pub use scene::{FrameTruth, MarkerStatus, MarkerTruth, Scene, SceneMarker};
-pub use write::{Error, Stages, Summary, write, write_watched};
+pub use write::{Stages, Summary, write, write_watched};

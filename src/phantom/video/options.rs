@@ -98,19 +98,23 @@ pub struct ScreenEvents {
 }
 
 /// Colour planes of the file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, clap::ValueEnum)]
 pub enum Chroma {
     /// One chroma sample for 2 x 2 pixels.
     #[serde(rename = "420")]
+    #[value(name = "420")]
     Quarter,
     /// One for 2 pixels of a row.
     #[serde(rename = "422")]
+    #[value(name = "422")]
     Half,
     /// One a pixel.
     #[serde(rename = "444")]
+    #[value(name = "444")]
     Full,
-    /// None.
+    /// No chroma.
     #[serde(rename = "grey")]
+    #[value(name = "grey")]
     None,
 }
 

@@ -1,19 +1,18 @@
 //! A scene to files: frames are drawn in parallel and encoded in order, and everything is put in its place at the end.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 
 use rayon::prelude::*;
 use serde::Serialize;
-use thiserror::Error;
 
 use super::scene::TICKS_PER_S;
 use super::{FrameTruth, MarkerStatus, Scene, Siting, VideoOptions};
-use crate::files::{Staging, WriteError};
-use crate::job::{Interrupted, Watch};
-use crate::phantom::scene::place::{Unwritten, in_the_way, refused};
-use crate::table::{Column, TableError, TableWriter, Value};
+use crate::files::Staging;
+use crate::job::Watch;
+use crate::phantom::scene::place::{Error, refused, staged};
+use crate::table::{Column, TableWriter, Value};
 use crate::video::{Encoder, Encoding, Picture, VideoError};
 
 /// The file that says that a folder was written here.
@@ -22,29 +21,6 @@ const RECORD: &str = "truth/scene.json";
 const CLOCK: &str = "truth/clock.csv";
 /// The record first: where it stands, what is of one run and what of another is made again.
 const RESULTS: [&str; 6] = [RECORD, "video.mp4", "markers.toml", "truth/joints.csv", "truth/tracks.csv", CLOCK];
-
-/// Why a video was not written.
-#[derive(Debug, Error)]
-pub enum Error {
-    /// Something that this job did not write stands in the way.
-    #[error("{} stands already and is no synthetic video's; choose another --out", .0.display())]
-    InTheWay(PathBuf),
-    /// A file or folder could not be written.
-    #[error(transparent)]
-    Write(#[from] Unwritten),
-    /// The results could not be put in their places.
-    #[error(transparent)]
-    Place(#[from] WriteError),
-    /// A table could not be written.
-    #[error(transparent)]
-    Table(#[from] TableError),
-    /// The video could not be encoded.
-    #[error(transparent)]
-    Video(#[from] VideoError),
-    /// Stopped from outside; nothing was left behind.
-    #[error("stopped")]
-    Interrupted(#[from] Interrupted),
-}
 
 /// Seconds spent. Drawing and encoding run side by side.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
@@ -84,7 +60,7 @@ impl VideoOptions {
 /// Writes `scene` under `out`; a synthetic video written there before is replaced, a log stays.
 ///
 /// # Errors
-/// [`enum@Error`]; what stood under `out` before is as it was.
+/// [`Error`]; what stood under `out` before is as it was.
 pub fn write(scene: &Scene, out: &Path) -> Result<Summary, Error> {
     write_watched(scene, out, &Watch::nobody())
 }
@@ -92,13 +68,10 @@ pub fn write(scene: &Scene, out: &Path) -> Result<Summary, Error> {
 /// As [`write()`], watched: the ticks count frames.
 ///
 /// # Errors
-/// [`enum@Error`]; what stood under `out` before is as it was.
+/// [`Error`]; what stood under `out` before is as it was.
 pub fn write_watched(scene: &Scene, out: &Path, watch: &Watch<'_>) -> Result<Summary, Error> {
     let begin = Instant::now();
-    let staging = Staging::new(out)?;
-    if let Some(place) = in_the_way(out, &RESULTS, RECORD) {
-        return Err(Error::InTheWay(place));
-    }
+    let staging = staged(out, &RESULTS, RECORD, "a synthetic video's")?;
     let mut summary = write_staged(scene, staging, watch)?;
     summary.stages.total_s = begin.elapsed().as_secs_f64();
     Ok(summary)

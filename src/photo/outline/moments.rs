@@ -19,8 +19,11 @@ pub struct Moments {
     pub minor_px: f64,
     /// One of the two directions of the long axis.
     pub major: Axis,
-    /// Area over the area of the convex hull, 1 for a shape without dents.
-    pub solidity: f64,
+}
+
+/// Area over the area of the convex hull, 1 for a shape without dents.
+pub(super) fn solidity(outline: &Outline) -> f64 {
+    outline.area_px2() / outline.polygon().convex_hull().unsigned_area()
 }
 
 impl Moments {
@@ -53,7 +56,6 @@ impl Moments {
             major_px: 4.0 * (mean + half).max(0.0).sqrt(),
             minor_px: 4.0 * (mean - half).max(0.0).sqrt(),
             major: Axis::from_clockwise_rad(angle + std::f64::consts::FRAC_PI_2),
-            solidity: outline.area_px2() / outline.polygon().convex_hull().unsigned_area(),
         }
     }
 

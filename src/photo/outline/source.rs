@@ -306,7 +306,7 @@ impl OutlineOptions {
             for (&k, axis) in open.iter().zip(find_axes_towards(&picture.image, &outlines, side)) {
                 nails[k].axis = Some(axis);
                 let Some(outline) = &nails[k].outline else { continue };
-                if let Verdict::Contradicts(found) = verdict(&picture.image, outline, axis) {
+                if let (Verdict::Contradicts(found), _) = verdict(&picture.image, outline, axis) {
                     nails[k].reason = format!(
                         "by --distal its axis is at {:.0} degrees, by the picture at {:.0} (confidence {:.2}; \
                          clockwise from up); \
@@ -347,8 +347,8 @@ impl OutlineOptions {
             if self.distal.is_some_and(|side| agree(side.axis(), axis)) {
                 continue;
             }
-            drawn.push(k);
-            let said = verdict(image, outline, axis);
+            let (said, fit) = verdict(image, outline, axis);
+            drawn.push((k, fit));
             sure &= said == Verdict::Agrees;
             if let Verdict::Contradicts(found) = said {
                 nail.reason = format!(
@@ -364,9 +364,13 @@ impl OutlineOptions {
         if sure {
             return;
         }
-        let both = drawn.iter().filter_map(|&k| nails[k].outline.as_ref().zip(nails[k].axis)).collect::<Vec<_>>();
-        let Some(turned) = turned_since(image, &both) else { return };
-        for k in drawn {
+        let drawn_nail = |&(k, fit): &(usize, Option<f64>)| {
+            let nail = &nails[k];
+            Some((nail.outline.as_ref()?, nail.axis?, fit))
+        };
+        let all: Vec<_> = drawn.iter().filter_map(drawn_nail).collect();
+        let Some(turned) = turned_since(image, &all) else { return };
+        for (k, _) in drawn {
             let also = if nails[k].reason.is_empty() { "" } else { "; " };
             nails[k].reason += &format!(
                 "{also}the annotation fits the picture better {turned}: was the picture turned after it was drawn? \

@@ -129,7 +129,7 @@ pub(in crate::photo) fn thumbnail(picture: &Normalized, longest: usize) -> GrayA
         for (column, (pixel, sum)) in pixels.chunks_exact_mut(2).zip(&sums).enumerate() {
             let ends = |k: usize| [k * block, (k + 1) * block - 1];
             let mut corners = ends(row).into_iter().flat_map(|r| ends(column).map(|c| r * picture.size + c));
-            let seen = corners.all(|at| picture.level(at).is_some());
+            let seen = picture.seen.is_none() || corners.all(|at| picture.level(at).is_some());
             pixel.copy_from_slice(&[(sum / scale) as u8, if seen { 255 } else { 0 }]);
         }
     }

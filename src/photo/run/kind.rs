@@ -9,9 +9,9 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::job::{
-    At, Demand, Foreseen, Job, Keys, Kind, Made, NoOptions, OptionFault, Order, Part, Quality, Role, Takes, Work,
-};
+use clap::Args;
+
+use crate::job::{At, Demand, Foreseen, Job, Keys, Kind, Made, OptionFault, Order, Part, Quality, Role, Takes, Work};
 use crate::photo::options::{Outputs, PhotosOptions, Results};
 use crate::photo::outline::{Detector, OutlinePlace, Sources};
 use crate::photo::run::job::run;
@@ -24,10 +24,6 @@ use crate::stages::Step;
 const OUTLINES: &str = "outlines";
 const PICTURES: &str = "pictures";
 const FIGURES: &str = "figures";
-
-/// A stage that normalizes.
-#[derive(Debug, Clone)]
-pub struct NormalizeJob(PhotosOptions);
 
 fn outputs(folder: &Path, demand: &Demand) -> Outputs {
     let results = Results::Sums { pictures: demand.wants(PICTURES) };
@@ -51,40 +47,31 @@ fn outline_of<'a>(keys: &Keys, outlines: impl Iterator<Item = (&'a Keys, &'a Pat
     best.map(|(_, path)| path.to_owned())
 }
 
-impl Job for NormalizeJob {
-    const KIND: Kind = Kind {
-        // 3: poses are listed in the thesis' order (nails.csv); nails are found by a network.
-        revision: 4,
-        ..Kind::of::<Self>(
-            "normalize",
-            &[
-                Role { name: "photo", takes: Takes::Many, about: "photographs; their keys are `subject` and `pose`" },
-                Role {
-                    name: OUTLINES,
-                    takes: Takes::AnyNumber,
-                    about: "LabelMe files or masks of the same subject and pose; where there is none, \
+impl Job for PhotosOptions {
+    const KIND: Kind = Kind::of::<Self>(
+        "normalize",
+        &[
+            Role::new("photo", Takes::Many, "photographs; their keys are `subject` and `pose`"),
+            Role::new(
+                OUTLINES,
+                Takes::AnyNumber,
+                "LabelMe files or masks of the same subject and pose; where there is none, \
                         <photo>.json, else detection",
-                },
-            ],
-            &[
-                Part { name: "sums", file: "", only_if_wanted: false },
-                Part { name: "nails", file: "nails.csv", only_if_wanted: false },
-                Part { name: PICTURES, file: "normalized", only_if_wanted: true },
-            ],
-        )
-    };
+            ),
+        ],
+        &[Part::new("sums", ""), Part::new("nails", "nails.csv"), Part::if_wanted(PICTURES, "normalized")],
+    )
+    .revision(4);
 
-    type Options = PhotosOptions;
-
-    fn new(mut options: PhotosOptions) -> Result<Self, OptionFault> {
-        if options.channels {
+    fn checked(mut self) -> Result<Self, OptionFault> {
+        if self.channels {
             let what = "channels are compared over all subjects at once; remove it here and run `lunula photos \
                         --channels` on the set";
             return Err(OptionFault { key: "channels".into(), what: what.into() });
         }
         // What the task's results depend on is among its inputs.
-        options.outlines.listed_only = true;
-        Ok(Self(options))
+        self.outlines.listed_only = true;
+        Ok(self)
     }
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
@@ -95,10 +82,10 @@ impl Job for NormalizeJob {
             if input.exists {
                 let file = String::new();
                 let photo = Photo { pose, subject, file, path: input.path.clone(), outline, tone: None };
-                return Foreknown::of(&photo, &self.0);
+                return Foreknown::of(&photo, self);
             }
             let drawn = outline.or_else(|| (input.facts.outlined == Some(true)).then(|| labelme_beside(&input.path)));
-            let outlines = match (self.0.outlines.sources, drawn) {
+            let outlines = match (self.outlines.sources, drawn) {
                 (Sources::Detect, _) | (Sources::Auto, None) => OutlinePlace::Detection,
                 (Sources::Annotated, None) => OutlinePlace::Nowhere,
                 (_, Some(file)) if is_picture(&file) => OutlinePlace::Mask(file),
@@ -106,13 +93,13 @@ impl Job for NormalizeJob {
             };
             Foreknown { pose, grey: input.facts.grey, outlines }
         });
-        Ok(plan_foreknown(&foreknown.collect::<Vec<_>>(), &self.0, &outputs(Path::new(""), demand)))
+        Ok(plan_foreknown(&foreknown.collect::<Vec<_>>(), self, &outputs(Path::new(""), demand)))
     }
 
     fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {
         let photos = inputs.iter().filter(|input| input.role == "photo").count();
         let outlines = inputs.iter().filter(|input| input.role == OUTLINES).count();
-        let detected = match self.0.outlines.sources {
+        let detected = match self.outlines.sources {
             Sources::Auto => photos.saturating_sub(outlines),
             Sources::Annotated => 0,
             Sources::Detect => photos,
@@ -122,8 +109,8 @@ impl Job for NormalizeJob {
         let size_px = first.and_then(|input| image::image_dimensions(&input.path).ok()).unwrap_or((640, 480));
         let pixels = f64::from(size_px.0) * f64::from(size_px.1);
         let at_once = photos.min(std::thread::available_parallelism().map_or(1, usize::from)) as u64;
-        let sums = 20 * (self.0.normalization.size * self.0.normalization.size) as u64 * photos as u64;
-        let with_net = detected > 0 && self.0.outlines.detect.detector == Detector::Net;
+        let sums = 20 * (self.normalization.size * self.normalization.size) as u64 * photos as u64;
+        let with_net = detected > 0 && self.outlines.detect.detector == Detector::Net;
         let net = if with_net { NET_BYTES + at_once * NET_BYTES_A_THREAD } else { 0 };
         let memory = at_once * (BYTES_A_PIXEL * pixels) as u64 + sums + BYTES_AT_LEAST + net;
         let seconds = photos as f64 * (NORMALIZE_S + READ_S_A_PIXEL * pixels) + detected as f64 * DETECT_S;
@@ -131,7 +118,7 @@ impl Job for NormalizeJob {
     }
 
     fn beside(&self, role: &str, path: &Path) -> Vec<(&'static str, PathBuf)> {
-        let reads = role == "photo" && self.0.outlines.sources != Sources::Detect;
+        let reads = role == "photo" && self.outlines.sources != Sources::Detect;
         reads.then(|| (OUTLINES, labelme_beside(path))).into_iter().collect()
     }
 
@@ -147,7 +134,7 @@ impl Job for NormalizeJob {
         };
         let set = PhotoSet::of(work.of("photo").map(photo).collect());
         let outputs = outputs(work.folder, order.demand);
-        let report = work.run(order.said, |watch| run(&set, &self.0, &outputs, watch))?;
+        let report = work.run(order.said, |watch| run(&set, self, &outputs, watch))?;
         Ok(report.made(Vec::new()))
     }
 }
@@ -169,36 +156,19 @@ fn labelme_beside(photo: &Path) -> PathBuf {
 }
 
 /// A stage that makes maps of sums.
-#[derive(Debug, Clone, Copy)]
-pub struct MapsJob;
+#[derive(Debug, Clone, Copy, Args)]
+pub struct MapsJob {}
 
 impl Job for MapsJob {
-    const KIND: Kind = Kind {
-        // 2: poses are listed in the thesis' order (sheets, nails.csv).
-        revision: 2,
-        ..Kind::of::<Self>(
-            "maps",
-            &[
-                Role { name: "sums", takes: Takes::Many, about: "what `normalize` made" },
-                Role {
-                    name: "truth",
-                    takes: Takes::Optional,
-                    about: "a folder of exact maps, <pose>-mean.npy and <pose>-sd.npy",
-                },
-            ],
-            &[
-                Part { name: "maps", file: "", only_if_wanted: false },
-                Part { name: "nails", file: "nails.csv", only_if_wanted: false },
-                Part { name: FIGURES, file: "figures", only_if_wanted: true },
-            ],
-        )
-    };
-
-    type Options = NoOptions;
-
-    fn new(_options: NoOptions) -> Result<Self, OptionFault> {
-        Ok(Self)
-    }
+    const KIND: Kind = Kind::of::<Self>(
+        "maps",
+        &[
+            Role::new("sums", Takes::Many, "what `normalize` made"),
+            Role::new("truth", Takes::Optional, "a folder of exact maps, <pose>-mean.npy and <pose>-sd.npy"),
+        ],
+        &[Part::new("maps", ""), Part::new("nails", "nails.csv"), Part::if_wanted(FIGURES, "figures")],
+    )
+    .revision(2);
 
     fn demand(&self, role: &str, _own: &Demand) -> Demand {
         let parts = if role == "sums" { ["sums"].into() } else { [].into() };

@@ -240,6 +240,7 @@ impl PhotosReport {
     /// A page of sheets, nails, what was left out and why, times. Nothing is loaded from elsewhere.
     fn html(&self, nails: &NailTable, sheets: &[DrawnSheet], nail_sheets: &[DrawnSheet]) -> String {
         let mut page = Page::new("Fingernail coloration");
+        page.reserve(sheets.iter().chain(nail_sheets).map(|sheet| sheet.png.len()).sum());
         let poses: Vec<String> = self.poses.iter().map(|p| format!("{} (n = {})", p.pose, p.subjects)).collect();
         page.paragraph(&format!("lunula {} {}, {}", self.version, self.job, list_paths(&self.inputs)));
         page.paragraph(&match &poses[..] {

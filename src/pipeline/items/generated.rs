@@ -111,7 +111,7 @@ pub fn phantom_catalogue(block: &Table, known: &[Block]) -> Result<Catalogue, Op
     if block.is_empty() {
         let example = known.first().map_or("", |one| one.name);
         let what = format!("[phantom] asks for nothing; write one of {}, as {example} = {{ seed = 1 }}", names());
-        return Err(OptionFault { key: String::new(), what });
+        return Err(OptionFault::whole(what));
     }
     for (key, value) in block {
         let Some(asked) = known.iter().find(|one| one.name == key) else {
@@ -138,7 +138,7 @@ pub fn phantom_catalogue(block: &Table, known: &[Block]) -> Result<Catalogue, Op
         let what = format!(
             "two recordings would stand in {{phantom}}/{name}; leave one out, or give single scenes other names"
         );
-        return Err(OptionFault { key: String::new(), what });
+        return Err(OptionFault::whole(what));
     }
     Ok(catalogue(placed, tables))
 }
@@ -198,7 +198,7 @@ fn inner(key: &str, fault: OptionFault) -> OptionFault {
 }
 
 fn unread(why: &anyhow::Error) -> OptionFault {
-    OptionFault { key: String::new(), what: format!("{why:#}") }
+    OptionFault::whole(format!("{why:#}"))
 }
 
 fn catalogue(placed: Vec<Placed>, tables: BTreeMap<String, String>) -> Catalogue {

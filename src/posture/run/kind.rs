@@ -11,8 +11,7 @@ use clap::Args;
 use serde_json::json;
 
 use crate::job::{
-    Demand, Facts, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Quality, Role, Said, Tables, Takes, Work,
-    against,
+    Demand, Facts, Foreseen, Job, Kind, Made, Order, Part, Quality, Role, Said, Tables, Takes, Work, against,
 };
 use crate::posture::layout::{Layout, LayoutError};
 use crate::posture::options::{Outputs, PostureOptions};
@@ -26,24 +25,20 @@ const TRACKS: &str = "tracks";
 const OVERLAY: &str = "overlay";
 const PICTURES: &str = "pictures";
 
-/// The options of a stage.
+/// A stage of a pipeline.
 #[derive(Debug, Clone, Args)]
-pub(crate) struct PostureKeys {
+pub(crate) struct PostureJob {
     #[command(flatten)]
     options: PostureOptions,
     #[command(flatten)]
     tables: Tables,
 }
 
-/// A stage of a pipeline.
-#[derive(Debug, Clone)]
-pub(crate) struct PostureJob(PostureKeys);
-
 impl PostureJob {
     /// The joints that are measured; empty: all of the marker file. Markers and overlay show what the stage itself
     /// names.
     fn joints(&self, demand: &Demand) -> Vec<String> {
-        let own: BTreeSet<String> = self.0.options.joints.iter().cloned().collect();
+        let own: BTreeSet<String> = self.options.joints.iter().cloned().collect();
         let wanted = demand.joints.as_ref().filter(|_| !demand.wants(TRACKS) && !demand.wants(OVERLAY));
         let joints = match wanted {
             Some(wanted) if own.is_empty() => wanted.clone(),
@@ -58,13 +53,13 @@ impl PostureJob {
     }
 
     fn options(&self, demand: &Demand, threads: usize) -> PostureOptions {
-        let own = &self.0.options;
+        let own = &self.options;
         let no_clock = own.no_clock || !demand.clock;
         PostureOptions { joints: self.joints(demand), no_clock, threads, ..own.clone() }
     }
 
     fn outputs(&self, demand: &Demand, folder: &Path) -> Outputs {
-        let tables = self.0.tables;
+        let tables = self.tables;
         Outputs {
             joints: folder.join(tables.named("joints.csv", "joints.parquet")),
             tracks: demand.wants(TRACKS).then(|| folder.join(tables.named("tracks.csv", "tracks.parquet"))),
@@ -83,27 +78,17 @@ impl Job for PostureJob {
     const KIND: Kind = Kind::of::<Self>(
         "posture",
         &[
-            Role { name: "video", takes: Takes::One, about: "the video" },
-            Role {
-                name: "markers",
-                takes: Takes::One,
-                about: "the marker file: colours, segments, joints, clock, lens",
-            },
-            Role { name: "truth", takes: Takes::Optional, about: "the true angles: frame, <joint>_deg" },
+            Role::new("video", Takes::One, "the video"),
+            Role::new("markers", Takes::One, "the marker file: colours, segments, joints, clock, lens"),
+            Role::new("truth", Takes::Optional, "the true angles: frame, <joint>_deg"),
         ],
         &[
-            Part { name: "joints", file: "joints.csv", only_if_wanted: false },
-            Part { name: TRACKS, file: "tracks.csv", only_if_wanted: true },
-            Part { name: OVERLAY, file: "overlay.mp4", only_if_wanted: true },
-            Part { name: PICTURES, file: "joints-angles.png", only_if_wanted: true },
+            Part::new("joints", "joints.csv"),
+            Part::if_wanted(TRACKS, "tracks.csv"),
+            Part::if_wanted(OVERLAY, "overlay.mp4"),
+            Part::if_wanted(PICTURES, "joints-angles.png"),
         ],
     );
-
-    type Options = PostureKeys;
-
-    fn new(options: PostureKeys) -> Result<Self, OptionFault> {
-        Ok(Self(options))
-    }
 
     fn depends_on(&self, _said: &Said, demand: &Demand) -> serde_json::Value {
         let made: Vec<&str> = [TRACKS, OVERLAY, PICTURES].into_iter().filter(|part| demand.wants(part)).collect();
@@ -112,7 +97,7 @@ impl Job for PostureJob {
             "joints": options.joints,
             "clock": options.reads_clock(),
             "smooth": options.smooth,
-            "format": self.0.tables.named("csv", "parquet"),
+            "format": self.tables.named("csv", "parquet"),
             "made": made,
         })
     }
@@ -157,8 +142,8 @@ impl Job for PostureJob {
 
     fn file(&self, part: &Part) -> &'static str {
         match part.name {
-            "joints" => self.0.tables.named("joints.csv", "joints.parquet"),
-            TRACKS => self.0.tables.named("tracks.csv", "tracks.parquet"),
+            "joints" => self.tables.named("joints.csv", "joints.parquet"),
+            TRACKS => self.tables.named("tracks.csv", "tracks.parquet"),
             _ => part.file,
         }
     }

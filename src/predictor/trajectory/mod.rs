@@ -15,7 +15,6 @@ mod options;
 mod report;
 
 pub use job::{TrajectoryError, plan, run};
-pub use kind::TrajectoryJob;
 pub use options::{
     BendingOptions, ForceOptions, Kind, KindOptions, RandomOptions, TrajectoryOptions, TrajectoryOutputs,
 };

@@ -78,12 +78,8 @@ impl Command for AlignArgs {
 
     const NAME: &'static str = "align";
 
-    fn job(&self) -> &JobArgs {
-        &self.job
-    }
-
-    fn said(&self) -> &Said {
-        &self.given.said
+    fn given(&self) -> (&JobArgs, &Said) {
+        (&self.job, &self.given.said)
     }
 
     fn plan(&self) -> anyhow::Result<Plan> {

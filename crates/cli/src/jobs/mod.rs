@@ -57,10 +57,8 @@ pub(super) trait Command {
     /// What is counted while it runs: `frames`.
     const UNIT: &'static str = "steps";
 
-    fn job(&self) -> &JobArgs;
-
-    /// The options as they were written.
-    fn said(&self) -> &Said;
+    /// What every job takes, and the options as they were written.
+    fn given(&self) -> (&JobArgs, &Said);
 
     fn plan(&self) -> anyhow::Result<Plan>;
 
@@ -77,7 +75,7 @@ pub(super) trait Command {
 
 /// Plans or runs a job, and prints its report.
 pub(super) fn run<C: Command>(command: &C) -> anyhow::Result<Outcome> {
-    let JobArgs { plan, common } = command.job();
+    let (JobArgs { plan, common }, said) = command.given();
     let stop = common.start()?;
     if *plan {
         return show(common, C::NAME, &command.plan()?);
@@ -87,7 +85,7 @@ pub(super) fn run<C: Command>(command: &C) -> anyhow::Result<Outcome> {
         bar.set_length(all.unwrap_or(done));
         bar.set_position(done);
     };
-    let report = command.run(&Watch { said: command.said(), stop: &stop, tick: &tick });
+    let report = command.run(&Watch { said, stop: &stop, tick: &tick });
     bar.finish_and_clear();
     let report = report?;
     name_failures(&report.failed);

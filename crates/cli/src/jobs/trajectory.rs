@@ -67,12 +67,8 @@ impl<K: KindOptions> Command for KindArgs<K> {
 
     const NAME: &'static str = "trajectory";
 
-    fn job(&self) -> &JobArgs {
-        &self.job
-    }
-
-    fn said(&self) -> &Said {
-        &self.given.said
+    fn given(&self) -> (&JobArgs, &Said) {
+        (&self.job, &self.given.said)
     }
 
     fn plan(&self) -> anyhow::Result<Plan> {

@@ -1,6 +1,6 @@
 //! Whatever makes rows: lines, frames, or a program.
 
-use crate::wire::{Frames, Lines, Meaning, Naming, Sample, Spoil, Step, Tally, Use, WireFault, led_of};
+use crate::wire::{Decoded, Frames, Lines, Meaning, Naming, Sample, Spoil, Step, Use, WireFault, led_of};
 
 /// Rows that a program makes or reads: a phantom, a table in another format.
 pub trait Rows: Send {
@@ -40,12 +40,8 @@ pub(in crate::source) struct Table {
     pub(in crate::source) rows: Box<dyn Rows>,
     naming: Option<Naming>,
     volts_per_count: Option<f64>,
-    names: Vec<String>,
-    meaning: Meaning,
+    decoded: Decoded,
     cells: Vec<f64>,
-    values: Vec<f64>,
-    texts: Vec<Vec<u8>>,
-    tally: Tally,
     row: u64,
 }
 
@@ -57,11 +53,7 @@ impl Table {
             rows,
             naming: Some(naming),
             volts_per_count,
-            names,
-            meaning: Meaning::default(),
-            values: Vec::new(),
-            texts: Vec::new(),
-            tally: Tally::default(),
+            decoded: Decoded { names, ..Decoded::default() },
             row: 0,
         }
     }
@@ -72,16 +64,12 @@ impl Table {
     /// What is wrong.
     pub(in crate::source) fn next(&mut self) -> Result<Option<Step>, String> {
         if let Some(mut naming) = self.naming.take() {
-            self.meaning = naming(&self.names)
-                .and_then(|meaning| meaning.fitting(&self.names))
-                .map_err(|why| WireFault::Naming { line: 0, names: self.names.join(","), why }.to_string())?;
-            self.values = vec![f64::NAN; self.meaning.values];
-            self.texts = vec![Vec::new(); self.meaning.texts];
-            self.rows.keep(&self.meaning);
+            self.decoded.name(&mut naming).map_err(|why| why.to_string())?;
+            self.rows.keep(&self.decoded.meaning);
             return Ok(Some(Step::Columns { again: false }));
         }
         self.cells.fill(f64::NAN);
-        if !self.rows.next(&mut self.cells, &mut self.texts)? {
+        if !self.rows.next(&mut self.cells, &mut self.decoded.texts)? {
             return Ok(None);
         }
         self.row += 1;
@@ -89,7 +77,7 @@ impl Table {
             Some(sample) => Step::Sample(sample),
             None => {
                 let cells = &self.cells;
-                self.tally.add(Spoil::Unreadable, self.row, || format!("{cells:?}").chars().take(40).collect());
+                self.decoded.tally.add(Spoil::Unreadable, self.row, || format!("{cells:?}").chars().take(40).collect());
                 Step::Spoilt(Spoil::Unreadable)
             }
         };
@@ -98,7 +86,7 @@ impl Table {
 
     fn sample(&mut self) -> Option<Sample> {
         let mut sample = Sample { time: f64::NAN, counter: None, lit: None };
-        for (&number, purpose) in self.cells.iter().zip(&self.meaning.uses) {
+        for (&number, purpose) in self.cells.iter().zip(&self.decoded.meaning.uses) {
             if number.is_infinite() && *purpose != Use::None {
                 return None;
             }
@@ -110,7 +98,7 @@ impl Table {
                 Use::Led => sample.lit = led_of(number).ok()?,
                 Use::Value { at, scaled } => {
                     let scale = self.volts_per_count.filter(|_| scaled);
-                    self.values[at] = scale.map_or(number, |volts| number * volts);
+                    self.decoded.values[at] = scale.map_or(number, |volts| number * volts);
                 }
                 // Texts are the rows' own.
                 Use::Text(_) | Use::None => {}
@@ -161,43 +149,11 @@ impl Decoder {
         }
     }
 
-    pub(in crate::source) fn names(&self) -> &[String] {
+    pub(in crate::source) fn decoded(&self) -> &Decoded {
         match self {
-            Self::Lines(lines) => lines.names(),
-            Self::Frames(frames) => frames.names(),
-            Self::Table(table) => &table.names,
-        }
-    }
-
-    pub(in crate::source) fn meaning(&self) -> &Meaning {
-        match self {
-            Self::Lines(lines) => lines.meaning(),
-            Self::Frames(frames) => frames.meaning(),
-            Self::Table(table) => &table.meaning,
-        }
-    }
-
-    pub(in crate::source) fn values(&self) -> &[f64] {
-        match self {
-            Self::Lines(lines) => lines.values(),
-            Self::Frames(frames) => frames.values(),
-            Self::Table(table) => &table.values,
-        }
-    }
-
-    pub(in crate::source) fn texts(&self) -> &[Vec<u8>] {
-        match self {
-            Self::Lines(lines) => lines.texts(),
-            Self::Frames(_) => &[],
-            Self::Table(table) => &table.texts,
-        }
-    }
-
-    pub(in crate::source) fn tally(&self) -> &Tally {
-        match self {
-            Self::Lines(lines) => lines.tally(),
-            Self::Frames(frames) => frames.tally(),
-            Self::Table(table) => &table.tally,
+            Self::Lines(lines) => lines.decoded(),
+            Self::Frames(frames) => frames.decoded(),
+            Self::Table(table) => &table.decoded,
         }
     }
 }

@@ -16,5 +16,5 @@ pub use checksum::{Checksum, crc16, xor8};
 pub use fault::WireFault;
 pub use frames::{FRAME_NAMES, Frame, Frames, WIRE_BYTES};
 pub use lines::{LineOptions, Lines};
-pub use row::{Meaning, Naming, Row, Sample, Step, Use};
+pub use row::{Decoded, Meaning, Naming, Row, Sample, Step, Use};
 pub use spoilt::{Spoil, SpoiltRows, Tally};

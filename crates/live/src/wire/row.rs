@@ -1,6 +1,7 @@
 //! What a row of a stream is, and what its columns mean.
 
-use crate::wire::spoilt::Spoil;
+use crate::wire::fault::WireFault;
+use crate::wire::spoilt::{Spoil, Tally};
 
 /// What a column is for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,6 +72,39 @@ pub enum Step {
     Sample(Sample),
     /// A row that is spoilt, or a message between rows.
     Spoilt(Spoil),
+}
+
+/// What a decoder knows of its rows: the columns, the last row, and what was spoilt.
+#[derive(Debug, Default)]
+pub struct Decoded {
+    /// The columns' names; empty until they are known.
+    pub names: Vec<String>,
+    /// What the columns mean.
+    pub meaning: Meaning,
+    /// The numbers of the last row.
+    pub values: Vec<f64>,
+    /// The texts of the last row.
+    pub texts: Vec<Vec<u8>>,
+    /// Rows that are spoilt.
+    pub tally: Tally,
+}
+
+impl Decoded {
+    /// Learns what its names mean.
+    pub(crate) fn name(&mut self, naming: &mut Naming) -> Result<(), WireFault> {
+        let names = std::mem::take(&mut self.names);
+        let meaning = naming(&names).and_then(|meaning| meaning.fitting(&names));
+        let meaning = meaning.map_err(|why| WireFault::Naming { line: 0, names: names.join(","), why })?;
+        self.begin(names, meaning);
+        Ok(())
+    }
+
+    /// Begins with these columns.
+    pub(crate) fn begin(&mut self, names: Vec<String>, meaning: Meaning) {
+        self.values = vec![f64::NAN; meaning.values];
+        self.texts = vec![Vec::new(); meaning.texts];
+        (self.names, self.meaning) = (names, meaning);
+    }
 }
 
 /// A row as its device numbers it.

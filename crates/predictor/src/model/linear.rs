@@ -31,12 +31,6 @@ impl Linear {
         Ok(Self { centre, offset, jacobian: jacobian.as_standard_layout().into_owned(), turned })
     }
 
-    /// m, volts, an input each.
-    #[must_use]
-    pub fn centre(&self) -> &[f64] {
-        &self.centre
-    }
-
     /// y_m, a target each.
     #[must_use]
     pub fn offset(&self) -> &[f64] {
@@ -47,18 +41,6 @@ impl Linear {
     #[must_use]
     pub fn jacobian(&self) -> &Array2<f64> {
         &self.jacobian
-    }
-
-    /// How many photodiodes it reads.
-    #[must_use]
-    pub fn inputs(&self) -> usize {
-        self.centre.len()
-    }
-
-    /// Number of targets.
-    #[must_use]
-    pub fn targets(&self) -> usize {
-        self.offset.len()
     }
 
     /// d target / d volt, targets x inputs: J wherever `x` is.

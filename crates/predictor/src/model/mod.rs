@@ -106,6 +106,24 @@ impl Model {
 macro_rules! predicting {
     ($model:ident) => {
         impl $model {
+            /// m, volts, an input each.
+            #[must_use]
+            pub fn centre(&self) -> &[f64] {
+                &self.centre
+            }
+
+            /// How many photodiodes it reads.
+            #[must_use]
+            pub fn inputs(&self) -> usize {
+                $crate::model::block::Kernel::inputs(self)
+            }
+
+            /// Number of targets.
+            #[must_use]
+            pub fn targets(&self) -> usize {
+                $crate::model::block::Kernel::targets(self)
+            }
+
             /// One row: `x` volts of each input, `out` each target.
             ///
             /// # Panics

@@ -102,12 +102,6 @@ impl Network {
         })
     }
 
-    /// m, volts, an input each.
-    #[must_use]
-    pub fn centre(&self) -> &[f64] {
-        &self.centre
-    }
-
     /// s, volts, an input each.
     #[must_use]
     pub fn scale(&self) -> &[f64] {
@@ -154,18 +148,6 @@ impl Network {
     #[must_use]
     pub fn hidden(&self) -> usize {
         self.hidden_biases.len()
-    }
-
-    /// How many photodiodes it reads.
-    #[must_use]
-    pub fn inputs(&self) -> usize {
-        self.centre.len()
-    }
-
-    /// Number of targets.
-    #[must_use]
-    pub fn targets(&self) -> usize {
-        self.output_biases.len()
     }
 
     /// d target / d volt at `x` volts, targets x inputs.

@@ -49,12 +49,6 @@ impl Quadratic {
         Ok(Self { centre, scale, offset, jacobian: jacobian.as_standard_layout().into_owned(), inverse, turned })
     }
 
-    /// m, volts, an input each.
-    #[must_use]
-    pub fn centre(&self) -> &[f64] {
-        &self.centre
-    }
-
     /// s, volts, an input each.
     #[must_use]
     pub fn scale(&self) -> &[f64] {
@@ -71,18 +65,6 @@ impl Quadratic {
     #[must_use]
     pub fn jacobian(&self) -> &Array2<f64> {
         &self.jacobian
-    }
-
-    /// How many photodiodes it reads.
-    #[must_use]
-    pub fn inputs(&self) -> usize {
-        self.centre.len()
-    }
-
-    /// Number of targets.
-    #[must_use]
-    pub fn targets(&self) -> usize {
-        self.offset.len()
     }
 
     /// d target / d volt at `x` volts, targets x inputs.

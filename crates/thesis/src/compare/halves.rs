@@ -5,23 +5,20 @@
 //! which J2 is known and from there on, its cells as they are. A row without a time is in neither.
 
 use std::path::Path;
-use std::time::Instant;
 
 use anyhow::ensure;
+use clap::Args;
 use serde::Serialize;
 
 use lunula::files::Staging;
-use lunula::job::{
-    Demand, Facts, Foreseen, Job, Kind, Made, NoOptions, OptionFault, Order, Part, Report, Role, Takes, Work, keys,
-    prepare,
-};
+use lunula::job::{Demand, Facts, Foreseen, Job, Kind, Made, Order, Part, Role, Takes, Work};
 use lunula::predictor::POSTURE;
-use lunula::stages::{Stages, Step};
+use lunula::stages::Step;
 use lunula::table::{Column, Table, TableWriter, Value};
 
 /// A stage of a pipeline.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct HalvesJob;
+#[derive(Debug, Clone, Copy, Args)]
+pub(crate) struct HalvesJob {}
 
 #[derive(Debug, Serialize)]
 struct HalvesFigures {
@@ -32,23 +29,11 @@ const NAMES: [&str; 2] = ["first", "second"];
 const FILES: [&str; 2] = ["first.csv", "second.csv"];
 
 impl Job for HalvesJob {
-    const KIND: Kind = Kind {
-        name: "halves",
-        roles: &[Role { name: "set", takes: Takes::One, about: "a labelled set, as `align` makes it" }],
-        parts: &[
-            Part { name: NAMES[0], file: FILES[0], only_if_wanted: false },
-            Part { name: NAMES[1], file: FILES[1], only_if_wanted: false },
-        ],
-        revision: 1,
-        keys: keys::<NoOptions>,
-        prepare: prepare::<Self>,
-    };
-
-    type Options = NoOptions;
-
-    fn new(_options: NoOptions) -> Result<Self, OptionFault> {
-        Ok(Self)
-    }
+    const KIND: Kind = Kind::of::<Self>(
+        "halves",
+        &[Role::new("set", Takes::One, "a labelled set, as `align` makes it")],
+        &[Part::new(NAMES[0], FILES[0]), Part::new(NAMES[1], FILES[1])],
+    );
 
     fn demand(&self, _role: &str, own: &Demand) -> Demand {
         Demand { parts: ["training"].into(), joints: own.joints.clone(), clock: own.clock }
@@ -68,12 +53,9 @@ impl Job for HalvesJob {
     }
 
     fn run(&self, order: &Order<'_>, work: &Work<'_>) -> anyhow::Result<Made> {
-        let (start, stages) = (Instant::now(), Stages::default());
         let set = work.needed("set")?;
-        let report = work.run(order.said, |watch| -> anyhow::Result<_> {
-            let rows = stages.time("halves", || halves(&set.path, work.folder))?;
-            Ok(Report::new("halves", watch, HalvesFigures { rows }).timed(&stages, start))
-        })?;
+        let figures = || Ok(HalvesFigures { rows: halves(&set.path, work.folder)? });
+        let report = work.report::<Self, _>(order.said, "halves", figures)?;
         Ok(report.made(Vec::new()))
     }
 }

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use super::options::CompareChoices;
 use super::{Person, compare, compare_plan};
-use lunula::job::{Demand, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Role, Takes, Work, keys, prepare};
+use lunula::job::{Demand, Foreseen, Job, Kind, Made, Order, Part, Role, Takes, Work};
 use lunula::log::{LogReading, ReadingCost, ambient_step};
 use lunula::predictor::FolderOutputs;
 use lunula::stages::Step;
@@ -16,35 +16,19 @@ use lunula::stages::Step;
 const SUBJECT: &str = "subject";
 const PICTURES: &str = "pictures";
 
-/// A stage of a pipeline.
-#[derive(Debug, Clone)]
-pub struct CompareJob(CompareChoices);
-
-impl Job for CompareJob {
-    const KIND: Kind = Kind {
-        name: "compare",
-        roles: &[
-            Role { name: "set1", takes: Takes::Many, about: "the touch protocol's first repetition, of each subject" },
-            Role { name: "set2", takes: Takes::Many, about: "the second, which is trained on as well" },
-            Role { name: "set3", takes: Takes::Many, about: "the third, which validates" },
-            Role { name: "random", takes: Takes::Many, about: "random touching" },
-            Role { name: "bending", takes: Takes::Many, about: "bending, with J2" },
-            Role { name: "bending_random", takes: Takes::Many, about: "random bending, with J2" },
+impl Job for CompareChoices {
+    const KIND: Kind = Kind::of::<Self>(
+        "compare",
+        &[
+            Role::new("set1", Takes::Many, "the touch protocol's first repetition, of each subject"),
+            Role::new("set2", Takes::Many, "the second, which is trained on as well"),
+            Role::new("set3", Takes::Many, "the third, which validates"),
+            Role::new("random", Takes::Many, "random touching"),
+            Role::new("bending", Takes::Many, "bending, with J2"),
+            Role::new("bending_random", Takes::Many, "random bending, with J2"),
         ],
-        parts: &[
-            Part { name: "table", file: "comparisons.csv", only_if_wanted: false },
-            Part { name: PICTURES, file: "", only_if_wanted: true },
-        ],
-        revision: 1,
-        keys: keys::<CompareChoices>,
-        prepare: prepare::<Self>,
-    };
-
-    type Options = CompareChoices;
-
-    fn new(options: CompareChoices) -> Result<Self, OptionFault> {
-        Ok(Self(options))
-    }
+        &[Part::new("table", "comparisons.csv"), Part::if_wanted(PICTURES, "")],
+    );
 
     fn demand(&self, role: &str, own: &Demand) -> Demand {
         let bends = role == "bending" || role == "bending_random";
@@ -55,7 +39,7 @@ impl Job for CompareJob {
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         let people: BTreeSet<_> = inputs.iter().filter_map(|input| input.keys.get(SUBJECT)).collect();
         let out = outputs(Path::new(""), demand);
-        let mut steps = compare_plan(people.len(), &self.0.options(), Some(&out));
+        let mut steps = compare_plan(people.len(), &self.options(), Some(&out));
         let roles: Vec<&str> = Self::KIND.roles.iter().map(|role| role.name).collect();
         steps.insert(1, ambient_step(inputs, &roles, &LogReading::default()));
         Ok(steps)
@@ -63,7 +47,7 @@ impl Job for CompareJob {
 
     fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {
         let ReadingCost { memory, seconds, rows } = ReadingCost::of(inputs);
-        let fit_s = if self.0.has_network() { self.0.network.cost_s(rows) } else { 1e-5 * rows };
+        let fit_s = if self.has_network() { self.network.cost_s(rows) } else { 1e-5 * rows };
         (memory, seconds + 0.5 + fit_s)
     }
 
@@ -82,7 +66,7 @@ impl Job for CompareJob {
         );
         anyhow::ensure!(!people.is_empty(), "nobody has all six recordings: {}", failed.join("; "));
         let out = outputs(work.folder, order.demand);
-        let options = self.0.options();
+        let options = self.options();
         let mut report = work.run(order.said, |watch| compare(&people, &options, Some(&out), watch))?;
         report.failed = failed;
         Ok(report.made(Vec::new()))

@@ -29,8 +29,7 @@ use measure::measure;
 pub(crate) use measure::rmse;
 
 pub use comparison::{Comparison, Spread};
-pub use kind::CompareJob;
-pub use options::{CompareOptions, Person};
+pub use options::{CompareChoices, CompareOptions, Person};
 pub use report::{CompareFigures, CompareReport};
 
 /// Compares models and sets; writes a table, pictures and `run.json` where `out` names a folder.

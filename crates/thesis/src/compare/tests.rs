@@ -9,9 +9,9 @@ use std::sync::atomic::AtomicBool;
 use lunula::job::{At, Demand, Facts, Foreseen, Job as _, Keys, Kind, Made, OptionFault, Prepared, Work};
 use lunula::stages::Fate;
 
-use super::CompareJob;
+use super::CompareChoices;
 
-const KIND: Kind = CompareJob::KIND;
+const KIND: Kind = CompareChoices::KIND;
 const ROLES: [&str; 6] = ["set1", "set2", "set3", "random", "bending", "bending_random"];
 
 fn prepare(keys: &str) -> Result<Arc<dyn Prepared>, OptionFault> {

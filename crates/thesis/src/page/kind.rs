@@ -2,22 +2,18 @@
 //! text beside what came out.
 
 use super::{PageOptions, Part as StudyPart, PartFolder, study_page};
-use lunula::job::{Demand, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Role, Takes, Work, keys, prepare};
+use lunula::job::{Demand, Foreseen, Job, Kind, Made, Order, Part, Role, Takes, Work};
 use lunula::stages::Step;
 
 const fn role(name: &'static str, about: &'static str) -> Role {
     Role { name, takes: Takes::AnyNumber, about }
 }
 
-/// A stage of a pipeline.
-#[derive(Debug, Clone)]
-pub(crate) struct StudyJob(PageOptions);
-
-impl Job for StudyJob {
+impl Job for PageOptions {
     /// Its roles are named as the study's parts.
-    const KIND: Kind = Kind {
-        name: "study",
-        roles: &[
+    const KIND: Kind = Kind::of::<Self>(
+        "study",
+        &[
             role("rising", "one nail under rising force"),
             role("film_green", "a sensor and a camera on one nail, the camera's green"),
             role("film_ratio", "the same, the camera's green over red"),
@@ -39,21 +35,13 @@ impl Job for StudyJob {
             role("compare", "models compared over subjects"),
             role("performance", "trials of two methods of control"),
         ],
-        parts: &[
-            Part { name: "page", file: "study.html", only_if_wanted: false },
-            Part { name: "statements", file: "statements.csv", only_if_wanted: false },
-            Part { name: "numbers", file: "numbers.json", only_if_wanted: false },
+        &[
+            Part::new("page", "study.html"),
+            Part::new("statements", "statements.csv"),
+            Part::new("numbers", "numbers.json"),
         ],
-        revision: 4,
-        keys: keys::<PageOptions>,
-        prepare: prepare::<Self>,
-    };
-
-    type Options = PageOptions;
-
-    fn new(options: PageOptions) -> Result<Self, OptionFault> {
-        Ok(Self(options))
-    }
+    )
+    .revision(4);
 
     fn demand(&self, role: &str, _own: &Demand) -> Demand {
         // What the page shows of each, where that is made only if wanted.
@@ -90,7 +78,7 @@ impl Job for StudyJob {
             })
         };
         let folders: Vec<PartFolder> = StudyPart::ALL.into_iter().flat_map(of).collect();
-        let report = work.run(order.said, |watch| study_page(&folders, &self.0, work.folder, watch))?;
+        let report = work.run(order.said, |watch| study_page(&folders, self, work.folder, watch))?;
         Ok(report.made(Vec::new()))
     }
 }

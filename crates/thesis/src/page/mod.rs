@@ -27,7 +27,6 @@ use super::Numbers;
 use super::statements::{Judged, Kind, Quantity, Statement, Statements, Verdict};
 use colours::colour_numbers;
 use figures::{SECTIONS, Section};
-pub(crate) use kind::StudyJob;
 use lunula::figure::Page;
 use lunula::files::Staging;
 use lunula::job::{Report, Watch};

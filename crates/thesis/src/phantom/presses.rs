@@ -12,16 +12,15 @@
 //! cm2. Walls touch instead of closing: fit with `--collapse contact`.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
+use anyhow::Context as _;
 use serde::Serialize;
-use thiserror::Error;
 
 use crate::section::people::{Person, Recorded};
-use lunula::files::{Staging, WriteError};
-use lunula::hemodynamics::{HemodynamicsError, Pressed};
-use lunula::phantom::{Unwritten, in_the_way, refused};
-use lunula::table::{Column, TableError, TableWriter, Value};
+use lunula::hemodynamics::Pressed;
+use lunula::phantom::{refused, staged};
+use lunula::table::{Column, TableWriter, Value};
 
 const RECORD: &str = "truth/press.json";
 /// The files of a press. The record first: where it stands, what is of one run and what of another is made again.
@@ -38,40 +37,14 @@ pub struct PressOptions {
     pub site: Pressed,
 }
 
-/// Why presses were not written.
-#[derive(Debug, Error)]
-pub(crate) enum Error {
-    /// The model has no answer.
-    #[error(transparent)]
-    Model(#[from] HemodynamicsError),
-    /// The model has no such person.
-    #[error("no person of seed {0}")]
-    Person(u64),
-    /// Something that this job did not write stands in the way.
-    #[error("{} stands already and is no synthetic press's; choose another --out", .0.display())]
-    InTheWay(PathBuf),
-    /// A file or folder could not be written.
-    #[error(transparent)]
-    Write(#[from] Unwritten),
-    /// The results could not be put in their places.
-    #[error(transparent)]
-    Place(#[from] WriteError),
-    /// A table could not be written.
-    #[error(transparent)]
-    Table(#[from] TableError),
-}
-
 /// Writes both presses under `out`; presses written there before are replaced.
 ///
 /// # Errors
-/// [`enum@Error`]; what stood under `out` before is as it was.
-pub(crate) fn write(options: &PressOptions, out: &Path) -> Result<(), Error> {
-    let staging = Staging::new(out)?;
-    if let Some(place) = in_the_way(out, &RESULTS, RECORD) {
-        return Err(Error::InTheWay(place));
-    }
+/// No such person, or a file that can't be written; what stood under `out` before is as it was.
+pub(crate) fn write(options: &PressOptions, out: &Path) -> anyhow::Result<()> {
+    let staging = staged(out, &RESULTS, RECORD, "a synthetic press's")?;
     let person = Person::middle().and_then(|middle| Person::about(&middle, &options.name, options.seed));
-    let person = person.ok_or(Error::Person(options.seed))?;
+    let person = person.with_context(|| format!("no person of seed {}", options.seed))?;
     let recorded = [person.slowly(options.site)?, person.quickly(options.site)?];
     let [record, slow, quick, parameters] = RESULTS.map(|name| staging.path().join(name));
     let truth = staging.path().join("truth");
@@ -85,7 +58,7 @@ pub(crate) fn write(options: &PressOptions, out: &Path) -> Result<(), Error> {
     Ok(staging.commit_exactly(&RESULTS)?)
 }
 
-fn table(recorded: &Recorded, site: Pressed, path: &Path) -> Result<(), Error> {
+fn table(recorded: &Recorded, site: Pressed, path: &Path) -> anyhow::Result<()> {
     let photodiode = if site == Pressed::Distal { "VP2" } else { "VP1" };
     let time = recorded.times_s.iter().map(|_| "time_s");
     let columns = time.chain(["Fz_N", "pf1_Pa", "pf2_Pa", photodiode]).map(Column::number).collect();

@@ -4,40 +4,24 @@
 use std::collections::BTreeSet;
 
 use super::{NamedFile, ResponsesOptions, responses, steps};
-use lunula::job::{Demand, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Role, Takes, Work, keys, prepare};
+use lunula::job::{Demand, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Role, Takes, Work};
 use lunula::log::{LogReading, ReadingCost, ambient_step};
 use lunula::stages::Step;
 
-/// A stage of a pipeline.
-#[derive(Debug, Clone)]
-pub(crate) struct ResponsesJob(ResponsesOptions);
+impl Job for ResponsesOptions {
+    const KIND: Kind = Kind::of::<Self>(
+        "responses",
+        &[Role::new("data", Takes::Many, "recordings with photodiodes and the force or angle")],
+        &[Part::new("responses", ""), Part::new("table", "responses.csv")],
+    );
 
-impl Job for ResponsesJob {
-    const KIND: Kind = Kind {
-        name: "responses",
-        roles: &[Role {
-            name: "data",
-            takes: Takes::Many,
-            about: "recordings with photodiodes and the force or angle",
-        }],
-        parts: &[
-            Part { name: "responses", file: "", only_if_wanted: false },
-            Part { name: "table", file: "responses.csv", only_if_wanted: false },
-        ],
-        revision: 1,
-        keys: keys::<ResponsesOptions>,
-        prepare: prepare::<Self>,
-    };
-
-    type Options = ResponsesOptions;
-
-    fn new(options: ResponsesOptions) -> Result<Self, OptionFault> {
-        options.places().map_err(|what| OptionFault { key: "places".to_owned(), what })?;
-        Ok(Self(options))
+    fn checked(self) -> Result<Self, OptionFault> {
+        self.places().map_err(|what| OptionFault { key: "places".to_owned(), what })?;
+        Ok(self)
     }
 
     fn demand(&self, _role: &str, own: &Demand) -> Demand {
-        let joint = self.0.drive.strip_suffix("_deg");
+        let joint = self.drive.strip_suffix("_deg");
         let mut joints: BTreeSet<String> = joint.map(str::to_owned).into_iter().collect();
         // The coupling of the joints (Fig. 33).
         if joint == Some("J2") {
@@ -47,7 +31,7 @@ impl Job for ResponsesJob {
     }
 
     fn steps(&self, inputs: &[Foreseen], _demand: &Demand) -> Result<Vec<Step>, String> {
-        let mut steps = steps(&self.0);
+        let mut steps = steps(self);
         steps.insert(0, ambient_step(inputs, &["data"], &LogReading::default()));
         Ok(steps)
     }
@@ -64,7 +48,7 @@ impl Job for ResponsesJob {
     fn run(&self, order: &Order<'_>, work: &Work<'_>) -> anyhow::Result<Made> {
         let files: Vec<NamedFile> =
             work.of("data").map(|at| NamedFile { path: at.path.clone(), name: at.name.clone() }).collect();
-        let report = work.run(order.said, |watch| responses(&files, &self.0, work.folder, watch))?;
+        let report = work.run(order.said, |watch| responses(&files, self, work.folder, watch))?;
         Ok(report.made(Vec::new()))
     }
 }

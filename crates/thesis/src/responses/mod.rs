@@ -30,7 +30,6 @@ use serde::Serialize;
 use super::Numbers;
 pub(crate) use curve::{Curve, Source};
 pub(crate) use cycles::Cycles;
-pub(crate) use kind::ResponsesJob;
 use lunula::files::{Staging, WriteError};
 use lunula::job::{Interrupted, Report, Watch};
 use lunula::log::LogError;

@@ -1,19 +1,15 @@
 //! `section` in a pipeline: the simulations of section 4.3 with the thesis' values (Fig. 76 to 78, 88); and `presses`:
 //! its experiments on recorded people (Fig. 79 to 82).
 
-use std::time::Instant;
-
+use clap::Args;
 use serde::Serialize;
 
 use super::presses::{PressFile, read_presses};
 use super::{SectionText, section_presses, section_simulations};
 use crate::numbers::Numbers;
 use lunula::files::write_whole;
-use lunula::job::{
-    Demand, Foreseen, Job, Kind, Made, NoOptions, OptionFault, Order, Part, Report, Role, Takes, Watch, Work, keys,
-    prepare,
-};
-use lunula::stages::{Stages, Step};
+use lunula::job::{Demand, Foreseen, Job, Kind, Made, Order, Part, Role, Takes, Work};
+use lunula::stages::Step;
 
 #[derive(Debug, Serialize)]
 struct SectionFigures {
@@ -21,42 +17,28 @@ struct SectionFigures {
 }
 
 /// Runs `work`; its text goes to `<name>.md`, its numbers to `numbers.json`.
-fn make(
-    name: &'static str,
+fn make<J: Job>(
     order: &Order<'_>,
     task: &Work<'_>,
     work: impl FnOnce() -> anyhow::Result<SectionText> + Send,
 ) -> anyhow::Result<Made> {
-    let (start, stages) = (Instant::now(), Stages::default());
-    let report = task.run(order.said, |watch: &Watch<'_>| -> anyhow::Result<_> {
-        let SectionText { text, numbers } = stages.time(name, work)?;
+    let name = J::KIND.name;
+    let report = task.report::<J, _>(order.said, name, || {
+        let SectionText { text, numbers } = work()?;
         let numbers = Numbers(numbers);
         write_whole(&task.folder.join(format!("{name}.md")), text.as_bytes())?;
         write_whole(&task.folder.join("numbers.json"), numbers.to_text().as_bytes())?;
-        Ok(Report::new(name, watch, SectionFigures { numbers }).timed(&stages, start))
+        Ok(SectionFigures { numbers })
     })?;
     Ok(report.made(Vec::new()))
 }
 
 /// A stage that simulates.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct SectionJob;
+#[derive(Debug, Clone, Copy, Args)]
+pub(crate) struct SectionJob {}
 
 impl Job for SectionJob {
-    const KIND: Kind = Kind {
-        name: "section",
-        roles: &[],
-        parts: &[Part { name: "section", file: "", only_if_wanted: false }],
-        revision: 2,
-        keys: keys::<NoOptions>,
-        prepare: prepare::<Self>,
-    };
-
-    type Options = NoOptions;
-
-    fn new(_options: NoOptions) -> Result<Self, OptionFault> {
-        Ok(Self)
-    }
+    const KIND: Kind = Kind::of::<Self>("section", &[], &[Part::new("section", "")]).revision(2);
 
     fn steps(&self, _inputs: &[Foreseen], _demand: &Demand) -> Result<Vec<Step>, String> {
         Ok(vec![
@@ -72,33 +54,20 @@ impl Job for SectionJob {
     }
 
     fn run(&self, order: &Order<'_>, work: &Work<'_>) -> anyhow::Result<Made> {
-        make("section", order, work, || section_simulations(work.folder))
+        make::<Self>(order, work, || section_simulations(work.folder))
     }
 }
 
 /// A stage that fits the model to recorded people.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct PressesJob;
+#[derive(Debug, Clone, Copy, Args)]
+pub(crate) struct PressesJob {}
 
 impl Job for PressesJob {
-    const KIND: Kind = Kind {
-        name: "presses",
-        roles: &[Role {
-            name: "data",
-            takes: Takes::Many,
-            about: "presses as `lunula fit` reads them; slow ones have no time_s",
-        }],
-        parts: &[Part { name: "presses", file: "", only_if_wanted: false }],
-        revision: 1,
-        keys: keys::<NoOptions>,
-        prepare: prepare::<Self>,
-    };
-
-    type Options = NoOptions;
-
-    fn new(_options: NoOptions) -> Result<Self, OptionFault> {
-        Ok(Self)
-    }
+    const KIND: Kind = Kind::of::<Self>(
+        "presses",
+        &[Role::new("data", Takes::Many, "presses as `lunula fit` reads them; slow ones have no time_s")],
+        &[Part::new("presses", "")],
+    );
 
     fn steps(&self, inputs: &[Foreseen], _demand: &Demand) -> Result<Vec<Step>, String> {
         Ok(vec![
@@ -112,7 +81,7 @@ impl Job for PressesJob {
     }
 
     fn run(&self, order: &Order<'_>, work: &Work<'_>) -> anyhow::Result<Made> {
-        make("presses", order, work, || {
+        make::<Self>(order, work, || {
             let files: Vec<PressFile<'_>> = work
                 .of("data")
                 .map(|at| PressFile { path: &at.path, name: &at.name, subject: at.keys.get("subject").unwrap_or("") })

@@ -66,6 +66,8 @@ const SAMPLES_KEPT: f64 = 3.0;
 const STEEPEST: f64 = 0.577_350_27;
 /// Output columns that two passes fill side by side.
 const COLUMNS: usize = 8;
+/// Of these, columns that are interpolated at once.
+const LANES: usize = 4;
 
 impl Grid {
     fn new(frame: &NailFrame, with: &Normalization) -> Self {
@@ -251,31 +253,44 @@ impl Source {
         let mut block = vec![[0.0_f32; COLUMNS]; size];
         for first in (0..size).step_by(COLUMNS) {
             let columns = COLUMNS.min(size - first);
-            let mut strands: Vec<Strand> = (first..first + columns)
-                .map(|column| {
-                    let [x, y] = [place(0, column), place(1, column)];
-                    let last = y + down * (size - 1) as f64;
-                    let top = y.min(last) as usize - 1;
-                    let crossing = fixed(x) + fixed_product(slant, top as f64 - y);
-                    Strand { y: fixed(y - top as f64), top, bottom: y.max(last) as usize + 3, crossing }
-                })
-                .collect();
+            // The last column again where there are fewer.
+            let mut strands: [Strand; COLUMNS] = std::array::from_fn(|k| {
+                let column = first + k.min(columns - 1);
+                let [x, y] = [place(0, column), place(1, column)];
+                let last = y + down * (size - 1) as f64;
+                let top = y.min(last) as usize - 1;
+                let crossing = fixed(x) + fixed_product(slant, top as f64 - y);
+                Strand { y: fixed(y - top as f64), top, bottom: y.max(last) as usize + 3, crossing }
+            });
             let top = strands.iter().map(|s| s.top).min().unwrap_or(0);
             let bottom = strands.iter().map(|s| s.bottom).max().unwrap_or(0);
             for row in top..=bottom {
                 let source = &self.values[row * self.width..][..self.width];
-                for (strand, line) in strands.iter_mut().zip(lines.chunks_exact_mut(tall)) {
-                    if (strand.top..=strand.bottom).contains(&row) {
-                        line[row - strand.top] = between(source, strand.crossing, weights);
-                        strand.crossing += slant;
+                let crosses = |strand: &Strand| (strand.top..=strand.bottom).contains(&row);
+                let lines = lines.chunks_exact_mut(LANES * tall);
+                for (strands, lines) in strands.as_chunks_mut::<LANES>().0.iter_mut().zip(lines) {
+                    let values = if strands.iter().all(crosses) {
+                        between_each([source; LANES], strands.each_ref().map(|strand| strand.crossing), weights)
+                    } else {
+                        let value = |strand: &Strand| between(source, strand.crossing, weights);
+                        strands.each_ref().map(|strand| if crosses(strand) { value(strand) } else { 0.0 })
+                    };
+                    for ((strand, line), value) in strands.iter_mut().zip(lines.chunks_exact_mut(tall)).zip(values) {
+                        if crosses(strand) {
+                            line[row - strand.top] = value;
+                            strand.crossing += slant;
+                        }
                     }
                 }
             }
             let step = fixed(down);
-            for (at, (strand, line)) in strands.iter_mut().zip(lines.chunks_exact(tall)).enumerate() {
+            let lines = lines.chunks_exact(LANES * tall);
+            for (at, (strands, lines)) in strands.as_chunks::<LANES>().0.iter().zip(lines).enumerate() {
+                let lines = std::array::from_fn(|k| &lines[k * tall..][..tall]);
+                let mut places = strands.each_ref().map(|strand| strand.y);
                 for row in &mut block {
-                    row[at] = between(line, strand.y, weights);
-                    strand.y += step;
+                    row[at * LANES..][..LANES].copy_from_slice(&between_each(lines, places, weights));
+                    places.iter_mut().for_each(|place| *place += step);
                 }
             }
             for (row, block) in values.chunks_exact_mut(size).zip(&block) {
@@ -372,12 +387,29 @@ const HALF_PHASE: i64 = (1 << 32) / (2 * PHASES as i64);
 /// The cubic through the four of `values` around a place in fixed point, limited to its two neighbours.
 #[inline(always)]
 fn between(values: &[f32], place: i64, weights: &[f32x4; PHASES]) -> f32 {
+    let (four, weights) = around(values, place, weights);
+    let [_, before, after, _] = four.to_array();
+    limit((four * weights).reduce_add(), lesser(before, after), greater(before, after))
+}
+
+/// [`between`] on each of four lines, to the bit.
+#[inline(always)]
+fn between_each(lines: [&[f32]; LANES], places: [i64; LANES], weights: &[f32x4; PHASES]) -> [f32; LANES] {
+    let each: [_; LANES] = std::array::from_fn(|k| around(lines[k], places[k], weights));
+    let [a, b, c, d] = f32x4::transpose(each.map(|(four, weights)| four * weights));
+    let [_, before, after, _] = f32x4::transpose(each.map(|(four, _)| four)).map(f32x4::to_array);
+    let sums = (((a + b) + c) + d).to_array();
+    std::array::from_fn(|k| limit(sums[k], lesser(before[k], after[k]), greater(before[k], after[k])))
+}
+
+/// The four of `values` around a place in fixed point, and their weights.
+#[inline(always)]
+fn around(values: &[f32], place: i64, weights: &[f32x4; PHASES]) -> (f32x4, f32x4) {
     let place = place + HALF_PHASE;
     let before = (place >> 32) as usize - 1;
     let four = &values[before..before + 4];
-    let four = [four[0], four[1], four[2], four[3]];
     let weights = weights[(place as u32 >> (32 - PHASES.ilog2())) as usize];
-    limit((f32x4::new(four) * weights).reduce_add(), lesser(four[1], four[2]), greater(four[1], four[2]))
+    (f32x4::new([four[0], four[1], four[2], four[3]]), weights)
 }
 
 /// The value comes last in both comparisons: a missing neighbour makes it NaN, and NaN it stays.

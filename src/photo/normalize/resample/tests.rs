@@ -147,7 +147,8 @@ proptest! {
         });
         let image = DynamicImage::from(imageproc::filter::gaussian_blur_f32(&noise, 1.0));
         let turned = frame([100.0, 100.0], length, 0.8 * length, degrees + if flip { 180.0 } else { 0.0 });
-        let with = sized(120, Resample::Cubic);
+        // Columns are left over of those that are filled side by side.
+        let with = sized(123, Resample::Cubic);
         let grid = Grid::new(&turned, &with);
         let source = Source::new(&image, &grid, &with, Vec::new()).expect("shown");
         prop_assert!(grid.is_nearly_upright() && source.samples == [1, 1]);
@@ -162,5 +163,18 @@ proptest! {
         let largest = differences.iter().copied().fold(0.0, f64::max);
         let rms = (differences.iter().map(|d| d * d).sum::<f64>() / differences.len() as f64).sqrt();
         prop_assert!(largest <= TWINS_DIFFER_OF_255[0] && rms <= TWINS_DIFFER_OF_255[1], "{largest} {rms}");
+    }
+
+    #[test]
+    fn four_lines_at_once_are_each_alone_to_the_bit(
+        values in prop::collection::vec(prop_oneof![9 => 0.0_f32..1.0, 1 => Just(f32::NAN)], 24),
+        places in prop::array::uniform4(1_i64 << 32..4 << 32),
+    ) {
+        let lines: [&[f32]; LANES] = std::array::from_fn(|k| &values[6 * k..][..6]);
+        let alone: [f32; LANES] = std::array::from_fn(|k| between(lines[k], places[k], &PHASE_WEIGHTS));
+        let each = between_each(lines, places, &PHASE_WEIGHTS);
+        // NaN has many bits, and any of them is missing.
+        let bits = |values: [f32; LANES]| values.map(|v| if v.is_nan() { None } else { Some(v.to_bits()) });
+        prop_assert_eq!(bits(each), bits(alone));
     }
 }

@@ -8,6 +8,8 @@
 //!
 //! The four weights were fitted (conditional logit over 72 directions) on half of those photographs and rounded.
 
+use std::sync::LazyLock;
+
 use super::surroundings::{NAIL_CELLS, Surroundings};
 
 /// Weight of the two sides (their evidence is 0 to 2).
@@ -109,8 +111,7 @@ impl Frame<'_> {
         let mut best = 0.0_f32;
         for offset in 0..(0.5 * LENGTH) as usize {
             let centre = self.along[1] + offset as f32 - height;
-            let arch = (-6_i16..=6).map(|k| {
-                let (sin, cos) = (f32::from(k) * 10.0).to_radians().sin_cos();
+            let arch = ARCH.iter().map(|[sin, cos]| {
                 let normal = [sin * self.right[0] + cos * self.distal[0], sin * self.right[1] + cos * self.distal[1]];
                 self.patch.edge(self.at(self.middle() + half_width * sin, centre + height * cos), normal)
             });
@@ -139,6 +140,10 @@ impl Frame<'_> {
         stays.count() as f32 / self.patch.nail.len() as f32
     }
 }
+
+/// The arch of a tip: sine and cosine of every 10 degrees of 120.
+static ARCH: LazyLock<[[f32; 2]; 13]> =
+    LazyLock::new(|| std::array::from_fn(|k| (10.0 * (k as f32 - 6.0)).to_radians().sin_cos().into()));
 
 /// Values after which [`mean_above`] looks whether to go on.
 const AT_A_TIME: usize = 4;

@@ -22,6 +22,7 @@ mod surroundings;
 use image::DynamicImage;
 use thiserror::Error;
 
+use super::moments::solidity;
 use super::{Axis, Moments, Outline};
 use finger::{evidence, evidence_above};
 use surroundings::Surroundings;
@@ -202,12 +203,19 @@ pub(super) enum Verdict {
     Contradicts(FoundAxis),
 }
 
-/// Asks the picture around `outline`; other nails of the photograph are not asked.
-pub(super) fn verdict(image: &DynamicImage, outline: &Outline, axis: Axis) -> Verdict {
+/// Asks the picture around `outline`; other nails of the photograph are not asked. With it, where that is known, how
+/// well a finger along `axis` fits.
+pub(super) fn verdict(image: &DynamicImage, outline: &Outline, axis: Axis) -> (Verdict, Option<f64>) {
     match see(image, outline) {
-        Err(_) => Verdict::Silent,
-        Ok(patch) if surely_agrees(&patch, axis) => Verdict::Agrees,
-        Ok(patch) => verdict_of(weigh(&patch).peak(), axis),
+        Err(_) => (Verdict::Silent, None),
+        Ok(patch) => {
+            let scores = bounded(&patch, axis);
+            if surely_agrees(&scores, axis) {
+                return (Verdict::Agrees, None);
+            }
+            let found = weigh(&patch, |k| scores[k].known()).peak();
+            (verdict_of(found, axis), Some(evidence(&patch, axis.clockwise_rad())))
+        }
     }
 }
 
@@ -221,26 +229,46 @@ fn verdict_of(found: FoundAxis, axis: Axis) -> Verdict {
     }
 }
 
-/// Log-likelihood below the best direction's from which [`surely_agrees`] does not ask how far: 72 directions there
-/// have less than a hundredth of the probability.
+/// What is known of a direction's log-likelihood.
+#[derive(Debug, Clone, Copy)]
+enum Score {
+    Known(f64),
+    /// It is the mean of those of the directions to both sides, which are [`HOPELESS`].
+    Mean(f64),
+    AtMost(f64),
+}
+
+impl Score {
+    fn known(self) -> Option<f64> {
+        if let Self::Known(score) = self { Some(score) } else { None }
+    }
+
+    fn most(self) -> f64 {
+        let (Self::Known(score) | Self::Mean(score) | Self::AtMost(score)) = self;
+        score
+    }
+
+    fn is_bound(self) -> bool {
+        matches!(self, Self::AtMost(_))
+    }
+}
+
+/// Log-likelihood below the best direction's from which [`bounded`] does not ask how far: 72 directions there have less
+/// than a hundredth of the probability.
 const FAR_BELOW: f64 = 9.0;
 
-/// Whether the [`verdict`] is surely that the picture agrees: most drawn axes are right, and to see that takes less
-/// than to know every direction's probability.
-///
-/// Directions far below the best one are bounded, not measured. True only where the verdict is the same whatever they
-/// are.
-fn surely_agrees(patch: &Surroundings, axis: Axis) -> bool {
+/// The scores of all directions, where those far below the best one are bounded, not measured: that takes less. The
+/// drawn axis is asked first, as most are right.
+fn bounded(patch: &Surroundings, axis: Axis) -> [Score; DIRECTIONS] {
     let drawn = (axis.clockwise_rad() / std::f64::consts::TAU * DIRECTIONS as f64 / 2.0).round() as i64 * 2;
     let from_drawn = |steps: i64| (drawn + steps).rem_euclid(DIRECTIONS as i64) as usize;
-    // What is known of each direction: its score, or what that is at most.
-    let mut scores = [(0.0, false); DIRECTIONS];
+    let mut scores = [Score::AtMost(0.0); DIRECTIONS];
     let mut best = f64::NEG_INFINITY;
     let ask = |k: usize, best: &mut f64| {
         let floor = *best - FAR_BELOW;
-        let score = evidence_above(patch, direction(k), floor);
-        *best = best.max(score.unwrap_or(floor));
-        (score.unwrap_or(floor), score.is_some())
+        let score = evidence_above(patch, direction(k), floor).map_or(Score::AtMost(floor), Score::Known);
+        *best = best.max(score.most());
+        score
     };
     // The likeliest first.
     for steps in (0..DIRECTIONS as i64 / 2).step_by(2) {
@@ -250,12 +278,24 @@ fn surely_agrees(patch: &Surroundings, axis: Axis) -> bool {
     }
     let best_of_even = best;
     for k in (1..DIRECTIONS).step_by(2) {
-        let ((before, one), (after, other)) = (scores[k - 1], scores[(k + 1) % DIRECTIONS]);
-        let hopeless = before.max(after) < best_of_even - HOPELESS;
-        scores[k] = if hopeless { (0.5 * (before + after), one && other) } else { ask(k, &mut best) };
+        let (before, after) = (scores[k - 1], scores[(k + 1) % DIRECTIONS]);
+        scores[k] = if before.most().max(after.most()) >= best_of_even - HOPELESS {
+            ask(k, &mut best)
+        } else {
+            let mean = 0.5 * (before.most() + after.most());
+            if before.is_bound() || after.is_bound() { Score::AtMost(mean) } else { Score::Mean(mean) }
+        };
     }
-    let part = |known: bool| scores.map(|(score, is_known)| if is_known == known { (score - best).exp() } else { 0.0 });
-    let (known, bounds) = (Directions(part(true)), part(false));
+    scores
+}
+
+/// Whether the [`verdict`] is surely that the picture agrees: true only where it is the same whatever the bounded
+/// directions are.
+fn surely_agrees(scores: &[Score; DIRECTIONS], axis: Axis) -> bool {
+    let best = scores.iter().map(|score| score.most()).fold(f64::NEG_INFINITY, f64::max);
+    let part =
+        |bounds: bool| scores.map(|score| if score.is_bound() == bounds { (score.most() - best).exp() } else { 0.0 });
+    let (known, bounds) = (Directions(part(false)), part(true));
     let unknown: f64 = bounds.iter().sum();
     let found = known.peak();
     let all = known.0.iter().sum::<f64>() + unknown;
@@ -278,18 +318,20 @@ fn angle_deg(one: Axis, other: Axis) -> f64 {
 /// How a picture may have been turned after it was annotated, in words; `None` where the annotation fits as well as it
 /// is.
 ///
-/// Each outline and drawn axis is moved as the picture would have been, and fingers are looked for there. Turns that
-/// change the picture's size show in the size, so a quarter turn is tried on square pictures only.
-pub(super) fn turned_since(image: &DynamicImage, drawn: &[(&Outline, Axis)]) -> Option<&'static str> {
+/// Each outline and drawn axis is moved as the picture would have been, and fingers are looked for there; the third of
+/// each is how well one fits as it was drawn, where [`verdict`] found that. Turns that change the picture's size show
+/// in the size, so a quarter turn is tried on square pictures only.
+pub(super) fn turned_since(image: &DynamicImage, drawn: &[(&Outline, Axis, Option<f64>)]) -> Option<&'static str> {
     let size = [f64::from(image.width()), f64::from(image.height())];
     let fits = |outline: &Outline, axis: Axis| {
         let patch = Surroundings::read(image, outline, &Moments::of(outline))?;
         Some(evidence(&patch, axis.clockwise_rad()))
     };
-    let as_drawn: Vec<Option<f64>> = drawn.iter().map(|(outline, axis)| fits(outline, *axis)).collect();
+    let as_drawn: Vec<Option<f64>> =
+        drawn.iter().map(|(outline, axis, fit)| fit.or_else(|| fits(outline, *axis))).collect();
     let turns = if size[0] == size[1] { &TURNS[..] } else { &TURNS[..3] };
     let gains = turns.iter().filter_map(|(name, turned)| {
-        let gain = |((outline, axis), before): (&(&Outline, Axis), &Option<f64>)| {
+        let gain = |((outline, axis, _), before): (&(&Outline, Axis, _), &Option<f64>)| {
             let last = [size[0] - 1.0, size[1] - 1.0];
             let points: Vec<[f64; 2]> = outline.points().into_iter().map(|p| turned(p, last)).collect();
             let axis = Axis::through(turned([0.0; 2], [0.0; 2]), turned(axis.distal(), [0.0; 2]))?;
@@ -321,7 +363,7 @@ struct Directions([f64; DIRECTIONS]);
 
 /// What the picture around one nail says.
 fn look(image: &DynamicImage, outline: &Outline) -> Result<Directions, AxisDoubt> {
-    see(image, outline).map(|patch| weigh(&patch))
+    see(image, outline).map(|patch| weigh(&patch, |_| None))
 }
 
 /// The surroundings of a nail that show something.
@@ -330,8 +372,9 @@ fn see(image: &DynamicImage, outline: &Outline) -> Result<Surroundings, AxisDoub
     if shape.major_px < LEAST_LENGTH_PX {
         return Err(AxisDoubt::TooSmall { length_px: shape.major_px });
     }
-    if shape.solidity < DENTED && shape.elongation() < PROFILE {
-        return Err(AxisDoubt::Dented { share: shape.solidity });
+    let share = solidity(outline);
+    if share < DENTED && shape.elongation() < PROFILE {
+        return Err(AxisDoubt::Dented { share });
     }
     let patch = Surroundings::read(image, outline, &shape).ok_or(AxisDoubt::Outside)?;
     if patch.featureless {
@@ -340,18 +383,19 @@ fn see(image: &DynamicImage, outline: &Outline) -> Result<Surroundings, AxisDoub
     Ok(patch)
 }
 
-/// How probable each direction is.
-fn weigh(patch: &Surroundings) -> Directions {
+/// How probable each direction is; the score of some is `known`.
+fn weigh(patch: &Surroundings, known: impl Fn(usize) -> Option<f64>) -> Directions {
+    let score = |k: usize| known(k).unwrap_or_else(|| evidence(patch, direction(k)));
     // Every second direction first; those between two hopeless ones need no look.
     let mut scores = [0.0; DIRECTIONS];
     for k in (0..DIRECTIONS).step_by(2) {
-        scores[k] = evidence(patch, direction(k));
+        scores[k] = score(k);
     }
     let best = scores.iter().step_by(2).copied().fold(f64::MIN, f64::max);
     for k in (1..DIRECTIONS).step_by(2) {
         let (before, after) = (scores[k - 1], scores[(k + 1) % DIRECTIONS]);
         let hopeless = before.max(after) < best - HOPELESS;
-        scores[k] = if hopeless { 0.5 * (before + after) } else { evidence(patch, direction(k)) };
+        scores[k] = if hopeless { 0.5 * (before + after) } else { score(k) };
     }
     let best = scores.iter().copied().fold(f64::MIN, f64::max);
     Directions(scores.map(|score| (score - best).exp())).normalized()
@@ -466,14 +510,17 @@ mod tests {
             let Ok(patch) = see(&image, &outline) else { continue };
             for off in [0.0, 0.3, 1.0, 1.1, 3.0] {
                 let axis = Axis::from_clockwise_rad(turn + off);
-                let all = verdict_of(weigh(&patch).peak(), axis);
+                let scores = bounded(&patch, axis);
+                let weighed = weigh(&patch, |_| None);
+                assert_eq!(weighed, weigh(&patch, |k| scores[k].known()), "{turn} {off}");
+                let all = verdict_of(weighed.peak(), axis);
                 verdicts[match all {
                     Verdict::Agrees => 0,
                     Verdict::Silent => 1,
                     Verdict::Contradicts(_) => 2,
                 }] += 1;
-                quick += usize::from(surely_agrees(&patch, axis));
-                assert!(all == Verdict::Agrees || !surely_agrees(&patch, axis), "{turn} {off}");
+                quick += usize::from(surely_agrees(&scores, axis));
+                assert!(all == Verdict::Agrees || !surely_agrees(&scores, axis), "{turn} {off}");
             }
         }
         assert!(verdicts.iter().all(|&count| count > 10) && 10 * quick > 8 * verdicts[0], "{quick} of {verdicts:?}");

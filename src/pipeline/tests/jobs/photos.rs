@@ -5,7 +5,7 @@ use crate::job::Job as _;
 use crate::job::Watch;
 use crate::phantom::nail::Pose;
 use crate::phantom::photos::{PhotoOptions, write};
-use crate::photo::{MapsJob, Normalization, NormalizeJob, Outputs, PhotoSet, PhotosOptions};
+use crate::photo::{MapsJob, Normalization, Outputs, PhotoSet, PhotosOptions};
 
 const SIZE: usize = 48;
 const OPTIONS: &str = "size = 48";
@@ -43,7 +43,7 @@ fn photos(root: &Path, subject: &str) -> Vec<At> {
 fn normalize(root: &Path, subject: &str, parts: &[&'static str]) -> Task<'static> {
     let demand = wanting(parts);
     Task {
-        kind: &NormalizeJob::KIND,
+        kind: &PhotosOptions::KIND,
         options: OPTIONS,
         demand,
         keys: keys(&[("subject", subject)]),
@@ -83,7 +83,7 @@ fn a_subject_s_results_are_the_same_anywhere() {
     assert!(folder.text("nails.csv").contains("\nphotos/flexion/s02.png,1,s02,flexion,annotated,"));
     assert!(made.left_out.iter().any(|what| what.starts_with("detection: not run on 2")), "{:?}", made.left_out);
     assert!(made.warnings.is_empty() && made.failed.is_empty(), "{made:?}");
-    has_its_parts(&NormalizeJob::KIND, OPTIONS, &task.demand, &folder);
+    has_its_parts(&PhotosOptions::KIND, OPTIONS, &task.demand, &folder);
     let (bare, _) = normalize(dir.path(), "s02", &["sums"]).run(1, None);
     assert!(!bare.names().iter().any(|name| name.starts_with("normalized")), "nobody wants the pictures");
 }
@@ -178,10 +178,10 @@ fn an_outline_counts_only_where_the_task_was_given_it() {
     let (folder, _) = task.run(2, None);
     let nails = folder.text("nails.csv");
     assert!(nails.contains(",detected,") && !nails.contains(",annotated,"), "{nails}");
-    let prepared = prepared(&NormalizeJob::KIND, "");
+    let prepared = prepared(&PhotosOptions::KIND, "");
     let photo = Path::new("a/nominal/s01.png");
     assert_eq!(prepared.beside("photo", photo), [("outlines", PathBuf::from("a/nominal/s01.json"))]);
-    let detecting = super::prepared(&NormalizeJob::KIND, "outline = 'detect'");
+    let detecting = super::prepared(&PhotosOptions::KIND, "outline = 'detect'");
     assert!(detecting.beside("photo", photo).is_empty());
     assert_eq!(prepared.each(), ["subject"]);
 }
@@ -195,7 +195,7 @@ fn the_plan_leaves_out_what_photographs_do_not_need() {
     let facts = Facts { grey: Some(true), outlined: Some(true), ..Facts::default() };
     let to_be: Vec<_> = inputs.iter().map(|input| foreseen(input, false, facts)).collect();
     for steps in
-        [&standing, &to_be].map(|inputs| prepared(&NormalizeJob::KIND, OPTIONS).steps(inputs, &wanted).unwrap())
+        [&standing, &to_be].map(|inputs| prepared(&PhotosOptions::KIND, OPTIONS).steps(inputs, &wanted).unwrap())
     {
         assert_eq!(step(&steps, "channel"), (false, "every photograph is grey"));
         assert_eq!(step(&steps, "outlines from LabelMe"), (true, "2 photograph(s)"));
@@ -206,13 +206,13 @@ fn the_plan_leaves_out_what_photographs_do_not_need() {
         .filter(|input| input.role == "photo")
         .map(|input| foreseen(input, false, Facts { grey: Some(false), outlined: Some(false), ..Facts::default() }))
         .collect();
-    let steps = prepared(&NormalizeJob::KIND, OPTIONS).steps(&colour, &wanting(&["sums", "pictures"])).unwrap();
+    let steps = prepared(&PhotosOptions::KIND, OPTIONS).steps(&colour, &wanting(&["sums", "pictures"])).unwrap();
     assert!(step(&steps, "channel").0 && step(&steps, "detection").0 && step(&steps, "pictures written").0);
 }
 
 #[test]
 fn white_and_mask_values_are_part_of_what_a_task_is() {
-    let options = |keys: &str| super::prepared(&NormalizeJob::KIND, keys).depends_on(&wanting(&["sums"]));
+    let options = |keys: &str| super::prepared(&PhotosOptions::KIND, keys).depends_on(&wanting(&["sums"]));
     let plain = options("");
     assert!(plain["options"].get("white").is_none() && plain["options"].get("mask_value").is_none());
     let said = options("white = 4095\nmask_value = '250..255'\nmax_megapixels = 400");
@@ -222,6 +222,6 @@ fn white_and_mask_values_are_part_of_what_a_task_is() {
         (&"4095".into(), &"250..255".into(), &"400".into())
     );
     for keys in ["white = 7", "mask_value = '9..1'", "max_megapixels = 0"] {
-        assert!((NormalizeJob::KIND.prepare)(&keys.parse().unwrap()).is_err(), "{keys}");
+        assert!((PhotosOptions::KIND.prepare)(&keys.parse().unwrap()).is_err(), "{keys}");
     }
 }

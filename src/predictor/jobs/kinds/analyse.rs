@@ -2,30 +2,23 @@
 
 use std::path::Path;
 
-use crate::job::{Demand, Foreseen, Job, Kind, Made, NoOptions, OptionFault, Order, Part, Role, Takes, Work};
+use clap::Args;
+
+use crate::job::{Demand, Foreseen, Job, Kind, Made, Order, Part, Role, Takes, Work};
 use crate::predictor::jobs::analyse::{analyse, analyse_plan};
 use crate::predictor::jobs::kinds::{PICTURES, outputs};
 use crate::stages::Step;
 
 /// A stage of a pipeline.
-#[derive(Debug, Clone, Copy)]
-pub struct AnalyseJob;
+#[derive(Debug, Clone, Copy, Args)]
+pub struct AnalyseJob {}
 
 impl Job for AnalyseJob {
     const KIND: Kind = Kind::of::<Self>(
         "analyse",
-        &[Role { name: "model", takes: Takes::One, about: "a model of train" }],
-        &[
-            Part { name: "modes", file: "modes.csv", only_if_wanted: false },
-            Part { name: PICTURES, file: "", only_if_wanted: true },
-        ],
+        &[Role::new("model", Takes::One, "a model of train")],
+        &[Part::new("modes", "modes.csv"), Part::if_wanted(PICTURES, "")],
     );
-
-    type Options = NoOptions;
-
-    fn new(_options: NoOptions) -> Result<Self, OptionFault> {
-        Ok(Self)
-    }
 
     fn steps(&self, _inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         Ok(analyse_plan(Some(&outputs(Path::new(""), demand))))

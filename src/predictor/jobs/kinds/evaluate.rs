@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::job::{Demand, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Role, Takes, Work};
+use crate::job::{Demand, Foreseen, Job, Kind, Made, Order, Part, Role, Takes, Work};
 use crate::log::{ReadingCost, ambient_step};
 use crate::predictor::jobs::evaluate::{EvaluateOptions, evaluate, evaluate_plan};
 use crate::predictor::jobs::kinds::{PICTURES, ROWS, data_files, measured, outputs};
@@ -10,29 +10,15 @@ use crate::predictor::options::choices::ByChoice;
 use crate::predictor::options::commands::EvaluateChoices;
 use crate::stages::Step;
 
-/// A stage of a pipeline.
-#[derive(Debug, Clone)]
-pub struct EvaluateJob(EvaluateChoices);
-
-impl Job for EvaluateJob {
+impl Job for EvaluateChoices {
     const KIND: Kind = Kind::of::<Self>(
         "evaluate",
         &[
-            Role { name: "model", takes: Takes::One, about: "a model of train" },
-            Role { name: "data", takes: Takes::Many, about: "recordings with the model's photodiodes and targets" },
+            Role::new("model", Takes::One, "a model of train"),
+            Role::new("data", Takes::Many, "recordings with the model's photodiodes and targets"),
         ],
-        &[
-            Part { name: "merit", file: "merit.csv", only_if_wanted: false },
-            Part { name: ROWS, file: "predicted.csv", only_if_wanted: true },
-            Part { name: PICTURES, file: "", only_if_wanted: true },
-        ],
+        &[Part::new("merit", "merit.csv"), Part::if_wanted(ROWS, "predicted.csv"), Part::if_wanted(PICTURES, "")],
     );
-
-    type Options = EvaluateChoices;
-
-    fn new(options: EvaluateChoices) -> Result<Self, OptionFault> {
-        Ok(Self(options))
-    }
 
     fn demand(&self, _role: &str, own: &Demand) -> Demand {
         // The model says which joints recordings have to hold, once it exists.
@@ -41,19 +27,19 @@ impl Job for EvaluateJob {
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         let files = inputs.iter().filter(|input| input.role == "data").count();
-        let ambient = ambient_step(inputs, &["data"], &self.0.rows.log);
-        Ok(evaluate_plan(files, ambient, &self.0.options(), None, Some(&outputs(Path::new(""), demand))))
+        let ambient = ambient_step(inputs, &["data"], &self.rows.log);
+        Ok(evaluate_plan(files, ambient, &self.options(), None, Some(&outputs(Path::new(""), demand))))
     }
 
     fn cost(&self, inputs: &[Foreseen]) -> (u64, f64) {
         let ReadingCost { memory, seconds, rows } = ReadingCost::of(inputs);
-        let parts = self.0.by.map_or(0.0, |by| if by == ByChoice::Rows { f64::from(self.0.folds) } else { 30.0 });
+        let parts = self.by.map_or(0.0, |by| if by == ByChoice::Rows { f64::from(self.folds) } else { 30.0 });
         (memory, seconds + 0.3 + rows * 1e-6 * (1.0 + parts))
     }
 
     fn run(&self, order: &Order<'_>, work: &Work<'_>) -> anyhow::Result<Made> {
         let model = work.needed("model")?;
-        let options = EvaluateOptions { title: Some(model.name.clone()), ..self.0.options() };
+        let options = EvaluateOptions { title: Some(model.name.clone()), ..self.options() };
         let outputs = outputs(work.folder, order.demand);
         let data = data_files(work, "data");
         let report = work.run(order.said, |watch| evaluate(&model.path, &data, &options, Some(&outputs), watch))?;

@@ -17,10 +17,6 @@ use crate::predictor::options::target::Target;
 use crate::predictor::outputs::FolderOutputs;
 
 pub use analyse::AnalyseJob;
-pub use evaluate::EvaluateJob;
-pub use predict::PredictJob;
-pub use prune::PruneJob;
-pub use train::TrainJob;
 
 const ROWS: &str = "predicted";
 const PICTURES: &str = "pictures";

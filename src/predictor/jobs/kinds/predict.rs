@@ -5,32 +5,23 @@ use std::path::PathBuf;
 use crate::job::{Demand, Facts, Foreseen, Job, Kind, Made, OptionFault, Order, Part, Role, Takes, Work};
 use crate::log::{ReadingCost, ambient_step};
 use crate::predictor::jobs::kinds::only_joints;
-use crate::predictor::jobs::predict::{PredictOptions, predict, predict_plan};
+use crate::predictor::jobs::predict::{predict, predict_plan};
 use crate::predictor::options::commands::PredictChoices;
 use crate::stages::Step;
 
-/// A stage of a pipeline.
-#[derive(Debug, Clone)]
-pub struct PredictJob(PredictOptions);
-
-impl Job for PredictJob {
+impl Job for PredictChoices {
     const KIND: Kind = Kind::of::<Self>(
         "predict",
         &[
-            Role { name: "data", takes: Takes::One, about: "a recording" },
-            Role {
-                name: "model",
-                takes: Takes::Many,
-                about: "a model of force, of posture, or both: then they are gated",
-            },
+            Role::new("data", Takes::One, "a recording"),
+            Role::new("model", Takes::Many, "a model of force, of posture, or both: then they are gated"),
         ],
-        &[Part { name: "predicted", file: "predicted.csv", only_if_wanted: false }],
+        &[Part::new("predicted", "predicted.csv")],
     );
 
-    type Options = PredictChoices;
-
-    fn new(options: PredictChoices) -> Result<Self, OptionFault> {
-        options.options().map(Self).map_err(|why| OptionFault { key: String::new(), what: why.to_string() })
+    fn checked(self) -> Result<Self, OptionFault> {
+        self.options().map_err(OptionFault::whole)?;
+        Ok(self)
     }
 
     fn demand(&self, _role: &str, own: &Demand) -> Demand {
@@ -40,7 +31,8 @@ impl Job for PredictJob {
 
     fn steps(&self, inputs: &[Foreseen], _demand: &Demand) -> Result<Vec<Step>, String> {
         let models = inputs.iter().filter(|input| input.role == "model").count();
-        Ok(predict_plan(models, ambient_step(inputs, &["data"], &self.0.rows.log), &self.0))
+        let options = self.options().map_err(|why| why.to_string())?;
+        Ok(predict_plan(models, ambient_step(inputs, &["data"], &self.rows.log), &options))
     }
 
     fn facts(&self, _inputs: &[Foreseen], _demand: &Demand) -> Facts {
@@ -55,8 +47,8 @@ impl Job for PredictJob {
     fn run(&self, order: &Order<'_>, work: &Work<'_>) -> anyhow::Result<Made> {
         let data = work.needed("data")?;
         let models: Vec<PathBuf> = work.of("model").map(|at| at.path.clone()).collect();
-        let out = work.folder.join("predicted.csv");
-        let report = work.run(order.said, |watch| predict(&models, &data.path, &self.0, &out, watch))?;
+        let (options, out) = (self.options()?, work.folder.join("predicted.csv"));
+        let report = work.run(order.said, |watch| predict(&models, &data.path, &options, &out, watch))?;
         Ok(report.made(Vec::new()))
     }
 }

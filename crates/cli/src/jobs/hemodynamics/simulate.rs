@@ -148,12 +148,8 @@ impl Command for OverTime<'_> {
 
     const NAME: &'static str = "simulate";
 
-    fn job(&self) -> &JobArgs {
-        &self.args.job
-    }
-
-    fn said(&self) -> &Said {
-        &self.given.said
+    fn given(&self) -> (&JobArgs, &Said) {
+        (&self.args.job, &self.given.said)
     }
 
     fn plan(&self) -> anyhow::Result<Plan> {
@@ -197,12 +193,8 @@ impl Command for Static<'_> {
 
     const NAME: &'static str = "simulate --static";
 
-    fn job(&self) -> &JobArgs {
-        &self.args.job
-    }
-
-    fn said(&self) -> &Said {
-        &self.given.said
+    fn given(&self) -> (&JobArgs, &Said) {
+        (&self.args.job, &self.given.said)
     }
 
     fn plan(&self) -> anyhow::Result<Plan> {

@@ -60,12 +60,8 @@ impl Command for PerformanceArgs {
 
     const NAME: &'static str = "performance";
 
-    fn job(&self) -> &JobArgs {
-        &self.job
-    }
-
-    fn said(&self) -> &Said {
-        &self.given.said
+    fn given(&self) -> (&JobArgs, &Said) {
+        (&self.job, &self.given.said)
     }
 
     fn plan(&self) -> anyhow::Result<Plan> {

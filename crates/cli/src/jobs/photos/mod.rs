@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use clap::{Args, Subcommand};
-use lunula::job::{Given, NoOptions, Said, Watch};
+use lunula::job::{Given, Said, Watch};
 use lunula::photo::outline::SavedOutlines;
 use lunula::photo::{
-    OutlineHome, Outputs, PhotoSet, PhotosError, PhotosFigures, PhotosOptions, PhotosReport, Results, merge,
+    MapsJob, OutlineHome, Outputs, PhotoSet, PhotosError, PhotosFigures, PhotosOptions, PhotosReport, Results, merge,
     merge_plan, plan, run,
 };
 
@@ -61,7 +61,7 @@ struct MergeArgs {
     #[arg(long)]
     out: PathBuf,
     #[command(flatten)]
-    given: Given<NoOptions>,
+    given: Given<MapsJob>,
     #[command(flatten)]
     job: JobArgs,
 }
@@ -127,12 +127,8 @@ impl Command for PhotosArgs {
 
     const NAME: &'static str = "photos";
 
-    fn job(&self) -> &JobArgs {
-        &self.job
-    }
-
-    fn said(&self) -> &Said {
-        &self.given.said
+    fn given(&self) -> (&JobArgs, &Said) {
+        (&self.job, &self.given.said)
     }
 
     fn plan(&self) -> anyhow::Result<Plan> {
@@ -166,12 +162,8 @@ impl Command for MergeArgs {
 
     const NAME: &'static str = "photos merge";
 
-    fn job(&self) -> &JobArgs {
-        &self.job
-    }
-
-    fn said(&self) -> &Said {
-        &self.given.said
+    fn given(&self) -> (&JobArgs, &Said) {
+        (&self.job, &self.given.said)
     }
 
     fn plan(&self) -> anyhow::Result<Plan> {

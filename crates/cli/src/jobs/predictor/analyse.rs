@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use lunula::job::{Given, NoOptions, Said, Watch};
-use lunula::predictor::{AnalyseFigures, AnalyseReport, FolderOutputs, ModelMode, analyse, analyse_plan};
+use lunula::job::{Given, Said, Watch};
+use lunula::predictor::{AnalyseFigures, AnalyseJob, AnalyseReport, FolderOutputs, ModelMode, analyse, analyse_plan};
 
 use crate::Common;
 use crate::jobs::{Command, JobArgs, Plan};
@@ -23,7 +23,7 @@ pub(crate) struct AnalyseArgs {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]
-    given: Given<NoOptions>,
+    given: Given<AnalyseJob>,
     #[command(flatten)]
     job: JobArgs,
 }
@@ -33,12 +33,8 @@ impl Command for AnalyseArgs {
 
     const NAME: &'static str = "analyse";
 
-    fn job(&self) -> &JobArgs {
-        &self.job
-    }
-
-    fn said(&self) -> &Said {
-        &self.given.said
+    fn given(&self) -> (&JobArgs, &Said) {
+        (&self.job, &self.given.said)
     }
 
     fn plan(&self) -> anyhow::Result<Plan> {

@@ -56,12 +56,8 @@ impl Command for PredictArgs {
 
     const NAME: &'static str = "predict";
 
-    fn job(&self) -> &JobArgs {
-        &self.job
-    }
-
-    fn said(&self) -> &Said {
-        &self.given.said
+    fn given(&self) -> (&JobArgs, &Said) {
+        (&self.job, &self.given.said)
     }
 
     fn plan(&self) -> anyhow::Result<Plan> {

@@ -12,7 +12,7 @@ use crate::source::port::{
     Connector, Port, Received, accept, bind_udp, connect_tcp, hurry, listen, open_serial, the_only_port,
 };
 use crate::time::{Link, Verdict};
-use crate::wire::Row;
+use crate::wire::{Decoded, Row};
 
 /// The most bytes that are read at a time, and the longest datagram.
 const PIECE: usize = 1 << 16;
@@ -254,7 +254,7 @@ impl Stream {
         if let Some(state) = self.health.row(now_ns) {
             on(Event::State(state));
         }
-        let (values, texts) = (self.decoder.values(), self.decoder.texts());
+        let Decoded { values, texts, .. } = self.decoder.decoded();
         on(Event::Row(&Row { host_ns: now_ns, time_s, lit: sample.lit, lost, begins, values, texts }));
     }
 

@@ -242,13 +242,13 @@ impl Stream {
     /// The columns' names; empty until they are known.
     #[must_use]
     pub fn names(&self) -> &[String] {
-        self.decoder.names()
+        &self.decoder.decoded().names
     }
 
     /// What the columns mean; nothing until it is known.
     #[must_use]
     pub fn meaning(&self) -> &Meaning {
-        self.decoder.meaning()
+        &self.decoder.decoded().meaning
     }
 
     /// How the stream is.
@@ -292,7 +292,7 @@ impl Stream {
         StreamCertificate {
             source: self.name.clone(),
             form: self.form,
-            columns: self.decoder.names().to_vec(),
+            columns: self.decoder.decoded().names.clone(),
             times: sequence.map(|sequence| match sequence.has_clock() {
                 true => StreamTimes::Device,
                 false => StreamTimes::Arrival,
@@ -300,7 +300,7 @@ impl Stream {
             host_start_unix_s: self.host_start_unix_s,
             counts: sequence.map(Sequence::counts).unwrap_or_default(),
             rate_hz: self.period_s().map(f64::recip),
-            spoilt: self.decoder.tally().kinds().to_vec(),
+            spoilt: self.decoder.decoded().tally.kinds().to_vec(),
             gaps: self.gaps.first.clone(),
             gaps_count: self.gaps.count,
             longest_gap_s: self.gaps.longest_s,
@@ -331,18 +331,18 @@ impl Stream {
             Feed::Live(live) => live.link(),
         };
         let bits = (self.form == Some(Form::Frames)).then_some(FRAME_COUNTER_BITS);
-        let sequence = Sequence::new(self.decoder.meaning(), link, bits);
+        let sequence = Sequence::new(&self.decoder.decoded().meaning, link, bits);
         if link == Link::Recording && !sequence.has_clock() {
             let what = "has no column of time, by which it is played; name one time_s".to_owned();
             return Err(SourceFault::Open { source_name: self.name.clone(), what });
         }
         self.sequence = Some(sequence);
-        on(Event::Columns(self.decoder.names()));
+        on(Event::Columns(&self.decoder.decoded().names));
         Ok(())
     }
 
     fn spoilt(&self, kind: Spoil, on: &mut Sink<'_>) {
-        let first = self.decoder.tally().kinds().iter().find(|rows| rows.kind == kind && rows.count == 1);
+        let first = self.decoder.decoded().tally.kinds().iter().find(|rows| rows.kind == kind && rows.count == 1);
         on(Event::Spoilt { kind, first });
     }
 

@@ -5,7 +5,7 @@ use crate::source::decoder::Decoder;
 use crate::source::fault::SourceFault;
 use crate::source::play::Waiting;
 use crate::time::Verdict;
-use crate::wire::Row;
+use crate::wire::{Decoded, Row};
 
 /// The most rows that are handed out in a call.
 const ROWS: u32 = 4096;
@@ -26,7 +26,7 @@ impl Stream {
                 self.gaps.row(row.time_s, row.begins, self.period_s());
                 self.health.row(now_ns);
                 let Waiting { time_s, lit, lost, begins, .. } = row;
-                let (values, texts) = (self.decoder.values(), self.decoder.texts());
+                let Decoded { values, texts, .. } = self.decoder.decoded();
                 on(Event::Row(&Row { host_ns: now_ns, time_s, lit, lost, begins, values, texts }));
             }
             match self.played_step(now_ns)? {

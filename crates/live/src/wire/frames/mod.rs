@@ -7,8 +7,8 @@
 
 use crate::wire::checksum::crc16;
 use crate::wire::fault::WireFault;
-use crate::wire::row::{Meaning, Naming, Sample, Step, Use};
-use crate::wire::spoilt::{Spoil, Tally, shown_bytes};
+use crate::wire::row::{Decoded, Naming, Sample, Step, Use};
+use crate::wire::spoilt::{Spoil, shown_bytes};
 
 /// The columns of a frame.
 pub const FRAME_NAMES: [&str; 11] = ["time_us", "n", "led", "P1", "P2", "P3", "P4", "P5", "P6", "P7", "P8"];
@@ -79,8 +79,7 @@ impl Frame {
 /// Decodes frames.
 pub struct Frames {
     naming: Option<Naming>,
-    names: Vec<String>,
-    meaning: Meaning,
+    decoded: Decoded,
     volts_per_count: Option<f64>,
     /// The bytes since the last zero; of longer garbage the beginning.
     carry: [u8; WIRE_BYTES],
@@ -90,8 +89,6 @@ pub struct Frames {
     frames: u64,
     bytes: u64,
     any: bool,
-    values: Vec<f64>,
-    tally: Tally,
 }
 
 impl Frames {
@@ -101,8 +98,7 @@ impl Frames {
     pub fn new(naming: Naming, volts_per_count: Option<f64>) -> Self {
         Self {
             naming: Some(naming),
-            names: FRAME_NAMES.map(str::to_owned).into(),
-            meaning: Meaning::default(),
+            decoded: Decoded { names: FRAME_NAMES.map(str::to_owned).into(), ..Decoded::default() },
             volts_per_count,
             carry: [0; WIRE_BYTES],
             carried: 0,
@@ -110,8 +106,6 @@ impl Frames {
             frames: 0,
             bytes: 0,
             any: false,
-            values: Vec::new(),
-            tally: Tally::default(),
         }
     }
 
@@ -121,10 +115,7 @@ impl Frames {
     /// The names mean nothing to the caller, or there are no frames.
     pub fn next(&mut self, bytes: &mut &[u8]) -> Result<Option<Step>, WireFault> {
         if let Some(mut naming) = self.naming.take() {
-            self.meaning = naming(&self.names)
-                .and_then(|meaning| meaning.fitting(&self.names))
-                .map_err(|why| WireFault::Naming { line: 0, names: self.names.join(","), why })?;
-            self.values = vec![f64::NAN; self.meaning.values];
+            self.decoded.name(&mut naming)?;
             return Ok(Some(Step::Columns { again: false }));
         }
         while !bytes.is_empty() {
@@ -162,7 +153,7 @@ impl Frames {
             Err(_) if seam => None,
             Err(spoil) => {
                 self.frames += 1;
-                self.tally.add(spoil, self.frames, || shown_bytes(&self.carry[..carried]));
+                self.decoded.tally.add(spoil, self.frames, || shown_bytes(&self.carry[..carried]));
                 Some(Step::Spoilt(spoil))
             }
         }
@@ -170,7 +161,7 @@ impl Frames {
 
     fn sample(&mut self, frame: &Frame) -> Sample {
         let mut sample = Sample { time: f64::NAN, counter: None, lit: None };
-        for (column, purpose) in self.meaning.uses.iter().enumerate() {
+        for (column, purpose) in self.decoded.meaning.uses.iter().enumerate() {
             let number = match column {
                 0 => f64::from(frame.time_us),
                 1 => f64::from(frame.counter),
@@ -183,7 +174,7 @@ impl Frames {
                 Use::Led => sample.lit = Some(frame.lit),
                 Use::Value { at, scaled } => {
                     let scale = self.volts_per_count.filter(|_| scaled);
-                    self.values[at] = scale.map_or(number, |volts| number * volts);
+                    self.decoded.values[at] = scale.map_or(number, |volts| number * volts);
                 }
                 Use::Text(_) | Use::None => {}
             }
@@ -204,32 +195,14 @@ impl Frames {
         if self.any || self.bytes == 0 { Ok(()) } else { Err(self.no_frames()) }
     }
 
+    /// The columns, the last row, and what was spoilt.
+    #[must_use]
+    pub fn decoded(&self) -> &Decoded {
+        &self.decoded
+    }
+
     fn no_frames(&self) -> WireFault {
         WireFault::NoFrames { bytes: self.bytes, text: shown_bytes(&self.carry[..self.carried]) }
-    }
-
-    /// The columns' names.
-    #[must_use]
-    pub fn names(&self) -> &[String] {
-        &self.names
-    }
-
-    /// What the columns mean.
-    #[must_use]
-    pub fn meaning(&self) -> &Meaning {
-        &self.meaning
-    }
-
-    /// The numbers of the last row.
-    #[must_use]
-    pub fn values(&self) -> &[f64] {
-        &self.values
-    }
-
-    /// Frames that are spoilt.
-    #[must_use]
-    pub fn tally(&self) -> &Tally {
-        &self.tally
     }
 }
 

@@ -5,6 +5,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::*;
+use crate::wire::Meaning;
 
 fn naming() -> Naming {
     Box::new(|names| {
@@ -40,7 +41,7 @@ fn numbers(stream: &[u8], cuts: &[usize]) -> (Vec<u32>, Frames) {
             let Step::Sample(sample) = step else { continue };
             let n = sample.counter.unwrap() as u32;
             let truth = frame(n);
-            assert_eq!(frames.values(), truth.photodiodes.map(f64::from));
+            assert_eq!(frames.decoded().values, truth.photodiodes.map(f64::from));
             assert_eq!((sample.time, sample.lit), (f64::from(truth.time_us), Some(truth.lit)));
             found.push(n);
         }
@@ -107,7 +108,7 @@ fn no_damaged_frame_is_taken_for_another() {
         let (found, frames) = numbers(&stream, &[]);
         assert!(found.windows(2).all(|pair| pair[0] < pair[1]));
         taken += found.len();
-        spoilt += frames.tally().spoilt();
+        spoilt += frames.decoded().tally.spoilt();
     }
     println!("{taken} frames taken, {spoilt} spoilt");
     assert!(taken > 200_000 && spoilt > 100_000, "{taken} {spoilt}");

@@ -13,8 +13,8 @@ mod tests;
 use crate::wire::cell::led;
 use crate::wire::checksum::{Checksum, Unsealed, unseal};
 use crate::wire::fault::WireFault;
-use crate::wire::row::{Meaning, Naming, Sample, Step, Use};
-use crate::wire::spoilt::{Spoil, Tally, shown};
+use crate::wire::row::{Decoded, Naming, Sample, Step, Use};
+use crate::wire::spoilt::{Spoil, shown};
 use cells::{Cells, Numbers, Separator, count, is_name};
 use opening::Opening;
 
@@ -40,8 +40,7 @@ pub struct Lines {
     /// Until the columns have names.
     opening: Option<Opening>,
     given: bool,
-    names: Vec<String>,
-    meaning: Meaning,
+    decoded: Decoded,
     separator: Separator,
     numbers: Numbers,
     checksum: Option<Checksum>,
@@ -55,9 +54,6 @@ pub struct Lines {
     /// The next line may be the end of one.
     seam: bool,
     line: u64,
-    values: Vec<f64>,
-    texts: Vec<Vec<u8>>,
-    tally: Tally,
 }
 
 /// What a line is.
@@ -76,8 +72,7 @@ impl Lines {
         Self {
             given: columns.is_some(),
             opening: Some(Opening::new(naming, columns, names_first)),
-            names: Vec::new(),
-            meaning: Meaning::default(),
+            decoded: Decoded::default(),
             separator: Separator::Byte(b','),
             numbers: Numbers::default(),
             checksum: None,
@@ -87,9 +82,6 @@ impl Lines {
             skipping: false,
             seam: false,
             line: 0,
-            values: Vec::new(),
-            texts: Vec::new(),
-            tally: Tally::default(),
         }
     }
 
@@ -184,7 +176,7 @@ impl Lines {
         self.line += 1;
         let head: Vec<u8> = self.carry.iter().chain(piece).take(256).copied().collect();
         self.carry.clear();
-        self.tally.add(Spoil::TooLong, self.line, || shown(&head));
+        self.decoded.tally.add(Spoil::TooLong, self.line, || shown(&head));
         Some(Step::Spoilt(Spoil::TooLong))
     }
 
@@ -245,7 +237,7 @@ impl Lines {
         if seam {
             return Ok(Found::Nothing);
         }
-        self.tally.add(spoil, self.line, || shown(line));
+        self.decoded.tally.add(spoil, self.line, || shown(line));
         Ok(Found::Step(Step::Spoilt(spoil)))
     }
 
@@ -262,14 +254,13 @@ impl Lines {
             _ => None,
         };
         let Some(header) = header else {
-            self.tally.add(Spoil::BeforeNames, self.line, || shown(body));
+            self.decoded.tally.add(Spoil::BeforeNames, self.line, || shown(body));
             return Ok(Found::Step(Step::Spoilt(Spoil::BeforeNames)));
         };
         self.opening = None;
-        self.values = vec![f64::NAN; header.meaning.values];
-        self.texts = vec![Vec::new(); header.meaning.texts];
         self.numbers.comma_allowed = header.separator.allows_comma();
-        (self.names, self.separator, self.meaning) = (header.names, header.separator, header.meaning);
+        self.separator = header.separator;
+        self.decoded.begin(header.names, header.meaning);
         if header.is_row {
             // It is counted when it is read.
             self.line -= 1;
@@ -284,19 +275,20 @@ impl Lines {
         let mut cells = Cells::new(body, self.separator);
         if self.given {
             let name = |cell: &[u8]| std::str::from_utf8(cell).is_ok_and(is_name);
-            return Cells::new(body, self.separator).count() == self.names.len() && cells.all(name);
+            return Cells::new(body, self.separator).count() == self.decoded.names.len() && cells.all(name);
         }
-        self.names.iter().all(|name| cells.next().is_some_and(|cell| cell == name.as_bytes())) && cells.next().is_none()
+        self.decoded.names.iter().all(|name| cells.next().is_some_and(|cell| cell == name.as_bytes()))
+            && cells.next().is_none()
     }
 
     fn row(&mut self, body: &[u8]) -> Result<Sample, Spoil> {
         let mut sample = Sample { time: f64::NAN, counter: None, lit: None };
         let mut cells = Cells::new(body, self.separator);
         let mut good = true;
-        for (at, purpose) in self.meaning.uses.iter().enumerate() {
+        for (at, purpose) in self.decoded.meaning.uses.iter().enumerate() {
             let Some(cell) = cells.next() else {
-                let nameless = |k: usize| self.names[k].is_empty() && self.meaning.uses[k] == Use::None;
-                if (at..self.names.len()).all(nameless) {
+                let nameless = |k: usize| self.decoded.names[k].is_empty() && self.decoded.meaning.uses[k] == Use::None;
+                if (at..self.decoded.names.len()).all(nameless) {
                     break;
                 }
                 return Err(Spoil::Cells);
@@ -304,8 +296,8 @@ impl Lines {
             let read = match *purpose {
                 Use::None => continue,
                 Use::Text(at) => {
-                    self.texts[at].clear();
-                    self.texts[at].extend_from_slice(cell);
+                    self.decoded.texts[at].clear();
+                    self.decoded.texts[at].extend_from_slice(cell);
                     continue;
                 }
                 Use::Time { .. } => self.numbers.read(cell).map(|time| sample.time = time),
@@ -313,7 +305,7 @@ impl Lines {
                 Use::Led => led(cell).ok().map(|lit| sample.lit = lit),
                 Use::Value { at, scaled } => self.numbers.read(cell).map(|number| {
                     let scale = self.volts_per_count.filter(|_| scaled);
-                    self.values[at] = scale.map_or(number, |volts| number * volts);
+                    self.decoded.values[at] = scale.map_or(number, |volts| number * volts);
                 }),
             };
             good &= read.is_some();
@@ -325,34 +317,10 @@ impl Lines {
         if good { Ok(sample) } else { Err(Spoil::Unreadable) }
     }
 
-    /// The texts of the last row.
+    /// The columns, the last row, and what was spoilt.
     #[must_use]
-    pub fn texts(&self) -> &[Vec<u8>] {
-        &self.texts
-    }
-
-    /// The columns' names; empty until they are known.
-    #[must_use]
-    pub fn names(&self) -> &[String] {
-        &self.names
-    }
-
-    /// What the columns mean.
-    #[must_use]
-    pub fn meaning(&self) -> &Meaning {
-        &self.meaning
-    }
-
-    /// The numbers of the last row.
-    #[must_use]
-    pub fn values(&self) -> &[f64] {
-        &self.values
-    }
-
-    /// Lines that are spoilt.
-    #[must_use]
-    pub fn tally(&self) -> &Tally {
-        &self.tally
+    pub fn decoded(&self) -> &Decoded {
+        &self.decoded
     }
 
     /// How rows are protected; none where they are not.

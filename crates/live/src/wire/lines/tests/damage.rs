@@ -112,13 +112,13 @@ fn outcome(streams: u32, seal: impl Fn(&str) -> String, damage: Damage) -> Outco
         while let Some(step) = decoder.next(&mut rest, 0).unwrap() {
             match step {
                 Step::Columns { again: false } => {
-                    sequence = Some(Sequence::new(decoder.meaning(), Link::Recording, None))
+                    sequence = Some(Sequence::new(&decoder.decoded().meaning, Link::Recording, None))
                 }
                 Step::Columns { again: true } => sequence.as_mut().unwrap().begin(),
                 Step::Sample(sample) => {
                     let n = sample.counter.unwrap_or(u64::MAX);
                     let lit = sample.lit.map_or(9, u8::from);
-                    let values = decoder.values();
+                    let values = &decoder.decoded().values;
                     let is = format!("{},{n},{lit},{},{}", sample.time, values[0], values[1]);
                     if n == u64::MAX || is != row(n) || !(begin..begin + 20).contains(&n) {
                         all.wrong += 1;

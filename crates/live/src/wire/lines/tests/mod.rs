@@ -3,6 +3,7 @@
 mod damage;
 
 use super::*;
+use crate::wire::Meaning;
 use crate::wire::checksum::{crc16, xor8};
 
 /// A column's use by its name: `time_us`, `time_s`, `n`, `led`, values that begin with `P` or `F`.
@@ -51,8 +52,10 @@ pub(super) fn steps(lines: &mut Lines, stream: &[u8], cuts: &[usize]) -> Result<
 
 fn shown_step(step: Step, lines: &Lines) -> String {
     match step {
-        Step::Columns { again } => format!("{}{}", if again { "again " } else { "" }, lines.names().join("|")),
-        Step::Sample(Sample { time, counter, lit }) => format!("{time} {counter:?} {lit:?} {:?}", lines.values()),
+        Step::Columns { again } => format!("{}{}", if again { "again " } else { "" }, lines.decoded().names.join("|")),
+        Step::Sample(Sample { time, counter, lit }) => {
+            format!("{time} {counter:?} {lit:?} {:?}", lines.decoded().values)
+        }
         Step::Spoilt(spoil) => format!("{spoil:?}"),
     }
 }
@@ -98,7 +101,7 @@ fn a_spoilt_row_costs_itself() {
     let found = steps(&mut decoder, text.as_bytes(), &[]).unwrap();
     let rows = ["0 None Some(true) [1.0, 2.0]", "6 None Some(false) [3.0, 4.0]"];
     assert_eq!((&found[1], &found[8]), (&rows[0].to_owned(), &rows[1].to_owned()));
-    let tally = decoder.tally();
+    let tally = &decoder.decoded().tally;
     assert_eq!((tally.count(Spoil::Cells), tally.count(Spoil::Unreadable), tally.spoilt()), (3, 3, 6));
     assert_eq!((tally.kinds()[0].line, tally.kinds()[0].text.as_str()), (3, "1,1,1"));
     assert_eq!((tally.kinds()[1].line, tally.kinds()[1].text.as_str()), (5, "3,1,x,2"));
@@ -184,7 +187,7 @@ fn half_a_line_at_a_seam_is_dropped() {
     assert_eq!(feed(&mut decoder, "6,7\n"), 4);
     decoder.cut(true);
     assert_eq!(feed(&mut decoder, "time_s,P1\n7,8\n"), 5);
-    assert_eq!(decoder.tally().spoilt(), 0);
+    assert_eq!(decoder.decoded().tally.spoilt(), 0);
 }
 
 #[test]
@@ -203,7 +206,7 @@ fn a_line_without_end_takes_no_memory() {
     assert!(counted.bytes_max <= 4 << 20, "{counted:?}");
     let mut rest = &b"7\n3,4\n"[..];
     assert!(matches!(decoder.next(&mut rest, 0), Ok(Some(Step::Sample(Sample { time: 3.0, .. })))));
-    assert_eq!((spoilt, decoder.tally().count(Spoil::TooLong)), (1, 1));
+    assert_eq!((spoilt, decoder.decoded().tally.count(Spoil::TooLong)), (1, 1));
 }
 
 #[test]
