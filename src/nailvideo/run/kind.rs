@@ -60,7 +60,8 @@ impl Job for NailVideoJob {
             Part::if_wanted(FRAMES, "frames"),
             Part::if_wanted(REPORT, "report.html"),
         ],
-    );
+    )
+    .revision(2);
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         let outputs = self.outputs(Path::new(""), demand);
