@@ -110,6 +110,7 @@ msrv: system
 bench: system
 	cargo bench --locked --bench photos
 	cargo bench --locked --bench posture
+	cargo bench --locked -p lunula-cli --bench nailvideo
 	cargo bench --locked --bench align
 	cargo bench --locked -p lunula-cli --bench live
 	cargo bench --locked -p lunula-predictor

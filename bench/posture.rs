@@ -6,22 +6,16 @@
 
 mod util;
 
-use std::path::Path;
-
 use lunula::phantom::screen::Clock;
 use lunula::phantom::video::{Preset, Scene, VideoOptions, write};
-use lunula::video::Video;
-use util::{Run, compare, seconds};
+use util::{DECODE, Run, compare, decodes_only, seconds};
 
 const ROUNDS: usize = 5;
 const SECONDS: f64 = 40.0;
-/// The bench's own word for "only decode this file with so many threads".
-const DECODE: &str = "--decode-only";
 
 fn main() {
-    let arguments: Vec<String> = std::env::args().collect();
-    if let Some(at) = arguments.iter().position(|a| a == DECODE) {
-        return decode(Path::new(&arguments[at + 1]), arguments[at + 2].parse().expect("a number of threads"));
+    if decodes_only() {
+        return;
     }
     let folder = tempfile::tempdir().expect("a temporary folder");
     let clock = Some(Clock::default());
@@ -59,9 +53,4 @@ fn main() {
         println!("lunula posture takes {:.2} times only decoding", ratios[2] / ratios[1]);
         println!("the clock in the picture makes it {:.3} times as long", ratios[1]);
     }
-}
-
-fn decode(video: &Path, threads: usize) {
-    let mut video = Video::open(video, threads).expect("a video");
-    std::hint::black_box(video.count_rest().expect("frames"));
 }

@@ -5,6 +5,8 @@
 use std::process::{Command, Stdio};
 use std::time::Instant;
 
+use lunula::video::Video;
+
 /// A command with its name in the table.
 pub type Run<'a> = (&'a str, Vec<&'a str>);
 
@@ -42,4 +44,18 @@ pub fn seconds(command: &[&str]) -> Option<f64> {
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values[values.len() / 2]
+}
+
+/// A bench's own word for "only decode this file with so many threads".
+pub const DECODE: &str = "--decode-only";
+
+/// Whether this program was started to only decode a file, which is done then.
+#[allow(dead_code, reason = "of benches on videos")]
+pub fn decodes_only() -> bool {
+    let arguments: Vec<String> = std::env::args().collect();
+    let Some(at) = arguments.iter().position(|argument| argument == DECODE) else { return false };
+    let threads = arguments[at + 2].parse().expect("a number of threads");
+    let mut video = Video::open(arguments[at + 1].as_ref(), threads).expect("a video");
+    std::hint::black_box(video.count_rest().expect("frames"));
+    true
 }

@@ -184,14 +184,18 @@ fn search(time_s: &[f64], values: &[f64], near_s: f64) -> Option<Parameters> {
     let frame = (last - first) / (time_s.len() - 1).max(1) as f64;
     let onsets =
         (0..60).map(|k| near_s + (f64::from(k) - 40.0) * 0.5 * frame.max(0.02)).filter(|t| *t > first && *t < last);
+    // What is left of a step from time 0 on: that from an onset on is a multiple of it.
+    let left = |tau: f64| time_s.iter().map(|t| (-t / tau).exp()).collect::<Vec<f64>>();
+    let taus: Vec<(f64, Vec<f64>)> = (0..22).map(|k| 0.03 * 1.3_f64.powi(k)).map(|tau| (tau, left(tau))).collect();
     let mut best: Option<(f64, Parameters)> = None;
     for onset in onsets {
-        for k in 0..22 {
-            let tau = 0.03 * 1.3_f64.powi(k);
+        for (tau, left) in &taus {
             let mut p = [onset, tau.ln(), 0.0, 0.0, 1.0];
+            let since = (onset / tau).exp();
             let (mut n, mut x, mut y, mut xx, mut xy) = (0.0, 0.0, 0.0, 0.0, 0.0);
-            for (&t, &value) in time_s.iter().zip(values) {
-                let shape = curve(Model::Step, &p, t);
+            for ((&t, &value), left) in time_s.iter().zip(values).zip(left) {
+                // A product of infinity and nothing is taken for the start of the step.
+                let shape = if t <= onset { 0.0 } else { 1.0 - (since * left).min(1.0) };
                 (n, x, y) = (n + 1.0, x + shape, y + value);
                 (xx, xy) = (xx + shape * shape, xy + shape * value);
             }

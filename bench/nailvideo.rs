@@ -1,0 +1,42 @@
+//! How long `lunula nailvideo` takes for half a minute of 640 x 480 (H.264), as a ratio in one run with only decoding the
+//! same file with the same threads. Whole processes, in turn; medians.
+//!
+//! `cargo bench -p lunula-cli --bench nailvideo`.
+
+mod util;
+
+use std::process::Command;
+
+use util::{DECODE, compare, decodes_only};
+
+const ROUNDS: usize = 9;
+/// The program under test.
+const LUNULA: &str = env!("CARGO_BIN_EXE_lunula");
+
+fn main() {
+    if decodes_only() {
+        return;
+    }
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let place = |name: &str| folder.path().join(name).display().to_string();
+    let scene = place("s");
+    let made =
+        Command::new(LUNULA).args(["phantom", "nailvideo", "--seconds", "30", "--quiet", "--out", &scene]).status();
+    assert!(made.expect("the program starts").success(), "no scene was made");
+    let [video, outline, out] = ["s/video.mp4", "s/outline.json", "o"].map(place);
+    let myself = std::env::current_exe().expect("this program's path").display().to_string();
+    let cores = std::thread::available_parallelism().map_or(1, usize::from).to_string();
+    for threads in ["1", &cores] {
+        let job = [LUNULA, "nailvideo", &video, "--outline", &outline, "--out", &out, "--threads", threads, "--quiet"];
+        let tables = [&job[..], &["--no-figures"]].concat();
+        let frames = [&tables[..], &["--frames"]].concat();
+        let runs = [
+            ("lunula nailvideo, photodiodes only", tables),
+            ("the same with normalized frames", frames),
+            ("only decoding", vec![myself.as_str(), DECODE, &video, threads]),
+        ];
+        println!("900 frames of 640 x 480, {threads} thread(s), medians of {ROUNDS} whole processes:");
+        let ratios = compare(&runs, ROUNDS, || {});
+        println!("photodiodes take {:.2} times only decoding, frames {:.2}", ratios[2], ratios[2] / ratios[1]);
+    }
+}
