@@ -8,7 +8,7 @@ use lunula::phantom::trajectory::Trajectory;
 use lunula::phantom::video::{
     Chroma, Colours, Hide, Leave, Lens, MarkerStatus, Preset, Scene, Siting, VideoOptions, write,
 };
-use lunula::video::{Item, Picture, Turn, Video};
+use lunula::video::{Item, Matrix, Picture, Turn, Video};
 
 /// Without noise, 10 bit, chroma for each pixel.
 fn exact(width: usize, height: usize) -> VideoOptions {
@@ -544,6 +544,7 @@ fn the_command_line_writes_each_kind_of_file() {
         (&["--format", "420"][..], Some((2, 2)), 8),
         (&["--format", "422", "--depth", "10"], Some((2, 1)), 10),
         (&["--format", "444", "--matrix", "601", "--full-range"], Some((1, 1)), 8),
+        (&["--codec", "hevc", "--format", "422", "--depth", "10"], Some((2, 1)), 10),
         // Decoded as 4:2:0 without colour.
         (&["--format", "grey"], Some((2, 2)), 8),
     ] {
@@ -554,10 +555,13 @@ fn the_command_line_writes_each_kind_of_file() {
     }
     let info = Video::open(&dir.path("out/video.mp4"), 1).unwrap().info().clone();
     assert_eq!((info.format.width, info.format.height), (160, 96));
-    run(&["--rotate", "90", "--stated-siting", "centre"]);
-    let info = Video::open(&dir.path("out/video.mp4"), 1).unwrap().info().clone();
-    assert_eq!((info.format.width, info.format.height, info.turn), (96, 160, Turn::Quarter));
-    assert_eq!(info.chroma_site, Some((0.5, 0.5)));
+    for codec in ["h264", "hevc"] {
+        run(&["--codec", codec, "--rotate", "90", "--stated-siting", "centre", "--matrix", "601", "--full-range"]);
+        let info = Video::open(&dir.path("out/video.mp4"), 1).unwrap().info().clone();
+        assert_eq!((info.format.width, info.format.height, info.turn), (96, 160, Turn::Quarter), "{codec}");
+        assert_eq!(info.chroma_site, Some((0.5, 0.5)), "{codec}");
+        assert_eq!(info.matrix, Matrix { full_range: true, ..Matrix::BT601 }, "{codec}");
+    }
 }
 
 #[test]
