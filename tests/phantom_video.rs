@@ -506,15 +506,16 @@ fn the_same_seed_gives_the_same_bytes_whatever_the_threads() {
 #[test]
 fn what_the_heap_held_does_not_change_the_bytes() {
     let dir = Dir::new();
-    for format in ["420", "444"] {
+    for (codec, format) in [("h264", "420"), ("h264", "444"), ("hevc", "420")] {
         let [first, second] = ["0", "77"].map(|filling| {
-            let out = format!("{format}-{filling}");
-            let small = ["--size", "320x180", "--seconds", "1", "--x264", "medium", "--format", format];
+            let out = format!("{codec}-{format}-{filling}");
+            let coding = ["--codec", codec, "--x264", "medium", "--format", format];
+            let small = [&["--size", "320x180", "--seconds", "1"], &coding[..]].concat();
             let arguments = [&["phantom", "video", "--seed", "1", "--out", &out], &small[..]].concat();
             dir.lunula_with(&[("MALLOC_PERTURB_", filling)], &arguments).expect(0);
             dir.bytes_of(&out)
         });
-        assert!(first == second, "{format}");
+        assert!(first == second, "{codec} {format}");
     }
 }
 
