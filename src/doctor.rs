@@ -14,13 +14,19 @@ use std::time::SystemTime;
 use ffmpeg_next as ffmpeg;
 use serde::Serialize;
 
+use crate::video::Codec;
+
 /// Less memory or room on a disk is noted, bytes (assumed: a video's run takes 0.1 GB, a study's results 0.5 GB).
 const LITTLE: u64 = 1 << 30;
 /// Clocks of two machines may be so far apart, s (assumed).
 const APART_S: f64 = 5.0;
-/// Decoders of what cameras and telephones write, and the encoder of all of lunula's videos, by FFmpeg's names.
+/// Decoders of what cameras and telephones write, by FFmpeg's names.
 const DECODERS: [&str; 8] = ["h264", "hevc", "mjpeg", "mpeg4", "prores", "vp9", "ffv1", "rawvideo"];
-const ENCODER: &str = "libx264";
+/// What can't be done without the encoder of each codec that lunula writes.
+const CODECS: [(Codec, &str); 2] = [
+    (Codec::H264, "no overlay and no generated video can be written"),
+    (Codec::Hevc, "no video can be generated with --codec hevc"),
+];
 /// Programs that lunula works with, none of which it needs: name, what it is for, how to get it.
 const OTHERS: [(&str, &str, &str); 3] = [
     ("labelme", "corrects outlines by hand", "pip install labelme"),
@@ -100,6 +106,7 @@ fn program() -> Vec<Check> {
     ];
     let missing: Vec<&str> =
         DECODERS.into_iter().filter(|name| ffmpeg::decoder::find_by_name(name).is_none()).collect();
+    let no_encoder = CODECS.into_iter().filter(|(codec, _)| ffmpeg::encoder::find_by_name(codec.encoder()).is_none());
     vec![
         good("lunula", format!("{}, {path}", env!("CARGO_PKG_VERSION"))),
         if cfg!(debug_assertions) {
@@ -116,14 +123,14 @@ fn program() -> Vec<Check> {
         },
         good("FFmpeg", libraries.join(", ")),
         good("OpenCV", opencv::core::get_version_string().unwrap_or_else(|why| format!("unknown ({why})"))),
-        codecs(&missing, ffmpeg::encoder::find_by_name(ENCODER).is_some()),
+        codecs(&missing, no_encoder),
     ]
 }
 
-fn codecs(no_decoder: &[&str], encoder: bool) -> Check {
+fn codecs(no_decoder: &[&str], no_encoder: impl Iterator<Item = (Codec, &'static str)>) -> Check {
     let decoders = (!no_decoder.is_empty()).then(|| format!("no decoder of {}", no_decoder.join(", ")));
-    let encoder = (!encoder).then(|| format!("no {ENCODER}: no overlay and no generated video can be written"));
-    let missing: Vec<String> = decoders.into_iter().chain(encoder).collect();
+    let encoders = no_encoder.map(|(codec, without)| format!("no {}: {without}", codec.encoder()));
+    let missing: Vec<String> = decoders.into_iter().chain(encoders).collect();
     if missing.is_empty() {
         return good("codecs", "all that cameras commonly write");
     }
@@ -323,8 +330,9 @@ mod tests {
         assert_eq!(least("MemAvailable:    4194304 kB\n", "max\n", "17\n"), Some(4 << 30));
         assert_eq!(least("MemAvailable:    4194304 kB\n", "1073741824\n", "1073741800\n"), Some(24));
         assert_eq!((least("", "10\n", "17\n"), least("", "", "")), (Some(0), None));
-        let poor = codecs(&["hevc"], false);
-        assert!(poor.state == State::Note && poor.found.contains("hevc") && poor.found.contains("libx264"), "{poor:?}");
+        let poor = codecs(&["hevc"], CODECS.into_iter());
+        assert!(poor.state == State::Note && poor.found.contains("of hevc"), "{poor:?}");
+        assert!(CODECS.iter().all(|(codec, _)| poor.found.contains(codec.encoder())), "{poor:?}");
         let sh = |text: &str| answer(Command::new("sh").args(["-c", text]));
         assert_eq!(sh("echo 1.2").unwrap(), "1.2");
         assert!(sh("echo why >&2; exit 3").unwrap_err().ends_with("3): why"));

@@ -5,6 +5,7 @@ use std::fs;
 use crate::util::{Answer, Dir};
 use lunula::nail::Positions;
 use lunula::phantom::nailvideo::{NailProtocol, NailVideoOptions, Scene, write};
+use lunula::phantom::video::Coding;
 use ndarray_npy::ReadNpyExt as _;
 
 /// A small, fast scene.
@@ -144,7 +145,8 @@ fn what_cannot_be_drawn_is_refused_with_all_that_is_wrong() {
 
 #[test]
 fn extremes_are_drawn() {
-    let base = NailVideoOptions { seconds: Some(0.4), x264: "ultrafast".to_owned(), ..NailVideoOptions::default() };
+    let coding = Coding { preset: "ultrafast".to_owned(), ..Coding::default() };
+    let base = NailVideoOptions { seconds: Some(0.4), coding, ..NailVideoOptions::default() };
     let dir = Dir::new();
     for (name, options) in [
         ("tiny", NailVideoOptions { size: (64, 64), nail_px: 12.0, ..base.clone() }),

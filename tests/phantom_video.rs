@@ -8,7 +8,7 @@ use lunula::phantom::trajectory::Trajectory;
 use lunula::phantom::video::{
     Chroma, Colours, Hide, Leave, Lens, MarkerStatus, Preset, Scene, Siting, VideoOptions, write,
 };
-use lunula::video::{Item, Picture, Turn, Video};
+use lunula::video::{Item, Matrix, Picture, Turn, Video};
 
 /// Without noise, 10 bit, chroma for each pixel.
 fn exact(width: usize, height: usize) -> VideoOptions {
@@ -506,15 +506,16 @@ fn the_same_seed_gives_the_same_bytes_whatever_the_threads() {
 #[test]
 fn what_the_heap_held_does_not_change_the_bytes() {
     let dir = Dir::new();
-    for format in ["420", "444"] {
+    for (codec, format) in [("h264", "420"), ("h264", "444"), ("hevc", "420")] {
         let [first, second] = ["0", "77"].map(|filling| {
-            let out = format!("{format}-{filling}");
-            let small = ["--size", "320x180", "--seconds", "1", "--x264", "medium", "--format", format];
+            let out = format!("{codec}-{format}-{filling}");
+            let coding = ["--codec", codec, "--x264", "medium", "--format", format];
+            let small = [&["--size", "320x180", "--seconds", "1"], &coding[..]].concat();
             let arguments = [&["phantom", "video", "--seed", "1", "--out", &out], &small[..]].concat();
             dir.lunula_with(&[("MALLOC_PERTURB_", filling)], &arguments).expect(0);
             dir.bytes_of(&out)
         });
-        assert!(first == second, "{format}");
+        assert!(first == second, "{codec} {format}");
     }
 }
 
@@ -544,6 +545,7 @@ fn the_command_line_writes_each_kind_of_file() {
         (&["--format", "420"][..], Some((2, 2)), 8),
         (&["--format", "422", "--depth", "10"], Some((2, 1)), 10),
         (&["--format", "444", "--matrix", "601", "--full-range"], Some((1, 1)), 8),
+        (&["--codec", "hevc", "--format", "422", "--depth", "10"], Some((2, 1)), 10),
         // Decoded as 4:2:0 without colour.
         (&["--format", "grey"], Some((2, 2)), 8),
     ] {
@@ -554,10 +556,13 @@ fn the_command_line_writes_each_kind_of_file() {
     }
     let info = Video::open(&dir.path("out/video.mp4"), 1).unwrap().info().clone();
     assert_eq!((info.format.width, info.format.height), (160, 96));
-    run(&["--rotate", "90", "--stated-siting", "centre"]);
-    let info = Video::open(&dir.path("out/video.mp4"), 1).unwrap().info().clone();
-    assert_eq!((info.format.width, info.format.height, info.turn), (96, 160, Turn::Quarter));
-    assert_eq!(info.chroma_site, Some((0.5, 0.5)));
+    for codec in ["h264", "hevc"] {
+        run(&["--codec", codec, "--rotate", "90", "--stated-siting", "centre", "--matrix", "601", "--full-range"]);
+        let info = Video::open(&dir.path("out/video.mp4"), 1).unwrap().info().clone();
+        assert_eq!((info.format.width, info.format.height, info.turn), (96, 160, Turn::Quarter), "{codec}");
+        assert_eq!(info.chroma_site, Some((0.5, 0.5)), "{codec}");
+        assert_eq!(info.matrix, Matrix { full_range: true, ..Matrix::BT601 }, "{codec}");
+    }
 }
 
 #[test]

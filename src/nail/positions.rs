@@ -108,6 +108,19 @@ impl Positions {
         0.5 * self.diameter_mm / self.nail_width_mm
     }
 
+    /// Photodiodes that share one place, a list for each such place.
+    #[must_use]
+    pub fn at_one_place(&self) -> Vec<Vec<&str>> {
+        let mut places: Vec<(&Position, Vec<&str>)> = Vec::new();
+        for place in &self.photodiodes {
+            match places.iter_mut().find(|(first, _)| first.u == place.u && first.v == place.v) {
+                Some((_, names)) => names.push(&place.name),
+                None => places.push((place, vec![&place.name])),
+            }
+        }
+        places.into_iter().map(|(_, names)| names).filter(|names| names.len() > 1).collect()
+    }
+
     fn checked(self) -> Result<Self, PositionsFault> {
         let fault = |text: String| Err(PositionsFault(text));
         if !NAIL_WIDTH_MM.contains(&self.nail_width_mm) {

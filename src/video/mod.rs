@@ -21,4 +21,5 @@ pub use info::Info;
 pub use read::decode::{End, Item, Video};
 pub use read::header::Header;
 pub use turn::Turn;
+pub use write::codec::Codec;
 pub use write::encode::{Encoder, Encoding};

@@ -347,6 +347,9 @@ impl Job<'_> {
             let first = report.frames.first;
             report.notes.push(format!("no nail was found before frame {first}; the nail is followed from there on"));
         }
+        for names in positions.at_one_place() {
+            report.warnings.push(format!("{} lie at one place: they repeat one measurement", names.join(", ")));
+        }
         let lost = report.frames.all - report.frames.followed;
         if lost * 4 > report.frames.all {
             let (all, reasons) = (report.frames.all, &report.frames.lost);

@@ -1,7 +1,7 @@
 //! Videos of a fingernail that is pressed, sheared and bent, with exact truth of motion and colour (2.3, 4.2, 4.3).
 //!
 //! In: [`NailVideoOptions`]. Out, under one folder:
-//! - `video.mp4`: H.264; a frame's exposure is centred on its presentation time;
+//! - `video.mp4`: H.264 or HEVC; a frame's exposure is centred on its presentation time;
 //! - `outline.json`: the nail's outline and axis in the first frame (LabelMe); `positions.toml`: the photodiodes'
 //!   places;
 //! - `log.csv`: what a force transducer and a sensor that the same person wears log, on the video's clock: `time_s`,

@@ -11,7 +11,7 @@ use crate::phantom::log::{LogOptions, SensorModel};
 use crate::phantom::presses::Presses;
 use crate::phantom::request::{parse_size, parse_span_of_frames, positions};
 use crate::phantom::trajectory::Trajectory;
-use crate::phantom::video::VideoOptions;
+use crate::phantom::video::Coding;
 use crate::video::Format;
 
 /// What the finger does.
@@ -155,12 +155,13 @@ pub struct NailVideoOptions {
     #[arg(long = "normalized", value_name = "FRAMES")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub normalized_every: Option<usize>,
-    /// x264's constant rate factor: 0 lossless, 51 worst
+    /// The encoder's constant rate factor: 0 lossless, 51 worst
     #[arg(long, default_value_t = 18)]
     pub crf: u32,
-    /// x264's preset
-    #[arg(long, value_name = "PRESET", default_value = "medium", value_parser = VideoOptions::X264_PRESETS)]
-    pub x264: String,
+    /// Codec and preset
+    #[command(flatten)]
+    #[serde(flatten)]
+    pub coding: Coding,
 }
 
 impl NailVideoRequest {
@@ -208,7 +209,7 @@ impl Default for NailVideoOptions {
             noise: 1.0,
             normalized_every: None,
             crf: 18,
-            x264: "medium".to_owned(),
+            coding: Coding::default(),
         }
     }
 }

@@ -13,7 +13,7 @@ use crate::phantom::log::write_rows;
 use crate::phantom::photos::{annotation, write_npy};
 use crate::phantom::scene::place::{Error, refused, staged};
 use crate::phantom::sensor::disc_samples;
-use crate::phantom::video::{Siting, TICKS_PER_S, VideoOptions};
+use crate::phantom::video::{Siting, TICKS_PER_S};
 use crate::table::{Column, TableWriter, Value};
 use crate::video::{Encoder, Encoding, Matrix};
 
@@ -101,15 +101,16 @@ pub fn write_watched(scene: &Scene, out: &Path, watch: &Watch<'_>) -> Result<Sum
 
 fn encode(scene: &Scene, path: &Path, watch: &Watch<'_>) -> Result<(), Error> {
     let options = scene.options();
-    let preset = VideoOptions::X264_PRESETS.into_iter().find(|name| *name == options.x264).unwrap_or("medium");
+    let usual = Encoding::new(options.format());
     let encoding = Encoding {
         matrix: Matrix::BT709,
         chroma_site: Some(Siting::Left.place()),
+        codec: options.coding.codec,
         crf: options.crf,
-        preset,
+        preset: options.coding.known_preset().unwrap_or(usual.preset),
         ticks_per_s: TICKS_PER_S,
         ticks_a_picture: (f64::from(TICKS_PER_S) / options.fps).round() as i64,
-        ..Encoding::new(options.format())
+        ..usual
     };
     let mut encoder = Encoder::create(path, &encoding)?;
     let frames: Vec<usize> = (0..scene.frames()).collect();

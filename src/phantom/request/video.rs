@@ -9,7 +9,7 @@ use super::clock::ClockArgs;
 use crate::flexion::Flexion;
 use crate::phantom::motion::finger::{Finger, MarkerLayout};
 use crate::phantom::motion::trajectory::Trajectory;
-use crate::phantom::video::{Chroma, Colours, Hide, Leave, Lens, Oblique, Preset, Siting, VideoOptions};
+use crate::phantom::video::{Chroma, Coding, Colours, Hide, Leave, Lens, Oblique, Preset, Siting, VideoOptions};
 use crate::video::{Matrix, Turn};
 
 /// What `lunula phantom video` takes.
@@ -140,14 +140,11 @@ pub struct VideoRequest {
     /// Bits a sample: 8 or 10
     #[arg(long, default_value_t = 8)]
     depth: u32,
-    /// x264's constant rate factor: 0 lossless, 51 worst
+    /// The encoder's constant rate factor: 0 lossless, 51 worst
     #[arg(long)]
     crf: Option<u32>,
-    /// x264's preset
-    #[arg(long, value_name = "PRESET", default_value = "medium",
-          value_parser = [
-              "ultrafast", "superfast", "veryfast", "faster", "fast", "medium", "slow", "slower", "veryslow"])]
-    x264: String,
+    #[command(flatten)]
+    coding: Coding,
 }
 
 impl VideoRequest {
@@ -206,8 +203,8 @@ impl VideoRequest {
         options.chroma = self.format;
         options.depth = self.depth;
         options.crf = self.crf.unwrap_or(options.crf);
-        options.preset =
-            VideoOptions::X264_PRESETS.into_iter().find(|name| *name == self.x264).unwrap_or(options.preset);
+        options.codec = self.coding.codec;
+        options.preset = self.coding.known_preset().unwrap_or(options.preset);
         options.start = self.start || (options.start && !self.no_start);
         if !self.joints.is_empty() {
             options.joints.clone_from(&self.joints);

@@ -1,6 +1,6 @@
 //! Whether a video can be made as requested; all faults are reported together, by the command line's names.
 
-use super::{Faults, Oblique, VideoOptions};
+use super::{Coding, Faults, Oblique, VideoOptions};
 use crate::phantom::motion::finger::Finger;
 use crate::phantom::scene::lens::{MOST_TILT_DEG, Mapping};
 
@@ -46,8 +46,8 @@ impl VideoOptions {
         }
         need(self.frames() > 0, &|| format!("--seconds {}: less than a frame", self.seconds));
         need([8, 10].contains(&self.depth), &|| format!("--depth {}: choose 8 or 10", self.depth));
-        need(Self::X264_PRESETS.contains(&self.preset), &|| {
-            format!("--x264 {}: choose one of {}", self.preset, Self::X264_PRESETS.join(", "))
+        need(Coding::PRESETS.contains(&self.preset), &|| {
+            format!("--x264 {}: choose one of {}", self.preset, Coding::PRESETS.join(", "))
         });
         let (parts, finger) =
             (Finger::new(self.width, self.height, self.finger.flexion, self.finger.layout), &self.finger);

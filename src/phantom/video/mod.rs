@@ -1,7 +1,7 @@
 //! Videos of a finger with coloured markers, exactly as `lunula posture` reads them, with exact truth (3.2.3, 3.3.5).
 //!
 //! In: [`VideoOptions`] (a [`Preset`], then changed). Out, under one folder:
-//! - `video.mp4`: H.264; a frame's exposure is centred on its presentation time;
+//! - `video.mp4`: H.264 or HEVC; a frame's exposure is centred on its presentation time;
 //! - `markers.toml`: `[markers]`, `[segments]`, `[joints]`, flexion, and where wanted `[start]`, `[clock]`, `[camera]`;
 //!   it runs as it stands;
 //! - `truth/joints.csv`: `frame,time_s,clock_s`, then each joint's exact angle at mid-exposure, which is that between
@@ -30,6 +30,7 @@
 //! The same options give the same bytes whatever the number of threads.
 
 mod check;
+mod coding;
 mod draw;
 mod marker_file;
 mod options;
@@ -40,6 +41,7 @@ mod write;
 
 pub use crate::phantom::scene::faults::Faults;
 pub use crate::phantom::scene::lens::{Lens, Oblique};
+pub use coding::Coding;
 pub use draw::sensor::Siting;
 pub(in crate::phantom) use draw::sensor::{Converter, add_noise};
 pub use options::{Chroma, Colours, Hide, Leave, Preset, ScreenEvents, VideoOptions};

@@ -2,13 +2,13 @@
 
 use serde::{Serialize, Serializer};
 
-use super::{Lens, Oblique, Siting};
+use super::{Coding, Lens, Oblique, Siting};
 use crate::flexion::Flexion;
 use crate::phantom::motion::finger::{Finger, JOINTS, MarkerLayout};
 use crate::phantom::motion::trajectory::Trajectory;
 use crate::phantom::scene::lens::Mapping;
 use crate::phantom::screen::Clock;
-use crate::video::{Format, Matrix, Turn};
+use crate::video::{Codec, Format, Matrix, Turn};
 
 /// A scene to start from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, clap::ValueEnum)]
@@ -187,9 +187,12 @@ pub struct VideoOptions {
     pub chroma: Chroma,
     /// Bits a sample: 8 or 10.
     pub depth: u32,
-    /// x264's constant rate factor.
+    /// What it is encoded in.
+    #[serde(skip_serializing_if = "Coding::is_default")]
+    pub codec: Codec,
+    /// The encoder's constant rate factor.
     pub crf: u32,
-    /// x264's preset.
+    /// The encoder's preset, of [`Coding::PRESETS`].
     pub preset: &'static str,
     /// Joints that the marker file asks for.
     pub joints: Vec<String>,
@@ -216,10 +219,6 @@ fn turn_in_words<S: Serializer>(turn: &Turn, serializer: S) -> Result<S::Ok, S::
 }
 
 impl VideoOptions {
-    /// x264's presets that can be asked for, fastest first.
-    pub const X264_PRESETS: [&str; 9] =
-        ["ultrafast", "superfast", "veryfast", "faster", "fast", "medium", "slow", "slower", "veryslow"];
-
     /// A scene of the table.
     #[must_use]
     pub fn new(preset: Preset) -> Self {
@@ -277,6 +276,7 @@ impl VideoOptions {
             turn: Turn::None,
             chroma: Chroma::Quarter,
             depth: 8,
+            codec: Codec::H264,
             crf: 16,
             preset: "medium",
             joints: JOINTS.map(str::to_owned).to_vec(),

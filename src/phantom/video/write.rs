@@ -102,6 +102,7 @@ fn encode(scene: &Scene, path: &Path, watch: &Watch<'_>, stages: &mut Stages) ->
         matrix: options.matrix,
         chroma_site: options.stated_siting.map(Siting::place),
         turn: options.turn,
+        codec: options.codec,
         crf: options.crf,
         preset: options.preset,
         ticks_per_s: TICKS_PER_S,

@@ -1,4 +1,4 @@
-//! Pictures with given times to a file: H.264 in MP4, MOV, Matroska, AVI or a transport stream, by the file's
+//! Pictures with given times to a file: H.264 or HEVC in MP4, MOV, Matroska, AVI or a transport stream, by the file's
 //! extension.
 //!
 //! The bytes depend on the pictures and on [`Encoding`] alone: x264 cuts its work by the number of its threads, so this
@@ -14,11 +14,9 @@ use ffmpeg::{Dictionary, Packet, Rational, codec, color, format as container, fr
 use ffmpeg_next as ffmpeg;
 
 use crate::video::colour::pixel;
-use crate::video::write::upright;
+use crate::video::write::codec::Codec;
+use crate::video::write::mp4;
 use crate::video::{Format, Matrix, Picture, Turn, VideoError};
-
-/// x264's threads: part of what decides its bytes.
-const THREADS: usize = 4;
 
 /// How to encode.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,13 +31,15 @@ pub struct Encoding {
     pub pixel_aspect: (i32, i32),
     /// How the picture is to be turned to be shown (MP4 and MOV).
     pub turn: Turn,
-    /// x264's constant rate factor: 0 lossless, 51 worst.
+    /// What it is encoded in.
+    pub codec: Codec,
+    /// The encoder's constant rate factor: 0 lossless, 51 worst.
     pub crf: u32,
-    /// x264's preset.
+    /// The encoder's preset; x264 and x265 have the same names.
     pub preset: &'static str,
-    /// Frames that may lie between two that are predicted forward; x264's own number if none is given.
+    /// Frames that may lie between two that are predicted forward; the encoder's own number if none is given.
     pub b_frames: Option<u32>,
-    /// A key frame at least every so many pictures; x264's own number if none is given.
+    /// A key frame at least every so many pictures; the encoder's own number if none is given.
     pub key_every: Option<u32>,
     /// Ticks a second of the times given.
     pub ticks_per_s: i32,
@@ -48,7 +48,7 @@ pub struct Encoding {
 }
 
 impl Encoding {
-    /// Good quality, times in milliseconds, 30 pictures a second; BT.709, chroma on the left as cameras have it.
+    /// H.264 of good quality, times in milliseconds, 30 pictures a second; BT.709, chroma on the left as of cameras.
     #[must_use]
     pub fn new(format: Format) -> Self {
         Self {
@@ -57,6 +57,7 @@ impl Encoding {
             chroma_site: Some((0.0, 0.5)),
             pixel_aspect: (1, 1),
             turn: Turn::None,
+            codec: Codec::H264,
             crf: 18,
             preset: "medium",
             b_frames: None,
@@ -79,6 +80,8 @@ pub struct Encoder {
     ticks_a_picture: i64,
     last_ticks: Option<i64>,
     turn: Turn,
+    /// The file is an MP4 or MOV of HEVC.
+    tagged: bool,
 }
 
 impl Encoder {
@@ -91,15 +94,20 @@ impl Encoder {
         let _ = ffmpeg::init();
         ffmpeg::log::set_level(ffmpeg::log::Level::Quiet);
         let kind = kind(path)?;
-        let format = encoding.format;
-        let pixel = encodable(path, &format)?;
+        let (format, codec) = (encoding.format, encoding.codec);
+        let pixel = encodable(path, &format, codec)?;
+        if kind == "h264" && codec != Codec::H264 {
+            return Err(VideoError::write(path, format!("a file of bare H.264 can't hold {}", codec.name())));
+        }
         if encoding.turn != Turn::None && !matches!(kind, "mp4" | "mov") {
             return Err(VideoError::write(path, "only .mp4 and .mov can say that a picture is turned"));
         }
         let mut output = container::output_as(&address(path)?, kind).map_err(failed)?;
-        let h264 = codec::encoder::find_by_name("libx264")
-            .ok_or_else(|| VideoError::write(path, "FFmpeg was built without x264; install Debian's own libavcodec"))?;
-        let mut setup = codec::Context::new_with_codec(h264).encoder().video().map_err(failed)?;
+        let encoder = ffmpeg::encoder::find_by_name(codec.encoder()).ok_or_else(|| {
+            let name = codec.encoder();
+            VideoError::write(path, format!("FFmpeg was built without {name}; install Debian's own libavcodec"))
+        })?;
+        let mut setup = codec::Context::new_with_codec(encoder).encoder().video().map_err(failed)?;
         let time_base = Rational(1, encoding.ticks_per_s);
         setup.set_width(format.width as u32);
         setup.set_height(format.height as u32);
@@ -108,13 +116,13 @@ impl Encoder {
         setup.set_aspect_ratio(Rational(encoding.pixel_aspect.0, encoding.pixel_aspect.1));
         setup.set_colorspace(space(&encoding.matrix));
         setup.set_color_range(if encoding.matrix.full_range { color::Range::JPEG } else { color::Range::MPEG });
-        setup.set_threading(codec::threading::Config::count(THREADS));
+        setup.set_threading(codec::threading::Config::count(codec.threads()));
         if output.format().flags().contains(container::Flags::GLOBAL_HEADER) {
             setup.set_flags(codec::Flags::GLOBAL_HEADER);
         }
-        let encoder = setup.open_with(options(encoding)).map_err(failed)?;
-        let mut stream = output.add_stream(h264).map_err(failed)?;
-        stream.set_parameters(&encoder);
+        let opened = setup.open_with(options(encoding)).map_err(failed)?;
+        let mut stream = output.add_stream(encoder).map_err(failed)?;
+        stream.set_parameters(&opened);
         stream.set_time_base(time_base);
         let mut how = Dictionary::new();
         if matches!(kind, "mp4" | "mov") {
@@ -125,7 +133,7 @@ impl Encoder {
         Ok(Self {
             path: path.to_owned(),
             output,
-            encoder,
+            encoder: opened,
             format,
             pixel,
             stream_base,
@@ -133,6 +141,7 @@ impl Encoder {
             ticks_a_picture: encoding.ticks_a_picture,
             last_ticks: None,
             turn: encoding.turn,
+            tagged: codec == Codec::Hevc && matches!(kind, "mp4" | "mov"),
         })
     }
 
@@ -171,9 +180,11 @@ impl Encoder {
         self.write_packets()?;
         self.output.write_trailer().map_err(|error| write_error(&self.path, &error))?;
         // The file is closed before it is opened again.
-        let Self { path, format, turn, output, .. } = self;
+        let Self { path, format, turn, tagged, output, .. } = self;
         drop(output);
-        upright::turn_file(&path, turn, (format.width, format.height))
+        let turned = mp4::turn_file(&path, turn, (format.width, format.height));
+        turned
+            .and_then(|()| if tagged { mp4::tag_hevc(&path) } else { Ok(()) })
             .map_err(|error| VideoError::write(&path, format!("can't be written as a video: {error}")))
     }
 
@@ -223,28 +234,28 @@ fn address(path: &Path) -> Result<String, VideoError> {
     Ok(format!("file:{text}"))
 }
 
-fn encodable(path: &Path, format: &Format) -> Result<container::Pixel, VideoError> {
-    let refused = |what: &str| VideoError::write(path, what);
+fn encodable(path: &Path, format: &Format, codec: Codec) -> Result<container::Pixel, VideoError> {
+    let refused = |what: &str| VideoError::write(path, format!("{} {what}", codec.name()));
     let (across, down) = format.subsampling.unwrap_or((1, 1));
     if format.width == 0
         || format.height == 0
         || !format.width.is_multiple_of(across)
         || !format.height.is_multiple_of(down)
     {
-        return Err(refused("H.264 takes no odd width or height with halved chroma; pad the picture or use 4:4:4"));
+        return Err(refused("takes no odd width or height with halved chroma; pad the picture or use 4:4:4"));
     }
     match (format.subsampling, format.depth) {
         (None | Some((2, 2) | (2, 1) | (1, 1)), 8 | 10) => pixel::of_format(format),
         _ => None,
     }
-    .ok_or_else(|| refused("H.264 is written as grey, 4:2:0, 4:2:2 or 4:4:4 of 8 or 10 bits"))
+    .ok_or_else(|| refused("is written as grey, 4:2:0, 4:2:2 or 4:4:4 of 8 or 10 bits"))
 }
 
 fn options(encoding: &Encoding) -> Dictionary<'static> {
     let mut options = Dictionary::new();
     options.set("crf", &encoding.crf.to_string());
     options.set("preset", encoding.preset);
-    options.set("mbtree", "0");
+    encoding.codec.settle(&mut options, encoding.crf, (encoding.ticks_per_s, encoding.ticks_a_picture));
     if let Some(frames) = encoding.b_frames {
         options.set("bf", &frames.to_string());
     }

@@ -1,4 +1,5 @@
 //! Pictures with given times to a file.
 
+pub(in crate::video) mod codec;
 pub(in crate::video) mod encode;
-pub(in crate::video) mod upright;
+mod mp4;

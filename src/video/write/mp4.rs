@@ -1,5 +1,6 @@
-//! How a picture is to be turned, written into an MP4 or MOV that stands: the display matrix of its tracks (ISO/IEC
-//! 14496-12, `tkhd`). FFmpeg 5.1 writes it only from data that its Rust interface can't hand over.
+//! What FFmpeg 5.1 writes into an MP4 or MOV only from data that its Rust interface can't hand over, written into the
+//! finished file: how a picture is to be turned, the display matrix of its tracks (ISO/IEC 14496-12, `tkhd`); and the
+//! name of HEVC's samples that all players take (14496-15, `hvc1`: the parameter sets are in the index alone).
 
 use std::fs::OpenOptions;
 use std::io::{self, Read, Seek, SeekFrom, Write};
@@ -30,6 +31,27 @@ pub(in crate::video) fn turn_file(path: &Path, turn: Turn, (width, height): (usi
                 file.seek(SeekFrom::Start(tkhd + if version == [0] { 40 } else { 52 }))?;
                 file.write_all(&bytes)?;
             }
+        }
+    }
+    file.flush()
+}
+
+/// Names HEVC's samples `hvc1` instead of FFmpeg's `hev1`, which Apple's players refuse.
+pub(in crate::video) fn tag_hevc(path: &Path) -> io::Result<()> {
+    let mut file = OpenOptions::new().read(true).write(true).open(path)?;
+    let mut within = vec![(0, file.seek(SeekFrom::End(0))?)];
+    for kind in [b"moov", b"trak", b"mdia", b"minf", b"stbl", b"stsd"] {
+        let mut inner = Vec::new();
+        for (begin, end) in within {
+            inner.extend(boxes(&mut file, begin, end, kind)?);
+        }
+        within = inner;
+    }
+    for (stsd, end) in within {
+        // After version, flags and the number of entries.
+        for (entry, _) in boxes(&mut file, stsd + 8, end, b"hev1")? {
+            file.seek(SeekFrom::Start(entry - 4))?;
+            file.write_all(b"hvc1")?;
         }
     }
     file.flush()
