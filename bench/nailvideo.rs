@@ -1,5 +1,5 @@
-//! How long `lunula nailvideo` takes for half a minute of 640 x 480 (H.264), as a ratio in one run with only decoding the
-//! same file with the same threads. Whole processes, in turn; medians.
+//! How long `lunula nailvideo` takes for half a minute of 640 x 480 (H.264), as a ratio in one run with only decoding
+//! the same file with the same threads. Whole processes, in turn; medians.
 //!
 //! `cargo bench -p lunula-cli --bench nailvideo`.
 

@@ -16,12 +16,13 @@ use crate::nailvideo::affine::Affine;
 const LEAST_NCC: f64 = 0.6;
 const LEAST_NCC_SHARE: f64 = 0.8;
 /// Correlation of the texture within blocks, as a share of what the frames right before had, and of what the first had
-/// (measured on 32 of the phantom's persons, 9353 frames with jerks, blur and presses: the nail itself has 0.80 and more
-/// in 99 of 100 sharp frames; at 43 cuts another person's has 0.74 and less, and 0.80 to 0.83 in four).
+/// (measured on 32 of the phantom's persons, 9353 frames with jerks, blur and presses: the nail itself has 0.80 and
+/// more in 99 of 100 sharp frames; at 43 cuts another person's has 0.74 and less, and 0.80 to 0.83 in four).
 const LEAST_TEXTURE_SHARE: f64 = 0.7;
 const LEAST_FIRST_TEXTURE_SHARE: f64 = 0.4;
 /// Those four are another nail as well by what else changes: residuals grow by the first over the largest of the last
-/// frames, or the correlation of a sharp frame falls below a share of that before (of the nail itself 6 frames in 1000).
+/// frames, or the correlation of a sharp frame falls below a share of that before (of the nail itself in 6 of 1000
+/// frames).
 const MOST_SD_SHARE: f64 = 1.4;
 const LEAST_TEXTURE_SHARE_AT_SD: f64 = 0.9;
 const NCC_SHARE: f64 = 0.976;

@@ -163,13 +163,14 @@ pub(super) fn fit(time_s: &[f64], values: &[f64], near_s: f64, rest: Option<f64>
         model,
     };
     let all = [course.onset_s, course.t50_s, course.t90_s, course.tau_s];
-    // An interval longer than what was looked at says that nothing is known.
+    // An onset's interval longer than what was looked at says that nothing is known.
     let span_s = time_s[time_s.len() - 1] - time_s[0];
-    all.iter().all(|one| one.high - one.low <= 2.0 * span_s).then_some(course)
+    let is_known = course.onset_s.high - course.onset_s.low <= 2.0 * span_s;
+    (is_known && all.iter().all(|one| one.low.is_finite() && one.high.is_finite())).then_some(course)
 }
 
-/// An onset's interval with a frame after it and two before: a force begins more smoothly than a ramp, so that its onset
-/// is seen late (measured on the phantom at 30 frames a second: presses by 6 to 31 ms, releases by up to 62).
+/// An onset's interval with a frame after it and two before: a force begins more smoothly than a ramp, so that its
+/// onset is seen late (measured on the phantom at 30 frames a second: presses by 6 to 31 ms, releases by up to 62).
 fn wider(one: Interval, frame_s: f64) -> Interval {
     let half = one.high - one.value;
     Interval { low: one.value - half.hypot(2.0 * frame_s), high: one.value + half.hypot(frame_s), ..one }
