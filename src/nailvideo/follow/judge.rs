@@ -2,8 +2,8 @@
 //!
 //! How well the nail itself fits differs from video to video: pressing, turning and the encoder take as much off the
 //! correlation of one as another person's nail has in the next. So a fit is compared with what this nail's fits were
-//! like while it was followed from frame to frame: right before for a frame that goes on
-//! from the last, over the last 20 s for one that is found again.
+//! like while it was followed from frame to frame: right before for a frame that goes on from the last, over the last
+//! 20 s for one that is found again.
 
 use std::collections::VecDeque;
 
@@ -98,22 +98,13 @@ impl Lost {
     }
 }
 
-/// What a fit is compared with.
+/// What a fit comes after.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum After<'a> {
-    /// The frame before: the nail is expected there.
-    Frame(&'a Affine),
-    /// A loss: it may be anywhere, or where the trial's last frame had it, and may be another.
-    Loss(Option<&'a Affine>),
-}
-
-impl After<'_> {
-    pub(super) fn expected(&self) -> Option<&Affine> {
-        match self {
-            Self::Frame(expected) => Some(expected),
-            Self::Loss(expected) => *expected,
-        }
-    }
+pub(super) enum After {
+    /// The frame before, in which the nail was followed.
+    Frame,
+    /// A loss: what is found may be another nail.
+    Loss,
 }
 
 /// What fits of this video are like.
@@ -158,13 +149,9 @@ impl Usual {
         }
         self.last.push_back(Like { ncc: fit.ncc, texture: fit.texture, gain: fit.gain, sd: fit.sd });
         if self.last.len() <= FIRST {
-            let median = |part: fn(&Like) -> f64| quantile(self.last.iter().map(part), 0.5);
-            self.first = median(|l| l.ncc).map(|ncc| Like {
-                ncc,
-                texture: median(|l| l.texture).unwrap_or(f64::NAN),
-                gain: median(|l| l.gain).unwrap_or(f64::NAN),
-                sd: median(|l| l.sd).unwrap_or(f64::NAN),
-            });
+            let median = |part: fn(&Like) -> f64| quantile(self.last.iter().map(part), 0.5).unwrap_or(f64::NAN);
+            let [ncc, texture, gain] = [median(|l| l.ncc), median(|l| l.texture), median(|l| l.gain)];
+            self.first = Some(Like { ncc, texture, gain, sd: median(|l| l.sd) });
         }
     }
 
@@ -179,7 +166,7 @@ impl Usual {
     }
 
     /// Whether a fit is like the nail's.
-    fn is_like(&self, fit: &Fit, after: &After<'_>) -> bool {
+    fn is_like(&self, fit: &Fit, after: After) -> bool {
         // What is NaN is not alike.
         let Some(first) = self.first else { return fit.ncc >= LEAST_NCC };
         let least = |first: f64, part: fn(&Like) -> f64, [of_first, of_low]: [f64; 2]| {
@@ -187,7 +174,7 @@ impl Usual {
             (of_first * first).min(of_low * low)
         };
         let (least_ncc, least_texture) = match after {
-            After::Frame(_) => {
+            After::Frame => {
                 let before = |part: fn(&Like) -> f64, first: f64| self.before(part).unwrap_or(first);
                 let texture = before(|like| like.texture, first.texture);
                 let just_before = self.last.iter().rev().take(JUST_BEFORE).map(|like| like.sd);
@@ -206,7 +193,7 @@ impl Usual {
                 };
                 (LEAST_NCC_SHARE * first.ncc, share * texture)
             }
-            After::Loss(_) => {
+            After::Loss => {
                 let ncc = least(first.ncc, |like| like.ncc, AGAIN_NCC);
                 (ncc.max(LEAST_NCC_SHARE * first.ncc), least(first.texture, |like| like.texture, AGAIN_TEXTURE))
             }
@@ -236,12 +223,13 @@ pub(in crate::nailvideo) struct Place {
     pub(in crate::nailvideo) inliers: f64,
 }
 
-/// Judges a fit; `width_px` is the nail's width.
+/// Judges a fit; `expected` is where the nail was expected, and `width_px` the nail's width.
 pub(super) fn judge(
     fit: &Fit,
     template: &Template,
     usual: &Usual,
-    after: &After<'_>,
+    after: After,
+    expected: Option<&Affine>,
     width_px: f64,
 ) -> Result<Place, Lost> {
     let [a, b, _, d, e, _] = fit.motion.0;
@@ -270,7 +258,7 @@ pub(super) fn judge(
     if !is_sure {
         return Err(Lost::Unsure);
     }
-    if let Some(expected) = after.expected() {
+    if let Some(expected) = expected {
         let ([x, y], [p, q]) = (fit.motion.of(template.middle), expected.of(template.middle));
         if (x - p).hypot(y - q) > MOST_JUMP_WIDTHS * width_px {
             return Err(Lost::Jumped);

@@ -110,7 +110,7 @@ impl Follower {
         match self.state.clone() {
             State::Followed(at, before) => {
                 let expected = predicted(&at, before.as_ref(), time_s);
-                let found = self.near(frame, After::Frame(&expected), &expected, &at.motion);
+                let found = self.near(frame, After::Frame, &expected, &at.motion);
                 match found {
                     Ok((place, fit)) => {
                         self.usual.learn(&fit);
@@ -126,7 +126,7 @@ impl Follower {
             }
             State::Trial(at, count) => {
                 // Nothing is known of its speed: it is expected where it was.
-                match self.near(frame, After::Loss(Some(&at.motion)), &at.motion, &at.motion) {
+                match self.near(frame, After::Loss, &at.motion, &at.motion) {
                     Ok((place, _)) => {
                         let here = At { time_s, motion: place.motion };
                         if count + 1 < TRIAL {
@@ -151,7 +151,7 @@ impl Follower {
     fn near(
         &mut self,
         frame: &Frame<'_>,
-        after: After<'_>,
+        after: After,
         expected: &Affine,
         last: &Affine,
     ) -> Result<(Place, Fit), Lost> {
@@ -159,13 +159,13 @@ impl Follower {
             let least = usual.ncc().unwrap_or(0.0) * DOUBT_NCC_SHARE;
             found.as_ref().is_ok_and(|(place, _)| place.ncc >= least)
         };
-        let mut best = self.fine(frame, *expected, &after);
+        let mut best = self.fine(frame, *expected, after, Some(expected));
         if fits(&best, &self.usual) {
             return best;
         }
         for start in [expected, last] {
             let Some(start) = self.coarse(frame, *start) else { continue };
-            let other = self.fine(frame, start, &after);
+            let other = self.fine(frame, start, after, Some(expected));
             best = match (best, other) {
                 (Ok(a), Ok(b)) => Ok(if b.0.ncc > a.0.ncc { b } else { a }),
                 (a @ Ok(_), _) => a,
@@ -186,7 +186,7 @@ impl Follower {
         let places = self.search.places(&samples, &self.last);
         for start in std::iter::once(self.last).chain(places) {
             let Some(start) = self.coarse(frame, start) else { continue };
-            match self.fine(frame, start, &After::Loss(None)) {
+            match self.fine(frame, start, After::Loss, None) {
                 Ok((place, _)) => {
                     self.state = State::Trial(At { time_s: frame.time_s, motion: place.motion }, 1);
                     return Ok(());
@@ -197,10 +197,16 @@ impl Follower {
         Err(why)
     }
 
-    fn fine(&mut self, frame: &Frame<'_>, start: Affine, after: &After<'_>) -> Result<(Place, Fit), Lost> {
+    fn fine(
+        &mut self,
+        frame: &Frame<'_>,
+        start: Affine,
+        after: After,
+        expected: Option<&Affine>,
+    ) -> Result<(Place, Fit), Lost> {
         let sight = self.sight(frame, &start, self.step).ok_or(Lost::Outside)?;
         let fit = register(&self.fine, &sight, start, &mut self.scratch).ok_or(Lost::Unlike)?;
-        judge(&fit, &self.fine, &self.usual, after, self.width_px).map(|place| (place, fit))
+        judge(&fit, &self.fine, &self.usual, after, expected, self.width_px).map(|place| (place, fit))
     }
 
     /// A better start, from coarser pictures.

@@ -164,31 +164,25 @@ fn equations(
     let mut sums = [[0.0_f64; UNKNOWNS]; UNKNOWNS + 1];
     let mut pixels = template.pixels.iter().step_by(every);
     for residuals in scratch.residuals.chunks(RUN) {
-        let (mut left, mut right) = ([f32x4::ZERO; 5], [f32x4::ZERO; UNKNOWNS + 1]);
+        let (mut left, mut right) = ([f32x4::ZERO; UNKNOWNS + 1], [f32x4::ZERO; UNKNOWNS + 1]);
         for (&residual, pixel) in residuals.iter().zip(pixels.by_ref()) {
             let weight = weight(residual, per_limit);
             if weight == 0.0 {
                 continue;
             }
-            let [a, b, c, d, e, f, g, h] = pixel.row;
-            let (low, high) = (f32x4::new([a, b, c, d]), f32x4::new([e, f, g, h]));
-            let times = |part: f32| f32x4::splat(weight * part);
-            for (k, part) in [a, b, c, d, residual].into_iter().enumerate() {
-                left[k] += times(part) * low;
-            }
-            for (k, part) in [a, b, c, d, e, f, g, h, residual].into_iter().enumerate() {
-                right[k] += times(part) * high;
-            }
+            let [low, high] = pixel.halves();
+            let mut add = |k: usize, part: f32, is_left: bool| {
+                let part = f32x4::splat(weight * part);
+                if is_left {
+                    left[k] += part * low;
+                }
+                right[k] += part * high;
+            };
+            pixel.row.iter().enumerate().for_each(|(k, &part)| add(k, part, k < 4));
+            add(UNKNOWNS, residual, true);
         }
         for (k, sums) in sums.iter_mut().enumerate() {
-            let low = if k < 4 {
-                left[k]
-            } else if k == UNKNOWNS {
-                left[4]
-            } else {
-                f32x4::ZERO
-            };
-            let parts = low.to_array().into_iter().chain(right[k].to_array());
+            let parts = left[k].to_array().into_iter().chain(right[k].to_array());
             sums.iter_mut().zip(parts).for_each(|(sum, part)| *sum += f64::from(part));
         }
     }
@@ -211,11 +205,9 @@ fn pulls(template: &Template, scratch: &Scratch, sd: f64) -> Option<SMatrix<f64,
         if weight == 0.0 {
             continue;
         }
-        let [a, b, c, d, e, f, g, h] = pixel.row;
         let pull = f32x4::splat(weight * residual);
         let block = &mut blocks[usize::from(pixel.block)];
-        block[0] += pull * f32x4::new([a, b, c, d]);
-        block[1] += pull * f32x4::new([e, f, g, h]);
+        block.iter_mut().zip(pixel.halves()).for_each(|(sum, half)| *sum += pull * half);
     }
     let (mut sums, mut count) = (SMatrix::zeros(), 0.0);
     for [left, right] in blocks {

@@ -299,10 +299,7 @@ impl Job<'_> {
         let skin: Vec<f64> = kept.iter().map(|row| row.skin).collect();
         let ends = ends(positions, &traces);
         let recording = Recording { time_s: &time_s, traces: &traces, ends: &ends, skin: &skin, whole };
-        // Without threads of its own, by those that there are: the same rows.
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(self.options.threads).build();
-        let pressed =
-            self.stages.time("presses", || pool.map_or_else(|_| rows(&recording), |p| p.install(|| rows(&recording))));
+        let pressed = self.stages.time("presses", || rows(&recording));
         presses(self.staging, self.outputs, self.light, &pressed)?;
         for sums in &windows {
             let [mean, sd] = sums.maps();
