@@ -214,6 +214,29 @@ fn small_and_odd_pictures_are_refused_or_searched_without_fault() {
     }
 }
 
+/// A finger far away, its nail 32 or 10 pixels long: the smaller one is for a person to look at.
+#[test]
+fn a_nail_of_a_few_pixels_is_doubtful() {
+    let mut found = [[0; 2]; 2];
+    for k in (1..24).filter(|k| k % 3 != 0) {
+        let (scene, options) = close_up(k, [320, 240]);
+        let near = scene.render(&RenderOptions { depth: Depth::Eight, ..options }).unwrap();
+        let length = extents(&scene.outline().unwrap(), scene.axis())[0];
+        for (at, px) in [32.0, 10.0].into_iter().enumerate() {
+            let size = [near.width(), near.height()].map(|side| (f64::from(side) * px / length).round() as u32);
+            let far = near.resize_exact(size[0], size[1], image::imageops::FilterType::Triangle);
+            let mut room = RgbImage::from_pixel(160, 120, Rgb([120, 124, 118]));
+            image::imageops::overlay(&mut room, &far.to_rgb8(), 40, 30);
+            let seen = detect(&room.into(), &DetectOptions::default());
+            found[at][0] += seen.nails.len();
+            found[at][1] += seen.doubtful.len();
+        }
+    }
+    eprintln!("confident, doubtful: {found:?}");
+    assert!(found[0][0] >= 4, "{found:?}");
+    assert!(found[1][0] == 0 && found[1][1] >= 4, "{found:?}");
+}
+
 #[test]
 fn the_same_picture_gives_the_same_result_and_depth_hardly_matters() {
     let mut compared = 0;
