@@ -49,10 +49,43 @@ fn a_nail_that_comes_into_the_picture_is_found_then() {
     let motion = dir.table("out/motion.csv");
     assert!(motion[..30].iter().all(|row| row["status"] == "lost: no nail yet" && row["a"].is_empty()));
     assert!(motion[30..].iter().all(|row| row["status"] == "ok"));
+    // The outline that was found, as a person may correct it, is one of that frame.
+    words(&dir, "nailvideo late.mp4 --outline out/nail.json --no-figures --out again")
+        .expect(0)
+        .says("before frame 30");
+    let again = dir.table("again/motion.csv");
+    assert!(again[..30].iter().all(|row| row["status"] == "lost: no nail yet"));
+    assert!(again[30..].iter().all(|row| row["status"] == "ok"));
+    let mut file: Value = serde_json::from_slice(&fs::read(dir.path("out/nail.json")).expect("a file")).expect("JSON");
+    file["lunulaFrame"] = json!(1000);
+    dir.write("beyond.json", file.to_string());
+    let beyond = words(&dir, "nailvideo late.mp4 --outline beyond.json --out beyond").expect(2);
+    beyond.says("beyond.json").says("frame 1000");
     // Drawn on the first frame there is nothing to follow: no figures.
     words(&dir, "nailvideo late.mp4 --outline s/outline.json --no-figures --out drawn");
     let rows = if dir.path("drawn").exists() { dir.table("drawn/photodiodes.csv") } else { Vec::new() };
     assert!(rows.iter().skip(1).all(|row| row["P1"].is_empty()), "{:?}", rows.get(1));
+}
+
+/// What was seen, and the frame, are there for a person to correct; what is there already stays.
+#[test]
+fn without_a_nail_there_is_a_picture_to_draw_it_on() {
+    let dir = Dir::new();
+    words(&dir, &REST.replace("--seconds 6", "--seconds 1")).expect(0);
+    let mut bare = pictures(&dir.path("s/video.mp4"))[0].clone();
+    let shown = bare.format;
+    bare.planes.iter_mut().for_each(|plane| plane.fill(128));
+    write(&dir.path("bare.mp4"), Turn::None, at_30_hz(vec![bare; 12].into_iter()));
+    let none = words(&dir, "nailvideo bare.mp4 --out out").expect(1);
+    none.says("no nail was found").says("frame 0 is saved as out/nail.png").says("--outline");
+    let picture = image::open(dir.path("out/nail.png")).expect("a picture");
+    assert_eq!([picture.width() as usize, picture.height() as usize], [shown.width, shown.height]);
+    let mut file: Value = serde_json::from_slice(&fs::read(dir.path("out/nail.json")).expect("a file")).expect("JSON");
+    assert_eq!(file["shapes"], json!([]));
+    file["shapes"] = json!([{"label": "nail", "points": [[1, 2], [30, 4], [5, 60]], "shape_type": "polygon"}]);
+    dir.write("out/nail.json", file.to_string());
+    words(&dir, "nailvideo bare.mp4 --out out").expect(2).says("draw the nail of the first frame");
+    assert_eq!(fs::read_to_string(dir.path("out/nail.json")).expect("a file"), file.to_string());
 }
 
 #[test]

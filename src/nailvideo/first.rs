@@ -9,8 +9,9 @@ use super::affine::Affine;
 use super::grid::{Part, samples, shown_size};
 use super::options::NailVideoOptions;
 use super::sample::{Colours, Planes};
+use crate::labelme::LabelMe;
 use crate::nail::{Axis, Outline};
-use crate::photo::outline::{Nail, OutlineOptions, OutlinePlace, Source, ToDraw, to_file};
+use crate::photo::outline::{Nail, OutlineOptions, OutlinePlace, Source, ToDraw, to_draw, to_file};
 use crate::photo::{NailFrame, Photograph};
 use crate::photograph::{PICTURES, is_picture};
 use crate::video::{Frame, Info};
@@ -39,12 +40,34 @@ impl FirstNail {
         Affine([right[0], distal[0], x, right[1], distal[1], y])
     }
 
-    /// The same as a LabelMe file of a picture beside it, for a person to correct.
-    pub(in crate::nailvideo) fn labelme(&self, picture: &str, size: [u32; 2]) -> serde_json::Result<String> {
+    /// For a person to correct.
+    pub(in crate::nailvideo) fn to_draw(&self) -> ToDraw {
         let confidence = self.confidence.unwrap_or(1.0);
-        let nail = ToDraw { outline: self.outline.clone(), axis: self.frame.axis, confidence, trusted: true };
-        serde_json::to_string_pretty(&to_file(picture, size, &[nail])).map(|text| text + "\n")
+        ToDraw { outline: self.outline.clone(), axis: self.frame.axis, confidence, trusted: true }
     }
+}
+
+/// A key of LabelMe files that are written here: the frame that they are drawn on, where that is not the first one.
+const DRAWN_ON: &str = "lunulaFrame";
+
+/// Nails as a LabelMe file of a frame's picture beside it.
+pub(in crate::nailvideo) fn labelme(
+    nails: &[ToDraw],
+    picture: &str,
+    size: [u32; 2],
+    frame: u64,
+) -> serde_json::Result<String> {
+    let mut file = to_file(picture, size, nails);
+    if frame > 0 {
+        file.other.insert(DRAWN_ON.to_owned(), frame.into());
+    }
+    serde_json::to_string_pretty(&file).map(|text| text + "\n")
+}
+
+/// Why a frame shows no nail to follow, in words for the user, and what was seen on it.
+pub(in crate::nailvideo) struct NotOne {
+    pub(in crate::nailvideo) why: String,
+    pub(in crate::nailvideo) seen: Vec<ToDraw>,
 }
 
 /// Where the outline comes from.
@@ -52,6 +75,8 @@ impl FirstNail {
 pub(in crate::nailvideo) struct Finder {
     place: OutlinePlace,
     options: OutlineOptions,
+    /// The frame that the outline was drawn on.
+    drawn_on: u64,
 }
 
 impl Finder {
@@ -61,46 +86,68 @@ impl Finder {
             Some(file) => OutlinePlace::LabelMe(file.to_owned()),
             None => OutlinePlace::Detection,
         };
-        Self { place, options: OutlineOptions { distal: options.distal, ..OutlineOptions::default() } }
+        let drawn_on = match &place {
+            // What is wrong with a file that can't be read is said where its nail is looked for.
+            OutlinePlace::LabelMe(file) => {
+                LabelMe::read(file).ok().and_then(|file| file.other.get(DRAWN_ON)?.as_u64()).unwrap_or(0)
+            }
+            _ => 0,
+        };
+        Self { place, options: OutlineOptions { distal: options.distal, ..OutlineOptions::default() }, drawn_on }
     }
 
-    /// Whether a frame is looked at: the first for what was drawn, some of the first for detection.
+    /// Whether a frame is looked at: for what was drawn the one that it was drawn on, for detection some of the first.
     pub(in crate::nailvideo) fn looks_at(&self, index: u64) -> bool {
         match self.place {
             OutlinePlace::Detection => index.is_multiple_of(EVERY) && index < EVERY * TRIES,
-            _ => true,
+            _ => index == self.drawn_on,
         }
     }
 
     /// Whether later frames may show the nail.
     pub(in crate::nailvideo) fn may_look_on(&self, index: u64) -> bool {
-        self.place == OutlinePlace::Detection && index < EVERY * (TRIES - 1)
+        let last = if self.place == OutlinePlace::Detection { EVERY * (TRIES - 1) } else { self.drawn_on };
+        index < last
     }
 
-    /// The nail on an upright frame; the error is words for the user.
-    pub(in crate::nailvideo) fn find(&self, picture: RgbImage) -> Result<FirstNail, String> {
-        let image = DynamicImage::ImageRgb8(picture);
-        let photograph = Photograph { image, orientation: Orientation::NoTransforms };
-        let listed = self.options.nails(&self.place, &photograph).map_err(|why| match self.place {
-            OutlinePlace::Detection => "no nail was found".to_owned(),
-            _ => why.to_string(),
-        })?;
-        let (used, refused): (Vec<Nail>, Vec<Nail>) = listed.nails.into_iter().partition(|nail| nail.reason.is_empty());
-        let mut whole =
-            used.into_iter().filter_map(|nail| Some((nail.outline?, nail.axis?, nail.source, nail.confidence)));
-        let (Some((outline, axis, source, confidence)), others) = (whole.next(), whole.count()) else {
-            let doubtful = |nail: Nail| match nail.source {
-                Source::Detected => "a nail was found without enough confidence".to_owned(),
-                _ => nail.reason,
-            };
-            return Err(refused.into_iter().next().map_or_else(|| "no nail was found".to_owned(), doubtful));
-        };
-        if others > 0 {
-            return Err(format!("{} nails are seen, and one is followed: draw that one alone", others + 1));
+    /// Why there is no nail where no frame was looked at.
+    pub(in crate::nailvideo) fn nowhere(&self) -> String {
+        match self.drawn_on {
+            0 => "no frame could be decoded".to_owned(),
+            frame => format!("is drawn on frame {frame} (`{DRAWN_ON}`), which the video does not have"),
         }
-        let frame = framed(&outline, axis)?;
-        Ok(FirstNail { outline, frame, source, confidence })
     }
+
+    /// The nail on an upright frame.
+    pub(in crate::nailvideo) fn find(&self, picture: &Photograph) -> Result<FirstNail, NotOne> {
+        let listed = match (self.options.nails(&self.place, picture), &self.place) {
+            (Ok(listed), _) => listed,
+            (Err(_), OutlinePlace::Detection) => {
+                return Err(NotOne { why: "no nail was found".to_owned(), seen: Vec::new() });
+            }
+            (Err(why), _) => return Err(NotOne { why: why.to_string(), seen: Vec::new() }),
+        };
+        let seen = to_draw(&listed.nails);
+        one_of(listed.nails).map_err(|why| NotOne { why, seen })
+    }
+}
+
+/// The one nail that can be followed; the error is words for the user.
+fn one_of(nails: Vec<Nail>) -> Result<FirstNail, String> {
+    let (used, refused): (Vec<Nail>, Vec<Nail>) = nails.into_iter().partition(|nail| nail.reason.is_empty());
+    let mut whole = used.into_iter().filter_map(|nail| Some((nail.outline?, nail.axis?, nail.source, nail.confidence)));
+    let (Some((outline, axis, source, confidence)), others) = (whole.next(), whole.count()) else {
+        let doubtful = |nail: Nail| match nail.source {
+            Source::Detected => "a nail was found without enough confidence".to_owned(),
+            _ => nail.reason,
+        };
+        return Err(refused.into_iter().next().map_or_else(|| "no nail was found".to_owned(), doubtful));
+    };
+    if others > 0 {
+        return Err(format!("{} nails are seen, and one is followed: draw that one alone", others + 1));
+    }
+    let frame = framed(&outline, axis)?;
+    Ok(FirstNail { outline, frame, source, confidence })
 }
 
 fn framed(outline: &Outline, axis: Axis) -> Result<NailFrame, String> {
@@ -115,13 +162,14 @@ fn framed(outline: &Outline, axis: Axis) -> Result<NailFrame, String> {
 }
 
 /// A frame as it is shown, in red, green and blue.
-pub(in crate::nailvideo) fn upright(frame: &Frame<'_>, info: &Info) -> RgbImage {
+pub(in crate::nailvideo) fn upright(frame: &Frame<'_>, info: &Info) -> Photograph {
     let [width, height] = shown_size(&samples(frame.luma, info.turn.quarters()));
     let part = Part { from: [0; 2], size: [width, height] };
     let colours = Colours::of_part(frame, Planes::of(info), part);
-    RgbImage::from_fn(width as u32, height as u32, |x, y| {
+    let picture = RgbImage::from_fn(width as u32, height as u32, |x, y| {
         image::Rgb(colours.at([f64::from(x), f64::from(y)]).map(|part| (255.0 * part).round().clamp(0.0, 255.0) as u8))
-    })
+    });
+    Photograph { image: DynamicImage::ImageRgb8(picture), orientation: Orientation::NoTransforms }
 }
 
 /// The mask named as the video in a folder.

@@ -20,17 +20,20 @@ use crate::files::Staging;
 use crate::job::{Report, Watch};
 use crate::nail::Positions;
 use crate::nailvideo::error::NailVideoError;
-use crate::nailvideo::first::{Finder, FirstNail, upright};
+use crate::nailvideo::first::{Finder, FirstNail, NotOne, labelme, upright};
 use crate::nailvideo::follow::{Follower, Lost};
 use crate::nailvideo::normal::{SIDE, WindowSums, green};
 use crate::nailvideo::options::{Inputs, Light, NailVideoOptions, Outputs};
 use crate::nailvideo::press::{Recording, USE, noise_sd, rows};
 use crate::nailvideo::sample::{Colours, Planes, Region, Sampled, Sampler, cells, discs};
+use crate::photo::outline::ToDraw;
+use crate::photograph::Photograph;
 use crate::stages::{Stages, left_out};
 use crate::video::{End, Frame, Info, Item, Video};
 
 /// The first good frame, for LabelMe.
 const PICTURE: &str = "nail.png";
+const OUTLINE: &str = "nail.json";
 
 /// Reads where the photodiodes are; without a file the thesis' eight.
 ///
@@ -75,7 +78,9 @@ pub fn run(
     let mut counts = FrameCounts::default();
     let mut kept: Vec<Kept> = Vec::new();
     let mut at_work: Option<AtWork> = None;
-    let mut why_not = "no frame could be decoded".to_owned();
+    let mut why_not = finder.nowhere();
+    // What a person may correct.
+    let mut suggested: Option<Suggestion> = None;
     loop {
         watch.go_on()?;
         let Some(item) = video.next_item()? else { break };
@@ -89,12 +94,19 @@ pub fn run(
             (None, None) => Kept { index, time_s, place: Err(Lost::Undecoded), readings: Vec::new(), skin: f64::NAN },
             (None, Some(frame)) => {
                 if finder.looks_at(index) {
-                    match stages.time("find the nail", || finder.find(upright(frame, &info))) {
+                    let picture = upright(frame, &info);
+                    match stages.time("find the nail", || finder.find(&picture)) {
                         Ok(nail) => {
                             counts.first = index;
+                            job.suggest(&Suggestion { index, picture, seen: vec![nail.to_draw()] })?;
                             at_work = Some(job.begin(nail, frame, &positions, &kept)?);
                         }
-                        Err(why) => why_not = why,
+                        Err(NotOne { why, seen }) => {
+                            why_not = why;
+                            if suggested.as_ref().is_none_or(|one| one.seen.is_empty() && !seen.is_empty()) {
+                                suggested = Some(Suggestion { index, picture, seen });
+                            }
+                        }
                     }
                 }
                 match &mut at_work {
@@ -113,13 +125,27 @@ pub fn run(
     }
     stages.add("decode", video.decoding(), counts.all);
     let Some(work) = at_work else {
-        let path = inputs.outline.clone().unwrap_or_else(|| inputs.video.clone());
-        let remedy = if inputs.outline.is_some() {
-            ""
-        } else {
-            "; draw the nail of the first frame in LabelMe, label it `nail`, and give the file as --outline"
+        if let Some(outline) = &inputs.outline {
+            return Err(NailVideoError::Nail { path: outline.clone(), why: why_not });
+        }
+        let is_new = ![PICTURE, OUTLINE].iter().any(|name| outputs.folder.join(name).exists());
+        let remedy = match suggested.filter(|_| outputs.report && is_new) {
+            Some(suggestion) => {
+                job.suggest(&suggestion)?;
+                staging.commit()?;
+                let [picture, outline] = [PICTURE, OUTLINE].map(|name| outputs.folder.join(name).display().to_string());
+                format!(
+                    "frame {} is saved as {picture}, and what was seen on it as {outline}: correct that in LabelMe or \
+                     with `lunula edit {}` until one polygon is labelled `nail`, and give it as --outline",
+                    suggestion.index,
+                    outputs.folder.display()
+                )
+            }
+            None => {
+                "draw the nail of the first frame in LabelMe, label it `nail`, and give the file as --outline".into()
+            }
         };
-        return Err(NailVideoError::Nail { path, why: format!("{why_not}{remedy}") });
+        return Err(NailVideoError::Nail { path: inputs.video.clone(), why: format!("{why_not}; {remedy}") });
     };
     let mut report = job.finish(work, counts, &kept, &positions, watch)?;
     if let End::Early(why) = video.end() {
@@ -163,7 +189,23 @@ struct AtWork {
     ncc: Vec<f64>,
 }
 
+/// A frame and what was seen on it, for a person to correct.
+struct Suggestion {
+    index: u64,
+    picture: Photograph,
+    seen: Vec<ToDraw>,
+}
+
 impl Job<'_> {
+    /// Writes the first frame that is of use, and its outlines.
+    fn suggest(&self, Suggestion { index, picture, seen }: &Suggestion) -> Result<(), NailVideoError> {
+        let size = [picture.image.width(), picture.image.height()];
+        let shown = png(&picture.image).map_err(|why| self.staging.refused(PICTURE, why))?;
+        self.staging.write(PICTURE, &shown)?;
+        let outlines = labelme(seen, PICTURE, size, *index).map_err(|why| self.staging.refused(OUTLINE, why))?;
+        Ok(self.staging.write(OUTLINE, outlines.as_bytes())?)
+    }
+
     /// Begins with the nail of the first good frame; `kept` are the frames before it.
     fn begin(
         &self,
@@ -197,11 +239,6 @@ impl Job<'_> {
                 cells.add(row.time_s, &[])?;
             }
         }
-        let picture = upright(frame, self.info);
-        let size = [picture.width(), picture.height()];
-        let refused = |why: &dyn std::fmt::Display| self.staging.refused(PICTURE, why);
-        self.staging.write(PICTURE, &png(&picture.into()).map_err(|why| refused(&why))?)?;
-        self.staging.write("nail.json", nail.labelme(PICTURE, size).map_err(|why| refused(&why))?.as_bytes())?;
         Ok(AtWork {
             follower: Follower::new(frame, self.info.turn.quarters(), frame_from_nail),
             sampler,

@@ -27,19 +27,23 @@ pub(in crate::photo) struct DetectedOutline {
 impl DetectedOutline {
     /// What was detected on a photograph; `None` where that is nothing.
     pub(in crate::photo) fn of(photo: usize, picture: &Photograph, nails: &[Nail]) -> Option<Self> {
-        let found: Vec<ToDraw> = nails
-            .iter()
-            .filter(|n| n.source == Source::Detected)
-            .filter_map(|n| {
-                let confidence = n.confidence.unwrap_or(0.0);
-                Some(ToDraw { outline: n.outline.clone()?, axis: n.axis?, confidence, trusted: n.reason.is_empty() })
-            })
-            .collect();
+        let found = to_draw(nails);
         let size = [picture.image.width(), picture.image.height()];
         let mut file = to_file("", size, &found);
         mark_upright(&mut file, picture);
         (!found.is_empty()).then_some(Self { photo, file })
     }
+}
+
+/// Those of `nails` that were detected, trusted and doubtful ones, for a person to correct.
+pub(crate) fn to_draw(nails: &[Nail]) -> Vec<ToDraw> {
+    let detected = nails.iter().filter(|nail| nail.source == Source::Detected);
+    let one = |nail: &Nail| {
+        let confidence = nail.confidence.unwrap_or(0.0);
+        let (outline, axis) = (nail.outline.clone()?, nail.axis?);
+        Some(ToDraw { outline, axis, confidence, trusted: nail.reason.is_empty() })
+    };
+    detected.filter_map(one).collect()
 }
 
 /// The LabelMe files of detected outlines.

@@ -19,8 +19,8 @@ pub use axis::{AxisDoubt, AxisUnknown, FoundAxis, LEAST_CONFIDENCE, Side, axis_t
 pub use detect::training;
 pub use detect::{DetectOptions, Detected, Detections, Detector, NothingFound, detect, snap, template};
 pub use keep::SavedOutlines;
-pub(crate) use keep::relative;
 pub(super) use keep::{DetectedOutline, keep_outlines};
+pub(crate) use keep::{relative, to_draw};
 pub use mask::{DroppedRegion, MaskFault, MaskOutlines, MaskValues, TooLarge, outlines_from_mask, outlines_of_values};
 pub use moments::Moments;
 pub use refused::{Refusal, Refused};
