@@ -61,6 +61,9 @@ pub struct Frame<'a> {
     pub luma: Plane<'a>,
     /// Cb and Cr, of the same size each; none for grey video.
     pub chroma: Option<[Plane<'a>; 2]>,
+    /// How coarsely it is encoded: the mean quantization parameter of its blocks, 0 to 51; the step doubles with each 6.
+    /// `None` where the decoder doesn't tell (all but H.264).
+    pub quantizer: Option<f64>,
 }
 
 impl Frame<'_> {
@@ -125,6 +128,6 @@ impl Picture {
         let plane = |data, (width, height)| Plane { width, height, stride: width * bytes, depth, data };
         let luma = plane(&self.planes[0][..], (self.format.width, self.format.height));
         let chroma = self.format.chroma_size().map(|size| [plane(&self.planes[1], size), plane(&self.planes[2], size)]);
-        Frame { index, time_s, luma, chroma }
+        Frame { index, time_s, luma, chroma, quantizer: None }
     }
 }

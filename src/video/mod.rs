@@ -9,6 +9,7 @@ mod colour;
 mod error;
 mod frame;
 mod info;
+mod quantizer;
 mod read;
 mod turn;
 mod write;

@@ -187,6 +187,7 @@ struct AtWork {
     thumbnails: Option<Thumbnails>,
     se_px: Vec<f64>,
     ncc: Vec<f64>,
+    quantizer: Vec<f64>,
 }
 
 /// A frame and what was seen on it, for a person to correct.
@@ -250,6 +251,7 @@ impl Job<'_> {
             thumbnails: self.outputs.figures.then(Thumbnails::default),
             se_px: Vec::new(),
             ncc: Vec::new(),
+            quantizer: Vec::new(),
             nail,
         })
     }
@@ -300,6 +302,7 @@ impl Job<'_> {
         }
         work.se_px.push(place.se_px);
         work.ncc.push(place.ncc);
+        work.quantizer.extend(frame.and_then(|frame| frame.quantizer));
         Ok(Kept {
             place: Ok(place.se_px as f32),
             readings: work.readings[..work.photodiodes].to_vec(),
@@ -317,7 +320,7 @@ impl Job<'_> {
         positions: &Positions,
         watch: &Watch<'_>,
     ) -> Result<NailVideoReport, NailVideoError> {
-        let AtWork { nail, motion, cells, windows, thumbnails, se_px, ncc, sampler, .. } = work;
+        let AtWork { nail, motion, cells, windows, thumbnails, se_px, ncc, quantizer, sampler, .. } = work;
         motion.finish()?;
         if let Some(cells) = cells {
             cells.finish()?;
@@ -362,6 +365,7 @@ impl Job<'_> {
             photodiodes: (0..names.len()).map(|k| photodiode(&names[k], k, kept, noise[k])).collect(),
             se_px: middle(se_px.iter().copied()),
             correlation: middle(ncc.iter().copied()),
+            quantizer: middle(quantizer.iter().copied()),
             presses: pressed.iter().map(|row| row.press).max().unwrap_or(0),
             courses,
             presses_are_for: USE,

@@ -29,6 +29,8 @@ pub struct NailVideoFigures {
     pub se_px: Option<f64>,
     /// Correlation with the first good frame, median over frames.
     pub correlation: Option<f64>,
+    /// How coarsely the video is encoded: H.264's quantization parameter, median over frames; other codecs don't tell.
+    pub quantizer: Option<f64>,
     /// Presses found, each with its release or not.
     pub presses: usize,
     /// Courses of presses and releases that have figures, and those that are refused, by reason.

@@ -16,10 +16,12 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use ffmpeg::frame;
+use ffmpeg::frame::side_data::Type;
 use ffmpeg_next as ffmpeg;
 
 use crate::video::colour::convert;
 use crate::video::info::info;
+use crate::video::quantizer;
 use crate::video::read::ahead::{Events, Told};
 use crate::video::read::reader::{Alarm, Event, Reader};
 use crate::video::read::source::Care;
@@ -264,5 +266,6 @@ fn borrow<'a>(picture: &'a frame::Video, format: &Format, index: u64, time_s: f6
         time_s,
         luma: plane(0, (format.width, format.height)),
         chroma: format.chroma_size().map(|size| [plane(1, size), plane(2, size)]),
+        quantizer: picture.side_data(Type::VIDEO_ENC_PARAMS).and_then(|data| quantizer::mean(data.data())),
     }
 }

@@ -14,6 +14,7 @@ use ffmpeg_next as ffmpeg;
 
 use crate::input::open_regular;
 use crate::video::VideoError;
+use crate::video::quantizer;
 use crate::video::read::extent::{self, Extent};
 use crate::video::read::hidden::HiddenPackets;
 
@@ -176,6 +177,9 @@ fn decoder(stream: &Stream<'_>, threads: usize, care: Care) -> Result<ffmpeg::de
     let mut options = Dictionary::new();
     if is_threaded(id) {
         options.set("err_detect", "explode");
+    }
+    if id == Id::H264 {
+        options.set(quantizer::EXPORT.0, quantizer::EXPORT.1);
     }
     let mut decoder = context.decoder();
     decoder.set_packet_time_base(stream.time_base());
