@@ -266,7 +266,8 @@ fn photodiodes_beside_the_nail_are_refused_and_those_at_one_place_are_named() {
     };
     let job = format!("{JOB} --positions p.toml");
     dir.write("p.toml", places(3.0, 0.0));
-    words(&dir, &job).expect(2).says("p.toml").says("outside of the nail");
+    let named = "outside of the nail: P1 at u = 3, v = 0; P2 at u = 3, v = 0; P3 at u = 3, v = 0;";
+    words(&dir, &job).expect(2).says("p.toml").says(named);
     assert!(!dir.path("out").exists());
     dir.write("p.toml", places(0.1, 0.1));
     words(&dir, &job).expect(0).says("P1, P2, P3 lie at one place");
@@ -278,7 +279,7 @@ fn photodiodes_beside_the_nail_are_refused_and_those_at_one_place_are_named() {
 fn two_frames_have_values_and_no_standard_errors_and_no_press() {
     let dir = Dir::new();
     words(&dir, &SCENE.replace("--seconds 6", "--seconds 0.0667")).expect(0);
-    words(&dir, &JOB.replace("--no-figures ", "")).expect(0);
+    words(&dir, &JOB.replace("--no-figures ", "")).expect(0).says("no standard errors");
     let rows = dir.table("out/photodiodes.csv");
     assert_eq!(rows.len(), 2);
     assert!(rows.iter().all(|row| number(&row["P1"]).is_some() && row["P1_sd"].is_empty()), "{rows:?}");

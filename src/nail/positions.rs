@@ -138,7 +138,7 @@ impl Positions {
             return fault(format!("{count} photodiodes; give 1 to {MOST} [[photodiode]] tables"));
         }
         let mut names = BTreeSet::new();
-        for Position { name, u, v } in &self.photodiodes {
+        for Position { name, .. } in &self.photodiodes {
             let letters = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
             if !(letters && name.starts_with(|c: char| c.is_ascii_alphabetic())) {
                 return fault(format!("a photodiode is called {name:?}; use letters, digits and _, a letter first"));
@@ -146,12 +146,15 @@ impl Positions {
             if !names.insert(name) {
                 return fault(format!("two photodiodes are called {name}"));
             }
-            if !(u.abs() <= 1.0 && v.abs() <= 1.0) {
-                return fault(format!(
-                    "{name} at u = {u}, v = {v} lies outside of the nail; u and v are -1 to 1 (half widths, half \
-                     lengths)"
-                ));
-            }
+        }
+        let is_outside = |one: &&Position| !(one.u.abs() <= 1.0 && one.v.abs() <= 1.0);
+        let outside = self.photodiodes.iter().filter(is_outside);
+        let outside: Vec<String> = outside.map(|one| format!("{} at u = {}, v = {}", one.name, one.u, one.v)).collect();
+        if !outside.is_empty() {
+            return fault(format!(
+                "outside of the nail: {}; u and v are -1 to 1 (half widths, half lengths)",
+                outside.join("; ")
+            ));
         }
         Ok(self)
     }
@@ -171,10 +174,11 @@ mod tests {
     }
 
     #[test]
-    fn a_place_outside_of_the_nail_is_named() {
-        let text = "name = 'x'\nnail_width_mm = 12\ndiameter_mm = 1\n[[photodiode]]\nname = 'P3'\nu = 1.2\nv = 0\n";
+    fn all_places_outside_of_the_nail_are_named() {
+        let text = "name = 'x'\nnail_width_mm = 12\ndiameter_mm = 1\n[[photodiode]]\nname = 'P3'\nu = 1.2\nv = 0\n\
+                    [[photodiode]]\nname = 'P4'\nu = 1\nv = 0\n[[photodiode]]\nname = 'P5'\nu = 0\nv = -3\n";
         let fault = Positions::from_toml(text).unwrap_err().to_string();
-        assert!(fault.contains("P3") && fault.contains("outside of the nail"), "{fault}");
+        assert!(fault.starts_with("outside of the nail: P3 at u = 1.2, v = 0; P5 at u = 0, v = -3;"), "{fault}");
         let nan = Positions::from_toml(&text.replace("1.2", "nan")).unwrap_err().to_string();
         assert!(nan.contains("outside"), "{nan}");
     }

@@ -7,7 +7,7 @@
 
 use std::collections::VecDeque;
 
-use super::register::Fit;
+use super::register::{Fit, MOST_LAST_STEP_PX};
 use super::template::Template;
 use crate::nailvideo::affine::Affine;
 
@@ -48,8 +48,6 @@ const MOST_OUTSIDE: f64 = 0.2;
 /// The normalized luma against the template's, of what the first frames had: less is blur (0.4 of the gradient's
 /// energy), more is another thing.
 const GAINS: std::ops::RangeInclusive<f64> = 0.63..=1.6;
-/// The last step of a fit that has not ended, pixels.
-const MOST_LAST_STEP_PX: f64 = 0.1;
 /// What standard errors are enlarged by: the nail shown by an encoder is off as a whole, which no residual shows
 /// (measured on the phantom: errors are 1.2 to 2.6 times what blocks alone say at a rate factor of 18, 3.5 to 4.1 times
 /// at 30 with jerks and blur).

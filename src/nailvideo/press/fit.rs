@@ -2,8 +2,8 @@
 //! finger presses or lets go at once; or stretched, exp(-(t/tau)^beta).
 //!
 //! The step is taken unless the data say otherwise, the ramp in little noise. A coarse search over onset and tau finds
-//! the minimum that Levenberg-Marquardt steps then refine. The intervals hold the noise with its correlation in time,
-//! the choice of the end level, and the choice of the model.
+//! the minimum that Levenberg-Marquardt steps then refine. A ramp shorter than a frame has its length held. The
+//! intervals hold the noise with its correlation in time, the choice of the end level, and the choice of the model.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -123,14 +123,27 @@ pub(super) fn fit(time_s: &[f64], values: &[f64], near_s: f64, rest: Option<f64>
     };
     let simplest = if fits.first().is_some_and(is_clear) { Model::Ramp } else { Model::Step };
     let good_enough = fits.iter().position(|one| one.model == simplest && behind(one, &fits[0]) <= BETTER);
-    let taken = fits.remove(good_enough.unwrap_or(0));
+    let mut taken = fits.remove(good_enough.unwrap_or(0));
     let model = taken.model;
-    let others: Vec<&Fitted> = fits.iter().filter(|one| behind(one, &taken) <= MUCH_BETTER).collect();
+    let span_s = time_s[time_s.len() - 1] - time_s[0];
+    let frame_s = span_s / (n - 1.0).max(1.0);
+    let length_s = taken.parameters[2].exp();
+    if model == Model::Ramp && length_s < frame_s {
+        // Frames do not show how long it was, so that its length is held; what it may be is the choice of the model.
+        let held = |length_s: f64| {
+            let mut start = taken.parameters;
+            start[2] = length_s.ln();
+            refine(model, time_s, values, start, &[0, 1, 3, 4])
+        };
+        fits.extend([*RAMPS_S.start(), frame_s].into_iter().filter_map(held));
+        taken = held(length_s)?;
+    }
+    fits.retain(|one| behind(one, &taken) <= MUCH_BETTER);
     let at_rest = rest.and_then(|level| {
         let mut start = taken.parameters;
         start[4] = level;
-        let free: &[usize] = if model == Model::Step { &[0, 1, 3] } else { &[0, 1, 2, 3] };
-        refine(model, time_s, values, start, free)
+        let free: Vec<usize> = taken.free.iter().copied().filter(|&k| k != 4).collect();
+        refine(model, time_s, values, start, &free)
     });
     // An end level that the data refuse is not a choice.
     let at_rest = at_rest.filter(|one| one.sum <= 1.5 * taken.sum);
@@ -147,11 +160,10 @@ pub(super) fn fit(time_s: &[f64], values: &[f64], near_s: f64, rest: Option<f64>
         let slopes = DVector::from_iterator(taken.free.len(), taken.free.iter().map(slope));
         let variance = (slopes.transpose() * &taken.inverse * &slopes)[(0, 0)] * sd * sd * factor;
         let shift = |one: &Fitted| of(one.model, &one.parameters) - value;
-        let models = others.iter().map(|one| shift(one).abs()).fold(0.0, f64::max);
+        let models = fits.iter().map(|one| shift(one).abs()).fold(0.0, f64::max);
         let half = (SES * SES * variance + models.powi(2) + at_rest.as_ref().map_or(0.0, shift).powi(2)).sqrt();
         Interval { value, low: value - half, high: value + half }
     };
-    let frame_s = (time_s[time_s.len() - 1] - time_s[0]) / (n - 1.0).max(1.0);
     let course = Course {
         onset_s: wider(interval(&|_, p| p[0]), frame_s),
         t50_s: interval(&|model, p| to_share(model, p, 0.5)),
@@ -164,7 +176,6 @@ pub(super) fn fit(time_s: &[f64], values: &[f64], near_s: f64, rest: Option<f64>
     };
     let all = [course.onset_s, course.t50_s, course.t90_s, course.tau_s];
     // An onset's interval longer than what was looked at says that nothing is known.
-    let span_s = time_s[time_s.len() - 1] - time_s[0];
     let is_known = course.onset_s.high - course.onset_s.low <= 2.0 * span_s;
     (is_known && all.iter().all(|one| one.low.is_finite() && one.high.is_finite())).then_some(course)
 }

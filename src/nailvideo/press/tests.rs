@@ -69,6 +69,29 @@ fn onsets_and_times_are_covered_by_their_intervals() {
 }
 
 #[test]
+fn a_ramp_shorter_than_a_frame_has_an_onset() {
+    const PARTS: u32 = 20;
+    let (mut held, mut widest) = (0, 0.0);
+    for seed in 0..100 {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let onset_s = seed as f64 / 100.0 / RATE_HZ;
+        let ramp_s = (seed % 5 + 1) as f64 / 5.0 / RATE_HZ;
+        let time_s: Vec<f64> = (-60..90).map(|k| f64::from(k) / RATE_HZ).collect();
+        let values = time_s.iter().map(|t| {
+            let noise: f64 = StandardNormal.sample(&mut random);
+            let since_s = |part: u32| t - onset_s - ramp_s * (f64::from(part) + 0.5) / f64::from(PARTS);
+            let reached = (0..PARTS).map(|part| 1.0 - (-since_s(part).max(0.0) / 0.2).exp());
+            100.0 * reached.sum::<f64>() / f64::from(PARTS) + noise
+        });
+        let onset = fit(&time_s, &values.collect::<Vec<f64>>(), 0.0, None).expect("a course").onset_s;
+        held += usize::from(onset.low <= onset_s && onset_s <= onset.high);
+        widest = f64::max(widest, onset.high - onset.low);
+    }
+    println!("{held} of 100 held, widest interval {widest:.3} s");
+    assert!(held >= 90 && widest <= 0.2, "{held} {widest}");
+}
+
+#[test]
 fn a_video_without_a_press_gives_no_figures() {
     for seed in 0..300 {
         let (time_s, mut values) = trace(0.0, [0.2, 0.2], 8.0, 0.5, 20.0, seed);

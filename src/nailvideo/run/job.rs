@@ -381,6 +381,9 @@ impl Job<'_> {
         if self.info.grey && self.options.light.is_none() {
             report.warnings.push("the video is grey: light is not taken off (--light none)".to_owned());
         }
+        if noise.iter().all(Option::is_none) {
+            report.warnings.push("too few frames to know the photodiodes' noise: no standard errors".to_owned());
+        }
         if report.frames.first > 0 {
             let first = report.frames.first;
             report.notes.push(format!("no nail was found before frame {first}; the nail is followed from there on"));

@@ -155,7 +155,7 @@ pub struct NailVideoOptions {
     #[arg(long = "normalized", value_name = "FRAMES")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub normalized_every: Option<usize>,
-    /// The encoder's constant rate factor: 0 lossless, 51 worst
+    /// The encoder's constant rate factor: 0 lossless, 51 worst; x264 and x265 have different scales
     #[arg(long, default_value_t = 18)]
     pub crf: u32,
     /// Codec and preset

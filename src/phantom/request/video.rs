@@ -140,7 +140,7 @@ pub struct VideoRequest {
     /// Bits a sample: 8 or 10
     #[arg(long, default_value_t = 8)]
     depth: u32,
-    /// The encoder's constant rate factor: 0 lossless, 51 worst
+    /// The encoder's constant rate factor: 0 lossless, 51 worst; x264 and x265 have different scales
     #[arg(long)]
     crf: Option<u32>,
     #[command(flatten)]
