@@ -49,9 +49,13 @@ const MOST_OUTSIDE: f64 = 0.2;
 /// energy), more is another thing.
 const GAINS: std::ops::RangeInclusive<f64> = 0.63..=1.6;
 /// What standard errors are enlarged by: the nail shown by an encoder is off as a whole, which no residual shows
-/// (measured on the phantom: errors are 1.2 to 2.6 times what blocks alone say at a rate factor of 18, 3.5 to 4.1 times
-/// at 30 with jerks and blur).
-const AS_A_WHOLE: f64 = 2.8;
+/// (measured on the phantom: errors are 1.9 times what blocks alone say at rest, 3.2 under pressing up to a
+/// quantization parameter of 19, 4.2 at 26 and 7.3 at 32).
+const AS_A_WHOLE: f64 = 3.0;
+/// .. up to this quantization parameter, and twice as much for each so many more. Where the parameter isn't known, as
+/// up to it.
+const FINE: f64 = 21.6;
+const DOUBLED_BY: f64 = 7.5;
 
 /// Why the nail is not followed in a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -221,10 +225,12 @@ pub(in crate::nailvideo) struct Place {
     pub(in crate::nailvideo) inliers: f64,
 }
 
-/// Judges a fit; `expected` is where the nail was expected, and `width_px` the nail's width.
+/// Judges a fit; `expected` is where the nail was expected, `width_px` the nail's width, `quantizer` the frame's
+/// quantization parameter.
 pub(super) fn judge(
     fit: &Fit,
     template: &Template,
+    quantizer: Option<f64>,
     usual: &Usual,
     after: After,
     expected: Option<&Affine>,
@@ -251,7 +257,7 @@ pub(super) fn judge(
     if !GAINS.contains(&gain) {
         return Err(if gain < 1.0 { Lost::Blurred } else { Lost::Unlike });
     }
-    let se_px = se_px(fit);
+    let se_px = se_px(fit, quantizer);
     let is_sure = se_px <= MOST_SE_PX && fit.last_step_px <= MOST_LAST_STEP_PX;
     if !is_sure {
         return Err(Lost::Unsure);
@@ -266,9 +272,10 @@ pub(super) fn judge(
 }
 
 /// Root mean square over the nail of the place's standard error.
-fn se_px(fit: &Fit) -> f64 {
+fn se_px(fit: &Fit, quantizer: Option<f64>) -> f64 {
     // The mean square of local coordinates over a box; cross terms cancel about the middle.
     let c = &fit.covariance;
     let one = |k: usize| (c[(k, k)] + c[(k + 1, k + 1)]) / 3.0 + c[(k + 2, k + 2)];
-    AS_A_WHOLE * (one(0) + one(3)).sqrt()
+    let coarser = quantizer.map_or(0.0, |parameter| (parameter - FINE).max(0.0));
+    AS_A_WHOLE * (coarser / DOUBLED_BY).exp2() * (one(0) + one(3)).sqrt()
 }

@@ -206,7 +206,7 @@ impl Follower {
     ) -> Result<(Place, Fit), Lost> {
         let sight = self.sight(frame, &start, self.step).ok_or(Lost::Outside)?;
         let fit = register(&self.fine, &sight, start, &mut self.scratch).ok_or(Lost::Unlike)?;
-        judge(&fit, &self.fine, &self.usual, after, expected, self.width_px).map(|place| (place, fit))
+        judge(&fit, &self.fine, frame.quantizer, &self.usual, after, expected, self.width_px).map(|place| (place, fit))
     }
 
     /// A better start, from coarser pictures.

@@ -42,10 +42,10 @@ const DARK: f64 = 0.02;
 /// rate factor of 18: they keep a flat place's mean to a step or so; a uniform error of a step is 0.29).
 const CHROMA_SD: f64 = 0.12;
 /// A change at a place is off by this many pixels over the place's diameter, SD, as chroma is coarser than luma and
-/// encoders leave out what is small (measured on the phantom: green over red changes by 1 to 2 % too little at 16 px,
-/// by 3 to 20 % at 3.3 px; green, which is luma for the most part, by half as much).
-const RATIO_CHANGE_PX: f64 = 0.3;
-const GREEN_CHANGE_PX: f64 = 0.2;
+/// encoders leave out what is small (measured on the phantom: green over red is off by 1 % of its change at 16 px, by
+/// 7 % at 3.3 px; green, which is luma for the most part, by half as much).
+const RATIO_CHANGE_PX: f64 = 0.22;
+const GREEN_CHANGE_PX: f64 = 0.1;
 /// Slopes and curvatures are measured over so many pixels to each side, and once in so many frames, as is how the discs
 /// of [`noise`] change.
 const SLOPE_PX: f64 = 1.5;

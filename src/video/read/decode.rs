@@ -266,6 +266,9 @@ fn borrow<'a>(picture: &'a frame::Video, format: &Format, index: u64, time_s: f6
         time_s,
         luma: plane(0, (format.width, format.height)),
         chroma: format.chroma_size().map(|size| [plane(1, size), plane(2, size)]),
-        quantizer: picture.side_data(Type::VIDEO_ENC_PARAMS).and_then(|data| quantizer::mean(data.data())),
+        quantizer: picture
+            .side_data(Type::VIDEO_ENC_PARAMS)
+            .and_then(|data| quantizer::mean(data.data()))
+            .map(|parameter| parameter - quantizer::A_BIT * f64::from(format.depth.saturating_sub(8))),
     }
 }
