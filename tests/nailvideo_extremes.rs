@@ -89,6 +89,21 @@ fn without_a_nail_there_is_a_picture_to_draw_it_on() {
 }
 
 #[test]
+fn strong_compression_is_a_warning_and_makes_standard_errors_larger() {
+    let dir = Dir::new();
+    let [fine, strong] = [18, 36].map(|crf| {
+        words(&dir, &format!("phantom nailvideo --seconds 2 --crf {crf} --x264 veryfast --out s{crf}")).expect(0);
+        let job = format!("nailvideo s{crf}/video.mp4 --outline s{crf}/outline.json --no-figures --json --out o{crf}");
+        words(&dir, &job).expect(0).json()
+    });
+    let of = |report: &Value, name: &str| report[name].as_f64().expect("known");
+    let warns = |report: &Value| report["warnings"].to_string().contains("strongly compressed");
+    assert!(of(&fine, "quantizer") < 24.0 && !warns(&fine), "{fine}");
+    assert!(of(&strong, "quantizer") > 28.0 && warns(&strong), "{strong}");
+    assert!(of(&strong, "se_px") > 2.0 * of(&fine, "se_px"), "{strong}");
+}
+
+#[test]
 fn of_two_nails_none_is_chosen() {
     let dir = Dir::new();
     words(&dir, &REST.replace("--seconds 6", "--seconds 1")).expect(0);

@@ -7,12 +7,14 @@ use crate::nailvideo::{Row, number, words};
 use crate::util::Dir;
 
 /// The scenes of the design, and what is asked of each: RMS error of the nail's place, pixels.
-const SCENES: [(&str, &str, f64); 5] = [
+const SCENES: [(&str, &str, f64); 7] = [
     ("still", "--protocol rest --seconds 5 --drift 0 --turn 0 --scale 0 --tilt 0", 0.08),
     ("press", "--seconds 6", 0.20),
     ("light", "--seconds 6 --gradient 12 --light-drift 12 --flicker 5 --tilt 3 --rod 60+50", 0.40),
     ("hard", "--seconds 6 --crf 30 --jerk 8 --blur 0.5", 0.8),
     ("small", "--seconds 6 --nail-px 40", 0.25),
+    ("crf 23", "--seconds 6 --crf 23", 0.20),
+    ("crf 36", "--seconds 6 --crf 36", 0.8),
 ];
 
 fn motion(row: &Row) -> Option<[f64; 6]> {
@@ -105,6 +107,7 @@ fn errors_of_the_scenes() {
         println!("{scene}: place {} px", say(&places));
         println!("    green {} (of 255); 100 ln(green / red) {}", say(&green), say(&ratio));
         println!("    hidden {covered} of {hidden}; missing though bare {lost} of {bare}");
+        assert!([&places, &ratio].iter().all(|errors| errors.within(2.0) >= 0.9), "{scene}: standard errors too small");
         assert!(places.rms() <= bar && covered == hidden && lost * 50 <= bare, "{scene}");
     }
 }

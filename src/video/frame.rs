@@ -61,8 +61,8 @@ pub struct Frame<'a> {
     pub luma: Plane<'a>,
     /// Cb and Cr, of the same size each; none for grey video.
     pub chroma: Option<[Plane<'a>; 2]>,
-    /// How coarsely it is encoded: the mean quantization parameter of its blocks, 0 to 51; the step doubles with each 6.
-    /// `None` where the decoder doesn't tell (all but H.264).
+    /// How coarsely it is encoded: the mean quantization parameter of its blocks, 0 to 51; the step doubles with each
+    /// 6. `None` where the decoder doesn't tell (all but H.264).
     pub quantizer: Option<f64>,
 }
 

@@ -1,7 +1,8 @@
 //! How coarsely a frame is encoded: the quantization parameters of its blocks, as the decoder of H.264 tells them.
 //!
-//! In: FFmpeg's side data of a frame (`AVVideoEncParams`, libavutil/video_enc_params.h, read as bytes). Out: their mean.
-//! A parameter of 0 to 51; the quantization step doubles with each 6 (ITU-T H.264, 8.5.9). Other codecs tell nothing.
+//! In: FFmpeg's side data of a frame (`AVVideoEncParams`, libavutil/video_enc_params.h, read as bytes). Out: their
+//! mean. A parameter of 0 to 51; the quantization step doubles with each 6 (ITU-T H.264, 8.5.9). Other codecs tell
+//! nothing.
 
 /// The option that has a decoder tell them.
 pub(super) const EXPORT: (&str, &str) = ("export_side_data", "venc_params");

@@ -392,8 +392,9 @@ impl Job<'_> {
         }
         match quantizer {
             Some(parameter) if parameter >= STRONG => report.warnings.push(format!(
-                "the video is strongly compressed (its quantization parameter is {parameter:.0}): places and values err \
-                 by several times what they do in a good one, as their standard errors say; film with a higher bit rate"
+                "the video is strongly compressed (its quantization parameter is {parameter:.0}): places and values \
+                 err by several times what they do in a good one, as their standard errors say; film with a higher \
+                 bit rate"
             )),
             Some(_) => {}
             None => report.notes.push(format!(
@@ -421,8 +422,8 @@ impl Job<'_> {
     }
 }
 
-/// From this quantization parameter on, and twice as much for each so many more, a photodiode's error is larger than its
-/// noise: encoders leave out small changes, for as long as they stay small (measured on the phantom under pressing:
+/// From this quantization parameter on, and twice as much for each so many more, a photodiode's error is larger than
+/// its noise: encoders leave out small changes, for as long as they stay small (measured on the phantom under pressing:
 /// errors are 0.9 to 1.1 times what noise alone says at 12 to 19, 1.6 times at 26, twice at 32). Where it isn't known,
 /// nothing is added.
 const COARSE: f64 = 21.6;
