@@ -89,6 +89,12 @@ impl Grid {
         frame.chroma.map(|planes| planes.map(grid))
     }
 
+    /// Values times a weight each, of two grids of the same places.
+    pub(in crate::nailvideo) fn combined(&self, [own, others]: [f32; 2], other: &Self) -> Self {
+        let values = self.values.iter().zip(&other.values).map(|(one, two)| own * one + others * two).collect();
+        Self { values, ..self.clone() }
+    }
+
     /// The value at a point of the picture, bilinear; beyond the outermost middles by up to a block theirs, NaN farther
     /// out.
     #[inline]

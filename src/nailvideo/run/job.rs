@@ -8,6 +8,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
 
+use image::GrayImage;
 use ndarray_npy::WriteNpyExt;
 
 use super::draw::{Thumbnails, draw};
@@ -188,6 +189,8 @@ struct AtWork {
     se_px: Vec<f64>,
     ncc: Vec<f64>,
     quantizer: Vec<f64>,
+    /// The last normalized frame, which is written while the next one is made.
+    frame: Option<(u64, GrayImage)>,
 }
 
 /// A frame and what was seen on it, for a person to correct.
@@ -252,8 +255,19 @@ impl Job<'_> {
             se_px: Vec::new(),
             ncc: Vec::new(),
             quantizer: Vec::new(),
+            frame: None,
             nail,
         })
+    }
+
+    /// Writes a normalized frame.
+    fn write_frame(&self, frame: Option<(u64, GrayImage)>) -> Result<(), NailVideoError> {
+        let Some((index, picture)) = frame else { return Ok(()) };
+        let name = format!("frames/{index:06}.png");
+        let mut bytes = Vec::new();
+        encode_png(&picture, [SIDE as u32; 2], image::ExtendedColorType::L8, &mut bytes)
+            .map_err(|why| self.staging.refused(&name, why))?;
+        Ok(self.staging.write(&name, &bytes)?)
     }
 
     /// A frame.
@@ -289,13 +303,12 @@ impl Job<'_> {
             work.windows.iter_mut().for_each(|window| window.add(time_s, &colours, &frame_from_nail));
         });
         if self.outputs.frames {
-            self.stages.time("normalized frames", || {
-                let name = format!("frames/{index:06}.png");
-                let (picture, mut bytes) = (green(&colours, &frame_from_nail), Vec::new());
-                encode_png(&picture, [SIDE as u32; 2], image::ExtendedColorType::L8, &mut bytes)
-                    .map_err(|why| self.staging.refused(&name, why))?;
-                self.staging.write(&name, &bytes)
-            })?;
+            let before = work.frame.take();
+            let (written, picture) = self.stages.time("normalized frames", || {
+                rayon::join(|| self.write_frame(before), || green(&colours, &frame_from_nail))
+            });
+            written?;
+            work.frame = Some((index, picture));
         }
         if let Some(thumbnails) = &mut work.thumbnails {
             self.stages.time("figures", || thumbnails.offer(time_s, &colours, &frame_from_nail));
@@ -320,7 +333,8 @@ impl Job<'_> {
         positions: &Positions,
         watch: &Watch<'_>,
     ) -> Result<NailVideoReport, NailVideoError> {
-        let AtWork { nail, motion, cells, windows, thumbnails, se_px, ncc, quantizer, sampler, .. } = work;
+        let AtWork { nail, motion, cells, windows, thumbnails, se_px, ncc, quantizer, sampler, frame, .. } = work;
+        self.write_frame(frame)?;
         motion.finish()?;
         if let Some(cells) = cells {
             cells.finish()?;

@@ -1,5 +1,7 @@
 //! Colours of a frame about the nail, read through its motion.
 
+use wide::f32x4;
+
 use super::region::Group;
 use crate::nailvideo::affine::Affine;
 use crate::nailvideo::grid::{Grid, Part, samples, shown_size};
@@ -31,6 +33,27 @@ pub(in crate::nailvideo) struct Colours {
     matrix: Matrix,
 }
 
+/// Green of a frame, which is linear in the samples.
+pub(in crate::nailvideo) struct Green<'a> {
+    /// With its weight.
+    luma: (f32, &'a Grid),
+    /// What chroma adds, or, in a grey video, what it adds everywhere.
+    chroma: Result<Grid, f32>,
+    added: f32,
+}
+
+impl Green<'_> {
+    /// Of four points: the second of [`Colours::at`].
+    #[inline]
+    pub(in crate::nailvideo) fn four(&self, x: f32x4, y: f32x4) -> f32x4 {
+        let of_chroma = match &self.chroma {
+            Ok(grid) => grid.four(x, y),
+            Err(everywhere) => f32x4::splat(*everywhere),
+        };
+        f32x4::splat(self.luma.0) * self.luma.1.four(x, y) + of_chroma + f32x4::splat(self.added)
+    }
+}
+
 impl Colours {
     /// Of the part of a frame in which the nail's box, and a quarter more, lies; `None` where that is off the picture.
     pub(in crate::nailvideo) fn new(frame: &Frame<'_>, planes: Planes, frame_from_nail: &Affine) -> Option<Self> {
@@ -53,6 +76,24 @@ impl Colours {
     /// Red, green and blue of a point, fraction of full scale; all luma in a grey video; NaN off the picture.
     pub(in crate::nailvideo) fn at(&self, [x, y]: [f64; 2]) -> [f64; 3] {
         self.rgb(self.samples([x as f32, y as f32]).map(f64::from))
+    }
+
+    /// The green alone, for points between these corners; `None` where some lie too near the picture's border.
+    pub(in crate::nailvideo) fn green(&self, corners: [[f64; 2]; 4]) -> Option<Green<'_>> {
+        let corners = corners.map(|corner| corner.map(|at| at as f32));
+        let holds = self.luma.holds(&corners) && self.chroma.iter().flatten().all(|grid| grid.holds(&corners));
+        let green = |samples: [f64; 3]| self.rgb(samples)[1];
+        let none = green([0.0; 3]);
+        let [luma, cb, cr] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|one| (green(one) - none) as f32);
+        let added = none as f32;
+        holds.then(|| Green {
+            luma: (luma, &self.luma),
+            chroma: match &self.chroma {
+                Some([of_cb, of_cr]) => Ok(of_cb.combined([cb, cr], of_cr)),
+                None => Err(128.0 * (cb + cr)),
+            },
+            added,
+        })
     }
 
     /// By how much a level of 255 of Cb and of Cr changes red, green and blue; nothing in a grey video.
