@@ -75,7 +75,7 @@ fn without_a_nail_there_is_a_picture_to_draw_it_on() {
     let mut bare = pictures(&dir.path("s/video.mp4"))[0].clone();
     let shown = bare.format;
     bare.planes.iter_mut().for_each(|plane| plane.fill(128));
-    write(&dir.path("bare.mp4"), Turn::None, at_30_hz(vec![bare; 12].into_iter()));
+    write(&dir.path("bare.mp4"), Turn::None, at_30_hz(vec![bare; 12]));
     let none = words(&dir, "nailvideo bare.mp4 --out out").expect(1);
     none.says("no nail was found").says("frame 0 is saved as out/nail.png").says("--outline");
     let picture = image::open(dir.path("out/nail.png")).expect("a picture");

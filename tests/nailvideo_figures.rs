@@ -166,7 +166,8 @@ fn recording(dir: &Dir, scene: &str, is_exact: bool) -> String {
     let mut text = format!("time_s,{},{}\n", names.join(","), forces.join(","));
     for (seen, truth) in seen.iter().zip(&truth) {
         let exact = |name: &String| {
-            let [green, red] = [name.clone(), format!("{name}_red")].map(|column| number(&truth[&column]).unwrap());
+            let [green, red] =
+                [name.clone(), format!("{name}_red")].map(|column| number(&truth[&column]).expect("a number"));
             (100.0 * (green / red).ln()).to_string()
         };
         let value = |name: &String| if is_exact { exact(name) } else { seen[name].clone() };

@@ -114,7 +114,9 @@ impl Finder {
     pub(in crate::nailvideo) fn nowhere(&self) -> String {
         match self.drawn_on {
             0 => "no frame could be decoded".to_owned(),
-            frame => format!("is drawn on frame {frame} (`{DRAWN_ON}`), which the video does not have"),
+            frame => format!(
+                "is drawn on frame {frame} (`{DRAWN_ON}`), which the video does not have, or which can't be decoded"
+            ),
         }
     }
 

@@ -90,7 +90,7 @@ impl Default for NailVideoOptions {
 pub struct Inputs {
     /// The video.
     pub video: PathBuf,
-    /// The nail in the first frame: a LabelMe file, or a mask.
+    /// The nail in the first frame: a LabelMe file (which may name another frame, as `nail.json` does), or a mask.
     pub outline: Option<PathBuf>,
     /// Where the photodiodes are; without a file the thesis' eight.
     pub positions: Option<PathBuf>,

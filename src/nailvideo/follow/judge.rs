@@ -52,8 +52,7 @@ const GAINS: std::ops::RangeInclusive<f64> = 0.63..=1.6;
 /// (measured on the phantom: errors are 1.9 times what blocks alone say at rest, 3.2 under pressing up to a
 /// quantization parameter of 19, 4.2 at 26 and 7.3 at 32).
 const AS_A_WHOLE: f64 = 3.0;
-/// .. up to this quantization parameter, and twice as much for each so many more. Where the parameter isn't known, as
-/// up to it.
+/// .. up to this quantization parameter, and twice as much for each so many more.
 const FINE: f64 = 21.6;
 const DOUBLED_BY: f64 = 7.5;
 
@@ -271,11 +270,15 @@ pub(super) fn judge(
     Ok(Place { motion: fit.motion, se_px, ncc: fit.ncc, inliers: fit.inliers })
 }
 
+/// By how much a quantization parameter is above the one up to which errors do not grow; where it isn't known, not.
+pub(in crate::nailvideo) fn beyond_fine(quantizer: Option<f64>) -> f64 {
+    quantizer.map_or(0.0, |parameter| (parameter - FINE).max(0.0))
+}
+
 /// Root mean square over the nail of the place's standard error.
 fn se_px(fit: &Fit, quantizer: Option<f64>) -> f64 {
     // The mean square of local coordinates over a box; cross terms cancel about the middle.
     let c = &fit.covariance;
     let one = |k: usize| (c[(k, k)] + c[(k + 1, k + 1)]) / 3.0 + c[(k + 2, k + 2)];
-    let coarser = quantizer.map_or(0.0, |parameter| (parameter - FINE).max(0.0));
-    AS_A_WHOLE * (coarser / DOUBLED_BY).exp2() * (one(0) + one(3)).sqrt()
+    AS_A_WHOLE * (beyond_fine(quantizer) / DOUBLED_BY).exp2() * (one(0) + one(3)).sqrt()
 }

@@ -13,7 +13,7 @@ mod template;
 #[cfg(test)]
 mod tests;
 
-pub(in crate::nailvideo) use judge::{Lost, Place};
+pub(in crate::nailvideo) use judge::{Lost, Place, beyond_fine};
 
 use judge::{After, Usual, judge};
 use register::{Fit, Scratch, register};

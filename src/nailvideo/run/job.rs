@@ -22,7 +22,7 @@ use crate::job::{Report, Watch};
 use crate::nail::Positions;
 use crate::nailvideo::error::NailVideoError;
 use crate::nailvideo::first::{Finder, FirstNail, NotOne, labelme, upright};
-use crate::nailvideo::follow::{Follower, Lost};
+use crate::nailvideo::follow::{Follower, Lost, beyond_fine};
 use crate::nailvideo::normal::{SIDE, WindowSums, green};
 use crate::nailvideo::options::{Inputs, Light, NailVideoOptions, Outputs};
 use crate::nailvideo::press::{Recording, USE, noise_sd, rows};
@@ -345,7 +345,7 @@ impl Job<'_> {
         let noise: Vec<Option<f64>> = traces.iter().map(|trace| noise_sd(&trace.values)).collect();
         let lasting = sampler.noise_sd().unwrap_or(0.0);
         let quantizer = middle(quantizer.iter().copied());
-        let enlarged = by_encoder(quantizer);
+        let enlarged = (beyond_fine(quantizer) / DOUBLED_BY).exp2();
         let sd = |k: usize, one: &Sampled, se_px: f32| {
             // The place's error has two axes, the slope is along the steeper.
             let moved = f64::from(one.slope_per_px * se_px) / 2.0_f64.sqrt();
@@ -436,20 +436,14 @@ impl Job<'_> {
     }
 }
 
-/// From this quantization parameter on, and twice as much for each so many more, a photodiode's error is larger than
-/// its noise: encoders leave out small changes, for as long as they stay small (measured on the phantom under pressing:
-/// errors are 0.9 to 1.1 times what noise alone says at 12 to 19, 1.6 times at 26, twice at 32). Where it isn't known,
-/// nothing is added.
-const COARSE: f64 = 21.6;
+/// A photodiode's error is larger than its noise, twice as much for each so many more of a coarse quantization
+/// parameter: encoders leave out small changes, for as long as they stay small (measured on the phantom under pressing:
+/// errors are 0.9 to 1.1 times what noise alone says at 12 to 19, 1.6 times at 26, twice at 32).
 const DOUBLED_BY: f64 = 10.0;
 
 /// From here on a person should know (between 19, where errors are those of 14, and 26, where a photodiode's are three
 /// times those).
 const STRONG: f64 = 24.0;
-
-fn by_encoder(quantizer: Option<f64>) -> f64 {
-    (quantizer.map_or(0.0, |parameter| (parameter - COARSE).max(0.0)) / DOUBLED_BY).exp2()
-}
 
 fn photodiode(name: &str, k: usize, kept: &[Kept], noise_sd: Option<f64>) -> PhotodiodeFigures {
     let mut absent: BTreeMap<String, u64> = BTreeMap::new();

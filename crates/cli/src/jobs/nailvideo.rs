@@ -21,7 +21,8 @@ use crate::jobs::{Command, JobArgs, Plan};
 pub(crate) struct NailVideoArgs {
     /// The video, in any format that FFmpeg reads
     video: PathBuf,
-    /// The nail in the first frame: a LabelMe file (a polygon `nail`, a line `axis`), or a mask picture
+    /// The nail in the first frame: a LabelMe file (a polygon `nail`, a line `axis`; `nail.json` names another frame
+    /// where it is of one), or a mask picture
     #[arg(long, value_name = "FILE")]
     outline: Option<PathBuf>,
     /// A folder with a mask of the first frame, named as the video
