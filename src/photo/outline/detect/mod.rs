@@ -249,9 +249,9 @@ const CLEARLY: f64 = 5.0;
 const SURE: f64 = 0.97;
 const NEAR_DEG: f64 = 20.0;
 const CONFIRMS: f64 = 0.85;
-/// Side of the square of a nail's area, pixels, below which a find is doubtful. Measured on photographs that trained
-/// nothing: all five confident finds below it were spots in the background (3.6 to 10.3 px); the smallest right one of
-/// 140 has 14.1 px, the smallest nail of 127 drawn by hand 13.8 px.
+/// Side of the square of a nail's area, pixels, below which a find is doubtful. Measured with the committed network on
+/// hand-free pictures, photographs and a video of brown hands: all five confident finds below it were spots in the
+/// background (10.3 px and less). The smallest nail of 127 drawn by hand has 13.8 px.
 const SMALL_PX: f64 = 12.0;
 /// The part of the photograph around a nail that its outline is refined on, nail lengths on each side.
 const AROUND: f64 = 1.3;
