@@ -16,9 +16,11 @@ use crate::nailvideo::affine::Affine;
 
 /// The motion's parameters, gain and offset.
 const UNKNOWNS: usize = MOTION + 2;
-/// Steps at most, and the step after which none follows, pixels at the nail's edge (measured).
+/// Steps at most, and the step after which none follows, pixels at the nail's edge (measured; with 30 steps, or with a
+/// first one that keeps the nail's shape, 6 and more frames of 30,766 showed another person's nail, or the nail where it
+/// is not).
 const MOST_STEPS: usize = 12;
-const LAST_STEP_PX: f64 = 0.02;
+pub(super) const LAST_STEP_PX: f64 = 0.02;
 /// A step of more than this share of the one before is the last as well: what moves the nail then are its own weights,
 /// as one by one they drop pixels of a nail that blanches (measured on the phantom's person 42: the motion is 0.05 to
 /// 0.15 px off when steps begin to creep, and 0.6 px off where they end, 10 to 20 steps later).
@@ -212,6 +214,7 @@ fn equations(
 fn pulls(template: &Template, scratch: &Scratch, sd: f64) -> Option<SMatrix<f64, UNKNOWNS, UNKNOWNS>> {
     let per_limit = (1.0 / (TUKEY_SDS * sd)) as f32;
     let mut blocks = [[f32x4::ZERO; 2]; BLOCKS * BLOCKS];
+    let mut has_weight = [false; BLOCKS * BLOCKS];
     for (pixel, &residual) in template.pixels.iter().zip(&scratch.residuals) {
         let weight = weight(residual, per_limit);
         if weight == 0.0 {
@@ -219,16 +222,16 @@ fn pulls(template: &Template, scratch: &Scratch, sd: f64) -> Option<SMatrix<f64,
         }
         let pull = f32x4::splat(weight * residual);
         let block = &mut blocks[usize::from(pixel.block)];
+        // In a frame that is the template's own, to the bit, they pull at nothing.
+        has_weight[usize::from(pixel.block)] = true;
         block.iter_mut().zip(pixel.halves()).for_each(|(sum, half)| *sum += pull * half);
     }
     let (mut sums, mut count) = (SMatrix::zeros(), 0.0);
-    for [left, right] in blocks {
+    for ([left, right], _) in blocks.into_iter().zip(has_weight).filter(|(_, has_weight)| *has_weight) {
         let mut parts = left.to_array().into_iter().chain(right.to_array());
         let pull: SVector<f64, UNKNOWNS> = SVector::from_fn(|_, _| parts.next().map_or(0.0, f64::from));
-        if pull.iter().any(|part| *part != 0.0) {
-            sums += pull * pull.transpose();
-            count += 1.0;
-        }
+        sums += pull * pull.transpose();
+        count += 1.0;
     }
     // As many are left over as the parameters have not taken.
     let left = count - UNKNOWNS as f64;

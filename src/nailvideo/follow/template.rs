@@ -89,6 +89,28 @@ impl Template {
         Self { pixels: chosen(all), corners, middle, radius }
     }
 
+    /// Share of the slopes' energy that is noise, 0 to 1. The noise is what a difference shows that smooth shading and
+    /// edges straight along the picture leave at 0 (J. Immerkær, Comput. Vis. Image Underst. 64 (1996) 300,
+    /// doi:10.1006/cviu.1996.0060; its median, as the nail's rim is no noise).
+    pub(super) fn noise_of_slopes(&self, sight: &Sight, step: usize) -> f64 {
+        /// Median of the difference's size, in SDs of a normal distribution's noise.
+        const SDS: f64 = 0.6745 * 6.0;
+        let h = step as f32;
+        let even = || self.pixels.iter().filter(|pixel| pixel.even);
+        let difference = |pixel: &Pixel| {
+            let [x, y] = pixel.at;
+            let row = |dy: f32| sight.at(x - h, y + dy) - 2.0 * sight.at(x, y + dy) + sight.at(x + h, y + dy);
+            (row(-h) - 2.0 * row(0.0) + row(h)).abs()
+        };
+        let mut sizes: Vec<f32> = even().map(difference).filter(|size| size.is_finite()).collect();
+        let middle = sizes.len() / 2;
+        let median = if sizes.is_empty() { 0.0 } else { *sizes.select_nth_unstable_by(middle, f32::total_cmp).1 };
+        let all = even().map(slope2).sum::<f64>() / even().count().max(1) as f64;
+        // A slope is half the difference of two values, and there are two of them.
+        let noise = (f64::from(median) / SDS / step as f64).powi(2);
+        if all > 0.0 { (noise / all).min(1.0) } else { 1.0 }
+    }
+
     /// The motion that its parameters stand for, about the nail's middle.
     pub(super) fn motion(&self, by: &[f64; MOTION]) -> Affine {
         let [x, y] = self.middle;

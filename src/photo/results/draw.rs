@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use crate::figure::{self, Scale, Sheet, Stretch, Tile, TilePicture, grey_map};
 use crate::files::{Staging, WriteError};
 use crate::photo::normalize::Normalized;
+use crate::photo::pose::sort_by_pose;
 use crate::photo::sums::Maps;
 use crate::photograph::Depth;
 
@@ -136,13 +137,14 @@ pub(in crate::photo) fn thumbnail(picture: &Normalized, longest: usize) -> GrayA
     small
 }
 
+/// A pose's four figures, as sheets show them.
+pub(in crate::photo) struct DrawnPose {
+    pose: String,
+    tiles: [Tile; KINDS.len()],
+}
+
 /// Draws a pose's four figures and writes them.
-pub(super) fn draw_pose(
-    pose: &str,
-    subjects: usize,
-    maps: &Maps,
-    staging: &Staging,
-) -> Result<[Tile; KINDS.len()], WriteError> {
+pub(super) fn draw_pose(pose: &str, subjects: usize, maps: &Maps, staging: &Staging) -> Result<DrawnPose, WriteError> {
     let tile = |kind: &Kind| {
         let picture = grey_map(if kind.of_sd { &maps.sd } else { &maps.mean }, kind.stretch);
         let name = format!("figures/{pose}-{}.png", kind.name);
@@ -151,15 +153,23 @@ pub(super) fn draw_pose(
         let picture = TilePicture::Grey(picture);
         Ok(Tile { caption: format!("{pose} (n = {subjects})"), picture, png: Some(png) })
     };
-    Ok([tile(&KINDS[0])?, tile(&KINDS[1])?, tile(&KINDS[2])?, tile(&KINDS[3])?])
+    let tiles = [tile(&KINDS[0])?, tile(&KINDS[1])?, tile(&KINDS[2])?, tile(&KINDS[3])?];
+    Ok(DrawnPose { pose: pose.to_owned(), tiles })
 }
 
-/// Draws the sheets over all poses and writes them.
-pub(super) fn draw_sheets(poses: Vec<[Tile; KINDS.len()]>, staging: &Staging) -> Result<Vec<DrawnSheet>, WriteError> {
+/// Draws the sheets over all poses and writes them; none where there are no poses.
+pub(in crate::photo) fn draw_sheets(
+    mut poses: Vec<DrawnPose>,
+    staging: &Staging,
+) -> Result<Vec<DrawnSheet>, WriteError> {
+    if poses.is_empty() {
+        return Ok(Vec::new());
+    }
+    sort_by_pose(&mut poses, |drawn| &drawn.pose);
     let many = poses.len() > LARGE_TILES;
     let mut tiles: [Vec<Tile>; KINDS.len()] = Default::default();
     for pose in poses {
-        for (tiles, tile) in tiles.iter_mut().zip(pose) {
+        for (tiles, tile) in tiles.iter_mut().zip(pose.tiles) {
             tiles.push(if many { small(tile) } else { tile });
         }
     }

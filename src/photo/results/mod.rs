@@ -7,8 +7,8 @@ mod nails;
 mod outlines;
 
 pub(crate) use draw::Scratch;
-pub(super) use draw::{DrawnSheet, thumbnail, write_normalized};
-pub(super) use maps::{write_maps, write_sums};
+pub(super) use draw::{DrawnPose, DrawnSheet, draw_sheets, thumbnail, write_normalized};
+pub(super) use maps::{write_maps, write_pose, write_sums};
 pub use nails::NailRow;
 pub(super) use nails::{NAIL_COLUMNS, NailTable};
 pub(super) use outlines::{DrawnPhotograph, MOST_DRAWN, draw_outlines, drawn_outlines};

@@ -22,11 +22,11 @@ use crate::photo::options::{OutlineHome, Outputs, PhotosOptions, Results};
 use crate::photo::outline::{
     DetectedOutline, Listed, Nail, OutlinePlace, Refused, SavedOutlines, SourceFault, keep_outlines,
 };
-use crate::photo::results::{self, DrawnPhotograph, NailRow, NailTable, Scratch};
+use crate::photo::results::{self, DrawnPhotograph, DrawnPose, NailRow, NailTable, Scratch};
 use crate::photo::run::plan::{Foreknown, left_out};
-use crate::photo::run::report::{Findings, HTML, PhotosReport, of_photos};
+use crate::photo::run::report::{Findings, HTML, PhotosReport, PoseCount, of_photos};
 use crate::photo::set::{Photo, PhotoSet, SetFault};
-use crate::photo::sums::{Batch, Partials};
+use crate::photo::sums::{Batch, Member, Members};
 use crate::photograph::{MOST_MEGAPIXELS, PhotoBuffer, Photograph};
 use crate::stages::Stages;
 
@@ -46,14 +46,18 @@ pub fn run(
 ) -> Result<PhotosReport, PhotosError> {
     let start = Instant::now();
     let staging = Staging::new(&outputs.folder)?;
-    let work = Work {
+    let mut work = Work {
         options,
         outputs,
         staging: &staging,
         stages: Stages::default(),
-        sums: set.poses().into_iter().map(|pose| (pose, Mutex::new(Batch::new(options.normalization.size)))).collect(),
+        poses: BTreeMap::new(),
         memory: Mutex::default(),
     };
+    for photo in &set.photos {
+        let pose = work.poses.entry(&photo.pose).or_default();
+        pose.get_mut().unwrap_or_else(PoisonError::into_inner).left += 1;
+    }
     let finished = AtomicU64::new(0);
     let one = |(index, photo)| {
         watch.go_on()?;
@@ -63,11 +67,13 @@ pub fn run(
     };
     let done: Vec<Done> =
         set.photos.par_iter().enumerate().with_max_len(1).map(one).collect::<Result<_, PhotosError>>()?;
-    let Work { stages, sums, .. } = work;
+    let stages = work.stages;
 
     let mut findings = Findings::new(set, options, outputs);
     let (mut detected, mut thumbnails, mut foreknown, mut drawn) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let mut samples = Vec::new();
+    let (mut poses, mut without_maps, mut drawn_poses) = (Vec::new(), Vec::new(), Vec::new());
+    let mut members = Members::new(options.normalization);
     for (photo, one) in set.photos.iter().zip(done) {
         findings.add(photo, one.grey, one.largest);
         foreknown.push(Foreknown { pose: photo.pose.clone(), grey: one.grey, outlines: one.outlines });
@@ -79,7 +85,14 @@ pub fn run(
         samples.extend(one.cells.map(|cells| Sample { photo, cells }));
         drawn.extend(one.drawn.map(|picture| (photo.file.clone(), picture)));
         findings.failed.extend(one.fault);
+        if let Some(PoseDone { subjects, drawn, member }) = one.pose {
+            let pose = photo.pose.clone();
+            drawn_poses.extend(drawn);
+            member.into_iter().for_each(|member| members.add(&pose, member));
+            if subjects > 0 { poses.push(PoseCount { pose, subjects }) } else { without_maps.push(pose) }
+        }
     }
+    findings.poses_without_maps(without_maps);
     findings.failed.sort();
     findings.left_out = left_out(&foreknown, options, outputs);
     let mut places = Places::default();
@@ -99,33 +112,28 @@ pub fn run(
         other => other,
     };
 
-    let all = sums
-        .into_iter()
-        .map(|(pose, sums)| (pose.to_owned(), sums.into_inner().unwrap_or_else(PoisonError::into_inner).finish()));
-    let (poses, empty): (BTreeMap<_, _>, BTreeMap<_, _>) = all.partition(|(_, sums)| sums.subjects().len() > 0);
-    findings.poses_without_maps(empty.into_keys());
-    let partials = Partials { normalization: options.normalization, poses };
     let nails = NailTable::of(&findings.rows, thumbnails, set);
     let sheets = match outputs.results {
-        Results::Sums { .. } => results::write_sums(&partials, &staging, &stages).map(|()| None)?,
+        Results::Sums { .. } => members.write(&staging).map(|()| None)?,
         Results::Maps => {
-            let (maps, of_nails) = rayon::join(
-                || if nothing.is_some() { Ok(vec![]) } else { results::write_maps(&partials, true, &staging, &stages) },
-                || {
-                    stages.time("sheets", || {
-                        let mut sheets = results::draw_outlines(&drawn, &staging)?;
-                        sheets.extend(nails.draw_sheets(&staging)?);
-                        Ok::<_, WriteError>(sheets)
-                    })
-                },
-            );
+            let of_nails = || {
+                let mut sheets = results::draw_outlines(&drawn, &staging)?;
+                sheets.extend(nails.draw_sheets(&staging)?);
+                Ok::<_, WriteError>(sheets)
+            };
+            let (maps, of_nails) = staging.sync_meanwhile(|| {
+                rayon::join(
+                    || stages.time("sheets", || results::draw_sheets(drawn_poses, &staging)),
+                    || stages.time("sheets", of_nails),
+                )
+            });
             Some((maps?, of_nails?))
         }
     };
     nails.write(&staging)?;
     let compared = compare_channels(&samples, &staging, &stages)?;
     watch.go_on()?;
-    let mut report = of_photos(findings, &partials, watch).timed(&stages, start);
+    let mut report = of_photos(findings, poses, watch).timed(&stages, start);
     if let Some(compared) = compared {
         report.notes.extend(compared.notes);
         report.warnings.extend(compared.warnings);
@@ -182,6 +190,24 @@ struct Done {
     /// Its nails in red, green and blue, where channels are compared and it has some.
     cells: Option<Cells>,
     fault: Option<SetFault>,
+    /// Where it was the last of its pose.
+    pose: Option<PoseDone>,
+}
+
+/// What a pose gave.
+struct PoseDone {
+    subjects: usize,
+    drawn: Option<DrawnPose>,
+    member: Option<Member>,
+}
+
+/// A pose while photographs are worked on.
+#[derive(Default)]
+struct Pose {
+    /// From its first subject to its last photograph.
+    batch: Option<Batch>,
+    /// Photographs that are not done.
+    left: usize,
 }
 
 /// Memory that goes from photograph to photograph.
@@ -199,7 +225,7 @@ struct Work<'a> {
     outputs: &'a Outputs,
     staging: &'a Staging,
     stages: Stages,
-    sums: BTreeMap<&'a str, Mutex<Batch>>,
+    poses: BTreeMap<&'a str, Mutex<Pose>>,
     /// As many as there are threads at work at most; those that none uses.
     memory: Mutex<Vec<Memory>>,
 }
@@ -209,7 +235,29 @@ impl Work<'_> {
         let mut memory = locked(&self.memory).pop().unwrap_or_default();
         let done = self.photograph_in(index, photo, &mut memory);
         locked(&self.memory).push(memory);
-        done
+        Ok(Done { pose: self.end_of_pose(&photo.pose)?, ..done? })
+    }
+
+    /// Counts a photograph of the pose as done; with the last of them its maps are written and drawn, while its sums
+    /// are at hand, and the next pose's take their memory.
+    fn end_of_pose(&self, name: &str) -> Result<Option<PoseDone>, WriteError> {
+        let mut pose = locked(&self.poses[name]);
+        pose.left -= 1;
+        if pose.left > 0 {
+            return Ok(None);
+        }
+        let batch = pose.batch.take();
+        drop(pose);
+        let Some(sums) = batch.map(Batch::finish) else {
+            return Ok(Some(PoseDone { subjects: 0, drawn: None, member: None }));
+        };
+        let mut done = PoseDone { subjects: sums.subjects().len(), drawn: None, member: None };
+        let (with, staging, stages) = (&self.options.normalization, self.staging, &self.stages);
+        match self.outputs.results {
+            Results::Sums { .. } => done.member = Some(results::write_sums(name, &sums, with, staging, stages)?),
+            Results::Maps => done.drawn = results::write_pose(name, &sums, with, true, staging, stages)?,
+        }
+        Ok(Some(done))
     }
 
     /// Read, outline, normalize, add up: once down, never back.
@@ -223,6 +271,7 @@ impl Work<'_> {
             largest: None,
             cells: None,
             fault: None,
+            pose: None,
         };
         let fault = |what: String| Some(SetFault { place: photo.file.clone(), what });
         let megapixels = self.options.max_megapixels.unwrap_or(MOST_MEGAPIXELS);
@@ -291,7 +340,9 @@ impl Work<'_> {
             });
         } else {
             self.stages.time("add up", || {
-                let added = locked(&self.sums[photo.pose.as_str()]).add(&photo.subject, pictures);
+                let mut pose = locked(&self.poses[photo.pose.as_str()]);
+                let batch = pose.batch.get_or_insert_with(|| Batch::new(self.options.normalization.size));
+                let added = batch.add(&photo.subject, pictures);
                 added.expect("a set lists a subject once per pose");
             });
         }

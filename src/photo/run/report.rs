@@ -124,8 +124,8 @@ impl<'a> Findings<'a> {
         }
     }
 
-    pub(in crate::photo) fn poses_without_maps(&mut self, poses: impl Iterator<Item = String>) {
-        self.without_maps.extend(poses);
+    pub(in crate::photo) fn poses_without_maps(&mut self, poses: Vec<String>) {
+        self.without_maps = poses;
         sort_by_pose(&mut self.without_maps, |pose| pose);
     }
 
@@ -168,8 +168,9 @@ impl<'a> Findings<'a> {
 const FEW_BITS: [u32; 4] = [8, 10, 12, 14];
 
 /// Of `lunula photos`.
-pub(in crate::photo) fn of_photos(found: Findings<'_>, partials: &Partials, watch: &Watch<'_>) -> PhotosReport {
-    let (warnings, poses) = (found.warnings(), pose_counts(partials));
+pub(in crate::photo) fn of_photos(found: Findings<'_>, mut poses: Vec<PoseCount>, watch: &Watch<'_>) -> PhotosReport {
+    sort_by_pose(&mut poses, |counted| &counted.pose);
+    let warnings = found.warnings();
     let Findings { set, options, has_maps, rows, failed, left_out, outlines, .. } = found;
     let mut notes: Vec<String> = outlines.iter().flat_map(SavedOutlines::notes).collect();
     notes.extend(one_subject(&poses).filter(|_| has_maps));
