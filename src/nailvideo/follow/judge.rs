@@ -49,8 +49,8 @@ const MOST_OUTSIDE: f64 = 0.2;
 /// energy), more is another thing.
 const GAINS: std::ops::RangeInclusive<f64> = 0.63..=1.6;
 /// A fit that did not come to rest is not believed below this gain (of the first frames): it was still on its way
-/// (measured on a real nail of 45 px before a dark table: at gains of 0.6 to 0.8 places were up to 3.1 px off; with 0.85 a
-/// phantom person in jerks is lost for half of the video).
+/// (measured on a real nail of 45 px before a dark table: at gains of 0.6 to 0.8 places were up to 3.1 px off; with
+/// 0.85 a phantom person in jerks is lost for half of the video).
 const LEAST_CREEPING_GAIN: f64 = 0.8;
 /// What standard errors are enlarged by: the nail shown by an encoder is off as a whole, which no residual shows
 /// (measured on the phantom: errors are 1.9 times what blocks alone say at rest, 3.2 under pressing up to a

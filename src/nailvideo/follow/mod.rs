@@ -236,10 +236,10 @@ impl Follower {
 
 /// A nail wider than this is looked at in blocks: as fine, of its width, as one of 200 to 400 pixels.
 const LARGEST_FINE_PX: f64 = 400.0;
-/// The fine template is made of larger blocks where more than this share of its slopes' energy is noise, down to so many
-/// of them across the nail (measured on nails of 24 real photographs, enlarged to 120 px, moved and pressed, with noise
-/// of 3 levels: of pixels alone 909 of 1440 frames were followed, so all of them, and with 0.3 to 0.098 px in place of
-/// 0.081).
+/// The fine template is made of larger blocks where more than this share of its slopes' energy is noise, down to so
+/// many of them across the nail (measured on nails of 24 real photographs, enlarged to 120 px, moved and pressed, with
+/// noise of 3 levels: of pixels alone 909 of 1440 frames were followed, so all of them, and with 0.3 to 0.098 px in
+/// place of 0.081).
 const MOST_NOISE: f64 = 0.15;
 const LEAST_FINE_PX: f64 = 15.0;
 /// Coarse templates of nails narrower than this hold nothing (assumed).

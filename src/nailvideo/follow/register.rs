@@ -16,9 +16,9 @@ use crate::nailvideo::affine::Affine;
 
 /// The motion's parameters, gain and offset.
 const UNKNOWNS: usize = MOTION + 2;
-/// Steps at most, and the step after which none follows, pixels at the nail's edge (measured; with 30 steps, or with a
-/// first one that keeps the nail's shape, 6 and more frames of 30,766 showed another person's nail, or the nail where it
-/// is not).
+/// Steps at most, and the step after which none follows, pixels at the nail's edge (measured; with 30 steps, or with
+/// first ones that keep the nail's shape, 6 and more frames of 30,766 showed another person's nail, or the nail where
+/// it is not).
 const MOST_STEPS: usize = 12;
 pub(super) const LAST_STEP_PX: f64 = 0.02;
 /// A step of more than this share of the one before is the last as well: what moves the nail then are its own weights,
