@@ -8,7 +8,7 @@
 use std::collections::VecDeque;
 
 use super::register::{Fit, LAST_STEP_PX, MOST_LAST_STEP_PX};
-use super::template::Template;
+use super::template::{Template, quantile};
 use crate::nailvideo::affine::Affine;
 
 /// Correlation below which it is another place (section 2.4 of the design), absolute and as a share of what the
@@ -206,13 +206,6 @@ impl Usual {
         fit.ncc >= LEAST_NCC.max(least_ncc)
             && fit.texture >= least_texture.max(LEAST_FIRST_TEXTURE_SHARE * first.texture)
     }
-}
-
-/// A quantile of some numbers; `None` of none.
-fn quantile(all: impl Iterator<Item = f64>, share: f64) -> Option<f64> {
-    let mut all: Vec<f64> = all.collect();
-    let at = ((share * all.len() as f64) as usize).min(all.len().checked_sub(1)?);
-    Some(*all.select_nth_unstable_by(at, f64::total_cmp).1)
 }
 
 /// The nail's place in a frame.

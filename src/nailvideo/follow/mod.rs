@@ -74,15 +74,19 @@ impl Follower {
         let extent_px = [2.0 * a.hypot(d), 2.0 * b.hypot(e)];
         let blur_px = blur_px(extent_px[0]);
         let whole = Part { from: [0; 2], size: shown_size(&samples) };
-        let sight = |step: usize| Sight::new(&samples, whole, step, blur_px);
-        let template = |step: usize| Template::new(&sight(step), &frame_from_nail, step);
-        let finest = ((extent_px[0] / LARGEST_FINE_PX) as usize).max(1);
-        let coarsest = finest.max((extent_px[0] / LEAST_FINE_PX) as usize);
-        let is_clear = |step: &usize| template(*step).noise_of_slopes(&sight(*step), *step) <= MOST_NOISE;
-        let step = (finest..coarsest).find(is_clear).unwrap_or(coarsest);
+        let looked_at = |step: usize| {
+            let sight = Sight::new(&samples, whole, step, blur_px);
+            (Template::new(&sight, &frame_from_nail, step), sight)
+        };
+        let mut step = ((extent_px[0] / LARGEST_FINE_PX) as usize).max(1);
+        let coarsest = (extent_px[0] / LEAST_FINE_PX) as usize;
+        let (mut fine, mut sight) = looked_at(step);
+        while step < coarsest && fine.noise_of_slopes(&sight, step) > MOST_NOISE {
+            step += 1;
+            (fine, sight) = looked_at(step);
+        }
         let coarse = COARSER.iter().map(|by| by * step).filter(|by| extent_px[0] / *by as f64 >= LEAST_COARSE_PX);
-        let coarse = coarse.map(|step| (step, template(step))).collect();
-        let fine = template(step);
+        let coarse = coarse.map(|step| (step, looked_at(step).0)).collect();
         let search = Search::new(&samples, fine.middle, extent_px, blur_px);
         let first = At { time_s: frame.time_s, motion: Affine::IDENTITY };
         Self {

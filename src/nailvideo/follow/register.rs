@@ -11,7 +11,7 @@ use nalgebra::{SMatrix, SVector};
 use wide::f32x4;
 
 use super::sight::Sight;
-use super::template::{BLOCKS, MOTION, Template};
+use super::template::{BLOCKS, MOTION, Template, quantile};
 use crate::nailvideo::affine::Affine;
 
 /// The motion's parameters, gain and offset.
@@ -275,7 +275,5 @@ fn texture(template: &Template, scratch: &Scratch) -> f64 {
         let (sxx, sxy, syy) = (xx - x * x / n, xy - x * y / n, yy - y * y / n);
         (n >= FEWEST).then(|| sxy / (sxx * syy).sqrt()).filter(|c| c.is_finite())
     };
-    let mut all: Vec<f64> = sums.iter().filter_map(correlation).collect();
-    let middle = all.len() / 2;
-    if all.is_empty() { 0.0 } else { *all.select_nth_unstable_by(middle, f64::total_cmp).1 }
+    quantile(sums.iter().filter_map(correlation), 0.5).unwrap_or(0.0)
 }

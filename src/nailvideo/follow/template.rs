@@ -102,12 +102,11 @@ impl Template {
             let row = |dy: f32| sight.at(x - h, y + dy) - 2.0 * sight.at(x, y + dy) + sight.at(x + h, y + dy);
             (row(-h) - 2.0 * row(0.0) + row(h)).abs()
         };
-        let mut sizes: Vec<f32> = even().map(difference).filter(|size| size.is_finite()).collect();
-        let middle = sizes.len() / 2;
-        let median = if sizes.is_empty() { 0.0 } else { *sizes.select_nth_unstable_by(middle, f32::total_cmp).1 };
+        let sizes = even().map(difference).filter(|size| size.is_finite());
+        let median = quantile(sizes.map(f64::from), 0.5).unwrap_or(0.0);
         let all = even().map(slope2).sum::<f64>() / even().count().max(1) as f64;
         // A slope is half the difference of two values, and there are two of them.
-        let noise = (f64::from(median) / SDS / step as f64).powi(2);
+        let noise = (median / SDS / step as f64).powi(2);
         if all > 0.0 { (noise / all).min(1.0) } else { 1.0 }
     }
 
@@ -118,6 +117,13 @@ impl Template {
         let [a, b, d, e] = [1.0 + linear[0], linear[1], linear[2], 1.0 + linear[3]];
         Affine([a, b, x + by[2] - a * x - b * y, d, e, y + by[5] - d * x - e * y])
     }
+}
+
+/// A quantile of some numbers; `None` of none.
+pub(super) fn quantile(all: impl Iterator<Item = f64>, share: f64) -> Option<f64> {
+    let mut all: Vec<f64> = all.collect();
+    let at = ((share * all.len() as f64) as usize).min(all.len().checked_sub(1)?);
+    Some(*all.select_nth_unstable_by(at, f64::total_cmp).1)
 }
 
 /// The square of the slope along x and y.

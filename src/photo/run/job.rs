@@ -195,6 +195,7 @@ struct Done {
 }
 
 /// What a pose gave.
+#[derive(Default)]
 struct PoseDone {
     subjects: usize,
     drawn: Option<DrawnPose>,
@@ -248,10 +249,8 @@ impl Work<'_> {
         }
         let batch = pose.batch.take();
         drop(pose);
-        let Some(sums) = batch.map(Batch::finish) else {
-            return Ok(Some(PoseDone { subjects: 0, drawn: None, member: None }));
-        };
-        let mut done = PoseDone { subjects: sums.subjects().len(), drawn: None, member: None };
+        let Some(sums) = batch.map(Batch::finish) else { return Ok(Some(PoseDone::default())) };
+        let mut done = PoseDone { subjects: sums.subjects().len(), ..PoseDone::default() };
         let (with, staging, stages) = (&self.options.normalization, self.staging, &self.stages);
         match self.outputs.results {
             Results::Sums { .. } => done.member = Some(results::write_sums(name, &sums, with, staging, stages)?),
