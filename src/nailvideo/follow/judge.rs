@@ -7,7 +7,7 @@
 
 use std::collections::VecDeque;
 
-use super::register::{Fit, LAST_STEP_PX, MOST_LAST_STEP_PX};
+use super::register::{Fit, MOST_LAST_STEP_PX};
 use super::template::{Template, quantile};
 use crate::nailvideo::affine::Affine;
 
@@ -254,7 +254,7 @@ pub(super) fn judge(
         return Err(if gain < 1.0 { Lost::Blurred } else { Lost::Unlike });
     }
     let se_px = se_px(fit, quantizer);
-    let is_on_its_way = fit.last_step_px > LAST_STEP_PX && gain < LEAST_CREEPING_GAIN;
+    let is_on_its_way = !fit.is_at_rest() && gain < LEAST_CREEPING_GAIN;
     let is_sure = se_px <= MOST_SE_PX && fit.last_step_px <= MOST_LAST_STEP_PX && !is_on_its_way;
     if !is_sure {
         return Err(Lost::Unsure);

@@ -32,6 +32,12 @@ const COARSER: [usize; 2] = [4, 2];
 /// A correlation this far below the video's own is looked at again from coarser pictures.
 const DOUBT_NCC_SHARE: f64 = 0.9;
 
+/// A fit that did not come to rest is looked at once more over the whole picture: where one this far away correlates
+/// by so much more, the nail has jumped (measured on nails of 26 real photographs that move up to 18 and 24 px a frame:
+/// with no look 4 of 78 and 10 of 78 recordings have RMS errors of 0.9 to 9.1 px, so none has over 0.4).
+const ELSEWHERE_PX: f64 = 3.0;
+const ELSEWHERE_NCC: f64 = 0.005;
+
 /// Follows one nail.
 #[derive(Debug)]
 pub(in crate::nailvideo) struct Follower {
@@ -155,7 +161,7 @@ impl Follower {
         }
     }
 
-    /// Near where it is expected, by the fine template alone where that does.
+    /// Near where it is expected, by the fine template alone where that comes to rest.
     fn near(
         &mut self,
         frame: &Frame<'_>,
@@ -163,28 +169,36 @@ impl Follower {
         expected: &Affine,
         last: &Affine,
     ) -> Result<(Place, Fit), Lost> {
-        let fits = |found: &Result<(Place, Fit), Lost>, usual: &Usual| {
-            let least = usual.ncc().unwrap_or(0.0) * DOUBT_NCC_SHARE;
-            found.as_ref().is_ok_and(|(place, _)| place.ncc >= least)
-        };
+        let least = self.usual.ncc().unwrap_or(0.0) * DOUBT_NCC_SHARE;
         let mut best = self.fine(frame, *expected, after, Some(expected));
-        if fits(&best, &self.usual) {
-            return best;
-        }
         for start in [expected, last] {
+            if best.as_ref().is_ok_and(|(place, fit)| place.ncc >= least && fit.is_at_rest()) {
+                break;
+            }
             let Some(start) = self.coarse(frame, *start) else { continue };
             let other = self.fine(frame, start, after, Some(expected));
             best = match (best, other) {
-                (Ok(a), Ok(b)) => Ok(if b.0.ncc > a.0.ncc { b } else { a }),
-                (a @ Ok(_), _) => a,
-                (Err(_), b @ Ok(_)) => b,
+                (Ok(a), Ok(b)) if !b.1.is_better(&a.1) => Ok(a),
+                (_, b @ Ok(_)) => b,
                 (a, _) => a,
             };
-            if fits(&best, &self.usual) {
-                break;
-            }
         }
-        best
+        let place = best.as_ref().ok().filter(|(_, fit)| !fit.is_at_rest()).map(|(place, _)| *place);
+        if place.is_some_and(|place| self.fits_elsewhere(frame, &place)) { Err(Lost::Jumped) } else { best }
+    }
+
+    /// Whether the nail fits another place better.
+    fn fits_elsewhere(&mut self, frame: &Frame<'_>, place: &Place) -> bool {
+        let [x, y] = place.motion.of(self.fine.middle);
+        let places = self.search.places(&samples(frame.luma, self.quarters), &self.last);
+        places.into_iter().any(|start| {
+            let start = self.coarse(frame, start);
+            let other = start.and_then(|start| self.fine(frame, start, After::Loss, None).ok());
+            other.is_some_and(|(other, _)| {
+                let [p, q] = other.motion.of(self.fine.middle);
+                other.ncc > place.ncc + ELSEWHERE_NCC && (x - p).hypot(y - q) > ELSEWHERE_PX
+            })
+        })
     }
 
     /// Looks for a lost nail everywhere; what is found is on trial.

@@ -205,8 +205,9 @@ mod real_data {
     }
 
     /// RMS errors of each photograph's largest nail, enlarged to so many pixels (the root of its area), and how many
-    /// frames were followed of how many; motions of up to 17 px, 4 degrees, 2 %, one press.
-    fn followed(to_px: f64, noise: f64) -> (Vec<f64>, [usize; 2]) {
+    /// frames were followed of how many; motions of up to 17 px, 4 degrees, 2 %, `speed` presses, and as many times 6 px
+    /// a frame.
+    fn followed(to_px: f64, noise: f64, speed: f64) -> (Vec<f64>, [usize; 2]) {
         let folder = real_data("nail/vpapenko_cc0");
         let mut files: Vec<_> = std::fs::read_dir(folder.join("images")).unwrap().map(|f| f.unwrap().path()).collect();
         files.sort();
@@ -225,7 +226,7 @@ mod real_data {
             let mut follower = Follower::new(&still.frame(0, 0.0), 0, scene.frame_from_nail);
             let mut squares = Vec::new();
             for k in 1..FRAMES {
-                let t = std::f64::consts::TAU * k as f64 / FRAMES as f64;
+                let t = std::f64::consts::TAU * speed * k as f64 / FRAMES as f64;
                 let by = [14.0 * t.sin() + 3.0 * (3.1 * t).sin(), 9.0 * (1.7 * t).sin()];
                 let to = [0, 1].map(|axis| shown_middle[axis] + by[axis]);
                 let turn = 0.07 * (1.3 * t).sin();
@@ -248,16 +249,15 @@ mod real_data {
     #[test]
     #[ignore = "needs real recordings: LUNULA_REAL_DATA"]
     fn nails_of_real_photographs_that_move_and_are_pressed_are_followed() {
-        // Measured with noise of 1 level: 0.051 and 0.51 px; the bounds say that it is no worse by much.
-        for noise in [1.0, 3.0] {
-            let (errors, [followed, all]) = followed(120.0, noise);
+        // Measured: 754, 722 and 316 of 754 frames; 0.051, 0.098 and 0.093 px; 0.39, 0.48 and 0.26 px at worst.
+        for (noise, speed, least) in [(1.0, 1.0, 754), (3.0, 1.0, 717), (3.0, 3.0, 280)] {
+            let (errors, [followed, all]) = followed(120.0, noise, speed);
             let (middle, worst) = (errors[errors.len() / 2], errors[errors.len() - 1]);
             println!(
-                "noise {noise}: {followed} of {all} frames, RMS {middle:.3} px in the median, {worst:.3} at worst"
+                "noise {noise}, speed {speed}: {followed} of {all} frames, RMS {middle:.3} px in the median, {worst:.3} \
+                 at worst"
             );
-            assert!(followed * 20 >= all * 19 && middle <= 0.15, "{errors:?}");
-            // MISSED with noise of 3 levels: two nails of 26 are accepted where they are not, 7.4 and 2.1 px RMS.
-            assert!(noise > 1.0 || (followed == all && worst <= 1.0), "{errors:?}");
+            assert!(followed >= least && middle <= 0.15 && worst <= 0.7, "{errors:?}");
         }
     }
 }
