@@ -205,8 +205,8 @@ mod real_data {
     }
 
     /// RMS errors of each photograph's largest nail, enlarged to so many pixels (the root of its area), and how many
-    /// frames were followed of how many; motions of up to 17 px, 4 degrees, 2 %, `speed` presses, and as many times 6 px
-    /// a frame.
+    /// frames were followed of how many; motions of up to 17 px, 4 degrees, 2 %, `speed` presses, and up to
+    /// `speed` times 6 px a frame.
     fn followed(to_px: f64, noise: f64, speed: f64) -> (Vec<f64>, [usize; 2]) {
         let folder = real_data("nail/vpapenko_cc0");
         let mut files: Vec<_> = std::fs::read_dir(folder.join("images")).unwrap().map(|f| f.unwrap().path()).collect();
@@ -254,8 +254,7 @@ mod real_data {
             let (errors, [followed, all]) = followed(120.0, noise, speed);
             let (middle, worst) = (errors[errors.len() / 2], errors[errors.len() - 1]);
             println!(
-                "noise {noise}, speed {speed}: {followed} of {all} frames, RMS {middle:.3} px in the median, {worst:.3} \
-                 at worst"
+                "noise {noise}, speed {speed}: {followed} of {all}, {middle:.3} px in the median, {worst:.3} at worst"
             );
             assert!(followed >= least && middle <= 0.15 && worst <= 0.7, "{errors:?}");
         }
