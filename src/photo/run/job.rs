@@ -113,35 +113,36 @@ pub fn run(
     };
 
     let nails = NailTable::of(&findings.rows, thumbnails, set);
-    let sheets = match outputs.results {
-        Results::Sums { .. } => members.write(&staging).map(|()| None)?,
-        Results::Maps => {
-            let of_nails = || {
-                let mut sheets = results::draw_outlines(&drawn, &staging)?;
-                sheets.extend(nails.draw_sheets(&staging)?);
-                Ok::<_, WriteError>(sheets)
-            };
-            let (maps, of_nails) = staging.sync_meanwhile(|| {
-                rayon::join(
+    let report = staging.sync_meanwhile(|| {
+        let sheets = match outputs.results {
+            Results::Sums { .. } => members.write(&staging).map(|()| None)?,
+            Results::Maps => {
+                let of_nails = || {
+                    let mut sheets = results::draw_outlines(&drawn, &staging)?;
+                    sheets.extend(nails.draw_sheets(&staging)?);
+                    Ok::<_, WriteError>(sheets)
+                };
+                let (maps, of_nails) = rayon::join(
                     || stages.time("sheets", || results::draw_sheets(drawn_poses, &staging)),
                     || stages.time("sheets", of_nails),
-                )
-            });
-            Some((maps?, of_nails?))
+                );
+                Some((maps?, of_nails?))
+            }
+        };
+        nails.write(&staging)?;
+        let compared = compare_channels(&samples, &staging, &stages)?;
+        watch.go_on()?;
+        let mut report = of_photos(findings, poses, watch).timed(&stages, start);
+        if let Some(compared) = compared {
+            report.notes.extend(compared.notes);
+            report.warnings.extend(compared.warnings);
+            report.channels = Some(compared.figures);
         }
-    };
-    nails.write(&staging)?;
-    let compared = compare_channels(&samples, &staging, &stages)?;
-    watch.go_on()?;
-    let mut report = of_photos(findings, poses, watch).timed(&stages, start);
-    if let Some(compared) = compared {
-        report.notes.extend(compared.notes);
-        report.warnings.extend(compared.warnings);
-        report.channels = Some(compared.figures);
-    }
-    if let Some((maps, of_nails)) = sheets {
-        report.write(&nails, &maps, &of_nails, &staging)?;
-    }
+        if let Some((maps, of_nails)) = sheets {
+            report.write(&nails, &maps, &of_nails, &staging)?;
+        }
+        Ok::<_, PhotosError>(report)
+    })?;
     staging.commit_with(places)?;
     nothing.map_or(Ok(report), Err)
 }
