@@ -78,12 +78,12 @@ fn onsets_and_times_are_covered_by_their_intervals() {
             100.0 * t90_error,
         );
         assert!(errors.len() as u64 * 20 >= SEEDS * 19 && onset_error_s <= 1.0 / RATE_HZ && t90_error <= 0.08);
-        assert!(onset >= 0.90 && t90 >= 0.90);
+        assert!([onset, t90].iter().all(|held| (0.90..=0.995).contains(held)), "{tau}");
     }
 }
 
-/// What the fit does not know: a release that takes 0.2 s, and one with a second, slow course. The intervals do NOT
-/// hold 95 % of these; how many, and how far the values are off, is published.
+/// Courses that are not the fit's: a release that takes 0.2 s, and one with a second, slow course. The intervals hold
+/// what they say, but for t90 of slow blood whose end the window does not show; how many they hold is published.
 #[test]
 fn courses_of_other_shapes_are_off_by_less_than_an_eighth() {
     const PARTS: u32 = 40;
@@ -112,6 +112,8 @@ fn courses_of_other_shapes_are_off_by_less_than_an_eighth() {
                 held(&errors, 1)
             );
             assert!(onset_s.abs() <= 0.12 && t90.abs() <= t90_s / 8.0, "{name} {tau}");
+            let is_seen = (name, tau) != ("two", 1.5);
+            assert!(held(&errors, 0) >= 0.9 && (held(&errors, 1) >= 0.9 || !is_seen), "{name} {tau}");
         }
     }
 }
