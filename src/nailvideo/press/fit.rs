@@ -175,11 +175,16 @@ pub(super) fn fit(time_s: &[f64], values: &[f64], near_s: f64, rest: Option<f64>
         let rest = at_rest.as_ref().map_or(0.0, shift);
         Interval { value, low: value - down.hypot(rest), high: value + up.hypot(rest) }
     };
+    // What takes time takes some.
+    let time = |of: &dyn Fn(Model, &Parameters) -> f64| {
+        let one = interval(of);
+        Interval { low: one.low.max(0.0), ..one }
+    };
     let course = Course {
         onset_s: wider(interval(&|_, p| p[0]), frame_s),
-        t50_s: interval(&|model, p| to_share(model, p, 0.5)),
-        t90_s: interval(&|model, p| to_share(model, p, 0.9)),
-        tau_s: interval(&|_, p| p[1].exp()),
+        t50_s: time(&|model, p| to_share(model, p, 0.5)),
+        t90_s: time(&|model, p| to_share(model, p, 0.9)),
+        tau_s: time(&|_, p| p[1].exp()),
         depth: p[4] - p[3],
         sd: sd(&taken),
         seen: reached(model, p, time_s[time_s.len() - 1] - p[0]),
