@@ -11,7 +11,7 @@ mod text;
 mod thin;
 
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
-use image::{DynamicImage, ExtendedColorType, GrayAlphaImage, ImageEncoder, ImageError};
+use image::{DynamicImage, ExtendedColorType, GrayAlphaImage, GrayImage, ImageEncoder, ImageError};
 
 pub use chart::{
     Axis, Bar, Cell, Chart, Item, Mark, MarkShape, Point, draw_charts, draw_grid, draw_log_log, draw_panels,
@@ -51,6 +51,22 @@ pub fn png_of_grey(picture: &GrayAlphaImage) -> Result<Vec<u8>, ImageError> {
     } else {
         encode_png(picture, size, ExtendedColorType::La8, &mut png)?;
     }
+    Ok(png)
+}
+
+/// Grey levels as a PNG file in which level 0 has a colour.
+fn png_of_levels(levels: &GrayImage, first: [u8; 3]) -> Result<Vec<u8>, ImageError> {
+    let mut png = Vec::new();
+    let mut encoder = png::Encoder::new(&mut png, levels.width(), levels.height());
+    encoder.set_color(png::ColorType::Indexed);
+    encoder.set_palette(std::iter::once(first).chain((1..=255).map(|level| [level; 3])).flatten().collect::<Vec<u8>>());
+    encoder.set_compression(png::Compression::Fast);
+    encoder.set_filter(png::Filter::Up);
+    let written = encoder.write_header().and_then(|mut writer| {
+        writer.write_image_data(levels)?;
+        writer.finish()
+    });
+    written.map_err(|why| ImageError::IoError(why.into()))?;
     Ok(png)
 }
 

@@ -57,10 +57,10 @@ impl TilePicture {
         }
     }
 
-    /// Whether every pixel of it is known, and is a grey level.
+    /// Whether what is known of it is grey.
     fn is_grey(&self) -> bool {
         match self {
-            Self::Grey(picture) => picture.pixels().all(|pixel| pixel.0[1] > 0),
+            Self::Grey(_) => true,
             Self::Colour(picture) => picture.pixels().all(|pixel| pixel.0 == [pixel.0[0]; 3]),
         }
     }
@@ -77,9 +77,10 @@ impl Tone for Rgb<u8> {
     }
 }
 
+/// Level 0 is [`UNKNOWN`]; black is the level after it.
 impl Tone for Luma<u8> {
-    fn of([level, ..]: [u8; 3]) -> Self {
-        Self([level])
+    fn of(colour: [u8; 3]) -> Self {
+        Self([if colour == UNKNOWN { 0 } else { colour[0].max(1) }])
     }
 }
 
@@ -184,13 +185,13 @@ impl Sheet {
         sheet
     }
 
-    /// The sheet as a PNG file, of one channel where nothing on it is unknown.
+    /// The sheet as a PNG file, of one channel with a palette unless something on it is in colour.
     ///
     /// # Errors
     /// Where it can't be encoded.
     pub fn png(&self) -> Result<Vec<u8>, image::ImageError> {
         let is_grey = self.tiles.iter().all(|tile| tile.picture.is_grey());
-        super::png(&if is_grey { self.draw::<Luma<u8>>().into() } else { self.draw::<Rgb<u8>>().into() })
+        if is_grey { super::png_of_levels(&self.draw(), UNKNOWN) } else { super::png(&self.draw::<Rgb<u8>>().into()) }
     }
 
     /// The sheet as SVG: pictures embedded, words as words.
@@ -300,16 +301,14 @@ mod tests {
     }
 
     #[test]
-    fn a_sheet_of_one_channel_is_that_in_colour_unless_something_is_unknown() {
+    fn a_sheet_of_one_channel_is_that_in_colour_but_for_black() {
         let mut tile = GrayAlphaImage::from_fn(40, 30, |x, y| image::LumaA([(5 * x + y) as u8, 255]));
-        let grey = sheet(tile.clone());
-        let flat: Vec<u8> = grey.draw::<Rgb<u8>>().pixels().flat_map(|pixel| pixel.0).collect();
-        let levels = grey.draw::<Luma<u8>>().into_raw();
-        assert_eq!(flat, levels.into_iter().flat_map(|level| [level; 3]).collect::<Vec<_>>());
-        let read = |sheet: &Sheet| image::load_from_memory(&sheet.png().unwrap()).unwrap();
-        assert_eq!(read(&grey).color(), image::ColorType::L8);
         tile.put_pixel(3, 4, image::LumaA([0, 0]));
-        let read = read(&sheet(tile)).into_rgb8();
-        assert!(read.pixels().any(|pixel| pixel.0 == UNKNOWN));
+        let sheet = sheet(tile);
+        let read = image::load_from_memory(&sheet.png().unwrap()).unwrap().into_rgb8();
+        let mut colour = sheet.draw::<Rgb<u8>>();
+        assert_eq!(colour.pixels().filter(|pixel| pixel.0 == UNKNOWN).count(), 1);
+        colour.pixels_mut().filter(|pixel| pixel.0 == [0; 3]).for_each(|pixel| pixel.0 = [1; 3]);
+        assert_eq!(read, colour);
     }
 }

@@ -97,27 +97,41 @@ const USED: usize = 11;
 const NAILS_PER_SHEET: usize = 130;
 const NAILS_PER_ROW: usize = 13;
 
+/// Nails of one pose, or some of them.
+#[derive(Debug)]
+struct NailSheet {
+    pose: String,
+    /// Counted from 1 in the pose.
+    number: usize,
+    sheet: Sheet,
+}
+
 /// The nails of a report: table and thumbnails.
 #[derive(Debug, Default)]
 pub(in crate::photo) struct NailTable {
     /// Cells, row by row.
     pub(in crate::photo) rows: Vec<Vec<String>>,
-    /// Every normalized picture, small; of merged parts none.
-    sheets: Vec<Sheet>,
+    /// Every normalized picture, small, pose by pose; of merged parts none.
+    sheets: Vec<NailSheet>,
 }
 
 impl NailTable {
     /// From a run's rows and, in the same order, the thumbnails of those that have one.
     pub(in crate::photo) fn of(rows: &[NailRow], thumbnails: Vec<Option<GrayAlphaImage>>, set: &PhotoSet) -> Self {
-        let mut sheets: Vec<Sheet> = Vec::new();
+        let mut sheets: Vec<NailSheet> = Vec::new();
         for (row, picture) in rows.iter().zip(thumbnails) {
-            let Some(picture) = picture else { continue };
-            if sheets.last().is_none_or(|sheet| sheet.tiles.len() == NAILS_PER_SHEET) {
-                let title = format!("Normalized nails, sheet {}", sheets.len() + 1);
-                sheets.push(Sheet { title, tiles: Vec::new(), columns: NAILS_PER_ROW, scale: None });
+            let (Some(picture), Some(name)) = (picture, &row.normalized) else { continue };
+            let pose = &set.photos[row.photo].pose;
+            let last = sheets.last().filter(|last| last.pose == *pose);
+            if last.is_none_or(|last| last.sheet.tiles.len() == NAILS_PER_SHEET) {
+                let number = last.map_or(0, |last| last.number) + 1;
+                let again = if number > 1 { format!(", sheet {number}") } else { String::new() };
+                let title = format!("Normalized nails, {pose}{again}");
+                let sheet = Sheet { title, tiles: Vec::new(), columns: NAILS_PER_ROW, scale: None };
+                sheets.push(NailSheet { pose: pose.clone(), number, sheet });
             }
-            let caption = format!("{}: {}", row.number, set.photos[row.photo].subject);
-            if let Some(sheet) = sheets.last_mut() {
+            let caption = Path::new(name).file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            if let Some(NailSheet { sheet, .. }) = sheets.last_mut() {
                 sheet.tiles.push(Tile { caption, picture: TilePicture::Grey(picture), png: None });
             }
         }
@@ -159,13 +173,13 @@ impl NailTable {
     /// # Errors
     /// [`WriteError`].
     pub(in crate::photo) fn draw_sheets(&self, staging: &Staging) -> Result<Vec<DrawnSheet>, WriteError> {
-        let draw = |(at, sheet): (usize, &Sheet)| {
-            let name = format!("figures/nails-{}.png", at + 1);
+        let draw = |NailSheet { pose, number, sheet }: &NailSheet| {
+            let name = format!("figures/{pose}-nails-{number}.png");
             let png = sheet.png().map_err(|why| staging.refused(&name, why))?;
             staging.write(&name, &png)?;
             Ok(DrawnSheet { title: sheet.title.clone(), png })
         };
-        self.sheets.par_iter().enumerate().map(draw).collect()
+        self.sheets.par_iter().map(draw).collect()
     }
 
     /// Whether a row's nail is part of the maps.
