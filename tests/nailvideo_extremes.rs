@@ -300,3 +300,19 @@ fn two_frames_have_values_and_no_standard_errors_and_no_press() {
     assert!(rows.iter().all(|row| number(&row["P1"]).is_some() && row["P1_sd"].is_empty()), "{rows:?}");
     assert!(dir.table("out/presses.csv").is_empty() && dir.path("out/traces.png").is_file());
 }
+
+mod real_data {
+    use super::*;
+    use crate::util::real_data::real_data;
+
+    #[test]
+    #[ignore = "needs real recordings: LUNULA_REAL_DATA"]
+    fn nails_that_are_too_small_on_real_hands_are_said_to_be() {
+        let dir = Dir::new();
+        for name in ["rotation_1", "scale_1", "translation_2"] {
+            let clip = real_data(&format!("hand/{name}.mp4"));
+            let answer = dir.lunula(&["nailvideo", clip.to_str().expect("a path"), "--out", name]).expect(1);
+            answer.says("px wide; 30 are the fewest").says(&format!("{name}/nail.json"));
+        }
+    }
+}

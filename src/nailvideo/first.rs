@@ -10,7 +10,7 @@ use super::grid::{Part, samples, shown_size};
 use super::options::NailVideoOptions;
 use super::sample::{Colours, Planes};
 use crate::labelme::LabelMe;
-use crate::nail::{Axis, Outline};
+use crate::nail::Outline;
 use crate::photo::outline::{Nail, OutlineOptions, OutlinePlace, Source, ToDraw, to_draw, to_file};
 use crate::photo::{NailFrame, Photograph};
 use crate::photograph::{PICTURES, is_picture};
@@ -136,6 +136,10 @@ impl Finder {
 
 /// The one nail that can be followed; the error is words for the user.
 fn one_of(nails: Vec<Nail>) -> Result<FirstNail, String> {
+    let width_px = |nail: &Nail| Some(NailFrame::new(nail.outline.as_ref()?, nail.axis?).ok()?.width_px);
+    if let Some(widest) = nails.iter().filter_map(width_px).reduce(f64::max).filter(|widest| *widest < LEAST_WIDTH_PX) {
+        return Err(narrow(if nails.len() > 1 { "the widest nail that is seen" } else { "the nail" }, widest));
+    }
     let (used, refused): (Vec<Nail>, Vec<Nail>) = nails.into_iter().partition(|nail| nail.reason.is_empty());
     let mut whole = used.into_iter().filter_map(|nail| Some((nail.outline?, nail.axis?, nail.source, nail.confidence)));
     let (Some((outline, axis, source, confidence)), others) = (whole.next(), whole.count()) else {
@@ -148,19 +152,15 @@ fn one_of(nails: Vec<Nail>) -> Result<FirstNail, String> {
     if others > 0 {
         return Err(format!("{} nails are seen, and one is followed: draw that one alone", others + 1));
     }
-    let frame = framed(&outline, axis)?;
+    let frame = NailFrame::new(&outline, axis).map_err(|why| why.to_string())?;
+    if frame.width_px < LEAST_WIDTH_PX {
+        return Err(narrow("the only nail without doubt", frame.width_px));
+    }
     Ok(FirstNail { outline, frame, source, confidence })
 }
 
-fn framed(outline: &Outline, axis: Axis) -> Result<NailFrame, String> {
-    let frame = NailFrame::new(outline, axis).map_err(|why| why.to_string())?;
-    if frame.width_px < LEAST_WIDTH_PX {
-        return Err(format!(
-            "the nail is {:.0} px wide; {LEAST_WIDTH_PX} are the fewest: film it nearer or with more pixels",
-            frame.width_px
-        ));
-    }
-    Ok(frame)
+fn narrow(nail: &str, width_px: f64) -> String {
+    format!("{nail} is {width_px:.0} px wide; {LEAST_WIDTH_PX} are the fewest: film it nearer or with more pixels")
 }
 
 /// A frame as it is shown, in red, green and blue.

@@ -103,8 +103,8 @@ pub fn run(
                             at_work = Some(job.begin(nail, frame, &positions, &kept)?);
                         }
                         Err(NotOne { why, seen }) => {
-                            why_not = why;
                             if suggested.as_ref().is_none_or(|one| one.seen.is_empty() && !seen.is_empty()) {
+                                why_not = why;
                                 suggested = Some(Suggestion { index, picture, seen });
                             }
                         }
