@@ -304,6 +304,42 @@ mod real_data {
         assert!((0..2).all(|k| right[k] as f64 >= RECALL[k] * nails as f64), "{right:?} of {nails}");
     }
 
+    /// The largest nail of each photograph, enlarged to 190 px on at most 640 x 480.
+    #[test]
+    #[ignore = "needs real recordings: LUNULA_REAL_DATA"]
+    fn close_ups_of_real_nails_are_found_with_confidence() {
+        let folder = real_data("nail/vpapenko_cc0");
+        let (mut pictures, mut found, mut wrong) = (0, 0, Vec::new());
+        for file in std::fs::read_dir(folder.join("images")).unwrap().map(|f| f.unwrap().path()) {
+            let mask = image::open(folder.join("masks").join(file.file_name().unwrap())).unwrap();
+            let nails = annotated(&mask.to_luma8());
+            let largest = nails.iter().max_by(|a, b| a.area_px2().total_cmp(&b.area_px2())).unwrap();
+            let by = 190.0 / largest.area_px2().sqrt();
+            let middle = |k: usize| {
+                let along = largest.points().into_iter().map(|p| p[k]);
+                0.5 * along.fold([f64::MAX, f64::MIN], |[low, high], v| [low.min(v), high.max(v)]).iter().sum::<f64>()
+            };
+            let centre = [middle(0), middle(1)];
+            let close_up = |picture: &DynamicImage| {
+                let size = [f64::from(picture.width()), f64::from(picture.height())];
+                let low = [0, 1].map(|k| (centre[k] - [320.0, 240.0][k] / by).max(0.0));
+                let part = [0, 1].map(|k| (centre[k] + [320.0, 240.0][k] / by).min(size[k]) - low[k]);
+                let part = picture.crop_imm(low[0] as u32, low[1] as u32, part[0] as u32, part[1] as u32);
+                let [width, height] = [part.width(), part.height()].map(|side| (f64::from(side) * by) as u32);
+                part.resize_exact(width, height, image::imageops::FilterType::CatmullRom)
+            };
+            let (picture, truth) = (close_up(&image::open(&file).unwrap()), annotated(&close_up(&mask).to_luma8()));
+            let nails = detect(&picture, &DetectOptions::default()).nails;
+            let fit = |nail: &Detected| truth.iter().map(|t| t.iou(&nail.outline)).fold(0.0, f64::max);
+            let is_large = |nail: &Detected| nail.outline.area_px2() >= 0.5 * 190.0_f64.powi(2);
+            pictures += 1;
+            found += usize::from(nails.iter().any(|nail| is_large(nail) && fit(nail) >= 0.5));
+            wrong.extend(nails.iter().filter(|nail| fit(nail) < 0.1).map(|_| file.clone()));
+        }
+        eprintln!("{found} of {pictures} found with confidence, wrong on {wrong:?}");
+        assert!(found * 5 >= pictures * 4 && wrong.len() <= 1, "{found} of {pictures}, {wrong:?}");
+    }
+
     /// Rooms and gardens, their hands cut off.
     #[test]
     #[ignore = "needs real recordings: LUNULA_REAL_DATA"]
