@@ -254,13 +254,18 @@ impl Photograph {
 
     /// Stored as grey, or as colour with three equal channels throughout (a camera's monochrome mode).
     pub fn is_grey(&self) -> bool {
-        match &self.image {
-            DynamicImage::ImageRgb8(p) => p.pixels().all(|p| p.0[0] == p.0[1] && p.0[1] == p.0[2]),
-            DynamicImage::ImageRgba8(p) => p.pixels().all(|p| p.0[0] == p.0[1] && p.0[1] == p.0[2]),
-            DynamicImage::ImageRgb16(p) => p.pixels().all(|p| p.0[0] == p.0[1] && p.0[1] == p.0[2]),
-            DynamicImage::ImageRgba16(p) => p.pixels().all(|p| p.0[0] == p.0[1] && p.0[1] == p.0[2]),
-            _ => true,
-        }
+        is_grey(&self.image)
+    }
+}
+
+/// As [`Photograph::is_grey`].
+pub(crate) fn is_grey(image: &DynamicImage) -> bool {
+    match image {
+        DynamicImage::ImageRgb8(p) => p.pixels().all(|p| p.0[0] == p.0[1] && p.0[1] == p.0[2]),
+        DynamicImage::ImageRgba8(p) => p.pixels().all(|p| p.0[0] == p.0[1] && p.0[1] == p.0[2]),
+        DynamicImage::ImageRgb16(p) => p.pixels().all(|p| p.0[0] == p.0[1] && p.0[1] == p.0[2]),
+        DynamicImage::ImageRgba16(p) => p.pixels().all(|p| p.0[0] == p.0[1] && p.0[1] == p.0[2]),
+        _ => true,
     }
 }
 

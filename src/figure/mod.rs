@@ -41,7 +41,7 @@ pub fn png(picture: &DynamicImage) -> Result<Vec<u8>, ImageError> {
 /// A grey picture as a PNG file; of one channel where nothing is transparent.
 ///
 /// # Errors
-/// As [`png`].
+/// As [`png()`].
 pub fn png_of_grey(picture: &GrayAlphaImage) -> Result<Vec<u8>, ImageError> {
     let mut png = Vec::new();
     let size = [picture.width(), picture.height()];
@@ -73,7 +73,7 @@ fn png_of_levels(levels: &GrayImage, first: [u8; 3]) -> Result<Vec<u8>, ImageErr
 /// Encodes samples, of 16 bits in the machine's order, at the end of `png`.
 ///
 /// # Errors
-/// As [`png`].
+/// As [`png()`].
 pub(crate) fn encode_png(
     samples: &[u8],
     [width, height]: [u32; 2],
