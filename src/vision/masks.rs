@@ -20,12 +20,12 @@ fn try_filled(corners: &[[i32; 2]], [width, height]: [usize; 2]) -> Result<Vec<u
     Ok(mask)
 }
 
-/// Less what a cross of five pixels does not fit into.
-pub(crate) fn opened(mask: &[u8], size: [usize; 2]) -> Vec<u8> {
-    answered(try_opened(mask, size))
+/// Less what a rhombus that reaches `steps` pixels from its middle does not fit into; beyond the mask it does.
+pub(crate) fn opened(mask: &[u8], size: [usize; 2], steps: usize) -> Vec<u8> {
+    answered(try_opened(mask, size, steps))
 }
 
-fn try_opened(mask: &[u8], [width, height]: [usize; 2]) -> Result<Vec<u8>, VisionError> {
+fn try_opened(mask: &[u8], [width, height]: [usize; 2], steps: usize) -> Result<Vec<u8>, VisionError> {
     let mut out = vec![0; mask.len()];
     let from = pixels::<u8>(height, width, mask)?;
     let mut to = pixels_mut::<u8>(height, width, &mut out)?;
@@ -33,7 +33,7 @@ fn try_opened(mask: &[u8], [width, height]: [usize; 2]) -> Result<Vec<u8>, Visio
         .map_err(VisionError::of("getStructuringElement"))?;
     let beyond = imgproc::morphology_default_border_value().map_err(VisionError::of("morphologyEx"))?;
     let middle = Point::new(-1, -1);
-    imgproc::morphology_ex(&from, &mut to, imgproc::MORPH_OPEN, &cross, middle, 1, BORDER_CONSTANT, beyond)
+    imgproc::morphology_ex(&from, &mut to, imgproc::MORPH_OPEN, &cross, middle, steps as i32, BORDER_CONSTANT, beyond)
         .map_err(VisionError::of("morphologyEx"))?;
     drop(to);
     Ok(out)
@@ -83,8 +83,8 @@ mod tests {
     fn opening_leaves_what_a_cross_fits_into() {
         let (before, size) = mask(&["#.....", "..##..", ".####.", "..##..", ".....#"]);
         let (after, _) = mask(&["......", "..##..", ".####.", "..##..", "......"]);
-        assert_eq!(opened(&before, size), after);
-        assert!(try_opened(&before, [6, 6]).is_err());
+        assert_eq!(opened(&before, size, 1), after);
+        assert!(try_opened(&before, [6, 6], 1).is_err());
     }
 
     #[test]

@@ -5,6 +5,7 @@
 //! motion of the two before leads (`register`); where that fails, coarser first; what is doubtful is lost (`judge`). A
 //! lost nail is looked for over the whole picture (`search`) and counts again once three frames running confirm it.
 
+mod cover;
 mod judge;
 mod register;
 mod search;
@@ -13,10 +14,13 @@ mod template;
 #[cfg(test)]
 mod tests;
 
+pub(in crate::nailvideo) use cover::{Covered, Rim, cell_at, cell_middle, covered};
 pub(in crate::nailvideo) use judge::{Lost, Place, beyond_fine};
 
+pub(in crate::nailvideo) use template::CELLS;
+
 use judge::{After, Usual, judge};
-use register::{Fit, Scratch, register};
+use register::{Fit, Scratch, register, register_bare};
 use search::Search;
 use sight::{Sight, blur_px};
 use template::{BOX, Template};
@@ -227,7 +231,7 @@ impl Follower {
         expected: Option<&Affine>,
     ) -> Result<(Place, Fit), Lost> {
         let sight = self.sight(frame, &start, self.step).ok_or(Lost::Outside)?;
-        let fit = register(&self.fine, &sight, start, &mut self.scratch).ok_or(Lost::Unlike)?;
+        let fit = register_bare(&self.fine, &sight, start, &mut self.scratch).ok_or(Lost::Unlike)?;
         judge(&fit, &self.fine, frame.quantizer, &self.usual, after, expected, self.width_px).map(|place| (place, fit))
     }
 

@@ -10,6 +10,7 @@
 use nalgebra::{SMatrix, SVector};
 use wide::f32x4;
 
+use super::cover::{Covered, Rim};
 use super::sight::Sight;
 use super::template::{BLOCKS, MOTION, Template, quantile};
 use crate::nailvideo::affine::Affine;
@@ -29,7 +30,7 @@ const CREEPING: f64 = 0.8;
 /// 0.15 and 0.2 up to 0.23).
 pub(super) const MOST_LAST_STEP_PX: f64 = 0.15;
 /// Tukey's biweight is nothing from so many SDs on (measured).
-const TUKEY_SDS: f64 = 4.0;
+pub(super) const TUKEY_SDS: f64 = 4.0;
 /// An SD is this many median absolute deviations (of a normal distribution).
 const SD_OF_MAD: f64 = 1.4826;
 /// Below it a median absolute deviation is rounding: a level of 8 bits, of a luma of 250. Where nothing moves, encoders
@@ -59,12 +60,15 @@ pub(super) struct Fit {
     pub(super) outside: f64,
     /// Correlation within blocks of the box, their median: of the texture, which outlines that are alike do not share.
     pub(super) texture: f64,
-    /// How the frame's normalized luma grows with the template's.
+    /// How the frame's normalized luma grows with the template's, and what it is above it.
     pub(super) gain: f64,
+    pub(super) offset: f64,
     /// The residuals' SD.
     pub(super) sd: f64,
     /// The last step, pixels at the nail's edge.
     pub(super) last_step_px: f64,
+    /// Of what lies over the nail.
+    pub(super) rim: Option<Rim>,
 }
 
 impl Fit {
@@ -85,20 +89,40 @@ impl Fit {
 /// Memory for residuals, used again for each frame.
 #[derive(Debug, Default)]
 pub(super) struct Scratch {
-    residuals: Vec<f32>,
+    /// Of the template's pixels, of the last fit.
+    pub(super) residuals: Vec<f32>,
     values: Vec<f32>,
     sorted: Vec<f32>,
 }
 
 /// Fits the template's motion to a frame, from `start` on; `None` where it leads nowhere.
 pub(super) fn register(template: &Template, sight: &Sight, start: Affine, scratch: &mut Scratch) -> Option<Fit> {
+    fit(template, sight, start, None, scratch)
+}
+
+/// The same by what is bare, where something lies over the nail.
+pub(super) fn register_bare(template: &Template, sight: &Sight, start: Affine, scratch: &mut Scratch) -> Option<Fit> {
+    let fitted = register(template, sight, start, scratch)?;
+    let Some(rim) = Rim::of(template, sight, &fitted, &scratch.residuals) else { return Some(fitted) };
+    let bare = fit(template, sight, fitted.motion, Some(&rim.covered()), scratch)?;
+    let rim = Rim::of(template, sight, &bare, &scratch.residuals).unwrap_or(rim);
+    Some(Fit { rim: Some(rim), ..bare })
+}
+
+fn fit(
+    template: &Template,
+    sight: &Sight,
+    start: Affine,
+    covered: Option<&Covered>,
+    scratch: &mut Scratch,
+) -> Option<Fit> {
     let (mut motion, mut gain, mut offset) = (start, 1.0_f64, 0.0_f64);
     let (mut k, mut before_px) = (0, f64::INFINITY);
     // Until the step after a look is so small that there is no need for another.
     let (sd, covariance, last_step_px) = loop {
         let wider = WIDER.get(k).copied();
         let every = if wider.is_some() && template.pixels.len() >= FEWEST_SPARSE { SPARSE } else { 1 };
-        let sd = look(template, sight, &motion, [gain, offset], every, scratch)? * wider.unwrap_or(1.0);
+        let sd = look(template, sight, &motion, [gain, offset], every, covered, scratch)? * wider.unwrap_or(1.0);
         let (normal, right) = equations(template, scratch, every, sd);
         let normal = normal.cholesky()?;
         let step = normal.solve(&right);
@@ -124,7 +148,7 @@ pub(super) fn register(template: &Template, sight: &Sight, start: Affine, scratc
     let covariance = covariance.fixed_view::<MOTION, MOTION>(0, 0).into_owned();
     let (ncc, inliers, outside) = agreement(template, scratch, sd);
     let texture = texture(template, scratch);
-    Some(Fit { motion, covariance, ncc, inliers, outside, texture, gain, sd, last_step_px })
+    Some(Fit { motion, covariance, ncc, inliers, outside, texture, gain, offset, sd, last_step_px, rim: None })
 }
 
 /// The largest displacement that the parameters make within the box about the nail.
@@ -140,6 +164,7 @@ fn look(
     motion: &Affine,
     [gain, offset]: [f64; 2],
     every: usize,
+    covered: Option<&Covered>,
     scratch: &mut Scratch,
 ) -> Option<f64> {
     let [a, b, c, d, e, f] = motion.0.map(|part| part as f32);
@@ -162,13 +187,27 @@ fn look(
     scratch.residuals.clear();
     let pixels = template.pixels.iter().step_by(every).zip(&scratch.values);
     scratch.residuals.extend(pixels.map(|(pixel, value)| gain * pixel.value() + offset - value));
+    if let Some(covered) = covered {
+        // What is infinitely off has no weight, and what is no number no texture.
+        let looked_at = scratch.residuals.iter_mut().zip(&mut scratch.values);
+        for (pixel, (residual, value)) in template.pixels.iter().step_by(every).zip(looked_at) {
+            if covered[usize::from(pixel.cell)] {
+                (*residual, *value) = (f32::INFINITY, f32::NAN);
+            }
+        }
+    }
     scratch.sorted.clear();
     scratch.sorted.extend(scratch.residuals.iter().map(|r| r.abs()).filter(|r| r.is_finite()));
-    let count = scratch.sorted.len();
+    sd_of(&mut scratch.sorted)
+}
+
+/// The SD of residuals by the median of their sizes; `None` of too few.
+pub(super) fn sd_of(sizes: &mut [f32]) -> Option<f64> {
+    let count = sizes.len();
     if count < FEWEST_PIXELS {
         return None;
     }
-    let (_, median, _) = scratch.sorted.select_nth_unstable_by(count / 2, f32::total_cmp);
+    let (_, median, _) = sizes.select_nth_unstable_by(count / 2, f32::total_cmp);
     Some((SD_OF_MAD * f64::from(*median)).max(LEAST_SD))
 }
 
@@ -236,9 +275,9 @@ fn pulls(template: &Template, scratch: &Scratch, sd: f64) -> Option<SMatrix<f64,
             continue;
         }
         let pull = f32x4::splat(weight * residual);
-        let block = &mut blocks[usize::from(pixel.block)];
+        let block = &mut blocks[pixel.block()];
         // In a frame that is the template's own, to the bit, they pull at nothing.
-        has_weight[usize::from(pixel.block)] = true;
+        has_weight[pixel.block()] = true;
         block.iter_mut().zip(pixel.halves()).for_each(|(sum, half)| *sum += pull * half);
     }
     let (mut sums, mut count) = (SMatrix::zeros(), 0.0);
@@ -283,7 +322,7 @@ fn texture(template: &Template, scratch: &Scratch) -> f64 {
     for (pixel, &value) in template.pixels.iter().zip(&scratch.values).filter(|(pixel, v)| pixel.even && v.is_finite())
     {
         let (p, q) = (f64::from(pixel.value()), f64::from(value));
-        let of = &mut sums[usize::from(pixel.block)];
+        let of = &mut sums[pixel.block()];
         of.iter_mut().zip([1.0, p, q, p * p, p * q, q * q]).for_each(|(sum, part)| *sum += part);
     }
     let correlation = |&[n, x, y, xx, xy, yy]: &[f64; 6]| {

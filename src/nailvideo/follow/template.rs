@@ -4,6 +4,7 @@
 
 use wide::f32x4;
 
+use super::cover::cell_at;
 use super::sight::Sight;
 use crate::nailvideo::affine::Affine;
 
@@ -14,7 +15,9 @@ const PIXELS: usize = 6000;
 pub(super) const BOX: f64 = 1.25;
 
 /// Blocks across and down that are compared each by itself.
-pub(super) const BLOCKS: usize = 8;
+pub(super) const BLOCKS: usize = CELLS / 2;
+/// Cells across and down in which it is seen where something lies over the nail; as many as a byte counts.
+pub(in crate::nailvideo) const CELLS: usize = 16;
 
 /// Parameters of a motion: displacements in pixels at the nail's half extent: of x by x, y and 1, of y by x, y and 1.
 pub(super) const MOTION: usize = 6;
@@ -27,14 +30,24 @@ pub(super) struct Pixel {
     pub(super) row: [f32; MOTION + 2],
     /// One of those that are spread evenly.
     pub(super) even: bool,
-    /// The block of the nail's box that it lies in, of [`BLOCKS`] across and down.
-    pub(super) block: u8,
+    /// The cell of the nail's box that it lies in, of [`CELLS`] across and down.
+    pub(super) cell: u8,
+}
+
+/// One that need not be followed by.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Dot {
+    pub(super) at: [f32; 2],
+    pub(super) value: f32,
+    pub(super) cell: u8,
 }
 
 /// The template at one scale.
 #[derive(Debug)]
 pub(super) struct Template {
     pub(super) pixels: Vec<Pixel>,
+    /// All that were to choose from.
+    pub(super) all: Vec<Dot>,
     /// Of the box that all pixels lie in.
     pub(super) corners: [[f32; 2]; 4],
     /// The nail's middle, pixels.
@@ -47,6 +60,13 @@ impl Pixel {
     #[inline]
     pub(super) fn value(&self) -> f32 {
         self.row[MOTION]
+    }
+
+    /// The block that it lies in, of [`BLOCKS`] across and down.
+    #[inline]
+    pub(super) fn block(&self) -> usize {
+        let cell = usize::from(self.cell);
+        cell % CELLS / 2 + BLOCKS * (cell / CELLS / 2)
     }
 
     /// The first and the last four of its row.
@@ -76,8 +96,7 @@ impl Template {
             let on_nail = nail_from_frame.of(at);
             let inside = on_nail.iter().all(|part| part.abs() <= BOX);
             if let Some(pixel) = inside.then(|| pixel(sight, at, step, middle, radius)).flatten() {
-                let [u, v] = on_nail.map(|at| ((at / BOX + 1.0) * 0.5 * BLOCKS as f64) as usize);
-                all.push(Pixel { block: (u.min(BLOCKS - 1) + BLOCKS * v.min(BLOCKS - 1)) as u8, ..pixel });
+                all.push(Pixel { cell: cell_at(on_nail) as u8, ..pixel });
             }
         }
         let side = |axis: usize| {
@@ -86,7 +105,8 @@ impl Template {
         };
         let ([left, right], [top, bottom]) = (side(0), side(1));
         let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
-        Self { pixels: chosen(all), corners, middle, radius }
+        let dots = all.iter().map(|pixel| Dot { at: pixel.at, value: pixel.value(), cell: pixel.cell }).collect();
+        Self { pixels: chosen(all), all: dots, corners, middle, radius }
     }
 
     /// Share of the slopes' energy that is noise, 0 to 1. The noise is what a difference shows that smooth shading and
@@ -139,7 +159,7 @@ fn pixel(sight: &Sight, at: [f64; 2], step: usize, middle: [f64; 2], radius: f64
     let dy = 0.5 * (sight.at(x, y + h) - sight.at(x, y - h)) / h;
     let local = [0, 1].map(|axis| ((at[axis] - middle[axis]) / radius) as f32);
     let row = [dx * local[0], dx * local[1], dx, dy * local[0], dy * local[1], dy, value, 1.0];
-    (value + dx + dy).is_finite().then_some(Pixel { at: [x, y], row, even: false, block: 0 })
+    (value + dx + dy).is_finite().then_some(Pixel { at: [x, y], row, even: false, cell: 0 })
 }
 
 /// Half spread evenly, half the steepest of the others.

@@ -295,7 +295,9 @@ impl Job<'_> {
             }
             return Ok(lost);
         };
-        self.stages.time("photodiodes", || work.sampler.sample(&colours, &frame_from_nail, &mut work.readings));
+        self.stages.time("photodiodes", || {
+            work.sampler.sample(&colours, &frame_from_nail, place.rim.as_ref(), &mut work.readings);
+        });
         if let Some(cells) = &mut work.cells {
             self.stages.time("cells", || cells.add(time_s, &work.readings[work.photodiodes..]))?;
         }

@@ -2,9 +2,10 @@
 //!
 //! In: a frame, and where the nail is in it. Out: for each region its value in the unit of [`Light`], or why there is
 //! none. What lies over the nail is known by its colour: blood moves the colours of nail and skin along one line in
-//! (ln green/red, ln blue/red) and leaves red nearly alone; a rod, another finger or glare does not.
+//! (ln green/red, ln blue/red) and leaves red nearly alone; a rod or glare does not, and another finger by its rim.
 
 mod colour;
+mod cover;
 mod noise;
 mod region;
 #[cfg(test)]
@@ -13,24 +14,29 @@ mod tests;
 pub(in crate::nailvideo) use colour::{Colours, Planes};
 pub(in crate::nailvideo) use region::{Group, MARGIN, Region, cell_name, cells, discs};
 
+use cover::{Cells, points_covered};
 use noise::Noise;
 use region::{light_cells, skin, spread_discs};
 
 use super::affine::Affine;
+use super::follow::{Covered, Rim};
 use super::options::Light;
 use crate::nail::Positions;
 
-/// Where a group's colour may go from that of the first good frame, natural logarithms, less what the light changed: of
-/// green over red (measured on real presses: -0.1 to 0.22, on the phantom's persons to -0.32; the rest is room for
-/// other people), ..
-const GREEN: std::ops::RangeInclusive<f64> = -0.45..=0.45;
-/// .. of blue over red from the line of blood, ..
+/// How far a colour may go from that of the first good frame, natural logarithms, less what the light changed.
+#[derive(Debug, Clone, Copy)]
+struct Limits {
+    /// Of green over red.
+    green: f64,
+    /// Of blue over red from the line of blood.
+    blue: f64,
+    /// Of red, or of a grey video's luma.
+    red: f64,
+    grey: f64,
+}
+
+/// Change of blue over red with that of green over red, as blood has it.
 const BLUE_OF_GREEN: f64 = 0.45;
-const MOST_BLUE: f64 = 0.20;
-/// .. of red, or of a grey video's luma (assumed: light differs by up to 12 % over the nail, blood by up to 5 % in red
-/// and 26 % in luma).
-const MOST_RED: f64 = 0.25;
-const MOST_GREY: f64 = 0.40;
 /// A region is hidden where more than this share of its points is (section 2.4 of the design).
 const MOST_HIDDEN: f64 = 0.25;
 /// Nothing is known of the light where fewer of its cells are seen.
@@ -107,6 +113,9 @@ pub(in crate::nailvideo) struct Sampler {
     /// Discs as large as photodiodes, all over the nail.
     spread: Vec<Watched>,
     noise: Noise,
+    under: Cells,
+    /// What is covered in the frame that was sampled last, where something lies over the nail.
+    covered: Option<Covered>,
     /// Frames that were sampled.
     frames: usize,
     /// For medians.
@@ -139,6 +148,22 @@ struct Shape {
 fn logs([red, green, blue]: [f64; 3]) -> Option<[f64; 3]> {
     let logs = [red.ln(), (green / red).ln(), (blue / red).ln()];
     logs.iter().all(|part| part.is_finite()).then_some(logs)
+}
+
+impl Limits {
+    /// Where nothing is known to lie over the nail (of green over red measured on real presses: -0.1 to 0.22, on the
+    /// phantom's persons to -0.32; the rest is room for other people. Of red and luma assumed: light differs by up to
+    /// 12 % over the nail, blood by up to 5 % in red and 26 % in luma).
+    const USUAL: Self = Self { green: 0.45, blue: 0.20, red: 0.25, grey: 0.40 };
+
+    /// Whether a change of [`logs`] can't be that of the same place with other blood in a light that changed so.
+    fn is_strange(&self, change: [f64; 3], light: [f64; 3], is_grey: bool) -> bool {
+        let [red, green, blue] = std::array::from_fn(|k| change[k] - light[k]);
+        if is_grey {
+            return red.abs() > self.grey;
+        }
+        red.abs() > self.red || green.abs() > self.green || (blue - BLUE_OF_GREEN * green).abs() > self.blue
+    }
 }
 
 impl Sampler {
@@ -174,21 +199,22 @@ impl Sampler {
         let regions = regions.into_iter().map(watched).collect();
         let spread: Vec<Watched> = spread_discs(positions, extent_px).into_iter().map(watched).collect();
         let noise = Noise::new(spread.len());
-        Self { light, grey, regions, cells, groups, skin, spread, noise, frames: 0, sorted: Vec::new() }
+        let under = Cells::new(first, frame_from_nail);
+        let sorted = Vec::new();
+        Self { light, grey, regions, cells, groups, skin, spread, noise, under, covered: None, frames: 0, sorted }
     }
 
-    /// The values of all regions where the nail is at `frame_from_nail`.
+    /// The values of all regions where the nail is at `frame_from_nail`; `rim` is that of what lies over it.
     pub(in crate::nailvideo) fn sample(
         &mut self,
         colours: &Colours,
         frame_from_nail: &Affine,
+        rim: Option<&Rim>,
         into: &mut Vec<Result<Sampled, Absent>>,
     ) {
+        self.covered = rim.map(|rim| self.under.covered(rim, colours, frame_from_nail, self.grey));
         let light = self.light_change(colours, frame_from_nail);
-        let skin = match self.light {
-            Light::Skin => colours.mean(&self.skin, frame_from_nail)[1],
-            _ => f64::NAN,
-        };
+        let skin = if self.light == Light::Skin { self.skin_rgb(colours, frame_from_nail)[1] } else { f64::NAN };
         if self.frames.is_multiple_of(EVERY) {
             for watched in &mut self.regions {
                 watched.shape = shape(self.light, &watched.region, colours, frame_from_nail, skin);
@@ -212,8 +238,15 @@ impl Sampler {
 
     /// The skin's own colour about the nail, in the unit of the values: what of a change is the light's.
     pub(in crate::nailvideo) fn skin(&self, colours: &Colours, frame_from_nail: &Affine) -> f64 {
-        let rgb = colours.mean(&self.skin, frame_from_nail);
+        let rgb = self.skin_rgb(colours, frame_from_nail);
         value_of(if self.light == Light::Skin { Light::Red } else { self.light }, rgb, f64::NAN)
+    }
+
+    /// NaN where too much of it is covered.
+    fn skin_rgb(&self, colours: &Colours, frame_from_nail: &Affine) -> [f64; 3] {
+        let covered = self.covered.as_ref().map_or(0, |covered| points_covered(covered, &self.skin));
+        let is_seen = covered as f64 <= MOST_HIDDEN * self.skin.points.len() as f64;
+        if is_seen { colours.mean(&self.skin, frame_from_nail) } else { [f64::NAN; 3] }
     }
 
     fn one(
@@ -230,6 +263,8 @@ impl Sampler {
             all += group.points.len();
             if light.is_none_or(|light| self.is_strange(rgb, *first, light)) {
                 hidden += group.points.len();
+            } else if let Some(covered) = &self.covered {
+                hidden += points_covered(covered, group);
             }
             (group, rgb)
         });
@@ -261,11 +296,7 @@ impl Sampler {
     /// Whether a colour can't be that of the same place with other blood in other light.
     fn is_strange(&self, now: [f64; 3], first: [f64; 3], light: [f64; 3]) -> bool {
         let (Some(now), Some(first)) = (logs(now), logs(first)) else { return true };
-        let [red, green, blue] = std::array::from_fn(|k| now[k] - first[k] - light[k]);
-        if self.grey {
-            return red.abs() > MOST_GREY;
-        }
-        red.abs() > MOST_RED || !GREEN.contains(&green) || (blue - BLUE_OF_GREEN * green).abs() > MOST_BLUE
+        Limits::USUAL.is_strange(std::array::from_fn(|k| now[k] - first[k]), light, self.grey)
     }
 
     /// What the light changed: medians over the nail of the logarithms of colours; `None` where too little is seen.
@@ -274,6 +305,7 @@ impl Sampler {
             .groups
             .iter()
             .zip(&self.cells)
+            .filter(|(group, _)| self.covered.as_ref().is_none_or(|covered| points_covered(covered, group) == 0))
             .filter_map(|(group, first)| {
                 let (now, first) = (logs(colours.mean(group, frame_from_nail))?, (*first)?);
                 Some(std::array::from_fn(|k| now[k] - first[k]))
@@ -282,13 +314,16 @@ impl Sampler {
         if (changes.len() as f64) < LEAST_SEEN * self.groups.len() as f64 {
             return None;
         }
-        Some(std::array::from_fn(|k| {
-            self.sorted.clear();
-            self.sorted.extend(changes.iter().map(|change| change[k]));
-            let middle = self.sorted.len() / 2;
-            *self.sorted.select_nth_unstable_by(middle, f64::total_cmp).1
-        }))
+        Some(std::array::from_fn(|k| median(changes.iter().map(|change| change[k]), &mut self.sorted)))
     }
+}
+
+/// The upper one of two; NaN of no values.
+fn median(values: impl Iterator<Item = f64>, sorted: &mut Vec<f64>) -> f64 {
+    sorted.clear();
+    sorted.extend(values);
+    let middle = sorted.len() / 2;
+    if sorted.is_empty() { f64::NAN } else { *sorted.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
 /// The mean colour over a region.

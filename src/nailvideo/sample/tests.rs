@@ -18,7 +18,7 @@ fn values(scene: &Scene, light: Light, shot: &Shot, motion: &Affine) -> Vec<Resu
     let nail = motion.after(&nail);
     let colours = Colours::new(&picture.frame(1, 0.1), PLANES, &nail).unwrap();
     let mut out = Vec::new();
-    sampler.sample(&colours, &nail, &mut out);
+    sampler.sample(&colours, &nail, None, &mut out);
     out
 }
 

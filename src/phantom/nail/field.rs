@@ -181,6 +181,14 @@ impl<'a> Field<'a> {
         [d[0] * self.right[0] + d[1] * self.right[1], d[0] * self.distal[0] + d[1] * self.distal[1]]
     }
 
+    /// How much of the finger, not of what is behind it, is seen at (`x_px`, `y_px`), 0 to 1.
+    #[must_use]
+    pub(in crate::phantom) fn on_finger(&self, x_px: f64, y_px: f64) -> f64 {
+        let [across, along] = self.finger_from_picture(x_px, y_px);
+        let subject = &self.scene.subject;
+        self.edges.finger.covered(subject.finger.place(across, along, subject.nail.aspect).edge)
+    }
+
     /// Encoded red, green and blue at (`x_px`, `y_px`), 0 to 1.
     pub fn colour(&self, x_px: f64, y_px: f64) -> [f64; 3] {
         let [across, along] = self.finger_from_picture(x_px, y_px);

@@ -62,7 +62,8 @@ impl NailVideoOptions {
             )
         });
         let frames = self.frames();
-        let spans = self.rod.iter().map(|span| ("--rod", span)).chain(self.cut.iter().map(|span| ("--cut", span)));
+        let named = [("--rod", &self.rod), ("--finger", &self.finger), ("--cut", &self.cut)];
+        let spans = named.into_iter().flat_map(|(option, spans)| spans.iter().map(move |span| (option, span)));
         for (option, [frame, count]) in spans.chain(self.leave.iter().map(|span| ("--leave", span))) {
             need(*count > 0 && *frame < frames, &|| {
                 format!("{option} {frame}+{count}: the video has frames 0 to {}", frames - 1)

@@ -25,7 +25,7 @@ impl Scene {
         };
         let time_s = self.time_s(frame);
         let light = self.light.at(time_s, &self.track.at(time_s));
-        let rods: Vec<_> = self.rods.iter().filter_map(|rod| rod.at(time_s)).collect();
+        let held: Vec<_> = self.covers.iter().filter_map(|cover| cover.at(time_s)).collect();
         let share = 1.0 / exposures.len() as f32;
         let row = |y: usize, rgb: &mut [Vec<f32>; 3]| {
             let [red, green, blue] = &mut *rgb;
@@ -36,7 +36,7 @@ impl Scene {
                     let one = painted.colour(back.apply(at));
                     (0..3).for_each(|c| colour[c] += share * one[c]);
                 }
-                for (covered, own) in rods.iter().map(|rod| rod.over(at)).filter(|(covered, _)| *covered > 0.0) {
+                for (covered, own) in held.iter().map(|cover| cover.over(at)).filter(|(covered, _)| *covered > 0.0) {
                     (0..3).for_each(|c| colour[c] += covered as f32 * (own[c] as f32 - colour[c]));
                 }
                 let (factor, mirrored) = (light.over(at), light.mirrored(at) as f32);

@@ -137,6 +137,10 @@ pub struct NailVideoOptions {
     /// A rod covers part of the nail from this frame on, so many frames long; again for more
     #[arg(long, value_name = "FRAME+N", value_parser = parse_span_of_frames)]
     pub rod: Vec<[usize; 2]>,
+    /// Another finger of the same hand lies over part of the nail from this frame on, so many frames long; again for more
+    #[arg(long, value_name = "FRAME+N", value_parser = parse_span_of_frames)]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub finger: Vec<[usize; 2]>,
     /// A cut: another person's nail is in the picture from this frame on, so many frames long; again for more
     #[arg(long, value_name = "FRAME+N", value_parser = parse_span_of_frames)]
     pub cut: Vec<[usize; 2]>,
@@ -203,6 +207,7 @@ impl Default for NailVideoOptions {
             colour_drift_percent: 0.0,
             glare_percent: 0.0,
             rod: Vec::new(),
+            finger: Vec::new(),
             cut: Vec::new(),
             leave: None,
             blur: 0.0,

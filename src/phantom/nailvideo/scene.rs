@@ -3,8 +3,8 @@
 use rand::RngExt;
 
 use super::canvas::{Canvas, MOST_SAMPLES, samples};
+use super::cover::Cover;
 use super::light::DriftingLight;
-use super::rod::Rod;
 use super::track::Track;
 use super::{Affine, Faults, NailVideoOptions};
 use crate::nail::{Axis, Positions};
@@ -14,8 +14,8 @@ use crate::phantom::sensor::{Discs, FollowedColour, Touch, person};
 use crate::phantom::video::TICKS_PER_S;
 
 const KIND_SCENE: u32 = 45;
-/// The person of a cut is this many further.
-const OTHER: u32 = 1000;
+/// The person of a cut is this many further, and the one whose finger lies over the nail.
+pub(super) const OTHER: u32 = 1000;
 
 /// A video of a nail, settled.
 #[derive(Debug)]
@@ -27,7 +27,7 @@ pub struct Scene {
     pub(super) moments: Vec<Moment>,
     pub(super) track: Track,
     pub(super) light: DriftingLight,
-    pub(super) rods: Vec<Rod>,
+    pub(super) covers: Vec<Cover>,
     pub(super) discs: Discs,
     pub(super) canvas: Canvas,
     /// Another person's nail, where there is a cut.
@@ -84,10 +84,12 @@ impl Scene {
             (Canvas::new(&scene, region_px), ColourWeights::resting(&scene.subject, [0.0; 3], [0.0; 3]))
         });
         let discs = Discs::new(&nail, &positions);
-        let rods = (0..options.rod.len()).map(|index| Rod::new(&options, &nail, index)).collect();
+        let rods = (0..options.rod.len()).map(|index| Cover::rod(&options, &nail, index));
+        let fingers = (0..options.finger.len()).map(|index| Cover::finger(&options, &nail, index));
+        let covers = rods.chain(fingers).collect();
         let light = DriftingLight::new(&options, &nail);
         let moments = moments(&options, &log, &nail.subject);
-        Ok(Self { options, log, positions, nail, moments, track, light, rods, discs, canvas, other })
+        Ok(Self { options, log, positions, nail, moments, track, light, covers, discs, canvas, other })
     }
 
     /// What was asked for.

@@ -10,7 +10,7 @@ impl Scene {
         let moment = &self.moments[frame];
         let motion = self.track.at(time_s);
         let cut = self.is_cut(frame);
-        let rods: Vec<_> = self.rods.iter().filter_map(|rod| rod.at(time_s)).collect();
+        let held: Vec<_> = self.covers.iter().filter_map(|cover| cover.at(time_s)).collect();
         let [width, height] = [self.options.size.0, self.options.size.1].map(f64::from);
         let inside = |[x, y]: [f64; 2]| x >= -0.5 && y >= -0.5 && x <= width - 0.5 && y <= height - 0.5;
         let radius = 2.0 * self.positions.radius_widths();
@@ -22,7 +22,7 @@ impl Scene {
             let aspect = self.nail.subject.nail.aspect;
             let seen_share = |([a, b], share): &([f64; 2], f64)| {
                 let at = seen(u + radius * a, v + radius / aspect * b);
-                (inside(at) && !rods.iter().any(|rod| rod.covers(at))).then_some(*share)
+                (inside(at) && !held.iter().any(|cover| cover.covers(at))).then_some(*share)
             };
             let (mut share, mut count) = (0.0, 0);
             for one in samples.iter().filter_map(seen_share) {

@@ -53,7 +53,7 @@ pub(in super::super) fn silhouettes(picture: &Picture) -> Vec<GrayImage> {
 
 fn mask(size: [usize; 2], inside: &dyn Fn(usize) -> bool) -> GrayImage {
     let mask: Vec<u8> = (0..size[0] * size[1]).map(|i| if inside(i) { 255 } else { 0 }).collect();
-    let mask = opened(&mask, size);
+    let mask = opened(&mask, size, 1);
     GrayImage::from_raw(size[0] as u32, size[1] as u32, mask).expect("one value a pixel")
 }
 

@@ -1,0 +1,98 @@
+//! Whether something lies over the nail, by its rim: cells of the nail's box in which many pixels do not fit.
+
+use super::register::{Fit, TUKEY_SDS, sd_of};
+use super::sight::Sight;
+use super::template::{BOX, CELLS, Template};
+use crate::vision::{Neighbours, opened, parts};
+
+/// A cell is the rim's where more than this share of its pixels does not fit, ..
+const RIM: f64 = 0.15;
+/// .. and something lies over the nail where so many of these touch each other on it.
+const FEWEST_CELLS: usize = 4;
+/// All pixels are looked at where so many cells have as many by those of the fit, a dozen a cell.
+const FEWEST_BY_FIT: usize = 2;
+
+/// Residuals of less than this are no rim: where nothing moves, encoders repeat most of a picture to the bit.
+const LEAST_SD: f64 = 0.01;
+/// A rim has gaps, up to twice so many cells wide, where it is as dark as what is below.
+const WIDEST_GAP: usize = 2;
+/// The nail is the largest part beside the rim, and each half as large: a rod may lie across it.
+const LEAST_PART: f64 = 0.5;
+
+/// Which cells of the nail's box are covered; rows from the proximal end.
+pub(in crate::nailvideo) type Covered = [bool; CELLS * CELLS];
+
+/// Cells of the nail's box in which the rim of something is seen; rows from the proximal end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::nailvideo) struct Rim([u16; CELLS]);
+
+impl Rim {
+    /// Whether a cell is one of the rim's.
+    pub(in crate::nailvideo) fn has(&self, cell: usize) -> bool {
+        self.0[cell / CELLS] >> (cell % CELLS) & 1 == 1
+    }
+
+    /// What is covered by something that has this rim, by the cells alone that are no rim.
+    pub(super) fn covered(&self) -> Covered {
+        covered(|cell| !self.has(cell))
+    }
+
+    /// Of a fit with its residuals; `None` where nothing lies over the nail.
+    pub(super) fn of(template: &Template, sight: &Sight, fit: &Fit, residuals: &[f32]) -> Option<Self> {
+        let fitted = template.pixels.iter().zip(residuals).filter(|(pixel, _)| pixel.even);
+        Self::with(FEWEST_BY_FIT, fitted.map(|(pixel, &residual)| (pixel.cell, residual.abs())).collect())?;
+        let [a, b, c, d, e, f] = fit.motion.0.map(|part| part as f32);
+        let (gain, offset) = (fit.gain as f32, fit.offset as f32);
+        let all = template.all.iter().map(|dot| {
+            let [x, y] = dot.at;
+            (dot.cell, (gain * dot.value + offset - sight.at(a * x + b * y + c, d * x + e * y + f)).abs())
+        });
+        Self::with(FEWEST_CELLS, all.collect())
+    }
+
+    /// Of residuals in cells, where as many cells touch each other.
+    fn with(fewest: usize, residuals: Vec<(u8, f32)>) -> Option<Self> {
+        // Their own SD: a fit's has as many steep pixels, which any error of the place moves.
+        let mut sorted: Vec<f32> = residuals.iter().map(|(_, residual)| *residual).filter(|r| r.is_finite()).collect();
+        let limit = (TUKEY_SDS * sd_of(&mut sorted)?.max(LEAST_SD)) as f32;
+        let mut counts = [[0_u32; 2]; CELLS * CELLS];
+        for (cell, residual) in residuals {
+            let [all, beside] = &mut counts[usize::from(cell)];
+            *all += 1;
+            // What is out of the picture says nothing.
+            *beside += u32::from(residual >= limit);
+        }
+        let is_rim = counts.map(|[all, beside]| f64::from(beside) > RIM * f64::from(all));
+        let on_nail: Vec<u8> = (0..CELLS * CELLS).map(|cell| u8::from(is_rim[cell] && is_on_nail(cell))).collect();
+        let is_over = on_nail.iter().filter(|&&is| is == 1).count() >= fewest
+            && parts(&on_nail, [CELLS; 2], Neighbours::Eight).all.iter().any(|part| part.area >= fewest);
+        let row = |row: usize| (0..CELLS).fold(0, |bits, k| bits | u16::from(is_rim[row * CELLS + k]) << k);
+        is_over.then(|| Self(std::array::from_fn(row)))
+    }
+}
+
+/// All but the nail, which is the largest part of the cells that may be bare.
+pub(in crate::nailvideo) fn covered(may_be_bare: impl Fn(usize) -> bool) -> Covered {
+    let bare: Vec<u8> = (0..CELLS * CELLS).map(|cell| u8::from(may_be_bare(cell))).collect();
+    let parts = parts(&opened(&bare, [CELLS; 2], WIDEST_GAP), [CELLS; 2], Neighbours::Four);
+    let largest = parts.all.iter().map(|part| part.area).max().unwrap_or(0) as f64;
+    let is_nail = |label: i32| label > 0 && parts.all[label as usize - 1].area as f64 >= LEAST_PART * largest;
+    std::array::from_fn(|cell| !is_nail(parts.labels[cell]))
+}
+
+/// A cell's middle, half widths and half lengths.
+pub(in crate::nailvideo) fn cell_middle(cell: usize) -> [f64; 2] {
+    [cell % CELLS, cell / CELLS].map(|k| BOX * ((2 * k + 1) as f64 / CELLS as f64 - 1.0))
+}
+
+/// The cell of a place in half widths and half lengths; beyond the box the nearest.
+pub(in crate::nailvideo) fn cell_at(place: [f64; 2]) -> usize {
+    let [u, v] = place.map(|at| (((at / BOX + 1.0) * 0.5 * CELLS as f64) as usize).min(CELLS - 1));
+    u + CELLS * v
+}
+
+/// Nails are rounder than their box.
+fn is_on_nail(cell: usize) -> bool {
+    let [u, v] = cell_middle(cell);
+    u.powi(4) + v.powi(4) <= 1.0
+}
