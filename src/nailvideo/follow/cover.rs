@@ -6,9 +6,10 @@ use super::template::{BOX, CELLS, Template};
 use crate::vision::{Neighbours, opened, parts};
 
 /// A cell is the rim's where more than this share of its pixels does not fit, ..
-const RIM: f64 = 0.15;
-/// .. and something lies over the nail where so many of these touch each other on it.
-const FEWEST_CELLS: usize = 4;
+const RIM: f64 = 0.10;
+/// .. and something lies over the nail where so many touch each other on it that have more than this.
+const CLEAR_RIM: f64 = 0.25;
+const FEWEST_CELLS: usize = 7;
 /// All pixels are looked at where so many cells have as many by those of the fit, a dozen a cell.
 const FEWEST_BY_FIT: usize = 2;
 
@@ -40,18 +41,18 @@ impl Rim {
     /// Of a fit with its residuals; `None` where nothing lies over the nail.
     pub(super) fn of(template: &Template, sight: &Sight, fit: &Fit, residuals: &[f32]) -> Option<Self> {
         let fitted = template.pixels.iter().zip(residuals).filter(|(pixel, _)| pixel.even);
-        Self::with(FEWEST_BY_FIT, fitted.map(|(pixel, &residual)| (pixel.cell, residual.abs())).collect())?;
+        Self::with((RIM, FEWEST_BY_FIT), fitted.map(|(pixel, &residual)| (pixel.cell, residual.abs())).collect())?;
         let [a, b, c, d, e, f] = fit.motion.0.map(|part| part as f32);
         let (gain, offset) = (fit.gain as f32, fit.offset as f32);
         let all = template.all.iter().map(|dot| {
             let [x, y] = dot.at;
             (dot.cell, (gain * dot.value + offset - sight.at(a * x + b * y + c, d * x + e * y + f)).abs())
         });
-        Self::with(FEWEST_CELLS, all.collect())
+        Self::with((CLEAR_RIM, FEWEST_CELLS), all.collect())
     }
 
     /// Of residuals in cells, where as many cells touch each other.
-    fn with(fewest: usize, residuals: Vec<(u8, f32)>) -> Option<Self> {
+    fn with((clear, fewest): (f64, usize), residuals: Vec<(u8, f32)>) -> Option<Self> {
         // Their own SD: a fit's has as many steep pixels, which any error of the place moves.
         let mut sorted: Vec<f32> = residuals.iter().map(|(_, residual)| *residual).filter(|r| r.is_finite()).collect();
         let limit = (TUKEY_SDS * sd_of(&mut sorted)?.max(LEAST_SD)) as f32;
@@ -62,11 +63,15 @@ impl Rim {
             // What is out of the picture says nothing.
             *beside += u32::from(residual >= limit);
         }
-        let is_rim = counts.map(|[all, beside]| f64::from(beside) > RIM * f64::from(all));
-        let on_nail: Vec<u8> = (0..CELLS * CELLS).map(|cell| u8::from(is_rim[cell] && is_on_nail(cell))).collect();
+        let has = |cell: usize, share: f64| {
+            let [all, beside] = counts[cell].map(f64::from);
+            beside > share * all
+        };
+        let on_nail: Vec<u8> =
+            (0..CELLS * CELLS).map(|cell| u8::from(is_near_nail(cell) && has(cell, clear))).collect();
         let is_over = on_nail.iter().filter(|&&is| is == 1).count() >= fewest
             && parts(&on_nail, [CELLS; 2], Neighbours::Eight).all.iter().any(|part| part.area >= fewest);
-        let row = |row: usize| (0..CELLS).fold(0, |bits, k| bits | u16::from(is_rim[row * CELLS + k]) << k);
+        let row = |row: usize| (0..CELLS).fold(0, |bits, k| bits | u16::from(has(row * CELLS + k, RIM)) << k);
         is_over.then(|| Self(std::array::from_fn(row)))
     }
 }
@@ -91,8 +96,9 @@ pub(in crate::nailvideo) fn cell_at(place: [f64; 2]) -> usize {
     u + CELLS * v
 }
 
-/// Nails are rounder than their box.
-fn is_on_nail(cell: usize) -> bool {
+/// On the nail, or so near that finger and not background is beside it; nails are rounder than their box.
+fn is_near_nail(cell: usize) -> bool {
+    const REACH: f64 = 1.12;
     let [u, v] = cell_middle(cell);
-    u.powi(4) + v.powi(4) <= 1.0
+    u.powi(4) + v.powi(4) <= REACH.powi(4)
 }
