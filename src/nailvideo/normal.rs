@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use wide::f32x4;
 
 use super::affine::Affine;
+use super::follow::{Covered, cell_at};
 use super::options::Window;
 use super::sample::{Colours, MARGIN};
 
@@ -81,15 +82,22 @@ impl WindowSums {
         Self { window, frames: 0, sums: vec![[0.0; 3]; SIDE * SIDE] }
     }
 
-    /// Adds a frame's green where the window holds its time.
-    pub(in crate::nailvideo) fn add(&mut self, time_s: f64, colours: &Colours, frame_from_nail: &Affine) {
+    /// Adds a frame's green where the window holds its time, without what is covered.
+    pub(in crate::nailvideo) fn add(
+        &mut self,
+        time_s: f64,
+        colours: &Colours,
+        frame_from_nail: &Affine,
+        covered: Option<&Covered>,
+    ) {
         if time_s < self.window.from_s || time_s > self.window.to_s {
             return;
         }
         self.frames += 1;
-        for ([count, mean, squares], [_, green, _]) in self.sums.iter_mut().zip(pixels(colours, frame_from_nail, SIDE))
-        {
-            if green.is_finite() {
+        let is_covered = |k: usize| covered.is_some_and(|covered| covered[cell_at(place(SIDE, k % SIDE, k / SIDE))]);
+        let pixels = pixels(colours, frame_from_nail, SIDE).enumerate();
+        for ([count, mean, squares], (k, [_, green, _])) in self.sums.iter_mut().zip(pixels) {
+            if green.is_finite() && !is_covered(k) {
                 *count += 1.0;
                 let before = green - *mean;
                 *mean += before / *count;

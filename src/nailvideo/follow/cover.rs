@@ -6,17 +6,17 @@ use super::template::{BOX, CELLS, Template};
 use crate::vision::{Neighbours, opened, parts};
 
 /// A cell is the rim's where more than this share of its pixels does not fit, ..
-const RIM: f64 = 0.10;
+const RIM: f64 = 0.15;
 /// .. and something lies over the nail where so many touch each other on it that have more than this.
-const CLEAR_RIM: f64 = 0.25;
-const FEWEST_CELLS: usize = 7;
+const CLEAR_RIM: f64 = 0.35;
+const FEWEST_CELLS: usize = 13;
 /// All pixels are looked at where so many cells have as many by those of the fit, a dozen a cell.
-const FEWEST_BY_FIT: usize = 2;
+const FEWEST_BY_FIT: usize = 5;
 
 /// Residuals of less than this are no rim: where nothing moves, encoders repeat most of a picture to the bit.
 const LEAST_SD: f64 = 0.01;
 /// A rim has gaps, up to twice so many cells wide, where it is as dark as what is below.
-const WIDEST_GAP: usize = 2;
+const WIDEST_GAP: usize = 3;
 /// The nail is the largest part beside the rim, and each half as large: a rod may lie across it.
 const LEAST_PART: f64 = 0.5;
 
@@ -25,7 +25,7 @@ pub(in crate::nailvideo) type Covered = [bool; CELLS * CELLS];
 
 /// Cells of the nail's box in which the rim of something is seen; rows from the proximal end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::nailvideo) struct Rim([u16; CELLS]);
+pub(in crate::nailvideo) struct Rim([u32; CELLS]);
 
 impl Rim {
     /// Whether a cell is one of the rim's.
@@ -41,18 +41,18 @@ impl Rim {
     /// Of a fit with its residuals; `None` where nothing lies over the nail.
     pub(super) fn of(template: &Template, sight: &Sight, fit: &Fit, residuals: &[f32]) -> Option<Self> {
         let fitted = template.pixels.iter().zip(residuals).filter(|(pixel, _)| pixel.even);
-        Self::with((RIM, FEWEST_BY_FIT), fitted.map(|(pixel, &residual)| (pixel.cell, residual.abs())).collect())?;
+        Self::with(FEWEST_BY_FIT, fitted.map(|(pixel, &residual)| (pixel.cell, residual.abs())).collect())?;
         let [a, b, c, d, e, f] = fit.motion.0.map(|part| part as f32);
         let (gain, offset) = (fit.gain as f32, fit.offset as f32);
         let all = template.all.iter().map(|dot| {
             let [x, y] = dot.at;
             (dot.cell, (gain * dot.value + offset - sight.at(a * x + b * y + c, d * x + e * y + f)).abs())
         });
-        Self::with((CLEAR_RIM, FEWEST_CELLS), all.collect())
+        Self::with(FEWEST_CELLS, all.collect())
     }
 
     /// Of residuals in cells, where as many cells touch each other.
-    fn with((clear, fewest): (f64, usize), residuals: Vec<(u8, f32)>) -> Option<Self> {
+    fn with(fewest: usize, residuals: Vec<(u16, f32)>) -> Option<Self> {
         // Their own SD: a fit's has as many steep pixels, which any error of the place moves.
         let mut sorted: Vec<f32> = residuals.iter().map(|(_, residual)| *residual).filter(|r| r.is_finite()).collect();
         let limit = (TUKEY_SDS * sd_of(&mut sorted)?.max(LEAST_SD)) as f32;
@@ -68,10 +68,10 @@ impl Rim {
             beside > share * all
         };
         let on_nail: Vec<u8> =
-            (0..CELLS * CELLS).map(|cell| u8::from(is_near_nail(cell) && has(cell, clear))).collect();
+            (0..CELLS * CELLS).map(|cell| u8::from(is_near_nail(cell) && has(cell, CLEAR_RIM))).collect();
         let is_over = on_nail.iter().filter(|&&is| is == 1).count() >= fewest
             && parts(&on_nail, [CELLS; 2], Neighbours::Eight).all.iter().any(|part| part.area >= fewest);
-        let row = |row: usize| (0..CELLS).fold(0, |bits, k| bits | u16::from(has(row * CELLS + k, RIM)) << k);
+        let row = |row: usize| (0..CELLS).fold(0, |bits, k| bits | u32::from(has(row * CELLS + k, RIM)) << k);
         is_over.then(|| Self(std::array::from_fn(row)))
     }
 }

@@ -15,9 +15,9 @@ const PIXELS: usize = 6000;
 pub(super) const BOX: f64 = 1.25;
 
 /// Blocks across and down that are compared each by itself.
-pub(super) const BLOCKS: usize = CELLS / 2;
-/// Cells across and down in which it is seen where something lies over the nail; as many as a byte counts.
-pub(in crate::nailvideo) const CELLS: usize = 16;
+pub(super) const BLOCKS: usize = 8;
+/// Cells across and down in which it is seen where something lies over the nail; a whole number of them to a block.
+pub(in crate::nailvideo) const CELLS: usize = 24;
 
 /// Parameters of a motion: displacements in pixels at the nail's half extent: of x by x, y and 1, of y by x, y and 1.
 pub(super) const MOTION: usize = 6;
@@ -31,7 +31,7 @@ pub(super) struct Pixel {
     /// One of those that are spread evenly.
     pub(super) even: bool,
     /// The cell of the nail's box that it lies in, of [`CELLS`] across and down.
-    pub(super) cell: u8,
+    pub(super) cell: u16,
 }
 
 /// One that need not be followed by.
@@ -39,7 +39,7 @@ pub(super) struct Pixel {
 pub(super) struct Dot {
     pub(super) at: [f32; 2],
     pub(super) value: f32,
-    pub(super) cell: u8,
+    pub(super) cell: u16,
 }
 
 /// The template at one scale.
@@ -65,8 +65,9 @@ impl Pixel {
     /// The block that it lies in, of [`BLOCKS`] across and down.
     #[inline]
     pub(super) fn block(&self) -> usize {
+        const CELLS_OF_BLOCK: usize = CELLS / BLOCKS;
         let cell = usize::from(self.cell);
-        cell % CELLS / 2 + BLOCKS * (cell / CELLS / 2)
+        cell % CELLS / CELLS_OF_BLOCK + BLOCKS * (cell / CELLS / CELLS_OF_BLOCK)
     }
 
     /// The first and the last four of its row.
@@ -96,7 +97,7 @@ impl Template {
             let on_nail = nail_from_frame.of(at);
             let inside = on_nail.iter().all(|part| part.abs() <= BOX);
             if let Some(pixel) = inside.then(|| pixel(sight, at, step, middle, radius)).flatten() {
-                all.push(Pixel { cell: cell_at(on_nail) as u8, ..pixel });
+                all.push(Pixel { cell: cell_at(on_nail) as u16, ..pixel });
             }
         }
         let side = |axis: usize| {

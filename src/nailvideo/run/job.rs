@@ -302,7 +302,9 @@ impl Job<'_> {
             self.stages.time("cells", || cells.add(time_s, &work.readings[work.photodiodes..]))?;
         }
         self.stages.time("maps", || {
-            work.windows.iter_mut().for_each(|window| window.add(time_s, &colours, &frame_from_nail));
+            work.windows
+                .iter_mut()
+                .for_each(|window| window.add(time_s, &colours, &frame_from_nail, work.sampler.covered()));
         });
         if self.outputs.frames {
             let before = work.frame.take();

@@ -236,6 +236,11 @@ impl Sampler {
         self.noise.sd()
     }
 
+    /// What is covered in the frame that was sampled last, where something lies over the nail.
+    pub(in crate::nailvideo) fn covered(&self) -> Option<&Covered> {
+        self.covered.as_ref()
+    }
+
     /// The skin's own colour about the nail, in the unit of the values: what of a change is the light's.
     pub(in crate::nailvideo) fn skin(&self, colours: &Colours, frame_from_nail: &Affine) -> f64 {
         let rgb = self.skin_rgb(colours, frame_from_nail);
