@@ -1,8 +1,9 @@
 //! Whether something lies over the nail, by its rim: cells of the nail's box in which many pixels do not fit.
 
-use super::register::{Fit, TUKEY_SDS, sd_of};
+use super::register::{TUKEY_SDS, sd_of};
 use super::sight::Sight;
 use super::template::{BOX, CELLS, Template};
+use crate::nailvideo::affine::Affine;
 use crate::vision::{Neighbours, opened, parts};
 
 /// A cell is the rim's where more than this share of its pixels does not fit, ..
@@ -39,11 +40,16 @@ impl Rim {
     }
 
     /// Of a fit with its residuals; `None` where nothing lies over the nail.
-    pub(super) fn of(template: &Template, sight: &Sight, fit: &Fit, residuals: &[f32]) -> Option<Self> {
+    pub(super) fn of(
+        template: &Template,
+        sight: &Sight,
+        (motion, gain, offset): (&Affine, f64, f64),
+        residuals: &[f32],
+    ) -> Option<Self> {
         let fitted = template.pixels.iter().zip(residuals).filter(|(pixel, _)| pixel.even);
         Self::with(FEWEST_BY_FIT, fitted.map(|(pixel, &residual)| (pixel.cell, residual.abs())).collect())?;
-        let [a, b, c, d, e, f] = fit.motion.0.map(|part| part as f32);
-        let (gain, offset) = (fit.gain as f32, fit.offset as f32);
+        let [a, b, c, d, e, f] = motion.0.map(|part| part as f32);
+        let (gain, offset) = (gain as f32, offset as f32);
         let all = template.all.iter().map(|dot| {
             let [x, y] = dot.at;
             (dot.cell, (gain * dot.value + offset - sight.at(a * x + b * y + c, d * x + e * y + f)).abs())

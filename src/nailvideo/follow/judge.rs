@@ -22,14 +22,16 @@ const LEAST_NCC_SHARE: f64 = 0.8;
 const LEAST_TEXTURE_SHARE: f64 = 0.7;
 const LEAST_FIRST_TEXTURE_SHARE: f64 = 0.4;
 /// Those four are another nail as well by what else changes: residuals grow by the first over the largest of the last
-/// frames, a rim is seen as of something over the nail (38 videos: the bare part of the nail itself has 0.905 and more
-/// in 95 of 100 such frames, another's nail 0.87 and less), or the correlation of a sharp frame falls below a share of that before (of the nail itself in 6 of 1000
+/// frames, or the correlation of a sharp frame falls below a share of that before (of the nail itself in 6 of 1000
 /// frames).
 const MOST_SD_SHARE: f64 = 1.4;
 const LEAST_TEXTURE_SHARE_AT_SD: f64 = 0.9;
 const NCC_SHARE: f64 = 0.976;
 const LEAST_TEXTURE_SHARE_AT_NCC: f64 = 0.84;
 const SHARP_GAIN_SHARE: f64 = 0.88;
+/// Where something lies over the nail, of what is bare (144 videos: the nail itself has 0.912 and more in nine of ten
+/// such frames, another's nail, of which what is alike is taken for bare, at most 0.910).
+const LEAST_TEXTURE_SHARE_COVERED: f64 = 0.93;
 /// Of a nail found again: shares of what the first frames had, or of what nine of ten frames had in which it was
 /// followed, the lower one (the same persons: the nail itself had correlations of 0.85 to 0.98 of the first frames' in
 /// nine of ten; those most like another one 0.93 and 0.96 where it had 0.98 and 0.98 itself, and texture of 0.82 and
@@ -188,7 +190,9 @@ impl Usual {
                 let sd = just_before.fold(0.0, f64::max);
                 let is_sharp = fit.gain > SHARP_GAIN_SHARE * before(|like| like.gain, first.gain);
                 // The first frames repeat the very first: their residuals are next to nothing.
-                let share = if fit.rim.is_some() || self.last.len() >= FIRST && fit.sd > MOST_SD_SHARE * sd {
+                let share = if fit.rim.is_some() {
+                    LEAST_TEXTURE_SHARE_COVERED
+                } else if self.last.len() >= FIRST && fit.sd > MOST_SD_SHARE * sd {
                     LEAST_TEXTURE_SHARE_AT_SD
                 } else if self.last.len() >= KNOWN
                     && is_sharp

@@ -231,7 +231,12 @@ impl Follower {
         expected: Option<&Affine>,
     ) -> Result<(Place, Fit), Lost> {
         let sight = self.sight(frame, &start, self.step).ok_or(Lost::Outside)?;
-        let fit = register_bare(&self.fine, &sight, start, &mut self.scratch).ok_or(Lost::Unlike)?;
+        let fit = match after {
+            After::Frame => register_bare(&self.fine, &sight, start, &mut self.scratch),
+            // Another's nail is as like by what of it is alike: a nail is found again by all of it.
+            After::Loss => register(&self.fine, &sight, start, &mut self.scratch),
+        };
+        let fit = fit.ok_or(Lost::Unlike)?;
         judge(&fit, &self.fine, frame.quantizer, &self.usual, after, expected, self.width_px).map(|place| (place, fit))
     }
 

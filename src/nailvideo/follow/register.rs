@@ -60,9 +60,8 @@ pub(super) struct Fit {
     pub(super) outside: f64,
     /// Correlation within blocks of the box, their median: of the texture, which outlines that are alike do not share.
     pub(super) texture: f64,
-    /// How the frame's normalized luma grows with the template's, and what it is above it.
+    /// How the frame's normalized luma grows with the template's.
     pub(super) gain: f64,
-    pub(super) offset: f64,
     /// The residuals' SD.
     pub(super) sd: f64,
     /// The last step, pixels at the nail's edge.
@@ -103,10 +102,9 @@ pub(super) fn register(template: &Template, sight: &Sight, start: Affine, scratc
 /// The same by what is bare, where something lies over the nail.
 pub(super) fn register_bare(template: &Template, sight: &Sight, start: Affine, scratch: &mut Scratch) -> Option<Fit> {
     let fitted = register(template, sight, start, scratch)?;
-    let Some(rim) = Rim::of(template, sight, &fitted, &scratch.residuals) else { return Some(fitted) };
+    let Some(rim) = fitted.rim else { return Some(fitted) };
     let bare = fit(template, sight, fitted.motion, Some(&rim.covered()), scratch)?;
-    let rim = Rim::of(template, sight, &bare, &scratch.residuals).unwrap_or(rim);
-    Some(Fit { rim: Some(rim), ..bare })
+    Some(Fit { rim: bare.rim.or(Some(rim)), ..bare })
 }
 
 fn fit(
@@ -148,7 +146,8 @@ fn fit(
     let covariance = covariance.fixed_view::<MOTION, MOTION>(0, 0).into_owned();
     let (ncc, inliers, outside) = agreement(template, scratch, sd);
     let texture = texture(template, scratch);
-    Some(Fit { motion, covariance, ncc, inliers, outside, texture, gain, offset, sd, last_step_px, rim: None })
+    let rim = Rim::of(template, sight, (&motion, gain, offset), &scratch.residuals);
+    Some(Fit { motion, covariance, ncc, inliers, outside, texture, gain, sd, last_step_px, rim })
 }
 
 /// The largest displacement that the parameters make within the box about the nail.

@@ -161,6 +161,25 @@ mod tests {
     }
 
     #[test]
+    fn a_finger_hides_what_it_covers_in_the_same_skin() {
+        let options = NailVideoOptions { finger: vec![[20, 30]], ..small(NailProtocol::Rest) };
+        let scene = Scene::new(options.clone()).unwrap();
+        let bare = Scene::new(NailVideoOptions { finger: Vec::new(), ..options }).unwrap();
+        let hidden = |frame: usize| scene.truth(frame).hidden;
+        assert!(hidden(5).iter().chain(&hidden(62)).all(|hidden| *hidden == 0.0));
+        let covered = hidden(30);
+        assert!(covered.contains(&1.0) && covered.contains(&0.0), "{covered:?}");
+        let pictures = (scene.picture(30), bare.picture(30));
+        let motion = scene.truth(30).motion.unwrap();
+        for (photodiode, hidden) in covered.iter().enumerate() {
+            let [with, without] = [&pictures.0, &pictures.1].map(|picture| luma(&scene, picture, motion, photodiode));
+            // It is another's colour, however near.
+            let is_other = (with - without).abs() > 0.2;
+            assert!(if *hidden == 0.0 { !is_other } else { *hidden < 1.0 || is_other }, "P{}", photodiode + 1);
+        }
+    }
+
+    #[test]
     fn another_nail_has_no_motion() {
         let options = NailVideoOptions { cut: vec![[10, 3]], ..small(NailProtocol::Lateral) };
         let scene = Scene::new(options).unwrap();
