@@ -1,4 +1,8 @@
 //! Whether something lies over the nail, by its rim: cells of the nail's box in which many pixels do not fit.
+//!
+//! The limits were measured on the phantom (`lunula phantom nailvideo --finger`, `--rod`): of 817 frames in which a
+//! photodiode is covered all have 15 and more clear cells, of 1046 with nothing over the nail, moved, pressed, small
+//! and coarsely encoded, none has more than 12.
 
 use super::register::{TUKEY_SDS, sd_of};
 use super::sight::Sight;
@@ -11,9 +15,8 @@ const RIM: f64 = 0.15;
 /// .. and something lies over the nail where so many touch each other on it that have more than this.
 const CLEAR_RIM: f64 = 0.35;
 const FEWEST_CELLS: usize = 13;
-/// All pixels are looked at where so many cells have as many by those of the fit, a dozen a cell.
+/// All pixels are looked at where so many cells are as clear by those of the fit, five a cell.
 const FEWEST_BY_FIT: usize = 5;
-
 /// Residuals of less than this are no rim: where nothing moves, encoders repeat most of a picture to the bit.
 const LEAST_SD: f64 = 0.01;
 /// A rim has gaps, up to twice so many cells wide, where it is as dark as what is below.

@@ -1,9 +1,9 @@
 //! What of the nail is covered in a frame in which the rim of something lies over it.
 //!
 //! A finger has the colour of a finger: what lies over the nail is known by its rim, which does not fit the nail's
-//! texture, or by its colour, and the nail is what is connected beside it. Until this was so, up to 80 of 80 values of
-//! photodiodes under another finger of the same hand were given as the nail's (`lunula phantom nailvideo --finger`,
-//! twelve persons), off by up to 11 of 100 ln(green/red).
+//! texture, or by its colour, and the nail is what is connected beside it. Until this was so, most values of
+//! photodiodes under another finger of the same hand were given as the nail's (`lunula phantom nailvideo --finger`, 24
+//! persons: 663 of 1075), off by up to 35 of 100 ln(green/red).
 
 use super::colour::Colours;
 use super::region::Group;

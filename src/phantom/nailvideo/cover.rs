@@ -1,7 +1,7 @@
 //! What is held over the nail: it comes from beside the picture, covers part of the nail and goes again.
 //!
-//! In: a span of frames and the seed. Out: how much of a pixel is covered at a time, its colour, and whether a point is.
-//! A rod is a straight bar with a round end, a fifth of the nail wide. A finger is the same person's other one: of the
+//! In: a span of frames and the seed. Out: how much of a pixel is covered at a time, its colour, and whether a point
+//! is. A rod is a straight bar with a round end, a fifth of the nail wide. A finger is the same person's other one: of the
 //! same skin, with a nail of its own. Both sway slightly and do not follow the nail.
 
 use std::f64::consts::TAU;

@@ -7,9 +7,10 @@
 //! - `log.csv`: what a force transducer and a sensor that the same person wears log, on the video's clock: `time_s`,
 //!   `P1`.. volts, `Fx_N,Fy_N,Fz_N`; `truth/log.csv`: what is true of its rows, as `lunula phantom log` writes it;
 //! - `truth/frames.csv`: `frame,time_s`; `a,b,c,d,e,f`: what is at (x, y) in frame 0 is at (a x + b y + c, d x + e y +
-//!   f) in this one, at mid-exposure; `Fx_N,Fy_N,Fz_N,J2_deg`; `P1`..: the mean green of the normalized nail over each
-//!   photodiode's disc, a fraction of full scale, encoded, without noise, in the first light (no light that drifts,
-//!   nothing over the nail); `P1_hidden`..: which share of the disc is covered or out of the picture; `status`: `ok`, or `gone` where
+//!   f) in this one, at mid-exposure; `Fx_N,Fy_N,Fz_N,J2_deg`; `P1`..: the mean green of the normalized nail over
+//!   each photodiode's disc, a fraction of full scale, encoded, without noise, in the first light (no light that
+//!   drifts, nothing over the nail); `P1_hidden`..: which share of the disc is covered or out of the picture;
+//!   `status`: `ok`, or `gone` where
 //!   another nail or none of this one is in the picture; then the same discs' red and blue (`P1_red`.., `P1_blue`..)
 //!   and by what the light multiplies each channel at the nail's middle (`light_red,light_green,light_blue`). Of
 //!   another nail no motion is known: its cells are empty;
@@ -26,8 +27,9 @@
 //! How it is drawn: the scene without zones and each zone's share are evaluated once, on a canvas of two samples a
 //! pixel; a frame is the canvas with that moment's weights, sampled by Catmull and Rom's cubic. Against the scene
 //! evaluated at the frame's own pixels this errs by *measured* 0.001/255 RMS within the nail and 0.008/255 over the
-//! picture. Then come rod and finger, light, glare, noise, colour matrix. Motion blur is the mean of exposures no more than 0.7 px
-//! apart. What is not modelled: parallax of the finger's round form, shadows of rod and finger, rolling shutter, sharpening.
+//! picture. Then come rod and finger, light, glare, noise, colour matrix. Motion blur is the mean of exposures no
+//! more than 0.7 px apart. What is not modelled: parallax of the finger's round form, shadows of rod and finger,
+//! rolling shutter, sharpening.
 //!
 //! The same options give the same bytes whatever the number of threads.
 

@@ -137,7 +137,8 @@ pub struct NailVideoOptions {
     /// A rod covers part of the nail from this frame on, so many frames long; again for more
     #[arg(long, value_name = "FRAME+N", value_parser = parse_span_of_frames)]
     pub rod: Vec<[usize; 2]>,
-    /// Another finger of the same hand lies over part of the nail from this frame on, so many frames long; again for more
+    /// Another finger of the same hand lies over part of the nail from this frame on, so many frames long; again for
+    /// more
     #[arg(long, value_name = "FRAME+N", value_parser = parse_span_of_frames)]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub finger: Vec<[usize; 2]>,
