@@ -4,9 +4,8 @@
 //! photodiode is covered all have 15 and more clear cells, of 1046 with nothing over the nail, moved, pressed, small
 //! and coarsely encoded, none has more than 12.
 
-use super::register::{TUKEY_SDS, sd_of};
 use super::sight::Sight;
-use super::template::{BOX, CELLS, Template};
+use super::template::{CELLS, TUKEY_SDS, Template, cell_middle, sd_of};
 use crate::nailvideo::affine::Affine;
 use crate::vision::{Neighbours, opened, parts};
 
@@ -92,17 +91,6 @@ pub(in crate::nailvideo) fn covered(may_be_bare: impl Fn(usize) -> bool) -> Cove
     let largest = parts.all.iter().map(|part| part.area).max().unwrap_or(0) as f64;
     let is_nail = |label: i32| label > 0 && parts.all[label as usize - 1].area as f64 >= LEAST_PART * largest;
     std::array::from_fn(|cell| !is_nail(parts.labels[cell]))
-}
-
-/// A cell's middle, half widths and half lengths.
-pub(in crate::nailvideo) fn cell_middle(cell: usize) -> [f64; 2] {
-    [cell % CELLS, cell / CELLS].map(|k| BOX * ((2 * k + 1) as f64 / CELLS as f64 - 1.0))
-}
-
-/// The cell of a place in half widths and half lengths; beyond the box the nearest.
-pub(in crate::nailvideo) fn cell_at(place: [f64; 2]) -> usize {
-    let [u, v] = place.map(|at| (((at / BOX + 1.0) * 0.5 * CELLS as f64) as usize).min(CELLS - 1));
-    u + CELLS * v
 }
 
 /// On the nail, or so near that finger and not background is beside it; nails are rounder than their box.

@@ -14,10 +14,9 @@ mod template;
 #[cfg(test)]
 mod tests;
 
-pub(in crate::nailvideo) use cover::{Covered, Rim, cell_at, cell_middle, covered};
+pub(in crate::nailvideo) use cover::{Covered, Rim, covered};
 pub(in crate::nailvideo) use judge::{Lost, Place, beyond_fine};
-
-pub(in crate::nailvideo) use template::CELLS;
+pub(in crate::nailvideo) use template::{CELLS, cell_at, cell_middle};
 
 use judge::{After, Usual, judge};
 use register::{Fit, Scratch, register, register_bare};

@@ -12,7 +12,7 @@ use wide::f32x4;
 
 use super::cover::{Covered, Rim};
 use super::sight::Sight;
-use super::template::{BLOCKS, MOTION, Template, quantile};
+use super::template::{BLOCKS, MOTION, TUKEY_SDS, Template, quantile, sd_of};
 use crate::nailvideo::affine::Affine;
 
 /// The motion's parameters, gain and offset.
@@ -29,10 +29,6 @@ const CREEPING: f64 = 0.8;
 /// The last step of a fit that is believed, pixels (measured on person 42: with 0.1 places are up to 0.57 px off, with
 /// 0.15 and 0.2 up to 0.23).
 pub(super) const MOST_LAST_STEP_PX: f64 = 0.15;
-/// Tukey's biweight is nothing from so many SDs on (measured).
-pub(super) const TUKEY_SDS: f64 = 4.0;
-/// An SD is this many median absolute deviations (of a normal distribution).
-const SD_OF_MAD: f64 = 1.4826;
 /// Below it a median absolute deviation is rounding: a level of 8 bits, of a luma of 250. Where nothing moves, encoders
 /// repeat most of a picture to the bit.
 const LEAST_SD: f64 = 0.004;
@@ -42,8 +38,6 @@ const WIDER: [f64; 2] = [4.0, 2.0];
 /// These steps look at one of so many pixels, of a template that has enough of them: the last ones decide.
 const SPARSE: usize = 4;
 const FEWEST_SPARSE: usize = 3000;
-/// Fewer pixels that are seen determine nothing (assumed).
-const FEWEST_PIXELS: usize = 60;
 
 /// A fit of the template to a frame.
 #[derive(Debug, Clone)]
@@ -197,17 +191,7 @@ fn look(
     }
     scratch.sorted.clear();
     scratch.sorted.extend(scratch.residuals.iter().map(|r| r.abs()).filter(|r| r.is_finite()));
-    sd_of(&mut scratch.sorted)
-}
-
-/// The SD of residuals by the median of their sizes; `None` of too few.
-pub(super) fn sd_of(sizes: &mut [f32]) -> Option<f64> {
-    let count = sizes.len();
-    if count < FEWEST_PIXELS {
-        return None;
-    }
-    let (_, median, _) = sizes.select_nth_unstable_by(count / 2, f32::total_cmp);
-    Some((SD_OF_MAD * f64::from(*median)).max(LEAST_SD))
+    Some(sd_of(&mut scratch.sorted)?.max(LEAST_SD))
 }
 
 #[inline]

@@ -4,7 +4,6 @@
 
 use wide::f32x4;
 
-use super::cover::cell_at;
 use super::sight::Sight;
 use crate::nailvideo::affine::Affine;
 
@@ -18,6 +17,13 @@ pub(super) const BOX: f64 = 1.25;
 pub(super) const BLOCKS: usize = 8;
 /// Cells across and down in which it is seen where something lies over the nail; a whole number of them to a block.
 pub(in crate::nailvideo) const CELLS: usize = 24;
+
+/// Tukey's biweight is nothing from so many SDs on (measured).
+pub(super) const TUKEY_SDS: f64 = 4.0;
+/// An SD is this many median absolute deviations (of a normal distribution).
+const SD_OF_MAD: f64 = 1.4826;
+/// Fewer pixels that are seen determine nothing (assumed).
+const FEWEST_PIXELS: usize = 60;
 
 /// Parameters of a motion: displacements in pixels at the nail's half extent: of x by x, y and 1, of y by x, y and 1.
 pub(super) const MOTION: usize = 6;
@@ -145,6 +151,24 @@ pub(super) fn quantile(all: impl Iterator<Item = f64>, share: f64) -> Option<f64
     let mut all: Vec<f64> = all.collect();
     let at = ((share * all.len() as f64) as usize).min(all.len().checked_sub(1)?);
     Some(*all.select_nth_unstable_by(at, f64::total_cmp).1)
+}
+
+/// A cell's middle, half widths and half lengths.
+pub(in crate::nailvideo) fn cell_middle(cell: usize) -> [f64; 2] {
+    [cell % CELLS, cell / CELLS].map(|k| BOX * ((2 * k + 1) as f64 / CELLS as f64 - 1.0))
+}
+
+/// The cell of a place in half widths and half lengths; beyond the box the nearest.
+pub(in crate::nailvideo) fn cell_at(place: [f64; 2]) -> usize {
+    let [u, v] = place.map(|at| (((at / BOX + 1.0) * 0.5 * CELLS as f64) as usize).min(CELLS - 1));
+    u + CELLS * v
+}
+
+/// The SD of residuals by the median of their sizes; `None` of too few.
+pub(super) fn sd_of(sizes: &mut [f32]) -> Option<f64> {
+    let count = sizes.len();
+    let (_, median, _) = (count >= FEWEST_PIXELS).then(|| sizes.select_nth_unstable_by(count / 2, f32::total_cmp))?;
+    Some(SD_OF_MAD * f64::from(*median))
 }
 
 /// The square of the slope along x and y.

@@ -1,20 +1,21 @@
 //! What is held over the nail: it comes from beside the picture, covers part of the nail and goes again.
 //!
 //! In: a span of frames and the seed. Out: how much of a pixel is covered at a time, its colour, and whether a point
-//! is. A rod is a straight bar with a round end, a fifth of the nail wide. A finger is the same person's other one: of the
-//! same skin, with a nail of its own. Both sway slightly and do not follow the nail.
+//! is. A rod is a straight bar with a round end, a fifth of the nail wide. A finger is the same person's other one:
+//! of the same skin, with a nail of its own. Both sway slightly and do not follow the nail.
 
 use std::f64::consts::TAU;
 
 use rand::RngExt;
 
 use super::NailVideoOptions;
-use super::scene::OTHER;
 use crate::nail::Axis;
 use crate::phantom::motion::wave::{Wave, random_wave};
 use crate::phantom::nail::{Background, Camera, ColourWeights, Field, NailScene, Subject, numbers};
 use crate::phantom::sensor::person;
 
+/// The person of a cut is this many further, and the one whose finger lies over the nail.
+pub(super) const OTHER: u32 = 1000;
 const KIND_ROD: u32 = 44;
 const KIND_FINGER: u32 = 47;
 /// How long it takes to come and to go, seconds.

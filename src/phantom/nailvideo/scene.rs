@@ -3,7 +3,7 @@
 use rand::RngExt;
 
 use super::canvas::{Canvas, MOST_SAMPLES, samples};
-use super::cover::Cover;
+use super::cover::{Cover, OTHER};
 use super::light::DriftingLight;
 use super::track::Track;
 use super::{Affine, Faults, NailVideoOptions};
@@ -14,8 +14,6 @@ use crate::phantom::sensor::{Discs, FollowedColour, Touch, person};
 use crate::phantom::video::TICKS_PER_S;
 
 const KIND_SCENE: u32 = 45;
-/// The person of a cut is this many further, and the one whose finger lies over the nail.
-pub(super) const OTHER: u32 = 1000;
 
 /// A video of a nail, settled.
 #[derive(Debug)]
