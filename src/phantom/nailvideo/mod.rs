@@ -6,8 +6,8 @@
 //!   places;
 //! - `log.csv`: what a force transducer and a sensor that the same person wears log, on the video's clock: `time_s`,
 //!   `P1`.. volts, `Fx_N,Fy_N,Fz_N`; `truth/log.csv`: what is true of its rows, as `lunula phantom log` writes it;
-//! - `truth/frames.csv`: `frame,time_s`; `a,b,c,d,e,f`: what is at (x, y) in frame 0 is at (a x + b y + c, d x + e y
-//!   + f) in this one, at mid-exposure; `Fx_N,Fy_N,Fz_N,J2_deg`; `P1`..: the mean green of the normalized nail over
+//! - `truth/frames.csv`: `frame,time_s`; `a,b,c,d,e,f`: what is at (x, y) in frame 0 is at (a x + b y + c, d x + e y +
+//!   f) in this one, at mid-exposure; `Fx_N,Fy_N,Fz_N,J2_deg`; `P1`..: the mean green of the normalized nail over
 //!   each photodiode's disc, a fraction of full scale, encoded, without noise, in the first light (no light that
 //!   drifts, nothing over the nail); `P1_hidden`..: which share of the disc is covered or out of the picture;
 //!   `status`: `ok`, or `gone` where another nail or none of this one is in the picture; then the same discs' red and
