@@ -56,6 +56,29 @@ fn the_photodiodes_are_those_of_the_truth() {
     assert!(presses.iter().all(|row| row["use"].contains("not a diagnostic")));
 }
 
+/// Photodiodes that are covered and those of them with a value, bare ones and those of them without.
+#[derive(Debug, Default)]
+pub(crate) struct Covered {
+    pub(crate) covered: usize,
+    pub(crate) shown: usize,
+    pub(crate) bare: usize,
+    pub(crate) missing: usize,
+}
+
+impl Covered {
+    /// Adds a frame in which the nail is followed.
+    pub(crate) fn add(&mut self, truth: &Row, seen: &Row) {
+        for name in (1..=8).map(|k| format!("P{k}")) {
+            let share = number(&truth[&format!("{name}_hidden")]).expect("a share");
+            let is_shown = usize::from(!seen[&name].is_empty());
+            self.covered += usize::from(share > 0.5);
+            self.shown += usize::from(share > 0.5) * is_shown;
+            self.bare += usize::from(share == 0.0);
+            self.missing += usize::from(share == 0.0) * (1 - is_shown);
+        }
+    }
+}
+
 #[test]
 fn what_another_finger_covers_has_no_value() {
     let dir = Dir::new();
@@ -63,18 +86,11 @@ fn what_another_finger_covers_has_no_value() {
     words(&dir, &format!("{scene} --out s")).expect(0);
     words(&dir, "nailvideo s/video.mp4 --outline s/outline.json --maps 0..3 --no-figures --out out").expect(0);
     let (truth, seen) = (dir.table("s/truth/frames.csv"), dir.table("out/photodiodes.csv"));
-    let [mut covered, mut shown, mut bare, mut missing] = [0; 4];
-    for (truth, seen) in truth.iter().zip(&seen).filter(|(_, seen)| seen["status"] == "ok") {
-        for name in (1..=8).map(|k| format!("P{k}")) {
-            let share = number(&truth[&format!("{name}_hidden")]).unwrap();
-            let is_shown = usize::from(!seen[&name].is_empty());
-            covered += usize::from(share > 0.5);
-            shown += usize::from(share > 0.5) * is_shown;
-            bare += usize::from(share == 0.0);
-            missing += usize::from(share == 0.0) * (1 - is_shown);
-        }
-    }
-    println!("{shown} of {covered} that are covered have a value; {missing} of {bare} that are bare have none");
+    let mut counts = Covered::default();
+    let followed = truth.iter().zip(&seen).filter(|(_, seen)| seen["status"] == "ok");
+    followed.for_each(|(truth, seen)| counts.add(truth, seen));
+    println!("{counts:?}");
+    let Covered { covered, shown, bare, missing } = counts;
     // By its colour alone all but one had a value, up to 9 of 100 ln(green / red) off.
     assert!(covered >= 30 && shown == 0 && bare >= 500 && missing * 20 <= bare);
 }

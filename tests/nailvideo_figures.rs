@@ -3,7 +3,7 @@
 
 use std::fs;
 
-use crate::nailvideo::{Row, number, words};
+use crate::nailvideo::{Covered, Row, number, words};
 use crate::util::Dir;
 
 /// The scenes of the design, and what is asked of each: RMS error of the nail's place, pixels.
@@ -121,7 +121,7 @@ fn another_finger_is_never_the_nail() {
         "--jerk 4 --blur 0.5 --gradient 12 --light-drift 12 --flicker 5",
         "--crf 28 --nail-px 150 --tilt 3",
     ];
-    let [mut covered, mut shown, mut bare, mut missing, mut followed, mut wrong] = [0; 6];
+    let (mut counts, [mut followed, mut wrong]) = (Covered::default(), [0; 2]);
     for seed in 201..225 {
         let dir = Dir::new();
         let look = LOOKS[seed % 3];
@@ -135,17 +135,11 @@ fn another_finger_is_never_the_nail() {
             let (Some(place), Some(exact)) = (motion(place), motion(truth)) else { continue };
             followed += 1;
             wrong += usize::from(apart(&grid, &place, &exact) > 3.0);
-            for name in (1..=8).map(|k| format!("P{k}")) {
-                let share = number(&truth[&format!("{name}_hidden")]).unwrap();
-                let is_shown = usize::from(!seen[&name].is_empty());
-                covered += usize::from(share > 0.5);
-                shown += usize::from(share > 0.5) * is_shown;
-                bare += usize::from(share == 0.0);
-                missing += usize::from(share == 0.0) * (1 - is_shown);
-            }
+            counts.add(truth, seen);
         }
-        println!("{seed}: {followed} frames followed, {wrong} beyond 3 px; {shown} of {covered}, {missing} of {bare}");
+        println!("{seed}: {followed} frames followed, {wrong} beyond 3 px; {counts:?}");
     }
+    let Covered { covered, shown, bare, missing } = counts;
     // By colour alone 663 of 1075 had a value.
     assert!(wrong == 0 && shown * 200 <= covered && missing * 25 <= bare, "{wrong}, {shown}, {missing}");
 }

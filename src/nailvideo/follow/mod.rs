@@ -19,7 +19,7 @@ pub(in crate::nailvideo) use judge::{Lost, Place, beyond_fine};
 pub(in crate::nailvideo) use template::{CELLS, cell_at, cell_middle};
 
 use judge::{After, Usual, judge};
-use register::{Fit, Scratch, register, register_bare};
+use register::{Fit, Scratch, register, register_fine};
 use search::Search;
 use sight::{Sight, blur_px};
 use template::{BOX, Template};
@@ -230,12 +230,9 @@ impl Follower {
         expected: Option<&Affine>,
     ) -> Result<(Place, Fit), Lost> {
         let sight = self.sight(frame, &start, self.step).ok_or(Lost::Outside)?;
-        let fit = match after {
-            After::Frame => register_bare(&self.fine, &sight, start, &mut self.scratch),
-            // Another's nail is as like by what of it is alike: a nail is found again by all of it.
-            After::Loss => register(&self.fine, &sight, start, &mut self.scratch),
-        };
-        let fit = fit.ok_or(Lost::Unlike)?;
+        // Another's nail is as like by what of it is alike: a nail is found again by all of it.
+        let by_bare = matches!(after, After::Frame);
+        let fit = register_fine(&self.fine, &sight, start, by_bare, &mut self.scratch).ok_or(Lost::Unlike)?;
         judge(&fit, &self.fine, frame.quantizer, &self.usual, after, expected, self.width_px).map(|place| (place, fit))
     }
 

@@ -54,13 +54,14 @@ pub(super) struct Fit {
     pub(super) outside: f64,
     /// Correlation within blocks of the box, their median: of the texture, which outlines that are alike do not share.
     pub(super) texture: f64,
-    /// How the frame's normalized luma grows with the template's.
+    /// How the frame's normalized luma grows with the template's, and what it is above it.
     pub(super) gain: f64,
+    pub(super) offset: f64,
     /// The residuals' SD.
     pub(super) sd: f64,
     /// The last step, pixels at the nail's edge.
     pub(super) last_step_px: f64,
-    /// Of what lies over the nail.
+    /// Of what lies over the nail, where that was looked for.
     pub(super) rim: Option<Rim>,
 }
 
@@ -82,8 +83,7 @@ impl Fit {
 /// Memory for residuals, used again for each frame.
 #[derive(Debug, Default)]
 pub(super) struct Scratch {
-    /// Of the template's pixels, of the last fit.
-    pub(super) residuals: Vec<f32>,
+    residuals: Vec<f32>,
     values: Vec<f32>,
     sorted: Vec<f32>,
 }
@@ -93,12 +93,22 @@ pub(super) fn register(template: &Template, sight: &Sight, start: Affine, scratc
     fit(template, sight, start, None, scratch)
 }
 
-/// The same by what is bare, where something lies over the nail.
-pub(super) fn register_bare(template: &Template, sight: &Sight, start: Affine, scratch: &mut Scratch) -> Option<Fit> {
-    let fitted = register(template, sight, start, scratch)?;
-    let Some(rim) = fitted.rim else { return Some(fitted) };
-    let bare = fit(template, sight, fitted.motion, Some(&rim.covered()), scratch)?;
-    Some(Fit { rim: bare.rim.or(Some(rim)), ..bare })
+/// The same, and whether something lies over the nail; by what is bare alone where that is asked for.
+pub(super) fn register_fine(
+    template: &Template,
+    sight: &Sight,
+    start: Affine,
+    by_bare: bool,
+    scratch: &mut Scratch,
+) -> Option<Fit> {
+    let rim = |fit: &Fit, scratch: &Scratch| {
+        Rim::of(template, sight, (&fit.motion, fit.gain, fit.offset), &scratch.residuals)
+    };
+    let whole = register(template, sight, start, scratch)?;
+    let seen = rim(&whole, scratch);
+    let Some(first) = seen.filter(|_| by_bare) else { return Some(Fit { rim: seen, ..whole }) };
+    let bare = fit(template, sight, whole.motion, Some(&first.covered()), scratch)?;
+    Some(Fit { rim: rim(&bare, scratch).or(Some(first)), ..bare })
 }
 
 fn fit(
@@ -140,8 +150,7 @@ fn fit(
     let covariance = covariance.fixed_view::<MOTION, MOTION>(0, 0).into_owned();
     let (ncc, inliers, outside) = agreement(template, scratch, sd);
     let texture = texture(template, scratch);
-    let rim = Rim::of(template, sight, (&motion, gain, offset), &scratch.residuals);
-    Some(Fit { motion, covariance, ncc, inliers, outside, texture, gain, sd, last_step_px, rim })
+    Some(Fit { motion, covariance, ncc, inliers, outside, texture, gain, offset, sd, last_step_px, rim: None })
 }
 
 /// The largest displacement that the parameters make within the box about the nail.

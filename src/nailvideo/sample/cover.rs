@@ -5,10 +5,8 @@
 //! photodiodes under another finger of the same hand were given as the nail's (`lunula phantom nailvideo --finger`, 24
 //! persons: 663 of 1075), off by up to 35 of 100 ln(green/red).
 
-use super::colour::Colours;
 use super::region::Group;
-use super::{Limits, logs, median};
-use crate::nailvideo::affine::Affine;
+use super::{Limits, median};
 use crate::nailvideo::follow::{CELLS, Covered, Rim, cell_at, cell_middle, covered};
 
 /// Where something is known to lie over the nail, colours count as another thing's from so far on: of red, of grey
@@ -18,40 +16,28 @@ const TIGHT: Limits = Limits { red: 0.14, blue: 0.12, ..Limits::USUAL };
 /// Points of a cell for its colour, across and down.
 const POINTS: usize = 2;
 
-/// The cells of the nail's box, with their colours in the first good frame.
-#[derive(Debug)]
-pub(super) struct Cells {
-    groups: Vec<Group>,
-    first: Vec<Option<[f64; 3]>>,
+/// The cells of the nail's box.
+pub(super) fn box_cells() -> Vec<Group> {
+    let side = cell_middle(1)[0] - cell_middle(0)[0];
+    let point = |cell: usize, k: usize| {
+        let [u, v] = cell_middle(cell);
+        let [x, y] = [k % POINTS, k / POINTS].map(|n| side * ((2 * n + 1) as f64 / (2 * POINTS) as f64 - 0.5));
+        [u + x, v + y]
+    };
+    (0..CELLS * CELLS).map(|cell| Group { points: (0..POINTS * POINTS).map(|k| point(cell, k)).collect() }).collect()
 }
 
-impl Cells {
-    pub(super) fn new(first: &Colours, frame_from_nail: &Affine) -> Self {
-        let side = cell_middle(1)[0] - cell_middle(0)[0];
-        let point = |cell: usize, k: usize| {
-            let [u, v] = cell_middle(cell);
-            let [x, y] = [k % POINTS, k / POINTS].map(|n| side * ((2 * n + 1) as f64 / (2 * POINTS) as f64 - 0.5));
-            [u + x, v + y]
-        };
-        let group = |cell| Group { points: (0..POINTS * POINTS).map(|k| point(cell, k)).collect() };
-        let groups: Vec<Group> = (0..CELLS * CELLS).map(group).collect();
-        let first = groups.iter().map(|group| logs(first.mean(group, frame_from_nail))).collect();
-        Self { groups, first }
-    }
-
-    /// What is covered by something that has this rim.
-    pub(super) fn covered(&self, rim: &Rim, colours: &Colours, frame_from_nail: &Affine, is_grey: bool) -> Covered {
-        let change = |(group, first): (&Group, &Option<[f64; 3]>)| {
-            let (now, first) = (logs(colours.mean(group, frame_from_nail))?, (*first)?);
-            Some(std::array::from_fn::<f64, 3, _>(|k| now[k] - first[k]))
-        };
-        let changes: Vec<Option<[f64; 3]>> = self.groups.iter().zip(&self.first).map(change).collect();
-        let fits = |cell: usize| if rim.has(cell) { None } else { changes[cell] };
-        let mut sorted = Vec::new();
-        let light = std::array::from_fn(|k| median((0..CELLS * CELLS).filter_map(fits).map(|c| c[k]), &mut sorted));
-        let is_bare = |cell| fits(cell).is_some_and(|change| !TIGHT.is_strange(change, light, is_grey));
-        covered(is_bare)
-    }
+/// What is covered by something that has this rim; `changes` are those of the box' cells.
+pub(super) fn covered_by<'a>(
+    rim: &Rim,
+    changes: impl Iterator<Item = (&'a Group, Option<[f64; 3]>)>,
+    is_grey: bool,
+) -> Covered {
+    let changes: Vec<Option<[f64; 3]>> = changes.map(|(_, change)| change).collect();
+    let fits = |cell: usize| if rim.has(cell) { None } else { changes[cell] };
+    let mut sorted = Vec::new();
+    let light = std::array::from_fn(|k| median((0..CELLS * CELLS).filter_map(fits).map(|c| c[k]), &mut sorted));
+    covered(|cell| fits(cell).is_some_and(|change| !TIGHT.is_strange(change, light, is_grey)))
 }
 
 /// How many points of a group are covered.

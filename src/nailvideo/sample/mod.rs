@@ -2,7 +2,8 @@
 //!
 //! In: a frame, and where the nail is in it. Out: for each region its value in the unit of [`Light`], or why there is
 //! none. What lies over the nail is known by its colour: blood moves the colours of nail and skin along one line in
-//! (ln green/red, ln blue/red) and leaves red nearly alone; a rod or glare does not, and another finger by its rim.
+//! (ln green/red, ln blue/red) and leaves red nearly alone; a rod or glare does not. Another finger may, and is known
+//! by its rim.
 
 mod colour;
 mod cover;
@@ -14,7 +15,7 @@ mod tests;
 pub(in crate::nailvideo) use colour::{Colours, Planes};
 pub(in crate::nailvideo) use region::{Group, MARGIN, Region, cell_name, cells, discs};
 
-use cover::{Cells, points_covered};
+use cover::{box_cells, covered_by, points_covered};
 use noise::Noise;
 use region::{light_cells, skin, spread_discs};
 
@@ -107,13 +108,14 @@ pub(in crate::nailvideo) struct Sampler {
     light: Light,
     grey: bool,
     regions: Vec<Watched>,
-    cells: Vec<Option<[f64; 3]>>,
-    groups: Vec<Group>,
+    /// Those that say how the light changed.
+    cells: Cells,
+    /// Those that may be covered.
+    under: Cells,
     skin: Group,
     /// Discs as large as photodiodes, all over the nail.
     spread: Vec<Watched>,
     noise: Noise,
-    under: Cells,
     /// What is covered in the frame that was sampled last, where something lies over the nail.
     covered: Option<Covered>,
     /// Frames that were sampled.
@@ -133,6 +135,28 @@ struct Watched {
     /// SD of a change, of the change.
     change_sd: f64,
     shape: Shape,
+}
+
+/// Groups with their colours in the first good frame, as [`logs`].
+#[derive(Debug)]
+struct Cells {
+    groups: Vec<Group>,
+    first: Vec<Option<[f64; 3]>>,
+}
+
+impl Cells {
+    fn new(groups: Vec<Group>, first: &Colours, frame_from_nail: &Affine) -> Self {
+        let first = groups.iter().map(|group| logs(first.mean(group, frame_from_nail))).collect();
+        Self { groups, first }
+    }
+
+    /// What has changed since, group by group.
+    fn changes(&self, colours: &Colours, frame_from_nail: &Affine) -> impl Iterator<Item = (&Group, Option<[f64; 3]>)> {
+        self.groups.iter().zip(&self.first).map(|(group, first)| {
+            let change = logs(colours.mean(group, frame_from_nail)).zip(*first);
+            (group, change.map(|(now, first)| std::array::from_fn(|k| now[k] - first[k])))
+        })
+    }
 }
 
 /// How a region's value changes with its place.
@@ -177,8 +201,7 @@ impl Sampler {
         first: &Colours,
         frame_from_nail: &Affine,
     ) -> Self {
-        let groups = light_cells();
-        let cells = groups.iter().map(|group| logs(first.mean(group, frame_from_nail))).collect();
+        let [cells, under] = [light_cells(), box_cells()].map(|groups| Cells::new(groups, first, frame_from_nail));
         let skin = skin();
         let skin_green = first.mean(&skin, frame_from_nail)[1];
         let levels = first.of_chroma_levels();
@@ -199,9 +222,8 @@ impl Sampler {
         let regions = regions.into_iter().map(watched).collect();
         let spread: Vec<Watched> = spread_discs(positions, extent_px).into_iter().map(watched).collect();
         let noise = Noise::new(spread.len());
-        let under = Cells::new(first, frame_from_nail);
         let sorted = Vec::new();
-        Self { light, grey, regions, cells, groups, skin, spread, noise, under, covered: None, frames: 0, sorted }
+        Self { light, grey, regions, cells, under, skin, spread, noise, covered: None, frames: 0, sorted }
     }
 
     /// The values of all regions where the nail is at `frame_from_nail`; `rim` is that of what lies over it.
@@ -212,7 +234,7 @@ impl Sampler {
         rim: Option<&Rim>,
         into: &mut Vec<Result<Sampled, Absent>>,
     ) {
-        self.covered = rim.map(|rim| self.under.covered(rim, colours, frame_from_nail, self.grey));
+        self.covered = rim.map(|rim| covered_by(rim, self.under.changes(colours, frame_from_nail), self.grey));
         let light = self.light_change(colours, frame_from_nail);
         let skin = if self.light == Light::Skin { self.skin_rgb(colours, frame_from_nail)[1] } else { f64::NAN };
         if self.frames.is_multiple_of(EVERY) {
@@ -307,16 +329,12 @@ impl Sampler {
     /// What the light changed: medians over the nail of the logarithms of colours; `None` where too little is seen.
     fn light_change(&mut self, colours: &Colours, frame_from_nail: &Affine) -> Option<[f64; 3]> {
         let changes: Vec<[f64; 3]> = self
-            .groups
-            .iter()
-            .zip(&self.cells)
+            .cells
+            .changes(colours, frame_from_nail)
             .filter(|(group, _)| self.covered.as_ref().is_none_or(|covered| points_covered(covered, group) == 0))
-            .filter_map(|(group, first)| {
-                let (now, first) = (logs(colours.mean(group, frame_from_nail))?, (*first)?);
-                Some(std::array::from_fn(|k| now[k] - first[k]))
-            })
+            .filter_map(|(_, change)| change)
             .collect();
-        if (changes.len() as f64) < LEAST_SEEN * self.groups.len() as f64 {
+        if (changes.len() as f64) < LEAST_SEEN * self.cells.groups.len() as f64 {
             return None;
         }
         Some(std::array::from_fn(|k| median(changes.iter().map(|change| change[k]), &mut self.sorted)))
