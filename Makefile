@@ -72,7 +72,7 @@ demo: system
 	@echo "  $(DEMO)/hemodynamics/steps-response.png   the response to a press"
 	@echo "  $(DEMO)/hemodynamics/fit-fitted.png       the fit"
 	@echo
-	@echo "3 of 3: the whole study of the thesis, on generated people (1 to 3 minutes; all of the above is there to look at)"
+	@echo "3 of 3: the whole study of the thesis, on generated people (1 to 5 minutes; all of the above is there to look at)"
 	$(LUNULA) run pipelines/study.toml --out $(DEMO)/study
 	@echo
 	@echo "The whole study, a counterpart of every data figure of the thesis:"

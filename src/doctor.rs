@@ -33,8 +33,6 @@ const OTHERS: [(&str, &str, &str); 3] = [
     ("snakemake", "runs pipelines in parts on a cluster", "pip install snakemake snakemake-executor-plugin-slurm"),
     ("sbatch", "hands parts of pipelines to Slurm", "apt-get install slurm-wlm, or ask those who run your cluster"),
 ];
-/// Packages of Python of the programs that `make peers` and `make bench` compare with.
-const PEERS: &str = "cv2 numpy pandas scipy skimage sklearn";
 
 /// How well something is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -78,7 +76,7 @@ pub fn examine(out: &Path) -> Vec<Group> {
         group("this program", program()),
         group("this machine", vec![threads(), memory(free_memory()), mouse()]),
         group("places to write to", [folder(out), vec![temporary()]].concat()),
-        group("programs beside lunula", [vec![peers()], OTHERS.map(other).to_vec()].concat()),
+        group("programs beside lunula", OTHERS.map(other).to_vec()),
     ]
 }
 
@@ -260,17 +258,6 @@ fn temporary() -> Check {
         Err(why) => {
             bad("temporary files", format!("{}: {why}", at.display()), "set TMPDIR to a folder that can be written to")
         }
-    }
-}
-
-fn peers() -> Check {
-    let find = "import importlib.util as u, sys; print(*[m for m in sys.argv[1].split() if not u.find_spec(m)])";
-    let install = "only for `make peers` and `make bench` of the repository: pip install \
-                   opencv-python-headless numpy pandas scipy scikit-image scikit-learn";
-    match answer(Command::new("python3").args(["-c", find, PEERS])) {
-        Ok(missing) if missing.is_empty() => good("Python's peers", PEERS),
-        Ok(missing) => note("Python's peers", format!("without {missing}"), install),
-        Err(why) => note("Python's peers", format!("python3: {why}"), install),
     }
 }
 

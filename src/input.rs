@@ -4,6 +4,9 @@
 //! for most inputs are looked at twice. Whoever waits for a pipe can be interrupted ([`interrupt`]). Devices, which
 //! never end (`/dev/zero`), sockets and folders are refused. What unpacks to far more than it is, or never ends, is
 //! refused before it fills the memory.
+//!
+//! What the system refuses comes in words: what is not there with the name that it may have meant. Errors keep their
+//! kind; whoever shows them puts the path before.
 
 use std::collections::HashMap;
 use std::fs::{self, File};
@@ -14,6 +17,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
+
+use crate::words::nearest;
 
 /// The most that a pipe may bring (assumed: two hours of eight photodiodes at 1 kHz are 0.6 GB of CSV).
 pub const PIPE_BYTES: u64 = 1 << 30;
@@ -60,7 +65,7 @@ impl Read for Input {
 
 /// Opens a file or a pipe.
 pub(crate) fn open(path: &Path) -> io::Result<Input> {
-    let about = fs::metadata(path)?;
+    let about = fs::metadata(path).map_err(|why| in_words(path, why))?;
     if about.file_type().is_fifo() {
         return Ok(Input::Held(Cursor::new(piped(path, (about.dev(), about.ino()))?)));
     }
@@ -69,19 +74,74 @@ pub(crate) fn open(path: &Path) -> io::Result<Input> {
 
 /// Opens a file whose places are read in any order: no pipe.
 pub(crate) fn open_regular(path: &Path) -> io::Result<File> {
-    let kind = fs::metadata(path)?.file_type();
+    let kind = fs::metadata(path).map_err(|why| in_words(path, why))?.file_type();
     let what = if kind.is_dir() {
-        return Err(ErrorKind::IsADirectory.into());
+        return Err(in_words(path, ErrorKind::IsADirectory.into()));
     } else if kind.is_file() {
-        return File::open(path);
+        return File::open(path).map_err(|why| in_words(path, why));
     } else if kind.is_fifo() {
-        "it is a pipe, and this is not read from the front to the back: write it to a file first"
+        "is a pipe, and this is not read from the front to the back: write it to a file first"
     } else if kind.is_socket() {
-        "it is a socket, no file"
+        "is a socket, no file"
     } else {
-        "it is a device, no file"
+        "is a device, no file"
     };
     Err(io::Error::new(ErrorKind::InvalidInput, what))
+}
+
+/// What a folder holds, in the order of the names.
+pub(crate) fn list(folder: &Path) -> io::Result<Vec<PathBuf>> {
+    let entries = fs::read_dir(folder).map_err(|why| match why.kind() {
+        ErrorKind::NotADirectory if folder.is_file() => io::Error::new(why.kind(), "is a file, no folder"),
+        _ => in_words(folder, why),
+    })?;
+    let mut paths = entries.map(|entry| Ok(entry?.path())).collect::<io::Result<Vec<_>>>()?;
+    paths.sort();
+    Ok(paths)
+}
+
+/// What was refused, in words that say what to do.
+fn in_words(path: &Path, why: io::Error) -> io::Error {
+    let words = match why.kind() {
+        ErrorKind::NotFound | ErrorKind::NotADirectory => missing(path),
+        ErrorKind::IsADirectory => "is a folder; name a file in it".to_owned(),
+        ErrorKind::PermissionDenied => "may not be read by this user; change its permissions".to_owned(),
+        _ => format!("cannot be read ({why})"),
+    };
+    io::Error::new(why.kind(), words)
+}
+
+/// Names of a folder among which a slip of the finger is looked for (assumed: a set of photographs).
+const MOST_NAMES: usize = 10_000;
+
+/// Where a path ends that leads nowhere, and what there is of nearly that name.
+fn missing(path: &Path) -> String {
+    // The first part that is not there, and the folder that lacks it.
+    let parent = |path: &Path| match path.parent() {
+        Some(at) if at.as_os_str().is_empty() => Some(PathBuf::from(".")),
+        other => other.map(Path::to_owned),
+    };
+    let (mut part, mut folder) = (path.to_owned(), parent(path));
+    while let Some(at) = folder.take_if(|at| !at.exists()) {
+        folder = parent(&at);
+        part = at;
+    }
+    let what = if part == path { String::new() } else { format!(": there is no folder {}", part.display()) };
+    if part.is_symlink() {
+        return format!("is not there{what}; it is a link that leads nowhere: make it again");
+    }
+    let Some(folder) = folder.filter(|at| at.is_dir()) else {
+        return "is not there: what its path leads through is a file, no folder".to_owned();
+    };
+    let names = fs::read_dir(&folder).into_iter().flatten().flatten().take(MOST_NAMES);
+    let mut names: Vec<String> = names.filter_map(|one| one.file_name().into_string().ok()).collect();
+    names.sort();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let name = part.file_name().unwrap_or_default().to_string_lossy();
+    match nearest(&name, &names) {
+        Some(near) => format!("is not there{what}; did you mean `{}`?", part.with_file_name(near).display()),
+        None => format!("is not there{what}; check its name"),
+    }
 }
 
 /// All of a file or a pipe.
@@ -91,7 +151,7 @@ pub(crate) fn read(path: &Path) -> io::Result<Vec<u8>> {
             let mut bytes = Vec::new();
             // Refused rather than aborted where there is no such memory.
             bytes.try_reserve_exact(usize::try_from(file.metadata()?.len()).unwrap_or(usize::MAX))?;
-            file.read_to_end(&mut bytes)?;
+            file.read_to_end(&mut bytes).map_err(|why| in_words(path, why))?;
             Ok(bytes)
         }
         Input::Held(bytes) => Ok(bytes.into_inner().to_vec()),
@@ -100,7 +160,7 @@ pub(crate) fn read(path: &Path) -> io::Result<Vec<u8>> {
 
 /// As [`read()`], of text.
 pub(crate) fn read_text(path: &Path) -> io::Result<String> {
-    String::from_utf8(read(path)?).map_err(|_| io::Error::new(ErrorKind::InvalidData, "it is not UTF-8 text"))
+    String::from_utf8(read(path)?).map_err(|_| io::Error::new(ErrorKind::InvalidData, "is not UTF-8 text"))
 }
 
 /// All that a pipe brings, and has brought.
@@ -182,6 +242,33 @@ mod tests {
         // Of several members each is counted.
         let half = pack(UNPACKED_BYTES / 2 + 1);
         assert!(unpack([half.clone(), half].concat()).is_err());
+    }
+
+    #[test]
+    fn what_is_not_there_may_have_been_meant_otherwise() {
+        let dir = tempfile::tempdir().unwrap();
+        let at = |name: &str| dir.path().join(name);
+        fs::create_dir(at("anna")).unwrap();
+        fs::write(at("anna/log.csv"), "").unwrap();
+        std::os::unix::fs::symlink("gone", at("link")).unwrap();
+        for (path, words) in [
+            ("anna/lgo.csv", "is not there; did you mean `{}/anna/log.csv`?"),
+            ("ana/log.csv", "is not there: there is no folder {}/ana; did you mean `{}/anna`?"),
+            ("anna/other/deep/x.csv", "is not there: there is no folder {}/anna/other; check its name"),
+            ("anna/other.csv", "is not there; check its name"),
+            ("anna/log.csv/x", "is not there: what its path leads through is a file, no folder"),
+            ("link", "is not there; it is a link that leads nowhere: make it again"),
+            ("link/x", "is not there: there is no folder {}/link; it is a link that leads nowhere: make it again"),
+            ("anna", "is a folder; name a file in it"),
+        ] {
+            let refused = read(&at(path)).expect_err("nothing to read");
+            assert_eq!(refused.to_string(), words.replace("{}", &dir.path().display().to_string()), "{path}");
+        }
+        assert!(list(&at("none")).unwrap_err().to_string().starts_with("is not there"));
+        assert_eq!(list(&at("anna/log.csv")).unwrap_err().to_string(), "is a file, no folder");
+        assert_eq!(list(&at("anna")).unwrap(), [at("anna/log.csv")]);
+        // From the folder that this runs in.
+        assert_eq!(read(Path::new("Cargo.tmol")).unwrap_err().to_string(), "is not there; did you mean `Cargo.toml`?");
     }
 
     #[test]

@@ -30,7 +30,7 @@ const MOST_BYTES: u64 = 128 << 20;
 #[derive(Debug, Error)]
 pub enum Error {
     /// The file could not be read.
-    #[error("{}: cannot be read: {source}", path.display())]
+    #[error("{}: {source}", path.display())]
     Read {
         /// The file that was to be read.
         path: PathBuf,

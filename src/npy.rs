@@ -22,7 +22,7 @@ const MOST_BRACKETS: usize = 8;
 /// # Errors
 /// What is wrong with it, without its name.
 pub fn read<T: ReadableElement>(path: &Path) -> Result<Array2<T>, String> {
-    let bytes = input::read(path).map_err(|why| format!("cannot be read ({why})"))?;
+    let bytes = input::read(path).map_err(|why| why.to_string())?;
     parse(&bytes)
 }
 

@@ -227,9 +227,9 @@ fn requests_that_are_wrong_say_what_to_write() {
     let dir = Dir::new();
     std::fs::create_dir(dir.path("empty")).expect("a folder");
     refused(&dir, camera(&dir, "empty", &[]), &["empty: holds no photographs"]);
-    refused(&dir, camera(&dir, "nowhere", &[]), &["nowhere: does not exist"]);
+    refused(&dir, camera(&dir, "nowhere", &[]), &["nowhere: is not there"]);
     dir.write("notes.mp4", "no video");
-    refused(&dir, camera(&dir, "notes.mp4", &[]), &["notes.mp4", "name a folder of photographs or a video"]);
+    refused(&dir, camera(&dir, "notes.mp4", &[]), &["notes.mp4", "a folder of photographs or a video is needed"]);
     let usual = ["camera", "empty", "--out", "camera.toml"];
     for (more, words) in [
         (&["--board", "9", "--square-mm", "20"][..], "as 9x6"),

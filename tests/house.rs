@@ -9,8 +9,9 @@ use regex::Regex;
 use crate::util::repository;
 
 /// The library's rooms, from the ground up: a room knows those of lower floors, and none of its own beside it.
-const FLOORS: [&[&str]; 9] = [
-    &["flexion", "input", "nail", "stages", "timebase", "words"],
+const FLOORS: [&[&str]; 10] = [
+    &["flexion", "nail", "stages", "timebase", "words"],
+    &["input"],
     &["files", "labelme", "npy", "photograph", "table", "toml_file", "video", "vision"],
     &["job"],
     &["clock", "figure", "log"],

@@ -192,6 +192,20 @@ fn a_recording_is_what_align_and_train_read_and_is_not_lost() {
 }
 
 #[test]
+fn a_recording_makes_its_folder_and_where_none_can_be_nothing_begins() {
+    let dir = desk();
+    dir.write("1.csv", recording(5.0));
+    let record = |out: &str| dir.lunula(&["record", "--source", "1.csv", "--out", out]);
+    record("of/anna/today.csv").expect(0);
+    assert!(dir.table("of/anna/today.csv").len() > 100, "rows are missing");
+    dir.write("file", "");
+    for out in ["file/today.csv", "file/of/today.csv"] {
+        record(out).expect(2).says("file: can't be written to").says("choose another --out");
+    }
+    record("of/anna/today.csv").expect(2).says("exists already");
+}
+
+#[test]
 fn killed_at_any_moment_a_recording_lacks_a_second_at_most() {
     let dir = desk();
     let mut running = start(&dir, &["record", "--source", "-", "--out", "r.csv"]);

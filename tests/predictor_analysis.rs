@@ -263,7 +263,7 @@ fn a_request_that_is_wrong_says_so() {
     dir.lunula(&["prune", "a.csv", "--validate", "c.csv", "--target", "Fz_N"])
         .expect(2)
         .says("c.csv: has no column `P4`");
-    dir.lunula(&["analyse", "nowhere.json"]).expect(2).says("nowhere.json: cannot be read");
+    dir.lunula(&["analyse", "nowhere.json"]).expect(2).says("nowhere.json: is not there");
     dir.lunula(&["analyse", "a.csv"]).expect(2).says("a.csv: is no model of lunula");
     let same = dir.lunula(&["prune", "a.csv", "--validate", "a.csv", "--target", "Fz_N"]).expect(0);
     same.says("200 of 200 rows to compare on are among those trained on; their errors flatter");

@@ -258,10 +258,10 @@ fn a_file_that_is_cut_or_none_is_refused() {
     dir.write("cut.json", whole.replacen("0.3125", "NaN", 1));
     dir.lunula(&["analyse", "cut.json"]).expect(2).says("cut.json: is not a model file");
     dir.write("cut.json", [0xff, 0xfe, 0x00]);
-    dir.lunula(&["analyse", "cut.json"]).expect(2).says("cut.json: cannot be read");
+    dir.lunula(&["analyse", "cut.json"]).expect(2).says("cut.json: is not UTF-8 text");
     std::fs::create_dir(dir.path("folder.json")).unwrap();
-    dir.lunula(&["analyse", "folder.json"]).expect(2).says("folder.json: cannot be read");
-    dir.lunula(&["analyse", "nowhere.json"]).expect(2).says("nowhere.json: cannot be read");
+    dir.lunula(&["analyse", "folder.json"]).expect(2).says("folder.json: is a folder; name a file in it");
+    dir.lunula(&["analyse", "nowhere.json"]).expect(2).says("nowhere.json: is not there");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! `lunula train` from end to end, on a sensor whose coefficients are known.
 
 use crate::util::sensor::{Recording, near, numbers, offset, slope};
-use crate::util::{Dir, Json};
+use crate::util::{Answer, Dir, Json};
 
 /// The sensor's tables hold exact numbers; the fit is centred and refined (measured: exact, or 1e-32 for a coefficient
 /// of 0).
@@ -37,6 +37,33 @@ fn the_coefficients_come_back_exactly() {
             near(&[f0], &[offset(first + t)], EXACT_OFFSET);
         }
     }
+}
+
+#[test]
+fn an_option_that_nothing_needs_is_named() {
+    let dir = sensor();
+    let unused = |answer: &Answer| -> Vec<String> {
+        let lines = answer.stderr.lines().filter(|line| line.contains("is of no use here"));
+        lines.map(str::to_owned).collect()
+    };
+    let plain = dir.train("train.csv", "force", "m.json", &["--validate", "held.csv"]).expect(0);
+    assert!(unused(&plain).is_empty(), "{}", plain.stderr);
+    // Also where it is written with its default.
+    let hidden = dir.train("train.csv", "force", "m.json", &["--hidden", "8", "--modes", "4"]).expect(0);
+    assert_eq!(
+        unused(&hidden),
+        [
+            "note: --hidden is of no use here: the model is no network",
+            "note: --modes is of no use here: the model is not of eigennails"
+        ],
+    );
+    let network = ["--model", "network", "--hidden", "2", "--restarts", "1", "--stop-on", "held.csv"];
+    assert!(unused(&dir.train("train.csv", "force", "n.json", &network).expect(0)).is_empty());
+    let gate = dir.lunula(&["predict", "m.json", "held.csv", "--f-min", "0.5", "--out", "p.csv"]).expect(0);
+    assert_eq!(
+        unused(&gate),
+        ["note: --f-min is of no use here: only a model of force and one of posture together are gated"]
+    );
 }
 
 #[test]

@@ -6,6 +6,7 @@ use thiserror::Error;
 
 use crate::files::WriteError;
 use crate::job::Interrupted;
+use crate::video::VideoError;
 use crate::vision::VisionError;
 
 /// Why there are no results.
@@ -19,6 +20,9 @@ pub enum CameraError {
         /// What is wrong and what to do.
         why: String,
     },
+    /// A file that is no photograph can't be read as a video.
+    #[error("{0} (a folder of photographs or a video is needed)")]
+    Video(#[from] VideoError),
     /// The views do not determine the lens.
     #[error("{why}{}", listed(failed))]
     Undetermined {

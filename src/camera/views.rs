@@ -13,6 +13,7 @@ use rayon::prelude::*;
 use super::board::BoardSize;
 use super::error::CameraError;
 use super::options::CameraOptions;
+use crate::input;
 use crate::job::Watch;
 use crate::photograph::{Photograph, is_picture};
 use crate::stages::Stages;
@@ -44,21 +45,15 @@ pub(super) fn files(sources: &[PathBuf]) -> Result<Vec<PathBuf>, CameraError> {
     let mut files = Vec::new();
     for source in sources {
         let refused = |why: String| CameraError::Input { path: source.clone(), why };
-        if !source.is_dir() {
-            if !source.exists() {
-                return Err(refused("does not exist; name a folder of photographs or a video".to_owned()));
-            }
+        if source.exists() && !source.is_dir() {
             files.push(source.clone());
             continue;
         }
-        let entries = std::fs::read_dir(source).and_then(Iterator::collect::<Result<Vec<_>, _>>);
-        let entries = entries.map_err(|why| refused(format!("cannot be listed: {why}")))?;
-        let mut own: Vec<PathBuf> = entries.into_iter().map(|entry| entry.path()).collect();
+        let mut own = input::list(source).map_err(|why| refused(why.to_string()))?;
         own.retain(|path| path.is_file() && is_picture(path));
         if own.is_empty() {
             return Err(refused("holds no photographs (png, jpg, tif, bmp); name the folder of the views".to_owned()));
         }
-        own.sort();
         files.extend(own);
     }
     Ok(files)
@@ -126,11 +121,7 @@ fn of_video(
     stages: &Stages,
     watch: &Watch<'_>,
 ) -> Result<Vec<Look>, CameraError> {
-    let refused = |why: crate::video::VideoError| {
-        let why = format!("{why}; name a folder of photographs or a video");
-        CameraError::Input { path: path.to_owned(), why }
-    };
-    let mut video = Video::open(path, options.threads).map_err(refused)?;
+    let mut video = Video::open(path, options.threads)?;
     let turn = video.info().turn;
     let (mut looks, mut stills, mut next_s) = (Vec::new(), Vec::new(), f64::NEG_INFINITY);
     let name = |index: u64| format!("{}: frame {index}", path.display());
@@ -145,7 +136,7 @@ fn of_video(
         stills.clear();
         Ok(())
     };
-    while let Some(item) = stages.time("decode", || video.next_item()).map_err(refused)? {
+    while let Some(item) = stages.time("decode", || video.next_item())? {
         watch.go_on()?;
         let Item::Frame(frame) = item else { continue };
         if frame.time_s < next_s {

@@ -17,7 +17,7 @@ use crate::table::TableError;
 pub enum HemodynamicsError {
     #[error("{}", .0.join("; "))]
     Options(Vec<String>),
-    #[error("{}: cannot be read: {why}", path.display())]
+    #[error("{}: {why}", path.display())]
     Open { path: PathBuf, why: std::io::Error },
     #[error("{}: {why}", path.display())]
     ParameterFile { path: PathBuf, why: ParameterFault },

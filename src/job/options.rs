@@ -3,8 +3,11 @@
 //!
 //! Values go through the very parsers of the command line. An option that may be given again takes a list.
 
+use std::collections::BTreeSet;
+
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::parser::ValueSource;
 use clap::{ArgAction, ArgMatches, Args, Command, FromArgMatches};
 use serde::Serialize;
 use thiserror::Error;
@@ -60,26 +63,42 @@ pub fn not_negative(text: &str) -> Result<f64, String> {
 /// again.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
 #[serde(transparent)]
-pub struct Said(serde_json::Map<String, serde_json::Value>);
+pub struct Said {
+    all: serde_json::Map<String, serde_json::Value>,
+    /// Those that are no defaults.
+    #[serde(skip)]
+    written: BTreeSet<String>,
+}
 
 impl Said {
     /// Nothing was said, and there are no defaults.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
+        self.all.is_empty()
+    }
+
+    /// Whether somebody wrote an option, be it with its default.
+    #[must_use]
+    pub fn was_written(&self, key: &str) -> bool {
+        self.written.contains(key)
     }
 
     /// With another option, first read by the job itself.
     #[must_use]
     pub fn and(mut self, key: &str, value: &str) -> Self {
-        self.0.insert(key.to_owned(), value.into());
+        self.all.insert(key.to_owned(), value.into());
+        self.written.insert(key.to_owned());
         self
     }
 
     fn of<R: Args>(matches: &ArgMatches) -> Self {
         let command = R::augment_args(Command::new("lunula"));
-        let said = command.get_arguments().filter_map(|one| {
+        let mut written = BTreeSet::new();
+        let all = command.get_arguments().filter_map(|one| {
             let (key, id) = (one.get_long()?.replace('-', "_"), one.get_id().as_str());
+            if matches.value_source(id) == Some(ValueSource::CommandLine) {
+                written.insert(key.clone());
+            }
             let value = match one.get_action() {
                 ArgAction::SetTrue => matches.get_flag(id).then_some(true)?.into(),
                 action => {
@@ -90,7 +109,8 @@ impl Said {
             };
             Some((key, value))
         });
-        Self(said.collect())
+        let all = all.collect();
+        Self { all, written }
     }
 }
 

@@ -73,6 +73,13 @@ impl<F: Serialize> Report<F> {
         }
     }
 
+    /// Notes which of the options `keys` were written though nothing here needs them, and why it doesn't.
+    pub fn unused(&mut self, keys: &[&str], why: &str) {
+        let said = keys.iter().filter(|key| self.options.was_written(key));
+        let notes = said.map(|key| format!("--{} is of no use here: {why}", key.replace('_', "-")));
+        self.notes.extend(notes);
+    }
+
     /// Adds the times.
     #[must_use]
     pub fn timed(mut self, stages: &Stages, start: Instant) -> Self {

@@ -58,7 +58,7 @@ pub struct LeftOut {
     pub error: f64,
     /// Its standard error.
     pub se: f64,
-    /// The 95 % interval of the mean.
+    /// The 95 % interval of the mean, from 0 up: no error is less.
     pub interval: [f64; 2],
 }
 
@@ -151,7 +151,7 @@ impl<'a> Solver<'a> {
             Parts::Subjects(_) => spread.sd? * (n - 1.0) / n.sqrt(),
         };
         let half = t_quantile(spread.n.checked_sub(1)?)? * se;
-        Some(LeftOut { error: spread.mean, se, interval: [spread.mean - half, spread.mean + half] })
+        Some(LeftOut { error: spread.mean, se, interval: [(spread.mean - half).max(0.0), spread.mean + half] })
     }
 }
 

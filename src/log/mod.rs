@@ -138,7 +138,8 @@ impl Log {
     /// A file that can't be read, columns that are missing or ambiguous, a cell that is neither number nor missing, a
     /// clock that was reset, no rows: each with its place and what to do.
     pub fn read(path: &Path, columns: &Columns) -> Result<Self, LogError> {
-        let raw = match Format::of(path) {
+        let format = Format::of(path);
+        let mut raw = match format {
             Format::Text => lines::rows::read(path, columns)?,
             Format::Parquet => formats::parquet::read(path, columns)?,
             #[cfg(feature = "xdf")]
@@ -146,6 +147,10 @@ impl Log {
             #[cfg(not(feature = "xdf"))]
             Format::Xdf => return Err(without_xdf(path)),
         };
+        if columns.stream.is_some() && !matches!(format, Format::Xdf) {
+            raw.notes
+                .push("--stream is of no use here: only recordings of the Lab Streaming Layer have streams".into());
+        }
         lines::order::settle(raw, columns.piece)
     }
 }

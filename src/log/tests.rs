@@ -163,7 +163,7 @@ fn files_that_are_no_logs_are_told() {
         Log::read(Path::new("nothing.csv"), &Columns::default())
             .unwrap_err()
             .to_string()
-            .contains("nothing.csv: cannot be read")
+            .contains("nothing.csv: is not there")
     );
     #[cfg(not(feature = "xdf"))]
     {

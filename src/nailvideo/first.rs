@@ -127,7 +127,15 @@ impl Finder {
             (Err(_), OutlinePlace::Detection) => {
                 return Err(NotOne { why: "no nail was found".to_owned(), seen: Vec::new() });
             }
-            (Err(why), _) => return Err(NotOne { why: why.to_string(), seen: Vec::new() }),
+            (Err(why), place) => {
+                let why = why.to_string();
+                // Who shows it names the file.
+                let named = match place {
+                    OutlinePlace::LabelMe(file) => format!("{}: ", file.display()),
+                    _ => String::new(),
+                };
+                return Err(NotOne { why: why.strip_prefix(&named).unwrap_or(&why).to_owned(), seen: Vec::new() });
+            }
         };
         let seen = to_draw(&listed.nails);
         one_of(listed.nails).map_err(|why| NotOne { why, seen })

@@ -56,7 +56,7 @@ impl std::fmt::Display for SetFault {
 #[derive(Debug, Error)]
 pub enum SetError {
     /// The folder can't be listed.
-    #[error("{}: {why}; name a folder of photographs", .folder.display())]
+    #[error("{}: {why} (a folder of photographs is needed)", .folder.display())]
     Unreadable {
         /// Which folder.
         folder: PathBuf,
@@ -361,12 +361,8 @@ fn name_fault(name: &str, value: &str) -> Option<String> {
 /// Files and folders of a folder, hidden ones left out, sorted by name.
 fn list(folder: &Path) -> Result<(Vec<PathBuf>, Vec<PathBuf>), SetError> {
     let unreadable = |why| SetError::Unreadable { folder: folder.to_owned(), why };
-    let mut paths = Vec::new();
-    for entry in std::fs::read_dir(folder).map_err(unreadable)? {
-        paths.push(entry.map_err(unreadable)?.path());
-    }
+    let mut paths = input::list(folder).map_err(unreadable)?;
     paths.retain(|p| !name_of(p).starts_with('.'));
-    paths.sort();
     Ok(paths.into_iter().partition(|p| !p.is_dir()))
 }
 

@@ -16,7 +16,7 @@ use crate::table::TableError;
 pub enum PredictorError {
     #[error(transparent)]
     Data(#[from] DataError),
-    #[error("{}: cannot be read: {why}", path.display())]
+    #[error("{}: {why}", path.display())]
     Open { path: PathBuf, why: std::io::Error },
     #[error("{}: {why}", path.display())]
     Model { path: PathBuf, why: FileFault },

@@ -18,7 +18,7 @@ fn refused(path: &Path, words: &[&str]) {
 #[test]
 fn no_file_no_bytes_a_folder_and_a_text() {
     let folder = tempfile::tempdir().unwrap();
-    refused(&folder.path().join("nothing.mp4"), &["no such file", "check the name"]);
+    refused(&folder.path().join("nothing.mp4"), &["is not there", "check its name"]);
     refused(folder.path(), &["is a folder"]);
     let path = folder.path().join("a.mp4");
     std::fs::write(&path, b"").unwrap();

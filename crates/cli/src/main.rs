@@ -36,7 +36,6 @@ static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 #[command(
     name = "lunula",
     version,
-    about,
     after_help = AFTER_HELP,
     max_term_width = 110
 )]

@@ -55,7 +55,7 @@ impl Default for Settings {
 #[derive(Debug, Error)]
 #[allow(missing_docs, reason = "the messages say it")]
 pub enum UiError {
-    #[error("{}: {why}; name a folder of results", path.display())]
+    #[error("{}: is no folder that can be read ({why}); name a folder of results", path.display())]
     Folder { path: std::path::PathBuf, why: std::io::Error },
     #[error("{0}: can't listen there ({1}); choose another --port")]
     Listen(SocketAddr, std::io::Error),

@@ -12,7 +12,7 @@ use crate::align::posture::Posture;
 use crate::align::run::plan::{Foreknown, steps};
 use crate::align::run::report::{AlignFigures, AlignReport, LabelReport};
 use crate::align::run::results::Results;
-use crate::align::tie::{self, Tie};
+use crate::align::tie::{self, Tie, TieMethod};
 use crate::job::{Report, Watch};
 use crate::log::{Log, Samples, samples};
 use crate::stages::{Stages, left_out};
@@ -73,7 +73,13 @@ pub fn run(
     };
     let left_out = left_out(steps(&Foreknown::of(&posture, &log), options, Some(outputs)));
     let notes = [notes, exported].concat();
-    let report = Report { left_out, warnings, notes, pictures, ..Report::new("align", watch, figures) };
+    let mut report = Report { left_out, warnings, notes, pictures, ..Report::new("align", watch, figures) };
+    if tie.method != TieMethod::Correlate {
+        report.unused(&["lag_about", "max_lag", "sensor_lag"], "only --sync correlate looks for a lag");
+    }
+    if tie.method != TieMethod::Clock {
+        report.unused(&["clock_zero"], "no clock in the picture ties the two");
+    }
     results.finish(report.timed(&stages, start), outputs)
 }
 

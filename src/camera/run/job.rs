@@ -70,7 +70,7 @@ pub fn run(
     watch.go_on()?;
     let videos = files.iter().filter(|file| !is_picture(file)).count();
     let counts = Some([files.len() - videos, videos]);
-    let report = Report {
+    let mut report = Report {
         left_out: left_out(steps(counts, inputs.plane.is_some(), options, Some(outputs))),
         warnings: warnings(&fitted, &views, covered),
         notes,
@@ -78,6 +78,9 @@ pub fn run(
         pictures,
         ..Report::new("camera", watch, figures)
     };
+    if videos == 0 {
+        report.unused(&["every"], "the views are photographs");
+    }
     Ok(report.timed(&stages, start).commit(places, report_at.as_deref())?)
 }
 
@@ -124,7 +127,7 @@ fn of_plane(
     watch: &Watch<'_>,
 ) -> Result<View, CameraError> {
     let refused = |why: String| CameraError::Input { path: path.to_owned(), why };
-    if path.is_dir() || !path.exists() {
+    if path.is_dir() {
         return Err(refused("--plane takes one photograph or video of the board in the finger's plane".to_owned()));
     }
     let looks = look(&[path.to_owned()], options, stages, watch)?;

@@ -17,6 +17,7 @@ use rayon::prelude::*;
 
 use super::given::{Contrast, Given, LeftOutCandidates, Parts, PersonFigures, Target};
 use super::places::{MARGIN, Place, cell};
+use crate::input;
 use crate::layout::error::LayoutError;
 use crate::layout::options::LayoutOptions;
 use crate::npy;
@@ -41,14 +42,8 @@ fn poses(folder: &Path) -> Result<Vec<String>, LayoutError> {
 
 /// The names in a folder, sorted.
 fn listed(folder: &Path) -> Result<Vec<String>, LayoutError> {
-    let failed = |why: std::io::Error| LayoutError::input(folder, format!("cannot be listed ({why})"));
-    let entries = std::fs::read_dir(folder).map_err(failed)?;
-    let mut names = Vec::new();
-    for entry in entries {
-        names.extend(entry.map_err(failed)?.file_name().into_string());
-    }
-    names.sort();
-    Ok(names)
+    let paths = input::list(folder).map_err(|why| LayoutError::input(folder, why.to_string()))?;
+    Ok(paths.iter().filter_map(|path| Some(path.file_name()?.to_str()?.to_owned())).collect())
 }
 
 /// A subject's readings of a pose; NaN where a cell is not seen.

@@ -110,7 +110,7 @@ pub(super) fn photodiodes(
 
 /// Reads a file of places, TOML or by its name JSON.
 fn read_positions(file: &Path) -> Result<Positions, LayoutError> {
-    let text = input::read_text(file).map_err(|why| LayoutError::input(file, format!("cannot be read ({why})")))?;
+    let text = input::read_text(file).map_err(|why| LayoutError::input(file, why.to_string()))?;
     let json = file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
     let read = if json { Positions::from_json(&text) } else { Positions::from_toml(&text) };
     read.map_err(|why| LayoutError::input(file, why.to_string()))

@@ -117,7 +117,18 @@ pub fn run(
     }
     let maps = matches!(&inputs.data[..], [one] if is_maps(&one.path));
     let left_out = left_out(steps(inputs.data.len(), maps, options, Some(outputs)));
-    let report = Report { left_out, warnings, notes, pictures, ..Report::new("layout", watch, figures) };
+    let mut report = Report { left_out, warnings, notes, pictures, ..Report::new("layout", watch, figures) };
+    if maps {
+        if inputs.positions.is_some() {
+            report.notes.push("--positions is of no use here: maps of photographs have no photodiodes".to_owned());
+        }
+        report.unused(
+            &["targets", "grid", "columns", "stream"],
+            "maps of photographs have poses, and cells of their own",
+        );
+    } else {
+        report.unused(&["cells"], "the candidates are the columns of the tables");
+    }
     Ok(report.timed(&stages, start).commit(places, outputs.report.then(|| folder.join(REPORT)).as_deref())?)
 }
 

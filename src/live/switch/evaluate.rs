@@ -147,6 +147,6 @@ pub fn evaluate_plan(recordings: usize, rows: bool, figures: bool) -> Vec<Step> 
 pub fn read_switch(path: &Path) -> Result<SwitchConfig, LiveError> {
     let refused = |what: String| LiveError::Config { path: path.to_owned(), what };
     let text = crate::input::read_text(path)
-        .map_err(|why| refused(format!("{why}; `lunula switch tune` writes one from recordings")))?;
+        .map_err(|why| refused(format!("{why} (`lunula switch tune` writes one from recordings)")))?;
     SwitchConfig::from_toml(&text).map_err(|why| refused(why.to_string()))
 }

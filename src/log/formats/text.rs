@@ -27,7 +27,7 @@ pub(in crate::log) struct Layout {
 /// The bytes of a file, unpacked where it is gzipped.
 pub(in crate::log) fn unpacked(path: &Path) -> Result<Vec<u8>, LogError> {
     let failed = |what: String| LogError::File { path: path.to_owned(), what };
-    let bytes = input::read(path).map_err(|why| failed(format!("cannot be read ({why})")))?;
+    let bytes = input::read(path).map_err(|why| failed(why.to_string()))?;
     input::unpack(bytes).map_err(failed)
 }
 

@@ -43,7 +43,7 @@ const OUTLINE: &str = "nail.json";
 pub(in crate::nailvideo) fn positions(path: Option<&Path>) -> Result<Positions, NailVideoError> {
     let Some(path) = path else { return Ok(Positions::thesis()) };
     let refused = |why: String| NailVideoError::Positions { path: path.to_owned(), why };
-    let text = crate::input::read(path).map_err(|why| refused(format!("cannot be read ({why})")))?;
+    let text = crate::input::read(path).map_err(|why| refused(why.to_string()))?;
     let text = String::from_utf8(text).map_err(|_| refused("is no UTF-8 text; write positions as TOML".to_owned()))?;
     let json = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
     let read = if json { Positions::from_json(&text) } else { Positions::from_toml(&text) };

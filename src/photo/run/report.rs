@@ -192,7 +192,11 @@ pub(in crate::photo) fn of_photos(found: Findings<'_>, mut poses: Vec<PoseCount>
         nails: rows,
     };
     let failed = failed.iter().map(ToString::to_string).collect();
-    Report { left_out, warnings, notes, failed, ..Report::new("photos", watch, figures) }
+    let mut report = Report { left_out, warnings, notes, failed, ..Report::new("photos", watch, figures) };
+    if options.outlines.masks.is_none() {
+        report.unused(&["mask_value"], "there is no folder of --masks");
+    }
+    report
 }
 
 /// Of `lunula photos merge`.

@@ -3,6 +3,7 @@
 use std::io;
 use std::path::Path;
 
+use crate::input;
 use crate::log::{Columns, LogHeader};
 use crate::table::{Table, column_names};
 
@@ -67,7 +68,7 @@ enum Sort {
 /// Where it can't be read.
 pub(super) fn look(folder: &Path) -> io::Result<Inventory> {
     let mut paths = Vec::new();
-    std::fs::read_dir(folder)?;
+    input::list(folder)?;
     walk(folder, "", 0, &mut paths);
     let mut found = Inventory { files: paths.len(), ..Inventory::default() };
     let mut tables = Vec::new();

@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, thiserror::Error)]
 pub enum InitError {
     /// The folder can't be read.
-    #[error("{}: {why}; name a folder with recordings", path.display())]
+    #[error("{}: {why} (a folder with recordings is needed)", path.display())]
     Unreadable {
         /// The folder.
         path: PathBuf,

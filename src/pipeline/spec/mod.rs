@@ -45,7 +45,7 @@ use crate::toml_file::{Fault, place};
 #[derive(Debug, thiserror::Error)]
 pub enum PipelineError {
     /// The file can't be read.
-    #[error("{}: {why}; name a pipeline file (TOML), or let `lunula init` write one to start from", path.display())]
+    #[error("{}: {why} (a pipeline file is TOML; `lunula init` writes one to start from)", path.display())]
     Unreadable {
         /// The file.
         path: PathBuf,

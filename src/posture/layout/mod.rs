@@ -133,7 +133,7 @@ pub struct LayoutFault {
 pub enum LayoutError {
     /// The file can't be read.
     #[error(
-        "{}: {why}; name a marker file (TOML), or let `lunula posture VIDEO --suggest` write one to start from",
+        "{}: {why} (a marker file is TOML; `lunula posture VIDEO --suggest` writes one to start from)",
         path.display()
     )]
     Unreadable {

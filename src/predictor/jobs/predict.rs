@@ -128,7 +128,10 @@ pub fn predict(
     let ambient = ambient_step_of([data], &options.rows.log);
     let left_out = left_out(predict_plan(models.len(), ambient, options));
     let figures = figures(data, Some(out), &answering, counts);
-    let report = Report { left_out, warnings, notes: read.notes, ..Report::new("predict", watch, figures) };
+    let mut report = Report { left_out, warnings, notes: read.notes, ..Report::new("predict", watch, figures) };
+    if !answering.is_gated() {
+        report.unused(&["f_min", "theta_touch"], "only a model of force and one of posture together are gated");
+    }
     Ok(report.timed(&stages, start))
 }
 

@@ -214,7 +214,16 @@ pub fn train(
     };
     let ambient = inputs.ambient_step(&options.wanted.rows);
     let left_out = left_out(train_plan(inputs, ambient, recipe, outputs.learning_curve.is_some()));
-    let report = Report { left_out, warnings, notes, failed, pictures, ..Report::new("train", watch, figures) };
+    let mut report = Report { left_out, warnings, notes, failed, pictures, ..Report::new("train", watch, figures) };
+    if !matches!(options.recipe.kind, Kind::Network { .. }) {
+        report.unused(&["hidden", "seed", "restarts"], "the model is no network");
+    }
+    if !matches!(options.recipe.kind, Kind::Eigennails { .. }) {
+        report.unused(&["modes", "regression"], "the model is not of eigennails");
+    }
+    if inputs.validate.is_empty() {
+        report.unused(&["level"], "intervals come from the recordings of --validate");
+    }
     Ok(report.timed(&stages, start))
 }
 

@@ -22,7 +22,7 @@ const MOST_S: f64 = 3600.0;
 #[derive(Debug, thiserror::Error)]
 pub enum ProtocolError {
     /// The file can't be read.
-    #[error("{}: {why}; `lunula prompt --write-protocol FILE` writes one to start from", path.display())]
+    #[error("{}: {why} (`lunula prompt --write-protocol FILE` writes one to start from)", path.display())]
     Unreadable {
         /// The file.
         path: PathBuf,

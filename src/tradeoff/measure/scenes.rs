@@ -133,8 +133,7 @@ pub(in crate::tradeoff) fn switch_of(train: &Path, test: &Path, wanted: &Wanted)
 /// The tables and logs of a folder, and the logs of its folders, by name.
 fn recordings(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
     let mut found = Vec::new();
-    for entry in std::fs::read_dir(folder).with_context(|| folder.display().to_string())? {
-        let path = entry?.path();
+    for path in crate::input::list(folder).with_context(|| folder.display().to_string())? {
         let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
         if path.join("log.csv").is_file() {
             found.push(path.join("log.csv"));
@@ -142,7 +141,6 @@ fn recordings(folder: &Path) -> anyhow::Result<Vec<PathBuf>> {
             found.push(path);
         }
     }
-    found.sort();
     anyhow::ensure!(!found.is_empty(), "{}: holds no recordings (.csv, .parquet)", folder.display());
     Ok(found)
 }

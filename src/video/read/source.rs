@@ -130,17 +130,11 @@ impl Source {
 
 fn open_file(path: &Path) -> Result<File, VideoError> {
     let failed = |what: String| VideoError::open(path, what);
-    let about = std::fs::metadata(path).map_err(|error| match error.kind() {
-        std::io::ErrorKind::NotFound => failed("there is no such file; check the name".into()),
-        _ => failed(format!("can't be opened: {error}")),
-    })?;
-    if about.is_dir() {
-        return Err(failed("is a folder; name a video file in it".into()));
-    }
-    if about.is_file() && about.len() == 0 {
+    let file = open_regular(path).map_err(|why| failed(why.to_string()))?;
+    if file.metadata().is_ok_and(|about| about.len() == 0) {
         return Err(failed("is empty (0 bytes); copy or record it again".into()));
     }
-    open_regular(path).map_err(|error| failed(format!("can't be opened: {error}")))
+    Ok(file)
 }
 
 fn no_video(input: &context::Input) -> String {

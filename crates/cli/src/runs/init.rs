@@ -32,9 +32,11 @@ pub(crate) fn run(args: &InitArgs) -> anyhow::Result<Outcome> {
     if out.exists() {
         bail!("{}: stands already and is left; name another file with --out", out.display());
     }
-    let from = seen_from(&args.folder, &out)?;
+    let from = seen_from(&args.folder, home_of(&out))?;
     let text = propose(&args.folder, &from)?;
-    clear_leftovers(out.parent().filter(|home| !home.as_os_str().is_empty()).unwrap_or(Path::new(".")));
+    let home = home_of(&out);
+    std::fs::create_dir_all(home).with_context(|| format!("{}: cannot be made", home.display()))?;
+    clear_leftovers(home);
     write_whole(&out, text.as_bytes())?;
     args.common.print_json(&json!({ "job": "init", "pipeline": out, "failed": [] }))?;
     args.common.say(&format!(
@@ -45,11 +47,14 @@ pub(crate) fn run(args: &InitArgs) -> anyhow::Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// The folder as a file in another place names it: empty for its own, else with `/` at the end.
-fn seen_from(folder: &Path, out: &Path) -> anyhow::Result<String> {
-    let real =
-        |path: &Path| path.canonicalize().with_context(|| format!("{}: is no folder that can be read", path.display()));
-    let home = out.parent().filter(|home| !home.as_os_str().is_empty()).unwrap_or(Path::new("."));
+fn home_of(file: &Path) -> &Path {
+    file.parent().filter(|home| !home.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// The folder as a file in `home` names it: empty for its own, else with `/` at the end.
+fn seen_from(folder: &Path, home: &Path) -> std::io::Result<String> {
+    // What is not there has no links.
+    let real = |path: &Path| path.canonicalize().or_else(|_| std::path::absolute(path));
     let way = pathdiff::diff_paths(real(folder)?, real(home)?).unwrap_or_default();
     let way = way.to_string_lossy().into_owned();
     Ok(if way.is_empty() || way == "." { String::new() } else { format!("{way}/") })

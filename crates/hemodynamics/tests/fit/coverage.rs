@@ -93,14 +93,12 @@ fn a_distal_step_covers_its_truth() {
 /// Measured: k 187, b 188, V_0 189 and 186, V_1 185 and 186; of 2000: 1895, 1897, 1906 and 1896, 1889 and 1897.
 /// Intervals: k 187, b 188.
 #[test]
-#[ignore = "takes ten seconds"]
 fn a_proximal_and_a_distal_step_cover_their_truth() {
     check(&Kind::Both, 200);
 }
 
 /// Measured: k 191, b 193, V_0 191, V_1 191; intervals of k 190, of b 194.
 #[test]
-#[ignore = "takes half a minute"]
 fn a_measured_force_covers_its_truth() {
     check(&Kind::Force, 200);
 }
@@ -109,7 +107,6 @@ fn a_measured_force_covers_its_truth() {
 /// errors are a little short; the intervals are not. Measured: k 182, b 183, V_0 189, V_1 189; of 2000: 1840, 1846,
 /// 1900, 1893. Intervals: k 194, b 195.
 #[test]
-#[ignore = "takes five seconds"]
 fn intervals_of_a_proximal_step_cover_its_truth_and_standard_errors_nearly() {
     for (name, count) in covered(&Kind::Proximal, 200) {
         println!("{name}: {count} of 200");

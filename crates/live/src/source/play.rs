@@ -103,9 +103,12 @@ impl Bytes {
     /// It does not exist or is of a format that is none of them.
     pub(in crate::source) fn open(path: &Path, is_text: bool) -> Result<Self, SourceFault> {
         let failed = |what: String| SourceFault::Open { source_name: path.display().to_string(), what };
+        if path.is_dir() {
+            return Err(failed("is a folder; name a file in it".to_owned()));
+        }
         let file = File::open(path).map_err(|why| {
             failed(match why.kind() {
-                ErrorKind::NotFound => "does not exist".to_owned(),
+                ErrorKind::NotFound => "does not exist; check its name".to_owned(),
                 _ => format!("cannot be opened ({why})"),
             })
         })?;

@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use crate::files::folder_of;
 use crate::live::error::LiveError;
 
 /// A file that grows by lines, each on disk when it is written.
@@ -20,7 +21,8 @@ impl EventsFile {
     /// It can't be made.
     pub(crate) fn create(path: Option<&Path>) -> Result<Option<Self>, LiveError> {
         let Some(path) = path else { return Ok(None) };
-        let file = File::create(path).map_err(|why| LiveError::Write { path: path.to_owned(), why })?;
+        let made = std::fs::create_dir_all(folder_of(path)).and_then(|()| File::create(path));
+        let file = made.map_err(|why| LiveError::Write { path: path.to_owned(), why })?;
         Ok(Some(Self { path: path.to_owned(), to: BufWriter::new(file) }))
     }
 

@@ -12,6 +12,7 @@ use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
+use crate::files::folder_of;
 use crate::live::error::LiveError;
 use crate::table::{Column, TableFormat, TableWriter, Value};
 
@@ -54,7 +55,8 @@ impl Recording {
     /// A recording, not begun yet; `waits` where the source can wait for the disk.
     ///
     /// # Errors
-    /// A name that is no table's, or a file that exists and is not to be replaced.
+    /// A name that is no table's, a file that exists and is not to be replaced, or a place that can't be written to:
+    /// nobody is recorded for nothing.
     pub(crate) fn new(out: &Path, replace: bool, waits: bool) -> Result<Self, LiveError> {
         let grows = match TableFormat::of(out)? {
             TableFormat::Csv => out.to_owned(),
@@ -65,6 +67,12 @@ impl Recording {
                 return Err(LiveError::Exists(path.to_owned()));
             }
         }
+        let folder = folder_of(&grows);
+        let there = folder.ancestors().find(|at| at.exists()).unwrap_or(Path::new("."));
+        tempfile::tempfile_in(there).map_err(|why| {
+            let what = format!("can't be written to ({why}); choose another --out or make room and permission for it");
+            LiveError::Config { path: there.to_owned(), what }
+        })?;
         Ok(Self {
             out: out.to_owned(),
             grows,
@@ -123,7 +131,8 @@ impl Recording {
         } else {
             options.create_new(true)
         };
-        let mut file = options.open(&self.grows).map_err(|why| self.refused(why))?;
+        let made = std::fs::create_dir_all(folder_of(&self.grows)).and_then(|()| options.open(&self.grows));
+        let mut file = made.map_err(|why| self.refused(why))?;
         let header = self.columns.join(",") + "\n";
         file.write_all(header.as_bytes()).map_err(|why| self.refused(why))?;
         let shared = Arc::clone(&self.shared);

@@ -131,7 +131,10 @@ pub fn evaluate(
     };
     let ambient = DataFile::ambient_step(data, &options.rows);
     let left_out = left_out(evaluate_plan(data.len(), ambient, options, Some(intervals.is_some()), out));
-    let report = Report { left_out, warnings, notes, ..Report::new("evaluate", watch, figures) };
+    let mut report = Report { left_out, warnings, notes, ..Report::new("evaluate", watch, figures) };
+    if options.by.is_none() && options.splits.is_none() {
+        report.unused(&["folds", "seed", "level"], "nothing is held out without --by or --splits");
+    }
     let eigennails = predictor.eigennails();
     end(report, out, |report, out| results::write(report, &shown, eigennails, out, &stages), &stages, start)
 }
