@@ -101,7 +101,7 @@ pub(crate) fn list(folder: &Path) -> io::Result<Vec<PathBuf>> {
 }
 
 /// What was refused, in words that say what to do.
-fn in_words(path: &Path, why: io::Error) -> io::Error {
+pub(crate) fn in_words(path: &Path, why: io::Error) -> io::Error {
     let words = match why.kind() {
         ErrorKind::NotFound | ErrorKind::NotADirectory => missing(path),
         ErrorKind::IsADirectory => "is a folder; name a file in it".to_owned(),

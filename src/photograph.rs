@@ -4,6 +4,7 @@
 //! EXIF orientation applied once, 8 or 16 bits a channel as in the file, grey or colour. A truncated JPEG decodes
 //! "successfully", grey where the data ends, in most decoders: here its end-of-image marker is looked for first.
 
+use std::fs::File;
 use std::io::{Cursor, Read};
 use std::path::Path;
 
@@ -11,7 +12,7 @@ use image::metadata::Orientation;
 use image::{ColorType, DynamicImage, ImageBuffer, ImageDecoder, ImageFormat, ImageReader, Limits, Pixel};
 use thiserror::Error;
 
-use crate::input::open_regular;
+use crate::input::in_words;
 
 /// Endings of the files that are taken as photographs.
 pub(crate) const PICTURES: [&str; 6] = ["png", "jpg", "jpeg", "tif", "tiff", "bmp"];
@@ -275,7 +276,7 @@ pub(crate) fn is_grey(image: &DynamicImage) -> bool {
 /// # Errors
 /// As [`Photograph::read`], but only what the header shows.
 pub(crate) fn header_is_grey(path: &Path) -> Result<bool, ReadFault> {
-    let file = std::io::BufReader::new(open_regular(path)?);
+    let file = std::io::BufReader::new(opened(path)?);
     let reader = ImageReader::new(file).with_guessed_format()?;
     match reader.format() {
         Some(ImageFormat::Png | ImageFormat::Jpeg | ImageFormat::Tiff | ImageFormat::Bmp) => {}
@@ -288,11 +289,16 @@ fn pixels(megapixels: u32) -> u64 {
     u64::from(megapixels) * 1_000_000
 }
 
-/// Reads a picture file's bytes. What is not a picture is not read to its end.
+/// A picture may come through a pipe, which is read once.
+fn opened(path: &Path) -> std::io::Result<File> {
+    File::open(path).map_err(|why| in_words(path, why))
+}
+
+/// Reads a picture file's bytes. What is not a picture is not read to its end, which some devices don't have.
 fn read_bytes(path: &Path, megapixels: u32, bytes: &mut Vec<u8>) -> Result<(), ReadFault> {
     // 16 bits of four channels, as they are.
     let most = 8 * pixels(megapixels) + METADATA_BYTES;
-    let mut file = open_regular(path)?;
+    let mut file = opened(path)?;
     let length = file.metadata()?.len();
     bytes.clear();
     file.by_ref().take(FIRST_BYTES).read_to_end(bytes)?;
@@ -466,12 +472,12 @@ mod tests {
         assert!(Photograph::read_up_to(&path, 2).is_ok());
         // A file with a hole of 3 GB.
         let path = dir.path().join("long.bmp");
-        let file = std::fs::File::create(&path).expect("a file");
+        let file = File::create(&path).expect("a file");
         std::io::Write::write_all(&mut &file, b"BM").expect("written");
         file.set_len(3 << 30).expect("a hole");
         assert!(matches!(Photograph::read(&path), Err(ReadFault::TooLong { .. })));
         if cfg!(target_os = "linux") {
-            assert!(matches!(Photograph::read(Path::new("/dev/zero")), Err(ReadFault::Io(_))));
+            assert!(matches!(Photograph::read(Path::new("/dev/zero")), Err(ReadFault::NotAPicture)));
         }
     }
 
