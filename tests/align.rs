@@ -194,7 +194,9 @@ fn without_a_clock_an_offset_is_needed() {
     align(&dir, &["--sync", "clock"]).expect(2).says("clock_s");
     assert!(!dir.path("training.csv").exists() && !dir.path("training.sync.json").exists());
 
-    align(&dir, &["--sync", "offset=77.7123"]).expect(0);
+    let unused = ["--max-lag", "3", "--clock-zero", "1"];
+    let answer = align(&dir, &[&["--sync", "offset=77.7123"], &unused[..]].concat()).expect(0);
+    answer.says("--max-lag is of no use here: only --sync correlate").says("--clock-zero is of no use here");
     let set = dir.table("training.csv");
     labels_are_right(&dir, &set);
     // How well the offset is known was not said, so no label's error is known.

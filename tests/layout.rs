@@ -34,6 +34,9 @@ fn photographs_to_maps_to_a_layout() {
     }
     let plan = dir.lunula(&["layout", "set", "--plan"]).expect(0).stdout;
     assert!(plan.contains("branch and bound"), "{plan}");
+    // What maps have no use for is named.
+    let unused = ["layout", "set", "--k", "1", "--out", "unused", "--targets", "Fx_N", "--positions", "p.toml"];
+    dir.lunula(&unused).expect(0).says("--targets is of no use here").says("--positions is of no use here");
     dir.lunula(&["layout", "scene", "--out", "none"]).expect(2).says("a folder without maps");
     assert!(!dir.path("none").exists());
 }

@@ -31,7 +31,8 @@ impl Job for LayoutOptions {
             Role::new("positions", Takes::Optional, "where the photodiodes are"),
         ],
         &[Part::new("layout", POSITIONS), Part::new("table", TABLE), Part::if_wanted(PICTURES, "")],
-    );
+    )
+    .revision(2);
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         let data: Vec<&Foreseen> = inputs.iter().filter(|input| input.role == "data").collect();
