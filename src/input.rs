@@ -102,14 +102,20 @@ pub(crate) fn list(folder: &Path) -> io::Result<Vec<PathBuf>> {
 
 /// What was refused, in words that say what to do.
 pub(crate) fn in_words(path: &Path, why: io::Error) -> io::Error {
-    let words = match why.kind() {
-        ErrorKind::NotFound | ErrorKind::NotADirectory => missing(path),
-        ErrorKind::IsADirectory => "is a folder; name a file in it".to_owned(),
-        ErrorKind::PermissionDenied => "may not be read by this user; change its permissions".to_owned(),
-        _ => format!("cannot be read ({why})"),
-    };
-    io::Error::new(why.kind(), words)
+    match why.kind() {
+        kind @ (ErrorKind::NotFound | ErrorKind::NotADirectory) => io::Error::new(kind, Missing(path.to_owned())),
+        kind @ ErrorKind::IsADirectory => io::Error::new(kind, "is a folder; name a file in it"),
+        kind @ ErrorKind::PermissionDenied => {
+            io::Error::new(kind, "may not be read by this user; change its permissions")
+        }
+        kind => io::Error::new(kind, format!("cannot be read ({why})")),
+    }
 }
+
+/// A path that leads nowhere. What it may have meant is looked for as it is shown: often nobody minds.
+#[derive(Debug, thiserror::Error)]
+#[error("{}", missing(.0))]
+struct Missing(PathBuf);
 
 /// Names of a folder among which a slip of the finger is looked for (assumed: a set of photographs).
 const MOST_NAMES: usize = 10_000;

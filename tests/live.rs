@@ -200,7 +200,7 @@ fn a_recording_makes_its_folder_and_where_none_can_be_nothing_begins() {
     assert!(dir.table("of/anna/today.csv").len() > 100, "rows are missing");
     dir.write("file", "");
     for out in ["file/today.csv", "file/of/today.csv"] {
-        record(out).expect(2).says("file: can't be written to").says("choose another --out");
+        record(out).expect(2).says("file: cannot be written to").says("choose another --out");
     }
     record("of/anna/today.csv").expect(2).says("exists already");
 }

@@ -12,7 +12,7 @@ use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use crate::files::folder_of;
+use crate::files::{WriteError, folder_of};
 use crate::live::error::LiveError;
 use crate::table::{Column, TableFormat, TableWriter, Value};
 
@@ -69,10 +69,7 @@ impl Recording {
         }
         let folder = folder_of(&grows);
         let there = folder.ancestors().find(|at| at.exists()).unwrap_or(Path::new("."));
-        tempfile::tempfile_in(there).map_err(|why| {
-            let what = format!("can't be written to ({why}); choose another --out or make room and permission for it");
-            LiveError::Config { path: there.to_owned(), what }
-        })?;
+        tempfile::tempfile_in(there).map_err(|why| WriteError::Folder { path: there.to_owned(), why })?;
         Ok(Self {
             out: out.to_owned(),
             grows,

@@ -122,6 +122,7 @@ fn markers_near_one_another_are_two_blobs() {
     assert!(found.len() >= 2 && found[1].contrast > 0.3, "{found:?}");
 }
 
+/// `cargo test --release --lib time_of_a_whole_frame -- --ignored --nocapture`
 #[test]
 #[ignore = "a figure, not a test: how long the search of whole frames takes"]
 fn time_of_a_whole_frame() {

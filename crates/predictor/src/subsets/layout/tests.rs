@@ -156,6 +156,7 @@ fn sixty_nine_places_are_solved_as_by_brute_force() {
     }
 }
 
+/// `cargo test --release -p lunula-predictor -- --ignored --nocapture speed_of_sixty`
 #[test]
 #[ignore = "measures time"]
 fn speed_of_sixty_nine_places() {
@@ -182,6 +183,7 @@ fn speed_of_sixty_nine_places() {
     }
 }
 
+/// `cargo test --release -p lunula-predictor -- --ignored --nocapture two_hundred`
 #[test]
 #[ignore = "minutes: all sizes up to 25 places, 8 chosen"]
 fn two_hundred_problems_are_solved_as_by_brute_force() {
