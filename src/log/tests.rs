@@ -153,6 +153,9 @@ fn files_that_are_no_logs_are_told() {
         ("log.csv", b"time_s,P1\n0,\xff\n", "log.csv:2: column `P1`"),
         ("log.csv", b"\0\0\0\0", "is no text"),
         ("log.xlsx", b"PK\x03\x04abc", "spreadsheet"),
+        ("log.mat", b"MATLAB 5.0 MAT-file, Platform: GLNXA64", "writetable"),
+        ("log.tdms", b"TDSm\x0e\0\0\0", "LabVIEW"),
+        ("log.h5", b"\x89HDF\r\n\x1a\n", "HDF5"),
         ("log.csv", b"PAR1abc", ".parquet"),
         ("log.parquet", b"PAR1abc", "not a whole Parquet file"),
     ] {

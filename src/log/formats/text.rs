@@ -53,6 +53,8 @@ pub(in crate::log) fn open(path: &Path) -> Result<Vec<u8>, LogError> {
         (b"PAR1", "is a Parquet file; let its name end in .parquet"),
         (b"XDF:", "is a recording of the Lab Streaming Layer; let its name end in .xdf"),
         (b"\x89HDF", "is an HDF5 file; write its signals as CSV or Parquet"),
+        (b"MATLAB ", "is a MATLAB file; write its signals as CSV there (writetable)"),
+        (b"TDSm", "is a LabVIEW recording; export it as CSV"),
     ] {
         if bytes.starts_with(magic) {
             return Err(failed(words.to_owned()));
