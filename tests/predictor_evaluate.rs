@@ -53,6 +53,35 @@ fn errors_are_reported_by_target() {
 }
 
 #[test]
+fn a_wrong_sign_unit_or_order_is_named() {
+    let dir = trained();
+    let base = Recording::of(300..400);
+    let swapped = {
+        let [one, three] = ["P1", "P3"].map(|name| base.numbers(name));
+        base.clone().map("P1", |row, _| three[row]).map("P3", |row, _| one[row] + 2.0)
+    };
+    for (recording, target, words) in [
+        (base.clone().map("Fz_N", |_, v| -v), "Fz_N", "but for the sign"),
+        (base.clone().map("Fx_N", |_, v| 101.97 * v), "Fx_N", "times what is predicted"),
+        (base.clone().map("Fy_N", |_, v| v + 7.0), "Fy_N", "but for an offset of 7.000"),
+        (swapped, "100 of 100 rows", "outside of the voltages that the model was trained on"),
+    ] {
+        dir.recording("r.csv", &recording);
+        let words = [target, words];
+        let warned = |list: &Value| list.list().iter().any(|one| words.iter().all(|word| one.words().contains(word)));
+        let report = evaluate(&dir, "r.csv", &[]);
+        assert!(warned(&report["warnings"]), "{words:?}: {}", report["warnings"]);
+        // The same of what a model in the making is validated on.
+        let train = ["train", "train.csv", "--target", "force", "--validate", "r.csv", "--out", "n.json", "--json"];
+        let report = dir.lunula(&train).expect(0).json();
+        assert!(warned(&report["warnings"]), "{words:?}: {}", report["warnings"]);
+    }
+    let pulls = base.map("Fz_N", |_, v| 10.0 + v);
+    dir.recording("r.csv", &pulls);
+    dir.lunula(&["train", "r.csv", "--target", "force", "--out", "n.json"]).expect(0).says("as if the finger pulled");
+}
+
+#[test]
 fn each_recording_has_its_own_errors() {
     let dir = trained();
     for (name, error, rows) in [("a.csv", 0.5, 300..340), ("b.csv", -0.25, 340..400)] {

@@ -19,6 +19,7 @@
 //! two resets.
 
 mod ambient;
+pub(crate) mod forces;
 mod foreseen;
 mod formats;
 mod lines;

@@ -16,6 +16,7 @@ use crate::files::{Places, beside};
 use crate::job::{Report, Watch};
 use crate::live::error::LiveError;
 use crate::live::options::SessionFiles;
+use crate::predictor::extrapolated;
 use crate::stages::Stages;
 
 /// The report beside a recording.
@@ -246,12 +247,6 @@ fn losses(report: &SessionReport) -> Vec<String> {
     if report.lost_by_readers > 0 {
         warnings.push(format!("readers lost {} rows: they were too slow", report.lost_by_readers));
     }
-    if report.rows_outside * 20 > report.answered {
-        warnings.push(format!(
-            "{} of {} rows lie outside of the voltages that the model was trained on; their predictions are \
-             extrapolated",
-            report.rows_outside, report.answered
-        ));
-    }
+    warnings.extend(extrapolated(report.rows_outside, report.answered));
     warnings
 }

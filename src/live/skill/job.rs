@@ -148,14 +148,9 @@ fn analysed(
     let (mut trials, mut drawn, mut warnings) = (Vec::new(), Vec::new(), Vec::new());
     for trial in &read.trials {
         let (figures, touched) = analysis::figures(name, trial, reference, options);
-        for (finger, contacts) in trial.fingers.iter().zip(&touched) {
-            if contacts.is_empty() && finger.pull_n >= options.touch_n {
-                warnings.push(format!(
-                    "{name}: trial {}: {} never presses, and pulls with up to {:.3} N: pressing has to be a negative \
-                     Fz_N",
-                    trial.trial, finger.name, finger.pull_n
-                ));
-            }
+        for finger in &trial.fingers {
+            let doubts = finger.doubts.iter();
+            warnings.extend(doubts.map(|doubt| format!("{name}: trial {}: {}: {doubt}", trial.trial, finger.name)));
         }
         if draw && drawn.len() < MOST_DRAWN {
             drawn.push(Drawn::of(trial, &touched));

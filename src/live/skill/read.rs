@@ -3,8 +3,9 @@
 use lunula_live::skill::Force;
 use lunula_live::spread::Spread;
 
-use super::rows::{self, Finger, Gate, Rows};
+use super::rows::{self, FORCE, Finger, Gate, Rows};
 use super::{SkillError, SkillRecording};
+use crate::log::forces;
 
 /// More trials of a recording are something else: a column was mistaken.
 const MOST_TRIALS: usize = 10_000;
@@ -25,8 +26,8 @@ pub(super) struct Trial {
 pub(super) struct FingerTrial {
     pub(super) name: String,
     pub(super) force: Force,
-    /// The strongest pull, newtons: a positive Fz_N.
-    pub(super) pull_n: f64,
+    /// What makes it doubtful that these are a finger's forces.
+    pub(super) doubts: Vec<String>,
     /// Each angle in rows in bending: name, mean and SD over rows, and its ends.
     pub(super) angles: Vec<(String, Spread, [f64; 2])>,
 }
@@ -137,7 +138,10 @@ fn of_finger(rows: &Rows, finger: &Finger, own: &[usize]) -> FingerTrial {
     };
     FingerTrial {
         name: finger.name.clone(),
-        pull_n: force_n.iter().filter(|force_n| force_n.is_finite()).map(|force_n| -force_n).fold(0.0, f64::max),
+        doubts: forces::doubts(std::iter::once((
+            FORCE,
+            &force_n.iter().map(|force_n| -force_n).collect::<Vec<_>>()[..],
+        ))),
         angles: finger.angles.iter().filter_map(angle).collect(),
         force: Force { time_s: own.iter().map(|row| rows.time_s[*row]).collect(), force_n, lifted },
     }

@@ -9,7 +9,7 @@ use crate::log::{Columns, Log, LogError};
 use crate::table::{Table, TableError, column_names};
 
 const TIME: &str = "time_s";
-const FORCE: &str = "Fz_N";
+pub(super) const FORCE: &str = "Fz_N";
 const CONTACT: &str = "contact";
 /// Of a session of several fingers: whose a row is.
 const FINGER: &str = "finger";

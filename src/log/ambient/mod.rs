@@ -19,7 +19,7 @@ mod rails;
 mod tests;
 mod unlit;
 
-use super::{Channel, Log};
+use super::{Channel, Log, forces};
 use crate::words::Words;
 pub(crate) use preceding::{Preceding, RULE as PRECEDING_RULE};
 pub(crate) use rails::piles;
@@ -161,7 +161,8 @@ pub fn samples(log: &Log, options: &AmbientOptions) -> Result<Samples, AmbientEr
         let values = lit.iter().map(|&row| channel.values[row]).collect();
         Channel { name: channel.name.clone(), values }
     });
-    let forces = forces.collect();
+    let forces: Vec<Channel> = forces.collect();
+    found.warnings.extend(forces::doubts(forces.iter().map(|force| (force.name.as_str(), &force.values[..]))));
     let faults = found.faults.iter().map(|faults| faults.words(photodiodes.len())).collect();
     Ok(Samples { time_s, photodiodes, forces, faults, warnings: found.warnings, notes: found.notes })
 }

@@ -94,7 +94,8 @@ impl Unlit {
 
     /// How much light was taken away and what it costs, for a note on the channels' shares.
     pub(super) fn note(&self, shares: &[Share]) -> Option<String> {
-        let known = || shares.iter().filter(|share| share.ambient.is_finite());
+        // Of a channel that shows nothing, there is no share.
+        let known = || shares.iter().filter(|share| share.ambient.is_finite() && share.rough.is_finite());
         let least = known().map(|share| share.ambient).reduce(f64::min)?;
         let most = known().map(|share| share.ambient).reduce(f64::max)?;
         let rough = known().map(|share| share.rough).fold(0.0, f64::max);

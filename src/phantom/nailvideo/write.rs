@@ -12,10 +12,11 @@ use crate::job::Watch;
 use crate::phantom::log::write_rows;
 use crate::phantom::photos::{annotation, write_npy};
 use crate::phantom::scene::place::{Error, refused, staged};
+use crate::phantom::scene::reel::draw_and_encode;
 use crate::phantom::sensor::disc_samples;
 use crate::phantom::video::{Siting, TICKS_PER_S};
 use crate::table::{Column, TableWriter, Value};
-use crate::video::{Encoder, Encoding, Matrix};
+use crate::video::{Encoder, Encoding, Matrix, Picture};
 
 /// The file that says that a folder was written here.
 const RECORD: &str = "truth/nailvideo.json";
@@ -113,15 +114,8 @@ fn encode(scene: &Scene, path: &Path, watch: &Watch<'_>) -> Result<(), Error> {
         ..usual
     };
     let mut encoder = Encoder::create(path, &encoding)?;
-    let frames: Vec<usize> = (0..scene.frames()).collect();
-    for batch in frames.chunks(2 * rayon::current_num_threads()) {
-        let drawn: Vec<_> = batch.par_iter().map(|&frame| scene.picture(frame)).collect();
-        for (picture, &frame) in drawn.iter().zip(batch) {
-            encoder.push(picture, scene.ticks(frame))?;
-        }
-        (watch.tick)(batch[batch.len() - 1] as u64 + 1, Some(frames.len() as u64));
-        watch.go_on()?;
-    }
+    let encode = |frame: usize, picture: Picture| encoder.push(&picture, scene.ticks(frame));
+    draw_and_encode(scene.frames(), |frame| scene.picture(frame), encode, watch)?;
     Ok(encoder.finish()?)
 }
 

@@ -4,3 +4,4 @@ pub(in crate::phantom) mod faults;
 pub(in crate::phantom) mod lens;
 pub(in crate::phantom) mod place;
 pub(in crate::phantom) mod recording;
+pub(in crate::phantom) mod reel;

@@ -12,8 +12,9 @@ use super::{FrameTruth, MarkerStatus, Scene, Siting, VideoOptions};
 use crate::files::Staging;
 use crate::job::Watch;
 use crate::phantom::scene::place::{Error, refused, staged};
+use crate::phantom::scene::reel::draw_and_encode;
 use crate::table::{Column, TableWriter, Value};
-use crate::video::{Encoder, Encoding, Picture, VideoError};
+use crate::video::{Encoder, Encoding, Picture};
 
 /// The file that says that a folder was written here.
 const RECORD: &str = "truth/scene.json";
@@ -110,34 +111,18 @@ fn encode(scene: &Scene, path: &Path, watch: &Watch<'_>, stages: &mut Stages) ->
         ..Encoding::new(options.format())
     };
     let mut encoder = Encoder::create(path, &encoding)?;
-    let frames: Vec<usize> = (0..scene.frames()).collect();
-    let draw = |batch: &[usize]| -> Vec<(Picture, f64)> {
-        let one = |&frame: &usize| {
-            let start = Instant::now();
-            (scene.picture(frame), start.elapsed().as_secs_f64())
-        };
-        batch.par_iter().map(one).collect()
-    };
-    let mut batches = frames.chunks(rayon::current_num_threads());
-    let mut drawn = batches.next().map(draw).unwrap_or_default();
-    let mut done = 0;
-    while !drawn.is_empty() {
-        let next = batches.next();
+    let draw = |frame: usize| {
         let start = Instant::now();
-        let push = || -> Result<f64, VideoError> {
-            for (k, (picture, _)) in drawn.iter().enumerate() {
-                encoder.push(picture, scene.ticks[done + k])?;
-            }
-            Ok(start.elapsed().as_secs_f64())
-        };
-        let (pushed, following) = rayon::join(push, || next.map(draw).unwrap_or_default());
-        stages.encode_s += pushed?;
-        stages.draw_s += drawn.iter().map(|(_, seconds)| seconds).sum::<f64>();
-        done += drawn.len();
-        (watch.tick)(done as u64, Some(frames.len() as u64));
-        watch.go_on()?;
-        drawn = following;
-    }
+        (scene.picture(frame), start.elapsed().as_secs_f64())
+    };
+    let encode = |frame: usize, (picture, draw_s): (Picture, f64)| {
+        let start = Instant::now();
+        encoder.push(&picture, scene.ticks[frame])?;
+        stages.encode_s += start.elapsed().as_secs_f64();
+        stages.draw_s += draw_s;
+        Ok(())
+    };
+    draw_and_encode(scene.frames(), draw, encode, watch)?;
     let start = Instant::now();
     encoder.finish()?;
     stages.encode_s += start.elapsed().as_secs_f64();

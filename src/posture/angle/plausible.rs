@@ -1,15 +1,13 @@
 //! Whether a finger can have the angles that a video gave.
 //!
 //! In: each frame's angles; out: how often they were out of a joint's range, and a warning with its likely cause.
-//! Nothing is
-//! changed or left out: a reversed `flexion` or a mirrored video negates every angle and looks well otherwise.
+//! Nothing is changed or left out: a reversed `flexion` or a mirrored video negates every angle and looks well
+//! otherwise.
 //!
 //! Ranges are the norms of the American Academy of Orthopaedic Surgeons (Joint Motion: Method of Measuring and
-//! Recording,
-//! 1965) for the fingers: MP -45 to 90 degrees, PIP 0 to 100, DIP 0 to 90, wider by a margin (assumed) for fingers more
-//! supple than most, for markers that lie beside the bone and, at the DIP, for a fingertip bent back while it
-//! presses. Joints of
-//! other names may be any finger's, thumb's or wrist's: they are only held to half a turn.
+//! Recording, 1965) for the fingers: MP -45 to 90 degrees, PIP 0 to 100, DIP 0 to 90, wider by a margin (assumed) for
+//! fingers more supple than most, for markers that lie beside the bone and, at the DIP, for a fingertip bent back while
+//! it presses. Joints of other names may be any finger's, thumb's or wrist's: they are only held to half a turn.
 
 use super::joints::Angle;
 use crate::flexion::Flexion;

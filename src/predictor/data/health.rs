@@ -38,8 +38,8 @@ pub(super) fn warnings(source: &Source, keep_faults: bool) -> Vec<String> {
     warnings
 }
 
-/// A number without the hundreds of zeros of one near 1e-300.
+/// A number without the hundreds of zeros of one near 1e-300, or the sign of one that is 0.
 fn short(value: f64) -> String {
-    let text = format!("{value:?}");
+    let text = format!("{:?}", value + 0.0);
     text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
 }

@@ -12,6 +12,7 @@ use crate::log::ambient_step_of;
 use crate::predictor::data::{Inputs, RowOptions, read_inputs};
 use crate::predictor::error::PredictorError;
 use crate::predictor::jobs::answer::{Answering, contact_word, interval_cells};
+use crate::predictor::merit::doubts::extrapolated;
 use crate::predictor::open_models;
 use crate::stages::{Stages, Step, left_out};
 use crate::table::{Column, TableFormat, TableWriter, Value};
@@ -124,7 +125,7 @@ pub fn predict(
         table.finish()
     })?;
     places.commit()?;
-    warnings.extend(extrapolated(&answering, counts));
+    warnings.extend(extrapolated(answering.outside(), counts.rows));
     let ambient = ambient_step_of([data], &options.rows.log);
     let left_out = left_out(predict_plan(models.len(), ambient, options));
     let figures = figures(data, Some(out), &answering, counts);
@@ -148,17 +149,6 @@ pub fn predict_plan(models: usize, ambient: Step, options: &PredictOptions) -> V
         Step::new("gate", gated, why.to_owned()),
         Step::new("intervals", options.intervals, intervals.to_owned()),
     ]
-}
-
-/// What to say where more than a twentieth of the rows are extrapolated.
-fn extrapolated(answering: &Answering, counts: Counts) -> Option<String> {
-    let (outside, rows) = (answering.outside(), counts.rows);
-    (outside * 20 > rows).then(|| {
-        format!(
-            "{outside} of {rows} rows lie outside of the voltages that the model was trained on; their \
-                 predictions are extrapolated"
-        )
-    })
 }
 
 /// Answers, their SDs (empty where no model gives any), contacts.

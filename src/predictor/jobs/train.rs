@@ -18,6 +18,7 @@ use crate::job::{Report, Watch};
 use crate::predictor::data::{DataFile, FileRows, Read, RowOptions, Wanted, read_files};
 use crate::predictor::error::PredictorError;
 use crate::predictor::jobs::learning;
+use crate::predictor::merit::doubts::doubts;
 use crate::predictor::merit::figures::{ByTarget, Merit, merit_without_cone};
 use crate::predictor::merit::table::{MeritRows, merit_table};
 use crate::stages::{Stages, Step, left_out};
@@ -306,6 +307,7 @@ fn intervals(
         crate::predictor::jobs::evaluate::beyond_a_number(&predicted, "the model")
             .unwrap_or_else(|why| Some(why.to_string())),
     );
+    warnings.extend(doubts(predictor, data, &seen, &predicted));
     let found = calibrate((&predicted - seen.y()).view(), level);
     Ok(found.map_err(|why| warnings.push(format!("no prediction intervals: {why}"))).ok())
 }

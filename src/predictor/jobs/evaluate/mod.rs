@@ -22,6 +22,7 @@ use ndarray::{Array2, Axis};
 use crate::job::{Report, Watch};
 use crate::predictor::data::{DataFile, RowOptions, Wanted, read_files};
 use crate::predictor::error::PredictorError;
+use crate::predictor::merit::doubts::doubts;
 use crate::predictor::merit::figures::{ByTarget, Merit, merit_without_cone};
 use crate::predictor::options::choices::LEVEL;
 use crate::predictor::outputs::{FolderOutputs, end};
@@ -91,6 +92,7 @@ pub fn evaluate(
     warnings.extend(seen_in_training(&predictor, &read.data));
     let (seen, values) = stages.time("predict", || predictor.predict(&read.data))?;
     warnings.extend(beyond_a_number(&values, "the model")?);
+    warnings.extend(doubts(&predictor, &read.data, &seen, &values));
     let half_width = predictor.intervals().map(|intervals| (intervals.half_width.clone(), intervals.level));
     let title = options.title.clone().unwrap_or_else(|| model.display().to_string());
     let shown = Predicted { title, data: seen.into_owned(), values, half_width };

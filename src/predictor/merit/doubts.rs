@@ -1,0 +1,111 @@
+//! What makes a model's answers to a recording doubtful: that they are no better than the mean of what was measured,
+//! and what they look like then; and, of answers that nothing was measured for, voltages that it was not trained on.
+
+use std::collections::BTreeMap;
+
+use lunula_predictor::{Dataset, Predictor};
+use ndarray::{Array2, ArrayView1};
+
+/// The share of rows outside of what was trained on from which it is said (assumed).
+const OUTSIDE: f64 = 0.05;
+/// Of fewer rows, and of a target that varies by less of its own square (rounding), nothing is said.
+const ROWS: usize = 10;
+const CONSTANT: f64 = 1e-24;
+/// Answers follow what was measured where they share so much of its variance (assumed) ...
+const FOLLOWS: f64 = 0.8;
+/// ... in another unit where they are so many times as large, or as small (assumed).
+const OTHER_UNIT: f64 = 3.0;
+
+/// What to say of answers to a recording: `data` are its rows, `seen` those with lags that were answered by `values`.
+pub(in crate::predictor) fn doubts(
+    predictor: &Predictor,
+    data: &Dataset,
+    seen: &Dataset,
+    values: &Array2<f64>,
+) -> Vec<String> {
+    let targets = seen.targets().iter().enumerate();
+    let astray = targets.filter_map(|(k, target)| Some((target, astray(seen.y().column(k), values.column(k))?)));
+    // Targets that go astray alike are one warning.
+    let mut alike: BTreeMap<String, Vec<&str>> = BTreeMap::new();
+    astray.for_each(|(target, looks)| alike.entry(looks).or_default().push(target));
+    let mut doubts: Vec<String> =
+        alike.iter().map(|(looks, targets)| format!("{}: {looks}", targets.join(", "))).collect();
+    if !doubts.is_empty() {
+        let outside = data.x().outer_iter().filter(|row| predictor.is_outside(&row.to_vec())).count();
+        doubts.extend(extrapolated(outside as u64, data.rows() as u64));
+    }
+    doubts
+}
+
+/// What to say where more than a twentieth of the rows are extrapolated.
+pub(crate) fn extrapolated(outside: u64, rows: u64) -> Option<String> {
+    (outside as f64 > OUTSIDE * rows as f64).then(|| {
+        format!(
+            "{outside} of {rows} rows lie outside of the voltages that the model was trained on; their predictions \
+             are extrapolated"
+        )
+    })
+}
+
+/// What to say of a target that is predicted no better than by its mean, or in another unit.
+fn astray(measured: ArrayView1<'_, f64>, predicted: ArrayView1<'_, f64>) -> Option<String> {
+    let pairs = measured.iter().copied().zip(predicted.iter().copied());
+    let pairs: Vec<(f64, f64)> = pairs.filter(|(m, p)| m.is_finite() && p.is_finite()).collect();
+    let count = pairs.len() as f64;
+    let total = |of: &dyn Fn(f64, f64) -> f64| pairs.iter().map(|pair| of(pair.0, pair.1)).sum::<f64>();
+    let [m, p] = [total(&|m, _| m) / count, total(&|_, p| p) / count];
+    let sum = |of: fn(f64, f64) -> f64| total(&|measured, predicted| of(measured - m, predicted - p));
+    let [own, other, both] = [sum(|m, _| m * m), sum(|_, p| p * p), sum(|m, p| m * p)];
+    let errors = total(&|m, p| (m - p).powi(2));
+    if pairs.len() < ROWS || own <= CONSTANT * count * m * m || !errors.is_finite() {
+        return None;
+    }
+    let follows = other > 0.0 && both * both >= FOLLOWS * own * other;
+    let times = both / other;
+    if follows && !(1.0 / OTHER_UNIT..=OTHER_UNIT).contains(&times.abs()) {
+        let unit = "is it, or are the voltages, in another unit?";
+        return Some(format!("what was measured is {times:.3} times what is predicted: {unit}"));
+    }
+    let looks = match (follows, both > 0.0) {
+        _ if errors < own => return None,
+        (true, true) => {
+            format!("it is right but for an offset of {:.3}: zero the transducer, or train on this session too", m - p)
+        }
+        (true, false) => "it is right but for the sign: negate what was measured (forces are those of the finger on \
+                          the surface)"
+            .to_owned(),
+        (false, _) => "photodiodes in another order, another sensor or person, or rows of other times?".to_owned(),
+    };
+    Some(format!("predicted no better than by the mean of what was measured; {looks}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use ndarray::Array1;
+
+    use super::*;
+
+    #[test]
+    fn what_goes_astray_says_what_it_looks_like() {
+        let said = |of: &dyn Fn(f64) -> f64| {
+            let force: Array1<f64> = (0..300).map(|k| -3.0 + 2.0 * (0.1 * f64::from(k)).sin()).collect();
+            astray(force.view(), force.mapv(of).view()).unwrap_or_default()
+        };
+        assert_eq!(said(&|force| force), "");
+        assert_eq!(said(&|force| 0.8 * force - 0.5), "");
+        assert!(said(&|force| -force).contains("but for the sign"), "{}", said(&|force| -force));
+        let grams = said(&|force| 101.97 * force);
+        assert!(grams.contains("measured is 0.010 times what is predicted"), "{grams}");
+        assert!(said(&|force| -101.97 * force).contains("is -0.010 times"));
+        let offset = said(&|force| force + 4.0);
+        assert!(offset.contains("an offset of -4.000"), "{offset}");
+        assert!(said(&|force| 10.0 * force.powi(2) % 7.0).contains("in another order"));
+        // The mean itself is no better than the mean.
+        assert!(said(&|_| -3.0).contains("no better than by the mean"));
+        assert_eq!(said(&|_| f64::NAN), "", "that there are no answers is said elsewhere");
+        // Of a target that does not change but for rounding, and of a few rows, there is nothing to tell.
+        let constant = Array1::from_elem(30, 0.1);
+        assert_eq!(astray(constant.view(), (&constant + 1.0).view()), None);
+        assert_eq!(astray(ndarray::arr1(&[1.0, 2.0]).view(), ndarray::arr1(&[2.0, 1.0]).view()), None);
+    }
+}
