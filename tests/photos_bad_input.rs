@@ -170,6 +170,14 @@ fn a_subject_twice_in_a_pose_counts_for_none() {
 }
 
 #[test]
+fn a_photograph_under_several_names_is_warned_of() {
+    let dir = good_set();
+    let answer = dir.lunula(&["photos", "set", "--out", "out"]).expect(0);
+    answer.says("warning: a.png, b.png, c.png: the same photograph, to the byte");
+    assert_eq!(used(&dir), ["a", "b", "c"], "which one it is nobody knows");
+}
+
+#[test]
 fn a_manifest_s_faults_are_named_by_line() {
     let dir = good_set();
     let rows = "a.png,a,p\nmissing.png,x,p\n,y,p\nb.png,b,p\nc.png,../up,p\nc.png,c,p\n";

@@ -12,6 +12,7 @@ use crate::figure::Page;
 use crate::files::{Staging, WriteError};
 use crate::job::{Report, Watch};
 use crate::photo::channels::{ChannelFigures, add_section};
+use crate::photo::copies::copies;
 use crate::photo::normalize::Normalization;
 use crate::photo::options::{Outputs, PhotosOptions, Results};
 use crate::photo::outline::SavedOutlines;
@@ -132,7 +133,7 @@ impl<'a> Findings<'a> {
     fn warnings(&self) -> Vec<String> {
         let without =
             self.without_maps.iter().map(|pose| format!("pose `{pose}`: no nail could be used, so it has no maps"));
-        self.mixed_poses().chain(self.few_bits()).chain(without).collect()
+        self.mixed_poses().chain(self.few_bits()).chain(without).chain(copies(&self.set.photos)).collect()
     }
 
     /// Grey values are comparable with a colour photograph's green channel only if a green filter was used.
