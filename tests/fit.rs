@@ -38,6 +38,8 @@ fn what_made_a_recording_is_found_again() {
         &format!("--loads ramps.csv {nail} --every 0.02 --rtol 1e-9 --with-loads --out r.csv --no-figures"),
     )
     .expect(0);
+    let twice = run(&dir, "fit", "r.csv ./r.csv --free k_C,b_V --out t.json --no-figures").expect(0);
+    twice.says("r.csv, ./r.csv: the same to the byte, and counted 2 times");
     let report = run(&dir, "fit", "r.csv --free k_C,b_V --out f.json --json").expect(0).json();
     let written: serde_json::Value = serde_json::from_slice(&std::fs::read(dir.path("f.json")).unwrap()).unwrap();
     assert_eq!(written["free"], report["free"]);

@@ -2,7 +2,7 @@
 
 use lunula::nail::Positions;
 
-use crate::util::{Dir, Json};
+use crate::util::{Dir, Json, repository};
 
 #[test]
 fn photographs_to_maps_to_a_layout() {
@@ -57,4 +57,12 @@ fn photodiodes_of_a_log_are_laid_out_as_they_are() {
     assert!((error("best", 8.0) - error("thesis", 8.0)).abs() <= 1e-12);
     assert!((error("best", 8.0) - error("all", 8.0)).abs() <= 1e-12);
     answer.says("no intervals");
+    // A copy is no second person, and a transducer's other sign is no note.
+    let text = std::fs::read_to_string(repository().join("fixtures/touch/log.csv")).expect("a log");
+    ["anna.csv", "copy.csv"].map(|name| dir.write(name, &text));
+    dir.write("up.csv", text.replace(",-", ","));
+    let answer = dir.lunula(&["layout", "anna.csv", "copy.csv", "up.csv", "--k", "1", "--out", "two"]).expect(0);
+    answer
+        .says("warning: anna.csv, copy.csv: the same to the byte, and counted 2 times")
+        .says("warning: up.csv: Fz_N goes from");
 }

@@ -173,7 +173,7 @@ fn a_subject_twice_in_a_pose_counts_for_none() {
 fn a_photograph_under_several_names_is_warned_of() {
     let dir = good_set();
     let answer = dir.lunula(&["photos", "set", "--out", "out"]).expect(0);
-    answer.says("warning: a.png, b.png, c.png: the same photograph, to the byte");
+    answer.says("warning: a.png, b.png, c.png: the same to the byte, and counted 3 times");
     assert_eq!(used(&dir), ["a", "b", "c"], "which one it is nobody knows");
 }
 

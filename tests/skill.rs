@@ -248,6 +248,10 @@ fn a_log_of_another_lab_is_read_and_a_wrong_sign_is_seen() {
     dir.write("up.csv", csv("time_s,Fz_N", &up));
     let answer = run(&dir, "up.csv --out u --json").expect(0);
     assert_eq!(answer.json()["trials"][0]["fingers"][0]["presses"], 0);
+    dir.write("again.csv", csv("time_s,Fz_N", &up));
+    run(&dir, "up.csv again.csv --out t")
+        .expect(0)
+        .says("up.csv, again.csv: the same to the byte, and counted 2 times");
     answer.says("up.csv: trial up: finger: Fz_N goes from 0.000 to 2.000 N, as if the finger pulled");
 }
 

@@ -7,7 +7,6 @@
 //! Each writes all of its results in one commit and returns its report.
 
 mod channels;
-mod copies;
 mod error;
 mod normalize;
 mod options;

@@ -13,6 +13,7 @@ use super::report::{
 use super::{FitInputs, FitOptions, FitOutputs, estimates, figure, fitted, noise};
 use crate::files::{Places, beside, pictures_beside};
 use crate::hemodynamics::{HemodynamicsError, named};
+use crate::input::copies;
 use crate::job::{Report, Watch};
 use crate::log::ambient_step_of;
 use crate::stages::{Stages, Step, left_out};
@@ -249,6 +250,7 @@ fn warnings(result: &FitResult, recordings: &[ReadRecording]) -> Vec<String> {
              record more"
         ));
     }
+    warnings.extend(copies(recordings.iter().map(|read| (read.path.display().to_string(), read.path.as_path()))));
     for read in recordings {
         warnings.extend(read.warnings.iter().map(|warning| format!("{}: {warning}", read.name)));
         for (name, trace) in read.photodiodes.iter().zip(&read.recording.photodiodes) {

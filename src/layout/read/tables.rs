@@ -15,8 +15,10 @@ use rayon::prelude::*;
 
 use super::given::{Given, LeftOutCandidates, Parts, PersonFigures, Target};
 use super::places::{Place, cell_of, cells, is_photodiode, photodiodes};
+use crate::input::copies;
 use crate::layout::error::LayoutError;
 use crate::layout::options::{LayoutInput, LayoutInputs, LayoutOptions};
+use crate::log::forces;
 use crate::table::Table;
 
 /// A candidate that more of a person's rows lack is left out (assumed).
@@ -31,6 +33,7 @@ struct Source {
     /// The person of each row.
     subject: Vec<String>,
     notes: Vec<String>,
+    warnings: Vec<String>,
 }
 
 /// The rows of a person.
@@ -73,6 +76,8 @@ pub(super) fn read(inputs: &LayoutInputs, options: &LayoutOptions) -> Result<Giv
     let (kept, left_out) = choose(&all, &people, options)?;
     LayoutProblem::fits(kept.len(), people.len())?;
     let places: Vec<Place> = kept.iter().map(|&k| all[k].clone()).collect();
+    let files = inputs.data.iter().map(|input| (input.path.display().to_string(), input.path.as_path()));
+    let warnings = copies(files).into_iter().chain(sources.into_iter().flat_map(|source| source.warnings)).collect();
     let mut given = Given {
         criterion: Criterion::Error,
         places,
@@ -84,7 +89,7 @@ pub(super) fn read(inputs: &LayoutInputs, options: &LayoutOptions) -> Result<Giv
         rows: usize::MAX,
         contrast: None,
         notes,
-        warnings: Vec::new(),
+        warnings,
     };
     let largest = options.k.0.last().copied().unwrap_or(1);
     for (person, rows) in &people {
@@ -165,24 +170,31 @@ impl Source {
                 }
             })?;
         }
-        Ok(Self { names: table.names().to_vec(), columns, subject, notes: Vec::new() })
+        let doubts =
+            forces::doubts(columns.iter().map(|(name, values): (&String, &Vec<f64>)| (&name[..], &values[..])));
+        let warnings = doubts.iter().map(|doubt| input.placed(doubt)).collect();
+        Ok(Self { names: table.names().to_vec(), columns, subject, notes: Vec::new(), warnings })
     }
 
     fn of_log(input: &LayoutInput, options: &LayoutOptions) -> Result<Self, LayoutError> {
         let lit = options.log.lit_rows(&input.path)?;
-        let placed = |note: &String| format!("{}: {note}", input.path.display());
-        let notes = lit.notes.iter().chain(&lit.samples.notes).chain(&lit.samples.warnings).map(placed).collect();
+        let notes = lit.notes.iter().chain(&lit.samples.notes).map(|note| input.placed(note)).collect();
+        let warnings = lit.samples.warnings.iter().map(|warning| input.placed(warning)).collect();
         let channels = lit.samples.photodiodes.into_iter().chain(lit.samples.forces);
         let columns: Vec<_> = channels.map(|channel| (channel.name, channel.values)).collect();
         let names = columns.iter().map(|(name, _)| name.clone()).collect();
         let subject = vec![input.person(); lit.samples.time_s.len()];
-        Ok(Self { names, columns: columns.into_iter().collect(), subject, notes })
+        Ok(Self { names, columns: columns.into_iter().collect(), subject, notes, warnings })
     }
 }
 
 impl LayoutInput {
     fn person(&self) -> String {
         self.subject.clone().unwrap_or_else(|| self.name.clone())
+    }
+
+    fn placed(&self, what: &str) -> String {
+        format!("{}: {what}", self.path.display())
     }
 }
 

@@ -14,6 +14,7 @@ use super::report::{SkillFigures, SkillReport, TrialFigures};
 use super::table::{self, TABLE};
 use super::{SkillError, summary};
 use crate::files::Places;
+use crate::input::copies;
 use crate::job::{Report, Watch};
 use crate::predictor::FolderOutputs;
 use crate::stages::{Stages, Step, left_out};
@@ -187,7 +188,8 @@ fn distinct(done: &[(&SkillRecording, Done)]) -> Result<(), SkillError> {
 /// Notes and warnings on all recordings.
 fn said(done: &[(&SkillRecording, Done)], reference: Option<&Reference>) -> (Vec<String>, Vec<String>) {
     let mut notes: Vec<String> = done.iter().flat_map(|(_, one)| one.notes.iter().cloned()).collect();
-    let mut warnings: Vec<String> = done.iter().flat_map(|(_, one)| one.warnings.iter().cloned()).collect();
+    let mut warnings = copies(done.iter().map(|(recording, _)| (recording.name.clone(), recording.path.as_path())));
+    warnings.extend(done.iter().flat_map(|(_, one)| one.warnings.iter().cloned()));
     if done.iter().any(|(_, one)| one.gated) {
         notes.push(
             "column `contact`: forces are those of rows in touch, angles those of rows in bending; they are never \

@@ -2,7 +2,7 @@
 //!
 //! Warnings are what a person may have to act on; notes are what is good to know, one line for each kind.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 use serde::Serialize;
@@ -10,9 +10,9 @@ use serde_json::{Value, json};
 
 use crate::figure::Page;
 use crate::files::{Staging, WriteError};
+use crate::input::copies;
 use crate::job::{Report, Watch};
 use crate::photo::channels::{ChannelFigures, add_section};
-use crate::photo::copies::copies;
 use crate::photo::normalize::Normalization;
 use crate::photo::options::{Outputs, PhotosOptions, Results};
 use crate::photo::outline::SavedOutlines;
@@ -133,7 +133,11 @@ impl<'a> Findings<'a> {
     fn warnings(&self) -> Vec<String> {
         let without =
             self.without_maps.iter().map(|pose| format!("pose `{pose}`: no nail could be used, so it has no maps"));
-        self.mixed_poses().chain(self.few_bits()).chain(without).chain(copies(&self.set.photos)).collect()
+        // A manifest may name a file several times, for several nails.
+        let mut seen = BTreeSet::new();
+        let files = self.set.photos.iter().filter(|photo| seen.insert(&photo.path));
+        let copies = copies(files.map(|photo| (photo.file.clone(), photo.path.as_path())));
+        self.mixed_poses().chain(self.few_bits()).chain(without).chain(copies).collect()
     }
 
     /// Grey values are comparable with a colour photograph's green channel only if a green filter was used.

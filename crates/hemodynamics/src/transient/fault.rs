@@ -26,7 +26,8 @@ pub enum SolveFault {
     #[error("the load {load} is {value} at {time_s} s; it has to be a finite pressure at every time of the run")]
     Load { load: &'static str, time_s: f64, value: f64 },
     #[error(
-        "{site} closes at {time_s} s; the model ends there, unless walls are given contact (collapse policy `contact`)"
+        "{site} closes at {time_s} s; the model ends there, unless walls are given contact (collapse policy \
+         `contact`, --collapse contact)"
     )]
     Collapsed {
         site: Site,

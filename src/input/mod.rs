@@ -8,6 +8,8 @@
 //! What the system refuses comes in words: what is not there with the name that it may have meant. Errors keep their
 //! kind; whoever shows them puts the path before.
 
+mod copies;
+
 use std::collections::HashMap;
 use std::fs::{self, File};
 use std::io::{self, Cursor, ErrorKind, Read};
@@ -19,6 +21,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use crate::words::nearest;
+pub(crate) use copies::copies;
 
 /// The most that a pipe may bring (assumed: two hours of eight photodiodes at 1 kHz are 0.6 GB of CSV).
 pub const PIPE_BYTES: u64 = 1 << 30;
