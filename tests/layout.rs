@@ -59,7 +59,8 @@ fn photodiodes_of_a_log_are_laid_out_as_they_are() {
     answer.says("no intervals");
     // A copy is no second person, and a transducer's other sign is no note.
     let text = std::fs::read_to_string(repository().join("fixtures/touch/log.csv")).expect("a log");
-    ["anna.csv", "copy.csv"].map(|name| dir.write(name, &text));
+    dir.write("anna.csv", &text);
+    dir.write("copy.csv", &text);
     dir.write("up.csv", text.replace(",-", ","));
     let answer = dir.lunula(&["layout", "anna.csv", "copy.csv", "up.csv", "--k", "1", "--out", "two"]).expect(0);
     answer

@@ -22,10 +22,10 @@ mod source;
 mod tests;
 
 use clap::Args;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-use lunula_predictor::{Dataset, DatasetFault, Recording};
+use lunula_predictor::{Dataset, DatasetFault, Recording, recording_hashes};
 use ndarray::Array2;
 use rayon::prelude::*;
 
@@ -204,7 +204,7 @@ pub fn read_files(data: &[DataFile], wanted: &Wanted) -> Result<Read, DataError>
         source::without_other_photodiodes(&mut sources);
     }
     agree(&sources)?;
-    let mut warnings = twice(data);
+    let mut warnings = Vec::new();
     let inputs = sources[0].inputs.clone();
     let mut files = Vec::with_capacity(sources.len());
     let mut recordings: Vec<Recording> = Vec::new();
@@ -243,6 +243,7 @@ pub fn read_files(data: &[DataFile], wanted: &Wanted) -> Result<Read, DataError>
     };
     let make = if wanted.cells { Dataset::with_hidden } else { Dataset::new };
     let data = make(inputs, wanted.targets.clone(), time_s, shaped(x), shaped(y), recordings)?;
+    warnings.extend(twice(&data));
     Ok(Read { data, files, failed, warnings })
 }
 
@@ -268,12 +269,24 @@ pub fn read_inputs(path: &Path, inputs: &[String], rows: &RowOptions) -> Result<
     Ok(Inputs { time_s, x, faulty, recordings, notes, warnings })
 }
 
-/// Files that are given more than once.
-fn twice(data: &[DataFile]) -> Vec<String> {
-    let real: Vec<PathBuf> =
-        data.iter().map(|file| std::fs::canonicalize(&file.path).unwrap_or_else(|_| file.path.clone())).collect();
-    let again = (0..data.len()).filter(|&k| real[..k].contains(&real[k]));
-    again.map(|k| format!("{}: is given twice; its rows count twice", data[k].path.display())).collect()
+/// Recordings that are there twice, under whatever names.
+fn twice(data: &Dataset) -> Vec<String> {
+    // Most differ by the number of their rows, or by the first.
+    let first_row = |one: &Recording| data.x().row(one.rows.start).iter().map(|value| value.to_bits()).collect();
+    let mut seen: HashSet<(usize, Vec<u64>)> = HashSet::new();
+    if data.recordings().iter().all(|one| seen.insert((one.rows.len(), first_row(one)))) {
+        return Vec::new();
+    }
+    let mut names: HashMap<String, &str> = HashMap::new();
+    let mut said = Vec::new();
+    for (one, hash) in data.recordings().iter().zip(recording_hashes(data)) {
+        match names.get(&hash) {
+            Some(&name) if name == one.name => said.push(format!("{name}: is given twice; its rows count twice")),
+            Some(name) => said.push(format!("{} holds the rows of {name}; they count twice", one.name)),
+            None => drop(names.insert(hash, &one.name)),
+        }
+    }
+    said
 }
 
 /// Why no row is left.

@@ -161,7 +161,6 @@ pub fn train(
     let training = stages.time("score", || merit(&predictor, &read.data))?;
     let mut warnings = read.warnings.clone();
     warnings.extend(validate.iter().chain(&stop_on).flat_map(|read| read.warnings.clone()));
-    warnings.extend(twice(&predictor));
     warnings.extend(fit_warnings(&predictor.training().report).iter().cloned());
     if let Some(held) = &validate {
         warnings.extend(crate::predictor::seen_in_training(&predictor, &held.data));
@@ -310,17 +309,6 @@ fn intervals(
     warnings.extend(doubts(predictor, data, &seen, &predicted));
     let found = calibrate((&predicted - seen.y()).view(), level);
     Ok(found.map_err(|why| warnings.push(format!("no prediction intervals: {why}"))).ok())
-}
-
-/// Recordings that hold the same rows under several names.
-fn twice(predictor: &Predictor) -> Vec<String> {
-    let all = &predictor.training().recordings;
-    let before = |k: usize| all[..k].iter().find(|one| one.sha256 == all[k].sha256);
-    let again = (0..all.len()).filter_map(|k| Some((before(k)?, &all[k])));
-    again
-        .filter(|(one, two)| one.name != two.name)
-        .map(|(one, two)| format!("{} holds the rows of {}; they count twice", two.name, one.name))
-        .collect()
 }
 
 fn fit_warnings(report: &FitReport) -> &[String] {
