@@ -248,6 +248,9 @@ fn a_log_of_another_lab_is_read_and_a_wrong_sign_is_seen() {
     dir.write("up.csv", csv("time_s,Fz_N", &up));
     let answer = run(&dir, "up.csv --out u --json").expect(0);
     assert_eq!(answer.json()["trials"][0]["fingers"][0]["presses"], 0);
+    let slow: Vec<Vec<f64>> = rows(0.0, 4.0, &[&INDEX]).into_iter().map(|row| vec![1000.0 * row[0], row[1]]).collect();
+    dir.write("ms.csv", csv("time_s,Fz_N", &slow));
+    run(&dir, "ms.csv --out t").expect(0).says("ms.csv: rows are 10 s apart");
     dir.write("again.csv", csv("time_s,Fz_N", &up));
     run(&dir, "up.csv again.csv --out t")
         .expect(0)

@@ -19,7 +19,7 @@
 //! two resets.
 
 mod ambient;
-pub(crate) mod forces;
+pub(crate) mod doubts;
 mod foreseen;
 mod formats;
 mod lines;

@@ -9,7 +9,7 @@ use crate::hemodynamics::HemodynamicsError;
 use crate::hemodynamics::curve::Pressed;
 use crate::hemodynamics::given::{BLOOD, Columns, Knots, PRESSED, Rows, TIME, listed};
 use crate::job::one_of;
-use crate::log::LogReading;
+use crate::log::{LogReading, doubts};
 use crate::words::Words;
 
 /// A measured force instead of pressures: the finger's force on the surface, newtons, negative where it presses.
@@ -191,6 +191,8 @@ pub(super) fn read(path: &Path, columns: &RecordingColumns, units: usize) -> Res
         }
     };
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let of_table = times_s.as_deref().and_then(doubts::time).filter(|_| !rows.is_log());
+    let warnings = rows.warnings().iter().cloned().chain(of_table).collect();
     Ok(ReadRecording {
         path: path.to_owned(),
         recording: Recording { course, photodiodes: traces, subject: None },
@@ -200,7 +202,7 @@ pub(super) fn read(path: &Path, columns: &RecordingColumns, units: usize) -> Res
         pressed_pa,
         missing,
         faults,
-        warnings: rows.warnings().to_vec(),
+        warnings,
         notes: rows.notes(),
     })
 }

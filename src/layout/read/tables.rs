@@ -18,7 +18,7 @@ use super::places::{Place, cell_of, cells, is_photodiode, photodiodes};
 use crate::input::copies;
 use crate::layout::error::LayoutError;
 use crate::layout::options::{LayoutInput, LayoutInputs, LayoutOptions};
-use crate::log::forces;
+use crate::log::doubts;
 use crate::table::Table;
 
 /// A candidate that more of a person's rows lack is left out (assumed).
@@ -171,7 +171,7 @@ impl Source {
             })?;
         }
         let doubts =
-            forces::doubts(columns.iter().map(|(name, values): (&String, &Vec<f64>)| (&name[..], &values[..])));
+            doubts::forces(columns.iter().map(|(name, values): (&String, &Vec<f64>)| (&name[..], &values[..])));
         let warnings = doubts.iter().map(|doubt| input.placed(doubt)).collect();
         Ok(Self { names: table.names().to_vec(), columns, subject, notes: Vec::new(), warnings })
     }

@@ -16,6 +16,7 @@ use super::{SkillError, summary};
 use crate::files::Places;
 use crate::input::copies;
 use crate::job::{Report, Watch};
+use crate::log::doubts;
 use crate::predictor::FolderOutputs;
 use crate::stages::{Stages, Step, left_out};
 
@@ -147,6 +148,9 @@ fn analysed(
     let read = read(recording, &options.finger)?;
     let name = &recording.name;
     let (mut trials, mut drawn, mut warnings) = (Vec::new(), Vec::new(), Vec::new());
+    let first = read.trials.first().and_then(|trial| trial.fingers.first());
+    let time = first.and_then(|finger| doubts::time(&finger.force.time_s));
+    warnings.extend(time.map(|doubt| format!("{name}: {doubt}")));
     for trial in &read.trials {
         let (figures, touched) = analysis::figures(name, trial, reference, options);
         for finger in &trial.fingers {

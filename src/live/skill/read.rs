@@ -5,7 +5,7 @@ use lunula_live::spread::Spread;
 
 use super::rows::{self, FORCE, Finger, Gate, Rows};
 use super::{SkillError, SkillRecording};
-use crate::log::forces;
+use crate::log::doubts;
 
 /// More trials of a recording are something else: a column was mistaken.
 const MOST_TRIALS: usize = 10_000;
@@ -136,13 +136,12 @@ fn of_finger(rows: &Rows, finger: &Finger, own: &[usize]) -> FingerTrial {
         let ends = known.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], one| [low.min(one), high.max(one)]);
         Some((name.clone(), Spread::of(bent())?, ends))
     };
+    let fz_n: Vec<f64> = force_n.iter().map(|force_n| -force_n).collect();
+    let time_s: Vec<f64> = own.iter().map(|row| rows.time_s[*row]).collect();
     FingerTrial {
         name: finger.name.clone(),
-        doubts: forces::doubts(std::iter::once((
-            FORCE,
-            &force_n.iter().map(|force_n| -force_n).collect::<Vec<_>>()[..],
-        ))),
+        doubts: doubts::forces(std::iter::once((FORCE, &fz_n[..]))),
         angles: finger.angles.iter().filter_map(angle).collect(),
-        force: Force { time_s: own.iter().map(|row| rows.time_s[*row]).collect(), force_n, lifted },
+        force: Force { time_s, force_n, lifted },
     }
 }

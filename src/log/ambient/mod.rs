@@ -19,7 +19,7 @@ mod rails;
 mod tests;
 mod unlit;
 
-use super::{Channel, Log, forces};
+use super::{Channel, Log, doubts};
 use crate::words::Words;
 pub(crate) use preceding::{Preceding, RULE as PRECEDING_RULE};
 pub(crate) use rails::piles;
@@ -162,7 +162,9 @@ pub fn samples(log: &Log, options: &AmbientOptions) -> Result<Samples, AmbientEr
         Channel { name: channel.name.clone(), values }
     });
     let forces: Vec<Channel> = forces.collect();
-    found.warnings.extend(forces::doubts(forces.iter().map(|force| (force.name.as_str(), &force.values[..]))));
+    // Dates have their unit.
+    found.warnings.extend(doubts::time(&log.time_s).filter(|_| log.midnight_s.is_none()));
+    found.warnings.extend(doubts::forces(forces.iter().map(|force| (force.name.as_str(), &force.values[..]))));
     let faults = found.faults.iter().map(|faults| faults.words(photodiodes.len())).collect();
     Ok(Samples { time_s, photodiodes, forces, faults, warnings: found.warnings, notes: found.notes })
 }

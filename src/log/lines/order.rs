@@ -189,12 +189,6 @@ fn tell_repeats(raw: &mut Raw, rows: &[usize], time_s: &[f64], step_s: Option<f6
 
 fn tell_gaps(raw: &mut Raw, rows: &[usize], time_s: &[f64], step_s: Option<f64>) {
     let Some(step_s) = step_s else { return };
-    if step_s > 1.0 && raw.midnight_s.is_none() {
-        raw.notes.push(format!(
-            "rows are {} s apart, if the stamps are in seconds; --time-unit says what they are in",
-            short(step_s)
-        ));
-    }
     let step = |k: usize| time_s[k] - time_s[k - 1];
     let gaps: Vec<usize> = (1..time_s.len()).filter(|&k| step(k) > GAP_STEPS * step_s).collect();
     // The first of equals.
@@ -209,14 +203,14 @@ fn tell_gaps(raw: &mut Raw, rows: &[usize], time_s: &[f64], step_s: Option<f64>)
 }
 
 /// The usual step between different stamps, seconds.
-fn median_step_s(time_s: &[f64]) -> Option<f64> {
+pub(in crate::log) fn median_step_s(time_s: &[f64]) -> Option<f64> {
     let mut steps: Vec<f64> = time_s.windows(2).map(|pair| pair[1] - pair[0]).filter(|&step| step > 0.0).collect();
     let middle = steps.len() / 2;
     (!steps.is_empty()).then(|| *steps.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
 /// A number with three digits, for a message.
-fn short(number: f64) -> String {
+pub(in crate::log) fn short(number: f64) -> String {
     let decimals = (2.0 - number.abs().max(1e-9).log10().floor()).clamp(0.0, 9.0) as usize;
     let text = format!("{number:.decimals$}");
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::columns::{cell, cells, listed, missing, photodiodes};
 use super::{DataError, Wanted};
-use crate::log::{Channel, LitRows, Statuses, Verdict, forces};
+use crate::log::{Channel, LitRows, Statuses, Verdict, doubts};
 use crate::table::{Cell, Table, TableError};
 
 /// Columns that say where one recording ends and the next begins.
@@ -95,7 +95,7 @@ impl Source {
             source.read_status(|take| table.each_text("sensor_status", take))?;
         }
         let targets = wanted.targets.iter().zip(&source.y).map(|(name, values)| (name.as_str(), &values[..]));
-        let doubts = forces::doubts(targets);
+        let doubts = doubts::forces(targets);
         source.warnings.extend(doubts.iter().map(|doubt| format!("{}: {doubt}", path.display())));
         Ok(source)
     }

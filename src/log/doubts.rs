@@ -1,11 +1,16 @@
-//! Whether a finger can have pressed as a recording says.
+//! Whether a finger can have done what a recording says, when it says so.
 //!
-//! Warned of, and nothing is changed: a transducer reports the force of the surface on the finger as often as that of
+//! Warned of, and nothing is changed. Milliseconds that are called seconds make every duration a thousand times as
+//! long. A transducer reports the force of the surface on the finger as often as that of
 //! the finger on the surface, and in any unit. A model that learnt from such a recording fits it well, and ever after
 //! answers with the wrong sign or unit.
 
+use super::lines::order::{median_step_s, short};
+
 /// Below so many samples nothing is said.
 const SAMPLES: usize = 50;
+/// Rows of a sensor are no further apart, seconds (assumed).
+const APART_S: f64 = 1.0;
 /// Samples left out at either end: spikes (assumed).
 const SPIKES: f64 = 0.005;
 /// More than a finger presses, newtons (assumed; norms of the strength of pinches: Mathiowetz et al., Archives of
@@ -15,8 +20,18 @@ const MOST_N: f64 = 200.0;
 const OFFSET_N: f64 = 0.5;
 const PULLED: f64 = 2.0;
 
+/// What to say of a recording's times, which ascend.
+pub(crate) fn time(time_s: &[f64]) -> Option<String> {
+    let step_s = median_step_s(time_s).filter(|step_s| *step_s > APART_S && time_s.len() >= SAMPLES)?;
+    Some(format!(
+        "rows are {} s apart, if the stamps are in seconds; write them in seconds, or say with --time-unit what they \
+         are in",
+        short(step_s)
+    ))
+}
+
 /// What to say of a recording's columns, those that are forces.
-pub(crate) fn doubts<'a>(columns: impl Iterator<Item = (&'a str, &'a [f64])>) -> Vec<String> {
+pub(crate) fn forces<'a>(columns: impl Iterator<Item = (&'a str, &'a [f64])>) -> Vec<String> {
     let mut doubts = Vec::new();
     for (name, values) in columns.filter(|(name, _)| matches!(*name, "Fx_N" | "Fy_N" | "Fz_N")) {
         let mut known: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
@@ -49,12 +64,19 @@ mod tests {
     use super::*;
 
     #[test]
+    fn milliseconds_that_are_called_seconds_are_doubted() {
+        let every = |step_s: f64, count: usize| time(&(0..count).map(|k| step_s * k as f64).collect::<Vec<_>>());
+        assert!(every(10.0, 50).is_some_and(|said| said.starts_with("rows are 10 s apart")), "{:?}", every(10.0, 50));
+        assert_eq!([every(1.0, 400), every(10.0, 49), time(&[])], [None, None, None]);
+    }
+
+    #[test]
     fn a_sign_and_a_unit_that_no_finger_has_are_doubted_and_fingers_are_not() {
         // Presses of 5 N for half of the time.
         let press = |k: usize| if (k / 20).is_multiple_of(2) { 0.0 } else { -5.0 };
         let of = |name: &str, count: usize, value: &dyn Fn(usize) -> f64| {
             let values: Vec<f64> = (0..count).map(value).collect();
-            doubts(std::iter::once((name, &values[..])))
+            forces(std::iter::once((name, &values[..])))
         };
         let doubted = |name: &str, value: &dyn Fn(usize) -> f64| of(name, 400, value).join(" ");
         for fine in [&press as &dyn Fn(usize) -> f64, &|k| press(k) + 1.0, &|_| 0.1, &|k| 20.0 * press(k)] {
