@@ -79,7 +79,7 @@ pub enum ReadFault {
     #[error("cannot be decoded ({0}); export it with 8 or 16 bits, in grey or RGB, as PNG, TIFF, BMP or JPEG")]
     Unsupported(image::ImageError),
     /// The decoder's own complaint.
-    #[error("cannot be decoded ({0}); it may be damaged: copy or export it again")]
+    #[error("cannot be decoded ({}); it may be damaged: copy or export it again", .0.to_string().trim_end())]
     Decode(image::ImageError),
 }
 
