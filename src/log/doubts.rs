@@ -1,9 +1,9 @@
 //! Whether a finger can have done what a recording says, when it says so.
 //!
 //! Warned of, and nothing is changed. Milliseconds that are called seconds make every duration a thousand times as
-//! long. A transducer reports the force of the surface on the finger as often as that of
-//! the finger on the surface, and in any unit. A model that learnt from such a recording fits it well, and ever after
-//! answers with the wrong sign or unit.
+//! long. A transducer reports the force of the surface on the finger as often as that of the finger on the surface, and
+//! in any unit: a model that learnt from such a recording fits it well, and ever after answers with the wrong sign or
+//! unit.
 
 use super::lines::order::{median_step_s, short};
 

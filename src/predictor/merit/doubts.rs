@@ -1,8 +1,6 @@
 //! What makes a model's answers to a recording doubtful: that they are no better than the mean of what was measured,
 //! and what they look like then; and, of answers that nothing was measured for, voltages that it was not trained on.
 
-use std::collections::BTreeMap;
-
 use lunula_predictor::{Dataset, Predictor};
 use ndarray::{Array2, ArrayView1};
 
@@ -23,11 +21,15 @@ pub(in crate::predictor) fn doubts(
     seen: &Dataset,
     values: &Array2<f64>,
 ) -> Vec<String> {
-    let targets = seen.targets().iter().enumerate();
-    let astray = targets.filter_map(|(k, target)| Some((target, astray(seen.y().column(k), values.column(k))?)));
     // Targets that go astray alike are one warning.
-    let mut alike: BTreeMap<String, Vec<&str>> = BTreeMap::new();
-    astray.for_each(|(target, looks)| alike.entry(looks).or_default().push(target));
+    let mut alike: Vec<(String, Vec<&str>)> = Vec::new();
+    for (k, target) in seen.targets().iter().enumerate() {
+        let Some(looks) = astray(seen.y().column(k), values.column(k)) else { continue };
+        match alike.iter_mut().find(|(others, _)| *others == looks) {
+            Some((_, targets)) => targets.push(target),
+            None => alike.push((looks, vec![target])),
+        }
+    }
     let mut doubts: Vec<String> =
         alike.iter().map(|(looks, targets)| format!("{}: {looks}", targets.join(", "))).collect();
     if !doubts.is_empty() {
