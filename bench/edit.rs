@@ -67,7 +67,7 @@ fn phantoms(light: LightKind, [width, height]: [u32; 2], subjects: u32) -> (temp
     let mut truth = Truth::new();
     for photo in &set.photos {
         let (file, picture) = (photo.path.with_extension("json"), Photograph::read(&photo.path).expect("a picture"));
-        let drawn = read_annotated(&file, &picture, Drawn::Auto).expect("its outline");
+        let drawn = read_annotated(&file, &picture, Drawn::Auto).expect("its outline").nails;
         truth.insert(photo.file.clone(), drawn.into_iter().filter_map(|nail| nail.outline.ok()).collect());
         std::fs::remove_file(file).expect("it can be removed");
     }

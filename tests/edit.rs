@@ -172,7 +172,7 @@ fn an_outline_is_where_it_was_drawn_however_the_picture_is_stored() {
         let shown = desk.points();
         desk.keys(&["accept"]);
         let saved = || {
-            let nails = read_annotated(&dir.path("set/a.json"), &photo, Drawn::Auto).expect("what was saved");
+            let nails = read_annotated(&dir.path("set/a.json"), &photo, Drawn::Auto).expect("what was saved").nails;
             nails[0].outline.clone().expect("an outline").points()
         };
         let off = |one: &[[f64; 2]], other: &[[f64; 2]]| {

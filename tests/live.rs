@@ -552,14 +552,21 @@ fn a_press_harder_clicks_and_every_move_is_a_line() {
     let buttons: Vec<bool> =
         events.iter().filter(|one| one["event"] == "button").map(|one| one["down"].as_bool().unwrap()).collect();
     assert_eq!(buttons, [true, false]);
-    // The same at any speed.
+    // What a person did can't be done again.
     let fast = dir.text("e.jsonl");
+    mouse(&[]).expect(2).says("e.jsonl: exists already").says("--replace");
+    assert_eq!(dir.text("e.jsonl"), fast);
+    dir.write("e.jsonl", "older\n");
+    mouse(&["--replace", "-q"]).expect(0);
+    assert_eq!(dir.text("e.jsonl"), fast);
+    dir.lunula(&["live", "--source", "r.csv", "--model", "f.json", "--replace"]).expect(2).says("--replace is for");
+    // The same at any speed.
     let slow = ["mouse", "--source", "r.csv?rate=20", "--model", "f.json", "--events", "s.jsonl", "-q"];
     dir.lunula(&slow).expect(0);
     assert_eq!(dir.text("s.jsonl"), fast);
     dir.write("m.toml", "dead_zone_n = 0.1\nclick_m = 3\n");
     mouse(&["--config", "m.toml"]).expect(2).says("m.toml").says("click_m");
     dir.train("train.csv", "Fz_N", "z.json", &["-q"]).expect(0);
-    let one = ["mouse", "--source", "r.csv", "--model", "z.json", "--events", "e.jsonl"];
+    let one = ["mouse", "--source", "r.csv", "--model", "z.json", "--events", "z.jsonl"];
     dir.lunula(&one).expect(2).says("the mouse needs Fx_N");
 }

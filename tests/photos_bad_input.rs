@@ -32,6 +32,26 @@ fn costs_only_itself(dir: &Dir, words: &[&str]) {
 }
 
 #[test]
+fn several_files_where_one_is_taken_are_answered_with_the_way_to_batches() {
+    let dir = good_set();
+    let photographs = ["photos", "set/a.png", "set/b.png", "--out", "out"];
+    let cases: [(&[&str], &str, &str); 4] = [
+        (&photographs, "'set/b.png'", "lunula photos FOLDER --out RESULTS"),
+        (&["photos", "set", "--write-outlines", "drawn", "--out", "out"], "'drawn'", "--write-outlines"),
+        (&["edit", "set/a.png", "set/b.png"], "'set/b.png'", "lunula edit FOLDER"),
+        (&["--quiet", "posture", "a.mp4", "b.mp4", "--out", "a.csv"], "'b.mp4'", "lunula init FOLDER"),
+    ];
+    for (arguments, extra, tip) in cases {
+        let answer = dir.lunula(arguments).expect(2);
+        assert!(answer.stderr.contains(&format!("unexpected argument {extra} found")), "{}", answer.stderr);
+        assert!(answer.stderr.contains(tip) && answer.stderr.contains("Usage: lunula "), "{}", answer.stderr);
+    }
+    // An option that isn't there is no file.
+    let answer = dir.lunula(&["posture", "a.mp4", "--makers", "m.toml"]).expect(2);
+    assert!(answer.stderr.contains("'--markers'") && !answer.stderr.contains("init"), "{}", answer.stderr);
+}
+
+#[test]
 fn a_truncated_jpeg_is_named_not_greyed() {
     let dir = good_set();
     let whole = dir.place("whole.jpg");

@@ -17,7 +17,7 @@ pub enum LiveError {
     #[error("{0}")]
     Request(String),
     #[error(
-        "{}: exists already, and a recording can't be made again; choose another name, or say --replace",
+        "{}: exists already, and what was recorded can't be made again; choose another name, or say --replace",
         .0.display()
     )]
     Exists(PathBuf),

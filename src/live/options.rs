@@ -89,7 +89,7 @@ pub struct MouseOptions {
 pub struct SessionFiles {
     /// The recording.
     pub out: Option<PathBuf>,
-    /// Whether a recording that exists is replaced.
+    /// Whether a recording, or events, that exist are replaced.
     pub replace: bool,
     /// The models, of a finger or of all.
     pub models: Vec<OfFinger<PathBuf>>,

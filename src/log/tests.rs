@@ -200,6 +200,12 @@ fn guesses_and_units_are_told() {
     let columns = timed("time_s=t,P1=v", TimeUnit::Microseconds);
     let log = read_as("log.csv", b"t,v\n0,1\n40000,2\n", &columns).unwrap();
     assert_eq!((log.time_s, log.notes.len()), (vec![0.0, 0.04], 0));
+    let slow = |text: &str| {
+        let lit = samples(&good(text), &AmbientOptions::default()).unwrap();
+        lit.warnings.iter().any(|one| one.contains("40 s apart") && one.contains("--time-unit"))
+    };
+    assert!(slow("time_s,P1\n0,1\n40,2\n80,3\n"));
+    assert!(!slow("time,P1\n10:00:00,1\n10:00:40,2\n10:01:20,3\n"), "times of day have their unit");
 }
 
 #[test]

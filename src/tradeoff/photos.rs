@@ -194,7 +194,7 @@ fn read_truth(photo: &Photo, truth: &Path) -> anyhow::Result<Truth> {
     let name = format!("{}/{}", photo.pose, photo.subject);
     let picture = Photograph::read(&photo.path).with_context(|| photo.file.clone())?;
     let file = truth.join(format!("outlines/{name}.json"));
-    let nail = read_annotated(&file, &picture, Drawn::Auto)?.swap_remove(0);
+    let nail = read_annotated(&file, &picture, Drawn::Auto)?.nails.swap_remove(0);
     let (outline, axis) = (nail.outline?, nail.axis.with_context(|| format!("{}: no axis", file.display()))?);
     let file = truth.join(format!("normalized/{name}.npy"));
     let normalized = read_map(&file)?;

@@ -6,6 +6,7 @@
 
 mod doctor;
 mod jobs;
+mod misused;
 mod out;
 mod runs;
 mod shell;
@@ -125,7 +126,7 @@ fn main() -> ExitCode {
             out::note(shown.print());
             return ended_with(Ok(Outcome::Done));
         }
-        Err(wrong) => wrong.exit(),
+        Err(wrong) => misused::with_tip(wrong, std::env::args_os()).exit(),
     };
     ended_with(match cli.command {
         Command::Photos(args) => jobs::photos::run_or_merge(&args),

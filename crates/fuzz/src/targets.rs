@@ -120,9 +120,9 @@ fn photograph(desk: &Desk, bytes: &[u8]) {
 
 /// Outlines onto a grey photograph of 48 x 64 pixels, on to the normalized nail.
 fn labelme(desk: &Desk, bytes: &[u8]) {
-    let Ok(nails) = outline::read_annotated(&desk.file("nails.json", bytes), &desk.photo, Drawn::Auto) else { return };
+    let Ok(drawn) = outline::read_annotated(&desk.file("nails.json", bytes), &desk.photo, Drawn::Auto) else { return };
     let with = Normalization { size: 8, resample: Resample::Nearest, ..Normalization::default() };
-    for nail in nails.into_iter().take(4) {
+    for nail in drawn.nails.into_iter().take(4) {
         let Ok(outline) = nail.outline else { continue };
         // Looking for an axis takes a hundred times as long as all else: for one input of 16.
         let looked = || find_axes(&desk.photo.image, std::slice::from_ref(&outline)).remove(0).ok();

@@ -25,6 +25,7 @@ pub use algebra::svd::{Modes, modes};
 pub use contact::friction::{FrictionCone, FrictionFault};
 pub use contact::gate::{Contact, Gate, GateFault, GateState};
 pub use data::dataset::{Dataset, DatasetFault, Recording};
+pub use data::delay::{Delay, delays};
 pub use data::lags::{LagFault, LagStream, Lagged, Lags};
 pub use data::path::{paths, repeated_paths};
 pub use evaluate::{

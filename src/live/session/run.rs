@@ -153,7 +153,7 @@ pub(crate) fn attend<'a>(
     session.run(job, left_out(record_steps(options, files)), watch)
 }
 
-/// No result goes over an input.
+/// No result goes over an input, and no events over those of another session.
 fn check_places(all: &[Finger<'_>], files: &SessionFiles) -> Result<(), LiveError> {
     let mut inputs: Vec<PathBuf> = files.models.iter().chain(&files.switches).map(|of| of.what.clone()).collect();
     inputs.extend(files.mouse.iter().filter_map(|mouse| mouse.config.clone()));
@@ -162,13 +162,23 @@ fn check_places(all: &[Finger<'_>], files: &SessionFiles) -> Result<(), LiveErro
             inputs.push(path.clone());
         }
     }
-    let mut results: Vec<PathBuf> = files.events.iter().cloned().collect();
-    results.extend(files.mouse.iter().filter_map(|mouse| mouse.events.clone()));
+    let of_mouse = files.mouse.iter().filter_map(|mouse| mouse.events.as_ref());
+    let events: Vec<&PathBuf> = files.events.iter().chain(of_mouse).collect();
+    if files.replace && files.out.is_none() && events.is_empty() {
+        let what = "--replace is for a recording or events that exist; name them with --out or --events";
+        return Err(LiveError::Request(what.to_owned()));
+    }
+    let mut results: Vec<PathBuf> = events.iter().copied().cloned().collect();
     if let Some(out) = &files.out {
         results.extend([predicted_beside(out), beside(out, REPORT)]);
         results.extend(all.iter().map(|finger| of_finger(out, finger.name.as_deref())));
     }
-    Ok(Places::not_over(inputs).check(results)?)
+    Places::not_over(inputs).check(results)?;
+    // Pipes and devices keep nothing. Recordings look for themselves.
+    match events.into_iter().find(|events| !files.replace && events.is_file()) {
+        Some(events) => Err(LiveError::Exists(events.clone())),
+        None => Ok(()),
+    }
 }
 
 /// A session as it goes.

@@ -5,14 +5,14 @@
 //! outlines and axes in pixels of the *upright* photograph. Some tools draw on the upright picture, some on the stored
 //! one: the file's width and height show which ([`Drawn`]), and where they can't the file is refused.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use geo::{Contains, Point};
 use thiserror::Error;
 
 use super::{Axis, Outline, OutlineFault};
 use crate::labelme::{LabelMe, Shape, from_labelme, to_labelme};
-use crate::photograph::{Photograph, upright_from_stored};
+use crate::photograph::{Photograph, is_picture, upright_from_stored};
 
 /// What a nail's polygon is labelled.
 pub const NAIL: &str = "nail";
@@ -65,6 +65,15 @@ pub enum AnnotationFault {
     /// No polygon labelled `nail`.
     #[error("{0}: no polygon labelled `nail` in it; label one, or remove the file to have the nail detected")]
     NoNail(String),
+}
+
+/// What a LabelMe file says of one photograph.
+#[derive(Debug, Clone)]
+pub struct DrawnNails {
+    /// Its nails, in its own order.
+    pub nails: Vec<Annotated>,
+    /// The picture that it says it was drawn on, relative to the file.
+    pub image_path: String,
 }
 
 /// One nail of an annotation, or why its shape is none.
@@ -163,16 +172,27 @@ impl Drawn {
     }
 }
 
-/// Reads the nails of a LabelMe file, in its own order, onto the upright `photo`.
+/// Reads a LabelMe file onto the upright `photo`.
 ///
 /// # Errors
 /// [`AnnotationFault`] where nothing of the file can be used; a single bad shape is an [`Annotated`] with its fault.
-pub fn read(path: &Path, photo: &Photograph, drawn: Drawn) -> Result<Vec<Annotated>, AnnotationFault> {
+pub fn read(path: &Path, photo: &Photograph, drawn: Drawn) -> Result<DrawnNails, AnnotationFault> {
     let file = LabelMe::read(path)?;
     let name = path.display().to_string();
     let stored = drawn.or_of(&file).is_stored(file.size(), photo, &name)?;
     let nails: Vec<Annotated> = labelled(&file, photo, stored, &[NAIL]).into_iter().map(|one| one.nail).collect();
-    if nails.is_empty() { Err(AnnotationFault::NoNail(name)) } else { Ok(nails) }
+    if nails.is_empty() {
+        return Err(AnnotationFault::NoNail(name));
+    }
+    Ok(DrawnNails { nails, image_path: file.image_path })
+}
+
+/// The photograph that an annotation says it was drawn on, where that is there and is another than `photo`: files that
+/// were renamed or converted keep the old name, and it means nothing.
+pub(crate) fn other_photograph(file: &Path, image_path: &str, photo: &Path) -> Option<PathBuf> {
+    let said = file.parent()?.join(image_path.replace('\\', "/"));
+    let other = said.file_stem()? != photo.file_stem()? && is_picture(&said) && said.is_file();
+    (other && said.canonicalize().ok()? != photo.canonicalize().ok()?).then_some(said)
 }
 
 /// A nail of an annotation, and where it is among the shapes.

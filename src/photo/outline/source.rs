@@ -104,11 +104,13 @@ pub struct Listed {
     pub nails: Vec<Nail>,
     /// Places that detection refused.
     pub refused: Vec<Refused>,
+    /// The picture that a LabelMe file says it was drawn on, relative to the file.
+    pub image_path: Option<String>,
 }
 
 impl From<Vec<Nail>> for Listed {
     fn from(nails: Vec<Nail>) -> Self {
-        Self { nails, refused: Vec::new() }
+        Self { nails, refused: Vec::new(), image_path: None }
     }
 }
 
@@ -199,16 +201,17 @@ impl OutlineOptions {
     /// [`SourceFault`] where there is nothing to list.
     pub fn nails(&self, place: &OutlinePlace, picture: &Photograph) -> Result<Listed, SourceFault> {
         match place {
-            OutlinePlace::LabelMe(file) => self.annotated_nails(file, picture).map(Listed::from),
+            OutlinePlace::LabelMe(file) => self.annotated_nails(file, picture),
             OutlinePlace::Mask(file) => self.mask_nails(file, picture).map(Listed::from),
             OutlinePlace::Detection => self.detected_nails(picture),
             OutlinePlace::Nowhere => Err(SourceFault::NotAnnotated { masks: self.masks.is_some() }),
         }
     }
 
-    fn annotated_nails(&self, file: &Path, picture: &Photograph) -> Result<Vec<Nail>, SourceFault> {
+    fn annotated_nails(&self, file: &Path, picture: &Photograph) -> Result<Listed, SourceFault> {
         let mut nails = Vec::new();
-        for annotated in annotated::read(file, picture, self.drawn)? {
+        let annotation = annotated::read(file, picture, self.drawn)?;
+        for annotated in annotation.nails {
             nails.push(match annotated.outline {
                 Ok(outline) => Nail {
                     source: Source::Annotated,
@@ -225,7 +228,7 @@ impl OutlineOptions {
             });
         }
         self.complete_axes(picture, &mut nails);
-        Ok(nails)
+        Ok(Listed { image_path: Some(annotation.image_path), ..nails.into() })
     }
 
     fn mask_nails(&self, file: &Path, picture: &Photograph) -> Result<Vec<Nail>, SourceFault> {
@@ -293,7 +296,7 @@ impl OutlineOptions {
             confidence: Some(n.confidence),
             reason,
         };
-        Ok(Listed { nails: used.chain(doubtful).map(nail).collect(), refused })
+        Ok(Listed { nails: used.chain(doubtful).map(nail).collect(), refused, image_path: None })
     }
 
     /// Looks for the axes that nobody drew, and doubts those that the picture surely contradicts.

@@ -6,6 +6,7 @@
 //! at the end.
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
@@ -20,7 +21,7 @@ use crate::photo::error::PhotosError;
 use crate::photo::normalize::{NailFrame, Normalized, Normalizer, normalized_or_why};
 use crate::photo::options::{OutlineHome, Outputs, PhotosOptions, Results};
 use crate::photo::outline::{
-    DetectedOutline, Listed, Nail, OutlinePlace, Refused, SavedOutlines, SourceFault, keep_outlines,
+    DetectedOutline, Listed, Nail, OutlinePlace, Refused, SavedOutlines, SourceFault, keep_outlines, other_photograph,
 };
 use crate::photo::results::{self, DrawnPhotograph, DrawnPose, NailRow, NailTable, Scratch};
 use crate::photo::run::plan::{Foreknown, left_out};
@@ -76,6 +77,7 @@ pub fn run(
     let mut members = Members::new(options.normalization);
     for (photo, one) in set.photos.iter().zip(done) {
         findings.add(photo, one.grey, one.largest);
+        findings.drawn_elsewhere.extend(one.drawn_on.map(|other| (photo, other)));
         foreknown.push(Foreknown { pose: photo.pose.clone(), grey: one.grey, outlines: one.outlines });
         for (row, thumbnail) in one.nails {
             findings.rows.push(row);
@@ -191,6 +193,8 @@ struct Done {
     /// Its nails in red, green and blue, where channels are compared and it has some.
     cells: Option<Cells>,
     fault: Option<SetFault>,
+    /// The photograph that its outlines say they were drawn on, where that is another.
+    drawn_on: Option<PathBuf>,
     /// Where it was the last of its pose.
     pose: Option<PoseDone>,
 }
@@ -271,6 +275,7 @@ impl Work<'_> {
             largest: None,
             cells: None,
             fault: None,
+            drawn_on: None,
             pose: None,
         };
         let fault = |what: String| Some(SetFault { place: photo.file.clone(), what });
@@ -289,7 +294,7 @@ impl Work<'_> {
         let draw = |nails: &[Nail], refused: &[Refused]| {
             self.stages.time("outlines drawn", || results::drawn_outlines(&picture, nails, refused)).ok()
         };
-        let Listed { nails, refused } = match nails {
+        let Listed { nails, refused, image_path } = match nails {
             Ok(listed) => listed,
             Err(why) => {
                 let refused = if let SourceFault::NotFound { refused, .. } = &why { Some(refused) } else { None };
@@ -297,6 +302,9 @@ impl Work<'_> {
                 return Ok(Done { fault: fault(why.to_string()), drawn, ..done });
             }
         };
+        if let (OutlinePlace::LabelMe(file), Some(image_path)) = (&done.outlines, &image_path) {
+            done.drawn_on = other_photograph(file, image_path, &photo.path);
+        }
         let mut found = if may_draw { nails.clone() } else { Vec::new() };
         done.detected = self.outputs.outlines.as_ref().and_then(|_| DetectedOutline::of(index, &picture, &nails));
         let several = nails.len() > 1;

@@ -92,6 +92,8 @@ pub(in crate::photo) struct Findings<'a> {
     pub(in crate::photo) left_out: Vec<String>,
     /// Detected outlines, where they were to be saved.
     pub(in crate::photo) outlines: Option<SavedOutlines>,
+    /// Photographs whose outlines say that they were drawn on another, and on which.
+    pub(in crate::photo) drawn_elsewhere: Vec<(&'a Photo, PathBuf)>,
     /// Colour and grey photographs by pose.
     colours: BTreeMap<&'a str, [usize; 2]>,
     /// How many photographs of 16 bits, and their largest sample.
@@ -109,6 +111,7 @@ impl<'a> Findings<'a> {
             failed: set.faults.clone(),
             left_out: Vec::new(),
             outlines: None,
+            drawn_elsewhere: Vec::new(),
             colours: BTreeMap::new(),
             sixteen: (0, 0),
             without_maps: Vec::new(),
@@ -137,7 +140,21 @@ impl<'a> Findings<'a> {
         let mut seen = BTreeSet::new();
         let files = self.set.photos.iter().filter(|photo| seen.insert(&photo.path));
         let copies = copies(files.map(|photo| (photo.file.clone(), photo.path.as_path())));
-        self.mixed_poses().chain(self.few_bits()).chain(without).chain(copies).collect()
+        let elsewhere = self.drawn_on_others();
+        self.mixed_poses().chain(self.few_bits()).chain(without).chain(copies).chain(elsewhere).collect()
+    }
+
+    /// Outlines that were taken for another photograph's.
+    fn drawn_on_others(&self) -> Option<String> {
+        let (first, other) = self.drawn_elsewhere.first()?;
+        let all = self.drawn_elsewhere.len();
+        let more = if all > 1 { format!(", and so do those of {} more", all - 1) } else { String::new() };
+        Some(format!(
+            "{}: its outline says that it was drawn on another photograph, {} (imagePath){more}: were outlines mixed \
+             up? Where they fit, save them again on their own",
+            first.file,
+            other.display()
+        ))
     }
 
     /// Grey values are comparable with a colour photograph's green channel only if a green filter was used.

@@ -1,10 +1,12 @@
 //! Backwards: what is needed of each task, then the tasks that are needed.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 use std::sync::Arc;
 
 use super::{Demands, Laid, Layout, Node, NodeSource, Plan, Planned};
-use crate::job::{Demand, Facts, Foreseen};
+use crate::input::copies;
+use crate::job::{Demand, Facts, Foreseen, Role, Takes};
 use crate::pipeline::items::{Missing, World};
 use crate::pipeline::spec::{Spec, StageSpec};
 use crate::pipeline::tasks::{Input, Share, Source, Task};
@@ -87,7 +89,32 @@ pub(super) fn plan(
         plan.planned.push(Planned { prepared, demand, inputs, lacks });
     }
     stages(spec, &layout, &task_of, &mut plan);
+    for what in spec.stages.iter().flat_map(|stage| copied(stage, &plan)).collect::<Vec<_>>() {
+        if !plan.warnings.contains(&what) {
+            plan.warnings.push(what);
+        }
+    }
     plan
+}
+
+/// What to say of a stage whose tasks are given one recording under several names: a task sees only its own, so that
+/// no job can say it.
+fn copied(stage: &StageSpec, plan: &Plan) -> Vec<String> {
+    let laid = plan.stages.iter().find(|laid| laid.name == stage.name && laid.tasks.len() > 1);
+    let tasks = laid.map_or(&[][..], |laid| &laid.tasks[..]);
+    let recordings = |role: &&Role| matches!(role.takes, Takes::One | Takes::Many);
+    let of_role = |role: &Role| {
+        let given = tasks.iter().flat_map(|&task| &plan.planned[task].inputs);
+        // Settings are alike for many.
+        let given = given.filter(|(input, _)| input.role == role.name && input.exists && !is_toml(&input.path));
+        let paths: BTreeSet<&Path> = given.map(|(input, _)| input.path.as_path()).collect();
+        copies(paths.into_iter().map(|path| (path.display().to_string(), path)))
+    };
+    stage.kind.roles.iter().filter(recordings).flat_map(of_role).collect()
+}
+
+fn is_toml(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending == "toml")
 }
 
 /// A node's inputs as jobs foresee them, with the task that makes each.

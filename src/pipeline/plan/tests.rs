@@ -262,6 +262,19 @@ fn files_that_do_not_stand_are_told_and_stop_nothing_else() {
     assert!(plan.stage_plans(&[])[0].cannot_tell[0].contains("angles/S02/1/bending: "));
 }
 
+#[test]
+fn one_recording_under_the_names_of_two_subjects_is_warned_of() {
+    let plan = |changed: &'static str, content: &'static str| {
+        let others = files().into_iter().filter(|(name, _)| *name != changed);
+        Bench::new(&others.chain([(changed, content)]).collect::<Vec<_>>()).plan(STUDY).warnings
+    };
+    let said = plan("v/S02.mp4", "1");
+    assert_eq!(said.len(), 1, "{said:?}");
+    assert!(said[0].contains("v/S01.mp4, ") && said[0].contains("v/S02.mp4: the same to the byte"), "{said:?}");
+    // A log that is a video's bytes, and one that nobody wants: `files` has both.
+    assert_eq!(plan("markers.toml", "1"), [""; 0]);
+}
+
 /// Faults of the study with some files changed.
 fn with(name: &'static str, content: &'static str, pipeline: &str) -> Vec<String> {
     let mut files = files();

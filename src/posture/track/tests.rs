@@ -466,7 +466,7 @@ fn a_marker_never_seen_spares_the_others() {
     assert_eq!((tally.right, tally.wrong, tally.missed, tally.unseen), (5 * 20, 0, 0, 0));
 }
 
-/// `SEEDS=1..3 cargo test --release --lib table_of_phantom_scenes -- --ignored --nocapture`
+/// `SEEDS=1,2,3 cargo test --release --lib table_of_phantom_scenes -- --ignored --nocapture`
 #[test]
 #[ignore = "minutes: every preset of the phantom; SEEDS, PRESETS and SECONDS_EACH choose"]
 fn table_of_phantom_scenes() {

@@ -244,6 +244,7 @@ pub fn read_files(data: &[DataFile], wanted: &Wanted) -> Result<Read, DataError>
     let make = if wanted.cells { Dataset::with_hidden } else { Dataset::new };
     let data = make(inputs, wanted.targets.clone(), time_s, shaped(x), shaped(y), recordings)?;
     warnings.extend(twice(&data));
+    warnings.extend(health::clocks(&data));
     Ok(Read { data, files, failed, warnings })
 }
 

@@ -381,3 +381,22 @@ fn a_hundred_thousand_columns_are_read_in_time_that_grows_with_them() {
     };
     assert!(read_data(&[log], &wanted).unwrap_err().to_string().contains("no row can be used"));
 }
+
+#[test]
+fn photodiodes_that_answer_before_a_finger_moves_are_warned_of() {
+    let moved = |t: f64| (0.9 * t).sin() + (0.37 * t + 1.0).sin();
+    let said = |late_s: f64| {
+        let mut text = "time_s,P1,P2,Fz_N\n".to_owned();
+        for row in 0..1500 {
+            let t = 0.04 * f64::from(row);
+            let volts = 2.0 - 0.1 * moved(t - 0.1);
+            writeln!(text, "{t},{volts},{},{}", 3.0 + 0.1 * (0.2 * t).sin(), moved(t - late_s) - 2.0).unwrap();
+        }
+        read(text, &Wanted { targets: vec!["Fz_N".to_owned()], ..Wanted::default() }).unwrap().warnings.join("; ")
+    };
+    // Two seconds are a nail's that refills slowly.
+    assert_eq!([0.0, 0.2, -1.5].map(said), ["", "", ""]);
+    let [after, before] = [said(1.1), said(-3.1)];
+    assert!(after.contains("a.csv: the photodiodes answer 1.0 s before Fz_N, as in no finger"), "{after}");
+    assert!(before.contains("answer 3.2 s after Fz_N") && before.contains(" 0.0 % of the variance"), "{before}");
+}

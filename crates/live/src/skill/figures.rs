@@ -44,9 +44,8 @@ impl Figures {
         let (known_s, unknown_s) = (force.known_s(), force.unknown_s());
         let known = known_s > 0.0;
         let sums: Vec<[f64; 2]> = found.iter().map(|contact| sum(force, contact, thresholds)).collect();
-        // The sum of nothing is -0, which nobody wants to read.
-        let total = |of: &dyn Fn(usize) -> f64| 0.0 + (0..found.len()).map(of).sum::<f64>();
-        let [impulse_ns, summed_s] = [0, 1].map(|k| total(&|at| sums[at][k]));
+        // `sum` of nothing is -0, which nobody wants to read.
+        let [impulse_ns, summed_s] = [0, 1].map(|k| sums.iter().fold(0.0, |total, of| total + of[k]));
         let pressed = found.iter().flat_map(|contact| contact.rows.clone());
         let peak_n = pressed.filter_map(|row| known_force(force, row)).reduce(f64::max);
         let rises = found.iter().flat_map(|contact| rises(force, contact));
@@ -57,7 +56,7 @@ impl Figures {
             unknown_s,
             presses: known.then(|| found.iter().filter(|contact| contact.begin_seen).count()),
             cut: found.iter().filter(|contact| !(contact.begin_seen && contact.end_seen)).count(),
-            contact_s: known.then(|| total(&|at| found[at].to_s - found[at].from_s)),
+            contact_s: known.then(|| found.iter().fold(0.0, |total, contact| total + (contact.to_s - contact.from_s))),
             peak_n,
             mean_n: (summed_s > 0.0).then(|| impulse_ns / summed_s),
             impulse_ns: known.then_some(impulse_ns),

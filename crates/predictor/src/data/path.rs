@@ -77,15 +77,25 @@ fn follow_one_path(data: [&Dataset; 2], rows: [&Range<usize>; 2], spread: &[f64]
     })
 }
 
-/// Seconds since a recording's first row; numbers of rows where times are not known.
-fn times(data: &Dataset, rows: &Range<usize>) -> Vec<f64> {
+/// Seconds since a recording's first row; none where they are not known or do not ascend.
+pub(super) fn seconds(data: &Dataset, rows: &Range<usize>) -> Option<Vec<f64>> {
     let all = &data.time_s()[rows.clone()];
     let ascending = all.windows(2).all(|pair| pair[0] <= pair[1]);
-    if ascending && all.iter().all(|time| time.is_finite()) {
-        all.iter().map(|time| time - all[0]).collect()
-    } else {
-        (0..all.len()).map(|k| k as f64).collect()
-    }
+    (ascending && all.iter().all(|time| time.is_finite())).then(|| all.iter().map(|time| time - all[0]).collect())
+}
+
+/// A value between two rows, by their times.
+pub(super) fn value_at(times: &[f64], time: f64, of: &dyn Fn(usize) -> f64) -> f64 {
+    let next = times.partition_point(|&one| one < time).clamp(1, times.len() - 1);
+    let gap = times[next] - times[next - 1];
+    let share = if gap > 0.0 { (time - times[next - 1]) / gap } else { 0.0 };
+    let [low, high] = [next - 1, next].map(of);
+    low + share.min(1.0) * (high - low)
+}
+
+/// Seconds since a recording's first row; numbers of rows where they are not known.
+fn times(data: &Dataset, rows: &Range<usize>) -> Vec<f64> {
+    seconds(data, rows).unwrap_or_else(|| (0..rows.len()).map(|k| k as f64).collect())
 }
 
 /// Targets at even times, linear in between, each over its spread; 0 of a target that does not change.
@@ -93,18 +103,11 @@ fn sampled(data: &Dataset, rows: &Range<usize>, step: f64, spread: &[f64]) -> Ve
     let times = times(data, rows);
     let last = times[times.len() - 1];
     let count = ((last / step + 1e-9) as usize + 1).min(MOST);
-    let at = |k: usize| {
-        let time = k as f64 * step;
-        let next = times.partition_point(|&one| one < time).clamp(1, times.len() - 1);
-        let gap = times[next] - times[next - 1];
-        let share = if gap > 0.0 { (time - times[next - 1]) / gap } else { 0.0 };
-        let value = |(target, spread): (usize, &f64)| {
-            let [low, high] = [next - 1, next].map(|row| data.y()[[rows.start + row, target]]);
-            if *spread > 0.0 { (low + share.min(1.0) * (high - low)) / spread } else { 0.0 }
-        };
-        spread.iter().enumerate().map(value).collect()
+    let value = |time: f64, (target, spread): (usize, &f64)| {
+        let own = |row: usize| data.y()[[rows.start + row, target]];
+        if *spread > 0.0 { value_at(&times, time, &own) / spread } else { 0.0 }
     };
-    (0..count).map(at).collect()
+    (0..count).map(|k| spread.iter().enumerate().map(|one| value(k as f64 * step, one)).collect()).collect()
 }
 
 /// Of all targets together, each about its own mean; 0 where nothing moves.

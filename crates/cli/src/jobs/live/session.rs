@@ -101,8 +101,8 @@ struct OutArgs {
     /// The recording (.csv or .parquet)
     #[arg(long, value_name = "RECORDING.csv")]
     out: Option<PathBuf>,
-    /// A recording that exists is replaced
-    #[arg(long, requires = "out")]
+    /// A recording, or events, that exist are replaced
+    #[arg(long)]
     replace: bool,
 }
 

@@ -1,0 +1,133 @@
+//! Whether photodiodes and what was measured beside them are on one clock.
+//!
+//! In: a [`Dataset`]. Out: of each recording by how much its targets come after the photodiodes that answer to them:
+//! the delay at which a linear model (equations 10 to 13) leaves the least of their variance unexplained, among those
+//! of up to five seconds or a quarter of the recording. Blood answers to a press within tenths of a second (4.3), so
+//! that a delay above 0 is none of the finger's.
+
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+use super::path::{seconds, value_at};
+use crate::Dataset;
+use crate::algebra::small::{Column, dot, triangulate};
+
+/// The longest delay that is looked for, seconds and as a share of the recording, and how finely.
+const LONGEST_S: f64 = 5.0;
+const SHARE: f64 = 0.25;
+const STEPS: i32 = 50;
+/// Moments of a recording that are looked at.
+const MOMENTS: usize = 600;
+/// Rows for each unknown, at least, and inputs, at most: what more of them explain by chance is not told apart.
+const ROWS: usize = 20;
+const INPUTS: usize = 16;
+/// A target whose variance is no more of its mean square does not change but for rounding.
+const STILL: f64 = 1e-20;
+
+/// Photodiodes and targets of a recording, one shifted in time against the other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Delay {
+    /// The targets come so many seconds after what the photodiodes answer to; below 0, before it.
+    pub by_s: f64,
+    /// The share of the targets' variance that is left unexplained as they were recorded.
+    pub recorded: f64,
+    /// The same once the delay is taken away.
+    pub without: f64,
+}
+
+/// Each recording's delay; none where it is not known: times that are missing or do not ascend, few rows, many or
+/// hidden inputs, targets that do not change.
+#[must_use]
+pub fn delays(data: &Dataset) -> Vec<Option<Delay>> {
+    data.recordings().par_iter().map(|one| delay(data, &one.rows)).collect()
+}
+
+fn delay(data: &Dataset, rows: &Range<usize>) -> Option<Delay> {
+    let inputs = data.inputs().len();
+    if inputs == 0 || inputs > INPUTS || rows.len() < ROWS * (1 + inputs) {
+        return None;
+    }
+    let times = seconds(data, rows)?;
+    let last = *times.last()?;
+    let longest = LONGEST_S.min(SHARE * last);
+    let moments = MOMENTS.min(rows.len());
+    let moment = |k: usize| longest + (last - 2.0 * longest) * k as f64 / (moments - 1) as f64;
+    let shifts: Vec<f64> = (-STEPS..=STEPS).map(|k| longest * f64::from(k) / f64::from(STEPS)).collect();
+    // Ones, photodiodes, and every target at every shift.
+    let mut columns: Vec<Column> = vec![vec![1.0; moments]];
+    let sampled = |values: &dyn Fn(usize) -> f64, shift: f64| -> Column {
+        (0..moments).map(|k| value_at(&times, moment(k) + shift, values)).collect()
+    };
+    columns.extend((0..inputs).map(|input| sampled(&|row| data.x()[[rows.start + row, input]], 0.0)));
+    for &shift in &shifts {
+        let target = |target: usize| sampled(&|row| data.y()[[rows.start + row, target]], shift);
+        columns.extend((0..data.targets().len()).map(target));
+    }
+    triangulate(&mut columns, 1 + inputs);
+    // The first reflection takes the mean away, the others what photodiodes explain.
+    let squares = |column: &Column, from: usize| dot(&column[from..], &column[from..]);
+    let unexplained: Vec<f64> = columns[1 + inputs..]
+        .chunks(data.targets().len())
+        .map(|targets| {
+            let shares = targets.iter().map(|target| {
+                let (all, about_mean) = (squares(target, 0), squares(target, 1));
+                if about_mean > STILL * all { squares(target, 1 + inputs) / about_mean } else { f64::NAN }
+            });
+            shares.sum::<f64>() / targets.len() as f64
+        })
+        .collect();
+    let best = (0..shifts.len()).min_by(|&a, &b| unexplained[a].total_cmp(&unexplained[b]))?;
+    let found = Delay { by_s: shifts[best], recorded: unexplained[STEPS as usize], without: unexplained[best] };
+    (last > 0.0 && unexplained.iter().all(|share| share.is_finite())).then_some(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use ndarray::Array2;
+
+    use super::*;
+
+    /// A movement that never repeats.
+    fn moved(t: f64) -> [f64; 2] {
+        [(0.9 * t).sin() + (0.37 * t + 1.0).sin(), (0.53 * t).cos() + 0.5 * (1.31 * t).sin()]
+    }
+
+    /// Of `seconds` at 25 rows a second: photodiodes that answer 0.2 s late to targets that are measured `late` s late.
+    fn recorded(seconds: usize, late: f64) -> Dataset {
+        let rows = 25 * seconds;
+        let time = |row: usize| 0.04 * row as f64;
+        let x = Array2::from_shape_fn((rows, 3), |(row, input)| {
+            let [a, b] = moved(time(row) - 0.2);
+            [2.0 + 0.1 * a, 1.0 - 0.2 * b, 3.0 + 0.1 * (a - b)][input] + 0.01 * ((row * (7 + input)) % 5) as f64
+        });
+        let y = Array2::from_shape_fn((rows, 2), |(row, target)| moved(time(row) - late)[target]);
+        let names = |all: &[&str]| all.iter().map(|&name| name.to_owned()).collect();
+        Dataset::plain(names(&["P1", "P2", "P3"]), names(&["Fx_N", "Fz_N"]), x, y, 0.04).unwrap()
+    }
+
+    #[test]
+    fn a_delay_is_found_to_a_tenth_of_a_second() {
+        for late in [0.0, 0.2, 1.0, 3.4, -1.6, -4.0] {
+            let found = delays(&recorded(60, late))[0].unwrap();
+            assert!((found.by_s - (late - 0.2)).abs() <= 0.1 + 1e-9, "{late}: {found:?}");
+            assert!(found.without < 0.03 && found.without <= found.recorded, "{late}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_known_is_missing() {
+        assert_eq!(delays(&recorded(3, 1.0)), [None], "75 rows for four unknowns");
+        let data = recorded(60, 1.0);
+        let with = |time_s: Vec<f64>, y: Array2<f64>| {
+            let recordings = data.recordings().to_vec();
+            Dataset::new(data.inputs().to_vec(), data.targets().to_vec(), time_s, data.x().clone(), y, recordings)
+        };
+        let still = with(data.time_s().to_vec(), Array2::from_elem(data.y().dim(), 0.1)).unwrap();
+        let untimed = with(vec![f64::NAN; data.rows()], data.y().clone()).unwrap();
+        let at_once = with(vec![7.0; data.rows()], data.y().clone()).unwrap();
+        for missing in [still, untimed, at_once] {
+            assert_eq!(delays(&missing), [None]);
+        }
+    }
+}
