@@ -39,7 +39,7 @@ fn several_files_where_one_is_taken_are_answered_with_the_way_to_batches() {
         (&photographs, "'set/b.png'", "lunula photos FOLDER --out RESULTS"),
         (&["photos", "set", "--write-outlines", "drawn", "--out", "out"], "'drawn'", "--write-outlines"),
         (&["edit", "set/a.png", "set/b.png"], "'set/b.png'", "lunula edit FOLDER"),
-        (&["--quiet", "posture", "a.mp4", "b.mp4", "--out", "a.csv"], "'b.mp4'", "lunula init FOLDER"),
+        (&["posture", "--quiet", "a.mp4", "b.mp4", "--out", "a.csv"], "'b.mp4'", "lunula init FOLDER"),
     ];
     for (arguments, extra, tip) in cases {
         let answer = dir.lunula(arguments).expect(2);
