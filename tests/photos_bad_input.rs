@@ -46,6 +46,8 @@ fn several_files_where_one_is_taken_are_answered_with_the_way_to_batches() {
         assert!(answer.stderr.contains(&format!("unexpected argument {extra} found")), "{}", answer.stderr);
         assert!(answer.stderr.contains(tip) && answer.stderr.contains("Usage: lunula "), "{}", answer.stderr);
     }
+    let answer = dir.lunula(&["phantom", "photos", "set", "--out", "out"]).expect(2);
+    assert!(!answer.stderr.contains("FOLDER"), "{}", answer.stderr);
     // An option that isn't there is no file.
     let answer = dir.lunula(&["posture", "a.mp4", "--makers", "m.toml"]).expect(2);
     assert!(answer.stderr.contains("'--markers'") && !answer.stderr.contains("init"), "{}", answer.stderr);

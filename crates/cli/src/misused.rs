@@ -19,19 +19,20 @@ const MANY_VIDEOS: &str = "one video is done at a time: `lunula init FOLDER --ou
                            all of a folder, and `lunula run study.toml` runs it";
 
 /// The error with that, where the program was called with `said`.
-pub(crate) fn with_tip(wrong: clap::Error, said: impl Iterator<Item = OsString>) -> clap::Error {
+pub(crate) fn with_tip(wrong: clap::Error, mut said: impl Iterator<Item = OsString>) -> clap::Error {
     let of = match wrong.kind() {
         ErrorKind::UnknownArgument => ContextKind::InvalidArg,
         // Where a command has subcommands, a second file is taken for one.
         ErrorKind::ArgumentConflict => ContextKind::InvalidSubcommand,
         _ => return wrong,
     };
-    let mut tips = said.filter_map(|word| ONE_AT_A_TIME.iter().find(|(name, _)| word == *name).map(|(_, tip)| *tip));
+    let command = said.nth(1).unwrap_or_default();
+    let tip = ONE_AT_A_TIME.iter().find(|(name, _)| command == *name).map(|(_, tip)| *tip);
     let extra = match wrong.get(of) {
         Some(ContextValue::String(extra)) if !extra.starts_with('-') => Some(extra.clone()),
         _ => None,
     };
-    let Some((tip, extra)) = tips.next().zip(extra).filter(|(_, extra)| extra != "merge" && extra != "help") else {
+    let Some((tip, extra)) = tip.zip(extra).filter(|(_, extra)| extra != "merge" && extra != "help") else {
         return wrong;
     };
     let mut better = clap::Error::new(ErrorKind::UnknownArgument);

@@ -7,9 +7,10 @@
 
 use std::ops::Range;
 
+use ndarray::Array2;
 use rayon::prelude::*;
 
-use super::path::{seconds, value_at};
+use super::path::{Between, seconds};
 use crate::Dataset;
 use crate::algebra::small::{Column, dot, triangulate};
 
@@ -18,8 +19,8 @@ const LONGEST_S: f64 = 5.0;
 const SHARE: f64 = 0.25;
 const STEPS: i32 = 50;
 /// Moments of a recording that are looked at.
-const MOMENTS: usize = 600;
-/// Rows for each unknown, at least, and inputs, at most: what more of them explain by chance is not told apart.
+const MOMENTS: usize = 400;
+/// Rows for each unknown, at least, and inputs, at most: more of them explain much by chance.
 const ROWS: usize = 20;
 const INPUTS: usize = 16;
 /// A target whose variance is no more of its mean square does not change but for rounding.
@@ -56,13 +57,16 @@ fn delay(data: &Dataset, rows: &Range<usize>) -> Option<Delay> {
     let shifts: Vec<f64> = (-STEPS..=STEPS).map(|k| longest * f64::from(k) / f64::from(STEPS)).collect();
     // Ones, photodiodes, and every target at every shift.
     let mut columns: Vec<Column> = vec![vec![1.0; moments]];
-    let sampled = |values: &dyn Fn(usize) -> f64, shift: f64| -> Column {
-        (0..moments).map(|k| value_at(&times, moment(k) + shift, values)).collect()
+    let places =
+        |shift: f64| -> Vec<Between> { Between::rows(&times, (0..moments).map(|k| moment(k) + shift)).collect() };
+    let sampled = |places: &[Between], of: &Array2<f64>, column: usize| -> Column {
+        places.iter().map(|place| place.value(|row| of[[rows.start + row, column]])).collect()
     };
-    columns.extend((0..inputs).map(|input| sampled(&|row| data.x()[[rows.start + row, input]], 0.0)));
+    let recorded = places(0.0);
+    columns.extend((0..inputs).map(|input| sampled(&recorded, data.x(), input)));
     for &shift in &shifts {
-        let target = |target: usize| sampled(&|row| data.y()[[rows.start + row, target]], shift);
-        columns.extend((0..data.targets().len()).map(target));
+        let shifted = places(shift);
+        columns.extend((0..data.targets().len()).map(|target| sampled(&shifted, data.y(), target)));
     }
     triangulate(&mut columns, 1 + inputs);
     // The first reflection takes the mean away, the others what photodiodes explain.
@@ -84,8 +88,6 @@ fn delay(data: &Dataset, rows: &Range<usize>) -> Option<Delay> {
 
 #[cfg(test)]
 mod tests {
-    use ndarray::Array2;
-
     use super::*;
 
     /// A movement that never repeats.

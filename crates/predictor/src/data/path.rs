@@ -84,13 +84,32 @@ pub(super) fn seconds(data: &Dataset, rows: &Range<usize>) -> Option<Vec<f64>> {
     (ascending && all.iter().all(|time| time.is_finite())).then(|| all.iter().map(|time| time - all[0]).collect())
 }
 
-/// A value between two rows, by their times.
-pub(super) fn value_at(times: &[f64], time: f64, of: &dyn Fn(usize) -> f64) -> f64 {
-    let next = times.partition_point(|&one| one < time).clamp(1, times.len() - 1);
-    let gap = times[next] - times[next - 1];
-    let share = if gap > 0.0 { (time - times[next - 1]) / gap } else { 0.0 };
-    let [low, high] = [next - 1, next].map(of);
-    low + share.min(1.0) * (high - low)
+/// A moment between two rows: the second of them, and how far it is on the way there.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Between {
+    next: usize,
+    share: f64,
+}
+
+impl Between {
+    /// Of moments that ascend, in a recording of two rows or more.
+    pub(super) fn rows<'a>(
+        times: &'a [f64],
+        moments: impl Iterator<Item = f64> + 'a,
+    ) -> impl Iterator<Item = Self> + 'a {
+        let mut next = 1;
+        moments.map(move |moment| {
+            next += times[next..times.len() - 1].iter().take_while(|time| **time < moment).count();
+            let gap = times[next] - times[next - 1];
+            Self { next, share: if gap > 0.0 { ((moment - times[next - 1]) / gap).min(1.0) } else { 0.0 } }
+        })
+    }
+
+    /// What a column has there.
+    pub(super) fn value(self, of: impl Fn(usize) -> f64) -> f64 {
+        let [low, high] = [self.next - 1, self.next].map(of);
+        low + self.share * (high - low)
+    }
 }
 
 /// Seconds since a recording's first row; numbers of rows where they are not known.
@@ -103,11 +122,15 @@ fn sampled(data: &Dataset, rows: &Range<usize>, step: f64, spread: &[f64]) -> Ve
     let times = times(data, rows);
     let last = times[times.len() - 1];
     let count = ((last / step + 1e-9) as usize + 1).min(MOST);
-    let value = |time: f64, (target, spread): (usize, &f64)| {
-        let own = |row: usize| data.y()[[rows.start + row, target]];
-        if *spread > 0.0 { value_at(&times, time, &own) / spread } else { 0.0 }
+    let moments = (0..count).map(|k| k as f64 * step);
+    let row = |at: Between| {
+        let value = |(target, spread): (usize, &f64)| {
+            let own = at.value(|row| data.y()[[rows.start + row, target]]);
+            if *spread > 0.0 { own / spread } else { 0.0 }
+        };
+        spread.iter().enumerate().map(value).collect()
     };
-    (0..count).map(|k| spread.iter().enumerate().map(|one| value(k as f64 * step, one)).collect()).collect()
+    Between::rows(&times, moments).map(row).collect()
 }
 
 /// Of all targets together, each about its own mean; 0 where nothing moves.
