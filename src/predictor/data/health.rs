@@ -41,10 +41,10 @@ pub(super) fn warnings(source: &Source, keep_faults: bool) -> Vec<String> {
     warnings
 }
 
-/// By how much photodiodes may seem to answer before what they answer to, and after it, seconds (assumed: blood takes
-/// tenths of a second, 4.3, and has refilled a nail after two).
+/// By how much photodiodes may seem to answer before what they answer to, and after it, seconds (assumed: blood takes 0.1
+/// to 0.4 s, 4.3).
 const BEFORE_S: f64 = 0.25;
-const AFTER_S: f64 = 2.0;
+const AFTER_S: f64 = 1.0;
 /// It is sure where the share that is left unexplained is so small, and so much less than with the times as they are:
 /// so many times, and by so much (assumed).
 const UNEXPLAINED: f64 = 0.3;
@@ -56,15 +56,16 @@ pub(super) fn clocks(data: &Dataset) -> Vec<String> {
     let of = |(recording, delay): (&Recording, Option<Delay>)| {
         let most = |recorded: f64| UNEXPLAINED.min(TIMES * recorded).min(recorded - LESS);
         let delay = delay.filter(|delay| delay.without < most(delay.recorded))?;
-        let apart = match delay.by_s {
-            by_s if by_s > BEFORE_S => format!("{by_s:.1} s before"),
-            by_s if by_s < -AFTER_S => format!("{:.1} s after", -by_s),
+        let [side, finger] = match delay.by_s {
+            by_s if by_s > BEFORE_S => ["before", "as in no finger"],
+            by_s if by_s < -AFTER_S => ["after", "and blood takes 0.1 to 0.4 s"],
             _ => return None,
         };
         Some(format!(
-            "{}: the photodiodes answer {apart} {}, as in no finger: were they logged on two clocks? Shifted so, \
+            "{}: the photodiodes answer {:.1} s {side} {}, {finger}: were they logged on two clocks? Shifted so, \
              {:.1} % of the variance is left unexplained instead of {:.1} %",
             recording.name,
+            delay.by_s.abs(),
             data.targets().join(", "),
             100.0 * delay.without,
             100.0 * delay.recorded

@@ -2,8 +2,8 @@
 //!
 //! In: a [`Dataset`]. Out: of each recording by how much its targets come after the photodiodes that answer to them:
 //! the delay at which a linear model (equations 10 to 13) leaves the least of their variance unexplained, among those
-//! of up to five seconds or a quarter of the recording. Blood answers to a press within tenths of a second (4.3), so
-//! that a delay above 0 is none of the finger's.
+//! of up to five seconds or a quarter of the recording, the shortest of those as good. Blood answers to a press within
+//! tenths of a second (4.3), so that a delay above 0 is none of the finger's.
 
 use std::ops::Range;
 
@@ -23,6 +23,8 @@ const MOMENTS: usize = 400;
 /// Rows for each unknown, at least, and inputs, at most: more of them explain much by chance.
 const ROWS: usize = 20;
 const INPUTS: usize = 16;
+/// So many times the least that is left unexplained is as good: of these the least delay is taken.
+const PERIODS: f64 = 1.25;
 /// A target whose variance is no more of its mean square does not change but for rounding.
 const STILL: f64 = 1e-20;
 
@@ -81,9 +83,15 @@ fn delay(data: &Dataset, rows: &Range<usize>) -> Option<Delay> {
             shares.sum::<f64>() / targets.len() as f64
         })
         .collect();
-    let best = (0..shifts.len()).min_by(|&a, &b| unexplained[a].total_cmp(&unexplained[b]))?;
-    let found = Delay { by_s: shifts[best], recorded: unexplained[STEPS as usize], without: unexplained[best] };
-    (last > 0.0 && unexplained.iter().all(|share| share.is_finite())).then_some(found)
+    if last <= 0.0 || unexplained.iter().any(|share| share.is_nan()) {
+        return None;
+    }
+    // A movement that repeats fits nearly as well a period away.
+    let least = unexplained.iter().copied().fold(f64::INFINITY, f64::min);
+    let near = |k: &usize| unexplained[k.saturating_sub(1)..unexplained.len().min(k + 2)].iter();
+    let is_low = |k: &usize| unexplained[*k] <= PERIODS * least && near(k).all(|other| unexplained[*k] <= *other);
+    let best = (0..shifts.len()).filter(is_low).min_by(|&a, &b| shifts[a].abs().total_cmp(&shifts[b].abs()))?;
+    Some(Delay { by_s: shifts[best], recorded: unexplained[STEPS as usize], without: unexplained[best] })
 }
 
 #[cfg(test)]
@@ -115,6 +123,24 @@ mod tests {
             assert!((found.by_s - (late - 0.2)).abs() <= 0.1 + 1e-9, "{late}: {found:?}");
             assert!(found.without < 0.03 && found.without <= found.recorded, "{late}: {found:?}");
         }
+    }
+
+    #[test]
+    fn of_a_movement_that_repeats_the_shortest_delay_is_found() {
+        let data = recorded(60, 0.0);
+        let swing = |t: f64| (std::f64::consts::TAU * t / 4.0).sin();
+        let time = |row: usize| 0.04 * row as f64;
+        // The later, the more alike are two swings: the last period within reach fits best.
+        let grown = |t: f64| swing(t) * (1.0 + 0.002 * t);
+        let x = Array2::from_shape_fn((data.rows(), 3), |(row, input)| match input {
+            0 => swing(time(row) - 0.2),
+            k => 0.01 * ((row * (7 + k)) % 5) as f64,
+        });
+        let y = Array2::from_shape_fn((data.rows(), 1), |(row, _)| grown(time(row) - 1.0));
+        let names = |all: &[&str]| all.iter().map(|&name| name.to_owned()).collect();
+        let data = Dataset::plain(names(&["P1", "P2", "P3"]), names(&["J2_deg"]), x, y, 0.04).unwrap();
+        let found = delays(&data)[0].unwrap();
+        assert!((found.by_s - 0.8).abs() <= 0.1 + 1e-9, "{found:?}");
     }
 
     #[test]
