@@ -41,8 +41,8 @@ pub(super) fn warnings(source: &Source, keep_faults: bool) -> Vec<String> {
     warnings
 }
 
-/// By how much photodiodes may seem to answer before what they answer to, and after it, seconds (assumed: blood takes 0.1
-/// to 0.4 s, 4.3).
+/// By how much photodiodes may seem to answer before what they answer to, and after it, seconds (assumed: blood takes
+/// 0.1 to 0.4 s, 4.3).
 const BEFORE_S: f64 = 0.25;
 const AFTER_S: f64 = 1.0;
 /// It is sure where the share that is left unexplained is so small, and so much less than with the times as they are:
