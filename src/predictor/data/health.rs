@@ -51,27 +51,27 @@ const UNEXPLAINED: f64 = 0.3;
 const TIMES: f64 = 0.6;
 const LESS: f64 = 0.005;
 
-/// What to say of recordings whose photodiodes answer before a finger has done anything, or long after.
-pub(super) fn clocks(data: &Dataset) -> Vec<String> {
-    let of = |(recording, delay): (&Recording, Option<Delay>)| {
-        let most = |recorded: f64| UNEXPLAINED.min(TIMES * recorded).min(recorded - LESS);
-        let delay = delay.filter(|delay| delay.without < most(delay.recorded))?;
-        let [side, finger] = match delay.by_s {
-            by_s if by_s > BEFORE_S => ["before", "as in no finger"],
-            by_s if by_s < -AFTER_S => ["after", "and blood takes 0.1 to 0.4 s"],
-            _ => return None,
-        };
-        Some(format!(
-            "{}: the photodiodes answer {:.1} s {side} {}, {finger}: were they logged on two clocks? Shifted so, \
-             {:.1} % of the variance is left unexplained instead of {:.1} %",
-            recording.name,
-            delay.by_s.abs(),
-            data.targets().join(", "),
-            100.0 * delay.without,
-            100.0 * delay.recorded
-        ))
+/// What to say of recordings whose photodiodes answer before a finger has done anything, or long after: of the first.
+pub(super) fn clocks(data: &Dataset) -> Option<String> {
+    let most = |recorded: f64| UNEXPLAINED.min(TIMES * recorded).min(recorded - LESS);
+    let is_off = |delay: &Delay| delay.without < most(delay.recorded) && !(-AFTER_S..=BEFORE_S).contains(&delay.by_s);
+    let all = data.recordings().iter().zip(delays(data));
+    let off: Vec<(&Recording, Delay)> = all.filter_map(|(one, delay)| Some((one, delay.filter(is_off)?))).collect();
+    let (recording, delay) = off.first()?;
+    let [side, finger] = match delay.by_s {
+        by_s if by_s > 0.0 => ["before", "as in no finger"],
+        _ => ["after", "and blood takes 0.1 to 0.4 s"],
     };
-    data.recordings().iter().zip(delays(data)).filter_map(of).collect()
+    let more = if off.len() > 1 { format!(" ({} more recording(s) alike)", off.len() - 1) } else { String::new() };
+    Some(format!(
+        "{}: the photodiodes answer {:.1} s {side} {}, {finger}: were they logged on two clocks? Shifted so, {:.1} % \
+         of the variance is left unexplained instead of {:.1} %{more}",
+        recording.name,
+        delay.by_s.abs(),
+        data.targets().join(", "),
+        100.0 * delay.without,
+        100.0 * delay.recorded
+    ))
 }
 
 /// A number without the hundreds of zeros of one near 1e-300, or the sign of one that is 0.

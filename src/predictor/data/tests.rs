@@ -385,15 +385,17 @@ fn a_hundred_thousand_columns_are_read_in_time_that_grows_with_them() {
 #[test]
 fn photodiodes_that_answer_before_a_finger_moves_are_warned_of() {
     let moved = |t: f64| (0.9 * t).sin() + (0.37 * t + 1.0).sin();
-    let said = |late_s: f64| {
+    let recorded = |late_s: f64| {
         let mut text = "time_s,P1,P2,Fz_N\n".to_owned();
         for row in 0..1500 {
             let t = 0.04 * f64::from(row);
             let volts = 2.0 - 0.1 * moved(t - 0.1);
             writeln!(text, "{t},{volts},{},{}", 3.0 + 0.1 * (0.2 * t).sin(), moved(t - late_s) - 2.0).unwrap();
         }
-        read(text, &Wanted { targets: vec!["Fz_N".to_owned()], ..Wanted::default() }).unwrap().warnings.join("; ")
+        text
     };
+    let wanted = Wanted { targets: vec!["Fz_N".to_owned()], ..Wanted::default() };
+    let said = |late_s: f64| read(recorded(late_s), &wanted).unwrap().warnings.join("; ");
     // Nearly a second is a nail's that refills slowly.
     assert_eq!([0.0, 0.2, -0.8].map(said), ["", "", ""]);
     let [after, before] = [said(1.1), said(-3.1)];
@@ -403,4 +405,10 @@ fn photodiodes_that_answer_before_a_finger_moves_are_warned_of() {
             && before.contains(" 0.0 % of the variance"),
         "{before}"
     );
+    let folder = Folder::new();
+    let files = [0.0, 1.1, 1.1].map(recorded).into_iter().enumerate();
+    let files: Vec<PathBuf> = files.map(|(k, text)| folder.file(&format!("{k}.csv"), text)).collect();
+    let warnings = read_data(&files, &wanted).unwrap().warnings;
+    let alike = warnings.iter().filter(|one| one.contains("1.csv") && one.ends_with("(1 more recording(s) alike)"));
+    assert_eq!(alike.count(), 1, "{warnings:?}");
 }
