@@ -52,7 +52,7 @@ fn delay(data: &Dataset, rows: &Range<usize>) -> Option<Delay> {
         return None;
     }
     let times = seconds(data, rows)?;
-    let last = *times.last()?;
+    let last = times.last().copied().filter(|last| *last > 0.0)?;
     let longest = LONGEST_S.min(SHARE * last);
     let moments = MOMENTS.min(rows.len());
     let moment = |k: usize| longest + (last - 2.0 * longest) * k as f64 / (moments - 1) as f64;
@@ -83,7 +83,7 @@ fn delay(data: &Dataset, rows: &Range<usize>) -> Option<Delay> {
             shares.sum::<f64>() / targets.len() as f64
         })
         .collect();
-    if last <= 0.0 || unexplained.iter().any(|share| share.is_nan()) {
+    if unexplained.iter().any(|share| share.is_nan()) {
         return None;
     }
     // A movement that repeats fits nearly as well a period away.
