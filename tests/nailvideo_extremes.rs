@@ -163,16 +163,16 @@ fn a_polished_nail_is_followed_and_shows_no_press() {
             |([a, b], [c, d]): &(&[f64; 2], &[f64; 2])| (*b > y) != (*d > y) && x < (c - a) * (y - b) / (d - b) + a;
         edges.filter(crosses).count() % 2 == 1
     };
+    // Of luma, and of chroma at half the size.
+    let masks = [1, 2].map(|by| -> Vec<bool> {
+        let [width, height] = [320 / by, 240 / by];
+        let at = |k: usize| [k % width * by, k / width * by].map(|part| part as f64);
+        (0..width * height).map(at).map(|[x, y]| inside(x, y)).collect()
+    });
     let painted = pictures(&dir.path("s/video.mp4")).into_iter().map(|mut picture| {
-        let width = picture.format.width;
         for (at, level) in [(0, 95), (1, 110), (2, 190)] {
-            let by = if at == 0 { 1 } else { 2 };
-            for (k, sample) in picture.planes[at].iter_mut().enumerate() {
-                let [x, y] = [k % (width / by) * by, k / (width / by) * by].map(|part| part as f64);
-                if inside(x, y) {
-                    *sample = level;
-                }
-            }
+            let nail = picture.planes[at].iter_mut().zip(&masks[at.min(1)]).filter(|(_, is_nail)| **is_nail);
+            nail.for_each(|(sample, _)| *sample = level);
         }
         picture
     });
@@ -249,6 +249,34 @@ fn hevc_shows_the_nail_of_h264() {
     let bytes = fs::read(dir.path("s--codechevc/video.mp4")).expect("a video");
     let has = |tag: &[u8]| bytes.windows(4).any(|four| four == tag);
     assert!(has(b"hvc1") && !has(b"hev1") && !has(b"avc1"));
+}
+
+#[test]
+fn hdr_shows_the_nail_of_ordinary_video() {
+    let dir = Dir::new();
+    let scene = format!("{} --light-drift 20 --crf 12", SCENE.replace("--seconds 6", "--seconds 4"));
+    let follow = |matrix: &str| {
+        let scene = scene.replace("--out s", &format!("--out s{matrix}"));
+        words(&dir, &format!("{scene} --matrix {matrix}")).expect(0);
+        let job = format!("nailvideo s{matrix}/video.mp4 --outline s{matrix}/outline.json");
+        words(&dir, &format!("{job} --no-figures --frames --out o{matrix}")).expect(0);
+        dir.table(&format!("o{matrix}/photodiodes.csv"))
+    };
+    let ordinary = follow("709");
+    for (matrix, name, bound) in [("hlg", "hybrid log-gamma", 0.0), ("pq", "perceptual quantizer", 0.0)] {
+        let (rms, furthest) = apart(&ordinary, &follow(matrix));
+        println!("{matrix}: {rms} of 100 ln RMS off ordinary video, furthest {furthest}");
+        assert!(rms <= bound, "{matrix}: {rms} {furthest}");
+        let job = format!("nailvideo s{matrix}/video.mp4 --outline s{matrix}/outline.json --out o{matrix}");
+        words(&dir, &format!("{job} --plan")).expect(0).says(name);
+        // Frames are of the same levels as ordinary ones.
+        let mean = |of: &str| {
+            let path = dir.path(&format!("o{of}/frames/000000.png"));
+            let green = image::open(&path).expect("a frame").to_luma8();
+            green.pixels().map(|pixel| f64::from(pixel.0[0])).sum::<f64>() / f64::from(green.width() * green.height())
+        };
+        assert!((mean("709") - mean(matrix)).abs() <= 1.0, "{matrix}: {} {}", mean("709"), mean(matrix));
+    }
 }
 
 #[test]

@@ -188,6 +188,34 @@ fn a_suggested_marker_file_runs_as_it_stands() {
 }
 
 #[test]
+fn hdr_has_the_angles_and_colours_of_ordinary_video() {
+    let suggested = |more: &[&str]| {
+        let dir = scene(&[&["--colours", "distinct"], more].concat());
+        let suggested = dir.lunula(&["posture", "scene/video.mp4", "--suggest"]).expect(0).stdout;
+        let colour = |line: &str| line.split_once('#').map(|(_, hex)| hex[..6].to_owned());
+        let colours: Vec<_> = suggested.lines().filter(|line| line.contains("colour")).filter_map(colour).collect();
+        (dir, colours)
+    };
+    let (_, ordinary) = suggested(&[]);
+    for matrix in ["hlg", "pq"] {
+        let (dir, colours) = suggested(&["--matrix", matrix, "--depth", "10"]);
+        // The marker file has the colours of ordinary video.
+        posture(&dir, &["--overlay", "drawn.mp4"]).expect(0);
+        is_accurate(&dir, &["J1", "J2", "J3"]);
+        let level = |hex: &str, k: usize| i32::from_str_radix(&hex[2 * k..2 * k + 2], 16).expect("a colour");
+        assert_eq!((ordinary.len(), colours.len()), (8, 8), "{matrix}: {ordinary:?} {colours:?}");
+        for (a, b) in ordinary.iter().zip(&colours) {
+            assert!((0..3).all(|k| (level(a, k) - level(b, k)).abs() <= 12), "{matrix}: {a} {b}");
+        }
+        let transfer = |name: &str| {
+            let video = lunula::video::Video::open(&dir.path(name), 1).expect("a video");
+            video.info().matrix
+        };
+        assert_eq!(transfer("drawn.mp4"), transfer("scene/video.mp4"), "{matrix}");
+    }
+}
+
+#[test]
 fn an_overlay_has_a_frame_for_each_frame() {
     let dir = scene(&["--vfr"]);
     posture(&dir, &["--overlay", "drawn.mp4"]).expect(0);

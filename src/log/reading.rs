@@ -8,6 +8,7 @@ use std::path::Path;
 
 use super::{AmbientOptions, Channel, Columns, Log, LogError, LogHeader, Samples, TimeUnit, samples};
 use crate::log::naming::columns::is_led;
+use crate::log::naming::header::holds_others;
 use crate::table::{TableError, column_names};
 
 /// What the user says about a log; the default says nothing.
@@ -64,7 +65,7 @@ impl UnlitLoads {
 
 impl LogReading {
     /// Whether a file is read as a log: it has a column that says when the LED was on, is no CSV or Parquet table by
-    /// its name, or the user says something about logs.
+    /// its name, holds lines of other programs beside names and rows, or the user says something about logs.
     ///
     /// # Errors
     /// A table that is missing or damaged.
@@ -73,7 +74,7 @@ impl LogReading {
             return Ok(true);
         }
         match column_names(path) {
-            Ok(names) => Ok(self.has_led(&names)),
+            Ok(names) => Ok(self.has_led(&names) || holds_others(path)),
             Err(TableError::Extension(_)) => Ok(true),
             Err(why) => Err(why),
         }

@@ -83,6 +83,17 @@ fn dialects_read_alike() {
     same("trailing.csv", b"time_s,P1,Fz_N\n0,1.5,-1,\n0.5,2.5,-2,,\n", &[]);
     same("nameless.csv", b"time_s,P1,Fz_N,\n0,1.5,-1\n0.5,2.5,-2\n", &[]);
     same("cut.csv", b"time_s,P1,Fz_N\n0,1.5,-1\n0.5,2.5,-2\n1.0,3.", &[&["line 4", "cut off"]]);
+    let above = "LabVIEW Measurement\t\nSeparator\tTab\nDate\t2026/11/20\n***End_of_Header***\t\n\t\n\
+                 Samples\t2\t2\nX0\t0.0E+0\t0.0E+0\nDelta_X\t0.5\t0.5\n***End_of_Header***\t\t\n";
+    let labview = format!("{above}X_Value\tP1\tFz_N\tComment\n0.0\t1.5\t-1.0\tgo\n0.5\t2.5\t-2.0\n");
+    same("log.lvm", labview.replace("go", "").as_bytes(), &[&["tabs"], &["line 10", "above"], &["`X_Value`"]]);
+    let labchart = "Interval=\t0.5 s\nTimeFormat=\tStartOfBlock\nChannelTitle=\tP1\tFz_N\nRange=\t10 V\t20 N\n";
+    let rows = "0\t1.5\t-1\n0.5\t2.5\t-2\n";
+    same("chart.txt", format!("{labchart}{rows}").as_bytes(), &[&["tabs"], &["line 3"], &["`Time`"]]);
+    let scope = b"Logger 7\nRate: 2 Hz\n\nTime,P1,Fz_N\n(ms),(V),(N)\n\n0,1.5,-1\n500,2.5,-2\n";
+    let notes: [&[&str]; 4] = [&["line 4"], &["units", "line 5"], &["`Time (ms)`"], &["`P1 (V)`"]];
+    same("scope.csv", scope, &notes);
+    same("units.csv", b"time_s,P1,Fz_N\ns,V,N\n0,1.5,-1\n0.5,2.5,-2\n", &[&["units", "line 2"], &["`P1 (V)`"]]);
     let utf16 = |text: &str| {
         [0xff, 0xfe].into_iter().chain(text.encode_utf16().flat_map(u16::to_le_bytes)).collect::<Vec<u8>>()
     };
@@ -148,6 +159,8 @@ fn files_that_are_no_logs_are_told() {
         ("log.csv", &b""[..], "is empty"),
         ("log.csv", b"\n# only this\n", "has no line of names"),
         ("log.csv", b"0,1\n1,2\n", "line 1 holds numbers where the columns' names should be"),
+        ("log.csv", b"Logger 7\nRate,2\n0,1\n1,2\n2,3\n3,4\n", "no time column found; its columns are Rate, 2"),
+        ("log.csv", b"Logger 7\nSecond line\n0,1\n1,2\n2,3\n3,4\n", "above its rows, which begin in line 3"),
         ("log.csv", b"time_s,P1\n", "has no rows"),
         ("log.csv", b"time_s,P1\n,1\nnan,2\n", "has no rows"),
         ("log.csv", b"time_s,P1\n0,\xff\n", "log.csv:2: column `P1`"),

@@ -6,7 +6,7 @@ use ffmpeg::util::chroma::Location;
 use ffmpeg::{Rational, color, frame};
 use ffmpeg_next as ffmpeg;
 
-use super::{Format, Matrix, Plane, Turn};
+use super::{Format, Matrix, Plane, Transfer, Turn};
 use crate::video::colour::pixel;
 use crate::video::read::source::Source;
 
@@ -19,7 +19,7 @@ pub struct Info {
     pub turn: Turn,
     /// Width of a sample over its height.
     pub pixel_aspect: f64,
-    /// The colour matrix and range.
+    /// The colour matrix, range and transfer function.
     pub matrix: Matrix,
     /// The file does not say which matrix; BT.709 is taken from 720 rows on, else BT.601.
     pub matrix_assumed: bool,
@@ -64,6 +64,13 @@ impl Info {
             rate_without_times_hz: None,
             warnings: Vec::new(),
         }
+    }
+
+    /// Codec, depth and HDR, for people.
+    #[must_use]
+    pub fn coding(&self) -> String {
+        let hdr = self.matrix.transfer.hdr().map_or(String::new(), |hdr| format!(", HDR ({hdr})"));
+        format!("{} of {} bits{hdr}", self.codec, self.format.depth)
     }
 }
 
@@ -175,8 +182,8 @@ fn matrix(source: &Source, first: &frame::Video, warnings: &mut Vec<String>) -> 
         color::Space::BT709 => Matrix::BT709,
         color::Space::BT470BG | color::Space::SMPTE170M => Matrix::BT601,
         color::Space::BT2020NCL => Matrix::BT2020,
-        color::Space::FCC => Matrix { k_red: 0.30, k_blue: 0.11, full_range: false },
-        color::Space::SMPTE240M => Matrix { k_red: 0.212, k_blue: 0.087, full_range: false },
+        color::Space::FCC => Matrix::ordinary(0.30, 0.11),
+        color::Space::SMPTE240M => Matrix::ordinary(0.212, 0.087),
         space if !known(space) || grey => {
             assumed = !grey;
             if first.height() >= 720 { Matrix::BT709 } else { Matrix::BT601 }
@@ -188,7 +195,25 @@ fn matrix(source: &Source, first: &frame::Video, warnings: &mut Vec<String>) -> 
         }
     };
     let full_range = range == color::Range::JPEG || pixel::is_full_range(first.format());
-    Ok((Matrix { full_range, ..matrix }, assumed))
+    Ok((Matrix { full_range, transfer: transfer(source, first, warnings), ..matrix }, assumed))
+}
+
+fn transfer(source: &Source, first: &frame::Video, warnings: &mut Vec<String>) -> Transfer {
+    use color::TransferCharacteristic as Known;
+    let stated = Some(first.color_transfer_characteristic())
+        .filter(|&stated| stated != Known::Unspecified)
+        .unwrap_or(source.decoder.color_transfer_characteristic());
+    match stated {
+        Known::ARIB_STD_B67 => Transfer::HybridLogGamma,
+        Known::SMPTE2084 => Transfer::PerceptualQuantizer,
+        Known::Linear | Known::Log | Known::LogSqrt | Known::SMPTE428 => {
+            let name = stated.name().unwrap_or("?");
+            warnings
+                .push(format!("its samples stand for light as {name} says, taken for BT.709; convert it to BT.709"));
+            Transfer::Power
+        }
+        _ => Transfer::Power,
+    }
 }
 
 fn chroma_site(location: Location) -> Option<(f64, f64)> {

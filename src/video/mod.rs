@@ -16,6 +16,7 @@ mod write;
 
 pub use colour::bgr::Bgr;
 pub use colour::matrix::Matrix;
+pub use colour::transfer::Transfer;
 pub use error::VideoError;
 pub use frame::{Format, Frame, Picture, Plane};
 pub use info::Info;

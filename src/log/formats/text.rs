@@ -2,11 +2,13 @@
 //!
 //! Gzip is known by its first bytes, UTF-16 by its byte-order mark; a byte-order mark of UTF-8 is taken off. Lines that
 //! begin with `#` before the header, and empty ones, are passed over; where there is no header but a line of names
-//! behind the last `#` (as NumPy writes it), that is the header. The delimiter is the one of tab, `;` and `,` that the
-//! header and the first rows agree on.
+//! behind the last `#` (as NumPy writes it), that is the header. Where the first line does not fit the next, the header
+//! is looked for below what other programs write before it ([`preamble`]). The delimiter is the one of tab, `;` and `,`
+//! that the header and the first rows agree on.
 
 use std::path::Path;
 
+use super::preamble::{self, Found};
 use crate::input;
 use crate::log::LogError;
 use crate::log::lines::cell::bare;
@@ -20,6 +22,8 @@ pub(in crate::log) struct Layout {
     /// Where the rows begin: the byte, and the lines before it.
     pub(in crate::log) body: usize,
     pub(in crate::log) lines_before: u64,
+    /// Other lines stand before the header, or between it and the rows.
+    pub(in crate::log) holds_others: bool,
     /// What is unusual.
     pub(in crate::log) notes: Vec<String>,
 }
@@ -83,11 +87,51 @@ impl Layout {
                 [b'#', rest @ ..] => comment = Some(rest),
                 // Excel's own line.
                 [b's', b'e', b'p', b'=', mark @ (b',' | b';' | b'\t')] => declared = Some(*mark),
-                _ => return Self::of(text, row, comment, declared, (at, next, line)),
+                _ => {
+                    let first = Self::of(text, row, comment, declared, (at, next, line));
+                    if first.as_ref().is_ok_and(|layout| layout.fits(text)) {
+                        return first;
+                    }
+                    return match preamble::find(text, declared) {
+                        Some(Ok(found)) => Ok(Self::below(found, line)),
+                        Some(Err(line)) => Err(format!(
+                            "has no line of names above its rows, which begin in line {line}; write one such as \
+                             time_s,P1,P2 there"
+                        )),
+                        None => first,
+                    };
+                }
             }
             at = next;
         }
         Err("has no line of names; a log begins with the names of its columns".to_owned())
+    }
+
+    /// Whether the first row has as many cells as there are names, and a number among them.
+    fn fits(&self, text: &[u8]) -> bool {
+        let mut at = self.body;
+        while at < text.len() {
+            let (row, next) = line_at(text, at);
+            if !matches!(row.trim_ascii(), [] | [b'#', ..]) {
+                let cells = cells_of(row, self.delimiter);
+                return self.names.len() > 1 && cells.len() == self.names.len() && !cells.iter().all(a_name);
+            }
+            at = next;
+        }
+        true
+    }
+
+    fn below(found: Found, first: u64) -> Self {
+        let Found { delimiter, names, body, lines_before, names_line, units_line } = found;
+        let mut notes = Vec::new();
+        notes.extend(separated(delimiter));
+        if names_line > first {
+            notes.push(format!("the columns' names are taken from line {names_line}; what is above it is not read"));
+        }
+        if let Some(line) = units_line {
+            notes.push(format!("the columns' units are taken from line {line}"));
+        }
+        Self { delimiter, names, body, lines_before, holds_others: names_line > first || units_line.is_some(), notes }
     }
 
     fn of(
@@ -98,24 +142,17 @@ impl Layout {
         (at, next, line): (usize, usize, u64),
     ) -> Result<Self, String> {
         let delimiter = declared.unwrap_or_else(|| delimiter_of(row, &text[next..]));
-        let mut notes = Vec::new();
-        if delimiter != b',' {
-            notes.push(format!("cells are separated by {}", if delimiter == b'\t' { "tabs" } else { "`;`" }));
-        }
+        let mut notes: Vec<String> = separated(delimiter).into_iter().collect();
         let cells = cells_of(row, delimiter);
-        let a_name = |cell: &String| {
-            !cell.is_empty()
-                && cell.replace(',', ".").parse::<f64>().is_err()
-                && !cell.starts_with(|c: char| c.is_ascii_digit())
-        };
+        let holds_others = false;
         if cells.iter().any(a_name) {
-            return Ok(Self { delimiter, names: cells, body: next, lines_before: line, notes });
+            return Ok(Self { delimiter, names: cells, body: next, lines_before: line, holds_others, notes });
         }
         let names = comment.map(|comment| cells_of(comment.trim_ascii(), delimiter));
         match names.filter(|names| names.len() == cells.len() && names.iter().any(a_name)) {
             Some(names) => {
                 notes.push("the columns' names are taken from the last line of the comment at the top".to_owned());
-                Ok(Self { delimiter, names, body: at, lines_before: line - 1, notes })
+                Ok(Self { delimiter, names, body: at, lines_before: line - 1, holds_others, notes })
             }
             None => Err(format!(
                 "line {line} holds numbers where the columns' names should be; begin the file with a line such as \
@@ -125,8 +162,20 @@ impl Layout {
     }
 }
 
+/// What is said of a delimiter other than a comma.
+fn separated(delimiter: u8) -> Option<String> {
+    (delimiter != b',').then(|| format!("cells are separated by {}", if delimiter == b'\t' { "tabs" } else { "`;`" }))
+}
+
+/// Whether a cell may be a column's name.
+pub(super) fn a_name(cell: &String) -> bool {
+    !cell.is_empty()
+        && cell.replace(',', ".").parse::<f64>().is_err()
+        && !cell.starts_with(|c: char| c.is_ascii_digit())
+}
+
 /// The line that begins at `at`, without its end, and where the next one begins.
-fn line_at(text: &[u8], at: usize) -> (&[u8], usize) {
+pub(super) fn line_at(text: &[u8], at: usize) -> (&[u8], usize) {
     let end = text[at..].iter().position(|&b| b == b'\n').map_or(text.len(), |n| at + n);
     let row = text[at..end].strip_suffix(b"\r").unwrap_or(&text[at..end]);
     (row, (end + 1).min(text.len()))
@@ -143,12 +192,12 @@ pub(in crate::log) fn lines_to_row(text: &[u8], mut at: usize) -> u64 {
 }
 
 /// The names in a line.
-fn cells_of(row: &[u8], delimiter: u8) -> Vec<String> {
+pub(super) fn cells_of(row: &[u8], delimiter: u8) -> Vec<String> {
     split(row, delimiter).map(|cell| String::from_utf8_lossy(bare(cell)).replace("\"\"", "\"")).collect()
 }
 
 /// The parts of a line between delimiters that do not stand in double quotes.
-fn split(row: &[u8], delimiter: u8) -> impl Iterator<Item = &[u8]> {
+pub(super) fn split(row: &[u8], delimiter: u8) -> impl Iterator<Item = &[u8]> {
     let mut quoted = false;
     row.split(move |&b| {
         quoted ^= b == b'"';

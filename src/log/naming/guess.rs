@@ -6,7 +6,7 @@ use crate::log::lines::stamps::TimeUnit;
 use crate::log::naming::role::Role;
 
 /// What may stand for the time, without its unit and with nothing between the words.
-const TIMES: [&str; 22] = [
+const TIMES: [&str; 23] = [
     "t",
     "ts",
     "time",
@@ -29,6 +29,7 @@ const TIMES: [&str; 22] = [
     "hosttime",
     "hosttimestamp",
     "utc",
+    "xvalue",
 ];
 
 /// The role that a name suggests.

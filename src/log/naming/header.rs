@@ -57,6 +57,12 @@ impl LogHeader {
     }
 }
 
+/// Whether a CSV file has more than names and rows, as [`Layout`] says; not one that can't be read.
+pub(in crate::log) fn holds_others(path: &Path) -> bool {
+    let text = || Layout::find(&head(path).ok()?).ok();
+    Format::of(path) == Format::Text && text().is_some_and(|layout| layout.holds_others)
+}
+
 /// The first lines of a file of text; all of one that is packed or whose header is further down.
 fn head(path: &Path) -> Result<Vec<u8>, LogError> {
     let mut bytes = Vec::new();

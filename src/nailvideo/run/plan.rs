@@ -27,7 +27,7 @@ pub(in crate::nailvideo) fn steps(
 ) -> Vec<Step> {
     let decoding = info.map_or("all frames".to_owned(), |info| {
         let frames = info.declared_frames.map_or("all frames".to_owned(), |frames| format!("{frames} frames"));
-        format!("{frames}, {} x {}, {}", info.format.width, info.format.height, info.codec)
+        format!("{frames}, {} x {}, {}", info.format.width, info.format.height, info.coding())
     });
     let light = light_of(info.is_some_and(|info| info.grey), options);
     let asked = |runs: bool, option: &str| if runs { "asked for".to_owned() } else { format!("no {option}") };

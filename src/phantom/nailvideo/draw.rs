@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::Scene;
 use super::track::Affine;
 use crate::phantom::video::{Converter, Siting, add_noise};
-use crate::video::{Matrix, Picture};
+use crate::video::Picture;
 
 /// The most pixels between two exposures, and the most exposures.
 const APART_PX: f64 = 0.7;
@@ -16,7 +16,7 @@ impl Scene {
     #[must_use]
     pub fn picture(&self, frame: usize) -> Picture {
         let format = self.options.format();
-        let converter = Converter::new(format, &Matrix::BT709, Siting::Left);
+        let converter = Converter::new(format, &self.options.coding.matrix(), Siting::Left);
         let noise_sd = (self.options.noise / 255.0) as f32;
         let exposures = self.exposures(frame);
         let painted = match &self.other {
@@ -47,15 +47,17 @@ impl Scene {
                 (*red, *green, *blue) = (lit(0), lit(1), lit(2));
             }
             add_noise(rgb, noise_sd, self.options.seed, frame, y);
+            converter.encode(rgb);
         };
         let mut picture = Picture::new(format);
         let (luma, chroma) = picture.planes.split_at_mut(1);
         let [cb, cr] = chroma else { return picture };
-        let half = format.width / 2;
-        let groups = luma[0].par_chunks_mut(2 * format.width).zip(cb.par_chunks_mut(half)).zip(cr.par_chunks_mut(half));
+        let bytes = format.width * if format.depth > 8 { 2 } else { 1 };
+        let half = bytes / 2;
+        let groups = luma[0].par_chunks_mut(2 * bytes).zip(cb.par_chunks_mut(half)).zip(cr.par_chunks_mut(half));
         let fresh = || [0, 1].map(|_| [0, 1, 2].map(|_| vec![0.0f32; format.width]));
         groups.enumerate().for_each_init(fresh, |rows, (group, ((luma, cb), cr))| {
-            for ((k, rgb), luma) in rows.iter_mut().enumerate().zip(luma.chunks_exact_mut(format.width)) {
+            for ((k, rgb), luma) in rows.iter_mut().enumerate().zip(luma.chunks_exact_mut(bytes)) {
                 row(2 * group + k, rgb);
                 converter.luma(rgb, luma);
             }

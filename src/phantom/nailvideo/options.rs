@@ -12,7 +12,7 @@ use crate::phantom::presses::Presses;
 use crate::phantom::request::{parse_size, parse_span_of_frames, positions};
 use crate::phantom::trajectory::Trajectory;
 use crate::phantom::video::Coding;
-use crate::video::Format;
+use crate::video::{Format, Transfer};
 
 /// What the finger does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ValueEnum)]
@@ -163,7 +163,7 @@ pub struct NailVideoOptions {
     /// The encoder's constant rate factor: 0 lossless, 51 worst; x264 and x265 have different scales
     #[arg(long, default_value_t = 18)]
     pub crf: u32,
-    /// Codec and preset
+    /// Codec, preset and colours
     #[command(flatten)]
     #[serde(flatten)]
     pub coding: Coding,
@@ -279,9 +279,10 @@ impl NailVideoOptions {
         }
     }
 
-    /// How the file's samples are laid out.
+    /// How the file's samples are laid out: of 10 bits in HDR, as cameras have it.
     pub(super) fn format(&self) -> Format {
         let (width, height) = self.size;
-        Format { width: width as usize, height: height as usize, subsampling: Some((2, 2)), depth: 8 }
+        let depth = if self.coding.matrix().transfer == Transfer::Power { 8 } else { 10 };
+        Format { width: width as usize, height: height as usize, subsampling: Some((2, 2)), depth }
     }
 }

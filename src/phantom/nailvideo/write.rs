@@ -16,7 +16,7 @@ use crate::phantom::scene::reel::draw_and_encode;
 use crate::phantom::sensor::disc_samples;
 use crate::phantom::video::{Siting, TICKS_PER_S};
 use crate::table::{Column, TableWriter, Value};
-use crate::video::{Encoder, Encoding, Matrix, Picture};
+use crate::video::{Encoder, Encoding, Picture};
 
 /// The file that says that a folder was written here.
 const RECORD: &str = "truth/nailvideo.json";
@@ -104,7 +104,7 @@ fn encode(scene: &Scene, path: &Path, watch: &Watch<'_>) -> Result<(), Error> {
     let options = scene.options();
     let usual = Encoding::new(options.format());
     let encoding = Encoding {
-        matrix: Matrix::BT709,
+        matrix: options.coding.matrix(),
         chroma_site: Some(Siting::Left.place()),
         codec: options.coding.codec,
         crf: options.crf,

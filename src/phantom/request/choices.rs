@@ -12,16 +12,6 @@ use anyhow::Context;
 use clap::ValueEnum;
 
 #[derive(Debug, Clone, Copy, ValueEnum)]
-pub(super) enum MatrixArg {
-    #[value(name = "601")]
-    Bt601,
-    #[value(name = "709")]
-    Bt709,
-    #[value(name = "2020")]
-    Bt2020,
-}
-
-#[derive(Debug, Clone, Copy, ValueEnum)]
 pub(super) enum RotateArg {
     #[value(name = "0")]
     None,

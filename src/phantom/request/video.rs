@@ -2,15 +2,13 @@
 
 use clap::Args;
 
-use super::choices::{
-    MatrixArg, RotateArg, parse_colour, parse_hide, parse_leave, parse_plane, parse_size, trajectory,
-};
+use super::choices::{RotateArg, parse_colour, parse_hide, parse_leave, parse_plane, parse_size, trajectory};
 use super::clock::ClockArgs;
 use crate::flexion::Flexion;
 use crate::phantom::motion::finger::{Finger, MarkerLayout};
 use crate::phantom::motion::trajectory::Trajectory;
 use crate::phantom::video::{Chroma, Coding, Colours, Hide, Leave, Lens, Oblique, Preset, Siting, VideoOptions};
-use crate::video::{Matrix, Turn};
+use crate::video::Turn;
 
 /// What `lunula phantom video` takes.
 #[derive(Debug, Clone, Args)]
@@ -119,9 +117,6 @@ pub struct VideoRequest {
     #[command(flatten)]
     clock: ClockArgs,
 
-    /// The video's colour matrix
-    #[arg(long, value_enum, default_value = "709")]
-    matrix: MatrixArg,
     /// Samples use all values, not the limited range
     #[arg(long)]
     full_range: bool,
@@ -186,11 +181,7 @@ impl VideoRequest {
             (!self.distortion.is_empty()).then(|| Lens { fx_px: self.fx, distortion: self.distortion.clone() });
         options.plane = self.plane;
         self.clock.settle(&mut options);
-        options.matrix = match self.matrix {
-            MatrixArg::Bt601 => Matrix::BT601,
-            MatrixArg::Bt709 => Matrix::BT709,
-            MatrixArg::Bt2020 => Matrix::BT2020,
-        };
+        options.matrix = self.coding.matrix();
         options.matrix.full_range = self.full_range;
         options.siting = self.siting;
         options.stated_siting = self.stated_siting;

@@ -206,7 +206,11 @@ fn matrix_in_words<S: Serializer>(matrix: &Matrix, serializer: S) -> Result<S::O
         k if k == Matrix::BT601.k_red => "BT.601",
         _ => "BT.2020",
     };
-    serializer.serialize_str(&format!("{name}, {} range", if matrix.full_range { "full" } else { "limited" }))
+    let range = if matrix.full_range { "full" } else { "limited" };
+    match matrix.transfer.hdr() {
+        None => serializer.serialize_str(&format!("{name}, {range} range")),
+        Some(hdr) => serializer.serialize_str(&format!("{name}, {hdr}, {range} range")),
+    }
 }
 
 fn turn_in_words<S: Serializer>(turn: &Turn, serializer: S) -> Result<S::Ok, S::Error> {

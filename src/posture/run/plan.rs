@@ -85,8 +85,7 @@ fn has_plane(layout: &Layout) -> bool {
 
 fn decoding(info: &Info) -> String {
     let frames = info.declared_frames.map_or("all frames".to_owned(), |frames| format!("{frames} frames"));
-    let (width, height, depth) = (info.format.width, info.format.height, info.format.depth);
-    format!("{frames}, {width} x {height}, {} of {depth} bits", info.codec)
+    format!("{frames}, {} x {}, {}", info.format.width, info.format.height, info.coding())
 }
 
 /// The names of the markers that the joints need, or do not.

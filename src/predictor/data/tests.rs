@@ -398,12 +398,12 @@ fn photodiodes_that_answer_before_a_finger_moves_are_warned_of() {
     let said = |late_s: f64| read(recorded(late_s), &wanted).unwrap().warnings.join("; ");
     // Nearly a second is a nail's that refills slowly.
     assert_eq!([0.0, 0.2, -0.8].map(said), ["", "", ""]);
-    let [after, before] = [said(1.1), said(-3.1)];
-    assert!(after.contains("a.csv: the photodiodes answer 1.0 s before Fz_N, as in no finger"), "{after}");
+    let [before, after] = [said(1.1), said(-3.1)];
+    assert!(before.contains("a.csv: the photodiodes answer 1.0 s before Fz_N, as in no finger"), "{before}");
     assert!(
-        before.contains("answer 3.2 s after Fz_N, and blood takes 0.1 to 0.4 s")
-            && before.contains(" 0.0 % of the variance"),
-        "{before}"
+        after.contains("answer 3.2 s after Fz_N, and blood takes 0.1 to 0.4 s")
+            && after.contains(" 0.0 % of the variance"),
+        "{after}"
     );
     let folder = Folder::new();
     let files = [0.0, 1.1, 1.1].map(recorded).into_iter().enumerate();
@@ -411,4 +411,22 @@ fn photodiodes_that_answer_before_a_finger_moves_are_warned_of() {
     let warnings = read_data(&files, &wanted).unwrap().warnings;
     let alike = warnings.iter().filter(|one| one.contains("1.csv") && one.ends_with("(1 more recording(s) alike)"));
     assert_eq!(alike.count(), 1, "{warnings:?}");
+}
+
+#[test]
+fn what_other_programs_write_above_the_names_is_not_read() {
+    let wanted = Wanted { targets: vec!["Fz_N".to_owned()], ..Wanted::default() };
+    let rows = |per_second: f64| -> String {
+        let row = |k: u32| format!("{},{},{},{}\n", f64::from(k) * 0.04 * per_second, 2.0, f64::from(k), -f64::from(k));
+        (0..8).map(row).collect()
+    };
+    let plain = read(format!("time_s,P1,P2,Fz_N\n{}", rows(1.0)), &wanted).unwrap();
+    let above = "Logger 7\nRate,25 Hz\n\nTime,P1,P2,Fz\n(ms),V,V,N\n";
+    let below = read(format!("{above}{}", rows(1000.0)), &wanted).unwrap();
+    assert_eq!((below.data.x(), below.data.y()), (plain.data.x(), plain.data.y()));
+    assert_eq!(below.data.x().nrows(), 8);
+    let notes = below.files[0].notes.join("; ");
+    assert!(notes.contains("line 4") && notes.contains("units"), "{notes}");
+    let error = read(format!("Logger 7\nfor the nail\n{}", rows(1.0)), &wanted).unwrap_err().to_string();
+    assert!(error.contains("a.csv"), "{error}");
 }

@@ -1,6 +1,7 @@
-//! Colours: matrices, pixel formats, conversions.
+//! Colours: matrices, transfer functions, pixel formats, conversions.
 
 pub(in crate::video) mod bgr;
 pub(in crate::video) mod convert;
 pub(in crate::video) mod matrix;
 pub(in crate::video) mod pixel;
+pub(in crate::video) mod transfer;

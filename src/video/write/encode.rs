@@ -16,14 +16,14 @@ use ffmpeg_next as ffmpeg;
 use crate::video::colour::pixel;
 use crate::video::write::codec::Codec;
 use crate::video::write::mp4;
-use crate::video::{Format, Matrix, Picture, Turn, VideoError};
+use crate::video::{Format, Matrix, Picture, Transfer, Turn, VideoError};
 
 /// How to encode.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Encoding {
     /// Size, chroma and depth.
     pub format: Format,
-    /// The colour matrix and range that the file states.
+    /// The colour matrix and range that the file states; the transfer function and primaries of HDR.
     pub matrix: Matrix,
     /// Where the file states that chroma samples lie, in luma samples right of and below the block's first luma sample.
     pub chroma_site: Option<(f64, f64)>,
@@ -116,6 +116,10 @@ impl Encoder {
         setup.set_aspect_ratio(Rational(encoding.pixel_aspect.0, encoding.pixel_aspect.1));
         setup.set_colorspace(space(&encoding.matrix));
         setup.set_color_range(if encoding.matrix.full_range { color::Range::JPEG } else { color::Range::MPEG });
+        if let Some(stated) = stated_transfer(encoding.matrix.transfer) {
+            setup.set_color_transfer_characteristic(stated);
+            setup.set_color_primaries(color::Primaries::BT2020);
+        }
         setup.set_threading(codec::threading::Config::count(codec.threads()));
         if output.format().flags().contains(container::Flags::GLOBAL_HEADER) {
             setup.set_flags(codec::Flags::GLOBAL_HEADER);
@@ -282,6 +286,14 @@ fn space(matrix: &Matrix) -> color::Space {
         color::Space::BT2020NCL
     } else {
         color::Space::SMPTE170M
+    }
+}
+
+fn stated_transfer(transfer: Transfer) -> Option<color::TransferCharacteristic> {
+    match transfer {
+        Transfer::Power => None,
+        Transfer::HybridLogGamma => Some(color::TransferCharacteristic::ARIB_STD_B67),
+        Transfer::PerceptualQuantizer => Some(color::TransferCharacteristic::SMPTE2084),
     }
 }
 

@@ -29,6 +29,7 @@ impl Scene {
                     Some(turned) => row.rgb.clone_from(&turned[y]),
                 }
                 add_noise(&mut row.rgb, noise_sd, options.seed, frame, y);
+                converter.encode(&mut row.rgb);
                 converter.luma(&row.rgb, luma);
             }
         };

@@ -9,7 +9,7 @@ use std::sync::LazyLock;
 
 use serde::Serialize;
 
-use crate::video::{Format, Matrix};
+use crate::video::{Format, Matrix, Transfer};
 
 /// Where chroma samples lie in their block of luma samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, clap::ValueEnum)]
@@ -84,6 +84,7 @@ pub(in crate::phantom) fn add_noise(rgb: &mut [Vec<f32>; 3], sd: f32, seed: u64,
 /// Turns rows of R'G'B' into samples of one row of luma and, for each group of rows, one of chroma.
 pub(in crate::phantom) struct Converter {
     to_ycc: [[f32; 4]; 3],
+    matrix: Matrix,
     format: Format,
     siting: Siting,
     depth_scale: f32,
@@ -92,14 +93,25 @@ pub(in crate::phantom) struct Converter {
 
 impl Converter {
     pub(in crate::phantom) fn new(format: Format, matrix: &Matrix, siting: Siting) -> Self {
-        let zero = matrix.from_rgb([0.0; 3]);
-        let columns = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|unit| matrix.from_rgb(unit));
+        let zero = matrix.from_own_rgb([0.0; 3]);
+        let columns = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|unit| matrix.from_own_rgb(unit));
         let to_ycc = std::array::from_fn(|c| {
             let share = |k: usize| (columns[k][c] - zero[c]) as f32;
             [share(0), share(1), share(2), zero[c] as f32]
         });
         let depth_scale = (1u32 << (format.depth - 8)) as f32;
-        Self { to_ycc, format, siting, depth_scale, top: ((1u32 << format.depth) - 1) as f32 }
+        Self { to_ycc, matrix: *matrix, format, siting, depth_scale, top: ((1u32 << format.depth) - 1) as f32 }
+    }
+
+    /// A row's ordinary R'G'B', cut to 0..1, as HDR has them; ordinary video leaves them as they are.
+    pub(in crate::phantom) fn encode(&self, [red, green, blue]: &mut [Vec<f32>; 3]) {
+        if self.matrix.transfer == Transfer::Power {
+            return;
+        }
+        for ((red, green), blue) in red.iter_mut().zip(green).zip(blue) {
+            let own = self.matrix.own_rgb([*red, *green, *blue].map(|part| f64::from(part.clamp(0.0, 1.0))));
+            [*red, *green, *blue] = own.map(|part| part as f32);
+        }
     }
 
     /// One component of a row, on the scale of 8 bits; R'G'B' is cut to 0..1 first.

@@ -1,0 +1,127 @@
+//! Lines before a log's own: what LabVIEW, LabChart and oscilloscopes write about a recording before its columns.
+//!
+//! The rows begin where three lines running (or the last two) hold equally many cells, half of them numbers. The names
+//! are the nearest line above with as many, or LabChart's `ChannelTitle=`; a line of units between them and the rows
+//! goes to the names.
+
+use super::text::{a_name, cells_of, line_at, split};
+use crate::log::lines::cell::{Numbers, bare};
+
+/// Lines that are looked at.
+const MOST_LINES: usize = 1000;
+/// Rows running that are no accident.
+const ROWS: usize = 3;
+/// Units that stand without brackets.
+const UNITS: [&str; 18] =
+    ["s", "sec", "ms", "us", "µs", "ns", "V", "mV", "N", "mN", "A", "mA", "Pa", "kPa", "°", "deg", "°C", "Hz"];
+
+/// Where the parts of a file are that begins with other lines.
+pub(super) struct Found {
+    pub(super) delimiter: u8,
+    pub(super) names: Vec<String>,
+    /// The byte at which the rows begin, and the lines before it.
+    pub(super) body: usize,
+    pub(super) lines_before: u64,
+    /// The line with the names.
+    pub(super) names_line: u64,
+    /// The line with the units.
+    pub(super) units_line: Option<u64>,
+}
+
+/// A line that is neither empty nor a comment.
+struct Line<'a> {
+    number: u64,
+    at: usize,
+    bytes: &'a [u8],
+}
+
+/// Looks for rows below other lines; `declared` is the only delimiter there may be. The error is the line of rows that
+/// have no names above them.
+pub(super) fn find(text: &[u8], declared: Option<u8>) -> Option<Result<Found, u64>> {
+    let mut lines = Vec::new();
+    let (mut at, mut number) = (0, 0);
+    while at < text.len() && lines.len() < MOST_LINES {
+        let (bytes, next) = line_at(text, at);
+        number += 1;
+        if !matches!(bytes.trim_ascii(), [] | [b'#', ..]) {
+            lines.push(Line { number, at, bytes });
+        }
+        at = next;
+    }
+    let whole = at >= text.len();
+    let delimiters = declared.map_or(vec![b'\t', b';', b','], |declared| vec![declared]);
+    let found = delimiters.into_iter().filter_map(|delimiter| of_delimiter(&lines, delimiter, whole));
+    found.max_by_key(|found| found.as_ref().map_or(0, |found| found.names.len()))
+}
+
+fn of_delimiter(lines: &[Line<'_>], delimiter: u8, whole: bool) -> Option<Result<Found, u64>> {
+    let counts: Vec<Option<usize>> = lines.iter().map(|line| row_cells(line.bytes, delimiter)).collect();
+    let is_first = |k: &usize| {
+        let running = counts[*k..].iter().take(ROWS).take_while(|count| **count == counts[*k]).count();
+        counts[*k].is_some() && (running == ROWS || running == 2 && whole && *k + 2 == lines.len())
+    };
+    let first = (0..lines.len()).find(is_first)?;
+    let count = counts[first]?;
+    let (mut names, mut names_line, mut units) = (None, 0, None);
+    for line in lines[..first].iter().rev() {
+        let mut cells = cells_of(line.bytes, delimiter);
+        if let [title, ..] = &mut cells[..]
+            && title.ends_with('=')
+        {
+            if title != "ChannelTitle=" || cells.len() > count {
+                continue;
+            }
+            cells[0] = "Time".to_owned();
+            cells.resize(count, String::new());
+        }
+        // LabVIEW's column of comments, which rows without one leave out.
+        if cells.len() == count + 1 && cells.last().is_some_and(|last| matches!(&last[..], "" | "Comment")) {
+            cells.truncate(count);
+        }
+        if cells.len() != count || !cells.iter().any(a_name) {
+            break;
+        }
+        if units.is_none() && cells.iter().all(|cell| cell.is_empty() || unit(cell).is_some()) {
+            units = Some((cells, line.number));
+            continue;
+        }
+        (names, names_line) = (Some(cells), line.number);
+        break;
+    }
+    // A line of units without names above it was one of names.
+    let (mut names, names_line, units) = match (names, units) {
+        (Some(names), units) => (names, names_line, units),
+        (None, Some((names, line))) => (names, line, None),
+        (None, None) => return (first > 0).then(|| Err(lines[first].number)),
+    };
+    if let Some((units, _)) = &units {
+        for (name, cell) in names.iter_mut().zip(units) {
+            let unit = unit(cell).unwrap_or_default();
+            let has_it = name.rsplit(|c: char| !c.is_alphanumeric()).find(|word| !word.is_empty()) == Some(unit);
+            if !unit.is_empty() && !has_it {
+                *name = format!("{name} ({unit})");
+            }
+        }
+    }
+    let Line { number, at, .. } = lines[first];
+    let units_line = units.map(|(_, line)| line);
+    Some(Ok(Found { delimiter, names, body: at, lines_before: number - 1, names_line, units_line }))
+}
+
+/// How many cells a line has that may be a row: two or more, the first not a word, half of them numbers.
+fn row_cells(line: &[u8], delimiter: u8) -> Option<usize> {
+    let mut numbers = Numbers::of(delimiter);
+    let cells: Vec<&[u8]> = split(line, delimiter).map(bare).collect();
+    // A delimiter at the end makes no cell.
+    let count = cells.len() - usize::from(cells.last().is_some_and(|cell| cell.is_empty()));
+    let [first, ..] = cells[..] else { return None };
+    let known = cells[..count].iter().filter(|cell| numbers.read(cell).is_ok_and(f64::is_finite)).count();
+    let stands = first.is_empty() || first[0].is_ascii_digit() || b"+-.".contains(&first[0]);
+    (count >= 2 && stands && 2 * known >= count).then_some(count)
+}
+
+/// The unit that a cell is, without its brackets.
+fn unit(cell: &str) -> Option<&str> {
+    let within = |open: char, close: char| cell.strip_prefix(open)?.strip_suffix(close);
+    within('(', ')').or_else(|| within('[', ']')).or_else(|| UNITS.contains(&cell).then_some(cell)).map(str::trim)
+}
