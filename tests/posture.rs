@@ -192,8 +192,8 @@ fn hdr_has_the_angles_and_colours_of_ordinary_video() {
     let suggested = |more: &[&str]| {
         let dir = scene(&[&["--colours", "distinct"], more].concat());
         let suggested = dir.lunula(&["posture", "scene/video.mp4", "--suggest"]).expect(0).stdout;
-        let colour = |line: &str| line.split_once('#').map(|(_, hex)| hex[..6].to_owned());
-        let colours: Vec<_> = suggested.lines().filter(|line| line.contains("colour")).filter_map(colour).collect();
+        let colour = |line: &str| line.split_once(" = \"#").map(|(_, hex)| hex[..6].to_owned());
+        let colours: Vec<_> = suggested.lines().filter_map(colour).collect();
         (dir, colours)
     };
     let (_, ordinary) = suggested(&[]);

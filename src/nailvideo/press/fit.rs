@@ -73,31 +73,49 @@ impl Model {
 /// Parameters: onset, ln tau, ln of the ramp's length or of the power, level before, level after.
 type Parameters = [f64; 5];
 
-/// The share of the step that is reached some time after the onset.
-fn reached(model: Model, p: &Parameters, since_s: f64) -> f64 {
-    if since_s <= 0.0 {
-        return 0.0;
-    }
-    let (tau, third) = (p[1].exp(), p[2].exp());
-    let left = |s: f64| (-s / tau).exp();
-    match model {
-        Model::Step => 1.0 - left(since_s),
-        Model::Ramp if since_s < third => (since_s - tau * (1.0 - left(since_s))) / third,
-        Model::Ramp => 1.0 - tau / third * (left(since_s - third) - left(since_s)),
-        Model::Stretched => 1.0 - (-(since_s / tau).powf(third)).exp(),
-    }
+/// A course with its parameters as they are used: a fit evaluates it thousands of times.
+struct Curve {
+    model: Model,
+    onset_s: f64,
+    tau_s: f64,
+    /// The ramp's length or the power.
+    third: f64,
+    before: f64,
+    step: f64,
 }
 
-fn curve(model: Model, p: &Parameters, t: f64) -> f64 {
-    p[3] + (p[4] - p[3]) * reached(model, p, t - p[0])
+impl Curve {
+    fn new(model: Model, p: &Parameters) -> Self {
+        Self { model, onset_s: p[0], tau_s: p[1].exp(), third: p[2].exp(), before: p[3], step: p[4] - p[3] }
+    }
+
+    /// The share of the step that is reached some time after the onset.
+    fn reached(&self, since_s: f64) -> f64 {
+        if since_s <= 0.0 {
+            return 0.0;
+        }
+        let Self { tau_s, third, .. } = *self;
+        let left = |s: f64| (-s / tau_s).exp();
+        match self.model {
+            Model::Step => 1.0 - left(since_s),
+            Model::Ramp if since_s < third => (since_s - tau_s * (1.0 - left(since_s))) / third,
+            Model::Ramp => 1.0 - tau_s / third * (left(since_s - third) - left(since_s)),
+            Model::Stretched => 1.0 - (-(since_s / tau_s).powf(third)).exp(),
+        }
+    }
+
+    fn at(&self, t: f64) -> f64 {
+        self.before + self.step * self.reached(t - self.onset_s)
+    }
 }
 
 /// Time from the onset to a share of the step, by halving: it only grows.
 fn to_share(model: Model, p: &Parameters, share: f64) -> f64 {
+    let curve = Curve::new(model, p);
     let (mut low, mut high) = (0.0, 1e3);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
-        *(if reached(model, p, middle) < share { &mut low } else { &mut high }) = middle;
+        *(if curve.reached(middle) < share { &mut low } else { &mut high }) = middle;
     }
     0.5 * (low + high)
 }
@@ -187,7 +205,7 @@ pub(super) fn fit(time_s: &[f64], values: &[f64], near_s: f64, rest: Option<f64>
         tau_s: time(&|_, p| p[1].exp()),
         depth: p[4] - p[3],
         sd: sd(&taken),
-        seen: reached(model, p, time_s[time_s.len() - 1] - p[0]),
+        seen: Curve::new(model, p).reached(time_s[time_s.len() - 1] - p[0]),
         model,
     };
     let all = [course.onset_s, course.t50_s, course.t90_s, course.tau_s];
@@ -269,7 +287,8 @@ impl Fitted {
 /// Levenberg-Marquardt steps in the free parameters.
 fn refine(model: Model, time_s: &[f64], values: &[f64], start: Parameters, free: &[usize]) -> Option<Fitted> {
     let residuals = |p: &Parameters| -> Vec<f64> {
-        time_s.iter().zip(values).map(|(&t, value)| value - curve(model, p, t)).collect()
+        let curve = Curve::new(model, p);
+        time_s.iter().zip(values).map(|(&t, value)| value - curve.at(t)).collect()
     };
     let sum = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>();
     let allowed = |p: &Parameters| {
@@ -281,10 +300,14 @@ fn refine(model: Model, time_s: &[f64], values: &[f64], start: Parameters, free:
         third && TAUS_S.contains(&p[1].exp()) && p.iter().all(|part| part.is_finite())
     };
     let jacobian = |p: &Parameters, at: &[f64]| {
-        DMatrix::from_fn(values.len(), free.len(), |row, column| {
+        let moved = |&k: &usize| {
             let mut moved = *p;
-            moved[free[column]] += SMALL;
-            (at[row] - (values[row] - curve(model, &moved, time_s[row]))) / SMALL
+            moved[k] += SMALL;
+            Curve::new(model, &moved)
+        };
+        let moved: Vec<Curve> = free.iter().map(moved).collect();
+        DMatrix::from_fn(values.len(), free.len(), |row, column| {
+            (at[row] - (values[row] - moved[column].at(time_s[row]))) / SMALL
         })
     };
     let mut p = start;

@@ -5,7 +5,7 @@ use rand_distr::{Distribution, StandardNormal};
 use super::*;
 
 const RATE_HZ: f64 = 30.0;
-const SEEDS: u64 = 250;
+const SEEDS: u64 = 500;
 
 /// A press at 3 s and a release at 6 s, or none, in noise with first-order correlation `rho`.
 fn trace(step: f64, taus: [f64; 2], release_s: f64, rho: f64, until_s: f64, seed: u64) -> (Vec<f64>, Vec<f64>) {

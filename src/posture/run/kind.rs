@@ -88,7 +88,8 @@ impl Job for PostureJob {
             Part::if_wanted(OVERLAY, "overlay.mp4"),
             Part::if_wanted(PICTURES, "joints-angles.png"),
         ],
-    );
+    )
+    .revision(2);
 
     fn depends_on(&self, _said: &Said, demand: &Demand) -> serde_json::Value {
         let made: Vec<&str> = [TRACKS, OVERLAY, PICTURES].into_iter().filter(|part| demand.wants(part)).collect();

@@ -158,8 +158,8 @@ mod tests {
             };
             let [(few, few_own), (more, more_own)] = [0.8, 1.2].map(ratio).map(|[read, own]| (read, own));
             assert!((few - more).abs() <= 1e-4, "{transfer:?}: {few}, {more}");
-            // As read without: a tenth of what a press changes, and more.
-            assert!((few_own - more_own).abs() >= 0.01, "{transfer:?}: {few_own}, {more_own}");
+            // Read as they are, they change as in a slight press.
+            assert!((few_own - more_own).abs() >= 0.004, "{transfer:?}: {few_own}, {more_own}");
         }
     }
 }
