@@ -4,7 +4,7 @@
 //! are the nearest line above with as many, or LabChart's `ChannelTitle=`; a line of units between them and the rows
 //! goes to the names.
 
-use super::text::{a_name, cells_of, line_at, split};
+use super::split::{a_name, cells_of, line_at, split};
 use crate::log::lines::cell::{Numbers, bare};
 
 /// Lines that are looked at.
@@ -78,7 +78,7 @@ fn of_delimiter(lines: &[Line<'_>], delimiter: u8, whole: bool) -> Option<Result
         if cells.len() == count + 1 && cells.last().is_some_and(|last| matches!(&last[..], "" | "Comment")) {
             cells.truncate(count);
         }
-        if cells.len() != count || !cells.iter().any(a_name) {
+        if cells.len() != count || !cells.iter().any(|cell| a_name(cell)) {
             break;
         }
         if units.is_none() && cells.iter().all(|cell| cell.is_empty() || unit(cell).is_some()) {

@@ -9,9 +9,9 @@
 use std::path::Path;
 
 use super::preamble::{self, Found};
+use super::split::{a_name, cells_of, line_at, split};
 use crate::input;
 use crate::log::LogError;
-use crate::log::lines::cell::bare;
 
 /// Where the parts of a text file are.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -114,7 +114,9 @@ impl Layout {
             let (row, next) = line_at(text, at);
             if !matches!(row.trim_ascii(), [] | [b'#', ..]) {
                 let cells = cells_of(row, self.delimiter);
-                return self.names.len() > 1 && cells.len() == self.names.len() && !cells.iter().all(a_name);
+                return self.names.len() > 1
+                    && cells.len() == self.names.len()
+                    && !cells.iter().all(|cell| a_name(cell));
             }
             at = next;
         }
@@ -145,11 +147,11 @@ impl Layout {
         let mut notes: Vec<String> = separated(delimiter).into_iter().collect();
         let cells = cells_of(row, delimiter);
         let holds_others = false;
-        if cells.iter().any(a_name) {
+        if cells.iter().any(|cell| a_name(cell)) {
             return Ok(Self { delimiter, names: cells, body: next, lines_before: line, holds_others, notes });
         }
         let names = comment.map(|comment| cells_of(comment.trim_ascii(), delimiter));
-        match names.filter(|names| names.len() == cells.len() && names.iter().any(a_name)) {
+        match names.filter(|names| names.len() == cells.len() && names.iter().any(|cell| a_name(cell))) {
             Some(names) => {
                 notes.push("the columns' names are taken from the last line of the comment at the top".to_owned());
                 Ok(Self { delimiter, names, body: at, lines_before: line - 1, holds_others, notes })
@@ -167,20 +169,6 @@ fn separated(delimiter: u8) -> Option<String> {
     (delimiter != b',').then(|| format!("cells are separated by {}", if delimiter == b'\t' { "tabs" } else { "`;`" }))
 }
 
-/// Whether a cell may be a column's name.
-pub(super) fn a_name(cell: &String) -> bool {
-    !cell.is_empty()
-        && cell.replace(',', ".").parse::<f64>().is_err()
-        && !cell.starts_with(|c: char| c.is_ascii_digit())
-}
-
-/// The line that begins at `at`, without its end, and where the next one begins.
-pub(super) fn line_at(text: &[u8], at: usize) -> (&[u8], usize) {
-    let end = text[at..].iter().position(|&b| b == b'\n').map_or(text.len(), |n| at + n);
-    let row = text[at..end].strip_suffix(b"\r").unwrap_or(&text[at..end]);
-    (row, (end + 1).min(text.len()))
-}
-
 /// The line that a row stands in that may begin behind empty lines and comments: how many to go on from `at`.
 pub(in crate::log) fn lines_to_row(text: &[u8], mut at: usize) -> u64 {
     let mut lines = 0;
@@ -189,20 +177,6 @@ pub(in crate::log) fn lines_to_row(text: &[u8], mut at: usize) -> u64 {
         lines += 1;
     }
     lines
-}
-
-/// The names in a line.
-pub(super) fn cells_of(row: &[u8], delimiter: u8) -> Vec<String> {
-    split(row, delimiter).map(|cell| String::from_utf8_lossy(bare(cell)).replace("\"\"", "\"")).collect()
-}
-
-/// The parts of a line between delimiters that do not stand in double quotes.
-pub(super) fn split(row: &[u8], delimiter: u8) -> impl Iterator<Item = &[u8]> {
-    let mut quoted = false;
-    row.split(move |&b| {
-        quoted ^= b == b'"';
-        b == delimiter && !quoted
-    })
 }
 
 /// Tab, `;` or `,`: which one the header has and the first rows as often; of several the one that makes most columns.

@@ -1,0 +1,31 @@
+//! Text taken apart: lines, cells, names.
+
+use crate::log::lines::cell::bare;
+
+/// The line that begins at `at`, without its end, and where the next one begins.
+pub(in crate::log) fn line_at(text: &[u8], at: usize) -> (&[u8], usize) {
+    let end = text[at..].iter().position(|&b| b == b'\n').map_or(text.len(), |n| at + n);
+    let row = text[at..end].strip_suffix(b"\r").unwrap_or(&text[at..end]);
+    (row, (end + 1).min(text.len()))
+}
+
+/// The parts of a line between delimiters that do not stand in double quotes.
+pub(in crate::log) fn split(row: &[u8], delimiter: u8) -> impl Iterator<Item = &[u8]> {
+    let mut quoted = false;
+    row.split(move |&b| {
+        quoted ^= b == b'"';
+        b == delimiter && !quoted
+    })
+}
+
+/// The names in a line.
+pub(in crate::log) fn cells_of(row: &[u8], delimiter: u8) -> Vec<String> {
+    split(row, delimiter).map(|cell| String::from_utf8_lossy(bare(cell)).replace("\"\"", "\"")).collect()
+}
+
+/// Whether a cell may be a column's name.
+pub(in crate::log) fn a_name(cell: &str) -> bool {
+    !cell.is_empty()
+        && cell.replace(',', ".").parse::<f64>().is_err()
+        && !cell.starts_with(|c: char| c.is_ascii_digit())
+}
