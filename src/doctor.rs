@@ -68,12 +68,12 @@ pub struct Group {
     pub checks: Vec<Check>,
 }
 
-/// Examines everything; `out` is the folder that results are to go to.
+/// Examines everything; `out` is the folder that results are to go to; `is_slow`: the program was built for debugging.
 #[must_use]
-pub fn examine(out: &Path) -> Vec<Group> {
+pub fn examine(out: &Path, is_slow: bool) -> Vec<Group> {
     let group = |about: &str, checks: Vec<Check>| Group { about: about.to_owned(), checks };
     vec![
-        group("this program", program()),
+        group("this program", program(is_slow)),
         group("this machine", vec![threads(), memory(free_memory()), mouse()]),
         group("places to write to", [folder(out), vec![temporary()]].concat()),
         group("programs beside lunula", OTHERS.map(other).to_vec()),
@@ -92,7 +92,7 @@ fn bad(what: &str, found: impl Into<String>, remedy: impl Into<String>) -> Check
     Check { state: State::Bad, ..note(what, found, remedy) }
 }
 
-fn program() -> Vec<Check> {
+fn program(is_slow: bool) -> Vec<Check> {
     let _ = ffmpeg::init();
     let path = std::env::current_exe().map_or_else(|why| why.to_string(), |path| path.display().to_string());
     let version = |name: &str, packed: u32| format!("{name} {}.{}.{}", packed >> 16, (packed >> 8) & 255, packed & 255);
@@ -107,7 +107,7 @@ fn program() -> Vec<Check> {
     let no_encoder = CODECS.into_iter().filter(|(codec, _)| ffmpeg::encoder::find_by_name(codec.encoder()).is_none());
     vec![
         good("lunula", format!("{}, {path}", env!("CARGO_PKG_VERSION"))),
-        if cfg!(debug_assertions) {
+        if is_slow {
             note("build", "for debugging: slow", "build with --release to measure or to do much")
         } else {
             good("build", format!("optimized, for {}", std::env::consts::ARCH))

@@ -146,6 +146,8 @@ fn a_wrong_cell_is_named_with_file_line_and_column() {
             "log.csv:3: has 3 cells and the header 2; correct it; if numbers have decimal commas",
         ),
         ("time_s,P1,P2\n0,1\n0.1,1,2\n", "log.csv:2: has 2 cells and the header 3"),
+        ("time_s,P1,P2\n0,1\n0.1,1,2\n0.2,1,2\n0.3,1,2\n", "log.csv:2: has 2 cells and the header 3"),
+        ("time_s,P1\nOVERLOAD,---\n0.1,1\n0.2,1\n0.3,1\n", "log.csv:2: column `time_s`: `OVERLOAD` is no number"),
         ("time_s;P1\n0;1,5\n0,1;1.5\n", "log.csv:3: column `P1`: `1.5`: numbers have decimal points here"),
     ] {
         let error = error_of(text);

@@ -23,7 +23,7 @@ pub(super) struct DoctorArgs {
 
 pub(super) fn run(args: &DoctorArgs) -> anyhow::Result<Outcome> {
     let start = Instant::now();
-    let groups = examine(&args.out);
+    let groups = examine(&args.out, cfg!(debug_assertions));
     let bad = |check: &&Check| check.state == State::Bad;
     let wrong: Vec<&Check> = groups.iter().flat_map(|group| &group.checks).filter(bad).collect();
     for group in &groups {

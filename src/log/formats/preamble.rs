@@ -28,6 +28,13 @@ pub(super) struct Found {
     pub(super) units_line: Option<u64>,
 }
 
+impl Found {
+    /// Whether the names stand in this line, or units below them.
+    pub(super) fn fits_line(&self, line: u64) -> bool {
+        self.names_line == line || self.units_line.is_some()
+    }
+}
+
 /// A line that is neither empty nor a comment.
 struct Line<'a> {
     number: u64,

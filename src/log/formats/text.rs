@@ -12,6 +12,8 @@ use super::preamble::{self, Found};
 use super::split::{a_name, cells_of, line_at, split};
 use crate::input;
 use crate::log::LogError;
+use crate::log::naming::guess::role_of_name;
+use crate::log::naming::role::Role;
 
 /// Where the parts of a text file are.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -92,7 +94,14 @@ impl Layout {
                     if first.as_ref().is_ok_and(|layout| layout.fits(text)) {
                         return first;
                     }
+                    let [is_named, is_timed] = first.as_ref().map_or([false; 2], |layout| {
+                        let is_time = |name: &String| Role::of(name).or_else(|| role_of_name(name)) == Some(Role::Time);
+                        [layout.names.len() > 1, layout.names.iter().any(is_time)]
+                    });
                     return match preamble::find(text, declared) {
+                        // What does not fit is a row, and what is wrong with it is said as of any other.
+                        Some(Ok(found)) if is_timed && !found.fits_line(line) => first,
+                        Some(Err(_)) if is_named => first,
                         Some(Ok(found)) => Ok(Self::below(found, line)),
                         Some(Err(line)) => Err(format!(
                             "has no line of names above its rows, which begin in line {line}; write one such as \
