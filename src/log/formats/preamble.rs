@@ -116,7 +116,7 @@ fn of_delimiter(lines: &[Line<'_>], delimiter: u8, whole: bool) -> Option<Result
 }
 
 /// How many cells a line has that may be a row: two or more, the first not a word, half of them numbers.
-fn row_cells(line: &[u8], delimiter: u8) -> Option<usize> {
+pub(super) fn row_cells(line: &[u8], delimiter: u8) -> Option<usize> {
     let mut numbers = Numbers::of(delimiter);
     let cells: Vec<&[u8]> = split(line, delimiter).map(bare).collect();
     // A delimiter at the end makes no cell.

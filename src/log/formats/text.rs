@@ -8,7 +8,7 @@
 
 use std::path::Path;
 
-use super::preamble::{self, Found};
+use super::preamble::{self, Found, row_cells};
 use super::split::{a_name, cells_of, line_at, split};
 use crate::input;
 use crate::log::LogError;
@@ -94,14 +94,16 @@ impl Layout {
                     if first.as_ref().is_ok_and(|layout| layout.fits(text)) {
                         return first;
                     }
-                    let [is_named, is_timed] = first.as_ref().map_or([false; 2], |layout| {
+                    let (names, is_timed) = first.as_ref().map_or((0, false), |layout| {
                         let is_time = |name: &String| Role::of(name).or_else(|| role_of_name(name)) == Some(Role::Time);
-                        [layout.names.len() > 1, layout.names.iter().any(is_time)]
+                        (layout.names.len(), layout.names.iter().any(is_time))
                     });
+                    // A name and its value are two cells.
+                    let is_header = |found: &Found| is_timed || names > 2 && names == found.names.len();
                     return match preamble::find(text, declared) {
                         // What does not fit is a row, and what is wrong with it is said as of any other.
-                        Some(Ok(found)) if is_timed && !found.fits_line(line) => first,
-                        Some(Err(_)) if is_named => first,
+                        Some(Ok(found)) if is_header(&found) && !found.fits_line(line) => first,
+                        Some(Err(_)) if names > 1 => first,
                         Some(Ok(found)) => Ok(Self::below(found, line)),
                         Some(Err(line)) => Err(format!(
                             "has no line of names above its rows, which begin in line {line}; write one such as \
@@ -116,16 +118,14 @@ impl Layout {
         Err("has no line of names; a log begins with the names of its columns".to_owned())
     }
 
-    /// Whether the first row has as many cells as there are names, and a number among them.
+    /// Whether the first line below the names is a row with as many cells.
     fn fits(&self, text: &[u8]) -> bool {
         let mut at = self.body;
         while at < text.len() {
             let (row, next) = line_at(text, at);
             if !matches!(row.trim_ascii(), [] | [b'#', ..]) {
-                let cells = cells_of(row, self.delimiter);
-                return self.names.len() > 1
-                    && cells.len() == self.names.len()
-                    && !cells.iter().all(|cell| a_name(cell));
+                let cells = split(row, self.delimiter).count();
+                return self.names.len() > 1 && cells == self.names.len() && row_cells(row, self.delimiter).is_some();
             }
             at = next;
         }
