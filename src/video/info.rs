@@ -66,11 +66,13 @@ impl Info {
         }
     }
 
-    /// Codec, depth and HDR, for people.
+    /// What there is to decode, for people: frames, size, codec, depth, HDR.
     #[must_use]
-    pub fn coding(&self) -> String {
+    pub fn in_words(&self) -> String {
+        let frames = self.declared_frames.map_or("all frames".to_owned(), |frames| format!("{frames} frames"));
+        let Format { width, height, depth, .. } = self.format;
         let hdr = self.matrix.transfer.hdr().map_or(String::new(), |hdr| format!(", HDR ({hdr})"));
-        format!("{} of {} bits{hdr}", self.codec, self.format.depth)
+        format!("{frames}, {width} x {height}, {} of {depth} bits{hdr}", self.codec)
     }
 }
 

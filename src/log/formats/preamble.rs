@@ -4,7 +4,7 @@
 //! are the nearest line above with as many, or LabChart's `ChannelTitle=`; a line of units between them and the rows
 //! goes to the names.
 
-use super::split::{a_name, cells_of, line_at, split};
+use super::split::{Line, a_name, cells_of, lines_in_use, split};
 use crate::log::lines::cell::{Numbers, bare};
 
 /// Lines that are looked at.
@@ -35,27 +35,12 @@ impl Found {
     }
 }
 
-/// A line that is neither empty nor a comment.
-struct Line<'a> {
-    number: u64,
-    at: usize,
-    bytes: &'a [u8],
-}
-
 /// Looks for rows below other lines; `declared` is the only delimiter there may be. The error is the line of rows that
 /// have no names above them.
 pub(super) fn find(text: &[u8], declared: Option<u8>) -> Option<Result<Found, u64>> {
-    let mut lines = Vec::new();
-    let (mut at, mut number) = (0, 0);
-    while at < text.len() && lines.len() < MOST_LINES {
-        let (bytes, next) = line_at(text, at);
-        number += 1;
-        if !matches!(bytes.trim_ascii(), [] | [b'#', ..]) {
-            lines.push(Line { number, at, bytes });
-        }
-        at = next;
-    }
-    let whole = at >= text.len();
+    let mut all = lines_in_use(text);
+    let lines: Vec<Line<'_>> = all.by_ref().take(MOST_LINES).collect();
+    let whole = all.next().is_none();
     let delimiters = declared.map_or(vec![b'\t', b';', b','], |declared| vec![declared]);
     let found = delimiters.into_iter().filter_map(|delimiter| of_delimiter(&lines, delimiter, whole));
     found.max_by_key(|found| found.as_ref().map_or(0, |found| found.names.len()))

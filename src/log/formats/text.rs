@@ -9,10 +9,10 @@
 use std::path::Path;
 
 use super::preamble::{self, Found, row_cells};
-use super::split::{a_name, cells_of, line_at, split};
+use super::split::{Line, a_name, cells_of, line_at, lines_in_use, split};
 use crate::input;
 use crate::log::LogError;
-use crate::log::naming::guess::role_of_name;
+use crate::log::naming::guess::role_of;
 use crate::log::naming::role::Role;
 
 /// Where the parts of a text file are.
@@ -95,8 +95,8 @@ impl Layout {
                         return first;
                     }
                     let (names, is_timed) = first.as_ref().map_or((0, false), |layout| {
-                        let is_time = |name: &String| Role::of(name).or_else(|| role_of_name(name)) == Some(Role::Time);
-                        (layout.names.len(), layout.names.iter().any(is_time))
+                        let is_timed = layout.names.iter().any(|name| role_of(name) == Some(Role::Time));
+                        (layout.names.len(), is_timed)
                     });
                     // A name and its value are two cells.
                     let is_header = |found: &Found| is_timed || names > 2 && names == found.names.len();
@@ -120,16 +120,10 @@ impl Layout {
 
     /// Whether the first line below the names is a row with as many cells.
     fn fits(&self, text: &[u8]) -> bool {
-        let mut at = self.body;
-        while at < text.len() {
-            let (row, next) = line_at(text, at);
-            if !matches!(row.trim_ascii(), [] | [b'#', ..]) {
-                let cells = split(row, self.delimiter).count();
-                return self.names.len() > 1 && cells == self.names.len() && row_cells(row, self.delimiter).is_some();
-            }
-            at = next;
-        }
-        true
+        lines_in_use(&text[self.body..]).next().is_none_or(|Line { bytes, .. }| {
+            let cells = split(bytes, self.delimiter).count();
+            self.names.len() > 1 && cells == self.names.len() && row_cells(bytes, self.delimiter).is_some()
+        })
     }
 
     fn below(found: Found, first: u64) -> Self {

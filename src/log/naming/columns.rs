@@ -185,7 +185,7 @@ fn add_guesses(
 
 /// Whether a column of this name says when the LED was on.
 pub(in crate::log) fn is_led(name: &str) -> bool {
-    Role::of(name).or_else(|| guess::role_of_name(name)) == Some(Role::Led)
+    guess::role_of(name) == Some(Role::Led)
 }
 
 /// Where the column stands that the user calls `name`.

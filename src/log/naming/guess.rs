@@ -32,6 +32,11 @@ const TIMES: [&str; 23] = [
     "xvalue",
 ];
 
+/// The role of a name, the contract's or one like it.
+pub(in crate::log) fn role_of(name: &str) -> Option<Role> {
+    Role::of(name).or_else(|| role_of_name(name))
+}
+
 /// The role that a name suggests.
 pub(in crate::log) fn role_of_name(name: &str) -> Option<Role> {
     let words = words(name);

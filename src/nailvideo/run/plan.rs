@@ -25,10 +25,7 @@ pub(in crate::nailvideo) fn steps(
     options: &NailVideoOptions,
     outputs: Option<&Outputs>,
 ) -> Vec<Step> {
-    let decoding = info.map_or("all frames".to_owned(), |info| {
-        let frames = info.declared_frames.map_or("all frames".to_owned(), |frames| format!("{frames} frames"));
-        format!("{frames}, {} x {}, {}", info.format.width, info.format.height, info.coding())
-    });
+    let decoding = info.map_or("all frames".to_owned(), Info::in_words);
     let light = light_of(info.is_some_and(|info| info.grey), options);
     let asked = |runs: bool, option: &str| if runs { "asked for".to_owned() } else { format!("no {option}") };
     let frames = outputs.is_some_and(|outputs| outputs.frames);

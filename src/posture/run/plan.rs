@@ -54,7 +54,7 @@ pub(in crate::posture) fn steps(known: &Known<'_>, options: &PostureOptions, out
     };
     let figures = outputs.is_none_or(|o| o.figures);
     let mut steps = vec![
-        Step::new("decoding", true, known.info.map_or("all frames".to_owned(), decoding)),
+        Step::new("decoding", true, known.info.map_or("all frames".to_owned(), Info::in_words)),
         Step::new("markers tracked", true, tracked(known.layout, options)),
     ];
     steps.extend(known.layout.into_iter().flat_map(of_layout));
@@ -81,11 +81,6 @@ pub(in crate::posture) fn steps(known: &Known<'_>, options: &PostureOptions, out
 
 fn has_plane(layout: &Layout) -> bool {
     layout.camera.as_ref().is_some_and(|camera| camera.plane.is_some())
-}
-
-fn decoding(info: &Info) -> String {
-    let frames = info.declared_frames.map_or("all frames".to_owned(), |frames| format!("{frames} frames"));
-    format!("{frames}, {} x {}, {}", info.format.width, info.format.height, info.coding())
 }
 
 /// The names of the markers that the joints need, or do not.
