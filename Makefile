@@ -21,7 +21,7 @@ help:
 
 demo: system
 	@mkdir -p $(DEMO)
-	@echo "1 of 3: building lunula (4 to 10 minutes the first time)"
+	@echo "1 of 3: building lunula (4 to 15 minutes the first time)"
 	cargo build --release --locked
 	@echo "2 of 3: one scene for each job (half a minute)"
 	$(LUNULA) phantom photos --seed 1 --light chamber --out $(DEMO)/scene

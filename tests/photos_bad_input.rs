@@ -225,6 +225,39 @@ fn colour_and_grey_in_a_pose_are_warned_of() {
     dir.lunula(&["photos", "set", "--out", "out"]).expect(0).says("pose `set` mixes 3 colour and 1 grey photograph(s)");
 }
 
+/// A nail with a colour profile: its samples are the same as without.
+fn nail_with(dir: &Dir, subject: &str, profile: &moxcms::ColorProfile) {
+    let file = std::fs::File::create(dir.place(&format!("set/{subject}.png"))).expect("a file");
+    let mut encoder = image::codecs::png::PngEncoder::new(file);
+    let bytes = profile.encode().expect("a profile");
+    image::ImageEncoder::set_icc_profile(&mut encoder, bytes).expect("PNG holds profiles");
+    image::DynamicImage::from(drawn_nail()).write_with_encoder(encoder).expect("a picture");
+    dir.write(&format!("set/{subject}.json"), drawn_labels());
+}
+
+#[test]
+fn photographs_of_several_colour_profiles_are_warned_of() {
+    let dir = good_set();
+    let mixed = "the set mixes colour profiles";
+    nail_with(&dir, "d", &moxcms::ColorProfile::new_srgb());
+    assert!(!dir.lunula(&["photos", "set", "--out", "out"]).expect(0).stderr.contains(mixed));
+    nail_with(&dir, "e", &moxcms::ColorProfile::new_display_p3());
+    let answer = dir.lunula(&["photos", "set", "--out", "out"]).expect(0);
+    answer.says(mixed).says("4 photograph(s) of sRGB or none (a.png first)").says("1 photograph(s) of Display P3");
+    let bytes = dir.bytes_of("out");
+    assert!(bytes["normalized/set/e.png"] == bytes["normalized/set/a.png"], "values are as the file encodes them");
+}
+
+#[test]
+fn a_curve_that_is_not_srgb_s_is_not_undone() {
+    let dir = good_set();
+    nail_with(&dir, "d", &moxcms::ColorProfile::new_pro_photo_rgb());
+    nail_with(&dir, "e", &moxcms::ColorProfile::new_display_p3());
+    let answer = dir.lunula(&["photos", "set", "--linear", "--out", "out"]).expect(1);
+    answer.says("failed: d.png: has the colour profile `ProPhoto RGB`, whose curve is not sRGB's");
+    assert_eq!(used(&dir), ["a", "b", "c", "e"]);
+}
+
 #[test]
 fn nothing_to_do_is_said_with_what_was_looked_for() {
     let dir = Dir::new();

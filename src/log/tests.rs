@@ -86,10 +86,17 @@ fn dialects_read_alike() {
     let above = "LabVIEW Measurement\t\nWriter_Version\t2\nDate\t2026/11/20\n***End_of_Header***\t\n\t\n\
                  Samples\t2\t2\nX0\t0.0E+0\t0.0E+0\nDelta_X\t0.5\t0.5\n***End_of_Header***\t\t\n";
     let labview = format!("{above}X_Value\tP1\tFz_N\tComment\n0.0\t1.5\t-1.0\tgo\n0.5\t2.5\t-2.0\n");
-    same("log.lvm", labview.replace("go", "").as_bytes(), &[&["tabs"], &["line 10", "above"], &["`X_Value`"]]);
+    for comment in ["go", ""] {
+        let labview = labview.replace("go", comment);
+        same("log.lvm", labview.as_bytes(), &[&["tabs"], &["line 10", "above"], &["`X_Value`"]]);
+    }
     let labchart = "Interval=\t0.5 s\nTimeFormat=\tStartOfBlock\nChannelTitle=\tP1\tFz_N\nRange=\t10 V\t20 N\n";
     let rows = "0\t1.5\t-1\n0.5\t2.5\t-2\n";
-    same("chart.txt", format!("{labchart}{rows}").as_bytes(), &[&["tabs"], &["line 3"], &["`Time`"]]);
+    let notes: [&[&str]; 3] = [&["tabs"], &["line 3"], &["`Time`"]];
+    same("chart.txt", format!("{labchart}{rows}").as_bytes(), &notes);
+    let commented = rows.replace("-1", "-1\t#* pressed");
+    same("commented.txt", format!("{labchart}{commented}").as_bytes(), &notes);
+    same("behind.csv", b"time_s,P1,Fz_N\n0,1.5,-1\n0.5,2.5,-2,#* pressed\n", &[]);
     let scope = b"Logger 7\nRate: 2 Hz\n\nTime,P1,Fz_N\n(ms),(V),(N)\n\n0,1.5,-1\n500,2.5,-2\n";
     let notes: [&[&str]; 4] = [&["line 4"], &["units", "line 5"], &["`Time (ms)`"], &["`P1 (V)`"]];
     same("scope.csv", scope, &notes);

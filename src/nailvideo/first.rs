@@ -179,7 +179,7 @@ pub(in crate::nailvideo) fn upright(frame: &Frame<'_>, info: &Info) -> Photograp
     let picture = RgbImage::from_fn(width as u32, height as u32, |x, y| {
         image::Rgb(colours.at([f64::from(x), f64::from(y)]).map(|part| (255.0 * part).round().clamp(0.0, 255.0) as u8))
     });
-    Photograph { image: DynamicImage::ImageRgb8(picture), orientation: Orientation::NoTransforms }
+    Photograph { image: DynamicImage::ImageRgb8(picture), orientation: Orientation::NoTransforms, profile: None }
 }
 
 /// The mask named as the video in a folder.

@@ -21,7 +21,7 @@ pub use crate::photo::run::job::run;
 pub use crate::photo::run::kind::MapsJob;
 pub use crate::photo::run::plan::plan;
 pub use crate::photo::run::report::{PhotosFigures, PhotosReport, PoseCount};
-pub use crate::photograph::{Depth, MOST_MEGAPIXELS, Photograph, ReadFault};
+pub use crate::photograph::{Depth, MOST_MEGAPIXELS, Photograph, Profile, ReadFault};
 pub use channels::{ChannelDifference, ChannelFigures, ChannelRow, Estimate, ZonesOf};
 pub use error::{MergeError, PhotosError};
 pub use normalize::{

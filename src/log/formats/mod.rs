@@ -3,7 +3,7 @@
 pub(in crate::log) mod parquet;
 mod preamble;
 pub(in crate::log) mod raw;
-mod split;
+pub(in crate::log) mod split;
 pub(in crate::log) mod text;
 #[cfg(feature = "xdf")]
 pub(in crate::log) mod xdf;

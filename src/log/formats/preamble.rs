@@ -4,7 +4,7 @@
 //! are the nearest line above with as many, or LabChart's `ChannelTitle=`; a line of units between them and the rows
 //! goes to the names.
 
-use super::split::{Line, a_name, cells_of, lines_in_use, split};
+use super::split::{Line, a_name, cells_of, is_comment, is_comments, lines_in_use, split};
 use crate::log::lines::cell::{Numbers, bare};
 
 /// Lines that are looked at.
@@ -48,12 +48,14 @@ pub(super) fn find(text: &[u8], declared: Option<u8>) -> Option<Result<Found, u6
 
 fn of_delimiter(lines: &[Line<'_>], delimiter: u8, whole: bool) -> Option<Result<Found, u64>> {
     let counts: Vec<Option<usize>> = lines.iter().map(|line| row_cells(line.bytes, delimiter)).collect();
-    let is_first = |k: &usize| {
-        let running = counts[*k..].iter().take(ROWS).take_while(|count| **count == counts[*k]).count();
-        counts[*k].is_some() && (running == ROWS || running == 2 && whole && *k + 2 == lines.len())
+    // A row with a comment in a column of comments has a cell more than those without.
+    let rows_from = |k: usize| {
+        let running: Option<Vec<usize>> = counts[k..].iter().take(ROWS).copied().collect();
+        let running = running.filter(|rows| rows.len() == ROWS || rows.len() == 2 && whole)?;
+        let least = *running.iter().min()?;
+        running.iter().all(|count| count - least <= 1).then_some((k, least))
     };
-    let first = (0..lines.len()).find(is_first)?;
-    let count = counts[first]?;
+    let (first, count) = (0..lines.len()).find_map(rows_from)?;
     let (mut names, mut names_line, mut units) = (None, 0, None);
     for line in lines[..first].iter().rev() {
         let mut cells = cells_of(line.bytes, delimiter);
@@ -66,11 +68,9 @@ fn of_delimiter(lines: &[Line<'_>], delimiter: u8, whole: bool) -> Option<Result
             cells[0] = "Time".to_owned();
             cells.resize(count, String::new());
         }
-        // LabVIEW's column of comments, which rows without one leave out.
-        if cells.len() == count + 1 && cells.last().is_some_and(|last| matches!(&last[..], "" | "Comment")) {
-            cells.truncate(count);
-        }
-        if cells.len() != count || !cells.iter().any(|cell| a_name(cell)) {
+        let is_longer =
+            cells.len() == count + 1 && cells.last().is_some_and(|last| last.is_empty() || is_comments(last));
+        if cells.len() != count && !is_longer || !cells.iter().any(|cell| a_name(cell)) {
             break;
         }
         if units.is_none() && cells.iter().all(|cell| cell.is_empty() || unit(cell).is_some()) {
@@ -104,8 +104,8 @@ fn of_delimiter(lines: &[Line<'_>], delimiter: u8, whole: bool) -> Option<Result
 pub(super) fn row_cells(line: &[u8], delimiter: u8) -> Option<usize> {
     let mut numbers = Numbers::of(delimiter);
     let cells: Vec<&[u8]> = split(line, delimiter).map(bare).collect();
-    // A delimiter at the end makes no cell.
-    let count = cells.len() - usize::from(cells.last().is_some_and(|cell| cell.is_empty()));
+    // A delimiter at the end makes no cell, nor does a comment.
+    let count = cells.len() - usize::from(cells.last().is_some_and(|cell| cell.is_empty() || is_comment(cell)));
     let [first, ..] = cells[..] else { return None };
     let known = cells[..count].iter().filter(|cell| numbers.read(cell).is_ok_and(f64::is_finite)).count();
     let stands = first.is_empty() || first[0].is_ascii_digit() || b"+-.".contains(&first[0]);

@@ -45,6 +45,16 @@ pub(in crate::log) fn cells_of(row: &[u8], delimiter: u8) -> Vec<String> {
     split(row, delimiter).map(|cell| String::from_utf8_lossy(bare(cell)).replace("\"\"", "\"")).collect()
 }
 
+/// Whether a cell behind a row's own is a comment, as LabChart writes it.
+pub(in crate::log) fn is_comment(cell: &[u8]) -> bool {
+    cell.starts_with(b"#")
+}
+
+/// Whether a column holds comments, as LabVIEW's last: rows without one leave it out.
+pub(in crate::log) fn is_comments(name: &str) -> bool {
+    name.eq_ignore_ascii_case("comment")
+}
+
 /// Whether a cell may be a column's name.
 pub(in crate::log) fn a_name(cell: &str) -> bool {
     !cell.is_empty()

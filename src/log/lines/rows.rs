@@ -1,12 +1,14 @@
 //! The rows of a text file: cells to numbers, stamps and LED states, each fault with its line and column.
 //!
-//! Rows have as many cells as the header; empty ones at a row's end may be too many. The last row, if it is cut off (a
-//! logger that was stopped), is left out and reported.
+//! Rows have as many cells as the header; empty ones and comments (`#* pressed harder`, as LabChart writes them) at a
+//! row's end may be too many, a column of comments may be missing. The last row, if it is cut off (a logger that was
+//! stopped), is left out and reported.
 
 use std::path::Path;
 
 use crate::log::LogError;
 use crate::log::formats::raw::{Raw, RowWord, place};
+use crate::log::formats::split::{is_comment, is_comments};
 use crate::log::formats::text::{self, Layout};
 use crate::log::lines::cell::shown;
 use crate::log::lines::cell::{self, Numbers, bare};
@@ -130,9 +132,11 @@ impl Rows<'_> {
         if (0..row.len()).all(blank) && row.len() <= 1 {
             return Ok(Length::Blank);
         }
-        let missing_are_nameless = row.len() < names.len() && names[row.len()..].iter().all(String::is_empty);
+        let may_miss = |name: &String| name.is_empty() || is_comments(name);
+        let missing_may_be = row.len() < names.len() && names[row.len()..].iter().all(may_miss);
         let used = self.choice.columns.iter().all(|&(_, column)| column < row.len());
-        if (names.len()..row.len()).all(blank) && row.len() > names.len() || missing_are_nameless && used {
+        let beyond = |k: usize| blank(k) || is_comment(bare(&row[k]));
+        if (names.len()..row.len()).all(beyond) && row.len() > names.len() || missing_may_be && used {
             return Ok(Length::Right);
         }
         if row.len() < names.len() && last {

@@ -28,7 +28,7 @@ use crate::photo::run::plan::{Foreknown, left_out};
 use crate::photo::run::report::{Findings, HTML, PhotosReport, PoseCount, of_photos};
 use crate::photo::set::{Photo, PhotoSet, SetFault};
 use crate::photo::sums::{Batch, Member, Members};
-use crate::photograph::{MOST_MEGAPIXELS, PhotoBuffer, Photograph};
+use crate::photograph::{MOST_MEGAPIXELS, PhotoBuffer, Photograph, Profile};
 use crate::stages::Stages;
 
 /// Longest side of a thumbnail, pixels.
@@ -76,7 +76,7 @@ pub fn run(
     let (mut poses, mut without_maps, mut drawn_poses) = (Vec::new(), Vec::new(), Vec::new());
     let mut members = Members::new(options.normalization);
     for (photo, one) in set.photos.iter().zip(done) {
-        findings.add(photo, one.grey, one.largest);
+        findings.add(photo, one.grey, one.largest, one.profile.as_ref());
         findings.drawn_elsewhere.extend(one.drawn_on.map(|other| (photo, other)));
         foreknown.push(Foreknown { pose: photo.pose.clone(), grey: one.grey, outlines: one.outlines });
         for (row, thumbnail) in one.nails {
@@ -190,6 +190,7 @@ struct Done {
     grey: Option<bool>,
     /// The largest sample as stored, of 16 bits.
     largest: Option<u16>,
+    profile: Option<Profile>,
     /// Its nails in red, green and blue, where channels are compared and it has some.
     cells: Option<Cells>,
     fault: Option<SetFault>,
@@ -273,6 +274,7 @@ impl Work<'_> {
             outlines: self.options.outlines.locate(photo),
             grey: None,
             largest: None,
+            profile: None,
             cells: None,
             fault: None,
             drawn_on: None,
@@ -286,7 +288,11 @@ impl Work<'_> {
             Err(why) => return Ok(Done { fault: fault(why.to_string()), ..done }),
         };
         let largest = picture.largest_of_16_bits();
-        if let Some(Err(why)) = self.options.normalization.white.map(|white| picture.stretch_to(white)) {
+        let with = &self.options.normalization;
+        if let Some(Err(why)) = with.white.map(|white| picture.stretch_to(white)) {
+            return Ok(Done { fault: fault(why.to_string()), ..done });
+        }
+        if let Some(Err(why)) = with.linear.then(|| picture.has_srgb_curve()) {
             return Ok(Done { fault: fault(why.to_string()), ..done });
         }
         let nails = self.stages.time("outline", || self.options.outlines.nails(&done.outlines, &picture));
@@ -356,6 +362,7 @@ impl Work<'_> {
         }
         pictures.drain(..).for_each(|picture| normalizer.take_back(picture));
         (done.grey, done.largest) = (Some(picture.is_grey()), largest);
+        done.profile = picture.profile.take();
         if self.outputs.compares_channels(self.options) && done.grey == Some(false) && done.fault.is_none() {
             let used = done.nails.iter().filter(|(row, _)| row.normalized.is_some());
             let frames: Vec<NailFrame> = used.filter_map(|(row, _)| row.frame).collect();

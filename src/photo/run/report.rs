@@ -20,6 +20,7 @@ use crate::photo::pose::sort_by_pose;
 use crate::photo::results::{DrawnSheet, NAIL_COLUMNS, NailRow, NailTable};
 use crate::photo::set::{Photo, PhotoSet, SetFault};
 use crate::photo::sums::{Partials, Sums};
+use crate::photograph::Profile;
 use crate::stages::Stage;
 
 /// Where the report goes among the results.
@@ -98,7 +99,17 @@ pub(in crate::photo) struct Findings<'a> {
     colours: BTreeMap<&'a str, [usize; 2]>,
     /// How many photographs of 16 bits, and their largest sample.
     sixteen: (usize, u16),
+    /// Photographs by the name of their colour profile, sRGB and none having no name.
+    profiles: BTreeMap<Option<String>, Encoded<'a>>,
     without_maps: Vec<String>,
+}
+
+/// Photographs of one colour profile.
+struct Encoded<'a> {
+    count: usize,
+    first: &'a str,
+    /// See [`Profile::skin_green`].
+    skin_green: f32,
 }
 
 impl<'a> Findings<'a> {
@@ -114,14 +125,25 @@ impl<'a> Findings<'a> {
             drawn_elsewhere: Vec::new(),
             colours: BTreeMap::new(),
             sixteen: (0, 0),
+            profiles: BTreeMap::new(),
             without_maps: Vec::new(),
         }
     }
 
-    /// A photograph: whether it is grey, and its largest sample of 16 bits.
-    pub(in crate::photo) fn add(&mut self, photo: &'a Photo, grey: Option<bool>, largest: Option<u16>) {
+    /// A photograph: whether it is grey (not known where none of it was used), its largest sample of 16 bits, whose
+    /// colours it has.
+    pub(in crate::photo) fn add(
+        &mut self,
+        photo: &'a Photo,
+        grey: Option<bool>,
+        largest: Option<u16>,
+        profile: Option<&Profile>,
+    ) {
         if let Some(grey) = grey {
             self.colours.entry(&photo.pose).or_default()[usize::from(grey)] += 1;
+            let skin_green = profile.map_or(0.0, |profile| profile.skin_green);
+            let encoded = Encoded { count: 0, first: &photo.file, skin_green };
+            self.profiles.entry(profile.map(|profile| profile.name.clone())).or_insert(encoded).count += 1;
         }
         if let Some(largest) = largest {
             self.sixteen = (self.sixteen.0 + 1, self.sixteen.1.max(largest));
@@ -141,7 +163,13 @@ impl<'a> Findings<'a> {
         let files = self.set.photos.iter().filter(|photo| seen.insert(&photo.path));
         let copies = copies(files.map(|photo| (photo.file.clone(), photo.path.as_path())));
         let elsewhere = self.drawn_on_others();
-        self.mixed_poses().chain(self.few_bits()).chain(without).chain(copies).chain(elsewhere).collect()
+        self.mixed_poses()
+            .chain(self.mixed_profiles())
+            .chain(self.few_bits())
+            .chain(without)
+            .chain(copies)
+            .chain(elsewhere)
+            .collect()
     }
 
     /// Outlines that were taken for another photograph's.
@@ -166,6 +194,24 @@ impl<'a> Findings<'a> {
             format!(
                 "pose `{pose}` mixes {colour} colour and {grey} grey photograph(s): grey values equal the green \
                  channel only where a green filter was used; else make maps of each kind apart"
+            )
+        })
+    }
+
+    /// Values are as the file encodes them, so photographs of several profiles are not comparable to the last bit.
+    fn mixed_profiles(&self) -> Option<String> {
+        let kind = |(name, of): (&Option<String>, &Encoded<'_>)| {
+            let name = name.as_deref().map_or("sRGB or none".to_owned(), |name| {
+                format!("{name}, green of skin {:+.1} of 255 against sRGB's", of.skin_green)
+            });
+            format!("{} photograph(s) of {name} ({} first)", of.count, of.first)
+        };
+        let kinds: Vec<String> = self.profiles.iter().map(kind).collect();
+        (kinds.len() > 1).then(|| {
+            format!(
+                "the set mixes colour profiles: {}; values are as the files encode them: export all as sRGB, or make \
+                 maps of each kind apart",
+                kinds.join("; ")
             )
         })
     }

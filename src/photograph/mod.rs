@@ -4,6 +4,8 @@
 //! EXIF orientation applied once, 8 or 16 bits a channel as in the file, grey or colour. A truncated JPEG decodes
 //! "successfully", grey where the data ends, in most decoders: here its end-of-image marker is looked for first.
 
+mod profile;
+
 use std::fs::File;
 use std::io::{Cursor, Read};
 use std::path::Path;
@@ -13,6 +15,8 @@ use image::{ColorType, DynamicImage, ImageBuffer, ImageDecoder, ImageFormat, Ima
 use thiserror::Error;
 
 use crate::input::in_words;
+
+pub use profile::Profile;
 
 /// Endings of the files that are taken as photographs.
 pub(crate) const PICTURES: [&str; 6] = ["png", "jpg", "jpeg", "tif", "tiff", "bmp"];
@@ -75,6 +79,12 @@ pub enum ReadFault {
         /// What white is.
         white: u16,
     },
+    /// sRGB's curve is to be undone where it was not used.
+    #[error(
+        "has the colour profile `{0}`, whose curve is not sRGB's, which --linear undoes; export it as sRGB, or leave \
+         out --linear"
+    )]
+    OtherCurve(String),
     /// A kind of TIFF or the like that the decoder does not know: CIELab, YCbCr, floating point.
     #[error("cannot be decoded ({0}); export it with 8 or 16 bits, in grey or RGB, as PNG, TIFF, BMP or JPEG")]
     Unsupported(image::ImageError),
@@ -107,6 +117,8 @@ pub struct Photograph {
     pub image: DynamicImage,
     /// What was done to the stored pixels to make them upright.
     pub orientation: Orientation,
+    /// Whose colours the samples are, where they are not sRGB's. Samples are as the file encodes them all the same.
+    pub profile: Option<Profile>,
 }
 
 /// Memory that goes from photograph to photograph, so that it is not taken from the system, and cleared by it, each
@@ -184,6 +196,7 @@ impl Photograph {
             return Err(ReadFault::Truncated);
         }
         let orientation = decoder.orientation()?;
+        let profile = Profile::of(&mut decoder);
         if !is_supported(decoder.color_type()) {
             return Err(ReadFault::Samples(decoder.color_type()));
         }
@@ -196,7 +209,7 @@ impl Photograph {
         }
         .expect("as many samples as the decoder says");
         image.apply_orientation(orientation);
-        Ok(Self { image, orientation })
+        Ok(Self { image, orientation, profile })
     }
 
     /// The largest sample of a photograph of 16 bits, opacity apart; `None` of 8 bits.
@@ -238,6 +251,17 @@ impl Photograph {
             _ => {}
         }
         Ok(())
+    }
+
+    /// Whether sRGB's curve may be undone.
+    ///
+    /// # Errors
+    /// [`ReadFault::OtherCurve`].
+    pub fn has_srgb_curve(&self) -> Result<(), ReadFault> {
+        match self.profile.as_ref().filter(|profile| profile.has_other_curve()) {
+            Some(profile) => Err(ReadFault::OtherCurve(profile.name.clone())),
+            None => Ok(()),
+        }
     }
 
     /// Width and height of the stored (not yet upright) picture, pixels.
@@ -485,14 +509,14 @@ mod tests {
     fn twelve_bits_are_stretched_to_sixteen() {
         let pixels = image::ImageBuffer::from_vec(2, 1, vec![4095_u16, 0, 2048, 9, 7, 6, 1, 65_535]);
         let image = DynamicImage::ImageRgba16(pixels.expect("eight samples"));
-        let mut photograph = Photograph { image, orientation: Orientation::NoTransforms };
+        let mut photograph = Photograph { image, orientation: Orientation::NoTransforms, profile: None };
         assert_eq!(photograph.largest_of_16_bits(), Some(4095));
         assert!(matches!(photograph.stretch_to(4094), Err(ReadFault::AboveWhite { largest: 4095, white: 4094 })));
         photograph.stretch_to(4095).expect("within");
         let samples = photograph.image.as_rgba16().expect("as before").as_raw();
         assert_eq!(samples[..], [65_535, 0, 32_776, 9, 112, 96, 16, 65_535]);
         let image = image::GrayImage::new(1, 1).into();
-        let mut eight = Photograph { image, orientation: Orientation::NoTransforms };
+        let mut eight = Photograph { image, orientation: Orientation::NoTransforms, profile: None };
         assert!(matches!(eight.stretch_to(255), Err(ReadFault::WhiteOfEight)));
     }
 
