@@ -197,19 +197,31 @@ fn hdr_has_the_angles_and_colours_of_ordinary_video() {
         (dir, colours)
     };
     let (_, ordinary) = suggested(&[]);
-    let (dir, colours) = suggested(&["--matrix", "hlg", "--depth", "10"]);
-    // The marker file has the colours of ordinary video.
-    posture(&dir, &["--overlay", "drawn.mp4"]).expect(0).says("HDR (hybrid log-gamma)");
-    is_accurate(&dir, &["J1", "J2", "J3"]);
-    let level = |hex: &str, k: usize| i32::from_str_radix(&hex[2 * k..2 * k + 2], 16).expect("a colour");
-    let is_near = |a: &str, b: &str| (0..3).all(|k| (level(a, k) - level(b, k)).abs() <= 24);
-    // In HDR skin and the paints next to it in hue differ less: pink and yellow are not found.
-    assert!(colours.len() >= 6, "{ordinary:?} {colours:?}");
-    for colour in &colours {
-        assert!(ordinary.iter().any(|one| is_near(one, colour)), "{colour} {ordinary:?}");
+    for (matrix, name) in [("hlg", "HDR (hybrid log-gamma)"), ("pq", "HDR (perceptual quantizer)")] {
+        let (dir, colours) = suggested(&["--matrix", matrix, "--depth", "10"]);
+        // The marker file has the colours of ordinary video.
+        let answer = posture(&dir, &["--overlay", "drawn.mp4", "--json"]).expect(0);
+        assert!(answer.stdout.contains(name), "{}", answer.stdout);
+        let (found, truth) = (dir.table("joints.csv"), dir.table("scene/truth/joints.csv"));
+        for (joint, bound) in [("J1", 0.3), ("J2", 0.7), ("J3", 1.0)] {
+            // Cyan paint, as bright as skin, is lost in some frames: HDR's chroma is coarser.
+            let (error, count) = rms(&found, &truth, joint);
+            println!("{matrix} {joint}: {error} degrees in {count} of {} frames", truth.len());
+            assert!(error <= bound && count + 5 >= truth.len(), "{matrix} {joint}: {error}, {count} frames");
+        }
+        let level = |hex: &str, k: usize| i32::from_str_radix(&hex[2 * k..2 * k + 2], 16).expect("a colour");
+        let is_near = |a: &str, b: &str| (0..3).all(|k| (level(a, k) - level(b, k)).abs() <= 24);
+        println!("{matrix}: {colours:?} {ordinary:?}");
+        assert_eq!(colours.len(), ordinary.len(), "{matrix}: {colours:?} {ordinary:?}");
+        for colour in &colours {
+            assert!(ordinary.iter().any(|one| is_near(one, colour)), "{matrix}: {colour} {ordinary:?}");
+        }
+        // What is drawn on is ordinary video.
+        let info = |name: &str| lunula::video::Video::open(&dir.path(name), 1).expect("a video").info().clone();
+        let (drawn, filmed) = (info("drawn.mp4"), info("scene/video.mp4"));
+        assert!(drawn.hdr.is_none() && filmed.hdr.is_some());
+        assert_eq!(drawn.matrix, filmed.matrix);
     }
-    let matrix = |name: &str| lunula::video::Video::open(&dir.path(name), 1).expect("a video").info().matrix;
-    assert_eq!(matrix("drawn.mp4"), matrix("scene/video.mp4"));
 }
 
 #[test]

@@ -2,8 +2,8 @@
 //!
 //! Samples are taken as the file encodes them, whatever its profile says: so do OpenCV and MATLAB, and so did the
 //! thesis. Within a set that is of one profile it does no harm. Green of skin is 2.6 of 255 higher in Display P3
-//! (phones) than in sRGB, so a set that mixes profiles differs by them; and sRGB's curve may be undone only where it was
-//! used.
+//! (phones) than in sRGB, so a set that mixes profiles differs by them; and sRGB's curve may be undone only where it
+//! was used.
 
 use image::ImageDecoder;
 use moxcms::{ColorProfile, DataColorSpace, Layout, ProfileText, TransformOptions};

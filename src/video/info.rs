@@ -19,8 +19,10 @@ pub struct Info {
     pub turn: Turn,
     /// Width of a sample over its height.
     pub pixel_aspect: f64,
-    /// The colour matrix, range and transfer function.
+    /// The colour matrix and range of the frames as they are handed out.
     pub matrix: Matrix,
+    /// Which HDR the file is in, of which frames are made ordinary ones.
+    pub hdr: Option<&'static str>,
     /// The file does not say which matrix; BT.709 is taken from 720 rows on, else BT.601.
     pub matrix_assumed: bool,
     /// Where the header says that chroma samples lie, in luma samples right of and below the block's first luma sample.
@@ -53,6 +55,7 @@ impl Info {
             turn: Turn::None,
             pixel_aspect: 1.0,
             matrix: Matrix::BT709,
+            hdr: None,
             matrix_assumed: true,
             chroma_site: None,
             codec: "unknown".into(),
@@ -71,12 +74,19 @@ impl Info {
     pub fn in_words(&self) -> String {
         let frames = self.declared_frames.map_or("all frames".to_owned(), |frames| format!("{frames} frames"));
         let Format { width, height, depth, .. } = self.format;
-        let hdr = self.matrix.transfer.hdr().map_or(String::new(), |hdr| format!(", HDR ({hdr})"));
+        let hdr = self.hdr.map_or(String::new(), |hdr| format!(", HDR ({hdr})"));
         format!("{frames}, {width} x {height}, {} of {depth} bits{hdr}", self.codec)
+    }
+
+    /// A report's note on HDR.
+    #[must_use]
+    pub fn hdr_note(&self) -> Option<String> {
+        self.hdr.map(|hdr| format!("the video is HDR ({hdr}): it is read as an ordinary camera would have filmed it"))
     }
 }
 
-/// Reads it off the stream and the first frame; `planes` is the same frame as it is handed out. The error is words for
+/// Reads it off the stream and the first frame; `planes` is the same frame in a layout that is read. The matrix is the
+/// file's own, also in HDR. The error is words for
 /// the user.
 pub(super) fn info(
     source: &Source,
@@ -111,6 +121,7 @@ pub(super) fn info(
         turn,
         pixel_aspect: aspect(first.aspect_ratio()).or_else(|| aspect(source.decoder.aspect_ratio())).unwrap_or(1.0),
         matrix,
+        hdr: matrix.transfer.hdr(),
         matrix_assumed,
         chroma_site: chroma_site(first.chroma_location()).filter(|_| subsampling.is_some() && converted.is_none()),
         codec: source.codec.name().to_owned(),

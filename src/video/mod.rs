@@ -1,9 +1,9 @@
 //! Video files: frames with their own time and their own planes in, frames with given times out.
 //!
 //! A [`Video`] gives [`Frame`]s in the order of presentation, each with the time that its container gives it and with
-//! its Y', Cb and Cr samples as they were decoded: nothing is converted, nothing copied. Frames and coordinates are
-//! those of the *stored* picture; [`Turn`] leads from there to the picture as it is shown (upright). The centre of the
-//! top-left sample of the luma is (0, 0), x to the right, y down.
+//! its Y', Cb and Cr samples as they were decoded: nothing is converted, nothing copied; HDR is made ordinary video.
+//! Frames and coordinates are those of the *stored* picture; [`Turn`] leads from there to the picture as it is shown
+//! (upright). The centre of the top-left sample of the luma is (0, 0), x to the right, y down.
 
 mod colour;
 mod error;

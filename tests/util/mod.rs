@@ -68,8 +68,8 @@ impl Json for serde_json::Value {
     }
 }
 
-/// A phantom's video is encoded as fast as a camera does, unless a test says how: `medium`, the default, took a sixth of
-/// these tests' time.
+/// A phantom's video is encoded as fast as a camera does, unless a test says how: `medium`, the default, took a sixth
+/// of these tests' time.
 fn fast_encoding(arguments: &[&str]) -> &'static [&'static str] {
     match arguments {
         ["phantom", "video" | "nailvideo", options @ ..] if !options.contains(&"--x264") => &["--x264", "veryfast"],

@@ -398,9 +398,7 @@ impl Job<'_> {
             ..Report::new("nailvideo", watch, figures)
         };
         report.notes.push(format!("presses.csv: {USE}"));
-        if let Some(hdr) = self.info.matrix.transfer.hdr() {
-            report.notes.push(format!("the video is HDR ({hdr}): its colours are read as ordinary video has them"));
-        }
+        report.notes.extend(self.info.hdr_note());
         if self.info.grey && self.options.light.is_none() {
             report.warnings.push("the video is grey: light is not taken off (--light none)".to_owned());
         }

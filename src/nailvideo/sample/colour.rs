@@ -5,7 +5,7 @@ use wide::f32x4;
 use super::region::Group;
 use crate::nailvideo::affine::Affine;
 use crate::nailvideo::grid::{Grid, Part, samples, shown_size};
-use crate::video::{Frame, Info, Matrix, Transfer, Turn};
+use crate::video::{Frame, Info, Matrix, Turn};
 
 /// Where a file that does not say so has its chroma samples: on the left, as H.264 and HEVC say.
 const SITE: (f64, f64) = (0.0, 0.5);
@@ -79,8 +79,7 @@ impl Colours {
         self.rgb(self.samples([x as f32, y as f32]).map(f64::from))
     }
 
-    /// The green alone, for points between these corners; `None` where some lie too near the picture's border, and in
-    /// HDR.
+    /// The green alone, for points between these corners; `None` where some lie too near the picture's border.
     pub(in crate::nailvideo) fn green(&self, corners: [[f64; 2]; 4]) -> Option<Green<'_>> {
         let corners = corners.map(|corner| corner.map(|at| at as f32));
         let holds = self.luma.holds(&corners) && self.chroma.iter().flatten().all(|grid| grid.holds(&corners));
@@ -88,7 +87,7 @@ impl Colours {
         let none = green([0.0; 3]);
         let [luma, cb, cr] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|one| (green(one) - none) as f32);
         let added = none as f32;
-        (holds && self.matrix.transfer == Transfer::Power).then(|| Green {
+        holds.then(|| Green {
             luma: (luma, &self.luma),
             chroma: match &self.chroma {
                 Some([of_cb, of_cr]) => Ok(of_cb.combined([cb, cr], of_cr)),
@@ -105,11 +104,6 @@ impl Colours {
             let rgb = self.rgb(samples);
             std::array::from_fn(|c| if self.chroma.is_some() { rgb[c] - none[c] } else { 0.0 })
         })
-    }
-
-    /// The greatest part of a colour that samples can stand for.
-    pub(in crate::nailvideo) fn most(&self) -> f64 {
-        self.matrix.most()
     }
 
     /// The mean over a group's points.
@@ -133,7 +127,7 @@ impl Colours {
         }
     }
 
-    /// Linear in the samples but in HDR, and there near enough over a group: the mean's colour is the colours' mean.
+    /// Linear in the samples, so that the mean's colour is the colours' mean.
     fn rgb(&self, samples: [f64; 3]) -> [f64; 3] {
         self.matrix.to_rgb(samples)
     }

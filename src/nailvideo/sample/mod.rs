@@ -299,7 +299,7 @@ impl Sampler {
         if rgb.iter().any(|part| !part.is_finite()) {
             return Err(Absent::Outside);
         }
-        if rgb[0].max(rgb[1]) >= CLIPPED * colours.most() {
+        if rgb[0].max(rgb[1]) >= CLIPPED {
             return Err(Absent::Clipped);
         }
         if hidden as f64 > MOST_HIDDEN * f64::from(all as u32) {

@@ -101,11 +101,6 @@ pub fn run(
     // What makes all angles wrong comes first.
     let mut warnings: Vec<String> = results.plausibility.warning(layout.flexion).into_iter().collect();
     warnings.extend(info.warnings.iter().cloned());
-    if let Some(hdr) = info.matrix.transfer.hdr() {
-        warnings.push(format!(
-            "the video is HDR ({hdr}), in which markers differ less from skin and from each other; film without HDR"
-        ));
-    }
     warnings.extend(late(layout, &survey, &results.markers));
     let figures = PostureFigures {
         video: video_report(path, &info, survey.siting, &span),
@@ -128,7 +123,7 @@ pub fn run(
     let report = Report {
         left_out,
         warnings,
-        notes: layout.notes.clone(),
+        notes: info.hdr_note().into_iter().chain(layout.notes.iter().cloned()).collect(),
         failed,
         pictures,
         ..Report::new("posture", watch, figures)

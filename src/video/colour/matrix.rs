@@ -38,17 +38,11 @@ impl Matrix {
         self.from_own_rgb(self.own_rgb(rgb))
     }
 
-    /// R'G'B' as ordinary video has them, 0 to 1 (not clipped; up to [`Matrix::most`] in HDR), of Y'CbCr on the scale
+    /// R'G'B' as ordinary video has them, 0 to 1 (not clipped), of Y'CbCr on the scale
     /// of 8 bits.
     #[must_use]
     pub fn to_rgb(&self, samples: [f64; 3]) -> [f64; 3] {
         self.transfer.ordinary(self.to_own_rgb(samples), self.is_wide())
-    }
-
-    /// The greatest part of R'G'B' that samples can stand for: 1, and more in HDR.
-    #[must_use]
-    pub fn most(&self) -> f64 {
-        self.transfer.ordinary([1.0; 3], false)[0]
     }
 
     /// A video's own R'G'B' of ordinary ones: the same but in HDR.
@@ -67,7 +61,7 @@ impl Matrix {
         [base + luma_span * luma, 128.0 + chroma_span * cb, 128.0 + chroma_span * cr]
     }
 
-    fn to_own_rgb(self, [luma, cb, cr]: [f64; 3]) -> [f64; 3] {
+    pub(super) fn to_own_rgb(self, [luma, cb, cr]: [f64; 3]) -> [f64; 3] {
         let (base, luma_span, chroma_span) = self.spans();
         let luma = (luma - base) / luma_span;
         let red = luma + 2.0 * (1.0 - self.k_red) * (cr - 128.0) / chroma_span;
@@ -76,7 +70,7 @@ impl Matrix {
         [red, green, blue]
     }
 
-    fn is_wide(&self) -> bool {
+    pub(super) fn is_wide(&self) -> bool {
         self.k_red == Self::BT2020.k_red
     }
 

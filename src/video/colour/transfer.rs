@@ -33,7 +33,7 @@ const WIDE_OF_USUAL: [[f64; 3]; 3] = [
     [0.069097289358232, 0.919540395075459, 0.011362315566309],
     [0.01639143887515, 0.088013307877226, 0.895595253247624],
 ];
-const USUAL_OF_WIDE: [[f64; 3]; 3] = [
+pub(super) const USUAL_OF_WIDE: [[f64; 3]; 3] = [
     [1.660491002108434, -0.58764113878855, -0.072849863319885],
     [-0.124550474521591, 1.13289989712596, -0.008349422604369],
     [-0.018150763354905, -0.100578898008007, 1.118729661362913],
@@ -72,7 +72,7 @@ impl Transfer {
     }
 
     /// Light over that of white.
-    fn light(self, part: f64) -> f64 {
+    pub(super) fn light(self, part: f64) -> f64 {
         let ([a, b, c], [m1, m2], [c1, c2, c3]) = (HLG, PQ_POWERS, PQ_SHARES);
         match self {
             Self::Power => part.powf(GAMMA),
@@ -85,7 +85,7 @@ impl Transfer {
         }
     }
 
-    fn encoded(self, light: f64) -> f64 {
+    pub(super) fn encoded(self, light: f64) -> f64 {
         let ([a, b, c], [m1, m2], [c1, c2, c3]) = (HLG, PQ_POWERS, PQ_SHARES);
         match self {
             Self::Power => light.powf(1.0 / GAMMA),
@@ -104,7 +104,7 @@ fn odd(part: f64, of: impl Fn(f64) -> f64) -> f64 {
     of(part.abs()).copysign(part)
 }
 
-fn product(matrix: &[[f64; 3]; 3], of: [f64; 3]) -> [f64; 3] {
+pub(super) fn product(matrix: &[[f64; 3]; 3], of: [f64; 3]) -> [f64; 3] {
     matrix.map(|row| row.iter().zip(of).map(|(share, part)| share * part).sum())
 }
 

@@ -20,12 +20,13 @@ use ffmpeg::frame::side_data::Type;
 use ffmpeg_next as ffmpeg;
 
 use crate::video::colour::convert;
+use crate::video::colour::hdr::ToOrdinary;
 use crate::video::info::info;
 use crate::video::quantizer;
 use crate::video::read::ahead::{Events, Told};
 use crate::video::read::reader::{Alarm, Event, Reader};
 use crate::video::read::source::Care;
-use crate::video::{Format, Frame, Info, Plane, VideoError};
+use crate::video::{Frame, Info, Matrix, Plane, VideoError};
 
 /// What comes next of a video.
 #[derive(Debug)]
@@ -85,6 +86,10 @@ pub struct Video {
     next_index: u64,
     /// The first frame's width, height and layout.
     layout: (u32, u32, ffmpeg::format::Pixel),
+    /// Of HDR.
+    ordinary: Option<ToOrdinary>,
+    /// See [`Frame::quantizer`].
+    quantizer: Option<f64>,
     /// The frame handed out last.
     pub(in crate::video) picture: frame::Video,
     info: Info,
@@ -118,7 +123,7 @@ impl Video {
         };
         let layout = (first.width(), first.height(), first.format());
         let planes = convert::planes(first).map_err(failed)?;
-        let info = info(
+        let mut info = info(
             &reader.source,
             first,
             planes.as_ref().unwrap_or(first),
@@ -126,6 +131,10 @@ impl Video {
             reader.tick_s(),
         )
         .map_err(failed)?;
+        let ordinary = ToOrdinary::new(info.format, &info.matrix, info.chroma_site);
+        if ordinary.is_some() {
+            info.matrix = Matrix::BT709;
+        }
         Ok(Self {
             path: path.to_owned(),
             threads,
@@ -137,6 +146,8 @@ impl Video {
             first_ticks: None,
             next_index: 0,
             layout,
+            ordinary,
+            quantizer: None,
             picture: frame::Video::empty(),
             info,
             end: End::NotReached,
@@ -182,7 +193,7 @@ impl Video {
         let time_s = ((event.ticks - first) as f64 * over as f64) / under as f64;
         let Some(picture) = event.picture else { return Ok(Some(Item::Missing { index, time_s })) };
         self.take(picture, index)?;
-        Ok(Some(Item::Frame(borrow(&self.picture, &self.info.format, index, time_s))))
+        Ok(Some(Item::Frame(self.borrow(index, time_s))))
     }
 
     /// Decodes all frames that are left and looks at none: what any use of them takes at least.
@@ -236,8 +247,28 @@ impl Video {
             )));
         }
         let converted = convert::planes(&picture).map_err(|words| changed(format!("frame {index}: {words}")))?;
-        self.picture = converted.unwrap_or(picture);
+        self.quantizer = quantizer_of(&picture, self.info.format.depth);
+        let picture = converted.unwrap_or(picture);
+        self.picture = self.ordinary.as_ref().map(|ordinary| ordinary.frame(&picture)).unwrap_or(picture);
         Ok(())
+    }
+
+    fn borrow(&self, index: u64, time_s: f64) -> Frame<'_> {
+        let (picture, format) = (&self.picture, self.info.format);
+        let plane = |number: usize, (width, height)| Plane {
+            width,
+            height,
+            stride: picture.stride(number),
+            depth: format.depth,
+            data: picture.data(number),
+        };
+        Frame {
+            index,
+            time_s,
+            luma: plane(0, (format.width, format.height)),
+            chroma: format.chroma_size().map(|size| [plane(1, size), plane(2, size)]),
+            quantizer: self.quantizer,
+        }
     }
 }
 
@@ -253,22 +284,7 @@ fn nothing_decoded(reader: &Reader, missing: usize) -> String {
     }
 }
 
-fn borrow<'a>(picture: &'a frame::Video, format: &Format, index: u64, time_s: f64) -> Frame<'a> {
-    let plane = |number: usize, (width, height)| Plane {
-        width,
-        height,
-        stride: picture.stride(number),
-        depth: format.depth,
-        data: picture.data(number),
-    };
-    Frame {
-        index,
-        time_s,
-        luma: plane(0, (format.width, format.height)),
-        chroma: format.chroma_size().map(|size| [plane(1, size), plane(2, size)]),
-        quantizer: picture
-            .side_data(Type::VIDEO_ENC_PARAMS)
-            .and_then(|data| quantizer::mean(data.data()))
-            .map(|parameter| parameter - quantizer::A_BIT * f64::from(format.depth.saturating_sub(8))),
-    }
+fn quantizer_of(picture: &frame::Video, depth: u32) -> Option<f64> {
+    let parameter = quantizer::mean(picture.side_data(Type::VIDEO_ENC_PARAMS)?.data())?;
+    Some(parameter - quantizer::A_BIT * f64::from(depth.saturating_sub(8)))
 }
