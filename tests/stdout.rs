@@ -73,7 +73,7 @@ fn bench() -> Dir {
     dir.write("sw.toml", "on_N = 0.5\noff_N = 0.3\n");
     dir.write("trials.csv", "operator,method,trial,time_s\nA,pendant,1,200\nA,virtual,1,100\n");
     for request in [
-        "phantom video --seed 1 --seconds 0.2 --size 320x240 --out v -q",
+        "phantom video --seed 1 --seconds 0.2 --size 320x240 --x264 medium --out v -q",
         "phantom board --board 5x4 --views 1 --size 160x120 --out b -q",
         "phantom log --seed 1 --out lg -q",
         "phantom photos --seed 1 --subjects 2 --poses extension --size 320x240 --out ph -q",
