@@ -43,8 +43,8 @@ fn on_a_full_disk_results_are_whole_or_as_they_were() {
         ("a log", "phantom log --seed 2 --out out", "phantom log --seed 3 --seconds 9 --out out"),
         (
             "a video",
-            "phantom video --seed 2 --seconds 0.1 --size 320x240 --out out",
-            "phantom video --seed 3 --seconds 0.2 --size 320x240 --out out",
+            "phantom video --seed 2 --seconds 0.1 --size 320x240 --x264 medium --out out",
+            "phantom video --seed 3 --seconds 0.2 --size 320x240 --x264 medium --out out",
         ),
         ("maps", "photos set --size 100 --out out", "photos set --size 110 --out out"),
     ] {
