@@ -96,7 +96,8 @@ fn dialects_read_alike() {
     same("chart.txt", format!("{labchart}{rows}").as_bytes(), &notes);
     let commented = rows.replace("-1", "-1\t#* pressed");
     same("commented.txt", format!("{labchart}{commented}").as_bytes(), &notes);
-    same("behind.csv", b"time_s,P1,Fz_N\n0,1.5,-1\n0.5,2.5,-2,#* pressed\n", &[]);
+    same("behind.csv", b"time_s,P1,Fz_N\n0,1.5,-1\n0.5,2.5,-2,#* pressed, then let go\n", &[]);
+    same("said.csv", b"time_s,P1,Fz_N,Comment\n0,1.5,-1\n0.5,2.5,-2,go\n1.0,3.5,-", &[&["line 4", "cut off"]]);
     let scope = b"Logger 7\nRate: 2 Hz\n\nTime,P1,Fz_N\n(ms),(V),(N)\n\n0,1.5,-1\n500,2.5,-2\n";
     let notes: [&[&str]; 4] = [&["line 4"], &["units", "line 5"], &["`Time (ms)`"], &["`P1 (V)`"]];
     same("scope.csv", scope, &notes);

@@ -132,11 +132,13 @@ impl Rows<'_> {
         if (0..row.len()).all(blank) && row.len() <= 1 {
             return Ok(Length::Blank);
         }
-        let may_miss = |name: &String| name.is_empty() || is_comments(name);
+        // A last row without a line's end may be cut off within a number.
+        let may_miss = |name: &String| name.is_empty() || is_comments(name) && !last;
         let missing_may_be = row.len() < names.len() && names[row.len()..].iter().all(may_miss);
         let used = self.choice.columns.iter().all(|&(_, column)| column < row.len());
-        let beyond = |k: usize| blank(k) || is_comment(bare(&row[k]));
-        if (names.len()..row.len()).all(beyond) && row.len() > names.len() || missing_may_be && used {
+        let beyond = (names.len()..row.len()).find(|&k| !blank(k));
+        let may_be_beyond = row.len() > names.len() && beyond.is_none_or(|k| is_comment(bare(&row[k])));
+        if may_be_beyond || missing_may_be && used {
             return Ok(Length::Right);
         }
         if row.len() < names.len() && last {

@@ -38,8 +38,7 @@ impl Matrix {
         self.from_own_rgb(self.own_rgb(rgb))
     }
 
-    /// R'G'B' as ordinary video has them, 0 to 1 (not clipped), of Y'CbCr on the scale
-    /// of 8 bits.
+    /// R'G'B' as ordinary video has them, 0 to 1 (not clipped), of Y'CbCr on the scale of 8 bits.
     #[must_use]
     pub fn to_rgb(&self, samples: [f64; 3]) -> [f64; 3] {
         self.transfer.ordinary(self.to_own_rgb(samples), self.is_wide())
