@@ -22,9 +22,6 @@ pub struct Profile {
 /// Skin in the light of a window, and a middle grey, as sRGB encodes them.
 const SKIN: [f32; 3] = [200.0, 150.0, 130.0];
 const GREY: f32 = 128.0;
-/// Encoded less differently than this, of 255, a profile is sRGB by another name: makers' own versions of it differ in
-/// their last digits.
-const SAME: f32 = 0.5;
 /// A middle grey of 255 from which on a curve is not sRGB's. A gamma of 2.2 differs by 1.
 const OTHER_CURVE: f32 = 3.0;
 /// Cameras mark Adobe RGB by an interoperability index alone (DCF 2.0, 4.5): EXIF's entry of tag 1, 4 letters.
@@ -32,6 +29,10 @@ const ADOBE_RGB_BY_EXIF: [&[u8]; 2] =
     [b"\x01\x00\x02\x00\x04\x00\x00\x00R03\0", b"\x00\x01\x00\x02\x00\x00\x00\x04R03\0"];
 
 impl Profile {
+    /// Colours encoded less differently than this, of 255, are of one profile by several names: makers' own versions of
+    /// sRGB differ in their last digits.
+    pub const SAME: f32 = 0.5;
+
     /// Whether `--linear`, which undoes sRGB's curve, would undo one that was never applied.
     pub fn has_other_curve(&self) -> bool {
         self.grey.abs() >= OTHER_CURVE
@@ -65,7 +66,7 @@ impl Profile {
         };
         let grey = higher([GREY; 3])?;
         let skin_green = if is_colour { higher(SKIN)? } else { higher([SKIN[1]; 3])? };
-        let is_srgb = grey.abs() < SAME && skin_green.abs() < SAME;
+        let is_srgb = grey.abs() < Self::SAME && skin_green.abs() < Self::SAME;
         (!is_srgb).then(|| Self { name: described(profile), skin_green, grey })
     }
 }

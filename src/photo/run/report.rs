@@ -207,7 +207,10 @@ impl<'a> Findings<'a> {
             format!("{} photograph(s) of {name} ({} first)", of.count, of.first)
         };
         let kinds: Vec<String> = self.profiles.iter().map(kind).collect();
-        (kinds.len() > 1).then(|| {
+        // One profile may have several names.
+        let green = || self.profiles.values().map(|of| of.skin_green);
+        let apart = green().fold(f32::NEG_INFINITY, f32::max) - green().fold(f32::INFINITY, f32::min);
+        (apart >= Profile::SAME).then(|| {
             format!(
                 "the set mixes colour profiles: {}; values are as the files encode them: export all as sRGB, or make \
                  maps of each kind apart",
