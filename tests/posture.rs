@@ -197,17 +197,20 @@ fn hdr_has_the_angles_and_colours_of_ordinary_video() {
         (dir, colours)
     };
     let (_, ordinary) = suggested(&[]);
-    for (matrix, name) in [("hlg", "HDR (hybrid log-gamma)"), ("pq", "HDR (perceptual quantizer)")] {
+    // Measured 0.11, 0.26, 0.43 and 0.22, 0.36, 0.58 degrees.
+    for (matrix, name, bounds) in
+        [("hlg", "HDR (hybrid log-gamma)", [0.15, 0.35, 0.55]), ("pq", "HDR (perceptual quantizer)", [0.28, 0.45, 0.7])]
+    {
         let (dir, colours) = suggested(&["--matrix", matrix, "--depth", "10"]);
         // The marker file has the colours of ordinary video.
         let answer = posture(&dir, &["--overlay", "drawn.mp4", "--json"]).expect(0);
         assert!(answer.stdout.contains(name), "{}", answer.stdout);
         let (found, truth) = (dir.table("joints.csv"), dir.table("scene/truth/joints.csv"));
-        for (joint, bound) in [("J1", 0.3), ("J2", 0.7), ("J3", 1.0)] {
-            // Cyan paint, as bright as skin, is lost in some frames: HDR's chroma is coarser.
+        for (joint, bound) in ["J1", "J2", "J3"].into_iter().zip(bounds) {
+            // Cyan paint, as bright as skin, is lost in two frames of hybrid log-gamma: HDR's chroma is coarser.
             let (error, count) = rms(&found, &truth, joint);
             println!("{matrix} {joint}: {error} degrees in {count} of {} frames", truth.len());
-            assert!(error <= bound && count + 5 >= truth.len(), "{matrix} {joint}: {error}, {count} frames");
+            assert!(error <= bound && count + 2 >= truth.len(), "{matrix} {joint}: {error}, {count} frames");
         }
         let level = |hex: &str, k: usize| i32::from_str_radix(&hex[2 * k..2 * k + 2], 16).expect("a colour");
         let is_near = |a: &str, b: &str| (0..3).all(|k| (level(a, k) - level(b, k)).abs() <= 24);
