@@ -96,6 +96,25 @@ impl Format {
     pub fn chroma_size(&self) -> Option<(usize, usize)> {
         self.subsampling.map(|(across, down)| (self.width.div_ceil(across), self.height.div_ceil(down)))
     }
+
+    /// Bytes of a sample.
+    #[must_use]
+    pub fn sample_bytes(&self) -> usize {
+        if self.depth > 8 { 2 } else { 1 }
+    }
+
+    /// Luma, Cb and Cr. Of a plane's number and width: bytes from row to row, and all bytes.
+    pub(in crate::video) fn planes<'a>(
+        &self,
+        of: impl Fn(usize, usize) -> (usize, &'a [u8]),
+    ) -> (Plane<'a>, Option<[Plane<'a>; 2]>) {
+        let plane = |number: usize, (width, height)| {
+            let (stride, data) = of(number, width);
+            Plane { width, height, stride, depth: self.depth, data }
+        };
+        let chroma = self.chroma_size().map(|size| [plane(1, size), plane(2, size)]);
+        (plane(0, (self.width, self.height)), chroma)
+    }
 }
 
 /// A picture of one's own, to draw on and to encode.
@@ -112,7 +131,7 @@ impl Picture {
     /// A picture of zeros.
     #[must_use]
     pub fn new(format: Format) -> Self {
-        let bytes = if format.depth > 8 { 2 } else { 1 };
+        let bytes = format.sample_bytes();
         let mut planes = vec![vec![0; format.width * format.height * bytes]];
         if let Some((width, height)) = format.chroma_size() {
             planes.resize_with(3, || vec![0; width * height * bytes]);
@@ -123,11 +142,8 @@ impl Picture {
     /// The picture as a frame.
     #[must_use]
     pub fn frame(&self, index: u64, time_s: f64) -> Frame<'_> {
-        let depth = self.format.depth;
-        let bytes = if depth > 8 { 2 } else { 1 };
-        let plane = |data, (width, height)| Plane { width, height, stride: width * bytes, depth, data };
-        let luma = plane(&self.planes[0][..], (self.format.width, self.format.height));
-        let chroma = self.format.chroma_size().map(|size| [plane(&self.planes[1], size), plane(&self.planes[2], size)]);
+        let bytes = self.format.sample_bytes();
+        let (luma, chroma) = self.format.planes(|number, width| (width * bytes, &self.planes[number]));
         Frame { index, time_s, luma, chroma, quantizer: None }
     }
 }

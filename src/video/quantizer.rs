@@ -45,7 +45,7 @@ mod tests {
         for k in 0..6 {
             let mut picture = Picture::new(format);
             for plane in &mut picture.planes {
-                for sample in plane.chunks_exact_mut(if depth > 8 { 2 } else { 1 }) {
+                for sample in plane.chunks_exact_mut(format.sample_bytes()) {
                     let value = random.random_range(60_u16..190) << (depth - 8);
                     sample.copy_from_slice(&value.to_le_bytes()[..sample.len()]);
                 }

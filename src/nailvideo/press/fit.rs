@@ -1,30 +1,39 @@
 //! The course of one trace after one press or release: a first-order lag (4.3) after a step; or after a ramp, as no
-//! finger presses or lets go at once; or stretched, exp(-(t/tau)^beta).
+//! finger presses or lets go at once; or two of them side by side, as some blood comes back more slowly.
 //!
 //! The step is taken unless the data say otherwise, the ramp in little noise. A coarse search over onset and tau finds
 //! the minimum that Levenberg-Marquardt steps then refine. A ramp shorter than a frame has its length held.
 //!
 //! The intervals are those of the profile likelihood over shapes: what any of the courses says that are about as likely
-//! as the best, also ramps of lengths that are not the best. That a step is taken says nothing against a ramp of 0.2 s
-//! (measured on traces: the step's own interval held its onset in 61 to 76 %). They hold the noise with its correlation
-//! in time, and the choice of the end level.
+//! as the best and whose end is seen, also ramps of lengths and slow shares that are not the best. That a step is taken
+//! says nothing against a ramp of 0.2 s (measured on traces: the step's own interval held its onset in 61 to 76 %) or a
+//! fifth of the blood that is slower (its t90 in 8 to 81 % without courses of two). They hold the noise with its
+//! correlation in time, and the choice of the end level.
 
-use nalgebra::{DMatrix, DVector};
+use std::ops::RangeInclusive;
+
+use nalgebra::{Matrix6, Vector6};
 
 /// Time constants that are looked for, seconds (the thesis' are 0.12 to 0.36).
-const TAUS_S: std::ops::RangeInclusive<f64> = 0.02..=10.0;
-/// Ramps and exponents that are looked for: seconds, and powers.
-const RAMPS_S: std::ops::RangeInclusive<f64> = 0.004..=1.5;
+const TAUS_S: RangeInclusive<f64> = 0.02..=10.0;
+/// Ramps that are looked for, seconds; shares of the step that are slower, and by how much.
+const RAMPS_S: RangeInclusive<f64> = 0.004..=1.5;
 const LEAST_RAMP_S: f64 = 0.01;
-const POWERS: std::ops::RangeInclusive<f64> = 0.4..=2.5;
+const SHARES: RangeInclusive<f64> = 0.001..=0.6;
+const SLOWER: RangeInclusive<f64> = 1.5..=20.0;
+/// How much slower the slow course is unless the data say otherwise.
+const USUALLY_SLOWER: f64 = 4.0;
 /// Another model than the step is taken where it lowers the sum of squares by more than so many residual variances (F
 /// of one degree of freedom at 5 %).
 const BETTER: f64 = 4.0;
 /// A step of so many SDs of the residuals shows how long its ramp was (measured on the phantom: releases of 40 to 180
 /// SDs are seen 38 ms late by a step, 27 ms by a ramp; at 25 SDs the ramp's length is not determined).
 const CLEAR_SDS: f64 = 40.0;
-/// Ramps that a course is compared with, seconds.
+/// Ramps, seconds, and slow shares that a course is compared with.
 const LENGTHS_S: [f64; 6] = [0.02, 0.05, 0.1, 0.2, 0.35, 0.6];
+const SLOW_SHARES: [f64; 4] = [0.05, 0.1, 0.2, 0.35];
+/// Share of a course's step that has to be seen.
+pub(super) const LEAST_SEEN: f64 = 0.95;
 /// The half width of a 95 % interval in standard errors.
 const SES: f64 = 1.96;
 
@@ -57,7 +66,7 @@ pub(super) struct Course {
 pub(super) enum Model {
     Step,
     Ramp,
-    Stretched,
+    Two,
 }
 
 impl Model {
@@ -65,47 +74,69 @@ impl Model {
         match self {
             Self::Step => "exponential",
             Self::Ramp => "exponential after a ramp",
-            Self::Stretched => "stretched exponential",
+            Self::Two => "two exponentials",
         }
     }
 }
 
-/// Parameters: onset, ln tau, ln of the ramp's length or of the power, level before, level after.
-type Parameters = [f64; 5];
+/// Parameters: onset, ln tau, ln of the ramp's length or of the slow share, level before, level after, ln of how much
+/// slower that share is.
+type Parameters = [f64; PARAMETERS];
+const PARAMETERS: usize = 6;
 
 /// A course with its parameters as they are used: a fit evaluates it thousands of times.
 struct Curve {
     model: Model,
     onset_s: f64,
     tau_s: f64,
-    /// The ramp's length or the power.
+    /// The ramp's length or the slow share.
     third: f64,
     before: f64,
     step: f64,
+    /// The slow course's time constant, in tau.
+    slower: f64,
 }
 
 impl Curve {
     fn new(model: Model, p: &Parameters) -> Self {
-        Self { model, onset_s: p[0], tau_s: p[1].exp(), third: p[2].exp(), before: p[3], step: p[4] - p[3] }
+        let [onset_s, tau, third, before, after, slower] = *p;
+        let [tau_s, third, slower] = [tau, third, slower].map(f64::exp);
+        Self { model, onset_s, tau_s, third, before, step: after - before, slower }
     }
 
-    /// The share of the step that is reached some time after the onset.
-    fn reached(&self, since_s: f64) -> f64 {
+    /// The share of the step that is reached some time after the onset, with its slopes in that time and in the
+    /// logarithms of tau, the third and what is slower.
+    fn reached(&self, since_s: f64) -> [f64; 5] {
         if since_s <= 0.0 {
-            return 0.0;
+            return [0.0; 5];
         }
-        let Self { tau_s, third, .. } = *self;
-        let left = |s: f64| (-s / tau_s).exp();
+        let Self { tau_s, third, slower, .. } = *self;
+        // What is left after a time, and its slope in ln tau.
+        let left = |s: f64| {
+            let taus = s / tau_s;
+            let left = (-taus).exp();
+            [left, taus * left]
+        };
+        let [e, e_tau] = left(since_s);
         match self.model {
-            Model::Step => 1.0 - left(since_s),
-            Model::Ramp if since_s < third => (since_s - tau_s * (1.0 - left(since_s))) / third,
-            Model::Ramp => 1.0 - tau_s / third * (left(since_s - third) - left(since_s)),
-            Model::Stretched => 1.0 - (-(since_s / tau_s).powf(third)).exp(),
+            Model::Step => [1.0 - e, e / tau_s, -e_tau, 0.0, 0.0],
+            Model::Ramp => {
+                let lag = tau_s / third;
+                if since_s < third {
+                    let reached = since_s / third - lag * (1.0 - e);
+                    return [reached, (1.0 - e) / third, lag * (e_tau - (1.0 - e)), -reached, 0.0];
+                }
+                let [end, end_tau] = left(since_s - third);
+                let still = lag * (end - e);
+                [1.0 - still, (end - e) / third, lag * (e_tau - end_tau) - still, still - end, 0.0]
+            }
+            Model::Two => {
+                let [slow, slow_tau] = left(since_s / slower);
+                let mixed = |fast: f64, slow: f64| (1.0 - third) * fast + third * slow;
+                let slope = mixed(e, slow / slower) / tau_s;
+                [1.0 - mixed(e, slow), slope, -mixed(e_tau, slow_tau), third * (e - slow), -third * slow_tau]
+            }
         }
-    }
-
-    fn at(&self, t: f64) -> f64 {
-        self.before + self.step * self.reached(t - self.onset_s)
     }
 }
 
@@ -115,7 +146,7 @@ fn to_share(model: Model, p: &Parameters, share: f64) -> f64 {
     let (mut low, mut high) = (0.0, 1e3);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
-        *(if curve.reached(middle) < share { &mut low } else { &mut high }) = middle;
+        *(if curve.reached(middle)[0] < share { &mut low } else { &mut high }) = middle;
     }
     0.5 * (low + high)
 }
@@ -130,23 +161,30 @@ pub(super) fn fit(time_s: &[f64], values: &[f64], near_s: f64, rest: Option<f64>
         (start[0], start[2]) = (start[0] - earlier_s, third.ln());
         refine(model, time_s, values, start, &[0, 1, 2, 3, 4])
     };
-    let mut fits = vec![with(Model::Ramp, 0.1, 0.05), with(Model::Stretched, 1.0, 0.0)];
-    fits.push(Some(plain));
-    let mut fits: Vec<Fitted> = fits.into_iter().flatten().collect();
+    let mut slow_start = plain.parameters;
+    let others = [with(Model::Two, 0.2, 0.0), with(Model::Ramp, 0.1, 0.05)];
+    let mut fits: Vec<Fitted> = others.into_iter().flatten().chain([plain]).collect();
     // A ramp of no length is a step, and nothing determines its length.
     fits.retain(|one| one.model != Model::Ramp || one.parameters[2].exp() > LEAST_RAMP_S);
     fits.sort_by(|a, b| a.sum.total_cmp(&b.sum));
     // Residuals that go together count less: the effective number of samples.
     let sd = |one: &Fitted| (one.sum / (n - 5.0).max(1.0)).sqrt();
-    let variance = |one: &Fitted| sd(one).powi(2) * correlation_factor(&one.residuals);
+    let variance = |one: &Fitted| sd(one).powi(2) * one.correlation;
     let behind = |one: &Fitted, best: &Fitted| (one.sum - best.sum) / variance(best);
     // In little noise a ramp's length is determined, and its onset is earlier than the step's by half of it.
     let is_clear = |one: &Fitted| (one.parameters[4] - one.parameters[3]).abs() > CLEAR_SDS * sd(one);
     let simplest = if fits.first().is_some_and(is_clear) { Model::Ramp } else { Model::Step };
     let good_enough = fits.iter().position(|one| one.model == simplest && behind(one, &fits[0]) <= BETTER);
     let mut taken = fits.remove(good_enough.unwrap_or(0));
+    if taken.model == Model::Two
+        && let Some(free) = refine(Model::Two, time_s, values, taken.parameters, &[0, 1, 2, 3, 4, 5])
+    {
+        slow_start = free.parameters;
+        fits.push(if behind(&taken, &free) > BETTER { std::mem::replace(&mut taken, free) } else { free });
+    }
     let model = taken.model;
-    let span_s = time_s[time_s.len() - 1] - time_s[0];
+    let last_s = time_s[time_s.len() - 1];
+    let span_s = last_s - time_s[0];
     let frame_s = span_s / (n - 1.0).max(1.0);
     let held = |model: Model, mut start: Parameters, third: f64| {
         start[2] = third.ln();
@@ -161,13 +199,16 @@ pub(super) fn fit(time_s: &[f64], values: &[f64], near_s: f64, rest: Option<f64>
         taken = held(model, p, length_s)?;
         others.extend([*RAMPS_S.start(), frame_s].into_iter().filter_map(|length_s| held(model, p, length_s)));
     }
-    let mut start = p;
-    for length_s in LENGTHS_S {
-        let one = held(Model::Ramp, start, length_s);
-        let Some(one) = one.filter(|one| behind(one, &taken) <= SES * SES) else { break };
-        start = one.parameters;
-        others.push(one);
+    for (model, mut start, thirds) in [(Model::Ramp, p, &LENGTHS_S[..]), (Model::Two, slow_start, &SLOW_SHARES[..])] {
+        for &third in thirds {
+            let one = held(model, start, third).filter(|one| behind(one, &taken) <= SES * SES);
+            let Some(one) = one else { break };
+            start = one.parameters;
+            others.push(one);
+        }
     }
+    let seen = |one: &Fitted| Curve::new(one.model, &one.parameters).reached(last_s - one.parameters[0])[0];
+    others.retain(|one| seen(one) >= LEAST_SEEN);
     let best = others.iter().fold(&taken, |best, one| if one.sum < best.sum { one } else { best });
     let (least, variance) = (best.sum, variance(best));
     let at_rest = rest.and_then(|level| {
@@ -205,7 +246,7 @@ pub(super) fn fit(time_s: &[f64], values: &[f64], near_s: f64, rest: Option<f64>
         tau_s: time(&|_, p| p[1].exp()),
         depth: p[4] - p[3],
         sd: sd(&taken),
-        seen: Curve::new(model, p).reached(time_s[time_s.len() - 1] - p[0]),
+        seen: seen(&taken),
         model,
     };
     let all = [course.onset_s, course.t50_s, course.t90_s, course.tau_s];
@@ -227,33 +268,36 @@ const SMALL: f64 = 1e-5;
 /// The best onset and tau of a grid, with their levels.
 fn search(time_s: &[f64], values: &[f64], near_s: f64) -> Option<Parameters> {
     let (first, last) = (*time_s.first()?, *time_s.last()?);
-    let frame = (last - first) / (time_s.len() - 1).max(1) as f64;
+    let n = time_s.len() as f64;
+    let frame = (last - first) / (n - 1.0).max(1.0);
     let onsets =
         (0..60).map(|k| near_s + (f64::from(k) - 40.0) * 0.5 * frame.max(0.02)).filter(|t| *t > first && *t < last);
-    // What is left of a step from time 0 on: that from an onset on is a multiple of it.
-    let left = |tau: f64| time_s.iter().map(|t| (-t / tau).exp()).collect::<Vec<f64>>();
-    let taus: Vec<(f64, Vec<f64>)> = (0..22).map(|k| 0.03 * 1.3_f64.powi(k)).map(|tau| (tau, left(tau))).collect();
+    let onsets: Vec<(f64, usize)> = onsets.map(|onset| (onset, time_s.partition_point(|&t| t <= onset))).collect();
+    let all: f64 = values.iter().sum();
     let mut best: Option<(f64, Parameters)> = None;
-    for onset in onsets {
-        for (tau, left) in &taus {
-            let mut p = [onset, tau.ln(), 0.0, 0.0, 1.0];
-            let since = (onset / tau).exp();
-            let (mut n, mut x, mut y, mut xx, mut xy) = (0.0, 0.0, 0.0, 0.0, 0.0);
-            for ((&t, &value), left) in time_s.iter().zip(values).zip(left) {
-                // A product of infinity and nothing is taken for the start of the step.
-                let shape = if t <= onset { 0.0 } else { 1.0 - (since * left).min(1.0) };
-                (n, x, y) = (n + 1.0, x + shape, y + value);
-                (xx, xy) = (xx + shape * shape, xy + shape * value);
-            }
+    for tau in (0..22).map(|k| 0.03 * 1.3_f64.powi(k)) {
+        // Sums from each sample on: of the values, and of what is left of a step from time 0 on, its squares, and its
+        // products with them. What is left of a step from an onset on is a multiple of it.
+        let mut sums = vec![[0.0; 4]; values.len() + 1];
+        for (k, (&t, &value)) in time_s.iter().zip(values).enumerate().rev() {
+            let left = (-t / tau).exp();
+            let [of_values, of_left, squares, products] = sums[k + 1];
+            sums[k] = [of_values + value, of_left + left, squares + left * left, products + left * value];
+        }
+        for &(onset, from) in &onsets {
+            let by = (onset / tau).exp();
+            let after = n - from as f64;
+            let [of_values, of_left, squares, products] = sums[from];
+            let (x, xx) = (after - by * of_left, after - by * (2.0 * of_left - by * squares));
             let spread = xx - x * x / n;
             if spread < 1e-6 {
                 continue;
             }
-            let step = (xy - x * y / n) / spread;
-            let gain = step * (xy - x * y / n);
-            (p[3], p[4]) = ((y - step * x) / n, (y - step * x) / n + step);
-            if best.as_ref().is_none_or(|(most, _)| gain > *most) {
-                best = Some((gain, p));
+            let gained = of_values - by * products - x * all / n;
+            let step = gained / spread;
+            let before = (all - step * x) / n;
+            if best.as_ref().is_none_or(|(most, _)| step * gained > *most) {
+                best = Some((step * gained, [onset, tau.ln(), 0.0, before, before + step, USUALLY_SLOWER.ln()]));
             }
         }
     }
@@ -265,73 +309,86 @@ struct Fitted {
     parameters: Parameters,
     free: Vec<usize>,
     /// Of J'J.
-    inverse: DMatrix<f64>,
-    residuals: Vec<f64>,
+    inverse: Matrix6<f64>,
     sum: f64,
+    /// By how much correlation in time enlarges a variance: (1 + r)/(1 - r), r that of neighbours, never below 1.
+    correlation: f64,
 }
 
 impl Fitted {
     /// The variance of a figure in that of the values.
     fn spread(&self, of: &dyn Fn(Model, &Parameters) -> f64) -> f64 {
         let value = of(self.model, &self.parameters);
-        let slope = |&k: &usize| {
+        let mut slopes = Vector6::zeros();
+        for &k in &self.free {
             let mut moved = self.parameters;
             moved[k] += SMALL;
-            (of(self.model, &moved) - value) / SMALL
-        };
-        let slopes = DVector::from_iterator(self.free.len(), self.free.iter().map(slope));
-        (slopes.transpose() * &self.inverse * &slopes)[(0, 0)].max(0.0)
+            slopes[k] = (of(self.model, &moved) - value) / SMALL;
+        }
+        (slopes.transpose() * self.inverse * slopes)[(0, 0)].max(0.0)
+    }
+}
+
+/// The normal equations about a course.
+struct Normal {
+    /// Of the squares of the residuals, and of the products of neighbours.
+    sum: f64,
+    neighbours: f64,
+    /// J'J and J'r; what is held has a one on the diagonal and nothing beside it.
+    square: Matrix6<f64>,
+    right: Vector6<f64>,
+}
+
+impl Normal {
+    fn new(model: Model, time_s: &[f64], values: &[f64], p: &Parameters, free: &[usize]) -> Self {
+        let curve = Curve::new(model, p);
+        let (mut sum, mut neighbours, mut before) = (0.0, 0.0, 0.0);
+        let (mut square, mut right) = ([[0.0; PARAMETERS]; PARAMETERS], [0.0; PARAMETERS]);
+        for (&t, &value) in time_s.iter().zip(values) {
+            let [reached, since, tau, third, slower] = curve.reached(t - curve.onset_s);
+            let residual = value - curve.before - curve.step * reached;
+            (sum, neighbours, before) = (sum + residual * residual, neighbours + residual * before, residual);
+            let [since, tau, third, slower] = [-since, tau, third, slower].map(|slope| curve.step * slope);
+            let slopes = [since, tau, third, 1.0 - reached, reached, slower];
+            for &k in free {
+                right[k] += slopes[k] * residual;
+                for &l in free {
+                    square[k][l] += slopes[k] * slopes[l];
+                }
+            }
+        }
+        (0..PARAMETERS).filter(|k| !free.contains(k)).for_each(|k| square[k][k] = 1.0);
+        Self { sum, neighbours, square: square.into(), right: right.into() }
     }
 }
 
 /// Levenberg-Marquardt steps in the free parameters.
 fn refine(model: Model, time_s: &[f64], values: &[f64], start: Parameters, free: &[usize]) -> Option<Fitted> {
-    let residuals = |p: &Parameters| -> Vec<f64> {
-        let curve = Curve::new(model, p);
-        time_s.iter().zip(values).map(|(&t, value)| value - curve.at(t)).collect()
-    };
-    let sum = |r: &[f64]| r.iter().map(|r| r * r).sum::<f64>();
+    let normal = |p: &Parameters| Normal::new(model, time_s, values, p, free);
     let allowed = |p: &Parameters| {
         let third = match model {
             Model::Step => true,
             Model::Ramp => RAMPS_S.contains(&p[2].exp()),
-            Model::Stretched => POWERS.contains(&p[2].exp()),
+            Model::Two => SHARES.contains(&p[2].exp()) && SLOWER.contains(&p[5].exp()),
         };
         third && TAUS_S.contains(&p[1].exp()) && p.iter().all(|part| part.is_finite())
     };
-    let jacobian = |p: &Parameters, at: &[f64]| {
-        let moved = |&k: &usize| {
-            let mut moved = *p;
-            moved[k] += SMALL;
-            Curve::new(model, &moved)
-        };
-        let moved: Vec<Curve> = free.iter().map(moved).collect();
-        DMatrix::from_fn(values.len(), free.len(), |row, column| {
-            (at[row] - (values[row] - moved[column].at(time_s[row]))) / SMALL
-        })
-    };
-    let mut p = start;
-    let mut r = residuals(&p);
-    let (mut least, mut damping) = (sum(&r), 1e-3);
+    let (mut p, mut at, mut damping) = (start, normal(&start), 1e-3);
     for _ in 0..60 {
-        let j = jacobian(&p, &r);
-        let mut normal = j.transpose() * &j;
-        let right = j.transpose() * DVector::from_column_slice(&r);
-        for k in 0..free.len() {
-            normal[(k, k)] *= 1.0 + damping;
+        let mut damped = at.square;
+        for k in 0..PARAMETERS {
+            damped[(k, k)] *= 1.0 + damping;
         }
-        let Some(factored) = normal.cholesky() else {
+        let Some(factored) = damped.cholesky() else {
             damping *= 10.0;
             continue;
         };
-        let step = factored.solve(&right);
-        let mut next = p;
-        free.iter().enumerate().for_each(|(k, &at)| next[at] += step[k]);
-        let next_r = residuals(&next);
-        let next_sum = sum(&next_r);
-        if allowed(&next) && next_sum <= least {
-            let settled = least - next_sum <= 1e-10 * least;
-            (p, r, least, damping) = (next, next_r, next_sum, damping * 0.3);
+        let step = factored.solve(&at.right);
+        let next = std::array::from_fn(|k| p[k] + step[k]);
+        let tried = allowed(&next).then(|| normal(&next)).filter(|tried| tried.sum <= at.sum);
+        if let Some(tried) = tried {
+            let settled = at.sum - tried.sum <= 1e-10 * at.sum;
+            (p, at, damping) = (next, tried, damping * 0.3);
             if settled {
                 break;
             }
@@ -342,15 +399,40 @@ fn refine(model: Model, time_s: &[f64], values: &[f64], start: Parameters, free:
             }
         }
     }
-    let j = jacobian(&p, &r);
-    let inverse = (j.transpose() * &j).try_inverse()?;
-    Some(Fitted { model, parameters: p, free: free.to_vec(), inverse, residuals: r, sum: least })
+    let together = (at.neighbours / at.sum.max(1e-30)).clamp(0.0, 0.95);
+    Some(Fitted {
+        model,
+        parameters: p,
+        free: free.to_vec(),
+        inverse: at.square.try_inverse()?,
+        sum: at.sum,
+        correlation: (1.0 + together) / (1.0 - together),
+    })
 }
 
-/// By how much correlation in time enlarges a variance: (1 + r)/(1 - r), r that of neighbours, never below 1.
-fn correlation_factor(residuals: &[f64]) -> f64 {
-    let squares: f64 = residuals.iter().map(|r| r * r).sum();
-    let neighbours: f64 = residuals.windows(2).map(|r| r[0] * r[1]).sum();
-    let r = (neighbours / squares.max(1e-30)).clamp(0.0, 0.95);
-    (1.0 + r) / (1.0 - r)
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slopes_are_those_of_differences() {
+        let p = [0.3, 0.5_f64.ln(), 0.2_f64.ln(), 1.0, 4.0, 3.0_f64.ln()];
+        for model in [Model::Step, Model::Ramp, Model::Two] {
+            let at = |p: &Parameters, since_s: f64| Curve::new(model, p).reached(since_s);
+            for since_s in [-0.1, 0.05, 0.15, 0.25, 1.0, 4.0] {
+                let slopes = at(&p, since_s);
+                let difference = (at(&p, since_s + SMALL)[0] - at(&p, since_s - SMALL)[0]) / (2.0 * SMALL);
+                assert!((slopes[1] - difference).abs() <= 1e-6, "{model:?} {since_s} {slopes:?} {difference}");
+                for (slope, k) in slopes[2..].iter().zip([1, 2, 5]) {
+                    let [up, down] = [SMALL, -SMALL].map(|by| {
+                        let mut moved = p;
+                        moved[k] += by;
+                        at(&moved, since_s)[0]
+                    });
+                    let difference = (up - down) / (2.0 * SMALL);
+                    assert!((slope - difference).abs() <= 1e-6, "{model:?} {since_s} {k} {slope} {difference}");
+                }
+            }
+        }
+    }
 }

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 
 pub(in crate::nailvideo) use find::noise_sd;
 use find::presses;
-use fit::{Course, fit};
+use fit::{Course, LEAST_SEEN, fit};
 
 /// Written into every row.
 pub(in crate::nailvideo) const USE: &str = "research use; not a diagnostic";
@@ -24,8 +24,6 @@ const AFTER_S: f64 = 30.0;
 const LEAST_SDS: f64 = 8.0;
 /// Share of the samples about an event that may be missing (section 6 of the design).
 const MOST_MISSING: f64 = 0.10;
-/// Share of the step that has to be seen by the fit.
-const LEAST_SEEN: f64 = 0.95;
 /// The residuals against the step and the noise: above both it is not a first-order response (12 % as pyCRT refuses).
 const MOST_RESIDUAL: f64 = 0.12;
 const MOST_RESIDUAL_SDS: f64 = 3.0;

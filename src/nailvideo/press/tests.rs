@@ -82,8 +82,8 @@ fn onsets_and_times_are_covered_by_their_intervals() {
     }
 }
 
-/// Courses that are not the fit's: a release that takes 0.2 s, and one with a second, slow course. The intervals hold
-/// what they say, but for t90 of slow blood whose end the window does not show; how many they hold is published.
+/// Courses that are not a step's: a release that takes 0.2 s, and one with a second, slow course, whose end the window
+/// hardly shows where tau is 1.5 s. The intervals hold what they say.
 #[test]
 fn courses_of_other_shapes_are_off_by_less_than_an_eighth() {
     const PARTS: u32 = 40;
@@ -92,29 +92,33 @@ fn courses_of_other_shapes_are_off_by_less_than_an_eighth() {
         let part = |k: u32| reached(since_s - 0.2 * (f64::from(k) + 0.5) / f64::from(PARTS), tau);
         (0..PARTS).map(part).sum::<f64>() / f64::from(PARTS)
     };
-    let two = |since_s: f64, tau: f64| 0.8 * reached(since_s, tau) + 0.2 * reached(since_s, 3.0 * tau);
-    for name in ["ramp", "two"] {
-        for tau in [0.3, 0.6, 1.5] {
-            let reached = |since_s: f64| if name == "ramp" { ramp(since_s, tau) } else { two(since_s, tau) };
-            let t90_s = (0..).map(|k| f64::from(k) * 1e-3).find(|&t| reached(t) >= 0.9).expect("it ends");
-            let of_seed = |seed: u64| {
-                let (time_s, mut values) = trace(25.0, [0.2, tau], f64::INFINITY, 0.0, 20.0, seed);
-                values.iter_mut().zip(&time_s).for_each(|(value, t)| *value -= 25.0 * reached(t - 8.0));
-                (time_s, values, 8.0)
-            };
-            let errors = errors(of_seed, t90_s);
-            let [onset_s, t90] = [0, 1].map(|k| errors.iter().map(|one| one[k].0).sum::<f64>() / errors.len() as f64);
-            println!(
-                "{name}, tau {tau}: {} of {SEEDS}; onset {onset_s:+.3} s, held {:.2}; t90 {:+.1} %, held {:.2}",
-                errors.len(),
-                held(&errors, 0),
-                100.0 * t90 / t90_s,
-                held(&errors, 1)
-            );
-            assert!(onset_s.abs() <= 0.12 && t90.abs() <= t90_s / 8.0, "{name} {tau}");
-            let is_seen = (name, tau) != ("two", 1.5);
-            assert!(held(&errors, 0) >= 0.9 && (held(&errors, 1) >= 0.9 || !is_seen), "{name} {tau}");
-        }
+    // The share that is slower, by how much, and the step in SDs of the noise; none for the ramp.
+    let third = Some((0.2, 3.0, 25.0));
+    let courses = [0.3, 0.6, 1.5].map(|tau| (None, tau)).into_iter();
+    let courses = courses.chain([0.3, 0.6, 1.5].map(|tau| (third, tau)));
+    for (slow, tau) in courses.chain([(Some((0.3, 5.0, 25.0)), 0.6), (Some((0.3, 5.0, 100.0)), 0.6)]) {
+        let reached = |since_s: f64| match slow {
+            None => ramp(since_s, tau),
+            Some((share, by, _)) => (1.0 - share) * reached(since_s, tau) + share * reached(since_s, by * tau),
+        };
+        let step = slow.map_or(25.0, |(_, _, step)| step);
+        let t90_s = (0..).map(|k| f64::from(k) * 1e-3).find(|&t| reached(t) >= 0.9).expect("it ends");
+        let of_seed = |seed: u64| {
+            let (time_s, mut values) = trace(step, [0.2, tau], f64::INFINITY, 0.0, 20.0, seed);
+            values.iter_mut().zip(&time_s).for_each(|(value, t)| *value -= step * reached(t - 8.0));
+            (time_s, values, 8.0)
+        };
+        let errors = errors(of_seed, t90_s);
+        let [onset_s, t90] = [0, 1].map(|k| errors.iter().map(|one| one[k].0).sum::<f64>() / errors.len() as f64);
+        println!(
+            "{slow:?}, tau {tau}: {} of {SEEDS}; onset {onset_s:+.3} s, held {:.2}; t90 {:+.1} %, held {:.2}",
+            errors.len(),
+            held(&errors, 0),
+            100.0 * t90 / t90_s,
+            held(&errors, 1)
+        );
+        assert!(errors.len() as u64 * 20 >= SEEDS * 19 && onset_s.abs() <= 0.12 && t90.abs() <= t90_s / 8.0, "{tau}");
+        assert!(held(&errors, 0) >= 0.9 && held(&errors, 1) >= 0.9, "{slow:?} {tau}");
     }
 }
 

@@ -194,7 +194,7 @@ pub(super) fn presses(
     let facts = [
         ("use", USE.to_owned()),
         ("low, high", "95 % interval: noise with its correlation, end level, model".to_owned()),
-        ("t50, t90", "from the onset; tau: to 63 % of the step".to_owned()),
+        ("t50, t90", "from the onset; tau: the time constant, of two exponentials the faster's".to_owned()),
         ("depth", format!("the step: {}", light.unit())),
     ];
     let mut table = create(staging, outputs, "presses", columns, &facts)?;

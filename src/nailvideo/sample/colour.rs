@@ -129,6 +129,6 @@ impl Colours {
 
     /// Linear in the samples, so that the mean's colour is the colours' mean.
     fn rgb(&self, samples: [f64; 3]) -> [f64; 3] {
-        self.matrix.to_rgb(samples)
+        self.matrix.to_own_rgb(samples)
     }
 }

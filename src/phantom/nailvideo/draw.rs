@@ -52,7 +52,7 @@ impl Scene {
         let mut picture = Picture::new(format);
         let (luma, chroma) = picture.planes.split_at_mut(1);
         let [cb, cr] = chroma else { return picture };
-        let bytes = format.width * if format.depth > 8 { 2 } else { 1 };
+        let bytes = format.width * format.sample_bytes();
         let half = bytes / 2;
         let groups = luma[0].par_chunks_mut(2 * bytes).zip(cb.par_chunks_mut(half)).zip(cr.par_chunks_mut(half));
         let fresh = || [0, 1].map(|_| [0, 1, 2].map(|_| vec![0.0f32; format.width]));

@@ -13,7 +13,7 @@ const PAIR_FACTOR: f64 = 1.25;
 
 /// The text for markers in their order along the finger, the hand's first.
 pub(super) fn marker_file(marks: &[Mark], colours: &[[f64; 3]], turn: f64, first_frame: bool, info: &Info) -> String {
-    let hex = |mark: &Mark| hex(info.matrix.to_rgb(colours[mark.colour]));
+    let hex = |mark: &Mark| hex(info.matrix.to_own_rgb(colours[mark.colour]));
     let names = names(marks, colours, info);
     let segments = segments(marks);
     let mut text =
@@ -98,7 +98,7 @@ fn titles(count: usize) -> Vec<String> {
 
 /// A colour's word and a number for each marker.
 fn names(marks: &[Mark], colours: &[[f64; 3]], info: &Info) -> Vec<String> {
-    let words: Vec<&str> = marks.iter().map(|mark| word(info.matrix.to_rgb(colours[mark.colour]))).collect();
+    let words: Vec<&str> = marks.iter().map(|mark| word(info.matrix.to_own_rgb(colours[mark.colour]))).collect();
     let before = |k: usize| words[..k].iter().filter(|&&other| other == words[k]).count();
     (0..words.len()).map(|k| format!("{}_{}", words[k], before(k) + 1)).collect()
 }

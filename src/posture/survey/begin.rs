@@ -108,7 +108,7 @@ impl Surveyor<'_> {
             marker: self.layout.markers[marker].name.clone(),
             colour: hex(self.layout.markers[marker].colour.map(|part| f64::from(part) / 255.0)),
             at_px: shown(at),
-            there: hex(self.info.matrix.to_rgb(colour)),
+            there: hex(self.info.matrix.to_own_rgb(colour)),
             is_mark: there.is_some(),
             nearest_px: nearest.map(shown),
         }

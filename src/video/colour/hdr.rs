@@ -29,7 +29,7 @@ pub(in crate::video) struct ToOrdinary {
     usual: Option<Linear>,
     /// Light over white's by a part of R'G'B'; ordinary parts by the root of light, which they are nearly linear in.
     light: Table,
-    ordinary: Table,
+    of_root: Table,
     /// Where the columns and rows of luma lie between those of chroma, and the other way.
     of_chroma: [Vec<Between>; 2],
     of_luma: [Vec<Between>; 2],
@@ -75,7 +75,7 @@ impl ToOrdinary {
             samples: Linear::of(|rgb| Matrix::BT709.from_own_rgb(rgb)),
             usual: matrix.is_wide().then(|| Linear::of(|light| product(&USUAL_OF_WIDE, light))),
             light: Table::of(|part| matrix.transfer.light(part)),
-            ordinary: Table::of(|root| Transfer::Power.encoded(root * root)),
+            of_root: Table::of(|root| Transfer::Power.encoded(root * root)),
             of_chroma: [columns, rows],
             of_luma: [chroma_columns, chroma_rows],
         })
@@ -83,39 +83,33 @@ impl ToOrdinary {
 
     /// The frame, in the same layout.
     pub(in crate::video) fn frame(&self, picture: &frame::Video) -> frame::Video {
-        let Format { width, height, depth, .. } = self.format;
-        let plane = |number: usize, (width, height)| Plane {
-            width,
-            height,
-            stride: picture.stride(number),
-            depth,
-            data: picture.data(number),
-        };
-        let luma = plane(0, (width, height));
-        let chroma = self.format.chroma_size().map(|size| [plane(1, size), plane(2, size)]);
+        let Format { width, height, .. } = self.format;
+        let (luma, chroma) = self.format.planes(|number, _| (picture.stride(number), picture.data(number)));
         let mut converted = frame::Video::new(picture.format(), picture.width(), picture.height());
         let (stride, [columns, rows]) = (converted.stride(0), &self.of_chroma);
         converted.data_mut(0).par_chunks_mut(stride).take(height).enumerate().for_each(|(y, bytes)| {
             let chroma = chroma.map(|planes| planes.map(|plane| mixed(columns, &rows[y].mix_rows(&plane))));
             let [cb, cr] = chroma.unwrap_or_else(|| [vec![128.0; width], vec![128.0; width]]);
-            self.write(0, [row_of(&luma, y), cb, cr], bytes);
+            self.write(0, &self.ordinary([row_of(&luma, y), cb, cr]), bytes);
         });
         let Some(chroma) = chroma else { return converted };
         let [columns, rows] = &self.of_luma;
+        let ordinary = (0..chroma[0].height).into_par_iter().map(|y| {
+            let [cb, cr] = chroma.map(|plane| row_of(&plane, y));
+            self.ordinary([mixed(columns, &rows[y].mix_rows(&luma)), cb, cr])
+        });
+        let ordinary: Vec<[Vec<f32>; 3]> = ordinary.collect();
         for part in [1, 2] {
             let stride = converted.stride(part);
-            let lines = converted.data_mut(part).par_chunks_mut(stride).take(chroma[0].height);
-            lines.enumerate().for_each(|(y, bytes)| {
-                let [cb, cr] = chroma.map(|plane| row_of(&plane, y));
-                self.write(part, [mixed(columns, &rows[y].mix_rows(&luma)), cb, cr], bytes);
-            });
+            let lines = converted.data_mut(part).par_chunks_mut(stride).zip(&ordinary);
+            lines.for_each(|(bytes, row)| self.write(part, row, bytes));
         }
         converted
     }
 
-    /// Luma (0), Cb or Cr as BT.709 has it of a row of a video's own samples on the scale of 8 bits. Step by step over
-    /// the row, of which only the look-ups are not several samples at once: three times as fast as sample by sample.
-    fn write(&self, part: usize, mut row: [Vec<f32>; 3], bytes: &mut [u8]) {
+    /// Ordinary R'G'B' of a row of a video's own samples on the scale of 8 bits. Step by step over the row, of which only
+    /// the look-ups are not several samples at once: three times as fast as sample by sample.
+    fn ordinary(&self, mut row: [Vec<f32>; 3]) -> [Vec<f32>; 3] {
         self.own.map(&mut row);
         row.iter_mut().for_each(|channel| self.light.map(channel));
         if let Some(usual) = &self.usual {
@@ -123,10 +117,15 @@ impl ToOrdinary {
         }
         for channel in &mut row {
             channel.iter_mut().for_each(|light| *light = light.abs().sqrt().copysign(*light));
-            self.ordinary.map(channel);
+            self.of_root.map(channel);
         }
+        row
+    }
+
+    /// Luma (0), Cb or Cr as BT.709 has it of a row of ordinary R'G'B'.
+    fn write(&self, part: usize, row: &[Vec<f32>; 3], bytes: &mut [u8]) {
         let (zero, [of_red, of_green, of_blue]) = (self.samples.zero[part], self.samples.rows[part]);
-        let [red, green, blue] = &row;
+        let [red, green, blue] = row;
         let rgb = red.iter().zip(green).zip(blue);
         let samples = rgb.map(|((red, green), blue)| zero + of_red * red + of_green * green + of_blue * blue);
         let depth = self.format.depth;

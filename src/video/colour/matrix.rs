@@ -38,12 +38,6 @@ impl Matrix {
         self.from_own_rgb(self.own_rgb(rgb))
     }
 
-    /// R'G'B' as ordinary video has them, 0 to 1 (not clipped), of Y'CbCr on the scale of 8 bits.
-    #[must_use]
-    pub fn to_rgb(&self, samples: [f64; 3]) -> [f64; 3] {
-        self.transfer.ordinary(self.to_own_rgb(samples), self.is_wide())
-    }
-
     /// A video's own R'G'B' of ordinary ones: the same but in HDR.
     #[must_use]
     pub fn own_rgb(&self, rgb: [f64; 3]) -> [f64; 3] {
@@ -60,7 +54,10 @@ impl Matrix {
         [base + luma_span * luma, 128.0 + chroma_span * cb, 128.0 + chroma_span * cr]
     }
 
-    pub(super) fn to_own_rgb(self, [luma, cb, cr]: [f64; 3]) -> [f64; 3] {
+    /// A video's own R'G'B', 0 to 1 (not clipped), of Y'CbCr on the scale of 8 bits: linear. Of frames that are read they
+    /// are ordinary, as HDR is made so first.
+    #[must_use]
+    pub fn to_own_rgb(&self, [luma, cb, cr]: [f64; 3]) -> [f64; 3] {
         let (base, luma_span, chroma_span) = self.spans();
         let luma = (luma - base) / luma_span;
         let red = luma + 2.0 * (1.0 - self.k_red) * (cr - 128.0) / chroma_span;

@@ -50,17 +50,6 @@ impl Transfer {
         }
     }
 
-    /// Ordinary R'G'B' of a video's own; `wide`: its primaries are BT.2020's. Above 1 where HDR goes on beyond an
-    /// ordinary camera's white.
-    pub(super) fn ordinary(self, own: [f64; 3], wide: bool) -> [f64; 3] {
-        if self == Self::Power {
-            return own;
-        }
-        let light = own.map(|part| odd(part, |part| self.light(part)));
-        let light = if wide { product(&USUAL_OF_WIDE, light) } else { light };
-        light.map(|part| odd(part, |part| part.powf(1.0 / GAMMA)))
-    }
-
     /// A video's own R'G'B' of ordinary ones.
     pub(super) fn own(self, ordinary: [f64; 3], wide: bool) -> [f64; 3] {
         if self == Self::Power {
@@ -112,6 +101,13 @@ pub(super) fn product(matrix: &[[f64; 3]; 3], of: [f64; 3]) -> [f64; 3] {
 mod tests {
     use super::*;
 
+    /// Ordinary R'G'B' of a video's own.
+    fn ordinary(transfer: Transfer, own: [f64; 3], wide: bool) -> [f64; 3] {
+        let light = own.map(|part| odd(part, |part| transfer.light(part)));
+        let light = if wide { product(&USUAL_OF_WIDE, light) } else { light };
+        light.map(|part| odd(part, |part| Transfer::Power.encoded(part)))
+    }
+
     const HDR: [Transfer; 2] = [Transfer::HybridLogGamma, Transfer::PerceptualQuantizer];
 
     #[test]
@@ -135,13 +131,13 @@ mod tests {
     fn colours_go_there_and_back_and_grey_stays_grey() {
         for transfer in HDR {
             for wide in [false, true] {
-                for ordinary in [[0.0; 3], [0.6, 0.45, 0.4], [1.0; 3], [1.5, 0.2, -0.1], [0.02, 0.9, 0.1]] {
-                    let own = transfer.own(ordinary, wide);
-                    let back = transfer.ordinary(own, wide);
-                    let gap = (0..3).map(|c| (back[c] - ordinary[c]).abs()).fold(0.0, f64::max);
-                    assert!(gap <= 1e-4, "{transfer:?} {ordinary:?}: {own:?}, {back:?}");
+                for colour in [[0.0; 3], [0.6, 0.45, 0.4], [1.0; 3], [1.5, 0.2, -0.1], [0.02, 0.9, 0.1]] {
+                    let own = transfer.own(colour, wide);
+                    let back = ordinary(transfer, own, wide);
+                    let gap = (0..3).map(|c| (back[c] - colour[c]).abs()).fold(0.0, f64::max);
+                    assert!(gap <= 1e-4, "{transfer:?} {colour:?}: {own:?}, {back:?}");
                 }
-                let grey = transfer.ordinary([0.4; 3], wide);
+                let grey = ordinary(transfer, [0.4; 3], wide);
                 assert!((grey[0] - grey[1]).abs().max((grey[2] - grey[1]).abs()) <= 1e-9, "{grey:?}");
             }
         }
@@ -153,7 +149,7 @@ mod tests {
         for transfer in HDR {
             let ratio = |light: f64| {
                 let own = transfer.own([0.7, 0.5, 0.45].map(|part: f64| part * light.powf(1.0 / GAMMA)), true);
-                let read = transfer.ordinary(own, true);
+                let read = ordinary(transfer, own, true);
                 [(read[1] / read[0]).ln(), (own[1] / own[0]).ln()]
             };
             let [(few, few_own), (more, more_own)] = [0.8, 1.2].map(ratio).map(|[read, own]| (read, own));

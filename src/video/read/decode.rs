@@ -26,7 +26,7 @@ use crate::video::quantizer;
 use crate::video::read::ahead::{Events, Told};
 use crate::video::read::reader::{Alarm, Event, Reader};
 use crate::video::read::source::Care;
-use crate::video::{Frame, Info, Matrix, Plane, VideoError};
+use crate::video::{Frame, Info, Matrix, VideoError};
 
 /// What comes next of a video.
 #[derive(Debug)]
@@ -254,21 +254,9 @@ impl Video {
     }
 
     fn borrow(&self, index: u64, time_s: f64) -> Frame<'_> {
-        let (picture, format) = (&self.picture, self.info.format);
-        let plane = |number: usize, (width, height)| Plane {
-            width,
-            height,
-            stride: picture.stride(number),
-            depth: format.depth,
-            data: picture.data(number),
-        };
-        Frame {
-            index,
-            time_s,
-            luma: plane(0, (format.width, format.height)),
-            chroma: format.chroma_size().map(|size| [plane(1, size), plane(2, size)]),
-            quantizer: self.quantizer,
-        }
+        let planes = |number: usize, _| (self.picture.stride(number), self.picture.data(number));
+        let (luma, chroma) = self.info.format.planes(planes);
+        Frame { index, time_s, luma, chroma, quantizer: self.quantizer }
     }
 }
 

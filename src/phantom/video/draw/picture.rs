@@ -19,7 +19,7 @@ impl Scene {
         let converter = Converter::new(format, &options.matrix, options.siting);
         let noise_sd = (options.noise_sd / 255.0) as f32;
         let mut picture = Picture::new(format);
-        let bytes = if format.depth > 8 { 2 } else { 1 };
+        let bytes = format.sample_bytes();
         let down = format.subsampling.map_or(1, |(_, down)| down);
         let draw = |group: usize, rows: &mut [Row], luma: &mut [u8]| {
             for (k, (row, luma)) in rows.iter_mut().zip(luma.chunks_exact_mut(format.width * bytes)).enumerate() {

@@ -50,7 +50,7 @@ mod tests {
                 let format = Format { width: 9, height: 6, subsampling, depth };
                 let info = info(format, turn);
                 let mut picture = Picture::new(format);
-                let bytes = if depth > 8 { 2 } else { 1 };
+                let bytes = format.sample_bytes();
                 for (k, sample) in picture.planes[0].chunks_exact_mut(bytes).enumerate() {
                     let deep = (k as u16 * 4) << (depth - 8);
                     sample.copy_from_slice(&deep.to_le_bytes()[..bytes]);
