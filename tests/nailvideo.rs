@@ -112,8 +112,8 @@ fn a_press_has_its_onset_and_its_release() {
         let half = errors.len() / 2;
         let median =
             if errors.len().is_multiple_of(2) { 0.5 * (errors[half - 1] + errors[half]) } else { errors[half] };
-        // The bar is a frame, 0.0333 s; measured at 90 px: presses 0.018 s, releases 0.0362 s, 0.034 s over four seeds.
-        assert!(errors.len() >= 4 && median <= 0.037, "{event}: {errors:?}");
+        // The bar is a frame, 0.0333 s; measured at 90 px: presses 0.018 s, releases 0.0345 s, 0.036 s over four seeds.
+        assert!(errors.len() >= 4 && median <= 0.036, "{event}: {errors:?}");
     }
     // The same bytes whatever the threads.
     words(&dir, &job.replace("--out out", "--threads 1 --out one")).expect(0);

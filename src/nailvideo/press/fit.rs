@@ -8,11 +8,13 @@
 //! as the best and whose end is seen, also ramps of lengths and slow shares that are not the best. That a step is taken
 //! says nothing against a ramp of 0.2 s (measured on traces: the step's own interval held its onset in 61 to 76 %) or a
 //! fifth of the blood that is slower (its t90 in 8 to 81 % without courses of two). They hold the noise with its
-//! correlation in time, and the choice of the end level.
+//! correlation in time, pulse and slow waves among it, and the choice of the end level.
 
 use std::ops::RangeInclusive;
 
 use nalgebra::{Matrix6, Vector6};
+
+use super::noise::{Level, Noise, Slow};
 
 /// Time constants that are looked for, seconds (the thesis' are 0.12 to 0.36).
 const TAUS_S: RangeInclusive<f64> = 0.02..=10.0;
@@ -154,44 +156,38 @@ fn to_share(model: Model, p: &Parameters, share: f64) -> f64 {
 /// Fits times and values (all known, times ascending) about a step near `near_s`; `rest` is another possible end level.
 pub(super) fn fit(time_s: &[f64], values: &[f64], near_s: f64, rest: Option<f64>) -> Option<Course> {
     let start = search(time_s, values, near_s)?;
-    let plain = refine(Model::Step, time_s, values, start, &[0, 1, 3, 4])?;
-    let n = values.len() as f64;
-    let with = |model: Model, third: f64, earlier_s: f64| {
-        let mut start = plain.parameters;
-        (start[0], start[2]) = (start[0] - earlier_s, third.ln());
-        refine(model, time_s, values, start, &[0, 1, 2, 3, 4])
-    };
-    let mut slow_start = plain.parameters;
-    let others = [with(Model::Two, 0.2, 0.0), with(Model::Ramp, 0.1, 0.05)];
-    let mut fits: Vec<Fitted> = others.into_iter().flatten().chain([plain]).collect();
-    // A ramp of no length is a step, and nothing determines its length.
-    fits.retain(|one| one.model != Model::Ramp || one.parameters[2].exp() > LEAST_RAMP_S);
-    fits.sort_by(|a, b| a.sum.total_cmp(&b.sum));
-    // Residuals that go together count less: the effective number of samples.
-    let sd = |one: &Fitted| (one.sum / (n - 5.0).max(1.0)).sqrt();
-    let variance = |one: &Fitted| sd(one).powi(2) * one.correlation;
-    let behind = |one: &Fitted, best: &Fitted| (one.sum - best.sum) / variance(best);
-    // In little noise a ramp's length is determined, and its onset is earlier than the step's by half of it.
-    let is_clear = |one: &Fitted| (one.parameters[4] - one.parameters[3]).abs() > CLEAR_SDS * sd(one);
-    let simplest = if fits.first().is_some_and(is_clear) { Model::Ramp } else { Model::Step };
-    let good_enough = fits.iter().position(|one| one.model == simplest && behind(one, &fits[0]) <= BETTER);
-    let mut taken = fits.remove(good_enough.unwrap_or(0));
+    let white = Noise::new(time_s, Slow::NONE);
+    let mut fits = Samples { time_s, values, noise: &white }.fits(start)?;
+    // From the step's residuals at first: what is no step would take the waves for its own.
+    let (mut noise, mut slow, mut of) = (white, Slow::NONE, fits.len() - 1);
+    for _ in 0..2 {
+        let likely = Samples { time_s, values, noise: &noise }.likeliest(&fits[of]);
+        if likely == slow {
+            break;
+        }
+        (noise, slow) = (Noise::new(time_s, likely), likely);
+        fits = Samples { time_s, values, noise: &noise }.fits(fits[of].parameters)?;
+        of = simplest(&fits, false);
+    }
+    let samples = Samples { time_s, values, noise: &noise };
+    let mut slow_start = fits[fits.len() - 1].parameters;
+    let mut taken = fits.swap_remove(simplest(&fits, true));
     if taken.model == Model::Two
-        && let Some(free) = refine(Model::Two, time_s, values, taken.parameters, &[0, 1, 2, 3, 4, 5])
+        && let Some(free) = samples.refine(Model::Two, taken.parameters, &[0, 1, 2, 3, 4, 5])
     {
         slow_start = free.parameters;
-        fits.push(if behind(&taken, &free) > BETTER { std::mem::replace(&mut taken, free) } else { free });
+        fits.push(if taken.behind(&free) > BETTER { std::mem::replace(&mut taken, free) } else { free });
     }
     let model = taken.model;
     let last_s = time_s[time_s.len() - 1];
     let span_s = last_s - time_s[0];
-    let frame_s = span_s / (n - 1.0).max(1.0);
+    let frame_s = span_s / (time_s.len() - 1).max(1) as f64;
     let held = |model: Model, mut start: Parameters, third: f64| {
         start[2] = third.ln();
-        refine(model, time_s, values, start, &[0, 1, 3, 4])
+        samples.refine(model, start, &[0, 1, 3, 4])
     };
     let (p, length_s) = (taken.parameters, taken.parameters[2].exp());
-    // What else the course may be, of a shape that is held: the data need not tell what length or power is the best.
+    // What else the course may be, of a shape that is held: the data need not tell what length or share is the best.
     let mut others: Vec<Fitted> =
         fits.iter().filter_map(|one| held(one.model, one.parameters, one.parameters[2].exp())).collect();
     if model == Model::Ramp && length_s < frame_s {
@@ -201,7 +197,7 @@ pub(super) fn fit(time_s: &[f64], values: &[f64], near_s: f64, rest: Option<f64>
     }
     for (model, mut start, thirds) in [(Model::Ramp, p, &LENGTHS_S[..]), (Model::Two, slow_start, &SLOW_SHARES[..])] {
         for &third in thirds {
-            let one = held(model, start, third).filter(|one| behind(one, &taken) <= SES * SES);
+            let one = held(model, start, third).filter(|one| one.behind(&taken) <= SES * SES);
             let Some(one) = one else { break };
             start = one.parameters;
             others.push(one);
@@ -210,12 +206,12 @@ pub(super) fn fit(time_s: &[f64], values: &[f64], near_s: f64, rest: Option<f64>
     let seen = |one: &Fitted| Curve::new(one.model, &one.parameters).reached(last_s - one.parameters[0])[0];
     others.retain(|one| seen(one) >= LEAST_SEEN);
     let best = others.iter().fold(&taken, |best, one| if one.sum < best.sum { one } else { best });
-    let (least, variance) = (best.sum, variance(best));
+    let (least, variance) = (best.sum, best.variance());
     let at_rest = rest.and_then(|level| {
         let mut start = taken.parameters;
         start[4] = level;
         let free: Vec<usize> = taken.free.iter().copied().filter(|&k| k != 4).collect();
-        refine(model, time_s, values, start, &free)
+        samples.refine(model, start, &free)
     });
     // An end level that the data refuse is not a choice.
     let at_rest = at_rest.filter(|one| one.sum <= 1.5 * taken.sum);
@@ -245,7 +241,7 @@ pub(super) fn fit(time_s: &[f64], values: &[f64], near_s: f64, rest: Option<f64>
         t90_s: time(&|model, p| to_share(model, p, 0.9)),
         tau_s: time(&|_, p| p[1].exp()),
         depth: p[4] - p[3],
-        sd: sd(&taken),
+        sd: taken.raw_sd,
         seen: seen(&taken),
         model,
     };
@@ -253,6 +249,19 @@ pub(super) fn fit(time_s: &[f64], values: &[f64], near_s: f64, rest: Option<f64>
     // An onset's interval longer than what was looked at says that nothing is known.
     let is_known = course.onset_s.high - course.onset_s.low <= 2.0 * span_s;
     (is_known && all.iter().all(|one| one.low.is_finite() && one.high.is_finite())).then_some(course)
+}
+
+/// Which of some fits is the simplest that is about as good as the best; `ramps`: that is a ramp's in little noise,
+/// where its length is determined and its onset is earlier than the step's by half of it.
+fn simplest(fits: &[Fitted], ramps: bool) -> usize {
+    // A ramp of no length is a step, and nothing determines its length.
+    let is_one = |one: &Fitted| one.model != Model::Ramp || one.parameters[2].exp() > LEAST_RAMP_S;
+    let mut known = (0..fits.len()).filter(|&k| is_one(&fits[k]));
+    let best = known.clone().min_by(|&a, &b| fits[a].sum.total_cmp(&fits[b].sum)).unwrap_or(fits.len() - 1);
+    let step = fits[best].parameters[4] - fits[best].parameters[3];
+    let simplest = if ramps && step.abs() > CLEAR_SDS * fits[best].sd { Model::Ramp } else { Model::Step };
+    let is_good_enough = |&k: &usize| fits[k].model == simplest && fits[k].behind(&fits[best]) <= BETTER;
+    known.find(is_good_enough).unwrap_or(best)
 }
 
 /// An onset's interval with a frame after it and two before: a force begins more smoothly than a ramp, so that its
@@ -310,12 +319,26 @@ struct Fitted {
     free: Vec<usize>,
     /// Of J'J.
     inverse: Matrix6<f64>,
+    /// Of the squares of the whitened residuals, their SD, and that of the residuals themselves.
     sum: f64,
-    /// By how much correlation in time enlarges a variance: (1 + r)/(1 - r), r that of neighbours, never below 1.
+    sd: f64,
+    raw_sd: f64,
+    /// By how much correlation of what is whitened enlarges a variance: (1 + r)/(1 - r), r that of neighbours, never
+    /// below 1.
     correlation: f64,
 }
 
 impl Fitted {
+    /// Of the residuals; those that go together count less.
+    fn variance(&self) -> f64 {
+        self.sd * self.sd * self.correlation
+    }
+
+    /// By how many variances its sum of squares is larger.
+    fn behind(&self, best: &Self) -> f64 {
+        (self.sum - best.sum) / best.variance()
+    }
+
     /// The variance of a figure in that of the values.
     fn spread(&self, of: &dyn Fn(Model, &Parameters) -> f64) -> f64 {
         let value = of(self.model, &self.parameters);
@@ -329,9 +352,10 @@ impl Fitted {
     }
 }
 
-/// The normal equations about a course.
+/// The normal equations about a course, of whitened residuals and slopes.
 struct Normal {
-    /// Of the squares of the residuals, and of the products of neighbours.
+    /// Of the squares of the residuals, before and after, and of the products of neighbours.
+    raw: f64,
     sum: f64,
     neighbours: f64,
     /// J'J and J'r; what is held has a one on the diagonal and nothing beside it.
@@ -339,75 +363,118 @@ struct Normal {
     right: Vector6<f64>,
 }
 
-impl Normal {
-    fn new(model: Model, time_s: &[f64], values: &[f64], p: &Parameters, free: &[usize]) -> Self {
+/// What is fitted, and the noise in it.
+struct Samples<'a> {
+    time_s: &'a [f64],
+    values: &'a [f64],
+    noise: &'a Noise,
+}
+
+impl Samples<'_> {
+    /// Two exponentials, one after a ramp, one after a step, which comes last.
+    fn fits(&self, start: Parameters) -> Option<Vec<Fitted>> {
+        let plain = self.refine(Model::Step, start, &[0, 1, 3, 4])?;
+        let with = |model: Model, third: f64, earlier_s: f64| {
+            let mut start = plain.parameters;
+            (start[0], start[2]) = (start[0] - earlier_s, third.ln());
+            self.refine(model, start, &[0, 1, 2, 3, 4])
+        };
+        let others = [with(Model::Two, 0.2, 0.0), with(Model::Ramp, 0.1, 0.05)];
+        Some(others.into_iter().flatten().chain([plain]).collect())
+    }
+
+    /// The noise about a course by its restricted likelihood, which knows that the course bends along with it.
+    fn likeliest(&self, about: &Fitted) -> Slow {
+        let free = (self.values.len() - about.free.len()) as f64;
+        let likelihood = |slow: Slow| {
+            let noise = &Noise::new(self.time_s, slow);
+            let at = Samples { noise, ..*self }.normal(about.model, &about.parameters, &about.free);
+            let Some(factored) = at.square.cholesky() else { return f64::NEG_INFINITY };
+            let left = at.sum - at.right.dot(&factored.solve(&at.right));
+            -(free * left.ln() + noise.ln_det + factored.ln_determinant())
+        };
+        let all = Slow::all().map(|slow| (likelihood(slow), slow));
+        let best = all.fold((f64::NEG_INFINITY, Slow::NONE), |best, one| if one.0 > best.0 { one } else { best });
+        best.1.enlarged()
+    }
+
+    fn normal(&self, model: Model, p: &Parameters, free: &[usize]) -> Normal {
         let curve = Curve::new(model, p);
-        let (mut sum, mut neighbours, mut before) = (0.0, 0.0, 0.0);
+        let (mut raw, mut sum, mut neighbours, mut before) = (0.0, 0.0, 0.0, 0.0);
+        let (mut level, mut levels) = (Level::default(), [Level::default(); PARAMETERS]);
         let (mut square, mut right) = ([[0.0; PARAMETERS]; PARAMETERS], [0.0; PARAMETERS]);
-        for (&t, &value) in time_s.iter().zip(values) {
+        for ((&t, &value), &predicted) in self.time_s.iter().zip(self.values).zip(&self.noise.steps) {
             let [reached, since, tau, third, slower] = curve.reached(t - curve.onset_s);
             let residual = value - curve.before - curve.step * reached;
+            raw += residual * residual;
+            let residual = level.error(residual, predicted);
             (sum, neighbours, before) = (sum + residual * residual, neighbours + residual * before, residual);
-            let [since, tau, third, slower] = [-since, tau, third, slower].map(|slope| curve.step * slope);
-            let slopes = [since, tau, third, 1.0 - reached, reached, slower];
-            for &k in free {
+            let step = curve.step;
+            let mut slopes = [-step * since, step * tau, step * third, 1.0 - reached, reached, step * slower];
+            for (count, &k) in free.iter().enumerate() {
+                slopes[k] = levels[k].error(slopes[k], predicted);
                 right[k] += slopes[k] * residual;
-                for &l in free {
+                for &l in &free[..=count] {
                     square[k][l] += slopes[k] * slopes[l];
                 }
             }
         }
+        for (count, &k) in free.iter().enumerate() {
+            free[..count].iter().for_each(|&l| square[l][k] = square[k][l]);
+        }
         (0..PARAMETERS).filter(|k| !free.contains(k)).for_each(|k| square[k][k] = 1.0);
-        Self { sum, neighbours, square: square.into(), right: right.into() }
+        Normal { raw, sum, neighbours, square: square.into(), right: right.into() }
     }
-}
 
-/// Levenberg-Marquardt steps in the free parameters.
-fn refine(model: Model, time_s: &[f64], values: &[f64], start: Parameters, free: &[usize]) -> Option<Fitted> {
-    let normal = |p: &Parameters| Normal::new(model, time_s, values, p, free);
-    let allowed = |p: &Parameters| {
-        let third = match model {
-            Model::Step => true,
-            Model::Ramp => RAMPS_S.contains(&p[2].exp()),
-            Model::Two => SHARES.contains(&p[2].exp()) && SLOWER.contains(&p[5].exp()),
+    /// Levenberg-Marquardt steps in the free parameters.
+    fn refine(&self, model: Model, start: Parameters, free: &[usize]) -> Option<Fitted> {
+        let allowed = |p: &Parameters| {
+            let third = match model {
+                Model::Step => true,
+                Model::Ramp => RAMPS_S.contains(&p[2].exp()),
+                Model::Two => SHARES.contains(&p[2].exp()) && SLOWER.contains(&p[5].exp()),
+            };
+            third && TAUS_S.contains(&p[1].exp()) && p.iter().all(|part| part.is_finite())
         };
-        third && TAUS_S.contains(&p[1].exp()) && p.iter().all(|part| part.is_finite())
-    };
-    let (mut p, mut at, mut damping) = (start, normal(&start), 1e-3);
-    for _ in 0..60 {
-        let mut damped = at.square;
-        for k in 0..PARAMETERS {
-            damped[(k, k)] *= 1.0 + damping;
-        }
-        let Some(factored) = damped.cholesky() else {
-            damping *= 10.0;
-            continue;
-        };
-        let step = factored.solve(&at.right);
-        let next = std::array::from_fn(|k| p[k] + step[k]);
-        let tried = allowed(&next).then(|| normal(&next)).filter(|tried| tried.sum <= at.sum);
-        if let Some(tried) = tried {
-            let settled = at.sum - tried.sum <= 1e-10 * at.sum;
-            (p, at, damping) = (next, tried, damping * 0.3);
-            if settled {
-                break;
+        let (mut p, mut at, mut damping) = (start, self.normal(model, &start, free), 1e-3);
+        for _ in 0..60 {
+            let mut damped = at.square;
+            for k in 0..PARAMETERS {
+                damped[(k, k)] *= 1.0 + damping;
             }
-        } else {
-            damping *= 5.0;
-            if damping > 1e8 {
-                break;
+            let Some(factored) = damped.cholesky() else {
+                damping *= 10.0;
+                continue;
+            };
+            let step = factored.solve(&at.right);
+            let next = std::array::from_fn(|k| p[k] + step[k]);
+            let tried = allowed(&next).then(|| self.normal(model, &next, free)).filter(|tried| tried.sum <= at.sum);
+            if let Some(tried) = tried {
+                let settled = at.sum - tried.sum <= 1e-8 * at.sum;
+                (p, at, damping) = (next, tried, damping * 0.3);
+                if settled {
+                    break;
+                }
+            } else {
+                damping *= 5.0;
+                if damping > 1e8 {
+                    break;
+                }
             }
         }
+        let together = (at.neighbours / at.sum.max(1e-30)).clamp(0.0, 0.95);
+        let degrees = (self.values.len() as f64 - 5.0).max(1.0);
+        Some(Fitted {
+            model,
+            parameters: p,
+            free: free.to_vec(),
+            inverse: at.square.try_inverse()?,
+            sum: at.sum,
+            sd: (at.sum / degrees).sqrt(),
+            raw_sd: (at.raw / degrees).sqrt(),
+            correlation: (1.0 + together) / (1.0 - together),
+        })
     }
-    let together = (at.neighbours / at.sum.max(1e-30)).clamp(0.0, 0.95);
-    Some(Fitted {
-        model,
-        parameters: p,
-        free: free.to_vec(),
-        inverse: at.square.try_inverse()?,
-        sum: at.sum,
-        correlation: (1.0 + together) / (1.0 - together),
-    })
 }
 
 #[cfg(test)]

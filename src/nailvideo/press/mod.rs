@@ -6,6 +6,7 @@
 
 mod find;
 mod fit;
+mod noise;
 #[cfg(test)]
 mod tests;
 

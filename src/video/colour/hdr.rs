@@ -107,8 +107,8 @@ impl ToOrdinary {
         converted
     }
 
-    /// Ordinary R'G'B' of a row of a video's own samples on the scale of 8 bits. Step by step over the row, of which only
-    /// the look-ups are not several samples at once: three times as fast as sample by sample.
+    /// Ordinary R'G'B' of a row of a video's own samples on the scale of 8 bits. Step by step over the row, of which
+    /// only the look-ups are not several samples at once: three times as fast as sample by sample.
     fn ordinary(&self, mut row: [Vec<f32>; 3]) -> [Vec<f32>; 3] {
         self.own.map(&mut row);
         row.iter_mut().for_each(|channel| self.light.map(channel));

@@ -54,8 +54,8 @@ impl Matrix {
         [base + luma_span * luma, 128.0 + chroma_span * cb, 128.0 + chroma_span * cr]
     }
 
-    /// A video's own R'G'B', 0 to 1 (not clipped), of Y'CbCr on the scale of 8 bits: linear. Of frames that are read they
-    /// are ordinary, as HDR is made so first.
+    /// A video's own R'G'B', 0 to 1 (not clipped), of Y'CbCr on the scale of 8 bits: linear. Frames that are read have
+    /// ordinary ones, as HDR is made so first.
     #[must_use]
     pub fn to_own_rgb(&self, [luma, cb, cr]: [f64; 3]) -> [f64; 3] {
         let (base, luma_span, chroma_span) = self.spans();
