@@ -1,10 +1,10 @@
 //! What a trace does beside its course: white noise, and first-order noise of an encoder, of the pulse (about 1 Hz) or
 //! of the blood's slow waves (vasomotion, about 0.1 Hz), whichever is likeliest.
 //!
-//! Where a trace has such waves and only white noise is assumed, a course bends along with them: measured on traces
-//! with a pulse of 2 % and waves of 5 % of the step, t90's interval held the truth in 44 to 93 %, and t90 was off by 14
-//! to 17 % in the median; so in 86 to 100 %, and by 6 to 11 %. The price: of blood a part of which comes back more
-//! slowly t90 is 5 to 16 % short in place of 1 to 3 %, within its interval, as slow waves may look like that.
+//! Where a trace has such waves and only white noise is assumed, a course bends along with them: in the pulse and the
+//! waves of real blood (`tests::real_data`) t90's interval held the truth in 36 to 66 %, so in 91 to 95 %. The price:
+//! of blood a part of which comes back more slowly t90 is 5 to 16 % short in place of 1 to 9 %, within its interval, as
+//! slow waves may look like that.
 
 /// Time constants that are tried, seconds.
 const SLOW_S: [f64; 3] = [0.05, 0.5, 2.5];

@@ -40,7 +40,9 @@ fn errors(of_seed: impl Fn(u64) -> (Vec<f64>, Vec<f64>, f64) + Sync, t90_s: f64)
     let errors = |seed: u64| {
         let (time_s, values, release_s) = of_seed(seed);
         let rows = rows_of(&time_s, values);
-        let row = rows.iter().find(|row| row.event == Event::Release).expect("a release");
+        // Not what waves of real blood look like elsewhere.
+        let is_near = |row: &&Row| row.found_s.1.is_some_and(|found_s| (found_s - release_s).abs() < 2.0);
+        let row = rows.iter().filter(is_near).find(|row| row.event == Event::Release)?;
         let course = row.course.as_ref().ok()?;
         let of = |one: fit::Interval, truth: f64| (one.value - truth, one.low <= truth && truth <= one.high);
         Some([of(course.onset_s, release_s), of(course.t90_s, t90_s)])
@@ -236,4 +238,62 @@ fn a_press_in_a_trace_of_two_has_its_length() {
     assert_eq!(rows.len(), 2);
     assert!((rows[0].pressed_s.unwrap() - (8.0 - onset)).abs() <= 0.05, "{:?}", rows[0].pressed_s);
     assert!((rows[1].depth().unwrap() + 15.0).abs() <= 0.5);
+}
+
+mod real_data {
+    use super::*;
+    use crate::real_data::real_data;
+
+    /// Red of a fingertip on a camera, 100 ln, at the tests' rate: pulse, and slow waves that are 1.2 to 2.4 times as
+    /// high. Without the first seconds, in which the camera finds its exposure.
+    fn blood(subject: usize) -> Vec<f64> {
+        let path = real_data(&format!("signals/welltory/subject_0{subject}/PPG.csv"));
+        let text = std::fs::read_to_string(path).unwrap();
+        let row = |line: &str| {
+            let mut cells = line.split(',').map(|cell| cell.parse::<f64>().unwrap());
+            (cells.next().unwrap() / 1000.0, 100.0 * cells.next().unwrap().ln())
+        };
+        let rows: Vec<(f64, f64)> = text.lines().skip(1).map(row).collect();
+        let times_s = (0..).map(|k| rows[0].0 + 8.0 + f64::from(k) / RATE_HZ);
+        let at = |t: f64| {
+            let after = rows.partition_point(|row| row.0 < t);
+            let ((t0, v0), (t1, v1)) = (rows[after - 1], *rows.get(after)?);
+            Some(v0 + (v1 - v0) * (t - t0) / (t1 - t0))
+        };
+        times_s.map_while(at).collect()
+    }
+
+    /// Exact courses, a step of 20 of 100 ln, in noise of 0.3 and in real blood, so high that its pulse has 0.4
+    /// (assumed: nails have not been measured). These recordings chose nothing.
+    #[test]
+    #[ignore = "needs real recordings: LUNULA_REAL_DATA"]
+    fn courses_in_real_blood_are_held() {
+        const SD: f64 = 0.3;
+        let subjects = [(1, 2.2), (2, 0.9), (3, 3.0)].map(|(subject, by)| (blood(subject), by));
+        for (tau, until_s) in [(0.3, 13.0), (0.3, 20.0), (0.6, 13.0), (0.6, 20.0), (1.5, 20.0)] {
+            let of_seed = |seed: u64| {
+                let (time_s, mut values) = trace(20.0 / SD, [0.2, tau], 8.0, 0.0, until_s, seed);
+                let (blood, by) = &subjects[seed as usize % 3];
+                let from = (seed as usize * 7919) % (blood.len() - values.len());
+                for (value, blood) in values.iter_mut().zip(&blood[from..]) {
+                    *value = SD * *value + by * blood;
+                }
+                (time_s, values, 8.0)
+            };
+            let t90_s = tau * 10.0_f64.ln();
+            let errors = errors(of_seed, t90_s);
+            let [onset_s, t90] = [0, 1].map(|k| median(&errors, k));
+            println!(
+                "tau {tau}, until {until_s}: {} of {SEEDS}, onset {onset_s:.3} s, held {:.2}; t90 {:.1} %, held {:.2}",
+                errors.len(),
+                held(&errors, 0),
+                100.0 * t90 / t90_s,
+                held(&errors, 1)
+            );
+            // At 1.5 s the end is not seen in one of eight.
+            assert!(errors.len() as u64 * 10 >= SEEDS * 8 && t90 <= t90_s / 6.0, "{tau} {until_s}");
+            // Measured 0.93 and more, 0.91 and more.
+            assert!(held(&errors, 0) >= 0.9 && held(&errors, 1) >= 0.88, "{tau} {until_s}");
+        }
+    }
 }
