@@ -12,7 +12,7 @@ const SLOW_S: [f64; 3] = [0.05, 0.5, 2.5];
 const SDS: [f64; 7] = [0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0];
 /// From such a time constant on, the blood's waves.
 const WAVES_S: f64 = 1.0;
-/// Waves are smoother than first-order noise, which is told by how much neighbours differ: their SD is enlarged by this
+/// Waves are smoother than first-order noise, whose size is that of its steps: their SD is enlarged by this
 /// (chosen on traces with waves of a period of 10 s, so that intervals hold them).
 const SMOOTHER: f64 = 1.5;
 
@@ -43,14 +43,14 @@ impl Slow {
 /// White and slow noise over times: the Kalman filter that predicts each sample from those before.
 #[derive(Debug)]
 pub(super) struct Noise {
-    pub(super) steps: Vec<Step>,
+    pub(super) steps: Vec<Prediction>,
     /// The logarithm of the determinant of its covariance in the variance of the white noise.
     pub(super) ln_det: f64,
 }
 
 /// How a sample is predicted.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Step {
+pub(super) struct Prediction {
     /// What is left of the slow noise at the sample before.
     carry: f64,
     /// What is learned from this one.
@@ -69,7 +69,7 @@ impl Noise {
             let of_error = ahead + 1.0;
             (before_s, variance) = (t, ahead / of_error);
             ln_det += of_error.ln();
-            Step { carry, gain: ahead / of_error, scale: of_error.sqrt().recip() }
+            Prediction { carry, gain: ahead / of_error, scale: of_error.sqrt().recip() }
         });
         let steps = steps.collect();
         Self { steps, ln_det }
@@ -83,11 +83,11 @@ pub(super) struct Level(f64);
 impl Level {
     /// The error of the prediction of the next value of the series, white where the series is such noise.
     #[inline]
-    pub(super) fn error(&mut self, value: f64, step: Step) -> f64 {
-        let ahead = step.carry * self.0;
+    pub(super) fn error(&mut self, value: f64, by: Prediction) -> f64 {
+        let ahead = by.carry * self.0;
         let error = value - ahead;
-        self.0 = ahead + step.gain * error;
-        error * step.scale
+        self.0 = ahead + by.gain * error;
+        error * by.scale
     }
 }
 

@@ -55,6 +55,19 @@ fn held(errors: &[[(f64, bool); 2]], k: usize) -> f64 {
     errors.iter().filter(|one| one[k].1).count() as f64 / errors.len() as f64
 }
 
+/// Prints the figures of some courses. Of the onset, seconds, and of t90, a share of it: the median of the sizes of the
+/// errors, and the share of the intervals that hold the truth.
+fn figures(course: &str, errors: &[[(f64, bool); 2]], t90_s: f64) -> ([f64; 2], [f64; 2]) {
+    let ([onset_s, t90], [onset_held, t90_held]) =
+        ([median(errors, 0), median(errors, 1) / t90_s], [0, 1].map(|k| held(errors, k)));
+    println!(
+        "{course}: {} of {SEEDS}, onset {onset_s:.4} s, {onset_held:.3} held; t90 {:.1} %, {t90_held:.3} held",
+        errors.len(),
+        100.0 * t90,
+    );
+    ([onset_s, t90], [onset_held, t90_held])
+}
+
 /// The median of the sizes of the errors.
 fn median(errors: &[[(f64, bool); 2]], k: usize) -> f64 {
     let mut all: Vec<f64> = errors.iter().map(|one| one[k].0.abs()).collect();
@@ -74,14 +87,8 @@ fn onsets_and_times_are_covered_by_their_intervals() {
             (time_s, values, release_s)
         };
         let errors = errors(of_seed, t90_s);
-        let [onset_error_s, t90_error] = [median(&errors, 0), median(&errors, 1) / t90_s];
-        let [onset, t90] = [0, 1].map(|k| held(&errors, k));
-        println!(
-            "tau {tau}, rho {rho}: {} of {SEEDS}, onset {onset_error_s:.4} s, {onset:.3} held; t90 {:.1} %, {t90:.3}",
-            errors.len(),
-            100.0 * t90_error,
-        );
-        assert!(errors.len() as u64 * 20 >= SEEDS * 19 && onset_error_s <= 1.0 / RATE_HZ && t90_error <= 0.08);
+        let ([onset_error_s, t90_error], [onset, t90]) = figures(&format!("tau {tau}, rho {rho}"), &errors, t90_s);
+        assert!(errors.len() as u64 == SEEDS && onset_error_s <= 1.0 / RATE_HZ && t90_error <= 0.08);
         assert!([onset, t90].iter().all(|held| (0.90..=0.995).contains(held)), "{tau}");
     }
 }
@@ -121,7 +128,7 @@ fn courses_of_other_shapes_are_off_by_less_than_a_sixth() {
             100.0 * t90 / t90_s,
             held(&errors, 1)
         );
-        assert!(errors.len() as u64 * 20 >= SEEDS * 19 && onset_s.abs() <= 0.12 && t90.abs() <= t90_s / 6.0, "{tau}");
+        assert!(errors.len() as u64 == SEEDS && onset_s.abs() <= 0.12 && t90.abs() <= t90_s / 6.0, "{tau}");
         assert!(held(&errors, 0) >= 0.9 && held(&errors, 1) >= 0.9, "{slow:?} {tau}");
     }
 }
@@ -152,18 +159,11 @@ fn a_pulse_and_slow_waves_are_held() {
         };
         let t90_s = tau * 10.0_f64.ln();
         let errors = errors(of_seed, t90_s);
-        let [onset_s, t90] = [0, 1].map(|k| median(&errors, k));
-        println!(
-            "tau {tau}, pulse {pulse}, waves {wave}, until {until_s}: {} of {SEEDS}, onset {onset_s:.3} s, held {:.2}; \
-             t90 {:.1} %, held {:.2}",
-            errors.len(),
-            held(&errors, 0),
-            100.0 * t90 / t90_s,
-            held(&errors, 1)
-        );
-        assert!(errors.len() as u64 * 20 >= SEEDS * 19 && t90 <= t90_s / 7.0, "{tau} {until_s}");
+        let course = format!("tau {tau}, pulse {pulse}, waves {wave}, until {until_s}");
+        let ([_, t90], [onset_held, t90_held]) = figures(&course, &errors, t90_s);
+        assert!(errors.len() as u64 == SEEDS && t90 <= 1.0 / 7.0, "{tau} {until_s}");
         // Measured 0.96 and more, 0.86 and more.
-        assert!(held(&errors, 0) >= 0.93 && held(&errors, 1) >= 0.82, "{tau} {until_s}");
+        assert!(onset_held >= 0.93 && t90_held >= 0.82, "{tau} {until_s}");
     }
 }
 
@@ -282,18 +282,12 @@ mod real_data {
             };
             let t90_s = tau * 10.0_f64.ln();
             let errors = errors(of_seed, t90_s);
-            let [onset_s, t90] = [0, 1].map(|k| median(&errors, k));
-            println!(
-                "tau {tau}, until {until_s}: {} of {SEEDS}, onset {onset_s:.3} s, held {:.2}; t90 {:.1} %, held {:.2}",
-                errors.len(),
-                held(&errors, 0),
-                100.0 * t90 / t90_s,
-                held(&errors, 1)
-            );
+            let course = format!("tau {tau}, until {until_s}");
+            let ([_, t90], [onset_held, t90_held]) = figures(&course, &errors, t90_s);
             // At 1.5 s the end is not seen in one of eight.
-            assert!(errors.len() as u64 * 10 >= SEEDS * 8 && t90 <= t90_s / 6.0, "{tau} {until_s}");
+            assert!(errors.len() as u64 * 10 >= SEEDS * 8 && t90 <= 1.0 / 6.0, "{tau} {until_s}");
             // Measured 0.93 and more, 0.91 and more.
-            assert!(held(&errors, 0) >= 0.9 && held(&errors, 1) >= 0.88, "{tau} {until_s}");
+            assert!(onset_held >= 0.9 && t90_held >= 0.88, "{tau} {until_s}");
         }
     }
 }
