@@ -28,7 +28,7 @@ pub use equilibrium::{
 };
 pub use fit::{
     Bound, Bounds, Calibrated, Calibration, Combination, Course, Estimate, FitFault, FitOptions, FitResult,
-    FitStatistics, Free, Group, Recording, Rival, Stop, Trace, fit, time_constant,
+    FitStatistics, Free, Group, Recording, Rival, Stop, Trace, fit, noise, time_constant,
 };
 pub use live::{Live, LiveFault, LiveStatistics};
 pub use load::{Inputs, Load, LoadFault, Loads, Segment};

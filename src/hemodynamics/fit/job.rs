@@ -8,7 +8,7 @@ use lunula_hemodynamics::{Calibration, FitOptions as Settings, FitResult, Free, 
 use super::parameter_files::{parameter_files, parameter_paths};
 use super::recording::{ReadRecording, read};
 use super::report::{
-    FitFigures, FitReport, FittedPhotodiode, RecordingReport, correlations, groups, result_text, stopped,
+    FitFigures, FitReport, FittedPhotodiode, RecordingReport, correlations, groups, noises, result_text, stopped,
 };
 use super::{FitInputs, FitOptions, FitOutputs, estimates, figure, fitted, noise};
 use crate::files::{Places, beside, pictures_beside};
@@ -167,7 +167,7 @@ pub fn fit(
     let (words, converged) = stopped(result.stop);
     let names_of = |own: &[usize]| own.iter().map(|&k| ready.recordings[k].name.clone()).collect::<Vec<_>>();
     let figures = FitFigures {
-        recordings: recording_reports(inputs, &ready.recordings, &curves),
+        recordings: recording_reports(inputs, &ready.recordings, &curves, &result),
         stopped: words,
         converged,
         free: groups(&result, &ready.start),
@@ -286,6 +286,7 @@ fn recording_reports(
     inputs: &FitInputs,
     recordings: &[ReadRecording],
     curves: &[Vec<Vec<f64>>],
+    result: &FitResult,
 ) -> Vec<RecordingReport> {
     let rms = |measured: &[f64], fitted: &[f64]| {
         let misses: Vec<f64> =
@@ -311,6 +312,7 @@ fn recording_reports(
             .map(|(trace, fitted)| rms(&trace.voltages_v, fitted))
             .collect(),
         noise_v: read.recording.photodiodes.iter().map(|trace| trace.noise_v).collect(),
+        noise: noises(&result.noises[k]),
     };
     recordings.iter().zip(curves).enumerate().map(one).collect()
 }

@@ -54,6 +54,7 @@ impl Job for FitOptions {
                 Part::if_wanted(PICTURES, ""),
             ],
         )
+        .revision(2)
     };
 
     fn demand(&self, _role: &str, own: &Demand) -> Demand {

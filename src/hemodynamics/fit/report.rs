@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use lunula_hemodynamics::noise::Slow;
 use lunula_hemodynamics::{Bound, Combination, FitResult, Rival, Stop};
 use serde::Serialize;
 
@@ -73,6 +74,8 @@ pub struct RecordingReport {
     pub residual_rms_v: Vec<Option<f64>>,
     /// SD of the noise by which the fit weighs it, V, a photodiode each: as given, or estimated from the residuals.
     pub noise_v: Vec<f64>,
+    /// What that noise is, a photodiode each: white, or slow or a pulse too, their SDs in that of the white.
+    pub noise: Vec<String>,
 }
 
 /// What a fit found.
@@ -158,6 +161,12 @@ pub(super) fn groups(result: &FitResult, start: &lunula_hemodynamics::Parameters
         identifiable: group.identifiable,
     };
     result.groups.iter().map(one).collect()
+}
+
+/// The noise of the photodiodes of a recording, in words.
+pub(super) fn noises(slow: &[Option<Slow>]) -> Vec<String> {
+    let one = |slow: &Option<Slow>| slow.map_or("taken as white".to_owned(), |slow| slow.to_string());
+    slow.iter().map(one).collect()
 }
 
 /// Correlations, none where they are not known.

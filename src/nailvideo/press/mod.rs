@@ -6,7 +6,6 @@
 
 mod find;
 mod fit;
-mod noise;
 #[cfg(test)]
 mod tests;
 

@@ -10,13 +10,15 @@
 //! here ([`Calibration`]), and are solved for at every point. Parameters at which a vessel closes are refused, and the
 //! step towards them is shortened.
 //!
-//! The noise is taken as independent from sample to sample. Same input, same bytes.
+//! The noise is white, and over time also slow or a pulse where the residuals of a fit in white noise show it
+//! ([`FitResult::noises`]): residuals and derivatives are then whitened and fitted again, so that errors and intervals
+//! hold ([`noise`]; measured in `tests/fit/noise.rs`). Same input, same bytes.
 
 mod algebra;
-mod calibrate;
 mod certainty;
 mod fault;
 mod free;
+pub mod noise;
 mod options;
 mod problem;
 mod recording;
@@ -50,6 +52,8 @@ pub fn fit(
 ) -> Result<FitResult, FitFault> {
     let mut problem = Problem::new(recordings, start, free, options)?;
     let (mut found, starts_refused) = search(&mut problem)?;
+    let starts = found.len() as u64 + starts_refused;
+    whiten(&mut problem, &mut found);
     let others = found.split_off(1);
     let found = &found[0];
     let best = &found.point;
@@ -68,7 +72,7 @@ pub fn fit(
         }
     }
     Ok(FitResult {
-        rivals: rivals(&problem, best, &others, known.residual_sd_v),
+        rivals: rivals(&problem, best, &others, known.noise_sd_v),
         parameters,
         groups: known.groups,
         photodiodes: known.photodiodes,
@@ -78,11 +82,12 @@ pub fn fit(
         r2: known.r2,
         values: problem.target.len(),
         freedom: known.freedom,
+        noises: problem.noises(),
         singular_values_v: known.singular_values_v,
         undetermined: known.undetermined,
         stop: found.stop,
         statistics: FitStatistics {
-            starts: (others.len() + 1) as u64 + starts_refused,
+            starts,
             starts_refused,
             iterations: found.iterations as u64,
             points: problem.points,
@@ -129,6 +134,38 @@ fn search(problem: &mut Problem) -> Result<(Vec<Minimum<Evaluation>>, u64), FitF
     Ok((all, refused))
 }
 
+/// How often the noise is estimated.
+const ROUNDS: usize = 3;
+
+/// Goes on from the minima found to those in the noise about the best one.
+fn whiten(problem: &mut Problem, found: &mut Vec<Minimum<Evaluation>>) {
+    for _ in 0..ROUNDS {
+        if !certainty::noise::estimate(problem, &found[0].point) {
+            return;
+        }
+        let [lower, upper] = bounds(problem);
+        let settings = settings(problem, &lower, &upper);
+        let least = squares(&found[0].point);
+        let mut again: Vec<Minimum<Evaluation>> = vec![];
+        for (k, old) in found.iter().enumerate().filter(|(_, old)| squares(&old.point) <= 2.0 * least) {
+            let at = old.point.at();
+            if found[..k].iter().any(|other| are_same(other.point.at(), at)) {
+                continue;
+            }
+            let Ok(first) = problem.evaluate(at) else { continue };
+            let new = settings.run(first, |at| problem.evaluate(at).ok());
+            again.push(Minimum { iterations: old.iterations + new.iterations, ..new });
+        }
+        if again.is_empty() {
+            // The points found are in white noise.
+            problem.channels.iter_mut().for_each(|channel| (channel.slow, channel.whitening) = (None, None));
+            return;
+        }
+        again.sort_by(|a, b| squares(&a.point).total_cmp(&squares(&b.point)));
+        *found = again;
+    }
+}
+
 fn bounds(problem: &Problem) -> [Vec<f64>; 2] {
     [
         problem.coordinates.iter().map(|coordinate| coordinate.lower).collect(),
@@ -167,12 +204,16 @@ const NO_RIVAL: f64 = 9.0;
 /// Coordinates nearer than this are the same minimum.
 const SAME: f64 = 0.02;
 
+fn are_same(one: &[f64], other: &[f64]) -> bool {
+    one.iter().zip(other).all(|(a, b)| (a - b).abs() <= SAME)
+}
+
 /// Of other minima those that fit nearly as well.
 fn rivals(problem: &Problem, best: &Evaluation, others: &[Minimum<Evaluation>], sd: f64) -> Vec<Rival> {
     let mut kept: Vec<&Evaluation> = vec![best];
     let mut rivals = vec![];
     for other in others.iter().filter(|found| found.stop != Stop::Points).map(|found| &found.point) {
-        let near = |one: &&Evaluation| one.at().iter().zip(other.at()).all(|(a, b)| (a - b).abs() <= SAME);
+        let near = |one: &&Evaluation| are_same(one.at(), other.at());
         let rise = (squares(other) - squares(best)) / (sd * sd);
         if rise < NO_RIVAL && !kept.iter().any(near) {
             kept.push(other);

@@ -1,11 +1,14 @@
 //! Recordings, free parameters and the model as one problem of least squares.
 
+use std::ops::Range;
+
 use super::FitFault;
-use super::calibrate::{Fitted, calibrate};
 use super::free::{Coordinate, Free};
+use super::noise::{Noise, Slow};
 use super::options::{Calibration, FitOptions};
-use super::recording::Recording;
+use super::recording::{Course, Recording};
 use super::response::{NoResponse, Responder, Response};
+use crate::fit::algebra::calibrate::{Fitted, calibrate};
 use crate::fit::algebra::levenberg::Point;
 use crate::fit::algebra::qr;
 use crate::model::{Model, Tangent};
@@ -13,14 +16,29 @@ use crate::optics::Photodiodes;
 use crate::parameters::{Parameters, Site, Symbol};
 
 /// The values of one photodiode in one recording that are not missing.
-struct Channel {
-    recording: usize,
+pub(super) struct Channel {
+    pub(super) recording: usize,
     /// Its place in the recording.
-    trace: usize,
+    pub(super) trace: usize,
     unit: usize,
-    samples: Vec<usize>,
+    pub(super) samples: Vec<usize>,
     weight: f64,
     key: Key,
+    /// Its run of rows.
+    pub(super) rows: Range<usize>,
+    /// The slow noise that was found; `None` where it was not looked for.
+    pub(super) slow: Option<Slow>,
+    /// What makes its rows white; `None` where they are taken as they are.
+    pub(super) whitening: Option<Whitening>,
+}
+
+/// What makes a channel's rows white, and as large as before.
+pub(super) struct Whitening {
+    pub(super) noise: Noise,
+    /// What its rows are divided by.
+    pub(super) size: f64,
+    /// By how much the variance of its rows was overstated in that, as its recording's channels share their slow noise.
+    pub(super) shared: f64,
 }
 
 /// Channels of the same unit with the same key have the same offset and scaling.
@@ -35,7 +53,7 @@ enum Key {
 pub(super) struct Diode {
     pub(super) unit: usize,
     pub(super) recordings: Vec<usize>,
-    pub(super) rows: std::ops::Range<usize>,
+    pub(super) rows: Range<usize>,
 }
 
 pub(super) struct Problem<'a> {
@@ -43,7 +61,7 @@ pub(super) struct Problem<'a> {
     pub(super) start: &'a Parameters,
     pub(super) coordinates: Vec<Coordinate>,
     pub(super) options: &'a FitOptions,
-    channels: Vec<Channel>,
+    pub(super) channels: Vec<Channel>,
     pub(super) diodes: Vec<Diode>,
     /// Weights and weighted voltages of all rows.
     pub(super) weights: Vec<f64>,
@@ -56,7 +74,11 @@ pub(super) struct Problem<'a> {
 /// The problem at a point.
 pub(super) struct Evaluation {
     at: Vec<f64>,
+    /// Whitened, as the columns are.
     residuals: Vec<f64>,
+    /// Residuals (weighted) and signals as they are.
+    pub(super) misses: Vec<f64>,
+    pub(super) signals: Vec<f64>,
     columns: Vec<Vec<f64>>,
     /// Largest norm of a column before offsets and scalings follow.
     pub(super) raw: f64,
@@ -106,8 +128,8 @@ impl<'a> Problem<'a> {
         for (k, recording) in recordings.iter().enumerate() {
             recording.check(k, start.units().len())?;
         }
-        let channels = channels(recordings, options.calibration);
-        let (diodes, weights, target) = rows(recordings, &channels);
+        let mut channels = channels(recordings, options.calibration);
+        let (diodes, weights, target) = rows(recordings, &mut channels);
         let volts = channels.iter().flat_map(|channel| voltages(recordings, channel));
         let [least, most] = volts.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)]);
         let range_v = if most > least { most - least } else { 1.0 };
@@ -192,7 +214,42 @@ impl<'a> Problem<'a> {
         if signals.iter().chain(columns.iter().flatten()).any(|value| !value.is_finite()) {
             return Err((0, "a photodiode's signal is not a finite number".to_owned()));
         }
-        Ok(self.assemble(at, parameters, &signals, columns, &speeds))
+        Ok(self.assemble(at, parameters, signals, columns, &speeds))
+    }
+
+    /// Times of a channel's samples, s; `None` in equilibrium.
+    pub(super) fn times_s(&self, channel: &Channel) -> Option<Vec<f64>> {
+        match &self.recordings[channel.recording].course {
+            Course::Transient { times_s, .. } => Some(channel.samples.iter().map(|&sample| times_s[sample]).collect()),
+            Course::Static { .. } => None,
+        }
+    }
+
+    /// The slow noise of each photodiode of each recording.
+    pub(super) fn noises(&self) -> Vec<Vec<Option<Slow>>> {
+        let mut noises: Vec<_> = self.recordings.iter().map(|one| vec![None; one.photodiodes.len()]).collect();
+        self.channels.iter().for_each(|channel| noises[channel.recording][channel.trace] = channel.slow);
+        noises
+    }
+
+    /// Makes the noise of all rows white.
+    fn whiten(&self, rows: &mut [f64]) {
+        for channel in &self.channels {
+            if let Some(by) = &channel.whitening {
+                let rows = &mut rows[channel.rows.clone()];
+                by.noise.whiten(rows);
+                rows.iter_mut().for_each(|value| *value /= by.size);
+            }
+        }
+    }
+
+    /// The variance of the noise about a point, in which whitened rows are equal.
+    pub(super) fn variance(&self, of: &Evaluation, freedom: usize) -> f64 {
+        let squares = |channel: &Channel| {
+            let residuals = &of.residuals[channel.rows.clone()];
+            channel.whitening.as_ref().map_or(1.0, |by| by.shared) * qr::dot(residuals, residuals)
+        };
+        self.channels.iter().map(squares).sum::<f64>() / freedom as f64
     }
 
     /// From signals and their derivatives (weighted) to residuals and the derivatives of the fitted voltages.
@@ -200,49 +257,60 @@ impl<'a> Problem<'a> {
         &self,
         at: &[f64],
         parameters: Parameters,
-        signals: &[f64],
+        signals: Vec<f64>,
         mut columns: Vec<Vec<f64>>,
         speeds: &[Vec<(Symbol, f64)>],
     ) -> Evaluation {
-        let mut residuals = self.target.clone();
+        let weighted: Vec<f64> = self.weights.iter().zip(&signals).map(|(w, f)| w * f).collect();
+        let (mut residuals, mut ones, mut white) = (self.target.clone(), self.weights.clone(), weighted.clone());
+        [&mut residuals, &mut ones, &mut white].into_iter().chain(&mut columns).for_each(|rows| self.whiten(rows));
+        let mut misses = self.target.clone();
         let mut raw = vec![0.0; columns.len()];
         let mut fitted = vec![];
         for diode in &self.diodes {
             let rows = diode.rows.clone();
-            let (weights, signals) = (&self.weights[rows.clone()], &signals[rows.clone()]);
+            let (ones, white) = (&ones[rows.clone()], &white[rows.clone()]);
+            let target = &mut residuals[rows.clone()];
             let unit = &parameters.units()[diode.unit];
             let squares: Vec<f64> = columns.iter().map(|column| qr::norm(&column[rows.clone()])).collect();
-            let scaling = if self.options.calibration == Calibration::Fixed {
-                for (k, row) in rows.clone().enumerate() {
-                    residuals[row] -= weights[k] * (unit.offset_v + unit.scaling_v * signals[k]);
-                }
-                for (column, speeds) in columns.iter_mut().zip(speeds) {
-                    for (k, row) in rows.clone().enumerate() {
-                        column[row] *= unit.scaling_v;
-                        for &(symbol, speed) in speeds {
-                            if symbol == Symbol::Offset(diode.unit) {
-                                column[row] += weights[k] * speed;
-                            } else if symbol == Symbol::Scaling(diode.unit) {
-                                column[row] += weights[k] * signals[k] * speed;
-                            }
-                        }
-                    }
-                }
-                unit.scaling_v
+            let mut parts: Vec<&mut [f64]> = columns.iter_mut().map(|column| &mut column[rows.clone()]).collect();
+            let [offset, scaling] = if self.options.calibration == Calibration::Fixed {
+                minus(target, [unit.offset_v, unit.scaling_v], ones, white);
+                let columns = parts.iter_mut().zip(speeds);
+                columns.for_each(|(column, speeds)| held(column, diode.unit, unit.scaling_v, speeds, [ones, white]));
+                [unit.offset_v, unit.scaling_v]
             } else {
-                let mut parts: Vec<&mut [f64]> = columns.iter_mut().map(|column| &mut column[rows.clone()]).collect();
-                let target = &mut residuals[rows.clone()];
-                let found = calibrate(weights, signals, target, &mut parts, unit.scaling_v);
-                let scaling = found.scaling_v;
+                let found = calibrate(ones, white, target, &mut parts, unit.scaling_v);
+                let both = [found.offset_v, found.scaling_v];
                 fitted.push(found);
-                scaling
+                both
             };
+            minus(&mut misses[rows.clone()], [offset, scaling], &self.weights[rows.clone()], &weighted[rows]);
             for (raw, square) in raw.iter_mut().zip(squares) {
                 *raw = (*raw * *raw + (square * scaling) * (square * scaling)).sqrt();
             }
         }
         let raw = raw.into_iter().fold(0.0, f64::max);
-        Evaluation { at: at.to_vec(), residuals, columns, raw, parameters, fitted }
+        Evaluation { at: at.to_vec(), residuals, misses, signals, columns, raw, parameters, fitted }
+    }
+}
+
+/// Takes what an offset and a scaling make out of a run of rows.
+fn minus(rows: &mut [f64], [offset, scaling]: [f64; 2], ones: &[f64], signals: &[f64]) {
+    for ((value, one), signal) in rows.iter_mut().zip(ones).zip(signals) {
+        *value -= offset * one + scaling * signal;
+    }
+}
+
+/// From the derivative of a unit's signal to that of its voltage, where offset and scaling do not follow.
+fn held(column: &mut [f64], unit: usize, scaling_v: f64, speeds: &[(Symbol, f64)], [ones, signals]: [&[f64]; 2]) {
+    column.iter_mut().for_each(|value| *value *= scaling_v);
+    for &(symbol, speed) in speeds {
+        if symbol == Symbol::Offset(unit) {
+            minus(column, [-speed, 0.0], ones, signals);
+        } else if symbol == Symbol::Scaling(unit) {
+            minus(column, [0.0, -speed], ones, signals);
+        }
     }
 }
 
@@ -276,8 +344,18 @@ fn channels(recordings: &[Recording], calibration: Calibration) -> Vec<Channel> 
         for (place, trace) in recording.photodiodes.iter().enumerate() {
             let samples = (0..trace.voltages_v.len()).filter(|&row| !trace.voltages_v[row].is_nan()).collect();
             let (unit, weight) = (trace.unit, quietest / trace.noise_v);
-            let channel = Channel { recording: k, trace: place, unit, samples, weight, key: key.clone() };
-            let like = channels.iter().rposition(|other| other.unit == unit && other.key == key);
+            let channel = Channel {
+                recording: k,
+                trace: place,
+                unit,
+                samples,
+                weight,
+                key: key.clone(),
+                rows: 0..0,
+                slow: None,
+                whitening: None,
+            };
+            let like = channels.iter().rposition(|other| other.unit == unit && other.key == channel.key);
             channels.insert(like.map_or(channels.len(), |at| at + 1), channel);
         }
     }
@@ -290,9 +368,10 @@ fn voltages<'a>(recordings: &'a [Recording], channel: &'a Channel) -> impl Itera
     channel.samples.iter().map(|&row| trace.voltages_v[row])
 }
 
-fn rows(recordings: &[Recording], channels: &[Channel]) -> (Vec<Diode>, Vec<f64>, Vec<f64>) {
+fn rows(recordings: &[Recording], channels: &mut [Channel]) -> (Vec<Diode>, Vec<f64>, Vec<f64>) {
     let (mut diodes, mut weights, mut target): (Vec<Diode>, Vec<f64>, Vec<f64>) = Default::default();
-    for (k, channel) in channels.iter().enumerate() {
+    for k in 0..channels.len() {
+        let channel = &channels[k];
         let begin = target.len();
         target.extend(voltages(recordings, channel).map(|volts| channel.weight * volts));
         weights.resize(target.len(), channel.weight);
@@ -310,6 +389,7 @@ fn rows(recordings: &[Recording], channels: &[Channel]) -> (Vec<Diode>, Vec<f64>
                 rows: begin..target.len(),
             }),
         }
+        channels[k].rows = begin..target.len();
     }
     (diodes, weights, target)
 }

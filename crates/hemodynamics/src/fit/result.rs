@@ -1,15 +1,16 @@
 //! What a fit gives.
 
 use crate::fit::algebra::levenberg::Stop;
+use crate::fit::noise::Slow;
 use crate::parameters::{Parameters, Symbol};
 
 /// What a fit gives.
 ///
-/// Standard errors are those of the linearized model at the fitted point, with the residuals' own SD; a parameter at
+/// Standard errors are those of the linearized model at the fitted point, in the noise of the residuals; a parameter at
 /// its bound is held there for those of the others. What the data don't determine has none: see
 /// [`FitResult::undetermined`]. Where one recording leaves a parameter uncertain by more than about a tenth, the
-/// voltages bend within that: two standard errors to each side hold the truth of a proximal step less often (k in 182
-/// of 200 cases) than they should (191), [`Group::interval`] as often (194; `tests/fit/coverage.rs`).
+/// voltages bend within that: two standard errors to each side hold the truth of a proximal step less often (k in 183
+/// of 200 cases) than they should (191), [`Group::interval`] as often (195; `tests/fit/coverage.rs`).
 #[derive(Clone, Debug, PartialEq)]
 pub struct FitResult {
     /// The fitted parameters; those that were not free are those of the start. Offset and scaling of a unit are the
@@ -33,9 +34,12 @@ pub struct FitResult {
     pub values: usize,
     /// Voltages less unknowns that the data determine.
     pub freedom: usize,
+    /// The noise beside the white one that was found in each photodiode of each recording, in their order; `None` where
+    /// it was not looked for, and taken as white: in equilibrium, where values are few, where the fit is exact.
+    pub noises: Vec<Vec<Option<Slow>>>,
     /// Singular values of the derivatives of all voltages by the groups that are at no bound, offsets and scalings
-    /// following: RMS change of a voltage, V, for a change by a factor e (or by the scale of what moves by addition),
-    /// falling.
+    /// following (whitened where there is slow noise): RMS change of a voltage, V, for a change by a factor e (or by the
+    /// scale of what moves by addition), falling.
     pub singular_values_v: Vec<f64>,
     /// Combinations of parameters that the data don't determine.
     pub undetermined: Vec<Combination>,
@@ -57,7 +61,7 @@ pub struct Group {
     pub values: Vec<f64>,
     /// Their standard errors, each in its unit; `None` where the data don't determine them, or at a bound.
     pub standard_errors: Option<Vec<f64>>,
-    /// Where the sum of squares, all else fitted again, has risen by four times the variance of the residuals: values
+    /// Where the sum of squares, all else fitted again, has risen by four times the variance of the noise: values
     /// below and above. Two standard errors to each side where the voltages go straight with the parameters, and as
     /// sure where they don't. An end is `None` where a bound, or parameters at which a vessel closes, come first; both
     /// are where there is no standard error, where the fit is exact, and where
@@ -119,7 +123,7 @@ pub struct Combination {
 pub struct Rival {
     /// The values of each group's parameters there.
     pub values: Vec<Vec<f64>>,
-    /// By how much the sum of squares is larger, over the variance of the residuals: less than 9 (three standard
+    /// By how much the sum of squares is larger, over the variance of the noise: less than 9 (three standard
     /// errors).
     pub rise: f64,
 }

@@ -2,6 +2,7 @@
 
 mod coverage;
 mod faults;
+mod noise;
 mod phantom;
 mod recovery;
 mod undetermined;

@@ -64,20 +64,31 @@ pub(crate) fn pressed(height_pa: f64, from_s: f64, to_s: f64) -> Load {
 
 /// What the photodiodes of these units see, without noise, from the equilibrium of the load before.
 pub(crate) fn exact(parameters: &Parameters, proximal: &Load, distal: &Load, units: &[usize]) -> Recording {
+    seen(parameters, &times(), proximal, distal, units)
+}
+
+/// The same at other times, from the load before 0.
+pub(crate) fn seen(
+    parameters: &Parameters,
+    times: &[f64],
+    proximal: &Load,
+    distal: &Load,
+    units: &[usize],
+) -> Recording {
     let model = Model::new(parameters, Collapse::Error);
     let loads = Loads::on(parameters, proximal.clone(), distal.clone());
     let start = rest(&model, &loads.before(0.0)).expect("an equilibrium").state;
     let options = SolveOptions::at(1e-10);
-    let trajectory = simulate(&model, &loads, &start, &times(), &options).expect("no collapse");
+    let trajectory = simulate(&model, &loads, &start, times, &options).expect("no collapse");
     let optics = Photodiodes::new(parameters, &Optics::default()).expect("no working point");
     let traces = units
         .iter()
         .map(|&unit| {
-            let volts = (0..times().len()).map(|k| optics.voltage(unit, trajectory.lumens(k)[unit])).collect();
+            let volts = (0..times.len()).map(|k| optics.voltage(unit, trajectory.lumens(k)[unit])).collect();
             Trace::new(unit, volts)
         })
         .collect();
-    Recording::transient(times(), proximal.clone(), distal.clone(), traces)
+    Recording::transient(times.to_vec(), proximal.clone(), distal.clone(), traces)
 }
 
 /// With noise of a part of each photodiode's swing.

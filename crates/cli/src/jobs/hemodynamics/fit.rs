@@ -145,9 +145,9 @@ impl Command for FitArgs {
             ));
         }
         for one in &report.recordings {
-            let of = |(name, noise_v): (&String, &f64)| format!("{name} {noise_v:.2e} V");
-            let noises: Vec<String> = one.photodiodes.iter().zip(&one.noise_v).map(of).collect();
-            common.say(&format!("  noise in {}: {}", one.file.display(), noises.join(", ")));
+            let of = |((name, noise_v), noise): ((&String, &f64), &String)| format!("{name} {noise_v:.2e} V, {noise}");
+            let noises: Vec<String> = one.photodiodes.iter().zip(&one.noise_v).zip(&one.noise).map(of).collect();
+            common.say(&format!("  noise in {}: {}", one.file.display(), noises.join("; ")));
         }
     }
 

@@ -5,6 +5,7 @@
 //! or where their noise leaves its logarithm uncertain by more than ln 10: the order of magnitude within which the
 //! parameters are known beforehand.
 
+pub(in crate::fit) mod noise;
 pub(in crate::fit) mod profile;
 use super::free::TENFOLD;
 use super::problem::{Evaluation, Problem};
@@ -27,6 +28,8 @@ pub(super) struct Certainty {
     pub(super) names: Vec<String>,
     pub(super) correlations: Vec<Vec<f64>>,
     pub(super) residual_sd_v: f64,
+    /// Of the noise of a whitened row.
+    pub(super) noise_sd_v: f64,
     pub(super) r2: Option<f64>,
     pub(super) freedom: usize,
     pub(super) singular_values_v: Vec<f64>,
@@ -65,8 +68,8 @@ pub(super) fn certainty(problem: &Problem, best: &Evaluation) -> Certainty {
     let rows = problem.target.len();
     let of_diodes: usize = best.fitted.iter().map(|fitted| if fitted.varied { 2 } else { 1 }).sum();
     let freedom = rows - rank - of_diodes;
-    let ssr = qr::dot(best.residuals(), best.residuals());
-    let variance = ssr / freedom as f64;
+    let ssr = qr::dot(&best.misses, &best.misses);
+    let variance = problem.variance(best, freedom);
 
     // The covariance of the coordinates, and the directions that are lost.
     let mut covariance = vec![vec![0.0; n]; n];
@@ -137,7 +140,8 @@ pub(super) fn certainty(problem: &Problem, best: &Evaluation) -> Certainty {
         photodiodes,
         names,
         correlations,
-        residual_sd_v: variance.sqrt(),
+        residual_sd_v: (ssr / freedom as f64).sqrt(),
+        noise_sd_v: variance.sqrt(),
         r2: r2(problem, ssr),
         freedom,
         singular_values_v: svd.values.iter().map(|value| value / (rows as f64).sqrt()).collect(),
@@ -187,7 +191,7 @@ fn photodiodes(
         };
         let rows = diode.rows.clone();
         let squares: f64 =
-            rows.clone().map(|row| best.residuals()[row] / problem.weights[row]).map(|volts| volts * volts).sum();
+            rows.clone().map(|row| best.misses[row] / problem.weights[row]).map(|volts| volts * volts).sum();
         diodes.push(Calibrated {
             unit: diode.unit,
             recordings: diode.recordings.clone(),

@@ -1,7 +1,7 @@
 //! How far a parameter may move before the data object: intervals by the profile of the sum of squares.
 //!
 //! In: a fitted point and the standard errors there. Out: for each coordinate the two places at which the sum of
-//! squares, all other unknowns fitted again, has risen by four times the variance of the residuals. Where the voltages
+//! squares, all other unknowns fitted again, has risen by four times the variance of the noise. Where the voltages
 //! go straight with the parameters that is two standard errors to each side; where they don't, it covers the truth as
 //! often all the same, and standard errors don't (Bates and Watts 1988, doi:10.1002/9780470316757, chapter 6).
 
@@ -31,7 +31,7 @@ pub(in crate::fit) fn intervals(problem: &mut Problem, best: &Evaluation, certai
     }
     let [lower, upper] = bounds(problem);
     let settings = settings(problem, &lower, &upper);
-    let profile = Profile { best, covariance: &certainty.covariance, sd: certainty.residual_sd_v, settings };
+    let profile = Profile { best, covariance: &certainty.covariance, sd: certainty.noise_sd_v, settings };
     for (q, group) in certainty.groups.iter_mut().enumerate().filter(|(_, group)| group.standard_errors.is_some()) {
         group.interval = profile.ends(problem, q).map(|end| end.map(|at| problem.coordinates[q].values(at)));
     }
@@ -42,7 +42,7 @@ struct Profile<'a> {
     best: &'a Evaluation,
     /// Of the coordinates; 0 for those at a bound.
     covariance: &'a [Vec<f64>],
-    /// Of the residuals.
+    /// Of the noise.
     sd: f64,
     settings: Search<'a>,
 }

@@ -11,21 +11,22 @@ const FLAT: f64 = 1e-9;
 
 /// Offset and scaling that fit best.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Fitted {
-    pub(super) offset_v: f64,
-    pub(super) scaling_v: f64,
+pub(in crate::fit) struct Fitted {
+    pub(in crate::fit) offset_v: f64,
+    pub(in crate::fit) scaling_v: f64,
     /// Whether the signal changes, so that the scaling is determined.
-    pub(super) varied: bool,
+    pub(in crate::fit) varied: bool,
     /// The triangle of the two columns: `|w|`, `q_1 . w f`, and the norm of the rest of `w f`.
-    pub(super) triangle: [f64; 3],
+    pub(in crate::fit) triangle: [f64; 3],
     /// Offset and scaling by each coordinate, as they follow.
-    pub(super) following: Vec<[f64; 2]>,
+    pub(in crate::fit) following: Vec<[f64; 2]>,
 }
 
-/// Fits `weights (offset + scaling signal)` to `target`, of which the residuals are left; `columns` hold `weights`
-/// times the derivatives of the signal and are left as the derivatives of the fit with offset and scaling following.
-/// Where the signal does not change, the scaling stays `held_v`.
-pub(super) fn calibrate(
+/// Fits `offset weights + scaling signals` to `target`, of which the residuals are left; `signals`, `columns` (the
+/// derivatives of the signal) and `target` are weighted as `weights` are, and whitened if these are. Columns are left
+/// as the derivatives of the fit with offset and scaling following. Where the signal does not change, the scaling stays
+/// `held_v`.
+pub(in crate::fit) fn calibrate(
     weights: &[f64],
     signals: &[f64],
     target: &mut [f64],
@@ -34,7 +35,7 @@ pub(super) fn calibrate(
 ) -> Fitted {
     let size = norm(weights);
     let first: Vec<f64> = weights.iter().map(|w| w / size).collect();
-    let mut second: Vec<f64> = weights.iter().zip(signals).map(|(w, f)| w * f).collect();
+    let mut second = signals.to_vec();
     let whole = norm(&second);
     let mut along = 0.0;
     // Twice: what is left of a nearly constant signal keeps its digits.
@@ -46,9 +47,7 @@ pub(super) fn calibrate(
     if varied {
         second.iter_mut().for_each(|value| *value /= rest);
     } else {
-        for ((value, w), f) in target.iter_mut().zip(weights).zip(signals) {
-            *value -= held_v * w * f;
-        }
+        target.iter_mut().zip(signals).for_each(|(value, f)| *value -= held_v * f);
     }
     let solve = |parts: [f64; 2]| {
         let scaling = if varied { parts[1] / rest } else { 0.0 };
@@ -94,7 +93,8 @@ mod tests {
         let weights: Vec<f64> = (0..50).map(|i| if i < 20 { 1.0 } else { 0.1 }).collect();
         let mut target: Vec<f64> = signals.iter().zip(&weights).map(|(f, w)| w * (0.4 - 2.5 * f)).collect();
         let mut column: Vec<f64> = weights.iter().zip(&signals).map(|(w, f)| w * (3.0 + 7.0 * f)).collect();
-        let fitted = calibrate(&weights, &signals, &mut target, &mut [&mut column], 1.0);
+        let weighted: Vec<f64> = signals.iter().zip(&weights).map(|(f, w)| w * f).collect();
+        let fitted = calibrate(&weights, &weighted, &mut target, &mut [&mut column], 1.0);
         // Measured 1.1e-13: a thousand times the rounding, as the signal changes by a thousandth of itself; 8e-16 and
         // 9e-15; 6e-13.
         assert!((fitted.offset_v - 0.4).abs() + (fitted.scaling_v + 2.5).abs() <= 1e-11, "{fitted:?}");
