@@ -181,16 +181,15 @@ class Samples:
         self.weight = weight / weight.sum()
 
     def batch(self, count):
-        """RGB `count x size x size x 3` and masks `count x size/2 x size/2 x 2`."""
-        both = [self.sample() for _ in range(count)]
-        return np.stack([b[0] for b in both]), np.stack([b[1] for b in both])
+        """RGB `count x size x size x 3`, masks `count x size/2 x size/2 x 2` (both u8) and folds `count`."""
+        return tuple(np.stack(parts) for parts in zip(*(self.sample() for _ in range(count))))
 
     def sample(self):
-        """One picture and its masks: 68 % photographs, 20 % phantoms, 12 % without a hand."""
-        rng, kind = self.rng, self.rng.random()
+        """A picture, its masks and its fold (-1: none): 68 % photographs, 20 % phantoms, 12 % without a hand."""
+        rng, kind, fold = self.rng, self.rng.random(), -1
         if kind < 0.68:
-            layers = self.crop(self.photos[rng.choice(len(self.photos), p=self.weight)], 9, 85)
-            layers = self.on_hand(layers)
+            photo = self.photos[rng.choice(len(self.photos), p=self.weight)]
+            layers, fold = self.on_hand(self.crop(photo, 9, 85)), photo.fold
         elif kind < 0.88:
             layers = self.crop(self.ghosts[rng.integers(len(self.ghosts))], 18, 100)
         else:
@@ -198,7 +197,8 @@ class Samples:
             layers[:, :, :3] = self.background()
         rgb = self.seen(np.ascontiguousarray(layers[:, :, :3]), layers[:, :, 3])
         half = (self.size // 2, self.size // 2)
-        return rgb, cv2.resize(layers[:, :, 3:5], half, interpolation=cv2.INTER_AREA)
+        truth = cv2.resize(layers[:, :, 3:5], half, interpolation=cv2.INTER_AREA)
+        return rgb, (np.clip(truth, 0, 1) * 255 + 0.5).astype(np.uint8), np.int64(fold)
 
     def crop(self, picture, shortest, longest):
         """Layers of a picture around one of its nails (or anywhere), turned, flipped, scaled, stretched."""

@@ -1,9 +1,9 @@
-"""Trains the nail net and measures it on folds.
+"""Trains nail nets and lets each see all photographs but a fold.
 
-    python train.py --data DATA --phantoms DIR --runs DIR --fold 0      # and 1, 2: never sees the fold's photographs
-    python train.py --data DATA --phantoms DIR --runs DIR --all         # all photographs: the shipped weights
+    python train.py --data DATA --phantoms DIR --runs DIR --nets 0 1 2 all
 
-Each run writes `RUNS/fold-K.pt` (or `all.pt`), the running mean of the weights, and a log beside it.
+Net 0, 1 or 2 never sees that fold's photographs; `all`, whose weights are shipped, sees every one. They learn from one
+stream of samples. Each writes `RUNS/fold-K.pt` (or `all.pt`), the running mean of its weights, and a log beside it.
 """
 
 import argparse
@@ -15,14 +15,28 @@ import cv2
 import numpy as np
 import torch
 from torch.nn import functional as F
+from torch.utils.data import DataLoader, IterableDataset, get_worker_info
 
 import data
 from net import NailNet, imagenet_path, read_imagenet
 
-BATCH = 16
 SIZE = 192
-TRUNK_RATE, DECODER_RATE = 6e-4, 3e-3
+CHUNK = 16  # samples that a process makes at once
+TRUNK_RATE, DECODER_RATE = 6e-4, 3e-3  # for batches of 16
 WARM = 0.08  # part of the steps over which the learning rates rise
+
+
+class Stream(IterableDataset):
+    """Endless chunks of samples; the seed and the number of processes say which ones."""
+
+    def __init__(self, seed, *sources):
+        self.seed, self.sources = seed, sources
+
+    def __iter__(self):
+        worker = get_worker_info()
+        samples = data.Samples(*self.sources, SIZE, [self.seed, worker.id if worker else 0])
+        while True:
+            yield samples.batch(CHUNK)
 
 
 def loss_of(logits, truth):
@@ -34,12 +48,11 @@ def loss_of(logits, truth):
     return 4 * entropy + dice.mean()
 
 
-def rate(step, steps):
-    """Gain of the learning rates: up in a line, down as a cosine to 1 %."""
-    if step < WARM * steps:
-        return (step + 1) / (WARM * steps)
-    part = (step - WARM * steps) / max(1, steps * (1 - WARM))
-    return 0.01 + 0.99 * 0.5 * (1 + np.cos(np.pi * min(1, part)))
+def rate(part):
+    """Gain of the learning rates, by the part of the training that is done: up in a line, down as a cosine to 1 %."""
+    if part < WARM:
+        return (part + 0.002) / (WARM + 0.002)
+    return 0.01 + 0.99 * 0.5 * (1 + np.cos(np.pi * min(1, (part - WARM) / (1 - WARM))))
 
 
 def freeze(net, count):
@@ -62,35 +75,73 @@ def begun(start):
     return net
 
 
-def train(net, samples, steps, frozen, gain, device, path):
-    """Trains a net, writes the running mean of its weights to `path` now and then and at the end."""
-    net.to(device, memory_format=torch.channels_last)
-    optimizer = torch.optim.AdamW(freeze(net, frozen), weight_decay=1e-4)
-    peaks = [gain * g["lr"] for g in optimizer.param_groups]
-    mean = {k: v.detach().clone() for k, v in net.state_dict().items()}
-    started, total, log = time.time(), 0.0, open(path.with_suffix(".log"), "w")
-    for step in range(steps):
-        for group, peak in zip(optimizer.param_groups, peaks):
-            group["lr"] = peak * rate(step, steps)
-        rgb, truth = samples.batch(BATCH)
-        x = torch.from_numpy(rgb).to(device).permute(0, 3, 1, 2).float().div(255)
-        x = x.contiguous(memory_format=torch.channels_last)
-        loss = loss_of(net(x), torch.from_numpy(truth).to(device).permute(0, 3, 1, 2))
-        optimizer.zero_grad(set_to_none=True)
+class Student:
+    """A net in training."""
+
+    def __init__(self, name, args, runs):
+        self.fold = -1 if name == "all" else int(name)
+        self.path = runs / f"{'all' if name == 'all' else 'fold-' + name}.pt"
+        self.net = begun(args.start).to(args.device, memory_format=torch.channels_last)
+        self.optimizer = torch.optim.AdamW(freeze(self.net, args.frozen), weight_decay=1e-4)
+        gain = args.gain * (args.batch / 16) ** 0.5
+        self.peaks = [gain * group["lr"] for group in self.optimizer.param_groups]
+        self.mean = [p.detach().clone() for p in self.net.parameters()]
+        self.batch, self.waiting, self.steps, self.losses = args.batch, [], 0, []
+        self.log = open(self.path.with_suffix(".log"), "w")
+
+    def take(self, rgb, truth, folds, part):
+        """Learns from the samples of the other folds, a full batch at a time."""
+        chosen = (folds != self.fold) | (folds < 0)
+        self.waiting.append((rgb[chosen], truth[chosen]))
+        rgb, truth = (torch.cat(parts) for parts in zip(*self.waiting))
+        while len(rgb) >= self.batch:
+            self.step(rgb[:self.batch], truth[:self.batch], part)
+            rgb, truth = rgb[self.batch:], truth[self.batch:]
+        self.waiting = [(rgb, truth)]
+
+    def step(self, rgb, truth, part):
+        """One step; `rgb` and `truth` are u8 with the channels last."""
+        for group, peak in zip(self.optimizer.param_groups, self.peaks):
+            group["lr"] = peak * rate(part)
+        x, y = (a.permute(0, 3, 1, 2).float().div(255) for a in (rgb, truth))
+        with torch.autocast(x.device.type, torch.bfloat16, enabled=x.is_cuda):
+            logits = self.net(x.contiguous(memory_format=torch.channels_last))
+        loss = loss_of(logits.float(), y)
+        self.optimizer.zero_grad(set_to_none=True)
         loss.backward()
-        torch.nn.utils.clip_grad_norm_([p for g in optimizer.param_groups for p in g["params"]], 5.0)
-        optimizer.step()
-        keep = min(0.99, step / (step + 10))
+        torch.nn.utils.clip_grad_norm_([p for g in self.optimizer.param_groups for p in g["params"]], 5.0)
+        self.optimizer.step()
         with torch.no_grad():
-            for k, v in net.state_dict().items():
-                mean[k].lerp_(v, 1 - keep)
-        total += float(loss)
-        if step % 25 == 24 or step == steps - 1:
-            print(f"step {step + 1}/{steps} loss {total / (step % 25 + 1):.4f} seconds {time.time() - started:.0f}",
-                  file=log, flush=True)
-            total = 0.0
-        if step % 100 == 99 or step == steps - 1:
-            torch.save({k: v.cpu().contiguous() for k, v in mean.items()}, path)
+            torch._foreach_lerp_(self.mean, list(self.net.parameters()), 1 - min(0.99, self.steps / (self.steps + 10)))
+        self.steps += 1
+        self.losses.append(loss.detach())
+
+    def report(self, seconds):
+        """A line of the log, and the checkpoint."""
+        if not self.losses:
+            return
+        loss, self.losses = float(torch.stack(self.losses).mean()), []
+        print(f"step {self.steps} loss {loss:.4f} seconds {seconds:.0f}", file=self.log, flush=True)
+        names = [name for name, _ in self.net.named_parameters()]
+        torch.save({k: v.cpu().contiguous() for k, v in zip(names, self.mean)}, self.path)
+
+
+def train(students, stream, args):
+    """Until `all` had its steps, or the minutes are over (the learning rates fall by what comes first)."""
+    ahead = 4 if args.workers else None
+    chunks = iter(DataLoader(stream, batch_size=None, num_workers=args.workers, prefetch_factor=ahead))
+    started, count = time.time(), 0
+    while True:
+        rgb, truth, folds = (torch.as_tensor(a).to(args.device) for a in next(chunks))
+        done = max((time.time() - started) / (60 * args.minutes), count * CHUNK / (args.steps * args.batch))
+        for student in students:
+            student.take(rgb, truth, folds, done)
+        count += 1
+        if count % 200 == 0 or done >= 1:
+            for student in students:
+                student.report(time.time() - started)
+        if done >= 1:
+            return
 
 
 def main():
@@ -98,28 +149,26 @@ def main():
     parser.add_argument("--data", default=os.environ.get("LUNULA_REAL_DATA"), help="folder of nail/vpapenko_cc0, ti1k")
     parser.add_argument("--phantoms", required=True, help="folder of folders that `lunula phantom photos` wrote")
     parser.add_argument("--runs", required=True, help="where checkpoints and logs go")
-    parser.add_argument("--fold", type=int, help="leave these photographs out")
-    parser.add_argument("--all", action="store_true", help="train on every photograph")
-    parser.add_argument("--steps", type=int, default=12000, help="steps of 16 samples")
+    parser.add_argument("--nets", nargs="+", required=True, choices=["0", "1", "2", "all"])
+    parser.add_argument("--batch", type=int, default=16)
+    parser.add_argument("--steps", type=int, default=12000, help="batches that are made; a fold's net skips its fold")
+    parser.add_argument("--minutes", type=float, default=1e9, help="end here, if the steps are not done by then")
     parser.add_argument("--frozen", type=int, default=0, help="blocks held at their ImageNet weights, the stem too")
     parser.add_argument("--start", help="checkpoint to go on from instead of ImageNet's weights")
     parser.add_argument("--gain", type=float, default=1.0, help="of the learning rates")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--device", default="cpu")
     parser.add_argument("--threads", type=int, default=1)
+    parser.add_argument("--workers", type=int, default=0, help="processes that make samples")
     args = parser.parse_args()
-    if (args.fold is None) != args.all:
-        parser.error("one of --fold and --all")
     torch.set_num_threads(args.threads)
-    cv2.setNumThreads(1)
+    cv2.setNumThreads(1)  # its threads would not live on in the processes that make samples
     root, runs = pathlib.Path(args.data), pathlib.Path(args.runs)
     runs.mkdir(parents=True, exist_ok=True)
-    photos = [p for p in data.photographs(root) if p.fold != args.fold]
+    photos = data.photographs(root)
     ghosts = [g for folder in sorted(pathlib.Path(args.phantoms).iterdir()) for g in data.phantoms(folder)]
-    samples = data.Samples(photos, ghosts, data.hand_free(root), SIZE, args.seed)
-    name = "all" if args.all else f"fold-{args.fold}"
-    device, path = torch.device(args.device), runs / f"{name}.pt"
-    train(begun(args.start), samples, args.steps, args.frozen, args.gain, device, path)
+    stream = Stream(args.seed, photos, ghosts, data.hand_free(root))
+    train([Student(name, args, runs) for name in args.nets], stream, args)
 
 
 if __name__ == "__main__":

@@ -49,8 +49,8 @@ pub struct Trace {
     pub unit: usize,
     /// A voltage for each sample, V; NaN where it is missing.
     pub voltages_v: Vec<f64>,
-    /// SD of its noise (slow noise and a pulse included), V, in proportion to that of the others: what is noisier counts
-    /// less. Only the ratios matter.
+    /// SD of its noise (slow noise and a pulse included), V, in proportion to that of the others: what is noisier
+    /// counts less. Only the ratios matter.
     pub noise_v: f64,
 }
 

@@ -38,8 +38,8 @@ pub struct FitResult {
     /// it was not looked for, and taken as white: in equilibrium, where values are few, where the fit is exact.
     pub noises: Vec<Vec<Option<Slow>>>,
     /// Singular values of the derivatives of all voltages by the groups that are at no bound, offsets and scalings
-    /// following (whitened where there is slow noise): RMS change of a voltage, V, for a change by a factor e (or by the
-    /// scale of what moves by addition), falling.
+    /// following (whitened where there is slow noise): RMS change of a voltage, V, for a change by a factor e (or by
+    /// the scale of what moves by addition), falling.
     pub singular_values_v: Vec<f64>,
     /// Combinations of parameters that the data don't determine.
     pub undetermined: Vec<Combination>,
