@@ -1,5 +1,5 @@
 //! Errors hold the truth in the pulse (2 % of the step, 0.9 to 1.3 Hz and its double) and slow waves (5 %, 0.1 Hz) of
-//! blood, which both photodiodes see at once, as in white noise (1 %).
+//! blood, which both photodiodes see at once, as in white noise (1 % or 0.1 %).
 //!
 //! Both loads press from 1 to 4 s of 16; 400 samples. The fit starts from 0.7 of the true stiffness.
 
@@ -23,15 +23,15 @@ fn evenly() -> Vec<f64> {
     (0..400).map(|k| 0.04 * f64::from(k)).collect()
 }
 
-/// With white noise, and a pulse and waves of a part of each photodiode's swing.
-fn beating(recording: &Recording, times: &[f64], [pulse, waves]: [f64; 2], seed: u64) -> Recording {
+/// With white noise, a pulse and waves of a part of each photodiode's swing.
+fn beating(recording: &Recording, times: &[f64], [white, pulse, waves]: [f64; 3], seed: u64) -> Recording {
     let mut random = ChaCha8Rng::seed_from_u64(1000 + seed);
     let hz = random.random_range(0.9..1.3);
     let [beat, wave] = [(); 2].map(|()| random.random_range(0.0..TAU));
-    let mut noisy = noisy(recording, 0.01, seed);
+    let mut noisy = noisy(recording, white, seed);
     for trace in &mut noisy.photodiodes {
-        let swing = trace.noise_v / 0.01;
-        trace.noise_v = swing * (0.01_f64.powi(2) + 0.58 * pulse.powi(2) + 0.5 * waves.powi(2)).sqrt();
+        let swing = trace.noise_v / white;
+        trace.noise_v = swing * (white.powi(2) + 0.58 * pulse.powi(2) + 0.5 * waves.powi(2)).sqrt();
         for (t, volts) in times.iter().zip(&mut trace.voltages_v) {
             let of_pulse = (TAU * hz * t + beat).sin() + 0.4 * (2.0 * TAU * hz * t + beat).sin();
             *volts += swing * (pulse * of_pulse + waves * (0.1 * TAU * t + wave).sin());
@@ -48,7 +48,7 @@ fn fitted(recordings: &[Recording]) -> FitResult {
 
 /// Of so many recordings, how many have k and b within two standard errors, how many within intervals that have an
 /// end, and how many have intervals without ends; RMS errors of k and b over the truth.
-fn held(parts: [f64; 2], units: &[usize], seeds: u64) -> ([u64; 4], [u64; 2], [f64; 2]) {
+fn held(parts: [f64; 3], units: &[usize], seeds: u64) -> ([u64; 4], [u64; 2], [f64; 2]) {
     let exact = pressed(&evenly(), units);
     let (mut counts, mut squares, mut without_ends) = ([0; 4], [0.0; 2], [0; 2]);
     for seed in 0..seeds {
@@ -72,9 +72,9 @@ fn held(parts: [f64; 2], units: &[usize], seeds: u64) -> ([u64; 4], [u64; 2], [f
 }
 
 /// White, pulse, pulse and waves; the largest RMS error of k that is allowed. Measured, k and b within two standard
-/// errors, and within the intervals, of 24: 22, 22, 22, 22; 23, 24, 24, 24; 24 each; RMS 0.116, 0.224, 0.272. Where all
-/// noise was taken as white: 22 each; 19, 19, 21, 21; 9, 9, 10, 10; RMS 0.115, 0.240, 0.500.
-const CASES: [([f64; 2], f64); 3] = [([0.0, 0.0], 0.14), ([0.02, 0.0], 0.23), ([0.02, 0.05], 0.35)];
+/// errors, and within the intervals, of 24: 22, 22, 22, 22; 24 each; 24 each; RMS 0.118, 0.224, 0.272. Where all noise
+/// was taken as white: 22 each; 19, 19, 21, 21; 9, 9, 10, 10; RMS 0.115, 0.240, 0.500.
+const CASES: [([f64; 3], f64); 3] = [([0.01, 0.0, 0.0], 0.14), ([0.01, 0.02, 0.0], 0.23), ([0.01, 0.02, 0.05], 0.35)];
 
 #[test]
 fn errors_hold_the_truth_in_white_noise_a_pulse_and_waves() {
@@ -83,24 +83,26 @@ fn errors_hold_the_truth_in_white_noise_a_pulse_and_waves() {
         assert!(counts.iter().all(|count| *count >= 21), "{parts:?}: {counts:?}");
         assert!(rms <= most, "{parts:?}: {rms}");
     }
+    // One photodiode with little white noise. Where waves were taken to be of just the shapes that are known: 13 to 16.
+    let (counts, ..) = held([0.001, 0.02, 0.05], &[1], 24);
+    assert!(counts.iter().all(|count| *count >= 21), "{counts:?}");
 }
 
-/// `cargo test --release -p lunula-hemodynamics --test fit -- --ignored --nocapture noise`. Measured: 182, 183, 189,
-/// 188 of 200; 194, 196, 200, 200; 188, 192, 200, 200; RMS of k 0.116, 0.171, 0.302. Taken as white (`whiten` in
-/// `fit/mod.rs` left out): 182, 182, 188, 189; 144, 146, 169, 169; 101, 103, 111, 111; 0.115, 0.281, 0.454. With waves
-/// the intervals are rather too wide.
+/// `cargo test --release -p lunula-hemodynamics --test fit -- --ignored --nocapture noise`. Measured with both
+/// photodiodes: 185, 185, 190, 189 of 200; 198, 199, 200, 200; 193, 197, 200, 200; RMS of k 0.117, 0.171, 0.302. Taken
+/// as white (`whiten` in `fit/mod.rs` left out): 182, 182, 188, 189; 144, 146, 169, 169; 101, 103, 111, 111; 0.115,
+/// 0.281, 0.454. With waves the intervals are rather too wide.
 #[test]
-#[ignore = "takes a minute; its figures are in docs/src/accuracy/models.md"]
+#[ignore = "takes three minutes; its figures are in docs/src/accuracy/models.md"]
 fn errors_hold_the_truth_of_two_hundred() {
-    for (parts, _) in CASES {
-        let (counts, ..) = held(parts, &BOTH, 200);
-        assert!(counts.iter().all(|count| *count >= 182), "{parts:?}: {counts:?}");
+    let quieter = CASES.map(|([white, pulse, waves], _)| [0.1 * white, pulse, waves]);
+    for parts in CASES.map(|(parts, _)| parts).into_iter().chain(quieter) {
         // A photodiode alone leaves k and b uncertain by as much as they are; what is said of them holds all the same.
-        let (counts, without_ends, _) = held(parts, &[1], 200);
-        assert!(counts[..2].iter().all(|count| *count >= 165), "{parts:?}: {counts:?}");
-        assert!((0..2).all(|q| counts[2 + q] + without_ends[q] >= 182), "{parts:?}: {counts:?}");
-        let (counts, without_ends, _) = held(parts, &[0], 200);
-        assert!((0..2).all(|q| counts[2 + q] + without_ends[q] >= 182), "{parts:?}: {counts:?}");
+        for units in [&BOTH[..], &[1], &[0]] {
+            let (counts, without_ends, _) = held(parts, units, 200);
+            assert!(units == [0] || counts[..2].iter().all(|count| *count >= 180), "{units:?} {parts:?}: {counts:?}");
+            assert!((0..2).all(|q| counts[2 + q] + without_ends[q] >= 180), "{units:?} {parts:?}: {counts:?}");
+        }
     }
 }
 
@@ -110,12 +112,12 @@ fn recordings_with_gaps_and_uneven_times_are_fitted_together_in_their_own_noise(
     let uneven =
         |k: u32| 0.04 * f64::from(k) + if k.is_multiple_of(3) { 0.013 } else { 0.0 } + if k > 200 { 3.0 } else { 0.0 };
     let uneven: Vec<f64> = (0..400).map(uneven).collect();
-    let mut beat = beating(&pressed(&uneven, &BOTH), &uneven, [0.02, 0.05], 3).of("anna");
+    let mut beat = beating(&pressed(&uneven, &BOTH), &uneven, [0.01, 0.02, 0.05], 3).of("anna");
     // The photodiodes take turns.
     for (unit, trace) in beat.photodiodes.iter_mut().enumerate() {
         trace.voltages_v.iter_mut().skip(unit).step_by(2).for_each(|volts| *volts = f64::NAN);
     }
-    let quiet = beating(&pressed(&evenly(), &BOTH), &evenly(), [0.0; 2], 1).of("ben");
+    let quiet = beating(&pressed(&evenly(), &BOTH), &evenly(), [0.01, 0.0, 0.0], 1).of("ben");
     let short: Vec<f64> = evenly().into_iter().step_by(16).collect();
     let short = noisy(&pressed(&short, &BOTH), 0.01, 4).of("anna");
     let result = fitted(&[beat, quiet, short]);
