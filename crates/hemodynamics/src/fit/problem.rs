@@ -37,7 +37,8 @@ pub(super) struct Whitening {
     pub(super) noise: Noise,
     /// What its rows are divided by.
     pub(super) size: f64,
-    /// By how much the variance of its rows was overstated in that, as its recording's channels share their slow noise.
+    /// By how much the variance of its rows was overstated in that: its recording's channels share their slow noise,
+    /// which is of another shape than those that are known.
     pub(super) shared: f64,
 }
 
