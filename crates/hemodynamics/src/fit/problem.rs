@@ -20,7 +20,7 @@ pub(super) struct Channel {
     pub(super) recording: usize,
     /// Its place in the recording.
     pub(super) trace: usize,
-    unit: usize,
+    pub(super) unit: usize,
     pub(super) samples: Vec<usize>,
     weight: f64,
     key: Key,

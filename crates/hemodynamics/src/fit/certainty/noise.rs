@@ -115,7 +115,8 @@ fn independent(columns: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
 }
 
 /// By how much the slow noise of a recording's channels enlarges the variance as it is the same noise: the largest sum
-/// of a channel's correlations, which the largest eigenvalue does not exceed; at least [`OF_OTHER_SHAPE`].
+/// of a channel's correlations, which the largest eigenvalue does not exceed; at least [`OF_OTHER_SHAPE`] times that with
+/// those of its unit, which see the same signal too.
 fn shared(channels: &[Channel], likely: &[Option<Likely>], of: usize) -> f64 {
     let mates: Vec<(&Channel, &Likely)> = channels
         .iter()
@@ -123,8 +124,16 @@ fn shared(channels: &[Channel], likely: &[Option<Likely>], of: usize) -> f64 {
         .filter(|(channel, _)| channel.recording == channels[of].recording)
         .filter_map(|(channel, likely)| Some((channel, likely.as_ref().filter(|likely| likely.slow != Slow::NONE)?)))
         .collect();
-    let sum = |one: &(&Channel, &Likely)| mates.iter().map(|other| correlation(*one, *other)).sum::<f64>();
-    mates.iter().map(sum).fold(OF_OTHER_SHAPE, f64::max)
+    let of_one = |one: &(&Channel, &Likely)| {
+        let [mut of_all, mut of_unit] = [0.0; 2];
+        for other in &mates {
+            let shared = correlation(*one, *other);
+            of_all += shared;
+            of_unit += if other.0.unit == one.0.unit { shared } else { 0.0 };
+        }
+        of_all.max(OF_OTHER_SHAPE * of_unit)
+    };
+    mates.iter().map(of_one).fold(1.0, f64::max)
 }
 
 /// How far the slow parts of two channels go together, either way; wholly where no sample has both.
