@@ -115,8 +115,8 @@ fn independent(columns: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
 }
 
 /// By how much the slow noise of a recording's channels enlarges the variance as it is the same noise: the largest sum
-/// of a channel's correlations, which the largest eigenvalue does not exceed; at least [`OF_OTHER_SHAPE`] times that with
-/// those of its unit, which see the same signal too.
+/// of a channel's correlations, which the largest eigenvalue does not exceed; at least [`OF_OTHER_SHAPE`] times that
+/// with those of its unit, which see the same signal too.
 fn shared(channels: &[Channel], likely: &[Option<Likely>], of: usize) -> f64 {
     let mates: Vec<(&Channel, &Likely)> = channels
         .iter()
