@@ -82,19 +82,21 @@ demo: system
 # Every package but diffsol's and the fuzzer's, which take minutes to compile.
 ALL := --locked --features xdf --workspace --exclude lunula-hemodynamics-peer --exclude lunula-fuzz
 
-# Tests that need real recordings are ignored; where the recordings are, they are run by name.
+# Tests that need real recordings are ignored; where the recordings are, they are run by name. Those of bench/peers run
+# with it.
+test: TESTED := $(ALL) --exclude lunula-peers
 test: system
-	cargo test $(ALL)
+	cargo test $(TESTED)
 	@if [ -d "$(REAL_DATA)" ]; then \
-	  set -x; LUNULA_REAL_DATA="$(abspath $(REAL_DATA))" cargo test $(ALL) real_data:: -- --ignored; \
+	  set -x; LUNULA_REAL_DATA="$(abspath $(REAL_DATA))" cargo test $(TESTED) real_data:: -- --ignored; \
 	else \
-	  left_out=$$(cargo test --quiet $(ALL) real_data:: -- --ignored --list | grep -c ': test$$'); \
+	  left_out=$$(cargo test --quiet $(TESTED) real_data:: -- --ignored --list | grep -c ': test$$'); \
 	  echo "left out: $$left_out tests of real recordings; LUNULA_REAL_DATA names their folder"; \
 	fi
 	@if command -v chromedriver >/dev/null; then \
-	  set -x; cargo test $(ALL) in_browser -- --ignored; \
+	  set -x; cargo test $(TESTED) in_browser -- --ignored; \
 	else \
-	  left_out=$$(cargo test --quiet $(ALL) in_browser -- --ignored --list | grep -c ': test$$'); \
+	  left_out=$$(cargo test --quiet $(TESTED) in_browser -- --ignored --list | grep -c ': test$$'); \
 	  echo "left out: $$left_out tests of pages; they need chromium and its driver (make browser)"; \
 	fi
 
@@ -125,6 +127,7 @@ bench: system
 
 # The packages of bench/peers/requirements.txt that python3 lacks are named, and what needs them is left out.
 peers: system
+	cargo test --release --locked -p lunula-peers --features diffsol
 	cargo run --release --locked -p lunula-peers --features diffsol
 
 # Installs cargo-afl below target/ where it is missing.

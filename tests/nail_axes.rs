@@ -298,13 +298,10 @@ mod real_data {
                 ];
                 changed(hand, photo, |[x, y]| [(x + 0.5) * scale[0] - 0.5, (y + 0.5) * scale[1] - 0.5], |a| a)
             }),
-            ("four times the size", &|hand| {
-                let photo = hand.photo.resize_exact(
-                    hand.photo.width() * 4,
-                    hand.photo.height() * 4,
-                    image::imageops::FilterType::CatmullRom,
-                );
-                changed(hand, photo, |[x, y]| [x * 4.0 + 1.5, y * 4.0 + 1.5], |a| a)
+            ("twice the size", &|hand| {
+                let (width, height) = (2 * hand.photo.width(), 2 * hand.photo.height());
+                let photo = hand.photo.resize_exact(width, height, image::imageops::FilterType::CatmullRom);
+                changed(hand, photo, |[x, y]| [x * 2.0 + 0.5, y * 2.0 + 0.5], |a| a)
             }),
             ("dim", &|hand| with_pixels(hand, |_, _, rgb| rgb.map(|v| v * 0.25))),
             ("greenish", &|hand| with_pixels(hand, |_, _, [r, g, b]| [r * 0.5, g, b * 0.4])),

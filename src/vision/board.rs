@@ -155,6 +155,8 @@ fn refine(mat: &impl ToInputArray, corners: &mut Vector<Point2f>, columns: usize
 
 #[cfg(test)]
 mod tests {
+    use rayon::prelude::*;
+
     use super::*;
     use crate::phantom::board::{BoardOptions, Picture, Scene};
 
@@ -177,14 +179,14 @@ mod tests {
     #[test]
     fn corners_are_placed_to_a_fraction_of_a_pixel() {
         let scene = Scene::new(BoardOptions { size: (640, 480), views: 3, ..BoardOptions::default() }).unwrap();
-        for (k, view) in scene.views().iter().enumerate() {
+        scene.views().par_iter().enumerate().for_each(|(k, view)| {
             let picture = scene.picture(&[*view], k as u32);
             let found = find_board(grey(&picture), 9, 6).unwrap().expect("a board");
             let error_px = error_px(&found, &scene.corners_px(view));
             assert!(error_px <= LARGEST_PX, "{error_px} px");
             assert!(!shows_another(grey(&picture), &found, 9, 6).unwrap());
             assert_eq!(find_board(grey(&picture), 8, 7).unwrap(), None, "a board of another size");
-        }
+        });
     }
 
     #[test]

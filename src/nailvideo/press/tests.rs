@@ -5,7 +5,7 @@ use rand_distr::{Distribution, StandardNormal};
 use super::*;
 
 const RATE_HZ: f64 = 30.0;
-const SEEDS: u64 = 300;
+const SEEDS: u64 = 150;
 
 /// A press at 3 s and a release at 6 s, or none, in noise with first-order correlation `rho`.
 fn trace(step: f64, taus: [f64; 2], release_s: f64, rho: f64, until_s: f64, seed: u64) -> (Vec<f64>, Vec<f64>) {
@@ -162,7 +162,7 @@ fn a_pulse_and_slow_waves_are_held() {
         let course = format!("tau {tau}, pulse {pulse}, waves {wave}, until {until_s}");
         let ([_, t90], [onset_held, t90_held]) = figures(&course, &errors, t90_s);
         assert!(errors.len() as u64 == SEEDS && t90 <= 1.0 / 7.0, "{tau} {until_s}");
-        // Measured 0.96 and more, 0.86 and more.
+        // Measured 0.97 and more, 0.83 and more.
         assert!(onset_held >= 0.93 && t90_held >= 0.82, "{tau} {until_s}");
     }
 }
@@ -286,7 +286,7 @@ mod real_data {
             let ([_, t90], [onset_held, t90_held]) = figures(&course, &errors, t90_s);
             // At 1.5 s the end is not seen in one of eight.
             assert!(errors.len() as u64 * 10 >= SEEDS * 8 && t90 <= 1.0 / 6.0, "{tau} {until_s}");
-            // Measured 0.93 and more, 0.91 and more.
+            // Measured 0.93 and more, 0.89 and more.
             assert!(onset_held >= 0.9 && t90_held >= 0.88, "{tau} {until_s}");
         }
     }

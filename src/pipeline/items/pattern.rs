@@ -10,7 +10,7 @@ mod walk;
 
 use std::fmt::Write;
 
-use regex::Regex;
+use regex_lite::Regex;
 
 use crate::job::Keys;
 
@@ -123,7 +123,7 @@ impl Wild {
                 }
                 ']' | '}' => return Err(format!("`{said}`: a {c} without its beginning")),
                 c => {
-                    let c = regex::escape(c.encode_utf8(&mut [0; 4]));
+                    let c = regex_lite::escape(c.encode_utf8(&mut [0; 4]));
                     both(&c, &c);
                 }
             }

@@ -102,13 +102,21 @@ impl Show {
         const LOOKS: usize = 8;
         let [left, top, width, height] = self.panel;
         let mut lit = vec![0.0; width * height];
+        let mut texts: Vec<(String, u8)> = Vec::new();
         for look in 0..LOOKS {
             let share = (look as f64 + 0.5) / LOOKS as f64 - 0.5;
             let (text, _) = clock.shown(time_s + share * self.exposure / self.fps);
             let text = (self.restyle)(&text);
+            match texts.last_mut() {
+                Some((last, looks)) if *last == text => *looks += 1,
+                _ => texts.push((text, 1)),
+            }
+        }
+        for (text, looks) in &texts {
             let one =
-                if self.moving { side_by_side(clock, &text, width, height) } else { clock.panel(&text, width, height) };
-            lit.iter_mut().zip(one).for_each(|(sum, one)| *sum += one / LOOKS as f32);
+                if self.moving { side_by_side(clock, text, width, height) } else { clock.panel(text, width, height) };
+            let share = f32::from(*looks) / LOOKS as f32;
+            lit.iter_mut().zip(one).for_each(|(sum, one)| *sum += share * one);
         }
         for &[x, y, wide, tall] in &self.lines {
             (y..y + tall).for_each(|y| lit[y * width + x..y * width + x + wide].fill(1.0));
