@@ -150,7 +150,7 @@ fn a_finger_upside_down_has_the_same_photodiodes() {
 #[test]
 fn a_polished_nail_is_followed_and_shows_no_press() {
     let dir = Dir::new();
-    let short = SCENE.replace("--seconds 6", "--seconds 3");
+    let short = SCENE.replace("--seconds 6", "--seconds 5");
     words(&dir, &short.replace("--drift 5", "--drift 0 --turn 0 --scale 0 --tilt 0")).expect(0);
     let text = fs::read_to_string(dir.path("s/outline.json")).expect("an outline");
     let file: Value = serde_json::from_str(&text).expect("JSON");
