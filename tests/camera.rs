@@ -122,7 +122,7 @@ fn angles_seen_obliquely_are_right() {
     let plane = ["--plane", "30,60"];
     dir.lunula(&[&["phantom", "board", "--out", "board", distortion][..], &plane].concat()).expect(0);
     camera(&dir, "board/views", &["--plane", "board/plane.png", "--no-figures"]).expect(0);
-    let video = ["phantom", "video", "--seconds", "1", "--bend-hz", "0.5", "--seed", "7"];
+    let video = ["phantom", "video", "--seconds", "2", "--bend-hz", "0.5", "--seed", "7"];
     dir.lunula(&[&video[..], &["--out", "straight"]].concat()).expect(0);
     dir.lunula(&[&video[..], &["--out", "oblique", distortion], &plane].concat()).expect(0);
     let markers = std::fs::read_to_string(dir.path("oblique/markers.toml")).expect("a marker file");

@@ -11,18 +11,15 @@ use lunula_thesis::experiments;
 /// Two people, one of whom wears the sensor; four seconds of each video.
 const SMALL: &str =
     "phantom study --seed 3 --subjects 2 --sensors 1 --presses 1 --video-size 480x270 --seconds 4 --out study";
-/// The same with videos in which there is hardly anything to see.
-const TINY: &str =
-    "phantom study --seed 3 --subjects 2 --sensors 1 --presses 1 --video-size 160x96 --seconds 1 --out study";
-const TINY_BLOCK: &str =
-    "study = { seed = 3, subjects = 2, sensors = 1, presses = 1, video_size = \"160x96\", seconds = 1 }";
+const SMALL_BLOCK: &str =
+    "study = { seed = 3, subjects = 2, sensors = 1, presses = 1, video_size = \"480x270\", seconds = 4 }";
 
 fn words(command: &str) -> Vec<&str> {
     command.split_whitespace().collect()
 }
 
-fn tiny_catalogue() -> Catalogue {
-    let block = TINY_BLOCK.parse().expect("TOML");
+fn small_catalogue() -> Catalogue {
+    let block = SMALL_BLOCK.parse().expect("TOML");
     phantom_catalogue(&block, experiments()).map_err(|fault| fault.what).expect("a catalogue")
 }
 
@@ -33,9 +30,9 @@ fn number(row: &BTreeMap<String, String>, column: &str) -> f64 {
 #[test]
 fn a_study_is_what_its_catalogue_says_and_what_a_pipelines_tasks_make() {
     let dir = Dir::new();
-    let report = dir.lunula(&[&words(TINY)[..], &["--json"]].concat()).expect(0).json();
+    let report = dir.lunula(&[&words(SMALL)[..], &["--json"]].concat()).expect(0).json();
     let written = dir.bytes_of("study");
-    let catalogue = tiny_catalogue();
+    let catalogue = small_catalogue();
     let foreseen: Vec<&str> = catalogue.files.iter().map(|file| file.path.as_str()).collect();
     assert_eq!(written.keys().map(String::as_str).collect::<Vec<_>>(), foreseen);
     assert_eq!(report["files"], written.len());
@@ -59,13 +56,13 @@ fn a_study_is_what_its_catalogue_says_and_what_a_pipelines_tasks_make() {
         "phantom study --subjects 2 --sensors 2 --presses 0 --video-size 160x96 --fps 5 --seconds 1 --out study";
     dir.lunula(&words(other)).expect(0);
     assert!(dir.path("study/s02/bending/log.csv").is_file() && !dir.path("study/presses").exists());
-    dir.lunula(&words(TINY)).expect(0);
+    dir.lunula(&words(SMALL)).expect(0);
     assert_eq!(dir.bytes_of("study"), written);
     dir.write("study/s01/bending/joints.csv", "mine");
-    dir.lunula(&words(TINY)).expect(2).says("study/s01/bending/joints.csv stands already");
+    dir.lunula(&words(SMALL)).expect(2).says("study/s01/bending/joints.csv stands already");
     assert_eq!(dir.bytes_of("study").len(), written.len() + 1);
     dir.write("other/s01/mine.txt", "mine");
-    let elsewhere = TINY.replace("--out study", "--out other");
+    let elsewhere = SMALL.replace("--out study", "--out other");
     dir.lunula(&words(&elsewhere)).expect(2).says("other/s01 stands already");
 }
 

@@ -12,7 +12,7 @@
 //!
 //! Where a trace has such waves and only white noise is assumed, a course bends along with them: in the pulse and the
 //! waves of real blood (`tests::real_data`) t90's interval held the truth in 36 to 66 %, so in 89 to 96 %. The price:
-//! of blood a part of which comes back more slowly t90 is 5 to 16 % short in place of 1 to 9 %, within its interval, as
+//! of blood a part of which comes back more slowly t90 is 4 to 15 % short in place of 1 to 9 %, within its interval, as
 //! slow waves may look like that.
 
 use std::ops::RangeInclusive;
