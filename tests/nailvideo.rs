@@ -177,7 +177,7 @@ fn ten_bits(picture: &Picture) -> Picture {
     Picture { format: Format { depth: 10, ..picture.format }, planes: picture.planes.iter().map(deep).collect() }
 }
 
-fn grey(picture: &Picture) -> Picture {
+pub(crate) fn grey(picture: &Picture) -> Picture {
     Picture { format: Format { subsampling: None, ..picture.format }, planes: vec![picture.planes[0].clone()] }
 }
 

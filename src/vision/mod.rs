@@ -30,7 +30,7 @@ use thiserror::Error;
 pub(crate) use board::{Corners, find_board, shows_another};
 pub(crate) use cells::{Cell, halved, matched, smoothed};
 pub(crate) use extreme::{Extreme, extreme};
-pub(crate) use image::{closed_line, resized};
+pub(crate) use image::{closed_line, part_resized, resized};
 pub(crate) use lens::{Calibration, Intrinsics, PARAMETERS, Pose, calibrate, project, undistorted};
 #[cfg(test)]
 pub(crate) use lens::{opencvs_sd, undistorted_by_default};

@@ -391,8 +391,8 @@ fn refined(image: &DynamicImage, rough: &Outline, axis: Axis, options: &DetectOp
     let size = [f64::from(image.width()), f64::from(image.height())];
     let low = [0, 1].map(|k| (centre[k] - reach).floor().clamp(0.0, size[k] - 1.0));
     let high = [0, 1].map(|k| (centre[k] + reach).ceil().clamp(low[k] + 1.0, size[k]));
-    let part = image.crop_imm(low[0] as u32, low[1] as u32, (high[0] - low[0]) as u32, (high[1] - low[1]) as u32);
-    let levels = Levels::of(&part, options.working_size_px.max(4 * LEAST_PX));
+    let part = [low, [high[0] - low[0], high[1] - low[1]]].map(|sides| sides.map(|n| n as u32));
+    let levels = Levels::of_part(image, part, options.working_size_px.max(4 * LEAST_PX));
 
     let nail = Frame { origin: [0, 1].map(|k| centre[k] - low[k]), up, unit_px: length };
     let template = OutlineShape { x: 0.0, y: 0.0, length: 1.0, width: width / length, turn: 0.0, taper: TAPER };

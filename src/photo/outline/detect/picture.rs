@@ -48,15 +48,21 @@ impl Levels {
 
     /// All levels of a photograph, the first with its longest side reduced by a whole factor to at most `longest_px`.
     pub fn of(image: &DynamicImage, longest_px: u32) -> Self {
-        let longest = image.width().max(image.height());
-        let mut pictures = vec![Picture::new(image, longest.div_ceil(longest_px.max(1)).max(1) as usize)];
+        Self::of_part(image, [[0; 2], [image.width(), image.height()]], longest_px)
+    }
+
+    /// As [`Levels::of`], of a part of the photograph, its corner and size: places are counted from that corner.
+    pub(super) fn of_part(image: &DynamicImage, part: [[u32; 2]; 2], longest_px: u32) -> Self {
+        let [width, height] = part[1];
+        let step = width.max(height).div_ceil(longest_px.max(1)).max(1) as usize;
+        let mut pictures = vec![Picture::new(image, part.map(|sides| sides.map(|n| n as usize)), step)];
         while let Some(last) = pictures.last()
             && last.size[0].max(last.size[1]) >= 2 * Self::LEAST
             && last.size[0].min(last.size[1]) >= 2
         {
             pictures.push(last.halved());
         }
-        Self { source_px: [f64::from(image.width()), f64::from(image.height())], pictures }
+        Self { source_px: part[1].map(f64::from), pictures }
     }
 
     /// The largest level whose longest side is at most `longest_px` (or the smallest there is).
@@ -72,31 +78,43 @@ impl Levels {
 }
 
 impl Picture {
-    fn new(image: &DynamicImage, step: usize) -> Self {
+    fn new(image: &DynamicImage, part: [[usize; 2]; 2], step: usize) -> Self {
         let width = image.width() as usize;
         match image {
-            DynamicImage::ImageLuma8(p) => Self::reduce(p.as_raw(), width, 1, step, 255.0),
-            DynamicImage::ImageLumaA8(p) => Self::reduce(p.as_raw(), width, 2, step, 255.0),
-            DynamicImage::ImageLuma16(p) => Self::reduce(p.as_raw(), width, 1, step, 65535.0),
-            DynamicImage::ImageLumaA16(p) => Self::reduce(p.as_raw(), width, 2, step, 65535.0),
-            DynamicImage::ImageRgb8(p) => Self::reduce(p.as_raw(), width, 3, step, 255.0),
-            DynamicImage::ImageRgba8(p) => Self::reduce(p.as_raw(), width, 4, step, 255.0),
-            DynamicImage::ImageRgb16(p) => Self::reduce(p.as_raw(), width, 3, step, 65535.0),
-            DynamicImage::ImageRgba16(p) => Self::reduce(p.as_raw(), width, 4, step, 65535.0),
-            other => Self::reduce(other.to_rgb16().as_raw(), width, 3, step, 65535.0),
+            DynamicImage::ImageLuma8(p) => Self::reduce(p.as_raw(), [width, 1], part, step, 255.0),
+            DynamicImage::ImageLumaA8(p) => Self::reduce(p.as_raw(), [width, 2], part, step, 255.0),
+            DynamicImage::ImageLuma16(p) => Self::reduce(p.as_raw(), [width, 1], part, step, 65535.0),
+            DynamicImage::ImageLumaA16(p) => Self::reduce(p.as_raw(), [width, 2], part, step, 65535.0),
+            DynamicImage::ImageRgb8(p) => Self::reduce(p.as_raw(), [width, 3], part, step, 255.0),
+            DynamicImage::ImageRgba8(p) => Self::reduce(p.as_raw(), [width, 4], part, step, 255.0),
+            DynamicImage::ImageRgb16(p) => Self::reduce(p.as_raw(), [width, 3], part, step, 65535.0),
+            DynamicImage::ImageRgba16(p) => Self::reduce(p.as_raw(), [width, 4], part, step, 65535.0),
+            other => Self::reduce(other.to_rgb16().as_raw(), [width, 3], part, step, 65535.0),
         }
     }
 
-    /// Logarithms of the means over `step x step` pixels of `samples` each.
-    fn reduce<T: Copy + Into<f32>>(raw: &[T], width: usize, samples: usize, step: usize, full: f32) -> Self {
-        let height = raw.len() / samples / width.max(1);
-        let step = step.min(width).min(height).max(1);
-        let size = [width / step, height / step];
-        let mut sums = vec![[0.0f32; 3]; size[0] * size[1]];
-        for (y, row) in sums.chunks_exact_mut(size[0]).enumerate() {
+    /// Logarithms of the means over `step x step` pixels of `samples` each, of a part: its corner and size.
+    fn reduce<T: Copy + Into<f32>>(
+        raw: &[T],
+        [width, samples]: [usize; 2],
+        [corner, part]: [[usize; 2]; 2],
+        step: usize,
+        full: f32,
+    ) -> Self {
+        let step = step.min(part[0]).min(part[1]).max(1);
+        let size = part.map(|n| n / step);
+        let scale = 1.0 / (full * (step * step) as f32);
+        let log = |sum: f32| (sum * scale + FLOOR).ln();
+        let table: Vec<f32> = (0..256u16).map(|v| log(f32::from(v))).collect();
+        let is_in_table = step == 1 && full == 255.0;
+        let mut cells: Vec<Cell> = Vec::with_capacity(size[0] * size[1]);
+        let mut sums = vec![[0.0f32; 3]; size[0]];
+        for y in 0..size[1] {
+            sums.fill([0.0; 3]);
             for sub in 0..step {
-                let line = &raw[(y * step + sub) * width * samples..][..size[0] * step * samples];
-                for (cell, block) in row.iter_mut().zip(line.chunks_exact(step * samples)) {
+                let first = (corner[1] + y * step + sub) * width + corner[0];
+                let line = &raw[first * samples..][..size[0] * step * samples];
+                for (cell, block) in sums.iter_mut().zip(line.chunks_exact(step * samples)) {
                     for pixel in block.chunks_exact(samples) {
                         for (sum, value) in cell.iter_mut().zip(pixel) {
                             *sum += (*value).into();
@@ -104,17 +122,15 @@ impl Picture {
                     }
                 }
             }
+            let sums = sums.iter();
+            if samples < 3 {
+                cells.extend(sums.map(|s| [log(s[0]), 0.0, 0.0]));
+            } else if is_in_table {
+                cells.extend(sums.map(|s| ratios(s.map(|v| table[v as usize]))));
+            } else {
+                cells.extend(sums.map(|s| ratios(s.map(log))));
+            }
         }
-        let scale = 1.0 / (full * (step * step) as f32);
-        let log = |sum: f32| (sum * scale + FLOOR).ln();
-        let mut cells: Vec<Cell> = if samples < 3 {
-            sums.iter().map(|s| [log(s[0]), 0.0, 0.0]).collect()
-        } else if step == 1 && full == 255.0 {
-            let table: Vec<f32> = (0..256u16).map(|v| log(f32::from(v))).collect();
-            sums.iter().map(|s| ratios(s.map(|v| table[v as usize]))).collect()
-        } else {
-            sums.iter().map(|s| ratios(s.map(log))).collect()
-        };
         let mean = |c: usize| cells.iter().map(|p| p[c].abs()).sum::<f32>() / cells.len().max(1) as f32;
         let colour = samples >= 3 && (mean(RED) > GREY || mean(YELLOW) > GREY);
         if !colour {
