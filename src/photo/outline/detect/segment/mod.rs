@@ -41,7 +41,8 @@ const BEST_LENGTH: f64 = 28.0;
 /// Side of the second look's window and the nail's length there, pixels.
 const WINDOW: f64 = 160.0;
 const SECOND_LENGTH: f64 = 40.0;
-/// A window of so many pixels and more has sides that can be halved three times, which is faster.
+/// A window's side of so many pixels and more is a whole number of these: it may be halved on its way to [`WINDOW`],
+/// and half of an odd side is rounded.
 const EVEN_FROM: usize = 1000;
 const EVEN: usize = 8;
 /// Second looks at most: a group's photograph has fewer nails, a texture may have thousands of spots.
