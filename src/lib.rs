@@ -28,6 +28,7 @@ pub mod labelme;
 pub mod layout;
 pub mod live;
 pub mod log;
+mod median;
 pub mod nail;
 pub mod nailvideo;
 pub mod npy;

@@ -54,8 +54,8 @@ fn degrees_apart(found: &Detected, scene: &NailScene) -> f64 {
 
 #[test]
 fn close_ups_of_every_tone_and_light() {
-    const SCENES: u32 = 128;
-    /// Share of the scenes whose nail must be found with confidence. Measured 113 of 128.
+    const SCENES: u32 = 64;
+    /// Share of the scenes whose nail must be found with confidence. Measured 113 of 128 (twice as many scenes).
     const FOUND: f64 = 0.7;
     /// Measured 0.985.
     const MEDIAN_IOU: f64 = 0.95;

@@ -1,6 +1,7 @@
 //! A synthetic study: what it will write is known before, every job reads it as it stands, and its parts agree.
 
 use std::collections::BTreeMap;
+use std::sync::OnceLock;
 use std::sync::atomic::AtomicBool;
 
 use crate::util::Dir;
@@ -13,6 +14,21 @@ const SMALL: &str =
     "phantom study --seed 3 --subjects 2 --sensors 1 --presses 1 --video-size 480x270 --seconds 4 --out study";
 const SMALL_BLOCK: &str =
     "study = { seed = 3, subjects = 2, sensors = 1, presses = 1, video_size = \"480x270\", seconds = 4 }";
+
+/// What it says of itself and its files, made once for all tests.
+fn small() -> &'static (serde_json::Value, BTreeMap<String, Vec<u8>>) {
+    static MADE: OnceLock<(serde_json::Value, BTreeMap<String, Vec<u8>>)> = OnceLock::new();
+    MADE.get_or_init(|| {
+        let dir = Dir::new();
+        let report = dir.lunula(&[&words(SMALL)[..], &["--json"]].concat()).expect(0).json();
+        (report, dir.bytes_of("study"))
+    })
+}
+
+/// The same where a test may change it.
+fn small_in(dir: &Dir) {
+    small().1.iter().for_each(|(name, bytes)| dir.write(&format!("study/{name}"), bytes));
+}
 
 fn words(command: &str) -> Vec<&str> {
     command.split_whitespace().collect()
@@ -30,8 +46,8 @@ fn number(row: &BTreeMap<String, String>, column: &str) -> f64 {
 #[test]
 fn a_study_is_what_its_catalogue_says_and_what_a_pipelines_tasks_make() {
     let dir = Dir::new();
-    let report = dir.lunula(&[&words(SMALL)[..], &["--json"]].concat()).expect(0).json();
-    let written = dir.bytes_of("study");
+    small_in(&dir);
+    let (report, written) = small();
     let catalogue = small_catalogue();
     let foreseen: Vec<&str> = catalogue.files.iter().map(|file| file.path.as_str()).collect();
     assert_eq!(written.keys().map(String::as_str).collect::<Vec<_>>(), foreseen);
@@ -57,7 +73,7 @@ fn a_study_is_what_its_catalogue_says_and_what_a_pipelines_tasks_make() {
     dir.lunula(&words(other)).expect(0);
     assert!(dir.path("study/s02/bending/log.csv").is_file() && !dir.path("study/presses").exists());
     dir.lunula(&words(SMALL)).expect(0);
-    assert_eq!(dir.bytes_of("study"), written);
+    assert_eq!(dir.bytes_of("study"), *written);
     dir.write("study/s01/bending/joints.csv", "mine");
     dir.lunula(&words(SMALL)).expect(2).says("study/s01/bending/joints.csv stands already");
     assert_eq!(dir.bytes_of("study").len(), written.len() + 1);
@@ -69,7 +85,7 @@ fn a_study_is_what_its_catalogue_says_and_what_a_pipelines_tasks_make() {
 #[test]
 fn every_job_reads_a_study_as_it_stands() {
     let dir = Dir::new();
-    dir.lunula(&words(SMALL)).expect(0);
+    small_in(&dir);
     let sessions = dir.table("study/tables/sessions.csv");
     assert_eq!(sessions.len(), 10);
     let of =

@@ -8,22 +8,13 @@ type Rows = Vec<BTreeMap<String, String>>;
 
 /// A video of `lunula phantom video` in `scene/`: 640 x 360, 2 s of bending at 0.5 Hz.
 fn scene(more: &[&str]) -> Dir {
+    scene_of("2", more)
+}
+
+fn scene_of(seconds: &str, more: &[&str]) -> Dir {
     let dir = Dir::new();
-    let few = [
-        "phantom",
-        "video",
-        "--out",
-        "scene",
-        "--seed",
-        "5",
-        "--size",
-        "640x360",
-        "--seconds",
-        "2",
-        "--bend-hz",
-        "0.5",
-    ];
-    dir.lunula(&[&few[..], more].concat()).expect(0);
+    let few = "phantom video --out scene --seed 5 --size 640x360 --bend-hz 0.5 --seconds";
+    dir.lunula(&[&few.split(' ').collect::<Vec<_>>()[..], &[seconds], more].concat()).expect(0);
     dir
 }
 
@@ -190,7 +181,7 @@ fn a_suggested_marker_file_runs_as_it_stands() {
 #[test]
 fn hdr_has_the_angles_and_colours_of_ordinary_video() {
     let suggested = |more: &[&str]| {
-        let dir = scene(&[&["--colours", "distinct"], more].concat());
+        let dir = scene_of("1", &[&["--colours", "distinct"], more].concat());
         let suggested = dir.lunula(&["posture", "scene/video.mp4", "--suggest"]).expect(0).stdout;
         let colour = |line: &str| line.split_once(" = \"#").map(|(_, hex)| hex[..6].to_owned());
         let colours: Vec<_> = suggested.lines().filter_map(colour).collect();

@@ -468,3 +468,41 @@ fn a_raw_log_of_the_phantom_is_trained_on_as_it_stands() {
     assert!((0.7..0.9999).contains(&r2), "{r2}");
     dir.train("1/log.csv", "posture", "n.json", &[]).expect(2).says("run `lunula align` first");
 }
+
+/// A log without a column `led` is one whatever its file is called, and whoever wrote it.
+#[test]
+fn logs_of_other_programs_are_read_alike_as_csv() {
+    let dir = Dir::new();
+    let log = "time_s P1 P2 P3 P4 P5 P6 P7 P8 Fx_N Fy_N Fz_N".split(' ').collect::<Vec<_>>();
+    let log = Recording::of(0..200).only(&log);
+    let csv = log.csv();
+    let renamed = |name: &str, text: String| {
+        dir.write(&format!("{name}.csv"), &text);
+        dir.write(&format!("{name}.txt"), text);
+    };
+    renamed("plain", csv.replacen("time_s", "time", 1));
+    renamed("german", format!("\u{feff}{}", csv.replace(',', ";").replace('.', ",")));
+    renamed("commented", format!("# rig 2\n{csv}"));
+    renamed("trailing", csv.lines().map(|line| format!("{line},,\n")).collect());
+    let utf16: Vec<u8> = [0xfeff].into_iter().chain(csv.encode_utf16()).flat_map(u16::to_le_bytes).collect();
+    dir.write("wide.csv", &utf16);
+    dir.write("wide.txt", &utf16);
+    dir.recording("own.csv", &log);
+    dir.train("own.csv", "force", "own.json", &["-q"]).expect(0);
+    let own = dir.parsed("own.json");
+    for name in ["plain", "german", "commented", "trailing", "wide"] {
+        for ending in ["csv", "txt"] {
+            let (file, model) = (format!("{name}.{ending}"), format!("{name}-{ending}.json"));
+            dir.train(&file, "force", &model, &["-q"]).expect(0);
+            assert_eq!(dir.parsed(&model)["model"], own["model"], "{file}");
+            dir.lunula(&["predict", "own.json", &file, "--out", "p.csv", "-q"]).expect(0);
+            let times: Vec<f64> = dir.table("p.csv").iter().map(|row| row["time_s"].parse().unwrap()).collect();
+            assert!(times.len() == 200 && (times[199] - 199.0 * 0.04).abs() <= 1e-9, "{file}: {times:?}");
+        }
+    }
+    // A set that has more than a log is a table, and its time is asked for.
+    let labelled = Recording::of(0..200).csv().replacen("time_s", "time", 1);
+    assert!(labelled.starts_with("time,P1") && labelled.contains("J2_deg"));
+    dir.write("labelled.csv", labelled);
+    dir.train("labelled.csv", "posture", "n.json", &[]).expect(0).says("`time` is not read as the time");
+}

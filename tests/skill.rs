@@ -271,6 +271,9 @@ fn wrong_recordings_are_refused_and_others_are_done() {
     };
     refused("a.csv", "time_s,P1\n0,1\n0.1,2\n").says("a.csv: has no normal force; name its column Fz_N");
     refused("b.csv", "time_s,Fz_N\n0,0\n0.2,0\n0.1,0\n").says("b.csv: line 4: time_s falls from 0.2 to 0.1");
+    let coarse: Vec<Vec<f64>> =
+        rows(0.0, 4.0, &[&INDEX]).iter().map(|row| vec![(row[0] * 50.0).floor() / 50.0, row[1]]).collect();
+    refused("g.csv", &csv("time_s,Fz_N", &coarse)).says("g.csv: 200 of 401 rows of a trial have the time of the row");
     refused("f.csv", "t,force\n0,1\n").says("f.csv: is neither a table with time_s and Fz_N");
     refused("c.csv", "time_s,Fz_N\n0,soft\n").says("c.csv:2: column `Fz_N`: `soft` is no finite number");
     refused("d.csv", "time_s,Fz_N\n,0\n,1\n").says("d.csv: has no row with a time and a trial");

@@ -3,6 +3,7 @@
 use super::error::CameraError;
 use super::fit::Fit;
 use super::views::{Kind, Look};
+use crate::median::median_of;
 use crate::vision::Corners;
 
 /// The fewest views (Zhang 2000: fewer leave the axis' place or the aspect open).
@@ -176,9 +177,7 @@ pub(super) fn warnings(fit: &Fit, views: &[View], covered: Covered) -> Vec<Strin
             100.0 * covered.cells
         ));
     }
-    let mut rms: Vec<f64> = fit.views.iter().map(super::fit::FittedView::rms_px).collect();
-    rms.sort_unstable_by(f64::total_cmp);
-    let usual = rms[rms.len() / 2];
+    let usual = median_of(fit.views.iter().map(super::fit::FittedView::rms_px)).unwrap_or(f64::NAN);
     let odd = fit.views.iter().zip(views).filter(|(view, _)| view.rms_px() > ODD_TIMES * usual);
     warnings.extend(odd.map(|(view, named)| {
         format!(

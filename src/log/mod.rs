@@ -38,6 +38,7 @@ pub use lines::stamps::TimeUnit;
 pub(crate) use lines::status::{Statuses, Verdict};
 pub use naming::columns::Columns;
 pub use naming::header::LogHeader;
+pub(crate) use naming::header::{GROUPS, time_not_read};
 pub use reading::{LitRows, LogReading, UnlitLoads};
 
 /// A column of a log.

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use super::{AmbientOptions, Channel, Columns, Log, LogError, LogHeader, Samples, TimeUnit, samples};
 use crate::log::naming::columns::is_led;
-use crate::log::naming::header::holds_others;
+use crate::log::naming::header::is_foreign;
 use crate::table::{TableError, column_names};
 
 /// What the user says about a log; the default says nothing.
@@ -65,7 +65,7 @@ impl UnlitLoads {
 
 impl LogReading {
     /// Whether a file is read as a log: it has a column that says when the LED was on, is no CSV or Parquet table by
-    /// its name, holds lines of other programs beside names and rows, or the user says something about logs.
+    /// its name, is written as other programs write logs ([`is_foreign`]), or the user says something about logs.
     ///
     /// # Errors
     /// A table that is missing or damaged.
@@ -73,11 +73,14 @@ impl LogReading {
         if self.says_log() {
             return Ok(true);
         }
-        match column_names(path) {
-            Ok(names) => Ok(self.has_led(&names) || holds_others(path)),
-            Err(TableError::Extension(_)) => Ok(true),
-            Err(why) => Err(why),
+        let names = match column_names(path) {
+            Err(TableError::Extension(_)) => return Ok(true),
+            names => names,
+        };
+        if names.as_ref().is_ok_and(|names| self.has_led(names)) || is_foreign(path, names.as_deref().ok()) {
+            return Ok(true);
         }
+        names.map(|_| false)
     }
 
     /// Whether something is said that only logs have; which unlit light is taken away is said of those that are logs.

@@ -21,12 +21,12 @@ use std::path::PathBuf;
 
 /// The crate that does the mathematics.
 pub use lunula_predictor as models;
-use lunula_predictor::{Dataset, Predictor, recording_hashes};
+use lunula_predictor::{Dataset, Predictor, TrainedOn, recording_hashes};
 
+pub(crate) use data::missing;
 pub use data::{
     DataError, DataFile, FailedFile, FileRows, Inputs, Read, RowOptions, Wanted, read_data, read_files, read_inputs,
 };
-pub(crate) use data::{GROUPS, missing};
 pub use error::PredictorError;
 pub use figures::{BarSeries, Bars, draw_bars};
 pub use jobs::analyse::{AnalyseFigures, AnalyseReport, ModelMode, ModelModes, Printed, analyse, analyse_plan};
@@ -90,16 +90,34 @@ pub(crate) fn open_models(paths: &[PathBuf]) -> Result<OpenedModels, PredictorEr
     Ok(opened)
 }
 
-/// What to say of recordings that a model was trained on.
-fn seen_in_training(predictor: &Predictor, data: &Dataset) -> Option<String> {
-    let trained: Vec<&str> = predictor.training().recordings.iter().map(|one| one.sha256.as_str()).collect();
-    let hashes = recording_hashes(data);
-    let again = data.recordings().iter().zip(&hashes).filter(|(_, hash)| trained.contains(&hash.as_str()));
-    let names: Vec<&str> = again.map(|(recording, _)| recording.name.as_str()).collect();
-    (!names.is_empty()).then(|| {
-        format!(
-            "{}: the model was trained on this; its errors flatter. Name recordings that it has not seen",
-            names.join(", ")
-        )
-    })
+/// What to say of recordings that a model has seen, whose errors flatter.
+fn seen_in_training(predictor: &Predictor, data: &Dataset) -> Vec<String> {
+    let training = predictor.training();
+    let seen = [
+        (
+            &training.recordings,
+            "the model was trained on this; its errors flatter. Name recordings that it has not seen",
+        ),
+        (
+            &training.stopped_on,
+            "this told training when to stop; the model's errors on it flatter. Name other recordings",
+        ),
+    ];
+    seen.into_iter().filter_map(|(of, what)| Some(format!("{}: {what}", again(of, data)?))).collect()
+}
+
+/// What to say of recordings that a model's intervals were made from.
+fn seen_by_intervals(predictor: &Predictor, data: &Dataset) -> Option<String> {
+    let names = again(&predictor.training().calibrated_on, data)?;
+    Some(format!(
+        "{names}: the prediction intervals were made from this, and hold the share of its rows that was asked for"
+    ))
+}
+
+/// The names of whole recordings that are among others.
+fn again(others: &[TrainedOn], data: &Dataset) -> Option<String> {
+    let is_one = |hash: &String| others.iter().any(|one| one.sha256 == *hash);
+    let recordings = data.recordings().iter().zip(recording_hashes(data));
+    let names: Vec<&str> = recordings.filter(|(_, hash)| is_one(hash)).map(|(one, _)| one.name.as_str()).collect();
+    (!names.is_empty()).then(|| names.join(", "))
 }

@@ -18,6 +18,7 @@ use opencv::imgproc::{self, INTER_AREA, LINE_8};
 use opencv::prelude::*;
 
 use super::{Grey, VisionError, ready};
+use crate::median::median_of;
 
 /// Corners of a board, row after row, pixels.
 pub(crate) type Corners = Vec<[f32; 2]>;
@@ -74,9 +75,7 @@ fn is_chessboard(picture: Grey<'_>, corners: &Corners, columns: usize) -> bool {
         Some(sign * (alike - tone(1.0, -1.0)? - tone(-1.0, 1.0)?))
     };
     let Some(all) = (0..corners.len()).map(contrast).collect::<Option<Vec<f64>>>() else { return false };
-    let mut sorted = all.clone();
-    sorted.sort_unstable_by(f64::total_cmp);
-    let median = sorted[sorted.len() / 2];
+    let median = median_of(all.iter().copied()).unwrap_or(0.0);
     median != 0.0 && all.iter().all(|contrast| contrast / median >= LEAST_CONTRAST)
 }
 

@@ -15,6 +15,7 @@ use super::{ANGLE_DECIMALS, ExportError, TIME_DECIMALS, fixed, write};
 use crate::align::{Posture, Tie};
 use crate::files::Places;
 use crate::input;
+use crate::median::median_of;
 
 /// The names that BIDS files of a recording are made of, checked.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -163,13 +164,11 @@ fn sidecar(
     times_s: &[f64],
     channels: &Channels,
 ) -> Result<serde_json::Value, ExportError> {
-    let mut intervals_s: Vec<f64> = times_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let (Some(&first_s), Some(&last_s), false) = (times_s.first(), times_s.last(), intervals_s.is_empty()) else {
+    let median_s = median_of(times_s.windows(2).map(|pair| pair[1] - pair[0]));
+    let (Some(&first_s), Some(&last_s), Some(median_s)) = (times_s.first(), times_s.last(), median_s) else {
         let what = "BIDS asks for a sampling frequency, and fewer than two frames have none; leave this export out";
         return Err(ExportError::Unfit { path: path.to_owned(), what: what.to_owned() });
     };
-    let middle = intervals_s.len() / 2;
-    let median_s = *intervals_s.select_nth_unstable_by(middle, f64::total_cmp).1;
     let (joints, errors) = (channels.with_error.len(), channels.errors());
     // A thousandth of a hertz and a microsecond are enough.
     let rounded = |value: f64, of: f64| (value * of).round() / of;

@@ -16,6 +16,7 @@ use std::borrow::Cow;
 
 use super::{Posture, Tie};
 use crate::log::Samples;
+use crate::median::median_of;
 use curve::{Curve, SAME_TIME_S};
 
 /// Frame intervals that a gap may have where the user does not say. A gap has as many as its length rounds to, so that
@@ -168,9 +169,7 @@ fn tie_share_deg2(tie: &Tie, video_s: f64, rate_deg_s: f64) -> f64 {
 
 /// The median of the times from frame to frame; 0 where there are none.
 fn median_interval_s(times_s: &[f64]) -> f64 {
-    let mut intervals_s: Vec<f64> = times_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let middle = intervals_s.len() / 2;
-    if intervals_s.is_empty() { 0.0 } else { *intervals_s.select_nth_unstable_by(middle, f64::total_cmp).1 }
+    median_of(times_s.windows(2).map(|pair| pair[1] - pair[0])).unwrap_or(0.0)
 }
 
 /// The same gaps of several joints as one, sorted by time.

@@ -8,6 +8,7 @@ use super::zero::zero_s;
 use super::{Tie, TieMethod};
 use crate::align::posture::{ClockColumns, Posture};
 use crate::clock;
+use crate::median::{SD_OF_MAD, median_of};
 use crate::timebase::Timebase;
 
 /// Resolutions that clocks have, seconds.
@@ -123,13 +124,12 @@ fn by_line(posture: &Posture) -> Result<Tie, String> {
     let base = first[1];
     let apart = seen.len() / 2;
     let pairs = (seen.len() - apart).min(SLOPES);
-    let mut slopes: Vec<f64> = (0..pairs)
+    let slopes = (0..pairs)
         .map(|k| k * (seen.len() - apart - 1) / (pairs - 1).max(1))
         .map(|k| (seen[k], seen[k + apart]))
         .filter(|(a, b)| b[0] > a[0])
-        .map(|(a, b)| (b[1] - a[1]) / (b[0] - a[0]))
-        .collect();
-    let drift = median(&mut slopes).ok_or_else(|| "`clock_s` stands at too few different times".to_owned())?;
+        .map(|(a, b)| (b[1] - a[1]) / (b[0] - a[0]));
+    let drift = median_of(slopes).ok_or_else(|| "`clock_s` stands at too few different times".to_owned())?;
     if drift.abs() > clock::MOST_DRIFT {
         return Err(format!(
             "by `clock_s` the clock runs {:.4} times as fast as the video; frame times and clock don't belong together",
@@ -137,10 +137,10 @@ fn by_line(posture: &Posture) -> Result<Tie, String> {
         ));
     }
     let rise = |p: &[f64; 2]| p[1] - base - drift * (p[0] - reference_s);
-    let height = median(&mut seen.iter().map(rise).collect::<Vec<_>>()).unwrap_or(0.0);
+    let height = median_of(seen.iter().map(rise)).unwrap_or(0.0);
     let off: Vec<[f64; 2]> = seen.iter().map(|p| [p[0], height - rise(p)]).collect();
     // The median of what is off, as a standard deviation.
-    let scatter_s = 1.4826 * median(&mut off.iter().map(|p| p[1].abs()).collect::<Vec<_>>()).unwrap_or(0.0);
+    let scatter_s = SD_OF_MAD * median_of(off.iter().map(|p| p[1].abs())).unwrap_or(0.0);
     // What lies on a line to the last decimal was fitted before, and how well is not known any more.
     let sd_s = if scatter_s > FITTED_S { scatter_s } else { f64::NAN };
     let squares: f64 = off.iter().map(|p| p[1] * p[1]).sum();
@@ -163,14 +163,6 @@ fn by_line(posture: &Posture) -> Result<Tie, String> {
         warnings: Vec::new(),
         notes: Vec::new(),
     })
-}
-
-fn median(values: &mut [f64]) -> Option<f64> {
-    if values.is_empty() {
-        return None;
-    }
-    let middle = values.len() / 2;
-    Some(*values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
 #[cfg(test)]

@@ -13,6 +13,7 @@ use crate::clock::glyph::Levels;
 use crate::clock::ink::crop::Gray;
 use crate::clock::ink::line::{Row, Run, lines, rows};
 use crate::clock::ink::pieces::pieces;
+use crate::median::median_of;
 
 /// The cells of a clock's digits in a crop.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,16 +53,12 @@ impl Cells {
     pub(in crate::clock) fn around(seen: &[&Row], format: &ClockFormat, levels: Levels) -> Option<Self> {
         let first = seen.first()?;
         let count = first.digits.len();
-        let middle = |values: &mut Vec<f64>| {
-            values.sort_unstable_by(f64::total_cmp);
-            values[values.len() / 2]
-        };
-        let top = middle(&mut seen.iter().map(|row| row.top as f64).collect());
-        let bottom = middle(&mut seen.iter().map(|row| row.bottom as f64 + 1.0).collect());
+        let top = median_of(seen.iter().map(|row| row.top as f64))?;
+        let bottom = median_of(seen.iter().map(|row| row.bottom as f64 + 1.0))?;
         let height = bottom - top;
         let spans: Vec<[f64; 2]> = (0..count)
             .map(|digit| {
-                let usual = middle(&mut seen.iter().map(|row| row.digits[digit].left as f64).collect());
+                let usual = median_of(seen.iter().map(|row| row.digits[digit].left as f64)).unwrap_or(f64::NAN);
                 // Neighbours that touch in a frame are one run there.
                 let near = seen
                     .iter()

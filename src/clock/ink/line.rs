@@ -5,6 +5,7 @@
 
 use super::pieces::Piece;
 use crate::clock::format::{Cell, ClockFormat};
+use crate::median::median_of;
 
 /// Pieces of one line that share columns: as a rule one character.
 pub(in crate::clock) type Run = Piece;
@@ -110,8 +111,8 @@ pub(in crate::clock) fn rows(line: &Line, format: &ClockFormat) -> Vec<Row> {
             }
             at += takes(cell);
         }
-        let top = median(digits.iter().map(|run| run.top));
-        let bottom = median(digits.iter().map(|run| run.bottom));
+        let top = median_of(digits.iter().map(|run| run.top)).unwrap_or(0);
+        let bottom = median_of(digits.iter().map(|run| run.bottom)).unwrap_or(0);
         let row = Row { digits, top, bottom };
         if row.is_even() && spaced(window, row.height()) && marks.iter().all(|(mark, run)| row.can_be(*mark, run)) {
             rows.push(row);
@@ -122,12 +123,6 @@ pub(in crate::clock) fn rows(line: &Line, format: &ClockFormat) -> Vec<Row> {
 
 fn spaced(runs: &[Run], height: usize) -> bool {
     runs.windows(2).all(|pair| (pair[1].left - pair[0].right) as f64 <= 1.0 + WIDEST_GAP * height as f64)
-}
-
-pub(in crate::clock) fn median(values: impl Iterator<Item = usize>) -> usize {
-    let mut values: Vec<usize> = values.collect();
-    values.sort_unstable();
-    values.get(values.len() / 2).copied().unwrap_or(0)
 }
 
 impl Row {

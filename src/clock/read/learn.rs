@@ -16,6 +16,7 @@ use crate::clock::glyph::Levels;
 use crate::clock::ink::crop::Gray;
 use crate::clock::ink::line::{Row, lines, rows};
 use crate::clock::ink::pieces::{pieces, split};
+use crate::median::median_of;
 
 /// What is known of a clock.
 #[derive(Debug, Clone)]
@@ -116,7 +117,7 @@ impl Model {
             boxes.as_ref().map_or_else(blank, |boxes| boxes.iter().map(|&cut| Look::cut(crop, cut)).collect())
         };
         let looks: Vec<Vec<Look>> = crops.iter().zip(&boxes).map(look).collect();
-        let contrast = median(looks.iter().flatten().map(|look| look.norm).filter(|&norm| norm > 0.0))?;
+        let contrast = median_of(looks.iter().flatten().map(|look| look.norm).filter(|&norm| norm > 0.0))?;
         let noise = noise(&looks).clamp(LEAST_NOISE, MOST_NOISE);
         let mut model = Self { cells, bank: Bank::default(), contrast, noise };
         model.name_glyphs(crops, times_s, (&boxes, &looks), format);
@@ -294,16 +295,8 @@ fn likely(crops: &[Gray], place: &[&RowInCrop], format: &ClockFormat) -> f64 {
 
 /// How far a cell's look is from the next one where its digit stays: most cells do from one frame to the next.
 fn noise(looks: &[Vec<Look>]) -> f32 {
-    let mut steps: Vec<f32> =
-        looks.windows(2).flat_map(|pair| pair[0].iter().zip(&pair[1]).map(|(a, b)| a.distance(b))).collect();
-    steps.sort_unstable_by(f32::total_cmp);
-    steps.get(steps.len() / 2).copied().unwrap_or(0.0)
-}
-
-fn median(values: impl Iterator<Item = f32>) -> Option<f32> {
-    let mut values: Vec<f32> = values.collect();
-    values.sort_unstable_by(f32::total_cmp);
-    values.get(values.len() / 2).copied()
+    let steps = looks.windows(2).flat_map(|pair| pair[0].iter().zip(&pair[1]).map(|(a, b)| a.distance(b)));
+    median_of(steps).unwrap_or(0.0)
 }
 
 /// The mean of crops of one size.

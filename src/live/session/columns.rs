@@ -7,8 +7,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use lunula_live::wire::{Meaning, Naming, Use};
 
+use crate::log::GROUPS;
 use crate::log::LogReading;
-use crate::predictor::{GROUPS, missing};
+use crate::predictor::missing;
 
 /// Names of counters.
 const COUNTERS: [&str; 4] = ["n", "counter", "seq", "sequence"];

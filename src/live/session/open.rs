@@ -10,10 +10,10 @@ use toml::Table;
 use crate::job::read;
 use crate::live::error::LiveError;
 use crate::live::options::StreamOptions;
+use crate::log::GROUPS;
 use crate::log::{LogReading, recorded_stream};
 use crate::phantom::log::{LiveLog, LogOptions, Prompting, Protocol};
 use crate::phantom::request::LogRequest;
-use crate::predictor::GROUPS;
 use crate::table;
 
 /// Opens one of a session's sources at `now_ns` of its clock.

@@ -63,12 +63,14 @@ pub(crate) fn each_row(
     if let Some(what) = fault {
         return Err(refused(what));
     }
+    let spoilt = feed.stream.certificate().spoilt;
+    let spoilt = || spoilt.iter().map(|rows| format!("left out: {}", spoilt_words(rows)));
     if rows == 0 {
-        return Err(refused("no row came".to_owned()));
+        let why = spoilt().next().map_or(String::new(), |rows| format!("; {rows}"));
+        return Err(refused(format!("no row came{why}")));
     }
     let mut notes = known.notes;
     notes.extend(known.led.then(|| PRECEDING_RULE.to_owned()));
-    let spoilt = feed.stream.certificate().spoilt;
-    notes.extend(spoilt.iter().map(|rows| format!("left out: {}", spoilt_words(rows))));
+    notes.extend(spoilt());
     Ok(notes)
 }

@@ -130,7 +130,8 @@ pub(super) fn report(ended: Ended<'_>, watch: &Watch<'_>) -> Result<SessionRepor
             if feed.health.rows == 0 {
                 let known = !feed.stream.names().is_empty();
                 let what = if known { "no row came" } else { "no row came, and no names of columns" };
-                silent.push(LiveError::Source { place: name, what: what.to_owned() });
+                let spoilt = Feed::spoilt(&stream.spoilt).next().map_or(String::new(), |rows| format!("; {rows}"));
+                silent.push(LiveError::Source { place: name, what: format!("{what}{spoilt}") });
             }
             figures.sources.push(SourceFigures { finger: finger.clone(), gives, stream });
         }

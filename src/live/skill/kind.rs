@@ -34,7 +34,8 @@ impl Job for SkillOptions {
             Role::new("reference", Takes::Optional, "a trial that the others are compared with"),
         ],
         &[Part::new("skill", FIGURES), Part::new("table", TABLE), Part::if_wanted(PICTURES, "")],
-    );
+    )
+    .revision(2);
 
     fn checked(self) -> Result<Self, OptionFault> {
         let faults = self.faults();

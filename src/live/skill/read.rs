@@ -105,8 +105,20 @@ pub(super) fn read(recording: &SkillRecording, finger: &str) -> Result<Recording
     })
 }
 
-/// A finger's time has to go forward within a trial.
+/// Stamps are coarser than rows where more than this share of them is that of the row before (assumed).
+const COARSE: f64 = 0.1;
+
+/// A finger's time has to go forward within a trial: how fast a force rises is not known of rows at one time.
 fn in_order(rows: &Rows, own: &[usize], recording: &SkillRecording) -> Result<(), SkillError> {
+    let still = own.windows(2).filter(|pair| rows.time_s[pair[1]] == rows.time_s[pair[0]]).count();
+    if still as f64 > COARSE * own.len() as f64 {
+        let what = format!(
+            "{still} of {} rows of a trial have the time of the row before: its stamps are coarser than its rows; give \
+             each row its own time",
+            own.len()
+        );
+        return Err(SkillError::recording(&recording.path, &what));
+    }
     let back = own.windows(2).find(|pair| rows.time_s[pair[1]] < rows.time_s[pair[0]]);
     let Some((pair, table)) = back.zip(rows.table.as_ref()) else { return Ok(()) };
     let what = format!(

@@ -11,6 +11,7 @@ use super::AmbientError;
 use super::in_grains;
 use super::rails::Rails;
 use super::unlit::GAP_PERIODS;
+use crate::median::median;
 
 /// So many of the last times between unlit rows tell the usual one: assumed; a few lost rows don't move the median of
 /// nine.
@@ -81,9 +82,7 @@ impl Preceding {
     /// The usual time between unlit rows; infinite where it is not known yet.
     fn usual(&self) -> f64 {
         let mut steps = self.steps;
-        let known = &mut steps[..self.count.min(STEPS)];
-        known.sort_unstable_by(f64::total_cmp);
-        known.get(known.len() / 2).copied().unwrap_or(f64::INFINITY)
+        median(&mut steps[..self.count.min(STEPS)]).unwrap_or(f64::INFINITY)
     }
 }
 

@@ -13,6 +13,7 @@
 //! Lit and unlit samples are looked at apart: only one of the two may be at an end.
 
 use super::dead::DEAD_SHARE;
+use crate::median::median_of;
 
 /// The share of a channel's samples from which on saturation has to be acted on; assumed.
 const MUCH: f64 = 0.01;
@@ -113,13 +114,8 @@ fn pile_at(values: &[f64], greatest: f64) -> Option<usize> {
         return None;
     }
     let off = |pair: &&[f64]| pair[0] < greatest && pair[1] < greatest;
-    let usual = median(values.windows(2).filter(off).map(|pair| (pair[1] - pair[0]).abs()).collect())?;
+    let usual = median_of(values.windows(2).filter(off).map(|pair| (pair[1] - pair[0]).abs()))?;
     let arrives = |three: &&[f64]| three[0] < greatest && three[1] < greatest && three[2] == greatest;
-    let arriving = median(values.windows(3).filter(arrives).map(|three| (three[1] - three[0]).abs()).collect())?;
+    let arriving = median_of(values.windows(3).filter(arrives).map(|three| (three[1] - three[0]).abs()))?;
     (arriving > 0.0 && arriving >= 0.5 * usual).then_some(count)
-}
-
-fn median(mut values: Vec<f64>) -> Option<f64> {
-    let middle = values.len() / 2;
-    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }

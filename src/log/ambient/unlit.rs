@@ -19,6 +19,8 @@
 //! at 100 or 120 Hz unless the log's rate divides it (25, 50 and 100 Hz divide 100 Hz). It stays in the rows as noise
 //! does; [`roughness`] measures how much there is.
 
+use crate::median::median;
+
 /// Unlit samples further apart than so many usual times have a gap between them.
 pub(super) const GAP_PERIODS: f64 = 3.0;
 
@@ -192,6 +194,5 @@ fn usual_distance_s(lit_s: &[f64], dark_s: &[f64]) -> f64 {
             distances.push(dark_s[after] - dark_s[after - 1]);
         }
     }
-    let middle = distances.len() / 2;
-    if distances.is_empty() { f64::INFINITY } else { *distances.select_nth_unstable_by(middle, f64::total_cmp).1 }
+    median(&mut distances).unwrap_or(f64::INFINITY)
 }

@@ -12,6 +12,7 @@ use std::num::NonZeroUsize;
 use crate::log::formats::raw::Raw;
 use crate::log::lines::stamps::DAY_S;
 use crate::log::{Channel, Log, LogError};
+use crate::median::median_of;
 
 /// The longest run of late rows that counts as a small disorder.
 const LATE_ROWS: usize = 16;
@@ -204,9 +205,7 @@ fn tell_gaps(raw: &mut Raw, rows: &[usize], time_s: &[f64], step_s: Option<f64>)
 
 /// The usual step between different stamps, seconds.
 pub(in crate::log) fn median_step_s(time_s: &[f64]) -> Option<f64> {
-    let mut steps: Vec<f64> = time_s.windows(2).map(|pair| pair[1] - pair[0]).filter(|&step| step > 0.0).collect();
-    let middle = steps.len() / 2;
-    (!steps.is_empty()).then(|| *steps.select_nth_unstable_by(middle, f64::total_cmp).1)
+    median_of(time_s.windows(2).map(|pair| pair[1] - pair[0]).filter(|&step| step > 0.0))
 }
 
 /// A number with three digits, for a message.

@@ -119,6 +119,9 @@ impl Columns {
             columns.push((role, k));
         }
         add_guesses(names, stamped, &mut known, &mut columns, &mut notes)?;
+        for name in names.iter().filter(|name| guess::is_force_in_another_unit(name)) {
+            notes.push(format!("column `{name}` is a force that is not in newtons, and is not read; write newtons"));
+        }
         let time = columns.iter().find(|(role, _)| *role == Role::Time).map(|&(_, at)| at);
         let time_unit = self.time_unit.or_else(|| guess::unit_of_name(&names[time?]));
         columns.sort_by_key(|&(_, at)| at);
@@ -299,6 +302,14 @@ mod tests {
         assert!(error.contains("no photodiode") && error.contains("--columns \"P1=hr\""), "{error}");
         assert!(chosen("", "time_s|P1|P1").unwrap_err().contains("two columns are named `P1`"));
         assert!(chosen("P2=v", "time_s|P1|v|v").unwrap_err().contains("`#3`"));
+    }
+
+    #[test]
+    fn a_force_in_another_unit_is_said() {
+        let choice = Columns::default().choose(&names("time_s|P1|Fz (mN)|fy kgf|Fx_N"), &[]).unwrap();
+        assert_eq!(choice.columns.len(), 3);
+        let [one, other] = &choice.notes[..] else { panic!("{:?}", choice.notes) };
+        assert!(one.contains("`Fz (mN)` is a force that is not in newtons") && other.contains("`fy kgf`"), "{one}");
     }
 
     #[test]

@@ -60,6 +60,15 @@ pub(in crate::log) fn role_of_name(name: &str) -> Option<Role> {
     (0..3).find(|&axis| axes[axis].contains(&&force[..])).map(|axis| Role::Force(axis as u8))
 }
 
+/// Whether a name is a force's in a unit that is not newtons.
+pub(in crate::log) fn is_force_in_another_unit(name: &str) -> bool {
+    const UNITS: [&str; 9] = ["mn", "kn", "un", "g", "kg", "gf", "kgf", "lb", "lbf"];
+    let words = words(name);
+    let all: Vec<&str> = words.iter().map(String::as_str).collect();
+    let force = without(&all, &UNITS);
+    force.len() < all.len() && matches!(role_of_name(&force.concat()), Some(Role::Force(_)))
+}
+
 /// The unit that the name of a time column ends in.
 pub(in crate::log) fn unit_of_name(name: &str) -> Option<TimeUnit> {
     let words = words(name);

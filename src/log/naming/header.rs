@@ -6,6 +6,7 @@ use std::path::Path;
 use crate::log::formats::text::{self, Layout};
 use crate::log::lines::rows::choose;
 use crate::log::naming::columns::{Choice, Columns};
+use crate::log::naming::guess::role_of;
 use crate::log::naming::role::Role;
 use crate::log::{Format, Log, LogError};
 use crate::{input, table};
@@ -20,6 +21,9 @@ pub struct LogHeader {
     /// Forces.
     pub forces: usize,
 }
+
+/// Columns that say where one recording ends and the next begins; only sets made of logs have them.
+pub(crate) const GROUPS: [&str; 3] = ["session", "subject", "trajectory"];
 
 /// As much of a file of text as holds its header.
 const HEAD: u64 = 1 << 16;
@@ -57,10 +61,37 @@ impl LogHeader {
     }
 }
 
-/// Whether a CSV file has more than names and rows, as [`Layout`] says; not one that can't be read.
-pub(in crate::log) fn holds_others(path: &Path) -> bool {
+/// Whether a CSV or Parquet file has photodiodes or pressures as other programs write them, so that only a log's reader
+/// understands it: lines beside names and rows, another delimiter or encoding, comments, columns without a name, or a
+/// time that is not called `time_s`. `as_table`: the names that a table's reader finds, if it does. Not one that has
+/// what no log has: an angle, a status, a session.
+pub(in crate::log) fn is_foreign(path: &Path, as_table: Option<&[String]>) -> bool {
     let text = || Layout::find(&head(path).ok()?).ok();
-    Format::of(path) == Format::Text && text().is_some_and(|layout| layout.holds_others)
+    let (names, holds_others) = match (Format::of(path), as_table) {
+        (Format::Text, _) => match text() {
+            Some(layout) => (layout.names, layout.holds_others),
+            None => return false,
+        },
+        (_, Some(names)) => (names.to_vec(), false),
+        (_, None) => return false,
+    };
+    let is_labelled =
+        |name: &String| name.ends_with("_deg") || name == "sensor_status" || GROUPS.contains(&name.as_str());
+    let has = |wanted: fn(Role) -> bool| names.iter().filter_map(|name| role_of(name)).any(wanted);
+    let reads_otherwise = || {
+        as_table != Some(&names[..])
+            || names.iter().filter(|name| name.is_empty()).count() > 1
+            || has(|role| role == Role::Time) && !names.iter().any(|name| name == "time_s")
+    };
+    let has_light = || has(|role| role.is_light() || matches!(role, Role::Pressure(_)));
+    holds_others || !names.iter().any(is_labelled) && has_light() && reads_otherwise()
+}
+
+/// The first of these columns that a log's reader would take for the time, where none is called `time_s`.
+pub(crate) fn time_not_read(names: &[String]) -> Option<&str> {
+    let is_time = |name: &&String| role_of(name) == Some(Role::Time);
+    let other = || names.iter().find(is_time).map(String::as_str);
+    if names.iter().any(|name| name == "time_s") { None } else { other() }
 }
 
 /// The first lines of a file of text; all of one that is packed or whose header is further down.

@@ -9,7 +9,8 @@ use std::collections::VecDeque;
 
 use super::cover::Rim;
 use super::register::{Fit, MOST_LAST_STEP_PX};
-use super::template::{Template, quantile};
+use super::template::Template;
+use crate::median::median_of;
 use crate::nailvideo::affine::Affine;
 
 /// Correlation below which it is another place (section 2.4 of the design), absolute and as a share of what the
@@ -147,6 +148,13 @@ const BARE: f64 = 0.9;
 /// This share of the frames is below what is asked of a nail found again.
 const LOW: f64 = 0.1;
 
+/// A quantile of some numbers; `None` of none.
+fn quantile(all: impl Iterator<Item = f64>, share: f64) -> Option<f64> {
+    let mut all: Vec<f64> = all.collect();
+    let at = ((share * all.len() as f64) as usize).min(all.len().checked_sub(1)?);
+    Some(*all.select_nth_unstable_by(at, f64::total_cmp).1)
+}
+
 impl Usual {
     /// Learns from an accepted fit; the template's own frame fits itself and says nothing.
     pub(super) fn learn(&mut self, fit: &Fit) {
@@ -158,7 +166,7 @@ impl Usual {
         }
         self.last.push_back(Like { ncc: fit.ncc, texture: fit.texture, gain: fit.gain, sd: fit.sd });
         if self.last.len() <= FIRST {
-            let median = |part: fn(&Like) -> f64| quantile(self.last.iter().map(part), 0.5).unwrap_or(f64::NAN);
+            let median = |part: fn(&Like) -> f64| median_of(self.last.iter().map(part)).unwrap_or(f64::NAN);
             let [ncc, texture, gain] = [median(|l| l.ncc), median(|l| l.texture), median(|l| l.gain)];
             self.first = Some(Like { ncc, texture, gain, sd: median(|l| l.sd) });
         }
@@ -166,7 +174,7 @@ impl Usual {
 
     /// The median of the frames right before.
     fn before(&self, part: fn(&Like) -> f64) -> Option<f64> {
-        quantile(self.last.iter().rev().take(BEFORE).map(part), 0.5)
+        median_of(self.last.iter().rev().take(BEFORE).map(part))
     }
 
     /// The correlation of the frames right before.

@@ -12,7 +12,8 @@ use wide::f32x4;
 
 use super::cover::{Covered, Rim};
 use super::sight::Sight;
-use super::template::{BLOCKS, MOTION, TUKEY_SDS, Template, quantile, sd_of};
+use super::template::{BLOCKS, MOTION, TUKEY_SDS, Template, sd_of};
+use crate::median::median_of;
 use crate::nailvideo::affine::Affine;
 
 /// The motion's parameters, gain and offset.
@@ -321,5 +322,5 @@ fn texture(template: &Template, scratch: &Scratch) -> f64 {
         let (sxx, sxy, syy) = (xx - x * x / n, xy - x * y / n, yy - y * y / n);
         (n >= FEWEST).then(|| sxy / (sxx * syy).sqrt()).filter(|c| c.is_finite())
     };
-    quantile(sums.iter().filter_map(correlation), 0.5).unwrap_or(0.0)
+    median_of(sums.iter().filter_map(correlation)).unwrap_or(0.0)
 }

@@ -5,6 +5,7 @@
 use wide::f32x4;
 
 use super::sight::Sight;
+use crate::median::{SD_OF_MAD, median, median_of};
 use crate::nailvideo::affine::Affine;
 
 /// Of these pixels the fit is made; half of them those of the steepest slopes, half spread evenly (measured: 6000 give
@@ -20,8 +21,6 @@ pub(in crate::nailvideo) const CELLS: usize = 24;
 
 /// Tukey's biweight is nothing from so many SDs on (measured).
 pub(super) const TUKEY_SDS: f64 = 4.0;
-/// An SD is this many median absolute deviations (of a normal distribution).
-const SD_OF_MAD: f64 = 1.4826;
 /// Fewer pixels that are seen determine nothing (assumed).
 const FEWEST_PIXELS: usize = 60;
 
@@ -130,7 +129,7 @@ impl Template {
             (row(-h) - 2.0 * row(0.0) + row(h)).abs()
         };
         let sizes = even().map(difference).filter(|size| size.is_finite());
-        let median = quantile(sizes.map(f64::from), 0.5).unwrap_or(0.0);
+        let median = median_of(sizes.map(f64::from)).unwrap_or(0.0);
         let all = even().map(slope2).sum::<f64>() / even().count().max(1) as f64;
         // A slope is half the difference of two values, and there are two of them.
         let noise = (median / SDS / step as f64).powi(2);
@@ -146,13 +145,6 @@ impl Template {
     }
 }
 
-/// A quantile of some numbers; `None` of none.
-pub(super) fn quantile(all: impl Iterator<Item = f64>, share: f64) -> Option<f64> {
-    let mut all: Vec<f64> = all.collect();
-    let at = ((share * all.len() as f64) as usize).min(all.len().checked_sub(1)?);
-    Some(*all.select_nth_unstable_by(at, f64::total_cmp).1)
-}
-
 /// A cell's middle, half widths and half lengths.
 pub(in crate::nailvideo) fn cell_middle(cell: usize) -> [f64; 2] {
     [cell % CELLS, cell / CELLS].map(|k| BOX * ((2 * k + 1) as f64 / CELLS as f64 - 1.0))
@@ -166,9 +158,7 @@ pub(in crate::nailvideo) fn cell_at(place: [f64; 2]) -> usize {
 
 /// The SD of residuals by the median of their sizes; `None` of too few.
 pub(super) fn sd_of(sizes: &mut [f32]) -> Option<f64> {
-    let count = sizes.len();
-    let (_, median, _) = (count >= FEWEST_PIXELS).then(|| sizes.select_nth_unstable_by(count / 2, f32::total_cmp))?;
-    Some(SD_OF_MAD * f64::from(*median))
+    (sizes.len() >= FEWEST_PIXELS).then(|| median(sizes)).flatten().map(|median| SD_OF_MAD * f64::from(median))
 }
 
 /// The square of the slope along x and y.

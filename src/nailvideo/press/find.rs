@@ -6,6 +6,7 @@
 //! direction is pressing harder and belongs to the press.
 
 use super::Trace;
+use crate::median::{SD_OF_MAD, median};
 
 /// What is averaged before and after a step, seconds (assumed: longer than the time constants of 4.3, shorter than a
 /// quick press), and for slow courses.
@@ -39,9 +40,7 @@ pub(in crate::nailvideo) fn noise_sd(values: &[f64]) -> Option<f64> {
     if all.len() < 8 {
         return None;
     }
-    let middle = all.len() / 2;
-    let median = *all.select_nth_unstable_by(middle, f64::total_cmp).1;
-    Some(1.4826 * median / 6.0_f64.sqrt())
+    Some(SD_OF_MAD * median(&mut all)? / 6.0_f64.sqrt())
 }
 
 /// Presses in the order of time; `whole` is what a change of all light is in the unit of the traces.

@@ -11,6 +11,7 @@ mod tests;
 
 use rayon::prelude::*;
 
+use crate::median::median_of;
 pub(in crate::nailvideo) use find::noise_sd;
 use find::presses;
 use fit::{Course, LEAST_SEEN, fit};
@@ -168,10 +169,7 @@ pub(in crate::nailvideo) fn rows(of: &Recording<'_>) -> Vec<Row> {
         // How long it lasted is known to the frame where the courses are.
         let onset = |event: Event, rows: &[Row]| {
             let of = |row: &&Row| row.press == k + 1 && row.event == event;
-            let mut onsets: Vec<f64> =
-                rows.iter().filter(of).filter_map(|r| Some(r.course.as_ref().ok()?.onset_s.value)).collect();
-            onsets.sort_by(f64::total_cmp);
-            onsets.get(onsets.len() / 2).copied()
+            median_of(rows.iter().filter(of).filter_map(|r| Some(r.course.as_ref().ok()?.onset_s.value)))
         };
         if let (Some(from), Some(to)) = (onset(Event::Press, &rows), onset(Event::Release, &rows)) {
             rows.iter_mut().filter(|row| row.press == k + 1).for_each(|row| row.pressed_s = Some(to - from));
@@ -238,9 +236,7 @@ fn course(
     let change = |of_light: &[f64]| {
         let middle = |from_s: f64, to_s: f64| {
             let at = |k: &&usize| of.time_s[**k] - at_s >= from_s && of.time_s[**k] - at_s < to_s;
-            let mut all: Vec<f64> = known.iter().filter(at).map(|&k| of_light[k]).filter(|v| v.is_finite()).collect();
-            all.sort_by(f64::total_cmp);
-            all.get(all.len() / 2).copied()
+            median_of(known.iter().filter(at).map(|&k| of_light[k]).filter(|v| v.is_finite()))
         };
         Some((middle(after_s, after_s + BEFORE_S)? - middle(-BEFORE_S, course.onset_s.value)?).abs())
     };

@@ -383,7 +383,8 @@ impl Job<'_> {
             unit: self.light.unit(),
             positions: positions.name.clone(),
             photodiodes: (0..names.len()).map(|k| photodiode(&names[k], k, kept, noise[k])).collect(),
-            se_px: middle(se_px.iter().copied()),
+            // The frame that it is learned from fits itself.
+            se_px: middle(se_px.iter().copied()).filter(|se_px| *se_px > 0.0),
             correlation: middle(ncc.iter().copied()),
             quantizer,
             presses: pressed.iter().map(|row| row.press).max().unwrap_or(0),

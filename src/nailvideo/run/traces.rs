@@ -1,6 +1,7 @@
 //! From the rows that are kept of all frames to the traces in which presses are looked for.
 
 use super::results::Kept;
+use crate::median::median_of;
 use crate::nail::Positions;
 use crate::nailvideo::options::Light;
 use crate::nailvideo::press::Trace;
@@ -39,7 +40,5 @@ pub(super) fn ends(positions: &Positions, traces: &[Trace]) -> Vec<Trace> {
 
 /// The median of what is known.
 pub(super) fn middle(all: impl Iterator<Item = f64>) -> Option<f64> {
-    let mut all: Vec<f64> = all.filter(|value| value.is_finite()).collect();
-    let at = all.len() / 2;
-    (!all.is_empty()).then(|| *all.select_nth_unstable_by(at, f64::total_cmp).1)
+    median_of(all.filter(|value| value.is_finite()))
 }

@@ -5,8 +5,9 @@
 //! photodiodes under another finger of the same hand were given as the nail's (`lunula phantom nailvideo --finger`, 24
 //! persons: 663 of 1075), off by up to 35 of 100 ln(green/red).
 
+use super::Limits;
 use super::region::Group;
-use super::{Limits, median};
+use crate::median::median_of;
 use crate::nailvideo::follow::{CELLS, Covered, Rim, cell_at, cell_middle, covered};
 
 /// Where something is known to lie over the nail, colours count as another thing's from so far on: of red, of grey
@@ -35,8 +36,8 @@ pub(super) fn covered_by<'a>(
 ) -> Covered {
     let changes: Vec<Option<[f64; 3]>> = changes.map(|(_, change)| change).collect();
     let fits = |cell: usize| if rim.has(cell) { None } else { changes[cell] };
-    let mut sorted = Vec::new();
-    let light = std::array::from_fn(|k| median((0..CELLS * CELLS).filter_map(fits).map(|c| c[k]), &mut sorted));
+    let light_of = |k: usize| median_of((0..CELLS * CELLS).filter_map(fits).map(|c| c[k])).unwrap_or(f64::NAN);
+    let light = std::array::from_fn(light_of);
     covered(|cell| fits(cell).is_some_and(|change| !TIGHT.is_strange(change, light, is_grey)))
 }
 

@@ -22,6 +22,7 @@ use region::{light_cells, skin, spread_discs};
 use super::affine::Affine;
 use super::follow::{Covered, Rim};
 use super::options::Light;
+use crate::median::median_of;
 use crate::nail::Positions;
 
 /// How far a colour may go from that of the first good frame, natural logarithms, less what the light changed.
@@ -120,8 +121,6 @@ pub(in crate::nailvideo) struct Sampler {
     covered: Option<Covered>,
     /// Frames that were sampled.
     frames: usize,
-    /// For medians.
-    sorted: Vec<f64>,
 }
 
 /// A region, with its groups' colours in the first good frame.
@@ -222,8 +221,7 @@ impl Sampler {
         let regions = regions.into_iter().map(watched).collect();
         let spread: Vec<Watched> = spread_discs(positions, extent_px).into_iter().map(watched).collect();
         let noise = Noise::new(spread.len());
-        let sorted = Vec::new();
-        Self { light, grey, regions, cells, under, skin, spread, noise, covered: None, frames: 0, sorted }
+        Self { light, grey, regions, cells, under, skin, spread, noise, covered: None, frames: 0 }
     }
 
     /// The values of all regions where the nail is at `frame_from_nail`; `rim` is that of what lies over it.
@@ -327,7 +325,7 @@ impl Sampler {
     }
 
     /// What the light changed: medians over the nail of the logarithms of colours; `None` where too little is seen.
-    fn light_change(&mut self, colours: &Colours, frame_from_nail: &Affine) -> Option<[f64; 3]> {
+    fn light_change(&self, colours: &Colours, frame_from_nail: &Affine) -> Option<[f64; 3]> {
         let changes: Vec<[f64; 3]> = self
             .cells
             .changes(colours, frame_from_nail)
@@ -337,16 +335,8 @@ impl Sampler {
         if (changes.len() as f64) < LEAST_SEEN * self.cells.groups.len() as f64 {
             return None;
         }
-        Some(std::array::from_fn(|k| median(changes.iter().map(|change| change[k]), &mut self.sorted)))
+        Some(std::array::from_fn(|k| median_of(changes.iter().map(|change| change[k])).unwrap_or(f64::NAN)))
     }
-}
-
-/// The upper one of two; NaN of no values.
-fn median(values: impl Iterator<Item = f64>, sorted: &mut Vec<f64>) -> f64 {
-    sorted.clear();
-    sorted.extend(values);
-    let middle = sorted.len() / 2;
-    if sorted.is_empty() { f64::NAN } else { *sorted.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
 /// The mean colour over a region.

@@ -103,7 +103,8 @@ impl Scene {
         let boards: Vec<Grid> = views.iter().map(|view| Grid::new(view, &self.options)).collect();
         let mut values = vec![0.0_f64; self.rays().len()];
         let row = |(y, row): (usize, &mut [f64])| {
-            row.iter_mut().enumerate().for_each(|(x, value)| *value = self.value(&boards, x, y));
+            let mut breaks = Vec::new();
+            row.iter_mut().enumerate().for_each(|(x, value)| *value = self.value(&boards, x, y, &mut breaks));
         };
         values.par_chunks_mut(width as usize).enumerate().for_each(row);
         let mut rng = numbers(self.options.seed, KIND_NOISE, index);
@@ -116,8 +117,8 @@ impl Scene {
         Picture { width, height, data: values.iter().map(byte).collect() }
     }
 
-    /// The share of full scale at a pixel.
-    fn value(&self, boards: &[Grid], x: usize, y: usize) -> f64 {
+    /// The share of full scale at a pixel; `breaks` is room for those of a line.
+    fn value(&self, boards: &[Grid], x: usize, y: usize, breaks: &mut Vec<f64>) -> f64 {
         let (width, height) = (self.options.size.0 as usize, self.options.size.1 as usize);
         let here = self.rays()[y * width + x];
         let (across, down) = (self.slope(x, width, y * width, 1), self.slope(y, height, x, width));
@@ -139,7 +140,7 @@ impl Scene {
             let off = f64::from(k) * LINES_SD * self.spread_px;
             let ends = [-reach, reach].map(|s| ray([0, 1].map(|axis| off * beside[axis] + s * along[axis])));
             let weight = (-0.5 * (f64::from(k) * LINES_SD).powi(2)).exp();
-            [weight * along_line(boards, ends), weight]
+            [weight * along_line(boards, ends, breaks), weight]
         };
         let [sum, weight] = (-lines..=lines).map(line).fold([0.0; 2], |sum, line| [sum[0] + line[0], sum[1] + line[1]]);
         sum / weight
@@ -154,18 +155,21 @@ impl Scene {
 }
 
 /// The mean tone on a line between the rays `ends`, by a Gaussian whose [`REACH_SD`] they are.
-fn along_line(boards: &[Grid], ends: [[f64; 2]; 2]) -> f64 {
-    let mut breaks = vec![0.0, 1.0];
-    boards.iter().for_each(|board| board.crossings(ends, &mut breaks));
+fn along_line(boards: &[Grid], ends: [[f64; 2]; 2], breaks: &mut Vec<f64>) -> f64 {
+    breaks.clear();
+    breaks.push(1.0);
+    boards.iter().for_each(|board| board.crossings(ends, breaks));
     breaks.sort_unstable_by(f64::total_cmp);
     let share = |at: f64| normal(REACH_SD * (2.0 * at - 1.0));
-    let whole = share(1.0) - share(0.0);
-    let piece = |pair: &[f64]| {
-        let middle = 0.5 * (pair[0] + pair[1]);
+    let least = share(0.0);
+    let (mut from, mut below, mut sum) = (0.0, least, 0.0);
+    for &to in breaks.iter() {
+        let (middle, up_to) = (0.5 * (from + to), share(to));
         let ray = [0, 1].map(|k| ends[0][k] + middle * (ends[1][k] - ends[0][k]));
-        (share(pair[1]) - share(pair[0])) / whole * tone(boards.iter().map(|board| board.place(ray)))
-    };
-    breaks.windows(2).map(piece).sum()
+        sum += (up_to - below) * tone(boards.iter().map(|board| board.place(ray)));
+        (from, below) = (to, up_to);
+    }
+    sum / (below - least)
 }
 
 /// A board's squares as rays meet them.

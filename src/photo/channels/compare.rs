@@ -188,7 +188,7 @@ impl Measured {
 }
 
 fn add_rows(figures: &mut ChannelFigures, (pose, tone, zones): (&str, Option<&str>, ZonesOf), of: &[Measured]) {
-    let over = |value: &dyn Fn(&Measured) -> f64| Estimate::of(&of.iter().map(value).collect::<Vec<f64>>());
+    let over = |value: &dyn Fn(&Measured) -> f64| Estimate::of(of.iter().map(value));
     let (pose, tone) = (pose.to_owned(), tone.map(str::to_owned));
     for (k, channel) in CHANNELS.into_iter().enumerate() {
         let mean = |value: &dyn Fn(&Measured) -> f64| over(value).map(|estimate| estimate.mean);
@@ -201,7 +201,7 @@ fn add_rows(figures: &mut ChannelFigures, (pose, tone, zones): (&str, Option<&st
             white: mean(&|m| m.white[k]),
             red: mean(&|m| m.red[k]),
             contrast: over(&|m| m.contrast(k)),
-            relative: Estimate::of(&of.iter().filter_map(|m| m.relative(k)).collect::<Vec<f64>>()),
+            relative: Estimate::of(of.iter().filter_map(|m| m.relative(k))),
             at_full_scale: mean(&|m| m.at_full_scale[k]),
         });
     }

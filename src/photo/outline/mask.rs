@@ -21,6 +21,7 @@ use image::{DynamicImage, ImageBuffer, Luma, Pixel, Primitive};
 use thiserror::Error;
 
 use super::{Moments, Outline, OutlineFault};
+use crate::median::median_of;
 use crate::vision::{Neighbours, Part, parts};
 
 /// The largest value of a mask that is still read as instance numbers.
@@ -279,10 +280,8 @@ impl MaskOutlines {
         let lengths: Vec<f64> = self.nails.iter().map(|nail| Moments::of(nail).major_px).collect();
         let doubt = |(at, nail): (usize, &Outline)| {
             let share = nail.area_px2() / mask_px;
-            let mut others: Vec<f64> =
-                lengths.iter().enumerate().filter(|(k, _)| *k != at).map(|(_, length)| *length).collect();
-            others.sort_by(f64::total_cmp);
-            let times = others.get(others.len() / 2).map_or(0.0, |median| lengths[at] / median);
+            let others = lengths.iter().enumerate().filter(|(k, _)| *k != at).map(|(_, length)| *length);
+            let times = median_of(others).map_or(0.0, |median| lengths[at] / median);
             if share > LARGEST_SHARE {
                 Some(TooLarge::Picture(share))
             } else {

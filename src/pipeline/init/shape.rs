@@ -8,7 +8,8 @@ pub(super) struct NamePattern {
     pub(super) pattern: String,
     /// The places' names, in order.
     pub(super) names: Vec<String>,
-    pub(super) count: usize,
+    /// What stands in them, a file each.
+    pub(super) values: Vec<Vec<String>>,
     /// Files of the same sort that lie elsewhere or are called otherwise.
     pub(super) others: Vec<String>,
 }
@@ -40,9 +41,10 @@ pub(super) fn shape(paths: &[String], innermost: &[&str]) -> Option<NamePattern>
             None => pattern.push(plain(part)),
         }
     }
+    let values = parts.iter().map(|part| differs.iter().map(|&at| part[at].to_owned()).collect()).collect();
     let ending = group[0].rsplit_once('.').map_or(String::new(), |(_, ending)| format!(".{ending}"));
     let others = paths.iter().filter(|path| !group.contains(path)).cloned().collect();
-    Some(NamePattern { pattern: pattern.join("/") + &ending, names, count: group.len(), others })
+    Some(NamePattern { pattern: pattern.join("/") + &ending, names, values, others })
 }
 
 /// A path's names, the last without its ending.

@@ -95,6 +95,16 @@ fn logs_of_which_none_is_the_videos_by_name_are_not_labelled() {
     ]);
     assert!(text.contains("which log belongs to which video"), "{text}");
     assert_eq!(tasks, ["angles", "force"]);
+    // Names of the same places, of which none is the same.
+    let (text, tasks) = proposed(&[
+        ("finger/video.mp4", ""),
+        ("other/clip.mp4", ""),
+        ("finger/markers.toml", MARKERS),
+        ("finger/log.csv", LOG),
+        ("anna/touch.csv", LOG),
+    ]);
+    assert!(text.contains("which log belongs to which video"), "{text}");
+    assert!(tasks.iter().all(|task| !task.starts_with("sets")), "{tasks:?}");
 }
 
 #[test]

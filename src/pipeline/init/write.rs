@@ -13,6 +13,19 @@ const TOLD: usize = 3;
 struct Input {
     reference: String,
     names: Vec<String>,
+    /// What the keys are, a file each; none of a table.
+    values: Option<Vec<Vec<String>>>,
+}
+
+impl Input {
+    /// Whether any of these is of one recording with any of the others, which have all of its keys.
+    fn meets(&self, others: &Self) -> bool {
+        let (Some(own), Some(theirs)) = (&self.values, &others.values) else { return true };
+        let at = |name: &String| others.names.iter().position(|other| other == name);
+        let Some(places) = self.names.iter().map(at).collect::<Option<Vec<usize>>>() else { return false };
+        let are_one = |one: &[String], other: &[String]| places.iter().zip(one).all(|(&at, value)| other[at] == *value);
+        own.iter().any(|one| theirs.iter().any(|other| are_one(one, other)))
+    }
 }
 
 /// A pipeline file in the making.
@@ -85,9 +98,11 @@ impl Draft<'_> {
                     keys.join(", ")
                 );
                 let column = |column: &Option<String>| {
-                    column
-                        .as_ref()
-                        .map(|column| Input { reference: format!("recordings.{column}"), names: sessions.keys.clone() })
+                    column.as_ref().map(|column| Input {
+                        reference: format!("recordings.{column}"),
+                        names: sessions.keys.clone(),
+                        values: None,
+                    })
                 };
                 (column(&sessions.video), column(&sessions.markers), column(&sessions.log), column(&sessions.joints))
             }
@@ -124,7 +139,7 @@ impl Draft<'_> {
                     quoted(&markers.reference)
                 );
                 self.wanted.push("angles");
-                Some(Input { reference: "angles".to_owned(), names: video.names })
+                Some(Input { reference: "angles".to_owned(), ..video })
             }
             (Some(_), None) => {
                 self.notes.push(
@@ -141,7 +156,7 @@ impl Draft<'_> {
     fn sets(&mut self, found: &Inventory, angles: Option<Input>, log: Option<&Input>) {
         let (Some(angles), Some(log)) = (angles, log) else { return };
         // Each would be labelled with the same angles, and no step could tell that they are another recording's.
-        if log.names.iter().any(|name| !angles.names.contains(name)) {
+        if !log.meets(&angles) {
             self.notes.push(
                 "which log belongs to which video does not follow from their names, so no labelled sets are planned: \
                  list them in a table, a row per recording with columns subject, session, video, log, and run \
@@ -182,13 +197,13 @@ impl Draft<'_> {
 
     /// An input of files, if there are any.
     fn files(&mut self, name: &str, what: &str, paths: &[String], innermost: &[&str]) -> Option<Input> {
-        let NamePattern { pattern, names, count, others } = shape(paths, innermost)?;
-        self.notes.push(format!("{count} {what}: {pattern}"));
+        let NamePattern { pattern, names, values, others } = shape(paths, innermost)?;
+        self.notes.push(format!("{} {what}: {pattern}", values.len()));
         if !others.is_empty() {
             self.notes.push(format!("{what} that lie elsewhere, and are not used: {}", listed(&others)));
         }
         let _ = write!(self.inputs, "\n[inputs.{name}]\nfiles = {}\n", quoted(&format!("{}{pattern}", self.from)));
-        Some(Input { reference: name.to_owned(), names })
+        Some(Input { reference: name.to_owned(), names, values: Some(values) })
     }
 }
 

@@ -19,7 +19,10 @@ pub(in crate::pipeline) fn in_keys(text: &str) -> String {
         let last = out.chars().next_back();
         // Not within a name: `a--b.csv`, `/--x/`.
         let begins = last.is_none_or(|c| !(c.is_alphanumeric() || matches!(c, '-' | '_' | '.' | '/' | '\\')));
-        if !(begins && word.starts_with(|c: char| c.is_ascii_lowercase())) {
+        // A command stays one.
+        let in_command = out.split('`').skip(1).step_by(2).last().is_some_and(|span| span.starts_with("lunula "))
+            && out.matches('`').count() % 2 == 1;
+        if !(begins && !in_command && word.starts_with(|c: char| c.is_ascii_lowercase())) {
             out += "--";
             rest = &from[2..];
             continue;
@@ -54,6 +57,10 @@ mod tests {
     #[test]
     fn options_become_keys_and_names_of_files_stay() {
         for (said, key) in [
+            (
+                "`lunula posture V --suggest` measures; see --start",
+                "`lunula posture V --suggest` measures; see `start`",
+            ),
             (
                 "correct it, or leave out such rows with --drop-invalid",
                 "correct it, or leave out such rows with `drop_invalid`",

@@ -12,6 +12,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use super::sight::Loss;
+use crate::median::median;
 use crate::posture::marker::looks::siting::Siting;
 use crate::video::Frame;
 use crate::vision::{Neighbours, Part, Parts, parts, steps_out};
@@ -479,12 +480,6 @@ impl Window {
         ];
         outline
     }
-}
-
-/// The middle value; none of none.
-fn median(values: &mut [f32]) -> Option<f32> {
-    let middle = values.len() / 2;
-    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f32::total_cmp).1)
 }
 
 #[cfg(test)]

@@ -11,6 +11,7 @@
 //! Positions are not changed by this, only their standard errors.
 
 use super::fit::Fit;
+use crate::median::median_of;
 
 /// Binomial coefficients of the fourth difference.
 const WEIGHTS: [f64; 5] = [1.0, -4.0, 6.0, -4.0, 1.0];
@@ -125,9 +126,7 @@ impl Inflation {
                 seen.filter(|pair| pair.frames > 0.0).map(|pair| pair.factor2(guess)).min_by(f64::total_cmp)
             })
             .collect();
-        let mut sorted: Vec<f64> = steadiest.iter().flatten().copied().collect();
-        sorted.sort_by(f64::total_cmp);
-        let middle = sorted.get(sorted.len() / 2).copied().unwrap_or(guess * guess);
+        let middle = median_of(steadiest.iter().flatten().copied()).unwrap_or(guess * guess);
         // A marker's own is known less well than that of all: between both.
         let between = steadiest.into_iter().map(|own| CHOSEN * (own.unwrap_or(middle) * middle).powf(0.25));
         between

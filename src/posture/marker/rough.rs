@@ -1,6 +1,7 @@
 //! Where a marker is to about half a pixel: the centroid of what is nearer to its colour than to its surround's.
 
 use super::sight::Loss;
+use crate::median::median;
 use crate::posture::marker::looks::look::Look;
 use crate::posture::marker::looks::siting::Siting;
 use crate::video::Frame;
@@ -106,9 +107,5 @@ fn surround(
     if count < RING / 3 {
         return look.background;
     }
-    values.map(|mut plane| {
-        let ring = &mut plane[..count];
-        ring.sort_by(f32::total_cmp);
-        f64::from(ring[count / 2])
-    })
+    values.map(|mut plane| f64::from(median(&mut plane[..count]).unwrap_or(f32::NAN)))
 }

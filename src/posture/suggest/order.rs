@@ -1,6 +1,7 @@
 //! Spots in a row: which belong to it, and in which order.
 
 use super::{BLOT_SIZE_FACTOR, Mark, SIZE_FACTOR};
+use crate::median::median_of;
 
 /// Rows of more markers than this are ordered from one end by the nearest next one.
 const MOST_EXACT: usize = 12;
@@ -42,9 +43,7 @@ fn largest_cluster(marks: &[Mark]) -> Vec<Mark> {
         inside.push(link.1);
         links.push(link);
     }
-    let mut lengths: Vec<f64> = links.iter().map(|link| link.2).collect();
-    lengths.sort_by(f64::total_cmp);
-    let longest = LONGEST_LINK * lengths[lengths.len() / 2];
+    let longest = LONGEST_LINK * median_of(links.iter().map(|link| link.2)).unwrap_or(f64::NAN);
     let mut part: Vec<usize> = (0..marks.len()).collect();
     for &(a, b, length) in &links {
         if length <= longest {

@@ -19,8 +19,8 @@ fn scene(layout: MarkerLayout, colours: Colours) -> Scene {
     options.noise_sd = 2.0;
     options.colours = colours;
     options.finger.layout = layout;
-    options.seconds = 3.0;
-    options.trajectory = Trajectory::Eq27 { hz: 0.2 };
+    options.seconds = 1.5;
+    options.trajectory = Trajectory::Eq27 { hz: 0.4 };
     Scene::new(options).unwrap()
 }
 

@@ -6,6 +6,7 @@
 //! without one is an error that names the colour found.
 
 use super::{SurveyError, Surveyor};
+use crate::median::median_of;
 use crate::posture::suggest::{hex, palette};
 use crate::posture::survey::find::{Blob, Paint};
 use crate::video::Frame;
@@ -135,11 +136,7 @@ fn colour_at(frame: &Frame<'_>, at: [f64; 2]) -> [f64; 3] {
 }
 
 fn median(colours: &[[f64; 3]]) -> [f64; 3] {
-    [0, 1, 2].map(|p| {
-        let mut values: Vec<f64> = colours.iter().map(|colour| colour[p]).collect();
-        values.sort_by(f64::total_cmp);
-        values[values.len() / 2]
-    })
+    [0, 1, 2].map(|p| median_of(colours.iter().map(|colour| colour[p])).unwrap_or(f64::NAN))
 }
 
 fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {

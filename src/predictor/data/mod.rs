@@ -36,7 +36,6 @@ use source::{Source, agree};
 
 pub(crate) use columns::{cell, missing};
 pub use file::DataFile;
-pub(crate) use source::GROUPS;
 
 /// Which rows of recordings count.
 #[derive(Debug, Clone, PartialEq, Default, Args)]

@@ -7,11 +7,8 @@ use rayon::prelude::*;
 
 use super::columns::{cell, cells, listed, missing, photodiodes};
 use super::{DataError, Wanted};
-use crate::log::{Channel, LitRows, Statuses, Verdict, doubts};
+use crate::log::{Channel, GROUPS, LitRows, Statuses, Verdict, doubts, time_not_read};
 use crate::table::{Cell, Table, TableError};
-
-/// Columns that say where one recording ends and the next begins.
-pub(crate) const GROUPS: [&str; 3] = ["session", "subject", "trajectory"];
 
 /// The rows of a file, all of them.
 #[derive(Debug)]
@@ -95,6 +92,12 @@ impl Source {
             source.read_status(|take| table.each_text("sensor_status", take))?;
         }
         let targets = wanted.targets.iter().zip(&source.y).map(|(name, values)| (name.as_str(), &values[..]));
+        if let Some(name) = time_not_read(names) {
+            source.warnings.push(format!(
+                "{}: `{name}` is not read as the time; call it `time_s` and write seconds",
+                path.display()
+            ));
+        }
         let doubts = doubts::forces(targets);
         source.warnings.extend(doubts.iter().map(|doubt| format!("{}: {doubt}", path.display())));
         Ok(source)

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::{Predicted, WIDTH, quantity, three_digits, unit};
 use crate::figure::{Axis, Chart, Item, MOST_BINS, Thinned, draw_charts};
+use crate::median::median_of;
 
 /// Height of a panel, pixels.
 const PANEL_PX: u32 = 300;
@@ -143,9 +144,7 @@ impl TimeLine {
 
     /// Cuts a recording where time leaps.
     fn cut(&mut self, one: Range<usize>) {
-        let mut steps: Vec<f64> = self.at[one.clone()].windows(2).map(|pair| pair[1] - pair[0]).collect();
-        let middle = steps.len() / 2;
-        let usual = if steps.is_empty() { 0.0 } else { *steps.select_nth_unstable_by(middle, f64::total_cmp).1 };
+        let usual = median_of(self.at[one.clone()].windows(2).map(|pair| pair[1] - pair[0])).unwrap_or(0.0);
         let mut start = one.start;
         for row in one.start + 1..one.end {
             if usual > 0.0 && self.at[row] - self.at[row - 1] > GAP * usual {

@@ -176,11 +176,13 @@ pub fn train(
         None => Vec::new(),
     };
     watch.go_on()?;
-    let intervals = match &validate {
-        Some(held) => intervals(&predictor, &held.data, options.level, &mut warnings)?,
-        None => None,
+    let predictor = match &validate {
+        Some(held) => {
+            let found = intervals(&predictor, &held.data, options.level, &mut warnings)?;
+            predictor.with_intervals(found, &held.data)
+        }
+        None => predictor,
     };
-    let predictor = predictor.with_intervals(intervals);
     let half_width =
         predictor.intervals().map(|found| ByTarget::new(&predictor.target_names(), found.half_width.iter().copied()));
     let at = places.place(out)?;

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::contact::Contact;
-use super::force::{Force, Row};
+use super::force::{Force, Row, whole_steps};
 use super::smooth::{MOST_SAMPLES, spectral_arc_length};
 use super::{Thresholds, contacts};
 use crate::spread::Spread;
@@ -121,7 +121,7 @@ fn smoothness(force: &Force, contact: &Contact) -> Option<f64> {
     };
     let period_s = within.period_s()?;
     let (from_s, to_s) = (within.time_s[0], within.time_s[within.time_s.len() - 1]);
-    let samples = ((to_s - from_s) / period_s * (1.0 + 1e-12)).floor() + 1.0;
+    let samples = whole_steps(to_s - from_s, period_s) + 1.0;
     if samples > MOST_SAMPLES as f64 {
         return None;
     }

@@ -3,6 +3,14 @@
 /// A time step of so many usual ones is a gap (assumed: two rows lost in a row are none, three are).
 const GAP: f64 = 3.5;
 
+/// A step that all but this share of itself fits is a whole one: stamps are rounded, those of a day's time to 1e-11 s.
+const ROUNDED: f64 = 1e-3;
+
+/// How many whole steps a time holds.
+pub(super) fn whole_steps(time_s: f64, step_s: f64) -> f64 {
+    (time_s / step_s + ROUNDED).floor()
+}
+
 /// The force with which a finger presses, row by row.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Force {

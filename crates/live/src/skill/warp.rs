@@ -5,7 +5,7 @@
 //! the straight way (Sakoe and Chiba 1978, DOI 10.1109/TASSP.1978.1163055: their band; all steps weigh one here, and
 //! the sum is divided by the number of steps). Memory is two rows of the band.
 
-use super::force::{Force, Row};
+use super::force::{Force, Row, whole_steps};
 
 /// Courses of more points are not warped.
 pub const MOST_POINTS: usize = 2048;
@@ -16,7 +16,7 @@ const UNKNOWN: f64 = 0.05;
 /// known is passed over. A finger that a gate says is lifted presses with 0 N here.
 #[must_use]
 pub fn resampled(force: &Force, from_s: f64, to_s: f64, period_s: f64) -> Option<Vec<f64>> {
-    let points = ((to_s - from_s) / period_s * (1.0 + 1e-12)).floor() + 1.0;
+    let points = whole_steps(to_s - from_s, period_s) + 1.0;
     if !(1.0..=MOST_POINTS as f64).contains(&points) {
         return None;
     }

@@ -1,7 +1,7 @@
 //! Cells that are no plain numbers: missing ones, and whether an LED was on.
 
-/// The words that say that a number is missing, without regard to case.
-const MISSING: [&str; 4] = ["nan", "na", "n/a", "null"];
+/// The words that say that a number is missing, without regard to case; those with `#` are a spreadsheet's.
+const MISSING: [&str; 9] = ["nan", "na", "n/a", "null", "#n/a", "#num!", "#value!", "#div/0!", "#ref!"];
 
 /// Whether a cell is empty or says that nothing is known.
 #[must_use]

@@ -5,6 +5,9 @@ use serde::{Deserialize, Serialize};
 use super::fault::listed;
 use crate::{Dataset, LeastSquares};
 
+/// A photodiode whose variance, over the part that the others don't explain, is more than this is a copy or a mixture
+/// of others (assumed: one with noise of 0.3 mV that swings by 0.25 V has 7e5).
+const MOST_INFLATED: f64 = 1e6;
 /// Fewer digits than this are worth a warning.
 const FEW_DIGITS: f64 = 8.0;
 
@@ -32,6 +35,22 @@ pub struct FitReport {
     pub standard_errors: Vec<Vec<Option<f64>>>,
 }
 
+/// Photodiodes of a linear model whose coefficients are known only together: by the variance inflation factor.
+fn known_together(fit: &LeastSquares, terms: &[String], data: &Dataset) -> Vec<usize> {
+    let Some((target, sd)) = fit.residual_sd.iter().enumerate().find_map(|(k, sd)| Some((k, (*sd)?))) else {
+        return Vec::new();
+    };
+    if terms != data.inputs() || sd == 0.0 {
+        return Vec::new();
+    }
+    let rows = data.rows() as f64;
+    let inflated = |j: &usize| {
+        let own = data.x().column(*j).var(0.0) * rows;
+        (fit.standard_errors[[target, *j]] / sd).powi(2) * own > MOST_INFLATED
+    };
+    (0..terms.len()).filter(inflated).collect()
+}
+
 impl FitReport {
     pub(super) fn new(fit: &LeastSquares, terms: Vec<String>, data: &Dataset) -> Self {
         let known = |value: f64| value.is_finite().then_some(value);
@@ -47,6 +66,14 @@ impl FitReport {
             warnings.push(format!(
                 "{those} hardly differ (condition {:.1e}): about {digits:.0} digits can be trusted",
                 fit.solved_condition
+            ));
+        }
+        let shared = known_together(fit, &terms, data);
+        if !shared.is_empty() && digits.is_none_or(|digits| digits >= FEW_DIGITS) {
+            warnings.push(format!(
+                "{} are all but copies or mixtures of one another: less than a millionth of the variance is a \
+                 photodiode's own, and these coefficients are known only together; leave one out",
+                listed(&shared, &terms)
             ));
         }
         if fit.residual_sd.iter().any(Option::is_none) {

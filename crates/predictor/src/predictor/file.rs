@@ -360,7 +360,7 @@ mod tests {
         let model = Predictor::fit(&data, None, &Recipe::new(Kind::Linear)).unwrap();
         let read = |level, half: f64| {
             let intervals = Some(Intervals { level, half_width: vec![half], rows: 9 });
-            Predictor::from_json(&model.clone().with_intervals(intervals).to_json())
+            Predictor::from_json(&model.clone().with_intervals(intervals, &data).to_json())
         };
         assert!(!read(0.9, 1.5).unwrap().edited);
         for (level, half, what) in [(0.9, -1.0, "half width is -1"), (7.0, 1.0, "a share of 7 of the rows")] {

@@ -14,7 +14,7 @@ use crate::contact::friction::FrictionCone;
 use crate::data::lags::Lags;
 use crate::evaluate::{Intervals, hex, recording_hashes};
 use crate::model::sizes;
-use crate::{Dataset, Eigennails, Model, ModelFault};
+use crate::{Dataset, Eigennails, Kind, Model, ModelFault, Recording};
 use recipe::{Recipe, RecipeFault, Report, predict, with_lags};
 
 /// An input or target column of a model.
@@ -31,7 +31,7 @@ pub struct Channel {
     pub high: f64,
 }
 
-/// A recording that was trained on.
+/// A recording that a model has seen.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrainedOn {
@@ -47,6 +47,21 @@ pub struct TrainedOn {
     pub sha256: String,
 }
 
+impl TrainedOn {
+    /// All recordings of a dataset.
+    fn all(data: &Dataset) -> Vec<Self> {
+        let recordings = data.recordings().iter().zip(recording_hashes(data));
+        let of = |(one, sha256): (&Recording, String)| Self {
+            name: one.name.clone(),
+            session: one.session.clone(),
+            subject: one.subject.clone(),
+            rows: one.rows.len(),
+            sha256,
+        };
+        recordings.map(of).collect()
+    }
+}
+
 /// What a model was trained on, and how it went.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -57,6 +72,12 @@ pub struct Training {
     pub sha256: String,
     /// Whence they come.
     pub recordings: Vec<TrainedOn>,
+    /// Recordings that told a network when to stop and which start to keep.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub stopped_on: Vec<TrainedOn>,
+    /// Recordings whose errors the prediction intervals were read from.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub calibrated_on: Vec<TrainedOn>,
     /// Recordings that were to be trained on and could not be read, by name.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub failed: Vec<String>,
@@ -86,21 +107,18 @@ impl Predictor {
     pub fn fit(data: &Dataset, stop: Option<&Dataset>, recipe: &Recipe) -> Result<Self, RecipeFault> {
         let cone = recipe.cone(data.targets())?;
         let lags = recipe.lags(data)?;
+        let told = stop.filter(|_| matches!(recipe.kind, Kind::Network { .. }));
+        let stopped_on = told.map(TrainedOn::all).unwrap_or_default();
         let stop = stop.map(|stop| with_lags(stop, lags.as_ref())).transpose()?;
         let seen = with_lags(data, lags.as_ref())?;
         let fitted = recipe.fit(&seen, stop.as_deref())?;
-        let hashes = recording_hashes(data);
-        let recordings = data.recordings().iter().zip(&hashes).map(|(one, sha256)| TrainedOn {
-            name: one.name.clone(),
-            session: one.session.clone(),
-            subject: one.subject.clone(),
-            rows: one.rows.len(),
-            sha256: sha256.clone(),
-        });
+        let recordings = TrainedOn::all(data);
         let training = Training {
             rows: data.rows(),
-            sha256: hash_of(&hashes),
-            recordings: recordings.collect(),
+            sha256: hash_of(&recordings),
+            recordings,
+            stopped_on,
+            calibrated_on: Vec::new(),
             failed: Vec::new(),
             recipe: recipe.clone(),
             report: fitted.report,
@@ -158,9 +176,10 @@ impl Predictor {
         self.intervals.as_ref()
     }
 
-    /// The same with intervals.
+    /// The same with intervals that were read from its errors on `data`.
     #[must_use]
-    pub fn with_intervals(self, intervals: Option<Intervals>) -> Self {
+    pub fn with_intervals(mut self, intervals: Option<Intervals>, data: &Dataset) -> Self {
+        self.training.calibrated_on = if intervals.is_some() { TrainedOn::all(data) } else { Vec::new() };
         Self { intervals, ..self }
     }
 
@@ -236,8 +255,9 @@ impl Predictor {
 }
 
 /// SHA-256 of texts, one after the other.
-fn hash_of(texts: &[String]) -> String {
-    hex(Sha256::new_with_prefix(texts.concat()))
+fn hash_of(recordings: &[TrainedOn]) -> String {
+    let hashes: String = recordings.iter().map(|one| one.sha256.as_str()).collect();
+    hex(Sha256::new_with_prefix(hashes))
 }
 
 fn channels(names: &[String], values: &Array2<f64>) -> Vec<Channel> {

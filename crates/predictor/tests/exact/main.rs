@@ -109,6 +109,26 @@ fn near_collinear_channels_are_separated_with_a_warning() {
     assert!(report.warnings[0].starts_with("P3 and P7 hardly differ"), "{}", report.warnings[0]);
 }
 
+#[test]
+fn a_rounded_copy_of_a_photodiode_is_named() {
+    let mut x = volts(600, 8, 0.5, 7);
+    for mut row in x.rows_mut() {
+        row[6] = (row[2] * 1e4).round() / 1e4;
+    }
+    let y = force(&x, 9);
+    let (_, _, report) = linear_digits(&dataset(x, y.clone()));
+    let [warning] = &report.warnings[..] else { panic!("{:?}", report.warnings) };
+    assert!(warning.starts_with("P3 and P7 are all but copies"), "{warning}");
+    // With noise of its own of a millivolt it is another one.
+    let mut x = volts(600, 8, 0.5, 7);
+    let mut rng = ChaCha8Rng::seed_from_u64(8);
+    for mut row in x.rows_mut() {
+        row[6] = row[2] + rng.random_range(-2e-3..2e-3);
+    }
+    let (_, _, report) = linear_digits(&dataset(x, y));
+    assert!(report.warnings.is_empty(), "{:?}", report.warnings);
+}
+
 /// Exact coefficients of u and the value at u = 0, for the centre and scale that the model chose.
 fn quadratic_wanted(data: &Dataset, model: &Quadratic) -> Vec<BigRational> {
     let pairs = quadratic_terms(data.inputs().len());

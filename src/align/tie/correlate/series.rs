@@ -1,6 +1,8 @@
 //! Signals over times of their own, made fit to be compared: sorted, without what is missing, each of mean 0 and mean
 //! square 1.
 
+use crate::median::median_of;
+
 /// Columns over common times.
 #[derive(Debug, Clone)]
 pub(super) struct Series {
@@ -37,9 +39,7 @@ impl Series {
             return Err(format!("{what}: {} rows with a time and all values are too few to compare", rows.len()));
         }
         let time_s: Vec<f64> = rows.iter().map(|&row| time_s[row]).collect();
-        let mut intervals: Vec<f64> = time_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
-        let middle = intervals.len() / 2;
-        let interval_s = *intervals.select_nth_unstable_by(middle, f64::total_cmp).1;
+        let interval_s = median_of(time_s.windows(2).map(|pair| pair[1] - pair[0])).unwrap_or(f64::NAN);
         let columns: Vec<Vec<f64>> = full
             .iter()
             .map(|column| rows.iter().map(|&row| column[row]).collect::<Vec<f64>>())

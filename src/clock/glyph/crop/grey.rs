@@ -1,5 +1,6 @@
 //! A picture of ink alone: the ground taken away, and with it slow changes of light and what lies along the border.
 
+use crate::median::median_of;
 use crate::video::Plane;
 use crate::vision::{Extreme, Samples, extreme};
 
@@ -91,11 +92,7 @@ impl Grey {
         if 2 * wide > tall || x0 < 2 || x1 + 2 >= self.width {
             return false;
         }
-        let middle = |x: usize| {
-            let mut column: Vec<f32> = (y0..=y1).map(|y| self.values[y * self.width + x]).collect();
-            column.sort_by(f32::total_cmp);
-            column[column.len() / 2]
-        };
+        let middle = |x: usize| median_of((y0..=y1).map(|y| self.values[y * self.width + x])).unwrap_or(f32::NAN);
         let inside = (x0..=x1).map(middle).collect::<Vec<_>>();
         let (left, right) = (middle(x0.saturating_sub(aside)), middle((x1 + aside).min(self.width - 1)));
         let contrast = inside.iter().map(|m| (m - left).abs().max((m - right).abs())).fold(0.0, f32::max);

@@ -16,6 +16,7 @@ mod filter;
 mod fit;
 
 use super::joints::Angle;
+use crate::median::median_of;
 use filter::{Observation, Parameters};
 
 /// Fewer known angles than this are left as they are.
@@ -59,9 +60,8 @@ pub(crate) fn smooth(times_s: &[f64], angles: &[Option<Angle>]) -> Smoothed {
         return Smoothed { angles: angles.to_vec(), model: None };
     }
     // In medians of the errors and of the time from row to row, all numbers are near 1.
-    let unit_rad = median(known.iter().map(|(.., a)| passing_sd_rad(a))).max(SMALLEST_SD_RAD);
-    let step_s = median(known.windows(2).map(|w| w[1].1 - w[0].1));
-    let step_s = if step_s > 0.0 { step_s } else { 1.0 };
+    let unit_rad = median_of(known.iter().map(|(.., a)| passing_sd_rad(a))).unwrap_or(f64::NAN).max(SMALLEST_SD_RAD);
+    let step_s = median_of(known.windows(2).map(|w| w[1].1 - w[0].1)).filter(|&step_s| step_s > 0.0).unwrap_or(1.0);
     let origin = known[0].1;
     let series: Vec<Observation> = known
         .iter()
@@ -98,12 +98,6 @@ const SMALLEST_SD_RAD: f64 = 1e-9;
 /// The part of a standard error that is another's in another frame: what smoothing makes smaller.
 fn passing_sd_rad(angle: &Angle) -> f64 {
     (angle.sd_rad * angle.sd_rad - angle.lasting_sd_rad * angle.lasting_sd_rad).max(0.0).sqrt()
-}
-
-fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut values: Vec<f64> = values.collect();
-    let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 #[cfg(test)]

@@ -26,7 +26,7 @@ use crate::predictor::merit::doubts::doubts;
 use crate::predictor::merit::figures::{ByTarget, Merit, merit_without_cone};
 use crate::predictor::options::choices::LEVEL;
 use crate::predictor::outputs::{FolderOutputs, end};
-use crate::predictor::{open_models, seen_in_training};
+use crate::predictor::{open_models, seen_by_intervals, seen_in_training};
 use crate::stages::{Stages, Step, left_out};
 use report::Predicted;
 pub use report::{BinMerit, EvaluateFigures, EvaluateReport, HeldOut, Magnitudes, Part, RecordingMerit, Splits};
@@ -104,7 +104,7 @@ pub fn evaluate(
     // Once stopped, what could not be held out is no fault of the request.
     watch.go_on()?;
     let held_out = held_out.transpose()?;
-    let mut notes = Vec::new();
+    let mut notes = Vec::from_iter(seen_by_intervals(&predictor, &read.data));
     let splits = match options.splits {
         None => None,
         Some(ways) => Some(stages.time("splits", || {

@@ -18,7 +18,8 @@ impl Job for EvaluateChoices {
             Role::new("data", Takes::Many, "recordings with the model's photodiodes and targets"),
         ],
         &[Part::new("merit", "merit.csv"), Part::if_wanted(ROWS, "predicted.csv"), Part::if_wanted(PICTURES, "")],
-    );
+    )
+    .revision(2);
 
     fn demand(&self, _role: &str, own: &Demand) -> Demand {
         // The model says which joints recordings have to hold, once it exists.

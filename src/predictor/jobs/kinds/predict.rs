@@ -17,7 +17,8 @@ impl Job for PredictChoices {
             Role::new("model", Takes::Many, "a model of force, of posture, or both: then they are gated"),
         ],
         &[Part::new("predicted", "predicted.csv")],
-    );
+    )
+    .revision(2);
 
     fn checked(self) -> Result<Self, OptionFault> {
         self.options().map_err(OptionFault::whole)?;

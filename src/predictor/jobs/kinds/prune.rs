@@ -17,7 +17,8 @@ impl Job for PruneChoices {
             Role::new("validate", Takes::Many, "others to compare on"),
         ],
         &[Part::new("subsets", "subsets.csv"), Part::if_wanted(PICTURES, "")],
-    );
+    )
+    .revision(2);
 
     fn demand(&self, _role: &str, own: &Demand) -> Demand {
         only_joints(joints(&self.target), own)

@@ -25,7 +25,8 @@ impl Job for TrainChoices {
             Part::new("merit", "merit.csv"),
             Part::if_wanted(CURVE, "learning-curve.csv"),
         ],
-    );
+    )
+    .revision(2);
 
     fn demand(&self, _role: &str, own: &Demand) -> Demand {
         only_joints(joints(&self.target), own)

@@ -96,3 +96,16 @@ fn fingers_are_ranked_by_their_first_touch() {
     held.force_n[..20].fill(1.0);
     assert_eq!(ranked(&[finger(0.5), Figures::of(&held, &THRESHOLDS)]), [None, None]);
 }
+
+#[test]
+fn a_press_is_as_smooth_at_any_time_of_the_day() {
+    let smoothness = |from_s: f64| {
+        let mut force = presses(100.0, 5.0, &[(0.5, 0.4, 2.0), (2.0, 0.3, 1.0)]);
+        force.time_s.iter_mut().for_each(|time_s| *time_s += from_s);
+        Figures::of(&force, &THRESHOLDS).0.smoothness.unwrap()
+    };
+    let first = smoothness(0.0);
+    for from_s in [59.0, 3600.0, 34567.125, 50_000.0, 86_390.0] {
+        assert!((smoothness(from_s) - first).abs() <= 1e-6, "{from_s}: {}", smoothness(from_s));
+    }
+}

@@ -7,6 +7,7 @@
 use image::GrayImage;
 
 use super::super::picture::{self, Picture, TONE, YELLOW};
+use crate::median::median_of;
 use crate::vision::{Cell, opened, otsu_level};
 
 /// ln(R/G) of skin in any common light.
@@ -31,7 +32,7 @@ pub(in super::super) fn silhouettes(picture: &Picture) -> Vec<GrayImage> {
         let is_skin = |c: &Cell| RED.contains(&c[picture::RED]) && YELLOWS.contains(&c[YELLOW]) && c[TONE] > DARK;
         let skin: Vec<bool> = cells.iter().map(is_skin).collect();
         add(&|i| skin[i]);
-        if let Some(median) = median(cells.iter().filter(|c| is_skin(c)).map(|c| c[TONE]).collect()) {
+        if let Some(median) = median_of(cells.iter().filter(|c| is_skin(c)).map(|c| c[TONE])) {
             add(&|i| skin[i] && tone[i] > median - SHADE);
         }
         let red: Vec<f32> = cells.iter().map(|c| c[picture::RED]).collect();
@@ -55,11 +56,6 @@ fn mask(size: [usize; 2], inside: &dyn Fn(usize) -> bool) -> GrayImage {
     let mask: Vec<u8> = (0..size[0] * size[1]).map(|i| if inside(i) { 255 } else { 0 }).collect();
     let mask = opened(&mask, size, 1);
     GrayImage::from_raw(size[0] as u32, size[1] as u32, mask).expect("one value a pixel")
-}
-
-fn median(mut values: Vec<f32>) -> Option<f32> {
-    let middle = values.len() / 2;
-    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f32::total_cmp).1)
 }
 
 /// Otsu's threshold of `values`; `None` where they are all alike.

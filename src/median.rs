@@ -1,0 +1,53 @@
+//! The middle of some numbers.
+
+use std::cmp::Ordering;
+
+/// The standard deviation of normal numbers over the median of their magnitudes.
+pub(crate) const SD_OF_MAD: f64 = 1.4826;
+
+/// A number that can be sorted; NaN comes last.
+pub(crate) trait Number: Copy {
+    fn order(&self, other: &Self) -> Ordering;
+}
+
+impl Number for f32 {
+    fn order(&self, other: &Self) -> Ordering {
+        self.total_cmp(other)
+    }
+}
+
+impl Number for f64 {
+    fn order(&self, other: &Self) -> Ordering {
+        self.total_cmp(other)
+    }
+}
+
+impl Number for usize {
+    fn order(&self, other: &Self) -> Ordering {
+        self.cmp(other)
+    }
+}
+
+/// The middle one, of an even number the upper of both; `None` of none. The values are reordered.
+pub(crate) fn median<T: Number>(values: &mut [T]) -> Option<T> {
+    let middle = values.len() / 2;
+    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, T::order).1)
+}
+
+/// [`median`] of what an iterator gives.
+pub(crate) fn median_of<T: Number>(values: impl IntoIterator<Item = T>) -> Option<T> {
+    median(&mut values.into_iter().collect::<Vec<T>>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_upper_one_of_an_even_number() {
+        assert_eq!(median(&mut [3.0, 1.0, 2.0]), Some(2.0));
+        assert_eq!(median_of([4_usize, 1, 3, 2]), Some(3));
+        assert_eq!(median_of([f32::NAN, -1.0, -2.0]), Some(-1.0));
+        assert_eq!(median::<f64>(&mut []), None);
+    }
+}
