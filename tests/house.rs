@@ -10,7 +10,7 @@ use crate::util::repository;
 
 /// The library's rooms, from the ground up: a room knows those of lower floors, and none of its own beside it.
 const FLOORS: [&[&str]; 10] = [
-    &["flexion", "nail", "stages", "timebase", "words"],
+    &["flexion", "median", "nail", "stages", "timebase", "words"],
     &["input"],
     &["files", "labelme", "npy", "photograph", "table", "toml_file", "video", "vision"],
     &["job"],
