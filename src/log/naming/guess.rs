@@ -32,6 +32,9 @@ const TIMES: [&str; 23] = [
     "xvalue",
 ];
 
+/// What forces along x, y and z are called, without their unit.
+const AXES: [[&str; 2]; 3] = [["fx", "forcex"], ["fy", "forcey"], ["fz", "forcez"]];
+
 /// The role of a name, the contract's or one like it.
 pub(in crate::log) fn role_of(name: &str) -> Option<Role> {
     Role::of(name).or_else(|| role_of_name(name))
@@ -56,17 +59,15 @@ pub(in crate::log) fn role_of_name(name: &str) -> Option<Role> {
         return number.parse().ok().filter(|&n| n > 0).map(Role::Photodiode);
     }
     let force = without(&all, &["n", "newton", "newtons"]).concat();
-    let axes = [["fx", "forcex"], ["fy", "forcey"], ["fz", "forcez"]];
-    (0..3).find(|&axis| axes[axis].contains(&&force[..])).map(|axis| Role::Force(axis as u8))
+    (0..3).find(|&axis| AXES[axis].contains(&&force[..])).map(|axis| Role::Force(axis as u8))
 }
 
 /// Whether a name is a force's in a unit that is not newtons.
 pub(in crate::log) fn is_force_in_another_unit(name: &str) -> bool {
     const UNITS: [&str; 9] = ["mn", "kn", "un", "g", "kg", "gf", "kgf", "lb", "lbf"];
-    let words = words(name);
-    let all: Vec<&str> = words.iter().map(String::as_str).collect();
-    let force = without(&all, &UNITS);
-    force.len() < all.len() && matches!(role_of_name(&force.concat()), Some(Role::Force(_)))
+    let whole = words(name).concat();
+    let unit = AXES.iter().flatten().find_map(|force| whole.strip_prefix(force));
+    unit.is_some_and(|unit| UNITS.contains(&unit))
 }
 
 /// The unit that the name of a time column ends in.
