@@ -144,11 +144,14 @@ fn rows_of_the_training_set_are_reported() {
     let held = evaluate(&dir, "noisy.csv", &[]);
     assert_eq!(held["warnings"], serde_json::json!([]));
     assert!(held["notes"][0].words().starts_with("noisy.csv: the prediction intervals were made from this"), "{held}");
-    // What told a network to stop.
+    // What a network was stopped on.
     let network = ["--model", "network", "--hidden", "2", "--restarts", "1", "--stop-on", "noisy.csv", "-q"];
     dir.train("train.csv", "force", "n.json", &network).expect(0);
     let stopped = dir.lunula(&["evaluate", "n.json", "noisy.csv", "--json"]).expect(0).json();
-    assert!(stopped["warnings"].to_string().contains("noisy.csv: this told training when to stop"), "{stopped}");
+    assert!(
+        stopped["warnings"].to_string().contains("noisy.csv: training was stopped by the errors on this"),
+        "{stopped}"
+    );
     assert_eq!(dir.lunula(&["evaluate", "m.json", "train.csv", "-q"]).expect(0).stderr, "");
 }
 

@@ -359,7 +359,7 @@ fn validation_only_reports_and_says_what_was_trained_on() {
     let [mut alone, mut with] = ["alone.json", "m.json"].map(|name| dir.parsed(name));
     let intervals = with["intervals"].take();
     let calibrated = with["training"].as_object_mut().and_then(|training| training.remove("calibrated_on"));
-    assert_eq!(calibrated.expect("whence the intervals come")[0]["name"], "shifted.csv");
+    assert_eq!(calibrated.expect("what the intervals were made from")[0]["name"], "shifted.csv");
     for one in [&mut alone, &mut with] {
         one["intervals"].take();
         one["sha256"].take();

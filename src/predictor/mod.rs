@@ -98,10 +98,7 @@ fn seen_in_training(predictor: &Predictor, data: &Dataset) -> Vec<String> {
             &training.recordings,
             "the model was trained on this; its errors flatter. Name recordings that it has not seen",
         ),
-        (
-            &training.stopped_on,
-            "this told training when to stop; the model's errors on it flatter. Name other recordings",
-        ),
+        (&training.stopped_on, "training was stopped by the errors on this; they flatter. Name other recordings"),
     ];
     seen.into_iter().filter_map(|(of, what)| Some(format!("{}: {what}", again(of, data)?))).collect()
 }

@@ -8,7 +8,7 @@ pub(super) struct NamePattern {
     pub(super) pattern: String,
     /// The places' names, in order.
     pub(super) names: Vec<String>,
-    /// What stands in them, a file each.
+    /// Their values, one list per file.
     pub(super) values: Vec<Vec<String>>,
     /// Files of the same sort that lie elsewhere or are called otherwise.
     pub(super) others: Vec<String>,

@@ -13,7 +13,7 @@ const TOLD: usize = 3;
 struct Input {
     reference: String,
     names: Vec<String>,
-    /// What the keys are, a file each; none of a table.
+    /// The values of the keys, one list per file; none of a table.
     values: Option<Vec<Vec<String>>>,
 }
 

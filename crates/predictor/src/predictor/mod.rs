@@ -72,7 +72,7 @@ pub struct Training {
     pub sha256: String,
     /// Whence they come.
     pub recordings: Vec<TrainedOn>,
-    /// Recordings that told a network when to stop and which start to keep.
+    /// Recordings that chose when a network's training stopped, and which start was kept.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub stopped_on: Vec<TrainedOn>,
     /// Recordings whose errors the prediction intervals were read from.
@@ -107,8 +107,8 @@ impl Predictor {
     pub fn fit(data: &Dataset, stop: Option<&Dataset>, recipe: &Recipe) -> Result<Self, RecipeFault> {
         let cone = recipe.cone(data.targets())?;
         let lags = recipe.lags(data)?;
-        let told = stop.filter(|_| matches!(recipe.kind, Kind::Network { .. }));
-        let stopped_on = told.map(TrainedOn::all).unwrap_or_default();
+        let used = stop.filter(|_| matches!(recipe.kind, Kind::Network { .. }));
+        let stopped_on = used.map(TrainedOn::all).unwrap_or_default();
         let stop = stop.map(|stop| with_lags(stop, lags.as_ref())).transpose()?;
         let seen = with_lags(data, lags.as_ref())?;
         let fitted = recipe.fit(&seen, stop.as_deref())?;
