@@ -65,7 +65,7 @@ impl UnlitLoads {
 
 impl LogReading {
     /// Whether a file is read as a log: it has a column that says when the LED was on, is no CSV or Parquet table by
-    /// its name, is written as other programs write logs ([`is_foreign`]), or the user says something about logs.
+    /// its name, is written as other programs write logs, or the user says something about logs.
     ///
     /// # Errors
     /// A table that is missing or damaged.

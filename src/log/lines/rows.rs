@@ -26,21 +26,21 @@ pub(in crate::log) fn read(path: &Path, columns: &Columns) -> Result<Raw, LogErr
 /// Finds the header and chooses among its columns.
 pub(in crate::log) fn choose(path: &Path, text: &[u8], columns: &Columns) -> Result<(Layout, Choice), LogError> {
     let layout = Layout::find(text).map_err(|what| LogError::File { path: path.to_owned(), what })?;
-    let choice = columns
-        .choose(&layout.names, &stamped(text, &layout))
-        .map_err(|what| LogError::Columns { path: path.to_owned(), what })?;
+    let nameless: Vec<usize> = dated(text, &layout).into_iter().filter(|&k| layout.names[k].is_empty()).collect();
+    let choice =
+        columns.choose(&layout.names, &nameless).map_err(|what| LogError::Columns { path: path.to_owned(), what })?;
     Ok((layout, choice))
 }
 
-/// Nameless columns whose first cell is a date.
-fn stamped(text: &[u8], layout: &Layout) -> Vec<usize> {
+/// Columns whose first cell is a date with a time, or a time of day.
+pub(in crate::log) fn dated(text: &[u8], layout: &Layout) -> Vec<usize> {
     let mut row = csv::ByteRecord::new();
     if !matches!(reader(text, layout).read_byte_record(&mut row), Ok(true)) {
         return Vec::new();
     }
     let is_stamp = |cell: &[u8]| Stamps::default().push(bare(cell), &mut Numbers::of(layout.delimiter)).is_ok();
-    let dated = |k: &usize| row.get(*k).is_some_and(|cell| cell.contains(&b':') && is_stamp(cell));
-    (0..layout.names.len()).filter(|&k| layout.names[k].is_empty()).filter(dated).collect()
+    let is_dated = |k: &usize| row.get(*k).is_some_and(|cell| cell.contains(&b':') && is_stamp(cell));
+    (0..layout.names.len()).filter(is_dated).collect()
 }
 
 fn reader<'a>(text: &'a [u8], layout: &Layout) -> csv::Reader<&'a [u8]> {

@@ -4,7 +4,7 @@ use std::io::Read;
 use std::path::Path;
 
 use crate::log::formats::text::{self, Layout};
-use crate::log::lines::rows::choose;
+use crate::log::lines::rows::{choose, dated};
 use crate::log::naming::columns::{Choice, Columns};
 use crate::log::naming::guess::role_of;
 use crate::log::naming::role::Role;
@@ -62,24 +62,26 @@ impl LogHeader {
 }
 
 /// Whether a CSV or Parquet file has photodiodes or pressures as other programs write them, so that only a log's reader
-/// understands it: lines beside names and rows, another delimiter or encoding, comments, columns without a name, or a
-/// time that is not called `time_s`. `as_table`: the names that a table's reader finds, if it does. Not one that has
+/// understands it: lines beside names and rows, another delimiter or encoding, comments, columns without a name, a time
+/// that is not called `time_s`, or dates. `as_table`: the names that a table's reader finds, if it does. Not one that has
 /// what no log has: an angle, a status, a session.
 pub(in crate::log) fn is_foreign(path: &Path, as_table: Option<&[String]>) -> bool {
-    let text = || Layout::find(&head(path).ok()?).ok();
-    let (names, holds_others) = match (Format::of(path), as_table) {
-        (Format::Text, _) => match text() {
-            Some(layout) => (layout.names, layout.holds_others),
-            None => return false,
-        },
-        (_, Some(names)) => (names.to_vec(), false),
-        (_, None) => return false,
+    let text = || {
+        let text = head(path).ok()?;
+        let layout = Layout::find(&text).ok()?;
+        let is_time = |name: &str| name.is_empty() || name == "time_s";
+        let is_dated = dated(&text, &layout).into_iter().any(|k| is_time(&layout.names[k]));
+        Some((layout.names, layout.holds_others, is_dated))
     };
+    let read =
+        if Format::of(path) == Format::Text { text() } else { as_table.map(|names| (names.to_vec(), false, false)) };
+    let Some((names, holds_others, is_dated)) = read else { return false };
     let is_labelled =
         |name: &String| name.ends_with("_deg") || name == "sensor_status" || GROUPS.contains(&name.as_str());
     let has = |wanted: fn(Role) -> bool| names.iter().filter_map(|name| role_of(name)).any(wanted);
     let reads_otherwise = || {
-        as_table != Some(&names[..])
+        is_dated
+            || as_table != Some(&names[..])
             || names.iter().filter(|name| name.is_empty()).count() > 1
             || has(|role| role == Role::Time) && !names.iter().any(|name| name == "time_s")
     };
