@@ -63,8 +63,8 @@ impl LogHeader {
 
 /// Whether a CSV or Parquet file has photodiodes or pressures as other programs write them, so that only a log's reader
 /// understands it: lines beside names and rows, another delimiter or encoding, comments, columns without a name, a time
-/// that is not called `time_s`, or dates. `as_table`: the names that a table's reader finds, if it does. Not one that has
-/// what no log has: an angle, a status, a session.
+/// that is not called `time_s`, or dates. `as_table`: the names that a table's reader finds, if it does. Not one that
+/// has what no log has: an angle, a status, a session.
 pub(in crate::log) fn is_foreign(path: &Path, as_table: Option<&[String]>) -> bool {
     let text = || {
         let text = head(path).ok()?;
