@@ -7,8 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use lunula_live::wire::{Meaning, Naming, Use};
 
-use crate::log::GROUPS;
-use crate::log::LogReading;
+use crate::log::{GROUPS, LogReading};
 use crate::predictor::missing;
 
 /// Names of counters.

@@ -83,7 +83,7 @@ pub(in crate::log) fn is_foreign(path: &Path, as_table: Option<&[String]>) -> bo
         is_dated
             || as_table != Some(&names[..])
             || names.iter().filter(|name| name.is_empty()).count() > 1
-            || has(|role| role == Role::Time) && !names.iter().any(|name| name == "time_s")
+            || time_not_read(&names).is_some()
     };
     let has_light = || has(|role| role.is_light() || matches!(role, Role::Pressure(_)));
     holds_others || !names.iter().any(is_labelled) && has_light() && reads_otherwise()

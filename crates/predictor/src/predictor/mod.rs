@@ -254,7 +254,7 @@ impl Predictor {
     }
 }
 
-/// SHA-256 of texts, one after the other.
+/// SHA-256 of recordings' hashes, one after the other.
 fn hash_of(recordings: &[TrainedOn]) -> String {
     let hashes: String = recordings.iter().map(|one| one.sha256.as_str()).collect();
     hex(Sha256::new_with_prefix(hashes))
