@@ -182,6 +182,10 @@ fn too_few_views_and_views_that_are_alike_are_refused() {
     let dir = first_views(3);
     let answer = camera(&dir, "scene/views", &["--coefficients", "4"]).expect(0).says("3 views only");
     near(lens(&answer), TRUTH);
+    // A copy is no other view.
+    std::fs::copy(dir.path("scene/views/01.png"), dir.path("scene/views/04.png")).expect("a copy");
+    let answer = camera(&dir, "scene/views", &["--coefficients", "4"]).expect(0).says("3 views only");
+    answer.says("views/04.png: the same to the byte as scene/views/01.png, and not counted");
     let dir = views(&["--tilt", "0,0", "--views", "4"]);
     refused(&dir, camera(&dir, "scene/views", &[]), &["alike", "tilted by 20 to 40 degrees"]);
 }
@@ -202,6 +206,9 @@ fn what_shows_no_board_or_two_is_named_and_the_rest_is_done() {
         save(&dir, &format!("half/{name}"), &cut);
     }
     refused(&dir, camera(&dir, "half", &[]), &["no view shows the board", "half/01.png", "is seen whole"]);
+    // Squares counted in place of inner corners.
+    let answer = dir.lunula(&["camera", "scene/views", "--board", "10x7", "--square-mm", "20", "--out", "camera.toml"]);
+    answer.expect(2).says("no board of 10x7 inner corners is seen whole, one of 9x6 may be");
     // Two boards side by side in every view.
     for (name, view) in &all[..2] {
         let twice = GrayImage::from_fn(1280, 480, |x, y| *view.get_pixel(x % 640, y));

@@ -439,6 +439,18 @@ fn thresholds_are_chosen_and_judged_on_recordings() {
     dir.lunula(&[&tune[..], &["--false-per-hour", "0", "--out", "t.toml"]].concat()).expect(2).says("above 0");
     let nothing = ["switch", "tune", "a.csv", "--model", "m.json", "--contact", "Fz_N<-9", "--out", "t.toml"];
     dir.lunula(&nothing).expect(2).says("no recording has a contact");
+    let milliseconds = dir
+        .text("a.csv")
+        .replacen("time_s", "time", 1)
+        .lines()
+        .map(|line| {
+            let (time, rest) = line.split_once(',').unwrap();
+            time.parse().map_or_else(|_| format!("{line}\n"), |time: f64| format!("{},{rest}\n", 1e3 * time))
+        })
+        .collect::<String>();
+    dir.write("ms.csv", milliseconds);
+    let slow = ["switch", "tune", "ms.csv", "--model", "m.json", "--contact", "Fz_N<-0.01", "--out", "t.toml"];
+    dir.lunula(&slow).expect(2).says("ms.csv: its rows are ").says("time_ms");
     let column = ["switch", "tune", "a.csv", "--model", "m.json", "--contact", "touch", "--out", "t.toml"];
     dir.lunula(&column).expect(2).says("has no column `touch`");
     dir.write("bad.toml", "on_N = 0.2\noff_N = 0.5\nhold = 1\n");

@@ -65,7 +65,7 @@ fn what_does_not_belong_together_is_refused_and_nothing_is_written() {
     };
     refused(&made[..1], "2/2: of 2 parts this is missing");
     refused(&[made[0].clone(), made[0].clone(), made[1].clone()], "both are part 1/2");
-    dir.write("other.toml", PIPELINE.replace("seed = 3", "seed = 4"));
+    dir.write("other.toml", format!("# another\n{}", PIPELINE.replace("seed = 3", "seed = 4")));
     dir.lunula(&["run", "other.toml", "--shard", "2/2", "--out", "other", "--quiet"]).expect(0);
     refused(&[made[0].clone(), "other".into()], "are parts of different runs: line 4 says");
     let moved = dir.lunula(&merge(&made, &["--out", "out", "--pipeline", "other.toml"])).expect(2);

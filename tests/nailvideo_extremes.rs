@@ -52,7 +52,7 @@ fn a_nail_that_comes_into_the_picture_is_found_then() {
     // The outline that was found, as a person may correct it, is one of that frame.
     words(&dir, "nailvideo late.mp4 --outline out/nail.json --no-figures --out again")
         .expect(0)
-        .says("before frame 30");
+        .says("the outline is drawn on frame 30");
     let again = dir.table("again/motion.csv");
     assert!(again[..30].iter().all(|row| row["status"] == "lost: no nail yet"));
     assert!(again[30..].iter().all(|row| row["status"] == "ok"));

@@ -141,6 +141,15 @@ fn learning_curves_are_recovered_and_say_where_they_level_off() {
     let ratio = 20.0_f64.sqrt() / (1.0 + 2.5 * 20.0_f64.ln());
     assert!((statement["ratio"].number() - ratio).abs() <= 1e-6 && statement["holds"] == false);
     assert!(report["level"].words().contains("less than 5 % of its rise"));
+    // Of seven trials the pendant's level is prolonged: nothing is settled by it.
+    let trial = |line: &&str| line.split(',').nth(2).and_then(|trial| trial.parse::<u32>().ok());
+    let curves = curves();
+    let early = curves.lines().filter(|line| trial(line).is_none_or(|trial| trial <= 7));
+    dir.write("early.csv", early.map(|line| format!("{line}\n")).collect::<String>());
+    let early = run(&dir, &format!("early.csv {COURSE} --out e --json")).expect(0).json();
+    let statement = &early["comparisons"][0]["to_level_off"];
+    assert!((statement["ratio"].number() - ratio).abs() <= 1e-6 && statement["holds"].is_null());
+    assert_eq!(statement["unsettled"].words(), "a level was not reached");
 }
 
 #[test]

@@ -304,6 +304,8 @@ fn the_channel_can_be_chosen_and_grey_needs_none() {
     assert!(dir.bytes_of("c")["maps/colour-mean.npy"] == dir.bytes_of("g")["maps/grey-mean.npy"]);
     let left_out = answer.json()["left_out"].to_string();
     assert!(left_out.contains("channel: not taken from 1 grey photograph"), "{left_out}");
+    let notes = answer.json()["notes"].to_string();
+    assert!(notes.contains("--channel is of no use here: every photograph is grey"), "{notes}");
     dir.lunula(&["photos", "colour", "--out", "r", "--channel", "red"]).expect(0);
     assert!((dir.array("r/maps/colour-mean.npy")[[200, 200]] - 190.0 / 255.0).abs() <= 1e-5);
     dir.lunula(&["photos", "colour", "--out", "l", "--linear"]).expect(0);

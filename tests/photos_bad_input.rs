@@ -119,6 +119,17 @@ fn outlines_that_are_none_are_named_with_their_shape() {
             "at least 4 are needed",
         ),
         (vec![("finger", "polygon", drawn_outline())], "no polygon labelled `nail`"),
+        (
+            vec![("nail", "polygon", drawn_outline()), ("axis", "line", nowhere(drawn_axis()))],
+            "shape 2 is labelled axis and belongs to no nail",
+        ),
+        (
+            vec![
+                ("nail", "polygon", drawn_outline()),
+                ("axis", "linestrip", [drawn_axis(), vec![[80.0, 1.0]]].concat()),
+            ],
+            "shape 2 is labelled axis and belongs to no nail",
+        ),
     ];
     for (shapes, words) in cases {
         let dir = good_set();
@@ -211,6 +222,8 @@ fn a_manifest_s_faults_are_named_by_line() {
     assert_eq!(used(&dir), ["a", "b", "c"]);
     dir.write("set/photos.csv", "name;who\na.png;a\n");
     dir.lunula(&["photos", "set", "--out", "out"]).expect(2).says("it needs file,subject,pose");
+    dir.write("set/photos.csv", "file,subject,pose\nmissing.png,x,p\n");
+    dir.lunula(&["photos", "set", "--out", "out"]).expect(2).says("looked for those that photos.csv names");
     dir.write("set/photos.csv", b"file,subject,pose\na.png,J\xfcrgen,p\n");
     dir.lunula(&["photos", "set", "--out", "out"]).expect(2).says("save it as CSV in UTF-8");
     dir.write("set/photos.csv", "file;subject;pose\na.png;a;p\n");
@@ -223,6 +236,15 @@ fn colour_and_grey_in_a_pose_are_warned_of() {
     image::DynamicImage::from(drawn_nail()).to_luma8().save(dir.place("set/d.png")).expect("a picture");
     dir.write("set/d.json", drawn_labels());
     dir.lunula(&["photos", "set", "--out", "out"]).expect(0).says("pose `set` mixes 3 colour and 1 grey photograph(s)");
+    // Made in parts as well.
+    std::fs::create_dir_all(dir.path("grey/set")).expect("a folder");
+    for name in ["d.png", "d.json"] {
+        std::fs::rename(dir.path(&format!("set/{name}")), dir.path(&format!("grey/set/{name}"))).expect("moved");
+    }
+    let parts = [["photos", "set", "--out", "colour"], ["photos", "grey/set", "--out", "green"]];
+    parts.iter().for_each(|part| drop(dir.lunula(part).expect(0)));
+    let merged = dir.lunula(&["photos", "merge", "colour", "green", "--out", "merged"]).expect(0);
+    merged.says("pose `set` mixes 3 colour and 1 grey photograph(s)");
 }
 
 /// A nail with a colour profile: its samples are the same as without.

@@ -1,12 +1,17 @@
 //! The table of joint angles that `lunula posture` writes, as far as labels need it.
 //!
 //! In: CSV or Parquet with `time_s` and `<joint>_deg`; `<joint>_sd_deg`, `clock_s` and columns of its error where
-//! they are there. Out: a [`Posture`]. Other columns (`frame`, `status`) are not needed. A table of one frame is a
-//! table; one of none is refused.
+//! they are there. Out: a [`Posture`]. `status` is held against the angles; other columns (`frame`) are not needed. A
+//! table of one frame is a table; one of none is refused.
 
 use std::path::{Path, PathBuf};
 
 use crate::table::{Table, TableError};
+
+/// No joint turns further, degrees: `lunula posture` follows angles past half a turn.
+const MOST_DEG: f64 = 720.0;
+/// Angles that never reach this, and reach half a radian, may be radians.
+const RADIANS: f64 = std::f64::consts::PI;
 
 /// Joint angles over the video's time.
 ///
@@ -36,6 +41,8 @@ pub struct Posture {
     pub angles_deg: Vec<Vec<f64>>,
     /// For each joint, the angle's standard error in each frame, degrees; NaN where it is not known.
     pub sds_deg: Vec<Vec<f64>>,
+    /// What to doubt of the table.
+    pub warnings: Vec<String>,
 }
 
 /// What `lunula posture` reports of the clock in each frame, seconds; NaN where it is not known.
@@ -87,7 +94,13 @@ impl Posture {
         let mut angles_deg = Vec::with_capacity(joints.len());
         let mut sds_deg = Vec::with_capacity(joints.len());
         for joint in &joints {
-            angles_deg.push(missing_as_nan(table.numbers(&format!("{joint}_deg"))?));
+            let column = format!("{joint}_deg");
+            let angles = missing_as_nan(table.numbers(&column)?);
+            if let Some(row) = angles.iter().position(|angle| angle.abs() > MOST_DEG) {
+                let what = format!("`{:e}` is no joint's angle in degrees; correct it or leave it empty", angles[row]);
+                return Err(table.cell(row, &column, what));
+            }
+            angles_deg.push(angles);
             let name = format!("{joint}_sd_deg");
             let sds = known(&name)?.unwrap_or_else(unknown);
             if let Some(row) = sds.iter().position(|&sd| sd < 0.0) {
@@ -96,6 +109,19 @@ impl Posture {
             }
             sds_deg.push(sds);
         }
+        let mut warnings = Vec::new();
+        if has("status") {
+            let mut lost = vec![false; time_s.len()];
+            table.each_text("status", |row, status| lost[row] = status.starts_with("lost"))?;
+            warnings.extend(empty_lost(&mut angles_deg, &lost));
+        }
+        let most_deg = angles_deg.iter().flatten().map(|angle| angle.abs()).fold(0.0, f64::max);
+        if (0.5..RADIANS).contains(&most_deg) {
+            warnings.push(format!(
+                "no angle is further from 0 than {most_deg:.2} degrees; if these are radians, write degrees"
+            ));
+        }
+        warnings.iter_mut().for_each(|warning| *warning = format!("{}: {warning}", path.display()));
         let [read_s, sd_s, low_s, high_s] = ["read", "sd", "low", "high"].map(|what| known(&format!("clock_{what}_s")));
         let clock = match (read_s?, sd_s?, low_s?, high_s?) {
             (Some(read_s), Some(sd_s), Some(low_s), Some(high_s)) => Some(ClockColumns { read_s, sd_s, low_s, high_s }),
@@ -109,8 +135,25 @@ impl Posture {
             joints,
             angles_deg,
             sds_deg,
+            warnings,
         })
     }
+}
+
+/// Takes away the angles of frames in which a marker that they need was lost, and says so: somebody filled them in.
+fn empty_lost(angles_deg: &mut [Vec<f64>], lost: &[bool]) -> Option<String> {
+    let is_whole = |row: usize| angles_deg.iter().all(|angles| !angles[row].is_nan());
+    let filled: Vec<usize> = (0..lost.len()).filter(|&row| lost[row] && is_whole(row)).collect();
+    for angles in angles_deg {
+        filled.iter().for_each(|&row| angles[row] = f64::NAN);
+    }
+    let first = filled.first()?;
+    Some(format!(
+        "{} frame(s), the first in row {}, have every angle although their `status` says that a marker was lost: they \
+         are not used; leave empty what is not known",
+        filled.len(),
+        first + 1
+    ))
 }
 
 /// `J2_deg` is the angle of `J2`; `J2_sd_deg` is nobody's angle.
@@ -160,6 +203,17 @@ mod tests {
     /// NaN is equal to NaN here.
     fn same(a: &[f64], b: &[f64]) -> bool {
         a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a == b || a.is_nan() && b.is_nan())
+    }
+
+    #[test]
+    fn frames_that_were_filled_in_have_no_angle_and_radians_are_doubted() {
+        let filled = read("time_s,J1_deg,J2_deg,status\n0,1,40,ok\n1,0,0,lost: a\n2,,5,lost: b\n").unwrap();
+        assert!(same(&filled.angles_deg.concat(), &[1.0, f64::NAN, f64::NAN, 40.0, f64::NAN, 5.0]));
+        assert!(filled.warnings[0].contains("joints.csv: 1 frame(s), the first in row 2, have every angle"));
+        assert_eq!(filled.warnings.len(), 1);
+        let of = |most: &str| read(&format!("time_s,J2_deg\n0,0\n1,{most}\n")).unwrap().warnings.concat();
+        assert!(of("1.4").contains("no angle is further from 0 than 1.40 degrees"), "{}", of("1.4"));
+        assert_eq!([of("0.2"), of("4")].concat(), "");
     }
 
     #[test]
@@ -228,6 +282,7 @@ mod tests {
             ("time_s,J2_deg\n0,1\n-1,2\n", "joints.csv:3: column `time_s`: -1 comes after 0"),
             ("time_s,J2_deg\n0,1\n,2\n", "joints.csv:3: column `time_s`: is empty"),
             ("time_s,J2_deg\n0,1\nnan,2\n", "joints.csv:3: column `time_s`: `NaN` is no finite number"),
+            ("time_s,J2_deg\n0,1\n1,1e300\n", "joints.csv:3: column `J2_deg`: `1e300` is no joint's angle"),
             ("time_s,J2_deg\n0,1\n1,ok\n", "joints.csv:3: column `J2_deg`: `ok` is no finite number"),
             ("time_s,J2_deg,J2_sd_deg\n0,1,-0.5\n", "joints.csv:2: column `J2_sd_deg`: `-0.5` is no standard error"),
             ("frame,J2_deg\n0,1\n", "has no column `time_s`"),

@@ -18,7 +18,7 @@ use crate::job::Watch;
 use crate::photograph::{Photograph, is_picture};
 use crate::stages::Stages;
 use crate::video::{Frame, Item, Plane, Turn, Video};
-use crate::vision::{Corners, Grey, VisionError, find_board, shows_another};
+use crate::vision::{Corners, Grey, Sought, VisionError, find_board, shows_another};
 
 /// A picture that was looked at.
 #[derive(Debug, Clone, PartialEq)]
@@ -96,12 +96,19 @@ fn photograph(path: &Path, options: &CameraOptions, stages: &Stages) -> Result<L
 
 /// The corners of the only board.
 fn board(picture: Grey<'_>, size: BoardSize) -> Result<Result<Corners, String>, VisionError> {
-    let Some(corners) = find_board(picture, size.columns, size.rows)? else {
-        return Ok(Err(format!(
-            "no board of {size} inner corners is seen whole; all of it has to be in the picture, lit evenly, with a \
-             white margin (--board counts inner corners, not squares)"
-        )));
+    let beside = match find_board(picture, size.columns, size.rows)? {
+        Sought::Whole(corners) => return only(picture, corners, size),
+        Sought::OfSize([columns, rows]) => format!(", one of {columns}x{rows} may be"),
+        Sought::Nowhere => String::new(),
     };
+    Ok(Err(format!(
+        "no board of {size} inner corners is seen whole{beside}; all of it has to be in the picture, lit evenly, with \
+         a white margin (--board counts inner corners, not squares)"
+    )))
+}
+
+/// The corners, where no other board is seen.
+fn only(picture: Grey<'_>, corners: Corners, size: BoardSize) -> Result<Result<Corners, String>, VisionError> {
     if shows_another(picture, &corners, size.columns, size.rows)? {
         return Ok(Err("shows two boards; cover one of them".to_owned()));
     }

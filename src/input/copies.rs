@@ -16,13 +16,10 @@ const MIDDLE: usize = 4096;
 /// An input with its name in messages.
 type Named<'a> = (String, &'a Path);
 
-/// What to say of inputs that are the same to the byte. Of those that can't be read it is said elsewhere.
+/// What to say of inputs that are the same to the byte.
 pub(crate) fn copies<'a>(inputs: impl IntoIterator<Item = Named<'a>>) -> Vec<String> {
-    let regular = |input: &Named<'a>| fs::metadata(input.1).is_ok_and(|about| about.is_file());
-    let by_size = alike(inputs.into_iter().filter(regular).collect(), |path| Ok(fs::metadata(path)?.len()));
-    let by_middle = by_size.into_iter().flat_map(|inputs| alike(inputs, middle));
-    let same = by_middle.flat_map(|inputs| alike(inputs, |path| Ok(Sha256::digest(super::read(path)?))));
-    let mut said: Vec<String> = same
+    let mut said: Vec<String> = same_to_the_byte(inputs)
+        .into_iter()
         .map(|inputs| {
             let names: Vec<&str> = inputs.iter().map(|(name, _)| name.as_str()).collect();
             format!("{}: the same to the byte, and counted {} times; keep one", names.join(", "), names.len())
@@ -30,6 +27,15 @@ pub(crate) fn copies<'a>(inputs: impl IntoIterator<Item = Named<'a>>) -> Vec<Str
         .collect();
     said.sort();
     said
+}
+
+/// Groups of two inputs or more that are the same to the byte, each in its inputs' order. Of those that can't be read
+/// it is said elsewhere.
+pub(crate) fn same_to_the_byte<'a>(inputs: impl IntoIterator<Item = Named<'a>>) -> Vec<Vec<Named<'a>>> {
+    let regular = |input: &Named<'a>| fs::metadata(input.1).is_ok_and(|about| about.is_file());
+    let by_size = alike(inputs.into_iter().filter(regular).collect(), |path| Ok(fs::metadata(path)?.len()));
+    let by_middle = by_size.into_iter().flat_map(|inputs| alike(inputs, middle));
+    by_middle.flat_map(|inputs| alike(inputs, |path| Ok(Sha256::digest(super::read(path)?)))).collect()
 }
 
 /// Groups of two inputs or more of which the same is found.

@@ -21,7 +21,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use crate::words::nearest;
-pub(crate) use copies::copies;
+pub(crate) use copies::{copies, same_to_the_byte};
 
 /// The most that a pipe may bring (assumed: two hours of eight photodiodes at 1 kHz are 0.6 GB of CSV).
 pub const PIPE_BYTES: u64 = 1 << 30;

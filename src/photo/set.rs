@@ -73,12 +73,13 @@ pub enum SetError {
     },
     /// Not one photograph.
     #[error(
-        "{}: no photographs here (looked for .png, .jpg, .tif and .bmp in it and in the folders of poses within \
-         it){also}", .folder.display()
+        "{}: no photographs here (looked for {place}){also}", .folder.display()
     )]
     Empty {
         /// Which folder.
         folder: PathBuf,
+        /// Where was looked.
+        place: &'static str,
         /// What was there instead.
         also: String,
     },
@@ -126,7 +127,12 @@ impl PhotoSet {
         set.settle();
         if set.photos.is_empty() {
             let also = set.faults.iter().map(|f| format!("\n  {}: {}", shown(&f.place), f.what)).collect();
-            return Err(SetError::Empty { folder: folder.to_owned(), also });
+            let place = if manifest.is_file() {
+                "those that photos.csv names"
+            } else {
+                ".png, .jpg, .tif and .bmp in it and in the folders of poses within it"
+            };
+            return Err(SetError::Empty { folder: folder.to_owned(), place, also });
         }
         Ok(set)
     }

@@ -196,7 +196,8 @@ impl Photograph {
             return Err(ReadFault::Truncated);
         }
         let orientation = decoder.orientation()?;
-        let profile = Profile::of(&mut decoder);
+        let by_gamma = || (format == ImageFormat::Png).then(|| Profile::of_png_gamma(bytes)).flatten();
+        let profile = Profile::of(&mut decoder).or_else(by_gamma);
         if !is_supported(decoder.color_type()) {
             return Err(ReadFault::Samples(decoder.color_type()));
         }

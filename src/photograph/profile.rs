@@ -49,6 +49,21 @@ impl Profile {
         is_adobe.then(|| Self::of_icc(&ColorProfile::new_adobe_rgb(), true)).flatten()
     }
 
+    /// Of a PNG that states a gamma (its chunk gAMA) and no profile, where that is no curve like sRGB's: 1 is linear.
+    pub(super) fn of_png_gamma(bytes: &[u8]) -> Option<Self> {
+        let reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().ok()?;
+        let info = reader.info();
+        let gamma = info.gama_chunk?.into_value();
+        if info.icc_profile.is_some() || info.srgb.is_some() || gamma <= 0.0 {
+            return None;
+        }
+        let srgb =
+            |linear: f32| if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 };
+        let higher = |encoded: f32| encoded - 255.0 * srgb((encoded / 255.0).powf(1.0 / gamma));
+        let name = format!("gamma {:.2} (gAMA)", 1.0 / gamma);
+        Some(Self { name, skin_green: higher(SKIN[1]), grey: higher(GREY) }).filter(Self::has_other_curve)
+    }
+
     fn of_icc(profile: &ColorProfile, is_colour: bool) -> Option<Self> {
         let (layout, space) =
             if is_colour { (Layout::Rgb, DataColorSpace::Rgb) } else { (Layout::Gray, DataColorSpace::Gray) };
@@ -88,6 +103,25 @@ fn described(profile: &ColorProfile) -> String {
 
 #[cfg(test)]
 mod tests {
+    #[test]
+    fn a_png_that_states_another_gamma_has_another_curve() {
+        let stored = |gamma: Option<f32>, srgb: bool| {
+            let mut bytes = Vec::new();
+            let mut encoder = png::Encoder::new(&mut bytes, 2, 1);
+            encoder.set_color(png::ColorType::Rgb);
+            if srgb {
+                encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+            }
+            gamma.into_iter().for_each(|gamma| encoder.set_source_gamma(png::ScaledFloat::new(gamma)));
+            encoder.write_header().unwrap().write_image_data(&[128; 6]).unwrap();
+            Profile::of_png_gamma(&bytes)
+        };
+        let linear = stored(Some(1.0), false).unwrap();
+        // A linear 128 of 255 is 188 in sRGB.
+        assert!(linear.has_other_curve() && (linear.grey + 60.0).abs() < 1.0, "{linear:?}");
+        assert_eq!([stored(Some(0.454_55), false), stored(None, false), stored(Some(1.0), true)], [None, None, None]);
+    }
+
     use std::path::Path;
 
     use image::codecs::{jpeg::JpegEncoder, png::PngEncoder};

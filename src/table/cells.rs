@@ -33,7 +33,13 @@ impl CsvCells {
             let line = 1 + memchr_iter(b'\n', &why.as_bytes()[..why.utf8_error().valid_up_to()]).count();
             format!("line {line} is not UTF-8 text; save the file as UTF-8")
         })?;
-        let all = if is_plain(text.as_bytes()) { Self::of_plain(text)? } else { Self::of_quoted(&text)? };
+        let names = text.lines().next().unwrap_or_default();
+        let has_semicolons = names.contains(';') && !names.contains(',');
+        let all = if is_plain(text.as_bytes()) { Self::of_plain(text) } else { Self::of_quoted(&text) };
+        let all = all.map_err(|why| match has_semicolons {
+            true => "its cells are separated by `;`; write commas between them, and points in numbers".to_owned(),
+            false => why,
+        })?;
         Ok(all.with_names())
     }
 

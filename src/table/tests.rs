@@ -164,6 +164,7 @@ fn damaged_files_are_refused() {
     for (text, words) in [
         (&b""[..], "is empty"),
         (b"a,b\n1,2\n1,2,3\n", "line 3 has 3 cells and the first line 2"),
+        (b"a;b\n1,5;2,5\n", "its cells are separated by `;`; write commas"),
         (b"a,a\n1,2\n", "two columns are named `a`"),
         (b"a,b\n1,\xff\n", "line 2 is not UTF-8"),
     ] {

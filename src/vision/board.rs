@@ -30,16 +30,31 @@ const WINDOW_PX: [f32; 2] = [2.0, 15.0];
 /// Longer sides are made shorter for the slow search, pixels.
 const SLOW_SEARCH_PX: usize = 1000;
 
-/// Looks for a board of `columns` x `rows` inner corners.
-pub(crate) fn find_board(picture: Grey<'_>, columns: usize, rows: usize) -> Result<Option<Corners>, VisionError> {
+/// What a picture shows of a board.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) enum Sought {
+    /// All of it.
+    Whole(Corners),
+    /// One of a size beside: this many inner corners across and down.
+    OfSize([usize; 2]),
+    /// None.
+    Nowhere,
+}
+
+/// Looks for a board of `columns` x `rows` inner corners. The slow search takes a minute to find that there is none, so
+/// sizes beside come before it: squares are easily counted for inner corners, or a row left out.
+pub(crate) fn find_board(picture: Grey<'_>, columns: usize, rows: usize) -> Result<Sought, VisionError> {
     let mat = picture.mat()?;
     let size = Size::new(columns as i32, rows as i32);
     let mut corners = match fast(&mat, size)? {
         Some(corners) => corners,
-        None => match slow(&mat, size)? {
-            Some(corners) => corners,
-            None => return Ok(None),
-        },
+        None => {
+            if let Some(other) = size_beside(&mat, size)? {
+                return Ok(Sought::OfSize(other));
+            }
+            let Some(corners) = slow(&mat, size)? else { return Ok(Sought::Nowhere) };
+            corners
+        }
     };
     if corners.len() != columns * rows {
         let why = format!("{} corners of {columns} x {rows}", corners.len());
@@ -47,7 +62,18 @@ pub(crate) fn find_board(picture: Grey<'_>, columns: usize, rows: usize) -> Resu
     }
     refine(&mat, &mut corners, columns)?;
     let placed: Corners = corners.iter().map(|corner| [corner.x, corner.y]).collect();
-    Ok(Some(placed).filter(|corners| is_chessboard(picture, corners, columns)))
+    Ok(if is_chessboard(picture, &placed, columns) { Sought::Whole(placed) } else { Sought::Nowhere })
+}
+
+/// The size of a board that is there and differs by one across, down or both.
+fn size_beside(mat: &impl ToInputArray, size: Size) -> Result<Option<[usize; 2]>, VisionError> {
+    for (across, down) in [(-1, -1), (1, 1), (1, 0), (0, 1), (-1, 0), (0, -1)] {
+        let other = Size::new(size.width + across, size.height + down);
+        if other.width.min(other.height) > 2 && fast(mat, other)?.is_some() {
+            return Ok(Some([other.width as usize, other.height as usize]));
+        }
+    }
+    Ok(None)
 }
 
 /// The least contrast of squares about a corner, as a share of the board's median (assumed): a corner that was made up
@@ -180,11 +206,12 @@ mod tests {
         let scene = Scene::new(BoardOptions { size: (640, 480), views: 3, ..BoardOptions::default() }).unwrap();
         scene.views().par_iter().enumerate().for_each(|(k, view)| {
             let picture = scene.picture(&[*view], k as u32);
-            let found = find_board(grey(&picture), 9, 6).unwrap().expect("a board");
+            let found = find_board(grey(&picture), 9, 6).unwrap();
+            let Sought::Whole(found) = found else { panic!("{found:?}") };
             let error_px = error_px(&found, &scene.corners_px(view));
             assert!(error_px <= LARGEST_PX, "{error_px} px");
             assert!(!shows_another(grey(&picture), &found, 9, 6).unwrap());
-            assert_eq!(find_board(grey(&picture), 8, 7).unwrap(), None, "a board of another size");
+            assert_eq!(find_board(grey(&picture), 10, 7).unwrap(), Sought::OfSize([9, 6]), "squares were counted");
         });
     }
 

@@ -15,6 +15,7 @@ fn posture() -> Posture {
         joints: vec!["J2".into(), "J3".into()],
         angles_deg: vec![vec![10.0, 11.5, f64::NAN, -0.000_001], vec![5.25, f64::NAN, f64::NAN, 7.0]],
         sds_deg: vec![vec![0.02, 0.03, f64::NAN, 0.02], vec![f64::NAN; 4]],
+        warnings: Vec::new(),
     }
 }
 

@@ -44,6 +44,7 @@ fn posture(seconds: f64, every: usize, lost: usize) -> Posture {
             time_s.iter().enumerate().map(|(k, &t)| seen(k, 0.46 * j2(t) - 8.0)).collect(),
         ],
         sds_deg: vec![vec![0.4; time_s.len()], vec![0.6; time_s.len()], vec![1.2; time_s.len()]],
+        warnings: Vec::new(),
         time_s,
     }
 }

@@ -41,6 +41,7 @@ fn posture(time_s: Vec<f64>, angles_deg: Vec<Vec<f64>>, sd: f64) -> Posture {
         clock: None,
         joints: (1..=angles_deg.len()).map(|k| format!("J{k}")).collect(),
         sds_deg: vec![vec![sd; time_s.len()]; angles_deg.len()],
+        warnings: Vec::new(),
         time_s,
         angles_deg,
     }

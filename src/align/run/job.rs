@@ -55,7 +55,7 @@ pub fn run(
         let why = nothing_labelled(&posture, &samples, &tie);
         return Err(AlignError::NothingLabelled { path: inputs.log.clone(), why });
     }
-    let warnings = [&tie.warnings[..], &samples.warnings].concat();
+    let warnings = [&posture.warnings[..], &tie.warnings, &samples.warnings].concat();
     let notes = [&log.notes[..], &samples.notes, &tie.notes].concat();
     let certificate = Certificate::new(&tie, &labels, [&warnings[..], &notes].concat());
     stages.time("write", || results.training(&samples, &posture, &labels, &certificate, options, outputs))?;

@@ -83,7 +83,8 @@ impl Job for AlignJob {
             Part::if_wanted(DLC, "markers.csv"),
             Part::if_wanted(PICTURES, "training-labels.png"),
         ],
-    );
+    )
+    .revision(2);
 
     fn demand(&self, role: &str, own: &Demand) -> Demand {
         match role {

@@ -187,6 +187,7 @@ mod tests {
             joints: Vec::new(),
             angles_deg: Vec::new(),
             sds_deg: Vec::new(),
+            warnings: Vec::new(),
         }
     }
 

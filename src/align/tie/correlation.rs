@@ -126,6 +126,7 @@ mod tests {
             joints: vec!["J2".to_owned()],
             angles_deg: vec![time_s.iter().map(|&t| angle(t)).collect()],
             sds_deg: vec![vec![0.05; time_s.len()]],
+            warnings: Vec::new(),
             time_s,
         };
         let photodiodes = (1..4).map(channel).collect();
@@ -180,6 +181,7 @@ mod tests {
             joints: ["J1", "J2", "J3"].map(str::to_owned).to_vec(),
             angles_deg: (0..3).map(&mut angle).collect(),
             sds_deg: vec![vec![0.05; time_s.len()]; 3],
+            warnings: Vec::new(),
             time_s,
         };
         let (log_s, faults) = (rows.iter().map(|row| row.stamp_s).collect(), vec![String::new(); rows.len()]);

@@ -1,7 +1,8 @@
 //! The camera job: views and options in, a lens with its report and pictures out; the one entry that command line and
 //! pipelines call.
 
-use std::path::Path;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::camera::draw::draw;
@@ -13,6 +14,7 @@ use crate::camera::report::{About, CameraReport, figures};
 use crate::camera::run::plan::steps;
 use crate::camera::views::{Look, files, look};
 use crate::files::{Places, beside};
+use crate::input::same_to_the_byte;
 use crate::job::{Report, Watch};
 use crate::photograph::is_picture;
 use crate::stages::{Stages, left_out};
@@ -34,7 +36,8 @@ pub fn run(
 ) -> Result<CameraReport, CameraError> {
     let start = Instant::now();
     let stages = Stages::default();
-    let files = files(&inputs.views)?;
+    let mut files = files(&inputs.views)?;
+    let copied = leave_copies_out(&mut files);
     let report_at = outputs.report.then(|| beside(&outputs.camera, ".run.json"));
     let mut places = Places::not_over(files.iter().chain(&inputs.plane));
     places.check([Some(&outputs.camera), report_at.as_ref()].into_iter().flatten())?;
@@ -72,7 +75,7 @@ pub fn run(
     let counts = Some([files.len() - videos, videos]);
     let mut report = Report {
         left_out: left_out(steps(counts, inputs.plane.is_some(), options, Some(outputs))),
-        warnings: warnings(&fitted, &views, covered),
+        warnings: [copied, warnings(&fitted, &views, covered)].concat(),
         notes,
         failed,
         pictures,
@@ -82,6 +85,20 @@ pub fn run(
         report.unused(&["every"], "the views are photographs");
     }
     Ok(report.timed(&stages, start).commit(places, report_at.as_deref())?)
+}
+
+/// Takes away files that are another's copy to the byte: a view that is counted twice is no second view.
+fn leave_copies_out(files: &mut Vec<PathBuf>) -> Vec<String> {
+    let numbered = files.iter().enumerate().map(|(k, path)| (k.to_string(), path.as_path()));
+    let (mut copies, mut said) = (BTreeSet::new(), Vec::new());
+    for group in same_to_the_byte(numbered) {
+        let names: Vec<String> = group[1..].iter().map(|(_, path)| path.display().to_string()).collect();
+        said.push(format!("{}: the same to the byte as {}, and not counted", names.join(", "), group[0].1.display()));
+        copies.extend(group[1..].iter().map(|(number, _)| number.clone()));
+    }
+    let mut number = 0..;
+    files.retain(|_| !number.next().is_some_and(|k: usize| copies.contains(&k.to_string())));
+    said
 }
 
 /// The lens that views determine.

@@ -23,7 +23,8 @@ impl Job for CameraOptions {
             Role::new("plane", Takes::Optional, "the board in the finger's plane"),
         ],
         &[Part::new("camera", CAMERA), Part::if_wanted(PICTURES, "camera-corners.png")],
-    );
+    )
+    .revision(2);
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         let outputs = outputs(Path::new(""), demand);

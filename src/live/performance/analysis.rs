@@ -112,14 +112,6 @@ fn compare(methods: [&MethodFigures; 2], [baseline, other]: [&Times; 2]) -> Comp
     }
     let means: Vec<[f64; 2]> = sums.values().map(|(sum, count)| sum.map(|sum| sum / count)).collect();
     let initial = trials.first().and_then(|first| first.paired.ratio_of_means);
-    let levels = methods.map(|method| method.levels_off.map(|level| level.trial));
-    let level = match levels {
-        [Some(from), Some(to)] => {
-            let ratio = to.value / from.value;
-            Some((ratio, ratio * (to.se / to.value).hypot(from.se / from.value)))
-        }
-        _ => None,
-    };
     Comparison {
         method: methods[1].method.clone(),
         baseline: methods[0].method.clone(),
@@ -129,13 +121,50 @@ fn compare(methods: [&MethodFigures; 2], [baseline, other]: [&Times; 2]) -> Comp
             ratio_se: None,
             at_most: HALF,
             holds: initial.map(|ratio| ratio < HALF),
+            unsettled: None,
         },
-        to_level_off: Statement {
-            ratio: level.map(|level| level.0),
-            ratio_se: level.map(|level| level.1),
-            at_most: HALF,
-            holds: level.map(|(ratio, _)| ratio <= HALF),
-        },
+        to_level_off: to_level_off(methods),
         trials,
+    }
+}
+
+/// Curves whose AICc is no further apart fit alike (Burnham and Anderson 2002, section 2.6).
+const ALIKE_AICC: f64 = 2.0;
+
+impl Fitted {
+    /// The trials at which the curves that fit are level; of one that is nowhere, none.
+    fn levels(&self) -> Vec<Option<f64>> {
+        let alike = self.aicc_difference.is_some_and(|difference| difference.abs() < ALIKE_AICC);
+        let both = [(Law::Exponential, &self.exponential), (Law::Power, &self.power)];
+        let fitting = both.into_iter().filter(|(law, _)| alike || Some(*law) == self.better);
+        fitting.filter_map(|(_, fit)| fit.curve).map(|curve| Some(curve.level_at?.value)).collect()
+    }
+}
+
+/// Of `[baseline, method]`, whether the method is level in half the trials.
+fn to_level_off(methods: [&MethodFigures; 2]) -> Statement {
+    let none = Statement { ratio: None, ratio_se: None, at_most: HALF, holds: None, unsettled: None };
+    let [Some(from), Some(to)] = methods.map(|method| method.levels_off) else { return none };
+    let ratio = to.trial.value / from.trial.value;
+    let ratio_se = ratio * (to.trial.se / to.trial.value).hypot(from.trial.se / from.trial.value);
+    let holds = ratio <= HALF;
+    let [froms, tos] = methods.map(|method| method.fitted.levels());
+    let alike =
+        |from: &Option<f64>, to: &Option<f64>| from.zip(*to).is_some_and(|(from, to)| (to / from <= HALF) == holds);
+    let unsettled = if !(from.was_reached && to.was_reached) {
+        Some("a level was not reached")
+    } else if (ratio - HALF).abs() <= 2.0 * ratio_se {
+        Some("it is within two standard errors of half")
+    } else if !froms.iter().all(|from| tos.iter().all(|to| alike(from, to))) {
+        Some("the other law fits as well, and does not say the same")
+    } else {
+        None
+    };
+    Statement {
+        ratio: Some(ratio),
+        ratio_se: Some(ratio_se),
+        holds: unsettled.is_none().then_some(holds),
+        unsettled,
+        ..none
     }
 }

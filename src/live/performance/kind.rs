@@ -29,7 +29,8 @@ impl Job for PerformanceOptions {
             Part::if_wanted(ROWS_PART, ROWS),
             Part::if_wanted(PICTURES, ""),
         ],
-    );
+    )
+    .revision(2);
 
     fn steps(&self, _inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         Ok(plan(Some(&outputs(Path::new(""), demand))))

@@ -131,6 +131,8 @@ pub struct Statement {
     pub ratio_se: Option<f64>,
     /// The statement holds up to this.
     pub at_most: f64,
-    /// Whether it does.
+    /// Whether it does; none where that is not known.
     pub holds: Option<bool>,
+    /// Why that is not known although there is a ratio.
+    pub unsettled: Option<&'static str>,
 }

@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::path::PathBuf;
 
-use lunula_live::switch::Trace;
+use lunula_live::switch::{LONGEST_GAP_S, Trace};
 use lunula_predictor::{Gate, Predictor};
 
 use super::options::ContactOptions;
@@ -130,6 +130,16 @@ fn read_trace(
     notes.extend(said);
     if trace.time_s.is_empty() {
         return Err(refused("has no rows with the LED on".to_owned()));
+    }
+    let times = &trace.time_s;
+    if trace.contacts.seconds() == 0.0 && times.len() > 1 {
+        let apart_s = (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;
+        if apart_s > LONGEST_GAP_S {
+            return Err(refused(format!(
+                "its rows are {apart_s:.1} s apart, and contact is known between rows up to {LONGEST_GAP_S} s apart; \
+                 call a time in milliseconds time_ms"
+            )));
+        }
     }
     Ok(trace)
 }

@@ -157,6 +157,9 @@ pub fn samples(log: &Log, options: &AmbientOptions) -> Result<Samples, AmbientEr
     });
     let photodiodes: Vec<Channel> = photodiodes.collect();
     found.notes.extend(unlit.iter().filter_map(|unlit| unlit.note(&shares)));
+    if !dark.is_empty() {
+        found.warnings.extend(dimmed(&photodiodes));
+    }
     let forces = log.forces.iter().map(|channel| {
         let values = lit.iter().map(|&row| channel.values[row]).collect();
         Channel { name: channel.name.clone(), values }
@@ -167,6 +170,26 @@ pub fn samples(log: &Log, options: &AmbientOptions) -> Result<Samples, AmbientEr
     found.warnings.extend(doubts::forces(forces.iter().map(|force| (force.name.as_str(), &force.values[..]))));
     let faults = found.faults.iter().map(|faults| faults.words(photodiodes.len())).collect();
     Ok(Samples { time_s, photodiodes, forces, faults, warnings: found.warnings, notes: found.notes })
+}
+
+/// Photodiodes that the LED makes darker.
+fn dimmed(photodiodes: &[Channel]) -> Option<String> {
+    /// Of the samples that are known, so many are below those without the LED: light that hardly reaches a photodiode
+    /// has about half of them below.
+    const NEARLY_ALL: f64 = 0.95;
+    let is_dimmed = |channel: &&Channel| {
+        let known = channel.values.iter().filter(|value| !value.is_nan()).count();
+        let below = channel.values.iter().filter(|value| **value < 0.0).count();
+        known > 0 && below as f64 >= NEARLY_ALL * known as f64
+    };
+    let names: Vec<&str> = photodiodes.iter().filter(is_dimmed).map(|channel| channel.name.as_str()).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "{} read less lit than unlit, so what is left of them is negative: `led` is 1 while the LED is on; is it \
+             the other way round here, or does light lower the voltage?",
+            names.join(", ")
+        )
+    })
 }
 
 /// Whether a range is one.

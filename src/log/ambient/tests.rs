@@ -92,6 +92,11 @@ fn an_led_that_never_changes_is_told() {
     steady.led = Some(vec![false; 8]);
     let error = super::samples(&steady, &AmbientOptions::default()).unwrap_err().to_string();
     assert!(error.contains("log.csv: the LED is never on") && error.contains("8 rows"), "{error}");
+    // The other way round: what is left is negative.
+    let mut reversed = alternating(200, |t| 0.5 + 0.01 * (TAU * t).sin());
+    assert!(!noted(&all(&reversed), "less lit than unlit"));
+    reversed.led.as_mut().unwrap().iter_mut().for_each(|on| *on = !*on);
+    assert!(all(&reversed).warnings.iter().any(|warning| warning.starts_with("P1 read less lit than unlit")));
     for bad in [[5.0, 0.0], [1.0, 1.0], [f64::NAN, 1.0]] {
         let options = AmbientOptions { full_scale_v: Some(bad), ..AmbientOptions::default() };
         assert!(matches!(super::samples(&steady, &options), Err(AmbientError::FullScale { .. })));

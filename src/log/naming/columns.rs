@@ -84,12 +84,12 @@ impl Columns {
         // Pressures alone are a log as well: `lunula simulate --loads` needs no more.
         if !columns.iter().any(|(role, _)| role.is_light() || matches!(role, Role::Pressure(_))) {
             let places = Known::of(columns).places;
-            let other = (0..names.len()).find(|k| !places.contains(k)).unwrap_or(0);
-            return Err(format!(
-                "no photodiode found; its columns are {}; say which they are, as in --columns \"P1={}\"",
-                listed(names),
-                shown(&names[other], other)
-            ));
+            let other = (0..names.len()).find(|k| !places.contains(k));
+            let remedy = match other {
+                Some(k) => format!("say which they are, as in --columns \"P1={}\"", shown(&names[k], k)),
+                None => "record at least one".to_owned(),
+            };
+            return Err(format!("no photodiode found; its columns are {}; {remedy}", listed(names)));
         }
         Ok(choice)
     }
@@ -300,6 +300,7 @@ mod tests {
         assert!(error.contains("no time column") && error.contains("--columns \"time_s=hr\""), "{error}");
         let error = chosen("", "time_s|hr").unwrap_err();
         assert!(error.contains("no photodiode") && error.contains("--columns \"P1=hr\""), "{error}");
+        assert!(chosen("", "time_s|Fz_N").unwrap_err().ends_with("its columns are time_s, Fz_N; record at least one"));
         assert!(chosen("", "time_s|P1|P1").unwrap_err().contains("two columns are named `P1`"));
         assert!(chosen("P2=v", "time_s|P1|v|v").unwrap_err().contains("`#3`"));
     }

@@ -27,7 +27,7 @@ use crate::nailvideo::normal::{SIDE, WindowSums, green};
 use crate::nailvideo::options::{Inputs, Light, NailVideoOptions, Outputs};
 use crate::nailvideo::press::{Recording, USE, noise_sd, rows};
 use crate::nailvideo::sample::{Colours, Planes, Region, Sampled, Sampler, cells, discs};
-use crate::photo::outline::ToDraw;
+use crate::photo::outline::{Source, ToDraw};
 use crate::photograph::Photograph;
 use crate::stages::{Stages, left_out};
 use crate::video::{End, Frame, Info, Item, Video};
@@ -408,7 +408,11 @@ impl Job<'_> {
         }
         if report.frames.first > 0 {
             let first = report.frames.first;
-            report.notes.push(format!("no nail was found before frame {first}; the nail is followed from there on"));
+            let why = match nail.source {
+                Source::Detected => "no nail was found before",
+                Source::Annotated | Source::Mask => "the outline is drawn on",
+            };
+            report.notes.push(format!("{why} frame {first}; the nail is followed from there on"));
         }
         match quantizer {
             Some(parameter) if parameter >= STRONG => report.warnings.push(format!(

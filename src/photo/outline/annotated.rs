@@ -113,6 +113,15 @@ pub enum ShapeFault {
         /// Height of the upright photograph, pixels.
         height: u32,
     },
+    /// An axis that is no nail's, most likely this one's.
+    #[error(
+        "shape {number} is labelled {AXIS} and belongs to no nail; draw it as a line of two points whose middle lies \
+         in the nail, or give both the same group_id"
+    )]
+    LooseAxis {
+        /// Counted from 1.
+        number: usize,
+    },
     /// Not an outline.
     #[error("shape {number}: {fault}")]
     Outline {
@@ -180,7 +189,15 @@ pub fn read(path: &Path, photo: &Photograph, drawn: Drawn) -> Result<DrawnNails,
     let file = LabelMe::read(path)?;
     let name = path.display().to_string();
     let stored = drawn.or_of(&file).is_stored(file.size(), photo, &name)?;
-    let nails: Vec<Annotated> = labelled(&file, photo, stored, &[NAIL]).into_iter().map(|one| one.nail).collect();
+    let mut found = labelled(&file, photo, stored, &[NAIL, DOUBTFUL]);
+    for (line, nail) in loose_axes(&file, &found) {
+        // What is wrong with an outline comes first.
+        if found[nail].nail.outline.is_ok() {
+            found[nail].nail.outline = Err(ShapeFault::LooseAxis { number: line + 1 });
+        }
+    }
+    found.retain(|one| is(&file.shapes[one.polygon], NAIL));
+    let nails: Vec<Annotated> = found.into_iter().map(|one| one.nail).collect();
     if nails.is_empty() {
         return Err(AnnotationFault::NoNail(name));
     }
@@ -219,7 +236,6 @@ pub(crate) fn labelled(file: &LabelMe, photo: &Photograph, stored: bool, labels:
         Some(Line { place, group: shape.group_id, ends: <[[f64; 2]; 2]>::try_from(ends).ok()? })
     };
     let shapes = || file.shapes.iter().enumerate();
-    let is = |shape: &Shape, label: &str| shape.label.trim().eq_ignore_ascii_case(label);
     let lines: Vec<Line> = shapes().filter(|(_, s)| is(s, AXIS)).filter_map(line).collect();
     let nails = shapes().filter(|(_, s)| labels.iter().any(|label| is(s, label)));
     nails
@@ -231,6 +247,34 @@ pub(crate) fn labelled(file: &LabelMe, photo: &Photograph, stored: bool, labels:
             Labelled { polygon, line, points, nail: Annotated { outline, axis } }
         })
         .collect()
+}
+
+fn is(shape: &Shape, label: &str) -> bool {
+    shape.label.trim().eq_ignore_ascii_case(label)
+}
+
+/// Shapes labelled `axis` that are no nail's, each with the nail that it is most likely meant for: the nearest without
+/// an axis. Of one that shares its group with another thing nothing is said.
+fn loose_axes(file: &LabelMe, found: &[Labelled]) -> Vec<(usize, usize)> {
+    let middle = |place: usize| {
+        let points = &file.shapes[place].points;
+        [0, 1].map(|axis| points.iter().map(|point| point[axis]).sum::<f64>() / points.len() as f64)
+    };
+    let is_nails = |shape: &Shape| [AXIS, NAIL, DOUBTFUL].iter().any(|label| is(shape, label));
+    let is_loose = |place: &usize| {
+        let shape = &file.shapes[*place];
+        let others = |other: &Shape| shape.group_id.is_some() && other.group_id == shape.group_id && !is_nails(other);
+        is(shape, AXIS) && !found.iter().any(|one| one.line == Some(*place)) && !file.shapes.iter().any(others)
+    };
+    let nearest = |line: usize| {
+        let [x, y] = middle(line);
+        let away = |nail: &usize| {
+            let [nail_x, nail_y] = middle(found[*nail].polygon);
+            (nail_x - x).hypot(nail_y - y)
+        };
+        (0..found.len()).filter(|nail| found[*nail].line.is_none()).min_by(|a, b| away(a).total_cmp(&away(b)))
+    };
+    (0..file.shapes.len()).filter(is_loose).filter_map(|line| Some((line, nearest(line)?))).collect()
 }
 
 /// A line labelled `axis`.

@@ -356,6 +356,9 @@ impl Work<'_> {
             self.stages.time("add up", || {
                 let mut pose = locked(&self.poses[photo.pose.as_str()]);
                 let batch = pose.batch.get_or_insert_with(|| Batch::new(self.options.normalization.size));
+                if picture.is_grey() {
+                    batch.mark_grey(&photo.subject);
+                }
                 let added = batch.add(&photo.subject, pictures);
                 added.expect("a set lists a subject once per pose");
             });

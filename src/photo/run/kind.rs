@@ -61,7 +61,7 @@ impl Job for PhotosOptions {
         ],
         &[Part::new("sums", ""), Part::new("nails", "nails.csv"), Part::if_wanted(PICTURES, "normalized")],
     )
-    .revision(9);
+    .revision(10);
 
     fn checked(mut self) -> Result<Self, OptionFault> {
         if self.channels {
@@ -168,7 +168,7 @@ impl Job for MapsJob {
         ],
         &[Part::new("maps", ""), Part::new("nails", "nails.csv"), Part::if_wanted(FIGURES, "figures")],
     )
-    .revision(2);
+    .revision(3);
 
     fn demand(&self, role: &str, _own: &Demand) -> Demand {
         let parts = if role == "sums" { ["sums"].into() } else { [].into() };

@@ -15,7 +15,7 @@ use crate::job::{Report, Watch};
 use crate::photo::channels::{ChannelFigures, add_section};
 use crate::photo::normalize::Normalization;
 use crate::photo::options::{Outputs, PhotosOptions, Results};
-use crate::photo::outline::SavedOutlines;
+use crate::photo::outline::{OutlinePlace, SavedOutlines};
 use crate::photo::pose::sort_by_pose;
 use crate::photo::results::{DrawnSheet, NAIL_COLUMNS, NailRow, NailTable};
 use crate::photo::set::{Photo, PhotoSet, SetFault};
@@ -78,6 +78,27 @@ pub(in crate::photo) fn one_subject(poses: &[PoseCount]) -> Option<String> {
             alone.len()
         )),
     }
+}
+
+/// Warns of poses with colour and grey photographs: how many of either.
+fn mixed_poses<'a>(poses: impl Iterator<Item = (&'a str, usize, usize)>) -> Vec<String> {
+    let mut mixed: Vec<_> = poses.filter(|(_, colour, grey)| *colour > 0 && *grey > 0).collect();
+    sort_by_pose(&mut mixed, |(pose, ..)| pose);
+    let said = mixed.into_iter().map(|(pose, colour, grey)| {
+        format!(
+            "pose `{pose}` mixes {colour} colour and {grey} grey photograph(s): grey values equal a colour's channel \
+             only where a filter of that colour was used; else make maps of each kind apart"
+        )
+    });
+    said.collect()
+}
+
+/// .. of maps that were made in parts, a photograph a subject.
+pub(in crate::photo) fn mixed_sums(partials: &Partials) -> Vec<String> {
+    mixed_poses(partials.poses.iter().map(|(pose, sums)| {
+        let grey = sums.grey.len();
+        (pose.as_str(), sums.subjects.len() - grey, grey)
+    }))
 }
 
 /// What a run found, photograph by photograph, before it is a report.
@@ -163,7 +184,9 @@ impl<'a> Findings<'a> {
         let files = self.set.photos.iter().filter(|photo| seen.insert(&photo.path));
         let copies = copies(files.map(|photo| (photo.file.clone(), photo.path.as_path())));
         let elsewhere = self.drawn_on_others();
-        self.mixed_poses()
+        let mixed = self.colours.iter().map(|(pose, [colour, grey])| (*pose, *colour, *grey));
+        mixed_poses(mixed)
+            .into_iter()
             .chain(self.mixed_profiles())
             .chain(self.few_bits())
             .chain(without)
@@ -183,19 +206,6 @@ impl<'a> Findings<'a> {
             first.file,
             other.display()
         ))
-    }
-
-    /// Grey values are comparable with a colour photograph's green channel only if a green filter was used.
-    fn mixed_poses(&self) -> impl Iterator<Item = String> {
-        let mixed = self.colours.iter().filter(|(_, [colour, grey])| *colour > 0 && *grey > 0);
-        let mut mixed: Vec<_> = mixed.collect();
-        sort_by_pose(&mut mixed, |(pose, _)| pose);
-        mixed.into_iter().map(|(pose, [colour, grey])| {
-            format!(
-                "pose `{pose}` mixes {colour} colour and {grey} grey photograph(s): grey values equal the green \
-                 channel only where a green filter was used; else make maps of each kind apart"
-            )
-        })
     }
 
     /// Values are as the file encodes them, so photographs of several profiles are not comparable to the last bit.
@@ -242,6 +252,7 @@ const FEW_BITS: [u32; 4] = [8, 10, 12, 14];
 pub(in crate::photo) fn of_photos(found: Findings<'_>, mut poses: Vec<PoseCount>, watch: &Watch<'_>) -> PhotosReport {
     sort_by_pose(&mut poses, |counted| &counted.pose);
     let warnings = found.warnings();
+    let all_grey = !found.colours.is_empty() && found.colours.values().all(|[colour, _]| *colour == 0);
     let Findings { set, options, has_maps, rows, failed, left_out, outlines, .. } = found;
     let mut notes: Vec<String> = outlines.iter().flat_map(SavedOutlines::notes).collect();
     notes.extend(one_subject(&poses).filter(|_| has_maps));
@@ -267,6 +278,12 @@ pub(in crate::photo) fn of_photos(found: Findings<'_>, mut poses: Vec<PoseCount>
     if options.outlines.masks.is_none() {
         report.unused(&["mask_value"], "there is no folder of --masks");
     }
+    if all_grey {
+        report.unused(&["channel", "channels"], "every photograph is grey");
+    }
+    if set.photos.iter().all(|photo| options.outlines.locate(photo) != OutlinePlace::Detection) {
+        report.unused(&["detector", "detect_size"], "no outline has to be detected");
+    }
     report
 }
 
@@ -288,7 +305,8 @@ pub(in crate::photo) fn of_merge(parts: &[PathBuf], partials: &Partials, watch: 
         left_out
             .push("channels compared: over all subjects, so photographs are needed: `lunula photos --channels`".into());
     }
-    Report { left_out, notes, ..Report::new("photos merge", watch, figures) }
+    let warnings = mixed_sums(partials);
+    Report { left_out, warnings, notes, ..Report::new("photos merge", watch, figures) }
 }
 
 impl PhotosReport {

@@ -37,6 +37,11 @@ impl Batch {
         Ok(())
     }
 
+    /// Says that a subject's photograph is grey.
+    pub(in crate::photo) fn mark_grey(&mut self, subject: &str) {
+        self.sums.grey.insert(subject.to_owned());
+    }
+
     /// The sums of all that was added.
     pub(in crate::photo) fn finish(mut self) -> Sums {
         self.sums.add_whole(&self.waiting);

@@ -21,7 +21,7 @@ use crate::job::{Report, Watch};
 use crate::photo::error::MergeError;
 use crate::photo::normalize::Normalization;
 use crate::photo::results::{NailTable, write_maps};
-use crate::photo::run::report::{PoseCount, one_subject, pose_counts};
+use crate::photo::run::report::{PoseCount, mixed_sums, one_subject, pose_counts};
 use crate::stages::Stages;
 
 /// What is gathered, and where results go.
@@ -108,8 +108,9 @@ pub fn gather(gathering: &Gathering, watch: &Watch<'_>) -> Result<GatherReport, 
         .into_iter()
         .collect();
     let notes = one_subject(&poses).into_iter().collect();
+    let warnings = mixed_sums(&partials);
     let figures = GatherFigures { poses, sums_added, sums_kept, normalization: partials.normalization, accuracy };
-    Ok(Report { left_out, notes, ..Report::new("maps", watch, figures) }.timed(&stages, start))
+    Ok(Report { left_out, warnings, notes, ..Report::new("maps", watch, figures) }.timed(&stages, start))
 }
 
 /// What the parts hold, by pose, from their lists alone.

@@ -27,6 +27,8 @@ pub struct Sums {
     pub(crate) sum_sq: Vec<u64>,
     pub(crate) count: Vec<u32>,
     pub(crate) subjects: BTreeSet<String>,
+    /// Those whose photographs are grey.
+    pub(crate) grey: BTreeSet<String>,
 }
 
 /// Mean, SD and count over subjects; fractions of full scale.
@@ -44,7 +46,8 @@ impl Sums {
     /// No subject yet.
     pub fn new(size: usize) -> Self {
         let pixels = size * size;
-        Self { size, sum: vec![0; pixels], sum_sq: vec![0; pixels], count: vec![0; pixels], subjects: BTreeSet::new() }
+        let (sum, sum_sq, count) = (vec![0; pixels], vec![0; pixels], vec![0; pixels]);
+        Self { size, sum, sum_sq, count, subjects: BTreeSet::new(), grey: BTreeSet::new() }
     }
 
     /// Adds a subject, whose picture is the mean of `nails` where they show it.
@@ -116,6 +119,7 @@ impl Sums {
             return Err(DuplicateSubject(both.clone()));
         }
         self.subjects.extend(other.subjects.iter().cloned());
+        self.grey.extend(other.grey.iter().cloned());
         for (a, b) in self.sum.iter_mut().zip(&other.sum) {
             *a += b;
         }

@@ -95,6 +95,9 @@ pub(super) struct Meta {
     pub(super) pose: String,
     pub(super) normalization: Normalization,
     subjects: BTreeSet<String>,
+    /// Those whose photographs are grey.
+    #[serde(default, skip_serializing_if = "BTreeSet::is_empty")]
+    grey: BTreeSet<String>,
 }
 
 /// What a partial map holds.
@@ -177,8 +180,9 @@ fn archive(bytes: usize) -> NpzWriter<Cursor<Vec<u8>>> {
 }
 
 fn meta(format: u32, pose: &str, sums: &Sums, normalization: &Normalization) -> serde_json::Result<Array1<u8>> {
-    let (pose, normalization, subjects) = (pose.to_owned(), *normalization, sums.subjects.clone());
-    Ok(Array1::from(serde_json::to_vec(&Meta { format, pose, normalization, subjects })?))
+    let (subjects, grey) = (sums.subjects.clone(), sums.grey.clone());
+    let meta = Meta { format, pose: pose.to_owned(), normalization: *normalization, subjects, grey };
+    Ok(Array1::from(serde_json::to_vec(&meta)?))
 }
 
 /// Joins the partial maps of several results of `lunula photos`.
@@ -218,7 +222,10 @@ pub(super) fn agree(file: &Path, meta: &Meta, expected: &Normalization) -> Resul
 pub(super) fn add(whole: &mut Sums, file: &Path, meta: Meta, held: Held) -> Result<(), PartialFault> {
     let added = match held {
         Held::Sums(sums) => whole.merge(&sums),
-        Held::One(subject, picture) => whole.add(&subject, &[picture]),
+        Held::One(subject, picture) => {
+            whole.grey.extend(meta.grey);
+            whole.add(&subject, &[picture])
+        }
     };
     added.map_err(|both| PartialFault::Overlap { file: file.to_owned(), pose: meta.pose, subject: both.0 })
 }
@@ -257,6 +264,9 @@ pub(super) fn read(path: &Path) -> Result<(Meta, Held), PartialFault> {
         let Some(subject) = meta.subjects.first().filter(|_| meta.subjects.len() == 1).cloned() else {
             return Err(unreadable("holds levels, which are one subject's, and names none or several".into()));
         };
+        if !meta.grey.is_subset(&meta.subjects) {
+            return Err(unreadable("is grey for a subject that it does not hold".into()));
+        }
         let levels = npz.square::<u16>("level", size).map_err(unreadable)?;
         let has_seen = npz.has("seen");
         let seen = has_seen.then(|| npz.square::<u8>("seen", size)).transpose().map_err(unreadable)?;
@@ -266,8 +276,8 @@ pub(super) fn read(path: &Path) -> Result<(Meta, Held), PartialFault> {
     let sum = npz.square("sum", size).map_err(unreadable)?;
     let sum_sq = npz.square("sum_sq", size).map_err(unreadable)?;
     let count = npz.square("count", size).map_err(unreadable)?;
-    let sums = Sums { size, sum, sum_sq, count, subjects: meta.subjects.clone() };
-    if !sums.are_possible() {
+    let sums = Sums { size, sum, sum_sq, count, subjects: meta.subjects.clone(), grey: meta.grey.clone() };
+    if !sums.are_possible() || !sums.grey.is_subset(&sums.subjects) {
         return Err(unreadable("its sums contradict one another".into()));
     }
     Ok((meta, Held::Sums(sums)))

@@ -5,7 +5,6 @@
 //! the folder; then a run does there what no part could, and whatever inputs have changed since: that is shown by the
 //! tasks' keys, not by times.
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::fs::File;
 use std::io;
@@ -310,18 +309,20 @@ fn difference(mark: &PartMark, pipeline: &PipelineMark, lunula: &str) -> Option<
     if mark.pipeline.decides == pipeline.decides {
         return None;
     }
-    let lines = |text: &str| text.lines().map(str::to_owned).enumerate().collect::<BTreeMap<usize, String>>();
-    let (one, other) = (lines(&mark.pipeline.text), lines(&pipeline.text));
-    let changed = (0..one.len().max(other.len())).find(|line| one.get(line) != other.get(line));
-    Some(match changed {
-        Some(line) => {
-            let said = |lines: &BTreeMap<usize, String>| {
-                lines.get(&line).map_or_else(|| "nothing".into(), |text| format!("{text:?}"))
-            };
-            format!("line {} says {} and {}", line + 1, said(&one), said(&other))
+    // Comments decide nothing.
+    let decides = |(_, line): &(usize, &str)| !line.trim_start().starts_with('#') && !line.trim().is_empty();
+    let [mut one, mut other] =
+        [&mark.pipeline.text, &pipeline.text].map(|text| (1..).zip(text.lines()).filter(decides));
+    loop {
+        let (a, b) = (one.next(), other.next());
+        let [line, ..] = [a, b].into_iter().flatten().map(|(line, _)| line).collect::<Vec<usize>>()[..] else {
+            return Some("their options are not the same".into());
+        };
+        let [a, b] = [a, b].map(|of| of.map_or_else(|| "nothing".into(), |(_, text)| format!("{text:?}")));
+        if a != b {
+            return Some(format!("line {line} says {a} and {b}"));
         }
-        None => "their options are not the same".into(),
-    })
+    }
 }
 
 /// What a part has of a task.

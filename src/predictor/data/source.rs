@@ -105,6 +105,9 @@ impl Source {
 
     fn of_log(path: &Path, wanted: &Wanted) -> Result<Self, DataError> {
         let LitRows { samples, notes, .. } = wanted.rows.log.lit_rows(path)?;
+        // A force in another unit is not read.
+        let of_columns = notes.iter().filter(|note| note.starts_with("column "));
+        let of_columns: String = of_columns.map(|note| format!("; {note}")).collect();
         let placed = |notes: &[String]| notes.iter().map(|note| format!("{}: {note}", path.display())).collect();
         let (warnings, notes) = (placed(&samples.warnings), placed(&[&notes[..], &samples.notes].concat()));
         let channels = || samples.photodiodes.iter().chain(&samples.forces);
@@ -129,7 +132,7 @@ impl Source {
                     } else {
                         ""
                     };
-                    let what = format!("is a raw log and {}{angle}", missing(name, &names));
+                    let what = format!("is a raw log and {}{of_columns}{angle}", missing(name, &names));
                     Err(DataError::Columns { path: path.to_owned(), what })
                 }
             }

@@ -267,6 +267,12 @@ fn a_modulated_log_is_what_align_makes_of_it() {
     assert!(notes.iter().any(|note| note.contains("log.csv: ambient light taken away")), "{notes:?}");
     let said = read_data(&[path], &angle()).unwrap_err().to_string();
     assert!(said.contains("is a raw log and has no column `J2_deg`") && said.contains("lunula align"), "{said}");
+    let newtons = folder.file("mn.csv", modulated(400).replacen("Fx_N", "Fx_mN", 1));
+    let said = read_data(&[newtons], &forces()).unwrap_err().to_string();
+    assert!(
+        said.contains("has no column `Fx_N`") && said.contains("`Fx_mN` is a force that is not in newtons"),
+        "{said}"
+    );
 }
 
 #[test]

@@ -231,8 +231,8 @@ impl Reader {
     fn look_for_a_cut(&mut self) {
         let declared = self.source.declared_frames();
         let so_far = match declared {
-            Some(declared) => format!("{} of {declared} frames are there", self.packets),
-            None => format!("{} frames are there", self.packets),
+            Some(declared) => format!("it has data of {} of {declared} frames", self.packets),
+            None => format!("it has data of {} frames", self.packets),
         };
         let all_there = declared.is_some_and(|declared| self.packets >= declared) && !self.last_is_partial;
         self.cut = if let Some(error) = &self.stopped_by {

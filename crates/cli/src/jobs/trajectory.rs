@@ -124,6 +124,9 @@ fn say_force(common: &Common, report: &TrajectoryReport, force: &ForceFigures) {
             options.tau_s,
             force.limit_per_s,
             match rates.over_share {
+                Some(share) if force.keeps_limit && share > 0.0 => {
+                    format!("kept but for {:.1} % of that time{always}", 100.0 * share)
+                }
                 _ if force.keeps_limit => format!("kept{always}"),
                 Some(share) => format!("not kept in {:.0} % of that time", 100.0 * share),
                 None => "there is no such force".to_owned(),

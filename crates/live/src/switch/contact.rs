@@ -10,7 +10,7 @@ use serde::Serialize;
 /// Contacts closer than this are one, seconds: assumed, less than a finger takes to let go and touch again.
 const MERGED_S: f64 = 0.1;
 /// Rows further apart have a gap between them, seconds: assumed.
-const LONGEST_GAP_S: f64 = 0.5;
+pub const LONGEST_GAP_S: f64 = 0.5;
 
 /// A touch of the finger.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

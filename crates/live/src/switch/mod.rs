@@ -20,7 +20,7 @@ mod tests;
 mod tune;
 
 pub use config::{ConfigFault, Outside, Place, SwitchConfig};
-pub use contact::{Contact, Contacts};
+pub use contact::{Contact, Contacts, LONGEST_GAP_S};
 pub use evaluate::{Evaluation, FalseRate, Fate, Match, Quartiles, Trace, matches};
 pub use event::{Reason, SwitchEvent, Turn};
 pub use machine::{Reading, Switch};

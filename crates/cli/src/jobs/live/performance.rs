@@ -142,12 +142,13 @@ fn say_comparison(common: &Common, one: &Comparison) {
             paired.n
         ));
     }
-    let answer = |statement: &Statement| match (statement.ratio, statement.holds) {
-        (Some(ratio), Some(holds)) => {
-            let se = statement.ratio_se.map_or(String::new(), |se| format!(" ± {se:.2}"));
-            format!("{ratio:.2}{se}, so {}", if holds { "yes" } else { "no" })
+    let answer = |statement: &Statement| {
+        let Some(ratio) = statement.ratio else { return "not known".to_owned() };
+        let se = statement.ratio_se.map_or(String::new(), |se| format!(" ± {se:.2}"));
+        match statement.holds {
+            Some(holds) => format!("{ratio:.2}{se}, so {}", if holds { "yes" } else { "no" }),
+            None => format!("not known ({ratio:.2}{se}): {}", statement.unsettled.unwrap_or_default()),
         }
-        _ => "not known".to_owned(),
     };
     common.say(&format!("  less than half the time per decision initially? {}", answer(&one.initially)));
     common.say(&format!("  at most half the trials to level off? {}", answer(&one.to_level_off)));
