@@ -254,6 +254,7 @@ fn bad_requests_are_refused_whole() {
         ("r.csv --free k_C --photodiode VP1=3 --out f.json", "2 units"),
         ("r.csv --free k_C --force Fz_N --out f.json", "--area-cm2"),
         ("r.csv --free k_C --force VP1 --area-cm2 0 --out f.json", "greater than 0"),
+        ("r.csv --free k_C --force Fz_kN --area-cm2 2 --out f.json", "`Fz_kN` is a force that is not in newtons"),
         ("r.csv --free k_C --force VP1 --area-cm2 -1 --out f.json", "greater than 0"),
         ("r.csv --free k_C --out r.csv", "is an input itself"),
         ("short.csv --free k_C,b_C,k_V --out f.json", "2 voltages can't determine 5 unknowns"),

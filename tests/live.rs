@@ -384,6 +384,22 @@ fn bad_sources_are_said_with_what_to_do() {
     dir.write("numbers.csv", "0,1\n1,1\n");
     live("numbers.csv", &["no line of names came before it", "--names"]);
     dir.lunula(&["live", "--source", "numbers.csv", "--names", "time_s,P1", "--model", "m.json", "-q"]).expect(0);
+    let three = ["live", "--source", "numbers.csv", "--names", "time_s,P1,P2", "--model", "m.json"];
+    dir.lunula(&three).expect(2).says("line 2 has 2 cells, and --names gives 3");
+}
+
+#[test]
+fn rows_that_are_left_out_and_clocks_that_begin_again_are_warned_of() {
+    let dir = desk();
+    let rows = recording(2.0);
+    let record = |name: &str, rows: String| {
+        dir.write(name, rows);
+        dir.lunula(&["record", "--source", name, "--out", &format!("kept-{name}")]).expect(0)
+    };
+    // One stamp is 60 ms late.
+    record("late.csv", rows.replacen("\n1.000,", "\n1.060,", 1)).says("5 rows came behind later ones and are left out");
+    let again = rows.lines().skip(1).map(|row| format!("{row}\n")).collect::<String>();
+    record("again.csv", rows + &again).says("the clock or counter began again 1 time(s)");
 }
 
 #[test]

@@ -42,7 +42,7 @@ pub(super) struct Sorted {
 pub(super) fn sort(looks: Vec<Look>) -> Result<Sorted, CameraError> {
     let mut failed: Vec<String> = Vec::new();
     let mut kinds: Vec<(Kind, Vec<View>)> = Vec::new();
-    for Look { name, kind, board } in looks {
+    for Look { name, kind, board, .. } in looks {
         match board {
             Err(why) => failed.push(format!("{name}: {why}")),
             Ok(corners) => match kinds.iter_mut().find(|(known, _)| *known == kind) {

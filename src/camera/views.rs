@@ -18,7 +18,7 @@ use crate::job::Watch;
 use crate::photograph::{Photograph, is_picture};
 use crate::stages::Stages;
 use crate::video::{Frame, Item, Plane, Turn, Video};
-use crate::vision::{Corners, Grey, Sought, VisionError, find_board, shows_another};
+use crate::vision::{Corners, Grey, Sought, VisionError, find_board, shows_another, sizes_beside};
 
 /// A picture that was looked at.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,6 +29,8 @@ pub(super) struct Look {
     pub(super) kind: Kind,
     /// The corners, row after row; or why there are none.
     pub(super) board: Result<Corners, String>,
+    /// The size of another board that it may show: inner corners across and down.
+    other: Option<[usize; 2]>,
 }
 
 /// What all views have to have in common.
@@ -59,7 +61,8 @@ pub(super) fn files(sources: &[PathBuf]) -> Result<Vec<PathBuf>, CameraError> {
     Ok(files)
 }
 
-/// Looks at all files.
+/// Looks at all files. What size of board there may be instead is looked for on the first picture, and then on the
+/// others that one: hard views take seconds for each size.
 pub(super) fn look(
     files: &[PathBuf],
     options: &CameraOptions,
@@ -67,52 +70,69 @@ pub(super) fn look(
     watch: &Watch<'_>,
 ) -> Result<Vec<Look>, CameraError> {
     let done = AtomicU64::new(0);
-    let one = |path: &PathBuf| -> Result<Vec<Look>, CameraError> {
+    let one = |path: &PathBuf, others: &[[usize; 2]]| -> Result<Vec<Look>, CameraError> {
         watch.go_on()?;
         let looks = if is_picture(path) {
-            vec![photograph(path, options, stages)?]
+            vec![photograph(path, options, others, stages)?]
         } else {
-            of_video(path, options, stages, watch)?
+            of_video(path, options, others, stages, watch)?
         };
         (watch.tick)(done.fetch_add(1, Ordering::Relaxed) + 1, Some(files.len() as u64));
         Ok(looks)
     };
-    let looks: Vec<Vec<Look>> = files.par_iter().with_max_len(1).map(one).collect::<Result<_, _>>()?;
-    Ok(looks.concat())
+    let Some((first, rest)) = files.split_first() else { return Ok(Vec::new()) };
+    let mut looks = one(first, &sizes_beside(options.board.columns, options.board.rows))?;
+    let other = other_of(&looks);
+    let rest: Vec<Vec<Look>> =
+        rest.par_iter().with_max_len(1).map(|path| one(path, &other)).collect::<Result<_, _>>()?;
+    looks.extend(rest.into_iter().flatten());
+    Ok(looks)
 }
 
-fn photograph(path: &Path, options: &CameraOptions, stages: &Stages) -> Result<Look, CameraError> {
+/// The size that the first look found instead.
+fn other_of(looks: &[Look]) -> Vec<[usize; 2]> {
+    looks.first().and_then(|look| look.other).into_iter().collect()
+}
+
+fn photograph(
+    path: &Path,
+    options: &CameraOptions,
+    others: &[[usize; 2]],
+    stages: &Stages,
+) -> Result<Look, CameraError> {
     let name = path.display().to_string();
     let photograph = match stages.time("read", || Photograph::read(path)) {
         Ok(photograph) => photograph,
-        Err(why) => return Ok(Look { name, kind: Kind::default(), board: Err(why.to_string()) }),
+        Err(why) => return Ok(Look { name, kind: Kind::default(), board: Err(why.to_string()), other: None }),
     };
     let turned = photograph.orientation.to_exif() - 1;
     let picture = photograph.image.into_luma8();
     let size = (picture.width() as usize, picture.height() as usize);
     let grey = Grey { width: size.0, height: size.1, data: picture.as_raw() };
-    Ok(Look { name, kind: Kind { size, turned }, board: stages.time("corners", || board(grey, options.board))? })
+    let (board, other) = stages.time("corners", || board(grey, options.board, others))?;
+    Ok(Look { name, kind: Kind { size, turned }, board, other })
 }
 
-/// The corners of the only board.
-fn board(picture: Grey<'_>, size: BoardSize) -> Result<Result<Corners, String>, VisionError> {
-    let beside = match find_board(picture, size.columns, size.rows)? {
-        Sought::Whole(corners) => return only(picture, corners, size),
-        Sought::OfSize([columns, rows]) => format!(", one of {columns}x{rows} may be"),
-        Sought::Nowhere => String::new(),
+/// The corners of the only board, or why there are none; and the size of another that may be there.
+fn board(
+    picture: Grey<'_>,
+    size: BoardSize,
+    others: &[[usize; 2]],
+) -> Result<(Result<Corners, String>, Option<[usize; 2]>), VisionError> {
+    let other = match find_board(picture, size.columns, size.rows, others)? {
+        Sought::Whole(corners) => {
+            let is_one = !shows_another(picture, &corners, size.columns, size.rows)?;
+            return Ok((is_one.then_some(corners).ok_or("shows two boards; cover one of them".to_owned()), None));
+        }
+        Sought::OfSize(other) => Some(other),
+        Sought::Nowhere => None,
     };
-    Ok(Err(format!(
-        "no board of {size} inner corners is seen whole{beside}; all of it has to be in the picture, lit evenly, with \
-         a white margin (--board counts inner corners, not squares)"
-    )))
-}
-
-/// The corners, where no other board is seen.
-fn only(picture: Grey<'_>, corners: Corners, size: BoardSize) -> Result<Result<Corners, String>, VisionError> {
-    if shows_another(picture, &corners, size.columns, size.rows)? {
-        return Ok(Err("shows two boards; cover one of them".to_owned()));
-    }
-    Ok(Ok(corners))
+    let other_words = other.map_or(String::new(), |[columns, rows]| format!(", one of {columns}x{rows} may be"));
+    let why = format!(
+        "no board of {size} inner corners is seen whole{other_words}; all of it has to be in the picture, lit evenly, \
+         with a white margin (--board counts inner corners, not squares)"
+    );
+    Ok((Err(why), other))
 }
 
 /// A frame's luma as it is stored, 8 bits.
@@ -125,21 +145,24 @@ struct Still {
 fn of_video(
     path: &Path,
     options: &CameraOptions,
+    others: &[[usize; 2]],
     stages: &Stages,
     watch: &Watch<'_>,
 ) -> Result<Vec<Look>, CameraError> {
     let mut video = Video::open(path, options.threads)?;
     let turn = video.info().turn;
     let (mut looks, mut stills, mut next_s) = (Vec::new(), Vec::new(), f64::NEG_INFINITY);
+    let mut others = others.to_vec();
     let name = |index: u64| format!("{}: frame {index}", path.display());
-    let mut see = |stills: &mut Vec<Still>| -> Result<(), CameraError> {
+    let mut see = |stills: &mut Vec<Still>, looks: &mut Vec<Look>| -> Result<(), CameraError> {
         let all = stills.par_iter().with_max_len(1).map(|still| {
             let grey = Grey { width: still.size.0, height: still.size.1, data: &still.data };
-            let board = stages.time("corners", || board(grey, options.board))?;
+            let (board, other) = stages.time("corners", || board(grey, options.board, &others))?;
             let shown = board.map(|corners| corners.into_iter().map(|at| upright(at, turn, still.size)).collect());
-            Ok(Look { name: name(still.index), kind: kind(turn, still.size), board: shown })
+            Ok(Look { name: name(still.index), kind: kind(turn, still.size), board: shown, other })
         });
         looks.extend(all.collect::<Result<Vec<Look>, VisionError>>()?);
+        others = other_of(looks);
         stills.clear();
         Ok(())
     };
@@ -151,11 +174,11 @@ fn of_video(
         }
         next_s = frame.time_s + options.every;
         stills.push(still(&frame));
-        if stills.len() >= rayon::current_num_threads() {
-            see(&mut stills)?;
+        if looks.is_empty() || stills.len() >= rayon::current_num_threads() {
+            see(&mut stills, &mut looks)?;
         }
     }
-    see(&mut stills)?;
+    see(&mut stills, &mut looks)?;
     Ok(looks)
 }
 

@@ -37,6 +37,7 @@ pub use foreseen::{ReadingCost, ambient_step, ambient_step_of, foreseen_bytes};
 pub use lines::stamps::TimeUnit;
 pub(crate) use lines::status::{Statuses, Verdict};
 pub use naming::columns::Columns;
+pub(crate) use naming::guess::is_force_in_another_unit;
 pub use naming::header::LogHeader;
 pub(crate) use naming::header::{GROUPS, time_not_read};
 pub use reading::{LitRows, LogReading, UnlitLoads};

@@ -41,16 +41,31 @@ pub(crate) enum Sought {
     Nowhere,
 }
 
-/// Looks for a board of `columns` x `rows` inner corners. The slow search takes a minute to find that there is none, so
-/// sizes beside come before it: squares are easily counted for inner corners, or a row left out.
-pub(crate) fn find_board(picture: Grey<'_>, columns: usize, rows: usize) -> Result<Sought, VisionError> {
+/// Sizes that differ by one across, down or both: squares are easily counted for inner corners, or a row left out.
+pub(crate) fn sizes_beside(columns: usize, rows: usize) -> Vec<[usize; 2]> {
+    let beside = [(-1, -1), (1, 1), (1, 0), (0, 1), (-1, 0), (0, -1)];
+    let sizes = beside.map(|(across, down)| [columns.saturating_add_signed(across), rows.saturating_add_signed(down)]);
+    // OpenCV looks for no smaller ones.
+    sizes.into_iter().filter(|size| size.iter().all(|side| *side > 2)).collect()
+}
+
+/// Looks for a board of `columns` x `rows` inner corners, and where the fast search finds none for one of the sizes of
+/// `others`: the slow search takes a minute to find that there is none.
+pub(crate) fn find_board(
+    picture: Grey<'_>,
+    columns: usize,
+    rows: usize,
+    others: &[[usize; 2]],
+) -> Result<Sought, VisionError> {
     let mat = picture.mat()?;
     let size = Size::new(columns as i32, rows as i32);
     let mut corners = match fast(&mat, size)? {
         Some(corners) => corners,
         None => {
-            if let Some(other) = size_beside(&mat, size)? {
-                return Ok(Sought::OfSize(other));
+            for other in others {
+                if fast(&mat, Size::new(other[0] as i32, other[1] as i32))?.is_some() {
+                    return Ok(Sought::OfSize(*other));
+                }
             }
             let Some(corners) = slow(&mat, size)? else { return Ok(Sought::Nowhere) };
             corners
@@ -63,17 +78,6 @@ pub(crate) fn find_board(picture: Grey<'_>, columns: usize, rows: usize) -> Resu
     refine(&mat, &mut corners, columns)?;
     let placed: Corners = corners.iter().map(|corner| [corner.x, corner.y]).collect();
     Ok(if is_chessboard(picture, &placed, columns) { Sought::Whole(placed) } else { Sought::Nowhere })
-}
-
-/// The size of a board that is there and differs by one across, down or both.
-fn size_beside(mat: &impl ToInputArray, size: Size) -> Result<Option<[usize; 2]>, VisionError> {
-    for (across, down) in [(-1, -1), (1, 1), (1, 0), (0, 1), (-1, 0), (0, -1)] {
-        let other = Size::new(size.width + across, size.height + down);
-        if other.width.min(other.height) > 2 && fast(mat, other)?.is_some() {
-            return Ok(Some([other.width as usize, other.height as usize]));
-        }
-    }
-    Ok(None)
 }
 
 /// The least contrast of squares about a corner, as a share of the board's median (assumed): a corner that was made up
@@ -206,12 +210,13 @@ mod tests {
         let scene = Scene::new(BoardOptions { size: (640, 480), views: 3, ..BoardOptions::default() }).unwrap();
         scene.views().par_iter().enumerate().for_each(|(k, view)| {
             let picture = scene.picture(&[*view], k as u32);
-            let found = find_board(grey(&picture), 9, 6).unwrap();
+            let found = find_board(grey(&picture), 9, 6, &[]).unwrap();
             let Sought::Whole(found) = found else { panic!("{found:?}") };
             let error_px = error_px(&found, &scene.corners_px(view));
             assert!(error_px <= LARGEST_PX, "{error_px} px");
             assert!(!shows_another(grey(&picture), &found, 9, 6).unwrap());
-            assert_eq!(find_board(grey(&picture), 10, 7).unwrap(), Sought::OfSize([9, 6]), "squares were counted");
+            let squares = find_board(grey(&picture), 10, 7, &sizes_beside(10, 7)).unwrap();
+            assert_eq!(squares, Sought::OfSize([9, 6]));
         });
     }
 

@@ -149,7 +149,7 @@ fn of_plane(
     }
     let looks = look(&[path.to_owned()], options, stages, watch)?;
     let first = looks.iter().find(|one| one.board.is_ok()).or(looks.first());
-    let Some(Look { name, kind, board }) = first.cloned() else {
+    let Some(Look { name, kind, board, .. }) = first.cloned() else {
         return Err(refused("has no frames".to_owned()));
     };
     let corners = board.map_err(refused)?;

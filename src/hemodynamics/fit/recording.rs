@@ -9,7 +9,7 @@ use crate::hemodynamics::HemodynamicsError;
 use crate::hemodynamics::curve::Pressed;
 use crate::hemodynamics::given::{BLOOD, Columns, Knots, PRESSED, Rows, TIME, listed};
 use crate::job::one_of;
-use crate::log::{LogReading, doubts};
+use crate::log::{LogReading, doubts, is_force_in_another_unit};
 use crate::words::Words;
 
 /// A measured force instead of pressures: the finger's force on the surface, newtons, negative where it presses.
@@ -135,6 +135,9 @@ pub(super) fn read(path: &Path, columns: &RecordingColumns, units: usize) -> Res
     let dynamic = names.iter().any(|own| own == TIME);
     let mut needed: Vec<&str> = if dynamic { vec![TIME] } else { Vec::new() };
     let force = columns.force();
+    if let Some(force) = force.as_ref().filter(|force| is_force_in_another_unit(force.name)) {
+        return Err(refused(format!("`{}` is a force that is not in newtons; write newtons", force.name)));
+    }
     match &force {
         Some(force) => needed.push(force.name),
         None => needed.extend(PRESSED),

@@ -230,10 +230,23 @@ fn losses(report: &SessionReport) -> Vec<String> {
         let whose = finger.as_ref().map_or(String::new(), |finger| format!("{finger}: "));
         let what = if *gives == SourceRole::Forces { "rows of forces" } else { "rows" };
         let counts = &stream.counts;
-        for (lost, how) in [(counts.lost, "by their counter"), (counts.lost_by_time, "estimated from gaps in time")] {
-            if lost > 0 {
-                warnings.push(format!("{whose}{lost} {what} never came ({how})"));
+        for (count, how) in [
+            (counts.lost, "never came or came late (by their counter)"),
+            (counts.lost_by_time, "never came or came late (estimated from gaps in time)"),
+            (counts.disorder, "came behind later ones and are left out"),
+            (counts.duplicates, "came twice (by their counter) and are counted once"),
+            (counts.doubtful, "have a time that does not fit to those before and are left out"),
+        ] {
+            if count > 0 {
+                warnings.push(format!("{whose}{count} {what} {how}"));
             }
+        }
+        if counts.set_back > 0 {
+            warnings.push(format!(
+                "{whose}the clock or counter began again {} time(s): times go on from there by what passed on this \
+                 computer, or by one row, and are no longer the device's",
+                counts.set_back
+            ));
         }
     }
     if let Some(without) = report.rows_without_force.filter(|without| *without > 0) {

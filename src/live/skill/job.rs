@@ -225,5 +225,13 @@ fn said(done: &[(&SkillRecording, Done)], reference: Option<&Reference>) -> (Vec
     if let Some(reference) = reference.filter(|reference| !reference.touches()) {
         warnings.push(format!("{}: is the reference and has no contact: nothing is compared with it", reference.name));
     }
+    let is_compared = |trial: &TrialFigures| trial.fingers.iter().any(|one| one.distance_n.is_some());
+    if let Some(reference) = reference.filter(|reference| reference.touches() && !trials().any(is_compared)) {
+        warnings.push(format!(
+            "{}: nothing is compared with the reference: no other trial has one of its fingers, with a contact and \
+             forces that are known throughout",
+            reference.name
+        ));
+    }
     (notes, warnings)
 }

@@ -179,7 +179,11 @@ fn add_guesses(
                 names[first]
             ));
         }
-        notes.push(format!("column `{}` is taken as {}; --columns says otherwise", shown(&names[at], at), role.name()));
+        notes.push(format!(
+            "column `{}` is taken as {}; rename it where it is not",
+            shown(&names[at], at),
+            role.name()
+        ));
         known.add(role, at);
         columns.push((role, at));
     }

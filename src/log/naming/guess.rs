@@ -63,7 +63,7 @@ pub(in crate::log) fn role_of_name(name: &str) -> Option<Role> {
 }
 
 /// Whether a name is a force's in a unit that is not newtons.
-pub(in crate::log) fn is_force_in_another_unit(name: &str) -> bool {
+pub(crate) fn is_force_in_another_unit(name: &str) -> bool {
     const UNITS: [&str; 9] = ["mn", "kn", "un", "g", "kg", "gf", "kgf", "lb", "lbf"];
     let whole = words(name).concat();
     let unit = AXES.iter().flatten().find_map(|force| whole.strip_prefix(force));

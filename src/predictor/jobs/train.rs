@@ -305,7 +305,7 @@ fn intervals(
 ) -> Result<Option<Intervals>, PredictorError> {
     let (seen, predicted) = predictor.predict(data)?;
     warnings.extend(
-        crate::predictor::jobs::evaluate::beyond_a_number(&predicted, "the model")
+        crate::predictor::jobs::evaluate::not_predicted(predictor, &predicted)
             .unwrap_or_else(|why| Some(why.to_string())),
     );
     warnings.extend(doubts(predictor, data, &seen, &predicted));

@@ -6,6 +6,9 @@ const GAP: f64 = 3.5;
 /// A step that all but this share of itself fits is a whole one: stamps are rounded, those of a day's time to 1e-11 s.
 const ROUNDED: f64 = 1e-3;
 
+/// The share of the whole time that the sum of its steps may lack by rounding.
+const SUMMED: f64 = 1e-9;
+
 /// How many whole steps a time holds.
 pub(super) fn whole_steps(time_s: f64, step_s: f64) -> f64 {
     (time_s / step_s + ROUNDED).floor()
@@ -77,7 +80,8 @@ impl Force {
     #[must_use]
     pub fn unknown_s(&self) -> f64 {
         let whole_s = self.time_s.last().zip(self.time_s.first()).map_or(0.0, |(last, first)| last - first);
-        (whole_s - self.known_s()).max(0.0)
+        let unknown_s = whole_s - self.known_s();
+        if unknown_s > SUMMED * whole_s { unknown_s } else { 0.0 }
     }
 }
 

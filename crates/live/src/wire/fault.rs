@@ -13,6 +13,16 @@ pub enum WireFault {
         /// What is wrong, and what to do.
         why: String,
     },
+    /// Rows come that have not as many cells as names were given.
+    #[error("line {line} has {cells} cells, and --names gives {names}; give as many names as cells")]
+    OtherCells {
+        /// Which line, the last.
+        line: u64,
+        /// Its cells.
+        cells: usize,
+        /// The names.
+        names: usize,
+    },
     /// Rows come, and nothing says what their columns are.
     #[error(
         "line {line} holds numbers (`{text}`) and no line of names came before it: begin with a line such as \

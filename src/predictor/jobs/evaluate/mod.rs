@@ -91,7 +91,7 @@ pub fn evaluate(
     warnings.extend(read.warnings.iter().cloned());
     warnings.extend(seen_in_training(&predictor, &read.data));
     let (seen, values) = stages.time("predict", || predictor.predict(&read.data))?;
-    warnings.extend(beyond_a_number(&values, "the model")?);
+    warnings.extend(not_predicted(&predictor, &values)?);
     warnings.extend(doubts(&predictor, &read.data, &seen, &values));
     let half_width = predictor.intervals().map(|intervals| (intervals.half_width.clone(), intervals.level));
     let title = options.title.clone().unwrap_or_else(|| model.display().to_string());
@@ -145,17 +145,27 @@ pub fn evaluate(
 ///
 /// # Errors
 /// All are.
-pub(in crate::predictor) fn beyond_a_number(
+pub(in crate::predictor) fn not_predicted(
+    predictor: &Predictor,
     values: &Array2<f64>,
-    whose: &str,
 ) -> Result<Option<String>, PredictorError> {
     let (lost, rows) =
         (values.outer_iter().filter(|row| row.iter().any(|value| !value.is_finite())).count(), values.nrows());
-    let what = format!("what {whose} gives for {lost} of {rows} rows is beyond 1e308");
-    let help = "these voltages are not in the unit of those it was trained on";
+    let (what, help) = if predictor.reads_hidden() {
+        (
+            format!("the model gives nothing for {lost} of {rows} rows: most of the nail is hidden in them"),
+            "it needs half of the cells",
+        )
+    } else {
+        (
+            format!("what the model gives for {lost} of {rows} rows is beyond 1e308"),
+            "these voltages are not in the unit of those it was trained on",
+        )
+    };
     match lost {
         0 => Ok(None),
         lost if lost == rows => Err(PredictorError::Request(format!("{what}: there is no error to tell; {help}"))),
+        _ if predictor.reads_hidden() => Ok(Some(format!("{what}; they are not counted"))),
         _ => Ok(Some(format!("{what}; they are not counted. Perhaps {help}"))),
     }
 }

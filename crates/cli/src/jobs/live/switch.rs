@@ -109,8 +109,9 @@ impl Command for TuneArgs {
 
     fn say(&self, common: &Common, report: &TuneReport) {
         let switch = &report.switch;
+        let unit = if switch.column.is_none() { " N" } else { "" };
         common.say(&format!(
-            "on from {} N, off below {} N, held {} s and {} s; of {} combinations",
+            "on from {}{unit}, off below {}{unit}, held {} s and {} s; of {} combinations",
             switch.on_n, switch.off_n, switch.hold_on_s, switch.hold_off_s, report.tried
         ));
         say_evaluation(common, "where it was chosen", &report.chosen);

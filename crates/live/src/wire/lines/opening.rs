@@ -50,6 +50,8 @@ pub(super) struct Opening {
     declared: Option<Separator>,
     comment: Vec<u8>,
     refused: Option<Refused>,
+    /// The last line that has not as many cells as names were given.
+    other_cells: Option<WireFault>,
     /// Lines of numbers, when the first came, and the last.
     numbers: u32,
     since_ns: Option<u64>,
@@ -68,6 +70,7 @@ impl Opening {
             declared: None,
             comment: Vec::new(),
             refused: None,
+            other_cells: None,
             numbers: 0,
             since_ns: None,
             sample: (0, String::new()),
@@ -116,6 +119,9 @@ impl Opening {
         if let Some(refused) = self.refused.take() {
             return refused.fault;
         }
+        if let Some(fault) = self.other_cells.take() {
+            return fault;
+        }
         if self.numbers > 0 {
             return WireFault::NoNames { line: self.sample.0, text: self.sample.1.clone() };
         }
@@ -139,7 +145,7 @@ impl Opening {
             return Ok(None);
         }
         if let Some(names) = self.given.take() {
-            return self.given(names, line);
+            return self.given(names, line, number, host_ns);
         }
         let separator = self.declared.unwrap_or_else(|| Separator::of_names(line));
         let text = std::str::from_utf8(line).ok().filter(|text| !text.contains(|c: char| c.is_control() && c != '\t'));
@@ -157,13 +163,27 @@ impl Opening {
     }
 
     /// The names that were given beforehand, at the first line that has as many cells.
-    fn given(&mut self, names: Vec<String>, line: &[u8]) -> Result<Option<Header>, WireFault> {
+    fn given(
+        &mut self,
+        names: Vec<String>,
+        line: &[u8],
+        number: u64,
+        host_ns: u64,
+    ) -> Result<Option<Header>, WireFault> {
         let separator = match self.declared {
             Some(declared) => Some(declared).filter(|one| Cells::new(line, *one).count() == names.len()),
             None => Separator::making(line, names.len()),
         };
         let Some(separator) = separator else {
+            let cells = Cells::new(line, self.declared.unwrap_or_else(|| Separator::of_names(line))).count();
+            let fault = WireFault::OtherCells { line: number, cells, names: names.len() };
             self.given = Some(names);
+            self.numbers += 1;
+            let since_ns = *self.since_ns.get_or_insert(host_ns);
+            if self.numbers >= LINES_WITHOUT_NAMES && host_ns >= since_ns + LINES_WITHOUT_NAMES_NS {
+                return Err(fault);
+            }
+            self.other_cells = Some(fault);
             return Ok(None);
         };
         let is_row = !Cells::new(line, separator).all(|cell| is_name(&String::from_utf8_lossy(cell)));
