@@ -18,7 +18,7 @@ use crate::job::Watch;
 use crate::photograph::{Photograph, is_picture};
 use crate::stages::Stages;
 use crate::video::{Frame, Item, Plane, Turn, Video};
-use crate::vision::{Corners, Grey, Sought, VisionError, find_board, shows_another, sizes_beside};
+use crate::vision::{Corners, Grey, Sought, VisionError, find_board, of_squares, shows_another};
 
 /// A picture that was looked at.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,8 +61,8 @@ pub(super) fn files(sources: &[PathBuf]) -> Result<Vec<PathBuf>, CameraError> {
     Ok(files)
 }
 
-/// Looks at all files. What size of board there may be instead is looked for on the first picture, and then on the
-/// others that one: hard views take seconds for each size.
+/// Looks at all files. Whether squares were counted for corners is looked for on the first picture, and where they were
+/// on the others.
 pub(super) fn look(
     files: &[PathBuf],
     options: &CameraOptions,
@@ -70,34 +70,29 @@ pub(super) fn look(
     watch: &Watch<'_>,
 ) -> Result<Vec<Look>, CameraError> {
     let done = AtomicU64::new(0);
-    let one = |path: &PathBuf, others: &[[usize; 2]]| -> Result<Vec<Look>, CameraError> {
+    let one = |path: &PathBuf, other: Option<[usize; 2]>| -> Result<Vec<Look>, CameraError> {
         watch.go_on()?;
         let looks = if is_picture(path) {
-            vec![photograph(path, options, others, stages)?]
+            vec![photograph(path, options, other, stages)?]
         } else {
-            of_video(path, options, others, stages, watch)?
+            of_video(path, options, other, stages, watch)?
         };
         (watch.tick)(done.fetch_add(1, Ordering::Relaxed) + 1, Some(files.len() as u64));
         Ok(looks)
     };
     let Some((first, rest)) = files.split_first() else { return Ok(Vec::new()) };
-    let mut looks = one(first, &sizes_beside(options.board.columns, options.board.rows))?;
-    let other = other_of(&looks);
+    let mut looks = one(first, of_squares(options.board.columns, options.board.rows))?;
+    let other = looks.first().and_then(|look| look.other);
     let rest: Vec<Vec<Look>> =
-        rest.par_iter().with_max_len(1).map(|path| one(path, &other)).collect::<Result<_, _>>()?;
+        rest.par_iter().with_max_len(1).map(|path| one(path, other)).collect::<Result<_, _>>()?;
     looks.extend(rest.into_iter().flatten());
     Ok(looks)
-}
-
-/// The size that the first look found instead.
-fn other_of(looks: &[Look]) -> Vec<[usize; 2]> {
-    looks.first().and_then(|look| look.other).into_iter().collect()
 }
 
 fn photograph(
     path: &Path,
     options: &CameraOptions,
-    others: &[[usize; 2]],
+    other: Option<[usize; 2]>,
     stages: &Stages,
 ) -> Result<Look, CameraError> {
     let name = path.display().to_string();
@@ -109,20 +104,25 @@ fn photograph(
     let picture = photograph.image.into_luma8();
     let size = (picture.width() as usize, picture.height() as usize);
     let grey = Grey { width: size.0, height: size.1, data: picture.as_raw() };
-    let (board, other) = stages.time("corners", || board(grey, options.board, others))?;
+    let Seen { board, other } = stages.time("corners", || board(grey, options.board, other))?;
     Ok(Look { name, kind: Kind { size, turned }, board, other })
 }
 
-/// The corners of the only board, or why there are none; and the size of another that may be there.
-fn board(
-    picture: Grey<'_>,
-    size: BoardSize,
-    others: &[[usize; 2]],
-) -> Result<(Result<Corners, String>, Option<[usize; 2]>), VisionError> {
-    let other = match find_board(picture, size.columns, size.rows, others)? {
+/// What a picture shows.
+struct Seen {
+    /// The corners of the only board, or why there are none.
+    board: Result<Corners, String>,
+    /// The size of another that may be there.
+    other: Option<[usize; 2]>,
+}
+
+/// Looks for the board.
+fn board(picture: Grey<'_>, size: BoardSize, other: Option<[usize; 2]>) -> Result<Seen, VisionError> {
+    let other = match find_board(picture, size.columns, size.rows, other)? {
         Sought::Whole(corners) => {
             let is_one = !shows_another(picture, &corners, size.columns, size.rows)?;
-            return Ok((is_one.then_some(corners).ok_or("shows two boards; cover one of them".to_owned()), None));
+            let board = is_one.then_some(corners).ok_or("shows two boards; cover one of them".to_owned());
+            return Ok(Seen { board, other: None });
         }
         Sought::OfSize(other) => Some(other),
         Sought::Nowhere => None,
@@ -132,7 +132,7 @@ fn board(
         "no board of {size} inner corners is seen whole{other_words}; all of it has to be in the picture, lit evenly, \
          with a white margin (--board counts inner corners, not squares)"
     );
-    Ok((Err(why), other))
+    Ok(Seen { board: Err(why), other })
 }
 
 /// A frame's luma as it is stored, 8 bits.
@@ -145,24 +145,24 @@ struct Still {
 fn of_video(
     path: &Path,
     options: &CameraOptions,
-    others: &[[usize; 2]],
+    other: Option<[usize; 2]>,
     stages: &Stages,
     watch: &Watch<'_>,
 ) -> Result<Vec<Look>, CameraError> {
     let mut video = Video::open(path, options.threads)?;
     let turn = video.info().turn;
     let (mut looks, mut stills, mut next_s) = (Vec::new(), Vec::new(), f64::NEG_INFINITY);
-    let mut others = others.to_vec();
+    let mut other = other;
     let name = |index: u64| format!("{}: frame {index}", path.display());
     let mut see = |stills: &mut Vec<Still>, looks: &mut Vec<Look>| -> Result<(), CameraError> {
         let all = stills.par_iter().with_max_len(1).map(|still| {
             let grey = Grey { width: still.size.0, height: still.size.1, data: &still.data };
-            let (board, other) = stages.time("corners", || board(grey, options.board, &others))?;
+            let Seen { board, other } = stages.time("corners", || board(grey, options.board, other))?;
             let shown = board.map(|corners| corners.into_iter().map(|at| upright(at, turn, still.size)).collect());
             Ok(Look { name: name(still.index), kind: kind(turn, still.size), board: shown, other })
         });
         looks.extend(all.collect::<Result<Vec<Look>, VisionError>>()?);
-        others = other_of(looks);
+        other = looks.first().and_then(|look| look.other);
         stills.clear();
         Ok(())
     };

@@ -29,6 +29,8 @@ const WINDOW_SHARE: f32 = 0.35;
 const WINDOW_PX: [f32; 2] = [2.0, 15.0];
 /// Longer sides are made shorter for the slow search, pixels.
 const SLOW_SEARCH_PX: usize = 1000;
+/// .. and for a glance, which finds boards of another size.
+const GLANCE_PX: usize = 640;
 
 /// What a picture shows of a board.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,34 +43,36 @@ pub(crate) enum Sought {
     Nowhere,
 }
 
-/// Sizes that differ by one across, down or both: squares are easily counted for inner corners, or a row left out.
-pub(crate) fn sizes_beside(columns: usize, rows: usize) -> Vec<[usize; 2]> {
-    let beside = [(-1, -1), (1, 1), (1, 0), (0, 1), (-1, 0), (0, -1)];
-    let sizes = beside.map(|(across, down)| [columns.saturating_add_signed(across), rows.saturating_add_signed(down)]);
-    // OpenCV looks for no smaller ones.
-    sizes.into_iter().filter(|size| size.iter().all(|side| *side > 2)).collect()
+/// The size of the board whose squares, not inner corners, were counted as `columns` x `rows`; none where OpenCV looks
+/// for no such one.
+pub(crate) fn of_squares(columns: usize, rows: usize) -> Option<[usize; 2]> {
+    Some([columns.checked_sub(1)?, rows.checked_sub(1)?]).filter(|size| size.iter().all(|side| *side > 2))
 }
 
-/// Looks for a board of `columns` x `rows` inner corners, and where the fast search finds none for one of the sizes of
-/// `others`: the slow search takes a minute to find that there is none.
+/// Looks for a board of `columns` x `rows` inner corners; and first, where it is given, for one of `other`: where one
+/// of another size is there, it takes a minute to find that none of this is.
 pub(crate) fn find_board(
     picture: Grey<'_>,
     columns: usize,
     rows: usize,
-    others: &[[usize; 2]],
+    other: Option<[usize; 2]>,
 ) -> Result<Sought, VisionError> {
     let mat = picture.mat()?;
+    if let Some([columns, rows]) = other {
+        let size = Size::new(columns as i32, rows as i32);
+        if by_sectors(&mat, size, GLANCE_PX, CALIB_CB_NORMALIZE_IMAGE)?.is_some() {
+            return Ok(Sought::OfSize([columns, rows]));
+        }
+    }
     let size = Size::new(columns as i32, rows as i32);
     let mut corners = match fast(&mat, size)? {
         Some(corners) => corners,
         None => {
-            for other in others {
-                if fast(&mat, Size::new(other[0] as i32, other[1] as i32))?.is_some() {
-                    return Ok(Sought::OfSize(*other));
-                }
+            let flags = CALIB_CB_NORMALIZE_IMAGE | CALIB_CB_EXHAUSTIVE;
+            match by_sectors(&mat, size, SLOW_SEARCH_PX, flags)? {
+                Some(corners) => corners,
+                None => return Ok(Sought::Nowhere),
             }
-            let Some(corners) = slow(&mat, size)? else { return Ok(Sought::Nowhere) };
-            corners
         }
     };
     if corners.len() != columns * rows {
@@ -151,15 +155,19 @@ fn fast(mat: &impl ToInputArray, size: Size) -> Result<Option<Vector<Point2f>>, 
     Ok(found.map_err(VisionError::of("findChessboardCorners"))?.then_some(corners))
 }
 
-/// The search that takes its time, on a picture that is not too large.
-fn slow(mat: &(impl MatTraitConst + ToInputArray), size: Size) -> Result<Option<Vector<Point2f>>, VisionError> {
+/// By `findChessboardCornersSB`, on a picture whose sides are at most `longest_px`.
+fn by_sectors(
+    mat: &(impl MatTraitConst + ToInputArray),
+    size: Size,
+    longest_px: usize,
+    flags: i32,
+) -> Result<Option<Vector<Point2f>>, VisionError> {
     let longer = mat.rows().max(mat.cols()) as usize;
-    let times = (longer as f64 / SLOW_SEARCH_PX as f64).max(1.0);
+    let times = (longer as f64 / longest_px as f64).max(1.0);
     let mut small = Mat::default();
     let share = 1.0 / times;
     imgproc::resize(mat, &mut small, Size::default(), share, share, INTER_AREA).map_err(VisionError::of("resize"))?;
     let mut corners: Vector<Point2f> = Vector::new();
-    let flags = CALIB_CB_NORMALIZE_IMAGE | CALIB_CB_EXHAUSTIVE;
     let found = calib3d::find_chessboard_corners_sb(&small, size, &mut corners, flags);
     if !found.map_err(VisionError::of("findChessboardCornersSB"))? {
         return Ok(None);
@@ -210,12 +218,12 @@ mod tests {
         let scene = Scene::new(BoardOptions { size: (640, 480), views: 3, ..BoardOptions::default() }).unwrap();
         scene.views().par_iter().enumerate().for_each(|(k, view)| {
             let picture = scene.picture(&[*view], k as u32);
-            let found = find_board(grey(&picture), 9, 6, &[]).unwrap();
+            let found = find_board(grey(&picture), 9, 6, None).unwrap();
             let Sought::Whole(found) = found else { panic!("{found:?}") };
             let error_px = error_px(&found, &scene.corners_px(view));
             assert!(error_px <= LARGEST_PX, "{error_px} px");
             assert!(!shows_another(grey(&picture), &found, 9, 6).unwrap());
-            let squares = find_board(grey(&picture), 10, 7, &sizes_beside(10, 7)).unwrap();
+            let squares = find_board(grey(&picture), 10, 7, of_squares(10, 7)).unwrap();
             assert_eq!(squares, Sought::OfSize([9, 6]));
         });
     }
@@ -226,7 +234,10 @@ mod tests {
         let picture = scene.picture(scene.views(), 0);
         let seen = grey(&picture);
         let mat = seen.mat().unwrap();
-        let mut corners = slow(&mat, Size::new(9, 6)).unwrap().expect("a board");
+        let mut corners =
+            by_sectors(&mat, Size::new(9, 6), SLOW_SEARCH_PX, CALIB_CB_NORMALIZE_IMAGE | CALIB_CB_EXHAUSTIVE)
+                .unwrap()
+                .expect("a board");
         refine(&mat, &mut corners, 9).unwrap();
         let found: Corners = corners.iter().map(|corner| [corner.x, corner.y]).collect();
         let error_px = error_px(&found, &scene.corners_px(&scene.views()[0]));
