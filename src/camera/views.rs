@@ -145,14 +145,13 @@ struct Still {
 fn of_video(
     path: &Path,
     options: &CameraOptions,
-    other: Option<[usize; 2]>,
+    mut other: Option<[usize; 2]>,
     stages: &Stages,
     watch: &Watch<'_>,
 ) -> Result<Vec<Look>, CameraError> {
     let mut video = Video::open(path, options.threads)?;
     let turn = video.info().turn;
     let (mut looks, mut stills, mut next_s) = (Vec::new(), Vec::new(), f64::NEG_INFINITY);
-    let mut other = other;
     let name = |index: u64| format!("{}: frame {index}", path.display());
     let mut see = |stills: &mut Vec<Still>, looks: &mut Vec<Look>| -> Result<(), CameraError> {
         let all = stills.par_iter().with_max_len(1).map(|still| {

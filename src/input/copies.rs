@@ -13,11 +13,11 @@ use sha2::{Digest, Sha256};
 /// Bytes of the middle that are looked at first.
 const MIDDLE: usize = 4096;
 
-/// An input with its name in messages.
-type Named<'a> = (String, &'a Path);
+/// An input with what the caller calls it.
+type Named<'a, N> = (N, &'a Path);
 
 /// What to say of inputs that are the same to the byte.
-pub(crate) fn copies<'a>(inputs: impl IntoIterator<Item = Named<'a>>) -> Vec<String> {
+pub(crate) fn copies<'a>(inputs: impl IntoIterator<Item = Named<'a, String>>) -> Vec<String> {
     let mut said: Vec<String> = same_to_the_byte(inputs)
         .into_iter()
         .map(|inputs| {
@@ -31,16 +31,16 @@ pub(crate) fn copies<'a>(inputs: impl IntoIterator<Item = Named<'a>>) -> Vec<Str
 
 /// Groups of two inputs or more that are the same to the byte, each in its inputs' order. Of those that can't be read
 /// it is said elsewhere.
-pub(crate) fn same_to_the_byte<'a>(inputs: impl IntoIterator<Item = Named<'a>>) -> Vec<Vec<Named<'a>>> {
-    let regular = |input: &Named<'a>| fs::metadata(input.1).is_ok_and(|about| about.is_file());
+pub(crate) fn same_to_the_byte<'a, N>(inputs: impl IntoIterator<Item = Named<'a, N>>) -> Vec<Vec<Named<'a, N>>> {
+    let regular = |input: &Named<'a, N>| fs::metadata(input.1).is_ok_and(|about| about.is_file());
     let by_size = alike(inputs.into_iter().filter(regular).collect(), |path| Ok(fs::metadata(path)?.len()));
     let by_middle = by_size.into_iter().flat_map(|inputs| alike(inputs, middle));
     by_middle.flat_map(|inputs| alike(inputs, |path| Ok(Sha256::digest(super::read(path)?)))).collect()
 }
 
 /// Groups of two inputs or more of which the same is found.
-fn alike<'a, T: Ord>(inputs: Vec<Named<'a>>, of: impl Fn(&Path) -> io::Result<T>) -> Vec<Vec<Named<'a>>> {
-    let mut groups: BTreeMap<T, Vec<Named<'a>>> = BTreeMap::new();
+fn alike<'a, N, T: Ord>(inputs: Vec<Named<'a, N>>, of: impl Fn(&Path) -> io::Result<T>) -> Vec<Vec<Named<'a, N>>> {
+    let mut groups: BTreeMap<T, Vec<Named<'a, N>>> = BTreeMap::new();
     for input in inputs {
         if let Ok(found) = of(input.1) {
             groups.entry(found).or_default().push(input);

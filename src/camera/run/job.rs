@@ -89,15 +89,14 @@ pub fn run(
 
 /// Takes away files that are another's copy to the byte: a view that is counted twice is no second view.
 fn leave_copies_out(files: &mut Vec<PathBuf>) -> Vec<String> {
-    let numbered = files.iter().enumerate().map(|(k, path)| (k.to_string(), path.as_path()));
     let (mut copies, mut said) = (BTreeSet::new(), Vec::new());
-    for group in same_to_the_byte(numbered) {
+    for group in same_to_the_byte(files.iter().map(PathBuf::as_path).enumerate()) {
         let names: Vec<String> = group[1..].iter().map(|(_, path)| path.display().to_string()).collect();
         said.push(format!("{}: the same to the byte as {}, and not counted", names.join(", "), group[0].1.display()));
-        copies.extend(group[1..].iter().map(|(number, _)| number.clone()));
+        copies.extend(group[1..].iter().map(|(at, _)| *at));
     }
-    let mut number = 0..;
-    files.retain(|_| !number.next().is_some_and(|k: usize| copies.contains(&k.to_string())));
+    let mut at = 0..;
+    files.retain(|_| !at.next().is_some_and(|at: usize| copies.contains(&at)));
     said
 }
 

@@ -12,6 +12,8 @@ use super::report::{
 
 /// The limit of both statements of the thesis.
 const HALF: f64 = 0.5;
+/// Curves whose AICc is no further apart fit alike (Burnham and Anderson 2002, section 2.6).
+const ALIKE_AICC: f64 = 2.0;
 
 /// The operators' times of one method: by trial, then by operator.
 type Times = BTreeMap<u32, BTreeMap<usize, f64>>;
@@ -92,6 +94,14 @@ impl Fitted {
             Law::Power => self.power.curve,
         }
     }
+
+    /// The trials at which the curves that fit are level; of one that is nowhere, none.
+    fn levels(&self) -> Vec<Option<f64>> {
+        let alike = self.aicc_difference.is_some_and(|difference| difference.abs() < ALIKE_AICC);
+        let both = [(Law::Exponential, &self.exponential), (Law::Power, &self.power)];
+        let fitting = both.into_iter().filter(|(law, _)| alike || Some(*law) == self.better);
+        fitting.filter_map(|(_, fit)| fit.curve).map(|curve| Some(curve.level_at?.value)).collect()
+    }
 }
 
 /// `[baseline, method]`.
@@ -125,19 +135,6 @@ fn compare(methods: [&MethodFigures; 2], [baseline, other]: [&Times; 2]) -> Comp
         },
         to_level_off: to_level_off(methods),
         trials,
-    }
-}
-
-/// Curves whose AICc is no further apart fit alike (Burnham and Anderson 2002, section 2.6).
-const ALIKE_AICC: f64 = 2.0;
-
-impl Fitted {
-    /// The trials at which the curves that fit are level; of one that is nowhere, none.
-    fn levels(&self) -> Vec<Option<f64>> {
-        let alike = self.aicc_difference.is_some_and(|difference| difference.abs() < ALIKE_AICC);
-        let both = [(Law::Exponential, &self.exponential), (Law::Power, &self.power)];
-        let fitting = both.into_iter().filter(|(law, _)| alike || Some(*law) == self.better);
-        fitting.filter_map(|(_, fit)| fit.curve).map(|curve| Some(curve.level_at?.value)).collect()
     }
 }
 

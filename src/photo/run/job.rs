@@ -97,10 +97,11 @@ pub fn run(
     findings.poses_without_maps(without_maps);
     findings.failed.sort();
     findings.left_out = left_out(&foreknown, options, outputs);
+    findings.detects = foreknown.iter().any(|photo| photo.outlines == OutlinePlace::Detection);
     let mut places = Places::default();
     findings.outlines = save_outlines(&detected, set, outputs, &mut places)?;
     // A person needs to see what detection saw, then most of all; a request that is wrong changes nothing.
-    let is_shown = !drawn.is_empty() && foreknown.iter().any(|photo| photo.outlines == OutlinePlace::Detection);
+    let is_shown = !drawn.is_empty() && findings.detects;
     let nothing = findings.rows.iter().all(|row| row.normalized.is_none()).then(|| PhotosError::NothingUsable {
         report: is_shown.then(|| outputs.folder.join(HTML)),
         failed: findings.failed.clone(),

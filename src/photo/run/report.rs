@@ -15,7 +15,7 @@ use crate::job::{Report, Watch};
 use crate::photo::channels::{ChannelFigures, add_section};
 use crate::photo::normalize::Normalization;
 use crate::photo::options::{Outputs, PhotosOptions, Results};
-use crate::photo::outline::{OutlinePlace, SavedOutlines};
+use crate::photo::outline::SavedOutlines;
 use crate::photo::pose::sort_by_pose;
 use crate::photo::results::{DrawnSheet, NAIL_COLUMNS, NailRow, NailTable};
 use crate::photo::set::{Photo, PhotoSet, SetFault};
@@ -112,6 +112,8 @@ pub(in crate::photo) struct Findings<'a> {
     pub(in crate::photo) failed: Vec<SetFault>,
     /// What the scene did not need.
     pub(in crate::photo) left_out: Vec<String>,
+    /// Whether some photograph was searched for nails.
+    pub(in crate::photo) detects: bool,
     /// Detected outlines, where they were to be saved.
     pub(in crate::photo) outlines: Option<SavedOutlines>,
     /// Photographs whose outlines say that they were drawn on another, and on which.
@@ -142,6 +144,7 @@ impl<'a> Findings<'a> {
             rows: Vec::new(),
             failed: set.faults.clone(),
             left_out: Vec::new(),
+            detects: false,
             outlines: None,
             drawn_elsewhere: Vec::new(),
             colours: BTreeMap::new(),
@@ -253,7 +256,7 @@ pub(in crate::photo) fn of_photos(found: Findings<'_>, mut poses: Vec<PoseCount>
     sort_by_pose(&mut poses, |counted| &counted.pose);
     let warnings = found.warnings();
     let all_grey = !found.colours.is_empty() && found.colours.values().all(|[colour, _]| *colour == 0);
-    let Findings { set, options, has_maps, rows, failed, left_out, outlines, .. } = found;
+    let Findings { set, options, has_maps, rows, failed, left_out, detects, outlines, .. } = found;
     let mut notes: Vec<String> = outlines.iter().flat_map(SavedOutlines::notes).collect();
     notes.extend(one_subject(&poses).filter(|_| has_maps));
     let used = || rows.iter().filter(|row| row.normalized.is_some());
@@ -281,7 +284,7 @@ pub(in crate::photo) fn of_photos(found: Findings<'_>, mut poses: Vec<PoseCount>
     if all_grey {
         report.unused(&["channel", "channels"], "every photograph is grey");
     }
-    if set.photos.iter().all(|photo| options.outlines.locate(photo) != OutlinePlace::Detection) {
+    if !detects {
         report.unused(&["detector", "detect_size"], "no outline has to be detected");
     }
     report

@@ -260,13 +260,13 @@ pub(super) fn read(path: &Path) -> Result<(Meta, Held), PartialFault> {
     }
     let meta: Meta = serde_json::from_value(json).map_err(|e| unreadable(e.to_string()))?;
     let size = meta.normalization.check().map_err(unreadable)?.size;
+    if !meta.grey.is_subset(&meta.subjects) {
+        return Err(unreadable("is grey for a subject that it does not hold".into()));
+    }
     if meta.format == FORMAT_OF_ONE {
         let Some(subject) = meta.subjects.first().filter(|_| meta.subjects.len() == 1).cloned() else {
             return Err(unreadable("holds levels, which are one subject's, and names none or several".into()));
         };
-        if !meta.grey.is_subset(&meta.subjects) {
-            return Err(unreadable("is grey for a subject that it does not hold".into()));
-        }
         let levels = npz.square::<u16>("level", size).map_err(unreadable)?;
         let has_seen = npz.has("seen");
         let seen = has_seen.then(|| npz.square::<u8>("seen", size)).transpose().map_err(unreadable)?;
@@ -277,7 +277,7 @@ pub(super) fn read(path: &Path) -> Result<(Meta, Held), PartialFault> {
     let sum_sq = npz.square("sum_sq", size).map_err(unreadable)?;
     let count = npz.square("count", size).map_err(unreadable)?;
     let sums = Sums { size, sum, sum_sq, count, subjects: meta.subjects.clone(), grey: meta.grey.clone() };
-    if !sums.are_possible() || !sums.grey.is_subset(&sums.subjects) {
+    if !sums.are_possible() {
         return Err(unreadable("its sums contradict one another".into()));
     }
     Ok((meta, Held::Sums(sums)))
