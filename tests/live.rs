@@ -149,8 +149,9 @@ fn a_modulated_log_is_answered_as_the_batch_answers_it_under_the_same_rule() {
     }
     dir.write("log.csv", &text);
     dir.lunula(&["predict", "m.json", "log.csv", "--ambient", "preceding", "--out", "p.csv", "-q"]).expect(0);
-    let live = dir.lunula(&["live", "--source", "log.csv", "--model", "m.json"]).expect(0);
+    let live = dir.lunula(&["live", "--source", "log.csv", "--model", "m.json", "--f-min", "9"]).expect(0);
     let live = live.says("the unlit row before it is taken away");
+    let live = live.says("note: --f-min is of no use here: only a model of force and one of posture");
     assert_eq!(live.stdout, dir.text("p.csv"));
     assert_eq!(live.stdout.lines().count(), 201);
     // However the bytes are cut.
@@ -389,6 +390,28 @@ fn bad_sources_are_said_with_what_to_do() {
 }
 
 #[test]
+fn a_session_that_answers_nothing_says_why_and_leaves_no_answers_of_another() {
+    let dir = desk();
+    let rows = |led: &str| (0..300).map(|k| format!("{:.2},{led},1.5\n", 0.01 * f64::from(k))).collect::<String>();
+    for (name, led) in [("on.csv", "1"), ("off.csv", "0")] {
+        dir.write(name, format!("time_s,led,P1\n{}", rows(led)));
+    }
+    dir.write("r.csv", recording(3.0));
+    let live = |source: &str, more: &[&str]| {
+        dir.lunula(&[&["live", "--source", source, "--model", "m.json", "--out", "k.csv", "-q"], more].concat())
+    };
+    live("r.csv", &[]).expect(0);
+    assert!(dir.table("k.predicted.csv").len() > 200);
+    live("off.csv", &["--replace"]).expect(1).says("failed: no row is answered: the LED was on in no row");
+    assert!(dir.table("k.predicted.csv").is_empty());
+    live("on.csv", &["--replace"]).expect(1).says("no row is answered: the LED was never off");
+    live("r.csv", &["--replace", "--keep", "P9"]).expect(2).says("has no column `P9`");
+    let record = ["record", "--source", "r.csv", "--out", "n.csv", "--piece", "1", "--full-scale", "0,5"];
+    let said = dir.lunula(&record).expect(0).says("--piece is of no use here: rows are taken as they come");
+    said.says("--full-scale is of no use here: rows are recorded as they come");
+}
+
+#[test]
 fn rows_that_are_left_out_and_clocks_that_begin_again_are_warned_of() {
     let dir = desk();
     let rows = recording(2.0);
@@ -425,6 +448,8 @@ fn thresholds_are_chosen_and_judged_on_recordings() {
     let report = report.json();
     assert_eq!((&report["chosen"]["false_switches"], &report["chosen"]["missed"]), (&0.into(), &0.into()));
     assert!(report["held_out"]["presses"] == 119 + 1 && report["tried"].as_u64().unwrap() > 1000);
+    let warnings = report["warnings"].to_string();
+    assert!(warnings.contains("a.csv, b.csv: the same to the byte") && !warnings.contains("is missed"), "{warnings}");
     assert!(dir.path("s-curve.png").exists() && dir.path("s-curve.svg").exists());
     let evaluate = ["switch", "evaluate", "s.toml", "c.csv", "--model", "m.json", "--contact", "Fz_N<-0.01"];
     let said = dir.lunula(&[&evaluate[..], &["--out", "ev"]].concat()).expect(0).stdout;
@@ -476,6 +501,96 @@ fn thresholds_are_chosen_and_judged_on_recordings() {
     // One recording of two that can't be read costs itself.
     let both = ["switch", "evaluate", "s.toml", "c.csv", "lost.csv", "--model", "m.json", "--contact", "Fz_N<-0.01"];
     dir.lunula(&[&both[..], &["--out", "ev2", "-q"]].concat()).expect(1).says("lost.csv");
+}
+
+/// A recording, each row as `of` makes it of its time, light and force.
+fn altered(seconds: f64, names: &str, of: impl Fn(f64, f64, f64) -> String) -> String {
+    let text = recording(seconds);
+    let cells = |line: &str| line.split(',').map(|cell| cell.parse().unwrap()).collect::<Vec<f64>>();
+    let rows = text.lines().skip(1).map(cells).map(|cells| of(cells[0], cells[1], cells[2]));
+    format!("{names}\n{}", rows.collect::<String>())
+}
+
+/// Judges `sw.toml` on a recording of [`desk`] into `ev-<recording>`.
+fn judge(dir: &Dir, name: &str, more: &[&str]) -> crate::util::Answer {
+    let out = format!("ev-{name}");
+    let all = ["switch", "evaluate", "sw.toml", name, "--model", "m.json", "--contact", "Fz_N<-0.01", "--out", &out];
+    dir.lunula(&[&all[..], more].concat())
+}
+
+#[test]
+fn what_makes_the_figures_of_a_switch_doubtful_is_said() {
+    let dir = desk();
+    let write = |name: &str, of: &dyn Fn(f64, f64, f64) -> String| {
+        dir.write(name, altered(20.0, "time_s,P1,Fz_N", of));
+    };
+    dir.write("good.csv", recording(20.0));
+    dir.write("copy.csv", recording(20.0));
+    let good = judge(&dir, "good.csv", &[]).expect(0);
+    assert!(!good.stderr.contains("warning") && !good.stderr.contains("not known"), "{}", good.stderr);
+    judge(&dir, "good.csv", &["copy.csv"]).expect(0).says("good.csv, copy.csv: the same to the byte");
+    judge(&dir, "train.csv", &[]).expect(0).says("train.csv: the model was trained on this");
+    judge(&dir, "good.csv", &["--ambient", "interpolated", "--stream", "x"])
+        .expect(0)
+        .says("--ambient is of no use here: no recording says when its LED was on")
+        .says("--stream is of no use here");
+    write("beyond.csv", &|t_s, light, force| format!("{t_s},{},{force}\n", light + 5.0));
+    judge(&dir, "beyond.csv", &[]).expect(0).says("beyond.csv: 2000 of 2000 rows lie outside of the voltages");
+    write("surface.csv", &|t_s, light, force| format!("{t_s},{light},{}\n", -1000.0 * force));
+    judge(&dir, "surface.csv", &[]).expect(0).says("are the forces in newtons").says("as if the finger pulled");
+    // Two of ten presses are in 4 s of which nothing is known; known in every other row is never known.
+    let where_known = |t_s: f64, light: f64, force: f64, known: bool| {
+        if known { format!("{t_s},{light},{force}\n") } else { format!("{t_s},{light},\n") }
+    };
+    write("part.csv", &|t_s, light, force| where_known(t_s, light, force, !(8.0..12.0).contains(&t_s)));
+    judge(&dir, "part.csv", &[])
+        .expect(0)
+        .says("contact is not known for 4.0 s")
+        .says("presses that begin there, 2, are");
+    let part = json(&dir, "ev-part.csv/switch.json");
+    let counts = ["presses", "missed", "false_switches", "not_judged"].map(|count| part[count].as_u64().unwrap());
+    assert_eq!((counts, dir.table("ev-part.csv/presses.csv").len()), ([8, 0, 0, 2], 8));
+    write("odd.csv", &|t_s, light, force| where_known(t_s, light, force, (100.0 * t_s).round() % 2.0 == 0.0));
+    judge(&dir, "odd.csv", &[]).expect(2).says("1000 of 2000 rows say whether the finger touches (`Fz_N<-0.01`)");
+    write("none.csv", &|t_s, light, force| where_known(t_s, light, force, false));
+    judge(&dir, "none.csv", &[]).expect(2).says("no row says whether the finger touches");
+}
+
+#[test]
+fn of_a_log_whose_clock_was_set_back_a_switch_is_judged_on_a_piece() {
+    let dir = desk();
+    let twice = |name: &str, text: String| {
+        let rows = text.split_once('\n').unwrap().1;
+        dir.write(name, format!("{text}{rows}"));
+    };
+    twice("table.csv", recording(20.0));
+    judge(&dir, "table.csv", &[]).expect(0).says("its clock or counter goes back 1 time(s)");
+    let lit = |t_s: f64, light: f64, force: f64| format!("{t_s},1,{light},{force}\n{},0,0,{force}\n", t_s + 0.005);
+    twice("log.csv", altered(20.0, "time_s,led,P1,Fz_N", lit));
+    judge(&dir, "log.csv", &[]).expect(2).says("log.csv:4002: time falls back from").says("--piece");
+    judge(&dir, "log.csv", &["--piece", "3"]).expect(2).says("there is no --piece 3");
+    for name in ["table.csv", "log.csv"] {
+        judge(&dir, name, &["--piece", "2"]).expect(0).says("piece 2 of 2 is taken");
+        let presses = dir.table(&format!("ev-{name}/presses.csv"));
+        assert!(presses.len() == 10 && crate::util::number(&presses[0], "press_s") < 1.1, "{presses:?}");
+    }
+    judge(&dir, "log.csv", &["--piece", "1", "--ambient", "interpolated"])
+        .expect(0)
+        .says("--ambient is of no use here");
+}
+
+#[test]
+fn a_goal_that_is_missed_on_recordings_held_out_is_said() {
+    let dir = desk();
+    dir.write("calm.csv", recording(120.0));
+    // Every 2 s something lights up the nail without a touch, which no threshold from calm rows keeps out.
+    let bump = |t_s: f64| if (0.3..0.4).contains(&(t_s % 2.0)) { 0.25 } else { 0.0 };
+    let restless = |t_s: f64, light: f64, force: f64| format!("{t_s},{},{force}\n", light + bump(t_s));
+    dir.write("restless.csv", altered(120.0, "time_s,P1,Fz_N", restless));
+    let tune = ["switch", "tune", "calm.csv", "restless.csv", "--model", "m.json", "--contact", "Fz_N<-0.01"];
+    let said = dir.lunula(&[&tune[..], &["--false-per-hour", "60", "--out", "s.toml"]].concat()).expect(0);
+    let said = said.says("the goal is missed on recordings that are held out: ");
+    assert!(!said.stderr.contains("more recordings would show it"), "{}", said.stderr);
 }
 
 #[test]
@@ -589,6 +704,8 @@ fn a_press_harder_clicks_and_every_move_is_a_line() {
     assert_eq!(dir.text("e.jsonl"), fast);
     dir.lunula(&["live", "--source", "r.csv", "--model", "f.json", "--replace"]).expect(2).says("--replace is for");
     // The same at any speed.
+    dir.write("scroll.toml", "scroll = true\n");
+    mouse(&["--config", "scroll.toml", "--replace"]).expect(2).says("scroll = true needs J2_deg; name a model");
     let slow = ["mouse", "--source", "r.csv?rate=20", "--model", "f.json", "--events", "s.jsonl", "-q"];
     dir.lunula(&slow).expect(0);
     assert_eq!(dir.text("s.jsonl"), fast);

@@ -297,6 +297,11 @@ fn bad_options_are_refused_all_at_once() {
     refused("--lead -20").says("--lead -20: the log ends before it begins");
     refused("--rate 100000 --seconds 1000000").says("more than 20000000 samples");
     refused("--dead P9").says("`P9` is no photodiode; there are P1 to P8");
+    refused("--gap 11+1 --clock-jump=-1+5 --seconds 10 --trail 0")
+        .says("--gap 11+1: the log is of -1 to 10 s of the video's time")
+        .says("--clock-jump -1+5: the log is of -1 to 10 s");
+    refused("--force-hz 1 --force spiral").says("--force-hz: the force has no such rate");
+    refused("--spiral-seconds 5").says("--spiral-seconds: there is no spiral; choose --force spiral");
     refused("--gap now").says("`now` is not FROM+LENGTH");
     refused("--clock-jump 5").says("`5` is not TIME+SECONDS");
     refused("--trajectory nowhere.csv")

@@ -257,6 +257,13 @@ fn a_request_that_is_wrong_says_so() {
     let dir = Dir::new();
     graded(&dir);
     dir.lunula(&["prune", "a.csv"]).expect(2).says("--validate");
+    let millivolts = ["P1", "P2", "P3", "P4"]
+        .into_iter()
+        .fold(Recording::of(200..300), |all, name| all.map(name, |_, volts| 1000.0 * volts));
+    dir.recording("mV.csv", &millivolts);
+    dir.lunula(&["prune", "a.csv", "--validate", "mV.csv", "--target", "Fz_N", "--inputs", "P1,P2,P3,P4"])
+        .expect(0)
+        .says("in another unit?");
     dir.lunula(&["prune", "a.csv", "--validate", "b.csv"]).expect(2).says("has no column `Fx_N`. Its columns are");
     dir.lunula(&["prune", "a.csv", "--validate", "nowhere.csv", "--target", "Fz_N"]).expect(2).says("nowhere.csv");
     dir.recording("c.csv", &Recording::of(0..50).without("P4"));

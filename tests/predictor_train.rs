@@ -57,8 +57,13 @@ fn an_option_that_nothing_needs_is_named() {
             "note: --modes is of no use here: the model is not of eigennails"
         ],
     );
-    let network = ["--model", "network", "--hidden", "2", "--restarts", "1", "--stop-on", "held.csv"];
-    assert!(unused(&dir.train("train.csv", "force", "n.json", &network).expect(0)).is_empty());
+    let stopped = dir.train("train.csv", "force", "m.json", &["--stop-on", "held.csv", "--epochs", "5"]).expect(0);
+    let no_network = |option: &str| format!("note: {option} is of no use here: the model is no network");
+    assert_eq!(unused(&stopped), [no_network("--epochs"), no_network("--stop-on")]);
+    let network = ["--model", "network", "--hidden", "2", "--restarts", "1", "--stop-on"];
+    let network = |stop_on: &str| dir.train("train.csv", "force", "n.json", &[&network[..], &[stop_on]].concat());
+    assert!(unused(&network("held.csv").expect(0)).is_empty());
+    network("train.csv").expect(0).says("--stop-on names what is trained on");
     let gate = dir.lunula(&["predict", "m.json", "held.csv", "--f-min", "0.5", "--out", "p.csv"]).expect(0);
     assert_eq!(
         unused(&gate),

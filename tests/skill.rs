@@ -172,6 +172,7 @@ fn a_trial_is_compared_with_the_reference_whatever_its_pace() {
     assert!(distance(1) <= 0.02, "{}", distance(1));
     assert!(distance(2) > 5.0 * distance(1) && distance(2) > 0.1, "{} {}", distance(1), distance(2));
     assert!(finger(3)["distance_n"].is_null() && finger(3)["peak_n"].is_null() && finger(3)["presses"] == 0);
+    run(&dir, "expert.csv --band 5 --out alone").expect(0).says("--band is of no use here: there is no reference");
     // The reference is not compared with itself where it is one of the trials.
     let report = run(&dir, "expert.csv weaker.csv --reference-trial expert --out t --json").expect(0).json();
     assert_eq!(report["reference"].words(), "expert");

@@ -4,7 +4,7 @@ use std::ops::{Deref, DerefMut};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::work::{Made, Quality};
 use super::{Said, Watch};
@@ -38,6 +38,13 @@ pub struct Report<F> {
     pub stages: Vec<Stage>,
     /// Seconds from start to end, this report not counted.
     pub wall_s: f64,
+}
+
+/// What is asked of the report of an earlier run.
+#[derive(Deserialize)]
+struct Earlier {
+    #[serde(default)]
+    pictures: Vec<PathBuf>,
 }
 
 impl<F> Deref for Report<F> {
@@ -97,12 +104,26 @@ impl<F: Serialize> Report<F> {
         serde_json::to_string_pretty(self).expect("plain data with names as keys") + "\n"
     }
 
+    /// Warns of pictures that the run drew which was reported in `at` before, and this one doesn't.
+    pub fn warn_of_earlier(&mut self, at: &Path) {
+        let before = std::fs::read(at).ok().and_then(|json| serde_json::from_slice::<Earlier>(&json).ok());
+        let left = before.map_or_else(Vec::new, |before| before.pictures).into_iter();
+        // By name: a folder may be called otherwise than before.
+        let is_drawn = |path: &PathBuf| self.pictures.iter().any(|own| own.file_name() == path.file_name());
+        let left: Vec<PathBuf> = left.filter(|path| !is_drawn(path) && path.is_file()).collect();
+        if let [first, others @ ..] = &left[..] {
+            let also = if others.is_empty() { String::new() } else { format!(" and {} more", others.len()) };
+            self.warnings.push(format!("{}{also} existed before and are not of this run", first.display()));
+        }
+    }
+
     /// Writes the report to `at`, if it is to be written, and puts all results into their places.
     ///
     /// # Errors
     /// [`WriteError`]; then nothing has changed.
-    pub fn commit(self, mut places: Places, at: Option<&Path>) -> Result<Self, WriteError> {
+    pub fn commit(mut self, mut places: Places, at: Option<&Path>) -> Result<Self, WriteError> {
         if let Some(at) = at {
+            self.warn_of_earlier(at);
             places.write(at, &self.text())?;
         }
         places.commit()?;

@@ -68,7 +68,8 @@ pub fn end<F: Serialize>(
 ) -> Result<Report<F>, PredictorError> {
     let Some(out) = out else { return Ok(report.timed(stages, start)) };
     let staging = write(&mut report, out)?;
-    let report = report.timed(stages, start);
+    let mut report = report.timed(stages, start);
+    report.warn_of_earlier(&out.folder.join("run.json"));
     if out.report {
         staging.write("run.json", report.text().as_bytes())?;
     }

@@ -187,8 +187,9 @@ impl Prompter {
             let why = if unmet.is_empty() { String::new() } else { format!(": {}", unmet.join("; ")) };
             report.failed.push(format!("{place} of {count} steps were done{why}"));
         }
-        if report.rows == 0 {
-            report.failed.push("nothing was collected".to_owned());
+        let is_recorded = report.rows > 0;
+        if !is_recorded {
+            report.failed.push("nothing was collected, and nothing is written".to_owned());
         }
         let space = shared.run.protocol().space;
         drop(shared);
@@ -201,11 +202,13 @@ impl Prompter {
         if frames.unwrap_or(true) {
             report.frames_file = Some(beside(&self.files.out, ".frames.csv"));
         }
-        if !self.alone {
+        if is_recorded && !self.alone {
             places.write(&beside(&self.files.out, ".clock.toml"), CLOCK)?;
         }
         let report = report.timed(&Stages::default(), start);
-        Ok(report.commit(places, Some(&beside(&self.files.out, ".run.json")))?)
+        // A recording of before, which is as it was, has a report of its own.
+        let at = is_recorded.then(|| beside(&self.files.out, ".run.json"));
+        Ok(report.commit(places, at.as_deref())?)
     }
 
     fn subject_rows(&self) -> Result<Option<Box<dyn Rows>>, PromptError> {

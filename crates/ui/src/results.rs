@@ -187,10 +187,15 @@ impl Folders {
         let value: Value = serde_json::from_slice(&read_file(json, MOST_JSON)?).ok()?;
         let text = |key: &str| value.get(key).and_then(Value::as_str).map(str::to_owned);
         let job = text("job").or_else(|| text("pipeline"))?;
-        let lines = |key: &str| {
-            let all = value.get(key).and_then(Value::as_array).into_iter().flatten().filter_map(Value::as_str);
-            all.take(MOST_LINES).map(str::to_owned).collect()
+        let lines = |key: &str| -> Vec<String> {
+            listed(&value, key).filter_map(Value::as_str).take(MOST_LINES).map(str::to_owned).collect()
         };
+        // A pipeline counts in `failed` what `failures` lists, and what its jobs warn of stands by stage.
+        let failures = listed(&value, "failures").filter_map(|one| said(one, one, "task"));
+        let failed = lines("failed").into_iter().chain(failures.take(MOST_LINES)).collect();
+        let of_stages = listed(&value, "stages")
+            .flat_map(|stage| listed(stage, "warnings").filter_map(move |one| said(one, stage, "stage")));
+        let warnings = lines("warnings").into_iter().chain(of_stages.take(MOST_LINES)).collect();
         let folder = json.parent()?;
         let mut pictures: Vec<PathBuf> = beside.to_vec();
         if stem.is_empty() {
@@ -213,8 +218,8 @@ impl Folders {
             version: text("version").unwrap_or_default(),
             made_unix_s: made.duration_since(UNIX_EPOCH).map_or(0.0, |since| since.as_secs_f64()),
             wall_s: value.get("wall_s").and_then(Value::as_f64),
-            warnings: lines("warnings"),
-            failed: lines("failed"),
+            warnings,
+            failed,
             left_out: lines("left_out"),
             report: (stem.is_empty() && beside.contains(&report)).then(|| self.number(&report)),
             pictures: pictures
@@ -233,6 +238,16 @@ impl Folders {
         self.numbers.insert(path.to_owned(), number);
         number
     }
+}
+
+/// What a list of a run's JSON holds.
+fn listed<'a>(value: &'a Value, key: &str) -> impl Iterator<Item = &'a Value> + use<'a> {
+    value.get(key).and_then(Value::as_array).into_iter().flatten()
+}
+
+/// What is said of one of a pipeline's parts, behind its name.
+fn said(one: &Value, part: &Value, name: &str) -> Option<String> {
+    Some(format!("{}: {}", part.get(name)?.as_str()?, one.get("what")?.as_str()?))
 }
 
 /// What the names of a run's files begin with, where a file is a run's JSON.
@@ -289,6 +304,10 @@ mod tests {
         write(root.join("posture/joints-angles.png"), "png");
         write(root.join("posture/other.png"), "png");
         write(root.join("posture/broken.run.json"), "{\"job\":");
+        let failures = "[{\"task\":\"align/1\",\"what\":\"log.csv:7: no number\"}]";
+        let stages = "[{\"stage\":\"force\",\"warnings\":[{\"what\":\"few rows\",\"count\":2}]}]";
+        let study = format!("{{\"pipeline\":\"s\",\"failed\":1,\"failures\":{failures},\"stages\":{stages}}}");
+        write(root.join("study/run.json"), &study);
         (dir, root)
     }
 
@@ -299,7 +318,9 @@ mod tests {
         let mut runs = folders.look().runs;
         runs.sort_by(|a, b| a.name.cmp(&b.name));
         let names: Vec<&str> = runs.iter().map(|run| run.name.as_str()).collect();
-        assert_eq!(names, ["lab/photos/run.json", "lab/posture/joints.run.json"]);
+        assert_eq!(names, ["lab/photos/run.json", "lab/posture/joints.run.json", "lab/study/run.json"]);
+        assert_eq!(runs[2].failed, ["align/1: log.csv:7: no number"]);
+        assert_eq!(runs[2].warnings, ["force: few rows"]);
         let pictures = |run: &Run| run.pictures.iter().map(|one| one.name.clone()).collect::<Vec<_>>();
         assert_eq!(pictures(&runs[0]), ["photos/figures/mean.png"]);
         assert_eq!(pictures(&runs[1]), ["posture/joints-angles.png"]);
@@ -325,7 +346,7 @@ mod tests {
         symlink(secret.join("run.json"), root.join("posture/run.json")).unwrap();
         let mut folders = Folders::new(vec![root.clone()]);
         let runs = folders.look().runs;
-        assert!(runs.len() == 2 && runs.iter().all(|run| run.job != "secret"));
+        assert!(runs.len() == 3 && runs.iter().all(|run| run.job != "secret"));
         let picture = runs.iter().flat_map(|run| &run.pictures).find(|one| one.name.ends_with("mean.png")).unwrap().id;
         assert!(folders.read(picture).is_some());
         fs::remove_file(root.join("photos/figures/mean.png")).unwrap();

@@ -11,7 +11,7 @@ pub(super) use given::Parts;
 pub(super) use given::{Contrast, Given, Target};
 pub use given::{LeftOutCandidates, PersonFigures};
 pub(super) use maps::is_maps;
-pub(super) use places::Place;
+pub(super) use places::{Place, is_photodiode};
 
 /// Reads tables and logs, or maps.
 pub(super) fn read(inputs: &LayoutInputs, options: &LayoutOptions) -> Result<Given, LayoutError> {

@@ -55,7 +55,7 @@ pub(super) fn cell(name: String, [row, column]: [usize; 2], n: usize, margin: f6
 }
 
 /// Whether a column is a photodiode: `P12`.
-pub(super) fn is_photodiode(name: &str) -> bool {
+pub(in crate::layout) fn is_photodiode(name: &str) -> bool {
     name.strip_prefix('P').is_some_and(|digits| !digits.is_empty() && digits.bytes().all(|b| b.is_ascii_digit()))
 }
 

@@ -15,7 +15,7 @@ use crate::job::{Report, Watch};
 use crate::layout::draw::{draw_errors, draw_places};
 use crate::layout::error::LayoutError;
 use crate::layout::options::{LayoutInputs, LayoutOptions, LayoutOutputs};
-use crate::layout::read::{Given, Target, is_maps, read};
+use crate::layout::read::{Given, Target, is_maps, is_photodiode, read};
 use crate::layout::solve::{Method, Solved, Solver, smallest_sufficient, thesis};
 use crate::nail::{Position, Positions};
 use crate::stages::{Stages, left_out};
@@ -128,6 +128,9 @@ pub fn run(
         );
     } else {
         report.unused(&["cells"], "the candidates are the columns of the tables");
+        if given.places.iter().all(|place| is_photodiode(&place.name)) {
+            report.unused(&["grid"], "the candidates are photodiodes");
+        }
     }
     Ok(report.timed(&stages, start).commit(places, outputs.report.then(|| folder.join(REPORT)).as_deref())?)
 }

@@ -7,6 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use lunula_live::wire::{Meaning, Naming, Use};
 
+use crate::live::options::StreamOptions;
 use crate::log::{GROUPS, LogReading};
 use crate::predictor::missing;
 
@@ -115,11 +116,17 @@ impl StreamColumns {
 pub(super) struct Recognizer(Arc<Mutex<Option<StreamColumns>>>);
 
 impl Recognizer {
-    /// What a stream asks for the meaning of its columns; `needs` have to be among them.
-    pub(super) fn naming(&self, log: &LogReading, keep: &[String], needs: &[String]) -> Naming {
-        let (recognizer, log, keep, needs) = (self.clone(), log.clone(), keep.to_vec(), needs.to_vec());
+    /// What a stream asks for the meaning of its columns; `needs` have to be among them, and what is to be kept where
+    /// it is the only one.
+    pub(super) fn naming(&self, options: &StreamOptions, needs: &[String]) -> Naming {
+        let is_alone = options.source.len() + options.force.len() == 1;
+        let (recognizer, log, keep) = (self.clone(), options.log.clone(), options.keep.clone());
+        let needs = needs.to_vec();
         Box::new(move |names| {
             let columns = StreamColumns::of(names, &log, &keep)?;
+            if let Some(lacking) = keep.iter().find(|name| is_alone && !columns.values.contains(name)) {
+                return Err(missing(lacking, names));
+            }
             if columns.values.is_empty() {
                 return Err(format!("no column is a photodiode or a force; its columns are {}", names.join(", ")));
             }

@@ -55,7 +55,7 @@ impl<'a> Feed<'a> {
         clock: &HostClock,
     ) -> Result<Self, LiveError> {
         let recognizer = Recognizer::default();
-        let naming = recognizer.naming(&options.log, &options.keep, needs);
+        let naming = recognizer.naming(options, needs);
         let stream = open_stream(source, options, naming, clock.now_ns())?;
         Ok(Self::of(source, stream, recognizer))
     }
@@ -63,7 +63,7 @@ impl<'a> Feed<'a> {
     /// Rows that a program makes, in place of the source, at the source's pace.
     pub(super) fn of_rows(source: &'a Address, rows: Box<dyn Rows>, options: &StreamOptions) -> Self {
         let recognizer = Recognizer::default();
-        let naming = recognizer.naming(&options.log, &options.keep, &[]);
+        let naming = recognizer.naming(options, &[]);
         let pace = match source.place {
             Place::Phantom { pace, .. } => pace,
             _ => Pace::Max,

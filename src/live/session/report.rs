@@ -16,7 +16,7 @@ use crate::files::{Places, beside};
 use crate::job::{Report, Watch};
 use crate::live::error::LiveError;
 use crate::live::options::SessionFiles;
-use crate::predictor::extrapolated;
+use crate::predictor::{Answering, extrapolated};
 use crate::stages::Stages;
 
 /// The report beside a recording.
@@ -153,11 +153,26 @@ pub(super) fn report(ended: Ended<'_>, watch: &Watch<'_>) -> Result<SessionRepor
     }
     figures.lost_by_readers = outputs.lost();
     figures.columns = outputs.header;
-    if let Some(predicted) = outputs.predicted {
+    if let Some(mut predicted) = outputs.predicted {
+        // Where nothing was answered that is what stands there, and not what an earlier session left.
+        failed.extend(predicted.push("").err().map(|why| why.to_string()));
         figures.lost_by_disk += predicted.lost();
         failed.extend(predicted.finish().err().map(|why| why.to_string()));
     }
     let mut report = Report { left_out, warnings, notes, failed, ..Report::new(job, watch, figures) };
+    let told = report.notes.len();
+    let columns = &report.figures.columns;
+    let (answers, gated) = (!columns.is_empty(), columns.iter().any(|column| column.ends_with("contact")));
+    if !gated {
+        report.unused(&Answering::GATES, Answering::NO_GATE);
+    }
+    report.unused(&["piece", "stream"], "rows are taken as they come");
+    if answers {
+        report.unused(&["ambient"], "the unlit row before each is taken away");
+    } else {
+        report.unused(&["ambient", "full_scale"], "rows are recorded as they come");
+    }
+    report.notes[told..].iter().for_each(|note| tell(&format!("note: {note}")));
     let losses = losses(&report);
     losses.iter().for_each(|warning| tell(&format!("warning: {warning}")));
     report.warnings.extend(losses);
@@ -212,6 +227,14 @@ impl SessionFigures {
             if sensor.unknown > 0 {
                 notes.push(format!("{} rows do not say whether the LED was on and are left out", sensor.unknown));
             }
+            let nothing = match (sensor.lit, sensor.unlit) {
+                (0, 1..) => Some("the LED was on in no row"),
+                (1.., 0) if sensor.has_led() => {
+                    Some("the LED was never off, so no ambient light is known; where it stays on, leave `led` out")
+                }
+                _ => None,
+            };
+            failed.extend(nothing.map(|why| format!("no row is answered: {why}")));
         }
         let Some(mut samples) = samples else { return };
         failed.extend(samples.end_forces().err().map(|why| why.to_string()));
@@ -222,6 +245,9 @@ impl SessionFigures {
         failed.extend(samples.finish().err().map(|why| why.to_string()));
     }
 }
+
+/// More rows than this share that are not answered in full are a warning: lags and ambient light lack the first ones.
+const FEW: f64 = 0.02;
 
 /// What has to be known of a session before its rows are used.
 fn losses(report: &SessionReport) -> Vec<String> {
@@ -260,6 +286,13 @@ fn losses(report: &SessionReport) -> Vec<String> {
     }
     if report.lost_by_readers > 0 {
         warnings.push(format!("readers lost {} rows: they were too slow", report.lost_by_readers));
+    }
+    if report.rows_not_known as f64 > FEW * report.answered as f64 {
+        warnings.push(format!(
+            "{} of {} rows are not answered in full: a photodiode is missing or saturated, or the ambient light or the \
+             past that a model reads is not known",
+            report.rows_not_known, report.answered
+        ));
     }
     warnings.extend(extrapolated(report.rows_outside, report.answered));
     warnings

@@ -93,6 +93,11 @@ impl Sensor {
         &self.answering
     }
 
+    /// Whether its rows say whether the LED was on.
+    pub(crate) fn has_led(&self) -> bool {
+        self.preceding.is_some()
+    }
+
     /// The voltages that were answered last, as [`Answering::inputs`]; NaN where not known.
     pub(crate) fn volts(&self) -> &[f64] {
         &self.volts

@@ -134,7 +134,10 @@ pub fn run(
         }
     }
     let left_out = left_out(steps);
-    let report = Report { left_out, notes, warnings, failed, pictures, ..Report::new("skill", watch, figures) };
+    let mut report = Report { left_out, notes, warnings, failed, pictures, ..Report::new("skill", watch, figures) };
+    if report.figures.reference.is_none() {
+        report.unused(&["band"], "there is no reference to compare trials with");
+    }
     Ok(report.timed(&stages, start).commit(places, outputs.report.then(|| folder.join(REPORT)).as_deref())?)
 }
 

@@ -11,7 +11,9 @@ use lunula_live::switch::{Evaluation, Fate, Match, SwitchConfig, matches};
 use serde::Serialize;
 
 use super::figures::draw_delays;
+use super::flattery::flattery;
 use super::options::ContactOptions;
+use super::report::note;
 use super::traces::{SwitchInputs, Traces, read_traces};
 use crate::files::Staging;
 use crate::job::{Report, Watch};
@@ -53,13 +55,10 @@ pub fn evaluate_switch(
     let config = read_switch(switch)?;
     let FolderOutputs { folder: out, rows, figures, report: with_report } = outputs;
     let staging = Staging::new(out)?;
-    let Traces { recordings: read, traces, warnings, notes, failed } =
+    let Traces { recordings: read, traces, led, mut warnings, notes, failed } =
         stages.time("predict", || read_traces(inputs, config.column.as_deref(), options, watch))?;
+    warnings.extend(stages.time("compare with training", || flattery(inputs, options))?);
     let all = stages.time("switch", || Evaluation::of(&config, &traces));
-    if all.hours == 0.0 {
-        let what = format!("no row says whether the finger touches (`{}`); name another column", options.contact);
-        return Err(LiveError::Request(what));
-    }
     watch.go_on()?;
     let mut report = Report {
         warnings,
@@ -73,10 +72,11 @@ pub fn evaluate_switch(
                 recordings: read.clone(),
                 contact: options.contact.to_string(),
                 switch: config.clone(),
-                all,
+                all: all.clone(),
             },
         )
     };
+    note(&mut report, &all, inputs, options, led);
     let found: Vec<Vec<Match>> = traces.iter().map(|trace| matches(&config, trace)).collect();
     if *rows {
         let at = staging.place("presses.csv")?;
@@ -96,7 +96,7 @@ pub fn evaluate_switch(
     Ok(report)
 }
 
-/// A row for each press and each missed contact.
+/// A row for each press that is judged and each missed contact.
 fn write_presses(at: &Path, shown: &Path, recordings: &[String], found: &[Vec<Match>]) -> Result<(), LiveError> {
     let columns = vec![
         Column::text("recording"),

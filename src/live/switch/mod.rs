@@ -2,6 +2,7 @@
 
 mod evaluate;
 mod figures;
+mod flattery;
 mod kind;
 mod options;
 mod report;

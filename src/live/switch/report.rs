@@ -1,9 +1,12 @@
-//! What the choice of a switch reports.
+//! What the choice of a switch reports, and what any report on a switch says of its recordings.
 
 use lunula_live::switch::{Candidate, Evaluation, NoiseRate, SwitchConfig};
 use serde::Serialize;
 
+use super::options::ContactOptions;
+use super::traces::SwitchInputs;
 use crate::job::Report;
+use crate::log::AmbientRule;
 
 /// What was chosen, and how it does.
 pub type TuneReport = Report<TuneFigures>;
@@ -55,5 +58,32 @@ impl CurvePoint {
             missed_share: evaluation.missed as f64 / evaluation.presses.max(1) as f64,
             switch: config,
         })
+    }
+}
+
+/// Notes what of the recordings is not counted, and options of reading that they do not need; `led`: whether one of
+/// them says when the LED was on.
+pub(super) fn note<F: Serialize>(
+    report: &mut Report<F>,
+    found: &Evaluation,
+    inputs: &SwitchInputs,
+    options: &ContactOptions,
+    led: bool,
+) {
+    if found.unknown_s > 0.0 || found.not_judged > 0 {
+        report.notes.push(format!(
+            "contact is not known for {:.1} s, which are not counted; presses that begin there, {}, are neither true \
+             nor false",
+            found.unknown_s, found.not_judged
+        ));
+    }
+    if !led {
+        report.unused(&["ambient", "full_scale"], "no recording says when its LED was on");
+    } else if options.log.ambient.rule == AmbientRule::Interpolated {
+        let why = "rows are read as a stream gives them, and from each lit row the unlit row before it is taken away";
+        report.unused(&["ambient"], why);
+    }
+    if !inputs.recordings.iter().any(|one| one.path.to_string_lossy().to_lowercase().contains(".xdf")) {
+        report.unused(&["stream"], "only recordings of the Lab Streaming Layer have streams");
     }
 }

@@ -1,6 +1,7 @@
 //! Recordings to traces: what a live session would have compared at each row, and what was true.
 
 use std::cell::RefCell;
+use std::iter;
 use std::path::PathBuf;
 
 use lunula_live::switch::{LONGEST_GAP_S, Trace};
@@ -10,7 +11,8 @@ use super::options::ContactOptions;
 use crate::job::Watch;
 use crate::live::error::LiveError;
 use crate::live::session::{Sensor, StreamColumns, each_row};
-use crate::predictor::{Answering, DataFile, open_models};
+use crate::log::{Log, LogError, doubts};
+use crate::predictor::{Answering, DataFile, extrapolated, open_models};
 
 /// Rows of a recording, at most: 30 h at 1 kHz.
 const MOST_ROWS: usize = 100_000_000;
@@ -31,6 +33,8 @@ pub(crate) struct Traces {
     pub(crate) recordings: Vec<String>,
     /// One of each of them.
     pub(crate) traces: Vec<Trace>,
+    /// Whether one of them says when the LED was on.
+    pub(crate) led: bool,
     pub(crate) warnings: Vec<String>,
     pub(crate) notes: Vec<String>,
     /// Recordings that could not be read, each with why.
@@ -53,8 +57,8 @@ pub(crate) fn read_traces(
     for (k, recording) in recordings.iter().enumerate() {
         watch.go_on()?;
         (watch.tick)(k as u64, Some(recordings.len() as u64));
-        let mut notes = Vec::new();
-        match read_trace(recording, &opened.predictors, column, options, watch, &mut notes) {
+        let mut said = Remarks::default();
+        match read_trace(recording, &opened.predictors, column, options, watch, &mut said) {
             Ok(trace) => {
                 all.traces.push(trace);
                 all.recordings.push(recording.name.clone());
@@ -62,12 +66,23 @@ pub(crate) fn read_traces(
             Err(LiveError::Interrupted(why)) => return Err(why.into()),
             Err(why) => all.failed.push(why.to_string()),
         }
-        all.notes.extend(notes.into_iter().map(|note| format!("{}: {note}", recording.name)));
+        all.led |= said.led;
+        for (to, from) in [(&mut all.warnings, said.warnings), (&mut all.notes, said.notes)] {
+            to.extend(from.into_iter().map(|what| format!("{}: {what}", recording.name)));
+        }
     }
     if all.traces.is_empty() {
         return Err(LiveError::Request(all.failed.join("; ")));
     }
     Ok(all)
+}
+
+/// What is worth saying of a recording.
+#[derive(Default)]
+struct Remarks {
+    led: bool,
+    warnings: Vec<String>,
+    notes: Vec<String>,
 }
 
 fn read_trace(
@@ -76,7 +91,7 @@ fn read_trace(
     column: Option<&str>,
     options: &ContactOptions,
     watch: &Watch<'_>,
-    notes: &mut Vec<String>,
+    said: &mut Remarks,
 ) -> Result<Trace, LiveError> {
     let refused = |what: String| LiveError::Source { place: recording.name.clone(), what };
     // The gate only says what is touching, which is not asked for here.
@@ -93,14 +108,22 @@ fn read_trace(
     let extra = [truth.column.clone()];
     // Of a recording that begins with an unlit row, the first lit one.
     let mut begins = false;
-    let said = each_row(
-        &recording.path,
+    // Of all rows, lit or not.
+    let (mut times, mut truths, mut known) = (Vec::new(), Vec::new(), 0);
+    let (mut begun, mut grouped) = (0, false);
+    let path = &recording.path;
+    let piece =
+        options.log.columns.piece.map(|piece| Ok::<_, LogError>((piece, Log::read(path, &options.log.columns)?)));
+    let piece = piece.transpose()?;
+    let notes = each_row(
+        path,
         &options.log,
         &extra,
         |columns: &StreamColumns| {
             let place = columns.place(&truth.column).ok_or_else(|| {
                 format!("has no column `{}`; its numbers are {}", truth.column, columns.values.join(", "))
             })?;
+            (said.led, grouped) = (columns.led, !columns.groups.is_empty());
             let answering = answering.take().ok_or("names its columns twice")?;
             sensor.replace(Some((Sensor::new(answering, columns, &options.log, options.keep_faults)?, place)));
             Ok(())
@@ -108,12 +131,26 @@ fn read_trace(
         |row| {
             let mut sensor = sensor.borrow_mut();
             let Some((sensor, place)) = &mut *sensor else { return Ok(()) };
+            begun += usize::from(row.begins);
+            let mut row = *row;
+            if let Some((piece, log)) = &piece {
+                let is_of_log = row.time_s.is_finite() && (row.lit.is_some() || log.led.is_none());
+                if begun != piece.get() || !is_of_log {
+                    return Ok(());
+                }
+                // Where its clock was set back a stream's time goes on.
+                row.time_s = log.time_s.get(times.len()).copied().unwrap_or(f64::NAN);
+                row.begins = times.is_empty();
+            }
             let touches = truth.of(row.values[*place]).map_err(|value| {
                 format!("column `{}` is {value} at {} s; contact is 0 or 1, or say Fz_N<-0.2", truth.column, row.time_s)
             })?;
             trace.contacts.push(row.time_s, touches, row.begins);
+            times.push(row.time_s);
+            truths.push(row.values[*place]);
+            known += usize::from(touches.is_some());
             begins |= row.begins;
-            let Some(answer) = sensor.row(row) else { return Ok(()) };
+            let Some(answer) = sensor.row(&row) else { return Ok(()) };
             if std::mem::take(&mut begins) {
                 trace.begins.push(trace.time_s.len());
             }
@@ -127,19 +164,51 @@ fn read_trace(
         },
         watch,
     )?;
-    notes.extend(said);
+    said.notes.extend(notes);
+    match piece {
+        Some((piece, log)) if log.time_s.len() != times.len() => {
+            return Err(refused(format!(
+                "piece {piece} has {} rows, and {} come in the order of time and counter; cut it out of the file",
+                log.time_s.len(),
+                times.len()
+            )));
+        }
+        Some((_, log)) => said.notes.extend(log.notes.into_iter().filter(|note| note.starts_with("piece "))),
+        None if begun > 1 => {
+            // A log is refused, with its line.
+            if options.log.is_log(path)? {
+                Log::read(path, &options.log.columns)?;
+            }
+            if !grouped {
+                let back = begun - 1;
+                said.warnings.push(format!("its clock or counter goes back {back} time(s); a recording begins there"));
+            }
+        }
+        None => {}
+    }
+    said.warnings.extend(doubts::time(&times));
+    said.warnings.extend(doubts::forces(iter::once((truth.column.as_str(), &truths[..]))));
+    let outside = trace.outside.iter().filter(|outside| **outside).count();
+    said.warnings.extend(extrapolated(outside as u64, trace.outside.len() as u64));
     if trace.time_s.is_empty() {
         return Err(refused("has no rows with the LED on".to_owned()));
     }
-    let times = &trace.time_s;
-    if trace.contacts.seconds() == 0.0 && times.len() > 1 {
-        let apart_s = (times[times.len() - 1] - times[0]) / (times.len() - 1) as f64;
-        if apart_s > LONGEST_GAP_S {
-            return Err(refused(format!(
+    if trace.contacts.seconds() == 0.0 {
+        let (rows, lit) = (times.len(), &trace.time_s);
+        let apart_s = (lit[lit.len() - 1] - lit[0]) / (lit.len() - 1) as f64;
+        return Err(refused(if known == 0 {
+            format!("no row says whether the finger touches (`{truth}`); name another column")
+        } else if apart_s > LONGEST_GAP_S {
+            format!(
                 "its rows are {apart_s:.1} s apart, and contact is known between rows up to {LONGEST_GAP_S} s apart; \
                  call a time in milliseconds time_ms"
-            )));
-        }
+            )
+        } else {
+            format!(
+                "{known} of {rows} rows say whether the finger touches (`{truth}`), but no two neighbours do, between \
+                 which it is known; fill it in in every row"
+            )
+        }));
     }
     Ok(trace)
 }

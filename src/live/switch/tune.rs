@@ -4,14 +4,16 @@
 //! `<switch>.run.json` ([`TuneReport`]) and the curve of delay against false switches. Predictions are made row by row
 //! as `lunula live` makes them.
 
+use std::iter;
 use std::path::PathBuf;
 use std::time::Instant;
 
 use lunula_live::switch::{Goal, SwitchConfig, crossings_per_hour, tune};
 
 use super::figures::draw_curve;
+use super::flattery::flattery;
 use super::options::TuneOptions;
-use super::report::{CurvePoint, TuneFigures, TuneReport};
+use super::report::{CurvePoint, TuneFigures, TuneReport, note};
 use super::traces::{SwitchInputs, Traces, read_traces};
 use crate::files::{Places, beside};
 use crate::job::{Report, Watch};
@@ -48,15 +50,19 @@ pub fn tune_switch(
     let report_at = report.then(|| beside(out, ".run.json"));
     let mut places = Places::not_over(inputs.recordings.iter().map(|file| &file.path).chain(&inputs.models));
     places.check(std::iter::once(out).chain(&report_at))?;
-    let Traces { recordings: read, traces, warnings, notes, failed } =
+    let Traces { recordings: read, traces, led, mut warnings, notes, failed } =
         stages.time("predict", || read_traces(inputs, options.column.as_deref(), &options.truth, watch))?;
+    warnings.extend(stages.time("compare with training", || flattery(inputs, &options.truth))?);
     let goal = Goal {
         false_per_hour: options.false_per_hour,
         missed_share: options.missed,
         watchdog_s: options.watchdog,
         outside: options.outside.into(),
     };
-    let tuned = stages.time("choose", || tune(&traces, &goal)).map_err(|why| LiveError::Request(why.to_string()))?;
+    let tuned = stages.time("choose", || tune(&traces, &goal)).map_err(|why| {
+        // What is doubtful about the recordings may be why.
+        LiveError::Request(iter::once(why.to_string()).chain(warnings.clone()).collect::<Vec<_>>().join("; "))
+    })?;
     watch.go_on()?;
     let switch = SwitchConfig { column: options.column.clone(), ..tuned.chosen.config.clone() };
     let mut report = Report {
@@ -72,7 +78,7 @@ pub fn tune_switch(
                 contact: options.truth.contact.to_string(),
                 rice_per_hour: tuned.noise.map(|noise| crossings_per_hour(noise, switch.on_n)),
                 switch,
-                chosen: tuned.chosen.evaluation,
+                chosen: tuned.chosen.evaluation.clone(),
                 held_out: tuned.held_out,
                 noise: tuned.noise,
                 curve: tuned.curve.into_iter().filter_map(CurvePoint::of).collect(),
@@ -80,6 +86,7 @@ pub fn tune_switch(
             },
         )
     };
+    note(&mut report, &tuned.chosen.evaluation, inputs, &options.truth, led);
     let weak = weak(&report, options);
     report.warnings.extend(weak);
     let text = toml::to_string(&report.switch).map_err(|why| LiveError::Request(why.to_string()))?;
@@ -114,16 +121,25 @@ fn weak(report: &TuneReport, options: &TuneOptions) -> Vec<String> {
                     flatters; name several recordings, or hold one back for `lunula switch evaluate`";
         warnings.push(what.to_owned());
     }
-    if let Some(rate) = judged.rate.filter(|rate| rate.false_per_hour_high > options.false_per_hour) {
+    let goal = options.false_per_hour;
+    if let Some(rate) = judged.rate.filter(|rate| rate.false_per_hour_low > goal) {
+        // What was chosen on all keeps the goal on all.
+        warnings.push(format!(
+            "the goal is missed on recordings that are held out: {} false switches in {:.2} h are {:.1} an hour at \
+             least, and {goal} are allowed; choose with a lower --false-per-hour, or train the model on more sessions, \
+             rest among them",
+            judged.false_switches, judged.hours, rate.false_per_hour_low
+        ));
+    } else if let Some(rate) = judged.rate.filter(|rate| rate.false_per_hour_high > goal) {
         let more = if judged.false_switches == 0 {
             // Nothing counted in so long means at most the goal.
-            format!("{:.1} h without any would show it", 3.0 / options.false_per_hour)
+            format!("{:.1} h without any would show it", 3.0 / goal)
         } else {
             "more recordings would show it".to_owned()
         };
         warnings.push(format!(
-            "{} false switches in {:.2} h agree with up to {:.1} an hour, and {} are allowed: {more}",
-            judged.false_switches, judged.hours, rate.false_per_hour_high, options.false_per_hour
+            "{} false switches in {:.2} h agree with up to {:.1} an hour, and {goal} are allowed: {more}",
+            judged.false_switches, judged.hours, rate.false_per_hour_high
         ));
     }
     warnings

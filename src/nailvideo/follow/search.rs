@@ -1,5 +1,6 @@
-//! Where the nail may be after it was lost: its locally normalized luma, reduced to some 24 pixels across, turned and
-//! scaled, is looked for over the whole picture. What is found is a start for the fit, no more.
+//! Where the nail may be after it was lost, or be rather than where it was fitted: its locally normalized luma, reduced
+//! to some 24 pixels across, turned and scaled, is looked for over the whole picture, or about a place. What is found
+//! is a start for the fit, no more.
 
 use super::sight::Sight;
 use crate::nailvideo::affine::Affine;
@@ -14,6 +15,9 @@ const SCALES: [f64; 3] = [1.0, 0.87, 1.15];
 /// Places handed on, and the correlation below which none is (assumed: a fit judges them).
 const MOST_PLACES: usize = 3;
 const LEAST_FIT: f32 = 0.35;
+
+/// How far about a place is looked, of [`Search::reach`] (assumed: a quarter of the nail's width).
+const NEAR: f64 = 0.5;
 
 /// What is looked for.
 #[derive(Debug)]
@@ -40,33 +44,59 @@ impl Search {
 
     /// Motions that may be the nail's in a frame, the likeliest first; `last` is the last that was known.
     pub(super) fn places(&self, samples: &Samples<'_>, last: &Affine) -> Vec<Affine> {
-        let sight = Sight::new(samples, whole(samples), self.step, self.blur_px);
-        let (picture, size) = sight.all();
-        let (turn, scale) = (last.0[3].atan2(last.0[0]), last.determinant().abs().sqrt());
-        let mut found: Vec<(f32, Affine)> = Vec::new();
-        for (turn_deg, by) in TURNS_DEG.iter().flat_map(|turn| SCALES.map(|scale| (*turn, scale))) {
-            let way = Affine::similarity(self.middle, [0.0; 2], turn + turn_deg.to_radians(), scale * by);
-            let Some(back) = way.inverse() else { continue };
-            // Blocks from the middle to each side.
-            let side = (self.reach * scale * by / self.step as f64).floor() as usize;
-            let across = 2 * side + 1;
-            let from_middle = |k: usize| (k as f64 - side as f64) * self.step as f64;
-            let patch = (0..across * across).map(|k| {
-                let [x, y] = back.of([from_middle(k % across), from_middle(k / across)]);
-                Some(self.template.at(x as f32, y as f32)).filter(|v| v.is_finite()).unwrap_or(0.0)
-            });
-            let patch: Vec<f32> = patch.collect();
-            let fits = matched(&picture, size, &patch, [across; 2]);
-            let columns = (size[0] + 1).saturating_sub(across);
-            let best = (0..fits.len()).max_by(|&a, &b| fits[a].total_cmp(&fits[b]));
-            let Some(best) = best.filter(|&best| fits[best] >= LEAST_FIT) else { continue };
-            let corner = [best % columns, best / columns].map(|k| (k + side) as f64);
-            let [x, y] = sight.middle(corner);
-            let mut motion = way.0;
-            (motion[2], motion[5]) = (motion[2] + x, motion[5] + y);
-            found.push((fits[best], Affine(motion)));
-        }
+        let seen = Sight::new(samples, whole(samples), self.step, self.blur_px);
+        let cells = seen.all();
+        let ways = TURNS_DEG.iter().flat_map(|turn| SCALES.map(|scale| (turn.to_radians(), scale)));
+        let mut found: Vec<(f32, Affine)> = ways.filter_map(|way| self.best(&seen, &cells, last, way)).collect();
         found.sort_by(|a, b| b.0.total_cmp(&a.0));
         found.into_iter().take(MOST_PLACES).map(|(_, motion)| motion).collect()
+    }
+
+    /// Where about a place the nail fits best, turned and scaled as there.
+    pub(super) fn about(&self, samples: &Samples<'_>, place: &Affine) -> Option<Affine> {
+        let reach = (1.0 + NEAR) * self.reach + 2.0 * self.step as f64;
+        let part = Part::about(&[place.of(self.middle)], reach, shown_size(samples))?;
+        let seen = Sight::new(samples, part, self.step, self.blur_px);
+        self.best(&seen, &seen.all(), place, (0.0, 1.0)).map(|(_, motion)| motion)
+    }
+
+    /// How well the nail fits where it fits best, turned and scaled by so much from `last`, and where that is.
+    fn best(
+        &self,
+        seen: &Sight,
+        (cells, size): &(Vec<f32>, [usize; 2]),
+        last: &Affine,
+        (turn_rad, by): (f64, f64),
+    ) -> Option<(f32, Affine)> {
+        let (turn, scale) = (last.0[3].atan2(last.0[0]), last.determinant().abs().sqrt());
+        let way = Affine::similarity(self.middle, [0.0; 2], turn + turn_rad, scale * by);
+        let back = way.inverse()?;
+        // Blocks from the middle to each side.
+        let side = (self.reach * scale * by / self.step as f64).floor() as usize;
+        let across = 2 * side + 1;
+        let from_middle = |k: usize| (k as f64 - side as f64) * self.step as f64;
+        let patch = (0..across * across).map(|k| {
+            let [x, y] = back.of([from_middle(k % across), from_middle(k / across)]);
+            Some(self.template.at(x as f32, y as f32)).filter(|v| v.is_finite()).unwrap_or(0.0)
+        });
+        let patch: Vec<f32> = patch.collect();
+        let fits = matched(cells, *size, &patch, [across; 2]);
+        let columns = (size[0] + 1).saturating_sub(across);
+        let best = (0..fits.len()).max_by(|&a, &b| fits[a].total_cmp(&fits[b]));
+        let best = best.filter(|&best| fits[best] >= LEAST_FIT)?;
+        // Between blocks by a parabola, where both neighbours are there.
+        let peak = |at: usize, count: usize, step: usize| {
+            if at == 0 || at + 1 >= count {
+                return at as f64;
+            }
+            let [low, middle, high] = [best - step, best, best + step].map(|k| f64::from(fits[k]));
+            let by = 0.5 * (low - high) / (low - 2.0 * middle + high);
+            at as f64 + if by.is_finite() { by } else { 0.0 }
+        };
+        let corner = [peak(best % columns, columns, 1), peak(best / columns, fits.len() / columns, columns)];
+        let [x, y] = seen.middle(corner.map(|at| at + side as f64));
+        let mut motion = way.0;
+        (motion[2], motion[5]) = (motion[2] + x, motion[5] + y);
+        Some((fits[best], Affine(motion)))
     }
 }

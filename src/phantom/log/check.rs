@@ -96,15 +96,19 @@ impl LogOptions {
         need(self.touch_from_s.is_none() || self.force != ForceTrajectory::None, &|| {
             "--touch-from: nothing is touched; choose --force spiral or random".to_owned()
         });
+        let (begin_s, end_s) = (-self.lead_s, self.seconds + self.trail_s);
         if let Some(jump) = self.clock_jump {
-            let holds = jump.at_s.is_finite() && jump.by_s.abs() <= 1e9;
-            need(holds, &|| {
-                format!("--clock-jump {}{:+}: choose seconds within a thousand million", jump.at_s, jump.by_s)
-            });
+            let named = || format!("--clock-jump {}{:+}", jump.at_s, jump.by_s);
+            need(jump.by_s.abs() <= 1e9, &|| format!("{}: choose seconds within a thousand million", named()));
+            let within = jump.at_s > begin_s && jump.at_s <= end_s;
+            need(within, &|| format!("{}: the log is of {begin_s} to {end_s} s of the video's time", named()));
         }
         for &[from_s, length_s] in &self.gaps_s {
             let holds = from_s.is_finite() && length_s.is_finite() && length_s > 0.0;
-            need(holds, &|| format!("--gap {from_s}+{length_s}: choose a beginning and a length of more than 0 s"));
+            let named = || format!("--gap {from_s}+{length_s}");
+            need(holds, &|| format!("{}: choose a beginning and a length of more than 0 s", named()));
+            let within = !holds || from_s <= end_s && from_s + length_s > begin_s;
+            need(within, &|| format!("{}: the log is of {begin_s} to {end_s} s of the video's time", named()));
         }
         for photodiode in &self.dead {
             let holds = (1..=self.channels()).contains(photodiode);

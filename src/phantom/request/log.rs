@@ -81,9 +81,9 @@ pub struct LogRequest {
     /// How the fingertip presses and shears [default: none, or as the protocol]
     #[arg(long, value_enum)]
     force: Option<ForceArg>,
-    /// The spiral's T
-    #[arg(long, value_name = "SECONDS", default_value_t = 180.0)]
-    spiral_seconds: f64,
+    /// The spiral's T [default: 180]
+    #[arg(long, value_name = "SECONDS")]
+    spiral_seconds: Option<f64>,
     /// Random forces have rates of 0.4 to 4 times it; normal, lateral and longitudinal forces come back so often
     /// [default: 0.1; of the latter 0.05]
     #[arg(long, value_name = "HZ")]
@@ -176,13 +176,18 @@ impl LogRequest {
             Some(Protocol::Contacts | Protocol::Rest) => ForceArg::Contacts,
             _ => ForceArg::None,
         });
+        let spiral_s = self.spiral_seconds.unwrap_or(Spiral::default().duration_s);
+        if self.spiral_seconds.is_some() && kind != ForceArg::Spiral {
+            anyhow::bail!("--spiral-seconds: there is no spiral; choose --force spiral");
+        }
+        if self.force_hz.is_some() && matches!(kind, ForceArg::None | ForceArg::Spiral | ForceArg::Contacts) {
+            anyhow::bail!("--force-hz: the force has no such rate; choose --force random, even, normal, ..");
+        }
         let random_hz = self.force_hz.unwrap_or(0.1);
         let cycles = |which| ForceTrajectory::Cycles { which, hz: self.force_hz.unwrap_or(Cycles::HZ) };
         let force = match kind {
             ForceArg::None => ForceTrajectory::None,
-            ForceArg::Spiral => {
-                ForceTrajectory::Spiral(Spiral { duration_s: self.spiral_seconds, ..Spiral::default() })
-            }
+            ForceArg::Spiral => ForceTrajectory::Spiral(Spiral { duration_s: spiral_s, ..Spiral::default() }),
             ForceArg::Random => ForceTrajectory::Random { hz: random_hz, seed: self.seed },
             ForceArg::Even => ForceTrajectory::Even { hz: random_hz, seed: self.seed },
             ForceArg::Normal => cycles(Cycles::Normal),
@@ -214,7 +219,7 @@ impl LogRequest {
         let wanted = self.trajectory.as_deref().unwrap_or(movement);
         let (trajectory, span_s): (Trajectory, _) = trajectory(wanted, self.bend_hz, self.seed)?;
         let touching_s = match kind {
-            ForceArg::Spiral => Some(self.spiral_seconds),
+            ForceArg::Spiral => Some(spiral_s),
             ForceArg::Random | ForceArg::Even => {
                 protocol.map(|protocol| protocol.seconds()[1]).filter(|seconds| *seconds > 0.0)
             }

@@ -15,7 +15,7 @@ use crate::job::{Report, Watch};
 use crate::photo::channels::{ChannelFigures, add_section};
 use crate::photo::normalize::Normalization;
 use crate::photo::options::{Outputs, PhotosOptions, Results};
-use crate::photo::outline::SavedOutlines;
+use crate::photo::outline::{SavedOutlines, Source};
 use crate::photo::pose::sort_by_pose;
 use crate::photo::results::{DrawnSheet, NAIL_COLUMNS, NailRow, NailTable};
 use crate::photo::set::{Photo, PhotoSet, SetFault};
@@ -259,6 +259,7 @@ pub(in crate::photo) fn of_photos(found: Findings<'_>, mut poses: Vec<PoseCount>
     let Findings { set, options, has_maps, rows, failed, left_out, detects, outlines, .. } = found;
     let mut notes: Vec<String> = outlines.iter().flat_map(SavedOutlines::notes).collect();
     notes.extend(one_subject(&poses).filter(|_| has_maps));
+    let some_drawn = rows.iter().any(|row| row.source != Source::Detected);
     let used = || rows.iter().filter(|row| row.normalized.is_some());
     let mut photographs: Vec<usize> = used().map(|row| row.photo).collect();
     photographs.dedup();
@@ -280,6 +281,9 @@ pub(in crate::photo) fn of_photos(found: Findings<'_>, mut poses: Vec<PoseCount>
     let mut report = Report { left_out, warnings, notes, failed, ..Report::new("photos", watch, figures) };
     if options.outlines.masks.is_none() {
         report.unused(&["mask_value"], "there is no folder of --masks");
+    }
+    if !some_drawn {
+        report.unused(&["annotations", "distal"], "no outline was drawn");
     }
     if all_grey {
         report.unused(&["channel", "channels"], "every photograph is grey");

@@ -2,10 +2,12 @@
 //! of what was measured beside them.
 
 use lunula_predictor::{Dataset, Delay, Recording, delays};
+use ndarray::{Axis, Slice};
 
 use super::columns::cell;
 use super::source::Source;
 use crate::log::piles;
+use crate::median::median_of;
 
 /// What is worth saying on a file's photodiodes. Rows that are left out for faults are not looked at; constant is one
 /// that has a single value.
@@ -39,6 +41,31 @@ pub(super) fn warnings(source: &Source, keep_faults: bool) -> Vec<String> {
         }
     }
     warnings
+}
+
+/// Photodiodes of one sensor are alike from recording to recording; so many times another's are in another unit
+/// (assumed: amplifiers differ by less, units by 1000).
+const OTHER_UNIT: f64 = 30.0;
+
+/// What to say of recordings whose photodiodes are many times those of the others.
+pub(in crate::predictor) fn units<'a>(sets: impl IntoIterator<Item = &'a Dataset>) -> Option<String> {
+    let of_set = |set: &'a Dataset| {
+        let size = |one: &Recording| {
+            let x = set.x().slice_axis(Axis(0), Slice::from(one.rows.clone()));
+            let sizes = x.columns().into_iter().filter_map(|column| median_of(column.iter().map(|v| v.abs())));
+            sizes.max_by(f64::total_cmp)
+        };
+        set.recordings().iter().filter_map(move |one| Some((size(one)?, one.name.as_str())))
+    };
+    let mut sizes: Vec<(f64, &str)> = sets.into_iter().flat_map(of_set).filter(|(size, _)| *size > 0.0).collect();
+    sizes.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let [(least, small), .., (most, large)] = sizes[..] else { return None };
+    (most >= OTHER_UNIT * least).then(|| {
+        format!(
+            "the photodiodes of {large} are {:.0} times as large as those of {small}: in another unit?",
+            most / least
+        )
+    })
 }
 
 /// By how much photodiodes may seem to answer before what they answer to, and after it, seconds (assumed: blood takes

@@ -36,6 +36,7 @@ use source::{Source, agree};
 
 pub(crate) use columns::{cell, missing};
 pub use file::DataFile;
+pub(in crate::predictor) use health::units;
 
 /// Which rows of recordings count.
 #[derive(Debug, Clone, PartialEq, Default, Args)]
@@ -244,6 +245,8 @@ pub fn read_files(data: &[DataFile], wanted: &Wanted) -> Result<Read, DataError>
     let data = make(inputs, wanted.targets.clone(), time_s, shaped(x), shaped(y), recordings)?;
     warnings.extend(twice(&data));
     warnings.extend(health::clocks(&data));
+    // Cells are no voltages.
+    warnings.extend(health::units([&data]).filter(|_| !wanted.cells));
     Ok(Read { data, files, failed, warnings })
 }
 

@@ -132,6 +132,11 @@ impl Answering {
         self.gate.as_ref().map(|gated| gated.angle)
     }
 
+    /// Options that are of use to a gate alone, ..
+    pub(crate) const GATES: [&str; 3] = ["f_min", "theta_touch", "hysteresis"];
+    /// .. and why they are of none.
+    pub(crate) const NO_GATE: &str = "only a model of force and one of posture together are gated";
+
     /// Whether force and posture are gated.
     #[must_use]
     pub fn is_gated(&self) -> bool {

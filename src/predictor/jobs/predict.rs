@@ -131,7 +131,7 @@ pub fn predict(
     let figures = figures(data, Some(out), &answering, counts);
     let mut report = Report { left_out, warnings, notes: read.notes, ..Report::new("predict", watch, figures) };
     if !answering.is_gated() {
-        report.unused(&["f_min", "theta_touch"], "only a model of force and one of posture together are gated");
+        report.unused(&Answering::GATES, Answering::NO_GATE);
     }
     Ok(report.timed(&stages, start))
 }

@@ -165,6 +165,13 @@ pub fn train(
     if let Some(held) = &validate {
         warnings.extend(crate::predictor::seen_in_training(&predictor, &held.data));
     }
+    let is_network = matches!(recipe.kind, Kind::Network { .. });
+    if let Some(early) = early.filter(|_| is_network) {
+        let seen = crate::predictor::again(&predictor.training().recordings, early);
+        warnings.extend(seen.map(|names| {
+            format!("{names}: --stop-on names what is trained on, whose error only falls; name other recordings")
+        }));
+    }
     let validation =
         validate.as_ref().map(|read| stages.time("score", || merit(&predictor, &read.data))).transpose()?;
     if let Some(held) = validate.as_ref().filter(|_| options.wanted.cells) {
@@ -217,11 +224,18 @@ pub fn train(
     let ambient = inputs.ambient_step(&options.wanted.rows);
     let left_out = left_out(train_plan(inputs, ambient, recipe, outputs.learning_curve.is_some()));
     let mut report = Report { left_out, warnings, notes, failed, pictures, ..Report::new("train", watch, figures) };
-    if !matches!(options.recipe.kind, Kind::Network { .. }) {
-        report.unused(&["hidden", "seed", "restarts"], "the model is no network");
+    if !is_network {
+        report.unused(&["hidden", "seed", "restarts", "epochs"], "the model is no network");
+        if !inputs.stop_on.is_empty() {
+            report.notes.push("--stop-on is of no use here: the model is no network".to_owned());
+        }
     }
-    if !matches!(options.recipe.kind, Kind::Eigennails { .. }) {
+    let is_eigennails = matches!(recipe.kind, Kind::Eigennails { .. });
+    if !is_eigennails {
         report.unused(&["modes", "regression"], "the model is not of eigennails");
+    }
+    if is_network || is_eigennails {
+        report.unused(&["deficient"], "only least squares need photodiodes that add something");
     }
     if inputs.validate.is_empty() {
         report.unused(&["level"], "intervals come from the recordings of --validate");

@@ -276,7 +276,7 @@ impl<'b> Keys<'_, '_, 'b> {
                 };
                 (seconds, path)
             }
-            _ => self.points(at),
+            _ => self.points(at, space),
         };
         StepKind::Move(Motion { seconds, path })
     }
@@ -301,7 +301,7 @@ impl<'b> Keys<'_, '_, 'b> {
         StepKind::Move(Motion { seconds, path: Path::Gauge(Gauge { axis, newtons, held_n, hz }) })
     }
 
-    fn points(&mut self, at: usize) -> (f64, Path) {
+    fn points(&mut self, at: usize, space: &ForceSpace) -> (f64, Path) {
         let nothing = (1.0, Path::Rest);
         let Some(entry) = self.entry("points") else {
             self.findings.fault(at, "a path needs `points`: points = [[0, 0, 0, 0], [2, 0.1, 0, -1], ..]");
@@ -326,6 +326,13 @@ impl<'b> Keys<'_, '_, 'b> {
             }
             if point[3] > 0.0 {
                 self.findings.fault(at, "pressing is a negative Fz_N");
+                return nothing;
+            }
+            let [_, fx_n, fy_n, fz_n] = point;
+            let (shear_n, held_n) = (fx_n.hypot(fy_n), fz_n.abs());
+            if shear_n > space.mu() * held_n + 1e-9 {
+                let most_n = space.mu() * held_n;
+                self.findings.fault(at, format!("{shear_n} N of shear slip: friction holds {most_n} N at {held_n} N"));
                 return nothing;
             }
             points.push(point);

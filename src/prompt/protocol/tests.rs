@@ -61,6 +61,7 @@ fn every_fault_is_named_with_its_line_and_what_to_write() {
         ("[[step]]\nkind = \"path\"\npoints = [[0,0,0,0],[0,0,0,-1]]", "p.toml:3: times of `points`"),
         ("[[step]]\nkind = \"path\"\npoints = [[0,0,0],[2,0,0,-1]]", "p.toml:3: `points` is a list"),
         ("[[step]]\nkind = \"path\"\npoints = [[0,0,0,0],[2,0,0,1]]", "pressing is a negative Fz_N"),
+        ("[[step]]\nkind = \"path\"\npoints = [[0,0,0,0],[2,3,4,-1]]", "5 N of shear slip: friction holds 0.75 N"),
         ("[[step]\nkind", "p.toml:1: not TOML"),
     ] {
         let why = parse(text).expect_err(text);

@@ -3,7 +3,8 @@
 //! In: rows with a time and whether the finger touches, of a contact switch or of a measured force below a threshold.
 //! Out: the contacts, with the time that was looked at. Two contacts closer than [`MERGED_S`] are one: a force that
 //! hovers at its threshold is no second touch. Rows further apart than [`LONGEST_GAP_S`] have a gap between them, in
-//! which nothing is known: a contact that reaches one has no known end there.
+//! which nothing is known: a contact that reaches one has no known end there. Between two rows contact is known where
+//! both say it.
 
 use serde::Serialize;
 
@@ -29,7 +30,10 @@ pub struct Contact {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Contacts {
     contacts: Vec<Contact>,
+    /// From when to when contact is known, seconds, ascending.
+    known: Vec<[f64; 2]>,
     seconds: f64,
+    unknown_s: f64,
     last: Option<(f64, Option<bool>)>,
 }
 
@@ -41,11 +45,16 @@ impl Contacts {
         }
         let before = self.last.filter(|(last_s, _)| !begins && (0.0..=LONGEST_GAP_S).contains(&(time_s - last_s)));
         let known_before = before.and_then(|(_, touched)| touched);
-        if let Some((last_s, _)) = before
-            && touches.is_some()
-            && known_before.is_some()
-        {
-            self.seconds += time_s - last_s;
+        if let Some((last_s, _)) = before {
+            if touches.is_some() && known_before.is_some() {
+                self.seconds += time_s - last_s;
+                match self.known.last_mut().filter(|known| known[1] == last_s) {
+                    Some(known) => known[1] = time_s,
+                    None => self.known.push([last_s, time_s]),
+                }
+            } else {
+                self.unknown_s += time_s - last_s;
+            }
         }
         match (known_before, touches) {
             (Some(true), Some(_)) => {
@@ -80,5 +89,18 @@ impl Contacts {
     #[must_use]
     pub fn seconds(&self) -> f64 {
         self.seconds
+    }
+
+    /// The time between rows of which one does not say whether the finger touches, seconds; gaps are not counted.
+    #[must_use]
+    pub fn unknown_s(&self) -> f64 {
+        self.unknown_s
+    }
+
+    /// Whether contact is known at a time, of rows whose times ascend as a stream's do.
+    #[must_use]
+    pub fn knows(&self, time_s: f64) -> bool {
+        let after = self.known.partition_point(|known| known[0] <= time_s);
+        after > 0 && time_s <= self.known[after - 1][1]
     }
 }

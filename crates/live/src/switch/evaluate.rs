@@ -2,10 +2,11 @@
 //!
 //! Definitions, ours, as the thesis has none. A press belongs to the contact that began last before it, if that is not
 //! over for more than [`LATE_S`], and if no other press belongs to it already; else it is **false**, *repeated* where
-//! its contact has one already. A contact without a press is **missed**. **Delays** are from the contact's first row to
-//! the press and from the first row after it to the release, so they hold half a row's period of bias at most. The rate
-//! is that of false presses in all the time of which contact is known, touching or not; its interval is Garwood's,
-//! wider where recordings differ more than by chance ([`rate_of`]).
+//! its contact has one already. A press that begins while contact is not known is neither true nor false. A contact
+//! without a press is **missed**. **Delays** are from the contact's first row to the press and from the first row after
+//! it to the release, so they hold half a row's period of bias at most. The rate is that of false presses in all the
+//! time of which contact is known, touching or not; its interval is Garwood's, wider where recordings differ more than
+//! by chance ([`rate_of`]).
 
 use serde::Serialize;
 
@@ -53,6 +54,8 @@ pub struct Quartiles {
 pub struct Evaluation {
     /// Time of which contact is known.
     pub hours: f64,
+    /// Time between rows of which it is not, seconds.
+    pub unknown_s: f64,
     /// True presses: contacts whose beginning and end are known.
     pub presses: usize,
     /// Times that the switch pressed.
@@ -61,6 +64,8 @@ pub struct Evaluation {
     pub false_switches: u64,
     /// Of these, those whose contact has a press already.
     pub repeated: u64,
+    /// Presses while contact is not known: neither true nor false.
+    pub not_judged: usize,
     /// An hour; none without time.
     #[serde(flatten)]
     pub rate: Option<FalseRate>,
@@ -97,12 +102,14 @@ impl From<Rate> for FalseRate {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Tally {
     pub(super) seconds: f64,
+    pub(super) unknown_s: f64,
     /// False switches and hours of each recording.
     pub(super) recordings: Vec<(u64, f64)>,
     pub(super) presses: usize,
     pub(super) decisions: usize,
     pub(super) false_switches: u64,
     pub(super) repeated: u64,
+    pub(super) not_judged: usize,
     pub(super) missed: usize,
     pub(super) let_go: u64,
     pub(super) delays_on_s: Vec<f64>,
@@ -136,12 +143,12 @@ pub struct Match {
     pub fate: Fate,
 }
 
-/// A switch's presses over a recording and the contacts that it missed, in the order of time.
+/// A switch's presses over a recording, where contact is known, and the contacts that it missed, in the order of time.
 #[must_use]
 pub fn matches(config: &SwitchConfig, trace: &Trace) -> Vec<Match> {
     let mut let_go = 0;
     let presses = presses(config, trace, &mut let_go);
-    compare(&presses, trace.contacts.contacts())
+    compare(&presses, &trace.contacts)
 }
 
 impl Evaluation {
@@ -156,11 +163,12 @@ impl Evaluation {
 
 impl Tally {
     pub(super) fn of(config: &SwitchConfig, trace: &Trace) -> Self {
-        let mut tally = Self { seconds: trace.contacts.seconds(), ..Self::default() };
+        let contacts = &trace.contacts;
+        let mut tally = Self { seconds: contacts.seconds(), unknown_s: contacts.unknown_s(), ..Self::default() };
         let presses = presses(config, trace, &mut tally.let_go);
-        let contacts = trace.contacts.contacts();
-        tally.presses = contacts.iter().filter(|one| one.start_known && one.end_known).count();
+        tally.presses = contacts.contacts().iter().filter(|one| one.start_known && one.end_known).count();
         tally.decisions = presses.len();
+        tally.not_judged = presses.iter().filter(|press| !contacts.knows(press[0])).count();
         for Match { press_s, release_s, contact, fate } in compare(&presses, contacts) {
             match fate {
                 Fate::True => {
@@ -183,11 +191,13 @@ impl Tally {
 
     pub(super) fn add(&mut self, other: &Self) {
         self.seconds += other.seconds;
+        self.unknown_s += other.unknown_s;
         self.recordings.extend(&other.recordings);
         self.presses += other.presses;
         self.decisions += other.decisions;
         self.false_switches += other.false_switches;
         self.repeated += other.repeated;
+        self.not_judged += other.not_judged;
         self.missed += other.missed;
         self.let_go += other.let_go;
         self.delays_on_s.extend(&other.delays_on_s);
@@ -201,10 +211,12 @@ impl Tally {
     pub(super) fn evaluation(&self) -> Evaluation {
         Evaluation {
             hours: self.hours(),
+            unknown_s: self.unknown_s,
             presses: self.presses,
             decisions: self.decisions,
             false_switches: self.false_switches,
             repeated: self.repeated,
+            not_judged: self.not_judged,
             rate: rate_of(&self.recordings).map(FalseRate::from),
             dispersion: dispersion(&self.recordings),
             missed: self.missed,
@@ -237,8 +249,9 @@ fn presses(config: &SwitchConfig, trace: &Trace, let_go: &mut u64) -> Vec<[f64; 
     presses
 }
 
-/// Gives each press its contact.
-fn compare(presses: &[[f64; 2]], contacts: &[Contact]) -> Vec<Match> {
+/// Gives each press its contact, where contact is known.
+fn compare(presses: &[[f64; 2]], known: &Contacts) -> Vec<Match> {
+    let contacts = known.contacts();
     let mut taken = vec![false; contacts.len()];
     let mut found: Vec<Match> = Vec::with_capacity(presses.len());
     // In the order of time: the contact that began last before the press.
@@ -252,9 +265,13 @@ fn compare(presses: &[[f64; 2]], contacts: &[Contact]) -> Vec<Match> {
             after += 1;
         }
         let own = after.checked_sub(1).filter(|&own| press_s <= contacts[own].end_s + LATE_S);
+        let again = own.is_some_and(|own| std::mem::replace(&mut taken[own], true));
+        if !known.knows(press_s) {
+            continue;
+        }
         let fate = match own {
             None => Fate::False,
-            Some(own) if std::mem::replace(&mut taken[own], true) => Fate::Repeated,
+            Some(_) if again => Fate::Repeated,
             Some(_) => Fate::True,
         };
         found.push(Match { press_s, release_s, contact: own.map(|own| contacts[own]), fate });

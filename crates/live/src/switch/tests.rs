@@ -293,6 +293,23 @@ fn contacts_at_gaps_and_ends_are_not_held_against_the_switch() {
 }
 
 #[test]
+fn what_begins_while_contact_is_not_known_is_not_judged() {
+    let (whole, config) = (trace(1, 100.0), SwitchConfig::of(0.5, 0.3));
+    // Of two presses of twenty nothing is known, of one more only its beginning.
+    let known = |t_s: f64| !(20.0..32.0).contains(&t_s) && !(34.3..35.0).contains(&t_s);
+    let mut partly = Trace { contacts: Contacts::default(), ..whole.clone() };
+    for &t_s in &whole.time_s {
+        let touches = t_s % 5.0 >= 4.0 && t_s % 5.0 < 4.4;
+        partly.contacts.push(t_s, known(t_s).then_some(touches), t_s == 0.0);
+    }
+    let all = Evaluation::of(&config, &[partly]);
+    assert_eq!((all.decisions, all.presses, all.not_judged, all.missed, all.false_switches), (20, 17, 2, 0, 0));
+    assert!((all.unknown_s - 12.72).abs() <= 1e-6 && (3600.0 * all.hours - 87.27).abs() <= 1e-6, "{all:?}");
+    let all = Evaluation::of(&config, &[whole]);
+    assert_eq!((all.not_judged, all.unknown_s), (0, 0.0));
+}
+
+#[test]
 fn thresholds_are_chosen_for_a_rate_and_hold_elsewhere() {
     let traces: Vec<Trace> = (0..4).map(|seed| trace(seed, 900.0)).collect();
     let goal = Goal { false_per_hour: 1.0, missed_share: 0.01, watchdog_s: 0.2, outside: Some(Outside::Release) };
@@ -324,7 +341,8 @@ fn a_goal_that_cannot_be_reached_is_refused_with_the_nearest() {
     let mut hopeless = trace(1, 300.0);
     hopeless.value.iter_mut().enumerate().for_each(|(k, value)| *value = ((k * 7919) % 100) as f64 * 0.01);
     let goal = Goal { false_per_hour: 1.0, missed_share: 0.01, watchdog_s: 0.0, outside: None };
-    assert!(matches!(tune(&[hopeless.clone()], &goal), Err(TuneFault::Unreachable { .. })));
+    let fault = tune(&[hopeless.clone()], &goal).unwrap_err();
+    assert!(matches!(fault, TuneFault::Unreachable { .. }) && fault.to_string().contains(" of 60 presses missed"));
     hopeless.value.fill(f64::NAN);
     assert_eq!(tune(&[hopeless], &goal), Err(TuneFault::NoValues));
     assert_eq!(tune(&[Trace::default()], &goal), Err(TuneFault::NoContacts));

@@ -79,11 +79,11 @@ pub enum TuneFault {
     #[error("no predicted value is known while the finger touches; does the model fit these recordings?")]
     NoValues,
     #[error(
-        "no thresholds and holds keep false switches at {goal} an hour with {misses:.1} % of presses missed at most; \
-         nearest: {false_per_hour:.2} an hour with {missed:.1} % missed at on_N = {on_n}; raise the goal, or train a \
-         better model"
+        "no thresholds and holds keep false switches at {goal} an hour, also at the next lower threshold, with \
+         {misses:.1} % of presses missed at most; nearest: {false_switches} in {hours:.2} h with {missed} of {presses} \
+         presses missed at on_N = {on_n}; raise the goal, or train a better model"
     )]
-    Unreachable { goal: f64, misses: f64, false_per_hour: f64, missed: f64, on_n: f64 },
+    Unreachable { goal: f64, misses: f64, false_switches: u64, hours: f64, missed: usize, presses: usize, on_n: f64 },
 }
 
 /// Chooses thresholds and holds.
@@ -158,7 +158,7 @@ fn period_s(traces: &[Trace]) -> f64 {
     steps.get(steps.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// The values of rows while the finger touches, or while it does not, away from contacts' ends.
+/// The values of rows while the finger is known to touch, or not to, away from contacts' ends.
 fn values(traces: &[Trace], touching: bool) -> Vec<f64> {
     let mut found = Vec::new();
     for trace in traces {
@@ -168,7 +168,7 @@ fn values(traces: &[Trace], touching: bool) -> Vec<f64> {
             let at = contacts.peek().map(|one| (t_s - one.start_s, t_s - one.end_s));
             let touches = at.is_some_and(|(since_s, after_s)| since_s >= 0.0 && after_s < 0.0);
             let near = at.is_some_and(|(since_s, after_s)| since_s > -0.2 && after_s < 1.0);
-            if if touching { touches } else { !near } {
+            if if touching { touches } else { !near && trace.contacts.knows(t_s) } {
                 found.push(value);
             }
         }
@@ -283,8 +283,10 @@ fn unreachable(configs: &[SwitchConfig], all: &[Scored], goal: &Goal) -> TuneFau
     TuneFault::Unreachable {
         goal: goal.false_per_hour,
         misses: 100.0 * goal.missed_share,
-        false_per_hour: all[nearest].tally.false_switches as f64 / all[nearest].tally.hours(),
-        missed: 100.0 * all[nearest].missed_share(),
+        false_switches: all[nearest].tally.false_switches,
+        hours: all[nearest].tally.hours(),
+        missed: all[nearest].tally.missed,
+        presses: all[nearest].tally.presses,
         on_n: configs[nearest].on_n,
     }
 }

@@ -208,7 +208,8 @@ impl Dataset {
     #[must_use]
     pub fn only_inputs(&self, columns: &[usize]) -> Self {
         let inputs = columns.iter().map(|&k| self.inputs[k].clone()).collect();
-        Self { inputs, x: self.x.select(Axis(1), columns), ..self.clone() }
+        // `select` puts columns one after the other.
+        Self { inputs, x: self.x.select(Axis(1), columns).as_standard_layout().into_owned(), ..self.clone() }
     }
 
     fn take(&self, rows: &[usize], recordings: Vec<Recording>) -> Self {
@@ -251,6 +252,8 @@ mod tests {
         let some = data.only_rows(&[1, 2]);
         assert_eq!(some.recordings().iter().map(|one| one.rows.clone()).collect::<Vec<_>>(), [0..1, 1..2]);
         assert_eq!(data.only_inputs(&[1]).x(), &array![[2.0], [4.0], [6.0]]);
+        let turned = data.only_inputs(&[1, 0]);
+        assert_eq!(turned.x().as_slice().map(|rows| rows[0]), Some(2.0), "rows one after the other");
     }
 
     #[test]

@@ -73,9 +73,13 @@ impl PointerOutput {
             })
         };
         let forces = [place(FORCES[0])?, place(FORCES[1])?, place(FORCES[2])?];
+        let bend = predicted.iter().position(|one| one == POSTURE);
+        if config.scroll && bend.is_none() {
+            let what = format!("scroll = true needs {POSTURE}; name a model of posture too, or leave it out");
+            return Err(LiveError::Request(what));
+        }
         let events = EventsFile::create(events.as_deref())?.map(|file| file.through(JsonLines::new));
         let uinput = uinput.then(Uinput::open).transpose().map_err(|why| LiveError::Request(why.to_string()))?;
-        let bend = predicted.iter().position(|one| one == POSTURE);
         Ok(Self { pointer: Pointer::new(config), forces, bend, events, uinput, counts: PointerCounts::default() })
     }
 

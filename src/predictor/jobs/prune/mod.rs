@@ -12,7 +12,7 @@ use std::time::Instant;
 use lunula_predictor::{MOST_INPUTS, Subset, backward_elimination, every_subset, row_hashes, shared_rows};
 
 use crate::job::{Report, Watch};
-use crate::predictor::data::{DataFile, Wanted, read_files};
+use crate::predictor::data::{DataFile, Wanted, read_files, units};
 use crate::predictor::error::PredictorError;
 use crate::predictor::merit::figures::ByTarget;
 use crate::predictor::outputs::{FolderOutputs, end};
@@ -40,6 +40,7 @@ pub fn prune(
     let targets = train.data.targets().to_vec();
     let row = |subset: &Subset| row(subset, &inputs, &targets);
     let mut warnings = [train.warnings, compared.warnings].concat();
+    warnings.extend(units([&train.data, &compared.data]).filter(|unit| !warnings.contains(unit)));
     let shared = shared_rows(&row_hashes(&train.data), &row_hashes(&compared.data));
     if shared > 0 {
         warnings.push(format!(

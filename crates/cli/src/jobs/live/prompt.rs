@@ -144,7 +144,9 @@ impl Prompting for Page {
 fn ended(common: &Common, report: &PromptReport) -> Outcome {
     name_failures(&report.failed);
     let covered = &report.coverage.cylindrical;
-    common.say(&format!("{} rows in {}", report.rows, report.out.display()));
+    if report.rows > 0 {
+        common.say(&format!("{} rows in {}", report.rows, report.out.display()));
+    }
     for step in &report.followed {
         let off = step.rms_n.map_or("-".to_owned(), |rms_n| format!("{rms_n:.2}"));
         common.say(&format!("{}: {off} N off the prompt (RMS), a person's lag included", step.step));

@@ -55,7 +55,7 @@ struct TuneArgs {
 
 /// Judge a switch on recordings: false switches an hour with their interval, misses, delays
 ///
-/// Results: switch.json, presses.csv (every press and every contact that was missed), delays.png and .svg.
+/// Results: switch.json, presses.csv (presses that are judged and contacts that were missed), delays.png and .svg.
 #[derive(Debug, Args)]
 struct EvaluateArgs {
     /// The switch
