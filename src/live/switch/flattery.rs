@@ -65,5 +65,5 @@ fn contact_as_target(options: &ContactOptions) -> Option<LogReading> {
         columns.piece = log.columns.piece;
         columns.stream.clone_from(&log.columns.stream);
     }
-    (log.columns == unnamed).then(|| LogReading { columns: named, ambient: log.ambient })
+    (log.columns == unnamed).then_some(LogReading { columns: named, ambient: log.ambient })
 }
