@@ -506,7 +506,7 @@ fn thresholds_are_chosen_and_judged_on_recordings() {
 /// A recording, each row as `of` makes it of its time, light and force.
 fn altered(seconds: f64, names: &str, of: impl Fn(f64, f64, f64) -> String) -> String {
     let text = recording(seconds);
-    let cells = |line: &str| line.split(',').map(|cell| cell.parse().unwrap()).collect::<Vec<f64>>();
+    let cells = |line: &str| line.split(',').map(|cell| cell.parse().expect("a number")).collect::<Vec<f64>>();
     let rows = text.lines().skip(1).map(cells).map(|cells| of(cells[0], cells[1], cells[2]));
     format!("{names}\n{}", rows.collect::<String>())
 }

@@ -160,7 +160,7 @@ pub(super) fn report(ended: Ended<'_>, watch: &Watch<'_>) -> Result<SessionRepor
         failed.extend(predicted.finish().err().map(|why| why.to_string()));
     }
     let mut report = Report { left_out, warnings, notes, failed, ..Report::new(job, watch, figures) };
-    let told = report.notes.len();
+    let before = report.notes.len();
     let columns = &report.figures.columns;
     let (answers, gated) = (!columns.is_empty(), columns.iter().any(|column| column.ends_with("contact")));
     if !gated {
@@ -172,7 +172,7 @@ pub(super) fn report(ended: Ended<'_>, watch: &Watch<'_>) -> Result<SessionRepor
     } else {
         report.unused(&["ambient", "full_scale"], "rows are recorded as they come");
     }
-    report.notes[told..].iter().for_each(|note| tell(&format!("note: {note}")));
+    report.notes[before..].iter().for_each(|note| tell(&format!("note: {note}")));
     let losses = losses(&report);
     losses.iter().for_each(|warning| tell(&format!("warning: {warning}")));
     report.warnings.extend(losses);
