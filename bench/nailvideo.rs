@@ -30,17 +30,24 @@ fn main() {
     let aside = AtomicUsize::new(0);
     for threads in ["1", &cores] {
         let job = [LUNULA, "nailvideo", &video, "--outline", &outline, "--out", &out, "--threads", threads, "--quiet"];
+        let all = job.to_vec();
         let tables = [&job[..], &["--no-figures"]].concat();
         let frames = [&tables[..], &["--frames"]].concat();
         let runs = [
             ("lunula nailvideo, photodiodes only", tables),
             ("the same with normalized frames", frames),
+            ("the same with sheet, traces and page", all),
             ("only decoding", vec![myself.as_str(), DECODE, &video, threads]),
         ];
         println!("900 frames of 640 x 480, {threads} thread(s), medians of {ROUNDS} whole processes:");
         // Replacing files costs the file system more than making them.
         let new_folder = || drop(std::fs::rename(&out, format!("{out}-{}", aside.fetch_add(1, Ordering::Relaxed))));
         let ratios = compare(&runs, ROUNDS, new_folder);
-        println!("photodiodes take {:.2} times only decoding, frames {:.2}", ratios[2], ratios[2] / ratios[1]);
+        let [frames, all, decoding] = [ratios[1], ratios[2], ratios[3]];
+        println!(
+            "photodiodes take {decoding:.2} times only decoding, with frames {:.2}, with pictures {:.2}",
+            decoding / frames,
+            decoding / all
+        );
     }
 }

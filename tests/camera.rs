@@ -98,6 +98,27 @@ fn a_folder_gives_the_lens_and_the_same_bytes_on_any_threads() {
 }
 
 #[test]
+fn distortion_that_is_held_is_not_said_to_be_known() {
+    let dir = first_views(12);
+    let held = camera(&dir, "scene/views", &["--coefficients", "0", "--no-figures"]).expect(0);
+    let report = held.json();
+    assert!(report["undistorted_sd_px"].is_null(), "{report}");
+    // Measured: 0.919 and 0.029 px.
+    assert!(report["rms_px"].number() > 0.5, "{report}");
+    held.says("note: the distortion was not measured: it is held at 0")
+        .says("--coefficients 0 leaves residuals of 0.9")
+        .says("5 coefficients leave 0.0");
+    let plain = ["camera", "scene/views", "--board", "9x6", "--square-mm", "20", "--coefficients", "0"];
+    let plain = dir.lunula(&[&plain[..], &["--no-figures", "--out", "camera.toml"]].concat()).expect(0).stdout;
+    assert!(plain.contains("the distortion was not measured") && plain.contains("0.00000 held"), "{plain}");
+    assert!(!plain.contains("undistorted to"), "{plain}");
+    // k3 of this lens is 0.
+    let four = camera(&dir, "scene/views", &["--coefficients", "4", "--no-figures"]).expect(0);
+    assert!(four.json()["undistorted_sd_px"].number() > 0.0);
+    assert!(!four.stderr.contains("not measured") && !four.stderr.contains("leaves residuals"), "{}", four.stderr);
+}
+
+#[test]
 fn the_lens_goes_into_a_marker_file_as_it_is() {
     let dir = views(&["--views", "8", "--plane", "30,90"]);
     camera(&dir, "scene/views", &["--plane", "scene/plane.png", "--no-figures"]).expect(0);

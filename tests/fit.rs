@@ -252,6 +252,9 @@ fn bad_requests_are_refused_whole() {
         ("r.csv --free k_C --subject a,b --out f.json", "--subject"),
         ("r.csv --free k_C --photodiode P3=1 --out f.json", "P3"),
         ("r.csv --free k_C --photodiode VP1=3 --out f.json", "2 units"),
+        ("r.csv --free k_C --photodiode VP1=1 --photodiode VP9=2 --out f.json", "VP9=2: no recording has this column"),
+        ("r.csv --free k_C --photodiode VP1=1 --photodiode VP9=2 --out f.json", "did you mean `VP2`?"),
+        ("r.csv --free k_C --photodiode VP1=1 --photodiode VP1=2 --out f.json", "--photodiode VP1: is named twice"),
         ("r.csv --free k_C --force Fz_N --out f.json", "--area-cm2"),
         ("r.csv --free k_C --force VP1 --area-cm2 0 --out f.json", "greater than 0"),
         ("r.csv --free k_C --force Fz_kN --area-cm2 2 --out f.json", "`Fz_kN` is a force that is not in newtons"),
@@ -342,6 +345,69 @@ fn a_force_that_never_presses_and_an_area_of_nothing_are_refused() {
     run(&dir, "fit", &format!("{options} --area-cm2 1")).expect(2).says("`Fz_N` is never negative: nothing presses");
     run(&dir, "fit", &format!("{options} --area-cm2 0")).expect(2).says("--area-cm2");
     assert!(!dir.path("f.json").exists());
+}
+
+#[test]
+fn loads_of_the_wrong_sign_are_warned_of() {
+    let dir = Dir::new();
+    run(&dir, "simulate", &format!("{STEPS} --out r.csv")).expect(0);
+    let recorded = |header: &str, loads: &dyn Fn(f64, f64) -> String| -> String {
+        let row = |row: &std::collections::BTreeMap<String, String>| {
+            let pressed = loads(number(row, "pf1_Pa"), number(row, "pf2_Pa"));
+            format!("{},{pressed},{},{}\n", row["time_s"], row["VP1"], row["VP2"])
+        };
+        format!("{header}\n{}", dir.table("r.csv").iter().map(row).collect::<String>())
+    };
+    let fitted = |name: &str, options: &str| {
+        let own = "--free none --between held --unloaded-before --no-figures --out f.json";
+        run(&dir, "fit", &format!("{name} {options} {own}")).expect(0).stderr
+    };
+    const PRESSED: &str = "time_s,pf1_Pa,pf2_Pa,VP1,VP2";
+    const SIGN: &str = "it is not 0: pressing is positive, and negative pressure is suction";
+    for (name, signs) in [("both.csv", [-1.0, -1.0]), ("one.csv", [-1.0, 1.0]), ("none.csv", [1.0, 1.0])] {
+        dir.write(name, recorded(PRESSED, &|first, second| format!("{},{}", signs[0] * first, signs[1] * second)));
+        let said = fitted(name, "");
+        for ((column, highest), sign) in [("pf1_Pa", 6000), ("pf2_Pa", 4000)].into_iter().zip(signs) {
+            let words = format!("{name}: {column} goes from -{highest} to 0 Pa");
+            assert_eq!(said.contains(&words), sign < 0.0, "{said}");
+        }
+        assert_eq!(said.contains(SIGN), name != "none.csv", "{said}");
+        // What photodiodes do then is what no light does.
+        let negative = format!("the scaling V_1 is negative for unit 1 of {name}");
+        assert_eq!(said.contains(&negative), name != "none.csv", "{said}");
+    }
+    // Forces: below what is forgiven in logs, above it, and beyond a finger's; never negative ones are refused.
+    const FORCE: &str = "time_s,Fz_N,VP1,VP2";
+    for (area_cm2, words) in [
+        (0.5, "Fz_N goes from -0.001 to 0.300 N, as if the finger pulled"),
+        (2.0, "Fz_N goes from -0.001 to 1.200 N, as if the finger pulled"),
+        (20_000.0, "no finger presses with more than 200 N"),
+    ] {
+        let offset = if area_cm2 > 100.0 { 10.0 } else { 0.001 };
+        let force = |first: f64, _: f64| format!("{}", if first == 0.0 { -offset } else { 1e-4 * area_cm2 * first });
+        dir.write("up.csv", recorded(FORCE, &force));
+        let options = format!("--force Fz_N --area-cm2 {area_cm2} --load proximal");
+        let said = fitted("up.csv", &options);
+        assert!(said.contains(words) && said.contains("as if the finger pulled"), "{said}");
+        dir.write("down.csv", recorded(FORCE, &|first, _| format!("{}", -1e-4 * area_cm2 * first)));
+        let said = fitted("down.csv", &options);
+        assert!(!said.contains("as if the finger pulled"), "{said}");
+    }
+}
+
+#[test]
+fn a_photodiode_that_some_recordings_lack_is_noted() {
+    let dir = Dir::new();
+    run(&dir, "simulate", "--static 0..9000/500 --out a.csv --no-figures").expect(0);
+    let mut second = "pf1_Pa,pf2_Pa,VP1\n".to_owned();
+    for row in dir.table("a.csv") {
+        second += &format!("{},{},{}\n", row["pf1_Pa"], row["pf2_Pa"], row["VP1"]);
+    }
+    dir.write("b.csv", second);
+    for named in ["", "--photodiode VP1=1 --photodiode VP2=2"] {
+        let answer = run(&dir, "fit", &format!("a.csv b.csv {named} --free none --out f.json --no-figures")).expect(0);
+        answer.says("b.csv: lacks VP2, which other recordings have").says("fitted without");
+    }
 }
 
 #[test]

@@ -42,6 +42,30 @@ fn photographs_to_maps_to_a_layout() {
 }
 
 #[test]
+fn what_an_earlier_run_left_among_maps_is_left_out() {
+    let dir = Dir::new();
+    let scene = ["phantom", "photos", "--seed", "2", "--subjects", "4", "--size", "160x120", "--out", "scene", "-q"];
+    dir.lunula(&scene).expect(0);
+    let photos = |out: &str| dir.lunula(&["photos", "scene/photos", "--out", out, "--size", "64"]).expect(0);
+    photos("set");
+    std::fs::remove_dir_all(dir.path("scene/photos/flexion")).expect("removed");
+    for ending in ["png", "json"] {
+        std::fs::remove_file(dir.path(&format!("scene/photos/normal/s03.{ending}"))).expect("removed");
+    }
+    photos("set");
+    photos("fresh");
+    let layout = |set: &str, out: &str| dir.lunula(&["layout", set, "--k", "1..2", "--out", out]);
+    layout("set", "of-set").expect(0).says("maps/flexion-mean.npy and 1 more: not in nails.csv, so of an earlier run");
+    layout("fresh", "of-fresh").expect(0);
+    assert_eq!(dir.text("of-set/layout.csv"), dir.text("of-fresh/layout.csv"));
+    // The report beside the maps is theirs.
+    layout("set", "set").expect(2).says("is an input itself");
+    dir.write("set/run.json", dir.text("of-set/run.json"));
+    layout("set", "no").expect(2).says("set/run.json").says("run `lunula photos` again");
+    assert!(!dir.path("no").exists());
+}
+
+#[test]
 fn photodiodes_of_a_log_are_laid_out_as_they_are() {
     let dir = Dir::new();
     dir.lunula(&["phantom", "log", "--seed", "1", "--out", "log", "-q"]).expect(0);

@@ -186,6 +186,16 @@ fn a_recording_is_what_align_and_train_read_and_is_not_lost() {
     let text = dir.text("r.csv");
     dir.lunula(&["record", "--source", "r.csv", "--out", "r.csv", "--replace"]).expect(2).says("is an input itself");
     assert_eq!(dir.text("r.csv"), text);
+    // Forces that no finger has are warned of while they can be measured again.
+    let thousands = text.lines().map(|line| match line.rsplit_once(',') {
+        Some((row, force)) if force != "Fz_N" => {
+            format!("{row},{}\n", -1000.0 * force.parse::<f64>().expect("a number"))
+        }
+        _ => format!("{line}\n"),
+    });
+    dir.write("mn.csv", thousands.collect::<String>());
+    let doubted = dir.lunula(&["record", "--source", "mn.csv", "--out", "as-mn.csv"]).expect(0);
+    doubted.says("Fz_N goes from 0 to 1000 N").says("as if the finger pulled");
     // Without a sample there is no file.
     dir.write("none.csv", "time_s,P1\n");
     dir.lunula(&["record", "--source", "none.csv", "--out", "n.csv"]).expect(2).says("no row came");

@@ -217,3 +217,51 @@ fn a_set_is_replaced_whole_and_nothing_else_is_touched() {
     assert!(matches!(write(&options, own.path()), Err(Error::InTheWay { .. })));
     assert_eq!(files(own.path()).len(), 1);
 }
+
+#[test]
+fn a_set_with_somebody_s_own_files_in_it_is_not_replaced() {
+    let out = tempfile::tempdir().unwrap();
+    let options = PhotoOptions { truth_normalized: false, ..small() };
+    let other = PhotoOptions { seed: 9, subjects: 2, format: FileFormat::Bmp, ..options.clone() };
+    write(&options, out.path()).unwrap();
+    let first = files(out.path());
+    #[track_caller]
+    fn refused(wanted: &PhotoOptions, out: &Path, name: &str) {
+        let before = files(out);
+        match write(wanted, out) {
+            Err(Error::InTheWay { place, .. }) => assert_eq!(place, out.join(name)),
+            other => panic!("{name} is in the way, not {other:?}"),
+        }
+        assert!(files(out) == before, "{name}");
+    }
+    for name in ["photos/notes.txt", "photos/nominal/s06.png", "photos/normal/s01.json", "truth/mine.csv"] {
+        let place = out.path().join(name);
+        fs::create_dir_all(place.parent().unwrap()).unwrap();
+        fs::write(&place, "mine").unwrap();
+        refused(&options, out.path(), name);
+        refused(&PhotoOptions { subjects: 6, ..options.clone() }, out.path(), name);
+        fs::remove_file(&place).unwrap();
+    }
+    // An outline that was corrected by hand.
+    let name = "photos/nominal/s02.json";
+    let mut outline = LabelMe::read(&out.path().join(name)).unwrap();
+    outline.shapes[0].points[0][0] += 0.5;
+    outline.write(&out.path().join(name)).unwrap();
+    refused(&options, out.path(), name);
+    refused(&other, out.path(), name);
+    fs::write(out.path().join(name), &first[Path::new(name)]).unwrap();
+    // As a run that was killed leaves it: its photographs beside the truth of the set before.
+    let next = tempfile::tempdir().unwrap();
+    write(&other, next.path()).unwrap();
+    fs::remove_dir_all(out.path().join("photos")).unwrap();
+    fs::create_dir(out.path().join("photos")).unwrap();
+    for (name, bytes) in files(&next.path().join("photos")) {
+        let place = out.path().join("photos").join(name);
+        fs::create_dir_all(place.parent().unwrap()).unwrap();
+        fs::write(place, bytes).unwrap();
+    }
+    write(&other, out.path()).unwrap();
+    assert!(files(out.path()) == files(next.path()));
+    write(&options, out.path()).unwrap();
+    assert!(files(out.path()) == first);
+}

@@ -95,6 +95,13 @@ fn maps_made_in_parts_and_merged_equal_those_made_at_once() {
         compared += 1;
     }
     assert_eq!(compared, 8 + 8 + 8 + 1);
+    // One photograph as two subjects.
+    let one = "flexion/s05.png,again,flexion\nnominal/s01.png,s06,nominal\n";
+    dir.write("set/photos/photos.csv", format!("{header}{one}"));
+    dir.lunula(&["photos", "set/photos", "--out", "copy"]).expect(0);
+    dir.lunula(&["photos", "merge", "first", "copy", "--out", "twice"])
+        .expect(0)
+        .says("copy/normalized/flexion/again.png, first/normalized/flexion/s05.png: the same to the byte");
     // A subject in two parts, and parts made differently, are refused; what stood stays.
     dir.lunula(&["photos", "merge", "whole", "first", "--out", "merged"]).expect(2).says("subject `s02`");
     dir.lunula(&["photos", "set/photos", "--out", "small", "--size", "64"]).expect(0);

@@ -231,6 +231,31 @@ fn a_manifest_s_faults_are_named_by_line() {
 }
 
 #[test]
+fn a_column_that_is_nearly_one_of_the_manifest_s_is_not_passed_over() {
+    let dir = good_set();
+    for (own, meant) in [
+        ("Outline", "outline"),
+        ("outlines", "outline"),
+        ("outlnie", "outline"),
+        ("outline_file", "outline"),
+        ("mask", "outline"),
+        ("tones", "tone"),
+        ("Skin tone", "tone"),
+    ] {
+        dir.write("set/photos.csv", format!("file,subject,pose,{own}\na.png,a,p,b.json\n"));
+        let answer = dir.lunula(&["photos", "set", "--out", "out"]).expect(2);
+        answer.says(&format!("line 1: the column `{own}`")).says(&format!("did you mean `{meant}`?"));
+    }
+    assert!(!dir.path("out").exists());
+    // A laboratory's own, and another name beside the one that is read.
+    let own = "age,sex,toe,zone,outlier,online,acetone";
+    dir.write("set/photos.csv", format!("file,subject,pose,outline,mask,{own}\na.png,a,p,a.json,old,1,2,3,4,5,6,7\n"));
+    dir.lunula(&["photos", "set", "--out", "out"]).expect(0);
+    dir.write("set/photos.csv", format!("file,subject,pose,{own}\na.png,a,p,1,2,3,4,5,6,7\n"));
+    dir.lunula(&["photos", "set", "--out", "out"]).expect(0);
+}
+
+#[test]
 fn colour_and_grey_in_a_pose_are_warned_of() {
     let dir = good_set();
     image::DynamicImage::from(drawn_nail()).to_luma8().save(dir.place("set/d.png")).expect("a picture");
@@ -370,9 +395,11 @@ fn what_is_found_but_not_trusted_is_kept_for_a_person_even_where_nothing_else_is
         (options.seed, options.width, options.height, options.noise_sd, options.annotate) =
             (seed, 160, 120, 12.0, false);
         options.grey = true;
+        // Another seed's scene may have been found, and its outline is somebody's own.
+        for folder in ["set", "out"] {
+            let _ = std::fs::remove_dir_all(dir.path(folder));
+        }
         lunula::phantom::photos::write(&options, &dir.path("set")).expect("a synthetic photograph");
-        // Another seed's scene may have been found.
-        let _ = std::fs::remove_dir_all(dir.path("out"));
         let answer = dir.lunula(&["photos", "set/photos", "--out", "out", "--write-outlines"]);
         let drawn = dir.path("set/photos/nominal/s01.json");
         // The outlines were saved, and there is a report: 2 would say that nothing was changed.

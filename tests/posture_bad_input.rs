@@ -203,6 +203,22 @@ fn all_faults_of_a_marker_file_are_reported_together() {
 }
 
 #[test]
+fn a_lens_of_other_pictures_is_refused_or_doubted() {
+    let dir = scene(&[]);
+    let markers = dir.text("markers.toml");
+    let with = |camera: &str| {
+        dir.write("markers.toml", format!("{markers}\n[camera]\n{camera}\n"));
+        posture(&dir, "scene/video.mp4")
+    };
+    let larger = with("size = [1280, 720]\nfx = 1200.0");
+    refused(&dir, larger, &["measured on pictures of 1280 x 720 px, and these are 640 x 360", "multiply", "by 0.5"]);
+    refused(&dir, with("size = [640, 480]\nfx = 600.0"), &["640 x 480", "lunula camera"]);
+    refused(&dir, with("size = [640.5, 360]\nfx = 600.0"), &["`size` is no picture's"]);
+    with("fx = 600.0\ncx = 100.0\ncy = 90.0").expect(0).says("far from the middle").says("`size = [640, 360]`");
+    with("size = [640, 360]\nfx = 600.0\ncx = 330.0").expect(0);
+}
+
+#[test]
 fn results_never_replace_the_input_or_one_another() {
     let dir = scene(&[]);
     let before = std::fs::read(dir.path("scene/video.mp4")).expect("a file");

@@ -317,7 +317,7 @@ fn the_folder_holds_the_table_the_pictures_and_the_report() {
     dir.lunula(&["evaluate", "m.json", "nowhere.csv", "--out", "ev"]).expect(2).says("nowhere.csv");
     assert_eq!(dir.bytes_of("ev"), found);
     let again = [&["evaluate", "m.json", "--out", "ev"], &data.split(' ').collect::<Vec<_>>()[..]].concat();
-    dir.lunula(&again).expect(0).says("ev/held-out.png existed before and are not of this run");
+    dir.lunula(&again).expect(0).says("ev/held-out.png existed before and is not of this run");
 }
 
 #[test]

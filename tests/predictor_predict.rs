@@ -45,6 +45,11 @@ fn forces_or_angles_are_predicted_for_each_row() {
     let dir = models();
     let truth = Recording::of(300..400);
     let forces = predict(&dir, &["force.json", "r.csv"], &[]);
+    let table = dir.text("p.csv");
+    // Options may come between.
+    dir.lunula(&["predict", "force.json", "--out", "p.csv", "r.csv", "-q"]).expect(0);
+    assert_eq!(dir.text("p.csv"), table);
+    dir.lunula(&["predict", "--out", "p.csv", "r.csv"]).expect(2).says("only one file is named");
     assert_eq!(header(&dir, "p.csv"), "time_s,Fx_N,Fy_N,Fz_N");
     for name in ["time_s", "Fx_N", "Fy_N", "Fz_N"] {
         near(&column(&forces, name), &truth.numbers(name), EXACT);

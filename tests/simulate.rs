@@ -73,6 +73,35 @@ fn a_file_of_loads_is_the_load_that_it_holds() {
 }
 
 #[test]
+fn loads_that_never_act_or_suck_are_named() {
+    let dir = Dir::new();
+    let said = |options: &str| run(&dir, &format!("{options} --every 0.1 --out t.csv --no-figures")).expect(0);
+    const CONSTANT: &str = "and the run goes from 0 to 2 s: the load is constant all the time";
+    for (load, when) in [
+        ("--pf1 step:5000@3..9", "has loads from 3 to 9 s"),
+        ("--pf2 ramp:0..5000@2..3", "has loads from 2 to 3 s"),
+        ("--ph step:12000@-3..-1", "has loads from -3 to -1 s"),
+    ] {
+        said(&format!("{load} --until 2")).says(&format!("{load}: {when}, {CONSTANT}"));
+    }
+    dir.write("late.csv", "time_s,pf1_Pa,pf2_Pa,ph_pa\n3,0,0,9000\n4,5000,0,9000\n");
+    let late = said("--loads late.csv --until 2");
+    late.says(&format!("late.csv: has loads from 3 to 4 s, {CONSTANT}"))
+        .says("late.csv: the column `ph_pa` is not used; did you mean `ph_Pa`?");
+    // Suction, by each way to give a load.
+    dir.write("suck.csv", "time_s,pf1_Pa,pf2_Pa\n0,0,0\n0.55,-2000,1000\n1,0,1000\n");
+    said("--pf1 step:-2000@0.55..0.58 --until 2")
+        .says("--pf1 step:-2000@0.55..0.58 goes below 0: pressing is positive");
+    said("--pf2 sine:0+100@1 --until 2").says("--pf2 sine:0+100@1 goes below 0");
+    said("--loads suck.csv --until 2").says("suck.csv: pf1_Pa goes below 0");
+    run(&dir, "--static -500..0/100 --out s.csv --no-figures").expect(0).says("loads begin at -500 Pa: pressing is");
+    for fine in ["--pf1 step:5000@1..9 --pf2 sine:1000+1000@1", "--pf1 step:5000@-1..0", "--pf1 ramp:5000..0@0..1"] {
+        let answer = said(&format!("{fine} --until 2"));
+        assert!(!answer.stderr.contains("constant") && !answer.stderr.contains("below 0"), "{}", answer.stderr);
+    }
+}
+
+#[test]
 fn faults_of_a_load_file_name_row_and_column() {
     let dir = Dir::new();
     dir.write("bad.csv", "time_s,pf1_Pa,pf2_Pa\n0,0,0\n1,nan,0\n0.5,3,\n0.5,inf,soft\n");

@@ -6,6 +6,7 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::flexion::Plausibility;
 use crate::table::{Table, TableError};
 
 /// No joint turns further, degrees: `lunula posture` follows angles past half a turn.
@@ -121,6 +122,11 @@ impl Posture {
                 "no angle is further from 0 than {most_deg:.2} degrees; if these are radians, write degrees"
             ));
         }
+        let mut plausibility = Plausibility::new(joints.iter());
+        for row in 0..time_s.len() {
+            plausibility.add(angles_deg.iter().map(|angles| Some(angles[row]).filter(|degrees| degrees.is_finite())));
+        }
+        warnings.extend(plausibility.warning(None));
         warnings.iter_mut().for_each(|warning| *warning = format!("{}: {warning}", path.display()));
         let [read_s, sd_s, low_s, high_s] = ["read", "sd", "low", "high"].map(|what| known(&format!("clock_{what}_s")));
         let clock = match (read_s?, sd_s?, low_s?, high_s?) {
@@ -161,7 +167,7 @@ fn joint_of(column: &str) -> Option<&str> {
     column.strip_suffix("_deg").filter(|joint| !joint.is_empty() && !joint.ends_with("_sd"))
 }
 
-fn missing_as_nan(cells: Vec<Option<f64>>) -> Vec<f64> {
+pub(super) fn missing_as_nan(cells: Vec<Option<f64>>) -> Vec<f64> {
     cells.into_iter().map(|cell| cell.unwrap_or(f64::NAN)).collect()
 }
 
@@ -214,6 +220,17 @@ mod tests {
         let of = |most: &str| read(&format!("time_s,J2_deg\n0,0\n1,{most}\n")).unwrap().warnings.concat();
         assert!(of("1.4").contains("no angle is further from 0 than 1.40 degrees"), "{}", of("1.4"));
         assert_eq!([of("0.2"), of("4")].concat(), "");
+    }
+
+    #[test]
+    fn angles_that_a_finger_cannot_have_are_doubted() {
+        let bent = |sign: f64| {
+            let row = |k: i32| format!("{k},{}\n", sign * 0.8 * f64::from(k));
+            read(&format!("time_s,J2_deg\n{}", (0..100).map(row).collect::<String>())).unwrap().warnings.concat()
+        };
+        assert_eq!(bent(1.0), "");
+        let negated = bent(-1.0);
+        assert!(negated.contains("joints.csv: angles that a finger can't have: J2") && negated.contains("is positive"));
     }
 
     #[test]

@@ -156,8 +156,13 @@ impl Fit {
         std::array::from_fn(|k| self.covariance[(k, k)].max(0.0).sqrt())
     }
 
+    /// Whether any coefficient of distortion was free.
+    pub(super) fn measures_distortion(&self) -> bool {
+        self.sd()[4..].iter().any(|sd| *sd > 0.0)
+    }
+
     /// The standard error of a point without distortion, on a picture of the same focal lengths and axis, root mean
-    /// square over the picture, pixels.
+    /// square over the picture, pixels. What was held counts as known.
     pub(super) fn undistorted_sd_px(&self, (width, height): (usize, usize)) -> Result<f64, CameraError> {
         const STEPS: usize = 12;
         let (focal, centre) = (self.lens.focal_px, self.lens.centre_px);

@@ -32,8 +32,9 @@ pub struct CameraFigures {
     pub rms_px: f64,
     /// The standard deviation of a corner's coordinate, from what is left.
     pub corner_sd_px: f64,
-    /// The standard error of an undistorted point, root mean square over the picture.
-    pub undistorted_sd_px: f64,
+    /// The standard error of an undistorted point, root mean square over the picture; none where the distortion was not
+    /// measured but held at 0.
+    pub undistorted_sd_px: Option<f64>,
     /// The share of the picture's 8 x 6 cells with a corner.
     pub covered: f64,
     /// How far from the picture's middle the farthest corner is, as a share of half the diagonal.
@@ -133,7 +134,7 @@ pub(super) fn figures(fit: &Fit, views: &[View], covered: Covered, about: About)
         lens_sd: LensFigures::of(fit.sd()),
         rms_px: fit.rms_px,
         corner_sd_px: fit.corner_sd_px,
-        undistorted_sd_px: fit.undistorted_sd_px(about.size)?,
+        undistorted_sd_px: fit.measures_distortion().then(|| fit.undistorted_sd_px(about.size)).transpose()?,
         covered: covered.cells,
         reach: covered.reach,
         plane: fit.views.last().filter(|_| about.has_plane).map(PlaneFigures::of),
@@ -148,8 +149,8 @@ impl CameraFigures {
     pub fn toml(&self) -> String {
         let Self { lens, lens_sd: sd, picture_px: [width, height], .. } = self;
         let mut text = format!(
-            "# From {} views of a board of {} inner corners; residuals {:.3} px RMS. For pictures of {width} x \
-             {height} px.\n# Standard errors: fx {:.2}, fy {:.2}, cx {:.2}, cy {:.2} px.\n[camera]\n",
+            "# From {} views of a board of {} inner corners; residuals {:.3} px RMS.\n# Standard errors: fx {:.2}, fy \
+             {:.2}, cx {:.2}, cy {:.2} px.\n[camera]\nsize = [{width}, {height}]\n",
             self.views.len(),
             self.board,
             self.rms_px,

@@ -48,7 +48,13 @@ impl Staging {
             }
             Err(why) => {
                 remove_folders(&created);
-                Err(refused(why))
+                Err(refused(match why.kind() {
+                    io::ErrorKind::AlreadyExists if target.is_file() => {
+                        io::Error::other("it is a file, and results need a folder")
+                    }
+                    io::ErrorKind::AlreadyExists => io::Error::other("it is a link to nothing"),
+                    _ => why,
+                }))
             }
         }
     }
@@ -114,18 +120,17 @@ impl Staging {
     }
 
     /// Files that stand in the folders that results will go to and are none of them: an earlier run's. Sorted.
-    pub fn left_from_earlier(&self) -> Vec<String> {
+    pub fn left_from_earlier(&self) -> Vec<PathBuf> {
         let names = self.names.lock().unwrap_or_else(PoisonError::into_inner);
         let folders: BTreeSet<&Path> =
             names.iter().filter_map(|n| n.parent()).filter(|f| !f.as_os_str().is_empty()).collect();
         let written: BTreeSet<&Path> = names.iter().map(PathBuf::as_path).collect();
-        let mut left: Vec<String> = folders
+        let mut left: Vec<PathBuf> = folders
             .into_iter()
             .flat_map(|folder| fs::read_dir(self.target.join(folder)).into_iter().flatten().flatten())
             .filter(|entry| entry.path().is_file())
-            .filter_map(|entry| entry.path().strip_prefix(&self.target).map(Path::to_owned).ok())
-            .filter(|name| !written.contains(name.as_path()))
-            .map(|name| name.to_string_lossy().into_owned())
+            .map(|entry| entry.path())
+            .filter(|path| path.strip_prefix(&self.target).is_ok_and(|name| !written.contains(name)))
             .collect();
         left.sort();
         left
@@ -532,6 +537,17 @@ mod tests {
         staging.write("b.txt", b"b").unwrap();
         assert!(matches!(staging.commit(), Err(WriteError::FolderInTheWay(path)) if path.ends_with("b.txt")));
         assert_eq!(names_in(dir.path()), ["b.txt"]);
+    }
+
+    #[test]
+    fn a_file_or_a_link_to_nothing_where_a_folder_has_to_be_is_named() {
+        let dir = tempfile::tempdir().unwrap();
+        let [file, link] = ["file", "link"].map(|name| dir.path().join(name));
+        fs::write(&file, "mine").unwrap();
+        std::os::unix::fs::symlink(dir.path().join("nothing"), &link).unwrap();
+        let why = |target: &Path| Staging::new(target).map(drop).unwrap_err().to_string();
+        assert!(why(&file).contains("it is a file") && why(&link).contains("a link to nothing"), "{}", why(&file));
+        assert_eq!((fs::read_to_string(&file).unwrap(), names_in(dir.path()).len()), ("mine".to_owned(), 2));
     }
 
     /// Everything below a folder, with its contents.

@@ -82,9 +82,16 @@ impl<F: Serialize> Report<F> {
 
     /// Notes which of the options `keys` were written though nothing here needs them, and why it doesn't.
     pub fn unused(&mut self, keys: &[&str], why: &str) {
-        let said = keys.iter().filter(|key| self.options.was_written(key));
-        let notes = said.map(|key| format!("--{} is of no use here: {why}", key.replace('_', "-")));
-        self.notes.extend(notes);
+        for key in keys {
+            self.unused_input(key, self.options.was_written(key), why);
+        }
+    }
+
+    /// .. of an input, which is no option: whether it was named is the caller's to say.
+    pub fn unused_input(&mut self, key: &str, is_named: bool, why: &str) {
+        if is_named {
+            self.notes.push(format!("--{} is of no use here: {why}", key.replace('_', "-")));
+        }
     }
 
     /// Adds the times.
@@ -111,10 +118,17 @@ impl<F: Serialize> Report<F> {
         // By name: a folder may be called otherwise than before.
         let is_drawn = |path: &PathBuf| self.pictures.iter().any(|own| own.file_name() == path.file_name());
         let left: Vec<PathBuf> = left.filter(|path| !is_drawn(path) && path.is_file()).collect();
-        if let [first, others @ ..] = &left[..] {
-            let also = if others.is_empty() { String::new() } else { format!(" and {} more", others.len()) };
-            self.warnings.push(format!("{}{also} existed before and are not of this run", first.display()));
-        }
+        self.warn_of_left(&left);
+    }
+
+    /// Warns of results of an earlier run, which nobody should take for this one's.
+    pub fn warn_of_left(&mut self, left: &[PathBuf]) {
+        let Some(first) = left.first() else { return };
+        let what = match left.len() - 1 {
+            0 => " existed before and is not of this run".to_owned(),
+            more => format!(" and {more} more existed before and are not of this run"),
+        };
+        self.warnings.push(format!("{}{what}", first.display()));
     }
 
     /// Writes the report to `at`, if it is to be written, and puts all results into their places.

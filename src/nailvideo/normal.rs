@@ -22,47 +22,58 @@ fn place(side: usize, column: usize, row: usize) -> [f64; 2] {
     [at(column), -at(row)]
 }
 
-/// Red, green and blue of each pixel, row by row; NaN off the picture.
-fn pixels<'a>(
-    colours: &'a Colours,
-    frame_from_nail: &'a Affine,
+/// What becomes of a channel's values (red, green or blue as encoded, fraction of full scale; NaN off the picture), row
+/// by row, four at a time: one by one, in all channels, this took ten times as long as decoding the frame
+/// (`cargo bench -p lunula-cli --bench nailvideo`).
+fn pixels<T: Copy + Default + Send>(
+    colours: &Colours,
+    frame_from_nail: &Affine,
+    channel: usize,
     side: usize,
-) -> impl Iterator<Item = [f64; 3]> + use<'a> {
-    (0..side * side).map(move |k| colours.at(frame_from_nail.of(place(side, k % side, k / side))))
+    of: impl Fn(f32x4) -> [T; 4] + Sync,
+) -> Vec<T> {
+    let mut all = vec![T::default(); side * side];
+    let at = |column: usize, row: usize| frame_from_nail.of(place(side, column, row));
+    let last = side - 1;
+    let fast = colours.channel(channel, [at(0, 0), at(last, 0), at(0, last), at(last, last)]);
+    all.par_chunks_mut(side).enumerate().for_each(|(row, pixels)| {
+        let [first, second] = [0, 1].map(|column| at(column, row));
+        let along = |axis: usize, columns: f32x4| {
+            f32x4::splat(first[axis] as f32) + columns * f32x4::splat((second[axis] - first[axis]) as f32)
+        };
+        for (k, four) in pixels.as_chunks_mut::<4>().0.iter_mut().enumerate() {
+            *four = of(match &fast {
+                Some(fast) => {
+                    let columns = f32x4::new([0.0, 1.0, 2.0, 3.0]) + f32x4::splat(4.0 * k as f32);
+                    fast.four(along(0, columns), along(1, columns))
+                }
+                None => f32x4::new(std::array::from_fn(|one| colours.at(at(4 * k + one, row))[channel] as f32)),
+            });
+        }
+    });
+    all
 }
 
-/// In colour, for people.
+/// A channel's levels; 0 off the picture.
+fn levels(colours: &Colours, frame_from_nail: &Affine, channel: usize, side: usize) -> Vec<u8> {
+    // Half a level more: rounded when cut. What is no number becomes 0.
+    let level = |part: f32| (255.0 * part + 0.5).clamp(0.0, 255.0) as u8;
+    pixels(colours, frame_from_nail, channel, side, |parts| parts.to_array().map(level))
+}
+
+/// In colour, for people; the side is a multiple of 4.
 pub(in crate::nailvideo) fn picture(colours: &Colours, frame_from_nail: &Affine, side: usize) -> RgbImage {
-    let byte = |part: f64| if part.is_finite() { (255.0 * part).round().clamp(0.0, 255.0) as u8 } else { 0 };
-    let bytes = pixels(colours, frame_from_nail, side).flat_map(|rgb| rgb.map(byte)).collect();
-    RgbImage::from_raw(side as u32, side as u32, bytes).unwrap_or_default()
+    let [red, green, blue] = [0, 1, 2].map(|channel| levels(colours, frame_from_nail, channel, side));
+    RgbImage::from_fn(side as u32, side as u32, |x, y| {
+        let at = y as usize * side + x as usize;
+        image::Rgb([red[at], green[at], blue[at]])
+    })
 }
 
-/// Green as encoded, 0 off the picture. Rows side by side and four pixels at a time: one by one, in red and blue as
-/// well, this took ten times as long as decoding the frame (`cargo bench -p lunula-cli --bench nailvideo`).
+/// Green as encoded, 0 off the picture.
 pub(in crate::nailvideo) fn green(colours: &Colours, frame_from_nail: &Affine) -> GrayImage {
-    let mut bytes = vec![0; SIDE * SIDE];
-    let ends = [0, SIDE - 1];
-    let corners = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[c, r]| frame_from_nail.of(place(SIDE, ends[c], ends[r])));
-    if let Some(colours) = colours.green(corners) {
-        bytes.par_chunks_mut(SIDE).enumerate().for_each(|(row, bytes)| {
-            let [first, second] = [0, 1].map(|column| frame_from_nail.of(place(SIDE, column, row)));
-            let along = |axis: usize, columns: f32x4| {
-                f32x4::splat(first[axis] as f32) + columns * f32x4::splat((second[axis] - first[axis]) as f32)
-            };
-            for (k, four) in bytes.as_chunks_mut::<4>().0.iter_mut().enumerate() {
-                let columns = f32x4::new([0.0, 1.0, 2.0, 3.0]) + f32x4::splat(4.0 * k as f32);
-                let green = colours.four(along(0, columns), along(1, columns));
-                // Half a level more: rounded when cut.
-                let levels = green * f32x4::splat(255.0) + f32x4::splat(0.5);
-                *four = levels.max(f32x4::ZERO).min(f32x4::splat(255.0)).to_array().map(|level| level as u8);
-            }
-        });
-    } else {
-        let byte = |[_, g, _]: [f64; 3]| if g.is_finite() { (255.0 * g).round().clamp(0.0, 255.0) as u8 } else { 0 };
-        bytes.iter_mut().zip(pixels(colours, frame_from_nail, SIDE)).for_each(|(to, rgb)| *to = byte(rgb));
-    }
-    GrayImage::from_raw(SIDE as u32, SIDE as u32, bytes).unwrap_or_default()
+    let levels = levels(colours, frame_from_nail, 1, SIDE);
+    GrayImage::from_raw(SIDE as u32, SIDE as u32, levels).unwrap_or_default()
 }
 
 const _: () = assert!(SIDE.is_multiple_of(4), "rows of whole fours");
@@ -95,8 +106,8 @@ impl WindowSums {
         }
         self.frames += 1;
         let is_covered = |k: usize| covered.is_some_and(|covered| covered[cell_at(place(SIDE, k % SIDE, k / SIDE))]);
-        let pixels = pixels(colours, frame_from_nail, SIDE).enumerate();
-        for ([count, mean, squares], (k, [_, green, _])) in self.sums.iter_mut().zip(pixels) {
+        let pixels = pixels(colours, frame_from_nail, 1, SIDE, |parts| parts.to_array().map(f64::from));
+        for ([count, mean, squares], (k, green)) in self.sums.iter_mut().zip(pixels.into_iter().enumerate()) {
             if green.is_finite() && !is_covered(k) {
                 *count += 1.0;
                 let before = green - *mean;
@@ -129,12 +140,41 @@ mod tests {
     #[test]
     fn four_at_a_time_are_as_one_by_one() {
         let scene = Scene::new(150.0, 3);
-        let picture = scene.picture(&Shot::REST, 0);
-        let frame = picture.frame(0, 0.0);
+        let shown = scene.picture(&Shot::REST, 0);
+        let frame = shown.frame(0, 0.0);
         let colours = Colours::new(&frame, PLANES, &scene.frame_from_nail).expect("on the picture");
-        let fast = green(&colours, &scene.frame_from_nail);
-        let each = pixels(&colours, &scene.frame_from_nail, SIDE).map(|[_, g, _]| 255.0 * g);
-        let largest = fast.as_raw().iter().zip(each).map(|(&one, g)| (f64::from(one) - g).abs()).fold(0.0, f64::max);
+        let fast = picture(&colours, &scene.frame_from_nail, SIDE);
+        let largest = fast.enumerate_pixels().flat_map(|(x, y, rgb)| {
+            let each = colours.at(scene.frame_from_nail.of(place(SIDE, x as usize, y as usize)));
+            [0, 1, 2].map(|c| (f64::from(rgb[c]) - 255.0 * each[c]).abs())
+        });
+        let largest = largest.fold(0.0, f64::max);
         assert!(largest <= 0.501, "{largest}");
+        let greens = green(&colours, &scene.frame_from_nail);
+        assert!(greens.pixels().zip(fast.pixels()).all(|(one, rgb)| one[0] == rgb[1]));
+    }
+
+    #[test]
+    fn what_is_off_the_picture_is_black_and_in_no_sum() {
+        let scene = Scene::new(150.0, 3);
+        let shown = scene.picture(&Shot::REST, 0);
+        let frame = shown.frame(0, 0.0);
+        // A quarter of the nail's width to the left of the picture's left border.
+        let half_width = scene.frame_from_nail.0[0];
+        let mut moved = scene.frame_from_nail;
+        moved.0[2] = 0.5 * half_width;
+        let colours = Colours::new(&frame, PLANES, &moved).expect("half of it is on the picture");
+        let (green, mut sums) = (green(&colours, &moved), WindowSums::new(Window { from_s: 0.0, to_s: 1.0 }));
+        sums.add(0.5, &colours, &moved, None);
+        let [mean, _] = sums.maps();
+        for (x, y, level) in green.enumerate_pixels() {
+            let [at, _] = moved.of(place(SIDE, x as usize, y as usize));
+            let known = mean[[y as usize, x as usize]];
+            if at < -1.5 {
+                assert!(level[0] == 0 && known.is_nan(), "{x} {y}: {} {known}", level[0]);
+            } else if at > 1.0 {
+                assert!((255.0 * known - f32::from(level[0])).abs() <= 0.501, "{x} {y}: {} {known}", level[0]);
+            }
+        }
     }
 }

@@ -1,10 +1,11 @@
 //! Which photographs: a folder of poses, or a manifest, to a sorted list.
 //!
 //! In: `SET/<pose>/<subject>.<png|jpg|tif|bmp>`, or a flat folder (one pose, named after it), or a folder with
-//! `photos.csv` (`file,subject,pose` and optionally `outline` and `tone`, paths relative to it). Out: a [`PhotoSet`],
-//! its photographs sorted by pose ([`THESIS_POSES`](super::pose::THESIS_POSES) first), subject and file, and the
-//! [`SetFault`]s: entries that cannot be used, each with its place; the others go on. A subject counts once per pose,
-//! so subjects that a pose has twice are all left out.
+//! `photos.csv` (`file,subject,pose` and optionally `outline` and `tone`, paths relative to it; other columns are
+//! allowed, unless they seem to be meant for one of these). Out: a [`PhotoSet`], its photographs sorted by pose
+//! ([`THESIS_POSES`](super::pose::THESIS_POSES) first), subject and file, and the [`SetFault`]s: entries that cannot be
+//! used, each with its place; the others go on. A subject counts once per pose, so subjects that a pose has twice are
+//! all left out.
 
 use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
@@ -252,6 +253,13 @@ impl PhotoSet {
                  separated by commas or semicolons"
             )));
         };
+        let meant = OPTIONAL.iter().filter(|optional| column(optional.name).is_none());
+        if let Some((own, meant)) = meant.flat_map(|one| header.iter().map(move |own| (own, one))).find(is_meant) {
+            return Err(wrong(format!(
+                "line 1: the column `{own}` would not be read; did you mean `{}`? Rename it, or call it something else",
+                meant.name
+            )));
+        }
         let (outline, tone) = (column("outline"), column("tone"));
         for record in reader.records() {
             let record = record.map_err(|e| wrong(e.to_string()))?;
@@ -331,6 +339,25 @@ impl PhotoSet {
             );
         }
     }
+}
+
+/// A column that a manifest may have.
+struct Optional {
+    name: &'static str,
+    /// What others call it.
+    also: &'static str,
+    /// How many letters may be wrong: a short name has other words beside it, as `tone` has `toe` and `zone`.
+    slips: usize,
+}
+
+const OPTIONAL: [Optional; 2] =
+    [Optional { name: "outline", also: "mask", slips: 1 }, Optional { name: "tone", also: "skintone", slips: 0 }];
+
+/// Whether a column that is not read was meant to be this one: a word of it is, whatever its case and number.
+fn is_meant((own, optional): &(&str, &Optional)) -> bool {
+    let own = own.to_lowercase();
+    let mut words = own.split(|c: char| !c.is_alphanumeric()).map(|word| word.strip_suffix('s').unwrap_or(word));
+    words.any(|word| word == optional.also || strsim::osa_distance(word, optional.name) <= optional.slips)
 }
 
 fn row_fault(folder: &Path, file: &str, subject: &str, pose: &str) -> Option<String> {

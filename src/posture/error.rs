@@ -23,6 +23,14 @@ pub enum PostureError {
         /// What is wrong and what to do.
         why: String,
     },
+    /// The lens of the marker file is not the video's.
+    #[error("{}: {why}", path.display())]
+    Camera {
+        /// The video.
+        path: PathBuf,
+        /// What is wrong and what to do.
+        why: String,
+    },
     /// The clock can't be where the marker file says.
     #[error("{}: [clock]: {why}", path.display())]
     Clock {

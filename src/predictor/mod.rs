@@ -112,7 +112,8 @@ fn seen_by_intervals(predictor: &Predictor, data: &Dataset) -> Option<String> {
 }
 
 /// The names of whole recordings that are among others.
-fn again(others: &[TrainedOn], data: &Dataset) -> Option<String> {
+pub(crate) fn again<'a>(others: impl IntoIterator<Item = &'a TrainedOn>, data: &Dataset) -> Option<String> {
+    let others: Vec<&TrainedOn> = others.into_iter().collect();
     let is_one = |hash: &String| others.iter().any(|one| one.sha256 == *hash);
     let recordings = data.recordings().iter().zip(recording_hashes(data));
     let names: Vec<&str> = recordings.filter(|(_, hash)| is_one(hash)).map(|(one, _)| one.name.as_str()).collect();

@@ -17,7 +17,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use super::{ExportError, fixed, write};
-use crate::table::Table;
+use crate::align::posture::{Posture, missing_as_nan};
+use crate::table::{Table, TableError};
 
 /// Decimals of a place in pixels, as many as the table of markers has, and of a likelihood.
 const DECIMALS: usize = 4;
@@ -30,13 +31,17 @@ struct Sight {
     sd_px: f64,
 }
 
-/// Writes the markers of the table `tracks` that are to stand at `path` into the file `at`.
+/// Times of a frame in two tables are no further apart, seconds: both are rounded.
+const SAME_S: f64 = 1e-5;
+
+/// Writes the markers of the table `tracks` that are to stand at `path` into the file `at`; `posture` is what the same
+/// video gave of angles.
 ///
 /// # Errors
-/// A table that can't be read, or without the columns `frame`, `marker`, `x_px`, `y_px`; a row without a frame or
-/// a marker; a marker twice in a frame; a file that can't be written.
-pub(crate) fn dlc(at: &Path, path: &Path, tracks: &Path) -> Result<(), ExportError> {
-    let (markers, frames) = read(tracks)?;
+/// A table that can't be read, of another video, or without the columns `frame`, `marker`, `x_px`, `y_px`; a row
+/// without a frame or a marker; a marker twice in a frame; a file that can't be written.
+pub(crate) fn dlc(at: &Path, path: &Path, tracks: &Path, posture: &Posture) -> Result<(), ExportError> {
+    let (markers, frames) = read(tracks, posture)?;
     let mut text = String::new();
     for (first, cells) in [("scorer", None), ("bodyparts", None), ("coords", Some(["x", "y", "likelihood"]))] {
         text.push_str(first);
@@ -83,8 +88,23 @@ fn quoted(text: &str) -> String {
 type Frames = BTreeMap<i64, Vec<Option<Sight>>>;
 
 /// The markers in the order of the table, and what each frame shows of them.
-fn read(tracks: &Path) -> Result<(Vec<String>, Frames), ExportError> {
+fn read(tracks: &Path, posture: &Posture) -> Result<(Vec<String>, Frames), ExportError> {
     let table = Table::read(tracks)?;
+    if table.has("time_s") {
+        let mut there = missing_as_nan(table.numbers("time_s")?);
+        there.sort_unstable_by(f64::total_cmp);
+        let has = |time_s: f64| {
+            let next = there.partition_point(|&there| there < time_s - SAME_S);
+            there.get(next).is_some_and(|there| *there <= time_s + SAME_S)
+        };
+        if let Some(lacking) = posture.time_s.iter().find(|time_s| !has(**time_s)) {
+            let what = format!(
+                "has no frame at {lacking} s, and {} has: give the markers and the angles of one video",
+                posture.path.display()
+            );
+            return Err(TableError::Read { path: tracks.to_owned(), what }.into());
+        }
+    }
     let (names, x, y) = (table.texts("marker")?, table.numbers("x_px")?, table.numbers("y_px")?);
     let optional = |name: &str| table.names().iter().any(|n| n == name);
     let sds = if optional("sd_px") { table.numbers("sd_px")? } else { vec![None; table.rows()] };

@@ -165,7 +165,12 @@ fn markers_become_a_table_of_deeplabcut() {
          1,0.03,\"a, b\",1.5,2,,ok\n5,0.2,tip,11,21,0.5,ok\n",
     )
     .unwrap();
-    dlc(&path, &path, &tracks).unwrap();
+    // A part of the angles is of the same video, a frame more is of another.
+    let of_frames = |time_s: Vec<f64>| Posture { time_s, ..posture() };
+    let posture = of_frames(vec![0.0, 0.03]);
+    dlc(&path, &path, &tracks, &posture).unwrap();
+    let error = dlc(&path, &path, &tracks, &of_frames(vec![0.0, 0.03, 0.1])).unwrap_err().to_string();
+    assert!(error.contains("has no frame at 0.1 s, and joints.csv has"), "{error}");
     assert_eq!(
         std::fs::read_to_string(&path).unwrap(),
         "scorer,lunula,lunula,lunula,lunula,lunula,lunula\n\
@@ -182,10 +187,10 @@ fn markers_become_a_table_of_deeplabcut() {
         ("frame,x_px,y_px\n0,1,2\n", "has no column `marker`"),
     ] {
         std::fs::write(&tracks, text).unwrap();
-        let error = dlc(&path, &path, &tracks).unwrap_err().to_string();
+        let error = dlc(&path, &path, &tracks, &posture).unwrap_err().to_string();
         assert!(error.contains(words), "{error}");
     }
     std::fs::write(&tracks, "frame,marker,x_px,y_px\n").unwrap();
-    dlc(&path, &path, &tracks).unwrap();
+    dlc(&path, &path, &tracks, &posture).unwrap();
     assert_eq!(std::fs::read_to_string(&path).unwrap(), "scorer\nbodyparts\ncoords\n");
 }

@@ -77,6 +77,9 @@ pub fn run(
     if tie.method != TieMethod::Correlate {
         report.unused(&["lag_about", "max_lag", "sensor_lag"], "only --sync correlate looks for a lag");
     }
+    if log.led.is_none() {
+        report.unused(&["ambient"], "the log has no column `led`");
+    }
     if tie.method != TieMethod::Clock {
         report.unused(&["clock_zero"], "no clock in the picture ties the two");
     }

@@ -84,7 +84,7 @@ impl Job for AlignJob {
             Part::if_wanted(PICTURES, "training-labels.png"),
         ],
     )
-    .revision(2);
+    .revision(3);
 
     fn demand(&self, role: &str, own: &Demand) -> Demand {
         match role {

@@ -98,7 +98,7 @@ impl Results {
             export::bids(&mut self.places, root, names, posture, tie)?;
         }
         if let Some((path, tracks)) = outputs.dlc.as_ref().zip(inputs.tracks.as_ref()) {
-            export::dlc(&self.places.place(path)?, path, tracks)?;
+            export::dlc(&self.places.place(path)?, path, tracks, posture)?;
         }
         Ok(notes)
     }

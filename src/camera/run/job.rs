@@ -52,6 +52,7 @@ pub fn run(
     watch.go_on()?;
     let Sorted { kind, views, failed } = sorted;
     let fitted = stages.time("lens", || of_views(&views, kind.size, options, &failed))?;
+    let held = stages.time("lens", || held_at_0(&fitted, &views, kind.size, options))?;
     let covered = covered(&views, kind.size);
     let about = About {
         camera: outputs.camera.clone(),
@@ -63,6 +64,7 @@ pub fn run(
     };
     let figures = figures(&fitted, &views, covered, about)?;
     notes.extend(weak_k3(&fitted, options));
+    notes.extend(not_measured(&fitted));
     places.write(&outputs.camera, &figures.toml())?;
     let mut pictures = Vec::new();
     if outputs.figures {
@@ -75,7 +77,7 @@ pub fn run(
     let counts = Some([files.len() - videos, videos]);
     let mut report = Report {
         left_out: left_out(steps(counts, inputs.plane.is_some(), options, Some(outputs))),
-        warnings: [copied, warnings(&fitted, &views, covered)].concat(),
+        warnings: [copied, warnings(&fitted, &views, covered), held].concat(),
         notes,
         failed,
         pictures,
@@ -164,4 +166,37 @@ fn weak_k3(fit: &Fit, options: &CameraOptions) -> Option<String> {
     let (k3, sd) = (fit.lens.distortion[4], fit.sd()[8]);
     let weak = options.coefficients == 5 && k3.abs() < 2.0 * sd;
     weak.then(|| format!("k3 is {k3:.3} with a standard error of {sd:.3}: --coefficients 4 leaves it out"))
+}
+
+/// That a standard error of undistorted points is not known.
+fn not_measured(fit: &Fit) -> Option<String> {
+    (!fit.measures_distortion()).then(|| {
+        "the distortion was not measured: it is held at 0, and points stay where the lens shows them".to_owned()
+    })
+}
+
+/// Residuals of held coefficients that are so many times those of free ones are warned of (assumed).
+const HELD_TIMES: f64 = 3.0;
+
+/// Warns where coefficients that are held at 0 leave more than free ones would.
+fn held_at_0(
+    fitted: &Fit,
+    views: &[View],
+    size: (usize, usize),
+    options: &CameraOptions,
+) -> Result<Vec<String>, CameraError> {
+    const ALL: usize = 5;
+    if options.coefficients == ALL {
+        return Ok(Vec::new());
+    }
+    let corners: Vec<_> = views.iter().map(|view| view.corners.clone()).collect();
+    let free = fit(&options.board.points_mm(options.square_mm), &corners, size, ALL)?;
+    let warned = free.filter(|free| fitted.rms_px > HELD_TIMES * free.rms_px).map(|free| {
+        format!(
+            "--coefficients {} leaves residuals of {:.3} px RMS, and {ALL} coefficients leave {:.3} px: what is held \
+             at 0 is not 0 for this lens; measure it with --coefficients {ALL}",
+            options.coefficients, fitted.rms_px, free.rms_px
+        )
+    });
+    Ok(warned.into_iter().collect())
 }

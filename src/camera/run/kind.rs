@@ -24,7 +24,7 @@ impl Job for CameraOptions {
         ],
         &[Part::new("camera", CAMERA), Part::if_wanted(PICTURES, "camera-corners.png")],
     )
-    .revision(2);
+    .revision(3);
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         let outputs = outputs(Path::new(""), demand);
@@ -48,10 +48,9 @@ impl Job for CameraOptions {
         let outputs = outputs(work.folder, order.demand);
         let report = work.run(order.said, |watch| run(&inputs, &options, &outputs, watch))?;
         let share = 100.0 * report.lens_sd.fx_px / report.lens.fx_px;
-        let quality = vec![
-            Quality::stated("fx", share, "per cent, standard error"),
-            Quality::stated("undistorted points", report.undistorted_sd_px, "pixels, standard error, RMS"),
-        ];
+        let undistorted = |sd_px| Quality::stated("undistorted points", sd_px, "pixels, standard error, RMS");
+        let fx = Quality::stated("fx", share, "per cent, standard error");
+        let quality = std::iter::once(fx).chain(report.undistorted_sd_px.map(undistorted)).collect();
         Ok(report.made(quality))
     }
 }

@@ -7,6 +7,7 @@ use lunula_hemodynamics::{Load, Parameters};
 
 use super::{CurveFigures, CurveOptions, CurveOutputs, CurveReport, figure, table};
 use crate::files::{Places, beside};
+use crate::hemodynamics::given::SUCTION;
 use crate::hemodynamics::solve::{Curve, along};
 use crate::hemodynamics::{HemodynamicsError, named};
 use crate::job::{Report, Watch};
@@ -121,6 +122,9 @@ pub fn curve(
     };
     let left_out = left_out(steps(options, Some(outputs), Some(units)));
     let mut report = Report { left_out, pictures, ..Report::new("simulate --static", watch, figures) };
+    if range.loads.from_pa < 0.0 {
+        report.notes.push(format!("--static: loads begin at {} Pa: {SUCTION}", range.loads.from_pa));
+    }
     if nothing_open {
         report.warnings.push("no load has an equilibrium with open vessels: nothing is drawn".to_owned());
     }

@@ -6,7 +6,7 @@ use std::time::Instant;
 use lunula_hemodynamics::{Calibration, FitOptions as Settings, FitResult, Free, Parameters, Recording, fit as search};
 
 use super::parameter_files::{parameter_files, parameter_paths};
-use super::recording::{ReadRecording, read};
+use super::recording::{ReadRecording, photodiodes, read, signs};
 use super::report::{
     FitFigures, FitReport, FittedPhotodiode, RecordingReport, correlations, groups, noises, result_text, stopped,
 };
@@ -52,6 +52,8 @@ fn ready(inputs: &FitInputs, options: &FitOptions) -> Result<Ready, Hemodynamics
     let start = options.model.parameters(inputs.params.as_deref())?;
     let free = options.groups(inputs, &start)?;
     let units = start.units().len();
+    let named = &options.columns.photodiodes;
+    photodiodes::none_twice(named)?;
     let one = |(k, path): (usize, &PathBuf)| -> Result<ReadRecording, HemodynamicsError> {
         let mut found = read(path, &options.columns, units)?;
         found.recording.subject = Some(inputs.subject(k).to_owned());
@@ -61,7 +63,9 @@ fn ready(inputs: &FitInputs, options: &FitOptions) -> Result<Ready, Hemodynamics
         Ok(found)
     };
     let recordings = inputs.recordings.iter().enumerate().map(one).collect::<Result<_, _>>()?;
-    let recordings: Vec<ReadRecording> = recordings;
+    let mut recordings: Vec<ReadRecording> = recordings;
+    photodiodes::all_there(named, &recordings)?;
+    photodiodes::note_lacking(&mut recordings);
     let known = |name: &String| recordings.iter().any(|read| read.photodiodes.contains(name));
     if let Some((name, _)) = options.noise.iter().find(|(name, _)| !known(name)) {
         return Err(HemodynamicsError::Options(vec![format!("--noise {name}: no recording has this photodiode")]));
@@ -250,6 +254,7 @@ fn warnings(result: &FitResult, recordings: &[ReadRecording]) -> Vec<String> {
              record more"
         ));
     }
+    warnings.extend(signs::of_scalings(result, recordings));
     warnings.extend(copies(recordings.iter().map(|read| (read.path.display().to_string(), read.path.as_path()))));
     for read in recordings {
         warnings.extend(read.warnings.iter().map(|warning| format!("{}: {warning}", read.name)));

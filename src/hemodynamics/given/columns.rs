@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::hemodynamics::HemodynamicsError;
 use crate::log::{Channel, LitRows, LogReading, Statuses, Verdict};
 use crate::table::{Cell, Table};
+use crate::words::nearest;
 
 pub(in crate::hemodynamics) const TIME: &str = "time_s";
 /// `P_F1` and `P_F2`.
@@ -108,6 +109,17 @@ impl Rows {
             Source::Table(_) => Vec::new(),
             Source::Log(lit) => lit.notes.iter().chain(&lit.samples.notes).cloned().collect(),
         }
+    }
+
+    /// What to say of columns that are not `used`, and whose name is a slip away from one that is `wanted` and missing.
+    pub(in crate::hemodynamics) fn near_misses(&self, wanted: &[&str], used: &[&str]) -> Vec<String> {
+        let missing: Vec<&str> =
+            wanted.iter().copied().filter(|name| !self.names.iter().any(|own| own == name)).collect();
+        let unused = self.names.iter().filter(|own| !used.contains(&own.as_str()) && !wanted.contains(&own.as_str()));
+        unused
+            .filter_map(|own| Some((own, nearest(own, &missing)?)))
+            .map(|(own, meant)| format!("the column `{own}` is not used; did you mean `{meant}`?"))
+            .collect()
     }
 
     /// The columns that are `needed` and those `wanted` that are there. Every cell has to be a finite number.

@@ -9,6 +9,9 @@ use super::columns::{BLOOD, Columns, Knots, PRESSED, Rows, TIME};
 use crate::hemodynamics::HemodynamicsError;
 use crate::log::LogReading;
 
+/// What to know of a negative load.
+pub(in crate::hemodynamics) const SUCTION: &str = "pressing is positive, and negative pressure is suction";
+
 /// The pressures of the blood.
 #[derive(Debug, Clone, Default, Args)]
 pub struct BloodOptions {
@@ -63,9 +66,11 @@ impl LoadOptions {
         let (mut known_s, mut warnings, mut notes) = (None, Vec::new(), Vec::new());
         if let Some(path) = file {
             let rows = Rows::read(path, &LogReading::default())?;
-            let columns = rows.numbers(&[TIME, PRESSED[0], PRESSED[1]], &BLOOD, TIME)?;
+            let needed = [TIME, PRESSED[0], PRESSED[1]];
+            let columns = rows.numbers(&needed, &BLOOD, TIME)?;
             let placed = |what: &[String]| what.iter().map(|one| format!("{}: {one}", path.display())).collect();
-            (warnings, notes) = (placed(rows.warnings()), placed(&rows.notes()));
+            warnings = placed(&[rows.warnings(), &rows.near_misses(&BLOOD, &needed)].concat());
+            notes = placed(&rows.notes());
             known_s = place_columns(&rows, &columns, &mut loads)?;
         }
         let BloodOptions { ph, pl } = &self.blood;

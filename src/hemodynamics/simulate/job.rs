@@ -2,13 +2,13 @@
 
 use std::time::Instant;
 
-use lunula_hemodynamics::Parameters;
+use lunula_hemodynamics::{Load, Parameters};
 
 use super::report::{Collapsed, LoadsReport, SimulateFigures, SimulateReport};
 use super::{SimulateInputs, SimulateOptions, SimulateOutputs, table};
 use crate::files::{Places, beside};
 use crate::hemodynamics::figures::draw_response;
-use crate::hemodynamics::given::{LoadOptions, ReadLoads, Start};
+use crate::hemodynamics::given::{LoadOptions, ReadLoads, SUCTION, Start};
 use crate::hemodynamics::solve::{Run, RunSettings, respond, start_state};
 use crate::hemodynamics::{HemodynamicsError, named};
 use crate::job::{Report, Watch};
@@ -150,7 +150,7 @@ pub fn simulate(
 fn remarks(report: &mut SimulateReport, inputs: &SimulateInputs, options: &SimulateOptions, loads: &ReadLoads) {
     report.warnings.clone_from(&loads.warnings);
     report.notes.clone_from(&loads.notes);
-    let LoadOptions { pf1, pf2, .. } = &options.loads;
+    let LoadOptions { pf1, pf2, blood } = &options.loads;
     if pf1.is_none() && pf2.is_none() && inputs.loads.is_none() {
         report.warnings.push("nothing presses: give --pf1, --pf2 or --loads".to_owned());
     }
@@ -161,17 +161,53 @@ fn remarks(report: &mut SimulateReport, inputs: &SimulateInputs, options: &Simul
             options.every_s
         ));
     }
-    if let (Some([first, last]), Some(path)) = (loads.known_s, &inputs.loads) {
-        let path = path.display();
-        if first > until_s || last < 0.0 {
-            report.warnings.push(format!(
-                "{path}: has loads from {first} to {last} s, and the run goes from 0 to {until_s} s: the load is \
-                 constant all the time"
-            ));
+    for (option, load) in [("--pf1", pf1), ("--pf2", pf2), ("--ph", &blood.ph), ("--pl", &blood.pl)] {
+        let Some(load) = load else { continue };
+        if let (Some(&first), Some(&last)) = (load.breakpoints().first(), load.breakpoints().last()) {
+            report.warnings.extend(constant(&format!("{option} {load}"), [first, last], until_s));
+        }
+    }
+    if let (Some(known_s), Some(path)) = (loads.known_s, &inputs.loads) {
+        let (path, [_, last]) = (path.display(), known_s);
+        if let Some(said) = constant(&path.to_string(), known_s, until_s) {
+            report.warnings.push(said);
         } else if last > until_s {
             report
                 .notes
                 .push(format!("{path}: goes on to {last} s, the run ends at {until_s} s; --until {last} takes it all"));
         }
     }
+    for (name, load) in [("pf1", &loads.loads.proximal), ("pf2", &loads.loads.distal)] {
+        if least_pa(load, &options.times_s()) < -ROUNDING_PA {
+            let what = match &inputs.loads {
+                Some(path) => format!("{}: {name}_Pa", path.display()),
+                None => format!("--{name} {load}"),
+            };
+            report.notes.push(format!("{what} goes below 0: {SUCTION}"));
+        }
+    }
+}
+
+/// That a load is constant during a run until `until_s`, where it changes only before or after it.
+fn constant(what: &str, [first, last]: [f64; 2], until_s: f64) -> Option<String> {
+    // At the end of a run, a change comes too late; at 0, it is what the run begins with.
+    let comes_after = first > until_s || (first == until_s && until_s > 0.0);
+    (comes_after || last < 0.0).then(|| {
+        format!(
+            "{what}: has loads from {first} to {last} s, and the run goes from 0 to {until_s} s: the load is constant \
+             all the time"
+        )
+    })
+}
+
+/// Pressures this little below 0 are rounding, Pa (assumed).
+const ROUNDING_PA: f64 = 1e-6;
+
+/// The least pressure of a load at these rows, at its breakpoints between them, and just before the first.
+fn least_pa(load: &Load, times_s: &[f64]) -> f64 {
+    let last_s = times_s.last().copied().unwrap_or(0.0);
+    let corners = load.breakpoints().iter().filter(|at| (0.0..=last_s).contains(*at));
+    let at_corners = corners.flat_map(|&at| [load.before(at), load.at(at)]);
+    let at_rows = times_s.iter().map(|&at| load.at(at));
+    at_rows.chain(at_corners).chain([load.before(0.0)]).fold(f64::INFINITY, f64::min)
 }

@@ -1,6 +1,7 @@
 //! The results of `lunula photos` to the separation of poses.
 //!
-//! In: `maps/POSE-mean.npy` and `normalized/POSE/SUBJECT.png`. A candidate is a cell of a grid over the normalized
+//! In: `maps/POSE-mean.npy` and `normalized/POSE/SUBJECT.png`, those that `nails.csv` lists where that is there: others
+//! are of an earlier run. A candidate is a cell of a grid over the normalized
 //! picture, and its reading the mean of the cell's pixels, fraction of full scale. Out: the differences of poses'
 //! means, one column for each two poses, and the covariance of subjects about their pose's mean, pooled over poses.
 //!
@@ -22,6 +23,7 @@ use crate::layout::error::LayoutError;
 use crate::layout::options::LayoutOptions;
 use crate::npy;
 use crate::photograph::{Photograph, is_picture};
+use crate::table::Table;
 
 const MEAN: &str = "-mean.npy";
 /// Pictures of so many poses and subjects are read at most (assumed).
@@ -54,15 +56,18 @@ struct Reading {
 }
 
 pub(super) fn read(folder: &Path, options: &LayoutOptions) -> Result<Given, LayoutError> {
-    let poses = poses(folder)?;
+    let listed = nails(folder)?;
+    let is_of_run = |pose: &String| listed.as_ref().is_none_or(|listed| listed.contains_key(pose));
+    let (poses, strays): (Vec<String>, Vec<String>) = poses(folder)?.into_iter().partition(is_of_run);
+    let mut strays: Vec<String> = strays.into_iter().map(|pose| format!("maps/{pose}{MEAN}")).collect();
     if poses.len() < 2 {
         return Err(LayoutError::input(
             &folder.join("maps"),
             "has maps of one pose; there are no others to separate it from",
         ));
     }
-    let (n, margin) = (options.cells as usize, margin_of(folder));
-    let readings = read_all(folder, &poses, n)?;
+    let (n, margin) = (options.cells as usize, margin_of(folder)?);
+    let readings = read_all(folder, &poses, listed.as_ref(), n, &mut strays)?;
     let all = (0..n * n).map(|k| cell(format!("C_{:02}_{:02}", k / n, k % n), [k / n, k % n], n, margin));
     let all: Vec<Place> = all.collect();
     let mut left_out = LeftOutCandidates::default();
@@ -114,33 +119,83 @@ pub(super) fn read(folder: &Path, options: &LayoutOptions) -> Result<Given, Layo
         rows: freedom,
         contrast: Some(contrast(folder, &poses, margin)?),
         notes: Vec::new(),
-        warnings: Vec::new(),
+        warnings: warning_of(&strays, folder).into_iter().collect(),
     })
 }
 
-/// The pictures' side over the nail's box, as the report beside the maps says it.
-fn margin_of(folder: &Path) -> f64 {
-    let text = std::fs::read_to_string(folder.join("run.json")).unwrap_or_default();
-    let report: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
-    let margin = &report["options"]["margin"];
-    let said = margin.as_f64().or_else(|| margin.as_str()?.parse().ok());
-    said.filter(|margin| (1.0..=10.0).contains(margin)).unwrap_or(MARGIN)
+/// Subjects by pose.
+type Subjects = BTreeMap<String, BTreeSet<String>>;
+
+/// The poses and subjects that were used, where a table says so.
+fn nails(folder: &Path) -> Result<Option<Subjects>, LayoutError> {
+    let path = folder.join("nails.csv");
+    if !path.exists() {
+        return Ok(None);
+    }
+    let table = Table::read(&path)?;
+    let mut all = Subjects::new();
+    let rows = table.texts("pose")?.into_iter().zip(table.texts("subject")?).zip(table.texts("used")?);
+    for ((pose, subject), used) in rows {
+        if let (Some(pose), Some(subject), Some("true")) = (pose, subject, used.as_deref()) {
+            all.entry(pose).or_default().insert(subject);
+        }
+    }
+    Ok(Some(all))
 }
 
-/// Every subject's readings of every pose.
-fn read_all(folder: &Path, poses: &[String], n: usize) -> Result<Vec<Reading>, LayoutError> {
+fn warning_of(strays: &[String], folder: &Path) -> Option<String> {
+    let [first, others @ ..] = strays else { return None };
+    let more = if others.is_empty() { String::new() } else { format!(" and {} more", others.len()) };
+    Some(format!(
+        "{}{more}: not in nails.csv, so of an earlier run, and left out; write each run into a folder of its own",
+        folder.join(first).display()
+    ))
+}
+
+/// The pictures' side over the nail's box, as the report beside the maps says it.
+///
+/// # Errors
+/// A report of something else.
+fn margin_of(folder: &Path) -> Result<f64, LayoutError> {
+    let path = folder.join("run.json");
+    // A pipeline's results have none.
+    let Ok(text) = std::fs::read_to_string(&path) else { return Ok(MARGIN) };
+    let report: serde_json::Value = serde_json::from_str(&text).unwrap_or_default();
+    let margin = report["normalization"]["margin"].as_f64().filter(|margin| (1.0..=10.0).contains(margin));
+    margin.ok_or_else(|| {
+        let what = "is not the report of `lunula photos` on these pictures, which says how much of the nail's \
+                    surroundings they show; run `lunula photos` again";
+        LayoutError::input(&path, what)
+    })
+}
+
+/// Every subject's readings of every pose; pictures that are not listed become strays.
+fn read_all(
+    folder: &Path,
+    poses: &[String],
+    listed_nails: Option<&Subjects>,
+    n: usize,
+    strays: &mut Vec<String>,
+) -> Result<Vec<Reading>, LayoutError> {
     let mut files = Vec::new();
     for (pose, name) in poses.iter().enumerate() {
         let place = folder.join("normalized").join(name);
         let pictures: Vec<String> = listed(&place)?.into_iter().filter(|file| is_picture(Path::new(file))).collect();
-        let stems: BTreeSet<String> = pictures.iter().map(|file| stem(file)).collect();
+        let subjects = listed_nails.and_then(|nails| nails.get(name));
+        let stems = subjects.cloned().unwrap_or_else(|| pictures.iter().map(|file| stem(file)).collect());
         for file in pictures {
             let own = stem(&file);
             // `ann-2` is another picture of ann, where there is one of her.
             let first = own.rsplit_once('-').filter(|(subject, number)| {
                 stems.contains(*subject) && !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit())
             });
-            files.push((pose, first.map_or(own.clone(), |(subject, _)| subject.to_owned()), place.join(&file)));
+            let first = first.filter(|_| subjects.is_none_or(|subjects| !subjects.contains(&own)));
+            let subject = first.map_or(own.clone(), |(subject, _)| subject.to_owned());
+            if subjects.is_none_or(|subjects| subjects.contains(&subject)) {
+                files.push((pose, subject, place.join(&file)));
+            } else {
+                strays.push(format!("normalized/{name}/{file}"));
+            }
         }
     }
     if files.len() > MOST_PICTURES {

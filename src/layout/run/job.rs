@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use super::plan::steps;
 use super::report::{ChosenFigures, LayoutFigures, LayoutReport, MethodFigures};
 use super::results::{POSITIONS, TABLE, write};
-use crate::files::Places;
+use crate::files::{Places, WriteError, is_same_file};
 use crate::job::{Report, Watch};
 use crate::layout::draw::{draw_errors, draw_places};
 use crate::layout::error::LayoutError;
@@ -40,6 +40,10 @@ pub fn run(
     let folder = &outputs.folder;
     let mut places = Places::not_over(inputs.data.iter().map(|input| &input.path).chain(&inputs.positions));
     places.check([POSITIONS, TABLE, REPORT].map(|name| folder.join(name)))?;
+    // The report of what is read has the same name.
+    if let Some(input) = inputs.data.iter().find(|input| is_same_file(&input.path, folder)) {
+        return Err(WriteError::Input(input.path.clone()).into());
+    }
     let given = stages.time("read", || read(inputs, options))?;
     watch.go_on()?;
     let keep = asked(&given, options)?;
@@ -119,9 +123,7 @@ pub fn run(
     let left_out = left_out(steps(inputs.data.len(), maps, options, Some(outputs)));
     let mut report = Report { left_out, warnings, notes, pictures, ..Report::new("layout", watch, figures) };
     if maps {
-        if inputs.positions.is_some() {
-            report.notes.push("--positions is of no use here: maps of photographs have no photodiodes".to_owned());
-        }
+        report.unused_input("positions", inputs.positions.is_some(), "maps of photographs have no photodiodes");
         report.unused(
             &["targets", "grid", "columns", "stream"],
             "maps of photographs have poses, and cells of their own",

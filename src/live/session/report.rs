@@ -121,7 +121,7 @@ pub(super) fn report(ended: Ended<'_>, watch: &Watch<'_>) -> Result<SessionRepor
     let latency =
         Latency { arrival: shared.arrival.summary(), work: shared.work.summary(), wake_up: late.or(wake_up.summary()) };
     let mut figures = SessionFigures::new(files.out.clone(), latency);
-    let (mut failed, mut silent) = (Vec::new(), Vec::new());
+    let (mut failed, mut silent, mut doubts, mut is_gated) = (Vec::new(), Vec::new(), Vec::new(), false);
     for lane in lanes {
         let finger = lane.finger();
         for (feed, gives) in lane.feeds().zip([SourceRole::Samples, SourceRole::Forces]) {
@@ -136,7 +136,10 @@ pub(super) fn report(ended: Ended<'_>, watch: &Watch<'_>) -> Result<SessionRepor
             figures.sources.push(SourceFigures { finger: finger.clone(), gives, stream });
         }
         if let Some(decide) = lane.work.decide {
-            figures.add(decide, &mut shared.notes, &mut failed);
+            is_gated |= decide.answers.as_ref().is_some_and(|answers| answers.sensor.answering().is_gated());
+            let of_finger = figures.add(decide, &mut shared.notes, &mut failed);
+            let whose = finger.as_ref().map_or(String::new(), |finger| format!("{finger}: "));
+            doubts.extend(of_finger.into_iter().map(|doubt| format!("{whose}{doubt}")));
         }
     }
     if figures.rows == 0 {
@@ -161,9 +164,8 @@ pub(super) fn report(ended: Ended<'_>, watch: &Watch<'_>) -> Result<SessionRepor
     }
     let mut report = Report { left_out, warnings, notes, failed, ..Report::new(job, watch, figures) };
     let before = report.notes.len();
-    let columns = &report.figures.columns;
-    let (answers, gated) = (!columns.is_empty(), columns.iter().any(|column| column.ends_with("contact")));
-    if !gated {
+    let answers = !report.columns.is_empty();
+    if !is_gated {
         report.unused(&Answering::GATES, Answering::NO_GATE);
     }
     report.unused(&["piece", "stream"], "rows are taken as they come");
@@ -173,7 +175,7 @@ pub(super) fn report(ended: Ended<'_>, watch: &Watch<'_>) -> Result<SessionRepor
         report.unused(&["ambient", "full_scale"], "rows are recorded as they come");
     }
     report.notes[before..].iter().for_each(|note| tell(&format!("note: {note}")));
-    let losses = losses(&report);
+    let losses: Vec<String> = losses(&report).into_iter().chain(doubts).collect();
     losses.iter().for_each(|warning| tell(&format!("warning: {warning}")));
     report.warnings.extend(losses);
     let report = report.timed(&Stages::default(), start);
@@ -206,8 +208,8 @@ impl SessionFigures {
         }
     }
 
-    /// Adds what was made of a finger's rows, and ends its recording.
-    fn add(&mut self, decide: Decide, notes: &mut Vec<String>, failed: &mut Vec<String>) {
+    /// Adds what was made of a finger's rows, and ends its recording. Returns what to doubt of it.
+    fn add(&mut self, decide: Decide, notes: &mut Vec<String>, failed: &mut Vec<String>) -> Vec<String> {
         let Decide { samples, answers, rows, .. } = decide;
         self.rows += rows;
         if let Some(answers) = answers {
@@ -236,13 +238,15 @@ impl SessionFigures {
             };
             failed.extend(nothing.map(|why| format!("no row is answered: {why}")));
         }
-        let Some(mut samples) = samples else { return };
+        let Some(mut samples) = samples else { return Vec::new() };
         failed.extend(samples.end_forces().err().map(|why| why.to_string()));
+        let doubts = samples.doubts();
         if let Some(without) = samples.without_force() {
             *self.rows_without_force.get_or_insert(0) += without;
         }
         self.lost_by_disk += samples.lost();
         failed.extend(samples.finish().err().map(|why| why.to_string()));
+        doubts
     }
 }
 

@@ -2,14 +2,14 @@
 
 use std::slice;
 
-use lunula_predictor::{Predictor, recording_hashes};
+use lunula_predictor::Predictor;
 
 use super::options::ContactOptions;
 use super::traces::SwitchInputs;
 use crate::input::copies;
 use crate::live::error::LiveError;
 use crate::log::{AmbientRule, Columns, LogReading};
-use crate::predictor::{DataFile, RowOptions, Wanted, open_models, read_files};
+use crate::predictor::{DataFile, RowOptions, Wanted, again, open_models, read_files};
 
 /// The target of a model of contact itself.
 const CONTACT: &str = "contact";
@@ -49,8 +49,7 @@ fn is_seen(recording: &DataFile, model: &Predictor, options: &ContactOptions) ->
         let wanted = Wanted { inputs, targets, rows, ..Wanted::default() };
         // What lacks a target was not trained on.
         let Ok(read) = read_files(slice::from_ref(recording), &wanted) else { return false };
-        let hashes = recording_hashes(&read.data);
-        training.recordings.iter().chain(&training.stopped_on).any(|one| hashes.contains(&one.sha256))
+        again(training.recordings.iter().chain(&training.stopped_on), &read.data).is_some()
     })
 }
 

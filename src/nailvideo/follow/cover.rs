@@ -52,10 +52,11 @@ impl Rim {
         Self::with(FEWEST_BY_FIT, fitted.map(|(pixel, &residual)| (pixel.cell, residual.abs())).collect())?;
         let [a, b, c, d, e, f] = motion.0.map(|part| part as f32);
         let (gain, offset) = (gain as f32, offset as f32);
-        let all = template.all.iter().map(|dot| {
-            let [x, y] = dot.at;
-            (dot.cell, (gain * dot.value + offset - sight.at(a * x + b * y + c, d * x + e * y + f)).abs())
-        });
+        let at = |[x, y]: [f32; 2]| [a * x + b * y + c, d * x + e * y + f];
+        let mut values = Vec::with_capacity(template.all.len());
+        sight.each(&template.corners.map(at), template.all.iter().map(|dot| at(dot.at)), &mut values);
+        let all = template.all.iter().zip(values);
+        let all = all.map(|(dot, value)| (dot.cell, (gain * dot.value + offset - value).abs()));
         Self::with(FEWEST_CELLS, all.collect())
     }
 

@@ -172,21 +172,9 @@ fn look(
 ) -> Option<f64> {
     let [a, b, c, d, e, f] = motion.0.map(|part| part as f32);
     let (gain, offset) = (gain as f32, offset as f32);
-    scratch.values.clear();
     let at = |[x, y]: [f32; 2]| [a * x + b * y + c, d * x + e * y + f];
-    let mut places = template.pixels.iter().step_by(every).map(|pixel| at(pixel.at));
-    if sight.holds(&template.corners.map(at)) {
-        while let Some(first) = places.next() {
-            // The last four may be fewer: the others are there twice.
-            let four: [[f32; 2]; 4] =
-                std::array::from_fn(|k| if k == 0 { first } else { places.next().unwrap_or(first) });
-            let [x, y] = [0, 1].map(|axis| f32x4::new(four.map(|at| at[axis])));
-            scratch.values.extend(sight.four(x, y).to_array());
-        }
-        scratch.values.truncate(template.pixels.len().div_ceil(every));
-    } else {
-        scratch.values.extend(places.map(|[x, y]| sight.at(x, y)));
-    }
+    let places = template.pixels.iter().step_by(every).map(|pixel| at(pixel.at));
+    sight.each(&template.corners.map(at), places, &mut scratch.values);
     scratch.residuals.clear();
     let pixels = template.pixels.iter().step_by(every).zip(&scratch.values);
     scratch.residuals.extend(pixels.map(|(pixel, value)| gain * pixel.value() + offset - value));

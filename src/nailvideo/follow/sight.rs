@@ -52,14 +52,41 @@ impl Sight {
         (self.luma.at(x, y) - low) / (low + DARK)
     }
 
+    /// [`Self::at`] of each of these points, which lie between these corners: four at once where none is outside.
+    pub(super) fn each(
+        &self,
+        corners: &[[f32; 2]; 4],
+        mut places: impl Iterator<Item = [f32; 2]>,
+        values: &mut Vec<f32>,
+    ) {
+        values.clear();
+        if !self.holds(corners) {
+            values.extend(places.map(|[x, y]| self.at(x, y)));
+            return;
+        }
+        let mut count = 0;
+        while let Some(first) = places.next() {
+            count += 1;
+            // The last four may be fewer: the others are there twice.
+            let four: [[f32; 2]; 4] = std::array::from_fn(|k| {
+                let next = if k == 0 { None } else { places.next() };
+                count += usize::from(next.is_some());
+                next.unwrap_or(first)
+            });
+            let [x, y] = [0, 1].map(|axis| f32x4::new(four.map(|at| at[axis])));
+            values.extend(self.four(x, y).to_array());
+        }
+        values.truncate(count);
+    }
+
     /// Whether [`Self::four`] may be asked for all points between these corners.
-    pub(super) fn holds(&self, corners: &[[f32; 2]; 4]) -> bool {
+    fn holds(&self, corners: &[[f32; 2]; 4]) -> bool {
         self.luma.holds(corners) && self.low.holds(corners)
     }
 
     /// [`Self::at`] of four points of which [`Self::holds`] is true.
     #[inline]
-    pub(super) fn four(&self, x: f32x4, y: f32x4) -> f32x4 {
+    fn four(&self, x: f32x4, y: f32x4) -> f32x4 {
         let low = self.low.four(x, y);
         (self.luma.four(x, y) - low) / (low + f32x4::splat(DARK))
     }

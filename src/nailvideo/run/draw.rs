@@ -1,5 +1,7 @@
 //! What a person looks at: the photodiodes over time, and the nail in its own frame through a press.
 
+use std::mem;
+
 use image::RgbImage;
 
 use super::report::NailVideoReport;
@@ -10,9 +12,10 @@ use crate::nailvideo::normal::picture;
 use crate::nailvideo::press::{Recording, Row, USE};
 use crate::nailvideo::sample::Colours;
 
-/// Side of a picture of the sheet, pixels, how many are kept, and how many are drawn.
+/// Side of a picture of the sheet, pixels, how many are kept, how far apart at least, seconds, and how many are drawn.
 const SIDE: usize = 160;
 const MOST: usize = 192;
+const APART_S: f64 = 0.1;
 const TILES: usize = 10;
 const WIDTH: u32 = 1400;
 
@@ -20,33 +23,27 @@ const WIDTH: u32 = 1400;
 #[derive(Debug)]
 pub(super) struct Thumbnails {
     kept: Vec<(f64, RgbImage)>,
-    every: usize,
-    offered: usize,
+    apart_s: f64,
 }
 
 impl Default for Thumbnails {
     fn default() -> Self {
-        Self { kept: Vec::new(), every: 1, offered: 0 }
+        Self { kept: Vec::new(), apart_s: APART_S }
     }
 }
 
 impl Thumbnails {
     /// A frame that was followed.
     pub(super) fn offer(&mut self, time_s: f64, colours: &Colours, frame_from_nail: &Affine) {
-        if self.offered.is_multiple_of(self.every) {
-            if self.kept.len() == MOST {
-                let mut at = 0;
-                self.kept.retain(|_| {
-                    at += 1;
-                    at % 2 == 1
-                });
-                self.every *= 2;
-            }
-            if self.offered.is_multiple_of(self.every) {
-                self.kept.push((time_s, picture(colours, frame_from_nail, SIDE)));
-            }
+        let is_due =
+            |kept: &[(f64, RgbImage)], apart_s| kept.last().is_none_or(|(last_s, _)| time_s - last_s >= apart_s);
+        if is_due(&self.kept, self.apart_s) && self.kept.len() == MOST {
+            self.kept = mem::take(&mut self.kept).into_iter().step_by(2).collect();
+            self.apart_s *= 2.0;
         }
-        self.offered += 1;
+        if is_due(&self.kept, self.apart_s) {
+            self.kept.push((time_s, picture(colours, frame_from_nail, SIDE)));
+        }
     }
 
     /// Those nearest to times evenly spread from one to another.

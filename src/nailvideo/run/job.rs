@@ -30,7 +30,7 @@ use crate::nailvideo::sample::{Colours, Planes, Region, Sampled, Sampler, cells,
 use crate::photo::outline::{Source, ToDraw};
 use crate::photograph::Photograph;
 use crate::stages::{Stages, left_out};
-use crate::video::{End, Frame, Info, Item, Video};
+use crate::video::{Frame, Info, Item, Video};
 
 /// The first good frame, for LabelMe.
 const PICTURE: &str = "nail.png";
@@ -149,9 +149,7 @@ pub fn run(
         return Err(NailVideoError::Nail { path: inputs.video.clone(), why: format!("{why_not}; {remedy}") });
     };
     let mut report = job.finish(work, counts, &kept, &positions, watch)?;
-    if let End::Early(why) = video.end() {
-        report.warnings.push(format!("{}: {why}", inputs.video.display()));
-    }
+    report.failed.extend(video.damage());
     report.warnings.extend(info.warnings.iter().map(|why| format!("{}: {why}", inputs.video.display())));
     let mut report = report.timed(&stages, start);
     let decoding: f64 = report.stages.iter().filter(|s| s.stage == "decode").map(|s| s.thread_s).sum();

@@ -61,7 +61,7 @@ impl Job for NailVideoJob {
             Part::if_wanted(REPORT, "report.html"),
         ],
     )
-    .revision(15);
+    .revision(16);
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         let outputs = self.outputs(Path::new(""), demand);

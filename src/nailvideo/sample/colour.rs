@@ -33,8 +33,8 @@ pub(in crate::nailvideo) struct Colours {
     matrix: Matrix,
 }
 
-/// Green of a frame, where it is linear in the samples.
-pub(in crate::nailvideo) struct Green<'a> {
+/// A channel of a frame, where it is linear in the samples.
+pub(in crate::nailvideo) struct Channel<'a> {
     /// With its weight.
     luma: (f32, &'a Grid),
     /// What chroma adds, or, in a grey video, what it adds everywhere.
@@ -42,8 +42,8 @@ pub(in crate::nailvideo) struct Green<'a> {
     added: f32,
 }
 
-impl Green<'_> {
-    /// Of four points: the second of [`Colours::at`].
+impl Channel<'_> {
+    /// Of four points: one of [`Colours::at`].
     #[inline]
     pub(in crate::nailvideo) fn four(&self, x: f32x4, y: f32x4) -> f32x4 {
         let of_chroma = match &self.chroma {
@@ -79,15 +79,15 @@ impl Colours {
         self.rgb(self.samples([x as f32, y as f32]).map(f64::from))
     }
 
-    /// The green alone, for points between these corners; `None` where some lie too near the picture's border.
-    pub(in crate::nailvideo) fn green(&self, corners: [[f64; 2]; 4]) -> Option<Green<'_>> {
+    /// Red, green or blue alone, for points between these corners; `None` where some lie too near the picture's border.
+    pub(in crate::nailvideo) fn channel(&self, channel: usize, corners: [[f64; 2]; 4]) -> Option<Channel<'_>> {
         let corners = corners.map(|corner| corner.map(|at| at as f32));
         let holds = self.luma.holds(&corners) && self.chroma.iter().flatten().all(|grid| grid.holds(&corners));
-        let green = |samples: [f64; 3]| self.rgb(samples)[1];
-        let none = green([0.0; 3]);
-        let [luma, cb, cr] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|one| (green(one) - none) as f32);
+        let of = |samples: [f64; 3]| self.rgb(samples)[channel];
+        let none = of([0.0; 3]);
+        let [luma, cb, cr] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|one| (of(one) - none) as f32);
         let added = none as f32;
-        holds.then(|| Green {
+        holds.then(|| Channel {
             luma: (luma, &self.luma),
             chroma: match &self.chroma {
                 Some([of_cb, of_cr]) => Ok(of_cb.combined([cb, cr], of_cr)),

@@ -106,11 +106,13 @@ fn write_truth(scene: &Scene, named: &[(String, &View)], stage: &Path) -> Result
 
 /// The true lens, as marker files have it.
 fn camera_toml(options: &BoardOptions) -> String {
-    let ([fx, fy], [cx, cy]) = (options.focal_px(), options.centre_px());
+    let ([fx, fy], [cx, cy], (width, height)) = (options.focal_px(), options.centre_px(), options.size);
     let mut distortion = [0.0; 5];
     distortion.iter_mut().zip(&options.distortion).for_each(|(into, &from)| *into = from);
-    let mut text =
-        format!("[camera]\nfx = {fx:?}\nfy = {fy:?}\ncx = {cx:?}\ncy = {cy:?}\ndistortion = {distortion:?}\n");
+    let mut text = format!(
+        "[camera]\nsize = [{width}, {height}]\nfx = {fx:?}\nfy = {fy:?}\ncx = {cx:?}\ncy = {cy:?}\n\
+         distortion = {distortion:?}\n"
+    );
     if let Some(plane) = options.plane {
         text += &format!("\n[camera.plane]\nnormal = {:?}\n", plane.normal());
     }

@@ -16,10 +16,12 @@
 //! photograph. The set is written beside and put in its place when it is whole. The same options give the same bytes
 //! whatever the number of threads.
 
+mod files;
 mod maps;
 mod options;
 mod write;
 
+pub(in crate::phantom) use files::annotation;
 pub use options::{FileFormat, LightKind, OptionFault, PhotoOptions};
+pub(in crate::phantom) use write::write_npy;
 pub use write::{PhotoTruth, Stages, Summary, write, write_watched};
-pub(in crate::phantom) use write::{annotation, write_npy};

@@ -13,18 +13,16 @@ use ndarray_npy::{WritableElement, WriteNpyExt};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::{FileFormat, PhotoOptions, maps::ExactMaps};
-use crate::job::Watch;
-use crate::{
-    labelme::{LabelMe, Shape, to_labelme},
-    phantom::{
-        nail::{NailScene, Pose, SceneFault},
-        scene::place::{Error, PHOTOS_RECORD as RECORD, refused, staged},
-    },
+use super::{
+    FileFormat, PhotoOptions,
+    files::{REPLACED, RESULTS, annotation, only_own},
+    maps::ExactMaps,
 };
-
-/// The record's folder first: where it stands, what is of one run and what of another is made again.
-const RESULTS: [&str; 2] = ["truth", "photos"];
+use crate::job::Watch;
+use crate::phantom::{
+    nail::Pose,
+    scene::place::{Error, PHOTOS_RECORD as RECORD, refused, staged},
+};
 
 /// What is true of one photograph; a row of `truth/nails.csv`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -71,33 +69,13 @@ pub struct Summary {
     pub stages: Stages,
 }
 
-impl PhotoOptions {
-    /// The files of the set, relative to its folder.
-    pub(in crate::phantom) fn files(&self) -> Vec<String> {
-        let mut files = vec!["truth/nails.csv".to_owned(), RECORD.to_owned()];
-        for pose in self.poses.iter().copied().map(Pose::name) {
-            files.extend(["mean", "sd", "count"].map(|what| format!("truth/maps/{pose}-{what}.npy")));
-            for name in (0..self.subjects).map(|subject| self.subject_name(subject)) {
-                files.push(format!("photos/{pose}/{name}.{}", self.format.extension()));
-                files.push(format!("truth/outlines/{pose}/{name}.json"));
-                if self.annotate {
-                    files.push(format!("photos/{pose}/{name}.json"));
-                }
-                if self.truth_normalized {
-                    files.push(format!("truth/normalized/{pose}/{name}.npy"));
-                }
-            }
-        }
-        files
-    }
-}
-
 fn folder(path: PathBuf) -> Result<PathBuf, Error> {
     fs::create_dir_all(&path).map_err(refused(&path))?;
     Ok(path)
 }
 
-/// Writes the set that `options` ask for under `out`; a set written there before is replaced.
+/// Writes the set that `options` ask for under `out`; a set written there before is replaced, unless its folders hold
+/// files of others or outlines that were changed since.
 ///
 /// # Errors
 /// [`Error`]; what stood under `out` before is as it was.
@@ -113,8 +91,12 @@ pub fn write_watched(options: &PhotoOptions, out: &Path, watch: &Watch<'_>) -> R
     let begin = Instant::now();
     options.check()?;
     let staging = staged(out, &RESULTS, RECORD, "of a synthetic set")?;
+    let replaces = out.join(RECORD).is_file();
+    if replaces {
+        only_own(options, out)?;
+    }
     let mut summary = draw_all(options, staging.path(), watch)?;
-    staging.commit_exactly(&RESULTS)?;
+    staging.commit_exactly(if replaces { &REPLACED } else { &RESULTS })?;
     summary.stages.total_s = begin.elapsed().as_secs_f64();
     Ok(summary)
 }
@@ -207,14 +189,6 @@ fn draw_one(options: &PhotoOptions, stage: &Path, subject: u32, pose: Pose) -> R
         axis_deg: scene.axis().clockwise_deg(),
     };
     Ok(Drawn { truth, normalized, stages })
-}
-
-/// The LabelMe file of a scene: polygon `nail`, line `axis` from proximal to distal.
-pub(in crate::phantom) fn annotation(scene: &NailScene, picture: &str) -> Result<LabelMe, SceneFault> {
-    let nail = scene.outline()?.points().into_iter().map(to_labelme).collect();
-    let axis = scene.axis_ends_px().map(to_labelme).to_vec();
-    let shapes = vec![Shape::new("nail", "polygon", nail), Shape::new("axis", "line", axis)];
-    Ok(LabelMe::new(picture, scene.camera.width, scene.camera.height, shapes))
 }
 
 fn encode(picture: &DynamicImage, format: FileFormat, path: &Path) -> Result<(), Error> {

@@ -182,6 +182,14 @@ impl NailTable {
         self.sheets.par_iter().map(draw).collect()
     }
 
+    /// Where the normalized picture of each used subject would be, if its part has pictures.
+    pub(in crate::photo) fn pictures(&self, parts: &[PathBuf]) -> impl Iterator<Item = PathBuf> {
+        let used = (0..self.rows.len()).filter(|&row| self.is_used(row)).map(|row| &self.rows[row]);
+        used.flat_map(move |row| {
+            parts.iter().map(move |part| part.join(format!("normalized/{}/{}.png", row[3], row[2])))
+        })
+    }
+
     /// Whether a row's nail is part of the maps.
     pub(in crate::photo) fn is_used(&self, row: usize) -> bool {
         self.rows[row][USED] == "true"

@@ -329,11 +329,7 @@ impl PhotosReport {
         nail_sheets: &[DrawnSheet],
         staging: &Staging,
     ) -> Result<(), WriteError> {
-        if let [first, others @ ..] = &staging.left_from_earlier()[..] {
-            let also = if others.is_empty() { String::new() } else { format!(" and {} more", others.len()) };
-            let folder = staging.target().display();
-            self.warnings.push(format!("{first}{also} in {folder} existed before and are not of this run"));
-        }
+        self.warn_of_left(&staging.left_from_earlier());
         staging.write(HTML, self.html(nails, sheets, nail_sheets).as_bytes())?;
         staging.write(JSON, self.text().as_bytes())
     }

@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use super::partial;
 use crate::files::Staging;
+use crate::input::copies;
 use crate::job::Watch;
 use crate::photo::error::MergeError;
 use crate::photo::results::{NailTable, write_maps};
@@ -25,6 +26,9 @@ pub fn merge(parts: &[PathBuf], out: &Path, watch: &Watch<'_>) -> Result<PhotosR
     let sheets = write_maps(&partials, true, &staging, &stages)?;
     nails.write(&staging)?;
     let mut report = of_merge(parts, &partials, watch).timed(&stages, start);
+    // Of one run its own report says it.
+    let pictures: Vec<(String, PathBuf)> = nails.pictures(parts).map(|at| (at.display().to_string(), at)).collect();
+    report.warnings.extend(copies(pictures.iter().map(|(name, at)| (name.clone(), at.as_path()))));
     report.write(&nails, &sheets, &[], &staging)?;
     watch.go_on()?;
     staging.commit()?;

@@ -3,6 +3,5 @@
 pub(super) mod joints;
 pub(super) mod lens;
 mod plane;
-pub(super) mod plausible;
 pub(super) mod smooth;
 pub(super) mod view;

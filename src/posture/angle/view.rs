@@ -44,6 +44,9 @@ pub(crate) struct View {
     plane: Option<Plane>,
 }
 
+/// Lenses have their axis nearer to the middle than this share of a side (assumed; a few hundredths are usual).
+const FAR: f64 = 0.15;
+
 impl View {
     /// The view of a video, through the layout's camera where it names one.
     #[must_use]
@@ -68,6 +71,45 @@ impl View {
             camera.plane.map(|normal| Plane::new(normal, focal_px, centre_px))
         });
         Self { turn, stored_size, aspect, lens, plane }
+    }
+
+    /// What to say of a layout's camera beside a video, whose pictures it may not be measured on.
+    ///
+    /// # Errors
+    /// It was measured on pictures of another size, in words.
+    pub(crate) fn doubt(layout: &Layout, info: &Info) -> Result<Option<String>, String> {
+        let Some(camera) = &layout.camera else { return Ok(None) };
+        let (columns, rows) = (info.format.width, info.format.height);
+        let aside = matches!(info.turn, Turn::Quarter | Turn::ThreeQuarters);
+        let [width, height] = if aside { [rows, columns] } else { [columns, rows] };
+        if let Some([columns, rows]) = camera.size_px {
+            if [columns, rows] == [width, height] {
+                return Ok(None);
+            }
+            let scaled = if columns * height == rows * width {
+                let ratio = width as f64 / columns as f64;
+                format!(
+                    "; where all of its view is in them, only smaller or larger, multiply fx, fy, cx, cy by {ratio}"
+                )
+            } else {
+                String::new()
+            };
+            return Err(format!(
+                "[camera] was measured on pictures of {columns} x {rows} px, and these are {width} x {height}: measure \
+                 the lens at this size (`lunula camera`){scaled}, and correct `size`"
+            ));
+        }
+        let middle = |length: usize| (length as f64 - 1.0) / 2.0;
+        let axis = [camera.cx_px.unwrap_or(middle(width)), camera.cy_px.unwrap_or(middle(height))];
+        let off = |at: f64, length: usize| (at - middle(length)).abs() / length as f64;
+        let is_far = off(axis[0], width).max(off(axis[1], height)) > FAR;
+        Ok(is_far.then(|| {
+            format!(
+                "the optical axis of [camera] is at ({:.1}, {:.1}) px, far from the middle of these pictures of \
+                 {width} x {height} px: was the lens measured at this size? Then say `size = [{width}, {height}]` in [camera]",
+                axis[0], axis[1]
+            )
+        }))
     }
 
     /// The centre on the shown picture.

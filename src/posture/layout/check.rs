@@ -298,7 +298,7 @@ fn roi(findings: &mut Findings<'_>, entry: Entry<'_>) -> Option<ClockRoi> {
 fn camera(findings: &mut Findings<'_>, top: &[Entry<'_>]) -> Option<Camera> {
     let table = findings.table(top, "camera")?;
     let at = top.iter().find(|e| e.key == "camera").map_or(0, |e| e.key_at);
-    findings.unknown_keys(&table, &["fx", "fy", "cx", "cy", "distortion", "plane"], "key of [camera]");
+    findings.unknown_keys(&table, &["size", "fx", "fy", "cx", "cy", "distortion", "plane"], "key of [camera]");
     let mut lengths = ["fx", "fy", "cx", "cy"].map(|key| {
         let entry = *table.iter().find(|e| e.key == key)?;
         let number = findings.number(entry)?;
@@ -311,6 +311,7 @@ fn camera(findings: &mut Findings<'_>, top: &[Entry<'_>]) -> Option<Camera> {
     if !table.iter().any(|e| e.key == "fx") {
         findings.fault(at, "[camera] lacks `fx`; give OpenCV's calibration: fx (and fy, cx, cy), distortion");
     }
+    let size_px = table.iter().find(|e| e.key == "size").and_then(|&entry| size(findings, entry));
     let mut distortion = [0.0; 12];
     if let Some(&entry) = table.iter().find(|e| e.key == "distortion") {
         let numbers = findings.numbers(entry, "[k1, k2, p1, p2, k3]")?;
@@ -330,7 +331,19 @@ fn camera(findings: &mut Findings<'_>, top: &[Entry<'_>]) -> Option<Camera> {
     }
     let plane = plane(findings, &table);
     let [fx_px, fy_px, cx_px, cy_px] = lengths.each_mut().map(Option::take);
-    Some(Camera { fx_px: fx_px?, fy_px, cx_px, cy_px, distortion, plane })
+    Some(Camera { size_px, fx_px: fx_px?, fy_px, cx_px, cy_px, distortion, plane })
+}
+
+/// Columns and rows of a picture.
+fn size(findings: &mut Findings<'_>, entry: Entry<'_>) -> Option<[usize; 2]> {
+    const SHAPE: &str = "size = [width, height] of the pictures that the lens was measured on, pixels";
+    let numbers = findings.numbers(entry, SHAPE)?;
+    let size: Option<[f64; 2]> = numbers.as_slice().try_into().ok();
+    let size = size.filter(|size| size.iter().all(|side| (1.0..=65_535.0).contains(side) && side.fract() == 0.0));
+    if size.is_none() {
+        findings.fault(entry.at, format!("`size` is no picture's; write {SHAPE}"));
+    }
+    size.map(|size| size.map(|side| side as usize))
 }
 
 /// A plane that is turned further from the picture is hardly seen: the least of its normal along the optical axis

@@ -68,6 +68,8 @@ pub struct Joint {
 /// The lens, in OpenCV's parameters, for the shown picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Camera {
+    /// Columns and rows of the pictures that it was measured on; any where that is not given.
+    pub size_px: Option<[usize; 2]>,
     /// Focal length in widths of a pixel.
     pub fx_px: f64,
     /// Focal length in heights of a pixel; the same length as `fx_px` where it is not given.

@@ -9,6 +9,7 @@ use std::time::Instant;
 
 use crate::job::{Report, Watch};
 use crate::posture::angle::joints::Angles;
+use crate::posture::angle::view::View;
 use crate::posture::error::PostureError;
 use crate::posture::layout::{Layout, MarkerShape};
 use crate::posture::marker::looks::siting::Siting;
@@ -22,7 +23,7 @@ use crate::posture::survey::{Progress, Survey, Surveyor};
 use crate::posture::track::Tracker;
 use crate::stages::{self, Stages};
 use crate::table::TableFormat;
-use crate::video::{End, Info, Item, Turn, Video};
+use crate::video::{Info, Item, Turn, Video};
 
 /// Runs the job; every result is in its place when it returns.
 ///
@@ -50,7 +51,6 @@ pub fn run(
     let mut angles = Angles::new(layout, &info);
     let mut results = Results::start(path, layout, &info, options, outputs)?;
     let mut span = Span::default();
-    let mut first_undecoded = None;
     loop {
         watch.go_on()?;
         let Some(item) = stages.time("decode", || video.next_item())? else { break };
@@ -58,9 +58,6 @@ pub fn run(
             Item::Frame(frame) => (frame.index, frame.time_s, Some(frame)),
             Item::Missing { index, time_s } => (*index, *time_s, None),
         };
-        if frame.is_none() {
-            first_undecoded.get_or_insert((index, time_s));
-        }
         let sights = match frame {
             Some(frame) => stages.time("track", || tracker.step(frame)),
             None => tracker.skip(),
@@ -82,24 +79,13 @@ pub fn run(
     results.write_held(clock.as_ref().and_then(|clock| clock.fit.as_ref().ok()))?;
     let pictures = stages.time("figures", || results.draw_pictures())?;
     let search = tracker.effort();
-    let mut failed = Vec::new();
-    if let Some((index, time_s)) = first_undecoded {
-        failed.push(format!(
-            "{}: {} of {} frames could not be decoded, the first of them frame {index} at {time_s:.3} s; their rows \
-             are empty; copy the file again if its original is whole",
-            path.display(),
-            results.frames.undecoded,
-            results.frames.all
-        ));
-    }
-    if let End::Early(why) = video.end() {
-        failed.push(format!("{}: {why}", path.display()));
-    }
+    let mut failed = video.damage();
     if let Some(why) = clock.as_ref().and_then(|clock| clock.fit.as_ref().err()) {
         failed.push(format!("{}: the clock in the picture: {why}; clock_s is empty", path.display()));
     }
     // What makes all angles wrong comes first.
-    let mut warnings: Vec<String> = results.plausibility.warning(layout.flexion).into_iter().collect();
+    let mut warnings: Vec<String> = results.plausibility.warning(Some(layout.flexion)).into_iter().collect();
+    warnings.extend(View::doubt(layout, &info).unwrap_or_default());
     warnings.extend(info.warnings.iter().cloned());
     warnings.extend(late(layout, &survey, &results.markers));
     let figures = PostureFigures {
@@ -200,6 +186,7 @@ fn look_first(
 ) -> Result<(Survey, Info), PostureError> {
     let mut video = Video::open(path, options.threads)?;
     let info = video.info().clone();
+    View::doubt(layout, &info).map_err(|why| PostureError::Camera { path: path.to_owned(), why })?;
     let mut surveyor = Surveyor::new(layout, &info);
     while let Some(item) = stages.time("decode", || video.next_item())? {
         watch.go_on()?;

@@ -6,8 +6,8 @@ use std::time::Instant;
 
 use crate::clock::{ClockFit, ClockFormat};
 use crate::files::{Places, beside};
+use crate::flexion::Plausibility;
 use crate::posture::angle::joints::{Angle, AngleRow};
-use crate::posture::angle::plausible::Plausibility;
 use crate::posture::angle::smooth::smooth;
 use crate::posture::angle::view::View;
 use crate::posture::draw::figures::AngleFigures;
@@ -112,7 +112,7 @@ impl<'a> Results<'a> {
             frames: FrameCounts::default(),
             markers: vec![MarkerSums::default(); layout.markers.len()],
             angles: vec![JointSums::default(); layout.joints.len()],
-            plausibility: Plausibility::new(&layout.joints),
+            plausibility: Plausibility::new(layout.joints.iter().map(|joint| &joint.name)),
         })
     }
 
@@ -187,7 +187,7 @@ impl<'a> Results<'a> {
         for (sums, angle) in self.angles.iter_mut().zip(&row.angles) {
             sums.add(angle.as_ref());
         }
-        self.plausibility.add(&row.angles);
+        self.plausibility.add(row.angles.iter().map(|angle| angle.map(|angle| angle.rad.to_degrees())));
         self.figures.push(time_s, &row.angles);
         let status = row.status(self.layout);
         let mut cells =

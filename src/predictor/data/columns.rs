@@ -33,6 +33,26 @@ pub(super) fn cells(names: &[String]) -> Vec<String> {
     found.into_iter().map(|(_, name)| name.clone()).collect()
 }
 
+/// What to say of a table whose cells are of another grid than those of a model: cells of one name are other places
+/// then. A model reads the cells on the nail, whose box lies in the grid's middle.
+pub(super) fn other_grid(inputs: &[String], names: &[String]) -> Option<String> {
+    let of_model: Vec<[usize; 2]> = inputs.iter().filter_map(|name| cell(name)).collect();
+    let side = |cells: &[[usize; 2]], axis: usize, edge: bool| {
+        let least = cells.iter().map(|at| at[axis]).min().filter(|_| edge).unwrap_or(0);
+        Some(cells.iter().map(|at| at[axis]).max()? + least + 1)
+    };
+    let sides = |cells: &[[usize; 2]], edge| Some([side(cells, 0, edge)?, side(cells, 1, edge)?]);
+    let of_table: Vec<[usize; 2]> = names.iter().filter_map(|name| cell(name)).collect();
+    let ([rows, columns], [own_rows, own_columns]) = (sides(&of_model, true)?, sides(&of_table, false)?);
+    // Other shapes are a choice of somebody's.
+    (rows == columns && own_rows == own_columns && rows != own_rows).then(|| {
+        format!(
+            "has cells of a grid of {own_rows} x {own_rows}, and the model was trained on cells as of {rows} x {rows}: \
+             they are other places of the nail; make the table with --cells {rows}"
+        )
+    })
+}
+
 /// That a column is not there, the nearest name and those that are.
 pub(crate) fn missing(name: &str, names: &[String]) -> String {
     const MOST: usize = 40;

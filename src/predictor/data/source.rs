@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use super::columns::{cell, cells, listed, missing, photodiodes};
+use super::columns::{cell, cells, listed, missing, other_grid, photodiodes};
 use super::{DataError, Wanted};
 use crate::log::{Channel, GROUPS, LitRows, Statuses, Verdict, doubts, time_not_read};
 use crate::table::{Cell, Table, TableError};
@@ -88,6 +88,8 @@ impl Source {
             warnings: Vec::new(),
             inputs,
         };
+        let other_grid = wanted.inputs.as_ref().and_then(|inputs| other_grid(inputs, names));
+        source.warnings.extend(other_grid.map(|what| format!("{}: {what}", path.display())));
         if has("sensor_status") {
             source.read_status(|take| table.each_text("sensor_status", take))?;
         }

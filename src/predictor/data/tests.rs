@@ -52,6 +52,28 @@ fn counts(read: &Read) -> [usize; 5] {
 }
 
 #[test]
+fn cells_of_another_grid_are_warned_of() {
+    let cells = |from: usize, to: usize| -> Vec<String> {
+        (from..to).flat_map(|row| (from..to).map(move |column| format!("C_{row:02}_{column:02}"))).collect()
+    };
+    // Of 8 x 8 the outermost show no nail.
+    let said = columns::other_grid(&cells(1, 7), &cells(0, 10)).unwrap();
+    assert!(said.contains("10 x 10") && said.contains("--cells 8"), "{said}");
+    assert_eq!(columns::other_grid(&cells(1, 7), &cells(0, 8)), None);
+    assert_eq!(columns::other_grid(&cells(0, 8), &cells(0, 8)), None);
+    let photodiodes = ["P1", "P2"].map(str::to_owned);
+    assert_eq!(columns::other_grid(&photodiodes, &photodiodes), None);
+    let table = |side: usize| {
+        let names = cells(0, side);
+        format!("{}\n{}\n", names.join(","), vec!["0.5"; names.len()].join(","))
+    };
+    let folder = Folder::new();
+    let inputs = |side: usize| read_inputs(&folder.file("c.csv", table(side)), &cells(1, 7), &plain()).unwrap();
+    assert!(inputs(10).warnings.concat().contains("other places"), "{:?}", inputs(10).warnings);
+    assert_eq!(inputs(8).warnings, Vec::<String>::new());
+}
+
+#[test]
 fn columns_are_found_by_name_whatever_their_order_and_dialect() {
     for text in [
         "time_s,P1,P2,P10,J2_deg\n0,1,2,10,5\n0.04,1.5,2.5,10.5,6\n",

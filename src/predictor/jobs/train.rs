@@ -226,9 +226,7 @@ pub fn train(
     let mut report = Report { left_out, warnings, notes, failed, pictures, ..Report::new("train", watch, figures) };
     if !is_network {
         report.unused(&["hidden", "seed", "restarts", "epochs"], "the model is no network");
-        if !inputs.stop_on.is_empty() {
-            report.notes.push("--stop-on is of no use here: the model is no network".to_owned());
-        }
+        report.unused_input("stop_on", !inputs.stop_on.is_empty(), "the model is no network");
     }
     let is_eigennails = matches!(recipe.kind, Kind::Eigennails { .. });
     if !is_eigennails {

@@ -94,6 +94,9 @@ pub struct Video {
     pub(in crate::video) picture: frame::Video,
     info: Info,
     end: End,
+    /// Frames that could not be decoded, and number and time of the first.
+    missing: u64,
+    first_missing: Option<(u64, f64)>,
 }
 
 impl Video {
@@ -151,6 +154,8 @@ impl Video {
             picture: frame::Video::empty(),
             info,
             end: End::NotReached,
+            missing: 0,
+            first_missing: None,
         })
     }
 
@@ -180,6 +185,21 @@ impl Video {
         &self.end
     }
 
+    /// What of the video could not be read, once it was read: each with what to do.
+    #[must_use]
+    pub fn damage(&self) -> Vec<String> {
+        let path = self.path.display();
+        let undecoded = self.first_missing.map(|(index, time_s)| {
+            format!(
+                "{path}: {} of {} frames could not be decoded, the first of them frame {index} at {time_s:.3} s; their \
+                 rows are empty; copy the file again if its original is whole",
+                self.missing, self.next_index
+            )
+        });
+        let early = if let End::Early(why) = &self.end { Some(format!("{path}: {why}")) } else { None };
+        undecoded.into_iter().chain(early).collect()
+    }
+
     /// The next frame; none at the end.
     ///
     /// # Errors
@@ -191,7 +211,11 @@ impl Video {
         let first = *self.first_ticks.get_or_insert(event.ticks);
         let (over, under) = self.info.tick_s;
         let time_s = ((event.ticks - first) as f64 * over as f64) / under as f64;
-        let Some(picture) = event.picture else { return Ok(Some(Item::Missing { index, time_s })) };
+        let Some(picture) = event.picture else {
+            self.missing += 1;
+            self.first_missing.get_or_insert((index, time_s));
+            return Ok(Some(Item::Missing { index, time_s }));
+        };
         self.take(picture, index)?;
         Ok(Some(Item::Frame(self.borrow(index, time_s))))
     }

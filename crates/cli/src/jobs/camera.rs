@@ -82,15 +82,18 @@ impl Command for CameraArgs {
             common.say(&format!("{name}  {value:>9.2} ± {sd:.2} px"));
         }
         for ((name, value), sd) in ["k1", "k2", "p1", "p2", "k3"].iter().zip(lens.distortion).zip(sd.distortion) {
-            common.say(&format!("{name}  {value:>9.5} ± {sd:.5}"));
+            let sd = if sd == 0.0 { "held".to_owned() } else { format!("± {sd:.5}") };
+            common.say(&format!("{name}  {value:>9.5} {sd}"));
         }
+        let undistorted = match report.undistorted_sd_px {
+            Some(sd_px) => format!("points are undistorted to ± {sd_px:.3} px"),
+            None => "the distortion was not measured".to_owned(),
+        };
         common.say(&format!(
-            "{} of {} views used; residuals {:.3} px RMS; points are undistorted to ± {:.3} px; corners cover {:.0} % \
-             of the picture",
+            "{} of {} views used; residuals {:.3} px RMS; {undistorted}; corners cover {:.0} % of the picture",
             report.views.len(),
             report.looked_at + usize::from(self.plane.is_some()),
             report.rms_px,
-            report.undistorted_sd_px,
             100.0 * report.covered
         ));
         if let Some(plane) = report.plane {

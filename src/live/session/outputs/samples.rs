@@ -4,6 +4,7 @@
 //! until the force behind it is known, a second at most; where it is not known its cells are empty.
 
 use std::collections::VecDeque;
+use std::{array, mem};
 
 use lunula_live::companion::{Companion, Known};
 use lunula_live::wire::Row;
@@ -11,6 +12,7 @@ use lunula_live::wire::Row;
 use super::recording::Recording;
 use crate::live::error::LiveError;
 use crate::live::session::columns::StreamColumns;
+use crate::log::doubts;
 use crate::table::push_number;
 
 /// A row waits so long for the force behind it, seconds (*assumed*: chunks of a slow bridge or network are shorter),
@@ -30,26 +32,43 @@ pub(crate) struct Samples {
     /// Columns of further cells, behind all others.
     more: Vec<String>,
     forces: Option<Forces>,
-    heard: Option<Heard>,
+    heard: Heard,
 }
 
-/// The forces of rows that were recorded, for whoever looks on.
+/// The forces of rows that were recorded: for whoever looks on, and so many of them at most to be doubted in the end.
 #[derive(Default)]
 struct Heard {
     /// Where Fx, Fy, Fz are among the values that have them.
-    places: Option<[usize; 3]>,
+    places: [Option<usize>; 3],
+    is_attended: bool,
     rows: Vec<[f64; 3]>,
+    some: Vec<[f64; 3]>,
+    /// One in two to the power of this was kept.
+    halved: u32,
+    count: u64,
 }
+
+const MOST_DOUBTED: usize = 1 << 15;
 
 impl Heard {
     fn look(&mut self, names: &[String]) {
-        let [x, y, z] = FORCES.map(|force| names.iter().position(|name| name == force));
-        self.places = x.zip(y).zip(z).map(|((x, y), z)| [x, y, z]);
+        self.places = FORCES.map(|force| names.iter().position(|name| name == force));
     }
 
     fn push(&mut self, values: &[f64]) {
-        let force = |place: usize| values.get(place).copied().unwrap_or(f64::NAN);
-        self.rows.push(self.places.map_or([f64::NAN; 3], |places| places.map(force)));
+        let force = |place: Option<usize>| place.and_then(|at| values.get(at).copied()).unwrap_or(f64::NAN);
+        let force_n = self.places.map(force);
+        if self.is_attended {
+            self.rows.push(if self.places.contains(&None) { [f64::NAN; 3] } else { force_n });
+        }
+        if self.some.len() == MOST_DOUBTED {
+            self.some = mem::take(&mut self.some).into_iter().step_by(2).collect();
+            self.halved += 1;
+        }
+        if self.count.is_multiple_of(1 << self.halved) {
+            self.some.push(force_n);
+        }
+        self.count += 1;
     }
 }
 
@@ -82,16 +101,15 @@ impl Samples {
         recording.name(names.clone());
         let forces = joins_forces.then(Forces::default);
         let line = String::with_capacity(512);
-        Self { recording, led: columns.led, names, line, more: Vec::new(), forces, heard: None }
+        let mut heard = Heard::default();
+        heard.look(&columns.values);
+        Self { recording, led: columns.led, names, line, more: Vec::new(), forces, heard }
     }
 
     /// Columns of further cells, and somebody who hears the forces of recorded rows.
     pub(crate) fn attended(&mut self, columns: &[&str]) {
         self.more = columns.iter().map(|column| (*column).to_owned()).collect();
-        let mut heard = Heard::default();
-        // The first columns are no values.
-        heard.look(&self.names[1 + usize::from(self.led)..]);
-        self.heard = Some(heard);
+        self.heard.is_attended = true;
         self.name(&[]);
     }
 
@@ -106,7 +124,13 @@ impl Samples {
 
     /// The forces of rows that were recorded since it was asked last.
     pub(crate) fn heard(&mut self) -> std::vec::Drain<'_, [f64; 3]> {
-        self.heard.get_or_insert_default().rows.drain(..)
+        self.heard.rows.drain(..)
+    }
+
+    /// What to say of the forces that were recorded.
+    pub(crate) fn doubts(&self) -> Vec<String> {
+        let forces: [Vec<f64>; 3] = array::from_fn(|k| self.heard.some.iter().map(|force_n| force_n[k]).collect());
+        doubts::forces(FORCES.into_iter().zip(forces.iter().map(Vec::as_slice)))
     }
 
     /// The second device gives these columns.
@@ -118,9 +142,7 @@ impl Samples {
             return Err(format!("column `{twice}` comes from the sensor too; leave out --force, or rename one"));
         }
         self.name(names);
-        if let Some(heard) = &mut self.heard {
-            heard.look(names);
-        }
+        self.heard.look(names);
         if let Some(forces) = &mut self.forces {
             forces.companion = Some(Companion::new(names.len()));
             forces.values = vec![f64::NAN; names.len()];
@@ -150,13 +172,11 @@ impl Samples {
         let Some(forces) = &mut self.forces else {
             self.line.push_str(cells);
             self.line.push('\n');
-            if let Some(heard) = &mut self.heard {
-                heard.push(row.values);
-            }
+            self.heard.push(row.values);
             return self.recording.push(&self.line);
         };
         let mut line = forces.spare.pop().unwrap_or_default();
-        std::mem::swap(&mut line, &mut self.line);
+        mem::swap(&mut line, &mut self.line);
         forces.waiting.push_back(Waiting { common_s, line, cells: cells.to_owned() });
         self.settle(common_s)
     }
@@ -197,9 +217,7 @@ impl Samples {
             }
             line.push_str(cells);
             line.push('\n');
-            if let Some(heard) = &mut self.heard {
-                heard.push(&forces.values);
-            }
+            self.heard.push(&forces.values);
             self.recording.push(line)?;
             if let Some(Waiting { mut line, .. }) = forces.waiting.pop_front() {
                 line.clear();

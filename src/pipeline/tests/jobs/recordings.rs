@@ -88,7 +88,7 @@ fn logged(seed: u64, led: bool) -> TempDir {
     let trajectory = Trajectory::Eq27 { hz: 0.3 };
     let scene = LogScene::new(LogOptions { seed, led, trajectory, ..LogOptions::default() }).expect("a log");
     crate::phantom::log::write(&scene, dir.path()).expect("a log");
-    let tracks = "frame,time_s,marker,x_px,y_px,sd_px,status\n0,0,tip,10.5,20.25,0.02,ok\n";
+    let tracks = "frame,marker,x_px,y_px,sd_px,status\n0,tip,10.5,20.25,0.02,ok\n";
     fs::write(dir.path().join("tracks.csv"), tracks).expect("a table");
     dir
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, ensure};
+use anyhow::{Context, bail, ensure};
 use clap::Args;
 use lunula::job::{Given, Said, Watch};
 use lunula::predictor::{DataFile, PredictChoices, PredictFigures, PredictReport, predict, predict_plan};
@@ -20,7 +20,7 @@ use crate::{Common, Outcome};
 #[derive(Debug, Args)]
 pub(crate) struct PredictArgs {
     /// Model files, then the recording: a table, a log, or `-` for a stream of CSV rows
-    #[arg(required = true, num_args = 2.., value_name = "MODEL... DATA")]
+    #[arg(required = true, value_name = "MODEL... DATA")]
     paths: Vec<PathBuf>,
     /// time_s, Fx_N, Fy_N, Fz_N and/or J2_deg, contact (.csv or .parquet) [default for a stream: standard output]
     #[arg(long, value_name = "PREDICTED.csv")]
@@ -46,8 +46,10 @@ pub(crate) fn run_or_stream(args: &PredictArgs) -> anyhow::Result<Outcome> {
 
 impl PredictArgs {
     fn parts(&self) -> anyhow::Result<(&Path, &[PathBuf])> {
-        let (data, models) = self.paths.split_last().context("name a model and a recording")?;
-        Ok((data, models))
+        match &self.paths[..] {
+            [models @ .., data] if !models.is_empty() => Ok((data, models)),
+            _ => bail!("name a model, or several, and then the recording: only one file is named"),
+        }
     }
 }
 

@@ -9,9 +9,7 @@
 //! fingers more supple than most, for markers that lie beside the bone and, at the DIP, for a fingertip bent back while
 //! it presses. Joints of other names may be any finger's, thumb's or wrist's: they are only held to half a turn.
 
-use super::joints::Angle;
-use crate::flexion::Flexion;
-use crate::posture::layout::Joint;
+use super::Flexion;
 
 /// Degrees added to the norms on both sides (assumed); at the DIP's lower end, where pressing bends the fingertip back.
 const MARGIN_DEG: f64 = 20.0;
@@ -34,7 +32,7 @@ fn range_deg(joint: &str) -> [f64; 2] {
 
 /// Counts angles that a finger can't have.
 #[derive(Debug, Clone)]
-pub(in crate::posture) struct Plausibility {
+pub(crate) struct Plausibility {
     joints: Vec<Counts>,
     /// Frames with an angle of any joint, with one out of range, and with one that would be so if it were negated.
     frames: u64,
@@ -51,21 +49,16 @@ struct Counts {
 }
 
 impl Plausibility {
-    pub(in crate::posture) fn new(joints: &[Joint]) -> Self {
-        let counts = |joint: &Joint| Counts {
-            name: joint.name.clone(),
-            range_deg: range_deg(&joint.name),
-            frames: 0,
-            outside: 0,
-        };
-        Self { joints: joints.iter().map(counts).collect(), frames: 0, outside: 0, outside_negated: 0 }
+    pub(crate) fn new<'a>(joints: impl Iterator<Item = &'a String>) -> Self {
+        let counts = |name: &String| Counts { name: name.clone(), range_deg: range_deg(name), frames: 0, outside: 0 };
+        Self { joints: joints.map(counts).collect(), frames: 0, outside: 0, outside_negated: 0 }
     }
 
-    /// Takes in a frame: an angle for each of the joints.
-    pub(in crate::posture) fn add(&mut self, angles: &[Option<Angle>]) {
+    /// Takes in a frame: degrees for each of the joints.
+    pub(crate) fn add(&mut self, angles_deg: impl Iterator<Item = Option<f64>>) {
         let (mut any, mut outside, mut negated) = (false, false, false);
-        for (joint, angle) in self.joints.iter_mut().zip(angles) {
-            let Some(degrees) = angle.map(|angle| angle.rad.to_degrees()) else { continue };
+        for (joint, degrees) in self.joints.iter_mut().zip(angles_deg) {
+            let Some(degrees) = degrees else { continue };
             let [least, most] = joint.range_deg;
             let is_outside = |degrees: f64| degrees < least || degrees > most;
             any = true;
@@ -80,12 +73,12 @@ impl Plausibility {
     }
 
     /// For each joint, how many of its angles are out of its range.
-    pub(in crate::posture) fn outside(&self, joint: usize) -> u64 {
+    pub(crate) fn outside(&self, joint: usize) -> u64 {
         self.joints[joint].outside
     }
 
-    /// What to doubt, where a finger can't have had these angles.
-    pub(in crate::posture) fn warning(&self, flexion: Flexion) -> Option<String> {
+    /// What to doubt, where a finger can't have had these angles; `flexion` is the marker file's, where there is one.
+    pub(crate) fn warning(&self, flexion: Option<Flexion>) -> Option<String> {
         let share = |count: u64| count as f64 / self.frames.max(1) as f64;
         let negated_fit = share(self.outside_negated) <= HARDLY_ANY.max(0.2 * share(self.outside));
         let doubted =
@@ -99,19 +92,25 @@ impl Plausibility {
             format!("{} is outside of {least:.0} to {most:.0} degrees in {percent:.0} % of its frames", joint.name)
         });
         let joints: Vec<String> = joints.collect();
-        let cause = if negated_fit {
-            let other_flexion = match flexion {
-                Flexion::Clockwise => Flexion::Counterclockwise.name(),
-                Flexion::Counterclockwise => Flexion::Clockwise.name(),
-            };
-            format!(
-                "negated, all would be possible: `flexion` is reversed (write flexion = \"{other_flexion}\"), the \
-                 video is mirrored, or segments and joints are listed with the distal one first"
-            )
-        } else {
-            "check the order of the markers in [segments] and of the segments in [joints] (proximal first), whether \
-             the markers have the right names (--overlay shows them), and [zero]"
-                .to_owned()
+        let cause = match flexion {
+            Some(flexion) if negated_fit => {
+                let other_flexion = match flexion {
+                    Flexion::Clockwise => Flexion::Counterclockwise.name(),
+                    Flexion::Counterclockwise => Flexion::Clockwise.name(),
+                };
+                format!(
+                    "negated, all would be possible: `flexion` is reversed (write flexion = \"{other_flexion}\"), the \
+                     video is mirrored, or segments and joints are listed with the distal one first"
+                )
+            }
+            Some(_) => {
+                "check the order of the markers in [segments] and of the segments in [joints] (proximal first), \
+                        whether the markers have the right names (--overlay shows them), and [zero]"
+                    .to_owned()
+            }
+            None if negated_fit => "negated, all would be possible: flexion is positive here".to_owned(),
+            None => "check that these are the joints' own angles, flexion positive and 0 where the finger is straight"
+                .to_owned(),
         };
         Some(format!("angles that a finger can't have: {} (AAOS norms and a margin); {cause}", joints.join(", ")))
     }
@@ -121,18 +120,12 @@ impl Plausibility {
 mod tests {
     use super::*;
 
-    fn joints(names: &[&str]) -> Vec<Joint> {
-        names.iter().map(|name| Joint { name: (*name).to_owned(), segments: [0, 1], zero_rad: 0.0 }).collect()
-    }
-
     /// The warning of frames with these angles, degrees.
     fn warning(names: &[&str], frames: impl Iterator<Item = Vec<f64>>) -> Option<String> {
-        let mut plausibility = Plausibility::new(&joints(names));
-        for degrees in frames {
-            let angle = |degrees: &f64| Some(Angle { rad: degrees.to_radians(), sd_rad: 0.001, lasting_sd_rad: 0.0 });
-            plausibility.add(&degrees.iter().map(angle).collect::<Vec<_>>());
-        }
-        plausibility.warning(Flexion::Clockwise)
+        let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
+        let mut plausibility = Plausibility::new(names.iter());
+        frames.for_each(|degrees| plausibility.add(degrees.into_iter().map(Some)));
+        plausibility.warning(Some(Flexion::Clockwise))
     }
 
     /// Equation 27 over one period, times `sign`.

@@ -1,4 +1,8 @@
-//! Which way flexion turns a segment of the finger on the picture.
+//! Which way flexion turns a segment of the finger on the picture, and which angles a finger can have.
+
+mod plausible;
+
+pub(crate) use plausible::Plausibility;
 
 /// Which way flexion turns a segment on the shown picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, clap::ValueEnum)]

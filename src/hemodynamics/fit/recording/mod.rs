@@ -1,5 +1,8 @@
 //! Recorded responses: loads and photodiodes of a table, over time or static.
 
+pub(super) mod photodiodes;
+pub(super) mod signs;
+
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -7,10 +10,12 @@ use lunula_hemodynamics::{Course, Load, LoadFault, Recording, Trace};
 
 use crate::hemodynamics::HemodynamicsError;
 use crate::hemodynamics::curve::Pressed;
-use crate::hemodynamics::given::{BLOOD, Columns, Knots, PRESSED, Rows, TIME, listed};
+use crate::hemodynamics::given::{BLOOD, Columns, Knots, PRESSED, Rows, TIME};
 use crate::job::one_of;
 use crate::log::{LogReading, doubts, is_force_in_another_unit};
 use crate::words::Words;
+
+pub use photodiodes::PhotodiodeColumn;
 
 /// A measured force instead of pressures: the finger's force on the surface, newtons, negative where it presses.
 struct ForceColumn<'a> {
@@ -23,26 +28,6 @@ impl ForceColumn<'_> {
     /// `[P_F1, P_F2]` under a force, Pa.
     fn on(&self, force_n: f64) -> [f64; 2] {
         self.pressed.of(-force_n / self.area_m2)
-    }
-}
-
-/// A photodiode's column, and the capillary unit below it, from 0 at the proximal end.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct PhotodiodeColumn {
-    /// Its name.
-    pub name: String,
-    /// Its unit.
-    pub unit: usize,
-}
-
-impl PhotodiodeColumn {
-    /// Reads `COLUMN=UNIT`; the unit is counted from 1.
-    fn parse(text: &str) -> Result<Self, String> {
-        let wrong =
-            || format!("{text:?}: write COLUMN=UNIT, such as P3=1; units are counted from 1 at the proximal end");
-        let (name, unit) = text.split_once('=').ok_or_else(wrong)?;
-        let unit = unit.trim().parse::<usize>().ok().and_then(|unit| unit.checked_sub(1)).ok_or_else(wrong)?;
-        Ok(Self { name: name.trim().to_owned(), unit })
     }
 }
 
@@ -107,6 +92,8 @@ pub(super) struct ReadRecording {
     pub(super) path: PathBuf,
     /// As in the report: the file's name.
     pub(super) name: String,
+    /// All columns of the file.
+    pub(super) columns: Vec<String>,
     pub(super) recording: Recording,
     /// The photodiodes' names, as the traces of the recording.
     pub(super) photodiodes: Vec<String>,
@@ -155,7 +142,7 @@ pub(super) fn read(path: &Path, columns: &RecordingColumns, units: usize) -> Res
         }
     }
     let mut pressed_pa = pressed(&read, force.as_ref());
-    let photodiodes = photodiodes(names, columns, units).map_err(refused)?;
+    let photodiodes = photodiodes::of(names, &columns.photodiodes, units).map_err(refused)?;
     let mut traces = Vec::new();
     let (mut missing, mut faults) = (0, 0);
     for one in &photodiodes {
@@ -194,9 +181,18 @@ pub(super) fn read(path: &Path, columns: &RecordingColumns, units: usize) -> Res
         }
     };
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let of_table = times_s.as_deref().and_then(doubts::time).filter(|_| !rows.is_log());
-    let warnings = rows.warnings().iter().cloned().chain(of_table).collect();
+    let mut warnings = rows.warnings().to_vec();
+    warnings.extend(times_s.as_deref().and_then(doubts::time).filter(|_| !rows.is_log()));
+    warnings.extend(match &force {
+        Some(force) => signs::of_force(force.name, read.get(force.name).unwrap_or_default(), rows.is_log()),
+        None => signs::of_pressures(PRESSED.map(|name| (name, read.get(name).unwrap_or_default()))),
+    });
+    if dynamic {
+        let used: Vec<&str> = needed.iter().copied().chain(photodiodes.iter().map(|one| one.name.as_str())).collect();
+        warnings.extend(rows.near_misses(&BLOOD, &used));
+    }
     Ok(ReadRecording {
+        columns: names.to_vec(),
         path: path.to_owned(),
         recording: Recording { course, photodiodes: traces, subject: None },
         name,
@@ -248,37 +244,4 @@ fn pressed_knots(rows: &Rows, read: &Columns, force: Option<&ForceColumn<'_>>) -
     let Knots { times_s, values } = rows.knots(force.name, read);
     let pressed_pa: Vec<[f64; 2]> = values.iter().map(|force_n| force.on(*force_n)).collect();
     [0, 1].map(|k| Knots { times_s: times_s.clone(), values: pressed_pa.iter().map(|both| both[k]).collect() })
-}
-
-/// The photodiodes to be fitted.
-fn photodiodes(names: &[String], columns: &RecordingColumns, units: usize) -> Result<Vec<PhotodiodeColumn>, String> {
-    if !columns.photodiodes.is_empty() {
-        for one in &columns.photodiodes {
-            if one.unit >= units {
-                return Err(format!(
-                    "--photodiode {}={}: the model has {units} units; --units says how many",
-                    one.name,
-                    one.unit + 1
-                ));
-            }
-        }
-        let own: Vec<PhotodiodeColumn> =
-            columns.photodiodes.iter().filter(|one| names.contains(&one.name)).cloned().collect();
-        let wanted: Vec<&str> = columns.photodiodes.iter().map(|one| one.name.as_str()).collect();
-        return if own.is_empty() {
-            Err(format!("has none of the photodiodes {}; its columns are {}", wanted.join(", "), listed(names)))
-        } else {
-            Ok(own)
-        };
-    }
-    let usual = (0..units).map(|unit| PhotodiodeColumn { name: format!("VP{}", unit + 1), unit });
-    let own: Vec<PhotodiodeColumn> = usual.filter(|one| names.contains(&one.name)).collect();
-    if own.is_empty() {
-        return Err(format!(
-            "has none of VP1, .. VP{units}; --photodiode P3=1 says which column is above which unit; its columns \
-             are {}",
-            listed(names)
-        ));
-    }
-    Ok(own)
 }

@@ -1,0 +1,117 @@
+//! Which columns are photodiodes, and above which capillary units.
+
+use super::ReadRecording;
+use crate::hemodynamics::HemodynamicsError;
+use crate::hemodynamics::given::listed;
+use crate::words::nearest;
+
+/// A photodiode's column, and the capillary unit below it, from 0 at the proximal end.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct PhotodiodeColumn {
+    /// Its name.
+    pub name: String,
+    /// Its unit.
+    pub unit: usize,
+}
+
+impl PhotodiodeColumn {
+    /// Reads `COLUMN=UNIT`; the unit is counted from 1.
+    pub(super) fn parse(text: &str) -> Result<Self, String> {
+        let wrong =
+            || format!("{text:?}: write COLUMN=UNIT, such as P3=1; units are counted from 1 at the proximal end");
+        let (name, unit) = text.split_once('=').ok_or_else(wrong)?;
+        let unit = unit.trim().parse::<usize>().ok().and_then(|unit| unit.checked_sub(1)).ok_or_else(wrong)?;
+        Ok(Self { name: name.trim().to_owned(), unit })
+    }
+}
+
+/// The photodiodes of a recording with the columns `names`: those `named` that it has, or `VP1`, `VP2`, ..
+///
+/// # Errors
+/// It has none, or the model lacks a unit.
+pub(super) fn of(names: &[String], named: &[PhotodiodeColumn], units: usize) -> Result<Vec<PhotodiodeColumn>, String> {
+    if !named.is_empty() {
+        for one in named {
+            if one.unit >= units {
+                return Err(format!(
+                    "--photodiode {}={}: the model has {units} units; --units says how many",
+                    one.name,
+                    one.unit + 1
+                ));
+            }
+        }
+        let own: Vec<PhotodiodeColumn> = named.iter().filter(|one| names.contains(&one.name)).cloned().collect();
+        let wanted: Vec<&str> = named.iter().map(|one| one.name.as_str()).collect();
+        return if own.is_empty() {
+            Err(format!("has none of the photodiodes {}; its columns are {}", wanted.join(", "), listed(names)))
+        } else {
+            Ok(own)
+        };
+    }
+    let usual = (0..units).map(|unit| PhotodiodeColumn { name: format!("VP{}", unit + 1), unit });
+    let own: Vec<PhotodiodeColumn> = usual.filter(|one| names.contains(&one.name)).collect();
+    if own.is_empty() {
+        return Err(format!(
+            "has none of VP1, .. VP{units}; --photodiode P3=1 says which column is above which unit; its columns \
+             are {}",
+            listed(names)
+        ));
+    }
+    Ok(own)
+}
+
+/// Refuses a column that is named twice: it is one photodiode, above one unit.
+///
+/// # Errors
+/// [`HemodynamicsError::Options`] with the first such column.
+pub(in crate::hemodynamics::fit) fn none_twice(named: &[PhotodiodeColumn]) -> Result<(), HemodynamicsError> {
+    let is_twice = |(k, own): &(usize, &PhotodiodeColumn)| named[..*k].iter().any(|before| before.name == own.name);
+    named.iter().enumerate().find(is_twice).map_or(Ok(()), |(_, own)| {
+        let what = format!("--photodiode {}: is named twice; a column is one photodiode, above one unit", own.name);
+        Err(HemodynamicsError::Options(vec![what]))
+    })
+}
+
+/// Refuses names that no recording has.
+///
+/// # Errors
+/// [`HemodynamicsError::Options`] with all of them, the columns there are, and names near to them.
+pub(in crate::hemodynamics::fit) fn all_there(
+    named: &[PhotodiodeColumn],
+    recordings: &[ReadRecording],
+) -> Result<(), HemodynamicsError> {
+    let mut there: Vec<String> = Vec::new();
+    for name in recordings.iter().flat_map(|read| &read.columns) {
+        if !there.contains(name) {
+            there.push(name.clone());
+        }
+    }
+    let unnamed: Vec<&str> =
+        there.iter().map(String::as_str).filter(|name| named.iter().all(|one| one.name != *name)).collect();
+    let missing = named.iter().filter(|one| !there.contains(&one.name)).map(|PhotodiodeColumn { name, unit }| {
+        let near = nearest(name, &unnamed).map_or(String::new(), |near| format!("; did you mean `{near}`?"));
+        format!("--photodiode {name}={}: no recording has this column; they have {}{near}", unit + 1, listed(&there))
+    });
+    let missing: Vec<String> = missing.collect();
+    if missing.is_empty() { Ok(()) } else { Err(HemodynamicsError::Options(missing)) }
+}
+
+/// Notes of each recording the photodiodes of others that it lacks, unless it has one of its own above the same unit.
+pub(in crate::hemodynamics::fit) fn note_lacking(recordings: &mut [ReadRecording]) {
+    let mut all: Vec<(String, usize)> = Vec::new();
+    for read in &*recordings {
+        for (name, trace) in read.photodiodes.iter().zip(&read.recording.photodiodes) {
+            if !all.iter().any(|(known, _)| known == name) {
+                all.push((name.clone(), trace.unit));
+            }
+        }
+    }
+    for read in recordings {
+        let units: Vec<usize> = read.recording.photodiodes.iter().map(|trace| trace.unit).collect();
+        let lacking = all.iter().filter(|(_, unit)| !units.contains(unit)).map(|(name, _)| name.as_str());
+        let lacking: Vec<&str> = lacking.collect();
+        if !lacking.is_empty() {
+            read.notes.push(format!("lacks {}, which other recordings have: fitted without", lacking.join(", ")));
+        }
+    }
+}

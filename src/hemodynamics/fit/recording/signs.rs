@@ -1,0 +1,131 @@
+//! Whether the loads of a recording have the sign of pressing, and photodiodes that of the model.
+//!
+//! Warned of, and nothing is changed. The model answers to suction as well, so a recording of the other sign is fitted
+//! too: by other values, with small standard errors.
+
+use lunula_hemodynamics::FitResult;
+
+use super::ReadRecording;
+use crate::hemodynamics::given::SUCTION;
+use crate::log::doubts;
+
+/// Samples left out at either end: spikes (assumed, as for logs).
+const SPIKES: f64 = 0.005;
+/// How much further than it presses a force may seem to pull (assumed, as for logs).
+const PULLED: f64 = 2.0;
+/// Pressures below this share of the recording's largest are noise or an offset (assumed).
+const NOISE: f64 = 0.05;
+/// So many standard errors below 0, a scaling is negative.
+const SURE: f64 = 3.0;
+
+/// What to say of a force of the finger on the surface, newtons. `is_log`: its reading has said what it doubts.
+pub(super) fn of_force(name: &str, forces_n: &[f64], is_log: bool) -> Vec<String> {
+    let doubted = doubts::forces(std::iter::once((name, forces_n)));
+    if !doubted.is_empty() {
+        return if is_log { Vec::new() } else { doubted };
+    }
+    // A fit's forces may all lie below what is forgiven there.
+    let [least, greatest] = without_spikes(forces_n);
+    let pulled = greatest > 0.0 && greatest > -PULLED * least;
+    let said = pulled.then(|| {
+        format!(
+            "{name} goes from {least:.3} to {greatest:.3} N, as if the finger pulled: pressing is negative. Turn its \
+             sign where it is the force of the surface on the finger; where the transducer was not zeroed, take its \
+             offset away"
+        )
+    });
+    said.into_iter().collect()
+}
+
+/// What to say of pressures, Pa.
+pub(super) fn of_pressures(columns: [(&str, &[f64]); 2]) -> Vec<String> {
+    let ranges = columns.map(|(_, pressures_pa)| without_spikes(pressures_pa));
+    let largest = ranges.as_flattened().iter().fold(0.0, |largest: f64, pa| largest.max(pa.abs()));
+    let one = |((name, pressures_pa), [least, greatest]): ((&str, &[f64]), [f64; 2])| {
+        let sucked = pressures_pa.iter().filter(|pa| **pa < 0.0).count();
+        let pressed = pressures_pa.iter().filter(|pa| **pa > 0.0).count();
+        (sucked > pressed && least < -NOISE * largest).then(|| {
+            format!(
+                "{name} goes from {least:.0} to {greatest:.0} Pa and is negative in {sucked} of the {} rows in which \
+                 it is not 0: {SUCTION}. Turn its sign where it was computed from a negative force that presses",
+                sucked + pressed
+            )
+        })
+    };
+    columns.into_iter().zip(ranges).filter_map(one).collect()
+}
+
+/// The least and the greatest value but for spikes; none: 0.
+fn without_spikes(values: &[f64]) -> [f64; 2] {
+    let mut sorted = values.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let spikes = (SPIKES * sorted.len() as f64) as usize;
+    // A negated 0 is written as 0.
+    let at = |index: usize| sorted.get(index).copied().unwrap_or(0.0) + 0.0;
+    [at(spikes), at(sorted.len().saturating_sub(1 + spikes))]
+}
+
+/// What to say of scalings: `V_1` is a photodiode's sensitivity, the LED's brightness and losses (equation 4), and no
+/// one of these is negative.
+pub(in crate::hemodynamics::fit) fn of_scalings(result: &FitResult, recordings: &[ReadRecording]) -> Option<String> {
+    let is_negative = |value: f64, sd: Option<f64>| sd.is_some_and(|sd| value + SURE * sd < 0.0);
+    let negative = result.photodiodes.iter().filter(|one| is_negative(one.scaling.value, one.scaling.standard_error));
+    let names: Vec<String> = negative
+        .map(|one| {
+            let first = one.recordings.first().and_then(|&k| recordings.get(k));
+            first.map_or(format!("unit {}", one.unit + 1), |first| format!("unit {} of {}", one.unit + 1, first.name))
+        })
+        .collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "the scaling V_1 is negative for {}, as if more light gave less voltage: right only where an amplifier \
+             inverts; else look at the sign of the loads and at which column is above which unit (--photodiode)",
+            names.join(", ")
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Presses for a third of the time.
+    fn presses(high: f64, count: usize) -> Vec<f64> {
+        (0..count).map(|k| if k % 30 < 10 { high } else { 0.0 }).collect()
+    }
+
+    #[test]
+    fn forces_that_pull_are_doubted_however_small() {
+        let said = |forces_n: &[f64]| of_force("F_N", forces_n, false).join(" ");
+        assert!(said(&presses(0.3, 300)).contains("F_N goes from 0.000 to 0.300 N"), "{}", said(&presses(0.3, 300)));
+        assert!(said(&presses(0.3, 30)).contains("as if the finger pulled"));
+        for fine in [presses(-0.3, 300), presses(-0.3, 30), presses(0.0, 30), vec![-0.3, -0.3, 0.5], Vec::new()] {
+            assert_eq!(said(&fine), "");
+        }
+        // A spike is no press.
+        let mut spiked = presses(-0.3, 300);
+        spiked[7] = 50.0;
+        assert_eq!(said(&spiked), "");
+        // What a log's reading says too is said once.
+        let [table, log] = [false, true].map(|is_log| of_force("Fz_N", &presses(1e4, 300), is_log));
+        assert_eq!((table.len(), log.len()), (2, 0), "{table:?}");
+        assert!(table[0].contains("from 0 to 10000 N") && table[1].contains("as if the finger pulled"), "{table:?}");
+    }
+
+    #[test]
+    fn pressures_that_suck_are_doubted_and_noise_is_not() {
+        let said = |first: &[f64], second: &[f64]| of_pressures([("pf1_Pa", first), ("pf2_Pa", second)]);
+        let (pressed, sucked) = (presses(5000.0, 300), presses(-5000.0, 300));
+        assert_eq!((said(&pressed, &pressed).len(), said(&sucked, &sucked).len()), (0, 2));
+        let one = said(&sucked, &pressed);
+        assert!(one.len() == 1 && one[0].starts_with("pf1_Pa goes from -5000 to 0 Pa"), "{one:?}");
+        assert!(one[0].contains("in 100 of the 100 rows"), "{one:?}");
+        // An offset below 0, a short pull, nothing at all.
+        let offset: Vec<f64> = pressed.iter().map(|pa| pa - 20.0).collect();
+        let pull: Vec<f64> = (0..300).map(|k| if k < 5 { -5000.0 } else { pressed[k] }).collect();
+        for fine in [offset, pull, vec![-20.0; 300], vec![0.0; 300]] {
+            assert_eq!(said(&fine, &pressed), Vec::<String>::new());
+        }
+        assert!(said(&[], &[]).is_empty());
+    }
+}
