@@ -106,7 +106,8 @@ impl View {
         Ok(is_far.then(|| {
             format!(
                 "the optical axis of [camera] is at ({:.1}, {:.1}) px, far from the middle of these pictures of \
-                 {width} x {height} px: was the lens measured at this size? Then say `size = [{width}, {height}]` in [camera]",
+                 {width} x {height} px: was the lens measured at this size? Then say `size = [{width}, {height}]` in \
+                 [camera]",
                 axis[0], axis[1]
             )
         }))
