@@ -56,9 +56,11 @@ fn pixels<T: Copy + Default + Send>(
 
 /// A channel's levels; 0 off the picture.
 fn levels(colours: &Colours, frame_from_nail: &Affine, channel: usize, side: usize) -> Vec<u8> {
-    // Half a level more: rounded when cut. What is no number becomes 0.
-    let level = |part: f32| (255.0 * part + 0.5).clamp(0.0, 255.0) as u8;
-    pixels(colours, frame_from_nail, channel, side, |parts| parts.to_array().map(level))
+    pixels(colours, frame_from_nail, channel, side, |parts| {
+        // Half a level more: rounded when cut. What is no number becomes 0.
+        let levels = parts * f32x4::splat(255.0) + f32x4::splat(0.5);
+        levels.max(f32x4::ZERO).min(f32x4::splat(255.0)).to_array().map(|level| level as u8)
+    })
 }
 
 /// In colour, for people; the side is a multiple of 4.
