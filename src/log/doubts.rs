@@ -16,9 +16,10 @@ const SPIKES: f64 = 0.005;
 /// More than a finger presses, newtons (assumed; norms of the strength of pinches: Mathiowetz et al., Archives of
 /// Physical Medicine and Rehabilitation 66(2), 1985).
 const MOST_N: f64 = 200.0;
-/// An offset that is forgiven, newtons, and how much further than it presses a finger may seem to pull (assumed).
+/// An offset that is forgiven, newtons.
 const OFFSET_N: f64 = 0.5;
-const PULLED: f64 = 2.0;
+/// How much further than it presses a finger may seem to pull (assumed).
+pub(crate) const PULLED: f64 = 2.0;
 
 /// What to say of a recording's times, which ascend.
 pub(crate) fn time(time_s: &[f64]) -> Option<String> {
@@ -30,18 +31,24 @@ pub(crate) fn time(time_s: &[f64]) -> Option<String> {
     ))
 }
 
+/// The least and the greatest of the values that are known, but for spikes; of none 0.
+pub(crate) fn without_spikes(values: &[f64]) -> [f64; 2] {
+    let mut known: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+    known.sort_unstable_by(f64::total_cmp);
+    let spikes = (SPIKES * known.len() as f64) as usize;
+    // A negated 0 is written as 0.
+    let at = |index: usize| known.get(index).copied().unwrap_or(0.0) + 0.0;
+    [at(spikes), at(known.len().saturating_sub(1 + spikes))]
+}
+
 /// What to say of a recording's columns, those that are forces.
 pub(crate) fn forces<'a>(columns: impl Iterator<Item = (&'a str, &'a [f64])>) -> Vec<String> {
     let mut doubts = Vec::new();
     for (name, values) in columns.filter(|(name, _)| matches!(*name, "Fx_N" | "Fy_N" | "Fz_N")) {
-        let mut known: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
-        if known.len() < SAMPLES {
+        if values.iter().filter(|value| value.is_finite()).count() < SAMPLES {
             continue;
         }
-        known.sort_unstable_by(f64::total_cmp);
-        let spikes = (SPIKES * known.len() as f64) as usize;
-        // A negated 0 is written as 0.
-        let [least, greatest] = [known[spikes] + 0.0, known[known.len() - 1 - spikes] + 0.0];
+        let [least, greatest] = without_spikes(values);
         if greatest.max(-least) > MOST_N {
             doubts.push(format!(
                 "{name} goes from {least:.0} to {greatest:.0} N, and no finger presses with more than {MOST_N} N: are \

@@ -25,6 +25,18 @@ impl Turn {
         }
     }
 
+    /// Whether the shown picture's rows are the stored one's columns.
+    #[must_use]
+    pub fn is_aside(self) -> bool {
+        matches!(self, Self::Quarter | Self::ThreeQuarters)
+    }
+
+    /// Width and height of the shown picture, of those of the stored one.
+    #[must_use]
+    pub fn shown_size(self, (width, height): (usize, usize)) -> (usize, usize) {
+        if self.is_aside() { (height, width) } else { (width, height) }
+    }
+
     /// The point of the shown picture of a point of the stored one, `size` the stored width and height.
     #[must_use]
     pub fn shown_from_stored(self, [x, y]: [f64; 2], (width, height): (usize, usize)) -> [f64; 2] {

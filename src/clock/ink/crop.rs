@@ -43,8 +43,7 @@ impl Eye {
 
     /// Width and height of the shown picture.
     pub(in crate::clock) fn size(&self) -> (usize, usize) {
-        let (width, height) = self.stored;
-        if matches!(self.turn, Turn::Quarter | Turn::ThreeQuarters) { (height, width) } else { (width, height) }
+        self.turn.shown_size(self.stored)
     }
 
     /// Whether this plane is of the size that the video said.

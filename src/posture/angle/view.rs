@@ -62,9 +62,8 @@ impl View {
         turn: Turn,
         pixel_aspect: f64,
     ) -> Self {
-        let aside = matches!(turn, Turn::Quarter | Turn::ThreeQuarters);
-        let (size, aspect) =
-            if aside { ((stored_size.1, stored_size.0), pixel_aspect.recip()) } else { (stored_size, pixel_aspect) };
+        let size = turn.shown_size(stored_size);
+        let aspect = if turn.is_aside() { pixel_aspect.recip() } else { pixel_aspect };
         let lens = camera.map(|camera| Lens::new(camera, size, aspect));
         let plane = camera.zip(lens).and_then(|(camera, lens)| {
             let (focal_px, centre_px) = lens.frame();
@@ -79,9 +78,7 @@ impl View {
     /// It was measured on pictures of another size, in words.
     pub(crate) fn doubt(layout: &Layout, info: &Info) -> Result<Option<String>, String> {
         let Some(camera) = &layout.camera else { return Ok(None) };
-        let (columns, rows) = (info.format.width, info.format.height);
-        let aside = matches!(info.turn, Turn::Quarter | Turn::ThreeQuarters);
-        let [width, height] = if aside { [rows, columns] } else { [columns, rows] };
+        let (width, height) = info.turn.shown_size((info.format.width, info.format.height));
         if let Some([columns, rows]) = camera.size_px {
             if [columns, rows] == [width, height] {
                 return Ok(None);

@@ -23,7 +23,7 @@ use crate::posture::survey::{Progress, Survey, Surveyor};
 use crate::posture::track::Tracker;
 use crate::stages::{self, Stages};
 use crate::table::TableFormat;
-use crate::video::{Info, Item, Turn, Video};
+use crate::video::{Info, Item, Video};
 
 /// Runs the job; every result is in its place when it returns.
 ///
@@ -219,11 +219,9 @@ impl Span {
 }
 
 fn video_report(path: &Path, info: &Info, siting: Siting, span: &Span) -> VideoReport {
-    let (width, height) = (info.format.width, info.format.height);
-    let aside = matches!(info.turn, Turn::Quarter | Turn::ThreeQuarters);
     VideoReport {
         file: path.to_owned(),
-        shown_px: if aside { [height, width] } else { [width, height] },
+        shown_px: info.turn.shown_size((info.format.width, info.format.height)).into(),
         codec: info.codec.clone(),
         depth: info.format.depth,
         subsampling: info.format.subsampling.map(|(across, down)| [across, down]),

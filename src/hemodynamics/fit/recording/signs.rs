@@ -7,12 +7,8 @@ use lunula_hemodynamics::FitResult;
 
 use super::ReadRecording;
 use crate::hemodynamics::given::SUCTION;
-use crate::log::doubts;
+use crate::log::doubts::{self, PULLED, without_spikes};
 
-/// Samples left out at either end: spikes (assumed, as for logs).
-const SPIKES: f64 = 0.005;
-/// How much further than it presses a force may seem to pull (assumed, as for logs).
-const PULLED: f64 = 2.0;
 /// Pressures below this share of the recording's largest are noise or an offset (assumed).
 const NOISE: f64 = 0.05;
 /// So many standard errors below 0, a scaling is negative.
@@ -53,16 +49,6 @@ pub(super) fn of_pressures(columns: [(&str, &[f64]); 2]) -> Vec<String> {
         })
     };
     columns.into_iter().zip(ranges).filter_map(one).collect()
-}
-
-/// The least and the greatest value but for spikes; none: 0.
-fn without_spikes(values: &[f64]) -> [f64; 2] {
-    let mut sorted = values.to_vec();
-    sorted.sort_unstable_by(f64::total_cmp);
-    let spikes = (SPIKES * sorted.len() as f64) as usize;
-    // A negated 0 is written as 0.
-    let at = |index: usize| sorted.get(index).copied().unwrap_or(0.0) + 0.0;
-    [at(spikes), at(sorted.len().saturating_sub(1 + spikes))]
 }
 
 /// What to say of scalings: `V_1` is a photodiode's sensitivity, the LED's brightness and losses (equation 4), and no

@@ -5,11 +5,7 @@ use crate::vision::Samples;
 
 /// Width and height of the shown picture.
 pub(super) fn shown_size(info: &Info) -> (usize, usize) {
-    let (width, height) = (info.format.width, info.format.height);
-    match info.turn {
-        Turn::None | Turn::Half => (width, height),
-        Turn::Quarter | Turn::ThreeQuarters => (height, width),
-    }
+    info.turn.shown_size((info.format.width, info.format.height))
 }
 
 /// The shown picture's layout: its sides made even.
