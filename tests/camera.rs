@@ -153,13 +153,13 @@ fn errors_deg(dir: &Dir, scene: &str, markers: &str) -> [f64; 3] {
 #[test]
 fn angles_seen_obliquely_are_right() {
     let dir = Dir::new();
-    let distortion = "--distortion=-0.2,0.05,0.001,-0.0005";
-    let plane = ["--plane", "30,60"];
-    dir.lunula(&[&["phantom", "board", "--views", "8", "--out", "board", distortion][..], &plane].concat()).expect(0);
+    let seen = ["--distortion=-0.2,0.05,0.001,-0.0005", "--plane", "30,60"];
+    let size = ["--size", "960x540"];
+    dir.lunula(&[&["phantom", "board", "--views", "8", "--out", "board"][..], &size, &seen].concat()).expect(0);
     camera(&dir, "board/views", &["--plane", "board/plane.png", "--no-figures"]).expect(0);
-    let video = ["phantom", "video", "--seconds", "2", "--bend-hz", "0.5", "--seed", "7"];
+    let video = [&["phantom", "video", "--seconds", "2", "--bend-hz", "0.5", "--seed", "7"][..], &size].concat();
     dir.lunula(&[&video[..], &["--out", "straight"]].concat()).expect(0);
-    dir.lunula(&[&video[..], &["--out", "oblique", distortion], &plane].concat()).expect(0);
+    dir.lunula(&[&video[..], &["--out", "oblique"], &seen].concat()).expect(0);
     let markers = std::fs::read_to_string(dir.path("oblique/markers.toml")).expect("a marker file");
     let (rest, of_truth) = markers.split_once("\n[camera]").expect("the true camera");
     let measured = std::fs::read_to_string(dir.path("camera.toml")).expect("a lens");

@@ -117,12 +117,6 @@ impl Protocol {
         let moves = self.steps.iter().filter_map(Step::motion);
         moves.map(|motion| motion.largest_n(fz_max_n)).fold(fz_max_n, f64::max)
     }
-
-    /// How long all movements take together, seconds.
-    #[must_use]
-    pub fn moving_s(&self) -> f64 {
-        self.steps.iter().filter_map(Step::motion).map(Motion::whole_s).sum()
-    }
 }
 
 impl Step {

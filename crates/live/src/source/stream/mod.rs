@@ -7,7 +7,6 @@ mod live;
 mod played;
 
 use std::os::fd::BorrowedFd;
-use std::path::Path;
 
 use crate::latency::Latency;
 use crate::source::address::{Address, Form, Pace, Place};
@@ -353,22 +352,5 @@ impl Stream {
     fn end(&mut self, on: &mut Sink<'_>) {
         self.ended = true;
         on(Event::End);
-    }
-}
-
-/// What only reads a path's ending: whether [`Stream::open`] plays it as bytes.
-impl Address {
-    /// Whether rows of this source are made by a program, and given to [`Stream::of_rows`]: a phantom, or a file whose
-    /// name ends in `.parquet` or `.xdf`.
-    #[must_use]
-    pub fn needs_rows(&self) -> bool {
-        let table = |path: &Path| {
-            path.extension().is_some_and(|end| end.eq_ignore_ascii_case("parquet") || end.eq_ignore_ascii_case("xdf"))
-        };
-        match &self.place {
-            Place::Phantom { .. } => true,
-            Place::File { path, .. } => table(path),
-            _ => false,
-        }
     }
 }
