@@ -248,6 +248,7 @@ fn bad_requests_are_refused_whole() {
         ("r.csv --free k_C --bounds k_C=5..2 --out f.json", "bounds"),
         ("r.csv --free k_C --bounds k_C=wide --out f.json", "0.1x..10x"),
         ("r.csv --free k_C,k_C1 --out f.json", "free twice"),
+        ("r.csv --free k_C --set m_V_kg=2e-3 --set m_V_kg=1e-3 --out f.json", "`m_V_kg` is given twice"),
         ("r.csv --free none --calibrate held --out f.json", "nothing is free"),
         ("r.csv --free k_C --subject a,b --out f.json", "--subject"),
         ("r.csv --free k_C --photodiode P3=1 --out f.json", "P3"),

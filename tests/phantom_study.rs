@@ -68,7 +68,8 @@ fn a_study_is_what_its_catalogue_says_and_what_a_pipelines_tasks_make() {
         made.iter().filter(|(name, bytes)| written[*name] != **bytes).map(|(name, _)| name).collect();
     assert!(differ.is_empty(), "{differ:?}");
     // Another one in the same place replaces it, and so does the same one a second time; and nothing else.
-    let other = "phantom study --subjects 1 --sensors 1 --presses 0 --video-size 160x96 --fps 5 --seconds 1 --out study";
+    let other =
+        "phantom study --subjects 1 --sensors 1 --presses 0 --video-size 160x96 --fps 5 --seconds 1 --out study";
     dir.lunula(&words(other)).expect(0);
     let replaced = dir.bytes_of("study");
     assert!(dir.path("study/s01/bending/log.csv").is_file() && !dir.path("study/presses").exists());

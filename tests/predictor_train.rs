@@ -474,6 +474,34 @@ fn a_raw_log_of_the_phantom_is_trained_on_as_it_stands() {
     let r2 = report["validation"]["r2"]["Fz_N"].number();
     assert!((0.7..0.9999).contains(&r2), "{r2}");
     dir.train("1/log.csv", "posture", "n.json", &[]).expect(2).says("run `lunula align` first");
+    // Half of the rows are unlit whatever the LED's column is called, and a photodiode with a unit is still one.
+    let renamed = |from: &str, to: &str| {
+        let text = String::from_utf8(dir.bytes_of("1")["log.csv"].clone()).expect("text");
+        dir.write("renamed.csv", text.replacen(from, to, 1));
+        dir.train("renamed.csv", "force", "r.json", &[]).expect(0)
+    };
+    renamed(",led", ",lamp").says("warning: renamed.csv: P1, P2, P3").says("name it with --columns led=NAME");
+    renamed(",P1,", ",P1_mV,").says("note: renamed.csv: column `P1_mV` may be a photodiode, and is not read");
+}
+
+/// Of targets that no finger has, and of glitches, `train` says what `align` does.
+#[test]
+fn impossible_targets_and_glitches_are_warned_of() {
+    let dir = Dir::new();
+    let table = |angle: &dyn Fn(usize) -> f64, volts: &dyn Fn(usize) -> f64| {
+        let row = |k: usize| format!("{:.2},{:.6},{:.6}\n", 0.04 * k as f64, volts(k), angle(k));
+        let rows: String = (0..400).map(row).collect();
+        dir.write("a.csv", format!("time_s,P1,J2_deg\n{rows}"));
+        let answer = dir.lunula(&["train", "a.csv", "--target", "posture", "--out", "m.json"]);
+        answer.expect(0)
+    };
+    let volts = |k: usize| 2.0 + (0.05 * k as f64).sin();
+    let angle = |k: usize| 30.0 + 25.0 * (0.05 * k as f64).sin();
+    assert!(!table(&angle, &volts).stderr.contains("warning"));
+    table(&|k| angle(k).to_radians(), &volts).says("warning: a.csv: no angle is further from 0 than 0.96 degrees");
+    table(&|k| -angle(k), &volts).says("warning: a.csv: angles that a finger can't have: J2");
+    table(&|k| if k % 5 == 0 { -999.0 } else { angle(k) }, &volts).says("J2 is -999 degrees in the first of 80 row(s)");
+    table(&angle, &|k| if k == 200 { 1e9 } else { volts(k) }).says("P1 is 1000000000 in one of 1 row(s)");
 }
 
 /// A log without a column `led` is one whatever its file is called, and whoever wrote it.

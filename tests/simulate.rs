@@ -191,6 +191,10 @@ fn parameters_are_printed_read_and_set_and_all_faults_reported() {
     let answer = run(&dir, "--set k_V_N_per_m=-5 --set m_V_kg=0 --out t.csv").expect(2);
     assert!(answer.stderr.contains("k_V_N_per_m = -5") && answer.stderr.contains("m_V_kg = 0"), "{}", answer.stderr);
     run(&dir, "--set speed=3 --out t.csv").expect(2).says("no parameter speed");
+    let twice = "--set k_V_N_per_m=500 --set m_V_kg=1e-3 --set k_V_N_per_m=600 --set k_V_N_per_m=500 --out t.csv";
+    let answer = run(&dir, twice).expect(2);
+    assert_eq!(answer.stderr.matches("is given twice").count(), 1, "{}", answer.stderr);
+    answer.says("`k_V_N_per_m` is given twice");
 }
 
 #[test]

@@ -6,13 +6,11 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::flexion::Plausibility;
+use crate::flexion;
 use crate::table::{Table, TableError};
 
 /// No joint turns further, degrees: `lunula posture` follows angles past half a turn.
 const MOST_DEG: f64 = 720.0;
-/// Angles that never reach this, and reach half a radian, may be radians.
-const RADIANS: f64 = std::f64::consts::PI;
 
 /// Joint angles over the video's time.
 ///
@@ -116,17 +114,8 @@ impl Posture {
             table.each_text("status", |row, status| lost[row] = status.starts_with("lost"))?;
             warnings.extend(empty_lost(&mut angles_deg, &lost));
         }
-        let most_deg = angles_deg.iter().flatten().map(|angle| angle.abs()).fold(0.0, f64::max);
-        if (0.5..RADIANS).contains(&most_deg) {
-            warnings.push(format!(
-                "no angle is further from 0 than {most_deg:.2} degrees; if these are radians, write degrees"
-            ));
-        }
-        let mut plausibility = Plausibility::new(joints.iter());
-        for row in 0..time_s.len() {
-            plausibility.add(angles_deg.iter().map(|angles| Some(angles[row]).filter(|degrees| degrees.is_finite())));
-        }
-        warnings.extend(plausibility.warning(None));
+        let angles: Vec<&[f64]> = angles_deg.iter().map(Vec::as_slice).collect();
+        warnings.extend(flexion::doubts(&joints, &angles));
         warnings.iter_mut().for_each(|warning| *warning = format!("{}: {warning}", path.display()));
         let [read_s, sd_s, low_s, high_s] = ["read", "sd", "low", "high"].map(|what| known(&format!("clock_{what}_s")));
         let clock = match (read_s?, sd_s?, low_s?, high_s?) {

@@ -2,7 +2,7 @@
 
 mod plausible;
 
-pub(crate) use plausible::Plausibility;
+pub(crate) use plausible::{Plausibility, doubts};
 
 /// Which way flexion turns a segment on the shown picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, clap::ValueEnum)]

@@ -20,13 +20,46 @@ const MOST: f64 = 0.5;
 const SOME: f64 = 0.1;
 const HARDLY_ANY: f64 = 0.02;
 
+/// No joint of a finger bends further.
+const HALF_TURN_DEG: f64 = 180.0;
+/// Angles that never reach this, and reach half a radian, may be radians.
+const RADIANS: f64 = std::f64::consts::PI;
+
+/// What to doubt of a table's angles, degrees, of each of the joints; NaN is missing.
+pub(crate) fn doubts(joints: &[String], angles_deg: &[&[f64]]) -> Vec<String> {
+    let mut doubts = Vec::new();
+    let known = angles_deg.iter().copied().flatten().filter(|degrees| degrees.is_finite());
+    let most_deg = known.map(|degrees| degrees.abs()).fold(0.0, f64::max);
+    if (0.5..RADIANS).contains(&most_deg) {
+        doubts.push(format!(
+            "no angle is further from 0 than {most_deg:.2} degrees; if these are radians, write degrees"
+        ));
+    }
+    for (joint, angles) in joints.iter().zip(angles_deg) {
+        let beyond = || angles.iter().filter(|degrees| degrees.abs() > HALF_TURN_DEG);
+        if let Some(first) = beyond().next() {
+            let count = beyond().count();
+            doubts.push(format!(
+                "{joint} is {first} degrees in the first of {count} row(s) beyond half a turn; leave a cell empty where \
+                 an angle is missing"
+            ));
+        }
+    }
+    let mut plausibility = Plausibility::new(joints.iter());
+    for row in 0..angles_deg.first().map_or(0, |angles| angles.len()) {
+        plausibility.add(angles_deg.iter().map(|angles| Some(angles[row]).filter(|degrees| degrees.is_finite())));
+    }
+    doubts.extend(plausibility.warning(None));
+    doubts
+}
+
 /// The degrees of flexion that a joint of this name can have.
 fn range_deg(joint: &str) -> [f64; 2] {
     match joint {
         "J1" => [-45.0 - MARGIN_DEG, 90.0 + MARGIN_DEG],
         "J2" => [0.0 - MARGIN_DEG, 100.0 + MARGIN_DEG],
         "J3" => [0.0 - PRESSED_DIP_DEG, 90.0 + MARGIN_DEG],
-        _ => [-180.0, 180.0],
+        _ => [-HALF_TURN_DEG, HALF_TURN_DEG],
     }
 }
 

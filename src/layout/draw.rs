@@ -173,7 +173,9 @@ pub(super) fn draw_errors(figures: &LayoutFigures, [png, svg]: &[PathBuf; 2]) ->
         title: format!("error against the number of photodiodes, {who}"),
         x: Axis { label: "photodiodes".to_owned() },
         y: Axis {
-            label: if figures.error_of_none == 0.5 {
+            label: if figures.error_of_none == 0.5 && left_out {
+                "share put to the wrong one of two poses"
+            } else if figures.error_of_none == 0.5 {
                 "confusion of two poses, at most"
             } else {
                 "RMSE over the target's SD"

@@ -6,11 +6,20 @@
 //! unit.
 
 use super::lines::order::{median_step_s, short};
+use super::naming::columns::photodiodes_not_read;
+use super::naming::role::Role;
 
 /// Below so many samples nothing is said of forces.
 const SAMPLES: usize = 50;
 /// Rows of a sensor are no further apart, seconds (assumed).
 const APART_S: f64 = 1.0;
+/// Of steps from row to row, so many turn back where an LED is on and off by turns (assumed).
+const BY_TURNS: f64 = 0.95;
+/// So many times the range of all others beyond them is far (assumed).
+const FAR: f64 = 20.0;
+/// More rows than this, and than this share, are no glitches: a finger that presses seldom (assumed).
+const MOST_GLITCHES: usize = 3;
+const SHARE_OF_GLITCHES: f64 = 0.0005;
 /// Samples left out at either end: spikes (assumed).
 const SPIKES: f64 = 0.005;
 /// More than a finger presses, newtons (assumed; norms of the strength of pinches: Mathiowetz et al., Archives of
@@ -39,6 +48,58 @@ pub(crate) fn without_spikes(values: &[f64]) -> [f64; 2] {
     // A negated 0 is written as 0.
     let at = |index: usize| known.get(index).copied().unwrap_or(0.0) + 0.0;
     [at(spikes), at(known.len().saturating_sub(1 + spikes))]
+}
+
+/// What to say of a table's columns, known by name: photodiodes that go up and down from row to row, forces that no
+/// finger has, glitches; and of its names, photodiodes that are not read.
+pub(crate) fn table<'a>(names: &[String], columns: impl Iterator<Item = (&'a str, &'a [f64])> + Clone) -> Vec<String> {
+    let is_photodiode = |name: &str| matches!(Role::of(name), Some(Role::Photodiode(_)));
+    let photodiodes = columns.clone().filter(|(name, _)| is_photodiode(name));
+    let mut doubts = photodiodes_not_read(names);
+    doubts.extend(alternating(photodiodes.clone()));
+    doubts.extend(forces(columns.clone()));
+    let is_force = |name: &str| matches!(Role::of(name), Some(Role::Force(_)));
+    doubts.extend(glitches(columns.filter(|(name, _)| is_photodiode(name) || is_force(name))));
+    doubts
+}
+
+/// Photodiodes that go up and down by turns, in all rows: of white noise, two steps of three turn back.
+pub(crate) fn alternating<'a>(photodiodes: impl Iterator<Item = (&'a str, &'a [f64])>) -> Option<String> {
+    let alternates = |values: &[f64]| {
+        let known: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
+        let steps: Vec<f64> = known.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let turns = steps.windows(2).filter(|pair| pair[0] * pair[1] < 0.0).count();
+        known.len() >= SAMPLES && turns as f64 >= BY_TURNS * (steps.len() - 1) as f64
+    };
+    let names: Vec<&str> = photodiodes.filter(|(_, values)| alternates(values)).map(|(name, _)| name).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "{} go up and down from row to row, as where an LED is on and off by turns, and no column is read that says \
+             when it is on; name it with --columns led=NAME, or call it `led`",
+            names.join(", ")
+        )
+    })
+}
+
+/// Values of a few rows that lie far beyond all others.
+pub(crate) fn glitches<'a>(columns: impl Iterator<Item = (&'a str, &'a [f64])>) -> Vec<String> {
+    let of = |(name, values): (&str, &[f64])| {
+        let [least, greatest] = without_spikes(values);
+        let far = FAR * (greatest - least);
+        let is_glitch =
+            |value: &&f64| value.is_finite() && far > 0.0 && (least - **value).max(**value - greatest) > far;
+        let worst = |a: f64, b: &f64| if b.abs() > a.abs() { *b } else { a };
+        let count = values.iter().filter(is_glitch).count();
+        let most = MOST_GLITCHES.max((SHARE_OF_GLITCHES * values.len() as f64) as usize);
+        (values.len() >= SAMPLES && (1..=most).contains(&count)).then(|| {
+            format!(
+                "{name} is {} in one of {count} row(s), far beyond all others, which go from {least:.3} to \
+                 {greatest:.3}; leave such rows out if they are glitches: a model learns from them too",
+                short(values.iter().filter(is_glitch).fold(0.0, worst))
+            )
+        })
+    };
+    columns.filter_map(of).collect()
 }
 
 /// What to say of a recording's columns, those that are forces.
@@ -75,6 +136,56 @@ mod tests {
         let every = |step_s: f64, count: usize| time(&(0..count).map(|k| step_s * k as f64).collect::<Vec<_>>());
         assert!(every(10.0, 50).is_some_and(|said| said.starts_with("rows are 10 s apart")), "{:?}", every(10.0, 50));
         assert_eq!([every(1.0, 400), every(10.0, 1), time(&[])], [None, None, None]);
+    }
+
+    #[test]
+    fn an_led_that_goes_on_and_off_is_seen_in_photodiodes_and_noise_is_none() {
+        let noise = |k: usize| ((k * k * 7919 + 31 * k) % 1009) as f64 / 1009.0;
+        let of = |count: usize, value: &dyn Fn(usize) -> f64| {
+            let values: Vec<f64> = (0..count).map(value).collect();
+            alternating([("P1", &values[..]), ("P2", &[1.0; 400][..])].into_iter())
+        };
+        let by_turns = |k: usize| if k.is_multiple_of(2) { 2.0 + 0.5 * noise(k) } else { 0.5 * noise(k) };
+        let said = of(400, &by_turns).expect("a doubt");
+        assert!(said.starts_with("P1 go up and down") && said.contains("--columns led=NAME"), "{said}");
+        assert!(of(400, &|k| if k == 100 { f64::NAN } else { by_turns(k) }).is_some());
+        for quiet in [&noise as &dyn Fn(usize) -> f64, &|k| (0.1 * k as f64).sin(), &|_| 1.0, &|k| (k % 4) as f64] {
+            assert_eq!(of(400, quiet), None);
+        }
+        assert_eq!(of(49, &by_turns), None);
+    }
+
+    #[test]
+    fn a_few_values_far_beyond_all_others_are_doubted_and_seldom_presses_are_not() {
+        let of = |value: &dyn Fn(usize) -> f64| {
+            let values: Vec<f64> = (0..1000).map(value).collect();
+            glitches(std::iter::once(("P4", &values[..])))
+        };
+        let usual = |k: usize| 2.0 + 0.1 * (0.3 * k as f64).sin();
+        let said = of(&|k| if k == 500 { 1e9 } else { usual(k) });
+        assert!(
+            said.len() == 1 && said[0].contains("1000000000 in one of 1 row(s)") && said[0].contains("1.9"),
+            "{said:?}"
+        );
+        assert!(of(&|k| if k % 400 == 7 { -5.0 } else { usual(k) })[0].contains("-5 in one of 3 row(s)"));
+        for quiet in [&usual as &dyn Fn(usize) -> f64, &|k| if k % 100 < 2 { 50.0 } else { usual(k) }, &|_| 1.0] {
+            assert!(of(quiet).is_empty(), "{:?}", of(quiet));
+        }
+    }
+
+    #[test]
+    fn photodiodes_of_a_table_that_are_not_read_are_named() {
+        let of = |names: &[&str]| {
+            let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
+            table(&names, std::iter::empty())
+        };
+        for other in ["P1_mV", "P1 (mV)", "P1_new", "P1.1", "PD1 mV"] {
+            let said = of(&["time_s", other, "P2", "Fz_N"]);
+            assert!(said.len() == 1 && said[0].starts_with(&format!("column `{other}` may be")), "{said:?}");
+        }
+        // Beside the photodiode itself it says something of it; where none is read, others say that.
+        assert!(of(&["P1", "P1_sd_V", "P2"]).is_empty() && of(&["P1_mV", "Fz_N"]).is_empty());
+        assert!(of(&["P1", "pf1_Pa", "C_00_01", "P"]).is_empty());
     }
 
     #[test]

@@ -4,7 +4,7 @@
 //! of the mean by Student's t. Values that are not finite are not known, and not counted.
 
 use serde::Serialize;
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
 /// Probability that an interval holds the mean.
 pub const CONFIDENCE: f64 = 0.95;
@@ -48,6 +48,12 @@ impl Spread {
 pub fn t_quantile(freedom: usize) -> Option<f64> {
     let t = StudentsT::new(0.0, 1.0, freedom as f64).ok()?;
     Some(t.inverse_cdf(0.5 * (1.0 + CONFIDENCE)))
+}
+
+/// The share of normal values that lie below so many standard deviations over their mean.
+#[must_use]
+pub fn normal_below(standard_deviations: f64) -> f64 {
+    Normal::standard().cdf(standard_deviations)
 }
 
 #[cfg(test)]

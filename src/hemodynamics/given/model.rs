@@ -58,7 +58,10 @@ impl ModelOptions {
         };
         let set = |parameters: Parameters, &(symbol, value): &(Symbol, f64)| parameters.set(symbol, value);
         let mut faults = Vec::new();
-        for one in &self.set {
+        for (at, one) in self.set.iter().enumerate() {
+            if self.set[..at].iter().filter(|(symbol, _)| *symbol == one.0).count() == 1 {
+                faults.push(format!("`{}` is given twice; set it once", one.0));
+            }
             if let Err(why) = set(parameters.clone(), one) {
                 faults.push(why.to_string());
             }

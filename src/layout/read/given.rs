@@ -1,7 +1,7 @@
 //! What was read: candidates with their places, second moments, and what they are of.
 
 use lunula_predictor::{Criterion, LayoutProblem, Moments};
-use ndarray::Array2;
+use ndarray::{Array1, Array2};
 use serde::Serialize;
 
 use super::places::Place;
@@ -41,8 +41,24 @@ pub(in crate::layout) struct Target {
 pub(in crate::layout) enum Parts {
     /// Each person, of whom the layout chosen without them is then judged.
     Persons,
-    /// Each subject of maps: the moments without them, which the layout is chosen and judged by.
-    Subjects(Vec<Moments>),
+    /// Each subject of maps, whose pictures are put to poses by the layout chosen without them.
+    Subjects(Vec<WithoutSubject>),
+}
+
+/// A subject of maps, and what all others say.
+#[derive(Debug, Clone)]
+pub(in crate::layout) struct WithoutSubject {
+    /// Of the others.
+    pub(in crate::layout) moments: Moments,
+    /// The others' mean reading of each pose at each candidate.
+    pub(in crate::layout) means: Vec<Array1<f64>>,
+    /// The subject's own pictures: pose, reading at each candidate.
+    pub(in crate::layout) own: Vec<(usize, Array1<f64>)>,
+}
+
+/// Every two of so many poses, in the order of the moments' columns.
+pub(in crate::layout) fn pairs(poses: usize) -> impl Iterator<Item = [usize; 2]> {
+    (0..poses).flat_map(move |a| (a + 1..poses).map(move |b| [a, b]))
 }
 
 /// How much the maps' means differ from pose to pose, pixel by pixel.
@@ -78,7 +94,7 @@ impl Given {
     ) -> Option<LayoutProblem> {
         match &self.parts {
             Parts::Persons => all.without(part),
-            Parts::Subjects(each) => self.problem_of(std::slice::from_ref(&each[part]), options).ok(),
+            Parts::Subjects(each) => self.problem_of(std::slice::from_ref(&each[part].moments), options).ok(),
         }
     }
 

@@ -16,7 +16,7 @@ use lunula_predictor::{Criterion, LayoutProblem, Moments};
 use ndarray::{Array1, Array2};
 use rayon::prelude::*;
 
-use super::given::{Contrast, Given, LeftOutCandidates, Parts, PersonFigures, Target};
+use super::given::{Contrast, Given, LeftOutCandidates, Parts, PersonFigures, Target, WithoutSubject, pairs};
 use super::places::{MARGIN, Place, cell};
 use crate::input;
 use crate::layout::error::LayoutError;
@@ -55,6 +55,13 @@ struct Reading {
     values: Vec<f64>,
 }
 
+impl Reading {
+    /// Those of some cells.
+    fn at(&self, kept: &[usize]) -> Array1<f64> {
+        kept.iter().map(|&k| self.values[k]).collect()
+    }
+}
+
 pub(super) fn read(folder: &Path, options: &LayoutOptions) -> Result<Given, LayoutError> {
     let listed = nails(folder)?;
     let is_of_run = |pose: &String| listed.as_ref().is_none_or(|listed| listed.contains_key(pose));
@@ -85,7 +92,7 @@ pub(super) fn read(folder: &Path, options: &LayoutOptions) -> Result<Given, Layo
     LayoutProblem::fits(kept.len(), subjects.len())?;
     let everybody: Vec<&Reading> = readings.iter().collect();
     let largest = options.k.0.last().copied().unwrap_or(1);
-    let (moments, freedom) = moments(&everybody, &poses, &kept);
+    let (moments, _, freedom) = moments(&everybody, &poses, &kept);
     if freedom < 2 * largest {
         let what = format!(
             "{} pictures of {} poses leave {freedom} degrees of freedom for the covariance of subjects, and \
@@ -97,11 +104,12 @@ pub(super) fn read(folder: &Path, options: &LayoutOptions) -> Result<Given, Layo
         return Err(LayoutError::input(&folder.join("normalized"), what));
     }
     let without = |subject: &&str| {
-        let others: Vec<&Reading> = readings.iter().filter(|one| one.subject != **subject).collect();
-        let (moments, freedom) = moments_of_all_poses(&others, &poses, &kept)?;
-        (freedom >= largest).then_some(moments)
+        let (own, others): (Vec<&Reading>, Vec<&Reading>) = readings.iter().partition(|one| one.subject == **subject);
+        let (moments, means, freedom) = moments_of_all_poses(&others, &poses, &kept)?;
+        let own = own.into_iter().map(|one| (one.pose, one.at(&kept))).collect();
+        (freedom >= largest).then_some(WithoutSubject { moments, means, own })
     };
-    let parts: Vec<Moments> = subjects.iter().filter_map(without).collect();
+    let parts: Vec<WithoutSubject> = subjects.iter().filter_map(without).collect();
     let persons = |subject: &&str| {
         let rows = readings.iter().filter(|one| one.subject == **subject).count();
         PersonFigures { name: (*subject).to_owned(), rows, incomplete: 0 }
@@ -226,22 +234,18 @@ fn cell_means(picture: &DynamicImage, n: usize) -> Vec<f64> {
     sums.iter().zip(counts).map(|(sum, count)| sum / (65535.0 * f64::from(count))).collect()
 }
 
-/// Every two poses.
-fn pairs(poses: usize) -> impl Iterator<Item = [usize; 2]> {
-    (0..poses).flat_map(move |a| (a + 1..poses).map(move |b| [a, b]))
-}
-
 /// The moments, where every pose has a picture.
-fn moments_of_all_poses(readings: &[&Reading], poses: &[String], kept: &[usize]) -> Option<(Moments, usize)> {
+fn moments_of_all_poses(readings: &[&Reading], poses: &[String], kept: &[usize]) -> Option<MomentsOfPoses> {
     let all = (0..poses.len()).all(|pose| readings.iter().any(|one| one.pose == pose));
     (all && readings.len() > poses.len()).then(|| moments(readings, poses, kept))
 }
 
-/// Covariance about the poses' means, differences of these, and the covariance's degrees of freedom.
-fn moments(readings: &[&Reading], poses: &[String], kept: &[usize]) -> (Moments, usize) {
-    let row = |one: &Reading| kept.iter().map(|&k| one.values[k]).collect::<Array1<f64>>();
+/// Covariance about the poses' means and differences of these; these; and the covariance's degrees of freedom.
+type MomentsOfPoses = (Moments, Vec<Array1<f64>>, usize);
+
+fn moments(readings: &[&Reading], poses: &[String], kept: &[usize]) -> MomentsOfPoses {
     let mut by_pose: BTreeMap<usize, Vec<Array1<f64>>> = BTreeMap::new();
-    readings.iter().for_each(|one| by_pose.entry(one.pose).or_default().push(row(one)));
+    readings.iter().for_each(|one| by_pose.entry(one.pose).or_default().push(one.at(kept)));
     let mut means = vec![Array1::<f64>::zeros(kept.len()); poses.len()];
     let mut centred: Vec<Array1<f64>> = Vec::new();
     for (pose, rows) in by_pose {
@@ -259,7 +263,7 @@ fn moments(readings: &[&Reading], poses: &[String], kept: &[usize]) -> (Moments,
         let [a, b] = between[pair];
         means[a][k] - means[b][k]
     });
-    (Moments { c, b }, freedom)
+    (Moments { c, b }, means, freedom)
 }
 
 /// The SD of the mean maps over poses.

@@ -8,7 +8,7 @@ mod tables;
 use super::error::LayoutError;
 use super::options::{LayoutInputs, LayoutOptions};
 pub(super) use given::Parts;
-pub(super) use given::{Contrast, Given, Target};
+pub(super) use given::{Contrast, Given, Target, WithoutSubject, pairs};
 pub use given::{LeftOutCandidates, PersonFigures};
 pub(super) use maps::is_maps;
 pub(super) use places::{Place, is_photodiode};

@@ -170,8 +170,8 @@ impl Source {
                 }
             })?;
         }
-        let doubts =
-            doubts::forces(columns.iter().map(|(name, values): (&String, &Vec<f64>)| (&name[..], &values[..])));
+        let known = columns.iter().map(|(name, values): (&String, &Vec<f64>)| (&name[..], &values[..]));
+        let doubts = doubts::table(table.names(), known);
         let warnings = doubts.iter().map(|doubt| input.placed(doubt)).collect();
         Ok(Self { names: table.names().to_vec(), columns, subject, notes: Vec::new(), warnings })
     }

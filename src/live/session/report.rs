@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use lunula_live::latency::{Latency as Times, LatencySummary};
-use lunula_live::source::StreamCertificate;
+use lunula_live::source::{StreamCertificate, StreamTimes};
 use serde::Serialize;
 
 use super::decide::Decide;
@@ -16,6 +16,7 @@ use crate::files::{Places, beside};
 use crate::job::{Report, Watch};
 use crate::live::error::LiveError;
 use crate::live::options::SessionFiles;
+use crate::log::doubts;
 use crate::predictor::{Answering, extrapolated};
 use crate::stages::Stages;
 
@@ -253,6 +254,28 @@ impl SessionFigures {
 /// More rows than this share that are not answered in full are a warning: lags and ambient light lack the first ones.
 const FEW: f64 = 0.02;
 
+/// Below so many rows nothing is said of how far apart they are (assumed).
+const STEPS: u64 = 10;
+/// A device's clock whose drift against the host's is less is right about its unit, millionths (assumed).
+const SAME_UNIT_PPM: f64 = 1e5;
+
+/// Whether a stream's times are in another unit than seconds, in words: by the step between its rows, unless the
+/// arrival of rows agrees with it.
+fn unit(stream: &StreamCertificate) -> Option<String> {
+    let counts = &stream.counts;
+    if stream.times != Some(StreamTimes::Device) {
+        return None;
+    }
+    if counts.doubtful > counts.rows && counts.doubtful >= STEPS {
+        let what = "most rows are further apart by their time than by their arrival; write it in seconds, or say with \
+                    --time-unit what it is in";
+        return Some(what.to_owned());
+    }
+    let arrives = stream.clock.as_ref().is_some_and(|clock| clock.drift_ppm.abs() < SAME_UNIT_PPM);
+    let step_s = stream.rate_hz.filter(|_| !arrives && counts.rows >= STEPS)?.recip();
+    doubts::time(&[0.0, step_s])
+}
+
 /// What has to be known of a session before its rows are used.
 fn losses(report: &SessionReport) -> Vec<String> {
     let mut warnings = Vec::new();
@@ -271,6 +294,8 @@ fn losses(report: &SessionReport) -> Vec<String> {
                 warnings.push(format!("{whose}{count} {what} {how}"));
             }
         }
+        let of = if *gives == SourceRole::Forces { "--force: " } else { "" };
+        warnings.extend(unit(stream).map(|doubt| format!("{whose}{of}{doubt}")));
         if counts.set_back > 0 {
             warnings.push(format!(
                 "{whose}the clock or counter began again {} time(s): times go on from there by what passed on this \

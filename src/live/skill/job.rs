@@ -153,7 +153,7 @@ fn analysed(
     let (mut trials, mut drawn, mut warnings) = (Vec::new(), Vec::new(), Vec::new());
     let first = read.trials.first().and_then(|trial| trial.fingers.first());
     let time = first.and_then(|finger| doubts::time(&finger.force.time_s));
-    warnings.extend(time.map(|doubt| format!("{name}: {doubt}")));
+    warnings.extend(read.warnings.iter().cloned().chain(time).map(|doubt| format!("{name}: {doubt}")));
     for trial in &read.trials {
         let (figures, touched) = analysis::figures(name, trial, reference, options);
         for finger in &trial.fingers {

@@ -43,6 +43,7 @@ pub(super) struct Recording {
     /// Rows of no trial.
     pub(super) without_trial: usize,
     pub(super) notes: Vec<String>,
+    pub(super) warnings: Vec<String>,
 }
 
 /// Reads a recording; `finger` is the name of a plain `Fz_N`.
@@ -86,6 +87,12 @@ pub(super) fn read(recording: &SkillRecording, finger: &str) -> Result<Recording
     if trials.is_empty() {
         return Err(SkillError::recording(path, "has no row with a time and a trial; record it again"));
     }
+    let other_subject = recording.subject.as_ref().and_then(|given| {
+        let other = rows.subject.iter().flatten().flatten().find(|own| *own != given)?;
+        Some(format!(
+            "column `subject` says whose its rows are (`{other}`), and --subject {given} is not used for them"
+        ))
+    });
     let one = |((subject, trial), own): (Whose, Vec<usize>)| {
         let fingers = rows.fingers.iter().map(|finger| {
             let is_own = |row: &&usize| finger.own.as_ref().is_none_or(|own| own[**row]);
@@ -101,6 +108,7 @@ pub(super) fn read(recording: &SkillRecording, finger: &str) -> Result<Recording
         angles_without_gate: rows.angles_without_gate,
         without_time,
         without_trial,
+        warnings: rows.warnings.into_iter().chain(other_subject).collect(),
         notes: rows.notes,
     })
 }

@@ -13,6 +13,9 @@ pub(super) const FORCE: &str = "Fz_N";
 const CONTACT: &str = "contact";
 /// Of a session of several fingers: whose a row is.
 const FINGER: &str = "finger";
+/// Which trial a row is of, and whose.
+const TRIAL: &str = "trial";
+const SUBJECT: &str = "subject";
 /// More fingers are something else.
 const MOST_FINGERS: usize = 20;
 
@@ -53,6 +56,8 @@ pub(super) struct Rows {
     pub(super) angles_without_gate: bool,
     /// What is worth saying on the file.
     pub(super) notes: Vec<String>,
+    /// Columns that are not read and whose names are near to those that are.
+    pub(super) warnings: Vec<String>,
 }
 
 /// Reads a recording; `finger` is the name of a plain `Fz_N`.
@@ -99,6 +104,7 @@ fn of_log(path: &Path, finger: &str) -> Result<Rows, SkillError> {
         table: None,
         angles_without_gate: false,
         notes: log.notes,
+        warnings: Vec::new(),
     })
 }
 
@@ -140,13 +146,43 @@ fn of_table(path: &Path, plain: &str) -> Result<Rows, SkillError> {
     let texts = |name: &str| table.has(name).then(|| table.texts(name)).transpose();
     Ok(Rows {
         time_s: numbers(TIME)?,
-        trial: texts("trial")?,
-        subject: texts("subject")?,
+        trial: texts(TRIAL)?,
+        subject: texts(SUBJECT)?,
         fingers,
         angles_without_gate,
+        warnings: not_read(table.names()),
         table: Some(table),
         notes: Vec::new(),
     })
+}
+
+/// Columns that are not read and whose names are near to those that are, in words.
+fn not_read(names: &[String]) -> Vec<String> {
+    let near = |name: &String| {
+        let known = [TRIAL, SUBJECT, FINGER, CONTACT].into_iter().find(|known| name.trim().eq_ignore_ascii_case(known));
+        known.map(|known| (known.to_owned(), "")).or_else(|| Some((force_near(name)?, ", in newtons")))
+    };
+    let said = |name: &String| {
+        let (near, unit) = near(name).filter(|(near, _)| !names.contains(near))?;
+        Some(format!("`{name}` is not read; is it `{near}`{unit}?"))
+    };
+    names.iter().filter_map(said).collect()
+}
+
+/// What a column is called if it is a normal force: `middle.Fz_N` of `middle_FZ`.
+fn force_near(name: &str) -> Option<String> {
+    const UNITS: [&str; 6] = ["", "n", "mn", "newton", "newtons", "g"];
+    let is_mark = |c: char| !c.is_ascii_alphanumeric();
+    let lower = name.to_ascii_lowercase();
+    let at = lower.rfind("fz")?;
+    let (finger, unit) = (&name[..at], lower[at + 2..].trim_matches(is_mark));
+    if !UNITS.contains(&unit) || !finger.is_empty() && !finger.ends_with(is_mark) {
+        return None;
+    }
+    match finger.trim_end_matches(is_mark) {
+        "" => Some(FORCE.to_owned()),
+        finger => Some(format!("{finger}.{FORCE}")),
+    }
 }
 
 /// The fingers of a table whose rows say whose they are, in the order in which they first appear.

@@ -167,9 +167,17 @@ pub fn samples(log: &Log, options: &AmbientOptions) -> Result<Samples, AmbientEr
     let forces: Vec<Channel> = forces.collect();
     // Dates have their unit.
     found.warnings.extend(doubts::time(&log.time_s).filter(|_| log.midnight_s.is_none()));
-    found.warnings.extend(doubts::forces(forces.iter().map(|force| (force.name.as_str(), &force.values[..]))));
+    if log.led.is_none() {
+        found.warnings.extend(doubts::alternating(named(&photodiodes)));
+    }
+    found.warnings.extend(doubts::forces(named(&forces)));
+    found.warnings.extend(doubts::glitches(named(&photodiodes).chain(named(&forces))));
     let faults = found.faults.iter().map(|faults| faults.words(photodiodes.len())).collect();
     Ok(Samples { time_s, photodiodes, forces, faults, warnings: found.warnings, notes: found.notes })
+}
+
+fn named(channels: &[Channel]) -> impl Iterator<Item = (&str, &[f64])> {
+    channels.iter().map(|one| (one.name.as_str(), &one.values[..]))
 }
 
 /// Photodiodes that the LED makes darker.

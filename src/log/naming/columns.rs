@@ -122,11 +122,34 @@ impl Columns {
         for name in names.iter().filter(|name| guess::is_force_in_another_unit(name)) {
             notes.push(format!("column `{name}` is a force that is not in newtons, and is not read; write newtons"));
         }
+        notes.extend(unread_photodiodes(names, &columns));
         let time = columns.iter().find(|(role, _)| *role == Role::Time).map(|&(_, at)| at);
         let time_unit = self.time_unit.or_else(|| guess::unit_of_name(&names[time?]));
         columns.sort_by_key(|&(_, at)| at);
         Ok(Choice { columns, time_unit, notes })
     }
+}
+
+/// What to say of columns that look like photodiodes and are not read, where others are.
+fn unread_photodiodes(names: &[String], columns: &[(Role, usize)]) -> Vec<String> {
+    let known = Known::of(columns);
+    let is_unread = |(k, name): &(usize, &String)| {
+        let number = guess::photodiode_with_more(name).filter(|_| !known.places.contains(k));
+        number.is_some_and(|number| !known.roles.contains(&Role::Photodiode(number)))
+    };
+    if !columns.iter().any(|(role, _)| matches!(role, Role::Photodiode(_))) {
+        return Vec::new();
+    }
+    let unread = names.iter().enumerate().filter(is_unread);
+    unread
+        .map(|(_, name)| format!("column `{name}` may be a photodiode, and is not read; call it so, in volts"))
+        .collect()
+}
+
+/// What to say of a table's columns that look like photodiodes and have no name of the contract, where others have.
+pub(crate) fn photodiodes_not_read(names: &[String]) -> Vec<String> {
+    let roles = names.iter().enumerate().filter_map(|(k, name)| Some((Role::of(name)?, k)));
+    unread_photodiodes(names, &roles.collect::<Vec<_>>())
 }
 
 /// The roles and places that are taken.

@@ -62,9 +62,19 @@ pub(in crate::log) fn role_of_name(name: &str) -> Option<Role> {
     (0..3).find(|&axis| AXES[axis].contains(&&force[..])).map(|axis| Role::Force(axis as u8))
 }
 
+/// The photodiode that a name is of with more words behind it, as `P1_mV`, `P3_new`, `P3.1`.
+pub(in crate::log) fn photodiode_with_more(name: &str) -> Option<u32> {
+    match &words(name)[..] {
+        [first, number, _, ..] if ["p", "pd", "photodiode", "diode"].contains(&first.as_str()) => {
+            number.parse().ok().filter(|&number| number > 0)
+        }
+        _ => None,
+    }
+}
+
 /// Whether a name is a force's in a unit that is not newtons.
 pub(crate) fn is_force_in_another_unit(name: &str) -> bool {
-    const UNITS: [&str; 9] = ["mn", "kn", "un", "g", "kg", "gf", "kgf", "lb", "lbf"];
+    const UNITS: [&str; 11] = ["mn", "cn", "dn", "kn", "un", "g", "kg", "gf", "kgf", "lb", "lbf"];
     let whole = words(name).concat();
     let unit = AXES.iter().flatten().find_map(|force| whole.strip_prefix(force));
     unit.is_some_and(|unit| UNITS.contains(&unit))

@@ -1,9 +1,10 @@
 //! An input of a pipeline file, looked at: its rows or files, with all that is wrong with them.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::table::{Rows, read};
 use super::{Item, Missing, Origin, Relation, World, holds, plain};
+use crate::job::Keys;
 use crate::pipeline::items::pattern::{Disk, Pattern};
 use crate::pipeline::spec::{Filter, InputSource, InputSpec, Spec};
 use crate::toml_file::Fault;
@@ -17,6 +18,10 @@ pub(in crate::pipeline) struct InputItems {
     relations: Vec<Relation>,
     /// The names that a filter may use.
     pub(in crate::pipeline) columns: Vec<String>,
+    /// Of a table all rows, those that `where` leaves out too: what is known of each, and its place in the table.
+    pub(in crate::pipeline) rows: Vec<(Keys, String)>,
+    /// Files that a pattern leaves out only for the case of letters.
+    pub(in crate::pipeline) in_other_case: Vec<String>,
 }
 
 impl InputItems {
@@ -48,6 +53,7 @@ fn of_files(spec: &Spec, input: &InputSpec, said: &str, world: &World<'_>) -> Re
     let fault = |what: String| spec.fault(input.source_at, what);
     let inside = said.strip_prefix("{phantom}/");
     let pattern = Pattern::parse(inside.unwrap_or(said)).map_err(fault)?;
+    let mut in_other_case = Vec::new();
     let found = if inside.is_some() {
         if world.catalogue.is_none() {
             return Err(fault(
@@ -56,7 +62,13 @@ fn of_files(spec: &Spec, input: &InputSpec, said: &str, world: &World<'_>) -> Re
         }
         pattern.find(&world.listed)
     } else {
-        pattern.find(&Disk { base: world.base.clone(), out: world.out.canonicalize().ok() })
+        let disk = Disk { base: world.base.clone(), out: world.out.canonicalize().ok() };
+        let found = pattern.find(&disk);
+        let paths: BTreeSet<&str> = found.matches.iter().map(|found| found.path.as_str()).collect();
+        let others = pattern.in_any_case().map_or_else(Vec::new, |pattern| pattern.find(&disk).matches);
+        let others = others.into_iter().filter(|other| holds(&input.filter, &other.keys));
+        in_other_case.extend(others.map(|other| other.path).filter(|path| !paths.contains(path.as_str())));
+        found
     };
     if let Some(why) = found.nothing {
         let why = if inside.is_some() { format!("of the generated recordings, {why}") } else { why };
@@ -89,7 +101,7 @@ fn of_files(spec: &Spec, input: &InputSpec, said: &str, world: &World<'_>) -> Re
     if relation.items.is_empty() {
         return Err(nothing_left(spec, input));
     }
-    Ok(InputItems { relations: vec![relation], columns: pattern.names })
+    Ok(InputItems { relations: vec![relation], columns: pattern.names, rows: Vec::new(), in_other_case })
 }
 
 fn of_table(
@@ -182,7 +194,8 @@ fn of_table(
             relation
         })
         .collect();
-    Ok(InputItems { relations, columns: rows.columns.clone() })
+    let all = (0..rows.rows.len()).map(|row| (rows.known(row, 0..known.len()), rows.rows[row].1.clone()));
+    Ok(InputItems { relations, columns: rows.columns.clone(), rows: all.collect(), in_other_case: Vec::new() })
 }
 
 /// Where the file of a cell stands.

@@ -73,6 +73,20 @@ impl Pattern {
         }
         Ok(Self { parts, names, folders })
     }
+
+    /// The same, which in parts with places or wildcards takes `CSV` for `csv`; none where there is no such part.
+    pub(in crate::pipeline) fn in_any_case(&self) -> Option<Self> {
+        let mut pattern = self.clone();
+        let mut any = false;
+        for part in &mut pattern.parts {
+            if let Part::Wild(wild) = part {
+                let [short, long] = wild.ways.each_ref().map(|way| Regex::new(&format!("(?i){}", way.as_str())).ok());
+                wild.ways = [short?, long?];
+                any = true;
+            }
+        }
+        any.then_some(pattern)
+    }
 }
 
 impl Wild {

@@ -1,10 +1,11 @@
 //! Forwards: from inputs to the tasks of every stage that some wanted result may need.
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::path::Path;
 
 use super::ids::task_id;
 use super::rows::{Row, stage_rows};
+use super::slips::slips;
 use super::{Layout, Node, NodeInput, NodeSource};
 use crate::job::{Facts, Takes};
 use crate::pipeline::items::{InputItems, Item, Missing, Origin, Relation, World, check_filter, input_items, plain};
@@ -28,6 +29,7 @@ pub(super) fn lay_out<'a>(spec: &Spec, world: &World<'a>) -> Result<Layout<'a>, 
         left_out: vec![Vec::new(); spec.stages.len()],
         catalogue: world.catalogue,
         warnings: Vec::new(),
+        taken: BTreeSet::new(),
     };
     let mut results: BTreeMap<usize, Vec<String>> = BTreeMap::new();
     for (at, stage) in spec.stages.iter().enumerate().filter(|(at, _)| needed[*at]) {
@@ -55,6 +57,7 @@ pub(super) fn lay_out<'a>(spec: &Spec, world: &World<'a>) -> Result<Layout<'a>, 
         nothing_to_do(spec, &layout, &mut faults);
     }
     if faults.is_empty() {
+        layout.warnings.extend(slips(spec, &inputs, &layout.taken));
         return Ok(layout);
     }
     faults.sort_by_key(|fault| (fault.line, fault.column));
@@ -140,6 +143,9 @@ fn lay_out_stage(
     let rows = stage_rows(spec, stage, &given)?;
     for row in rows.rows {
         let id = task_id(&stage.name, &rows.names, &row.keys).map_err(|why| vec![spec.fault(stage.at, why)])?;
+        for (items, relation) in row.items.iter().zip(&given) {
+            layout.taken.extend(items.iter().map(|&at| relation.items[at].place.clone()));
+        }
         let node = node((at, stage), id, row, &given, &mut layout.warnings, world);
         layout.nodes.push(node);
     }

@@ -13,10 +13,11 @@ mod needs;
 mod rows;
 mod shares;
 mod show;
+mod slips;
 #[cfg(test)]
 mod tests;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -36,7 +37,7 @@ pub struct Plan {
     pub about: String,
     /// Every task that the wanted results need, after those that it works on.
     pub tasks: Vec<Task>,
-    /// What a user should know before it runs: files that are named and do not stand.
+    /// What a user should know before it runs: files that are named and do not stand, what a slip leaves out.
     pub warnings: Vec<String>,
     pub(super) stages: Vec<Laid>,
     pub(super) planned: Vec<Planned>,
@@ -131,6 +132,8 @@ pub(super) struct Layout<'a> {
     pub(super) left_out: Vec<Vec<Missing>>,
     pub(super) catalogue: Option<&'a Catalogue>,
     pub(super) warnings: Vec<String>,
+    /// The places of all items that its tasks work on.
+    pub(super) taken: BTreeSet<String>,
 }
 
 /// What is needed of each node that is needed.

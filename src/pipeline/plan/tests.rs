@@ -275,6 +275,71 @@ fn one_recording_under_the_names_of_two_subjects_is_warned_of() {
     assert_eq!(plan("markers.toml", "1"), [""; 0]);
 }
 
+/// What the plan warns of where the sessions are in a table of these rows.
+fn warned(rows: &[&str], pipeline: &str) -> Vec<String> {
+    let table = format!("subject,session,kind,video,log\n{}\n", rows.join("\n"));
+    let others = files().into_iter().filter(|(name, _)| *name != "sessions.csv");
+    Bench::new(&others.chain([("sessions.csv", table.as_str())]).collect::<Vec<_>>()).plan(pipeline).warnings
+}
+
+/// A right value, one in the wrong case, one with letters exchanged, one of another kind.
+const SLIPS: [&str; 4] = [
+    "S01,1,bending,v/S01.mp4,l/S01.csv",
+    "S02,1,Bending,v/S02.mp4,l/S02.csv",
+    "S02,2,bendign,v/S02.mp4,l/S02b.csv",
+    "S03,1,touch,v/S03.mp4,l/S03.csv",
+];
+const WRONG_CASE: &str = "sessions.csv, line 3: kind = \"Bending\" is left out where a `where` asks for \"bending\"; \
+                          did you mean `bending`?";
+const EXCHANGED: &str = "sessions.csv, line 4: kind = \"bendign\" is left out where a `where` asks for \"bending\"; \
+                         did you mean `bending`?";
+
+#[test]
+fn rows_that_a_slip_leaves_out_are_warned_of_with_the_nearest_value() {
+    assert_eq!(warned(&SLIPS, STUDY), [WRONG_CASE, EXCHANGED]);
+    // Through a stage: each row is made into a set; the model leaves that in the wrong case out.
+    let of_all = STUDY.replace("where = { kind = \"bending\" }\n", "");
+    let through = of_all.replace("[\"sets\"]", "[\"sets\", \"model\"]")
+        + "[stage.model]\njob = \"train\"\ndata = { from = \"sets\", where = { kind = \"bending\" } }\n";
+    let said: Vec<String> = warned(&SLIPS, &through).into_iter().filter(|what| what.contains("left out")).collect();
+    assert_eq!(said, [WRONG_CASE]);
+    let spaced: Vec<String> = (2..7).map(|session| format!("S01,{session},TOUCH,,l/S0{session}.csv")).collect();
+    let rows: Vec<&str> = [SLIPS[3]].into_iter().chain(spaced.iter().map(String::as_str)).collect();
+    let touch = STUDY.replace("\"bending\" }", "\"touch\" }");
+    let said = warned(&rows, &touch);
+    assert!(
+        said.len() == 1 && said[0].starts_with("sessions.csv, line 3, line 4, line 5 and 2 more: kind ="),
+        "{said:?}"
+    );
+}
+
+#[test]
+fn rows_that_are_left_out_by_choice_are_not_warned_of() {
+    let both = STUDY.replace("\"bending\" }", "[\"bending\", \"Bending\", \"bendign\"] }");
+    let of_subject = STUDY.replace("kind = \"bending\"", "subject = \"S01\"");
+    let lettered = ["S01,day_a,bending,v/S01.mp4,l/S01.csv", "S01,day_b,bending,v/S02.mp4,l/S02.csv"];
+    let of_day = STUDY.replace("kind = \"bending\"", "session = \"day_a\"");
+    for (rows, pipeline) in [(&SLIPS[..], &both), (&SLIPS, &of_subject), (&lettered, &of_day)] {
+        let said = warned(rows, pipeline);
+        assert!(!said.iter().any(|what| what.contains("did you mean")), "{pipeline}: {said:?}");
+    }
+}
+
+#[test]
+fn files_that_only_the_case_of_letters_leaves_out_are_warned_of() {
+    let bench = Bench::new(&[("l/a.csv", "1"), ("l/b.CSV", "2"), ("l/c.Csv", "3"), ("l/d.txt", "4")]);
+    let one = "[inputs.logs]\nfiles = \"l/{n}.csv\"\n[stage.model]\njob = \"train\"\ndata = \"logs\"\n";
+    assert_eq!(
+        bench.plan(one).warnings,
+        ["`l/{n}.csv` leaves out 2 file(s) whose names differ only in the case of letters: l/b.CSV, l/c.Csv; rename \
+          them, or write such a letter as [cC]"]
+    );
+    let all = one.replace("{n}.csv", "{n}.[cC][sS][vV]");
+    assert_eq!(bench.plan(&all).warnings, [""; 0]);
+    let others = format!("[inputs.more]\nfiles = \"l/{{n}}.C*\"\n{}", one.replace("\"logs\"", "[\"logs\", \"more\"]"));
+    assert_eq!(bench.plan(&others).warnings, [""; 0], "another input has them");
+}
+
 /// Faults of the study with some files changed.
 fn with(name: &'static str, content: &'static str, pipeline: &str) -> Vec<String> {
     let mut files = files();

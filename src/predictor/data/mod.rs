@@ -83,6 +83,13 @@ pub struct Read {
     pub warnings: Vec<String>,
 }
 
+impl Read {
+    /// What was done to raw logs, and which columns were guessed.
+    pub(crate) fn notes(&self) -> impl Iterator<Item = String> {
+        self.files.iter().flat_map(|file| file.notes.iter().cloned())
+    }
+}
+
 /// A file that was skipped.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
 pub struct FailedFile {

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::columns::{cell, cells, listed, missing, other_grid, photodiodes};
 use super::{DataError, Wanted};
+use crate::flexion;
 use crate::log::{Channel, GROUPS, LitRows, Statuses, Verdict, doubts, time_not_read};
 use crate::table::{Cell, Table, TableError};
 
@@ -93,14 +94,18 @@ impl Source {
         if has("sensor_status") {
             source.read_status(|take| table.each_text("sensor_status", take))?;
         }
-        let targets = wanted.targets.iter().zip(&source.y).map(|(name, values)| (name.as_str(), &values[..]));
+        let read = source.inputs.iter().zip(&source.x).chain(wanted.targets.iter().zip(&source.y));
+        let read = read.map(|(name, values)| (name.as_str(), &values[..]));
         if let Some(name) = time_not_read(names) {
             source.warnings.push(format!(
                 "{}: `{name}` is not read as the time; call it `time_s` and write seconds",
                 path.display()
             ));
         }
-        let doubts = doubts::forces(targets);
+        let angle = |name: &str| name.strip_suffix("_deg").map(str::to_owned);
+        let (joints, angles): (Vec<String>, Vec<&[f64]>) =
+            read.clone().filter_map(|(name, values)| Some((angle(name)?, values))).unzip();
+        let doubts = [doubts::table(names, read), flexion::doubts(&joints, &angles)].concat();
         source.warnings.extend(doubts.iter().map(|doubt| format!("{}: {doubt}", path.display())));
         Ok(source)
     }

@@ -151,6 +151,7 @@ pub fn train(
         }
     }
     let all = || std::iter::once(&read).chain(&validate).chain(&stop_on);
+    notes.extend(all().flat_map(Read::notes));
     let failed: Vec<String> = all().flat_map(|read| read.failed.iter().map(|file| file.why.clone())).collect();
     let recipe = &options.recipe;
     let early = stop_on.as_ref().map(|read| &read.data);

@@ -26,4 +26,4 @@ pub use event::{Reason, SwitchEvent, Turn};
 pub use machine::{Reading, Switch};
 pub use poisson::{Rate, dispersion, rate_of, rate_per_hour};
 pub use rice::{NoiseRate, crossings_per_hour};
-pub use tune::{Candidate, Goal, TuneFault, Tuned, tune};
+pub use tune::{Candidate, Goal, TuneFault, Tuned, any_contact, tune};

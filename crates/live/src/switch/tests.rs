@@ -346,6 +346,8 @@ fn a_goal_that_cannot_be_reached_is_refused_with_the_nearest() {
     hopeless.value.fill(f64::NAN);
     assert_eq!(tune(&[hopeless], &goal), Err(TuneFault::NoValues));
     assert_eq!(tune(&[Trace::default()], &goal), Err(TuneFault::NoContacts));
+    assert_eq!(any_contact(&[Trace::default()]), Err(TuneFault::NoContacts));
+    assert_eq!(any_contact(&[Trace::default(), trace(1, 300.0)]), Ok(()));
 }
 
 #[test]

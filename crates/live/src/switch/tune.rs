@@ -181,11 +181,18 @@ fn noise(traces: &[Trace]) -> Option<NoiseRate> {
     NoiseRate::of(&rest, rest.len() as f64 * period_s(traces))
 }
 
+/// Whether there is a contact to judge a switch on.
+///
+/// # Errors
+/// [`TuneFault::NoContacts`].
+pub fn any_contact(traces: &[Trace]) -> Result<(), TuneFault> {
+    let whole = |trace: &Trace| trace.contacts.contacts().iter().any(|one| one.start_known && one.end_known);
+    if traces.iter().any(whole) { Ok(()) } else { Err(TuneFault::NoContacts) }
+}
+
 /// The thresholds to try, ascending.
 fn levels(traces: &[Trace]) -> Result<Vec<f64>, TuneFault> {
-    if !traces.iter().any(|trace| trace.contacts.contacts().iter().any(|one| one.start_known && one.end_known)) {
-        return Err(TuneFault::NoContacts);
-    }
+    any_contact(traces)?;
     let mut touching = values(traces, true);
     touching.sort_by(f64::total_cmp);
     let high = touching.get(touching.len() * 9 / 10).copied().filter(|high| *high > 0.0).ok_or(TuneFault::NoValues)?;

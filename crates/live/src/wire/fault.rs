@@ -13,6 +13,32 @@ pub enum WireFault {
         /// What is wrong, and what to do.
         why: String,
     },
+    /// A stream names other columns, or its columns in another order, than its rows before.
+    #[error(
+        "line {line} names the columns {names}, and the rows before it are {before}: the device started again with \
+         other columns, and its rows are not read from there on; make a recording of its own for them"
+    )]
+    OtherNames {
+        /// The line of names.
+        line: u64,
+        /// The names in it.
+        names: String,
+        /// The names of the rows before it.
+        before: String,
+    },
+    /// A stream names its columns in another order than the names that were given.
+    #[error(
+        "line {line} names the columns {names}, and --names gives them in another order, {given}; leave --names out, \
+         or give them in the order of the stream (--columns P1=P2,P2=P1 exchanges two)"
+    )]
+    OtherOrder {
+        /// The line of names.
+        line: u64,
+        /// The names in it.
+        names: String,
+        /// The names that were given.
+        given: String,
+    },
     /// Rows come that have not as many cells as names were given.
     #[error("line {line} has {cells} cells, and --names gives {names}; give as many names as cells")]
     OtherCells {

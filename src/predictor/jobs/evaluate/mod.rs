@@ -104,7 +104,7 @@ pub fn evaluate(
     // Once stopped, what could not be held out is no fault of the request.
     watch.go_on()?;
     let held_out = held_out.transpose()?;
-    let mut notes = Vec::from_iter(seen_by_intervals(&predictor, &read.data));
+    let mut notes: Vec<String> = read.notes().chain(seen_by_intervals(&predictor, &read.data)).collect();
     let splits = match options.splits {
         None => None,
         Some(ways) => Some(stages.time("splits", || {

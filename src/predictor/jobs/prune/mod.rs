@@ -39,6 +39,7 @@ pub fn prune(
     watch.go_on()?;
     let targets = train.data.targets().to_vec();
     let row = |subset: &Subset| row(subset, &inputs, &targets);
+    let notes = train.notes().chain(compared.notes()).collect();
     let mut warnings = [train.warnings, compared.warnings].concat();
     warnings.extend(units([&train.data, &compared.data]).filter(|unit| !warnings.contains(unit)));
     let shared = shared_rows(&row_hashes(&train.data), &row_hashes(&compared.data));
@@ -83,7 +84,7 @@ pub fn prune(
         warnings.push(what.to_owned());
     }
     watch.go_on()?;
-    let report = Report { left_out, warnings, ..Report::new("prune", watch, figures) };
+    let report = Report { left_out, warnings, notes, ..Report::new("prune", watch, figures) };
     end(report, out, |report, out| results::write(report, out, &stages), &stages, start)
 }
 

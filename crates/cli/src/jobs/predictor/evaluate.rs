@@ -99,9 +99,6 @@ impl Command for EvaluateArgs {
         if let Some(found) = &report.splits {
             say_splits(common, found);
         }
-        if common.verbose {
-            report.data.iter().flat_map(|file| &file.notes).for_each(|note| common.say(note));
-        }
     }
 }
 

@@ -129,9 +129,6 @@ impl Command for TrainArgs {
                 ));
             }
         }
-        if common.verbose {
-            report.data.iter().chain(&report.validate).flat_map(|file| &file.notes).for_each(|note| common.say(note));
-        }
     }
 
     fn result(&self) -> Option<PathBuf> {

@@ -96,6 +96,16 @@ pub(super) fn names_of(line: &[u8], separator: Separator) -> Vec<String> {
     Cells::new(line, separator).map(|cell| String::from_utf8_lossy(cell).replace("\"\"", "\"")).collect()
 }
 
+/// Whether these are the same names in another order.
+pub(super) fn is_other_order(names: &[String], before: &[String]) -> bool {
+    let sorted = |names: &[String]| {
+        let mut sorted = names.to_vec();
+        sorted.sort_unstable();
+        sorted
+    };
+    names != before && names.len() == before.len() && sorted(names) == sorted(before)
+}
+
 /// Whether a cell may be a name: it does not look like a number, nor like something cut off from one.
 pub(super) fn is_name(cell: &str) -> bool {
     !cell.is_empty()

@@ -15,7 +15,7 @@ use crate::wire::checksum::{Checksum, Unsealed, unseal};
 use crate::wire::fault::WireFault;
 use crate::wire::row::{Decoded, Naming, Sample, Step, Use};
 use crate::wire::spoilt::{Spoil, shown};
-use cells::{Cells, Numbers, Separator, count, is_name};
+use cells::{Cells, Numbers, Separator, count, is_name, is_other_order, names_of};
 use opening::Opening;
 
 /// The longest line, bytes: more than any logger writes, little enough to hold.
@@ -89,7 +89,7 @@ impl Lines {
     /// whole any more.
     ///
     /// # Errors
-    /// The names mean nothing to the caller, there are none, or what comes is no text.
+    /// The names mean nothing to the caller, there are none, other ones come later, or what comes is no text.
     pub fn next(&mut self, bytes: &mut &[u8], host_ns: u64) -> Result<Option<Step>, WireFault> {
         loop {
             if self.whole {
@@ -231,6 +231,12 @@ impl Lines {
             }
             Err(spoil) => spoil,
         };
+        if fits
+            && (checksum.is_some() || self.checksum.is_none())
+            && let Some(fault) = self.other_names(body, seam)
+        {
+            return Err(fault);
+        }
         if fits && self.are_names(body) {
             return Ok(Found::Step(Step::Columns { again: true }));
         }
@@ -279,6 +285,31 @@ impl Lines {
         }
         self.decoded.names.iter().all(|name| cells.next().is_some_and(|cell| cell == name.as_bytes()))
             && cells.next().is_none()
+    }
+
+    /// That a line names other columns, or the columns in another order; none where it does not. Rows with more or
+    /// fewer cells than before are spoilt each by itself. What follows a `seam` may lack its beginning.
+    fn other_names(&self, body: &[u8], seam: bool) -> Option<WireFault> {
+        let before = &self.decoded.names;
+        if Cells::new(body, self.separator).count() != before.len() {
+            return None;
+        }
+        let names = names_of(body, self.separator);
+        let given = self.given;
+        if is_other_order(&names, before) {
+            let (line, names, before) = (self.line, names.join(","), before.join(","));
+            return Some(match given {
+                true => WireFault::OtherOrder { line, names, given: before },
+                false => WireFault::OtherNames { line, names, before },
+            });
+        }
+        // Other words than names that were given may be the device's own for the same columns.
+        if given || seam || names == *before || !names.iter().all(|name| name.is_empty() || is_name(name)) {
+            return None;
+        }
+        let known = names.iter().filter(|name| !name.is_empty() && before.contains(name)).count();
+        let is_header = 2 * known >= names.iter().filter(|name| !name.is_empty()).count().max(1);
+        is_header.then(|| WireFault::OtherNames { line: self.line, names: names.join(","), before: before.join(",") })
     }
 
     fn row(&mut self, body: &[u8]) -> Result<Sample, Spoil> {

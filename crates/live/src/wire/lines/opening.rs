@@ -6,7 +6,7 @@
 //! cells.
 
 use crate::wire::fault::WireFault;
-use crate::wire::lines::cells::{Cells, Separator, is_name, names_of};
+use crate::wire::lines::cells::{Cells, Separator, is_name, is_other_order, names_of};
 use crate::wire::row::{Meaning, Naming};
 use crate::wire::spoilt::shown;
 
@@ -187,6 +187,11 @@ impl Opening {
             return Ok(None);
         };
         let is_row = !Cells::new(line, separator).all(|cell| is_name(&String::from_utf8_lossy(cell)));
+        let own = if is_row { Vec::new() } else { names_of(line, separator) };
+        if is_other_order(&own, &names) {
+            let (names, given) = (own.join(","), names.join(","));
+            return Err(WireFault::OtherOrder { line: number, names, given });
+        }
         let meaning = (self.naming)(&names)
             .and_then(|meaning| meaning.fitting(&names))
             .map_err(|why| WireFault::Naming { line: 0, names: names.join(","), why })?;

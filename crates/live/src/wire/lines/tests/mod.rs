@@ -118,6 +118,58 @@ fn a_device_that_starts_again_repeats_its_names() {
 }
 
 #[test]
+fn a_device_that_starts_again_with_other_columns_ends_the_stream() {
+    let fault = |text: &str| steps(&mut lines(LineOptions::default()), text.as_bytes(), &[]).unwrap_err();
+    let head = "time_s,P1,P2,note\n0,1,2,x\n";
+    for names in ["time_s,P2,P1,note", "P1,time_s,P2,note", "time_s,P1,P3,note", "time_us,P1,P2,note"] {
+        let (line, before) = (3, "time_s,P1,P2,note".to_owned());
+        let expected = WireFault::OtherNames { line, names: names.to_owned(), before };
+        assert_eq!(fault(&format!("{head}{names}\n1,3,4,y\n")), expected);
+    }
+    let said = fault("P1,P2\n1,2\nP2,P1\n").to_string();
+    let words = "line 3 names the columns P2,P1, and the rows before it are P1,P2: the device started again";
+    assert!(said.starts_with(words), "{said}");
+    // Messages, and rows of other columns, are spoilt each by itself.
+    for (line, spoil) in [
+        ("sensor,is,warm,now", "Unreadable"),
+        ("time_s,P1,P2,7", "Unreadable"),
+        ("time_s,P2,P1", "Cells"),
+        ("time_s,P1,P2,P3,note", "Cells"),
+    ] {
+        assert_eq!(all(&format!("{head}{line}\n"))[2], spoil, "{line}");
+    }
+    // Half a line of names is none.
+    let mut decoder = lines(LineOptions::default());
+    let mut rest = head.as_bytes();
+    while decoder.next(&mut rest, 0).unwrap().is_some() {}
+    decoder.cut(true);
+    assert_eq!(decoder.next(&mut &b"s,P1,P2,note\n"[..], 0), Ok(None));
+    decoder.cut(true);
+    assert!(decoder.next(&mut &b"note,time_s,P2,P1\n"[..], 0).is_err());
+    // A line that is damaged is not believed.
+    let sealed = |line: &str| format!("{line}*{:02X}\n", xor8(line.as_bytes()));
+    let text = [sealed("P1,P2"), sealed("1,2"), sealed("P1,P2").replacen('2', "3", 1), "P2,P1\n".to_owned()].concat();
+    assert_eq!(all(&text)[2..], ["Checksum", "Unchecked"]);
+    assert!(matches!(fault(&(text + &sealed("P2,P1"))), WireFault::OtherNames { line: 5, .. }));
+}
+
+#[test]
+fn names_given_in_another_order_than_the_streams_are_refused() {
+    let columns = Some(["time_s", "P1", "P2"].map(str::to_owned).into());
+    let found = |text: &str| {
+        steps(&mut lines(LineOptions { columns: columns.clone(), ..Default::default() }), text.as_bytes(), &[])
+    };
+    for (text, line) in [("time_s,P2,P1\n1,2,3\n", 1), ("1,2,3\ntime_s,P2,P1\n1,2,3\n", 2)] {
+        let (names, given) = ("time_s,P2,P1".to_owned(), "time_s,P1,P2".to_owned());
+        let fault = found(text).unwrap_err();
+        assert_eq!(fault, WireFault::OtherOrder { line, names, given });
+        assert!(fault.to_string().contains("--names gives them in another order, time_s,P1,P2; leave --names out"));
+    }
+    // The device's own words for the same columns.
+    assert_eq!(found("time,light,dark\n1,2,3\n").unwrap()[1], "1 None None [2.0, 3.0]");
+}
+
+#[test]
 fn counts_become_volts_where_they_are_scaled() {
     let options = LineOptions { volts_per_count: Some(5.0 / 1023.0), ..Default::default() };
     let found = steps(&mut lines(options), b"P1,F\n1023,2\n", &[]).unwrap();

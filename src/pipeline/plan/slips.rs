@@ -1,0 +1,133 @@
+//! What is left out for a slip of the finger: rows of a table whose value is all but one that a `where` asks for, and
+//! files whose names fit a pattern but for the case of letters.
+//!
+//! A value is a slip where no `where` asks for it as it is written, and it differs from one that is asked for only in
+//! case and spaces; or by one letter, where no task works on the row. Values that differ in a digit, or in their first
+//! or last letter, are numbered or lettered ones, as `S01` and `S02`, `day_a` and `day_b`.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::pipeline::items::InputItems;
+use crate::pipeline::spec::{Filter, From, InputSource, Spec};
+
+/// How many places of one slip are listed.
+const SHOWN: usize = 3;
+/// The shortest value that is taken for another with one letter wrong: words of three letters are too often alike.
+const SHORTEST: usize = 4;
+
+/// The values that are asked for, by table and key.
+type Asked<'a> = BTreeMap<(&'a str, &'a str), BTreeSet<&'a str>>;
+
+/// A warning for each slip; `taken` are the places of the items that tasks work on.
+pub(super) fn slips(spec: &Spec, inputs: &[Option<InputItems>], taken: &BTreeSet<String>) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let mut tables: BTreeMap<&str, &InputItems> = BTreeMap::new();
+    for (input, items) in spec.inputs.iter().zip(inputs) {
+        match (&input.source, items) {
+            (InputSource::Table(named), Some(items)) => {
+                tables.entry(named).or_insert(items);
+            }
+            (InputSource::Files(pattern), Some(items)) => warnings.extend(of_files(pattern, items, taken)),
+            (_, None) => {}
+        }
+    }
+    for ((table, key), values) in asked(spec) {
+        warnings.extend(tables.get(table).into_iter().flat_map(|items| of_table(table, key, &values, items, taken)));
+    }
+    warnings
+}
+
+fn of_files(pattern: &str, items: &InputItems, taken: &BTreeSet<String>) -> Option<String> {
+    let left: Vec<&str> =
+        items.in_other_case.iter().map(String::as_str).filter(|path| !taken.contains(*path)).collect();
+    (!left.is_empty()).then(|| {
+        format!(
+            "`{pattern}` leaves out {} file(s) whose names differ only in the case of letters: {}; rename them, or \
+             write such a letter as [cC]",
+            left.len(),
+            listed(&left)
+        )
+    })
+}
+
+fn of_table(
+    table: &str,
+    key: &str,
+    values: &BTreeSet<&str>,
+    items: &InputItems,
+    taken: &BTreeSet<String>,
+) -> Vec<String> {
+    let mut slips: BTreeMap<(&str, &str), Vec<&str>> = BTreeMap::new();
+    for (cells, place) in &items.rows {
+        let Some(value) = cells.get(key).filter(|value| !values.contains(value)) else { continue };
+        let is_taken = taken.contains(&format!("{table}, {place}"));
+        let alike = values.iter().find(|asked| plain(asked) == plain(value));
+        let near = alike.or_else(|| values.iter().find(|asked| !is_taken && is_a_letter_off(value, asked)));
+        if let Some(near) = near {
+            slips.entry((value, *near)).or_default().push(place);
+        }
+    }
+    let said = |((value, near), places): ((&str, &str), Vec<&str>)| {
+        format!(
+            "{table}, {}: {key} = \"{value}\" is left out where a `where` asks for \"{near}\"; did you mean `{near}`?",
+            listed(&places)
+        )
+    };
+    slips.into_iter().map(said).collect()
+}
+
+/// What the filters of inputs, stages and references ask for of each table, directly or of results of its rows.
+fn asked(spec: &Spec) -> Asked<'_> {
+    let mut asked = Asked::new();
+    let table = |input: usize| match &spec.inputs[input].source {
+        InputSource::Table(named) => Some(named.as_str()),
+        InputSource::Files(_) => None,
+    };
+    for (at, input) in spec.inputs.iter().enumerate() {
+        add(&mut asked, table(at), &input.filter);
+    }
+    let mut tables_of: Vec<BTreeSet<&str>> = Vec::with_capacity(spec.stages.len());
+    for stage in &spec.stages {
+        let mut tables = BTreeSet::new();
+        for reference in stage.roles.iter().flatten() {
+            let from: BTreeSet<&str> = match reference.from {
+                From::Input(input, _) => table(input).into_iter().collect(),
+                From::Stage(before, _) => tables_of[before].clone(),
+            };
+            add(&mut asked, from.iter().copied(), &reference.filter);
+            tables.extend(from);
+        }
+        add(&mut asked, tables.iter().copied(), &stage.filter);
+        tables_of.push(tables);
+    }
+    asked
+}
+
+fn add<'a>(asked: &mut Asked<'a>, tables: impl IntoIterator<Item = &'a str>, filter: &'a Filter) {
+    for table in tables {
+        for (key, values, _) in filter {
+            asked.entry((table, key)).or_default().extend(values.iter().map(String::as_str));
+        }
+    }
+}
+
+/// A value without case and spaces.
+fn plain(value: &str) -> String {
+    value.chars().filter(|c| !c.is_whitespace()).flat_map(char::to_lowercase).collect()
+}
+
+fn is_a_letter_off(value: &str, asked: &str) -> bool {
+    let (value, asked) = (plain(value), plain(asked));
+    let length = |text: &str| text.chars().count();
+    let ends = |text: &str| (text.chars().next(), text.chars().next_back());
+    length(&value).min(length(&asked)) >= SHORTEST
+        && value.chars().filter(|c| c.is_numeric()).eq(asked.chars().filter(|c| c.is_numeric()))
+        && (length(&value) != length(&asked) || ends(&value) == ends(&asked))
+        && strsim::osa_distance(&value, &asked) <= 1
+}
+
+/// The first few of some places, then a count.
+fn listed(places: &[&str]) -> String {
+    let shown = places[..places.len().min(SHOWN)].join(", ");
+    if places.len() > SHOWN { format!("{shown} and {} more", places.len() - SHOWN) } else { shown }
+}
