@@ -433,6 +433,31 @@ fn rows_that_are_left_out_and_clocks_that_begin_again_are_warned_of() {
     record("late.csv", rows.replacen("\n1.000,", "\n1.060,", 1)).says("5 rows came behind later ones and are left out");
     let again = rows.lines().skip(1).map(|row| format!("{row}\n")).collect::<String>();
     record("again.csv", rows + &again).says("the clock or counter began again 1 time(s)");
+    let milliseconds = (0..50).map(|k| format!("{},1\n", 10 * k)).collect::<String>();
+    record("ms.csv", format!("time_s,P1\n{milliseconds}")).says("rows are 10 s apart, if the stamps are in seconds");
+    let said = ["record", "--source", "ms.csv", "--time-unit", "ms", "--out", "said.csv"];
+    let said = dir.lunula(&said).expect(0);
+    assert!(!said.stderr.contains("apart"), "{}", said.stderr);
+}
+
+#[test]
+fn other_columns_in_the_middle_end_a_stream_and_the_rows_before_them_are_kept() {
+    let dir = desk();
+    let rows = |from: u32| (from..from + 20).map(|k| row(0.01 * f64::from(k), 1.0)).collect::<String>();
+    let text = format!("time_s,P1,Fz_N\n{}time_s,Fz_N,P1\n{}", rows(0), rows(20));
+    dir.write("exchanged.csv", &text);
+    let words = "line 22 names the columns time_s,Fz_N,P1, and the rows before it are time_s,P1,Fz_N";
+    let record = ["record", "--source", "exchanged.csv", "--out", "kept.csv"];
+    dir.lunula(&record).expect(1).says(words);
+    assert_eq!(dir.table("kept.csv").len(), 20);
+    let mut piped = start(&dir, &["live", "--source", "-", "--model", "m.json"]);
+    piped.write(&text);
+    let (code, answers, said) = piped.end();
+    assert!(code == 1 && answers.len() == 21 && said.contains(words), "{code} {} {said}", answers.len());
+    let given = ["live", "--source", "exchanged.csv", "--names", "time_s,Fz_N,P1", "--model", "m.json"];
+    dir.lunula(&given)
+        .expect(2)
+        .says("line 1 names the columns time_s,P1,Fz_N, and --names gives them in another order");
 }
 
 #[test]
@@ -548,6 +573,16 @@ fn what_makes_the_figures_of_a_switch_doubtful_is_said() {
     judge(&dir, "beyond.csv", &[]).expect(0).says("beyond.csv: 2000 of 2000 rows lie outside of the voltages");
     write("surface.csv", &|t_s, light, force| format!("{t_s},{light},{}\n", -1000.0 * force));
     judge(&dir, "surface.csv", &[]).expect(0).says("are the forces in newtons").says("as if the finger pulled");
+    // A contact that never is, one that is late by a second, and one that is upside down.
+    let contact = |contact: &str, out: &str| {
+        let all =
+            ["switch", "evaluate", "sw.toml", "good.csv", "--model", "m.json", "--contact", contact, "--out", out];
+        dir.lunula(&all).expect(0)
+    };
+    contact("Fz_N>0.05", "never").says("no recording has a contact whose beginning and end are known; record presses");
+    contact("Fz_N>-0.01", "upside-down").says("presses begin when their contact is over: is contact the right way");
+    write("late.csv", &|t_s, light, _| format!("{t_s},{light},{}\n", -pressing(t_s - 1.0)));
+    judge(&dir, "late.csv", &[]).expect(0).says("9 of 9 contacts are missed and 10 of 10 presses are false");
     // Two of ten presses are in 4 s of which nothing is known; known in every other row is never known.
     let where_known = |t_s: f64, light: f64, force: f64, known: bool| {
         if known { format!("{t_s},{light},{force}\n") } else { format!("{t_s},{light},\n") }

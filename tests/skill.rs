@@ -260,6 +260,38 @@ fn a_log_of_another_lab_is_read_and_a_wrong_sign_is_seen() {
 }
 
 #[test]
+fn columns_whose_names_are_near_to_those_that_are_read_are_named() {
+    let dir = Dir::new();
+    let names = "time_s,index.Fz_N,middle.FZ_N,ring_Fz_N,thumb.Fz,little.Fz_mN,index.Fz_N_low,Trial";
+    let fingers = rows(0.0, 4.0, &[&INDEX, &MIDDLE, &MIDDLE, &MIDDLE, &MIDDLE, &MIDDLE]);
+    let numbered: Vec<Vec<f64>> = fingers.into_iter().map(|row| [row, vec![1.0]].concat()).collect();
+    dir.write("near.csv", csv(names, &numbered));
+    let answer = run(&dir, "near.csv --out o --json").expect(0);
+    assert_eq!(answer.json()["trials"][0]["fingers"].list().len(), 1);
+    assert!(!answer.stderr.contains("`index."), "{}", answer.stderr);
+    answer
+        .says("near.csv: `middle.FZ_N` is not read; is it `middle.Fz_N`, in newtons?")
+        .says("`ring_Fz_N` is not read; is it `ring.Fz_N`")
+        .says("`thumb.Fz` is not read; is it `thumb.Fz_N`")
+        .says("`little.Fz_mN` is not read; is it `little.Fz_N`, in newtons?")
+        .says("`Trial` is not read; is it `trial`?");
+}
+
+#[test]
+fn a_column_of_subjects_is_believed_and_another_name_is_warned_of() {
+    let dir = Dir::new();
+    let table = csv("time_s,Fz_N", &rows(0.0, 4.0, &[&INDEX]));
+    let named =
+        table.lines().map(|line| format!("{line},{}\n", if line.starts_with('t') { "subject" } else { "anna" }));
+    dir.write("own.csv", named.collect::<String>());
+    let answer = run(&dir, "own.csv --subject zoe --out o --json").expect(0);
+    assert_eq!(answer.json()["trials"][0]["subject"].words(), "anna");
+    answer.says("own.csv: column `subject` says whose its rows are (`anna`), and --subject zoe is not used for them");
+    let same = run(&dir, "own.csv --subject anna --out p").expect(0);
+    assert!(!same.stderr.contains("--subject"), "{}", same.stderr);
+}
+
+#[test]
 fn wrong_recordings_are_refused_and_others_are_done() {
     let dir = Dir::new();
     dir.write("good.csv", csv(NAMES, &rows(0.0, 4.0, &[&INDEX, &MIDDLE])));

@@ -20,6 +20,8 @@ const FAR: f64 = 20.0;
 /// More rows than this, and than this share, are no glitches: a finger that presses seldom (assumed).
 const MOST_GLITCHES: usize = 3;
 const SHARE_OF_GLITCHES: f64 = 0.0005;
+/// Blocks of rows of one time stamp are nearer together where a device sends them as they come, seconds (assumed).
+const BLOCK_S: f64 = 0.25;
 /// Samples left out at either end: spikes (assumed).
 const SPIKES: f64 = 0.005;
 /// More than a finger presses, newtons (assumed; norms of the strength of pinches: Mathiowetz et al., Archives of
@@ -32,6 +34,16 @@ pub(crate) const PULLED: f64 = 2.0;
 
 /// What to say of a recording's times, which ascend.
 pub(crate) fn time(time_s: &[f64]) -> Option<String> {
+    let distinct: Vec<f64> = time_s.chunk_by(|a, b| a == b).map(|block| block[0]).collect();
+    let block_s = median_step_s(&distinct).filter(|_| 2 * distinct.len() < time_s.len());
+    if let Some(block_s) = block_s.filter(|block_s| *block_s >= BLOCK_S) {
+        return Some(format!(
+            "rows come in blocks of one time stamp, about {:.0} rows each, {} s apart: what changes within a block is \
+             labelled wrongly by up to so much; write when each row was taken",
+            time_s.len() as f64 / distinct.len() as f64,
+            short(block_s)
+        ));
+    }
     let step_s = median_step_s(time_s).filter(|step_s| *step_s > APART_S)?;
     Some(format!(
         "rows are {} s apart, if the stamps are in seconds; write them in seconds, or say with --time-unit what they \
@@ -136,6 +148,11 @@ mod tests {
         let every = |step_s: f64, count: usize| time(&(0..count).map(|k| step_s * k as f64).collect::<Vec<_>>());
         assert!(every(10.0, 50).is_some_and(|said| said.starts_with("rows are 10 s apart")), "{:?}", every(10.0, 50));
         assert_eq!([every(1.0, 400), every(10.0, 1), time(&[])], [None, None, None]);
+        let stamped = |every: usize, step_s: f64| {
+            time(&(0..400).map(|k| step_s * (k / every) as f64).collect::<Vec<_>>()).unwrap_or_default()
+        };
+        assert!(stamped(25, 1.0).contains("about 25 rows each, 1 s apart"), "{}", stamped(25, 1.0));
+        assert_eq!(stamped(8, 0.08), "");
     }
 
     #[test]

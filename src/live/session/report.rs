@@ -267,8 +267,8 @@ fn unit(stream: &StreamCertificate) -> Option<String> {
         return None;
     }
     if counts.doubtful > counts.rows && counts.doubtful >= STEPS {
-        let what = "most rows are further apart by their time than by their arrival; write it in seconds, or say with \
-                    --time-unit what it is in";
+        let what = "the times of most rows do not fit to their arrival: are they in seconds? Write them in seconds, or \
+                    say with --time-unit what they are in";
         return Some(what.to_owned());
     }
     let arrives = stream.clock.as_ref().is_some_and(|clock| clock.drift_ppm.abs() < SAME_UNIT_PPM);
@@ -325,4 +325,60 @@ fn losses(report: &SessionReport) -> Vec<String> {
     }
     warnings.extend(extrapolated(report.rows_outside, report.answered));
     warnings
+}
+
+#[cfg(test)]
+mod tests {
+    use lunula_live::time::{ClockFit, RowCounts};
+
+    use super::*;
+
+    fn stream(counts: RowCounts, step_s: f64, drift_ppm: Option<f64>) -> StreamCertificate {
+        let clock = |drift_ppm| ClockFit {
+            device_s: 0.0,
+            offset_s: 0.0,
+            offset_low_s: 0.0,
+            offset_se_s: 0.0,
+            drift_ppm,
+            drift_se_ppm: 0.0,
+            rows: counts.rows,
+            window_s: 100.0,
+        };
+        StreamCertificate {
+            source: "-".to_owned(),
+            form: None,
+            columns: Vec::new(),
+            times: Some(StreamTimes::Device),
+            host_start_unix_s: None,
+            counts,
+            rate_hz: Some(step_s.recip()),
+            spoilt: Vec::new(),
+            gaps: Vec::new(),
+            gaps_count: 0,
+            longest_gap_s: None,
+            states: Vec::new(),
+            states_left_out: 0,
+            clock: drift_ppm.map(clock),
+            notes: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn a_time_in_milliseconds_is_doubted_and_a_slow_stream_is_not() {
+        let rows = |rows: u64, doubtful: u64| RowCounts { rows, doubtful, ..RowCounts::default() };
+        let doubted = unit(&stream(rows(600, 0), 10.0, None)).unwrap();
+        assert!(doubted.starts_with("rows are 10 s apart") && doubted.contains("--time-unit"), "{doubted}");
+        // A device whose clock runs a thousand times as fast as the host's.
+        assert_eq!(unit(&stream(rows(600, 0), 10.0, Some(-999_000.0))), Some(doubted));
+        let arrival = unit(&stream(rows(1, 599), 20.0, None)).unwrap();
+        assert!(arrival.starts_with("the times of most rows do not fit"), "{arrival}");
+        for fine in [
+            stream(rows(600, 0), 0.01, None),
+            stream(rows(9, 0), 10.0, None),
+            stream(rows(600, 3), 10.0, Some(40.0)),
+            StreamCertificate { times: Some(StreamTimes::Arrival), ..stream(rows(600, 0), 10.0, None) },
+        ] {
+            assert_eq!(unit(&fine), None, "{fine:?}");
+        }
+    }
 }

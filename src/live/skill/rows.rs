@@ -172,7 +172,7 @@ fn not_read(names: &[String]) -> Vec<String> {
 /// What a column is called if it is a normal force: `middle.Fz_N` of `middle_FZ`.
 fn force_near(name: &str) -> Option<String> {
     const UNITS: [&str; 6] = ["", "n", "mn", "newton", "newtons", "g"];
-    let is_mark = |c: char| !c.is_ascii_alphanumeric();
+    let is_mark = |c: char| !c.is_alphanumeric();
     let lower = name.to_ascii_lowercase();
     let at = lower.rfind("fz")?;
     let (finger, unit) = (&name[..at], lower[at + 2..].trim_matches(is_mark));

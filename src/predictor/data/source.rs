@@ -105,8 +105,9 @@ impl Source {
         let angle = |name: &str| name.strip_suffix("_deg").map(str::to_owned);
         let (joints, angles): (Vec<String>, Vec<&[f64]>) =
             read.clone().filter_map(|(name, values)| Some((angle(name)?, values))).unzip();
-        let doubts = [doubts::table(names, read), flexion::doubts(&joints, &angles)].concat();
-        source.warnings.extend(doubts.iter().map(|doubt| format!("{}: {doubt}", path.display())));
+        let doubts = doubts::table(names, read).into_iter().chain(flexion::doubts(&joints, &angles));
+        let doubts = doubts.chain(doubts::time(&source.time_s));
+        source.warnings.extend(doubts.map(|doubt| format!("{}: {doubt}", path.display())).collect::<Vec<_>>());
         Ok(source)
     }
 

@@ -126,6 +126,13 @@ pub fn predict(
     })?;
     places.commit()?;
     warnings.extend(extrapolated(answering.outside(), counts.rows));
+    if counts.rows > 0 && counts.not_known == counts.rows {
+        warnings.push(format!(
+            "none of {} rows has a prediction: a reading is missing in each, or the reading of the past that a model \
+             with lags needs",
+            counts.rows
+        ));
+    }
     let ambient = ambient_step_of([data], &options.rows.log);
     let left_out = left_out(predict_plan(models.len(), ambient, options));
     let figures = figures(data, Some(out), &answering, counts);

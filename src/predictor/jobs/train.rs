@@ -161,6 +161,15 @@ pub fn train(
     watch.go_on()?;
     let training = stages.time("score", || merit(&predictor, &read.data))?;
     let mut warnings = read.warnings.clone();
+    let without_past = read.data.rows() - training.rows - training.not_finite;
+    if !recipe.lags_s.is_empty() && without_past > 0 {
+        let what = format!(
+            "{without_past} of {} rows have no reading of the past that --lags needs, and are not trained on",
+            read.data.rows()
+        );
+        // A begin of a recording is no loss.
+        if 10 * without_past > read.data.rows() { warnings.push(what) } else { notes.push(what) }
+    }
     warnings.extend(validate.iter().chain(&stop_on).flat_map(|read| read.warnings.clone()));
     warnings.extend(fit_warnings(&predictor.training().report).iter().cloned());
     if let Some(held) = &validate {

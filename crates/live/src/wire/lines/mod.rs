@@ -307,6 +307,10 @@ impl Lines {
         if given || seam || names == *before || !names.iter().all(|name| name.is_empty() || is_name(name)) {
             return None;
         }
+        // Bytes that no text has are damage.
+        if std::str::from_utf8(body).map_or(true, |text| text.contains(|c: char| c.is_control() && c != '\t')) {
+            return None;
+        }
         let known = names.iter().filter(|name| !name.is_empty() && before.contains(name)).count();
         let is_header = 2 * known >= names.iter().filter(|name| !name.is_empty()).count().max(1);
         is_header.then(|| WireFault::OtherNames { line: self.line, names: names.join(","), before: before.join(",") })

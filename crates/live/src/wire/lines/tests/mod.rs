@@ -133,6 +133,7 @@ fn a_device_that_starts_again_with_other_columns_ends_the_stream() {
     for (line, spoil) in [
         ("sensor,is,warm,now", "Unreadable"),
         ("time_s,P1,P2,7", "Unreadable"),
+        ("time_s,P1,P\u{1},note", "Unreadable"),
         ("time_s,P2,P1", "Cells"),
         ("time_s,P1,P2,P3,note", "Cells"),
     ] {
