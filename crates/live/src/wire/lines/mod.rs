@@ -308,7 +308,8 @@ impl Lines {
             return None;
         }
         // Bytes that no text has are damage.
-        if std::str::from_utf8(body).map_or(true, |text| text.contains(|c: char| c.is_control() && c != '\t')) {
+        let is_control = |c: char| c.is_control() && c != '\t';
+        if !std::str::from_utf8(body).is_ok_and(|text| !text.contains(is_control)) {
             return None;
         }
         let known = names.iter().filter(|name| !name.is_empty() && before.contains(name)).count();
