@@ -40,8 +40,8 @@ pub(crate) fn doubts(joints: &[String], angles_deg: &[&[f64]]) -> Vec<String> {
         if let Some(first) = beyond().next() {
             let count = beyond().count();
             doubts.push(format!(
-                "{joint} is {first} degrees in the first of {count} row(s) beyond half a turn; leave a cell empty where \
-                 an angle is missing"
+                "{joint} is {first} degrees in the first of {count} row(s) beyond half a turn; leave a cell empty \
+                 where an angle is missing"
             ));
         }
     }

@@ -86,8 +86,8 @@ pub(crate) fn alternating<'a>(photodiodes: impl Iterator<Item = (&'a str, &'a [f
     let names: Vec<&str> = photodiodes.filter(|(_, values)| alternates(values)).map(|(name, _)| name).collect();
     (!names.is_empty()).then(|| {
         format!(
-            "{} go up and down from row to row, as where an LED is on and off by turns, and no column is read that says \
-             when it is on; name it with --columns led=NAME, or call it `led`",
+            "{} go up and down from row to row, as where an LED is on and off by turns, and no column is read that \
+             says when it is on; name it with --columns led=NAME, or call it `led`",
             names.join(", ")
         )
     })
