@@ -6,7 +6,7 @@
 //! one: judged by those who chose, two poses that do not differ are far apart already at few places of many (of 8 + 8
 //! subjects 0.0003 for 4 of 140 cells, in place of 0.5). The interval is that of the mean over persons (Student's t).
 
-use lunula_live::spread::{Spread, normal_below, t_quantile};
+use lunula_live::spread::{CONFIDENCE, Spread, normal_below, t_quantile};
 use lunula_predictor::{Choice, LayoutProblem, Proof, Rules, Starts, determinant, pivoted, prove, search};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -145,7 +145,13 @@ impl<'a> Solver<'a> {
         let spread = Spread::of(worths.collect::<Option<Vec<f64>>>()?)?;
         let se = spread.sd? / (spread.n as f64).sqrt();
         let half = t_quantile(spread.n.checked_sub(1)?)? * se;
-        Some(LeftOut { error: spread.mean, se, interval: [(spread.mean - half).max(0.0), spread.mean + half] })
+        // A share of which so many subjects show nothing with a probability of 5 %.
+        let unseen = match &self.given.parts {
+            Parts::Subjects(_) if spread.mean == 0.0 => 1.0 - (1.0 - CONFIDENCE).powf(1.0 / spread.n as f64),
+            _ => 0.0,
+        };
+        let interval = [(spread.mean - half).max(0.0), (spread.mean + half).max(unseen)];
+        Some(LeftOut { error: spread.mean, se, interval })
     }
 }
 

@@ -295,7 +295,8 @@ fn poses_are_told_apart_where_they_differ() {
     assert_eq!(of(2).places, ["C_02_03", "C_05_04"]);
     assert!(of(2).error < 0.01 && of(1).error > 0.1, "{} {}", of(1).error, of(2).error);
     let interval = of(2).left_out.unwrap();
-    assert!(interval.error < 0.02, "{interval:?}");
+    // Six subjects without a fault leave 0.39 open.
+    assert!(interval.error < 0.02 && interval.interval[1] > 0.05, "{interval:?}");
     assert_eq!(report.chosen.by_target.len(), 3);
     let refused = |folder: &Folder, options: &str| {
         let _ = std::fs::remove_dir_all(folder.path("out"));
