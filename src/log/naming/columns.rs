@@ -109,7 +109,11 @@ impl Columns {
         let mut known = Known::of(&columns);
         for (k, name) in names.iter().enumerate() {
             let Some(role) = Role::of(name).filter(|role| *role != Role::Contact) else { continue };
-            if known.places.contains(&k) || mapped.contains(&role) {
+            if known.places.contains(&k) {
+                continue;
+            }
+            if mapped.contains(&role) {
+                notes.push(format!("column `{name}` is not read: --columns takes {} from another", role.name()));
                 continue;
             }
             if known.roles.contains(&role) {
@@ -304,7 +308,8 @@ mod tests {
     fn the_contracts_names_need_no_mapping_and_a_mapping_wins() {
         assert_eq!(chosen("", "time_s|led|P1|x|Fz_N").unwrap(), ("time_s@0 led@1 P1@2 Fz_N@4".to_owned(), 0));
         assert_eq!(chosen("P1=P2,P2=P1", "time_s|P1|P2").unwrap().0, "time_s@0 P2@1 P1@2");
-        assert_eq!(chosen("P1=P3", "time_s|P1|P3").unwrap().0, "time_s@0 P1@2");
+        // The file's own P1 is not read, which is said.
+        assert_eq!(chosen("P1=P3", "time_s|P1|P3").unwrap(), ("time_s@0 P1@2".to_owned(), 1));
         assert_eq!(chosen("time_s=#1,P1=B", "|b|c").unwrap(), ("time_s@0 P1@1".to_owned(), 0));
     }
 
