@@ -312,24 +312,26 @@ fn poses_are_told_apart_where_they_differ() {
     assert!(refused(&one, "k = '1'").contains("normal"));
 }
 
-/// Of 64 cells four separate any 16 + 16 pictures somehow; a subject that had no part in that says what it is worth.
+/// Of 36 cells four separate any 6 + 6 pictures somehow; a subject that had no part in that says what it is worth.
 #[test]
 fn poses_that_do_not_differ_are_confused_by_half_of_those_left_out() {
     let folder = Folder::new();
     let level = |pose: usize, subject: usize, [row, column]: [u32; 2]| {
-        let which = 1009 * pose + 101 * subject + 13 * row as usize + 7 * column as usize;
-        (128.0 + 40.0 * wave(which * which % 9973, 3 * subject + pose)).round() as u8
+        let which = (pose * 1_000_003 + subject * 10_007 + row as usize * 101 + column as usize + 1) as u64;
+        let mixed = which.wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        let mixed = (mixed ^ (mixed >> 31)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        ((mixed ^ (mixed >> 29)) >> 56) as u8
     };
-    maps(&folder, &["a", "b"], 16, level);
+    maps(&folder, &["a", "b"], 6, level);
     let run = |options: &str| {
         let _ = std::fs::remove_dir_all(folder.path("out"));
         let report = folder.run(&["set"], options).unwrap();
+        assert!(report.warnings.iter().any(|said| said.contains("say nothing of who is left out")), "{report:?}");
         let best = report.methods.iter().find(|one| one.k == 4 && one.method == Method::Best).unwrap();
         (best.error, best.left_out.unwrap())
     };
     let (error, left_out) = run("k = '4'\ncells = 8");
-    assert!(error < 0.1, "{error}");
-    assert!(left_out.error > 0.3 && left_out.interval[1] >= 0.5, "{error} and {left_out:?}");
+    assert!(error < 0.01 && left_out.error > 0.3, "{error} and {left_out:?}");
     // Photodiodes that show their noise alone say nothing of any pose.
     let (error, left_out) = run("k = '4'\ncells = 8\nnoise = 1e6");
     assert!((error - 0.5).abs() < 1e-6 && (left_out.error - 0.5).abs() < 1e-3, "{error} and {left_out:?}");

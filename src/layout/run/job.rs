@@ -88,6 +88,15 @@ pub fn run(
     }
     watch.go_on()?;
     let chosen = chosen(&given, &all, &solved, options)?;
+    let of_none = all.cost(&[]);
+    let own = solved.iter().find(|one| one.method == Method::Best && one.k == chosen.k).and_then(|one| one.left_out);
+    if let Some(own) = own.filter(|own| own.error + own.se >= of_none) {
+        warnings.push(format!(
+            "the places chosen may say nothing of who is left out: their error is {:.3} +- {:.3}, and {of_none} without \
+             any photodiode",
+            own.error, own.se
+        ));
+    }
     let of_thesis = thesis.map(|(eight, _)| eight).unwrap_or_default();
     let figures = LayoutFigures {
         folder: folder.clone(),
@@ -95,7 +104,7 @@ pub fn run(
             Criterion::Error => "RMSE of the linear model over the target's SD, mean over targets and persons",
             Criterion::Confusion => "the most that two poses are confused (Bhattacharyya), mean over pairs",
         },
-        error_of_none: all.cost(&[]),
+        error_of_none: of_none,
         candidates: given.places.len(),
         left_out_candidates: given.left_out,
         persons: given.persons.clone(),

@@ -118,11 +118,13 @@ fn plain(value: &str) -> String {
 
 fn is_a_letter_off(value: &str, asked: &str) -> bool {
     let (value, asked) = (plain(value), plain(asked));
-    let length = |text: &str| text.chars().count();
-    let ends = |text: &str| (text.chars().next(), text.chars().next_back());
-    length(&value).min(length(&asked)) >= SHORTEST
+    let [own, other] = [&value, &asked].map(|text| text.chars().count());
+    let pairs = value.chars().zip(asked.chars()).enumerate();
+    let replaced: Vec<usize> = pairs.filter(|(_, (a, b))| a != b).map(|(at, _)| at).collect();
+    let is_end = own == other && matches!(replaced[..], [at] if at == 0 || at + 1 == own);
+    own.min(other) >= SHORTEST
         && value.chars().filter(|c| c.is_numeric()).eq(asked.chars().filter(|c| c.is_numeric()))
-        && (length(&value) != length(&asked) || ends(&value) == ends(&asked))
+        && !is_end
         && strsim::osa_distance(&value, &asked) <= 1
 }
 

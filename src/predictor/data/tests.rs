@@ -302,7 +302,7 @@ fn dead_and_saturated_photodiodes_are_warned_of() {
     let mut text = "P1,P2,P3,J2_deg\n".to_owned();
     for k in 0..600 {
         let wave = 2.5 + 3.0 * (k as f64 * 0.05).sin();
-        writeln!(text, "{:.4},2.5,{wave:.4},1", wave.min(4.0)).unwrap();
+        writeln!(text, "{:.4},2.5,{wave:.4},30", wave.min(4.0)).unwrap();
     }
     let read = read(text, &angle()).unwrap();
     let [saturated, dead] = &read.warnings[..] else { panic!("{:?}", read.warnings) };
@@ -343,7 +343,7 @@ fn columns_named_twice_are_told_with_where() {
     assert!(refusal("P1,J2_deg\n1,2\n", &both).contains("is both an input and a target"));
     let said = refusal("0.1,0.2\n1,2\n", &Wanted { inputs: Some(vec!["P1".into()]), ..angle() });
     assert!(said.contains("holds numbers where the names"), "{said}");
-    let dead = read("P1,J2_deg\n1e-300,2\n1e-300,3\n", &angle()).unwrap();
+    let dead = read("P1,J2_deg\n1e-300,20\n1e-300,30\n", &angle()).unwrap();
     assert!(dead.warnings[0].contains("P1 is 1e-300 V in all 2 rows"), "{:?}", dead.warnings);
 }
 
