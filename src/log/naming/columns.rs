@@ -137,17 +137,15 @@ impl Columns {
 /// What to say of columns that look like photodiodes and are not read, where others are.
 fn unread_photodiodes(names: &[String], columns: &[(Role, usize)]) -> Vec<String> {
     let known = Known::of(columns);
-    let is_unread = |(k, name): &(usize, &String)| {
-        let number = guess::photodiode_with_more(name).filter(|_| !known.places.contains(k));
-        number.is_some_and(|number| !known.roles.contains(&Role::Photodiode(number)))
+    let unread = |(k, name): (usize, &String)| {
+        let number = guess::photodiode_with_more(name).filter(|_| !known.places.contains(&k))?;
+        (!known.roles.contains(&Role::Photodiode(number)))
+            .then(|| format!("column `{name}` may be a photodiode, and is not read; call it P{number}, in volts"))
     };
     if !columns.iter().any(|(role, _)| matches!(role, Role::Photodiode(_))) {
         return Vec::new();
     }
-    let unread = names.iter().enumerate().filter(is_unread);
-    unread
-        .map(|(_, name)| format!("column `{name}` may be a photodiode, and is not read; call it so, in volts"))
-        .collect()
+    names.iter().enumerate().filter_map(unread).collect()
 }
 
 /// What to say of a table's columns that look like photodiodes and have no name of the contract, where others have.
