@@ -92,8 +92,8 @@ pub fn run(
     let own = solved.iter().find(|one| one.method == Method::Best && one.k == chosen.k).and_then(|one| one.left_out);
     if let Some(own) = own.filter(|own| own.error + own.se >= of_none) {
         warnings.push(format!(
-            "the places chosen may say nothing of who is left out: their error is {:.3} +- {:.3}, and {of_none} without \
-             any photodiode",
+            "the places chosen may say nothing of who is left out: their error is {:.3} +- {:.3}, and {of_none} \
+             without any photodiode",
             own.error, own.se
         ));
     }
