@@ -174,18 +174,14 @@ impl WithoutSubject {
             let wrong = |(pose, reading): &(usize, ndarray::Array1<f64>)| {
                 let past = on(&|place| reading[place]) - between;
                 let wrong_by = if *pose == a { -past } else { past };
-                if noise > 0.0 { normal_below(wrong_by / noise) } else { 0.5 * (1.0 + sign(wrong_by)) }
+                // Without noise, all or nothing.
+                if wrong_by == 0.0 { 0.5 } else { normal_below(wrong_by / noise) }
             };
             let pictures = self.own.iter().filter(|(pose, _)| [a, b].contains(pose));
             shares.extend(Spread::of(pictures.map(wrong)).map(|share| share.mean));
         }
         Spread::of(shares).map(|share| share.mean)
     }
-}
-
-/// -1, 0 or 1.
-fn sign(value: f64) -> f64 {
-    if value == 0.0 { 0.0 } else { value.signum() }
 }
 
 /// The candidates nearest to the thesis' eight, each once, and how far the farthest is from its place, half widths.

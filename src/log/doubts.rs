@@ -9,7 +9,7 @@ use super::lines::order::{median_step_s, short};
 use super::naming::columns::photodiodes_not_read;
 use super::naming::role::Role;
 
-/// Below so many samples nothing is said of forces.
+/// Below so many samples nothing is said of values.
 const SAMPLES: usize = 50;
 /// Rows of a sensor are no further apart, seconds (assumed).
 const APART_S: f64 = 1.0;
@@ -55,11 +55,10 @@ pub(crate) fn time(time_s: &[f64]) -> Option<String> {
 /// The least and the greatest of the values that are known, but for spikes; of none 0.
 pub(crate) fn without_spikes(values: &[f64]) -> [f64; 2] {
     let mut known: Vec<f64> = values.iter().copied().filter(|value| value.is_finite()).collect();
-    known.sort_unstable_by(f64::total_cmp);
+    let Some(last) = known.len().checked_sub(1) else { return [0.0; 2] };
     let spikes = (SPIKES * known.len() as f64) as usize;
-    // A negated 0 is written as 0.
-    let at = |index: usize| known.get(index).copied().unwrap_or(0.0) + 0.0;
-    [at(spikes), at(known.len().saturating_sub(1 + spikes))]
+    // Logs are long, and need not be sorted whole. A negated 0 is written as 0.
+    [spikes, last - spikes].map(|rank| *known.select_nth_unstable_by(rank, f64::total_cmp).1 + 0.0)
 }
 
 /// What to say of a table's columns, known by name: photodiodes that go up and down from row to row, forces that no
