@@ -3,6 +3,7 @@
 //! A choice lists its words once ([`Words::WORDS`]).
 
 use std::borrow::Cow;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A choice of few, each with a word.
 pub trait Words: Copy + PartialEq + Send + Sync + 'static {
@@ -45,6 +46,26 @@ pub fn nearest<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
     let slips = 1.max(name.chars().count() / 3);
     let nearest = known.iter().map(|k| (strsim::osa_distance(&lower, &k.to_lowercase()), *k));
     nearest.min_by_key(|(distance, _)| *distance).filter(|(distance, _)| *distance <= slips).map(|(_, known)| known)
+}
+
+/// A name without what a slip of the finger changes first: case and spaces.
+pub(crate) fn plain(name: &str) -> String {
+    name.chars().filter(|c| !c.is_whitespace()).flat_map(char::to_lowercase).collect()
+}
+
+/// A warning where two names of what there is one of, `Anna` and `anna`, differ in case and spaces only.
+pub(crate) fn twins<'a>(what: &str, names: impl IntoIterator<Item = &'a str>) -> Option<String> {
+    let mut seen: BTreeMap<String, BTreeSet<&str>> = BTreeMap::new();
+    for name in names {
+        seen.entry(plain(name)).or_default().insert(name);
+    }
+    let twins: Vec<String> = seen
+        .into_values()
+        .filter(|alike| alike.len() > 1)
+        .map(|alike| alike.iter().map(|name| format!("`{}`", shown(name))).collect::<Vec<_>>().join(" and "))
+        .collect();
+    let each = "differ in case or spaces only, and count apart: are they the same?";
+    (!twins.is_empty()).then(|| format!("{what} {} {each}", twins.join(", ")))
 }
 
 /// What to write instead of an unknown `name`: the nearest, or the choice.

@@ -207,6 +207,15 @@ fn too_few_views_and_views_that_are_alike_are_refused() {
     std::fs::copy(dir.path("scene/views/01.png"), dir.path("scene/views/04.png")).expect("a copy");
     let answer = camera(&dir, "scene/views", &["--coefficients", "4"]).expect(0).says("3 views only");
     answer.says("views/04.png: the same to the byte as scene/views/01.png, and not counted");
+    // Nor is the plane's view, where it is among the views.
+    let plane = ["--plane", "scene/views/01.png", "--coefficients", "4"];
+    let answer =
+        camera(&dir, "scene/views", &plane).expect(0).says("as scene/views/01.png of --plane, and not counted");
+    assert!(answer.says("3 views only").json()["views"].list().len() == 3);
+    for name in ["scene/views/02.png", "scene/views/04.png", "camera.toml", "camera.run.json"] {
+        std::fs::remove_file(dir.path(name)).expect("removed");
+    }
+    refused(&dir, camera(&dir, "scene/views", &plane), &["2 view(s) show the board"]);
     let dir = views(&["--tilt", "0,0", "--views", "4"]);
     refused(&dir, camera(&dir, "scene/views", &[]), &["alike", "tilted by 20 to 40 degrees"]);
 }

@@ -134,7 +134,9 @@ fn what_is_no_nail_is_no_run_s_nail() {
     let desk = Desk::at(&dir.path("set"));
     desk.keys(&["reject"]);
     assert_eq!(labels(&dir, "set/a.json"), [NOT_A_NAIL]);
-    dir.lunula(&["photos", "set", "--out", "out"]).expect(2).says("no polygon labelled `nail`");
+    dir.lunula(&["photos", "set", "--out", "out"])
+        .expect(2)
+        .says("whatever was found is rejected in it (`not a nail`)");
     // A nail that somebody finds after all.
     desk.keys(&["previous", "undo", "another"]);
     desk.press(json!({"key": "place", "to_px": [80.0, 70.0]}));

@@ -49,6 +49,7 @@ mod posture_bad_input;
 mod predictor_analysis;
 mod predictor_bad_input;
 mod predictor_deficient;
+mod predictor_doubts;
 mod predictor_eigennails;
 mod predictor_evaluate;
 mod predictor_predict;

@@ -219,6 +219,20 @@ fn one_operator_and_one_method_are_enough() {
 }
 
 #[test]
+fn slips_of_names_and_units_are_warned_of() {
+    let dir = Dir::new();
+    let rows = [("A", "pendant", 1, 2.0), ("a", "virtual", 1, 1.0), ("A", "Virtual", 2, 1.0)];
+    dir.write("trials.csv", table(&rows));
+    let answer = run(&dir, &format!("trials.csv {COURSE} --out o")).expect(0);
+    answer.says("operators `A` and `a` differ in case").says("methods `Virtual` and `virtual` differ in case");
+    dir.write("trials.csv", table(&rows.map(|(_, method, trial, s)| ("A", method, trial, 1000.0 * s))));
+    run(&dir, &format!("trials.csv {COURSE} --out o")).expect(0).says("is time_s in ms?");
+    dir.write("trials.csv", by_hand());
+    let plain = run(&dir, &format!("trials.csv {COURSE} --out o")).expect(0);
+    assert!(!plain.stderr.contains("warning"), "{}", plain.stderr);
+}
+
+#[test]
 fn results_are_the_same_bytes_on_any_threads_and_from_either_format() {
     let dir = Dir::new();
     dir.write("trials.csv", curves());

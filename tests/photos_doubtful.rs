@@ -210,6 +210,30 @@ fn an_outline_mostly_outside_of_the_picture_is_left_out() {
     assert_eq!(left_out(&dir).1, 1);
 }
 
+/// Masks of another photograph, and people and poses of two spellings.
+#[test]
+fn outlines_around_which_no_finger_is_seen_are_warned_of() {
+    let dir = Dir::new();
+    dir.nail("set/rest/ben");
+    for subject in ["Anna", "anna"] {
+        for pose in ["rest", "press"] {
+            let skin = image::RgbImage::from_pixel(160, 140, image::Rgb([170, 90, 80]));
+            skin.save(dir.place(&format!("set/{pose}/{subject}.png"))).expect("a picture");
+            let mask = GrayImage::from_fn(160, 140, |x, y| {
+                let (u, v) = ((f64::from(x) - 80.0) / 30.0, (f64::from(y) - 70.0) / 40.0);
+                Luma([if u * u + v * v <= 1.0 { 255 } else { 0 }])
+            });
+            mask.save(dir.place(&format!("masks/{pose}/{subject}.png"))).expect("a mask");
+        }
+    }
+    let photos = |more: &[&str]| dir.lunula(&[&["photos", "set", "--masks", "masks", "--out", "out"], more].concat());
+    let answer =
+        photos(&[]).expect(1).says("around 4 of 5 outlines no finger's direction is clear (press/Anna.png first)");
+    answer.says("subjects `Anna` and `anna` differ in case or spaces only, and count apart");
+    let said = photos(&["--distal", "up"]).expect(0);
+    assert!(!said.stderr.contains("no finger's direction"), "{}", said.stderr);
+}
+
 #[test]
 fn giant_sizes_cost_only_their_own_photograph() {
     let dir = Dir::new();

@@ -183,8 +183,14 @@ fn extremes_are_played_and_warned_of() {
     assert_eq!((rows.len(), forces(&rows[0])[2], forces(&rows[50])[2]), (51, 0.0, -3.0));
     assert!(warned("force --soft-start 0").contains("begins infinitely fast"));
     // One step: the first row and the last.
-    assert_eq!(warned("force --every 180"), "");
+    assert!(warned("force --every 180").contains("too far apart"));
     assert_eq!(dir.table("t.csv").len(), 2);
+    // What happens between rows is not in them; eight rows a turn are enough.
+    let said = warned("posture --hz 10 --every 0.1 --seconds 5");
+    assert!(said.contains("leaves the straight line by up to 100 % of its range"), "{said}");
+    assert!(warned("force --fc 10 --every 0.1 --seconds 20").contains("too far apart"));
+    let said = warned("posture --hz 1 --every 0.125 --seconds 20");
+    assert!(!said.contains("too far apart"), "{said}");
     // Steps that are no decimal numbers keep all their digits.
     run(&dir, "posture --every 0.03333333333333333 --out third.csv --no-figures").expect(0);
     let rows = dir.table("third.csv");

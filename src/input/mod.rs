@@ -167,6 +167,13 @@ pub(crate) fn read(path: &Path) -> io::Result<Vec<u8>> {
     }
 }
 
+/// Ends lines with `\n` where they end with `\r` alone, as spreadsheets on a Mac may write them.
+pub(crate) fn end_lines(bytes: &mut [u8]) {
+    if memchr::memchr(b'\n', bytes).is_none() {
+        bytes.iter_mut().filter(|b| **b == b'\r').for_each(|b| *b = b'\n');
+    }
+}
+
 /// As [`read()`], of text.
 pub(crate) fn read_text(path: &Path) -> io::Result<String> {
     String::from_utf8(read(path)?).map_err(|_| io::Error::new(ErrorKind::InvalidData, "is not UTF-8 text"))

@@ -34,22 +34,29 @@ pub(crate) const PULLED: f64 = 2.0;
 
 /// What to say of a recording's times, which ascend.
 pub(crate) fn time(time_s: &[f64]) -> Option<String> {
+    let apart = || {
+        let step_s = median_step_s(time_s).filter(|step_s| *step_s > APART_S)?;
+        Some(format!(
+            "rows are {} s apart, if the stamps are in seconds; write them in seconds, or say with --time-unit what \
+             they are in",
+            short(step_s)
+        ))
+    };
+    blocks(time_s).or_else(apart)
+}
+
+/// What to say of rows that share their stamps.
+pub(crate) fn blocks(time_s: &[f64]) -> Option<String> {
     let distinct: Vec<f64> = time_s.chunk_by(|a, b| a == b).map(|block| block[0]).collect();
     let block_s = median_step_s(&distinct).filter(|_| 2 * distinct.len() < time_s.len());
-    if let Some(block_s) = block_s.filter(|block_s| *block_s >= BLOCK_S) {
-        return Some(format!(
+    block_s.filter(|block_s| *block_s >= BLOCK_S).map(|block_s| {
+        format!(
             "rows come in blocks of one time stamp, about {:.0} rows each, {} s apart: what changes within a block is \
              labelled wrongly by up to so much; write when each row was taken",
             time_s.len() as f64 / distinct.len() as f64,
             short(block_s)
-        ));
-    }
-    let step_s = median_step_s(time_s).filter(|step_s| *step_s > APART_S)?;
-    Some(format!(
-        "rows are {} s apart, if the stamps are in seconds; write them in seconds, or say with --time-unit what they \
-         are in",
-        short(step_s)
-    ))
+        )
+    })
 }
 
 /// The least and the greatest of the values that are known, but for spikes; of none 0.
@@ -152,6 +159,9 @@ mod tests {
         };
         assert!(stamped(25, 1.0).contains("about 25 rows each, 1 s apart"), "{}", stamped(25, 1.0));
         assert_eq!(stamped(8, 0.08), "");
+        // Of dates, blocks alone.
+        let minutes: Vec<f64> = (0..400).map(|k| 60.0 * (k / 25) as f64).collect();
+        assert!(blocks(&minutes).is_some() && blocks(&[0.0, 10.0, 20.0]).is_none());
     }
 
     #[test]

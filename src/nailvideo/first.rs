@@ -138,12 +138,12 @@ impl Finder {
             }
         };
         let seen = to_draw(&listed.nails);
-        one_of(listed.nails).map_err(|why| NotOne { why, seen })
+        one_of(listed.nails, [picture.image.width(), picture.image.height()]).map_err(|why| NotOne { why, seen })
     }
 }
 
 /// The one nail that can be followed; the error is words for the user.
-fn one_of(nails: Vec<Nail>) -> Result<FirstNail, String> {
+fn one_of(nails: Vec<Nail>, size: [u32; 2]) -> Result<FirstNail, String> {
     let width_px = |nail: &Nail| Some(NailFrame::new(nail.outline.as_ref()?, nail.axis?).ok()?.width_px);
     if let Some(widest) = nails.iter().filter_map(width_px).reduce(f64::max).filter(|widest| *widest < LEAST_WIDTH_PX) {
         return Err(narrow(if nails.len() > 1 { "the widest nail that is seen" } else { "the nail" }, widest));
@@ -163,6 +163,9 @@ fn one_of(nails: Vec<Nail>) -> Result<FirstNail, String> {
     let frame = NailFrame::new(&outline, axis).map_err(|why| why.to_string())?;
     if frame.width_px < LEAST_WIDTH_PX {
         return Err(narrow("the only nail without doubt", frame.width_px));
+    }
+    if let Some(doubt) = frame.doubt(&outline, size) {
+        return Err(format!("of the nail: {doubt}"));
     }
     Ok(FirstNail { outline, frame, source, confidence })
 }

@@ -13,11 +13,9 @@ use super::shape::NailShape;
 use crate::files::{WriteError, write_whole};
 use crate::labelme::{LabelMe, Shape, to_labelme};
 use crate::photo::Photograph;
-use crate::photo::outline::{AXIS, NAIL};
+use crate::photo::outline::{AXIS, NAIL, NOT_A_NAIL};
 use crate::photograph::stored_from_upright;
 
-/// What a shape is labelled that a person says is no nail: no run reads it.
-pub const NOT_A_NAIL: &str = "not a nail";
 /// The description of a shape that a person corrected here.
 const CORRECTED: &str = "corrected with lunula edit";
 /// How the descriptions of detected ones begin.

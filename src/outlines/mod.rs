@@ -20,7 +20,7 @@ mod state;
 mod survey;
 mod view;
 
-pub use annotation::NOT_A_NAIL;
+pub use crate::photo::outline::NOT_A_NAIL;
 pub use editor::{Editor, Pressed, Show};
 pub use options::EditOptions;
 pub use report::{EditFigures, EditReport};

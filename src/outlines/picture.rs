@@ -213,7 +213,7 @@ pub(super) fn normalized_png(photo: &Photograph, shape: &NailShape, with: &Norma
 fn png_of(image: &DynamicImage, depth: Depth, shape: &NailShape, with: &Normalization) -> Png {
     let outline = shape.outline().map_err(|fault| fault.to_string())?;
     let frame = NailFrame::new(&outline, shape.axis).map_err(|fault| fault.to_string())?;
-    let normalized = normalized_or_why(image, &frame, with, &mut Normalizer::default())?;
+    let normalized = normalized_or_why(image, (&outline, &frame), with, &mut Normalizer::default())?;
     let mut scratch = Scratch::default();
     scratch.png_of(&normalized, depth).map(<[u8]>::to_vec).map_err(|why| why.to_string())
 }

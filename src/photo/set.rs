@@ -15,6 +15,7 @@ use thiserror::Error;
 use crate::input;
 use crate::photo::pose::sort_by_pose;
 use crate::photograph::{extension, is_picture};
+use crate::table::delimiter_of;
 use crate::words::shown;
 
 /// Photographs in formats that lunula does not read: said, not passed over.
@@ -236,11 +237,8 @@ impl PhotoSet {
             std::io::ErrorKind::InvalidData => wrong("is not UTF-8; save it as CSV in UTF-8".into()),
             _ => wrong(e.to_string()),
         })?;
-        // Spreadsheets set to a decimal comma separate by semicolons.
-        let header = text.lines().next().unwrap_or_default();
-        let delimiter = if header.contains(';') && !header.contains(',') { b';' } else { b',' };
         let mut reader = csv::ReaderBuilder::new()
-            .delimiter(delimiter)
+            .delimiter(delimiter_of(&text))
             .trim(csv::Trim::All)
             .flexible(true)
             .from_reader(text.trim_start_matches('\u{feff}').as_bytes());
@@ -250,7 +248,7 @@ impl PhotoSet {
             let found = header.iter().collect::<Vec<_>>().join(",");
             return Err(wrong(format!(
                 "line 1: the columns are `{found}`; it needs file,subject,pose and may have outline and tone, \
-                 separated by commas or semicolons"
+                 separated by commas, semicolons or tabs"
             )));
         };
         let meant = OPTIONAL.iter().filter(|optional| column(optional.name).is_none());

@@ -1,12 +1,26 @@
 //! The cells of a CSV file: one text, and where in it each cell ends.
 //!
+//! Cells are separated by what separates the names: commas, semicolons, tabs or bars ([`delimiter_of`]). Where that is
+//! no comma, numbers may have a decimal comma, all or none of them.
+//!
 //! A file without a quotation mark is its own text: cells are cut out of it, nothing is copied. One with quotation
 //! marks goes through the CSV reader, row by row into a text of the same shape. Lines are those of the file, counted
 //! from 1; empty ones are no rows.
 
 use std::ops::Range;
 
+use crate::input;
 use memchr::{memchr, memchr_iter, memchr2_iter};
+
+/// What may separate cells.
+pub(crate) const DELIMITERS: [u8; 4] = [b'|', b'\t', b';', b','];
+
+/// What separates the names in the first line of a text: a comma wherever there is one, in no quotes.
+pub(crate) fn delimiter_of(text: &str) -> u8 {
+    let names = text.split(['\n', '\r']).find(|line| !line.is_empty()).unwrap_or_default();
+    let bare: String = names.split('"').step_by(2).collect();
+    DELIMITERS.into_iter().rev().find(|&mark| bare.contains(char::from(mark))).unwrap_or(b',')
+}
 
 /// The rows of a CSV file, each with as many cells as there are names.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -29,17 +43,17 @@ impl CsvCells {
         if bytes.starts_with(b"\xef\xbb\xbf") {
             bytes.drain(..3);
         }
+        input::end_lines(&mut bytes);
         let text = String::from_utf8(bytes).map_err(|why| {
             let line = 1 + memchr_iter(b'\n', &why.as_bytes()[..why.utf8_error().valid_up_to()]).count();
             format!("line {line} is not UTF-8 text; save the file as UTF-8")
         })?;
-        let names = text.lines().next().unwrap_or_default();
-        let has_semicolons = names.contains(';') && !names.contains(',');
-        let all = if is_plain(text.as_bytes()) { Self::of_plain(text) } else { Self::of_quoted(&text) };
-        let all = all.map_err(|why| match has_semicolons {
-            true => "its cells are separated by `;`; write commas between them, and points in numbers".to_owned(),
-            false => why,
-        })?;
+        let delimiter = delimiter_of(&text);
+        let is_plain = is_plain(text.as_bytes());
+        let mut all = if is_plain { Self::of_plain(text, delimiter) } else { Self::of_quoted(&text, delimiter) }?;
+        if delimiter != b',' {
+            all.read_decimal_commas()?;
+        }
         Ok(all.with_names())
     }
 
@@ -64,6 +78,41 @@ impl CsvCells {
         start..self.ends[at]
     }
 
+    /// Writes numbers with a decimal comma with a point.
+    fn read_decimal_commas(&mut self) -> Result<(), String> {
+        let (mut commas, mut points) = (Vec::new(), None);
+        for row in 1..self.rows() {
+            for column in 0..self.columns {
+                let cell = self.cell(row, column);
+                let is_number = |text: &str| text.parse::<f64>().is_ok();
+                match cell.find([',', '.']) {
+                    Some(at) if cell.as_bytes()[at] == b'.' => {
+                        if points.is_none() && is_number(cell) {
+                            points = Some(row);
+                        }
+                    }
+                    Some(at) if is_number(&cell.replacen(',', ".", 1)) => {
+                        let place = self.place(row, column);
+                        let space = self.text[place.clone()].len() - self.text[place.clone()].trim_start().len();
+                        commas.push((row, place.start + space + at));
+                    }
+                    _ => {}
+                }
+            }
+        }
+        if let (Some((comma, _)), Some(point)) = (commas.first(), points) {
+            return Err(format!(
+                "numbers have decimal commas (line {}) and decimal points (line {}); use one",
+                self.line(*comma),
+                self.line(point)
+            ));
+        }
+        let mut bytes = std::mem::take(&mut self.text).into_bytes();
+        commas.into_iter().for_each(|(_, at)| bytes[at] = b'.');
+        self.text = String::from_utf8(bytes).expect("a comma's byte is no part of another character");
+        Ok(())
+    }
+
     /// Takes the first row for the names.
     fn with_names(mut self) -> (Vec<String>, Self) {
         if self.rows.is_empty() {
@@ -76,17 +125,17 @@ impl CsvCells {
     }
 
     /// Of a text without quotation marks.
-    fn of_plain(text: String) -> Result<Self, String> {
+    fn of_plain(text: String, delimiter: u8) -> Result<Self, String> {
         let bytes = text.as_bytes();
         let mut cells = Self { text: String::new(), columns: 0, rows: Vec::new(), ends: Vec::new() };
         let (mut start, mut line) = (0, 1);
-        for at in memchr2_iter(b',', b'\n', bytes).chain((!bytes.ends_with(b"\n")).then_some(bytes.len())) {
-            if bytes.get(at) == Some(&b',') {
+        for at in memchr2_iter(delimiter, b'\n', bytes).chain((!bytes.ends_with(b"\n")).then_some(bytes.len())) {
+            if bytes.get(at) == Some(&delimiter) {
                 cells.ends.push(at);
                 continue;
             }
             let end = if at > start && bytes[at - 1] == b'\r' { at - 1 } else { at };
-            // An empty line has no comma before its end.
+            // An empty line has no cell before its end.
             if end > start {
                 cells.ends.push(end);
                 cells.end_row(start, line)?;
@@ -99,9 +148,10 @@ impl CsvCells {
     }
 
     /// Of any text.
-    fn of_quoted(text: &str) -> Result<Self, String> {
+    fn of_quoted(text: &str, delimiter: u8) -> Result<Self, String> {
         let bytes = text.as_bytes();
-        let mut reader = csv::ReaderBuilder::new().has_headers(false).flexible(true).from_reader(bytes);
+        let mut builder = csv::ReaderBuilder::new();
+        let mut reader = builder.delimiter(delimiter).has_headers(false).flexible(true).from_reader(bytes);
         let mut cells =
             Self { text: String::with_capacity(text.len()), columns: 0, rows: Vec::new(), ends: Vec::new() };
         let mut record = csv::StringRecord::new();
@@ -136,7 +186,7 @@ impl CsvCells {
     }
 }
 
-/// Whether commas and ends of lines are all that there is to cells.
+/// Whether delimiters and ends of lines are all that there is to cells.
 fn is_plain(bytes: &[u8]) -> bool {
     memchr(b'"', bytes).is_none() && memchr_iter(b'\r', bytes).all(|at| bytes.get(at + 1) == Some(&b'\n'))
 }
@@ -177,7 +227,7 @@ mod tests {
                     .collect();
                 (lines, all)
             });
-            prop_assert_eq!(seen(CsvCells::of_plain(text.clone())), seen(CsvCells::of_quoted(&text)));
+            prop_assert_eq!(seen(CsvCells::of_plain(text.clone(), b',')), seen(CsvCells::of_quoted(&text, b',')));
         }
     }
 }

@@ -1,10 +1,10 @@
 //! Tables as comma-separated values.
 
 use std::fs::File;
-use std::io::Write;
+use std::io::{BufRead as _, BufReader, Read as _, Write};
 use std::path::Path;
 
-use super::cells::CsvCells;
+use super::cells::{CsvCells, delimiter_of};
 use super::{Column, ColumnKind, Value, number_text};
 use crate::input;
 
@@ -63,8 +63,12 @@ pub(super) fn read(path: &Path) -> Result<(Vec<String>, CsvCells), String> {
 
 /// The names of a CSV file's columns, the rows unread.
 pub(super) fn names(path: &Path) -> Result<Vec<String>, String> {
-    let file = input::open(path).map_err(|e| e.to_string())?;
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(file);
+    let mut file = BufReader::new(input::open(path).map_err(|e| e.to_string())?);
+    let mut first = Vec::new();
+    while first.trim_ascii().is_empty() && file.read_until(b'\n', &mut first).map_err(|e| e.to_string())? > 0 {}
+    let delimiter = delimiter_of(&String::from_utf8_lossy(&first));
+    let rows = first.chain(file);
+    let mut reader = csv::ReaderBuilder::new().delimiter(delimiter).trim(csv::Trim::All).from_reader(rows);
     let names = reader.headers().map_err(|why| match why.kind() {
         csv::ErrorKind::Utf8 { .. } => "the line of names is not UTF-8 text; save the file as UTF-8".to_owned(),
         _ => why.to_string(),

@@ -20,6 +20,7 @@ use rayon::prelude::*;
 
 use crate::words::Words;
 
+pub(crate) use cells::{DELIMITERS, delimiter_of};
 pub use read::{Cell, Table, column_names};
 
 /// Why a table can't be written or read.
@@ -57,7 +58,7 @@ pub enum TableError {
 /// How a table is stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TableFormat {
-    /// Comma-separated values with a line of names, UTF-8.
+    /// Comma-separated values with a line of names, UTF-8; semicolons, tabs and bars are read as well.
     Csv,
     /// Apache Parquet, compressed with Snappy.
     Parquet,

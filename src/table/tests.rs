@@ -160,11 +160,39 @@ fn a_wrong_cell_is_named_with_file_line_and_column() {
 }
 
 #[test]
+fn other_delimiters_decimal_commas_and_line_ends_are_read() {
+    let plain = read_text(b"time_s,name,P1\n0.5,\"a, b\",-1e-3\n1,2 x,\n").unwrap();
+    let texts = |table: &Table| table.texts("name").unwrap();
+    for mark in [';', '\t', '|'] {
+        for (comma, end) in [(',', "\n"), ('.', "\r\n"), (',', "\r")] {
+            let text = format!("time_s;name;P1\n0{comma}5;\"a, b\";-1e-3\n1;2 x;\n");
+            let text = text.replace(';', &mark.to_string()).replace('\n', end);
+            for text in [format!("{end}{end}{text}"), format!("\u{feff}{text}")] {
+                let read = read_text(text.as_bytes()).unwrap();
+                assert_eq!(read.names(), plain.names(), "{text:?}");
+                assert_eq!(read.numbers("time_s").unwrap(), plain.numbers("time_s").unwrap(), "{text:?}");
+                assert_eq!(read.numbers("P1").unwrap(), [Some(-0.001), None], "{text:?}");
+                assert_eq!(texts(&read), texts(&plain), "{text:?}");
+                let dir = tempfile::tempdir().unwrap();
+                let path = dir.path().join("t.csv");
+                fs::write(&path, &text).unwrap();
+                assert_eq!(column_names(&path).unwrap(), plain.names(), "{text:?}");
+            }
+        }
+    }
+    // A line is the file's own; in a table with commas a decimal comma is another cell.
+    let said = read_text(b"a;b\r1,5;2\rx;3\r").unwrap().numbers("a").unwrap_err().to_string();
+    assert!(said.contains(":3: column `a`"), "{said}");
+    assert!(read_text(b"a,b;c\n1,5;2\n").unwrap().numbers("b;c").is_err());
+}
+
+#[test]
 fn damaged_files_are_refused() {
     for (text, words) in [
         (&b""[..], "is empty"),
         (b"a,b\n1,2\n1,2,3\n", "line 3 has 3 cells and the first line 2"),
-        (b"a;b\n1,5;2,5\n", "its cells are separated by `;`; write commas"),
+        (b"a;b\n1,5;2.5\n", "decimal commas (line 2) and decimal points (line 2)"),
+        (b"a;b\n1,5\n", "line 2 has 1 cells and the first line 2"),
         (b"a,a\n1,2\n", "two columns are named `a`"),
         (b"a,b\n1,\xff\n", "line 2 is not UTF-8"),
     ] {

@@ -37,7 +37,7 @@ pub fn run(
     let start = Instant::now();
     let stages = Stages::default();
     let mut files = files(&inputs.views)?;
-    let copied = leave_copies_out(&mut files);
+    let copied = leave_copies_out(&mut files, inputs.plane.as_deref());
     let report_at = outputs.report.then(|| beside(&outputs.camera, ".run.json"));
     let mut places = Places::not_over(files.iter().chain(&inputs.plane));
     places.check([Some(&outputs.camera), report_at.as_ref()].into_iter().flatten())?;
@@ -89,13 +89,15 @@ pub fn run(
     Ok(report.timed(&stages, start).commit(places, report_at.as_deref())?)
 }
 
-/// Takes away files that are another's copy to the byte: a view that is counted twice is no second view.
-fn leave_copies_out(files: &mut Vec<PathBuf>) -> Vec<String> {
+/// Takes away files that are another's copy to the byte, or the plane's: a view counted twice is no second view.
+fn leave_copies_out(files: &mut Vec<PathBuf>, plane: Option<&Path>) -> Vec<String> {
     let (mut copies, mut said) = (BTreeSet::new(), Vec::new());
-    for group in same_to_the_byte(files.iter().map(PathBuf::as_path).enumerate()) {
+    let views = files.iter().map(PathBuf::as_path).enumerate().map(|(at, path)| (Some(at), path));
+    for group in same_to_the_byte(plane.map(|path| (None, path)).into_iter().chain(views)) {
+        let (first, of_plane) = (group[0].1.display(), if group[0].0.is_none() { " of --plane" } else { "" });
+        copies.extend(group[1..].iter().filter_map(|(at, _)| *at));
         let names: Vec<String> = group[1..].iter().map(|(_, path)| path.display().to_string()).collect();
-        said.push(format!("{}: the same to the byte as {}, and not counted", names.join(", "), group[0].1.display()));
-        copies.extend(group[1..].iter().map(|(at, _)| *at));
+        said.push(format!("{}: the same to the byte as {first}{of_plane}, and not counted", names.join(", ")));
     }
     let mut at = 0..;
     files.retain(|_| !at.next().is_some_and(|at: usize| copies.contains(&at)));

@@ -136,14 +136,11 @@ impl Rows {
         let has = |name: &&&str| self.names.iter().any(|own| own == **name);
         let missing: Vec<String> = needed.iter().filter(|name| !has(name)).map(|name| format!("`{name}`")).collect();
         if !missing.is_empty() {
-            let mut what = format!(
+            let what = format!(
                 "has no column {}; its columns are {}: rename or add what is missing",
                 missing.join(", "),
                 listed(&self.names)
             );
-            if self.names.iter().any(|name| name.contains([';', '\t'])) {
-                what += "; columns are separated by commas";
-            }
             return Err(HemodynamicsError::table(&self.path, what));
         }
         let mut faults: Vec<(usize, String)> = Vec::new();

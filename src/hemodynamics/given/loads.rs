@@ -9,6 +9,21 @@ use super::columns::{BLOOD, Columns, Knots, PRESSED, Rows, TIME};
 use crate::hemodynamics::HemodynamicsError;
 use crate::log::LogReading;
 
+/// Pressures that are nowhere greater hardly press on vessels of kilopascals, and are in another unit (assumed).
+const HARDLY_PA: f64 = 200.0;
+
+/// What to say of a recording's pressures, Pa, that are all but nothing.
+pub(in crate::hemodynamics) fn hardly_pressed(columns: &[&[f64]]) -> Option<String> {
+    let largest = columns.concat().into_iter().map(f64::abs).filter(|pa| pa.is_finite()).fold(0.0, f64::max);
+    (largest > 0.0 && largest < HARDLY_PA).then(|| {
+        format!(
+            "{} are nowhere greater than {largest} Pa, which hardly presses on a vessel: are they in kPa or mmHg? \
+             Write them in Pa",
+            PRESSED.join(" and ")
+        )
+    })
+}
+
 /// What to know of a negative load.
 pub(in crate::hemodynamics) const SUCTION: &str = "pressing is positive, and negative pressure is suction";
 
@@ -69,7 +84,9 @@ impl LoadOptions {
             let needed = [TIME, PRESSED[0], PRESSED[1]];
             let columns = rows.numbers(&needed, &BLOOD, TIME)?;
             let placed = |what: &[String]| what.iter().map(|one| format!("{}: {one}", path.display())).collect();
-            warnings = placed(&[rows.warnings(), &rows.near_misses(&BLOOD, &needed)].concat());
+            let pressed: Vec<&[f64]> = PRESSED.iter().filter_map(|name| columns.get(name)).collect();
+            let hardly: Vec<String> = hardly_pressed(&pressed).into_iter().collect();
+            warnings = placed(&[rows.warnings(), &rows.near_misses(&BLOOD, &needed), &hardly].concat());
             notes = placed(&rows.notes());
             known_s = place_columns(&rows, &columns, &mut loads)?;
         }

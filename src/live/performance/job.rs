@@ -10,9 +10,10 @@ use super::tables::{MEANS, ROWS, write_means, write_rows};
 use super::{PerformanceError, analysis, figures};
 use crate::files::Places;
 use crate::job::{Report, Watch};
+use crate::median::median_of;
 use crate::predictor::FolderOutputs;
 use crate::stages::{Stages, Step, left_out};
-use crate::words::instead;
+use crate::words::{instead, twins};
 
 /// The figures.
 pub(super) const FIGURES: &str = "performance.json";
@@ -75,9 +76,15 @@ pub fn run(
         })?;
     }
     let left_out = left_out(plan(Some(outputs)));
-    let notes = notes(&figures, outputs);
-    let report =
-        Report { left_out, notes, pictures, failed: trials.impossible, ..Report::new("performance", watch, figures) };
+    let (notes, warnings) = (notes(&figures, outputs), warnings(&trials));
+    let report = Report {
+        left_out,
+        notes,
+        warnings,
+        pictures,
+        failed: trials.impossible,
+        ..Report::new("performance", watch, figures)
+    };
     Ok(report.timed(&stages, start).commit(places, outputs.report.then(|| folder.join(REPORT)).as_deref())?)
 }
 
@@ -91,6 +98,18 @@ fn baseline(options: &PerformanceOptions, trials: &Trials, name: &str) -> Result
             instead(baseline, &known)
         )])
     })
+}
+
+/// A decision of more seconds was logged in another unit (assumed: those of appendix C take 0.3 to 3 s).
+const LONG_S: f64 = 100.0;
+
+/// What a person may have slipped in.
+fn warnings(trials: &Trials) -> Vec<String> {
+    let name = |(what, names): (&str, &[String])| twins(what, names.iter().map(String::as_str));
+    let named = [("operators", &trials.operators[..]), ("methods", &trials.methods[..])].into_iter().filter_map(name);
+    let decision_s = median_of(trials.rows.iter().map(|row| row.decision_s)).filter(|median| *median > LONG_S);
+    let long = decision_s.map(|median| format!("half of the decisions took {median:.0} s or more: is time_s in ms?"));
+    named.chain(long).collect()
 }
 
 /// What was chosen or could not be known.

@@ -179,11 +179,12 @@ pub(super) fn report(ended: Ended<'_>, watch: &Watch<'_>) -> Result<SessionRepor
     let losses: Vec<String> = losses(&report).into_iter().chain(doubts).collect();
     losses.iter().for_each(|warning| tell(&format!("warning: {warning}")));
     report.warnings.extend(losses);
-    let report = report.timed(&Stages::default(), start);
+    let mut report = report.timed(&Stages::default(), start);
     if let Some(out) = &files.out {
         let mut places = Places::not_over(files.models.iter().map(|model| &model.what));
-        places.write(&beside(out, REPORT), &report.text())?;
-        places.commit()?;
+        let written = places.write(&beside(out, REPORT), &report.text()).and_then(|()| places.commit());
+        // Rows stand there, and what of them could not be recorded has to be said as well.
+        report.failed.extend(written.err().map(|why| why.to_string()));
     }
     Ok(report)
 }

@@ -5,6 +5,7 @@ use lunula_live::skill::{Contact, Figures, Force, MOST_POINTS, Thresholds, dista
 use super::read::{Recording, Trial, read};
 use super::report::{FingerFigures, PostureFigures, TrialFigures};
 use super::{SkillError, SkillInputs, SkillOptions, SkillRecording};
+use crate::input::same_to_the_byte;
 
 /// So many trials are named in a message.
 const MOST_NAMED: usize = 10;
@@ -17,8 +18,8 @@ pub(super) struct Reference {
     trial: Trial,
     /// From the first contact of any finger to the last, seconds; none without contact.
     span_s: Option<[f64; 2]>,
-    /// Whether it is one of the recordings' trials, which is not compared with itself.
-    is_own: bool,
+    /// The recordings of which it is a trial, which is not compared with itself.
+    within: Vec<String>,
 }
 
 impl Reference {
@@ -28,16 +29,24 @@ impl Reference {
     /// A recording that can't be read or holds several trials, or a name that none or several have.
     pub(super) fn find(inputs: &SkillInputs, options: &SkillOptions) -> Result<Option<Self>, SkillError> {
         match (&inputs.reference, &options.reference_trial) {
-            (Some(recording), _) => Self::recorded(recording, options).map(Some),
+            (Some(recording), _) => Self::recorded(recording, &inputs.recordings, options).map(Some),
             (None, Some(name)) => Self::named(name, &inputs.recordings, options),
             (None, None) => Ok(None),
         }
     }
 
-    fn recorded(recording: &SkillRecording, options: &SkillOptions) -> Result<Self, SkillError> {
+    fn recorded(
+        recording: &SkillRecording,
+        others: &[SkillRecording],
+        options: &SkillOptions,
+    ) -> Result<Self, SkillError> {
         let mut trials = read(recording, &options.finger)?.trials;
+        let files = std::iter::once(recording).chain(others).map(|one| (one, one.path.as_path()));
+        // A file that is named twice is one, and so is its copy.
+        let same = same_to_the_byte(files).into_iter().find(|same| std::ptr::eq(same[0].0, recording));
+        let within = same.into_iter().flatten().skip(1).map(|(one, _)| one.name.clone()).collect();
         match (trials.len(), trials.pop()) {
-            (1, Some(trial)) => Ok(Self::of(recording.name.clone(), trial, false, &options.thresholds())),
+            (1, Some(trial)) => Ok(Self::of(recording.name.clone(), trial, within, &options.thresholds())),
             _ => Err(SkillError::Recordings(vec![format!(
                 "{}: holds several trials; a reference is one: give a recording of it, or name it as \
                  --reference-trial",
@@ -58,7 +67,7 @@ impl Reference {
                     None => trial.trial.clone(),
                 };
                 if wanted == trial.trial || wanted == name {
-                    first.get_or_insert((name.clone(), trial));
+                    first.get_or_insert((name.clone(), trial, recording.name.clone()));
                     matching.push(name);
                 } else if others.len() < MOST_NAMED {
                     others.push(name);
@@ -68,7 +77,7 @@ impl Reference {
         match (first, matching.len()) {
             (None, _) if others.is_empty() => Ok(None),
             (None, _) => refused(format!("there is no such trial; there are {}", others.join(", "))),
-            (Some((name, trial)), 1) => Ok(Some(Self::of(name, trial, true, &options.thresholds()))),
+            (Some((name, trial, within)), 1) => Ok(Some(Self::of(name, trial, vec![within], &options.thresholds()))),
             (_, many) => {
                 matching.truncate(MOST_NAMED);
                 refused(format!("there are {many} of this name ({}); write SUBJECT/TRIAL", matching.join(", ")))
@@ -76,10 +85,10 @@ impl Reference {
         }
     }
 
-    fn of(name: String, trial: Trial, is_own: bool, thresholds: &Thresholds) -> Self {
+    fn of(name: String, trial: Trial, within: Vec<String>, thresholds: &Thresholds) -> Self {
         let touched: Vec<Vec<Contact>> =
             trial.fingers.iter().map(|finger| Figures::of(&finger.force, thresholds).1).collect();
-        Self { name, span_s: span_s(&touched), trial, is_own }
+        Self { name, span_s: span_s(&touched), trial, within }
     }
 
     /// Whether it touches at all.
@@ -87,9 +96,11 @@ impl Reference {
         self.span_s.is_some()
     }
 
-    /// Whether it is this very trial.
-    fn is(&self, trial: &Trial) -> bool {
-        self.is_own && self.trial.subject == trial.subject && self.trial.trial == trial.trial
+    /// Whether it is this very trial of a recording.
+    fn is(&self, recording: &str, trial: &Trial) -> bool {
+        self.within.iter().any(|name| name == recording)
+            && self.trial.subject == trial.subject
+            && self.trial.trial == trial.trial
     }
 
     /// How far a finger's force is from the same finger's here.
@@ -128,7 +139,7 @@ pub(super) fn figures(
     let ranks = ranks(&both);
     let span_s = span_s(&touched);
     let band = 0.01 * options.band_percent;
-    let reference = reference.filter(|one| !one.is(trial));
+    let reference = reference.filter(|one| !one.is(recording, trial));
     let fingers = trial.fingers.iter().zip(figures).zip(&ranks).map(|((finger, figures), rank)| FingerFigures {
         finger: finger.name.clone(),
         onset_s: figures.first_s.map(|first_s| first_s - from_s),

@@ -19,6 +19,7 @@ use crate::job::{Report, Watch};
 use crate::log::doubts;
 use crate::predictor::FolderOutputs;
 use crate::stages::{Stages, Step, left_out};
+use crate::words::twins;
 
 /// The figures.
 pub(super) const FIGURES: &str = "skill.json";
@@ -103,10 +104,11 @@ pub fn run(
         return Err(SkillError::Recordings(failed));
     }
     distinct(&done)?;
-    let (mut notes, warnings) = said(&done, reference.as_ref());
+    let (mut notes, mut warnings) = said(&done, reference.as_ref());
     let drawn: Vec<Drawn> = done.iter_mut().flat_map(|(_, one)| std::mem::take(&mut one.drawn)).collect();
     let trials: Vec<TrialFigures> = done.into_iter().flat_map(|(_, one)| one.trials).collect();
     let people: Vec<_> = summary::people(&trials).iter().map(|subject| summary::person(subject, &trials)).collect();
+    warnings.extend(twins("subjects", trials.iter().filter_map(|trial| trial.subject.as_deref())));
     let figures = SkillFigures {
         folder: folder.clone(),
         reference: reference.map(|reference| reference.name),

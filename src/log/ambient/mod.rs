@@ -166,7 +166,8 @@ pub fn samples(log: &Log, options: &AmbientOptions) -> Result<Samples, AmbientEr
     });
     let forces: Vec<Channel> = forces.collect();
     // Dates have their unit.
-    found.warnings.extend(doubts::time(&log.time_s).filter(|_| log.midnight_s.is_none()));
+    let time = if log.midnight_s.is_none() { doubts::time } else { doubts::blocks };
+    found.warnings.extend(time(&log.time_s));
     if log.led.is_none() {
         found.warnings.extend(doubts::alternating(named(&photodiodes)));
     }

@@ -6,6 +6,7 @@
 
 use super::split::{Line, a_name, cells_of, is_comment, is_comments, lines_in_use, split};
 use crate::log::lines::cell::{Numbers, bare};
+use crate::table::DELIMITERS;
 
 /// Lines that are looked at.
 const MOST_LINES: usize = 1000;
@@ -41,7 +42,7 @@ pub(super) fn find(text: &[u8], declared: Option<u8>) -> Option<Result<Found, u6
     let mut all = lines_in_use(text);
     let lines: Vec<Line<'_>> = all.by_ref().take(MOST_LINES).collect();
     let whole = all.next().is_none();
-    let delimiters = declared.map_or(vec![b'\t', b';', b','], |declared| vec![declared]);
+    let delimiters = declared.map_or(DELIMITERS.to_vec(), |declared| vec![declared]);
     let found = delimiters.into_iter().filter_map(|delimiter| of_delimiter(&lines, delimiter, whole));
     found.max_by_key(|found| found.as_ref().map_or(0, |found| found.names.len()))
 }

@@ -3,8 +3,8 @@
 //! Gzip is known by its first bytes, UTF-16 by its byte-order mark; a byte-order mark of UTF-8 is taken off. Lines that
 //! begin with `#` before the header, and empty ones, are passed over; where there is no header but a line of names
 //! behind the last `#` (as NumPy writes it), that is the header. Where the first line does not fit the next, the header
-//! is looked for below what other programs write before it ([`preamble`]). The delimiter is the one of tab, `;` and `,`
-//! that the header and the first rows agree on.
+//! is looked for below what other programs write before it ([`preamble`]). The delimiter is the one of
+//! [`DELIMITERS`] that the header and the first rows agree on.
 
 use std::path::Path;
 
@@ -14,6 +14,7 @@ use crate::input;
 use crate::log::LogError;
 use crate::log::naming::guess::role_of;
 use crate::log::naming::role::Role;
+use crate::table::DELIMITERS;
 
 /// Where the parts of a text file are.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -54,6 +55,7 @@ pub(in crate::log) fn open(path: &Path) -> Result<Vec<u8>, LogError> {
         [0xef, 0xbb, 0xbf, ..] => drop(bytes.drain(..3)),
         _ => {}
     }
+    input::end_lines(&mut bytes);
     for (magic, words) in [
         (&b"PK\x03\x04"[..], "is a spreadsheet or an archive; save it as CSV"),
         (b"PAR1", "is a Parquet file; let its name end in .parquet"),
@@ -88,7 +90,7 @@ impl Layout {
                 [] => {}
                 [b'#', rest @ ..] => comment = Some(rest),
                 // Excel's own line.
-                [b's', b'e', b'p', b'=', mark @ (b',' | b';' | b'\t')] => declared = Some(*mark),
+                [b's', b'e', b'p', b'=', mark] if DELIMITERS.contains(mark) => declared = Some(*mark),
                 _ => {
                     let first = Self::of(text, row, comment, declared, (at, next, line));
                     if first.as_ref().is_ok_and(|layout| layout.fits(text)) {
@@ -169,7 +171,8 @@ impl Layout {
 
 /// What is said of a delimiter other than a comma.
 fn separated(delimiter: u8) -> Option<String> {
-    (delimiter != b',').then(|| format!("cells are separated by {}", if delimiter == b'\t' { "tabs" } else { "`;`" }))
+    let mark = if delimiter == b'\t' { "tabs".to_owned() } else { format!("`{}`", char::from(delimiter)) };
+    (delimiter != b',').then(|| format!("cells are separated by {mark}"))
 }
 
 /// The line that a row stands in that may begin behind empty lines and comments: how many to go on from `at`.
@@ -182,7 +185,7 @@ pub(in crate::log) fn lines_to_row(text: &[u8], mut at: usize) -> u64 {
     lines
 }
 
-/// Tab, `;` or `,`: which one the header has and the first rows as often; of several the one that makes most columns.
+/// What separates cells: what the header has and the first rows as often; of several the one that makes most columns.
 fn delimiter_of(header: &[u8], rows: &[u8]) -> u8 {
     const ROWS: usize = 20;
     let agreement = |delimiter: u8| {
@@ -200,5 +203,5 @@ fn delimiter_of(header: &[u8], rows: &[u8]) -> u8 {
         (columns > 1, alike == seen, columns)
     };
     // The last of equals wins.
-    [b',', b';', b'\t'].into_iter().max_by_key(|&d| agreement(d)).unwrap_or(b',')
+    DELIMITERS.into_iter().max_by_key(|&d| agreement(d)).unwrap_or(b',')
 }

@@ -61,7 +61,7 @@ impl Job for NailVideoJob {
             Part::if_wanted(REPORT, "report.html"),
         ],
     )
-    .revision(16);
+    .revision(17);
 
     fn steps(&self, inputs: &[Foreseen], demand: &Demand) -> Result<Vec<Step>, String> {
         let outputs = self.outputs(Path::new(""), demand);

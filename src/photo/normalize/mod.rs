@@ -11,6 +11,8 @@ mod resample;
 
 use image::DynamicImage;
 
+use crate::photo::outline::Outline;
+
 pub use frame::{FrameFault, NailFrame, SMALLEST_EXTENT_PX};
 pub use options::{Normalization, Resample};
 pub use plane::Channel;
@@ -85,11 +87,14 @@ const MOST_OUTSIDE: f64 = 0.5;
 /// Brings a nail into its frame as a run does, or says why a run leaves it out.
 pub(crate) fn normalized_or_why(
     image: &DynamicImage,
-    frame: &NailFrame,
+    (outline, frame): (&Outline, &NailFrame),
     with: &Normalization,
     normalizer: &mut Normalizer,
 ) -> Result<Normalized, String> {
     let size = [image.width(), image.height()];
+    if let Some(doubt) = frame.doubt(outline, size) {
+        return Err(doubt);
+    }
     let outside = frame.share_outside(size);
     if outside > MOST_OUTSIDE {
         return Err(format!(

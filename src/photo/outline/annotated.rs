@@ -23,6 +23,8 @@ const FARTHEST: f64 = 4.0;
 pub const AXIS: &str = "axis";
 /// What a detected outline that is not trusted is labelled: a person corrects it and drops the question mark.
 pub const DOUBTFUL: &str = "nail?";
+/// What a shape is labelled that a person says is no nail: no run reads it.
+pub const NOT_A_NAIL: &str = "not a nail";
 
 /// Which picture an annotation or a mask was drawn on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum, serde::Serialize)]
@@ -65,6 +67,9 @@ pub enum AnnotationFault {
     /// No polygon labelled `nail`.
     #[error("{0}: no polygon labelled `nail` in it; label one, or remove the file to have the nail detected")]
     NoNail(String),
+    /// Every polygon is labelled `not a nail`.
+    #[error("{0}: whatever was found is rejected in it (`{NOT_A_NAIL}`), so nothing of the photograph is used")]
+    Rejected(String),
 }
 
 /// What a LabelMe file says of one photograph.
@@ -199,7 +204,8 @@ pub fn read(path: &Path, photo: &Photograph, drawn: Drawn) -> Result<DrawnNails,
     found.retain(|one| is(&file.shapes[one.polygon], NAIL));
     let nails: Vec<Annotated> = found.into_iter().map(|one| one.nail).collect();
     if nails.is_empty() {
-        return Err(AnnotationFault::NoNail(name));
+        let rejected = file.shapes.iter().any(|shape| is(shape, NOT_A_NAIL));
+        return Err(if rejected { AnnotationFault::Rejected(name) } else { AnnotationFault::NoNail(name) });
     }
     Ok(DrawnNails { nails, image_path: file.image_path })
 }

@@ -11,8 +11,8 @@ mod source;
 
 pub use crate::nail::{Axis, Outline, OutlineFault};
 pub use annotated::{
-    AXIS, Annotated, AnnotationFault, DOUBTFUL, Drawn, DrawnNails, NAIL, ShapeFault, ToDraw, read as read_annotated,
-    to_file,
+    AXIS, Annotated, AnnotationFault, DOUBTFUL, Drawn, DrawnNails, NAIL, NOT_A_NAIL, ShapeFault, ToDraw,
+    read as read_annotated, to_file,
 };
 pub(crate) use annotated::{Labelled, labelled, mark_upright, other_photograph};
 pub use axis::{AxisDoubt, AxisUnknown, FoundAxis, LEAST_CONFIDENCE, Side, axis_towards, find_axes, find_axes_towards};

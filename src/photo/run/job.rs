@@ -394,7 +394,7 @@ impl Work<'_> {
         let frame = NailFrame::new(&outline, axis).map_err(|fault| fault.to_string())?;
         row.frame = Some(frame);
         let with = &self.options.normalization;
-        self.stages.time("normalize", || normalized_or_why(&picture.image, &frame, with, normalizer))
+        self.stages.time("normalize", || normalized_or_why(&picture.image, (&outline, &frame), with, normalizer))
     }
 }
 

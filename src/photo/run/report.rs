@@ -15,13 +15,14 @@ use crate::job::{Report, Watch};
 use crate::photo::channels::{ChannelFigures, add_section};
 use crate::photo::normalize::Normalization;
 use crate::photo::options::{Outputs, PhotosOptions, Results};
-use crate::photo::outline::{SavedOutlines, Source};
+use crate::photo::outline::{AxisUnknown, SavedOutlines, Source};
 use crate::photo::pose::sort_by_pose;
 use crate::photo::results::{DrawnSheet, NAIL_COLUMNS, NailRow, NailTable};
 use crate::photo::set::{Photo, PhotoSet, SetFault};
 use crate::photo::sums::{Partials, Sums};
 use crate::photograph::Profile;
 use crate::stages::Stage;
+use crate::words::twins;
 
 /// Where the report goes among the results.
 const JSON: &str = "run.json";
@@ -100,6 +101,12 @@ pub(in crate::photo) fn mixed_sums(partials: &Partials) -> Vec<String> {
         (pose.as_str(), sums.subjects.len() - grey, grey)
     }))
 }
+
+/// So many outlines, and more than this share of all whose finger is looked for, without a clear direction are warned
+/// of (measured, 128 masks of 26 real photographs: 3 %; turned by 180 degrees 39 %, mirrored 41 %, the next photograph's
+/// 42 %, 40 px off 19 %).
+const UNCLEAR: usize = 3;
+const UNCLEAR_SHARE: f64 = 0.15;
 
 /// What a run found, photograph by photograph, before it is a report.
 pub(in crate::photo) struct Findings<'a> {
@@ -195,7 +202,26 @@ impl<'a> Findings<'a> {
             .chain(without)
             .chain(copies)
             .chain(elsewhere)
+            .chain(self.unclear())
+            .chain(twins("subjects", self.set.photos.iter().map(|photo| photo.subject.as_str())))
+            .chain(twins("poses", self.set.photos.iter().map(|photo| photo.pose.as_str())))
             .collect()
+    }
+
+    /// Outlines around which too many fingers are not seen.
+    fn unclear(&self) -> Option<String> {
+        let is_unclear = |row: &&NailRow| row.reason.ends_with(AxisUnknown::ADVICE);
+        let sought = |row: &&NailRow| row.source != Source::Detected && (row.confidence.is_some() || is_unclear(row));
+        let all = self.rows.iter().filter(sought).count();
+        let unclear: Vec<&NailRow> = self.rows.iter().filter(sought).filter(is_unclear).collect();
+        let first = &self.set.photos[unclear.first()?.photo].file;
+        (unclear.len() >= UNCLEAR && unclear.len() as f64 > UNCLEAR_SHARE * all as f64).then(|| {
+            format!(
+                "around {} of {all} outlines no finger's direction is clear ({first} first): do masks and annotations \
+                 belong to these photographs, as they are turned now? Then draw an `axis`, or say --distal",
+                unclear.len()
+            )
+        })
     }
 
     /// Outlines that were taken for another photograph's.

@@ -1,5 +1,6 @@
 //! What lies in a folder.
 
+use std::collections::BTreeSet;
 use std::io;
 use std::path::Path;
 
@@ -9,12 +10,16 @@ use crate::table::{Table, column_names};
 
 /// How deep is looked.
 const DEEPEST: usize = 6;
+/// What folders of masks, and the ends of masks' names, are called.
+const MASKS: [&str; 4] = ["mask", "masks", "label", "labels"];
 
 /// What was found, by sort; paths are relative to the folder, with `/`, sorted.
 #[derive(Debug, Default)]
 pub(super) struct Inventory {
     pub(super) files: usize,
     pub(super) photos: Vec<String>,
+    /// Pictures that are masks of photographs, by their names.
+    pub(super) masks: Vec<String>,
     pub(super) videos: Vec<String>,
     pub(super) markers: Vec<String>,
     /// Whether a marker file names a clock.
@@ -90,10 +95,17 @@ pub(super) fn look(folder: &Path) -> io::Result<Inventory> {
             }
             Sort::Set => found.sets.push(path),
             Sort::Silent => {}
-            Sort::Other if path.ends_with(".csv") || path.ends_with(".parquet") => tables.push(path),
+            Sort::Other if is_table(&path) => tables.push(path),
             Sort::Other => found.unknown.push(path),
         }
     }
+    let stem = |path: &String| {
+        let name = path.rsplit('/').next().unwrap_or_default();
+        name.rsplit_once('.').map_or(name, |(stem, _)| stem).to_lowercase()
+    };
+    let stems: BTreeSet<String> = found.photos.iter().filter(|path| of_mask(path).is_none()).map(stem).collect();
+    let is_mask = |path: &String| of_mask(path).is_some_and(|of| stems.contains(&of));
+    (found.masks, found.photos) = found.photos.into_iter().partition(is_mask);
     for path in tables {
         match sessions(folder, &path) {
             Some(sessions) if found.sessions.is_none() => found.sessions = Some(sessions),
@@ -112,15 +124,46 @@ fn walk(folder: &Path, at: &str, depth: usize, paths: &mut Vec<String>) {
         .filter(|(name, _)| !name.starts_with('.'))
         .collect();
     entries.sort();
+    // What a job drew beside its table: NAME-angles.png beside NAME.run.json.
+    let of_run = |(name, _): &(String, bool)| {
+        let stem = name.strip_suffix(".run.json").filter(|_| is_run(&folder.join(at).join(name)))?;
+        Some(format!("{stem}-"))
+    };
+    let drawn: Vec<String> = entries.iter().filter_map(of_run).collect();
     for (name, is_folder) in entries {
         let path = if at.is_empty() { name.clone() } else { format!("{at}/{name}") };
-        let results = || folder.join(&path).join(".lunula").is_dir();
+        let results = || {
+            let folder = folder.join(&path);
+            folder.join(".lunula").is_dir() || is_run(&folder.join("run.json"))
+        };
+        let is_drawn = || drawn.iter().any(|stem| name.starts_with(stem.as_str())) && !is_table(&name);
         if !is_folder {
-            paths.push(path);
+            if !is_drawn() {
+                paths.push(path);
+            }
         } else if depth < DEEPEST && name != "truth" && !results() {
             walk(folder, &path, depth + 1, paths);
         }
     }
+}
+
+/// Whether a file is the report of a job.
+fn is_run(path: &Path) -> bool {
+    let report = std::fs::read(path).ok().and_then(|text| serde_json::from_slice::<serde_json::Value>(&text).ok());
+    report.is_some_and(|report| report["job"].is_string())
+}
+
+fn is_table(name: &str) -> bool {
+    name.ends_with(".csv") || name.ends_with(".parquet")
+}
+
+/// The photograph of which a picture is a mask, by their names without endings: `s01_mask` of `s01`, `masks/s01`.
+fn of_mask(path: &str) -> Option<String> {
+    let (folder, name) = path.rsplit_once('/').unwrap_or(("", path));
+    let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem).to_lowercase();
+    let in_masks = folder.to_lowercase().split('/').any(|part| MASKS.contains(&part));
+    let suffixed = stem.rsplit_once(['_', '-']).filter(|(_, last)| MASKS.contains(last)).map(|(of, _)| of.to_owned());
+    suffixed.or_else(|| in_masks.then_some(stem))
 }
 
 fn sort(path: &Path) -> Sort {

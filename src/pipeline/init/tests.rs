@@ -50,6 +50,30 @@ fn photographs_become_maps() {
 }
 
 #[test]
+fn results_and_masks_are_no_photographs() {
+    let photos = [("nails/rest/S01.png", ""), ("nails/rest/S02.png", ""), ("nails/press/S01.png", "")];
+    let results = [
+        ("maps/run.json", "{\"job\": \"photos\"}"),
+        ("maps/normalized/rest/S01.png", ""),
+        ("maps/figures/mean.png", ""),
+        ("training.csv", "time_s,P1,J2_deg,label_status\n0,1,2,\n"),
+        ("training.run.json", "{\"job\": \"align\"}"),
+        ("training-tie.png", ""),
+    ];
+    let (plain, with) = (proposed(&photos), proposed(&[&photos[..], &results].concat()));
+    assert_eq!(plain.1, with.1, "{}", with.0);
+    assert!(with.0.contains("3 photographs of nails: nails/{pose}/{subject}.png"), "{}", with.0);
+    // Masks in folders of the same names are used, and others named.
+    let masks = [("masks/rest/S01.png", ""), ("masks/rest/S02.png", ""), ("masks/press/S01.png", "")];
+    let drawn = proposed(&[&photos[..], &masks].concat());
+    assert_eq!(plain.1, drawn.1, "{}", drawn.0);
+    assert!(drawn.0.contains("outlines = \"masks\"\n") && drawn.0.contains("3 masks of nails"), "{}", drawn.0);
+    let beside = proposed(&[&photos[..], &[("nails/rest/S01_mask.png", ""), ("nails/rest/S02_mask.png", "")]].concat());
+    assert_eq!(plain.1, beside.1, "{}", beside.0);
+    assert!(beside.0.contains("masks are not used"), "{}", beside.0);
+}
+
+#[test]
 fn names_of_several_parts_are_pointed_at() {
     let parts = proposed(&[("S01_rest.png", ""), ("S01_press.png", ""), ("S02_rest.png", ""), ("S02_press.png", "")]);
     assert!(parts.0.contains("write files = \"..{subject}_{pose}..\""), "{}", parts.0);

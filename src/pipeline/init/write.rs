@@ -75,10 +75,38 @@ impl Draft<'_> {
                     .to_owned(),
             );
         }
+        // A pattern would take masks that lie among photographs for photographs.
+        let folder = |path: &String| path.rsplit_once('/').map_or_else(String::new, |(folder, _)| folder.to_owned());
+        let folders: BTreeSet<String> = found.photos.iter().map(folder).collect();
+        if let (true, Some(at), Some(values)) = (
+            found.masks.iter().any(|mask| folders.contains(&folder(mask))),
+            photos.names.iter().position(|name| name == "subject"),
+            &photos.values,
+        ) {
+            let subjects: BTreeSet<String> = values.iter().map(|one| quoted(&one[at])).collect();
+            let subjects = subjects.into_iter().collect::<Vec<_>>().join(", ");
+            let _ = writeln!(self.inputs, "# All but the masks.\nwhere = {{ subject = [{subjects}] }}");
+        }
+        let without_masks = self.inputs.len();
+        let (outlines, of_masks) = match self.files("masks", "masks of nails", &found.masks, &["subject", "pose"]) {
+            // A mask of each subject is the same in all poses.
+            Some(masks) if masks.meets(&photos) => ("outlines = \"masks\"\n", "masks, "),
+            Some(_) => {
+                self.inputs.truncate(without_masks);
+                self.notes.push(
+                    "masks are not used: which photograph each belongs to does not follow from their pattern; put them \
+                     into a folder, called as their photographs, and write outlines = \"masks\" in \
+                     [stage.normalized]"
+                        .to_owned(),
+                );
+                ("", "")
+            }
+            None => ("", ""),
+        };
         let _ = write!(
             self.stages,
-            "\n# Each nail upright and of one size, in the green channel; outlines from <photo>.json, else \
-             detected.\n[stage.normalized]\njob = \"normalize\"\nphoto = \"photos\"\n\n\
+            "\n# Each nail upright and of one size, in the green channel; outlines from {of_masks}<photo>.json, else \
+             detected.\n[stage.normalized]\njob = \"normalize\"\nphoto = \"photos\"\n{outlines}\n\
              # Mean and standard deviation over subjects, for each pose.\n[stage.maps]\njob = \"maps\"\nsums = \
              \"normalized\"\n"
         );

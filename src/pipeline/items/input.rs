@@ -116,13 +116,6 @@ fn of_table(
         faults.push(spec.fault(input.source_at, format!("{named} has no rows; add one for each recording")));
     }
     let known: Vec<&str> = rows.columns.iter().map(String::as_str).collect();
-    if let [only] = known[..]
-        && let Some(mark) = [';', '\t'].into_iter().find(|mark| only.contains(*mark))
-    {
-        let what = format!("{named}: its cells are parted by {mark:?}; save it with commas");
-        faults.push(spec.fault(input.source_at, what));
-        return Err(faults);
-    }
     let place_of = |name: &str| rows.columns.iter().position(|column| column == name);
     let mut file_columns = Vec::new();
     for (column, at) in &input.columns {

@@ -9,6 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::pipeline::items::InputItems;
 use crate::pipeline::spec::{Filter, From, InputSource, Spec};
+use crate::words::plain;
 
 /// How many places of one slip are listed.
 const SHOWN: usize = 3;
@@ -112,10 +113,6 @@ fn add<'a>(asked: &mut Asked<'a>, tables: impl IntoIterator<Item = &'a str>, fil
 }
 
 /// A value without case and spaces.
-fn plain(value: &str) -> String {
-    value.chars().filter(|c| !c.is_whitespace()).flat_map(char::to_lowercase).collect()
-}
-
 fn is_a_letter_off(value: &str, asked: &str) -> bool {
     let (value, asked) = (plain(value), plain(asked));
     let [own, other] = [&value, &asked].map(|text| text.chars().count());

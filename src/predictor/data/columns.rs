@@ -75,7 +75,7 @@ pub(crate) fn missing(name: &str, names: &[String]) -> String {
     format!("has no column `{name}`{help} {}", listed(names, MOST))
 }
 
-/// The columns there are, and what to do where they are one because something else than commas separates them.
+/// The columns there are.
 pub(super) fn listed(names: &[String], most: usize) -> String {
     const LONGEST: usize = 40;
     let shown = |name: &String| name.chars().take(LONGEST).flat_map(char::escape_debug).collect::<String>();
@@ -83,7 +83,5 @@ pub(super) fn listed(names: &[String], most: usize) -> String {
     if names.len() > most {
         all.push(format!(".. ({} in all)", names.len()));
     }
-    let one = names.len() == 1 && names[0].contains([';', '\t']);
-    let help = if one { "; cells are separated by commas: save the table so" } else { "" };
-    format!("Its columns are {}{help}", all.join(", "))
+    format!("Its columns are {}", all.join(", "))
 }

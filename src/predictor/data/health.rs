@@ -1,7 +1,9 @@
 //! Photodiodes that show nothing, or are cut off at the end of the recorded range, or whose clock is another than that
-//! of what was measured beside them.
+//! of what was measured beside them; files that contradict each other.
 
-use lunula_predictor::{Dataset, Delay, Recording, delays};
+use std::ops::Range;
+
+use lunula_predictor::{Dataset, Delay, Difference, Mismatch, Recording, delays, mismatches};
 use ndarray::{Axis, Slice};
 
 use super::columns::cell;
@@ -99,6 +101,40 @@ pub(super) fn clocks(data: &Dataset) -> Option<String> {
         100.0 * delay.without,
         100.0 * delay.recorded
     ))
+}
+
+/// What to say of files, as ranges of rows, that contradict the others.
+pub(super) fn mismatched(data: &Dataset, parts: &[Range<usize>], names: &[&str]) -> Vec<String> {
+    let all = mismatches(data, parts);
+    let columns: Vec<&str> = data.inputs().iter().chain(data.targets()).map(String::as_str).collect();
+    let looks = |difference| match difference {
+        Difference::Exchanged([a, b]) => format!("{} and {} look exchanged", columns[a], columns[b]),
+        Difference::Scaled { column, by } => match by {
+            -2.0..-0.5 => format!("{} looks to have the other sign", columns[column]),
+            _ => {
+                // To two digits.
+                let unit = 10f64.powi(1 - by.abs().log10().floor() as i32);
+                format!("{} looks {} times as large", columns[column], short((by * unit).round() / unit))
+            }
+        },
+    };
+    // Of two that contradict each other it isn't known which is right.
+    let one_of_two = parts.len() == 2 && all.len() == 2;
+    let named = if one_of_two { &all[1..] } else { &all[..] };
+    let say = |one: &Mismatch| {
+        let (whose, others) = match one_of_two {
+            true => (format!("{} and {} contradict each other: in one of them", names[0], names[1]), "the other one's"),
+            false => (format!("{} contradicts the other files: in it", names[one.part]), "its"),
+        };
+        format!(
+            "{whose} {}; put right, a linear model of the rest leaves {:.0} % of {others} variance unexplained instead \
+             of {:.0} %",
+            looks(one.difference),
+            100.0 * one.mended,
+            100.0 * one.recorded
+        )
+    };
+    named.iter().map(say).collect()
 }
 
 /// A number without the hundreds of zeros of one near 1e-300, or the sign of one that is 0.

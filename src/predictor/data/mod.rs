@@ -15,6 +15,7 @@
 
 mod columns;
 mod file;
+mod frozen;
 mod health;
 mod recordings;
 mod source;
@@ -31,6 +32,7 @@ use rayon::prelude::*;
 
 use crate::log::{LogError, LogReading};
 use crate::table::TableError;
+use crate::words::twins;
 use recordings::Splitter;
 use source::{Source, agree};
 
@@ -213,14 +215,15 @@ pub fn read_files(data: &[DataFile], wanted: &Wanted) -> Result<Read, DataError>
     agree(&sources)?;
     let mut warnings = Vec::new();
     let inputs = sources[0].inputs.clone();
-    let mut files = Vec::with_capacity(sources.len());
+    let (mut files, mut parts) = (Vec::with_capacity(sources.len()), Vec::with_capacity(sources.len()));
     let mut recordings: Vec<Recording> = Vec::new();
     let (mut time_s, mut x, mut y) = (Vec::new(), Vec::new(), Vec::new());
     for (source, called) in sources.iter().zip(data) {
         warnings.extend(source.warnings.iter().cloned());
         let (path, notes) = (source.path.clone(), source.notes.clone());
         let mut file = FileRows { path, rows: source.rows(), used: 0, empty: 0, invalid: 0, faults: 0, notes };
-        let mut splitter = Splitter::new(source, called, time_s.len());
+        let start = time_s.len();
+        let mut splitter = Splitter::new(source, called, start);
         for row in 0..source.rows() {
             if source.faulty[row] && !wanted.rows.keep_faults {
                 file.faults += 1;
@@ -239,6 +242,7 @@ pub fn read_files(data: &[DataFile], wanted: &Wanted) -> Result<Read, DataError>
         splitter.finish(&mut recordings, &mut warnings);
         warnings.extend(health::warnings(source, wanted.rows.keep_faults));
         files.push(file);
+        parts.push(start..time_s.len());
     }
     let rows = time_s.len();
     if rows == 0 {
@@ -251,9 +255,17 @@ pub fn read_files(data: &[DataFile], wanted: &Wanted) -> Result<Read, DataError>
     let make = if wanted.cells { Dataset::with_hidden } else { Dataset::new };
     let data = make(inputs, wanted.targets.clone(), time_s, shaped(x), shaped(y), recordings)?;
     warnings.extend(twice(&data));
+    let names = |of: fn(&Recording) -> &String| data.recordings().iter().map(move |one| of(one).as_str());
+    warnings.extend(twins("subjects", names(|one| &one.subject)));
+    warnings.extend(twins("sessions", names(|one| &one.session)));
     warnings.extend(health::clocks(&data));
     // Cells are no voltages.
-    warnings.extend(health::units([&data]).filter(|_| !wanted.cells));
+    if !wanted.cells {
+        warnings.extend(frozen::warnings(&data));
+        warnings.extend(health::units([&data]));
+        let names: Vec<&str> = data_read.iter().map(|file| file.name.as_str()).collect();
+        warnings.extend(health::mismatched(&data, &parts, &names));
+    }
     Ok(Read { data, files, failed, warnings })
 }
 

@@ -95,7 +95,8 @@ pub fn run(
         if outputs.figures { draw(options, &motion, &outputs.table, &mut places) } else { Ok(Vec::new()) }
     })?;
     watch.go_on()?;
-    let warnings = force.as_ref().map_or_else(Vec::new, |force| force.warnings(options));
+    let mut warnings = force.as_ref().map_or_else(Vec::new, |force| force.warnings(options));
+    warnings.extend(between_rows(options, &motion, rows));
     let figures = TrajectoryFigures {
         trajectory: *options,
         table: outputs.table.clone(),
@@ -108,6 +109,37 @@ pub fn run(
     let report = Report { left_out, warnings, pictures, ..Report::new("trajectory", watch, figures) };
     let at = outputs.report.then(|| beside(&outputs.table, ".run.json"));
     Ok(report.timed(&stages, start).commit(places, at.as_deref())?)
+}
+
+/// Rows that are looked at for what they leave out.
+const MOST_BETWEEN: usize = 20_000;
+/// The share of a component's range that straight lines between rows may leave out (assumed: eight rows a turn leave
+/// 0.04, four 0.15), but for the share of the rows in which a movement may begin at once.
+const BETWEEN: f64 = 0.1;
+const AT_ONCE_SHARE: f64 = 0.01;
+
+/// What to say of rows between which the movement goes elsewhere.
+fn between_rows(options: &TrajectoryOptions, motion: &Motion, rows: usize) -> Option<String> {
+    let at = |rows: f64| motion.at(rows * options.every_s);
+    let looked_at = (0..rows.saturating_sub(1)).step_by(rows.div_ceil(MOST_BETWEEN));
+    let all: Vec<[[f64; 3]; 3]> = looked_at.map(|row| [0.0, 0.5, 1.0].map(|share| at(row as f64 + share))).collect();
+    let worst = (0..3).filter_map(|k| {
+        let values = || all.iter().flatten().map(|at| at[k]);
+        let range = values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min);
+        let mut left: Vec<f64> = all.iter().map(|[from, at, to]| (at[k] - (from[k] + to[k]) / 2.0).abs()).collect();
+        left.sort_by(f64::total_cmp);
+        let left = left.len().checked_sub(1 + (AT_ONCE_SHARE * left.len() as f64) as usize).map(|at| left[at])?;
+        Some(if range > 0.0 { left / range } else { 0.0 })
+    });
+    let worst = worst.fold(0.0, f64::max);
+    (worst > BETWEEN).then(|| {
+        format!(
+            "the rows are too far apart for this movement: between two of them it leaves the straight line by up to \
+             {:.0} % of its range; choose a smaller --every than {} s, or lower rates",
+            100.0 * worst,
+            options.every_s
+        )
+    })
 }
 
 /// As many decimals as multiples of the step need; none where nine are not enough.
@@ -148,14 +180,10 @@ fn write_table(
         watch.go_on()?;
         table.write_rows(AT_ONCE.min(rows - from), &|row, write| {
             let time_s = (from + row) as f64 * options.every_s;
+            let [first, second, third] = motion.at(time_s).map(Value::Number);
             match motion {
-                Motion::Force(motion) => {
-                    let [fx_n, fy_n, fz_n] = motion.at(time_s).map(Value::Number);
-                    write(&[Value::Number(time_s), fx_n, fy_n, fz_n]);
-                }
-                Motion::Posture { path, lead_s, seconds } => {
-                    write(&[Value::Number(time_s), Value::Number(path.during(time_s, *lead_s, *seconds))]);
-                }
+                Motion::Force(_) => write(&[Value::Number(time_s), first, second, third]),
+                Motion::Posture { .. } => write(&[Value::Number(time_s), first]),
             }
         })?;
     }

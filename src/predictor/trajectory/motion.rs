@@ -55,6 +55,14 @@ impl Motion {
             }
         }
     }
+
+    /// Forces in newtons, or the angle in degrees and nothing else, at the table's time.
+    pub(super) fn at(&self, time_s: f64) -> [f64; 3] {
+        match self {
+            Self::Force(motion) => motion.at(time_s),
+            Self::Posture { path, lead_s, seconds } => [path.during(time_s, *lead_s, *seconds), 0.0, 0.0],
+        }
+    }
 }
 
 impl ForceMotion {

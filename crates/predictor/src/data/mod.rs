@@ -1,7 +1,8 @@
-//! Measured rows, voltages of earlier rows as further inputs, which recordings follow one path, and whether their
-//! columns are on one clock.
+//! Measured rows, voltages of earlier rows as further inputs, which recordings follow one path, whether their
+//! columns are on one clock, and whether their parts agree on which column is which.
 
 pub(crate) mod dataset;
 pub(crate) mod delay;
 pub(crate) mod lags;
+pub(crate) mod mismatch;
 pub(crate) mod path;

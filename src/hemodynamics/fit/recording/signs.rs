@@ -6,7 +6,7 @@
 use lunula_hemodynamics::FitResult;
 
 use super::ReadRecording;
-use crate::hemodynamics::given::SUCTION;
+use crate::hemodynamics::given::{SUCTION, hardly_pressed};
 use crate::log::doubts::{self, PULLED, without_spikes};
 
 /// Pressures below this share of the recording's largest are noise or an offset (assumed).
@@ -37,6 +37,7 @@ pub(super) fn of_force(name: &str, forces_n: &[f64], is_log: bool) -> Vec<String
 pub(super) fn of_pressures(columns: [(&str, &[f64]); 2]) -> Vec<String> {
     let ranges = columns.map(|(_, pressures_pa)| without_spikes(pressures_pa));
     let largest = ranges.as_flattened().iter().fold(0.0, |largest: f64, pa| largest.max(pa.abs()));
+    let hardly = hardly_pressed(&columns.map(|(_, pressures_pa)| pressures_pa));
     let one = |((name, pressures_pa), [least, greatest]): ((&str, &[f64]), [f64; 2])| {
         let sucked = pressures_pa.iter().filter(|pa| **pa < 0.0).count();
         let pressed = pressures_pa.iter().filter(|pa| **pa > 0.0).count();
@@ -48,7 +49,7 @@ pub(super) fn of_pressures(columns: [(&str, &[f64]); 2]) -> Vec<String> {
             )
         })
     };
-    columns.into_iter().zip(ranges).filter_map(one).collect()
+    columns.into_iter().zip(ranges).filter_map(one).chain(hardly).collect()
 }
 
 /// What to say of scalings: `V_1` is a photodiode's sensitivity, the LED's brightness and losses (equation 4), and no
@@ -113,5 +114,7 @@ mod tests {
             assert_eq!(said(&fine, &pressed), Vec::<String>::new());
         }
         assert!(said(&[], &[]).is_empty());
+        let in_kpa = said(&presses(5.0, 300), &presses(3.0, 300));
+        assert!(in_kpa.len() == 1 && in_kpa[0].contains("greater than 5 Pa"), "{in_kpa:?}");
     }
 }

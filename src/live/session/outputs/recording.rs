@@ -163,6 +163,9 @@ impl Recording {
             return Ok(false);
         }
         self.close()?;
+        if !self.grows.exists() {
+            return Err(self.refused(io::Error::new(io::ErrorKind::NotFound, "it was removed while it was written")));
+        }
         if self.grows != self.out {
             self.to_parquet()?;
             std::fs::remove_file(&self.grows).map_err(|why| self.refused(why))?;

@@ -76,12 +76,17 @@ pub struct FoundAxis {
 
 /// A nail whose axis is not known.
 #[derive(Debug, Clone, PartialEq, Error)]
-#[error("{doubt}; say --distal, or draw an `axis` line from proximal to distal in LabelMe")]
+#[error("{doubt}; {}", Self::ADVICE)]
 pub struct AxisUnknown {
     /// Why.
     pub doubt: AxisDoubt,
     /// The most probable axis all the same, where there is one.
     pub best_guess: Option<FoundAxis>,
+}
+
+impl AxisUnknown {
+    /// What a person can do.
+    pub(in crate::photo) const ADVICE: &str = "say --distal, or draw an `axis` line from proximal to distal in LabelMe";
 }
 
 /// Why the axis of a nail is not known.

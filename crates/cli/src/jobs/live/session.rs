@@ -273,8 +273,8 @@ fn outcome(report: &SessionReport) -> Outcome {
 
 fn words(report: &Report<SessionFigures>) -> String {
     let SessionFigures { rows, answered, latency, .. } = &report.figures;
-    let rates: Vec<String> =
-        report.sources.iter().filter_map(|source| source.stream.rate_hz).map(|rate| format!("{rate:.1}")).collect();
+    let shown = |rate: f64| if rate < 1.0 { format!("{rate:.4}") } else { format!("{rate:.1}") };
+    let rates: Vec<String> = report.sources.iter().filter_map(|source| source.stream.rate_hz).map(shown).collect();
     let rate = if rates.is_empty() { String::new() } else { format!(" at {} Hz", rates.join(", ")) };
     let work = latency.work.map_or(String::new(), |work| {
         format!("; work per row {:.0} us in median, 99 in 100 within {:.0} us", work.p50_us, work.p99_us)

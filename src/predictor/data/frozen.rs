@@ -1,0 +1,97 @@
+//! Columns that stand still for a while in the middle of a recording: a transducer or an amplifier that hangs.
+//!
+//! Values that stay the same to the last digit are no fault by themselves: a coarse converter at rest gives them, and a
+//! force of 0, or a photodiode at the end of its range. They are one where the other photodiodes say, by a linear model
+//! of the rest of the recording, that the value moved meanwhile.
+
+use std::ops::Range;
+
+use lunula_predictor::{Dataset, Deficient, LeastSquaresOptions, Recording, least_squares};
+use ndarray::{ArrayView1, ArrayView2, Axis, Slice, concatenate};
+
+/// The least that is called standing still, rows and seconds; and as rows of the rest for each unknown (assumed).
+const ROWS: usize = 20;
+const SECONDS: f64 = 1.0;
+/// The photodiodes know the column where they leave so much of its SD at most, and say that it moved where what they
+/// make of it has so much of its SD at least (assumed).
+const UNEXPLAINED: f64 = 0.6;
+const MOVED: f64 = 0.5;
+
+/// What to say of them, recording by recording.
+pub(super) fn warnings(data: &Dataset) -> Vec<String> {
+    let names: Vec<&String> = data.inputs().iter().chain(data.targets()).collect();
+    let of_recording = |one: &Recording| {
+        let mut held: Vec<(Range<usize>, Vec<&str>)> = Vec::new();
+        for (column, name) in names.iter().enumerate() {
+            let Some(run) = longest_run(data, one, column).filter(|run| moved(data, one, column, run)) else {
+                continue;
+            };
+            match held.iter_mut().find(|(other, _)| *other == run) {
+                Some((_, names)) => names.push(name),
+                None => held.push((run, vec![name])),
+            }
+        }
+        let say = |(run, names): (Range<usize>, Vec<&str>)| {
+            let [from, to] = [run.start, run.end - 1].map(|row| data.time_s()[row]);
+            let when = if from.is_nan() { String::new() } else { format!(" from {from:.1} to {to:.1} s") };
+            format!(
+                "{}: {} doesn't change by a digit in {} rows{when}, while the photodiodes say that it moved: did it \
+                 hang?",
+                one.name,
+                names.join(", "),
+                run.len()
+            )
+        };
+        held.into_iter().map(say).collect::<Vec<_>>()
+    };
+    data.recordings().iter().flat_map(of_recording).collect()
+}
+
+fn column(data: &Dataset, column: usize) -> ArrayView1<'_, f64> {
+    let inputs = data.inputs().len();
+    if column < inputs { data.x().column(column) } else { data.y().column(column - inputs) }
+}
+
+/// The longest run of rows of a recording in which a column stays the same, neither 0 nor its least or greatest value.
+fn longest_run(data: &Dataset, one: &Recording, k: usize) -> Option<Range<usize>> {
+    let values = column(data, k);
+    let own = values.slice_axis(Axis(0), Slice::from(one.rows.clone()));
+    let ends = own.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [v.min(low), v.max(high)]);
+    let mut longest = one.rows.start..one.rows.start;
+    let mut start = one.rows.start;
+    for row in one.rows.clone() {
+        if values[row] != values[start] {
+            start = row;
+        }
+        if row + 1 - start > longest.len() && values[row] != 0.0 && !ends.contains(&values[row]) {
+            longest = start..row + 1;
+        }
+    }
+    let lasts = || {
+        let seconds = data.time_s()[longest.end - 1] - data.time_s()[longest.start];
+        seconds.is_nan() || seconds >= SECONDS
+    };
+    (longest.len() >= ROWS && lasts()).then_some(longest)
+}
+
+/// Whether the other photodiodes know a column, and say that it moved in a run of rows.
+fn moved(data: &Dataset, one: &Recording, k: usize, run: &Range<usize>) -> bool {
+    let others: Vec<usize> = (0..data.inputs().len()).filter(|&input| input != k).collect();
+    let rest = [one.rows.start..run.start, run.end..one.rows.end];
+    if others.is_empty() || rest.iter().map(Range::len).sum::<usize>() < ROWS * (1 + others.len()) {
+        return false;
+    }
+    let x = data.x().select(Axis(1), &others);
+    let values = column(data, k).insert_axis(Axis(1));
+    let parts = |of: ArrayView2<'_, f64>| {
+        let [before, after] = rest.clone().map(|rows| of.slice_axis(Axis(0), Slice::from(rows)).to_owned());
+        concatenate(Axis(0), &[before.view(), after.view()]).expect("parts of one array")
+    };
+    let (design, known) = (parts(x.view()), parts(values));
+    let options = LeastSquaresOptions { deficient: Deficient::MinimumNorm, ..LeastSquaresOptions::default() };
+    let Ok(fit) = least_squares(design.view(), known.view(), &options) else { return false };
+    let sd = known.std(0.0);
+    let is_known = fit.residual_sd[0].is_some_and(|left| left <= UNEXPLAINED * sd);
+    let said = x.slice_axis(Axis(0), Slice::from(run.clone())).dot(&fit.coefficients.row(0));
+    is_known && sd > 0.0 && said.std(0.0) >= MOVED * sd
+}
