@@ -3,6 +3,7 @@
 use std::io::Read;
 
 use image::{DynamicImage, Rgb, RgbImage, imageops};
+use lunula::job::Watch;
 use lunula::labelme::LabelMe;
 use lunula::nail::Outline;
 use lunula::outlines::{NOT_A_NAIL, Pressed};
@@ -125,6 +126,22 @@ fn a_file_that_another_program_has_changed_is_not_written_over() {
     desk.keys(&["previous", "reject"]);
     assert_eq!(labels(&dir, "set/a.edited.json"), [NOT_A_NAIL]);
     assert_eq!(std::fs::read_to_string(dir.path("set/a.json")).expect("there"), theirs);
+}
+
+#[test]
+fn a_change_that_nobody_accepted_is_named() {
+    let dir = Dir::new();
+    dir.nail("set/a");
+    dir.nail("set/b");
+    let desk = Desk::at(&dir.path("set"));
+    let lost = || desk.editor.report(&Watch::nobody()).warnings;
+    desk.keys(&["accept", "previous"]);
+    assert_eq!((desk.sees()["nail"]["decision"].words(), lost()), ("accepted", vec![]));
+    desk.press(json!({"key": "move", "by": [1, 0]}));
+    assert!(desk.sees()["nail"]["decision"].is_null());
+    assert_eq!(lost(), ["a.png: nail 1 was changed and not accepted since, so that the change is lost"]);
+    desk.keys(&["accept"]);
+    assert!(lost().is_empty());
 }
 
 #[test]

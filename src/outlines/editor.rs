@@ -189,7 +189,7 @@ impl Editor {
             Decision::Rejected => Says::NotANail,
         };
         if self.save(state, at, says) {
-            state.items[at].decision = Some(decision);
+            state.items[at].decide(decision);
             self.go_on(state);
         }
     }
@@ -391,6 +391,11 @@ impl Editor {
         let beside =
             "was changed by another program meanwhile and stays as it is; its outlines from here are beside it";
         report.warnings = state.kept.iter().map(|kept| format!("{}: {beside}", kept.display())).collect();
+        let unsaved = state.items.iter().filter(|item| item.is_unsaved()).map(|item| {
+            let file = &self.set.photos[item.photo].file;
+            format!("{file}: nail {} was changed and not accepted since, so that the change is lost", item.number)
+        });
+        report.warnings.extend(unsaved);
         report.timed(&self.stages, self.start)
     }
 }

@@ -34,6 +34,8 @@ pub(super) struct Item {
     pub(super) view: Option<View>,
     pub(super) shapes: Shapes,
     begun: NailShape,
+    /// As it was when it was accepted last.
+    accepted: Option<NailShape>,
     pub(super) before: Vec<NailShape>,
     /// The gesture that made the latest change.
     pub(super) gesture: Option<u64>,
@@ -44,7 +46,7 @@ impl Item {
     pub(super) fn new(photo: usize, number: usize, find: Find) -> Self {
         let Find { rank, shapes, shape, why } = find;
         let begun = shape.clone();
-        let (corner, decision, view, gesture) = (None, None, None, None);
+        let (corner, decision, view, gesture, accepted) = (None, None, None, None, None);
         Self {
             photo,
             number,
@@ -56,6 +58,7 @@ impl Item {
             view,
             shapes,
             begun,
+            accepted,
             before: vec![],
             gesture,
             keys: 0,
@@ -77,6 +80,20 @@ impl Item {
 
     pub(super) fn is_changed(&self) -> bool {
         self.shape != self.begun
+    }
+
+    pub(super) fn decide(&mut self, decision: Decision) {
+        self.decision = Some(decision);
+        self.accepted = (decision == Decision::Accepted).then(|| self.shape.clone());
+    }
+
+    /// Whether it was changed since it was decided on last: no file has that.
+    pub(super) fn is_unsaved(&self) -> bool {
+        match self.decision {
+            Some(Decision::Accepted) => self.accepted.as_ref() != Some(&self.shape),
+            Some(Decision::Rejected) => false,
+            None => self.is_changed(),
+        }
     }
 }
 

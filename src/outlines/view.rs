@@ -65,7 +65,7 @@ pub(super) fn now<'a>(set: &'a PhotoSet, state: &'a State) -> Now<'a> {
             of: state.items.iter().filter(|other| other.photo == item.photo).count(),
             why: &item.why,
             doubtful: is_open(item.rank),
-            decision: item.decision,
+            decision: item.decision.filter(|_| !item.is_unsaved()),
             view: item.view,
             points: item.shape.points.iter().map(|point| point.map(short)).collect(),
             corner: item.corner,

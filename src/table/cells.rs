@@ -5,21 +5,22 @@
 //!
 //! A file without a quotation mark is its own text: cells are cut out of it, nothing is copied. One with quotation
 //! marks goes through the CSV reader, row by row into a text of the same shape. Lines are those of the file, counted
-//! from 1; empty ones are no rows.
+//! from 1; empty ones are no rows, nor are those at the end that have cells and nothing in them, as spreadsheets write
+//! them.
 
 use std::ops::Range;
 
 use crate::input;
 use memchr::{memchr, memchr_iter, memchr2_iter};
 
-/// What may separate cells.
+/// What may separate cells, the likeliest last.
 pub(crate) const DELIMITERS: [u8; 4] = [b'|', b'\t', b';', b','];
 
-/// What separates the names in the first line of a text: a comma wherever there is one, in no quotes.
+/// What separates the names in the first line of a text: what stands there most often, in no quotes.
 pub(crate) fn delimiter_of(text: &str) -> u8 {
     let names = text.split(['\n', '\r']).find(|line| !line.is_empty()).unwrap_or_default();
     let bare: String = names.split('"').step_by(2).collect();
-    DELIMITERS.into_iter().rev().find(|&mark| bare.contains(char::from(mark))).unwrap_or(b',')
+    DELIMITERS.into_iter().max_by_key(|&mark| bare.matches(char::from(mark)).count()).unwrap_or(b',')
 }
 
 /// The rows of a CSV file, each with as many cells as there are names.
@@ -51,6 +52,7 @@ impl CsvCells {
         let delimiter = delimiter_of(&text);
         let is_plain = is_plain(text.as_bytes());
         let mut all = if is_plain { Self::of_plain(text, delimiter) } else { Self::of_quoted(&text, delimiter) }?;
+        all.drop_empty_end();
         if delimiter != b',' {
             all.read_decimal_commas()?;
         }
@@ -78,6 +80,15 @@ impl CsvCells {
         start..self.ends[at]
     }
 
+    fn drop_empty_end(&mut self) {
+        while let Some(last) = self.rows().checked_sub(1).filter(|last| *last > 0)
+            && (0..self.columns).all(|column| self.cell(last, column).is_empty())
+        {
+            self.rows.pop();
+            self.ends.truncate(last * self.columns);
+        }
+    }
+
     /// Writes numbers with a decimal comma with a point.
     fn read_decimal_commas(&mut self) -> Result<(), String> {
         let (mut commas, mut points) = (Vec::new(), None);
@@ -85,18 +96,13 @@ impl CsvCells {
             for column in 0..self.columns {
                 let cell = self.cell(row, column);
                 let is_number = |text: &str| text.parse::<f64>().is_ok();
-                match cell.find([',', '.']) {
-                    Some(at) if cell.as_bytes()[at] == b'.' => {
-                        if points.is_none() && is_number(cell) {
-                            points = Some(row);
-                        }
-                    }
-                    Some(at) if is_number(&cell.replacen(',', ".", 1)) => {
-                        let place = self.place(row, column);
-                        let space = self.text[place.clone()].len() - self.text[place.clone()].trim_start().len();
-                        commas.push((row, place.start + space + at));
-                    }
-                    _ => {}
+                let Some(at) = cell.find([',', '.']) else { continue };
+                if cell.as_bytes()[at] == b'.' {
+                    points = points.or_else(|| is_number(cell).then_some(row));
+                } else if is_number(&cell.replacen(',', ".", 1)) {
+                    let place = self.place(row, column);
+                    let space = self.text[place.clone()].len() - self.text[place.clone()].trim_start().len();
+                    commas.push((row, place.start + space + at));
                 }
             }
         }

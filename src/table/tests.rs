@@ -180,10 +180,15 @@ fn other_delimiters_decimal_commas_and_line_ends_are_read() {
             }
         }
     }
+    // Rows of nothing at the end, and only there.
+    let read = read_text(b"a,b\n,\n1,2\n,\n\"\",\n").unwrap();
+    assert_eq!(read.numbers("b").unwrap(), [None, Some(2.0)]);
+    assert_eq!(read_text(b"a,b\n,\n").unwrap().rows(), 0);
     // A line is the file's own; in a table with commas a decimal comma is another cell.
     let said = read_text(b"a;b\r1,5;2\rx;3\r").unwrap().numbers("a").unwrap_err().to_string();
     assert!(said.contains(":3: column `a`"), "{said}");
     assert!(read_text(b"a,b;c\n1,5;2\n").unwrap().numbers("b;c").is_err());
+    assert_eq!(read_text(b"a;b;name, first\n1,5;2;x\n").unwrap().numbers("a").unwrap(), [Some(1.5)]);
 }
 
 #[test]
