@@ -185,12 +185,6 @@ fn extremes_are_played_and_warned_of() {
     // One step: the first row and the last.
     assert!(warned("force --every 180").contains("too far apart"));
     assert_eq!(dir.table("t.csv").len(), 2);
-    // What happens between rows is not in them; eight rows a turn are enough.
-    let said = warned("posture --hz 10 --every 0.1 --seconds 5");
-    assert!(said.contains("leaves the straight line by up to 100 % of its range"), "{said}");
-    assert!(warned("force --fc 10 --every 0.1 --seconds 20").contains("too far apart"));
-    let said = warned("posture --hz 1 --every 0.125 --seconds 20");
-    assert!(!said.contains("too far apart"), "{said}");
     // Steps that are no decimal numbers keep all their digits.
     run(&dir, "posture --every 0.03333333333333333 --out third.csv --no-figures").expect(0);
     let rows = dir.table("third.csv");
@@ -198,6 +192,12 @@ fn extremes_are_played_and_warned_of() {
     // The largest cone, and the smallest.
     assert_eq!(warned("force --fz-max 0.01 --mu 0.01 --seconds 1000"), "");
     assert!(warned("force --fz-max 100 --mu 10 --fs 100 --fc 10").contains("equation 26"));
+    // What happens between rows is not in them; eight rows a turn are enough.
+    let said = warned("posture --hz 10 --every 0.1 --seconds 5");
+    assert!(said.contains("leaves the straight line by up to 100 % of its range"), "{said}");
+    assert!(warned("force --fc 10 --every 0.1 --seconds 20").contains("too far apart"));
+    let said = warned("posture --hz 1 --every 0.125 --seconds 20");
+    assert!(!said.contains("too far apart"), "{said}");
 }
 
 #[test]

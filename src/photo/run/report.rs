@@ -103,8 +103,8 @@ pub(in crate::photo) fn mixed_sums(partials: &Partials) -> Vec<String> {
 }
 
 /// So many outlines, and more than this share of all whose finger is looked for, without a clear direction are warned
-/// of (measured, 128 masks of 26 real photographs: 3 %; turned by 180 degrees 39 %, mirrored 41 %, the next photograph's
-/// 42 %, 40 px off 19 %).
+/// of (measured, 128 masks of 26 real photographs: 3 %; turned by 180 degrees 40 %, mirrored 41 %, those of the next
+/// photograph 43 %, 40 px off 19 %).
 const UNCLEAR: usize = 3;
 const UNCLEAR_SHARE: f64 = 0.15;
 
