@@ -16,12 +16,16 @@ pub const SMALLEST_EXTENT_PX: f64 = 4.0;
 /// A nail is no more times as wide as it is long (measured: 122 nails of 26 real photographs up to 1.28, seen in
 /// perspective; two nails in one outline 2 and more).
 const WIDEST: f64 = 1.8;
-/// The part of its lesser extent over which an edge of the photograph may cut an outline off (assumed: an oval lacks a
-/// thirtieth of its length then), how near to the edge that is seen, pixels, and the part of what an oval would have
-/// beyond the edge that an outline needs to be a whole one.
-const CUT: f64 = 0.35;
+/// The part of its lesser extent over which an edge of the photograph may cut an outline off, how near to the edge that
+/// is seen, pixels, and the part of what an oval would have beyond the edge that an outline needs to be a whole one
+/// (assumed).
+const CUT: f64 = 0.5;
 const AT_EDGE_PX: f64 = 1.0;
 const GOES_ON: f64 = 0.5;
+/// An outline that only touches the edge grows at once: so far within it, as a share of its extent, it is wider by more
+/// than this (an oval of which less than a tenth is cut off, and a square one that touches).
+const WITHIN: f64 = 0.06;
+const GROWS: f64 = 0.8;
 
 /// Why an outline gives no frame.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -133,13 +137,19 @@ fn cut_off(outline: &Outline, k: usize, inside: impl Fn(f64) -> f64) -> Option<f
     if nearest > AT_EDGE_PX {
         return None;
     }
-    let sides = points.iter().zip(points.iter().cycle().skip(1));
-    let mut crossings: Vec<f64> = sides
-        .filter(|(a, b)| (a[0] > AT_EDGE_PX) != (b[0] > AT_EDGE_PX))
-        .map(|(a, b)| a[1] + (AT_EDGE_PX - a[0]) / (b[0] - a[0]) * (b[1] - a[1]))
-        .collect();
-    crossings.sort_by(f64::total_cmp);
-    let chord: f64 = crossings.chunks_exact(2).map(|pair| pair[1] - pair[0]).sum();
+    let width_at = |within: f64| -> f64 {
+        let sides = points.iter().zip(points.iter().cycle().skip(1));
+        let mut crossings: Vec<f64> = sides
+            .filter(|(a, b)| (a[0] > within) != (b[0] > within))
+            .map(|(a, b)| a[1] + (within - a[0]) / (b[0] - a[0]) * (b[1] - a[1]))
+            .collect();
+        crossings.sort_by(f64::total_cmp);
+        crossings.chunks_exact(2).map(|pair| pair[1] - pair[0]).sum()
+    };
+    let chord = width_at(AT_EDGE_PX);
+    if chord < GROWS * width_at(AT_EDGE_PX + WITHIN * (farthest - nearest)) {
+        return None;
+    }
     let share = (chord / (high - low)).min(1.0);
     let beyond = (farthest - nearest) / 2.0 * (1.0 - (1.0 - share * share).sqrt());
     (-nearest < GOES_ON * beyond).then_some(chord)
@@ -185,6 +195,15 @@ mod tests {
             let frame = NailFrame::new(outline, up).expect("large enough");
             frame.doubt(outline, [200, 150]).unwrap_or_default()
         };
+        // A square nail that fills its picture only touches the edges.
+        let square: Vec<[f64; 2]> = (0..90)
+            .map(|k| f64::from(k) * std::f64::consts::TAU / 90.0)
+            .map(|angle| [angle.cos(), angle.sin()].map(|c: f64| c.signum() * c.abs().sqrt()))
+            .map(|[x, y]| [29.5 + 30.0 * x, 39.5 + 40.0 * y])
+            .collect();
+        let outline = Outline::new(&square).expect("an outline");
+        let frame = NailFrame::new(&outline, up).expect("large enough");
+        assert_eq!(frame.doubt(&outline, [60, 80]), None);
         // Whole, also at the edge; cut off by it, as masks are, and as a detected outline ends some pixels beyond it.
         for y in [75.0, 39.6, 38.8] {
             assert_eq!(said(&oval([100.0, y], [30.0, 40.0], -0.5)), "", "{y}");
