@@ -277,6 +277,7 @@ fn annotated(mask: &GrayImage) -> Vec<Outline> {
 
 mod real_data {
     use super::*;
+    use crate::util::Dir;
     use crate::util::real_data::real_data;
 
     #[test]
@@ -338,6 +339,28 @@ mod real_data {
         }
         eprintln!("{found} of {pictures} found with confidence, wrong on {wrong:?}");
         assert!(found * 5 >= pictures * 4 && wrong.len() <= 1, "{found} of {pictures}, {wrong:?}");
+    }
+
+    /// Blurred as by a lens out of focus.
+    #[test]
+    #[ignore = "needs real recordings: LUNULA_REAL_DATA"]
+    fn photographs_out_of_focus_are_warned_of() {
+        let dir = Dir::new();
+        let mut files: Vec<_> = std::fs::read_dir(real_data("nail/vpapenko_cc0/images")).unwrap().collect();
+        files.sort_by_key(|file| file.as_ref().unwrap().file_name());
+        for (k, file) in files.into_iter().take(8).enumerate() {
+            let picture = image::open(file.unwrap().path()).unwrap();
+            picture.save(dir.place(&format!("sharp/{k}.png"))).unwrap();
+            picture.blur(4.0).save(dir.place(&format!("blurred/{k}.png"))).unwrap();
+        }
+        let said = |set: &str| {
+            let answer = dir.lunula(&["photos", set, "--outline", "detect", "--size", "96", "--out", "out"]);
+            answer.stderr.lines().find(|line| line.contains("out of focus")).unwrap_or_default().to_owned()
+        };
+        assert_eq!(said("sharp"), "");
+        let blurred = said("blurred");
+        let counts: Vec<u32> = blurred.split(' ').filter_map(|word| word.parse().ok()).collect();
+        assert!(counts.len() == 2 && counts[0] >= 4 && counts[0] + 1 >= counts[1], "{blurred}");
     }
 
     /// Rooms and gardens, their hands cut off.

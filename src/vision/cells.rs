@@ -27,6 +27,14 @@ pub(crate) fn smoothed<const CHANNELS: usize, const TAPS: usize>(
     answered(made(cells, size, size, filtered))
 }
 
+/// By a Gaussian of some SD in pixels, beyond the border the picture's mirror image.
+pub(crate) fn blurred(values: &[f32], size: [usize; 2], sd_px: f64) -> Vec<f32> {
+    let filtered = |from: &BoxedRef<'_, Mat>, to: &mut BoxedRefMut<'_, Mat>| {
+        imgproc::gaussian_blur_def(from, to, Size::new(0, 0), sd_px).map_err(VisionError::of("GaussianBlur"))
+    };
+    answered(made(values.as_chunks::<1>().0, size, size, filtered)).into_flattened()
+}
+
 /// At half the size: means of four; a last odd column or row is left out.
 pub(crate) fn halved(cells: &[Cell], size: [usize; 2]) -> Vec<Cell> {
     let mean = |from: &BoxedRef<'_, Mat>, to: &mut BoxedRefMut<'_, Mat>| {

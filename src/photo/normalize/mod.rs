@@ -4,6 +4,7 @@
 //! the top, `margin` times the nail's box: row i, column j lies at ((j + 0.5 - size/2), (size/2 - i - 0.5)) /
 //! (size / margin) in widths and lengths from the centre. What the photograph does not show is not seen, rather than 0.
 
+mod detail;
 mod frame;
 mod options;
 mod plane;
@@ -13,6 +14,7 @@ use image::DynamicImage;
 
 use crate::photo::outline::Outline;
 
+pub(crate) use detail::{SHARP, detail};
 pub use frame::{FrameFault, NailFrame, SMALLEST_EXTENT_PX};
 pub use options::{Normalization, Resample};
 pub use plane::Channel;

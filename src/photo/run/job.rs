@@ -16,12 +16,14 @@ use rayon::prelude::*;
 
 use crate::files::{Places, Staging, WriteError};
 use crate::job::Watch;
+use crate::median::median_of;
 use crate::photo::channels::{self, Cells, Compared, Sample};
 use crate::photo::error::PhotosError;
-use crate::photo::normalize::{NailFrame, Normalized, Normalizer, normalized_or_why};
+use crate::photo::normalize::{NailFrame, Normalized, Normalizer, detail, normalized_or_why};
 use crate::photo::options::{OutlineHome, Outputs, PhotosOptions, Results};
 use crate::photo::outline::{
-    DetectedOutline, Listed, Nail, OutlinePlace, Refused, SavedOutlines, SourceFault, keep_outlines, other_photograph,
+    DetectedOutline, Listed, Nail, OutlinePlace, Refused, SavedOutlines, Source, SourceFault, keep_outlines,
+    other_photograph,
 };
 use crate::photo::results::{self, DrawnPhotograph, DrawnPose, NailRow, NailTable, Scratch};
 use crate::photo::run::plan::{Foreknown, left_out};
@@ -33,6 +35,8 @@ use crate::stages::Stages;
 
 /// Longest side of a thumbnail, pixels.
 const THUMBNAIL_PX: usize = 100;
+/// The lesser extent from which a found nail shows whether its photograph is sharp, pixels.
+const LEAST_SHARP_PX: f64 = 25.0;
 
 /// Runs the job and puts all its results in their places.
 ///
@@ -77,6 +81,7 @@ pub fn run(
     let mut members = Members::new(options.normalization);
     for (photo, one) in set.photos.iter().zip(done) {
         findings.add(photo, one.grey, one.largest, one.profile.as_ref());
+        findings.details.extend(one.detail.map(|detail| (photo, detail)));
         findings.drawn_elsewhere.extend(one.drawn_on.map(|other| (photo, other)));
         foreknown.push(Foreknown { pose: photo.pose.clone(), grey: one.grey, outlines: one.outlines });
         for (row, thumbnail) in one.nails {
@@ -195,6 +200,8 @@ struct Done {
     /// Its nails in red, green and blue, where channels are compared and it has some.
     cells: Option<Cells>,
     fault: Option<SetFault>,
+    /// How much fine detail the nails show that were found on it, the median.
+    detail: Option<f64>,
     /// The photograph that its outlines say they were drawn on, where that is another.
     drawn_on: Option<PathBuf>,
     /// Where it was the last of its pose.
@@ -278,6 +285,7 @@ impl Work<'_> {
             profile: None,
             cells: None,
             fault: None,
+            detail: None,
             drawn_on: None,
             pose: None,
         };
@@ -315,6 +323,7 @@ impl Work<'_> {
         let mut found = if may_draw { nails.clone() } else { Vec::new() };
         done.detected = self.outputs.outlines.as_ref().and_then(|_| DetectedOutline::of(index, &picture, &nails));
         let several = nails.len() > 1;
+        let mut details = Vec::new();
         let Memory { normalizer, pictures, scratch, .. } = memory;
         for (number, nail) in (1..).zip(nails) {
             let mut row = NailRow::new(index, number, &nail);
@@ -322,6 +331,10 @@ impl Work<'_> {
             match self.one_nail(&picture, nail, &mut row, normalizer) {
                 Ok(normalized) => {
                     row.reason = unseen(&normalized, self.options.normalization.margin);
+                    let is_large = row.frame.is_some_and(|frame| frame.width_px.min(frame.length_px) >= LEAST_SHARP_PX);
+                    if row.source == Source::Detected && is_large {
+                        details.extend(detail(&normalized, self.options.normalization.margin));
+                    }
                     let tail = if several { format!("-{number}") } else { String::new() };
                     let name = format!("normalized/{}/{}{tail}.png", photo.pose, photo.subject);
                     if self.outputs.has_pictures() {
@@ -344,6 +357,7 @@ impl Work<'_> {
             }
             done.nails.push((row, thumbnail));
         }
+        done.detail = median_of(details);
         // Also of outlines that a person drew, where one of them is left out.
         if may_draw && (done.outlines == OutlinePlace::Detection || found.iter().any(|nail| !nail.reason.is_empty())) {
             done.drawn = draw(&found, &refused);

@@ -13,7 +13,7 @@ use crate::files::{Staging, WriteError};
 use crate::input::copies;
 use crate::job::{Report, Watch};
 use crate::photo::channels::{ChannelFigures, add_section};
-use crate::photo::normalize::Normalization;
+use crate::photo::normalize::{Normalization, SHARP};
 use crate::photo::options::{Outputs, PhotosOptions, Results};
 use crate::photo::outline::{AxisUnknown, SavedOutlines, Source};
 use crate::photo::pose::sort_by_pose;
@@ -125,6 +125,8 @@ pub(in crate::photo) struct Findings<'a> {
     pub(in crate::photo) outlines: Option<SavedOutlines>,
     /// Photographs whose outlines say that they were drawn on another, and on which.
     pub(in crate::photo) drawn_elsewhere: Vec<(&'a Photo, PathBuf)>,
+    /// Photographs on which nails were found, and how much fine detail those show.
+    pub(in crate::photo) details: Vec<(&'a Photo, f64)>,
     /// Colour and grey photographs by pose.
     colours: BTreeMap<&'a str, [usize; 2]>,
     /// How many photographs of 16 bits, and their largest sample.
@@ -154,6 +156,7 @@ impl<'a> Findings<'a> {
             detects: false,
             outlines: None,
             drawn_elsewhere: Vec::new(),
+            details: Vec::new(),
             colours: BTreeMap::new(),
             sixteen: (0, 0),
             profiles: BTreeMap::new(),
@@ -203,9 +206,23 @@ impl<'a> Findings<'a> {
             .chain(copies)
             .chain(elsewhere)
             .chain(self.unclear())
+            .chain(self.blurred())
             .chain(twins("subjects", self.set.photos.iter().map(|photo| photo.subject.as_str())))
             .chain(twins("poses", self.set.photos.iter().map(|photo| photo.pose.as_str())))
             .collect()
+    }
+
+    /// Photographs that are out of focus or shaken, where nails were found on them.
+    fn blurred(&self) -> Option<String> {
+        let all: Vec<&str> =
+            self.details.iter().filter(|(_, detail)| *detail < SHARP).map(|(photo, _)| photo.file.as_str()).collect();
+        Some(format!(
+            "{} of {} photographs on which nails were found look out of focus or shaken there ({} first): look at the \
+             outlines, of which more are wrong on such ones, whatever their confidence",
+            all.len(),
+            self.details.len(),
+            all.first()?
+        ))
     }
 
     /// Outlines around which too many fingers are not seen.
