@@ -66,7 +66,7 @@ mod tests {
     fn a_blurred_nail_has_little_detail_whatever_its_size_and_contrast() {
         for size in [96, 200, 400] {
             let [sharp, blurred] = [0.01, 0.06].map(|rim| detail(&nail(size, rim * size as f64), 1.25).unwrap());
-            assert!(sharp > SHARP + 0.05 && blurred < SHARP - 0.05, "{size}: {sharp} {blurred}");
+            assert!(sharp > SHARP + 0.04 && blurred < SHARP - 0.1, "{size}: {sharp} {blurred}");
             let mut pale = nail(size, 0.01 * size as f64);
             pale.levels.iter_mut().for_each(|level| *level = 30_000 + *level / 10);
             assert!((detail(&pale, 1.25).unwrap() - sharp).abs() < 0.01);
