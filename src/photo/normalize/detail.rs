@@ -6,6 +6,8 @@
 //! 0.22 on 21 of 23, smeared by 15 px on 14 of 23. Of the confident finds on the blurred ones 16 % were wrong, in place
 //! of 3 %.
 
+use ndarray::Array1;
+
 use super::Normalized;
 use crate::vision::blurred;
 
@@ -34,11 +36,9 @@ pub(crate) fn detail(picture: &Normalized, margin: f64) -> Option<f64> {
     let values: Vec<f32> = (0..side * side).map(mean).collect();
     let nail_px = side as f64 / margin;
     let sd = |nails: f64| {
-        let left =
-            || values.iter().zip(blurred(&values, [side; 2], nails * nail_px)).map(|(v, blur)| f64::from(v - blur));
-        let left: Vec<f64> = left().collect();
-        let mean = left.iter().sum::<f64>() / left.len() as f64;
-        (left.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / left.len() as f64).sqrt()
+        let blurred = blurred(&values, [side; 2], nails * nail_px);
+        let left: Array1<f64> = values.iter().zip(blurred).map(|(value, blur)| f64::from(value - blur)).collect();
+        left.std(0.0)
     };
     let (fine, coarse) = (sd(FINE), sd(COARSE));
     // A level of 16 bits is rounding.

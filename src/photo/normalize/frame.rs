@@ -96,9 +96,10 @@ impl NailFrame {
                 width / length
             ));
         }
+        let points = outline.points();
         let edges = [0, 1].into_iter().flat_map(|k| [(k, 1.0, 0.5), (k, -1.0, f64::from(size[k]) - 0.5)]);
         let longest =
-            edges.filter_map(|(k, sign, edge)| cut_off(outline, k, |at| sign * at + edge)).fold(0.0, f64::max);
+            edges.filter_map(|(k, sign, edge)| cut_off(&points, k, |at| sign * at + edge)).fold(0.0, f64::max);
         (longest > CUT * width.min(length)).then(|| {
             format!(
                 "it is cut off by the edge of the picture, over {longest:.0} px: its length and width are not known; \
@@ -127,8 +128,8 @@ impl NailFrame {
 
 /// Over how many pixels an outline is cut off by an edge, of which `inside` says how far within a coordinate `k` is;
 /// none where it is not, or goes on beyond the edge as far as an oval does.
-fn cut_off(outline: &Outline, k: usize, inside: impl Fn(f64) -> f64) -> Option<f64> {
-    let points: Vec<[f64; 2]> = outline.points().iter().map(|point| [inside(point[k]), point[1 - k]]).collect();
+fn cut_off(outline: &[[f64; 2]], k: usize, inside: impl Fn(f64) -> f64) -> Option<f64> {
+    let points: Vec<[f64; 2]> = outline.iter().map(|point| [inside(point[k]), point[1 - k]]).collect();
     let ends = |axis: usize| {
         let values = || points.iter().map(|point| point[axis]);
         [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)]

@@ -99,11 +99,8 @@ pub(super) fn look(folder: &Path) -> io::Result<Inventory> {
             Sort::Other => found.unknown.push(path),
         }
     }
-    let stem = |path: &String| {
-        let name = path.rsplit('/').next().unwrap_or_default();
-        name.rsplit_once('.').map_or(name, |(stem, _)| stem).to_lowercase()
-    };
-    let stems: BTreeSet<String> = found.photos.iter().filter(|path| of_mask(path).is_none()).map(stem).collect();
+    let photos = found.photos.iter().filter(|path| of_mask(path).is_none());
+    let stems: BTreeSet<String> = photos.map(|path| folder_and_stem(path).1).collect();
     let is_mask = |path: &String| of_mask(path).is_some_and(|of| stems.contains(&of));
     (found.masks, found.photos) = found.photos.into_iter().partition(is_mask);
     for path in tables {
@@ -157,11 +154,17 @@ fn is_table(name: &str) -> bool {
     name.ends_with(".csv") || name.ends_with(".parquet")
 }
 
+/// A path's folder, and its name without ending, in small letters.
+fn folder_and_stem(path: &str) -> (String, String) {
+    let (folder, name) = path.rsplit_once('/').unwrap_or(("", path));
+    let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+    (folder.to_lowercase(), stem.to_lowercase())
+}
+
 /// The photograph of which a picture is a mask, by their names without endings: `s01_mask` of `s01`, `masks/s01`.
 fn of_mask(path: &str) -> Option<String> {
-    let (folder, name) = path.rsplit_once('/').unwrap_or(("", path));
-    let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem).to_lowercase();
-    let in_masks = folder.to_lowercase().split('/').any(|part| MASKS.contains(&part));
+    let (folder, stem) = folder_and_stem(path);
+    let in_masks = folder.split('/').any(|part| MASKS.contains(&part));
     let suffixed = stem.rsplit_once(['_', '-']).filter(|(_, last)| MASKS.contains(last)).map(|(of, _)| of.to_owned());
     suffixed.or_else(|| in_masks.then_some(stem))
 }

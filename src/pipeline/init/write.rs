@@ -78,11 +78,10 @@ impl Draft<'_> {
         // A pattern would take masks that lie among photographs for photographs.
         let folder = |path: &String| path.rsplit_once('/').map_or_else(String::new, |(folder, _)| folder.to_owned());
         let folders: BTreeSet<String> = found.photos.iter().map(folder).collect();
-        if let (true, Some(at), Some(values)) = (
-            found.masks.iter().any(|mask| folders.contains(&folder(mask))),
-            photos.names.iter().position(|name| name == "subject"),
-            &photos.values,
-        ) {
+        if found.masks.iter().any(|mask| folders.contains(&folder(mask)))
+            && let Some(at) = photos.names.iter().position(|name| name == "subject")
+            && let Some(values) = &photos.values
+        {
             let subjects: BTreeSet<String> = values.iter().map(|one| quoted(&one[at])).collect();
             let subjects = subjects.into_iter().collect::<Vec<_>>().join(", ");
             let _ = writeln!(self.inputs, "# All but the masks.\nwhere = {{ subject = [{subjects}] }}");

@@ -172,11 +172,15 @@ impl Moments {
         weights.iter().enumerate().map(|(j, weight)| weight * self.at(j, k)).sum()
     }
 
+    /// What a model's weights make of all inputs, with itself.
+    fn modelled(&self, weights: &[f64]) -> f64 {
+        weights.iter().enumerate().map(|(k, weight)| weight * self.with(weights, k)).sum()
+    }
+
     /// The share of the targets' variance that a model leaves unexplained, the mean over targets.
     fn unexplained(&self, model: &[Vec<f64>]) -> f64 {
         let shares = self.targets().zip(model).map(|(target, weights)| {
-            let modelled: f64 = weights.iter().enumerate().map(|(k, own)| own * self.with(weights, k)).sum();
-            1.0 + (modelled - 2.0 * self.with(weights, target)) / self.at(target, target)
+            1.0 + (self.modelled(weights) - 2.0 * self.with(weights, target)) / self.at(target, target)
         });
         shares.sum::<f64>() / model.len() as f64
     }
@@ -184,8 +188,7 @@ impl Moments {
     /// By how much a column differs, best, from what a model of the others makes of the inputs.
     fn scale(&self, model: &[Vec<f64>], column: usize) -> f64 {
         if let Some(weights) = column.checked_sub(self.inputs).map(|target| &model[target]) {
-            let modelled: f64 = weights.iter().enumerate().map(|(k, own)| own * self.with(weights, k)).sum();
-            return self.with(weights, column) / modelled;
+            return self.with(weights, column) / self.modelled(weights);
         }
         let (mut missing, mut own) = (0.0, 0.0);
         for (target, weights) in self.targets().zip(model) {
