@@ -341,10 +341,10 @@ mod real_data {
         assert!(found * 5 >= pictures * 4 && wrong.len() <= 1, "{found} of {pictures}, {wrong:?}");
     }
 
-    /// Blurred as by a lens out of focus.
+    /// Blurred as by a lens out of focus; 1.8 times as bright.
     #[test]
     #[ignore = "needs real recordings: LUNULA_REAL_DATA"]
-    fn photographs_out_of_focus_are_warned_of() {
+    fn photographs_out_of_focus_and_overexposed_ones_are_warned_of() {
         let dir = Dir::new();
         let mut files: Vec<_> = std::fs::read_dir(real_data("nail/vpapenko_cc0/images")).unwrap().collect();
         files.sort_by_key(|file| file.as_ref().unwrap().file_name());
@@ -352,15 +352,21 @@ mod real_data {
             let picture = image::open(file.unwrap().path()).unwrap();
             picture.save(dir.place(&format!("sharp/{k}.png"))).unwrap();
             picture.blur(4.0).save(dir.place(&format!("blurred/{k}.png"))).unwrap();
+            let mut bright = picture.to_rgb8();
+            let brighter = |value: &mut u8| *value = (f32::from(*value) * 1.8).min(255.0) as u8;
+            bright.pixels_mut().for_each(|pixel| pixel.0.iter_mut().for_each(brighter));
+            bright.save(dir.place(&format!("bright/{k}.png"))).unwrap();
         }
-        let said = |set: &str| {
+        let said = |set: &str, what: &str| {
             let answer = dir.lunula(&["photos", set, "--outline", "detect", "--size", "96", "--out", "out"]);
-            answer.stderr.lines().find(|line| line.contains("out of focus")).unwrap_or_default().to_owned()
+            answer.stderr.lines().find(|line| line.contains(what)).unwrap_or_default().to_owned()
         };
-        assert_eq!(said("sharp"), "");
-        let blurred = said("blurred");
-        let counts: Vec<u32> = blurred.split(' ').filter_map(|word| word.parse().ok()).collect();
-        assert!(counts.len() == 2 && counts[0] >= 4 && counts[0] + 1 >= counts[1], "{blurred}");
+        let counts = |said: &str| -> Vec<u32> { said.split(' ').filter_map(|word| word.parse().ok()).collect() };
+        assert_eq!(["out of focus", "overexposed"].map(|what| said("sharp", what)), ["", ""]);
+        let blurred = said("blurred", "out of focus");
+        assert!(matches!(counts(&blurred)[..], [some, all] if some >= 4 && some + 1 >= all), "{blurred}");
+        let bright = said("bright", "overexposed");
+        assert!(matches!(counts(&bright)[..2], [some, all] if some >= 4 && 2 * some >= all), "{bright}");
     }
 
     /// Rooms and gardens, their hands cut off.

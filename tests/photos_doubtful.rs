@@ -310,6 +310,32 @@ fn control_characters_of_names_are_escaped() {
 }
 
 #[test]
+fn an_overexposed_nail_is_warned_of() {
+    let dir = close_ups();
+    let file = dir.path("scene/photos/nominal/s02.png");
+    let picture = image::open(&file).expect("a picture").to_rgb16();
+    let [largest, median] = {
+        let mut green: Vec<u16> = picture.pixels().map(|pixel| pixel.0[1]).collect();
+        green.sort_unstable();
+        [green[green.len() - 1], green[green.len() / 2]].map(f64::from)
+    };
+    let exposed = |times: f64| {
+        let mut picture = picture.clone();
+        let brighter = |value: &mut u16| *value = (f64::from(*value) * times).min(65535.0) as u16;
+        picture.pixels_mut().for_each(|pixel| pixel.0.iter_mut().for_each(brighter));
+        image::DynamicImage::ImageRgb16(picture).to_rgb8().save(&file).expect("a picture");
+        dir.lunula(&["photos", "scene/photos", "--out", "out"]).expect(0).stderr
+    };
+    assert_eq!(exposed(0.98 * 65535.0 / largest), "");
+    let warned = exposed(1.2 * 65535.0 / median);
+    assert!(warned.contains("nails are overexposed (nominal/s02.png first; up to "), "{warned}");
+    let nails = dir.table("out/nails.csv");
+    let reason = |file: &str| nails.iter().find(|row| row["file"] == file).expect("a row")["reason"].clone();
+    assert!(reason("nominal/s02.png").ends_with("% of it is at full scale (overexposed)"), "{nails:?}");
+    assert_eq!(reason("nominal/s03.png"), "");
+}
+
+#[test]
 fn outlines_of_another_photograph_are_warned_of_and_renamed_photographs_are_not() {
     let dir = close_ups();
     // Some of the mixed-up outlines are refused besides, as the picture contradicts their axes.

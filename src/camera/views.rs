@@ -18,7 +18,7 @@ use crate::job::Watch;
 use crate::photograph::{Photograph, is_picture};
 use crate::stages::Stages;
 use crate::video::{Frame, Item, Plane, Turn, Video};
-use crate::vision::{Corners, Grey, Sought, VisionError, find_board, of_squares, shows_another};
+use crate::vision::{Corners, Grey, Sought, VisionError, find_board, shows_another};
 
 /// A picture that was looked at.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,8 +61,7 @@ pub(super) fn files(sources: &[PathBuf]) -> Result<Vec<PathBuf>, CameraError> {
     Ok(files)
 }
 
-/// Looks at all files. Whether squares were counted for corners is looked for on the first picture, and where they were
-/// on the others.
+/// Looks at all files. Where the first shows a board of another size, the others are looked at for that first.
 pub(super) fn look(
     files: &[PathBuf],
     options: &CameraOptions,
@@ -81,7 +80,7 @@ pub(super) fn look(
         Ok(looks)
     };
     let Some((first, rest)) = files.split_first() else { return Ok(Vec::new()) };
-    let mut looks = one(first, of_squares(options.board.columns, options.board.rows))?;
+    let mut looks = one(first, None)?;
     let other = looks.first().and_then(|look| look.other);
     let rest: Vec<Vec<Look>> =
         rest.par_iter().with_max_len(1).map(|path| one(path, other)).collect::<Result<_, _>>()?;
@@ -127,7 +126,7 @@ fn board(picture: Grey<'_>, size: BoardSize, other: Option<[usize; 2]>) -> Resul
         Sought::OfSize(other) => Some(other),
         Sought::Nowhere => None,
     };
-    let other_words = other.map_or(String::new(), |[columns, rows]| format!(", one of {columns}x{rows} may be"));
+    let other_words = other.map_or(String::new(), |[columns, rows]| format!(", but one of {columns}x{rows}"));
     let why = format!(
         "no board of {size} inner corners is seen whole{other_words}; all of it has to be in the picture, lit evenly, \
          with a white margin (--board counts inner corners, not squares)"

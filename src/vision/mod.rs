@@ -27,7 +27,7 @@ use opencv::core::{self, Mat};
 use opencv::prelude::*;
 use thiserror::Error;
 
-pub(crate) use board::{Corners, Sought, find_board, of_squares, shows_another};
+pub(crate) use board::{Corners, Sought, find_board, shows_another};
 pub(crate) use cells::{Cell, blurred, halved, matched, smoothed};
 pub(crate) use extreme::{Extreme, extreme};
 pub(crate) use image::{closed_line, part_resized, resized};

@@ -136,7 +136,7 @@ impl Folders {
     /// Looks for runs.
     pub(crate) fn look(&mut self) -> Results {
         let mut results = Results::default();
-        let mut looked_at = 0;
+        let (mut looked_at, mut unread, mut left_out) = (0, Vec::new(), Vec::new());
         for root in self.roots.clone() {
             let mut folders = vec![(root.clone(), 0)];
             while let Some((folder, depth)) = folders.pop() {
@@ -153,19 +153,26 @@ impl Folders {
                 }
                 files.sort();
                 for file in files.iter().filter(|file| stem_of_run(file).is_some()) {
-                    if results.runs.len() < MOST_RUNS
-                        && let Some(run) = self.run(&root, file, &files)
-                    {
-                        results.runs.push(run);
+                    if results.runs.len() >= MOST_RUNS {
+                        break;
+                    }
+                    match read_json(file) {
+                        Some(value) => results.runs.extend(self.run(&root, file, &value, &files)),
+                        None => unread.push(shown(&root, file)),
                     }
                 }
                 if looked_at > MOST_LOOKED_AT || results.runs.len() >= MOST_RUNS {
-                    let what = format!("not all was looked at ({MOST_RUNS} results or {MOST_LOOKED_AT} files at most)");
-                    results.left_out = Some(what);
+                    let most = format!("({MOST_RUNS} results or {MOST_LOOKED_AT} files at most)");
+                    left_out = vec![format!("not all was looked at {most}")];
                     folders.clear();
                 }
             }
         }
+        unread.sort();
+        if let Some(first) = unread.first() {
+            left_out.push(format!("{} can't be read as JSON ({first} first)", unread.len()));
+        }
+        results.left_out = (!left_out.is_empty()).then(|| left_out.join("; "));
         // The newest first, then by name.
         results.runs.sort_by(|a, b| b.made_unix_s.total_cmp(&a.made_unix_s).then_with(|| a.name.cmp(&b.name)));
         results
@@ -182,18 +189,17 @@ impl Folders {
         Some(ResultFile { kind, bytes: read_file(&real, MOST_FILE)? })
     }
 
-    fn run(&mut self, root: &Path, json: &Path, beside: &[PathBuf]) -> Option<Run> {
+    fn run(&mut self, root: &Path, json: &Path, value: &Value, beside: &[PathBuf]) -> Option<Run> {
         let stem = stem_of_run(json)?;
-        let value: Value = serde_json::from_slice(&read_file(json, MOST_JSON)?).ok()?;
         let text = |key: &str| value.get(key).and_then(Value::as_str).map(str::to_owned);
         let job = text("job").or_else(|| text("pipeline"))?;
         let lines = |key: &str| -> Vec<String> {
-            listed(&value, key).filter_map(Value::as_str).take(MOST_LINES).map(str::to_owned).collect()
+            listed(value, key).filter_map(Value::as_str).take(MOST_LINES).map(str::to_owned).collect()
         };
         // A pipeline counts in `failed` what `failures` lists, and what its jobs warn of stands by stage.
-        let failures = listed(&value, "failures").filter_map(|one| said(one, one, "task"));
+        let failures = listed(value, "failures").filter_map(|one| said(one, one, "task"));
         let failed = lines("failed").into_iter().chain(failures.take(MOST_LINES)).collect();
-        let of_stages = listed(&value, "stages")
+        let of_stages = listed(value, "stages")
             .flat_map(|stage| listed(stage, "warnings").filter_map(move |one| said(one, stage, "stage")));
         let warnings = lines("warnings").into_iter().chain(of_stages.take(MOST_LINES)).collect();
         let folder = json.parent()?;
@@ -276,6 +282,11 @@ fn kind_of(path: &Path) -> Option<&'static str> {
     }
 }
 
+/// A run's JSON, where it is whole.
+fn read_json(path: &Path) -> Option<Value> {
+    serde_json::from_slice(&read_file(path, MOST_JSON)?).ok()
+}
+
 /// A file's bytes, where it has no more than so many.
 fn read_file(path: &Path, most: u64) -> Option<Vec<u8>> {
     let mut bytes = Vec::new();
@@ -315,7 +326,8 @@ mod tests {
     fn runs_are_found_with_their_pictures_and_reports() {
         let (_dir, root) = desk();
         let mut folders = Folders::new(vec![root]);
-        let mut runs = folders.look().runs;
+        let Results { mut runs, left_out } = folders.look();
+        assert_eq!(left_out.as_deref(), Some("1 can't be read as JSON (lab/posture/broken.run.json first)"));
         runs.sort_by(|a, b| a.name.cmp(&b.name));
         let names: Vec<&str> = runs.iter().map(|run| run.name.as_str()).collect();
         assert_eq!(names, ["lab/photos/run.json", "lab/posture/joints.run.json", "lab/study/run.json"]);

@@ -21,7 +21,8 @@ pub enum ClockFault {
     /// It shows the same while the video goes on.
     #[error(
         "the clock stands still: it shows {shown_s} s from {from_s:.3} s to {to_s:.3} s of the video; cut the video to \
-         where the clock runs, or use a clock that is not paused"
+         where the clock runs, use a clock that is not paused, or if it is not, let `roi` under [clock] hold all of \
+         its digits"
     )]
     Stops {
         /// From when on.

@@ -8,15 +8,11 @@ use serde::Serialize;
 use super::cells::{CHANNELS, Cells};
 use super::interval::Estimate;
 use super::zones::{Neutral, Zones};
-use crate::photo::normalize::{Channel, FULL_SCALE};
+use crate::photo::normalize::{AT_FULL_SCALE, Channel, FULL_SCALE, MOST_AT_FULL_SCALE};
 use crate::photo::set::Photo;
 
 /// Share of a zone that a photograph has to show (assumed).
 const LEAST_SEEN: f64 = 0.5;
-/// A cell's level from which on it counts as being at full scale: most of its pixels are.
-const AT_FULL_SCALE: u16 = (0.99 * FULL_SCALE as f64) as u16;
-/// Share of zones at full scale from which on a contrast is doubted (assumed).
-const MOST_AT_FULL_SCALE: f64 = 0.01;
 /// Which channels are compared with each other.
 const PAIRS: [[usize; 2]; 3] = [[1, 0], [1, 2], [0, 2]];
 

@@ -22,6 +22,12 @@ pub use plane::Channel;
 /// Full scale of a [`Normalized`] picture's levels.
 pub const FULL_SCALE: u16 = u16::MAX;
 
+/// The level from which on a place counts as being at full scale: most of its pixels are, and it may be brighter.
+pub(crate) const AT_FULL_SCALE: u16 = (0.99 * FULL_SCALE as f64) as u16;
+/// The share of a nail at full scale from which on its values are doubted. Of 239 outlines on 26 real hands, detected
+/// and drawn, 0.0001 at most are; with 1.8 times the exposure it is more on 188 of 221, a third to all of the nail.
+pub(crate) const MOST_AT_FULL_SCALE: f64 = 0.01;
+
 /// A normalized picture, quantized to 16 bits whatever the source's depth.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Normalized {
@@ -47,6 +53,22 @@ impl Normalized {
     /// How many pixels the photograph shows.
     pub fn count_seen(&self) -> usize {
         self.seen.as_ref().map_or(self.levels.len(), |seen| seen.iter().filter(|&&s| s).count())
+    }
+
+    /// The share of the nail that is at full scale: of the ellipse within its box.
+    pub(crate) fn at_full_scale(&self, margin: f64) -> f64 {
+        // Of most pictures nothing is, which a look at the levels alone shows.
+        if self.levels.iter().all(|level| *level < AT_FULL_SCALE) {
+            return 0.0;
+        }
+        let in_nails = |k: usize| ((k as f64 + 0.5) / self.size as f64 - 0.5) * margin;
+        let is_nail = |at: &usize| in_nails(at % self.size).hypot(in_nails(at / self.size)) <= 0.5;
+        let (mut all, mut bright) = (0, 0);
+        for level in (0..self.levels.len()).filter(is_nail).filter_map(|at| self.level(at)) {
+            all += 1;
+            bright += usize::from(level >= AT_FULL_SCALE);
+        }
+        if all == 0 { 0.0 } else { f64::from(bright as u32) / f64::from(all as u32) }
     }
 
     fn nowhere(size: usize) -> Self {

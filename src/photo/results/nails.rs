@@ -32,6 +32,8 @@ pub struct NailRow {
     pub axis: Option<Axis>,
     /// Name of its normalized picture among the results, if those are written; `None` where it was left out.
     pub normalized: Option<String>,
+    /// The share of it at full scale; 0 where it was left out.
+    pub at_full_scale: f64,
     /// Why it was left out, or what of it the photograph does not show; else empty.
     pub reason: String,
 }
@@ -47,6 +49,7 @@ impl NailRow {
             frame: None,
             axis: nail.axis,
             normalized: None,
+            at_full_scale: 0.0,
             reason: String::new(),
         }
     }

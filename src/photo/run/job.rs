@@ -19,7 +19,7 @@ use crate::job::Watch;
 use crate::median::median_of;
 use crate::photo::channels::{self, Cells, Compared, Sample};
 use crate::photo::error::PhotosError;
-use crate::photo::normalize::{NailFrame, Normalized, Normalizer, detail, normalized_or_why};
+use crate::photo::normalize::{MOST_AT_FULL_SCALE, NailFrame, Normalized, Normalizer, detail, normalized_or_why};
 use crate::photo::options::{OutlineHome, Outputs, PhotosOptions, Results};
 use crate::photo::outline::{
     DetectedOutline, Listed, Nail, OutlinePlace, Refused, SavedOutlines, Source, SourceFault, keep_outlines,
@@ -330,10 +330,12 @@ impl Work<'_> {
             let mut thumbnail = None;
             match self.one_nail(&picture, nail, &mut row, normalizer) {
                 Ok(normalized) => {
-                    row.reason = unseen(&normalized, self.options.normalization.margin);
+                    let margin = self.options.normalization.margin;
+                    row.at_full_scale = normalized.at_full_scale(margin);
+                    row.reason = partly(&normalized, row.at_full_scale, margin);
                     let is_large = row.frame.is_some_and(|frame| frame.width_px.min(frame.length_px) >= LEAST_SHARP_PX);
                     if row.source == Source::Detected && is_large {
-                        details.extend(detail(&normalized, self.options.normalization.margin));
+                        details.extend(detail(&normalized, margin));
                     }
                     let tail = if several { format!("-{number}") } else { String::new() };
                     let name = format!("normalized/{}/{}{tail}.png", photo.pose, photo.subject);
@@ -416,17 +418,25 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What share of the nail's box the photograph does not show, in words; empty where it shows all.
-fn unseen(picture: &Normalized, margin: f64) -> String {
-    let Some(seen) = &picture.seen else { return String::new() };
+/// What share of the nail's box the photograph does not show, and what share of the nail is too bright, in words; empty
+/// where it shows all.
+fn partly(picture: &Normalized, at_full_scale: f64, margin: f64) -> String {
+    let outside =
+        outside(picture, margin).map(|share| format!("{share:.1} % of its box lies outside of the photograph"));
+    let bright = (at_full_scale > MOST_AT_FULL_SCALE)
+        .then(|| format!("{:.1} % of it is at full scale (overexposed)", 100.0 * at_full_scale));
+    let all: Vec<String> = outside.into_iter().chain(bright).collect();
+    if all.is_empty() { String::new() } else { format!("used, but {}", all.join("; ")) }
+}
+
+/// What share of the nail's box the photograph does not show, percent, if any.
+fn outside(picture: &Normalized, margin: f64) -> Option<f64> {
+    let seen = picture.seen.as_ref()?;
     let size = picture.size as f64;
     let edge = (size - size / margin) / 2.0;
     let in_box = |at: usize| (at as f64 + 0.5 - edge).clamp(0.0, size - 2.0 * edge) == at as f64 + 0.5 - edge;
     let rows = (0..picture.size).filter(|&r| in_box(r));
     let cells = rows.flat_map(|r| (0..picture.size).filter(|&c| in_box(c)).map(move |c| r * picture.size + c));
     let (all, missing) = cells.fold((0, 0), |(all, missing), at| (all + 1, missing + usize::from(!seen[at])));
-    if missing == 0 {
-        return String::new();
-    }
-    format!("used, but {:.1} % of its box lies outside of the photograph", 100.0 * missing as f64 / all as f64)
+    (missing > 0).then(|| 100.0 * missing as f64 / all as f64)
 }

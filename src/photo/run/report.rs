@@ -13,7 +13,7 @@ use crate::files::{Staging, WriteError};
 use crate::input::copies;
 use crate::job::{Report, Watch};
 use crate::photo::channels::{ChannelFigures, add_section};
-use crate::photo::normalize::{Normalization, SHARP};
+use crate::photo::normalize::{MOST_AT_FULL_SCALE, Normalization, SHARP};
 use crate::photo::options::{Outputs, PhotosOptions, Results};
 use crate::photo::outline::{AxisUnknown, SavedOutlines, Source};
 use crate::photo::pose::sort_by_pose;
@@ -207,6 +207,7 @@ impl<'a> Findings<'a> {
             .chain(elsewhere)
             .chain(self.unclear())
             .chain(self.blurred())
+            .chain(self.overexposed())
             .chain(twins("subjects", self.set.photos.iter().map(|photo| photo.subject.as_str())))
             .chain(twins("poses", self.set.photos.iter().map(|photo| photo.pose.as_str())))
             .collect()
@@ -222,6 +223,21 @@ impl<'a> Findings<'a> {
             all.len(),
             self.details.len(),
             all.first()?
+        ))
+    }
+
+    /// Nails that are as bright as a file can say, so that they show less contrast than they have.
+    fn overexposed(&self) -> Option<String> {
+        let used = self.rows.iter().filter(|row| row.normalized.is_some());
+        let bright: Vec<&NailRow> = used.clone().filter(|row| row.at_full_scale > MOST_AT_FULL_SCALE).collect();
+        let most = bright.iter().map(|row| row.at_full_scale).fold(0.0, f64::max);
+        Some(format!(
+            "{} of {} nails are overexposed ({} first; up to {:.0} % of a nail is at full scale): there the maps are \
+             too dark and flat; leave these photographs out, or take them again with less exposure",
+            bright.len(),
+            used.count(),
+            self.set.photos[bright.first()?.photo].file,
+            100.0 * most
         ))
     }
 

@@ -87,7 +87,7 @@ pub(crate) enum SurveyError {
     /// Markers can be told apart neither by colour nor by their order along the finger.
     #[error(
         "can't tell which is which of the markers {} in the {frames} frames looked at; give their places in the first \
-         frame under [start]{}",
+         frame under [start]{}; `lunula posture VIDEO --suggest` shows what has such colours",
         markers.join(", "),
         if *straight { ", or check `flexion`: the finger hardly bends" } else { "" }
     )]

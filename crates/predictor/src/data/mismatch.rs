@@ -1,7 +1,9 @@
-//! Whether the parts of a dataset (files, days) agree on which column is which, and in which unit.
+//! Whether the parts of a dataset (files, days) agree on which column is which, and in which unit; whether a recording
+//! agrees with a model on which column is which.
 //!
 //! In: a [`Dataset`] and its parts. Out: of each part the one column, or the two, that look exchanged, scaled or turned
-//! in sign beside the other parts ([`mismatches`]).
+//! in sign beside the other parts ([`mismatches`]). In: recordings, and what a model makes of them with their inputs in
+//! any order. Out: which two look exchanged ([`exchanged`]).
 //!
 //! A linear model (equations 10 to 13) of the other parts is tried on the part as it is and with each pair of columns
 //! exchanged, each column scaled, and the same the other way round. Only what explains both is said. Of 182 pairs of
@@ -12,8 +14,10 @@
 
 use std::ops::Range;
 
-use crate::Dataset;
+use ndarray::{Array2, Axis, Slice};
+
 use crate::algebra::cholesky::Cholesky;
+use crate::{Dataset, Recording};
 
 /// Rows of a part for each unknown, at least, and inputs, at most: more of them explain much by chance.
 const ROWS: usize = 20;
@@ -83,6 +87,66 @@ pub fn mismatches(data: &Dataset, parts: &[Range<usize>]) -> Vec<Mismatch> {
         (agree && matters).then_some(Mismatch { part, difference, recorded, mended })
     };
     (0..parts.len()).filter(|&part| has_rows(&parts[part])).filter_map(differs).collect()
+}
+
+/// The recordings that a model contradicts as they are, and does not with two columns exchanged. `answered`: the rows
+/// that were answered by `values`, as they are; `answer`: the same rows with the inputs in another order. Offsets do not
+/// count.
+#[must_use]
+pub fn exchanged(
+    answered: &Dataset,
+    values: &Array2<f64>,
+    inputs: usize,
+    answer: impl Fn(&[usize]) -> Option<Array2<f64>>,
+) -> Vec<Mismatch> {
+    let targets = answered.targets().len();
+    let own: Vec<usize> = (0..targets).collect();
+    let share = |one: &Recording, values: &Array2<f64>, order: &[usize]| {
+        let shares = order.iter().enumerate().map(|(k, &target)| {
+            let rows = Slice::from(one.rows.clone());
+            let [measured, values] = [(answered.y(), target), (values, k)]
+                .map(|(of, column)| of.column(column).slice_axis(Axis(0), rows).to_owned());
+            (&measured - &values).var(0.0) / measured.var(0.0)
+        });
+        shares.sum::<f64>() / targets as f64
+    };
+    let of_recording = |(part, one)| (part, one, share(one, values, &own));
+    let mut doubted: Vec<(usize, &Recording, f64)> =
+        answered.recordings().iter().enumerate().map(of_recording).collect();
+    doubted.retain(|(_, one, recorded)| one.rows.len() >= ROWS * (1 + inputs) && *recorded >= LESS);
+    if inputs > INPUTS || doubted.is_empty() {
+        return Vec::new();
+    }
+    let in_order = |count: usize, [a, b]: [usize; 2]| {
+        let mut order: Vec<usize> = (0..count).collect();
+        order.swap(a, b);
+        order
+    };
+    let of_inputs = pairs(0..inputs).filter_map(|pair| Some((pair, answer(&in_order(inputs, pair))?, own.clone())));
+    let of_targets = pairs(0..targets).map(|pair| (pair.map(|k| inputs + k), values.clone(), in_order(targets, pair)));
+    let all: Vec<_> = of_inputs.chain(of_targets).collect();
+    let differs = |(part, one, recorded): (usize, &Recording, f64)| {
+        let tried = all.iter().map(|(pair, values, order)| (Difference::Exchanged(*pair), share(one, values, order)));
+        let (difference, mended) = best(tried.collect(), recorded)?;
+        (recorded - mended >= LESS).then_some(Mismatch { part, difference, recorded, mended })
+    };
+    doubted.into_iter().filter_map(differs).collect()
+}
+
+/// Every two of some columns.
+fn pairs(columns: Range<usize>) -> impl Iterator<Item = [usize; 2]> {
+    let end = columns.end;
+    columns.flat_map(move |a| (a + 1..end).map(move |b| [a, b]))
+}
+
+/// Of differences and what is left unexplained with each put right, the one that is clearly best and surely needed.
+fn best(mut all: Vec<(Difference, f64)>, recorded: f64) -> Option<(Difference, f64)> {
+    all.retain(|(_, share)| share.is_finite());
+    all.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let &(difference, mended) = all.first()?;
+    let is_clear = all.get(1).is_none_or(|rival| rival.1 >= RIVAL * mended);
+    let is_sure = mended <= UNEXPLAINED.min(TIMES * recorded);
+    (is_clear && is_sure).then_some((difference, mended))
 }
 
 /// Whether a sensor that was put on again may differ so much.
@@ -205,28 +269,17 @@ impl Moments {
 fn explained(of: &Moments, on: &Moments) -> Option<(Difference, f64, f64)> {
     let model = of.model()?;
     let recorded = on.unexplained(&model);
-    let pairs = |kind: Range<usize>| {
-        let end = kind.end;
-        kind.flat_map(move |a| (a + 1..end).map(move |b| Difference::Exchanged([a, b])))
-    };
     let scaled = (0..on.columns).map(|column| Difference::Scaled { column, by: on.scale(&model, column) });
-    let mut all: Vec<(Difference, f64)> = (pairs(0..on.inputs).chain(pairs(on.targets())).chain(scaled))
-        .map(|difference| (difference, on.without(difference).unexplained(&model)))
-        .filter(|(_, share)| share.is_finite())
-        .collect();
-    all.sort_by(|a, b| a.1.total_cmp(&b.1));
-    let &(difference, mended) = all.first()?;
-    let is_clear = all.get(1).is_none_or(|rival| rival.1 >= RIVAL * mended);
-    let is_sure = mended <= UNEXPLAINED.min(TIMES * recorded);
+    let exchanged = pairs(0..on.inputs).chain(pairs(on.targets())).map(Difference::Exchanged);
+    let put_right = |difference: Difference| (difference, on.without(difference).unexplained(&model));
+    let (difference, mended) = best(exchanged.chain(scaled).map(put_right).collect(), recorded)?;
     let is_other = !matches!(difference, Difference::Scaled { by, .. } if is_gain(by));
-    (is_clear && is_sure && is_other).then_some((difference, recorded, mended))
+    is_other.then_some((difference, recorded, mended))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Recording;
-    use ndarray::Array2;
 
     /// Rows of each part.
     const EACH: usize = 400;
@@ -250,7 +303,7 @@ mod tests {
         [x, y]
     }
 
-    fn found([x, y]: [Array2<f64>; 2]) -> Vec<Mismatch> {
+    fn dataset([x, y]: [Array2<f64>; 2]) -> (Dataset, Vec<Range<usize>>) {
         let parts: Vec<Range<usize>> = (0..x.nrows() / EACH).map(|k| k * EACH..(k + 1) * EACH).collect();
         let recording = |(k, rows): (usize, &Range<usize>)| Recording {
             name: k.to_string(),
@@ -261,7 +314,11 @@ mod tests {
         let recordings = parts.iter().enumerate().map(recording).collect();
         let inputs = (1..=x.ncols()).map(|k| format!("P{k}")).collect();
         let targets = ["Fx_N", "Fy_N", "Fz_N"].map(str::to_owned).to_vec();
-        let data = Dataset::with_hidden(inputs, targets, vec![0.0; x.nrows()], x, y, recordings).unwrap();
+        (Dataset::with_hidden(inputs, targets, vec![0.0; x.nrows()], x, y, recordings).unwrap(), parts)
+    }
+
+    fn found(columns: [Array2<f64>; 2]) -> Vec<Mismatch> {
+        let (data, parts) = dataset(columns);
         mismatches(&data, &parts)
     }
 
@@ -307,6 +364,30 @@ mod tests {
             other => panic!("{other:?}"),
         });
         assert!((by[0] / 0.5 - 1.0).abs() < 0.2 && (by[1] / 2.0 - 1.0).abs() < 0.2, "{by:?}");
+    }
+
+    #[test]
+    fn a_recording_in_another_order_than_the_models_is_found() {
+        // The model is of other days: their offsets and gains differ.
+        let (trained, _) = dataset(touched(1));
+        let model = Moments::of(&trained, &(0..EACH)).model().unwrap();
+        let weights = Array2::from_shape_fn((5, 3), |(input, target)| model[target][input]);
+        let said = |columns: [Array2<f64>; 2]| {
+            let (data, _) = dataset(columns);
+            let answer = |order: &[usize]| Some(data.only_inputs(order).x().dot(&weights));
+            exchanged(&data, &data.x().dot(&weights), 5, answer)
+        };
+        assert_eq!(said(touched(3)), []);
+        for pair in [[0, 1], [2, 4], [5, 7], [6, 7]] {
+            let all = said(changed(touched(3), 1, Difference::Exchanged(pair)));
+            let [Mismatch { part: 1, difference, recorded, mended }] = all[..] else { panic!("{pair:?}: {all:?}") };
+            assert_eq!(difference, Difference::Exchanged(pair));
+            assert!(mended < 0.1 && recorded > 2.0 * mended, "{all:?}");
+        }
+        assert_eq!(said(changed(touched(3), 1, Difference::Scaled { column: 2, by: 2.0 })), [], "no exchange");
+        let [x, mut y] = changed(touched(3), 1, Difference::Exchanged([0, 1]));
+        y.column_mut(1).fill(0.0);
+        assert_eq!(said([x, y]), [], "a target that does not change");
     }
 
     #[test]
