@@ -131,8 +131,8 @@ fn name(k: usize) -> &'static str {
 /// Those that the measurements exchange.
 const EXCHANGED: [(usize, usize); 7] = [(2, 8), (4, 6), (3, 4), (7, 9), (10, 11), (10, 12), (11, 12)];
 
-/// The figures at the head of `mismatch.rs` of models: one of each log of touch of the phantom, beside the others of its
-/// kind of photodiodes as they are, and beside those of its person with two columns exchanged.
+/// The figures at the head of `mismatch.rs` of models: one of each log of touch of the phantom, beside the others of
+/// its kind of photodiodes as they are, and beside those of its person with two columns exchanged.
 #[test]
 #[ignore = "measures for some minutes: the figures at the head of mismatch.rs"]
 fn exchanges_beside_models_of_phantom_logs() {

@@ -29,9 +29,9 @@ const WINDOW_SHARE: f32 = 0.35;
 const WINDOW_PX: [f32; 2] = [2.0, 15.0];
 /// Longer sides are made shorter for the slow search, pixels.
 const SLOW_SEARCH_PX: usize = 1000;
-/// .. and for a glance, which finds boards of any size in a sixteenth of a second. Of 80 phantoms of 9x6 it saw 79 whole,
-/// blurred, noisy and dark ones among them, and 12 of 16 whose light fell off to a tenth: what it sees may be a part. A
-/// second one at three quarters saw another part or all of it then, in 128 of 128.
+/// .. and for a glance, which finds boards of any size in a sixteenth of a second. Of 80 phantoms of 9x6 it saw 79
+/// whole, blurred, noisy and dark ones among them, and 12 of 16 whose light fell off to a tenth: what it sees may be a
+/// part. A second one at three quarters saw another part or all of it then, in 128 of 128.
 const GLANCE_PX: usize = 640;
 const SECOND_GLANCE: f64 = 0.75;
 /// The least of a board that a glance sees, inner corners.

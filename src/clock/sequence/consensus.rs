@@ -87,6 +87,14 @@ pub(super) fn agree(seen: &[Seen], room_s: f64, most_drift: f64, wrap_s: Option<
     keep(seen, &best, slack_s, wrap_s)
 }
 
+/// The same with that of the clock's wraps with which most agree.
+pub(super) fn agree_with(seen: &[Seen], room_s: f64, most_drift: f64, wraps_s: &[f64]) -> Agreed {
+    let of = |wrap_s: Option<f64>| agree(seen, room_s, most_drift, wrap_s);
+    // The first of equals.
+    let best = wraps_s.iter().rev().map(|wrap_s| of(Some(*wrap_s))).max_by_key(|agreed| agreed.count);
+    best.unwrap_or_else(|| of(None))
+}
+
 struct Band {
     count: usize,
     drift: f64,

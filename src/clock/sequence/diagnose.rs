@@ -1,6 +1,6 @@
 //! What is wrong with a clock whose readings don't agree.
 
-use super::consensus::{Agreed, Seen, agree};
+use super::consensus::{Agreed, Seen, agree, agree_with};
 use super::{ClockFault, FEWEST, MOST_DRIFT, SLOWEST_SCREEN_S};
 
 /// Readings that make a second clock, not a misread digit.
@@ -83,6 +83,36 @@ fn second(refused: &[Seen], first: &Agreed, resolution_s: f64) -> Option<([f64; 
     let middle_s = 0.5 * (from_s + to_s);
     let height = |agreed: &Agreed| 0.5 * (agreed.band_s[0] + agreed.band_s[1]) + agreed.drift * middle_s;
     (other.count >= SECOND.max(FEWEST) && long).then(|| ([from_s, to_s], height(&other) - height(first)))
+}
+
+/// Screens that seem later than is usual by less than this are no reason to doubt, seconds.
+const LATE_S: f64 = 4e-3;
+/// That a slow screen's changes lie on a line by chance is believed down to this (assumed).
+const CHANCE: f64 = 1e-3;
+
+/// The clock's rate where readings that come `late_s` later than from a usual screen, and `left_s` at the rate `1 +
+/// drift`, come so by another rate rather than by a slow screen: its changes would be late now more, now less, and not
+/// the longer the video runs. Frames that are said to be evenly spaced, and were not taken so, look like this.
+pub(super) fn rate_for_late(late_s: f64, left_s: f64, drift: f64, changes: usize) -> Option<f64> {
+    if late_s < LATE_S || drift.abs() <= MOST_DRIFT || changes < SECOND {
+        return None;
+    }
+    let left = left_s.max(LATE_S) / late_s;
+    (left < 1.0 && left.powi(changes as i32 - 2) < CHANCE).then_some(1.0 + drift)
+}
+
+/// The clock's rate where at another one most of the readings agree that are refused; `room_s`: of the clock and its
+/// usual screen.
+pub(super) fn rate_for_refused(seen: &[Seen], agreed: &Agreed, room_s: f64, wraps_s: &[f64]) -> Option<f64> {
+    let refused = seen.len() - agreed.count;
+    if refused < SECOND {
+        return None;
+    }
+    // At a rate that differs more, most would be refused.
+    let half_s = seen.iter().map(|seen| seen.time_s.abs()).fold(0.0, f64::max);
+    let free = agree_with(seen, room_s, MOST_DRIFT + 2.0 * room_s / half_s, wraps_s);
+    let explains = 4 * (seen.len() - free.count) <= refused;
+    (explains && free.drift.abs() > MOST_DRIFT).then_some(1.0 + free.drift)
 }
 
 /// The clock's rate where it clearly is another than the video's.

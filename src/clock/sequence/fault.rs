@@ -46,7 +46,7 @@ pub enum ClockFault {
     /// It runs well but too fast or too slow.
     #[error(
         "the clock runs {rate:.4} times as fast as the video; the file's frame times must be those of the recording: \
-         no slow motion, time lapse or countdown"
+         no slow motion, time lapse or countdown, no other frame rate than the camera's"
     )]
     Rate {
         /// Seconds of the clock a second of the video.

@@ -9,7 +9,8 @@
 //! polygon, whose extent is the interval. The estimate is the mean over the polygon, and the standard errors are those
 //! about it, with all offsets alike and drifts as those of quartz clocks ([`USUAL_DRIFT`]); the interval counts every
 //! drift up to [`MOST_DRIFT`]. Readings that disagree with most others are refused before. How late the screen shows is
-//! found where the readings tell (module `screen`).
+//! found where the readings tell (module `screen`). Where another rate than the video's explains clearly more readings,
+//! or the same without a late screen, the frames' times are not those of the recording, and there is no line.
 //!
 //! Where the frames come in the rhythm of the digits, the estimate may lie anywhere in the interval, and 0.58 of all
 //! lie within a standard error, as of a uniform distribution. A screen of exactly 60 refreshes shows every tenth
@@ -35,6 +36,9 @@ use crate::timebase::Timebase;
 /// A clock drifts no more than this: files whose frame times are those of 30 frames a second though 29.97 were taken
 /// are a thousandth off.
 pub const MOST_DRIFT: f64 = 2e-3;
+/// Another rate that explains readings better than a slow screen does is no larger than this: larger ones leave too few
+/// that agree.
+const LARGEST_DRIFT: f64 = 0.1;
 /// Readings that must agree.
 pub const FEWEST: usize = 3;
 /// A screen of unknown rate may show what it shows up to this late, seconds: 60 refreshes a second, the slowest
@@ -161,6 +165,10 @@ pub fn fit(
         Ok(()) | Err(ClockFault::Contradictory { .. }) if agreed.count < FEWEST => return Err(too_few(agreed.count)),
         other => other?,
     }
+    let usual_s = given_s.unwrap_or(USUAL_SCREEN_S);
+    if let Some(rate) = diagnose::rate_for_refused(&seen, &agreed, resolution_s + usual_s, wraps_s) {
+        return Err(ClockFault::Rate { rate });
+    }
     let most_end_s = MOST_DRIFT * half_s;
     let hulls = loop {
         let hulls = Hulls::new(agreed_points(&seen, &agreed, slack_s), half_s);
@@ -176,7 +184,14 @@ pub fn fit(
     if is_misread(&agreed) {
         return Err(diagnose::contradictory(&seen, &agreed, place.time_s));
     }
-    let least_s = hulls.least_room(most_end_s).0 - resolution_s - 2.0 * slack_s;
+    let late_s = |most_drift: f64| {
+        let (room_s, end_s) = hulls.least_room(most_drift * half_s);
+        (room_s - resolution_s - 2.0 * slack_s, end_s / half_s)
+    };
+    let ((least_s, _), (left_s, drift)) = (late_s(MOST_DRIFT), late_s(LARGEST_DRIFT));
+    if let Some(rate) = diagnose::rate_for_late(least_s - usual_s, left_s - usual_s, drift, changes(&seen, &agreed)) {
+        return Err(ClockFault::Rate { rate });
+    }
     let mut accepted_s = vec![None; times_s.len().min(shown_s.len())];
     for (seen, turns_s) in seen.iter().zip(&agreed.turns_s) {
         accepted_s[seen.index] = shown_s[seen.index].zip(*turns_s).map(|(shown, turns)| shown + turns);
@@ -222,24 +237,19 @@ pub fn fit(
 /// The agreement of the most readings: with the screen that is given or usual or, where many more agree then, a slower
 /// one; and with that of the clock's wraps with which most agree.
 fn most_agreed(seen: &[Seen], resolution_s: f64, given_s: Option<f64>, wraps_s: &[f64]) -> Agreed {
-    let wraps: Vec<Option<f64>> =
-        if wraps_s.is_empty() { vec![None] } else { wraps_s.iter().copied().map(Some).collect() };
-    let with = |late_s: f64| {
-        let mut best: Option<Agreed> = None;
-        for &wrap_s in &wraps {
-            let agreed = consensus::agree(seen, resolution_s + late_s, MOST_DRIFT, wrap_s);
-            if best.as_ref().is_none_or(|best| agreed.count > best.count) {
-                best = Some(agreed);
-            }
-        }
-        best.expect("there is a wrap or none")
-    };
+    let with = |late_s: f64| consensus::agree_with(seen, resolution_s + late_s, MOST_DRIFT, wraps_s);
     let usual = with(given_s.unwrap_or(USUAL_SCREEN_S));
     if 10 * usual.count >= 9 * seen.len() {
         return usual;
     }
     let slow = with(SLOWEST_SCREEN_S);
     if 10 * slow.count > 10 * usual.count + seen.len() { slow } else { usual }
+}
+
+/// How often the digits change between readings that agree.
+fn changes(seen: &[Seen], agreed: &Agreed) -> usize {
+    let agree = seen.iter().zip(&agreed.turns_s).filter(|(_, turns_s)| turns_s.is_some());
+    agree.map(|(seen, _)| seen.shown_s).collect::<Vec<f64>>().windows(2).filter(|pair| pair[0] != pair[1]).count()
 }
 
 /// Whether so many readings disagree, here and there, that a digit must be misread again and again: such a digit is

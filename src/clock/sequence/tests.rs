@@ -394,3 +394,72 @@ fn bounds_hold_the_clock_at_every_time() {
     }
     assert_eq!(fit.bounds_s(0.0), fit.offset_interval_s);
 }
+
+/// A frame rate that is not the camera's, as of a file that says 29.5 evenly spaced frames a second.
+#[test]
+fn a_rate_that_is_not_the_cameras_is_no_slow_screen() {
+    let mut rng = ChaCha8Rng::seed_from_u64(11);
+    for (resolution_s, lengths_s, most_wrong, most_off_s) in [
+        // Measured 6 of 56 beyond the bounds, by 0.015 s at most; 2, 0.005 s; a clock of seconds 22, 0.054 s. Before
+        // rates were tried, 72 of tenths and hundredths together, by 0.124 s; 45, 0.289 s.
+        (0.1, [4.0, 8.0, 20.0, 60.0], 8, 0.02),
+        (0.01, [4.0, 8.0, 20.0, 60.0], 3, 0.01),
+        (1.0, [4.0, 8.0, 20.0, 60.0], 24, 0.06),
+    ] {
+        let (mut wrong, mut most_s) = (0, 0.0_f64);
+        for seconds in lengths_s {
+            for drift in [-0.03, -0.0167, -0.008, -0.004, 0.004, 0.01, 0.02] {
+                for refresh_hz in [AT_ONCE, None] {
+                    let screen_s = refresh_hz.is_none().then(|| [1.0 / 60.0, rng.random_range(0.0..1.0) / 60.0]);
+                    let offset_s = rng.random_range(0.0..3000.0);
+                    let film = Film { offset_s, drift, resolution_s, screen_s, exposure_s: 0.0 };
+                    let times = regular(29.5, seconds);
+                    let fit = fit(&times, &film.read(&times), resolution_s, &[3600.0, 6000.0], refresh_hz);
+                    let Ok(fit) = fit else { continue };
+                    let off = |&time_s: &f64| {
+                        let [low, high] = fit.bounds_s(time_s);
+                        (low - film.counts_s(time_s)).max(film.counts_s(time_s) - high)
+                    };
+                    let off_s = times.iter().map(off).fold(0.0, f64::max);
+                    wrong += u32::from(off_s > 0.0);
+                    most_s = most_s.max(off_s);
+                }
+            }
+        }
+        println!("resolution {resolution_s} s: {wrong} of 56 beyond the bounds, by {most_s} s at most");
+        assert!(wrong <= most_wrong && most_s <= most_off_s, "{resolution_s}: {wrong}, {most_s}");
+    }
+}
+
+#[test]
+fn slow_screens_and_misread_digits_are_no_other_rate() {
+    let mut rng = ChaCha8Rng::seed_from_u64(12);
+    let mut fitted = 0;
+    for film in 0..400 {
+        let resolution_s = [0.01, 0.1, 0.1, 1.0][film % 4];
+        let every_s = 1.0 / rng.random_range(10.0..144.0);
+        let seconds = [4.0, 8.0, 20.0, 60.0][film / 4 % 4];
+        let film = Film {
+            offset_s: rng.random_range(0.0..3000.0),
+            drift: rng.random_range(-1e-3..1e-3),
+            resolution_s,
+            screen_s: Some([every_s, every_s * rng.random_range(0.0..1.0)]),
+            exposure_s: rng.random_range(0.0..0.02),
+        };
+        let times = if rng.random_bool(0.5) { irregular(30.0, seconds, &mut rng) } else { regular(30.0, seconds) };
+        let mut shown = film.read(&times);
+        let misread = rng.random_range(0.0..0.08);
+        for shown in shown.iter_mut().flatten() {
+            if rng.random_bool(misread) {
+                *shown += resolution_s * f64::from(rng.random_range(-9_i32..10));
+            }
+        }
+        match fit(&times, &shown, resolution_s, &[3600.0, 6000.0], None) {
+            Ok(_) => fitted += 1,
+            Err(ClockFault::Rate { rate }) => panic!("{rate} of {}, {every_s} s, {seconds} s", 1.0 + film.drift),
+            Err(_) => {}
+        }
+    }
+    println!("{fitted} of 400");
+    assert!(fitted >= 300, "{fitted}");
+}

@@ -10,6 +10,7 @@
 //! Errors of different markers are taken as independent. A marker that both segments share counts once, with both its
 //! signs.
 
+use super::metric::Metric;
 use super::view::{Spot, View};
 use crate::posture::{Centre, Layout, Sight};
 use crate::video::Info;
@@ -55,6 +56,7 @@ pub(crate) struct Angles {
     needed: Vec<bool>,
     /// The last known angle of each joint.
     last_rad: Vec<Option<f64>>,
+    metric: Metric,
 }
 
 /// Two markers nearer to each other than this many standard errors of their distance have no direction.
@@ -70,7 +72,18 @@ impl Angles {
     }
 
     fn seen_by(layout: &Layout, view: View) -> Self {
-        Self { view, needed: layout.needed(), last_rad: vec![None; layout.joints.len()], layout: layout.clone() }
+        Self {
+            view,
+            needed: layout.needed(),
+            last_rad: vec![None; layout.joints.len()],
+            metric: Metric::new(layout.segments.len()),
+            layout: layout.clone(),
+        }
+    }
+
+    /// What to say of the view, once all frames are through.
+    pub(crate) fn doubt(&self) -> Option<String> {
+        self.metric.doubt()
     }
 
     /// The angles of the next frame, one sight a marker of the layout.
@@ -102,9 +115,12 @@ impl Angles {
                 if !wanted {
                     return None;
                 }
-                let direction = Direction::between(&spots[a]?, &spots[b]?);
+                let (proximal, distal) = (spots[a].as_ref()?, spots[b].as_ref()?);
+                let direction = Direction::between(proximal, distal);
                 if direction.is_none() {
                     lost.extend([a, b]);
+                } else {
+                    self.metric.add(k, [0, 1].map(|axis| distal.at_px[axis] - proximal.at_px[axis]));
                 }
                 direction
             })

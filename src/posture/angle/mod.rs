@@ -2,6 +2,7 @@
 
 pub(super) mod joints;
 pub(super) mod lens;
+mod metric;
 mod plane;
 pub(super) mod smooth;
 pub(super) mod view;

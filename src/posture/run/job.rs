@@ -85,6 +85,7 @@ pub fn run(
     }
     // What makes all angles wrong comes first.
     let mut warnings: Vec<String> = results.plausibility.warning(Some(layout.flexion)).into_iter().collect();
+    warnings.extend(angles.doubt());
     warnings.extend(View::doubt(layout, &info).unwrap_or_default());
     warnings.extend(info.warnings.iter().cloned());
     warnings.extend(late(layout, &survey, &results.markers));
