@@ -169,7 +169,7 @@ fn smaller(mat: &(impl MatTraitConst + ToInputArray), longest_px: usize) -> Resu
 /// [`GLANCE_PX`], or of the picture where that is smaller.
 fn glance(mat: &(impl MatTraitConst + ToInputArray), share: f64) -> Result<Option<[usize; 2]>, VisionError> {
     let longest = GLANCE_PX.min(mat.rows().max(mat.cols()) as usize);
-    let (small, _) = smaller(mat, (share * longest as f64) as usize)?;
+    let (small, _) = smaller(mat, (share * longest as f64).ceil() as usize)?;
     let (mut corners, mut meta) = (Vector::<Point2f>::new(), Mat::default());
     let (least, flags) = (Size::new(GLANCE, GLANCE), CALIB_CB_NORMALIZE_IMAGE | CALIB_CB_LARGER);
     let found = calib3d::find_chessboard_corners_sb_with_meta(&small, least, &mut corners, flags, &mut meta);

@@ -110,7 +110,7 @@ pub(super) fn rate_for_refused(seen: &[Seen], agreed: &Agreed, room_s: f64, wrap
     }
     // At a rate that differs more, most would be refused.
     let half_s = seen.iter().map(|seen| seen.time_s.abs()).fold(0.0, f64::max);
-    let free = agree_with(seen, room_s, MOST_DRIFT + 2.0 * room_s / half_s, wraps_s);
+    let free = agree_with(seen, room_s, MOST_DRIFT + 2.0 * room_s / half_s.max(room_s), wraps_s);
     let explains = 4 * (seen.len() - free.count) <= refused;
     (explains && free.drift.abs() > MOST_DRIFT).then_some(1.0 + free.drift)
 }
