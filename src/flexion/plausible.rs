@@ -14,8 +14,8 @@ use super::Flexion;
 /// Degrees added to the norms on both sides (assumed); at the DIP's lower end, where pressing bends the fingertip back.
 const MARGIN_DEG: f64 = 20.0;
 const PRESSED_DIP_DEG: f64 = 30.0;
-/// A recording is doubted where this share of its frames has an angle out of range (assumed: most of them) ...
-const MOST: f64 = 0.5;
+/// A recording is doubted where this share of its frames has an angle out of range (assumed) ...
+const MOST: f64 = 0.2;
 /// ... or this share, where hardly any would be with all angles negated.
 const SOME: f64 = 0.1;
 const HARDLY_ANY: f64 = 0.02;
@@ -190,5 +190,9 @@ mod tests {
         let few = (0..100).map(|k| vec![if k < 5 { -60.0 } else { 30.0 }]);
         assert_eq!(warning(&["J2"], few), None);
         assert_eq!(warning(&["J2"], std::iter::empty()), None);
+        // A hand that is turned over for a third of the time.
+        let turned = bending(1.0).chain(bending(1.0)).chain(bending(-1.0));
+        let warned = warning(&["J1", "J2", "J3"], turned).expect("a warning");
+        assert!(warned.contains("right names"), "{warned}");
     }
 }

@@ -6,8 +6,9 @@
 
 const HOUR_S: f64 = 3600.0;
 const DAY_S: f64 = 86_400.0;
-/// Times of day differ by multiples of this between the world's time zones.
+/// Times of day differ by multiples of this between the world's time zones: whole hours, or one of these either way.
 const ZONE_S: f64 = 900.0;
+const PARTS_OF_HOURS: [f64; 11] = [2.5, 3.5, 4.5, 5.5, 5.75, 6.5, 8.75, 9.5, 10.5, 12.75, 13.75];
 /// A clock that shows less may show minutes and seconds only.
 const MINUTES_ONLY_S: f64 = 6000.0;
 /// Stamps above this are seconds of the epoch, not of a recording: 1973.
@@ -33,14 +34,11 @@ pub(super) fn zero_s(
     }
     if by_day
         && every_s == DAY_S
-        && let Some(zero) = the_one(&over(clock_s, log_s, base_s, ZONE_S))?
+        && let zones =
+            over(clock_s, log_s, base_s, ZONE_S).into_iter().filter(|(zero, _)| is_zone(ahead_h(base_s - zero)))
+        && let Some(zero) = the_one(&zones.collect::<Vec<_>>())?
     {
-        // Zones reach from 12 hours behind to 14 ahead.
-        let mut ahead_s = (base_s - zero).rem_euclid(DAY_S);
-        if ahead_s > 14.0 * HOUR_S {
-            ahead_s -= DAY_S;
-        }
-        let hours = ahead_s / HOUR_S;
+        let hours = ahead_h(base_s - zero);
         return Ok((
             zero,
             Some(format!(
@@ -56,6 +54,16 @@ pub(super) fn zero_s(
         seconds(log_s[0]),
         seconds(log_s[1])
     ))
+}
+
+/// By how many hours a zone is ahead: from 12 behind to 14 ahead.
+fn ahead_h(seconds: f64) -> f64 {
+    let hours = seconds.rem_euclid(DAY_S) / HOUR_S;
+    if hours > 14.0 { hours - 24.0 } else { hours }
+}
+
+fn is_zone(hours: f64) -> bool {
+    hours.fract() == 0.0 || PARTS_OF_HOURS.contains(&hours.abs())
 }
 
 fn seconds(seconds: f64) -> String {
@@ -120,6 +128,9 @@ mod tests {
         let (zero, note) = zero_s([40_300.0, 40_360.0], log, None).unwrap();
         assert_eq!(zero, midnight - 7200.0);
         assert!(note.unwrap().contains("+2 h"));
+        // As in Nepal; no place is an hour and three quarters behind another.
+        assert_eq!(zero_s([53_800.0, 53_860.0], log, None).unwrap().0, midnight - 20_700.0);
+        assert!(zero_s([26_800.0, 26_860.0], log, None).unwrap_err().contains("do not overlap"));
         // Over midnight the clock was unwrapped.
         let late = [midnight + 86_300.0, midnight + 86_500.0];
         assert_eq!(zero_s([86_390.0, 86_410.0], late, Some(midnight)).unwrap().0, midnight);

@@ -1,7 +1,9 @@
 //! What is wrong with a clock whose readings don't agree.
 
 use super::consensus::{Agreed, Seen, agree, agree_with};
+use super::polygon::{Hulls, Point};
 use super::{ClockFault, FEWEST, MOST_DRIFT, SLOWEST_SCREEN_S};
+use crate::median::median_of;
 
 /// Readings that make a second clock, not a misread digit.
 const SECOND: usize = 5;
@@ -87,18 +89,71 @@ fn second(refused: &[Seen], first: &Agreed, resolution_s: f64) -> Option<([f64; 
 
 /// Screens that seem later than is usual by less than this are no reason to doubt, seconds.
 const LATE_S: f64 = 4e-3;
-/// That a slow screen's changes lie on a line by chance is believed down to this (assumed).
+/// What explains it better than a slow screen leaves this share of it at most (a jump could be anywhere, so that
+/// misread digits are parted by one), and by chance, were the digits' changes late at random, no more often than this
+/// (assumed).
+const LEFT_BY_RATE: f64 = 0.5;
+const LEFT_BY_JUMP: f64 = 0.2;
 const CHANCE: f64 = 1e-3;
+/// Another rate than the video's that is looked for; of a larger one too few readings agree.
+const LARGEST_DRIFT: f64 = 0.1;
+/// A jump that a screen's delay, late now more and now less in a slow rhythm, can't be taken for, seconds.
+const JUMP_S: f64 = 0.04;
+/// Drifts with which a jump is looked for: none, and of 29.97 frames a second taken for 30 or the other way round.
+const JUMP_DRIFTS: [f64; 3] = [0.0, -1e-3, 1e-3];
 
-/// The clock's rate where readings that come `late_s` later than from a usual screen, and `left_s` at the rate `1 +
-/// drift`, come so by another rate rather than by a slow screen: its changes would be late now more, now less, and not
-/// the longer the video runs. Frames that are said to be evenly spaced, and were not taken so, look like this.
-pub(super) fn rate_for_late(late_s: f64, left_s: f64, drift: f64, changes: usize) -> Option<f64> {
-    if late_s < LATE_S || drift.abs() <= MOST_DRIFT || changes < SECOND {
+/// Why readings, as the polygon takes them, come `late_s` later than from a usual screen, where another rate than the
+/// video's or a jump explains it better than a slow screen: that would be late now more, now less, and neither the
+/// longer the video runs nor from a moment on. Frames that are said to be evenly spaced, and were not taken so or lost,
+/// look like this. `room_s` is that of the clock and its usual screen; times are about `middle_s`.
+pub(super) fn late(points: &[Point], hulls: &Hulls, room_s: f64, late_s: f64, middle_s: f64) -> Option<ClockFault> {
+    if late_s < LATE_S {
         return None;
     }
-    let left = left_s.max(LATE_S) / late_s;
-    (left < 1.0 && left.powi(changes as i32 - 2) < CHANCE).then_some(1.0 + drift)
+    let (room, end_s) = hulls.least_room(LARGEST_DRIFT * hulls.half_s());
+    let drift = end_s / hulls.half_s();
+    let rate =
+        (drift.abs() > MOST_DRIFT).then_some((room - room_s, LEFT_BY_RATE, ClockFault::Rate { rate: 1.0 + drift }));
+    let jumps =
+        JUMP_DRIFTS.into_iter().filter_map(|drift| jump(points, drift)).filter(|(.., by_s)| by_s.abs() >= JUMP_S);
+    let jumps = jumps.map(|(width_s, k, by_s)| {
+        let at_s = 0.5 * (points[k - 1][0] + points[k][0]) + middle_s;
+        (width_s - room_s, LEFT_BY_JUMP, ClockFault::Jumps { at_s, by_s })
+    });
+    let left = |left_s: f64| left_s.max(LATE_S) / late_s;
+    let explains = |(left_s, most, _): &(f64, f64, ClockFault)| {
+        *left_s <= LATE_S.max(most * late_s) && left(*left_s).powi(changes(points) as i32 - 4) < CHANCE
+    };
+    let best = rate.into_iter().chain(jumps).filter(explains).min_by(|a, b| a.0.total_cmp(&b.0));
+    best.map(|(.., fault)| fault)
+}
+
+/// How often the digits change.
+fn changes(points: &[Point]) -> usize {
+    let shown = |point: &Point| point[0] + point[1];
+    points.windows(2).filter(|pair| (shown(&pair[1]) - shown(&pair[0])).abs() > 1e-4).count()
+}
+
+/// Where readings of a clock of this drift are parted so that those before and those after lie the closest: how close,
+/// which is the first after, and by how much these show more.
+fn jump(points: &[Point], drift: f64) -> Option<(f64, usize, f64)> {
+    let ends = |points: &mut dyn Iterator<Item = &Point>| -> Vec<[f64; 2]> {
+        let widen = |ends: &mut [f64; 2], point: &Point| {
+            let at = point[1] - drift * point[0];
+            *ends = [ends[0].min(at), ends[1].max(at)];
+            Some(*ends)
+        };
+        points.scan([f64::INFINITY, f64::NEG_INFINITY], widen).collect()
+    };
+    let (before, after) = (ends(&mut points.iter()), ends(&mut points.iter().rev()));
+    let at = |k: usize| [before[k - 1], after[points.len() - 1 - k]];
+    let wider = |k: usize| at(k).map(|[low, high]| high - low).into_iter().fold(0.0, f64::max);
+    let k = (1..points.len()).min_by(|a, b| wider(*a).total_cmp(&wider(*b)))?;
+    let sides = [&points[..k], &points[k..]];
+    // Not the middles: of digits that are misread now and then, those that are left may differ.
+    let [before, after] = sides.map(|side| median_of(side.iter().map(|point| point[1] - drift * point[0])));
+    let by_s = after? - before?;
+    sides.into_iter().all(|side| changes(side) >= SECOND).then_some((wider(k), k, by_s))
 }
 
 /// The clock's rate where at another one most of the readings agree that are refused; `room_s`: of the clock and its

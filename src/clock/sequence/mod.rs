@@ -36,9 +36,6 @@ use crate::timebase::Timebase;
 /// A clock drifts no more than this: files whose frame times are those of 30 frames a second though 29.97 were taken
 /// are a thousandth off.
 pub const MOST_DRIFT: f64 = 2e-3;
-/// Another rate that explains readings better than a slow screen does is no larger than this: larger ones leave too few
-/// that agree.
-const LARGEST_DRIFT: f64 = 0.1;
 /// Readings that must agree.
 pub const FEWEST: usize = 3;
 /// A screen of unknown rate may show what it shows up to this late, seconds: 60 refreshes a second, the slowest
@@ -91,8 +88,8 @@ pub struct ClockFit {
     pub screen_delay_s: f64,
     /// The longest that the interval counts, seconds.
     pub screen_delay_most_s: f64,
-    /// What whoever uses the fit should know.
-    pub notes: Vec<String>,
+    /// What whoever uses the fit should doubt.
+    pub doubt: Option<String>,
     place: Place,
     corners: Vec<Point>,
 }
@@ -184,13 +181,11 @@ pub fn fit(
     if is_misread(&agreed) {
         return Err(diagnose::contradictory(&seen, &agreed, place.time_s));
     }
-    let late_s = |most_drift: f64| {
-        let (room_s, end_s) = hulls.least_room(most_drift * half_s);
-        (room_s - resolution_s - 2.0 * slack_s, end_s / half_s)
-    };
-    let ((least_s, _), (left_s, drift)) = (late_s(MOST_DRIFT), late_s(LARGEST_DRIFT));
-    if let Some(rate) = diagnose::rate_for_late(least_s - usual_s, left_s - usual_s, drift, changes(&seen, &agreed)) {
-        return Err(ClockFault::Rate { rate });
+    let points: Vec<Point> = agreed_points(&seen, &agreed, slack_s).collect();
+    let least_s = hulls.least_room(most_end_s).0 - resolution_s - 2.0 * slack_s;
+    let room_s = resolution_s + 2.0 * slack_s + usual_s;
+    if let Some(fault) = diagnose::late(&points, &hulls, room_s, least_s - usual_s, place.time_s) {
+        return Err(fault);
     }
     let mut accepted_s = vec![None; times_s.len().min(shown_s.len())];
     for (seen, turns_s) in seen.iter().zip(&agreed.turns_s) {
@@ -228,7 +223,7 @@ pub fn fit(
         screen: screen.known,
         screen_delay_s: screen.estimate_s,
         screen_delay_most_s: screen.most_s,
-        notes: screen.notes,
+        doubt: screen.doubt,
         place,
         corners,
     })
@@ -244,12 +239,6 @@ fn most_agreed(seen: &[Seen], resolution_s: f64, given_s: Option<f64>, wraps_s: 
     }
     let slow = with(SLOWEST_SCREEN_S);
     if 10 * slow.count > 10 * usual.count + seen.len() { slow } else { usual }
-}
-
-/// How often the digits change between readings that agree.
-fn changes(seen: &[Seen], agreed: &Agreed) -> usize {
-    let agree = seen.iter().zip(&agreed.turns_s).filter(|(_, turns_s)| turns_s.is_some());
-    agree.map(|(seen, _)| seen.shown_s).collect::<Vec<f64>>().windows(2).filter(|pair| pair[0] != pair[1]).count()
 }
 
 /// Whether so many readings disagree, here and there, that a digit must be misread again and again: such a digit is

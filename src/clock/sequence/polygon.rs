@@ -45,6 +45,8 @@ impl Hulls {
         bends.retain(|end| end.abs() < most_end_s);
         bends.extend([-most_end_s, most_end_s]);
         bends.sort_by(f64::total_cmp);
+        // Between two that are the same nothing rises or falls.
+        bends.dedup_by(|later, before| *later - *before < 1e-9);
         let (mut low, mut high) = (0, bends.len() - 1);
         while low < high {
             let middle = usize::midpoint(low, high);

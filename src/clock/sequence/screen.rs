@@ -28,7 +28,8 @@ pub(super) struct Screen {
     pub(super) estimate_s: f64,
     /// The longest that the interval counts, seconds.
     pub(super) most_s: f64,
-    pub(super) notes: Vec<String>,
+    /// Why the rate that was given is not believed.
+    pub(super) doubt: Option<String>,
 }
 
 /// The delay, if readings agree with none below `least_s`, `dead_s` is from [`dead_s`], and `given_s` what the
@@ -37,29 +38,24 @@ pub(super) fn delay(least_s: f64, dead_s: [f64; 2], given_s: Option<f64>) -> Scr
     if let Some(given_s) = given_s
         && least_s <= given_s
     {
-        return Screen { known: ScreenDelay::Given, estimate_s: given_s, most_s: given_s, notes: Vec::new() };
+        return Screen { known: ScreenDelay::Given, estimate_s: given_s, most_s: given_s, doubt: None };
     }
     let screen = |late_s: f64| SCREENS_S.into_iter().find(|&screen| late_s <= screen / NEAR).unwrap_or(late_s);
     let most_s = screen(least_s.max(NEAR * USUAL_SCREEN_S)).max(least_s / NEAR);
-    let mut notes = Vec::new();
-    if given_s.is_some() {
-        notes.push(format!(
-            "the clock's digits change up to {:.1} ms later than its refresh rate explains: the rate is not believed",
+    let doubt = given_s.map(|_| {
+        format!(
+            "the clock's digits change up to {:.1} ms later than `refresh_hz` explains, which is not believed: are \
+             frames missing, or does the clock jump?",
             1e3 * least_s
-        ));
-    }
+        )
+    });
     let [dead_s, dead_sd_s] = dead_s;
     let late_s = least_s + dead_s;
     if least_s <= 0.0 && late_s < BELIEVED_S.max(BELIEVED_SDS * dead_sd_s) {
-        notes.push(format!(
-            "how often the clock's screen changes is not known: the offset's interval and standard error count one \
-             that shows up to {:.1} ms late; the rate, if given, narrows them",
-            1e3 * most_s
-        ));
-        return Screen { known: ScreenDelay::Assumed, estimate_s: 0.0, most_s, notes };
+        return Screen { known: ScreenDelay::Assumed, estimate_s: 0.0, most_s, doubt };
     }
     let estimate_s = screen(late_s).max(least_s / NEAR);
-    Screen { known: ScreenDelay::Found, estimate_s, most_s: most_s.max(estimate_s), notes }
+    Screen { known: ScreenDelay::Found, estimate_s, most_s: most_s.max(estimate_s), doubt }
 }
 
 /// Frames in a row that are not read because digits change in them: no more than this.

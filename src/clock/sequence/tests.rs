@@ -403,7 +403,7 @@ fn a_rate_that_is_not_the_cameras_is_no_slow_screen() {
         // Measured 6 of 56 beyond the bounds, by 0.015 s at most; 2, 0.005 s; a clock of seconds 22, 0.054 s. Before
         // rates were tried, 72 of tenths and hundredths together, by 0.124 s; 45, 0.289 s.
         (0.1, [4.0, 8.0, 20.0, 60.0], 8, 0.02),
-        (0.01, [4.0, 8.0, 20.0, 60.0], 3, 0.01),
+        (0.01, [4.0, 8.0, 20.0, 60.0], 5, 0.01),
         (1.0, [4.0, 8.0, 20.0, 60.0], 24, 0.06),
     ] {
         let (mut wrong, mut most_s) = (0, 0.0_f64);
@@ -456,10 +456,39 @@ fn slow_screens_and_misread_digits_are_no_other_rate() {
         }
         match fit(&times, &shown, resolution_s, &[3600.0, 6000.0], None) {
             Ok(_) => fitted += 1,
-            Err(ClockFault::Rate { rate }) => panic!("{rate} of {}, {every_s} s, {seconds} s", 1.0 + film.drift),
+            Err(fault @ (ClockFault::Rate { .. } | ClockFault::Jumps { .. })) => {
+                panic!("{fault}; drift {}, {every_s} s, {seconds} s", film.drift)
+            }
             Err(_) => {}
         }
     }
     println!("{fitted} of 400");
     assert!(fitted >= 300, "{fitted}");
+}
+
+#[test]
+fn lost_frames_of_evenly_spaced_ones_are_a_jump() {
+    let mut rng = ChaCha8Rng::seed_from_u64(13);
+    for lost in [2, 3, 4] {
+        for (resolution_s, refresh_hz) in [(0.1, AT_ONCE), (0.1, None), (0.01, AT_ONCE), (0.01, None)] {
+            for drift in [0.0, -1e-3] {
+                let screen_s = refresh_hz.is_none().then(|| [1.0 / 60.0, rng.random_range(0.0..1.0) / 60.0]);
+                let offset_s = rng.random_range(0.0..3000.0);
+                let film = Film { offset_s, drift, resolution_s, screen_s, exposure_s: 0.0 };
+                let filmed = regular(30.0, 10.0);
+                let at = rng.random_range(100..200);
+                let shown: Vec<Option<f64>> = film
+                    .read(&filmed)
+                    .into_iter()
+                    .enumerate()
+                    .filter(|(k, _)| !(at..at + lost).contains(k))
+                    .map(|(_, s)| s)
+                    .collect();
+                let fault = fit(&filmed[..shown.len()], &shown, resolution_s, &[3600.0, 6000.0], refresh_hz);
+                let Err(ClockFault::Jumps { at_s, by_s }) = fault else { panic!("{lost} {resolution_s}: {fault:?}") };
+                let lost_s = lost as f64 / 30.0;
+                assert!((by_s - lost_s).abs() <= 0.03 && (at_s - filmed[at]).abs() <= 0.4, "{lost}: {by_s} at {at_s}");
+            }
+        }
+    }
 }

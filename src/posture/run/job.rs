@@ -83,9 +83,11 @@ pub fn run(
     if let Some(why) = clock.as_ref().and_then(|clock| clock.fit.as_ref().err()) {
         failed.push(format!("{}: the clock in the picture: {why}; clock_s is empty", path.display()));
     }
+    let clock_doubt = clock.as_ref().and_then(|clock| clock.fit.as_ref().ok()?.doubt.clone());
     // What makes all angles wrong comes first.
     let mut warnings: Vec<String> = results.plausibility.warning(Some(layout.flexion)).into_iter().collect();
     warnings.extend(angles.doubt());
+    warnings.extend(clock_doubt);
     warnings.extend(View::doubt(layout, &info).unwrap_or_default());
     warnings.extend(info.warnings.iter().cloned());
     warnings.extend(late(layout, &survey, &results.markers));
