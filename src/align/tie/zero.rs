@@ -130,7 +130,7 @@ mod tests {
         assert!(note.unwrap().contains("+2 h"));
         // As in Nepal; no place is an hour and three quarters behind another.
         assert_eq!(zero_s([53_800.0, 53_860.0], log, None).unwrap().0, midnight - 20_700.0);
-        assert!(zero_s([26_800.0, 26_860.0], log, None).unwrap_err().contains("do not overlap"));
+        assert!(zero_s([27_000.0, 27_060.0], log, None).unwrap_err().contains("do not overlap"));
         // Over midnight the clock was unwrapped.
         let late = [midnight + 86_300.0, midnight + 86_500.0];
         assert_eq!(zero_s([86_390.0, 86_410.0], late, Some(midnight)).unwrap().0, midnight);
