@@ -120,9 +120,9 @@ pub(super) fn late(points: &[Point], hulls: &Hulls, room_s: f64, late_s: f64, mi
         let at_s = 0.5 * (points[k - 1][0] + points[k][0]) + middle_s;
         (width_s - room_s, LEFT_BY_JUMP, ClockFault::Jumps { at_s, by_s })
     });
-    let left = |left_s: f64| left_s.max(LATE_S) / late_s;
+    let power = changes(points) as i32 - 4;
     let explains = |(left_s, most, _): &(f64, f64, ClockFault)| {
-        *left_s <= LATE_S.max(most * late_s) && left(*left_s).powi(changes(points) as i32 - 4) < CHANCE
+        *left_s <= LATE_S.max(most * late_s) && (left_s.max(LATE_S) / late_s).powi(power) < CHANCE
     };
     let best = rate.into_iter().chain(jumps).filter(explains).min_by(|a, b| a.0.total_cmp(&b.0));
     best.map(|(.., fault)| fault)

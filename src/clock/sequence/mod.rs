@@ -167,11 +167,11 @@ pub fn fit(
         return Err(ClockFault::Rate { rate });
     }
     let most_end_s = MOST_DRIFT * half_s;
-    let hulls = loop {
+    let (hulls, least_s) = loop {
         let hulls = Hulls::new(agreed_points(&seen, &agreed, slack_s), half_s);
         let late_s = hulls.least_room(most_end_s).0 - resolution_s - 2.0 * slack_s;
         if late_s <= SLOWEST_SCREEN_S.max(given_s.unwrap_or(0.0)) {
-            break hulls;
+            break (hulls, late_s);
         }
         refuse_worst(&seen, &mut agreed, &hulls, most_end_s);
         if 2 * agreed.count < seen.len() || agreed.count < FEWEST {
@@ -182,7 +182,6 @@ pub fn fit(
         return Err(diagnose::contradictory(&seen, &agreed, place.time_s));
     }
     let points: Vec<Point> = agreed_points(&seen, &agreed, slack_s).collect();
-    let least_s = hulls.least_room(most_end_s).0 - resolution_s - 2.0 * slack_s;
     let room_s = resolution_s + 2.0 * slack_s + usual_s;
     if let Some(fault) = diagnose::late(&points, &hulls, room_s, least_s - usual_s, place.time_s) {
         return Err(fault);

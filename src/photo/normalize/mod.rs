@@ -63,12 +63,12 @@ impl Normalized {
         }
         let in_nails = |k: usize| ((k as f64 + 0.5) / self.size as f64 - 0.5) * margin;
         let is_nail = |at: &usize| in_nails(at % self.size).hypot(in_nails(at / self.size)) <= 0.5;
-        let (mut all, mut bright) = (0, 0);
+        let (mut all, mut bright) = (0_usize, 0_usize);
         for level in (0..self.levels.len()).filter(is_nail).filter_map(|at| self.level(at)) {
             all += 1;
             bright += usize::from(level >= AT_FULL_SCALE);
         }
-        if all == 0 { 0.0 } else { f64::from(bright as u32) / f64::from(all as u32) }
+        bright as f64 / all.max(1) as f64
     }
 
     fn nowhere(size: usize) -> Self {

@@ -63,6 +63,9 @@ impl Metric {
             frames += sums.count;
             turned = turned.min((mean.x - mean.y).hypot(mean.z) / squared);
         }
+        if turned > TURNED {
+            return None;
+        }
         let covariance = covariance / frames;
         let square = Vector3::new(1.0, 1.0, 0.0);
         // Of a squared length, which varies by twice as much.
@@ -74,7 +77,7 @@ impl Metric {
         let [low, high] = [eigen.eigenvalues.imin(), eigen.eigenvalues.imax()];
         let ratio = (eigen.eigenvalues[high] / eigen.eigenvalues[low]).sqrt();
         let (recorded, left) = (sd(&square), sd(&best));
-        if !(turned <= TURNED && ratio >= LEAST_RATIO && recorded >= LEAST_SD && left <= LEFT * recorded) {
+        if !(ratio >= LEAST_RATIO && recorded >= LEAST_SD && left <= LEFT * recorded) {
             return None;
         }
         // Where true lengths are less than they look.

@@ -101,6 +101,9 @@ pub fn exchanged(
     inputs: usize,
     answer: impl Fn(&[usize]) -> Option<Array2<f64>>,
 ) -> Vec<Mismatch> {
+    if inputs > INPUTS {
+        return Vec::new();
+    }
     let targets = answered.targets().len();
     let own: Vec<usize> = (0..targets).collect();
     let share = |one: &Recording, values: &Array2<f64>, order: &[usize]| {
@@ -116,7 +119,7 @@ pub fn exchanged(
     let mut doubted: Vec<(usize, &Recording, f64)> =
         answered.recordings().iter().enumerate().map(of_recording).collect();
     doubted.retain(|(_, one, recorded)| one.rows.len() >= ROWS * (1 + inputs) && *recorded >= LESS);
-    if inputs > INPUTS || doubted.is_empty() {
+    if doubted.is_empty() {
         return Vec::new();
     }
     let in_order = |count: usize, [a, b]: [usize; 2]| {
@@ -124,15 +127,26 @@ pub fn exchanged(
         order.swap(a, b);
         order
     };
-    let of_inputs = pairs(0..inputs).filter_map(|pair| Some((pair, answer(&in_order(inputs, pair))?, own.clone())));
-    let of_targets = pairs(0..targets).map(|pair| (pair.map(|k| inputs + k), values.clone(), in_order(targets, pair)));
-    let all: Vec<_> = of_inputs.chain(of_targets).collect();
-    let differs = |(part, one, recorded): (usize, &Recording, f64)| {
-        let tried = all.iter().map(|(pair, values, order)| (Difference::Exchanged(*pair), share(one, values, order)));
-        let (difference, mended) = best(tried.collect(), recorded)?;
-        (recorded - mended >= LESS).then_some(Mismatch { part, difference, recorded, mended })
+    // Answers are looked at one after the other: together they would take as much memory as there are pairs.
+    let mut tried = vec![Vec::new(); doubted.len()];
+    let mut look = |pair, values: &Array2<f64>, order: &[usize]| {
+        for ((_, one, _), tried) in doubted.iter().zip(&mut tried) {
+            tried.push((Difference::Exchanged(pair), share(one, values, order)));
+        }
     };
-    doubted.into_iter().filter_map(differs).collect()
+    for pair in pairs(0..inputs) {
+        if let Some(values) = answer(&in_order(inputs, pair)) {
+            look(pair, &values, &own);
+        }
+    }
+    for pair in pairs(0..targets) {
+        look(pair.map(|k| inputs + k), values, &in_order(targets, pair));
+    }
+    let found = doubted.into_iter().zip(tried).filter_map(|((part, _, recorded), tried)| {
+        let (difference, mended) = best(tried, recorded)?;
+        (recorded - mended >= LESS).then_some(Mismatch { part, difference, recorded, mended })
+    });
+    found.collect()
 }
 
 /// Every two of some columns.
