@@ -12,7 +12,7 @@ use crate::align::posture::Posture;
 use crate::align::run::plan::{Foreknown, steps};
 use crate::align::run::report::{AlignFigures, AlignReport, LabelReport};
 use crate::align::run::results::Results;
-use crate::align::tie::{self, Tie, TieMethod};
+use crate::align::tie::{self, Agreement, Tie, TieMethod};
 use crate::job::{Report, Watch};
 use crate::log::{Log, Samples, samples};
 use crate::stages::{Stages, left_out};
@@ -55,8 +55,13 @@ pub fn run(
         let why = nothing_labelled(&posture, &samples, &tie);
         return Err(AlignError::NothingLabelled { path: inputs.log.clone(), why });
     }
-    let warnings = [&posture.warnings[..], &tie.warnings, &samples.warnings].concat();
-    let notes = [&log.notes[..], &samples.notes, &tie.notes].concat();
+    let agreement = match tie.method {
+        TieMethod::Correlate => Agreement::default(),
+        TieMethod::Clock | TieMethod::Offset => stages.time("compare", || tie::compare(&posture, &samples, &tie)),
+    };
+    watch.go_on()?;
+    let warnings = [&posture.warnings[..], &tie.warnings, &agreement.warnings, &samples.warnings].concat();
+    let notes = [&log.notes[..], &samples.notes, &tie.notes, &agreement.notes].concat();
     let certificate = Certificate::new(&tie, &labels, [&warnings[..], &notes].concat());
     stages.time("write", || results.training(&samples, &posture, &labels, &certificate, options, outputs))?;
     let exported = stages.time("export", || results.exports(&posture, &tie, names.as_ref(), inputs, outputs))?;

@@ -95,6 +95,11 @@ pub(in crate::align) fn steps(known: &Foreknown, options: &AlignOptions, outputs
                 "only --sync correlate needs it".to_owned()
             },
         ),
+        Step::new(
+            "photodiodes compared with the tie",
+            sync != Some(Sync::Correlate),
+            if sync == Some(Sync::Correlate) { "they make it" } else { "do they follow the angles?" }.to_owned(),
+        ),
         Step::new("OpenSim motion file", mot, mot_why),
         Step::new("BIDS Motion folder", bids, bids_why),
         Step::new("DeepLabCut table", dlc, dlc_why),

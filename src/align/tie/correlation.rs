@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::correlate::{LagSearch, Recording, correlate};
+use super::correlate::{Correlated, LagSearch, Recording, correlate};
 use super::{Tie, TieMethod};
 use crate::align::Posture;
 use crate::clock::USUAL_DRIFT;
@@ -13,6 +13,11 @@ use crate::timebase::Timebase;
 /// How far the sensor's lag differs with the motion, seconds: hysteresis lasts longer the slower the finger moves.
 /// Measured over phantoms in random motion: 4 ms.
 const LAG_SD_S: f64 = 0.005;
+
+/// Once the drift is known the lag is looked for again so near, seconds.
+const AGAIN_S: f64 = 1.0;
+/// The lag changes by more than this many of its standard errors: the clocks run at different rates.
+const DRIFTS_SDS: f64 = 3.0;
 
 /// Where the lag is looked for, and the sensor's own.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Args)]
@@ -26,8 +31,8 @@ pub struct LagTie {
 }
 
 /// Ties by correlation. The offset is what [`correlate`] finds less the sensor's lag; where that is not known it is in
-/// the offset, and a warning says so. Drift can't be separated from the sensor's own and is taken to be 0, with the
-/// standard error of clocks of quartz.
+/// the offset, and a warning says so. Drift is taken to be 0, with the standard error of clocks of quartz, unless the
+/// lag clearly changes from the first half to the second: then it is measured, and a warning says so.
 ///
 /// # Errors
 /// No angles, no photodiodes, or no lag that is sure: in words, with what to do.
@@ -43,15 +48,35 @@ pub(crate) fn by_correlation(posture: &Posture, samples: &Samples, options: LagT
     if channels.is_empty() {
         return Err("the log has no photodiodes to compare the angles with".to_owned());
     }
-    let found = correlate(
-        Recording { time_s: &posture.time_s, columns: &angles },
-        Recording { time_s: &samples.time_s, columns: &channels },
-        options.search,
-    )?;
+    let video = Recording { time_s: &posture.time_s, columns: &angles };
+    let plain = correlate(video, Recording { time_s: &samples.time_s, columns: &channels }, options.search)?;
+    let reference_s = middle_of_overlap(&posture.time_s, &samples.time_s, plain.offset_s);
+    let pivot_s = reference_s + plain.offset_s;
+    let (mut warnings, mut notes) = (Vec::new(), Vec::new());
+    // Log time less video time at the reference is the offset at any rate that turns about it.
+    let (found, drift, drift_sd) = match drift_of(&plain) {
+        None => {
+            notes.push(format!("drift is taken to be 0, with a standard error of {:.0} ppm", 1e6 * USUAL_DRIFT));
+            (plain, 0.0, USUAL_DRIFT)
+        }
+        Some([drift, _]) => {
+            let time_s: Vec<f64> = samples.time_s.iter().map(|t| pivot_s + (t - pivot_s) / (1.0 + drift)).collect();
+            let search = LagSearch { about_s: Some(plain.offset_s), most_s: Some(AGAIN_S), ..options.search };
+            let again = correlate(video, Recording { time_s: &time_s, columns: &channels }, search)?;
+            let [more, sd] = drift_by(&again).ok_or("once the drift is taken off, no half says what is left of it")?;
+            let drift = (1.0 + drift) * (1.0 + more) - 1.0;
+            warnings.push(format!(
+                "the lag changes over the recording as if the log's clock ran {:.5} +- {:.5} times as fast as the \
+                 video's, which no two clocks of quartz do; it is taken so: is the video's rate of frames, or the \
+                 log's of samples, the one that was recorded?",
+                1.0 + drift,
+                sd
+            ));
+            (again, drift, sd)
+        }
+    };
     let lag_s = options.sensor_lag_s.unwrap_or(0.0);
     let offset_s = found.offset_s - lag_s;
-    let reference_s = middle_of_overlap(&posture.time_s, &samples.time_s, offset_s);
-    let (mut warnings, mut notes) = (Vec::new(), Vec::new());
     match options.sensor_lag_s {
         Some(lag_s) => notes.push(format!("the sensor's lag of {lag_s} s, as given, is taken off the offset")),
         None => warnings.push(
@@ -68,15 +93,14 @@ pub(crate) fn by_correlation(posture: &Posture, samples: &Samples, options: LagT
     if let Some(other) = found.others.first() {
         notes.push(format!("the next best lag is {:.3} s, with {:.1} %", other.offset_s, 100.0 * other.explained));
     }
-    notes.push(format!("drift is taken to be 0, with a standard error of {:.0} ppm", 1e6 * USUAL_DRIFT));
     Ok(Tie {
         method: TieMethod::Correlate,
         timebase: Timebase {
             reference_s,
             at_reference_s: reference_s + offset_s,
             at_reference_sd_s: found.offset_sd_s.hypot(LAG_SD_S),
-            drift: 0.0,
-            drift_sd: USUAL_DRIFT,
+            drift,
+            drift_sd,
         },
         offset_interval_s: None,
         residual_rms_s: None,
@@ -87,6 +111,19 @@ pub(crate) fn by_correlation(posture: &Posture, samples: &Samples, options: LagT
         warnings,
         notes,
     })
+}
+
+/// How much faster the log's clock runs by the lags of both halves, and its standard error.
+fn drift_by(found: &Correlated) -> Option<[f64; 2]> {
+    let [first, second] = found.halves?;
+    let apart_s = second.middle_s - first.middle_s;
+    let sd_s = first.offset_sd_s.hypot(second.offset_sd_s).hypot(LAG_SD_S);
+    Some([(second.offset_s - first.offset_s) / apart_s, sd_s / apart_s])
+}
+
+/// [`drift_by`], where it is more than clocks of quartz have.
+fn drift_of(found: &Correlated) -> Option<[f64; 2]> {
+    drift_by(found).filter(|[drift, sd]| drift.abs() > DRIFTS_SDS * sd.hypot(USUAL_DRIFT))
 }
 
 /// The video's time in the middle of where both have rows.
@@ -100,7 +137,7 @@ fn middle_of_overlap(video_s: &[f64], log_s: &[f64], offset_s: f64) -> f64 {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use rand::{RngExt, SeedableRng};
     use rand_chacha::ChaCha8Rng;
 
@@ -153,7 +190,11 @@ mod tests {
 
     /// A phantom's angles with an error of 0.05 degrees, and its log with all ambient light left in; the log's clock is
     /// 60 s ahead.
-    fn phantom(seed: u64, trajectory: Trajectory, force: ForceTrajectory) -> (Posture, Samples) {
+    pub(in crate::align::tie) fn phantom(
+        seed: u64,
+        trajectory: Trajectory,
+        force: ForceTrajectory,
+    ) -> (Posture, Samples) {
         let time_s: Vec<f64> = (0..1800).map(|k| f64::from(k) / 30.0).collect();
         let options = LogOptions {
             seed,
@@ -186,10 +227,12 @@ mod tests {
         };
         let (log_s, faults) = (rows.iter().map(|row| row.stamp_s).collect(), vec![String::new(); rows.len()]);
         let photodiodes = (0..8).map(channel).collect();
-        (
-            posture,
-            Samples { time_s: log_s, photodiodes, forces: Vec::new(), faults, warnings: Vec::new(), notes: Vec::new() },
-        )
+        let force = |axis: usize| Channel {
+            name: ["Fx_N", "Fy_N", "Fz_N"][axis].to_owned(),
+            values: rows.iter().map(|row| row.forces_read_n[axis]).collect(),
+        };
+        let forces = (0..3).map(force).collect();
+        (posture, Samples { time_s: log_s, photodiodes, forces, faults, warnings: Vec::new(), notes: Vec::new() })
     }
 
     /// The photodiodes' lag in bending: 0.04 s of the first order, and half of half a degree's play. Measured over 20
@@ -206,6 +249,27 @@ mod tests {
             assert!((late_s - LAG_S).abs() <= NEAR_S, "{seed} {late_s} {:?}", tie.notes);
         }
     }
+
+    #[test]
+    fn a_video_of_another_rate_is_measured_and_warned_of() {
+        for (seed, rate) in [(3, 1.003), (4, 0.996), (5, 1.0)] {
+            let (mut posture, samples) = phantom(seed, Trajectory::Random { hz: 0.1, seed }, ForceTrajectory::None);
+            posture.time_s.iter_mut().for_each(|t| *t /= rate);
+            let tie = by_correlation(&posture, &samples, LagTie::default()).unwrap();
+            let warned = tie.warnings.iter().any(|warning| warning.contains("the lag changes"));
+            assert_eq!(warned, rate != 1.0, "{:?}", tie.warnings);
+            let off_s = |true_s: f64| tie.timebase.other_s(true_s / rate) - (60.0 + true_s + LAG_S);
+            let most_s = [0.0, 30.0, 60.0].into_iter().map(|t| off_s(t).abs()).fold(0.0, f64::max);
+            assert!(most_s <= OVER_ALL_S, "{seed} {most_s} {:?}", tie.timebase);
+            if rate != 1.0 {
+                let off = (tie.timebase.drift - (rate - 1.0)).abs();
+                assert!(off <= 3.0 * tie.timebase.drift_sd, "{off} {:?}", tie.timebase);
+            }
+        }
+    }
+
+    /// Measured: see the test; of a drift of 0.3 %, which is 0.18 s over the recording.
+    const OVER_ALL_S: f64 = 0.03;
 
     #[test]
     fn a_periodic_bending_and_forces_alone_are_refused() {

@@ -1,12 +1,14 @@
 //! How the log's time follows from the video's: by the clock in the picture, by an offset that the user knows, or by
 //! the lag at which the angles best explain the photodiodes.
 
+mod agree;
 mod clock;
 mod correlate;
 mod correlation;
 mod offset;
 mod zero;
 
+pub(super) use agree::{Agreement, compare};
 pub(super) use clock::{by_clock, resolution_s};
 pub use correlate::{LagPeak, LagSearch, Recording};
 pub use correlation::LagTie;

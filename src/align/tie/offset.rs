@@ -19,10 +19,7 @@ pub(crate) fn by_offset(offset_s: f64, offset_sd_s: Option<f64>) -> Result<Tie, 
     if offset_sd_s.is_none() {
         warnings.push("how well the offset is known was not given: no standard error counts it".to_owned());
     }
-    let notes = vec![
-        "the offset is the user's; nothing in the data was compared with it".to_owned(),
-        "drift is taken to be 0".to_owned(),
-    ];
+    let notes = vec!["the offset is the user's, and drift is taken to be 0".to_owned()];
     let at_reference_sd_s = offset_sd_s.unwrap_or(f64::NAN);
     Ok(Tie {
         method: TieMethod::Offset,
@@ -52,7 +49,7 @@ mod tests {
     fn what_the_user_does_not_say_is_not_known() {
         let tie = by_offset(12.5, None).unwrap();
         assert!(tie.timebase.other_s(2.0) == 14.5 && tie.timebase.offset_sd_s().is_nan());
-        assert!(tie.warnings.len() == 1 && tie.notes.len() == 2, "{tie:?}");
+        assert!(tie.warnings.len() == 1 && tie.notes.len() == 1, "{tie:?}");
         assert_eq!(by_offset(12.5, Some(0.01)).unwrap().timebase.sd_s(100.0), 0.01);
         assert!(by_offset(f64::NAN, None).is_err() && by_offset(1.0, Some(-1.0)).is_err());
     }

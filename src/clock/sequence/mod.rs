@@ -136,7 +136,6 @@ pub fn fit(
     if !(resolution_s > 0.0 && resolution_s.is_finite()) {
         return Err(ClockFault::Resolution { resolution_s });
     }
-    let given_s = refresh_hz.filter(|&hz| hz > 0.0).map(|hz| 1.0 / hz);
     let mut seen: Vec<Seen> = std::iter::zip(times_s, shown_s)
         .enumerate()
         .filter_map(|(index, (&time_s, &shown_s))| Some(Seen { index, time_s, shown_s: shown_s? }))
@@ -157,12 +156,14 @@ pub fn fit(
         seen.time_s -= place.time_s;
         seen.shown_s -= place.shown_s;
     }
-    let mut agreed = most_agreed(&seen, resolution_s, given_s, wraps_s);
+    let redrawn_s = screen::redrawn_s(&seen, resolution_s);
+    let given_s = refresh_hz.filter(|&hz| hz > 0.0).map(|hz| 1.0 / hz);
+    let usual_s = given_s.unwrap_or(USUAL_SCREEN_S).max(redrawn_s.unwrap_or(0.0));
+    let mut agreed = most_agreed(&seen, resolution_s, usual_s, wraps_s);
     match diagnose::diagnose(&seen, &agreed, resolution_s, place.time_s, place.shown_s) {
         Ok(()) | Err(ClockFault::Contradictory { .. }) if agreed.count < FEWEST => return Err(too_few(agreed.count)),
         other => other?,
     }
-    let usual_s = given_s.unwrap_or(USUAL_SCREEN_S);
     if let Some(rate) = diagnose::rate_for_refused(&seen, &agreed, resolution_s + usual_s, wraps_s) {
         return Err(ClockFault::Rate { rate });
     }
@@ -170,7 +171,7 @@ pub fn fit(
     let (hulls, least_s) = loop {
         let hulls = Hulls::new(agreed_points(&seen, &agreed, slack_s), half_s);
         let late_s = hulls.least_room(most_end_s).0 - resolution_s - 2.0 * slack_s;
-        if late_s <= SLOWEST_SCREEN_S.max(given_s.unwrap_or(0.0)) {
+        if late_s <= SLOWEST_SCREEN_S.max(usual_s) {
             break (hulls, late_s);
         }
         refuse_worst(&seen, &mut agreed, &hulls, most_end_s);
@@ -191,7 +192,7 @@ pub fn fit(
         accepted_s[seen.index] = shown_s[seen.index].zip(*turns_s).map(|(shown, turns)| shown + turns);
     }
     let interval_s = (last.time_s - first.time_s) / accepted_s.len() as f64;
-    let screen = screen::delay(least_s, screen::dead_s(&accepted_s, resolution_s, interval_s), given_s);
+    let screen = screen::delay(least_s, screen::dead_s(&accepted_s, resolution_s, interval_s), given_s, redrawn_s);
     let polygon = |late_s: f64| hulls.polygon(resolution_s + late_s + 2.0 * slack_s, most_end_s);
     let corners = polygon(screen.most_s);
     let usual_end_s = USUAL_DRIFT * half_s;
@@ -228,16 +229,17 @@ pub fn fit(
     })
 }
 
-/// The agreement of the most readings: with the screen that is given or usual or, where many more agree then, a slower
-/// one; and with that of the clock's wraps with which most agree.
-fn most_agreed(seen: &[Seen], resolution_s: f64, given_s: Option<f64>, wraps_s: &[f64]) -> Agreed {
+/// The agreement of the most readings: with the screen that is given or usual or, where many more agree then, or those
+/// that don't agree are shown late, a slower one; and with that of the clock's wraps with which most agree.
+fn most_agreed(seen: &[Seen], resolution_s: f64, usual_s: f64, wraps_s: &[f64]) -> Agreed {
     let with = |late_s: f64| consensus::agree_with(seen, resolution_s + late_s, MOST_DRIFT, wraps_s);
-    let usual = with(given_s.unwrap_or(USUAL_SCREEN_S));
-    if 10 * usual.count >= 9 * seen.len() {
+    let usual = with(usual_s);
+    let late = resolution_s <= SLOWEST_SCREEN_S && screen::is_late(seen, &usual, resolution_s);
+    if 10 * usual.count >= 9 * seen.len() && !late {
         return usual;
     }
     let slow = with(SLOWEST_SCREEN_S);
-    if 10 * slow.count > 10 * usual.count + seen.len() { slow } else { usual }
+    if late && slow.count > usual.count || 10 * slow.count > 10 * usual.count + seen.len() { slow } else { usual }
 }
 
 /// Whether so many readings disagree, here and there, that a digit must be misread again and again: such a digit is

@@ -10,6 +10,8 @@
 //! Errors of different markers are taken as independent. A marker that both segments share counts once, with both its
 //! signs.
 
+use super::frozen::Frozen;
+use super::lengths::Lengths;
 use super::metric::Metric;
 use super::view::{Spot, View};
 use crate::posture::{Centre, Layout, Sight};
@@ -57,6 +59,8 @@ pub(crate) struct Angles {
     /// The last known angle of each joint.
     last_rad: Vec<Option<f64>>,
     metric: Metric,
+    lengths: Lengths,
+    frozen: Frozen,
 }
 
 /// Two markers nearer to each other than this many standard errors of their distance have no direction.
@@ -77,13 +81,21 @@ impl Angles {
             needed: layout.needed(),
             last_rad: vec![None; layout.joints.len()],
             metric: Metric::new(layout.segments.len()),
+            lengths: Lengths::new(layout.segments.len()),
+            frozen: Frozen::default(),
             layout: layout.clone(),
         }
     }
 
-    /// What to say of the view, once all frames are through.
-    pub(crate) fn doubt(&self) -> Option<String> {
-        self.metric.doubt()
+    /// What to say of the view, of markers and of pictures, once all frames are through.
+    pub(crate) fn doubts(&self) -> Vec<String> {
+        let named = |(segment, text): (usize, String)| {
+            let segment = &self.layout.segments[segment];
+            let [a, b] = segment.markers.map(|marker| self.layout.markers[marker].name.as_str());
+            format!("segment {} ({a} to {b}) {text}", segment.name)
+        };
+        let lengths = self.lengths.changing().into_iter().map(named);
+        self.metric.doubt().into_iter().chain(lengths).chain(self.frozen.doubt()).collect()
     }
 
     /// The angles of the next frame, one sight a marker of the layout.
@@ -121,6 +133,7 @@ impl Angles {
                     lost.extend([a, b]);
                 } else {
                     self.metric.add(k, [0, 1].map(|axis| distal.at_px[axis] - proximal.at_px[axis]));
+                    self.lengths.add(k, [proximal.at_px, distal.at_px]);
                 }
                 direction
             })
@@ -128,7 +141,7 @@ impl Angles {
         lost.sort_unstable();
         lost.dedup();
         let sign = self.layout.flexion.sign();
-        let angles = self
+        let angles: Vec<Option<Angle>> = self
             .layout
             .joints
             .iter()
@@ -145,6 +158,9 @@ impl Angles {
                 Some(Angle { rad, sd_rad, lasting_sd_rad })
             })
             .collect();
+        let places = spots.iter().map(|spot| spot.as_ref().map(|spot| spot.at_px)).collect();
+        let turned = angles.iter().map(|angle| angle.map(|angle| [angle.rad, angle.sd_rad])).collect();
+        self.frozen.add(places, turned);
         AngleRow { angles, lost }
     }
 }

@@ -1,6 +1,8 @@
 //! From centres to joint angles: lens, picture as shown, joints, smoothing, and whether a finger can have such angles.
 
+mod frozen;
 pub(super) mod joints;
+mod lengths;
 pub(super) mod lens;
 mod metric;
 mod plane;

@@ -86,7 +86,7 @@ pub fn run(
     let clock_doubt = clock.as_ref().and_then(|clock| clock.fit.as_ref().ok()?.doubt.clone());
     // What makes all angles wrong comes first.
     let mut warnings: Vec<String> = results.plausibility.warning(Some(layout.flexion)).into_iter().collect();
-    warnings.extend(angles.doubt());
+    warnings.extend(angles.doubts());
     warnings.extend(clock_doubt);
     warnings.extend(View::doubt(layout, &info).unwrap_or_default());
     warnings.extend(info.warnings.iter().cloned());

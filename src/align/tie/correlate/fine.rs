@@ -11,8 +11,8 @@ use rayon::prelude::*;
 
 use super::basis::Model;
 use super::drift::Drift;
-use super::judge::Judge;
 use super::line::Sums;
+use super::memory::Judge;
 use super::series::Series;
 
 /// Draws of blocks.

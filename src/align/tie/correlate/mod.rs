@@ -7,7 +7,7 @@
 //! Each signal alone is bent as need be ([`basis`]), or all are taken together, to explain that combination of the
 //! channels' principal components which they explain best ([`line`]); drift over 30 s
 //! and slower is taken off. What counts is the share that is left over and how many independent samples there are
-//! ([`judge`], [`memory`]). All lags are looked at on a grid, with Fourier transforms; the best peaks closely; chance
+//! ([`memory`]). All lags are looked at on a grid, with Fourier transforms; the best peaks closely; chance
 //! by channels of the same kind, made as surrogates.
 //!
 //! What is not determined: a lag of the channels behind the signals. It is part of what is found.
@@ -18,19 +18,15 @@ mod channels;
 mod coarse;
 mod drift;
 mod fine;
-mod judge;
+mod grid;
 mod line;
 mod memory;
 mod series;
 
 use clap::Args;
 
-use self::basis::Model;
-use self::coarse::Coarse;
-use self::drift::Drift;
 use self::fine::{Pair, Peak, Spot};
-use self::judge::Judge;
-use self::series::Series;
+pub(super) use self::grid::{Candidate, Grid};
 use crate::job::{not_negative, number};
 
 /// Signals or channels over times of their own.
@@ -80,25 +76,27 @@ pub(super) struct Correlated {
     pub others: Vec<LagPeak>,
     /// How long the recordings overlap, seconds.
     pub overlap_s: f64,
+    /// The lag by the first and by the second half of what overlaps; none where a half is too short to tell.
+    pub halves: Option<[HalfLag; 2]>,
 }
 
-/// Rows of the grid of a recording.
-const MOST_ROWS: f64 = 16_384.0;
-/// The grid is no finer than this, seconds.
-const FINEST_S: f64 = 0.005;
-/// Recordings shorter than this are not compared, seconds.
-const SHORTEST_S: f64 = 5.0;
-/// At least this share of the shorter recording overlaps.
-const OVERLAP: f64 = 0.5;
+/// The lag by a part of the recordings.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct HalfLag {
+    /// The video's time in its middle, seconds.
+    pub middle_s: f64,
+    /// Log time less video time, seconds.
+    pub offset_s: f64,
+    /// Its standard error, seconds.
+    pub offset_sd_s: f64,
+}
+
 /// Peaks that are looked at closely.
 const PEAKS: usize = 24;
 /// Peaks that gain less than this share of the best are not.
 const PEAK: f64 = 0.2;
 /// The curve falls to this share of a lower peak between it and a higher one.
 const VALLEY: f64 = 0.9;
-/// Independent samples for each free number of a model, and how many free numbers there are.
-const SAMPLES_EACH: f64 = 3.0;
-const FREE: [f64; 2] = [2.0, 6.0];
 /// How far around the best peak is looked at in the end: at least this share of the grid's step and so many standard
 /// errors.
 const NEAR: f64 = 0.25;
@@ -119,83 +117,27 @@ const LEAST_ALIKE: f64 = 0.5;
 const SHARP: f64 = 0.05;
 /// Fewer independent samples, beyond the free numbers, prove nothing.
 const LEAST_SAMPLES: f64 = 8.0;
+/// Lags of halves are looked for so far away, seconds.
+const HALF_AWAY_S: f64 = 0.5;
 /// Less explained is not worth believing, whatever chance does.
 const LEAST_EXPLAINED: f64 = 0.5;
-
-/// A lag of the grid, the model that gains most there, and what it gains.
-#[derive(Debug, Clone, Copy)]
-struct Candidate {
-    lag: i64,
-    model: usize,
-    gain: f64,
-    left: f64,
-}
 
 /// Finds the lag at which `video` best explains `log`.
 ///
 /// # Errors
 /// Too little to compare, chance would explain as much, or several lags do: in words, with what to do.
 pub(super) fn correlate(video: Recording<'_>, log: Recording<'_>, search: LagSearch) -> Result<Correlated, String> {
-    let video = Series::new(video.time_s, video.columns, "the angles")?;
-    let log = Series::new(log.time_s, log.columns, "the photodiodes")?;
-    let shorter_s = video.span_s().min(log.span_s());
-    if shorter_s < SHORTEST_S {
-        return Err(format!(
-            "{shorter_s:.1} s are too short to find a lag in; at least {SHORTEST_S} s in which the finger moves are \
-             needed"
-        ));
-    }
-    let (log, weights) = channels::components(&log);
-    let longer_s = video.span_s().max(log.span_s());
-    let step_s = video.interval_s.max(log.interval_s).max(longer_s / MOST_ROWS).max(FINEST_S);
-    let rows = |series: &Series| (series.span_s() / step_s) as usize;
-    let (signals, video_there) = video.on_grid(step_s, rows(&video));
-    let (mut channels, log_there) = log.on_grid(step_s, rows(&log));
-    without_drift(&mut channels, &log_there, step_s);
-    let channels = filled(channels, &log_there);
-    let together_s = log.first_s() - video.first_s();
-    let lags = lags(&search, together_s, step_s, [rows(&video) as i64, rows(&log) as i64]);
-    let seen = |there: &[bool]| there.iter().filter(|there| **there).count() as f64;
-    let least_rows = (OVERLAP * seen(&video_there).min(seen(&log_there))).max(SHORTEST_S / step_s);
-    let of_channels = memory::own(&channels, &weights);
-    let judge = |regressors: &[Vec<f64>]| {
-        let even = vec![1.0 / regressors.len() as f64; regressors.len()];
-        let each_s = step_s * memory::rows_each(&memory::own(regressors, &even), &of_channels);
-        Judge { each_s, free: (regressors.len() + channels.len() - 1) as f64 }
-    };
-    let mut straight = signals.clone();
-    without_drift(&mut straight, &video_there, step_s);
-    let samples = shorter_s / judge(&straight).each_s;
-    let models = Model::all(&video.columns, (samples / SAMPLES_EACH).clamp(FREE[0], FREE[1]) as usize);
-    let prepared: Vec<(Judge, Coarse)> = models
-        .iter()
-        .map(|model| {
-            let regressors = regressors(model, &signals, &video_there, step_s);
-            (judge(&regressors), Coarse::new(&regressors, &video_there, &log_there, lags, least_rows))
-        })
-        .collect();
-    // Of each lag the model that gains most.
-    let curve = |channels: &[Vec<f64>]| {
-        let mut best: Vec<Candidate> = Vec::new();
-        for (model, (judge, coarse)) in prepared.iter().enumerate() {
-            for at in coarse.explain(channels) {
-                let gain = judge.gain(at.rows * step_s, at.left);
-                best.push(Candidate { lag: at.lag, model, gain, left: at.left });
-            }
-        }
-        best.sort_by(|a, b| a.lag.cmp(&b.lag).then(b.gain.total_cmp(&a.gain)).then(a.model.cmp(&b.model)));
-        best.dedup_by_key(|at| at.lag);
-        best
-    };
-    let candidates = candidates(&curve(&channels));
+    let grid = Grid::new(video, log, &search)?;
+    let Grid { video, log, .. } = &grid;
+    let candidates = candidates(&grid.curve(&grid.channels));
     let Some(best) = candidates.first() else {
         return Err("at no lag that is looked at the video and the log overlap by half of the shorter; check both \
                     files, or give another offset to look about"
             .to_owned());
     };
     let most_chance = if search.about_s.is_some() && search.most_s.is_some() { CHANCE_TOLD } else { CHANCE };
-    let greatest = |channels: &[Vec<f64>]| curve(channels).iter().map(|at| at.gain).fold(0.0, f64::max);
-    let chance = chance::probability(&channels, &greatest, best.gain, search.seed);
+    let greatest = |channels: &[Vec<f64>]| grid.curve(channels).iter().map(|at| at.gain).fold(0.0, f64::max);
+    let chance = chance::probability(&grid.channels, &greatest, best.gain, search.seed);
     let alike =
         candidates.get(1).is_some_and(|next| next.gain > ALIKE * best.gain && explained(next.left) > LEAST_ALIKE);
     if (chance.is_nan() || chance > most_chance || explained(best.left) < LEAST_EXPLAINED) && !alike {
@@ -203,26 +145,26 @@ pub(super) fn correlate(video: Recording<'_>, log: Recording<'_>, search: LagSea
             "the angles do not explain the photodiodes at any lag: at the best, {:.3} s, they explain {:.0} % of them, \
              as unrelated signals of the same kind would with probability {}; check that the files belong together, or \
              tie by the clock or an offset",
-            together_s + best.lag as f64 * step_s,
+            grid.at_s(best.lag),
             100.0 * explained(best.left),
             if chance < 0.01 { "under 1 %".to_owned() } else { format!("{:.0} %", 100.0 * chance) }
         ));
     }
-    let at_s = |lag: i64| together_s + lag as f64 * step_s;
     let spots: Vec<Spot<'_>> = candidates
         .iter()
-        .map(|at| Spot { offset_s: at_s(at.lag), model: &models[at.model], judge: prepared[at.model].0 })
+        .map(|at| Spot { offset_s: grid.at_s(at.lag), model: &grid.models[at.model], judge: grid.judge(at.model) })
         .collect();
     let overlap_s = (video.last_s() + spots[0].offset_s).min(log.last_s())
         - (video.first_s() + spots[0].offset_s).max(log.first_s());
-    let block_s = overlap_s / (overlap_s / (2.0 * prepared[best.model].0.each_s)).clamp(BLOCKS[0], BLOCKS[1]);
-    let pair = Pair { video: &video, log: &log, block_s, seed: search.seed };
-    let range_s = [at_s(lags[0]), at_s(lags[1])];
-    let mut peaks = different(fine::peaks(pair, &spots, 1.5 * step_s, range_s), prepared[best.model].0.each_s);
+    let each_s = grid.judge(best.model).each_s;
+    let block_s = overlap_s / (overlap_s / (2.0 * each_s)).clamp(BLOCKS[0], BLOCKS[1]);
+    let pair = Pair { video, log, block_s, seed: search.seed };
+    let range_s = grid.lags.map(|lag| grid.at_s(lag));
+    let mut peaks = different(fine::peaks(pair, &spots, 1.5 * grid.step_s, range_s), each_s);
     let spot = Spot { offset_s: peaks[0].offset_s, ..spots[peaks[0].spot] };
     // Once more, closer, where blocks agree much better than the grid's step.
-    let near_s = (NEAR * step_s).max(NEAR_SDS * peaks[0].offset_sd_s);
-    if near_s < step_s {
+    let near_s = (NEAR * grid.step_s).max(NEAR_SDS * peaks[0].offset_sd_s);
+    if near_s < grid.step_s {
         let closer = fine::peaks(pair, &[spot], near_s, range_s);
         peaks[0] = Peak { votes: peaks[0].votes, ..closer[0] };
     }
@@ -259,7 +201,7 @@ pub(super) fn correlate(video: Recording<'_>, log: Recording<'_>, search: LagSea
             best.offset_s, best.overlap_s, samples
         ));
     }
-    if search.most_s.is_some() && range_s.iter().any(|end_s| (best.offset_s - end_s).abs() < 1.5 * step_s) {
+    if search.most_s.is_some() && range_s.iter().any(|end_s| (best.offset_s - end_s).abs() < 1.5 * grid.step_s) {
         return Err(format!(
             "the best lag, {:.3} s, is at the end of what is looked at, so a better one may lie beyond: look further, \
              or about another offset",
@@ -280,11 +222,32 @@ pub(super) fn correlate(video: Recording<'_>, log: Recording<'_>, search: LagSea
         confidence: (1.0 - chance) * preferred.min(best.votes),
         others: peaks[1..].iter().map(as_lag).collect(),
         overlap_s,
+        halves: halves(pair, spot, best.offset_s, range_s),
     })
 }
 
+/// The lag by each half of what overlaps, looked for about `offset_s`.
+fn halves(pair: Pair<'_>, spot: Spot<'_>, offset_s: f64, range_s: [f64; 2]) -> Option<[HalfLag; 2]> {
+    let from_s = pair.video.first_s().max(pair.log.first_s() - offset_s);
+    let to_s = pair.video.last_s().min(pair.log.last_s() - offset_s);
+    let half_s = 0.5 * (to_s - from_s);
+    if spot.judge.samples(half_s) < 0.5 * LEAST_SAMPLES {
+        return None;
+    }
+    let around_s = HALF_AWAY_S.min(spot.judge.each_s);
+    let of = |first_s: f64| {
+        let video = pair.video.between(first_s, first_s + half_s);
+        let half = Pair { video: &video, block_s: pair.block_s.min(half_s / BLOCKS[0]), ..pair };
+        let peak = *fine::peaks(half, &[Spot { offset_s, ..spot }], around_s, range_s).first()?;
+        let sure = explained(peak.left) >= LEAST_EXPLAINED && peak.offset_sd_s <= SHARP * spot.judge.each_s;
+        let middle_s = first_s + 0.5 * half_s;
+        sure.then_some(HalfLag { middle_s, offset_s: peak.offset_s, offset_sd_s: peak.offset_sd_s })
+    };
+    Some([of(from_s)?, of(from_s + half_s)?])
+}
+
 /// The share that is explained where `left` is the logarithm of what is left over.
-fn explained(left: f64) -> f64 {
+pub(super) fn explained(left: f64) -> f64 {
     1.0 - left.exp()
 }
 
@@ -312,62 +275,6 @@ fn different(mut peaks: Vec<Peak>, apart_s: f64) -> Vec<Peak> {
         }
     }
     taken
-}
-
-/// The regressors of a model on the grid, without drift; 0 where there are none.
-fn regressors(model: &Model, signals: &[Vec<f64>], there: &[bool], step_s: f64) -> Vec<Vec<f64>> {
-    let mut columns = vec![vec![0.0; there.len()]; model.columns()];
-    let (mut row, mut values) = (Vec::new(), Vec::new());
-    for k in (0..there.len()).filter(|&k| there[k]) {
-        row.clear();
-        row.extend(signals.iter().map(|signal| signal[k]));
-        values.clear();
-        model.row(&row, &mut values);
-        columns.iter_mut().zip(&values).for_each(|(column, v)| column[k] = *v);
-    }
-    without_drift(&mut columns, there, step_s);
-    columns
-}
-
-/// Takes drift off columns on the grid where they have values.
-fn without_drift(columns: &mut [Vec<f64>], there: &[bool], step_s: f64) {
-    let rows: Vec<usize> = (0..there.len()).filter(|&k| there[k]).collect();
-    let drift = Drift::new(&rows.iter().map(|&k| k as f64 * step_s).collect::<Vec<f64>>());
-    for column in columns {
-        let mut values: Vec<f64> = rows.iter().map(|&k| column[k]).collect();
-        drift.take_off(&mut values);
-        rows.iter().zip(values).for_each(|(&k, v)| column[k] = v);
-    }
-}
-
-/// The lags to look at, in steps of the grid.
-fn lags(search: &LagSearch, together_s: f64, step_s: f64, rows: [i64; 2]) -> [i64; 2] {
-    let all = [-rows[0], rows[1]];
-    let middle = search.about_s.map_or(0.0, |about_s| (about_s - together_s) / step_s);
-    match search.most_s {
-        Some(most_s) => {
-            let ends = [middle - most_s / step_s, middle + most_s / step_s];
-            [all[0].max(ends[0].floor() as i64), all[1].min(ends[1].ceil() as i64)]
-        }
-        None => all,
-    }
-}
-
-/// Signals with straight lines over what is missing, for what needs whole sequences.
-fn filled(mut signals: Vec<Vec<f64>>, there: &[bool]) -> Vec<Vec<f64>> {
-    for signal in &mut signals {
-        let mut last: Option<usize> = None;
-        for k in (0..signal.len()).filter(|&k| there[k]) {
-            if let Some(last) = last.filter(|&last| last + 1 < k) {
-                let (from, to) = (signal[last], signal[k]);
-                for (i, v) in signal[last + 1..k].iter_mut().enumerate() {
-                    *v = from + (to - from) * (i + 1) as f64 / (k - last) as f64;
-                }
-            }
-            last = Some(k);
-        }
-    }
-    signals
 }
 
 /// The highest peaks of a curve, best first, each with a valley to the ones before.

@@ -64,6 +64,16 @@ impl Series {
         self.last_s() - self.first_s()
     }
 
+    /// The rows from one time to another.
+    pub(super) fn between(&self, from_s: f64, to_s: f64) -> Self {
+        let [from, to] = [from_s, to_s].map(|end_s| self.time_s.partition_point(|&t| t < end_s));
+        Self {
+            time_s: self.time_s[from..to].to_vec(),
+            columns: self.columns.iter().map(|column| column[from..to].to_vec()).collect(),
+            interval_s: self.interval_s,
+        }
+    }
+
     /// How far apart neighbours may be with nothing missing between them, seconds.
     fn gap_s(&self) -> f64 {
         GAP * self.interval_s

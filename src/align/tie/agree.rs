@@ -1,0 +1,330 @@
+//! Whether the photodiodes follow the angles at a tie that was made without them: by the clock in the picture, or by an
+//! offset. Either may be right to a millisecond for another recording.
+//!
+//! In: angles, photodiodes and forces, the tie. Out: what share of the photodiodes' best combination the angles explain
+//! there, and a warning where they explain clearly more at another lag or rate of the log, or no more than at any lag
+//! ([`compare`]). What the forces explain is taken off the photodiodes first.
+//!
+//! Limits are from 45 phantoms of 15 kinds of motion (20 to 240 s), as they are, with the log of another seed, a second
+//! late, and at 25/24 of its rate; the tests have some of them.
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use super::Tie;
+use super::correlate::{Candidate, Grid, LagSearch, Recording, explained};
+use crate::align::posture::Posture;
+use crate::log::{Channel, Samples};
+
+/// Photodiodes follow the finger by so much, seconds: some 0.05 s in bending, 0.1 to 0.4 s in pressing.
+const LAGS_S: [f64; 2] = [-0.3, 0.6];
+/// An angle that varies by less than this (standard deviation) is of a still finger, degrees.
+const BENDS_DEG: f64 = 3.0;
+/// So much more is gained elsewhere (twice the logarithm of a likelihood), and so much explained there at least.
+const MORE: f64 = 12.0;
+const WELL: f64 = 0.65;
+/// Where so much is explained, no rate of the log is looked for.
+const ALL: f64 = 0.97;
+/// Of longer videos so much is compared, seconds: the part in which the finger moves most.
+const MOST_S: f64 = 300.0;
+/// Where angles explain less than the first share nothing is said, nor less than the second where so many of the other
+/// lags explain as much, nor where more of them do.
+const LITTLE: [f64; 2] = [0.25, 0.45];
+const OTHERS: [f64; 2] = [0.003, 0.04];
+/// Rates of the log are tried that make so many seconds over the video, none further off than the last; and these.
+const LONGER_S: [f64; 12] = [-3.0, -2.5, -2.0, -1.5, -1.0, -0.5, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0];
+const MOST_RATE: f64 = 0.1;
+const USUAL_RATES: [f64; 2] = [24.0 / 25.0, 25.0 / 24.0];
+
+/// What the comparison says.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(in crate::align) struct Agreement {
+    pub(in crate::align) warnings: Vec<String>,
+    pub(in crate::align) notes: Vec<String>,
+}
+
+/// Compares them; where that is not possible a note says why.
+pub(in crate::align) fn compare(posture: &Posture, samples: &Samples, tie: &Tie) -> Agreement {
+    let mut said = Agreement::default();
+    match agreement(posture, samples, tie) {
+        Ok(Ok(note)) => said.notes.push(note),
+        Ok(Err(warning)) => said.warnings.push(warning),
+        Err(why) => said.notes.push(format!("the photodiodes can't say whether the tie is right: {why}")),
+    }
+    said
+}
+
+/// What speaks for the tie, or against it; or why nothing does.
+fn agreement(posture: &Posture, samples: &Samples, tie: &Tie) -> Result<Result<String, String>, String> {
+    let angles: Vec<&[f64]> =
+        posture.angles_deg.iter().map(Vec::as_slice).filter(|angle| sd(angle) >= BENDS_DEG).collect();
+    if angles.is_empty() {
+        return Err(format!("no angle varies by {BENDS_DEG} degrees"));
+    }
+    if samples.photodiodes.is_empty() {
+        return Err("the log has none".to_owned());
+    }
+    let rows = liveliest(&posture.time_s, &angles);
+    let angles: Vec<&[f64]> = angles.iter().map(|angle| &angle[rows.clone()]).collect();
+    let video = Recording { time_s: &posture.time_s[rows], columns: &angles };
+    let near = Near::new(video.time_s, samples, tie);
+    let curve = near.curve(video, 1.0, LagSearch::default())?;
+    let is_answer = |(lag_s, _): &(f64, Candidate)| (LAGS_S[0]..=LAGS_S[1]).contains(lag_s);
+    let (answers, others): (Curve, Curve) = curve.into_iter().partition(is_answer);
+    let Some((lag_s, here)) = top(&answers) else { return Err("too little of video and log overlaps".to_owned()) };
+    let share = 100.0 * explained(here.left);
+    let clearly = |found: &(f64, Candidate)| clearly_more(&found.1, &here);
+    let later = top(&others).filter(clearly);
+    let rated = if share < 100.0 * ALL { near.best_rate(video).filter(clearly) } else { None };
+    if let Some((rate, there)) = rated.filter(|rated| later.is_none_or(|later| later.1.gain < rated.1.gain)) {
+        return Ok(Err(format!(
+            "the photodiodes would follow the angles far better if the log's clock ran {rate:.3} times as fast: the \
+             angles explain {:.0} % of their best combination then, {share:.0} % now; are the log's times counted at \
+             the right rate?",
+            100.0 * explained(there.left)
+        )));
+    }
+    if let Some((lag_s, there)) = later {
+        return Ok(Err(format!(
+            "photodiodes answer within {} s, but by this tie they follow the angles best {:.2} s {}: the angles \
+             explain {:.0} % of their best combination there, {share:.0} % here; are both files of one recording, and \
+             is the log's clock what ties them?",
+            LAGS_S[1],
+            lag_s.abs(),
+            if lag_s > 0.0 { "later" } else { "before them" },
+            100.0 * explained(there.left)
+        )));
+    }
+    let as_much = others.iter().filter(|(_, there)| there.gain >= here.gain).count() as f64;
+    let as_much = as_much / others.len().max(1) as f64;
+    if as_much > OTHERS[1] || share < 100.0 * LITTLE[1] && as_much > OTHERS[0] || share < 100.0 * LITTLE[0] {
+        return Ok(Err(format!(
+            "at this tie the angles explain {share:.0} % of the photodiodes' best combination, and as much at {:.1} % \
+             of all other lags: nothing in them says that both files are of one recording",
+            100.0 * as_much
+        )));
+    }
+    Ok(Ok(format!(
+        "the photodiodes agree with the tie: the angles explain {share:.0} % of their best combination, {lag_s:.2} s \
+         before them"
+    )))
+}
+
+/// The rows in which the angles change most, of a video that is too long to be compared as a whole.
+fn liveliest(time_s: &[f64], angles: &[&[f64]]) -> std::ops::Range<usize> {
+    let [Some(first_s), Some(last_s)] = [time_s.first(), time_s.last()] else { return 0..0 };
+    let rows = |from_s: f64| time_s.partition_point(|&t| t < from_s)..time_s.partition_point(|&t| t <= from_s + MOST_S);
+    let moved = |rows: &std::ops::Range<usize>| {
+        let steps =
+            angles.iter().flat_map(|angle| angle[rows.clone()].windows(2)).map(|pair| (pair[1] - pair[0]).abs());
+        steps.filter(|step| step.is_finite()).sum::<f64>()
+    };
+    let parts = ((last_s - first_s) / (0.25 * MOST_S)).ceil().max(4.0) as usize - 3;
+    let parts = (0..parts).map(|part| rows(first_s + 0.25 * MOST_S * part as f64)).map(|rows| (moved(&rows), rows));
+    parts.reduce(|most, part| if part.0 > most.0 { part } else { most }).map_or(0..0, |(_, rows)| rows)
+}
+
+/// Lags or rates, and what is explained there.
+type Curve = Vec<(f64, Candidate)>;
+
+fn top(curve: &Curve) -> Option<(f64, Candidate)> {
+    curve.iter().copied().reduce(|best, at| if at.1.gain > best.1.gain { at } else { best })
+}
+
+fn clearly_more(there: &Candidate, here: &Candidate) -> bool {
+    let by_left = there.samples.min(here.samples) * (here.left - there.left);
+    by_left.min(there.gain - here.gain) > MORE && explained(there.left) >= WELL
+}
+
+/// The log's rows about the video, on the video's time by the tie.
+struct Near {
+    time_s: Vec<f64>,
+    channels: Vec<Vec<f64>>,
+    middle_s: f64,
+    span_s: f64,
+}
+
+impl Near {
+    /// Rows within half of the video's length before and after it: no other lags are needed.
+    fn new(angle_s: &[f64], samples: &Samples, tie: &Tie) -> Self {
+        let [first_s, last_s] = [angle_s[0], angle_s[angle_s.len() - 1]];
+        let span_s = last_s - first_s;
+        let video_s = |&row: &usize| tie.timebase.own_s(samples.time_s[row]);
+        let about = first_s - 0.5 * span_s..=last_s + 0.5 * span_s;
+        let rows: Vec<usize> = (0..samples.time_s.len()).filter(|row| about.contains(&video_s(row))).collect();
+        let of = |channel: &Channel| rows.iter().map(|&row| channel.values[row]).collect::<Vec<f64>>();
+        let mut channels: Vec<Vec<f64>> = samples.photodiodes.iter().map(of).collect();
+        without_forces(&mut channels, &samples.forces.iter().map(of).collect::<Vec<_>>());
+        Self { time_s: rows.iter().map(video_s).collect(), channels, middle_s: 0.5 * (first_s + last_s), span_s }
+    }
+
+    /// What is explained at each lag if the log's clock runs `rate` times as fast, as by the tie in the middle of the
+    /// video.
+    fn curve(&self, video: Recording<'_>, rate: f64, search: LagSearch) -> Result<Curve, String> {
+        let time_s: Vec<f64> = self.time_s.iter().map(|t| self.middle_s + (t - self.middle_s) * rate).collect();
+        let columns: Vec<&[f64]> = self.channels.iter().map(Vec::as_slice).collect();
+        let grid = Grid::new(video, Recording { time_s: &time_s, columns: &columns }, &search)?;
+        Ok(grid.curve(&grid.channels).into_iter().map(|at| (grid.at_s(at.lag), at)).collect())
+    }
+
+    /// The rate, other than the log's own, by which most is explained.
+    fn best_rate(&self, video: Recording<'_>) -> Option<(f64, Candidate)> {
+        let longer = LONGER_S.map(|longer_s| 1.0 + longer_s / self.span_s);
+        let rates: Vec<f64> =
+            longer.into_iter().filter(|rate| (rate - 1.0).abs() <= MOST_RATE).chain(USUAL_RATES).collect();
+        let at = |&rate: &f64| {
+            // Wherever in the video the log's clock was right.
+            let most_s = LAGS_S[1] + 0.5 * (rate - 1.0).abs() * self.span_s;
+            let about = LagSearch { about_s: Some(0.0), most_s: Some(most_s), ..LagSearch::default() };
+            Some((rate, top(&self.curve(video, rate, about).ok()?)?.1))
+        };
+        top(&rates.par_iter().filter_map(at).collect())
+    }
+}
+
+/// Takes off the channels what a polynomial of the forces explains: first and third powers, and products of two.
+fn without_forces(channels: &mut [Vec<f64>], forces: &[Vec<f64>]) {
+    let rows = forces.first().map_or(0, Vec::len);
+    let known: Vec<usize> =
+        (0..rows).filter(|&row| forces.iter().chain(channels.iter()).all(|column| column[row].is_finite())).collect();
+    let terms = |row: usize| {
+        let f: Vec<f64> = forces.iter().map(|force| force[row]).collect();
+        let products = (0..f.len()).flat_map(|i| (0..=i).map(move |j| (i, j))).map(|(i, j)| f[i] * f[j]);
+        std::iter::once(1.0)
+            .chain(f.iter().copied())
+            .chain(products)
+            .chain(f.iter().map(|f| f.powi(3)))
+            .collect::<Vec<_>>()
+    };
+    let rows: Vec<DVector<f64>> = known.iter().map(|&row| DVector::from_vec(terms(row))).collect();
+    let Some(count) = rows.first().map(DVector::len) else { return };
+    let mut squares = DMatrix::<f64>::zeros(count, count);
+    rows.iter().for_each(|row| squares.ger(1.0, row, row, 1.0));
+    // What never changes, as a force that is 0, takes nothing off.
+    (0..count).for_each(|k| squares[(k, k)] = squares[(k, k)] * (1.0 + RIDGE) + f64::MIN_POSITIVE);
+    let Some(factor) = squares.cholesky() else { return };
+    for channel in channels {
+        let mut weights = DVector::zeros(count);
+        rows.iter().zip(&known).for_each(|(row, &k)| weights.axpy(channel[k], row, 1.0));
+        factor.solve_mut(&mut weights);
+        rows.iter().zip(&known).for_each(|(row, &k)| channel[k] -= row.dot(&weights));
+    }
+}
+
+/// By which each square is raised, so that forces that go together can be solved for.
+const RIDGE: f64 = 1e-9;
+
+/// The standard deviation of what is known.
+fn sd(column: &[f64]) -> f64 {
+    let known = || column.iter().filter(|v| v.is_finite());
+    let count = known().count().max(1) as f64;
+    let mean = known().sum::<f64>() / count;
+    (known().map(|v| (v - mean).powi(2)).sum::<f64>() / count).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::correlation::tests::phantom;
+    use super::super::{TieMethod, by_offset};
+    use super::*;
+    use crate::phantom::force::ForceTrajectory;
+    use crate::phantom::trajectory::Trajectory;
+
+    /// What is said of the angles of one phantom of 60 s and the photodiodes of another, whose clock is ahead by
+    /// `offset_s` and counts at `rate`.
+    fn said(seeds: [u64; 2], offset_s: f64, rate: f64) -> Agreement {
+        let recordings = seeds.map(|seed| phantom(seed, Trajectory::Random { hz: 0.1, seed }, ForceTrajectory::None));
+        let [(posture, _), (_, mut samples)] = recordings;
+        samples.time_s.iter_mut().for_each(|t| *t = 60.0 + (*t - 60.0) * rate);
+        let tie = by_offset(offset_s, None).unwrap();
+        assert_eq!(tie.method, TieMethod::Offset);
+        compare(&posture, &samples, &tie)
+    }
+
+    #[test]
+    fn photodiodes_speak_for_the_tie_of_their_own_recording_only() {
+        for seed in 3..7 {
+            let own = said([seed, seed], 60.0, 1.0);
+            assert!(own.warnings.is_empty() && own.notes[0].contains("agree with the tie"), "{own:?}");
+            let later = said([seed, seed], 59.0, 1.0).warnings.concat();
+            assert!(later.contains("follow the angles best 1.0") && later.contains(" s later"), "{later}");
+            let earlier = said([seed, seed], 62.0, 1.0).warnings.concat();
+            assert!(earlier.contains("follow the angles best 1.9") && earlier.contains("before them"), "{earlier}");
+            let other = said([seed, seed + 1], 60.0, 1.0).warnings.concat();
+            assert!(other.contains("of one recording"), "{other}");
+        }
+    }
+
+    #[test]
+    fn a_log_that_is_counted_at_a_wrong_rate_is_seen() {
+        for seed in 3..7 {
+            let rated = said([seed, seed], 60.0, 25.0 / 24.0).warnings.concat();
+            assert!(rated.contains("ran 0.960 times as fast"), "{rated}");
+        }
+    }
+
+    /// How many of how many pairs are warned of: 60 s of random bending, of bending evenly over the range, and of both
+    /// with random forces, with the own log, that of another finger, a second late, and at 25/24 of the rate.
+    ///
+    /// `cargo test --release --lib how_many_pairs -- --ignored --nocapture`
+    #[test]
+    #[ignore = "two minutes, and prints figures"]
+    fn how_many_pairs_are_warned_of() {
+        const SEEDS: u64 = 20;
+        let kinds = |seed: u64| {
+            let (random, even) = (Trajectory::Random { hz: 0.1, seed }, Trajectory::Even { hz: 0.1, seed });
+            let pressing = || ForceTrajectory::Random { hz: 0.1, seed: seed + 100 };
+            [
+                (random.clone(), ForceTrajectory::None),
+                (even.clone(), ForceTrajectory::None),
+                (random, pressing()),
+                (even, pressing()),
+            ]
+        };
+        for (kind, name) in ["random", "even", "random, pressing", "even, pressing"].into_iter().enumerate() {
+            let of = |seed: u64| {
+                let (trajectory, force) = kinds(seed)[kind].clone();
+                phantom(seed, trajectory, force)
+            };
+            let warned = |seed: u64| {
+                let (posture, own) = of(seed);
+                let (_, other) = of(seed + 1);
+                [(&own, 60.0, 1.0), (&other, 60.0, 1.0), (&own, 59.0, 1.0), (&own, 60.0, 25.0 / 24.0)].map(
+                    |(log, offset_s, rate)| {
+                        let time_s = log.time_s.iter().map(|t| 60.0 + (t - 60.0) * rate).collect();
+                        let tie = by_offset(offset_s, None).unwrap();
+                        u64::from(!compare(&posture, &Samples { time_s, ..log.clone() }, &tie).warnings.is_empty())
+                    },
+                )
+            };
+            let all: Vec<[u64; 4]> = (0..SEEDS).into_par_iter().map(warned).collect();
+            let counts = [0, 1, 2, 3].map(|k| all.iter().map(|warned| warned[k]).sum::<u64>());
+            println!("{name}: of {SEEDS} own, others, late, at another rate: {counts:?}");
+            assert!(counts[0] <= 2 && counts[1..].iter().all(|count| 10 * count >= 9 * SEEDS), "{name} {counts:?}");
+        }
+    }
+
+    #[test]
+    fn a_still_finger_and_a_log_without_photodiodes_say_nothing() {
+        let (posture, mut samples) = phantom(3, Trajectory::Rest, ForceTrajectory::None);
+        let tie = by_offset(60.0, None).unwrap();
+        let still = compare(&posture, &samples, &tie);
+        assert!(still.warnings.is_empty() && still.notes[0].contains("no angle varies by 3 degrees"), "{still:?}");
+        let (posture, _) = phantom(3, Trajectory::Random { hz: 0.1, seed: 3 }, ForceTrajectory::None);
+        samples.photodiodes.clear();
+        assert!(compare(&posture, &samples, &tie).notes[0].contains("the log has none"));
+    }
+
+    #[test]
+    fn what_forces_explain_is_taken_off() {
+        let force = |k: usize| ((k * k) as f64 * 0.01).sin();
+        let bends = |k: usize| (0.37 * k as f64).cos();
+        let mut channels = vec![(0..500).map(|k| 2.0 + force(k) - 0.5 * force(k).powi(2) + bends(k)).collect()];
+        without_forces(&mut channels, &[(0..500).map(force).collect(), vec![0.0; 500]]);
+        let off: f64 = (0..500).map(|k| (channels[0][k] - bends(k)).powi(2)).sum::<f64>() / 500.0;
+        assert!(off < 0.02, "{off}");
+        let mut alone = vec![vec![1.0, f64::NAN, 3.0]];
+        without_forces(&mut alone, &[]);
+        assert_eq!((alone[0][0], alone[0][2]), (1.0, 3.0));
+    }
+}
