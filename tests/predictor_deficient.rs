@@ -110,6 +110,20 @@ fn one_row_tells_its_own_values() {
 }
 
 #[test]
+fn a_force_that_is_cut_off_is_reported() {
+    let whole = Recording::of(0..120);
+    let mut fz_n = whole.numbers("Fz_N");
+    fz_n.sort_by(f64::total_cmp);
+    let least = fz_n[40];
+    let dir = dir_with(&whole.map("Fz_N", move |_, v| v.max(least)));
+    let answer = dir.train("a.csv", "force", "m.json", &[]).expect(0);
+    answer.says("a.csv: Fz_N stays at exactly ").says("cut off at the end of a range?");
+    let dir = dir_with(&Recording::of(0..120));
+    let whole = dir.train("a.csv", "force", "m.json", &[]).expect(0);
+    assert!(!whole.stderr.contains("cut off"), "{}", whole.stderr);
+}
+
+#[test]
 fn a_saturated_photodiode_is_reported_and_rows_that_align_marks_are_left_out() {
     let cut = Recording::of(0..120).map("P4", |_, v| v.min(2.5));
     let count = cut.numbers("P4").iter().filter(|v| **v == 2.5).count();

@@ -91,6 +91,8 @@ fn a_column_that_hangs_is_warned_of() {
     let unheard = |answer: &crate::util::Answer| assert!(!answer.stderr.contains("did it hang"), "{}", answer.stderr);
     unheard(&train(&|_| ()));
     hangs(100.0, 112.0, 10..13, None).says("a.csv: Fx_N, Fy_N, Fz_N doesn't change by a digit in 150 rows");
+    // At the greatest force of all, as where the finger presses harder and harder.
+    hangs(100.0, 112.0, 12..13, Some("-9")).says("a.csv: Fz_N doesn't change by a digit in 150 rows");
     // A log's reader sees a photodiode that hangs, a table's doesn't.
     hangs(100.0, 112.0, 5..6, Some("3.1")).says("a.csv: P4 does not move at all");
     let log = std::fs::read_to_string(dir.path("a.csv")).expect("a log");

@@ -8,11 +8,19 @@
 use super::lines::order::{median_step_s, short};
 use super::naming::columns::photodiodes_not_read;
 use super::naming::role::Role;
+use super::piles;
+use crate::median::median_of;
 
 /// Below so many samples nothing is said of values.
 const SAMPLES: usize = 50;
 /// Rows of a sensor are no further apart, seconds (assumed).
 const APART_S: f64 = 1.0;
+/// Nor nearer together, where all of them are within so many seconds (assumed): minutes that are called seconds.
+const NEAR_S: [[f64; 2]; 2] = [[9e-4, 15.0], [2e-3, 3.0]];
+/// Where a finger hardly presses, newtons, in so many rows, it is not sheared by more than this (assumed).
+const TOUCHES_N: f64 = 0.05;
+const LOOSE_ROWS: usize = 20;
+const SHEARED_N: f64 = 0.15;
 /// Of steps from row to row, so many turn back where an LED is on and off by turns (assumed).
 const BY_TURNS: f64 = 0.95;
 /// So many times the range of all others beyond them is far (assumed).
@@ -42,7 +50,18 @@ pub(crate) fn time(time_s: &[f64]) -> Option<String> {
             short(step_s)
         ))
     };
-    blocks(time_s).or_else(apart)
+    let near = || {
+        let span_s = time_s.last()? - time_s.first()?;
+        let step_s = median_step_s(time_s).filter(|step_s| *step_s > 0.0 && time_s.len() >= SAMPLES)?;
+        NEAR_S.iter().any(|[step, span]| step_s < *step && span_s < *span).then(|| {
+            format!(
+                "rows are {:.2} ms apart, and all of them within {span_s:.1} s, if the stamps are in seconds: are they \
+                 minutes? Write them in seconds",
+                1e3 * step_s
+            )
+        })
+    };
+    blocks(time_s).or_else(apart).or_else(near)
 }
 
 /// What to say of rows that share their stamps.
@@ -120,10 +139,47 @@ pub(crate) fn glitches<'a>(columns: impl Iterator<Item = (&'a str, &'a [f64])>) 
     columns.filter_map(of).collect()
 }
 
+/// What to say of a column that stays at an end of its range, but for 0, at which a finger rests.
+pub(crate) fn cut_off(name: &str, values: &[f64]) -> Vec<String> {
+    let ends = piles(values).into_iter().zip(["least", "greatest"]);
+    let ends = ends.filter_map(|(pile, which)| Some((pile.filter(|(value, _)| *value != 0.0)?, which)));
+    ends.map(|((value, count), which)| {
+        format!(
+            "{name} stays at exactly {}, its {which} value, in {count} of {} rows: cut off at the end of a range? What \
+             learns from it takes what was beyond for that",
+            short(value),
+            values.len()
+        )
+    })
+    .collect()
+}
+
+/// What to say of shear without pressing, of forces.
+fn not_zeroed(columns: &[(&str, &[f64])]) -> Vec<String> {
+    let Some((_, pressing)) = columns.iter().find(|(name, _)| *name == "Fz_N") else { return Vec::new() };
+    let loose = |force: &[f64]| {
+        let loose = force.iter().zip(*pressing).filter(|(force, fz)| force.is_finite() && fz.abs() <= TOUCHES_N);
+        loose.map(|(force, _)| *force).collect::<Vec<f64>>()
+    };
+    let of = |(name, force): &(&str, &[f64])| {
+        let forces = loose(force);
+        let rests_n = median_of(forces.iter().copied()).filter(|_| forces.len() >= LOOSE_ROWS)?;
+        (rests_n.abs() > SHEARED_N).then(|| {
+            format!(
+                "{name} is {rests_n:.2} N in the median of {} rows in which the finger does not press (Fz_N within \
+                 {TOUCHES_N} N of 0): was the transducer zeroed? Take its offset away",
+                forces.len()
+            )
+        })
+    };
+    columns.iter().filter(|(name, _)| matches!(*name, "Fx_N" | "Fy_N")).filter_map(of).collect()
+}
+
 /// What to say of a recording's columns, those that are forces.
 pub(crate) fn forces<'a>(columns: impl Iterator<Item = (&'a str, &'a [f64])>) -> Vec<String> {
-    let mut doubts = Vec::new();
-    for (name, values) in columns.filter(|(name, _)| matches!(*name, "Fx_N" | "Fy_N" | "Fz_N")) {
+    let columns: Vec<(&str, &[f64])> = columns.filter(|(name, _)| matches!(*name, "Fx_N" | "Fy_N" | "Fz_N")).collect();
+    let mut doubts = not_zeroed(&columns);
+    for (name, values) in columns {
         if values.iter().filter(|value| value.is_finite()).count() < SAMPLES {
             continue;
         }
@@ -162,6 +218,31 @@ mod tests {
         // Of dates, blocks alone.
         let minutes: Vec<f64> = (0..400).map(|k| 60.0 * (k / 25) as f64).collect();
         assert!(blocks(&minutes).is_some() && blocks(&[0.0, 10.0, 20.0]).is_none());
+    }
+
+    #[test]
+    fn minutes_that_are_called_seconds_are_doubted_and_quick_sensors_are_not() {
+        let every = |step_s: f64, count: usize| time(&(0..count).map(|k| step_s * k as f64).collect::<Vec<_>>());
+        let minutes = every(0.04 / 60.0, 1500).expect("a minute at 25 Hz");
+        assert!(minutes.contains("rows are 0.67 ms apart, and all of them within 1.0 s"), "{minutes}");
+        assert!(every(0.08 / 60.0, 750).is_some());
+        assert_eq!([every(1e-3, 60_000), every(1e-3, 5000), every(0.01, 100), every(1e-4, 20)], [(); 4].map(|()| None));
+    }
+
+    #[test]
+    fn ends_of_ranges_and_offsets_are_doubted_and_fingers_are_not() {
+        let force = |k: usize| -2.5 + 2.5 * (0.02 * k as f64).cos() + 0.002 * ((k * k) % 7) as f64;
+        let all = |of: &dyn Fn(usize) -> f64| (0..900).map(of).collect::<Vec<f64>>();
+        assert!(cut_off("Fz_N", &all(&force)).is_empty());
+        let cut = cut_off("Fz_N", &all(&|k| force(k).max(-4.0)));
+        assert!(cut.len() == 1 && cut[0].starts_with("Fz_N stays at exactly -4, its least value, in "), "{cut:?}");
+        assert!(cut_off("Fz_N", &all(&|k| (force(k) + 1.0).min(0.0))).is_empty(), "a finger that rests");
+        let said = |offset_n: f64, pressed: f64| {
+            let (fx, fz) = (all(&|k| offset_n + 0.1 * force(k)), all(&|k| (force(k) + pressed).min(0.0)));
+            forces([("Fx_N", &fx[..]), ("Fz_N", &fz[..])].into_iter()).concat()
+        };
+        assert!(said(0.5, 1.0).starts_with("Fx_N is 0.4"), "{}", said(0.5, 1.0));
+        assert_eq!([said(0.05, 1.0), said(0.5, -1.0)].concat(), "");
     }
 
     #[test]

@@ -268,7 +268,7 @@ mod tests {
     ///
     /// `cargo test --release --lib how_many_pairs -- --ignored --nocapture`
     #[test]
-    #[ignore = "two minutes, and prints figures"]
+    #[ignore = "half a minute, and prints figures"]
     fn how_many_pairs_are_warned_of() {
         const SEEDS: u64 = 20;
         let kinds = |seed: u64| {
@@ -300,7 +300,7 @@ mod tests {
             let all: Vec<[u64; 4]> = (0..SEEDS).into_par_iter().map(warned).collect();
             let counts = [0, 1, 2, 3].map(|k| all.iter().map(|warned| warned[k]).sum::<u64>());
             println!("{name}: of {SEEDS} own, others, late, at another rate: {counts:?}");
-            assert!(counts[0] <= 2 && counts[1..].iter().all(|count| 10 * count >= 9 * SEEDS), "{name} {counts:?}");
+            assert!(counts[0] <= 4 && counts[1..].iter().all(|count| 4 * count >= 3 * SEEDS), "{name} {counts:?}");
         }
     }
 

@@ -61,8 +61,8 @@ pub(super) fn redrawn_s(seen: &[Seen], resolution_s: f64) -> Option<f64> {
     shown_for_s.into_iter().filter(|shown_s| *shown_s <= LONGER * usual_s).max_by(f64::total_cmp)
 }
 
-/// Whether readings that disagree show what the one before or after shows, whatever the digit: a screen that shows late,
-/// and no digit that is misread.
+/// Whether readings that disagree show what the one before or after shows, whatever the digit: a screen that shows
+/// late, and no digit that is misread.
 pub(super) fn is_late(seen: &[Seen], agreed: &Agreed, resolution_s: f64) -> bool {
     let (mut refused, mut held, mut digits) = (0, 0, [false; 10]);
     let steps = |seen: &Seen| (seen.shown_s / resolution_s).round() as i64;

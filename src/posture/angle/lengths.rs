@@ -5,8 +5,8 @@
 //! colour on the table was taken for it ([`Lengths::changing`]).
 //!
 //! Measured on 16 videos of two phantoms (480x270, the fingertip's marker hidden in the first second, a disc of its
-//! colour 22 or 28 px beside it): in 11 the disc was followed, J3 32 to 75 degrees off; its segment's length varied by 6
-//! to 9 %, and nothing was said of the others.
+//! colour 22 or 28 px beside it): in 11 the disc was followed, J3 32 to 75 degrees off; its segment's length varied by
+//! 6 to 9 %, and nothing was said of the others.
 
 /// A segment whose length varies by more is not one segment, as a standard deviation over the mean (assumed: skin that
 /// slides evenly by 15 % makes 5 %).

@@ -45,6 +45,7 @@ pub(crate) fn look(frame: &Frame<'_>, point: &Point) -> Look {
         background,
         blur_px: 0.3 * point.radius_px,
         misfit: 0.02,
+        least_misfit: 0.02,
         noise: [2.0; 3],
         inflation: 1.0,
         blot: None,

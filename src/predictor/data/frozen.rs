@@ -1,8 +1,9 @@
 //! Columns that stand still for a while in the middle of a recording: a transducer or an amplifier that hangs.
 //!
 //! Values that stay the same to the last digit are no fault by themselves: a coarse converter at rest gives them, and a
-//! force of 0, or a photodiode at the end of its range. They are one where the other photodiodes say, by a linear model
-//! of the rest of the recording, that the value moved meanwhile.
+//! force of 0, a photodiode at an end of its range, a force or an angle at the end that is nearer to 0, at which a finger
+//! rests. They are one where the other photodiodes say, by a linear model of the rest of the recording, that the value
+//! moved meanwhile.
 
 use std::ops::Range;
 
@@ -52,18 +53,22 @@ fn column(data: &Dataset, column: usize) -> ArrayView1<'_, f64> {
     if column < inputs { data.x().column(column) } else { data.y().column(column - inputs) }
 }
 
-/// The longest run of rows of a recording in which a column stays the same, neither 0 nor its least or greatest value.
+/// The longest run of rows of a recording in which a column stays the same, neither 0 nor an end of its range at which
+/// it may rest.
 fn longest_run(data: &Dataset, one: &Recording, k: usize) -> Option<Range<usize>> {
     let values = column(data, k);
     let own = values.slice_axis(Axis(0), Slice::from(one.rows.clone()));
     let ends = own.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [v.min(low), v.max(high)]);
+    let is_target = k >= data.inputs().len();
+    // A transducer that hangs while the force grows shows the greatest of all.
+    let rests = |value: f64| ends.contains(&value) && !(is_target && ends.iter().any(|end| end.abs() < value.abs()));
     let mut longest = one.rows.start..one.rows.start;
     let mut start = one.rows.start;
     for row in one.rows.clone() {
         if values[row] != values[start] {
             start = row;
         }
-        if row + 1 - start > longest.len() && values[row] != 0.0 && !ends.contains(&values[row]) {
+        if row + 1 - start > longest.len() && values[row] != 0.0 && !rests(values[row]) {
             longest = start..row + 1;
         }
     }

@@ -1,5 +1,5 @@
-//! Photodiodes that show nothing, or are cut off at the end of the recorded range, or whose clock is another than that
-//! of what was measured beside them; files that contradict each other.
+//! Photodiodes that show nothing, columns that are cut off at the end of the recorded range, photodiodes whose clock is
+//! another than that of what was measured beside them; files that contradict each other.
 
 use std::ops::Range;
 
@@ -8,22 +8,23 @@ use ndarray::{Axis, Slice};
 
 use super::columns::cell;
 use super::source::Source;
+use crate::log::doubts::cut_off;
 use crate::log::piles;
 use crate::median::median_of;
 
-/// What is worth saying on a file's photodiodes. Rows that are left out for faults are not looked at; constant is one
-/// that has a single value.
-pub(super) fn warnings(source: &Source, keep_faults: bool) -> Vec<String> {
+/// What is worth saying on a file's photodiodes and its `targets`. Rows that are left out for faults are not looked at;
+/// constant is a photodiode that has a single value.
+pub(super) fn warnings(source: &Source, targets: &[String], keep_faults: bool) -> Vec<String> {
     let file = source.path.display();
     let mut warnings = Vec::new();
+    let seen = |values: &[f64]| {
+        let known = values.iter().zip(&source.faulty);
+        let known = known.filter(|(value, faulty)| !value.is_nan() && (keep_faults || !**faulty));
+        known.map(|(value, _)| *value).collect::<Vec<f64>>()
+    };
     let photodiodes = source.inputs.iter().zip(&source.x).filter(|(name, _)| cell(name).is_none());
     for (name, values) in photodiodes {
-        let seen: Vec<f64> = values
-            .iter()
-            .zip(&source.faulty)
-            .filter(|(value, faulty)| !value.is_nan() && (keep_faults || !**faulty))
-            .map(|(value, _)| *value)
-            .collect();
+        let seen = seen(values);
         let Some(&first) = seen.first() else { continue };
         if seen.len() > 1 && seen.iter().all(|&value| value == first) {
             warnings.push(format!(
@@ -42,6 +43,8 @@ pub(super) fn warnings(source: &Source, keep_faults: bool) -> Vec<String> {
             ));
         }
     }
+    let targets = targets.iter().zip(&source.y).flat_map(|(name, values)| cut_off(name, &seen(values)));
+    warnings.extend(targets.map(|said| format!("{file}: {said}")));
     warnings
 }
 

@@ -240,7 +240,7 @@ pub fn read_files(data: &[DataFile], wanted: &Wanted) -> Result<Read, DataError>
             }
         }
         splitter.finish(&mut recordings, &mut warnings);
-        warnings.extend(health::warnings(source, wanted.rows.keep_faults));
+        warnings.extend(health::warnings(source, &wanted.targets, wanted.rows.keep_faults));
         files.push(file);
         parts.push(start..time_s.len());
     }

@@ -70,7 +70,7 @@ impl Grid {
         without_drift(&mut channels, &log_there, step_s);
         let channels = filled(channels, &log_there);
         let together_s = log.first_s() - video.first_s();
-        let lags = lags(&search, together_s, step_s, [rows(&video) as i64, rows(&log) as i64]);
+        let lags = lags(search, together_s, step_s, [rows(&video) as i64, rows(&log) as i64]);
         let seen = |there: &[bool]| there.iter().filter(|there| **there).count() as f64;
         let least_rows = (OVERLAP * seen(&video_there).min(seen(&log_there))).max(SHORTEST_S / step_s);
         let of_channels = memory::own(&channels, &weights);

@@ -7,7 +7,7 @@ use lunula_hemodynamics::FitResult;
 
 use super::ReadRecording;
 use crate::hemodynamics::given::{SUCTION, hardly_pressed};
-use crate::log::doubts::{self, PULLED, without_spikes};
+use crate::log::doubts::{self, PULLED, cut_off, without_spikes};
 
 /// Pressures below this share of the recording's largest are noise or an offset (assumed).
 const NOISE: f64 = 0.05;
@@ -16,9 +16,10 @@ const SURE: f64 = 3.0;
 
 /// What to say of a force of the finger on the surface, newtons. `is_log`: its reading has said what it doubts.
 pub(super) fn of_force(name: &str, forces_n: &[f64], is_log: bool) -> Vec<String> {
+    let cut = cut_off(name, forces_n);
     let doubted = doubts::forces(std::iter::once((name, forces_n)));
     if !doubted.is_empty() {
-        return if is_log { Vec::new() } else { doubted };
+        return if is_log { cut } else { [cut, doubted].concat() };
     }
     // A fit's forces may all lie below what is forgiven there.
     let [least, greatest] = without_spikes(forces_n);
@@ -30,7 +31,7 @@ pub(super) fn of_force(name: &str, forces_n: &[f64], is_log: bool) -> Vec<String
              offset away"
         )
     });
-    said.into_iter().collect()
+    cut.into_iter().chain(said).collect()
 }
 
 /// What to say of pressures, Pa.
@@ -49,7 +50,8 @@ pub(super) fn of_pressures(columns: [(&str, &[f64]); 2]) -> Vec<String> {
             )
         })
     };
-    columns.into_iter().zip(ranges).filter_map(one).chain(hardly).collect()
+    let cut = columns.into_iter().flat_map(|(name, pressures_pa)| cut_off(name, pressures_pa));
+    columns.into_iter().zip(ranges).filter_map(one).chain(hardly).chain(cut).collect()
 }
 
 /// What to say of scalings: `V_1` is a photodiode's sensitivity, the LED's brightness and losses (equation 4), and no
@@ -97,6 +99,17 @@ mod tests {
         let [table, log] = [false, true].map(|is_log| of_force("Fz_N", &presses(1e4, 300), is_log));
         assert_eq!((table.len(), log.len()), (2, 0), "{table:?}");
         assert!(table[0].contains("from 0 to 10000 N") && table[1].contains("as if the finger pulled"), "{table:?}");
+    }
+
+    #[test]
+    fn loads_that_are_cut_off_are_doubted() {
+        let pressure = |k: usize| 2500.0 - 2500.0 * (0.05 * k as f64).cos() + ((k * k) % 13) as f64;
+        let all = |most: f64| (0..600).map(|k| pressure(k).min(most)).collect::<Vec<f64>>();
+        let said = |most: f64| of_pressures([("pf1_Pa", &all(most)), ("pf2_Pa", &all(6e3))]).concat();
+        assert!(said(4e3).starts_with("pf1_Pa stays at exactly 4000, its greatest value"), "{}", said(4e3));
+        assert_eq!(said(6e3), "");
+        let force: Vec<f64> = all(4e3).iter().map(|pa| -1e-4 * pa).collect();
+        assert!(of_force("Fz_N", &force, true).concat().contains("its least value"));
     }
 
     #[test]

@@ -31,16 +31,28 @@ struct Scene {
     /// How much luma rises over 100 pixels to the right and down.
     shading: [f64; 2],
     noise: f64,
+    /// How far the discs move while the picture is taken, pixels.
+    streak: [f64; 2],
     seed: u64,
 }
 
 impl Scene {
     fn new(discs: &[Disc]) -> Self {
         let format = Format { width: 96, height: 80, subsampling: Some((2, 2)), depth: 8 };
-        Self { format, siting: LEFT, discs: discs.to_vec(), shading: [0.0; 2], noise: 0.0, seed: 1 }
+        Self { format, siting: LEFT, discs: discs.to_vec(), shading: [0.0; 2], noise: 0.0, streak: [0.0; 2], seed: 1 }
     }
 
     fn value(&self, plane: usize, x: f64, y: f64) -> f64 {
+        const MOMENTS: usize = 16;
+        if self.streak == [0.0; 2] {
+            return self.value_at(plane, x, y);
+        }
+        let at = |k: usize| (k as f64 + 0.5) / MOMENTS as f64 - 0.5;
+        let values = (0..MOMENTS).map(|k| self.value_at(plane, x - at(k) * self.streak[0], y - at(k) * self.streak[1]));
+        values.sum::<f64>() / MOMENTS as f64
+    }
+
+    fn value_at(&self, plane: usize, x: f64, y: f64) -> f64 {
         let over = self.discs.iter().rev().find(|disc| (x - disc.at[0]).hypot(y - disc.at[1]) < disc.radius);
         let shade = if plane == 0 { (self.shading[0] * x + self.shading[1] * y) / 100.0 } else { 0.0 };
         over.map_or(SKIN[plane] + shade, |disc| disc.colour[plane])
@@ -333,4 +345,32 @@ fn a_blob_that_is_no_disc_keeps_its_place() {
         let centroid = [at[0] + CENTROID_PX * cos, at[1] + CENTROID_PX * sin];
         assert!(error(&fit, centroid) <= TOLERANCE_PX, "{k}: {}", error(&fit, centroid));
     }
+}
+
+/// Off centre by half a radius at first, as a place that is expected by the motion.
+#[test]
+fn the_standard_error_of_a_streak_holds_its_error() {
+    let (mut held, mut seen, mut streaks) = (0, 0, 0);
+    for length in [0.5, 0.7, 0.9, 1.1, 1.3, 1.5, 1.8, 2.2] {
+        for k in 0..12 {
+            let rad = 0.53 * f64::from(k);
+            let at = [48.0 + 0.1 * f64::from(k), 40.0];
+            let still = Scene { shading: [20.0, -10.0], noise: 1.0, ..Scene::new(&[pink(at, 8.0)]) };
+            let mut look = still.look();
+            look.inflation = 1.5;
+            // As the frames before, in which it moves as well, have taught.
+            look.blur_px = look.blur_px.max(8.0 * length / 4.0).min(4.0);
+            let (sin, cos) = rad.sin_cos();
+            let scene = Scene { streak: [8.0 * length * cos, 8.0 * length * sin], seed: k as u64, ..still };
+            let Ok(fit) = scene.fit(&look, [at[0] + 4.0 * cos, at[1] + 4.0 * sin]) else { continue };
+            let [xx, _, yy] = fit.centre.covariance_px2;
+            seen += 1;
+            held += u32::from(error(&fit, at) <= 2.5 * (xx + yy).sqrt());
+            streaks += u32::from(fit.centre.lasting_px2[0] > 0.0);
+            if length < 0.6 {
+                assert!((xx + yy).sqrt() < 0.2, "a short one: {:?}", fit.centre);
+            }
+        }
+    }
+    assert!(seen >= 12 && streaks >= 3 && 10 * held >= 9 * seen, "{held} of {seen}, {streaks}");
 }

@@ -29,6 +29,7 @@ impl Look {
             background,
             blur_px: 0.0,
             misfit: 0.0,
+            least_misfit: 0.0,
             noise: [1.0; 3],
             inflation: INFLATION,
             blot: None,
@@ -57,6 +58,7 @@ impl Look {
             background: one.background,
             blur_px: one.blur_px,
             misfit,
+            least_misfit: misfit,
             noise: one.noise,
             ..start
         })
@@ -73,6 +75,7 @@ impl Look {
             // What a disc would have; nothing is fitted with them.
             blur_px: 0.0,
             misfit: 0.0,
+            least_misfit: 0.0,
             noise: outline.noise,
             inflation: INFLATION,
             blot: Some(blot),

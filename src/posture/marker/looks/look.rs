@@ -23,6 +23,8 @@ pub(crate) struct Look {
     pub(crate) blur_px: f64,
     /// What is usually left unexplained within the marker, over its contrast, both squared.
     pub(crate) misfit: f64,
+    /// The least that it was.
+    pub(crate) least_misfit: f64,
     /// Standard deviation of what is left unexplained in each plane.
     pub(crate) noise: [f64; 3],
     /// How many times larger the errors are than independent noise would make them
@@ -44,6 +46,7 @@ impl Look {
         toward(&mut self.radius_px, fit.centre.radius_px);
         toward(&mut self.blur_px, fit.blur_px);
         toward(&mut self.misfit, fit.misfit);
+        self.least_misfit = self.least_misfit.min(self.misfit);
         for p in 0..3 {
             toward(&mut self.marker[p], fit.marker[p]);
             toward(&mut self.background[p], fit.background[p]);
