@@ -117,7 +117,7 @@ fn a_force_that_is_cut_off_is_reported() {
     let least = fz_n[40];
     let dir = dir_with(&whole.map("Fz_N", move |_, v| v.max(least)));
     let answer = dir.train("a.csv", "force", "m.json", &[]).expect(0);
-    answer.says("a.csv: Fz_N stays at exactly ").says("cut off at the end of a range?");
+    answer.says("a.csv: Fz_N stays at exactly ").says("cut off at the end of a range");
     let dir = dir_with(&Recording::of(0..120));
     let whole = dir.train("a.csv", "force", "m.json", &[]).expect(0);
     assert!(!whole.stderr.contains("cut off"), "{}", whole.stderr);

@@ -145,8 +145,8 @@ pub(crate) fn cut_off(name: &str, values: &[f64]) -> Vec<String> {
     let ends = ends.filter_map(|(pile, which)| Some((pile.filter(|(value, _)| *value != 0.0)?, which)));
     ends.map(|((value, count), which)| {
         format!(
-            "{name} stays at exactly {}, its {which} value, in {count} of {} rows: cut off at the end of a range? What \
-             learns from it takes what was beyond for that",
+            "{name} stays at exactly {}, its {which} value, in {count} of {} rows: cut off at the end of a range, or \
+             at rest and never zeroed? What learns from it takes it as it is",
             short(value),
             values.len()
         )
