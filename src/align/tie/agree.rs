@@ -5,8 +5,8 @@
 //! there, and a warning where they explain clearly more at another lag or rate of the log, or no more than at any lag
 //! ([`compare`]). What the forces explain is taken off the photodiodes first.
 //!
-//! Limits are from 105 phantoms of 15 kinds of motion (20 to 900 s), as they are, with the log of another seed, a second
-//! late, and at 25/24 of its rate; a test counts on others (`how_many_pairs_are_warned_of`).
+//! Limits are from 105 phantoms of 15 kinds of motion (20 to 900 s), as they are, with the log of another seed, a
+//! second late, and at 25/24 of its rate; a test counts on others (`how_many_pairs_are_warned_of`).
 
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
