@@ -1,7 +1,7 @@
 //! Columns that stand still for a while in the middle of a recording: a transducer or an amplifier that hangs.
 //!
 //! Values that stay the same to the last digit are no fault by themselves: a coarse converter at rest gives them, and a
-//! force of 0, a photodiode at an end of its range, a force or an angle at the end that is nearer to 0, at which a finger
+//! force of 0, a photodiode at an end of its range, a force or an angle at the end that is nearer to 0, where a finger
 //! rests. They are one where the other photodiodes say, by a linear model of the rest of the recording, that the value
 //! moved meanwhile.
 
