@@ -72,6 +72,28 @@ fn a_recording_in_another_order_than_the_models_is_warned_of() {
 }
 
 #[test]
+fn every_other_row_is_no_recording_to_validate_on() {
+    let dir = Dir::new();
+    phantom(&dir, ["1", "1", "3"], "touch-random", "nail", "a");
+    phantom(&dir, ["1", "1", "4"], "touch-random", "nail", "b");
+    let log = std::fs::read_to_string(dir.path("a/log.csv")).expect("a log");
+    let lines: Vec<&str> = log.lines().collect();
+    // Lit and unlit rows come by turns: pairs of them.
+    let of = |which: usize| {
+        let rows = lines[1..].chunks(2).enumerate().filter(|(k, _)| k % 2 == which).flat_map(|(_, pair)| pair);
+        std::iter::once(&lines[0]).chain(rows).fold(String::new(), |text, line| text + line + "\n")
+    };
+    dir.write("even.csv", of(0));
+    dir.write("odd.csv", of(1));
+    let validated = |on: &str| {
+        dir.lunula(&["train", "even.csv", "--target", "force", "--validate", on, "--out", "m.json"]).expect(0)
+    };
+    validated("odd.csv").says("odd.csv: its rows are, or lie between, those of even.csv");
+    let other = validated("b/log.csv");
+    assert!(!other.stderr.contains("parts of one recording"), "{}", other.stderr);
+}
+
+#[test]
 fn a_column_that_hangs_is_warned_of() {
     let dir = Dir::new();
     phantom(&dir, ["1", "1", "3"], "touch-random", "nail", "a");

@@ -29,6 +29,7 @@ pub use data::delay::{Delay, delays};
 pub use data::lags::{LagFault, LagStream, Lagged, Lags};
 pub use data::mismatch::{Difference, Mismatch, exchanged, mismatches};
 pub use data::path::{paths, repeated_paths};
+pub use data::shared::shared;
 pub use evaluate::{
     Bin, By, ByMagnitude, Coverage, CrossCoverage, CrossFault, CrossValidation, Fit, Flattery, Fold, FoldResult,
     FoldSpread, IntervalFault, Intervals, Leak, LearningFault, LearningPoint, MagnitudeFault, Method, MethodScore,

@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use lunula_predictor::{
     Dataset, Intervals, Kind, Predictor, Recipe, Report as FitReport, calibrate, recording_hashes, repeated_paths,
-    score, with_lags,
+    score, shared, with_lags,
 };
 use serde::Serialize;
 
@@ -174,9 +174,11 @@ pub fn train(
     warnings.extend(fit_warnings(&predictor.training().report).iter().cloned());
     if let Some(held) = &validate {
         warnings.extend(crate::predictor::seen_in_training(&predictor, &held.data));
+        warnings.extend(parts(&read.data, &held.data, "validate on"));
     }
     let is_network = matches!(recipe.kind, Kind::Network { .. });
     if let Some(early) = early.filter(|_| is_network) {
+        warnings.extend(parts(&read.data, early, "stop on"));
         let seen = crate::predictor::again(&predictor.training().recordings, early);
         warnings.extend(seen.map(|names| {
             format!("{names}: --stop-on names what is trained on, whose error only falls; name other recordings")
@@ -272,6 +274,23 @@ fn leave_out_unseen(read: &mut Read) -> Result<Option<String>, PredictorError> {
     });
     read.data = read.data.only_inputs(&kept);
     Ok(note)
+}
+
+/// Recordings that are to be others than those trained on, and are parts of them; whole ones are named elsewhere.
+fn parts(train: &Dataset, others: &Dataset, what: &str) -> Vec<String> {
+    let say = |(other, of): (usize, usize)| {
+        let [other, of] = [&others.recordings()[other].name, &train.recordings()[of].name];
+        format!(
+            "{other}: its rows are, or lie between, those of {of}, by time and voltages, which is trained on: parts of \
+             one recording? Errors and intervals flatter then; {what} another recording"
+        )
+    };
+    if train.inputs() != others.inputs() {
+        return Vec::new();
+    }
+    let (whole, hashes) = (recording_hashes(train), recording_hashes(others));
+    let is_part = |&(other, _): &(usize, usize)| !whole.contains(&hashes[other]);
+    shared(train, others).into_iter().filter(is_part).map(say).collect()
 }
 
 /// Recordings validated on that repeat a path trained on.

@@ -1,0 +1,136 @@
+//! Whether a recording to be tried on is a part of one trained on: a copy, a piece, or every other row.
+//!
+//! In: two [`Dataset`]s. Out: which recordings of the second were, by time and voltages, sampled together with one of
+//! the first. Errors on such rows are those on rows that the model has seen, and intervals from them hold too little.
+//!
+//! A row is compared with what lies about its time in the other recording, linear in between, in units of what each of
+//! that one's own rows is off its neighbours. Measured on phantom logs of touch: every other row is 0.8 to 1.0 of that
+//! off; a repetition by the same person, from the same time on, 6 and more.
+
+use std::ops::Range;
+
+use super::path::Between;
+use crate::Dataset;
+
+/// Rows of a recording, at least, and moments that are looked at.
+const ROWS: usize = 20;
+const MOMENTS: usize = 400;
+/// A gap is longer than so many usual steps.
+const GAP: f64 = 2.5;
+/// Of a recording's rows so many lie about rows of the other, and are so many times as far off as those are off each
+/// other at most (assumed; the head says what was measured).
+const SHARED: f64 = 0.5;
+const TIMES: f64 = 1.5;
+/// A column says something that goes so many times as far as its rows are off each other.
+const MOVES: f64 = 5.0;
+/// What rounding leaves, as a share of how far a column goes.
+const ROUNDING: f64 = 1e-9;
+
+/// The recordings of `held` that are parts of one of `train`: their places, and that one's.
+///
+/// # Panics
+/// Where the sets have other inputs than each other.
+#[must_use]
+pub fn shared(train: &Dataset, held: &Dataset) -> Vec<(usize, usize)> {
+    assert_eq!(train.inputs(), held.inputs(), "sets of the same inputs");
+    let places = |of: &Dataset| (0..of.recordings().len()).collect::<Vec<usize>>();
+    let of = |b: usize| {
+        let is_part = |a: &usize| is_part([train, held], [&train.recordings()[*a].rows, &held.recordings()[b].rows]);
+        places(train).into_iter().find(is_part).map(|a| (b, a))
+    };
+    places(held).into_iter().filter_map(of).collect()
+}
+
+fn is_part([train, held]: [&Dataset; 2], rows: [&Range<usize>; 2]) -> bool {
+    let [times, moments] = [&train.time_s()[rows[0].clone()], &held.time_s()[rows[1].clone()]];
+    let ascends =
+        |times: &[f64]| times.windows(2).all(|pair| pair[0] <= pair[1]) && times.iter().all(|t| t.is_finite());
+    if times.len().min(moments.len()) < ROWS || !ascends(times) || !ascends(moments) {
+        return false;
+    }
+    let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let middle = steps.len() / 2;
+    let usual_s = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let within = |&&row: &&usize| {
+        let at = moments[row];
+        let next = times.partition_point(|&t| t < at);
+        let is_row = times.get(next) == Some(&at);
+        is_row || next > 0 && next < times.len() && times[next] - times[next - 1] <= GAP * usual_s
+    };
+    let looked: Vec<usize> = (0..moments.len()).step_by(moments.len().div_ceil(MOMENTS)).collect();
+    let about: Vec<usize> = looked.iter().filter(within).copied().collect();
+    if (about.len() as f64) < SHARED * looked.len() as f64 {
+        return false;
+    }
+    let between: Vec<Between> = Between::rows(times, about.iter().map(|&row| moments[row])).collect();
+    let (mut moving, mut alike) = (0, 0);
+    for column in 0..train.inputs().len() {
+        let own = |row: usize| train.x()[[rows[0].start + row, column]];
+        let values: Vec<f64> = (0..times.len()).map(own).collect();
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        let goes = rms(values.iter().map(|value| value - mean));
+        let off = rms((1..times.len() - 1).filter(|&k| times[k + 1] > times[k - 1]).map(|k| {
+            let share = (times[k] - times[k - 1]) / (times[k + 1] - times[k - 1]);
+            values[k] - values[k - 1] - share * (values[k + 1] - values[k - 1])
+        }));
+        if goes > 0.0 && goes > MOVES * off {
+            let there = |(&row, at): (&usize, &Between)| held.x()[[rows[1].start + row, column]] - at.value(own);
+            moving += 1;
+            alike += usize::from(rms(about.iter().zip(&between).map(there)) <= TIMES * off + ROUNDING * goes);
+        }
+    }
+    moving > 0 && alike == moving
+}
+
+/// The root mean square; of none, or of what is not known, NaN.
+fn rms(values: impl Iterator<Item = f64>) -> f64 {
+    let (squares, count) = values.fold((0.0, 0.0), |(squares, count), value| (squares + value * value, count + 1.0));
+    f64::sqrt(squares / count)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Recording;
+    use ndarray::Array2;
+
+    /// A recording of two photodiodes at `times`, with noise of its own.
+    fn set(times: &[f64], seed: usize, value: impl Fn(f64) -> f64) -> Dataset {
+        let noise = |k: usize| ((k * k * 7919 + (31 + seed) * k + seed) % 1009) as f64 / 1009.0 - 0.5;
+        let n = times.len();
+        let x = Array2::from_shape_fn((n, 2), |(row, column)| {
+            let k = (times[row] * 25.0).round() as usize;
+            (1.0 + column as f64) * value(times[row]) + 0.01 * noise(k + 5000 * column)
+        });
+        let one = Recording { name: "r".into(), session: String::new(), subject: String::new(), rows: 0..n };
+        let names = |all: &[&str]| all.iter().map(|name| (*name).to_owned()).collect::<Vec<String>>();
+        Dataset::new(names(&["P1", "P2"]), names(&["F"]), times.to_vec(), x, Array2::zeros((n, 1)), vec![one]).unwrap()
+    }
+
+    fn spiral(t: f64) -> f64 {
+        (0.3 + 0.02 * t) * (1.1 * t).sin()
+    }
+
+    #[test]
+    fn parts_of_a_recording_are_seen_and_repetitions_are_not() {
+        let all: Vec<f64> = (0..1000).map(|k| 0.04 * f64::from(k)).collect();
+        let every = |step: usize, from: usize| all.iter().copied().skip(from).step_by(step).collect::<Vec<f64>>();
+        let whole = set(&all, 1, spiral);
+        let odd = set(&every(2, 1), 1, spiral);
+        for part in [&odd, &set(&all, 1, spiral), &set(&all[300..500], 1, spiral), &set(&every(7, 3), 1, spiral)] {
+            assert_eq!(shared(&whole, part), [(0, 0)]);
+        }
+        assert_eq!(shared(&set(&every(2, 0), 1, spiral), &odd), [(0, 0)]);
+        // Another time, and another day's run of the same prompt, followed a little otherwise.
+        let later: Vec<f64> = all.iter().map(|t| t + 0.4).collect();
+        let again = set(&all, 2, |t| 0.94 * spiral(t) + 0.02 * (0.4 * t).cos());
+        for other in [again, set(&later, 2, |t| spiral(t - 0.4)), set(&all, 2, |_| 1.0)] {
+            assert_eq!(shared(&whole, &other), []);
+        }
+        // A sensor at rest is like any other, and nobody knows when.
+        let rest = set(&all, 1, |_| 1.0);
+        assert_eq!(shared(&rest, &rest.clone()), []);
+        let unknown = set(&[f64::NAN; 100], 1, |_| 1.0);
+        assert_eq!(shared(&unknown, &unknown.clone()), []);
+    }
+}
