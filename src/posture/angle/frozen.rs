@@ -5,7 +5,7 @@
 //! are, all of them at once and for a frame at least, and then jump. A finger that rests does the first and not the
 //! second.
 //!
-//! Measured on three phantoms of 480x270, encoded anew: half a second of repeated pictures (angles up to 12 degrees
+//! Measured on three phantoms of 480x270, encoded again: half a second of repeated pictures (angles up to 12 degrees
 //! off) and ten pictures a second (2.4 degrees) are seen in all, and nothing where all pictures are new.
 
 /// Places that are no further apart are the same, pixels.
