@@ -105,8 +105,10 @@ fn agreement(posture: &Posture, samples: &Samples, tie: &Tie) -> Result<Result<S
         )));
     }
     Ok(Ok(format!(
-        "the photodiodes agree with the tie: the angles explain {share:.0} % of their best combination, {lag_s:.2} s \
-         before them"
+        "the photodiodes agree with the tie: the angles explain {share:.0} % of their best combination, {:.2} s {} \
+         them",
+        lag_s.abs(),
+        if lag_s < 0.0 { "after" } else { "before" }
     )))
 }
 
