@@ -8,7 +8,8 @@
 //! Limits are from 105 phantoms of 15 kinds of motion (20 to 900 s), as they are, with the log of another seed, a
 //! second late, and at 25/24 of its rate; a test counts on others (`how_many_pairs_are_warned_of`).
 
-use nalgebra::{DMatrix, DVector};
+use lunula_predictor::{Deficient, LeastSquaresOptions, least_squares};
+use ndarray::{Array2, ArrayView1};
 use rayon::prelude::*;
 
 use super::Tie;
@@ -189,32 +190,23 @@ fn without_forces(channels: &mut [Vec<f64>], forces: &[Vec<f64>]) {
     let rows = forces.first().map_or(0, Vec::len);
     let known: Vec<usize> =
         (0..rows).filter(|&row| forces.iter().chain(channels.iter()).all(|column| column[row].is_finite())).collect();
-    let terms = |row: usize| {
-        let f: Vec<f64> = forces.iter().map(|force| force[row]).collect();
+    let terms = |row: &usize| {
+        let f: Vec<f64> = forces.iter().map(|force| force[*row]).collect();
         let products = (0..f.len()).flat_map(|i| (0..=i).map(move |j| (i, j))).map(|(i, j)| f[i] * f[j]);
-        std::iter::once(1.0)
-            .chain(f.iter().copied())
-            .chain(products)
-            .chain(f.iter().map(|f| f.powi(3)))
-            .collect::<Vec<_>>()
+        f.iter().copied().chain(products).chain(f.iter().map(|f| f.powi(3))).collect::<Vec<f64>>()
     };
-    let rows: Vec<DVector<f64>> = known.iter().map(|&row| DVector::from_vec(terms(row))).collect();
-    let Some(count) = rows.first().map(DVector::len) else { return };
-    let mut squares = DMatrix::<f64>::zeros(count, count);
-    rows.iter().for_each(|row| squares.ger(1.0, row, row, 1.0));
-    // What never changes, as a force that is 0, takes nothing off.
-    (0..count).for_each(|k| squares[(k, k)] = squares[(k, k)] * (1.0 + RIDGE) + f64::MIN_POSITIVE);
-    let Some(factor) = squares.cholesky() else { return };
-    for channel in channels {
-        let mut weights = DVector::zeros(count);
-        rows.iter().zip(&known).for_each(|(row, &k)| weights.axpy(channel[k], row, 1.0));
-        factor.solve_mut(&mut weights);
-        rows.iter().zip(&known).for_each(|(row, &k)| channel[k] -= row.dot(&weights));
+    let width = forces.len() * (forces.len() + 5) / 2;
+    let design = Array2::from_shape_vec((known.len(), width), known.iter().flat_map(terms).collect());
+    let design = design.expect("every row has as many terms");
+    let measured = Array2::from_shape_fn((known.len(), channels.len()), |(k, channel)| channels[channel][known[k]]);
+    // What never changes, as a force that is 0, explains nothing.
+    let options = LeastSquaresOptions { deficient: Deficient::MinimumNorm, ..LeastSquaresOptions::default() };
+    let Ok(fit) = least_squares(design.view(), measured.view(), &options) else { return };
+    let explained = (design - ArrayView1::from(&fit.centre)).dot(&fit.coefficients.t());
+    for (channel, (values, centre)) in channels.iter_mut().zip(&fit.target_centre).enumerate() {
+        known.iter().zip(explained.column(channel)).for_each(|(&row, explained)| values[row] -= centre + explained);
     }
 }
-
-/// By which each square is raised, so that forces that go together can be solved for.
-const RIDGE: f64 = 1e-9;
 
 /// The standard deviation of what is known.
 fn sd(column: &[f64]) -> f64 {

@@ -11,6 +11,7 @@ use std::ops::Range;
 
 use super::path::Between;
 use crate::Dataset;
+use crate::evaluate::sum::{mean, rms};
 
 /// Rows of a recording, at least, and moments that are looked at.
 const ROWS: usize = 20;
@@ -67,8 +68,8 @@ fn is_part([train, held]: [&Dataset; 2], rows: [&Range<usize>; 2]) -> bool {
     for column in 0..train.inputs().len() {
         let own = |row: usize| train.x()[[rows[0].start + row, column]];
         let values: Vec<f64> = (0..times.len()).map(own).collect();
-        let mean = values.iter().sum::<f64>() / values.len() as f64;
-        let goes = rms(values.iter().map(|value| value - mean));
+        let middle = mean(values.iter().copied());
+        let goes = rms(values.iter().map(|value| value - middle));
         let off = rms((1..times.len() - 1).filter(|&k| times[k + 1] > times[k - 1]).map(|k| {
             let share = (times[k] - times[k - 1]) / (times[k + 1] - times[k - 1]);
             values[k] - values[k - 1] - share * (values[k + 1] - values[k - 1])
@@ -80,12 +81,6 @@ fn is_part([train, held]: [&Dataset; 2], rows: [&Range<usize>; 2]) -> bool {
         }
     }
     moving > 0 && alike == moving
-}
-
-/// The root mean square; of none, or of what is not known, NaN.
-fn rms(values: impl Iterator<Item = f64>) -> f64 {
-    let (squares, count) = values.fold((0.0, 0.0), |(squares, count), value| (squares + value * value, count + 1.0));
-    f64::sqrt(squares / count)
 }
 
 #[cfg(test)]
